@@ -1,0 +1,282 @@
+#!/usr/bin/env python3
+"""Opens a report in Chromium from a file:// address and uses it as a reader would.
+
+    python ci/browser_test.py REPORT_DIR [--shots FOLDER]
+
+Needs chromium and chromedriver on the path, and nothing but Python's own library: chromedriver speaks JSON over HTTP on this machine.
+Prints each check and `N passed, N failed`; ends with 0 if all passed, 1 if one failed, 2 if the browser could not be started.
+"""
+
+import argparse
+import base64
+import json
+import pathlib
+import re
+import shutil
+import subprocess
+import sys
+import tempfile
+import time
+import urllib.error
+import urllib.request
+
+ELEMENT = "element-6066-11e4-a52e-4f735466cecf"
+ESCAPE, ARROW_RIGHT, ARROW_DOWN, ENTER = "\ue00c", "\ue014", "\ue015", "\ue007"
+
+
+class Browser:
+    """One page of Chromium, driven through chromedriver."""
+
+    def __init__(self, profile):
+        self.driver = subprocess.Popen(["chromedriver", "--port=0"], stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
+        self.session = None
+        try:
+            for line in self.driver.stdout:
+                if port := re.search(r"started successfully on port (\d+)", line):
+                    self.base = f"http://127.0.0.1:{port[1]}"
+                    break
+            else:
+                raise RuntimeError("chromedriver did not start")
+            flags = ["--headless=new", "--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run", "--disable-background-networking",
+                     "--disable-component-update", "--disable-sync", "--disable-dev-shm-usage", "--force-prefers-reduced-motion", f"--user-data-dir={profile}", "--window-size=1440,1000"]
+            options = {"args": flags}
+            if binary := shutil.which("chromium") or shutil.which("chromium-browser") or shutil.which("google-chrome"):
+                options["binary"] = binary
+            wanted = {"browserName": "chrome", "goog:chromeOptions": options, "goog:loggingPrefs": {"browser": "ALL", "performance": "ALL"}}
+            self.session = self.call("POST", "/session", {"capabilities": {"alwaysMatch": wanted}})["sessionId"]
+        except BaseException:
+            self.close()
+            raise
+
+    def call(self, method, path, body=None):
+        data = None if body is None else json.dumps(body).encode()
+        request = urllib.request.Request(self.base + path, data, {"Content-Type": "application/json"}, method=method)
+        try:
+            with urllib.request.urlopen(request, timeout=120) as answer:
+                return json.load(answer)["value"]
+        except urllib.error.HTTPError as error:
+            raise RuntimeError(json.load(error)["value"]["message"].splitlines()[0]) from None
+
+    def post(self, path, **body):
+        return self.call("POST", f"/session/{self.session}{path}", body)
+
+    def open(self, address):
+        self.post("/url", url=address)
+
+    def run(self, script, *arguments):
+        """Runs a script in the page; its `return` is the value."""
+        return self.post("/execute/sync", script=script, args=list(arguments))
+
+    def find(self, selector):
+        return self.post("/element", using="css selector", value=selector)[ELEMENT]
+
+    def click(self, selector):
+        """A real click, at the element's place on the screen: one that is covered or off the screen fails."""
+        self.run("document.querySelector(arguments[0]).scrollIntoView({block: 'center', behavior: 'instant'})", selector)
+        self.post(f"/element/{self.find(selector)}/click")
+
+    def press(self, *keys):
+        actions = [{"type": kind, "value": key} for key in keys for kind in ("keyDown", "keyUp")]
+        self.post("/actions", actions=[{"type": "key", "id": "keyboard", "actions": actions}])
+
+    def choose(self, selector, value):
+        """Chooses an option of a list as a reader's choice does: with its event."""
+        self.run("const list = document.querySelector(arguments[0]); list.value = arguments[1]; list.dispatchEvent(new Event('change', {bubbles: true}))", selector, value)
+
+    def until(self, script, *arguments, seconds=20):
+        """Waits until a script returns something true, and returns that; whatever it was last if it never does."""
+        end = time.monotonic() + seconds
+        while not (value := self.run(script, *arguments)) and time.monotonic() < end:
+            time.sleep(0.05)
+        return value
+
+    def log(self, kind):
+        return self.post("/se/log", type=kind)
+
+    def shot(self, path):
+        path.write_bytes(base64.b64decode(self.call("GET", f"/session/{self.session}/screenshot")))
+
+    def close(self):
+        if self.session:
+            self.call("DELETE", f"/session/{self.session}")
+        self.driver.terminate()
+        self.driver.wait(10)
+
+
+# What the page shows, as scripts for it.
+ROWS = "return document.querySelector('#rows').open ? document.querySelectorAll('#rows-table tbody tr').length : 0"
+DRAWN = "const box = document.getElementById(arguments[0]); return box.querySelectorAll('.scatterlayer .trace').length"
+CLOSED = "return !document.querySelector('#rows').open"
+BACKGROUND = "return getComputedStyle(document.body).backgroundColor"
+FOCUS = "const cell = document.activeElement.closest('td'); return cell ? [cell.parentElement.rowIndex, cell.cellIndex] : null"
+
+
+def checks(page, address, shots):
+    """Yields (what, whether it is so, what was seen)."""
+
+    def shot(name):
+        if shots:
+            page.shot(shots / f"{name}.png")
+
+    def has(selector):
+        return page.run("return document.querySelector(arguments[0]) !== null", selector)
+
+    page.open(address)
+    sections = page.run("return [...document.querySelectorAll('main > section')].map(section => section.id)")
+    yield "the page has its sections", sections == ["verdict", "agreement", "depth", "time", "pairs", "provenance", "method", "unpassed"], sections
+    width = page.run("return [document.documentElement.scrollWidth, innerWidth]")
+    yield "the page is no wider than its window", width[0] <= width[1], width
+    shot("top")
+
+    for box in ["depth-plot", "time-plot"]:
+        if has(f"#{box}"):
+            traces = page.until(DRAWN, box)
+            yield f"{box} has traces", traces > 0, traces
+            page.run("document.getElementById(arguments[0]).scrollIntoView({block: 'center', behavior: 'instant'})", box)
+            shot(box)
+
+    if has("#heat td button"):
+        page.click("#heat td button")
+        rows = page.until(ROWS)
+        count = page.run("return document.querySelector('#rows-count').textContent")
+        yield "a click on a cell shows its rows", rows > 0, count
+        seen = page.run("""
+            const heads = [...document.querySelectorAll('#rows-table th')].map(head => head.textContent);
+            const column = heads.indexOf('engine');
+            const engines = [...document.querySelectorAll('#rows-table tbody tr')].map(row => row.cells[column].textContent);
+            return [[...new Set(engines)], document.querySelector('#heat th.engine').textContent]""")
+        yield "they are that engine's rows alone", seen[0] == [seen[1]], seen
+        shot("rows")
+        first = page.run("return document.querySelector('#rows-table tbody').textContent")
+        head = "[...document.querySelectorAll('#rows-table th button')].find(button => button.textContent === 'value')"
+        if page.run(f"return {head} !== undefined"):
+            page.run(f"{head}.click()")
+            low = page.run("return document.querySelector('#rows-table tbody').textContent")
+            page.run(f"{head}.click()")
+            high = page.run("return document.querySelector('#rows-table tbody').textContent")
+            yield "rows sort both ways", rows < 2 or low != high, [first[:60], low[:60], high[:60]]
+        here = page.run("return location.href")
+        page.press(ESCAPE)
+        yield "Escape closes the rows", page.until(CLOSED), ""
+        page.open("about:blank")
+        page.open(here)
+        yield "the address of open rows opens them again", page.until(ROWS) == rows, here[-80:]
+        page.press(ESCAPE)
+
+        page.run("document.querySelector('#heat td button').focus()")
+        start = page.run(FOCUS)
+        page.press(ARROW_RIGHT)
+        page.press(ARROW_DOWN)
+        end = page.run(FOCUS)
+        yield "arrow keys walk the heatmap", start and end and end[0] > start[0] and end[1] > start[1], [start, end]
+        tip = page.run("const tip = document.querySelector('#tip'); return tip.hidden ? '' : tip.textContent")
+        yield "the focused cell is explained", len(tip) > 10, tip
+        shot("tip")
+        page.press(ENTER)
+        yield "Enter opens the focused cell", page.until(ROWS) > 0, ""
+        page.press(ESCAPE)
+
+        engine = page.run("return document.querySelector('#heat-engine').options[1].value")
+        page.choose("#heat-engine", engine)
+        shown = page.run("return [...document.querySelectorAll('#heat th.engine')].filter(head => !head.hidden).length")
+        yield "one engine can be chosen", shown == 1, shown
+        shot("engine")
+        page.choose("#heat-engine", "")
+        page.run("const box = document.querySelector('#heat-filter'); box.value = 'no model has this name'; box.dispatchEvent(new Event('input'))")
+        shown = page.run("return [...document.querySelectorAll('#heat tr[data-m]')].filter(row => !row.hidden).length")
+        yield "the filter hides models", shown == 0, shown
+        page.run("const box = document.querySelector('#heat-filter'); box.value = ''; box.dispatchEvent(new Event('input'))")
+
+    if has("#depth-quantity"):
+        title = "return document.querySelector('#depth-plot .ytitle').textContent"
+        before = page.run(title)
+        others = page.run("const list = document.querySelector('#depth-quantity'); return [...list.options].filter(option => option.value !== list.value).map(option => option.value)")
+        if others:
+            page.choose("#depth-quantity", others[0])
+            after = page.until(f"const now = (() => {{ {title} }})(); return now !== arguments[0] && now", before)
+            yield "another quantity can be plotted", bool(after) and page.until(DRAWN, "depth-plot") > 0, [before, after]
+        marks = "const mark = document.querySelector('#depth-plot .points path'); if (!mark) return null; mark.scrollIntoView({block: 'center', behavior: 'instant'}); const box = mark.getBoundingClientRect(); return [box.x + box.width / 2, box.y + box.height / 2]"
+        place = page.run(marks)
+        if place:
+            move = {"type": "pointerMove", "duration": 50, "x": round(place[0]), "y": round(place[1])}
+            pointer = [move, {"type": "pause", "duration": 300}, {"type": "pointerDown", "button": 0}, {"type": "pointerUp", "button": 0}]
+            page.post("/actions", actions=[{"type": "pointer", "id": "mouse", "actions": pointer}])
+            yield "a click on a mark shows its rows", page.until(ROWS) > 0, place
+            page.press(ESCAPE)
+    if has("#time-unit"):
+        page.choose("#time-unit", "joint")
+        title = page.until("return document.querySelector('#time-plot .ytitle').textContent.includes('joint')")
+        yield "time per joint can be plotted", title, ""
+
+    if has("#unpassed [data-chunk]"):
+        page.click("#unpassed [data-chunk]")
+        yield "what did not pass can be opened", page.until(ROWS) > 0, ""
+        page.press(ESCAPE)
+
+    before = page.run(BACKGROUND)
+    ink = "const title = document.querySelector('.ytitle'); return title && title.style.fill"
+    plot_before = page.run(ink)
+    page.run("scrollTo({top: 0, behavior: 'instant'})")
+    page.click("#theme")
+    after = page.run(BACKGROUND)
+    yield "the theme changes", before != after, [before, after]
+    if plot_before:
+        yield "the plots change with it", page.until(f"const now = (() => {{ {ink} }})(); return now !== arguments[0] && now", plot_before), plot_before
+    shot("theme")
+    if shots:
+        for place in ["agreement", "depth", "time", "pairs", "provenance", "method", "unpassed"]:
+            page.run("document.getElementById(arguments[0]).scrollIntoView({behavior: 'instant'})", place)
+            shot(f"theme-{place}")
+    page.open("about:blank")
+    page.open(address)
+    yield "and is remembered", page.run(BACKGROUND) == after, ""
+
+    page.post("/window/rect", width=500, height=900)
+    narrow = page.until("return innerWidth < 600 && document.documentElement.scrollWidth <= innerWidth")
+    yield "a narrow window does not scroll sideways", narrow, page.run("return [document.documentElement.scrollWidth, innerWidth]")
+    shot("narrow")
+
+    errors = [entry["message"] for entry in page.log("browser") if entry["level"] in ("SEVERE", "WARNING")]
+    yield "the console is silent", not errors, errors[:3]
+    asked = set()
+    for entry in page.log("performance"):
+        message = json.loads(entry["message"])["message"]
+        if message["method"] == "Network.requestWillBeSent":
+            asked.add(message["params"]["request"]["url"])
+    outside = [url for url in asked if url.startswith(("http:", "https:", "ws:", "wss:"))]
+    yield "nothing is asked of the network", bool(asked) and not outside, outside[:3]
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("report", type=pathlib.Path, help="folder that holds index.html")
+    parser.add_argument("--shots", type=pathlib.Path, help="folder for screenshots")
+    arguments = parser.parse_args()
+    index = (arguments.report / "index.html").resolve()
+    if not index.is_file():
+        parser.error(f"{index} does not exist")
+    if arguments.shots:
+        arguments.shots.mkdir(parents=True, exist_ok=True)
+
+    passed = failed = 0
+    with tempfile.TemporaryDirectory(ignore_cleanup_errors=True) as profile:
+        try:
+            page = Browser(profile)
+        except (OSError, RuntimeError) as error:
+            print(f"the browser could not be started: {error}", file=sys.stderr)
+            return 2
+        try:
+            for what, good, seen in checks(page, index.as_uri(), arguments.shots):
+                print(f"{'ok  ' if good else 'FAIL'} {what}" + ("" if good else f": {seen}"))
+                passed, failed = passed + bool(good), failed + (not good)
+        except (OSError, RuntimeError) as error:
+            print(f"FAIL the test was cut short: {error}")
+            failed += 1
+        finally:
+            page.close()
+    print(f"{passed} passed, {failed} failed")
+    return 1 if failed else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

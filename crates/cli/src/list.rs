@@ -1,0 +1,50 @@
+//! `featherbench list`.
+
+use crate::args::ListArgs;
+use crate::fail::Fail;
+use crate::oracles::ENGINES;
+use crate::problems;
+use crate::root::Root;
+use engines::Native;
+use harness::{Context, Gates, Study, Subject};
+use model::generate::Family;
+use std::io::Write;
+use studies::{Agreement, Structure, Timing};
+
+/// Prints what there is to run.
+pub fn list(root: &Root, args: &ListArgs) -> Result<(), Fail> {
+    // A reader who closes the pipe has seen enough: that is no error.
+    let _ = std::io::stdout().write_all(text(root, args)?.as_bytes());
+    Ok(())
+}
+
+fn text(root: &Root, args: &ListArgs) -> Result<String, Fail> {
+    let loaded = problems::load(root, &args.suite, false)?;
+    if args.cells {
+        let subjects: Vec<Box<dyn Subject>> = vec![Box::new(Native::new())];
+        let gates = Gates::read(&root.gates())?;
+        let context = Context { problems: &loaded.problems, subjects: &subjects, gates: &gates, seed: loaded.suite.seed };
+        let timing = Timing { states: 1, seconds: 0.0, kernels: engines::timed };
+        let studies: [&dyn Study; 3] = [&Agreement, &Structure, &timing];
+        let cells = studies.iter().flat_map(|study| study.plan(&context));
+        return Ok(cells.map(|cell| format!("{}  {}\n", cell.id(), cell.path())).collect());
+    }
+    let mut text = format!("suite {}: {}\n\n", loaded.name, loaded.suite.about);
+    text += "robot                     family       base   nv  bodies  depth\n";
+    for problem in &loaded.problems {
+        let states = &problem.states;
+        text += &format!(
+            "{:<25} {:<12} {:<5} {:>4} {:>7} {:>6}\n",
+            problem.name,
+            problem.family,
+            problem.base(),
+            states.nv,
+            states.bodies,
+            problem.depth
+        );
+    }
+    text += &format!("\nengines:  native, {}\n", ENGINES.join(", "));
+    text += "studies:  agreement, structure, timing\n";
+    text += &format!("families of generated robots: {}\n", Family::NAMES.join(", "));
+    Ok(text)
+}

@@ -1,0 +1,50 @@
+//! The `featherbench` command: wires engines and studies into the harness.
+
+mod args;
+mod explain;
+mod fail;
+mod generate;
+mod list;
+mod oracles;
+mod problems;
+mod progress;
+mod record;
+mod report;
+mod root;
+mod run;
+mod subjects;
+
+use args::{Cli, Command, OraclesAction, RunArgs};
+use clap::Parser;
+use fail::Fail;
+use root::Root;
+use std::process::ExitCode;
+
+fn main() -> ExitCode {
+    match dispatch(Cli::parse()) {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(fail) => {
+            let code = fail.code();
+            eprintln!("{:?}", miette::Report::new(fail));
+            code
+        }
+    }
+}
+
+fn dispatch(cli: Cli) -> Result<(), Fail> {
+    let root = Root::find()?;
+    let default = || Command::Run(RunArgs::default_suite());
+    match cli.command.unwrap_or_else(default) {
+        Command::Run(args) => run::run(&root, &args),
+        Command::Report(args) => report::write(&args.folder),
+        Command::Gate(args) => report::gate(&root, &args),
+        Command::List(args) => list::list(&root, &args),
+        Command::Explain(args) => explain::explain(&args),
+        Command::Record(args) => record::record(&root, &args),
+        Command::Gen(args) => generate::generate(&args),
+        Command::Oracles(args) => match args.action {
+            OraclesAction::Install => oracles::install(&root).map(|_| ()),
+            OraclesAction::Status => oracles::status(&root),
+        },
+    }
+}

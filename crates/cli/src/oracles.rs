@@ -1,0 +1,148 @@
+//! Installing the reference engines, and looking at them.
+
+use crate::fail::Fail;
+use crate::root::Root;
+use engines::{Limits, Oracle};
+use harness::Subject;
+use indicatif::{ProgressBar, ProgressStyle};
+use std::ffi::OsString;
+use std::io::{BufRead, BufReader, IsTerminal};
+use std::path::{Path, PathBuf};
+use std::process::{Command, Stdio};
+use std::time::Duration;
+
+/// Engines that come with the project, in the order of reports.
+pub const ENGINES: [&str; 3] = ["pinocchio", "mujoco", "drake"];
+
+/// The environment's Python, or `None` when the engines are not installed in these versions.
+pub fn python(root: &Root) -> Option<PathBuf> {
+    let python = root.engines().join("venv/bin/python");
+    let wanted = stamp(root).ok()?;
+    let there = std::fs::read_to_string(root.engines().join("installed")).ok()?;
+    (there == wanted && python.exists()).then_some(python)
+}
+
+/// Makes the environment unless it is there; what was downloaded before a break is used again.
+pub fn install(root: &Root) -> Result<PathBuf, Fail> {
+    if let Some(python) = python(root) {
+        eprintln!("the reference engines are installed in {}", root.engines().display());
+        return Ok(python);
+    }
+    let folder = root.engines();
+    let environment = folder.join("venv");
+    std::fs::create_dir_all(&folder).map_err(|error| Fail::input(format!("{}: {error}", folder.display())))?;
+    let requirements = root.oracles().join("requirements.txt");
+    let python = environment.join("bin/python");
+    let bar = spinner();
+    let text = |path: &Path| path.as_os_str().to_owned();
+    let uv = Command::new("uv").arg("--version").output().is_ok_and(|output| output.status.success());
+    if uv {
+        if !python.exists() {
+            step(&bar, "uv", &["venv".into(), "--python".into(), "3.11".into(), text(&environment)])?;
+        }
+        step(&bar, "uv", &["pip".into(), "install".into(), "--python".into(), text(&python), "-r".into(), text(&requirements)])?;
+    } else {
+        if !python.exists() {
+            step(&bar, "python3", &["-m".into(), "venv".into(), text(&environment)])?;
+        }
+        let pip = ["-m", "pip", "install", "--progress-bar", "off", "-r"].map(OsString::from);
+        let arguments: Vec<OsString> = pip.into_iter().chain([text(&requirements)]).collect();
+        step(&bar, &python.to_string_lossy(), &arguments)?;
+    }
+    bar.finish_and_clear();
+    let stamp = stamp(root)?;
+    ::record::atomic_write(&folder.join("installed"), stamp.as_bytes())?;
+    eprintln!("installed the reference engines in {}", folder.display());
+    Ok(python)
+}
+
+/// Runs one command of the installation, showing its last line.
+fn step(bar: &ProgressBar, program: &str, arguments: &[OsString]) -> Result<(), Fail> {
+    let missing = |message: String| {
+        let advice = "the engines need Python 3.11 with venv (Debian: python3 python3-venv) and a reachable package index; \
+                      without them, `featherbench run` compares with the recorded answers";
+        Fail::Missing { message, advice: advice.into() }
+    };
+    let shown: Vec<_> = arguments.iter().map(|argument| argument.to_string_lossy()).collect();
+    bar.set_message(format!("{program} {}", shown.join(" ")));
+    let mut child = Command::new(program)
+        .args(arguments)
+        .stdin(Stdio::null())
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .map_err(|error| missing(format!("{program} cannot be started: {error}")))?;
+    let errors = child.stderr.take();
+    let collector = std::thread::spawn(move || -> Vec<String> {
+        errors.map(|errors| BufReader::new(errors).lines().map_while(Result::ok).collect()).unwrap_or_default()
+    });
+    if let Some(output) = child.stdout.take() {
+        for line in BufReader::new(output).lines().map_while(Result::ok) {
+            bar.set_message(line);
+        }
+    }
+    let status = child.wait().map_err(|error| missing(format!("{program}: {error}")))?;
+    let errors = collector.join().unwrap_or_default();
+    if status.success() {
+        return Ok(());
+    }
+    let last = errors.iter().rev().find(|line| line.to_lowercase().contains("error")).or(errors.last()).cloned().unwrap_or_default();
+    Err(missing(format!("`{program} {}` failed ({status}): {last}", shown.join(" "))))
+}
+
+fn spinner() -> ProgressBar {
+    if !std::io::stderr().is_terminal() {
+        eprintln!("installing the reference engines (about 1.4 GB) …");
+        return ProgressBar::hidden();
+    }
+    let bar = ProgressBar::new_spinner();
+    if let Ok(style) = ProgressStyle::with_template("{spinner} {elapsed} {wide_msg}") {
+        bar.set_style(style);
+    }
+    bar.enable_steady_tick(Duration::from_millis(120));
+    bar
+}
+
+/// What an installation is known by: the hash of the requirements.
+fn stamp(root: &Root) -> Result<String, Fail> {
+    let path = root.oracles().join("requirements.txt");
+    let bytes = std::fs::read(&path).map_err(|error| Fail::input(format!("{}: {error}", path.display())))?;
+    Ok(harness::hash::of(&bytes))
+}
+
+/// Starts an engine's oracle.
+pub fn start(root: &Root, python: &Path, engine: &str, limits: Limits) -> Result<Oracle, String> {
+    let program = root.oracles().join(format!("{engine}.py"));
+    Oracle::start(vec![python.as_os_str().to_owned(), program.into_os_string()], limits)
+}
+
+/// Prints what answers.
+pub fn status(root: &Root) -> Result<(), Fail> {
+    let Some(python) = python(root) else {
+        let message = "the reference engines are not installed (or in other versions than oracles/requirements.txt asks)".into();
+        return Err(Fail::Missing { message, advice: "run `featherbench oracles install`".into() });
+    };
+    let mut broken = Vec::new();
+    for engine in ENGINES {
+        match start(root, &python, engine, Limits::default()) {
+            Ok(oracle) => println!("{engine:<10} {}", oracle.identity().version),
+            Err(reason) => {
+                println!("{engine:<10} does not answer: {reason}");
+                broken.push(engine);
+            }
+        }
+    }
+    if broken.is_empty() {
+        return Ok(());
+    }
+    let advice = format!("remove {} and run `featherbench oracles install` again", root.engines().display());
+    Err(Fail::Missing { message: format!("no answer from {}", broken.join(", ")), advice })
+}
+
+/// The package's folder of robots, for suites that read URDF files live.
+pub fn robots(root: &Root) -> Option<PathBuf> {
+    let library = root.engines().join("venv/lib");
+    let versions = std::fs::read_dir(library).ok()?;
+    let inside = "site-packages/cmeel.prefix/share/example-robot-data/robots";
+    versions.filter_map(Result::ok).map(|version| version.path().join(inside)).find(|folder| folder.is_dir())
+}

@@ -1,0 +1,55 @@
+//! Progress on standard error: a bar on a terminal, a line per phase elsewhere.
+
+use harness::run::Progress;
+use harness::{Cell, Outcome};
+use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+use std::io::IsTerminal;
+use std::sync::{Mutex, PoisonError};
+
+/// Shows a run on standard error.
+pub struct Bar {
+    bar: Mutex<ProgressBar>,
+    terminal: bool,
+}
+
+impl Bar {
+    pub fn new() -> Self {
+        Self { bar: Mutex::new(ProgressBar::hidden()), terminal: std::io::stderr().is_terminal() }
+    }
+
+    fn with(&self, act: impl FnOnce(&mut ProgressBar)) {
+        act(&mut self.bar.lock().unwrap_or_else(PoisonError::into_inner));
+    }
+}
+
+impl Progress for Bar {
+    fn begin(&self, phase: &str, count: usize) {
+        if !self.terminal {
+            eprintln!("{phase}: {count} cells");
+            return;
+        }
+        self.with(|bar| {
+            *bar = ProgressBar::with_draw_target(Some(count as u64), ProgressDrawTarget::stderr());
+            if let Ok(style) = ProgressStyle::with_template("{prefix:<10} {bar:30} {pos}/{len} {eta:>4} {wide_msg}") {
+                bar.set_style(style);
+            }
+            bar.set_prefix(phase.to_owned());
+        });
+    }
+
+    fn cell(&self, cell: &Cell) {
+        if self.terminal {
+            self.with(|bar| bar.set_message(cell.path()));
+        }
+    }
+
+    fn done(&self, _: &Cell, _: &Outcome) {
+        if self.terminal {
+            self.with(|bar| bar.inc(1));
+        }
+    }
+
+    fn end(&self) {
+        self.with(|bar| bar.finish_and_clear());
+    }
+}

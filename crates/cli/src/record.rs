@@ -1,0 +1,122 @@
+//! `featherbench record`: asks the engines and keeps, or checks, their answers.
+
+use crate::args::{RecordArgs, RunArgs};
+use crate::fail::Fail;
+use crate::problems;
+use crate::progress::Bar;
+use crate::root::Root;
+use crate::subjects;
+use engines::Recording;
+use harness::measure::{ForwardScale, scaled_error, worst};
+use harness::run::Progress;
+use harness::{Cell, Context, Gates, Outcome, OutcomeStore, Problem, Quantity, Study};
+use std::path::Path;
+use studies::{Agreement, Structure};
+
+/// An answer may move by this much in the measures of DESIGN idea 10 before the recording counts as stale: the same binary on another
+/// processor may choose other vector kernels, and no more.
+const STALE: f64 = 8.0 * f64::EPSILON;
+
+/// Records, or checks the recordings of, a suite.
+pub fn record(root: &Root, args: &RecordArgs) -> Result<(), Fail> {
+    let run = RunArgs { suite: args.suite.clone(), live: true, ..RunArgs::default_suite() };
+    let loaded = problems::load(root, &args.suite, false)?;
+    let gates = Gates::read(&root.gates())?;
+    let opened = subjects::open(root, &run, &loaded)?;
+    if let Some(missing) = opened.missing().first() {
+        let message = format!("{} does not answer: {}", missing.name, missing.reason);
+        return Err(Fail::Missing { message, advice: "look at `featherbench oracles status`".into() });
+    }
+    let context = Context { problems: &loaded.problems, subjects: &opened.subjects, gates: &gates, seed: loaded.suite.seed };
+    let scratch = root.engines().join(format!("record-{}", std::process::id()));
+    let io = |source| Fail::from(harness::HarnessError::io(&scratch, source));
+    std::fs::create_dir_all(&scratch).map_err(io)?;
+    let store = OutcomeStore::open(&scratch)?;
+    let bar = Bar::new();
+    let mut finished = Vec::new();
+    let studies: [&dyn Study; 2] = [&Agreement, &Structure];
+    for study in studies {
+        let foreign = |cell: &Cell| cell.subject != "native";
+        let cells = harness::run::plan(study, &context, &foreign);
+        finished.extend(harness::run::evaluate(study, &context, cells, &store, &bar as &dyn Progress)?);
+    }
+    std::fs::remove_dir_all(&scratch).map_err(io)?;
+
+    let folder = args.recorded.clone().unwrap_or_else(|| root.recorded());
+    let mut stale = Vec::new();
+    for subject in &opened.subjects[1..] {
+        let identity = subject.identity();
+        for problem in &loaded.problems {
+            let of_this = finished.iter().filter(|(cell, _)| cell.subject == identity.name && cell.problem == problem.name);
+            let outcomes: Vec<_> = of_this
+                .filter_map(|(cell, outcome)| Some((Quantity::parse(&cell.quantity)?, cell.method.clone(), outcome.clone())))
+                .collect();
+            if outcomes.is_empty() {
+                continue;
+            }
+            let recording = Recording::new(identity, problem, outcomes);
+            let path = folder.join(&identity.name).join(format!("{}.frames", problem.name));
+            if args.check {
+                stale.extend(check(&path, &recording, problem));
+            } else {
+                let parent = folder.join(&identity.name);
+                std::fs::create_dir_all(&parent).map_err(|source| harness::HarnessError::io(&parent, source))?;
+                ::record::atomic_write(&path, &recording.to_bytes(problem))?;
+            }
+        }
+    }
+    if !stale.is_empty() {
+        let shown: Vec<_> = stale.iter().take(20).map(|line| format!("  {line}")).collect();
+        let message = format!("{} recorded answers do not match their engines:\n{}", stale.len(), shown.join("\n"));
+        return Err(Fail::Gate(message));
+    }
+    println!("{} {}", if args.check { "the engines answer as recorded in" } else { "recorded in" }, folder.display());
+    Ok(())
+}
+
+/// What in a recording differs from what the engine answers now.
+fn check(path: &Path, now: &Recording, problem: &Problem) -> Vec<String> {
+    let then = match Recording::read(path, problem) {
+        Ok(then) => then,
+        Err(error) => return vec![error.to_string()],
+    };
+    let mut stale = Vec::new();
+    let mut complain = |what: String| stale.push(format!("{}: {what}", path.display()));
+    if then.identity.version != now.identity.version {
+        complain(format!("recorded from {} {}, asked {}", then.identity.name, then.identity.version, now.identity.version));
+    }
+    if then.outcomes.len() != now.outcomes.len() {
+        complain(format!("{} outcomes are recorded, {} are answered", then.outcomes.len(), now.outcomes.len()));
+    }
+    let at = problem.magnitudes();
+    let forward = ForwardScale::all(problem, &at);
+    for ((quantity, method, recorded), (_, _, answered)) in then.outcomes.iter().zip(&now.outcomes) {
+        let label = format!("{} by {method}", quantity.name());
+        match (recorded, answered) {
+            (Outcome::Values(recorded), Outcome::Values(answered)) => {
+                let size = quantity.size(problem);
+                let states = recorded.chunks_exact(size).zip(answered.chunks_exact(size)).enumerate();
+                let error = states.fold(0.0, |error, (k, (old, new))| {
+                    let moved = match quantity {
+                        Quantity::ForwardDynamics => forward[k].forward_error(old, new) / forward[k].amplification.max(1.0),
+                        _ => scaled_error(problem, *quantity, &at[k], old, new),
+                    };
+                    worst(error, moved)
+                });
+                if recorded.len() != answered.len() || error.is_nan() || error > STALE {
+                    complain(format!("{label} moved by {error:e}"));
+                }
+            }
+            (Outcome::Refused(recorded), Outcome::Refused(answered)) if recorded == answered => {}
+            _ => complain(format!("{label} was {} and is {}", brief(recorded), brief(answered))),
+        }
+    }
+    stale
+}
+
+fn brief(outcome: &Outcome) -> String {
+    match outcome {
+        Outcome::Values(values) => format!("{} numbers", values.len()),
+        Outcome::Refused(refusal) => format!("'{refusal}'"),
+    }
+}

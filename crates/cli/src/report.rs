@@ -1,0 +1,73 @@
+//! `featherbench report` and `featherbench gate`: reading a run again.
+
+use crate::args::GateArgs;
+use crate::fail::Fail;
+use crate::root::Root;
+use ::record::{Record, RunInfo, Verdict};
+use harness::{Gates, Suite};
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+
+/// Writes the report of a finished run again.
+pub fn write(folder: &Path) -> Result<(), Fail> {
+    let (info, records) = ::record::read_run(folder)?;
+    let page = render(folder, &info, &records)?;
+    println!("report: {}", page.display());
+    Ok(())
+}
+
+/// Renders the report into the run's folder and returns its page.
+pub fn render(folder: &Path, info: &RunInfo, records: &[Record]) -> Result<PathBuf, Fail> {
+    let paths = ::report::write(info, records, folder).map_err(|error| Fail::input(error.to_string()))?;
+    Ok(paths.index)
+}
+
+/// Judges a finished run again, by today's gates of its suite.
+pub fn gate(root: &Root, args: &GateArgs) -> Result<(), Fail> {
+    let (mut info, records) = ::record::read_run(&args.folder)?;
+    if args.counts {
+        print_counts(&records);
+        return Ok(());
+    }
+    let (suite, _) = Suite::read(&root.suites().join(format!("{}.toml", info.suite)))?;
+    let gates = Gates::read(&root.gates())?;
+    let missing: Vec<_> = info.expected.iter().filter(|condition| condition.what.starts_with("engine ")).cloned().collect();
+    info.expected = gates.conditions(&suite, &records, true);
+    info.expected.extend(missing);
+    conclude(&info, &records, &args.folder.join("index.html"))
+}
+
+/// Prints passing rows per engine and quantity as a suite's [expect] tables.
+fn print_counts(records: &[Record]) {
+    let mut counts: BTreeMap<(&str, &str), u64> = BTreeMap::new();
+    for row in records.iter().filter(|row| row.verdict == Verdict::Pass) {
+        *counts.entry((&row.engine, &row.quantity)).or_default() += 1;
+    }
+    let mut engine = "";
+    for ((name, quantity), count) in counts {
+        if name != engine {
+            println!("{}[expect.{name}]", if engine.is_empty() { "" } else { "\n" });
+            engine = name;
+        }
+        println!("{quantity} = {count}");
+    }
+}
+
+/// Prints the verdict, and the report's page last.
+pub fn conclude(info: &RunInfo, records: &[Record], page: &Path) -> Result<(), Fail> {
+    let count = |verdict: Verdict| records.iter().filter(|row| row.verdict == verdict).count();
+    let counts: Vec<String> = Verdict::ALL.iter().map(|&verdict| format!("{} {verdict}", count(verdict))).collect();
+    println!("{} rows: {}", records.len(), counts.join(", "));
+    for row in records.iter().filter(|row| matches!(row.verdict, Verdict::Fail | Verdict::Error)).take(20) {
+        println!("  {}: {} {} {} {} {} [{}]: {}", row.verdict, row.model, row.engine, row.quantity, row.method, row.metric, row.case, row.reason);
+    }
+    let broken: Vec<_> = info.expected.iter().filter(|condition| condition.verdict != Verdict::Pass).collect();
+    for condition in &broken {
+        println!("  gate: {}: {}", condition.what, condition.reason);
+    }
+    println!("report: {}", page.display());
+    if broken.is_empty() {
+        return Ok(());
+    }
+    Err(Fail::Gate(format!("{} of {} gates failed", broken.len(), info.expected.len())))
+}

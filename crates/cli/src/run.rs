@@ -1,0 +1,149 @@
+//! `featherbench run`: plan, evaluate, compare, judge, report.
+
+use crate::args::RunArgs;
+use crate::fail::Fail;
+use crate::problems::{self, Loaded};
+use crate::progress::Bar;
+use crate::report;
+use crate::root::Root;
+use crate::subjects::{self, Subjects};
+use ::record::{ModelInfo, Record, RunInfo, Verdict};
+use harness::{Cell, Context, Gates, HarnessError, OutcomeStore, Study, provenance};
+use regex::Regex;
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+use std::time::{Instant, SystemTime};
+use studies::{Agreement, Structure, Timing};
+
+/// The file that holds what a resumed run must share with the first one.
+const FINGERPRINT_NAME: &str = "fingerprint.json";
+
+/// Runs a suite and reports on it.
+pub fn run(root: &Root, args: &RunArgs) -> Result<(), Fail> {
+    let start = Instant::now();
+    let only = args.only.as_deref().map(Regex::new).transpose();
+    let only = only.map_err(|error| Fail::input(format!("--only: {error}")))?;
+    let loaded = problems::load(root, &args.suite, args.live)?;
+    let gates = Gates::read(&root.gates())?;
+    let subjects = subjects::open(root, args, &loaded)?;
+
+    let started = SystemTime::now();
+    let (folder, id) = folder(root, args, &loaded.name, started)?;
+    let mut info = describe(root, args, &loaded, &subjects);
+    info.run = id;
+    info.started = humantime::format_rfc3339_seconds(started).to_string();
+    check_fingerprint(&folder, args, &info)?;
+    info.seconds.insert("setup".into(), start.elapsed().as_secs_f64());
+
+    let context = Context { problems: &loaded.problems, subjects: &subjects.subjects, gates: &gates, seed: loaded.suite.seed };
+    let keep = |cell: &Cell| only.as_ref().is_none_or(|only| only.is_match(&cell.path()));
+    let store = OutcomeStore::open(&folder)?;
+    let progress = Bar::new();
+    let mut records: Vec<Record> = Vec::new();
+    for study in studies(&loaded, args) {
+        let phase = Instant::now();
+        let cells = harness::run::plan(study.as_ref(), &context, &keep);
+        let finished = harness::run::evaluate(study.as_ref(), &context, cells, &store, &progress)?;
+        records.extend(harness::run::compare(study.as_ref(), &context, finished));
+        info.seconds.insert(study.name().into(), phase.elapsed().as_secs_f64());
+    }
+    for record in &mut records {
+        record.run.clone_from(&info.run);
+    }
+    info.rows = records.len() as u64;
+    let complete = only.is_none() && !args.no_timing;
+    info.expected = gates.conditions(&loaded.suite, &records, complete);
+    for engine in subjects.missing() {
+        info.expected.push(missing_engine(&engine.name, &engine.reason));
+    }
+    info.seconds.insert("total".into(), start.elapsed().as_secs_f64());
+    ::record::write_run(&folder, &info, &records)?;
+    let page = report::render(&folder, &info, &records)?;
+    report::conclude(&info, &records, &page)
+}
+
+/// The studies that a suite names, in the order of the report; timing last, because it wants a quiet machine.
+fn studies(loaded: &Loaded, args: &RunArgs) -> Vec<Box<dyn Study>> {
+    let mut studies: Vec<Box<dyn Study>> = Vec::new();
+    if loaded.suite.agreement.is_some() {
+        studies.push(Box::new(Agreement));
+    }
+    if loaded.suite.structure {
+        studies.push(Box::new(Structure));
+    }
+    if let Some(timing) = loaded.suite.timing.as_ref().filter(|_| !args.no_timing) {
+        studies.push(Box::new(Timing { states: timing.states, seconds: timing.seconds, kernels: engines::timed }));
+    }
+    studies
+}
+
+/// The run's folder and id: a new folder, an empty one, or with `--resume` the one that is there.
+fn folder(root: &Root, args: &RunArgs, suite: &str, started: SystemTime) -> Result<(PathBuf, String), Fail> {
+    let stamp: String = humantime::format_rfc3339_seconds(started).to_string().chars().filter(|c| !":-Z".contains(*c)).collect();
+    let folder = args.out.clone().unwrap_or_else(|| root.reports().join(format!("{suite}-{}", stamp.replace('T', "-"))));
+    let io = |source| Fail::from(HarnessError::io(&folder, source));
+    let occupied = folder.exists() && std::fs::read_dir(&folder).map_err(io)?.next().is_some();
+    if args.resume && !folder.join(FINGERPRINT_NAME).is_file() {
+        return Err(HarnessError::NothingToResume { path: folder }.into());
+    }
+    if occupied && !args.resume {
+        return Err(HarnessError::Occupied { path: folder }.into());
+    }
+    std::fs::create_dir_all(&folder).map_err(io)?;
+    let id = folder.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
+    Ok((folder, id))
+}
+
+/// Writes the fingerprint of a new run, or compares with that of the run which is continued.
+fn check_fingerprint(folder: &Path, args: &RunArgs, info: &RunInfo) -> Result<(), Fail> {
+    let path = folder.join(FINGERPRINT_NAME);
+    let now: BTreeMap<&str, String> = provenance::fingerprint(info).into_iter().collect();
+    if args.resume && !args.mixed {
+        let text = std::fs::read_to_string(&path).map_err(|source| HarnessError::io(&path, source))?;
+        let then: BTreeMap<String, String> =
+            serde_json::from_str(&text).map_err(|error| Fail::input(format!("{}: {error}", path.display())))?;
+        for (what, now) in &now {
+            let then = then.get(*what).cloned().unwrap_or_default();
+            if then != *now {
+                let (what, now) = ((*what).to_owned(), now.clone());
+                return Err(HarnessError::Mixed { path: folder.to_owned(), what, then, now }.into());
+            }
+        }
+        return Ok(());
+    }
+    let text = serde_json::to_string_pretty(&now).map_err(|error| Fail::input(error.to_string()))?;
+    Ok(::record::atomic_write(&path, text.as_bytes())?)
+}
+
+/// Everything about the run that its rows share.
+fn describe(root: &Root, args: &RunArgs, loaded: &Loaded, subjects: &Subjects) -> RunInfo {
+    let command = std::env::args().skip(1).map(|word| if word.contains(' ') { format!("'{word}'") } else { word });
+    let models = loaded.problems.iter().map(|problem| {
+        let provenance = problem.description.provenance.clone().unwrap_or_default();
+        ModelInfo {
+            name: problem.name.clone(),
+            hash: problem.hash.clone(),
+            origin: problem.origin,
+            licence: provenance.licence,
+            source: provenance.source,
+            nq: problem.states.nq as u64,
+            nv: problem.states.nv as u64,
+            bodies: problem.states.bodies as u64,
+            depth: problem.depth as u64,
+        }
+    });
+    RunInfo {
+        suite: loaded.name.clone(),
+        suite_hash: loaded.hash.clone(),
+        command: ["cargo run --release --".to_owned()].into_iter().chain(command).collect::<Vec<_>>().join(" "),
+        seed: loaded.suite.seed,
+        live: args.live,
+        engines: subjects.engines.clone(),
+        models: models.collect(),
+        ..provenance::collect(root.path())
+    }
+}
+
+fn missing_engine(name: &str, reason: &str) -> ::record::Expectation {
+    ::record::Expectation { what: format!("engine {name} answers"), expected: 1, found: 0, verdict: Verdict::Fail, reason: reason.to_owned() }
+}

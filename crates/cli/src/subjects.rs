@@ -1,0 +1,74 @@
+//! Who is asked: the native kernels, and the engines of the suite, live or recorded.
+
+use crate::args::RunArgs;
+use crate::fail::Fail;
+use crate::oracles;
+use crate::problems::Loaded;
+use crate::root::Root;
+use ::record::{EngineInfo, EngineSource};
+use engines::{Limits, Native, Recorded};
+use harness::{Problem, Subject};
+use std::path::PathBuf;
+use std::time::Duration;
+
+/// The subjects of a run, and what is to be said about each engine, the missing ones too.
+pub struct Subjects {
+    pub subjects: Vec<Box<dyn Subject>>,
+    pub engines: Vec<EngineInfo>,
+}
+
+/// Opens the subjects that a run asks.
+pub fn open(root: &Root, args: &RunArgs, loaded: &Loaded) -> Result<Subjects, Fail> {
+    let mut opened = Subjects { subjects: Vec::new(), engines: Vec::new() };
+    opened.add(Ok(Box::new(Native::new())), "native", EngineSource::Native);
+    let Some(agreement) = &loaded.suite.agreement else { return Ok(opened) };
+    if args.live {
+        let python = oracles::install(root)?;
+        let limits = Limits { answer: Duration::from_secs(args.answer_within), memory: args.memory << 20 };
+        for engine in &agreement.engines {
+            let oracle = oracles::start(root, &python, engine, limits);
+            opened.add(oracle.map(|oracle| Box::new(oracle) as Box<dyn Subject>), engine, EngineSource::Live);
+        }
+    } else {
+        let folder = args.recorded.clone().unwrap_or_else(|| root.recorded());
+        let asked: Vec<&Problem> = loaded.problems.iter().filter(|problem| problem.takes("agreement")).collect();
+        for engine in &agreement.engines {
+            let recorded = open_recorded(&folder, engine, &asked);
+            opened.add(recorded, engine, EngineSource::Recorded);
+        }
+    }
+    Ok(opened)
+}
+
+fn open_recorded(folder: &PathBuf, engine: &str, asked: &[&Problem]) -> Result<Box<dyn Subject>, String> {
+    match Recorded::open(folder, engine, asked) {
+        Ok(recorded) => Ok(Box::new(recorded)),
+        Err(error) => Err(error.to_string()),
+    }
+}
+
+impl Subjects {
+    fn add(&mut self, subject: Result<Box<dyn Subject>, String>, name: &str, source: EngineSource) {
+        let info = match &subject {
+            Ok(subject) => {
+                let identity = subject.identity().clone();
+                EngineInfo { name: identity.name, version: identity.version, source, build: identity.build, status: "ok".into(), reason: String::new() }
+            }
+            Err(reason) => EngineInfo {
+                name: name.into(),
+                version: String::new(),
+                source,
+                build: Default::default(),
+                status: "missing".into(),
+                reason: reason.clone(),
+            },
+        };
+        self.engines.push(info);
+        self.subjects.extend(subject);
+    }
+
+    /// The engines that should be there and are not.
+    pub fn missing(&self) -> Vec<&EngineInfo> {
+        self.engines.iter().filter(|engine| engine.status != "ok").collect()
+    }
+}

@@ -1,0 +1,64 @@
+//! The direction of dependencies, held over `cargo metadata`: nothing points back.
+
+use cargo_metadata::{DependencyKind, MetadataCommand, Package};
+use std::collections::BTreeSet;
+
+/// What each crate may depend on among our own.
+const ALLOWED: [(&str, &[&str]); 10] = [
+    ("spatial", &[]),
+    ("model", &["spatial"]),
+    ("formats", &["model", "spatial"]),
+    ("dynamics", &["spatial", "model"]),
+    ("record", &[]),
+    ("report", &["record"]),
+    ("harness", &["spatial", "model", "dynamics", "record"]),
+    ("engines", &["spatial", "model", "formats", "dynamics", "record", "harness"]),
+    ("studies", &["spatial", "model", "dynamics", "record", "harness"]),
+    ("cli", &["spatial", "model", "formats", "dynamics", "record", "report", "harness", "engines", "studies"]),
+];
+
+fn short(name: &str) -> Option<&str> {
+    if name == "featherbench" { Some("cli") } else { name.strip_prefix("featherbench-") }
+}
+
+fn normal(package: &Package) -> impl Iterator<Item = &str> {
+    package.dependencies.iter().filter(|dependency| dependency.kind == DependencyKind::Normal).map(|dependency| dependency.name.as_str())
+}
+
+#[test]
+fn nothing_points_back() {
+    let metadata = MetadataCommand::new().manifest_path("../../Cargo.toml").no_deps().other_options(vec!["--offline".into()]).exec().unwrap();
+    let mut seen = BTreeSet::new();
+    for package in metadata.workspace_packages() {
+        let name = short(&package.name).unwrap_or_else(|| panic!("{} is named unlike the others", package.name));
+        let (_, allowed) = ALLOWED.iter().find(|(known, _)| *known == name).unwrap_or_else(|| panic!("{name} has no place in the design"));
+        for dependency in normal(package).filter_map(short) {
+            assert!(allowed.contains(&dependency), "{name} must not depend on {dependency}");
+        }
+        seen.insert(name.to_owned());
+    }
+    assert_eq!(seen.len(), ALLOWED.len(), "a crate of the design is missing");
+}
+
+/// Kernels and models know nothing about files: no serde below `formats` and `harness`.
+#[test]
+fn kernels_reach_no_serialization() {
+    let metadata = MetadataCommand::new().manifest_path("../../Cargo.toml").other_options(vec!["--offline".into()]).exec().unwrap();
+    let resolve = metadata.resolve.as_ref().unwrap();
+    for kernel in ["featherbench-spatial", "featherbench-model", "featherbench-dynamics"] {
+        let start = metadata.packages.iter().find(|package| package.name.as_str() == kernel).unwrap();
+        let (mut reached, mut waiting) = (BTreeSet::new(), vec![start.id.clone()]);
+        while let Some(id) = waiting.pop() {
+            let node = resolve.nodes.iter().find(|node| node.id == id).unwrap();
+            let is_normal = |dependency: &&cargo_metadata::NodeDep| dependency.dep_kinds.iter().any(|kind| kind.kind == DependencyKind::Normal);
+            for dependency in node.deps.iter().filter(is_normal) {
+                if reached.insert(dependency.pkg.clone()) {
+                    waiting.push(dependency.pkg.clone());
+                }
+            }
+        }
+        // Build-time macros aside, nothing named serde may be linked.
+        let names: BTreeSet<_> = metadata.packages.iter().filter(|package| reached.contains(&package.id)).map(|package| package.name.as_str()).collect();
+        assert!(!names.contains("serde"), "{kernel} reaches serde through {names:?}");
+    }
+}

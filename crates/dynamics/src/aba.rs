@@ -1,0 +1,304 @@
+//! Forward dynamics by the articulated-body algorithm: the accelerations that joint forces cause.
+//!
+//! Source: the book, table 7.1, with classical accelerations; armature as in its section 9.6.
+//! Frames: each body's quantities stand in its own axes at its own origin; external wrenches [moment; force] likewise, one per compiled
+//! body. Gravity enters as an acceleration −g of the base. Shapes: q has `nq` numbers; v, τ and v̇ have `nv`. Units: SI, angles in radians.
+//! Cost: O(n), with one division per one-dof joint. A call does not allocate.
+
+use crate::error::{Pivot, expect};
+use crate::step::{add_joint, by_kind, cross_joint, expect_bodies, expect_wrenches, newton_euler, parent_link};
+use crate::{DimensionError, Error};
+use model::{JointKind, Model, Topology};
+use spatial::{ArticulatedInertia, Force, Ldl3, Lift, Mat3, Motion, Real, Sym3, Transform, Vec3};
+
+/// The workspace of the articulated-body algorithm.
+#[derive(Clone, Debug)]
+pub struct Aba<T> {
+    /// The world, then the bodies.
+    links: Vec<Link<T>>,
+}
+
+#[derive(Clone, Copy, Debug)]
+struct Link<T> {
+    /// Placement in the parent.
+    x: Transform<T>,
+    /// Angular velocity ω.
+    omega: Vec3<T>,
+    /// Velocity-product acceleration c.
+    c: Motion<T>,
+    /// Articulated-body inertia Iᴬ.
+    inertia: ArticulatedInertia<T>,
+    /// Bias force pᴬ.
+    p: Force<T>,
+    /// Of a screw joint: U = Iᴬ S, 1/D and u/D.
+    u: Force<T>,
+    d_inverse: T,
+    rate: T,
+    /// Classical acceleration a.
+    a: Motion<T>,
+}
+
+impl<T: Real> Aba<T> {
+    /// A workspace for models of this topology.
+    pub fn new(topology: &Topology) -> Self {
+        let rest = Link {
+            x: Transform::identity(),
+            omega: Vec3::zero(),
+            c: Motion::zero(),
+            inertia: ArticulatedInertia::zero(),
+            p: Force::zero(),
+            u: Force::zero(),
+            d_inverse: T::zero(),
+            rate: T::zero(),
+            a: Motion::zero(),
+        };
+        Self { links: vec![rest; topology.bodies() + 1] }
+    }
+
+    /// The accelerations `a` at configuration `q`, velocity `v`, joint forces `tau` and external wrenches.
+    ///
+    /// # Errors
+    /// [`Error`] when an argument or the workspace does not fit the model, or when a joint meets no inertia; `a` then means nothing.
+    pub fn run<P: Real + Lift<T>>(
+        &mut self,
+        model: &Model<P>,
+        q: &[T],
+        v: &[T],
+        tau: &[T],
+        wrenches: Option<&[Force<T>]>,
+        a: &mut [T],
+    ) -> Result<(), Error> {
+        self.expect_shapes(model, q, v, tau, wrenches, a)?;
+        let joints = model.topology.joints();
+        let mut smallest = Pivot::none();
+
+        // X_i: placement of each body in its parent
+        for (i, link) in self.links.iter_mut().skip(1).enumerate() {
+            link.x = model.joint_transform(i, q);
+        }
+        self.links[0].a.lin = -model.gravity.lift();
+
+        // outward: v_i = X v_p + S q̇,  c_i,  Iᴬ = I,  pᴬ = v_i ×* I v_i − f_ext
+        for (i, joint) in joints.iter().enumerate() {
+            let (before, rest) = self.links.split_at_mut(i + 1);
+            let (parent, link) = (&before[parent_link(joint)], &mut rest[0]);
+            by_kind!(joint.kind, set_moving, model, i, parent.omega, v, link);
+            if let Some(wrenches) = wrenches {
+                link.p -= wrenches[i];
+            }
+        }
+
+        // inward: the inertia and bias force that the parent feels,  Iᴬ_p += X* Iᵃ X⁻¹,  pᴬ_p += X* pᵃ
+        for (i, joint) in joints.iter().enumerate().rev() {
+            let (before, rest) = self.links.split_at_mut(i + 1);
+            let parent = joint.parent.map(|parent| &mut before[parent + 1]);
+            by_kind!(joint.kind, release, model, i, tau, &mut rest[0], parent, &mut smallest);
+        }
+
+        // outward: a' = X a_p + c,  q̈ = D⁻¹ (u − Uᵀ a'),  a_i = a' + S q̈
+        for (i, joint) in joints.iter().enumerate() {
+            let (before, rest) = self.links.split_at_mut(i + 1);
+            let (parent, link) = (&before[parent_link(joint)], &mut rest[0]);
+            by_kind!(joint.kind, accelerate, model, i, parent.a, tau, a, link, &mut smallest);
+        }
+        Ok(smallest.check()?)
+    }
+
+    fn expect_shapes<P: Real>(
+        &self,
+        model: &Model<P>,
+        q: &[T],
+        v: &[T],
+        tau: &[T],
+        wrenches: Option<&[Force<T>]>,
+        a: &[T],
+    ) -> Result<(), DimensionError> {
+        expect_bodies(model, self.links.len() - 1)?;
+        expect("configuration q", model.topology.nq(), q.len())?;
+        expect("velocity v", model.topology.nv(), v.len())?;
+        expect("joint forces tau", model.topology.nv(), tau.len())?;
+        expect("acceleration a", model.topology.nv(), a.len())?;
+        expect_wrenches(model, wrenches)
+    }
+}
+
+/// The first outward step of one body.
+#[inline(always)]
+fn set_moving<T: Real, P: Real + Lift<T>>(
+    kind: JointKind,
+    model: &Model<P>,
+    i: usize,
+    parent_omega: Vec3<T>,
+    v: &[T],
+    link: &mut Link<T>,
+) {
+    let joint_velocity = kind.motion(&model.subspaces[i], &v[model.topology.joints()[i].v..]);
+    (link.omega, link.c) = cross_joint(kind, &link.x, parent_omega, None, joint_velocity);
+    let inertia = model.inertias[i].lift();
+    link.inertia = inertia.to_articulated();
+    link.p = newton_euler(&inertia, link.omega, None);
+}
+
+/// The inward step of one body: what is left of its inertia and bias force once its joint is free to move.
+#[inline(always)]
+fn release<T: Real, P: Real + Lift<T>>(
+    kind: JointKind,
+    model: &Model<P>,
+    i: usize,
+    tau: &[T],
+    link: &mut Link<T>,
+    parent: Option<&mut Link<T>>,
+    smallest: &mut Pivot,
+) {
+    let dof = model.topology.joints()[i].v;
+    let (inertia, p) = (link.inertia, link.p);
+    let (apparent, force) = match kind {
+        JointKind::Revolute | JointKind::Prismatic | JointKind::Helical => {
+            let subspace = model.subspaces[i].lift();
+            // U = Iᴬ S,  D = Sᵀ U + armature,  u = τ − Sᵀ pᴬ
+            let (u, d, push) = match kind {
+                JointKind::Revolute => {
+                    let u = Force::new(inertia.rotational * subspace.ang, inertia.coupling.transpose_mul(subspace.ang));
+                    (u, subspace.ang.dot(u.ang), subspace.ang.dot(p.ang))
+                }
+                JointKind::Prismatic => {
+                    let u = Force::new(inertia.coupling * subspace.lin, inertia.translational * subspace.lin);
+                    (u, subspace.lin.dot(u.lin), subspace.lin.dot(p.lin))
+                }
+                _ => {
+                    let u = inertia.mul(subspace);
+                    (u, subspace.dot(u), subspace.dot(p))
+                }
+            };
+            let d = d + model.armature[dof].lift();
+            smallest.note(dof, d.min_lane());
+            link.u = u;
+            link.d_inverse = T::one() / d;
+            link.rate = (tau[dof] - push) * link.d_inverse;
+            // Iᵃ = Iᴬ − U D⁻¹ Uᵀ,  pᵃ = pᴬ + Iᵃ c + U D⁻¹ u
+            let apparent = inertia.subtract_rank_one(link.d_inverse, u);
+            (Some(apparent), u.scale_add(link.rate, p + apparent.mul(link.c)))
+        }
+        JointKind::Spherical => {
+            // S = [1; 0]: U = [I; Hᵀ],  D = I + R, R the diagonal armature. No difference of nearly equal numbers is formed:
+            // Iᵃ = R − R D⁻¹ R,  Hᵃ = R D⁻¹ H,  Mᵃ = M − Hᵀ D⁻¹ H
+            let armature = spherical_armature(model, dof);
+            let d = (inertia.rotational + diagonal(armature)).factor();
+            note_three(smallest, dof, &d);
+            let (w, translational) = schur(inertia.translational, inertia.coupling.transpose(), &d);
+            let carried = w.transpose();
+            let scale_rows = |m: Mat3<T>| Mat3::from_rows(m.x * armature.x, m.y * armature.y, m.z * armature.z);
+            let r = diagonal(armature).to_mat3();
+            let inverse = Mat3::from_rows(d.solve(r.x), d.solve(r.y), d.solve(r.z)).transpose();
+            let apparent = ArticulatedInertia {
+                rotational: diagonal(armature) - Sym3::from_upper(scale_rows(inverse)),
+                coupling: scale_rows(carried),
+                translational,
+            };
+            let rate = d.solve(three(&tau[dof..]) - p.ang);
+            (Some(apparent), p + apparent.mul(link.c) + inertia.mul(Motion::new(rate, Vec3::zero())))
+        }
+        // S = 1 and no armature: Iᵃ = 0,  pᵃ = τ
+        JointKind::Free => (None, free_force(&tau[dof..])),
+    };
+    if let Some(parent) = parent {
+        if let Some(apparent) = apparent {
+            parent.inertia += apparent.to_parent(&link.x);
+        }
+        parent.p += link.x.force(force);
+    }
+}
+
+/// The second outward step of one body.
+#[inline(always)]
+#[expect(clippy::too_many_arguments, reason = "one body's step reads the model and the inputs, and writes the outputs")]
+fn accelerate<T: Real, P: Real + Lift<T>>(
+    kind: JointKind,
+    model: &Model<P>,
+    i: usize,
+    parent_acceleration: Motion<T>,
+    tau: &[T],
+    a: &mut [T],
+    link: &mut Link<T>,
+    smallest: &mut Pivot,
+) {
+    let dof = model.topology.joints()[i].v;
+    let carried = link.x.inverse_motion(parent_acceleration) + link.c;
+    match kind {
+        JointKind::Revolute | JointKind::Prismatic | JointKind::Helical => {
+            a[dof] = (-link.d_inverse).mul_add(carried.dot(link.u), link.rate);
+        }
+        JointKind::Spherical => {
+            let d = (link.inertia.rotational + diagonal(spherical_armature(model, dof))).factor();
+            let push = three(&tau[dof..]) - link.p.ang - link.inertia.mul(carried).ang;
+            a[dof..dof + 3].copy_from_slice(&d.solve(push).to_array());
+        }
+        JointKind::Free => {
+            // Iᴬ (a' + S q̈) + pᴬ = S τ
+            let push = free_force(&tau[dof..]) - link.p;
+            let whole = solve(&link.inertia, push, dof, smallest);
+            let across = whole - carried;
+            a[dof..dof + 3].copy_from_slice(&across.lin.to_array());
+            a[dof + 3..dof + 6].copy_from_slice(&across.ang.to_array());
+        }
+    }
+    link.a = add_joint(kind, carried, kind.motion(&model.subspaces[i], &a[dof..]));
+}
+
+/// `A − B D⁻¹ Bᵀ` and `B D⁻¹`, where D is factored.
+#[inline(always)]
+fn schur<T: Real>(a: Sym3<T>, b: Mat3<T>, d: &Ldl3<T>) -> (Mat3<T>, Sym3<T>) {
+    let w = Mat3::from_rows(d.solve(b.x), d.solve(b.y), d.solve(b.z));
+    (w, a - Sym3::from_upper(w * b.transpose()))
+}
+
+/// `Iᴬ⁻¹ f` by a blocked LDLᵀ, translation first, as the dofs of a free joint are ordered.
+#[inline(always)]
+fn solve<T: Real>(inertia: &ArticulatedInertia<T>, f: Force<T>, dof: usize, smallest: &mut Pivot) -> Motion<T> {
+    let translation = inertia.translational.factor();
+    note_three(smallest, dof, &translation);
+    let (w, rotational) = schur(inertia.rotational, inertia.coupling, &translation);
+    let rotation = rotational.factor();
+    note_three(smallest, dof + 3, &rotation);
+    let ang = rotation.solve(f.ang - w * f.lin);
+    Motion::new(ang, translation.solve(f.lin) - w.transpose_mul(ang))
+}
+
+#[inline(always)]
+fn note_three<T: Real>(smallest: &mut Pivot, dof: usize, factors: &Ldl3<T>) {
+    for (k, pivot) in factors.pivots.to_array().into_iter().enumerate() {
+        smallest.note(dof + k, pivot.min_lane());
+    }
+}
+
+#[inline(always)]
+fn diagonal<T: Real>(d: Vec3<T>) -> Sym3<T> {
+    let zero = T::zero();
+    Sym3 { xx: d.x, xy: zero, xz: zero, yy: d.y, yz: zero, zz: d.z }
+}
+
+#[inline(always)]
+fn three<T: Real>(values: &[T]) -> Vec3<T> {
+    Vec3::new(values[0], values[1], values[2])
+}
+
+#[inline(always)]
+fn spherical_armature<T: Real, P: Real + Lift<T>>(model: &Model<P>, dof: usize) -> Vec3<T> {
+    three(&model.armature[dof..]).lift()
+}
+
+/// The joint force of a free joint, in the order [force; moment].
+#[inline(always)]
+fn free_force<T: Real>(tau: &[T]) -> Force<T> {
+    Force::new(three(&tau[3..]), three(tau))
+}
+
+/// Forward dynamics without a workspace of one's own and without external wrenches; it allocates.
+///
+/// # Errors
+/// [`Error`] when an argument does not fit the model, or a joint meets no inertia.
+pub fn forward_dynamics<T: Real, P: Real + Lift<T>>(model: &Model<P>, q: &[T], v: &[T], tau: &[T]) -> Result<Vec<T>, Error> {
+    let mut a = vec![T::zero(); model.topology.nv()];
+    Aba::new(&model.topology).run(model, q, v, tau, None, &mut a)?;
+    Ok(a)
+}

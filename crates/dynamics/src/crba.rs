@@ -1,0 +1,162 @@
+//! The joint-space inertia matrix M(q) by the composite-rigid-body algorithm, into a tree-sparse matrix.
+//!
+//! Source: the book, table 6.2. Where the book carries one force at a time from its joint to the root, here the forces of all dofs that a
+//! body supports travel together, component by component, in that body's axes: they are consecutive dofs, so the loops are contiguous.
+//! Armature is added to the diagonal. Shapes: q has `nq` numbers; M is `nv`×`nv`. Units: SI, angles in radians.
+//! Cost: O(n + Σ d_k), d_k the depth of dof k. A call does not allocate.
+
+use crate::error::expect;
+use crate::step::{by_kind, expect_bodies};
+use crate::{DimensionError, TreeSparse};
+use model::{JointKind, Model, Topology};
+use spatial::{Force, Lift, Motion, Real, RigidBodyInertia, Transform, Vec3};
+use std::ops::Range;
+
+/// The workspace of the composite-rigid-body algorithm.
+#[derive(Clone, Debug)]
+pub struct Crba<T> {
+    /// Inertia of each body with everything that it supports, Iᶜ.
+    composites: Vec<RigidBodyInertia<T>>,
+    /// Placement of each body in its parent.
+    placements: Vec<Transform<T>>,
+    forces: Forces<T>,
+}
+
+impl<T: Real> Crba<T> {
+    /// A workspace for models of this topology.
+    pub fn new(topology: &Topology) -> Self {
+        Self {
+            composites: vec![RigidBodyInertia::zero(); topology.bodies()],
+            placements: vec![Transform::identity(); topology.bodies()],
+            forces: Forces::new(topology.nv()),
+        }
+    }
+
+    /// The joint-space inertia matrix `matrix` of configuration `q`.
+    ///
+    /// # Errors
+    /// [`DimensionError`] when an argument or the workspace does not fit the model.
+    pub fn run<P: Real + Lift<T>>(&mut self, model: &Model<P>, q: &[T], matrix: &mut TreeSparse<T>) -> Result<(), DimensionError> {
+        let Self { composites, placements, forces } = self;
+        expect_bodies(model, composites.len())?;
+        expect("dofs of the workspace", model.topology.nv(), forces.len())?;
+        expect("configuration q", model.topology.nq(), q.len())?;
+        matrix.expect_topology(&model.topology)?;
+
+        for (i, (composite, x)) in composites.iter_mut().zip(placements.iter_mut()).enumerate() {
+            *composite = model.inertias[i].lift();
+            *x = model.joint_transform(i, q);
+        }
+        for (i, joint) in model.topology.joints().iter().enumerate().rev() {
+            let (kind, subspace, x) = (joint.kind, &model.subspaces[i], &placements[i]);
+            // F_k = Iᶜ_i S_k for the joint's own dofs
+            for k in 0..kind.nv() {
+                forces.set(joint.v + k, composites[i].mul(kind.column(subspace, k)));
+            }
+            // M_kj = S_jᵀ F_k for every dof k that the joint's dof j supports
+            for column in 0..kind.nv() {
+                let supported = matrix.supported(joint.v + column);
+                by_kind!(kind, project, forces, subspace, column, supported, matrix);
+            }
+            if let Some(parent) = joint.parent {
+                // Iᶜ_p += X* Iᶜ_i X⁻¹,  F_k = X* F_k
+                let moved = composites[i].to_parent(x);
+                composites[parent] += moved;
+                forces.to_parent(x, matrix.supported(joint.v));
+            }
+        }
+        for (k, armature) in model.armature.iter().enumerate() {
+            matrix.add_to_diagonal(k, armature.lift());
+        }
+        Ok(())
+    }
+}
+
+/// One force per dof, stored component by component, with room before the first dof.
+#[derive(Clone, Debug)]
+struct Forces<T> {
+    ang: [Vec<T>; 3],
+    lin: [Vec<T>; 3],
+}
+
+impl<T: Real> Forces<T> {
+    /// How many scalars fill a register of 64 bytes.
+    const LANES: usize = if size_of::<T>() < 64 { 64 / size_of::<T>() } else { 1 };
+
+    fn new(dofs: usize) -> Self {
+        let zeros = || std::array::from_fn(|_| vec![T::zero(); Self::LANES + dofs]);
+        Self { ang: zeros(), lin: zeros() }
+    }
+
+    fn len(&self) -> usize {
+        self.ang[0].len() - Self::LANES
+    }
+
+    #[inline(always)]
+    fn set(&mut self, dof: usize, f: Force<T>) {
+        let [nx, ny, nz] = self.ang.each_mut().map(|component| &mut component[Self::LANES + dof]);
+        let [fx, fy, fz] = self.lin.each_mut().map(|component| &mut component[Self::LANES + dof]);
+        (*nx, *ny, *nz) = (f.ang.x, f.ang.y, f.ang.z);
+        (*fx, *fy, *fz) = (f.lin.x, f.lin.y, f.lin.z);
+    }
+
+    /// `F_k = X* F_k` for every dof of a range, and for a few before it, to fill whole registers: these are not set yet.
+    #[inline(always)]
+    fn to_parent(&mut self, x: &Transform<T>, dofs: Range<usize>) {
+        let end = Self::LANES + dofs.end;
+        let start = end - dofs.len().next_multiple_of(Self::LANES);
+        let [nx, ny, nz] = self.ang.each_mut().map(|component| &mut component[start..end]);
+        let [fx, fy, fz] = self.lin.each_mut().map(|component| &mut component[start..end]);
+        transform(x, nx, ny, nz, fx, fy, fz);
+    }
+}
+
+/// `F = X* F`, component by component; a function of its own, so that the compiler knows the slices to be apart.
+#[inline(never)]
+fn transform<T: Real>(x: &Transform<T>, nx: &mut [T], ny: &mut [T], nz: &mut [T], fx: &mut [T], fy: &mut [T], fz: &mut [T]) {
+    let x = *x;
+    for (((nx, ny), nz), ((fx, fy), fz)) in nx.iter_mut().zip(ny).zip(nz).zip(fx.iter_mut().zip(fy).zip(fz)) {
+        let f = x.force(Force::new(Vec3::new(*nx, *ny, *nz), Vec3::new(*fx, *fy, *fz)));
+        (*nx, *ny, *nz) = (f.ang.x, f.ang.y, f.ang.z);
+        (*fx, *fy, *fz) = (f.lin.x, f.lin.y, f.lin.z);
+    }
+}
+
+/// `M_kj = S_jᵀ F_k` for every supported dof k; j is the first of them, and column `column` of its joint's motion subspace.
+#[inline(always)]
+fn project<T: Real, P: Real + Lift<T>>(
+    kind: JointKind,
+    forces: &Forces<T>,
+    subspace: &Motion<P>,
+    column: usize,
+    supported: Range<usize>,
+    matrix: &mut TreeSparse<T>,
+) {
+    let position = matrix.depth(supported.start) - 1;
+    let (rows, values) = matrix.parts_mut();
+    let (first, last) = (Forces::<T>::LANES + supported.start, Forces::<T>::LANES + supported.end);
+    let [nx, ny, nz] = forces.ang.each_ref().map(|component| &component[first..last]);
+    let [fx, fy, fz] = forces.lin.each_ref().map(|component| &component[first..last]);
+    let (ang, lin) = (nx.iter().zip(ny).zip(nz), fx.iter().zip(fy).zip(fz));
+    for (row, (((nx, ny), nz), ((fx, fy), fz))) in rows[supported].iter().zip(ang.zip(lin)) {
+        let f = Force::new(Vec3::new(*nx, *ny, *nz), Vec3::new(*fx, *fy, *fz));
+        values[row.start + position] = match kind {
+            JointKind::Revolute => subspace.ang.lift().dot(f.ang),
+            JointKind::Prismatic => subspace.lin.lift().dot(f.lin),
+            JointKind::Helical => subspace.lift().dot(f),
+            JointKind::Spherical => f.ang.to_array()[column],
+            JointKind::Free if column < 3 => f.lin.to_array()[column],
+            JointKind::Free => f.ang.to_array()[column - 3],
+        };
+    }
+}
+
+/// The joint-space inertia matrix without a workspace of one's own; it allocates.
+///
+/// # Errors
+/// [`DimensionError`] when `q` does not fit the model.
+pub fn mass_matrix<T: Real, P: Real + Lift<T>>(model: &Model<P>, q: &[T]) -> Result<TreeSparse<T>, DimensionError> {
+    let mut matrix = TreeSparse::new(&model.topology);
+    Crba::new(&model.topology).run(model, q, &mut matrix)?;
+    Ok(matrix)
+}

@@ -1,0 +1,73 @@
+//! What can go wrong: a slice of the wrong length, or a matrix that is not positive definite.
+
+use thiserror::Error;
+
+/// A slice, workspace or matrix has not the size that the model needs.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
+#[error("{what}: expected {expected}, found {found}; size it by the topology of the model that you pass")]
+pub struct DimensionError {
+    /// The argument, and what is counted in it.
+    pub what: &'static str,
+    /// The count that the model needs.
+    pub expected: usize,
+    /// The count that was found.
+    pub found: usize,
+}
+
+/// A factorization met a pivot that is zero, negative or not a number.
+#[derive(Clone, Copy, Debug, PartialEq, Error)]
+#[error(
+    "the joint-space inertia matrix is not positive definite: pivot {pivot:e} at dof {dof}; \
+     give the bodies that this dof moves mass or inertia, or the dof armature, and look for NaN in the input"
+)]
+pub struct NotPositiveDefinite {
+    /// The dof whose pivot it is.
+    pub dof: usize,
+    /// The pivot.
+    pub pivot: f64,
+}
+
+/// What forward dynamics and factorizations may answer instead of a result.
+#[derive(Clone, Copy, Debug, PartialEq, Error)]
+pub enum Error {
+    /// An argument has the wrong size.
+    #[error(transparent)]
+    Dimension(#[from] DimensionError),
+    /// The joint-space inertia matrix is singular or worse.
+    #[error(transparent)]
+    NotPositiveDefinite(#[from] NotPositiveDefinite),
+}
+
+/// Refuses a count that is not the expected one.
+#[inline(always)]
+pub(crate) fn expect(what: &'static str, expected: usize, found: usize) -> Result<(), DimensionError> {
+    if expected == found { Ok(()) } else { Err(DimensionError { what, expected, found }) }
+}
+
+/// The smallest pivot so far, or the first one that is not positive: what follows that one means nothing.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Pivot {
+    dof: usize,
+    value: f64,
+}
+
+impl Pivot {
+    /// Before the first pivot.
+    pub(crate) fn none() -> Self {
+        Self { dof: 0, value: f64::INFINITY }
+    }
+
+    /// Takes note of the pivot of a dof.
+    #[inline(always)]
+    pub(crate) fn note(&mut self, dof: usize, value: f64) {
+        let smaller_or_nan = value < self.value || value.is_nan();
+        if self.value > 0.0 && smaller_or_nan {
+            *self = Self { dof, value };
+        }
+    }
+
+    /// The error, unless every pivot was positive.
+    pub(crate) fn check(self) -> Result<(), NotPositiveDefinite> {
+        if self.value > 0.0 { Ok(()) } else { Err(NotPositiveDefinite { dof: self.dof, pivot: self.value }) }
+    }
+}

@@ -1,0 +1,113 @@
+//! What the recursions share: the step across one joint, and the equations of motion of one body.
+//!
+//! Accelerations are *classical*: [ω̇; p̈], the rate of change of angular velocity and of the velocity of the body's origin, both in body
+//! axes. They transform between frames like the book's spatial accelerations; only the velocity products differ, and these contain no
+//! linear velocity. So no digit is lost on a robot that moves fast as a whole, and linear velocities need not be computed.
+
+use crate::DimensionError;
+use crate::error::expect;
+use model::{Joint, JointKind, Model};
+use spatial::{Force, Motion, Real, RigidBodyInertia, Transform, Vec3};
+
+/// Calls `step(kind, …)` from one arm per kind, so that each inlined copy is compiled with its kind known.
+macro_rules! by_kind {
+    ($kind:expr, $step:expr, $($argument:expr),+ $(,)?) => {
+        match $kind {
+            JointKind::Revolute => $step(JointKind::Revolute, $($argument),+),
+            JointKind::Prismatic => $step(JointKind::Prismatic, $($argument),+),
+            JointKind::Helical => $step(JointKind::Helical, $($argument),+),
+            JointKind::Spherical => $step(JointKind::Spherical, $($argument),+),
+            JointKind::Free => $step(JointKind::Free, $($argument),+),
+        }
+    };
+}
+pub(crate) use by_kind;
+
+/// Where the parent's link stands in a workspace whose first link is the world.
+#[inline(always)]
+pub(crate) fn parent_link(joint: &Joint) -> usize {
+    joint.parent.map_or(0, |parent| parent + 1)
+}
+
+/// Whether a joint of this kind turns its body.
+#[inline(always)]
+pub(crate) fn turns(kind: JointKind) -> bool {
+    kind != JointKind::Prismatic
+}
+
+/// Whether a joint of this kind moves its body's origin in the parent.
+#[inline(always)]
+pub(crate) fn slides(kind: JointKind) -> bool {
+    !matches!(kind, JointKind::Revolute | JointKind::Spherical)
+}
+
+/// `m + joint`, where `joint` is a motion across a joint of this kind.
+#[inline(always)]
+pub(crate) fn add_joint<T: Real>(kind: JointKind, m: Motion<T>, joint: Motion<T>) -> Motion<T> {
+    Motion::new(if turns(kind) { m.ang + joint.ang } else { m.ang }, if slides(kind) { m.lin + joint.lin } else { m.lin })
+}
+
+/// The body's angular velocity, and its acceleration while the joint's own rates of change are zero: `X a_p + c`.
+///
+/// `x` is the body's placement in its parent, `joint = S q̇`. Without the parent's acceleration, what is returned is
+/// `c = [ω_p × ω_J; ω_p × (ω_p × r) + (ω_p + ω) × v_J]` alone.
+#[inline(always)]
+pub(crate) fn cross_joint<T: Real>(
+    kind: JointKind,
+    x: &Transform<T>,
+    parent_omega: Vec3<T>,
+    parent_acceleration: Option<Motion<T>>,
+    joint: Motion<T>,
+) -> (Vec3<T>, Motion<T>) {
+    let (r, p) = (&x.rotation, x.translation);
+    let carried = r.transpose_mul(parent_omega);
+    let omega = if turns(kind) { carried + joint.ang } else { carried };
+
+    // ṗ_p + ω̇_p × r + ω_p × (ω_p × r), still in parent axes
+    let swing = parent_omega.cross(p);
+    let lin = match parent_acceleration {
+        Some(a) => parent_omega.cross_add(swing, a.ang.cross_add(p, a.lin)),
+        None => parent_omega.cross(swing),
+    };
+    let lin = r.transpose_mul(lin);
+    let lin = if slides(kind) { (carried + omega).cross_add(joint.lin, lin) } else { lin };
+
+    let ang = match parent_acceleration {
+        Some(a) if turns(kind) => carried.cross_add(joint.ang, r.transpose_mul(a.ang)),
+        Some(a) => r.transpose_mul(a.ang),
+        None if turns(kind) => carried.cross(joint.ang),
+        None => Vec3::zero(),
+    };
+    (omega, Motion::new(ang, lin))
+}
+
+/// Newton's and Euler's equations at the body's origin: the force that gives a body its acceleration.
+///
+/// `f = I a + [ω × Ī ω; ω × (ω × h)]`; without an acceleration, the velocity-dependent part alone.
+#[inline(always)]
+pub(crate) fn newton_euler<T: Real>(inertia: &RigidBodyInertia<T>, omega: Vec3<T>, acceleration: Option<Motion<T>>) -> Force<T> {
+    let h = inertia.first_moment;
+    let (spin, swing) = (inertia.rotational * omega, omega.cross(h));
+    match acceleration {
+        Some(a) => Force::new(
+            omega.cross_add(spin, h.cross_add(a.lin, inertia.rotational * a.ang)),
+            omega.cross_add(swing, a.ang.cross_add(h, a.lin * inertia.mass)),
+        ),
+        None => Force::new(omega.cross(spin), omega.cross(swing)),
+    }
+}
+
+/// Checks that the model's parts have the sizes of its topology, and that a workspace has as many bodies.
+pub(crate) fn expect_bodies<P>(model: &Model<P>, workspace: usize) -> Result<(), DimensionError> {
+    let bodies = model.topology.bodies();
+    expect("bodies of the workspace", bodies, workspace)?;
+    expect("placements of the model", bodies, model.placements.len())?;
+    expect("subspaces of the model", bodies, model.subspaces.len())?;
+    expect("inertias of the model", bodies, model.inertias.len())?;
+    expect("armature of the model", model.topology.nv(), model.armature.len())
+}
+
+/// Checks an optional list of external wrenches, one per body.
+pub(crate) fn expect_wrenches<P, T>(model: &Model<P>, wrenches: Option<&[Force<T>]>) -> Result<(), DimensionError> {
+    wrenches.map_or(Ok(()), |wrenches| expect("external wrenches", model.topology.bodies(), wrenches.len()))
+}

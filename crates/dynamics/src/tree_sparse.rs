@@ -1,0 +1,174 @@
+//! A symmetric matrix with the sparsity that branches of a tree induce, or its factors: one flat array.
+//!
+//! Source: the book, sections 6.4 and 6.5: entry (i, j) can differ from zero only if one dof supports the other. Row i stores the dofs from
+//! the root to i, itself last: `n + Σ(d_k − 1)` numbers, laid out as [`Topology::row`] says. A dof's row is as long as its depth, and an
+//! ancestor's row is aligned with the beginning of it, so that inner loops run over contiguous numbers.
+
+use crate::error::expect;
+use crate::{DimensionError, NotPositiveDefinite};
+use model::Topology;
+use nalgebra::{DMatrix, Scalar};
+use spatial::Real;
+use std::ops::Range;
+
+/// A tree-sparse symmetric matrix (or the factors of one, see [`Ltdl`](crate::Ltdl)).
+#[derive(Clone, Debug, PartialEq)]
+pub struct TreeSparse<T> {
+    values: Vec<T>,
+    rows: Vec<Row>,
+}
+
+/// Where a dof's row stands, and the dof's place in the tree.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Row {
+    /// Where the row begins in the flat array.
+    pub(crate) start: usize,
+    /// The parent dof.
+    pub(crate) parent: Option<usize>,
+    /// The first dof of this dof's *run*: consecutive dofs, each the parent of the next. Runs are contiguous in rows and in vectors.
+    run: usize,
+    /// One past the last dof that this one supports.
+    end: usize,
+}
+
+impl<T: Real> TreeSparse<T> {
+    /// The zero matrix of a topology.
+    pub fn new(topology: &Topology) -> Self {
+        let parents = topology.dof_parents();
+        let mut rows: Vec<Row> = Vec::with_capacity(parents.len());
+        for (dof, &parent) in parents.iter().enumerate() {
+            let run = if dof > 0 && parent == Some(dof - 1) { rows[dof - 1].run } else { dof };
+            rows.push(Row { start: topology.row(dof).start, parent, run, end: dof + 1 });
+        }
+        for dof in (0..rows.len()).rev() {
+            if let Some(parent) = rows[dof].parent {
+                rows[parent].end = rows[parent].end.max(rows[dof].end);
+            }
+        }
+        Self { values: vec![T::zero(); topology.stored()], rows }
+    }
+
+    /// Rows and columns: the number of dofs.
+    pub fn size(&self) -> usize {
+        self.rows.len()
+    }
+
+    /// The stored numbers, row after row.
+    pub fn values(&self) -> &[T] {
+        &self.values
+    }
+
+    /// Entry (i, j): zero where neither dof supports the other, or where there is no such entry.
+    pub fn get(&self, i: usize, j: usize) -> T {
+        let (upper, lower) = (i.min(j), i.max(j));
+        match (self.rows.get(lower), self.rows.get(upper)) {
+            (Some(row), Some(column)) if lower < column.end => self.values[row.start + self.depth(upper) - 1],
+            _ => T::zero(),
+        }
+    }
+
+    /// The diagonal.
+    pub fn diagonal(&self) -> impl ExactSizeIterator<Item = T> {
+        (0..self.size()).map(|dof| self.values[self.row(dof).end - 1])
+    }
+
+    /// `y = M x` for the symmetric matrix M.
+    ///
+    /// # Errors
+    /// [`DimensionError`] when a vector has not one number per dof.
+    pub fn mul(&self, x: &[T], y: &mut [T]) -> Result<(), DimensionError> {
+        expect("vector x", self.size(), x.len())?;
+        expect("vector y", self.size(), y.len())?;
+        for (dof, diagonal) in self.diagonal().enumerate() {
+            y[dof] = diagonal * x[dof];
+            for (dofs, entries) in self.ancestors(dof) {
+                let mut sum = y[dof];
+                for ((m, x_j), y_j) in self.values[entries].iter().zip(&x[dofs.clone()]).zip(&mut y[dofs]) {
+                    sum = m.mul_add(*x_j, sum);
+                    *y_j = m.mul_add(x[dof], *y_j);
+                }
+                y[dof] = sum;
+            }
+        }
+        Ok(())
+    }
+
+    /// The whole matrix; it allocates.
+    pub fn to_dense(&self) -> DMatrix<T>
+    where
+        T: Scalar,
+    {
+        DMatrix::from_fn(self.size(), self.size(), |i, j| self.get(i, j))
+    }
+
+    /// Factors the matrix as `LᵀDL`; see [`Ltdl`](crate::Ltdl).
+    ///
+    /// # Errors
+    /// [`NotPositiveDefinite`] when a pivot is not positive.
+    pub fn into_ltdl(self) -> Result<crate::Ltdl<T>, NotPositiveDefinite> {
+        let mut ltdl = crate::Ltdl::from_unfactored(self);
+        ltdl.factor()?;
+        Ok(ltdl)
+    }
+
+    /// Copies the numbers of a matrix of the same topology.
+    pub(crate) fn copy_from(&mut self, other: &Self) -> Result<(), DimensionError> {
+        let agreeing = self.rows.iter().zip(&other.rows).filter(|(row, theirs)| row == theirs).count();
+        expect("dofs of the tree-sparse matrix", self.size(), other.size())?;
+        expect("dofs of the tree-sparse matrix with the same place in the tree", self.size(), agreeing)?;
+        self.values.copy_from_slice(&other.values);
+        Ok(())
+    }
+
+    /// Refuses a topology of another shape.
+    pub(crate) fn expect_topology(&self, topology: &Topology) -> Result<(), DimensionError> {
+        expect("dofs of the tree-sparse matrix", topology.nv(), self.size())?;
+        let agreeing = self.rows.iter().zip(topology.dof_parents()).filter(|(row, parent)| row.parent == **parent).count();
+        expect("dofs of the tree-sparse matrix with the model's parent dof", topology.nv(), agreeing)
+    }
+
+    /// Adds to a diagonal entry.
+    #[inline(always)]
+    pub(crate) fn add_to_diagonal(&mut self, dof: usize, value: T) {
+        let last = self.row(dof).end - 1;
+        self.values[last] += value;
+    }
+
+    /// A dof's depth: the length of its row.
+    #[inline(always)]
+    pub(crate) fn depth(&self, dof: usize) -> usize {
+        self.row(dof).len()
+    }
+
+    /// Where row `dof` stands in the flat array.
+    #[inline(always)]
+    pub(crate) fn row(&self, dof: usize) -> Range<usize> {
+        self.rows[dof].start..self.rows.get(dof + 1).map_or(self.values.len(), |next| next.start)
+    }
+
+    /// The dofs that `dof` supports, itself first.
+    #[inline(always)]
+    pub(crate) fn supported(&self, dof: usize) -> Range<usize> {
+        dof..self.rows[dof].end
+    }
+
+    /// The rows and the flat array.
+    #[inline(always)]
+    pub(crate) fn parts_mut(&mut self) -> (&[Row], &mut [T]) {
+        (&self.rows, &mut self.values)
+    }
+
+    /// The strict ancestors of `dof`, run by run from the nearest to the root: their dofs, and their entries of row `dof`.
+    #[inline(always)]
+    pub(crate) fn ancestors(&self, dof: usize) -> impl Iterator<Item = (Range<usize>, Range<usize>)> + '_ {
+        let mut end = self.row(dof).end - 1;
+        let mut next = self.rows[dof].parent;
+        std::iter::from_fn(move || {
+            let last = next?;
+            let first = self.rows[last].run;
+            let entries = end + first - (last + 1)..end;
+            (next, end) = (self.rows[first].parent, entries.start);
+            Some((first..last + 1, entries))
+        })
+    }
+}

@@ -1,0 +1,209 @@
+//! What the tests share: robots, states, tolerances, flow derivatives and a double-double scalar.
+
+#![allow(dead_code, reason = "every test file compiles this module and uses a part of it")]
+
+pub mod double_double;
+
+use model::{BodyDescription, Description, JointDescription, JointKind, JointType, Model, Placement, Random, Topology};
+use spatial::{Dual, Force, Lift, Motion, Quaternion, Real, Sym3, Vec3};
+
+/// Asserts that a residual is finite and within its tolerance; with `FEATHERBENCH_TOL_SCALE=0` it prints the residual instead.
+#[track_caller]
+pub fn within(what: &str, residual: f64, tolerance: f64) {
+    let scale: f64 = std::env::var("FEATHERBENCH_TOL_SCALE").ok().and_then(|text| text.parse().ok()).unwrap_or(1.0);
+    assert!(residual.is_finite(), "{what}: residual {residual} is not finite");
+    if scale == 0.0 {
+        println!("{what}: residual {residual:.2e}, tolerance {tolerance:.2e}");
+    } else {
+        assert!(residual <= tolerance * scale, "{what}: residual {residual:e} exceeds {tolerance:e} × {scale}");
+    }
+}
+
+/// The largest |a − b|, NaN if any difference is.
+pub fn distance(a: &[f64], b: &[f64]) -> f64 {
+    assert_eq!(a.len(), b.len());
+    a.iter().zip(b).map(|(a, b)| (a - b).abs()).fold(0.0, |most, x| if x > most || x.is_nan() { x } else { most })
+}
+
+/// The largest magnitude.
+pub fn largest(a: &[f64]) -> f64 {
+    distance(a, &vec![0.0; a.len()])
+}
+
+/// How a random robot is made.
+#[derive(Clone, Copy)]
+pub struct Recipe {
+    /// The kinds of joint in turn.
+    pub kinds: &'static [Kind],
+    pub bodies: usize,
+    /// Whether a parent is drawn from the whole path to the last body, or is the last body.
+    pub branched: bool,
+    pub armature: bool,
+}
+
+/// A joint's kind, before its axis is drawn.
+#[derive(Clone, Copy, PartialEq)]
+pub enum Kind {
+    Revolute,
+    Prismatic,
+    Helical,
+    Spherical,
+    Free,
+    Planar,
+    Universal,
+}
+
+use Kind::*;
+
+/// Robots that between them have every kind of joint, chain and branched, fixed and floating, and a free joint in the middle.
+pub const ROBOTS: [(&str, Recipe); 9] = [
+    ("revolute chain", Recipe { kinds: &[Revolute], bodies: 8, branched: false, armature: false }),
+    ("prismatic chain", Recipe { kinds: &[Prismatic, Revolute], bodies: 6, branched: false, armature: true }),
+    ("helical chain", Recipe { kinds: &[Helical], bodies: 6, branched: false, armature: true }),
+    ("spherical chain", Recipe { kinds: &[Spherical], bodies: 5, branched: false, armature: false }),
+    ("spherical tree with armature", Recipe { kinds: &[Spherical, Revolute], bodies: 9, branched: true, armature: true }),
+    ("composed joints", Recipe { kinds: &[Planar, Universal], bodies: 6, branched: true, armature: false }),
+    ("every kind, fixed base", Recipe { kinds: &[Revolute, Prismatic, Helical, Spherical, Planar, Universal], bodies: 14, branched: true, armature: true }),
+    ("every kind, floating base", Recipe { kinds: &[Free, Revolute, Helical, Spherical, Prismatic, Universal, Planar, Revolute], bodies: 8, branched: true, armature: true }),
+    ("free joints in the middle", Recipe { kinds: &[Revolute, Spherical, Free, Prismatic], bodies: 12, branched: true, armature: true }),
+];
+
+/// The robot of a recipe: skew axes and gravity, turned placements, products of inertia.
+pub fn robot(recipe: &Recipe, seed: u64) -> Description {
+    let mut random = Random::new(seed, recipe.bodies as u64);
+    let mut description = Description { name: "random".into(), gravity: [1.3, -2.1, -9.4], ..Description::default() };
+    let mut path: Vec<usize> = Vec::new();
+    for i in 0..recipe.bodies {
+        if recipe.branched && i > 1 {
+            path.truncate(1 + random.below(path.len()));
+        }
+        let kind = recipe.kinds[i % recipe.kinds.len()];
+        let axis = random.direction::<3>();
+        let joint_type = match kind {
+            Revolute => JointType::Revolute { axis },
+            Prismatic => JointType::Prismatic { axis },
+            Helical => JointType::Helical { axis, pitch: random.uniform(-0.5, 0.5) },
+            Spherical => JointType::Spherical,
+            Free => JointType::Free,
+            Planar => JointType::Planar,
+            Universal => JointType::Universal,
+        };
+        let rotation = Quaternion::from_array(random.direction::<4>()).to_rotation().to_array();
+        let vector = |random: &mut Random, reach: f64| std::array::from_fn(|_| random.uniform(-reach, reach));
+        let translation = vector(&mut random, 0.5);
+        let armature = if recipe.armature && kind != Free {
+            (0..joint_type.nv()).map(|_| random.uniform(0.0, 0.3)).collect()
+        } else {
+            Vec::new()
+        };
+        description.bodies.push(BodyDescription {
+            name: format!("body{i}"),
+            parent: path.last().copied(),
+            mass: random.uniform(0.5, 2.0),
+            com: vector(&mut random, 0.3),
+            inertia: inertia(&mut random),
+            joint: JointDescription {
+                name: format!("joint{i}"),
+                kind: joint_type,
+                placement: Placement { rotation, translation },
+                armature,
+                ..JointDescription::default()
+            },
+        });
+        path.push(i);
+    }
+    description
+}
+
+/// A random inertia that some mass distribution has: `tr(Σ)·1 − Σ` with a positive definite second moment Σ.
+fn inertia(random: &mut Random) -> [f64; 6] {
+    let mut second = Sym3::scalar(0.02);
+    for _ in 0..3 {
+        second = second + Sym3::rank_one(random.uniform(0.01, 0.1), Vec3::from_array(random.direction::<3>()));
+    }
+    (Sym3::scalar(second.xx + second.yy + second.zz) - second).to_array()
+}
+
+/// The model of a recipe.
+pub fn build(recipe: &Recipe) -> Model<f64> {
+    Model::build(&robot(recipe, 11)).expect("the recipe is well formed")
+}
+
+/// One revolute or other screw joint after another along x, unit mass, half a metre each: the chain of SCIENCE.md §1, dyadic numbers.
+pub fn dyadic_chain(axes: &[[f64; 3]], bodies: usize) -> Model<f64> {
+    let body = |i: usize| BodyDescription {
+        name: format!("body{i}"),
+        parent: i.checked_sub(1),
+        mass: 1.0,
+        com: [0.25, 0.0, 0.0],
+        inertia: [0.0078125, 0.0, 0.0, 0.03125, 0.0, 0.03125],
+        joint: JointDescription {
+            kind: JointType::Revolute { axis: axes[i % axes.len()] },
+            placement: Placement { translation: [if i == 0 { 0.0 } else { 0.5 }, 0.0, 0.0], ..Placement::default() },
+            ..JointDescription::default()
+        },
+    };
+    let description =
+        Description { gravity: [0.0, 0.0, -9.8125], bodies: (0..bodies).map(body).collect(), ..Description::default() };
+    Model::build(&description).expect("a chain is well formed")
+}
+
+/// A topology given by (parent body or −1, kind).
+pub fn topology(tree: &[(i64, JointKind)]) -> Topology {
+    let tree: Vec<_> = tree.iter().map(|&(parent, kind)| (usize::try_from(parent).ok(), kind)).collect();
+    Topology::new(&tree).expect("depth-first")
+}
+
+/// A configuration that moves: q with the rate of change that v gives it.
+pub fn flow(model: &Model<f64>, q: &[f64], v: &[f64]) -> Vec<Dual<f64>> {
+    let turn = |q: &[f64], omega: &[f64]| {
+        let quaternion = Quaternion::from_array([q[0], q[1], q[2], q[3]]);
+        let rate = quaternion.derivative(Vec3::new(omega[0], omega[1], omega[2]));
+        let rates = [rate.v.x, rate.v.y, rate.v.z, rate.w];
+        (0..4).map(|k| Dual::new(q[k], rates[k])).collect::<Vec<_>>()
+    };
+    let mut moving = Vec::new();
+    for joint in model.topology.joints() {
+        let (q, v) = (&q[joint.q..], &v[joint.v..]);
+        match joint.kind {
+            JointKind::Revolute | JointKind::Prismatic | JointKind::Helical => moving.push(Dual::new(q[0], v[0])),
+            JointKind::Spherical => moving.extend(turn(q, v)),
+            JointKind::Free => {
+                let rotation = Quaternion::from_array([q[3], q[4], q[5], q[6]]).to_rotation();
+                let rate = (rotation * Vec3::new(v[0], v[1], v[2])).to_array();
+                moving.extend((0..3).map(|k| Dual::new(q[k], rate[k])));
+                moving.extend(turn(&q[3..], &v[3..]));
+            }
+        }
+    }
+    moving
+}
+
+/// Numbers with their rates of change.
+pub fn with_rate(values: &[f64], rates: &[f64]) -> Vec<Dual<f64>> {
+    values.iter().zip(rates).map(|(&value, &rate)| Dual::new(value, rate)).collect()
+}
+
+/// The rate of change of a vector.
+pub fn rate(v: Vec3<Dual<f64>>) -> Vec3<f64> {
+    Vec3::new(v.x.derivative, v.y.derivative, v.z.derivative)
+}
+
+/// Numbers in another scalar.
+pub fn lifted<T: Real>(values: &[f64]) -> Vec<T>
+where
+    f64: Lift<T>,
+{
+    values.iter().map(|value| value.lift()).collect()
+}
+
+/// Random wrenches, one per compiled body.
+pub fn wrenches(model: &Model<f64>, seed: u64) -> Vec<Force<f64>> {
+    let mut random = Random::new(seed, 77);
+    (0..model.topology.bodies()).map(|_| Force::from_array(std::array::from_fn(|_| random.uniform(-1.0, 1.0)))).collect()
+}
+
+/// The six numbers of the difference of two motions.
+pub fn gap(a: Motion<f64>, b: Motion<f64>) -> f64 {
+    distance(&a.to_array(), &b.to_array())
+}

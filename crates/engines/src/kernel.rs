@@ -1,0 +1,254 @@
+//! The registry of native kernels: which algorithm answers which quantity.
+//!
+//! A kernel owns its workspace and writes one state's answer into a slice. Studies, the timing of runs and `cargo bench` all go through this
+//! list, so what is timed is what is checked.
+
+use dynamics::{
+    Aba, Bias, CenterOfMass, Crba, Energy, Error, Jacobian, Kinematics, Ltdl, Momentum, Rnea, TreeSparse,
+};
+use harness::{DENSE_LIMIT, Problem, Quantity, Refusal};
+use model::{Model, StateBatch};
+use spatial::Force;
+
+/// Writes the answer for state `k` into `out`.
+pub(crate) type Kernel<'a> = Box<dyn FnMut(usize, &mut [f64]) -> Result<(), Error> + Send + 'a>;
+
+/// The methods of each quantity, the reference first.
+pub(crate) fn methods(quantity: Quantity) -> &'static [&'static str] {
+    match quantity {
+        Quantity::InverseDynamics | Quantity::InverseDynamicsWrench | Quantity::Bias => &["rnea"],
+        Quantity::MassMatrix | Quantity::MassMatrixProbe | Quantity::MassMatrixSparse => &["crba"],
+        Quantity::ForwardDynamics => &["aba", "ltdl"],
+        Quantity::KineticEnergy | Quantity::PotentialEnergy | Quantity::CenterOfMass | Quantity::Momentum => &["kinematics"],
+        Quantity::BodyPlacement | Quantity::BodyVelocity | Quantity::BodyAcceleration | Quantity::BodyJacobian => &["kinematics"],
+        Quantity::Readback => &["build"],
+        Quantity::StoredEntries => &["topology"],
+        Quantity::Factorization => &["ltdl"],
+        Quantity::Solve => &["ltdl"],
+    }
+}
+
+/// The kernel of a quantity and method over a batch of states.
+pub(crate) fn kernel<'a>(problem: &'a Problem, quantity: Quantity, method: &str, states: &'a StateBatch) -> Result<Kernel<'a>, Refusal> {
+    if !methods(quantity).contains(&method) {
+        return Err(Refusal::Unsupported(format!("there is no native {} by {method}", quantity.name())));
+    }
+    let model = &problem.model;
+    Ok(match quantity {
+        Quantity::InverseDynamics => inverse_dynamics(model, states),
+        Quantity::InverseDynamicsWrench => inverse_dynamics_wrench(model, states),
+        Quantity::Bias => bias(model, states),
+        Quantity::MassMatrix => mass_matrix(model, states),
+        Quantity::MassMatrixProbe => mass_matrix_probe(model, states, problem.probe()),
+        Quantity::MassMatrixSparse => mass_matrix_sparse(model, states),
+        Quantity::ForwardDynamics if method == "ltdl" => forward_dynamics_by_factorization(model, states),
+        Quantity::ForwardDynamics => forward_dynamics(model, states),
+        Quantity::Factorization => factorization(model, states)?,
+        Quantity::Solve => solve(model, states)?,
+        Quantity::KineticEnergy | Quantity::PotentialEnergy => energy(model, states, quantity),
+        Quantity::CenterOfMass => center_of_mass(model, states),
+        Quantity::Momentum => momentum(model, states),
+        Quantity::BodyPlacement | Quantity::BodyVelocity | Quantity::BodyAcceleration => kinematics(model, states, quantity),
+        Quantity::BodyJacobian => jacobian(model, states, model.described[problem.deepest_body()]),
+        Quantity::Readback => constant(problem.readback()),
+        Quantity::StoredEntries => constant(vec![model.topology.stored() as f64]),
+    })
+}
+
+/// The quantities that the timing study takes: one pass of one algorithm each, from q, v, a or τ to its result.
+pub fn timed(problem: &Problem) -> Vec<(Quantity, &'static str)> {
+    let whole = [
+        (Quantity::InverseDynamics, "rnea"),
+        (Quantity::Bias, "rnea"),
+        (Quantity::MassMatrixSparse, "crba"),
+        (Quantity::Factorization, "ltdl"),
+        (Quantity::Solve, "ltdl"),
+        (Quantity::ForwardDynamics, "aba"),
+        (Quantity::ForwardDynamics, "ltdl"),
+        (Quantity::KineticEnergy, "kinematics"),
+        (Quantity::Momentum, "kinematics"),
+        (Quantity::BodyAcceleration, "kinematics"),
+        (Quantity::BodyJacobian, "kinematics"),
+    ];
+    // A body Jacobian is 6·nv numbers of mostly zeros on big robots: only its nonzero columns would be worth a time.
+    whole.into_iter().filter(|(quantity, _)| *quantity != Quantity::BodyJacobian || problem.states.nv <= DENSE_LIMIT).collect()
+}
+
+fn inverse_dynamics<'a>(model: &'a Model<f64>, states: &'a StateBatch) -> Kernel<'a> {
+    let mut rnea = Rnea::new(&model.topology);
+    Box::new(move |k, tau| Ok(rnea.run(model, states.q(k), states.v(k), states.a(k), None, tau)?))
+}
+
+fn inverse_dynamics_wrench<'a>(model: &'a Model<f64>, states: &'a StateBatch) -> Kernel<'a> {
+    let mut rnea = Rnea::new(&model.topology);
+    let mut wrenches = vec![Force::zero(); model.topology.bodies()];
+    Box::new(move |k, tau| {
+        for (&body, w) in model.described.iter().zip(states.wrench(k).chunks_exact(6)) {
+            wrenches[body] = Force::from_array([w[0], w[1], w[2], w[3], w[4], w[5]]);
+        }
+        Ok(rnea.run(model, states.q(k), states.v(k), states.a(k), Some(&wrenches), tau)?)
+    })
+}
+
+fn bias<'a>(model: &'a Model<f64>, states: &'a StateBatch) -> Kernel<'a> {
+    let mut bias = Bias::new(&model.topology);
+    Box::new(move |k, h| Ok(bias.run(model, states.q(k), states.v(k), None, h)?))
+}
+
+fn mass_matrix<'a>(model: &'a Model<f64>, states: &'a StateBatch) -> Kernel<'a> {
+    let (mut crba, mut matrix) = (Crba::new(&model.topology), TreeSparse::new(&model.topology));
+    Box::new(move |k, dense| {
+        crba.run(model, states.q(k), &mut matrix)?;
+        let n = model.topology.nv();
+        dense.fill(0.0);
+        for i in 0..n {
+            for (&j, &m) in model.topology.row_dofs(i).iter().zip(&matrix.values()[model.topology.row(i)]) {
+                dense[i * n + j] = m;
+                dense[j * n + i] = m;
+            }
+        }
+        Ok(())
+    })
+}
+
+fn mass_matrix_probe<'a>(model: &'a Model<f64>, states: &'a StateBatch, probe: Vec<f64>) -> Kernel<'a> {
+    let (mut crba, mut matrix) = (Crba::new(&model.topology), TreeSparse::new(&model.topology));
+    Box::new(move |k, out| {
+        crba.run(model, states.q(k), &mut matrix)?;
+        let n = model.topology.nv();
+        let (products, rest) = out.split_at_mut(4 * n);
+        for (x, y) in probe.chunks_exact(n).zip(products.chunks_exact_mut(n)) {
+            matrix.mul(x, y)?;
+        }
+        let (diagonal, last) = rest.split_at_mut(n);
+        for (i, (diagonal, last)) in diagonal.iter_mut().zip(last).enumerate() {
+            *diagonal = matrix.get(i, i);
+            *last = matrix.get(n - 1, i);
+        }
+        Ok(())
+    })
+}
+
+fn mass_matrix_sparse<'a>(model: &'a Model<f64>, states: &'a StateBatch) -> Kernel<'a> {
+    let (mut crba, mut matrix) = (Crba::new(&model.topology), TreeSparse::new(&model.topology));
+    Box::new(move |k, out| {
+        crba.run(model, states.q(k), &mut matrix)?;
+        out.copy_from_slice(matrix.values());
+        Ok(())
+    })
+}
+
+fn forward_dynamics<'a>(model: &'a Model<f64>, states: &'a StateBatch) -> Kernel<'a> {
+    let mut aba = Aba::new(&model.topology);
+    Box::new(move |k, a| aba.run(model, states.q(k), states.v(k), states.tau(k), None, a))
+}
+
+fn forward_dynamics_by_factorization<'a>(model: &'a Model<f64>, states: &'a StateBatch) -> Kernel<'a> {
+    let (mut crba, mut bias, mut ltdl) = (Crba::new(&model.topology), Bias::new(&model.topology), Ltdl::new(&model.topology));
+    Box::new(move |k, a| {
+        crba.run(model, states.q(k), ltdl.matrix_mut())?;
+        ltdl.factor()?;
+        bias.run(model, states.q(k), states.v(k), None, a)?;
+        for (a, tau) in a.iter_mut().zip(states.tau(k)) {
+            *a = tau - *a;
+        }
+        Ok(ltdl.solve(a)?)
+    })
+}
+
+/// Mass matrices of a batch, made beforehand: factorizing and solving do not include making them.
+fn matrices(model: &Model<f64>, states: &StateBatch) -> Result<Vec<TreeSparse<f64>>, Refusal> {
+    let mut crba = Crba::new(&model.topology);
+    // Of big robots a few matrices go round: thousands of them would not fit the memory.
+    let count = states.count().min(1 + (32 << 20) / (8 * model.topology.stored().max(1)));
+    (0..count)
+        .map(|k| {
+            let mut matrix = TreeSparse::new(&model.topology);
+            crba.run(model, states.q(k), &mut matrix).map_err(|error| Refusal::Failed(error.to_string()))?;
+            Ok(matrix)
+        })
+        .collect()
+}
+
+fn factorization<'a>(model: &'a Model<f64>, states: &'a StateBatch) -> Result<Kernel<'a>, Refusal> {
+    let matrices = matrices(model, states)?;
+    let mut ltdl = Ltdl::new(&model.topology);
+    Ok(Box::new(move |k, out| {
+        ltdl.run(&matrices[k % matrices.len()])?;
+        out.copy_from_slice(ltdl.factors().values());
+        Ok(())
+    }))
+}
+
+fn solve<'a>(model: &'a Model<f64>, states: &'a StateBatch) -> Result<Kernel<'a>, Refusal> {
+    let factored: Result<Vec<Ltdl<f64>>, _> = matrices(model, states)?.into_iter().map(TreeSparse::into_ltdl).collect();
+    let factored = factored.map_err(|error| Refusal::Failed(error.to_string()))?;
+    Ok(Box::new(move |k, x| {
+        x.copy_from_slice(states.tau(k));
+        Ok(factored[k % factored.len()].solve(x)?)
+    }))
+}
+
+fn energy<'a>(model: &'a Model<f64>, states: &'a StateBatch, quantity: Quantity) -> Kernel<'a> {
+    let mut energy = Energy::new(&model.topology);
+    Box::new(move |k, out| {
+        let energies = energy.run(model, states.q(k), states.v(k))?;
+        out[0] = if quantity == Quantity::KineticEnergy { energies.kinetic } else { energies.potential };
+        Ok(())
+    })
+}
+
+fn center_of_mass<'a>(model: &'a Model<f64>, states: &'a StateBatch) -> Kernel<'a> {
+    let mut center = CenterOfMass::new(&model.topology);
+    Box::new(move |k, out| {
+        out.copy_from_slice(&center.run(model, states.q(k))?.position.to_array());
+        Ok(())
+    })
+}
+
+fn momentum<'a>(model: &'a Model<f64>, states: &'a StateBatch) -> Kernel<'a> {
+    let mut momentum = Momentum::new(&model.topology);
+    Box::new(move |k, out| {
+        out.copy_from_slice(&momentum.run(model, states.q(k), states.v(k))?.momentum.to_array());
+        Ok(())
+    })
+}
+
+fn kinematics<'a>(model: &'a Model<f64>, states: &'a StateBatch, quantity: Quantity) -> Kernel<'a> {
+    let mut kinematics = Kinematics::new(&model.topology);
+    Box::new(move |k, out| {
+        kinematics.run(model, states.q(k), states.v(k), states.a(k))?;
+        for (i, &body) in model.described.iter().enumerate() {
+            let Some(motion) = kinematics.body(body) else { continue };
+            match quantity {
+                Quantity::BodyPlacement => {
+                    out[12 * i..12 * i + 9].copy_from_slice(&motion.placement.rotation.to_array());
+                    out[12 * i + 9..12 * i + 12].copy_from_slice(&motion.placement.translation.to_array());
+                }
+                Quantity::BodyVelocity => out[6 * i..6 * i + 6].copy_from_slice(&motion.velocity.to_array()),
+                _ => out[6 * i..6 * i + 6].copy_from_slice(&motion.acceleration.to_array()),
+            }
+        }
+        Ok(())
+    })
+}
+
+fn jacobian<'a>(model: &'a Model<f64>, states: &'a StateBatch, body: usize) -> Kernel<'a> {
+    let mut jacobian = Jacobian::new(&model.topology);
+    Box::new(move |k, out| {
+        let n = model.topology.nv();
+        for (dof, column) in jacobian.run(model, states.q(k), body)?.iter().enumerate() {
+            for (row, entry) in column.to_array().into_iter().enumerate() {
+                out[row * n + dof] = entry;
+            }
+        }
+        Ok(())
+    })
+}
+
+fn constant<'a>(values: Vec<f64>) -> Kernel<'a> {
+    Box::new(move |_, out| {
+        out.copy_from_slice(&values);
+        Ok(())
+    })
+}

@@ -1,0 +1,15 @@
+//! Subjects: who answers.
+//!
+//! [`Native`] runs the kernels of this workspace; [`Oracle`] asks a program that speaks the protocol of `oracles/PROTOCOL.md`;
+//! [`Recorded`] plays back what an oracle once answered. To add an engine, write such a program, or implement
+//! [`Subject`](harness::Subject) in a file of its own here.
+
+mod kernel;
+mod native;
+mod oracle;
+mod process;
+mod recorded;
+
+pub use native::{Native, timed};
+pub use oracle::{Limits, Oracle};
+pub use recorded::{RecordError, Recorded, Recording};

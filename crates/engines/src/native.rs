@@ -1,0 +1,70 @@
+//! The native subject: the kernels of this workspace, in this process.
+
+pub use crate::kernel::timed;
+use crate::kernel::{Kernel, kernel, methods};
+use harness::{Identity, Prepared, Problem, Quantity, Refusal, Subject};
+use model::StateBatch;
+use record::EngineSource;
+use std::collections::BTreeMap;
+use std::ops::Range;
+
+/// Our own kernels.
+pub struct Native {
+    identity: Identity,
+}
+
+impl Native {
+    /// The kernels of this build.
+    pub fn new() -> Self {
+        let name = "native".to_owned();
+        Self { identity: Identity { name, version: env!("CARGO_PKG_VERSION").to_owned(), source: EngineSource::Native, build: BTreeMap::new() } }
+    }
+}
+
+impl Default for Native {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+impl Subject for Native {
+    fn identity(&self) -> &Identity {
+        &self.identity
+    }
+
+    fn methods(&self, quantity: Quantity) -> Vec<String> {
+        methods(quantity).iter().map(|&method| method.to_owned()).collect()
+    }
+
+    fn prepare<'a>(
+        &'a self,
+        problem: &'a Problem,
+        quantity: Quantity,
+        method: &str,
+        states: &'a StateBatch,
+    ) -> Result<Box<dyn Prepared + 'a>, Refusal> {
+        let kernel = kernel(problem, quantity, method, states)?;
+        Ok(Box::new(Ready { kernel, size: quantity.size(problem), values: Vec::new() }))
+    }
+}
+
+/// A kernel with room for its answers; it allocates when a longer range comes than ever before.
+struct Ready<'a> {
+    kernel: Kernel<'a>,
+    size: usize,
+    values: Vec<f64>,
+}
+
+impl Prepared for Ready<'_> {
+    fn run(&mut self, range: Range<usize>) -> Result<(), Refusal> {
+        self.values.resize(range.len() * self.size, 0.0);
+        for (k, out) in range.zip(self.values.chunks_exact_mut(self.size)) {
+            (self.kernel)(k, out).map_err(|error| Refusal::Failed(error.to_string()))?;
+        }
+        Ok(())
+    }
+
+    fn read(&self) -> &[f64] {
+        &self.values
+    }
+}

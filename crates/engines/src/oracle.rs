@@ -1,0 +1,229 @@
+//! A subject behind the oracle protocol: one program, as many processes as there are threads asking.
+
+pub use crate::process::Limits;
+use crate::process::Process;
+use harness::frame::{Block, Frame};
+use harness::{Identity, Prepared, Problem, Quantity, Refusal, Subject};
+use model::StateBatch;
+use record::EngineSource;
+use serde_json::{Value, json};
+use std::collections::BTreeMap;
+use std::ffi::OsString;
+use std::ops::Range;
+use std::sync::{Mutex, PoisonError};
+
+/// Version of the protocol that we speak.
+const PROTOCOL: u64 = 1;
+
+/// An engine that is asked through its own process.
+pub struct Oracle {
+    identity: Identity,
+    methods: BTreeMap<String, Vec<String>>,
+    command: Vec<OsString>,
+    limits: Limits,
+    idle: Mutex<Vec<Session>>,
+}
+
+/// A process and what it was told last.
+struct Session {
+    process: Process,
+    model: String,
+    readback: Vec<f64>,
+    states: Option<String>,
+}
+
+impl Oracle {
+    /// Starts the program and asks who it is.
+    ///
+    /// # Errors
+    /// A sentence, when it does not start or does not speak the protocol.
+    pub fn start(command: Vec<OsString>, limits: Limits) -> Result<Self, String> {
+        let mut process = Process::start(&command, limits)?;
+        let hello = checked(process.ask(&Frame::new(json!({"op": "hello"}), Vec::new()))?).map_err(|refusal| refusal.to_string())?;
+        let protocol = hello.header.get("protocol").and_then(Value::as_u64);
+        if protocol != Some(PROTOCOL) {
+            return Err(format!("the oracle speaks protocol {protocol:?}, this program {PROTOCOL}"));
+        }
+        let build = hello.header.get("build").cloned().unwrap_or_else(|| json!({}));
+        let methods = hello.header.get("methods").cloned().unwrap_or_else(|| json!({}));
+        let identity = Identity {
+            name: hello.text("engine").to_owned(),
+            version: hello.text("version").to_owned(),
+            source: EngineSource::Live,
+            build: serde_json::from_value(build).map_err(|error| format!("hello: build: {error}"))?,
+        };
+        let methods = serde_json::from_value(methods).map_err(|error| format!("hello: methods: {error}"))?;
+        if identity.name.is_empty() || identity.version.is_empty() {
+            return Err("hello: engine and version must not be empty".into());
+        }
+        let session = Session { process, model: String::new(), readback: Vec::new(), states: None };
+        Ok(Self { identity, methods, command, limits, idle: Mutex::new(vec![session]) })
+    }
+
+    fn session(&self) -> Result<Session, Refusal> {
+        let idle = self.lock().pop();
+        match idle {
+            Some(session) => Ok(session),
+            None => {
+                let process = Process::start(&self.command, self.limits).map_err(Refusal::Failed)?;
+                Ok(Session { process, model: String::new(), readback: Vec::new(), states: None })
+            }
+        }
+    }
+
+    fn lock(&self) -> std::sync::MutexGuard<'_, Vec<Session>> {
+        self.idle.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
+impl Subject for Oracle {
+    fn identity(&self) -> &Identity {
+        &self.identity
+    }
+
+    fn methods(&self, quantity: Quantity) -> Vec<String> {
+        // The read-back comes with every model.
+        match quantity {
+            Quantity::Readback => vec!["build".into()],
+            _ => self.methods.get(quantity.name()).cloned().unwrap_or_default(),
+        }
+    }
+
+    fn prepare<'a>(
+        &'a self,
+        problem: &'a Problem,
+        quantity: Quantity,
+        method: &str,
+        states: &'a StateBatch,
+    ) -> Result<Box<dyn Prepared + 'a>, Refusal> {
+        let mut session = self.session()?;
+        match session.build(problem).and_then(|()| session.send_states(problem, states)) {
+            Ok(()) => {
+                let method = method.to_owned();
+                Ok(Box::new(Asked { oracle: self, session: Some(session), problem, quantity, method, values: Vec::new() }))
+            }
+            Err(refusal) => {
+                self.give_back(session);
+                Err(refusal)
+            }
+        }
+    }
+}
+
+impl Oracle {
+    fn give_back(&self, session: Session) {
+        if session.process.alive() {
+            self.lock().push(session);
+        }
+    }
+}
+
+impl Session {
+    fn ask(&mut self, header: Value, blocks: Vec<Block>) -> Result<Frame, Refusal> {
+        checked(self.process.ask(&Frame::new(header, blocks)).map_err(Refusal::Failed)?)
+    }
+
+    /// Has the engine build the robot, unless it holds it already, and reads it back.
+    fn build(&mut self, problem: &Problem) -> Result<(), Refusal> {
+        if self.model == problem.hash {
+            return Ok(());
+        }
+        self.model.clear();
+        self.states = None;
+        let line = formats::neutral::to_line(&problem.description).map_err(|error| Refusal::Failed(error.to_string()))?;
+        let description: Value = serde_json::from_str(&line).map_err(|error| Refusal::Failed(error.to_string()))?;
+        let answer = self.ask(json!({"op": "prepare", "model": description}), Vec::new())?;
+        let topology = &problem.model.topology;
+        for (key, expected) in [("nq", problem.description.nq()), ("nv", topology.nv())] {
+            let found = answer.header.get(key).and_then(Value::as_u64);
+            if found != Some(expected as u64) {
+                return Err(Refusal::Failed(format!("the engine reports {key} {found:?}, the robot has {expected}")));
+            }
+        }
+        self.readback = sized(&answer, "readback", Quantity::Readback.size(problem))?;
+        self.model.clone_from(&problem.hash);
+        Ok(())
+    }
+
+    fn send_states(&mut self, problem: &Problem, states: &StateBatch) -> Result<(), Refusal> {
+        let bytes: Vec<u8> = [&states.q, &states.v, &states.tau].into_iter().flatten().flat_map(|x| x.to_le_bytes()).collect();
+        let key = harness::hash::of(&bytes);
+        if self.states.as_ref() == Some(&key) {
+            return Ok(());
+        }
+        let (count, nv) = (states.count(), states.nv);
+        let blocks = vec![
+            Block::new("q", &[count, states.nq], &states.q),
+            Block::new("v", &[count, nv], &states.v),
+            Block::new("a", &[count, nv], &states.a),
+            Block::new("tau", &[count, nv], &states.tau),
+            Block::new("wrench", &[count, states.bodies, 6], &states.wrench),
+            Block::new("probe", &[4, nv], &problem.probe()),
+        ];
+        self.ask(json!({"op": "states", "count": count}), blocks)?;
+        self.states = Some(key);
+        Ok(())
+    }
+}
+
+/// A question put to a session that holds robot and states.
+struct Asked<'a> {
+    oracle: &'a Oracle,
+    session: Option<Session>,
+    problem: &'a Problem,
+    quantity: Quantity,
+    method: String,
+    values: Vec<f64>,
+}
+
+impl Prepared for Asked<'_> {
+    fn run(&mut self, range: Range<usize>) -> Result<(), Refusal> {
+        let session = self.session.as_mut().ok_or_else(|| Refusal::Failed("the oracle has ended".into()))?;
+        if self.quantity == Quantity::Readback {
+            self.values.clone_from(&session.readback);
+            return Ok(());
+        }
+        let body = self.problem.deepest_body();
+        let header = json!({
+            "op": "evaluate", "quantity": self.quantity.name(), "method": self.method,
+            "first": range.start, "count": range.len(), "body": body,
+        });
+        let answer = session.ask(header, Vec::new())?;
+        self.values = sized(&answer, "value", self.quantity.size(self.problem) * range.len())?;
+        Ok(())
+    }
+
+    fn read(&self) -> &[f64] {
+        &self.values
+    }
+}
+
+impl Drop for Asked<'_> {
+    fn drop(&mut self) {
+        if let Some(session) = self.session.take() {
+            self.oracle.give_back(session);
+        }
+    }
+}
+
+/// The answer, when its status is `ok`.
+fn checked(answer: Frame) -> Result<Frame, Refusal> {
+    let reason = || match answer.text("reason") {
+        "" => "the oracle gives no reason".to_owned(),
+        reason => reason.to_owned(),
+    };
+    match answer.text("status") {
+        "ok" => Ok(answer),
+        "unsupported" => Err(Refusal::Unsupported(reason())),
+        "error" => Err(Refusal::Failed(reason())),
+        other => Err(Refusal::Failed(format!("the oracle answers with status '{other}'"))),
+    }
+}
+
+fn sized(answer: &Frame, name: &str, length: usize) -> Result<Vec<f64>, Refusal> {
+    let block = answer.block(name).ok_or_else(|| Refusal::Failed(format!("the oracle's answer has no block '{name}'")))?;
+    if block.data.len() != length {
+        return Err(Refusal::Failed(format!("block '{name}' has {} numbers, {length} are due", block.data.len())));
+    }
+    Ok(block.data.clone())
+}

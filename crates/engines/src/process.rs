@@ -1,0 +1,154 @@
+//! A child process that speaks in frames, within limits of time and memory.
+
+use harness::frame::{Frame, FrameError};
+use std::collections::VecDeque;
+use std::ffi::OsString;
+use std::io::{BufRead, BufReader, Read, Write};
+use std::process::{Child, ChildStdin, Command, Stdio};
+use std::sync::mpsc::{Receiver, RecvTimeoutError, SyncSender, sync_channel};
+use std::sync::{Arc, Mutex, PoisonError};
+use std::thread;
+use std::time::Duration;
+
+/// Limits of an oracle process.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Limits {
+    /// Longest wait for one answer.
+    pub answer: Duration,
+    /// Address space in bytes.
+    pub memory: u64,
+}
+
+impl Default for Limits {
+    /// Two minutes (the slowest honest answer of the default suite takes a few seconds, an import on a cold disk half a minute) and 8 GiB
+    /// (Pinocchio's workspace takes 1.4 GB at 300 dofs; Drake maps 3 GB on start).
+    fn default() -> Self {
+        Self { answer: Duration::from_secs(120), memory: 8 << 30 }
+    }
+}
+
+/// How many of the last lines of standard error are kept for the reason of a failure.
+const KEPT_LINES: usize = 6;
+
+/// A running oracle. Dropping it ends the process.
+pub(crate) struct Process {
+    child: Child,
+    input: Option<ChildStdin>,
+    answers: Receiver<Result<Option<Frame>, FrameError>>,
+    last_words: Arc<Mutex<VecDeque<String>>>,
+    limits: Limits,
+    alive: bool,
+}
+
+impl Process {
+    /// Starts a program.
+    pub(crate) fn start(command: &[OsString], limits: Limits) -> Result<Self, String> {
+        let (program, arguments) = command.split_first().ok_or("no program is named")?;
+        // The shell sets the limit of address space and then becomes the program.
+        let mut child = Command::new("sh")
+            .arg("-c")
+            .arg("ulimit -v \"$1\" && shift && exec \"$@\"")
+            .arg("oracle")
+            .arg((limits.memory >> 10).to_string())
+            .arg(program)
+            .args(arguments)
+            .env("PYTHONDONTWRITEBYTECODE", "1")
+            .env("OMP_NUM_THREADS", "1")
+            .env("OPENBLAS_NUM_THREADS", "1")
+            .stdin(Stdio::piped())
+            .stdout(Stdio::piped())
+            .stderr(Stdio::piped())
+            .spawn()
+            .map_err(|error| format!("cannot start {}: {error}", program.to_string_lossy()))?;
+        let (output, errors) = (child.stdout.take().ok_or("no standard output")?, child.stderr.take().ok_or("no standard error")?);
+        let input = child.stdin.take();
+        let (sender, answers) = sync_channel(1);
+        thread::spawn(move || forward_answers(BufReader::new(output), &sender));
+        let last_words = Arc::new(Mutex::new(VecDeque::new()));
+        let kept = Arc::clone(&last_words);
+        thread::spawn(move || keep_last_words(BufReader::new(errors), &kept));
+        Ok(Self { child, input, answers, last_words, limits, alive: true })
+    }
+
+    /// Sends a request and waits for its answer.
+    ///
+    /// After an error the process is dead: a late answer must never be taken for the answer to a later question.
+    pub(crate) fn ask(&mut self, request: &Frame) -> Result<Frame, String> {
+        let result = self.try_ask(request);
+        if result.is_err() {
+            self.end();
+        }
+        result
+    }
+
+    fn try_ask(&mut self, request: &Frame) -> Result<Frame, String> {
+        let input = self.input.as_mut().ok_or("the oracle has ended")?;
+        // A broken pipe says less than the dead process: its reason is found below.
+        let sent = input.write_all(&request.to_bytes()).and_then(|()| input.flush());
+        match self.answers.recv_timeout(self.limits.answer) {
+            Ok(Ok(Some(frame))) => sent.map(|()| frame).map_err(|error| error.to_string()),
+            Ok(Ok(None)) | Ok(Err(FrameError::Truncated)) | Err(RecvTimeoutError::Disconnected) => Err(self.obituary()),
+            Ok(Err(error)) => Err(format!("the oracle's answer is not in the protocol: {error}")),
+            Err(RecvTimeoutError::Timeout) => Err(format!("no answer within {} s", self.limits.answer.as_secs_f64())),
+        }
+    }
+
+    /// Whether the process may be asked again.
+    pub(crate) fn alive(&self) -> bool {
+        self.alive
+    }
+
+    fn obituary(&mut self) -> String {
+        self.input = None;
+        let status = match self.child.wait() {
+            Ok(status) => status.to_string(),
+            Err(error) => error.to_string(),
+        };
+        // Standard error closes with the process; its reader needs a moment to see it.
+        thread::sleep(Duration::from_millis(20));
+        let words = self.last_words.lock().unwrap_or_else(PoisonError::into_inner);
+        let words: Vec<&str> = words.iter().map(String::as_str).collect();
+        let limit = self.limits.memory >> 20;
+        format!("the oracle died ({status}; memory limit {limit} MiB): {}", if words.is_empty() { "no message".into() } else { words.join(" | ") })
+    }
+
+    fn end(&mut self) {
+        self.alive = false;
+        self.input = None;
+        // Errors here mean that it is gone already.
+        let _ = self.child.kill();
+        let _ = self.child.wait();
+    }
+}
+
+impl Drop for Process {
+    fn drop(&mut self) {
+        self.end();
+    }
+}
+
+fn forward_answers(mut output: impl BufRead, answers: &SyncSender<Result<Option<Frame>, FrameError>>) {
+    loop {
+        let frame = Frame::read(&mut output);
+        let last = !matches!(frame, Ok(Some(_)));
+        if answers.send(frame).is_err() || last {
+            return;
+        }
+    }
+}
+
+fn keep_last_words(mut errors: impl BufRead, kept: &Mutex<VecDeque<String>>) {
+    let mut line = Vec::new();
+    // A line without an end cannot fill the memory: it is kept in pieces.
+    while errors.by_ref().take(500).read_until(b'\n', &mut line).is_ok_and(|length| length > 0) {
+        let text = String::from_utf8_lossy(&line).trim().to_owned();
+        line.clear();
+        let mut kept = kept.lock().unwrap_or_else(PoisonError::into_inner);
+        if !text.is_empty() {
+            kept.push_back(text);
+        }
+        if kept.len() > KEPT_LINES {
+            kept.pop_front();
+        }
+    }
+}

@@ -1,0 +1,10 @@
+//! How a robot is written: the neutral description file ([`neutral`]) and URDF ([`urdf`]).
+//!
+//! Reading never panics and never repairs silently: what is wrong is a typed error that names file, line and field, what was left out is a
+//! note. Sizes are limited, nothing recurses on the input.
+
+pub mod neutral;
+mod text;
+pub mod urdf;
+
+pub use text::{Place, TextError};

@@ -1,0 +1,81 @@
+//! What can be wrong with a description file.
+
+use crate::{Place, TextError};
+use model::Malformed;
+use std::fmt;
+use thiserror::Error;
+
+/// A description file that cannot be read or written: where, and why.
+#[derive(Debug)]
+pub struct NeutralError {
+    /// The file, and the position where it is known.
+    pub place: Place,
+    /// What is wrong.
+    pub problem: Box<NeutralProblem>,
+}
+
+impl fmt::Display for NeutralError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}: {}", self.place, self.problem)
+    }
+}
+
+impl std::error::Error for NeutralError {
+    fn source(&self) -> Option<&(dyn std::error::Error + 'static)> {
+        self.problem.source()
+    }
+}
+
+/// What is wrong with a description file.
+#[derive(Debug, Error)]
+pub enum NeutralProblem {
+    /// The file is no text.
+    #[error("the file {0}")]
+    Text(#[from] TextError),
+    /// The text is no JSON.
+    #[error("this is not valid JSON: {message} (in {})", Field(field))]
+    Syntax {
+        /// The path to the field that was being read; `.` for the whole file.
+        field: String,
+        /// What the parser expected.
+        message: String,
+    },
+    /// A field is missing, unknown or holds something else than it should.
+    #[error("{}: {message} (datasets/models/FORMAT.md lists the fields)", Field(field))]
+    Field {
+        /// The path to the field, such as `bodies[3].joint.axis`; `.` for the whole file.
+        field: String,
+        /// What is wrong with it.
+        message: String,
+    },
+    /// Another version of the format.
+    #[error("format {found} is not known; this version of featherbench reads \"format\": 1")]
+    Version {
+        /// What the file says.
+        found: String,
+    },
+    /// A section that the design foresees and this version does not read.
+    #[error("section '{section}' is not supported by this version of featherbench; remove it to read the rest of the robot")]
+    UnsupportedSection {
+        /// The section's key.
+        section: &'static str,
+    },
+    /// The numbers are no robot.
+    #[error(transparent)]
+    Malformed(#[from] Malformed),
+    /// The file cannot be written; what stood there before still does.
+    #[error("the file cannot be written: {0}")]
+    Write(#[source] std::io::Error),
+}
+
+/// A field's path in words.
+struct Field<'a>(&'a str);
+
+impl fmt::Display for Field<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self.0 {
+            "." => write!(f, "the file"),
+            path => write!(f, "field '{path}'"),
+        }
+    }
+}

@@ -1,0 +1,33 @@
+//! The neutral description file: a robot as JSON, `"format": 1`.
+//!
+//! ```json
+//! {"format":1,"name":"pendulum","gravity":[0.0,0.0,-9.81],
+//!  "bodies":[
+//!   {"name":"rod","mass":1.0,"com":[0.5,0.0,0.0],"inertia":[0.01,0.0,0.0,0.08,0.0,0.08],"parent":-1,
+//!    "joint":{"name":"hinge","type":"revolute","axis":[0.0,1.0,0.0],
+//!     "placement":{"rotation":[1.0,0.0,0.0,0.0,1.0,0.0,0.0,0.0,1.0],"translation":[0.0,0.0,0.0]}}}
+//!  ]}
+//! ```
+//!
+//! The page `datasets/models/FORMAT.md` describes every field. In short:
+//! - `format` must be 1; a key that is not listed there is refused; keys may stand in any order.
+//! - `parent` is an index into `bodies`, or −1 for the world. Any order of bodies is read; [`write()`](fn@write) keeps the order given.
+//! - `type` is `fixed` or one of the joint types of the oracle protocol; `axis` stands for revolute, prismatic and helical joints, `pitch`
+//!   for helical ones.
+//! - `armature`, `damping`, `friction`, `lower`, `upper`, `velocity`, `effort` hold one number per degree of freedom or are left out.
+//! - `frames` and `provenance` are optional. The sections `actuation`, `loops`, `contacts`, `residuals` and `parameters` are refused by
+//!   name until a study reads them, rather than ignored.
+//! - Numbers are written as the shortest decimal that reads back to the same bits, and read exactly.
+
+mod error;
+mod read;
+mod write;
+
+pub use error::{NeutralError, NeutralProblem};
+pub use read::{parse, read};
+pub use write::{to_line, to_string, write};
+
+/// The format's version that this crate reads and writes.
+pub const FORMAT: u64 = 1;
+/// The largest file that is read: a chain of 300 000 links.
+pub const LIMIT: usize = 256 << 20;

@@ -1,0 +1,272 @@
+//! Reading: serde mirrors of the description, refused where they do not fit.
+
+use super::{FORMAT, LIMIT, NeutralError, NeutralProblem};
+use crate::{Place, text};
+use model::{BodyDescription, Description, Frame, JointDescription, JointType, Malformed, Placement, Provenance};
+use serde::Deserialize;
+use serde::de::IgnoredAny;
+use serde_json::error::Category;
+use std::path::Path;
+
+/// Reads a description file.
+///
+/// The description is valid (see [`Description::validate`]); it need not be canonical.
+///
+/// # Errors
+/// [`NeutralError`], naming file, line, column and field.
+pub fn read(path: impl AsRef<Path>) -> Result<Description, NeutralError> {
+    let path = path.as_ref();
+    let file = path.display().to_string();
+    match text::read(path, LIMIT) {
+        Ok(text) => parse(&text, &file),
+        Err(error) => Err(NeutralError { place: Place { file, position: None }, problem: Box::new(error.into()) }),
+    }
+}
+
+/// Reads a description from a text; `file` is what errors call it.
+///
+/// # Errors
+/// [`NeutralError`], naming file, line, column and field.
+pub fn parse(text: &str, file: &str) -> Result<Description, NeutralError> {
+    let error = |position, problem| NeutralError { place: Place { file: file.to_owned(), position }, problem: Box::new(problem) };
+    let text = text::check(text, LIMIT).map_err(|problem| error(None, problem.into()))?;
+
+    // The version first: another version may have other fields.
+    if let Ok(Version { format: Some(format) }) = serde_json::from_str(text)
+        && format.as_u64() != Some(FORMAT)
+    {
+        return Err(error(key_position(text, "format"), NeutralProblem::Version { found: format.to_string() }));
+    }
+
+    let mut deserializer = serde_json::Deserializer::from_str(text);
+    let document: Document = serde_path_to_error::deserialize(&mut deserializer).map_err(|found| {
+        let field = found.path().to_string();
+        let (position, problem) = explain(field, &found.into_inner());
+        error(position, problem)
+    })?;
+    deserializer.end().map_err(|found| {
+        let (position, problem) = explain(".".to_owned(), &found);
+        error(position, problem)
+    })?;
+
+    if let Some(section) = document.unsupported() {
+        return Err(error(key_position(text, section), NeutralProblem::UnsupportedSection { section }));
+    }
+    let description = document.describe();
+    description.validate().map_err(|malformed| error(body_position(text, &malformed), malformed.into()))?;
+    Ok(description)
+}
+
+/// Position and problem of a JSON error.
+fn explain(field: String, error: &serde_json::Error) -> (Option<(usize, usize)>, NeutralProblem) {
+    let (line, column) = (error.line(), error.column());
+    let message = error.to_string();
+    let message = message.strip_suffix(&format!(" at line {line} column {column}")).unwrap_or(&message).to_owned();
+    let problem = match error.classify() {
+        Category::Data => NeutralProblem::Field { field, message },
+        // A list of fixed length must end after it: within the file these "trailing characters" are one item more.
+        Category::Syntax if field != "." && message == "trailing characters" => {
+            NeutralProblem::Field { field, message: "the list is longer than it should be".to_owned() }
+        }
+        Category::Io | Category::Syntax | Category::Eof => NeutralProblem::Syntax { field, message },
+    };
+    (Some((line, column)), problem)
+}
+
+/// Where the first key of this name stands. In valid JSON a quoted word before a colon is a key: quotes inside strings are escaped.
+fn key_position(text: &str, key: &str) -> Option<(usize, usize)> {
+    let quoted = format!("\"{key}\"");
+    let is_key = |place: usize| text[place + quoted.len()..].trim_start().starts_with(':');
+    text.match_indices(&quoted).map(|(place, _)| place).find(|&place| is_key(place)).map(|place| text::position(text, place))
+}
+
+/// Where the body stands that an error is about: its name is unique, but a joint or frame may be named alike, so this is a help, no more.
+fn body_position(text: &str, malformed: &Malformed) -> Option<(usize, usize)> {
+    let quoted = serde_json::Value::from(malformed.subject()?).to_string();
+    text.find(&quoted).map(|place| text::position(text, place))
+}
+
+#[derive(Deserialize)]
+struct Version {
+    format: Option<serde_json::Value>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields, rename_all = "snake_case")]
+struct Document {
+    #[serde(rename = "format")]
+    _format: u64,
+    name: String,
+    gravity: [f64; 3],
+    bodies: Vec<Body>,
+    #[serde(default)]
+    frames: Vec<NamedFrame>,
+    provenance: Option<Source>,
+    actuation: Option<IgnoredAny>,
+    loops: Option<IgnoredAny>,
+    contacts: Option<IgnoredAny>,
+    residuals: Option<IgnoredAny>,
+    parameters: Option<IgnoredAny>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Body {
+    name: String,
+    mass: f64,
+    com: [f64; 3],
+    inertia: [f64; 6],
+    parent: BodyIndex,
+    joint: Joint,
+}
+
+/// An index of a body, or −1 for the world.
+#[derive(Clone, Copy, Deserialize)]
+#[serde(try_from = "i64")]
+struct BodyIndex(Option<usize>);
+
+impl TryFrom<i64> for BodyIndex {
+    type Error = String;
+    fn try_from(index: i64) -> Result<Self, String> {
+        match index {
+            -1 => Ok(Self(None)),
+            index => usize::try_from(index).map(|index| Self(Some(index))).map_err(|_| format!("{index} is no body; the world is -1")),
+        }
+    }
+}
+
+/// A joint whose axis and pitch fit its type.
+#[derive(Deserialize)]
+#[serde(try_from = "JointFields")]
+struct Joint(JointDescription);
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct JointFields {
+    name: String,
+    #[serde(rename = "type")]
+    kind: String,
+    axis: Option<[f64; 3]>,
+    pitch: Option<f64>,
+    placement: PlacementFields,
+    #[serde(default)]
+    armature: Vec<f64>,
+    #[serde(default)]
+    damping: Vec<f64>,
+    #[serde(default)]
+    friction: Vec<f64>,
+    #[serde(default)]
+    lower: Vec<f64>,
+    #[serde(default)]
+    upper: Vec<f64>,
+    #[serde(default)]
+    velocity: Vec<f64>,
+    #[serde(default)]
+    effort: Vec<f64>,
+}
+
+#[derive(Clone, Copy, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct PlacementFields {
+    rotation: [f64; 9],
+    translation: [f64; 3],
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct NamedFrame {
+    name: String,
+    body: BodyIndex,
+    placement: PlacementFields,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Source {
+    source: String,
+    licence: String,
+    header: String,
+    readme: String,
+    #[serde(default)]
+    notes: Vec<String>,
+}
+
+impl Document {
+    fn unsupported(&self) -> Option<&'static str> {
+        let sections = [
+            ("actuation", &self.actuation),
+            ("loops", &self.loops),
+            ("contacts", &self.contacts),
+            ("residuals", &self.residuals),
+            ("parameters", &self.parameters),
+        ];
+        sections.into_iter().find(|(_, section)| section.is_some()).map(|(name, _)| name)
+    }
+
+    fn describe(self) -> Description {
+        let body = |body: Body| BodyDescription {
+            name: body.name,
+            parent: body.parent.0,
+            mass: body.mass,
+            com: body.com,
+            inertia: body.inertia,
+            joint: body.joint.0,
+        };
+        let frame = |frame: NamedFrame| Frame { name: frame.name, body: frame.body.0, placement: frame.placement.into() };
+        let provenance = |source: Source| Provenance {
+            source: source.source,
+            licence: source.licence,
+            header: source.header,
+            readme: source.readme,
+            notes: source.notes,
+        };
+        Description {
+            name: self.name,
+            gravity: self.gravity,
+            bodies: self.bodies.into_iter().map(body).collect(),
+            frames: self.frames.into_iter().map(frame).collect(),
+            provenance: self.provenance.map(provenance),
+        }
+    }
+}
+
+impl From<PlacementFields> for Placement {
+    fn from(PlacementFields { rotation, translation }: PlacementFields) -> Self {
+        Self { rotation, translation }
+    }
+}
+
+impl TryFrom<JointFields> for Joint {
+    type Error = String;
+    fn try_from(fields: JointFields) -> Result<Self, String> {
+        let JointFields { name, kind, axis, pitch, placement, armature, damping, friction, lower, upper, velocity, effort } = fields;
+        let needed_axis = axis.ok_or_else(|| format!("{kind} joint '{name}' has no 'axis'; give a unit vector"));
+        let axis_is_given = axis.is_some();
+        let described = match kind.as_str() {
+            "revolute" => JointType::Revolute { axis: needed_axis? },
+            "prismatic" => JointType::Prismatic { axis: needed_axis? },
+            "helical" => {
+                let pitch = pitch.ok_or_else(|| format!("helical joint '{name}' has no 'pitch'; give metres per radian"))?;
+                JointType::Helical { axis: needed_axis?, pitch }
+            }
+            "fixed" => JointType::Fixed,
+            "spherical" => JointType::Spherical,
+            "free" => JointType::Free,
+            "planar" => JointType::Planar,
+            "universal" => JointType::Universal,
+            other => {
+                let known = "fixed, revolute, prismatic, helical, spherical, free, planar, universal";
+                return Err(format!("joint '{name}' has the unknown type '{other}'; choose one of {known}"));
+            }
+        };
+        if axis_is_given && described.axis().is_none() {
+            return Err(format!("{kind} joint '{name}' has an 'axis', which such a joint has not; remove it"));
+        }
+        // Other programs write a pitch of zero for every joint: that says nothing wrong.
+        if pitch.is_some_and(|pitch| pitch != 0.0) && !matches!(described, JointType::Helical { .. }) {
+            return Err(format!("{kind} joint '{name}' has a 'pitch', which only a helical joint has; remove it"));
+        }
+        let placement = placement.into();
+        Ok(Self(JointDescription { name, kind: described, placement, armature, damping, friction, lower, upper, velocity, effort }))
+    }
+}

@@ -1,0 +1,179 @@
+//! Writing: one layout, the same bytes for the same description.
+
+use super::{NeutralError, NeutralProblem};
+use crate::{Place, text};
+use model::{BodyDescription, Description, Frame, JointDescription, JointType, Malformed, Placement, Provenance};
+use std::path::Path;
+
+/// Writes a description file, whole or not at all.
+///
+/// # Errors
+/// [`NeutralError`] when the description is malformed or the file cannot be written.
+pub fn write(description: &Description, path: impl AsRef<Path>) -> Result<(), NeutralError> {
+    let path = path.as_ref();
+    let error = |problem| NeutralError { place: Place { file: path.display().to_string(), position: None }, problem: Box::new(problem) };
+    let text = to_string(description).map_err(|malformed| error(malformed.into()))?;
+    text::write(path, &text).map_err(|io| error(NeutralProblem::Write(io)))
+}
+
+/// The description as the text of a file: a few lines per body, [`super::parse`] gives back the same bits.
+///
+/// # Errors
+/// [`Malformed`] when the description is no robot (JSON has no NaN, for one).
+pub fn to_string(description: &Description) -> Result<String, Malformed> {
+    description.validate()?;
+    let mut writer = Writer { text: String::new(), per_dof: PerDof::AsGiven, separator: ["\n ", "\n  ", "\n   ", "\n    "] };
+    writer.document(description, true);
+    writer.text.push('\n');
+    Ok(writer.text)
+}
+
+/// The robot alone on a single line without a newline, as an oracle takes it: canonical (depth-first, fixed joints merged), with armature,
+/// damping and friction written out for every degree of freedom, and without frames and provenance.
+///
+/// # Errors
+/// [`Malformed`] when the description is no robot.
+pub fn to_line(description: &Description) -> Result<String, Malformed> {
+    let canonical = description.canonical()?;
+    let mut writer = Writer { text: String::new(), per_dof: PerDof::Complete, separator: [""; 4] };
+    writer.document(&canonical, false);
+    Ok(writer.text)
+}
+
+/// Whether an absent list of armature, damping or friction is left out or written as zeros.
+#[derive(PartialEq)]
+enum PerDof {
+    AsGiven,
+    Complete,
+}
+
+struct Writer {
+    text: String,
+    per_dof: PerDof,
+    /// What separates the lines of level 1 (the file), 2 (list items), 3 (a body's joint), 4 (a joint's lists).
+    separator: [&'static str; 4],
+}
+
+impl Writer {
+    fn document(&mut self, description: &Description, with_sections: bool) {
+        self.push(&format!("{{\"format\":{},\"name\":{},\"gravity\":", super::FORMAT, quoted(&description.name)));
+        self.numbers(&description.gravity);
+        if let Some(provenance) = description.provenance.as_ref().filter(|_| with_sections) {
+            self.key(0, "provenance");
+            self.provenance(provenance);
+        }
+        self.key(0, "bodies");
+        self.list(&description.bodies, Self::body);
+        if with_sections && !description.frames.is_empty() {
+            self.key(0, "frames");
+            self.list(&description.frames, Self::frame);
+        }
+        self.push("}");
+    }
+
+    fn provenance(&mut self, provenance: &Provenance) {
+        let Provenance { source, licence, header, readme, notes } = provenance;
+        let fields = [("source", source), ("licence", licence), ("header", header), ("readme", readme)];
+        for (k, (name, value)) in fields.into_iter().enumerate() {
+            self.push(if k == 0 { "{" } else { "," });
+            self.push(self.separator[1]);
+            self.push(&format!("\"{name}\":{}", quoted(value)));
+        }
+        self.key(1, "notes");
+        self.list(notes, |writer, note| writer.push(&quoted(note)));
+        self.push("}");
+    }
+
+    fn body(&mut self, body: &BodyDescription) {
+        self.push(&format!("{{\"name\":{},\"mass\":{:?},\"com\":", quoted(&body.name), body.mass));
+        self.numbers(&body.com);
+        self.push(",\"inertia\":");
+        self.numbers(&body.inertia);
+        self.push(&format!(",\"parent\":{}", index(body.parent)));
+        self.key(2, "joint");
+        self.joint(&body.joint);
+        self.push("}");
+    }
+
+    fn joint(&mut self, joint: &JointDescription) {
+        self.push(&format!("{{\"name\":{},\"type\":\"{}\"", quoted(&joint.name), joint.kind.name()));
+        if let Some(axis) = joint.kind.axis() {
+            self.push(",\"axis\":");
+            self.numbers(&axis);
+        }
+        if let JointType::Helical { pitch, .. } = joint.kind {
+            self.push(&format!(",\"pitch\":{pitch:?}"));
+        }
+        self.key(3, "placement");
+        self.placement(&joint.placement);
+
+        let zeros = vec![0.0; joint.kind.nv()];
+        let properties = [("armature", &joint.armature), ("damping", &joint.damping), ("friction", &joint.friction)];
+        let properties =
+            properties.map(|(name, list)| (name, if list.is_empty() && self.per_dof == PerDof::Complete { &zeros } else { list }));
+        let limits = [("lower", &joint.lower), ("upper", &joint.upper), ("velocity", &joint.velocity), ("effort", &joint.effort)];
+        let mut first = true;
+        for (name, list) in properties.into_iter().chain(limits).filter(|(_, list)| !list.is_empty()) {
+            if first {
+                self.key(3, name);
+                first = false;
+            } else {
+                self.push(&format!(",\"{name}\":"));
+            }
+            self.numbers(list);
+        }
+        self.push("}");
+    }
+
+    fn frame(&mut self, frame: &Frame) {
+        self.push(&format!("{{\"name\":{},\"body\":{},\"placement\":", quoted(&frame.name), index(frame.body)));
+        self.placement(&frame.placement);
+        self.push("}");
+    }
+
+    fn placement(&mut self, placement: &Placement) {
+        self.push("{\"rotation\":");
+        self.numbers(&placement.rotation);
+        self.push(",\"translation\":");
+        self.numbers(&placement.translation);
+        self.push("}");
+    }
+
+    /// A list with one item per line.
+    fn list<T>(&mut self, items: &[T], mut item: impl FnMut(&mut Self, &T)) {
+        for (k, value) in items.iter().enumerate() {
+            self.push(if k == 0 { "[" } else { "," });
+            self.push(self.separator[1]);
+            item(self, value);
+        }
+        self.push(if items.is_empty() { "[]" } else { "]" });
+    }
+
+    /// A key on a new line of this level, after a comma.
+    fn key(&mut self, level: usize, name: &str) {
+        self.push(",");
+        self.push(self.separator[level]);
+        self.push(&format!("\"{name}\":"));
+    }
+
+    /// Each number as the shortest decimal that reads back to the same bits: for finite numbers that is what `Debug` writes, and it is JSON.
+    fn numbers(&mut self, numbers: &[f64]) {
+        for (k, number) in numbers.iter().enumerate() {
+            self.push(if k == 0 { "[" } else { "," });
+            self.push(&format!("{number:?}"));
+        }
+        self.push(if numbers.is_empty() { "[]" } else { "]" });
+    }
+
+    fn push(&mut self, text: &str) {
+        self.text.push_str(text);
+    }
+}
+
+fn quoted(text: &str) -> String {
+    serde_json::Value::from(text).to_string()
+}
+
+fn index(body: Option<usize>) -> String {
+    body.map_or("-1".to_owned(), |body| body.to_string())
+}

@@ -1,0 +1,105 @@
+//! Text files: reading within limits, places in them, writing whole or not at all.
+
+use std::fmt;
+use std::fs::File;
+use std::io::{self, Read, Write};
+use std::path::Path;
+use thiserror::Error;
+
+/// Where in a file something is: the file's name, and line and column counted from 1 where they are known.
+#[derive(Clone, Debug, PartialEq, Eq, Default)]
+pub struct Place {
+    /// The file as the caller named it.
+    pub file: String,
+    /// Line and column.
+    pub position: Option<(usize, usize)>,
+}
+
+impl fmt::Display for Place {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self.position {
+            Some((line, column)) => write!(f, "{}:{line}:{column}", self.file),
+            None => write!(f, "{}", self.file),
+        }
+    }
+}
+
+/// Why a file is no text to read.
+#[derive(Debug, Error)]
+pub enum TextError {
+    /// The file cannot be opened or read.
+    #[error("cannot be read: {0}")]
+    Io(#[from] io::Error),
+    /// The file is larger than any robot.
+    #[error("is larger than {limit} bytes; a robot description is smaller (meshes belong in files of their own)")]
+    TooBig {
+        /// The limit.
+        limit: usize,
+    },
+    /// The file is not UTF-8.
+    #[error("is not UTF-8 text (byte {byte} is no part of a character); is it a binary file, or in another encoding?")]
+    NotText {
+        /// The first bad byte, counted from 0.
+        byte: usize,
+    },
+    /// There is nothing in it.
+    #[error("is empty")]
+    Empty,
+}
+
+/// The text of a file of at most `limit` bytes.
+pub(crate) fn read(path: &Path, limit: usize) -> Result<String, TextError> {
+    let mut bytes = Vec::new();
+    // One byte more than allowed is enough to know; devices and pipes end there too.
+    File::open(path)?.take(limit as u64 + 1).read_to_end(&mut bytes)?;
+    if bytes.len() > limit {
+        return Err(TextError::TooBig { limit });
+    }
+    String::from_utf8(bytes).map_err(|error| TextError::NotText { byte: error.utf8_error().valid_up_to() })
+}
+
+/// The text without a byte-order mark; an error when it is too long or blank.
+pub(crate) fn check(text: &str, limit: usize) -> Result<&str, TextError> {
+    if text.len() > limit {
+        return Err(TextError::TooBig { limit });
+    }
+    if text.trim_start_matches('\u{feff}').trim().is_empty() {
+        return Err(TextError::Empty);
+    }
+    Ok(text.strip_prefix('\u{feff}').unwrap_or(text))
+}
+
+/// Writes the file whole or not at all: into a neighbour first, which then takes its name.
+pub(crate) fn write(path: &Path, text: &str) -> io::Result<()> {
+    let name = path.file_name().ok_or_else(|| io::Error::new(io::ErrorKind::InvalidInput, "this is no file name"))?;
+    let neighbour = path.with_file_name(format!(".{}.{}.part", name.to_string_lossy(), std::process::id()));
+    let written = File::create(&neighbour)
+        .and_then(|mut file| file.write_all(text.as_bytes()).and_then(|()| file.sync_all()))
+        .and_then(|()| std::fs::rename(&neighbour, path));
+    if written.is_err() {
+        // The first error is the one worth reporting.
+        let _ = std::fs::remove_file(&neighbour);
+    }
+    written
+}
+
+/// Line and column (counted from 1, columns in characters) of a byte offset.
+pub(crate) fn position(text: &str, offset: usize) -> (usize, usize) {
+    let before = text.get(..offset).unwrap_or(text);
+    let line_start = before.rfind('\n').map_or(0, |newline| newline + 1);
+    (before.bytes().filter(|&byte| byte == b'\n').count() + 1, before[line_start..].chars().count() + 1)
+}
+
+/// Where the lines of a text begin: many offsets to line numbers.
+pub(crate) struct Lines(Vec<usize>);
+
+impl Lines {
+    pub fn new(text: &str) -> Self {
+        Self(text.match_indices('\n').map(|(newline, _)| newline).collect())
+    }
+
+    /// The line of a byte offset, counted from 1.
+    pub fn line(&self, offset: usize) -> usize {
+        self.0.partition_point(|&newline| newline < offset) + 1
+    }
+}

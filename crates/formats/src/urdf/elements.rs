@@ -1,0 +1,263 @@
+//! The links and joints of a file, as they stand there.
+
+use super::Options;
+use super::error::{At, NoteAt, UrdfProblem};
+use super::xml::Element;
+use model::Placement;
+use roxmltree::{Document, Node};
+use spatial::{Mat3, Sym3, Vec3};
+use std::collections::{BTreeMap, HashSet};
+
+/// A file's content.
+pub(super) struct Robot {
+    pub name: String,
+    pub links: Vec<Link>,
+    pub joints: Vec<Joint>,
+}
+
+/// A link: its inertia about the centre of mass in link axes.
+pub(super) struct Link {
+    pub offset: usize,
+    pub name: String,
+    pub has_inertial: bool,
+    pub mass: f64,
+    pub com: [f64; 3],
+    pub inertia: [f64; 6],
+}
+
+/// A joint.
+pub(super) struct Joint {
+    pub offset: usize,
+    pub name: String,
+    pub kind: Kind,
+    pub placement: Placement,
+    pub parent: String,
+    pub child: String,
+    pub lower: Vec<f64>,
+    pub upper: Vec<f64>,
+    pub velocity: Vec<f64>,
+    pub effort: Vec<f64>,
+    pub damping: Vec<f64>,
+    pub friction: Vec<f64>,
+}
+
+/// A joint's type with its unit axis.
+pub(super) enum Kind {
+    Fixed,
+    Revolute([f64; 3]),
+    Prismatic([f64; 3]),
+    Floating,
+    Planar([f64; 3]),
+}
+
+/// An axis that misses unit length by more was not meant to be normal; less is rounding.
+const AXIS_TOLERANCE: f64 = 1e-6;
+
+impl Robot {
+    pub fn read(document: &Document, options: &Options, notes: &mut Vec<NoteAt>) -> Result<Self, At> {
+        let root = document.root_element();
+        if root.tag_name().name() != "robot" {
+            return Err(UrdfProblem::NotARobot { found: root.tag_name().name().to_owned() }.at(root.range().start));
+        }
+        let name = root.attribute("name").unwrap_or("robot").to_owned();
+        let mut robot = Self { name, links: Vec::new(), joints: Vec::new() };
+        let mut names = HashSet::new();
+        for node in root.children().filter(Node::is_element) {
+            let what = match node.tag_name().name() {
+                "link" => "link",
+                "joint" => "joint",
+                _ => continue,
+            };
+            let name = Element { node, owner: "the robot" }.attribute("name")?;
+            if !names.insert((what, name)) {
+                return Err(UrdfProblem::DuplicateName { what, name: name.to_owned() }.at(node.range().start));
+            }
+            let element = Element { node, owner: &format!("{what} '{name}'") };
+            if what == "link" {
+                robot.links.push(Link::read(element, name)?);
+            } else {
+                robot.joints.push(Joint::read(element, name, options, notes)?);
+            }
+        }
+        if robot.links.is_empty() {
+            return Err(UrdfProblem::NoLinks.at(root.range().start));
+        }
+        note_what_is_not_read(root, notes);
+        Ok(robot)
+    }
+}
+
+/// One note per kind of element that plays no part.
+fn note_what_is_not_read(root: Node, notes: &mut Vec<NoteAt>) {
+    let mut ignored: BTreeMap<String, (usize, usize)> = BTreeMap::new();
+    let mut tally = |path: String, node: Node| ignored.entry(path).or_insert((0, node.range().start)).0 += 1;
+    for node in root.children().filter(Node::is_element) {
+        let used: &[&str] = match node.tag_name().name() {
+            "link" => &["inertial"],
+            "joint" => &["origin", "parent", "child", "axis", "limit", "dynamics", "mimic"],
+            other => {
+                tally(format!("<{other}>"), node);
+                continue;
+            }
+        };
+        for child in node.children().filter(|child| child.is_element() && !used.contains(&child.tag_name().name())) {
+            tally(format!("<{}> in <{}>", child.tag_name().name(), node.tag_name().name()), child);
+        }
+    }
+    for (what, (count, offset)) in ignored {
+        let times = if count == 1 { String::new() } else { format!(" ({count} times)") };
+        notes.push(NoteAt { offset, text: format!("{what} is not read{times}") });
+    }
+}
+
+impl Link {
+    fn read(element: Element, name: &str) -> Result<Self, At> {
+        let mut link =
+            Self { offset: element.offset(), name: name.to_owned(), has_inertial: false, mass: 0.0, com: [0.0; 3], inertia: [0.0; 6] };
+        let Some(inertial) = element.optional("inertial")? else {
+            return Ok(link);
+        };
+        link.has_inertial = true;
+        let mass = inertial.required("mass")?;
+        link.mass = mass.number("value")?;
+        if link.mass < 0.0 {
+            return Err(mass.problem(UrdfProblem::NegativeMass { link: link.name, mass: link.mass }));
+        }
+        let tensor = inertial.required("inertia")?;
+        for (entry, name) in link.inertia.iter_mut().zip(["ixx", "ixy", "ixz", "iyy", "iyz", "izz"]) {
+            *entry = tensor.number(name)?;
+        }
+        let origin = origin(inertial)?;
+        link.com = origin.translation;
+        if origin.rotation != Placement::default().rotation {
+            link.inertia = Sym3::from_array(link.inertia).rotate(Mat3::from_array(origin.rotation)).to_array();
+        }
+        Ok(link)
+    }
+}
+
+impl Joint {
+    fn read(element: Element, name: &str, options: &Options, notes: &mut Vec<NoteAt>) -> Result<Self, At> {
+        let offset = element.offset();
+        let kind = element.attribute("type")?;
+        let (parent, child) = (element.required("parent")?.attribute("link")?, element.required("child")?.attribute("link")?);
+        let placement = origin(element)?;
+        if let Some(mimic) = element.optional("mimic")? {
+            let of = mimic.attribute("joint")?;
+            if !options.independent_mimics {
+                return Err(mimic.problem(UrdfProblem::Mimic { joint: name.to_owned(), of: of.to_owned() }));
+            }
+            notes.push(NoteAt { offset: mimic.offset(), text: format!("joint '{name}' mimics '{of}' and is read as a joint of its own") });
+        }
+        let mut axis = || axis(element, name, notes);
+        let kind_read = match kind {
+            "fixed" => Kind::Fixed,
+            "revolute" | "continuous" => Kind::Revolute(axis()?),
+            "prismatic" => Kind::Prismatic(axis()?),
+            "floating" => Kind::Floating,
+            "planar" => Kind::Planar(axis()?),
+            other => return Err(element.problem(UrdfProblem::UnknownJointType { joint: name.to_owned(), kind: other.to_owned() })),
+        };
+        let mut joint = Self {
+            offset,
+            name: name.to_owned(),
+            kind: kind_read,
+            placement,
+            parent: parent.to_owned(),
+            child: child.to_owned(),
+            lower: Vec::new(),
+            upper: Vec::new(),
+            velocity: Vec::new(),
+            effort: Vec::new(),
+            damping: Vec::new(),
+            friction: Vec::new(),
+        };
+        joint.read_properties(element, kind == "continuous", notes)?;
+        Ok(joint)
+    }
+
+    /// Limits and friction. One number belongs to one dof: on other joints they are left out.
+    fn read_properties(&mut self, element: Element, continuous: bool, notes: &mut Vec<NoteAt>) -> Result<(), At> {
+        let (limit, dynamics) = (element.optional("limit")?, element.optional("dynamics")?);
+        if !matches!(self.kind, Kind::Revolute(_) | Kind::Prismatic(_)) {
+            if let Some(found) = limit.or(dynamics).filter(|_| !matches!(self.kind, Kind::Fixed)) {
+                let text = format!("limits and friction of joint '{}' are not read: it has more than one degree of freedom", self.name);
+                notes.push(NoteAt { offset: found.offset(), text });
+            }
+            return Ok(());
+        }
+        if let Some(limit) = limit {
+            let (lower, upper) = (limit.limit("lower")?, limit.limit("upper")?);
+            let given = |name| limit.node.has_attribute(name);
+            if !continuous && (given("lower") || given("upper")) {
+                // Where one is given the other is zero, as URDF has it.
+                let side = |name, value: Option<f64>| if given(name) { value } else { Some(0.0) };
+                self.lower.extend(side("lower", lower));
+                self.upper.extend(side("upper", upper));
+            } else if !continuous {
+                notes.push(NoteAt { offset: limit.offset(), text: format!("joint '{}' gives no position limits and has none", self.name) });
+            }
+            self.velocity.extend(limit.limit("velocity")?);
+            self.effort.extend(limit.limit("effort")?);
+        } else if !continuous {
+            notes.push(NoteAt { offset: self.offset, text: format!("joint '{}' has no <limit> and is unlimited", self.name) });
+        }
+        if let Some(dynamics) = dynamics {
+            self.damping.extend(dynamics.optional_number("damping")?);
+            self.friction.extend(dynamics.optional_number("friction")?);
+        }
+        Ok(())
+    }
+}
+
+/// The unit axis of a joint; x when the file gives none.
+fn axis(element: Element, joint: &str, notes: &mut Vec<NoteAt>) -> Result<[f64; 3], At> {
+    let Some(found) = element.optional("axis")? else {
+        return Ok([1.0, 0.0, 0.0]);
+    };
+    found.attribute("xyz")?;
+    let given = found.optional_vector("xyz")?.unwrap_or_default();
+    // Scaled first, so that squares neither overflow nor vanish.
+    let largest = given.iter().fold(0.0_f64, |largest, x| largest.max(x.abs()));
+    if largest == 0.0 {
+        return Err(found.problem(UrdfProblem::ZeroAxis { joint: joint.to_owned() }));
+    }
+    let scaled = Vec3::from_array(given.map(|x| x / largest));
+    let (unit, length) = (scaled * (1.0 / scaled.norm()), largest * scaled.norm());
+    if (length - 1.0).abs() > AXIS_TOLERANCE {
+        notes.push(NoteAt { offset: found.offset(), text: format!("the axis of joint '{joint}' has length {length}; it is normalised") });
+    }
+    // Exact where it is exact already, such as 0 0 1.
+    Ok(if length == 1.0 { given } else { unit.to_array() })
+}
+
+/// The placement of an `<origin>`; the identity where there is none.
+fn origin(element: Element) -> Result<Placement, At> {
+    let Some(origin) = element.optional("origin")? else {
+        return Ok(Placement::default());
+    };
+    if origin.node.has_attribute("quat_xyzw") {
+        return Err(origin.problem(UrdfProblem::Quaternion { owner: element.owner.to_owned() }));
+    }
+    let translation = origin.optional_vector("xyz")?.unwrap_or_default();
+    let rotation = rotation(origin.optional_vector("rpy")?.unwrap_or_default());
+    Ok(Placement { rotation, translation })
+}
+
+/// Rz(yaw)·Ry(pitch)·Rx(roll), row-major.
+pub(super) fn rotation([roll, pitch, yaw]: [f64; 3]) -> [f64; 9] {
+    let ((sr, cr), (sp, cp), (sy, cy)) = (roll.sin_cos(), pitch.sin_cos(), yaw.sin_cos());
+    let entries = [
+        cy * cp,
+        cy * sp * sr - sy * cr,
+        cy * sp * cr + sy * sr,
+        sy * cp,
+        sy * sp * sr + cy * cr,
+        sy * sp * cr - cy * sr,
+        -sp,
+        cp * sr,
+        cp * cr,
+    ];
+    // No negative zeros: the rotation of zero angles is the identity to the bit.
+    entries.map(|entry| entry + 0.0)
+}

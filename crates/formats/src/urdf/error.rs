@@ -1,0 +1,232 @@
+//! What can be wrong with a URDF file.
+
+use crate::{Place, TextError};
+use model::Malformed;
+use std::fmt;
+use thiserror::Error;
+
+/// A URDF file that cannot be imported: where, and why.
+#[derive(Debug)]
+pub struct UrdfError {
+    /// The file, and the position where it is known.
+    pub place: Place,
+    /// What is wrong.
+    pub problem: Box<UrdfProblem>,
+}
+
+impl fmt::Display for UrdfError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}: {}", self.place, self.problem)
+    }
+}
+
+impl std::error::Error for UrdfError {
+    fn source(&self) -> Option<&(dyn std::error::Error + 'static)> {
+        self.problem.source()
+    }
+}
+
+/// What is wrong with a URDF file.
+#[derive(Debug, Error)]
+pub enum UrdfProblem {
+    /// The file is no text.
+    #[error("the file {0}")]
+    Text(#[from] TextError),
+    /// The text is no XML.
+    #[error("this is not well-formed XML: {message}")]
+    Xml {
+        /// What the parser found.
+        message: String,
+        /// Line and column.
+        position: (usize, usize),
+    },
+    /// A document type declaration, which no URDF needs.
+    #[error("the file declares a document type; entities are not expanded, remove the <!DOCTYPE …>")]
+    DocumentType,
+    /// The root element is another one.
+    #[error(
+        "the root element is <{found}>, not <robot>; is this a URDF file? (xacro files must be expanded, SDF and MJCF converted first)"
+    )]
+    NotARobot {
+        /// The element found.
+        found: String,
+    },
+    /// An element lacks an attribute.
+    #[error("<{element}> of {owner} has no attribute '{attribute}'")]
+    MissingAttribute {
+        /// The element.
+        element: String,
+        /// The link or joint.
+        owner: String,
+        /// The attribute.
+        attribute: &'static str,
+    },
+    /// An element lacks a child.
+    #[error("{owner} has no <{element}>")]
+    MissingElement {
+        /// The link or joint.
+        owner: String,
+        /// The element.
+        element: &'static str,
+    },
+    /// An element stands twice where one is meant.
+    #[error("{owner} has more than one <{element}>; keep one")]
+    RepeatedElement {
+        /// The link or joint.
+        owner: String,
+        /// The element.
+        element: &'static str,
+    },
+    /// An attribute is not the numbers that it should be.
+    #[error("{attribute}=\"{value}\" of {owner} is not {expected}")]
+    NotNumbers {
+        /// The link or joint.
+        owner: String,
+        /// The attribute.
+        attribute: &'static str,
+        /// Its value.
+        value: String,
+        /// What it should be.
+        expected: &'static str,
+    },
+    /// A number is NaN or infinite.
+    #[error("{attribute}=\"{value}\" of {owner} is not finite")]
+    NotFinite {
+        /// The link or joint.
+        owner: String,
+        /// The attribute.
+        attribute: &'static str,
+        /// Its value.
+        value: String,
+    },
+    /// A quaternion, of URDF 1.1.
+    #[error("quat_xyzw of {owner} is not read by this version; write the rotation as rpy")]
+    Quaternion {
+        /// The link or joint.
+        owner: String,
+    },
+    /// A mass is negative.
+    #[error("link '{link}' has the mass {mass} kg; a mass cannot be negative")]
+    NegativeMass {
+        /// The link.
+        link: String,
+        /// Its mass.
+        mass: f64,
+    },
+    /// A body moves and has no mass.
+    #[error(
+        "link '{link}' moves (joint '{joint}') but {}; give it mass, fix it to its neighbour, or import with massless bodies allowed",
+        if *has_inertial { "has no mass, nor has anything fixed to it" } else { "has no <inertial>, nor has anything fixed to it mass" }
+    )]
+    Massless {
+        /// The link.
+        link: String,
+        /// The joint that moves it.
+        joint: String,
+        /// Whether it has an `<inertial>`.
+        has_inertial: bool,
+    },
+    /// An axis has no direction.
+    #[error("joint '{joint}' has the axis 0 0 0, which is no direction")]
+    ZeroAxis {
+        /// The joint.
+        joint: String,
+    },
+    /// A joint's type is unknown.
+    #[error("joint '{joint}' has the unknown type '{kind}'; URDF knows revolute, continuous, prismatic, fixed, floating and planar")]
+    UnknownJointType {
+        /// The joint.
+        joint: String,
+        /// Its type.
+        kind: String,
+    },
+    /// A joint follows another.
+    #[error("joint '{joint}' mimics joint '{of}', and constrained joints are not supported; import with independent mimics to free it")]
+    Mimic {
+        /// The joint.
+        joint: String,
+        /// The joint that it follows.
+        of: String,
+    },
+    /// Two elements share a name.
+    #[error("two {what}s are named '{name}'; names must be unique")]
+    DuplicateName {
+        /// `link` or `joint`.
+        what: &'static str,
+        /// The name.
+        name: String,
+    },
+    /// A joint names a link that does not exist.
+    #[error("joint '{joint}' names '{link}' as its {role}, but there is no such link")]
+    UnknownLink {
+        /// The joint.
+        joint: String,
+        /// The link.
+        link: String,
+        /// `parent` or `child`.
+        role: &'static str,
+    },
+    /// Two joints carry the same link.
+    #[error("link '{link}' is the child of two joints, '{first}' and '{second}'; a robot is a tree")]
+    TwoParents {
+        /// The link.
+        link: String,
+        /// One joint.
+        first: String,
+        /// The other joint.
+        second: String,
+    },
+    /// Joints form a cycle.
+    #[error("the parents of link '{link}' return to itself (joint '{joint}'); cut the cycle, a robot is a tree")]
+    Cycle {
+        /// A link of the cycle.
+        link: String,
+        /// The joint that carries it.
+        joint: String,
+    },
+    /// More than one link has no parent.
+    #[error("links '{first}' and '{second}' have no parent joint each; a robot has one root{}", if *alone { " (the second one is connected to nothing)" } else { "" })]
+    TwoRoots {
+        /// The first root.
+        first: String,
+        /// The second root.
+        second: String,
+        /// Whether the second root has no joints at all.
+        alone: bool,
+    },
+    /// There are no links.
+    #[error("the robot has no <link>")]
+    NoLinks,
+    /// The numbers are no robot.
+    #[error(transparent)]
+    Malformed(#[from] Malformed),
+}
+
+impl UrdfProblem {
+    /// The position, where the problem knows it better than the element that it was found in.
+    pub(super) fn position(&self) -> Option<(usize, usize)> {
+        match self {
+            Self::Xml { position, .. } => Some(*position),
+            _ => None,
+        }
+    }
+}
+
+/// A problem and the byte offset of the element that has it.
+pub(super) struct At {
+    pub offset: Option<usize>,
+    pub problem: UrdfProblem,
+}
+
+impl UrdfProblem {
+    /// This problem at a byte offset.
+    pub(super) fn at(self, offset: usize) -> At {
+        At { offset: Some(offset), problem: self }
+    }
+}
+
+/// A note and the byte offset that it is about.
+pub(super) struct NoteAt {
+    pub offset: usize,
+    pub text: String,
+}

@@ -1,0 +1,106 @@
+//! Importing URDF: links and joints of an XML file as a neutral description.
+//!
+//! The file is read strictly. Engines repair silently (a missing inertia becomes zero, a word in a vector is skipped, an axis of length zero
+//! becomes x), and then disagree; here that is an error with file, line and column, and whatever is left out or altered leaves a [`Note`].
+//!
+//! - A link without `<inertial>` has no mass. That is fine where it is fixed to one with mass; a link that moves without any mass is an error
+//!   unless [`Options::allow_massless`].
+//! - Gravity is not part of URDF: (0, 0, −9.81).
+//! - The root link stands on the world ([`Base::Fixed`]) or on a free joint named `root_joint` ([`Base::Floating`]).
+//! - Siblings keep the order in which their joints stand in the file. (Readers built on urdfdom sort them by joint name.)
+//! - `rpy` is R = Rz(yaw)·Ry(pitch)·Rx(roll); an axis is normalised, with a note when that changes more than its last digits.
+//! - Fixed joints are merged, each leaving a frame with the link's name.
+//! - A `floating` joint becomes free, a `planar` one planar in the plane normal to its axis, `continuous` revolute without position limits.
+//!   A `revolute` or `prismatic` joint whose `<limit>` gives neither `lower` nor `upper` has none (urdfdom would lock it at zero).
+//! - `mimic` is refused by name unless [`Options::independent_mimics`], which reads the joint as one of its own, as engines do by default.
+//! - Not read, and noted: visual and collision geometry, `safety_controller`, `calibration`, and every element of `<robot>` that is neither
+//!   link nor joint.
+//!
+//! Limits: 10 MB, a million XML nodes, no document type declaration (hence no entities to expand); nesting costs no stack.
+
+mod elements;
+mod error;
+mod tree;
+mod xml;
+
+pub use error::{UrdfError, UrdfProblem};
+
+use crate::{Place, text};
+use model::Description;
+use std::fmt;
+use std::path::Path;
+
+/// The largest file that is read, bytes.
+pub const LIMIT: usize = 10 << 20;
+
+/// What the root link stands on.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+pub enum Base {
+    /// The world: its inertia plays no part.
+    #[default]
+    Fixed,
+    /// A free joint.
+    Floating,
+}
+
+/// How a file is imported.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+pub struct Options {
+    /// What the root link stands on.
+    pub base: Base,
+    /// Whether a moving body may have no mass (with a note) instead of being an error.
+    pub allow_massless: bool,
+    /// Whether joints that mimic another are read as joints of their own (with a note) instead of being refused.
+    pub independent_mimics: bool,
+}
+
+/// Something that was left out or altered.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Note {
+    /// The line it is about, counted from 1.
+    pub line: usize,
+    /// What was done.
+    pub text: String,
+}
+
+impl fmt::Display for Note {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "line {}: {}", self.line, self.text)
+    }
+}
+
+/// Reads a URDF file: a canonical description, and notes in the order of the file.
+///
+/// # Errors
+/// [`UrdfError`], naming file, line, column and the link or joint.
+pub fn read(path: impl AsRef<Path>, options: &Options) -> Result<(Description, Vec<Note>), UrdfError> {
+    let path = path.as_ref();
+    let file = path.display().to_string();
+    match text::read(path, LIMIT) {
+        Ok(text) => import(&text, &file, options),
+        Err(error) => Err(UrdfError { place: Place { file, position: None }, problem: Box::new(error.into()) }),
+    }
+}
+
+/// Imports URDF from a text; `file` is what errors call it.
+///
+/// # Errors
+/// [`UrdfError`], naming file, line, column and the link or joint.
+pub fn import(text: &str, file: &str, options: &Options) -> Result<(Description, Vec<Note>), UrdfError> {
+    let place = |position| Place { file: file.to_owned(), position };
+    let text = text::check(text, LIMIT).map_err(|problem| UrdfError { place: place(None), problem: Box::new(problem.into()) })?;
+    let read = || -> Result<_, error::At> {
+        let document = xml::parse(text)?;
+        let mut notes = Vec::new();
+        let robot = elements::Robot::read(&document, options, &mut notes)?;
+        let description = tree::assemble(&robot, options, &mut notes)?;
+        notes.sort_by_key(|note| note.offset);
+        Ok((description, notes))
+    };
+    let (description, notes) = read().map_err(|error::At { offset, problem }| {
+        let position = offset.map(|offset| text::position(text, offset)).or(problem.position());
+        UrdfError { place: place(position), problem: Box::new(problem) }
+    })?;
+    let lines = text::Lines::new(text);
+    Ok((description, notes.into_iter().map(|note| Note { line: lines.line(note.offset), text: note.text }).collect()))
+}

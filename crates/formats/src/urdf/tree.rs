@@ -1,0 +1,180 @@
+//! From links and joints to a description.
+
+use super::elements::{Joint, Kind, Link, Robot};
+use super::error::{At, NoteAt, UrdfProblem};
+use super::{Base, Options};
+use model::{BodyDescription, Description, JointDescription, JointType, Malformed, Placement};
+use spatial::{Mat3, Transform, Vec3};
+use std::collections::HashMap;
+
+/// Gravity, which URDF does not give, m/s².
+const GRAVITY: [f64; 3] = [0.0, 0.0, -9.81];
+
+/// The canonical description of a robot.
+pub(super) fn assemble(robot: &Robot, options: &Options, notes: &mut Vec<NoteAt>) -> Result<Description, At> {
+    let connected = Connected::new(robot)?;
+    let description = describe(robot, &connected, options.base);
+    let canonical = description.canonical().map_err(|malformed| locate(robot, malformed))?;
+    check_masses(robot, &canonical, options, notes)?;
+    Ok(canonical)
+}
+
+/// Which link each joint carries, and on which: indices instead of names.
+struct Connected {
+    root: usize,
+    /// (parent link, child link) of each joint.
+    ends: Vec<(usize, usize)>,
+}
+
+impl Connected {
+    fn new(robot: &Robot) -> Result<Self, At> {
+        let index: HashMap<&str, usize> = robot.links.iter().enumerate().map(|(k, link)| (link.name.as_str(), k)).collect();
+        let mut carrier: Vec<Option<usize>> = vec![None; robot.links.len()];
+        let mut ends = Vec::with_capacity(robot.joints.len());
+        for (k, joint) in robot.joints.iter().enumerate() {
+            let find = |link: &str, role| {
+                let unknown = UrdfProblem::UnknownLink { joint: joint.name.clone(), link: link.to_owned(), role };
+                index.get(link).copied().ok_or_else(|| unknown.at(joint.offset))
+            };
+            let (parent, child) = (find(&joint.parent, "parent")?, find(&joint.child, "child")?);
+            if let Some(first) = carrier[child].replace(k) {
+                let (first, second) = (robot.joints[first].name.clone(), joint.name.clone());
+                return Err(UrdfProblem::TwoParents { link: joint.child.clone(), first, second }.at(joint.offset));
+            }
+            ends.push((parent, child));
+        }
+
+        // Each link has one carrier or none; what cannot be reached from a root hangs on a cycle.
+        let mut grounded = vec![false; robot.links.len()];
+        for start in 0..robot.links.len() {
+            let (mut path, mut at) = (Vec::new(), start);
+            while !grounded[at] {
+                let Some(joint) = carrier[at] else {
+                    grounded[at] = true;
+                    break;
+                };
+                if path.len() > robot.links.len() {
+                    let problem = UrdfProblem::Cycle { link: robot.links[at].name.clone(), joint: robot.joints[joint].name.clone() };
+                    return Err(problem.at(robot.joints[joint].offset));
+                }
+                path.push(at);
+                at = ends[joint].0;
+            }
+            path.into_iter().for_each(|link| grounded[link] = true);
+        }
+        let mut roots = (0..robot.links.len()).filter(|&link| carrier[link].is_none());
+        match (roots.next(), roots.next()) {
+            (Some(root), None) => Ok(Self { root, ends }),
+            (Some(first), Some(second)) => {
+                let alone = ends.iter().all(|&(parent, _)| parent != second);
+                let name = |link: usize| robot.links[link].name.clone();
+                Err(UrdfProblem::TwoRoots { first: name(first), second: name(second), alone }.at(robot.links[second].offset))
+            }
+            // Without a root every link is carried, and the walk above has met the cycle; without links there is nothing to walk.
+            (None, _) => Err(UrdfProblem::NoLinks.at(0)),
+        }
+    }
+}
+
+/// The bodies: the root, then the children in the order of the joints.
+fn describe(robot: &Robot, connected: &Connected, base: Base) -> Description {
+    let mut bodies = Vec::with_capacity(robot.links.len());
+    let mut place = vec![0; robot.links.len()];
+    // Parents may stand behind their children: give every link its place first. A planar joint takes two places.
+    let mut next = 1;
+    for (joint, &(_, child)) in robot.joints.iter().zip(&connected.ends) {
+        next += usize::from(plane(joint).is_some());
+        place[child] = next;
+        next += 1;
+    }
+    let root = match base {
+        Base::Fixed => JointType::Fixed,
+        Base::Floating => JointType::Free,
+    };
+    let root_joint = JointDescription { name: "root_joint".to_owned(), kind: root, ..JointDescription::default() };
+    bodies.push(body(&robot.links[connected.root], None, root_joint));
+    for (joint, &(parent, child)) in robot.joints.iter().zip(&connected.ends) {
+        let (parent, link) = (Some(place[parent]), &robot.links[child]);
+        let described = JointDescription {
+            name: joint.name.clone(),
+            kind: match joint.kind {
+                Kind::Fixed => JointType::Fixed,
+                Kind::Revolute(axis) => JointType::Revolute { axis },
+                Kind::Prismatic(axis) => JointType::Prismatic { axis },
+                Kind::Floating => JointType::Free,
+                Kind::Planar(_) => JointType::Planar,
+            },
+            placement: joint.placement,
+            armature: Vec::new(),
+            damping: joint.damping.clone(),
+            friction: joint.friction.clone(),
+            lower: joint.lower.clone(),
+            upper: joint.upper.clone(),
+            velocity: joint.velocity.clone(),
+            effort: joint.effort.clone(),
+        };
+        match plane(joint) {
+            None => bodies.push(body(link, parent, described)),
+            Some(turn) => {
+                // The plane's frame moves, and the link is fixed to it with its own axes.
+                let on_plane = joint.placement.to_transform().compose(&Transform::new(turn, Vec3::zero()));
+                let described = JointDescription { placement: Placement::from_transform(&on_plane), ..described };
+                let name = format!("{}_plane", link.name);
+                bodies.push(BodyDescription { name: name.clone(), parent, mass: 0.0, com: [0.0; 3], inertia: [0.0; 6], joint: described });
+                let back = Placement { rotation: turn.transpose().to_array(), ..Placement::default() };
+                let fixed = JointDescription { name: format!("{name}_joint"), placement: back, ..JointDescription::default() };
+                bodies.push(body(link, Some(bodies.len() - 1), fixed));
+            }
+        }
+    }
+    Description { name: robot.name.clone(), gravity: GRAVITY, bodies, ..Description::default() }
+}
+
+fn body(link: &Link, parent: Option<usize>, joint: JointDescription) -> BodyDescription {
+    BodyDescription { name: link.name.clone(), parent, mass: link.mass, com: link.com, inertia: link.inertia, joint }
+}
+
+/// For a planar joint whose axis is not z: the rotation that takes z to the axis.
+fn plane(joint: &Joint) -> Option<Mat3<f64>> {
+    let Kind::Planar(axis) = joint.kind else {
+        return None;
+    };
+    if axis == [0.0, 0.0, 1.0] {
+        return None;
+    }
+    let z = Vec3::from_array(axis);
+    // x: the coordinate axis farthest from z, made perpendicular to it.
+    let [a, b, c] = axis.map(f64::abs);
+    let helper = if a <= b && a <= c {
+        [1.0, 0.0, 0.0]
+    } else if b <= c {
+        [0.0, 1.0, 0.0]
+    } else {
+        [0.0, 0.0, 1.0]
+    };
+    let y = z.cross(Vec3::from_array(helper));
+    let y = y * (1.0 / y.norm());
+    Some(Mat3::from_rows(y.cross(z), y, z).transpose())
+}
+
+/// A malformed description at the link that it is about.
+fn locate(robot: &Robot, malformed: Malformed) -> At {
+    let link = malformed.subject().and_then(|name| robot.links.iter().find(|link| link.name == name));
+    // Numbers of joints are named by the body that the joint carries.
+    let joint = link.and_then(|link| robot.joints.iter().find(|joint| joint.child == link.name));
+    At { offset: joint.map(|joint| joint.offset).or(link.map(|link| link.offset)), problem: malformed.into() }
+}
+
+/// Every moving body must have mass, or a note.
+fn check_masses(robot: &Robot, canonical: &Description, options: &Options, notes: &mut Vec<NoteAt>) -> Result<(), At> {
+    for body in canonical.bodies.iter().filter(|body| body.mass == 0.0) {
+        let link = robot.links.iter().find(|link| link.name == body.name);
+        let (offset, has_inertial) = link.map_or((0, true), |link| (link.offset, link.has_inertial));
+        if !options.allow_massless {
+            let (link, joint) = (body.name.clone(), body.joint.name.clone());
+            return Err(UrdfProblem::Massless { link, joint, has_inertial }.at(offset));
+        }
+        notes.push(NoteAt { offset, text: format!("link '{}' moves and has no mass", body.name) });
+    }
+    Ok(())
+}

@@ -1,0 +1,260 @@
+//! The neutral file: exact round trips, and errors that name the place.
+
+use featherbench_formats::neutral::{self, NeutralProblem};
+use model::generate::{Base, Family, Joints, Kind, Mix, Tree};
+use model::{BodyDescription, Description, Frame, JointDescription, JointType, Malformed, Placement, Provenance};
+use proptest::prelude::*;
+
+fn generate(spec: &str) -> Description {
+    Family::parse(spec).and_then(|family| family.generate()).unwrap_or_else(|error| panic!("{spec}: {error}"))
+}
+
+/// All numbers of a description, so that −0 and 0 are told apart.
+fn bits(robot: &Description) -> Vec<u64> {
+    let placement = |p: &Placement| p.rotation.into_iter().chain(p.translation).collect::<Vec<f64>>();
+    let mut numbers = robot.gravity.to_vec();
+    for body in &robot.bodies {
+        let joint = &body.joint;
+        numbers.push(body.mass);
+        numbers.extend(
+            body.com.into_iter().chain(body.inertia).chain(joint.kind.axis().unwrap_or_default()).chain(placement(&joint.placement)),
+        );
+        if let JointType::Helical { pitch, .. } = joint.kind {
+            numbers.push(pitch);
+        }
+        for list in [&joint.armature, &joint.damping, &joint.friction, &joint.lower, &joint.upper, &joint.velocity, &joint.effort] {
+            numbers.extend(list);
+        }
+    }
+    numbers.extend(robot.frames.iter().flat_map(|frame| placement(&frame.placement)));
+    numbers.into_iter().map(f64::to_bits).collect()
+}
+
+fn assert_round_trip(robot: &Description) {
+    let text = neutral::to_string(robot).unwrap_or_else(|error| panic!("{}: {error}", robot.name));
+    let again = neutral::parse(&text, "robot.json").unwrap_or_else(|error| panic!("{error}\n{text}"));
+    assert_eq!(&again, robot);
+    assert_eq!(bits(&again), bits(robot));
+    assert_eq!(neutral::to_string(&again).as_ref(), Ok(&text), "the same bytes for the same robot");
+}
+
+#[test]
+fn generated_robots_round_trip() {
+    let families = ["chain:n=30,layout=spatial,tip_scale=1e6", "binary_tree", "star", "humanoid", "quadruped", "hand"];
+    families.into_iter().for_each(|spec| assert_round_trip(&generate(spec)));
+    for &kind in Kind::ALL {
+        for &base in Base::ALL {
+            assert_round_trip(&Family::Joints(Joints { kind, base }).generate().expect("every combination exists"));
+        }
+    }
+}
+
+/// A robot with everything in it: fixed bodies, frames, provenance, quotes and line breaks in names, extreme numbers.
+fn everything() -> Description {
+    let mut robot = generate("tree:n=6,joints=all,armature=true");
+    robot.name = "quotes \" and \\ and\nlines, ünïcode \u{1F916}".to_owned();
+    let joint = JointDescription { name: "weld".to_owned(), ..JointDescription::default() };
+    robot.bodies.push(BodyDescription {
+        name: "\"plate\"".to_owned(),
+        parent: Some(2),
+        mass: 0.0,
+        com: [0.0; 3],
+        inertia: [0.0; 6],
+        joint,
+    });
+    robot.frames.push(Frame { name: "tool".to_owned(), body: Some(3), placement: Placement::default() });
+    robot.frames.push(Frame {
+        name: "origin".to_owned(),
+        body: None,
+        placement: Placement { translation: [1e-300, -0.0, 1e22], ..Placement::default() },
+    });
+    robot.provenance = Some(Provenance {
+        source: "package 1.0, robots/a.urdf".to_owned(),
+        licence: "BSD-3-Clause".to_owned(),
+        header: "says \"nothing\"".to_owned(),
+        readme: "license: BSD-3-Clause".to_owned(),
+        notes: vec!["line 3: merged".to_owned(), String::new()],
+    });
+    robot.bodies[0].com = [f64::MIN_POSITIVE, f64::MAX, 5e-324];
+    robot.bodies[1].com = [0.1 + 0.2, -0.0, 123_456_789.123_456_79];
+    robot
+}
+
+#[test]
+fn everything_round_trips() {
+    assert_round_trip(&everything());
+    let mut bare = everything();
+    bare.provenance = Some(Provenance::default());
+    bare.frames.clear();
+    assert_round_trip(&bare);
+    assert_round_trip(&Description { name: String::new(), ..Description::default() });
+}
+
+#[test]
+fn a_line_is_what_an_oracle_takes() {
+    let robot = everything();
+    let line = neutral::to_line(&robot).expect("a tree");
+    assert!(!line.contains('\n') && !line.contains("provenance") && !line.contains("frames"));
+    let read = neutral::parse(&line, "line").expect("the same format");
+    assert_eq!(read.bodies.len(), 6, "the fixed body is merged");
+    for body in &read.bodies {
+        let nv = body.joint.kind.nv();
+        assert_eq!([body.joint.armature.len(), body.joint.damping.len(), body.joint.friction.len()], [nv; 3]);
+    }
+    assert!(neutral::to_line(&Description::default()).is_err());
+}
+
+#[test]
+fn files_are_written_whole_or_not_at_all() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let path = folder.path().join("robot.json");
+    let robot = everything();
+    neutral::write(&robot, &path).expect("writable");
+    assert_eq!(neutral::read(&path).expect("readable"), robot);
+
+    let mut broken = robot.clone();
+    broken.bodies[0].mass = f64::NAN;
+    let error = neutral::write(&broken, &path).expect_err("NaN is refused");
+    assert!(matches!(*error.problem, NeutralProblem::Malformed(Malformed::NotFinite { field: "mass", .. })));
+    assert_eq!(neutral::read(&path).expect("untouched"), robot);
+    let names: Vec<_> = std::fs::read_dir(folder.path()).expect("listed").map(|entry| entry.expect("an entry").file_name()).collect();
+    assert_eq!(names, ["robot.json"], "nothing is left behind");
+
+    let error = neutral::write(&robot, folder.path().join("no/such/folder.json")).expect_err("no folder");
+    assert!(error.to_string().contains("no/such/folder.json: the file cannot be written"), "{error}");
+    let error = neutral::read(folder.path().join("absent.json")).expect_err("no file");
+    assert!(error.to_string().contains("absent.json: the file cannot be read"), "{error}");
+    std::fs::write(&path, [0x7f, b'E', b'L', b'F', 0xff, 0xfe, 0x00]).expect("writable");
+    let error = neutral::read(&path).expect_err("binary");
+    assert!(error.to_string().contains("is not UTF-8 text (byte 4"), "{error}");
+}
+
+const GOOD: &str = r#"{"format":1,"name":"r","gravity":[0,0,-9.81],
+ "bodies":[
+  {"name":"rod","mass":1.0,"com":[0.5,0,0],"inertia":[0.01,0,0,0.08,0,0.08],"parent":-1,
+   "joint":{"name":"hinge","type":"revolute","axis":[0,1,0],
+    "placement":{"rotation":[1,0,0,0,1,0,0,0,1],"translation":[0,0,0]}}}
+ ]}"#;
+
+#[test]
+fn bad_files_are_named() {
+    assert!(neutral::parse(GOOD, "good.json").is_ok());
+    assert!(neutral::parse(&format!("\u{feff}{GOOD}\n"), "good.json").is_ok(), "a byte-order mark is no harm");
+    let cases: &[(&str, &str, &[&str])] = &[
+        (r#""format":1"#, r#""format":2"#, &["f.json:1:2: format 2 is not known", "\"format\": 1"]),
+        (r#""format":1"#, r#""format":"1""#, &["format \"1\" is not known"]),
+        (r#""format":1,"#, "", &["missing field `format`"]),
+        (r#""mass":1.0,"#, "", &["f.json:5:", "field 'bodies[0]'", "missing field `mass`", "FORMAT.md"]),
+        (r#""mass":1.0"#, r#""mass":"heavy""#, &["f.json:3:30", "field 'bodies[0].mass'", "invalid type: string \"heavy\", expected f64"]),
+        (r#""mass":1.0"#, r#""mass":NaN"#, &["f.json:3:", "not valid JSON"]),
+        (r#""mass":1.0"#, r#""mass":1e999"#, &["f.json:3:", "number out of range"]),
+        (r#""mass":1.0"#, r#""mass":-1.0"#, &["f.json:3:11: body 'rod': mass is -1 kg"]),
+        (r#""mass":1.0"#, r#""mass":1.0,"colour":"red""#, &["f.json:3:", "bodies[0].colour", "unknown field `colour`"]),
+        (r#""mass":1.0"#, r#""mass":1.0,"mass":2.0"#, &["duplicate field `mass`"]),
+        ("[0.5,0,0]", "[0.5,0]", &["field 'bodies[0].com", "invalid length 2, expected an array of length 3"]),
+        ("[0.5,0,0]", "[0.5,0,0,0]", &["f.json:3:", "field 'bodies[0].com': the list is longer"]),
+        (r#""parent":-1"#, r#""parent":-2"#, &["bodies[0].parent", "-2 is no body; the world is -1"]),
+        (r#""parent":-1"#, r#""parent":0.5"#, &["bodies[0].parent"]),
+        (r#""parent":-1"#, r#""parent":5"#, &["f.json:3:11: body 'rod': parent 5 does not exist"]),
+        (r#""parent":-1"#, r#""parent":0"#, &["body 'rod': its chain of parents returns to itself"]),
+        ("revolute", "hinge", &["bodies[0].joint", "unknown type 'hinge'; choose one of fixed, revolute"]),
+        (r#""axis":[0,1,0],"#, "", &["bodies[0].joint", "revolute joint 'hinge' has no 'axis'"]),
+        ("revolute", "spherical", &["spherical joint 'hinge' has an 'axis'"]),
+        ("revolute", "helical", &["helical joint 'hinge' has no 'pitch'"]),
+        (r#""axis":[0,1,0],"#, r#""axis":[0,1,0],"pitch":0.1,"#, &["has a 'pitch', which only a helical joint has"]),
+        ("[0,1,0]", "[0,2,0]", &["the axis of joint 'hinge' has length 2"]),
+        (r#""rotation":[1,"#, r#""rotation":[-1,"#, &["the rotation of joint 'hinge' misses orthonormality"]),
+        ("\n ]}", "\n ],\"contacts\":[{}]}", &["f.json:6:4: section 'contacts' is not supported by this version"]),
+        ("\n ]}", "\n ],\"loops\":{}}", &["section 'loops'"]),
+        ("\n ]}", "\n ],\"actuation\":1}", &["section 'actuation'"]),
+        ("\n ]}", "\n ],\"residuals\":[]}", &["section 'residuals'"]),
+        ("\n ]}", "\n ],\"parameters\":[]}", &["section 'parameters'"]),
+        ("\n ]}", "\n ],\"sensors\":[]}", &["unknown field `sensors`"]),
+        ("\n ]}", "\n ],\"frames\":[{\"name\":\"t\",\"body\":0}]}", &["frames[0]", "missing field `placement`"]),
+        ("\n ]}", "\n ],\"provenance\":{}}", &["provenance", "missing field `source`"]),
+        ("\n ]}", "\n ]", &["f.json:6:2: this is not valid JSON: EOF"]),
+        ("\n ]}", "\n ]} {}", &["f.json:6:5: this is not valid JSON: trailing characters"]),
+    ];
+    for (from, to, parts) in cases {
+        assert!(GOOD.contains(from), "{from}");
+        let error = neutral::parse(&GOOD.replacen(from, to, 1), "f.json").expect_err(to).to_string();
+        for part in *parts {
+            assert!(error.contains(part), "{to}\n  {error}\n  lacks {part}");
+        }
+    }
+    for (text, part) in
+        [("", "is empty"), (" \n", "is empty"), ("[]", "invalid"), ("null", "invalid type: null"), ("\u{0}\u{1}", "not valid JSON")]
+    {
+        let error = neutral::parse(text, "f.json").expect_err(text).to_string();
+        assert!(error.starts_with("f.json") && error.contains(part), "{error}");
+    }
+}
+
+#[test]
+fn deep_nesting_is_an_error() {
+    for deep in ["[".repeat(1_000_000), format!("{{\"contacts\":{}", "[".repeat(1_000_000)), "{\"a\":".repeat(1_000_000)] {
+        let error = neutral::parse(&deep, "deep.json").expect_err("too deep").to_string();
+        assert!(error.starts_with("deep.json:1:"), "{error}");
+    }
+}
+
+fn any_tree() -> impl Strategy<Value = Description> {
+    (1_usize..30, any::<u64>(), 0.0..=1.0, any::<[bool; 3]>()).prop_map(|(n, seed, spread, [all, free, armature])| {
+        let tree = Tree {
+            n,
+            seed,
+            spread,
+            joints: if all { Mix::All } else { Mix::Revolute },
+            base: if free { Base::Free } else { Base::Fixed },
+            armature,
+        };
+        Family::Tree(tree).generate().expect("in range")
+    })
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 256, failure_persistence: None, ..ProptestConfig::default() })]
+
+    #[test]
+    fn random_robots_round_trip(robot in any_tree()) {
+        assert_round_trip(&robot);
+    }
+
+    /// Any finite bits in the numbers that may be anything.
+    #[test]
+    fn any_number_round_trips(numbers in proptest::collection::vec(any::<u64>().prop_map(f64::from_bits).prop_filter("finite", |x| x.is_finite()), 12)) {
+        let mut robot = generate("chain:n=1");
+        let body = &mut robot.bodies[0];
+        robot.gravity.copy_from_slice(&numbers[..3]);
+        body.com.copy_from_slice(&numbers[3..6]);
+        body.joint.placement.translation.copy_from_slice(&numbers[6..9]);
+        body.inertia[..3].copy_from_slice(&numbers[9..12]);
+        assert_round_trip(&robot);
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 4096, failure_persistence: None, ..ProptestConfig::default() })]
+
+    /// A file with bytes changed, cut or doubled is read or refused, never a panic.
+    #[test]
+    fn mutated_files_never_panic(edits in proptest::collection::vec((any::<proptest::sample::Index>(), any::<proptest::sample::Index>(), 0..4, any::<char>()), 1..6)) {
+        let mut text: Vec<char> = GOOD.chars().collect();
+        for (at, to, kind, with) in edits {
+            if text.is_empty() {
+                break;
+            }
+            let (at, to) = (at.index(text.len()), to.index(text.len()));
+            match kind {
+                0 => text[at] = with,
+                1 => text.truncate(at),
+                2 => { text.drain(at.min(to)..at.max(to)); }
+                _ => { let copy = text[at.min(to)..at.max(to)].to_vec(); text.splice(at..at, copy); }
+            }
+        }
+        let text: String = text.into_iter().collect();
+        if let Err(error) = neutral::parse(&text, "mutated.json") {
+            prop_assert!(error.to_string().starts_with("mutated.json"));
+        }
+    }
+}

@@ -1,0 +1,174 @@
+//! Frames: a line of JSON and the blocks of doubles that it announces.
+//!
+//! Oracles speak in frames, recorded answers and the outcomes of a run are files of frames; `oracles/PROTOCOL.md` defines them.
+
+use serde_json::{Map, Value, json};
+use std::io::{self, BufRead, Read, Write};
+use thiserror::Error;
+
+/// A named array of doubles.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Block {
+    /// What it holds.
+    pub name: String,
+    /// Its extents; the numbers are in row-major order.
+    pub shape: Vec<usize>,
+    /// The numbers.
+    pub data: Vec<f64>,
+}
+
+/// A JSON object with blocks behind it.
+#[derive(Clone, Debug, PartialEq, Default)]
+pub struct Frame {
+    /// The object, without its `blocks`.
+    pub header: Map<String, Value>,
+    /// The blocks, in order.
+    pub blocks: Vec<Block>,
+}
+
+/// Why a frame could not be read.
+#[derive(Debug, Error)]
+pub enum FrameError {
+    /// The stream failed.
+    #[error("{0}")]
+    Io(#[from] io::Error),
+    /// The stream ended inside a frame.
+    #[error("the stream ends in the middle of a frame")]
+    Truncated,
+    /// The header is not what the protocol says.
+    #[error("bad frame header: {0}")]
+    Header(String),
+}
+
+/// The longest header line, and the largest sum of block lengths in numbers: far above any robot, far below the memory.
+const HEADER_LIMIT: u64 = 256 << 20;
+const BLOCK_LIMIT: usize = 1 << 28;
+
+impl Block {
+    /// A block of rows.
+    pub fn new(name: &str, shape: &[usize], data: &[f64]) -> Self {
+        Self { name: name.to_owned(), shape: shape.to_vec(), data: data.to_vec() }
+    }
+}
+
+impl Frame {
+    /// A frame whose header is the given object.
+    pub fn new(header: Value, blocks: Vec<Block>) -> Self {
+        let header = if let Value::Object(header) = header { header } else { Map::new() };
+        Self { header, blocks }
+    }
+
+    /// A text of the header, or "" when there is none.
+    pub fn text(&self, key: &str) -> &str {
+        self.header.get(key).and_then(Value::as_str).unwrap_or("")
+    }
+
+    /// The block of this name.
+    pub fn block(&self, name: &str) -> Option<&Block> {
+        self.blocks.iter().find(|block| block.name == name)
+    }
+
+    /// The frame as bytes.
+    pub fn to_bytes(&self) -> Vec<u8> {
+        let mut header = self.header.clone();
+        if !self.blocks.is_empty() {
+            let blocks = self.blocks.iter().map(|block| json!({"name": block.name, "shape": block.shape})).collect();
+            header.insert("blocks".into(), Value::Array(blocks));
+        }
+        let mut bytes = Value::Object(header).to_string().into_bytes();
+        bytes.push(b'\n');
+        for block in &self.blocks {
+            bytes.extend(block.data.iter().flat_map(|x| x.to_le_bytes()));
+        }
+        bytes
+    }
+
+    /// Writes the frame.
+    ///
+    /// # Errors
+    /// When the stream does.
+    pub fn write(&self, stream: &mut impl Write) -> io::Result<()> {
+        stream.write_all(&self.to_bytes())?;
+        stream.flush()
+    }
+
+    /// Reads one frame; `None` at the end of the stream.
+    ///
+    /// # Errors
+    /// [`FrameError`]; what a lying header announces is never allocated before it arrives.
+    pub fn read(stream: &mut impl BufRead) -> Result<Option<Self>, FrameError> {
+        let mut line = Vec::new();
+        stream.by_ref().take(HEADER_LIMIT).read_until(b'\n', &mut line)?;
+        if line.is_empty() {
+            return Ok(None);
+        }
+        if line.pop() != Some(b'\n') {
+            return Err(FrameError::Truncated);
+        }
+        let mut header: Map<String, Value> = serde_json::from_slice(&line).map_err(|error| FrameError::Header(error.to_string()))?;
+        let mut blocks = Vec::new();
+        let mut total = 0_usize;
+        for announced in header.remove("blocks").as_ref().and_then(Value::as_array).into_iter().flatten() {
+            let (name, shape, length) = announced_block(announced)?;
+            total = total.saturating_add(length);
+            if total > BLOCK_LIMIT {
+                return Err(FrameError::Header(format!("block '{name}' is too long")));
+            }
+            let mut bytes = Vec::new();
+            stream.by_ref().take(8 * length as u64).read_to_end(&mut bytes)?;
+            if bytes.len() != 8 * length {
+                return Err(FrameError::Truncated);
+            }
+            let data = bytes.chunks_exact(8).map(|b| f64::from_le_bytes([b[0], b[1], b[2], b[3], b[4], b[5], b[6], b[7]])).collect();
+            blocks.push(Block { name, shape, data });
+        }
+        Ok(Some(Self { header, blocks }))
+    }
+}
+
+fn announced_block(announced: &Value) -> Result<(String, Vec<usize>, usize), FrameError> {
+    let complaint = || FrameError::Header(format!("a block must be {{name, shape}}, not {announced}"));
+    let name = announced["name"].as_str().ok_or_else(complaint)?.to_owned();
+    let extents = announced["shape"].as_array().ok_or_else(complaint)?;
+    let shape: Vec<usize> =
+        extents.iter().map(|extent| extent.as_u64().and_then(|x| usize::try_from(x).ok())).collect::<Option<_>>().ok_or_else(complaint)?;
+    let length = shape.iter().try_fold(1_usize, |product, &extent| product.checked_mul(extent)).ok_or_else(complaint)?;
+    Ok((name, shape, length))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    #[test]
+    fn round_trip_keeps_every_bit() {
+        let data = [0.1, -0.0, f64::MIN_POSITIVE / 3.0, f64::NAN, f64::INFINITY, 1e308];
+        let frame = Frame::new(json!({"op": "x", "π": 0.1}), vec![Block::new("a", &[2, 3], &data), Block::new("b", &[0], &[])]);
+        let bytes = frame.to_bytes();
+        let read = Frame::read(&mut bytes.as_slice()).unwrap().unwrap();
+        assert_eq!(read.header, frame.header);
+        let bits = |frame: &Frame| frame.blocks.iter().flat_map(|b| b.data.iter().map(|x| x.to_bits())).collect::<Vec<_>>();
+        assert_eq!(bits(&read), bits(&frame));
+        for cut in 1..bytes.len() {
+            assert!(matches!(Frame::read(&mut &bytes[..cut]), Err(FrameError::Truncated)), "cut at {cut}");
+        }
+    }
+
+    #[test]
+    fn a_lying_header_is_refused_before_it_costs_memory() {
+        for shape in ["[1e30]", "[-1]", "[18446744073709551615,8]", "[999999999999]", "\"x\""] {
+            let line = format!("{{\"blocks\":[{{\"name\":\"a\",\"shape\":{shape}}}]}}\n");
+            assert!(matches!(Frame::read(&mut line.as_bytes()), Err(FrameError::Header(_))), "{shape}");
+        }
+        let short = b"{\"blocks\":[{\"name\":\"a\",\"shape\":[100000000]}]}\n12345678";
+        assert!(matches!(Frame::read(&mut short.as_slice()), Err(FrameError::Truncated)));
+    }
+
+    proptest! {
+        #[test]
+        fn reading_anything_never_panics(bytes in prop::collection::vec(any::<u8>(), 0..200)) {
+            let _ = Frame::read(&mut bytes.as_slice());
+        }
+    }
+}

@@ -1,0 +1,201 @@
+//! Gates: every threshold, and every known deviation from one, as data.
+
+use crate::{HarnessError, Suite};
+use record::{Expectation, Record, Relation, Verdict};
+use serde::Deserialize;
+use std::path::Path;
+
+/// The thresholds of `ci/gates.toml` and the known deviations of `ci/deviations.toml`.
+#[derive(Clone, Debug, PartialEq, Default)]
+pub struct Gates {
+    gates: Vec<Gate>,
+    deviations: Vec<Deviation>,
+}
+
+/// One threshold. The first gate that matches a row judges it.
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Gate {
+    /// The study.
+    pub study: String,
+    /// The quantities, by name.
+    pub quantities: Vec<String>,
+    /// The error measure.
+    pub metric: String,
+    /// Only robots up to this depth are gated; deeper ones are measured.
+    pub max_depth: Option<usize>,
+    /// The threshold.
+    pub bound: f64,
+    /// What the threshold is multiplied with.
+    #[serde(default)]
+    pub times: Factor,
+    /// Why it is what it is.
+    pub reason: String,
+}
+
+/// A factor of a threshold that depends on the row.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Factor {
+    /// The threshold is a constant.
+    #[default]
+    One,
+    /// Times the depth of the robot.
+    Depth,
+    /// Times the depth and the amplification of a backward error into a forward error at this state.
+    DepthAndAmplification,
+}
+
+/// A known deviation: rows that match may fail, be skipped or be errors, as it says.
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Deviation {
+    /// The engine.
+    pub engine: String,
+    /// The engine's version; another version makes the deviation void.
+    pub version: String,
+    /// The method, or all of them.
+    pub method: Option<String>,
+    /// The quantities, or all of them.
+    pub quantities: Option<Vec<String>>,
+    /// The models: names, a trailing `*` standing for any rest.
+    pub models: Vec<String>,
+    /// The cases, or all of them.
+    pub cases: Option<Vec<String>>,
+    /// The verdict that it explains: fail, skip or error.
+    pub verdict: String,
+    /// The cause.
+    pub reason: String,
+    /// The largest value that it explains; beyond it a failure stays a failure.
+    pub up_to: Option<f64>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct GateFile {
+    gate: Vec<Gate>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct DeviationFile {
+    #[serde(default)]
+    deviation: Vec<Deviation>,
+}
+
+impl Gates {
+    /// Reads `gates.toml` and `deviations.toml` from a folder.
+    ///
+    /// # Errors
+    /// [`HarnessError`], naming file, line and key.
+    pub fn read(folder: &Path) -> Result<Self, HarnessError> {
+        let GateFile { gate: gates } = read_toml(&folder.join("gates.toml"))?;
+        let path = folder.join("deviations.toml");
+        let DeviationFile { deviation: deviations } = read_toml(&path)?;
+        for deviation in &deviations {
+            if !["fail", "skip", "error"].contains(&deviation.verdict.as_str()) {
+                let message = format!("deviation of {}: verdict '{}' is none of fail, skip, error", deviation.engine, deviation.verdict);
+                return Err(HarnessError::Config { path, message });
+            }
+        }
+        Ok(Self { gates, deviations })
+    }
+
+    /// Closes a row with its value: judged where a gate matches, informed elsewhere, and then looked up among the known deviations.
+    ///
+    /// `amplification` turns a backward error into a forward one at the row's state (1 where that has no meaning).
+    pub fn judge(&self, row: Record, value: f64, amplification: f64) -> Record {
+        let depth = row.depth.unwrap_or(0);
+        let gate = self.gates.iter().find(|gate| {
+            gate.study == row.study
+                && gate.metric == row.metric
+                && gate.quantities.contains(&row.quantity)
+                && gate.max_depth.is_none_or(|limit| depth <= limit as u64)
+        });
+        let row = match gate {
+            None => row.informed(value),
+            Some(gate) => {
+                let factor = match gate.times {
+                    Factor::One => 1.0,
+                    Factor::Depth => depth as f64,
+                    Factor::DepthAndAmplification => depth as f64 * amplification,
+                };
+                row.gated(value, Relation::Le, gate.bound * factor)
+            }
+        };
+        self.explain(row)
+    }
+
+    /// Turns a row that is no pass into a deviation where one is known.
+    pub fn explain(&self, row: Record) -> Record {
+        match self.deviations.iter().find(|deviation| deviation.explains(&row)) {
+            Some(deviation) => row.deviating(&deviation.reason),
+            None => row,
+        }
+    }
+
+    /// What keeps a set of records from being green: one expectation per condition, passing or not.
+    ///
+    /// Conditions: no row fails; none is skipped or an error unexplained; every deviation was seen (when `complete`); and the suite's counts
+    /// of passing rows are met exactly (when `complete`).
+    pub fn conditions(&self, suite: &Suite, records: &[Record], complete: bool) -> Vec<Expectation> {
+        let count = |verdict: Verdict| records.iter().filter(|row| row.verdict == verdict).count() as u64;
+        let mut conditions: Vec<Expectation> = [
+            (Verdict::Fail, "rows outside their bound"),
+            (Verdict::Error, "rows without a value that was due"),
+            (Verdict::Skip, "rows that a subject does not offer and ci/deviations.toml does not name"),
+        ]
+        .map(|(verdict, what)| condition(what.to_owned(), 0, count(verdict)))
+        .into();
+        if !complete {
+            return conditions;
+        }
+        conditions.push(condition("rows at all".into(), 1, u64::from(!records.is_empty())));
+        for deviation in &self.deviations {
+            let known = suite.agreement.as_ref().is_some_and(|agreement| agreement.engines.contains(&deviation.engine));
+            let asked = records.iter().any(|row| row.engine == deviation.engine && deviation.names(&row.model));
+            if known && asked {
+                let seen = records.iter().any(|row| row.verdict == Verdict::Deviation && row.reason.starts_with(&deviation.reason));
+                let what = format!("known deviation of {} still seen: {}", deviation.engine, deviation.reason);
+                conditions.push(condition(what, 1, u64::from(seen)));
+            }
+        }
+        for (engine, quantities) in &suite.expect {
+            for (quantity, &expected) in quantities {
+                let passes = |row: &&Record| row.engine == *engine && row.quantity == *quantity && row.verdict == Verdict::Pass;
+                let found = records.iter().filter(passes).count() as u64;
+                conditions.push(condition(format!("passing rows of {engine} on {quantity}"), expected, found));
+            }
+        }
+        conditions
+    }
+}
+
+fn condition(what: String, expected: u64, found: u64) -> Expectation {
+    let met = expected == found;
+    let reason = if met { String::new() } else { format!("expected {expected}, found {found}") };
+    Expectation { what, expected, found, verdict: if met { Verdict::Pass } else { Verdict::Fail }, reason }
+}
+
+impl Deviation {
+    fn explains(&self, row: &Record) -> bool {
+        let within = |value: f64| self.up_to.is_none_or(|limit| value <= limit);
+        self.engine == row.engine
+            && self.version == row.engine_version
+            && self.verdict == row.verdict.as_str()
+            && self.method.as_ref().is_none_or(|method| *method == row.method)
+            && self.quantities.as_ref().is_none_or(|quantities| quantities.contains(&row.quantity))
+            && self.cases.as_ref().is_none_or(|cases| cases.contains(&row.case))
+            && self.names(&row.model)
+            && row.value.is_none_or(within)
+    }
+
+    fn names(&self, model: &str) -> bool {
+        self.models.iter().any(|name| name.strip_suffix('*').map_or(name == model, |stem| model.starts_with(stem)))
+    }
+}
+
+fn read_toml<T: for<'a> Deserialize<'a>>(path: &Path) -> Result<T, HarnessError> {
+    let text = std::fs::read_to_string(path).map_err(|source| HarnessError::io(path, source))?;
+    toml::from_str(&text).map_err(|error| HarnessError::Config { path: path.to_owned(), message: error.to_string() })
+}

@@ -1,0 +1,29 @@
+//! The harness: problems, subjects, studies, cells, the run, the comparison and the gates.
+//!
+//! A [`Study`] asks [`Subject`]s about [`Problem`]s. It plans [`Cell`]s, each of which is evaluated once and whose [`Outcome`] is kept in an
+//! [`OutcomeStore`]; a pure comparison turns outcomes into records, judged by [`Gates`]. The error measures are in [`measure`].
+
+mod cell;
+mod error;
+pub mod frame;
+mod gates;
+pub mod hash;
+pub mod measure;
+mod problem;
+pub mod provenance;
+mod quantity;
+pub mod run;
+mod store;
+mod study;
+mod subject;
+mod suite;
+
+pub use cell::{Cell, Outcome};
+pub use error::HarnessError;
+pub use gates::{Deviation, Factor, Gate, Gates};
+pub use problem::Problem;
+pub use quantity::{DENSE_LIMIT, Quantity};
+pub use store::{OUTCOMES_NAME, OutcomeStore};
+pub use study::{Context, Finished, Study};
+pub use subject::{Identity, Prepared, Refusal, Subject};
+pub use suite::{AgreementEntry, ProblemEntry, Suite, TimingEntry};

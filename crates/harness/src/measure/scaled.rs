@@ -1,0 +1,149 @@
+//! The unit-free error of one quantity at one state.
+
+use super::{Magnitudes, ratio, worst};
+use crate::{Problem, Quantity};
+
+/// The largest difference between `value` and `reference`, each entry over the magnitude of its own terms at the state.
+///
+/// Both slices hold [`Quantity::size`] numbers. Forward dynamics has measures of its own ([`super::ForwardScale`]) and is measured here
+/// against the largest entry only. The result is NaN where an entry is, and infinite where something differs that should be exactly zero.
+pub fn scaled_error(problem: &Problem, quantity: Quantity, at: &Magnitudes, reference: &[f64], value: &[f64]) -> f64 {
+    let nv = problem.model.topology.nv();
+    let mass = total_mass(problem);
+    match quantity {
+        Quantity::InverseDynamics => entries(reference, value, &at.joint_force),
+        Quantity::InverseDynamicsWrench => entries(reference, value, &at.joint_force_wrench),
+        Quantity::Bias => entries(reference, value, &at.bias_force),
+        Quantity::MassMatrix => mass_matrix(nv, reference, value),
+        Quantity::MassMatrixProbe => mass_matrix_probe(nv, &problem.probe(), reference, value),
+        Quantity::KineticEnergy => entries(reference, value, reference),
+        Quantity::PotentialEnergy => {
+            let gravity = problem.model.gravity.norm();
+            entries(reference, value, &[mass * gravity * reach_of_mass(problem, at)])
+        }
+        Quantity::CenterOfMass => entries(reference, value, &[reach_of_mass(problem, at); 3]),
+        Quantity::Momentum => momentum(problem, at, reference, value),
+        Quantity::BodyPlacement => per_body(problem, reference, value, |body| {
+            let reach = at.reach[body];
+            [1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, reach, reach, reach]
+        }),
+        Quantity::BodyVelocity => per_body(problem, reference, value, |body| halves(at.angular_velocity[body], at.linear_velocity[body])),
+        Quantity::BodyAcceleration => {
+            // Gravity is a term: engines carry it in their accelerations, and taking it out again cancels.
+            let gravity = problem.model.gravity.norm();
+            per_body(problem, reference, value, |body| halves(at.angular_acceleration[body], at.linear_acceleration[body] + gravity))
+        }
+        Quantity::BodyJacobian => {
+            let reach = at.reach[problem.model.described[problem.deepest_body()]];
+            let magnitude = |row: usize| if row < 3 { 1.0 } else { reach.max(1.0) };
+            let scale: Vec<f64> = (0..6 * nv).map(|entry| magnitude(entry / nv)).collect();
+            entries(reference, value, &scale)
+        }
+        Quantity::Readback => readback(reference, value),
+        Quantity::StoredEntries => entries(reference, value, &[1.0]),
+        Quantity::ForwardDynamics | Quantity::MassMatrixSparse | Quantity::Factorization | Quantity::Solve => {
+            let largest = reference.iter().fold(0.0_f64, |largest, x| worst(largest, x.abs()));
+            entries(reference, value, &vec![largest; reference.len()])
+        }
+    }
+}
+
+fn entries(reference: &[f64], value: &[f64], magnitude: &[f64]) -> f64 {
+    if reference.len() != value.len() || reference.len() != magnitude.len() {
+        return f64::INFINITY;
+    }
+    let pairs = reference.iter().zip(value).zip(magnitude);
+    pairs.fold(0.0, |error, ((r, v), m)| worst(error, ratio(v - r, *m)))
+}
+
+fn halves(angular: f64, linear: f64) -> [f64; 6] {
+    [angular, angular, angular, linear, linear, linear]
+}
+
+fn per_body<const N: usize>(problem: &Problem, reference: &[f64], value: &[f64], scale: impl Fn(usize) -> [f64; N]) -> f64 {
+    let magnitude: Vec<f64> = problem.model.described.iter().flat_map(|&body| scale(body)).collect();
+    entries(reference, value, &magnitude)
+}
+
+/// max |ΔM_ij| / √(M_ii·M_jj).
+fn mass_matrix(n: usize, reference: &[f64], value: &[f64]) -> f64 {
+    let root: Vec<f64> = (0..n).map(|i| reference[i * n + i].sqrt()).collect();
+    let magnitude: Vec<f64> = (0..n * n).map(|entry| root[entry / n] * root[entry % n]).collect();
+    entries(reference, value, &magnitude)
+}
+
+/// Products against Σ_j √(M_ii·M_jj)|x_j|, the diagonal and the last row as entries of M.
+fn mass_matrix_probe(n: usize, probe: &[f64], reference: &[f64], value: &[f64]) -> f64 {
+    let root: Vec<f64> = reference[4 * n..5 * n].iter().map(|diagonal| diagonal.sqrt()).collect();
+    let last = root.last().copied().unwrap_or(0.0);
+    let mut magnitude = Vec::with_capacity(6 * n);
+    for x in probe.chunks_exact(n) {
+        let weight: f64 = x.iter().zip(&root).map(|(x, r)| x.abs() * r).sum();
+        magnitude.extend(root.iter().map(|r| r * weight));
+    }
+    magnitude.extend(root.iter().map(|r| r * r));
+    magnitude.extend(root.iter().map(|r| r * last));
+    entries(reference, value, &magnitude)
+}
+
+fn total_mass(problem: &Problem) -> f64 {
+    problem.model.inertias.iter().map(|inertia| inertia.mass).sum()
+}
+
+/// Mass-weighted mean of the lengths of the paths to the bodies' centres of mass.
+fn reach_of_mass(problem: &Problem, at: &Magnitudes) -> f64 {
+    let moments = problem.model.inertias.iter().zip(&at.reach).map(|(inertia, reach)| inertia.mass * reach + inertia.first_moment.norm());
+    moments.sum::<f64>() / total_mass(problem)
+}
+
+/// Linear part over Σ(m|v| + |h||ω|); angular part over Σ(|Ī||ω| + |h||v| + reach·linear).
+fn momentum(problem: &Problem, at: &Magnitudes, reference: &[f64], value: &[f64]) -> f64 {
+    let (mut angular, mut linear) = (0.0, 0.0);
+    for (i, inertia) in problem.model.inertias.iter().enumerate() {
+        let (omega, v, lever) = (at.angular_velocity[i], at.linear_velocity[i], inertia.first_moment.norm());
+        let rotational = inertia.rotational.xx + inertia.rotational.yy + inertia.rotational.zz;
+        let share = inertia.mass * v + lever * omega;
+        linear += share;
+        angular += rotational * omega + lever * v + at.reach[i] * share;
+    }
+    entries(reference, value, &halves(angular, linear))
+}
+
+/// Mass and lengths relative to their own size, inertia to its trace, rotation to one.
+fn readback(reference: &[f64], value: &[f64]) -> f64 {
+    let magnitude: Vec<f64> = reference
+        .chunks_exact(22)
+        .flat_map(|body| {
+            let mut scale = [1.0; 22];
+            let length = |xyz: &[f64]| xyz.iter().map(|x| x * x).sum::<f64>().sqrt();
+            scale[0] = body[0];
+            scale[1..4].fill(length(&body[1..4]));
+            scale[4..10].fill(body[4].abs() + body[7].abs() + body[9].abs());
+            scale[19..22].fill(length(&body[19..22]));
+            scale
+        })
+        .collect();
+    entries(reference, value, &magnitude)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn one_wrong_entry_of_a_light_joint_is_seen_beside_heavy_ones() {
+        let m = [1e6, 0.0, 0.0, 1e-6];
+        let mut wrong = m;
+        wrong[3] *= 1.0 + 1e-10;
+        let error = mass_matrix(2, &m, &wrong);
+        assert!((error - 1e-10).abs() < 1e-15, "{error}: relative to its own diagonal, rounding of 1 + 1e-10 aside");
+    }
+
+    #[test]
+    fn what_should_be_zero_and_is_not_is_infinitely_wrong_and_nan_stays() {
+        assert_eq!(entries(&[0.0], &[1e-300], &[0.0]), f64::INFINITY);
+        assert_eq!(entries(&[0.0], &[0.0], &[0.0]), 0.0);
+        assert!(entries(&[1.0, 1.0], &[f64::NAN, 2.0], &[1.0, 1.0]).is_nan());
+        assert_eq!(entries(&[1.0], &[1.0, 2.0], &[1.0]), f64::INFINITY);
+    }
+}

@@ -1,0 +1,95 @@
+//! A problem: a robot with the states at which questions are asked.
+
+use crate::measure::Magnitudes;
+use model::{Description, Malformed, Model, StateBatch};
+use record::ModelOrigin;
+
+/// A robot and its states.
+#[derive(Clone, Debug)]
+pub struct Problem {
+    /// The robot's name.
+    pub name: String,
+    /// Its family: chain, tree, joints, robot, …
+    pub family: String,
+    /// Generated, or a real robot.
+    pub origin: ModelOrigin,
+    /// The canonical description.
+    pub description: Description,
+    /// The compiled model.
+    pub model: Model<f64>,
+    /// Content hash of the canonical description and the states' seed.
+    pub hash: String,
+    /// The states at which subjects are compared.
+    pub states: StateBatch,
+    /// Depth of the tree of described bodies.
+    pub depth: usize,
+    /// The studies that take it; all, when there is no list.
+    pub studies: Option<Vec<String>>,
+}
+
+impl Problem {
+    /// Compiles a robot and draws `count` agreement states.
+    ///
+    /// # Errors
+    /// [`Malformed`] when the description is no robot.
+    pub fn new(description: &Description, family: &str, origin: ModelOrigin, count: usize, seed: u64) -> Result<Self, Malformed> {
+        let description = description.canonical()?;
+        let model = Model::build(&description)?;
+        let states = StateBatch::agreement(&model, count, seed);
+        let hash = crate::hash::of_parts(&[format!("{:?}", (&description.bodies, description.gravity)).as_bytes(), &seed.to_le_bytes()]);
+        let depth = description.depth();
+        Ok(Self { name: description.name.clone(), family: family.to_owned(), origin, description, model, hash, states, depth, studies: None })
+    }
+
+    /// The body whose Jacobian is asked for: the first of the deepest ones.
+    pub fn deepest_body(&self) -> usize {
+        let mut depth = Vec::with_capacity(self.description.bodies.len());
+        for body in &self.description.bodies {
+            depth.push(1 + body.parent.map_or(0, |parent: usize| depth[parent]));
+        }
+        (0..depth.len()).find(|&body| depth[body] == self.depth).unwrap_or(0)
+    }
+
+    /// Four fixed vectors for [`Quantity::MassMatrixProbe`](crate::Quantity::MassMatrixProbe), row after row, uniform in (−1, 1).
+    pub fn probe(&self) -> Vec<f64> {
+        let mut random = model::Random::named(0, "mass matrix probe");
+        (0..4 * self.model.topology.nv()).map(|_| random.uniform(-1.0, 1.0)).collect()
+    }
+
+    /// Whether a study takes this robot.
+    pub fn takes(&self, study: &str) -> bool {
+        self.studies.as_ref().is_none_or(|studies| studies.iter().any(|name| name == study))
+    }
+
+    /// `free` when the first body floats, else `fixed`.
+    pub fn base(&self) -> &'static str {
+        let floats = self.description.bodies.first().is_some_and(|body| body.joint.kind == model::JointType::Free);
+        if floats { "free" } else { "fixed" }
+    }
+
+    /// The magnitudes at each state.
+    pub fn magnitudes(&self) -> Vec<Magnitudes> {
+        (0..self.states.count()).map(|k| Magnitudes::new(self, k)).collect()
+    }
+
+    /// What an exact engine reads back, in the layout of [`Quantity::Readback`](crate::Quantity::Readback).
+    pub fn readback(&self) -> Vec<f64> {
+        let mut numbers = Vec::with_capacity(22 * self.description.bodies.len());
+        for body in &self.description.bodies {
+            numbers.push(body.mass);
+            numbers.extend(body.com);
+            numbers.extend(body.inertia);
+            numbers.extend(body.joint.placement.rotation);
+            numbers.extend(body.joint.placement.translation);
+        }
+        numbers
+    }
+
+    /// The kinds of joints in it, sorted.
+    pub fn joint_kinds(&self) -> Vec<&'static str> {
+        let mut kinds: Vec<_> = self.description.bodies.iter().map(|body| body.joint.kind.name()).collect();
+        kinds.sort_unstable();
+        kinds.dedup();
+        kinds
+    }
+}

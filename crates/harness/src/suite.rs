@@ -1,0 +1,87 @@
+//! Suites: what a run contains.
+
+use crate::HarnessError;
+use serde::Deserialize;
+use std::collections::BTreeMap;
+use std::path::Path;
+
+/// A suite file, `datasets/suites/NAME.toml`. Unknown keys are errors.
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Suite {
+    /// What the suite is for, one sentence.
+    pub about: String,
+    /// Seed of every state.
+    pub seed: u64,
+    /// The robots.
+    pub problem: Vec<ProblemEntry>,
+    /// The agreement study.
+    pub agreement: Option<AgreementEntry>,
+    /// The structure study.
+    #[serde(default)]
+    pub structure: bool,
+    /// The timing study.
+    pub timing: Option<TimingEntry>,
+    /// Passing rows that a whole run must show: engine → quantity → count.
+    #[serde(default)]
+    pub expect: BTreeMap<String, BTreeMap<String, u64>>,
+}
+
+/// A robot of a suite: a committed model, a generator's call, or a file of the robots' package that only live runs have.
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct ProblemEntry {
+    /// Name of a file in `datasets/models`, without its ending.
+    pub model: Option<String>,
+    /// Arguments of `featherbench gen`.
+    pub generate: Option<String>,
+    /// A URDF file below the package folder of example-robot-data.
+    pub urdf: Option<String>,
+    /// Whether the URDF's base floats.
+    #[serde(default)]
+    pub floating: bool,
+    /// The family in records.
+    pub family: String,
+    /// The studies that take it; all by default.
+    pub studies: Option<Vec<String>>,
+}
+
+/// Settings of the agreement study.
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct AgreementEntry {
+    /// States per robot.
+    pub states: usize,
+    /// The engines beside the native one.
+    pub engines: Vec<String>,
+}
+
+/// Settings of the timing study.
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct TimingEntry {
+    /// Distinct states in the stream.
+    pub states: usize,
+    /// Seconds for each kernel on each robot and cache regime.
+    pub seconds: f64,
+}
+
+impl Suite {
+    /// Reads a suite file.
+    ///
+    /// # Errors
+    /// [`HarnessError`], naming file, line and key.
+    pub fn read(path: &Path) -> Result<(Self, String), HarnessError> {
+        let text = std::fs::read_to_string(path).map_err(|source| HarnessError::io(path, source))?;
+        let suite: Self = toml::from_str(&text).map_err(|error| HarnessError::Config { path: path.to_owned(), message: error.to_string() })?;
+        for entry in &suite.problem {
+            let sources = [&entry.model, &entry.generate, &entry.urdf];
+            if sources.into_iter().flatten().count() != 1 {
+                let message = format!("a [[problem]] of family '{}' must have exactly one of model, generate and urdf", entry.family);
+                return Err(HarnessError::Config { path: path.to_owned(), message });
+            }
+        }
+        let hash = crate::hash::of(text.as_bytes());
+        Ok((suite, hash))
+    }
+}

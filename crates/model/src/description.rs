@@ -1,0 +1,202 @@
+//! A robot as people write it down: plain numbers, no scalar, no compiled order.
+
+/// A robot: bodies, each with the joint that carries it, and gravity.
+#[derive(Clone, Debug, PartialEq, Default)]
+pub struct Description {
+    /// The robot's name.
+    pub name: String,
+    /// Gravitational acceleration in world axes, m/s².
+    pub gravity: [f64; 3],
+    /// The bodies, in any order in which each has one joint to its parent.
+    pub bodies: Vec<BodyDescription>,
+    /// Named frames fixed to bodies, such as the merged links of a file.
+    pub frames: Vec<Frame>,
+    /// Where the numbers come from, if they are not generated.
+    pub provenance: Option<Provenance>,
+}
+
+/// A rigid body and the joint that connects it to its parent.
+///
+/// The body's frame coincides with the joint's moving frame.
+#[derive(Clone, Debug, PartialEq)]
+pub struct BodyDescription {
+    /// The body's name, unique in the description.
+    pub name: String,
+    /// Index of the parent body, or `None` for the world.
+    pub parent: Option<usize>,
+    /// Mass, kg.
+    pub mass: f64,
+    /// Centre of mass in the body's frame, m.
+    pub com: [f64; 3],
+    /// Rotational inertia about the centre of mass in body axes (xx, xy, xz, yy, yz, zz), kg·m².
+    pub inertia: [f64; 6],
+    /// The joint to the parent.
+    pub joint: JointDescription,
+}
+
+/// A joint: its kind, where it stands on the parent, and its per-dof properties.
+///
+/// The vectors hold one number per degree of freedom, or none at all for "zero" (armature, damping, friction) and "unlimited".
+#[derive(Clone, Debug, PartialEq, Default)]
+pub struct JointDescription {
+    /// The joint's name.
+    pub name: String,
+    /// What moves.
+    pub kind: JointType,
+    /// The joint frame in the parent's frame.
+    pub placement: Placement,
+    /// Armature (reflected rotor inertia), added to the diagonal of the mass matrix, kg·m² or kg.
+    pub armature: Vec<f64>,
+    /// Viscous damping, carried and never part of the inverse dynamics.
+    pub damping: Vec<f64>,
+    /// Dry friction, carried and never part of the inverse dynamics.
+    pub friction: Vec<f64>,
+    /// Lower position limits, rad or m.
+    pub lower: Vec<f64>,
+    /// Upper position limits, rad or m.
+    pub upper: Vec<f64>,
+    /// Speed limits, rad/s or m/s.
+    pub velocity: Vec<f64>,
+    /// Effort limits, N·m or N.
+    pub effort: Vec<f64>,
+}
+
+/// The kind of a described joint. Axes are unit vectors in the joint frame.
+#[derive(Clone, Copy, Debug, PartialEq, Default)]
+pub enum JointType {
+    /// No motion: the body is merged into its parent.
+    #[default]
+    Fixed,
+    /// Rotation about an axis (continuous joints are revolute joints without limits).
+    Revolute {
+        /// The axis of rotation.
+        axis: [f64; 3],
+    },
+    /// Translation along an axis.
+    Prismatic {
+        /// The direction of translation.
+        axis: [f64; 3],
+    },
+    /// Rotation about an axis with a translation along it.
+    Helical {
+        /// The axis of the screw.
+        axis: [f64; 3],
+        /// Translation per angle, m/rad.
+        pitch: f64,
+    },
+    /// Rotation about a point; q is a quaternion (x, y, z, w), v the angular velocity in body axes.
+    Spherical,
+    /// Free motion; q is position and quaternion, v is [linear; angular] in body axes.
+    Free,
+    /// Translation in the joint frame's xy-plane, then rotation about z.
+    Planar,
+    /// Rotation about the joint frame's x, then about the moved y.
+    Universal,
+}
+
+/// A constant rigid placement.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Placement {
+    /// Child axes to parent axes, row-major.
+    pub rotation: [f64; 9],
+    /// The child's origin in the parent's frame, m.
+    pub translation: [f64; 3],
+}
+
+/// A named frame fixed to a body.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Frame {
+    /// The frame's name.
+    pub name: String,
+    /// The body it is fixed to, or `None` for the world.
+    pub body: Option<usize>,
+    /// Where it stands on that body.
+    pub placement: Placement,
+}
+
+/// Where a robot's numbers come from, with the words that allow their use.
+#[derive(Clone, Debug, PartialEq, Default)]
+pub struct Provenance {
+    /// Package, version and file.
+    pub source: String,
+    /// SPDX identifier of the licence.
+    pub licence: String,
+    /// What the file's own header says, quoted, or that it says nothing.
+    pub header: String,
+    /// What the description folder's README or licence file says, quoted.
+    pub readme: String,
+    /// What was changed on the way (merged links, dropped elements).
+    pub notes: Vec<String>,
+}
+
+impl JointType {
+    /// Length of the joint's part of q.
+    pub fn nq(self) -> usize {
+        match self {
+            Self::Fixed => 0,
+            Self::Revolute { .. } | Self::Prismatic { .. } | Self::Helical { .. } => 1,
+            Self::Universal => 2,
+            Self::Planar => 3,
+            Self::Spherical => 4,
+            Self::Free => 7,
+        }
+    }
+
+    /// Degrees of freedom: length of the joint's part of v.
+    pub fn nv(self) -> usize {
+        match self {
+            Self::Spherical => 3,
+            Self::Free => 6,
+            other => other.nq(),
+        }
+    }
+
+    /// The word for it in a description file.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Fixed => "fixed",
+            Self::Revolute { .. } => "revolute",
+            Self::Prismatic { .. } => "prismatic",
+            Self::Helical { .. } => "helical",
+            Self::Spherical => "spherical",
+            Self::Free => "free",
+            Self::Planar => "planar",
+            Self::Universal => "universal",
+        }
+    }
+
+    /// The axis, for the kinds that have one.
+    pub fn axis(self) -> Option<[f64; 3]> {
+        match self {
+            Self::Revolute { axis } | Self::Prismatic { axis } | Self::Helical { axis, .. } => Some(axis),
+            _ => None,
+        }
+    }
+}
+
+impl Default for Placement {
+    fn default() -> Self {
+        Self { rotation: [1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0], translation: [0.0; 3] }
+    }
+}
+
+impl Description {
+    /// Length of the configuration vector q.
+    pub fn nq(&self) -> usize {
+        self.bodies.iter().map(|body| body.joint.kind.nq()).sum()
+    }
+
+    /// Degrees of freedom.
+    pub fn nv(&self) -> usize {
+        self.bodies.iter().map(|body| body.joint.kind.nv()).sum()
+    }
+
+    /// The longest path of bodies from the world, of a canonical description.
+    pub fn depth(&self) -> usize {
+        let mut depth = vec![0; self.bodies.len()];
+        for (i, body) in self.bodies.iter().enumerate() {
+            depth[i] = 1 + body.parent.map_or(0, |parent| depth[parent]);
+        }
+        depth.into_iter().max().unwrap_or(0)
+    }
+}

@@ -1,0 +1,102 @@
+//! Chains of identical links whose every number is dyadic, so that all engines hold bit-identical models.
+
+use super::parameters::{MOST_LINKS, Parameters, require, words};
+use super::parts::{DYADIC_GRAVITY, LINK, X, Y, Z, dyadic_link};
+use super::{BadFamily, Base};
+use crate::{Description, JointType};
+use std::fmt;
+
+/// How a chain's axes lie. (A *straight* chain is a state, q = 0, of either.)
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+pub enum Layout {
+    /// All axes along y: the chain moves in the vertical xz-plane.
+    #[default]
+    Planar,
+    /// Axes x, y, z, x, …
+    Spatial,
+}
+
+words!(Layout { Planar => "planar", Spatial => "spatial" });
+
+/// `n` revolute links in a row: 0.5 m along x, 1 kg, centre of mass halfway, inertia diag(2⁻⁷, 2⁻⁵, 2⁻⁵), gravity (0, 0, −9.8125).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Chain {
+    /// Revolute links; a free base is one link more.
+    pub n: usize,
+    /// How the axes lie.
+    pub layout: Layout,
+    /// Factor on the last link's mass and inertia.
+    pub tip_scale: f64,
+    /// The first joint stands at (offset, offset, 0), m.
+    pub base_offset: f64,
+    /// What the chain hangs on.
+    pub base: Base,
+}
+
+impl Default for Chain {
+    fn default() -> Self {
+        Self { n: 10, layout: Layout::Planar, tip_scale: 1.0, base_offset: 0.0, base: Base::Fixed }
+    }
+}
+
+impl Chain {
+    pub(super) fn read(parameters: &mut Parameters) -> Result<Self, BadFamily> {
+        let default = Self::default();
+        Ok(Self {
+            n: parameters.take("n", default.n, "a number of links")?,
+            layout: parameters.take("layout", default.layout, Layout::WORDS)?,
+            tip_scale: parameters.take("tip_scale", default.tip_scale, "a positive number")?,
+            base_offset: parameters.take("base_offset", default.base_offset, "a distance in metres")?,
+            base: parameters.take("base", default.base, Base::WORDS)?,
+        })
+    }
+
+    pub(super) fn check(&self) -> Result<(), BadFamily> {
+        require((1..=MOST_LINKS).contains(&self.n), "chain", "n", self.n, "1 to 1000000")?;
+        require(self.tip_scale.is_normal() && self.tip_scale > 0.0, "chain", "tip_scale", self.tip_scale, "a positive number")?;
+        require(self.base_offset.is_finite(), "chain", "base_offset", self.base_offset, "a finite distance in metres")
+    }
+
+    pub(super) fn describe(&self) -> Description {
+        let origin = [self.base_offset, self.base_offset, 0.0];
+        let mut bodies = Vec::with_capacity(self.n + 1);
+        if self.base == Base::Free {
+            bodies.push(dyadic_link("base".to_owned(), None, JointType::Free, origin));
+        }
+        for k in 0..self.n {
+            let axis = match self.layout {
+                Layout::Planar => Y,
+                Layout::Spatial => [X, Y, Z][k % 3],
+            };
+            let parent = bodies.len().checked_sub(1);
+            let at = if parent.is_none() { origin } else { [LINK, 0.0, 0.0] };
+            bodies.push(dyadic_link(format!("link_{}", k + 1), parent, JointType::Revolute { axis }, at));
+        }
+        if let Some(tip) = bodies.last_mut() {
+            tip.mass *= self.tip_scale;
+            tip.inertia = tip.inertia.map(|entry| entry * self.tip_scale);
+        }
+        Description { name: self.name(), gravity: DYADIC_GRAVITY, bodies, ..Description::default() }
+    }
+
+    fn name(&self) -> String {
+        let mut name = format!("chain-{}-{}", self.layout, self.n);
+        if self.base == Base::Free {
+            name += "-free";
+        }
+        if self.tip_scale != 1.0 {
+            name += &format!("-tip{:e}", self.tip_scale);
+        }
+        if self.base_offset != 0.0 {
+            name += &format!("-offset{:e}", self.base_offset);
+        }
+        name
+    }
+}
+
+impl fmt::Display for Chain {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { n, layout, tip_scale, base_offset, base } = self;
+        write!(f, "n={n},layout={layout},tip_scale={tip_scale:?},base_offset={base_offset:?},base={base}")
+    }
+}

@@ -1,0 +1,106 @@
+//! The primitive joints that kernels see.
+
+use spatial::{Force, Lift, Motion, Quaternion, Real, Transform, Vec3};
+
+/// A primitive joint. The first three are one-dof screws with a constant motion subspace `S`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum JointKind {
+    /// Rotation about the unit vector `S.ang`.
+    Revolute,
+    /// Translation along the unit vector `S.lin`.
+    Prismatic,
+    /// Rotation about the unit vector `S.ang` with translation `S.lin` per radian along it.
+    Helical,
+    /// Rotation about a point: quaternion (x, y, z, w); velocity in body axes.
+    Spherical,
+    /// Free motion: position and quaternion; velocity [linear; angular] in body axes.
+    Free,
+}
+
+impl JointKind {
+    /// Length of the joint's part of q.
+    #[inline(always)]
+    pub fn nq(self) -> usize {
+        match self {
+            Self::Revolute | Self::Prismatic | Self::Helical => 1,
+            Self::Spherical => 4,
+            Self::Free => 7,
+        }
+    }
+
+    /// Degrees of freedom.
+    #[inline(always)]
+    pub fn nv(self) -> usize {
+        match self {
+            Self::Revolute | Self::Prismatic | Self::Helical => 1,
+            Self::Spherical => 3,
+            Self::Free => 6,
+        }
+    }
+
+    /// The placement of the moved body in its parent at configuration `q`: `placement ∘ motion(q)`.
+    #[inline(always)]
+    pub fn transform<T: Real, P: Lift<T> + Real>(self, placement: &Transform<P>, subspace: &Motion<P>, q: &[T]) -> Transform<T> {
+        let fixed = placement.lift();
+        match self {
+            Self::Revolute => {
+                let (sin, cos) = q[0].sin_cos();
+                Transform::new(fixed.rotation * Transform::axis_rotation(subspace.ang.lift(), sin, cos), fixed.translation)
+            }
+            Self::Prismatic => Transform::new(fixed.rotation, fixed.point(subspace.lin.lift() * q[0])),
+            Self::Helical => {
+                let (sin, cos) = q[0].sin_cos();
+                let rotation = fixed.rotation * Transform::axis_rotation(subspace.ang.lift(), sin, cos);
+                Transform::new(rotation, fixed.point(subspace.lin.lift() * q[0]))
+            }
+            Self::Spherical => {
+                let turn = Quaternion::from_array([q[0], q[1], q[2], q[3]]).to_rotation();
+                Transform::new(fixed.rotation * turn, fixed.translation)
+            }
+            Self::Free => {
+                let turn = Quaternion::from_array([q[3], q[4], q[5], q[6]]).to_rotation();
+                Transform::new(fixed.rotation * turn, fixed.point(Vec3::new(q[0], q[1], q[2])))
+            }
+        }
+    }
+
+    /// `S v`: the motion across the joint, in body coordinates.
+    #[inline(always)]
+    pub fn motion<T: Real, P: Lift<T> + Real>(self, subspace: &Motion<P>, v: &[T]) -> Motion<T> {
+        match self {
+            Self::Revolute => Motion::new(subspace.ang.lift() * v[0], Vec3::zero()),
+            Self::Prismatic => Motion::new(Vec3::zero(), subspace.lin.lift() * v[0]),
+            Self::Helical => subspace.lift() * v[0],
+            Self::Spherical => Motion::new(Vec3::new(v[0], v[1], v[2]), Vec3::zero()),
+            Self::Free => Motion::new(Vec3::new(v[3], v[4], v[5]), Vec3::new(v[0], v[1], v[2])),
+        }
+    }
+
+    /// `Sᵀ f` into `tau`: the joint's share of a force in body coordinates.
+    #[inline(always)]
+    pub fn project<T: Real, P: Lift<T> + Real>(self, subspace: &Motion<P>, f: Force<T>, tau: &mut [T]) {
+        match self {
+            Self::Revolute => tau[0] = subspace.ang.lift().dot(f.ang),
+            Self::Prismatic => tau[0] = subspace.lin.lift().dot(f.lin),
+            Self::Helical => tau[0] = subspace.lift().dot(f),
+            Self::Spherical => tau[..3].copy_from_slice(&f.ang.to_array()),
+            Self::Free => {
+                tau[..3].copy_from_slice(&f.lin.to_array());
+                tau[3..6].copy_from_slice(&f.ang.to_array());
+            }
+        }
+    }
+
+    /// Column `k` of S in body coordinates.
+    #[inline(always)]
+    pub fn column<T: Real, P: Lift<T> + Real>(self, subspace: &Motion<P>, k: usize) -> Motion<T> {
+        match self {
+            Self::Revolute | Self::Prismatic | Self::Helical => subspace.lift(),
+            Self::Spherical | Self::Free => {
+                let mut unit = [T::zero(); 6];
+                unit[k] = T::one();
+                self.motion(subspace, &unit[..self.nv()])
+            }
+        }
+    }
+}

@@ -1,0 +1,24 @@
+//! What a robot is: its description, its compiled model, its states, and generators of robots.
+//!
+//! A [`Description`] is what people write: named bodies and joints of every kind, as plain numbers. [`Model::build`] compiles it:
+//! fixed joints are merged, bodies are put in depth-first order, and composed joints (planar, universal) become chains of the primitive
+//! joints of [`JointKind`] with massless bodies between, so that no kernel meets a configuration-dependent motion subspace.
+//! [`Topology`] is the scalar-free part of a model; `Model<P>` adds the parameters.
+
+mod canonical;
+mod description;
+pub mod generate;
+mod joint;
+mod model;
+mod random;
+mod state;
+mod topology;
+mod validate;
+
+pub use description::{BodyDescription, Description, Frame, JointDescription, JointType, Placement, Provenance};
+pub use joint::JointKind;
+pub use model::Model;
+pub use random::Random;
+pub use state::{Case, StateBatch};
+pub use topology::{Joint, Topology};
+pub use validate::{Malformed, Warning};

@@ -1,0 +1,145 @@
+//! The compiled model: a topology with its parameters.
+
+use crate::{Description, JointKind, JointType, Malformed, Topology, Warning};
+use spatial::{Lift, Mat3, Motion, Real, RigidBodyInertia, Sym3, Transform, Vec3};
+
+/// A robot as the kernels see it: primitive joints in depth-first order, parameters over the scalar `P`.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Model<P> {
+    /// The tree.
+    pub topology: Topology,
+    /// Joint frame in the parent's frame, per body.
+    pub placements: Vec<Transform<P>>,
+    /// Constant motion subspace of each screw joint in body coordinates (unused for spherical and free joints), per body.
+    pub subspaces: Vec<Motion<P>>,
+    /// Rigid-body inertia at the body's origin, per body.
+    pub inertias: Vec<RigidBodyInertia<P>>,
+    /// Armature per dof.
+    pub armature: Vec<P>,
+    /// Gravitational acceleration in world axes.
+    pub gravity: Vec3<P>,
+    /// Viscous damping per dof; no kernel reads it.
+    pub damping: Vec<f64>,
+    /// Dry friction per dof; no kernel reads it.
+    pub friction: Vec<f64>,
+    /// Position limits of each number of q; infinite where there is none.
+    pub limits: Vec<(f64, f64)>,
+    /// The compiled body of each described body.
+    pub described: Vec<usize>,
+    /// What is unusual about the robot, though not wrong.
+    pub warnings: Vec<Warning>,
+}
+
+impl<P: Real> Model<P> {
+    /// Compiles a description; inertias are formed in the arithmetic of `P`.
+    ///
+    /// The description need not be canonical: fixed joints are merged and the bodies put in depth-first order.
+    ///
+    /// # Errors
+    /// [`Malformed`] when the description is no tree of bodies with finite, meaningful numbers.
+    pub fn build(description: &Description) -> Result<Self, Malformed> {
+        let canonical = description.canonical()?;
+        let mut tree = Vec::new();
+        let mut model = Self {
+            topology: Topology::new(&[]).ok_or(Malformed::Empty)?,
+            placements: Vec::new(),
+            subspaces: Vec::new(),
+            inertias: Vec::new(),
+            armature: Vec::new(),
+            gravity: vec3(canonical.gravity),
+            damping: Vec::new(),
+            friction: Vec::new(),
+            limits: Vec::new(),
+            described: Vec::new(),
+            warnings: canonical.warnings(),
+        };
+        for body in &canonical.bodies {
+            let joint = &body.joint;
+            let primitives = compile(joint.kind);
+            let mut parent = body.parent.map(|parent| model.described[parent]);
+            let mut placement =
+                Transform::new(Mat3::from_array(joint.placement.rotation.map(P::from_f64)), vec3(joint.placement.translation));
+            for (k, &(kind, subspace)) in primitives.iter().enumerate() {
+                let last = k + 1 == primitives.len();
+                tree.push((parent, kind));
+                parent = Some(tree.len() - 1);
+                model.placements.push(placement);
+                placement = Transform::identity();
+                model.subspaces.push(subspace);
+                let about_com = Sym3::from_array(body.inertia.map(P::from_f64));
+                let inertia = RigidBodyInertia::from_com(P::from_f64(body.mass), vec3(body.com), about_com);
+                model.inertias.push(if last { inertia } else { RigidBodyInertia::zero() });
+            }
+            model.described.push(tree.len() - 1);
+            let nv = joint.kind.nv();
+            model.armature.extend(per_dof(&joint.armature, nv, 0.0).map(P::from_f64));
+            model.damping.extend(per_dof(&joint.damping, nv, 0.0));
+            model.friction.extend(per_dof(&joint.friction, nv, 0.0));
+            // Quaternions have no limits; every other joint has as many coordinates as dofs.
+            let limited = if joint.kind.nq() == nv { nv } else { 0 };
+            let lower = per_dof(&joint.lower[..joint.lower.len().min(limited)], joint.kind.nq(), f64::NEG_INFINITY);
+            let upper = per_dof(&joint.upper[..joint.upper.len().min(limited)], joint.kind.nq(), f64::INFINITY);
+            model.limits.extend(lower.zip(upper));
+        }
+        model.topology = Topology::new(&tree).ok_or(Malformed::Empty)?;
+        Ok(model)
+    }
+
+    /// The same model with parameters in another scalar.
+    pub fn lift<Q: Real>(&self) -> Model<Q>
+    where
+        P: Lift<Q>,
+    {
+        Model {
+            topology: self.topology.clone(),
+            placements: self.placements.iter().map(|x| x.lift()).collect(),
+            subspaces: self.subspaces.iter().map(|s| s.lift()).collect(),
+            inertias: self.inertias.iter().map(|i| i.lift()).collect(),
+            armature: self.armature.iter().map(|a| a.lift()).collect(),
+            gravity: self.gravity.lift(),
+            damping: self.damping.clone(),
+            friction: self.friction.clone(),
+            limits: self.limits.clone(),
+            described: self.described.clone(),
+            warnings: self.warnings.clone(),
+        }
+    }
+
+    /// The placement of body `i` in its parent at configuration `q` (the whole vector).
+    #[inline(always)]
+    pub fn joint_transform<T: Real>(&self, i: usize, q: &[T]) -> Transform<T>
+    where
+        P: Lift<T>,
+    {
+        let joint = &self.topology.joints()[i];
+        joint.kind.transform(&self.placements[i], &self.subspaces[i], &q[joint.q..])
+    }
+}
+
+fn vec3<P: Real>(v: [f64; 3]) -> Vec3<P> {
+    Vec3::from_array(v.map(P::from_f64))
+}
+
+fn per_dof(values: &[f64], count: usize, absent: f64) -> impl Iterator<Item = f64> + '_ {
+    (0..count).map(move |k| values.get(k).copied().unwrap_or(absent))
+}
+
+/// The primitive joints of a described joint, from the parent outwards, each with its motion subspace.
+fn compile<P: Real>(kind: JointType) -> Vec<(JointKind, Motion<P>)> {
+    let turn = |axis: [f64; 3]| (JointKind::Revolute, Motion::new(vec3(axis), Vec3::zero()));
+    let slide = |axis: [f64; 3]| (JointKind::Prismatic, Motion::new(Vec3::zero(), vec3(axis)));
+    let (x, y, z) = ([1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]);
+    match kind {
+        JointType::Fixed => Vec::new(),
+        JointType::Revolute { axis } => vec![turn(axis)],
+        JointType::Prismatic { axis } => vec![slide(axis)],
+        JointType::Helical { axis, pitch } => {
+            let axis = vec3::<P>(axis);
+            vec![(JointKind::Helical, Motion::new(axis, axis * P::from_f64(pitch)))]
+        }
+        JointType::Spherical => vec![(JointKind::Spherical, Motion::zero())],
+        JointType::Free => vec![(JointKind::Free, Motion::zero())],
+        JointType::Planar => vec![slide(x), slide(y), turn(z)],
+        JointType::Universal => vec![turn(x), turn(y)],
+    }
+}

@@ -1,0 +1,166 @@
+//! States: configurations, velocities, accelerations, forces and wrenches, many at a time.
+
+use crate::{JointKind, Model, Random};
+
+/// What is special about a state.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum Case {
+    /// Everything drawn at random.
+    Random,
+    /// q at its neutral value; v, a, τ and wrenches zero.
+    Zero,
+    /// q at its neutral value; v, a, τ and wrenches random.
+    Straight,
+    /// Random, with velocities a thousand times larger.
+    Fast,
+    /// Random, with each limited joint at its lower or upper limit.
+    Limit,
+}
+
+impl Case {
+    /// The word for it in records.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Random => "random",
+            Self::Zero => "zero",
+            Self::Straight => "straight",
+            Self::Fast => "fast",
+            Self::Limit => "limit",
+        }
+    }
+
+    /// The case named by a word.
+    pub fn parse(word: &str) -> Option<Self> {
+        [Self::Random, Self::Zero, Self::Straight, Self::Fast, Self::Limit].into_iter().find(|case| case.name() == word)
+    }
+}
+
+/// A batch of states of one model, each array state after state.
+#[derive(Clone, Debug, PartialEq, Default)]
+pub struct StateBatch {
+    /// Length of one configuration.
+    pub nq: usize,
+    /// Degrees of freedom.
+    pub nv: usize,
+    /// Described bodies (wrenches act on these).
+    pub bodies: usize,
+    /// What each state is.
+    pub cases: Vec<Case>,
+    /// Configurations, `count × nq`.
+    pub q: Vec<f64>,
+    /// Velocities, `count × nv`.
+    pub v: Vec<f64>,
+    /// Accelerations, `count × nv`.
+    pub a: Vec<f64>,
+    /// Joint forces, `count × nv`.
+    pub tau: Vec<f64>,
+    /// Wrenches [moment; force] at each described body's origin in body axes, `count × bodies × 6`.
+    pub wrench: Vec<f64>,
+}
+
+/// How the agreement batch begins: one state of each case first, so that a short prefix covers them all.
+const OPENING: [Case; 10] =
+    [Case::Random, Case::Zero, Case::Straight, Case::Fast, Case::Random, Case::Limit, Case::Straight, Case::Fast, Case::Limit, Case::Fast];
+
+impl StateBatch {
+    /// Number of states.
+    pub fn count(&self) -> usize {
+        self.cases.len()
+    }
+
+    /// Configuration of state `k`.
+    pub fn q(&self, k: usize) -> &[f64] {
+        &self.q[k * self.nq..(k + 1) * self.nq]
+    }
+
+    /// Velocity of state `k`.
+    pub fn v(&self, k: usize) -> &[f64] {
+        &self.v[k * self.nv..(k + 1) * self.nv]
+    }
+
+    /// Acceleration of state `k`.
+    pub fn a(&self, k: usize) -> &[f64] {
+        &self.a[k * self.nv..(k + 1) * self.nv]
+    }
+
+    /// Joint forces of state `k`.
+    pub fn tau(&self, k: usize) -> &[f64] {
+        &self.tau[k * self.nv..(k + 1) * self.nv]
+    }
+
+    /// Wrenches of state `k`.
+    pub fn wrench(&self, k: usize) -> &[f64] {
+        &self.wrench[k * 6 * self.bodies..(k + 1) * 6 * self.bodies]
+    }
+
+    /// How many states at the head of an agreement batch cover every case at least once.
+    pub const HEAD: usize = 6;
+
+    /// `count` states that cover every case: one zero, two straight, three fast, two at limits (where there are any), the rest random;
+    /// the first [`StateBatch::HEAD`] hold one of each.
+    ///
+    /// A state depends on the seed, its case and its own number only. v, a, τ and wrenches are uniform in (−1, 1), angles in (−π, π),
+    /// quaternions uniform on the sphere, positions in (−1, 1).
+    pub fn agreement(model: &Model<f64>, count: usize, seed: u64) -> Self {
+        let limited = model.limits.iter().any(|(lower, upper)| lower.is_finite() && upper.is_finite());
+        let opening = OPENING.iter().copied().filter(|case| limited || *case != Case::Limit);
+        let mut cases: Vec<Case> = opening.take(count).collect();
+        cases.resize(count, Case::Random);
+        Self::draw(model, cases, seed)
+    }
+
+    /// `count` random states: the stream of the timing study.
+    pub fn random(model: &Model<f64>, count: usize, seed: u64) -> Self {
+        Self::draw(model, vec![Case::Random; count], seed)
+    }
+
+    fn draw(model: &Model<f64>, cases: Vec<Case>, seed: u64) -> Self {
+        let (nq, nv, bodies) = (model.topology.nq(), model.topology.nv(), model.described.len());
+        let mut batch = Self { nq, nv, bodies, ..Self::default() };
+        for (k, &case) in cases.iter().enumerate() {
+            let mut random = Random::new(seed, k as u64);
+            let speed = if case == Case::Fast { 1e3 } else { 1.0 };
+            let effort = if case == Case::Zero { 0.0 } else { 1.0 };
+            draw_configuration(model, case, &mut random, &mut batch.q);
+            batch.v.extend((0..nv).map(|_| random.uniform(-1.0, 1.0) * speed * effort));
+            batch.a.extend((0..nv).map(|_| random.uniform(-1.0, 1.0) * effort));
+            batch.tau.extend((0..nv).map(|_| random.uniform(-1.0, 1.0) * effort));
+            batch.wrench.extend((0..6 * bodies).map(|_| random.uniform(-1.0, 1.0) * effort));
+        }
+        batch.cases = cases;
+        batch
+    }
+}
+
+fn draw_configuration(model: &Model<f64>, case: Case, random: &mut Random, q: &mut Vec<f64>) {
+    let neutral = matches!(case, Case::Zero | Case::Straight);
+    for joint in model.topology.joints() {
+        let quaternion = random.direction::<4>();
+        match joint.kind {
+            JointKind::Revolute | JointKind::Prismatic | JointKind::Helical => {
+                let reach = if joint.kind == JointKind::Revolute { std::f64::consts::PI } else { 1.0 };
+                let drawn = random.uniform(-reach, reach);
+                let upper_end = random.bits32() & 1 == 1;
+                let (lower, upper) = model.limits[joint.q];
+                q.push(match case {
+                    _ if neutral => 0.0,
+                    Case::Limit if lower.is_finite() && upper.is_finite() => {
+                        if upper_end {
+                            upper
+                        } else {
+                            lower
+                        }
+                    }
+                    _ => drawn,
+                });
+            }
+            JointKind::Spherical | JointKind::Free => {
+                if joint.kind == JointKind::Free {
+                    let position: [f64; 3] = std::array::from_fn(|_| random.uniform(-1.0, 1.0));
+                    q.extend(position.map(|x| if neutral { 0.0 } else { x }));
+                }
+                q.extend(if neutral { [0.0, 0.0, 0.0, 1.0] } else { quaternion });
+            }
+        }
+    }
+}

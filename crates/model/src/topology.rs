@@ -1,0 +1,129 @@
+//! The tree: parents, joint kinds and indices, without a scalar.
+
+use crate::JointKind;
+
+/// A joint of the compiled tree and its body.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Joint {
+    /// The parent body, or `None` for the world. Always less than the body's own index.
+    pub parent: Option<usize>,
+    /// The kind of joint.
+    pub kind: JointKind,
+    /// Where the joint's part of q begins.
+    pub q: usize,
+    /// Where the joint's part of v begins.
+    pub v: usize,
+}
+
+/// A tree of primitive joints in depth-first order. Body i is the body moved by joint i.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Topology {
+    joints: Vec<Joint>,
+    nq: usize,
+    nv: usize,
+    dof_parent: Vec<Option<usize>>,
+    row_start: Vec<usize>,
+    row_dofs: Vec<usize>,
+}
+
+impl Topology {
+    /// The tree of these (parent, kind) pairs, parents before children.
+    ///
+    /// Returns `None` unless the order is depth-first: each body's parent must be on the path from the world to the body before it.
+    pub fn new(tree: &[(Option<usize>, JointKind)]) -> Option<Self> {
+        let mut joints = Vec::with_capacity(tree.len());
+        let (mut nq, mut nv) = (0, 0);
+        let mut path: Vec<usize> = Vec::new();
+        for (body, &(parent, kind)) in tree.iter().enumerate() {
+            while path.last().copied() != parent {
+                path.pop()?;
+            }
+            path.push(body);
+            joints.push(Joint { parent, kind, q: nq, v: nv });
+            nq += kind.nq();
+            nv += kind.nv();
+        }
+
+        // A dof's parent is the dof before it in its joint, or the last dof of the parent body.
+        let mut dof_parent = Vec::with_capacity(nv);
+        for joint in &joints {
+            let inherited = joint.parent.map(|parent: usize| joints[parent].v + joints[parent].kind.nv() - 1);
+            dof_parent.extend((0..joint.kind.nv()).map(|k| if k == 0 { inherited } else { Some(joint.v + k - 1) }));
+        }
+
+        // Row k: the dofs from the root to k, k included.
+        let (mut row_start, mut row_dofs) = (Vec::with_capacity(nv + 1), Vec::new());
+        for (dof, parent) in dof_parent.iter().enumerate() {
+            let start = row_dofs.len();
+            row_start.push(start);
+            if let Some(parent) = *parent {
+                let range: std::ops::Range<usize> = row_start[parent]..row_start[parent + 1];
+                row_dofs.extend_from_within(range);
+            }
+            row_dofs.push(dof);
+        }
+        row_start.push(row_dofs.len());
+        Some(Self { joints, nq, nv, dof_parent, row_start, row_dofs })
+    }
+
+    /// The joints, depth-first.
+    #[inline(always)]
+    pub fn joints(&self) -> &[Joint] {
+        &self.joints
+    }
+
+    /// Number of bodies, massless ones of composed joints included.
+    #[inline(always)]
+    pub fn bodies(&self) -> usize {
+        self.joints.len()
+    }
+
+    /// Length of q.
+    #[inline(always)]
+    pub fn nq(&self) -> usize {
+        self.nq
+    }
+
+    /// Degrees of freedom.
+    #[inline(always)]
+    pub fn nv(&self) -> usize {
+        self.nv
+    }
+
+    /// The parent dof of each dof: the book's λ on the expanded tree (section 6.4).
+    pub fn dof_parents(&self) -> &[Option<usize>] {
+        &self.dof_parent
+    }
+
+    /// Depth of a dof: the number of dofs from the root to it, itself included.
+    pub fn dof_depth(&self, dof: usize) -> usize {
+        self.row_start[dof + 1] - self.row_start[dof]
+    }
+
+    /// Where row `dof` of a tree-sparse matrix stands in its flat array: entries (dof, a) for each a of [`Topology::row_dofs`].
+    #[inline(always)]
+    pub fn row(&self, dof: usize) -> std::ops::Range<usize> {
+        self.row_start[dof]..self.row_start[dof + 1]
+    }
+
+    /// The dofs from the root to `dof`, itself last.
+    #[inline(always)]
+    pub fn row_dofs(&self, dof: usize) -> &[usize] {
+        &self.row_dofs[self.row(dof)]
+    }
+
+    /// Stored numbers of a tree-sparse matrix: `n + Σ(d_k − 1)`.
+    #[inline(always)]
+    pub fn stored(&self) -> usize {
+        self.row_dofs.len()
+    }
+
+    /// The largest number of bodies between the world and a body, itself included.
+    pub fn depth(&self) -> usize {
+        let mut depth = vec![0_usize; self.bodies()];
+        for (i, joint) in self.joints.iter().enumerate() {
+            depth[i] = 1 + joint.parent.map_or(0, |parent| depth[parent]);
+        }
+        depth.into_iter().max().unwrap_or(0)
+    }
+}

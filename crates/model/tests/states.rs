@@ -1,0 +1,74 @@
+//! Batches of states: every case present, reproducible, within its ranges.
+
+use featherbench_model::generate::Family;
+use featherbench_model::{Case, Model, StateBatch};
+
+fn model(spec: &str) -> Model<f64> {
+    let robot = Family::parse(spec).and_then(|family| family.generate()).unwrap_or_else(|error| panic!("{spec}: {error}"));
+    Model::build(&robot).unwrap_or_else(|error| panic!("{spec}: {error}"))
+}
+
+#[test]
+fn agreement_batches_hold_every_case() {
+    let batch = StateBatch::agreement(&model("humanoid"), 20, 1);
+    let of = |case| batch.cases.iter().filter(|&&found| found == case).count();
+    assert_eq!([Case::Zero, Case::Straight, Case::Fast, Case::Limit, Case::Random].map(of), [1, 2, 3, 2, 12]);
+    assert_eq!(batch.count(), 20);
+    // A chain has no limits, so no state can be at them.
+    let batch = StateBatch::agreement(&model("chain"), 20, 1);
+    assert!(!batch.cases.contains(&Case::Limit));
+    // The head of a batch shows every case already.
+    let head = StateBatch::agreement(&model("humanoid"), StateBatch::HEAD, 1);
+    for case in [Case::Random, Case::Zero, Case::Straight, Case::Fast, Case::Limit] {
+        assert!(head.cases.contains(&case), "{case:?}");
+    }
+    assert_eq!(StateBatch::agreement(&model("chain"), 0, 1).count(), 0);
+}
+
+#[test]
+fn cases_are_what_they_say() {
+    let model = model("humanoid");
+    let batch = StateBatch::agreement(&model, 20, 1);
+    let largest = |numbers: &[f64]| numbers.iter().fold(0.0_f64, |largest, x| largest.max(x.abs()));
+    let neutral: Vec<f64> = (0..model.topology.nq()).map(|i| if i == 6 { 1.0 } else { 0.0 }).collect();
+    for k in 0..batch.count() {
+        let (q, v, a, tau, wrench) = (batch.q(k), batch.v(k), batch.a(k), batch.tau(k), batch.wrench(k));
+        assert_eq!((q.len(), v.len(), a.len(), tau.len(), wrench.len()), (37, 36, 36, 36, 6 * model.described.len()));
+        // One rounding of the square root and one of each quotient.
+        assert!((q[3..7].iter().map(|x| x * x).sum::<f64>() - 1.0).abs() < 1e-15);
+        match batch.cases[k] {
+            Case::Zero => assert_eq!((q, largest(v), largest(a), largest(tau), largest(wrench)), (&neutral[..], 0.0, 0.0, 0.0, 0.0)),
+            Case::Straight => assert!(q == neutral && (0.5..1.0).contains(&largest(v)) && largest(a) > 0.5),
+            Case::Fast => assert!((500.0..1000.0).contains(&largest(v)) && largest(a) < 1.0),
+            Case::Limit => {
+                assert!(q.iter().zip(&model.limits).skip(7).all(|(x, limit)| *x == limit.0 || *x == limit.1));
+                let (lower, upper) = (q[7..].iter().zip(&model.limits[7..]))
+                    .map(|(x, limit)| (usize::from(*x == limit.0), usize::from(*x == limit.1)))
+                    .fold((0, 0), |sum, x| (sum.0 + x.0, sum.1 + x.1));
+                assert!(lower > 0 && upper > 0, "both ends occur");
+            }
+            Case::Random => assert!(
+                largest(q) < std::f64::consts::PI && (0.5..1.0).contains(&largest(v)) && largest(tau) > 0.5 && largest(wrench) > 0.5
+            ),
+        }
+    }
+}
+
+#[test]
+fn a_state_depends_on_the_seed_and_its_number_only() {
+    let model = model("tree:n=9,joints=all,base=free");
+    let (short, long) = (StateBatch::random(&model, 3, 5), StateBatch::random(&model, 8, 5));
+    for k in 0..3 {
+        assert_eq!((short.q(k), short.v(k), short.wrench(k)), (long.q(k), long.v(k), long.wrench(k)));
+    }
+    assert_ne!(short.q(0), StateBatch::random(&model, 1, 6).q(0));
+    assert_ne!(long.q(0), long.q(1));
+}
+
+#[test]
+fn case_names_read_back() {
+    for case in [Case::Random, Case::Zero, Case::Straight, Case::Fast, Case::Limit] {
+        assert_eq!(Case::parse(case.name()), Some(case));
+    }
+    assert_eq!(Case::parse("typical"), None);
+}

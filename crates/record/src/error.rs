@@ -1,0 +1,88 @@
+//! What can go wrong between a row and its file.
+
+use std::path::PathBuf;
+
+/// Why records or run information could not be read or written; the text names file, line and column as far as they are known.
+#[derive(Debug, thiserror::Error)]
+pub enum RecordError {
+    /// The file system refused.
+    #[error("{path}: {source}", path = path.display())]
+    Io {
+        /// The file that was being read or written.
+        path: PathBuf,
+        /// What the system said.
+        source: std::io::Error,
+    },
+    /// The first line of a CSV file is not the list of columns in [`COLUMNS`](crate::COLUMNS).
+    #[error("{path}:1: the header is not this version's: column {position} is `{found}`, expected `{expected}`", path = path.display())]
+    Header {
+        /// The file.
+        path: PathBuf,
+        /// Counted from one.
+        position: usize,
+        /// What stands there (empty if the header ends before).
+        found: String,
+        /// What this version writes there (empty if the header should have ended).
+        expected: String,
+    },
+    /// A field does not read as its column's type.
+    #[error("{path}:{line}: column `{column}`: {what}", path = path.display())]
+    Field {
+        /// The file.
+        path: PathBuf,
+        /// The line on which the row begins, from one.
+        line: u64,
+        /// The column's name.
+        column: String,
+        /// What is wrong with it.
+        what: String,
+    },
+    /// The file ends in the middle of a row, or a row has too few or too many fields.
+    #[error("{path}:{line}: {what}", path = path.display())]
+    Damaged {
+        /// The file.
+        path: PathBuf,
+        /// The line on which the row begins, from one.
+        line: u64,
+        /// What is wrong with it.
+        what: String,
+    },
+    /// A whole number of rows is missing or was added: the file does not hold as many as its run wrote.
+    #[error("{path}: holds {found} rows, but its run wrote {expected}", path = path.display())]
+    RowCount {
+        /// The file.
+        path: PathBuf,
+        /// Rows in the file.
+        found: u64,
+        /// Rows that `run.json` announces.
+        expected: u64,
+    },
+    /// A `run.json` that does not parse; line and column are inside the message.
+    #[error("{path}: {source}", path = path.display())]
+    Json {
+        /// The file.
+        path: PathBuf,
+        /// What the parser said, with line and column.
+        source: serde_json::Error,
+    },
+    /// A `run.json` of another format than [`RUN_FORMAT`](crate::RUN_FORMAT).
+    #[error("{path}: format {found}, this program reads format {expected}", path = path.display())]
+    Format {
+        /// The file.
+        path: PathBuf,
+        /// The format it announces.
+        found: u32,
+        /// The format that is read here.
+        expected: u32,
+    },
+    /// A number that must be finite is not; nothing was written.
+    #[error("{path}: `{field}` is {value}: only finite numbers are written", path = path.display())]
+    NonFinite {
+        /// The file that would have been written.
+        path: PathBuf,
+        /// Which number, with its row where it has one.
+        field: String,
+        /// What it is.
+        value: f64,
+    },
+}

@@ -1,0 +1,159 @@
+//! Files: rows as CSV, whole runs, and writing that leaves either the old file or the new one.
+
+use std::fs::{self, File, OpenOptions};
+use std::io::{self, Write};
+use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicU64, Ordering};
+
+use crate::{COLUMNS, ColumnType, Record, RecordError, RunInfo, schema_json};
+
+/// Name of the rows' file in a run's folder.
+pub const CSV_NAME: &str = "records.csv";
+/// Name of the provenance file in a run's folder.
+pub const RUN_NAME: &str = "run.json";
+/// Name of the description of the columns in a run's folder.
+pub const SCHEMA_NAME: &str = "schema.json";
+
+/// Replaces a file in one step: after a crash or a full disk there is the old file or the new one, never a part.
+///
+/// The bytes go to a temporary file in the same folder, are flushed to the disk, and the file is renamed. Missing folders are made.
+pub fn atomic_write(path: &Path, bytes: &[u8]) -> Result<(), RecordError> {
+    /// Distinguishes the temporary files of one process.
+    static SERIAL: AtomicU64 = AtomicU64::new(0);
+
+    let io_error = |source| RecordError::Io { path: path.to_owned(), source };
+    let name = path.file_name().ok_or_else(|| io_error(io::Error::new(io::ErrorKind::InvalidInput, "not the name of a file")))?;
+    let folder = match path.parent() {
+        Some(parent) if !parent.as_os_str().is_empty() => parent.to_owned(),
+        _ => PathBuf::from("."),
+    };
+    let serial = SERIAL.fetch_add(1, Ordering::Relaxed);
+    let temporary = folder.join(format!(".{}.{}.{serial}.tmp", name.to_string_lossy(), std::process::id()));
+
+    let replace = || -> io::Result<()> {
+        fs::create_dir_all(&folder)?;
+        let mut file = OpenOptions::new().write(true).create_new(true).open(&temporary)?;
+        file.write_all(bytes)?;
+        file.sync_all()?;
+        drop(file);
+        fs::rename(&temporary, path)?;
+        // The rename itself lasts only once the folder is flushed; systems that cannot flush a folder are left as they are.
+        if let Ok(folder) = File::open(&folder) {
+            let _ = folder.sync_all();
+        }
+        Ok(())
+    };
+    replace().map_err(|source| {
+        let _ = fs::remove_file(&temporary);
+        io_error(source)
+    })
+}
+
+/// The rows as the text of a CSV file, header first. `path` only serves the error: it is where the text is meant to go.
+pub fn to_csv(records: &[Record], path: &Path) -> Result<Vec<u8>, RecordError> {
+    let failed = |error: csv::Error| RecordError::Io { path: path.to_owned(), source: io::Error::other(error) };
+    let mut writer = csv::WriterBuilder::new().has_headers(false).from_writer(Vec::new());
+    writer.write_record(COLUMNS.iter().map(|column| column.name)).map_err(failed)?;
+    for (index, record) in records.iter().enumerate() {
+        for (name, value) in record.floats() {
+            if let Some(value) = value.filter(|value| !value.is_finite()) {
+                return Err(RecordError::NonFinite { path: path.to_owned(), field: format!("{name} of row {}", index + 1), value });
+            }
+        }
+        writer.serialize(record).map_err(failed)?;
+    }
+    writer.into_inner().map_err(|error| RecordError::Io { path: path.to_owned(), source: error.into_error() })
+}
+
+/// Writes rows to a CSV file, in one step.
+pub fn write_csv(path: &Path, records: &[Record]) -> Result<(), RecordError> {
+    atomic_write(path, &to_csv(records, path)?)
+}
+
+/// Reads rows from a CSV file. The header must be this version's, every field of its type, no row cut short, and no pass beyond its bound.
+pub fn read_csv(path: &Path) -> Result<Vec<Record>, RecordError> {
+    let text = read_text(path)?;
+    let mut reader = csv::ReaderBuilder::new().from_reader(text.as_bytes());
+    let header = reader.headers().map_err(|error| csv_error(path, &error))?;
+    for position in 0..header.len().max(COLUMNS.len()) {
+        let found = header.get(position).unwrap_or_default();
+        let expected = COLUMNS.get(position).map_or("", |column| column.name);
+        if found != expected {
+            return Err(RecordError::Header {
+                path: path.to_owned(),
+                position: position + 1,
+                found: found.into(),
+                expected: expected.into(),
+            });
+        }
+    }
+    if !text.ends_with('\n') {
+        let line = text.lines().count() as u64;
+        return Err(RecordError::Damaged { path: path.to_owned(), line, what: "the file ends in the middle of a row".into() });
+    }
+    let header = header.clone();
+    let mut records = Vec::new();
+    let mut raw = csv::StringRecord::new();
+    while reader.read_record(&mut raw).map_err(|error| csv_error(path, &error))? {
+        let line = raw.position().map_or(0, csv::Position::line);
+        let field_error = |column: &str, what| RecordError::Field { path: path.to_owned(), line, column: column.to_owned(), what };
+        if let Some((column, what)) = unknown_word(&raw) {
+            return Err(field_error(column, what));
+        }
+        let record: Record = raw.deserialize(Some(&header)).map_err(|error| csv_error(path, &error))?;
+        if let Some((column, what)) = record.contradiction() {
+            return Err(field_error(column, what));
+        }
+        records.push(record);
+    }
+    Ok(records)
+}
+
+/// Writes a run's three files into its folder: rows, columns, and last `run.json` with the number of rows, so that a folder without it is
+/// known to be unfinished.
+pub fn write_run(folder: &Path, run: &RunInfo, records: &[Record]) -> Result<(), RecordError> {
+    write_csv(&folder.join(CSV_NAME), records)?;
+    atomic_write(&folder.join(SCHEMA_NAME), schema_json().as_bytes())?;
+    RunInfo { rows: records.len() as u64, ..run.clone() }.write(&folder.join(RUN_NAME))
+}
+
+/// Reads a run's folder back; rows that are missing or too many are an error.
+pub fn read_run(folder: &Path) -> Result<(RunInfo, Vec<Record>), RecordError> {
+    let run = RunInfo::read(&folder.join(RUN_NAME))?;
+    let path = folder.join(CSV_NAME);
+    let records = read_csv(&path)?;
+    let found = records.len() as u64;
+    if found != run.rows {
+        return Err(RecordError::RowCount { path, found, expected: run.rows });
+    }
+    Ok((run, records))
+}
+
+/// A whole file as text.
+pub(crate) fn read_text(path: &Path) -> Result<String, RecordError> {
+    fs::read_to_string(path).map_err(|source| RecordError::Io { path: path.to_owned(), source })
+}
+
+/// The first word in a row that its column does not know, as column and complaint; the CSV reader's own error would not name the column.
+fn unknown_word(row: &csv::StringRecord) -> Option<(&'static str, String)> {
+    COLUMNS.iter().zip(row).find_map(|(column, word)| {
+        let known = column.kind != ColumnType::Word || word.is_empty() || column.words.contains(&word);
+        (!known).then(|| (column.name, format!("`{word}` is none of {}", column.words.join(", "))))
+    })
+}
+
+/// Names the file, line and column of what the CSV reader stumbled over.
+fn csv_error(path: &Path, error: &csv::Error) -> RecordError {
+    let path = path.to_owned();
+    let line = error.position().map_or(0, csv::Position::line);
+    match error.kind() {
+        csv::ErrorKind::Deserialize { err, .. } => match err.field().and_then(|field| COLUMNS.get(field as usize)) {
+            Some(column) => RecordError::Field { path, line, column: column.name.into(), what: err.kind().to_string() },
+            None => RecordError::Damaged { path, line, what: err.kind().to_string() },
+        },
+        csv::ErrorKind::UnequalLengths { expected_len, len, .. } => {
+            RecordError::Damaged { path, line, what: format!("{len} fields instead of {expected_len}: the row is cut or altered") }
+        }
+        _ => RecordError::Damaged { path, line, what: error.to_string() },
+    }
+}

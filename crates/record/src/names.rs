@@ -1,0 +1,80 @@
+//! The columns with a closed set of words.
+
+use serde::{Deserialize, Serialize};
+
+/// Declares an enum whose variants are written as fixed lower-case words.
+macro_rules! words {
+    ($(#[$doc:meta])* $name:ident { $($(#[$variant_doc:meta])* $variant:ident = $word:literal),+ $(,)? }) => {
+        $(#[$doc])*
+        #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
+        pub enum $name {
+            $($(#[$variant_doc])* #[serde(rename = $word)] $variant),+
+        }
+
+        impl $name {
+            /// Every value, in the order of declaration.
+            pub const ALL: &'static [Self] = &[$(Self::$variant),+];
+
+            /// The word that stands in files.
+            pub const fn as_str(self) -> &'static str {
+                match self {
+                    $(Self::$variant => $word),+
+                }
+            }
+
+            /// The value that a word stands for, if it is one.
+            pub fn parse(word: &str) -> Option<Self> {
+                Self::ALL.iter().copied().find(|value| value.as_str() == word)
+            }
+        }
+
+        impl std::fmt::Display for $name {
+            fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+                f.pad(self.as_str())
+            }
+        }
+    };
+}
+pub(crate) use words;
+
+words! {
+    /// Whether running again must give the same row.
+    Kind {
+        /// The same bits on every run, shard and thread count.
+        Exact = "exact",
+        /// Measured on a machine: a time, a count of instructions.
+        Measured = "measured",
+    }
+}
+
+words! {
+    /// How `value` must stand to `bound` for the row to pass.
+    Relation {
+        /// value ≤ bound.
+        Le = "le",
+        /// value ≥ bound.
+        Ge = "ge",
+        /// value = bound, exactly.
+        Eq = "eq",
+        /// |value| ≤ bound, for values that have a sign.
+        Within = "within",
+    }
+}
+
+words! {
+    /// What became of a row.
+    Verdict {
+        /// The value stands to its bound as the relation asks.
+        Pass = "pass",
+        /// It does not.
+        Fail = "fail",
+        /// A value without a bound: nothing is judged.
+        Info = "info",
+        /// Nothing was computed, and that was known beforehand: the subject does not offer it.
+        Skip = "skip",
+        /// A value was due and none came, or it was not a finite number.
+        Error = "error",
+        /// The value fails its bound for a cause that is known and written down.
+        Deviation = "deviation",
+    }
+}

@@ -1,0 +1,278 @@
+//! One row.
+
+use serde::{Deserialize, Serialize};
+
+use crate::{Kind, Relation, Verdict};
+
+/// Margins are clamped to this many decades: a value of exactly zero lies inside its bound by that, not by infinity.
+pub const MARGIN_LIMIT: f64 = 16.0;
+
+/// One result. What each field means stands in [`COLUMNS`](crate::COLUMNS), which has a column for each, in this order.
+///
+/// Fill in what identifies the row with a struct literal over [`Record::default`], then close it with one of [`gated`](Self::gated),
+/// [`informed`](Self::informed) and [`without_value`](Self::without_value): they keep value, margin, verdict and reason consistent.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Record {
+    /// Id of the run.
+    pub run: String,
+    /// Content hash of the unit of work.
+    pub cell: String,
+    /// The question asked.
+    pub study: String,
+    /// Family of the model, or problem of the study.
+    pub problem: String,
+    /// Name of the model, or empty.
+    pub model: String,
+    /// Length of the configuration vector.
+    pub nq: Option<u64>,
+    /// Degrees of freedom.
+    pub nv: Option<u64>,
+    /// Moving bodies.
+    pub bodies: Option<u64>,
+    /// Joints on the longest path from base to leaf.
+    pub depth: Option<u64>,
+    /// Parameters, in the form of [`canonical_json`](crate::canonical_json).
+    pub params: String,
+    /// Who answered.
+    pub engine: String,
+    /// The version it reports.
+    pub engine_version: String,
+    /// Its algorithm.
+    pub method: String,
+    /// Its arithmetic.
+    pub scalar: String,
+    /// What was computed or timed.
+    pub quantity: String,
+    /// Kind of input states.
+    pub case: String,
+    /// Measure of the value.
+    pub metric: String,
+    /// Reproducible to the bit, or measured.
+    pub kind: Kind,
+    /// The result: finite, or absent.
+    pub value: Option<f64>,
+    /// Unit of `value`, `bound` and `floor`.
+    pub unit: String,
+    /// With what the value was compared.
+    pub reference: String,
+    /// How `value` must stand to `bound`.
+    pub relation: Option<Relation>,
+    /// The gate.
+    pub bound: Option<f64>,
+    /// Least error that the rounding of the inputs makes unavoidable.
+    pub floor: Option<f64>,
+    /// Decades to the gate, positive inside.
+    pub margin: Option<f64>,
+    /// What became of the row.
+    pub verdict: Verdict,
+    /// Why it is not a pass.
+    pub reason: String,
+}
+
+impl Default for Record {
+    /// An empty, exact, unjudged row with the parameters `{}`.
+    fn default() -> Self {
+        let empty = String::new;
+        Self {
+            run: empty(),
+            cell: empty(),
+            study: empty(),
+            problem: empty(),
+            model: empty(),
+            nq: None,
+            nv: None,
+            bodies: None,
+            depth: None,
+            params: "{}".into(),
+            engine: empty(),
+            engine_version: empty(),
+            method: empty(),
+            scalar: empty(),
+            quantity: empty(),
+            case: empty(),
+            metric: empty(),
+            kind: Kind::Exact,
+            value: None,
+            unit: empty(),
+            reference: empty(),
+            relation: None,
+            bound: None,
+            floor: None,
+            margin: None,
+            verdict: Verdict::Info,
+            reason: empty(),
+        }
+    }
+}
+
+impl Record {
+    /// Closes the row with a value that is judged: a pass or a failure with its margin.
+    ///
+    /// A value or a bound that is not finite makes the row an error that says so; the value is then absent.
+    pub fn gated(mut self, value: f64, relation: Relation, bound: f64) -> Self {
+        self.relation = Some(relation);
+        if !bound.is_finite() {
+            return self.without_value(Verdict::Error, format!("the bound is {bound}, not a finite number"));
+        }
+        self.bound = Some(bound);
+        self = self.informed(value);
+        if self.value.is_some() {
+            self.margin = relation.margin(value, bound);
+            self.verdict = if relation.holds(value, bound) { Verdict::Pass } else { Verdict::Fail };
+            if self.verdict == Verdict::Fail {
+                self.reason = format!("{value:e} is not {} {bound:e}", relation.phrase());
+            }
+        }
+        self
+    }
+
+    /// Closes the row with a value that nothing judges. One that is not finite makes it an error that says so.
+    pub fn informed(mut self, value: f64) -> Self {
+        if !value.is_finite() {
+            return self.without_value(Verdict::Error, format!("the value is {value}, not a finite number"));
+        }
+        if let Some(floor) = self.floor.take_if(|floor| !floor.is_finite()) {
+            return self.without_value(Verdict::Error, format!("the floor is {floor}, not a finite number"));
+        }
+        self.value = Some(value);
+        self.margin = None;
+        self.verdict = Verdict::Info;
+        self.reason.clear();
+        self
+    }
+
+    /// Closes the row with no value: a skip or an error, and why.
+    pub fn without_value(mut self, verdict: Verdict, reason: impl Into<String>) -> Self {
+        self.value = None;
+        self.margin = None;
+        self.verdict = verdict;
+        self.reason = reason.into();
+        self
+    }
+
+    /// Turns a failure, an error or a skip into a known deviation: value and margin stay, the cause is put before the old reason.
+    pub fn deviating(mut self, cause: &str) -> Self {
+        self.reason = if self.reason.is_empty() { cause.to_owned() } else { format!("{cause} ({})", self.reason) };
+        self.verdict = Verdict::Deviation;
+        self
+    }
+
+    /// The numbers that must be finite, with their columns.
+    pub(crate) fn floats(&self) -> [(&'static str, Option<f64>); 4] {
+        [("value", self.value), ("bound", self.bound), ("floor", self.floor), ("margin", self.margin)]
+    }
+
+    /// What contradicts itself in the row, as column and complaint: the trace of a row that was altered by hand.
+    pub(crate) fn contradiction(&self) -> Option<(&'static str, String)> {
+        if let Some((name, value)) = self.floats().into_iter().find_map(|(name, value)| Some((name, value.filter(|v| !v.is_finite())?))) {
+            return Some((name, format!("{value} is not a finite number")));
+        }
+        if self.verdict != Verdict::Pass {
+            return None;
+        }
+        match (self.value, self.relation, self.bound) {
+            (Some(value), Some(relation), Some(bound)) if !relation.holds(value, bound) => {
+                Some(("verdict", format!("pass, but {value:e} is not {} {bound:e}", relation.phrase())))
+            }
+            (None, ..) => Some(("verdict", "pass, but there is no value".into())),
+            _ => None,
+        }
+    }
+}
+
+impl Relation {
+    /// Whether `value` stands to `bound` as the relation asks; a NaN never does.
+    pub fn holds(self, value: f64, bound: f64) -> bool {
+        match self {
+            Self::Le => value <= bound,
+            Self::Ge => value >= bound,
+            Self::Eq => value == bound,
+            Self::Within => value.abs() <= bound,
+        }
+    }
+
+    /// Distance to the gate in decades, positive inside: log₁₀(bound/|value|), or its negative for [`Ge`](Self::Ge).
+    ///
+    /// Clamped to ±[`MARGIN_LIMIT`]; a value equal to its bound has margin 0 even where both are zero. None for [`Eq`](Self::Eq), which
+    /// knows no distance, and where value and bound have no ratio because one of them is negative.
+    pub fn margin(self, value: f64, bound: f64) -> Option<f64> {
+        let (small, large) = match self {
+            Self::Le => (value, bound),
+            Self::Ge => (bound, value),
+            Self::Within => (value.abs(), bound),
+            Self::Eq => return None,
+        };
+        if small < 0.0 || large < 0.0 || small.is_nan() || large.is_nan() {
+            return None;
+        }
+        if small == large {
+            return Some(0.0);
+        }
+        // The difference of logarithms cannot overflow where the ratio could; log10(0) = -∞ is clamped.
+        Some((large.log10() - small.log10()).clamp(-MARGIN_LIMIT, MARGIN_LIMIT))
+    }
+
+    /// The relation in words, to stand between value and bound.
+    pub fn phrase(self) -> &'static str {
+        match self {
+            Self::Le => "at most",
+            Self::Ge => "at least",
+            Self::Eq => "equal to",
+            Self::Within => "within ±",
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn margins_are_decades_positive_inside() {
+        assert_eq!(Relation::Le.margin(1e-16, 1e-14), Some(2.0));
+        assert_eq!(Relation::Le.margin(1e-12, 1e-14), Some(-2.0));
+        assert_eq!(Relation::Ge.margin(100.0, 1.0), Some(2.0));
+        assert_eq!(Relation::Within.margin(-1e-3, 1e-2), Some(1.0));
+        assert_eq!(Relation::Le.margin(0.0, 1e-14), Some(MARGIN_LIMIT));
+        assert_eq!(Relation::Le.margin(1.0, 0.0), Some(-MARGIN_LIMIT));
+        assert_eq!(Relation::Le.margin(0.0, 0.0), Some(0.0));
+        assert_eq!(Relation::Le.margin(f64::MAX, f64::MIN_POSITIVE), Some(-MARGIN_LIMIT));
+        assert_eq!(Relation::Eq.margin(1.0, 1.0), None);
+        assert_eq!(Relation::Le.margin(-1.0, 1.0), None);
+    }
+
+    #[test]
+    fn a_gate_passes_fails_and_catches_what_is_not_a_number() {
+        let pass = Record::default().gated(1e-15, Relation::Le, 1e-14);
+        assert_eq!((pass.verdict, pass.reason.as_str()), (Verdict::Pass, ""));
+        let fail = Record::default().gated(1e-13, Relation::Le, 1e-14);
+        assert_eq!((fail.verdict, fail.reason.as_str()), (Verdict::Fail, "1e-13 is not at most 1e-14"));
+        for bad in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
+            let value = Record::default().gated(bad, Relation::Le, 1e-14);
+            assert_eq!((value.value, value.bound, value.margin, value.verdict), (None, Some(1e-14), None, Verdict::Error));
+            assert!(value.reason.contains("not a finite number"), "{}", value.reason);
+            let bound = Record::default().gated(1.0, Relation::Le, bad);
+            assert_eq!((bound.value, bound.bound, bound.verdict), (None, None, Verdict::Error));
+            let floor = Record { floor: Some(bad), ..Record::default() }.gated(1.0, Relation::Le, 2.0);
+            assert_eq!((floor.value, floor.floor, floor.verdict), (None, None, Verdict::Error));
+            assert_eq!(Record::default().informed(bad).verdict, Verdict::Error);
+        }
+    }
+
+    #[test]
+    fn a_deviation_keeps_the_value_and_both_reasons() {
+        let row = Record::default().gated(1e-13, Relation::Le, 1e-14).deviating("heavy tip");
+        assert_eq!(row.value, Some(1e-13));
+        assert_eq!((row.verdict, row.reason.as_str()), (Verdict::Deviation, "heavy tip (1e-13 is not at most 1e-14)"));
+    }
+
+    #[test]
+    fn an_altered_pass_contradicts_itself() {
+        let mut row = Record::default().gated(1e-15, Relation::Le, 1e-14);
+        assert_eq!(row.contradiction(), None);
+        row.value = Some(1e-3);
+        assert_eq!(row.contradiction().map(|(column, _)| column), Some("verdict"));
+        row.value = None;
+        assert_eq!(row.contradiction().map(|(column, _)| column), Some("verdict"));
+    }
+}

@@ -1,0 +1,164 @@
+//! The data of the plots: errors against depth, times against size.
+
+use std::collections::BTreeMap;
+
+use record::{Record, Relation};
+use serde::Serialize;
+
+use crate::fit::{Fit, power_law};
+use crate::labels;
+use crate::overview::{AGREEMENT, Overview, PAIRWISE, TIMING};
+
+/// The metrics that measure an error even where nothing gates it.
+pub const ERROR_METRICS: [&str; 3] = ["scaled", "forward", "backward"];
+
+/// Everything that is plotted.
+#[derive(Debug, Serialize)]
+pub struct Figures<'a> {
+    /// One plot per quantity and measure.
+    pub errors: Vec<ErrorPlot<'a>>,
+    /// One line per algorithm, family and case.
+    pub times: Vec<TimeLine<'a>>,
+}
+
+/// Errors of one quantity under one measure.
+#[derive(Debug, Serialize)]
+pub struct ErrorPlot<'a> {
+    /// The quantity's name.
+    pub quantity: &'a str,
+    /// The measure's name.
+    pub metric: &'a str,
+    /// Both in words.
+    pub title: String,
+    /// One per engine, method and scalar.
+    pub traces: Vec<ErrorTrace<'a>>,
+}
+
+/// Errors of one engine's method.
+#[derive(Debug, Serialize)]
+pub struct ErrorTrace<'a> {
+    engine: usize,
+    method: &'a str,
+    scalar: &'a str,
+    points: Vec<ErrorPoint<'a>>,
+}
+
+/// One row's error: its model's index, its case, value, bound and floor.
+#[derive(Debug, Serialize)]
+struct ErrorPoint<'a>(usize, &'a str, f64, Option<f64>, Option<f64>);
+
+/// Times of one algorithm on one family.
+#[derive(Debug, Serialize)]
+pub struct TimeLine<'a> {
+    /// Index of the engine.
+    pub engine: usize,
+    /// The algorithm's name.
+    pub algorithm: &'a str,
+    /// The engine's method.
+    pub method: &'a str,
+    /// Its arithmetic.
+    pub scalar: &'a str,
+    /// The family of models.
+    pub family: &'a str,
+    /// `stream` or `hot`.
+    pub case: &'a str,
+    /// One per model, by size.
+    pub points: Vec<TimePoint>,
+    /// Growth of the time of a call with the number of degrees of freedom.
+    pub per_call: Option<Fit>,
+    /// The same of the time per joint.
+    pub per_joint: Option<Fit>,
+}
+
+/// The time of one model.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub struct TimePoint {
+    /// Index of the model.
+    pub model: usize,
+    /// Degrees of freedom.
+    pub size: u64,
+    /// Joints: as many as bodies.
+    pub joints: u64,
+    /// Nanoseconds per call.
+    pub ns: f64,
+    /// Its first decile, where the run has it.
+    pub p10: Option<f64>,
+    /// Its last decile.
+    pub p90: Option<f64>,
+}
+
+impl<'a> Figures<'a> {
+    /// Collects the plots' data.
+    pub fn of(overview: &Overview<'a>, records: &'a [Record]) -> Self {
+        Self { errors: errors(overview, records), times: times(overview, records) }
+    }
+}
+
+/// Whether a row is the error of an answer that has a reference.
+pub fn is_error_measure(row: &Record) -> bool {
+    let gated = matches!(row.relation, Some(Relation::Le | Relation::Within));
+    row.study == AGREEMENT && row.metric != PAIRWISE && (gated || ERROR_METRICS.contains(&row.metric.as_str()))
+}
+
+fn errors<'a>(overview: &Overview<'a>, records: &'a [Record]) -> Vec<ErrorPlot<'a>> {
+    type Key<'a> = (usize, &'a str, &'a str);
+    let mut plots: BTreeMap<(&str, &str), BTreeMap<Key, Vec<ErrorPoint>>> = BTreeMap::new();
+    for row in records.iter().filter(|row| is_error_measure(row)) {
+        let (Some(model), Some(engine), Some(value)) = (overview.model(&row.model), overview.engine(&row.engine), row.value) else {
+            continue;
+        };
+        if overview.models[model].depth.is_some_and(|depth| depth > 0) {
+            let traces = plots.entry((&row.quantity, &row.metric)).or_default();
+            let points = traces.entry((engine, &row.method, &row.scalar)).or_default();
+            points.push(ErrorPoint(model, &row.case, value.abs(), row.bound, row.floor));
+        }
+    }
+    let mut plots: Vec<ErrorPlot> = plots
+        .into_iter()
+        .map(|((quantity, metric), traces)| ErrorPlot {
+            quantity,
+            metric,
+            title: labels::error(quantity, metric),
+            traces: traces.into_iter().map(|((engine, method, scalar), points)| ErrorTrace { engine, method, scalar, points }).collect(),
+        })
+        .collect();
+    // Forward before backward error, and the rest by name.
+    let metric_rank = |metric: &str| ERROR_METRICS.iter().position(|&known| known == metric).unwrap_or(ERROR_METRICS.len());
+    plots.sort_by_key(|plot| (labels::quantity_rank(plot.quantity), metric_rank(plot.metric)));
+    plots
+}
+
+fn times<'a>(overview: &Overview<'a>, records: &'a [Record]) -> Vec<TimeLine<'a>> {
+    type Spread<'a> = (&'a str, [&'a str; 7]);
+    let what =
+        |row: &'a Record| -> [&'a str; 7] { [&row.engine, &row.quantity, &row.method, &row.scalar, &row.problem, &row.case, &row.params] };
+    let timing: Vec<&Record> = records.iter().filter(|row| row.study == TIMING && row.value.is_some()).collect();
+    let spread: BTreeMap<(&str, Spread), f64> = timing
+        .iter()
+        .filter(|row| row.metric == "ns_p10" || row.metric == "ns_p90")
+        .filter_map(|row| Some(((row.metric.as_str(), (row.model.as_str(), what(row))), row.value?)))
+        .collect();
+
+    let mut lines: BTreeMap<[&str; 7], Vec<TimePoint>> = BTreeMap::new();
+    for row in timing.iter().filter(|row| row.metric == "ns_per_call") {
+        let (Some(model), Some(ns)) = (overview.model(&row.model), row.value) else { continue };
+        let Some(size) = overview.models[model].nv.filter(|&size| size > 0) else { continue };
+        let joints = overview.models[model].bodies.filter(|&bodies| bodies > 0).unwrap_or(size);
+        let key = what(row);
+        let decile = |metric| spread.get(&(metric, (row.model.as_str(), key))).copied();
+        // Parameters tell spreads apart, but not lines: a line may change its number of states with the size.
+        let [engine, algorithm, method, scalar, family, case, _] = key;
+        let line = [engine, algorithm, method, scalar, family, case, ""];
+        lines.entry(line).or_default().push(TimePoint { model, size, joints, ns, p10: decile("ns_p10"), p90: decile("ns_p90") });
+    }
+    lines
+        .into_iter()
+        .filter_map(|([engine, algorithm, method, scalar, family, case, _], mut points)| {
+            points.sort_by_key(|point| (point.size, point.model));
+            let per_call = power_law(points.iter().map(|point| (point.size as f64, point.ns)));
+            let per_joint = power_law(points.iter().map(|point| (point.size as f64, point.ns / point.joints as f64)));
+            let engine = overview.engine(engine)?;
+            Some(TimeLine { engine, algorithm, method, scalar, family, case, points, per_call, per_joint })
+        })
+        .collect()
+}

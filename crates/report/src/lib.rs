@@ -1,0 +1,102 @@
+//! A run's records as a folder that opens in a browser: [`write()`] is a pure function of its arguments and reads no clock.
+//!
+//! The folder needs no network and no server: `index.html` carries every table that is worth printing, `data/*.js` carries the rows, which
+//! are read by adding a script element when a cell is clicked (a page under `file://` may not fetch), and the plots are drawn by the
+//! plotting script that lies beside them. Every number on the page is made from records, and every cell and point leads back to its rows.
+//!
+//! Stages: records are grouped ([`overview`], [`figures`]), turned into HTML (one module per section) and into chunks ([`chunks`]), and
+//! everything is written with `index.html` last.
+
+mod chunks;
+mod figures;
+mod findings;
+mod fit;
+mod heatmap;
+mod labels;
+mod method;
+mod numbers;
+mod overview;
+mod page;
+mod pairwise;
+mod plots;
+mod provenance;
+mod tally;
+mod unpassed;
+mod verdict;
+
+use std::path::{Path, PathBuf};
+
+use record::{Record, RecordError, RunInfo};
+
+use crate::figures::Figures;
+use crate::overview::Overview;
+
+/// Our style sheet.
+const STYLE: &str = include_str!("../assets/style.css");
+
+/// Our script: one file in the report, several here.
+const SCRIPT: &str = concat!(
+    include_str!("../assets/core.js"),
+    include_str!("../assets/rows.js"),
+    include_str!("../assets/heatmap.js"),
+    include_str!("../assets/figures.js"),
+);
+
+/// Where a report was written.
+#[derive(Clone, Debug)]
+pub struct ReportPaths {
+    /// The page to open.
+    pub index: PathBuf,
+    /// Every file of the report, the page included.
+    pub files: Vec<PathBuf>,
+}
+
+/// Why a report could not be written.
+#[derive(Debug, thiserror::Error)]
+pub enum ReportError {
+    /// A file could not be written; the text names it.
+    #[error(transparent)]
+    Write(#[from] RecordError),
+    /// The data of the page could not be turned into JSON.
+    #[error("the report's data: {0}")]
+    Json(#[from] serde_json::Error),
+    /// The plotting library has changed the form in which it hands out its script.
+    #[error("the plotting library no longer embeds its script as expected")]
+    PlottingScript,
+}
+
+/// Writes the report of a run into the folder `out`, which may already hold the run's own files; the page links to `records.csv`,
+/// `run.json` and `schema.json` beside it.
+pub fn write(run: &RunInfo, records: &[Record], out: &Path) -> Result<ReportPaths, ReportError> {
+    let overview = Overview::of(run, records);
+    let figures = Figures::of(&overview, records);
+
+    let mut files = vec![
+        ("style.css".to_owned(), STYLE.as_bytes().to_vec()),
+        ("app.js".to_owned(), SCRIPT.as_bytes().to_vec()),
+        ("plotly.min.js".to_owned(), plotting_script()?.into_bytes()),
+        ("data/overview.js".to_owned(), chunks::script("overview", &overview.data())?),
+        ("data/figures.js".to_owned(), chunks::script("figures", &figures)?),
+    ];
+    files.extend(chunks::rows(&overview, records)?);
+    // Last, so that a page is never older than what it links to.
+    files.push(("index.html".to_owned(), page::render(run, records, &overview, &figures).into_bytes()));
+
+    let mut written = Vec::with_capacity(files.len());
+    for (name, bytes) in files {
+        let path = out.join(name);
+        record::atomic_write(&path, &bytes)?;
+        written.push(path);
+    }
+    Ok(ReportPaths { index: out.join("index.html"), files: written })
+}
+
+/// The plotting library's own script, taken out of the element in which the library wraps it.
+fn plotting_script() -> Result<String, ReportError> {
+    let sources = plotly::Plot::offline_js_sources();
+    let body = sources.split_once("<script type=\"text/javascript\">").and_then(|(_, rest)| rest.split_once("</script>"));
+    match body {
+        Some((script, _)) if script.contains("plotly.js") => Ok(script.to_owned()),
+        _ => Err(ReportError::PlottingScript),
+    }
+}

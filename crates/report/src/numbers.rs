@@ -1,0 +1,63 @@
+//! Numbers as people read them.
+
+/// Two significant digits, in scientific form where it is shorter: `3.2e-14`, `0.25`, `1200`.
+pub fn short(value: f64) -> String {
+    let size = value.abs();
+    if value == 0.0 {
+        "0".into()
+    } else if !(1e-3..1e6).contains(&size) {
+        format!("{value:.1e}").replace(".0e", "e")
+    } else if size >= 100.0 || value.fract() == 0.0 {
+        format!("{value:.0}")
+    } else {
+        let decimals = (1 - size.log10().floor() as i32).max(0) as usize;
+        format!("{value:.decimals$}")
+    }
+}
+
+/// Decades with a sign and one digit, rounded away from comfort: 0.99 decades are `+0.9`, not `+1.0`.
+pub fn decades(margin: f64) -> String {
+    let tenths = (margin * 10.0).floor() / 10.0;
+    format!("{}{:.1}", if tenths < 0.0 { "−" } else { "+" }, tenths.abs())
+}
+
+/// A count with its noun: `1 row`, `12 300 rows`.
+pub fn count(number: usize, noun: &str) -> String {
+    format!("{} {noun}{}", grouped(number), if number == 1 { "" } else { "s" })
+}
+
+/// Thousands apart by narrow spaces.
+pub fn grouped(number: usize) -> String {
+    let digits = number.to_string();
+    let mut text = String::with_capacity(digits.len() * 2);
+    for (index, digit) in digits.chars().enumerate() {
+        if index > 0 && (digits.len() - index).is_multiple_of(3) {
+            text.push('\u{202f}');
+        }
+        text.push(digit);
+    }
+    text
+}
+
+/// Names as a sentence has them: `a`, `a and b`, `a, b and c`.
+pub fn listed(names: &[String]) -> String {
+    match names {
+        [] => String::new(),
+        [one] => one.clone(),
+        [first @ .., last] => format!("{} and {last}", first.join(", ")),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_read_well() {
+        assert_eq!([0.0, 3.21e-14, 0.25, 1.0, 1234.4, 0.012, 2e9].map(short), ["0", "3.2e-14", "0.25", "1", "1234", "0.012", "2e9"]);
+        assert_eq!([0.99, -0.01, 16.0, -2.34].map(decades), ["+0.9", "−0.1", "+16.0", "−2.4"]);
+        assert_eq!([grouped(7), grouped(1234), grouped(1_234_567)], ["7", "1\u{202f}234", "1\u{202f}234\u{202f}567"]);
+        assert_eq!((count(1, "row"), count(0, "row")), ("1 row".into(), "0 rows".into()));
+        assert_eq!(listed(&["a".into(), "b".into(), "c".into()]), "a, b and c");
+    }
+}

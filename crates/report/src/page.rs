@@ -1,0 +1,127 @@
+//! The page: its frame, and its sections in order.
+
+use maud::{DOCTYPE, Markup, html};
+use record::{CSV_NAME, RUN_NAME, Record, RunInfo, SCHEMA_NAME};
+
+use crate::figures::Figures;
+use crate::findings::Findings;
+use crate::overview::Overview;
+use crate::{heatmap, method, pairwise, plots, provenance, unpassed, verdict};
+
+/// The sections: anchor, entry in the navigation.
+const SECTIONS: [(&str, &str); 8] = [
+    ("verdict", "Verdict"),
+    ("agreement", "Agreement"),
+    ("depth", "Error"),
+    ("time", "Time"),
+    ("pairs", "Pairs"),
+    ("provenance", "Provenance"),
+    ("method", "Method"),
+    ("unpassed", "Not passed"),
+];
+
+/// The whole page as text.
+pub fn render(run: &RunInfo, records: &[Record], overview: &Overview, figures: &Figures) -> String {
+    let findings = Findings::of(run, overview, records);
+    let page = html! {
+        (DOCTYPE)
+        html lang="en" {
+            head {
+                meta charset="utf-8";
+                meta name="viewport" content="width=device-width, initial-scale=1";
+                meta name="color-scheme" content="light dark";
+                title { "featherbench: " (run.suite) " " (run.run) }
+                link rel="stylesheet" href="style.css";
+                // The first is small, defines what the data scripts call, and sets the theme before anything is drawn.
+                script src="app.js" {}
+                script defer src="data/overview.js" {}
+                script defer src="data/figures.js" {}
+                script defer src="plotly.min.js" {}
+            }
+            body {
+                a.to-content href="#verdict" { "Skip to the verdict" }
+                (header(run))
+                main {
+                    (verdict::section(run, overview, records, &findings))
+                    (heatmap::section(overview, &findings))
+                    (plots::depth(figures))
+                    (plots::time(overview, figures))
+                    (pairwise::section(overview, records))
+                    (provenance::section(run, overview))
+                    (method::section(run, overview, figures))
+                    (unpassed::section(records))
+                }
+                footer {
+                    p {
+                        "Made by featherbench " (run.version) " from the rows of run " code { (run.run) } ": "
+                        a href=(CSV_NAME) { (CSV_NAME) } ", "
+                        a href=(RUN_NAME) { (RUN_NAME) } ", columns described in "
+                        a href=(SCHEMA_NAME) { (SCHEMA_NAME) } "."
+                    }
+                }
+                (rows_dialog())
+                div #tip role="tooltip" hidden {}
+                noscript { p.notice { "Without scripts the tables can be read; plots and the rows behind each cell need them." } }
+            }
+        }
+    };
+    page.into_string()
+}
+
+/// A button that opens rows: those of a chunk whose columns have the given values.
+pub fn opener(chunk: &str, filters: &[(&str, &str)], text: &str) -> Markup {
+    let filters: serde_json::Map<String, serde_json::Value> =
+        filters.iter().filter(|(_, value)| !value.is_empty()).map(|&(column, value)| (column.to_owned(), value.into())).collect();
+    html! {
+        button.open type="button" data-chunk=(chunk) data-filter=(serde_json::Value::from(filters)) { (text) }
+    }
+}
+
+fn header(run: &RunInfo) -> Markup {
+    html! {
+        header {
+            div.bar {
+                a.brand href="#verdict" {
+                    (logo())
+                    span { "featherbench" }
+                }
+                nav aria-label="Sections" {
+                    @for (anchor, name) in SECTIONS { a href={ "#" (anchor) } { (name) } }
+                }
+                button #theme type="button" aria-label="Switch between light and dark" title="Light or dark" { "◐" }
+            }
+            p.run {
+                span { "suite " b { (run.suite) } }
+                @if !run.started.is_empty() { span { (run.started) } }
+                @if !run.host.cpu.is_empty() { span { (run.host.cpu) } }
+                span { @if run.live { "engines asked live" } @else { "recorded engine answers" } }
+                span { "run " code { (run.run) } }
+            }
+        }
+    }
+}
+
+/// A feather whose barbs are the bars of a bench: three lines on a quill.
+fn logo() -> Markup {
+    html! {
+        svg viewBox="0 0 24 24" width="24" height="24" aria-hidden="true" {
+            path d="M4 21 C6 14 10 8 20 3" fill="none" stroke="currentColor" stroke-width="1.8" stroke-linecap="round" {}
+            path d="M7 15 H14 M9.5 11 H17.5 M13 7.2 H20" fill="none" stroke="currentColor" stroke-width="1.8" stroke-linecap="round" {}
+        }
+    }
+}
+
+/// Where rows appear when something is clicked; the script fills it.
+fn rows_dialog() -> Markup {
+    html! {
+        dialog #rows aria-labelledby="rows-title" {
+            div.rows-head {
+                h2 #rows-title { "Rows" }
+                p #rows-count role="status" {}
+                button #rows-close type="button" aria-label="Close" { "✕" }
+            }
+            form #rows-filters method="dialog" {}
+            div #rows-table tabindex="0" {}
+        }
+    }
+}

@@ -1,0 +1,133 @@
+//! Section: with what, on what and on whom the run was made.
+
+use std::collections::BTreeMap;
+
+use maud::{Markup, html};
+use record::{ModelInfo, RunInfo};
+
+use crate::numbers::short;
+use crate::overview::Overview;
+use crate::page::opener;
+
+/// Writes the section.
+pub fn section(run: &RunInfo, overview: &Overview) -> Markup {
+    html! {
+        section #provenance {
+            h2 { "Engines, machine and models" }
+            (engines(run))
+            div.columns { (build(run)) (machine(run)) }
+            (models(run, overview))
+        }
+    }
+}
+
+fn engines(run: &RunInfo) -> Markup {
+    html! {
+        h3 { "Engines" }
+        div.scroll {
+            table.compact {
+                thead { tr { th scope="col" { "engine" } th scope="col" { "version" } th scope="col" { "answers" } th scope="col" { "status" } th scope="col" { "build" } } }
+                tbody {
+                    @for engine in &run.engines {
+                        tr {
+                            th scope="row" { (engine.name) }
+                            td { code { (engine.version) } }
+                            td { (engine.source) }
+                            td {
+                                @if engine.status == "ok" { span.badge.pass { "✓ ok" } } @else { span.badge.error { "! " (engine.status) } }
+                                @if !engine.reason.is_empty() { " " (engine.reason) }
+                            }
+                            td.build { @for (name, value) in &engine.build { span.nowrap { (name) "=" code { (value) } } " " } }
+                        }
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// A list of facts; those that could not be found out say so.
+fn facts(title: &str, facts: &[(&str, String)]) -> Markup {
+    html! {
+        div {
+            h3 { (title) }
+            dl.facts {
+                @for (name, value) in facts {
+                    dt { (name) }
+                    dd { @if value.is_empty() { span.none { "unknown" } } @else { (value) } }
+                }
+            }
+        }
+    }
+}
+
+fn build(run: &RunInfo) -> Markup {
+    let dirty = if run.git.dirty { ", with uncommitted changes" } else { "" };
+    let revision = if run.git.revision.is_empty() { String::new() } else { format!("{}{dirty}", run.git.revision) };
+    facts(
+        "Program",
+        &[
+            ("featherbench", run.version.clone()),
+            ("revision", revision),
+            ("binary", run.binary_hash.clone()),
+            ("compiler", run.rustc.clone()),
+            ("profile", run.profile.clone()),
+            ("target features", run.target_features.join(" ")),
+            ("suite", format!("{} {}", run.suite, run.suite_hash)),
+            ("seed", run.seed.to_string()),
+        ],
+    )
+}
+
+fn machine(run: &RunInfo) -> Markup {
+    let host = &run.host;
+    let phases: Vec<String> = run.seconds.iter().map(|(phase, &seconds)| format!("{phase} {} s", short(seconds))).collect();
+    facts(
+        "Machine",
+        &[
+            ("processor", host.cpu.clone()),
+            ("logical cores", host.cores.to_string()),
+            ("timing pinned to", host.affinity.clone()),
+            ("governor", host.governor.clone()),
+            ("load at start", host.load.map(|load| format!("{load:.2}")).unwrap_or_default()),
+            ("memory", host.memory.map(|bytes| format!("{:.1} GiB", bytes as f64 / f64::from(1 << 30))).unwrap_or_default()),
+            ("kernel", host.kernel.clone()),
+            ("time spent", phases.join(", ")),
+        ],
+    )
+}
+
+fn models(run: &RunInfo, overview: &Overview) -> Markup {
+    let announced: BTreeMap<&str, &ModelInfo> = run.models.iter().map(|model| (model.name.as_str(), model)).collect();
+    let size = |value: Option<u64>| value.map(|value| value.to_string()).unwrap_or_default();
+    html! {
+        h3 { "Models" }
+        div.scroll.tall {
+            table.compact.sortable {
+                thead {
+                    tr {
+                        th scope="col" { "model" } th scope="col" { "family" } th scope="col" { "origin" }
+                        th.number scope="col" { "nv" } th.number scope="col" { "bodies" } th.number scope="col" { "depth" }
+                        th scope="col" { "licence" } th scope="col" { "source" } th scope="col" { "hash" }
+                    }
+                }
+                tbody {
+                    @for (index, model) in overview.models.iter().enumerate() {
+                        @let info = announced.get(model.name);
+                        tr {
+                            th scope="row" { (opener(&format!("model-{index}"), &[], model.name)) }
+                            td { (model.family) }
+                            td { @if let Some(info) = info { (info.origin) } }
+                            td.number { (size(model.nv)) }
+                            td.number { (size(model.bodies)) }
+                            td.number { (size(model.depth)) }
+                            td { @if let Some(info) = info { (info.licence) } }
+                            td { @if let Some(info) = info { (info.source) } }
+                            td { @if let Some(info) = info { code title=(info.hash) { (info.hash.chars().take(12).collect::<String>()) } } }
+                        }
+                    }
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,118 @@
+//! Section: every row that did not pass, grouped by its reason.
+
+use std::collections::BTreeMap;
+
+use maud::{Markup, html};
+use record::{Record, Verdict};
+
+use crate::chunks::{UNPASSED, is_unpassed};
+use crate::labels;
+use crate::numbers::{count, decades};
+use crate::overview::severity;
+use crate::page::opener;
+use crate::tally::gravity;
+
+/// Groups that the page itself lists; what is beyond is found through the button that opens all rows.
+const LISTED: usize = 600;
+/// Models, and quantities, that a group names.
+const NAMED: usize = 6;
+
+/// Rows that did not pass for one reason.
+struct Group<'a> {
+    rows: usize,
+    quantities: Vec<String>,
+    models: Vec<String>,
+    worst: &'a Record,
+}
+
+/// Writes the section.
+pub fn section(records: &[Record]) -> Markup {
+    let groups = groups(records);
+    let total: usize = groups.iter().map(|group| group.rows).sum();
+    html! {
+        section #unpassed {
+            h2 { "Everything that did not pass" }
+            @if groups.is_empty() {
+                p.empty { "Every judged row passed; nothing was skipped." }
+            } @else {
+                p.lead {
+                    (count(total, "row")) " for " (count(groups.len(), "reason")) ": "
+                    (opener(UNPASSED, &[], "open them all")) "."
+                    @if groups.len() > LISTED { " The first " (LISTED) " reasons are listed here." }
+                }
+                div.scroll.tall {
+                    table.compact.sortable {
+                        thead {
+                            tr {
+                                th scope="col" { "verdict" } th.number scope="col" { "rows" } th scope="col" { "engine" } th scope="col" { "quantity" }
+                                th scope="col" { "models" } th.number scope="col" { "worst margin" } th scope="col" { "reason" }
+                            }
+                        }
+                        tbody { @for group in groups.iter().take(LISTED) { (row(group)) } }
+                    }
+                }
+            }
+        }
+    }
+}
+
+fn row(group: &Group) -> Markup {
+    let worst = group.worst;
+    let mut filters = vec![("verdict", worst.verdict.as_str()), ("study", &worst.study), ("engine", &worst.engine)];
+    // As the groups are made: rows with a number by their quantity and measure, others by their reason.
+    match worst.value {
+        Some(_) => filters.extend([("quantity", worst.quantity.as_str()), ("metric", &worst.metric)]),
+        None => filters.push(("reason", &worst.reason)),
+    }
+    html! {
+        tr {
+            td { span class={ "badge " (worst.verdict) } { (labels::glyph(worst.verdict)) " " (worst.verdict) } }
+            td.number { (opener(UNPASSED, &filters, &group.rows.to_string())) }
+            td { (worst.engine) }
+            td { (some(&group.quantities)) }
+            td { (some(&group.models)) }
+            td.number { @if let Some(margin) = worst.margin { (decades(margin)) } }
+            td.reason { (worst.reason) }
+        }
+    }
+}
+
+/// The first names of a list, and how many there are if not all are shown.
+fn some(names: &[String]) -> Markup {
+    html! {
+        (names.iter().take(NAMED).cloned().collect::<Vec<_>>().join(", "))
+        @if names.len() > NAMED { ", … " small { "(" (names.len()) ")" } }
+    }
+}
+
+/// Failures of one engine, quantity and metric are one group: their reasons differ in the numbers alone, and the worst speaks for them.
+/// Of deviations, the cause before the parenthesis tells groups apart; of rows without a value, the reason alone.
+fn groups(records: &[Record]) -> Vec<Group<'_>> {
+    let mut groups: BTreeMap<_, Group> = BTreeMap::new();
+    for row in records.iter().filter(|row| is_unpassed(row)) {
+        let reason = match row.verdict {
+            Verdict::Fail if row.value.is_some() => "",
+            Verdict::Deviation => row.reason.split_once(" (").map_or(row.reason.as_str(), |(cause, _)| cause),
+            _ => row.reason.as_str(),
+        };
+        let measured = row.value.map(|_| (labels::quantity_rank(&row.quantity), &row.metric));
+        let group = groups.entry((gravity(row.verdict), &row.study, &row.engine, measured, reason)).or_insert_with(|| Group {
+            rows: 0,
+            quantities: Vec::new(),
+            models: Vec::new(),
+            worst: row,
+        });
+        group.rows += 1;
+        let quantity = labels::error(&row.quantity, &row.metric);
+        if !group.quantities.contains(&quantity) {
+            group.quantities.push(quantity);
+        }
+        if !row.model.is_empty() && !group.models.contains(&row.model) {
+            group.models.push(row.model.clone());
+        }
+        if severity(row) < severity(group.worst) {
+            group.worst = row;
+        }
+    }
+    groups.into_values().collect()
+}

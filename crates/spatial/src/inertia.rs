@@ -1,0 +1,181 @@
+//! Rigid-body and articulated-body inertias.
+
+use crate::{Force, Lift, Mat3, Motion, Real, Sym3, Transform, Vec3};
+use std::ops::{Add, AddAssign};
+
+/// The inertia of a rigid body at a frame's origin: ten numbers (the book, equation 2.63 and section A.3).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct RigidBodyInertia<T> {
+    /// Mass, kg.
+    pub mass: T,
+    /// First moment of mass `m·c`, kg·m.
+    pub first_moment: Vec3<T>,
+    /// Rotational inertia about the frame's *origin*, kg·m².
+    pub rotational: Sym3<T>,
+}
+
+impl<T: Real> RigidBodyInertia<T> {
+    /// A body of no mass.
+    #[inline(always)]
+    pub fn zero() -> Self {
+        Self { mass: T::zero(), first_moment: Vec3::zero(), rotational: Sym3::zero() }
+    }
+
+    /// From mass, centre of mass and rotational inertia about the centre of mass.
+    #[inline(always)]
+    pub fn from_com(mass: T, com: Vec3<T>, about_com: Sym3<T>) -> Self {
+        Self { mass, first_moment: com * mass, rotational: about_com + Sym3::point_mass(mass, com) }
+    }
+
+    /// The centre of mass; not finite when the mass is zero.
+    #[inline(always)]
+    pub fn com(&self) -> Vec3<T> {
+        Vec3::new(self.first_moment.x / self.mass, self.first_moment.y / self.mass, self.first_moment.z / self.mass)
+    }
+
+    /// `I v`: the momentum of a velocity, the force of an acceleration.
+    #[inline(always)]
+    pub fn mul(&self, v: Motion<T>) -> Force<T> {
+        let h = self.first_moment;
+        // n = Ī ω + h × v,  f = m v − h × ω
+        Force::new(h.cross_add(v.lin, self.rotational * v.ang), v.lin.scale_add(self.mass, v.ang.cross(h)))
+    }
+
+    /// The same inertia at the parent's origin in parent coordinates, `X* I X⁻¹`.
+    #[inline(always)]
+    pub fn to_parent(&self, x: &Transform<T>) -> Self {
+        let r = x.translation;
+        let h = x.rotation * self.first_moment;
+        let moved = r.scale_add(self.mass, h);
+        // Ī' = R Ī Rᵀ − r×h× − (h + m r)×r×
+        let (a, b) = (h, moved);
+        let minus = |u: Vec3<T>, w: Vec3<T>| Sym3 {
+            // upper triangle of −u× w× = (u·w) 1 − w uᵀ
+            xx: u.y.mul_add(w.y, u.z * w.z),
+            xy: -(w.x * u.y),
+            xz: -(w.x * u.z),
+            yy: u.x.mul_add(w.x, u.z * w.z),
+            yz: -(w.y * u.z),
+            zz: u.x.mul_add(w.x, u.y * w.y),
+        };
+        let rotational = self.rotational.rotate(x.rotation) + minus(a, r) + minus(r, b);
+        Self { mass: self.mass, first_moment: moved, rotational }
+    }
+
+    /// As an articulated-body inertia.
+    #[inline(always)]
+    pub fn to_articulated(&self) -> ArticulatedInertia<T> {
+        ArticulatedInertia { rotational: self.rotational, coupling: Mat3::skew(self.first_moment), translational: Sym3::scalar(self.mass) }
+    }
+
+    /// The parameter inertia in another scalar.
+    #[inline(always)]
+    pub fn lift<S>(self) -> RigidBodyInertia<S>
+    where
+        T: Lift<S>,
+    {
+        RigidBodyInertia { mass: self.mass.lift(), first_moment: self.first_moment.lift(), rotational: self.rotational.lift() }
+    }
+}
+
+impl<T: Real> Add for RigidBodyInertia<T> {
+    type Output = Self;
+    #[inline(always)]
+    fn add(self, other: Self) -> Self {
+        Self {
+            mass: self.mass + other.mass,
+            first_moment: self.first_moment + other.first_moment,
+            rotational: self.rotational + other.rotational,
+        }
+    }
+}
+
+impl<T: Real> AddAssign for RigidBodyInertia<T> {
+    #[inline(always)]
+    fn add_assign(&mut self, other: Self) {
+        *self = *self + other;
+    }
+}
+
+/// An articulated-body inertia `[[I, H], [Hᵀ, M]]`: a symmetric 6×6 matrix from motions to forces (the book, section 7.1).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ArticulatedInertia<T> {
+    /// I: moment from angular acceleration.
+    pub rotational: Sym3<T>,
+    /// H: moment from linear acceleration.
+    pub coupling: Mat3<T>,
+    /// M: force from linear acceleration.
+    pub translational: Sym3<T>,
+}
+
+impl<T: Real> ArticulatedInertia<T> {
+    /// The zero inertia.
+    #[inline(always)]
+    pub fn zero() -> Self {
+        Self { rotational: Sym3::zero(), coupling: Mat3::zero(), translational: Sym3::zero() }
+    }
+
+    /// `Iᴬ m`.
+    #[inline(always)]
+    pub fn mul(&self, m: Motion<T>) -> Force<T> {
+        Force::new(
+            self.coupling.mul_vec_add(m.lin, self.rotational * m.ang),
+            self.coupling.transpose_mul(m.ang) + self.translational * m.lin,
+        )
+    }
+
+    /// `Iᴬ − weight·U Uᵀ`: what is left when the motion with `U = Iᴬ S` is free (`weight = 1/D`).
+    #[inline(always)]
+    pub fn subtract_rank_one(&self, weight: T, u: Force<T>) -> Self {
+        let scaled = u.ang * -weight;
+        let coupling = Mat3::from_rows(
+            u.lin.scale_add(scaled.x, self.coupling.x),
+            u.lin.scale_add(scaled.y, self.coupling.y),
+            u.lin.scale_add(scaled.z, self.coupling.z),
+        );
+        Self {
+            rotational: self.rotational - Sym3::rank_one(weight, u.ang),
+            coupling,
+            translational: self.translational - Sym3::rank_one(weight, u.lin),
+        }
+    }
+
+    /// The same inertia at the parent's origin in parent coordinates, `X* Iᴬ X⁻¹`.
+    #[inline(always)]
+    pub fn to_parent(&self, x: &Transform<T>) -> Self {
+        let r = x.rotation;
+        let p = x.translation;
+        let translational = self.translational.rotate(r);
+        let rotated = r * self.coupling * r.transpose();
+        let m = translational;
+        // H' = R H Rᵀ + p× M'
+        let columns = |v: Vec3<T>| p.cross(v);
+        let (cx, cy, cz) =
+            (columns(Vec3::new(m.xx, m.xy, m.xz)), columns(Vec3::new(m.xy, m.yy, m.yz)), columns(Vec3::new(m.xz, m.yz, m.zz)));
+        let coupling = rotated + Mat3::from_rows(cx, cy, cz).transpose();
+        // I' = R I Rᵀ − (R H Rᵀ) p× + p× H'ᵀ; row i of (A p×) is aᵢ × p, row-wise columns of p× H'ᵀ are p × (row of H').
+        let (ax, ay, az) = (p.cross(rotated.x), p.cross(rotated.y), p.cross(rotated.z));
+        let (bx, by, bz) = (p.cross(coupling.x), p.cross(coupling.y), p.cross(coupling.z));
+        let shift = Sym3 { xx: ax.x + bx.x, xy: ax.y + by.x, xz: ax.z + bz.x, yy: ay.y + by.y, yz: ay.z + bz.y, zz: az.z + bz.z };
+        Self { rotational: self.rotational.rotate(r) + shift, coupling, translational }
+    }
+}
+
+impl<T: Real> Add for ArticulatedInertia<T> {
+    type Output = Self;
+    #[inline(always)]
+    fn add(self, other: Self) -> Self {
+        Self {
+            rotational: self.rotational + other.rotational,
+            coupling: self.coupling + other.coupling,
+            translational: self.translational + other.translational,
+        }
+    }
+}
+
+impl<T: Real> AddAssign for ArticulatedInertia<T> {
+    #[inline(always)]
+    fn add_assign(&mut self, other: Self) {
+        *self = *self + other;
+    }
+}

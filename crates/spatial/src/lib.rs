@@ -1,0 +1,19 @@
+//! Six-dimensional spatial algebra, generic over the scalar [`Real`].
+//!
+//! Motion and force vectors have named parts, `ang` and `lin`; nothing is indexed. A [`Transform`] `X` is the placement of a child frame
+//! in its parent: it carries child coordinates to parent coordinates, and its `inverse_*` methods go the other way. Products are written
+//! with [`Real::mul_add`], because the compiler never fuses `a * b + c` by itself.
+//!
+//! Source: R. Featherstone, *Rigid Body Dynamics Algorithms* (2008), chapter 2 and appendix A ("the book" in this workspace).
+
+mod inertia;
+mod linear;
+mod scalar;
+mod transform;
+mod vector;
+
+pub use inertia::{ArticulatedInertia, RigidBodyInertia};
+pub use linear::{Ldl3, Mat3, Sym3, Vec3};
+pub use scalar::{Counted, Dual, Lift, Operations, Real};
+pub use transform::{Quaternion, Transform};
+pub use vector::{Force, Motion};

@@ -1,0 +1,405 @@
+//! Three-dimensional vectors and matrices, the parts that spatial quantities are made of.
+
+use crate::{Lift, Real};
+use std::ops::{Add, AddAssign, Mul, Neg, Sub, SubAssign};
+
+/// A vector of three numbers.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Vec3<T> {
+    /// First component.
+    pub x: T,
+    /// Second component.
+    pub y: T,
+    /// Third component.
+    pub z: T,
+}
+
+impl<T: Real> Vec3<T> {
+    /// The vector (x, y, z).
+    #[inline(always)]
+    pub fn new(x: T, y: T, z: T) -> Self {
+        Self { x, y, z }
+    }
+
+    /// The zero vector.
+    #[inline(always)]
+    pub fn zero() -> Self {
+        Self::new(T::zero(), T::zero(), T::zero())
+    }
+
+    /// The vector with these components.
+    #[inline(always)]
+    pub fn from_array([x, y, z]: [T; 3]) -> Self {
+        Self::new(x, y, z)
+    }
+
+    /// Its components.
+    #[inline(always)]
+    pub fn to_array(self) -> [T; 3] {
+        [self.x, self.y, self.z]
+    }
+
+    /// Inner product.
+    #[inline(always)]
+    pub fn dot(self, other: Self) -> T {
+        self.x.mul_add(other.x, self.y.mul_add(other.y, self.z * other.z))
+    }
+
+    /// Vector product.
+    #[inline(always)]
+    pub fn cross(self, other: Self) -> Self {
+        Self::new(
+            self.y.mul_add(other.z, -(self.z * other.y)),
+            self.z.mul_add(other.x, -(self.x * other.z)),
+            self.x.mul_add(other.y, -(self.y * other.x)),
+        )
+    }
+
+    /// `self·factor + addend`.
+    #[inline(always)]
+    pub fn scale_add(self, factor: T, addend: Self) -> Self {
+        Self::new(self.x.mul_add(factor, addend.x), self.y.mul_add(factor, addend.y), self.z.mul_add(factor, addend.z))
+    }
+
+    /// `self × other + addend`.
+    #[inline(always)]
+    pub fn cross_add(self, other: Self, addend: Self) -> Self {
+        Self::new(
+            self.y.mul_add(other.z, (-self.z).mul_add(other.y, addend.x)),
+            self.z.mul_add(other.x, (-self.x).mul_add(other.z, addend.y)),
+            self.x.mul_add(other.y, (-self.y).mul_add(other.x, addend.z)),
+        )
+    }
+
+    /// Euclidean length.
+    #[inline(always)]
+    pub fn norm(self) -> T {
+        self.dot(self).sqrt()
+    }
+
+    /// The parameter vector in another scalar.
+    #[inline(always)]
+    pub fn lift<S>(self) -> Vec3<S>
+    where
+        T: Lift<S>,
+    {
+        Vec3 { x: self.x.lift(), y: self.y.lift(), z: self.z.lift() }
+    }
+}
+
+impl<T: Real> Add for Vec3<T> {
+    type Output = Self;
+    #[inline(always)]
+    fn add(self, other: Self) -> Self {
+        Self::new(self.x + other.x, self.y + other.y, self.z + other.z)
+    }
+}
+
+impl<T: Real> Sub for Vec3<T> {
+    type Output = Self;
+    #[inline(always)]
+    fn sub(self, other: Self) -> Self {
+        Self::new(self.x - other.x, self.y - other.y, self.z - other.z)
+    }
+}
+
+impl<T: Real> Neg for Vec3<T> {
+    type Output = Self;
+    #[inline(always)]
+    fn neg(self) -> Self {
+        Self::new(-self.x, -self.y, -self.z)
+    }
+}
+
+impl<T: Real> Mul<T> for Vec3<T> {
+    type Output = Self;
+    #[inline(always)]
+    fn mul(self, factor: T) -> Self {
+        Self::new(self.x * factor, self.y * factor, self.z * factor)
+    }
+}
+
+impl<T: Real> AddAssign for Vec3<T> {
+    #[inline(always)]
+    fn add_assign(&mut self, other: Self) {
+        *self = *self + other;
+    }
+}
+
+impl<T: Real> SubAssign for Vec3<T> {
+    #[inline(always)]
+    fn sub_assign(&mut self, other: Self) {
+        *self = *self - other;
+    }
+}
+
+/// A 3×3 matrix by rows.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Mat3<T> {
+    /// First row.
+    pub x: Vec3<T>,
+    /// Second row.
+    pub y: Vec3<T>,
+    /// Third row.
+    pub z: Vec3<T>,
+}
+
+impl<T: Real> Mat3<T> {
+    /// The matrix with these rows.
+    #[inline(always)]
+    pub fn from_rows(x: Vec3<T>, y: Vec3<T>, z: Vec3<T>) -> Self {
+        Self { x, y, z }
+    }
+
+    /// The matrix of nine numbers in row-major order.
+    #[inline(always)]
+    pub fn from_array(m: [T; 9]) -> Self {
+        Self::from_rows(Vec3::new(m[0], m[1], m[2]), Vec3::new(m[3], m[4], m[5]), Vec3::new(m[6], m[7], m[8]))
+    }
+
+    /// Its nine numbers in row-major order.
+    #[inline(always)]
+    pub fn to_array(self) -> [T; 9] {
+        let Self { x, y, z } = self;
+        [x.x, x.y, x.z, y.x, y.y, y.z, z.x, z.y, z.z]
+    }
+
+    /// The identity.
+    #[inline(always)]
+    pub fn identity() -> Self {
+        let (zero, one) = (T::zero(), T::one());
+        Self::from_array([one, zero, zero, zero, one, zero, zero, zero, one])
+    }
+
+    /// The zero matrix.
+    #[inline(always)]
+    pub fn zero() -> Self {
+        Self::from_rows(Vec3::zero(), Vec3::zero(), Vec3::zero())
+    }
+
+    /// The matrix `v×` with `(v×) u = v × u`.
+    #[inline(always)]
+    pub fn skew(v: Vec3<T>) -> Self {
+        let zero = T::zero();
+        Self::from_array([zero, -v.z, v.y, v.z, zero, -v.x, -v.y, v.x, zero])
+    }
+
+    /// The transpose.
+    #[inline(always)]
+    pub fn transpose(self) -> Self {
+        let Self { x, y, z } = self;
+        Self::from_rows(Vec3::new(x.x, y.x, z.x), Vec3::new(x.y, y.y, z.y), Vec3::new(x.z, y.z, z.z))
+    }
+
+    /// `Mᵀ v`.
+    #[inline(always)]
+    pub fn transpose_mul(self, v: Vec3<T>) -> Vec3<T> {
+        self.x.scale_add(v.x, self.y.scale_add(v.y, self.z * v.z))
+    }
+
+    /// `M v + addend`.
+    #[inline(always)]
+    pub fn mul_vec_add(self, v: Vec3<T>, addend: Vec3<T>) -> Vec3<T> {
+        let row = |r: Vec3<T>, a: T| r.x.mul_add(v.x, r.y.mul_add(v.y, r.z.mul_add(v.z, a)));
+        Vec3::new(row(self.x, addend.x), row(self.y, addend.y), row(self.z, addend.z))
+    }
+
+    /// The parameter matrix in another scalar.
+    #[inline(always)]
+    pub fn lift<S>(self) -> Mat3<S>
+    where
+        T: Lift<S>,
+    {
+        Mat3 { x: self.x.lift(), y: self.y.lift(), z: self.z.lift() }
+    }
+}
+
+impl<T: Real> Mul<Vec3<T>> for Mat3<T> {
+    type Output = Vec3<T>;
+    #[inline(always)]
+    fn mul(self, v: Vec3<T>) -> Vec3<T> {
+        Vec3::new(self.x.dot(v), self.y.dot(v), self.z.dot(v))
+    }
+}
+
+impl<T: Real> Mul for Mat3<T> {
+    type Output = Self;
+    #[inline(always)]
+    fn mul(self, other: Self) -> Self {
+        let row = |r: Vec3<T>| other.transpose_mul(r);
+        Self::from_rows(row(self.x), row(self.y), row(self.z))
+    }
+}
+
+impl<T: Real> Add for Mat3<T> {
+    type Output = Self;
+    #[inline(always)]
+    fn add(self, other: Self) -> Self {
+        Self::from_rows(self.x + other.x, self.y + other.y, self.z + other.z)
+    }
+}
+
+impl<T: Real> Sub for Mat3<T> {
+    type Output = Self;
+    #[inline(always)]
+    fn sub(self, other: Self) -> Self {
+        Self::from_rows(self.x - other.x, self.y - other.y, self.z - other.z)
+    }
+}
+
+/// A symmetric 3×3 matrix, six numbers in the order of the description file.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Sym3<T> {
+    /// Entry (x, x).
+    pub xx: T,
+    /// Entry (x, y).
+    pub xy: T,
+    /// Entry (x, z).
+    pub xz: T,
+    /// Entry (y, y).
+    pub yy: T,
+    /// Entry (y, z).
+    pub yz: T,
+    /// Entry (z, z).
+    pub zz: T,
+}
+
+impl<T: Real> Sym3<T> {
+    /// The matrix of (xx, xy, xz, yy, yz, zz).
+    #[inline(always)]
+    pub fn from_array([xx, xy, xz, yy, yz, zz]: [T; 6]) -> Self {
+        Self { xx, xy, xz, yy, yz, zz }
+    }
+
+    /// Its numbers (xx, xy, xz, yy, yz, zz).
+    #[inline(always)]
+    pub fn to_array(self) -> [T; 6] {
+        [self.xx, self.xy, self.xz, self.yy, self.yz, self.zz]
+    }
+
+    /// The zero matrix.
+    #[inline(always)]
+    pub fn zero() -> Self {
+        Self::scalar(T::zero())
+    }
+
+    /// `value·1`.
+    #[inline(always)]
+    pub fn scalar(value: T) -> Self {
+        let zero = T::zero();
+        Self { xx: value, xy: zero, xz: zero, yy: value, yz: zero, zz: value }
+    }
+
+    /// The upper triangle of a matrix known to be symmetric.
+    #[inline(always)]
+    pub fn from_upper(m: Mat3<T>) -> Self {
+        Self { xx: m.x.x, xy: m.x.y, xz: m.x.z, yy: m.y.y, yz: m.y.z, zz: m.z.z }
+    }
+
+    /// `m (|c|²·1 − c cᵀ)`: the inertia of a point mass at `c`.
+    #[inline(always)]
+    pub fn point_mass(mass: T, c: Vec3<T>) -> Self {
+        let mc = c * mass;
+        Self {
+            xx: mc.y.mul_add(c.y, mc.z * c.z),
+            xy: -(mc.x * c.y),
+            xz: -(mc.x * c.z),
+            yy: mc.x.mul_add(c.x, mc.z * c.z),
+            yz: -(mc.y * c.z),
+            zz: mc.x.mul_add(c.x, mc.y * c.y),
+        }
+    }
+
+    /// `w·u uᵀ`.
+    #[inline(always)]
+    pub fn rank_one(weight: T, u: Vec3<T>) -> Self {
+        let wu = u * weight;
+        Self { xx: wu.x * u.x, xy: wu.x * u.y, xz: wu.x * u.z, yy: wu.y * u.y, yz: wu.y * u.z, zz: wu.z * u.z }
+    }
+
+    /// The full matrix.
+    #[inline(always)]
+    pub fn to_mat3(self) -> Mat3<T> {
+        Mat3::from_array([self.xx, self.xy, self.xz, self.xy, self.yy, self.yz, self.xz, self.yz, self.zz])
+    }
+
+    /// `R S Rᵀ`: the same tensor in the axes that `R` leads to.
+    #[inline(always)]
+    pub fn rotate(self, r: Mat3<T>) -> Self {
+        // Rows of R S, then only the upper triangle of (R S) Rᵀ.
+        let (x, y, z) = (self * r.x, self * r.y, self * r.z);
+        Self { xx: x.dot(r.x), xy: x.dot(r.y), xz: x.dot(r.z), yy: y.dot(r.y), yz: y.dot(r.z), zz: z.dot(r.z) }
+    }
+
+    /// Solves `S x = b` by LDLᵀ without pivoting, and returns the smallest pivot beside the solver.
+    #[inline(always)]
+    pub fn factor(self) -> Ldl3<T> {
+        let d1 = self.xx;
+        let (l21, l31) = (self.xy / d1, self.xz / d1);
+        let d2 = (-l21).mul_add(self.xy, self.yy);
+        let m32 = (-l21).mul_add(self.xz, self.yz);
+        let l32 = m32 / d2;
+        let d3 = (-l32).mul_add(m32, (-l31).mul_add(self.xz, self.zz));
+        Ldl3 { l21, l31, l32, pivots: Vec3::new(d1, d2, d3) }
+    }
+
+    /// The parameter matrix in another scalar.
+    #[inline(always)]
+    pub fn lift<S>(self) -> Sym3<S>
+    where
+        T: Lift<S>,
+    {
+        Sym3 { xx: self.xx.lift(), xy: self.xy.lift(), xz: self.xz.lift(), yy: self.yy.lift(), yz: self.yz.lift(), zz: self.zz.lift() }
+    }
+}
+
+impl<T: Real> Mul<Vec3<T>> for Sym3<T> {
+    type Output = Vec3<T>;
+    #[inline(always)]
+    fn mul(self, v: Vec3<T>) -> Vec3<T> {
+        Vec3::new(
+            self.xx.mul_add(v.x, self.xy.mul_add(v.y, self.xz * v.z)),
+            self.xy.mul_add(v.x, self.yy.mul_add(v.y, self.yz * v.z)),
+            self.xz.mul_add(v.x, self.yz.mul_add(v.y, self.zz * v.z)),
+        )
+    }
+}
+
+impl<T: Real> Add for Sym3<T> {
+    type Output = Self;
+    #[inline(always)]
+    fn add(self, o: Self) -> Self {
+        Self { xx: self.xx + o.xx, xy: self.xy + o.xy, xz: self.xz + o.xz, yy: self.yy + o.yy, yz: self.yz + o.yz, zz: self.zz + o.zz }
+    }
+}
+
+impl<T: Real> Sub for Sym3<T> {
+    type Output = Self;
+    #[inline(always)]
+    fn sub(self, o: Self) -> Self {
+        Self { xx: self.xx - o.xx, xy: self.xy - o.xy, xz: self.xz - o.xz, yy: self.yy - o.yy, yz: self.yz - o.yz, zz: self.zz - o.zz }
+    }
+}
+
+/// The factors `S = L D Lᵀ` of a symmetric positive definite 3×3 matrix.
+#[derive(Clone, Copy, Debug)]
+pub struct Ldl3<T> {
+    l21: T,
+    l31: T,
+    l32: T,
+    /// The pivots: all positive exactly when the matrix is positive definite.
+    pub pivots: Vec3<T>,
+}
+
+impl<T: Real> Ldl3<T> {
+    /// `S⁻¹ b`.
+    #[inline(always)]
+    pub fn solve(&self, b: Vec3<T>) -> Vec3<T> {
+        let y2 = (-self.l21).mul_add(b.x, b.y);
+        let y3 = (-self.l32).mul_add(y2, (-self.l31).mul_add(b.x, b.z));
+        let z = y3 / self.pivots.z;
+        let y = (-self.l32).mul_add(z, y2 / self.pivots.y);
+        let x = (-self.l31).mul_add(z, (-self.l21).mul_add(y, b.x / self.pivots.x));
+        Vec3::new(x, y, z)
+    }
+}

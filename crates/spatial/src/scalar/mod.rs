@@ -1,0 +1,114 @@
+//! The scalar trait: what a kernel may ask of a number.
+
+mod counted;
+mod dual;
+
+pub use counted::{Counted, Operations};
+pub use dual::Dual;
+
+use std::fmt::Debug;
+use std::ops::{Add, AddAssign, Div, Mul, MulAssign, Neg, Sub, SubAssign};
+
+/// A scalar of the dynamics kernels: a ring with division, a fused multiply-add, square root, sine and cosine.
+///
+/// Nothing here compares, so kernels are branch-free in the scalar and the same text runs on `f64`, `f32`, SIMD lanes, dual numbers and
+/// extended precision. `min_lane` is the one way out: a factorization keeps its smallest pivot through it.
+pub trait Real:
+    Copy
+    + Debug
+    + Send
+    + Sync
+    + 'static
+    + Add<Output = Self>
+    + Sub<Output = Self>
+    + Mul<Output = Self>
+    + Div<Output = Self>
+    + Neg<Output = Self>
+    + AddAssign
+    + SubAssign
+    + MulAssign
+{
+    /// The scalar nearest to `value`.
+    fn from_f64(value: f64) -> Self;
+
+    /// `self · factor + addend`, rounded once where the hardware can.
+    fn mul_add(self, factor: Self, addend: Self) -> Self;
+
+    /// The non-negative square root.
+    fn sqrt(self) -> Self;
+
+    /// Sine and cosine of an angle in radians.
+    fn sin_cos(self) -> (Self, Self);
+
+    /// The smallest real value that this scalar holds (itself, or its smallest lane); NaN if any lane is NaN.
+    fn min_lane(self) -> f64;
+
+    /// Zero.
+    #[inline(always)]
+    fn zero() -> Self {
+        Self::from_f64(0.0)
+    }
+
+    /// One.
+    #[inline(always)]
+    fn one() -> Self {
+        Self::from_f64(1.0)
+    }
+}
+
+/// A parameter that can stand in a computation over `T`.
+///
+/// Kernels are written over a state scalar `T` and parameters `P: Lift<T>`: lanes of states keep `f64` parameters, and every scalar lifts to
+/// itself, so a dual or a lane of parameters costs nothing extra to write.
+pub trait Lift<T>: Copy {
+    /// The parameter as a `T`.
+    fn lift(self) -> T;
+}
+
+impl<T: Real> Lift<T> for T {
+    #[inline(always)]
+    fn lift(self) -> T {
+        self
+    }
+}
+
+impl Lift<f32> for f64 {
+    #[inline(always)]
+    fn lift(self) -> f32 {
+        self as f32
+    }
+}
+
+macro_rules! real_for_float {
+    ($float:ident) => {
+        impl Real for $float {
+            #[inline(always)]
+            fn from_f64(value: f64) -> Self {
+                value as $float
+            }
+
+            #[inline(always)]
+            fn mul_add(self, factor: Self, addend: Self) -> Self {
+                if cfg!(target_feature = "fma") { $float::mul_add(self, factor, addend) } else { self * factor + addend }
+            }
+
+            #[inline(always)]
+            fn sqrt(self) -> Self {
+                $float::sqrt(self)
+            }
+
+            #[inline(always)]
+            fn sin_cos(self) -> (Self, Self) {
+                $float::sin_cos(self)
+            }
+
+            #[inline(always)]
+            fn min_lane(self) -> f64 {
+                f64::from(self)
+            }
+        }
+    };
+}
+
+real_for_float!(f64);
+real_for_float!(f32);

@@ -1,0 +1,261 @@
+//! Agreement: one and the same model through every engine, every quantity by every method, against the native kernels.
+//!
+//! Until extended precision is at hand the reference is native f64 and is called so; the rows with another engine as `reference` compare
+//! engines with each other, so that a reader can see who stands alone.
+
+use crate::row;
+use harness::measure::{ForwardScale, Magnitudes, scaled_error, worst};
+use harness::{Cell, Context, DENSE_LIMIT, Finished, Outcome, Problem, Quantity, Refusal, Study, Subject};
+use model::Case;
+use record::{Record, Verdict};
+use serde_json::json;
+
+/// The subject that everything is compared with.
+const REFERENCE: &str = "native";
+
+/// What every engine is asked.
+const QUANTITIES: [Quantity; 15] = [
+    Quantity::Readback,
+    Quantity::InverseDynamics,
+    Quantity::InverseDynamicsWrench,
+    Quantity::Bias,
+    Quantity::MassMatrix,
+    Quantity::MassMatrixProbe,
+    Quantity::ForwardDynamics,
+    Quantity::KineticEnergy,
+    Quantity::PotentialEnergy,
+    Quantity::CenterOfMass,
+    Quantity::Momentum,
+    Quantity::BodyPlacement,
+    Quantity::BodyVelocity,
+    Quantity::BodyAcceleration,
+    Quantity::BodyJacobian,
+];
+
+/// The agreement study.
+pub struct Agreement;
+
+impl Study for Agreement {
+    fn name(&self) -> &'static str {
+        "agreement"
+    }
+
+    fn plan(&self, context: &Context) -> Vec<Cell> {
+        let mut cells = Vec::new();
+        for problem in context.problems.iter().filter(|problem| problem.takes(self.name())) {
+            for subject in context.subjects {
+                for quantity in QUANTITIES.into_iter().filter(|&quantity| asked(problem, quantity)) {
+                    let methods = subject.methods(quantity);
+                    cells.extend(methods.into_iter().map(|method| cell(problem, subject.as_ref(), quantity, method)));
+                }
+            }
+        }
+        cells
+    }
+
+    fn evaluate(&self, context: &Context, cell: &Cell) -> Outcome {
+        let lost = |what: &str| Outcome::Refused(Refusal::Failed(format!("there is no {what} of this cell")));
+        let Some(problem) = context.problem(&cell.problem) else { return lost("problem") };
+        let Some(subject) = context.subject(&cell.subject) else { return lost("subject") };
+        let Some(quantity) = Quantity::parse(&cell.quantity) else { return lost("quantity") };
+        let count = quantity.states(problem.states.count());
+        let evaluated = subject.prepare(problem, quantity, &cell.method, &problem.states).and_then(|mut prepared| {
+            prepared.run(0..count)?;
+            Ok(prepared.read().to_vec())
+        });
+        evaluated.into()
+    }
+
+    fn compare(&self, context: &Context, problem: &Problem, finished: &[Finished]) -> Vec<Record> {
+        let at = problem.magnitudes();
+        let forward = ForwardScale::all(problem, &at);
+        let comparison = Comparison { context, problem, finished, at, forward };
+        let mut rows = comparison.conditioning();
+        for item in finished {
+            rows.extend(comparison.rows(item));
+        }
+        rows.extend(comparison.pairs());
+        rows
+    }
+}
+
+/// Whether a quantity is asked of a robot: the whole mass matrix of small ones, a probe of big ones.
+fn asked(problem: &Problem, quantity: Quantity) -> bool {
+    let big = problem.states.nv > DENSE_LIMIT;
+    match quantity {
+        Quantity::MassMatrix => !big,
+        Quantity::MassMatrixProbe => big,
+        _ => true,
+    }
+}
+
+fn cell(problem: &Problem, subject: &dyn Subject, quantity: Quantity, method: String) -> Cell {
+    let identity = subject.identity();
+    Cell {
+        study: "agreement".into(),
+        problem: problem.name.clone(),
+        problem_hash: problem.hash.clone(),
+        params: json!({"base": problem.base(), "joints": problem.joint_kinds(), "states": quantity.states(problem.states.count())}),
+        subject: identity.name.clone(),
+        version: identity.version.clone(),
+        method,
+        quantity: quantity.name().into(),
+        scalar: "f64".into(),
+    }
+}
+
+struct Comparison<'a> {
+    context: &'a Context<'a>,
+    problem: &'a Problem,
+    finished: &'a [Finished],
+    at: Vec<Magnitudes>,
+    forward: Vec<ForwardScale<'a>>,
+}
+
+impl Comparison<'_> {
+    /// The native answer by the usual method.
+    fn reference(&self, quantity: Quantity) -> Option<&Finished> {
+        self.finished.iter().find(|(cell, _)| cell.subject == REFERENCE && cell.quantity == quantity.name())
+    }
+
+    /// How badly scaled M is, per case: the worst states tell how much an error may grow.
+    fn conditioning(&self) -> Vec<Record> {
+        let Some((cell, _)) = self.reference(Quantity::ForwardDynamics) else { return Vec::new() };
+        let per_state: Vec<f64> = self.forward.iter().map(|scale| scale.condition).collect();
+        self.per_case(&per_state)
+            .into_iter()
+            .map(|(case, value, _)| {
+                let row = Record { case: case.name().into(), metric: "kappa_scaled".into(), unit: "1".into(), ..row(cell, self.problem) };
+                row.informed(value)
+            })
+            .collect()
+    }
+
+    /// The rows of one finished cell.
+    fn rows(&self, (cell, outcome): &Finished) -> Vec<Record> {
+        let Some(quantity) = Quantity::parse(&cell.quantity) else { return Vec::new() };
+        let values = match outcome {
+            Outcome::Values(values) => values,
+            Outcome::Refused(refusal) => {
+                let verdict = if matches!(refusal, Refusal::Unsupported(_)) { Verdict::Skip } else { Verdict::Error };
+                let row = Record { reference: REFERENCE.into(), ..row(cell, self.problem) };
+                return vec![self.context.gates.explain(row.without_value(verdict, refusal.to_string()))];
+            }
+        };
+        if quantity == Quantity::ForwardDynamics {
+            return self.forward_rows(cell, values);
+        }
+        let itself = self.reference(quantity).is_some_and(|(reference, _)| reference == cell);
+        if itself {
+            return Vec::new();
+        }
+        let errors = match self.reference(quantity).map(|(_, outcome)| outcome.values()) {
+            Some(Some(reference)) => self.errors(quantity, reference, values),
+            _ if quantity == Quantity::Readback => self.errors(quantity, &self.problem.readback(), values),
+            _ => return vec![row(cell, self.problem).without_value(Verdict::Error, "the native reference has no value")],
+        };
+        self.judged(cell, "scaled", &errors, None)
+    }
+
+    /// Backward error by our inverse dynamics, and forward error in the kinetic-energy norm.
+    fn forward_rows(&self, cell: &Cell, values: &[f64]) -> Vec<Record> {
+        let states = values.chunks_exact(self.problem.states.nv);
+        let backward: Vec<f64> = states.clone().zip(&self.forward).map(|(a, scale)| scale.backward_error(a)).collect();
+        let mut rows = self.judged(cell, "backward", &backward, None);
+        if let Some((reference, outcome)) = self.reference(Quantity::ForwardDynamics).filter(|(reference, _)| reference != cell) {
+            let Some(reference_values) = outcome.values() else {
+                let reason = format!("the native reference {} has no value", reference.method);
+                rows.push(row(cell, self.problem).without_value(Verdict::Error, reason));
+                return rows;
+            };
+            let pairs = states.zip(reference_values.chunks_exact(self.problem.states.nv)).zip(&self.forward);
+            let forward: Vec<f64> = pairs.map(|((a, reference), scale)| scale.forward_error(reference, a)).collect();
+            let amplification: Vec<f64> = self.forward.iter().map(|scale| scale.amplification).collect();
+            rows.extend(self.judged(cell, "forward", &forward, Some(&amplification)));
+        }
+        rows
+    }
+
+    /// The scaled error at each state.
+    fn errors(&self, quantity: Quantity, reference: &[f64], values: &[f64]) -> Vec<f64> {
+        let size = quantity.size(self.problem);
+        let states = reference.chunks_exact(size).zip(values.chunks_exact(size)).zip(&self.at);
+        states.map(|((reference, value), at)| scaled_error(self.problem, quantity, at, reference, value)).collect()
+    }
+
+    /// One judged row per case: its worst state, the one nearest to its bound where bounds differ.
+    fn judged(&self, cell: &Cell, metric: &str, errors: &[f64], amplification: Option<&[f64]>) -> Vec<Record> {
+        let relative: Vec<f64> = match amplification {
+            Some(amplification) => errors.iter().zip(amplification).map(|(error, growth)| harness::measure::ratio(*error, *growth)).collect(),
+            None => errors.to_vec(),
+        };
+        self.per_case(&relative)
+            .into_iter()
+            .map(|(case, _, state)| {
+                let row = Record {
+                    case: case.name().into(),
+                    metric: metric.into(),
+                    unit: "1".into(),
+                    reference: if metric == "backward" { "native id".into() } else { REFERENCE.into() },
+                    ..row(cell, self.problem)
+                };
+                self.context.gates.judge(row, errors[state], amplification.map_or(1.0, |growth| growth[state]))
+            })
+            .collect()
+    }
+
+    /// The worst value of each case and its state, in the order of first appearance. A NaN is the worst of all.
+    fn per_case(&self, values: &[f64]) -> Vec<(Case, f64, usize)> {
+        let mut cases: Vec<(Case, f64, usize)> = Vec::new();
+        for (state, (&case, &value)) in self.problem.states.cases.iter().zip(values).enumerate() {
+            match cases.iter_mut().find(|(known, ..)| *known == case) {
+                None => cases.push((case, value, state)),
+                Some((_, found, at)) => {
+                    if value.is_nan() || value > *found {
+                        (*found, *at) = (worst(*found, value), state);
+                    }
+                }
+            }
+        }
+        cases
+    }
+
+    /// Engines against each other: the worst state of each pair's usual methods.
+    fn pairs(&self) -> Vec<Record> {
+        let mut rows = Vec::new();
+        for quantity in QUANTITIES.into_iter().filter(|&quantity| quantity != Quantity::Readback) {
+            let mut usual: Vec<&Finished> = Vec::new();
+            for item in self.finished.iter().filter(|(cell, _)| cell.quantity == quantity.name()) {
+                if usual.iter().all(|(cell, _)| cell.subject != item.0.subject) {
+                    usual.push(item);
+                }
+            }
+            for (i, (cell, outcome)) in usual.iter().enumerate() {
+                for (other, other_outcome) in &usual[..i] {
+                    if let (Some(values), Some(others)) = (outcome.values(), other_outcome.values()) {
+                        let errors = if quantity == Quantity::ForwardDynamics {
+                            self.forward_differences(others, values)
+                        } else {
+                            self.errors(quantity, others, values)
+                        };
+                        let row = Record {
+                            case: "all".into(),
+                            metric: "pairwise".into(),
+                            unit: "1".into(),
+                            reference: other.subject.clone(),
+                            ..row(cell, self.problem)
+                        };
+                        rows.push(row.informed(errors.into_iter().fold(0.0, worst)));
+                    }
+                }
+            }
+        }
+        rows
+    }
+
+    fn forward_differences(&self, reference: &[f64], values: &[f64]) -> Vec<f64> {
+        let nv = self.problem.states.nv;
+        let states = reference.chunks_exact(nv).zip(values.chunks_exact(nv)).zip(&self.forward);
+        states.map(|((reference, value), scale)| scale.forward_error(reference, value)).collect()
+    }
+}

@@ -1,0 +1,130 @@
+//! Structure: the counts of the sparse algorithms are integers that theory knows.
+//!
+//! With d_k the depth of dof k in dofs, itself included: a tree-sparse matrix stores `n + Σ(d_k−1)` numbers, its LᵀDL factorization takes
+//! `Σ(d_k−1)` divisions and `Σ d_k(d_k−1)/2` multiply-subtracts, a solve `2·Σ(d_k−1)` multiply-adds and n divisions (the book, section 6.5).
+//! The depths are counted here from the description, without the topology that the kernels use; the operations are counted by running the
+//! kernels on a scalar that counts.
+
+use crate::row;
+use dynamics::{Crba, Ltdl, TreeSparse};
+use harness::{Cell, Context, Finished, Outcome, Problem, Quantity, Refusal, Study};
+use record::{Record, Relation, Verdict};
+use serde_json::json;
+use spatial::{Counted, Operations};
+
+/// The structure study.
+pub struct Structure;
+
+/// Counting runs on a scalar that is a hundred times slower: bigger robots are counted in the tests of `dynamics`.
+const MOST_DOFS: usize = 1100;
+
+/// What is counted, in the order of a native cell's values.
+const COUNTS: [(&str, &str); 5] = [
+    ("stored", "stored numbers of M"),
+    ("factor_divisions", "divisions of the factorization"),
+    ("factor_multiply_subtracts", "multiply-subtracts of the factorization"),
+    ("solve_multiply_adds", "multiply-adds of a solve"),
+    ("solve_divisions", "divisions of a solve"),
+];
+
+impl Study for Structure {
+    fn name(&self) -> &'static str {
+        "structure"
+    }
+
+    fn plan(&self, context: &Context) -> Vec<Cell> {
+        let mut cells = Vec::new();
+        let problems = context.problems.iter().filter(|problem| problem.takes(self.name()) && problem.states.nv <= MOST_DOFS);
+        for problem in problems {
+            for subject in context.subjects {
+                let identity = subject.identity();
+                let method = match subject.methods(Quantity::StoredEntries).into_iter().next() {
+                    Some(_) if identity.name == "native" => "ltdl".to_owned(),
+                    Some(method) => method,
+                    None => continue,
+                };
+                cells.push(Cell {
+                    study: self.name().into(),
+                    problem: problem.name.clone(),
+                    problem_hash: problem.hash.clone(),
+                    params: json!({}),
+                    subject: identity.name.clone(),
+                    version: identity.version.clone(),
+                    method,
+                    quantity: Quantity::StoredEntries.name().into(),
+                    scalar: "f64".into(),
+                });
+            }
+        }
+        cells
+    }
+
+    fn evaluate(&self, context: &Context, cell: &Cell) -> Outcome {
+        let (Some(problem), Some(subject)) = (context.problem(&cell.problem), context.subject(&cell.subject)) else {
+            return Outcome::Refused(Refusal::Failed("there is no problem or subject of this cell".into()));
+        };
+        if cell.subject == "native" {
+            return counts(problem).map_err(Refusal::Failed).into();
+        }
+        let stored = subject.prepare(problem, Quantity::StoredEntries, &cell.method, &problem.states).and_then(|mut prepared| {
+            prepared.run(0..1)?;
+            Ok(prepared.read().to_vec())
+        });
+        stored.into()
+    }
+
+    fn compare(&self, context: &Context, problem: &Problem, finished: &[Finished]) -> Vec<Record> {
+        let expected = expected(problem);
+        let mut rows = Vec::new();
+        for (cell, outcome) in finished {
+            match outcome {
+                Outcome::Values(values) => {
+                    for ((&value, &expected), (metric, _)) in values.iter().zip(&expected).zip(COUNTS) {
+                        let row = Record { metric: metric.into(), unit: "1".into(), reference: "theory".into(), ..row(cell, problem) };
+                        rows.push(context.gates.explain(row.gated(value, Relation::Eq, expected)));
+                    }
+                }
+                Outcome::Refused(refusal) => {
+                    let verdict = if matches!(refusal, Refusal::Unsupported(_)) { Verdict::Skip } else { Verdict::Error };
+                    rows.push(context.gates.explain(row(cell, problem).without_value(verdict, refusal.to_string())));
+                }
+            }
+        }
+        rows
+    }
+}
+
+/// The counts by theory, from the description alone.
+fn expected(problem: &Problem) -> [f64; 5] {
+    let bodies = &problem.description.bodies;
+    let mut depth_of_body = Vec::with_capacity(bodies.len());
+    let (mut n, mut d1, mut d2) = (0_u64, 0_u64, 0_u64);
+    for body in bodies {
+        let above: u64 = body.parent.map_or(0, |parent: usize| depth_of_body[parent]);
+        let nv = body.joint.kind.nv() as u64;
+        depth_of_body.push(above + nv);
+        for depth in above + 1..=above + nv {
+            n += 1;
+            d1 += depth - 1;
+            d2 += depth * (depth - 1) / 2;
+        }
+    }
+    [n + d1, d1, d2, 2 * d1, n].map(|count| count as f64)
+}
+
+/// The counts by running the kernels.
+fn counts(problem: &Problem) -> Result<Vec<f64>, String> {
+    let (model, states) = (&problem.model, &problem.states);
+    let q: Vec<Counted> = states.q(0).iter().map(|&x| Counted(x)).collect();
+    let mut matrix = TreeSparse::<Counted>::new(&model.topology);
+    Crba::new(&model.topology).run(model, &q, &mut matrix).map_err(|error| error.to_string())?;
+    let mut ltdl = Ltdl::new(&model.topology);
+    let mut x: Vec<Counted> = states.tau(0).iter().map(|&x| Counted(x)).collect();
+    let (mut factored, mut solved) = (Ok(()), Ok(()));
+    let factor: Operations = Counted::count(|| factored = ltdl.run(&matrix));
+    factored.map_err(|error| error.to_string())?;
+    let solve: Operations = Counted::count(|| solved = ltdl.solve(&mut x));
+    solved.map_err(|error| error.to_string())?;
+    let counts = [matrix.values().len() as u64, factor.divisions, factor.fused, solve.fused, solve.divisions];
+    Ok(counts.map(|count| count as f64).to_vec())
+}
