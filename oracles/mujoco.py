@@ -243,6 +243,10 @@ class MujocoRobot:
         mj.mj_forward(self.model, self.data)
         return change.to_neutral_a(self.data.qacc.copy())
 
+    def stored(self, _ask: Question) -> float:
+        """nM: the numbers that MuJoCo stores of M, one for each dof and ancestor."""
+        return self.model.nM
+
     # ---- energies, momentum, kinematics
 
     def kinetic_energy(self, ask: Question) -> float:
@@ -320,6 +324,7 @@ class Mujoco:
         "body_velocity": {"object_velocity": MujocoRobot.velocity},
         "body_acceleration": {"object_acceleration": MujocoRobot.acceleration},
         "body_jacobian": {"jac_body": MujocoRobot.jacobian},
+        "stored_entries": {"nM": MujocoRobot.stored},
     }
 
     def prepare(self, description: Description) -> MujocoRobot:

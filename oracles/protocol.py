@@ -301,6 +301,7 @@ SHAPES: dict[str, tuple[str | int, ...]] = {
     "body_velocity": ("bodies", 6),
     "body_acceleration": ("bodies", 6),
     "body_jacobian": (6, "nv"),
+    "stored_entries": (1,),
 }
 
 

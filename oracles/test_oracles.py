@@ -232,6 +232,9 @@ def test_robot(oracles: dict[str, Oracle], data: Header, seed: int) -> None:
         methods = oracle.must({"op": "hello"})[0]["methods"]
         oracle.must({"op": "states", "count": count}, states)
         values = {(q, m): oracle.value(q, m, count) for q in methods if q != "body_jacobian" for m in methods[q]}
+        if "stored_entries" in methods:
+            stored = values.pop(("stored_entries", methods.pop("stored_entries")[0]))
+            check(f"{name}: stored entries of M", float(np.abs(stored - stored_entries(robot)).max()), 0.0)
         jacobian = methods["body_jacobian"][0]
         jacobians = np.array([oracle.value("body_jacobian", jacobian, count, body) for body in range(len(robot.bodies))])
         first = {q: values[q, methods[q][0]] for q in methods if q != "body_jacobian"}
@@ -247,6 +250,18 @@ def test_robot(oracles: dict[str, Oracle], data: Header, seed: int) -> None:
         check(f"{name}: id = Newton and Euler", residual("id", first["id"], reference.id, reference), EXACT)
         test_identities(name, first, jacobians, states, reference)
         test_motion(name, oracle, methods, robot, states, first, reference)
+
+
+def stored_entries(robot: Description) -> int:
+    """n + Σ (d_k - 1) = Σ d_k: each dof has an entry with itself and each dof that it hangs on."""
+    depths: list[int] = []
+    total = 0
+    for body in robot.bodies:
+        above = 0 if body.parent < 0 else depths[body.parent]
+        dofs = body.joint.v.stop - body.joint.v.start
+        total += sum(range(above + 1, above + dofs + 1))
+        depths.append(above + dofs)
+    return total
 
 
 def test_known_fault(robot: Description, states: Blocks, native: Array, right: Array) -> None:

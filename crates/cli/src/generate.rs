@@ -11,6 +11,10 @@ use model::generate::Family;
 pub fn generate(args: &GenArgs) -> Result<(), Fail> {
     let description = match (&args.file, args.family.as_str()) {
         (Some(file), "urdf") => problems::import(file, if args.floating { Base::Floating } else { Base::Fixed })?,
+        (_, spec) if spec.contains(':') => {
+            let generated = Family::parse(spec).and_then(|family| family.generate());
+            generated.map_err(|error| Fail::input(error.to_string()))?
+        }
         _ => family(args)?,
     };
     match &args.out {

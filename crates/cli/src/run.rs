@@ -51,7 +51,7 @@ pub fn run(root: &Root, args: &RunArgs) -> Result<(), Fail> {
         record.run.clone_from(&info.run);
     }
     info.rows = records.len() as u64;
-    let complete = only.is_none() && !args.no_timing;
+    let complete = only.is_none();
     info.expected = gates.conditions(&loaded.suite, &records, complete);
     for engine in subjects.missing() {
         info.expected.push(missing_engine(&engine.name, &engine.reason));

@@ -48,6 +48,17 @@ impl<T: Real> TreeSparse<T> {
         Self { values: vec![T::zero(); topology.stored()], rows }
     }
 
+    /// The matrix with these entries: `entry(i, j)` is asked for each stored one, `j` supporting `i`.
+    pub fn from_fn(topology: &Topology, mut entry: impl FnMut(usize, usize) -> T) -> Self {
+        let mut matrix = Self::new(topology);
+        for i in 0..topology.nv() {
+            for (value, &j) in matrix.values[topology.row(i)].iter_mut().zip(topology.row_dofs(i)) {
+                *value = entry(i, j);
+            }
+        }
+        matrix
+    }
+
     /// Rows and columns: the number of dofs.
     pub fn size(&self) -> usize {
         self.rows.len()

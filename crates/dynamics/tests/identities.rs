@@ -3,7 +3,7 @@
 mod common;
 
 use common::{ROBOTS, build, distance, gap, largest, robot, within, wrenches};
-use dynamics::{
+use featherbench_dynamics::{
     Aba, Bias, Crba, Energy, Jacobian, Kinematics, Ltdl, Momentum, Rnea, TreeSparse, bias_force, center_of_mass, centroidal_momentum, energy,
     forward_dynamics, forward_kinematics, inverse_dynamics, jacobian, mass_matrix,
 };
@@ -207,15 +207,12 @@ fn floating_base_block_is_the_composite_inertia() {
     }
 }
 
-/// A second robot's result on a used workspace equals that of a fresh one to the bit, and a third call equals the first.
+/// Results are the same to the bit after the workspace has served another robot in another state.
 #[test]
 fn used_workspaces_change_nothing() {
     for (name, recipe) in &ROBOTS {
         let (model, other) = (build(recipe), Model::build(&robot(recipe, 12)).unwrap());
-        if other.topology != model.topology {
-            // Branches are drawn too: only the same tree may share a workspace.
-            continue;
-        }
+        assert_eq!(other.topology, model.topology, "{name}: another robot of the same tree");
         let states = StateBatch::random(&model, 3, 5);
         let f = wrenches(&model, 8);
         let n = model.topology.nv();
@@ -247,7 +244,5 @@ fn used_workspaces_change_nothing() {
         let first = all(&model, 0);
         assert_ne!(first, all(&other, 1), "{name}");
         assert_eq!(first, all(&model, 0), "{name}");
-        let n_zero = vec![0.0; n];
-        assert_eq!(first[2].len(), n_zero.len());
     }
 }

@@ -3,13 +3,32 @@
 use crate::{HarnessError, Suite};
 use record::{Expectation, Record, Relation, Verdict};
 use serde::Deserialize;
+use serde_json::Value;
+use std::collections::BTreeMap;
 use std::path::Path;
 
 /// The thresholds of `ci/gates.toml` and the known deviations of `ci/deviations.toml`.
 #[derive(Clone, Debug, PartialEq, Default)]
 pub struct Gates {
     gates: Vec<Gate>,
+    sharp: Option<Sharpness>,
     deviations: Vec<Deviation>,
+}
+
+/// A computed bound may be so wide that it sees nothing: each engine's method must meet one below this, for each kind of joint and base.
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Sharpness {
+    /// The study.
+    pub study: String,
+    /// The quantity.
+    pub quantity: String,
+    /// The error measure with computed bounds.
+    pub metric: String,
+    /// What at least one bound must be below.
+    pub bound: f64,
+    /// Why it is what it is.
+    pub reason: String,
 }
 
 /// One threshold. The first gate that matches a row judges it.
@@ -74,6 +93,7 @@ pub struct Deviation {
 #[serde(deny_unknown_fields)]
 struct GateFile {
     gate: Vec<Gate>,
+    sharp: Option<Sharpness>,
 }
 
 #[derive(Deserialize)]
@@ -89,7 +109,7 @@ impl Gates {
     /// # Errors
     /// [`HarnessError`], naming file, line and key.
     pub fn read(folder: &Path) -> Result<Self, HarnessError> {
-        let GateFile { gate: gates } = read_toml(&folder.join("gates.toml"))?;
+        let GateFile { gate: gates, sharp } = read_toml(&folder.join("gates.toml"))?;
         let path = folder.join("deviations.toml");
         let DeviationFile { deviation: deviations } = read_toml(&path)?;
         for deviation in &deviations {
@@ -98,7 +118,7 @@ impl Gates {
                 return Err(HarnessError::Config { path, message });
             }
         }
-        Ok(Self { gates, deviations })
+        Ok(Self { gates, sharp, deviations })
     }
 
     /// Closes a row with its value: judged where a gate matches, informed elsewhere, and then looked up among the known deviations.
@@ -160,6 +180,7 @@ impl Gates {
                 conditions.push(condition(what, 1, u64::from(seen)));
             }
         }
+        conditions.extend(self.sharp.iter().flat_map(|sharp| sharp.conditions(records)));
         for (engine, quantities) in &suite.expect {
             for (quantity, &expected) in quantities {
                 let passes = |row: &&Record| row.engine == *engine && row.quantity == *quantity && row.verdict == Verdict::Pass;
@@ -175,6 +196,25 @@ fn condition(what: String, expected: u64, found: u64) -> Expectation {
     let met = expected == found;
     let reason = if met { String::new() } else { format!("expected {expected}, found {found}") };
     Expectation { what, expected, found, verdict: if met { Verdict::Pass } else { Verdict::Fail }, reason }
+}
+
+impl Sharpness {
+    /// One condition per engine and method: for how many kinds of joints and bases there is no robot with a sharp bound.
+    fn conditions(&self, records: &[Record]) -> Vec<Expectation> {
+        let mut best: BTreeMap<(&str, &str), BTreeMap<(String, String), f64>> = BTreeMap::new();
+        for row in records.iter().filter(|row| row.study == self.study && row.quantity == self.quantity && row.metric == self.metric) {
+            let (Some(bound), Ok(params)) = (row.bound, serde_json::from_str::<Value>(&row.params)) else { continue };
+            let base = params["base"].as_str().unwrap_or_default();
+            for kind in params["joints"].as_array().into_iter().flatten().filter_map(Value::as_str) {
+                let of_method = best.entry((&row.engine, &row.method)).or_default();
+                let sharpest = of_method.entry((kind.to_owned(), base.to_owned())).or_insert(f64::INFINITY);
+                *sharpest = sharpest.min(bound);
+            }
+        }
+        let blunt = |kinds: &BTreeMap<(String, String), f64>| kinds.values().filter(|&&bound| bound > self.bound).count() as u64;
+        let what = |engine, method| format!("kinds of joint and base for which {engine} {method} has no {} bound below {:e}", self.metric, self.bound);
+        best.iter().map(|((engine, method), kinds)| condition(what(engine, method), 0, blunt(kinds))).collect()
+    }
 }
 
 impl Deviation {

@@ -4,9 +4,10 @@
 //! engines with each other, so that a reader can see who stands alone.
 
 use crate::row;
+use dynamics::Rnea;
 use harness::measure::{ForwardScale, Magnitudes, scaled_error, worst};
 use harness::{Cell, Context, DENSE_LIMIT, Finished, Outcome, Problem, Quantity, Refusal, Study, Subject};
-use model::Case;
+use model::{Case, Model};
 use record::{Record, Verdict};
 use serde_json::json;
 
@@ -75,6 +76,7 @@ impl Study for Agreement {
             rows.extend(comparison.rows(item));
         }
         rows.extend(comparison.pairs());
+        rows.extend(comparison.on_readback());
         rows
     }
 }
@@ -251,6 +253,46 @@ impl Comparison<'_> {
             }
         }
         rows
+    }
+
+    /// Each engine's inverse dynamics against ours *on the model that it read back*: what is left is the algorithm's.
+    fn on_readback(&self) -> Vec<Record> {
+        let mut rows = Vec::new();
+        for (built, outcome) in self.finished.iter().filter(|(cell, _)| cell.quantity == Quantity::Readback.name() && cell.subject != REFERENCE) {
+            let usual = self.finished.iter().find(|(cell, _)| cell.subject == built.subject && cell.quantity == Quantity::InverseDynamics.name());
+            let (Some(readback), Some((cell, answered))) = (outcome.values(), usual) else { continue };
+            let (Some(values), Some(ours)) = (answered.values(), self.inverse_dynamics_of(readback)) else { continue };
+            let errors = self.errors(Quantity::InverseDynamics, &ours, values);
+            let row = Record {
+                case: "all".into(),
+                metric: "scaled_on_readback".into(),
+                unit: "1".into(),
+                reference: "native on the model read back".into(),
+                ..row(cell, self.problem)
+            };
+            rows.push(row.informed(errors.into_iter().fold(0.0, worst)));
+        }
+        rows
+    }
+
+    /// Our inverse dynamics at every state, of the robot with these inertias and placements.
+    fn inverse_dynamics_of(&self, readback: &[f64]) -> Option<Vec<f64>> {
+        let mut description = self.problem.description.clone();
+        for (body, numbers) in description.bodies.iter_mut().zip(readback.chunks_exact(22)) {
+            body.mass = numbers[0];
+            body.com.copy_from_slice(&numbers[1..4]);
+            body.inertia.copy_from_slice(&numbers[4..10]);
+            body.joint.placement.rotation.copy_from_slice(&numbers[10..19]);
+            body.joint.placement.translation.copy_from_slice(&numbers[19..22]);
+        }
+        let model = Model::<f64>::build(&description).ok()?;
+        let states = &self.problem.states;
+        let mut rnea = Rnea::new(&model.topology);
+        let mut all = vec![0.0; states.count() * states.nv];
+        for (k, tau) in all.chunks_exact_mut(states.nv).enumerate() {
+            rnea.run(&model, states.q(k), states.v(k), states.a(k), None, tau).ok()?;
+        }
+        Some(all)
     }
 
     fn forward_differences(&self, reference: &[f64], values: &[f64]) -> Vec<f64> {

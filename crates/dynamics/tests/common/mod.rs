@@ -68,14 +68,14 @@ pub const ROBOTS: [(&str, Recipe); 9] = [
     ("free joints in the middle", Recipe { kinds: &[Revolute, Spherical, Free, Prismatic], bodies: 12, branched: true, armature: true }),
 ];
 
-/// The robot of a recipe: skew axes and gravity, turned placements, products of inertia.
+/// The robot of a recipe, whose tree does not depend on the seed: skew axes and gravity, turned placements, products of inertia.
 pub fn robot(recipe: &Recipe, seed: u64) -> Description {
     let mut random = Random::new(seed, recipe.bodies as u64);
     let mut description = Description { name: "random".into(), gravity: [1.3, -2.1, -9.4], ..Description::default() };
-    let mut path: Vec<usize> = Vec::new();
+    let (mut tree, mut path) = (Random::new(1, recipe.bodies as u64), Vec::<usize>::new());
     for i in 0..recipe.bodies {
         if recipe.branched && i > 1 {
-            path.truncate(1 + random.below(path.len()));
+            path.truncate(1 + tree.below(path.len()));
         }
         let kind = recipe.kinds[i % recipe.kinds.len()];
         let axis = random.direction::<3>();

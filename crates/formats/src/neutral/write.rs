@@ -50,7 +50,7 @@ enum PerDof {
 struct Writer {
     text: String,
     per_dof: PerDof,
-    /// What separates the lines of level 1 (the file), 2 (list items), 3 (a body's joint), 4 (a joint's lists).
+    /// What separates the lines of each level: the file's keys, their items, a body's joint, the joint's lists.
     separator: [&'static str; 4],
 }
 
@@ -63,10 +63,10 @@ impl Writer {
             self.provenance(provenance);
         }
         self.key(0, "bodies");
-        self.list(&description.bodies, Self::body);
+        self.list(1, &description.bodies, Self::body);
         if with_sections && !description.frames.is_empty() {
             self.key(0, "frames");
-            self.list(&description.frames, Self::frame);
+            self.list(1, &description.frames, Self::frame);
         }
         self.push("}");
     }
@@ -80,7 +80,7 @@ impl Writer {
             self.push(&format!("\"{name}\":{}", quoted(value)));
         }
         self.key(1, "notes");
-        self.list(notes, |writer, note| writer.push(&quoted(note)));
+        self.list(2, notes, |writer, note| writer.push(&quoted(note)));
         self.push("}");
     }
 
@@ -139,11 +139,11 @@ impl Writer {
         self.push("}");
     }
 
-    /// A list with one item per line.
-    fn list<T>(&mut self, items: &[T], mut item: impl FnMut(&mut Self, &T)) {
+    /// A list with one item per line of this level.
+    fn list<T>(&mut self, level: usize, items: &[T], mut item: impl FnMut(&mut Self, &T)) {
         for (k, value) in items.iter().enumerate() {
             self.push(if k == 0 { "[" } else { "," });
-            self.push(self.separator[1]);
+            self.push(self.separator[level]);
             item(self, value);
         }
         self.push(if items.is_empty() { "[]" } else { "]" });

@@ -12,6 +12,8 @@ use spatial::{Motion, Vec3};
 pub struct Magnitudes {
     /// Length of the path from the world's origin to each body, m.
     pub reach: Vec<f64>,
+    /// Size of each body: the distance from its origin to the farthest of its centre of mass and the joints on it, m.
+    pub size: Vec<f64>,
     /// Angular velocity, rad/s.
     pub angular_velocity: Vec<f64>,
     /// Linear velocity, m/s.
@@ -47,6 +49,7 @@ impl Magnitudes {
             joint_force: moving.inward(problem, states.a(k), &none),
             joint_force_wrench: moving.inward(problem, states.a(k), states.wrench(k)),
             bias_force: still.inward(problem, &zero, &none),
+            size: sizes(problem),
             reach: moving.reach,
             angular_velocity: moving.angular_velocity,
             linear_velocity: moving.linear_velocity,
@@ -54,6 +57,18 @@ impl Magnitudes {
             linear_acceleration: moving.linear_acceleration,
         }
     }
+}
+
+fn sizes(problem: &Problem) -> Vec<f64> {
+    let model = &problem.model;
+    let center = |i: usize| if model.inertias[i].mass > 0.0 { model.inertias[i].com().norm() } else { 0.0 };
+    let mut sizes: Vec<f64> = (0..model.topology.bodies()).map(center).collect();
+    for (joint, placement) in model.topology.joints().iter().zip(&model.placements) {
+        if let Some(parent) = joint.parent {
+            sizes[parent] = sizes[parent].max(placement.translation.norm());
+        }
+    }
+    sizes
 }
 
 struct Recursion {
@@ -101,8 +116,8 @@ impl Recursion {
             let transport = (2.0 * carried + spin) * velocity.lin.norm();
             let swing = (at(&r.angular_acceleration) + carried * carried) * step;
             r.linear_acceleration.push(at(&r.linear_acceleration) + swing + transport + acceleration.lin.norm());
-            // α = α_p + ω × ω_J + α_J
-            r.angular_acceleration.push(at(&r.angular_acceleration) + carried * across + acceleration.ang.norm());
+            // α = α_p + (ω_p + ω_J) × ω_J + α_J: that ω_J × ω_J vanishes is a cancellation too
+            r.angular_acceleration.push(at(&r.angular_acceleration) + (carried + across) * across + acceleration.ang.norm());
             r.step.push(step);
             r.spin.push(spin);
             omega.push(turned);

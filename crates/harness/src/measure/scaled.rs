@@ -27,11 +27,17 @@ pub fn scaled_error(problem: &Problem, quantity: Quantity, at: &Magnitudes, refe
             let reach = at.reach[body];
             [1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, reach, reach, reach]
         }),
-        Quantity::BodyVelocity => per_body(problem, reference, value, |body| halves(at.angular_velocity[body], at.linear_velocity[body])),
+        // A body moves as a whole: its origin may stand still on the joint's axis while the rest of it turns around.
+        Quantity::BodyVelocity => per_body(problem, reference, value, |body| {
+            halves(at.angular_velocity[body], at.linear_velocity[body] + at.angular_velocity[body] * at.size[body])
+        }),
         Quantity::BodyAcceleration => {
             // Gravity is a term: engines carry it in their accelerations, and taking it out again cancels.
             let gravity = problem.model.gravity.norm();
-            per_body(problem, reference, value, |body| halves(at.angular_acceleration[body], at.linear_acceleration[body] + gravity))
+            per_body(problem, reference, value, |body| {
+                let swing = at.angular_acceleration[body] + at.angular_velocity[body] * at.angular_velocity[body];
+                halves(at.angular_acceleration[body], at.linear_acceleration[body] + gravity + swing * at.size[body])
+            })
         }
         Quantity::BodyJacobian => {
             let reach = at.reach[problem.model.described[problem.deepest_body()]];

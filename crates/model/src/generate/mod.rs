@@ -1,7 +1,8 @@
 //! Generators of robots: each family a pure function of its parameters, the same bits on every platform.
 //!
-//! Families draw with [`crate::Random`] alone and use only exact arithmetic, fused products and square roots (no sine, no cosine). What
-//! they return is canonical: depth-first, without fixed joints, with unique names.
+//! Families draw with [`crate::Random`] alone and use only sums, products, quotients and square roots: no sine or cosine, whose last bit
+//! depends on the library, and no fused products, which depend on the processor. What they return is canonical: depth-first, without
+//! fixed joints, with unique names.
 //!
 //! A [`Family`] can be named by a text, `family` or `family:key=value,key=value`, which is how suites and the command line ask for one:
 //!

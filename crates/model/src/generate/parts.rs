@@ -1,7 +1,6 @@
 //! What the families are made of: links, boxes, random bodies.
 
 use crate::{BodyDescription, JointDescription, JointType, Placement, Random};
-use spatial::{Quaternion, Sym3};
 
 pub(super) const X: [f64; 3] = [1.0, 0.0, 0.0];
 pub(super) const Y: [f64; 3] = [0.0, 1.0, 0.0];
@@ -115,9 +114,8 @@ pub(super) fn random_body(
     let com = std::array::from_fn(|_| random.uniform(-0.15, 0.15));
     // Second moments of mass per axis, all positive: their pairwise sums are principal moments that satisfy the triangle inequality.
     let [a, b, c]: [f64; 3] = std::array::from_fn(|_| mass * random.uniform(0.002, 0.02));
-    let principal = Sym3::from_array([b + c, 0.0, 0.0, a + c, 0.0, a + b]);
-    let inertia = principal.rotate(Quaternion::from_array(random.direction()).to_rotation()).to_array();
-    let rotation = Quaternion::from_array(random.direction()).to_rotation().to_array();
+    let inertia = turned([b + c, a + c, a + b], random_rotation(random));
+    let rotation = random_rotation(random);
     let translation = std::array::from_fn(|_| random.uniform(-0.4, 0.4));
     let nv = kind.nv();
     let mut list = |low: f64, high: f64| (0..nv).map(|_| random.uniform(low, high)).collect::<Vec<f64>>();
@@ -143,6 +141,28 @@ pub(super) fn random_body(
         }
     }
     BodyDescription { name, parent, mass, com, inertia, joint }
+}
+
+/// A uniformly distributed rotation, row-major. Plain products: a fused one would give other bits where the processor has none.
+fn random_rotation(random: &mut Random) -> [f64; 9] {
+    let [x, y, z, w] = random.direction::<4>();
+    [
+        1.0 - 2.0 * (y * y + z * z),
+        2.0 * (x * y - z * w),
+        2.0 * (x * z + y * w),
+        2.0 * (x * y + z * w),
+        1.0 - 2.0 * (x * x + z * z),
+        2.0 * (y * z - x * w),
+        2.0 * (x * z - y * w),
+        2.0 * (y * z + x * w),
+        1.0 - 2.0 * (x * x + y * y),
+    ]
+}
+
+/// The tensor with these principal moments along the columns of a rotation: xx, xy, xz, yy, yz, zz of R·diag·Rᵀ.
+fn turned(principal: [f64; 3], r: [f64; 9]) -> [f64; 6] {
+    let entry = |i: usize, j: usize| (0..3).map(|k| r[3 * i + k] * principal[k] * r[3 * j + k]).sum::<f64>();
+    [entry(0, 0), entry(0, 1), entry(0, 2), entry(1, 1), entry(1, 2), entry(2, 2)]
 }
 
 /// The kinds that [`random_kind`] chooses from.

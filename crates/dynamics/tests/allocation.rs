@@ -1,0 +1,83 @@
+//! No call on a workspace allocates.
+
+#![allow(unsafe_code, reason = "a counting allocator has to implement the unsafe trait GlobalAlloc")]
+
+mod common;
+
+use common::{ROBOTS, build, wrenches};
+use featherbench_dynamics::{Aba, Bias, CenterOfMass, Crba, Energy, Jacobian, Kinematics, Ltdl, Momentum, Rnea, TreeSparse};
+use model::StateBatch;
+use std::alloc::{GlobalAlloc, Layout, System};
+use std::cell::Cell;
+
+struct Counting;
+
+thread_local! {
+    static ALLOCATIONS: Cell<u64> = const { Cell::new(0) };
+}
+
+fn count() {
+    // A thread that is being torn down has no counter any more.
+    let _ = ALLOCATIONS.try_with(|allocations| allocations.set(allocations.get() + 1));
+}
+
+// SAFETY: every call is passed on to the system's allocator unchanged.
+unsafe impl GlobalAlloc for Counting {
+    unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
+        count();
+        // SAFETY: the caller's promise about `layout` is passed on.
+        unsafe { System.alloc(layout) }
+    }
+
+    unsafe fn dealloc(&self, pointer: *mut u8, layout: Layout) {
+        // SAFETY: the caller's promise about `pointer` and `layout` is passed on.
+        unsafe { System.dealloc(pointer, layout) }
+    }
+
+    unsafe fn realloc(&self, pointer: *mut u8, layout: Layout, size: usize) -> *mut u8 {
+        count();
+        // SAFETY: the caller's promise about the arguments is passed on.
+        unsafe { System.realloc(pointer, layout, size) }
+    }
+}
+
+#[global_allocator]
+static ALLOCATOR: Counting = Counting;
+
+#[test]
+fn no_algorithm_allocates_in_a_call() {
+    for (name, recipe) in &ROBOTS {
+        let model = build(recipe);
+        let t = &model.topology;
+        let states = StateBatch::random(&model, 3, 1);
+        let f = wrenches(&model, 1);
+        let mut out = vec![0.0; t.nv()];
+        let (mut rnea, mut bias, mut aba, mut crba) = (Rnea::new(t), Bias::new(t), Aba::new(t), Crba::new(t));
+        let (mut kinematics, mut energy, mut momentum) = (Kinematics::new(t), Energy::new(t), Momentum::new(t));
+        let (mut center, mut jacobian) = (CenterOfMass::new(t), Jacobian::new(t));
+        let (mut matrix, mut ltdl) = (TreeSparse::new(t), Ltdl::new(t));
+
+        let before = ALLOCATIONS.get();
+        for k in 0..states.count() {
+            let (q, v, a, tau) = (states.q(k), states.v(k), states.a(k), states.tau(k));
+            rnea.run(&model, q, v, a, Some(&f), &mut out).unwrap();
+            bias.run(&model, q, v, Some(&f), &mut out).unwrap();
+            aba.run(&model, q, v, tau, Some(&f), &mut out).unwrap();
+            crba.run(&model, q, &mut matrix).unwrap();
+            ltdl.run(&matrix).unwrap();
+            ltdl.solve(&mut out).unwrap();
+            crba.run(&model, q, ltdl.matrix_mut()).unwrap();
+            ltdl.factor().unwrap();
+            matrix.mul(v, &mut out).unwrap();
+            kinematics.run(&model, q, v, a).unwrap();
+            assert!(kinematics.iter().all(|body| body.velocity.ang.x.is_finite()));
+            energy.run(&model, q, v).unwrap();
+            momentum.run(&model, q, v).unwrap();
+            center.run(&model, q).unwrap();
+            jacobian.run(&model, q, t.bodies() - 1).unwrap();
+        }
+        assert_eq!(ALLOCATIONS.get() - before, 0, "{name}");
+        drop(vec![0_u8; 10]);
+        assert!(ALLOCATIONS.get() > before, "the counter counts");
+    }
+}

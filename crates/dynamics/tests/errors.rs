@@ -1,0 +1,163 @@
+//! Bad input is answered, never with a panic: wrong shapes, singular matrices, NaN.
+
+mod common;
+
+use common::{ROBOTS, build, dyadic_chain};
+use featherbench_dynamics::{
+    Aba, Bias, CenterOfMass, Crba, DimensionError, Energy, Error, Jacobian, Kinematics, Ltdl, Momentum, NotPositiveDefinite, Rnea, TreeSparse,
+    forward_dynamics, inverse_dynamics, mass_matrix,
+};
+use model::{Case, Model, StateBatch};
+use spatial::Force;
+
+/// What a refusal names, and what it counted.
+fn refusal(result: Result<(), impl Into<Error>>) -> (&'static str, usize, usize) {
+    match result.map_err(Into::into) {
+        Err(Error::Dimension(DimensionError { what, expected, found })) => (what, expected, found),
+        other => panic!("expected a dimension error, got {other:?}"),
+    }
+}
+
+#[test]
+fn each_argument_of_the_wrong_length_is_named() {
+    let model = build(&ROBOTS[7].1);
+    let t = &model.topology;
+    let (nq, nv, bodies) = (t.nq(), t.nv(), t.bodies());
+    assert_ne!(nq, nv);
+    let (q, x, short) = (vec![0.5; nq], vec![0.5; nv], vec![0.5; nv - 1]);
+    let (mut out, mut short_out) = (vec![0.0; nv], vec![0.0; nv - 1]);
+    let few = vec![Force::zero(); bodies - 1];
+    let (q_len, v_len) = (("configuration q", nq, nv), ("velocity v", nv, nv - 1));
+    let (a_len, tau_len) = (("acceleration a", nv, nv - 1), ("joint forces tau", nv, nv - 1));
+    let wrench_len = ("external wrenches", bodies, bodies - 1);
+
+    let mut rnea = Rnea::new(t);
+    assert_eq!(refusal(rnea.run(&model, &x, &x, &x, None, &mut out)), q_len);
+    assert_eq!(refusal(rnea.run(&model, &q, &short, &x, None, &mut out)), v_len);
+    assert_eq!(refusal(rnea.run(&model, &q, &x, &short, None, &mut out)), a_len);
+    assert_eq!(refusal(rnea.run(&model, &q, &x, &x, None, &mut short_out)), tau_len);
+    assert_eq!(refusal(rnea.run(&model, &q, &x, &x, Some(&few), &mut out)), wrench_len);
+    let mut bias = Bias::new(t);
+    assert_eq!(refusal(bias.run(&model, &x, &x, None, &mut out)), q_len);
+    assert_eq!(refusal(bias.run(&model, &q, &short, None, &mut out)), v_len);
+    assert_eq!(refusal(bias.run(&model, &q, &x, None, &mut short_out)), tau_len);
+    let mut aba = Aba::new(t);
+    assert_eq!(refusal(aba.run(&model, &x, &x, &x, None, &mut out)), q_len);
+    assert_eq!(refusal(aba.run(&model, &q, &short, &x, None, &mut out)), v_len);
+    assert_eq!(refusal(aba.run(&model, &q, &x, &short, None, &mut out)), tau_len);
+    assert_eq!(refusal(aba.run(&model, &q, &x, &x, None, &mut short_out)), a_len);
+    assert_eq!(refusal(aba.run(&model, &q, &x, &x, Some(&few), &mut out)), wrench_len);
+    assert_eq!(refusal(Crba::new(t).run(&model, &x, &mut TreeSparse::new(t))), q_len);
+    let mut kinematics = Kinematics::new(t);
+    assert_eq!(refusal(kinematics.run(&model, &x, &x, &x)), q_len);
+    assert_eq!(refusal(kinematics.run(&model, &q, &short, &x)), v_len);
+    assert_eq!(refusal(kinematics.run(&model, &q, &x, &short)), a_len);
+    assert!(kinematics.body(bodies).is_none());
+    assert_eq!(refusal(Energy::new(t).run(&model, &x, &x).map(drop)), q_len);
+    assert_eq!(refusal(Energy::new(t).run(&model, &q, &short).map(drop)), v_len);
+    assert_eq!(refusal(Momentum::new(t).run(&model, &x, &x).map(drop)), q_len);
+    assert_eq!(refusal(Momentum::new(t).run(&model, &q, &short).map(drop)), v_len);
+    assert_eq!(refusal(CenterOfMass::new(t).run(&model, &x).map(drop)), q_len);
+    assert_eq!(refusal(Jacobian::new(t).run(&model, &x, 0).map(drop)), q_len);
+    let no_such_body = ("bodies, for the one that was named", bodies + 1, bodies);
+    assert_eq!(refusal(Jacobian::new(t).run(&model, &q, bodies).map(drop)), no_such_body);
+
+    let matrix = mass_matrix(&model, &q).unwrap();
+    assert_eq!(refusal(matrix.mul(&short, &mut out)), ("vector x", nv, nv - 1));
+    assert_eq!(refusal(matrix.mul(&x, &mut short_out)), ("vector y", nv, nv - 1));
+    assert_eq!(refusal(matrix.into_ltdl().unwrap().solve(&mut short_out)), ("right-hand side x", nv, nv - 1));
+    assert!(inverse_dynamics(&model, &q, &x, &short).unwrap_err().to_string().contains("acceleration a: expected"));
+}
+
+#[test]
+fn workspaces_of_another_topology_are_refused() {
+    let (model, other) = (build(&ROBOTS[0].1), build(&ROBOTS[1].1));
+    let (n, t) = (model.topology.nv(), &other.topology);
+    let (q, mut out) = (vec![0.1; n], vec![0.0; n]);
+    let expected = ("bodies of the workspace", 8, 6);
+    assert_eq!(refusal(Rnea::new(t).run(&model, &q, &q, &q, None, &mut out)), expected);
+    assert_eq!(refusal(Bias::new(t).run(&model, &q, &q, None, &mut out)), expected);
+    assert_eq!(refusal(Aba::new(t).run(&model, &q, &q, &q, None, &mut out)), expected);
+    assert_eq!(refusal(Crba::new(t).run(&model, &q, &mut TreeSparse::new(&model.topology))), expected);
+    assert_eq!(refusal(Kinematics::new(t).run(&model, &q, &q, &q)), expected);
+    assert_eq!(refusal(Energy::new(t).run(&model, &q, &q).map(drop)), expected);
+    assert_eq!(refusal(Momentum::new(t).run(&model, &q, &q).map(drop)), expected);
+    assert_eq!(refusal(CenterOfMass::new(t).run(&model, &q).map(drop)), expected);
+    assert_eq!(refusal(Jacobian::new(t).run(&model, &q, 0).map(drop)), expected);
+
+    // A matrix as large, of another shape: a star instead of a chain.
+    let chain = dyadic_chain(&[[0.0, 1.0, 0.0]], 4);
+    let star = common::topology(&[(-1, model::JointKind::Revolute); 4]);
+    let parents = "dofs of the tree-sparse matrix with the model's parent dof";
+    assert_eq!(refusal(Crba::new(&chain.topology).run(&chain, &[0.0; 4], &mut TreeSparse::new(&star))), (parents, 4, 1));
+    let place = "dofs of the tree-sparse matrix with the same place in the tree";
+    assert_eq!(refusal(Ltdl::new(&star).run(&mass_matrix(&chain, &[0.0; 4]).unwrap())), (place, 4, 0));
+}
+
+#[test]
+fn a_model_with_a_missing_part_is_refused() {
+    let mut model = dyadic_chain(&[[0.0, 1.0, 0.0]], 3);
+    model.inertias.pop();
+    assert_eq!(refusal(inverse_dynamics(&model, &[0.0; 3], &[0.0; 3], &[0.0; 3]).map(drop)), ("inertias of the model", 3, 2));
+}
+
+#[test]
+fn a_massless_tip_is_named() {
+    let mut model = dyadic_chain(&[[0.0, 1.0, 0.0]], 3);
+    model.inertias[2] = spatial::RigidBodyInertia::zero();
+    let zero = [0.0; 3];
+    let expected = NotPositiveDefinite { dof: 2, pivot: 0.0 };
+    assert_eq!(mass_matrix(&model, &zero).unwrap().into_ltdl().unwrap_err(), expected);
+    let error = forward_dynamics(&model, &zero, &zero, &zero).unwrap_err();
+    assert_eq!(error, Error::NotPositiveDefinite(expected));
+    assert!(error.to_string().contains("pivot 0e0 at dof 2"), "{error}");
+    // Armature is inertia enough.
+    model.armature[2] = 0.1;
+    assert!(forward_dynamics(&model, &zero, &zero, &zero).is_ok());
+}
+
+#[test]
+fn massless_spherical_and_free_tips_are_named() {
+    for robot in [3, 8] {
+        let mut model = build(&ROBOTS[robot].1);
+        let last = (0..model.topology.bodies()).rfind(|&i| model.topology.joints()[i].kind.nv() > 1).unwrap();
+        for inertia in &mut model.inertias[last..] {
+            *inertia = spatial::RigidBodyInertia::zero();
+        }
+        model.armature.fill(0.0);
+        let states = StateBatch::random(&model, 1, 1);
+        let error = forward_dynamics(&model, states.q(0), states.v(0), states.tau(0)).unwrap_err();
+        assert!(matches!(error, Error::NotPositiveDefinite(NotPositiveDefinite { pivot: 0.0, .. })), "{error}");
+    }
+}
+
+/// NaN and infinity anywhere in the input give an error or NaN, on every robot.
+#[test]
+fn numbers_that_are_not_finite_do_no_harm() {
+    for (name, recipe) in &ROBOTS {
+        let model = build(recipe);
+        let states = StateBatch::random(&model, 1, 1);
+        for bad in [f64::NAN, f64::INFINITY] {
+            for k in [0, model.topology.nv() / 2, model.topology.nv() - 1] {
+                let mut q = states.q(0).to_vec();
+                q[k] = bad;
+                let mut v = states.v(0).to_vec();
+                v[k] = bad;
+                let poisoned = |values: &[f64]| values.iter().any(|x| !x.is_finite());
+                assert!(poisoned(&inverse_dynamics(&model, states.q(0), &v, states.a(0)).unwrap()), "{name}");
+                let answer = forward_dynamics(&model, states.q(0), &v, states.tau(0));
+                assert!(answer.map_or(true, |a| poisoned(&a)), "{name}");
+                let answer = forward_dynamics(&model, &q, states.v(0), states.tau(0));
+                assert!(answer.map_or(true, |a| poisoned(&a)), "{name}");
+                let answer = mass_matrix(&model, &q).unwrap().into_ltdl();
+                assert!(answer.map_or(true, |ltdl| poisoned(ltdl.factors().values()) || first_does_not_matter(&model, k)), "{name}, q[{k}]");
+            }
+        }
+        assert_eq!(states.cases, [Case::Random]);
+    }
+}
+
+/// The mass matrix does not depend on how the root joint of a tree stands.
+fn first_does_not_matter(model: &Model<f64>, k: usize) -> bool {
+    model.topology.joints().iter().any(|joint| joint.parent.is_none() && (joint.q..joint.q + joint.kind.nq()).contains(&k))
+}
