@@ -124,7 +124,7 @@ pub struct RecordArgs {
 }
 
 #[derive(Debug, Clone, Args)]
-#[command(after_help = "Examples:\n  featherbench gen chain --n 1000 --out chain.json\n  featherbench gen tree --seed 7 --set mix=all --set base=free --out tree.json\n  featherbench gen urdf --file robot.urdf --floating --out robot.json\n\n`featherbench list` names the families and their parameters.")]
+#[command(after_help = "Examples:\n  featherbench gen chain --n 1000 --out chain.json\n  featherbench gen tree --seed 7 --set joints=all --set base=free --out tree.json\n  featherbench gen urdf --file robot.urdf --floating --out robot.json\n\n`featherbench list` names the families and their parameters.")]
 pub struct GenArgs {
     /// A family of generated robots (also with its parameters, as in `chain:n=20,layout=spatial`), or `urdf`.
     pub family: String,

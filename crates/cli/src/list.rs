@@ -45,6 +45,10 @@ fn text(root: &Root, args: &ListArgs) -> Result<String, Fail> {
     }
     text += &format!("\nengines:  native, {}\n", ENGINES.join(", "));
     text += "studies:  agreement, structure, timing\n";
-    text += &format!("families of generated robots: {}\n", Family::NAMES.join(", "));
+    text += "\nfamilies of generated robots, with their parameters:\n";
+    for name in Family::NAMES {
+        let family = Family::parse(name).map_err(|error| Fail::input(error.to_string()))?;
+        text += &format!("  {family}\n");
+    }
     Ok(text)
 }

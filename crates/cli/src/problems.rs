@@ -27,6 +27,7 @@ pub fn load(root: &Root, suite: &str, live: bool) -> Result<Loaded, Fail> {
     for entry in &parsed.problem {
         let (description, origin) = describe(root, entry, live)?;
         let bad = |error: &dyn std::error::Error| Fail::input(format!("{}: robot '{}': {error}", path.display(), description.name));
+        let states = entry.states.unwrap_or(states);
         let mut problem = Problem::new(&description, &entry.family, origin, states, parsed.seed).map_err(|error| bad(&error))?;
         problem.studies.clone_from(&entry.studies);
         if problems.iter().any(|known| known.name == problem.name) {

@@ -6,7 +6,7 @@ use crate::problems;
 use crate::progress::Bar;
 use crate::root::Root;
 use crate::subjects;
-use engines::Recording;
+use engines::{EngineRecording, Recording, recording_name};
 use harness::measure::{ForwardScale, scaled_error, worst};
 use harness::run::Progress;
 use harness::{Cell, Context, Gates, Outcome, OutcomeStore, Problem, Quantity, Study};
@@ -43,26 +43,24 @@ pub fn record(root: &Root, args: &RecordArgs) -> Result<(), Fail> {
     std::fs::remove_dir_all(&scratch).map_err(io)?;
 
     let folder = args.recorded.clone().unwrap_or_else(|| root.recorded());
+    std::fs::create_dir_all(&folder).map_err(|source| harness::HarnessError::io(&folder, source))?;
     let mut stale = Vec::new();
-    for subject in &opened.subjects[1..] {
-        let identity = subject.identity();
-        for problem in &loaded.problems {
+    for problem in &loaded.problems {
+        let engines = opened.subjects[1..].iter().map(|subject| {
+            let identity = subject.identity().clone();
             let of_this = finished.iter().filter(|(cell, _)| cell.subject == identity.name && cell.problem == problem.name);
-            let outcomes: Vec<_> = of_this
-                .filter_map(|(cell, outcome)| Some((Quantity::parse(&cell.quantity)?, cell.method.clone(), outcome.clone())))
-                .collect();
-            if outcomes.is_empty() {
-                continue;
-            }
-            let recording = Recording::new(identity, problem, outcomes);
-            let path = folder.join(&identity.name).join(format!("{}.frames", problem.name));
-            if args.check {
-                stale.extend(check(&path, &recording, problem));
-            } else {
-                let parent = folder.join(&identity.name);
-                std::fs::create_dir_all(&parent).map_err(|source| harness::HarnessError::io(&parent, source))?;
-                ::record::atomic_write(&path, &recording.to_bytes(problem))?;
-            }
+            let outcomes = of_this.filter_map(|(cell, outcome)| Some((Quantity::parse(&cell.quantity)?, cell.method.clone(), outcome.clone())));
+            EngineRecording { outcomes: outcomes.collect(), identity }
+        });
+        let recording = Recording { engines: engines.filter(|engine| !engine.outcomes.is_empty()).collect() };
+        let path = folder.join(recording_name(&problem.name));
+        if recording.engines.is_empty() {
+            continue;
+        }
+        if args.check {
+            stale.extend(check(&path, &recording, problem));
+        } else {
+            ::record::atomic_write(&path, &recording.to_bytes(problem))?;
         }
     }
     if !stale.is_empty() {
@@ -74,7 +72,7 @@ pub fn record(root: &Root, args: &RecordArgs) -> Result<(), Fail> {
     Ok(())
 }
 
-/// What in a recording differs from what the engine answers now.
+/// What in a recording differs from what the engines answer now.
 fn check(path: &Path, now: &Recording, problem: &Problem) -> Vec<String> {
     let then = match Recording::read(path, problem) {
         Ok(then) => then,
@@ -82,33 +80,40 @@ fn check(path: &Path, now: &Recording, problem: &Problem) -> Vec<String> {
     };
     let mut stale = Vec::new();
     let mut complain = |what: String| stale.push(format!("{}: {what}", path.display()));
-    if then.identity.version != now.identity.version {
-        complain(format!("recorded from {} {}, asked {}", then.identity.name, then.identity.version, now.identity.version));
-    }
-    if then.outcomes.len() != now.outcomes.len() {
-        complain(format!("{} outcomes are recorded, {} are answered", then.outcomes.len(), now.outcomes.len()));
+    if then.engines.len() != now.engines.len() {
+        complain(format!("{} engines are recorded, {} answer", then.engines.len(), now.engines.len()));
     }
     let at = problem.magnitudes();
     let forward = ForwardScale::all(problem, &at);
-    for ((quantity, method, recorded), (_, _, answered)) in then.outcomes.iter().zip(&now.outcomes) {
-        let label = format!("{} by {method}", quantity.name());
-        match (recorded, answered) {
-            (Outcome::Values(recorded), Outcome::Values(answered)) => {
-                let size = quantity.size(problem);
-                let states = recorded.chunks_exact(size).zip(answered.chunks_exact(size)).enumerate();
-                let error = states.fold(0.0, |error, (k, (old, new))| {
-                    let moved = match quantity {
-                        Quantity::ForwardDynamics => forward[k].forward_error(old, new) / forward[k].amplification.max(1.0),
-                        _ => scaled_error(problem, *quantity, &at[k], old, new),
-                    };
-                    worst(error, moved)
-                });
-                if recorded.len() != answered.len() || error.is_nan() || error > STALE {
-                    complain(format!("{label} moved by {error:e}"));
+    for (then, now) in then.engines.iter().zip(&now.engines) {
+        let name = &now.identity.name;
+        if (&then.identity.name, &then.identity.version) != (name, &now.identity.version) {
+            complain(format!("recorded from {} {}, asked {name} {}", then.identity.name, then.identity.version, now.identity.version));
+        }
+        if then.outcomes.len() != now.outcomes.len() {
+            complain(format!("{name}: {} outcomes are recorded, {} are answered", then.outcomes.len(), now.outcomes.len()));
+        }
+        for ((quantity, method, recorded), (_, _, answered)) in then.outcomes.iter().zip(&now.outcomes) {
+            let label = format!("{name}: {} by {method}", quantity.name());
+            match (recorded, answered) {
+                (Outcome::Values(recorded), Outcome::Values(answered)) => {
+                    let size = quantity.size(problem);
+                    let states = recorded.chunks_exact(size).zip(answered.chunks_exact(size)).enumerate();
+                    let error = states.fold(0.0, |error, (k, (old, new))| {
+                        let moved = match quantity {
+                            // How far a backward error of 8 ε may carry the answer.
+                            Quantity::ForwardDynamics => forward[k].forward_error(old, new) / forward[k].amplification.max(1.0),
+                            _ => scaled_error(problem, *quantity, &at[k], old, new),
+                        };
+                        worst(error, moved)
+                    });
+                    if recorded.len() != answered.len() || error.is_nan() || error > STALE {
+                        complain(format!("{label} moved by {error:e}"));
+                    }
                 }
+                (Outcome::Refused(recorded), Outcome::Refused(answered)) if recorded == answered => {}
+                _ => complain(format!("{label} was {} and is {}", brief(recorded), brief(answered))),
             }
-            (Outcome::Refused(recorded), Outcome::Refused(answered)) if recorded == answered => {}
-            _ => complain(format!("{label} was {} and is {}", brief(recorded), brief(answered))),
         }
     }
     stale

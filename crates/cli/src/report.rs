@@ -4,7 +4,7 @@ use crate::args::GateArgs;
 use crate::fail::Fail;
 use crate::root::Root;
 use ::record::{Record, RunInfo, Verdict};
-use harness::{Gates, Suite};
+use harness::{Gates, Suite, accounted};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
@@ -37,10 +37,10 @@ pub fn gate(root: &Root, args: &GateArgs) -> Result<(), Fail> {
     conclude(&info, &records, &args.folder.join("index.html"))
 }
 
-/// Prints passing rows per engine and quantity as a suite's [expect] tables.
+/// Prints the rows that count per engine and quantity as a suite's [expect] tables.
 fn print_counts(records: &[Record]) {
     let mut counts: BTreeMap<(&str, &str), u64> = BTreeMap::new();
-    for row in records.iter().filter(|row| row.verdict == Verdict::Pass) {
+    for row in records.iter().filter(|row| accounted(row)) {
         *counts.entry((&row.engine, &row.quantity)).or_default() += 1;
     }
     let mut engine = "";

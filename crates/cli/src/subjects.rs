@@ -6,9 +6,9 @@ use crate::oracles;
 use crate::problems::Loaded;
 use crate::root::Root;
 use ::record::{EngineInfo, EngineSource};
-use engines::{Limits, Native, Recorded};
+use engines::{Limits, Native, Recorded, read_recordings};
 use harness::{Problem, Subject};
-use std::path::PathBuf;
+use std::sync::Arc;
 use std::time::Duration;
 
 /// The subjects of a run, and what is to be said about each engine, the missing ones too.
@@ -31,20 +31,14 @@ pub fn open(root: &Root, args: &RunArgs, loaded: &Loaded) -> Result<Subjects, Fa
         }
     } else {
         let folder = args.recorded.clone().unwrap_or_else(|| root.recorded());
-        let asked: Vec<&Problem> = loaded.problems.iter().filter(|problem| problem.takes("agreement")).collect();
+        let asked: Vec<&Problem> = loaded.problems.iter().filter(|problem| problem.takes("agreement") || problem.takes("structure")).collect();
+        let recordings = Arc::new(read_recordings(&folder, &asked));
         for engine in &agreement.engines {
-            let recorded = open_recorded(&folder, engine, &asked);
+            let recorded = Recorded::new(&recordings, engine).map(|recorded| Box::new(recorded) as Box<dyn Subject>);
             opened.add(recorded, engine, EngineSource::Recorded);
         }
     }
     Ok(opened)
-}
-
-fn open_recorded(folder: &PathBuf, engine: &str, asked: &[&Problem]) -> Result<Box<dyn Subject>, String> {
-    match Recorded::open(folder, engine, asked) {
-        Ok(recorded) => Ok(Box::new(recorded)),
-        Err(error) => Err(error.to_string()),
-    }
 }
 
 impl Subjects {

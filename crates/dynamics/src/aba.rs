@@ -30,9 +30,8 @@ struct Link<T> {
     inertia: ArticulatedInertia<T>,
     /// Bias force pᴬ.
     p: Force<T>,
-    /// Of a screw joint: U = Iᴬ S, 1/D and u/D.
+    /// Of a screw joint: U/D and u/D.
     u: Force<T>,
-    d_inverse: T,
     rate: T,
     /// Classical acceleration a.
     a: Motion<T>,
@@ -48,7 +47,6 @@ impl<T: Real> Aba<T> {
             inertia: ArticulatedInertia::zero(),
             p: Force::zero(),
             u: Force::zero(),
-            d_inverse: T::zero(),
             rate: T::zero(),
             a: Motion::zero(),
         };
@@ -124,14 +122,7 @@ impl<T: Real> Aba<T> {
 
 /// The first outward step of one body.
 #[inline(always)]
-fn set_moving<T: Real, P: Real + Lift<T>>(
-    kind: JointKind,
-    model: &Model<P>,
-    i: usize,
-    parent_omega: Vec3<T>,
-    v: &[T],
-    link: &mut Link<T>,
-) {
+fn set_moving<T: Real, P: Real + Lift<T>>(kind: JointKind, model: &Model<P>, i: usize, parent_omega: Vec3<T>, v: &[T], link: &mut Link<T>) {
     let joint_velocity = kind.motion(&model.subspaces[i], &v[model.topology.joints()[i].v..]);
     (link.omega, link.c) = cross_joint(kind, &link.x, parent_omega, None, joint_velocity);
     let inertia = model.inertias[i].lift();
@@ -172,11 +163,11 @@ fn release<T: Real, P: Real + Lift<T>>(
             };
             let d = d + model.armature[dof].lift();
             smallest.note(dof, d.min_lane());
-            link.u = u;
-            link.d_inverse = T::one() / d;
-            link.rate = (tau[dof] - push) * link.d_inverse;
+            let d_inverse = T::one() / d;
+            link.u = u * d_inverse;
+            link.rate = (tau[dof] - push) * d_inverse;
             // Iᵃ = Iᴬ − U D⁻¹ Uᵀ,  pᵃ = pᴬ + Iᵃ c + U D⁻¹ u
-            let apparent = inertia.subtract_rank_one(link.d_inverse, u);
+            let apparent = inertia.subtract_rank_one(d_inverse, u);
             (Some(apparent), u.scale_add(link.rate, p + apparent.mul(link.c)))
         }
         JointKind::Spherical => {
@@ -226,7 +217,8 @@ fn accelerate<T: Real, P: Real + Lift<T>>(
     let carried = link.x.inverse_motion(parent_acceleration) + link.c;
     match kind {
         JointKind::Revolute | JointKind::Prismatic | JointKind::Helical => {
-            a[dof] = (-link.d_inverse).mul_add(carried.dot(link.u), link.rate);
+            // the angular part is known first: two short sums, not one long one
+            a[dof] = link.rate - link.u.ang.dot(carried.ang) - link.u.lin.dot(carried.lin);
         }
         JointKind::Spherical => {
             let d = (link.inertia.rotational + diagonal(spherical_armature(model, dof))).factor();

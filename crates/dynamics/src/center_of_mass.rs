@@ -47,7 +47,7 @@ impl<T: Real> CenterOfMass<T> {
     }
 
     /// The placement of a root body as seen from [`CenterOfMass::origin`].
-    pub(crate) fn from_origin(&self, root: usize) -> Transform<T> {
+    pub(crate) fn seen_from_origin(&self, root: usize) -> Transform<T> {
         let x = self.kinematics.bodies()[root].x;
         Transform::new(x.rotation, x.translation - self.origin())
     }
@@ -60,7 +60,7 @@ impl<T: Real> CenterOfMass<T> {
         let (mut total, mut moment) = (T::zero(), Vec3::zero());
         for (i, joint) in model.topology.joints().iter().enumerate().rev() {
             let (mass, h) = self.sums[i];
-            let x = joint.parent.map_or_else(|| self.from_origin(i), |_| self.kinematics.bodies()[i].x);
+            let x = joint.parent.map_or_else(|| self.seen_from_origin(i), |_| self.kinematics.bodies()[i].x);
             // h_p += R h + m r
             let moved = x.rotation.mul_vec_add(h, x.translation * mass);
             let (sum_mass, sum_moment) = joint.parent.map_or((&mut total, &mut moment), |parent| {

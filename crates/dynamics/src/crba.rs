@@ -62,7 +62,7 @@ impl<T: Real> Crba<T> {
                 // Iᶜ_p += X* Iᶜ_i X⁻¹,  F_k = X* F_k
                 let moved = composites[i].to_parent(x);
                 composites[parent] += moved;
-                forces.to_parent(x, matrix.supported(joint.v));
+                forces.carry_to_parent(x, matrix.supported(joint.v));
             }
         }
         for (k, armature) in model.armature.iter().enumerate() {
@@ -102,7 +102,7 @@ impl<T: Real> Forces<T> {
 
     /// `F_k = X* F_k` for every dof of a range, and for a few before it, to fill whole registers: these are not set yet.
     #[inline(always)]
-    fn to_parent(&mut self, x: &Transform<T>, dofs: Range<usize>) {
+    fn carry_to_parent(&mut self, x: &Transform<T>, dofs: Range<usize>) {
         let end = Self::LANES + dofs.end;
         let start = end - dofs.len().next_multiple_of(Self::LANES);
         let [nx, ny, nz] = self.ang.each_mut().map(|component| &mut component[start..end]);

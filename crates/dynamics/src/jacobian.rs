@@ -9,7 +9,7 @@ use crate::DimensionError;
 use crate::error::expect;
 use crate::step::expect_bodies;
 use model::{Model, Topology};
-use spatial::{Lift, Mat3, Motion, Real, Transform};
+use spatial::{Lift, Motion, Real, Transform};
 
 /// The Jacobian of a body, and the room for it.
 #[derive(Clone, Debug)]
@@ -49,7 +49,7 @@ impl<T: Real> Jacobian<T> {
             ancestor = joint.parent;
         }
         // in world axes
-        let r: Mat3<T> = placement.rotation;
+        let r = placement.rotation;
         for column in &mut self.columns {
             *column = Motion::new(r * column.ang, r * column.lin);
         }

@@ -1,4 +1,29 @@
 //! Rigid-body dynamics of trees: one file per algorithm.
+//!
+//! Each algorithm has a workspace, made from a [`Topology`](model::Topology), whose `run` does not allocate, and a function that makes a
+//! workspace for one call. All are generic over the scalar of the state and over the scalar of the parameters, so the same text runs on
+//! `f64`, `f32`, dual numbers, counting and extended-precision scalars. "The book" is R. Featherstone, *Rigid Body Dynamics Algorithms*
+//! (2008).
+//!
+//! ```
+//! use featherbench_dynamics::{forward_dynamics, inverse_dynamics, mass_matrix};
+//! use model::{BodyDescription, Description, JointDescription, JointType, Model};
+//!
+//! // A pendulum: one kilogramme, half a metre below its axis.
+//! let joint = JointDescription { kind: JointType::Revolute { axis: [0.0, 1.0, 0.0] }, ..JointDescription::default() };
+//! let bob = BodyDescription { name: "bob".into(), parent: None, mass: 1.0, com: [0.0, 0.0, -0.5], inertia: [0.0; 6], joint };
+//! let pendulum = Description { gravity: [0.0, 0.0, -10.0], bodies: vec![bob], ..Description::default() };
+//! let model: Model<f64> = Model::build(&pendulum)?;
+//!
+//! // Held out horizontally it needs m g l = 5 N·m, and let go it falls with g / l = 20 rad/s².
+//! let q = [std::f64::consts::FRAC_PI_2];
+//! let tau = inverse_dynamics(&model, &q, &[0.0], &[0.0])?;
+//! assert!((tau[0] - 5.0).abs() < 1e-12);
+//! assert_eq!(mass_matrix(&model, &q)?.get(0, 0), 0.25);
+//! let a = forward_dynamics(&model, &q, &[0.0], &[0.0])?;
+//! assert!((a[0] + 20.0).abs() < 1e-12);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
 
 mod aba;
 mod bias;

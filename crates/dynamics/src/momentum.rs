@@ -53,7 +53,7 @@ impl<T: Real> Momentum<T> {
                     let moved = center.kinematics.bodies()[i].x.force(sums[i]);
                     sums[parent] += moved;
                 }
-                None => total += center.from_origin(i).force(sums[i]),
+                None => total += center.seen_from_origin(i).force(sums[i]),
             }
         }
         // n_c = n − c × f

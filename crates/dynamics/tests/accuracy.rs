@@ -22,7 +22,9 @@ fn error(value: f64, truth: DoubleDouble) -> f64 {
 
 /// The chains and states of SCIENCE.md §1: name, model, states, reach of the angles.
 fn chains(each: impl Fn(&str, usize, &Model<f64>, &StateBatch)) {
-    for (name, axes, reach) in [("planar, straight", &PLANAR[..], 0.0), ("planar", &PLANAR, 0.2 / 3.15), ("space", &SPACE, 1.0), ("skew", &SKEW, 1.0)] {
+    for (name, axes, reach) in
+        [("planar, straight", &PLANAR[..], 0.0), ("planar", &PLANAR, 0.2 / 3.15), ("space", &SPACE, 1.0), ("skew", &SKEW, 1.0)]
+    {
         for n in [10, 50, 200] {
             let model = dyadic_chain(axes, n);
             let mut states = StateBatch::random(&model, 3, 17);
@@ -150,7 +152,8 @@ fn single_precision_is_as_much_worse_as_its_rounding() {
         let model = build(recipe);
         let states = StateBatch::random(&model, 20, 6);
         let mean = |residual: &dyn Fn(usize) -> f64| (0..states.count()).map(residual).map(f64::ln).sum::<f64>() / states.count() as f64;
-        let ratio = (mean(&|k| residual::<f32>(&model, &states, k)) - mean(&|k| residual::<f64>(&model, &states, k))) / std::f64::consts::LN_2;
+        let ratio =
+            (mean(&|k| residual::<f32>(&model, &states, k)) - mean(&|k| residual::<f64>(&model, &states, k))) / std::f64::consts::LN_2;
         // Medians over states of one robot scatter by a factor of two or so: one bit of twenty-nine.
         within(&format!("{name}: log₂ of the f32 to f64 residual, less 29"), (ratio - 29.0).abs(), 1.5);
         ratios.push(ratio);

@@ -4,8 +4,8 @@ mod common;
 
 use common::{ROBOTS, build, dyadic_chain};
 use featherbench_dynamics::{
-    Aba, Bias, CenterOfMass, Crba, DimensionError, Energy, Error, Jacobian, Kinematics, Ltdl, Momentum, NotPositiveDefinite, Rnea, TreeSparse,
-    forward_dynamics, inverse_dynamics, mass_matrix,
+    Aba, Bias, CenterOfMass, Crba, DimensionError, Energy, Error, Jacobian, Kinematics, Ltdl, Momentum, NotPositiveDefinite, Rnea,
+    TreeSparse, forward_dynamics, inverse_dynamics, mass_matrix,
 };
 use model::{Case, Model, StateBatch};
 use spatial::Force;
@@ -150,7 +150,10 @@ fn numbers_that_are_not_finite_do_no_harm() {
                 let answer = forward_dynamics(&model, &q, states.v(0), states.tau(0));
                 assert!(answer.map_or(true, |a| poisoned(&a)), "{name}");
                 let answer = mass_matrix(&model, &q).unwrap().into_ltdl();
-                assert!(answer.map_or(true, |ltdl| poisoned(ltdl.factors().values()) || first_does_not_matter(&model, k)), "{name}, q[{k}]");
+                assert!(
+                    answer.map_or(true, |ltdl| poisoned(ltdl.factors().values()) || first_does_not_matter(&model, k)),
+                    "{name}, q[{k}]"
+                );
             }
         }
         assert_eq!(states.cases, [Case::Random]);

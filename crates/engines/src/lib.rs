@@ -4,6 +4,7 @@
 //! [`Recorded`] plays back what an oracle once answered. To add an engine, write such a program, or implement
 //! [`Subject`](harness::Subject) in a file of its own here.
 
+mod coding;
 mod kernel;
 mod native;
 mod oracle;
@@ -12,4 +13,4 @@ mod recorded;
 
 pub use native::{Native, timed};
 pub use oracle::{Limits, Oracle};
-pub use recorded::{RecordError, Recorded, Recording};
+pub use recorded::{EngineRecording, Recorded, Recording, RecordingError, Recordings, read_recordings, recording_name};

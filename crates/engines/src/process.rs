@@ -4,11 +4,11 @@ use harness::frame::{Frame, FrameError};
 use std::collections::VecDeque;
 use std::ffi::OsString;
 use std::io::{BufRead, BufReader, Read, Write};
-use std::process::{Child, ChildStdin, Command, Stdio};
-use std::sync::mpsc::{Receiver, RecvTimeoutError, SyncSender, sync_channel};
+use std::process::{Child, Command, Stdio};
+use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, SyncSender, channel, sync_channel};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::thread;
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 /// Limits of an oracle process.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -30,12 +30,20 @@ impl Default for Limits {
 /// How many of the last lines of standard error are kept for the reason of a failure.
 const KEPT_LINES: usize = 6;
 
+/// How long a process that answers no more may take to end by itself, and its last words to arrive.
+const GRACE: Duration = Duration::from_secs(1);
+/// How often it is looked whether it has ended.
+const LOOK: Duration = Duration::from_millis(5);
+
 /// A running oracle. Dropping it ends the process.
 pub(crate) struct Process {
     child: Child,
-    input: Option<ChildStdin>,
+    /// To the thread that writes: a process that does not read cannot stop us.
+    requests: Option<Sender<Vec<u8>>>,
     answers: Receiver<Result<Option<Frame>, FrameError>>,
     last_words: Arc<Mutex<VecDeque<String>>>,
+    /// Closes with standard error.
+    silence: Receiver<()>,
     limits: Limits,
     alive: bool,
 }
@@ -61,13 +69,20 @@ impl Process {
             .spawn()
             .map_err(|error| format!("cannot start {}: {error}", program.to_string_lossy()))?;
         let (output, errors) = (child.stdout.take().ok_or("no standard output")?, child.stderr.take().ok_or("no standard error")?);
-        let input = child.stdin.take();
+        let mut input = child.stdin.take().ok_or("no standard input")?;
+        let (requests, due) = channel::<Vec<u8>>();
+        // When writing fails the process is gone or deaf; waiting for its answer finds out which.
+        thread::spawn(move || due.into_iter().try_for_each(|bytes| input.write_all(&bytes).and_then(|()| input.flush())));
         let (sender, answers) = sync_channel(1);
         thread::spawn(move || forward_answers(BufReader::new(output), &sender));
         let last_words = Arc::new(Mutex::new(VecDeque::new()));
         let kept = Arc::clone(&last_words);
-        thread::spawn(move || keep_last_words(BufReader::new(errors), &kept));
-        Ok(Self { child, input, answers, last_words, limits, alive: true })
+        let (talking, silence) = channel();
+        thread::spawn(move || {
+            keep_last_words(BufReader::new(errors), &kept);
+            drop(talking);
+        });
+        Ok(Self { child, requests: Some(requests), answers, last_words, silence, limits, alive: true })
     }
 
     /// Sends a request and waits for its answer.
@@ -82,11 +97,19 @@ impl Process {
     }
 
     fn try_ask(&mut self, request: &Frame) -> Result<Frame, String> {
-        let input = self.input.as_mut().ok_or("the oracle has ended")?;
-        // A broken pipe says less than the dead process: its reason is found below.
-        let sent = input.write_all(&request.to_bytes()).and_then(|()| input.flush());
-        match self.answers.recv_timeout(self.limits.answer) {
-            Ok(Ok(Some(frame))) => sent.map(|()| frame).map_err(|error| error.to_string()),
+        let requests = self.requests.as_ref().ok_or("the oracle has ended")?;
+        let answer = match self.answers.try_recv() {
+            // It would be taken for the answer to this question.
+            Ok(Ok(Some(_))) => return Err("the oracle's answer is not in the protocol: it came before the question".into()),
+            Ok(end) => Ok(end),
+            Err(_) => {
+                // A broken pipe says less than the dead process: its reason is found below.
+                let _ = requests.send(request.to_bytes());
+                self.answers.recv_timeout(self.limits.answer)
+            }
+        };
+        match answer {
+            Ok(Ok(Some(frame))) => Ok(frame),
             Ok(Ok(None)) | Ok(Err(FrameError::Truncated)) | Err(RecvTimeoutError::Disconnected) => Err(self.obituary()),
             Ok(Err(error)) => Err(format!("the oracle's answer is not in the protocol: {error}")),
             Err(RecvTimeoutError::Timeout) => Err(format!("no answer within {} s", self.limits.answer.as_secs_f64())),
@@ -99,22 +122,35 @@ impl Process {
     }
 
     fn obituary(&mut self) -> String {
-        self.input = None;
-        let status = match self.child.wait() {
-            Ok(status) => status.to_string(),
-            Err(error) => error.to_string(),
-        };
-        // Standard error closes with the process; its reader needs a moment to see it.
-        thread::sleep(Duration::from_millis(20));
+        self.requests = None;
+        let status = self.status();
+        // Standard error closes with the process, unless a child of it holds on to it.
+        let _ = self.silence.recv_timeout(GRACE);
         let words = self.last_words.lock().unwrap_or_else(PoisonError::into_inner);
         let words: Vec<&str> = words.iter().map(String::as_str).collect();
         let limit = self.limits.memory >> 20;
         format!("the oracle died ({status}; memory limit {limit} MiB): {}", if words.is_empty() { "no message".into() } else { words.join(" | ") })
     }
 
+    /// How the process ended. One that closes its standard output and lives on is ended.
+    fn status(&mut self) -> String {
+        let start = Instant::now();
+        loop {
+            match self.child.try_wait() {
+                Ok(Some(status)) => return status.to_string(),
+                Ok(None) if start.elapsed() < GRACE => thread::sleep(LOOK),
+                Ok(None) => {
+                    self.end();
+                    return "it closed its standard output and did not end".into();
+                }
+                Err(error) => return error.to_string(),
+            }
+        }
+    }
+
     fn end(&mut self) {
         self.alive = false;
-        self.input = None;
+        self.requests = None;
         // Errors here mean that it is gone already.
         let _ = self.child.kill();
         let _ = self.child.wait();

@@ -1,23 +1,25 @@
-//! A subject that plays back what an oracle answered: `datasets/recorded/ENGINE/MODEL.frames`.
+//! A subject that plays back what an oracle answered: `datasets/recorded/MODEL.recording`.
 //!
-//! The first frame tells who answered about which robot and carries the states; each further frame is one outcome; the last says how
-//! many there were, so that a truncated file is known as such.
+//! A recording is about one robot and holds what every engine answered. It is a sequence of parts, each a line of JSON with the number of
+//! raw bytes that follow it: first the robot and the states; then, for each engine, who it is and its outcomes, one after the other; at last
+//! how many parts there were, so that a truncated file is known as such. The first answer to a quantity stands as plain doubles, later ones as
+//! their distances from it in units in the last place: exact, and an eighth of the size.
 
-use harness::frame::{Block, Frame, FrameError};
+use crate::coding::{delta, from_delta, from_plain, plain};
 use harness::{Identity, Outcome, Prepared, Problem, Quantity, Refusal, Subject};
-use model::StateBatch;
+use model::{StateBatch, Topology};
 use record::EngineSource;
-use serde_json::json;
+use serde_json::{Value, json};
 use std::collections::{BTreeMap, HashMap};
-use std::io::BufReader;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 use thiserror::Error;
 
 /// Why recorded answers cannot be used.
 #[derive(Debug, Error)]
-pub enum RecordError {
-    /// The file cannot be read or written.
+pub enum RecordingError {
+    /// The file cannot be read.
     #[error("{path}: {source}")]
     Io {
         /// The file.
@@ -25,7 +27,7 @@ pub enum RecordError {
         /// What the system says.
         source: std::io::Error,
     },
-    /// The file is damaged.
+    /// The file is damaged, or about something else.
     #[error("{path}: {what}; record it again with `featherbench record`")]
     Damaged {
         /// The file.
@@ -35,189 +37,248 @@ pub enum RecordError {
     },
 }
 
-/// What one engine answered about one robot.
+/// What engines answered about one robot.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Recording {
+    /// The engines, in the order in which they were asked.
+    pub engines: Vec<EngineRecording>,
+}
+
+/// What one engine answered about one robot.
+#[derive(Clone, Debug, PartialEq)]
+pub struct EngineRecording {
     /// Who answered.
     pub identity: Identity,
-    /// The robot's name.
-    pub model: String,
-    /// The problem's content hash.
-    pub problem_hash: String,
-    /// The states: blocks q, v, a, tau, wrench.
-    pub states: Vec<Block>,
-    /// The outcomes by quantity and method, in the order of the engine's methods.
+    /// The outcomes by quantity and method.
     pub outcomes: Vec<(Quantity, String, Outcome)>,
 }
 
-/// The states as they stand in a recording.
-fn state_blocks(states: &StateBatch) -> Vec<Block> {
-    let (count, nv) = (states.count(), states.nv);
-    vec![
-        Block::new("q", &[count, states.nq], &states.q),
-        Block::new("v", &[count, nv], &states.v),
-        Block::new("a", &[count, nv], &states.a),
-        Block::new("tau", &[count, nv], &states.tau),
-        Block::new("wrench", &[count, states.bodies, 6], &states.wrench),
-    ]
+/// Name of a robot's recording.
+pub fn recording_name(model: &str) -> String {
+    format!("{model}.recording")
 }
 
 impl Recording {
-    /// The recording of these outcomes.
-    pub fn new(identity: &Identity, problem: &Problem, outcomes: Vec<(Quantity, String, Outcome)>) -> Self {
-        let (model, problem_hash) = (problem.name.clone(), problem.hash.clone());
-        Self { identity: identity.clone(), model, problem_hash, states: state_blocks(&problem.states), outcomes }
-    }
-
-    /// The recording as bytes. A dense mass matrix that is symmetric to the bit is kept as its lower triangle.
+    /// The recording as bytes.
     pub fn to_bytes(&self, problem: &Problem) -> Vec<u8> {
-        let nv = problem.model.topology.nv();
-        let Identity { name, version, build, .. } = &self.identity;
-        let head = json!({"engine": name, "version": version, "build": build, "model": self.model, "problem": self.problem_hash});
-        let mut bytes = Frame::new(head, self.states.clone()).to_bytes();
-        for (quantity, method, outcome) in &self.outcomes {
-            let (status, reason, blocks) = match outcome {
-                Outcome::Values(values) if *quantity == Quantity::MassMatrix && unpack(&pack(values, nv), nv).as_ref() == Some(values) => {
-                    let packed = pack(values, nv);
-                    ("ok", String::new(), vec![Block::new("lower", &[packed.len()], &packed)])
+        let mut writer = Writer { bytes: Vec::new(), parts: 0 };
+        let head = json!({"recording": 1, "model": problem.name, "problem": problem.hash, "states": problem.states.count()});
+        writer.part(head, &plain(&states(&problem.states)));
+        let topology = &problem.model.topology;
+        let mut bases: HashMap<Quantity, Vec<f64>> = HashMap::new();
+        for engine in &self.engines {
+            let Identity { name, version, build, .. } = &engine.identity;
+            writer.part(json!({"engine": name, "version": version, "build": build}), &[]);
+            for (quantity, method, outcome) in &engine.outcomes {
+                let header = |status: &str, reason: &str| json!({"quantity": quantity.name(), "method": method, "status": status, "reason": reason});
+                match outcome {
+                    Outcome::Refused(Refusal::Unsupported(reason)) => writer.part(header("unsupported", reason), &[]),
+                    Outcome::Refused(Refusal::Failed(reason)) => writer.part(header("error", reason), &[]),
+                    Outcome::Values(values) => {
+                        let base = bases.get(quantity).filter(|base| base.len() == values.len());
+                        let mut header = header("ok", "");
+                        header["coding"] = if base.is_some() { "delta" } else { "plain" }.into();
+                        writer.part(header, &encode(*quantity, values, base.map(Vec::as_slice), topology));
+                        bases.entry(*quantity).or_insert_with(|| values.clone());
+                    }
                 }
-                Outcome::Values(values) => ("ok", String::new(), vec![Block::new("value", &[values.len()], values)]),
-                Outcome::Refused(Refusal::Unsupported(reason)) => ("unsupported", reason.clone(), Vec::new()),
-                Outcome::Refused(Refusal::Failed(reason)) => ("error", reason.clone(), Vec::new()),
-            };
-            let header = json!({"quantity": quantity.name(), "method": method, "status": status, "reason": reason});
-            bytes.extend(Frame::new(header, blocks).to_bytes());
+            }
         }
-        bytes.extend(Frame::new(json!({"end": self.outcomes.len()}), Vec::new()).to_bytes());
-        bytes
+        let parts = writer.parts;
+        writer.part(json!({"end": parts}), &[]);
+        writer.bytes
     }
 
-    /// Reads a recording about a problem.
+    /// Reads the recording of a problem.
     ///
     /// # Errors
-    /// [`RecordError`], when the file is missing, truncated, damaged, or about another robot or other states.
-    pub fn read(path: &Path, problem: &Problem) -> Result<Self, RecordError> {
-        let file = std::fs::File::open(path).map_err(|source| RecordError::Io { path: path.to_owned(), source })?;
-        let mut reader = BufReader::new(file);
-        let damaged = |what: String| RecordError::Damaged { path: path.to_owned(), what };
-        let mut next = || match Frame::read(&mut reader) {
-            Ok(Some(frame)) => Ok(frame),
-            Ok(None) => Err(damaged("the file is truncated".into())),
-            Err(FrameError::Io(source)) => Err(RecordError::Io { path: path.to_owned(), source }),
-            Err(error) => Err(damaged(error.to_string())),
-        };
-        let head = next()?;
-        if head.text("problem") != problem.hash || !same_bits(&head.blocks, &state_blocks(&problem.states)) {
-            return Err(damaged(format!("it was recorded for another version of '{}' or of its states", problem.name)));
+    /// [`RecordingError`], when the file is missing, truncated, damaged, or about another robot or other states.
+    pub fn read(path: &Path, problem: &Problem) -> Result<Self, RecordingError> {
+        let bytes = std::fs::read(path).map_err(|source| RecordingError::Io { path: path.to_owned(), source })?;
+        Self::from_bytes(&bytes, problem).map_err(|what| RecordingError::Damaged { path: path.to_owned(), what })
+    }
+
+    fn from_bytes(bytes: &[u8], problem: &Problem) -> Result<Self, String> {
+        let mut reader = Reader { bytes, parts: 0 };
+        let (head, raw) = reader.part()?;
+        let recorded = from_plain(raw).ok_or("the states are damaged")?;
+        let bits = |values: &[f64]| values.iter().map(|x| x.to_bits()).collect::<Vec<_>>();
+        if head["problem"] != problem.hash.as_str() || bits(&recorded) != bits(&states(&problem.states)) {
+            return Err(format!("it was recorded for another version of '{}' or of its states", problem.name));
         }
-        let build = head.header.get("build").cloned().unwrap_or_else(|| json!({}));
-        let identity = Identity {
-            name: head.text("engine").to_owned(),
-            version: head.text("version").to_owned(),
-            source: EngineSource::Recorded,
-            build: serde_json::from_value(build).map_err(|error| damaged(format!("build: {error}")))?,
-        };
-        let mut outcomes = Vec::new();
+        let mut engines: Vec<EngineRecording> = Vec::new();
+        let mut bases: HashMap<Quantity, Vec<f64>> = HashMap::new();
         loop {
-            let frame = next()?;
-            if let Some(end) = frame.header.get("end") {
-                if end.as_u64() != Some(outcomes.len() as u64) {
-                    return Err(damaged(format!("{} of {end} outcomes are there", outcomes.len())));
-                }
-                let (model, problem_hash) = (problem.name.clone(), problem.hash.clone());
-                return Ok(Self { identity, model, problem_hash, states: head.blocks, outcomes });
+            let (header, raw) = reader.part()?;
+            if let Some(end) = header["end"].as_u64() {
+                // The last part does not count itself.
+                return if end + 1 == reader.parts { Ok(Self { engines }) } else { Err("parts are missing".into()) };
             }
-            let quantity = Quantity::parse(frame.text("quantity")).ok_or_else(|| damaged("an outcome names no quantity".into()))?;
-            let reason = frame.text("reason").to_owned();
-            let outcome = match (frame.text("status"), frame.block("value"), frame.block("lower")) {
-                ("ok", Some(block), _) => Outcome::Values(block.data.clone()),
-                ("ok", None, Some(block)) => Outcome::Values(unpack(&block.data, problem.model.topology.nv()).ok_or_else(|| damaged("M has a wrong length".into()))?),
-                ("unsupported", ..) => Outcome::Refused(Refusal::Unsupported(reason)),
-                ("error", ..) => Outcome::Refused(Refusal::Failed(reason)),
-                _ => return Err(damaged(format!("an outcome of {} has no values", quantity.name()))),
+            if header["engine"].is_string() {
+                engines.push(EngineRecording { identity: identity(&header)?, outcomes: Vec::new() });
+                continue;
+            }
+            let engine = engines.last_mut().ok_or("an outcome comes before its engine")?;
+            let word = |key: &str| header[key].as_str().unwrap_or_default();
+            let quantity = Quantity::parse(word("quantity")).ok_or("an outcome names no quantity")?;
+            let reason = word("reason").to_owned();
+            let outcome = match word("status") {
+                "unsupported" => Outcome::Refused(Refusal::Unsupported(reason)),
+                "error" => Outcome::Refused(Refusal::Failed(reason)),
+                _ => {
+                    let base = match word("coding") {
+                        "delta" => bases.get(&quantity).map(Vec::as_slice),
+                        _ => None,
+                    };
+                    let values = decode(quantity, raw, base, &problem.model.topology);
+                    let values = values.ok_or_else(|| format!("the values of {} are damaged", quantity.name()))?;
+                    bases.entry(quantity).or_insert_with(|| values.clone());
+                    Outcome::Values(values)
+                }
             };
-            outcomes.push((quantity, frame.text("method").to_owned(), outcome));
+            engine.outcomes.push((quantity, word("method").to_owned(), outcome));
         }
     }
-}
 
-fn same_bits(a: &[Block], b: &[Block]) -> bool {
-    let bits = |blocks: &[Block]| blocks.iter().flat_map(|block| block.data.iter().map(|x| x.to_bits()).collect::<Vec<_>>()).collect::<Vec<_>>();
-    bits(a) == bits(b)
-}
-
-fn pack(matrices: &[f64], n: usize) -> Vec<f64> {
-    matrices.chunks_exact(n * n).flat_map(|m| (0..n).flat_map(|i| m[i * n..=i * n + i].to_vec()).collect::<Vec<_>>()).collect()
-}
-
-fn unpack(packed: &[f64], n: usize) -> Option<Vec<f64>> {
-    let triangle = n * (n + 1) / 2;
-    if triangle == 0 || packed.len() % triangle != 0 {
-        return None;
+    /// What an engine answered.
+    pub fn engine(&self, name: &str) -> Option<&EngineRecording> {
+        self.engines.iter().find(|engine| engine.identity.name == name)
     }
-    let mut matrices = vec![0.0; packed.len() / triangle * n * n];
-    for (m, lower) in matrices.chunks_exact_mut(n * n).zip(packed.chunks_exact(triangle)) {
-        let mut entries = lower.iter();
+}
+
+struct Writer {
+    bytes: Vec<u8>,
+    parts: u64,
+}
+
+impl Writer {
+    fn part(&mut self, mut header: Value, raw: &[u8]) {
+        header["bytes"] = raw.len().into();
+        self.bytes.extend(header.to_string().into_bytes());
+        self.bytes.push(b'\n');
+        self.bytes.extend(raw);
+        self.parts += 1;
+    }
+}
+
+struct Reader<'a> {
+    bytes: &'a [u8],
+    parts: u64,
+}
+
+impl<'a> Reader<'a> {
+    fn part(&mut self) -> Result<(Value, &'a [u8]), String> {
+        let truncated = || "the file is truncated".to_owned();
+        let end = self.bytes.iter().position(|&byte| byte == b'\n').ok_or_else(truncated)?;
+        let header: Value = serde_json::from_slice(&self.bytes[..end]).map_err(|error| format!("part {}: {error}", self.parts))?;
+        let length = header["bytes"].as_u64().and_then(|length| usize::try_from(length).ok());
+        let length = length.ok_or_else(|| format!("part {}: no number of bytes", self.parts))?;
+        let rest = &self.bytes[end + 1..];
+        let raw = rest.get(..length).ok_or_else(truncated)?;
+        self.bytes = &rest[length..];
+        self.parts += 1;
+        Ok((header, raw))
+    }
+}
+
+fn identity(header: &Value) -> Result<Identity, String> {
+    let text = |key: &str| header[key].as_str().unwrap_or_default().to_owned();
+    let build = serde_json::from_value(header["build"].clone()).map_err(|error| format!("build: {error}"))?;
+    Ok(Identity { name: text("engine"), version: text("version"), source: EngineSource::Recorded, build })
+}
+
+/// The numbers of a batch that anybody is asked about: q, v, a, tau, and the wrenches of the states that `id_wrench` takes.
+fn states(states: &StateBatch) -> Vec<f64> {
+    let wrenched = Quantity::InverseDynamicsWrench.states(states.count()) * 6 * states.bodies;
+    let parts: [&[f64]; 5] = [&states.q, &states.v, &states.a, &states.tau, &states.wrench[..wrenched]];
+    parts.concat()
+}
+
+/// The tree-sparse entries of dense mass matrices.
+fn pack(matrices: &[f64], topology: &Topology) -> Vec<f64> {
+    let n = topology.nv();
+    let row = |m: &[f64], i: usize| topology.row_dofs(i).iter().map(|&j| m[i * n + j]).collect::<Vec<_>>();
+    matrices.chunks_exact(n * n).flat_map(|m| (0..n).flat_map(|i| row(m, i)).collect::<Vec<_>>()).collect()
+}
+
+/// The bytes of an answer, by its distance from a base where there is one.
+///
+/// Of mass matrices the tree-sparse entries come first, behind their length in bytes; then the distances of all entries from those of the
+/// symmetric matrix that these make, most of them zero.
+fn encode(quantity: Quantity, values: &[f64], base: Option<&[f64]>, topology: &Topology) -> Vec<u8> {
+    let code = |values: &[f64], base: Option<&[f64]>| base.map_or_else(|| plain(values), |base| delta(values, base));
+    if quantity != Quantity::MassMatrix {
+        return code(values, base);
+    }
+    let packed = pack(values, topology);
+    let sparse = code(&packed, base.map(|base| pack(base, topology)).as_deref());
+    let rest = delta(values, &unpack(&packed, topology));
+    [&(sparse.len() as u64).to_le_bytes()[..], &sparse, &rest].concat()
+}
+
+/// The values of [`encode`]'s bytes, or `None` when these are damaged.
+fn decode(quantity: Quantity, raw: &[u8], base: Option<&[f64]>, topology: &Topology) -> Option<Vec<f64>> {
+    let parse = |raw: &[u8], base: Option<&[f64]>| base.map_or_else(|| from_plain(raw), |base| from_delta(raw, base));
+    if quantity != Quantity::MassMatrix {
+        return parse(raw, base);
+    }
+    let (length, raw) = raw.split_first_chunk::<8>()?;
+    let (sparse, rest) = raw.split_at_checked(usize::try_from(u64::from_le_bytes(*length)).ok()?)?;
+    let packed = parse(sparse, base.map(|base| pack(base, topology)).as_deref())?;
+    from_delta(rest, &unpack(&packed, topology))
+}
+
+/// Dense symmetric matrices of their tree-sparse entries.
+fn unpack(packed: &[f64], topology: &Topology) -> Vec<f64> {
+    let n = topology.nv();
+    let mut matrices = vec![0.0; packed.len() / topology.stored().max(1) * n * n];
+    for (m, entries) in matrices.chunks_exact_mut(n * n).zip(packed.chunks_exact(topology.stored())) {
         for i in 0..n {
-            for (j, &entry) in (0..=i).zip(&mut entries) {
+            for (&j, &entry) in topology.row_dofs(i).iter().zip(&entries[topology.row(i)]) {
                 m[i * n + j] = entry;
                 m[j * n + i] = entry;
             }
         }
     }
-    Some(matrices)
+    matrices
+}
+
+/// The recordings of a suite's robots, by name.
+pub type Recordings = HashMap<String, Result<Recording, String>>;
+
+/// Reads the recordings of problems from a folder. A missing or damaged one is that robot's reason, not an error.
+pub fn read_recordings(folder: &Path, problems: &[&Problem]) -> Recordings {
+    let read = |problem: &Problem| Recording::read(&folder.join(recording_name(&problem.name)), problem).map_err(|error| error.to_string());
+    problems.iter().map(|problem| (problem.name.clone(), read(problem))).collect()
 }
 
 /// An engine whose answers were recorded.
 pub struct Recorded {
     identity: Identity,
     methods: BTreeMap<Quantity, Vec<String>>,
-    recordings: HashMap<String, Result<Recording, String>>,
+    recordings: Arc<Recordings>,
 }
 
 impl Recorded {
-    /// Reads an engine's answers about these problems from `folder/ENGINE/`.
-    ///
-    /// A robot whose file is missing or damaged is an error row of that robot; only when no file at all can be read there is no such
-    /// subject.
+    /// The engine of this name in a set of recordings.
     ///
     /// # Errors
-    /// The first [`RecordError`], when no robot has a recording.
-    pub fn open(folder: &Path, engine: &str, problems: &[&Problem]) -> Result<Self, RecordError> {
-        let mut recordings = HashMap::new();
+    /// Why there is none: no recording at all can be read, or none has answers of the engine.
+    pub fn new(recordings: &Arc<Recordings>, engine: &str) -> Result<Self, String> {
         let mut methods: BTreeMap<Quantity, Vec<String>> = BTreeMap::new();
-        let (mut identity, mut first_error) = (None, None);
-        for problem in problems {
-            let path = folder.join(engine).join(format!("{}.frames", problem.name));
-            let recording = match Recording::read(&path, problem) {
-                Ok(recording) => {
-                    for (quantity, method, _) in &recording.outcomes {
-                        let known = methods.entry(*quantity).or_default();
-                        if !known.contains(method) {
-                            known.push(method.clone());
-                        }
-                    }
-                    identity.get_or_insert_with(|| recording.identity.clone());
-                    Ok(recording)
+        let mut identity = None;
+        for recording in recordings.values().flatten().filter_map(|recording| recording.engine(engine)) {
+            identity.get_or_insert_with(|| recording.identity.clone());
+            for (quantity, method, _) in &recording.outcomes {
+                let known = methods.entry(*quantity).or_default();
+                if !known.contains(method) {
+                    known.push(method.clone());
                 }
-                Err(error) => {
-                    let message = error.to_string();
-                    first_error.get_or_insert(error);
-                    Err(message)
-                }
-            };
-            recordings.insert(problem.name.clone(), recording);
+            }
         }
-        match (identity, first_error) {
-            (Some(identity), _) => Ok(Self { identity, methods, recordings }),
-            (None, Some(error)) => Err(error),
-            (None, None) => Err(RecordError::Damaged { path: folder.join(engine), what: "no robot was asked about".into() }),
-        }
-    }
-
-    /// The recording of a robot.
-    pub fn recording(&self, model: &str) -> Option<&Recording> {
-        self.recordings.get(model)?.as_ref().ok()
+        let first_error = recordings.values().find_map(|recording| recording.as_ref().err());
+        let identity = identity.ok_or_else(|| first_error.cloned().unwrap_or_else(|| format!("no answers of {engine} were recorded")))?;
+        Ok(Self { identity, methods, recordings: Arc::clone(recordings) })
     }
 }
 
@@ -242,13 +303,10 @@ impl Subject for Recorded {
             Some(Err(message)) => return Err(Refusal::Failed(message.clone())),
             None => return Err(Refusal::Failed(format!("nothing was recorded about '{}'", problem.name))),
         };
-        let outcome = recording.outcomes.iter().find(|(q, m, _)| *q == quantity && m == method).map(|(_, _, outcome)| outcome);
-        match outcome {
-            Some(Outcome::Values(values)) => {
-                let size = quantity.size(problem);
-                Ok(Box::new(Played { values, size, range: 0..0 }))
-            }
-            Some(Outcome::Refused(refusal)) => Err(refusal.clone()),
+        let outcomes = recording.engine(&self.identity.name).map(|engine| &engine.outcomes).into_iter().flatten();
+        match outcomes.into_iter().find(|(q, m, _)| *q == quantity && m == method) {
+            Some((_, _, Outcome::Values(values))) => Ok(Box::new(Played { values, size: quantity.size(problem), range: 0..0 })),
+            Some((_, _, Outcome::Refused(refusal))) => Err(refusal.clone()),
             None => Err(Refusal::Failed(format!("{} by {method} was not recorded", quantity.name()))),
         }
     }
@@ -271,18 +329,5 @@ impl Prepared for Played<'_> {
 
     fn read(&self) -> &[f64] {
         &self.values[self.range.start * self.size..self.range.end * self.size]
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn packing_a_symmetric_matrix_loses_nothing() {
-        let m = [1.0, 2.0, 3.0, 2.0, 5.0, 6.0, 3.0, 6.0, 9.0];
-        let two = [m, m.map(|x| -x)].concat();
-        assert_eq!(unpack(&pack(&two, 3), 3), Some(two));
-        assert_eq!(unpack(&[1.0; 5], 3), None);
     }
 }

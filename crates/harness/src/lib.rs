@@ -20,7 +20,7 @@ mod suite;
 
 pub use cell::{Cell, Outcome};
 pub use error::HarnessError;
-pub use gates::{Deviation, Factor, Gate, Gates, Sharpness};
+pub use gates::{Deviation, Factor, Gate, Gates, Sharpness, accounted};
 pub use problem::Problem;
 pub use quantity::{DENSE_LIMIT, Quantity};
 pub use store::{OUTCOMES_NAME, OutcomeStore};

@@ -120,11 +120,13 @@ impl Quantity {
     }
 
     /// Of how many states of an agreement batch it is asked: all where the claim is about the worst of them, the head of the batch for
-    /// the bulky kinematic quantities, one where it does not depend on the state.
+    /// the bulky kinematic quantities and external wrenches, one where it does not depend on the state.
     pub fn states(self, count: usize) -> usize {
         match self {
             Self::Readback | Self::StoredEntries => count.min(1),
-            Self::BodyPlacement | Self::BodyVelocity | Self::BodyAcceleration | Self::BodyJacobian => count.min(model::StateBatch::HEAD),
+            Self::InverseDynamicsWrench | Self::BodyPlacement | Self::BodyVelocity | Self::BodyAcceleration | Self::BodyJacobian => {
+                count.min(model::StateBatch::HEAD)
+            }
             _ => count,
         }
     }

@@ -22,7 +22,7 @@ pub struct Suite {
     pub structure: bool,
     /// The timing study.
     pub timing: Option<TimingEntry>,
-    /// Passing rows that a whole run must show: engine → quantity → count.
+    /// Rows that a whole run must show, passing or deviating as known: engine → quantity → count.
     #[serde(default)]
     pub expect: BTreeMap<String, BTreeMap<String, u64>>,
 }
@@ -42,6 +42,8 @@ pub struct ProblemEntry {
     pub floating: bool,
     /// The family in records.
     pub family: String,
+    /// Agreement states, where they differ from the suite's.
+    pub states: Option<usize>,
     /// The studies that take it; all by default.
     pub studies: Option<Vec<String>>,
 }

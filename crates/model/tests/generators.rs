@@ -1,6 +1,6 @@
 //! Generated robots: counts against closed forms, canonical, repeatable, physical.
 
-use featherbench_model::generate::{BadFamily, Base, Family, Joints, Kind};
+use featherbench_model::generate::{BadFamily, Base, Family, Joints, Kind, Shape};
 use featherbench_model::{Description, JointType, Model};
 
 fn generate(spec: &str) -> Description {
@@ -179,12 +179,23 @@ fn random_trees_obey_their_parameters() {
 fn joint_robots_show_their_joint_in_the_middle_and_at_the_tips() {
     for &kind in Kind::ALL {
         for &base in Base::ALL {
-            let robot = Family::Joints(Joints { kind, base }).generate().expect("every combination exists");
+            let robot = Family::Joints(Joints { kind, base, shape: Shape::Branched }).generate().expect("every combination exists");
             let is_parent = |i: usize| robot.bodies.iter().any(|body| body.parent == Some(i));
             let shown: Vec<usize> =
-                (1..robot.bodies.len()).filter(|&i| kind == Kind::Mixed || robot.bodies[i].joint.kind.name() == kind.name()).collect();
+                (1..robot.bodies.len()).filter(|&i| matches!(kind, Kind::Mixed | Kind::Common) || robot.bodies[i].joint.kind.name() == kind.name()).collect();
             assert!(shown.iter().any(|&i| is_parent(i)), "{} in the middle", robot.name);
             assert!(shown.iter().filter(|&&i| !is_parent(i)).count() >= 2, "{} at the tips", robot.name);
+        }
+    }
+}
+
+#[test]
+fn single_joints_stand_on_the_world_or_on_a_free_body() {
+    for &kind in Kind::ALL {
+        for &base in Base::ALL {
+            let robot = Family::Joints(Joints { kind, base, shape: Shape::Single }).generate().expect("every combination exists");
+            assert_eq!(robot.depth(), if base == Base::Free { 2 } else { 1 }, "{}", robot.name);
+            assert!(robot.bodies.iter().all(|body| !(kind == Kind::Common && body.joint.kind.name() == "helical")), "{}", robot.name);
         }
     }
 }
@@ -231,7 +242,7 @@ fn bad_specifications_are_named() {
         ("chain:tip_scale=NaN", "tip_scale=NaN"),
         ("chain:base_offset=inf", "base_offset=inf"),
         ("tree:spread=1.5", "spread=1.5"),
-        ("tree:joints=some", "one of: revolute all"),
+        ("tree:joints=some", "one of: revolute all common"),
         ("binary_tree:depth=64", "depth=64 does not do; give 1 to 20"),
         ("star:n=0", "n=0"),
         ("humanoid:hand_mass=-1", "hand_mass=-1"),

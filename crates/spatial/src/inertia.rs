@@ -134,30 +134,40 @@ impl<T: Real> ArticulatedInertia<T> {
             u.lin.scale_add(scaled.z, self.coupling.z),
         );
         Self {
-            rotational: self.rotational - Sym3::rank_one(weight, u.ang),
+            rotational: self.rotational.add_rank_one(-weight, u.ang),
             coupling,
-            translational: self.translational - Sym3::rank_one(weight, u.lin),
+            translational: self.translational.add_rank_one(-weight, u.lin),
         }
     }
 
     /// The same inertia at the parent's origin in parent coordinates, `X* Iᴬ X⁻¹`.
     #[inline(always)]
     pub fn to_parent(&self, x: &Transform<T>) -> Self {
-        let r = x.rotation;
-        let p = x.translation;
-        let translational = self.translational.rotate(r);
-        let rotated = r * self.coupling * r.transpose();
-        let m = translational;
-        // H' = R H Rᵀ + p× M'
-        let columns = |v: Vec3<T>| p.cross(v);
-        let (cx, cy, cz) =
-            (columns(Vec3::new(m.xx, m.xy, m.xz)), columns(Vec3::new(m.xy, m.yy, m.yz)), columns(Vec3::new(m.xz, m.yz, m.zz)));
-        let coupling = rotated + Mat3::from_rows(cx, cy, cz).transpose();
-        // I' = R I Rᵀ − (R H Rᵀ) p× + p× H'ᵀ; row i of (A p×) is aᵢ × p, row-wise columns of p× H'ᵀ are p × (row of H').
-        let (ax, ay, az) = (p.cross(rotated.x), p.cross(rotated.y), p.cross(rotated.z));
-        let (bx, by, bz) = (p.cross(coupling.x), p.cross(coupling.y), p.cross(coupling.z));
-        let shift = Sym3 { xx: ax.x + bx.x, xy: ax.y + by.x, xz: ax.z + bz.x, yy: ay.y + by.y, yz: ay.z + bz.y, zz: az.z + bz.z };
-        Self { rotational: self.rotational.rotate(r) + shift, coupling, translational }
+        let (r, p) = (x.rotation, x.translation);
+        // M' = R M Rᵀ,  H' = A + p× M' with A = R H Rᵀ; column i of p× M' is p × (row i of M')
+        let m = self.translational.rotate(r);
+        let at = r * (r * self.coupling).transpose();
+        let a = at.transpose();
+        let h = Mat3::from_rows(
+            p.cross_add(Vec3::new(m.xx, m.xy, m.xz), at.x),
+            p.cross_add(Vec3::new(m.xy, m.yy, m.yz), at.y),
+            p.cross_add(Vec3::new(m.xz, m.yz, m.zz), at.z),
+        )
+        .transpose();
+        // I' = R I Rᵀ − A p× + p× H'ᵀ; row i of −A p× is p × (row i of A), column i of p× H'ᵀ is p × (row i of H')
+        let i = self.rotational.rotate(r);
+        let cross_x = |v: Vec3<T>, addend: T| p.y.mul_add(v.z, (-p.z).mul_add(v.y, addend));
+        let cross_y = |v: Vec3<T>, addend: T| p.z.mul_add(v.x, (-p.x).mul_add(v.z, addend));
+        let cross_z = |v: Vec3<T>, addend: T| p.x.mul_add(v.y, (-p.y).mul_add(v.x, addend));
+        let rotational = Sym3 {
+            xx: cross_x(h.x, cross_x(a.x, i.xx)),
+            xy: cross_x(h.y, cross_y(a.x, i.xy)),
+            xz: cross_x(h.z, cross_z(a.x, i.xz)),
+            yy: cross_y(h.y, cross_y(a.y, i.yy)),
+            yz: cross_y(h.z, cross_z(a.y, i.yz)),
+            zz: cross_z(h.z, cross_z(a.z, i.zz)),
+        };
+        Self { rotational, coupling: h, translational: m }
     }
 }
 

@@ -317,6 +317,20 @@ impl<T: Real> Sym3<T> {
         Self { xx: wu.x * u.x, xy: wu.x * u.y, xz: wu.x * u.z, yy: wu.y * u.y, yz: wu.y * u.z, zz: wu.z * u.z }
     }
 
+    /// `self + w·u uᵀ`.
+    #[inline(always)]
+    pub fn add_rank_one(self, weight: T, u: Vec3<T>) -> Self {
+        let wu = u * weight;
+        Self {
+            xx: wu.x.mul_add(u.x, self.xx),
+            xy: wu.x.mul_add(u.y, self.xy),
+            xz: wu.x.mul_add(u.z, self.xz),
+            yy: wu.y.mul_add(u.y, self.yy),
+            yz: wu.y.mul_add(u.z, self.yz),
+            zz: wu.z.mul_add(u.z, self.zz),
+        }
+    }
+
     /// The full matrix.
     #[inline(always)]
     pub fn to_mat3(self) -> Mat3<T> {
@@ -327,7 +341,7 @@ impl<T: Real> Sym3<T> {
     #[inline(always)]
     pub fn rotate(self, r: Mat3<T>) -> Self {
         // Rows of R S, then only the upper triangle of (R S) Rᵀ.
-        let (x, y, z) = (self * r.x, self * r.y, self * r.z);
+        let Mat3 { x, y, z } = r * self.to_mat3();
         Self { xx: x.dot(r.x), xy: x.dot(r.y), xz: x.dot(r.z), yy: y.dot(r.y), yz: y.dot(r.z), zz: z.dot(r.z) }
     }
 

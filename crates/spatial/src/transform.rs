@@ -106,7 +106,7 @@ impl<T: Real> Transform<T> {
     #[inline(always)]
     pub fn motion(&self, m: Motion<T>) -> Motion<T> {
         let ang = self.rotation * m.ang;
-        Motion::new(ang, self.rotation.mul_vec_add(m.lin, self.translation.cross(ang)))
+        Motion::new(ang, self.translation.cross_add(ang, self.rotation * m.lin))
     }
 
     /// A motion in parent coordinates, in child coordinates at the child's origin.
@@ -120,7 +120,7 @@ impl<T: Real> Transform<T> {
     #[inline(always)]
     pub fn force(&self, f: Force<T>) -> Force<T> {
         let lin = self.rotation * f.lin;
-        Force::new(self.rotation.mul_vec_add(f.ang, self.translation.cross(lin)), lin)
+        Force::new(self.translation.cross_add(lin, self.rotation * f.ang), lin)
     }
 
     /// A force in parent coordinates, in child coordinates at the child's origin.

@@ -63,8 +63,19 @@ pub const ROBOTS: [(&str, Recipe); 9] = [
     ("spherical chain", Recipe { kinds: &[Spherical], bodies: 5, branched: false, armature: false }),
     ("spherical tree with armature", Recipe { kinds: &[Spherical, Revolute], bodies: 9, branched: true, armature: true }),
     ("composed joints", Recipe { kinds: &[Planar, Universal], bodies: 6, branched: true, armature: false }),
-    ("every kind, fixed base", Recipe { kinds: &[Revolute, Prismatic, Helical, Spherical, Planar, Universal], bodies: 14, branched: true, armature: true }),
-    ("every kind, floating base", Recipe { kinds: &[Free, Revolute, Helical, Spherical, Prismatic, Universal, Planar, Revolute], bodies: 8, branched: true, armature: true }),
+    (
+        "every kind, fixed base",
+        Recipe { kinds: &[Revolute, Prismatic, Helical, Spherical, Planar, Universal], bodies: 14, branched: true, armature: true },
+    ),
+    (
+        "every kind, floating base",
+        Recipe {
+            kinds: &[Free, Revolute, Helical, Spherical, Prismatic, Universal, Planar, Revolute],
+            bodies: 8,
+            branched: true,
+            armature: true,
+        },
+    ),
     ("free joints in the middle", Recipe { kinds: &[Revolute, Spherical, Free, Prismatic], bodies: 12, branched: true, armature: true }),
 ];
 
@@ -91,11 +102,8 @@ pub fn robot(recipe: &Recipe, seed: u64) -> Description {
         let rotation = Quaternion::from_array(random.direction::<4>()).to_rotation().to_array();
         let vector = |random: &mut Random, reach: f64| std::array::from_fn(|_| random.uniform(-reach, reach));
         let translation = vector(&mut random, 0.5);
-        let armature = if recipe.armature && kind != Free {
-            (0..joint_type.nv()).map(|_| random.uniform(0.0, 0.3)).collect()
-        } else {
-            Vec::new()
-        };
+        let armature =
+            if recipe.armature && kind != Free { (0..joint_type.nv()).map(|_| random.uniform(0.0, 0.3)).collect() } else { Vec::new() };
         description.bodies.push(BodyDescription {
             name: format!("body{i}"),
             parent: path.last().copied(),
@@ -143,8 +151,7 @@ pub fn dyadic_chain(axes: &[[f64; 3]], bodies: usize) -> Model<f64> {
             ..JointDescription::default()
         },
     };
-    let description =
-        Description { gravity: [0.0, 0.0, -9.8125], bodies: (0..bodies).map(body).collect(), ..Description::default() };
+    let description = Description { gravity: [0.0, 0.0, -9.8125], bodies: (0..bodies).map(body).collect(), ..Description::default() };
     Model::build(&description).expect("a chain is well formed")
 }
 

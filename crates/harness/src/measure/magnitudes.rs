@@ -135,7 +135,8 @@ impl Recursion {
                 let [xx, xy, xz, yy, yz, zz] = inertia.rotational.to_array();
                 let rotational = (xx * xx + yy * yy + zz * zz + 2.0 * (xy * xy + xz * xz + yz * yz)).sqrt();
                 let turning = self.angular_acceleration[i] + self.spin[i] * self.spin[i];
-                let falling = self.linear_acceleration[i] + gravity;
+                // The spatial acceleration differs from the classical one by ω × v: whichever an algorithm adds up, this term is in it.
+                let falling = self.linear_acceleration[i] + gravity + self.spin[i] * self.linear_velocity[i];
                 let lever = inertia.first_moment.norm();
                 Load { moment: rotational * turning + lever * falling, force: inertia.mass * falling + lever * turning }
             })

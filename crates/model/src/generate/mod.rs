@@ -28,7 +28,7 @@ pub use binary_tree::BinaryTree;
 pub use chain::{Chain, Layout};
 pub use hand::Hand;
 pub use humanoid::Humanoid;
-pub use joints::{Joints, Kind};
+pub use joints::{Joints, Kind, Shape};
 pub use quadruped::Quadruped;
 pub use star::Star;
 pub use tree::{Mix, Tree};

@@ -167,6 +167,8 @@ fn turned(principal: [f64; 3], r: [f64; 9]) -> [f64; 6] {
 
 /// The kinds that [`random_kind`] chooses from.
 pub(super) const MOVABLE: [&str; 6] = ["revolute", "prismatic", "helical", "spherical", "planar", "universal"];
+/// Those that all the reference engines have.
+pub(super) const COMMON: [&str; 5] = ["revolute", "prismatic", "spherical", "planar", "universal"];
 
 /// The joint of this word with a random skew axis and pitch, where it has one.
 pub(super) fn random_kind(random: &mut Random, word: &str) -> JointType {

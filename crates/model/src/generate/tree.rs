@@ -1,7 +1,7 @@
 //! Random trees with random bodies: skew axes, skew placements, full inertias.
 
 use super::parameters::{MOST_LINKS, Parameters, require, words};
-use super::parts::{MOVABLE, random_body, random_kind};
+use super::parts::{COMMON, MOVABLE, random_body, random_kind};
 use super::{BadFamily, Base};
 use crate::{Description, JointType, Random};
 use std::fmt;
@@ -14,9 +14,11 @@ pub enum Mix {
     Revolute,
     /// Revolute, prismatic, helical, spherical, planar and universal joints, equally likely.
     All,
+    /// The same without screws, which not every engine has.
+    Common,
 }
 
-words!(Mix { Revolute => "revolute", All => "all" });
+words!(Mix { Revolute => "revolute", All => "all", Common => "common" });
 
 /// A random tree. Body k depends on the seed and k only, the tree's shape on the seed and `spread`.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -86,6 +88,7 @@ impl Tree {
             let word = match self.joints {
                 Mix::Revolute => "revolute",
                 Mix::All => MOVABLE[random.below(MOVABLE.len())],
+                Mix::Common => COMMON[random.below(COMMON.len())],
             };
             let kind = random_kind(&mut random, word);
             bodies.push(random_body(&mut random, format!("body_{k}"), path.last().copied(), kind, MASS, self.armature));

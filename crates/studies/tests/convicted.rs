@@ -1,0 +1,357 @@
+//! The harness convicts engines that compute something else, answer nothing, or are not there; and known deviations excuse what they name,
+//! no further and no longer than it is seen.
+//!
+//! The mistakes are those that bindings and algorithms make: frames and orders mixed up, signs, forgotten armature. Each must turn the gates
+//! of `ci/gates.toml` red in the quantities that it touches, and leave the others alone.
+
+mod support;
+
+use harness::{Gates, Problem, Quantity};
+use model::{Description, JointType, Model, StateBatch};
+use record::{Record, Verdict};
+use std::collections::BTreeSet;
+use support::{Answer, Double, SHARPNESS, Twist, agreement, beside_native, doubles, gates, red, robot, suite};
+
+/// A robot with every kind of joint on a free base.
+const FREE: &str = "joints:kind=mixed,base=free";
+/// One with armature.
+const ARMATURED: &str = "tree:n=12,joints=all,base=free,armature=true";
+
+/// The quantities with rows of the double that fail.
+fn failing(records: &[Record]) -> BTreeSet<&str> {
+    doubles(records, Verdict::Fail).into_iter().map(|row| row.quantity.as_str()).collect()
+}
+
+/// Asserts that the gates are red for the double in exactly these quantities, and green for the native kernels.
+#[track_caller]
+fn fails_in(problem: &Problem, double: Double, quantities: &[&str]) {
+    let gates = gates("");
+    let expected = suite(&beside_native(problem, &gates, Double::of(problem)));
+    let records = beside_native(problem, &gates, double);
+    assert_eq!(failing(&records), quantities.iter().copied().collect());
+    assert!(doubles(&records, Verdict::Error).is_empty());
+    let unmet = gates.conditions(&expected, &records, true);
+    let unmet = red(&unmet);
+    assert!(unmet.contains(&"rows outside their bound"), "{unmet:?}");
+    for quantity in quantities {
+        assert!(unmet.contains(&format!("passing rows of double on {quantity}").as_str()), "{quantity}: {unmet:?}");
+    }
+    assert!(!unmet.iter().any(|what| what.contains("native on")), "the native kernels are innocent: {unmet:?}");
+}
+
+/// Asserts that a twisted answer fails in exactly these quantities.
+#[track_caller]
+fn twisted(spec: &str, twist: Twist, quantities: &[&str]) {
+    let problem = robot(spec);
+    fails_in(&problem, Double::twisting(&problem, twist), quantities);
+}
+
+#[test]
+fn an_honest_double_passes_everywhere() {
+    for spec in [FREE, ARMATURED, "humanoid", "chain:n=10,layout=spatial"] {
+        let problem = robot(spec);
+        let records = beside_native(&problem, &gates(""), Double::of(&problem));
+        let judged: Vec<&Record> = records.iter().filter(|row| row.relation.is_some()).collect();
+        assert!(!judged.is_empty());
+        assert!(judged.iter().all(|row| row.verdict == Verdict::Pass));
+        assert!(records.iter().all(|row| matches!(row.verdict, Verdict::Pass | Verdict::Info)));
+    }
+}
+
+/// The free joint's τ as [angular; linear].
+#[test]
+fn halves_of_the_free_joint_swapped() {
+    twisted(FREE, |answer| if answer.quantity == Quantity::InverseDynamics { answer.values[..6].rotate_left(3) }, &["id"]);
+}
+
+/// The free joint's τ in world axes.
+#[test]
+fn world_axes_for_body_axes() {
+    let twist = |Answer { problem, quantity, state, values }: Answer| {
+        if quantity == Quantity::InverseDynamics {
+            let x = problem.model.joint_transform(0, problem.states.q(state));
+            let world = |v: &[f64]| (x.rotation * spatial::Vec3::new(v[0], v[1], v[2])).to_array();
+            let (force, moment) = (world(&values[..3]), world(&values[3..6]));
+            values[..3].copy_from_slice(&force);
+            values[3..6].copy_from_slice(&moment);
+        }
+    };
+    twisted(FREE, twist, &["id"]);
+}
+
+#[test]
+fn one_sign_of_one_force() {
+    twisted(FREE, |answer| if answer.quantity == Quantity::Bias { answer.values[7] *= -1.0 }, &["bias"]);
+    twisted("humanoid", |answer| if answer.quantity == Quantity::InverseDynamics { answer.values[35] *= -1.0 }, &["id"]);
+}
+
+/// 6 × nv numbers in column-major order.
+#[test]
+fn a_jacobian_column_by_column() {
+    let twist = |Answer { quantity, values, .. }: Answer| {
+        if quantity == Quantity::BodyJacobian {
+            let (columns, rows) = (values.len() / 6, values.to_vec());
+            values.iter_mut().enumerate().for_each(|(k, x)| *x = rows[(k % 6) * columns + k / 6]);
+        }
+    };
+    twisted(FREE, twist, &["body_jacobian"]);
+}
+
+/// The lower triangle of M alone.
+#[test]
+fn half_a_mass_matrix() {
+    let twist = |Answer { problem, quantity, values, .. }: Answer| {
+        if quantity == Quantity::MassMatrix {
+            let n = problem.states.nv;
+            (0..n).for_each(|i| values[i * n + i + 1..(i + 1) * n].fill(0.0));
+        }
+    };
+    twisted(FREE, twist, &["mass_matrix"]);
+}
+
+/// Angular momentum about the world's origin for that about the centre of mass.
+#[test]
+fn momentum_about_another_point() {
+    let twist = |Answer { quantity, values, .. }: Answer| {
+        if quantity == Quantity::Momentum {
+            let (l, p) = values.split_at_mut(3);
+            l[0] += 0.5 * p[2];
+            l[2] -= 0.5 * p[0];
+        }
+    };
+    twisted(FREE, twist, &["momentum"]);
+}
+
+/// Spatial for classical acceleration: without ω × v.
+#[test]
+fn spatial_acceleration_for_classical() {
+    let twist = |Answer { problem, quantity, state, values }: Answer| {
+        if quantity == Quantity::BodyAcceleration {
+            let states = &problem.states;
+            let motion = dynamics::forward_kinematics(&problem.model, states.q(state), states.v(state), states.a(state)).unwrap();
+            for (a, &body) in values.chunks_exact_mut(6).zip(&problem.model.described) {
+                let v = motion.body(body).unwrap().velocity;
+                a.iter_mut().skip(3).zip(v.ang.cross(v.lin).to_array()).for_each(|(a, term)| *a -= term);
+            }
+        }
+    };
+    twisted(FREE, twist, &["body_acceleration"]);
+}
+
+/// Everything that forces have to do with, and nothing else.
+#[test]
+fn gravity_upside_down() {
+    let problem = robot(FREE);
+    let double = Double::altered(&problem, |description| description.gravity = description.gravity.map(|g| -g));
+    fails_in(&problem, double, &["id", "id_wrench", "bias", "fd", "potential_energy"]);
+}
+
+#[test]
+fn gravity_off_by_little() {
+    let problem = robot("humanoid");
+    let double = Double::altered(&problem, |description| description.gravity[2] *= 1.0 + 1e-10);
+    fails_in(&problem, double, &["id", "id_wrench", "bias", "fd", "potential_energy"]);
+}
+
+#[test]
+fn armature_forgotten() {
+    let problem = robot(ARMATURED);
+    let double = Double::altered(&problem, |description| description.bodies.iter_mut().for_each(|body| body.joint.armature.clear()));
+    fails_in(&problem, double, &["id", "id_wrench", "mass_matrix", "fd", "kinetic_energy"]);
+}
+
+/// Inertia about the body's origin taken for inertia about the centre of mass.
+#[test]
+fn inertia_about_another_point() {
+    let problem = robot("quadruped");
+    let double = Double::altered(&problem, |description| {
+        for body in &mut description.bodies {
+            let (m, [x, y, z]) = (body.mass, body.com);
+            let steiner = [y * y + z * z, -x * y, -x * z, x * x + z * z, -y * z, x * x + y * y];
+            body.inertia.iter_mut().zip(steiner).for_each(|(entry, s)| *entry += m * s);
+        }
+    });
+    fails_in(&problem, double, &["id", "id_wrench", "bias", "mass_matrix", "fd", "kinetic_energy", "momentum"]);
+}
+
+/// Transposed placements: child from parent for parent from child.
+#[test]
+fn rotations_the_other_way() {
+    let problem = robot(FREE);
+    let double = Double::altered(&problem, |description: &mut Description| {
+        for body in description.bodies.iter_mut().skip(1) {
+            let r = body.joint.placement.rotation;
+            body.joint.placement.rotation = std::array::from_fn(|k| r[3 * (k % 3) + k / 3]);
+        }
+    });
+    fails_in(&problem, double, &EVERYTHING);
+}
+
+/// Every quantity that depends on the configuration of a moving robot.
+const EVERYTHING: [&str; 13] = [
+    "id", "id_wrench", "bias", "mass_matrix", "fd", "kinetic_energy", "potential_energy", "com", "momentum", "body_placement", "body_velocity",
+    "body_acceleration", "body_jacobian",
+];
+
+/// Quaternions read as w, x, y, z.
+#[test]
+fn quaternion_order() {
+    let problem = robot(FREE);
+    let double = Double::misreading(&problem, |states| quaternions(&problem.model, states, |quaternion| quaternion.rotate_right(1)));
+    fails_in(&problem, double, &EVERYTHING);
+}
+
+/// Quaternions of the opposite rotation.
+#[test]
+fn quaternion_conjugated() {
+    let problem = robot(FREE);
+    let double = Double::misreading(&problem, |states| quaternions(&problem.model, states, |quaternion| quaternion[3] *= -1.0));
+    fails_in(&problem, double, &EVERYTHING);
+}
+
+fn quaternions(model: &Model<f64>, states: &mut StateBatch, change: impl Fn(&mut [f64])) {
+    for q in states.q.chunks_exact_mut(states.nq) {
+        for joint in model.topology.joints() {
+            match joint.kind {
+                model::JointKind::Free => change(&mut q[joint.q + 3..joint.q + 7]),
+                model::JointKind::Spherical => change(&mut q[joint.q..joint.q + 4]),
+                _ => (),
+            }
+        }
+    }
+}
+
+/// Two joints of one parent in the other order: what name-sorted engines do.
+#[test]
+fn siblings_swapped() {
+    let problem = robot("quadruped");
+    let legs: Vec<usize> = (0..problem.description.bodies.len()).filter(|&body| problem.description.bodies[body].parent == Some(0)).collect();
+    assert!(problem.description.bodies[0].joint.kind == JointType::Free && legs[..2] == [1, 4], "trunk and legs of three");
+    let double = Double::misreading(&problem, |states| {
+        let (nq, nv) = (states.nq, states.nv);
+        for q in states.q.chunks_exact_mut(nq) {
+            q[7..13].rotate_left(3);
+        }
+        for v in [&mut states.v, &mut states.a, &mut states.tau].into_iter().flat_map(|all| all.chunks_exact_mut(nv)) {
+            v[6..12].rotate_left(3);
+        }
+    });
+    fails_in(&problem, double, &EVERYTHING);
+}
+
+#[test]
+fn not_a_number_is_an_error() {
+    let problem = robot(FREE);
+    let gates = gates("");
+    let expected = suite(&beside_native(&problem, &gates, Double::of(&problem)));
+    // One NaN in one number of the last state: no worst-of may lose it.
+    let twist = |Answer { quantity, state, values, .. }: Answer| {
+        if quantity != Quantity::Readback && state + 1 == support::STATES {
+            values[0] = f64::NAN;
+        }
+    };
+    let records = beside_native(&problem, &gates, Double::twisting(&problem, twist));
+    let errors: BTreeSet<&str> = doubles(&records, Verdict::Error).into_iter().map(|row| row.quantity.as_str()).collect();
+    assert_eq!(errors, EVERYTHING.into_iter().collect());
+    assert!(doubles(&records, Verdict::Fail).is_empty());
+    let conditions = gates.conditions(&expected, &records, true);
+    let unmet = red(&conditions);
+    assert!(unmet.contains(&"rows without a value that was due"), "{unmet:?}");
+    for partial in [false, true] {
+        assert!(!red(&gates.conditions(&expected, &records, !partial)).is_empty());
+    }
+}
+
+#[test]
+fn a_missing_engine_does_not_pass_unnoticed() {
+    let problem = robot(FREE);
+    let gates = gates("");
+    let expected = suite(&beside_native(&problem, &gates, Double::of(&problem)));
+    let alone = agreement(&problem, &gates, &[Box::new(engines::Native::new())]);
+    assert!(alone.iter().all(|row| matches!(row.verdict, Verdict::Pass | Verdict::Info)), "nothing is wrong with what is there");
+    let conditions = gates.conditions(&expected, &alone, true);
+    let unmet = red(&conditions);
+    let demanded = expected.expect["double"].len();
+    assert_eq!(unmet.iter().filter(|what| what.starts_with("passing rows of double on")).count(), demanded, "{unmet:?}");
+    assert!(demanded > EVERYTHING.len(), "the read-back is demanded as well");
+}
+
+#[test]
+fn nothing_at_all_is_not_green() {
+    let gates = gates("");
+    let conditions = gates.conditions(&suite(&[]), &[], true);
+    assert_eq!(red(&conditions), ["rows at all"]);
+}
+
+/// One robot whose forward bounds see nothing, and one with sharp ones.
+#[test]
+fn blind_bounds_are_red() {
+    let gates = gates("");
+    let blunt = |spec: &str| {
+        let problem = robot(spec);
+        let records = beside_native(&problem, &gates, Double::of(&problem));
+        let conditions = gates.conditions(&suite(&records), &records, true);
+        let sharpness: Vec<_> = conditions.into_iter().filter(|condition| condition.what.starts_with(SHARPNESS)).collect();
+        // Two methods of the double, and the native one that is compared with the other.
+        assert_eq!(sharpness.len(), 3, "{spec}");
+        sharpness.into_iter().filter(|condition| condition.verdict != Verdict::Pass).count()
+    };
+    assert_eq!(blunt("chain:n=20,layout=planar"), 3);
+    assert_eq!(blunt("chain:n=1"), 0);
+}
+
+fn deviation(verdict: &str, more: &str) -> Gates {
+    let reason = "a known cause";
+    gates(&format!(
+        "[[deviation]]\nengine = \"double\"\nversion = \"1\"\nmodels = [\"joints-*\"]\nverdict = \"{verdict}\"\nreason = \"{reason}\"\n{more}"
+    ))
+}
+
+/// The double's deviations, failures and skips, and whether a suite that expects the rows that pass is green.
+fn trial(gates: &Gates, problem: &Problem, double: Double) -> (usize, usize, usize, bool) {
+    let records = beside_native(problem, gates, double);
+    let unmet = gates.conditions(&suite(&records), &records, true);
+    let count = |verdict| doubles(&records, verdict).len();
+    (count(Verdict::Deviation), count(Verdict::Fail), count(Verdict::Skip), red(&unmet).is_empty())
+}
+
+#[test]
+fn a_skip_is_red_unless_a_deviation_names_it() {
+    let problem = robot(FREE);
+    let (deviations, _, skips, green) = trial(&gates(""), &problem, Double::refusing(&problem));
+    assert_eq!((deviations, green), (0, false));
+    assert!(skips > EVERYTHING.len(), "the forward dynamics has two methods: {skips}");
+    let (deviations, _, left, green) = trial(&deviation("skip", ""), &problem, Double::refusing(&problem));
+    assert_eq!((deviations, left, green), (skips, 0, true));
+    // A deviation of another version, robot, quantity or verdict explains nothing.
+    for (verdict, more) in [("fail", ""), ("error", ""), ("skip", "quantities = [\"com\"]"), ("skip", "method = \"crba\"")] {
+        assert!(!trial(&deviation(verdict, more), &problem, Double::refusing(&problem)).3, "{verdict} {more}");
+    }
+}
+
+#[test]
+fn a_deviation_that_is_no_longer_seen_is_red() {
+    let problem = robot(FREE);
+    let gates = deviation("fail", "");
+    let records = beside_native(&problem, &gates, Double::of(&problem));
+    let conditions = gates.conditions(&suite(&records), &records, true);
+    assert_eq!(red(&conditions), ["known deviation of double still seen: a known cause"]);
+    // Of part of a run nothing can be said.
+    assert!(red(&gates.conditions(&suite(&records), &records, false)).is_empty());
+}
+
+#[test]
+fn a_deviation_explains_no_more_than_it_says() {
+    let problem = robot(FREE);
+    let wrong = || Double::altered(&problem, |description| description.bodies[3].mass *= 1.0 + 1e-10);
+    let (_, fails, _, green) = trial(&gates(""), &problem, wrong());
+    assert!(fails > 0 && !green);
+    let (deviations, left, _, green) = trial(&deviation("fail", "up_to = 1e-9"), &problem, wrong());
+    assert_eq!((deviations, left, green), (fails, 0, true));
+    let (deviations, left, _, green) = trial(&deviation("fail", "up_to = 1e-12"), &problem, wrong());
+    assert!(deviations > 0 && left > 0 && !green, "{deviations} explained, {left} beyond the limit");
+    assert_eq!(deviations + left, fails);
+    let (deviations, left, _, green) = trial(&deviation("fail", "quantities = [\"id\"]"), &problem, wrong());
+    assert!(deviations > 0 && left > 0 && !green);
+    assert_eq!(deviations + left, fails);
+}

@@ -1,0 +1,186 @@
+//! What the tests of the studies share: an engine that is wrong on purpose, and a whole agreement run in memory.
+
+#![allow(dead_code, reason = "every test file compiles this module and uses a part of it")]
+
+use engines::Native;
+use featherbench_studies::Agreement;
+use harness::run::{Silent, compare, evaluate, plan};
+use harness::{AgreementEntry, Context, Gates, Identity, OutcomeStore, Prepared, Problem, Quantity, Refusal, Study, Subject, Suite};
+use model::generate::Family;
+use model::{Description, Model, StateBatch};
+use record::{EngineSource, Expectation, ModelOrigin, Record, Verdict};
+use std::collections::BTreeMap;
+use std::ops::Range;
+use std::path::PathBuf;
+
+
+/// One state of each case: what the gates see must be seen here already.
+pub const STATES: usize = StateBatch::HEAD;
+/// The seed of the states.
+pub const SEED: u64 = 1;
+
+/// The robot of a family, with its states.
+pub fn robot(spec: &str) -> Problem {
+    let family = Family::parse(spec).unwrap();
+    Problem::new(&family.generate().unwrap(), family.name(), ModelOrigin::Generated, STATES, SEED).unwrap()
+}
+
+/// The folder of the repository's own gates.
+pub fn gates_folder() -> PathBuf {
+    PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../../ci")
+}
+
+/// The repository's own gates, with no known deviation or with these.
+pub fn gates(deviations: &str) -> Gates {
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::copy(gates_folder().join("gates.toml"), folder.path().join("gates.toml")).unwrap();
+    std::fs::write(folder.path().join("deviations.toml"), deviations).unwrap();
+    Gates::read(folder.path()).unwrap()
+}
+
+/// A question and an answer for one state, to be spoiled.
+pub struct Answer<'a> {
+    pub problem: &'a Problem,
+    pub quantity: Quantity,
+    /// The state asked about.
+    pub state: usize,
+    pub values: &'a mut [f64],
+}
+
+/// What an engine does to its answers.
+pub type Twist = fn(Answer);
+
+/// An engine named `double` that answers with our kernels, on another robot than it says, at other states, or with twisted answers.
+///
+/// It reads back what it was told: only the answers of its algorithms can reveal it.
+pub struct Double {
+    identity: Identity,
+    native: Native,
+    held: Problem,
+    states: Option<StateBatch>,
+    twist: Twist,
+    refuses: bool,
+}
+
+impl Double {
+    /// An honest one.
+    pub fn of(problem: &Problem) -> Self {
+        let identity = Identity { name: "double".into(), version: "1".into(), source: EngineSource::Native, build: BTreeMap::new() };
+        Self { identity, native: Native::new(), held: problem.clone(), states: None, twist: |_| (), refuses: false }
+    }
+
+    /// One that holds an altered robot.
+    pub fn altered(problem: &Problem, alter: impl FnOnce(&mut Description)) -> Self {
+        let mut double = Self::of(problem);
+        alter(&mut double.held.description);
+        double.held.model = Model::build(&double.held.description).unwrap();
+        double
+    }
+
+    /// One that spoils its answers.
+    pub fn twisting(problem: &Problem, twist: Twist) -> Self {
+        Self { twist, ..Self::of(problem) }
+    }
+
+    /// One that misreads the states.
+    pub fn misreading(problem: &Problem, misread: impl FnOnce(&mut StateBatch)) -> Self {
+        let mut states = problem.states.clone();
+        misread(&mut states);
+        Self { states: Some(states), ..Self::of(problem) }
+    }
+
+    /// One that supports nothing, whatever it offers.
+    pub fn refusing(problem: &Problem) -> Self {
+        Self { refuses: true, ..Self::of(problem) }
+    }
+}
+
+impl Subject for Double {
+    fn identity(&self) -> &Identity {
+        &self.identity
+    }
+
+    fn methods(&self, quantity: Quantity) -> Vec<String> {
+        self.native.methods(quantity)
+    }
+
+    fn prepare<'a>(
+        &'a self,
+        problem: &'a Problem,
+        quantity: Quantity,
+        method: &str,
+        states: &'a StateBatch,
+    ) -> Result<Box<dyn Prepared + 'a>, Refusal> {
+        if self.refuses {
+            return Err(Refusal::Unsupported("it supports nothing".into()));
+        }
+        if quantity == Quantity::Readback {
+            return self.native.prepare(problem, quantity, method, states);
+        }
+        let inner = self.native.prepare(&self.held, quantity, method, self.states.as_ref().unwrap_or(states))?;
+        Ok(Box::new(Twisted { inner, problem, quantity, twist: self.twist, values: Vec::new() }))
+    }
+}
+
+struct Twisted<'a> {
+    inner: Box<dyn Prepared + 'a>,
+    problem: &'a Problem,
+    quantity: Quantity,
+    twist: Twist,
+    values: Vec<f64>,
+}
+
+impl Prepared for Twisted<'_> {
+    fn run(&mut self, range: Range<usize>) -> Result<(), Refusal> {
+        self.inner.run(range.clone())?;
+        self.values = self.inner.read().to_vec();
+        for (state, values) in range.zip(self.values.chunks_exact_mut(self.quantity.size(self.problem))) {
+            (self.twist)(Answer { problem: self.problem, quantity: self.quantity, state, values });
+        }
+        Ok(())
+    }
+
+    fn read(&self) -> &[f64] {
+        &self.values
+    }
+}
+
+/// The records of the whole agreement study: planned, evaluated with outcomes on disk, compared and judged.
+pub fn agreement(problem: &Problem, gates: &Gates, subjects: &[Box<dyn Subject>]) -> Vec<Record> {
+    let context = Context { problems: std::slice::from_ref(problem), subjects, gates, seed: SEED };
+    let folder = tempfile::tempdir().unwrap();
+    let store = OutcomeStore::open(folder.path()).unwrap();
+    let study: &dyn Study = &Agreement;
+    let cells = plan(study, &context, &|_| true);
+    let finished = evaluate(study, &context, cells, &store, &Silent).unwrap();
+    compare(study, &context, finished)
+}
+
+/// The records of the native kernels beside a double.
+pub fn beside_native(problem: &Problem, gates: &Gates, double: Double) -> Vec<Record> {
+    agreement(problem, gates, &[Box::new(Native::new()), Box::new(double)])
+}
+
+/// A suite that asks the double beside the native kernels, and expects these rows to pass.
+pub fn suite(expected: &[Record]) -> Suite {
+    let mut expect: BTreeMap<String, BTreeMap<String, u64>> = BTreeMap::new();
+    for row in expected.iter().filter(|row| row.verdict == Verdict::Pass) {
+        *expect.entry(row.engine.clone()).or_default().entry(row.quantity.clone()).or_default() += 1;
+    }
+    let agreement = Some(AgreementEntry { states: STATES, engines: vec!["double".into()] });
+    Suite { about: "one robot, one double".into(), seed: SEED, problem: Vec::new(), agreement, structure: false, timing: None, expect }
+}
+
+/// How the conditions on the sharpness of computed bounds begin.
+pub const SHARPNESS: &str = "kinds of joint and base for which";
+
+/// The conditions that are not met; sharp bounds are asked of a suite as a whole, and not of one robot.
+pub fn red(conditions: &[Expectation]) -> Vec<&str> {
+    let unmet = conditions.iter().filter(|condition| condition.verdict != Verdict::Pass && !condition.what.starts_with(SHARPNESS));
+    unmet.map(|condition| condition.what.as_str()).collect()
+}
+
+/// The rows of the double with this verdict.
+pub fn doubles(records: &[Record], verdict: Verdict) -> Vec<&Record> {
+    records.iter().filter(|row| row.engine == "double" && row.verdict == verdict).collect()
+}
