@@ -42,7 +42,9 @@ pub enum Command {
 }
 
 #[derive(Debug, Clone, Args)]
-#[command(after_help = "Examples:\n  featherbench run --suite smoke\n  featherbench run --live --out reports/today\n  featherbench run --resume --out reports/today")]
+#[command(
+    after_help = "Examples:\n  featherbench run --suite smoke\n  featherbench run --live --out reports/today\n  featherbench run --resume --out reports/today"
+)]
 pub struct RunArgs {
     /// The suite: a name in datasets/suites, or a TOML file.
     #[arg(long, default_value = "default")]
@@ -124,7 +126,9 @@ pub struct RecordArgs {
 }
 
 #[derive(Debug, Clone, Args)]
-#[command(after_help = "Examples:\n  featherbench gen chain --n 1000 --out chain.json\n  featherbench gen tree --seed 7 --set joints=all --set base=free --out tree.json\n  featherbench gen urdf --file robot.urdf --floating --out robot.json\n\n`featherbench list` names the families and their parameters.")]
+#[command(
+    after_help = "Examples:\n  featherbench gen chain --n 1000 --out chain.json\n  featherbench gen tree --seed 7 --set joints=all --set base=free --out tree.json\n  featherbench gen urdf --file robot.urdf --floating --out robot.json\n\n`featherbench list` names the families and their parameters."
+)]
 pub struct GenArgs {
     /// A family of generated robots (also with its parameters, as in `chain:n=20,layout=spatial`), or `urdf`.
     pub family: String,
@@ -143,6 +147,12 @@ pub struct GenArgs {
     /// Give the URDF's base six degrees of freedom.
     #[arg(long)]
     pub floating: bool,
+    /// Read joints that mimic another as joints of their own.
+    #[arg(long)]
+    pub independent_mimics: bool,
+    /// Let moving bodies have no mass.
+    #[arg(long)]
+    pub allow_massless: bool,
     /// Where to write the description; standard output by default.
     #[arg(long, value_name = "FILE")]
     pub out: Option<PathBuf>,

@@ -10,7 +10,11 @@ pub fn explain(args: &ExplainArgs) -> Result<(), Fail> {
     let (info, records) = ::record::read_run(&args.folder)?;
     let rows: Vec<&Record> = records.iter().filter(|row| row.cell.starts_with(&args.cell)).collect();
     let Some(first) = rows.first() else {
-        let message = format!("{} has no cell that begins with '{}'; ids stand in the column 'cell' of records.csv", args.folder.display(), args.cell);
+        let message = format!(
+            "{} has no cell that begins with '{}'; ids stand in the column 'cell' of records.csv",
+            args.folder.display(),
+            args.cell
+        );
         return Err(Fail::input(message));
     };
     if let Some(other) = rows.iter().find(|row| row.cell != first.cell) {
@@ -50,7 +54,10 @@ pub fn explain(args: &ExplainArgs) -> Result<(), Fail> {
             row.reason
         );
     }
-    println!("\nagain     cargo run --release -- run --suite {} --only '^{}/{}/{}/{}/{}$'", info.suite, first.study, first.model, first.engine, first.quantity, first.method);
+    println!(
+        "\nagain     cargo run --release -- run --suite {} --only '^{}/{}/{}/{}/{}$'",
+        info.suite, first.study, first.model, first.engine, first.quantity, first.method
+    );
     Ok(())
 }
 

@@ -3,14 +3,20 @@
 use crate::args::GenArgs;
 use crate::fail::Fail;
 use crate::problems;
-use formats::urdf::Base;
+use formats::urdf::{Base, Options};
 use model::Description;
 use model::generate::Family;
 
 /// Generates or imports a robot and writes its description.
 pub fn generate(args: &GenArgs) -> Result<(), Fail> {
     let description = match (&args.file, args.family.as_str()) {
-        (Some(file), "urdf") => problems::import(file, if args.floating { Base::Floating } else { Base::Fixed })?,
+        (Some(file), "urdf") => {
+            let base = if args.floating { Base::Floating } else { Base::Fixed };
+            let options = Options { base, independent_mimics: args.independent_mimics, allow_massless: args.allow_massless };
+            let (description, notes) = problems::import(file, &options)?;
+            notes.iter().for_each(|note| eprintln!("note: {}: {note}", file.display()));
+            description
+        }
         (_, spec) if spec.contains(':') => {
             let generated = Family::parse(spec).and_then(|family| family.generate());
             generated.map_err(|error| Fail::input(error.to_string()))?

@@ -4,7 +4,7 @@ use crate::fail::Fail;
 use crate::oracles;
 use crate::root::Root;
 use ::record::ModelOrigin;
-use formats::urdf::{Base, Options};
+use formats::urdf::{Base, Note, Options};
 use harness::{Problem, ProblemEntry, Suite};
 use model::Description;
 use model::generate::Family;
@@ -55,7 +55,11 @@ fn describe(root: &Root, entry: &ProblemEntry, live: bool) -> Result<(Descriptio
         Fail::Missing { message, advice: "run it with --live, after `featherbench oracles install`".into() }
     })?;
     let base = if entry.floating { Base::Floating } else { Base::Fixed };
-    let description = import(&folder.join(file), base)?;
+    // As engines read such files by default: mimics move on their own, and a body without mass is known by its warning.
+    let options = Options { base, independent_mimics: true, allow_massless: true };
+    let (mut description, _) = import(&folder.join(file), &options)?;
+    // One package holds several variants of one robot's name: the file's name tells them apart.
+    description.name = Path::new(file).file_stem().map_or(description.name, |stem| stem.to_string_lossy().into_owned());
     Ok((description, ModelOrigin::Robot))
 }
 
@@ -64,12 +68,7 @@ pub fn read_model(path: &Path) -> Result<Description, Fail> {
     formats::neutral::read(path).map_err(|error| Fail::input(error.to_string()))
 }
 
-/// Reads a URDF file, saying on standard error what was left out.
-pub fn import(path: &Path, base: Base) -> Result<Description, Fail> {
-    let options = Options { base, ..Options::default() };
-    let (description, notes) = formats::urdf::read(path, &options).map_err(|error| Fail::input(error.to_string()))?;
-    for note in &notes {
-        eprintln!("note: {}: {note}", path.display());
-    }
-    Ok(description)
+/// Reads a URDF file, with notes on what was left out.
+pub fn import(path: &Path, options: &Options) -> Result<(Description, Vec<Note>), Fail> {
+    formats::urdf::read(path, options).map_err(|error| Fail::input(error.to_string()))
 }

@@ -49,7 +49,8 @@ pub fn record(root: &Root, args: &RecordArgs) -> Result<(), Fail> {
         let engines = opened.subjects[1..].iter().map(|subject| {
             let identity = subject.identity().clone();
             let of_this = finished.iter().filter(|(cell, _)| cell.subject == identity.name && cell.problem == problem.name);
-            let outcomes = of_this.filter_map(|(cell, outcome)| Some((Quantity::parse(&cell.quantity)?, cell.method.clone(), outcome.clone())));
+            let outcomes =
+                of_this.filter_map(|(cell, outcome)| Some((Quantity::parse(&cell.quantity)?, cell.method.clone(), outcome.clone())));
             EngineRecording { outcomes: outcomes.collect(), identity }
         });
         let recording = Recording { engines: engines.filter(|engine| !engine.outcomes.is_empty()).collect() };

@@ -59,7 +59,10 @@ pub fn conclude(info: &RunInfo, records: &[Record], page: &Path) -> Result<(), F
     let counts: Vec<String> = Verdict::ALL.iter().map(|&verdict| format!("{} {verdict}", count(verdict))).collect();
     println!("{} rows: {}", records.len(), counts.join(", "));
     for row in records.iter().filter(|row| matches!(row.verdict, Verdict::Fail | Verdict::Error)).take(20) {
-        println!("  {}: {} {} {} {} {} [{}]: {}", row.verdict, row.model, row.engine, row.quantity, row.method, row.metric, row.case, row.reason);
+        println!(
+            "  {}: {} {} {} {} {} [{}]: {}",
+            row.verdict, row.model, row.engine, row.quantity, row.method, row.metric, row.case, row.reason
+        );
     }
     let broken: Vec<_> = info.expected.iter().filter(|condition| condition.verdict != Verdict::Pass).collect();
     for condition in &broken {

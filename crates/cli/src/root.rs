@@ -14,7 +14,9 @@ impl Root {
         let built = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
         let mut candidates = here.ancestors().map(Path::to_owned).chain([built]);
         let found = candidates.find(|folder| folder.join("datasets/suites").is_dir() && folder.join("ci/gates.toml").is_file());
-        found.map(Self).ok_or_else(|| Fail::input("no featherbench project here: run from its folder (the one with datasets/ and ci/)".into()))
+        found
+            .map(Self)
+            .ok_or_else(|| Fail::input("no featherbench project here: run from its folder (the one with datasets/ and ci/)".into()))
     }
 
     pub fn path(&self) -> &Path {

@@ -145,5 +145,11 @@ fn describe(root: &Root, args: &RunArgs, loaded: &Loaded, subjects: &Subjects) -
 }
 
 fn missing_engine(name: &str, reason: &str) -> ::record::Expectation {
-    ::record::Expectation { what: format!("engine {name} answers"), expected: 1, found: 0, verdict: Verdict::Fail, reason: reason.to_owned() }
+    ::record::Expectation {
+        what: format!("engine {name} answers"),
+        expected: 1,
+        found: 0,
+        verdict: Verdict::Fail,
+        reason: reason.to_owned(),
+    }
 }

@@ -31,7 +31,8 @@ pub fn open(root: &Root, args: &RunArgs, loaded: &Loaded) -> Result<Subjects, Fa
         }
     } else {
         let folder = args.recorded.clone().unwrap_or_else(|| root.recorded());
-        let asked: Vec<&Problem> = loaded.problems.iter().filter(|problem| problem.takes("agreement") || problem.takes("structure")).collect();
+        let asked: Vec<&Problem> =
+            loaded.problems.iter().filter(|problem| problem.takes("agreement") || problem.takes("structure")).collect();
         let recordings = Arc::new(read_recordings(&folder, &asked));
         for engine in &agreement.engines {
             let recorded = Recorded::new(&recordings, engine).map(|recorded| Box::new(recorded) as Box<dyn Subject>);
@@ -46,7 +47,14 @@ impl Subjects {
         let info = match &subject {
             Ok(subject) => {
                 let identity = subject.identity().clone();
-                EngineInfo { name: identity.name, version: identity.version, source, build: identity.build, status: "ok".into(), reason: String::new() }
+                EngineInfo {
+                    name: identity.name,
+                    version: identity.version,
+                    source,
+                    build: identity.build,
+                    status: "ok".into(),
+                    reason: String::new(),
+                }
             }
             Err(reason) => EngineInfo {
                 name: name.into(),

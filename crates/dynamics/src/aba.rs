@@ -1,6 +1,6 @@
 //! Forward dynamics by the articulated-body algorithm: the accelerations that joint forces cause.
 //!
-//! Source: the book, table 7.1, with classical accelerations; armature as in its section 9.6.
+//! Source: the book, table 7.1, with classical accelerations. Armature joins the diagonal of D.
 //! Frames: each body's quantities stand in its own axes at its own origin; external wrenches [moment; force] likewise, one per compiled
 //! body. Gravity enters as an acceleration −g of the base. Shapes: q has `nq` numbers; v, τ and v̇ have `nv`. Units: SI, angles in radians.
 //! Cost: O(n), with one division per one-dof joint. A call does not allocate.

@@ -1,6 +1,6 @@
 //! The bias force `h(q, v) = C(q, v) v + g(q)`: the joint forces at which the robot does not accelerate.
 //!
-//! Source: the book, section 6.1 (`C` there): inverse dynamics with v̇ = 0. It is [`Rnea`](crate::Rnea)'s recursion, compiled without the
+//! Source: the book, chapter 6 (`C` there): inverse dynamics with v̇ = 0. It is [`Rnea`](crate::Rnea)'s recursion, compiled without the
 //! terms in v̇; frames, shapes, units and cost O(n) are the same. A call does not allocate.
 
 use crate::{DimensionError, Rnea};

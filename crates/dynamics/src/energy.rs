@@ -1,6 +1,6 @@
 //! Kinetic energy `½ vᵀM v`, armature included, and potential energy `−Σ m g·c`.
 //!
-//! Source: the book, section 2.14 and 9.6 (kinetic energy of bodies and of rotors). Velocities stand in body axes, heights in world axes.
+//! Source: the book, chapter 2: the kinetic energy of a body is `½ v·I v`. Velocities stand in body axes, heights in world axes.
 //! Shapes: q has `nq` numbers, v has `nv`. Units: J; the potential energy is zero where centres of mass lie at the world's origin.
 //! Cost: O(n). A call does not allocate.
 

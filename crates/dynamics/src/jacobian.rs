@@ -1,6 +1,6 @@
 //! The Jacobian of a body: its velocity is `J v`.
 //!
-//! Source: the book, section 4.5 (equation 4.10), column j being the motion subspace of dof j if it supports the body, else zero. On the
+//! Source: the book, body Jacobians: column j is the motion subspace of dof j if j supports the body, else zero. On the
 //! way from the body to the root, columns are formed in the body's frame from relative placements: no offset of the robot enters.
 //! Frame: world axes [ang; lin] at the origin of the body's frame. Shapes: q has `nq` numbers; J has `nv` columns of six.
 //! Units: SI. Cost: O(n). A call does not allocate.

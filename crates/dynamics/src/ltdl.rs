@@ -1,6 +1,6 @@
 //! The factorization `M = LᵀDL` of a tree-sparse matrix without fill-in, and solutions of `M x = b`.
 //!
-//! Source: the book, section 6.5, tables 6.3 and 6.4: eliminating from the leaves to the root keeps every zero of M. L is unit lower
+//! Source: the book, section 6.5: eliminating from the leaves to the root keeps every zero of M. L is unit lower
 //! triangular and D diagonal; they overwrite M. With d_k the depth of dof k: D1 = Σ (d_k − 1) divisions and D2 = Σ d_k (d_k − 1) / 2
 //! multiply-subtracts to factor, 2·D1 multiply-subtracts and n divisions to solve. Shapes: M is `nv`×`nv`, x and b have `nv` numbers.
 //! Units: those of M and b. Cost: O(Σ d_k²) and O(Σ d_k). A call does not allocate.
@@ -95,22 +95,22 @@ impl<T: Real> Ltdl<T> {
         let mut smallest = Pivot::none();
         for k in (0..self.matrix.size()).rev() {
             let row = self.matrix.row(k);
-            let (rows, values) = self.matrix.parts_mut();
+            let (dofs, starts, values) = self.matrix.parts_mut();
             let (above, h_k) = values.split_at_mut(row.start);
             let last = row.len() - 1;
             let d = h_k[last];
             smallest.note(k, d.min_lane());
 
             // L_ki = H_ki / D_k,  H_i· −= L_ki H_k·  for every strict ancestor i of k, at position p of the row
-            let mut ancestor = rows[k].parent;
+            let mut ancestor = dofs[k].parent;
             for p in (0..last).rev() {
                 let Some(i) = ancestor else { break };
-                let (l, start) = (h_k[p] / d, rows[i].start);
+                let (l, start) = (h_k[p] / d, starts[i]);
                 for (h_i, h_k) in above[start..=start + p].iter_mut().zip(&h_k[..=p]) {
                     *h_i = (-l).mul_add(*h_k, *h_i);
                 }
                 h_k[p] = l;
-                ancestor = rows[i].parent;
+                ancestor = dofs[i].parent;
             }
         }
         smallest

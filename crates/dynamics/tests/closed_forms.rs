@@ -101,12 +101,8 @@ fn double_pendulum_of_the_lesson() {
         within("2R acceleration", common::distance(&a, &derived), 60.0 * 40.0 * FEW_ROUNDINGS);
         within("2R printed", common::distance(&a, &printed), 0.5e-10 * 1.01);
         let matrix = mass_matrix(&model, &q).unwrap();
-        let expected = rods.mass_matrix(q);
-        for i in 0..2 {
-            for j in 0..2 {
-                within("2R mass matrix", (matrix.get(i, j) - expected[i][j]).abs(), FEW_ROUNDINGS);
-            }
-        }
+        let entries = [matrix.get(0, 0), matrix.get(0, 1), matrix.get(1, 0), matrix.get(1, 1)];
+        within("2R mass matrix", common::distance(&entries, rods.mass_matrix(q).as_flattened()), FEW_ROUNDINGS);
         within("2R bias", common::distance(&bias_force(&model, &q, &v).unwrap(), &rods.bias(q, v)), 20.0 * FEW_ROUNDINGS);
     }
 }

@@ -171,15 +171,17 @@ fn duals_agree_with_central_differences() {
 /// the inertial parameters).
 #[test]
 fn parameters_may_be_duals() {
+    fn grow(x: Dual<f64>) -> Dual<f64> {
+        Dual::new(x.value, x.value)
+    }
     each_state(|name, model, q, v, a, _| {
         let mut scaled = model.lift::<Dual<f64>>();
         for inertia in &mut scaled.inertias {
-            let grow = |x: Dual<f64>| Dual::new(x.value, x.value);
             inertia.mass = grow(inertia.mass);
             inertia.first_moment = Vec3::from_array(inertia.first_moment.to_array().map(grow));
             inertia.rotational = spatial::Sym3::from_array(inertia.rotational.to_array().map(grow));
         }
-        scaled.armature.iter_mut().for_each(|x| *x = Dual::new(x.value, x.value));
+        scaled.armature.iter_mut().for_each(|x| *x = grow(*x));
         let constant = |x: &[f64]| x.iter().map(|&x| Dual::constant(x)).collect::<Vec<_>>();
         let tau = inverse_dynamics(&scaled, &constant(q), &constant(v), &constant(a)).unwrap();
         let (values, rates): (Vec<f64>, Vec<f64>) = tau.iter().map(|x| (x.value, x.derivative)).unzip();

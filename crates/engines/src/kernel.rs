@@ -3,9 +3,7 @@
 //! A kernel owns its workspace and writes one state's answer into a slice. Studies, the timing of runs and `cargo bench` all go through this
 //! list, so what is timed is what is checked.
 
-use dynamics::{
-    Aba, Bias, CenterOfMass, Crba, Energy, Error, Jacobian, Kinematics, Ltdl, Momentum, Rnea, TreeSparse,
-};
+use dynamics::{Aba, Bias, CenterOfMass, Crba, Energy, Error, Jacobian, Kinematics, Ltdl, Momentum, Rnea, TreeSparse};
 use harness::{DENSE_LIMIT, Problem, Quantity, Refusal};
 use model::{Model, StateBatch};
 use spatial::Force;

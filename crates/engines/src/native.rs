@@ -17,7 +17,14 @@ impl Native {
     /// The kernels of this build.
     pub fn new() -> Self {
         let name = "native".to_owned();
-        Self { identity: Identity { name, version: env!("CARGO_PKG_VERSION").to_owned(), source: EngineSource::Native, build: BTreeMap::new() } }
+        Self {
+            identity: Identity {
+                name,
+                version: env!("CARGO_PKG_VERSION").to_owned(),
+                source: EngineSource::Native,
+                build: BTreeMap::new(),
+            },
+        }
     }
 }
 
@@ -43,6 +50,7 @@ impl Subject for Native {
         method: &str,
         states: &'a StateBatch,
     ) -> Result<Box<dyn Prepared + 'a>, Refusal> {
+        states.check(&problem.model).map_err(|error| Refusal::Failed(error.to_string()))?;
         let kernel = kernel(problem, quantity, method, states)?;
         Ok(Box::new(Ready { kernel, size: quantity.size(problem), values: Vec::new() }))
     }

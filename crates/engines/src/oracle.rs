@@ -146,7 +146,8 @@ impl Session {
     }
 
     fn send_states(&mut self, problem: &Problem, states: &StateBatch) -> Result<(), Refusal> {
-        let bytes: Vec<u8> = [&states.q, &states.v, &states.tau].into_iter().flatten().flat_map(|x| x.to_le_bytes()).collect();
+        let numbers = [&states.q, &states.v, &states.a, &states.tau, &states.wrench].into_iter().flatten();
+        let bytes: Vec<u8> = numbers.flat_map(|x| x.to_le_bytes()).collect();
         let key = harness::hash::of(&bytes);
         if self.states.as_ref() == Some(&key) {
             return Ok(());

@@ -129,7 +129,10 @@ impl Process {
         let words = self.last_words.lock().unwrap_or_else(PoisonError::into_inner);
         let words: Vec<&str> = words.iter().map(String::as_str).collect();
         let limit = self.limits.memory >> 20;
-        format!("the oracle died ({status}; memory limit {limit} MiB): {}", if words.is_empty() { "no message".into() } else { words.join(" | ") })
+        format!(
+            "the oracle died ({status}; memory limit {limit} MiB): {}",
+            if words.is_empty() { "no message".into() } else { words.join(" | ") }
+        )
     }
 
     /// How the process ended. One that closes its standard output and lives on is ended.

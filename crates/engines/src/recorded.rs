@@ -70,7 +70,8 @@ impl Recording {
             let Identity { name, version, build, .. } = &engine.identity;
             writer.part(json!({"engine": name, "version": version, "build": build}), &[]);
             for (quantity, method, outcome) in &engine.outcomes {
-                let header = |status: &str, reason: &str| json!({"quantity": quantity.name(), "method": method, "status": status, "reason": reason});
+                let header =
+                    |status: &str, reason: &str| json!({"quantity": quantity.name(), "method": method, "status": status, "reason": reason});
                 match outcome {
                     Outcome::Refused(Refusal::Unsupported(reason)) => writer.part(header("unsupported", reason), &[]),
                     Outcome::Refused(Refusal::Failed(reason)) => writer.part(header("error", reason), &[]),
@@ -112,7 +113,11 @@ impl Recording {
             let (header, raw) = reader.part()?;
             if let Some(end) = header["end"].as_u64() {
                 // The last part does not count itself.
-                return if end + 1 == reader.parts { Ok(Self { engines }) } else { Err("parts are missing".into()) };
+                return match end + 1 == reader.parts {
+                    true if reader.bytes.is_empty() => Ok(Self { engines }),
+                    true => Err(format!("{} bytes stand behind the end", reader.bytes.len())),
+                    false => Err("parts are missing".into()),
+                };
             }
             if header["engine"].is_string() {
                 engines.push(EngineRecording { identity: identity(&header)?, outcomes: Vec::new() });
@@ -244,7 +249,7 @@ fn unpack(packed: &[f64], topology: &Topology) -> Vec<f64> {
 }
 
 /// The recordings of a suite's robots, by name.
-pub type Recordings = HashMap<String, Result<Recording, String>>;
+pub type Recordings = BTreeMap<String, Result<Recording, String>>;
 
 /// Reads the recordings of problems from a folder. A missing or damaged one is that robot's reason, not an error.
 pub fn read_recordings(folder: &Path, problems: &[&Problem]) -> Recordings {
@@ -263,12 +268,16 @@ impl Recorded {
     /// The engine of this name in a set of recordings.
     ///
     /// # Errors
-    /// Why there is none: no recording at all can be read, or none has answers of the engine.
+    /// Why there is none: no recording at all can be read, none has answers of the engine, or they come from several versions of it.
     pub fn new(recordings: &Arc<Recordings>, engine: &str) -> Result<Self, String> {
         let mut methods: BTreeMap<Quantity, Vec<String>> = BTreeMap::new();
-        let mut identity = None;
+        let mut identity: Option<Identity> = None;
         for recording in recordings.values().flatten().filter_map(|recording| recording.engine(engine)) {
-            identity.get_or_insert_with(|| recording.identity.clone());
+            let (first, version) = (identity.get_or_insert_with(|| recording.identity.clone()), &recording.identity.version);
+            if first.version != *version {
+                let versions = format!("{} and {version}", first.version);
+                return Err(format!("answers of {engine} were recorded from its versions {versions}; record them all with one"));
+            }
             for (quantity, method, _) in &recording.outcomes {
                 let known = methods.entry(*quantity).or_default();
                 if !known.contains(method) {

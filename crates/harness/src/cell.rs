@@ -1,7 +1,7 @@
 //! The cell: the unit of work.
 
-use crate::hash;
 use crate::Refusal;
+use crate::hash;
 use serde_json::{Value, json};
 
 /// One evaluation: what is asked of whom, about which problem.

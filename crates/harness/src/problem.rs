@@ -38,7 +38,17 @@ impl Problem {
         let states = StateBatch::agreement(&model, count, seed);
         let hash = crate::hash::of_parts(&[format!("{:?}", (&description.bodies, description.gravity)).as_bytes(), &seed.to_le_bytes()]);
         let depth = description.depth();
-        Ok(Self { name: description.name.clone(), family: family.to_owned(), origin, description, model, hash, states, depth, studies: None })
+        Ok(Self {
+            name: description.name.clone(),
+            family: family.to_owned(),
+            origin,
+            description,
+            model,
+            hash,
+            states,
+            depth,
+            studies: None,
+        })
     }
 
     /// The body whose Jacobian is asked for: the first of the deepest ones.

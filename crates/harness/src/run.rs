@@ -63,7 +63,11 @@ pub fn evaluate(
         }
         Ok(())
     };
-    if study.exclusive() { groups.iter().try_for_each(work)? } else { groups.par_iter().with_max_len(1).try_for_each(work)? }
+    if study.exclusive() {
+        groups.iter().try_for_each(work)?
+    } else {
+        groups.par_iter().with_max_len(1).try_for_each(work)?
+    }
     progress.end();
     Ok(cells
         .into_iter()

@@ -22,6 +22,10 @@ pub struct Suite {
     pub structure: bool,
     /// The timing study.
     pub timing: Option<TimingEntry>,
+    /// Whether the suite is broad enough to show every known deviation of its robots, and a sharp bound for each method, joint and base; a
+    /// whole run must then show them.
+    #[serde(default)]
+    pub thorough: bool,
     /// Rows that a whole run must show, passing or deviating as known: engine → quantity → count.
     #[serde(default)]
     pub expect: BTreeMap<String, BTreeMap<String, u64>>,
@@ -75,7 +79,8 @@ impl Suite {
     /// [`HarnessError`], naming file, line and key.
     pub fn read(path: &Path) -> Result<(Self, String), HarnessError> {
         let text = std::fs::read_to_string(path).map_err(|source| HarnessError::io(path, source))?;
-        let suite: Self = toml::from_str(&text).map_err(|error| HarnessError::Config { path: path.to_owned(), message: error.to_string() })?;
+        let suite: Self =
+            toml::from_str(&text).map_err(|error| HarnessError::Config { path: path.to_owned(), message: error.to_string() })?;
         for entry in &suite.problem {
             let sources = [&entry.model, &entry.generate, &entry.urdf];
             if sources.into_iter().flatten().count() != 1 {

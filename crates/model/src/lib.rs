@@ -19,6 +19,6 @@ pub use description::{BodyDescription, Description, Frame, JointDescription, Joi
 pub use joint::JointKind;
 pub use model::Model;
 pub use random::Random;
-pub use state::{Case, StateBatch};
+pub use state::{BadState, Case, StateBatch};
 pub use topology::{Joint, Topology};
 pub use validate::{Malformed, Warning};

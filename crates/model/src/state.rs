@@ -1,6 +1,7 @@
 //! States: configurations, velocities, accelerations, forces and wrenches, many at a time.
 
 use crate::{JointKind, Model, Random};
+use thiserror::Error;
 
 /// What is special about a state.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -62,7 +63,83 @@ pub struct StateBatch {
 const OPENING: [Case; 10] =
     [Case::Random, Case::Zero, Case::Straight, Case::Fast, Case::Random, Case::Limit, Case::Straight, Case::Fast, Case::Limit, Case::Fast];
 
+/// Why a batch of states does not belong to a model.
+#[derive(Clone, Debug, PartialEq, Error)]
+pub enum BadState {
+    /// An array has the wrong length.
+    #[error("{array} has {found} numbers; {count} states of this model take {expected}")]
+    Length {
+        /// The array.
+        array: &'static str,
+        /// Numbers found.
+        found: usize,
+        /// States in the batch.
+        count: usize,
+        /// Numbers due.
+        expected: usize,
+    },
+    /// A number is NaN or infinite.
+    #[error("state {state}: {array}[{index}] is {value}; give a finite number")]
+    NotFinite {
+        /// The state, counted from 0.
+        state: usize,
+        /// The array.
+        array: &'static str,
+        /// The index within the state.
+        index: usize,
+        /// The number.
+        value: f64,
+    },
+    /// A quaternion has not length one.
+    #[error("state {state}: the quaternion at q[{index}] has length {length}; divide it by that")]
+    NonUnitQuaternion {
+        /// The state, counted from 0.
+        state: usize,
+        /// Where the quaternion begins in q.
+        index: usize,
+        /// Its length.
+        length: f64,
+    },
+}
+
+/// A quaternion that was normalised in double precision is off by a few 1e-16, one that was printed with 12 digits by 1e-12.
+const QUATERNION_TOLERANCE: f64 = 1e-9;
+
 impl StateBatch {
+    /// Checks that the batch belongs to a model: lengths, finite numbers, unit quaternions.
+    ///
+    /// # Errors
+    /// The first [`BadState`].
+    pub fn check(&self, model: &Model<f64>) -> Result<(), BadState> {
+        let (count, nq, nv) = (self.count(), model.topology.nq(), model.topology.nv());
+        let wrenches = 6 * model.described.len();
+        let arrays =
+            [("q", &self.q, nq), ("v", &self.v, nv), ("a", &self.a, nv), ("tau", &self.tau, nv), ("wrench", &self.wrench, wrenches)];
+        for (array, numbers, each) in arrays {
+            if numbers.len() != count * each {
+                return Err(BadState::Length { array, found: numbers.len(), count, expected: count * each });
+            }
+            if let Some((at, &value)) = numbers.iter().enumerate().find(|(_, value)| !value.is_finite()) {
+                return Err(BadState::NotFinite { state: at / each, array, index: at % each, value });
+            }
+        }
+        for state in 0..count {
+            for joint in model.topology.joints() {
+                let index = match joint.kind {
+                    JointKind::Spherical => joint.q,
+                    JointKind::Free => joint.q + 3,
+                    JointKind::Revolute | JointKind::Prismatic | JointKind::Helical => continue,
+                };
+                let quaternion = &self.q[state * nq + index..state * nq + index + 4];
+                let length = quaternion.iter().map(|x| x * x).sum::<f64>().sqrt();
+                if (length - 1.0).abs() > QUATERNION_TOLERANCE {
+                    return Err(BadState::NonUnitQuaternion { state, index, length });
+                }
+            }
+        }
+        Ok(())
+    }
+
     /// Number of states.
     pub fn count(&self) -> usize {
         self.cases.len()

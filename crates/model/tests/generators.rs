@@ -181,8 +181,9 @@ fn joint_robots_show_their_joint_in_the_middle_and_at_the_tips() {
         for &base in Base::ALL {
             let robot = Family::Joints(Joints { kind, base, shape: Shape::Branched }).generate().expect("every combination exists");
             let is_parent = |i: usize| robot.bodies.iter().any(|body| body.parent == Some(i));
-            let shown: Vec<usize> =
-                (1..robot.bodies.len()).filter(|&i| matches!(kind, Kind::Mixed | Kind::Common) || robot.bodies[i].joint.kind.name() == kind.name()).collect();
+            let shown: Vec<usize> = (1..robot.bodies.len())
+                .filter(|&i| matches!(kind, Kind::Mixed | Kind::Common) || robot.bodies[i].joint.kind.name() == kind.name())
+                .collect();
             assert!(shown.iter().any(|&i| is_parent(i)), "{} in the middle", robot.name);
             assert!(shown.iter().filter(|&&i| !is_parent(i)).count() >= 2, "{} at the tips", robot.name);
         }

@@ -1,7 +1,7 @@
 //! Batches of states: every case present, reproducible, within its ranges.
 
 use featherbench_model::generate::Family;
-use featherbench_model::{Case, Model, StateBatch};
+use featherbench_model::{BadState, Case, Model, StateBatch};
 
 fn model(spec: &str) -> Model<f64> {
     let robot = Family::parse(spec).and_then(|family| family.generate()).unwrap_or_else(|error| panic!("{spec}: {error}"));
@@ -71,4 +71,24 @@ fn case_names_read_back() {
         assert_eq!(Case::parse(case.name()), Some(case));
     }
     assert_eq!(Case::parse("typical"), None);
+}
+
+/// What does not belong to a model is refused with the array, the state and the index.
+#[test]
+fn batches_that_do_not_belong_to_a_model_are_refused() {
+    let description = Family::parse("joints:kind=spherical,base=free").and_then(|family| family.generate()).expect("the family exists");
+    let model = Model::build(&description).expect("the robot is sound");
+    let good = StateBatch::agreement(&model, 6, 1);
+    assert_eq!(good.check(&model), Ok(()));
+
+    let mut short = good.clone();
+    short.v.pop();
+    assert!(short.check(&model).unwrap_err().to_string().starts_with("v has"));
+    let mut broken = good.clone();
+    broken.tau[good.nv + 2] = f64::NAN;
+    assert_eq!(broken.check(&model).unwrap_err().to_string(), "state 1: tau[2] is NaN; give a finite number");
+    let mut long = good.clone();
+    long.q[3..7].iter_mut().for_each(|x| *x *= 2.0);
+    let refusal = long.check(&model).unwrap_err();
+    assert!(matches!(refusal, BadState::NonUnitQuaternion { state: 0, index: 3, .. }), "{refusal}");
 }

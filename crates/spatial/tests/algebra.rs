@@ -23,14 +23,16 @@ fn force() -> impl Strategy<Value = Force<f64>> {
 }
 
 fn placement() -> impl Strategy<Value = Transform<f64>> {
-    let turn = [number(), number(), number(), number()].prop_filter("a quaternion has a length", |q| q.iter().map(|x| x * x).sum::<f64>() > 0.1);
+    let turn =
+        [number(), number(), number(), number()].prop_filter("a quaternion has a length", |q| q.iter().map(|x| x * x).sum::<f64>() > 0.1);
     (turn, vec3()).prop_map(|(q, p)| Transform::new(Quaternion::from_array(q).to_rotation(), p))
 }
 
 fn inertia() -> impl Strategy<Value = RigidBodyInertia<f64>> {
     let diagonal = [1.0..2.0, 1.0..2.0, 1.0..2.0];
-    (0.1..3.0, vec3(), diagonal, placement())
-        .prop_map(|(mass, com, [a, b, c], x)| RigidBodyInertia::from_com(mass, com, Sym3::from_array([a, 0.0, 0.0, b, 0.0, c]).rotate(x.rotation)))
+    (0.1..3.0, vec3(), diagonal, placement()).prop_map(|(mass, com, [a, b, c], x)| {
+        RigidBodyInertia::from_com(mass, com, Sym3::from_array([a, 0.0, 0.0, b, 0.0, c]).rotate(x.rotation))
+    })
 }
 
 fn close(a: &[f64], b: &[f64]) -> bool {

@@ -62,7 +62,9 @@ impl Study for Agreement {
         let count = quantity.states(problem.states.count());
         let evaluated = subject.prepare(problem, quantity, &cell.method, &problem.states).and_then(|mut prepared| {
             prepared.run(0..count)?;
-            Ok(prepared.read().to_vec())
+            let (values, due) = (prepared.read().to_vec(), count * quantity.size(problem));
+            // Fewer states would be compared, and nobody would know.
+            if values.len() == due { Ok(values) } else { Err(Refusal::Failed(format!("{} numbers came, {due} are due", values.len()))) }
         });
         evaluated.into()
     }
@@ -188,7 +190,9 @@ impl Comparison<'_> {
     /// One judged row per case: its worst state, the one nearest to its bound where bounds differ.
     fn judged(&self, cell: &Cell, metric: &str, errors: &[f64], amplification: Option<&[f64]>) -> Vec<Record> {
         let relative: Vec<f64> = match amplification {
-            Some(amplification) => errors.iter().zip(amplification).map(|(error, growth)| harness::measure::ratio(*error, *growth)).collect(),
+            Some(amplification) => {
+                errors.iter().zip(amplification).map(|(error, growth)| harness::measure::ratio(*error, *growth)).collect()
+            }
             None => errors.to_vec(),
         };
         self.per_case(&relative)
@@ -258,8 +262,11 @@ impl Comparison<'_> {
     /// Each engine's inverse dynamics against ours *on the model that it read back*: what is left is the algorithm's.
     fn on_readback(&self) -> Vec<Record> {
         let mut rows = Vec::new();
-        for (built, outcome) in self.finished.iter().filter(|(cell, _)| cell.quantity == Quantity::Readback.name() && cell.subject != REFERENCE) {
-            let usual = self.finished.iter().find(|(cell, _)| cell.subject == built.subject && cell.quantity == Quantity::InverseDynamics.name());
+        for (built, outcome) in
+            self.finished.iter().filter(|(cell, _)| cell.quantity == Quantity::Readback.name() && cell.subject != REFERENCE)
+        {
+            let usual =
+                self.finished.iter().find(|(cell, _)| cell.subject == built.subject && cell.quantity == Quantity::InverseDynamics.name());
             let (Some(readback), Some((cell, answered))) = (outcome.values(), usual) else { continue };
             let (Some(values), Some(ours)) = (answered.values(), self.inverse_dynamics_of(readback)) else { continue };
             let errors = self.errors(Quantity::InverseDynamics, &ours, values);

@@ -70,7 +70,8 @@ impl Plant {
             Self::Center(k) => grow(&mut body.com[k]),
             Self::Inertia => body.inertia.iter_mut().for_each(grow),
             Self::Axis => {
-                if let JointType::Revolute { axis } | JointType::Prismatic { axis } | JointType::Helical { axis, .. } = &mut body.joint.kind {
+                if let JointType::Revolute { axis } | JointType::Prismatic { axis } | JointType::Helical { axis, .. } = &mut body.joint.kind
+                {
                     *axis = turned(*axis, across(*axis));
                 }
             }
@@ -137,7 +138,8 @@ fn convicts(spec: &str) {
     let margins: Vec<Result<f64, String>> = plants
         .par_iter()
         .map(|&(body, plant)| {
-            let records = beside_native(&problem, &gates, Double::altered(&problem, |description| plant.sow(&mut description.bodies[body])));
+            let records =
+                beside_native(&problem, &gates, Double::altered(&problem, |description| plant.sow(&mut description.bodies[body])));
             if unfelt(bodies, body, plant) {
                 return if records == honest { Ok(f64::NEG_INFINITY) } else { Err(format!("{plant:?} of {} is felt", bodies[body].name)) };
             }
@@ -151,7 +153,12 @@ fn convicts(spec: &str) {
     assert!(wrong.is_empty(), "{} of {}: {wrong:#?}", wrong.len(), plants.len());
     let closest = plants.iter().zip(&margins).max_by(|a, b| a.1.as_ref().unwrap().total_cmp(b.1.as_ref().unwrap()));
     if let Some(((body, plant), Ok(margin))) = closest {
-        println!("{spec}: {} plants; {plant:?} of {} comes closest, {:.1} decades beyond its gate", plants.len(), bodies[*body].name, -margin);
+        println!(
+            "{spec}: {} plants; {plant:?} of {} comes closest, {:.1} decades beyond its gate",
+            plants.len(),
+            bodies[*body].name,
+            -margin
+        );
     }
 }
 

@@ -49,9 +49,8 @@ impl<'a> ForwardScale<'a> {
         };
         let (q, v, tau) = (states.q(state), states.v(state), states.tau(state));
         let mut bias = vec![0.0; states.nv];
-        let evaluated = Crba::new(topology)
-            .run(model, q, &mut scale.mass)
-            .and_then(|()| Bias::new(topology).run(model, q, v, None, &mut bias));
+        let evaluated =
+            Crba::new(topology).run(model, q, &mut scale.mass).and_then(|()| Bias::new(topology).run(model, q, v, None, &mut bias));
         let (Ok(()), Ok(factors)) = (evaluated, scale.mass.clone().into_ltdl()) else { return scale };
         scale.loads = at.bias_force.iter().zip(tau).map(|(terms, tau)| terms + tau.abs()).collect();
 

@@ -1,0 +1,158 @@
+//! Bad input: each mistake ends with its exit code and a message that names file, line or field and the way out; nothing panics, nothing
+//! finished is lost.
+
+mod support;
+
+use support::{Sandbox, project};
+
+/// A URDF with the given middle part between two good links.
+fn urdf(inside: &str) -> String {
+    let inertial = r#"<inertial><mass value="1"/><inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/></inertial>"#;
+    format!("<robot name=\"r\">\n<link name=\"base\"/>\n<link name=\"arm\">{inertial}</link>\n{inside}\n</robot>\n")
+}
+
+const JOINT: &str = r#"<joint name="j" type="revolute"><parent link="base"/><child link="arm"/><axis xyz="0 0 1"/><limit lower="-1" upper="1" effort="1" velocity="1"/></joint>"#;
+
+#[test]
+fn broken_urdf_is_refused_by_file_line_and_name() {
+    let sandbox = Sandbox::new();
+    let inertia = r#"<inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/>"#;
+    let cases: [(&str, String, &[&str]); 9] = [
+        ("malformed", "<robot name=\"r\"><link name=\"base\"></robot>".into(), &[":1:"]),
+        ("unknown joint type", urdf(&JOINT.replace("revolute", "wobbly")), &[":4:", "wobbly", "'j'"]),
+        (
+            "cycle",
+            urdf(&format!(
+                "{JOINT}{}",
+                JOINT.replace("\"j\"", "\"k\"").replace("\"base\"", "\"x\"").replace("\"arm\"", "\"base\"").replace("\"x\"", "\"arm\"")
+            )),
+            &["arm"],
+        ),
+        ("two roots", urdf(&format!("{JOINT}\n<link name=\"other\"/>")), &["other"]),
+        ("orphan link", urdf(""), &["arm"]),
+        (
+            "missing inertial",
+            urdf(&format!(
+                "{JOINT}<link name=\"hand\"/>{}",
+                JOINT.replace("\"j\"", "\"k\"").replace("\"base\"", "\"arm\"").replacen("child link=\"arm\"", "child link=\"hand\"", 1)
+            )),
+            &["hand"],
+        ),
+        ("negative mass", urdf(JOINT).replace("mass value=\"1\"", "mass value=\"-1\""), &[":3:", "arm", "-1"]),
+        ("not a number", urdf(JOINT).replace(inertia, &inertia.replace("ixx=\"1\"", "ixx=\"nan\"")), &[":3:", "ixx"]),
+        ("decimal comma", urdf(JOINT).replace("mass value=\"1\"", "mass value=\"1,5\""), &[":3:", "1,5"]),
+    ];
+    for (name, text, words) in cases {
+        let file = sandbox.write(&format!("{}.urdf", name.replace(' ', "_")), &text);
+        let ended = sandbox.run(&["gen", "urdf", "--file", file.to_str().unwrap()]);
+        let named = [words, &[file.file_name().unwrap().to_str().unwrap()]].concat();
+        ended.expect(2, &named);
+    }
+    let good = sandbox.write("good.urdf", &urdf(JOINT));
+    sandbox.run(&["gen", "urdf", "--file", good.to_str().unwrap()]).expect(0, &["\"arm\""]);
+    sandbox.run(&["gen", "urdf", "--file", "nowhere.urdf"]).expect(2, &["nowhere.urdf"]);
+}
+
+#[test]
+fn broken_suites_are_refused_by_file_and_key() {
+    let sandbox = Sandbox::new();
+    let good = std::fs::read_to_string(project().join("datasets/suites/smoke.toml")).unwrap();
+    let cases: [(&str, String, &[&str]); 6] = [
+        ("unknown key", good.replace("structure = true", "strukture = true"), &["strukture", "line"]),
+        ("unknown model", good.replace("\"panda\"", "\"pander\""), &["pander.json"]),
+        (
+            "two sources",
+            good.replace("model = \"panda\"", "model = \"panda\"\ngenerate = \"hand\""),
+            &["exactly one of model, generate and urdf"],
+        ),
+        ("unknown family", good.replace("model = \"panda\"", "generate = \"spider\""), &["spider", "chain"]),
+        ("not TOML", good.replace("seed = 1", "seed 1"), &["line"]),
+        ("twice", good.replace("\"panda\"", "\"chain-planar-2\""), &["two robots are named 'chain-planar-2'"]),
+    ];
+    for (name, text, words) in cases {
+        let file = sandbox.write(&format!("{}.toml", name.replace(' ', "_")), &text);
+        sandbox.run(&["run", "--suite", file.to_str().unwrap()]).expect(2, words);
+    }
+    sandbox.run(&["run", "--suite", "nowhere"]).expect(2, &["nowhere.toml"]);
+    sandbox.run(&["run", "--only", "("]).expect(2, &["--only"]);
+}
+
+#[test]
+fn wrong_usage_is_exit_code_two() {
+    let sandbox = Sandbox::new();
+    for arguments in
+        [&["fly"][..], &["run", "--resume"], &["gen"], &["gen", "chain", "--set", "n"], &["gen", "chain", "--n", "0"], &["explain", "x"]]
+    {
+        assert_eq!(sandbox.run(arguments).code, Some(2), "{arguments:?}");
+    }
+    sandbox.run(&["gen", "chain", "--set", "m=3"]).expect(2, &["no parameter 'm'", "layout"]);
+}
+
+#[test]
+fn output_folders_are_never_overwritten() {
+    let sandbox = Sandbox::new();
+    std::fs::create_dir(sandbox.path("full")).unwrap();
+    sandbox.write("full/precious", "kept");
+    let run = |out: &str| sandbox.run(&["run", "--suite", "smoke", "--no-timing", "--out", out]);
+    run("full").expect(2, &["full", "not empty", "--out", "--resume"]);
+    assert_eq!(std::fs::read_to_string(sandbox.path("full/precious")).unwrap(), "kept");
+    sandbox.run(&["run", "--suite", "smoke", "--resume", "--out", "full"]).expect(2, &["no run to resume"]);
+    // A folder in which nobody can write, not even root.
+    run("/proc/featherbench").expect(2, &["/proc/featherbench"]);
+    sandbox.write("file", "");
+    run("file/below").expect(2, &["file/below"]);
+}
+
+#[test]
+fn damaged_recordings_cost_their_robot_and_nothing_else() {
+    let sandbox = Sandbox::new();
+    let folder = sandbox.path("recorded");
+    std::fs::create_dir(&folder).unwrap();
+    for model in ["chain-planar-2", "joints-common-free-single", "panda"] {
+        let name = format!("{model}.recording");
+        std::fs::copy(project().join("datasets/recorded").join(&name), folder.join(&name)).unwrap();
+    }
+    let panda = folder.join("panda.recording");
+    let whole = std::fs::read(&panda).unwrap();
+    std::fs::write(&panda, &whole[..whole.len() / 2]).unwrap();
+    let ended = sandbox.run(&["run", "--suite", "smoke", "--no-timing", "--recorded", "recorded", "--out", "out"]);
+    ended.expect(1, &["panda.recording", "truncated", "featherbench record", "report:"]);
+    let csv = std::fs::read_to_string(sandbox.path("out/records.csv")).unwrap();
+    let passing = |model: &str| {
+        csv.lines().filter(|line| line.contains(&format!(",{model},")) && line.contains(",pinocchio,") && line.contains(",pass,")).count()
+    };
+    assert!(passing("chain-planar-2") > 50, "the other robots are compared");
+    assert_eq!(passing("panda"), 0);
+
+    std::fs::remove_dir_all(&folder).unwrap();
+    let ended = sandbox.run(&["run", "--suite", "smoke", "--no-timing", "--recorded", "recorded", "--out", "none"]);
+    ended.expect(1, &["engine pinocchio answers", "engine mujoco answers", "engine drake answers"]);
+}
+
+#[test]
+fn damaged_runs_are_refused_by_file() {
+    let sandbox = Sandbox::new();
+    sandbox.run(&["run", "--suite", "smoke", "--only", "structure", "--out", "out"]).expect(0, &["report:"]);
+    sandbox.run(&["report", "out"]).expect(0, &["out/index.html"]);
+    let cell =
+        std::fs::read_to_string(sandbox.path("out/records.csv")).unwrap().lines().nth(1).unwrap().split(',').nth(1).unwrap().to_owned();
+    sandbox.run(&["explain", &cell[..6], "out"]).expect(0, &["structure", "again"]);
+    sandbox.run(&["explain", "zz", "out"]).expect(2, &["no cell that begins with 'zz'"]);
+
+    let path = sandbox.path("out/records.csv");
+    let whole = std::fs::read(&path).unwrap();
+    std::fs::write(&path, &whole[..whole.len() - 40]).unwrap();
+    sandbox.run(&["gate", "out"]).expect(2, &["records.csv"]);
+    sandbox.run(&["report", "nowhere"]).expect(2, &["nowhere"]);
+}
+
+#[test]
+fn a_missing_python_is_exit_code_three() {
+    let sandbox = Sandbox::new();
+    let empty = sandbox.path("empty");
+    std::fs::create_dir(&empty).unwrap();
+    let mut command = sandbox.command(&["oracles", "install"]);
+    let ended = support::Ended::new(command.env("PATH", &empty).output().unwrap());
+    ended.expect(3, &["python3", "Python 3.11", "recorded answers"]);
+    sandbox.run(&["oracles", "status"]).expect(3, &["not installed", "oracles install"]);
+}

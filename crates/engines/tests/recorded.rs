@@ -1,0 +1,220 @@
+//! Recorded answers come back to the bit, and a file that is truncated, damaged or about something else is refused by its name: never a
+//! wrong answer, never a panic, and never a reason to give up the other robots.
+
+use featherbench_engines::{EngineRecording, Native, Recorded, Recording, RecordingError, Recordings, read_recordings, recording_name};
+use harness::{Identity, Outcome, Problem, Quantity, Refusal, Subject};
+use model::Description;
+use model::generate::Family;
+use record::{EngineSource, ModelOrigin};
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+const QUANTITIES: [Quantity; 5] =
+    [Quantity::Readback, Quantity::InverseDynamics, Quantity::MassMatrix, Quantity::ForwardDynamics, Quantity::Momentum];
+
+fn describe(spec: &str) -> Description {
+    Family::parse(spec).unwrap().generate().unwrap()
+}
+
+fn problem_of(description: &Description, seed: u64) -> Problem {
+    Problem::new(description, "test", ModelOrigin::Generated, 4, seed).unwrap()
+}
+
+fn robot(spec: &str) -> Problem {
+    problem_of(&describe(spec), 1)
+}
+
+fn identity(engine: &str, version: &str) -> Identity {
+    let build = [("language".to_owned(), "rust".to_owned())].into();
+    Identity { name: engine.into(), version: version.into(), source: EngineSource::Recorded, build }
+}
+
+/// What our kernels answer, each number moved by what an engine of this name might round.
+fn answers(problem: &Problem, engine: &str, version: &str, ulps: u64) -> EngineRecording {
+    let native = Native::new();
+    let mut outcomes = Vec::new();
+    for quantity in QUANTITIES {
+        for method in native.methods(quantity) {
+            let mut prepared = native.prepare(problem, quantity, &method, &problem.states).unwrap();
+            prepared.run(0..quantity.states(problem.states.count())).unwrap();
+            let moved = prepared.read().iter().enumerate().map(|(k, x)| f64::from_bits(x.to_bits() + ulps * (k as u64 % 3)));
+            outcomes.push((quantity, method, Outcome::Values(moved.collect())));
+        }
+    }
+    EngineRecording { identity: identity(engine, version), outcomes }
+}
+
+/// Two engines, one of which has answers that are none, refuses a question and fails at another.
+fn recording(problem: &Problem) -> Recording {
+    let mut second = answers(problem, "second", "2", 1);
+    let Outcome::Values(values) = &mut second.outcomes[1].2 else { panic!("{:?}", second.outcomes[1]) };
+    values.splice(..6, [f64::NAN, -f64::NAN, f64::INFINITY, f64::NEG_INFINITY, -0.0, f64::MIN_POSITIVE / 8.0]);
+    // A matrix that is not symmetric, and zeros of either sign.
+    let Outcome::Values(values) = &mut second.outcomes[2].2 else { panic!("{:?}", second.outcomes[2]) };
+    values.splice(1..4, [-0.0, 0.0, 7.5]);
+    second.outcomes.push((Quantity::Bias, "a".into(), Outcome::Refused(Refusal::Unsupported("no such joint".into()))));
+    second.outcomes.push((Quantity::Bias, "b".into(), Outcome::Refused(Refusal::Failed("a \"quoted\"\nreason, ünïcode".into()))));
+    Recording { engines: vec![answers(problem, "first", "1", 0), second] }
+}
+
+fn write(folder: &Path, problem: &Problem, bytes: &[u8]) -> PathBuf {
+    let path = folder.join(recording_name(&problem.name));
+    std::fs::write(&path, bytes).unwrap();
+    path
+}
+
+/// Everything of a recording, with values as bits.
+fn bits(recording: &Recording) -> Vec<(Identity, Vec<(Quantity, String, Result<Vec<u64>, Refusal>)>)> {
+    let outcome = |outcome: &Outcome| match outcome {
+        Outcome::Values(values) => Ok(values.iter().map(|x| x.to_bits()).collect()),
+        Outcome::Refused(refusal) => Err(refusal.clone()),
+    };
+    let engine = |engine: &EngineRecording| {
+        let outcomes = engine.outcomes.iter().map(|(quantity, method, values)| (*quantity, method.clone(), outcome(values)));
+        (engine.identity.clone(), outcomes.collect())
+    };
+    recording.engines.iter().map(engine).collect()
+}
+
+#[track_caller]
+fn damaged(path: &Path, problem: &Problem) -> String {
+    match Recording::read(path, problem) {
+        Err(error @ RecordingError::Damaged { .. }) => {
+            let message = error.to_string();
+            assert!(message.contains(&path.display().to_string()), "{message} does not name the file");
+            message
+        }
+        other => panic!("{other:?}"),
+    }
+}
+
+#[test]
+fn every_bit_comes_back() {
+    for spec in ["joints:kind=mixed,base=free", "chain:n=3", "tree:n=12,joints=all,armature=true"] {
+        let problem = robot(spec);
+        let folder = tempfile::tempdir().unwrap();
+        let recording = recording(&problem);
+        let path = write(folder.path(), &problem, &recording.to_bytes(&problem));
+        let read = Recording::read(&path, &problem).unwrap();
+        assert!(bits(&read) == bits(&recording), "{spec}");
+        assert_eq!(read.to_bytes(&problem), std::fs::read(&path).unwrap(), "{spec}: written again");
+    }
+}
+
+#[test]
+fn a_truncated_file_is_damaged_wherever_it_ends() {
+    let problem = robot("joints:kind=universal,base=fixed");
+    let folder = tempfile::tempdir().unwrap();
+    let whole = recording(&problem).to_bytes(&problem);
+    // Every cut near an end of line, where parts begin, and every 61st elsewhere: coprime with the eight bytes of a double.
+    let near_a_line = |cut: &usize| whole[cut.saturating_sub(2)..(cut + 2).min(whole.len())].contains(&b'\n');
+    for cut in (0..whole.len()).filter(|cut| cut % 61 == 0 || near_a_line(cut)) {
+        damaged(&write(folder.path(), &problem, &whole[..cut]), &problem);
+    }
+    let path = write(folder.path(), &problem, &[&whole[..], b"x"].concat());
+    assert!(damaged(&path, &problem).contains("behind the end"));
+    write(folder.path(), &problem, &whole);
+    assert!(Recording::read(&path, &problem).is_ok());
+}
+
+/// Whole parts that are missing, doubled or not understood.
+#[test]
+fn an_altered_file_is_damaged() {
+    let problem = robot("chain:n=2");
+    let folder = tempfile::tempdir().unwrap();
+    let whole = recording(&problem).to_bytes(&problem);
+    let last = br#"{"bytes":0,"end":"#;
+    let end = whole.windows(last.len()).rposition(|window| window == last).unwrap();
+    for bytes in [b"".to_vec(), b"\n".to_vec(), b"{}\n".to_vec(), b"[]\n".to_vec(), b"null\n".to_vec(), whole[end..].to_vec(), vec![0; 100]]
+    {
+        damaged(&write(folder.path(), &problem, &bytes), &problem);
+    }
+    let second = whole.iter().position(|&byte| byte == b'\n').unwrap() + 1 + 8 * 4 * (2 * 4 + 6 * 2);
+    assert_eq!(whole[second], b'{', "the states are four times q, v, a and τ of two dofs and wrenches of two bodies");
+    damaged(&write(folder.path(), &problem, &[&whole[..second], &whole[end..]].concat()), &problem);
+    let huge = b"{\"bytes\":18446744073709551615,\"engine\":\"e\",\"version\":\"1\"}\n";
+    damaged(&write(folder.path(), &problem, &[&whole[..second], huge].concat()), &problem);
+    let orphan = b"{\"bytes\":0,\"quantity\":\"id\",\"status\":\"ok\"}\n";
+    assert!(damaged(&write(folder.path(), &problem, &[&whole[..second], orphan].concat()), &problem).contains("before its engine"));
+}
+
+#[test]
+fn another_robot_or_other_states_are_refused() {
+    let description = describe("joints:kind=mixed,base=fixed");
+    let problem = problem_of(&description, 1);
+    let folder = tempfile::tempdir().unwrap();
+    let path = write(folder.path(), &problem, &recording(&problem).to_bytes(&problem));
+    let mut heavier = description.clone();
+    heavier.bodies[3].mass *= 1.0 + f64::EPSILON;
+    assert!(damaged(&path, &problem_of(&heavier, 1)).contains("another version"));
+    assert!(damaged(&path, &problem_of(&description, 2)).contains("another version"));
+    let mut moved = problem.clone();
+    moved.states.wrench[5] = f64::from_bits(moved.states.wrench[5].to_bits() ^ 1);
+    assert!(damaged(&path, &moved).contains("of its states"));
+    assert!(Recording::read(&path, &problem).is_ok());
+}
+
+#[test]
+fn a_missing_file_is_named() {
+    let problem = robot("chain:n=2");
+    let path = Path::new("nowhere").join(recording_name(&problem.name));
+    let error = Recording::read(&path, &problem).unwrap_err();
+    assert!(matches!(error, RecordingError::Io { .. }) && error.to_string().contains("chain-planar-2.recording"), "{error}");
+    let recordings = Arc::new(read_recordings(Path::new("nowhere"), &[&problem]));
+    assert!(Recorded::new(&recordings, "first").err().unwrap().contains("chain-planar-2.recording"));
+    assert!(Recorded::new(&Arc::new(Recordings::new()), "first").err().unwrap().contains("first"));
+}
+
+#[test]
+fn a_recorded_engine_answers_what_it_was_asked() {
+    let (good, missing, broken) = (robot("joints:kind=mixed,base=free"), robot("chain:n=3"), robot("chain:n=2"));
+    let folder = tempfile::tempdir().unwrap();
+    let recording = recording(&good);
+    write(folder.path(), &good, &recording.to_bytes(&good));
+    write(folder.path(), &broken, b"not a recording");
+    let recordings = Arc::new(read_recordings(folder.path(), &[&missing, &good, &broken]));
+    assert!(Recorded::new(&recordings, "third").is_err(), "nobody recorded it");
+    let recorded = Recorded::new(&recordings, "second").unwrap();
+    assert_eq!(*recorded.identity(), identity("second", "2"));
+    assert_eq!(recorded.methods(Quantity::ForwardDynamics), ["aba", "ltdl"]);
+    assert_eq!(recorded.methods(Quantity::Bias), ["a", "b"]);
+    assert!(recorded.methods(Quantity::BodyVelocity).is_empty());
+
+    let ask = |problem: &Problem, quantity, method: &str, range: std::ops::Range<usize>| {
+        let mut prepared = recorded.prepare(problem, quantity, method, &problem.states)?;
+        prepared.run(range)?;
+        Ok(prepared.read().iter().map(|x| x.to_bits()).collect::<Vec<u64>>())
+    };
+    let nv = good.states.nv;
+    let Outcome::Values(values) = &recording.engines[1].outcomes[1].2 else { panic!("no values") };
+    let due: Vec<u64> = values.iter().map(|x| x.to_bits()).collect();
+    assert!(ask(&good, Quantity::InverseDynamics, "rnea", 0..4) == Ok(due.clone()));
+    assert!(ask(&good, Quantity::InverseDynamics, "rnea", 1..3) == Ok(due[nv..3 * nv].to_vec()));
+    let failed = |answer: Result<Vec<u64>, Refusal>| match answer {
+        Err(Refusal::Failed(reason)) => reason,
+        other => panic!("{other:?}"),
+    };
+    assert!(failed(ask(&good, Quantity::InverseDynamics, "rnea", 0..5)).contains("are due"), "more states than there are");
+    assert!(failed(ask(&good, Quantity::InverseDynamics, "abacus", 0..1)).contains("was not recorded"));
+    assert_eq!(ask(&good, Quantity::Bias, "a", 0..1), Err(Refusal::Unsupported("no such joint".into())));
+    assert_eq!(failed(ask(&good, Quantity::Bias, "b", 0..1)), "a \"quoted\"\nreason, ünïcode");
+    // The other robots are their own errors, which name their files.
+    assert!(failed(ask(&missing, Quantity::InverseDynamics, "rnea", 0..4)).contains("chain-planar-3.recording"));
+    assert!(failed(ask(&broken, Quantity::InverseDynamics, "rnea", 0..4)).contains("chain-planar-2.recording"));
+    assert!(failed(ask(&robot("chain:n=4"), Quantity::InverseDynamics, "rnea", 0..4)).contains("chain-planar-4"));
+}
+
+/// Rows carry one version: answers of several are no engine.
+#[test]
+fn versions_do_not_mix() {
+    let folder = tempfile::tempdir().unwrap();
+    let (one, two) = (robot("chain:n=1"), robot("chain:n=2"));
+    for (problem, version) in [(&one, "1.0"), (&two, "1.1")] {
+        let recording = Recording { engines: vec![answers(problem, "engine", version, 0), answers(problem, "other", "5", 0)] };
+        write(folder.path(), problem, &recording.to_bytes(problem));
+    }
+    let recordings = Arc::new(read_recordings(folder.path(), &[&one, &two]));
+    let reason = Recorded::new(&recordings, "engine").err().unwrap();
+    assert!(reason.contains("1.0 and 1.1"), "{reason}");
+    assert!(Recorded::new(&recordings, "other").is_ok());
+}
