@@ -133,14 +133,14 @@ fn project<T: Real, P: Real + Lift<T>>(
     matrix: &mut TreeSparse<T>,
 ) {
     let position = matrix.depth(supported.start) - 1;
-    let (_, starts, values) = matrix.parts_mut();
+    let (rows, values) = matrix.parts_mut();
     let (first, last) = (Forces::<T>::LANES + supported.start, Forces::<T>::LANES + supported.end);
     let [nx, ny, nz] = forces.ang.each_ref().map(|component| &component[first..last]);
     let [fx, fy, fz] = forces.lin.each_ref().map(|component| &component[first..last]);
     let (ang, lin) = (nx.iter().zip(ny).zip(nz), fx.iter().zip(fy).zip(fz));
-    for (start, (((nx, ny), nz), ((fx, fy), fz))) in starts[supported].iter().zip(ang.zip(lin)) {
+    for (row, (((nx, ny), nz), ((fx, fy), fz))) in rows[supported].iter().zip(ang.zip(lin)) {
         let f = Force::new(Vec3::new(*nx, *ny, *nz), Vec3::new(*fx, *fy, *fz));
-        values[start + position] = match kind {
+        values[row.start + position] = match kind {
             JointKind::Revolute => subspace.ang.lift().dot(f.ang),
             JointKind::Prismatic => subspace.lin.lift().dot(f.lin),
             JointKind::Helical => subspace.lift().dot(f),

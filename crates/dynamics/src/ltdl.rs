@@ -95,22 +95,22 @@ impl<T: Real> Ltdl<T> {
         let mut smallest = Pivot::none();
         for k in (0..self.matrix.size()).rev() {
             let row = self.matrix.row(k);
-            let (dofs, starts, values) = self.matrix.parts_mut();
+            let (rows, values) = self.matrix.parts_mut();
             let (above, h_k) = values.split_at_mut(row.start);
             let last = row.len() - 1;
             let d = h_k[last];
             smallest.note(k, d.min_lane());
 
             // L_ki = H_ki / D_k,  H_i· −= L_ki H_k·  for every strict ancestor i of k, at position p of the row
-            let mut ancestor = dofs[k].parent;
+            let mut ancestor = rows[k].parent;
             for p in (0..last).rev() {
                 let Some(i) = ancestor else { break };
-                let (l, start) = (h_k[p] / d, starts[i]);
+                let (l, start) = (h_k[p] / d, rows[i].start);
                 for (h_i, h_k) in above[start..=start + p].iter_mut().zip(&h_k[..=p]) {
                     *h_i = (-l).mul_add(*h_k, *h_i);
                 }
                 h_k[p] = l;
-                ancestor = dofs[i].parent;
+                ancestor = rows[i].parent;
             }
         }
         smallest

@@ -15,14 +15,14 @@ use std::ops::Range;
 #[derive(Clone, Debug, PartialEq)]
 pub struct TreeSparse<T> {
     values: Vec<T>,
-    /// Where each row begins in the flat array, and where the last one ends.
-    starts: Vec<usize>,
-    dofs: Vec<Dof>,
+    rows: Vec<Row>,
 }
 
-/// A dof's place in the tree.
+/// Where a dof's row stands, and the dof's place in the tree.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) struct Dof {
+pub(crate) struct Row {
+    /// Where the row begins in the flat array.
+    pub(crate) start: usize,
     /// The parent dof.
     pub(crate) parent: Option<usize>,
     /// The first dof of this dof's *run*: consecutive dofs, each the parent of the next. Runs are contiguous in rows and in vectors.
@@ -35,18 +35,17 @@ impl<T: Real> TreeSparse<T> {
     /// The zero matrix of a topology.
     pub fn new(topology: &Topology) -> Self {
         let parents = topology.dof_parents();
-        let mut dofs: Vec<Dof> = Vec::with_capacity(parents.len());
+        let mut rows: Vec<Row> = Vec::with_capacity(parents.len());
         for (dof, &parent) in parents.iter().enumerate() {
-            let run = if dof > 0 && parent == Some(dof - 1) { dofs[dof - 1].run } else { dof };
-            dofs.push(Dof { parent, run, end: dof + 1 });
+            let run = if dof > 0 && parent == Some(dof - 1) { rows[dof - 1].run } else { dof };
+            rows.push(Row { start: topology.row(dof).start, parent, run, end: dof + 1 });
         }
-        for dof in (0..dofs.len()).rev() {
-            if let Some(parent) = dofs[dof].parent {
-                dofs[parent].end = dofs[parent].end.max(dofs[dof].end);
+        for dof in (0..rows.len()).rev() {
+            if let Some(parent) = rows[dof].parent {
+                rows[parent].end = rows[parent].end.max(rows[dof].end);
             }
         }
-        let starts = (0..dofs.len()).map(|dof| topology.row(dof).start).chain([topology.stored()]).collect();
-        Self { values: vec![T::zero(); topology.stored()], starts, dofs }
+        Self { values: vec![T::zero(); topology.stored()], rows }
     }
 
     /// The matrix with these entries: `entry(i, j)` is asked for each stored one, `j` supporting `i`.
@@ -62,7 +61,7 @@ impl<T: Real> TreeSparse<T> {
 
     /// Rows and columns: the number of dofs.
     pub fn size(&self) -> usize {
-        self.dofs.len()
+        self.rows.len()
     }
 
     /// The stored numbers, row after row.
@@ -73,8 +72,8 @@ impl<T: Real> TreeSparse<T> {
     /// Entry (i, j): zero where neither dof supports the other, or where there is no such entry.
     pub fn get(&self, i: usize, j: usize) -> T {
         let (upper, lower) = (i.min(j), i.max(j));
-        match self.dofs.get(upper) {
-            Some(support) if lower < support.end => self.values[self.starts[lower] + self.depth(upper) - 1],
+        match (self.rows.get(lower), self.rows.get(upper)) {
+            (Some(row), Some(column)) if lower < column.end => self.values[row.start + self.depth(upper) - 1],
             _ => T::zero(),
         }
     }
@@ -125,7 +124,7 @@ impl<T: Real> TreeSparse<T> {
 
     /// Copies the numbers of a matrix of the same topology.
     pub(crate) fn copy_from(&mut self, other: &Self) -> Result<(), DimensionError> {
-        let agreeing = self.dofs.iter().zip(&other.dofs).filter(|(dof, theirs)| dof == theirs).count();
+        let agreeing = self.rows.iter().zip(&other.rows).filter(|(row, theirs)| row == theirs).count();
         expect("dofs of the tree-sparse matrix", self.size(), other.size())?;
         expect("dofs of the tree-sparse matrix with the same place in the tree", self.size(), agreeing)?;
         self.values.copy_from_slice(&other.values);
@@ -135,7 +134,7 @@ impl<T: Real> TreeSparse<T> {
     /// Refuses a topology of another shape.
     pub(crate) fn expect_topology(&self, topology: &Topology) -> Result<(), DimensionError> {
         expect("dofs of the tree-sparse matrix", topology.nv(), self.size())?;
-        let agreeing = self.dofs.iter().zip(topology.dof_parents()).filter(|(dof, parent)| dof.parent == **parent).count();
+        let agreeing = self.rows.iter().zip(topology.dof_parents()).filter(|(row, parent)| row.parent == **parent).count();
         expect("dofs of the tree-sparse matrix with the model's parent dof", topology.nv(), agreeing)
     }
 
@@ -155,31 +154,31 @@ impl<T: Real> TreeSparse<T> {
     /// Where row `dof` stands in the flat array.
     #[inline(always)]
     pub(crate) fn row(&self, dof: usize) -> Range<usize> {
-        self.starts[dof]..self.starts[dof + 1]
+        self.rows[dof].start..self.rows.get(dof + 1).map_or(self.values.len(), |next| next.start)
     }
 
     /// The dofs that `dof` supports, itself first.
     #[inline(always)]
     pub(crate) fn supported(&self, dof: usize) -> Range<usize> {
-        dof..self.dofs[dof].end
+        dof..self.rows[dof].end
     }
 
-    /// The dofs' places in the tree, where their rows begin, and the flat array.
+    /// The rows and the flat array.
     #[inline(always)]
-    pub(crate) fn parts_mut(&mut self) -> (&[Dof], &[usize], &mut [T]) {
-        (&self.dofs, &self.starts, &mut self.values)
+    pub(crate) fn parts_mut(&mut self) -> (&[Row], &mut [T]) {
+        (&self.rows, &mut self.values)
     }
 
     /// The strict ancestors of `dof`, run by run from the nearest to the root: their dofs, and their entries of row `dof`.
     #[inline(always)]
     pub(crate) fn ancestors(&self, dof: usize) -> impl Iterator<Item = (Range<usize>, Range<usize>)> + '_ {
         let mut end = self.row(dof).end - 1;
-        let mut next = self.dofs[dof].parent;
+        let mut next = self.rows[dof].parent;
         std::iter::from_fn(move || {
             let last = next?;
-            let first = self.dofs[last].run;
+            let first = self.rows[last].run;
             let entries = end + first - (last + 1)..end;
-            (next, end) = (self.dofs[first].parent, entries.start);
+            (next, end) = (self.rows[first].parent, entries.start);
             Some((first..last + 1, entries))
         })
     }

@@ -130,7 +130,7 @@ impl Comparison<'_> {
             .into_iter()
             .map(|(case, value, _)| {
                 let row = Record { case: case.name().into(), metric: "kappa_scaled".into(), unit: "1".into(), ..row(cell, self.problem) };
-                row.informed(value)
+                self.context.gates.explain(row.informed(value))
             })
             .collect()
     }
@@ -169,7 +169,7 @@ impl Comparison<'_> {
         if let Some((reference, outcome)) = self.reference(Quantity::ForwardDynamics).filter(|(reference, _)| reference != cell) {
             let Some(reference_values) = outcome.values() else {
                 let reason = format!("the native reference {} has no value", reference.method);
-                rows.push(row(cell, self.problem).without_value(Verdict::Error, reason));
+                rows.push(self.context.gates.explain(row(cell, self.problem).without_value(Verdict::Error, reason)));
                 return rows;
             };
             let pairs = states.zip(reference_values.chunks_exact(self.problem.states.nv)).zip(&self.forward);

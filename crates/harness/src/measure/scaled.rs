@@ -115,7 +115,7 @@ fn momentum(problem: &Problem, at: &Magnitudes, reference: &[f64], value: &[f64]
     entries(reference, value, &halves(angular, linear))
 }
 
-/// Mass and lengths relative to their own size, inertia to its trace, rotation to one.
+/// Mass and lengths relative to their own size, rotation to one, inertia to its trace about the body's origin, where most engines hold it.
 fn readback(reference: &[f64], value: &[f64]) -> f64 {
     let magnitude: Vec<f64> = reference
         .chunks_exact(22)
@@ -124,7 +124,7 @@ fn readback(reference: &[f64], value: &[f64]) -> f64 {
             let length = |xyz: &[f64]| xyz.iter().map(|x| x * x).sum::<f64>().sqrt();
             scale[0] = body[0];
             scale[1..4].fill(length(&body[1..4]));
-            scale[4..10].fill(body[4].abs() + body[7].abs() + body[9].abs());
+            scale[4..10].fill(body[4].abs() + body[7].abs() + body[9].abs() + 2.0 * body[0] * length(&body[1..4]).powi(2));
             scale[19..22].fill(length(&body[19..22]));
             scale
         })

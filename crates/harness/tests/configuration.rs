@@ -1,0 +1,118 @@
+//! Files that people write: what is wrong in `gates.toml`, `deviations.toml` or a suite is told with the file and the key, and nothing
+//! unknown is passed over.
+
+use featherbench_harness::{Gates, HarnessError, Suite};
+use std::path::Path;
+
+const GATE: &str = "[[gate]]\nstudy = \"agreement\"\nquantities = [\"id\"]\nmetric = \"scaled\"\nbound = 1e-14\nreason = \"rounding\"\n";
+const DEVIATION: &str = "[[deviation]]\nengine = \"e\"\nversion = \"1\"\nmodels = [\"m\"]\nverdict = \"fail\"\nreason = \"known\"\n";
+const SUITE: &str = "about = \"a suite\"\nseed = 1\n[[problem]]\ngenerate = \"humanoid\"\nfamily = \"humanoid\"\n";
+
+/// Asserts that an error names its file and these words.
+#[track_caller]
+fn names<T: std::fmt::Debug>(result: Result<T, HarnessError>, file: &Path, words: &[&str]) {
+    let error = result.unwrap_err();
+    let message = error.to_string();
+    assert!(message.contains(&file.display().to_string()), "{message} does not name {}", file.display());
+    for word in words {
+        assert!(message.contains(word), "{message} does not name {word}");
+    }
+}
+
+fn gates(gates: &str, deviations: &str) -> (Result<Gates, HarnessError>, tempfile::TempDir) {
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::write(folder.path().join("gates.toml"), gates).unwrap();
+    std::fs::write(folder.path().join("deviations.toml"), deviations).unwrap();
+    (Gates::read(folder.path()), folder)
+}
+
+#[test]
+fn gates_name_what_is_wrong() {
+    assert!(gates(GATE, DEVIATION).0.is_ok());
+    assert!(gates(GATE, "").0.is_ok(), "nothing need deviate");
+    let cases = [
+        (format!("{GATE}max_dept = 20\n"), "max_dept"),
+        (GATE.replace("bound = 1e-14\n", ""), "bound"),
+        (GATE.replace("reason = \"rounding\"\n", ""), "reason"),
+        (GATE.replace("1e-14", "\"small\""), "bound"),
+        (format!("{GATE}times = \"width\"\n"), "width"),
+        (format!("{GATE}max_depth = -1\n"), "max_depth"),
+        (format!("threshold = 1\n{GATE}"), "threshold"),
+        (format!("{GATE}[sharp]\nstudy = \"agreement\"\n"), "quantity"),
+        (format!("{GATE}[[gate]\n"), "line 7"),
+        (String::new(), "gate"),
+    ];
+    for (text, word) in cases {
+        let (result, folder) = gates(&text, "");
+        names(result, &folder.path().join("gates.toml"), &[word]);
+    }
+}
+
+#[test]
+fn deviations_name_what_is_wrong() {
+    let cases = [
+        (format!("{DEVIATION}upto = 1e-9\n"), "upto"),
+        (DEVIATION.replace("version = \"1\"\n", ""), "version"),
+        (DEVIATION.replace("models = [\"m\"]\n", ""), "models"),
+        (DEVIATION.replace("reason = \"known\"\n", ""), "reason"),
+        (DEVIATION.replace("\"fail\"", "\"pass\""), "pass"),
+        (DEVIATION.replace("\"fail\"", "\"Fail\""), "Fail"),
+        (DEVIATION.replace("[\"m\"]", "\"m\""), "models"),
+        (DEVIATION.replace("[[deviation]]", "[[deviations]]"), "deviations"),
+    ];
+    for (text, word) in cases {
+        let (result, folder) = gates(GATE, &text);
+        names(result, &folder.path().join("deviations.toml"), &[word]);
+    }
+}
+
+#[test]
+fn missing_files_are_named() {
+    let folder = tempfile::tempdir().unwrap();
+    names(Gates::read(folder.path()), &folder.path().join("gates.toml"), &[]);
+    std::fs::write(folder.path().join("gates.toml"), GATE).unwrap();
+    names(Gates::read(folder.path()), &folder.path().join("deviations.toml"), &[]);
+    let path = folder.path().join("none.toml");
+    names(Suite::read(&path), &path, &[]);
+}
+
+#[test]
+fn suites_name_what_is_wrong() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("suite.toml");
+    let read = |text: &str| {
+        std::fs::write(&path, text).unwrap();
+        Suite::read(&path)
+    };
+    let (suite, hash) = read(SUITE).unwrap();
+    assert_eq!((suite.about.as_str(), suite.problem.len(), suite.agreement), ("a suite", 1, None));
+    assert_ne!(read(&format!("{SUITE}\n")).unwrap().1, hash, "every byte of a suite counts");
+    let cases = [
+        (format!("speed = 3\n{SUITE}"), "speed"),
+        (format!("{SUITE}floats = true\n"), "floats"),
+        (format!("{SUITE}[agreement]\nstates = 3\n"), "engines"),
+        (format!("{SUITE}[agreement]\nstates = 3\nengines = []\nthreads = 2\n"), "threads"),
+        (format!("{SUITE}[timing]\nstates = 3\n"), "seconds"),
+        (format!("{SUITE}[expect]\nnative = 3\n"), "native"),
+        (format!("{SUITE}[expect.native]\nid = -3\n"), "id"),
+        (format!("{SUITE}model = \"g1\"\n"), "humanoid"),
+        (SUITE.replace("generate = \"humanoid\"\n", ""), "exactly one"),
+        (SUITE.replace("seed = 1\n", ""), "seed"),
+        (SUITE.replace("family = \"humanoid\"\n", ""), "family"),
+    ];
+    for (text, word) in cases {
+        names(read(&text), &path, &[word]);
+    }
+}
+
+/// The repository's own files are understood, and every suite of it.
+#[test]
+fn our_own_files_are_right() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
+    Gates::read(&root.join("ci")).unwrap();
+    let suites: Vec<_> = std::fs::read_dir(root.join("datasets/suites")).unwrap().map(|entry| entry.unwrap().path()).collect();
+    assert!(!suites.is_empty());
+    for path in suites.iter().filter(|path| path.extension().is_some_and(|ending| ending == "toml")) {
+        Suite::read(path).unwrap();
+    }
+}
