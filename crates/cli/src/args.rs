@@ -88,7 +88,7 @@ pub struct FolderArgs {
 pub struct GateArgs {
     /// A run's folder.
     pub folder: PathBuf,
-    /// Print the counts of passing rows in the form of a suite's [expect] tables.
+    /// Print the counts of rows that pass or deviate as known, in the form of a suite's `expect` tables.
     #[arg(long)]
     pub counts: bool,
 }

@@ -37,7 +37,7 @@ pub fn gate(root: &Root, args: &GateArgs) -> Result<(), Fail> {
     conclude(&info, &records, &args.folder.join("index.html"))
 }
 
-/// Prints the rows that count per engine and quantity as a suite's [expect] tables.
+/// Prints the rows that count per engine and quantity as a suite's `expect` tables.
 fn print_counts(records: &[Record]) {
     let mut counts: BTreeMap<(&str, &str), u64> = BTreeMap::new();
     for row in records.iter().filter(|row| accounted(row)) {

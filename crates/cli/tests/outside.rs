@@ -8,6 +8,8 @@ mod support;
 use std::process::{Command, ExitCode};
 use support::{Ended, Sandbox, project};
 
+type Test = fn() -> Outcome;
+
 /// What became of a test.
 enum Outcome {
     Passed,
@@ -16,7 +18,7 @@ enum Outcome {
 }
 
 fn main() -> ExitCode {
-    let tests: [(&str, fn() -> Outcome); 4] = [
+    let tests: [(&str, Test); 4] = [
         ("a missing wheel is exit code three and can be tried again", missing_wheel),
         ("the oracles pass their own tests", oracles_by_themselves),
         ("a live run agrees with the recorded answers", live_run),

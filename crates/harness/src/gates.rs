@@ -4,7 +4,7 @@ use crate::{HarnessError, Suite};
 use record::{Expectation, Record, Relation, Verdict};
 use serde::Deserialize;
 use serde_json::Value;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, HashMap};
 use std::path::Path;
 
 /// The thresholds of `ci/gates.toml` and the known deviations of `ci/deviations.toml`.
@@ -205,24 +205,28 @@ fn condition(what: String, expected: u64, found: u64) -> Expectation {
     Expectation { what, expected, found, verdict: if met { Verdict::Pass } else { Verdict::Fail }, reason }
 }
 
+/// The sharpest bound for each kind of joint and base.
+type Bounds = HashMap<(String, String), f64>;
+
 impl Sharpness {
     /// One condition per engine and method: for how many kinds of joints and bases there is no robot with a sharp bound.
     fn conditions(&self, records: &[Record]) -> Vec<Expectation> {
-        let mut best: BTreeMap<(&str, &str), BTreeMap<(String, String), f64>> = BTreeMap::new();
+        let mut sharpest: BTreeMap<(&str, &str), Bounds> = BTreeMap::new();
         for row in records.iter().filter(|row| row.study == self.study && row.quantity == self.quantity && row.metric == self.metric) {
             let (Some(bound), Ok(params)) = (row.bound, serde_json::from_str::<Value>(&row.params)) else { continue };
+            let of_method = sharpest.entry((&row.engine, &row.method)).or_default();
             let base = params["base"].as_str().unwrap_or_default();
             for kind in params["joints"].as_array().into_iter().flatten().filter_map(Value::as_str) {
-                let of_method = best.entry((&row.engine, &row.method)).or_default();
-                let sharpest = of_method.entry((kind.to_owned(), base.to_owned())).or_insert(f64::INFINITY);
-                *sharpest = sharpest.min(bound);
+                let known = of_method.entry((kind.to_owned(), base.to_owned())).or_insert(bound);
+                *known = known.min(bound);
             }
         }
-        let blunt = |kinds: &BTreeMap<(String, String), f64>| kinds.values().filter(|&&bound| bound > self.bound).count() as u64;
-        let what = |engine, method| {
-            format!("kinds of joint and base for which {engine} {method} has no {} bound below {:e}", self.metric, self.bound)
+        let condition = |((engine, method), bounds): (&(&str, &str), &Bounds)| {
+            let blunt = bounds.values().filter(|&&bound| bound > self.bound).count() as u64;
+            let what = format!("kinds of joint and base for which {engine} {method} has no {} bound below {:e}", self.metric, self.bound);
+            condition(what, 0, blunt)
         };
-        best.iter().map(|((engine, method), kinds)| condition(what(engine, method), 0, blunt(kinds))).collect()
+        sharpest.iter().map(condition).collect()
     }
 }
 

@@ -2,6 +2,7 @@
 
 use super::{Magnitudes, ratio, worst};
 use crate::{Problem, Quantity};
+use model::JointKind;
 
 /// The largest difference between `value` and `reference`, each entry over the magnitude of its own terms at the state.
 ///
@@ -39,12 +40,7 @@ pub fn scaled_error(problem: &Problem, quantity: Quantity, at: &Magnitudes, refe
                 halves(at.angular_acceleration[body], at.linear_acceleration[body] + gravity + swing * at.size[body])
             })
         }
-        Quantity::BodyJacobian => {
-            let reach = at.reach[problem.model.described[problem.deepest_body()]];
-            let magnitude = |row: usize| if row < 3 { 1.0 } else { reach.max(1.0) };
-            let scale: Vec<f64> = (0..6 * nv).map(|entry| magnitude(entry / nv)).collect();
-            entries(reference, value, &scale)
-        }
+        Quantity::BodyJacobian => body_jacobian(problem, at, reference, value),
         Quantity::Readback => readback(reference, value),
         Quantity::StoredEntries => entries(reference, value, &[1.0]),
         Quantity::ForwardDynamics | Quantity::MassMatrixSparse | Quantity::Factorization | Quantity::Solve => {
@@ -69,6 +65,20 @@ fn halves(angular: f64, linear: f64) -> [f64; 6] {
 fn per_body<const N: usize>(problem: &Problem, reference: &[f64], value: &[f64], scale: impl Fn(usize) -> [f64; N]) -> f64 {
     let magnitude: Vec<f64> = problem.model.described.iter().flat_map(|&body| scale(body)).collect();
     entries(reference, value, &magnitude)
+}
+
+/// Per dof at unit rate: a turn carries the body along by no more than its reach, a slide by one; a slide turns nothing.
+fn body_jacobian(problem: &Problem, at: &Magnitudes, reference: &[f64], value: &[f64]) -> f64 {
+    let model = &problem.model;
+    let reach = at.reach[model.described[problem.deepest_body()]];
+    let (slide, turn) = ((0.0, 1.0), (1.0, 0.0));
+    let dofs = model.topology.joints().iter().zip(&model.subspaces).flat_map(|(joint, subspace)| match joint.kind {
+        JointKind::Free => vec![slide, slide, slide, turn, turn, turn],
+        JointKind::Spherical => vec![turn; 3],
+        _ => vec![(subspace.ang.norm(), subspace.lin.norm())],
+    });
+    let (angular, linear): (Vec<f64>, Vec<f64>) = dofs.map(|(turn, slide)| (turn, turn * reach + slide)).unzip();
+    entries(reference, value, &[angular.repeat(3), linear.repeat(3)].concat())
 }
 
 /// max |ΔM_ij| / √(M_ii·M_jj).

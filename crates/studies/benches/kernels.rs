@@ -1,0 +1,91 @@
+//! The native kernels under criterion: the registry that the agreement study checks and the timing study times, on the same robots and
+//! states.
+//!
+//! A group is an algorithm and method, an id a robot and a regime: `stream` goes round a thousand random states, `hot` stays at one. The
+//! throughput is in dofs. A time includes everything from raw q, v, a or τ to the result copied out; `factorization` and `solve` start from
+//! matrices or factors made before. `cargo bench -p featherbench-studies -- --test` calls each once, as a test.
+
+use criterion::measurement::WallTime;
+use criterion::{BenchmarkGroup, BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
+use engines::{Native, timed};
+use harness::{Problem, Quantity, Subject};
+use model::StateBatch;
+use model::generate::Family;
+use record::ModelOrigin;
+use std::collections::BTreeMap;
+use std::hint::black_box;
+use std::time::Duration;
+
+const ROBOTS: [&str; 7] = [
+    "chain:n=10,layout=spatial",
+    "chain:n=36,layout=spatial",
+    "chain:n=100,layout=spatial",
+    "chain:n=1000,layout=spatial",
+    "binary_tree:depth=10",
+    "humanoid",
+    "quadruped",
+];
+/// States in the stream, fewer where they would not fit eight million numbers: more would measure the memory.
+const STREAM: usize = 1000;
+const MOST_NUMBERS: usize = 8_000_000;
+const SEED: u64 = 1;
+
+fn problem(spec: &str) -> Problem {
+    let description = Family::parse(spec).expect("a family").generate().expect("a robot");
+    Problem::new(&description, "bench", ModelOrigin::Generated, 1, SEED).expect("a valid robot")
+}
+
+fn kernels(criterion: &mut Criterion) {
+    let problems: Vec<(Problem, StateBatch)> = ROBOTS
+        .into_iter()
+        .map(|spec| {
+            let problem = problem(spec);
+            let numbers = problem.states.nq + 3 * problem.states.nv + 6 * problem.states.bodies;
+            let states = StateBatch::random(&problem.model, STREAM.min(1 + MOST_NUMBERS / numbers), SEED);
+            (problem, states)
+        })
+        .collect();
+    // Criterion wants one group at a time: the robots of each kernel, in the order of the registry.
+    let mut groups: BTreeMap<(usize, Quantity, &str), Vec<usize>> = BTreeMap::new();
+    for (robot, (problem, _)) in problems.iter().enumerate() {
+        for (place, (quantity, method)) in timed(problem).into_iter().enumerate() {
+            groups.entry((place, quantity, method)).or_default().push(robot);
+        }
+    }
+    for ((_, quantity, method), robots) in groups {
+        let mut group = criterion.benchmark_group(format!("{}/{method}", quantity.name()));
+        for robot in robots {
+            let (problem, states) = &problems[robot];
+            group.throughput(Throughput::Elements(problem.states.nv as u64));
+            bench(&mut group, problem, states, quantity, method);
+        }
+        group.finish();
+    }
+}
+
+fn bench(group: &mut BenchmarkGroup<WallTime>, problem: &Problem, states: &StateBatch, quantity: Quantity, method: &str) {
+    let native = Native::new();
+    for (regime, count) in [("stream", states.count()), ("hot", 1)] {
+        group.bench_function(BenchmarkId::new(&problem.name, regime), |bencher| {
+            let mut prepared = native.prepare(problem, quantity, method, states).expect("a native kernel");
+            let mut state = 0;
+            bencher.iter(|| {
+                prepared.run(state..state + 1).expect("an answer");
+                black_box(prepared.read());
+                state = if state + 1 == count { 0 } else { state + 1 };
+            });
+        });
+    }
+}
+
+criterion_group! {
+    name = benches;
+    // Some hundred and fifty kernels in about a minute.
+    config = Criterion::default()
+        .warm_up_time(Duration::from_millis(100))
+        .measurement_time(Duration::from_millis(300))
+        .sample_size(20)
+        .without_plots();
+    targets = kernels
+}
+criterion_main!(benches);
