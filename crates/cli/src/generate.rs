@@ -23,6 +23,7 @@ pub fn generate(args: &GenArgs) -> Result<(), Fail> {
         }
         _ => family(args)?,
     };
+    description.warnings().iter().for_each(|warning| eprintln!("warning: {warning}"));
     match &args.out {
         Some(path) => {
             formats::neutral::write(&description, path).map_err(|error| Fail::input(error.to_string()))?;
