@@ -6,7 +6,7 @@ use crate::root::Root;
 use ::record::ModelOrigin;
 use formats::urdf::{Base, Note, Options};
 use harness::{Problem, ProblemEntry, Suite};
-use model::Description;
+use model::{Description, StateBatch};
 use model::generate::Family;
 use std::path::{Path, PathBuf};
 
@@ -29,6 +29,12 @@ pub fn load(root: &Root, suite: &str, live: bool) -> Result<Loaded, Fail> {
         let bad = |error: &dyn std::error::Error| Fail::input(format!("{}: robot '{}': {error}", path.display(), description.name));
         let states = entry.states.unwrap_or(states);
         let mut problem = Problem::new(&description, &entry.family, origin, states, parsed.seed).map_err(|error| bad(&error))?;
+        if entry.reach.is_some() || entry.speed.is_some() {
+            let (reach, speed) = (entry.reach.unwrap_or(std::f64::consts::PI), entry.speed.unwrap_or(1.0));
+            let drawn = StateBatch::narrow(&problem.model, states, parsed.seed, reach, speed);
+            problem = problem.at(drawn);
+        }
+        problem.name = entry.name.clone().unwrap_or(problem.name);
         problem.studies.clone_from(&entry.studies);
         if problems.iter().any(|known| known.name == problem.name) {
             return Err(Fail::input(format!("{}: two robots are named '{}'", path.display(), problem.name)));

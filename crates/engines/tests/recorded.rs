@@ -63,8 +63,11 @@ fn write(folder: &Path, problem: &Problem, bytes: &[u8]) -> PathBuf {
     path
 }
 
-/// Everything of a recording, with values as bits.
-fn bits(recording: &Recording) -> Vec<(Identity, Vec<(Quantity, String, Result<Vec<u64>, Refusal>)>)> {
+/// An outcome with its values as bits.
+type Bits = (Quantity, String, Result<Vec<u64>, Refusal>);
+
+/// Everything of a recording.
+fn bits(recording: &Recording) -> Vec<(Identity, Vec<Bits>)> {
     let outcome = |outcome: &Outcome| match outcome {
         Outcome::Values(values) => Ok(values.iter().map(|x| x.to_bits()).collect()),
         Outcome::Refused(refusal) => Err(refusal.clone()),

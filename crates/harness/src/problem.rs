@@ -51,6 +51,14 @@ impl Problem {
         })
     }
 
+    /// The same robot at other states, with the states' own hash.
+    pub fn at(mut self, states: StateBatch) -> Self {
+        let bytes: Vec<u8> = [&states.q, &states.v, &states.tau].into_iter().flatten().flat_map(|x| x.to_le_bytes()).collect();
+        self.hash = crate::hash::of_parts(&[self.hash.as_bytes(), &bytes]);
+        self.states = states;
+        self
+    }
+
     /// The body whose Jacobian is asked for: the first of the deepest ones.
     pub fn deepest_body(&self) -> usize {
         let mut depth = Vec::with_capacity(self.description.bodies.len());

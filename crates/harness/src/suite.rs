@@ -20,6 +20,12 @@ pub struct Suite {
     /// The structure study.
     #[serde(default)]
     pub structure: bool,
+    /// Whether the digits study is made.
+    #[serde(default)]
+    pub digits: bool,
+    /// Whether the conditioning study is made.
+    #[serde(default)]
+    pub conditioning: bool,
     /// The timing study.
     pub timing: Option<TimingEntry>,
     /// Whether the suite is broad enough to show every known deviation of its robots, and a sharp bound for each method, joint and base; a
@@ -48,6 +54,12 @@ pub struct ProblemEntry {
     pub family: String,
     /// Agreement states, where they differ from the suite's.
     pub states: Option<usize>,
+    /// Where given, all states are random, with the angles of revolute joints in (−reach, reach).
+    pub reach: Option<f64>,
+    /// Where given, all states are random, with velocities this many times larger.
+    pub speed: Option<f64>,
+    /// The name in records, where the model's own would stand twice.
+    pub name: Option<String>,
     /// The studies that take it; all by default.
     pub studies: Option<Vec<String>>,
 }

@@ -171,11 +171,6 @@ proptest! {
                         (0..n * n).map(|entry| matrix.get(entry / n, entry % n)).collect()
                     }
                     Quantity::Readback => problem.readback(),
-                    // A slide turns nothing: the angular rows of its column are exactly zero.
-                    Quantity::BodyJacobian => {
-                        let zero = |k: usize| k < 3 * problem.states.nv && factors[k] != 1.0;
-                        (0..factors.len()).map(|k| if zero(k) { 0.0 } else { random.uniform(0.5, 1.5) }).collect()
-                    }
                     _ => factors.iter().map(|_| random.uniform(0.5, 1.5)).collect(),
                 };
                 let value: Vec<f64> = reference.iter().map(|x| x * (1.0 + error(&mut random))).collect();

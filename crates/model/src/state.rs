@@ -191,6 +191,19 @@ impl StateBatch {
         Self::draw(model, vec![Case::Random; count], seed)
     }
 
+    /// `count` random states with the angles of revolute joints uniform in (−reach, reach) and velocities `speed` times larger.
+    pub fn narrow(model: &Model<f64>, count: usize, seed: u64, reach: f64, speed: f64) -> Self {
+        let mut batch = Self::random(model, count, seed);
+        let revolute = model.topology.joints().iter().filter(|joint| joint.kind == JointKind::Revolute);
+        for joint in revolute {
+            for q in batch.q.iter_mut().skip(joint.q).step_by(batch.nq) {
+                *q *= reach / std::f64::consts::PI;
+            }
+        }
+        batch.v.iter_mut().for_each(|v| *v *= speed);
+        batch
+    }
+
     fn draw(model: &Model<f64>, cases: Vec<Case>, seed: u64) -> Self {
         let (nq, nv, bodies) = (model.topology.nq(), model.topology.nv(), model.described.len());
         let mut batch = Self { nq, nv, bodies, ..Self::default() };

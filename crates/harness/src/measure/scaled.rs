@@ -67,7 +67,7 @@ fn per_body<const N: usize>(problem: &Problem, reference: &[f64], value: &[f64],
     entries(reference, value, &magnitude)
 }
 
-/// Per dof at unit rate: a turn carries the body along by no more than its reach, a slide by one; a slide turns nothing.
+/// Per dof at unit rate: a turn carries the body along by no more than its reach, a slide by one.
 fn body_jacobian(problem: &Problem, at: &Magnitudes, reference: &[f64], value: &[f64]) -> f64 {
     let model = &problem.model;
     let reach = at.reach[model.described[problem.deepest_body()]];
@@ -77,7 +77,9 @@ fn body_jacobian(problem: &Problem, at: &Magnitudes, reference: &[f64], value: &
         JointKind::Spherical => vec![turn; 3],
         _ => vec![(subspace.ang.norm(), subspace.lin.norm())],
     });
-    let (angular, linear): (Vec<f64>, Vec<f64>) = dofs.map(|(turn, slide)| (turn, turn * reach + slide)).unzip();
+    // What is left of a turn in the column of a slide is measured against the turn that carries the reach as far as the slide goes.
+    let scales = dofs.map(|(turn, slide)| (if turn > 0.0 || reach == 0.0 { turn } else { slide / reach }, turn * reach + slide));
+    let (angular, linear): (Vec<f64>, Vec<f64>) = scales.unzip();
     entries(reference, value, &[angular.repeat(3), linear.repeat(3)].concat())
 }
 
