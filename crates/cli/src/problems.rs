@@ -6,8 +6,8 @@ use crate::root::Root;
 use ::record::ModelOrigin;
 use formats::urdf::{Base, Note, Options};
 use harness::{Problem, ProblemEntry, Suite};
-use model::{Description, StateBatch};
 use model::generate::Family;
+use model::{Description, StateBatch};
 use std::path::{Path, PathBuf};
 
 /// A suite with its file's hash and its robots.
