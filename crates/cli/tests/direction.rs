@@ -4,12 +4,11 @@ use cargo_metadata::{DependencyKind, MetadataCommand, Package};
 use std::collections::BTreeSet;
 
 /// What each crate may depend on among our own.
-const ALLOWED: [(&str, &[&str]); 11] = [
+const ALLOWED: [(&str, &[&str]); 10] = [
     ("spatial", &[]),
     ("model", &["spatial"]),
     ("formats", &["model", "spatial"]),
     ("dynamics", &["spatial", "model"]),
-    ("reference", &["model"]),
     ("record", &[]),
     ("report", &["record"]),
     ("harness", &["spatial", "model", "dynamics", "record"]),
