@@ -108,6 +108,9 @@ ROWS = "return document.querySelector('#rows').open ? document.querySelectorAll(
 DRAWN = "const box = document.getElementById(arguments[0]); return box.querySelectorAll('.scatterlayer .trace').length"
 CLOSED = "return !document.querySelector('#rows').open"
 BACKGROUND = "return getComputedStyle(document.body).backgroundColor"
+# Every section in its order; those that are not in ALWAYS appear with their rows alone.
+SECTIONS = ["verdict", "agreement", "digits", "depth", "time", "tradeoff", "conditioning", "pairs", "provenance", "method", "unpassed"]
+ALWAYS = set(SECTIONS) - {"digits", "tradeoff", "conditioning"}
 FOCUS = "const cell = document.activeElement.closest('td'); return cell ? [cell.parentElement.rowIndex, cell.cellIndex] : null"
 
 
@@ -123,12 +126,14 @@ def checks(page, address, shots):
 
     page.open(address)
     sections = page.run("return [...document.querySelectorAll('main > section')].map(section => section.id)")
-    yield "the page has its sections", sections == ["verdict", "agreement", "depth", "time", "pairs", "provenance", "method", "unpassed"], sections
+    yield "the page has its sections", sections == [name for name in SECTIONS if name in ALWAYS or name in sections], sections
+    led = page.run("return [...document.querySelectorAll('nav a')].map(link => link.hash.slice(1))")
+    yield "the navigation leads to all of them", led == sections, led
     width = page.run("return [document.documentElement.scrollWidth, innerWidth]")
     yield "the page is no wider than its window", width[0] <= width[1], width
     shot("top")
 
-    for box in ["depth-plot", "time-plot"]:
+    for box in ["digits-plot", "depth-plot", "time-plot", "tradeoff-plot", "conditioning-plot", "floor-plot"]:
         if has(f"#{box}"):
             traces = page.until(DRAWN, box)
             yield f"{box} has traces", traces > 0, traces
@@ -187,6 +192,9 @@ def checks(page, address, shots):
         yield "the filter hides models", shown == 0, shown
         page.run("const box = document.querySelector('#heat-filter'); box.value = ''; box.dispatchEvent(new Event('input'))")
 
+    if has("#digits-table td button"):
+        yield from digits(page, shot)
+
     if has("#depth-quantity"):
         title = "return document.querySelector('#depth-plot .ytitle').textContent"
         before = page.run(title)
@@ -224,7 +232,7 @@ def checks(page, address, shots):
         yield "the plots change with it", page.until(f"const now = (() => {{ {ink} }})(); return now !== arguments[0] && now", plot_before), plot_before
     shot("theme")
     if shots:
-        for place in ["agreement", "depth", "time", "pairs", "provenance", "method", "unpassed"]:
+        for place in sections:
             page.run("document.getElementById(arguments[0]).scrollIntoView({behavior: 'instant'})", place)
             shot(f"theme-{place}")
     page.open("about:blank")
@@ -245,6 +253,55 @@ def checks(page, address, shots):
             asked.add(message["params"]["request"]["url"])
     outside = [url for url in asked if url.startswith(("http:", "https:", "ws:", "wss:"))]
     yield "nothing is asked of the network", bool(asked) and not outside, outside[:3]
+
+
+def digits(page, shot):
+    """The checks of the digits section."""
+    shown = "[...document.querySelectorAll('#digits-table td button')].find(button => !button.closest('[hidden]'))"
+    yield "a cell of the digits says its quartiles", "quartiles" in page.run(f"""
+        const button = [...document.querySelectorAll('#digits-table td button[class^=d]')].find(button => !button.closest('[hidden]'));
+        button.focus();
+        return document.querySelector('#tip').textContent"""), ""
+    shot("digits-cell")
+    page.run(f"{shown}.id = 'clicked'")
+    page.click("#clicked")
+    rows = page.until(ROWS)
+    seen = page.run("""
+        const heads = [...document.querySelectorAll('#rows-table th')].map(head => head.textContent);
+        const table = [...document.querySelectorAll('#rows-table tbody tr')];
+        const values = name => [...new Set(table.map(row => row.cells[heads.indexOf(name)].textContent))];
+        return [values('engine'), values('method'), values('quantity'), document.querySelector('#rows-filters [name=study]').value]""")
+    yield "a click on a cell of the digits shows its method's rows alone", rows > 0 and [len(part) for part in seen[:3]] == [1, 1, 1] and seen[3] == "digits", seen
+    page.press(ESCAPE)
+
+    page.run(f"{shown}.focus()")
+    start = page.run(FOCUS)
+    page.press(ARROW_RIGHT)
+    page.press(ARROW_DOWN)
+    end = page.run(FOCUS)
+    yield "arrow keys walk the digits", start and end and end != start, [start, end]
+
+    for quantity in page.run("return [...document.querySelector('#digits-quantity').options].map(option => option.value)")[::-1]:
+        page.choose("#digits-quantity", quantity)
+        heads = page.run("return [...document.querySelectorAll('#digits-table th.engine')].filter(head => !head.hidden).length")
+        plotted = page.run("return !document.getElementById('digits-plot')") or page.until(DRAWN, "digits-plot") > 0
+        yield f"the digits of {quantity} can be chosen", heads == 1 and plotted, heads
+    if page.run("return document.querySelector('#digits-axis') !== null"):
+        title = "return document.querySelector('#digits-plot .xtitle').textContent"
+        titles = set()
+        axes = page.run("return [...document.querySelector('#digits-axis').options].map(option => option.value)")
+        for axis in axes[::-1]:
+            page.choose("#digits-axis", axis)
+            now = page.until(f"const now = (() => {{ {title} }})(); return !arguments[0].includes(now) && now", sorted(titles))
+            family = page.run("return document.querySelector('#digits-family').value")
+            yield f"the digits can be plotted against {axis}", bool(now) and page.until(DRAWN, "digits-plot") > 0 and family != "", [now, family]
+            titles.add(now)
+            page.run("document.getElementById('digits-plot').scrollIntoView({block: 'center', behavior: 'instant'})")
+            shot(f"digits-{axis}")
+    page.run("const box = document.querySelector('#digits-filter'); box.value = 'no model has this name'; box.dispatchEvent(new Event('input'))")
+    left = page.run("return [...document.querySelectorAll('#digits-table tr[data-m]')].filter(row => !row.hidden).length")
+    yield "the filter hides models of the digits", left == 0, left
+    page.run("const box = document.querySelector('#digits-filter'); box.value = ''; box.dispatchEvent(new Event('input'))")
 
 
 def main():

@@ -75,6 +75,7 @@ fn describe(quantity: Quantity) -> &'static str {
         Quantity::MassMatrixProbe => "M times four vectors, its diagonal and its last row",
         Quantity::MassMatrixSparse => "M in the tree-sparse layout",
         Quantity::ForwardDynamics => "forward dynamics a = M⁻¹(τ − h)",
+        Quantity::ForwardDynamicsSingle => "forward dynamics in single precision",
         Quantity::KineticEnergy => "kinetic energy",
         Quantity::PotentialEnergy => "potential energy",
         Quantity::CenterOfMass => "centre of mass",

@@ -13,7 +13,7 @@ use regex::Regex;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::time::{Instant, SystemTime};
-use studies::{Agreement, Structure, Timing};
+use studies::{Agreement, Conditioning, Digits, Structure, Timing};
 
 /// The file that holds what a resumed run must share with the first one.
 const FINGERPRINT_NAME: &str = "fingerprint.json";
@@ -67,6 +67,12 @@ fn studies(loaded: &Loaded, args: &RunArgs) -> Vec<Box<dyn Study>> {
     let mut studies: Vec<Box<dyn Study>> = Vec::new();
     if loaded.suite.agreement.is_some() {
         studies.push(Box::new(Agreement));
+    }
+    if loaded.suite.digits {
+        studies.push(Box::new(Digits));
+    }
+    if loaded.suite.conditioning {
+        studies.push(Box::new(Conditioning));
     }
     if loaded.suite.structure {
         studies.push(Box::new(Structure));

@@ -5,8 +5,9 @@
 mod common;
 
 use common::{ROBOTS, build, wrenches};
-use featherbench_dynamics::{Aba, Bias, CenterOfMass, Crba, Energy, Jacobian, Kinematics, Ltdl, Momentum, Rnea, TreeSparse};
+use featherbench_dynamics::{Aba, Bias, CenterOfMass, Crba, Energy, Jacobian, Kinematics, Ltdl, Momentum, Refined, Rnea, TreeSparse};
 use model::StateBatch;
+use spatial::{Compensated, DoubleDouble};
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::Cell;
 
@@ -55,6 +56,7 @@ fn no_algorithm_allocates_in_a_call() {
         let (mut rnea, mut bias, mut aba, mut crba) = (Rnea::new(t), Bias::new(t), Aba::new(t), Crba::new(t));
         let (mut kinematics, mut energy, mut momentum) = (Kinematics::new(t), Energy::new(t), Momentum::new(t));
         let (mut center, mut jacobian) = (CenterOfMass::new(t), Jacobian::new(t));
+        let (mut refined, mut extended) = (Refined::<Compensated>::new(t, 2), Refined::<DoubleDouble>::new(t, 1));
         let (mut matrix, mut ltdl) = (TreeSparse::new(t), Ltdl::new(t));
 
         let before = ALLOCATIONS.get();
@@ -63,6 +65,10 @@ fn no_algorithm_allocates_in_a_call() {
             rnea.run(&model, q, v, a, Some(&f), &mut out).unwrap();
             bias.run(&model, q, v, Some(&f), &mut out).unwrap();
             aba.run(&model, q, v, tau, Some(&f), &mut out).unwrap();
+            aba.respond(&model, tau, &mut out).unwrap();
+            refined.run(&model, q, v, tau, Some(&f), &mut out).unwrap();
+            extended.run(&model, q, v, tau, None, &mut out).unwrap();
+            assert!(refined.accelerations().len() + refined.correction().len() == 2 * t.nv());
             crba.run(&model, q, &mut matrix).unwrap();
             ltdl.run(&matrix).unwrap();
             ltdl.solve(&mut out).unwrap();

@@ -3,10 +3,10 @@
 //! A kernel owns its workspace and writes one state's answer into a slice. Studies, the timing of runs and `cargo bench` all go through this
 //! list, so what is timed is what is checked.
 
-use dynamics::{Aba, Bias, CenterOfMass, Crba, Energy, Error, Jacobian, Kinematics, Ltdl, Momentum, Rnea, TreeSparse};
+use dynamics::{Aba, Bias, CenterOfMass, Crba, Energy, Error, Jacobian, Kinematics, Ltdl, Momentum, Refined, Rnea, TreeSparse};
 use harness::{DENSE_LIMIT, Problem, Quantity, Refusal};
 use model::{Model, StateBatch};
-use spatial::Force;
+use spatial::{DoubleDouble, Force};
 
 /// Writes the answer for state `k` into `out`.
 pub(crate) type Kernel<'a> = Box<dyn FnMut(usize, &mut [f64]) -> Result<(), Error> + Send + 'a>;
@@ -16,7 +16,8 @@ pub(crate) fn methods(quantity: Quantity) -> &'static [&'static str] {
     match quantity {
         Quantity::InverseDynamics | Quantity::InverseDynamicsWrench | Quantity::Bias => &["rnea"],
         Quantity::MassMatrix | Quantity::MassMatrixProbe | Quantity::MassMatrixSparse => &["crba"],
-        Quantity::ForwardDynamics => &["aba", "ltdl"],
+        Quantity::ForwardDynamics => &["aba", "ltdl", "refined_1", "refined_2"],
+        Quantity::ForwardDynamicsSingle => &["aba", "ltdl"],
         Quantity::KineticEnergy | Quantity::PotentialEnergy | Quantity::CenterOfMass | Quantity::Momentum => &["kinematics"],
         Quantity::BodyPlacement | Quantity::BodyVelocity | Quantity::BodyAcceleration | Quantity::BodyJacobian => &["kinematics"],
         Quantity::Readback => &["build"],
@@ -40,7 +41,10 @@ pub(crate) fn kernel<'a>(problem: &'a Problem, quantity: Quantity, method: &str,
         Quantity::MassMatrixProbe => mass_matrix_probe(model, states, problem.probe()),
         Quantity::MassMatrixSparse => mass_matrix_sparse(model, states),
         Quantity::ForwardDynamics if method == "ltdl" => forward_dynamics_by_factorization(model, states),
+        Quantity::ForwardDynamics if method == "refined_1" => refined_forward_dynamics(problem, states, 1)?,
+        Quantity::ForwardDynamics if method == "refined_2" => refined_forward_dynamics(problem, states, 2)?,
         Quantity::ForwardDynamics => forward_dynamics(model, states),
+        Quantity::ForwardDynamicsSingle => forward_dynamics_single(model, states, method == "ltdl"),
         Quantity::Factorization => factorization(model, states)?,
         Quantity::Solve => solve(model, states)?,
         Quantity::KineticEnergy | Quantity::PotentialEnergy => energy(model, states, quantity),
@@ -63,6 +67,8 @@ pub fn timed(problem: &Problem) -> Vec<(Quantity, &'static str)> {
         (Quantity::Solve, "ltdl"),
         (Quantity::ForwardDynamics, "aba"),
         (Quantity::ForwardDynamics, "ltdl"),
+        (Quantity::ForwardDynamics, "refined_1"),
+        (Quantity::ForwardDynamics, "refined_2"),
         (Quantity::KineticEnergy, "kinematics"),
         (Quantity::Momentum, "kinematics"),
         (Quantity::BodyAcceleration, "kinematics"),
@@ -152,6 +158,35 @@ fn forward_dynamics_by_factorization<'a>(model: &'a Model<f64>, states: &'a Stat
         }
         Ok(ltdl.solve(a)?)
     })
+}
+
+/// In single precision throughout, states and parameters rounded to it.
+fn forward_dynamics_single<'a>(model: &'a Model<f64>, states: &'a StateBatch, factorizing: bool) -> Kernel<'a> {
+    let model: Model<f32> = model.lift();
+    let topology = model.topology.clone();
+    let (mut aba, mut crba, mut bias, mut ltdl) = (Aba::new(&topology), Crba::new(&topology), Bias::new(&topology), Ltdl::new(&topology));
+    let mut a = vec![0.0_f32; topology.nv()];
+    Box::new(move |k, out| {
+        let [q, v, tau] = [states.q(k), states.v(k), states.tau(k)].map(|values| values.iter().map(|&x| x as f32).collect::<Vec<_>>());
+        if factorizing {
+            crba.run(&model, &q, ltdl.matrix_mut())?;
+            ltdl.factor()?;
+            bias.run(&model, &q, &v, None, &mut a)?;
+            a.iter_mut().zip(&tau).for_each(|(a, tau)| *a = tau - *a);
+            ltdl.solve(&mut a)?;
+        } else {
+            aba.run(&model, &q, &v, &tau, None, &mut a)?;
+        }
+        out.iter_mut().zip(&a).for_each(|(out, a)| *out = f64::from(*a));
+        Ok(())
+    })
+}
+
+/// Refined with the residual in double-double, of the robot as its description says it.
+fn refined_forward_dynamics<'a>(problem: &'a Problem, states: &'a StateBatch, steps: usize) -> Result<Kernel<'a>, Refusal> {
+    let model: Model<DoubleDouble> = Model::build(&problem.description).map_err(|error| Refusal::Failed(error.to_string()))?;
+    let mut refined = Refined::<DoubleDouble>::new(&model.topology, steps);
+    Ok(Box::new(move |k, a| refined.run(&model, states.q(k), states.v(k), states.tau(k), None, a)))
 }
 
 /// Mass matrices of a batch, made beforehand: factorizing and solving do not include making them.

@@ -41,6 +41,12 @@ pub struct Gate {
     pub quantities: Vec<String>,
     /// The error measure.
     pub metric: String,
+    /// The engines, or all of them.
+    pub engines: Option<Vec<String>>,
+    /// The methods, or all of them.
+    pub methods: Option<Vec<String>>,
+    /// The models, or all of them: names, a trailing `*` standing for any rest.
+    pub models: Option<Vec<String>>,
     /// Only robots up to this depth are gated; deeper ones are measured.
     pub max_depth: Option<usize>,
     /// The threshold.
@@ -126,12 +132,7 @@ impl Gates {
     /// `amplification` turns a backward error into a forward one at the row's state (1 where that has no meaning).
     pub fn judge(&self, row: Record, value: f64, amplification: f64) -> Record {
         let depth = row.depth.unwrap_or(0);
-        let gate = self.gates.iter().find(|gate| {
-            gate.study == row.study
-                && gate.metric == row.metric
-                && gate.quantities.contains(&row.quantity)
-                && gate.max_depth.is_none_or(|limit| depth <= limit as u64)
-        });
+        let gate = self.gates.iter().find(|gate| gate.matches(&row));
         let row = match gate {
             None => row.informed(value),
             Some(gate) => {
@@ -230,6 +231,24 @@ impl Sharpness {
     }
 }
 
+impl Gate {
+    fn matches(&self, row: &Record) -> bool {
+        let among = |names: &Option<Vec<String>>, name: &String| names.as_ref().is_none_or(|names| names.contains(name));
+        self.study == row.study
+            && self.metric == row.metric
+            && self.quantities.contains(&row.quantity)
+            && among(&self.engines, &row.engine)
+            && among(&self.methods, &row.method)
+            && self.models.as_ref().is_none_or(|models| named(models, &row.model))
+            && self.max_depth.is_none_or(|limit| row.depth.unwrap_or(0) <= limit as u64)
+    }
+}
+
+/// Whether a list of names, a trailing `*` standing for any rest, holds a name.
+fn named(names: &[String], name: &str) -> bool {
+    names.iter().any(|known| known.strip_suffix('*').map_or(known == name, |stem| name.starts_with(stem)))
+}
+
 impl Deviation {
     fn explains(&self, row: &Record) -> bool {
         self.verdict == row.verdict.as_str() && self.covers(row)
@@ -248,7 +267,7 @@ impl Deviation {
     }
 
     fn names(&self, model: &str) -> bool {
-        self.models.iter().any(|name| name.strip_suffix('*').map_or(name == model, |stem| model.starts_with(stem)))
+        named(&self.models, model)
     }
 }
 

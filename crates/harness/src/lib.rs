@@ -17,6 +17,7 @@ mod store;
 mod study;
 mod subject;
 mod suite;
+pub mod truth;
 
 pub use cell::{Cell, Outcome};
 pub use error::HarnessError;

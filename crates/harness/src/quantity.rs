@@ -17,6 +17,8 @@ pub enum Quantity {
     MassMatrixProbe,
     /// Forward dynamics a = M⁻¹(τ − h).
     ForwardDynamics,
+    /// The same in single precision.
+    ForwardDynamicsSingle,
     /// Kinetic energy ½ vᵀMv.
     KineticEnergy,
     /// Potential energy −Σ m g·c.
@@ -50,13 +52,14 @@ pub const DENSE_LIMIT: usize = 64;
 
 impl Quantity {
     /// All of them.
-    pub const ALL: [Self; 19] = [
+    pub const ALL: [Self; 20] = [
         Self::InverseDynamics,
         Self::InverseDynamicsWrench,
         Self::Bias,
         Self::MassMatrix,
         Self::MassMatrixProbe,
         Self::ForwardDynamics,
+        Self::ForwardDynamicsSingle,
         Self::KineticEnergy,
         Self::PotentialEnergy,
         Self::CenterOfMass,
@@ -81,6 +84,7 @@ impl Quantity {
             Self::MassMatrix => "mass_matrix",
             Self::MassMatrixProbe => "mass_matrix_probe",
             Self::ForwardDynamics => "fd",
+            Self::ForwardDynamicsSingle => "fd_f32",
             Self::KineticEnergy => "kinetic_energy",
             Self::PotentialEnergy => "potential_energy",
             Self::CenterOfMass => "com",
@@ -106,7 +110,12 @@ impl Quantity {
     pub fn size(self, problem: &Problem) -> usize {
         let (nv, bodies) = (problem.model.topology.nv(), problem.description.bodies.len());
         match self {
-            Self::InverseDynamics | Self::InverseDynamicsWrench | Self::Bias | Self::ForwardDynamics | Self::Solve => nv,
+            Self::InverseDynamics
+            | Self::InverseDynamicsWrench
+            | Self::Bias
+            | Self::ForwardDynamics
+            | Self::ForwardDynamicsSingle
+            | Self::Solve => nv,
             Self::MassMatrix => nv * nv,
             Self::MassMatrixProbe | Self::BodyJacobian => 6 * nv,
             Self::KineticEnergy | Self::PotentialEnergy | Self::StoredEntries => 1,

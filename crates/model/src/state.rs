@@ -191,16 +191,25 @@ impl StateBatch {
         Self::draw(model, vec![Case::Random; count], seed)
     }
 
-    /// `count` random states with the angles of revolute joints uniform in (−reach, reach) and velocities `speed` times larger.
+    /// `count` random states with the angles of revolute joints uniform in (−reach, reach) and velocities `speed` times larger, every number
+    /// but the quaternions rounded to the nearest `f32`, so that single precision can be asked the same question.
     pub fn narrow(model: &Model<f64>, count: usize, seed: u64, reach: f64, speed: f64) -> Self {
         let mut batch = Self::random(model, count, seed);
-        let revolute = model.topology.joints().iter().filter(|joint| joint.kind == JointKind::Revolute);
-        for joint in revolute {
-            for q in batch.q.iter_mut().skip(joint.q).step_by(batch.nq) {
-                *q *= reach / std::f64::consts::PI;
+        let single = |x: &mut f64, factor: f64| *x = f64::from((*x * factor) as f32);
+        for joint in model.topology.joints() {
+            // Coordinates before a quaternion, if there is one; a rounded quaternion would have no unit length.
+            let (numbers, factor) = match joint.kind {
+                JointKind::Revolute => (1, reach / std::f64::consts::PI),
+                JointKind::Prismatic | JointKind::Helical => (1, 1.0),
+                JointKind::Spherical => (0, 1.0),
+                JointKind::Free => (3, 1.0),
+            };
+            for q in batch.q.chunks_exact_mut(batch.nq) {
+                q[joint.q..joint.q + numbers].iter_mut().for_each(|x| single(x, factor));
             }
         }
-        batch.v.iter_mut().for_each(|v| *v *= speed);
+        batch.v.iter_mut().for_each(|x| single(x, speed));
+        batch.a.iter_mut().chain(&mut batch.tau).for_each(|x| single(x, 1.0));
         batch
     }
 

@@ -55,10 +55,13 @@ const featherbench = (() => {
   const variable = (name) => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
   const byId = (id) => document.getElementById(id);
 
+  // A robot in a line.
+  const describe = (model) => `${model.family}, ${model.nv ?? "?"} degrees of freedom, ${model.bodies ?? "?"} bodies, depth ${model.depth ?? "?"}`;
+
   // Runs a task when the page and its data are complete; each on its own, so that one that fails leaves the others.
   const ready = (task) => document.addEventListener("DOMContentLoaded", task);
 
-  return { chunk, load, make, short, decades, glyphs, variable, byId, ready, chunks };
+  return { chunk, load, make, short, decades, glyphs, variable, byId, describe, ready, chunks };
 })();
 
 // Light and dark: the system's choice until the reader makes one, which is kept where the browser allows it. Paper is light.

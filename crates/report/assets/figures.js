@@ -1,56 +1,12 @@
-// The plots. They are drawn anew when a choice or the theme changes; a click on a mark opens its rows.
+// Error against depth, and time against size.
 featherbench.ready(() => {
-  const { byId, chunks, short, variable, make } = featherbench;
+  const { byId, chunks, short, variable } = featherbench;
+  const { ZERO, bars, choices, colour, dash, draw, fitted, joined, layout, live, plain, symbol } = featherbench.plots;
   const overview = chunks.get("overview");
   const figures = chunks.get("figures");
   if (!overview || !figures) return;
 
-  const SYMBOLS = ["circle", "square", "diamond", "triangle-up", "cross", "star", "pentagon", "hexagram"];
-  const DASHES = ["solid", "dash", "dot", "dashdot", "longdash", "longdashdot"];
-  const COLOURS = 8;
   const HALF_ULP = 2 ** -53;
-  const ZERO = 1e-18;
-  const colour = (index) => variable(`--series-${index % COLOURS}`);
-  // The plotting script reads a little markup in its texts: names are data and must stay text.
-  const plain = (text) => String(text).replace(/&/g, "&amp;").replace(/</g, "&lt;").replace(/>/g, "&gt;");
-  const joined = (...parts) => plain(parts.filter(Boolean).join(" · "));
-
-  function layout(x, y) {
-    const axis = (title) => ({
-      title: { text: title, standoff: 12 }, type: "log", exponentformat: "power", gridcolor: variable("--line"), zeroline: false,
-      linecolor: variable("--soft"), ticks: "outside", tickcolor: variable("--soft"), minor: { ticks: "outside", ticklen: 2, tickcolor: variable("--line") },
-    });
-    return {
-      paper_bgcolor: "rgba(0,0,0,0)", plot_bgcolor: "rgba(0,0,0,0)",
-      font: { family: variable("--sans"), size: 13, color: variable("--ink") },
-      margin: { l: 76, r: 16, t: 34, b: 56 },
-      modebar: { bgcolor: "rgba(0,0,0,0)", color: variable("--soft"), activecolor: variable("--accent") },
-      hovermode: "closest", hoverlabel: { bgcolor: variable("--panel"), bordercolor: variable("--line"), font: { color: variable("--ink") }, align: "left" },
-      legend: innerWidth < 760 ? { orientation: "h", y: -0.22 } : { x: 1.01, y: 1 },
-      xaxis: { ...axis(x), dtick: undefined }, yaxis: axis(y),
-    };
-  }
-
-  function draw(id, traces, shape) {
-    const element = byId(id);
-    if (typeof Plotly === "undefined") {
-      element.replaceChildren(make("p", { className: "empty" }, "plotly.min.js is missing: the plot cannot be drawn."));
-      return;
-    }
-    const config = { responsive: true, displaylogo: false, modeBarButtonsToRemove: ["select2d", "lasso2d", "autoScale2d"] };
-    Plotly.react(element, traces, shape, config);
-    if (!element.dataset.live) {
-      element.dataset.live = "yes";
-      element.on("plotly_click", (event) => {
-        const target = event.points[0]?.customdata;
-        if (target) featherbench.open(`model-${target.model}`, target.filters, overview.models[target.model].name);
-      });
-    }
-  }
-
-  function choices(select, values) {
-    for (const value of values) if (value !== "") select.append(make("option", { value }, value));
-  }
 
   // --- Error against depth.
 
@@ -80,14 +36,14 @@ featherbench.ready(() => {
       const envelope = new Map(points.map((point) => [point.depth, Math.max(point.value, ZERO)]));
       traces.push({
         x: [...envelope.keys()], y: [...envelope.values()], mode: "lines", hoverinfo: "skip", showlegend: false, legendgroup: name,
-        line: { color: colour(trace.engine), width: 1.2, dash: DASHES[index % DASHES.length] }, opacity: 0.55,
+        line: { color: colour(trace.engine), width: 1.2, dash: dash(index) }, opacity: 0.55,
       });
       traces.push({
         name, legendgroup: name, mode: "markers", type: "scatter",
         x: points.map((point) => point.depth), y: points.map((point) => Math.max(point.value, ZERO)),
         marker: {
           color: colour(trace.engine), size: 8, opacity: 0.85, line: { width: 1, color: colour(trace.engine) },
-          symbol: points.map((point) => SYMBOLS[index % SYMBOLS.length] + (point.value === 0 ? "-open" : "")),
+          symbol: points.map((point) => symbol(index) + (point.value === 0 ? "-open" : "")),
         },
         text: points.map((point) => `<b>${plain(overview.models[point.model].name)}</b> depth ${point.depth}<br>${short(point.value)}`
           + (point.bound === null ? "" : `, gate ${short(point.bound)}`) + `<br>${plain(point.kind)}`),
@@ -125,43 +81,27 @@ featherbench.ready(() => {
       const name = joined(engines.size > 1 ? overview.engines[line.engine] : "", line.algorithm, line.method === line.algorithm ? "" : line.method,
         families.length > 1 ? line.family : "", line.scalar === "f64" ? "" : line.scalar);
       const fit = joint ? line.per_joint : line.per_call;
-      const spread = line.points.some((point) => point.p10 !== null && point.p90 !== null);
-      const bar = (end) => line.points.map((point) => Math.max(0, end(point)));
       traces.push({
         name: fit ? `${name}  <i>p = ${fit.slope.toFixed(2)}</i>` : name, legendgroup: name, mode: "markers+lines",
         x: line.points.map((point) => point.size), y: line.points.map((point) => per(point, point.ns)),
-        line: { color: ink, width: 1, dash: DASHES[style % DASHES.length] }, marker: { color: ink, size: 7, symbol: SYMBOLS[style % SYMBOLS.length] },
-        error_y: spread ? {
-          type: "data", symmetric: false, thickness: 1, width: 2, color: ink,
-          array: bar((point) => (point.p90 === null ? 0 : per(point, point.p90 - point.ns))),
-          arrayminus: bar((point) => (point.p10 === null ? 0 : per(point, point.ns - point.p10))),
-        } : undefined,
+        line: { color: ink, width: 1, dash: dash(style) }, marker: { color: ink, size: 7, symbol: symbol(style) },
+        error_y: bars(line.points, ...["p10", "ns", "p90"].map((key) => (point) => (point[key] === null ? null : per(point, point[key]))), ink),
         text: line.points.map((point) => `<b>${plain(overview.models[point.model].name)}</b> nv ${point.size}<br>${short(point.ns)} ns per call<br>${short(point.ns / point.joints)} ns per joint`),
         hovertemplate: `%{text}<extra>${name}</extra>`,
         customdata: line.points.map((point) => ({ model: point.model, filters: { study: "timing", engine: overview.engines[line.engine], quantity: line.algorithm, case: line.case } })),
       });
       if (fit && byId("time-fit").checked) {
-        const ends = [line.points[0].size, line.points[line.points.length - 1].size];
-        traces.push({ x: ends, y: ends.map((size) => 10 ** (fit.intercept + fit.slope * Math.log10(size))), mode: "lines", hoverinfo: "skip",
-          showlegend: false, legendgroup: name, line: { color: ink, width: 5 }, opacity: 0.18 });
+        traces.push(fitted(fit, [line.points[0].size, line.points[line.points.length - 1].size], ink, name));
       }
     }
     draw("time-plot", traces, layout("degrees of freedom nv", joint ? "ns per joint" : "ns per call"));
   }
 
-  const plots = [];
   if (byId("depth-plot")) {
     const used = figures.errors.flatMap((plot) => plot.traces.flatMap((trace) => trace.points));
     choices(byId("depth-family"), new Set(used.map(([model]) => overview.models[model].family)));
     choices(byId("depth-case"), new Set(used.map(([, kind]) => kind)));
-    plots.push(drawDepth);
-    for (const id of ["depth-quantity", "depth-family", "depth-case"]) byId(id).addEventListener("change", drawDepth);
+    live(drawDepth, "depth-quantity", "depth-family", "depth-case");
   }
-  if (byId("time-plot")) {
-    plots.push(drawTime);
-    for (const id of ["time-unit", "time-case", "time-family", "time-fit"]) byId(id).addEventListener("change", drawTime);
-  }
-  const drawAll = () => plots.forEach((plot) => plot());
-  document.addEventListener("themechange", drawAll);
-  drawAll();
+  if (byId("time-plot")) live(drawTime, "time-unit", "time-case", "time-family", "time-fit");
 });

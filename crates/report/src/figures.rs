@@ -1,13 +1,16 @@
-//! The data of the plots: errors against depth, times against size.
+//! The data of the plots: errors against depth, times against size, and what the other sections plot.
 
 use std::collections::BTreeMap;
 
 use record::{Record, Relation};
 use serde::Serialize;
 
+use crate::conditioning::{self, Family};
+use crate::digits::Digits;
 use crate::fit::{Fit, power_law};
 use crate::labels;
 use crate::overview::{AGREEMENT, Overview, PAIRWISE, TIMING};
+use crate::tradeoff::{Tradeoff, tradeoffs};
 
 /// The metrics that measure an error even where nothing gates it.
 pub const ERROR_METRICS: [&str; 3] = ["scaled", "forward", "backward"];
@@ -19,6 +22,12 @@ pub struct Figures<'a> {
     pub errors: Vec<ErrorPlot<'a>>,
     /// One line per algorithm, family and case.
     pub times: Vec<TimeLine<'a>>,
+    /// Errors against the truth.
+    pub digits: Digits<'a>,
+    /// Methods with both a time and a true error.
+    pub tradeoffs: Vec<Tradeoff<'a>>,
+    /// Condition numbers.
+    pub conditions: Vec<Family<'a>>,
 }
 
 /// Errors of one quantity under one measure.
@@ -90,7 +99,14 @@ pub struct TimePoint {
 impl<'a> Figures<'a> {
     /// Collects the plots' data.
     pub fn of(overview: &Overview<'a>, records: &'a [Record]) -> Self {
-        Self { errors: errors(overview, records), times: times(overview, records) }
+        let (times, digits) = (times(overview, records), Digits::of(overview, records));
+        Self {
+            errors: errors(overview, records),
+            tradeoffs: tradeoffs(&digits, &times),
+            conditions: conditioning::families(overview, records),
+            times,
+            digits,
+        }
     }
 }
 

@@ -7,7 +7,7 @@ use record::{Record, RunInfo, Verdict};
 use crate::figures::is_error_measure;
 use crate::labels;
 use crate::numbers::{count, listed, short};
-use crate::overview::{Overview, severity};
+use crate::overview::{DIGITS, Overview, severity};
 use crate::tally::Tally;
 
 /// The state of a run in one word.
@@ -232,7 +232,9 @@ fn agreements<'a>(overview: &Overview<'a>, records: &'a [Record]) -> Vec<Agreeme
 
 fn disagreements(records: &[Record]) -> Vec<Disagreement<'_>> {
     let mut found: BTreeMap<(&str, &str, &str), Disagreement> = BTreeMap::new();
-    for row in records.iter().filter(|row| !matches!(row.verdict, Verdict::Info | Verdict::Skip)) {
+    // What the truth says is told apart from what engines say of each other.
+    let told_here = |row: &&Record| row.study != DIGITS && !matches!(row.verdict, Verdict::Info | Verdict::Skip);
+    for row in records.iter().filter(told_here) {
         let group = found.entry((&row.engine, &row.reference, &row.quantity)).or_insert_with(|| Disagreement {
             engine: &row.engine,
             reference: &row.reference,

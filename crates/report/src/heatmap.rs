@@ -12,7 +12,7 @@ use crate::overview::{Cell, Overview};
 pub fn section(overview: &Overview, findings: &Findings) -> Markup {
     html! {
         section #agreement {
-            h2 { "Who is right, and by how much" }
+            h2 { "Who agrees, and by how much" }
             p.lead {
                 "Each cell is the worst row of one model, quantity and engine: the decades left between its error and its gate. "
                 "Click one, or walk with the arrow keys and press Enter, to see its rows."
@@ -44,7 +44,7 @@ fn shown_engines<'a>(overview: &'a Overview) -> impl Iterator<Item = (usize, &'a
 
 fn grid(overview: &Overview) -> Markup {
     html! {
-        table #heat role="grid" aria-label="Margin to the gate by model, engine and quantity" {
+        table #heat.grid role="grid" aria-label="Margin to the gate by model, engine and quantity" {
             thead {
                 tr {
                     th.corner rowspan="2" scope="col" { "model" }

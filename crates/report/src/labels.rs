@@ -16,33 +16,68 @@ const fn label(name: &'static str, title: &'static str, measure: &'static str) -
     Label { name, title, measure }
 }
 
-const FRAME: &str = "largest difference of a component, over the size of the quantity";
-
-/// Quantities in the order of the page. Others follow in alphabetical order under their own names.
-pub const QUANTITIES: [Label; 15] = [
+/// Quantities in the order of the page. Others follow in alphabetical order under their own names. A quantity without a measure is only
+/// counted or timed.
+pub const QUANTITIES: [Label; 19] = [
     label("mass_matrix", "mass matrix M", "max |ΔMᵢⱼ| / √(Mᵢᵢ·Mⱼⱼ): an entry is measured against the inertias of its own two axes"),
-    label("mass_matrix_probe", "M · probe", "the mass matrix seen through products with probe vectors, where forming M would be too large"),
+    label(
+        "mass_matrix_probe",
+        "M · probe",
+        "asked instead of M where it is large: its products with four vectors x, each entry over Σⱼ √(Mᵢᵢ·Mⱼⱼ)|xⱼ|, and its diagonal and last row as entries of M",
+    ),
     label("bias", "bias force h", "per degree of freedom, |Δhᵢ| over the sum of the magnitudes of the terms added to form hᵢ"),
     label("id", "inverse dynamics", "per degree of freedom, |Δτᵢ| over the sum of the magnitudes of the terms added to form τᵢ"),
-    label("id_wrench", "ID, ext. wrench", "as inverse dynamics, with external wrenches on bodies"),
+    label("id_wrench", "ID, ext. wrench", "as inverse dynamics, with external wrenches on the bodies among the terms"),
     label(
         "fd",
         "forward dynamics",
-        "forward: ‖Δq̈‖ in the norm of M, over ‖q̈‖; backward: the residual |τ − ID(q, q̇, q̈)|ᵢ over (|M||q̈| + |h| + |τ|)ᵢ",
+        "forward: ‖Δq̈‖_M / ‖q̈‖_M with ‖x‖_M = √(xᵀMx); backward: maxᵢ |τ − ID(q, q̇, q̈)|ᵢ / wᵢ with wᵢ = Σⱼ √(Mᵢᵢ·Mⱼⱼ)|q̈ⱼ| + ĥᵢ + |τᵢ|, our inverse dynamics evaluating, where ĥᵢ is the sum of the magnitudes of the terms of hᵢ and j runs over the dofs that share a path with i",
     ),
-    label("kinetic_energy", "kinetic energy", "|ΔT| over the sum of the bodies' energies"),
-    label("potential_energy", "potential energy", "|ΔV| over the sum of the magnitudes of the bodies' potentials"),
-    label("com", "centre of mass", FRAME),
-    label("momentum", "momentum", FRAME),
-    label("body_placement", "body placements", FRAME),
-    label("body_velocity", "body velocities", FRAME),
-    label("body_acceleration", "body accelerations", FRAME),
-    label("body_jacobian", "body Jacobians", FRAME),
+    label("kinetic_energy", "kinetic energy", "|ΔT| / T: every body's term is positive"),
+    label(
+        "potential_energy",
+        "potential energy",
+        "|ΔV| over mass · gravity · the mass-weighted mean length of the paths to the bodies' centres of mass",
+    ),
+    label(
+        "com",
+        "centre of mass",
+        "each coordinate's difference over the mass-weighted mean length of the paths to the bodies' centres of mass",
+    ),
+    label(
+        "momentum",
+        "momentum",
+        "linear part over Σ(m|v| + |mc||ω|), angular part over Σ(tr Ī|ω| + |mc||v| + path · linear share), with the magnitudes of v and ω added up along the path",
+    ),
+    label(
+        "body_placement",
+        "body placements",
+        "entries of the rotation over one, of the position over the length of the path from the world's origin",
+    ),
+    label(
+        "body_velocity",
+        "body velocities",
+        "angular part over the sum of the joints' angular velocities along the path, linear part over that of the linear ones plus angular · the body's size",
+    ),
+    label(
+        "body_acceleration",
+        "body accelerations",
+        "as body velocities, with the terms of accelerations; gravity and the swing of the body about its origin are among the linear ones",
+    ),
+    label(
+        "body_jacobian",
+        "body Jacobian",
+        "of the deepest body, column by column: a turn at unit rate carries the body along by no more than the length of its path, a slide by one",
+    ),
     label(
         "readback",
         "model read back",
-        "inertias that the engine itself reports after loading, against the description: separates model error from algorithm error",
+        "what the engine itself holds after loading, against the description: masses and lengths over themselves, rotations over one, inertias over their trace about the body's origin. It separates an error of the model from one of the algorithm",
     ),
+    label("mass_matrix_sparse", "M, tree-sparse", ""),
+    label("factorization", "factorization", ""),
+    label("solve", "solve", ""),
+    label("stored_entries", "stored entries", ""),
 ];
 
 /// What a quantity is called; a row without one is about the whole model.

@@ -7,7 +7,11 @@
 //! Stages: records are grouped ([`overview`], [`figures`]), turned into HTML (one module per section) and into chunks ([`chunks`]), and
 //! everything is written with `index.html` last.
 
+mod axes;
 mod chunks;
+mod conditioning;
+mod digits;
+mod digits_section;
 mod figures;
 mod findings;
 mod fit;
@@ -21,6 +25,8 @@ mod pairwise;
 mod plots;
 mod provenance;
 mod tally;
+mod tradeoff;
+mod truth;
 mod unpassed;
 mod verdict;
 
@@ -38,8 +44,12 @@ const STYLE: &str = include_str!("../assets/style.css");
 const SCRIPT: &str = concat!(
     include_str!("../assets/core.js"),
     include_str!("../assets/rows.js"),
+    include_str!("../assets/grid.js"),
     include_str!("../assets/heatmap.js"),
+    include_str!("../assets/plots.js"),
     include_str!("../assets/figures.js"),
+    include_str!("../assets/digits.js"),
+    include_str!("../assets/tradeoff.js"),
 );
 
 /// Where a report was written.

@@ -9,6 +9,7 @@ use crate::overview::Overview;
 
 /// Writes the section.
 pub fn section(run: &RunInfo, overview: &Overview, figures: &Figures) -> Markup {
+    let quantities = [overview.quantities.as_slice(), &figures.digits.quantities()].concat();
     html! {
         section #method {
             h2 { "How it was measured" }
@@ -23,14 +24,15 @@ pub fn section(run: &RunInfo, overview: &Overview, figures: &Figures) -> Markup 
                 div {
                     h3 { "Error, in quantities that mean something" }
                     dl.measures {
-                        @for (titles, measure) in measures(overview) {
+                        @for (titles, measure) in measures(&quantities) {
                             dt { (titles.join(", ")) }
                             dd { (measure) }
                         }
                     }
                     p.note {
-                        "Every error is divided by a size that belongs to it, entry by entry. Norms over mixed units, and Frobenius or 2-norms, "
-                        "which hide a wrong entry behind large right ones, judge nothing here."
+                        "Every error is divided by a size that belongs to it, entry by entry; sums of magnitudes replace every vector of a recursion by its length and every sum by the sum of lengths. "
+                        "Zero over zero is zero, anything else over zero infinite. Norms over mixed units, which hide a wrong entry behind large right ones, judge nothing between engines."
+                        @if !figures.digits.subjects.is_empty() { " Digits of forward dynamics are in the 2-norm for the comparison with published tables." }
                     }
                 }
                 div {
@@ -41,12 +43,20 @@ pub fn section(run: &RunInfo, overview: &Overview, figures: &Figures) -> Markup 
                         dt { "Margin" }
                         dd { "log₁₀(bound/|value|), or log₁₀(value/bound) where the bound is a least value; positive inside; an error of exactly zero counts as 16 decades." }
                         dt { "States" }
-                        dd { "random: drawn from the seed; zero and straight: the configurations in which terms vanish; fast: velocities a thousand times larger; limit: at the joints' limits." }
+                        dd { "random: drawn from the seed; zero: no velocity, acceleration and force; straight: the neutral configuration at random rates; fast: rates a thousand times larger; limit: at the joints' limits, where the robot has any." }
                         dt { "Terms" }
-                        dd { "M, inverse and forward dynamics and the bias force contain gravity and rotor inertia; damping and dry friction are left out for every engine." }
+                        dd { "M, inverse and forward dynamics contain the rotors' inertia; inverse and forward dynamics and the bias force contain gravity; damping and dry friction are left out for every engine." }
+                        @if !figures.digits.subjects.is_empty() {
+                            dt { "Truth" }
+                            dd { "The reference of the digits is the answer in double-double arithmetic, 32 digits, from the description's own numbers. A gate on forward dynamics there is on ‖Δq̈‖_M / ‖q̈‖_M, against what a backward error of its size amounts to at that state." }
+                            dt { "Digits lost" }
+                            dd { "log₁₀(error/2⁻⁵²), none below. Medians and quartiles are over the states." }
+                            dt { "Structured floor" }
+                            dd { "How far the true q̈ moves, in the 2-norm and relative to itself, when q, q̇, τ and every mass, length and inertia moves by half a unit in its last place and all of it adds up: a worst case. Roundings of random sign leave about a tenth of it, so an error may lie below the floor." }
+                        }
                         @if !figures.times.is_empty() {
                             dt { "Times" }
-                            dd { "One thread on one pinned core, after all accuracy work is done. stream reads another state at each call, hot the same state from the cache. Loading a model, allocating workspaces and converting coordinates are outside the clock; reading the inputs and writing the result are inside." }
+                            dd { "One thread, pinned to one core where the system allows it, after all accuracy work is done. stream reads another state at each call, hot the same one again. Inside the clock is everything from q, q̇, q̈ or τ to the result: sines and cosines, gravity, rotors' inertia, copying the result out; only factorization and solve start from a mass matrix or factors made before. A value is the median over blocks of at least 50 µs, its bars their first and last decile." }
                         }
                         dt { "Recorded and live" }
                         dd {
@@ -61,9 +71,9 @@ pub fn section(run: &RunInfo, overview: &Overview, figures: &Figures) -> Markup 
 }
 
 /// The measures of the run's quantities, each with the quantities that share it.
-fn measures(overview: &Overview) -> Vec<(Vec<&'static str>, &'static str)> {
+fn measures(quantities: &[&str]) -> Vec<(Vec<&'static str>, &'static str)> {
     let mut measures: Vec<(Vec<&str>, &str)> = Vec::new();
-    for label in QUANTITIES.iter().filter(|label| overview.quantities.contains(&label.name)) {
+    for label in QUANTITIES.iter().filter(|label| !label.measure.is_empty() && quantities.contains(&label.name)) {
         match measures.last_mut().filter(|(_, measure)| *measure == label.measure) {
             Some((titles, _)) => titles.push(label.title),
             None => measures.push((vec![label.title], label.measure)),

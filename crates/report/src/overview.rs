@@ -12,6 +12,12 @@ use crate::tally::{Tally, gravity};
 pub const AGREEMENT: &str = "agreement";
 /// The study whose rows are times.
 pub const TIMING: &str = "timing";
+/// The study whose rows compare with the truth.
+pub const DIGITS: &str = "digits";
+/// The study whose rows are condition numbers.
+pub const CONDITIONING: &str = "conditioning";
+/// The engine of rows that speak of all engines together.
+pub const EVERYONE: &str = "all";
 /// The metric of rows that compare two engines with each other.
 pub const PAIRWISE: &str = "pairwise";
 
@@ -60,7 +66,8 @@ pub struct Overview<'a> {
 impl<'a> Overview<'a> {
     /// Groups a run's rows.
     pub fn of(run: &'a RunInfo, records: &'a [Record]) -> Self {
-        let engines = in_order(run.engines.iter().map(|engine| engine.name.as_str()), records.iter().map(|row| row.engine.as_str()));
+        let met = records.iter().map(|row| row.engine.as_str()).filter(|&name| name != EVERYONE);
+        let engines = in_order(run.engines.iter().map(|engine| engine.name.as_str()), met);
         let models = models(run, records);
         let model_index: BTreeMap<&str, usize> = models.iter().enumerate().map(|(index, model)| (model.name, index)).collect();
         let studies: BTreeSet<&str> = records.iter().map(|row| row.study.as_str()).collect();

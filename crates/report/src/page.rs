@@ -6,14 +6,18 @@ use record::{CSV_NAME, RUN_NAME, Record, RunInfo, SCHEMA_NAME};
 use crate::figures::Figures;
 use crate::findings::Findings;
 use crate::overview::Overview;
-use crate::{heatmap, method, pairwise, plots, provenance, unpassed, verdict};
+use crate::truth::Truth;
+use crate::{conditioning, digits_section, heatmap, method, pairwise, plots, provenance, tradeoff, truth, unpassed, verdict};
 
 /// The sections: anchor, entry in the navigation.
-const SECTIONS: [(&str, &str); 8] = [
+const SECTIONS: [(&str, &str); 11] = [
     ("verdict", "Verdict"),
     ("agreement", "Agreement"),
+    ("digits", "Digits"),
     ("depth", "Error"),
     ("time", "Time"),
+    ("tradeoff", "Work–precision"),
+    ("conditioning", "Conditioning"),
     ("pairs", "Pairs"),
     ("provenance", "Provenance"),
     ("method", "Method"),
@@ -23,6 +27,7 @@ const SECTIONS: [(&str, &str); 8] = [
 /// The whole page as text.
 pub fn render(run: &RunInfo, records: &[Record], overview: &Overview, figures: &Figures) -> String {
     let findings = Findings::of(run, overview, records);
+    let truth = Truth::of(overview, &figures.digits, records);
     let page = html! {
         (DOCTYPE)
         html lang="en" {
@@ -40,12 +45,15 @@ pub fn render(run: &RunInfo, records: &[Record], overview: &Overview, figures: &
             }
             body {
                 a.to-content href="#verdict" { "Skip to the verdict" }
-                (header(run))
+                (header(run, figures))
                 main {
-                    (verdict::section(run, overview, records, &findings))
+                    (verdict::section(run, overview, records, &findings, truth::markup(overview, &figures.digits, &truth)))
                     (heatmap::section(overview, &findings))
+                    (digits_section::section(overview, &figures.digits))
                     (plots::depth(figures))
                     (plots::time(overview, figures))
+                    (tradeoff::section(overview, &figures.tradeoffs))
+                    (conditioning::section(overview, &figures.conditions))
                     (pairwise::section(overview, records))
                     (provenance::section(run, overview))
                     (method::section(run, overview, figures))
@@ -77,7 +85,18 @@ pub fn opener(chunk: &str, filters: &[(&str, &str)], text: &str) -> Markup {
     }
 }
 
-fn header(run: &RunInfo) -> Markup {
+/// The sections that this run has: some appear with their rows alone.
+fn sections(figures: &Figures) -> impl Iterator<Item = (&'static str, &'static str)> {
+    let absent = |anchor| match anchor {
+        "digits" => figures.digits.subjects.is_empty(),
+        "tradeoff" => figures.tradeoffs.is_empty(),
+        "conditioning" => figures.conditions.is_empty(),
+        _ => false,
+    };
+    SECTIONS.into_iter().filter(move |&(anchor, _)| !absent(anchor))
+}
+
+fn header(run: &RunInfo, figures: &Figures) -> Markup {
     html! {
         header {
             div.bar {
@@ -86,7 +105,7 @@ fn header(run: &RunInfo) -> Markup {
                     span { "featherbench" }
                 }
                 nav aria-label="Sections" {
-                    @for (anchor, name) in SECTIONS { a href={ "#" (anchor) } { (name) } }
+                    @for (anchor, name) in sections(figures) { a href={ "#" (anchor) } { (name) } }
                 }
                 button #theme type="button" aria-label="Switch between light and dark" title="Light or dark" { "◐" }
             }

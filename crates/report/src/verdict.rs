@@ -13,8 +13,8 @@ use crate::{chunks, labels};
 /// Disagreements that are told in the head of the page; the others stand in the list of what did not pass.
 const TOLD: usize = 8;
 
-/// Writes the section.
-pub fn section(run: &RunInfo, overview: &Overview, records: &[Record], findings: &Findings) -> Markup {
+/// Writes the section; `truth` is what the truth says of the engines.
+pub fn section(run: &RunInfo, overview: &Overview, records: &[Record], findings: &Findings, truth: Markup) -> Markup {
     let (class, word) = match findings.status {
         Status::Passed => ("good", "Passed"),
         Status::Failed => ("bad", "Failed"),
@@ -27,6 +27,7 @@ pub fn section(run: &RunInfo, overview: &Overview, records: &[Record], findings:
             (tiles(findings))
             div.columns {
                 div {
+                    (truth)
                     (agreement(findings))
                     (disagreement(overview, findings))
                     (closest(overview, findings))

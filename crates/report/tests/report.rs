@@ -5,48 +5,10 @@ use std::fs;
 use std::path::Path;
 
 use record::{Record, Relation, RunInfo, Verdict};
-use tempfile::TempDir;
+use written::Written;
 
 mod support;
-
-/// A report in a folder of its own.
-struct Written {
-    folder: TempDir,
-    index: String,
-}
-
-impl Written {
-    fn of(run: &RunInfo, records: &[Record]) -> Self {
-        let folder = tempfile::tempdir().unwrap();
-        let paths = featherbench_report::write(run, records, folder.path()).unwrap();
-        assert_eq!(paths.index, folder.path().join("index.html"));
-        assert!(paths.files.iter().all(|path| path.is_file()));
-        let index = fs::read_to_string(paths.index).unwrap();
-        Self { folder, index }
-    }
-
-    fn text(&self, name: &str) -> String {
-        fs::read_to_string(self.folder.path().join(name)).unwrap()
-    }
-
-    /// A data script's JSON, with its call taken off.
-    fn data(&self, name: &str) -> serde_json::Value {
-        let text = self.text(&format!("data/{name}.js"));
-        let json = text.strip_prefix(&format!("featherbench.chunk(\"{name}\",")).and_then(|rest| rest.strip_suffix(");\n"));
-        serde_json::from_str(json.unwrap_or_else(|| panic!("data/{name}.js is not one call"))).unwrap()
-    }
-
-    fn chunk_names(&self) -> Vec<String> {
-        let entries = fs::read_dir(self.folder.path().join("data")).unwrap();
-        entries.map(|entry| entry.unwrap().path().file_stem().unwrap().to_str().unwrap().to_owned()).collect()
-    }
-
-    /// A section's text.
-    fn section(&self, id: &str) -> &str {
-        let start = self.index.find(&format!("<section id=\"{id}\"")).unwrap_or_else(|| panic!("no section {id}"));
-        &self.index[start..start + self.index[start..].find("</section>").unwrap()]
-    }
-}
+mod written;
 
 fn demo() -> (RunInfo, Vec<Record>, Written) {
     let run = support::run_info();
@@ -59,7 +21,8 @@ fn demo() -> (RunInfo, Vec<Record>, Written) {
 fn the_page_has_its_sections_and_stays_small() {
     let (_, records, written) = demo();
     assert!(records.len() > 10_000);
-    let order = ["verdict", "agreement", "depth", "time", "pairs", "provenance", "method", "unpassed"];
+    let order =
+        ["verdict", "agreement", "digits", "depth", "time", "tradeoff", "conditioning", "pairs", "provenance", "method", "unpassed"];
     let places: Vec<usize> = order.iter().map(|id| written.index.find(&format!("<section id=\"{id}\"")).unwrap()).collect();
     assert!(places.is_sorted(), "{places:?}");
     for id in order {

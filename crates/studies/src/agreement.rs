@@ -55,18 +55,7 @@ impl Study for Agreement {
     }
 
     fn evaluate(&self, context: &Context, cell: &Cell) -> Outcome {
-        let lost = |what: &str| Outcome::Refused(Refusal::Failed(format!("there is no {what} of this cell")));
-        let Some(problem) = context.problem(&cell.problem) else { return lost("problem") };
-        let Some(subject) = context.subject(&cell.subject) else { return lost("subject") };
-        let Some(quantity) = Quantity::parse(&cell.quantity) else { return lost("quantity") };
-        let count = quantity.states(problem.states.count());
-        let evaluated = subject.prepare(problem, quantity, &cell.method, &problem.states).and_then(|mut prepared| {
-            prepared.run(0..count)?;
-            let (values, due) = (prepared.read().to_vec(), count * quantity.size(problem));
-            // Fewer states would be compared, and nobody would know.
-            if values.len() == due { Ok(values) } else { Err(Refusal::Failed(format!("{} numbers came, {due} are due", values.len()))) }
-        });
-        evaluated.into()
+        crate::evaluate(context, cell)
     }
 
     fn compare(&self, context: &Context, problem: &Problem, finished: &[Finished]) -> Vec<Record> {

@@ -1,18 +1,24 @@
 //! Studies: the questions that featherbench asks, one file each.
 //!
 //! - [`Agreement`]: do the engines agree on one and the same model?
+//! - [`Digits`]: how far is each from the truth, and who is right?
+//! - [`Conditioning`]: how does κ(M) grow, and does it matter?
 //! - [`Structure`]: are the counts of the sparse algorithms the integers that theory says?
 //! - [`Timing`]: how long do the native kernels take?
 
 mod agreement;
+mod conditioning;
+mod digits;
 mod structure;
 mod timing;
 
 pub use agreement::Agreement;
+pub use conditioning::Conditioning;
+pub use digits::Digits;
 pub use structure::Structure;
 pub use timing::Timing;
 
-use harness::{Cell, Problem};
+use harness::{Cell, Context, Outcome, Problem, Quantity, Refusal};
 use record::Record;
 
 /// A row with everything that its cell and problem say; the study adds case, metric and value.
@@ -33,5 +39,43 @@ fn row(cell: &Cell, problem: &Problem) -> Record {
         scalar: cell.scalar.clone(),
         quantity: cell.quantity.clone(),
         ..Record::default()
+    }
+}
+
+/// Asks a cell's subject for its quantity at the problem's states.
+fn evaluate(context: &Context, cell: &Cell) -> Outcome {
+    let lost = |what: &str| Outcome::Refused(Refusal::Failed(format!("there is no {what} of this cell")));
+    let Some(problem) = context.problem(&cell.problem) else { return lost("problem") };
+    let Some(subject) = context.subject(&cell.subject) else { return lost("subject") };
+    let Some(quantity) = Quantity::parse(&cell.quantity) else { return lost("quantity") };
+    let count = quantity.states(problem.states.count());
+    let evaluated = subject.prepare(problem, quantity, &cell.method, &problem.states).and_then(|mut prepared| {
+        prepared.run(0..count)?;
+        let (values, due) = (prepared.read().to_vec(), count * quantity.size(problem));
+        // Fewer states would be compared, and nobody would know.
+        if values.len() == due { Ok(values) } else { Err(Refusal::Failed(format!("{} numbers came, {due} are due", values.len()))) }
+    });
+    evaluated.into()
+}
+
+/// The value below which a fraction of the sorted samples lies.
+fn quantile(sorted: &[f64], fraction: f64) -> f64 {
+    let at = fraction * (sorted.len().saturating_sub(1)) as f64;
+    let (low, high) = (at.floor() as usize, at.ceil() as usize);
+    match (sorted.get(low), sorted.get(high)) {
+        (Some(a), Some(b)) => a + (b - a) * at.fract(),
+        _ => f64::NAN,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn quantiles_interpolate() {
+        let sorted = [1.0, 2.0, 3.0, 4.0, 5.0];
+        assert_eq!([0.0, 0.1, 0.5, 1.0].map(|f| quantile(&sorted, f)), [1.0, 1.4, 3.0, 5.0]);
+        assert!(quantile(&[], 0.5).is_nan());
     }
 }

@@ -95,7 +95,7 @@ impl Study for Timing {
                     let mut sorted = blocks.clone();
                     sorted.sort_unstable_by(f64::total_cmp);
                     for (metric, fraction) in [("ns_per_call", 0.5), ("ns_p10", 0.1), ("ns_p90", 0.9)] {
-                        rows.push(Record { metric: metric.into(), ..blank.clone() }.informed(quantile(&sorted, fraction)));
+                        rows.push(Record { metric: metric.into(), ..blank.clone() }.informed(crate::quantile(&sorted, fraction)));
                     }
                 }
             }
@@ -141,16 +141,6 @@ impl Timing {
     }
 }
 
-/// The value below which a fraction of the sorted samples lies.
-fn quantile(sorted: &[f64], fraction: f64) -> f64 {
-    let at = fraction * (sorted.len().saturating_sub(1)) as f64;
-    let (low, high) = (at.floor() as usize, at.ceil() as usize);
-    match (sorted.get(low), sorted.get(high)) {
-        (Some(a), Some(b)) => a + (b - a) * at.fract(),
-        _ => f64::NAN,
-    }
-}
-
 /// While it lives, this thread stays on one core; where the system refuses, nothing happens.
 struct Pinned(Option<rustix::thread::CpuSet>);
 
@@ -171,17 +161,5 @@ impl Drop for Pinned {
             // A thread that cannot be freed again is only slower.
             let _ = rustix::thread::sched_setaffinity(None, before);
         }
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn quantiles_interpolate() {
-        let sorted = [1.0, 2.0, 3.0, 4.0, 5.0];
-        assert_eq!([0.0, 0.1, 0.5, 1.0].map(|f| quantile(&sorted, f)), [1.0, 1.4, 3.0, 5.0]);
-        assert!(quantile(&[], 0.5).is_nan());
     }
 }

@@ -1,8 +1,6 @@
-//! What the tests share: robots, states, tolerances, flow derivatives and a double-double scalar.
+//! What the tests share: robots, states, tolerances, and flow derivatives.
 
 #![allow(dead_code, reason = "every test file compiles this module and uses a part of it")]
-
-pub mod double_double;
 
 use model::{BodyDescription, Description, JointDescription, JointKind, JointType, Model, Placement, Random, Topology};
 use spatial::{Dual, Force, Lift, Motion, Quaternion, Real, Sym3, Vec3};

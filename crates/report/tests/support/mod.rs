@@ -6,6 +6,8 @@ use record::{
     EngineInfo, EngineSource, Expectation, GitInfo, Host, Kind, ModelInfo, ModelOrigin, Record, Relation, RunInfo, Verdict, canonical_json,
 };
 
+mod truth;
+
 /// A model's name that tries to become markup.
 pub const HOSTILE: &str = "robot \"</script><script>alert('x')</script>&amp;<b>";
 
@@ -71,7 +73,9 @@ fn models() -> Vec<ModelInfo> {
         sizes.iter().map(move |&joints| model(format!("{stem}_{joints}"), joints, family, ModelOrigin::Generated))
     });
     let robots = ROBOTS.iter().map(|&(name, joints)| model(name.into(), joints, "robot", ModelOrigin::Robot));
-    generated.chain(robots).collect()
+    let mut models: Vec<ModelInfo> = generated.chain(robots).collect();
+    models.extend(truth::models());
+    models
 }
 
 fn family(model: &ModelInfo) -> &'static str {
@@ -155,11 +159,11 @@ pub fn run_info() -> RunInfo {
     }
 }
 
-/// About 15 000 rows of agreement, pairs, times and structure.
+/// About 12 000 rows of agreement, pairs, times, structure, digits and conditioning.
 pub fn records(run: &RunInfo) -> Vec<Record> {
     let mut random = Random(1);
     let mut rows = Vec::new();
-    for model in &run.models {
+    for model in run.models.iter().filter(|model| !truth::is_own(model)) {
         agreement(run, model, &mut random, &mut rows);
         times(run, model, &mut random, &mut rows);
         let structure = Record {
@@ -171,6 +175,7 @@ pub fn records(run: &RunInfo) -> Vec<Record> {
         };
         rows.push(structure.gated((model.nv * 2) as f64, Relation::Eq, (model.nv * 2) as f64));
     }
+    truth::records(run, &mut random, &mut rows);
     rows
 }
 
@@ -250,15 +255,16 @@ fn errors(row: &Record, model: &ModelInfo, random: &mut Random) -> Vec<Record> {
 }
 
 fn times(run: &RunInfo, model: &ModelInfo, random: &mut Random, rows: &mut Vec<Record>) {
-    const ALGORITHMS: [(&str, f64, f64); 6] = [
-        ("rnea", 22.0, 1.0),
-        ("aba", 55.0, 1.0),
-        ("crba", 14.0, 1.55),
-        ("ltl_factor", 2.0, 1.9),
-        ("ltl_solve", 1.5, 1.6),
-        ("kinematics", 9.0, 1.0),
+    const ALGORITHMS: [(&str, &str, f64, f64); 7] = [
+        ("id", "rnea", 22.0, 1.0),
+        ("fd", "aba", 55.0, 1.0),
+        ("fd", "ltdl", 17.0, 1.7),
+        ("mass_matrix_sparse", "crba", 14.0, 1.55),
+        ("factorization", "ltdl", 2.0, 1.9),
+        ("solve", "ltdl", 1.5, 1.6),
+        ("body_placement", "kinematics", 9.0, 1.0),
     ];
-    for (algorithm, constant, exponent) in ALGORITHMS {
+    for (algorithm, method, constant, exponent) in ALGORITHMS {
         for case in ["stream", "hot"] {
             let penalty = if case == "hot" { 0.8 } else { 1.0 };
             let ns = 30.0 + constant * penalty * (model.nv as f64).powf(exponent) * (1.0 + 0.1 * random.unit());
@@ -266,7 +272,7 @@ fn times(run: &RunInfo, model: &ModelInfo, random: &mut Random, rows: &mut Vec<R
                 study: "timing".into(),
                 engine: "native".into(),
                 engine_version: "0.1.0".into(),
-                method: algorithm.into(),
+                method: method.into(),
                 quantity: algorithm.into(),
                 case: case.into(),
                 kind: Kind::Measured,

@@ -1,9 +1,15 @@
 //! The scalar trait: what a kernel may ask of a number.
 
+mod compensated;
 mod counted;
+mod double_double;
 mod dual;
+mod error_free;
+mod trigonometry;
 
+pub use compensated::Compensated;
 pub use counted::{Counted, Operations};
+pub use double_double::DoubleDouble;
 pub use dual::Dual;
 
 use std::fmt::Debug;

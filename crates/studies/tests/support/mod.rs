@@ -88,6 +88,12 @@ impl Double {
         Self { states: Some(states), ..Self::of(problem) }
     }
 
+    /// The same under another name.
+    pub fn named(mut self, name: &str) -> Self {
+        self.identity.name = name.into();
+        self
+    }
+
     /// One that supports nothing, whatever it offers.
     pub fn refusing(problem: &Problem) -> Self {
         Self { refuses: true, ..Self::of(problem) }
@@ -148,10 +154,14 @@ impl Prepared for Twisted<'_> {
 
 /// The records of the whole agreement study: planned, evaluated with outcomes on disk, compared and judged.
 pub fn agreement(problem: &Problem, gates: &Gates, subjects: &[Box<dyn Subject>]) -> Vec<Record> {
+    whole(&Agreement, problem, gates, subjects)
+}
+
+/// The records of a whole study.
+pub fn whole(study: &dyn Study, problem: &Problem, gates: &Gates, subjects: &[Box<dyn Subject>]) -> Vec<Record> {
     let context = Context { problems: std::slice::from_ref(problem), subjects, gates, seed: SEED };
     let folder = tempfile::tempdir().unwrap();
     let store = OutcomeStore::open(folder.path()).unwrap();
-    let study: &dyn Study = &Agreement;
     let cells = plan(study, &context, &|_| true);
     let finished = evaluate(study, &context, cells, &store, &Silent).unwrap();
     compare(study, &context, finished)

@@ -1,0 +1,91 @@
+//! The golden data: they come from the witnesses that are here, and a random twentieth of them is derived again at every run.
+//!
+//! `FEATHERBENCH_GOLDEN_SEED` chooses the twentieth (the day does otherwise), `FEATHERBENCH_GOLDEN_SHARE=1` derives all.
+
+mod support;
+
+use featherbench_reference::{Precision, nearest_doubles};
+use model::Random;
+use serde_json::Value;
+use support::CASES;
+use support::golden::{Answers, COLUMNS, DIGITS, SEED, folder, hash_of_doubles, hash_of_python, hash_of_rust, hash_of_state};
+
+/// What to do when the golden data are older than the witnesses.
+const AGAIN: &str = "run `cargo run --release -p featherbench-reference --example golden -- make` (it needs Python with mpmath and numpy: \
+                     `featherbench oracles install`) and commit datasets/truth";
+
+fn index() -> Value {
+    serde_json::from_str(&std::fs::read_to_string(folder().join("index.json")).unwrap()).unwrap()
+}
+
+/// The rows of a golden file, each with its columns.
+fn rows(name: &str) -> Vec<Vec<String>> {
+    let text = std::fs::read_to_string(folder().join(format!("{name}.csv"))).unwrap();
+    let mut lines = text.lines().map(|line| line.split(',').map(str::to_owned).collect::<Vec<_>>());
+    assert_eq!(lines.next().unwrap(), COLUMNS);
+    lines.collect()
+}
+
+#[test]
+fn golden_data_are_those_of_the_witnesses() {
+    let index = index();
+    assert_eq!(index["rust"], hash_of_rust(), "crates/reference/src has changed since the golden data were made: {AGAIN}");
+    assert_eq!(index["python"], hash_of_python(), "oracles/truth.py has changed since the golden data were made: {AGAIN}");
+    assert_eq!((&index["seed"], &index["digits"]), (&SEED.into(), &DIGITS.into()), "{AGAIN}");
+    let cases = index["cases"].as_array().unwrap();
+    assert_eq!(cases.len(), CASES.len(), "{AGAIN}");
+    for (kept, case) in cases.iter().zip(&CASES) {
+        assert_eq!((&kept["name"], &kept["family"]), (&case.name.into(), &case.family.into()), "{AGAIN}");
+        assert_eq!(kept["state"], hash_of_state(&case.state(SEED, 0)), "{}: the states are drawn otherwise: {AGAIN}", case.name);
+        let disagreement: f64 = kept["disagreement"].as_str().unwrap().parse().unwrap();
+        assert!(disagreement <= 1e-100, "{}: the witnesses disagreed by {disagreement:e}", case.name);
+    }
+}
+
+#[test]
+fn golden_data_are_small() {
+    let bytes: u64 = std::fs::read_dir(folder()).unwrap().map(|entry| entry.unwrap().metadata().unwrap().len()).sum();
+    assert!(bytes <= 100_000, "{bytes} bytes in datasets/truth");
+}
+
+/// Every number of a golden file is a decimal number that a reader of doubles rounds correctly.
+#[test]
+fn golden_numbers_round_as_doubles() {
+    for case in &CASES {
+        for row in rows(case.name) {
+            for text in row {
+                assert_eq!(text.parse::<f64>().unwrap(), Precision::STANDARD.parse(&text).unwrap().to_f64(), "{text}");
+            }
+        }
+    }
+}
+
+#[test]
+fn a_random_twentieth_is_derived_again() {
+    let variable = |name: &str| std::env::var(name).ok();
+    let day = || std::time::UNIX_EPOCH.elapsed().unwrap().as_secs() / 86_400;
+    let seed = variable("FEATHERBENCH_GOLDEN_SEED").map_or_else(day, |text| text.parse().expect("FEATHERBENCH_GOLDEN_SEED is a number"));
+    let share = variable("FEATHERBENCH_GOLDEN_SHARE").map_or(0.05, |text| text.parse().expect("FEATHERBENCH_GOLDEN_SHARE is a number"));
+    let (index, mut compared) = (index(), 0);
+    for (case, kept) in CASES.iter().zip(index["cases"].as_array().unwrap()) {
+        let answers = Answers::derive(case, &case.state(SEED, 0)).unwrap();
+        let rows = rows(case.name);
+        assert_eq!(rows.len(), answers.id.len(), "{}", case.name);
+        let mut random = Random::named(seed, case.name);
+        for (column, name) in COLUMNS.iter().enumerate() {
+            let fresh = answers.text(name);
+            for (dof, (row, fresh)) in rows.iter().zip(&fresh).enumerate() {
+                if dof == random.below(rows.len()) || random.unit() < share {
+                    assert_eq!(row[column], *fresh, "{}: {name} of dof {dof} (FEATHERBENCH_GOLDEN_SEED={seed}); {AGAIN}", case.name);
+                    compared += 1;
+                }
+            }
+        }
+        if random.unit() < share {
+            let hash = hash_of_doubles(&nearest_doubles(&answers.mass_matrix));
+            assert_eq!(kept["mass_matrix"], hash, "{}: mass matrix (FEATHERBENCH_GOLDEN_SEED={seed}); {AGAIN}", case.name);
+        }
+    }
+    println!("{compared} golden numbers derived again (FEATHERBENCH_GOLDEN_SEED={seed})");
+    assert!(compared >= 100, "{compared}");
+}

@@ -1,0 +1,155 @@
+// Digits: the median error against the truth along one axis, and the table of all medians.
+featherbench.ready(() => {
+  const { byId, chunks, decades, make, short, variable } = featherbench;
+  const { ZERO, bars, colour, dash, draw, fitted, joined, layout, live, plain, symbol } = featherbench.plots;
+  const overview = chunks.get("overview");
+  const digits = chunks.get("figures")?.digits;
+  const table = byId("digits-table");
+  if (!overview || !digits || !table) return;
+
+  const ULP = 2 ** -52;
+  const AXES = {
+    depth: "depth: joints from the base to the farthest leaf",
+    tip: "mass at the tip, over the usual",
+    offset: "distance of the base from the world's origin, m",
+  };
+  const quantities = [...new Set(digits.subjects.map((subject) => subject.quantity))];
+  const cells = new Map(digits.cells.map((cell) => [`${cell.model} ${cell.subject}`, cell]));
+  const chosen = () => byId("digits-quantity").value;
+  const engine = (subject) => overview.engines[subject.engine];
+  const name = (subject) => [engine(subject), subject.method, subject.scalar === "f64" ? "" : subject.scalar].filter(Boolean).join(" ");
+  // As the list of quantities has it.
+  const title = (quantity) => [...byId("digits-quantity").options].find((option) => option.value === quantity).textContent;
+
+  function filters(cell) {
+    const subject = digits.subjects[cell.subject];
+    return { study: "digits", engine: engine(subject), method: subject.method, quantity: cell.quantity };
+  }
+
+  // A cell in lines.
+  function lines(cell) {
+    const subject = digits.subjects[cell.subject];
+    const found = [overview.models[cell.model].name, `${title(subject.quantity)}${cell.quantity === subject.quantity ? "" : ", seen through products"} by ${name(subject)}`];
+    if (cell.median !== null) {
+      found.push(`median ${short(cell.median)}, quartiles ${short(cell.q1)} to ${short(cell.q3)}, largest ${short(cell.worst)}`);
+      const lost = Math.log10(cell.median / ULP);
+      found.push(lost < 0.05 ? "no digit lost" : `${lost.toFixed(1)} digits lost`);
+    }
+    if (cell.floor !== null && cell.median > 0) found.push(`floor ${short(cell.floor)}: the median is ${short(Number((cell.median / cell.floor).toPrecision(2)))} of it`);
+    if (cell.verdict !== null) found.push(`${featherbench.glyphs[cell.verdict]} ${cell.verdict}${cell.margin === null ? "" : `, ${decades(cell.margin)} decades`}`);
+    return found;
+  }
+
+  // --- The plot.
+
+  const curvesOf = (quantity, axis) => digits.curves.filter((curve) => curve.axis === axis && digits.subjects[curve.subject].quantity === quantity);
+
+  // The families of an axis; the choice stays where the new list has it, and falls to the one with the most to show.
+  function fillFamilies() {
+    const select = byId("digits-family");
+    const before = select.value;
+    const points = new Map();
+    for (const curve of curvesOf(chosen(), byId("digits-axis").value)) points.set(curve.family, (points.get(curve.family) ?? 0) + curve.points.length);
+    select.replaceChildren(...[...points.keys()].map((family) => make("option", { value: family }, family)));
+    const most = [...points].reduce((best, entry) => (entry[1] > best[1] ? entry : best), ["", 0])[0];
+    select.value = points.has(before) ? before : most;
+  }
+
+  function drawDigits() {
+    const axis = byId("digits-axis").value;
+    const family = byId("digits-family").value;
+    const curves = curvesOf(chosen(), axis).filter((curve) => curve.family === family);
+    const methods = new Map();
+    const floors = new Map();
+    const traces = [];
+    let [least, most] = [Infinity, 0];
+    for (const curve of curves) {
+      const subject = digits.subjects[curve.subject];
+      const index = methods.get(subject.engine) ?? 0;
+      methods.set(subject.engine, index + 1);
+      const points = curve.points.map(([x, cell]) => ({ x, ...digits.cells[cell] }));
+      for (const { x, floor } of points) {
+        [least, most] = [Math.min(least, x), Math.max(most, x)];
+        if (floor !== null) floors.set(x, floor);
+      }
+      const ink = colour(subject.engine);
+      const label = joined(engine(subject), subject.method, subject.scalar === "f64" ? "" : subject.scalar);
+      if (curve.fit) traces.push(fitted(curve.fit, curve.span, ink, label));
+      traces.push({
+        name: curve.fit ? `${label}  <i>p = ${curve.fit.slope.toFixed(2)}</i>` : label, legendgroup: label, mode: "markers+lines",
+        x: points.map((point) => point.x), y: points.map((point) => Math.max(point.median, ZERO)),
+        line: { color: ink, width: 1.2, dash: dash(index) },
+        marker: {
+          color: ink, size: 8, line: { width: 1, color: ink },
+          symbol: points.map((point) => symbol(index) + (point.median < ZERO || point.quantity !== subject.quantity ? "-open" : "")),
+        },
+        error_y: bars(points, (point) => point.q1, (point) => point.median, (point) => point.q3, ink),
+        text: points.map((point) => lines(point).map((line, place) => (place === 0 ? `<b>${plain(line)}</b>` : plain(line))).join("<br>")),
+        hovertemplate: `%{text}<extra>${label}</extra>`,
+        customdata: points.map((point) => ({ model: point.model, filters: filters(point) })),
+      });
+    }
+    if (floors.size > 0) {
+      const places = [...floors.keys()].sort((a, b) => a - b);
+      traces.push({ name: "structured floor", x: places, y: places.map((x) => floors.get(x)), mode: "lines+markers", line: { color: variable("--ink"), width: 1.5, dash: "dash" },
+        marker: { color: variable("--ink"), symbol: "line-ew-open", size: 10 }, hovertemplate: "floor %{y:.2e}<extra></extra>" });
+    }
+    if (most > 0) traces.push({ name: "2⁻⁵²", x: [least, most], y: [ULP, ULP], mode: "lines", hoverinfo: "skip", line: { color: variable("--soft"), width: 1, dash: "dot" } });
+    const shape = layout(AXES[axis], `median relative error: ${plain(title(chosen()))}`);
+    // Marks at the robots themselves: between them there is nothing.
+    const places = [...new Set(curves.flatMap((curve) => curve.points.map(([x]) => x)))].sort((a, b) => a - b);
+    Object.assign(shape.xaxis, { tickvals: places, ticktext: places.map((x) => (x >= 1e-2 && x < 1e4 ? String(x) : `10<sup>${Number(Math.log10(x).toFixed(2))}</sup>`)) });
+    draw("digits-plot", traces, shape);
+    for (const row of byId("digits-growth").tBodies[0].rows) row.hidden = !curves.includes(digits.curves[row.dataset.k]);
+  }
+
+  // --- The table.
+
+  // As the page made them: a quantity's subjects, then its floor where it has one.
+  const columns = quantities.flatMap((quantity) => {
+    const subjects = digits.subjects.map((subject, index) => ({ subject: index, quantity })).filter(({ subject }) => digits.subjects[subject].quantity === quantity);
+    const floored = digits.cells.some((cell) => cell.floor !== null && digits.subjects[cell.subject].quantity === quantity);
+    return floored ? [...subjects, { quantity }] : subjects;
+  });
+
+  function cellOf(button) {
+    const place = button.parentElement;
+    return cells.get(`${place.parentElement.dataset.m} ${columns[place.cellIndex - 1]?.subject}`);
+  }
+
+  function about(button) {
+    if (button.parentElement.tagName !== "TH") {
+      const cell = cellOf(button);
+      return [...lines(cell), cell.reason].filter(Boolean);
+    }
+    const model = overview.models[button.closest("tr").dataset.m];
+    return [model.name, featherbench.describe(model)];
+  }
+
+  function open(button) {
+    const model = button.closest("tr").dataset.m;
+    const cell = button.parentElement.tagName === "TH" ? null : cellOf(button);
+    const heading = overview.models[model].name + (cell ? `: digits of ${name(digits.subjects[cell.subject])}` : "");
+    featherbench.open(`model-${model}`, cell ? filters(cell) : { study: "digits" }, heading);
+  }
+
+  const grid = featherbench.grid(table, about, open);
+
+  function filter() {
+    const text = byId("digits-filter").value.toLowerCase();
+    for (const head of table.querySelectorAll("th[data-q]")) head.hidden = quantities[head.dataset.q] !== chosen();
+    byId("digits-count").textContent = grid.filter(
+      (column) => columns[column].quantity === chosen(),
+      (row) => overview.models[row.dataset.m].name.toLowerCase().includes(text) && [...row.querySelectorAll("td button")].some((button) => !button.parentElement.hidden),
+    );
+  }
+
+  byId("digits-filter").addEventListener("input", filter);
+  byId("digits-quantity").addEventListener("change", filter);
+  filter();
+  if (byId("digits-plot")) {
+    fillFamilies();
+    for (const id of ["digits-quantity", "digits-axis"]) byId(id).addEventListener("change", fillFamilies);
+    live(drawDigits, "digits-quantity", "digits-axis", "digits-family");
+  }
+});

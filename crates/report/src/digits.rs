@@ -1,0 +1,242 @@
+//! The data of the digits section: errors against the truth per model and method, and how they grow within families.
+
+use std::collections::BTreeMap;
+
+use record::{Record, Verdict};
+use serde::Serialize;
+
+use crate::axes::{self, Axis};
+use crate::fit::{Fit, power_law};
+use crate::overview::{DIGITS, EVERYONE, Overview, severity};
+
+/// The metric of rows that count the engines at one error.
+pub const WALL: &str = "engines_at_the_wall";
+/// The spacing of doubles at one: an error of this size has lost no digit.
+pub const ULP: f64 = f64::EPSILON;
+/// Quantities in the order of the page: the one that loses most comes first.
+const ORDER: [&str; 3] = ["fd", "id", "mass_matrix"];
+
+/// Everything that the section shows.
+#[derive(Debug, Serialize)]
+pub struct Digits<'a> {
+    /// Who answered what: the table's columns.
+    pub subjects: Vec<Subject<'a>>,
+    /// What came of it: the table's cells, by model and subject.
+    pub cells: Vec<Cell<'a>>,
+    /// How it grows.
+    pub curves: Vec<Curve<'a>>,
+    /// The rows that suspect the reference.
+    #[serde(skip)]
+    pub walls: Vec<&'a Record>,
+}
+
+/// An engine's method for one quantity.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct Subject<'a> {
+    /// Index of the engine.
+    pub engine: usize,
+    /// Its method.
+    pub method: &'a str,
+    /// Its arithmetic.
+    pub scalar: &'a str,
+    /// The quantity; the matrix M is one, whether asked for whole or through products.
+    pub quantity: &'a str,
+}
+
+/// The errors of a subject on one model.
+#[derive(Clone, Debug, Serialize)]
+pub struct Cell<'a> {
+    /// Index of the model.
+    pub model: usize,
+    /// Index of the subject.
+    pub subject: usize,
+    /// The rows' own quantity.
+    pub quantity: &'a str,
+    /// First quartile over the states.
+    pub q1: Option<f64>,
+    /// Median over the states.
+    pub median: Option<f64>,
+    /// Third quartile.
+    pub q3: Option<f64>,
+    /// Largest.
+    pub worst: Option<f64>,
+    /// What rounding the inputs can do.
+    pub floor: Option<f64>,
+    /// Verdict of the row that decides, where a gate or the lack of an answer decides.
+    pub verdict: Option<Verdict>,
+    /// Its decades to the gate.
+    pub margin: Option<f64>,
+    /// Why it did not pass.
+    pub reason: &'a str,
+}
+
+/// A subject's errors along one axis of one family.
+#[derive(Debug, Serialize)]
+pub struct Curve<'a> {
+    /// What is varied.
+    pub axis: Axis,
+    /// The family.
+    pub family: &'a str,
+    /// Index of the subject.
+    pub subject: usize,
+    /// Place on the axis, index of the cell.
+    pub points: Vec<(f64, usize)>,
+    /// How the median grows.
+    pub fit: Option<Fit>,
+    /// From where to where that was fitted.
+    pub span: Option<[f64; 2]>,
+    /// The exponent between the last two points.
+    pub last: Option<f64>,
+}
+
+/// The quantity under whose name a row is shown.
+pub fn shown_quantity(name: &str) -> &str {
+    if name == "mass_matrix_probe" { "mass_matrix" } else { name }
+}
+
+/// Where a quantity stands on the page.
+pub fn rank(name: &str) -> (usize, &str) {
+    (ORDER.iter().position(|&known| known == name).unwrap_or(ORDER.len()), name)
+}
+
+/// Whether a gate judged a row, or it has no answer that could be judged.
+pub fn is_judged(row: &Record) -> bool {
+    row.study == DIGITS && row.metric != WALL && row.verdict != Verdict::Info
+}
+
+/// Decades of error above [`ULP`], none below.
+pub fn lost(error: f64) -> f64 {
+    (error / ULP).log10().max(0.0)
+}
+
+impl<'a> Digits<'a> {
+    /// Collects a run's rows.
+    pub fn of(overview: &Overview<'a>, records: &'a [Record]) -> Self {
+        type Key<'a> = ((usize, &'a str), usize, &'a str, &'a str);
+        let rows = || records.iter().filter(|row| row.study == DIGITS);
+        let walls = rows().filter(|row| row.metric == WALL && row.value.is_some()).collect();
+
+        let mut found: BTreeMap<Key, BTreeMap<usize, Cell>> = BTreeMap::new();
+        let mut deciding: BTreeMap<(Key, usize), &Record> = BTreeMap::new();
+        for row in rows().filter(|row| row.metric != WALL && row.engine != EVERYONE) {
+            let (Some(model), Some(engine)) = (overview.model(&row.model), overview.engine(&row.engine)) else { continue };
+            let key = (rank(shown_quantity(&row.quantity)), engine, row.method.as_str(), row.scalar.as_str());
+            let cell = found.entry(key).or_default().entry(model).or_insert_with(|| Cell::empty(model, &row.quantity));
+            match row.metric.as_str() {
+                "error_q1" => cell.q1 = row.value,
+                "error_median" => cell.median = row.value,
+                "error_q3" => cell.q3 = row.value,
+                "error_worst" => cell.worst = row.value,
+                _ => {}
+            }
+            cell.floor = cell.floor.or(row.floor);
+            if is_judged(row) {
+                let worst = deciding.entry((key, model)).or_insert(row);
+                if severity(row) < severity(worst) {
+                    *worst = row;
+                }
+                (cell.verdict, cell.margin, cell.reason) = (Some(worst.verdict), worst.margin, &worst.reason);
+            }
+        }
+
+        let (mut subjects, mut cells) = (Vec::new(), Vec::new());
+        for (((_, quantity), engine, method, scalar), models) in found {
+            let subject = subjects.len();
+            subjects.push(Subject { engine, method, scalar, quantity });
+            cells.extend(models.into_values().map(|cell| Cell { subject, ..cell }));
+        }
+        let curves = curves(overview, &cells);
+        Self { subjects, cells, curves, walls }
+    }
+
+    /// The cell of a model and a subject.
+    pub fn cell(&self, model: usize, subject: usize) -> Option<&Cell<'a>> {
+        let at = self.cells.binary_search_by_key(&(subject, model), |cell| (cell.subject, cell.model));
+        at.ok().map(|index| &self.cells[index])
+    }
+
+    /// Quantities in the order of the page.
+    pub fn quantities(&self) -> Vec<&'a str> {
+        let mut quantities: Vec<&str> = self.subjects.iter().map(|subject| subject.quantity).collect();
+        quantities.dedup();
+        quantities
+    }
+
+    /// `native aba`: engine, method, and arithmetic unless it is f64.
+    pub fn name(&self, overview: &Overview, subject: usize) -> String {
+        let Subject { engine, method, scalar, .. } = self.subjects[subject];
+        let scalar = if scalar == "f64" { "" } else { scalar };
+        [overview.engines[engine], method, scalar].into_iter().filter(|part| !part.is_empty()).collect::<Vec<_>>().join(" ")
+    }
+}
+
+impl<'a> Cell<'a> {
+    fn empty(model: usize, quantity: &'a str) -> Self {
+        Self {
+            model,
+            subject: 0,
+            quantity,
+            q1: None,
+            median: None,
+            q3: None,
+            worst: None,
+            floor: None,
+            verdict: None,
+            margin: None,
+            reason: "",
+        }
+    }
+}
+
+fn curves<'a>(overview: &Overview<'a>, cells: &[Cell]) -> Vec<Curve<'a>> {
+    type Key<'a> = (Axis, &'a str, usize);
+    let mut found: BTreeMap<Key, Vec<(f64, usize)>> = BTreeMap::new();
+    let answered = || cells.iter().enumerate().filter(|(_, cell)| cell.median.is_some());
+    for (index, cell) in answered() {
+        let model = &overview.models[cell.model];
+        if let Some((axis, family, x)) = axes::place(model.name, model.nv, model.depth) {
+            found.entry((axis, family, cell.subject)).or_default().push((x, index));
+        }
+    }
+    // The robot after which a family of tips is named is the one whose tip is as heavy as usual.
+    for (index, cell) in answered() {
+        if let Some(points) = found.get_mut(&(Axis::Tip, overview.models[cell.model].name, cell.subject))
+            && points.iter().all(|&(x, _)| x != 1.0)
+        {
+            points.push((1.0, index));
+        }
+    }
+    let several = |points: &[(f64, usize)]| points.iter().any(|point| point.0 != points[0].0);
+    found
+        .into_iter()
+        .filter(|(_, points)| several(points))
+        .map(|((axis, family, subject), mut points)| {
+            points.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+            // Below half the spacing of doubles an error is chance, or exactly zero.
+            // Products with M and its entries are measured alike, but not the same thing: a line goes through one kind.
+            let kind = cells[points[0].1].quantity;
+            let fitted: Vec<(f64, f64)> = points
+                .iter()
+                .filter(|&&(x, index)| x >= axis.fit_from() && cells[index].quantity == kind)
+                .filter_map(|&(x, index)| Some((x, cells[index].median.filter(|&error| error >= 0.5 * ULP)?)))
+                .collect();
+            let last = match fitted[..] {
+                [.., (x0, y0), (x1, y1)] if x1 > x0 => Some((y1 / y0).ln() / (x1 / x0).ln()),
+                _ => None,
+            };
+            let span = fitted.first().zip(fitted.last()).map(|(first, last)| [first.0, last.0]);
+            Curve { axis, family, subject, points, fit: power_law(fitted.into_iter()), span, last }
+        })
+        .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::lost;
+
+    #[test]
+    fn digits_are_lost_above_the_spacing_of_doubles() {
+        assert_eq!([lost(0.0), lost(1e-17)], [0.0, 0.0]);
+        assert!((lost(f64::EPSILON * 1e4) - 4.0).abs() < 1e-12);
+    }
+}

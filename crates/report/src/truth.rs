@@ -1,0 +1,231 @@
+//! Against the truth, in sentences: which engine and method keeps its gates, which does not, and where.
+
+use std::collections::BTreeMap;
+
+use maud::{Markup, html};
+use record::{Record, Verdict};
+
+use crate::digits::{Digits, is_judged, rank, shown_quantity};
+use crate::labels;
+use crate::numbers::{count, decades, listed, short};
+use crate::overview::{Overview, severity};
+use crate::page::opener;
+
+/// Sentences of one kind that are told in the head of the page.
+const TOLD: usize = 6;
+/// Models that a sentence names.
+const NAMED: usize = 4;
+
+/// One engine's method on one quantity: the row that decides for each of its models.
+type Account<'a> = BTreeMap<usize, &'a Record>;
+
+/// Who keeps every gate on a quantity.
+struct Kept<'a> {
+    quantity: &'a str,
+    subjects: Vec<String>,
+    /// The fewest and the most models of any subject.
+    models: (usize, usize),
+    largest: f64,
+}
+
+/// Methods of one engine that miss gates on the same models.
+struct Missed<'a> {
+    engine: &'a str,
+    methods: Vec<&'a str>,
+    quantity: &'a str,
+    models: Vec<&'a str>,
+    of: usize,
+    worst: &'a Record,
+}
+
+/// What the truth says of the engines.
+pub struct Truth<'a> {
+    kept: Vec<Kept<'a>>,
+    failed: Vec<Missed<'a>>,
+    known: Vec<Missed<'a>>,
+    /// The largest median error of forward dynamics on any model, per method, least first.
+    medians: Vec<(String, f64)>,
+}
+
+impl<'a> Truth<'a> {
+    /// Reads the rows.
+    pub fn of(overview: &Overview<'a>, digits: &Digits<'a>, records: &'a [Record]) -> Self {
+        let mut accounts: BTreeMap<((usize, &str), usize, &str), Account> = BTreeMap::new();
+        for row in records.iter().filter(|row| is_judged(row)) {
+            let (Some(model), Some(engine)) = (overview.model(&row.model), overview.engine(&row.engine)) else { continue };
+            let account = accounts.entry((rank(shown_quantity(&row.quantity)), engine, &row.method)).or_default();
+            let worst = account.entry(model).or_insert(row);
+            if severity(row) < severity(worst) {
+                *worst = row;
+            }
+        }
+        let missed = |miss: fn(&Record) -> bool| -> Vec<Missed<'a>> {
+            let mut groups: BTreeMap<_, Missed> = BTreeMap::new();
+            for ((quantity, engine, method), account) in &accounts {
+                let rows: Vec<(usize, &Record)> = account.iter().filter(|(_, row)| miss(row)).map(|(&model, &row)| (model, row)).collect();
+                let Some(worst) = rows.iter().map(|&(_, row)| row).min_by_key(|row| severity(row)) else { continue };
+                let models: Vec<usize> = rows.iter().map(|&(model, _)| model).collect();
+                let group = groups.entry((*quantity, *engine, models.clone())).or_insert_with(|| Missed {
+                    engine: overview.engines[*engine],
+                    methods: Vec::new(),
+                    quantity: quantity.1,
+                    models: models.iter().map(|&model| overview.models[model].name).collect(),
+                    of: account.len(),
+                    worst,
+                });
+                group.methods.push(*method);
+                if severity(worst) < severity(group.worst) {
+                    group.worst = worst;
+                }
+            }
+            let mut groups: Vec<Missed> = groups.into_values().collect();
+            groups.sort_by_key(|group| severity(group.worst));
+            groups
+        };
+        let failed = missed(|row| matches!(row.verdict, Verdict::Fail | Verdict::Error));
+        // A known deviation without a value is a question that the engine cannot be asked.
+        let known = missed(|row| row.verdict == Verdict::Deviation && row.value.is_some());
+        let kept = kept(overview, &accounts);
+        Self { kept, failed, known, medians: medians(overview, digits) }
+    }
+}
+
+fn kept<'a>(overview: &Overview<'a>, accounts: &BTreeMap<((usize, &'a str), usize, &'a str), Account<'a>>) -> Vec<Kept<'a>> {
+    let keeps = |account: &Account| {
+        let answered = |row: &&&Record| row.value.is_some() || row.verdict == Verdict::Error;
+        let judged: Vec<_> = account.values().filter(answered).collect();
+        !judged.is_empty() && judged.iter().all(|row| row.verdict == Verdict::Pass)
+    };
+    let mut quantities: Vec<(usize, &str)> = accounts.keys().map(|&(quantity, ..)| quantity).collect();
+    quantities.dedup();
+    let mut kept = Vec::new();
+    for quantity in quantities {
+        let of_quantity: Vec<_> = accounts.iter().filter(|((other, ..), _)| *other == quantity).collect();
+        let mut engines: Vec<usize> = of_quantity.iter().map(|((_, engine, _), _)| *engine).collect();
+        engines.dedup();
+        let mut subjects = Vec::new();
+        for engine in engines {
+            let methods: Vec<_> = of_quantity.iter().filter(|((_, other, _), _)| *other == engine).collect();
+            let good: Vec<String> =
+                methods.iter().filter(|(_, account)| keeps(account)).map(|((_, _, method), _)| (*method).into()).collect();
+            let name = overview.engines[engine];
+            // An engine all of whose methods keep their gates needs no methods.
+            match good.len() {
+                0 => {}
+                all if all == methods.len() => subjects.push(name.to_owned()),
+                _ => subjects.push(format!("{name} {}", good.join("/"))),
+            }
+        }
+        let rows = of_quantity.iter().filter(|(_, account)| keeps(account)).flat_map(|(_, account)| account.values());
+        let largest = rows.filter_map(|row| row.value).fold(0.0, f64::max);
+        let models = || of_quantity.iter().filter(|(_, account)| keeps(account)).map(|(_, account)| account.len());
+        let models = models().min().zip(models().max());
+        kept.extend(models.map(|models| Kept { quantity: quantity.1, subjects, models, largest }));
+    }
+    kept
+}
+
+fn medians(overview: &Overview, digits: &Digits) -> Vec<(String, f64)> {
+    let mut largest: BTreeMap<usize, f64> = BTreeMap::new();
+    for cell in digits.cells.iter().filter(|cell| digits.subjects[cell.subject].quantity == "fd") {
+        let entry = largest.entry(cell.subject).or_default();
+        *entry = entry.max(cell.median.unwrap_or_default());
+    }
+    let mut medians: Vec<(String, f64)> = largest.into_iter().map(|(subject, error)| (digits.name(overview, subject), error)).collect();
+    medians.sort_by(|a, b| a.1.total_cmp(&b.1));
+    medians
+}
+
+impl Missed<'_> {
+    fn subject(&self) -> String {
+        let methods: Vec<String> = self.methods.iter().filter(|method| !method.is_empty()).map(|&method| method.to_owned()).collect();
+        format!("{} {}", self.engine, listed(&methods)).trim_end().to_owned()
+    }
+
+    fn sentence(&self, verb: [&str; 2]) -> String {
+        let mut names: Vec<String> = self.models.iter().take(NAMED).map(|&name| name.to_owned()).collect();
+        if self.models.len() > NAMED {
+            names.push(format!("{} more", self.models.len() - NAMED));
+        }
+        let verb = verb[usize::from(self.methods.len() > 1)];
+        let of = if self.of == self.models.len() { String::new() } else { format!(" of {}", self.of) };
+        let models = if of.is_empty() { count(self.models.len(), "model") } else { format!("{}{of} models", self.models.len()) };
+        format!("{verb} on {models} in {}: {}", labels::quantity(self.quantity), listed(&names))
+    }
+}
+
+fn missed(overview: &Overview, found: &[Missed], class: &str, verb: [&str; 2]) -> Markup {
+    html! {
+        @for missed in found.iter().take(TOLD) {
+            li class=(class) {
+                b { (missed.subject()) } " " (missed.sentence(verb)) ". Worst: "
+                @let row = missed.worst;
+                (opener(
+                    &overview.chunk_of(row),
+                    &[("study", &row.study), ("engine", &row.engine), ("method", &row.method), ("quantity", &row.quantity)],
+                    &match (row.value, row.bound) {
+                        (Some(value), Some(bound)) => format!("{}, {} where {} is allowed", row.model, short(value), short(bound)),
+                        _ => format!("{}, {}", row.model, row.reason),
+                    },
+                ))
+                @if let Some(margin) = row.margin { " " span.number { "(" (decades(margin)) " decades)" } }
+            }
+        }
+        @if found.len() > TOLD {
+            li class=(class) { (found.len() - TOLD) " more: see " a href="#digits" { "the digits" } "." }
+        }
+    }
+}
+
+/// The warning that the reference itself may be wrong; nothing where no row says so.
+pub fn warning(overview: &Overview, digits: &Digits) -> Markup {
+    html! {
+        @if !digits.walls.is_empty() {
+            p.warning role="note" {
+                b { span aria-hidden="true" { "⚠ " } "The reference is the suspect: " }
+                @for (index, row) in digits.walls.iter().take(NAMED).enumerate() {
+                    @if index > 0 { "; " }
+                    "at " (opener(&overview.chunk_of(row), &[("study", &row.study), ("metric", &row.metric)], &row.model))
+                    " " (count(row.value.unwrap_or_default() as usize, "engine")) " stop at the same error, well above the floor"
+                }
+                @if digits.walls.len() > NAMED { "; and so at " (count(digits.walls.len() - NAMED, "more model")) }
+                ". Errors that come of rounding differ from engine to engine; several at one place are no coincidence."
+            }
+        }
+    }
+}
+
+/// The part of the page's head that says who is right.
+pub fn markup(overview: &Overview, digits: &Digits, truth: &Truth) -> Markup {
+    html! {
+        @if !digits.subjects.is_empty() {
+            h3 { "Against the truth" }
+            (warning(overview, digits))
+            ul.findings {
+                @for kept in &truth.kept {
+                    li.pass {
+                        b { (listed(&kept.subjects)) } @if kept.subjects.len() == 1 { " keeps" } @else { " keep" }
+                        " every gate on " (labels::quantity(kept.quantity)) " " span.number { "(" (short(kept.largest)) ")" }
+                        " over " @if kept.models.0 < kept.models.1 { (kept.models.0) " to " } (count(kept.models.1, "model")) "."
+                    }
+                }
+                (missed(overview, &truth.failed, "fail", ["fails", "fail"]))
+                (missed(overview, &truth.known, "known", ["misses by known cause", "miss by known cause"]))
+            }
+            @if !truth.medians.is_empty() {
+                p.note {
+                    "Forward dynamics, the largest median error on any model: "
+                    @for (index, (name, error)) in truth.medians.iter().enumerate() {
+                        @if index > 0 { ", " }
+                        span.nowrap { (name) " " b { (short(*error)) } }
+                    }
+                    "."
+                }
+            }
+            p.note {
+                "The truth is the answer in double-double arithmetic: here a row convicts or acquits the engine it names. In parentheses the largest judged error, "
+                "of forward dynamics in the kinetic-energy norm. Every number is in " a href="#digits" { "digits" } "."
+            }
+        }
+    }
+}

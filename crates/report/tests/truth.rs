@@ -1,0 +1,186 @@
+//! The sections of the studies that know the truth: they appear with their rows, say what those say, and leave the other sections alone.
+
+use record::{Record, Relation, RunInfo};
+use serde_json::Value;
+use written::Written;
+
+mod support;
+mod written;
+
+fn of_studies(studies: &[&str]) -> (Vec<Record>, Written) {
+    let run = support::run_info();
+    let records: Vec<Record> = support::records(&run).into_iter().filter(|row| studies.contains(&row.study.as_str())).collect();
+    let written = Written::of(&run, &records);
+    (records, written)
+}
+
+fn has(written: &Written, section: &str) -> bool {
+    let section_is_there = written.index.contains(&format!("<section id=\"{section}\""));
+    assert_eq!(section_is_there, written.index.contains(&format!("<a href=\"#{section}\">")), "{section}: the navigation differs");
+    section_is_there
+}
+
+/// The curve of a subject along an axis of a family.
+fn curve<'a>(figures: &'a Value, overview: &Value, axis: &str, family: &str, subject: [&str; 3]) -> &'a Value {
+    let digits = &figures["digits"];
+    let is_subject = |about: &Value| {
+        [&overview["engines"][about["engine"].as_u64().unwrap() as usize], &about["method"], &about["quantity"]]
+            .iter()
+            .zip(subject)
+            .all(|(found, wanted)| *found == wanted)
+    };
+    let index = digits["subjects"].as_array().unwrap().iter().position(is_subject).unwrap_or_else(|| panic!("no {subject:?}"));
+    let curves = digits["curves"].as_array().unwrap();
+    let found = curves.iter().find(|curve| curve["axis"] == axis && curve["family"] == family && curve["subject"] == index);
+    found.unwrap_or_else(|| panic!("no curve of {subject:?} against {axis} in {family}"))
+}
+
+#[test]
+fn each_section_appears_with_its_rows_alone() {
+    let (_, written) = of_studies(&["agreement", "timing", "structure"]);
+    assert_eq!(["digits", "tradeoff", "conditioning"].map(|section| has(&written, section)), [false; 3]);
+    assert!(!written.section("verdict").contains("Against the truth"));
+    let (_, written) = of_studies(&["digits"]);
+    assert_eq!(["digits", "tradeoff", "conditioning"].map(|section| has(&written, section)), [true, false, false]);
+    let (_, written) = of_studies(&["conditioning"]);
+    assert_eq!(["digits", "tradeoff", "conditioning"].map(|section| has(&written, section)), [false, false, true]);
+    let (_, written) = of_studies(&["digits", "timing"]);
+    assert_eq!(["digits", "tradeoff", "conditioning"].map(|section| has(&written, section)), [true, true, false]);
+}
+
+#[test]
+fn the_other_sections_stay_as_they_were() {
+    let (_, without) = of_studies(&["agreement", "timing", "structure"]);
+    let (_, with) = of_studies(&["agreement", "timing", "structure", "digits", "conditioning"]);
+    for id in ["agreement", "depth", "time", "pairs"] {
+        assert_eq!(without.section(id), with.section(id), "{id}");
+    }
+    let (without, with_data) = (without.data("figures"), with.data("figures"));
+    assert_eq!((&without["errors"], &without["times"]), (&with_data["errors"], &with_data["times"]));
+    let engines = with.data("overview")["engines"].clone();
+    assert!(engines.as_array().unwrap().iter().all(|name| name != "all"), "nobody is called all: {engines}");
+    assert!(!with.section("verdict").contains("<th scope=\"row\">all</th>"));
+}
+
+#[test]
+fn growth_is_what_the_methods_were_made_with() {
+    let (_, written) = of_studies(&["digits"]);
+    let (figures, overview) = (written.data("figures"), written.data("overview"));
+    let slope = |axis, family, subject| curve(&figures, &overview, axis, family, subject)["fit"]["slope"].as_f64().unwrap();
+    let close = |found: f64, expected: f64| assert!((found - expected).abs() < 0.05, "{found}, not {expected}");
+    close(slope("offset", "rand3d-20", ["pinocchio", "aba_world", "fd"]), 2.0);
+    close(slope("offset", "rand3d-20", ["native", "aba", "fd"]), 0.0);
+    close(slope("offset", "rand3d-20", ["mujoco", "forward", "fd"]), 1.0);
+    close(slope("depth", "chain_2d", ["native", "ltdl", "fd"]), 4.0);
+    // Lighter tips cost nothing and are left out of the fit, but not out of the plot; the robot itself stands at one.
+    let tips = curve(&figures, &overview, "tip", "rand3d-20", ["native", "aba", "fd"]);
+    close(tips["fit"]["slope"].as_f64().unwrap(), 1.0);
+    assert_eq!(tips["span"], serde_json::json!([1.0, 1e6]));
+    let places: Vec<f64> = tips["points"].as_array().unwrap().iter().map(|point| point[0].as_f64().unwrap()).collect();
+    assert_eq!(places, [1e-3, 1.0, 1e3, 1e6]);
+    // A line goes through entries of M, or through products, but not from one to the other.
+    let matrix = curve(&figures, &overview, "depth", "chain_2d", ["native", "crba", "mass_matrix"]);
+    assert_eq!((matrix["points"].as_array().unwrap().len(), &matrix["fit"]["points"]), (6, &5.into()));
+    assert!(written.section("digits").contains("<td class=\"number\">1.9") || written.section("digits").contains("2.00 ±"));
+}
+
+#[test]
+fn the_table_holds_every_median_once() {
+    let (records, written) = of_studies(&["digits"]);
+    let section = written.section("digits");
+    let table = &section[section.find("id=\"digits-table\"").unwrap()..];
+    let subjects = |row: &&Record| row.engine != "all";
+    let cells: std::collections::BTreeSet<_> =
+        records.iter().filter(subjects).map(|row| (&row.model, &row.engine, &row.method, &row.quantity)).collect();
+    assert_eq!(written.data("figures")["digits"]["cells"].as_array().unwrap().len(), cells.len());
+    // Every cell leads to a chunk that is there.
+    let chunks = written.chunk_names();
+    let data = written.data("figures");
+    let models = data["digits"]["cells"].as_array().unwrap().iter().map(|cell| &cell["model"]);
+    assert!(models.map(|model| format!("model-{model}")).all(|name| chunks.contains(&name)));
+    let heads = table.matches("<tr data-m").count();
+    assert_eq!(table.matches("<button").count(), cells.len() + heads);
+    // Pinocchio's world frame at 10⁶ m has lost all it can; an exact answer is zero; a gate that is missed has its sign.
+    assert!(table.contains("<button class=\"d5\" type=\"button\" tabindex=\"-1\"><i>✕</i>1.00e-2</button>"), "{table}");
+    assert!(table.contains("tabindex=\"-1\">0</button>"));
+    assert!(table.contains("class=\"error\" type=\"button\" tabindex=\"-1\">!</button>"));
+    assert!(table.contains("class=\"skip\" type=\"button\" tabindex=\"-1\">–</button>"));
+    assert!(table.contains("<span class=\"floor\">4.00e-15</span>"));
+}
+
+#[test]
+fn the_verdict_says_who_is_right_by_truth() {
+    let (_, written) = of_studies(&["digits"]);
+    let verdict = written.section("verdict");
+    for words in [
+        "Against the truth",
+        "<b>native aba and pinocchio aba_local</b>",
+        "keep every gate on forward dynamics",
+        "pinocchio aba_world</b> fails on 2 of 22 models in forward dynamics: rand3d-20-offset1e4 and rand3d-20-offset1e6",
+        "rand3d-20-offset1e6, 0.010 where 1e-7 is allowed",
+        "M is singular",
+        "pinocchio aba_world <b>0.010</b>",
+        "The reference is the suspect",
+        "rand3d-20-tip1e6</button> 3 engines stop at the same error",
+    ] {
+        assert!(verdict.contains(words), "{words}: {verdict}");
+    }
+    assert!(written.section("digits").contains("The reference is the suspect"));
+    assert!(!verdict.contains("Who does not"), "a failure against the truth is told once");
+}
+
+#[test]
+fn a_deviation_is_neither_kept_nor_failed() {
+    let row = |method: &str, model: &str| Record {
+        study: "digits".into(),
+        engine: "mujoco".into(),
+        method: method.into(),
+        model: model.into(),
+        quantity: "fd".into(),
+        metric: "true_forward".into(),
+        reference: "truth".into(),
+        ..Record::default()
+    };
+    let rows = [
+        row("forward", "a").gated(1e-15, Relation::Le, 1e-14),
+        row("forward", "b").gated(1e-12, Relation::Le, 1e-14).deviating("far base"),
+        // What it cannot be asked is no answer, right or wrong.
+        row("other", "a").gated(1e-15, Relation::Le, 1e-14),
+        row("other", "b").without_value(record::Verdict::Skip, "no such joint").deviating("no such joint"),
+    ];
+    let written = Written::of(&RunInfo::default(), &rows);
+    let verdict = written.section("verdict");
+    assert!(verdict.contains("<b>mujoco other</b> keeps every gate on forward dynamics"), "{verdict}");
+    assert!(verdict.contains("<b>mujoco forward</b> misses by known cause on 1 of 2 models in forward dynamics: b"), "{verdict}");
+    assert!(!verdict.contains("<li class=\"fail\">"));
+}
+
+#[test]
+fn work_against_precision_has_its_front() {
+    let (_, written) = of_studies(&["digits", "timing"]);
+    let (figures, overview) = (written.data("figures"), written.data("overview"));
+    let points = figures["tradeoffs"].as_array().unwrap();
+    let of_model = |name: &str| -> Vec<(&str, bool)> {
+        let of = |point: &&Value| overview["models"][point["model"].as_u64().unwrap() as usize]["name"] == name;
+        points.iter().filter(of).map(|point| (point["method"].as_str().unwrap(), point["front"].as_bool().unwrap())).collect()
+    };
+    // On two joints the factorization is faster and less accurate: both stand; on a hundred it is beaten in both.
+    assert_eq!(of_model("chain_2d_2"), [("ltdl", true), ("aba", true)]);
+    assert_eq!(of_model("chain_2d_100"), [("aba", true), ("ltdl", false)]);
+    assert!(points.iter().all(|point| overview["engines"][point["engine"].as_u64().unwrap() as usize] == "native"));
+    let section = written.section("tradeoff");
+    assert_eq!(section.matches("● unbeaten").count(), points.iter().filter(|point| point["front"] == true).count());
+}
+
+#[test]
+fn conditioning_shows_local_exponents_and_the_floor() {
+    let (_, written) = of_studies(&["conditioning"]);
+    let families = written.data("figures")["conditions"].clone();
+    assert_eq!(families.as_array().unwrap().len(), 1);
+    assert!((families[0]["raw"]["slope"].as_f64().unwrap() - 4.0).abs() < 1e-9, "{families}");
+    assert!((families[0]["scaled"]["slope"].as_f64().unwrap() - 4.25).abs() < 1e-9);
+    let section = written.section("conditioning");
+    for words in ["straight-64", "5.033e7", "6.400e-15", "</span> 4.000", "4.250"] {
+        assert!(section.contains(words), "{words}: {section}");
+    }
+}

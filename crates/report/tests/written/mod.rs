@@ -1,0 +1,50 @@
+//! A report on disk, and how tests look into it.
+
+use std::fs;
+
+use record::{Record, RunInfo};
+use tempfile::TempDir;
+
+/// A report in a folder of its own.
+pub struct Written {
+    /// The folder.
+    pub folder: TempDir,
+    /// The page.
+    pub index: String,
+}
+
+impl Written {
+    /// Writes a report.
+    pub fn of(run: &RunInfo, records: &[Record]) -> Self {
+        let folder = tempfile::tempdir().unwrap();
+        let paths = featherbench_report::write(run, records, folder.path()).unwrap();
+        assert_eq!(paths.index, folder.path().join("index.html"));
+        assert!(paths.files.iter().all(|path| path.is_file()));
+        let index = fs::read_to_string(paths.index).unwrap();
+        Self { folder, index }
+    }
+
+    /// A file of the report.
+    pub fn text(&self, name: &str) -> String {
+        fs::read_to_string(self.folder.path().join(name)).unwrap()
+    }
+
+    /// A data script's JSON, with its call taken off.
+    pub fn data(&self, name: &str) -> serde_json::Value {
+        let text = self.text(&format!("data/{name}.js"));
+        let json = text.strip_prefix(&format!("featherbench.chunk(\"{name}\",")).and_then(|rest| rest.strip_suffix(");\n"));
+        serde_json::from_str(json.unwrap_or_else(|| panic!("data/{name}.js is not one call"))).unwrap()
+    }
+
+    /// The names of the data scripts.
+    pub fn chunk_names(&self) -> Vec<String> {
+        let entries = fs::read_dir(self.folder.path().join("data")).unwrap();
+        entries.map(|entry| entry.unwrap().path().file_stem().unwrap().to_str().unwrap().to_owned()).collect()
+    }
+
+    /// A section's text.
+    pub fn section(&self, id: &str) -> &str {
+        let start = self.index.find(&format!("<section id=\"{id}\"")).unwrap_or_else(|| panic!("no section {id}"));
+        &self.index[start..start + self.index[start..].find("</section>").unwrap()]
+    }
+}

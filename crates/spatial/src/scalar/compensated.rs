@@ -1,0 +1,171 @@
+//! An `f64` with the sum of its rounding errors: double-double accuracy at half the price, where nothing is divided by what has cancelled.
+//!
+//! Source: pair arithmetic, M. Lange and S. M. Rump, *Faithfully rounded floating-point computations* (ACM TOMS 46, 2020), which is Ogita,
+//! Rump and Oishi's compensated dot product (2005) made into a number type. The upper part is what plain `f64` would compute; the lower
+//! part gathers its errors to first order and is never carried over. With u = 2⁻⁵³ an expression of sums and products with n operations
+//! on its longest path has an error of at most about n²u² times the same expression of magnitudes, so that cancellation costs digits as
+//! in a double-double of 106 − 2·log₂ n digits. Sine, cosine, quotients and roots renormalize their operands.
+
+use super::error_free::{two_product, two_sum};
+use super::{DoubleDouble, Lift, Real};
+use std::ops::{Add, AddAssign, Div, Mul, MulAssign, Neg, Sub, SubAssign};
+
+/// The sum `value + error`, where `error` is usually, but not always, the smaller.
+///
+/// Two of them can be the same number and not be equal, which is why they cannot be compared; [`Compensated::to_double_double`] can.
+///
+/// ```
+/// use featherbench_spatial::{Compensated, Lift, Real};
+/// let [large, small] = [1e20, 1.0].map(Compensated::from_f64);
+/// let difference: f64 = (large * large + small - large * large).lift();
+/// assert_eq!(difference, 0.0, "32 digits are not 40");
+/// let difference: f64 = (large + small - large).lift();
+/// assert_eq!(difference, 1.0);
+/// ```
+#[derive(Clone, Copy, Debug)]
+pub struct Compensated {
+    value: f64,
+    error: f64,
+}
+
+impl Compensated {
+    /// The same number with parts that do not overlap.
+    #[inline(always)]
+    pub fn to_double_double(self) -> DoubleDouble {
+        DoubleDouble::from_sum(self.value, self.error)
+    }
+
+    #[inline(always)]
+    fn renormalized(self) -> Self {
+        let (value, error) = two_sum(self.value, self.error);
+        Self { value, error }
+    }
+}
+
+impl From<DoubleDouble> for Compensated {
+    #[inline(always)]
+    fn from(number: DoubleDouble) -> Self {
+        Self { value: number.to_f64(), error: number.rest() }
+    }
+}
+
+impl Real for Compensated {
+    #[inline(always)]
+    fn from_f64(value: f64) -> Self {
+        Self { value, error: 0.0 }
+    }
+
+    #[inline(always)]
+    fn mul_add(self, factor: Self, addend: Self) -> Self {
+        let (product, product_error) = two_product(self.value, factor.value);
+        let (value, sum_error) = two_sum(product, addend.value);
+        let errors = (product_error + sum_error) + addend.error;
+        Self { value, error: Real::mul_add(self.error, factor.value, Real::mul_add(self.value, factor.error, errors)) }
+    }
+
+    #[inline(always)]
+    fn sqrt(self) -> Self {
+        self.to_double_double().sqrt().into()
+    }
+
+    #[inline(always)]
+    fn sin_cos(self) -> (Self, Self) {
+        let (sin, cos) = self.to_double_double().sin_cos();
+        (sin.into(), cos.into())
+    }
+
+    #[inline(always)]
+    fn min_lane(self) -> f64 {
+        self.value + self.error
+    }
+}
+
+impl Lift<Compensated> for f64 {
+    #[inline(always)]
+    fn lift(self) -> Compensated {
+        Compensated::from_f64(self)
+    }
+}
+
+impl Lift<Compensated> for DoubleDouble {
+    #[inline(always)]
+    fn lift(self) -> Compensated {
+        self.into()
+    }
+}
+
+/// Rounds.
+impl Lift<f64> for Compensated {
+    #[inline(always)]
+    fn lift(self) -> f64 {
+        self.value + self.error
+    }
+}
+
+impl Add for Compensated {
+    type Output = Self;
+    #[inline(always)]
+    fn add(self, other: Self) -> Self {
+        let (value, error) = two_sum(self.value, other.value);
+        Self { value, error: error + (self.error + other.error) }
+    }
+}
+
+impl Sub for Compensated {
+    type Output = Self;
+    #[inline(always)]
+    fn sub(self, other: Self) -> Self {
+        self + -other
+    }
+}
+
+impl Mul for Compensated {
+    type Output = Self;
+    #[inline(always)]
+    fn mul(self, other: Self) -> Self {
+        let (value, error) = two_product(self.value, other.value);
+        Self { value, error: Real::mul_add(self.error, other.value, Real::mul_add(self.value, other.error, error)) }
+    }
+}
+
+impl Div for Compensated {
+    type Output = Self;
+    #[inline(always)]
+    fn div(self, other: Self) -> Self {
+        let other = other.renormalized();
+        let value = self.value / other.value;
+        let (product, error) = two_product(value, other.value);
+        // what is left of the dividend; the first difference is exact
+        let rest = ((self.value - product) - error) + Real::mul_add(-value, other.error, self.error);
+        Self { value, error: rest / other.value }
+    }
+}
+
+impl Neg for Compensated {
+    type Output = Self;
+    #[inline(always)]
+    fn neg(self) -> Self {
+        Self { value: -self.value, error: -self.error }
+    }
+}
+
+impl AddAssign for Compensated {
+    #[inline(always)]
+    fn add_assign(&mut self, other: Self) {
+        *self = *self + other;
+    }
+}
+
+impl SubAssign for Compensated {
+    #[inline(always)]
+    fn sub_assign(&mut self, other: Self) {
+        *self = *self - other;
+    }
+}
+
+impl MulAssign for Compensated {
+    #[inline(always)]
+    fn mul_assign(&mut self, other: Self) {
+        *self = *self * other;
+    }
+}

@@ -1,0 +1,228 @@
+//! Double-double numbers: about 32 digits in two `f64`.
+//!
+//! Sources: M. Joldes, J.-M. Muller and V. Popescu, *Tight and rigorous error bounds for basic building blocks of double-word arithmetic*
+//! (ACM TOMS 44, 2017), and V. Lefèvre, N. Louvet, J.-M. Muller, J. Picot and L. Rideau, *Accurate calculation of Euclidean norms using
+//! double-word arithmetic* (ACM TOMS 49, 2023) for the square root. With u = 2⁻⁵³ the relative errors are at most
+//!
+//! | operation | bound |
+//! |---|---|
+//! | sum, difference | 3u² + 13u³, also where the operands cancel |
+//! | product | 5u² (4u² with fused multiply-add) |
+//! | quotient | 15u² + 56u³ |
+//! | square root | 25/8·u² |
+//! | `a·b + c` | 5u²·\|a·b\| + 6u²·\|a·b + c\| |
+//! | sine, cosine | 28u² (3u² is the most that was seen), also at huge angles and next to their zeros |
+//!
+//! as long as nothing overflows or underflows: every nonzero operand and result within about 2⁻⁹⁰⁰ … 2⁹⁹⁰. An infinite result becomes NaN
+//! in the next operation at the latest, and NaN stays NaN.
+
+use super::error_free::{fast_two_sum, two_product, two_sum};
+use super::trigonometry;
+use super::{Lift, Real};
+use std::ops::{Add, AddAssign, Div, Mul, MulAssign, Neg, Sub, SubAssign};
+
+/// The sum `hi + lo` of two `f64`, of which `hi` is the one nearest to the sum.
+///
+/// ```
+/// use featherbench_spatial::{DoubleDouble, Real};
+/// let third = DoubleDouble::one() / DoubleDouble::from_f64(3.0);
+/// let error = third * DoubleDouble::from_f64(3.0) - DoubleDouble::one();
+/// assert!(error.to_f64().abs() < 1e-31);
+/// assert_eq!(third.to_f64(), 1.0 / 3.0);
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq, PartialOrd)]
+pub struct DoubleDouble {
+    hi: f64,
+    lo: f64,
+}
+
+impl DoubleDouble {
+    /// `a + b`, exactly.
+    #[inline(always)]
+    pub fn from_sum(a: f64, b: f64) -> Self {
+        let (hi, lo) = two_sum(a, b);
+        Self { hi, lo }
+    }
+
+    /// `a · b`, exactly.
+    #[inline(always)]
+    pub fn from_product(a: f64, b: f64) -> Self {
+        let (hi, lo) = two_product(a, b);
+        Self { hi, lo }
+    }
+
+    /// The two parts as they are: `hi` must be the `f64` nearest to `hi + lo`.
+    #[inline(always)]
+    pub(crate) const fn from_parts(hi: f64, lo: f64) -> Self {
+        Self { hi, lo }
+    }
+
+    /// `hi + lo`, exactly, where |hi| ≥ |lo|.
+    #[inline(always)]
+    pub(crate) fn renormalized(hi: f64, lo: f64) -> Self {
+        let (hi, lo) = fast_two_sum(hi, lo);
+        Self { hi, lo }
+    }
+
+    /// The `f64` nearest to this number.
+    #[inline(always)]
+    pub fn to_f64(self) -> f64 {
+        self.hi
+    }
+
+    /// What [`DoubleDouble::to_f64`] leaves: at most half a unit in its last place.
+    #[inline(always)]
+    pub fn rest(self) -> f64 {
+        self.lo
+    }
+
+    /// The magnitude.
+    #[inline(always)]
+    pub fn abs(self) -> Self {
+        if self.hi.is_sign_negative() { -self } else { self }
+    }
+
+    /// `self · factor` for a plain factor: relative error at most 3u².
+    #[inline(always)]
+    pub(crate) fn scale(self, factor: f64) -> Self {
+        let (product, error) = two_product(self.hi, factor);
+        Self::renormalized(product, Real::mul_add(self.lo, factor, error))
+    }
+
+    /// The product with its parts not yet renormalized: the lower one is at most 4u of the upper one.
+    #[inline(always)]
+    fn raw_product(self, other: Self) -> (f64, f64) {
+        let (product, error) = two_product(self.hi, other.hi);
+        let cross = Real::mul_add(self.lo, other.hi, Real::mul_add(self.hi, other.lo, self.lo * other.lo));
+        (product, error + cross)
+    }
+
+    /// `a + b`, where `a` need not be renormalized.
+    #[inline(always)]
+    fn sum((a_hi, a_lo): (f64, f64), b: Self) -> Self {
+        let ((high, high_error), (low, low_error)) = (two_sum(a_hi, b.hi), two_sum(a_lo, b.lo));
+        // `high` is a multiple of the last place of what is added to it, also after cancellation.
+        let (high, rest) = fast_two_sum(high, high_error + low);
+        Self::renormalized(high, low_error + rest)
+    }
+}
+
+impl Real for DoubleDouble {
+    #[inline(always)]
+    fn from_f64(value: f64) -> Self {
+        Self { hi: value, lo: 0.0 }
+    }
+
+    #[inline(always)]
+    fn mul_add(self, factor: Self, addend: Self) -> Self {
+        Self::sum(self.raw_product(factor), addend)
+    }
+
+    #[inline(always)]
+    fn sqrt(self) -> Self {
+        let root = self.hi.sqrt();
+        if root == 0.0 {
+            return Self::from_f64(root);
+        }
+        // The residual hi − root² is an f64.
+        let (square, error) = two_product(root, root);
+        let residual = self.lo + ((self.hi - square) - error);
+        Self::renormalized(root, residual / (root + root))
+    }
+
+    fn sin_cos(self) -> (Self, Self) {
+        trigonometry::sin_cos(self)
+    }
+
+    #[inline(always)]
+    fn min_lane(self) -> f64 {
+        self.hi
+    }
+}
+
+impl Lift<DoubleDouble> for f64 {
+    #[inline(always)]
+    fn lift(self) -> DoubleDouble {
+        DoubleDouble::from_f64(self)
+    }
+}
+
+/// Rounds: a model that was built in double-double lends its parameters to `f64` kernels.
+impl Lift<f64> for DoubleDouble {
+    #[inline(always)]
+    fn lift(self) -> f64 {
+        self.to_f64()
+    }
+}
+
+impl From<f64> for DoubleDouble {
+    #[inline(always)]
+    fn from(value: f64) -> Self {
+        Self::from_f64(value)
+    }
+}
+
+impl Add for DoubleDouble {
+    type Output = Self;
+    #[inline(always)]
+    fn add(self, other: Self) -> Self {
+        Self::sum((self.hi, self.lo), other)
+    }
+}
+
+impl Sub for DoubleDouble {
+    type Output = Self;
+    #[inline(always)]
+    fn sub(self, other: Self) -> Self {
+        self + -other
+    }
+}
+
+impl Mul for DoubleDouble {
+    type Output = Self;
+    #[inline(always)]
+    fn mul(self, other: Self) -> Self {
+        let (hi, lo) = self.raw_product(other);
+        Self::renormalized(hi, lo)
+    }
+}
+
+impl Div for DoubleDouble {
+    type Output = Self;
+    #[inline(always)]
+    fn div(self, other: Self) -> Self {
+        let quotient = self.hi / other.hi;
+        let product = other.scale(quotient);
+        let rest = (self.hi - product.hi) + (self.lo - product.lo);
+        Self::renormalized(quotient, rest / other.hi)
+    }
+}
+
+impl Neg for DoubleDouble {
+    type Output = Self;
+    #[inline(always)]
+    fn neg(self) -> Self {
+        Self { hi: -self.hi, lo: -self.lo }
+    }
+}
+
+impl AddAssign for DoubleDouble {
+    #[inline(always)]
+    fn add_assign(&mut self, other: Self) {
+        *self = *self + other;
+    }
+}
+
+impl SubAssign for DoubleDouble {
+    #[inline(always)]
+    fn sub_assign(&mut self, other: Self) {
+        *self = *self - other;
+    }
+}
+
+impl MulAssign for DoubleDouble {
+    #[inline(always)]
+    fn mul_assign(&mut self, other: Self) {
+        *self = *self * other;
+    }
+}

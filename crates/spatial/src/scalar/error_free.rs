@@ -1,0 +1,70 @@
+//! Error-free transforms: sums and products of two `f64` as the rounded result and its rounding error, exactly.
+//!
+//! Sources: Knuth's two-sum, Dekker's fast two-sum, and the product by fused multiply-add or, where the machine has none, by Veltkamp's
+//! splitting and Dekker's product (T. J. Dekker, *A floating-point technique for extending the available precision*, 1971). All are exact in
+//! round-to-nearest unless something overflows; products also need an error that does not underflow (|a·b| above 2⁻⁹⁶⁹).
+
+/// `a + b` and its error, exactly.
+#[inline(always)]
+pub(crate) fn two_sum(a: f64, b: f64) -> (f64, f64) {
+    let sum = a + b;
+    let b_part = sum - a;
+    (sum, (a - (sum - b_part)) + (b - b_part))
+}
+
+/// `a + b` and its error, exactly, if |a| ≥ |b|, if a is zero or, more generally, if `a` is a multiple of the last place of `b`.
+#[inline(always)]
+pub(crate) fn fast_two_sum(a: f64, b: f64) -> (f64, f64) {
+    let sum = a + b;
+    (sum, b - (sum - a))
+}
+
+/// `a · b` and its error, exactly.
+#[inline(always)]
+pub(crate) fn two_product(a: f64, b: f64) -> (f64, f64) {
+    if cfg!(target_feature = "fma") {
+        let product = a * b;
+        (product, f64::mul_add(a, b, -product))
+    } else {
+        dekker_product(a, b)
+    }
+}
+
+/// [`two_product`] without fused multiply-add; it also overflows for factors above 2⁹⁹⁶.
+#[inline(always)]
+fn dekker_product(a: f64, b: f64) -> (f64, f64) {
+    let product = a * b;
+    let ((a_high, a_low), (b_high, b_low)) = (split(a), split(b));
+    let rest = ((a_high * b_high - product) + a_high * b_low) + a_low * b_high;
+    (product, rest + a_low * b_low)
+}
+
+/// `a` as the sum of two numbers of 26 bits (Veltkamp).
+#[inline(always)]
+fn split(a: f64) -> (f64, f64) {
+    const SPLITTER: f64 = 134_217_729.0; // 2²⁷ + 1
+    let scaled = SPLITTER * a;
+    let high = scaled - (scaled - a);
+    (high, a - high)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    proptest! {
+        /// Integers of 53 bits, whose sums and products `i128` holds exactly.
+        #[test]
+        fn transforms_are_exact(a in -(1_i64 << 53)..=1 << 53, b in -(1_i64 << 53)..=1 << 53, shift in 0..53) {
+            let b = b >> shift;
+            let (x, y) = (a as f64, b as f64);
+            let exact = |(high, low): (f64, f64)| high as i128 + low as i128;
+            prop_assert_eq!(exact(two_sum(x, y)), i128::from(a) + i128::from(b));
+            prop_assert_eq!(exact(two_product(x, y)), i128::from(a) * i128::from(b));
+            prop_assert_eq!(exact(dekker_product(x, y)), i128::from(a) * i128::from(b), "the product without fused multiply-add");
+            let (larger, smaller) = if x.abs() >= y.abs() { (x, y) } else { (y, x) };
+            prop_assert_eq!(fast_two_sum(larger, smaller), two_sum(x, y));
+        }
+    }
+}

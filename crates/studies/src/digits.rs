@@ -1,0 +1,235 @@
+//! Digits: how far each engine and method is from the truth, and who is right.
+//!
+//! The reference is not an engine but the answer in double-double arithmetic ([`harness::truth`]). Inverse dynamics and M are measured in
+//! the unit-free measures of the agreement study; forward dynamics in the kinetic-energy norm, against the bound that a backward stable
+//! method keeps, and in the 2-norm for the comparison with published tables, with the structured floor beside it. The quartiles are over the
+//! states.
+//!
+//! *Wall*: when the best answers of several engines all lie at one error, it is the reference that ends there. A row per robot says how many
+//! engines stand at the wall.
+
+use crate::row;
+use dynamics::TreeSparse;
+use harness::measure::{ForwardScale, scaled_error};
+use harness::truth::{Truth, TruthModel, structured_floor};
+use harness::{Cell, Context, DENSE_LIMIT, Finished, Outcome, Problem, Quantity, Refusal, Study};
+use record::{Record, Verdict};
+use serde_json::json;
+
+/// The digits study.
+pub struct Digits;
+
+/// What is compared with the truth.
+const QUANTITIES: [Quantity; 5] = [
+    Quantity::InverseDynamics,
+    Quantity::MassMatrix,
+    Quantity::MassMatrixProbe,
+    Quantity::ForwardDynamics,
+    Quantity::ForwardDynamicsSingle,
+];
+/// The name of the reference in records.
+const TRUTH: &str = "truth";
+/// The floor hardly depends on the state: its median over a few is enough, and it costs O(n²) each.
+const FLOOR_STATES: usize = 3;
+/// Above this size no floor is computed.
+const FLOOR_DOFS: usize = 300;
+
+impl Study for Digits {
+    fn name(&self) -> &'static str {
+        "digits"
+    }
+
+    fn plan(&self, context: &Context) -> Vec<Cell> {
+        let mut cells = Vec::new();
+        for problem in context.problems.iter().filter(|problem| problem.takes(self.name())) {
+            let big = problem.states.nv > DENSE_LIMIT;
+            for subject in context.subjects {
+                let identity = subject.identity();
+                for quantity in QUANTITIES {
+                    let other_form = if big { Quantity::MassMatrix } else { Quantity::MassMatrixProbe };
+                    if quantity == other_form {
+                        continue;
+                    }
+                    cells.extend(subject.methods(quantity).into_iter().map(|method| Cell {
+                        study: self.name().into(),
+                        problem: problem.name.clone(),
+                        problem_hash: problem.hash.clone(),
+                        params: json!({"base": problem.base(), "states": problem.states.count()}),
+                        subject: identity.name.clone(),
+                        version: identity.version.clone(),
+                        method,
+                        quantity: quantity.name().into(),
+                        scalar: if quantity == Quantity::ForwardDynamicsSingle { "f32" } else { "f64" }.into(),
+                    }));
+                }
+            }
+        }
+        cells
+    }
+
+    fn evaluate(&self, context: &Context, cell: &Cell) -> Outcome {
+        crate::evaluate(context, cell)
+    }
+
+    fn compare(&self, context: &Context, problem: &Problem, finished: &[Finished]) -> Vec<Record> {
+        let model = TruthModel::new(problem);
+        let truth: Option<Vec<Truth>> = (0..problem.states.count()).map(|k| model.as_ref()?.at(problem, k)).collect();
+        let Some(truth) = truth else {
+            let unknown = |(cell, _): &Finished| row(cell, problem).without_value(Verdict::Error, "there is no truth for this robot");
+            return finished.iter().map(unknown).collect();
+        };
+        let at = problem.magnitudes();
+        let forward = ForwardScale::all(problem, &at);
+        let floors = if problem.states.nv <= FLOOR_DOFS { problem.states.count().min(FLOOR_STATES) } else { 0 };
+        let floors: Vec<f64> = (0..floors).map(|k| structured_floor(problem, k).unwrap_or(f64::NAN)).collect();
+        let floor = median(&mut floors.iter().copied().filter(|floor| floor.is_finite()).collect::<Vec<_>>());
+
+        let (mut rows, mut walls) = (Vec::new(), Vec::new());
+        for (cell, outcome) in finished {
+            let blank = Record { reference: TRUTH.into(), unit: "1".into(), case: "all".into(), ..row(cell, problem) };
+            let (Outcome::Values(values), Some(quantity)) = (outcome, Quantity::parse(&cell.quantity)) else {
+                let (verdict, reason) = match outcome {
+                    Outcome::Refused(Refusal::Unsupported(reason)) => (Verdict::Skip, reason.clone()),
+                    Outcome::Refused(Refusal::Failed(reason)) => (Verdict::Error, reason.clone()),
+                    Outcome::Values(_) => (Verdict::Error, format!("there is no quantity {}", cell.quantity)),
+                };
+                rows.push(context.gates.explain(blank.without_value(verdict, reason)));
+                continue;
+            };
+            if matches!(quantity, Quantity::ForwardDynamics | Quantity::ForwardDynamicsSingle) {
+                let answers = values.chunks_exact(problem.states.nv).zip(&truth).zip(&forward);
+                let Some(errors) = answers
+                    .map(|((a, truth), scale)| Some(forward_errors(a, truth.forward_dynamics.as_ref()?, scale)))
+                    .collect::<Option<Vec<_>>>()
+                else {
+                    rows.push(context.gates.explain(blank.without_value(Verdict::Error, "M is singular: there is no true answer")));
+                    continue;
+                };
+                let worst = errors.iter().max_by(|a, b| (a.energy / a.bound).total_cmp(&(b.energy / b.bound)));
+                if let Some(worst) = worst {
+                    let row = Record { metric: "true_forward".into(), floor, ..blank.clone() };
+                    rows.push(context.gates.judge(row, worst.energy, worst.bound));
+                }
+                let mut plain: Vec<f64> = errors.iter().map(|error| error.plain).collect();
+                let blank = Record { floor, ..blank };
+                if quantity == Quantity::ForwardDynamics {
+                    rows.extend(over_floor(context, &blank, &plain, &floors));
+                }
+                rows.extend(quartiles(context, &blank, &mut plain));
+                if quantity == Quantity::ForwardDynamics {
+                    walls.extend(median(&mut plain).map(|error| (cell.subject.clone(), error)));
+                }
+            } else {
+                let size = quantity.size(problem);
+                let answers = values.chunks_exact(size).zip(&truth).zip(&at);
+                let mut errors: Vec<f64> = answers
+                    .map(|((value, truth), at)| scaled_error(problem, quantity, at, &true_value(problem, quantity, truth), value))
+                    .collect();
+                let worst = errors.iter().copied().fold(0.0, harness::measure::worst);
+                rows.push(context.gates.judge(Record { metric: "true".into(), ..blank.clone() }, worst, 1.0));
+                rows.extend(quartiles(context, &blank, &mut errors));
+            }
+        }
+        if let (Some((cell, _)), Some(standing)) = (finished.first(), at_the_wall(&walls, floor)) {
+            let row = Record { engine: "all".into(), engine_version: String::new(), method: String::new(), ..row(cell, problem) };
+            let row =
+                Record { quantity: "fd".into(), metric: "engines_at_the_wall".into(), unit: "1".into(), case: "all".into(), floor, ..row };
+            rows.push(row.informed(standing as f64));
+        }
+        rows
+    }
+}
+
+/// The errors of one forward-dynamics answer.
+struct ForwardErrors {
+    /// In the kinetic-energy norm.
+    energy: f64,
+    /// What a backward error of one amounts to in that norm.
+    bound: f64,
+    /// In the 2-norm.
+    plain: f64,
+}
+
+fn forward_errors(a: &[f64], truth: &[f64], scale: &ForwardScale) -> ForwardErrors {
+    let norm = |values: &mut dyn Iterator<Item = f64>| values.map(|x| x * x).sum::<f64>().sqrt();
+    let plain = harness::measure::ratio(norm(&mut a.iter().zip(truth).map(|(a, t)| a - t)), norm(&mut truth.iter().copied()));
+    // The truth has no backward error: half of what two answers may differ by.
+    ForwardErrors { energy: scale.forward_error(truth, a), bound: 0.5 * scale.amplification, plain }
+}
+
+fn true_value(problem: &Problem, quantity: Quantity, truth: &Truth) -> Vec<f64> {
+    let n = problem.states.nv;
+    match quantity {
+        Quantity::MassMatrix => (0..n * n).map(|entry| truth.mass.get(entry / n, entry % n)).collect(),
+        Quantity::MassMatrixProbe => probe(&truth.mass, &problem.probe()),
+        _ => truth.inverse_dynamics.clone(),
+    }
+}
+
+/// Products with the four vectors, diagonal and last row of M.
+fn probe(mass: &TreeSparse<f64>, vectors: &[f64]) -> Vec<f64> {
+    let n = mass.size();
+    let mut values = vec![f64::NAN; 4 * n];
+    for (x, y) in vectors.chunks_exact(n).zip(values.chunks_exact_mut(n)) {
+        if mass.mul(x, y).is_err() {
+            y.fill(f64::NAN);
+        }
+    }
+    values.extend(mass.diagonal());
+    values.extend((0..n).map(|j| mass.get(n - 1, j)));
+    values
+}
+
+/// First quartile, median, third quartile and largest of the errors, as rows that are measured, and judged where a gate says so.
+fn quartiles(context: &Context, blank: &Record, errors: &mut [f64]) -> Vec<Record> {
+    errors.sort_unstable_by(f64::total_cmp);
+    let metrics = [("error_q1", 0.25), ("error_median", 0.5), ("error_q3", 0.75), ("error_worst", 1.0)];
+    let rows = metrics.map(|(metric, fraction)| {
+        let row = Record { metric: metric.into(), ..blank.clone() };
+        context.gates.judge(row, crate::quantile(errors, fraction), 1.0)
+    });
+    rows.into()
+}
+
+/// The largest error over the structured floor of its state: what the algorithm adds to what rounding the inputs may do.
+fn over_floor(context: &Context, blank: &Record, errors: &[f64], floors: &[f64]) -> Option<Record> {
+    let pairs = errors.iter().zip(floors).filter(|(_, floor)| floor.is_finite());
+    let worst = pairs.map(|(error, floor)| harness::measure::ratio(*error, *floor)).reduce(harness::measure::worst)?;
+    let row = Record { metric: "error_over_floor".into(), ..blank.clone() };
+    Some(context.gates.judge(row, worst, 1.0))
+}
+
+fn median(values: &mut [f64]) -> Option<f64> {
+    values.sort_unstable_by(f64::total_cmp);
+    (!values.is_empty()).then(|| crate::quantile(values, 0.5))
+}
+
+/// How many engines have their best method at the smallest error of all, within a factor of two, when that error is well above the floor: several
+/// at one place are no coincidence, and then the reference is the suspect. `None` where nobody stands with another.
+fn at_the_wall(errors: &[(String, f64)], floor: Option<f64>) -> Option<usize> {
+    let mut best: Vec<(&str, f64)> = Vec::new();
+    for (engine, error) in errors {
+        match best.iter_mut().find(|(known, _)| known == engine) {
+            Some((_, least)) => *least = least.min(*error),
+            None => best.push((engine, *error)),
+        }
+    }
+    let least = best.iter().map(|(_, error)| *error).fold(f64::INFINITY, f64::min);
+    let above_rounding = least > 64.0 * floor.unwrap_or(0.0).max(f64::EPSILON);
+    let standing = best.iter().filter(|(_, error)| *error <= 2.0 * least).count();
+    (above_rounding && standing >= 3).then_some(standing)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn curves_that_go_flat_together_make_a_wall() {
+        let errors =
+            |values: [f64; 3]| ["a", "b", "c"].into_iter().zip(values).map(|(name, error)| (name.to_owned(), error)).collect::<Vec<_>>();
+        assert_eq!(at_the_wall(&errors([1.0e-11, 1.1e-11, 1.5e-11]), Some(2e-16)), Some(3), "three engines at the error of the reference");
+        assert_eq!(at_the_wall(&errors([1e-15, 1e-12, 1e-9]), Some(2e-16)), None, "each where its algorithm puts it");
+        assert_eq!(at_the_wall(&errors([3e-16, 3e-16, 3e-16]), Some(2e-16)), None, "all at the floor: nothing is wrong");
+    }
+}
