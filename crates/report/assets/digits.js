@@ -95,7 +95,7 @@ featherbench.ready(() => {
         marker: { color: variable("--ink"), symbol: "line-ew-open", size: 10 }, hovertemplate: "floor %{y:.2e}<extra></extra>" });
     }
     if (most > 0) traces.push({ name: "2⁻⁵²", x: [least, most], y: [ULP, ULP], mode: "lines", hoverinfo: "skip", line: { color: variable("--soft"), width: 1, dash: "dot" } });
-    const shape = layout(AXES[axis], `median relative error: ${plain(title(chosen()))}`);
+    const shape = layout(AXES[axis], innerWidth < 760 ? "median relative error" : `median relative error: ${plain(title(chosen()))}`);
     // Marks at the robots themselves: between them there is nothing.
     const places = [...new Set(curves.flatMap((curve) => curve.points.map(([x]) => x)))].sort((a, b) => a - b);
     Object.assign(shape.xaxis, { tickvals: places, ticktext: places.map((x) => (x >= 1e-2 && x < 1e4 ? String(x) : `10<sup>${Number(Math.log10(x).toFixed(2))}</sup>`)) });
