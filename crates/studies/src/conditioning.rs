@@ -66,8 +66,10 @@ impl Study for Conditioning {
             rows.push(Record { metric: "kappa_scaled".into(), floor, ..blank.clone() }.informed(scaled));
             if let Some([half_raw, half_scaled]) = half.and_then(conditions).as_deref() {
                 for (metric, ratio) in [("kappa_exponent", raw / half_raw), ("kappa_scaled_exponent", scaled / half_scaled)] {
-                    rows.push(context.gates.judge(Record { metric: metric.into(), ..blank.clone() }, ratio.log2(), 1.0));
+                    rows.push(Record { metric: metric.into(), ..blank.clone() }.informed(ratio.log2()));
                 }
+                let row = Record { metric: "kappa_off_quartic".into(), ..blank.clone() };
+                rows.push(context.gates.judge(row, ((raw / half_raw).log2() - 4.0).abs(), 1.0));
             }
         }
         rows

@@ -114,6 +114,10 @@ impl Study for Digits {
                 let blank = Record { floor, ..blank };
                 if quantity == Quantity::ForwardDynamics {
                     rows.extend(over_floor(context, &blank, &plain, &floors));
+                    let mut residuals: Vec<f64> =
+                        values.chunks_exact(problem.states.nv).zip(&forward).map(|(a, scale)| scale.residual(a)).collect();
+                    let typical = median(&mut residuals);
+                    rows.extend(typical.map(|residual| Record { metric: "residual_median".into(), ..blank.clone() }.informed(residual)));
                 }
                 rows.extend(quartiles(context, &blank, &mut plain));
                 if quantity == Quantity::ForwardDynamics {

@@ -82,6 +82,21 @@ impl<'a> ForwardScale<'a> {
         residuals.fold(0.0, |error, ((found, given), terms)| worst(error, ratio(given - found, terms)))
     }
 
+    /// ‖τ − ID(q, v, a)‖₂ / ‖τ − h‖₂, our inverse dynamics evaluating: what is often taken for an error, and says little about it.
+    pub fn residual(&self, a: &[f64]) -> f64 {
+        let (model, states) = (&self.problem.model, &self.problem.states);
+        let (q, v) = (states.q(self.state), states.v(self.state));
+        let (mut taken, mut bias) = (vec![f64::NAN; states.nv], vec![f64::NAN; states.nv]);
+        let evaluated = Rnea::new(&model.topology)
+            .run(model, q, v, a, None, &mut taken)
+            .and_then(|()| Bias::new(&model.topology).run(model, q, v, None, &mut bias));
+        if evaluated.is_err() {
+            return f64::NAN;
+        }
+        let distance = |from: &[f64]| from.iter().zip(states.tau(self.state)).map(|(x, tau)| (x - tau).powi(2)).sum::<f64>().sqrt();
+        ratio(distance(&taken), distance(&bias))
+    }
+
     /// ‖a − reference‖_M / ‖reference‖_M.
     pub fn forward_error(&self, reference: &[f64], a: &[f64]) -> f64 {
         let difference: Vec<f64> = a.iter().zip(reference).map(|(a, r)| a - r).collect();
