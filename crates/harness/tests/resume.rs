@@ -204,13 +204,9 @@ fn a_process_that_dies_loses_only_what_it_was_doing() {
         assert_eq!(output.status.code(), Some(70), "{output:?}");
         let done = whole_frames(&std::fs::read(folder.path().join(OUTCOMES_NAME)).unwrap());
         assert!(done.is_subset(&ids));
-        // All that it began but the cells in flight, one per thread, are on disk.
+        // All that it began but the cells in flight, one per thread, are on disk; what other threads finish while the process goes down may be.
         let threads = rayon::current_num_threads();
-        assert!(
-            (finished + moment).saturating_sub(threads) <= done.len() && done.len() < finished + moment,
-            "{} after {moment}",
-            done.len()
-        );
+        assert!((finished + moment).saturating_sub(threads) <= done.len(), "{} after {moment}", done.len());
         finished = done.len();
     }
     let study = Counting::default();
