@@ -194,8 +194,8 @@ fn agreements<'a>(overview: &Overview<'a>, records: &'a [Record]) -> Vec<Agreeme
         account.tally.add(row.verdict);
         if row.verdict == Verdict::Pass {
             account.models.insert(&row.model);
-            // A backward error is another measure than the quantity's own error: the sentence has room for one.
-            if row.metric != "backward" {
+            // An error over its floor is a ratio and no error: it is judged, and not told in this sentence.
+            if row.metric != "error_over_floor" {
                 account.largest = account.largest.max(row.value.unwrap_or_default().abs());
             }
         }

@@ -117,7 +117,8 @@ fn kept<'a>(overview: &Overview<'a>, accounts: &BTreeMap<((usize, &'a str), usiz
             }
         }
         let rows = of_quantity.iter().filter(|(_, account)| keeps(account)).flat_map(|(_, account)| account.values());
-        let largest = rows.filter_map(|row| row.value).fold(0.0, f64::max);
+        // An error over its floor is a ratio and no error.
+        let largest = rows.filter(|row| row.metric != "error_over_floor").filter_map(|row| row.value).fold(0.0, f64::max);
         let models = || of_quantity.iter().filter(|(_, account)| keeps(account)).map(|(_, account)| account.len());
         let models = models().min().zip(models().max());
         kept.extend(models.map(|models| Kept { quantity: quantity.1, subjects, models, largest }));
