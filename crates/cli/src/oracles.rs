@@ -32,6 +32,7 @@ pub fn install(root: &Root) -> Result<PathBuf, Fail> {
     let environment = folder.join("venv");
     std::fs::create_dir_all(&folder).map_err(|error| Fail::input(format!("{}: {error}", folder.display())))?;
     let requirements = root.oracles().join("requirements.txt");
+    let packages = root.oracles().join("packages.txt");
     let python = environment.join("bin/python");
     let bar = spinner();
     let text = |path: &Path| path.as_os_str().to_owned();
@@ -40,14 +41,22 @@ pub fn install(root: &Root) -> Result<PathBuf, Fail> {
         if !python.exists() {
             step(&bar, "uv", &["venv".into(), "--python".into(), "3.11".into(), text(&environment)])?;
         }
-        step(&bar, "uv", &["pip".into(), "install".into(), "--python".into(), text(&python), "-r".into(), text(&requirements)])?;
+        let install = ["pip".into(), "install".into(), "--python".into(), text(&python)];
+        let engines = ["-r".into(), text(&requirements)];
+        let files = ["--no-deps".into(), "--target".into(), text(&root.packages()), "-r".into(), text(&packages)];
+        step(&bar, "uv", &[&install[..], &engines].concat())?;
+        step(&bar, "uv", &[&install[..], &files].concat())?;
     } else {
         if !python.exists() {
             step(&bar, "python3", &["-m".into(), "venv".into(), text(&environment)])?;
         }
-        let pip = ["-m", "pip", "install", "--progress-bar", "off", "-r"].map(OsString::from);
-        let arguments: Vec<OsString> = pip.into_iter().chain([text(&requirements)]).collect();
-        step(&bar, &python.to_string_lossy(), &arguments)?;
+        let install = ["-m", "pip", "install", "--progress-bar", "off"].map(OsString::from);
+        let engines = ["-r".into(), text(&requirements)];
+        // Into a folder of their own, emptied first: pip does not replace what stands there.
+        let _ = std::fs::remove_dir_all(root.packages());
+        let files = ["--no-deps".into(), "--target".into(), text(&root.packages()), "-r".into(), text(&packages)];
+        step(&bar, &python.to_string_lossy(), &[&install[..], &engines].concat())?;
+        step(&bar, &python.to_string_lossy(), &[&install[..], &files].concat())?;
     }
     bar.finish_and_clear();
     let stamp = stamp(root)?;
@@ -103,11 +112,14 @@ fn spinner() -> ProgressBar {
     bar
 }
 
-/// What an installation is known by: the hash of the requirements.
+/// What an installation is known by: the hash of what it was asked for.
 fn stamp(root: &Root) -> Result<String, Fail> {
-    let path = root.oracles().join("requirements.txt");
-    let bytes = std::fs::read(&path).map_err(|error| Fail::input(format!("{}: {error}", path.display())))?;
-    Ok(harness::hash::of(&bytes))
+    let mut asked = Vec::new();
+    for name in ["requirements.txt", "packages.txt"] {
+        let path = root.oracles().join(name);
+        asked.extend(std::fs::read(&path).map_err(|error| Fail::input(format!("{}: {error}", path.display())))?);
+    }
+    Ok(harness::hash::of(&asked))
 }
 
 /// Starts an engine's oracle.

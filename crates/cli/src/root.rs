@@ -51,4 +51,9 @@ impl Root {
     pub fn engines(&self) -> PathBuf {
         self.0.join("target/oracles")
     }
+
+    /// Where the packages of MJCF robots are unpacked.
+    pub fn packages(&self) -> PathBuf {
+        self.engines().join("packages")
+    }
 }
