@@ -5,6 +5,7 @@ use model::StateBatch;
 use record::EngineSource;
 use std::collections::BTreeMap;
 use std::ops::Range;
+use std::time::{Duration, Instant};
 use thiserror::Error;
 
 /// Who a subject is.
@@ -59,6 +60,17 @@ pub trait Prepared: Send {
     /// # Errors
     /// [`Refusal`] when the subject fails.
     fn run(&mut self, range: Range<usize>) -> Result<(), Refusal>;
+
+    /// Evaluates the states of the range and says how long that took: one reading of the clock before the loop over the states and one
+    /// after it, both in the process that runs the loop.
+    ///
+    /// # Errors
+    /// [`Refusal`] when the subject fails.
+    fn clock(&mut self, range: Range<usize>) -> Result<Duration, Refusal> {
+        let start = Instant::now();
+        self.run(range)?;
+        Ok(start.elapsed())
+    }
 
     /// The values of the last run, state after state.
     fn read(&self) -> &[f64];
