@@ -52,6 +52,9 @@ pub struct RunArgs {
     /// Ask the engines themselves instead of their recorded answers.
     #[arg(long)]
     pub live: bool,
+    /// The seed of the states, instead of the suite's; recorded answers are to the suite's own.
+    #[arg(long, requires = "live")]
+    pub seed: Option<u64>,
     /// Only cells whose path study/robot/engine/quantity/method matches this regular expression.
     #[arg(long, value_name = "REGEX")]
     pub only: Option<String>,
@@ -88,6 +91,12 @@ pub struct FolderArgs {
 pub struct GateArgs {
     /// A run's folder.
     pub folder: PathBuf,
+    /// More runs, for --ranges.
+    #[arg(requires = "ranges", value_name = "FOLDER")]
+    pub others: Vec<PathBuf>,
+    /// Print, for each known deviation, the smallest and largest of the runs' worst values: the `range` of ci/deviations.toml.
+    #[arg(long, conflicts_with = "counts")]
+    pub ranges: bool,
     /// Print the counts of rows that pass or deviate as known, in the form of a suite's `expect` tables.
     #[arg(long)]
     pub counts: bool,

@@ -19,7 +19,7 @@ pub fn list(root: &Root, args: &ListArgs) -> Result<(), Fail> {
 }
 
 fn text(root: &Root, args: &ListArgs) -> Result<String, Fail> {
-    let loaded = problems::load(root, &args.suite, false)?;
+    let loaded = problems::load(root, &args.suite, false, None)?;
     if args.cells {
         let subjects: Vec<Box<dyn Subject>> = vec![Box::new(Native::new())];
         let gates = Gates::read(&root.gates())?;

@@ -3,7 +3,7 @@
 use crate::fail::Fail;
 use crate::root::Root;
 use engines::{Limits, Oracle};
-use harness::Subject;
+use harness::{Refusal, Subject};
 use indicatif::{ProgressBar, ProgressStyle};
 use std::ffi::OsString;
 use std::io::{BufRead, BufReader, IsTerminal};
@@ -126,6 +126,15 @@ fn stamp(root: &Root) -> Result<String, Fail> {
 pub fn start(root: &Root, python: &Path, engine: &str, limits: Limits) -> Result<Oracle, String> {
     let program = root.oracles().join(format!("{engine}.py"));
     Oracle::start(vec![python.as_os_str().to_owned(), program.into_os_string()], limits)
+}
+
+/// Evaluates reproductions of known deviations in the engines' environment.
+pub fn reproducer(root: &Root, limits: Limits) -> studies::Reproduce {
+    let command = python(root).map(|python| vec![python.into_os_string(), root.oracles().join("reproduce.py").into_os_string()]);
+    Box::new(move |name, seeds| match &command {
+        Some(command) => engines::reproduce(command, limits, name, seeds),
+        None => Err(Refusal::Failed("the reference engines are not installed; run `featherbench oracles install`".into())),
+    })
 }
 
 /// Prints what answers.

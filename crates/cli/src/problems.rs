@@ -18,10 +18,11 @@ pub struct Loaded {
     pub problems: Vec<Problem>,
 }
 
-/// Reads a suite by name or path, and its robots.
-pub fn load(root: &Root, suite: &str, live: bool) -> Result<Loaded, Fail> {
+/// Reads a suite by name or path, and its robots; another seed than its own draws other states.
+pub fn load(root: &Root, suite: &str, live: bool, seed: Option<u64>) -> Result<Loaded, Fail> {
     let path = if suite.ends_with(".toml") { PathBuf::from(suite) } else { root.suites().join(format!("{suite}.toml")) };
-    let (parsed, hash) = Suite::read(&path)?;
+    let (mut parsed, hash) = Suite::read(&path)?;
+    parsed.seed = seed.unwrap_or(parsed.seed);
     let states = parsed.agreement.as_ref().map_or(1, |agreement| agreement.states);
     let mut problems: Vec<Problem> = Vec::with_capacity(parsed.problem.len());
     for entry in &parsed.problem {

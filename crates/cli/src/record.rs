@@ -20,7 +20,7 @@ const STALE: f64 = 8.0 * f64::EPSILON;
 /// Records, or checks the recordings of, a suite.
 pub fn record(root: &Root, args: &RecordArgs) -> Result<(), Fail> {
     let run = RunArgs { suite: args.suite.clone(), live: true, ..RunArgs::default_suite() };
-    let loaded = problems::load(root, &args.suite, false)?;
+    let loaded = problems::load(root, &args.suite, false, None)?;
     let gates = Gates::read(&root.gates())?;
     let opened = subjects::open(root, &run, &loaded)?;
     if let Some(missing) = opened.missing().first() {

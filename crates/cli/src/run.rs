@@ -13,7 +13,7 @@ use regex::Regex;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::time::{Instant, SystemTime};
-use studies::{Agreement, Conditioning, Digits, Structure, Timing};
+use studies::{Agreement, Conditioning, Digits, Reproductions, Structure, Timing};
 
 /// The file that holds what a resumed run must share with the first one.
 const FINGERPRINT_NAME: &str = "fingerprint.json";
@@ -23,7 +23,7 @@ pub fn run(root: &Root, args: &RunArgs) -> Result<(), Fail> {
     let start = Instant::now();
     let only = args.only.as_deref().map(Regex::new).transpose();
     let only = only.map_err(|error| Fail::input(format!("--only: {error}")))?;
-    let loaded = problems::load(root, &args.suite, args.live)?;
+    let loaded = problems::load(root, &args.suite, args.live, args.seed)?;
     let gates = Gates::read(&root.gates())?;
     let subjects = subjects::open(root, args, &loaded)?;
 
@@ -40,7 +40,7 @@ pub fn run(root: &Root, args: &RunArgs) -> Result<(), Fail> {
     let store = OutcomeStore::open(&folder)?;
     let progress = Bar::new();
     let mut records: Vec<Record> = Vec::new();
-    for study in studies(&loaded, args) {
+    for study in studies(root, &loaded, args) {
         let phase = Instant::now();
         let cells = harness::run::plan(study.as_ref(), &context, &keep);
         let finished = harness::run::evaluate(study.as_ref(), &context, cells, &store, &progress)?;
@@ -63,7 +63,7 @@ pub fn run(root: &Root, args: &RunArgs) -> Result<(), Fail> {
 }
 
 /// The studies that a suite names, in the order of the report; timing last, because it wants a quiet machine.
-fn studies(loaded: &Loaded, args: &RunArgs) -> Vec<Box<dyn Study>> {
+fn studies(root: &Root, loaded: &Loaded, args: &RunArgs) -> Vec<Box<dyn Study>> {
     let mut studies: Vec<Box<dyn Study>> = Vec::new();
     if loaded.suite.agreement.is_some() {
         studies.push(Box::new(Agreement));
@@ -76,6 +76,9 @@ fn studies(loaded: &Loaded, args: &RunArgs) -> Vec<Box<dyn Study>> {
     }
     if loaded.suite.structure {
         studies.push(Box::new(Structure));
+    }
+    if loaded.suite.reproductions {
+        studies.push(Box::new(Reproductions { reproduce: crate::oracles::reproducer(root, subjects::limits(args)) }));
     }
     if let Some(timing) = loaded.suite.timing.as_ref().filter(|_| !args.no_timing) {
         studies.push(Box::new(Timing { states: timing.states, seconds: timing.seconds, kernels: engines::timed }));

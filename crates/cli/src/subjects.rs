@@ -24,7 +24,7 @@ pub fn open(root: &Root, args: &RunArgs, loaded: &Loaded) -> Result<Subjects, Fa
     let Some(agreement) = &loaded.suite.agreement else { return Ok(opened) };
     if args.live {
         let python = oracles::install(root)?;
-        let limits = Limits { answer: Duration::from_secs(args.answer_within), memory: args.memory << 20 };
+        let limits = limits(args);
         for engine in &agreement.engines {
             let oracle = oracles::start(root, &python, engine, limits);
             opened.add(oracle.map(|oracle| Box::new(oracle) as Box<dyn Subject>), engine, EngineSource::Live);
@@ -40,6 +40,11 @@ pub fn open(root: &Root, args: &RunArgs, loaded: &Loaded) -> Result<Subjects, Fa
         }
     }
     Ok(opened)
+}
+
+/// The limits that a run's arguments set for each engine's process.
+pub fn limits(args: &RunArgs) -> Limits {
+    Limits { answer: Duration::from_secs(args.answer_within), memory: args.memory << 20 }
 }
 
 impl Subjects {

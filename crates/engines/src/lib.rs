@@ -10,7 +10,9 @@ mod native;
 mod oracle;
 mod process;
 mod recorded;
+mod reproducer;
 
 pub use native::{Native, timed};
 pub use oracle::{Limits, Oracle};
 pub use recorded::{EngineRecording, Recorded, Recording, RecordingError, Recordings, read_recordings, recording_name};
+pub use reproducer::reproduce;

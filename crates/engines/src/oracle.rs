@@ -208,7 +208,8 @@ impl Drop for Asked<'_> {
 }
 
 /// The answer, when its status is `ok`.
-fn checked(answer: Frame) -> Result<Frame, Refusal> {
+/// An answer whose status is `ok`, or what its status says.
+pub(crate) fn checked(answer: Frame) -> Result<Frame, Refusal> {
     let reason = || match answer.text("reason") {
         "" => "the oracle gives no reason".to_owned(),
         reason => reason.to_owned(),
@@ -221,7 +222,8 @@ fn checked(answer: Frame) -> Result<Frame, Refusal> {
     }
 }
 
-fn sized(answer: &Frame, name: &str, length: usize) -> Result<Vec<f64>, Refusal> {
+/// The numbers of a block, of which there must be so many.
+pub(crate) fn sized(answer: &Frame, name: &str, length: usize) -> Result<Vec<f64>, Refusal> {
     let block = answer.block(name).ok_or_else(|| Refusal::Failed(format!("the oracle's answer has no block '{name}'")))?;
     if block.data.len() != length {
         return Err(Refusal::Failed(format!("block '{name}' has {} numbers, {length} are due", block.data.len())));

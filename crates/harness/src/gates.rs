@@ -1,6 +1,7 @@
 //! Gates: every threshold, and every known deviation from one, as data.
 
-use crate::{HarnessError, Suite};
+use crate::deviation::{SLACK, named};
+use crate::{Deviation, HarnessError, Reproduction, Suite};
 use record::{Expectation, Record, Relation, Verdict};
 use serde::Deserialize;
 use serde_json::Value;
@@ -13,6 +14,7 @@ pub struct Gates {
     gates: Vec<Gate>,
     sharp: Option<Sharpness>,
     deviations: Vec<Deviation>,
+    reproductions: Vec<Reproduction>,
 }
 
 /// A computed bound may be so wide that it sees nothing: each engine's method must meet one below this, for each kind of joint and base.
@@ -71,30 +73,6 @@ pub enum Factor {
     DepthAndAmplification,
 }
 
-/// A known deviation: rows that match may fail, be skipped or be errors, as it says.
-#[derive(Clone, Debug, PartialEq, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Deviation {
-    /// The engine.
-    pub engine: String,
-    /// The engine's version; another version makes the deviation void.
-    pub version: String,
-    /// The method, or all of them.
-    pub method: Option<String>,
-    /// The quantities, or all of them.
-    pub quantities: Option<Vec<String>>,
-    /// The models: names, a trailing `*` standing for any rest.
-    pub models: Vec<String>,
-    /// The cases, or all of them.
-    pub cases: Option<Vec<String>>,
-    /// The verdict that it explains: fail, skip or error.
-    pub verdict: String,
-    /// The cause.
-    pub reason: String,
-    /// The largest value that it explains; beyond it a failure stays a failure.
-    pub up_to: Option<f64>,
-}
-
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 struct GateFile {
@@ -107,6 +85,8 @@ struct GateFile {
 struct DeviationFile {
     #[serde(default)]
     deviation: Vec<Deviation>,
+    #[serde(default)]
+    reproduction: Vec<Reproduction>,
 }
 
 impl Gates {
@@ -117,14 +97,38 @@ impl Gates {
     pub fn read(folder: &Path) -> Result<Self, HarnessError> {
         let GateFile { gate: gates, sharp } = read_toml(&folder.join("gates.toml"))?;
         let path = folder.join("deviations.toml");
-        let DeviationFile { deviation: deviations } = read_toml(&path)?;
+        let DeviationFile { deviation: deviations, reproduction: reproductions } = read_toml(&path)?;
         for deviation in &deviations {
             if !["fail", "skip", "error"].contains(&deviation.verdict.as_str()) {
                 let message = format!("deviation of {}: verdict '{}' is none of fail, skip, error", deviation.engine, deviation.verdict);
                 return Err(HarnessError::Config { path, message });
             }
+            if let Some(name) = &deviation.reproduction
+                && reproductions.iter().all(|reproduction| reproduction.name != *name)
+            {
+                let message = format!("deviation of {}: there is no [[reproduction]] named '{name}'", deviation.engine);
+                return Err(HarnessError::Config { path, message });
+            }
         }
-        Ok(Self { gates, sharp, deviations })
+        let of_deviations = deviations.iter().filter_map(|deviation| Some((&deviation.engine, deviation.range?)));
+        let of_reproductions = reproductions.iter().map(|reproduction| (&reproduction.name, reproduction.range));
+        for (name, [low, high]) in of_deviations.chain(of_reproductions) {
+            if !(0.0 < low && low <= high && high.is_finite()) {
+                let message = format!("{name}: range [{low}, {high}] is not that of a deviation");
+                return Err(HarnessError::Config { path, message });
+            }
+        }
+        Ok(Self { gates, sharp, deviations, reproductions })
+    }
+
+    /// The known deviations.
+    pub fn deviations(&self) -> &[Deviation] {
+        &self.deviations
+    }
+
+    /// The reproductions of known deviations.
+    pub fn reproductions(&self) -> &[Reproduction] {
+        &self.reproductions
     }
 
     /// Closes a row with its value: judged where a gate matches, informed elsewhere, and then looked up among the known deviations.
@@ -176,10 +180,16 @@ impl Gates {
             let known = suite.agreement.as_ref().is_some_and(|agreement| agreement.engines.contains(&deviation.engine));
             let asked = records.iter().any(|row| row.engine == deviation.engine && deviation.names(&row.model));
             if known && asked {
-                let excused = |row: &Record| row.verdict == Verdict::Deviation && row.reason.starts_with(&deviation.reason);
-                let seen = records.iter().any(|row| excused(row) && deviation.covers(row));
+                let seen = records.iter().any(|row| deviation.excused(row));
                 let what = format!("known deviation of {} still seen: {}", deviation.engine, deviation.reason);
                 conditions.push(condition(what, 1, u64::from(seen)));
+                if let (Some([low, _]), Some(worst)) = (deviation.range, deviation.worst(records)) {
+                    let what = format!(
+                        "known deviation of {} as large as known ({low:e}, here {worst:e}): {}",
+                        deviation.engine, deviation.reason
+                    );
+                    conditions.push(condition(what, 1, u64::from(worst >= low / SLACK)));
+                }
             }
         }
         conditions.extend(self.sharp.iter().filter(|_| suite.thorough).flat_map(|sharp| sharp.conditions(records)));
@@ -241,33 +251,6 @@ impl Gate {
             && among(&self.methods, &row.method)
             && self.models.as_ref().is_none_or(|models| named(models, &row.model))
             && self.max_depth.is_none_or(|limit| row.depth.unwrap_or(0) <= limit as u64)
-    }
-}
-
-/// Whether a list of names, a trailing `*` standing for any rest, holds a name.
-fn named(names: &[String], name: &str) -> bool {
-    names.iter().any(|known| known.strip_suffix('*').map_or(known == name, |stem| name.starts_with(stem)))
-}
-
-impl Deviation {
-    fn explains(&self, row: &Record) -> bool {
-        self.verdict == row.verdict.as_str() && self.covers(row)
-    }
-
-    /// Whether it is about this row, whatever became of it.
-    fn covers(&self, row: &Record) -> bool {
-        let within = |value: f64| self.up_to.is_none_or(|limit| value <= limit);
-        self.engine == row.engine
-            && self.version == row.engine_version
-            && self.method.as_ref().is_none_or(|method| *method == row.method)
-            && self.quantities.as_ref().is_none_or(|quantities| quantities.contains(&row.quantity))
-            && self.cases.as_ref().is_none_or(|cases| cases.contains(&row.case))
-            && self.names(&row.model)
-            && row.value.is_none_or(within)
-    }
-
-    fn names(&self, model: &str) -> bool {
-        named(&self.models, model)
     }
 }
 

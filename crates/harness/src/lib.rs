@@ -4,6 +4,7 @@
 //! [`OutcomeStore`]; a pure comparison turns outcomes into records, judged by [`Gates`]. The error measures are in [`measure`].
 
 mod cell;
+mod deviation;
 mod error;
 pub mod frame;
 mod gates;
@@ -20,8 +21,9 @@ mod suite;
 pub mod truth;
 
 pub use cell::{Cell, Outcome};
+pub use deviation::{Deviation, Reproduction, SEEDS, SLACK};
 pub use error::HarnessError;
-pub use gates::{Deviation, Factor, Gate, Gates, Sharpness, accounted};
+pub use gates::{Factor, Gate, Gates, Sharpness, accounted};
 pub use problem::Problem;
 pub use quantity::{DENSE_LIMIT, Quantity};
 pub use store::{OUTCOMES_NAME, OutcomeStore};

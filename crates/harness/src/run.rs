@@ -87,13 +87,14 @@ fn guarded(study: &dyn Study, context: &Context, cell: &Cell) -> Outcome {
     })
 }
 
-/// Turns outcomes into records, problem by problem on all cores, in the order of the problems.
+/// Turns outcomes into records: those of no problem first, then problem by problem on all cores, in the order of the problems.
 pub fn compare(study: &dyn Study, context: &Context, finished: Vec<Finished>) -> Vec<Record> {
+    let together = study.compare_all(context, &finished);
     let groups = by_problem(finished);
     let compared: Vec<Vec<Record>> = context
         .problems
         .par_iter()
         .map(|problem| groups.get(&problem.name).map_or_else(Vec::new, |group| study.compare(context, problem, group)))
         .collect();
-    compared.into_iter().flatten().collect()
+    together.into_iter().chain(compared.into_iter().flatten()).collect()
 }

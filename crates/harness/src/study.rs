@@ -52,6 +52,11 @@ pub trait Study: Sync {
 
     /// Turns the outcomes of one problem into records.
     fn compare(&self, context: &Context, problem: &Problem, finished: &[Finished]) -> Vec<Record>;
+
+    /// Turns the outcomes into the records that belong to no problem. Most studies have none.
+    fn compare_all(&self, _context: &Context, _finished: &[Finished]) -> Vec<Record> {
+        Vec::new()
+    }
 }
 
 /// Groups finished cells by problem, in the order of the problems.

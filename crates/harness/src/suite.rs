@@ -14,6 +14,7 @@ pub struct Suite {
     /// Seed of every state.
     pub seed: u64,
     /// The robots.
+    #[serde(default)]
     pub problem: Vec<ProblemEntry>,
     /// The agreement study.
     pub agreement: Option<AgreementEntry>,
@@ -26,6 +27,9 @@ pub struct Suite {
     /// Whether the conditioning study is made.
     #[serde(default)]
     pub conditioning: bool,
+    /// Whether known deviations are reproduced.
+    #[serde(default)]
+    pub reproductions: bool,
     /// The timing study.
     pub timing: Option<TimingEntry>,
     /// Whether the suite is broad enough to show every known deviation of its robots, and a sharp bound for each method, joint and base; a

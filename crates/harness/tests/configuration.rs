@@ -116,3 +116,22 @@ fn our_own_files_are_right() {
         Suite::read(path).unwrap();
     }
 }
+
+#[test]
+fn reproductions_name_what_is_wrong() {
+    let known = "[[reproduction]]\nname = \"loss\"\nengine = \"e\"\nversion = \"1\"\ncondition = \"always\"\nmeasure = \"a share\"\nrange = [0.1, 0.4]\nupstream = \"none found\"\n";
+    assert_eq!(gates(GATE, known).0.unwrap().reproductions().len(), 1);
+    assert!(gates(GATE, &format!("{DEVIATION}reproduction = \"loss\"\n{known}")).0.is_ok());
+    let cases = [
+        (known.replace("[0.1, 0.4]", "[0.4, 0.1]"), "range"),
+        (known.replace("[0.1, 0.4]", "[0.0, 0.1]"), "range"),
+        (known.replace("[0.1, 0.4]", "[0.1]"), "range"),
+        (known.replace("upstream = \"none found\"\n", ""), "upstream"),
+        (format!("{known}seeds = 20\n"), "seeds"),
+        (format!("{DEVIATION}reproduction = \"gain\"\n{known}"), "gain"),
+    ];
+    for (text, word) in cases {
+        let (result, folder) = gates(GATE, &text);
+        names(result, &folder.path().join("deviations.toml"), &[word]);
+    }
+}

@@ -16,6 +16,7 @@ mod figures;
 mod findings;
 mod fit;
 mod heatmap;
+mod known;
 mod labels;
 mod method;
 mod numbers;

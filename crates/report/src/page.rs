@@ -5,12 +5,12 @@ use record::{CSV_NAME, RUN_NAME, Record, RunInfo, SCHEMA_NAME};
 
 use crate::figures::Figures;
 use crate::findings::Findings;
-use crate::overview::Overview;
+use crate::overview::{Overview, REPRODUCTIONS};
 use crate::truth::Truth;
-use crate::{conditioning, digits_section, heatmap, method, pairwise, plots, provenance, tradeoff, truth, unpassed, verdict};
+use crate::{conditioning, digits_section, heatmap, known, method, pairwise, plots, provenance, tradeoff, truth, unpassed, verdict};
 
 /// The sections: anchor, entry in the navigation.
-const SECTIONS: [(&str, &str); 11] = [
+const SECTIONS: [(&str, &str); 12] = [
     ("verdict", "Verdict"),
     ("agreement", "Agreement"),
     ("digits", "Digits"),
@@ -19,6 +19,7 @@ const SECTIONS: [(&str, &str); 11] = [
     ("tradeoff", "Work–precision"),
     ("conditioning", "Conditioning"),
     ("pairs", "Pairs"),
+    ("known", "Known deviations"),
     ("provenance", "Provenance"),
     ("method", "Method"),
     ("unpassed", "Not passed"),
@@ -45,7 +46,7 @@ pub fn render(run: &RunInfo, records: &[Record], overview: &Overview, figures: &
             }
             body {
                 a.to-content href="#verdict" { "Skip to the verdict" }
-                (header(run, figures))
+                (header(run, overview, figures))
                 main {
                     (verdict::section(run, overview, records, &findings, truth::markup(overview, &figures.digits, &truth)))
                     (heatmap::section(overview, &findings))
@@ -55,6 +56,7 @@ pub fn render(run: &RunInfo, records: &[Record], overview: &Overview, figures: &
                     (tradeoff::section(overview, &figures.tradeoffs))
                     (conditioning::section(overview, &figures.conditions))
                     (pairwise::section(overview, records))
+                    (known::section(records))
                     (provenance::section(run, overview))
                     (method::section(run, overview, figures))
                     (unpassed::section(records))
@@ -86,17 +88,18 @@ pub fn opener(chunk: &str, filters: &[(&str, &str)], text: &str) -> Markup {
 }
 
 /// The sections that this run has: some appear with their rows alone.
-fn sections(figures: &Figures) -> impl Iterator<Item = (&'static str, &'static str)> {
+fn sections(overview: &Overview, figures: &Figures) -> impl Iterator<Item = (&'static str, &'static str)> {
     let absent = |anchor| match anchor {
         "digits" => figures.digits.subjects.is_empty(),
         "tradeoff" => figures.tradeoffs.is_empty(),
         "conditioning" => figures.conditions.is_empty(),
+        "known" => !overview.studies.contains(&REPRODUCTIONS),
         _ => false,
     };
     SECTIONS.into_iter().filter(move |&(anchor, _)| !absent(anchor))
 }
 
-fn header(run: &RunInfo, figures: &Figures) -> Markup {
+fn header(run: &RunInfo, overview: &Overview, figures: &Figures) -> Markup {
     html! {
         header {
             div.bar {
@@ -105,7 +108,7 @@ fn header(run: &RunInfo, figures: &Figures) -> Markup {
                     span { "featherbench" }
                 }
                 nav aria-label="Sections" {
-                    @for (anchor, name) in sections(figures) { a href={ "#" (anchor) } { (name) } }
+                    @for (anchor, name) in sections(overview, figures) { a href={ "#" (anchor) } { (name) } }
                 }
                 button #theme type="button" aria-label="Switch between light and dark" title="Light or dark" { "◐" }
             }

@@ -3,18 +3,21 @@
 //! - [`Agreement`]: do the engines agree on one and the same model?
 //! - [`Digits`]: how far is each from the truth, and who is right?
 //! - [`Conditioning`]: how does κ(M) grow, and does it matter?
+//! - [`Reproductions`]: are the engines' known deviations still there, and as large as they were?
 //! - [`Structure`]: are the counts of the sparse algorithms the integers that theory says?
 //! - [`Timing`]: how long do the native kernels take?
 
 mod agreement;
 mod conditioning;
 mod digits;
+mod reproductions;
 mod structure;
 mod timing;
 
 pub use agreement::Agreement;
 pub use conditioning::Conditioning;
 pub use digits::Digits;
+pub use reproductions::{Reproduce, Reproductions};
 pub use structure::Structure;
 pub use timing::Timing;
 

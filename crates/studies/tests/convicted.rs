@@ -379,7 +379,7 @@ fn a_skip_is_red_unless_a_deviation_names_it() {
     assert!(skips > EVERYTHING.len(), "the forward dynamics has two methods: {skips}");
     let (deviations, _, left, green) = trial(&excusing("skip", ""), &problem, Double::refusing(&problem));
     assert_eq!((deviations, left, green), (skips, 0, true));
-    assert_eq!(trial(&excusing("skip", "up_to = 0.0"), &problem, Double::refusing(&problem)).0, skips, "a limit is for values");
+    assert_eq!(trial(&excusing("skip", "range = [1e-18, 1e-18]"), &problem, Double::refusing(&problem)).0, skips, "a limit is for values");
     // A deviation of another version, robot, quantity or verdict explains nothing.
     for (verdict, more) in [("fail", ""), ("error", ""), ("skip", "quantities = [\"com\"]"), ("skip", "method = \"crba\"")] {
         assert!(!trial(&excusing(verdict, more), &problem, Double::refusing(&problem)).3, "{verdict} {more}");
@@ -422,11 +422,14 @@ fn a_deviation_explains_no_more_than_it_says() {
     let wrong = || Double::altered(&problem, |description| description.bodies[3].mass *= 1.0 + 1e-10);
     let (_, fails, _, green) = trial(&gates(""), &problem, wrong());
     assert!(fails > 0 && !green);
-    let (deviations, left, _, green) = trial(&excusing("fail", "up_to = 1e-9"), &problem, wrong());
+    let (deviations, left, _, green) = trial(&excusing("fail", "range = [1e-11, 1e-9]"), &problem, wrong());
     assert_eq!((deviations, left, green), (fails, 0, true));
-    let (deviations, left, _, green) = trial(&excusing("fail", "up_to = 1e-12"), &problem, wrong());
+    let (deviations, left, _, green) = trial(&excusing("fail", "range = [1e-13, 1e-12]"), &problem, wrong());
     assert!(deviations > 0 && left > 0 && !green, "{deviations} explained, {left} beyond the limit");
     assert_eq!(deviations + left, fails);
+    // Smaller than it is known to be: every row is explained, and the list is to be corrected.
+    let (deviations, left, _, green) = trial(&excusing("fail", "range = [1e-7, 1e-6]"), &problem, wrong());
+    assert_eq!((deviations, left, green), (fails, 0, false));
     let (deviations, left, _, green) = trial(&excusing("fail", "quantities = [\"id\"]"), &problem, wrong());
     assert!(deviations > 0 && left > 0 && !green);
     assert_eq!(deviations + left, fails);

@@ -1,0 +1,19 @@
+//! Reproductions of known deviations: programs of `oracles/reproductions`, each asked in a process of its own.
+
+use crate::oracle::{Limits, checked, sized};
+use crate::process::Process;
+use harness::Refusal;
+use harness::frame::Frame;
+use serde_json::json;
+use std::ffi::OsString;
+
+/// Asks `command` (that of `oracles/reproduce.py`) for a reproduction's values at the seeds 0..`seeds`.
+///
+/// # Errors
+/// [`Refusal::Failed`] when the process or the reproduction fails, or another number of values comes.
+pub fn reproduce(command: &[OsString], limits: Limits, name: &str, seeds: u64) -> Result<Vec<f64>, Refusal> {
+    let mut process = Process::start(command, limits).map_err(Refusal::Failed)?;
+    let request = Frame::new(json!({"op": "reproduce", "name": name, "seeds": seeds}), Vec::new());
+    let answer = checked(process.ask(&request).map_err(Refusal::Failed)?)?;
+    sized(&answer, "value", seeds as usize)
+}

@@ -1,0 +1,105 @@
+//! Reproductions: are the engines' known deviations still there, and as large as they were?
+//!
+//! `ci/deviations.toml` names each reproduction with the engine's version and the range of its value over twenty seeds. Two rows each: the
+//! smallest value over the seeds must not lie below the range, the largest not above it, each by more than [`SLACK`]. So a
+//! deviation that its engine has mended fails the gate, as does one that has grown: the list is then to be corrected.
+
+use harness::{Cell, Context, Finished, Outcome, Problem, Refusal, Reproduction, SEEDS, SLACK, Study};
+use record::{Record, Relation, Verdict};
+use serde_json::json;
+
+/// Evaluates the reproduction of a name at the seeds from zero up to a number.
+pub type Reproduce = Box<dyn Fn(&str, u64) -> Result<Vec<f64>, Refusal> + Send + Sync>;
+
+/// The study of known deviations.
+pub struct Reproductions {
+    /// Who evaluates a reproduction.
+    pub reproduce: Reproduce,
+}
+
+impl Study for Reproductions {
+    fn name(&self) -> &'static str {
+        "reproductions"
+    }
+
+    fn plan(&self, context: &Context) -> Vec<Cell> {
+        let cell = |known: &Reproduction| Cell {
+            study: self.name().into(),
+            problem: known.name.clone(),
+            problem_hash: harness::hash::of(known.name.as_bytes()),
+            params: json!({
+                "condition": known.condition,
+                "measure": known.measure,
+                "range": known.range,
+                "seeds": SEEDS,
+                "upstream": known.upstream,
+            }),
+            subject: known.engine.clone(),
+            version: known.version.clone(),
+            method: known.name.clone(),
+            quantity: "deviation".into(),
+            scalar: "f64".into(),
+        };
+        context.gates.reproductions().iter().map(cell).collect()
+    }
+
+    fn evaluate(&self, _: &Context, cell: &Cell) -> Outcome {
+        (self.reproduce)(&cell.problem, SEEDS).into()
+    }
+
+    fn compare(&self, _: &Context, _: &Problem, _: &[Finished]) -> Vec<Record> {
+        Vec::new()
+    }
+
+    fn compare_all(&self, context: &Context, finished: &[Finished]) -> Vec<Record> {
+        let known = context.gates.reproductions();
+        let of = |(cell, outcome): &Finished| {
+            let reproduction = known.iter().find(|known| known.name == cell.problem)?;
+            Some(rows(context, reproduction, cell, outcome))
+        };
+        finished.iter().filter_map(of).flatten().collect()
+    }
+}
+
+fn rows(context: &Context, known: &Reproduction, cell: &Cell, outcome: &Outcome) -> Vec<Record> {
+    let blank = Record {
+        cell: cell.id(),
+        study: cell.study.clone(),
+        problem: cell.problem.clone(),
+        params: record::canonical_json(&cell.params),
+        engine: cell.subject.clone(),
+        engine_version: cell.version.clone(),
+        method: cell.method.clone(),
+        scalar: cell.scalar.clone(),
+        quantity: cell.quantity.clone(),
+        case: "seeds".into(),
+        unit: "1".into(),
+        ..Record::default()
+    };
+    let installed = context.subject(&known.engine).map(|subject| subject.identity().version.clone());
+    if installed.as_ref().is_some_and(|installed| *installed != known.version) {
+        let reason = format!("the range is that of {} {}, here is {}", known.engine, known.version, installed.unwrap_or_default());
+        return vec![blank.without_value(Verdict::Error, reason)];
+    }
+    let values = match outcome {
+        Outcome::Values(values) => values,
+        Outcome::Refused(refusal) => return vec![blank.without_value(Verdict::Error, refusal.to_string())],
+    };
+    // A NaN among them must not be passed over: it is neither small nor large.
+    let fold = |pick: fn(f64, f64) -> f64| {
+        values.iter().copied().reduce(|a, b| {
+            if a.is_nan() {
+                a
+            } else if b.is_nan() {
+                b
+            } else {
+                pick(a, b)
+            }
+        })
+    };
+    let [low, high] = known.range;
+    let judged = |metric: &str, value: Option<f64>, relation, bound| {
+        Record { metric: metric.into(), ..blank.clone() }.gated(value.unwrap_or(f64::NAN), relation, bound)
+    };
+    vec![judged("smallest", fold(f64::min), Relation::Ge, low / SLACK), judged("largest", fold(f64::max), Relation::Le, high * SLACK)]
+}
