@@ -113,6 +113,7 @@ def describe(name: str, gravity: Array, links: Sequence[Link]) -> Header:
             parts[body].append((link.mass, home.rotation @ link.com + home.translation, home.rotation @ link.inertia @ home.rotation.T))
     for item, held in zip(bodies, parts, strict=True):
         mass, com, inertia = merged(held)
+        com = com if mass else np.zeros(3)  # nowhere
         item.update(mass=mass, com=(com + 0.0).tolist(), inertia=(inertia[np.triu_indices(3)] + 0.0).tolist())
     return {"format": 1, "name": name, "gravity": np.asarray(gravity).tolist(), "bodies": bodies, "frames": frames}
 
