@@ -169,6 +169,10 @@ def _note_masses(plant: MultibodyPlant, path: Path, notes: list[Header]) -> None
         name, mass = link.get("name"), link.find("inertial/mass")
         if name is None or name == "world" or not plant.HasBodyNamed(name):
             continue
-        given, held = float((mass.get("value") if mass is not None else None) or 0), plant.GetBodyByName(name).default_mass()
-        if abs(given - held) > EDITED * abs(given):
-            notes.append(note("mass_edited", name, f"{given} kg in the file became {held} kg"))
+        words, held = (mass.get("value") if mass is not None else None) or "0", plant.GetBodyByName(name).default_mass()
+        try:
+            edited = abs(float(words) - held) > EDITED * abs(float(words))
+        except ValueError:
+            edited = True
+        if edited:
+            notes.append(note("mass_edited", name, f"{words} kg in the file became {held} kg"))

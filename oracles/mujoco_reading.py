@@ -17,7 +17,7 @@ from typing import Any
 import numpy as np
 
 from protocol import Array, Description, Header, Reading
-from reading import HeldJoint, Link, Place, describe, note, overheard, turned
+from reading import HeldJoint, Link, Place, describe, listed, note, overheard, turned
 
 _here = sys.path.pop(0)  # this directory, where another file would be taken for the package imported next
 import mujoco as mj  # noqa: E402
@@ -159,9 +159,16 @@ def _place(model: mj.MjModel, i: int) -> Place:
     return Place(turned(*model.body_quat[i]), model.body_pos[i].copy())
 
 
+def _inertial_frame(model: mj.MjModel, i: int) -> Place:
+    """Body i's centre of mass and principal axes, as MuJoCo computes with them: within 1e-6 of the body's frame they are the body's."""
+    same, kinds = model.body_sameframe[i], mj.mjtSameFrame
+    axes = np.eye(3) if same in (kinds.mjSAMEFRAME_BODY, kinds.mjSAMEFRAME_BODYROT) else turned(*model.body_iquat[i])
+    return Place(axes, np.zeros(3) if same == kinds.mjSAMEFRAME_BODY else model.body_ipos[i].copy())
+
+
 def _inertia(model: mj.MjModel, i: int) -> Array:
     """Body i's inertia about its centre of mass in its axes: R diag(principal moments) R'."""
-    axes = turned(*model.body_iquat[i])
+    axes = _inertial_frame(model, i).rotation
     return (axes * model.body_inertia[i]) @ axes.T
 
 
@@ -185,7 +192,7 @@ def _link(spec: mj.MjSpec, model: mj.MjModel, names: list[str], i: int) -> Link:
     joints = [_joint(model, j) for j in range(model.body_jntadr[i], model.body_jntadr[i] + model.body_jntnum[i])]
     place = Place() if joints and joints[0].type == "free" else _place(model, i)  # a free joint's coordinates are those of the world
     parent = int(model.body_parentid[i]) - 1
-    return Link(names[i], float(model.body_mass[i]), model.body_ipos[i].copy(), inertia, parent, place, joints)
+    return Link(names[i], float(model.body_mass[i]), _inertial_frame(model, i).translation, inertia, parent, place, joints)
 
 
 def _joint(model: mj.MjModel, j: int) -> HeldJoint:
@@ -226,7 +233,7 @@ def _add_fused_frames(description: Header, names: list[str], whole: mj.MjModel, 
         description["frames"].append({"name": name, "body": body, "placement": homes[i][1].json()})
         fused.append(name)
     if fused:
-        notes.append(note("fused", None, f"{len(fused)} links of fixed joints were fused into their parents: {', '.join(fused)}"))
+        notes.append(note("fused", None, f"{len(fused)} links of fixed joints were fused into their parents: {listed(fused)}"))
 
 
 def _without_extras(model: mj.MjModel) -> None:
@@ -257,8 +264,11 @@ def _note_edits(spec: mj.MjSpec, model: mj.MjModel, notes: list[Header]) -> None
         given, inertia = _given_inertia(body), _inertia(model, i)
         if given is not None and np.abs(given - inertia).max() > EDITED * np.abs(given).max():
             notes.append(note("inertia_edited", name, f"{_six(given)} in the file became {_six(inertia)} kg m²"))
+        if (_inertial_frame(model, i).translation != model.body_ipos[i]).any():
+            moved = f"MuJoCo computes as if the centre of mass, {tuple(model.body_ipos[i].tolist())}, were the origin, as it is within 1e-6"
+            notes.append(note("com_edited", name, moved))
     if computed:
-        notes.append(note("from_geometry", None, f"{len(computed)} links have no inertial: computed from geometry: {', '.join(computed)}"))
+        notes.append(note("from_geometry", None, f"{len(computed)} links have no inertial: computed from geometry: {listed(computed)}"))
 
 
 def _six(inertia: Array) -> str:

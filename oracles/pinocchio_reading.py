@@ -21,6 +21,7 @@ import pinocchio as pin  # noqa: E402
 
 sys.path.insert(0, _here)
 
+LARGEST = 400  # degrees of freedom; Pinocchio's Data takes 15 kB times their square, and ends the process where that is not there
 UNBOUNDED = 1e300  # a limit of the largest double is none
 KINDS = {"R": "revolute", "P": "prismatic", "H": "helical"}
 WHOLE = {"Spherical": "spherical", "FreeFlyer": "free", "Planar": "planar", "Universal": "universal"}
@@ -37,6 +38,8 @@ def read(path: Path, form: str, base: str, make: Callable[[Description, pin.Mode
             model = pin.buildModelFromUrdf(str(path), pin.JointModelFreeFlyer(), "root_joint")
         else:
             model = pin.buildModelFromUrdf(str(path))
+    if model.nv > LARGEST:
+        raise Unsupported(f"{model.nv} degrees of freedom: Pinocchio's Data would take {15e-6 * model.nv**2:.0f} GB")
     links = [_link(model, i, path) for i in range(1, model.njoints)]
     description = describe(model.name or path.stem, model.gravity.linear, links)
     _add_frames(description, model)

@@ -87,6 +87,12 @@ def note(cause: str, subject: str | None, text: str) -> Header:
     return {"cause": cause, "subject": subject, "text": " ".join(text.split())}
 
 
+def listed(names: Sequence[str]) -> str:
+    """The names for a sentence, of very many the first ten."""
+    more = f" and {len(names) - 10} more" if len(names) > 12 else ""
+    return ", ".join(names[: 10 if more else None]) + more
+
+
 def describe(name: str, gravity: Array, links: Sequence[Link]) -> Header:
     """The description of links in depth-first order."""
     bodies: list[Header] = []
