@@ -59,9 +59,10 @@ def read(path: Path, form: str, base: str, make: Callable[[Description, mj.MjMod
 def neutral_q(model: mj.MjModel, qpos: Array) -> Array:
     """Neutral coordinates: MuJoCo's, but quaternions end with w."""
     q = np.array(qpos)
-    for kind, start in zip(model.jnt_type, model.jnt_qposadr, strict=True):
-        if kind in (mj.mjtJoint.mjJNT_BALL, mj.mjtJoint.mjJNT_FREE):
-            last = slice(start, start + 4) if kind == mj.mjtJoint.mjJNT_BALL else slice(start + 3, start + 7)
+    for number, start in zip(model.jnt_type, model.jnt_qposadr, strict=True):
+        kind = TYPES[mj.mjtJoint(number)]
+        if kind in ("spherical", "free"):
+            last = slice(start, start + 4) if kind == "spherical" else slice(start + 3, start + 7)
             q[last] = np.roll(qpos[last], -1)
     return q
 
@@ -256,8 +257,10 @@ def _note_edits(spec: mj.MjSpec, model: mj.MjModel, notes: list[Header]) -> None
     for body in spec.bodies[1:]:
         i, name = body.id, _named(body.name, "body", body.id)
         if not body.explicitinertial:
-            if model.body_mass[i]:
+            if model.body_mass[i] and body.geoms:
                 computed.append(name)
+            elif model.body_mass[i]:
+                notes.append(note("mass_edited", name, f"no inertial in the file became {model.body_mass[i]} kg"))
             continue
         if abs(model.body_mass[i] - body.mass) > EDITED * body.mass:
             notes.append(note("mass_edited", name, f"{body.mass} kg in the file became {model.body_mass[i]} kg"))
