@@ -54,10 +54,9 @@ def read(path: Path, form: str, base: str, make: Callable[[Description, Multibod
     joints = _ordered(plant)
     names = [plant.GetModelInstanceName(tree.ModelInstanceIndex(i)) for i in range(2, plant.num_model_instances())]
     links = _links(plant, joints, damping)
-    if form == "mjcf":
-        links = _chained(links, path)
-    description = describe(next(iter(names), path.stem), plant.gravity_field().gravity_vector(), links)
-    own = {link.name for link in links if "/" in link.name}
+    named = _chained(links, path) if form == "mjcf" else links
+    description = describe(next(iter(names), path.stem), plant.gravity_field().gravity_vector(), named)
+    own = {after.name for before, after in zip(links, named, strict=True) if before.name != after.name}  # no links of the file
     description["frames"] = [frame for frame in description["frames"] if frame["name"] not in own]
     _note_edits(plant, path, notes)
     if plant.num_constraints():
@@ -156,11 +155,14 @@ def _held(joint: tree.Joint, inner: Place, damping: Array, actuator: tree.JointA
 def _chained(links: list[Link], path: Path) -> list[Link]:
     """The links with the description's names for bodies that are not the file's: `<link>/<joint>` for the link below."""
     known = {body.get("name") for body in elements(path, "body")}
-    renamed = list(links)
-    for k in reversed(range(len(links) - 1)):
-        link, below = links[k], renamed[k + 1]
-        if link.name not in known and not link.mass and below.parent == k and link.joints:
-            renamed[k] = replace(link, name=f"{below.name.split('/')[0]}/{link.joints[0].name}")
+    renamed, below = list(links), ""
+    for k in reversed(range(len(links))):
+        link = links[k]
+        own = k + 1 < len(links) and link.name not in known and not link.mass and links[k + 1].parent == k
+        if own and link.joints:
+            renamed[k] = replace(link, name=f"{below}/{link.joints[0].name}")
+        else:
+            below = link.name
     return renamed
 
 

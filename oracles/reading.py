@@ -21,6 +21,7 @@ import numpy as np
 
 from protocol import JOINT_SIZES, WITH_AXIS, Array, Header, Unsupported, skew
 
+
 @dataclass(frozen=True)
 class Place:
     """A frame in another: rotation and origin."""
@@ -69,7 +70,7 @@ class HeldJoint:
 
 @dataclass(frozen=True)
 class Link:
-    """A link: its inertia about the centre of mass, in its own axes; its parent (an index before it, -1 for the world), and its place there.
+    """A link: its inertia about the centre of mass, in its own axes; its parent (an index before it, or -1), and its place there.
 
     Without joints it is fixed to its parent. With several, each moves what follows; all places are those of the zero configuration.
     """
