@@ -1,14 +1,16 @@
 """Drake as an oracle: the robot is built with the calls of a continuous `MultibodyPlant(0.0)`, never by a parser.
 
 Joints are Revolute, Prismatic, Screw (whose pitch is per *revolution*), BallRpy (Drake has no quaternion ball joint), QuaternionFloating,
-Planar and Universal. Armature is the rotor inertia, at gear ratio 1, of an actuator, which Drake gives to one-dof joints only. Damping is
-never set. Inertias skip Drake's validity check, so that unphysical bodies are answered for as well.
+Planar and Universal; translation, cylindrical and euler_zyx, which Drake has not, are chains of Prismatic and Revolute joints with massless
+bodies between (BallRpy has the angles of euler_zyx, but not their rates: its velocity is the angular one). Armature is the rotor inertia,
+at gear ratio 1, of an actuator, which Drake gives to one-dof joints only. Damping is never set. Inertias skip Drake's validity check, so that unphysical bodies are answered for as well.
 """
 
 from __future__ import annotations
 
 import importlib.metadata
 import sys
+from collections.abc import Callable
 from math import pi
 
 import numpy as np
@@ -68,18 +70,32 @@ def spatial_inertia(body: Body) -> tree.SpatialInertia:
     return tree.SpatialInertia(body.mass, body.com, unit, skip_validity_check=True)
 
 
-def make_joint(joint: Joint, name: str, parent: tree.Frame, child: tree.Frame) -> tree.Joint:
-    """Drake's joint of that type."""
-    makers = {
-        "revolute": lambda: tree.RevoluteJoint(name, parent, child, joint.axis),
-        "prismatic": lambda: tree.PrismaticJoint(name, parent, child, joint.axis),
-        "helical": lambda: tree.ScrewJoint(name, parent, child, joint.axis, 2 * pi * joint.pitch, 0.0),
-        "spherical": lambda: tree.BallRpyJoint(name, parent, child),
-        "free": lambda: tree.QuaternionFloatingJoint(name, parent, child),
-        "planar": lambda: tree.PlanarJoint(name, parent, child),
-        "universal": lambda: tree.UniversalJoint(name, parent, child),
+JointMaker = Callable[[str, tree.Frame, tree.Frame], tree.Joint]
+
+
+def joint_chain(joint: Joint) -> list[JointMaker]:
+    """Drake's joint of that type, or the joints that make it up, from the parent outwards."""
+
+    def turn(axis: Array) -> JointMaker:
+        return lambda name, parent, child: tree.RevoluteJoint(name, parent, child, axis)
+
+    def slide(axis: Array) -> JointMaker:
+        return lambda name, parent, child: tree.PrismaticJoint(name, parent, child, axis)
+
+    x, y, z = np.eye(3)
+    chains: dict[str, list[JointMaker]] = {
+        "revolute": [turn(joint.axis)],
+        "prismatic": [slide(joint.axis)],
+        "helical": [lambda name, parent, child: tree.ScrewJoint(name, parent, child, joint.axis, 2 * pi * joint.pitch, 0.0)],
+        "spherical": [tree.BallRpyJoint],
+        "free": [tree.QuaternionFloatingJoint],
+        "planar": [tree.PlanarJoint],
+        "universal": [tree.UniversalJoint],
+        "translation": [slide(x), slide(y), slide(z)],
+        "cylindrical": [turn(joint.axis), slide(joint.axis)],
+        "euler_zyx": [turn(z), turn(y), turn(x)],
     }
-    return makers[joint.type]()
+    return chains[joint.type]
 
 
 class DrakeRobot:
@@ -90,13 +106,13 @@ class DrakeRobot:
         self.plant = MultibodyPlant(0.0)
         self.plant.mutable_gravity_field().set_gravity_vector(robot.gravity)
         self.bodies: list[tree.RigidBody] = []
-        self.joints: list[tree.Joint] = []
+        self.chains: list[list[tree.Joint]] = []
         for i, body in enumerate(robot.bodies):
             self._add(i, body)
         self.plant.Finalize()
-        for mine, joint in zip(self.joints, (body.joint for body in robot.bodies), strict=True):
-            if mine.velocity_start() != joint.v.start:
-                raise RuntimeError(f"Drake put joint {joint.name} elsewhere")
+        starts = [(part.position_start(), part.velocity_start()) for chain in self.chains for part in chain]
+        if starts != sorted(starts) or any(c[0].velocity_start() != b.joint.v.start for c, b in zip(self.chains, robot.bodies, strict=True)):
+            raise RuntimeError("Drake put the degrees of freedom in another order")
         self.context = self.plant.CreateDefaultContext()
         self.forces = tree.MultibodyForces(self.plant)
 
@@ -104,25 +120,33 @@ class DrakeRobot:
         """Adds body i and its joint."""
         plant, joint = self.plant, body.joint
         parent = self.bodies[body.parent] if body.parent >= 0 else plant.world_body()
-        self.bodies.append(plant.AddRigidBody(f"{i}: {body.name}", spatial_inertia(body)))
         placement = RigidTransform(RotationMatrix(joint.rotation), joint.translation)
         frame = plant.AddFrame(tree.FixedOffsetFrame(f"frame {i}", parent.body_frame(), placement))
-        self.joints.append(plant.AddJoint(make_joint(joint, f"joint {i}", frame, self.bodies[i].body_frame())))
+        makers = joint_chain(joint)
+        if joint.armature.any() and len(joint.armature) > len(makers):
+            raise Unsupported(f"Drake has no armature on its {joint.type} joint ({joint.name}), which has several degrees of freedom")
+        chain: list[tree.Joint] = []
+        for k, make in enumerate(makers, start=1):
+            last = k == len(makers)
+            moved = plant.AddRigidBody(f"{i}: {body.name}" if last else f"{i}.{k}", spatial_inertia(body) if last else tree.SpatialInertia.Zero())
+            chain.append(plant.AddJoint(make(f"joint {i}.{k}", frame, moved.body_frame())))
+            frame = moved.body_frame()
+        self.chains.append(chain)
+        self.bodies.append(moved)
         if joint.armature.any():
-            if len(joint.armature) > 1:
-                raise Unsupported(f"Drake has no armature on joint {joint.name} of more than one degree of freedom")
-            actuator = plant.AddJointActuator(f"actuator {i}", self.joints[i])
-            actuator.set_default_rotor_inertia(joint.armature[0])
-            actuator.set_default_gear_ratio(1.0)
+            for k, (part, armature) in enumerate(zip(chain, joint.armature, strict=True), start=1):
+                actuator = plant.AddJointActuator(f"actuator {i}.{k}", part)
+                actuator.set_default_rotor_inertia(armature)
+                actuator.set_default_gear_ratio(1.0)
 
     def readback(self) -> list[Array]:
         """The inertia about the centre of mass is I = I_origin + m [c]x^2."""
         rows = []
-        for body, joint in zip(self.bodies, self.joints, strict=True):
+        for body, chain in zip(self.bodies, self.chains, strict=True):
             held = body.CalcSpatialInertiaInBodyFrame(self.context)
             mass, com = held.get_mass(), held.get_com()
             inertia = held.CalcRotationalInertia().CopyToFullMatrix3() + mass * skew(com) @ skew(com)
-            placement = joint.frame_on_parent().GetFixedPoseInBodyFrame()
+            placement = chain[0].frame_on_parent().GetFixedPoseInBodyFrame()
             rows.append(readback_row(mass, com, inertia, placement.rotation().matrix(), placement.translation()))
         return rows
 
