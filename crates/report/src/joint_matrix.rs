@@ -11,7 +11,7 @@ use serde::Serialize;
 
 use crate::heatmap::{inside, outside};
 use crate::labels;
-use crate::numbers::{decades, listed};
+use crate::numbers::{decades, listed, short};
 use crate::overview::{AGREEMENT, Overview, PAIRWISE, severity};
 use crate::tally::Tally;
 
@@ -197,43 +197,52 @@ fn sentence(overview: &Overview, matrix: &JointMatrix, engine: usize) -> Markup 
         let rows: BTreeSet<usize> = cells.iter().filter(|cell| lack(cell)).map(|cell| cell.at[0]).collect();
         rows.into_iter().map(name).collect::<Vec<_>>()
     };
+    // Each quantity in that state with its largest value, where there is one.
     let quantities_where = |state: State| {
-        let quantities: BTreeSet<usize> = cells.iter().filter(|cell| cell.state == state).map(|cell| cell.at[2]).collect();
-        quantities.into_iter().map(|quantity| labels::quantity(overview.quantities[quantity]).to_owned()).collect::<Vec<_>>()
+        let mut largest: BTreeMap<usize, Option<f64>> = BTreeMap::new();
+        for cell in cells.iter().filter(|cell| cell.state == state) {
+            let known = largest.entry(cell.at[2]).or_default();
+            *known = [*known, cell.numbers[0]].into_iter().flatten().reduce(f64::max);
+        }
+        let words = |(quantity, value): (usize, Option<f64>)| {
+            let title = labels::quantity(overview.quantities[quantity]);
+            value.map_or(title.to_owned(), |value| format!("{title} ({})", short(value)))
+        };
+        largest.into_iter().map(words).collect::<Vec<_>>()
     };
     let mut lacking = rows_where(&|cell| cell.state == State::Unsupported);
     // Without the joint there is no armature on it either.
     let types = lacking.clone();
     lacking.retain(|row| row.strip_suffix(WITH_ARMATURE).is_none_or(|kind| !types.iter().any(|other| other == kind)));
-    let partly: Vec<String> = rows_where(&|cell| cell.state != State::Unsupported && !cell.lacking.is_empty())
-        .into_iter()
-        .filter(|row| !lacking.contains(row))
-        .collect();
-    let (deviating, failing) =
-        (quantities_where(State::Deviates), [quantities_where(State::Fails), quantities_where(State::Error)].concat());
+    let mut partly = rows_where(&|cell| cell.state != State::Unsupported && !cell.lacking.is_empty());
+    partly.retain(|row| !lacking.contains(row));
+
     let agreeing = cells.iter().filter(|cell| cell.state == State::Agrees);
     let closest = agreeing.filter_map(|cell| Some((cell.numbers[2]?, *cell))).min_by(|(one, _), (other, _)| one.total_cmp(other));
-    let class = if !failing.is_empty() {
-        "fail"
-    } else if deviating.is_empty() {
-        "pass"
-    } else {
-        "known"
-    };
-    html! {
-        li.(class) {
-            b { (overview.engines[engine]) }
-            @if let Some((margin, cell)) = closest {
-                " agrees with at least " (decades(margin)) " decades to the gate (" (labels::quantity(overview.quantities[cell.at[2]])) " by "
-                code { (cell.worst[3]) } " on " (name(cell.at[0])) ")"
-            }
-            @if !deviating.is_empty() { "; by known cause it deviates in " (listed(&deviating)) }
-            @if !failing.is_empty() { "; it fails in " (listed(&failing)) }
-            @if !lacking.is_empty() { "; it does not offer " (listed(&lacking)) }
-            @if !partly.is_empty() { "; it offers in part " (listed(&partly)) }
-            "."
+    let mut parts = Vec::new();
+    if let Some((margin, cell)) = closest {
+        let quantity = labels::quantity(overview.quantities[cell.at[2]]);
+        let (decades, method, joint) = (decades(margin), cell.worst[3], name(cell.at[0]));
+        parts.push(format!("agrees with at least {decades} decades to the gate ({quantity} by {method} on {joint})"));
+    }
+    let (deviating, failing, silent) = (quantities_where(State::Deviates), quantities_where(State::Fails), quantities_where(State::Error));
+    for (what, list) in [
+        ("deviates by known cause in", &deviating),
+        ("is outside its gate in", &failing),
+        ("gives no answer in", &silent),
+        ("does not offer", &lacking),
+        ("offers in part", &partly),
+    ] {
+        if !list.is_empty() {
+            parts.push(format!("{what} {}", listed(list)));
         }
     }
+    let class = match (failing.is_empty() && silent.is_empty(), deviating.is_empty()) {
+        (false, _) => "fail",
+        (true, false) => "known",
+        (true, true) => "pass",
+    };
+    html! { li.(class) { b { (overview.engines[engine]) } " " (parts.join("; ")) "." } }
 }
 
 impl Shown<'_> {
