@@ -3,7 +3,8 @@
 Joints are Revolute, Prismatic, Screw (whose pitch is per *revolution*), BallRpy (Drake has no quaternion ball joint), QuaternionFloating,
 Planar and Universal; translation, cylindrical and euler_zyx, which Drake has not, are chains of Prismatic and Revolute joints with massless
 bodies between (BallRpy has the angles of euler_zyx, but not their rates: its velocity is the angular one). Armature is the rotor inertia,
-at gear ratio 1, of an actuator, which Drake gives to one-dof joints only. Damping is never set. Inertias skip Drake's validity check, so that unphysical bodies are answered for as well.
+at gear ratio 1, of an actuator, which Drake gives to one-dof joints only. Damping is never set. Inertias skip Drake's validity check, so
+that unphysical bodies are answered for as well.
 """
 
 from __future__ import annotations
@@ -110,8 +111,10 @@ class DrakeRobot:
         for i, body in enumerate(robot.bodies):
             self._add(i, body)
         self.plant.Finalize()
-        starts = [(part.position_start(), part.velocity_start()) for chain in self.chains for part in chain]
-        if starts != sorted(starts) or any(c[0].velocity_start() != b.joint.v.start for c, b in zip(self.chains, robot.bodies, strict=True)):
+        parts = [part for chain in self.chains for part in chain]
+        firsts = [chain[0].velocity_start() for chain in self.chains]
+        orders = [part.position_start() for part in parts], [part.velocity_start() for part in parts]
+        if firsts != [body.joint.v.start for body in robot.bodies] or any(order != sorted(order) for order in orders):
             raise RuntimeError("Drake put the degrees of freedom in another order")
         self.context = self.plant.CreateDefaultContext()
         self.forces = tree.MultibodyForces(self.plant)
@@ -127,8 +130,8 @@ class DrakeRobot:
             raise Unsupported(f"Drake has no armature on its {joint.type} joint ({joint.name}), which has several degrees of freedom")
         chain: list[tree.Joint] = []
         for k, make in enumerate(makers, start=1):
-            last = k == len(makers)
-            moved = plant.AddRigidBody(f"{i}: {body.name}" if last else f"{i}.{k}", spatial_inertia(body) if last else tree.SpatialInertia.Zero())
+            name, inertia = (f"{i}: {body.name}", spatial_inertia(body)) if k == len(makers) else (f"{i}.{k}", tree.SpatialInertia.Zero())
+            moved = plant.AddRigidBody(name, inertia)
             chain.append(plant.AddJoint(make(f"joint {i}.{k}", frame, moved.body_frame())))
             frame = moved.body_frame()
         self.chains.append(chain)

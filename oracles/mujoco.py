@@ -2,10 +2,10 @@
 
 Joints of several degrees of freedom are slides and hinges in one body, in the order of the neutral coordinates: planar (slide x, slide y,
 hinge z), universal (hinge x, y), translation (slide x, y, z), cylindrical (hinge, slide), euler_zyx (hinge z, y, x). There is no helical
-joint. The compiler is told to edit nothing. Inertias go in by principal axes: MuJoCo's own diagonalisation of a full inertia leaves a quaternion
-whose length is 3e-15 off one, and forgets the axes altogether where no centre of mass was set. Damping, dry friction, limits, contacts
-and actuators are never set and constraints are disabled, so qfrc_passive is zero. A massless or unphysical moving body is refused by the
-compiler: its words are the reason given.
+joint. The compiler is told to edit nothing. Inertias go in by principal axes: MuJoCo's own diagonalisation of a full inertia leaves a
+quaternion whose length is 3e-15 off one, and forgets the axes altogether where no centre of mass was set. Damping, dry friction, limits,
+contacts and actuators are never set and constraints are disabled, so qfrc_passive is zero. A massless or unphysical moving body is refused
+by the compiler: its words are the reason given.
 """
 
 from __future__ import annotations

@@ -2,7 +2,8 @@
 
 Joints are native: Revolute, Prismatic and Helical, in their aligned form (RX, PY, HZ, ...) where the axis is exactly a unit vector of the
 frame and unaligned otherwise; Spherical, FreeFlyer, Planar, Universal(x, y), Translation, SphericalZYX; a cylindrical joint is a Composite
-of a revolute and a prismatic one. Damping and dry friction are never set (rnea and aba would ignore them). Joints come depth-first, without which crba is wrong silently; `model.check(data)` is asserted.
+of a revolute and a prismatic one. Damping and dry friction are never set (rnea and aba would ignore them). Joints come depth-first, without
+which crba is wrong silently; `model.check(data)` is asserted.
 """
 
 from __future__ import annotations
