@@ -109,8 +109,8 @@ DRAWN = "const box = document.getElementById(arguments[0]); return box.querySele
 CLOSED = "return !document.querySelector('#rows').open"
 BACKGROUND = "return getComputedStyle(document.body).backgroundColor"
 # Every section in its order; those that are not in ALWAYS appear with their rows alone.
-SECTIONS = ["verdict", "agreement", "digits", "depth", "time", "tradeoff", "conditioning", "pairs", "provenance", "method", "unpassed"]
-ALWAYS = set(SECTIONS) - {"digits", "tradeoff", "conditioning"}
+SECTIONS = ["verdict", "agreement", "joints", "digits", "depth", "time", "tradeoff", "conditioning", "pairs", "provenance", "method", "unpassed"]
+ALWAYS = set(SECTIONS) - {"joints", "digits", "tradeoff", "conditioning"}
 FOCUS = "const cell = document.activeElement.closest('td'); return cell ? [cell.parentElement.rowIndex, cell.cellIndex] : null"
 
 
@@ -192,6 +192,9 @@ def checks(page, address, shots):
         yield "the filter hides models", shown == 0, shown
         page.run("const box = document.querySelector('#heat-filter'); box.value = ''; box.dispatchEvent(new Event('input'))")
 
+    if has("#joints-table td button"):
+        yield from joints(page, shot)
+
     if has("#digits-table td button"):
         yield from digits(page, shot)
 
@@ -253,6 +256,39 @@ def checks(page, address, shots):
             asked.add(message["params"]["request"]["url"])
     outside = [url for url in asked if url.startswith(("http:", "https:", "ws:", "wss:"))]
     yield "nothing is asked of the network", bool(asked) and not outside, outside[:3]
+
+
+def joints(page, shot):
+    """The checks of the joint matrix."""
+    page.run("document.getElementById('joints').scrollIntoView({behavior: 'instant'})")
+    shot("joints")
+    drawn = page.run("return document.querySelectorAll('#joints-table td button').length")
+    told = page.run("return featherbench.chunks.get('figures').joints.cells.length")
+    yield "the joint matrix shows every cell", drawn == told > 0, [drawn, told]
+    kinds = {"unsupported": "skip", "deviates": "deviation", "agrees": "p"}
+    for state, style in kinds.items():
+        tip = page.run("""
+            const button = document.querySelector(`#joints-table td button[class^='${arguments[0]}']`);
+            if (!button) return null;
+            button.focus();
+            return document.querySelector('#tip').textContent""", style)
+        words = {"unsupported": "not offered", "deviates": "deviates by known cause", "agrees": "method"}[state]
+        yield f"a cell of the joint matrix that {state} says so", tip is None or words in tip, tip
+    shot("joints-tip")
+    page.click("#joints-table td button")
+    rows = page.until(ROWS)
+    seen = page.run("""
+        const heads = [...document.querySelectorAll('#rows-table th')].map(head => head.textContent);
+        const table = [...document.querySelectorAll('#rows-table tbody tr')];
+        return ['engine', 'quantity', 'model'].map(name => [...new Set(table.map(row => row.cells[heads.indexOf(name)].textContent))])""")
+    yield "a click on a cell of the joint matrix shows its rows alone", rows > 0 and all(len(part) == 1 for part in seen) and seen[2][0].startswith("joints-"), seen
+    page.press(ESCAPE)
+    page.run("document.querySelector('#joints-table td button').focus()")
+    start = page.run(FOCUS)
+    page.press(ARROW_RIGHT)
+    page.press(ARROW_DOWN)
+    end = page.run(FOCUS)
+    yield "arrow keys walk the joint matrix", start and end and end != start, [start, end]
 
 
 def digits(page, shot):

@@ -1,14 +1,17 @@
 """Drake as an oracle: the robot is built with the calls of a continuous `MultibodyPlant(0.0)`, never by a parser.
 
 Joints are Revolute, Prismatic, Screw (whose pitch is per *revolution*), BallRpy (Drake has no quaternion ball joint), QuaternionFloating,
-Planar and Universal. Armature is the rotor inertia, at gear ratio 1, of an actuator, which Drake gives to one-dof joints only. Damping is
-never set. Inertias skip Drake's validity check, so that unphysical bodies are answered for as well.
+Planar and Universal; translation, cylindrical and euler_zyx, which Drake has not, are chains of Prismatic and Revolute joints with massless
+bodies between (BallRpy has the angles of euler_zyx, but not their rates: its velocity is the angular one). Armature is the rotor inertia,
+at gear ratio 1, of an actuator, which Drake gives to one-dof joints only. Damping is never set. Inertias skip Drake's validity check, so
+that unphysical bodies are answered for as well.
 """
 
 from __future__ import annotations
 
 import importlib.metadata
 import sys
+from collections.abc import Callable
 from math import pi
 from pathlib import Path
 
@@ -84,62 +87,90 @@ def spatial_inertia(body: Body) -> tree.SpatialInertia:
     return tree.SpatialInertia(body.mass, body.com, unit, skip_validity_check=True)
 
 
-def make_joint(joint: Joint, name: str, parent: tree.Frame, child: tree.Frame) -> tree.Joint:
-    """Drake's joint of that type."""
-    makers = {
-        "revolute": lambda: tree.RevoluteJoint(name, parent, child, joint.axis),
-        "prismatic": lambda: tree.PrismaticJoint(name, parent, child, joint.axis),
-        "helical": lambda: tree.ScrewJoint(name, parent, child, joint.axis, 2 * pi * joint.pitch, 0.0),
-        "spherical": lambda: tree.BallRpyJoint(name, parent, child),
-        "free": lambda: tree.QuaternionFloatingJoint(name, parent, child),
-        "planar": lambda: tree.PlanarJoint(name, parent, child),
-        "universal": lambda: tree.UniversalJoint(name, parent, child),
+JointMaker = Callable[[str, tree.Frame, tree.Frame], tree.Joint]
+
+
+def joint_chain(joint: Joint) -> list[JointMaker]:
+    """Drake's joint of that type, or the joints that make it up, from the parent outwards."""
+
+    def turn(axis: Array) -> JointMaker:
+        return lambda name, parent, child: tree.RevoluteJoint(name, parent, child, axis)
+
+    def slide(axis: Array) -> JointMaker:
+        return lambda name, parent, child: tree.PrismaticJoint(name, parent, child, axis)
+
+    x, y, z = np.eye(3)
+    chains: dict[str, list[JointMaker]] = {
+        "revolute": [turn(joint.axis)],
+        "prismatic": [slide(joint.axis)],
+        "helical": [lambda name, parent, child: tree.ScrewJoint(name, parent, child, joint.axis, 2 * pi * joint.pitch, 0.0)],
+        "spherical": [tree.BallRpyJoint],
+        "free": [tree.QuaternionFloatingJoint],
+        "planar": [tree.PlanarJoint],
+        "universal": [tree.UniversalJoint],
+        "translation": [slide(x), slide(y), slide(z)],
+        "cylindrical": [turn(joint.axis), slide(joint.axis)],
+        "euler_zyx": [turn(z), turn(y), turn(x)],
     }
-    return makers[joint.type]()
+    return chains[joint.type]
 
 
-def build(robot: Description) -> tuple[MultibodyPlant, list[tree.Joint]]:
-    """The plant of a description, and its joints in order."""
+def build(robot: Description) -> tuple[MultibodyPlant, list[list[tree.Joint]]]:
+    """The plant of a description, and for each body its joint, or the joints that make it up."""
     plant = MultibodyPlant(0.0)
     plant.mutable_gravity_field().set_gravity_vector(robot.gravity)
-    joints: list[tree.Joint] = []
+    chains: list[list[tree.Joint]] = []
     for i, body in enumerate(robot.bodies):
-        joint = body.joint
-        parent = joints[body.parent].child_body() if body.parent >= 0 else plant.world_body()
-        child = plant.AddRigidBody(f"{i}: {body.name}", spatial_inertia(body))
-        placement = RigidTransform(RotationMatrix(joint.rotation), joint.translation)
-        frame = plant.AddFrame(tree.FixedOffsetFrame(f"frame {i}", parent.body_frame(), placement))
-        joints.append(plant.AddJoint(make_joint(joint, f"joint {i}", frame, child.body_frame())))
-        if joint.armature.any():
-            if len(joint.armature) > 1:
-                raise Unsupported(f"Drake has no armature on joint {joint.name} of more than one degree of freedom")
-            actuator = plant.AddJointActuator(f"actuator {i}", joints[i])
-            actuator.set_default_rotor_inertia(joint.armature[0])
-            actuator.set_default_gear_ratio(1.0)
+        parent = chains[body.parent][-1].child_body() if body.parent >= 0 else plant.world_body()
+        chains.append(_add(plant, i, body, parent))
     plant.Finalize()
-    return plant, joints
+    return plant, chains
+
+
+def _add(plant: MultibodyPlant, i: int, body: Body, parent: tree.RigidBody) -> list[tree.Joint]:
+    """Adds body i and its joint."""
+    joint = body.joint
+    placement = RigidTransform(RotationMatrix(joint.rotation), joint.translation)
+    frame = plant.AddFrame(tree.FixedOffsetFrame(f"frame {i}", parent.body_frame(), placement))
+    makers = joint_chain(joint)
+    if joint.armature.any() and len(joint.armature) > len(makers):
+        raise Unsupported(f"Drake has no armature on its {joint.type} joint ({joint.name}), which has several degrees of freedom")
+    chain: list[tree.Joint] = []
+    for k, make in enumerate(makers, start=1):
+        name, inertia = (f"{i}: {body.name}", spatial_inertia(body)) if k == len(makers) else (f"{i}.{k}", tree.SpatialInertia.Zero())
+        moved = plant.AddRigidBody(name, inertia)
+        chain.append(plant.AddJoint(make(f"joint {i}.{k}", frame, moved.body_frame())))
+        frame = moved.body_frame()
+    if joint.armature.any():
+        for k, (part, armature) in enumerate(zip(chain, joint.armature, strict=True), start=1):
+            actuator = plant.AddJointActuator(f"actuator {i}.{k}", part)
+            actuator.set_default_rotor_inertia(armature)
+            actuator.set_default_gear_ratio(1.0)
+    return chain
 
 
 class DrakeRobot:
-    """A robot in Drake."""
+    """A robot in Drake: for each body of the description the joint, or the joints, that carry it."""
 
-    def __init__(self, robot: Description, plant: MultibodyPlant, joints: list[tree.Joint]) -> None:
-        self.robot, self.plant, self.joints = robot, plant, joints
-        self.bodies = [joint.child_body() for joint in joints]
-        for mine, joint in zip(joints, (body.joint for body in robot.bodies), strict=True):
-            if mine.velocity_start() != joint.v.start:
-                raise RuntimeError(f"Drake put joint {joint.name} elsewhere")
+    def __init__(self, robot: Description, plant: MultibodyPlant, chains: list[list[tree.Joint]]) -> None:
+        self.robot, self.plant, self.chains = robot, plant, chains
+        self.bodies = [chain[-1].child_body() for chain in chains]
+        parts = [part for chain in chains for part in chain]
+        firsts = [chain[0].velocity_start() for chain in chains]
+        orders = [part.position_start() for part in parts], [part.velocity_start() for part in parts]
+        if firsts != [body.joint.v.start for body in robot.bodies] or any(order != sorted(order) for order in orders):
+            raise RuntimeError("Drake put the degrees of freedom in another order")
         self.context = plant.CreateDefaultContext()
         self.forces = tree.MultibodyForces(plant)
 
     def readback(self) -> list[Array]:
         """The inertia about the centre of mass is I = I_origin + m [c]x^2."""
         rows = []
-        for body, joint in zip(self.bodies, self.joints, strict=True):
+        for body, chain in zip(self.bodies, self.chains, strict=True):
             held = body.CalcSpatialInertiaInBodyFrame(self.context)
             mass, com = held.get_mass(), held.get_com()
             inertia = held.CalcRotationalInertia().CopyToFullMatrix3() + mass * skew(com) @ skew(com)
-            placement = joint.frame_on_parent().GetFixedPoseInBodyFrame()
+            placement = chain[0].frame_on_parent().GetFixedPoseInBodyFrame()
             rows.append(readback_row(mass, com, inertia, placement.rotation().matrix(), placement.translation()))
         return rows
 

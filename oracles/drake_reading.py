@@ -39,8 +39,8 @@ TYPES = {
 EDITED = 1e-9  # of a link's mass or inertia: what is told as edited
 
 
-def read(path: Path, form: str, base: str, make: Callable[[Description, MultibodyPlant, list[tree.Joint]], Any]) -> Reading:
-    """Reads a file; `make` makes a robot of the description, the plant and its moving joints in the description's order."""
+def read(path: Path, form: str, base: str, make: Callable[[Description, MultibodyPlant, list[list[tree.Joint]]], Any]) -> Reading:
+    """Reads a file; `make` makes a robot of the description, the plant and each body's joint."""
     notes: list[Header] = []
     plant = MultibodyPlant(0.0)
     with overheard(path, notes):
@@ -63,7 +63,7 @@ def read(path: Path, form: str, base: str, make: Callable[[Description, Multibod
         notes.append(note("not_compared", None, f"constraints: {plant.num_constraints()}"))
     notes.extend(mentioned(path))
     held = Description.read(description)
-    return Reading(description, held, notes, make(held, plant, [joint for joint in joints if joint.num_velocities()]), {})
+    return Reading(description, held, notes, make(held, plant, [[joint] for joint in joints if joint.num_velocities()]), {})
 
 
 # ---- the plant -------------------------------------------------------------------------------------------------------------------

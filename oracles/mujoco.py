@@ -1,10 +1,11 @@
 """MuJoCo as an oracle: the robot is built with `MjSpec`, never by a parser.
 
-A planar joint is slide x, slide y, hinge z and a universal joint hinge x, hinge y, each in one body; there is no helical joint. The
-compiler is told to edit nothing. Inertias go in by principal axes: MuJoCo's own diagonalisation of a full inertia leaves a quaternion
-whose length is 3e-15 off one, and forgets the axes altogether where no centre of mass was set. Damping, dry friction, limits, contacts
-and actuators are never set and constraints are disabled, so qfrc_passive is zero. A massless or unphysical moving body is refused by the
-compiler: its words are the reason given.
+Joints of several degrees of freedom are slides and hinges in one body, in the order of the neutral coordinates: planar (slide x, slide y,
+hinge z), universal (hinge x, y), translation (slide x, y, z), cylindrical (hinge, slide), euler_zyx (hinge z, y, x). There is no helical
+joint. The compiler is told to edit nothing. Inertias go in by principal axes: MuJoCo's own diagonalisation of a full inertia leaves a
+quaternion whose length is 3e-15 off one, and forgets the axes altogether where no centre of mass was set. Damping, dry friction, limits,
+contacts and actuators are never set and constraints are disabled, so qfrc_passive is zero. A massless or unphysical moving body is refused
+by the compiler: its words are the reason given.
 """
 
 from __future__ import annotations
@@ -119,6 +120,9 @@ def add_body(parent: mj.MjsBody, body: Body, index: int) -> mj.MjsBody:
         "free": [(FREE, Z)],
         "planar": [(SLIDE, X), (SLIDE, Y), (HINGE, Z)],
         "universal": [(HINGE, X), (HINGE, Y)],
+        "translation": [(SLIDE, X), (SLIDE, Y), (SLIDE, Z)],
+        "cylindrical": [(HINGE, joint.axis), (SLIDE, joint.axis)],
+        "euler_zyx": [(HINGE, Z), (HINGE, Y), (HINGE, X)],
     }
     for kind, axis in parts[joint.type]:
         child.add_joint(type=kind, axis=axis)

@@ -1,8 +1,9 @@
 """Pinocchio as an oracle: the robot is built with `pin.Model.addJoint` and `appendBodyToJoint`, never by a parser.
 
 Joints are native: Revolute, Prismatic and Helical, in their aligned form (RX, PY, HZ, ...) where the axis is exactly a unit vector of the
-frame and unaligned otherwise; Spherical, FreeFlyer, Planar, Universal(x, y). Damping and dry friction are never set (rnea and aba would
-ignore them). Joints come depth-first, without which crba is wrong silently; `model.check(data)` is asserted.
+frame and unaligned otherwise; Spherical, FreeFlyer, Planar, Universal(x, y), Translation, SphericalZYX; a cylindrical joint is a Composite
+of a revolute and a prismatic one. Damping and dry friction are never set (rnea and aba would ignore them). Joints come depth-first, without
+which crba is wrong silently; `model.check(data)` is asserted.
 """
 
 from __future__ import annotations
@@ -57,22 +58,33 @@ def to_angular_first(motion: pin.Motion | pin.Force) -> Array:
 # ---- the robot -------------------------------------------------------------------------------------------------------------------
 
 
+def about_axis(kind: str, axis: Array, *pitch: float) -> pin.JointModel:
+    """Pinocchio's joint of one degree of freedom about or along an axis."""
+    for along, unit in zip("XYZ", np.eye(3), strict=True):
+        if (axis == unit).all():
+            return getattr(pin, f"JointModel{kind[0]}{along}")(*pitch)
+    return getattr(pin, f"JointModel{kind}Unaligned")(axis, *pitch)
+
+
 def joint_model(joint: Joint) -> pin.JointModel:
     """Pinocchio's native joint of that type."""
-    pitch = [joint.pitch] if joint.type == "helical" else []
+    if joint.type == "cylindrical":
+        composite = pin.JointModelComposite(2)
+        for kind in ("Revolute", "Prismatic"):
+            composite.addJoint(about_axis(kind, joint.axis), pin.SE3.Identity())
+        return composite
     if joint.axis.any():
-        letter, unaligned = {
-            "revolute": ("R", pin.JointModelRevoluteUnaligned),
-            "prismatic": ("P", pin.JointModelPrismaticUnaligned),
-            "helical": ("H", pin.JointModelHelicalUnaligned),
-        }[joint.type]
-        for along, unit in zip("XYZ", np.eye(3), strict=True):
-            if (joint.axis == unit).all():
-                return getattr(pin, f"JointModel{letter}{along}")(*pitch)
-        return unaligned(joint.axis, *pitch)
+        return about_axis(joint.type.capitalize(), joint.axis, *([joint.pitch] if joint.type == "helical" else []))
     if joint.type == "universal":
         return pin.JointModelUniversal(*np.eye(3)[:2])
-    return {"spherical": pin.JointModelSpherical, "free": pin.JointModelFreeFlyer, "planar": pin.JointModelPlanar}[joint.type]()
+    makers = {
+        "spherical": pin.JointModelSpherical,
+        "free": pin.JointModelFreeFlyer,
+        "planar": pin.JointModelPlanar,
+        "translation": pin.JointModelTranslation,
+        "euler_zyx": pin.JointModelSphericalZYX,
+    }
+    return makers[joint.type]()
 
 
 def spatial_inertia(body: Body) -> pin.Inertia:

@@ -78,8 +78,11 @@ JOINT_SIZES = {
     "free": (7, 6),
     "planar": (3, 3),
     "universal": (2, 2),
+    "translation": (3, 3),
+    "cylindrical": (2, 2),
+    "euler_zyx": (3, 3),
 }
-WITH_AXIS = ("revolute", "prismatic", "helical")
+WITH_AXIS = ("revolute", "prismatic", "helical", "cylindrical")
 
 
 @dataclass(frozen=True)

@@ -167,6 +167,9 @@ PARTS: dict[str, list[tuple[str, list[Number] | None, int, int]]] = {
     "free": [("free", UNIT[0], 7, 6)],
     "planar": [("slide", UNIT[0], 1, 1), ("slide", UNIT[1], 1, 1), ("turn", UNIT[2], 1, 1)],
     "universal": [("turn", UNIT[0], 1, 1), ("turn", UNIT[1], 1, 1)],
+    "translation": [("slide", UNIT[0], 1, 1), ("slide", UNIT[1], 1, 1), ("slide", UNIT[2], 1, 1)],
+    "cylindrical": [("turn", None, 1, 1), ("slide", None, 1, 1)],
+    "euler_zyx": [("turn", UNIT[2], 1, 1), ("turn", UNIT[1], 1, 1), ("turn", UNIT[0], 1, 1)],
 }
 
 

@@ -92,6 +92,17 @@ pub enum JointType {
     Planar,
     /// Rotation about the joint frame's x, then about the moved y.
     Universal,
+    /// Translation along the joint frame's x, y and z.
+    Translation,
+    /// Rotation about an axis and translation along it, independent of each other; q is angle and distance. The two commute, so that their
+    /// order is that of the numbers alone: the angle first, as in every 6-vector here.
+    Cylindrical {
+        /// The axis of both.
+        axis: [f64; 3],
+    },
+    /// Rotation about the joint frame's z, then about the moved y, then about the moved x; q is the three angles, v their rates. At ±90°
+    /// about y the first and the third axis fall together and the mass matrix is singular where no armature is.
+    EulerZyx,
 }
 
 /// A constant rigid placement.
@@ -135,8 +146,8 @@ impl JointType {
         match self {
             Self::Fixed => 0,
             Self::Revolute { .. } | Self::Prismatic { .. } | Self::Helical { .. } => 1,
-            Self::Universal => 2,
-            Self::Planar => 3,
+            Self::Universal | Self::Cylindrical { .. } => 2,
+            Self::Planar | Self::Translation | Self::EulerZyx => 3,
             Self::Spherical => 4,
             Self::Free => 7,
         }
@@ -162,13 +173,16 @@ impl JointType {
             Self::Free => "free",
             Self::Planar => "planar",
             Self::Universal => "universal",
+            Self::Translation => "translation",
+            Self::Cylindrical { .. } => "cylindrical",
+            Self::EulerZyx => "euler_zyx",
         }
     }
 
     /// The axis, for the kinds that have one.
     pub fn axis(self) -> Option<[f64; 3]> {
         match self {
-            Self::Revolute { axis } | Self::Prismatic { axis } | Self::Helical { axis, .. } => Some(axis),
+            Self::Revolute { axis } | Self::Prismatic { axis } | Self::Helical { axis, .. } | Self::Cylindrical { axis } => Some(axis),
             _ => None,
         }
     }

@@ -141,5 +141,8 @@ fn compile<P: Real>(kind: JointType) -> Vec<(JointKind, Motion<P>)> {
         JointType::Free => vec![(JointKind::Free, Motion::zero())],
         JointType::Planar => vec![slide(x), slide(y), turn(z)],
         JointType::Universal => vec![turn(x), turn(y)],
+        JointType::Translation => vec![slide(x), slide(y), slide(z)],
+        JointType::Cylindrical { axis } => vec![turn(axis), slide(axis)],
+        JointType::EulerZyx => vec![turn(z), turn(y), turn(x)],
     }
 }

@@ -26,6 +26,9 @@ fn kind() -> impl Strategy<Value = JointType> {
         Just(JointType::Free),
         Just(JointType::Planar),
         Just(JointType::Universal),
+        Just(JointType::Translation),
+        axis().prop_map(|axis| JointType::Cylindrical { axis }),
+        Just(JointType::EulerZyx),
     ]
 }
 

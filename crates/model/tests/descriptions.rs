@@ -223,13 +223,40 @@ fn composed_joints_become_primitives_with_massless_bodies_between() {
         body("cart", None, JointType::Planar),
         body("fork", Some(0), JointType::Universal),
         body("ball", Some(0), JointType::Spherical),
+        body("gantry", Some(0), JointType::Translation),
+        body("piston", Some(3), JointType::Cylindrical { axis: [0.0, 0.6, 0.8] }),
+        body("wrist", Some(3), JointType::EulerZyx),
     ];
     let model = Model::<f64>::build(&robot(bodies)).expect("a tree");
-    assert_eq!(model.described, [2, 4, 5]);
-    assert_eq!((model.topology.nq(), model.topology.nv(), model.topology.bodies()), (9, 8, 6));
+    assert_eq!(model.described, [2, 4, 5, 8, 10, 13]);
+    assert_eq!((model.topology.nq(), model.topology.nv(), model.topology.bodies()), (17, 16, 14));
     assert_eq!(model.topology.joints()[5].parent, Some(2));
+    assert_eq!([9, 11].map(|first| model.topology.joints()[first].parent), [Some(8); 2]);
     let masses: Vec<f64> = model.inertias.iter().map(|inertia| inertia.mass).collect();
-    assert_eq!(masses, [0.0, 0.0, 2.0, 0.0, 2.0, 2.0]);
+    assert_eq!(masses, [0.0, 0.0, 2.0, 0.0, 2.0, 2.0, 0.0, 0.0, 2.0, 0.0, 2.0, 0.0, 0.0, 2.0]);
     assert_eq!(model.placements[1], Transform::identity());
     assert_eq!(model.warnings, []);
+}
+
+/// Where the body of each composed joint stands, by hand: a quarter turn takes x to y, y to z, z to x about the axis that is left.
+#[test]
+fn composed_joints_move_their_body_as_they_say() {
+    let at = |kind: JointType, q: &[f64]| {
+        let model = Model::<f64>::build(&robot(vec![body("only", None, kind)])).expect("a tree");
+        (0..model.topology.bodies()).fold(Transform::identity(), |pose: Transform<f64>, i| pose.compose(&model.joint_transform(i, q)))
+    };
+    let quarter = std::f64::consts::FRAC_PI_2;
+    // The sine and cosine of a quarter turn are good to 1e-16.
+    let close = |found: &[f64], expected: &[f64]| found.iter().zip(expected).all(|(a, b)| (a - b).abs() < 1e-15);
+    let moved = at(JointType::Translation, &[1.0, 2.0, 3.0]);
+    assert_eq!(moved, Transform::new(Transform::identity().rotation, Vec3::new(1.0, 2.0, 3.0)));
+    let screwed = at(JointType::Cylindrical { axis: [0.0, 0.0, 1.0] }, &[quarter, 0.75]);
+    assert!(close(&screwed.rotation.to_array(), &[0.0, -1.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0]), "{screwed:?}");
+    assert!(close(&screwed.translation.to_array(), &[0.0, 0.0, 0.75]), "{screwed:?}");
+    // Rz Ry = [0 −1 0; 1 0 0; 0 0 1][0 0 1; 0 1 0; −1 0 0]: in the other order it would be [0 0 1; 1 0 0; 0 1 0].
+    let turned = at(JointType::EulerZyx, &[quarter, quarter, 0.0]);
+    assert!(close(&turned.rotation.to_array(), &[0.0, -1.0, 0.0, 0.0, 0.0, 1.0, -1.0, 0.0, 0.0]), "{turned:?}");
+    // Ry Rx = [0 0 1; 0 1 0; −1 0 0][1 0 0; 0 0 −1; 0 1 0].
+    let turned = at(JointType::EulerZyx, &[0.0, quarter, quarter]);
+    assert!(close(&turned.rotation.to_array(), &[0.0, 1.0, 0.0, 0.0, 0.0, -1.0, -1.0, 0.0, 0.0]), "{turned:?}");
 }

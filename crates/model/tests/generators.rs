@@ -12,7 +12,7 @@ fn build(spec: &str) -> Model<f64> {
 }
 
 /// Every family with several parameters: what a change of the generators must not break.
-const SPECS: [&str; 22] = [
+const SPECS: [&str; 28] = [
     "chain",
     "chain:n=1",
     "chain:n=36,layout=spatial",
@@ -35,6 +35,12 @@ const SPECS: [&str; 22] = [
     "joints:kind=spherical,base=free",
     "joints:kind=mixed",
     "joints:kind=mixed,base=free",
+    "joints:kind=translation",
+    "joints:kind=cylindrical,shape=single",
+    "joints:kind=euler_zyx,base=free,armature=true",
+    "joints:kind=free,base=free",
+    "joints:kind=all",
+    "joints:kind=all,base=free,armature=true",
 ];
 
 /// Closed forms: stored numbers of M are n + Σ(d_k − 1), its factorization takes Σ d_k(d_k − 1)/2 multiply-subtracts.
@@ -126,6 +132,7 @@ fn bits_are_pinned() {
         ("quadruped", 13_574_642_916_772_521_181),
         ("hand", 10_588_947_188_295_049_794),
         ("joints:kind=mixed", 4_668_917_620_179_678_904),
+        ("joints:kind=all,base=free,armature=true", 2_164_640_536_351_896_225),
     ];
     let found: Vec<(&str, u64)> = pinned.iter().map(|&(spec, _)| (spec, fingerprint(&generate(spec)))).collect();
     assert_eq!(found, pinned);
@@ -179,11 +186,10 @@ fn random_trees_obey_their_parameters() {
 fn joint_robots_show_their_joint_in_the_middle_and_at_the_tips() {
     for &kind in Kind::ALL {
         for &base in Base::ALL {
-            let robot = Family::Joints(Joints { kind, base, shape: Shape::Branched }).generate().expect("every combination exists");
+            let robot = Family::Joints(Joints { kind, base, ..Joints::default() }).generate().expect("every combination exists");
             let is_parent = |i: usize| robot.bodies.iter().any(|body| body.parent == Some(i));
-            let shown: Vec<usize> = (1..robot.bodies.len())
-                .filter(|&i| matches!(kind, Kind::Mixed | Kind::Common) || robot.bodies[i].joint.kind.name() == kind.name())
-                .collect();
+            let shown: Vec<usize> =
+                (1..robot.bodies.len()).filter(|&i| !kind.is_single() || robot.bodies[i].joint.kind.name() == kind.name()).collect();
             assert!(shown.iter().any(|&i| is_parent(i)), "{} in the middle", robot.name);
             assert!(shown.iter().filter(|&&i| !is_parent(i)).count() >= 2, "{} at the tips", robot.name);
         }
@@ -191,10 +197,26 @@ fn joint_robots_show_their_joint_in_the_middle_and_at_the_tips() {
 }
 
 #[test]
+fn the_mix_of_all_shows_every_joint_and_armature_changes_nothing_else() {
+    let mut robot = generate("joints:kind=all,base=free,armature=true");
+    let shown: std::collections::BTreeSet<&str> = robot.bodies.iter().map(|body| body.joint.kind.name()).collect();
+    let single: std::collections::BTreeSet<&str> = Kind::ALL.iter().filter(|kind| kind.is_single()).map(|kind| kind.name()).collect();
+    assert_eq!(shown, single);
+    for joint in robot.bodies.iter().map(|body| &body.joint) {
+        assert_eq!(joint.armature.len(), if joint.kind == JointType::Free { 0 } else { joint.kind.nv() }, "{}", joint.name);
+    }
+    robot.bodies.iter_mut().for_each(|body| body.joint.armature.clear());
+    let without = generate("joints:kind=all,base=free");
+    assert_eq!(robot.bodies, without.bodies);
+    assert_ne!(robot.name, without.name);
+}
+
+#[test]
 fn single_joints_stand_on_the_world_or_on_a_free_body() {
     for &kind in Kind::ALL {
         for &base in Base::ALL {
-            let robot = Family::Joints(Joints { kind, base, shape: Shape::Single }).generate().expect("every combination exists");
+            let robot =
+                Family::Joints(Joints { kind, base, shape: Shape::Single, armature: false }).generate().expect("every combination exists");
             assert_eq!(robot.depth(), if base == Base::Free { 2 } else { 1 }, "{}", robot.name);
             assert!(robot.bodies.iter().all(|body| !(kind == Kind::Common && body.joint.kind.name() == "helical")), "{}", robot.name);
         }
@@ -248,7 +270,7 @@ fn bad_specifications_are_named() {
         ("star:n=0", "n=0"),
         ("humanoid:hand_mass=-1", "hand_mass=-1"),
         ("quadruped:legs=6", "it takes none"),
-        ("joints:kind=free", "kind=free"),
+        ("joints:kind=fixed", "kind=fixed"),
     ];
     for (spec, part) in cases {
         assert!(message(spec).contains(part), "{spec}: {}", message(spec));

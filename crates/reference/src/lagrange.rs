@@ -151,6 +151,12 @@ fn displacement<T: Scalar>(robot: &Robot, kind: &Kind, q: &[T]) -> (Mat3<T>, Vec
         }
         Kind::Planar => (Mat3::turn(&unit(2), &q[2], &one), Vec3([q[0].clone(), q[1].clone(), T::zero()])),
         Kind::Universal => (Mat3::turn(&unit(0), &q[0], &one).product(&Mat3::turn(&unit(1), &q[1], &one)), Vec3::zero()),
+        Kind::Translation => (still(), Vec3(from_fn(|i| q[i].clone()))),
+        Kind::Cylindrical(u) => (Mat3::turn(&Vec3::constant(u), &q[0], &one), Vec3::constant(u).times(&q[1])),
+        Kind::EulerZyx => {
+            let [z, y, x] = from_fn(|k| Mat3::turn(&unit(2 - k), &q[k], &one));
+            (z.product(&y).product(&x), Vec3::zero())
+        }
         // Refused by `check` before.
         Kind::Spherical | Kind::Free => (still(), Vec3::zero()),
     }

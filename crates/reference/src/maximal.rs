@@ -51,11 +51,8 @@ pub fn forward_dynamics(motion: &Motion, tau: &[Mp]) -> Result<Vec<Mp>, Error> {
     let mut answers: Vec<(Vec<(usize, Mp)>, Mp)> = Vec::with_capacity(robot.nv());
     for (index, body) in robot.bodies.iter().enumerate() {
         let joint = Joint::new(motion, index);
-        for (dof, column) in joint.columns.iter().enumerate() {
+        for (dof, dual) in duals(&joint.columns).into_iter().enumerate() {
             let k = body.v + dof;
-            // D = S (SᵀS)⁻¹ column by column: the columns of every joint are orthogonal to each other.
-            let square = inner(column, column);
-            let dual: Six = from_fn(|i| &column[i] / &square);
             let across = joint.pull_back(&dual);
             let armature = &robot.armature[k];
             let drift = inner(&dual, &joint.drift);
@@ -136,16 +133,39 @@ fn inner(a: &Six, b: &Six) -> Mp {
     a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
 
+/// What is left of a vector beside some that are orthogonal to each other.
+fn beside(six: &Six, orthogonal: &[Six]) -> Six {
+    orthogonal.iter().fold(six.clone(), |rest, basis| {
+        let share = &inner(basis, &rest) / &inner(basis, basis);
+        from_fn(|i| &rest[i] - &share * &basis[i])
+    })
+}
+
+/// Gram–Schmidt: an orthogonal basis of what the columns span.
+fn orthogonal<'a>(columns: impl IntoIterator<Item = &'a Six>) -> Vec<Six> {
+    let mut basis: Vec<Six> = Vec::new();
+    for column in columns {
+        basis.push(beside(column, &basis));
+    }
+    basis
+}
+
+/// D = S (SᵀS)⁻¹ column by column: what is left of a column beside the others, of such a length that its product with the column is one.
+fn duals(columns: &[Six]) -> Vec<Six> {
+    let dual = |k: usize| {
+        let others = columns[..k].iter().chain(&columns[k + 1..]);
+        let rest = beside(&columns[k], &orthogonal(others));
+        let scale = inner(&rest, &columns[k]);
+        from_fn(|i| &rest[i] / &scale)
+    };
+    (0..columns.len()).map(dual).collect()
+}
+
 /// An orthogonal basis of the space orthogonal to the columns: Gram–Schmidt on the unit vectors, the one that keeps most taken first.
 fn complement(columns: &[Six], one: &Mp) -> Vec<Six> {
-    let mut taken: Vec<Six> = columns.to_vec();
+    let mut taken: Vec<Six> = orthogonal(columns);
     while taken.len() < 6 {
-        let residual = |axis: usize| {
-            taken.iter().fold(from_fn(|i| if i == axis { one.clone() } else { Mp::zero() }), |rest: Six, basis| {
-                let share = &inner(basis, &rest) / &inner(basis, basis);
-                from_fn(|i| &rest[i] - &share * &basis[i])
-            })
-        };
+        let residual = |axis: usize| beside(&from_fn(|i| if i == axis { one.clone() } else { Mp::zero() }), &taken);
         let residuals: [Six; 6] = from_fn(residual);
         let size = |six: &Six| inner(six, six);
         let [first, others @ ..] = residuals;

@@ -61,10 +61,13 @@ pub struct Motion<'a> {
 #[derive(Clone, Copy)]
 enum FixedIn {
     Parent,
+    /// The frame that the joint's first degree of freedom moves.
+    Between,
     Child,
 }
 
-/// A joint at its configuration: its turn and its shift in the joint frame, and its columns in the axes in which they are fixed.
+/// A joint at its configuration: its turn and its shift in the joint frame, and its columns, those fixed in the child in the child's axes
+/// and the others in the joint frame's.
 struct Across {
     turn: Mat3<Mp>,
     shift: Vec3<Mp>,
@@ -128,6 +131,27 @@ impl Robot {
                 shift: zero(),
                 columns: vec![(FixedIn::Parent, x.clone(), zero()), (FixedIn::Child, y.clone(), zero())],
             },
+            Kind::Translation => Across {
+                turn: still,
+                shift: Vec3(from_fn(|i| q[i].clone())),
+                columns: unit.iter().map(|e| (FixedIn::Parent, zero(), e.clone())).collect(),
+            },
+            Kind::Cylindrical(u) => Across {
+                turn: Mat3::turn(u, &q[0], &one),
+                shift: along(u, &q[1]),
+                columns: vec![(FixedIn::Parent, u.clone(), zero()), (FixedIn::Parent, zero(), u.clone())],
+            },
+            // The first axis is the joint frame's z, the second the y that the first turn moved, the third the body's own x.
+            Kind::EulerZyx => {
+                let first = Mat3::turn(z, &q[0], &one);
+                let columns = vec![
+                    (FixedIn::Parent, z.clone(), zero()),
+                    (FixedIn::Between, first.apply(y), zero()),
+                    (FixedIn::Child, x.clone(), zero()),
+                ];
+                let turn = first.product(&Mat3::turn(y, &q[1], &one)).product(&Mat3::turn(x, &q[2], &one));
+                Across { turn, shift: zero(), columns }
+            }
             Kind::Spherical => Across {
                 turn: quaternion_turn(&q[..4], &one).ok_or_else(|| no_quaternion(body))?,
                 shift: zero(),
@@ -181,7 +205,7 @@ impl Motion<'_> {
         let origin = joint_origin.plus(&shift);
         let columns: Vec<_> = (across.columns.into_iter())
             .map(|(fixed, z, l)| match fixed {
-                FixedIn::Parent => (fixed, joint_rotation.apply(&z), joint_rotation.apply(&l)),
+                FixedIn::Parent | FixedIn::Between => (fixed, joint_rotation.apply(&z), joint_rotation.apply(&l)),
                 FixedIn::Child => (fixed, rotation.apply(&z), rotation.apply(&l)),
             })
             .collect();
@@ -194,9 +218,11 @@ impl Motion<'_> {
             omega = omega.plus(&z.times(rate));
             velocity = velocity.plus(&l.times(rate));
         }
+        let between = columns.iter().zip(rates).next().map_or(omega_p.clone(), |((_, z, _), rate)| omega_p.plus(&z.times(rate)));
         for (fixed, z, l) in columns {
             let turning = match fixed {
                 FixedIn::Parent => &omega_p,
+                FixedIn::Between => &between,
                 FixedIn::Child => &omega,
             };
             path.push(self.columns.len());

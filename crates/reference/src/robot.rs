@@ -21,6 +21,9 @@ pub(crate) enum Kind {
     Free,
     Planar,
     Universal,
+    Translation,
+    Cylindrical(Vec3<Mp>),
+    EulerZyx,
 }
 
 /// A body and the joint that carries it.
@@ -142,6 +145,9 @@ fn exact_body(precision: Precision, body: &BodyDescription, q: usize, v: usize) 
         JointType::Free => Kind::Free,
         JointType::Planar => Kind::Planar,
         JointType::Universal => Kind::Universal,
+        JointType::Translation => Kind::Translation,
+        JointType::Cylindrical { axis: u } => Kind::Cylindrical(axis(u)?),
+        JointType::EulerZyx => Kind::EulerZyx,
         JointType::Fixed => return Err(Error::Unsupported { body: body.name.clone(), kind: "fixed" }),
     };
     let [xx, xy, xz, yy, yz, zz] = body.inertia;

@@ -48,7 +48,7 @@ fn constraints_and_the_lagrangian_agree_with_projection_on_the_chains() {
 
 /// Every kind of joint, in the middle of a tree and at its tips, with skew axes, products of inertia, armature, skew gravity.
 fn every_joint() -> Vec<Description> {
-    let kinds = ["revolute", "prismatic", "helical", "spherical", "planar", "universal"];
+    let kinds = ["revolute", "prismatic", "helical", "spherical", "planar", "universal", "translation", "cylindrical", "euler_zyx"];
     let mut robots: Vec<Description> = Vec::new();
     for kind in kinds {
         robots.extend(["fixed", "free"].map(|base| describe(&format!("joints:kind={kind},base={base},shape=single"))));

@@ -8,6 +8,7 @@ use serde::Serialize;
 use crate::conditioning::{self, Family};
 use crate::digits::Digits;
 use crate::fit::{Fit, power_law};
+use crate::joint_matrix::JointMatrix;
 use crate::labels;
 use crate::overview::{AGREEMENT, Overview, PAIRWISE, TIMING};
 use crate::tradeoff::{Tradeoff, tradeoffs};
@@ -28,6 +29,8 @@ pub struct Figures<'a> {
     pub tradeoffs: Vec<Tradeoff<'a>>,
     /// Condition numbers.
     pub conditions: Vec<Family<'a>>,
+    /// Joint types by engine and quantity.
+    pub joints: JointMatrix<'a>,
 }
 
 /// Errors of one quantity under one measure.
@@ -104,6 +107,7 @@ impl<'a> Figures<'a> {
             errors: errors(overview, records),
             tradeoffs: tradeoffs(&digits, &times),
             conditions: conditioning::families(overview, records),
+            joints: JointMatrix::of(overview, records),
             times,
             digits,
         }

@@ -123,7 +123,7 @@ fn button(cell: &Cell) -> Markup {
 }
 
 /// Colour steps inside the gate, by decades.
-fn inside(margin: f64) -> &'static str {
+pub fn inside(margin: f64) -> &'static str {
     match margin {
         m if m < 0.5 => "p0",
         m if m < 1.0 => "p1",
@@ -135,7 +135,7 @@ fn inside(margin: f64) -> &'static str {
 }
 
 /// Colour steps outside the gate, by decades.
-fn outside(margin: f64) -> &'static str {
+pub fn outside(margin: f64) -> &'static str {
     match margin {
         m if m > -1.0 => "f0",
         m if m > -2.0 => "f1",

@@ -16,6 +16,7 @@ mod figures;
 mod findings;
 mod fit;
 mod heatmap;
+mod joint_matrix;
 mod known;
 mod labels;
 mod method;
@@ -47,6 +48,7 @@ const SCRIPT: &str = concat!(
     include_str!("../assets/rows.js"),
     include_str!("../assets/grid.js"),
     include_str!("../assets/heatmap.js"),
+    include_str!("../assets/joints.js"),
     include_str!("../assets/plots.js"),
     include_str!("../assets/figures.js"),
     include_str!("../assets/digits.js"),

@@ -7,12 +7,15 @@ use crate::figures::Figures;
 use crate::findings::Findings;
 use crate::overview::{Overview, REPRODUCTIONS};
 use crate::truth::Truth;
-use crate::{conditioning, digits_section, heatmap, known, method, pairwise, plots, provenance, tradeoff, truth, unpassed, verdict};
+use crate::{
+    conditioning, digits_section, heatmap, joint_matrix, known, method, pairwise, plots, provenance, tradeoff, truth, unpassed, verdict,
+};
 
 /// The sections: anchor, entry in the navigation.
-const SECTIONS: [(&str, &str); 12] = [
+const SECTIONS: &[(&str, &str)] = &[
     ("verdict", "Verdict"),
     ("agreement", "Agreement"),
+    ("joints", "Joints"),
     ("digits", "Digits"),
     ("depth", "Error"),
     ("time", "Time"),
@@ -50,6 +53,7 @@ pub fn render(run: &RunInfo, records: &[Record], overview: &Overview, figures: &
                 main {
                     (verdict::section(run, overview, records, &findings, truth::markup(overview, &figures.digits, &truth)))
                     (heatmap::section(overview, &findings))
+                    (joint_matrix::section(overview, &figures.joints))
                     (digits_section::section(overview, &figures.digits))
                     (plots::depth(figures))
                     (plots::time(overview, figures))
@@ -90,13 +94,14 @@ pub fn opener(chunk: &str, filters: &[(&str, &str)], text: &str) -> Markup {
 /// The sections that this run has: some appear with their rows alone.
 fn sections(overview: &Overview, figures: &Figures) -> impl Iterator<Item = (&'static str, &'static str)> {
     let absent = |anchor| match anchor {
+        "joints" => figures.joints.rows.is_empty(),
         "digits" => figures.digits.subjects.is_empty(),
         "tradeoff" => figures.tradeoffs.is_empty(),
         "conditioning" => figures.conditions.is_empty(),
         "known" => !overview.studies.contains(&REPRODUCTIONS),
         _ => false,
     };
-    SECTIONS.into_iter().filter(move |&(anchor, _)| !absent(anchor))
+    SECTIONS.iter().copied().filter(move |&(anchor, _)| !absent(anchor))
 }
 
 fn header(run: &RunInfo, overview: &Overview, figures: &Figures) -> Markup {

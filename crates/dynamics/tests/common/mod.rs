@@ -49,12 +49,15 @@ pub enum Kind {
     Free,
     Planar,
     Universal,
+    Translation,
+    Cylindrical,
+    EulerZyx,
 }
 
 use Kind::*;
 
 /// Robots that between them have every kind of joint, chain and branched, fixed and floating, and a free joint in the middle.
-pub const ROBOTS: [(&str, Recipe); 9] = [
+pub const ROBOTS: [(&str, Recipe); 10] = [
     ("revolute chain", Recipe { kinds: &[Revolute], bodies: 8, branched: false, armature: false }),
     ("prismatic chain", Recipe { kinds: &[Prismatic, Revolute], bodies: 6, branched: false, armature: true }),
     ("helical chain", Recipe { kinds: &[Helical], bodies: 6, branched: false, armature: true }),
@@ -75,6 +78,7 @@ pub const ROBOTS: [(&str, Recipe); 9] = [
         },
     ),
     ("free joints in the middle", Recipe { kinds: &[Revolute, Spherical, Free, Prismatic], bodies: 12, branched: true, armature: true }),
+    ("more composed joints", Recipe { kinds: &[Translation, Cylindrical, EulerZyx], bodies: 9, branched: true, armature: true }),
 ];
 
 /// The robot of a recipe, whose tree does not depend on the seed: skew axes and gravity, turned placements, products of inertia.
@@ -96,6 +100,9 @@ pub fn robot(recipe: &Recipe, seed: u64) -> Description {
             Free => JointType::Free,
             Planar => JointType::Planar,
             Universal => JointType::Universal,
+            Translation => JointType::Translation,
+            Cylindrical => JointType::Cylindrical { axis },
+            EulerZyx => JointType::EulerZyx,
         };
         let rotation = Quaternion::from_array(random.direction::<4>()).to_rotation().to_array();
         let vector = |random: &mut Random, reach: f64| std::array::from_fn(|_| random.uniform(-reach, reach));

@@ -12,8 +12,8 @@
 //! The page `datasets/models/FORMAT.md` describes every field. In short:
 //! - `format` must be 1; a key that is not listed there is refused; keys may stand in any order.
 //! - `parent` is an index into `bodies`, or −1 for the world. Any order of bodies is read; [`write()`](fn@write) keeps the order given.
-//! - `type` is `fixed` or one of the joint types of the oracle protocol; `axis` stands for revolute, prismatic and helical joints, `pitch`
-//!   for helical ones.
+//! - `type` is `fixed` or one of the joint types of the oracle protocol; `axis` stands for revolute, prismatic, helical and cylindrical
+//!   joints, `pitch` for helical ones.
 //! - `armature`, `damping`, `friction`, `lower`, `upper`, `velocity`, `effort` hold one number per degree of freedom or are left out.
 //! - `frames` and `provenance` are optional. The sections `actuation`, `loops`, `contacts`, `residuals` and `parameters` are refused by
 //!   name until a study reads them, rather than ignored.

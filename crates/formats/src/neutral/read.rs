@@ -254,8 +254,11 @@ impl TryFrom<JointFields> for Joint {
             "free" => JointType::Free,
             "planar" => JointType::Planar,
             "universal" => JointType::Universal,
+            "translation" => JointType::Translation,
+            "cylindrical" => JointType::Cylindrical { axis: needed_axis? },
+            "euler_zyx" => JointType::EulerZyx,
             other => {
-                let known = "fixed, revolute, prismatic, helical, spherical, free, planar, universal";
+                let known = "fixed, revolute, prismatic, helical, spherical, free, planar, universal, translation, cylindrical, euler_zyx";
                 return Err(format!("joint '{name}' has the unknown type '{other}'; choose one of {known}"));
             }
         };

@@ -1,7 +1,7 @@
 //! Small branched trees that show one kind of joint in the middle and at the tips, on a fixed and on a free base.
 
 use super::parameters::{Parameters, words};
-use super::parts::{COMMON, MOVABLE, random_body, random_kind};
+use super::parts::{ARMATURE, COMMON, MOVABLE, random_body, random_kind};
 use super::{BadFamily, Base};
 use crate::{BodyDescription, Description, JointType, Random};
 use std::fmt;
@@ -22,10 +22,20 @@ pub enum Kind {
     Planar,
     /// Rotation about x, then y.
     Universal,
-    /// Every kind, each in the middle and at a tip.
+    /// Motion along x, y and z.
+    Translation,
+    /// Rotation about an axis, and motion along it.
+    Cylindrical,
+    /// Rotation about z, then y, then x.
+    EulerZyx,
+    /// Free motion, in the middle of a tree as well.
+    Free,
+    /// The kinds from revolute to universal, each in the middle and at a tip.
     Mixed,
-    /// Every kind but screws, which not every engine has.
+    /// The same without screws, which not every engine has.
     Common,
+    /// Every single kind, each in the middle and at a tip.
+    All,
 }
 
 words!(Kind {
@@ -35,9 +45,31 @@ words!(Kind {
     Spherical => "spherical",
     Planar => "planar",
     Universal => "universal",
+    Translation => "translation",
+    Cylindrical => "cylindrical",
+    EulerZyx => "euler_zyx",
+    Free => "free",
     Mixed => "mixed",
     Common => "common",
+    All => "all",
 });
+
+impl Kind {
+    /// The words of the joints that it shows.
+    fn shown(self) -> Vec<&'static str> {
+        match self {
+            Self::Mixed => MOVABLE.to_vec(),
+            Self::Common => COMMON.to_vec(),
+            Self::All => Self::ALL.iter().filter(|kind| kind.is_single()).map(|kind| kind.name()).collect(),
+            one => vec![one.name()],
+        }
+    }
+
+    /// Whether it is one kind of joint rather than several.
+    pub fn is_single(self) -> bool {
+        !matches!(self, Self::Mixed | Self::Common | Self::All)
+    }
+}
 
 /// How much of a tree stands around the joint.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
@@ -61,6 +93,8 @@ pub struct Joints {
     pub base: Base,
     /// How much of a tree there is.
     pub shape: Shape,
+    /// Whether every joint but free ones has armature on each of its degrees of freedom.
+    pub armature: bool,
 }
 
 /// Masses of the bodies, kg.
@@ -76,21 +110,25 @@ impl Joints {
             kind: parameters.take("kind", Kind::default(), Kind::WORDS)?,
             base: parameters.take("base", Base::default(), Base::WORDS)?,
             shape: parameters.take("shape", Shape::default(), Shape::WORDS)?,
+            armature: parameters.take("armature", false, "true or false")?,
         })
     }
 
     pub(super) fn describe(&self) -> Description {
-        let one = [self.kind.name()];
-        let shown: &[&str] = match self.kind {
-            Kind::Mixed => &MOVABLE,
-            Kind::Common => &COMMON,
-            _ => &one,
+        let shown = self.kind.shown();
+        let (mut bodies, suffix) = match self.shape {
+            Shape::Branched => (self.branched(&shown), ""),
+            Shape::Single => (self.single(&shown), "-single"),
         };
-        let (bodies, suffix) = match self.shape {
-            Shape::Branched => (self.branched(shown), ""),
-            Shape::Single => (self.single(shown), "-single"),
-        };
-        let name = format!("joints-{}-{}{suffix}", self.kind, self.base);
+        if self.armature {
+            // A stream of its own, so that the switch changes nothing else.
+            let mut random = Random::named(SEED, "joints/armature");
+            for joint in bodies.iter_mut().map(|body| &mut body.joint).filter(|joint| joint.kind != JointType::Free) {
+                joint.armature = (0..joint.kind.nv()).map(|_| random.uniform(ARMATURE.0, ARMATURE.1)).collect();
+            }
+        }
+        let armature = if self.armature { "-armature" } else { "" };
+        let name = format!("joints-{}-{}{suffix}{armature}", self.kind, self.base);
         Description { name, gravity: [1.25, -2.5, -9.25], bodies, ..Description::default() }
     }
 
@@ -134,6 +172,6 @@ impl Joints {
 
 impl fmt::Display for Joints {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "kind={},base={},shape={}", self.kind, self.base, self.shape)
+        write!(f, "kind={},base={},shape={},armature={}", self.kind, self.base, self.shape, self.armature)
     }
 }

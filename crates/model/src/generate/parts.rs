@@ -101,6 +101,9 @@ fn box_inertia(mass: f64, [a, b, c]: [f64; 3]) -> [f64; 6] {
     [twelfth * (b * b + c * c), 0.0, 0.0, twelfth * (a * a + c * c), 0.0, twelfth * (a * a + b * b)]
 }
 
+/// Armature of random joints, kg·m² or kg.
+pub(super) const ARMATURE: (f64, f64) = (0.01, 0.1);
+
 /// A body of random mass, centre and full inertia, whose joint has a random placement and random properties.
 pub(super) fn random_body(
     random: &mut Random,
@@ -135,7 +138,7 @@ pub(super) fn random_body(
         joint.velocity = list(1.0, 10.0);
         joint.effort = list(10.0, 100.0);
         // Drawn in any case, so that the switch changes nothing else.
-        let drawn = list(0.01, 0.1);
+        let drawn = list(ARMATURE.0, ARMATURE.1);
         if armature {
             joint.armature = drawn;
         }
@@ -165,7 +168,7 @@ fn turned(principal: [f64; 3], r: [f64; 9]) -> [f64; 6] {
     [entry(0, 0), entry(0, 1), entry(0, 2), entry(1, 1), entry(1, 2), entry(2, 2)]
 }
 
-/// The kinds that [`random_kind`] chooses from.
+/// The kinds that random trees draw from.
 pub(super) const MOVABLE: [&str; 6] = ["revolute", "prismatic", "helical", "spherical", "planar", "universal"];
 /// Those that all the reference engines have.
 pub(super) const COMMON: [&str; 5] = ["revolute", "prismatic", "spherical", "planar", "universal"];
@@ -180,6 +183,10 @@ pub(super) fn random_kind(random: &mut Random, word: &str) -> JointType {
         "spherical" => JointType::Spherical,
         "planar" => JointType::Planar,
         "universal" => JointType::Universal,
+        "translation" => JointType::Translation,
+        "cylindrical" => JointType::Cylindrical { axis },
+        "euler_zyx" => JointType::EulerZyx,
+        "free" => JointType::Free,
         _ => JointType::Revolute { axis },
     }
 }

@@ -1,0 +1,119 @@
+//! The joint matrix: what a run's rows of `joints-*` robots become, and that it appears with them alone.
+
+use record::{Record, Relation, RunInfo, Verdict};
+use serde_json::Value;
+use written::Written;
+
+mod written;
+
+fn row(engine: &str, model: &str, joint: &str, quantity: &str, method: &str) -> Record {
+    Record {
+        study: "agreement".into(),
+        problem: "joints".into(),
+        engine: engine.into(),
+        model: model.into(),
+        quantity: quantity.into(),
+        method: method.into(),
+        metric: "scaled".into(),
+        case: "random".into(),
+        reference: "native".into(),
+        params: format!(r#"{{"base":"free","joints":["free","{joint}","revolute"]}}"#),
+        ..Record::default()
+    }
+}
+
+fn rows() -> Vec<Record> {
+    let judged = |row: Record, value: f64| row.gated(value, Relation::Le, 1e-14);
+    vec![
+        judged(row("pinocchio", "joints-planar-free", "planar", "id", "rnea"), 1e-16),
+        judged(row("pinocchio", "joints-planar-free-single", "planar", "id", "rnea"), 1e-15),
+        judged(row("pinocchio", "joints-planar-fixed", "planar", "id", "other"), 2e-15),
+        row("pinocchio", "joints-planar-free-armature", "planar", "id", "rnea")
+            .without_value(Verdict::Skip, "body axes")
+            .deviating("known"),
+        judged(row("pinocchio", "joints-helical-free", "helical", "id", "rnea"), 3e-12).deviating("a cause"),
+        row("mujoco", "joints-helical-free", "helical", "id", "inverse").without_value(Verdict::Skip, "MuJoCo has no helical joint"),
+        row("mujoco", "joints-helical-free-armature", "helical", "id", "inverse")
+            .without_value(Verdict::Skip, "MuJoCo has no helical joint"),
+        row("mujoco", "joints-free-free", "free", "id", "inverse").without_value(Verdict::Skip, "must hang on the world"),
+        judged(row("mujoco", "joints-free-fixed-single", "free", "id", "inverse"), 1e-15),
+        judged(row("mujoco", "joints-planar-free", "planar", "id", "inverse"), 1e-11),
+        row("mujoco", "joints-revolute-free", "revolute", "id", "inverse").without_value(Verdict::Error, "signal 11"),
+        // None of these shows one joint of another engine's answer.
+        judged(row("native", "joints-planar-free", "planar", "id", "rnea"), 1e-16),
+        judged(row("mujoco", "joints-common-free", "planar", "id", "inverse"), 1e-16),
+        judged(row("mujoco", "humanoid", "revolute", "id", "inverse"), 1e-16),
+        judged(Record { metric: "pairwise".into(), ..row("mujoco", "joints-planar-free", "planar", "id", "inverse") }, 1e-9),
+        row("mujoco", "joints-planar-free", "planar", "id", "inverse").informed(1e-9),
+    ]
+}
+
+/// The cell of a joint type: its state, deciding model and method, and how many robots answered and lack an answer.
+fn cell(matrix: &Value, engine: usize, kind: &str, armature: bool) -> Option<(String, String, String, u64, usize)> {
+    let shown = |row: &Value| row["kind"] == kind && row["armature"] == armature;
+    let row = matrix["rows"].as_array()?.iter().position(shown)?;
+    let cell = matrix["cells"].as_array()?.iter().find(|cell| cell["at"][0] == row && cell["at"][1] == engine)?;
+    let text = |value: &Value| value.as_str().unwrap().to_owned();
+    let lacking = cell["lacking"].as_array()?.len();
+    Some((text(&cell["state"]), text(&cell["worst"][0]), text(&cell["worst"][3]), cell["robots"].as_u64()?, lacking))
+}
+
+#[test]
+fn cells_tell_agreement_deviation_and_what_is_not_offered() {
+    let written = Written::of(&RunInfo::default(), &rows());
+    let matrix = &written.data("figures")["joints"];
+    let kinds: Vec<(&str, bool)> = (matrix["rows"].as_array().unwrap().iter())
+        .map(|row| (row["kind"].as_str().unwrap(), row["armature"].as_bool().unwrap()))
+        .collect();
+    assert_eq!(kinds, [("revolute", false), ("helical", false), ("helical", true), ("free", false), ("planar", false), ("planar", true)]);
+
+    // Engines in alphabetical order: mujoco, native, pinocchio.
+    let (mujoco, native, pinocchio) = (0, 1, 2);
+    let expected = |state: &str, model: &str, method: &str, robots, lacking| {
+        Some((state.to_owned(), model.to_owned(), method.to_owned(), robots, lacking))
+    };
+    assert_eq!(cell(matrix, pinocchio, "planar", false), expected("agrees", "joints-planar-fixed", "other", 3, 0));
+    assert_eq!(cell(matrix, pinocchio, "planar", true), expected("unsupported", "joints-planar-free-armature", "rnea", 0, 1));
+    assert_eq!(cell(matrix, pinocchio, "helical", false), expected("deviates", "joints-helical-free", "rnea", 1, 0));
+    assert_eq!(cell(matrix, mujoco, "helical", false), expected("unsupported", "joints-helical-free", "inverse", 0, 1));
+    assert_eq!(cell(matrix, mujoco, "free", false), expected("agrees", "joints-free-fixed-single", "inverse", 1, 1));
+    assert_eq!(cell(matrix, mujoco, "planar", false), expected("fails", "joints-planar-free", "inverse", 1, 0));
+    assert_eq!(cell(matrix, mujoco, "revolute", false), expected("error", "joints-revolute-free", "inverse", 1, 0));
+    assert_eq!(cell(matrix, native, "planar", false), None);
+    assert_eq!(matrix["cells"].as_array().unwrap().len(), 8);
+
+    // A click opens the rows of the robot that decided: there is a chunk for each.
+    let (overview, chunks) = (written.data("overview"), written.chunk_names());
+    for cell in matrix["cells"].as_array().unwrap() {
+        let model = overview["models"].as_array().unwrap().iter().position(|model| model["name"] == cell["worst"][0]);
+        assert!(model.is_some_and(|model| chunks.contains(&format!("model-{model}"))), "{cell}");
+    }
+
+    let section = written.section("joints");
+    assert_eq!(section.matches("<button").count(), 8);
+    let sentence = |engine: &str| {
+        let start = section.find(&format!("<b>{engine}</b>")).unwrap();
+        &section[start..start + section[start..].find("</li>").unwrap()]
+    };
+    assert!(sentence("pinocchio").contains("at least +0.6 decades"), "{}", sentence("pinocchio"));
+    assert!(sentence("pinocchio").contains("; deviates by known cause in inverse dynamics (3e-12); does not offer planar with armature."));
+    assert!(sentence("mujoco").contains("; does not offer helical; offers in part free."), "{}", sentence("mujoco"));
+    assert!(sentence("mujoco").contains("; is outside its gate in inverse dynamics (1e-11); gives no answer in inverse dynamics;"));
+}
+
+#[test]
+fn it_appears_with_its_rows_alone() {
+    let with = Written::of(&RunInfo::default(), &rows());
+    assert!(with.index.contains("href=\"#joints\""));
+    let without: Vec<Record> = rows().into_iter().filter(|row| !row.model.starts_with("joints-") || row.model.contains("common")).collect();
+    let written = Written::of(&RunInfo::default(), &without);
+    assert!(!written.index.contains("<section id=\"joints\"") && !written.index.contains("href=\"#joints\""));
+}
+
+#[test]
+fn a_row_with_damaged_parameters_is_left_out() {
+    for params in ["", "{", "[]", r#"{"joints":"planar"}"#] {
+        let damaged: Vec<Record> = rows().into_iter().map(|row| Record { params: params.into(), ..row }).collect();
+        assert!(!Written::of(&RunInfo::default(), &damaged).index.contains("<section id=\"joints\""), "{params}");
+    }
+}
