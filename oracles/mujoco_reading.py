@@ -144,6 +144,9 @@ def _unfused(path: Path, floating: bool, settings: list[Setting]) -> tuple[mj.Mj
     """The same with every link a body of its own: it tells where fused links are, and what was edited link by link."""
     spec = _loaded(path, floating, settings)
     spec.compiler.fusestatic = False
+    for joint in spec.joints:  # a free joint below a link may stand only if that is fused into the world
+        if joint.type == mj.mjtJoint.mjJNT_FREE and joint.parent.parent.name != spec.worldbody.name:
+            spec.delete(joint)
     return spec, spec.compile()
 
 
