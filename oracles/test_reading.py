@@ -305,6 +305,8 @@ def test_mjcf(readers: Readers, engine: str) -> None:
         body, turn, at = read.frame(name)
         same(f"{engine}: frame {name}", [body, *turn.ravel(), *at], [home, *np.eye(3).ravel(), *origin])
     true(f"{engine}: the motor is not compared", "not_compared" in read.causes())
+    idle = readers.read(engine, "idle.xml", text.replace('<motor joint="pan"/>', "")).body("arm/pan")["joint"]
+    same(f"{engine}: armature without a motor, which Drake forgets", idle["armature"], [0.0 if engine == "drake" else 0.25])
 
 
 def test_include(readers: Readers, engine: str) -> None:
