@@ -23,6 +23,7 @@ _here = sys.path.pop(0)  # this directory, where another file would be taken for
 import mujoco as mj  # noqa: E402
 
 sys.path.insert(0, _here)
+mj.set_mju_user_warning(lambda text: print(f"warning: {text}", file=sys.stderr))  # else MuJoCo writes MUJOCO_LOG.TXT where it stands
 
 BOUND = 1e-6  # kg and kg m², where the compiler refuses a file without bounds
 EDITED = 1e-9  # of a body's mass or inertia: what is told as edited; MuJoCo's own rounding is a few eps

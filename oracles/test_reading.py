@@ -309,6 +309,20 @@ def test_mjcf(readers: Readers, engine: str) -> None:
     same(f"{engine}: armature without a motor, which Drake forgets", idle["armature"], [0.0 if engine == "drake" else 0.25])
 
 
+def test_warnings(readers: Readers, engine: str) -> None:
+    """A parser's words are notes; MuJoCo leaves no log behind."""
+    odd = MJCF.format(more="", key="").replace("<option ", '<option timestep="nan" ')
+    if engine == "mujoco":
+        log = Path("MUJOCO_LOG.TXT")
+        before = log.exists()
+        oracle = readers.oracles[engine]
+        oracle.ask({"op": "read", "file": str(readers.file("odd.xml", odd)), "format": "mjcf", "base": "fixed"})
+        true("mujoco: no log", log.exists() == before)
+    if engine == "drake":
+        warned = [note["text"] for note in readers.read(engine, "arm.urdf", ARM).header["notes"] if note["cause"] == "warning"]
+        true("drake: its words on friction, without the folder", any("friction" in w and str(readers.folder) not in w for w in warned))
+
+
 def test_include(readers: Readers, engine: str) -> None:
     """MuJoCo's includes and keyframes, with quaternions that end with w."""
     if engine != "mujoco":
@@ -363,7 +377,7 @@ def main() -> int:
     with tempfile.TemporaryDirectory() as folder:
         readers = Readers(Path(folder))
         for engine in ENGINES:
-            for test in (test_arm, test_edits, test_bases, test_mjcf, test_three, test_include, test_refusals):
+            for test in (test_arm, test_edits, test_bases, test_mjcf, test_three, test_warnings, test_include, test_refusals):
                 try:
                     test(readers, engine)
                 except RuntimeError as reason:
