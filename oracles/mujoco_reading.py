@@ -44,6 +44,8 @@ def read(path: Path, form: str, base: str, make: Callable[[Description, mj.MjMod
         whole_spec, whole = _unfused(path, floating, settings)
     _note_edits(whole_spec, whole, notes)
     _note_not_compared(model, notes)
+    if form == "urdf" and model.neq:
+        notes.append(note("mimic", None, f"{model.neq} joints that mimic others are joints of their own with an equality constraint"))
     names = [_named(model.body(i).name, "body", i) for i in range(model.nbody)]
     links = [_link(spec, model, names, i) for i in range(1, model.nbody)]
     weightless = model.opt.disableflags & mj.mjtDisableBit.mjDSBL_GRAVITY

@@ -209,7 +209,7 @@ def test_arm(readers: Readers, engine: str) -> None:
     true(f"{engine}: the root is the world's", read.frame("stand")[0] == -1)
     exact = read.body("wheel")["inertia"] == GIVEN[np.triu_indices(3)].tolist()
     true(f"{engine}: an inertia in its own digits, which Drake recomputes", exact or engine == "drake")
-    true(f"{engine}: mimic is told by Pinocchio", ("mimic" in read.causes()) == (engine == "pinocchio"))
+    true(f"{engine}: mimic is told", "mimic" in read.causes())
     free = readers.read(engine, "arm.urdf", ARM, "free")
     true(f"{engine}: a free base", free.body("stand")["joint"]["type"] == "free" and free.names()[1:] == read.names())
 
@@ -316,7 +316,8 @@ def test_warnings(readers: Readers, engine: str) -> None:
         log = Path("MUJOCO_LOG.TXT")
         before = log.exists()
         oracle = readers.oracles[engine]
-        oracle.ask({"op": "read", "file": str(readers.file("odd.xml", odd)), "format": "mjcf", "base": "fixed"})
+        answer, _ = oracle.must({"op": "read", "file": str(readers.file("odd.xml", odd)), "format": "mjcf", "base": "fixed"})
+        true("mujoco: its words on a NaN", any("NaN" in note["text"] for note in answer["notes"] if note["cause"] == "warning"))
         true("mujoco: no log", log.exists() == before)
     if engine == "drake":
         warned = [note["text"] for note in readers.read(engine, "arm.urdf", ARM).header["notes"] if note["cause"] == "warning"]
