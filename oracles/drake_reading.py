@@ -61,6 +61,10 @@ def read(path: Path, form: str, base: str, make: Callable[[Description, Multibod
     _note_edits(plant, path, notes)
     if plant.num_constraints():
         notes.append(note("not_compared", None, f"constraints: {plant.num_constraints()}"))
+    mimics = sum(joint.find("mimic") is not None for joint in elements(path, "joint"))
+    if mimics:
+        by = f"{plant.num_constraints()} coupler constraints" if plant.num_constraints() else "no constraint"
+        notes.append(note("mimic", None, f"{mimics} joints that mimic others are joints of their own with {by}"))
     notes.extend(mentioned(path))
     held = Description.read(description)
     return Reading(description, held, notes, make(held, plant, [[joint] for joint in joints if joint.num_velocities()]), {})

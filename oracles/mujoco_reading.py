@@ -23,6 +23,7 @@ _here = sys.path.pop(0)  # this directory, where another file would be taken for
 import mujoco as mj  # noqa: E402
 
 sys.path.insert(0, _here)
+mj.set_mju_user_warning(lambda text: print(f"warning: {text}", file=sys.stderr))  # else MuJoCo writes MUJOCO_LOG.TXT where it stands
 
 BOUND = 1e-6  # kg and kg m², where the compiler refuses a file without bounds
 EDITED = 1e-9  # of a body's mass or inertia: what is told as edited; MuJoCo's own rounding is a few eps
@@ -43,6 +44,8 @@ def read(path: Path, form: str, base: str, make: Callable[[Description, mj.MjMod
         whole_spec, whole = _unfused(path, floating, settings)
     _note_edits(whole_spec, whole, notes)
     _note_not_compared(model, notes)
+    if form == "urdf" and model.neq:
+        notes.append(note("mimic", None, f"{model.neq} joints that mimic others are joints of their own with an equality constraint"))
     names = [_named(model.body(i).name, "body", i) for i in range(model.nbody)]
     links = [_link(spec, model, names, i) for i in range(1, model.nbody)]
     weightless = model.opt.disableflags & mj.mjtDisableBit.mjDSBL_GRAVITY
@@ -144,6 +147,9 @@ def _unfused(path: Path, floating: bool, settings: list[Setting]) -> tuple[mj.Mj
     """The same with every link a body of its own: it tells where fused links are, and what was edited link by link."""
     spec = _loaded(path, floating, settings)
     spec.compiler.fusestatic = False
+    for joint in spec.joints:  # a free joint below a link may stand only if that is fused into the world
+        if joint.type == mj.mjtJoint.mjJNT_FREE and joint.parent.parent.name != spec.worldbody.name:
+            spec.delete(joint)
     return spec, spec.compile()
 
 
