@@ -3,18 +3,21 @@
 //! - [`Agreement`]: do the engines agree on one and the same model?
 //! - [`Digits`]: how far is each from the truth, and who is right?
 //! - [`Conditioning`]: how does κ(M) grow, and does it matter?
+//! - [`StepLimit`]: how does the acceleration of a step approach the true one, and what do steps do to energy?
 //! - [`Structure`]: are the counts of the sparse algorithms the integers that theory says?
 //! - [`Timing`]: how long do the native kernels take?
 
 mod agreement;
 mod conditioning;
 mod digits;
+mod step_limit;
 mod structure;
 mod timing;
 
 pub use agreement::Agreement;
 pub use conditioning::Conditioning;
 pub use digits::Digits;
+pub use step_limit::StepLimit;
 pub use structure::Structure;
 pub use timing::Timing;
 
