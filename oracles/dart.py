@@ -9,12 +9,14 @@ from __future__ import annotations
 
 import importlib.metadata
 from math import atan2, pi
+from pathlib import Path
 
+import dart_reading
 import numpy as np
 from dartpy import dynamics
 from dartpy.math import Isometry3
 
-from protocol import Array, Body, Change, Description, Joint, Question, Unsupported, mass_matrix_probe, readback_row, rotation, serve
+from protocol import Array, Body, Change, Description, Joint, Question, Reading, Unsupported, mass_matrix_probe, readback_row, rotation, serve
 
 # ---- coordinates -----------------------------------------------------------------------------------------------------------------
 # joint      q_e                     T                 b
@@ -67,72 +69,72 @@ def change_of_velocities(robot: Description, q: Array, v: Array) -> Change:
 # ---- the robot -------------------------------------------------------------------------------------------------------------------
 
 
-class DartRobot:
-    """A robot in DART."""
-
-    def __init__(self, robot: Description) -> None:
-        self.robot = robot
-        self.skeleton = dynamics.Skeleton("robot")
-        self.skeleton.setGravity(robot.gravity)
-        self.bodies: list[dynamics.BodyNode] = []
-        self.joints: list[dynamics.Joint] = []  # of a cylindrical joint the first
-        for body in robot.bodies:
-            self._add(body)
-        for mine, joint in zip(self.joints, (body.joint for body in robot.bodies), strict=True):
-            if mine.getIndexInSkeleton(0) != joint.v.start:
-                raise RuntimeError(f"DART put joint {joint.name} elsewhere")
-
-    def _add(self, body: Body) -> None:
-        """Adds the next body and its joint."""
+def build(robot: Description) -> tuple[dynamics.Skeleton, list[dynamics.Joint], list[dynamics.BodyNode]]:
+    """The skeleton of a description; its joints, of a cylindrical joint the first, and the bodies that they move."""
+    skeleton = dynamics.Skeleton("robot")
+    skeleton.setGravity(robot.gravity)
+    joints: list[dynamics.Joint] = []
+    bodies: list[dynamics.BodyNode] = []
+    for body in robot.bodies:
         joint = body.joint
         if joint.armature.any():
             raise Unsupported(f"DART has no armature (joint {joint.name})")
-        parent = self.bodies[body.parent] if body.parent >= 0 else None
-        first, node = self._make(joint, parent)
+        first, node = make_joint(skeleton, joint, bodies[body.parent] if body.parent >= 0 else None)
         turn = AXES if joint.type == "euler_zyx" else np.eye(3)
         first.setTransformFromParentBodyNode(Isometry3(joint.rotation @ turn, joint.translation))
         node.getParentJoint().setTransformFromChildBodyNode(Isometry3(turn, np.zeros(3)))
         node.setInertia(dynamics.Inertia(body.mass, body.com, body.inertia))
-        self.bodies.append(node)
-        self.joints.append(first)
+        joints.append(first)
+        bodies.append(node)
+    return skeleton, joints, bodies
 
-    def _make(self, joint: Joint, parent: dynamics.BodyNode | None) -> tuple[dynamics.Joint, dynamics.BodyNode]:
-        """DART's joint of that type, and the body that it moves."""
-        add = self.skeleton
-        if joint.type == "revolute":
-            made, node = add.createRevoluteJointAndBodyNodePair(parent)
-            made.setAxis(joint.axis)
-        elif joint.type == "prismatic":
-            made, node = add.createPrismaticJointAndBodyNodePair(parent)
-            made.setAxis(joint.axis)
-        elif joint.type == "helical":
-            made, node = add.createScrewJointAndBodyNodePair(parent)
-            made.setAxis(joint.axis)
-            made.setPitch(2 * pi * joint.pitch)
-        elif joint.type == "cylindrical":
-            made, between = add.createRevoluteJointAndBodyNodePair(parent)
-            between.setInertia(dynamics.Inertia(0.0, np.zeros(3), np.zeros((3, 3))))
-            slide, node = add.createPrismaticJointAndBodyNodePair(between)
-            for part in (made, slide):
-                part.setAxis(joint.axis)
-        elif joint.type == "universal":
-            made, node = add.createUniversalJointAndBodyNodePair(parent)
-            made.setAxis1([1.0, 0.0, 0.0])
-            made.setAxis2([0.0, 1.0, 0.0])
-        elif joint.type == "planar":
-            made, node = add.createPlanarJointAndBodyNodePair(parent)
-            made.setXYPlane()
-        else:
-            makers = {
-                "spherical": add.createBallJointAndBodyNodePair,
-                "free": add.createFreeJointAndBodyNodePair,
-                "translation": add.createTranslationalJointAndBodyNodePair,
-                "euler_zyx": add.createEulerJointAndBodyNodePair,
-            }
-            if joint.type not in makers:
-                raise Unsupported(f"DART has no {joint.type} joint")
-            made, node = makers[joint.type](parent)
-        return made, node
+
+def make_joint(add: dynamics.Skeleton, joint: Joint, parent: dynamics.BodyNode | None) -> tuple[dynamics.Joint, dynamics.BodyNode]:
+    """DART's joint of that type, and the body that it moves."""
+    if joint.type == "revolute":
+        made, node = add.createRevoluteJointAndBodyNodePair(parent)
+        made.setAxis(joint.axis)
+    elif joint.type == "prismatic":
+        made, node = add.createPrismaticJointAndBodyNodePair(parent)
+        made.setAxis(joint.axis)
+    elif joint.type == "helical":
+        made, node = add.createScrewJointAndBodyNodePair(parent)
+        made.setAxis(joint.axis)
+        made.setPitch(2 * pi * joint.pitch)
+    elif joint.type == "cylindrical":
+        made, between = add.createRevoluteJointAndBodyNodePair(parent)
+        between.setInertia(dynamics.Inertia(0.0, np.zeros(3), np.zeros((3, 3))))
+        slide, node = add.createPrismaticJointAndBodyNodePair(between)
+        for part in (made, slide):
+            part.setAxis(joint.axis)
+    elif joint.type == "universal":
+        made, node = add.createUniversalJointAndBodyNodePair(parent)
+        made.setAxis1([1.0, 0.0, 0.0])
+        made.setAxis2([0.0, 1.0, 0.0])
+    elif joint.type == "planar":
+        made, node = add.createPlanarJointAndBodyNodePair(parent)
+        made.setXYPlane()
+    else:
+        makers = {
+            "spherical": add.createBallJointAndBodyNodePair,
+            "free": add.createFreeJointAndBodyNodePair,
+            "translation": add.createTranslationalJointAndBodyNodePair,
+            "euler_zyx": add.createEulerJointAndBodyNodePair,
+        }
+        if joint.type not in makers:
+            raise Unsupported(f"DART has no {joint.type} joint")
+        made, node = makers[joint.type](parent)
+    return made, node
+
+
+class DartRobot:
+    """A robot in DART."""
+
+    def __init__(self, robot: Description, skeleton: dynamics.Skeleton, joints: list[dynamics.Joint], bodies: list[dynamics.BodyNode]) -> None:
+        self.robot, self.skeleton, self.joints, self.bodies = robot, skeleton, joints, bodies
+        for mine, joint in zip(joints, (body.joint for body in robot.bodies), strict=True):
+            if mine.getIndexInSkeleton(0) != joint.v.start:
+                raise RuntimeError(f"DART put joint {joint.name} elsewhere")
 
     def readback(self) -> list[Array]:
         """DART keeps the inertia about the centre of mass."""
@@ -284,7 +286,11 @@ class Dart:
 
     def prepare(self, description: Description) -> DartRobot:
         """Builds the robot."""
-        return DartRobot(description)
+        return DartRobot(description, *build(description))
+
+    def read(self, path: Path, form: str, base: str) -> Reading:
+        """Has DART's own parser read a file."""
+        return dart_reading.read(path, form, base, DartRobot)
 
 
 if __name__ == "__main__":
