@@ -46,7 +46,8 @@ def read(path: Path, form: str, base: str, make: Callable[[Description, dynamics
         heard["text"] = DRESS.sub("", heard["text"])
     if skeleton is None and form == "urdf":
         skeleton = _urdf(path, base, bare=True)
-        notes.append(note("geometry_dropped", None, "DART reads the file without its visual and collision elements only"))
+        if skeleton is not None:
+            notes.append(note("geometry_dropped", None, "DART reads the file without its visual and collision elements only"))
     if skeleton is None:
         raise ValueError(f"DART does not read {path.name}: {notes[-1]['text'] if notes else 'it does not say why'}")
     nodes = skeleton.getBodyNodes()

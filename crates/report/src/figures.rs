@@ -10,6 +10,7 @@ use crate::digits::Digits;
 use crate::fit::{Fit, power_law};
 use crate::labels;
 use crate::overview::{AGREEMENT, Overview, PAIRWISE, TIMING};
+use crate::steps::{self, StepLine};
 use crate::tradeoff::{Tradeoff, tradeoffs};
 
 /// The metrics that measure an error even where nothing gates it.
@@ -28,6 +29,8 @@ pub struct Figures<'a> {
     pub tradeoffs: Vec<Tradeoff<'a>>,
     /// Condition numbers.
     pub conditions: Vec<Family<'a>>,
+    /// Errors of steps.
+    pub steps: Vec<StepLine<'a>>,
 }
 
 /// Errors of one quantity under one measure.
@@ -104,6 +107,7 @@ impl<'a> Figures<'a> {
             errors: errors(overview, records),
             tradeoffs: tradeoffs(&digits, &times),
             conditions: conditioning::families(overview, records),
+            steps: steps::lines(overview, records),
             times,
             digits,
         }

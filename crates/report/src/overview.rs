@@ -16,6 +16,8 @@ pub const TIMING: &str = "timing";
 pub const DIGITS: &str = "digits";
 /// The study whose rows are condition numbers.
 pub const CONDITIONING: &str = "conditioning";
+/// The study of small steps.
+pub const STEP_LIMIT: &str = "step_limit";
 /// The engine of rows that speak of all engines together.
 pub const EVERYONE: &str = "all";
 /// The metric of rows that compare two engines with each other.

@@ -7,10 +7,10 @@ use crate::figures::Figures;
 use crate::findings::Findings;
 use crate::overview::Overview;
 use crate::truth::Truth;
-use crate::{conditioning, digits_section, heatmap, method, pairwise, plots, provenance, tradeoff, truth, unpassed, verdict};
+use crate::{conditioning, digits_section, heatmap, method, pairwise, plots, provenance, steps, tradeoff, truth, unpassed, verdict};
 
 /// The sections: anchor, entry in the navigation.
-const SECTIONS: [(&str, &str); 11] = [
+const SECTIONS: [(&str, &str); 12] = [
     ("verdict", "Verdict"),
     ("agreement", "Agreement"),
     ("digits", "Digits"),
@@ -18,6 +18,7 @@ const SECTIONS: [(&str, &str); 11] = [
     ("time", "Time"),
     ("tradeoff", "Work–precision"),
     ("conditioning", "Conditioning"),
+    ("steps", "Steps"),
     ("pairs", "Pairs"),
     ("provenance", "Provenance"),
     ("method", "Method"),
@@ -54,6 +55,7 @@ pub fn render(run: &RunInfo, records: &[Record], overview: &Overview, figures: &
                     (plots::time(overview, figures))
                     (tradeoff::section(overview, &figures.tradeoffs))
                     (conditioning::section(overview, &figures.conditions))
+                    (steps::section(overview, &figures.steps))
                     (pairwise::section(overview, records))
                     (provenance::section(run, overview))
                     (method::section(run, overview, figures))
@@ -91,6 +93,7 @@ fn sections(figures: &Figures) -> impl Iterator<Item = (&'static str, &'static s
         "digits" => figures.digits.subjects.is_empty(),
         "tradeoff" => figures.tradeoffs.is_empty(),
         "conditioning" => figures.conditions.is_empty(),
+        "steps" => figures.steps.is_empty(),
         _ => false,
     };
     SECTIONS.into_iter().filter(move |&(anchor, _)| !absent(anchor))
