@@ -27,6 +27,7 @@ featherbench.ready(() => {
       const lines = figures.steps.filter((line) => line.model === model && line.energy === energy);
       const shape = layout("step dt, s", title);
       shape.legend = { orientation: "h", y: 1.02, yanchor: "bottom", x: 0 };
+      if (energy) shape.xaxis.dtick = shape.yaxis.dtick = "D2";
       if (!lines.length) shape.annotations = [{ text: "this engine's energy is not comparable here", showarrow: false, xref: "paper", yref: "paper", x: 0.5, y: 0.5, font: { color: variable("--soft") } }];
       draw(id, lines.map(trace), shape);
     }

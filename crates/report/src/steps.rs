@@ -35,11 +35,13 @@ pub struct StepLine<'a> {
 
 /// Reads a run's rows.
 pub fn lines<'a>(overview: &Overview<'a>, records: &'a [Record]) -> Vec<StepLine<'a>> {
-    let mut found: BTreeMap<(usize, usize, bool, &str, &str), StepLine> = BTreeMap::new();
+    let mut found: BTreeMap<(usize, usize, bool, &str, bool, &str), StepLine> = BTreeMap::new();
     for row in records.iter().filter(|row| row.study == STEP_LIMIT) {
-        let (Some(model), Some(engine), Some(value)) = (overview.model(&row.model), overview.engine(&row.engine), row.value) else { continue };
+        let (Some(model), Some(engine), Some(value)) = (overview.model(&row.model), overview.engine(&row.engine), row.value) else {
+            continue;
+        };
         let (energy, method, case) = (row.quantity == "kinetic_energy", row.method.as_str(), row.case.as_str());
-        let line = found.entry((model, engine, energy, method, case)).or_insert_with(|| StepLine {
+        let line = found.entry((model, engine, energy, method, case != "random", case)).or_insert_with(|| StepLine {
             model,
             engine,
             method,
@@ -90,7 +92,7 @@ pub fn section(overview: &Overview, lines: &[StepLine]) -> Markup {
                     div #steps-plot.plot role="img" aria-label="Plot of the acceleration's error against the step" {}
                     div #drift-plot.plot role="img" aria-label="Plot of the energy's drift against the step" {}
                 }
-                div.scroll {
+                div.scroll.tall {
                     table.compact.sortable {
                         thead {
                             tr {

@@ -5,8 +5,8 @@ use harness::{Problem, Refusal};
 use model::{BodyDescription, JointType};
 use nalgebra::{DMatrix, Matrix3, SymmetricEigen};
 use rapier3d_f64::math::{Matrix, Rotation, Vector};
-use rapier3d_f64::prelude::{Multibody, MultibodyJointHandle, PhysicsWorld, RigidBody, RigidBodyBuilder, RigidBodyHandle};
 use rapier3d_f64::prelude::MassProperties;
+use rapier3d_f64::prelude::{Multibody, MultibodyJointHandle, PhysicsWorld, RigidBody, RigidBodyBuilder, RigidBodyHandle};
 
 /// What a step may be left to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
