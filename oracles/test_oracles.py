@@ -12,6 +12,7 @@ from __future__ import annotations
 import os
 import subprocess
 import sys
+import tempfile
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -398,6 +399,40 @@ def expect(name: str, answer: Answer, status: str) -> None:
     check(name, 0.0 if right else 1.0, 0.5)
 
 
+# A hinge with damping and a skew axis, a slider that mimics it, and a link without an inertial.
+URDF = """<robot name="toy"><link name="stand"/>
+<link name="arm"><inertial><origin xyz=".1 .2 .3" rpy=".4 .5 .6"/><mass value="1.5"/>
+<inertia ixx=".02" iyy=".03" izz=".04" ixy=".001" ixz=".002" iyz=".003"/></inertial></link><link name="empty"/>
+<joint name="hinge" type="revolute"><parent link="stand"/><child link="arm"/><origin xyz=".1 .2 .3" rpy="1.1 0 .3"/><axis xyz="0.6 0 0.8"/>
+<limit lower="-1" upper="2" velocity="3" effort="40"/><dynamics damping=".7"/></joint>
+<joint name="slide" type="prismatic"><parent link="arm"/><child link="empty"/><axis xyz="0 1 0"/>
+<limit lower="-1" upper="2" velocity="3" effort="40"/><mimic joint="hinge" multiplier="2"/></joint></robot>"""
+
+
+def test_dart_reads(dart: Oracle) -> None:
+    """What DART read is what it computes with, without damping and mimicking: the robot built from the description answers the same."""
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder) / "toy.urdf"
+        path.write_text(URDF)
+        for base in ("fixed", "free"):
+            told = dart.must({"op": "read", "file": str(path), "format": "urdf", "base": base})[0]
+            robot = Description.read(told["model"])
+            states = random_states(np.random.default_rng(4), robot)
+            quantities = (("mass_matrix", "mass_matrix"), ("id", "inverse_dynamics"), ("fd", "aba"), ("kinetic_energy", "kinetic_energy"))
+            read = [dart.at(states, *quantity) for quantity in quantities]
+            dart.must({"op": "prepare", "model": told["model"]})
+            for (quantity, method), value in zip(quantities, read, strict=True):
+                built = dart.at(states, quantity, method)
+                check(f"dart: {quantity} of a file as read and of its description", ratio(value - built, built), EXACT)
+            names = [body["joint"]["name"] for body in told["model"]["bodies"]]
+            check("dart: joints of a file", float(names[-2:] != ["hinge", "slide"] or len(names) != 2 + (base == "free")), 0.0)
+            causes = {(note["cause"], note["subject"]) for note in told["notes"]}
+            due = {("mimic", "slide"), ("mass_edited", "stand"), ("mass_edited", "empty")}
+            check("dart: notes on a file", float(not due <= causes), 0.0)
+            check("dart: a link without an inertial is 1 kg", abs(robot.bodies[-1].mass - 1.0), 0.0)
+            check("dart: damping of a file", abs(told["model"]["bodies"][-2]["joint"]["damping"][0] - 0.7), 1e-16)
+
+
 def test_noise() -> None:
     """What an engine writes to file descriptor 1 does not reach the answers."""
     engine = "class E: name = version = 'noisy'; build = {}; quantities = {}; prepare = lambda self, d: os.write(1, b'noise')"
@@ -438,6 +473,7 @@ def test_all(oracles: dict[str, Oracle]) -> None:
     for k, (robot, engines) in enumerate(tests):
         test_robot({name: oracles[name] for name in engines}, robot, k)
     test_small_rotations(oracles["dart"])
+    test_dart_reads(oracles["dart"])
     test_refusals(oracles)
     test_noise()
 
