@@ -23,6 +23,7 @@ _here = sys.path.pop(0)  # this directory, where another file would be taken for
 import mujoco as mj  # noqa: E402
 
 sys.path.insert(0, _here)
+mj.set_mju_user_warning(lambda text: print(f"warning: {text}", file=sys.stderr))  # else MuJoCo writes MUJOCO_LOG.TXT where it stands
 
 BOUND = 1e-6  # kg and kg m², where the compiler refuses a file without bounds
 EDITED = 1e-9  # of a body's mass or inertia: what is told as edited; MuJoCo's own rounding is a few eps
@@ -59,9 +60,10 @@ def read(path: Path, form: str, base: str, make: Callable[[Description, mj.MjMod
 def neutral_q(model: mj.MjModel, qpos: Array) -> Array:
     """Neutral coordinates: MuJoCo's, but quaternions end with w."""
     q = np.array(qpos)
-    for kind, start in zip(model.jnt_type, model.jnt_qposadr, strict=True):
-        if kind in (mj.mjtJoint.mjJNT_BALL, mj.mjtJoint.mjJNT_FREE):
-            last = slice(start, start + 4) if kind == mj.mjtJoint.mjJNT_BALL else slice(start + 3, start + 7)
+    for number, start in zip(model.jnt_type, model.jnt_qposadr, strict=True):
+        kind = TYPES[mj.mjtJoint(number)]
+        if kind in ("spherical", "free"):
+            last = slice(start, start + 4) if kind == "spherical" else slice(start + 3, start + 7)
             q[last] = np.roll(qpos[last], -1)
     return q
 
@@ -143,6 +145,9 @@ def _unfused(path: Path, floating: bool, settings: list[Setting]) -> tuple[mj.Mj
     """The same with every link a body of its own: it tells where fused links are, and what was edited link by link."""
     spec = _loaded(path, floating, settings)
     spec.compiler.fusestatic = False
+    for joint in spec.joints:  # a free joint below a link may stand only if that is fused into the world
+        if joint.type == mj.mjtJoint.mjJNT_FREE and joint.parent.parent.name != spec.worldbody.name:
+            spec.delete(joint)
     return spec, spec.compile()
 
 
@@ -256,8 +261,10 @@ def _note_edits(spec: mj.MjSpec, model: mj.MjModel, notes: list[Header]) -> None
     for body in spec.bodies[1:]:
         i, name = body.id, _named(body.name, "body", body.id)
         if not body.explicitinertial:
-            if model.body_mass[i]:
+            if model.body_mass[i] and body.geoms:
                 computed.append(name)
+            elif model.body_mass[i]:
+                notes.append(note("mass_edited", name, f"no inertial in the file became {model.body_mass[i]} kg"))
             continue
         if abs(model.body_mass[i] - body.mass) > EDITED * body.mass:
             notes.append(note("mass_edited", name, f"{body.mass} kg in the file became {model.body_mass[i]} kg"))
