@@ -12,6 +12,7 @@ from __future__ import annotations
 import os
 import subprocess
 import sys
+import tempfile
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -19,10 +20,10 @@ from pathlib import Path
 import numpy as np
 
 from closed_forms import placement
-from protocol import JOINT_SIZES, WITH_AXIS, Answer, Array, Blocks, Description, Header, read_frame, rotation, write_frame
+from protocol import JOINT_SIZES, WITH_AXIS, Answer, Array, Blocks, Description, Header, read_frame, rotation, skew, write_frame
 
 HERE = Path(__file__).parent
-ENGINES = ("pinocchio", "mujoco", "drake")
+ENGINES = ("pinocchio", "mujoco", "drake", "dart")
 Methods = dict[str, list[str]]
 TOLERANCE_SCALE = float(os.environ.get("FEATHERBENCH_TOL_SCALE", "1"))
 EXACT, INVERSE, DIFFERENCE = 2e-13, 1e-9, 1e-8  # INVERSE: id after fd, where an explicit inverse loses the condition of M
@@ -118,6 +119,15 @@ def random_robot(rng: np.random.Generator, name: str, types: Sequence[str], plai
     return {"format": 1, "name": name, "gravity": [1.3, -2.1, -9.2], "bodies": bodies}
 
 
+def without_armature(robot: Header) -> Header:
+    """The same robot for DART, which has none."""
+    bare: Header = {**robot, "bodies": []}
+    for body in robot["bodies"]:
+        joint = {**body["joint"], "armature": [0.0] * len(body["joint"]["armature"])}
+        bare["bodies"].append({**body, "joint": joint})
+    return bare
+
+
 def random_states(rng: np.random.Generator, robot: Description) -> Blocks:
     """Twenty random states, then the zero state, then a fast one."""
     n, nv = 22, robot.nv
@@ -208,6 +218,7 @@ class Reference:
     @classmethod
     def make(cls, robot: Description, states: Blocks, x: Blocks, jacobians: Array) -> Reference:
         """The reference from one oracle's values `x`."""
+        acceleration = np.abs(x["body_acceleration"]).max(axis=(1, 2)) + (x["body_velocity"] ** 2).max(axis=(1, 2))
         tau = np.concatenate([body.joint.armature for body in robot.bodies]) * states["a"]
         force = np.abs(tau) + np.abs(np.einsum("kij,kj->ki", x["mass_matrix"], states["a"]))
         for k, b in np.ndindex(len(tau), len(robot.bodies)):
@@ -219,9 +230,9 @@ class Reference:
             tau[k] += jacobians[b, k].T @ np.append(sum(moments), push)
             spatial = body.mass * np.linalg.norm(omega) * np.linalg.norm(v)  # m ω × v, of which spatial algorithms rid themselves
             wrench = np.linalg.norm(states["wrench"][k, b].reshape(2, 3), axis=1)
-            sizes = wrench + spatial + [sum(map(np.linalg.norm, moments)), np.linalg.norm(push)]
+            # A body's acceleration is a sum of terms of the size `acceleration`, which may cancel in `push`.
+            sizes = wrench + spatial + [sum(map(np.linalg.norm, moments)), np.linalg.norm(push) + body.mass * acceleration[k]]
             force[k] += np.abs(jacobians[b, k].T) @ np.repeat(sizes, 3)
-        acceleration = np.abs(x["body_acceleration"]).max(axis=(1, 2)) + (x["body_velocity"] ** 2).max(axis=(1, 2))
         return cls(x["mass_matrix"], tau, force, acceleration)
 
 
@@ -260,7 +271,7 @@ def test_placements(oracles: dict[str, Oracle]) -> None:
     rng = np.random.default_rng(7)
     lacking = {("mujoco", "helical")}
     for kind in JOINT_SIZES:
-        data = random_robot(rng, kind, [kind])
+        data = without_armature(random_robot(rng, kind, [kind]))
         robot = Description.read(data)
         states = random_states(rng, robot)
         expected = np.array([placement(robot.bodies[0].joint, q) for q in states["q"]])
@@ -292,6 +303,23 @@ def test_known_fault(robot: Description, states: Blocks, native: Array, right: A
         if joint.type in ("revolute", "helical") and np.count_nonzero(joint.axis) > 1:
             missing += joint.armature * states["v"][:, joint.v] ** 2 / 2
     check("pinocchio: only the known fault in its kinetic energy", ratio(native + missing - right, right), EXACT)
+
+
+def test_small_rotations(dart: Oracle) -> None:
+    """DART 6.20.0's exponential leaves out the third order below 1e-3 rad, K^3 / 6 of the rotation vector's matrix K, and nothing else."""
+    rng, angle = np.random.default_rng(8), 9e-4
+    data = without_armature(random_robot(rng, "ball", ["spherical"], plain=True))
+    robot = Description.read(data)
+    states = random_states(rng, robot)
+    axes = states["q"][:, :3] + [1e-3, 0, 0]  # one state has none
+    axes /= np.linalg.norm(axes, axis=1, keepdims=True)
+    states["q"] = np.hstack([np.sin(angle / 2) * axes, np.full((22, 1), np.cos(angle / 2))])
+    dart.must({"op": "prepare", "model": data})
+    placements = dart.at(states, "body_placement", "world_transforms")[:, 0, :9].reshape(-1, 3, 3)
+    for q, axis, placement in zip(states["q"], axes, placements, strict=True):
+        k = angle * skew(axis)
+        expected = robot.bodies[0].joint.rotation @ (rotation(q) - k @ k @ k / 6)
+        check("dart: only the known fault at small rotations", ratio(placement - expected), angle**4 / 12)
 
 
 def test_readback(name: str, robot: Description, readback: Array) -> None:
@@ -351,14 +379,17 @@ def test_motion(name: str, oracle: Oracle, methods: Methods, robot: Description,
 def test_refusals(oracles: dict[str, Oracle]) -> None:
     """What an engine cannot do is said, and nothing ends it."""
     rng = np.random.default_rng(5)
-    good = random_robot(rng, "good", ["revolute"])
+    good = without_armature(random_robot(rng, "good", ["revolute"]))
     models = [random_robot(rng, "screw", ["helical"]), random_robot(rng, "inner free", ["revolute", "free"])]
     models += [random_robot(rng, "heavy ball", ["spherical"], geared=True), random_robot(rng, "skater", ["planar"], geared=True)]
     models += [random_robot(rng, name, ["revolute"]) for name in ("massless", "indefinite")]
+    for k in (0, 1, 4, 5):
+        models[k] = without_armature(models[k])
     models[3]["bodies"][0]["joint"]["armature"][0] = 0.1
     models[4]["bodies"][0].update(mass=0.0, inertia=[0.0] * 6)
     models[5]["bodies"][0]["inertia"][3] = -1.0
     refused = {"mujoco": ("screw", "inner free", "massless", "indefinite"), "drake": ("heavy ball", "skater"), "pinocchio": ("skater",)}
+    refused["dart"] = ("heavy ball", "skater")
     missing, orphan = {**good, "bodies": [{"name": "b"}]}, {**good, "bodies": [{**good["bodies"][0], "parent": 3}]}
     states = random_states(rng, Description.read(good))
     evaluate = {"op": "evaluate", "quantity": "com", "method": "", "first": 0, "count": 1}
@@ -388,6 +419,40 @@ def expect(name: str, answer: Answer, status: str) -> None:
     """The answer has that status, and a reason unless all is well."""
     right = answer[0]["status"] == status and (status == "ok" or 5 < len(answer[0]["reason"].splitlines()[0]))
     check(name, 0.0 if right else 1.0, 0.5)
+
+
+# A hinge with damping and a skew axis, a slider that mimics it, and a link without an inertial.
+URDF = """<robot name="toy"><link name="stand"/>
+<link name="arm"><inertial><origin xyz=".1 .2 .3" rpy=".4 .5 .6"/><mass value="1.5"/>
+<inertia ixx=".02" iyy=".03" izz=".04" ixy=".001" ixz=".002" iyz=".003"/></inertial></link><link name="empty"/>
+<joint name="hinge" type="revolute"><parent link="stand"/><child link="arm"/><origin xyz=".1 .2 .3" rpy="1.1 0 .3"/><axis xyz="0.6 0 0.8"/>
+<limit lower="-1" upper="2" velocity="3" effort="40"/><dynamics damping=".7"/></joint>
+<joint name="slide" type="prismatic"><parent link="arm"/><child link="empty"/><axis xyz="0 1 0"/>
+<limit lower="-1" upper="2" velocity="3" effort="40"/><mimic joint="hinge" multiplier="2"/></joint></robot>"""
+
+
+def test_dart_reads(dart: Oracle) -> None:
+    """What DART read is what it computes with, without damping and mimicking: the robot built from the description answers the same."""
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder) / "toy.urdf"
+        path.write_text(URDF)
+        for base in ("fixed", "free"):
+            told = dart.must({"op": "read", "file": str(path), "format": "urdf", "base": base})[0]
+            robot = Description.read(told["model"])
+            states = random_states(np.random.default_rng(4), robot)
+            quantities = (("mass_matrix", "mass_matrix"), ("id", "inverse_dynamics"), ("fd", "aba"), ("kinetic_energy", "kinetic_energy"))
+            read = [dart.at(states, *quantity) for quantity in quantities]
+            dart.must({"op": "prepare", "model": told["model"]})
+            for (quantity, method), value in zip(quantities, read, strict=True):
+                built = dart.at(states, quantity, method)
+                check(f"dart: {quantity} of a file as read and of its description", ratio(value - built, built), EXACT)
+            names = [body["joint"]["name"] for body in told["model"]["bodies"]]
+            check("dart: joints of a file", float(names[-2:] != ["hinge", "slide"] or len(names) != 2 + (base == "free")), 0.0)
+            causes = {(note["cause"], note["subject"]) for note in told["notes"]}
+            due = {("mimic", "slide"), ("mass_edited", "stand"), ("mass_edited", "empty")}
+            check("dart: notes on a file", float(not due <= causes), 0.0)
+            check("dart: a link without an inertial is 1 kg", abs(robot.bodies[-1].mass - 1.0), 0.0)
+            check("dart: damping of a file", abs(told["model"]["bodies"][-2]["joint"]["damping"][0] - 0.7), 1e-16)
 
 
 def test_noise() -> None:
@@ -420,16 +485,20 @@ def test_all(oracles: dict[str, Oracle]) -> None:
     robots += [random_robot(rng, kind, [kind], plain=True) for kind in ("prismatic", "free")]  # for which MuJoCo has a short cut
     robots += [random_robot(rng, "plain", ["free", "prismatic", "prismatic", "revolute", *common * 2, "revolute"], plain=True)]
     robots += [random_robot(rng, "chain", ["free", *["revolute", "prismatic", "revolute"] * 23])]
-    for k, robot in enumerate(robots):
-        test_robot(oracles, robot, k)
+    tests = [(robot, ("pinocchio", "mujoco", "drake")) for robot in robots]
     chains = ["revolute", "translation", "cylindrical", "euler_zyx"] * 2  # of one-dof joints in Drake, which has armature on them
-    test_robot(oracles, random_robot(rng, "armature on chains", chains, geared=True), len(robots))
-    for robot, without in (
-        (random_robot(rng, "screws and an inner free", ["helical", *common, "free", "helical", "free", "revolute"]), "mujoco"),
-        (random_robot(rng, "straight screws", ["helical"] * 4 + ["revolute"], plain=True), "mujoco"),
-        (random_robot(rng, "armature everywhere", ["free", *common], geared=True), "drake"),
+    tests.append((random_robot(rng, "armature on chains", chains, geared=True), ("pinocchio", "mujoco", "drake")))
+    for robot, engines in (
+        (random_robot(rng, "screws and an inner free", ["helical", *common, "free", "helical", "free", "revolute"]), ("pinocchio", "drake")),
+        (random_robot(rng, "straight screws", ["helical"] * 4 + ["revolute"], plain=True), ("pinocchio", "drake")),
+        (random_robot(rng, "armature everywhere", ["free", *common], geared=True), ("pinocchio", "mujoco")),
     ):
-        test_robot({name: oracle for name, oracle in oracles.items() if name != without}, robot, len(robots))
+        tests.append((robot, engines))
+    tests += [(without_armature(robot), ("pinocchio", "dart")) for robot, _ in tests]
+    for k, (robot, engines) in enumerate(tests):
+        test_robot({name: oracles[name] for name in engines}, robot, k)
+    test_small_rotations(oracles["dart"])
+    test_dart_reads(oracles["dart"])
     test_refusals(oracles)
     test_noise()
 

@@ -377,8 +377,9 @@ def main() -> int:
     """Runs all tests; an answer that should have been ok and is not ends them, which is a failure."""
     with tempfile.TemporaryDirectory() as folder:
         readers = Readers(Path(folder))
+        every = (test_arm, test_edits, test_bases, test_mjcf, test_three, test_warnings, test_include, test_refusals)
         for engine in ENGINES:
-            for test in (test_arm, test_edits, test_bases, test_mjcf, test_three, test_warnings, test_include, test_refusals):
+            for test in (test_arm, test_refusals) if engine == "dart" else every:  # what else DART does to files: test_oracles.py
                 try:
                     test(readers, engine)
                 except RuntimeError as reason:

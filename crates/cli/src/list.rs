@@ -2,7 +2,7 @@
 
 use crate::args::ListArgs;
 use crate::fail::Fail;
-use crate::oracles::ENGINES;
+use crate::oracles::{ENGINES, IN_PROCESS};
 use crate::problems;
 use crate::root::Root;
 use engines::Native;
@@ -43,7 +43,7 @@ fn text(root: &Root, args: &ListArgs) -> Result<String, Fail> {
             problem.depth
         );
     }
-    text += &format!("\nengines:  native, {}\n", ENGINES.join(", "));
+    text += &format!("\nengines:  native, {}, {IN_PROCESS}\n", ENGINES.join(", "));
     text += "studies:  agreement, digits, conditioning, structure, timing\n";
     text += "\nfamilies of generated robots, with their parameters:\n";
     for name in Family::NAMES {

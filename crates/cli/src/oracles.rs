@@ -12,7 +12,9 @@ use std::process::{Command, Stdio};
 use std::time::Duration;
 
 /// Engines that come with the project, in the order of reports.
-pub const ENGINES: [&str; 3] = ["pinocchio", "mujoco", "drake"];
+pub const ENGINES: [&str; 4] = ["pinocchio", "mujoco", "drake", "dart"];
+/// The engine that runs in this process, asked live in recorded runs as well.
+pub const IN_PROCESS: &str = "rapier";
 
 /// The environment's Python, or `None` when the engines are not installed in these versions.
 pub fn python(root: &Root) -> Option<PathBuf> {

@@ -13,7 +13,7 @@ use regex::Regex;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::time::{Instant, SystemTime};
-use studies::{Agreement, Conditioning, Digits, Reproductions, Structure, Timing};
+use studies::{Agreement, Conditioning, Digits, Reproductions, StepLimit, Structure, Timing};
 
 /// The file that holds what a resumed run must share with the first one.
 const FINGERPRINT_NAME: &str = "fingerprint.json";
@@ -73,6 +73,9 @@ fn studies(root: &Root, loaded: &Loaded, args: &RunArgs) -> Vec<Box<dyn Study>> 
     }
     if loaded.suite.conditioning {
         studies.push(Box::new(Conditioning));
+    }
+    if loaded.suite.step_limit {
+        studies.push(Box::new(StepLimit));
     }
     if loaded.suite.structure {
         studies.push(Box::new(Structure));

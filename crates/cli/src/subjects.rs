@@ -6,7 +6,7 @@ use crate::oracles;
 use crate::problems::Loaded;
 use crate::root::Root;
 use ::record::{EngineInfo, EngineSource};
-use engines::{Limits, Native, Recorded, read_recordings};
+use engines::{Limits, Native, Rapier, Recorded, read_recordings};
 use harness::{Problem, Subject};
 use std::sync::Arc;
 use std::time::Duration;
@@ -22,10 +22,17 @@ pub fn open(root: &Root, args: &RunArgs, loaded: &Loaded) -> Result<Subjects, Fa
     let mut opened = Subjects { subjects: Vec::new(), engines: Vec::new() };
     opened.add(Ok(Box::new(Native::new())), "native", EngineSource::Native);
     let Some(agreement) = &loaded.suite.agreement else { return Ok(opened) };
+    let (here, others): (Vec<&String>, Vec<&String>) = agreement.engines.iter().partition(|engine| *engine == oracles::IN_PROCESS);
+    for engine in here {
+        opened.add(Ok(Box::new(Rapier::new())), engine, EngineSource::Live);
+    }
+    if others.is_empty() {
+        return Ok(opened);
+    }
     if args.live {
         let python = oracles::install(root)?;
         let limits = limits(args);
-        for engine in &agreement.engines {
+        for engine in others {
             let oracle = oracles::start(root, &python, engine, limits);
             opened.add(oracle.map(|oracle| Box::new(oracle) as Box<dyn Subject>), engine, EngineSource::Live);
         }
@@ -34,7 +41,7 @@ pub fn open(root: &Root, args: &RunArgs, loaded: &Loaded) -> Result<Subjects, Fa
         let asked: Vec<&Problem> =
             loaded.problems.iter().filter(|problem| problem.takes("agreement") || problem.takes("structure")).collect();
         let recordings = Arc::new(read_recordings(&folder, &asked));
-        for engine in &agreement.engines {
+        for engine in others {
             let recorded = Recorded::new(&recordings, engine).map(|recorded| Box::new(recorded) as Box<dyn Subject>);
             opened.add(recorded, engine, EngineSource::Recorded);
         }

@@ -1,7 +1,7 @@
 //! Subjects: who answers.
 //!
 //! [`Native`] runs the kernels of this workspace; [`Oracle`] asks a program that speaks the protocol of `oracles/PROTOCOL.md`;
-//! [`Recorded`] plays back what an oracle once answered. To add an engine, write such a program, or implement
+//! [`Rapier`] is a library in this process; [`Recorded`] plays back what an oracle once answered. To add an engine, write such a program, or implement
 //! [`Subject`](harness::Subject) in a file of its own here.
 
 mod coding;
@@ -9,10 +9,12 @@ mod kernel;
 mod native;
 mod oracle;
 mod process;
+mod rapier;
 mod recorded;
 mod reproducer;
 
 pub use native::{Native, timed};
 pub use oracle::{Limits, Oracle};
+pub use rapier::Rapier;
 pub use recorded::{EngineRecording, Recorded, Recording, RecordingError, Recordings, read_recordings, recording_name};
 pub use reproducer::reproduce;

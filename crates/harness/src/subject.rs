@@ -1,6 +1,6 @@
 //! The trait [`Subject`]: anyone who answers.
 
-use crate::{Problem, Quantity};
+use crate::{Problem, Quantity, Stepper};
 use model::StateBatch;
 use record::EngineSource;
 use std::collections::BTreeMap;
@@ -51,6 +51,11 @@ pub trait Subject: Send + Sync {
         method: &str,
         states: &'a StateBatch,
     ) -> Result<Box<dyn Prepared + 'a>, Refusal>;
+
+    /// Its steps, where its forward dynamics is that of a step.
+    fn stepper(&self) -> Option<&dyn Stepper> {
+        None
+    }
 }
 
 /// An evaluation that is ready: what is timed is what is checked.

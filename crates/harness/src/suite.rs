@@ -30,6 +30,9 @@ pub struct Suite {
     /// Whether known deviations are reproduced.
     #[serde(default)]
     pub reproductions: bool,
+    /// Whether the study of small steps is made, of the engines that integrate.
+    #[serde(default)]
+    pub step_limit: bool,
     /// The timing study.
     pub timing: Option<TimingEntry>,
     /// Whether the suite is broad enough to show every known deviation of its robots, and a sharp bound for each method, joint and base; a

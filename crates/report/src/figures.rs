@@ -11,6 +11,7 @@ use crate::fit::{Fit, power_law};
 use crate::joint_matrix::JointMatrix;
 use crate::labels;
 use crate::overview::{AGREEMENT, Overview, PAIRWISE, TIMING};
+use crate::steps::{self, StepLine};
 use crate::tradeoff::{Tradeoff, tradeoffs};
 
 /// The metrics that measure an error even where nothing gates it.
@@ -31,6 +32,8 @@ pub struct Figures<'a> {
     pub conditions: Vec<Family<'a>>,
     /// Joint types by engine and quantity.
     pub joints: JointMatrix<'a>,
+    /// Errors of steps.
+    pub steps: Vec<StepLine<'a>>,
 }
 
 /// Errors of one quantity under one measure.
@@ -108,6 +111,7 @@ impl<'a> Figures<'a> {
             tradeoffs: tradeoffs(&digits, &times),
             conditions: conditioning::families(overview, records),
             joints: JointMatrix::of(overview, records),
+            steps: steps::lines(overview, records),
             times,
             digits,
         }

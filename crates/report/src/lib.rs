@@ -26,6 +26,7 @@ mod page;
 mod pairwise;
 mod plots;
 mod provenance;
+mod steps;
 mod tally;
 mod tradeoff;
 mod truth;
@@ -53,6 +54,7 @@ const SCRIPT: &str = concat!(
     include_str!("../assets/figures.js"),
     include_str!("../assets/digits.js"),
     include_str!("../assets/tradeoff.js"),
+    include_str!("../assets/steps.js"),
 );
 
 /// Where a report was written.

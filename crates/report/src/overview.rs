@@ -18,6 +18,8 @@ pub const DIGITS: &str = "digits";
 pub const CONDITIONING: &str = "conditioning";
 /// The study whose rows are reproductions of known deviations.
 pub const REPRODUCTIONS: &str = "reproductions";
+/// The study of small steps.
+pub const STEP_LIMIT: &str = "step_limit";
 /// The engine of rows that speak of all engines together.
 pub const EVERYONE: &str = "all";
 /// The metric of rows that compare two engines with each other.

@@ -8,7 +8,8 @@ use crate::findings::Findings;
 use crate::overview::{Overview, REPRODUCTIONS};
 use crate::truth::Truth;
 use crate::{
-    conditioning, digits_section, heatmap, joint_matrix, known, method, pairwise, plots, provenance, tradeoff, truth, unpassed, verdict,
+    conditioning, digits_section, heatmap, joint_matrix, known, method, pairwise, plots, provenance, steps, tradeoff, truth, unpassed,
+    verdict,
 };
 
 /// The sections: anchor, entry in the navigation.
@@ -21,6 +22,7 @@ const SECTIONS: &[(&str, &str)] = &[
     ("time", "Time"),
     ("tradeoff", "Work–precision"),
     ("conditioning", "Conditioning"),
+    ("steps", "Steps"),
     ("pairs", "Pairs"),
     ("known", "Known deviations"),
     ("provenance", "Provenance"),
@@ -59,6 +61,7 @@ pub fn render(run: &RunInfo, records: &[Record], overview: &Overview, figures: &
                     (plots::time(overview, figures))
                     (tradeoff::section(overview, &figures.tradeoffs))
                     (conditioning::section(overview, &figures.conditions))
+                    (steps::section(overview, &figures.steps))
                     (pairwise::section(overview, records))
                     (known::section(records))
                     (provenance::section(run, overview))
@@ -99,6 +102,7 @@ fn sections(overview: &Overview, figures: &Figures) -> impl Iterator<Item = (&'s
         "tradeoff" => figures.tradeoffs.is_empty(),
         "conditioning" => figures.conditions.is_empty(),
         "known" => !overview.studies.contains(&REPRODUCTIONS),
+        "steps" => figures.steps.is_empty(),
         _ => false,
     };
     SECTIONS.iter().copied().filter(move |&(anchor, _)| !absent(anchor))

@@ -4,6 +4,7 @@
 //! - [`Digits`]: how far is each from the truth, and who is right?
 //! - [`Conditioning`]: how does κ(M) grow, and does it matter?
 //! - [`Reproductions`]: are the engines' known deviations still there, and as large as they were?
+//! - [`StepLimit`]: how does the acceleration of a step approach the true one, and what do steps do to energy?
 //! - [`Structure`]: are the counts of the sparse algorithms the integers that theory says?
 //! - [`Timing`]: how long do the native kernels take?
 
@@ -11,6 +12,7 @@ mod agreement;
 mod conditioning;
 mod digits;
 mod reproductions;
+mod step_limit;
 mod structure;
 mod timing;
 
@@ -18,6 +20,7 @@ pub use agreement::Agreement;
 pub use conditioning::Conditioning;
 pub use digits::Digits;
 pub use reproductions::{Reproduce, Reproductions};
+pub use step_limit::StepLimit;
 pub use structure::Structure;
 pub use timing::Timing;
 

@@ -1,0 +1,133 @@
+//! Between neutral coordinates and rapier's, `v_e = T v`, `a_e = T a + b`, T orthogonal.
+//!
+//! | joint | rapier's free axes | displacement from zero | T | b |
+//! |---|---|---|---|---|
+//! | revolute | angular x; both frames turned so that x is the axis | angle | identity | 0 |
+//! | prismatic | linear x; both frames turned | distance | identity | 0 |
+//! | planar | linear x and y, angular z | x, y, θ | identity | 0 |
+//! | spherical | angular x, y, z | log R | R: angular velocity in joint-frame axes | 0 |
+//! | free | all six | p, log R | diag(R, R): [linear; angular] in joint-frame axes | [R (ω × v); 0] |
+//!
+//! R turns body axes to joint-frame axes. Two free angular axes are not implemented in rapier (it panics), hence no universal joint; a helical
+//! one would be a constraint between two joints.
+
+use harness::{Problem, Refusal};
+use model::{BodyDescription, JointType};
+use rapier3d_f64::math::{Matrix, Pose, Rotation, Vector};
+use rapier3d_f64::prelude::{GenericJoint, GenericJointBuilder, JointAxesMask};
+
+/// Rapier's joint of that kind.
+pub fn joint(body: &BodyDescription) -> Result<GenericJoint, Refusal> {
+    let kind = body.joint.kind;
+    let free = match kind {
+        JointType::Revolute { .. } => JointAxesMask::ANG_X,
+        JointType::Prismatic { .. } => JointAxesMask::LIN_X,
+        JointType::Planar => JointAxesMask::LIN_X | JointAxesMask::LIN_Y | JointAxesMask::ANG_Z,
+        JointType::Spherical => JointAxesMask::ANG_AXES,
+        JointType::Free => JointAxesMask::all(),
+        _ => return Err(Refusal::Unsupported(format!("rapier's multibodies have no {} joint ({})", kind.name(), body.joint.name))),
+    };
+    let turn = kind.axis().map_or(Rotation::IDENTITY, |axis| Rotation::from_rotation_arc(Vector::X, Vector::from(axis).normalize()));
+    let placement = placement(body);
+    Ok(GenericJointBuilder::new(free.complement())
+        .local_frame1(Pose::from_parts(placement.translation, placement.rotation * turn))
+        .local_frame2(Pose::from_rotation(turn))
+        .build())
+}
+
+/// Where the joint stands on the parent.
+pub fn placement(body: &BodyDescription) -> Pose {
+    let place = &body.joint.placement;
+    let rotation = Rotation::from_mat3(&Matrix::from_cols_array(&place.rotation).transpose()).normalize();
+    Pose::from_parts(Vector::from(place.translation), rotation)
+}
+
+/// Where the placement as described is found again: the joint's first frame without our turn.
+pub fn placement_of(joint: &GenericJoint) -> Pose {
+    let turn = joint.local_frame2.rotation;
+    Pose::from_parts(joint.local_frame1.translation, joint.local_frame1.rotation * turn.inverse())
+}
+
+/// What rapier's joints are displaced by from zero.
+pub fn displacement(problem: &Problem, q: &[f64]) -> Vec<f64> {
+    let mut all = Vec::with_capacity(problem.states.nv);
+    let mut at = 0;
+    for body in &problem.description.bodies {
+        let q = &q[at..at + body.joint.kind.nq()];
+        at += q.len();
+        match body.joint.kind {
+            JointType::Spherical => all.extend(logarithm(q)),
+            JointType::Free => {
+                all.extend(&q[..3]);
+                all.extend(logarithm(&q[3..]));
+            }
+            _ => all.extend(q),
+        }
+    }
+    all
+}
+
+/// The rotation vector, at most π long, of the quaternion (x, y, z, w).
+fn logarithm(q: &[f64]) -> [f64; 3] {
+    let sign = 1.0_f64.copysign(q[3]);
+    let vector = sign * Vector::new(q[0], q[1], q[2]);
+    let sine = vector.length();
+    let scale = if sine > 0.0 { 2.0 * sine.atan2(sign * q[3]) / sine } else { 2.0 };
+    (scale * vector).to_array()
+}
+
+/// T and b at one state.
+pub struct Change {
+    /// The blocks of T that are not identity: where they stand, and the rotation.
+    blocks: Vec<(usize, Matrix)>,
+    /// b = (dT/dt) v.
+    bias: Vec<f64>,
+}
+
+impl Change {
+    /// T and b of the table.
+    pub fn new(problem: &Problem, q: &[f64], v: &[f64]) -> Self {
+        let (mut blocks, mut bias) = (Vec::new(), vec![0.0; v.len()]);
+        let (mut at_q, mut at_v) = (0, 0);
+        for body in &problem.description.bodies {
+            let kind = body.joint.kind;
+            let end = at_q + kind.nq();
+            if matches!(kind, JointType::Spherical | JointType::Free) {
+                let r = Matrix::from_quat(Rotation::from_slice(&q[end - 4..end]).normalize());
+                blocks.push((at_v, r));
+                if kind == JointType::Free {
+                    blocks.push((at_v + 3, r));
+                    let (linear, angular) = (Vector::from_slice(&v[at_v..]), Vector::from_slice(&v[at_v + 3..]));
+                    bias[at_v..at_v + 3].copy_from_slice(&(r * angular.cross(linear)).to_array());
+                }
+            }
+            (at_q, at_v) = (end, at_v + kind.nv());
+        }
+        Self { blocks, bias }
+    }
+
+    /// T x: velocities, and forces, which T being orthogonal go the same way.
+    pub fn forth(&self, x: &[f64]) -> Vec<f64> {
+        let mut y = x.to_vec();
+        for &(at, r) in &self.blocks {
+            y[at..at + 3].copy_from_slice(&(r * Vector::from_slice(&x[at..])).to_array());
+        }
+        y
+    }
+
+    /// Tᵀ x, in place: a force, or a row of a Jacobian.
+    pub fn back(&self, x: &mut [f64]) {
+        for &(at, r) in &self.blocks {
+            let turned = r.transpose() * Vector::from_slice(&x[at..]);
+            x[at..at + 3].copy_from_slice(&turned.to_array());
+        }
+    }
+
+    /// a = Tᵀ (a_e − b), in place.
+    pub fn acceleration(&self, a: &mut [f64]) {
+        for (a, b) in a.iter_mut().zip(&self.bias) {
+            *a -= b;
+        }
+        self.back(a);
+    }
+}

@@ -1,0 +1,23 @@
+//! The trait [`Stepper`]: an engine that integrates, asked what a step of a given length does.
+
+use crate::{Problem, Refusal};
+use model::StateBatch;
+
+/// An engine whose acceleration is that of a step, and so depends on the step's length.
+pub trait Stepper {
+    /// Its ways to step, the one without numerical or physical extras first.
+    fn step_methods(&self) -> Vec<String>;
+
+    /// The acceleration (neutral coordinates, nv numbers) with which one step of `dt` seconds begins at state `k`, under gravity and the state's τ.
+    ///
+    /// # Errors
+    /// [`Refusal`] when the robot or method is not supported, or the engine fails.
+    fn step_acceleration(&self, problem: &Problem, method: &str, states: &StateBatch, k: usize, dt: f64) -> Result<Vec<f64>, Refusal>;
+
+    /// A motion under gravity alone from state `k`: the energy, J, after each of `steps` steps of `dt` seconds; the potential
+    /// part is zero at the world's origin.
+    ///
+    /// # Errors
+    /// [`Refusal`] when the robot or method is not supported, or the engine fails.
+    fn fall(&self, problem: &Problem, method: &str, states: &StateBatch, k: usize, dt: f64, steps: usize) -> Result<Vec<f64>, Refusal>;
+}

@@ -1,0 +1,180 @@
+//! The limit of small steps: how an engine whose acceleration is that of a step approaches the true one, and what its steps do to energy.
+//!
+//! *Acceleration*: the step's acceleration against native forward dynamics, in the kinetic-energy norm, at steps of 1e-2 … 1e-10 s, with the order
+//! of convergence: the slope of a line through the logarithms, over the straight part.
+//! *Energy*: a motion under gravity alone over [`HORIZON`] seconds, the largest difference of the energy from that at the start, with its order.
+//!
+//! Orders are those of the engine's first way to step; what its own settings add (damping, substeps) shows beside it, and so does what it does
+//! at high speed.
+
+use crate::row;
+use dynamics::{energy, forward_dynamics};
+use harness::measure::{ForwardScale, scaled_error, worst};
+use harness::{Cell, Context, Finished, Outcome, Problem, Quantity, Refusal, Stepper, Study};
+use model::Case;
+use record::{Record, Verdict};
+use serde_json::json;
+use std::ops::RangeInclusive;
+
+/// Steps of the acceleration, s.
+const STEPS: [f64; 9] = [1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9, 1e-10];
+/// Steps of the motion, s: whole fractions of the horizon.
+const MOTION_STEPS: [f64; 6] = [1e-2, 5e-3, 2e-3, 1e-3, 5e-4, 2e-4];
+/// Length of the motion, s.
+const HORIZON: f64 = 0.2;
+/// Errors of the straight part: below it rounding shows, above it the second order, whose share of an error e is about e.
+const STRAIGHT: RangeInclusive<f64> = 1e-11..=1e-2;
+/// Steps of the straight part of the energy, s: the second order's share falls with the step.
+const STRAIGHT_MOTION: RangeInclusive<f64> = 0.0..=1e-3;
+/// The states asked about: the first one of each. The motion begins at the first.
+const CASES: [Case; 2] = [Case::Random, Case::Fast];
+
+/// The study of small steps.
+pub struct StepLimit;
+
+impl Study for StepLimit {
+    fn name(&self) -> &'static str {
+        "step_limit"
+    }
+
+    fn plan(&self, context: &Context) -> Vec<Cell> {
+        let mut cells = Vec::new();
+        for problem in context.problems.iter().filter(|problem| problem.takes(self.name())) {
+            for subject in context.subjects {
+                let Some(stepper) = subject.stepper() else { continue };
+                let identity = subject.identity();
+                for method in stepper.step_methods() {
+                    for quantity in [Quantity::ForwardDynamics, Quantity::KineticEnergy] {
+                        cells.push(Cell {
+                            study: self.name().into(),
+                            problem: problem.name.clone(),
+                            problem_hash: problem.hash.clone(),
+                            params: json!({}),
+                            subject: identity.name.clone(),
+                            version: identity.version.clone(),
+                            method: method.clone(),
+                            quantity: quantity.name().into(),
+                            scalar: "f64".into(),
+                        });
+                    }
+                }
+            }
+        }
+        cells
+    }
+
+    fn evaluate(&self, context: &Context, cell: &Cell) -> Outcome {
+        let lost = || Outcome::Refused(Refusal::Failed("there is no problem or stepping subject of this cell".into()));
+        let Some(problem) = context.problem(&cell.problem) else { return lost() };
+        let Some(stepper) = context.subject(&cell.subject).and_then(|subject| subject.stepper()) else { return lost() };
+        match Quantity::parse(&cell.quantity) {
+            Some(Quantity::ForwardDynamics) => accelerations(problem, stepper, &cell.method).into(),
+            _ => drifts(problem, stepper, &cell.method).into(),
+        }
+    }
+
+    fn compare(&self, context: &Context, problem: &Problem, finished: &[Finished]) -> Vec<Record> {
+        let mut rows = Vec::new();
+        for (cell, outcome) in finished {
+            let blank = Record { unit: "1".into(), reference: "native".into(), ..row(cell, problem) };
+            let values = match outcome {
+                Outcome::Values(values) => values,
+                Outcome::Refused(refusal) => {
+                    let verdict = if matches!(refusal, Refusal::Unsupported(_)) { Verdict::Skip } else { Verdict::Error };
+                    rows.push(context.gates.explain(blank.without_value(verdict, refusal.to_string())));
+                    continue;
+                }
+            };
+            let acceleration = cell.quantity == Quantity::ForwardDynamics.name();
+            let (steps, metric) = if acceleration { (&STEPS[..], "step_error") } else { (&MOTION_STEPS[..], "energy_drift") };
+            let first = context.subject(&cell.subject).and_then(|subject| subject.stepper()?.step_methods().into_iter().next());
+            let cases = states(problem).into_iter().map(|(case, _)| case);
+            for (case, values) in cases.zip(values.chunks_exact(steps.len())) {
+                let blank = Record { case: case.name().into(), ..blank.clone() };
+                for (dt, &value) in steps.iter().zip(values) {
+                    let params = record::canonical_json(&json!({"dt": dt}));
+                    rows.push(Record { metric: metric.into(), params, ..blank.clone() }.informed(value));
+                }
+                let straight = |&(dt, error): &(f64, f64)| {
+                    if acceleration { STRAIGHT.contains(&error) } else { STRAIGHT_MOTION.contains(&dt) }
+                };
+                let points: Vec<(f64, f64)> = steps.iter().copied().zip(values.iter().copied()).filter(straight).collect();
+                // Where no force depends on velocity, a step of any length is exact and has no order.
+                let exact = values.iter().all(|error| error < STRAIGHT.start());
+                if case == Case::Random && first.as_ref() == Some(&cell.method) && !exact {
+                    rows.extend(orders(context, &blank, &points));
+                }
+            }
+        }
+        rows
+    }
+}
+
+/// The fitted order, and how far it is from one.
+fn orders(context: &Context, blank: &Record, points: &[(f64, f64)]) -> Vec<Record> {
+    let order = Record { metric: "order".into(), ..blank.clone() };
+    let Some(slope) = slope(points) else {
+        return vec![context.gates.explain(order.without_value(Verdict::Error, "too few steps on the straight part"))];
+    };
+    let off = Record { metric: "order_off_one".into(), ..blank.clone() };
+    vec![order.informed(slope), context.gates.judge(off, (slope - 1.0).abs(), 1.0)]
+}
+
+/// The first state of each case that the problem has.
+fn states(problem: &Problem) -> Vec<(Case, usize)> {
+    let first = |case| problem.states.cases.iter().position(|&other| other == case).map(|state| (case, state));
+    CASES.into_iter().filter_map(first).collect()
+}
+
+/// The error of the acceleration, case after case, at each step length.
+fn accelerations(problem: &Problem, stepper: &dyn Stepper, method: &str) -> Result<Vec<f64>, Refusal> {
+    let (at, batch) = (problem.magnitudes(), &problem.states);
+    let scales = ForwardScale::all(problem, &at);
+    let mut errors = Vec::new();
+    for (_, k) in states(problem) {
+        let exact = forward_dynamics(&problem.model, batch.q(k), batch.v(k), batch.tau(k));
+        let exact = exact.map_err(|error| Refusal::Failed(error.to_string()))?;
+        for dt in STEPS {
+            errors.push(scales[k].forward_error(&exact, &stepper.step_acceleration(problem, method, batch, k, dt)?));
+        }
+    }
+    Ok(errors)
+}
+
+/// The largest difference of the energy from the start's at each step length, in the measure of the potential energy.
+fn drifts(problem: &Problem, stepper: &dyn Stepper, method: &str) -> Result<Vec<f64>, Refusal> {
+    let batch = &problem.states;
+    let Some(&(_, k)) = states(problem).first() else { return Ok(Vec::new()) };
+    let start = energy(&problem.model, batch.q(k), batch.v(k)).map_err(|error| Refusal::Failed(error.to_string()))?;
+    let (start, at) = (start.kinetic + start.potential, problem.magnitudes());
+    let drift = |dt: f64| {
+        let energies = stepper.fall(problem, method, batch, k, dt, (HORIZON / dt).round() as usize)?;
+        let drifts = energies.iter().map(|&energy| scaled_error(problem, Quantity::PotentialEnergy, &at[k], &[start], &[energy]));
+        Ok(drifts.fold(0.0, worst))
+    };
+    MOTION_STEPS.iter().map(|&dt| drift(dt)).collect()
+}
+
+/// The slope of the line through the points' logarithms by least squares, of at least three points.
+fn slope(points: &[(f64, f64)]) -> Option<f64> {
+    let logs: Vec<(f64, f64)> = points.iter().filter(|(_, y)| *y > 0.0).map(|(x, y)| (x.ln(), y.ln())).collect();
+    if logs.len() < 3 {
+        return None;
+    }
+    let n = logs.len() as f64;
+    let (x, y) = logs.iter().fold((0.0, 0.0), |sum, point| (sum.0 + point.0 / n, sum.1 + point.1 / n));
+    let (xx, xy) = logs.iter().fold((0.0, 0.0), |sum, point| (sum.0 + (point.0 - x).powi(2), sum.1 + (point.0 - x) * (point.1 - y)));
+    Some(xy / xx)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::slope;
+
+    #[test]
+    fn the_slope_of_a_power_is_its_exponent() {
+        let points: Vec<(f64, f64)> = [1e-2, 1e-3, 1e-5].iter().map(|x: &f64| (*x, 7.0 * x.powf(1.5))).collect();
+        assert!((slope(&points).unwrap() - 1.5).abs() < 1e-12);
+        assert_eq!(slope(&points[..2]), None);
+    }
+}
