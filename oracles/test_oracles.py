@@ -230,8 +230,10 @@ class Reference:
             tau[k] += jacobians[b, k].T @ np.append(sum(moments), push)
             spatial = body.mass * np.linalg.norm(omega) * np.linalg.norm(v)  # m ω × v, of which spatial algorithms rid themselves
             wrench = np.linalg.norm(states["wrench"][k, b].reshape(2, 3), axis=1)
-            # A body's acceleration is a sum of terms of the size `acceleration`, which may cancel in `push`.
-            sizes = wrench + spatial + [sum(map(np.linalg.norm, moments)), np.linalg.norm(push) + body.mass * acceleration[k]]
+            # Products of vectors round by the product of their lengths, also where they cancel: the cross product of parallel vectors does.
+            gyroscopic = np.linalg.norm(omega) * np.linalg.norm(inertia @ omega)
+            thrust = np.linalg.norm(push) + body.mass * acceleration[k]
+            sizes = wrench + spatial + [np.linalg.norm(moments[0]) + gyroscopic + np.linalg.norm(c) * thrust, thrust]
             force[k] += np.abs(jacobians[b, k].T) @ np.repeat(sizes, 3)
         return cls(x["mass_matrix"], tau, force, acceleration)
 
