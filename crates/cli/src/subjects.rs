@@ -2,6 +2,7 @@
 
 use crate::args::RunArgs;
 use crate::fail::Fail;
+use crate::guest;
 use crate::oracles;
 use crate::problems::Loaded;
 use crate::root::Root;
@@ -21,23 +22,28 @@ pub struct Subjects {
 pub fn open(root: &Root, args: &RunArgs, loaded: &Loaded) -> Result<Subjects, Fail> {
     let mut opened = Subjects { subjects: Vec::new(), engines: Vec::new() };
     opened.add(Ok(Box::new(Native::new())), "native", EngineSource::Native);
-    let Some(agreement) = &loaded.suite.agreement else { return Ok(opened) };
-    if args.live {
+    let engines: &[String] = loaded.suite.agreement.as_ref().map_or(&[], |agreement| &agreement.engines);
+    let taken: Vec<&str> = ["native"].into_iter().chain(engines.iter().map(String::as_str)).collect();
+    guest::check_names(&args.guests, &taken)?;
+    let limits = Limits { answer: Duration::from_secs(args.answer_within), memory: args.memory << 20 };
+    if args.live && !engines.is_empty() {
         let python = oracles::install(root)?;
-        let limits = Limits { answer: Duration::from_secs(args.answer_within), memory: args.memory << 20 };
-        for engine in &agreement.engines {
+        for engine in engines {
             let oracle = oracles::start(root, &python, engine, limits);
             opened.add(oracle.map(|oracle| Box::new(oracle) as Box<dyn Subject>), engine, EngineSource::Live);
         }
-    } else {
+    } else if !engines.is_empty() {
         let folder = args.recorded.clone().unwrap_or_else(|| root.recorded());
         let asked: Vec<&Problem> =
             loaded.problems.iter().filter(|problem| problem.takes("agreement") || problem.takes("structure")).collect();
         let recordings = Arc::new(read_recordings(&folder, &asked));
-        for engine in &agreement.engines {
+        for engine in engines {
             let recorded = Recorded::new(&recordings, engine).map(|recorded| Box::new(recorded) as Box<dyn Subject>);
             opened.add(recorded, engine, EngineSource::Recorded);
         }
+    }
+    for guest in &args.guests {
+        opened.add(Ok(Box::new(guest.start(limits)?)), &guest.name, EngineSource::Live);
     }
     Ok(opened)
 }
