@@ -106,6 +106,9 @@ pub struct ListArgs {
     /// List every cell of the suite by its path.
     #[arg(long)]
     pub cells: bool,
+    /// List the conventions of the engines beside ours, as CONVENTIONS.md shows them.
+    #[arg(long, conflicts_with = "cells")]
+    pub conventions: bool,
 }
 
 #[derive(Debug, Clone, Args)]

@@ -7,10 +7,10 @@ use crate::figures::Figures;
 use crate::findings::Findings;
 use crate::overview::Overview;
 use crate::truth::Truth;
-use crate::{conditioning, digits_section, heatmap, method, pairwise, plots, provenance, tradeoff, truth, unpassed, verdict};
+use crate::{conditioning, conventions, digits_section, heatmap, method, pairwise, plots, provenance, tradeoff, truth, unpassed, verdict};
 
 /// The sections: anchor, entry in the navigation.
-const SECTIONS: [(&str, &str); 11] = [
+const SECTIONS: [(&str, &str); 12] = [
     ("verdict", "Verdict"),
     ("agreement", "Agreement"),
     ("digits", "Digits"),
@@ -19,6 +19,7 @@ const SECTIONS: [(&str, &str); 11] = [
     ("tradeoff", "Work–precision"),
     ("conditioning", "Conditioning"),
     ("pairs", "Pairs"),
+    ("conventions", "Conventions"),
     ("provenance", "Provenance"),
     ("method", "Method"),
     ("unpassed", "Not passed"),
@@ -55,6 +56,7 @@ pub fn render(run: &RunInfo, records: &[Record], overview: &Overview, figures: &
                     (tradeoff::section(overview, &figures.tradeoffs))
                     (conditioning::section(overview, &figures.conditions))
                     (pairwise::section(overview, records))
+                    (conventions::section(run))
                     (provenance::section(run, overview))
                     (method::section(run, overview, figures))
                     (unpassed::section(records))
