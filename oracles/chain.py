@@ -78,8 +78,10 @@ while line := sys.stdin.buffer.readline():
         raw = {b["name"]: (b["shape"], sys.stdin.buffer.read(8 * math.prod(b["shape"]))) for b in ask.get("blocks", [])}
         header, block = answer(ask, {name: np.frombuffer(data, "<f8").reshape(shape) for name, (shape, data) in raw.items()})
         header["status"] = "ok"
+    except Unsupported as reason:
+        header = {"status": "unsupported", "reason": str(reason)}
     except Exception as reason:  # whatever went wrong is an answer, and no end
-        header = {"status": "unsupported" if isinstance(reason, Unsupported) else "error", "reason": f"{type(reason).__name__}: {reason}"}
+        header = {"status": "error", "reason": f"{type(reason).__name__}: {reason}"}
     data = b"" if block is None else np.array(block[1], "<f8")
     if block is not None:
         header["blocks"] = [{"name": block[0], "shape": data.shape}]

@@ -18,7 +18,6 @@ sys.path.pop(0)  # this directory, whose files are called like the packages impo
 import dartpy  # noqa: E402
 import mujoco as mj  # noqa: E402
 import pinocchio as pin  # noqa: E402
-from pydrake.common.eigen_geometry import Quaternion  # noqa: E402
 from pydrake.math import RigidTransform, RotationMatrix  # noqa: E402
 from pydrake.multibody import tree  # noqa: E402
 from pydrake.multibody.plant import MultibodyPlant  # noqa: E402
@@ -522,8 +521,18 @@ def test_drake_free_q() -> None:
 
 
 def test_drake_free_v() -> None:
-    """[angular; linear], both in the parent's axes."""
+    """[angular; linear], both in the axes of the joint's frame on the parent."""
     holds(drake_velocity(tree.QuaternionFloatingJoint, [*WXYZ, *P], [*W, *V]), [*W, *V], [*(R @ W), *V], [*(R @ W), *(R @ V)], [*V, *W])
+    placed = MultibodyPlant(0.0)
+    body = placed.AddRigidBody("body", tree.SpatialInertia(MASS, COM, tree.UnitInertia(1, 1, 1)))
+    place = RigidTransform(RotationMatrix(about(AXIS, 0.8)), A)
+    frame = placed.AddFrame(tree.FixedOffsetFrame("frame", placed.world_frame(), place))
+    placed.AddJoint(tree.QuaternionFloatingJoint("joint", frame, body.body_frame()))
+    placed.Finalize()
+    context = placed.CreateDefaultContext()
+    placed.SetPositions(context, [*WXYZ, *P])
+    placed.SetVelocities(context, [*W, *V])
+    holds(body.EvalSpatialVelocityInWorld(context).translational(), about(AXIS, 0.8) @ V, V)
 
 
 def test_drake_free_a() -> None:
@@ -669,10 +678,15 @@ def test_dart_free_q() -> None:
 
 
 def test_dart_free_v() -> None:
-    """[angular; linear]."""
+    """[angular; linear], both in the axes of the parent body, whatever the joint's frame on it is."""
     _, body = dart_state("FreeJoint", [*rotation_vector(R), *P], [*W, *V])
     holds(body.getAngularVelocity(), W, R @ W, V)
     holds(body.getLinearVelocity(), V, R @ V, W)
+    place = dartpy.math.Isometry3()
+    place.set_rotation(about(AXIS, 0.8))
+    _, body = dart_state("FreeJoint", [*rotation_vector(R), *P], [*W, *V], mT_ParentBodyToJoint=place)
+    holds(body.getWorldTransform().translation(), about(AXIS, 0.8) @ P, P)
+    holds(body.getLinearVelocity(), V, about(AXIS, 0.8) @ V)
 
 
 def test_dart_free_a() -> None:

@@ -22,7 +22,7 @@ pub fn section(run: &RunInfo) -> Markup {
             @if engines.is_empty() { p.empty { "The run names no conventions." } }
             @for (engine, rows) in engines {
                 h3 { (engine) }
-                div.scroll.tall {
+                div.scroll {
                     table.compact.conventions {
                         thead {
                             tr {
@@ -34,16 +34,25 @@ pub fn section(run: &RunInfo) -> Markup {
                             @for row in rows {
                                 tr {
                                     th scope="row" { (row.subject) }
-                                    td { (row.theirs) }
-                                    td.soft { (row.ours) }
-                                    td { (row.conversion) }
-                                    td { code { (row.test) } }
+                                    td { (prose(&row.theirs)) }
+                                    td.soft { (prose(&row.ours)) }
+                                    td { (prose(&row.conversion)) }
+                                    td { code.nowrap { (row.test) } }
                                 }
                             }
                         }
                     }
                 }
             }
+        }
+    }
+}
+
+/// Text in which backticks mark code.
+fn prose(text: &str) -> Markup {
+    html! {
+        @for (k, part) in text.split('`').enumerate() {
+            @if k % 2 == 1 { code { (part) } } @else { (part) }
         }
     }
 }

@@ -251,10 +251,11 @@ fn conventions_are_listed_by_engine_with_their_tests() {
     let (run, _, written) = demo();
     let section = written.section("conventions");
     for row in &run.conventions {
-        for text in [&row.engine, &row.ours, &row.conversion, &row.test] {
+        for text in [&row.engine, &row.ours, &row.test] {
             assert!(section.contains(text.as_str()), "{text} is not in the section");
         }
     }
+    assert!(section.contains("<code>file.py: function</code>, twice"), "backticks mark code");
     assert!(section.contains("screw &lt;pitch&gt;") && !section.contains("screw <pitch>"), "text cannot become markup");
     assert_eq!(section.matches("<h3>").count(), 2, "one table for each engine");
     let nothing = Written::of(&RunInfo::default(), &[]);

@@ -105,7 +105,7 @@ fn convention(engine: &str, subject: &str) -> Convention {
         subject: subject.into(),
         theirs: format!("{subject} as {engine} has it"),
         ours: "as we have it".into(),
-        conversion: "a function".into(),
+        conversion: "`file.py: function`, twice".into(),
         test: format!("test_{engine}"),
     }
 }
