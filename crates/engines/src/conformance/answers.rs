@@ -9,10 +9,13 @@ use harness::{Problem, Quantity};
 use serde_json::{Value, json};
 use std::collections::BTreeMap;
 
+/// Answers to one question: which robot, and the values at every state.
+type Given = Vec<(usize, Vec<f64>)>;
+
 /// The answers of an oracle, by quantity and method.
 #[derive(Default)]
 pub(super) struct Answers {
-    given: BTreeMap<(String, String), Vec<(usize, Vec<f64>)>>,
+    given: BTreeMap<(String, String), Given>,
 }
 
 /// Asks everything about a robot.

@@ -125,11 +125,15 @@ pub(super) fn with_robot(talk: &mut Talk, scene: &Scene, offered: &Methods) {
 fn bad_models(talk: &mut Talk, good: &Value) {
     let changed = |pointer: &str, value: Value| {
         let mut model = good.clone();
-        model.pointer_mut(pointer).map(|place| *place = value);
+        if let Some(place) = model.pointer_mut(pointer) {
+            *place = value;
+        }
         model
     };
     let mut bare = good.clone();
-    bare["bodies"][0].as_object_mut().map(|body| body.remove("mass"));
+    if let Some(body) = bare["bodies"][0].as_object_mut() {
+        body.remove("mass");
+    }
     let models = [
         ("a model that is no object", json!(7), &["error"][..]),
         ("a model in another format", changed("/format", json!(99)), &["error"]),

@@ -53,9 +53,9 @@ pub(super) fn of_free(robot: &Description, state: &State, block: impl Fn(&Rotati
             let given = &state.v[at..at + 6];
             let neutral: Vec<f64> = (0..6).map(|j| (0..6).map(|i| t[i][j] * given[i]).sum()).collect();
             let omega_v = cross(&neutral[3..], &neutral[..3]);
-            for i in 0..6 {
-                (0..6).for_each(|j| *turn.entry(at + i, at + j) = t[i][j]);
-                turn.b[at + i] = if carried { (0..3).map(|j| t[i][j] * omega_v[j]).sum() } else { 0.0 };
+            for (i, row) in t.iter().enumerate() {
+                row.iter().enumerate().for_each(|(j, &entry)| *turn.entry(at + i, at + j) = entry);
+                turn.b[at + i] = if carried { row.iter().zip(omega_v).map(|(entry, x)| entry * x).sum() } else { 0.0 };
             }
         }
     }
