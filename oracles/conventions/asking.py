@@ -10,17 +10,20 @@ from numpy.typing import ArrayLike, NDArray
 Array = NDArray[np.float64]
 CLOSE, APART = 1e-12, 1e-2  # rounding of numbers of size one; far below what any convention of these changes
 asked = 0
+swapped = False  # claims the first alternative in place of each convention: every test must then fail
 
 
 def holds(measured: ArrayLike, convention: ArrayLike, *otherwise: ArrayLike) -> None:
     """The measured numbers are those of the convention, and not those of any other."""
     global asked
     asked += 1
+    assert otherwise, "a convention without an alternative says nothing"
+    if swapped:
+        convention, otherwise = np.broadcast_to(np.asarray(otherwise[0], float), np.shape(measured)), (convention,)
     measured, convention = np.asarray(measured, float), np.asarray(convention, float)
     assert measured.shape == convention.shape, f"shape {measured.shape}, not {convention.shape}"
     gap = np.abs(measured - convention).max()
     assert gap <= CLOSE, f"measured {measured.tolist()}, by the convention {convention.tolist()}"
-    assert otherwise, "a convention without an alternative says nothing"
     for other in otherwise:
         apart = np.abs(measured - np.asarray(other, float)).max()
         assert apart >= APART, f"the alternative {np.asarray(other).tolist()} fits as well"
