@@ -109,8 +109,11 @@ DRAWN = "const box = document.getElementById(arguments[0]); return box.querySele
 CLOSED = "return !document.querySelector('#rows').open"
 BACKGROUND = "return getComputedStyle(document.body).backgroundColor"
 # Every section in its order; those that are not in ALWAYS appear with their rows alone.
-SECTIONS = ["verdict", "agreement", "joints", "digits", "depth", "time", "tradeoff", "conditioning", "pairs", "provenance", "method", "unpassed"]
-ALWAYS = set(SECTIONS) - {"joints", "digits", "tradeoff", "conditioning"}
+SECTIONS = [
+    "verdict", "agreement", "joints", "digits", "depth", "time", "tradeoff", "conditioning", "steps", "pairs", "conventions", "known", "provenance",
+    "method", "unpassed",
+]
+ALWAYS = set(SECTIONS) - {"joints", "digits", "tradeoff", "conditioning", "steps", "known"}
 FOCUS = "const cell = document.activeElement.closest('td'); return cell ? [cell.parentElement.rowIndex, cell.cellIndex] : null"
 
 
@@ -139,6 +142,11 @@ def checks(page, address, shots):
             yield f"{box} has traces", traces > 0, traces
             page.run("document.getElementById(arguments[0]).scrollIntoView({block: 'center', behavior: 'instant'})", box)
             shot(box)
+
+    listed = page.run("return document.querySelectorAll('#conventions tbody tr').length")
+    yield "conventions are listed", listed > 0, listed
+    page.run("document.getElementById('conventions').scrollIntoView({block: 'start', behavior: 'instant'})")
+    shot("conventions")
 
     if has("#heat td button"):
         page.click("#heat td button")

@@ -176,6 +176,8 @@ class DrakeRobot:
 
     def _update(self, ask: Question) -> Change:
         """Sets q and v."""
+        if not np.isfinite([*ask.q, *ask.v, *ask.a, *ask.tau]).all():
+            raise ValueError("Drake ends the process at numbers that are not finite")
         change = change_of_velocities(self.robot, ask.q, ask.v)
         self.plant.SetPositions(self.context, to_engine_q(self.robot, ask.q))
         self.plant.SetVelocities(self.context, change.to_engine_v(ask.v))

@@ -426,19 +426,21 @@ def serve(engine: Engine) -> None:
     session = Session(engine)
     running = True
     while running:
+        echo: Header = {}
         try:
             request = read_frame(sys.stdin.buffer)
             running = request is not None
             if request is not None:
+                echo = {key: request[0][key] for key in ("id",) if key in request[0]}
                 header, blocks = session.answer(*request)
-                write_frame(answers, {"status": "ok", **header}, blocks)
+                write_frame(answers, {"status": "ok", **echo, **header}, blocks)
         except Unsupported as reason:
-            write_frame(answers, {"status": "unsupported", "reason": _sentence(reason)})
+            write_frame(answers, {"status": "unsupported", **echo, "reason": _sentence(reason)})
         except BrokenPipeError:
             running = False
         except Exception as reason:  # an engine's failure is an answer
             traceback.print_exc()
-            write_frame(answers, {"status": "error", "reason": _sentence(reason)})
+            write_frame(answers, {"status": "error", **echo, "reason": _sentence(reason)})
 
 
 def _sentence(reason: Exception) -> str:

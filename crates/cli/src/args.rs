@@ -1,6 +1,8 @@
 //! The command line.
 
+use crate::guest::Guest;
 use clap::{Args, Parser, Subcommand};
+use std::ffi::OsString;
 use std::path::PathBuf;
 
 /// Who is right, by how much, and how fast: dynamics engines on one and the same robots.
@@ -43,7 +45,7 @@ pub enum Command {
 
 #[derive(Debug, Clone, Args)]
 #[command(
-    after_help = "Examples:\n  featherbench run --suite smoke\n  featherbench run --live --out reports/today\n  featherbench run --resume --out reports/today"
+    after_help = "Examples:\n  featherbench run --suite smoke\n  featherbench run --live --out reports/today\n  featherbench run --engine mine=./my_oracle --engine 'chain=python3 oracles/chain.py'\n  featherbench run --resume --out reports/today"
 )]
 pub struct RunArgs {
     /// The suite: a name in datasets/suites, or a TOML file.
@@ -55,6 +57,9 @@ pub struct RunArgs {
     /// The seed of the states, instead of the suite's; recorded answers are to the suite's own.
     #[arg(long, requires = "live")]
     pub seed: Option<u64>,
+    /// An engine of one's own, as NAME=PROGRAM [ARGS…]: a program that speaks oracles/PROTOCOL.md; may be repeated.
+    #[arg(long = "engine", value_name = "NAME=PROGRAM")]
+    pub guests: Vec<Guest>,
     /// Only cells whose path study/robot/engine/quantity/method matches this regular expression.
     #[arg(long, value_name = "REGEX")]
     pub only: Option<String>,
@@ -110,6 +115,9 @@ pub struct ListArgs {
     /// List every cell of the suite by its path.
     #[arg(long)]
     pub cells: bool,
+    /// List the conventions of the engines beside ours, as CONVENTIONS.md shows them.
+    #[arg(long, conflicts_with = "cells")]
+    pub conventions: bool,
 }
 
 #[derive(Debug, Clone, Args)]
@@ -179,6 +187,25 @@ pub enum OraclesAction {
     Install,
     /// Say which engines answer, and with which version.
     Status,
+    /// Test a program that speaks oracles/PROTOCOL.md: exit 1 when something is wrong; what it lacks is no fault.
+    Check(CheckArgs),
+}
+
+#[derive(Debug, Clone, Args)]
+#[command(after_help = "Example:\n  featherbench oracles check python3 oracles/chain.py")]
+pub struct CheckArgs {
+    /// The program with its arguments.
+    #[arg(required = true, trailing_var_arg = true, allow_hyphen_values = true, value_name = "PROGRAM")]
+    pub command: Vec<OsString>,
+    /// Longest wait for one answer, in seconds.
+    #[arg(long, value_name = "SECONDS", default_value_t = 30)]
+    pub answer_within: u64,
+    /// Address space of the program, in MiB.
+    #[arg(long, value_name = "MIB", default_value_t = 8192)]
+    pub memory: u64,
+    /// Print everything that is right as well.
+    #[arg(long)]
+    pub all: bool,
 }
 
 impl RunArgs {

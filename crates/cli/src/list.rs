@@ -19,6 +19,9 @@ pub fn list(root: &Root, args: &ListArgs) -> Result<(), Fail> {
 }
 
 fn text(root: &Root, args: &ListArgs) -> Result<String, Fail> {
+    if args.conventions {
+        return Ok(harness::conventions::markdown(&harness::conventions::read(&root.conventions())?));
+    }
     let loaded = problems::load(root, &args.suite, false, None)?;
     if args.cells {
         let subjects: Vec<Box<dyn Subject>> = vec![Box::new(Native::new())];

@@ -1,9 +1,11 @@
 //! The `featherbench` command: wires engines and studies into the harness.
 
 mod args;
+mod check;
 mod explain;
 mod fail;
 mod generate;
+mod guest;
 mod list;
 mod oracles;
 mod problems;
@@ -45,6 +47,7 @@ fn dispatch(cli: Cli) -> Result<(), Fail> {
         Command::Oracles(args) => match args.action {
             OraclesAction::Install => oracles::install(&root).map(|_| ()),
             OraclesAction::Status => oracles::status(&root),
+            OraclesAction::Check(args) => check::check(&args),
         },
     }
 }

@@ -47,6 +47,11 @@ impl Root {
         self.0.join("oracles")
     }
 
+    /// The ledger of the engines' conventions.
+    pub fn conventions(&self) -> PathBuf {
+        self.oracles().join("conventions.toml")
+    }
+
     /// Where the engines are installed.
     pub fn engines(&self) -> PathBuf {
         self.0.join("target/oracles")

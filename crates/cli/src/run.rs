@@ -30,6 +30,8 @@ pub fn run(root: &Root, args: &RunArgs) -> Result<(), Fail> {
     let started = SystemTime::now();
     let (folder, id) = folder(root, args, &loaded.name, started)?;
     let mut info = describe(root, args, &loaded, &subjects);
+    info.conventions = harness::conventions::read(&root.conventions())?;
+    info.conventions.retain(|row| info.engines.iter().any(|engine| engine.name == row.engine));
     info.run = id;
     info.started = humantime::format_rfc3339_seconds(started).to_string();
     check_fingerprint(&folder, args, &info)?;

@@ -2,6 +2,7 @@
 
 use crate::args::RunArgs;
 use crate::fail::Fail;
+use crate::guest;
 use crate::oracles;
 use crate::problems::Loaded;
 use crate::root::Root;
@@ -21,22 +22,21 @@ pub struct Subjects {
 pub fn open(root: &Root, args: &RunArgs, loaded: &Loaded) -> Result<Subjects, Fail> {
     let mut opened = Subjects { subjects: Vec::new(), engines: Vec::new() };
     opened.add(Ok(Box::new(Native::new())), "native", EngineSource::Native);
-    let Some(agreement) = &loaded.suite.agreement else { return Ok(opened) };
-    let (here, others): (Vec<&String>, Vec<&String>) = agreement.engines.iter().partition(|engine| *engine == oracles::IN_PROCESS);
+    let engines: &[String] = loaded.suite.agreement.as_ref().map_or(&[], |agreement| &agreement.engines);
+    let taken: Vec<&str> = ["native"].into_iter().chain(engines.iter().map(String::as_str)).collect();
+    guest::check_names(&args.guests, &taken)?;
+    let (here, others): (Vec<&String>, Vec<&String>) = engines.iter().partition(|engine| *engine == oracles::IN_PROCESS);
     for engine in here {
         opened.add(Ok(Box::new(Rapier::new())), engine, EngineSource::Live);
     }
-    if others.is_empty() {
-        return Ok(opened);
-    }
-    if args.live {
+    let limits = limits(args);
+    if args.live && !others.is_empty() {
         let python = oracles::install(root)?;
-        let limits = limits(args);
         for engine in others {
             let oracle = oracles::start(root, &python, engine, limits);
             opened.add(oracle.map(|oracle| Box::new(oracle) as Box<dyn Subject>), engine, EngineSource::Live);
         }
-    } else {
+    } else if !others.is_empty() {
         let folder = args.recorded.clone().unwrap_or_else(|| root.recorded());
         let asked: Vec<&Problem> =
             loaded.problems.iter().filter(|problem| problem.takes("agreement") || problem.takes("structure")).collect();
@@ -45,6 +45,9 @@ pub fn open(root: &Root, args: &RunArgs, loaded: &Loaded) -> Result<Subjects, Fa
             let recorded = Recorded::new(&recordings, engine).map(|recorded| Box::new(recorded) as Box<dyn Subject>);
             opened.add(recorded, engine, EngineSource::Recorded);
         }
+    }
+    for guest in &args.guests {
+        opened.add(Ok(Box::new(guest.start(limits)?)), &guest.name, EngineSource::Live);
     }
     Ok(opened)
 }

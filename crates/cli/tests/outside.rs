@@ -5,6 +5,7 @@
 
 mod support;
 
+use std::path::Path;
 use std::process::{Command, ExitCode};
 use support::{Ended, Sandbox, project};
 
@@ -18,9 +19,13 @@ enum Outcome {
 }
 
 fn main() -> ExitCode {
-    let tests: [(&str, Test); 4] = [
+    let tests: [(&str, Test); 8] = [
         ("a missing wheel is exit code three and can be tried again", missing_wheel),
         ("the oracles pass their own tests", oracles_by_themselves),
+        ("the engines keep the conventions of the ledger", conventions),
+        ("the project's own oracles conform", own_oracles),
+        ("an oracle that forgets a conversion is told which", forgetful_oracles),
+        ("a small oracle runs beside the recorded engines", small_oracle),
         ("a live run agrees with the recorded answers", live_run),
         ("a browser clicks through the report", browser),
     ];
@@ -91,6 +96,107 @@ fn oracles_by_themselves() -> Outcome {
         }
         Err(skipped) => skipped,
     }
+}
+
+/// Every test of a convention passes, and fails where it claims the alternative.
+fn conventions() -> Outcome {
+    let python = match installed_python() {
+        Ok(python) => python,
+        Err(skipped) => return skipped,
+    };
+    let tests = project().join("oracles/test_conventions.py");
+    match checked(Command::new(&python).arg(&tests)) {
+        Outcome::Passed => checked(Command::new(&python).arg(&tests).arg("--otherwise")),
+        other => other,
+    }
+}
+
+/// What `featherbench oracles check` says about a file of oracles.
+fn conformance(python: &Path, program: &Path) -> Ended {
+    Ended::new(
+        Command::new(env!("CARGO_BIN_EXE_featherbench"))
+            .current_dir(project())
+            .args(["oracles", "check"])
+            .arg(python)
+            .arg(program)
+            .output()
+            .unwrap(),
+    )
+}
+
+fn own_oracles() -> Outcome {
+    let python = match installed_python() {
+        Ok(python) => python,
+        Err(skipped) => return skipped,
+    };
+    for (name, code) in [("chain", 0), ("mujoco", 0), ("drake", 0), ("pinocchio", 1)] {
+        let ended = conformance(&python, &project().join(format!("oracles/{name}.py")));
+        ended.expect(
+            code,
+            if code == 0 {
+                &["conforms"]
+            } else {
+                &["1 of ", "armature of revolute and helical joints is left out where the axis is no coordinate axis"]
+            },
+        );
+    }
+    Outcome::Passed
+}
+
+/// Our own oracles with one conversion taken out: the conformance test names it.
+fn forgetful_oracles() -> Outcome {
+    let python = match installed_python() {
+        Ok(python) => python,
+        Err(skipped) => return skipped,
+    };
+    let cases = [
+        ("chain", " + rotor for", " for", "armature is left out"),
+        ("chain", "-gravity * np.array", "gravity * np.array", "gravity has the wrong sign"),
+        ("chain", ", (xx, xy, xz, yy, yz, zz) =", ", (xx, yy, zz, xy, xz, yz) =", "inertias are read as xx, yy, zz, xy, xz, yz"),
+        ("mujoco", "blocks.append((linear, r))", "r = np.eye(3)", "linear velocity is taken in world axes: T = diag(R, 1)"),
+        ("mujoco", "bias[linear] = r @", "bias[linear] = 0 * r @", "the term b is missing"),
+        ("mujoco", "child.mass, child.ipos = body.mass, body.com", "child.mass, child.ipos = body.mass, 0 * body.com", "com of body"),
+        ("drake", "2 * pi * joint.pitch", "joint.pitch", "pitch of a helical joint is taken per revolution"),
+        ("drake", "blocks.append((joint.v, rotation(q[joint.q])))", "pass", "spherical joint's velocity is taken in joint-frame axes"),
+        ("pinocchio", "blocks.append((joint.v, t))", "bias[joint.v] = 0", "planar joint's linear velocity is taken in body axes"),
+        (
+            "pinocchio",
+            "np.concatenate([motion.angular, motion.linear])",
+            "np.concatenate([motion.linear, motion.angular])",
+            "6-vectors are sent as [linear; angular]",
+        ),
+    ];
+    let folder = tempfile::tempdir().unwrap();
+    let protocol = project().join("oracles/protocol.py");
+    std::fs::copy(protocol, folder.path().join("protocol.py")).unwrap();
+    for (name, right, wrong, named) in cases {
+        let text = std::fs::read_to_string(project().join(format!("oracles/{name}.py"))).unwrap();
+        assert!(text.contains(right), "{name}.py has no '{right}' any more");
+        let path = folder.path().join(format!("{name}.py"));
+        std::fs::write(&path, text.replace(right, wrong)).unwrap();
+        conformance(&python, &path).expect(1, &[named]);
+    }
+    Outcome::Passed
+}
+
+fn small_oracle() -> Outcome {
+    let python = match installed_python() {
+        Ok(python) => python,
+        Err(skipped) => return skipped,
+    };
+    let sandbox = Sandbox::new();
+    let engine = format!("small='{}' oracles/chain.py", python.display());
+    let only = "agreement/chain-planar-2/.*/(readback|id|mass_matrix)/.*";
+    sandbox.run(&["run", "--suite", "smoke", "--no-timing", "--engine", &engine, "--only", only, "--out", "out"]).expect(0, &["report:"]);
+    let rows = std::fs::read_to_string(sandbox.path("out/records.csv")).unwrap();
+    for quantity in ["readback", "id", "mass_matrix"] {
+        let judged = rows
+            .lines()
+            .filter(|row| row.contains(",small,1,") && row.contains(&format!(",{quantity},")) && row.contains(",pass,"))
+            .count();
+        assert!(judged > 0, "no row of {quantity} passes");
+    }
+    Outcome::Passed
 }
 
 fn live_run() -> Outcome {

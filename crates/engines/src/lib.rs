@@ -5,6 +5,7 @@
 //! [`Subject`](harness::Subject) in a file of its own here.
 
 mod coding;
+pub mod conformance;
 mod kernel;
 mod native;
 mod oracle;

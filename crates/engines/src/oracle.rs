@@ -13,7 +13,7 @@ use std::ops::Range;
 use std::sync::{Mutex, PoisonError};
 
 /// Version of the protocol that we speak.
-const PROTOCOL: u64 = 1;
+pub(crate) const PROTOCOL: u64 = 1;
 
 /// An engine that is asked through its own process.
 pub struct Oracle {
@@ -58,6 +58,15 @@ impl Oracle {
         }
         let session = Session { process, model: String::new(), readback: Vec::new(), states: None };
         Ok(Self { identity, methods, command, limits, idle: Mutex::new(vec![session]) })
+    }
+
+    /// The same oracle under another name; the engine's own name goes into its build, where it differs.
+    pub fn named(mut self, name: &str) -> Self {
+        if self.identity.name != name {
+            let own = std::mem::replace(&mut self.identity.name, name.to_owned());
+            self.identity.build.insert("engine".into(), own);
+        }
+        self
     }
 
     fn session(&self) -> Result<Session, Refusal> {

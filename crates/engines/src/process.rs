@@ -32,6 +32,8 @@ const KEPT_LINES: usize = 6;
 
 /// How long a process that answers no more may take to end by itself, and its last words to arrive.
 const GRACE: Duration = Duration::from_secs(1);
+/// How long a process may take to end after its input did: an engine's libraries clean up.
+const LEAVE: Duration = Duration::from_secs(10);
 /// How often it is looked whether it has ended.
 const LOOK: Duration = Duration::from_millis(5);
 
@@ -46,6 +48,8 @@ pub(crate) struct Process {
     silence: Receiver<()>,
     limits: Limits,
     alive: bool,
+    /// The number of the last request.
+    asked: u64,
 }
 
 impl Process {
@@ -82,7 +86,7 @@ impl Process {
             keep_last_words(BufReader::new(errors), &kept);
             drop(talking);
         });
-        Ok(Self { child, requests: Some(requests), answers, last_words, silence, limits, alive: true })
+        Ok(Self { child, requests: Some(requests), answers, last_words, silence, limits, alive: true, asked: 0 })
     }
 
     /// Sends a request and waits for its answer.
@@ -97,6 +101,9 @@ impl Process {
     }
 
     fn try_ask(&mut self, request: &Frame) -> Result<Frame, String> {
+        self.asked += 1;
+        let mut request = request.clone();
+        let id = request.header.entry("id").or_insert_with(|| self.asked.into()).clone();
         let requests = self.requests.as_ref().ok_or("the oracle has ended")?;
         let answer = match self.answers.try_recv() {
             // It would be taken for the answer to this question.
@@ -109,10 +116,31 @@ impl Process {
             }
         };
         match answer {
-            Ok(Ok(Some(frame))) => Ok(frame),
+            Ok(Ok(Some(frame))) => match frame.header.get("id") {
+                Some(answered) if *answered != id => Err(format!("the oracle's answer is to request {answered}, not to {id}")),
+                _ => Ok(frame),
+            },
             Ok(Ok(None)) | Ok(Err(FrameError::Truncated)) | Err(RecvTimeoutError::Disconnected) => Err(self.obituary()),
             Ok(Err(error)) => Err(format!("the oracle's answer is not in the protocol: {error}")),
             Err(RecvTimeoutError::Timeout) => Err(format!("no answer within {} s", self.limits.answer.as_secs_f64())),
+        }
+    }
+
+    /// Ends its input and waits for its end.
+    ///
+    /// # Errors
+    /// What it said, or did not do, instead of ending well.
+    pub(crate) fn close(mut self) -> Result<(), String> {
+        self.requests = None;
+        match self.answers.recv_timeout(LEAVE) {
+            Ok(Ok(None)) | Err(RecvTimeoutError::Disconnected) => {}
+            Ok(Ok(Some(_))) => return Err("it sent an answer that nobody asked for".into()),
+            Ok(Err(error)) => return Err(format!("something stands behind its last answer: {error}")),
+            Err(RecvTimeoutError::Timeout) => return Err(format!("it goes on for {} s without input", LEAVE.as_secs())),
+        }
+        match self.status().as_str() {
+            "exit status: 0" => Ok(()),
+            status => Err(format!("it ended with {status}")),
         }
     }
 

@@ -329,6 +329,20 @@ fn a_late_answer_belongs_to_no_later_question() {
     assert_eq!(trial.pids().len(), 2, "the late one was ended, another one started");
 }
 
+/// Requests are numbered; an answer that bears another number is not taken.
+#[test]
+fn an_answer_to_another_request_is_noticed() {
+    let numbered = |id: u64| TWO.replace("value ", &format!("value{id} "));
+    let value = |id: u64| {
+        format!(r#"value{id}() {{ echo '{{"status":"ok","id":{id},"blocks":[{{"name":"value","shape":[2]}}]}}'; printf "$1"; }}"#)
+    };
+    // The fourth request of the process: hello, prepare, states, evaluate.
+    let right = Script::evaluate(&format!("{}; {}", value(4), numbered(4)));
+    assert_eq!(Trial::new(&right, PATIENT).ask(), Ok(vec![2.0, 2.0]));
+    let reason = Trial::new(&Script::evaluate(&format!("{}; {}", value(3), numbered(3))), PATIENT).failure();
+    assert_eq!(reason, "the oracle's answer is to request 3, not to 4");
+}
+
 /// Whatever breaks the first process, the next question is answered by another.
 #[test]
 fn after_a_failure_another_process_answers() {

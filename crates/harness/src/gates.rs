@@ -192,7 +192,7 @@ impl Gates {
                 }
             }
         }
-        conditions.extend(self.sharp.iter().filter(|_| suite.thorough).flat_map(|sharp| sharp.conditions(records)));
+        conditions.extend(self.sharp.iter().filter(|_| suite.thorough).flat_map(|sharp| sharp.conditions(suite, records)));
         for (engine, quantities) in &suite.expect {
             for (quantity, &expected) in quantities {
                 let of_these = |row: &&Record| row.engine == *engine && row.quantity == *quantity && accounted(row);
@@ -220,10 +220,13 @@ fn condition(what: String, expected: u64, found: u64) -> Expectation {
 type Bounds = HashMap<(String, String), f64>;
 
 impl Sharpness {
-    /// One condition per engine and method: for how many kinds of joints and bases there is no robot with a sharp bound.
-    fn conditions(&self, records: &[Record]) -> Vec<Expectation> {
+    /// One condition per method of the suite's engines: for how many kinds of joints and bases there is no robot with a sharp bound. An engine
+    /// that a user brought along need not have every kind.
+    fn conditions(&self, suite: &Suite, records: &[Record]) -> Vec<Expectation> {
         let mut sharpest: BTreeMap<(&str, &str), Bounds> = BTreeMap::new();
-        for row in records.iter().filter(|row| row.study == self.study && row.quantity == self.quantity && row.metric == self.metric) {
+        let named = |engine: &String| suite.agreement.as_ref().is_some_and(|agreement| agreement.engines.contains(engine));
+        let own = records.iter().filter(|row| row.engine == "native" || named(&row.engine));
+        for row in own.filter(|row| row.study == self.study && row.quantity == self.quantity && row.metric == self.metric) {
             let (Some(bound), Ok(params)) = (row.bound, serde_json::from_str::<Value>(&row.params)) else { continue };
             let of_method = sharpest.entry((&row.engine, &row.method)).or_default();
             let base = params["base"].as_str().unwrap_or_default();

@@ -4,6 +4,7 @@
 //! [`OutcomeStore`]; a pure comparison turns outcomes into records, judged by [`Gates`]. The error measures are in [`measure`].
 
 mod cell;
+pub mod conventions;
 mod deviation;
 mod error;
 pub mod frame;

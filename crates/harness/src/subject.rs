@@ -33,6 +33,90 @@ pub enum Refusal {
 }
 
 /// An engine that can be asked about robots.
+///
+/// A whole engine, for one link on one revolute joint, asked about a robot that was drawn at random:
+///
+/// ```
+/// use featherbench_harness::measure::{Magnitudes, scaled_error};
+/// use featherbench_harness::{Identity, Prepared, Problem, Quantity, Refusal, Subject};
+/// use model::{JointType, StateBatch, generate::Family};
+/// use record::{EngineSource, ModelOrigin};
+/// use spatial::{Mat3, Sym3, Vec3};
+///
+/// /// τ = (uᵀ I_o u + armature) a − u · (R c × m g'), with the gravity g' in body axes.
+/// struct Pendulum(Identity);
+///
+/// struct Swing<'a> {
+///     problem: &'a Problem,
+///     states: &'a StateBatch,
+///     tau: Vec<f64>,
+/// }
+///
+/// impl Subject for Pendulum {
+///     fn identity(&self) -> &Identity {
+///         &self.0
+///     }
+///
+///     fn methods(&self, quantity: Quantity) -> Vec<String> {
+///         if quantity == Quantity::InverseDynamics { vec!["lever".into()] } else { Vec::new() }
+///     }
+///
+///     fn prepare<'a>(
+///         &'a self,
+///         problem: &'a Problem,
+///         _: Quantity,
+///         _: &str,
+///         states: &'a StateBatch,
+///     ) -> Result<Box<dyn Prepared + 'a>, Refusal> {
+///         match problem.description.bodies.as_slice() {
+///             [body] if matches!(body.joint.kind, JointType::Revolute { .. }) => Ok(Box::new(Swing { problem, states, tau: Vec::new() })),
+///             _ => Err(Refusal::Unsupported("a pendulum is one link on one revolute joint".into())),
+///         }
+///     }
+/// }
+///
+/// impl Prepared for Swing<'_> {
+///     fn run(&mut self, range: std::ops::Range<usize>) -> Result<(), Refusal> {
+///         let body = &self.problem.description.bodies[0];
+///         let axis = Vec3::from_array(body.joint.kind.axis().ok_or_else(|| Refusal::Failed("no axis".into()))?);
+///         let com = Vec3::from_array(body.com);
+///         // u·(ω × I ω) vanishes for a turn about u: a pendulum's τ does not depend on its velocity.
+///         let about_origin = Sym3::from_array(body.inertia).to_mat3() * axis + com.cross(axis.cross(com)) * body.mass;
+///         let armature = body.joint.armature.first().copied().unwrap_or(0.0);
+///         let fixed = Mat3::from_array(body.joint.placement.rotation);
+///         self.tau = range
+///             .map(|k| {
+///                 let (sin, cos) = self.states.q(k)[0].sin_cos();
+///                 let falls = fixed.transpose_mul(Vec3::from_array(self.problem.description.gravity));
+///                 // Rodrigues' formula, by −q: gravity in body axes.
+///                 let gravity = falls * cos - axis.cross(falls) * sin + axis * (axis.dot(falls) * (1.0 - cos));
+///                 (axis.dot(about_origin) + armature) * self.states.a(k)[0] - axis.dot(com.cross(gravity * body.mass))
+///             })
+///             .collect();
+///         Ok(())
+///     }
+///
+///     fn read(&self) -> &[f64] {
+///         &self.tau
+///     }
+/// }
+///
+/// let description = Family::parse("joints:kind=revolute,base=fixed,shape=single").unwrap().generate().unwrap();
+/// let problem = Problem::new(&description, "pendulum", ModelOrigin::Generated, 20, 1).unwrap();
+/// let name = "pendulum".to_owned();
+/// let pendulum = Pendulum(Identity { name, version: "1".into(), source: EngineSource::Native, build: Default::default() });
+/// let mut swing = pendulum.prepare(&problem, Quantity::InverseDynamics, "lever", &problem.states).unwrap();
+/// swing.run(0..20).unwrap();
+/// let mut rnea = dynamics::Rnea::new(&problem.model.topology);
+/// for (k, &tau) in swing.read().iter().enumerate() {
+///     let (states, mut due) = (&problem.states, [0.0]);
+///     rnea.run(&problem.model, states.q(k), states.v(k), states.a(k), None, &mut due).unwrap();
+///     let error = scaled_error(&problem, Quantity::InverseDynamics, &Magnitudes::new(&problem, k), &due, &[tau]);
+///     assert!(error < 1e-15, "state {k}: {error}");
+/// }
+/// ```
+///
+/// A run asks it beside the others when `crates/cli/src/subjects.rs` adds it to the subjects.
 pub trait Subject: Send + Sync {
     /// Who it is.
     fn identity(&self) -> &Identity;

@@ -28,4 +28,4 @@ pub use file::{CSV_NAME, RUN_NAME, SCHEMA_NAME, atomic_write, read_csv, read_run
 pub use names::{Kind, Relation, Verdict};
 pub use params::canonical_json;
 pub use row::{MARGIN_LIMIT, Record};
-pub use run_info::{EngineInfo, EngineSource, Expectation, GitInfo, Host, ModelInfo, ModelOrigin, RUN_FORMAT, RunInfo};
+pub use run_info::{Convention, EngineInfo, EngineSource, Expectation, GitInfo, Host, ModelInfo, ModelOrigin, RUN_FORMAT, RunInfo};

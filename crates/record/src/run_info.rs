@@ -56,6 +56,9 @@ pub struct RunInfo {
     pub seconds: BTreeMap<String, f64>,
     /// How many passing rows the suite expects, and what was found.
     pub expected: Vec<Expectation>,
+    /// In which conventions the engines differ from ours, or do not.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub conventions: Vec<Convention>,
 }
 
 /// The source revision.
@@ -150,6 +153,24 @@ pub struct ModelInfo {
     pub bodies: u64,
     /// Joints on the longest path from base to leaf.
     pub depth: u64,
+}
+
+/// A convention of an engine beside ours.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Convention {
+    /// The engine, as in the records.
+    pub engine: String,
+    /// What it is about: free v, screw pitch, armature.
+    pub subject: String,
+    /// What the engine does.
+    pub theirs: String,
+    /// What we do.
+    pub ours: String,
+    /// The function that converts, or how it comes that none is needed.
+    pub conversion: String,
+    /// The test that asks the engine itself, and fails if the convention were otherwise.
+    pub test: String,
 }
 
 /// A condition on the number of rows: the suite's own gate.

@@ -5,9 +5,9 @@ use std::fs;
 use std::path::Path;
 
 use featherbench_record::{
-    COLUMNS, CSV_NAME, ColumnType, EngineInfo, EngineSource, Expectation, GitInfo, Host, Kind, ModelInfo, ModelOrigin, RUN_FORMAT,
-    RUN_NAME, Record, RecordError, Relation, RunInfo, SCHEMA_NAME, Verdict, atomic_write, canonical_json, read_csv, read_run, schema_json,
-    to_csv, write_csv, write_run,
+    COLUMNS, CSV_NAME, ColumnType, Convention, EngineInfo, EngineSource, Expectation, GitInfo, Host, Kind, ModelInfo, ModelOrigin,
+    RUN_FORMAT, RUN_NAME, Record, RecordError, Relation, RunInfo, SCHEMA_NAME, Verdict, atomic_write, canonical_json, read_csv, read_run,
+    schema_json, to_csv, write_csv, write_run,
 };
 use proptest::prelude::*;
 
@@ -258,6 +258,14 @@ fn run_info() -> RunInfo {
         }],
         seconds: BTreeMap::from([("accuracy".into(), 0.1)]),
         expected: vec![Expectation { what: "id".into(), expected: 2, found: 1, verdict: Verdict::Fail, reason: "one is missing".into() }],
+        conventions: vec![Convention {
+            engine: "native".into(),
+            subject: "free q".into(),
+            theirs: "wxyz".into(),
+            ours: "xyzw".into(),
+            conversion: "".into(),
+            test: "t".into(),
+        }],
     }
 }
 

@@ -10,6 +10,7 @@
 mod axes;
 mod chunks;
 mod conditioning;
+mod conventions;
 mod digits;
 mod digits_section;
 mod figures;

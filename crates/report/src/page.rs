@@ -8,8 +8,8 @@ use crate::findings::Findings;
 use crate::overview::{Overview, REPRODUCTIONS};
 use crate::truth::Truth;
 use crate::{
-    conditioning, digits_section, heatmap, joint_matrix, known, method, pairwise, plots, provenance, steps, tradeoff, truth, unpassed,
-    verdict,
+    conditioning, conventions, digits_section, heatmap, joint_matrix, known, method, pairwise, plots, provenance, steps, tradeoff, truth,
+    unpassed, verdict,
 };
 
 /// The sections: anchor, entry in the navigation.
@@ -24,6 +24,7 @@ const SECTIONS: &[(&str, &str)] = &[
     ("conditioning", "Conditioning"),
     ("steps", "Steps"),
     ("pairs", "Pairs"),
+    ("conventions", "Conventions"),
     ("known", "Known deviations"),
     ("provenance", "Provenance"),
     ("method", "Method"),
@@ -63,6 +64,7 @@ pub fn render(run: &RunInfo, records: &[Record], overview: &Overview, figures: &
                     (conditioning::section(overview, &figures.conditions))
                     (steps::section(overview, &figures.steps))
                     (pairwise::section(overview, records))
+                    (conventions::section(run))
                     (known::section(records))
                     (provenance::section(run, overview))
                     (method::section(run, overview, figures))

@@ -21,8 +21,20 @@ fn demo() -> (RunInfo, Vec<Record>, Written) {
 fn the_page_has_its_sections_and_stays_small() {
     let (_, records, written) = demo();
     assert!(records.len() > 10_000);
-    let order =
-        ["verdict", "agreement", "digits", "depth", "time", "tradeoff", "conditioning", "pairs", "provenance", "method", "unpassed"];
+    let order = [
+        "verdict",
+        "agreement",
+        "digits",
+        "depth",
+        "time",
+        "tradeoff",
+        "conditioning",
+        "pairs",
+        "conventions",
+        "provenance",
+        "method",
+        "unpassed",
+    ];
     let places: Vec<usize> = order.iter().map(|id| written.index.find(&format!("<section id=\"{id}\"")).unwrap()).collect();
     assert!(places.is_sorted(), "{places:?}");
     for id in order {
@@ -232,4 +244,20 @@ fn a_folder_that_cannot_be_written_is_named() {
     fs::write(&blocked, "").unwrap();
     let error = featherbench_report::write(&RunInfo::default(), &[], &blocked).unwrap_err().to_string();
     assert!(error.contains(Path::new("blocked").to_str().unwrap()), "{error}");
+}
+
+#[test]
+fn conventions_are_listed_by_engine_with_their_tests() {
+    let (run, _, written) = demo();
+    let section = written.section("conventions");
+    for row in &run.conventions {
+        for text in [&row.engine, &row.ours, &row.test] {
+            assert!(section.contains(text.as_str()), "{text} is not in the section");
+        }
+    }
+    assert!(section.contains("<code>file.py: function</code>, twice"), "backticks mark code");
+    assert!(section.contains("screw &lt;pitch&gt;") && !section.contains("screw <pitch>"), "text cannot become markup");
+    assert_eq!(section.matches("<h3>").count(), 2, "one table for each engine");
+    let nothing = Written::of(&RunInfo::default(), &[]);
+    assert!(nothing.section("conventions").contains("names no conventions"));
 }

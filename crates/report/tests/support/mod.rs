@@ -3,7 +3,8 @@
 use std::collections::BTreeMap;
 
 use record::{
-    EngineInfo, EngineSource, Expectation, GitInfo, Host, Kind, ModelInfo, ModelOrigin, Record, Relation, RunInfo, Verdict, canonical_json,
+    Convention, EngineInfo, EngineSource, Expectation, GitInfo, Host, Kind, ModelInfo, ModelOrigin, Record, Relation, RunInfo, Verdict,
+    canonical_json,
 };
 
 mod truth;
@@ -98,6 +99,17 @@ fn base(run: &RunInfo, model: &ModelInfo) -> Record {
     }
 }
 
+fn convention(engine: &str, subject: &str) -> Convention {
+    Convention {
+        engine: engine.into(),
+        subject: subject.into(),
+        theirs: format!("{subject} as {engine} has it"),
+        ours: "as we have it".into(),
+        conversion: "`file.py: function`, twice".into(),
+        test: format!("test_{engine}"),
+    }
+}
+
 /// The run's provenance.
 pub fn run_info() -> RunInfo {
     let engine = |name: &str, version: &str, source, status: &str, reason: &str| EngineInfo {
@@ -137,6 +149,7 @@ pub fn run_info() -> RunInfo {
             engine("drake", "1.48.0", EngineSource::Recorded, "ok", ""),
             engine("dart", "", EngineSource::Recorded, "missing", "no recording for this suite"),
         ],
+        conventions: [("mujoco", "free v"), ("drake", "screw <pitch>")].map(|(engine, subject)| convention(engine, subject)).into(),
         models: models(),
         seconds: BTreeMap::from([("accuracy".into(), 11.4), ("timing".into(), 30.25)]),
         expected: vec![

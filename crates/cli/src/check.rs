@@ -1,0 +1,54 @@
+//! `featherbench oracles check`: the conformance test of a program that answers as an engine.
+
+use crate::args::CheckArgs;
+use crate::fail::Fail;
+use crate::guest;
+use engines::Limits;
+use engines::conformance::{Conformance, Finding, Standing, check_program};
+use std::io::{IsTerminal, Write};
+use std::time::Duration;
+
+/// Tests the program and prints what was found.
+pub fn check(args: &CheckArgs) -> Result<(), Fail> {
+    guest::find(&args.command)?;
+    let limits = Limits { answer: Duration::from_secs(args.answer_within), memory: args.memory << 20 };
+    let terminal = std::io::stderr().is_terminal();
+    let watch = |what: &str| {
+        if terminal {
+            eprint!("\r\x1b[2K{what} …");
+        }
+    };
+    let conformance = check_program(&args.command, limits, &watch).map_err(Fail::Input)?;
+    if terminal {
+        eprint!("\r\x1b[2K");
+    }
+    // A reader who closes the pipe has seen enough: that is no error.
+    let _ = std::io::stdout().write_all(text(&conformance, args.all).as_bytes());
+    let wrong = conformance.of(Standing::Wrong).count();
+    if wrong == 0 {
+        return Ok(());
+    }
+    Err(Fail::Gate(format!("{wrong} of {} findings are wrong; oracles/PROTOCOL.md says what is due", conformance.findings.len())))
+}
+
+/// The table: what is right in short or in full, what is lacking, what is wrong and what to do about it.
+fn text(conformance: &Conformance, all: bool) -> String {
+    let mut text = format!("engine  {}\n", if conformance.engine.is_empty() { "unknown" } else { &conformance.engine });
+    for (quantity, methods) in &conformance.methods {
+        text += &format!("offers  {quantity} by {}\n", methods.join(", "));
+    }
+    let sections = [("right", Standing::Right), ("lacks", Standing::Lacks), ("wrong", Standing::Wrong)];
+    for (title, standing) in sections {
+        let findings: Vec<&Finding> = conformance.of(standing).collect();
+        let shown = all || standing != Standing::Right;
+        text += &format!("\n{title}   {}\n", findings.len());
+        // What is right says little, but for the errors of values.
+        for finding in findings.into_iter().filter(|finding| shown || !finding.found.is_empty()) {
+            let colon = if finding.found.is_empty() { "" } else { ": " };
+            text += &format!("  {}{colon}{}\n", finding.what, finding.found);
+            text.extend(finding.advice.iter().map(|line| format!("      {line}\n")));
+        }
+    }
+    let verdict = if conformance.conforms() { "conforms: `featherbench run --engine NAME=PROGRAM` takes it" } else { "does not conform" };
+    text + &format!("\n{verdict}\n")
+}

@@ -1,0 +1,108 @@
+//! Engines that a user brings along: `--engine NAME=PROGRAM`.
+
+use crate::fail::Fail;
+use engines::{Limits, Oracle};
+use std::ffi::OsString;
+use std::path::Path;
+use std::str::FromStr;
+
+/// A program to be asked under a name.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Guest {
+    pub name: String,
+    pub command: Vec<OsString>,
+}
+
+impl FromStr for Guest {
+    type Err = String;
+
+    /// Reads `NAME=PROGRAM ARGS…`: words are split at blanks, quotes of either kind keep blanks in a word.
+    fn from_str(text: &str) -> Result<Self, String> {
+        let (name, command) = text.split_once('=').ok_or("write NAME=PROGRAM, as in mine=./my_oracle")?;
+        let plain = |c: char| c.is_ascii_alphanumeric() || "_-.".contains(c);
+        if name.is_empty() || !name.chars().all(plain) {
+            return Err(format!("'{name}' is no name: use letters, digits, '_', '-' and '.'"));
+        }
+        let command: Vec<OsString> = words(command)?.into_iter().map(OsString::from).collect();
+        if command.is_empty() {
+            return Err(format!("engine {name} has no program"));
+        }
+        Ok(Self { name: name.to_owned(), command })
+    }
+}
+
+fn words(text: &str) -> Result<Vec<String>, String> {
+    let (mut words, mut word, mut quote) = (Vec::new(), None::<String>, None);
+    for c in text.chars() {
+        match quote {
+            Some(end) if c == end => quote = None,
+            None if c == '"' || c == '\'' => {
+                quote = Some(c);
+                word.get_or_insert_default();
+            }
+            None if c.is_whitespace() => words.extend(word.take()),
+            _ => word.get_or_insert_default().push(c),
+        }
+    }
+    if let Some(open) = quote {
+        return Err(format!("a quote {open} is not closed in {text}"));
+    }
+    words.extend(word);
+    Ok(words)
+}
+
+/// Refuses a program that is not there, before anything is started.
+pub fn find(command: &[OsString]) -> Result<(), Fail> {
+    let Some(program) = command.first() else { return Err(Fail::input("no program is named".into())) };
+    let there = if Path::new(program).components().count() > 1 {
+        Path::new(program).is_file()
+    } else {
+        std::env::var_os("PATH").is_some_and(|path| std::env::split_paths(&path).any(|folder| folder.join(program).is_file()))
+    };
+    let advice = "name a program on the path, or a file with its folder, as in ./my_oracle";
+    if there { Ok(()) } else { Err(Fail::input(format!("there is no program {}; {advice}", program.to_string_lossy()))) }
+}
+
+impl Guest {
+    /// Starts the program, to be known by the name that the user gave it.
+    pub fn start(&self, limits: Limits) -> Result<Oracle, Fail> {
+        find(&self.command)?;
+        let oracle = Oracle::start(self.command.clone(), limits).map_err(|reason| Fail::Missing {
+            message: format!("engine {} does not answer: {reason}", self.name),
+            advice: format!("look at `featherbench oracles check {}`", shown(&self.command)),
+        })?;
+        Ok(oracle.named(&self.name))
+    }
+}
+
+/// Refuses names that are taken, by another guest too.
+pub fn check_names(guests: &[Guest], taken: &[&str]) -> Result<(), Fail> {
+    for (k, guest) in guests.iter().enumerate() {
+        if taken.contains(&guest.name.as_str()) || guests[..k].iter().any(|other| other.name == guest.name) {
+            let message = format!("--engine: the name '{}' is taken; taken are {}", guest.name, taken.join(", "));
+            return Err(Fail::input(message));
+        }
+    }
+    Ok(())
+}
+
+fn shown(command: &[OsString]) -> String {
+    command.iter().map(|word| word.to_string_lossy()).collect::<Vec<_>>().join(" ")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn words_are_split_at_blanks_and_kept_by_quotes() {
+        let guest: Guest = "mine=python3  'my oracle.py' --x=\"a 'b'\" ''".parse().unwrap();
+        assert_eq!(
+            (guest.name.as_str(), guest.command),
+            ("mine", ["python3", "my oracle.py", "--x=a 'b'", ""].map(OsString::from).to_vec())
+        );
+        for bad in ["mine", "=x", "my engine=x", "a/b=x", "mine=", "mine=  ", "mine='x"] {
+            assert!(bad.parse::<Guest>().is_err(), "{bad}");
+        }
+    }
+}

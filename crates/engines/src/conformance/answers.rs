@@ -1,0 +1,241 @@
+//! What the oracle answers about robots: shapes, repetition, ranges, and values against native.
+
+use super::manners::Methods;
+use super::mistakes::{MISTAKES, Mistake};
+use super::talk::{Talk, states};
+use super::values::{Scene, same_bits};
+use super::{Standing, robots};
+use harness::{Problem, Quantity};
+use serde_json::{Value, json};
+use std::collections::BTreeMap;
+
+/// Answers to one question: which robot, and the values at every state.
+type Given = Vec<(usize, Vec<f64>)>;
+
+/// The answers of an oracle, by quantity and method.
+#[derive(Default)]
+pub(super) struct Answers {
+    given: BTreeMap<(String, String), Given>,
+}
+
+/// Asks everything about a robot.
+pub(super) fn ask(talk: &mut Talk, index: usize, scene: &Scene, offered: &Methods, answers: &mut Answers) {
+    let problem = &scene.problem;
+    let built = match talk.prepare(problem) {
+        Ok(built) => built,
+        Err(reason) => return talk.note(Standing::Wrong, scene.shows, &reason, &[]),
+    };
+    match built.text("status") {
+        "unsupported" => return talk.note(Standing::Lacks, scene.shows, built.text("reason"), &[]),
+        "error" => {
+            let advice = ["a robot that the engine does not have is `unsupported`; `error` is for what should have worked"];
+            return talk.note(Standing::Wrong, scene.shows, built.text("reason"), &advice);
+        }
+        _ => {}
+    }
+    for (key, due) in [("nq", problem.description.nq()), ("nv", problem.states.nv)] {
+        let found = built.header.get(key).unwrap_or(&Value::Null);
+        if found.as_u64() != Some(due as u64) {
+            talk.note(Standing::Wrong, "prepare tells nq and nv", &format!("{key} of {} is {found}, {due} is due", scene.shows), &[]);
+        }
+    }
+    let bodies = problem.description.bodies.len();
+    match built.block("readback").filter(|block| block.shape == [bodies, 22]) {
+        Some(block) => readback(talk, scene, &block.data),
+        None => {
+            let found = format!("no block `readback` of shape [{bodies}, 22] for {}", scene.shows);
+            talk.note(Standing::Wrong, "prepare reads the robot back", &found, &[]);
+        }
+    }
+    let (header, blocks) = states(problem, &problem.states);
+    if talk.expect("states are taken", header, blocks, &["ok"]).is_none() {
+        return;
+    }
+    for (quantity, method) in offered.iter().flat_map(|(quantity, methods)| methods.iter().map(move |method| (quantity, method))) {
+        let Some(asked) = Quantity::parse(quantity) else { continue };
+        if let Some(value) = evaluations(talk, scene, asked, method) {
+            answers.given.entry((quantity.clone(), method.clone())).or_default().push((index, value));
+        }
+    }
+}
+
+/// One quantity by one method: the whole batch, the same again, and parts of it.
+fn evaluations(talk: &mut Talk, scene: &Scene, quantity: Quantity, method: &str) -> Option<Vec<f64>> {
+    let named = format!("{} by {method}", quantity.name());
+    let whole = evaluate(talk, scene, quantity, method, 0, robots::STATES)?;
+    let size = quantity.size(&scene.problem);
+    for (first, count, what) in
+        [(0, robots::STATES, "asked twice"), (1, 3, "for a range of states"), (robots::STATES - 1, 1, "for one state")]
+    {
+        let part = evaluate(talk, scene, quantity, method, first, count)?;
+        let same = same_bits(&part, &whole[first * size..(first + count) * size]);
+        let standing = if same { Standing::Right } else { Standing::Wrong };
+        let found = if same { String::new() } else { format!("{named} has other bits") };
+        talk.note(standing, &format!("an answer is the same to the bit {what}"), &found, &[]);
+    }
+    Some(whole)
+}
+
+fn evaluate(talk: &mut Talk, scene: &Scene, quantity: Quantity, method: &str, first: usize, count: usize) -> Option<Vec<f64>> {
+    let (problem, named) = (&scene.problem, format!("{} by {method}", quantity.name()));
+    let body = problem.deepest_body();
+    let header = json!({"op": "evaluate", "quantity": quantity.name(), "method": method, "first": first, "count": count, "body": body});
+    let answer = match talk.ask(header, Vec::new()) {
+        Ok(answer) => answer,
+        Err(reason) => {
+            talk.note(Standing::Wrong, &named, &format!("{}: {reason}", scene.shows), &[]);
+            return None;
+        }
+    };
+    match answer.text("status") {
+        "ok" => {}
+        "unsupported" => {
+            talk.note(Standing::Lacks, &named, &format!("{}: {}", scene.shows, answer.text("reason")), &[]);
+            return None;
+        }
+        _ => {
+            talk.note(Standing::Wrong, &named, &format!("{}: {}", scene.shows, answer.text("reason")), &[]);
+            return None;
+        }
+    }
+    let due = shape(quantity, problem, count);
+    let found = match answer.block("value") {
+        None => "no block `value`".to_owned(),
+        Some(block) if block.shape == due => return Some(block.data.clone()),
+        Some(block) => format!("block `value` has the shape {:?}", block.shape),
+    };
+    talk.note(Standing::Wrong, &named, &format!("{found} for {}; {due:?} is due", scene.shows), &[]);
+    None
+}
+
+/// `[count, …]` as the protocol's table of quantities has it.
+fn shape(quantity: Quantity, problem: &Problem, count: usize) -> Vec<usize> {
+    let (nv, bodies) = (problem.states.nv, problem.description.bodies.len());
+    match quantity {
+        Quantity::MassMatrix => vec![count, nv, nv],
+        Quantity::MassMatrixProbe | Quantity::BodyJacobian => vec![count, 6, nv],
+        Quantity::BodyPlacement => vec![count, bodies, 12],
+        Quantity::BodyVelocity | Quantity::BodyAcceleration => vec![count, bodies, 6],
+        _ => vec![count, quantity.size(problem)],
+    }
+}
+
+/// Names the first field that was not read back as it was given.
+fn readback(talk: &mut Talk, scene: &Scene, found: &[f64]) {
+    const FIELDS: [(&str, usize, usize); 5] =
+        [("mass", 0, 1), ("com", 1, 4), ("inertia", 4, 10), ("the placement's rotation", 10, 19), ("the placement's translation", 19, 22)];
+    let given = scene.problem.readback();
+    if scene.error(Quantity::Readback, &given, found) <= Scene::tolerance(Quantity::Readback) {
+        return talk.note(Standing::Right, "prepare reads the robot back", "", &[]);
+    }
+    let rows = given.chunks_exact(22).zip(found.chunks_exact(22)).zip(&scene.problem.description.bodies);
+    let wrong = rows.flat_map(|((given, found), body)| FIELDS.iter().map(move |field| (given, found, body, field)));
+    let far = |given: &[f64], found: &[f64]| given.iter().zip(found).any(|(g, f)| (g - f).abs() > 1e-9 || f.is_nan());
+    let first = wrong.into_iter().find(|(given, found, _, (_, from, to))| far(&given[*from..*to], &found[*from..*to]));
+    let found = first.map_or_else(
+        || format!("{} differs", scene.shows),
+        |(given, found, body, (field, from, to))| {
+            let (given, found) = (&given[*from..*to], &found[*from..*to]);
+            format!("{field} of body {} of {} was given as {given:?}, read back as {found:?}", body.name, scene.shows)
+        },
+    );
+    let advice = ["read back what the *engine* holds: mass, com, inertia about the com (xx, xy, xz, yy, yz, zz), rotation, translation"];
+    talk.note(Standing::Wrong, "prepare reads the robot back", &found, &advice);
+}
+
+impl Answers {
+    /// Compares with native, and looks for the mistake behind what differs.
+    pub(super) fn judge(&self, talk: &mut Talk, scenes: &[Scene]) {
+        for ((quantity, method), given) in &self.given {
+            let Some(quantity) = Quantity::parse(quantity) else { continue };
+            let compared: Vec<Compared> =
+                given.iter().filter_map(|(index, value)| Compared::new(&scenes[*index], quantity, value)).collect();
+            let wrong: Vec<&Compared> = compared.iter().filter(|answer| !answer.right()).collect();
+            let named = format!("{} by {method}", quantity.name());
+            let worst = compared.iter().map(|answer| answer.error).fold(0.0, harness::measure::worst);
+            if wrong.is_empty() {
+                talk.note(Standing::Right, &named, &format!("{} robots, largest error {worst:.1e}", compared.len()), &[]);
+                continue;
+            }
+            let first = wrong[0];
+            let found = format!(
+                "{} of {} robots differ from native, the first being {} by {:.1e} (at most {:.0e})",
+                wrong.len(),
+                compared.len(),
+                first.scene.shows,
+                first.error,
+                Scene::tolerance(quantity)
+            );
+            let advice = advice(&compared, quantity);
+            let lines: Vec<&str> = advice.iter().map(String::as_str).collect();
+            talk.note(Standing::Wrong, &named, &found, &lines);
+        }
+    }
+}
+
+/// An answer beside native's.
+struct Compared<'a> {
+    scene: &'a Scene,
+    value: &'a [f64],
+    error: f64,
+    quantity: Quantity,
+}
+
+impl<'a> Compared<'a> {
+    fn new(scene: &'a Scene, quantity: Quantity, value: &'a [f64]) -> Option<Self> {
+        let error = scene.error(quantity, &scene.native(quantity)?, value);
+        Some(Self { scene, value, error, quantity })
+    }
+
+    fn right(&self) -> bool {
+        self.error <= Scene::tolerance(self.quantity)
+    }
+
+    /// Whether the answer is that of an oracle with these mistakes.
+    fn explained(&self, mistakes: &[&Mistake]) -> bool {
+        let supposed = self.scene.supposed(mistakes, self.quantity);
+        supposed.is_some_and(|supposed| self.scene.error(self.quantity, &supposed, self.value) <= Scene::tolerance(self.quantity))
+    }
+}
+
+/// The mistakes, alone or two together, that explain every answer, or else as many of the wrong ones as any mistake does.
+fn advice(compared: &[Compared], quantity: Quantity) -> Vec<String> {
+    if compared.iter().any(|answer| answer.value.iter().any(|x| !x.is_finite())) {
+        return vec!["some of its numbers are none (NaN or infinite) at states where native's are finite".into()];
+    }
+    let told = |mistakes: &[&Mistake]| mistakes.iter().map(|m| format!("{}: {}", m.seems, m.advice)).collect::<Vec<_>>();
+    let all = |mistakes: &[&Mistake]| compared.iter().all(|answer| answer.explained(mistakes));
+    let mut single: Vec<(usize, &Mistake)> = Vec::new();
+    for mistake in &MISTAKES {
+        if all(&[mistake]) {
+            return told(&[mistake]);
+        }
+        let wrong = compared.iter().filter(|answer| !answer.right());
+        single.push((wrong.filter(|answer| answer.explained(&[mistake])).count(), mistake));
+    }
+    for one in &MISTAKES {
+        for other in MISTAKES.iter().filter(|other| other.seems != one.seems) {
+            if all(&[one, other]) {
+                return told(&[one, other]);
+            }
+        }
+    }
+    let wrong = compared.iter().filter(|answer| !answer.right()).count();
+    match single.into_iter().max_by_key(|(count, _)| *count) {
+        Some((count, mistake)) if count > 0 => {
+            vec![format!("of {count} of these {wrong}, {}: {}", mistake.seems, mistake.advice), "the rest has another cause".into()]
+        }
+        _ => vec![format!("no usual mistake explains it: compare {} of one joint with a calculation by hand", quantity.name())],
+    }
+}
+
+/// Notes the quantities that it does not offer.
+pub(super) fn lacking(talk: &mut Talk, offered: &Methods) {
+    let ours = |quantity: &Quantity| matches!(quantity, Quantity::Readback | Quantity::ForwardDynamicsSingle | Quantity::MassMatrixSparse);
+    let inner = |quantity: &Quantity| matches!(quantity, Quantity::Factorization | Quantity::Solve);
+    let asked = Quantity::ALL.into_iter().filter(|quantity| !ours(quantity) && !inner(quantity));
+    let missing: Vec<&str> = asked.map(Quantity::name).filter(|name| !offered.contains_key(*name)).collect();
+    if !missing.is_empty() {
+        talk.note(Standing::Lacks, "quantities", &missing.join(", "), &[]);
+    }
+}

@@ -1,0 +1,171 @@
+//! The conversation itself: hello, what has no answer, and the end.
+
+use super::talk::{Talk, description, states};
+use super::values::{Scene, same_bits};
+use super::{Standing, robots};
+use harness::Quantity;
+use harness::frame::{Block, Frame};
+use serde_json::{Value, json};
+use std::collections::BTreeMap;
+
+/// The version of the protocol that is tested.
+const PROTOCOL: u64 = crate::oracle::PROTOCOL;
+/// Quantities by method.
+pub(super) type Methods = BTreeMap<String, Vec<String>>;
+
+/// Asks who it is. Without an answer there is nothing more to ask.
+pub(super) fn hello(talk: &mut Talk) -> bool {
+    let Some(answer) = talk.expect("it answers hello", json!({"op": "hello"}), Vec::new(), &["ok"]) else { return false };
+    let mut wrong = Vec::new();
+    let header = &answer.header;
+    if header.get("protocol").and_then(Value::as_u64) != Some(PROTOCOL) {
+        wrong.push(format!("`protocol` is {}, not {PROTOCOL}", header.get("protocol").unwrap_or(&Value::Null)));
+    }
+    for key in ["engine", "version"] {
+        if answer.text(key).is_empty() {
+            wrong.push(format!("`{key}` is no text, or empty"));
+        }
+    }
+    let strings: Option<BTreeMap<String, String>> = header.get("build").and_then(|build| serde_json::from_value(build.clone()).ok());
+    if strings.is_none() {
+        wrong.push("`build` is no object of strings".into());
+    }
+    let methods: Option<Methods> = header.get("methods").and_then(|methods| serde_json::from_value(methods.clone()).ok());
+    match &methods {
+        None => wrong.push("`methods` is no object: quantity → list of names".into()),
+        Some(methods) => {
+            let asked = |quantity: &str| Quantity::parse(quantity).is_some_and(|known| known != Quantity::Readback);
+            wrong.extend(methods.keys().filter(|key| !asked(key)).map(|key| format!("`methods` names '{key}', which is no quantity")));
+            let empty = methods.iter().filter(|(_, names)| names.is_empty() || names.iter().any(String::is_empty));
+            wrong.extend(empty.map(|(quantity, _)| format!("`methods` has no method, or one without a name, for {quantity}")));
+        }
+    }
+    let standing = if wrong.is_empty() { Standing::Right } else { Standing::Wrong };
+    talk.note(standing, "hello names protocol, engine, version, build and methods", &wrong.join("; "), &[]);
+    talk.conformance.engine = format!("{} {}", answer.text("engine"), answer.text("version"));
+    talk.conformance.methods = methods.unwrap_or_default();
+    talk.conformance.methods.retain(|quantity, _| Quantity::parse(quantity).is_some());
+    true
+}
+
+/// Requests that cannot be met while there is no robot.
+pub(super) fn before_prepare(talk: &mut Talk) {
+    let block = || vec![Block::new("x", &[2], &[1.0, 2.0])];
+    talk.expect("an op that nobody knows is an error", json!({"op": "dance"}), Vec::new(), &["error"]);
+    talk.expect("its blocks are read all the same", json!({"op": "dance"}), block(), &["error"]);
+    talk.expect("the next request is answered", json!({"op": "hello"}), Vec::new(), &["ok"]);
+    talk.expect("a request without an op is an error", json!({}), Vec::new(), &["error"]);
+    let evaluate = json!({"op": "evaluate", "quantity": "id", "method": "", "first": 0, "count": 1, "body": 0});
+    talk.expect("evaluate before prepare is refused", evaluate, Vec::new(), &["error", "unsupported"]);
+    let blocks = vec![Block::new("q", &[1, 1], &[0.0]), Block::new("v", &[1, 1], &[0.0])];
+    talk.expect("states before prepare are an error", json!({"op": "states", "count": 1}), blocks, &["error"]);
+    let tagged = talk.ask(json!({"op": "hello", "id": 41}), Vec::new());
+    match tagged.as_ref().map(|answer| answer.header.get("id").cloned()) {
+        Ok(Some(id)) if id == json!(41) => talk.note(Standing::Right, "a request's id comes back", "", &[]),
+        Ok(None) => talk.note(Standing::Lacks, "the ids of requests", "optional: with `id` sent back, a late answer is known as such", &[]),
+        Ok(Some(id)) => talk.note(Standing::Wrong, "a request's id comes back", &format!("41 was sent, {id} came back"), &[]),
+        Err(reason) => talk.note(Standing::Wrong, "a request's id comes back", reason, &[]),
+    }
+}
+
+/// The first robot that it builds.
+pub(super) fn first_built<'a>(talk: &mut Talk, scenes: &'a [Scene]) -> Option<&'a Scene> {
+    let built = scenes.iter().find(|scene| talk.prepare(&scene.problem).is_ok_and(|answer| answer.text("status") == "ok"));
+    if built.is_none() {
+        talk.note(Standing::Wrong, "it builds some robot", "none of the test's robots was built; the reasons follow", &[]);
+    }
+    built
+}
+
+/// What is wrong with a model or a request, and what comes after.
+pub(super) fn with_robot(talk: &mut Talk, scene: &Scene, offered: &Methods) {
+    let problem = &scene.problem;
+    let Ok(good) = description(problem) else { return };
+    bad_models(talk, &good);
+    let prepare = json!({"op": "prepare", "model": good});
+    if talk.expect("after all that it builds a robot", prepare.clone(), Vec::new(), &["ok"]).is_none() {
+        return;
+    }
+    let Some((quantity, method)) = offered.iter().find_map(|(quantity, methods)| Some((quantity.clone(), methods.first()?.clone()))) else {
+        return talk.note(Standing::Wrong, "it offers some quantity", "`methods` is empty: there is nothing to ask", &[]);
+    };
+    let evaluate = |quantity: &str, method: &str, first: usize, count: usize| json!({"op": "evaluate", "quantity": quantity, "method": method, "first": first, "count": count, "body": 0});
+    let whole = evaluate(&quantity, &method, 0, robots::STATES);
+    talk.expect("evaluate before states is an error", whole.clone(), Vec::new(), &["error"]);
+    let (header, blocks) = states(problem, &problem.states);
+    talk.expect("states of another count than their blocks are an error", json!({"op": "states", "count": 7}), blocks.clone(), &["error"]);
+    talk.expect("evaluate after refused states is an error", whole.clone(), Vec::new(), &["error"]);
+    talk.expect("states are taken", header.clone(), blocks.clone(), &["ok"]);
+    let first = talk.expect("it evaluates", whole.clone(), Vec::new(), &["ok"]).and_then(value);
+    let nothing = evaluate("no such quantity", &method, 0, 1);
+    talk.expect("a quantity that it does not have is unsupported", nothing, Vec::new(), &["unsupported"]);
+    let nothing = evaluate(&quantity, "no such method", 0, 1);
+    talk.expect("a method that it does not have is unsupported", nothing, Vec::new(), &["unsupported"]);
+    let beyond = evaluate(&quantity, &method, robots::STATES - 1, 2);
+    talk.expect("states that were not sent are an error", beyond, Vec::new(), &["error"]);
+    let mut none = problem.states.clone();
+    none.q.fill(f64::NAN);
+    let (header_none, blocks_none) = states(problem, &none);
+    let (any, opened) = (["ok", "error", "unsupported"], talk.opened);
+    talk.expect("numbers that are none get an answer", header_none, blocks_none, &any);
+    talk.expect("and so does what is asked about them", whole.clone(), Vec::new(), &any);
+    if talk.opened > opened {
+        talk.expect("after all that it builds a robot", prepare.clone(), Vec::new(), &["ok"]);
+    }
+    talk.expect("good states are taken after them", header.clone(), blocks.clone(), &["ok"]);
+    let after = talk.expect("and evaluated", whole.clone(), Vec::new(), &["ok"]).and_then(value);
+    same(talk, "bad numbers leave no trace in later answers", first.as_ref(), after.as_ref());
+    talk.expect("a robot is built twice", prepare, Vec::new(), &["ok"]);
+    talk.expect("a new robot has no states", whole.clone(), Vec::new(), &["error"]);
+    talk.expect("its states are taken", header, blocks, &["ok"]);
+    let again = talk.expect("and it is evaluated", whole, Vec::new(), &["ok"]).and_then(value);
+    same(talk, "the same robot gives the same answer", first.as_ref(), again.as_ref());
+}
+
+fn bad_models(talk: &mut Talk, good: &Value) {
+    let changed = |pointer: &str, value: Value| {
+        let mut model = good.clone();
+        if let Some(place) = model.pointer_mut(pointer) {
+            *place = value;
+        }
+        model
+    };
+    let mut bare = good.clone();
+    if let Some(body) = bare["bodies"][0].as_object_mut() {
+        body.remove("mass");
+    }
+    let models = [
+        ("a model that is no object", json!(7), &["error"][..]),
+        ("a model in another format", changed("/format", json!(99)), &["error"]),
+        ("a body without a mass", bare, &["error"]),
+        ("a com of two numbers", changed("/bodies/0/com", json!([0.0, 0.0])), &["error"]),
+        ("a parent that comes later", changed("/bodies/0/parent", json!(3)), &["error", "unsupported"]),
+        ("a joint of no known type", changed("/bodies/0/joint/type", json!("wobbly")), &["error", "unsupported"]),
+    ];
+    for (what, model, allowed) in models {
+        talk.expect(&format!("{what} is refused"), json!({"op": "prepare", "model": model}), Vec::new(), allowed);
+    }
+    talk.expect("a prepare without a model is refused", json!({"op": "prepare"}), Vec::new(), &["error"]);
+}
+
+/// The end of its input.
+pub(super) fn end(talk: &mut Talk) {
+    match talk.ask(json!({"op": "hello"}), Vec::new()).and_then(|_| talk.close()) {
+        Ok(()) => talk.note(Standing::Right, "it ends when its input ends, and has said nothing more", "", &[]),
+        Err(reason) => {
+            let advice = ["leave the loop when a line is empty; exit with 0; answer each request by one frame and no more"];
+            talk.note(Standing::Wrong, "it ends when its input ends, and has said nothing more", &reason, &advice);
+        }
+    }
+}
+
+fn value(answer: Frame) -> Option<Vec<f64>> {
+    answer.block("value").map(|block| block.data.clone())
+}
+
+fn same(talk: &mut Talk, what: &str, one: Option<&Vec<f64>>, other: Option<&Vec<f64>>) {
+    if let (Some(one), Some(other)) = (one, other) {
+        let (standing, found) = if same_bits(one, other) { (Standing::Right, "") } else { (Standing::Wrong, "the bits differ") };
+        talk.note(standing, what, found, &[]);
+    }
+}

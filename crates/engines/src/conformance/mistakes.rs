@@ -1,0 +1,382 @@
+//! Conventions that are easily mistaken, as hypotheses: what would an oracle answer that is right but for this?
+
+use super::turn::{ONE, SWAP, Turn, blocks, cross, of_free, of_planar, of_spherical, places, product, transposed, turned_back};
+use harness::{Problem, Quantity};
+use model::{Description, JointType};
+use std::f64::consts::TAU;
+
+/// One state of a robot, as it is sent, and where native finds the bodies in it.
+#[derive(Clone, Default)]
+pub(super) struct State {
+    pub(super) q: Vec<f64>,
+    pub(super) v: Vec<f64>,
+    pub(super) a: Vec<f64>,
+    pub(super) tau: Vec<f64>,
+    pub(super) wrench: Vec<f64>,
+    /// Native's [`Quantity::BodyPlacement`].
+    pub(super) placement: Vec<f64>,
+    /// Native's [`Quantity::BodyVelocity`].
+    pub(super) velocity: Vec<f64>,
+    /// Native's [`Quantity::CenterOfMass`].
+    pub(super) com: Vec<f64>,
+    /// Native's [`Quantity::Momentum`].
+    pub(super) momentum: Vec<f64>,
+}
+
+/// A mistake: how the description and a state are read, and how an answer is written.
+pub(super) struct Mistake {
+    /// What the oracle seems to do.
+    pub(super) seems: &'static str,
+    /// What to do about it.
+    pub(super) advice: &'static str,
+    pub(super) robot: fn(&mut Description),
+    pub(super) state: fn(&Description, &mut State),
+    pub(super) turn: Option<fn(&Description, &State) -> Turn>,
+    pub(super) answer: fn(&Problem, Quantity, &State, &mut [f64]),
+}
+
+const NONE: Mistake = Mistake { seems: "", advice: "", robot: |_| (), state: |_, _| (), turn: None, answer: |_, _, _, _| () };
+
+/// Every mistake that is looked for.
+pub(super) const MISTAKES: [Mistake; 35] = [
+    // ---- configurations
+    Mistake {
+        seems: "quaternions are read as (w, x, y, z)",
+        advice: "they are (x, y, z, w)",
+        state: |robot, state| quaternions(robot, &mut state.q, |quaternion| quaternion.rotate_left(1)),
+        ..NONE
+    },
+    Mistake {
+        seems: "quaternions are inverted: they turn parent axes to body axes",
+        advice: "a quaternion's rotation takes body axes to joint-frame axes",
+        state: |robot, state| quaternions(robot, &mut state.q, |quaternion| quaternion[..3].iter_mut().for_each(|x| *x = -*x)),
+        ..NONE
+    },
+    // ---- velocities
+    Mistake {
+        seems: "a free joint's velocity is taken as [angular; linear]",
+        advice: "it is [linear; angular]; T swaps the halves of v, a, tau and M",
+        turn: Some(|robot, state| of_free(robot, state, |_| (SWAP, false))),
+        ..NONE
+    },
+    Mistake {
+        seems: "a free joint's linear velocity is taken in world axes: T = diag(R, 1), R from body to world",
+        advice: "give the engine v_e = T v and a_e = T a + b with b = [R(ω × v); 0]; back come tau = T' tau_e, M = T' M_e T, a = T'(a_e − b)",
+        turn: Some(|robot, state| of_free(robot, state, |r| (blocks(&r.world, &ONE), true))),
+        ..NONE
+    },
+    Mistake {
+        seems: "a free joint's linear velocity is taken in joint-frame axes: T = diag(R, 1), R from body to joint frame",
+        advice: "give the engine v_e = T v and a_e = T a + b with b = [R(ω × v); 0]; back come tau = T' tau_e, M = T' M_e T, a = T'(a_e − b)",
+        turn: Some(|robot, state| of_free(robot, state, |r| (blocks(&r.joint, &ONE), true))),
+        ..NONE
+    },
+    Mistake {
+        seems: "a free joint's velocity is taken as [linear; angular] in world axes: T = diag(R, R), R from body to world",
+        advice: "give the engine v_e = T v and a_e = T a + b with b = [R(ω × v); 0]",
+        turn: Some(|robot, state| of_free(robot, state, |r| (blocks(&r.world, &r.world), true))),
+        ..NONE
+    },
+    Mistake {
+        seems: "a free joint's velocity is taken as [angular; linear] in world axes: T = [[0, R], [R, 0]], R from body to world",
+        advice: "give the engine v_e = T v and a_e = T a + b with b = [0; R(ω × v)]",
+        turn: Some(|robot, state| of_free(robot, state, |r| (product(&SWAP, &blocks(&r.world, &r.world)), true))),
+        ..NONE
+    },
+    Mistake {
+        seems: "a free joint's velocity is taken as [angular; linear] in joint-frame axes: T = [[0, R], [R, 0]], R from body to joint frame",
+        advice: "give the engine v_e = T v and a_e = T a + b with b = [0; R(ω × v)]",
+        turn: Some(|robot, state| of_free(robot, state, |r| (product(&SWAP, &blocks(&r.joint, &r.joint)), true))),
+        ..NONE
+    },
+    Mistake {
+        seems: "the term b is missing: a free joint's acceleration is taken as the classical one of its origin",
+        advice: "a is the time derivative of the numbers in v: between a and the classical acceleration lies ω × v (a_e = T a + b)",
+        turn: Some(|robot, state| of_free(robot, state, |_| (blocks(&ONE, &ONE), true))),
+        ..NONE
+    },
+    Mistake {
+        seems: "a spherical joint's velocity is taken in joint-frame axes: T = R",
+        advice: "it is the angular velocity in body axes; v_e = R v, a_e = R a, tau = R' tau_e",
+        turn: Some(of_spherical),
+        ..NONE
+    },
+    Mistake {
+        seems: "a planar joint's linear velocity is taken in body axes: T = diag(R(θ)', 1)",
+        advice: "it is in joint-frame axes; v_e = T v, a_e = T a + b with b = [−θ̇ ẑ × R(θ)'(ẋ, ẏ); 0]",
+        turn: Some(of_planar),
+        ..NONE
+    },
+    Mistake {
+        seems: "the terms of velocity are left out",
+        advice: "h(q, v) holds the Coriolis and centrifugal forces as well as gravity",
+        state: |_, state| state.v.fill(0.0),
+        ..NONE
+    },
+    // ---- the description
+    Mistake {
+        seems: "the pitch of a helical joint is taken per revolution",
+        advice: "it is in metres per radian; an engine that wants it per revolution gets 2π·pitch",
+        robot: |robot| {
+            joints(robot, |joint| {
+                if let JointType::Helical { pitch, .. } = &mut joint.kind {
+                    *pitch /= TAU
+                }
+            })
+        },
+        ..NONE
+    },
+    Mistake {
+        seems: "armature is left out",
+        advice: "add it to the diagonal of M, and armature·a to tau",
+        robot: |robot| joints(robot, |joint| joint.armature.fill(0.0)),
+        ..NONE
+    },
+    Mistake {
+        seems: "the armature of revolute and helical joints is left out where the axis is no coordinate axis",
+        advice: "joints of any axis have armature; Pinocchio 4.1.0's computeKineticEnergy is known for this",
+        robot: |robot| {
+            joints(robot, |joint| {
+                if turns_about_skew_axis(joint.kind) {
+                    joint.armature.fill(0.0)
+                }
+            })
+        },
+        ..NONE
+    },
+    Mistake {
+        seems: "gravity has the wrong sign",
+        advice: "`gravity` is the acceleration of free fall: a world that accelerates by −gravity stands for it",
+        robot: |robot| robot.gravity = robot.gravity.map(|x| -x),
+        ..NONE
+    },
+    Mistake {
+        seems: "gravity is left out",
+        advice: "tau and h contain gravity; set it from `gravity`",
+        robot: |robot| robot.gravity = [0.0; 3],
+        ..NONE
+    },
+    Mistake {
+        seems: "inertias are taken about the body's origin",
+        advice: "`inertia` is about the centre of mass: add m(c·c 1 − c c') for the origin",
+        robot: |robot| shift_inertia(robot, -1.0),
+        ..NONE
+    },
+    Mistake {
+        seems: "inertias are shifted to the body's origin twice",
+        advice: "`inertia` is about the centre of mass: an engine that wants it so shall not get it shifted",
+        robot: |robot| shift_inertia(robot, 1.0),
+        ..NONE
+    },
+    Mistake {
+        seems: "inertias are read as xx, yy, zz, xy, xz, yz",
+        advice: "their order is xx, xy, xz, yy, yz, zz",
+        robot: |robot| inertias(robot, |[xx, yy, zz, xy, xz, yz]| [xx, xy, xz, yy, yz, zz]),
+        ..NONE
+    },
+    Mistake {
+        seems: "products of inertia are left out",
+        advice: "xy, xz and yz are entries of the tensor like the others",
+        robot: |robot| inertias(robot, |[xx, _, _, yy, _, zz]| [xx, 0.0, 0.0, yy, 0.0, zz]),
+        ..NONE
+    },
+    Mistake {
+        seems: "products of inertia have the wrong sign",
+        advice: "xy, xz and yz are entries of the tensor (xy = −∫xy dm), not the integrals",
+        robot: |robot| inertias(robot, |[xx, xy, xz, yy, yz, zz]| [xx, -xy, -xz, yy, -yz, zz]),
+        ..NONE
+    },
+    Mistake {
+        seems: "placements are transposed: read column by column",
+        advice: "`rotation` is row-major and takes joint axes to parent axes",
+        robot: |robot| joints(robot, |joint| joint.placement.rotation = transposed(&joint.placement.rotation)),
+        ..NONE
+    },
+    Mistake {
+        seems: "axes are taken in the parent's frame",
+        advice: "`axis` is in the joint's frame, behind the placement",
+        robot: axes_in_parent,
+        ..NONE
+    },
+    Mistake {
+        seems: "joint damping is included",
+        advice: "leave `damping` out: it is carried for information",
+        state: |robot, state| {
+            let force = resistance(robot, |joint| &joint.damping, &state.v, |v| v);
+            state.tau.iter_mut().zip(force).for_each(|(tau, force)| *tau -= force);
+        },
+        answer: |problem, quantity, state, value| {
+            if is_inverse(quantity) {
+                let force = resistance(&problem.description, |joint| &joint.damping, &state.v, |v| v);
+                value.iter_mut().zip(force).for_each(|(tau, force)| *tau += force);
+            }
+        },
+        ..NONE
+    },
+    Mistake {
+        seems: "dry friction is included",
+        advice: "leave `friction` out: it is carried for information",
+        answer: |problem, quantity, state, value| {
+            if is_inverse(quantity) {
+                let force = resistance(&problem.description, |joint| &joint.friction, &state.v, f64::signum);
+                value.iter_mut().zip(force).for_each(|(tau, force)| *tau += force);
+            }
+        },
+        ..NONE
+    },
+    // ---- wrenches
+    Mistake {
+        seems: "wrenches are read as [force; moment]",
+        advice: "a wrench is [moment about the body's origin; force], in body axes",
+        state: |_, state| state.wrench.chunks_exact_mut(6).for_each(|wrench| wrench.rotate_left(3)),
+        ..NONE
+    },
+    Mistake {
+        seems: "wrenches are taken in world axes",
+        advice: "they are in body axes: turn them by the body's rotation for an engine that wants the world's",
+        state: |_, state| {
+            for (wrench, place) in state.wrench.chunks_exact_mut(6).zip(state.placement.chunks_exact(12)) {
+                wrench.chunks_exact_mut(3).for_each(|part| turned_back(place, part));
+            }
+        },
+        ..NONE
+    },
+    Mistake {
+        seems: "wrenches have the wrong sign",
+        advice: "they act on the body: tau = M a + h − Σ J' f",
+        state: |_, state| state.wrench.iter_mut().for_each(|x| *x = -*x),
+        ..NONE
+    },
+    // ---- answers
+    Mistake {
+        seems: "only the upper triangle of M is filled",
+        advice: "send both triangles",
+        answer: |problem, quantity, _, value| triangle(problem, quantity, value, |row, column| row <= column),
+        ..NONE
+    },
+    Mistake {
+        seems: "only the lower triangle of M is filled",
+        advice: "send both triangles",
+        answer: |problem, quantity, _, value| triangle(problem, quantity, value, |row, column| row >= column),
+        ..NONE
+    },
+    Mistake {
+        seems: "6-vectors are sent as [linear; angular]",
+        advice: "send [angular; linear]",
+        answer: |problem, quantity, _, value| match quantity {
+            Quantity::BodyVelocity | Quantity::BodyAcceleration | Quantity::Momentum => {
+                value.chunks_exact_mut(6).for_each(|vector| vector.rotate_left(3));
+            }
+            Quantity::BodyJacobian => value.rotate_left(3 * problem.states.nv),
+            _ => {}
+        },
+        ..NONE
+    },
+    Mistake {
+        seems: "velocities and accelerations of bodies are sent in body axes",
+        advice: "send them in world axes",
+        answer: |_, quantity, state, value| {
+            if matches!(quantity, Quantity::BodyVelocity | Quantity::BodyAcceleration) {
+                for (vector, place) in value.chunks_exact_mut(6).zip(state.placement.chunks_exact(12)) {
+                    vector.chunks_exact_mut(3).for_each(|part| turned_back(place, part));
+                }
+            }
+        },
+        ..NONE
+    },
+    Mistake {
+        seems: "accelerations of bodies are spatial",
+        advice: "send the classical ones: add ω × v to the linear part",
+        answer: |_, quantity, state, value| {
+            if quantity == Quantity::BodyAcceleration {
+                for (vector, velocity) in value.chunks_exact_mut(6).zip(state.velocity.chunks_exact(6)) {
+                    let carried = cross(&velocity[..3], &velocity[3..]);
+                    vector[3..].iter_mut().zip(carried).for_each(|(x, c)| *x -= c);
+                }
+            }
+        },
+        ..NONE
+    },
+    Mistake {
+        seems: "angular momentum is about the world's origin",
+        advice: "send it about the centre of mass",
+        answer: |_, quantity, state, value| {
+            if quantity == Quantity::Momentum {
+                let carried = cross(&state.com, &state.momentum[3..]);
+                value.iter_mut().zip(carried).for_each(|(x, c)| *x += c);
+            }
+        },
+        ..NONE
+    },
+];
+
+// ---- parts of mistakes
+
+fn is_inverse(quantity: Quantity) -> bool {
+    matches!(quantity, Quantity::InverseDynamics | Quantity::InverseDynamicsWrench | Quantity::Bias)
+}
+
+fn joints(robot: &mut Description, change: impl Fn(&mut model::JointDescription)) {
+    robot.bodies.iter_mut().for_each(|body| change(&mut body.joint));
+}
+
+fn turns_about_skew_axis(kind: JointType) -> bool {
+    match kind {
+        JointType::Revolute { axis } | JointType::Helical { axis, .. } => axis.iter().filter(|&&x| x != 0.0).count() > 1,
+        _ => false,
+    }
+}
+
+fn inertias(robot: &mut Description, change: impl Fn([f64; 6]) -> [f64; 6]) {
+    robot.bodies.iter_mut().for_each(|body| body.inertia = change(body.inertia));
+}
+
+/// The inertia about the centre of mass of a tensor that was meant for another point, at a distance of the centre.
+fn shift_inertia(robot: &mut Description, sign: f64) {
+    for body in &mut robot.bodies {
+        let ([x, y, z], m) = (body.com, sign * body.mass);
+        let shift = [y * y + z * z, -x * y, -x * z, x * x + z * z, -y * z, x * x + y * y];
+        body.inertia.iter_mut().zip(shift).for_each(|(entry, shift)| *entry += m * shift);
+    }
+}
+
+fn axes_in_parent(robot: &mut Description) {
+    joints(robot, |joint| {
+        let rotation = joint.placement.rotation;
+        if let JointType::Revolute { axis } | JointType::Prismatic { axis } | JointType::Helical { axis, .. } = &mut joint.kind {
+            turned_back(&rotation, axis);
+        }
+    });
+}
+
+/// Where a joint's quaternion begins, if it has one.
+fn quaternion_at(kind: JointType, q: usize) -> Option<usize> {
+    match kind {
+        JointType::Spherical => Some(q),
+        JointType::Free => Some(q + 3),
+        _ => None,
+    }
+}
+
+fn quaternions(robot: &Description, q: &mut [f64], change: impl Fn(&mut [f64])) {
+    let found = places(robot).into_iter().filter_map(|(at, _, body)| quaternion_at(body.joint.kind, at));
+    found.for_each(|at| change(&mut q[at..at + 4]));
+}
+
+/// `law(v)` times each dof's coefficient.
+fn resistance(robot: &Description, of: fn(&model::JointDescription) -> &Vec<f64>, v: &[f64], law: fn(f64) -> f64) -> Vec<f64> {
+    let mut force = vec![0.0; v.len()];
+    for (_, at, body) in places(robot) {
+        for (k, coefficient) in of(&body.joint).iter().enumerate() {
+            force[at + k] = if v[at + k] == 0.0 { 0.0 } else { coefficient * law(v[at + k]) };
+        }
+    }
+    force
+}
+
+fn triangle(problem: &Problem, quantity: Quantity, value: &mut [f64], keeps: fn(usize, usize) -> bool) {
+    let n = problem.states.nv;
+    if quantity == Quantity::MassMatrix {
+        value.iter_mut().enumerate().filter(|(at, _)| !keeps(at / n, at % n)).for_each(|(_, x)| *x = 0.0);
+    }
+}

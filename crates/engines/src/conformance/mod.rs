@@ -1,0 +1,109 @@
+//! A conformance test of any oracle: does it keep the protocol of `oracles/PROTOCOL.md`, and do its answers mean what they should?
+//!
+//! It asks about small robots of every kind of joint. What the oracle does not offer is lacking, and no fault. What it answers is compared with
+//! the native kernels in the harness' measures; where it differs, the usual mistakes of convention are tried as hypotheses, one by one and in
+//! pairs, and the one that explains every answer is named.
+
+mod answers;
+mod manners;
+mod mistakes;
+mod robots;
+mod talk;
+mod turn;
+mod values;
+
+pub use talk::Line;
+
+use crate::process::{Limits, Process};
+use answers::Answers;
+use std::collections::BTreeMap;
+use std::ffi::OsString;
+use talk::Talk;
+use values::Scene;
+
+/// How a finding stands.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Standing {
+    /// As the protocol says.
+    Right,
+    /// Not offered, which is no fault.
+    Lacks,
+    /// Against the protocol, or another answer than native's.
+    Wrong,
+}
+
+/// One thing that was found out about an oracle.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Finding {
+    /// How it stands.
+    pub standing: Standing,
+    /// What was looked at.
+    pub what: String,
+    /// What was found.
+    pub found: String,
+    /// What to do about it, line by line.
+    pub advice: Vec<String>,
+}
+
+/// Everything that was found out about an oracle.
+#[derive(Clone, Debug, PartialEq, Default)]
+pub struct Conformance {
+    /// The engine's name and version, as it gives them.
+    pub engine: String,
+    /// The methods that it offers, by quantity.
+    pub methods: BTreeMap<String, Vec<String>>,
+    /// The findings, in the order in which they were made.
+    pub findings: Vec<Finding>,
+}
+
+impl Conformance {
+    /// Whether nothing is wrong.
+    pub fn conforms(&self) -> bool {
+        self.findings.iter().all(|finding| finding.standing != Standing::Wrong)
+    }
+
+    /// The findings of one standing.
+    pub fn of(&self, standing: Standing) -> impl Iterator<Item = &Finding> {
+        self.findings.iter().filter(move |finding| finding.standing == standing)
+    }
+}
+
+/// Tests a program; `watch` is told what is being done.
+///
+/// # Errors
+/// A sentence, when our own robots cannot be made; whatever the program does is a finding.
+pub fn check_program(command: &[OsString], limits: Limits, watch: &dyn Fn(&str)) -> Result<Conformance, String> {
+    let start = || Process::start(command, limits).map(|process| Box::new(process) as Box<dyn Line>);
+    check(&start, watch)
+}
+
+/// Tests whoever answers on the lines that `start` opens.
+///
+/// # Errors
+/// A sentence, when our own robots cannot be made.
+pub fn check(start: &dyn Fn() -> Result<Box<dyn Line>, String>, watch: &dyn Fn(&str)) -> Result<Conformance, String> {
+    let scenes: Vec<Scene> = robots::all()?.into_iter().map(|(shows, problem)| Scene::new(shows, problem)).collect();
+    let mut talk = Talk::new(start);
+    watch("hello");
+    if !manners::hello(&mut talk) {
+        return Ok(talk.conformance);
+    }
+    watch("what has no answer");
+    manners::before_prepare(&mut talk);
+    let offered = talk.conformance.methods.clone();
+    let built = manners::first_built(&mut talk, &scenes);
+    if let Some(scene) = built {
+        manners::with_robot(&mut talk, scene, &offered);
+    }
+    let mut answers = Answers::default();
+    for (index, scene) in scenes.iter().enumerate() {
+        watch(scene.shows);
+        answers::ask(&mut talk, index, scene, &offered, &mut answers);
+    }
+    watch("mistakes");
+    answers.judge(&mut talk, &scenes);
+    answers::lacking(&mut talk, &offered);
+    watch("the end");
+    manners::end(&mut talk);
+    Ok(talk.conformance)
+}

@@ -1,0 +1,59 @@
+//! The small robots of the conformance test: every kind of joint alone, in branched trees, on a fixed and on a free base.
+
+use harness::Problem;
+use model::generate::Family;
+use model::{Description, JointType};
+use record::ModelOrigin;
+
+/// What is shown, the generator's call, and how many of its bodies are kept.
+const ROBOTS: [(&str, &str, usize); 19] = [
+    ("a revolute joint", "joints:kind=revolute,base=fixed,shape=single", 1),
+    ("a chain of revolute joints", "joints:kind=revolute,base=fixed,shape=branched", 4),
+    ("a tree of revolute joints", "joints:kind=revolute,base=fixed,shape=branched", usize::MAX),
+    ("a prismatic joint", "joints:kind=prismatic,base=fixed,shape=single", 1),
+    ("a tree with prismatic joints", "joints:kind=prismatic,base=fixed,shape=branched", usize::MAX),
+    ("a helical joint", "joints:kind=helical,base=fixed,shape=single", 1),
+    ("a tree with helical joints", "joints:kind=helical,base=fixed,shape=branched", usize::MAX),
+    ("a spherical joint", "joints:kind=spherical,base=fixed,shape=single", 1),
+    ("a tree with spherical joints", "joints:kind=spherical,base=fixed,shape=branched", usize::MAX),
+    ("a planar joint", "joints:kind=planar,base=fixed,shape=single", 1),
+    ("a tree with planar joints", "joints:kind=planar,base=fixed,shape=branched", usize::MAX),
+    ("a universal joint", "joints:kind=universal,base=fixed,shape=single", 1),
+    ("a tree with universal joints", "joints:kind=universal,base=fixed,shape=branched", usize::MAX),
+    ("a free body", "joints:kind=revolute,base=free,shape=single", 1),
+    ("a revolute joint on a free body", "joints:kind=revolute,base=free,shape=single", usize::MAX),
+    ("a floating tree of revolute joints", "joints:kind=revolute,base=free,shape=branched", usize::MAX),
+    ("a floating tree with spherical joints", "joints:kind=spherical,base=free,shape=branched", usize::MAX),
+    ("a floating tree with every joint but helical", "joints:kind=common,base=free,shape=branched", usize::MAX),
+    ("a floating tree with every joint", "joints:kind=mixed,base=free,shape=branched", usize::MAX),
+];
+
+/// States at which each robot is asked: one of each case, and the fast one twice as far from the first as from the last.
+pub(super) const STATES: usize = 6;
+const SEED: u64 = 11;
+
+/// The robots with what each shows. One-dof joints have armature, all but free joints damping and dry friction, so that none can be mistaken
+/// for nothing.
+pub(super) fn all() -> Result<Vec<(&'static str, Problem)>, String> {
+    let robot = |(shows, spec, keep): (&'static str, &str, usize)| {
+        let mut description = Family::parse(spec).and_then(|family| family.generate()).map_err(|error| error.to_string())?;
+        description.bodies.truncate(keep);
+        equip(&mut description);
+        let problem = Problem::new(&description, "conformance", ModelOrigin::Generated, STATES, SEED).map_err(|error| error.to_string())?;
+        Ok((shows, problem))
+    };
+    ROBOTS.into_iter().map(robot).collect()
+}
+
+fn equip(description: &mut Description) {
+    for (i, joint) in description.bodies.iter_mut().map(|body| &mut body.joint).enumerate() {
+        let (one, nv) = (joint.kind.nv() == 1, joint.kind.nv());
+        if one {
+            joint.armature = vec![0.05 + 0.01 * i as f64];
+        }
+        if joint.kind != JointType::Free {
+            joint.damping = vec![0.3; nv];
+            joint.friction = vec![0.2; nv];
+        }
+    }
+}

@@ -1,0 +1,143 @@
+//! The conversation with an oracle, and what is noted down of it.
+
+use super::{Conformance, Finding, Standing};
+use crate::process::Process;
+use harness::Problem;
+use harness::frame::{Block, Frame};
+use model::StateBatch;
+use serde_json::{Value, json};
+
+/// A line to an oracle: a process, or whatever a test puts in its place.
+pub trait Line {
+    /// Sends a request and waits for its answer.
+    ///
+    /// # Errors
+    /// A sentence, when no answer comes or what comes is no frame. The line is then dead.
+    fn ask(&mut self, request: &Frame) -> Result<Frame, String>;
+
+    /// Ends the oracle's input and waits for its end.
+    ///
+    /// # Errors
+    /// A sentence, when it does not end, or not well, or says something more.
+    fn close(self: Box<Self>) -> Result<(), String>;
+}
+
+impl Line for Process {
+    fn ask(&mut self, request: &Frame) -> Result<Frame, String> {
+        Self::ask(self, request)
+    }
+
+    fn close(self: Box<Self>) -> Result<(), String> {
+        Self::close(*self)
+    }
+}
+
+/// The conversation. After a broken line the next question opens another.
+pub(super) struct Talk<'a> {
+    start: &'a dyn Fn() -> Result<Box<dyn Line>, String>,
+    line: Option<Box<dyn Line>>,
+    /// Lines that were opened so far: an oracle behind a new one knows nothing of what was sent before.
+    pub(super) opened: usize,
+    pub(super) conformance: Conformance,
+}
+
+impl<'a> Talk<'a> {
+    pub(super) fn new(start: &'a dyn Fn() -> Result<Box<dyn Line>, String>) -> Self {
+        Self { start, line: None, opened: 0, conformance: Conformance::default() }
+    }
+
+    /// Asks; no answer at all, or one without a known status and a reason, is an error.
+    pub(super) fn ask(&mut self, header: Value, blocks: Vec<Block>) -> Result<Frame, String> {
+        let mut line = match self.line.take() {
+            Some(line) => line,
+            None => {
+                self.opened += 1;
+                (self.start)()?
+            }
+        };
+        let answer = line.ask(&Frame::new(header, blocks))?;
+        self.line = Some(line);
+        match answer.text("status") {
+            "ok" => Ok(answer),
+            "unsupported" | "error" if !answer.text("reason").trim().is_empty() => Ok(answer),
+            status @ ("unsupported" | "error") => Err(format!("its answer '{status}' gives no `reason`")),
+            other => Err(format!("its answer has the status '{other}', which is none of ok, unsupported, error")),
+        }
+    }
+
+    /// Asks and notes whether the answer has one of the statuses; the answer, if it has.
+    pub(super) fn expect(&mut self, what: &str, header: Value, blocks: Vec<Block>, allowed: &[&str]) -> Option<Frame> {
+        match self.ask(header, blocks) {
+            Ok(answer) if allowed.contains(&answer.text("status")) => {
+                self.note(Standing::Right, what, "", &[]);
+                Some(answer)
+            }
+            Ok(answer) => {
+                let reason = answer.text("reason");
+                let said = if reason.is_empty() { String::new() } else { format!(" ({reason})") };
+                let found = format!("answered '{}'{said}; due is {}", answer.text("status"), allowed.join(" or "));
+                self.note(Standing::Wrong, what, &found, &[]);
+                None
+            }
+            Err(reason) => {
+                self.note(Standing::Wrong, what, &reason, advice(&reason));
+                None
+            }
+        }
+    }
+
+    /// Notes a finding. What was found before about the same thing, and was as good, is not noted twice.
+    pub(super) fn note(&mut self, standing: Standing, what: &str, found: &str, advice: &[&str]) {
+        let advice = advice.iter().map(|&line| line.to_owned()).collect();
+        let finding = Finding { standing, what: what.to_owned(), found: found.to_owned(), advice };
+        if !self.conformance.findings.contains(&finding) {
+            self.conformance.findings.push(finding);
+        }
+    }
+
+    /// Has the oracle build a robot.
+    pub(super) fn prepare(&mut self, problem: &Problem) -> Result<Frame, String> {
+        self.ask(json!({"op": "prepare", "model": description(problem)?}), Vec::new())
+    }
+
+    /// Ends the oracle's input.
+    pub(super) fn close(&mut self) -> Result<(), String> {
+        match self.line.take() {
+            Some(line) => line.close(),
+            None => (self.start)()?.close(),
+        }
+    }
+}
+
+/// The description of a robot as it is sent.
+pub(super) fn description(problem: &Problem) -> Result<Value, String> {
+    let line = formats::neutral::to_line(&problem.description).map_err(|error| error.to_string())?;
+    serde_json::from_str(&line).map_err(|error| error.to_string())
+}
+
+/// The header and blocks of the request `states`.
+pub(super) fn states(problem: &Problem, states: &StateBatch) -> (Value, Vec<Block>) {
+    let (count, nv) = (states.count(), states.nv);
+    let blocks = vec![
+        Block::new("q", &[count, states.nq], &states.q),
+        Block::new("v", &[count, nv], &states.v),
+        Block::new("a", &[count, nv], &states.a),
+        Block::new("tau", &[count, nv], &states.tau),
+        Block::new("wrench", &[count, states.bodies, 6], &states.wrench),
+        Block::new("probe", &[4, nv], &problem.probe()),
+    ];
+    (json!({"op": "states", "count": count}), blocks)
+}
+
+/// What to do about a broken line.
+fn advice(reason: &str) -> &'static [&'static str] {
+    if reason.contains("not in the protocol") {
+        &["standard output carries frames only: print everything else to standard error"]
+    } else if reason.contains("no answer within") {
+        &["answer every request at once and flush; read the blocks that its header announces, and no more"]
+    } else if reason.contains("died") {
+        &["an oracle never ends because of a request: errors are answers"]
+    } else {
+        &[]
+    }
+}

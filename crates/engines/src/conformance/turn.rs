@@ -1,0 +1,144 @@
+//! Velocities that are taken for other ones.
+
+use super::mistakes::State;
+use model::{BodyDescription, Description, JointType};
+
+/// v_e = T v and a_e = T a + b, with an orthogonal T, in place of v and a.
+pub(super) struct Turn {
+    /// T, row-major.
+    t: Vec<f64>,
+    /// b.
+    pub(super) b: Vec<f64>,
+}
+
+/// Where each joint's numbers begin: (q, v, body).
+pub(super) fn places(robot: &Description) -> Vec<(usize, usize, &BodyDescription)> {
+    let (mut q, mut v) = (0, 0);
+    let mut places = Vec::with_capacity(robot.bodies.len());
+    for body in &robot.bodies {
+        places.push((q, v, body));
+        q += body.joint.kind.nq();
+        v += body.joint.kind.nv();
+    }
+    places
+}
+
+pub(super) const ONE: [f64; 9] = [1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0];
+pub(super) type Six = [[f64; 6]; 6];
+pub(super) const SWAP: Six = [
+    [0.0, 0.0, 0.0, 1.0, 0.0, 0.0],
+    [0.0, 0.0, 0.0, 0.0, 1.0, 0.0],
+    [0.0, 0.0, 0.0, 0.0, 0.0, 1.0],
+    [1.0, 0.0, 0.0, 0.0, 0.0, 0.0],
+    [0.0, 1.0, 0.0, 0.0, 0.0, 0.0],
+    [0.0, 0.0, 1.0, 0.0, 0.0, 0.0],
+];
+
+/// Rotations of a free joint's body.
+pub(super) struct Rotations {
+    /// Body axes to joint-frame axes.
+    pub(super) joint: [f64; 9],
+    /// Body axes to world axes, of a body that hangs on the world.
+    pub(super) world: [f64; 9],
+}
+
+/// T of every free joint; where `carried`, b = T [ω × v; 0] (in T's order), with v and ω in body axes.
+pub(super) fn of_free(robot: &Description, state: &State, block: impl Fn(&Rotations) -> (Six, bool)) -> Turn {
+    let mut turn = Turn::identity(state.v.len());
+    for (q, at, body) in places(robot) {
+        if body.joint.kind == JointType::Free {
+            let joint = rotation(&state.q[q + 3..q + 7]);
+            let rotations = Rotations { joint, world: product_of_rotations(&body.joint.placement.rotation, &joint) };
+            let (t, carried) = block(&rotations);
+            let given = &state.v[at..at + 6];
+            let neutral: Vec<f64> = (0..6).map(|j| (0..6).map(|i| t[i][j] * given[i]).sum()).collect();
+            let omega_v = cross(&neutral[3..], &neutral[..3]);
+            for (i, row) in t.iter().enumerate() {
+                row.iter().enumerate().for_each(|(j, &entry)| *turn.entry(at + i, at + j) = entry);
+                turn.b[at + i] = if carried { row.iter().zip(omega_v).map(|(entry, x)| entry * x).sum() } else { 0.0 };
+            }
+        }
+    }
+    turn
+}
+
+pub(super) fn of_spherical(robot: &Description, state: &State) -> Turn {
+    let mut turn = Turn::identity(state.v.len());
+    for (q, at, _) in places(robot).into_iter().filter(|(.., body)| body.joint.kind == JointType::Spherical) {
+        let r = rotation(&state.q[q..q + 4]);
+        (0..9).for_each(|k| *turn.entry(at + k / 3, at + k % 3) = r[k]);
+    }
+    turn
+}
+
+pub(super) fn of_planar(robot: &Description, state: &State) -> Turn {
+    let mut turn = Turn::identity(state.v.len());
+    for (q, at, _) in places(robot).into_iter().filter(|(.., body)| body.joint.kind == JointType::Planar) {
+        let (sin, cos) = state.q[q + 2].sin_cos();
+        (*turn.entry(at, at), *turn.entry(at, at + 1)) = (cos, sin);
+        (*turn.entry(at + 1, at), *turn.entry(at + 1, at + 1)) = (-sin, cos);
+        let [x, y, rate] = [state.v[at], state.v[at + 1], state.v[at + 2]];
+        (turn.b[at], turn.b[at + 1]) = (rate * y, -rate * x);
+    }
+    turn
+}
+
+impl Turn {
+    fn identity(n: usize) -> Self {
+        let t = (0..n * n).map(|at| if at / n == at % n { 1.0 } else { 0.0 }).collect();
+        Self { t, b: vec![0.0; n] }
+    }
+
+    fn entry(&mut self, row: usize, column: usize) -> &mut f64 {
+        let n = self.b.len();
+        &mut self.t[row * n + column]
+    }
+
+    /// T x.
+    pub(super) fn forth(&self, x: &[f64]) -> Vec<f64> {
+        self.t.chunks_exact(x.len()).map(|row| row.iter().zip(x).map(|(t, x)| t * x).sum()).collect()
+    }
+
+    /// T' x.
+    pub(super) fn back(&self, x: &[f64]) -> Vec<f64> {
+        let n = x.len();
+        (0..n).map(|column| (0..n).map(|row| self.t[row * n + column] * x[row]).sum()).collect()
+    }
+}
+
+pub(super) fn blocks(linear: &[f64; 9], angular: &[f64; 9]) -> Six {
+    let mut t = [[0.0; 6]; 6];
+    for k in 0..9 {
+        t[k / 3][k % 3] = linear[k];
+        t[3 + k / 3][3 + k % 3] = angular[k];
+    }
+    t
+}
+
+pub(super) fn product(a: &Six, b: &Six) -> Six {
+    std::array::from_fn(|i| std::array::from_fn(|j| (0..6).map(|k| a[i][k] * b[k][j]).sum()))
+}
+
+fn product_of_rotations(a: &[f64; 9], b: &[f64; 9]) -> [f64; 9] {
+    std::array::from_fn(|at| (0..3).map(|k| a[3 * (at / 3) + k] * b[3 * k + at % 3]).sum())
+}
+
+pub(super) fn transposed(r: &[f64; 9]) -> [f64; 9] {
+    std::array::from_fn(|at| r[3 * (at % 3) + at / 3])
+}
+
+/// R of the unit quaternion (x, y, z, w), row-major.
+fn rotation(quaternion: &[f64]) -> [f64; 9] {
+    let turn = spatial::Quaternion::from_array([quaternion[0], quaternion[1], quaternion[2], quaternion[3]]).to_rotation();
+    turn.to_array()
+}
+
+/// R' x in place, R being the first nine numbers, row-major.
+pub(super) fn turned_back(r: &[f64], x: &mut [f64]) {
+    let turned: [f64; 3] = std::array::from_fn(|column| (0..3).map(|row| r[3 * row + column] * x[row]).sum());
+    x.copy_from_slice(&turned);
+}
+
+pub(super) fn cross(a: &[f64], b: &[f64]) -> [f64; 3] {
+    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
+}

@@ -1,0 +1,164 @@
+//! What a right oracle answers, and what one answers that is right but for some mistakes.
+
+use super::mistakes::{Mistake, State};
+use super::turn::Turn;
+use crate::Native;
+use harness::measure::{ForwardScale, Magnitudes, scaled_error, worst};
+use harness::{Problem, Quantity, Subject};
+use model::StateBatch;
+
+/// Conformance asks for meaning, not for digits (those are the agreement study's): mistaken conventions show at 1e-3 and above, rounding at
+/// 1e-15, a loose but right algorithm in between.
+pub(super) const RIGHT: f64 = 1e-11;
+/// The same for forward dynamics, where an explicit inverse loses the condition of M, here up to a thousand, on the way.
+pub(super) const RIGHT_FORWARD: f64 = 1e-9;
+
+/// A robot with native's answers to everything that is asked.
+pub(super) struct Scene {
+    pub(super) shows: &'static str,
+    pub(super) problem: Problem,
+    at: Vec<Magnitudes>,
+}
+
+impl Scene {
+    pub(super) fn new(shows: &'static str, problem: Problem) -> Self {
+        let at = problem.magnitudes();
+        Self { shows, problem, at }
+    }
+
+    /// The worst error of an answer over all states, in the measures of the harness.
+    pub(super) fn error(&self, quantity: Quantity, reference: &[f64], value: &[f64]) -> f64 {
+        let size = quantity.size(&self.problem);
+        let states = reference.chunks_exact(size).zip(value.chunks_exact(size)).zip(&self.at);
+        if quantity == Quantity::ForwardDynamics {
+            let scales = ForwardScale::all(&self.problem, &self.at);
+            return states.zip(scales).map(|(((r, x), _), scale)| scale.forward_error(r, x)).fold(0.0, worst);
+        }
+        states.map(|((r, x), at)| scaled_error(&self.problem, quantity, at, r, x)).fold(0.0, worst)
+    }
+
+    /// The error up to which an answer is right.
+    pub(super) fn tolerance(quantity: Quantity) -> f64 {
+        if quantity == Quantity::ForwardDynamics { RIGHT_FORWARD } else { RIGHT }
+    }
+
+    /// Native's answer at every state.
+    pub(super) fn native(&self, quantity: Quantity) -> Option<Vec<f64>> {
+        native(&self.problem, quantity)
+    }
+
+    /// The answer of an oracle that is right but for these mistakes; none where they make no robot of it, or do not bear on the quantity.
+    pub(super) fn supposed(&self, mistakes: &[&Mistake], quantity: Quantity) -> Option<Vec<f64>> {
+        let mut misread = self.problem.description.clone();
+        mistakes.iter().for_each(|mistake| (mistake.robot)(&mut misread));
+        let Problem { origin, family, states, .. } = &self.problem;
+        let problem = Problem::new(&misread, family, *origin, 1, 0).ok()?;
+        let (mut batch, mut seen) = (StateBatch { cases: states.cases.clone(), ..self.empty() }, Vec::new());
+        let placement = native(&self.problem, Quantity::BodyPlacement)?;
+        for k in 0..states.count() {
+            let mut state = State {
+                q: states.q(k).to_vec(),
+                v: states.v(k).to_vec(),
+                // h is inverse dynamics at a = 0: what is made of that zero is part of the mistake.
+                a: if quantity == Quantity::Bias { vec![0.0; states.nv] } else { states.a(k).to_vec() },
+                tau: states.tau(k).to_vec(),
+                wrench: states.wrench(k).to_vec(),
+                placement: part(&placement, states.count(), k),
+                ..State::default()
+            };
+            seen.push(mistakes.iter().map(|mistake| self.misread(mistake, &mut state)).collect::<Vec<_>>());
+            batch.q.extend(state.q);
+            batch.v.extend(state.v);
+            batch.a.extend(state.a);
+            batch.tau.extend(state.tau);
+            batch.wrench.extend(state.wrench);
+        }
+        let problem = problem.at(batch);
+        let mut value = native(&problem, if quantity == Quantity::Bias { Quantity::InverseDynamics } else { quantity })?;
+        let [placement, velocity, com, momentum] =
+            [Quantity::BodyPlacement, Quantity::BodyVelocity, Quantity::CenterOfMass, Quantity::Momentum]
+                .map(|about| native(&problem, about));
+        let (placement, velocity, com, momentum) = (placement?, velocity?, com?, momentum?);
+        let (size, count) = (quantity.size(&problem), states.count());
+        for (k, (value, seen)) in value.chunks_exact_mut(size).zip(seen).enumerate() {
+            for (mistake, (mut state, turn)) in mistakes.iter().zip(seen).rev() {
+                if let Some(turn) = turn {
+                    returned(&turn, quantity, value);
+                }
+                state.placement = part(&placement, count, k);
+                state.velocity = part(&velocity, count, k);
+                state.com = part(&com, count, k);
+                state.momentum = part(&momentum, count, k);
+                (mistake.answer)(&self.problem, quantity, &state, value);
+            }
+        }
+        Some(value)
+    }
+
+    /// Reads a state by a mistake; what it was before, and the turn of velocities.
+    fn misread(&self, mistake: &Mistake, state: &mut State) -> (State, Option<Turn>) {
+        let given = state.clone();
+        (mistake.state)(&self.problem.description, state);
+        let turn = mistake.turn.map(|turn| turn(&self.problem.description, state));
+        if let Some(turn) = &turn {
+            let rest: Vec<f64> = state.a.iter().zip(&turn.b).map(|(a, b)| a - b).collect();
+            (state.v, state.a, state.tau) = (turn.back(&state.v), turn.back(&rest), turn.back(&state.tau));
+        }
+        (given, turn)
+    }
+
+    fn empty(&self) -> StateBatch {
+        let StateBatch { nq, nv, bodies, .. } = self.problem.states;
+        StateBatch { nq, nv, bodies, ..StateBatch::default() }
+    }
+}
+
+/// The answer in the velocities that were taken for ours.
+fn returned(turn: &Turn, quantity: Quantity, value: &mut [f64]) {
+    let n = turn.b.len();
+    match quantity {
+        Quantity::InverseDynamics | Quantity::InverseDynamicsWrench | Quantity::Bias => {
+            let turned = turn.forth(value);
+            value.copy_from_slice(&turned);
+        }
+        Quantity::ForwardDynamics => {
+            let turned = turn.forth(value);
+            value.iter_mut().zip(turned.iter().zip(&turn.b)).for_each(|(x, (a, b))| *x = a + b);
+        }
+        // J T', row by row.
+        Quantity::BodyJacobian => rows(turn, value, n),
+        // T M T' = T (T M)' for a symmetric M.
+        Quantity::MassMatrix => {
+            rows(turn, value, n);
+            let columns: Vec<f64> = (0..n * n).map(|at| value[n * (at % n) + at / n]).collect();
+            value.copy_from_slice(&columns);
+            rows(turn, value, n);
+        }
+        _ => {}
+    }
+}
+
+fn rows(turn: &Turn, value: &mut [f64], n: usize) {
+    for row in value.chunks_exact_mut(n) {
+        let turned = turn.forth(row);
+        row.copy_from_slice(&turned);
+    }
+}
+
+fn part(all: &[f64], count: usize, k: usize) -> Vec<f64> {
+    let size = all.len() / count;
+    all[k * size..(k + 1) * size].to_vec()
+}
+
+fn native(problem: &Problem, quantity: Quantity) -> Option<Vec<f64>> {
+    let native = Native::new();
+    let method = native.methods(quantity).into_iter().next()?;
+    let mut prepared = native.prepare(problem, quantity, &method, &problem.states).ok()?;
+    prepared.run(0..problem.states.count()).ok()?;
+    Some(prepared.read().to_vec())
+}
+
+/// Whether two answers are the same to the bit.
+pub(super) fn same_bits(one: &[f64], other: &[f64]) -> bool {
+    one.len() == other.len() && one.iter().zip(other).all(|(a, b)| a.to_bits() == b.to_bits())
+}

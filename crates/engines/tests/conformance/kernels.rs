@@ -1,0 +1,146 @@
+//! The native kernels as an oracle in this process.
+
+use featherbench_engines::Native;
+use featherbench_engines::conformance::Line;
+use harness::frame::{Block, Frame};
+use harness::{Problem, Quantity, Refusal, Subject};
+use model::StateBatch;
+use record::ModelOrigin;
+use serde_json::{Value, json};
+
+/// What is done to requests before the honest oracle reads them, and to its answers before they are sent.
+#[derive(Clone, Copy)]
+pub struct Plant {
+    pub request: fn(&mut Frame, &Kernels),
+    pub answer: fn(&mut Frame, &Frame, &Kernels),
+}
+
+/// Nothing is done to them.
+pub const HONEST: Plant = Plant { request: |_, _| (), answer: |_, _, _| () };
+
+/// The native kernels as an oracle.
+pub struct Kernels {
+    plant: Plant,
+    pub problem: Option<Problem>,
+    /// The states as they came.
+    states: Option<(Frame, StateBatch)>,
+    /// Evaluations so far.
+    pub evaluated: usize,
+}
+
+/// What it offers.
+pub const OFFERED: [Quantity; 14] = [
+    Quantity::InverseDynamics,
+    Quantity::InverseDynamicsWrench,
+    Quantity::Bias,
+    Quantity::MassMatrix,
+    Quantity::ForwardDynamics,
+    Quantity::KineticEnergy,
+    Quantity::PotentialEnergy,
+    Quantity::CenterOfMass,
+    Quantity::Momentum,
+    Quantity::BodyPlacement,
+    Quantity::BodyVelocity,
+    Quantity::BodyAcceleration,
+    Quantity::BodyJacobian,
+    Quantity::StoredEntries,
+];
+
+fn failed(reason: impl ToString) -> Refusal {
+    Refusal::Failed(reason.to_string())
+}
+
+impl Kernels {
+    /// An oracle that knows no robot yet.
+    pub fn new(plant: Plant) -> Self {
+        Self { plant, problem: None, states: None, evaluated: 0 }
+    }
+
+    fn answer(&mut self, request: &Frame) -> Result<Frame, Refusal> {
+        let number =
+            |key: &str| request.header.get(key).and_then(Value::as_u64).map(|n| n as usize).ok_or_else(|| failed("a number is missing"));
+        match request.text("op") {
+            "hello" => {
+                let methods: serde_json::Map<String, Value> = OFFERED.iter().map(|q| (q.name().into(), json!(["kernel"]))).collect();
+                Ok(Frame::new(json!({"protocol": 1, "engine": "kernels", "version": "1", "build": {}, "methods": methods}), Vec::new()))
+            }
+            "prepare" => {
+                (self.problem, self.states) = (None, None);
+                let model = request.header.get("model").ok_or_else(|| failed("there is no model"))?;
+                let description = formats::neutral::parse(&model.to_string(), "request").map_err(failed)?;
+                let problem = Problem::new(&description, "", ModelOrigin::Generated, 1, 0).map_err(failed)?;
+                let readback = Block::new("readback", &[problem.description.bodies.len(), 22], &problem.readback());
+                let header = json!({"nq": problem.description.nq(), "nv": problem.states.nv});
+                self.problem = Some(problem);
+                Ok(Frame::new(header, vec![readback]))
+            }
+            "states" => {
+                self.states = None;
+                let (count, problem) = (number("count")?, self.problem.as_ref().ok_or_else(|| failed("there is no robot"))?);
+                let empty = &problem.states;
+                let take = |name: &str, each: usize| {
+                    let block = request.block(name).filter(|block| block.data.len() == count * each);
+                    block.map(|block| block.data.clone()).ok_or_else(|| failed(format!("block {name} is missing or has another length")))
+                };
+                let batch = StateBatch {
+                    cases: vec![model::Case::Random; count],
+                    q: take("q", empty.nq)?,
+                    v: take("v", empty.nv)?,
+                    a: take("a", empty.nv)?,
+                    tau: take("tau", empty.nv)?,
+                    wrench: take("wrench", 6 * empty.bodies)?,
+                    ..empty.clone()
+                };
+                self.states = Some((request.clone(), batch));
+                Ok(Frame::default())
+            }
+            "evaluate" => {
+                let quantity = Quantity::parse(request.text("quantity")).filter(|quantity| OFFERED.contains(quantity));
+                let quantity = quantity.filter(|_| request.text("method") == "kernel");
+                let quantity = quantity.ok_or_else(|| Refusal::Unsupported("there is no such kernel".into()))?;
+                let (Some(problem), Some((_, states))) = (&self.problem, &self.states) else { return Err(failed("nothing to evaluate")) };
+                let (first, count) = (number("first")?, number("count")?);
+                if first + count > states.count() {
+                    return Err(failed("there are no such states"));
+                }
+                let native = Native::new();
+                let method = native.methods(quantity).swap_remove(0);
+                let mut prepared = native.prepare(problem, quantity, &method, states)?;
+                prepared.run(first..first + count)?;
+                self.evaluated += 1;
+                let (nv, bodies) = (problem.states.nv, problem.description.bodies.len());
+                let shape = match quantity {
+                    Quantity::MassMatrix => vec![count, nv, nv],
+                    Quantity::BodyJacobian => vec![count, 6, nv],
+                    Quantity::BodyPlacement => vec![count, bodies, 12],
+                    Quantity::BodyVelocity | Quantity::BodyAcceleration => vec![count, bodies, 6],
+                    _ => vec![count, quantity.size(problem)],
+                };
+                Ok(Frame::new(json!({}), vec![Block::new("value", &shape, prepared.read())]))
+            }
+            other => Err(failed(format!("there is no op '{other}'"))),
+        }
+    }
+}
+
+impl Line for Kernels {
+    fn ask(&mut self, request: &Frame) -> Result<Frame, String> {
+        let plant = self.plant;
+        let mut heard = request.clone();
+        (plant.request)(&mut heard, self);
+        let mut answer = match self.answer(&heard) {
+            Ok(mut frame) => {
+                frame.header.insert("status".into(), "ok".into());
+                frame
+            }
+            Err(Refusal::Unsupported(reason)) => Frame::new(json!({"status": "unsupported", "reason": reason}), Vec::new()),
+            Err(Refusal::Failed(reason)) => Frame::new(json!({"status": "error", "reason": reason}), Vec::new()),
+        };
+        (plant.answer)(&mut answer, request, self);
+        if answer.text("status") == "dead" { Err("the oracle died".into()) } else { Ok(answer) }
+    }
+
+    fn close(self: Box<Self>) -> Result<(), String> {
+        Ok(())
+    }
+}

@@ -1,0 +1,375 @@
+//! The conformance test against an oracle in this process: our own kernels, honest or with one mistake planted by hand. An honest one conforms,
+//! and each mistake is found and called by its name.
+
+mod kernels;
+
+use featherbench_engines::conformance::{Conformance, Line, Standing, check};
+use harness::Problem;
+use harness::frame::Frame;
+use kernels::{HONEST, Kernels, OFFERED, Plant};
+use serde_json::{Value, json};
+
+fn test(plant: Plant) -> Conformance {
+    let start = || Ok(Box::new(Kernels::new(plant)) as Box<dyn Line>);
+    check(&start, &|_| ()).unwrap()
+}
+
+/// The wrong findings as text, advice included.
+fn wrong(plant: Plant) -> Vec<String> {
+    let conformance = test(plant);
+    let told = conformance.of(Standing::Wrong).map(|finding| format!("{}: {} {}", finding.what, finding.found, finding.advice.join(" ")));
+    told.collect()
+}
+
+/// Asserts that the mistake is named in the findings about these quantities, and that nothing else is wrong.
+#[track_caller]
+fn named(plant: Plant, quantities: &[&str], words: &str) {
+    let wrong = wrong(plant);
+    for quantity in quantities {
+        let about = wrong.iter().find(|line| line.starts_with(&format!("{quantity} by kernel:")));
+        let about = about.unwrap_or_else(|| panic!("{quantity} is not among {wrong:#?}"));
+        assert!(about.contains(words) && !about.contains("another cause"), "'{words}' is not in {about}");
+    }
+    assert_eq!(wrong.len(), quantities.len(), "{wrong:#?}");
+}
+
+#[test]
+fn an_honest_oracle_conforms() {
+    let conformance = test(HONEST);
+    assert!(conformance.conforms(), "{:#?}", conformance.of(Standing::Wrong).collect::<Vec<_>>());
+    assert_eq!(conformance.engine, "kernels 1");
+    let values = conformance.of(Standing::Right).filter(|finding| finding.found.contains("19 robots")).count();
+    assert_eq!(values, OFFERED.len(), "every quantity of every robot was compared");
+    let lacking: Vec<_> = conformance.of(Standing::Lacks).map(|finding| finding.what.as_str()).collect();
+    assert_eq!(lacking, ["the ids of requests", "quantities"]);
+}
+
+/// Changes a block of the request `states`, state after state, with the robot at hand.
+fn each_state(frame: &mut Frame, kernels: &Kernels, name: &str, change: impl Fn(&mut [f64], &[f64], &Problem)) {
+    let Some(problem) = kernels.problem.as_ref().filter(|_| frame.text("op") == "states") else { return };
+    let q = frame.block("q").map(|block| block.data.clone()).unwrap_or_default();
+    let count = q.len() / problem.states.nq;
+    for block in frame.blocks.iter_mut().filter(|block| block.name == name && !block.data.is_empty()) {
+        let size = block.data.len() / count;
+        block.data.chunks_exact_mut(size).zip(q.chunks_exact(problem.states.nq)).for_each(|(part, q)| change(part, q, problem));
+    }
+}
+
+/// Changes the description of the request `prepare`.
+fn each_body(frame: &mut Frame, change: impl Fn(&mut Value)) {
+    if let Some(bodies) = frame.header.get_mut("model").and_then(|model| model.get_mut("bodies")).and_then(Value::as_array_mut) {
+        bodies.iter_mut().filter(|body| body["joint"].is_object()).for_each(change);
+    }
+}
+
+/// Puts the mass, centre and inertia that were given into the read-back, so that only the dynamics tell.
+fn given_back(answer: &mut Frame, request: &Frame) {
+    let (Some(block), Some(bodies)) =
+        (answer.blocks.iter_mut().find(|b| b.name == "readback"), request.header.get("model").and_then(|model| model["bodies"].as_array()))
+    else {
+        return;
+    };
+    for (row, body) in block.data.chunks_exact_mut(22).zip(bodies) {
+        let numbers = |value: &Value| value.as_array().into_iter().flatten().filter_map(Value::as_f64).collect::<Vec<_>>();
+        row[4..10].copy_from_slice(&numbers(&body["inertia"]));
+        row[10..19].copy_from_slice(&numbers(&body["joint"]["placement"]["rotation"]));
+    }
+}
+
+const DYNAMICS: [&str; 4] = ["bias", "fd", "id", "id_wrench"];
+
+#[test]
+fn quaternions_in_another_order() {
+    let request = |frame: &mut Frame, kernels: &Kernels| {
+        each_state(frame, kernels, "q", |q, _, problem| {
+            let mut at = 0;
+            for body in &problem.description.bodies {
+                let kind = body.joint.kind;
+                if matches!(kind, model::JointType::Spherical | model::JointType::Free) {
+                    let end = at + kind.nq();
+                    q[end - 4..end].rotate_left(1);
+                }
+                at += kind.nq();
+            }
+        });
+    };
+    let found = wrong(Plant { request, ..HONEST });
+    // All that depends on q; the kinetic energy of a body alone does not.
+    assert!(found.len() > 8, "{found:#?}");
+    for line in &found {
+        assert!(line.contains("(w, x, y, z)") && !line.contains("another cause"), "{line}");
+    }
+}
+
+#[test]
+fn a_free_velocity_in_another_order() {
+    let swap = |frame: &mut Frame, kernels: &Kernels| {
+        for name in ["v", "a", "tau"] {
+            each_state(frame, kernels, name, |x, _, problem| {
+                if problem.base() == "free" {
+                    x[..6].rotate_left(3);
+                }
+            });
+        }
+    };
+    // The engine's own order is in its answers as well.
+    let answer = |answer: &mut Frame, request: &Frame, kernels: &Kernels| {
+        let Some(problem) = kernels.problem.as_ref().filter(|problem| problem.base() == "free") else { return };
+        let nv = problem.states.nv;
+        let Some(block) = answer.blocks.iter_mut().find(|block| block.name == "value") else { return };
+        match request.text("quantity") {
+            "id" | "id_wrench" | "bias" | "fd" => block.data.chunks_exact_mut(nv).for_each(|x| x[..6].rotate_left(3)),
+            "body_jacobian" => block.data.chunks_exact_mut(nv).for_each(|x| x[..6].rotate_left(3)),
+            "mass_matrix" => block.data.chunks_exact_mut(nv * nv).for_each(|m| {
+                m.chunks_exact_mut(nv).for_each(|row| row[..6].rotate_left(3));
+                m[..6 * nv].rotate_left(3 * nv);
+            }),
+            _ => {}
+        }
+    };
+    let moving = ["body_acceleration", "body_jacobian", "body_velocity", "kinetic_energy", "mass_matrix", "momentum"];
+    let all: Vec<&str> = DYNAMICS.iter().chain(&moving).copied().collect();
+    named(Plant { request: swap, answer }, &all, "[angular; linear]");
+}
+
+/// Linear velocity in world axes and nothing else said: v = [Rᵀ ṗ; ω], and the forces come back turned.
+#[test]
+fn a_free_velocity_in_world_axes() {
+    fn turn(problem: &Problem, q: &[f64]) -> [[f64; 3]; 3] {
+        let [x, y, z, w] = [q[3], q[4], q[5], q[6]];
+        let r = [
+            [1.0 - 2.0 * (y * y + z * z), 2.0 * (x * y - z * w), 2.0 * (x * z + y * w)],
+            [2.0 * (x * y + z * w), 1.0 - 2.0 * (x * x + z * z), 2.0 * (y * z - x * w)],
+            [2.0 * (x * z - y * w), 2.0 * (y * z + x * w), 1.0 - 2.0 * (x * x + y * y)],
+        ];
+        let p = problem.description.bodies[0].joint.placement.rotation;
+        std::array::from_fn(|i| std::array::from_fn(|j| (0..3).map(|k| p[3 * i + k] * r[k][j]).sum()))
+    }
+    let request = |frame: &mut Frame, kernels: &Kernels| {
+        // v, and with it nothing but the kinematics of velocities.
+        each_state(frame, kernels, "v", |v, q, problem| {
+            if problem.base() == "free" {
+                let r = turn(problem, q);
+                let linear: [f64; 3] = std::array::from_fn(|j| (0..3).map(|i| r[i][j] * v[i]).sum());
+                v[..3].copy_from_slice(&linear);
+            }
+        });
+    };
+    let found = wrong(Plant { request, ..HONEST });
+    for quantity in ["body_velocity", "kinetic_energy", "momentum"] {
+        let about = found.iter().find(|line| line.starts_with(quantity)).unwrap_or_else(|| panic!("{quantity}: {found:#?}"));
+        assert!(about.contains("linear velocity is taken in world axes: T = diag(R, 1)"), "{about}");
+    }
+}
+
+#[test]
+fn what_is_left_out_of_the_description() {
+    let armature = |frame: &mut Frame, _: &Kernels| {
+        each_body(frame, |body| body["joint"]["armature"].as_array_mut().into_iter().flatten().for_each(|x| *x = json!(0.0)));
+    };
+    // The bias force has none.
+    named(Plant { request: armature, ..HONEST }, &["fd", "id", "id_wrench", "kinetic_energy", "mass_matrix"], "armature is left out");
+    let upside_down = |frame: &mut Frame, _: &Kernels| {
+        let gravity = frame.header.get_mut("model").and_then(|model| model.get_mut("gravity")).and_then(Value::as_array_mut);
+        gravity.into_iter().flatten().for_each(|x| *x = json!(-x.as_f64().unwrap_or(0.0)));
+    };
+    let affected: Vec<&str> = DYNAMICS.iter().chain(&["potential_energy"]).copied().collect();
+    named(Plant { request: upside_down, ..HONEST }, &affected, "gravity has the wrong sign");
+    let pitch = |frame: &mut Frame, _: &Kernels| {
+        each_body(frame, |body| {
+            if let Some(pitch) = body["joint"]["pitch"].as_f64() {
+                body["joint"]["pitch"] = json!(pitch / std::f64::consts::TAU);
+            }
+        });
+    };
+    let found = wrong(Plant { request: pitch, ..HONEST });
+    assert!(found.len() > 10 && found.iter().all(|line| line.contains("pitch of a helical joint is taken per revolution")), "{found:#?}");
+    let transposed = |frame: &mut Frame, _: &Kernels| {
+        each_body(frame, |body| {
+            if let Some(r) = body["joint"]["placement"]["rotation"].as_array().cloned().filter(|r| r.len() == 9) {
+                body["joint"]["placement"]["rotation"] = (0..9).map(|k| r[3 * (k % 3) + k / 3].clone()).collect();
+            }
+        });
+    };
+    let found = wrong(Plant { request: transposed, answer: |answer, request, _| given_back(answer, request) });
+    assert!(found.iter().any(|line| line.starts_with("id by kernel") && line.contains("placements are transposed")), "{found:#?}");
+    let found = wrong(Plant { request: transposed, ..HONEST });
+    assert!(found.iter().any(|line| line.contains("the placement's rotation of body") && line.contains("read back")), "{found:#?}");
+}
+
+/// Two mistakes at once are told apart.
+#[test]
+fn two_mistakes() {
+    let request = |frame: &mut Frame, _: &Kernels| {
+        each_body(frame, |body| body["joint"]["armature"].as_array_mut().into_iter().flatten().for_each(|x| *x = json!(0.0)));
+        let gravity = frame.header.get_mut("model").and_then(|model| model.get_mut("gravity")).and_then(Value::as_array_mut);
+        gravity.into_iter().flatten().for_each(|x| *x = json!(0.0));
+    };
+    let found = wrong(Plant { request, ..HONEST });
+    let id = found.iter().find(|line| line.starts_with("id by kernel")).unwrap();
+    assert!(id.contains("armature is left out") && id.contains("gravity is left out"), "{id}");
+    let mass = found.iter().find(|line| line.starts_with("mass_matrix by kernel")).unwrap();
+    assert!(mass.contains("armature is left out") && !mass.contains("gravity"), "{mass}");
+}
+
+#[test]
+fn half_a_matrix_and_numbers_that_are_none() {
+    let upper = |answer: &mut Frame, request: &Frame, kernels: &Kernels| {
+        if let (Some(problem), "mass_matrix") = (&kernels.problem, request.text("quantity")) {
+            let n = problem.states.nv;
+            for block in &mut answer.blocks {
+                block.data.iter_mut().enumerate().filter(|(k, _)| (k / n) % n > k % n).for_each(|(_, x)| *x = 0.0);
+            }
+        }
+    };
+    named(Plant { answer: upper, ..HONEST }, &["mass_matrix"], "only the upper triangle");
+    let none = |answer: &mut Frame, request: &Frame, _: &Kernels| {
+        if request.text("quantity") == "com" {
+            answer.blocks.iter_mut().for_each(|block| block.data.fill(f64::NAN));
+        }
+    };
+    named(Plant { answer: none, ..HONEST }, &["com"], "NaN");
+    let odd = |answer: &mut Frame, request: &Frame, _: &Kernels| {
+        if request.text("quantity") == "com" {
+            answer.blocks.iter_mut().flat_map(|block| &mut block.data).for_each(|x| *x *= 1.0 + 1e-6);
+        }
+    };
+    named(Plant { answer: odd, ..HONEST }, &["com"], "no usual mistake");
+}
+
+/// Faults of the conversation: what is planted, and the finding that names it.
+#[test]
+fn bad_manners() {
+    let faults: [(&str, Plant); 11] = [
+        (
+            "an op that nobody knows is an error",
+            Plant {
+                answer: |a, r, _| {
+                    if r.text("op") == "dance" {
+                        *a = ok()
+                    }
+                },
+                ..HONEST
+            },
+        ),
+        (
+            "hello names",
+            Plant {
+                answer: |a, r, _| {
+                    if r.text("op") == "hello" {
+                        a.header["protocol"] = json!(2)
+                    }
+                },
+                ..HONEST
+            },
+        ),
+        (
+            "hello names",
+            Plant {
+                answer: |a, r, _| {
+                    if r.text("op") == "hello" {
+                        a.header["methods"]["forces"] = json!(["x"])
+                    }
+                },
+                ..HONEST
+            },
+        ),
+        (
+            "states before prepare",
+            Plant {
+                answer: |a, r, _| {
+                    if r.text("op") == "states" {
+                        *a = ok()
+                    }
+                },
+                ..HONEST
+            },
+        ),
+        (
+            "states that were not sent",
+            Plant {
+                answer: |a, r, _| {
+                    if r.header.get("first") == Some(&json!(5)) {
+                        *a = ok()
+                    }
+                },
+                ..HONEST
+            },
+        ),
+        (
+            "a quantity that it does not have is unsupported",
+            Plant {
+                answer: |a, _, _| {
+                    if a.text("status") == "unsupported" {
+                        a.header["status"] = json!("error")
+                    }
+                },
+                ..HONEST
+            },
+        ),
+        ("gives no `reason`", Plant { answer: |a, _, _| drop(a.header.remove("reason")), ..HONEST }),
+        (
+            "has the status 'fine'",
+            Plant {
+                answer: |a, _, _| {
+                    if a.text("status") == "ok" {
+                        a.header["status"] = json!("fine")
+                    }
+                },
+                ..HONEST
+            },
+        ),
+        (
+            "for a range of states",
+            Plant {
+                request: |r, _| {
+                    if r.header.get("first").is_some_and(|first| *first == json!(1)) {
+                        r.header["first"] = json!(0)
+                    }
+                },
+                ..HONEST
+            },
+        ),
+        (
+            "asked twice",
+            Plant {
+                answer: |a, _, k| a.blocks.iter_mut().filter(|b| b.name == "value").for_each(|b| b.data[0] += 1e-13 * k.evaluated as f64),
+                ..HONEST
+            },
+        ),
+        (
+            "has the shape",
+            Plant {
+                answer: |a, _, _| a.blocks.iter_mut().filter(|b| b.name == "value").for_each(|b| b.shape = vec![b.data.len()]),
+                ..HONEST
+            },
+        ),
+    ];
+    for (words, plant) in faults {
+        let found = wrong(plant);
+        assert!(found.iter().any(|line| line.contains(words)), "'{words}' is not in {found:#?}");
+    }
+}
+
+fn ok() -> Frame {
+    Frame::new(json!({"status": "ok"}), Vec::new())
+}
+
+#[test]
+fn ids_and_deaths() {
+    let echo = |answer: &mut Frame, request: &Frame, _: &Kernels| {
+        if let Some(id) = request.header.get("id") {
+            answer.header.insert("id".into(), id.clone());
+        }
+    };
+    assert!(test(Plant { answer: echo, ..HONEST }).of(Standing::Lacks).all(|finding| finding.what == "quantities"));
+    let wrong_id = |answer: &mut Frame, _: &Frame, _: &Kernels| drop(answer.header.insert("id".into(), json!(7)));
+    assert!(wrong(Plant { answer: wrong_id, ..HONEST }).iter().any(|line| line.contains("41 was sent, 7 came back")));
+    let dies = |answer: &mut Frame, request: &Frame, _: &Kernels| {
+        if request.blocks.iter().any(|block| block.data.iter().any(|x| x.is_nan())) {
+            answer.header["status"] = json!("dead");
+        }
+    };
+    let found = wrong(Plant { answer: dies, ..HONEST });
+    assert!(found.len() == 1 && found[0].contains("numbers that are none get an answer") && found[0].contains("died"), "{found:#?}");
+}

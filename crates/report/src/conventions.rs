@@ -1,0 +1,58 @@
+//! Section: where the engines' conventions differ from ours, and what holds each statement.
+
+use maud::{Markup, html};
+use record::{Convention, RunInfo};
+
+/// Writes the section.
+pub fn section(run: &RunInfo) -> Markup {
+    let mut engines: Vec<(&str, Vec<&Convention>)> = Vec::new();
+    for row in &run.conventions {
+        match engines.iter_mut().find(|(engine, _)| *engine == row.engine) {
+            Some((_, rows)) => rows.push(row),
+            None => engines.push((&row.engine, vec![row])),
+        }
+    }
+    html! {
+        section #conventions {
+            h2 { "Conventions" }
+            p.lead {
+                "Each engine is asked in its own coordinates, and its answers are brought into ours by the functions named here. "
+                "Behind each row stands a test that asks the engine itself, and fails if the convention were otherwise."
+            }
+            @if engines.is_empty() { p.empty { "The run names no conventions." } }
+            @for (engine, rows) in engines {
+                h3 { (engine) }
+                div.scroll {
+                    table.compact.conventions {
+                        thead {
+                            tr {
+                                th scope="col" { "subject" } th scope="col" { "the engine" } th scope="col" { "ours" }
+                                th scope="col" { "converted by" } th scope="col" { "held by" }
+                            }
+                        }
+                        tbody {
+                            @for row in rows {
+                                tr {
+                                    th scope="row" { (row.subject) }
+                                    td { (prose(&row.theirs)) }
+                                    td.soft { (prose(&row.ours)) }
+                                    td { (prose(&row.conversion)) }
+                                    td { code.nowrap { (row.test) } }
+                                }
+                            }
+                        }
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// Text in which backticks mark code.
+fn prose(text: &str) -> Markup {
+    html! {
+        @for (k, part) in text.split('`').enumerate() {
+            @if k % 2 == 1 { code { (part) } } @else { (part) }
+        }
+    }
+}

@@ -1,0 +1,182 @@
+"""The conventions of Drake."""
+
+from __future__ import annotations
+
+from math import pi
+
+import numpy as np
+from numpy.typing import ArrayLike
+from pydrake.math import RigidTransform, RotationMatrix
+from pydrake.multibody import tree
+from pydrake.multibody.plant import MultibodyPlant
+
+from asking import A, ALPHA, AXIS, COM, GRAVITY, MASS, P, R, V, W, WXYZ, X, Y, Z, Array, about, about_origin, holds, rotation
+
+
+def drake_robot(make, armature: float = 0) -> tuple[MultibodyPlant, tree.RigidBody, object]:
+    """One body on the joint that `make` makes of a name and two frames."""
+    plant = MultibodyPlant(0.0)
+    plant.mutable_gravity_field().set_gravity_vector(GRAVITY)
+    g = about_origin / MASS
+    unit = tree.UnitInertia(g[0, 0], g[1, 1], g[2, 2], g[0, 1], g[0, 2], g[1, 2])
+    body = plant.AddRigidBody("body", tree.SpatialInertia(MASS, COM, unit))
+    joint = plant.AddJoint(make("joint", plant.world_frame(), body.body_frame()))
+    if armature:
+        actuator = plant.AddJointActuator("actuator", joint)
+        actuator.set_default_rotor_inertia(armature)
+        actuator.set_default_gear_ratio(3.0)
+    plant.Finalize()
+    return plant, body, plant.CreateDefaultContext()
+
+
+def drake_pose(make, q: ArrayLike) -> RigidTransform:
+    """Where the body is."""
+    plant, body, context = drake_robot(make)
+    plant.SetPositions(context, q)
+    return body.EvalPoseInWorld(context)
+
+
+def drake_velocity(make, q: ArrayLike, v: ArrayLike) -> Array:
+    """[angular; linear] of the body at its origin, in world axes."""
+    plant, body, context = drake_robot(make)
+    plant.SetPositions(context, q)
+    plant.SetVelocities(context, v)
+    return body.EvalSpatialVelocityInWorld(context).get_coeffs()
+
+
+def drake_inverse(plant: MultibodyPlant, context: object, a: ArrayLike) -> Array:
+    """CalcInverseDynamics under all force elements."""
+    forces = tree.MultibodyForces(plant)
+    plant.CalcForceElementsContribution(context, forces)
+    return plant.CalcInverseDynamics(context, np.asarray(a, float), forces)
+
+
+def drake_hinge(damping: float = 0.0):
+    """A revolute joint about x."""
+    return lambda name, parent, child: tree.RevoluteJoint(name, parent, child, X, damping=damping)
+
+
+def test_drake_free_q() -> None:
+    """The quaternion w, x, y, z, then the origin."""
+    pose = drake_pose(tree.QuaternionFloatingJoint, [*WXYZ, *P])
+    holds(pose.rotation().matrix(), R, R.T, rotation(WXYZ))
+    holds(pose.translation(), P, R @ P)
+
+
+def test_drake_free_v() -> None:
+    """[angular; linear], both in the axes of the joint's frame on the parent."""
+    holds(drake_velocity(tree.QuaternionFloatingJoint, [*WXYZ, *P], [*W, *V]), [*W, *V], [*(R @ W), *V], [*(R @ W), *(R @ V)], [*V, *W])
+    placed = MultibodyPlant(0.0)
+    body = placed.AddRigidBody("body", tree.SpatialInertia(MASS, COM, tree.UnitInertia(1, 1, 1)))
+    place = RigidTransform(RotationMatrix(about(AXIS, 0.8)), A)
+    frame = placed.AddFrame(tree.FixedOffsetFrame("frame", placed.world_frame(), place))
+    placed.AddJoint(tree.QuaternionFloatingJoint("joint", frame, body.body_frame()))
+    placed.Finalize()
+    context = placed.CreateDefaultContext()
+    placed.SetPositions(context, [*WXYZ, *P])
+    placed.SetVelocities(context, [*W, *V])
+    holds(body.EvalSpatialVelocityInWorld(context).translational(), about(AXIS, 0.8) @ V, V)
+
+
+def test_drake_free_a() -> None:
+    """The derivative of the numbers in v: the linear part is the classical acceleration of the origin."""
+    plant, body, context = drake_robot(tree.QuaternionFloatingJoint)
+    plant.SetPositions(context, [*WXYZ, *P])
+    plant.SetVelocities(context, [*W, *V])
+    acceleration = plant.CalcSpatialAccelerationsFromVdot(context, np.append(ALPHA, A))[body.index()].get_coeffs()
+    holds(acceleration, [*ALPHA, *A], [*ALPHA, *(A + np.cross(W, V))], [*A, *ALPHA])
+
+
+def test_drake_spherical_q() -> None:
+    """Roll, pitch, yaw about fixed x, y, z: R = Rz Ry Rx."""
+    r, p, y = 0.4, -0.7, 1.1
+    pose = drake_pose(tree.BallRpyJoint, [r, p, y])
+    holds(pose.rotation().matrix(), about(Z, y) @ about(Y, p) @ about(X, r), about(X, r) @ about(Y, p) @ about(Z, y))
+
+
+def test_drake_spherical_v() -> None:
+    """Angular velocity in the parent's axes, neither in body axes nor the rates of the angles."""
+    velocity = drake_velocity(tree.BallRpyJoint, [0.4, -0.7, 1.1], W)
+    r = about(Z, 1.1) @ about(Y, -0.7) @ about(X, 0.4)
+    rates = W[2] * Z + about(Z, 1.1) @ (W[1] * Y + about(Y, -0.7) @ (W[0] * X))
+    holds(velocity[:3], W, r @ W, rates)
+
+
+def test_drake_planar() -> None:
+    """x, y, θ and their rates in the parent's axes."""
+    holds(drake_pose(tree.PlanarJoint, [0.4, -0.3, 0.7]).translation(), [0.4, -0.3, 0], about(Z, 0.7) @ [0.4, -0.3, 0])
+    velocity = drake_velocity(tree.PlanarJoint, [0.4, -0.3, 0.7], [0.5, 0.9, 1.3])
+    holds(velocity, [0, 0, 1.3, 0.5, 0.9, 0], [0, 0, 1.3, *(about(Z, 0.7) @ [0.5, 0.9, 0])])
+
+
+def test_drake_universal() -> None:
+    """About x, then about the moved y."""
+    pose = drake_pose(tree.UniversalJoint, [0.4, 1.1])
+    holds(pose.rotation().matrix(), about(X, 0.4) @ about(Y, 1.1), about(Y, 1.1) @ about(X, 0.4))
+
+
+def test_drake_helical_pitch() -> None:
+    """Metres per revolution."""
+    pose = drake_pose(lambda name, parent, child: tree.ScrewJoint(name, parent, child, AXIS, 0.3, 0.0), [1.2])
+    holds(pose.translation(), 0.3 * 1.2 / (2 * pi) * AXIS, 0.3 * 1.2 * AXIS)
+
+
+def test_drake_armature() -> None:
+    """The rotor inertia of an actuator times the square of its gear ratio, in M and in inverse dynamics."""
+    plant, _, context = drake_robot(drake_hinge(), armature=0.5)
+    body = about_origin[0, 0]
+    holds(plant.CalcMassMatrix(context), [[body + 0.5 * 9]], [[body]], [[body + 0.5]])
+    moved = drake_inverse(plant, context, [1.0]) - drake_inverse(plant, context, [0.0])
+    holds(moved, [body + 0.5 * 9], [body])
+
+
+def test_drake_damping() -> None:
+    """A force element: inverse dynamics under all of them includes it."""
+    forces = []
+    for damping in (0.0, 0.7):
+        plant, _, context = drake_robot(drake_hinge(damping))
+        plant.SetVelocities(context, [2.0])
+        forces.append(drake_inverse(plant, context, [0.4]))
+    holds(forces[1], forces[0] + 1.4, forces[0])
+
+
+def test_drake_gravity() -> None:
+    """The gravity vector is the acceleration of free fall; it is a force element, and not in CalcBiasTerm."""
+    plant, _, context = drake_robot(lambda name, parent, child: tree.PrismaticJoint(name, parent, child, X))
+    holds(drake_inverse(plant, context, [0.0]), [-MASS * GRAVITY[0]], [MASS * GRAVITY[0]], [0.0])
+    holds(plant.CalcGravityGeneralizedForces(context), [MASS * GRAVITY[0]], [-MASS * GRAVITY[0]])
+    holds(plant.CalcBiasTerm(context), [0.0], [-MASS * GRAVITY[0]], [MASS * GRAVITY[0]])
+
+
+def test_drake_inertia() -> None:
+    """UnitInertia is about the body's origin and divided by the mass."""
+    plant, _, context = drake_robot(drake_hinge())
+    holds(plant.CalcMassMatrix(context), [[about_origin[0, 0]]], [[about_origin[0, 0] + MASS * (COM[1] ** 2 + COM[2] ** 2)]])
+
+
+def test_drake_mass_matrix() -> None:
+    """Both triangles are filled."""
+    plant, _, context = drake_robot(tree.UniversalJoint)
+    plant.SetPositions(context, [0.3, 0.8])
+    mass = plant.CalcMassMatrix(context)
+    holds(mass, mass.T, np.triu(mass), np.tril(mass))
+
+
+def test_drake_order() -> None:
+    """Degrees of freedom are depth-first, whatever the order in which bodies were added."""
+    plant = MultibodyPlant(0.0)
+    inertia = tree.SpatialInertia(MASS, COM, tree.UnitInertia(1, 1, 1))
+    bodies = {name: plant.AddRigidBody(name, inertia) for name in "abc"}
+    on = {"a": plant.world_frame(), "b": plant.world_frame(), "c": bodies["a"].body_frame()}
+    joints = {name: plant.AddJoint(tree.RevoluteJoint(name, on[name], bodies[name].body_frame(), X)) for name in "abc"}
+    plant.Finalize()
+    holds([joints[name].velocity_start() for name in "acb"], [0, 1, 2], [0, 2, 1])
+
+
+def test_drake_six_vectors() -> None:
+    """Velocities and Jacobians are [angular; linear]."""
+    plant, body, context = drake_robot(tree.QuaternionFloatingJoint)
+    plant.SetPositions(context, [*WXYZ, *P])
+    frame, world = body.body_frame(), plant.world_frame()
+    jacobian = plant.CalcJacobianSpatialVelocity(context, tree.JacobianWrtVariable.kV, frame, np.zeros(3), world, world)
+    holds(jacobian @ [*W, *V], [*W, *V], [*V, *W])
