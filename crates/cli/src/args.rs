@@ -39,6 +39,9 @@ pub enum Command {
     Gen(GenArgs),
     /// Set up and look at the reference engines.
     Oracles(OraclesArgs),
+    /// Serve a native library by the oracle protocol: what a run starts as a child process.
+    #[command(hide = true)]
+    Peer(PeerArgs),
 }
 
 #[derive(Debug, Clone, Args)]
@@ -167,9 +170,25 @@ pub struct OraclesArgs {
 #[derive(Debug, Clone, Subcommand)]
 pub enum OraclesAction {
     /// Install the reference engines below target/ (about 1.4 GB); does nothing when they are there.
-    Install,
+    Install(InstallArgs),
     /// Say which engines answer, and with which version.
     Status,
+}
+
+#[derive(Debug, Clone, Args)]
+pub struct InstallArgs {
+    /// Also build the native peers that timing takes, with clang and g++ where they are found (some minutes, once).
+    #[arg(long)]
+    pub native: bool,
+}
+
+#[derive(Debug, Clone, Args)]
+pub struct PeerArgs {
+    /// The library: one that exports what oracles/native/peer.h says.
+    pub library: PathBuf,
+    /// Stay on this core.
+    #[arg(long)]
+    pub core: Option<usize>,
 }
 
 impl RunArgs {

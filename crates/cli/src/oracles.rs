@@ -1,6 +1,7 @@
 //! Installing the reference engines, and looking at them.
 
 use crate::fail::Fail;
+use crate::native;
 use crate::root::Root;
 use engines::{Limits, Oracle};
 use harness::Subject;
@@ -144,6 +145,7 @@ pub fn status(root: &Root) -> Result<(), Fail> {
             }
         }
     }
+    native::status(root);
     if broken.is_empty() {
         return Ok(());
     }

@@ -1,13 +1,14 @@
 //! Subjects: who answers.
 //!
 //! [`Native`] runs the kernels of this workspace; [`Oracle`] asks a program that speaks the protocol of `oracles/PROTOCOL.md`;
-//! [`Recorded`] plays back what an oracle once answered. To add an engine, write such a program, or implement
+//! [`peer`] serves an engine's native library by the same protocol; [`Recorded`] plays back what an oracle once answered. To add an engine, write such a program, or implement
 //! [`Subject`](harness::Subject) in a file of its own here.
 
 mod coding;
 mod kernel;
 mod native;
 mod oracle;
+pub mod peer;
 mod process;
 mod recorded;
 
