@@ -7,7 +7,7 @@ use crate::fail::Fail;
 use crate::oracles;
 use crate::root::Root;
 use engines::{Limits, Oracle, peer};
-use harness::{Subject, hash};
+use harness::{Identity, Subject, hash};
 use indicatif::{ProgressBar, ProgressStyle};
 use std::ffi::OsString;
 use std::io::IsTerminal;
@@ -97,13 +97,14 @@ pub fn install(root: &Root) -> Result<(), Fail> {
     if built == 0 { Err(missing("no native peer can be built here".into())) } else { Ok(()) }
 }
 
-/// Prints which peers answer.
+/// Prints which peers answer, and where they are.
 pub fn status(root: &Root) {
     for name in PEERS {
-        match start(root, name, Limits::default(), None) {
-            Ok(peer) => {
-                let build = &peer.identity().build;
-                println!("{name:<16} {:<8} {}", peer.identity().version, build.get("compiler").map_or("", String::as_str));
+        let peer = start(root, name, Limits::default(), None);
+        match peer.and_then(|peer| Ok((peer, library(root, name)?))) {
+            Ok((peer, library)) => {
+                let Identity { version, build, .. } = peer.identity();
+                println!("{name:<16} {version:<8} {}  {}", build.get("compiler").map_or("", String::as_str), library.display());
             }
             Err(reason) => println!("{name:<16} {reason}"),
         }

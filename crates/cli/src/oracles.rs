@@ -131,6 +131,7 @@ pub fn start(root: &Root, python: &Path, engine: &str, limits: Limits) -> Result
 
 /// Prints what answers.
 pub fn status(root: &Root) -> Result<(), Fail> {
+    native::status(root);
     let Some(python) = python(root) else {
         let message = "the reference engines are not installed (or in other versions than oracles/requirements.txt asks)".into();
         return Err(Fail::Missing { message, advice: "run `featherbench oracles install`".into() });
@@ -145,7 +146,6 @@ pub fn status(root: &Root) -> Result<(), Fail> {
             }
         }
     }
-    native::status(root);
     if broken.is_empty() {
         return Ok(());
     }

@@ -32,7 +32,8 @@ pub fn serve(path: &Path, core: Option<usize>) -> Result<(), String> {
     let io = |error: rustix::io::Errno| format!("standard output: {error}");
     let mut answers = File::from(rustix::io::dup(rustix::stdio::stdout()).map_err(io)?);
     rustix::stdio::dup2_stdout(rustix::stdio::stderr()).map_err(io)?;
-    let library = Library::open(path)?;
+    // Without a folder in its name a library would be looked for where the system keeps its own.
+    let library = Library::open(&path.canonicalize().map_err(|error| format!("{}: {error}", path.display()))?)?;
     let mut session = Session { library: &library, problem: None, robot: None };
     let mut requests = BufReader::new(stdin());
     while let Some(request) = Frame::read(&mut requests).map_err(|error| error.to_string())? {
