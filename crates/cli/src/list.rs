@@ -2,6 +2,7 @@
 
 use crate::args::ListArgs;
 use crate::fail::Fail;
+use crate::native::PEERS;
 use crate::oracles::ENGINES;
 use crate::problems;
 use crate::root::Root;
@@ -43,7 +44,7 @@ fn text(root: &Root, args: &ListArgs) -> Result<String, Fail> {
             problem.depth
         );
     }
-    text += &format!("\nengines:  native, {}\n", ENGINES.join(", "));
+    text += &format!("\nengines:  native, {}\npeers:    {}\n", ENGINES.join(", "), PEERS.join(", "));
     text += "studies:  agreement, digits, conditioning, structure, timing\n";
     text += "\nfamilies of generated robots, with their parameters:\n";
     for name in Family::NAMES {

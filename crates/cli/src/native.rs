@@ -43,7 +43,9 @@ const EIGEN: &str = "cmeel-eigen==3.4.1";
 struct Recipe {
     name: &'static str,
     compiler: PathBuf,
-    flags: Vec<OsString>,
+    flags: &'static [&'static str],
+    /// Folders of foreign headers.
+    include: Vec<PathBuf>,
     sources: Vec<PathBuf>,
     /// Behind the objects when linking.
     link: Vec<OsString>,
@@ -76,9 +78,10 @@ pub fn start(root: &Root, name: &str, limits: Limits, core: Option<usize>) -> Re
 pub fn install(root: &Root) -> Result<(), Fail> {
     let missing = |message: String| Fail::Missing {
         message,
-        advice: "native peers need clang++ or g++ (Debian: apt-get install clang), and for Pinocchio the headers of Eigen (fetched from the \
+        advice:
+            "native peers need clang++ or g++ (Debian: apt-get install clang), and for Pinocchio the headers of Eigen (fetched from the \
                  package index, or Debian's libeigen3-dev)"
-            .into(),
+                .into(),
     };
     eigen().map(|_| ()).or_else(|_| fetch_eigen(root)).map_err(missing)?;
     let mut built = 0;
@@ -117,36 +120,36 @@ impl Recipe {
         let name = known().ok_or_else(|| format!("there is no native peer {name}; there are {}", PEERS.join(", ")))?;
         let folder = root.oracles().join("native");
         let packages = packages(root)?;
-        let (language, tools): (_, &[&str]) = match name {
+        let (flags, tools): (&[&str], &[&str]) = match name {
             "pinocchio-clang" => (&PINOCCHIO_FLAGS[..], &["clang++"]),
             "pinocchio-gcc" => (&PINOCCHIO_FLAGS[..], &["g++"]),
             _ => (&MUJOCO_FLAGS[..], &["clang", "gcc", "cc"]),
         };
-        let (compiler, version) = tools.iter().find_map(|tool| compiler(tool)).ok_or_else(|| format!("there is no {}", tools.join(" or ")))?;
-        let mut flags: Vec<OsString> = language.iter().map(OsString::from).collect();
-        let (sources, headers, link, wheel) = if name == "mujoco-native" {
+        let (compiler, version) =
+            tools.iter().find_map(|tool| compiler(tool)).ok_or_else(|| format!("there is no {}", tools.join(" or ")))?;
+        let (sources, headers, include, link, wheel) = if name == "mujoco-native" {
             let (wheel, package) = (version_of(&packages, "mujoco")?, packages.join("mujoco"));
-            flags.extend(["-isystem".into(), package.join("include").into()]);
             let engine = find(&package, "libmujoco.so.")?;
             let link = vec![engine.into(), joined("-Wl,-rpath,", &package), "-lm".into()];
-            (vec![folder.join("mujoco.c")], vec![folder.join("peer.h"), folder.join("coordinates.h")], link, wheel)
+            let own = vec![folder.join("peer.h"), folder.join("coordinates.h")];
+            (vec![folder.join("mujoco.c")], own, vec![package.join("include")], link, wheel)
         } else {
             let (prefix, group) = (packages.join("cmeel.prefix/include"), folder.join("pinocchio"));
             let (headers, eigen_version) = eigen()?;
-            flags.extend(["-isystem".into(), prefix.into(), "-isystem".into(), headers.into()]);
             let sources = ["robot", "inverse", "forward", "inertia", "kinematics"].map(|name| group.join(format!("{name}.cc")));
             let own = vec![folder.join("peer.h"), folder.join("coordinates.h"), group.join("robot.h")];
-            (sources.into(), own, Vec::new(), format!("{}, {eigen_version}", version_of(&packages, "libpinocchio")?))
+            let wheel = format!("{}, {eigen_version}", version_of(&packages, "libpinocchio")?);
+            (sources.into(), own, vec![prefix, headers], Vec::new(), wheel)
         };
-        let shown: Vec<_> = language.iter().filter(|flag| flag.starts_with("-O") || flag.starts_with("-m") || **flag == "-DNDEBUG").copied().collect();
-        let build = format!("compiler={version}\nflags={}\npackages={wheel}", shown.join(" "));
-        let mut parts = vec![format!("{name}\n{build}\n{}\n{:?}{flags:?}{link:?}", compiler.display(), processor()).into_bytes()];
+        let build = format!("compiler={version}\nflags={}\npackages={wheel}", flags.join(" "));
+        // Where headers stand is no part of it; where a library is linked from is.
+        let mut parts = vec![format!("{name}\n{build}\n{:?}\n{link:?}", processor()).into_bytes()];
         for source in sources.iter().chain(&headers) {
             parts.push(std::fs::read(source).map_err(|error| format!("{}: {error}", source.display()))?);
         }
         let parts: Vec<&[u8]> = parts.iter().map(Vec::as_slice).collect();
         let library = cache()?.join(format!("{name}-{}.so", &hash::of_parts(&parts)[..16]));
-        Ok(Self { name, compiler, flags, sources, link, build, library })
+        Ok(Self { name, compiler, flags, include, sources, link, build, library })
     }
 
     /// Compiles and links in a folder of its own, then moves the library to its place.
@@ -168,7 +171,8 @@ impl Recipe {
         let worker = || {
             while let Some(source) = self.sources.get(next.fetch_add(1, Ordering::Relaxed)) {
                 let mut command = Command::new(&self.compiler);
-                command.args(&self.flags).args([text_macro("FB_ENGINE", self.name), text_macro("FB_BUILD", &self.build)]);
+                command.args(self.flags).args(self.include.iter().flat_map(|folder| [OsString::from("-isystem"), folder.into()]));
+                command.args([text_macro("FB_ENGINE", self.name), text_macro("FB_BUILD", &self.build)]);
                 let result = finished(command.arg("-c").arg(source).arg("-o").arg(object(source)));
                 let name = source.file_name().unwrap_or_default().to_string_lossy();
                 match result {

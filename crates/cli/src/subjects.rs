@@ -2,6 +2,7 @@
 
 use crate::args::RunArgs;
 use crate::fail::Fail;
+use crate::native;
 use crate::oracles;
 use crate::problems::Loaded;
 use crate::root::Root;
@@ -26,7 +27,11 @@ pub fn open(root: &Root, args: &RunArgs, loaded: &Loaded) -> Result<Subjects, Fa
         let python = oracles::install(root)?;
         let limits = Limits { answer: Duration::from_secs(args.answer_within), memory: args.memory << 20 };
         for engine in &agreement.engines {
-            let oracle = oracles::start(root, &python, engine, limits);
+            let oracle = if native::PEERS.contains(&engine.as_str()) {
+                native::start(root, engine, limits, None)
+            } else {
+                oracles::start(root, &python, engine, limits)
+            };
             opened.add(oracle.map(|oracle| Box::new(oracle) as Box<dyn Subject>), engine, EngineSource::Live);
         }
     } else {

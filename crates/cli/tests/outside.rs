@@ -36,7 +36,10 @@ fn main() -> ExitCode {
         ("native peers that are not there are named", native::no_compiler),
     ];
     let (mut passed, mut failed, mut skipped) = (0, 0, 0);
-    for (name, test) in tests {
+    // Like libtest: words on the command line choose the tests whose names contain one of them.
+    let words: Vec<String> = std::env::args().skip(1).filter(|word| !word.starts_with('-')).collect();
+    let chosen = |name: &str| words.is_empty() || words.iter().any(|word| name.contains(word));
+    for (name, test) in tests.into_iter().filter(|(name, _)| chosen(name)) {
         // A failed assertion of a test is that test's failure.
         match std::panic::catch_unwind(test).unwrap_or_else(|_| Outcome::Failed("see above".into())) {
             Outcome::Passed => {

@@ -33,7 +33,8 @@ const PATIENT: Limits = Limits { answer: Duration::from_secs(60), memory: 8 << 3
 
 fn robot(spec: &str, states: usize) -> Problem {
     let named = project().join(format!("datasets/models/{spec}.json"));
-    let description = if named.is_file() { formats::neutral::read(named).unwrap() } else { Family::parse(spec).unwrap().generate().unwrap() };
+    let description =
+        if named.is_file() { formats::neutral::read(named).unwrap() } else { Family::parse(spec).unwrap().generate().unwrap() };
     Problem::new(&description, "test", ModelOrigin::Generated, states, 1).unwrap()
 }
 
@@ -110,11 +111,18 @@ fn residual(mass: &[f64], x: &[f64], b: &[f64]) -> f64 {
     })
 }
 
-/// The same of the columns of an inverse, which are its rows.
+/// max_ik |1 − M N|_ik / Σ_j √(M_ii·M_jj·N_jj·N_kk): what is left when each entry of a symmetric inverse N is known up to ε of its own two axes,
+/// as the entries of M are.
 fn inverse_residual(mass: &[f64], inverse: &[f64]) -> f64 {
     let n = inverse.len().isqrt();
-    let unit = |i: usize| (0..n).map(|j| f64::from(u8::from(i == j))).collect::<Vec<_>>();
-    inverse.chunks_exact(n).enumerate().map(|(i, column)| residual(mass, column, &unit(i))).fold(0.0, worst)
+    let root = |matrix: &[f64]| (0..n).map(|i| matrix[i * n + i].sqrt()).collect::<Vec<f64>>();
+    let (m, inv) = (root(mass), root(inverse));
+    let weight: f64 = m.iter().zip(&inv).map(|(m, inv)| m * inv).sum();
+    let entry = |i: usize, k: usize| {
+        let product: f64 = (0..n).map(|j| mass[i * n + j] * inverse[j * n + k]).sum();
+        ratio(f64::from(u8::from(i == k)) - product, m[i] * weight * inv[k])
+    };
+    (0..n * n).map(|at| entry(at / n, at % n)).fold(0.0, worst)
 }
 
 pub fn pendulum_answers() -> Outcome {
@@ -130,7 +138,7 @@ pub fn pendulum_answers() -> Outcome {
         assert_eq!(found.len(), 1 + 6 + 3, "what it read back, six honest methods, three odd ones: {found:?}");
         for Found { method, share, .. } in &found {
             let share = share.clone().unwrap();
-            assert!(if method == "wrong" { share > 1e4 } else { share <= 1.0 }, "{spec} {method}: {share}");
+            assert!(if method == "wrong" { share > 10.0 } else { share <= 1.0 }, "{spec} {method}: {share}");
         }
     }
     let two = ask(&peer, &robot("chain:n=2", 1), Quantity::InverseDynamics, "pendulum");
@@ -213,24 +221,37 @@ fn built() -> Vec<(String, PathBuf)> {
     text.lines().filter(|line| line.ends_with(".so")).filter_map(library).collect()
 }
 
+/// How many times as much as rounding may leave is known of an engine, by ci/deviations.toml: 5e-13 of MuJoCo's M and of what starts from it;
+/// and computeMinverse works in world axes, where digits go as (distance/size)² (1.2 times on tree-common-16, a hundredth elsewhere).
+fn slack(peer: &str, quantity: Quantity) -> f64 {
+    match quantity {
+        Quantity::MassMatrix | Quantity::MassMatrixSparse | Quantity::Factorization | Quantity::Solve if peer == "mujoco-native" => 50.0,
+        Quantity::MassMatrixInverse if peer.starts_with("pinocchio") => 2.0,
+        _ => 1.0,
+    }
+}
+
 pub fn peers_agree() -> Outcome {
     let built = built();
     if built.is_empty() {
         return Outcome::Nightly("no native peer is built (`featherbench oracles install --native`)".into());
     }
-    let robots = ["chain-spatial-10", "chain:n=36,layout=spatial", "chain-spatial-100", "humanoid", "panda", "tree-common-16-spread0.3-seed3"];
+    let robots =
+        ["chain-spatial-10", "chain:n=36,layout=spatial", "chain-spatial-100", "humanoid", "panda", "tree-common-16-spread0.3-seed3"];
     for spec in robots {
         let problem = robot(spec, 20);
-        for (name, library) in &built {
-            let peer = start(library, PATIENT, None).unwrap();
-            for Found { quantity, method, share } in compare(&peer, &problem, &[]) {
+        let start =
+            |(name, library): &(String, PathBuf)| (name.clone(), Box::new(start(library, PATIENT, None).unwrap()) as Box<dyn Subject>);
+        let ours: (String, Box<dyn Subject>) = ("native".into(), Box::new(Native::new()));
+        for (name, subject) in built.iter().map(start).chain([ours]) {
+            for Found { quantity, method, share } in compare(subject.as_ref(), &problem, &[]) {
                 let line = format!("{name} {spec} {} by {method}: {share:.2?}", quantity.name());
                 if std::env::var_os("FEATHERBENCH_SHOW").is_some() {
                     println!("{line}");
                 }
                 // MuJoCo alone has no helical joint.
                 let excused = matches!(&share, Err(Refusal::Unsupported(why)) if name == "mujoco-native" && why.contains("helical"));
-                assert!(excused || share.is_ok_and(|share| share <= 1.0), "{line}");
+                assert!(excused || share.is_ok_and(|share| share <= slack(&name, quantity)), "{line}");
             }
         }
     }

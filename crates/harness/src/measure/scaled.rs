@@ -45,9 +45,7 @@ pub fn scaled_error(problem: &Problem, quantity: Quantity, at: &Magnitudes, refe
         Quantity::BodyJacobian => body_jacobian(problem, at, reference, value),
         Quantity::Readback => readback(reference, value),
         Quantity::StoredEntries => entries(reference, value, &[1.0]),
-        Quantity::ForwardDynamics
-        | Quantity::ForwardDynamicsSingle
-        | Quantity::Solve => {
+        Quantity::ForwardDynamics | Quantity::ForwardDynamicsSingle | Quantity::Solve => {
             let largest = reference.iter().fold(0.0_f64, |largest, x| worst(largest, x.abs()));
             entries(reference, value, &vec![largest; reference.len()])
         }
