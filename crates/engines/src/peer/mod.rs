@@ -145,7 +145,8 @@ impl<'a> Session<'a> {
             return Err(failed(format!("{count} states from {first} on do not exist")));
         }
         let mut values = vec![0.0; count * size];
-        for (k, value) in values.chunks_exact_mut(size).enumerate() {
+        // A robot that cannot move has nothing to say of itself.
+        for (k, value) in values.chunks_exact_mut(size.max(1)).enumerate() {
             robot.run(first + k, 1)?;
             robot.read(value)?;
         }
