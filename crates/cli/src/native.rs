@@ -83,7 +83,10 @@ pub fn install(root: &Root) -> Result<(), Fail> {
                  package index, or Debian's libeigen3-dev)"
                 .into(),
     };
-    eigen().map(|_| ()).or_else(|_| fetch_eigen(root)).map_err(missing)?;
+    if let Err(reason) = eigen().map(|_| ()).or_else(|_| fetch_eigen(root)) {
+        // Pinocchio is then left out, and says so below.
+        eprintln!("{reason}");
+    }
     let mut built = 0;
     for name in PEERS {
         match Recipe::new(root, name) {
@@ -270,7 +273,8 @@ fn eigen() -> Result<(PathBuf, String), String> {
     let wheel = cache()?.join(EIGEN);
     let candidates = [wheel.join("cmeel.prefix/include/eigen3"), "/usr/include/eigen3".into()];
     let found = candidates.into_iter().find(|folder| folder.join("Eigen/Core").is_file());
-    let headers = found.ok_or("there are no headers of Eigen: run `featherbench oracles install --native`")?;
+    let headers = found
+        .ok_or("there are no headers of Eigen: `featherbench oracles install --native` fetches them, or install Debian's libeigen3-dev")?;
     let macros = headers.join("Eigen/src/Core/util/Macros.h");
     let text = std::fs::read_to_string(&macros).map_err(|error| format!("{}: {error}", macros.display()))?;
     let number = |name: &str| {
@@ -299,7 +303,7 @@ fn fetch_eigen(root: &Root) -> Result<(), String> {
 
 fn bar(name: &str, files: usize) -> ProgressBar {
     if !std::io::stderr().is_terminal() {
-        eprintln!("building {name}: {files} files, up to a minute each …");
+        eprintln!("building {name} (files to compile: {files}, up to a minute each) …");
         return ProgressBar::hidden();
     }
     let bar = ProgressBar::new(files as u64);

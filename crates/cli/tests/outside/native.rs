@@ -82,16 +82,19 @@ fn compare(subject: &dyn Subject, problem: &Problem, but: &[&str]) -> Vec<Found>
         for method in subject.methods(quantity).into_iter().filter(|method| !but.contains(&method.as_str())) {
             let share = ask(subject, problem, quantity, &method).map(|values| {
                 assert_eq!(values.len(), reference.len(), "{} by {method}", quantity.name());
-                let states = values.chunks_exact(size).zip(reference.chunks_exact(size)).zip(mass.chunks_exact(masses)).enumerate();
-                let share = |(k, ((value, reference), mass)): (usize, ((&[f64], &[f64]), &[f64]))| match quantity {
-                    // As ci/gates.toml has it: some ε per level of the tree, for backward errors too; 45 ε up to depth twenty elsewhere.
-                    Quantity::ForwardDynamics => forward[k].backward_error(value) / (1e-14 * depth),
-                    Quantity::Solve => residual(mass, value, problem.states.tau(k)) / (1e-14 * depth),
-                    Quantity::MassMatrixInverse => inverse_residual(mass, value) / (1e-14 * depth),
-                    Quantity::Readback => scaled_error(problem, quantity, &at[k], reference, value) / 3.6e-15,
-                    _ => scaled_error(problem, quantity, &at[k], reference, value) / (1e-14 * (depth / 20.0).max(1.0)),
+                let share = |k: usize| {
+                    let (value, reference) = (&values[k * size..][..size], &reference[k * size..][..size]);
+                    let mass = &mass[k * masses..][..masses];
+                    match quantity {
+                        // As ci/gates.toml has it: some ε per level of the tree, for backward errors too; 45 ε up to depth twenty elsewhere.
+                        Quantity::ForwardDynamics => forward[k].backward_error(value) / (1e-14 * depth),
+                        Quantity::Solve => residual(mass, value, problem.states.tau(k)) / (1e-14 * depth),
+                        Quantity::MassMatrixInverse => inverse_residual(mass, value) / (1e-14 * depth),
+                        Quantity::Readback => scaled_error(problem, quantity, &at[k], reference, value) / 3.6e-15,
+                        _ => scaled_error(problem, quantity, &at[k], reference, value) / (1e-14 * (depth / 20.0).max(1.0)),
+                    }
                 };
-                states.map(share).fold(0.0, worst)
+                (0..values.len() / size).map(share).fold(0.0, worst)
             });
             found.push(Found { quantity, method, share });
         }
