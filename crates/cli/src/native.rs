@@ -33,7 +33,7 @@ const PINOCCHIO_FLAGS: [&str; 10] = [
     "-DBOOST_MPL_CFG_NO_PREPROCESSED_HEADERS",
     "-DBOOST_FUSION_INVOKE_MAX_ARITY=12",
 ];
-/// What the C file beside MuJoCo's library is compiled with; the library itself is used as it is shipped.
+/// What the C files beside MuJoCo's library are compiled with; the library itself is used as it is shipped.
 const MUJOCO_FLAGS: [&str; 5] = ["-std=c11", "-O3", "-march=native", "-fPIC", "-fvisibility=hidden"];
 
 /// The wheel of Eigen that fits Pinocchio's; the headers alone are taken from it.
@@ -134,8 +134,9 @@ impl Recipe {
             let (wheel, package) = (version_of(&packages, "mujoco")?, packages.join("mujoco"));
             let engine = find(&package, "libmujoco.so.")?;
             let link = vec![engine.into(), joined("-Wl,-rpath,", &package), "-lm".into()];
-            let own = vec![folder.join("peer.h"), folder.join("coordinates.h")];
-            (vec![folder.join("mujoco.c")], own, vec![package.join("include")], link, wheel)
+            let group = folder.join("mujoco");
+            let own = vec![folder.join("peer.h"), folder.join("coordinates.h"), group.join("robot.h")];
+            (["robot", "methods"].map(|name| group.join(format!("{name}.c"))).into(), own, vec![package.join("include")], link, wheel)
         } else {
             let (prefix, group) = (packages.join("cmeel.prefix/include"), folder.join("pinocchio"));
             let (headers, eigen_version) = eigen()?;
