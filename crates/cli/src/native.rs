@@ -136,7 +136,7 @@ impl Recipe {
             let link = vec![engine.into(), joined("-Wl,-rpath,", &package), "-lm".into()];
             let group = folder.join("mujoco");
             let own = vec![folder.join("peer.h"), folder.join("coordinates.h"), group.join("robot.h")];
-            (["robot", "methods"].map(|name| group.join(format!("{name}.c"))).into(), own, vec![package.join("include")], link, wheel)
+            (vec![group.join("robot.c"), group.join("methods.c")], own, vec![package.join("include")], link, wheel)
         } else {
             let (prefix, group) = (packages.join("cmeel.prefix/include"), folder.join("pinocchio"));
             let (headers, eigen_version) = eigen()?;
