@@ -263,9 +263,10 @@ fn version_of(packages: &Path, name: &str) -> Result<String, String> {
 
 /// Where peers are kept.
 fn cache() -> Result<PathBuf, String> {
-    let from_home = || std::env::var_os("HOME").map(|home| Path::new(&home).join(".cache"));
-    let set = std::env::var_os("XDG_CACHE_HOME").map(PathBuf::from).filter(|path| path.is_absolute());
-    let folder = set.or_else(from_home).ok_or("neither XDG_CACHE_HOME nor HOME says where the cache folder is")?;
+    // A relative folder would be another one wherever the program is started.
+    let named = |variable: &str| std::env::var_os(variable).map(PathBuf::from).filter(|path| path.is_absolute());
+    let from_home = || named("HOME").map(|home| home.join(".cache"));
+    let folder = named("XDG_CACHE_HOME").or_else(from_home).ok_or("neither XDG_CACHE_HOME nor HOME says where the cache folder is")?;
     Ok(folder.join("featherbench/peers"))
 }
 
