@@ -41,6 +41,9 @@ pub enum Command {
     Gen(GenArgs),
     /// Set up and look at the reference engines.
     Oracles(OraclesArgs),
+    /// Serve a native library by the oracle protocol: what a run starts as a child process.
+    #[command(hide = true)]
+    Peer(PeerArgs),
 }
 
 #[derive(Debug, Clone, Args)]
@@ -184,7 +187,7 @@ pub struct OraclesArgs {
 #[derive(Debug, Clone, Subcommand)]
 pub enum OraclesAction {
     /// Install the reference engines below target/ (about 1.4 GB); does nothing when they are there.
-    Install,
+    Install(InstallArgs),
     /// Say which engines answer, and with which version.
     Status,
     /// Test a program that speaks oracles/PROTOCOL.md: exit 1 when something is wrong; what it lacks is no fault.
@@ -206,6 +209,22 @@ pub struct CheckArgs {
     /// Print everything that is right as well.
     #[arg(long)]
     pub all: bool,
+}
+
+#[derive(Debug, Clone, Args)]
+pub struct InstallArgs {
+    /// Also build the native peers that timing takes, with clang and g++ where they are found (some minutes, once).
+    #[arg(long)]
+    pub native: bool,
+}
+
+#[derive(Debug, Clone, Args)]
+pub struct PeerArgs {
+    /// The library: one that exports what oracles/native/peer.h says.
+    pub library: PathBuf,
+    /// Stay on this core.
+    #[arg(long)]
+    pub core: Option<usize>,
 }
 
 impl RunArgs {

@@ -88,5 +88,6 @@ fn describe(quantity: Quantity) -> &'static str {
         Quantity::StoredEntries => "stored numbers of the sparse mass matrix",
         Quantity::Factorization => "factors of M = LᵀDL",
         Quantity::Solve => "M⁻¹τ with given factors",
+        Quantity::MassMatrixInverse => "M⁻¹",
     }
 }

@@ -2,6 +2,7 @@
 
 use crate::args::ListArgs;
 use crate::fail::Fail;
+use crate::native::PEERS;
 use crate::oracles::{ENGINES, IN_PROCESS};
 use crate::problems;
 use crate::root::Root;
@@ -46,7 +47,7 @@ fn text(root: &Root, args: &ListArgs) -> Result<String, Fail> {
             problem.depth
         );
     }
-    text += &format!("\nengines:  native, {}, {IN_PROCESS}\n", ENGINES.join(", "));
+    text += &format!("\nengines:  native, {}, {IN_PROCESS}\npeers:    {}\n", ENGINES.join(", "), PEERS.join(", "));
     text += "studies:  agreement, digits, conditioning, structure, timing\n";
     text += "\nfamilies of generated robots, with their parameters:\n";
     for name in Family::NAMES {

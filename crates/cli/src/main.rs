@@ -7,6 +7,7 @@ mod fail;
 mod generate;
 mod guest;
 mod list;
+mod native;
 mod oracles;
 mod problems;
 mod progress;
@@ -45,9 +46,10 @@ fn dispatch(cli: Cli) -> Result<(), Fail> {
         Command::Record(args) => record::record(&root, &args),
         Command::Gen(args) => generate::generate(&args),
         Command::Oracles(args) => match args.action {
-            OraclesAction::Install => oracles::install(&root).map(|_| ()),
+            OraclesAction::Install(args) => oracles::install(&root).and_then(|_| if args.native { native::install(&root) } else { Ok(()) }),
             OraclesAction::Status => oracles::status(&root),
             OraclesAction::Check(args) => check::check(&args),
         },
+        Command::Peer(args) => engines::peer::serve(&args.library, args.core).map_err(Fail::input),
     }
 }

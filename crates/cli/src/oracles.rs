@@ -1,6 +1,7 @@
 //! Installing the reference engines, and looking at them.
 
 use crate::fail::Fail;
+use crate::native;
 use crate::root::Root;
 use engines::{Limits, Oracle};
 use harness::{Refusal, Subject};
@@ -141,6 +142,7 @@ pub fn reproducer(root: &Root, limits: Limits) -> studies::Reproduce {
 
 /// Prints what answers.
 pub fn status(root: &Root) -> Result<(), Fail> {
+    native::status(root);
     let Some(python) = python(root) else {
         let message = "the reference engines are not installed (or in other versions than oracles/requirements.txt asks)".into();
         return Err(Fail::Missing { message, advice: "run `featherbench oracles install`".into() });

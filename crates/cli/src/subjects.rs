@@ -3,6 +3,7 @@
 use crate::args::RunArgs;
 use crate::fail::Fail;
 use crate::guest;
+use crate::native;
 use crate::oracles;
 use crate::problems::Loaded;
 use crate::root::Root;
@@ -33,7 +34,11 @@ pub fn open(root: &Root, args: &RunArgs, loaded: &Loaded) -> Result<Subjects, Fa
     if args.live && !others.is_empty() {
         let python = oracles::install(root)?;
         for engine in others {
-            let oracle = oracles::start(root, &python, engine, limits);
+            let oracle = if native::PEERS.contains(&engine.as_str()) {
+                native::start(root, engine, limits, None)
+            } else {
+                oracles::start(root, &python, engine, limits)
+            };
             opened.add(oracle.map(|oracle| Box::new(oracle) as Box<dyn Subject>), engine, EngineSource::Live);
         }
     } else if !others.is_empty() {

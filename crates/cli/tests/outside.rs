@@ -1,8 +1,11 @@
 //! Tests that need what a fresh machine may not have: Python, the reference engines, a browser.
 //!
-//! Each is run where it can be and listed as skipped where it cannot; with `FEATHERBENCH_REQUIRE_ALL` set, as in CI, a skip is a failure.
+//! Each is run where it can be and listed as skipped where it cannot; with `FEATHERBENCH_REQUIRE_ALL` set, as in CI, a skip is a failure; the native peers are due at night only,
+//! with `FEATHERBENCH_NIGHTLY` set.
 //! Not libtest: its captured output would hide the skips.
 
+#[path = "outside/native.rs"]
+mod native;
 mod support;
 
 use std::path::Path;
@@ -16,10 +19,12 @@ enum Outcome {
     Passed,
     Failed(String),
     Skipped(String),
+    /// Not run here, and not due: it takes minutes of compiling, which the nightly run gives it.
+    Nightly(String),
 }
 
 fn main() -> ExitCode {
-    let tests: [(&str, Test); 8] = [
+    let tests: &[(&str, Test)] = &[
         ("a missing wheel is exit code three and can be tried again", missing_wheel),
         ("the oracles pass their own tests", oracles_by_themselves),
         ("the engines keep the conventions of the ledger", conventions),
@@ -28,9 +33,18 @@ fn main() -> ExitCode {
         ("a small oracle runs beside the recorded engines", small_oracle),
         ("a live run agrees with the recorded answers", live_run),
         ("a browser clicks through the report", browser),
+        ("a pendulum in C agrees with our kernels", native::pendulum_answers),
+        ("a pendulum in C is clocked beside its loop", native::pendulum_is_clocked),
+        ("a pendulum in C dies alone", native::pendulum_dies_alone),
+        ("the native peers agree with our kernels", native::peers_agree),
+        ("big robots are refused or answered by the native peers", native::big_robots_are_refused_or_answered),
+        ("native peers that are not there are named", native::no_compiler),
     ];
     let (mut passed, mut failed, mut skipped) = (0, 0, 0);
-    for (name, test) in tests {
+    // Like libtest: words on the command line choose the tests whose names contain one of them.
+    let words: Vec<String> = std::env::args().skip(1).filter(|word| !word.starts_with('-')).collect();
+    let chosen = |name: &str| words.is_empty() || words.iter().any(|word| name.contains(word));
+    for (name, test) in tests.iter().filter(|(name, _)| chosen(name)) {
         // A failed assertion of a test is that test's failure.
         match std::panic::catch_unwind(test).unwrap_or_else(|_| Outcome::Failed("see above".into())) {
             Outcome::Passed => {
@@ -44,6 +58,10 @@ fn main() -> ExitCode {
             Outcome::Skipped(reason) => {
                 println!("skipped: {name}: {reason}");
                 skipped += 1;
+            }
+            Outcome::Nightly(reason) => {
+                println!("left to the night: {name}: {reason}");
+                failed += usize::from(std::env::var_os("FEATHERBENCH_NIGHTLY").is_some());
             }
         }
     }

@@ -23,7 +23,7 @@ pub(crate) fn methods(quantity: Quantity) -> &'static [&'static str] {
         Quantity::Readback => &["build"],
         Quantity::StoredEntries => &["topology"],
         Quantity::Factorization => &["ltdl"],
-        Quantity::Solve => &["ltdl"],
+        Quantity::Solve | Quantity::MassMatrixInverse => &["ltdl"],
     }
 }
 
@@ -47,6 +47,7 @@ pub(crate) fn kernel<'a>(problem: &'a Problem, quantity: Quantity, method: &str,
         Quantity::ForwardDynamicsSingle => forward_dynamics_single(model, states, method == "ltdl"),
         Quantity::Factorization => factorization(model, states)?,
         Quantity::Solve => solve(model, states)?,
+        Quantity::MassMatrixInverse => mass_matrix_inverse(model, states),
         Quantity::KineticEnergy | Quantity::PotentialEnergy => energy(model, states, quantity),
         Quantity::CenterOfMass => center_of_mass(model, states),
         Quantity::Momentum => momentum(model, states),
@@ -220,6 +221,22 @@ fn solve<'a>(model: &'a Model<f64>, states: &'a StateBatch) -> Result<Kernel<'a>
         x.copy_from_slice(states.tau(k));
         Ok(factored[k % factored.len()].solve(x)?)
     }))
+}
+
+/// Factors, then one solution for each column.
+fn mass_matrix_inverse<'a>(model: &'a Model<f64>, states: &'a StateBatch) -> Kernel<'a> {
+    let (mut crba, mut ltdl) = (Crba::new(&model.topology), Ltdl::new(&model.topology));
+    Box::new(move |k, inverse| {
+        crba.run(model, states.q(k), ltdl.matrix_mut())?;
+        ltdl.factor()?;
+        // M⁻¹ is symmetric: its columns are its rows.
+        for (i, column) in inverse.chunks_exact_mut(model.topology.nv()).enumerate() {
+            column.fill(0.0);
+            column[i] = 1.0;
+            ltdl.solve(column)?;
+        }
+        Ok(())
+    })
 }
 
 fn energy<'a>(model: &'a Model<f64>, states: &'a StateBatch, quantity: Quantity) -> Kernel<'a> {

@@ -1,7 +1,8 @@
 //! Subjects: who answers.
 //!
 //! [`Native`] runs the kernels of this workspace; [`Oracle`] asks a program that speaks the protocol of `oracles/PROTOCOL.md`;
-//! [`Rapier`] is a library in this process; [`Recorded`] plays back what an oracle once answered. To add an engine, write such a program, or implement
+//! [`peer`] serves an engine's native library by the same protocol; [`Rapier`] is a library in this process; [`Recorded`] plays back what an
+//! oracle once answered. To add an engine, write such a program, or implement
 //! [`Subject`](harness::Subject) in a file of its own here.
 
 mod coding;
@@ -9,6 +10,7 @@ pub mod conformance;
 mod kernel;
 mod native;
 mod oracle;
+pub mod peer;
 mod process;
 mod rapier;
 mod recorded;

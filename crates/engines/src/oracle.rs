@@ -11,6 +11,7 @@ use std::collections::BTreeMap;
 use std::ffi::OsString;
 use std::ops::Range;
 use std::sync::{Mutex, PoisonError};
+use std::time::{Duration, Instant};
 
 /// Version of the protocol that we speak.
 pub(crate) const PROTOCOL: u64 = 1;
@@ -19,6 +20,8 @@ pub(crate) const PROTOCOL: u64 = 1;
 pub struct Oracle {
     identity: Identity,
     methods: BTreeMap<String, Vec<String>>,
+    /// Whether it reads the clock itself.
+    clock: bool,
     command: Vec<OsString>,
     limits: Limits,
     idle: Mutex<Vec<Session>>,
@@ -56,8 +59,9 @@ impl Oracle {
         if identity.name.is_empty() || identity.version.is_empty() {
             return Err("hello: engine and version must not be empty".into());
         }
+        let clock = hello.header.get("clock").and_then(Value::as_bool).unwrap_or(false);
         let session = Session { process, model: String::new(), readback: Vec::new(), states: None };
-        Ok(Self { identity, methods, command, limits, idle: Mutex::new(vec![session]) })
+        Ok(Self { identity, methods, clock, command, limits, idle: Mutex::new(vec![session]) })
     }
 
     /// The same oracle under another name; the engine's own name goes into its build, where it differs.
@@ -186,21 +190,42 @@ struct Asked<'a> {
     values: Vec<f64>,
 }
 
+impl Asked<'_> {
+    /// The question about a range of states.
+    fn question(&self, op: &str, range: &Range<usize>) -> Value {
+        json!({
+            "op": op, "quantity": self.quantity.name(), "method": self.method,
+            "first": range.start, "count": range.len(), "body": self.problem.deepest_body(),
+        })
+    }
+}
+
 impl Prepared for Asked<'_> {
     fn run(&mut self, range: Range<usize>) -> Result<(), Refusal> {
+        let question = self.question("evaluate", &range);
         let session = self.session.as_mut().ok_or_else(|| Refusal::Failed("the oracle has ended".into()))?;
         if self.quantity == Quantity::Readback {
             self.values.clone_from(&session.readback);
             return Ok(());
         }
-        let body = self.problem.deepest_body();
-        let header = json!({
-            "op": "evaluate", "quantity": self.quantity.name(), "method": self.method,
-            "first": range.start, "count": range.len(), "body": body,
-        });
-        let answer = session.ask(header, Vec::new())?;
+        let answer = session.ask(question, Vec::new())?;
         self.values = sized(&answer, "value", self.quantity.size(self.problem) * range.len())?;
         Ok(())
+    }
+
+    /// By the oracle's own clock, where it has one: the values are then not sent, and [`Prepared::read`] still has those of the last `run`. A
+    /// range that goes beyond the batch begins again at its first state.
+    fn clock(&mut self, range: Range<usize>) -> Result<Duration, Refusal> {
+        if !self.oracle.clock {
+            let start = Instant::now();
+            self.run(range)?;
+            return Ok(start.elapsed());
+        }
+        let question = self.question("clock", &range);
+        let session = self.session.as_mut().ok_or_else(|| Refusal::Failed("the oracle has ended".into()))?;
+        let answer = session.ask(question, Vec::new())?;
+        let nanoseconds = answer.header.get("nanoseconds").and_then(Value::as_u64);
+        nanoseconds.map(Duration::from_nanos).ok_or_else(|| Refusal::Failed("the oracle's answer has no nanoseconds".into()))
     }
 
     fn read(&self) -> &[f64] {

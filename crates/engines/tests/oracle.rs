@@ -309,6 +309,30 @@ fn what_is_not_supported_is_told_apart_and_the_process_kept() {
     }
 }
 
+/// An oracle that has a clock is asked for it; of any other the whole conversation is timed.
+#[test]
+fn the_clock_is_the_oracles_where_it_has_one() {
+    let hello = HELLO.replace(r#""protocol":1"#, r#""protocol":1,"clock":true"#);
+    let answering = |nanoseconds: &str| Script {
+        hello: hello.clone(),
+        evaluate: format!(r#"case "$line" in *'"op":"clock"'*) echo '{{"status":"ok"{nanoseconds}}}';; *) {TWO};; esac"#),
+        ..Script::honest()
+    };
+    let clock = |script: &Script| {
+        let trial = Trial::new(script, PATIENT);
+        let oracle = trial.oracle.as_ref().unwrap();
+        let mut prepared = oracle.prepare(&trial.problem, Quantity::InverseDynamics, "x", &trial.problem.states)?;
+        let clocked = prepared.clock(0..2)?;
+        Ok((clocked, prepared.read().to_vec()))
+    };
+    assert_eq!(clock(&answering(r#","nanoseconds":1500"#)), Ok((Duration::from_nanos(1500), Vec::new())));
+    for broken in ["", r#","nanoseconds":"soon""#, r#","nanoseconds":-1"#] {
+        assert!(matches!(clock(&answering(broken)), Err(Refusal::Failed(reason)) if reason.contains("nanoseconds")), "{broken}");
+    }
+    let (clocked, values) = clock(&Script::evaluate(&format!("sleep 0.05; {TWO}"))).unwrap();
+    assert!(clocked >= Duration::from_millis(50) && values == [2.0, 2.0], "{clocked:?} {values:?}");
+}
+
 #[test]
 fn numbers_that_are_none_come_through() {
     let trial = Trial::new(&Script::evaluate(r"value '\0\0\0\0\0\0\370\177\0\0\0\0\0\0\360\377'"), PATIENT);

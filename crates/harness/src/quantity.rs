@@ -45,6 +45,8 @@ pub enum Quantity {
     Factorization,
     /// M⁻¹τ with M factorized beforehand.
     Solve,
+    /// M⁻¹, dense.
+    MassMatrixInverse,
 }
 
 /// Robots with more degrees of freedom than this are asked for [`Quantity::MassMatrixProbe`] and not for the whole matrix.
@@ -52,7 +54,7 @@ pub const DENSE_LIMIT: usize = 64;
 
 impl Quantity {
     /// All of them.
-    pub const ALL: [Self; 20] = [
+    pub const ALL: [Self; 21] = [
         Self::InverseDynamics,
         Self::InverseDynamicsWrench,
         Self::Bias,
@@ -73,6 +75,7 @@ impl Quantity {
         Self::MassMatrixSparse,
         Self::Factorization,
         Self::Solve,
+        Self::MassMatrixInverse,
     ];
 
     /// The word for it in records and in the oracle protocol.
@@ -98,6 +101,7 @@ impl Quantity {
             Self::MassMatrixSparse => "mass_matrix_sparse",
             Self::Factorization => "factorization",
             Self::Solve => "solve",
+            Self::MassMatrixInverse => "mass_matrix_inverse",
         }
     }
 
@@ -116,7 +120,7 @@ impl Quantity {
             | Self::ForwardDynamics
             | Self::ForwardDynamicsSingle
             | Self::Solve => nv,
-            Self::MassMatrix => nv * nv,
+            Self::MassMatrix | Self::MassMatrixInverse => nv * nv,
             Self::MassMatrixProbe | Self::BodyJacobian => 6 * nv,
             Self::KineticEnergy | Self::PotentialEnergy | Self::StoredEntries => 1,
             Self::CenterOfMass => 3,

@@ -317,3 +317,42 @@ fn no_fold_loses_what_is_not_a_number() {
         assert!(!scaled_error(&problem, quantity, &at, &reference, &reference[1..]).is_finite(), "{quantity:?}: one number is missing");
     }
 }
+
+/// Tree-sparse layouts are measured like the dense M, and factors by the matrix that they multiply to.
+#[test]
+fn factors_are_measured_by_their_product() {
+    for spec in ["humanoid", "tree:n=9,seed=2,base=free,armature=true", "chain:n=6"] {
+        let problem = problem(spec, 1);
+        let (topology, at) = (&problem.model.topology, &problem.magnitudes()[0]);
+        let sparse = mass_matrix(&problem.model, problem.states.q(0)).unwrap();
+        let mass = sparse.to_dense();
+        let error = |quantity, reference: &[f64], value: &[f64]| scaled_error(&problem, quantity, at, reference, value);
+        let factors = sparse.clone().into_ltdl().unwrap().factors().values().to_vec();
+        assert_eq!(error(Quantity::Factorization, &factors, &factors), 0.0);
+
+        // A factor more of D is a factor more of M, and nothing of an entry is larger than its diagonal ones.
+        let mut scaled = factors.clone();
+        (0..topology.nv()).for_each(|k| scaled[topology.row(k).end - 1] *= 1.0 + 1e-6);
+        let found = error(Quantity::Factorization, &factors, &scaled);
+        assert!((found - 1e-6).abs() < 1e-12, "{spec}: {found}");
+
+        // Any entry of L moves an entry of M by as much as D weighs it.
+        let last = topology.nv() - 1;
+        let (row, mut wrong) = (topology.row(last), factors.clone());
+        wrong[row.start] += 1e-6;
+        let (first, pivot) = (topology.row_dofs(last)[0], factors[row.end - 1]);
+        let found = error(Quantity::Factorization, &factors, &wrong);
+        assert!(found >= 0.99e-6 * pivot / (mass[(first, first)] * mass[(last, last)]).sqrt(), "{spec}: {found}");
+
+        let mut other = sparse.values().to_vec();
+        other[row.start] += 1e-6;
+        let mut dense = mass.clone();
+        dense[(last, first)] += 1e-6;
+        dense[(first, last)] += 1e-6;
+        let whole = error(Quantity::MassMatrix, mass.as_slice(), dense.as_slice());
+        assert_eq!(error(Quantity::MassMatrixSparse, sparse.values(), &other), whole);
+        for quantity in [Quantity::MassMatrixSparse, Quantity::Factorization] {
+            assert_eq!(error(quantity, &factors, &factors[1..]), f64::INFINITY);
+        }
+    }
+}

@@ -18,7 +18,7 @@ const fn label(name: &'static str, title: &'static str, measure: &'static str) -
 
 /// Quantities in the order of the page. Others follow in alphabetical order under their own names. A quantity without a measure is only
 /// counted or timed.
-pub const QUANTITIES: [Label; 19] = [
+pub const QUANTITIES: [Label; 20] = [
     label("mass_matrix", "mass matrix M", "max |ΔMᵢⱼ| / √(Mᵢᵢ·Mⱼⱼ): an entry is measured against the inertias of its own two axes"),
     label(
         "mass_matrix_probe",
@@ -77,6 +77,7 @@ pub const QUANTITIES: [Label; 19] = [
     label("mass_matrix_sparse", "M, tree-sparse", ""),
     label("factorization", "factorization", ""),
     label("solve", "solve", ""),
+    label("mass_matrix_inverse", "M⁻¹", ""),
     label("stored_entries", "stored entries", ""),
 ];
 

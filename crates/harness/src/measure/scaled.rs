@@ -15,7 +15,9 @@ pub fn scaled_error(problem: &Problem, quantity: Quantity, at: &Magnitudes, refe
         Quantity::InverseDynamics => entries(reference, value, &at.joint_force),
         Quantity::InverseDynamicsWrench => entries(reference, value, &at.joint_force_wrench),
         Quantity::Bias => entries(reference, value, &at.bias_force),
-        Quantity::MassMatrix => mass_matrix(nv, reference, value),
+        Quantity::MassMatrix | Quantity::MassMatrixInverse => mass_matrix(nv, reference, value),
+        Quantity::MassMatrixSparse => mass_matrix_sparse(problem, reference, value),
+        Quantity::Factorization => mass_matrix_sparse(problem, &multiplied(problem, reference), &multiplied(problem, value)),
         Quantity::MassMatrixProbe => mass_matrix_probe(nv, &problem.probe(), reference, value),
         Quantity::KineticEnergy => entries(reference, value, reference),
         Quantity::PotentialEnergy => {
@@ -43,11 +45,7 @@ pub fn scaled_error(problem: &Problem, quantity: Quantity, at: &Magnitudes, refe
         Quantity::BodyJacobian => body_jacobian(problem, at, reference, value),
         Quantity::Readback => readback(reference, value),
         Quantity::StoredEntries => entries(reference, value, &[1.0]),
-        Quantity::ForwardDynamics
-        | Quantity::ForwardDynamicsSingle
-        | Quantity::MassMatrixSparse
-        | Quantity::Factorization
-        | Quantity::Solve => {
+        Quantity::ForwardDynamics | Quantity::ForwardDynamicsSingle | Quantity::Solve => {
             let largest = reference.iter().fold(0.0_f64, |largest, x| worst(largest, x.abs()));
             entries(reference, value, &vec![largest; reference.len()])
         }
@@ -92,6 +90,38 @@ fn mass_matrix(n: usize, reference: &[f64], value: &[f64]) -> f64 {
     let root: Vec<f64> = (0..n).map(|i| reference[i * n + i].sqrt()).collect();
     let magnitude: Vec<f64> = (0..n * n).map(|entry| root[entry / n] * root[entry % n]).collect();
     entries(reference, value, &magnitude)
+}
+
+/// The same over the entries of the tree-sparse layout.
+fn mass_matrix_sparse(problem: &Problem, reference: &[f64], value: &[f64]) -> f64 {
+    let topology = &problem.model.topology;
+    if reference.len() != topology.stored() || value.len() != reference.len() {
+        return f64::INFINITY;
+    }
+    let root: Vec<f64> = (0..topology.nv()).map(|i| reference[topology.row(i).end - 1].sqrt()).collect();
+    let pairs = (0..topology.nv()).flat_map(|i| topology.row_dofs(i).iter().map(move |&j| (i, j)));
+    let magnitude: Vec<f64> = pairs.map(|(i, j)| root[i] * root[j]).collect();
+    entries(reference, value, &magnitude)
+}
+
+/// M = LᵀDL of tree-sparse factors: what factors stand for. They themselves differ by more, as L follows κ(M).
+fn multiplied(problem: &Problem, factors: &[f64]) -> Vec<f64> {
+    let topology = &problem.model.topology;
+    let mut product = vec![0.0; factors.len()];
+    if factors.len() != topology.stored() {
+        return product;
+    }
+    for k in 0..topology.nv() {
+        let mut l = factors[topology.row(k)].to_vec();
+        let Some(d) = l.last_mut().map(|last| std::mem::replace(last, 1.0)) else { continue };
+        // The row of a dof i on the path to k begins like k's own: M_ij += L_ki D_k L_kj.
+        for (&i, l_i) in topology.row_dofs(k).iter().zip(&l) {
+            for (entry, l_j) in product[topology.row(i)].iter_mut().zip(&l) {
+                *entry += l_i * d * l_j;
+            }
+        }
+    }
+    product
 }
 
 /// Products against Σ_j √(M_ii·M_jj)|x_j|, the diagonal and the last row as entries of M.

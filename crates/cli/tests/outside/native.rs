@@ -1,0 +1,291 @@
+//! Native peers: a small engine of ours through the C interface, and the big ones against our kernels where they are built.
+
+use super::{Outcome, exists};
+use crate::support::{Sandbox, project};
+use engines::{Limits, Native, Oracle, peer};
+use harness::measure::{ForwardScale, ratio, scaled_error, worst};
+use harness::{DENSE_LIMIT, Problem, Quantity, Refusal, Subject};
+use model::generate::Family;
+use record::ModelOrigin;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+use std::time::{Duration, Instant};
+
+/// Everything that a peer may be asked.
+const QUANTITIES: [Quantity; 13] = [
+    Quantity::Readback,
+    Quantity::InverseDynamics,
+    Quantity::Bias,
+    Quantity::MassMatrix,
+    Quantity::MassMatrixSparse,
+    Quantity::Factorization,
+    Quantity::Solve,
+    Quantity::ForwardDynamics,
+    Quantity::MassMatrixInverse,
+    Quantity::BodyPlacement,
+    Quantity::BodyVelocity,
+    Quantity::BodyAcceleration,
+    Quantity::BodyJacobian,
+];
+
+/// Long enough for a busy machine.
+const PATIENT: Limits = Limits { answer: Duration::from_secs(60), memory: 8 << 30 };
+
+fn robot(spec: &str, states: usize) -> Problem {
+    let named = project().join(format!("datasets/models/{spec}.json"));
+    let description =
+        if named.is_file() { formats::neutral::read(named).unwrap() } else { Family::parse(spec).unwrap().generate().unwrap() };
+    Problem::new(&description, "test", ModelOrigin::Generated, states, 1).unwrap()
+}
+
+fn start(library: &Path, limits: Limits, core: Option<usize>) -> Result<Oracle, String> {
+    Oracle::start(peer::command(Path::new(env!("CARGO_BIN_EXE_featherbench")), library, core), limits)
+}
+
+fn ask(subject: &dyn Subject, problem: &Problem, quantity: Quantity, method: &str) -> Result<Vec<f64>, Refusal> {
+    let mut prepared = subject.prepare(problem, quantity, method, &problem.states)?;
+    prepared.run(0..quantity.states(problem.states.count()))?;
+    Ok(prepared.read().to_vec())
+}
+
+/// The pendulum, compiled with its faults.
+fn pendulum(folder: &Path) -> Result<PathBuf, Outcome> {
+    if !exists("cc") {
+        return Err(Outcome::Skipped("there is no C compiler".into()));
+    }
+    let library = folder.join("pendulum.so");
+    let source = project().join("oracles/native/pendulum.c");
+    let flags = ["-std=gnu11", "-O2", "-Wall", "-Wextra", "-Werror", "-shared", "-fPIC", "-DFB_FAULTS", "-o"];
+    let output = Command::new("cc").args(flags).arg(&library).arg(source).arg("-lm").output().unwrap();
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    Ok(library)
+}
+
+/// The worst of all states, measured as a share of what rounding may leave.
+#[derive(Debug)]
+struct Found {
+    quantity: Quantity,
+    method: String,
+    share: Result<f64, Refusal>,
+}
+
+/// Each method of a subject against our kernels, on every state.
+fn compare(subject: &dyn Subject, problem: &Problem, but: &[&str]) -> Vec<Found> {
+    let native = Native::new();
+    let (at, depth) = (problem.magnitudes(), problem.depth as f64);
+    let forward = ForwardScale::all(problem, &at);
+    let usual = |quantity| ask(&native, problem, quantity, &native.methods(quantity)[0]).unwrap();
+    let mass = usual(Quantity::MassMatrix);
+    let mut found = Vec::new();
+    for quantity in QUANTITIES.into_iter().filter(|&quantity| problem.states.nv <= DENSE_LIMIT || quantity != Quantity::MassMatrixInverse) {
+        let (reference, size, masses) = (usual(quantity), quantity.size(problem), problem.states.nv * problem.states.nv);
+        for method in subject.methods(quantity).into_iter().filter(|method| !but.contains(&method.as_str())) {
+            let share = ask(subject, problem, quantity, &method).map(|values| {
+                assert_eq!(values.len(), reference.len(), "{} by {method}", quantity.name());
+                let share = |k: usize| {
+                    let (value, reference) = (&values[k * size..][..size], &reference[k * size..][..size]);
+                    let mass = &mass[k * masses..][..masses];
+                    match quantity {
+                        // As ci/gates.toml has it: some ε per level of the tree, for backward errors too; 45 ε up to depth twenty elsewhere.
+                        Quantity::ForwardDynamics => forward[k].backward_error(value) / (1e-14 * depth),
+                        Quantity::Solve => residual(mass, value, problem.states.tau(k)) / (1e-14 * depth),
+                        Quantity::MassMatrixInverse => inverse_residual(mass, value) / (1e-14 * depth),
+                        Quantity::Readback => scaled_error(problem, quantity, &at[k], reference, value) / 3.6e-15,
+                        _ => scaled_error(problem, quantity, &at[k], reference, value) / (1e-14 * (depth / 20.0).max(1.0)),
+                    }
+                };
+                (0..values.len() / size).map(share).fold(0.0, worst)
+            });
+            found.push(Found { quantity, method, share });
+        }
+    }
+    found
+}
+
+/// max_i |b − M x|_i / (Σ_j √(M_ii·M_jj)|x_j| + |b_i|): the backward error of a solution.
+fn residual(mass: &[f64], x: &[f64], b: &[f64]) -> f64 {
+    let n = x.len();
+    let root: Vec<f64> = (0..n).map(|i| mass[i * n + i].sqrt()).collect();
+    let weight: f64 = root.iter().zip(x).map(|(root, x)| root * x.abs()).sum();
+    let rows = mass.chunks_exact(n).zip(b).zip(&root);
+    rows.fold(0.0, |error, ((row, b), root)| {
+        let product: f64 = row.iter().zip(x).map(|(m, x)| m * x).sum();
+        worst(error, ratio(b - product, root * weight + b.abs()))
+    })
+}
+
+/// max_ik |1 − M N|_ik / Σ_j √(M_ii·M_jj·N_jj·N_kk): what is left when each entry of a symmetric inverse N is known up to ε of its own two axes,
+/// as the entries of M are.
+fn inverse_residual(mass: &[f64], inverse: &[f64]) -> f64 {
+    let n = inverse.len().isqrt();
+    let root = |matrix: &[f64]| (0..n).map(|i| matrix[i * n + i].sqrt()).collect::<Vec<f64>>();
+    let (m, inv) = (root(mass), root(inverse));
+    let weight: f64 = m.iter().zip(&inv).map(|(m, inv)| m * inv).sum();
+    let entry = |i: usize, k: usize| {
+        let product: f64 = (0..n).map(|j| mass[i * n + j] * inverse[j * n + k]).sum();
+        ratio(f64::from(u8::from(i == k)) - product, m[i] * weight * inv[k])
+    };
+    (0..n * n).map(|at| entry(at / n, at % n)).fold(0.0, worst)
+}
+
+pub fn pendulum_answers() -> Outcome {
+    let folder = tempfile::tempdir().unwrap();
+    let library = match pendulum(folder.path()) {
+        Ok(library) => library,
+        Err(skipped) => return skipped,
+    };
+    let peer = start(&library, PATIENT, None).unwrap();
+    assert_eq!((peer.identity().name.as_str(), peer.identity().build["language"].as_str()), ("pendulum", "C"));
+    for spec in ["chain:n=1,layout=spatial", "chain:n=1,layout=planar", "tree:n=1,armature=true"] {
+        let found = compare(&peer, &robot(spec, 20), &["abort", "segfault", "hang", "glutton"]);
+        assert_eq!(found.len(), 1 + 6 + 3, "what it read back, six honest methods, three odd ones: {found:?}");
+        for Found { method, share, .. } in &found {
+            let share = share.clone().unwrap();
+            assert!(if method == "wrong" { share > 10.0 } else { share <= 1.0 }, "{spec} {method}: {share}");
+        }
+    }
+    let two = ask(&peer, &robot("chain:n=2", 1), Quantity::InverseDynamics, "pendulum");
+    assert!(matches!(&two, Err(Refusal::Unsupported(reason)) if reason.contains("2 bodies")), "{two:?}");
+    let unknown = ask(&peer, &robot("chain:n=1", 1), Quantity::Momentum, "pendulum");
+    assert!(matches!(&unknown, Err(Refusal::Unsupported(reason)) if reason.contains("offers no method")), "{unknown:?}");
+    Outcome::Passed
+}
+
+/// The clock is read beside the loop: it tells the time of the calls, all of it and nothing else.
+pub fn pendulum_is_clocked() -> Outcome {
+    let folder = tempfile::tempdir().unwrap();
+    let library = match pendulum(folder.path()) {
+        Ok(library) => library,
+        Err(skipped) => return skipped,
+    };
+    // On a core of its own choice; on one that does not exist it does not start.
+    let reason = start(&library, PATIENT, Some(1 << 20)).err().unwrap();
+    assert!(reason.contains("core 1048576"), "{reason}");
+    let peer = start(&library, PATIENT, Some(0)).unwrap();
+    let problem = robot("chain:n=1", 5);
+    let ready = |method| peer.prepare(&problem, Quantity::InverseDynamics, method, &problem.states).unwrap();
+    let mut slow = ready("slow");
+    // Each call sleeps for a millisecond; states beyond the batch begin again.
+    for calls in [1, 5, 50] {
+        let whole = Instant::now();
+        let clocked = slow.clock(0..calls).unwrap();
+        assert!(clocked >= Duration::from_millis(calls as u64) && clocked <= whole.elapsed(), "{calls} calls in {clocked:?}");
+    }
+    drop(slow);
+    // A call takes some nanoseconds, a question to the child some ten thousand: the conversation is not in the time.
+    let mut quick = ready("pendulum");
+    let whole = Instant::now();
+    let clocked = (0..20).map(|_| quick.clock(0..1).unwrap()).sum::<Duration>();
+    assert!(clocked * 2 < whole.elapsed(), "{clocked:?} of {:?}", whole.elapsed());
+    quick.run(3..5).unwrap();
+    let there = quick.read().to_vec();
+    quick.clock(0..5).unwrap();
+    assert_eq!(quick.read(), there, "the clock leaves the values of the last run");
+    assert!(quick.run(3..6).is_err(), "only the clock goes round");
+    Outcome::Passed
+}
+
+/// Whatever a library does to its process, it is a reason, and the next question is answered.
+pub fn pendulum_dies_alone() -> Outcome {
+    let folder = tempfile::tempdir().unwrap();
+    let library = match pendulum(folder.path()) {
+        Ok(library) => library,
+        Err(skipped) => return skipped,
+    };
+    let problem = robot("chain:n=1", 3);
+    let peer = start(&library, Limits { answer: Duration::from_secs(5), memory: 512 << 20 }, None).unwrap();
+    let faults: [(&str, &[&str]); 4] = [
+        ("abort", &["signal: 6", "the pendulum broke off"]),
+        ("segfault", &["signal: 11"]),
+        ("hang", &["no answer within 5 s"]),
+        ("glutton", &["memory limit 512 MiB", "no more memory for the pendulum"]),
+    ];
+    for (method, words) in faults {
+        for clocked in [false, true] {
+            let mut prepared = peer.prepare(&problem, Quantity::InverseDynamics, method, &problem.states).unwrap();
+            let end = if clocked { prepared.clock(0..3).map(|_| ()) } else { prepared.run(0..3) };
+            let Err(Refusal::Failed(reason)) = end else { panic!("{method} lived: {end:?}") };
+            assert!(words.iter().all(|word| reason.contains(word)), "{method}: {reason}");
+        }
+        assert!(ask(&peer, &problem, Quantity::InverseDynamics, "pendulum").is_ok(), "after {method}");
+    }
+    let reason = start(Path::new("/nowhere/at/all.so"), PATIENT, None).err().unwrap();
+    assert!(reason.contains("/nowhere/at/all.so"), "{reason}");
+    let other = project().join("Cargo.toml");
+    assert!(start(&other, PATIENT, None).is_err_and(|reason| reason.contains("Cargo.toml")));
+    Outcome::Passed
+}
+
+/// The libraries that `oracles status` names.
+fn built() -> Vec<(String, PathBuf)> {
+    let output = Command::new(env!("CARGO_BIN_EXE_featherbench")).current_dir(project()).args(["oracles", "status"]).output().unwrap();
+    let text = String::from_utf8_lossy(&output.stdout).into_owned();
+    let library = |line: &str| Some((line.split_whitespace().next()?.to_owned(), PathBuf::from(line.split("  ").last()?)));
+    text.lines().filter(|line| line.ends_with(".so")).filter_map(library).collect()
+}
+
+/// How many times as much as rounding may leave is known of an engine, by ci/deviations.toml: 5e-13 of MuJoCo's M and of what starts from it;
+/// and computeMinverse works in world axes, where digits go as (distance/size)² (1.2 times on tree-common-16, a hundredth elsewhere).
+fn slack(peer: &str, quantity: Quantity) -> f64 {
+    match quantity {
+        Quantity::MassMatrix | Quantity::MassMatrixSparse | Quantity::Factorization | Quantity::Solve if peer == "mujoco-native" => 50.0,
+        Quantity::MassMatrixInverse if peer.starts_with("pinocchio") => 2.0,
+        _ => 1.0,
+    }
+}
+
+pub fn peers_agree() -> Outcome {
+    let built = built();
+    if built.is_empty() {
+        return Outcome::Nightly("no native peer is built (`featherbench oracles install --native`)".into());
+    }
+    let robots =
+        ["chain-spatial-10", "chain:n=36,layout=spatial", "chain-spatial-100", "humanoid", "panda", "tree-common-16-spread0.3-seed3"];
+    for spec in robots {
+        let problem = robot(spec, 20);
+        let start =
+            |(name, library): &(String, PathBuf)| (name.clone(), Box::new(start(library, PATIENT, None).unwrap()) as Box<dyn Subject>);
+        let ours: (String, Box<dyn Subject>) = ("native".into(), Box::new(Native::new()));
+        for (name, subject) in built.iter().map(start).chain([ours]) {
+            for Found { quantity, method, share } in compare(subject.as_ref(), &problem, &[]) {
+                let line = format!("{name} {spec} {} by {method}: {share:.2?}", quantity.name());
+                if std::env::var_os("FEATHERBENCH_SHOW").is_some() {
+                    println!("{line}");
+                }
+                // MuJoCo alone has no helical joint.
+                let excused = matches!(&share, Err(Refusal::Unsupported(why)) if name == "mujoco-native" && why.contains("helical"));
+                assert!(excused || share.is_ok_and(|share| share <= slack(&name, quantity)), "{line}");
+            }
+        }
+    }
+    Outcome::Passed
+}
+
+/// What a peer cannot hold is refused with a reason, and the machine's memory is never asked for.
+pub fn big_robots_are_refused_or_answered() -> Outcome {
+    let built = built();
+    if built.is_empty() {
+        return Outcome::Nightly("no native peer is built (`featherbench oracles install --native`)".into());
+    }
+    let problem = robot("chain:n=1000,layout=spatial", 2);
+    for (name, library) in &built {
+        let peer = start(library, PATIENT, None).unwrap();
+        let method = peer.methods(Quantity::InverseDynamics).remove(0);
+        match ask(&peer, &problem, Quantity::InverseDynamics, &method) {
+            Ok(values) => assert!(name.starts_with("mujoco") && values.iter().all(|x| x.is_finite()), "{name}"),
+            Err(Refusal::Unsupported(reason)) => assert!(name.starts_with("pinocchio") && reason.contains("nv³"), "{name}: {reason}"),
+            Err(refusal) => panic!("{name}: {refusal}"),
+        }
+    }
+    Outcome::Passed
+}
+
+/// Without a compiler it is said what is missing.
+pub fn no_compiler() -> Outcome {
+    let sandbox = Sandbox::new();
+    let mut command = sandbox.command(&["oracles", "status"]);
+    let output = command.env("XDG_CACHE_HOME", sandbox.path("cache")).output().unwrap();
+    let text = String::from_utf8_lossy(&output.stdout).into_owned();
+    assert!(text.contains("pinocchio-clang") && text.contains("oracles install"), "{text}");
+    Outcome::Passed
+}

@@ -1,0 +1,308 @@
+//! A peer's library behind the C interface of `oracles/native/peer.h`: the only unsafe code of this crate.
+//!
+//! The layouts below repeat that header. What a library does inside its functions cannot be checked from here; that is why it is loaded in a
+//! child process only. Everything that can be checked is: the version of the interface, missing functions, indices, and lengths.
+#![allow(unsafe_code, reason = "the functions of a foreign library cannot be called otherwise")]
+
+use harness::{Problem, Refusal};
+use model::JointType;
+use std::ffi::{CStr, c_char, c_int};
+use std::path::Path;
+use std::ptr::{self, NonNull};
+
+/// `FEATHERBENCH_PEER_VERSION`.
+const VERSION: u32 = 1;
+/// `FB_REASON`.
+const REASON: usize = 512;
+/// `FB_OK` and `FB_UNSUPPORTED`; everything else is a failure.
+const OK: c_int = 0;
+const UNSUPPORTED: c_int = 1;
+
+/// `struct fb_handle`, opaque.
+#[repr(C)]
+struct Handle {
+    _private: [u8; 0],
+}
+
+/// `struct fb_body`.
+#[repr(C)]
+struct Body {
+    parent: i32,
+    joint: i32,
+    mass: f64,
+    com: [f64; 3],
+    inertia: [f64; 6],
+    axis: [f64; 3],
+    pitch: f64,
+    rotation: [f64; 9],
+    translation: [f64; 3],
+    armature: [f64; 6],
+}
+
+/// `struct fb_robot`.
+#[repr(C)]
+struct Robot {
+    bodies: usize,
+    nq: usize,
+    nv: usize,
+    body: *const Body,
+    gravity: [f64; 3],
+    dof_parent: *const i32,
+}
+
+/// `struct fb_states`.
+#[repr(C)]
+struct States {
+    count: usize,
+    q: *const f64,
+    v: *const f64,
+    a: *const f64,
+    tau: *const f64,
+}
+
+/// `struct fb_method`.
+#[repr(C)]
+struct Method {
+    quantity: *const c_char,
+    name: *const c_char,
+}
+
+type Create = unsafe extern "C" fn(*const Robot, *mut *mut Handle, *mut f64, *mut c_char) -> c_int;
+type Destroy = unsafe extern "C" fn(*mut Handle);
+type SetStates = unsafe extern "C" fn(*mut Handle, *const States, *mut c_char) -> c_int;
+type Ready = unsafe extern "C" fn(*mut Handle, usize, usize, *mut c_char) -> c_int;
+type Run = unsafe extern "C" fn(*mut Handle, usize, usize, usize, *mut c_char) -> c_int;
+type Read = unsafe extern "C" fn(*mut Handle, usize, *mut f64, *mut c_char) -> c_int;
+
+/// `struct fb_peer`. Functions are optional here, because a null pointer must never become a function.
+#[repr(C)]
+struct Peer {
+    version: u32,
+    engine: *const c_char,
+    engine_version: *const c_char,
+    build: *const c_char,
+    methods: *const Method,
+    method_count: usize,
+    create: Option<Create>,
+    destroy: Option<Destroy>,
+    states: Option<SetStates>,
+    ready: Option<Ready>,
+    run: Option<Run>,
+    read: Option<Read>,
+}
+
+/// A loaded library.
+pub(super) struct Library {
+    /// The engine's name.
+    pub(super) engine: String,
+    /// Its version.
+    pub(super) version: String,
+    /// Lines of `key=value`.
+    pub(super) build: String,
+    /// (quantity, method), in the library's order.
+    pub(super) methods: Vec<(String, String)>,
+    create: Create,
+    destroy: Destroy,
+    states: SetStates,
+    ready: Ready,
+    run: Run,
+    read: Read,
+    /// Behind everything that points into it.
+    _library: libloading::Library,
+}
+
+impl Library {
+    /// Loads a library and reads its table.
+    ///
+    /// # Errors
+    /// A sentence, when it cannot be loaded or is no peer of this version.
+    pub(super) fn open(path: &Path) -> Result<Self, String> {
+        let complaint = |what: &str| format!("{}: {what}", path.display());
+        // SAFETY: loading runs the library's initialisers; they are trusted as much as the code that is timed, and run in this child process.
+        let library = unsafe { libloading::Library::new(path) }.map_err(|error| complaint(&error.to_string()))?;
+        // SAFETY: the header declares this symbol as a function of this type, and nothing else is exported under the name.
+        let entry = unsafe { library.get::<unsafe extern "C" fn() -> *const Peer>(b"featherbench_peer") };
+        let entry = entry.map_err(|_| complaint("it exports no featherbench_peer: it is not a peer"))?;
+        // SAFETY: the function takes nothing and returns null or a table that lives as long as the library.
+        let peer = unsafe { entry().as_ref() }.ok_or_else(|| complaint("it has no table"))?;
+        // The version stands first in every version of the table, so that reading it is sound whatever follows.
+        if peer.version != VERSION {
+            return Err(complaint(&format!("it has version {} of the peer interface, this program {VERSION}", peer.version)));
+        }
+        let text = |words: *const c_char| -> Result<String, String> {
+            if words.is_null() {
+                return Err(complaint("a text of its table is missing"));
+            }
+            // SAFETY: not null, and by the header a text that ends with a zero and lives as long as the library.
+            Ok(unsafe { CStr::from_ptr(words) }.to_string_lossy().into_owned())
+        };
+        let listed = if peer.methods.is_null() {
+            &[]
+        } else {
+            // SAFETY: not null, and by the header an array of that many methods which lives as long as the library.
+            unsafe { std::slice::from_raw_parts(peer.methods, peer.method_count) }
+        };
+        let methods = listed.iter().map(|method| Ok((text(method.quantity)?, text(method.name)?))).collect::<Result<_, String>>()?;
+        let missing = || complaint("a function of its table is missing");
+        Ok(Self {
+            engine: text(peer.engine)?,
+            version: text(peer.engine_version)?,
+            build: text(peer.build)?,
+            methods,
+            create: peer.create.ok_or_else(missing)?,
+            destroy: peer.destroy.ok_or_else(missing)?,
+            states: peer.states.ok_or_else(missing)?,
+            ready: peer.ready.ok_or_else(missing)?,
+            run: peer.run.ok_or_else(missing)?,
+            read: peer.read.ok_or_else(missing)?,
+            _library: library,
+        })
+    }
+
+    /// Builds a robot; with it come the numbers that the engine holds, as [`harness::Quantity::Readback`].
+    ///
+    /// # Errors
+    /// [`Refusal`], as the engine says.
+    pub(super) fn build(&self, problem: &Problem) -> Result<(Built<'_>, Vec<f64>), Refusal> {
+        let bodies: Vec<Body> = problem.description.bodies.iter().map(body).collect();
+        let topology = &problem.model.topology;
+        let index = |parent: &Option<usize>| parent.map_or(-1, |parent| parent as i32);
+        let dof_parent: Vec<i32> = topology.dof_parents().iter().map(index).collect();
+        let robot = Robot {
+            bodies: bodies.len(),
+            nq: problem.description.nq(),
+            nv: topology.nv(),
+            body: bodies.as_ptr(),
+            gravity: problem.description.gravity,
+            dof_parent: dof_parent.as_ptr(),
+        };
+        let mut readback = vec![f64::NAN; harness::Quantity::Readback.size(problem)];
+        let mut handle = ptr::null_mut();
+        // SAFETY: the robot's arrays have the announced lengths and outlive the call; `readback` has 22 numbers per body.
+        checked(|reason| unsafe { (self.create)(&robot, &mut handle, readback.as_mut_ptr(), reason) })?;
+        let handle = NonNull::new(handle).ok_or_else(|| Refusal::Failed("the peer made nothing and did not say why".into()))?;
+        Ok((Built { library: self, handle, nq: robot.nq, nv: robot.nv, count: 0, ready: None }, readback))
+    }
+}
+
+fn body(body: &model::BodyDescription) -> Body {
+    let (joint, axis, pitch) = match body.joint.kind {
+        JointType::Revolute { axis } => (0, axis, 0.0),
+        JointType::Prismatic { axis } => (1, axis, 0.0),
+        JointType::Helical { axis, pitch } => (2, axis, pitch),
+        JointType::Spherical => (3, [0.0; 3], 0.0),
+        JointType::Free => (4, [0.0; 3], 0.0),
+        JointType::Planar => (5, [0.0; 3], 0.0),
+        JointType::Universal => (6, [0.0; 3], 0.0),
+        // Merged by `Description::canonical` before a problem exists; no peer knows the number.
+        JointType::Fixed => (-1, [0.0; 3], 0.0),
+    };
+    let mut armature = [0.0; 6];
+    armature.iter_mut().zip(&body.joint.armature).for_each(|(to, from)| *to = *from);
+    let placement = &body.joint.placement;
+    Body {
+        parent: body.parent.map_or(-1, |parent| parent as i32),
+        joint,
+        mass: body.mass,
+        com: body.com,
+        inertia: body.inertia,
+        axis,
+        pitch,
+        rotation: placement.rotation,
+        translation: placement.translation,
+        armature,
+    }
+}
+
+/// A robot in the engine.
+pub(super) struct Built<'a> {
+    library: &'a Library,
+    handle: NonNull<Handle>,
+    nq: usize,
+    nv: usize,
+    count: usize,
+    /// The method and body that were made ready for these states.
+    ready: Option<(usize, usize)>,
+}
+
+impl Built<'_> {
+    /// Gives the engine a batch of states: q, v, a and τ, row after row.
+    ///
+    /// # Errors
+    /// [`Refusal`], when the arrays are not as long as they should be or the engine fails.
+    pub(super) fn states(&mut self, count: usize, [q, v, a, tau]: [&[f64]; 4]) -> Result<(), Refusal> {
+        (self.count, self.ready) = (0, None);
+        if count == 0 || q.len() != count * self.nq || [v, a, tau].iter().any(|array| array.len() != count * self.nv) {
+            return Err(Refusal::Failed(format!("these are not {count} states of this robot")));
+        }
+        let states = States { count, q: q.as_ptr(), v: v.as_ptr(), a: a.as_ptr(), tau: tau.as_ptr() };
+        // SAFETY: the handle is alive; the arrays have the announced lengths and outlive the call.
+        checked(|reason| unsafe { (self.library.states)(self.handle.as_ptr(), &states, reason) })?;
+        self.count = count;
+        Ok(())
+    }
+
+    /// The states that the engine holds.
+    pub(super) fn count(&self) -> usize {
+        self.count
+    }
+
+    /// Makes what a method starts from, unless it is made.
+    ///
+    /// # Errors
+    /// [`Refusal`], when there are no states or no such method, or the engine fails.
+    pub(super) fn ready(&mut self, method: usize, body: usize) -> Result<(), Refusal> {
+        if self.count == 0 || method >= self.library.methods.len() {
+            return Err(Refusal::Failed("there are no states, or there is no such method".into()));
+        }
+        if self.ready != Some((method, body)) {
+            self.ready = None;
+            // SAFETY: the handle is alive and has states; the method is one of the table's.
+            checked(|reason| unsafe { (self.library.ready)(self.handle.as_ptr(), method, body, reason) })?;
+            self.ready = Some((method, body));
+        }
+        Ok(())
+    }
+
+    /// Evaluates states by the method that is ready: what is timed.
+    ///
+    /// # Errors
+    /// [`Refusal`], when none is ready or the engine fails.
+    pub(super) fn run(&mut self, first: usize, count: usize) -> Result<(), Refusal> {
+        let (method, _) = self.ready.ok_or_else(|| Refusal::Failed("no method is ready".into()))?;
+        // SAFETY: the handle is alive, has states, and the method is ready; states beyond the batch begin again.
+        checked(|reason| unsafe { (self.library.run)(self.handle.as_ptr(), method, first, count, reason) })
+    }
+
+    /// Writes the value of the last state that was run, which has `value.len()` numbers.
+    ///
+    /// # Errors
+    /// [`Refusal`], when no method is ready or the engine fails.
+    pub(super) fn read(&mut self, value: &mut [f64]) -> Result<(), Refusal> {
+        let (method, _) = self.ready.ok_or_else(|| Refusal::Failed("no method is ready".into()))?;
+        // SAFETY: the handle is alive and the method was run; the caller gives room for one value of its quantity, by `Quantity::size`.
+        checked(|reason| unsafe { (self.library.read)(self.handle.as_ptr(), method, value.as_mut_ptr(), reason) })
+    }
+}
+
+impl Drop for Built<'_> {
+    fn drop(&mut self) {
+        // SAFETY: the handle came from `create` and is destroyed once.
+        unsafe { (self.library.destroy)(self.handle.as_ptr()) }
+    }
+}
+
+/// A call with room for its reason.
+fn checked(call: impl FnOnce(*mut c_char) -> c_int) -> Result<(), Refusal> {
+    let mut reason = [0_u8; REASON];
+    let status = call(reason.as_mut_ptr().cast());
+    let words = || match CStr::from_bytes_until_nul(&reason) {
+        Ok(words) if !words.is_empty() => words.to_string_lossy().into_owned(),
+        _ => "the peer gives no reason".to_owned(),
+    };
+    match status {
+        OK => Ok(()),
+        UNSUPPORTED => Err(Refusal::Unsupported(words())),
+        _ => Err(Refusal::Failed(words())),
+    }
+}

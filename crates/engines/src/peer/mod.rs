@@ -1,0 +1,168 @@
+//! Native peers: an engine as a library, in a child process that speaks the oracle protocol and reads the clock next to the engine's loop.
+//!
+//! [`command`] is what [`Oracle::start`](crate::Oracle::start) takes: this very program as `featherbench peer LIBRARY`, which calls [`serve`].
+
+mod library;
+
+use harness::frame::{Block, Frame};
+use harness::{Problem, Quantity, Refusal};
+use library::{Built, Library};
+use record::ModelOrigin;
+use serde_json::{Map, Value, json};
+use std::ffi::OsString;
+use std::fs::File;
+use std::io::{BufReader, Write, stdin};
+use std::path::Path;
+use std::time::Instant;
+
+/// The command line of a child process that serves a library; with a core, it is pinned there.
+pub fn command(program: &Path, library: &Path, core: Option<usize>) -> Vec<OsString> {
+    let pinned = core.map(|core| ["--core".into(), core.to_string().into()]);
+    [program.into(), "peer".into(), library.into()].into_iter().chain(pinned.into_iter().flatten()).collect()
+}
+
+/// Answers requests about a library on standard input and output until the input ends. Whatever the library prints goes to standard error.
+///
+/// # Errors
+/// A sentence, when the library cannot be loaded, the core cannot be had or the stream breaks.
+pub fn serve(path: &Path, core: Option<usize>) -> Result<(), String> {
+    if let Some(core) = core {
+        pin(core)?;
+    }
+    let io = |error: rustix::io::Errno| format!("standard output: {error}");
+    let mut answers = File::from(rustix::io::dup(rustix::stdio::stdout()).map_err(io)?);
+    rustix::stdio::dup2_stdout(rustix::stdio::stderr()).map_err(io)?;
+    // Without a folder in its name a library would be looked for where the system keeps its own.
+    let library = Library::open(&path.canonicalize().map_err(|error| format!("{}: {error}", path.display()))?)?;
+    let mut session = Session { library: &library, problem: None, robot: None };
+    let mut requests = BufReader::new(stdin());
+    while let Some(request) = Frame::read(&mut requests).map_err(|error| error.to_string())? {
+        let answer = match session.answer(&request) {
+            Ok((mut header, blocks)) => {
+                header.insert("status".into(), "ok".into());
+                Frame { header, blocks }
+            }
+            Err(Refusal::Unsupported(reason)) => Frame::new(json!({"status": "unsupported", "reason": reason}), Vec::new()),
+            Err(Refusal::Failed(reason)) => Frame::new(json!({"status": "error", "reason": reason}), Vec::new()),
+        };
+        answer.write(&mut answers).and_then(|()| answers.flush()).map_err(|error| format!("standard output: {error}"))?;
+    }
+    Ok(())
+}
+
+fn pin(core: usize) -> Result<(), String> {
+    let refused = |what: &str| format!("core {core} cannot be had: {what}");
+    if core >= rustix::thread::CpuSet::MAX_CPU {
+        return Err(refused("there are not so many"));
+    }
+    let mut set = rustix::thread::CpuSet::new();
+    set.set(core);
+    rustix::thread::sched_setaffinity(None, &set).map_err(|error| refused(&error.to_string()))
+}
+
+/// What the library was told last.
+struct Session<'a> {
+    library: &'a Library,
+    problem: Option<Problem>,
+    robot: Option<Built<'a>>,
+}
+
+/// The header of an answer, without its status, and the blocks behind it.
+type Answer = Result<(Map<String, Value>, Vec<Block>), Refusal>;
+
+fn ok(header: Value, blocks: Vec<Block>) -> Answer {
+    Ok((Frame::new(header, Vec::new()).header, blocks))
+}
+
+fn failed(what: impl Into<String>) -> Refusal {
+    Refusal::Failed(what.into())
+}
+
+impl<'a> Session<'a> {
+    fn answer(&mut self, request: &Frame) -> Answer {
+        match request.text("op") {
+            "hello" => self.hello(),
+            "prepare" => self.prepare(request),
+            "states" => self.states(request),
+            "evaluate" => self.evaluate(request),
+            "clock" => self.clock(request),
+            other => Err(failed(format!("unknown op {other}"))),
+        }
+    }
+
+    fn hello(&self) -> Answer {
+        let Library { engine, version, build, methods, .. } = self.library;
+        let lines = build.lines().filter_map(|line| line.split_once('='));
+        let build: Map<String, Value> = lines.map(|(key, value)| (key.to_owned(), value.into())).collect();
+        let mut offered: Map<String, Value> = Map::new();
+        for (quantity, method) in methods {
+            let named = offered.entry(quantity).or_insert_with(|| json!([]));
+            named.as_array_mut().into_iter().for_each(|named| named.push(method.as_str().into()));
+        }
+        ok(json!({"protocol": 1, "engine": engine, "version": version, "build": build, "methods": offered, "clock": true}), Vec::new())
+    }
+
+    fn prepare(&mut self, request: &Frame) -> Answer {
+        (self.robot, self.problem) = (None, None);
+        let model = request.header.get("model").ok_or_else(|| failed("no model came"))?;
+        let description = formats::neutral::parse(&model.to_string(), "model").map_err(|error| failed(error.to_string()))?;
+        // The problem brings the compiled tree and the sizes of quantities; its own states are not used.
+        let problem = Problem::new(&description, "", ModelOrigin::Generated, 1, 0).map_err(|error| failed(error.to_string()))?;
+        let (robot, readback) = self.library.build(&problem)?;
+        let readback = Block::new("readback", &[problem.description.bodies.len(), 22], &readback);
+        let sizes = json!({"nq": problem.description.nq(), "nv": problem.model.topology.nv()});
+        (self.robot, self.problem) = (Some(robot), Some(problem));
+        ok(sizes, vec![readback])
+    }
+
+    fn states(&mut self, request: &Frame) -> Answer {
+        let count = number(request, "count")?;
+        let robot = self.robot.as_mut().ok_or_else(|| failed("no model was prepared"))?;
+        let array = |name| request.block(name).map(|block| block.data.as_slice()).ok_or_else(|| failed(format!("block {name} is missing")));
+        robot.states(count, [array("q")?, array("v")?, array("a")?, array("tau")?])?;
+        ok(json!({}), Vec::new())
+    }
+
+    /// The robot with the asked method ready, the range, and the numbers per state.
+    fn asked(&mut self, request: &Frame) -> Result<(&mut Built<'a>, usize, usize, usize), Refusal> {
+        let (quantity, method) = (request.text("quantity"), request.text("method"));
+        let named = |(of, name): &(String, String)| of == quantity && name == method;
+        let index = self.library.methods.iter().position(named);
+        let unsupported = || Refusal::Unsupported(format!("{} offers no method {method} for {quantity}", self.library.engine));
+        let (index, quantity) = index.zip(Quantity::parse(quantity)).ok_or_else(unsupported)?;
+        let (Some(problem), Some(robot)) = (&self.problem, &mut self.robot) else { return Err(failed("no model was prepared")) };
+        let body = if quantity == Quantity::BodyJacobian { number(request, "body")? } else { 0 };
+        if body >= problem.description.bodies.len() {
+            return Err(failed(format!("there is no body {body}")));
+        }
+        robot.ready(index, body)?;
+        Ok((robot, number(request, "first")?, number(request, "count")?, quantity.size(problem)))
+    }
+
+    fn evaluate(&mut self, request: &Frame) -> Answer {
+        let (robot, first, count, size) = self.asked(request)?;
+        if first.checked_add(count).is_none_or(|end| end > robot.count()) {
+            return Err(failed(format!("{count} states from {first} on do not exist")));
+        }
+        let mut values = vec![0.0; count * size];
+        // A robot that cannot move has nothing to say of itself.
+        for (k, value) in values.chunks_exact_mut(size.max(1)).enumerate() {
+            robot.run(first + k, 1)?;
+            robot.read(value)?;
+        }
+        ok(json!({}), vec![Block::new("value", &[count, size], &values)])
+    }
+
+    fn clock(&mut self, request: &Frame) -> Answer {
+        let (robot, first, count, _) = self.asked(request)?;
+        let start = Instant::now();
+        robot.run(first, count)?;
+        let elapsed = start.elapsed();
+        ok(json!({"nanoseconds": u64::try_from(elapsed.as_nanos()).unwrap_or(u64::MAX)}), Vec::new())
+    }
+}
+
+fn number(request: &Frame, key: &str) -> Result<usize, Refusal> {
+    let number = request.header.get(key).and_then(Value::as_u64).and_then(|number| usize::try_from(number).ok());
+    number.ok_or_else(|| failed(format!("{key} must be a number")))
+}
