@@ -1,4 +1,4 @@
-//! Importing URDF: links and joints of an XML file as a neutral description.
+//! URDF: links and joints of an XML file as a neutral description, and back.
 //!
 //! The file is read strictly. Engines repair silently (a missing inertia becomes zero, a word in a vector is skipped, an axis of length zero
 //! becomes x), and then disagree; here that is an error with file, line and column, and whatever is left out or altered leaves a [`Note`].
@@ -18,12 +18,15 @@
 //!
 //! Limits: 10 MB, a million XML nodes, no document type declaration (hence no entities to expand); nesting costs no stack.
 
+mod angles;
 mod elements;
 mod error;
 mod tree;
+mod write;
 mod xml;
 
 pub use error::{UrdfError, UrdfProblem};
+pub use write::{to_string, write};
 
 use crate::{Place, text};
 use model::Description;

@@ -8,7 +8,7 @@ use spatial::{Mat3, Transform, Vec3};
 use std::collections::HashMap;
 
 /// Gravity, which URDF does not give, m/s².
-const GRAVITY: [f64; 3] = [0.0, 0.0, -9.81];
+pub(super) const GRAVITY: [f64; 3] = [0.0, 0.0, -9.81];
 
 /// The canonical description of a robot.
 pub(super) fn assemble(robot: &Robot, options: &Options, notes: &mut Vec<NoteAt>) -> Result<Description, At> {

@@ -1,0 +1,33 @@
+//! Names: what a file can hold, each once.
+
+use super::{Loss, Reason};
+use std::collections::HashSet;
+
+/// The names of one space, each with the word for what carries it.
+#[derive(Default)]
+pub struct Names(HashSet<String>);
+
+impl Names {
+    /// Takes a name, or says what is wrong with it.
+    pub fn take(&mut self, what: &str, name: &str, losses: &mut Vec<Loss>) {
+        let mut lose = |reason| losses.push(Loss { subject: format!("{what} '{}'", name.escape_debug()), reason });
+        if name.is_empty() || name.chars().any(|c| c.is_control() || matches!(c, '\u{fffe}' | '\u{ffff}')) {
+            lose(Reason::BadName);
+        }
+        if !self.0.insert(name.to_owned()) {
+            lose(if name == ROOT { Reason::ReservedName } else { Reason::RepeatedName });
+        }
+    }
+
+    /// Takes a name like this one that is not taken yet.
+    pub fn fresh(&mut self, wish: &str) -> String {
+        let mut name = wish.to_owned();
+        while !self.0.insert(name.clone()) {
+            name.push('_');
+        }
+        name
+    }
+}
+
+/// The name of what does not move.
+pub const ROOT: &str = "world";
