@@ -52,6 +52,13 @@ pub enum Reason {
         /// Largest difference of an entry.
         error: f64,
     },
+    /// An interval of limits that is a point, where the format asks for more.
+    EmptyRange {
+        /// The field.
+        field: &'static str,
+    },
+    /// A free joint whose coordinates do not begin at the world's origin, as MuJoCo's do.
+    FreePlacement,
     /// MuJoCo moves no body without mass.
     Massless,
     /// MuJoCo compiles no inertia that no mass distribution has.
@@ -76,6 +83,8 @@ impl Reason {
             | Self::Unequal { .. }
             | Self::OneSided
             | Self::IncompleteLimits
+            | Self::EmptyRange { .. }
+            | Self::FreePlacement
             | Self::Axis { .. }
             | Self::Rotation { .. } => true,
             Self::JointType { .. }
@@ -105,7 +114,9 @@ impl fmt::Display for Reason {
             Self::Rotation { error } => {
                 write!(f, "a rotation that misses orthonormality by about {error:e}; the format has exact ones only, so correct it first")
             }
-            Self::Massless => write!(f, "moves and has no mass, which MuJoCo does not compile; give it mass"),
+            Self::EmptyRange { field } => write!(f, "{field} that leave no range; the format asks for a lower end below the upper one"),
+            Self::FreePlacement => write!(f, "a free joint whose coordinates are not the world's, as the format has them; place it at the world's origin"),
+            Self::Massless => write!(f, "moves with a mass or a principal moment of inertia below 1e-15, which MuJoCo does not compile; give it more"),
             Self::Unphysical => write!(f, "an inertia that no mass distribution has, which MuJoCo does not compile; correct it"),
             Self::FreeBelow => write!(f, "a free joint on another body; MuJoCo has them on the world only"),
             Self::BadName => write!(f, "a name that is empty or holds a control character; rename it"),

@@ -50,6 +50,13 @@ pub enum ExportError {
     },
 }
 
+impl ExportError {
+    /// Whether [`OnLoss::LeaveOut`] would write the robot.
+    pub fn can_be_left_out(&self) -> bool {
+        matches!(self, Self::Inexpressible { losses, .. } if losses.iter().all(|loss| loss.reason.can_be_left_out()))
+    }
+}
+
 /// Refuses the losses, or lets those pass that may be left out.
 pub(crate) fn settle(format: &'static str, losses: Vec<Loss>, on_loss: OnLoss) -> Result<Vec<Loss>, ExportError> {
     let refused = |loss: &Loss| on_loss == OnLoss::Refuse || !loss.reason.can_be_left_out();

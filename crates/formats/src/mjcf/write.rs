@@ -6,7 +6,9 @@ use crate::export::names::{Names, ROOT};
 use crate::export::order::{Item, carried};
 use crate::export::xml::{Attributes, Xml};
 use crate::export::{self, ExportError, Loss, OnLoss, Reason};
-use model::{BodyDescription, Description, Frame, JointDescription, JointType, Placement, Warning};
+use model::{BodyDescription, Description, Frame, JointType, Placement, Warning};
+use spatial::{Sym3, Vec3};
+use std::collections::HashSet;
 use std::path::Path;
 
 /// Writes an MJCF file, whole or not at all, and tells what was left out.
@@ -111,26 +113,32 @@ fn body(xml: &mut Xml, row: &[&BodyDescription]) {
 
 fn joint(xml: &mut Xml, part: &Part) {
     let Part { joint, suffix, kind, axis, dofs } = part;
-    let of = |list: &[f64]| list.get(dofs.clone()).unwrap_or_default().to_vec();
+    // One number for a hinge or slide; a ball or free joint has equal ones, or no place for limits.
+    let of = |list: &[f64]| list.get(dofs.start).copied();
     xml.empty("joint", |attributes| {
         attributes.text("name", &format!("{}{suffix}", joint.name)).text("type", kind);
         if let Some(axis) = axis {
             attributes.numbers("axis", axis);
         }
         for (name, list) in [("armature", &joint.armature), ("damping", &joint.damping), ("frictionloss", &joint.friction)] {
-            if let Some(&value) = of(list).first().filter(|&&value| value != 0.0) {
+            if let Some(value) = of(list).filter(|&value| value != 0.0) {
                 attributes.numbers(name, &[value]);
             }
         }
-        if let ([lower], [upper]) = (&of(&joint.lower)[..], &of(&joint.upper)[..]) {
-            attributes.text("limited", "true").numbers("range", &[*lower, *upper]);
+        if dofs.len() > 1 {
+            return;
         }
-        if let [effort] = of(&joint.effort)[..] {
+        if let Some((lower, upper)) = of(&joint.lower).zip(of(&joint.upper)).filter(|(lower, upper)| lower < upper) {
+            attributes.text("limited", "true").numbers("range", &[lower, upper]);
+        }
+        if let Some(effort) = of(&joint.effort).filter(|&effort| effort > 0.0) {
             attributes.text("actuatorfrclimited", "true").numbers("actuatorfrcrange", &[-effort, effort]);
         }
     });
 }
 
+/// What normalising an axis leaves: MuJoCo does not touch one that is as near to unit length.
+const AXIS_ROUNDING: f64 = 4.0 * f64::EPSILON;
 /// MuJoCo moves no body with a mass or a principal moment below this, kg and kg·m².
 const LEAST: f64 = 1e-15;
 
@@ -139,11 +147,15 @@ fn losses(robot: &Description, carried: &[Vec<Item>]) -> Vec<Loss> {
     let mut losses = Vec::new();
     let (mut bodies, mut joints) = (Names::default(), Names::default());
     bodies.fresh(ROOT);
-    let unphysical: Vec<&str> = robot.bodies.iter().filter_map(unphysical).collect();
+    let unphysical: HashSet<String> = robot
+        .warnings()
+        .into_iter()
+        .filter_map(|warning| if let Warning::Unphysical { body, .. } = warning { Some(body) } else { None })
+        .collect();
     for (i, body) in robot.bodies.iter().enumerate() {
         bodies.take("body", &body.name, &mut losses);
         let subject = || format!("body '{}'", body.name);
-        if unphysical.contains(&body.name.as_str()) {
+        if unphysical.contains(&body.name) {
             losses.push(Loss { subject: subject(), reason: Reason::Unphysical });
         }
         if light(body) && row(robot, carried, i).len() == 1 {
@@ -162,4 +174,49 @@ fn losses(robot: &Description, carried: &[Vec<Item>]) -> Vec<Loss> {
         losses.extend(reason.map(|reason| Loss { subject: format!("frame '{}'", frame.name), reason }));
     }
     losses
+}
+
+/// Whether a body has less mass or a smaller principal moment than MuJoCo moves.
+fn light(body: &BodyDescription) -> bool {
+    let [xx, xy, xz, yy, yz, zz] = body.inertia;
+    let pivots = Sym3::from_array([xx - LEAST, xy, xz, yy - LEAST, yz, zz - LEAST]).factor().pivots.to_array();
+    body.mass < LEAST || !pivots.iter().all(|&pivot| pivot > 0.0)
+}
+
+fn joint_losses(body: &BodyDescription) -> Vec<Reason> {
+    let joint = &body.joint;
+    let mut reasons = Vec::new();
+    if joint.kind == JointType::Free {
+        reasons.extend(body.parent.is_some().then_some(Reason::FreeBelow));
+        reasons.extend((joint.placement != Placement::default()).then_some(Reason::FreePlacement));
+    } else {
+        reasons.extend(rotation_loss(&joint.placement));
+    }
+    reasons.extend(parts(joint).err());
+    if let Some(axis) = joint.kind.axis() {
+        let error = (Vec3::from_array(axis).norm() - 1.0).abs();
+        reasons.extend((error > AXIS_ROUNDING).then_some(Reason::Axis { error }));
+    }
+    reasons.extend((!joint.velocity.is_empty()).then_some(Reason::Property { field: "velocity" }));
+    reasons.extend((joint.lower.is_empty() != joint.upper.is_empty()).then_some(Reason::OneSided));
+    let is_one = |part: &Part| part.dofs.len() == 1;
+    if parts(joint).is_ok_and(|parts| parts.iter().all(is_one)) {
+        let empty_range = |(lower, upper): (&f64, &f64)| lower >= upper;
+        reasons.extend(joint.lower.iter().zip(&joint.upper).any(empty_range).then_some(Reason::EmptyRange { field: "position limits" }));
+        reasons.extend(joint.effort.contains(&0.0).then_some(Reason::EmptyRange { field: "effort" }));
+        return reasons;
+    }
+    for (field, list) in [("armature", &joint.armature), ("damping", &joint.damping), ("friction", &joint.friction)] {
+        reasons.extend(list.iter().any(|x| *x != list[0]).then_some(Reason::Unequal { field }));
+    }
+    for (field, list) in [("lower", &joint.lower), ("upper", &joint.upper), ("effort", &joint.effort)] {
+        reasons.extend((!list.is_empty()).then_some(Reason::SeveralDofs { field }));
+    }
+    reasons
+}
+
+/// What keeps a quaternion from saying a rotation: none comes within 8ε.
+fn rotation_loss(placement: &Placement) -> Option<Reason> {
+    let (_, error) = quaternion(&placement.rotation);
+    (error > 8.0 * f64::EPSILON).then_some(Reason::Rotation { error })
 }
