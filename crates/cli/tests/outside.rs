@@ -4,7 +4,9 @@
 //! Not libtest: its captured output would hide the skips.
 
 mod support;
+mod written;
 
+use std::path::Path;
 use std::process::{Command, ExitCode};
 use support::{Ended, Sandbox, project};
 
@@ -18,14 +20,18 @@ enum Outcome {
 }
 
 fn main() -> ExitCode {
-    let tests: [(&str, Test); 4] = [
+    let tests: [(&str, Test); 6] = [
         ("a missing wheel is exit code three and can be tried again", missing_wheel),
         ("the oracles pass their own tests", oracles_by_themselves),
         ("a live run agrees with the recorded answers", live_run),
+        ("MuJoCo reads the MJCF that we write", || with_engines(written::mjcf_round_trip)),
+        ("engines read alike the URDF that we write", || with_engines(written::urdf_read_alike)),
         ("a browser clicks through the report", browser),
     ];
     let (mut passed, mut failed, mut skipped) = (0, 0, 0);
-    for (name, test) in tests {
+    // As with libtest, a word on the command line chooses the tests whose names hold it.
+    let chosen = std::env::args().skip(1).find(|argument| !argument.starts_with('-')).unwrap_or_default();
+    for (name, test) in tests.into_iter().filter(|(name, _)| name.contains(&chosen)) {
         // A failed assertion of a test is that test's failure.
         match std::panic::catch_unwind(test).unwrap_or_else(|_| Outcome::Failed("see above".into())) {
             Outcome::Passed => {
@@ -80,11 +86,13 @@ fn missing_wheel() -> Outcome {
     Outcome::Passed
 }
 
+/// A test that needs the engines' Python.
+fn with_engines(test: fn(&Path) -> Outcome) -> Outcome {
+    installed_python().map_or_else(|skipped| skipped, |python| test(&python))
+}
+
 fn oracles_by_themselves() -> Outcome {
-    match installed_python() {
-        Ok(python) => checked(Command::new(python).arg(project().join("oracles/test_oracles.py"))),
-        Err(skipped) => skipped,
-    }
+    with_engines(|python| checked(Command::new(python).arg(project().join("oracles/test_oracles.py"))))
 }
 
 fn live_run() -> Outcome {

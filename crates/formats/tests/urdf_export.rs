@@ -134,7 +134,7 @@ fn what_urdf_lacks_is_refused_by_name() {
         "joint 'half_joint': limits in part",
         "joint 'slide_joint': limits in part",
         "body 'world': the name 'world' is the root's own",
-        "body 'motor\\n': a name that is empty or holds a control character",
+        "body 'motor\\n': a name that is empty, holds a control character or reads as a macro",
         "joint 'screw_joint': the name stands twice",
         "frame 'ball': the name stands twice",
         "frame 'ball': a rotation",

@@ -65,7 +65,7 @@ pub enum Reason {
     Unphysical,
     /// A free joint below another body.
     FreeBelow,
-    /// The name is empty or holds a control character.
+    /// The name is empty, holds a control character, or reads as a macro of xacro.
     BadName,
     /// The name stands twice where the format asks for one.
     RepeatedName,
@@ -119,7 +119,7 @@ impl fmt::Display for Reason {
             Self::Massless => write!(f, "moves with a mass or a principal moment of inertia below 1e-15, which MuJoCo does not compile; give it more"),
             Self::Unphysical => write!(f, "an inertia that no mass distribution has, which MuJoCo does not compile; correct it"),
             Self::FreeBelow => write!(f, "a free joint on another body; MuJoCo has them on the world only"),
-            Self::BadName => write!(f, "a name that is empty or holds a control character; rename it"),
+            Self::BadName => write!(f, "a name that is empty, holds a control character or reads as a macro; rename it"),
             Self::RepeatedName => write!(f, "the name stands twice where the format asks for unique ones (links and frames share names); rename one"),
             Self::ReservedName => write!(f, "the name 'world' is the root's own; rename it"),
         }

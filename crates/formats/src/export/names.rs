@@ -11,7 +11,7 @@ impl Names {
     /// Takes a name, or says what is wrong with it.
     pub fn take(&mut self, what: &str, name: &str, losses: &mut Vec<Loss>) {
         let mut lose = |reason| losses.push(Loss { subject: format!("{what} '{}'", name.escape_debug()), reason });
-        if name.is_empty() || name.chars().any(|c| c.is_control() || matches!(c, '\u{fffe}' | '\u{ffff}')) {
+        if name.is_empty() || !can_be_written(name) {
             lose(Reason::BadName);
         }
         if !self.0.insert(name.to_owned()) {
@@ -27,6 +27,17 @@ impl Names {
         }
         name
     }
+}
+
+/// Whether a name is one to XML, whose characters do not include the control characters, and no macro to a reader of URDF.
+pub fn can_be_written(name: &str) -> bool {
+    let bad = |c: char| c.is_control() || matches!(c, '\u{fffe}' | '\u{ffff}');
+    !name.contains(bad) && !name.contains("${") && !name.contains("$(")
+}
+
+/// What is wrong with the robot's own name, which may be empty.
+pub fn of_robot(name: &str) -> Option<Loss> {
+    (!can_be_written(name)).then(|| Loss { subject: format!("robot '{}'", name.escape_debug()), reason: Reason::BadName })
 }
 
 /// The name of what does not move.

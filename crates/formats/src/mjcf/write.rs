@@ -2,7 +2,7 @@
 
 use super::joints::{Part, is_part_of_child, parts};
 use super::quaternion::quaternion;
-use crate::export::names::{Names, ROOT};
+use crate::export::names::{self, Names, ROOT};
 use crate::export::order::{Item, carried};
 use crate::export::xml::{Attributes, Xml};
 use crate::export::{self, ExportError, Loss, OnLoss, Reason};
@@ -144,7 +144,7 @@ const LEAST: f64 = 1e-15;
 
 /// Everything that MJCF cannot hold, in the order of the description.
 fn losses(robot: &Description, carried: &[Vec<Item>]) -> Vec<Loss> {
-    let mut losses = Vec::new();
+    let mut losses = Vec::from_iter(names::of_robot(&robot.name));
     let (mut bodies, mut joints) = (Names::default(), Names::default());
     bodies.fresh(ROOT);
     let unphysical: HashSet<String> = robot

@@ -59,6 +59,10 @@ const AXIS_ROUNDING: f64 = 4.0 * f64::EPSILON;
 impl Robot {
     pub fn read(document: &Document, options: &Options, notes: &mut Vec<NoteAt>) -> Result<Self, At> {
         let root = document.root_element();
+        if let Some((_, kind)) = OTHER_ROOTS.into_iter().find(|(name, _)| *name == root.tag_name().name()) {
+            return Err(UrdfProblem::AnotherKind { kind }.at(root.range().start));
+        }
+        refuse_macros(root)?;
         if root.tag_name().name() != "robot" {
             return Err(UrdfProblem::NotARobot { found: root.tag_name().name().to_owned() }.at(root.range().start));
         }
@@ -88,6 +92,31 @@ impl Robot {
         note_what_is_not_read(root, notes);
         Ok(robot)
     }
+}
+
+/// Root elements of files that are mistaken for URDF.
+const OTHER_ROOTS: [(&str, &str); 5] = [
+    ("COLLADA", "a COLLADA mesh"),
+    ("mujoco", "an MJCF file"),
+    ("sdf", "an SDF file"),
+    ("html", "a web page"),
+    ("launch", "a launch file"),
+];
+
+/// Elements of xacro's namespace, or expressions in attributes, are not expanded yet. (The namespace's declaration stays when they are.)
+fn refuse_macros(root: Node) -> Result<(), At> {
+    for node in root.descendants().filter(Node::is_element) {
+        let name = node.tag_name();
+        if name.namespace().is_some_and(|namespace| namespace.contains("xacro")) {
+            return Err(UrdfProblem::Xacro { found: format!("it has <xacro:{}>", name.name()) }.at(node.range().start));
+        }
+        let expression = |text: &str| text.contains("${") || text.contains("$(");
+        if let Some(attribute) = node.attributes().find(|attribute| expression(attribute.value())) {
+            let found = format!("it has {}=\"{}\"", attribute.name(), attribute.value());
+            return Err(UrdfProblem::Xacro { found }.at(node.range().start));
+        }
+    }
+    Ok(())
 }
 
 /// One note per kind of element that plays no part.

@@ -7,11 +7,13 @@
 //!   unless [`Options::allow_massless`].
 //! - Gravity is not part of URDF: (0, 0, −9.81).
 //! - The root link stands on the world ([`Base::Fixed`]) or on a free joint named `root_joint` ([`Base::Floating`]).
+//!   Where a root without inertia, such as a link `world`, carries the robot on a `floating` joint, that joint is the floating base already.
 //! - Siblings keep the order in which their joints stand in the file. (Readers built on urdfdom sort them by joint name.)
 //! - `rpy` is R = Rz(yaw)·Ry(pitch)·Rx(roll); an axis is normalised, with a note when that changes more than its last digits.
 //! - Fixed joints are merged, each leaving a frame with the link's name.
 //! - A `floating` joint becomes free, a `planar` one planar in the plane normal to its axis, `continuous` revolute without position limits.
 //!   A `revolute` or `prismatic` joint whose `<limit>` gives neither `lower` nor `upper` has none (urdfdom would lock it at zero).
+//! - xacro is refused: macros must be expanded first. So are meshes and other formats, by name.
 //! - `mimic` is refused by name unless [`Options::independent_mimics`], which reads the joint as one of its own, as engines do by default.
 //! - Not read, and noted: visual and collision geometry, `safety_controller`, `calibration`, and every element of `<robot>` that is neither
 //!   link nor joint.

@@ -3,7 +3,7 @@
 use super::angles::{angles, distance, rotation};
 use super::elements::unit;
 use super::tree::GRAVITY;
-use crate::export::names::{Names, ROOT};
+use crate::export::names::{self, Names, ROOT};
 use crate::export::order::{Item, carried};
 use crate::export::xml::{Attributes, Xml};
 use crate::export::{self, ExportError, Loss, OnLoss, Reason};
@@ -139,7 +139,7 @@ fn limits_are_whole(joint: &JointDescription) -> bool {
 
 /// Everything that URDF cannot hold, in the order of the description.
 fn losses(robot: &Description) -> Vec<Loss> {
-    let mut losses = Vec::new();
+    let mut losses = Vec::from_iter(names::of_robot(&robot.name));
     if robot.gravity != GRAVITY {
         losses.push(Loss { subject: "the robot".to_owned(), reason: Reason::Gravity });
     }

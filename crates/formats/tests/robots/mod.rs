@@ -107,7 +107,7 @@ pub fn of(kinds: &'static [Kind]) -> impl Strategy<Value = Description> {
             Frame { name: format!("frame {k}"), body, placement }
         };
         let frames = frames.into_iter().enumerate().map(frame).collect();
-        let name = name.chars().filter(|c| !c.is_control() && !matches!(c, '\u{fffe}' | '\u{ffff}')).collect();
+        let name = name.chars().filter(|c| !c.is_control() && !matches!(c, '$' | '\u{fffe}' | '\u{ffff}')).collect();
         Description { name, gravity: [0.0; 3], bodies, frames, provenance: None }
     })
 }
