@@ -17,7 +17,7 @@ from typing import Any
 import numpy as np
 
 from protocol import Array, Description, Header, Reading
-from reading import HeldJoint, Link, Place, describe, note, turned
+from reading import HeldJoint, Link, Place, describe, listed, note, overheard, turned
 
 _here = sys.path.pop(0)  # this directory, where another file would be taken for the package imported next
 import mujoco as mj  # noqa: E402
@@ -25,6 +25,7 @@ import mujoco as mj  # noqa: E402
 sys.path.insert(0, _here)
 
 BOUND = 1e-6  # kg and kg m², where the compiler refuses a file without bounds
+DIAGONALISED = 64 * np.finfo(float).eps  # of an inertia: what MuJoCo's iteration for principal axes leaves (18 eps on a link of xarm7)
 EDITED = 1e-9  # of a body's mass or inertia: what is told as edited; MuJoCo's own rounding is a few eps
 TYPES = {
     mj.mjtJoint.mjJNT_HINGE: "revolute",
@@ -38,13 +39,15 @@ def read(path: Path, form: str, base: str, make: Callable[[Description, mj.MjMod
     """Reads a file; `make` makes a robot of MuJoCo's model and its description."""
     notes: list[Header] = []
     floating = form == "urdf" and base == "free"
-    spec, model, settings = _compiled(path, floating, notes)
-    whole_spec, whole = _unfused(path, floating, settings)
+    with overheard(path, notes):
+        spec, model, settings = _compiled(path, floating, notes)
+        whole_spec, whole = _unfused(path, floating, settings)
     _note_edits(whole_spec, whole, notes)
     _note_not_compared(model, notes)
     names = [_named(model.body(i).name, "body", i) for i in range(model.nbody)]
     links = [_link(spec, model, names, i) for i in range(1, model.nbody)]
-    description = describe(spec.modelname or path.stem, model.opt.gravity, links)
+    weightless = model.opt.disableflags & mj.mjtDisableBit.mjDSBL_GRAVITY
+    description = describe(spec.modelname or path.stem, np.zeros(3) if weightless else model.opt.gravity, links)
     if floating and not any(body["joint"]["type"] == "free" for body in description["bodies"]):
         notes.append(note("root_welded", None, "the file has no single root link that could float"))
     _add_fused_frames(description, names, whole, notes)
@@ -57,9 +60,10 @@ def read(path: Path, form: str, base: str, make: Callable[[Description, mj.MjMod
 def neutral_q(model: mj.MjModel, qpos: Array) -> Array:
     """Neutral coordinates: MuJoCo's, but quaternions end with w."""
     q = np.array(qpos)
-    for kind, start in zip(model.jnt_type, model.jnt_qposadr, strict=True):
-        if kind in (mj.mjtJoint.mjJNT_BALL, mj.mjtJoint.mjJNT_FREE):
-            last = slice(start, start + 4) if kind == mj.mjtJoint.mjJNT_BALL else slice(start + 3, start + 7)
+    for number, start in zip(model.jnt_type, model.jnt_qposadr, strict=True):
+        kind = TYPES[mj.mjtJoint(number)]
+        if kind in ("spherical", "free"):
+            last = slice(start, start + 4) if kind == "spherical" else slice(start + 3, start + 7)
             q[last] = np.roll(qpos[last], -1)
     return q
 
@@ -141,6 +145,9 @@ def _unfused(path: Path, floating: bool, settings: list[Setting]) -> tuple[mj.Mj
     """The same with every link a body of its own: it tells where fused links are, and what was edited link by link."""
     spec = _loaded(path, floating, settings)
     spec.compiler.fusestatic = False
+    for joint in spec.joints:  # a free joint below a link may stand only if that is fused into the world
+        if joint.type == mj.mjtJoint.mjJNT_FREE and joint.parent.parent.name != spec.worldbody.name:
+            spec.delete(joint)
     return spec, spec.compile()
 
 
@@ -157,9 +164,16 @@ def _place(model: mj.MjModel, i: int) -> Place:
     return Place(turned(*model.body_quat[i]), model.body_pos[i].copy())
 
 
+def _inertial_frame(model: mj.MjModel, i: int) -> Place:
+    """Body i's centre of mass and principal axes, as MuJoCo computes with them: within 1e-6 of the body's frame they are the body's."""
+    same, kinds = model.body_sameframe[i], mj.mjtSameFrame
+    axes = np.eye(3) if same in (kinds.mjSAMEFRAME_BODY, kinds.mjSAMEFRAME_BODYROT) else turned(*model.body_iquat[i])
+    return Place(axes, np.zeros(3) if same == kinds.mjSAMEFRAME_BODY else model.body_ipos[i].copy())
+
+
 def _inertia(model: mj.MjModel, i: int) -> Array:
     """Body i's inertia about its centre of mass in its axes: R diag(principal moments) R'."""
-    axes = turned(*model.body_iquat[i])
+    axes = _inertial_frame(model, i).rotation
     return (axes * model.body_inertia[i]) @ axes.T
 
 
@@ -174,16 +188,16 @@ def _given_inertia(body: mj.MjsBody) -> Array | None:
 
 
 def _link(spec: mj.MjSpec, model: mj.MjModel, names: list[str], i: int) -> Link:
-    """Body i of the model. An inertia that the compiler's principal axes give back within 16 eps is told in the file's own digits."""
+    """Body i of the model. An inertia that the compiler's principal axes give back within rounding is told in the file's own digits."""
     inertia = _inertia(model, i)
     body = spec.body(model.body(i).name) if model.body(i).name else None
     given = _given_inertia(body) if body is not None else None
-    if given is not None and np.abs(given - inertia).max() <= 16 * np.finfo(float).eps * np.abs(given).max():
+    if given is not None and np.abs(given - inertia).max() <= DIAGONALISED * np.abs(given).max():
         inertia = given
     joints = [_joint(model, j) for j in range(model.body_jntadr[i], model.body_jntadr[i] + model.body_jntnum[i])]
     place = Place() if joints and joints[0].type == "free" else _place(model, i)  # a free joint's coordinates are those of the world
     parent = int(model.body_parentid[i]) - 1
-    return Link(names[i], float(model.body_mass[i]), model.body_ipos[i].copy(), inertia, parent, place, joints)
+    return Link(names[i], float(model.body_mass[i]), _inertial_frame(model, i).translation, inertia, parent, place, joints)
 
 
 def _joint(model: mj.MjModel, j: int) -> HeldJoint:
@@ -224,7 +238,7 @@ def _add_fused_frames(description: Header, names: list[str], whole: mj.MjModel, 
         description["frames"].append({"name": name, "body": body, "placement": homes[i][1].json()})
         fused.append(name)
     if fused:
-        notes.append(note("fused", None, f"{len(fused)} links of fixed joints were fused into their parents: {', '.join(fused)}"))
+        notes.append(note("fused", None, f"{len(fused)} links of fixed joints were fused into their parents: {listed(fused)}"))
 
 
 def _without_extras(model: mj.MjModel) -> None:
@@ -247,16 +261,21 @@ def _note_edits(spec: mj.MjSpec, model: mj.MjModel, notes: list[Header]) -> None
     for body in spec.bodies[1:]:
         i, name = body.id, _named(body.name, "body", body.id)
         if not body.explicitinertial:
-            if model.body_mass[i]:
+            if model.body_mass[i] and body.geoms:
                 computed.append(name)
+            elif model.body_mass[i]:
+                notes.append(note("mass_edited", name, f"no inertial in the file became {model.body_mass[i]} kg"))
             continue
         if abs(model.body_mass[i] - body.mass) > EDITED * body.mass:
             notes.append(note("mass_edited", name, f"{body.mass} kg in the file became {model.body_mass[i]} kg"))
         given, inertia = _given_inertia(body), _inertia(model, i)
         if given is not None and np.abs(given - inertia).max() > EDITED * np.abs(given).max():
             notes.append(note("inertia_edited", name, f"{_six(given)} in the file became {_six(inertia)} kg m²"))
+        if (_inertial_frame(model, i).translation != model.body_ipos[i]).any():
+            moved = f"MuJoCo computes as if the centre of mass, {tuple(model.body_ipos[i].tolist())}, were the origin, as it is within 1e-6"
+            notes.append(note("com_edited", name, moved))
     if computed:
-        notes.append(note("from_geometry", None, f"{len(computed)} links have no inertial: computed from geometry: {', '.join(computed)}"))
+        notes.append(note("from_geometry", None, f"{len(computed)} links have no inertial: computed from geometry: {listed(computed)}"))
 
 
 def _six(inertia: Array) -> str:
