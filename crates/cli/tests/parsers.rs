@@ -75,7 +75,8 @@ fn seeds_are_good() {
         assert!(std::str::from_utf8(&seed).is_ok_and(|text| !text.is_empty()));
     }
     record::parse_csv(std::str::from_utf8(&fuzz::records_seed()).unwrap(), Path::new("rows")).unwrap_or_else(|error| panic!("{error}"));
-    record::RunInfo::parse(std::str::from_utf8(&fuzz::run_info_seed()).unwrap(), Path::new("run")).unwrap_or_else(|error| panic!("{error}"));
+    record::RunInfo::parse(std::str::from_utf8(&fuzz::run_info_seed()).unwrap(), Path::new("run"))
+        .unwrap_or_else(|error| panic!("{error}"));
     for k in 0..8 {
         assert!(model::generate::Family::parse(&read(&format!("family/{k}"))).is_ok(), "family {k}");
     }

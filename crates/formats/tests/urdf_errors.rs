@@ -52,7 +52,11 @@ fn bad_files_are_named() {
             &["f.urdf:2:", "it has <xacro:property>", "expand it first"],
         ),
         ("<mass value=\"1\"/>", "<mass value=\"${m}\"/>", &["f.urdf:7:7: this is a xacro file (it has value=\"${m}\")"]),
-        ("<mass value=\"1\"/>", "<mass value=\"1,5\"/>", &["f.urdf:7:7: value=\"1,5\" of link 'arm' is not a number (decimals have a point"]),
+        (
+            "<mass value=\"1\"/>",
+            "<mass value=\"1,5\"/>",
+            &["f.urdf:7:7: value=\"1,5\" of link 'arm' is not a number (decimals have a point"],
+        ),
         ("xyz=\"0.5 0 0\"", "xyz=\"0,5 0 0\"", &["f.urdf:6:7: xyz=\"0,5 0 0\" of link 'arm' is not three numbers (decimals have a point"]),
         // names and tree
         ("<link name=\"base\"/>", "<link/>", &["f.urdf:3:3: <link> of the robot has no attribute 'name'"]),

@@ -48,7 +48,8 @@ fn expected(robot: &Description) -> Description {
 fn assert_same(read: &Description, expected: &Description) -> (usize, usize) {
     let mut exact = (0, 0);
     let mut level = read.clone();
-    let pairs = level.bodies.iter_mut().map(|body| &mut body.joint.placement).chain(level.frames.iter_mut().map(|frame| &mut frame.placement));
+    let pairs =
+        level.bodies.iter_mut().map(|body| &mut body.joint.placement).chain(level.frames.iter_mut().map(|frame| &mut frame.placement));
     let wanted = expected.bodies.iter().map(|body| &body.joint.placement).chain(expected.frames.iter().map(|frame| &frame.placement));
     for (placement, wanted) in pairs.zip(wanted) {
         let error = placement.rotation.iter().zip(&wanted.rotation).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);

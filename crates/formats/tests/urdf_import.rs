@@ -164,7 +164,8 @@ fn a_base_that_floats_already_floats_once() {
 /// The declaration of xacro's namespace stays in expanded files.
 #[test]
 fn expanded_xacro_and_names_of_any_script_are_read() {
-    let text = one_joint("continuous", "").replace("<robot ", r#"<robot xmlns:xacro="http://www.ros.org/wiki/xacro" "#).replace("tip", "Hüfte 左");
+    let text =
+        one_joint("continuous", "").replace("<robot ", r#"<robot xmlns:xacro="http://www.ros.org/wiki/xacro" "#).replace("tip", "Hüfte 左");
     assert_eq!(import(&text, Options::default()).0.bodies[0].name, "Hüfte 左");
 }
 

@@ -99,7 +99,8 @@ impl Suite {
     /// # Errors
     /// [`HarnessError`], naming file, line and key.
     pub fn parse(text: &str, path: &Path) -> Result<Self, HarnessError> {
-        let suite: Self = toml::from_str(text).map_err(|error| HarnessError::Config { path: path.to_owned(), message: error.to_string() })?;
+        let suite: Self =
+            toml::from_str(text).map_err(|error| HarnessError::Config { path: path.to_owned(), message: error.to_string() })?;
         for entry in &suite.problem {
             let sources = [&entry.model, &entry.generate, &entry.urdf];
             if sources.into_iter().flatten().count() != 1 {

@@ -81,7 +81,10 @@ fn coordinates(robot: &Description) -> Vec<f64> {
 }
 
 fn rates(robot: &Description, salt: f64) -> Vec<f64> {
-    let of = |joint: &model::JointDescription| (0..joint.kind.nv()).map(|k| drawn(&joint.name, salt + 0.1 * k as f64)).collect::<Vec<_>>();
+    let of = |joint: &model::JointDescription| {
+        let name = if joint.kind == JointType::Free { "free" } else { &joint.name };
+        (0..joint.kind.nv()).map(|k| drawn(name, salt + 0.1 * k as f64)).collect::<Vec<_>>()
+    };
     robot.bodies.iter().flat_map(|body| of(&body.joint)).collect()
 }
 
@@ -193,13 +196,15 @@ pub fn urdf_read_alike(python: &Path) -> Outcome {
     Outcome::Passed
 }
 
-/// For each dof of `ours`, its place in `theirs`: joints by their names.
+/// For each dof of `ours`, its place in `theirs`: joints by their names, but the free one, which engines name as they like.
 fn dofs(theirs: &Description, ours: &Description) -> Vec<usize> {
+    let named = |joint: &model::JointDescription| if joint.kind == JointType::Free { "free".to_owned() } else { joint.name.clone() };
     let mut starts = std::collections::HashMap::new();
     let mut next = 0;
     for body in &theirs.bodies {
-        starts.insert(&body.joint.name, next);
+        starts.insert(named(&body.joint), next);
         next += body.joint.kind.nv();
     }
-    ours.bodies.iter().flat_map(|body| (0..body.joint.kind.nv()).map(|k| starts[&body.joint.name] + k).collect::<Vec<_>>()).collect()
+    let start = |joint| *starts.get(&named(joint)).unwrap_or_else(|| panic!("{}: no joint '{}' was read", ours.name, joint.name));
+    ours.bodies.iter().flat_map(|body| (0..body.joint.kind.nv()).map(|k| start(&body.joint) + k).collect::<Vec<_>>()).collect()
 }

@@ -108,19 +108,28 @@ impl fmt::Display for Reason {
             Self::Unequal { field } => write!(f, "{field} that differs between degrees of freedom; the format has one number per joint"),
             Self::OneSided => write!(f, "a lower limit without an upper one, or the reverse; give both or none"),
             Self::IncompleteLimits => {
-                write!(f, "limits in part: the format asks for lower, upper, velocity and effort (a revolute joint may have none, or the last two)")
+                write!(
+                    f,
+                    "limits in part: the format asks for lower, upper, velocity and effort (a revolute joint may have none, or the last two)"
+                )
             }
             Self::Axis { error } => write!(f, "an axis that misses unit length by {error:e}; readers would normalise it, so do that first"),
             Self::Rotation { error } => {
                 write!(f, "a rotation that misses orthonormality by about {error:e}; the format has exact ones only, so correct it first")
             }
             Self::EmptyRange { field } => write!(f, "{field} that leave no range; the format asks for a lower end below the upper one"),
-            Self::FreePlacement => write!(f, "a free joint whose coordinates are not the world's, as the format has them; place it at the world's origin"),
-            Self::Massless => write!(f, "moves with a mass or a principal moment of inertia below 1e-15, which MuJoCo does not compile; give it more"),
+            Self::FreePlacement => {
+                write!(f, "a free joint whose coordinates are not the world's, as the format has them; place it at the world's origin")
+            }
+            Self::Massless => {
+                write!(f, "moves with a mass or a principal moment of inertia below 1e-15, which MuJoCo does not compile; give it more")
+            }
             Self::Unphysical => write!(f, "an inertia that no mass distribution has, which MuJoCo does not compile; correct it"),
             Self::FreeBelow => write!(f, "a free joint on another body; MuJoCo has them on the world only"),
             Self::BadName => write!(f, "a name that is empty, holds a control character or reads as a macro; rename it"),
-            Self::RepeatedName => write!(f, "the name stands twice where the format asks for unique ones (links and frames share names); rename one"),
+            Self::RepeatedName => {
+                write!(f, "the name stands twice where the format asks for unique ones (links and frames share names); rename one")
+            }
             Self::ReservedName => write!(f, "the name 'world' is the root's own; rename it"),
         }
     }

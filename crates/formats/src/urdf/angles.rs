@@ -89,7 +89,8 @@ mod tests {
     fn angle() -> impl Strategy<Value = f64> {
         let quarter = (-4..=4).prop_map(|k| f64::from(k) * FRAC_PI_2);
         let typed = (-6283..=6283).prop_map(|k| f64::from(k) / 1000.0);
-        let near = (quarter.clone(), -16..=0, -1.0..1.0).prop_map(|(angle, exponent, x): (f64, i32, f64)| angle + x * 10_f64.powi(exponent));
+        let near =
+            (quarter.clone(), -16..=0, -1.0..1.0).prop_map(|(angle, exponent, x): (f64, i32, f64)| angle + x * 10_f64.powi(exponent));
         prop_oneof![4 => -PI..PI, 2 => quarter, 2 => typed, 3 => near, 1 => -8.0..8.0]
     }
 

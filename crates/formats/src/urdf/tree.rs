@@ -18,7 +18,8 @@ pub(super) fn assemble(robot: &Robot, options: &Options, notes: &mut Vec<NoteAt>
     let base = match connected.floating_base(robot) {
         Some(joint) if options.base == Base::Floating => {
             let (root, name) = (&robot.links[connected.root].name, &joint.name);
-            let text = format!("link '{root}' has no inertia and carries the robot on the floating joint '{name}': that joint is the base's");
+            let text =
+                format!("link '{root}' has no inertia and carries the robot on the floating joint '{name}': that joint is the base's");
             notes.push(NoteAt { offset: joint.offset, text });
             Base::Fixed
         }

@@ -75,7 +75,9 @@ fn body(xml: &mut Xml, robot: &Description, body: &BodyDescription) {
 
     let joint = &body.joint;
     let (kind, axis) = match joint.kind {
-        JointType::Revolute { axis } => (if joint.lower.is_empty() || !limits_are_whole(joint) { "continuous" } else { "revolute" }, Some(axis)),
+        JointType::Revolute { axis } => {
+            (if joint.lower.is_empty() || !limits_are_whole(joint) { "continuous" } else { "revolute" }, Some(axis))
+        }
         JointType::Prismatic { axis } => ("prismatic", Some(axis)),
         JointType::Free => ("floating", None),
         JointType::Planar => ("planar", Some([0.0, 0.0, 1.0])),
