@@ -127,10 +127,10 @@ pub struct RecordArgs {
 
 #[derive(Debug, Clone, Args)]
 #[command(
-    after_help = "Examples:\n  featherbench gen chain --n 1000 --out chain.json\n  featherbench gen tree --seed 7 --set joints=all --set base=free --out tree.json\n  featherbench gen urdf --file robot.urdf --floating --out robot.json\n  featherbench gen humanoid --lossy --out humanoid.xml\n\n`featherbench list` names the families and their parameters."
+    after_help = "Examples:\n  featherbench gen chain --n 1000 --out chain.json\n  featherbench gen tree --seed 7 --set joints=all --set base=free --out tree.json\n  featherbench gen urdf --file robot.urdf --floating --out robot.json\n  featherbench gen neutral --file robot.json --out robot.urdf\n  featherbench gen humanoid --lossy --out humanoid.xml\n\n`featherbench list` names the families and their parameters."
 )]
 pub struct GenArgs {
-    /// A family of generated robots (also with its parameters, as in `chain:n=20,layout=spatial`), or `urdf`.
+    /// A family of generated robots (also with its parameters, as in `chain:n=20,layout=spatial`), or a file's format: `urdf`, `neutral`.
     pub family: String,
     /// Number of links.
     #[arg(long)]
@@ -141,8 +141,8 @@ pub struct GenArgs {
     /// Any other parameter, as key=value; may be repeated.
     #[arg(long = "set", value_name = "KEY=VALUE")]
     pub parameters: Vec<String>,
-    /// The URDF file, for `urdf`.
-    #[arg(long, value_name = "URDF", required_if_eq("family", "urdf"))]
+    /// The file, for `urdf` and `neutral`.
+    #[arg(long, value_name = "FILE", required_if_eq_any([("family", "urdf"), ("family", "neutral")]))]
     pub file: Option<PathBuf>,
     /// Give the URDF's base six degrees of freedom.
     #[arg(long)]

@@ -18,6 +18,7 @@ pub fn generate(args: &GenArgs) -> Result<(), Fail> {
             notes.iter().for_each(|note| eprintln!("note: {}: {note}", file.display()));
             description
         }
+        (Some(file), "neutral") => problems::read_model(file)?,
         (_, spec) if spec.contains(':') => {
             let generated = Family::parse(spec).and_then(|family| family.generate());
             generated.map_err(|error| Fail::input(error.to_string()))?

@@ -1,4 +1,4 @@
-//! How a robot is written: the neutral description file ([`neutral`]) and URDF ([`urdf`]).
+//! How a robot is written: the neutral description file ([`neutral`]), URDF ([`urdf`]) and, to write only, MJCF ([`mjcf`]).
 //!
 //! Reading never panics and never repairs silently: what is wrong is a typed error that names file, line and field, what was left out is a
 //! note. Sizes are limited, nothing recurses on the input.

@@ -21,21 +21,22 @@ pub fn carried(robot: &Description) -> Vec<Vec<Item>> {
         let parent = place(body.parent);
         first_frame[parent] = first_frame[parent].min(first_frame[i + 1]);
     }
-    let mut frames: Vec<std::collections::VecDeque<usize>> = vec![Default::default(); robot.bodies.len() + 1];
+    let mut frames = vec![Vec::new(); robot.bodies.len() + 1];
     for (k, frame) in robot.frames.iter().enumerate() {
-        frames[place(frame.body)].push_back(k);
+        frames[place(frame.body)].push(k);
     }
+    let mut frames: Vec<_> = frames.into_iter().map(|list| list.into_iter().peekable()).collect();
     let mut items = vec![Vec::new(); robot.bodies.len() + 1];
     for (i, body) in robot.bodies.iter().enumerate() {
         let parent = place(body.parent);
         let branch = Some(first_frame[i + 1]).filter(|&first| first != usize::MAX);
-        while let Some(frame) = frames[parent].pop_front_if(|frame| branch.is_some_and(|first| *frame < first)) {
+        while let Some(frame) = frames[parent].next_if(|frame| branch.is_some_and(|first| *frame < first)) {
             items[parent].push(Item::Frame(frame));
         }
         items[parent].push(Item::Body(i));
     }
     for (items, frames) in items.iter_mut().zip(frames) {
-        items.extend(frames.into_iter().map(Item::Frame));
+        items.extend(frames.map(Item::Frame));
     }
     items
 }
