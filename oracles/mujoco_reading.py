@@ -26,6 +26,7 @@ sys.path.insert(0, _here)
 mj.set_mju_user_warning(lambda text: print(f"warning: {text}", file=sys.stderr))  # else MuJoCo writes MUJOCO_LOG.TXT where it stands
 
 BOUND = 1e-6  # kg and kg m², where the compiler refuses a file without bounds
+DIAGONALISED = 64 * np.finfo(float).eps  # of an inertia: what MuJoCo's iteration for principal axes leaves (18 eps on a link of xarm7)
 EDITED = 1e-9  # of a body's mass or inertia: what is told as edited; MuJoCo's own rounding is a few eps
 TYPES = {
     mj.mjtJoint.mjJNT_HINGE: "revolute",
@@ -190,11 +191,11 @@ def _given_inertia(body: mj.MjsBody) -> Array | None:
 
 
 def _link(spec: mj.MjSpec, model: mj.MjModel, names: list[str], i: int) -> Link:
-    """Body i of the model. An inertia that the compiler's principal axes give back within 16 eps is told in the file's own digits."""
+    """Body i of the model. An inertia that the compiler's principal axes give back within rounding is told in the file's own digits."""
     inertia = _inertia(model, i)
     body = spec.body(model.body(i).name) if model.body(i).name else None
     given = _given_inertia(body) if body is not None else None
-    if given is not None and np.abs(given - inertia).max() <= 16 * np.finfo(float).eps * np.abs(given).max():
+    if given is not None and np.abs(given - inertia).max() <= DIAGONALISED * np.abs(given).max():
         inertia = given
     joints = [_joint(model, j) for j in range(model.body_jntadr[i], model.body_jntadr[i] + model.body_jntnum[i])]
     place = Place() if joints and joints[0].type == "free" else _place(model, i)  # a free joint's coordinates are those of the world

@@ -140,8 +140,17 @@ def _type(joint: pin.JointModel, name: str) -> tuple[str, Array | None, float]:
     named = {"RevoluteUnaligned": "revolute", "RevoluteUnboundedUnaligned": "revolute", "PrismaticUnaligned": "prismatic"}
     named["HelicalUnaligned"] = "helical"
     if short in named:
-        return named[short], np.array(whole.axis, dtype=float), float(getattr(whole, "pitch", 0.0))
+        return named[short], _axis(joint, whole), float(getattr(whole, "pitch", 0.0))
     raise Unsupported(f"joint {name} is Pinocchio's {short}, a type that descriptions do not have")
+
+
+def _axis(joint: pin.JointModel, whole: object) -> Array:
+    """The axis of a joint with one; Pinocchio 4.1 does not show that of an unbounded joint, whose motion subspace says it."""
+    if hasattr(whole, "axis"):
+        return np.array(whole.axis, dtype=float)
+    data = joint.createData()
+    joint.calc(data, np.array([1.0, 0.0]))
+    return np.array(data.S, dtype=float).reshape(6)[3:]
 
 
 def _dofs(model: pin.Model, q: slice, v: slice) -> dict[str, Array]:

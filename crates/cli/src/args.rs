@@ -1,7 +1,7 @@
 //! The command line.
 
 use crate::guest::Guest;
-use clap::{Args, Parser, Subcommand};
+use clap::{Args, Parser, Subcommand, ValueEnum};
 use std::ffi::OsString;
 use std::path::PathBuf;
 
@@ -37,7 +37,7 @@ pub enum Command {
     Explain(ExplainArgs),
     /// Ask the engines and keep their answers in datasets/recorded.
     Record(RecordArgs),
-    /// Write the description of a robot: a generated one, or one read from URDF.
+    /// Write a robot, generated or read from URDF, as a description, URDF or MJCF.
     Gen(GenArgs),
     /// Set up and look at the reference engines.
     Oracles(OraclesArgs),
@@ -147,10 +147,10 @@ pub struct RecordArgs {
 
 #[derive(Debug, Clone, Args)]
 #[command(
-    after_help = "Examples:\n  featherbench gen chain --n 1000 --out chain.json\n  featherbench gen tree --seed 7 --set joints=all --set base=free --out tree.json\n  featherbench gen urdf --file robot.urdf --floating --out robot.json\n\n`featherbench list` names the families and their parameters."
+    after_help = "Examples:\n  featherbench gen chain --n 1000 --out chain.json\n  featherbench gen tree --seed 7 --set joints=all --set base=free --out tree.json\n  featherbench gen urdf --file robot.urdf --floating --out robot.json\n  featherbench gen neutral --file robot.json --out robot.urdf\n  featherbench gen humanoid --lossy --out humanoid.xml\n\n`featherbench list` names the families and their parameters."
 )]
 pub struct GenArgs {
-    /// A family of generated robots (also with its parameters, as in `chain:n=20,layout=spatial`), or `urdf`.
+    /// A family of generated robots (also with its parameters, as in `chain:n=20,layout=spatial`), or a file's format: `urdf`, `neutral`.
     pub family: String,
     /// Number of links.
     #[arg(long)]
@@ -161,8 +161,8 @@ pub struct GenArgs {
     /// Any other parameter, as key=value; may be repeated.
     #[arg(long = "set", value_name = "KEY=VALUE")]
     pub parameters: Vec<String>,
-    /// The URDF file, for `urdf`.
-    #[arg(long, value_name = "URDF", required_if_eq("family", "urdf"))]
+    /// The file, for `urdf` and `neutral`.
+    #[arg(long, value_name = "FILE", required_if_eq_any([("family", "urdf"), ("family", "neutral")]))]
     pub file: Option<PathBuf>,
     /// Give the URDF's base six degrees of freedom.
     #[arg(long)]
@@ -173,9 +173,26 @@ pub struct GenArgs {
     /// Let moving bodies have no mass.
     #[arg(long)]
     pub allow_massless: bool,
-    /// Where to write the description; standard output by default.
+    /// Where to write the robot; standard output by default.
     #[arg(long, value_name = "FILE")]
     pub out: Option<PathBuf>,
+    /// The format; by default what the ending of --out says (.json, .urdf, .xml).
+    #[arg(long)]
+    pub format: Option<Format>,
+    /// Leave out what the format cannot hold, naming it, instead of refusing.
+    #[arg(long)]
+    pub lossy: bool,
+}
+
+/// How a robot is written.
+#[derive(Debug, Clone, Copy, ValueEnum)]
+pub enum Format {
+    /// The neutral description, which holds everything.
+    Neutral,
+    /// URDF.
+    Urdf,
+    /// MuJoCo's format.
+    Mjcf,
 }
 
 #[derive(Debug, Clone, Args)]

@@ -1,13 +1,14 @@
-//! `featherbench gen`: writes the description of a robot.
+//! `featherbench gen`: writes a robot.
 
-use crate::args::GenArgs;
+use crate::args::{Format, GenArgs};
 use crate::fail::Fail;
 use crate::problems;
+use formats::OnLoss;
 use formats::urdf::{Base, Options};
 use model::Description;
 use model::generate::Family;
 
-/// Generates or imports a robot and writes its description.
+/// Generates or imports a robot and writes it.
 pub fn generate(args: &GenArgs) -> Result<(), Fail> {
     let description = match (&args.file, args.family.as_str()) {
         (Some(file), "urdf") => {
@@ -17,6 +18,7 @@ pub fn generate(args: &GenArgs) -> Result<(), Fail> {
             notes.iter().for_each(|note| eprintln!("note: {}: {note}", file.display()));
             description
         }
+        (Some(file), "neutral") => problems::read_model(file)?,
         (_, spec) if spec.contains(':') => {
             let generated = Family::parse(spec).and_then(|family| family.generate());
             generated.map_err(|error| Fail::input(error.to_string()))?
@@ -24,14 +26,37 @@ pub fn generate(args: &GenArgs) -> Result<(), Fail> {
         _ => family(args)?,
     };
     description.warnings().iter().for_each(|warning| eprintln!("warning: {warning}"));
+    let text = written(&description, args)?;
     match &args.out {
         Some(path) => {
-            formats::neutral::write(&description, path).map_err(|error| Fail::input(error.to_string()))?;
+            ::record::atomic_write(path, text.as_bytes())?;
             eprintln!("{}: {} ({} bodies, {} dofs)", path.display(), description.name, description.bodies.len(), description.nv());
         }
-        None => print!("{}", formats::neutral::to_string(&description).map_err(|error| Fail::input(error.to_string()))?),
+        None => print!("{text}"),
     }
     Ok(())
+}
+
+/// The robot in the format asked for, with a note on everything that was left out.
+fn written(description: &Description, args: &GenArgs) -> Result<String, Fail> {
+    let ending = args.out.as_ref().and_then(|path| path.extension()).and_then(|ending| ending.to_str());
+    let by_ending = match ending {
+        Some("urdf") => Format::Urdf,
+        Some("xml" | "mjcf") => Format::Mjcf,
+        _ => Format::Neutral,
+    };
+    let on_loss = if args.lossy { OnLoss::LeaveOut } else { OnLoss::Refuse };
+    let exported = match args.format.unwrap_or(by_ending) {
+        Format::Neutral => return formats::neutral::to_string(description).map_err(|error| Fail::input(error.to_string())),
+        Format::Urdf => formats::urdf::to_string(description, on_loss),
+        Format::Mjcf => formats::mjcf::to_string(description, on_loss),
+    };
+    let (text, losses) = exported.map_err(|error| {
+        let way_out = if error.can_be_left_out() { "\n(--lossy leaves this out)" } else { "" };
+        Fail::input(format!("{error}{way_out}"))
+    })?;
+    losses.iter().for_each(|loss| eprintln!("left out: {loss}"));
+    Ok(text)
 }
 
 fn family(args: &GenArgs) -> Result<Description, Fail> {

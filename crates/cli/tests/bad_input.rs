@@ -53,6 +53,20 @@ fn broken_urdf_is_refused_by_file_line_and_name() {
     sandbox.run(&["gen", "urdf", "--file", "nowhere.urdf"]).expect(2, &["nowhere.urdf"]);
 }
 
+/// What a format cannot hold is named, and written without it only when that is asked for.
+#[test]
+fn formats_refuse_what_they_cannot_hold() {
+    let sandbox = Sandbox::new();
+    sandbox.run(&["gen", "humanoid", "--out", "h.urdf"]).expect(2, &["URDF cannot hold", "armature", "'left_shin_joint'", "--lossy"]);
+    assert!(!sandbox.path("h.urdf").exists());
+    sandbox.run(&["gen", "humanoid", "--lossy", "--out", "h.urdf"]).expect(0, &["left out: joint 'left_shin_joint': armature"]);
+    sandbox.run(&["gen", "urdf", "--file", "h.urdf", "--out", "h.json"]).expect(0, &["36 dofs"]);
+    sandbox.run(&["gen", "neutral", "--file", "h.json", "--format", "urdf"]).expect(0, &["<robot name=\"humanoid\">"]);
+    sandbox.run(&["gen", "neutral", "--file", "h.json", "--out", "h.xml"]).expect(2, &["MJCF cannot hold", "velocity"]);
+    sandbox.run(&["gen", "joints:kind=helical", "--lossy", "--format", "mjcf"]).expect(2, &["helical", "neutral format"]);
+    sandbox.run(&["gen", "neutral"]).expect(2, &["--file"]);
+}
+
 #[test]
 fn broken_suites_are_refused_by_file_and_key() {
     let sandbox = Sandbox::new();

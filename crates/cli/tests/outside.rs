@@ -7,6 +7,7 @@
 #[path = "outside/native.rs"]
 mod native;
 mod support;
+mod written;
 
 use std::path::Path;
 use std::process::{Command, ExitCode};
@@ -32,6 +33,8 @@ fn main() -> ExitCode {
         ("an oracle that forgets a conversion is told which", forgetful_oracles),
         ("a small oracle runs beside the recorded engines", small_oracle),
         ("a live run agrees with the recorded answers", live_run),
+        ("MuJoCo reads the MJCF that we write", || with_engines(written::mjcf_round_trip)),
+        ("engines read alike the URDF that we write", || with_engines(written::urdf_read_alike)),
         ("a browser clicks through the report", browser),
         ("a pendulum in C agrees with our kernels", native::pendulum_answers),
         ("a pendulum in C is clocked beside its loop", native::pendulum_is_clocked),
@@ -103,17 +106,19 @@ fn missing_wheel() -> Outcome {
     Outcome::Passed
 }
 
+/// A test that needs the engines' Python.
+fn with_engines(test: fn(&Path) -> Outcome) -> Outcome {
+    installed_python().map_or_else(|skipped| skipped, |python| test(&python))
+}
+
 fn oracles_by_themselves() -> Outcome {
-    match installed_python() {
-        Ok(python) => {
-            let run = |test: &str| checked(Command::new(&python).arg(project().join("oracles").join(test)));
-            match run("test_oracles.py") {
-                Outcome::Passed => run("test_reading.py"),
-                other => other,
-            }
+    with_engines(|python| {
+        let run = |test: &str| checked(Command::new(python).arg(project().join("oracles").join(test)));
+        match run("test_oracles.py") {
+            Outcome::Passed => run("test_reading.py"),
+            other => other,
         }
-        Err(skipped) => skipped,
-    }
+    })
 }
 
 /// Every test of a convention passes, and fails where it claims the alternative.
@@ -185,14 +190,18 @@ fn forgetful_oracles() -> Outcome {
         ),
     ];
     let folder = tempfile::tempdir().unwrap();
-    let protocol = project().join("oracles/protocol.py");
-    std::fs::copy(protocol, folder.path().join("protocol.py")).unwrap();
+    for file in std::fs::read_dir(project().join("oracles")).unwrap().map(|file| file.unwrap().path()) {
+        if file.extension().is_some_and(|ending| ending == "py") {
+            std::fs::copy(&file, folder.path().join(file.file_name().unwrap())).unwrap();
+        }
+    }
     for (name, right, wrong, named) in cases {
         let text = std::fs::read_to_string(project().join(format!("oracles/{name}.py"))).unwrap();
         assert!(text.contains(right), "{name}.py has no '{right}' any more");
         let path = folder.path().join(format!("{name}.py"));
         std::fs::write(&path, text.replace(right, wrong)).unwrap();
         conformance(&python, &path).expect(1, &[named]);
+        std::fs::write(&path, text).unwrap();
     }
     Outcome::Passed
 }

@@ -99,7 +99,11 @@ impl Recording {
         Self::from_bytes(&bytes, problem).map_err(|what| RecordingError::Damaged { path: path.to_owned(), what })
     }
 
-    fn from_bytes(bytes: &[u8], problem: &Problem) -> Result<Self, String> {
+    /// The recording of a problem in bytes.
+    ///
+    /// # Errors
+    /// What is truncated, damaged, or about another robot or other states, in words.
+    pub fn from_bytes(bytes: &[u8], problem: &Problem) -> Result<Self, String> {
         let mut reader = Reader { bytes, parts: 0 };
         let (head, raw) = reader.part()?;
         let recorded = from_plain(raw).ok_or("the states are damaged")?;

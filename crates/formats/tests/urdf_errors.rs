@@ -41,7 +41,23 @@ fn bad_files_are_named() {
         ("name=\"base\"", "name=\"base\" name=\"other\"", &["f.urdf:3:", "name"]),
         ("<robot name=\"r\">", "<!DOCTYPE robot [<!ENTITY a \"b\">]><robot name=\"r\">", &["f.urdf:2:1", "document type"]),
         ("name=\"base\"", "name=\"&boom;\"", &["f.urdf:3:", "boom"]),
-        ("<robot name=\"r\">", "<robot name=\"r\"><xacro:include filename=\"x\"/>", &["f.urdf:2:", "xacro"]),
+        (
+            "<robot name=\"r\">",
+            "<robot name=\"r\"><xacro:include filename=\"x\"/>",
+            &["f.urdf:2:", "this is a xacro file", "expand it first: xacro"],
+        ),
+        (
+            "<robot name=\"r\">",
+            "<robot name=\"r\" xmlns:xacro=\"http://www.ros.org/wiki/xacro\"><xacro:property name=\"m\" value=\"1\"/>",
+            &["f.urdf:2:", "it has <xacro:property>", "expand it first"],
+        ),
+        ("<mass value=\"1\"/>", "<mass value=\"${m}\"/>", &["f.urdf:7:7: this is a xacro file (it has value=\"${m}\")"]),
+        (
+            "<mass value=\"1\"/>",
+            "<mass value=\"1,5\"/>",
+            &["f.urdf:7:7: value=\"1,5\" of link 'arm' is not a number (decimals have a point"],
+        ),
+        ("xyz=\"0.5 0 0\"", "xyz=\"0,5 0 0\"", &["f.urdf:6:7: xyz=\"0,5 0 0\" of link 'arm' is not three numbers (decimals have a point"]),
         // names and tree
         ("<link name=\"base\"/>", "<link/>", &["f.urdf:3:3: <link> of the robot has no attribute 'name'"]),
         ("name=\"hand\"", "name=\"arm\"", &["f.urdf:11:3: two links are named 'arm'"]),
@@ -110,7 +126,12 @@ fn bad_files_are_named() {
         ("", "f.urdf: the file is empty"),
         (" \n\t", "f.urdf: the file is empty"),
         ("hello", "not well-formed XML"),
-        ("<mujoco/>", "f.urdf:1:1: the root element is <mujoco>, not <robot>"),
+        ("<rowboat/>", "f.urdf:1:1: the root element is <rowboat>, not <robot>"),
+        ("<mujoco/>", "f.urdf:1:1: this is an MJCF file, not URDF"),
+        ("<COLLADA xmlns='x' version='1.4.1'/>", "f.urdf:1:1: this is a COLLADA mesh, not URDF"),
+        ("solid part\n facet normal 0 0 1\n", "f.urdf:1:1: this is an STL mesh, not URDF"),
+        ("# Blender\no Cube\nv 1 1 1\n", "f.urdf:1:1: this is an OBJ mesh, not URDF"),
+        ("{\"format\":1}", "f.urdf:1:1: this is JSON, not URDF"),
         ("<robot/>", "f.urdf:1:1: the robot has no <link>"),
         ("<robot><link name='a'/></robot>", "no moving body"),
         ("<robot>\u{1}</robot>", "not well-formed XML"),
@@ -141,6 +162,7 @@ fn moving_links_need_mass() {
     assert!(notes.iter().any(|note| note.to_string() == "line 4: link 'arm' moves and has no mass"), "{notes:?}");
     // A massless root that floats moves too.
     let error = refused(GOOD, &Options { base: Base::Floating, ..Options::default() });
+    assert!(error.ends_with("(or import it with a fixed base)"), "{error}");
     assert!(error.contains("link 'base' moves (joint 'root_joint') but has no <inertial>"), "{error}");
 }
 

@@ -147,6 +147,28 @@ fn the_root_stands_or_floats() {
     assert_eq!(floating.bodies[1].name, "leg");
 }
 
+/// A file whose robot floats on a link without inertia floats once, whichever base is asked for.
+#[test]
+fn a_base_that_floats_already_floats_once() {
+    let text = one_joint("floating", r#"<origin xyz="0 0 1"/>"#);
+    let (fixed, _) = import(&text, Options::default());
+    let (robot, notes) = import(&text, floating());
+    assert_eq!(robot, fixed);
+    assert_eq!((robot.nv(), robot.bodies[0].joint.name.as_str()), (6, "j"));
+    assert_eq!(notes, ["line 2: link 'base' has no inertia and carries the robot on the floating joint 'j': that joint is the base's"]);
+    // A base of its own floats, and what floats on it as well.
+    let own = text.replace(r#"<link name="base"/>"#, &format!(r#"<link name="base">{INERTIAL}</link>"#));
+    assert_eq!(import(&own, floating()).0.nv(), 12);
+}
+
+/// The declaration of xacro's namespace stays in expanded files.
+#[test]
+fn expanded_xacro_and_names_of_any_script_are_read() {
+    let text =
+        one_joint("continuous", "").replace("<robot ", r#"<robot xmlns:xacro="http://www.ros.org/wiki/xacro" "#).replace("tip", "Hüfte 左");
+    assert_eq!(import(&text, Options::default()).0.bodies[0].name, "Hüfte 左");
+}
+
 #[test]
 fn siblings_keep_the_order_of_their_joints() {
     let link = |name: &str| format!(r#"<link name="{name}">{INERTIAL}</link>"#);

@@ -95,9 +95,18 @@ impl Gates {
     /// # Errors
     /// [`HarnessError`], naming file, line and key.
     pub fn read(folder: &Path) -> Result<Self, HarnessError> {
-        let GateFile { gate: gates, sharp } = read_toml(&folder.join("gates.toml"))?;
+        let read = |path: &Path| std::fs::read_to_string(path).map_err(|source| HarnessError::io(path, source));
+        Self::parse(&read(&folder.join("gates.toml"))?, &read(&folder.join("deviations.toml"))?, folder)
+    }
+
+    /// The gates and deviations of two texts; errors call them `gates.toml` and `deviations.toml` in `folder`.
+    ///
+    /// # Errors
+    /// [`HarnessError`], naming file, line and key.
+    pub fn parse(gates: &str, deviations: &str, folder: &Path) -> Result<Self, HarnessError> {
+        let GateFile { gate: gates, sharp } = parse_toml(gates, &folder.join("gates.toml"))?;
         let path = folder.join("deviations.toml");
-        let DeviationFile { deviation: deviations, reproduction: reproductions } = read_toml(&path)?;
+        let DeviationFile { deviation: deviations, reproduction: reproductions } = parse_toml(deviations, &path)?;
         for deviation in &deviations {
             if !["fail", "skip", "error"].contains(&deviation.verdict.as_str()) {
                 let message = format!("deviation of {}: verdict '{}' is none of fail, skip, error", deviation.engine, deviation.verdict);
@@ -257,7 +266,6 @@ impl Gate {
     }
 }
 
-fn read_toml<T: for<'a> Deserialize<'a>>(path: &Path) -> Result<T, HarnessError> {
-    let text = std::fs::read_to_string(path).map_err(|source| HarnessError::io(path, source))?;
-    toml::from_str(&text).map_err(|error| HarnessError::Config { path: path.to_owned(), message: error.to_string() })
+fn parse_toml<T: for<'a> Deserialize<'a>>(text: &str, path: &Path) -> Result<T, HarnessError> {
+    toml::from_str(text).map_err(|error| HarnessError::Config { path: path.to_owned(), message: error.to_string() })
 }

@@ -92,14 +92,22 @@ pub struct TimingEntry {
 }
 
 impl Suite {
-    /// Reads a suite file.
+    /// Reads a suite file, with the hash of its text.
     ///
     /// # Errors
     /// [`HarnessError`], naming file, line and key.
     pub fn read(path: &Path) -> Result<(Self, String), HarnessError> {
         let text = std::fs::read_to_string(path).map_err(|source| HarnessError::io(path, source))?;
+        Ok((Self::parse(&text, path)?, crate::hash::of(text.as_bytes())))
+    }
+
+    /// The suite of a text; `path` is what errors call it.
+    ///
+    /// # Errors
+    /// [`HarnessError`], naming file, line and key.
+    pub fn parse(text: &str, path: &Path) -> Result<Self, HarnessError> {
         let suite: Self =
-            toml::from_str(&text).map_err(|error| HarnessError::Config { path: path.to_owned(), message: error.to_string() })?;
+            toml::from_str(text).map_err(|error| HarnessError::Config { path: path.to_owned(), message: error.to_string() })?;
         for entry in &suite.problem {
             let sources = [&entry.model, &entry.generate, &entry.urdf];
             if sources.into_iter().flatten().count() != 1 {
@@ -107,7 +115,6 @@ impl Suite {
                 return Err(HarnessError::Config { path: path.to_owned(), message });
             }
         }
-        let hash = crate::hash::of(text.as_bytes());
-        Ok((suite, hash))
+        Ok(suite)
     }
 }

@@ -72,7 +72,11 @@ pub fn write_csv(path: &Path, records: &[Record]) -> Result<(), RecordError> {
 
 /// Reads rows from a CSV file. The header must be this version's, every field of its type, no row cut short, and no pass beyond its bound.
 pub fn read_csv(path: &Path) -> Result<Vec<Record>, RecordError> {
-    let text = read_text(path)?;
+    parse_csv(&read_text(path)?, path)
+}
+
+/// The rows of a CSV text, held to the same; `path` is what errors call it.
+pub fn parse_csv(text: &str, path: &Path) -> Result<Vec<Record>, RecordError> {
     let mut reader = csv::ReaderBuilder::new().from_reader(text.as_bytes());
     let header = reader.headers().map_err(|error| csv_error(path, &error))?;
     for position in 0..header.len().max(COLUMNS.len()) {

@@ -24,7 +24,7 @@ mod run_info;
 
 pub use columns::{COLUMNS, Column, ColumnType, schema_json};
 pub use error::RecordError;
-pub use file::{CSV_NAME, RUN_NAME, SCHEMA_NAME, atomic_write, read_csv, read_run, to_csv, write_csv, write_run};
+pub use file::{CSV_NAME, RUN_NAME, SCHEMA_NAME, atomic_write, parse_csv, read_csv, read_run, to_csv, write_csv, write_run};
 pub use names::{Kind, Relation, Verdict};
 pub use params::canonical_json;
 pub use row::{MARGIN_LIMIT, Record};

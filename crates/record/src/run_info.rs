@@ -192,18 +192,22 @@ pub struct Expectation {
 impl RunInfo {
     /// Reads a `run.json`; unknown fields, another format and a truncated file are errors.
     pub fn read(path: &Path) -> Result<Self, RecordError> {
+        Self::parse(&read_text(path)?, path)
+    }
+
+    /// The text of a `run.json`; `path` is what errors call it.
+    pub fn parse(text: &str, path: &Path) -> Result<Self, RecordError> {
         /// Read first, so that another format is named as such and not as an unknown field.
         #[derive(Deserialize)]
         struct Format {
             format: u32,
         }
-        let text = read_text(path)?;
         let json = |source| RecordError::Json { path: path.to_owned(), source };
-        let Format { format } = serde_json::from_str(&text).map_err(json)?;
+        let Format { format } = serde_json::from_str(text).map_err(json)?;
         if format != RUN_FORMAT {
             return Err(RecordError::Format { path: path.to_owned(), found: format, expected: RUN_FORMAT });
         }
-        serde_json::from_str(&text).map_err(json)
+        serde_json::from_str(text).map_err(json)
     }
 
     /// Writes a `run.json` in one step, with the present format.

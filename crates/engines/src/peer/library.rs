@@ -164,7 +164,7 @@ impl Library {
     /// # Errors
     /// [`Refusal`], as the engine says.
     pub(super) fn build(&self, problem: &Problem) -> Result<(Built<'_>, Vec<f64>), Refusal> {
-        let bodies: Vec<Body> = problem.description.bodies.iter().map(body).collect();
+        let bodies: Vec<Body> = problem.description.bodies.iter().map(body).collect::<Result<_, _>>()?;
         let topology = &problem.model.topology;
         let index = |parent: &Option<usize>| parent.map_or(-1, |parent| parent as i32);
         let dof_parent: Vec<i32> = topology.dof_parents().iter().map(index).collect();
@@ -185,7 +185,8 @@ impl Library {
     }
 }
 
-fn body(body: &model::BodyDescription) -> Body {
+/// A body as `peer.h` has it; a joint of which it has no number is refused by name.
+fn body(body: &model::BodyDescription) -> Result<Body, Refusal> {
     let (joint, axis, pitch) = match body.joint.kind {
         JointType::Revolute { axis } => (0, axis, 0.0),
         JointType::Prismatic { axis } => (1, axis, 0.0),
@@ -194,13 +195,15 @@ fn body(body: &model::BodyDescription) -> Body {
         JointType::Free => (4, [0.0; 3], 0.0),
         JointType::Planar => (5, [0.0; 3], 0.0),
         JointType::Universal => (6, [0.0; 3], 0.0),
-        // Merged by `Description::canonical` before a problem exists; no peer knows the number.
-        JointType::Fixed => (-1, [0.0; 3], 0.0),
+        JointType::Fixed | JointType::Translation | JointType::Cylindrical { .. } | JointType::EulerZyx => {
+            let reason = format!("native peers take no {} joint ({})", body.joint.kind.name(), body.joint.name);
+            return Err(Refusal::Unsupported(reason));
+        }
     };
     let mut armature = [0.0; 6];
     armature.iter_mut().zip(&body.joint.armature).for_each(|(to, from)| *to = *from);
     let placement = &body.joint.placement;
-    Body {
+    Ok(Body {
         parent: body.parent.map_or(-1, |parent| parent as i32),
         joint,
         mass: body.mass,
@@ -211,7 +214,7 @@ fn body(body: &model::BodyDescription) -> Body {
         rotation: placement.rotation,
         translation: placement.translation,
         armature,
-    }
+    })
 }
 
 /// A robot in the engine.

@@ -1,6 +1,7 @@
 //! The links and joints of a file, as they stand there.
 
 use super::Options;
+use super::angles::rotation;
 use super::error::{At, NoteAt, UrdfProblem};
 use super::xml::Element;
 use model::Placement;
@@ -52,10 +53,16 @@ pub(super) enum Kind {
 
 /// An axis that misses unit length by more was not meant to be normal; less is rounding.
 const AXIS_TOLERANCE: f64 = 1e-6;
+/// What normalising leaves: three rounded components, and a length rounded as often when it is asked for again.
+const AXIS_ROUNDING: f64 = 4.0 * f64::EPSILON;
 
 impl Robot {
     pub fn read(document: &Document, options: &Options, notes: &mut Vec<NoteAt>) -> Result<Self, At> {
         let root = document.root_element();
+        if let Some((_, kind)) = OTHER_ROOTS.into_iter().find(|(name, _)| *name == root.tag_name().name()) {
+            return Err(UrdfProblem::AnotherKind { kind }.at(root.range().start));
+        }
+        refuse_macros(root)?;
         if root.tag_name().name() != "robot" {
             return Err(UrdfProblem::NotARobot { found: root.tag_name().name().to_owned() }.at(root.range().start));
         }
@@ -85,6 +92,31 @@ impl Robot {
         note_what_is_not_read(root, notes);
         Ok(robot)
     }
+}
+
+/// Root elements of files that are mistaken for URDF.
+const OTHER_ROOTS: [(&str, &str); 5] = [
+    ("COLLADA", "a COLLADA mesh"),
+    ("mujoco", "an MJCF file"),
+    ("sdf", "an SDF file"),
+    ("html", "a web page"),
+    ("launch", "a launch file"),
+];
+
+/// Elements of xacro's namespace, or expressions in attributes, are not expanded yet. (The namespace's declaration stays when they are.)
+fn refuse_macros(root: Node) -> Result<(), At> {
+    for node in root.descendants().filter(Node::is_element) {
+        let name = node.tag_name();
+        if name.namespace().is_some_and(|namespace| namespace.contains("xacro")) {
+            return Err(UrdfProblem::Xacro { found: format!("it has <xacro:{}>", name.name()) }.at(node.range().start));
+        }
+        let expression = |text: &str| text.contains("${") || text.contains("$(");
+        if let Some(attribute) = node.attributes().find(|attribute| expression(attribute.value())) {
+            let found = format!("it has {}=\"{}\"", attribute.name(), attribute.value());
+            return Err(UrdfProblem::Xacro { found }.at(node.range().start));
+        }
+    }
+    Ok(())
 }
 
 /// One note per kind of element that plays no part.
@@ -217,18 +249,27 @@ fn axis(element: Element, joint: &str, notes: &mut Vec<NoteAt>) -> Result<[f64; 
     };
     found.attribute("xyz")?;
     let given = found.optional_vector("xyz")?.unwrap_or_default();
-    // Scaled first, so that squares neither overflow nor vanish.
-    let largest = given.iter().fold(0.0_f64, |largest, x| largest.max(x.abs()));
-    if largest == 0.0 {
+    let Some((unit, length)) = unit(given) else {
         return Err(found.problem(UrdfProblem::ZeroAxis { joint: joint.to_owned() }));
-    }
-    let scaled = Vec3::from_array(given.map(|x| x / largest));
-    let (unit, length) = (scaled * (1.0 / scaled.norm()), largest * scaled.norm());
+    };
     if (length - 1.0).abs() > AXIS_TOLERANCE {
         notes.push(NoteAt { offset: found.offset(), text: format!("the axis of joint '{joint}' has length {length}; it is normalised") });
     }
-    // Exact where it is exact already, such as 0 0 1.
-    Ok(if length == 1.0 { given } else { unit.to_array() })
+    Ok(unit)
+}
+
+/// The direction of a vector and its length; none of a zero vector. A unit vector keeps its bits, so that an axis read from a file can be
+/// written back.
+pub(super) fn unit(given: [f64; 3]) -> Option<([f64; 3], f64)> {
+    // Scaled first, so that squares neither overflow nor vanish.
+    let largest = given.iter().fold(0.0_f64, |largest, x| largest.max(x.abs()));
+    if largest == 0.0 {
+        return None;
+    }
+    let scaled = Vec3::from_array(given.map(|x| x / largest));
+    let length = largest * scaled.norm();
+    let unit = if (length - 1.0).abs() <= AXIS_ROUNDING { given } else { (scaled * (1.0 / scaled.norm())).to_array() };
+    Some((unit, length))
 }
 
 /// The placement of an `<origin>`; the identity where there is none.
@@ -242,22 +283,4 @@ fn origin(element: Element) -> Result<Placement, At> {
     let translation = origin.optional_vector("xyz")?.unwrap_or_default();
     let rotation = rotation(origin.optional_vector("rpy")?.unwrap_or_default());
     Ok(Placement { rotation, translation })
-}
-
-/// Rz(yaw)·Ry(pitch)·Rx(roll), row-major.
-pub(super) fn rotation([roll, pitch, yaw]: [f64; 3]) -> [f64; 9] {
-    let ((sr, cr), (sp, cp), (sy, cy)) = (roll.sin_cos(), pitch.sin_cos(), yaw.sin_cos());
-    let entries = [
-        cy * cp,
-        cy * sp * sr - sy * cr,
-        cy * sp * cr + sy * sr,
-        sy * cp,
-        sy * sp * sr + cy * cr,
-        sy * sp * cr - cy * sr,
-        -sp,
-        cp * sr,
-        cp * cr,
-    ];
-    // No negative zeros: the rotation of zero angles is the identity to the bit.
-    entries.map(|entry| entry + 0.0)
 }

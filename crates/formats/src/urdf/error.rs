@@ -43,10 +43,20 @@ pub enum UrdfProblem {
     /// A document type declaration, which no URDF needs.
     #[error("the file declares a document type; entities are not expanded, remove the <!DOCTYPE …>")]
     DocumentType,
+    /// Another kind of file.
+    #[error("this is {kind}, not URDF; give the <robot> file")]
+    AnotherKind {
+        /// What it is.
+        kind: &'static str,
+    },
+    /// The file must be expanded first.
+    #[error("this is a xacro file ({found}); expand it first: xacro robot.urdf.xacro > robot.urdf")]
+    Xacro {
+        /// What shows it.
+        found: String,
+    },
     /// The root element is another one.
-    #[error(
-        "the root element is <{found}>, not <robot>; is this a URDF file? (xacro files must be expanded, SDF and MJCF converted first)"
-    )]
+    #[error("the root element is <{found}>, not <robot>; is this a URDF file?")]
     NotARobot {
         /// The element found.
         found: String,
@@ -78,7 +88,7 @@ pub enum UrdfProblem {
         element: &'static str,
     },
     /// An attribute is not the numbers that it should be.
-    #[error("{attribute}=\"{value}\" of {owner} is not {expected}")]
+    #[error("{attribute}=\"{value}\" of {owner} is not {expected}{}", if value.contains(',') { " (decimals have a point, and spaces between them)" } else { "" })]
     NotNumbers {
         /// The link or joint.
         owner: String,
@@ -115,8 +125,9 @@ pub enum UrdfProblem {
     },
     /// A body moves and has no mass.
     #[error(
-        "link '{link}' moves (joint '{joint}') but {}; give it mass, fix it to its neighbour, or import with massless bodies allowed",
-        if *has_inertial { "has no mass, nor has anything fixed to it" } else { "has no <inertial>, nor has anything fixed to it mass" }
+        "link '{link}' moves (joint '{joint}') but {}; give it mass, fix it to its neighbour, or import with massless bodies allowed{}",
+        if *has_inertial { "has no mass, nor has anything fixed to it" } else { "has no <inertial>, nor has anything fixed to it mass" },
+        if joint == super::tree::ROOT_JOINT { " (or import it with a fixed base)" } else { "" }
     )]
     Massless {
         /// The link.

@@ -1,4 +1,4 @@
-//! Importing URDF: links and joints of an XML file as a neutral description.
+//! URDF: links and joints of an XML file as a neutral description, and back.
 //!
 //! The file is read strictly. Engines repair silently (a missing inertia becomes zero, a word in a vector is skipped, an axis of length zero
 //! becomes x), and then disagree; here that is an error with file, line and column, and whatever is left out or altered leaves a [`Note`].
@@ -7,23 +7,28 @@
 //!   unless [`Options::allow_massless`].
 //! - Gravity is not part of URDF: (0, 0, −9.81).
 //! - The root link stands on the world ([`Base::Fixed`]) or on a free joint named `root_joint` ([`Base::Floating`]).
+//!   Where a root without inertia, such as a link `world`, carries the robot on a `floating` joint, that joint is the floating base already.
 //! - Siblings keep the order in which their joints stand in the file. (Readers built on urdfdom sort them by joint name.)
 //! - `rpy` is R = Rz(yaw)·Ry(pitch)·Rx(roll); an axis is normalised, with a note when that changes more than its last digits.
 //! - Fixed joints are merged, each leaving a frame with the link's name.
 //! - A `floating` joint becomes free, a `planar` one planar in the plane normal to its axis, `continuous` revolute without position limits.
 //!   A `revolute` or `prismatic` joint whose `<limit>` gives neither `lower` nor `upper` has none (urdfdom would lock it at zero).
+//! - xacro is refused: macros must be expanded first. So are meshes and other formats, by name.
 //! - `mimic` is refused by name unless [`Options::independent_mimics`], which reads the joint as one of its own, as engines do by default.
 //! - Not read, and noted: visual and collision geometry, `safety_controller`, `calibration`, and every element of `<robot>` that is neither
 //!   link nor joint.
 //!
 //! Limits: 10 MB, a million XML nodes, no document type declaration (hence no entities to expand); nesting costs no stack.
 
+mod angles;
 mod elements;
 mod error;
 mod tree;
+mod write;
 mod xml;
 
 pub use error::{UrdfError, UrdfProblem};
+pub use write::{to_string, write};
 
 use crate::{Place, text};
 use model::Description;

@@ -7,13 +7,25 @@ use model::{BodyDescription, Description, JointDescription, JointType, Malformed
 use spatial::{Mat3, Transform, Vec3};
 use std::collections::HashMap;
 
+/// The joint that a floating base hangs on.
+pub(super) const ROOT_JOINT: &str = "root_joint";
 /// Gravity, which URDF does not give, m/s².
-const GRAVITY: [f64; 3] = [0.0, 0.0, -9.81];
+pub(super) const GRAVITY: [f64; 3] = [0.0, 0.0, -9.81];
 
 /// The canonical description of a robot.
 pub(super) fn assemble(robot: &Robot, options: &Options, notes: &mut Vec<NoteAt>) -> Result<Description, At> {
     let connected = Connected::new(robot)?;
-    let description = describe(robot, &connected, options.base);
+    let base = match connected.floating_base(robot) {
+        Some(joint) if options.base == Base::Floating => {
+            let (root, name) = (&robot.links[connected.root].name, &joint.name);
+            let text =
+                format!("link '{root}' has no inertia and carries the robot on the floating joint '{name}': that joint is the base's");
+            notes.push(NoteAt { offset: joint.offset, text });
+            Base::Fixed
+        }
+        _ => options.base,
+    };
+    let description = describe(robot, &connected, base);
     let canonical = description.canonical().map_err(|malformed| locate(robot, malformed))?;
     check_masses(robot, &canonical, options, notes)?;
     Ok(canonical)
@@ -76,6 +88,16 @@ impl Connected {
     }
 }
 
+impl Connected {
+    /// The joint on which the robot floats already: the only one of a root without inertia, as a link called `world` is.
+    fn floating_base<'a>(&self, robot: &'a Robot) -> Option<&'a Joint> {
+        let mut carried = robot.joints.iter().zip(&self.ends).filter(|(_, (parent, _))| *parent == self.root);
+        let (joint, _) = carried.next()?;
+        let alone = carried.next().is_none() && !robot.links[self.root].has_inertial;
+        (alone && matches!(joint.kind, Kind::Floating)).then_some(joint)
+    }
+}
+
 /// The bodies: the root, then the children in the order of the joints.
 fn describe(robot: &Robot, connected: &Connected, base: Base) -> Description {
     let mut bodies = Vec::with_capacity(robot.links.len());
@@ -91,7 +113,7 @@ fn describe(robot: &Robot, connected: &Connected, base: Base) -> Description {
         Base::Fixed => JointType::Fixed,
         Base::Floating => JointType::Free,
     };
-    let root_joint = JointDescription { name: "root_joint".to_owned(), kind: root, ..JointDescription::default() };
+    let root_joint = JointDescription { name: ROOT_JOINT.to_owned(), kind: root, ..JointDescription::default() };
     bodies.push(body(&robot.links[connected.root], None, root_joint));
     for (joint, &(parent, child)) in robot.joints.iter().zip(&connected.ends) {
         let (parent, link) = (Some(place[parent]), &robot.links[child]);

@@ -11,6 +11,11 @@ pub(super) fn parse(text: &str) -> Result<Document<'_>, At> {
     let options = ParsingOptions { allow_dtd: false, nodes_limit: MOST_NODES, ..ParsingOptions::default() };
     Document::parse_with_options(text, options).map_err(|error| match error {
         roxmltree::Error::DtdDetected => UrdfProblem::DocumentType.at(text.find("<!DOCTYPE").unwrap_or(0)),
+        roxmltree::Error::UnknownNamespace(prefix, place) if prefix == "xacro" => {
+            let position = (place.row as usize, place.col as usize);
+            At { offset: Some(offset(text, position)), problem: UrdfProblem::Xacro { found: "it has elements of xacro".to_owned() } }
+        }
+        _ if mesh(text).is_some() => UrdfProblem::AnotherKind { kind: mesh(text).unwrap_or_default() }.at(0),
         other => {
             let (place, message) = (other.pos(), other.to_string());
             let position = (place.row as usize, place.col as usize);
@@ -18,6 +23,26 @@ pub(super) fn parse(text: &str) -> Result<Document<'_>, At> {
             At { offset: None, problem: UrdfProblem::Xml { message, position } }
         }
     })
+}
+
+/// The byte offset of a line and column, counted from 1.
+fn offset(text: &str, (line, column): (usize, usize)) -> usize {
+    let start = text.match_indices('\n').nth(line.wrapping_sub(2)).map_or(0, |(newline, _)| newline + 1);
+    start + text[start..].char_indices().nth(column.saturating_sub(1)).map_or(0, |(place, _)| place)
+}
+
+/// The kind of mesh that a text which is no XML begins like.
+fn mesh(text: &str) -> Option<&'static str> {
+    let mut lines = text.lines().map(str::trim_start).filter(|line| !line.is_empty() && !line.starts_with('#'));
+    let first = lines.next()?;
+    let word = first.split_ascii_whitespace().next().unwrap_or_default();
+    match word {
+        "solid" => Some("an STL mesh"),
+        "ply" => Some("a PLY mesh"),
+        "v" | "vn" | "vt" | "mtllib" | "o" => Some("an OBJ mesh"),
+        _ if first.starts_with(['{', '[']) => Some("JSON"),
+        _ => None,
+    }
 }
 
 /// An element of the link or joint `owner`.

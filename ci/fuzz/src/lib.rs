@@ -1,0 +1,169 @@
+//! The fuzz targets: for every parser of ours, a function that takes any bytes.
+//!
+//! What is read must also be written and read again alike. `ci/fuzz/run` gives them to libFuzzer; `crates/cli/tests/parsers.rs` compiles this
+//! very file and gives them some thousand mutations of the seeds in every test run.
+
+use engines::{EngineRecording, Recording};
+use formats::urdf::{Base, Options};
+use formats::{OnLoss, mjcf, neutral, urdf};
+use harness::frame::Frame;
+use harness::{Gates, Identity, Outcome, Problem, Quantity, Refusal, Suite};
+use model::generate::{Chain, Family};
+use record::{EngineSource, ModelOrigin, Record, Relation, RunInfo, Verdict};
+use std::collections::BTreeMap;
+use std::path::Path;
+use std::sync::LazyLock;
+
+/// A target: bytes in, a panic when something is wrong.
+pub type Target = fn(&[u8]);
+
+/// Every target by its name, which is that of its folder of seeds.
+pub const TARGETS: [(&str, Target); 9] = [
+    ("urdf", urdf_file),
+    ("neutral", neutral_file),
+    ("frame", frame),
+    ("recording", recording),
+    ("family", family),
+    ("suite", suite),
+    ("gates", gates),
+    ("records", records),
+    ("run_info", run_info),
+];
+
+/// Bytes that are text.
+fn text(bytes: &[u8]) -> &str {
+    std::str::from_utf8(bytes).unwrap_or("")
+}
+
+fn file() -> &'static Path {
+    Path::new("fuzzed")
+}
+
+/// A URDF file; what is read goes into both formats, and through URDF back to the same text.
+pub fn urdf_file(bytes: &[u8]) {
+    for base in [Base::Fixed, Base::Floating] {
+        let options = Options { base, allow_massless: true, independent_mimics: true };
+        let Ok((robot, _)) = urdf::import(text(bytes), "fuzzed", &options) else { continue };
+        assert_eq!(robot.canonical().as_ref(), Ok(&robot), "what is read is canonical");
+        let _ = mjcf::to_string(&robot, OnLoss::LeaveOut);
+        let Ok((written, _)) = urdf::to_string(&robot, OnLoss::LeaveOut) else { continue };
+        let options = Options { base: Base::Fixed, ..options };
+        let (again, _) = urdf::import(&written, "written", &options).unwrap_or_else(|error| panic!("{error}\n{written}"));
+        let (twice, _) = urdf::to_string(&again, OnLoss::LeaveOut).unwrap_or_else(|error| panic!("{error}\n{written}"));
+        assert_eq!(twice, written, "a second trip changes nothing");
+    }
+}
+
+/// A description file; what is read is written to the same numbers.
+pub fn neutral_file(bytes: &[u8]) {
+    let Ok(robot) = neutral::parse(text(bytes), "fuzzed") else { return };
+    let written = neutral::to_string(&robot).unwrap_or_else(|error| panic!("{error}"));
+    assert_eq!(neutral::parse(&written, "written").unwrap_or_else(|error| panic!("{error}\n{written}")), robot);
+    let _ = (urdf::to_string(&robot, OnLoss::LeaveOut), mjcf::to_string(&robot, OnLoss::LeaveOut), neutral::to_line(&robot));
+}
+
+/// Frames of the oracle protocol, one after the other.
+pub fn frame(mut bytes: &[u8]) {
+    while let Ok(Some(frame)) = Frame::read(&mut bytes) {
+        let written = frame.to_bytes();
+        let again = Frame::read(&mut written.as_slice());
+        assert_eq!(again.ok().flatten().map(|frame| frame.to_bytes()), Some(written));
+    }
+}
+
+/// A recording of one small robot's answers.
+pub fn recording(bytes: &[u8]) {
+    static PROBLEM: LazyLock<Problem> = LazyLock::new(recorded_problem);
+    let Ok(recording) = Recording::from_bytes(bytes, &PROBLEM) else { return };
+    let written = recording.to_bytes(&PROBLEM);
+    let again = Recording::from_bytes(&written, &PROBLEM).unwrap_or_else(|error| panic!("{error}"));
+    assert_eq!(again.to_bytes(&PROBLEM), written);
+}
+
+/// The robot that the seeds of [`recording`] are about.
+pub fn recorded_problem() -> Problem {
+    let robot = Family::Chain(Chain { n: 2, ..Chain::default() }).generate().expect("a small chain");
+    Problem::new(&robot, "chain", ModelOrigin::Generated, 3, 1).expect("a small chain")
+}
+
+/// A recording of it by one engine that answers twice and refuses once.
+pub fn recording_seed() -> Vec<u8> {
+    let problem = recorded_problem();
+    let states = problem.states.count();
+    let identity = Identity { name: "engine".into(), version: "1".into(), source: EngineSource::Recorded, build: BTreeMap::new() };
+    let values = |length: usize| Outcome::Values((0..length * states).map(|k| 0.1 * k as f64).collect());
+    let outcomes = vec![
+        (Quantity::InverseDynamics, "a".to_owned(), values(2)),
+        (Quantity::InverseDynamics, "b".to_owned(), values(2)),
+        (Quantity::MassMatrix, "a".to_owned(), values(4)),
+        (Quantity::MassMatrix, "b".to_owned(), values(4)),
+        (Quantity::Bias, "a".to_owned(), Outcome::Refused(Refusal::Unsupported("why".into()))),
+    ];
+    Recording { engines: vec![EngineRecording { identity, outcomes }] }.to_bytes(&problem)
+}
+
+/// A file of records with rows of every verdict.
+pub fn records_seed() -> Vec<u8> {
+    let row = Record { model: "m \"quoted\", é".into(), nv: Some(3), floor: Some(1e-17), ..Record::default() };
+    let rows = [
+        row.clone().gated(1e-15, Relation::Le, 1e-14),
+        row.clone().gated(1e-13, Relation::Within, 1e-14).deviating("known"),
+        row.clone().informed(0.5),
+        row.without_value(Verdict::Skip, "not offered"),
+    ];
+    record::to_csv(&rows, file()).expect("finite")
+}
+
+/// The `run.json` of an empty run.
+pub fn run_info_seed() -> Vec<u8> {
+    let run = RunInfo { format: record::RUN_FORMAT, run: "r".into(), ..RunInfo::default() };
+    serde_json::to_vec(&run).expect("plain data")
+}
+
+/// The seeds of a target that are made rather than kept, as they follow formats that change.
+pub fn made_seeds(target: &str) -> Vec<Vec<u8>> {
+    match target {
+        "recording" => vec![recording_seed()],
+        "records" => vec![records_seed()],
+        "run_info" => vec![run_info_seed()],
+        _ => Vec::new(),
+    }
+}
+
+/// The text that names a generated robot.
+pub fn family(bytes: &[u8]) {
+    let Ok(family) = Family::parse(text(bytes)) else { return };
+    let written = family.to_string();
+    assert_eq!(Family::parse(&written).map(|again| again.to_string()), Ok(written));
+}
+
+/// A suite file.
+pub fn suite(bytes: &[u8]) {
+    if let Ok(suite) = Suite::parse(text(bytes), file()) {
+        assert!(suite.problem.iter().all(|entry| entry.model.is_some() || entry.generate.is_some() || entry.urdf.is_some()));
+    }
+}
+
+/// Gates and deviations, parted by a line of hyphens.
+pub fn gates(bytes: &[u8]) {
+    let (gates, deviations) = text(bytes).split_once("\n---\n").unwrap_or((text(bytes), ""));
+    if let Ok(gates) = Gates::parse(gates, deviations, file()) {
+        let row = gates.judge(Record { study: "agreement".into(), ..Record::default() }, 1e-15, 1.0);
+        assert!(row.verdict != Verdict::Pass || row.bound.is_some());
+    }
+}
+
+/// A file of records.
+pub fn records(bytes: &[u8]) {
+    let Ok(rows) = record::parse_csv(text(bytes), file()) else { return };
+    let written = record::to_csv(&rows, file()).unwrap_or_else(|error| panic!("{error}"));
+    let again = record::parse_csv(text(&written), file()).unwrap_or_else(|error| panic!("{error}"));
+    assert_eq!(again, rows);
+}
+
+/// A `run.json`.
+pub fn run_info(bytes: &[u8]) {
+    let Ok(run) = RunInfo::parse(text(bytes), file()) else { return };
+    let written = serde_json::to_string(&run).unwrap_or_else(|error| panic!("{error}"));
+    assert_eq!(RunInfo::parse(&written, file()).unwrap_or_else(|error| panic!("{error}")), run);
+}

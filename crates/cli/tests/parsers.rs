@@ -1,0 +1,83 @@
+//! Every parser of ours is given some thousand damaged texts: what is not refused is read, written and read again alike, and nothing panics.
+//!
+//! The targets are those of `ci/fuzz`, which gives them a million inputs each.
+
+#[path = "../../../ci/fuzz/src/lib.rs"]
+#[allow(dead_code, reason = "the fuzzer's own entry points")]
+mod fuzz;
+
+use model::Random;
+use std::path::Path;
+
+/// Inputs for each target.
+const INPUTS: usize = 4000;
+
+/// A seed with some bytes changed, cut, doubled, or taken over from another.
+fn damaged(random: &mut Random, seeds: &[Vec<u8>]) -> Vec<u8> {
+    let mut bytes = seeds[random.below(seeds.len())].clone();
+    for _ in 0..1 + random.below(5) {
+        let (a, b) = (random.below(bytes.len() + 1), random.below(bytes.len() + 1));
+        let (from, to) = (a.min(b), a.max(b).min(a.min(b) + 60));
+        match random.below(6) {
+            0 if from < bytes.len() => bytes[from] ^= 1 << random.below(8),
+            1 if from < bytes.len() => bytes[from] = b"0123456789-+.eE\"<>/= ,:[]{}#\n\0\xff"[random.below(31)],
+            2 => drop(bytes.drain(from..to)),
+            3 => {
+                let copy = bytes[from..to].to_vec();
+                drop(bytes.splice(from..from, copy));
+            }
+            4 => {
+                let other = &seeds[random.below(seeds.len())];
+                let at = random.below(other.len() + 1);
+                let part = other[at..other.len().min(at + 40)].to_vec();
+                drop(bytes.splice(from..to, part));
+            }
+            _ => bytes.truncate(to),
+        }
+    }
+    bytes
+}
+
+#[test]
+fn damaged_texts_are_refused_or_read() {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../ci/fuzz/seeds");
+    for (name, target) in fuzz::TARGETS {
+        let kept = std::fs::read_dir(folder.join(name)).into_iter().flatten().map(|entry| std::fs::read(entry.unwrap().path()).unwrap());
+        let seeds: Vec<Vec<u8>> = kept.chain(fuzz::made_seeds(name)).collect();
+        assert!(!seeds.is_empty(), "{name} has no seeds");
+        seeds.iter().for_each(|seed| target(seed));
+        let mut random = Random::named(1, name);
+        for k in 0..INPUTS {
+            let input = damaged(&mut random, &seeds);
+            let judged = std::panic::catch_unwind(|| target(&input));
+            assert!(judged.is_ok(), "{name}, input {k}: {}", String::from_utf8_lossy(&input));
+        }
+    }
+}
+
+/// A seed that is refused would leave the fuzzer at the door.
+#[test]
+fn seeds_are_good() {
+    let read = |name: &str| std::fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("../../ci/fuzz/seeds").join(name)).unwrap();
+    let options = formats::urdf::Options { allow_massless: true, independent_mimics: true, ..Default::default() };
+    for name in ["urdf/arm.urdf", "urdf/floating.urdf"] {
+        formats::urdf::import(&read(name), name, &options).unwrap_or_else(|error| panic!("{error}"));
+    }
+    for name in ["neutral/all.json", "neutral/short.json"] {
+        formats::neutral::parse(&read(name), name).unwrap_or_else(|error| panic!("{error}"));
+    }
+    harness::Suite::parse(&read("suite/small.toml"), Path::new("small.toml")).unwrap_or_else(|error| panic!("{error}"));
+    let text = read("gates/small.toml");
+    let (gates, deviations) = text.split_once("\n---\n").unwrap();
+    harness::Gates::parse(gates, deviations, Path::new("small")).unwrap_or_else(|error| panic!("{error}"));
+    assert!(engines::Recording::from_bytes(&fuzz::recording_seed(), &fuzz::recorded_problem()).is_ok());
+    for seed in [fuzz::records_seed(), fuzz::run_info_seed()] {
+        assert!(std::str::from_utf8(&seed).is_ok_and(|text| !text.is_empty()));
+    }
+    record::parse_csv(std::str::from_utf8(&fuzz::records_seed()).unwrap(), Path::new("rows")).unwrap_or_else(|error| panic!("{error}"));
+    record::RunInfo::parse(std::str::from_utf8(&fuzz::run_info_seed()).unwrap(), Path::new("run"))
+        .unwrap_or_else(|error| panic!("{error}"));
+    for k in 0..8 {
+        assert!(model::generate::Family::parse(&read(&format!("family/{k}"))).is_ok(), "family {k}");
+    }
+}

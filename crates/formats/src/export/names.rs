@@ -1,0 +1,44 @@
+//! Names: what a file can hold, each once.
+
+use super::{Loss, Reason};
+use std::collections::HashSet;
+
+/// The names of one space, each with the word for what carries it.
+#[derive(Default)]
+pub struct Names(HashSet<String>);
+
+impl Names {
+    /// Takes a name, or says what is wrong with it.
+    pub fn take(&mut self, what: &str, name: &str, losses: &mut Vec<Loss>) {
+        let mut lose = |reason| losses.push(Loss { subject: format!("{what} '{}'", name.escape_debug()), reason });
+        if name.is_empty() || !can_be_written(name) {
+            lose(Reason::BadName);
+        }
+        if !self.0.insert(name.to_owned()) {
+            lose(if name == ROOT { Reason::ReservedName } else { Reason::RepeatedName });
+        }
+    }
+
+    /// Takes a name like this one that is not taken yet.
+    pub fn fresh(&mut self, wish: &str) -> String {
+        let mut name = wish.to_owned();
+        while !self.0.insert(name.clone()) {
+            name.push('_');
+        }
+        name
+    }
+}
+
+/// Whether a name is one to XML, whose characters do not include the control characters, and no macro to a reader of URDF.
+pub fn can_be_written(name: &str) -> bool {
+    let bad = |c: char| c.is_control() || matches!(c, '\u{fffe}' | '\u{ffff}');
+    !name.contains(bad) && !name.contains("${") && !name.contains("$(")
+}
+
+/// What is wrong with the robot's own name, which may be empty.
+pub fn of_robot(name: &str) -> Option<Loss> {
+    (!can_be_written(name)).then(|| Loss { subject: format!("robot '{}'", name.escape_debug()), reason: Reason::BadName })
+}
+
+/// The name of what does not move.
+pub const ROOT: &str = "world";

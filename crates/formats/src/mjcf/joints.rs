@@ -1,0 +1,54 @@
+//! The joints of a body in MJCF: one or several for each joint of a description.
+
+use crate::export::Reason;
+use model::{BodyDescription, JointDescription, JointType};
+use std::ops::Range;
+
+/// An MJCF joint: a part of a description's joint.
+pub(super) struct Part<'a> {
+    /// The description's joint.
+    pub joint: &'a JointDescription,
+    /// What is put behind its name.
+    pub suffix: &'static str,
+    /// MJCF's word for its type.
+    pub kind: &'static str,
+    /// The axis, for hinges and slides.
+    pub axis: Option<[f64; 3]>,
+    /// Which of the joint's degrees of freedom it has.
+    pub dofs: Range<usize>,
+}
+
+const X: [f64; 3] = [1.0, 0.0, 0.0];
+const Y: [f64; 3] = [0.0, 1.0, 0.0];
+const Z: [f64; 3] = [0.0, 0.0, 1.0];
+
+/// The MJCF joints of a joint, the first one moving the others; or why there are none.
+pub(super) fn parts(joint: &JointDescription) -> Result<Vec<Part<'_>>, Reason> {
+    let whole = |kind, axis| vec![Part { joint, suffix: "", kind, axis, dofs: 0..joint.kind.nv() }];
+    let row = |parts: &[(&'static str, &'static str, [f64; 3])]| {
+        let part = |(k, &(suffix, kind, axis))| Part { joint, suffix, kind, axis: Some(axis), dofs: k..k + 1 };
+        parts.iter().enumerate().map(part).collect()
+    };
+    Ok(match joint.kind {
+        JointType::Fixed => Vec::new(),
+        JointType::Revolute { axis } => whole("hinge", Some(axis)),
+        JointType::Prismatic { axis } => whole("slide", Some(axis)),
+        JointType::Spherical => whole("ball", None),
+        JointType::Free => whole("free", None),
+        JointType::Planar => row(&[("_x", "slide", X), ("_y", "slide", Y), ("_turn", "hinge", Z)]),
+        JointType::Universal => row(&[("_x", "hinge", X), ("_y", "hinge", Y)]),
+        JointType::Translation => row(&[("_x", "slide", X), ("_y", "slide", Y), ("_z", "slide", Z)]),
+        JointType::Cylindrical { axis } => row(&[("_turn", "hinge", axis), ("_along", "slide", axis)]),
+        JointType::EulerZyx => row(&[("_z", "hinge", Z), ("_y", "hinge", Y), ("_x", "hinge", X)]),
+        JointType::Helical { .. } => {
+            return Err(Reason::JointType { kind: "helical", advice: "keep the robot in the neutral format" });
+        }
+    })
+}
+
+/// Whether a body is no more than a joint of the only body that it carries, as the parts of a joint are when they are read back: massless,
+/// on one hinge or slide, with that body's frame in its own.
+pub(super) fn is_part_of_child(body: &BodyDescription, child: &BodyDescription) -> bool {
+    let one_dof = |body: &BodyDescription| matches!(body.joint.kind, JointType::Revolute { .. } | JointType::Prismatic { .. });
+    body.mass == 0.0 && body.inertia == [0.0; 6] && one_dof(body) && one_dof(child) && child.joint.placement == Default::default()
+}

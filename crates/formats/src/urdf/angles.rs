@@ -1,0 +1,132 @@
+//! Roll, pitch and yaw: what a URDF file says of a rotation, and the way back.
+
+use std::f64::consts::TAU;
+
+/// Rz(yaw)·Ry(pitch)·Rx(roll), row-major.
+pub(super) fn rotation([roll, pitch, yaw]: [f64; 3]) -> [f64; 9] {
+    let ((sr, cr), (sp, cp), (sy, cy)) = (roll.sin_cos(), pitch.sin_cos(), yaw.sin_cos());
+    let entries = [
+        cy * cp,
+        cy * sp * sr - sy * cr,
+        cy * sp * cr + sy * sr,
+        sy * cp,
+        sy * sp * sr + cy * cr,
+        sy * sp * cr - cy * sr,
+        -sp,
+        cp * sr,
+        cp * cr,
+    ];
+    // No negative zeros: the rotation of zero angles is the identity to the bit.
+    entries.map(|entry| entry + 0.0)
+}
+
+/// Angles of a rotation: the very ones wherever a triple gives these nine numbers, as it does for a rotation that was read from angles;
+/// elsewhere near ones. What is read back from them gives the same angles again. No negative zeros.
+pub(super) fn angles(r: &[f64; 9]) -> [f64; 3] {
+    nearest(&rotation(nearest(r))).map(|angle| angle + 0.0)
+}
+
+/// The largest difference of two rotations' entries.
+pub(super) fn distance(a: &[f64; 9], b: &[f64; 9]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max)
+}
+
+/// The angles that give exactly this rotation, or else the candidate that comes nearest.
+fn nearest(r: &[f64; 9]) -> [f64; 3] {
+    let candidates = candidates(r);
+    let exact = candidates.iter().find_map(|&near| exact(r, near));
+    let error = |angles: &[f64; 3]| distance(&rotation(*angles), r);
+    exact.or_else(|| candidates.into_iter().min_by(|a, b| error(a).total_cmp(&error(b)))).unwrap_or_default()
+}
+
+/// Angles by inverse tangents. Both pitches belong to a rotation, θ and π − θ; and the yaw follows from the first column, whose entries
+/// lose nothing when the rotation was made from angles, or from the other two, which are good for any rotation near the poles as well.
+fn candidates(r: &[f64; 9]) -> [[f64; 3]; 4] {
+    let of = |side: f64| {
+        let pitch = (-r[6]).atan2(side * r[7].hypot(r[8]));
+        let roll = (side * r[7]).atan2(side * r[8]);
+        let (sin, cos) = roll.sin_cos();
+        let yaw = (sin * r[2] - cos * r[1]).atan2(cos * r[4] - sin * r[5]);
+        [[roll, pitch, (side * r[3]).atan2(side * r[0])], [roll, pitch, yaw]]
+    };
+    let ([a, b], [c, d]) = (of(1.0), of(-1.0));
+    [a, b, c, d]
+}
+
+/// How many units in the last place the inverse tangents may miss an angle by: each is good to about two, and its arguments to as many.
+const ULPS: usize = 5;
+
+/// The first triple near these angles, or a turn away from them, that gives the rotation to the bit. Each angle is held against the entries
+/// that it makes alone before triples are tried.
+fn exact(r: &[f64; 9], [roll, pitch, yaw]: [f64; 3]) -> Option<[f64; 3]> {
+    neighbours(pitch).filter(|pitch| 0.0 - pitch.sin() == r[6]).find_map(|pitch| {
+        let cp = pitch.cos();
+        let made = |angle: &f64, sin: f64, cos: f64| angle.sin() * cp == sin && angle.cos() * cp == cos;
+        let rolls = neighbours(roll).filter(|roll| made(roll, r[7], r[8]));
+        rolls.into_iter().find_map(|roll| {
+            let yaws = neighbours(yaw).filter(|yaw| made(yaw, r[3], r[0]));
+            yaws.map(|yaw| [roll, pitch, yaw]).find(|&angles| rotation(angles) == *r)
+        })
+    })
+}
+
+/// An angle, its neighbours among the doubles in order of distance, and the same a turn away, where files may have had it.
+fn neighbours(angle: f64) -> impl Iterator<Item = f64> {
+    [angle, angle - TAU, angle + TAU].into_iter().flat_map(|centre| {
+        let up = std::iter::successors(Some(centre), |x| Some(x.next_up())).take(ULPS + 1);
+        let down = std::iter::successors(Some(centre.next_down()), |x| Some(x.next_down())).take(ULPS);
+        up.chain(down)
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+    use std::f64::consts::{FRAC_PI_2, PI};
+
+    /// Angles as files have them: anything, few digits, quarter turns, and whatever lies close to these.
+    fn angle() -> impl Strategy<Value = f64> {
+        let quarter = (-4..=4).prop_map(|k| f64::from(k) * FRAC_PI_2);
+        let typed = (-6283..=6283).prop_map(|k| f64::from(k) / 1000.0);
+        let near =
+            (quarter.clone(), -16..=0, -1.0..1.0).prop_map(|(angle, exponent, x): (f64, i32, f64)| angle + x * 10_f64.powi(exponent));
+        prop_oneof![4 => -PI..PI, 2 => quarter, 2 => typed, 3 => near, 1 => -8.0..8.0]
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig { cases: 20_000, failure_persistence: None, ..ProptestConfig::default() })]
+
+        /// A rotation that was read from angles is written back to the bit.
+        #[test]
+        fn a_rotation_from_a_file_goes_back_exactly(given in [angle(), angle(), angle()]) {
+            let read = rotation(given);
+            let again = rotation(angles(&read));
+            prop_assert_eq!(again, read, "{:?} {:?}", given, angles(&read));
+            prop_assert_eq!(angles(&again), angles(&read));
+        }
+
+        /// A rotation from a quaternion, orthonormal to rounding, is met within 8ε, and the second trip gives the same bits.
+        #[test]
+        fn any_rotation_is_met_within_rounding(q in [-1.0..1.0, -1.0..1.0, -1.0..1.0, -1.0..1.0_f64], pole in 0..3, exponent in -17..0) {
+            let length = q.iter().map(|x| x * x).sum::<f64>().sqrt();
+            prop_assume!(length > 0.1);
+            let [mut x, mut y, mut z, mut w] = q.map(|x| x / length);
+            if pole > 0 {
+                // Close to a pole: pitch = ±90°, where roll and yaw turn about one axis.
+                let tilt = FRAC_PI_2 / 2.0 * if pole == 1 { 1.0 } else { -1.0 } + x * 10_f64.powi(exponent);
+                let (sin, cos) = tilt.sin_cos();
+                let (turn_sin, turn_cos) = (3.0 * y).sin_cos();
+                [x, y, z, w] = [-turn_sin * sin, turn_cos * sin, turn_sin * cos, turn_cos * cos];
+            }
+            let r = [
+                1.0 - 2.0 * (y * y + z * z), 2.0 * (x * y - z * w), 2.0 * (x * z + y * w),
+                2.0 * (x * y + z * w), 1.0 - 2.0 * (x * x + z * z), 2.0 * (y * z - x * w),
+                2.0 * (x * z - y * w), 2.0 * (y * z + x * w), 1.0 - 2.0 * (x * x + y * y),
+            ];
+            let read = rotation(angles(&r));
+            prop_assert!(distance(&read, &r) <= 8.0 * f64::EPSILON, "{:e}", distance(&read, &r));
+            prop_assert_eq!(rotation(angles(&read)), read);
+        }
+    }
+}

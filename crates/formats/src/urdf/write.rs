@@ -1,0 +1,206 @@
+//! Writing URDF: links and joints that [`read`](super::read) gives back.
+
+use super::angles::{angles, distance, rotation};
+use super::elements::unit;
+use super::tree::GRAVITY;
+use crate::export::names::{self, Names, ROOT};
+use crate::export::order::{Item, carried};
+use crate::export::xml::{Attributes, Xml};
+use crate::export::{self, ExportError, Loss, OnLoss, Reason};
+use model::{BodyDescription, Description, Frame, JointDescription, JointType, Placement};
+use std::path::Path;
+
+/// Writes a URDF file, whole or not at all, and tells what was left out.
+///
+/// # Errors
+/// [`ExportError`], listing everything that URDF cannot hold.
+pub fn write(description: &Description, path: impl AsRef<Path>, on_loss: OnLoss) -> Result<Vec<Loss>, ExportError> {
+    let (text, losses) = to_string(description, on_loss)?;
+    export::write(path.as_ref(), &text)?;
+    Ok(losses)
+}
+
+/// The robot's canonical form as the text of a URDF file, and what was left out.
+///
+/// The root link is called `world` and does not move; a free body hangs on it by a `floating` joint, so the file is read with
+/// [`Base::Fixed`](super::Base::Fixed). Frames are links of their own, fixed. Scalars, vectors and inertias are read back to the bit,
+/// rotations within 8ε and to the bit where angles can say them; writing what was read gives the same text. The provenance stands in a comment.
+///
+/// # Errors
+/// [`ExportError`], listing everything that URDF cannot hold.
+pub fn to_string(description: &Description, on_loss: OnLoss) -> Result<(String, Vec<Loss>), ExportError> {
+    let robot = description.canonical()?;
+    let losses = export::settle("URDF", losses(&robot), on_loss)?;
+    let mut joint_names = Names::default();
+    robot.bodies.iter().for_each(|body| _ = joint_names.fresh(&body.joint.name));
+
+    let mut xml = Xml::default();
+    xml.open("robot", |attributes| _ = attributes.text("name", &robot.name));
+    if let Some(provenance) = &robot.provenance {
+        xml.comment(&format!("{}; {}", provenance.source, provenance.licence));
+    }
+    xml.empty("link", |attributes| _ = attributes.text("name", ROOT));
+    let carried = carried(&robot);
+    let mut stack: Vec<Item> = carried[0].iter().rev().copied().collect();
+    while let Some(item) = stack.pop() {
+        match item {
+            Item::Body(i) => {
+                body(&mut xml, &robot, &robot.bodies[i]);
+                stack.extend(carried[i + 1].iter().rev());
+            }
+            Item::Frame(k) if is_root(&robot.frames[k]) => {}
+            Item::Frame(k) => frame(&mut xml, &robot, &robot.frames[k], &mut joint_names),
+        }
+    }
+    Ok((xml.finish(), losses))
+}
+
+/// Whether a frame is the world itself: the root link is read back as that.
+fn is_root(frame: &Frame) -> bool {
+    frame.name == ROOT && frame.body.is_none() && frame.placement == Placement::default()
+}
+
+fn body(xml: &mut Xml, robot: &Description, body: &BodyDescription) {
+    xml.open("link", |attributes| _ = attributes.text("name", &body.name));
+    xml.open("inertial", |_| {});
+    xml.empty("origin", |attributes| _ = attributes.numbers("xyz", &body.com));
+    xml.empty("mass", |attributes| _ = attributes.numbers("value", &[body.mass]));
+    xml.empty("inertia", |attributes| {
+        for (name, entry) in ["ixx", "ixy", "ixz", "iyy", "iyz", "izz"].into_iter().zip(body.inertia) {
+            attributes.numbers(name, &[entry]);
+        }
+    });
+    xml.close();
+    xml.close();
+
+    let joint = &body.joint;
+    let (kind, axis) = match joint.kind {
+        JointType::Revolute { axis } => {
+            (if joint.lower.is_empty() || !limits_are_whole(joint) { "continuous" } else { "revolute" }, Some(axis))
+        }
+        JointType::Prismatic { axis } => ("prismatic", Some(axis)),
+        JointType::Free => ("floating", None),
+        JointType::Planar => ("planar", Some([0.0, 0.0, 1.0])),
+        // The canonical form has none of the first, and the rest was refused.
+        JointType::Fixed
+        | JointType::Helical { .. }
+        | JointType::Spherical
+        | JointType::Universal
+        | JointType::Translation
+        | JointType::Cylindrical { .. }
+        | JointType::EulerZyx => ("fixed", None),
+    };
+    open_joint(xml, &joint.name, kind, &joint.placement, parent(robot, body.parent), &body.name);
+    if let Some(axis) = axis {
+        xml.empty("axis", |attributes| _ = attributes.numbers("xyz", &axis));
+    }
+    if kind != "floating" && kind != "planar" {
+        properties(xml, joint);
+    }
+    xml.close();
+}
+
+/// Limits and friction of a joint with one degree of freedom; limits that were not refused and are not whole are left out.
+fn properties(xml: &mut Xml, joint: &JointDescription) {
+    let limits = [("lower", &joint.lower), ("upper", &joint.upper), ("velocity", &joint.velocity), ("effort", &joint.effort)];
+    let given = |attributes: &mut Attributes, lists: &[(&str, &Vec<f64>)]| {
+        for (name, list) in lists.iter().filter(|(_, list)| !list.is_empty()) {
+            attributes.numbers(name, list);
+        }
+    };
+    if limits_are_whole(joint) && !joint.effort.is_empty() {
+        xml.empty("limit", |attributes| given(attributes, &limits));
+    }
+    let dynamics = [("damping", &joint.damping), ("friction", &joint.friction)];
+    if dynamics.iter().any(|(_, list)| !list.is_empty()) {
+        xml.empty("dynamics", |attributes| given(attributes, &dynamics));
+    }
+}
+
+fn frame(xml: &mut Xml, robot: &Description, frame: &Frame, joint_names: &mut Names) {
+    xml.empty("link", |attributes| _ = attributes.text("name", &frame.name));
+    let name = joint_names.fresh(&format!("{}_fixed", frame.name));
+    // Merging on reading adds zeros, which makes negative ones positive.
+    let placement = Placement { translation: frame.placement.translation.map(|x| x + 0.0), ..frame.placement };
+    open_joint(xml, &name, "fixed", &placement, parent(robot, frame.body), &frame.name);
+    xml.close();
+}
+
+fn open_joint(xml: &mut Xml, name: &str, kind: &str, placement: &Placement, parent: &str, child: &str) {
+    xml.open("joint", |attributes| _ = attributes.text("name", name).text("type", kind));
+    xml.empty("origin", |attributes| _ = attributes.numbers("xyz", &placement.translation).numbers("rpy", &angles(&placement.rotation)));
+    xml.empty("parent", |attributes| _ = attributes.text("link", parent));
+    xml.empty("child", |attributes| _ = attributes.text("link", child));
+}
+
+fn parent(robot: &Description, body: Option<usize>) -> &str {
+    body.map_or(ROOT, |body| &robot.bodies[body].name)
+}
+
+/// Whether URDF's readers find the limits that they ask for: all four, or on a revolute joint none or speed and effort.
+fn limits_are_whole(joint: &JointDescription) -> bool {
+    let given = [&joint.lower, &joint.upper, &joint.velocity, &joint.effort].map(|list| !list.is_empty());
+    let turns = matches!(joint.kind, JointType::Revolute { .. });
+    let slides = matches!(joint.kind, JointType::Prismatic { .. });
+    given == [true; 4] || turns && (given == [false; 4] || given == [false, false, true, true]) || !turns && !slides
+}
+
+/// Everything that URDF cannot hold, in the order of the description.
+fn losses(robot: &Description) -> Vec<Loss> {
+    let mut losses = Vec::from_iter(names::of_robot(&robot.name));
+    if robot.gravity != GRAVITY {
+        losses.push(Loss { subject: "the robot".to_owned(), reason: Reason::Gravity });
+    }
+    let (mut links, mut joints) = (Names::default(), Names::default());
+    links.fresh(ROOT);
+    for body in &robot.bodies {
+        links.take("body", &body.name, &mut losses);
+        joints.take("joint", &body.joint.name, &mut losses);
+        let reasons = joint_losses(&body.joint).into_iter();
+        losses.extend(reasons.map(|reason| Loss { subject: format!("joint '{}'", body.joint.name), reason }));
+    }
+    for frame in robot.frames.iter().filter(|frame| !is_root(frame)) {
+        links.take("frame", &frame.name, &mut losses);
+        let reason = rotation_loss(&frame.placement);
+        losses.extend(reason.map(|reason| Loss { subject: format!("frame '{}'", frame.name), reason }));
+    }
+    losses
+}
+
+fn joint_losses(joint: &JointDescription) -> Vec<Reason> {
+    let mut reasons: Vec<Reason> = rotation_loss(&joint.placement).into_iter().collect();
+    let missing = |advice| Some(Reason::JointType { kind: joint.kind.name(), advice });
+    reasons.extend(match joint.kind {
+        JointType::Revolute { .. } | JointType::Prismatic { .. } | JointType::Free | JointType::Planar | JointType::Fixed => None,
+        JointType::Helical { .. } => missing("keep the robot in the neutral format"),
+        JointType::Spherical => missing("describe it as three revolute joints, or keep the neutral format or MJCF"),
+        JointType::Universal => missing("describe it as two revolute joints, or keep the neutral format or MJCF"),
+        JointType::Translation => missing("describe it as three prismatic joints, or keep the neutral format or MJCF"),
+        JointType::Cylindrical { .. } => missing("describe it as a revolute and a prismatic joint, or keep the neutral format or MJCF"),
+        JointType::EulerZyx => missing("describe it as three revolute joints, or keep the neutral format or MJCF"),
+    });
+    if let Some(axis) = joint.kind.axis() {
+        let altered = unit(axis).filter(|(unit, _)| *unit != axis);
+        reasons.extend(altered.map(|(_, length)| Reason::Axis { error: (length - 1.0).abs() }));
+    }
+    if joint.armature.iter().any(|&x| x != 0.0) {
+        reasons.push(Reason::Property { field: "armature" });
+    }
+    if joint.kind.nv() == 1 {
+        reasons.extend((!limits_are_whole(joint)).then_some(Reason::IncompleteLimits));
+        return reasons;
+    }
+    for (field, list) in [("damping", &joint.damping), ("friction", &joint.friction)] {
+        reasons.extend(list.iter().any(|&x| x != 0.0).then_some(Reason::SeveralDofs { field }));
+    }
+    for (field, list) in [("lower", &joint.lower), ("upper", &joint.upper), ("velocity", &joint.velocity), ("effort", &joint.effort)] {
+        reasons.extend((!list.is_empty()).then_some(Reason::SeveralDofs { field }));
+    }
+    reasons
+}
+
+/// What keeps three angles from saying a rotation: no triple comes within 8ε.
+fn rotation_loss(placement: &Placement) -> Option<Reason> {
+    let error = distance(&rotation(angles(&placement.rotation)), &placement.rotation);
+    (error > 8.0 * f64::EPSILON).then_some(Reason::Rotation { error })
+}
