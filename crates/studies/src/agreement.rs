@@ -129,6 +129,7 @@ impl Comparison<'_> {
         let Some(quantity) = Quantity::parse(&cell.quantity) else { return Vec::new() };
         let values = match outcome {
             Outcome::Values(values) => values,
+            Outcome::Reading(_) => return Vec::new(),
             Outcome::Refused(refusal) => {
                 let verdict = if matches!(refusal, Refusal::Unsupported(_)) { Verdict::Skip } else { Verdict::Error };
                 let row = Record { reference: REFERENCE.into(), ..row(cell, self.problem) };

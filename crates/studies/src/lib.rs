@@ -3,18 +3,21 @@
 //! - [`Agreement`]: do the engines agree on one and the same model?
 //! - [`Digits`]: how far is each from the truth, and who is right?
 //! - [`Conditioning`]: how does κ(M) grow, and does it matter?
+//! - [`Reading`]: do they read one and the same file alike, and if not, where and why?
 //! - [`Structure`]: are the counts of the sparse algorithms the integers that theory says?
 //! - [`Timing`]: how long do the native kernels take?
 
 mod agreement;
 mod conditioning;
 mod digits;
+pub mod reading;
 mod structure;
 mod timing;
 
 pub use agreement::Agreement;
 pub use conditioning::Conditioning;
 pub use digits::Digits;
+pub use reading::Reading;
 pub use structure::Structure;
 pub use timing::Timing;
 
