@@ -10,10 +10,12 @@ compiler: its words are the reason given.
 from __future__ import annotations
 
 import sys
+from pathlib import Path
 
+import mujoco_reading
 import numpy as np
 
-from protocol import Array, Body, Change, Description, Question, Unsupported, mass_matrix_probe, readback_row, rotation, serve
+from protocol import Array, Body, Change, Description, Question, Reading, Unsupported, mass_matrix_probe, readback_row, rotation, serve
 
 sys.path.pop(0)  # this directory, where this very file would be taken for the package imported next
 import mujoco as mj  # noqa: E402
@@ -128,26 +130,29 @@ def refuse_unsupported(body: Body) -> None:
         raise Unsupported(f"MuJoCo's linear armature of free joint {joint.name} would act on world accelerations, not on body ones")
 
 
-class MujocoRobot:
-    """A robot in MuJoCo; body i is MuJoCo's body i + 1, as body 0 is the world."""
+def build(robot: Description) -> mj.MjModel:
+    """The model of a description."""
+    spec = empty_spec(robot)
+    bodies = [spec.worldbody]
+    for i, body in enumerate(robot.bodies):
+        refuse_unsupported(body)
+        bodies.append(add_body(bodies[body.parent + 1], body, i))
+    try:
+        model = spec.compile()
+    except ValueError as reason:
+        raise Unsupported(f"MuJoCo refuses the model: {reason}") from reason
+    if (model.body_dofadr[1:] != [body.joint.v.start for body in robot.bodies]).any():
+        raise RuntimeError("MuJoCo put the degrees of freedom in another order")
+    model.dof_armature = np.concatenate([body.joint.armature for body in robot.bodies])
+    mj.mj_setConst(model, mj.MjData(model))  # MuJoCo keeps constants that depend on armature
+    return model
 
-    def __init__(self, robot: Description) -> None:
-        self.robot = robot
-        spec = empty_spec(robot)
-        bodies = [spec.worldbody]
-        for i, body in enumerate(robot.bodies):
-            refuse_unsupported(body)
-            bodies.append(add_body(bodies[body.parent + 1], body, i))
-        try:
-            self.model = spec.compile()
-        except ValueError as reason:
-            raise Unsupported(f"MuJoCo refuses the model: {reason}") from reason
-        starts = [body.joint.v.start for body in robot.bodies]
-        if (self.model.body_dofadr[1:] != starts).any():
-            raise RuntimeError("MuJoCo put the degrees of freedom in another order")
-        self.data = mj.MjData(self.model)
-        self.model.dof_armature = np.concatenate([body.joint.armature for body in robot.bodies])
-        mj.mj_setConst(self.model, self.data)  # MuJoCo keeps constants that depend on armature
+
+class MujocoRobot:
+    """A robot in MuJoCo; where it was built from the description, body i is MuJoCo's body i + 1, as body 0 is the world."""
+
+    def __init__(self, robot: Description, model: mj.MjModel) -> None:
+        self.robot, self.model, self.data = robot, model, mj.MjData(model)
 
     def readback(self) -> list[Array]:
         """Inertias come back from MuJoCo's principal axes: I = R diag(principal) R'."""
@@ -329,7 +334,11 @@ class Mujoco:
 
     def prepare(self, description: Description) -> MujocoRobot:
         """Builds the robot."""
-        return MujocoRobot(description)
+        return MujocoRobot(description, build(description))
+
+    def read(self, path: Path, form: str, base: str) -> Reading:
+        """Has MuJoCo's own parser read a file."""
+        return mujoco_reading.read(path, form, base, MujocoRobot)
 
 
 if __name__ == "__main__":

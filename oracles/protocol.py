@@ -13,10 +13,13 @@ import sys
 import traceback
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Any, BinaryIO, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
+
+from examination import examined
 
 Array = NDArray[np.float64]
 Blocks = dict[str, Array]
@@ -266,6 +269,18 @@ class Question:
     body: int
 
 
+@dataclass(frozen=True)
+class Reading:
+    """What an engine holds of a file that its own parser read: the description in both forms, notes (`reading.note`), the engine's robot
+    in the description's coordinates, and the file's keyframes by name."""
+
+    model: Header
+    description: Description
+    notes: list[Header]
+    robot: Any
+    keyframes: dict[str, Array]
+
+
 class Robot(Protocol):
     """One robot built through the engine's API."""
 
@@ -305,6 +320,10 @@ SHAPES: dict[str, tuple[str | int, ...]] = {
 }
 
 
+# What is told of a robot as an engine read it: what does not ask for single bodies, nor counts masses that are fixed to the world.
+AS_READ = ("id", "bias", "mass_matrix", "mass_matrix_probe", "fd", "kinetic_energy")
+
+
 class Session:
     """The state between requests: the robot and its states."""
 
@@ -313,10 +332,17 @@ class Session:
         self.description: Description | None = None
         self.robot: Robot | None = None
         self.states: Blocks | None = None
+        self.as_read = False
 
     def answer(self, header: Header, blocks: Blocks) -> Answer:
         """The answer to one request, without its status."""
-        operations = {"hello": self.hello, "prepare": self.prepare, "states": self.set_states, "evaluate": self.evaluate}
+        operations = {
+            "hello": self.hello,
+            "prepare": self.prepare,
+            "read": self.read,
+            "states": self.set_states,
+            "evaluate": self.evaluate,
+        }
         if header.get("op") not in operations:
             raise ValueError(f"unknown op {header.get('op')}")
         return operations[header["op"]](header, blocks)
@@ -330,11 +356,29 @@ class Session:
     def prepare(self, header: Header, _blocks: Blocks) -> Answer:
         """Builds the robot and reads it back."""
         self.description = self.robot = self.states = None
+        self.as_read = False
         description = Description.read(header["model"])
         robot = self.engine.prepare(description)
         readback = np.array(robot.readback()).reshape(len(description.bodies), 22)
         self.description, self.robot = description, robot
         return {"nq": description.nq, "nv": description.nv}, {"readback": readback}
+
+    def read(self, header: Header, _blocks: Blocks) -> Answer:
+        """Has the engine's own parser read a file, and tells what the engine then holds."""
+        self.description = self.robot = self.states = None
+        self.as_read = True
+        form, base = header["format"], header.get("base", "fixed")
+        if form not in ("urdf", "mjcf") or base not in ("fixed", "free"):
+            raise ValueError(f"there is no format {form} with base {base}")
+        reader: Callable[[Path, str, str], Reading] | None = getattr(self.engine, "read", None)
+        if reader is None:
+            raise Unsupported(f"{self.engine.name} reads no files")
+        reading = reader(examined(Path(header["file"])), form, base)
+        self.description, self.robot = reading.description, reading.robot
+        answer = {"nq": self.description.nq, "nv": self.description.nv, "model": reading.model, "notes": reading.notes}
+        if not reading.keyframes:
+            return answer, {}
+        return {**answer, "keyframes": list(reading.keyframes)}, {"keyframes": np.array(list(reading.keyframes.values()))}
 
     def set_states(self, header: Header, blocks: Blocks) -> Answer:
         """Keeps the states for the evaluations to come."""
@@ -356,6 +400,8 @@ class Session:
             raise Unsupported(f"{self.engine.name} offers no method {method} for {quantity}")
         if self.description is None or self.states is None:
             raise ValueError("no model and states were given before evaluate")
+        if self.as_read and quantity not in AS_READ:
+            raise Unsupported(f"{quantity} is not told of a robot as read: its bodies need not be those of the description")
         body = header["body"] if quantity == "body_jacobian" else 0
         if not 0 <= first <= first + count <= len(self.states["q"]) or not 0 <= body < len(self.description.bodies):
             raise ValueError(f"states {first}..{first + count} or body {body} do not exist")

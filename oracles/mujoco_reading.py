@@ -1,0 +1,287 @@
+"""MuJoCo's own parser and compiler: a file is compiled as any user of MuJoCo compiles it, and what the model then holds is told.
+
+A URDF is read with MuJoCo's defaults: bodies of fixed joints are fused into their parents, visual geometry is discarded, and the root link
+is a part of the world, unless the base is free: then it gets a free joint. Where the compiler refuses a file, what a user tries next is
+tried: without the meshes that are not found, then with balanceinertia, then with lower bounds of mass and inertia. A note says so.
+
+Positions are MuJoCo's own (`qpos`), so that a hinge with a `ref` stands at its place in the file when its coordinate is `ref`.
+"""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from protocol import Array, Description, Header, Reading
+from reading import HeldJoint, Link, Place, describe, note, turned
+
+_here = sys.path.pop(0)  # this directory, where another file would be taken for the package imported next
+import mujoco as mj  # noqa: E402
+
+sys.path.insert(0, _here)
+
+BOUND = 1e-6  # kg and kg m², where the compiler refuses a file without bounds
+EDITED = 1e-9  # of a body's mass or inertia: what is told as edited; MuJoCo's own rounding is a few eps
+TYPES = {
+    mj.mjtJoint.mjJNT_HINGE: "revolute",
+    mj.mjtJoint.mjJNT_SLIDE: "prismatic",
+    mj.mjtJoint.mjJNT_BALL: "spherical",
+    mj.mjtJoint.mjJNT_FREE: "free",
+}
+
+
+def read(path: Path, form: str, base: str, make: Callable[[Description, mj.MjModel], Any]) -> Reading:
+    """Reads a file; `make` makes a robot of MuJoCo's model and its description."""
+    notes: list[Header] = []
+    floating = form == "urdf" and base == "free"
+    spec, model, settings = _compiled(path, floating, notes)
+    whole_spec, whole = _unfused(path, floating, settings)
+    _note_edits(whole_spec, whole, notes)
+    _note_not_compared(model, notes)
+    names = [_named(model.body(i).name, "body", i) for i in range(model.nbody)]
+    links = [_link(spec, model, names, i) for i in range(1, model.nbody)]
+    description = describe(spec.modelname or path.stem, model.opt.gravity, links)
+    if floating and not any(body["joint"]["type"] == "free" for body in description["bodies"]):
+        notes.append(note("root_welded", None, "the file has no single root link that could float"))
+    _add_fused_frames(description, names, whole, notes)
+    keyframes = {_named(model.key(i).name, "key", i): neutral_q(model, model.key_qpos[i]) for i in range(model.nkey)}
+    _without_extras(model)
+    held = Description.read(description)
+    return Reading(description, held, notes, make(held, model), keyframes)
+
+
+def neutral_q(model: mj.MjModel, qpos: Array) -> Array:
+    """Neutral coordinates: MuJoCo's, but quaternions end with w."""
+    q = np.array(qpos)
+    for kind, start in zip(model.jnt_type, model.jnt_qposadr, strict=True):
+        if kind in (mj.mjtJoint.mjJNT_BALL, mj.mjtJoint.mjJNT_FREE):
+            last = slice(start, start + 4) if kind == mj.mjtJoint.mjJNT_BALL else slice(start + 3, start + 7)
+            q[last] = np.roll(qpos[last], -1)
+    return q
+
+
+# ---- the compiler ----------------------------------------------------------------------------------------------------------------
+
+
+Setting = Callable[[mj.MjSpec], None]
+
+
+def _balance(spec: mj.MjSpec) -> None:
+    """Repairs inertias that violate the triangle inequality."""
+    spec.compiler.balanceinertia = True
+
+
+def _bound(spec: mj.MjSpec) -> None:
+    """Repairs them, and gives every body at least this mass and inertia."""
+    _balance(spec)
+    spec.compiler.boundmass = spec.compiler.boundinertia = BOUND
+
+
+def _without_files(spec: mj.MjSpec) -> None:
+    """Takes out what comes from other files: meshes and height fields with their geoms, skins, textures with their materials."""
+    for geom in spec.geoms:
+        geom.material = ""
+        if geom.meshname or geom.hfieldname:
+            spec.delete(geom)
+    for site in spec.sites:
+        site.material = ""
+    for tendon in spec.tendons:
+        tendon.material = ""
+    for group in (spec.skins, spec.meshes, spec.hfields, spec.materials, spec.textures):
+        for element in group:
+            spec.delete(element)
+
+
+# what a user tries when the compiler refuses, in this order: the note's cause, the setting, what it does
+REMEDIES: tuple[tuple[str, Setting, str], ...] = (
+    ("geometry_dropped", _without_files, "meshes, height fields, skins and textures were dropped, as not all of their files can be read"),
+    ("balanceinertia", _balance, "balanceinertia was needed: it gives a body of unphysical inertia three equal moments"),
+    ("bounds", _bound, f"balanceinertia, and boundmass and boundinertia of {BOUND}, were needed"),
+)
+
+
+def _compiled(path: Path, floating: bool, notes: list[Header]) -> tuple[mj.MjSpec, mj.MjModel, list[Setting]]:
+    """The spec, the model, and the settings that were needed."""
+    settings: list[Setting] = []
+    remedies, tried = list(REMEDIES), []
+    while True:
+        spec = _loaded(path, floating, settings)
+        try:
+            model = spec.compile()
+            break
+        except ValueError as reason:
+            refusal = " ".join(str(reason).split())
+        if remedies and remedies[0][1] is _without_files and "file" not in refusal.lower():  # files are opened first
+            remedies.pop(0)
+        if not remedies:
+            raise ValueError(f"MuJoCo refuses the file: {refusal}")
+        cause, setting, text = remedies.pop(0)
+        settings.append(setting)
+        tried.append(note(cause, None, f"{text}; MuJoCo said: {refusal}"))
+    notes.extend(n for n in tried if n["cause"] != "balanceinertia" or tried[-1] is n)
+    return spec, model, settings
+
+
+def _loaded(path: Path, floating: bool, settings: list[Setting]) -> mj.MjSpec:
+    """The spec of the file, not compiled."""
+    spec = mj.MjSpec.from_file(str(path))
+    for setting in settings:
+        setting(spec)
+    roots = spec.worldbody.bodies
+    if floating and len(roots) == 1 and not roots[0].joints:
+        roots[0].add_freejoint(name="root_joint")
+    return spec
+
+
+def _unfused(path: Path, floating: bool, settings: list[Setting]) -> tuple[mj.MjSpec, mj.MjModel]:
+    """The same with every link a body of its own: it tells where fused links are, and what was edited link by link."""
+    spec = _loaded(path, floating, settings)
+    spec.compiler.fusestatic = False
+    return spec, spec.compile()
+
+
+# ---- the model -------------------------------------------------------------------------------------------------------------------
+
+
+def _named(name: str, kind: str, i: int) -> str:
+    """The name, or one for what has none."""
+    return name or f"{kind} {i}"
+
+
+def _place(model: mj.MjModel, i: int) -> Place:
+    """Body i in its parent."""
+    return Place(turned(*model.body_quat[i]), model.body_pos[i].copy())
+
+
+def _inertia(model: mj.MjModel, i: int) -> Array:
+    """Body i's inertia about its centre of mass in its axes: R diag(principal moments) R'."""
+    axes = turned(*model.body_iquat[i])
+    return (axes * model.body_inertia[i]) @ axes.T
+
+
+def _given_inertia(body: mj.MjsBody) -> Array | None:
+    """The inertia in body axes as the file gives it, as far as the spec still knows."""
+    six = body.fullinertia
+    if not body.explicitinertial or not np.isfinite(six).all() or body.ialt.type != mj.mjtOrientation.mjORIENTATION_QUAT:
+        return None
+    axes = turned(*body.iquat)
+    xx, yy, zz, xy, xz, yz = six
+    return axes @ np.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]]) @ axes.T
+
+
+def _link(spec: mj.MjSpec, model: mj.MjModel, names: list[str], i: int) -> Link:
+    """Body i of the model. An inertia that the compiler's principal axes give back within 16 eps is told in the file's own digits."""
+    inertia = _inertia(model, i)
+    body = spec.body(model.body(i).name) if model.body(i).name else None
+    given = _given_inertia(body) if body is not None else None
+    if given is not None and np.abs(given - inertia).max() <= 16 * np.finfo(float).eps * np.abs(given).max():
+        inertia = given
+    joints = [_joint(model, j) for j in range(model.body_jntadr[i], model.body_jntadr[i] + model.body_jntnum[i])]
+    place = Place() if joints and joints[0].type == "free" else _place(model, i)  # a free joint's coordinates are those of the world
+    parent = int(model.body_parentid[i]) - 1
+    return Link(names[i], float(model.body_mass[i]), model.body_ipos[i].copy(), inertia, parent, place, joints)
+
+
+def _joint(model: mj.MjModel, j: int) -> HeldJoint:
+    """Joint j."""
+    kind = TYPES[mj.mjtJoint(model.jnt_type[j])]
+    dof = model.jnt_dofadr[j]
+    span = slice(dof, dof + {"spherical": 3, "free": 6}.get(kind, 1))
+    dofs = {"armature": model.dof_armature[span], "damping": model.dof_damping[span], "friction": model.dof_frictionloss[span]}
+    with_axis = kind in ("revolute", "prismatic")
+    if with_axis and model.jnt_limited[j]:
+        dofs["lower"], dofs["upper"] = model.jnt_range[j][:1], model.jnt_range[j][1:]
+    low, high = model.jnt_actfrcrange[j]
+    if with_axis and model.jnt_actfrclimited[j] and low == -high:
+        dofs["effort"] = model.jnt_actfrcrange[j][1:]
+    return HeldJoint(
+        _named(model.joint(j).name, "joint", j),
+        kind,
+        axis=model.jnt_axis[j].copy() if with_axis else None,
+        place=Place(translation=np.zeros(3) if kind == "free" else model.jnt_pos[j].copy()),
+        zero=float(model.qpos0[model.jnt_qposadr[j]]) if with_axis else 0.0,
+        dofs={key: value.copy() for key, value in dofs.items()},
+    )
+
+
+def _add_fused_frames(description: Header, names: list[str], whole: mj.MjModel, notes: list[Header]) -> None:
+    """Frames for the links that the compiler fused into others."""
+    bodies = {body["name"]: k for k, body in enumerate(description["bodies"])}
+    frames = {frame["name"]: (frame["body"], Place.of(frame["placement"])) for frame in description["frames"]}
+    homes: dict[int, tuple[int, Place]] = {0: (-1, Place())}
+    fused = []
+    for i in range(1, whole.nbody):
+        name = _named(whole.body(i).name, "body", i)
+        if name in names:
+            homes[i] = frames.get(name, (bodies.get(name, -1), Place()))
+            continue
+        body, on_body = homes[int(whole.body_parentid[i])]
+        homes[i] = body, on_body @ _place(whole, i)
+        description["frames"].append({"name": name, "body": body, "placement": homes[i][1].json()})
+        fused.append(name)
+    if fused:
+        notes.append(note("fused", None, f"{len(fused)} links of fixed joints were fused into their parents: {', '.join(fused)}"))
+
+
+def _without_extras(model: mj.MjModel) -> None:
+    """Takes out of the model what the neutral quantities do not have: all but bodies, joints, gravity and joint armature."""
+    disable = mj.mjtDisableBit
+    model.opt.disableflags |= disable.mjDSBL_CONSTRAINT | disable.mjDSBL_CONTACT | disable.mjDSBL_AUTORESET
+    model.opt.disableflags |= disable.mjDSBL_SPRING | disable.mjDSBL_DAMPER | disable.mjDSBL_ACTUATION | disable.mjDSBL_SENSOR
+    model.opt.enableflags = 0
+    model.opt.density = model.opt.viscosity = 0
+    model.body_gravcomp[:] = model.tendon_armature[:] = model.actuator_armature[:] = 0
+    mj.mj_setConst(model, mj.MjData(model))
+
+
+# ---- notes -----------------------------------------------------------------------------------------------------------------------
+
+
+def _note_edits(spec: mj.MjSpec, model: mj.MjModel, notes: list[Header]) -> None:
+    """Notes on every link whose mass or inertia is not the file's."""
+    computed = []
+    for body in spec.bodies[1:]:
+        i, name = body.id, _named(body.name, "body", body.id)
+        if not body.explicitinertial:
+            if model.body_mass[i]:
+                computed.append(name)
+            continue
+        if abs(model.body_mass[i] - body.mass) > EDITED * body.mass:
+            notes.append(note("mass_edited", name, f"{body.mass} kg in the file became {model.body_mass[i]} kg"))
+        given, inertia = _given_inertia(body), _inertia(model, i)
+        if given is not None and np.abs(given - inertia).max() > EDITED * np.abs(given).max():
+            notes.append(note("inertia_edited", name, f"{_six(given)} in the file became {_six(inertia)} kg m²"))
+    if computed:
+        notes.append(note("from_geometry", None, f"{len(computed)} links have no inertial: computed from geometry: {', '.join(computed)}"))
+
+
+def _six(inertia: Array) -> str:
+    """Six numbers of an inertia, for a reader."""
+    return "(" + ", ".join(f"{x:.6g}" for x in inertia[np.triu_indices(3)]) + ")"
+
+
+def _extras(model: mj.MjModel) -> Iterator[tuple[str, int]]:
+    """What the model has besides bodies and joints, and how many."""
+    yield "geoms that can collide", int(((model.geom_contype != 0) | (model.geom_conaffinity != 0)).sum())
+    yield "contact pairs", model.npair
+    yield "tendons", model.ntendon
+    yield "actuators", model.nu
+    yield "equality constraints", model.neq
+    yield "sensors", model.nsensor
+    yield "joint springs", int((model.jnt_stiffness != 0).sum())
+    yield "bodies with gravity compensation", int((model.body_gravcomp != 0).sum())
+    yield "mocap bodies", model.nmocap
+    yield "flexible bodies", model.nflex
+    yield "plugins", model.nplugin
+    yield "fluid forces", int(model.opt.density != 0 or model.opt.viscosity != 0)
+
+
+def _note_not_compared(model: mj.MjModel, notes: list[Header]) -> None:
+    """One note for each kind of thing that the neutral quantities leave out."""
+    for kind, count in _extras(model):
+        if count:
+            notes.append(note("not_compared", None, f"{kind}: {count}"))

@@ -1,0 +1,174 @@
+"""What an engine holds of a file that its own parser read, as a description (PROTOCOL.md, "read"); knows no engine.
+
+An engine tells its links, each with the joints between it and its parent. `describe` takes a link's joints apart into a chain of bodies,
+merges links without a joint into their parents, leaving frames, and puts each body's origin at its joint.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from protocol import JOINT_SIZES, WITH_AXIS, Array, Header, Unsupported, skew
+
+@dataclass(frozen=True)
+class Place:
+    """A frame in another: rotation and origin."""
+
+    rotation: Array = field(default_factory=lambda: np.eye(3))
+    translation: Array = field(default_factory=lambda: np.zeros(3))
+
+    def __matmul__(self, inner: Place) -> Place:
+        """The place of `inner`, which is given in this frame."""
+        return Place(self.rotation @ inner.rotation, self.rotation @ inner.translation + self.translation)
+
+    def inverse(self) -> Place:
+        """The outer frame in this one."""
+        return Place(self.rotation.T, -(self.rotation.T @ self.translation))
+
+    def identical(self) -> bool:
+        """Whether both frames are one, exactly."""
+        return not self.translation.any() and bool((self.rotation == np.eye(3)).all())
+
+    @classmethod
+    def of(cls, placement: Header) -> Place:
+        """A description's placement."""
+        return cls(np.reshape(placement["rotation"], (3, 3)), np.array(placement["translation"]))
+
+    def json(self) -> Header:
+        """As in a description; adding 0 makes -0 a 0."""
+        return {"rotation": (self.rotation.ravel() + 0.0).tolist(), "translation": (self.translation + 0.0).tolist()}
+
+
+@dataclass(frozen=True)
+class HeldJoint:
+    """A joint of a link; `place` is its frame in the *link's* axes, from the link's origin, `axis` and `zero` are in the joint's frame.
+
+    `zero` is the coordinate at which the link stands at its `place` in the parent (MJCF: `ref`). `dofs` holds armature, damping, friction
+    and the limits that the engine holds, each per degree of freedom; infinite limits are left out.
+    """
+
+    name: str
+    type: str
+    axis: Array | None = None
+    pitch: float = 0.0
+    place: Place = field(default_factory=Place)
+    zero: float = 0.0
+    dofs: dict[str, Array] = field(default_factory=dict)
+
+
+@dataclass(frozen=True)
+class Link:
+    """A link: its inertia about the centre of mass, in its own axes; its parent (an index before it, -1 for the world), and its place there.
+
+    Without joints it is fixed to its parent. With several, each moves what follows; all places are those of the zero configuration.
+    """
+
+    name: str
+    mass: float
+    com: Array
+    inertia: Array
+    parent: int
+    place: Place
+    joints: Sequence[HeldJoint]
+
+
+def note(cause: str, subject: str | None, text: str) -> Header:
+    """A note of the answer: what the parser did to what."""
+    return {"cause": cause, "subject": subject, "text": " ".join(text.split())}
+
+
+def describe(name: str, gravity: Array, links: Sequence[Link]) -> Header:
+    """The description of links in depth-first order."""
+    bodies: list[Header] = []
+    frames: list[Header] = []
+    parts: list[list[tuple[float, Array, Array]]] = []  # what each body is made of
+    homes: list[tuple[int, Place]] = []  # the body of each link, and the link's place there
+    for link in links:
+        body, on_parent = homes[link.parent] if link.parent >= 0 else (-1, Place())
+        on_parent = on_parent @ link.place
+        before = Place()  # the frame of the joint before, in the link's
+        for k, joint in enumerate(link.joints):
+            last = k == len(link.joints) - 1
+            here, axis = _gauge(joint)
+            place = (on_parent @ here if k == 0 else before.inverse() @ here) @ _back(joint, axis)
+            named = link.name if last else f"{link.name}/{joint.name}"
+            bodies.append({"name": named, "parent": body, "joint": _joint(joint, axis, place)})
+            parts.append([])
+            body, before = len(bodies) - 1, here
+        home = before.inverse() if link.joints else on_parent
+        homes.append((body, home))
+        if not (link.joints and home.identical()):
+            frames.append({"name": link.name, "body": body, "placement": home.json()})
+        if body >= 0:
+            parts[body].append((link.mass, home.rotation @ link.com + home.translation, home.rotation @ link.inertia @ home.rotation.T))
+    for item, held in zip(bodies, parts, strict=True):
+        mass, com, inertia = merged(held)
+        item.update(mass=mass, com=(com + 0.0).tolist(), inertia=(inertia[np.triu_indices(3)] + 0.0).tolist())
+    return {"format": 1, "name": name, "gravity": np.asarray(gravity).tolist(), "bodies": bodies, "frames": frames}
+
+
+def _gauge(joint: HeldJoint) -> tuple[Place, Array | None]:
+    """The joint's frame in the link's, and its axis. Where an axis says all, the frame has the link's axes."""
+    if joint.type not in JOINT_SIZES:
+        raise Unsupported(f"joint {joint.name} is of a type that descriptions do not have: {joint.type}")
+    if joint.axis is None:
+        return joint.place, None
+    return Place(translation=joint.place.translation), joint.place.rotation @ joint.axis
+
+
+def _back(joint: HeldJoint, axis: Array | None) -> Place:
+    """The motion from the coordinate `zero` to 0."""
+    if joint.zero == 0 or axis is None:
+        return Place()
+    if joint.type == "prismatic":
+        return Place(translation=-joint.zero * axis)
+    turn = skew(axis)
+    return Place(np.eye(3) - math.sin(joint.zero) * turn + (1 - math.cos(joint.zero)) * turn @ turn)
+
+
+def _joint(joint: HeldJoint, axis: Array | None, place: Place) -> Header:
+    """A joint of a description."""
+    dofs = {key: np.zeros(JOINT_SIZES[joint.type][1]) for key in ("armature", "damping", "friction")}
+    dofs.update({key: value for key, value in joint.dofs.items() if np.isfinite(value).all()})
+    data: Header = {"name": joint.name, "type": joint.type, "placement": place.json()}
+    if joint.type in WITH_AXIS and axis is not None:
+        data["axis"] = (axis + 0.0).tolist()
+    if joint.type == "helical":
+        data["pitch"] = joint.pitch
+    return {**data, **{key: value.tolist() for key, value in dofs.items()}}
+
+
+def merged(parts: Sequence[tuple[float, Array, Array]]) -> tuple[float, Array, Array]:
+    """Mass, centre of mass and inertia about it of bodies in one frame; a single one is returned as it is."""
+    parts = [part for part in parts if part[0] or part[2].any()] or list(parts[:1])
+    if len(parts) < 2:
+        return parts[0] if parts else (0.0, np.zeros(3), np.zeros((3, 3)))
+    mass = sum(m for m, _, _ in parts)
+    com = sum((m * c for m, c, _ in parts), np.zeros(3)) / (mass or 1.0)
+    return mass, com, sum((i - m * skew(c - com) @ skew(c - com) for m, c, i in parts), np.zeros((3, 3)))
+
+
+def turned(w: float, x: float, y: float, z: float) -> Array:
+    """The rotation of the quaternion (w, x, y, z) of any length, by scalar operations in this order, each rounded once, none fused:
+
+        n = ((w w + x x) + y y) + z z
+        diagonal: (((w w + x x) - y y) - z z) / n,  (((w w - x x) + y y) - z z) / n,  (((w w - x x) - y y) + z z) / n
+        below it, at (1,0), (2,0), (2,1): (2 (x y + w z)) / n,  (2 (x z - w y)) / n,  (2 (y z + w x)) / n
+        above it, at (0,1), (0,2), (1,2): (2 (x y - w z)) / n,  (2 (x z + w y)) / n,  (2 (y z - w x)) / n
+
+    Quarter turns are exact. A writer that wants a rotation back bit by bit can search quaternions with this.
+    """
+    w, x, y, z = float(w), float(x), float(y), float(z)
+    ww, xx, yy, zz = w * w, x * x, y * y, z * z
+    n = ((ww + xx) + yy) + zz
+    return np.array(
+        [
+            [(((ww + xx) - yy) - zz) / n, (2 * (x * y - w * z)) / n, (2 * (x * z + w * y)) / n],
+            [(2 * (x * y + w * z)) / n, (((ww - xx) + yy) - zz) / n, (2 * (y * z - w * x)) / n],
+            [(2 * (x * z - w * y)) / n, (2 * (y * z + w * x)) / n, (((ww - xx) - yy) + zz) / n],
+        ]
+    )
