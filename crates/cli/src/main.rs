@@ -1,6 +1,7 @@
 //! The `featherbench` command: wires engines and studies into the harness.
 
 mod args;
+mod compare;
 mod explain;
 mod fail;
 mod generate;
@@ -10,9 +11,11 @@ mod problems;
 mod progress;
 mod record;
 mod report;
+mod robot_file;
 mod root;
 mod run;
 mod subjects;
+mod table;
 
 use args::{Cli, Command, OraclesAction, RunArgs};
 use clap::Parser;
@@ -36,6 +39,7 @@ fn dispatch(cli: Cli) -> Result<(), Fail> {
     let default = || Command::Run(RunArgs::default_suite());
     match cli.command.unwrap_or_else(default) {
         Command::Run(args) => run::run(&root, &args),
+        Command::Compare(args) => compare::compare(&root, &args),
         Command::Report(args) => report::write(&args.folder),
         Command::Gate(args) => report::gate(&root, &args),
         Command::List(args) => list::list(&root, &args),

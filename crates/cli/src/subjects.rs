@@ -25,8 +25,14 @@ pub fn open(root: &Root, args: &RunArgs, loaded: &Loaded) -> Result<Subjects, Fa
     if args.live {
         let python = oracles::install(root)?;
         let limits = Limits { answer: Duration::from_secs(args.answer_within), memory: args.memory << 20 };
-        for engine in &agreement.engines {
-            let oracle = oracles::start(root, &python, engine, limits);
+        // Together: an engine's start is its libraries being read from disk.
+        let started: Vec<_> = std::thread::scope(|scope| {
+            let start = |engine: &String| oracles::start(root, &python, engine, limits);
+            let starting: Vec<_> = agreement.engines.iter().map(|engine| scope.spawn(move || start(engine))).collect();
+            let lost = |_| Err("the engine's start broke off".into());
+            starting.into_iter().map(|thread| thread.join().unwrap_or_else(lost)).collect()
+        });
+        for (engine, oracle) in agreement.engines.iter().zip(started) {
             opened.add(oracle.map(|oracle| Box::new(oracle) as Box<dyn Subject>), engine, EngineSource::Live);
         }
     } else {

@@ -78,6 +78,11 @@ impl FileFormat {
 }
 
 impl FileBase {
+    /// The base named by a word.
+    pub fn parse(word: &str) -> Option<Self> {
+        [Self::Fixed, Self::Free].into_iter().find(|base| base.name() == word)
+    }
+
     /// The word for it in the oracle protocol.
     pub fn name(self) -> &'static str {
         match self {

@@ -24,7 +24,7 @@ pub(super) fn cause(field: Field, ours: &BodyDescription, theirs: &BodyDescripti
         },
         Field::Com if ours.mass == 0.0 => (Cause::ZeroMass, sentence(&["mass_edited"])),
         Field::Com if said("from_geometry").is_some() => (Cause::Geometry, sentence(&["from_geometry"])),
-        Field::Com => (if scaled(&ours.com, &theirs.com) { Cause::Unit } else { Cause::Number }, sentence(&["com_edited"])),
+        Field::Com => (if scaled(&ours.com, &theirs.com) { Cause::Unit } else { Cause::Number }, None),
         Field::Inertia => match inertia(ours, theirs) {
             Cause::Number if ours.mass == 0.0 && theirs.mass > 0.0 => (Cause::ZeroMass, sentence(&["inertia_edited", "mass_edited"])),
             Cause::Number if said("from_geometry").is_some() => (Cause::Geometry, sentence(&["from_geometry"])),
