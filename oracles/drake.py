@@ -10,10 +10,12 @@ from __future__ import annotations
 import importlib.metadata
 import sys
 from math import pi
+from pathlib import Path
 
+import drake_reading
 import numpy as np
 
-from protocol import Array, Body, Change, Description, Joint, Question, Unsupported, mass_matrix_probe, readback_row, rotation, serve, skew
+from protocol import Array, Body, Change, Description, Joint, Question, Reading, Unsupported, mass_matrix_probe, readback_row, rotation, serve, skew
 
 sys.path.pop(0)  # this directory, where other files are called like the packages they import
 from pydrake.common.eigen_geometry import Quaternion  # noqa: E402
@@ -82,38 +84,39 @@ def make_joint(joint: Joint, name: str, parent: tree.Frame, child: tree.Frame) -
     return makers[joint.type]()
 
 
-class DrakeRobot:
-    """A robot in Drake."""
-
-    def __init__(self, robot: Description) -> None:
-        self.robot = robot
-        self.plant = MultibodyPlant(0.0)
-        self.plant.mutable_gravity_field().set_gravity_vector(robot.gravity)
-        self.bodies: list[tree.RigidBody] = []
-        self.joints: list[tree.Joint] = []
-        for i, body in enumerate(robot.bodies):
-            self._add(i, body)
-        self.plant.Finalize()
-        for mine, joint in zip(self.joints, (body.joint for body in robot.bodies), strict=True):
-            if mine.velocity_start() != joint.v.start:
-                raise RuntimeError(f"Drake put joint {joint.name} elsewhere")
-        self.context = self.plant.CreateDefaultContext()
-        self.forces = tree.MultibodyForces(self.plant)
-
-    def _add(self, i: int, body: Body) -> None:
-        """Adds body i and its joint."""
-        plant, joint = self.plant, body.joint
-        parent = self.bodies[body.parent] if body.parent >= 0 else plant.world_body()
-        self.bodies.append(plant.AddRigidBody(f"{i}: {body.name}", spatial_inertia(body)))
+def build(robot: Description) -> tuple[MultibodyPlant, list[tree.Joint]]:
+    """The plant of a description, and its joints in order."""
+    plant = MultibodyPlant(0.0)
+    plant.mutable_gravity_field().set_gravity_vector(robot.gravity)
+    joints: list[tree.Joint] = []
+    for i, body in enumerate(robot.bodies):
+        joint = body.joint
+        parent = joints[body.parent].child_body() if body.parent >= 0 else plant.world_body()
+        child = plant.AddRigidBody(f"{i}: {body.name}", spatial_inertia(body))
         placement = RigidTransform(RotationMatrix(joint.rotation), joint.translation)
         frame = plant.AddFrame(tree.FixedOffsetFrame(f"frame {i}", parent.body_frame(), placement))
-        self.joints.append(plant.AddJoint(make_joint(joint, f"joint {i}", frame, self.bodies[i].body_frame())))
+        joints.append(plant.AddJoint(make_joint(joint, f"joint {i}", frame, child.body_frame())))
         if joint.armature.any():
             if len(joint.armature) > 1:
                 raise Unsupported(f"Drake has no armature on joint {joint.name} of more than one degree of freedom")
-            actuator = plant.AddJointActuator(f"actuator {i}", self.joints[i])
+            actuator = plant.AddJointActuator(f"actuator {i}", joints[i])
             actuator.set_default_rotor_inertia(joint.armature[0])
             actuator.set_default_gear_ratio(1.0)
+    plant.Finalize()
+    return plant, joints
+
+
+class DrakeRobot:
+    """A robot in Drake."""
+
+    def __init__(self, robot: Description, plant: MultibodyPlant, joints: list[tree.Joint]) -> None:
+        self.robot, self.plant, self.joints = robot, plant, joints
+        self.bodies = [joint.child_body() for joint in joints]
+        for mine, joint in zip(joints, (body.joint for body in robot.bodies), strict=True):
+            if mine.velocity_start() != joint.v.start:
+                raise RuntimeError(f"Drake put joint {joint.name} elsewhere")
+        self.context = plant.CreateDefaultContext()
+        self.forces = tree.MultibodyForces(plant)
 
     def readback(self) -> list[Array]:
         """The inertia about the centre of mass is I = I_origin + m [c]x^2."""
@@ -264,7 +267,11 @@ class Drake:
 
     def prepare(self, description: Description) -> DrakeRobot:
         """Builds the robot."""
-        return DrakeRobot(description)
+        return DrakeRobot(description, *build(description))
+
+    def read(self, path: Path, form: str, base: str) -> Reading:
+        """Has Drake's own parser read a file."""
+        return drake_reading.read(path, form, base, DrakeRobot)
 
 
 if __name__ == "__main__":

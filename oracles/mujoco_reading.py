@@ -44,7 +44,8 @@ def read(path: Path, form: str, base: str, make: Callable[[Description, mj.MjMod
     _note_not_compared(model, notes)
     names = [_named(model.body(i).name, "body", i) for i in range(model.nbody)]
     links = [_link(spec, model, names, i) for i in range(1, model.nbody)]
-    description = describe(spec.modelname or path.stem, model.opt.gravity, links)
+    weightless = model.opt.disableflags & mj.mjtDisableBit.mjDSBL_GRAVITY
+    description = describe(spec.modelname or path.stem, np.zeros(3) if weightless else model.opt.gravity, links)
     if floating and not any(body["joint"]["type"] == "free" for body in description["bodies"]):
         notes.append(note("root_welded", None, "the file has no single root link that could float"))
     _add_fused_frames(description, names, whole, notes)

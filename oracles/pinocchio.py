@@ -8,10 +8,13 @@ ignore them). Joints come depth-first, without which crba is wrong silently; `mo
 from __future__ import annotations
 
 import sys
+from collections.abc import Sequence
+from pathlib import Path
 
 import numpy as np
+import pinocchio_reading
 
-from protocol import Array, Body, Change, Description, Joint, Question, Unsupported, mass_matrix_probe, readback_row, serve
+from protocol import Array, Body, Change, Description, Joint, Question, Reading, Unsupported, mass_matrix_probe, readback_row, serve
 
 sys.path.pop(0)  # this directory, where this very file would be taken for the package imported next
 import eigenpy  # noqa: E402
@@ -79,24 +82,32 @@ def spatial_inertia(body: Body) -> pin.Inertia:
     return inertia
 
 
-class PinocchioRobot:
-    """A robot in Pinocchio; body i is joint i + 1, as joint 0 is the universe."""
+def build(robot: Description) -> pin.Model:
+    """The model of a description."""
+    model = pin.Model()
+    model.gravity = pin.Motion(robot.gravity, np.zeros(3))
+    for i, body in enumerate(robot.bodies):
+        joint = body.joint
+        if joint.type == "planar" and joint.armature[:2].any():
+            raise Unsupported(f"Pinocchio's armature of planar joint {joint.name} would act in body axes, not in the joint frame's")
+        placement = pin.SE3(joint.rotation, joint.translation)
+        index = model.addJoint(body.parent + 1, joint_model(joint), placement, f"joint {i}")
+        model.appendBodyToJoint(index, spatial_inertia(body), pin.SE3.Identity())
+        if index != i + 1 or model.joints[index].idx_v != joint.v.start:
+            raise RuntimeError(f"Pinocchio put joint {joint.name} elsewhere")
+    model.armature = np.concatenate([b.joint.armature for b in robot.bodies])
+    return model
 
-    def __init__(self, robot: Description) -> None:
-        self.robot = robot
-        self.model = pin.Model()
-        self.model.gravity = pin.Motion(robot.gravity, np.zeros(3))
-        for i, body in enumerate(robot.bodies):
-            joint = body.joint
-            if joint.type == "planar" and joint.armature[:2].any():
-                raise Unsupported(f"Pinocchio's armature of planar joint {joint.name} would act in body axes, not in the joint frame's")
-            placement = pin.SE3(joint.rotation, joint.translation)
-            index = self.model.addJoint(body.parent + 1, joint_model(joint), placement, f"joint {i}")
-            self.model.appendBodyToJoint(index, spatial_inertia(body), pin.SE3.Identity())
-            if index != i + 1 or self.model.joints[index].idx_v != joint.v.start:
-                raise RuntimeError(f"Pinocchio put joint {joint.name} elsewhere")
-        self.model.armature = np.concatenate([b.joint.armature for b in robot.bodies])
-        self.data = self.model.createData()
+
+class PinocchioRobot:
+    """A robot in Pinocchio; where it was built from the description, body i is joint i + 1, as joint 0 is the universe.
+
+    `turning` are the indices of the angles, in q_e of the table above, that are (cos, sin) in the model: continuous joints as read.
+    """
+
+    def __init__(self, robot: Description, model: pin.Model, turning: Sequence[int] = ()) -> None:
+        self.robot, self.model, self.turning = robot, model, list(turning)
+        self.data = model.createData()
         if not self.model.check(self.data):
             raise RuntimeError("Pinocchio's own check of the model fails")
 
@@ -110,7 +121,14 @@ class PinocchioRobot:
     def _state(self, ask: Question) -> tuple[Array, Array, Change]:
         """q_e, v_e and the change of coordinates."""
         change = change_of_velocities(self.robot, ask.q, ask.v)
-        return to_engine_q(self.robot, ask.q), change.to_engine_v(ask.v), change
+        return self._engine_q(ask.q), change.to_engine_v(ask.v), change
+
+    def _engine_q(self, q: Array) -> Array:
+        """q_e, with (cos, sin) for the angles that the model has so."""
+        q_e = to_engine_q(self.robot, q)
+        angles = q_e[self.turning]
+        q_e[self.turning] = np.cos(angles)
+        return np.insert(q_e, [k + 1 for k in self.turning], np.sin(angles))
 
     def rnea(self, ask: Question) -> Array:
         """tau = RNEA(q, v, a)."""
@@ -270,7 +288,11 @@ class Pinocchio:
 
     def prepare(self, description: Description) -> PinocchioRobot:
         """Builds the robot."""
-        return PinocchioRobot(description)
+        return PinocchioRobot(description, build(description))
+
+    def read(self, path: Path, form: str, base: str) -> Reading:
+        """Has Pinocchio's own parser read a file."""
+        return pinocchio_reading.read(path, form, base, PinocchioRobot)
 
 
 if __name__ == "__main__":

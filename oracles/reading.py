@@ -7,8 +7,14 @@ merges links without a joint into their parents, leaving frames, and puts each b
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+import os
+import sys
+import tempfile
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass, field
+from pathlib import Path
+from xml.etree import ElementTree
 
 import numpy as np
 
@@ -107,6 +113,7 @@ def describe(name: str, gravity: Array, links: Sequence[Link]) -> Header:
             parts[body].append((link.mass, home.rotation @ link.com + home.translation, home.rotation @ link.inertia @ home.rotation.T))
     for item, held in zip(bodies, parts, strict=True):
         mass, com, inertia = merged(held)
+        com = com if mass else np.zeros(3)  # nowhere
         item.update(mass=mass, com=(com + 0.0).tolist(), inertia=(inertia[np.triu_indices(3)] + 0.0).tolist())
     return {"format": 1, "name": name, "gravity": np.asarray(gravity).tolist(), "bodies": bodies, "frames": frames}
 
@@ -172,3 +179,39 @@ def turned(w: float, x: float, y: float, z: float) -> Array:
             [(2 * (x * z - w * y)) / n, (2 * (y * z + w * x)) / n, (((ww - xx) - yy) + zz) / n],
         ]
     )
+
+
+# ---- the file and the parser's words ---------------------------------------------------------------------------------------------
+
+
+def elements(path: Path, tag: str) -> Iterator[ElementTree.Element]:
+    """The elements of that tag in the file (not in files that it includes), for what an engine does not tell of what it left out."""
+    return ElementTree.parse(path).getroot().iter(tag)
+
+
+def mentioned(path: Path) -> list[Header]:
+    """Notes on what stands in an MJCF besides bodies and joints, for an engine that does not tell what it made of it."""
+    kinds = ("contact", "tendon", "actuator", "equality", "sensor", "keyframe")
+    counts = {kind: sum(len(section) for section in ElementTree.parse(path).getroot().findall(kind)) for kind in kinds}
+    return [note("not_compared", None, f"elements of <{kind}>: {count}") for kind, count in counts.items() if count]
+
+
+@contextmanager
+def overheard(notes: list[Header]) -> Iterator[None]:
+    """Adds what an engine prints meanwhile to the notes, a line each as `warning`; the standard error has it as well."""
+    kept = [(number, os.dup(number)) for number in (1, 2)]
+    with tempfile.TemporaryFile() as words:
+        try:
+            for number, _ in kept:
+                os.dup2(words.fileno(), number)
+            yield
+        finally:
+            sys.stderr.flush()
+            for number, copy in kept:
+                os.dup2(copy, number)
+                os.close(copy)
+            words.seek(0)
+            text = words.read().decode(errors="replace")
+            sys.stderr.write(text)
+            lines = dict.fromkeys(line.strip() for line in text.splitlines() if line.strip())
+            notes.extend(note("warning", None, line) for line in lines)

@@ -1,0 +1,161 @@
+"""Pinocchio's own parsers: `buildModelFromUrdf` and `buildModelFromMJCF`, and what the model then holds is told.
+
+Pinocchio's joints of a moving frame are the bodies here: links of fixed joints are merged already, and leave frames. A joint of several
+(JointModelComposite) is taken apart. A continuous joint's (cos, sin) is an angle here.
+"""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from protocol import Array, Description, Header, Reading, Unsupported
+from reading import HeldJoint, Link, Place, describe, elements, mentioned, note, overheard
+
+_here = sys.path.pop(0)  # this directory, where another file would be taken for the package imported next
+import pinocchio as pin  # noqa: E402
+
+sys.path.insert(0, _here)
+
+UNBOUNDED = 1e300  # a limit of the largest double is none
+KINDS = {"R": "revolute", "P": "prismatic", "H": "helical"}
+WHOLE = {"Spherical": "spherical", "FreeFlyer": "free", "Planar": "planar", "Universal": "universal"}
+WHOLE |= {"SphericalZYX": "euler_zyx", "Translation": "translation"}
+
+
+def read(path: Path, form: str, base: str, make: Callable[[Description, pin.Model, list[int]], Any]) -> Reading:
+    """Reads a file; `make` makes a robot of the description, Pinocchio's model, and the indices of angles that are (cos, sin) there."""
+    notes: list[Header] = []
+    with overheard(notes):
+        if form == "mjcf":
+            model = pin.buildModelFromMJCF(str(path))
+        elif base == "free":
+            model = pin.buildModelFromUrdf(str(path), pin.JointModelFreeFlyer(), "root_joint")
+        else:
+            model = pin.buildModelFromUrdf(str(path))
+    links = [_link(model, i, path) for i in range(1, model.njoints)]
+    description = describe(model.name or path.stem, model.gravity.linear, links)
+    _add_frames(description, model)
+    _note_mimics(path, notes)
+    _note_gravity(path, model, notes)
+    notes.extend(mentioned(path))
+    held = Description.read(description)
+    return Reading(description, held, notes, make(held, model, _turning(model)), {})
+
+
+def _place(placement: pin.SE3) -> Place:
+    return Place(placement.rotation.copy(), placement.translation.copy())
+
+
+def _turning(model: pin.Model) -> list[int]:
+    """Where angles as (cos, sin) stand, counting each as one number."""
+    indices, count = [], 0
+    for i in range(1, model.njoints):
+        for joint, _ in _parts(model.joints[i]):
+            turning = joint.nq == 2 and joint.nv == 1
+            if turning:
+                indices.append(count)
+            count += 1 if turning else joint.nq
+    return indices
+
+
+def _link(model: pin.Model, i: int, path: Path) -> Link:
+    """Joint i with the body that it carries."""
+    parts = list(_parts(model.joints[i]))
+    names = [model.names[i]] if len(parts) == 1 else _names(model, i, len(parts), path)
+    whole = Place()  # from the whole joint's frame to the body
+    places = []
+    for _, placement in parts:
+        whole = whole @ placement
+        places.append(whole)
+    back = whole.inverse()
+    joints = []
+    q, v = model.idx_qs[i], model.idx_vs[i]
+    for name, (joint, _), place in zip(names, parts, places, strict=True):
+        kind, axis, pitch = _type(joint, model.names[i])
+        dofs = _dofs(model, slice(q, q + joint.nq), slice(v, v + joint.nv))
+        joints.append(HeldJoint(name, kind, axis, pitch, Place() if place is whole else back @ place, dofs=dofs))
+        q, v = q + joint.nq, v + joint.nv
+    inertia, parent = model.inertias[i], int(model.parents[i]) - 1
+    place = _place(model.jointPlacements[i]) @ whole
+    return Link(_carried(model, i), inertia.mass, inertia.lever.copy(), inertia.inertia.copy(), parent, place, joints)
+
+
+def _parts(joint: pin.JointModel) -> Iterator[tuple[pin.JointModel, Place]]:
+    """The joints that a joint is made of, each with its place in the one before."""
+    if joint.shortname() != "JointModelComposite":
+        yield joint, Place()
+        return
+    whole = joint.extract() if hasattr(joint, "extract") else joint
+    for part, placement in zip(whole.joints, whole.jointPlacements, strict=True):
+        yield part, _place(placement)
+
+
+def _names(model: pin.Model, i: int, count: int, path: Path) -> list[str]:
+    """The names of the joints within joint i: Pinocchio forgets them; the file's, where its body has as many."""
+    link = _carried(model, i)
+    for body in elements(path, "body"):
+        names = [joint.get("name") for joint in body if joint.tag in ("joint", "freejoint")]
+        if body.get("name") == link and len(names) == count and all(names):
+            return [str(name) for name in names]
+    return [f"{model.names[i]} {k}" for k in range(count)]
+
+
+def _carried(model: pin.Model, i: int) -> str:
+    """The link that joint i carries: the first body frame on it."""
+    names = (frame.name for frame in model.frames if frame.type == pin.BODY and frame.parentJoint == i)
+    return next(names, model.names[i])
+
+
+def _type(joint: pin.JointModel, name: str) -> tuple[str, Array | None, float]:
+    """Type, axis and pitch of a joint that is not composite."""
+    short = joint.shortname().removeprefix("JointModel")
+    if short in WHOLE:
+        return WHOLE[short], None, 0.0
+    whole = joint.extract() if hasattr(joint, "extract") else joint
+    for prefix, kind in KINDS.items():
+        letter = short.removeprefix(prefix).removeprefix("UB")
+        if short.startswith(prefix) and letter in "XYZ" and len(letter) == 1:
+            return kind, np.eye(3)["XYZ".index(letter)], float(getattr(whole, "pitch", 0.0))
+    named = {"RevoluteUnaligned": "revolute", "RevoluteUnboundedUnaligned": "revolute", "PrismaticUnaligned": "prismatic"}
+    named["HelicalUnaligned"] = "helical"
+    if short in named:
+        return named[short], np.array(whole.axis, dtype=float), float(getattr(whole, "pitch", 0.0))
+    raise Unsupported(f"joint {name} is Pinocchio's {short}, a type that descriptions do not have")
+
+
+def _dofs(model: pin.Model, q: slice, v: slice) -> dict[str, Array]:
+    """Armature, damping, friction and limits of one joint."""
+    dofs = {"armature": model.armature[v], "damping": model.damping[v], "friction": model.upperDryFrictionLimit[v]}
+    limits = {"velocity": model.upperVelocityLimit[v], "effort": model.upperEffortLimit[v]}
+    if q.stop - q.start == v.stop - v.start:
+        limits |= {"lower": model.lowerPositionLimit[q], "upper": model.upperPositionLimit[q]}
+    return {key: value.copy() for key, value in {**dofs, **limits}.items() if key in dofs or (np.abs(value) < UNBOUNDED).all()}
+
+
+def _add_frames(description: Header, model: pin.Model) -> None:
+    """A frame for each link that is not a body, or not where its body is."""
+    bodies = {body["name"]: k for k, body in enumerate(description["bodies"])}
+    carriers = [-1, *(bodies[_carried(model, i)] for i in range(1, model.njoints))]
+    for frame in model.frames:
+        place, body = _place(frame.placement), carriers[frame.parentJoint]
+        if frame.type == pin.BODY and not (bodies.get(frame.name) == body and place.identical()):
+            description["frames"].append({"name": frame.name, "body": body, "placement": place.json()})
+
+
+def _note_mimics(path: Path, notes: list[Header]) -> None:
+    """Joints that mimic another are joints of their own, unless asked otherwise."""
+    names = [joint.get("name") or "" for joint in elements(path, "joint") if joint.find("mimic") is not None]
+    notes.extend(note("mimic", name, "this joint mimics another; Pinocchio reads it as a joint of its own") for name in names)
+
+
+def _note_gravity(path: Path, model: pin.Model, notes: list[Header]) -> None:
+    """The gravity of an MJCF."""
+    for option in elements(path, "option"):
+        given = option.get("gravity")
+        if given is not None and given.split() != [f"{x:g}" for x in model.gravity.linear]:
+            notes.append(note("gravity_ignored", None, f"the file says ({given}), Pinocchio holds {tuple(model.gravity.linear.tolist())}"))
