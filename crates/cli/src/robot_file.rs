@@ -37,7 +37,8 @@ fn format(path: &Path) -> Result<FileFormat, String> {
         return Err("this is a binary file (a mesh, or a compiled model?); name the URDF or MJCF text that it was made from".into());
     }
     let text = String::from_utf8_lossy(&head);
-    if ending == "xacro" || text.contains("xmlns:xacro") || text.contains("<xacro:") {
+    // What xacro wrote keeps the declaration of its names, and its macros in comments; a macro that is called must still be run.
+    if ending == "xacro" || without_comments(&text).contains("<xacro:") {
         return Err("this is a xacro file, a program that writes URDF; run it first: `xacro FILE > robot.urdf`".into());
     }
     match root_element(&text) {
@@ -54,6 +55,12 @@ fn format(path: &Path) -> Result<FileFormat, String> {
         }
         None => Err("this is neither URDF nor MJCF; name an XML file whose root element is <robot> or <mujoco>".into()),
     }
+}
+
+fn without_comments(text: &str) -> String {
+    let mut pieces = text.split("<!--");
+    let first = pieces.next().unwrap_or_default().to_owned();
+    pieces.fold(first, |kept, piece| kept + piece.split_once("-->").map_or("", |(_, behind)| behind))
 }
 
 /// The name of the first element behind declarations and comments.
@@ -76,7 +83,13 @@ fn root_element(text: &str) -> Option<&str> {
 
 #[cfg(test)]
 mod tests {
-    use super::root_element;
+    use super::{root_element, without_comments};
+
+    #[test]
+    fn comments_are_left_out() {
+        assert_eq!(without_comments("<a/><!-- <xacro:b/> --><c/><!-- d"), "<a/><c/>");
+        assert_eq!(without_comments("<a/>"), "<a/>");
+    }
 
     #[test]
     fn the_root_element_is_behind_declarations_and_comments() {

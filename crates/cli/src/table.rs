@@ -4,6 +4,7 @@ use crate::compare::neutral;
 use ::record::Record;
 use harness::{Problem, Subject};
 use serde_json::Value;
+use std::collections::BTreeMap;
 
 /// Differences that are listed of one engine; the report has them all.
 const LISTED: usize = 12;
@@ -44,7 +45,7 @@ fn as_read(rows: &[&Record]) -> String {
     }
     text += "\n";
     // The gravest first: what changes the mass matrix or the torques most.
-    let mut ranked = felt;
+    let (mut ranked, carried): (Vec<_>, Vec<_>) = felt.into_iter().partition(|(_, params)| params["weight"] == "dynamics");
     let effect = |params: &Value| params["mass_matrix"].as_f64().unwrap_or(f64::MAX).max(params["id"].as_f64().unwrap_or(f64::MAX));
     ranked.sort_by(|(_, a), (_, b)| effect(b).total_cmp(&effect(a)));
     for (row, params) in ranked.iter().take(LISTED) {
@@ -53,6 +54,7 @@ fn as_read(rows: &[&Record]) -> String {
     if ranked.len() > LISTED {
         text += &format!("      … and {} more, in the report\n", ranked.len() - LISTED);
     }
+    text += &together(&carried);
     let told: Vec<&(&Record, Value)> = differences.iter().filter(|(_, params)| params["weight"] == "information").collect();
     for (_, params) in told.iter().filter(|(row, _)| row.quantity == "dof_order") {
         text += &format!("      other order of joints: {} where the file has {}\n", some(&params["theirs"]), some(&params["ours"]));
@@ -67,10 +69,7 @@ fn as_read(rows: &[&Record]) -> String {
 fn line(row: &Record, params: &Value) -> String {
     let body = if row.case.is_empty() { "the robot" } else { &row.case };
     let number = |key: &str| params[key].as_f64().map_or("–".to_owned(), |error| format!("{error:.1e}"));
-    let effect = match params["weight"].as_str() {
-        Some("dynamics") => format!("id {}, M {}", number("id"), number("mass_matrix")),
-        _ => "enters its simulation alone".to_owned(),
-    };
+    let effect = format!("id {}, M {}", number("id"), number("mass_matrix"));
     let cause = params["cause"].as_str().unwrap_or_default().replace('_', " ");
     let cause = if cause == "number" { String::new() } else { format!(" [{cause}]") };
     let mut text = format!("      {body}: {}{cause}: {} instead of {} ({effect})\n", row.quantity.replace('_', " "), some(&params["theirs"]), some(&params["ours"]));
@@ -78,6 +77,21 @@ fn line(row: &Record, params: &Value) -> String {
         text += &format!("        its parser: {note}\n");
     }
     text
+}
+
+/// What enters an engine's own simulation alone, one line for each field and cause.
+fn together(carried: &[&(&Record, Value)]) -> String {
+    let mut groups: BTreeMap<(&str, &str), Vec<String>> = BTreeMap::new();
+    for (row, params) in carried {
+        let change = format!("{} ({} instead of {})", row.case, some(&params["theirs"]), some(&params["ours"]));
+        groups.entry((&row.quantity, params["cause"].as_str().unwrap_or_default())).or_default().push(change);
+    }
+    let line = |((field, cause), bodies): (&(&str, &str), &Vec<String>)| {
+        let cause = if *cause == "unsupported" { "not read" } else { "read otherwise" };
+        let beyond = if bodies.len() > 3 { format!(", … ({} in all)", bodies.len()) } else { String::new() };
+        format!("      {field} {cause}: {}{beyond}; no part of id and M\n", bodies.iter().take(3).cloned().collect::<Vec<_>>().join(", "))
+    };
+    groups.iter().map(line).collect()
 }
 
 /// A text of the parameters, cut where a line ends.

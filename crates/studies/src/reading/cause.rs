@@ -4,7 +4,7 @@
 use super::fields::{ROUNDING, distance, from_rpy, inertia_scale, norm, rpy};
 use super::{Cause, Field};
 use harness::ReadingNote;
-use model::BodyDescription;
+use model::{BodyDescription, Description, Warning};
 use spatial::{Sym3, Vec3};
 
 /// Factors that a wrong unit leaves: lengths or masses by a thousand, areas by its square.
@@ -16,6 +16,7 @@ const TESTED: f64 = 4.0 * ROUNDING;
 pub(super) fn cause(field: Field, ours: &BodyDescription, theirs: &BodyDescription, notes: &[&ReadingNote]) -> (Cause, Option<String>) {
     let said = |code: &str| notes.iter().find(|note| note.cause == code);
     let sentence = |codes: &[&str]| codes.iter().find_map(|code| said(code)).map(|note| note.text.clone());
+    let warned = notes.iter().find(|note| note.cause == "warning" && note.text.contains("inertia")).map(|note| note.text.clone());
     let unread = |list: &[f64]| list.iter().all(|&x| x == 0.0);
     match field {
         Field::Mass => match mass(ours.mass, theirs.mass, &said) {
@@ -30,6 +31,9 @@ pub(super) fn cause(field: Field, ours: &BodyDescription, theirs: &BodyDescripti
             Cause::Number if said("from_geometry").is_some() => (Cause::Geometry, sentence(&["from_geometry"])),
             Cause::Number if said("bounds").is_some() && trace(theirs) > trace(ours) => (Cause::Bounds, sentence(&["bounds"])),
             Cause::Number if said("inertia_edited").is_some() => (Cause::Edited, sentence(&["inertia_edited"])),
+            Cause::Number if !physical(ours) && physical(theirs) => (Cause::Unphysical, None),
+            // A link that is fixed to this one may be what it is about: its own inertia is not seen in the sum.
+            Cause::Number if warned.is_some() => (Cause::Edited, warned),
             cause => (cause, sentence(&["balanceinertia", "inertia_edited"])),
         },
         Field::Axis => match (ours.joint.kind.axis(), theirs.joint.kind.axis()) {
@@ -38,11 +42,10 @@ pub(super) fn cause(field: Field, ours: &BodyDescription, theirs: &BodyDescripti
         },
         Field::Placement => (placement(ours, theirs), None),
         Field::JointType if said("mimic").is_some() => (Cause::Mimic, sentence(&["mimic"])),
-        Field::Armature if unread(&theirs.joint.armature) => (Cause::Unsupported, sentence(&["not_compared", "warning"])),
-        Field::Damping if unread(&theirs.joint.damping) => (Cause::Unsupported, sentence(&["not_compared", "warning"])),
-        Field::Friction if unread(&theirs.joint.friction) => (Cause::Unsupported, sentence(&["not_compared", "warning"])),
+        Field::Armature if unread(&theirs.joint.armature) => (Cause::Unsupported, None),
+        Field::Damping if unread(&theirs.joint.damping) => (Cause::Unsupported, None),
+        Field::Friction if unread(&theirs.joint.friction) => (Cause::Unsupported, None),
         Field::Armature if scaled(&ours.joint.armature, &theirs.joint.armature) => (Cause::Unit, None),
-        Field::JointType => (Cause::Number, sentence(&["mimic", "warning"])),
         _ => (Cause::Number, None),
     }
 }
@@ -103,6 +106,12 @@ fn scaled(ours: &[f64], theirs: &[f64]) -> bool {
     let size = |list: &[f64]| list.iter().fold(0.0_f64, |largest, x| largest.max(x.abs()));
     let by = |unit: f64| ours.iter().zip(theirs).all(|(x, y)| (x * unit - y).abs() <= TESTED * size(theirs));
     size(ours) > 0.0 && size(theirs) > 0.0 && ours.len() == theirs.len() && UNITS.into_iter().any(by)
+}
+
+/// Whether some distribution of mass has this inertia: no moment is larger than the sum of the two others, about any axes.
+fn physical(body: &BodyDescription) -> bool {
+    let alone = Description { bodies: vec![body.clone()], ..Description::default() };
+    !alone.warnings().iter().any(|warning| matches!(warning, Warning::Unphysical { .. }))
 }
 
 fn trace(body: &BodyDescription) -> f64 {

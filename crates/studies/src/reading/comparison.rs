@@ -38,7 +38,7 @@ impl Comparison {
         let names: HashMap<&str, &str> =
             partner.iter().enumerate().filter_map(|(i, j)| Some((ours.bodies[i].name.as_str(), theirs.bodies[(*j)?].name.as_str()))).collect();
         let Some(reduced) = without(&theirs, &extra, Mass::Kept) else {
-            findings.splice(0..0, gone.iter().map(|&i| missing(&ours.bodies[i], Mass::Kept)));
+            findings.splice(0..0, gone.iter().map(|&i| missing(&ours.bodies[i], Mass::Kept, notes)));
             return Self { findings, ours };
         };
         // A body that is gone was merged into its parent, or dropped with its mass: the numbers of the others tell.
@@ -53,7 +53,7 @@ impl Comparison {
             }
         }
         let (mass, left, found) = best.map_or((Mass::Kept, ours.clone(), Vec::new()), |(_, mass, left, found)| (mass, left, found));
-        findings.splice(0..0, gone.iter().map(|&i| missing(&ours.bodies[i], mass)));
+        findings.splice(0..0, gone.iter().map(|&i| missing(&ours.bodies[i], mass, notes)));
         findings.extend(found);
         Self { findings, ours: left }
     }
@@ -84,12 +84,21 @@ fn without(description: &Description, gone: &[usize], mass: Mass) -> Option<Desc
     reduced.canonical().ok()
 }
 
-fn missing(body: &BodyDescription, mass: Mass) -> Finding {
+fn missing(body: &BodyDescription, mass: Mass, notes: &[ReadingNote]) -> Finding {
     let (cause, theirs) = match mass {
         Mass::Kept => (Cause::Merged, "fixed to its parent"),
         Mass::Dropped => (Cause::Dropped, "none, and its mass is gone"),
     };
-    whole(&body.name, Field::Body, format!("{} joint '{}'", body.joint.kind.name(), body.joint.name), theirs.into(), cause)
+    let ours = format!("{} joint '{}'", body.joint.kind.name(), body.joint.name);
+    let mut finding = whole(&body.name, Field::Body, ours, theirs.into(), cause);
+    let root = body.parent.is_none();
+    let about = |note: &&ReadingNote| match note.cause.as_str() {
+        "root_welded" => root,
+        "mimic" | "fused" => note.subject.as_deref().is_some_and(|name| name == body.name || name == body.joint.name),
+        _ => false,
+    };
+    finding.difference.note = notes.iter().find(about).map(|note| note.text.clone());
+    finding
 }
 
 fn added(body: &BodyDescription) -> Finding {
@@ -146,12 +155,20 @@ fn finding(ours: &Description, i: usize, aligned: &BodyDescription, field: Field
     Finding { difference, alone }
 }
 
-/// What the parser says about a body: about its link, its joint, the links that are fixed to it, or the whole file.
+/// What the parser says about a body: about its link, its joint or the links that are fixed to it, or about the whole file.
 fn about<'a>(ours: &Description, i: usize, theirs: &BodyDescription, notes: &'a [ReadingNote]) -> Vec<&'a ReadingNote> {
     let body = &ours.bodies[i];
     let fixed = |name: &str| ours.frames.iter().any(|frame| frame.body == Some(i) && frame.name == name);
     let named = |name: &str| [&body.name, &body.joint.name, &theirs.name, &theirs.joint.name].into_iter().any(|own| own == name) || fixed(name);
-    notes.iter().filter(|note| note.subject.as_deref().is_none_or(named)).collect()
+    let own = |name: &str| !name.is_empty() && named(name);
+    // A sentence about many links names them.
+    let among = |text: &str| text.split(|c: char| c.is_whitespace() || c == ',').any(own);
+    let concerns = |note: &&ReadingNote| match (&note.subject, note.cause.as_str()) {
+        (Some(subject), _) => named(subject),
+        (None, "from_geometry") => among(&note.text),
+        (None, _) => true,
+    };
+    notes.iter().filter(concerns).collect()
 }
 
 fn gravity(ours: &Description, theirs: &Description) -> Option<Finding> {

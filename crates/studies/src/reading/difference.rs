@@ -96,6 +96,8 @@ pub enum Cause {
     Bounds,
     /// Principal moments that violate the triangle inequality were made equal.
     Balanced,
+    /// An inertia that no body can have was replaced.
+    Unphysical,
     /// Computed from the shape of the body.
     Geometry,
     /// Replaced by the parser, in its own words.
@@ -167,6 +169,7 @@ impl Cause {
             Self::ZeroMass => "zero_mass",
             Self::Bounds => "bounds",
             Self::Balanced => "balanced",
+            Self::Unphysical => "unphysical",
             Self::Geometry => "geometry",
             Self::Edited => "edited",
             Self::Mimic => "mimic",

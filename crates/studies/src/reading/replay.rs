@@ -2,8 +2,8 @@
 
 use super::comparison::shared_coordinates;
 use dynamics::{Crba, Rnea, TreeSparse};
-use harness::measure::{Magnitudes, scaled_error, worst};
-use harness::{Problem, Quantity};
+use harness::Problem;
+use harness::measure::{Magnitudes, ratio, worst};
 use model::{Description, JointKind, Malformed, Model, StateBatch};
 use record::ModelOrigin;
 
@@ -71,6 +71,40 @@ fn neutral(model: &Model<f64>) -> Vec<f64> {
     model.topology.joints().iter().flat_map(|joint| of_joint(joint.kind)).collect()
 }
 
+/// What errors are measured against at a state: the measures of the agreement study, with a least size.
+///
+/// An engine holds a file's robot in frames of its own. What is exactly zero in ours (a torque about an axis through the centre of mass, the
+/// inertia of a body without any) is a difference of larger numbers in theirs, and is measured as such: torques and inertias of a dof count
+/// at least as a thousandth of the robot's largest, torques in the kinetic-energy norm, inertias by what the dof carries.
+struct Sizes {
+    torque: Vec<f64>,
+    inertia: Vec<f64>,
+}
+
+/// The least size, as a part of the largest: three decades, of the nine between rounding and what a parser changes.
+const LEAST: f64 = 1e-3;
+
+impl Sizes {
+    fn new(at: &Magnitudes, mass: &[f64]) -> Self {
+        let nv = at.joint_force.len();
+        let largest = |list: &mut dyn Iterator<Item = f64>| list.filter(|x| x.is_finite()).fold(0.0, f64::max);
+        let diagonal: Vec<f64> = (0..nv).map(|i| mass[i * nv + i].abs().sqrt()).collect();
+        let heaviest = largest(&mut diagonal.iter().copied());
+        let inertia: Vec<f64> = diagonal.iter().map(|&root| if root > 0.0 { root } else { LEAST * heaviest }).collect();
+        let strongest = largest(&mut at.joint_force.iter().zip(&inertia).map(|(force, root)| force / root));
+        let torque = at.joint_force.iter().zip(&inertia).map(|(&force, root)| force.max(LEAST * strongest * root)).collect();
+        Self { torque, inertia }
+    }
+
+    fn torque(&self, i: usize, difference: f64) -> f64 {
+        ratio(difference, self.torque[i])
+    }
+
+    fn entry(&self, i: usize, j: usize, difference: f64) -> f64 {
+        ratio(difference, self.inertia[i] * self.inertia[j])
+    }
+}
+
 /// A robot with its answers, against which other readings of it are measured.
 pub(super) struct Reference {
     problem: Problem,
@@ -103,8 +137,13 @@ impl Reference {
                     mass_here[i * own + m] = their_mass[j * nv + n];
                 }
             }
-            worst_of.id = worst(worst_of.id, scaled_error(&self.problem, Quantity::InverseDynamics, at, id, &id_here));
-            worst_of.mass_matrix = worst(worst_of.mass_matrix, scaled_error(&self.problem, Quantity::MassMatrix, at, mass, &mass_here));
+            let sizes = Sizes::new(at, mass);
+            for i in 0..own {
+                worst_of.id = worst(worst_of.id, sizes.torque(i, id_here[i] - id[i]));
+                for j in 0..own {
+                    worst_of.mass_matrix = worst(worst_of.mass_matrix, sizes.entry(i, j, mass_here[i * own + j] - mass[i * own + j]));
+                }
+            }
         }
         worst_of
     }
@@ -141,14 +180,13 @@ pub(super) fn replay(problem: &Problem, engine: &Answers) -> Option<Replay> {
     }
     let (mut torque, mut entry) = (vec![0.0; nv], vec![0.0; nv * nv]);
     for (k, at) in problem.magnitudes().iter().enumerate() {
+        let here = k * nv * nv..(k + 1) * nv * nv;
+        let (mass, their_mass) = (&ours.mass_matrix[here.clone()], &engine.mass_matrix[here]);
+        let sizes = Sizes::new(at, mass);
         for i in 0..nv {
-            let error = harness::measure::ratio(engine.id[k * nv + i] - ours.id[k * nv + i], at.joint_force[i]);
-            torque[i] = worst(torque[i], error);
+            torque[i] = worst(torque[i], sizes.torque(i, engine.id[k * nv + i] - ours.id[k * nv + i]));
             for j in 0..nv {
-                let of = |m: &[f64], i: usize, j: usize| m[k * nv * nv + i * nv + j];
-                let size = (of(&ours.mass_matrix, i, i) * of(&ours.mass_matrix, j, j)).sqrt();
-                let error = harness::measure::ratio(of(&engine.mass_matrix, i, j) - of(&ours.mass_matrix, i, j), size);
-                entry[i * nv + j] = worst(entry[i * nv + j], error);
+                entry[i * nv + j] = worst(entry[i * nv + j], sizes.entry(i, j, their_mass[i * nv + j] - mass[i * nv + j]));
             }
         }
     }
