@@ -42,7 +42,7 @@ def read(path: Path, form: str, base: str, make: Callable[[Description, Multibod
     """Reads a file; `make` makes a robot of the description, the plant and its moving joints in the description's order."""
     notes: list[Header] = []
     plant = MultibodyPlant(0.0)
-    with overheard(notes):
+    with overheard(path, notes):
         Parser(plant).AddModels(str(path))
         if form == "urdf":
             _stand(plant, path, base, notes)

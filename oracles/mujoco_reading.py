@@ -17,7 +17,7 @@ from typing import Any
 import numpy as np
 
 from protocol import Array, Description, Header, Reading
-from reading import HeldJoint, Link, Place, describe, note, turned
+from reading import HeldJoint, Link, Place, describe, note, overheard, turned
 
 _here = sys.path.pop(0)  # this directory, where another file would be taken for the package imported next
 import mujoco as mj  # noqa: E402
@@ -38,8 +38,9 @@ def read(path: Path, form: str, base: str, make: Callable[[Description, mj.MjMod
     """Reads a file; `make` makes a robot of MuJoCo's model and its description."""
     notes: list[Header] = []
     floating = form == "urdf" and base == "free"
-    spec, model, settings = _compiled(path, floating, notes)
-    whole_spec, whole = _unfused(path, floating, settings)
+    with overheard(path, notes):
+        spec, model, settings = _compiled(path, floating, notes)
+        whole_spec, whole = _unfused(path, floating, settings)
     _note_edits(whole_spec, whole, notes)
     _note_not_compared(model, notes)
     names = [_named(model.body(i).name, "body", i) for i in range(model.nbody)]

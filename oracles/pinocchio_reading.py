@@ -30,7 +30,7 @@ WHOLE |= {"SphericalZYX": "euler_zyx", "Translation": "translation"}
 def read(path: Path, form: str, base: str, make: Callable[[Description, pin.Model, list[int]], Any]) -> Reading:
     """Reads a file; `make` makes a robot of the description, Pinocchio's model, and the indices of angles that are (cos, sin) there."""
     notes: list[Header] = []
-    with overheard(notes):
+    with overheard(path, notes):
         if form == "mjcf":
             model = pin.buildModelFromMJCF(str(path))
         elif base == "free":

@@ -197,8 +197,11 @@ def mentioned(path: Path) -> list[Header]:
 
 
 @contextmanager
-def overheard(notes: list[Header]) -> Iterator[None]:
-    """Adds what an engine prints meanwhile to the notes, a line each as `warning`; the standard error has it as well."""
+def overheard(path: Path, notes: list[Header]) -> Iterator[None]:
+    """Adds what an engine prints meanwhile to the notes, a line each as `warning`; the standard error has it as well.
+
+    Of the file's path only the name is told.
+    """
     kept = [(number, os.dup(number)) for number in (1, 2)]
     with tempfile.TemporaryFile() as words:
         try:
@@ -213,5 +216,5 @@ def overheard(notes: list[Header]) -> Iterator[None]:
             words.seek(0)
             text = words.read().decode(errors="replace")
             sys.stderr.write(text)
-            lines = dict.fromkeys(line.strip() for line in text.splitlines() if line.strip())
+            lines = dict.fromkeys(line.strip() for line in text.replace(str(path), path.name).splitlines() if line.strip())
             notes.extend(note("warning", None, line) for line in lines)
