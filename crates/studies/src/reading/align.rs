@@ -5,7 +5,7 @@
 //! it most like ours: the frame that it has; or the one that stands, in the zero configuration, where ours stands; or the one that puts one
 //! of its children where ours has it. A frame of its own is taken only where it leaves fewer differences.
 
-use super::fields::{ROUNDING, differs};
+use super::fields::{ROUNDING, differs, rounding};
 use super::{Field, fields};
 use model::{BodyDescription, Description, JointType, Placement};
 use spatial::{Sym3, Transform, Vec3};
@@ -80,7 +80,8 @@ impl Aligner<'_> {
 
     fn count(&self, i: usize, j: usize, above: &Transform<f64>, gauge: &Transform<f64>) -> usize {
         let (ours, theirs) = (&self.ours.bodies[i], written(&self.theirs.bodies[j], above, gauge));
-        GEOMETRIC.into_iter().filter(|&field| differs(fields::size(field, ours, &theirs, self.reach))).count()
+        let rounding = rounding(self.ours, i);
+        GEOMETRIC.into_iter().filter(|&field| differs(fields::size(field, ours, &theirs, self.reach), rounding)).count()
     }
 
     fn children(&self, i: usize, j: usize) -> impl Iterator<Item = (usize, usize)> {

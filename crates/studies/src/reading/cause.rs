@@ -51,10 +51,10 @@ pub(super) fn cause(field: Field, ours: &BodyDescription, theirs: &BodyDescripti
 }
 
 fn mass<'a>(ours: f64, theirs: f64, said: &impl Fn(&str) -> Option<&'a &'a ReadingNote>) -> Cause {
-    if said("from_geometry").is_some() && theirs > 0.0 {
-        Cause::Geometry
-    } else if said("bounds").is_some() && theirs > ours {
+    if said("bounds").is_some_and(|note| raised(theirs - ours, &note.text)) {
         Cause::Bounds
+    } else if said("from_geometry").is_some() && theirs > 0.0 {
+        Cause::Geometry
     } else if ours == 0.0 {
         Cause::ZeroMass
     } else if scaled(&[ours], &[theirs]) {
@@ -62,6 +62,17 @@ fn mass<'a>(ours: f64, theirs: f64, said: &impl Fn(&str) -> Option<&'a &'a Readi
     } else {
         Cause::Number
     }
+}
+
+/// Whether a mass was raised to the least one that the sentence names, or the masses of a few links of one body.
+fn raised(by: f64, sentence: &str) -> bool {
+    let numbers = sentence.split(|c: char| c.is_whitespace() || c == ',').filter_map(|word| word.parse::<f64>().ok());
+    let times = |least: f64| by / least;
+    numbers.filter(|&least| least > 0.0).any(|least| times(least) > 0.0 && times(least) < 1.0 + 1e-3 || {
+        // Rounding of the sum, of which the bound is a small part.
+        let off = (times(least) - times(least).round()).abs();
+        times(least) >= 1.0 && times(least) < 100.0 && off < 1e-3
+    })
 }
 
 fn inertia(ours: &BodyDescription, theirs: &BodyDescription) -> Cause {
@@ -79,7 +90,22 @@ fn inertia(ours: &BodyDescription, theirs: &BodyDescription) -> Cause {
     if theirs.inertia.iter().zip(balanced).all(|(x, y)| (x - y).abs() <= TESTED * scale) {
         return Cause::Balanced;
     }
-    if scaled(&ours.inertia, &theirs.inertia) { Cause::Unit } else { Cause::Number }
+    if scaled(&ours.inertia, &theirs.inertia) {
+        Cause::Unit
+    } else if less_a_body(ours, theirs, scale) {
+        Cause::MasslessLink
+    } else {
+        Cause::Number
+    }
+}
+
+/// Whether theirs is ours less an inertia that a body could have, with the same mass and centre of mass.
+fn less_a_body(ours: &BodyDescription, theirs: &BodyDescription, scale: f64) -> bool {
+    let missing: [f64; 6] = std::array::from_fn(|k| ours.inertia[k] - theirs.inertia[k]);
+    let body = BodyDescription { inertia: missing, ..ours.clone() };
+    let same = |a: f64, b: f64, size: f64| (a - b).abs() <= TESTED * size;
+    let same_com = distance(ours.com, theirs.com) <= TESTED * norm(ours.com);
+    same(ours.mass, theirs.mass, ours.mass) && same_com && trace(&body) > TESTED * scale && physical(&body)
 }
 
 fn placement(ours: &BodyDescription, theirs: &BodyDescription) -> Cause {

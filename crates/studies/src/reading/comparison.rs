@@ -130,11 +130,12 @@ fn shared(ours: &Description, theirs: &Description, names: &HashMap<&str, &str>,
         }
         for field in OF_A_BODY {
             let size = fields::size(field, body, aligned, reach);
-            if differs(size) {
+            if differs(size, fields::rounding(ours, i)) {
                 findings.push(finding(ours, i, aligned, field, size, &about));
             }
         }
     }
+    super::context::explain(ours, &written, &mut findings, reach);
     findings.extend(gravity(ours, theirs));
     findings.extend(order(ours, &partner));
     findings
@@ -175,7 +176,7 @@ fn gravity(ours: &Description, theirs: &Description) -> Option<Finding> {
     let far = fields::norm(ours.gravity).max(fields::norm(theirs.gravity));
     let size = harness::measure::ratio(fields::distance(ours.gravity, theirs.gravity), far);
     let text = |g: [f64; 3]| format!("({}) m/s²", g.map(|x| digits(x, size)).join(", "));
-    differs(size).then(|| {
+    differs(size, fields::ROUNDING).then(|| {
         let mut finding = whole("", Field::Gravity, text(ours.gravity), text(theirs.gravity), Cause::Number);
         finding.difference.size = size;
         finding.alone = Some(Description { gravity: theirs.gravity, ..ours.clone() });

@@ -98,6 +98,12 @@ pub enum Cause {
     Balanced,
     /// An inertia that no body can have was replaced.
     Unphysical,
+    /// The inertia of a fixed link without mass was left out.
+    MasslessLink,
+    /// Every mass has the same factor: the mass of the whole robot was set, or not.
+    TotalMass,
+    /// A link with several joints stands between them instead of before them.
+    BetweenJoints,
     /// Computed from the shape of the body.
     Geometry,
     /// Replaced by the parser, in its own words.
@@ -170,6 +176,9 @@ impl Cause {
             Self::Bounds => "bounds",
             Self::Balanced => "balanced",
             Self::Unphysical => "unphysical",
+            Self::MasslessLink => "massless_link",
+            Self::TotalMass => "total_mass",
+            Self::BetweenJoints => "between_joints",
             Self::Geometry => "geometry",
             Self::Edited => "edited",
             Self::Mimic => "mimic",

@@ -4,9 +4,8 @@ use super::Field;
 use model::{BodyDescription, Description, JointType};
 use spatial::{Mat3, Vec3};
 
-/// What rounding may leave between two honest readings of one file: 16 ε. Parsers turn Euler angles into quaternions and those into
-/// matrices, add up the masses of links that are fixed to each other in their own order, and diagonalise inertias; each rounds some ten
-/// times. What a parser changes is larger by many decades.
+/// What rounding may leave between two honest readings of one link: 16 ε. Parsers turn Euler angles into quaternions and those into
+/// matrices, and diagonalise inertias; each rounds some ten times. What a parser changes is larger by many decades.
 pub(super) const ROUNDING: f64 = 16.0 * f64::EPSILON;
 
 /// The fields of a body, in the order of reports.
@@ -24,9 +23,15 @@ pub(super) const OF_A_BODY: [Field; 11] = [
     Field::Limits,
 ];
 
+/// What rounding may leave of a body: each link that is fixed to it is turned, shifted, added and diagonalised once more.
+pub(super) fn rounding(description: &Description, body: usize) -> f64 {
+    let fixed = description.frames.iter().filter(|frame| frame.body == Some(body)).count();
+    (1 + fixed) as f64 * ROUNDING
+}
+
 /// Whether a size is more than rounding. What is not a number differs.
-pub(super) fn differs(size: f64) -> bool {
-    size.is_nan() || size > ROUNDING
+pub(super) fn differs(size: f64, rounding: f64) -> bool {
+    size.is_nan() || size > rounding
 }
 
 /// The robot's length scale: the longest path from the world along placements and to a centre of mass, m.

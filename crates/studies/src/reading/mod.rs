@@ -9,6 +9,7 @@
 mod align;
 mod cause;
 mod comparison;
+mod context;
 mod difference;
 mod fields;
 mod pairs;
