@@ -24,6 +24,7 @@ mod page;
 mod pairwise;
 mod plots;
 mod provenance;
+mod reading;
 mod tally;
 mod tradeoff;
 mod truth;
@@ -50,6 +51,7 @@ const SCRIPT: &str = concat!(
     include_str!("../assets/figures.js"),
     include_str!("../assets/digits.js"),
     include_str!("../assets/tradeoff.js"),
+    include_str!("../assets/reading.js"),
 );
 
 /// Where a report was written.

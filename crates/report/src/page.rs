@@ -6,13 +6,15 @@ use record::{CSV_NAME, RUN_NAME, Record, RunInfo, SCHEMA_NAME};
 use crate::figures::Figures;
 use crate::findings::Findings;
 use crate::overview::Overview;
+use crate::reading::Readings;
 use crate::truth::Truth;
-use crate::{conditioning, digits_section, heatmap, method, pairwise, plots, provenance, tradeoff, truth, unpassed, verdict};
+use crate::{conditioning, digits_section, heatmap, method, pairwise, plots, provenance, reading, tradeoff, truth, unpassed, verdict};
 
 /// The sections: anchor, entry in the navigation.
-const SECTIONS: [(&str, &str); 11] = [
+const SECTIONS: [(&str, &str); 12] = [
     ("verdict", "Verdict"),
     ("agreement", "Agreement"),
+    ("reading", "Readings"),
     ("digits", "Digits"),
     ("depth", "Error"),
     ("time", "Time"),
@@ -28,6 +30,7 @@ const SECTIONS: [(&str, &str); 11] = [
 pub fn render(run: &RunInfo, records: &[Record], overview: &Overview, figures: &Figures) -> String {
     let findings = Findings::of(run, overview, records);
     let truth = Truth::of(overview, &figures.digits, records);
+    let readings = Readings::of(overview, records);
     let page = html! {
         (DOCTYPE)
         html lang="en" {
@@ -45,10 +48,11 @@ pub fn render(run: &RunInfo, records: &[Record], overview: &Overview, figures: &
             }
             body {
                 a.to-content href="#verdict" { "Skip to the verdict" }
-                (header(run, figures))
+                (header(run, figures, &readings))
                 main {
                     (verdict::section(run, overview, records, &findings, truth::markup(overview, &figures.digits, &truth)))
                     (heatmap::section(overview, &findings))
+                    (reading::section(overview, &readings))
                     (digits_section::section(overview, &figures.digits))
                     (plots::depth(figures))
                     (plots::time(overview, figures))
@@ -86,8 +90,9 @@ pub fn opener(chunk: &str, filters: &[(&str, &str)], text: &str) -> Markup {
 }
 
 /// The sections that this run has: some appear with their rows alone.
-fn sections(figures: &Figures) -> impl Iterator<Item = (&'static str, &'static str)> {
+fn sections(figures: &Figures, readings: &Readings) -> impl Iterator<Item = (&'static str, &'static str)> {
     let absent = |anchor| match anchor {
+        "reading" => readings.is_empty(),
         "digits" => figures.digits.subjects.is_empty(),
         "tradeoff" => figures.tradeoffs.is_empty(),
         "conditioning" => figures.conditions.is_empty(),
@@ -96,7 +101,7 @@ fn sections(figures: &Figures) -> impl Iterator<Item = (&'static str, &'static s
     SECTIONS.into_iter().filter(move |&(anchor, _)| !absent(anchor))
 }
 
-fn header(run: &RunInfo, figures: &Figures) -> Markup {
+fn header(run: &RunInfo, figures: &Figures, readings: &Readings) -> Markup {
     html! {
         header {
             div.bar {
@@ -105,7 +110,7 @@ fn header(run: &RunInfo, figures: &Figures) -> Markup {
                     span { "featherbench" }
                 }
                 nav aria-label="Sections" {
-                    @for (anchor, name) in sections(figures) { a href={ "#" (anchor) } { (name) } }
+                    @for (anchor, name) in sections(figures, readings) { a href={ "#" (anchor) } { (name) } }
                 }
                 button #theme type="button" aria-label="Switch between light and dark" title="Light or dark" { "◐" }
             }
