@@ -15,7 +15,21 @@ from pathlib import Path
 import drake_reading
 import numpy as np
 
-from protocol import Array, Body, Change, Description, Joint, Question, Reading, Unsupported, mass_matrix_probe, readback_row, rotation, serve, skew
+from protocol import (
+    Array,
+    Body,
+    Change,
+    Description,
+    Joint,
+    Question,
+    Reading,
+    Unsupported,
+    mass_matrix_probe,
+    readback_row,
+    rotation,
+    serve,
+    skew,
+)
 
 sys.path.pop(0)  # this directory, where other files are called like the packages they import
 from pydrake.common.eigen_geometry import Quaternion  # noqa: E402

@@ -12,10 +12,11 @@ from dataclasses import replace
 from math import pi
 from pathlib import Path
 from typing import Any
+from xml.etree import ElementTree
 
 import numpy as np
 
-from protocol import Array, Description, Header, Reading, skew
+from protocol import Array, Description, Header, Reading, skew, symmetric
 from reading import HeldJoint, Link, Place, describe, elements, mentioned, note, overheard
 
 _here = sys.path.pop(0)  # this directory, where other files are called like the packages they import
@@ -35,7 +36,7 @@ TYPES = {
     "planar": "planar",
     "universal": "universal",
 }
-EDITED = 1e-9  # of a link's mass: what is told as edited
+EDITED = 1e-9  # of a link's mass or inertia: what is told as edited
 
 
 def read(path: Path, form: str, base: str, make: Callable[[Description, MultibodyPlant, list[tree.Joint]], Any]) -> Reading:
@@ -53,12 +54,11 @@ def read(path: Path, form: str, base: str, make: Callable[[Description, Multibod
     joints = _ordered(plant)
     names = [plant.GetModelInstanceName(tree.ModelInstanceIndex(i)) for i in range(2, plant.num_model_instances())]
     links = _links(plant, joints, damping)
-    if form == "mjcf":
-        links = _chained(links, path)
-    description = describe(next(iter(names), path.stem), plant.gravity_field().gravity_vector(), links)
-    own = {link.name for link in links if "/" in link.name}
+    named = _chained(links, path) if form == "mjcf" else links
+    description = describe(next(iter(names), path.stem), plant.gravity_field().gravity_vector(), named)
+    own = {after.name for before, after in zip(links, named, strict=True) if before.name != after.name}  # no links of the file
     description["frames"] = [frame for frame in description["frames"] if frame["name"] not in own]
-    _note_masses(plant, path, notes)
+    _note_edits(plant, path, notes)
     if plant.num_constraints():
         notes.append(note("not_compared", None, f"constraints: {plant.num_constraints()}"))
     notes.extend(mentioned(path))
@@ -155,20 +155,54 @@ def _held(joint: tree.Joint, inner: Place, damping: Array, actuator: tree.JointA
 def _chained(links: list[Link], path: Path) -> list[Link]:
     """The links with the description's names for bodies that are not the file's: `<link>/<joint>` for the link below."""
     known = {body.get("name") for body in elements(path, "body")}
-    renamed = list(links)
-    for k in reversed(range(len(links) - 1)):
-        link, below = links[k], renamed[k + 1]
-        if link.name not in known and not link.mass and below.parent == k and link.joints:
-            renamed[k] = replace(link, name=f"{below.name.split('/')[0]}/{link.joints[0].name}")
+    renamed, below = list(links), ""
+    for k in reversed(range(len(links))):
+        link = links[k]
+        own = k + 1 < len(links) and link.name not in known and not link.mass and links[k + 1].parent == k
+        if own and link.joints:
+            renamed[k] = replace(link, name=f"{below}/{link.joints[0].name}")
+        else:
+            below = link.name
     return renamed
 
 
-def _note_masses(plant: MultibodyPlant, path: Path, notes: list[Header]) -> None:
-    """Notes on links of a URDF whose mass is not the file's."""
+def _note_edits(plant: MultibodyPlant, path: Path, notes: list[Header]) -> None:
+    """Notes on links of a URDF whose mass or principal moments are not the file's."""
+    context = plant.CreateDefaultContext()
     for link in elements(path, "link"):
-        name, mass = link.get("name"), link.find("inertial/mass")
+        name = link.get("name")
         if name is None or name == "world" or not plant.HasBodyNamed(name):
             continue
-        given, held = float((mass.get("value") if mass is not None else None) or 0), plant.GetBodyByName(name).default_mass()
-        if abs(given - held) > EDITED * abs(given):
-            notes.append(note("mass_edited", name, f"{given} kg in the file became {held} kg"))
+        held = plant.GetBodyByName(name).CalcSpatialInertiaInBodyFrame(context)
+        mass, com = held.get_mass(), held.get_com()
+        inertia = held.CalcRotationalInertia().CopyToFullMatrix3() + mass * skew(com) @ skew(com)
+        words = _given(link, "mass", ["value"])
+        if not _near(words, [mass]):
+            notes.append(note("mass_edited", name, f"{' '.join(words)} kg in the file became {mass} kg"))
+        words = _given(link, "inertia", ["ixx", "ixy", "ixz", "iyy", "iyz", "izz"])
+        try:
+            given = np.linalg.eigvalsh(symmetric(np.array(words, dtype=float))).tolist()
+        except ValueError:
+            given = []
+        moments = np.linalg.eigvalsh(inertia).tolist()
+        if not _near(given, moments):
+            notes.append(note("inertia_edited", name, f"moments {_few(given)} in the file became {_few(moments)} kg m²"))
+
+
+def _given(link: ElementTree.Element, tag: str, keys: list[str]) -> list[str]:
+    """The words of a link's inertial; what is absent is 0."""
+    element = link.find(f"inertial/{tag}")
+    return [(element.get(key) if element is not None else None) or "0" for key in keys]
+
+
+def _near(given: list[Any], held: list[float]) -> bool:
+    """Whether the engine holds the numbers of the file."""
+    try:
+        x, y = np.array(given, dtype=float), np.array(held)
+        return x.shape == y.shape and bool(np.abs(x - y).max() <= EDITED * np.abs(x).max())
+    except ValueError:
+        return False
+
+
+def _few(numbers: list[float]) -> str:
+    return "(" + ", ".join(f"{x:.6g}" for x in numbers) + ")"

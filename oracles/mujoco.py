@@ -90,12 +90,18 @@ def empty_spec(robot: Description) -> mj.MjSpec:
 
 
 def principal(inertia: Array) -> tuple[Array, Array]:
-    """Principal moments and axes (a rotation); a diagonal inertia keeps the body's own axes."""
+    """Principal moments and axes (a rotation); a diagonal inertia keeps the body's own axes.
+
+    Axes close to the body's are given in another order: MuJoCo computes as if inertial axes within 1e-6 of the body's were the body's.
+    """
     moments = np.diag(inertia)
     if (np.diag(moments) == inertia).all():
         return moments, np.eye(3)
     moments, axes = np.linalg.eigh(inertia)
-    return moments, axes * np.sign(np.linalg.det(axes))
+    axes = axes * np.sign(np.linalg.det(axes))
+    if np.abs(axes - np.eye(3)).max() < 1e-5:
+        return np.roll(moments, 1), np.roll(axes, 1, axis=1)
+    return moments, axes
 
 
 def add_body(parent: mj.MjsBody, body: Body, index: int) -> mj.MjsBody:

@@ -17,7 +17,7 @@ from typing import Any
 import numpy as np
 
 from protocol import Array, Description, Header, Reading
-from reading import HeldJoint, Link, Place, describe, note, overheard, turned
+from reading import HeldJoint, Link, Place, describe, listed, note, overheard, turned
 
 _here = sys.path.pop(0)  # this directory, where another file would be taken for the package imported next
 import mujoco as mj  # noqa: E402
@@ -59,9 +59,10 @@ def read(path: Path, form: str, base: str, make: Callable[[Description, mj.MjMod
 def neutral_q(model: mj.MjModel, qpos: Array) -> Array:
     """Neutral coordinates: MuJoCo's, but quaternions end with w."""
     q = np.array(qpos)
-    for kind, start in zip(model.jnt_type, model.jnt_qposadr, strict=True):
-        if kind in (mj.mjtJoint.mjJNT_BALL, mj.mjtJoint.mjJNT_FREE):
-            last = slice(start, start + 4) if kind == mj.mjtJoint.mjJNT_BALL else slice(start + 3, start + 7)
+    for number, start in zip(model.jnt_type, model.jnt_qposadr, strict=True):
+        kind = TYPES[mj.mjtJoint(number)]
+        if kind in ("spherical", "free"):
+            last = slice(start, start + 4) if kind == "spherical" else slice(start + 3, start + 7)
             q[last] = np.roll(qpos[last], -1)
     return q
 
@@ -143,6 +144,9 @@ def _unfused(path: Path, floating: bool, settings: list[Setting]) -> tuple[mj.Mj
     """The same with every link a body of its own: it tells where fused links are, and what was edited link by link."""
     spec = _loaded(path, floating, settings)
     spec.compiler.fusestatic = False
+    for joint in spec.joints:  # a free joint below a link may stand only if that is fused into the world
+        if joint.type == mj.mjtJoint.mjJNT_FREE and joint.parent.parent.name != spec.worldbody.name:
+            spec.delete(joint)
     return spec, spec.compile()
 
 
@@ -159,9 +163,16 @@ def _place(model: mj.MjModel, i: int) -> Place:
     return Place(turned(*model.body_quat[i]), model.body_pos[i].copy())
 
 
+def _inertial_frame(model: mj.MjModel, i: int) -> Place:
+    """Body i's centre of mass and principal axes, as MuJoCo computes with them: within 1e-6 of the body's frame they are the body's."""
+    same, kinds = model.body_sameframe[i], mj.mjtSameFrame
+    axes = np.eye(3) if same in (kinds.mjSAMEFRAME_BODY, kinds.mjSAMEFRAME_BODYROT) else turned(*model.body_iquat[i])
+    return Place(axes, np.zeros(3) if same == kinds.mjSAMEFRAME_BODY else model.body_ipos[i].copy())
+
+
 def _inertia(model: mj.MjModel, i: int) -> Array:
     """Body i's inertia about its centre of mass in its axes: R diag(principal moments) R'."""
-    axes = turned(*model.body_iquat[i])
+    axes = _inertial_frame(model, i).rotation
     return (axes * model.body_inertia[i]) @ axes.T
 
 
@@ -185,7 +196,7 @@ def _link(spec: mj.MjSpec, model: mj.MjModel, names: list[str], i: int) -> Link:
     joints = [_joint(model, j) for j in range(model.body_jntadr[i], model.body_jntadr[i] + model.body_jntnum[i])]
     place = Place() if joints and joints[0].type == "free" else _place(model, i)  # a free joint's coordinates are those of the world
     parent = int(model.body_parentid[i]) - 1
-    return Link(names[i], float(model.body_mass[i]), model.body_ipos[i].copy(), inertia, parent, place, joints)
+    return Link(names[i], float(model.body_mass[i]), _inertial_frame(model, i).translation, inertia, parent, place, joints)
 
 
 def _joint(model: mj.MjModel, j: int) -> HeldJoint:
@@ -226,7 +237,7 @@ def _add_fused_frames(description: Header, names: list[str], whole: mj.MjModel, 
         description["frames"].append({"name": name, "body": body, "placement": homes[i][1].json()})
         fused.append(name)
     if fused:
-        notes.append(note("fused", None, f"{len(fused)} links of fixed joints were fused into their parents: {', '.join(fused)}"))
+        notes.append(note("fused", None, f"{len(fused)} links of fixed joints were fused into their parents: {listed(fused)}"))
 
 
 def _without_extras(model: mj.MjModel) -> None:
@@ -249,16 +260,21 @@ def _note_edits(spec: mj.MjSpec, model: mj.MjModel, notes: list[Header]) -> None
     for body in spec.bodies[1:]:
         i, name = body.id, _named(body.name, "body", body.id)
         if not body.explicitinertial:
-            if model.body_mass[i]:
+            if model.body_mass[i] and body.geoms:
                 computed.append(name)
+            elif model.body_mass[i]:
+                notes.append(note("mass_edited", name, f"no inertial in the file became {model.body_mass[i]} kg"))
             continue
         if abs(model.body_mass[i] - body.mass) > EDITED * body.mass:
             notes.append(note("mass_edited", name, f"{body.mass} kg in the file became {model.body_mass[i]} kg"))
         given, inertia = _given_inertia(body), _inertia(model, i)
         if given is not None and np.abs(given - inertia).max() > EDITED * np.abs(given).max():
             notes.append(note("inertia_edited", name, f"{_six(given)} in the file became {_six(inertia)} kg m²"))
+        if (_inertial_frame(model, i).translation != model.body_ipos[i]).any():
+            moved = f"MuJoCo computes as if the centre of mass, {tuple(model.body_ipos[i].tolist())}, were the origin, as it is within 1e-6"
+            notes.append(note("com_edited", name, moved))
     if computed:
-        notes.append(note("from_geometry", None, f"{len(computed)} links have no inertial: computed from geometry: {', '.join(computed)}"))
+        notes.append(note("from_geometry", None, f"{len(computed)} links have no inertial: computed from geometry: {listed(computed)}"))
 
 
 def _six(inertia: Array) -> str:

@@ -21,6 +21,7 @@ import pinocchio as pin  # noqa: E402
 
 sys.path.insert(0, _here)
 
+LARGEST = 400  # degrees of freedom; Pinocchio's Data takes 15 kB times their square, and ends the process where that is not there
 UNBOUNDED = 1e300  # a limit of the largest double is none
 KINDS = {"R": "revolute", "P": "prismatic", "H": "helical"}
 WHOLE = {"Spherical": "spherical", "FreeFlyer": "free", "Planar": "planar", "Universal": "universal"}
@@ -37,6 +38,8 @@ def read(path: Path, form: str, base: str, make: Callable[[Description, pin.Mode
             model = pin.buildModelFromUrdf(str(path), pin.JointModelFreeFlyer(), "root_joint")
         else:
             model = pin.buildModelFromUrdf(str(path))
+    if model.nv > LARGEST:
+        raise Unsupported(f"{model.nv} degrees of freedom: Pinocchio's Data would take {15e-6 * model.nv**2:.0f} GB")
     links = [_link(model, i, path) for i in range(1, model.njoints)]
     description = describe(model.name or path.stem, model.gravity.linear, links)
     _add_frames(description, model)
@@ -67,22 +70,24 @@ def _link(model: pin.Model, i: int, path: Path) -> Link:
     """Joint i with the body that it carries."""
     parts = list(_parts(model.joints[i]))
     names = [model.names[i]] if len(parts) == 1 else _names(model, i, len(parts), path)
-    whole = Place()  # from the whole joint's frame to the body
+    whole = Place()  # from the whole joint's frame to what it moves
     places = []
     for _, placement in parts:
         whole = whole @ placement
         places.append(whole)
-    back = whole.inverse()
+    on_joint = _on_joint(model, i)
+    back = (whole @ on_joint).inverse()
     joints = []
     q, v = model.idx_qs[i], model.idx_vs[i]
     for name, (joint, _), place in zip(names, parts, places, strict=True):
         kind, axis, pitch = _type(joint, model.names[i])
         dofs = _dofs(model, slice(q, q + joint.nq), slice(v, v + joint.nv))
-        joints.append(HeldJoint(name, kind, axis, pitch, Place() if place is whole else back @ place, dofs=dofs))
+        joints.append(HeldJoint(name, kind, axis, pitch, on_joint.inverse() if place is whole else back @ place, dofs=dofs))
         q, v = q + joint.nq, v + joint.nv
     inertia, parent = model.inertias[i], int(model.parents[i]) - 1
-    place = _place(model.jointPlacements[i]) @ whole
-    return Link(_carried(model, i), inertia.mass, inertia.lever.copy(), inertia.inertia.copy(), parent, place, joints)
+    place = _on_joint(model, parent + 1).inverse() @ _place(model.jointPlacements[i]) @ whole @ on_joint
+    axes, com = on_joint.rotation, on_joint.inverse() @ Place(translation=inertia.lever)
+    return Link(_carried(model, i), inertia.mass, com.translation, axes.T @ inertia.inertia @ axes, parent, place, joints)
 
 
 def _parts(joint: pin.JointModel) -> Iterator[tuple[pin.JointModel, Place]]:
@@ -105,10 +110,21 @@ def _names(model: pin.Model, i: int, count: int, path: Path) -> list[str]:
     return [f"{model.names[i]} {k}" for k in range(count)]
 
 
+def _frame(model: pin.Model, i: int) -> pin.Frame | None:
+    """The frame of the link that joint i carries: the first body frame on it."""
+    return next((frame for frame in model.frames if i and frame.type == pin.BODY and frame.parentJoint == i), None)
+
+
 def _carried(model: pin.Model, i: int) -> str:
-    """The link that joint i carries: the first body frame on it."""
-    names = (frame.name for frame in model.frames if frame.type == pin.BODY and frame.parentJoint == i)
-    return next(names, model.names[i])
+    """The link that joint i carries."""
+    frame = _frame(model, i)
+    return frame.name if frame is not None else model.names[i]
+
+
+def _on_joint(model: pin.Model, i: int) -> Place:
+    """Where that link is in joint i's frame."""
+    frame = _frame(model, i)
+    return _place(frame.placement) if frame is not None else Place()
 
 
 def _type(joint: pin.JointModel, name: str) -> tuple[str, Array | None, float]:
@@ -138,12 +154,16 @@ def _dofs(model: pin.Model, q: slice, v: slice) -> dict[str, Array]:
 
 
 def _add_frames(description: Header, model: pin.Model) -> None:
-    """A frame for each link that is not a body, or not where its body is."""
+    """A frame for each link that no joint carries."""
     bodies = {body["name"]: k for k, body in enumerate(description["bodies"])}
-    carriers = [-1, *(bodies[_carried(model, i)] for i in range(1, model.njoints))]
+    frames = {frame["name"]: Place.of(frame["placement"]) for frame in description["frames"]}
+    carriers = [_carried(model, i) for i in range(model.njoints)]
     for frame in model.frames:
-        place, body = _place(frame.placement), carriers[frame.parentJoint]
-        if frame.type == pin.BODY and not (bodies.get(frame.name) == body and place.identical()):
+        link = carriers[frame.parentJoint]
+        if frame.type == pin.BODY and (frame.parentJoint == 0 or frame.name != link):
+            on_link = _on_joint(model, frame.parentJoint).inverse() @ _place(frame.placement)
+            place = frames.get(link, Place()) @ on_link if frame.parentJoint else on_link
+            body = bodies[link] if frame.parentJoint else -1
             description["frames"].append({"name": frame.name, "body": body, "placement": place.json()})
 
 

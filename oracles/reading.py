@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import math
 import os
+import re
 import sys
 import tempfile
 from collections.abc import Iterator, Sequence
@@ -19,6 +20,7 @@ from xml.etree import ElementTree
 import numpy as np
 
 from protocol import JOINT_SIZES, WITH_AXIS, Array, Header, Unsupported, skew
+
 
 @dataclass(frozen=True)
 class Place:
@@ -68,7 +70,7 @@ class HeldJoint:
 
 @dataclass(frozen=True)
 class Link:
-    """A link: its inertia about the centre of mass, in its own axes; its parent (an index before it, -1 for the world), and its place there.
+    """A link: its inertia about the centre of mass, in its own axes; its parent (an index before it, or -1), and its place there.
 
     Without joints it is fixed to its parent. With several, each moves what follows; all places are those of the zero configuration.
     """
@@ -85,6 +87,12 @@ class Link:
 def note(cause: str, subject: str | None, text: str) -> Header:
     """A note of the answer: what the parser did to what."""
     return {"cause": cause, "subject": subject, "text": " ".join(text.split())}
+
+
+def listed(names: Sequence[str]) -> str:
+    """The names for a sentence, of very many the first ten."""
+    more = f" and {len(names) - 10} more" if len(names) > 12 else ""
+    return ", ".join(names[: 10 if more else None]) + more
 
 
 def describe(name: str, gravity: Array, links: Sequence[Link]) -> Header:
@@ -119,12 +127,14 @@ def describe(name: str, gravity: Array, links: Sequence[Link]) -> Header:
 
 
 def _gauge(joint: HeldJoint) -> tuple[Place, Array | None]:
-    """The joint's frame in the link's, and its axis. Where an axis says all, the frame has the link's axes."""
+    """The joint's frame in the link's, and its axis. Where an axis says all, the frame has the link's axes, and where the axis may be
+    anywhere, the link's origin."""
     if joint.type not in JOINT_SIZES:
         raise Unsupported(f"joint {joint.name} is of a type that descriptions do not have: {joint.type}")
     if joint.axis is None:
         return joint.place, None
-    return Place(translation=joint.place.translation), joint.place.rotation @ joint.axis
+    axis = joint.place.rotation @ joint.axis
+    return (Place() if joint.type == "prismatic" else Place(translation=joint.place.translation)), axis
 
 
 def _back(joint: HeldJoint, axis: Array | None) -> Place:
@@ -198,9 +208,8 @@ def mentioned(path: Path) -> list[Header]:
 
 @contextmanager
 def overheard(path: Path, notes: list[Header]) -> Iterator[None]:
-    """Adds what an engine prints meanwhile to the notes, a line each as `warning`; the standard error has it as well.
-
-    Of the file's path only the name is told.
+    """Adds what an engine prints meanwhile to the notes as `warning`, one for each line that begins a message; the standard error has it
+    as well. Of the file's path only the name is told.
     """
     kept = [(number, os.dup(number)) for number in (1, 2)]
     with tempfile.TemporaryFile() as words:
@@ -216,5 +225,10 @@ def overheard(path: Path, notes: list[Header]) -> Iterator[None]:
             words.seek(0)
             text = words.read().decode(errors="replace")
             sys.stderr.write(text)
-            lines = dict.fromkeys(line.strip() for line in text.replace(str(path), path.name).splitlines() if line.strip())
-            notes.extend(note("warning", None, line) for line in lines)
+            messages: list[str] = []
+            for line in text.replace(str(path), path.name).splitlines():
+                if messages and not re.match(r"\S*(warning|error)\b", line, re.IGNORECASE):
+                    messages[-1] += " " + line
+                elif line.strip():
+                    messages.append(line)
+            notes.extend(note("warning", None, message) for message in dict.fromkeys(messages))

@@ -34,7 +34,8 @@ pub fn compare(root: &Root, args: &CompareArgs) -> Result<(), Fail> {
     }
     for file in files {
         let problem = problem(file, &subjects.subjects)?;
-        let twice = loaded.problems.iter().filter(|known| known.name == problem.name || known.name.starts_with(&format!("{} (", problem.name)));
+        let twice =
+            loaded.problems.iter().filter(|known| known.name == problem.name || known.name.starts_with(&format!("{} (", problem.name)));
         let count = twice.count();
         let name = if count == 0 { problem.name.clone() } else { format!("{} ({})", problem.name, count + 1) };
         loaded.problems.push(Problem { name, ..problem });
@@ -57,7 +58,11 @@ pub fn compare(root: &Root, args: &CompareArgs) -> Result<(), Fail> {
     }
     println!("report: {}", page.display());
     let unmet = info.expected.iter().filter(|condition| condition.verdict != Verdict::Pass).count();
-    if unmet == 0 { Ok(()) } else { Err(Fail::Gate(format!("the engines differ: {unmet} of {} questions have the answer no", info.expected.len()))) }
+    if unmet == 0 {
+        Ok(())
+    } else {
+        Err(Fail::Gate(format!("the engines differ: {unmet} of {} questions have the answer no", info.expected.len())))
+    }
 }
 
 fn engines(args: &CompareArgs) -> Result<Vec<String>, Fail> {
@@ -96,7 +101,8 @@ fn problem(file: RobotFile, subjects: &[Box<dyn Subject>]) -> Result<Problem, Fa
         FileFormat::Urdf => problems::read_urdf(&file)?,
         FileFormat::Mjcf => {
             let compiler = subjects.iter().find(|subject| subject.identity().name == "mujoco");
-            let message = || format!("{}: MuJoCo's compiler is the reference of MJCF files; do not leave it out of --engines", file.path.display());
+            let message =
+                || format!("{}: MuJoCo's compiler is the reference of MJCF files; do not leave it out of --engines", file.path.display());
             problems::read_mjcf(&file, compiler.ok_or_else(|| Fail::input(message()))?.as_ref())?
         }
     };
@@ -119,7 +125,13 @@ fn of_engine(robot: &str, engine: &str, records: &[Record]) -> [Expectation; 3] 
         let reason = row.map_or("there is no answer".to_owned(), |row| row.reason.clone());
         let found = row.and_then(|row| row.value).map_or(1, |value| value as u64);
         let good = found == 0;
-        let reason = if good { String::new() } else if reason.is_empty() { format!("found {found}") } else { reason };
+        let reason = if good {
+            String::new()
+        } else if reason.is_empty() {
+            format!("found {found}")
+        } else {
+            reason
+        };
         Expectation { what, expected: 0, found, verdict: if good { Verdict::Pass } else { Verdict::Fail }, reason }
     };
     let far = neutral(&rows).filter(|error| error.is_nan() || *error > REPLAYED);
@@ -139,6 +151,8 @@ fn of_engine(robot: &str, engine: &str, records: &[Record]) -> [Expectation; 3] 
 
 /// The worst error of inverse dynamics, bias and mass matrix on the neutral route, by an engine's usual method.
 pub fn neutral(rows: &[&Record]) -> Option<f64> {
-    let usual = |row: &&&Record| row.study == "agreement" && row.metric == "scaled" && ["id", "bias", "mass_matrix"].contains(&row.quantity.as_str());
+    let usual = |row: &&&Record| {
+        row.study == "agreement" && row.metric == "scaled" && ["id", "bias", "mass_matrix"].contains(&row.quantity.as_str())
+    };
     rows.iter().filter(usual).filter_map(|row| row.value).reduce(worst)
 }

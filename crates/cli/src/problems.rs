@@ -70,7 +70,9 @@ impl Files<'_> {
         }
         if let Some(spec) = &entry.generate {
             let generated = Family::parse(spec).and_then(|family| family.generate());
-            return generated.map(|description| (description, ModelOrigin::Generated, None)).map_err(|error| Fail::input(error.to_string()));
+            return generated
+                .map(|description| (description, ModelOrigin::Generated, None))
+                .map_err(|error| Fail::input(error.to_string()));
         }
         let (file, folder, format) = match &entry.mjcf {
             Some(file) => (file.as_str(), self.live.then(|| self.root.packages()), FileFormat::Mjcf),

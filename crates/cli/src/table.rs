@@ -30,7 +30,8 @@ pub fn of(problem: &Problem, subjects: &[Box<dyn Subject>], records: &[Record]) 
 }
 
 fn as_read(rows: &[&Record]) -> String {
-    let value = |metric: &str, quantity: &str| rows.iter().find(|row| row.metric == metric && row.quantity == quantity).and_then(|row| row.value);
+    let value =
+        |metric: &str, quantity: &str| rows.iter().find(|row| row.metric == metric && row.quantity == quantity).and_then(|row| row.value);
     let Some(read) = rows.iter().find(|row| row.metric == "differences") else { return String::new() };
     let Some(count) = read.value else { return format!("    the file as read    not read: {}\n", read.reason) };
     let differences: Vec<(&Record, Value)> = rows.iter().filter(|row| row.metric == "difference").map(|row| (*row, params(row))).collect();
@@ -72,7 +73,12 @@ fn line(row: &Record, params: &Value) -> String {
     let effect = format!("id {}, M {}", number("id"), number("mass_matrix"));
     let cause = params["cause"].as_str().unwrap_or_default().replace('_', " ");
     let cause = if cause == "number" { String::new() } else { format!(" [{cause}]") };
-    let mut text = format!("      {body}: {}{cause}: {} instead of {} ({effect})\n", row.quantity.replace('_', " "), some(&params["theirs"]), some(&params["ours"]));
+    let mut text = format!(
+        "      {body}: {}{cause}: {} instead of {} ({effect})\n",
+        row.quantity.replace('_', " "),
+        some(&params["theirs"]),
+        some(&params["ours"])
+    );
     if let Some(note) = params["note"].as_str() {
         text += &format!("        its parser: {note}\n");
     }

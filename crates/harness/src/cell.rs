@@ -1,7 +1,7 @@
 //! The cell: the unit of work.
 
-use crate::{Reading, Refusal};
 use crate::hash;
+use crate::{Reading, Refusal};
 use serde_json::{Value, json};
 
 /// One evaluation: what is asked of whom, about which problem.

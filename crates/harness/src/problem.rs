@@ -83,7 +83,8 @@ impl Problem {
         let description = reading.description.canonical()?;
         let model = Model::build(&description)?;
         let states = states(&model);
-        let hash = crate::hash::of_parts(&[self.hash.as_bytes(), format!("as read {:?}", (&description.bodies, description.gravity)).as_bytes()]);
+        let hash =
+            crate::hash::of_parts(&[self.hash.as_bytes(), format!("as read {:?}", (&description.bodies, description.gravity)).as_bytes()]);
         let (depth, route) = (description.depth(), Route::AsRead);
         Ok(Self { description, model, states, hash, depth, route, ..self.clone() })
     }

@@ -111,9 +111,8 @@ fn written(reading: &Reading) -> Value {
 
 fn reading(value: &Value) -> Option<Reading> {
     let text = |value: &Value| value.as_str().map(str::to_owned);
-    let note = |note: &Value| {
-        Some(ReadingNote { cause: text(&note["cause"])?, subject: text(&note["subject"]), text: text(&note["text"])? })
-    };
+    let note =
+        |note: &Value| Some(ReadingNote { cause: text(&note["cause"])?, subject: text(&note["subject"]), text: text(&note["text"])? });
     let description = neutral::parse(value["model"].as_str()?, OUTCOMES_NAME).ok()?;
     Some(Reading { description, notes: value["notes"].as_array()?.iter().map(note).collect::<Option<_>>()? })
 }

@@ -18,7 +18,7 @@ const READING: &str = "reading";
 struct Cell<'a> {
     /// The row that counts the differences, or says why there is no reading.
     read: Option<&'a Record>,
-    /// Differences, and those of them that the engine's dynamics feel.
+    /// The row that counts what the differences do not explain.
     unexplained: Option<&'a Record>,
     /// The largest error of inverse dynamics and mass matrix as read, against the reference reading.
     error: Option<f64>,
@@ -165,7 +165,7 @@ fn entry(overview: &Overview, model: usize, engine: usize, cell: &Cell) -> Marku
         _ => String::new(),
     };
     html! {
-        td.number class=(class) title=(about) {
+        td class={ "number " (class) } title=(about) {
             button.open type="button" data-reading=(format!("model-{model}")) data-engine=(overview.engines[engine]) {
                 (text) @if unexplained(cell) { span.unexplained { "?" } }
             }

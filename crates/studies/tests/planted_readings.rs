@@ -160,7 +160,9 @@ fn each_plant_is_named_and_nothing_else_is() {
         let mut theirs = ours.clone();
         let (body, field, cause) = sow(&mut theirs, plant, &mut random);
         let found = found(&ours, &theirs);
-        let right = |difference: &Difference| difference.body == body && difference.field == field && cause.is_none_or(|cause| cause == difference.cause);
+        let right = |difference: &Difference| {
+            difference.body == body && difference.field == field && cause.is_none_or(|cause| cause == difference.cause)
+        };
         if found.len() != 1 || !found.iter().all(right) {
             missed.push(format!("{k}: {plant:?} in {field:?} of '{body}' of {}: {found:#?}", ours.name));
         }
@@ -279,6 +281,9 @@ fn a_joint_of_another_type_is_one_difference() {
     let axis = theirs.bodies[2].joint.kind.axis().unwrap();
     theirs.bodies[2].joint.kind = JointType::Prismatic { axis };
     let found = found(&ours, &theirs);
-    assert_eq!(found.iter().map(|d| (d.field, d.ours.as_str(), d.theirs.as_str())).collect::<Vec<_>>(), [(Field::JointType, "revolute", "prismatic")]);
+    assert_eq!(
+        found.iter().map(|d| (d.field, d.ours.as_str(), d.theirs.as_str())).collect::<Vec<_>>(),
+        [(Field::JointType, "revolute", "prismatic")]
+    );
     assert_eq!(found[0].field.weight(), Weight::Dynamics);
 }

@@ -48,7 +48,13 @@ impl Subject for Parser {
         self.says.clone()
     }
 
-    fn prepare<'a>(&'a self, _: &'a Problem, quantity: Quantity, method: &str, states: &'a StateBatch) -> Result<Box<dyn Prepared + 'a>, Refusal> {
+    fn prepare<'a>(
+        &'a self,
+        _: &'a Problem,
+        quantity: Quantity,
+        method: &str,
+        states: &'a StateBatch,
+    ) -> Result<Box<dyn Prepared + 'a>, Refusal> {
         let holds = self.holds.as_ref().ok_or_else(|| Refusal::Failed("nothing was read".into()))?;
         self.native.prepare(holds, quantity, method, states)
     }
@@ -77,7 +83,10 @@ fn a_robot_read_as_it_is_has_no_differences_and_is_explained() {
     let problem = filed("humanoid");
     let records = records(&problem, Parser::new(problem.description.clone(), &problem.description, &problem));
     assert_eq!(row(&records, "differences", "reading").value, Some(0.0));
-    assert_eq!((row(&records, "unexplained", "reading").value, row(&records, "unexplained", "reading").verdict), (Some(0.0), Verdict::Pass));
+    assert_eq!(
+        (row(&records, "unexplained", "reading").value, row(&records, "unexplained", "reading").verdict),
+        (Some(0.0), Verdict::Pass)
+    );
     for (metric, quantity) in [("as_read", "id"), ("as_read", "mass_matrix"), ("replayed", "id"), ("replayed", "mass_matrix")] {
         assert_eq!(row(&records, metric, quantity).value, Some(0.0), "{metric} {quantity}");
     }

@@ -68,10 +68,12 @@ fn mass<'a>(ours: f64, theirs: f64, said: &impl Fn(&str) -> Option<&'a &'a Readi
 fn raised(by: f64, sentence: &str) -> bool {
     let numbers = sentence.split(|c: char| c.is_whitespace() || c == ',').filter_map(|word| word.parse::<f64>().ok());
     let times = |least: f64| by / least;
-    numbers.filter(|&least| least > 0.0).any(|least| times(least) > 0.0 && times(least) < 1.0 + 1e-3 || {
-        // Rounding of the sum, of which the bound is a small part.
-        let off = (times(least) - times(least).round()).abs();
-        times(least) >= 1.0 && times(least) < 100.0 && off < 1e-3
+    numbers.filter(|&least| least > 0.0).any(|least| {
+        times(least) > 0.0 && times(least) < 1.0 + 1e-3 || {
+            // Rounding of the sum, of which the bound is a small part.
+            let off = (times(least) - times(least).round()).abs();
+            times(least) >= 1.0 && times(least) < 100.0 && off < 1e-3
+        }
     })
 }
 

@@ -35,8 +35,11 @@ impl Comparison {
         let gone: Vec<usize> = (0..ours.bodies.len()).filter(|&i| partner[i].is_none()).collect();
         let extra: Vec<usize> = (0..theirs.bodies.len()).filter(|j| !partner.contains(&Some(*j))).collect();
         let mut findings: Vec<Finding> = extra.iter().map(|&j| added(&theirs.bodies[j])).collect();
-        let names: HashMap<&str, &str> =
-            partner.iter().enumerate().filter_map(|(i, j)| Some((ours.bodies[i].name.as_str(), theirs.bodies[(*j)?].name.as_str()))).collect();
+        let names: HashMap<&str, &str> = partner
+            .iter()
+            .enumerate()
+            .filter_map(|(i, j)| Some((ours.bodies[i].name.as_str(), theirs.bodies[(*j)?].name.as_str())))
+            .collect();
         let Some(reduced) = without(&theirs, &extra, Mass::Kept) else {
             findings.splice(0..0, gone.iter().map(|&i| missing(&ours.bodies[i], Mass::Kept, notes)));
             return Self { findings, ours };
@@ -124,7 +127,8 @@ fn shared(ours: &Description, theirs: &Description, names: &HashMap<&str, &str>,
         let about = about(ours, i, &theirs.bodies[j], notes);
         let above = ours.bodies[i].parent.and_then(|parent| partner[parent]);
         if above != theirs.bodies[j].parent {
-            let name = |description: &Description, parent: Option<usize>| parent.map_or("world".into(), |p| description.bodies[p].name.clone());
+            let name =
+                |description: &Description, parent: Option<usize>| parent.map_or("world".into(), |p| description.bodies[p].name.clone());
             let (a, b) = (name(ours, body.parent), name(theirs, theirs.bodies[j].parent));
             findings.push(whole(&body.name, Field::Parent, a, b, Cause::Number));
         }
@@ -160,7 +164,8 @@ fn finding(ours: &Description, i: usize, aligned: &BodyDescription, field: Field
 fn about<'a>(ours: &Description, i: usize, theirs: &BodyDescription, notes: &'a [ReadingNote]) -> Vec<&'a ReadingNote> {
     let body = &ours.bodies[i];
     let fixed = |name: &str| ours.frames.iter().any(|frame| frame.body == Some(i) && frame.name == name);
-    let named = |name: &str| [&body.name, &body.joint.name, &theirs.name, &theirs.joint.name].into_iter().any(|own| own == name) || fixed(name);
+    let named =
+        |name: &str| [&body.name, &body.joint.name, &theirs.name, &theirs.joint.name].into_iter().any(|own| own == name) || fixed(name);
     let own = |name: &str| !name.is_empty() && named(name);
     // A sentence about many links names them.
     let among = |text: &str| text.split(|c: char| c.is_whitespace() || c == ',').any(own);

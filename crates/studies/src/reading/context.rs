@@ -31,7 +31,8 @@ fn with_the_mass(findings: &mut [Finding]) {
         .map(|difference| (difference.body.clone(), difference.cause))
         .collect();
     for difference in findings.iter_mut().map(|finding| &mut finding.difference) {
-        let follows = matches!(difference.field, Field::Com | Field::Inertia) && [Cause::Number, Cause::ZeroMass].contains(&difference.cause);
+        let follows =
+            matches!(difference.field, Field::Com | Field::Inertia) && [Cause::Number, Cause::ZeroMass].contains(&difference.cause);
         if let Some((_, cause)) = masses.iter().find(|(body, _)| follows && *body == difference.body) {
             difference.cause = *cause;
         }
@@ -40,7 +41,8 @@ fn with_the_mass(findings: &mut [Finding]) {
 
 /// Whether all masses of the robot are ours times one factor that is not one.
 fn one_factor(ours: &Description, written: &[Option<BodyDescription>]) -> bool {
-    let pairs = || ours.bodies.iter().zip(written).filter_map(|(body, theirs)| Some((body, theirs.as_ref()?))).filter(|(body, _)| body.mass > 0.0);
+    let pairs =
+        || ours.bodies.iter().zip(written).filter_map(|(body, theirs)| Some((body, theirs.as_ref()?))).filter(|(body, _)| body.mass > 0.0);
     let Some(factor) = pairs().map(|(body, theirs)| theirs.mass / body.mass).next() else { return false };
     let same = |a: f64, b: f64, size: f64| (a - b).abs() <= 4.0 * ROUNDING * size;
     let scaled = |(body, theirs): (&BodyDescription, &BodyDescription)| same(theirs.mass, factor * body.mass, theirs.mass);

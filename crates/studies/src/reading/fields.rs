@@ -73,10 +73,34 @@ pub(super) fn size(field: Field, ours: &BodyDescription, theirs: &BodyDescriptio
             let difference = largest(ours.inertia.iter().zip(&theirs.inertia).map(|(x, y)| x - y));
             over(difference, inertia_scale(ours).max(inertia_scale(theirs)))
         }
-        Field::Armature => if same_kind { per_dof(&a.armature, &b.armature) } else { 0.0 },
-        Field::Damping => if same_kind { per_dof(&a.damping, &b.damping) } else { 0.0 },
-        Field::Friction => if same_kind { per_dof(&a.friction, &b.friction) } else { 0.0 },
-        Field::Limits => if same_kind { limits(&a.lower, &b.lower).max(limits(&a.upper, &b.upper)) } else { 0.0 },
+        Field::Armature => {
+            if same_kind {
+                per_dof(&a.armature, &b.armature)
+            } else {
+                0.0
+            }
+        }
+        Field::Damping => {
+            if same_kind {
+                per_dof(&a.damping, &b.damping)
+            } else {
+                0.0
+            }
+        }
+        Field::Friction => {
+            if same_kind {
+                per_dof(&a.friction, &b.friction)
+            } else {
+                0.0
+            }
+        }
+        Field::Limits => {
+            if same_kind {
+                limits(&a.lower, &b.lower).max(limits(&a.upper, &b.upper))
+            } else {
+                0.0
+            }
+        }
         Field::Body | Field::Parent | Field::Gravity | Field::DofOrder => 0.0,
     }
 }

@@ -59,7 +59,8 @@ impl Pairing {
             let right: Vec<usize> =
                 (0..theirs.bodies.len()).filter(|&j| theirs.bodies[j].parent == theirs_above && !self.taken[j]).collect();
             let kind = |body: &BodyDescription| body.joint.kind.name();
-            let alike = left.len() == right.len() && left.iter().zip(&right).all(|(&i, &j)| kind(&ours.bodies[i]) == kind(&theirs.bodies[j]));
+            let alike =
+                left.len() == right.len() && left.iter().zip(&right).all(|(&i, &j)| kind(&ours.bodies[i]) == kind(&theirs.bodies[j]));
             if alike {
                 left.into_iter().zip(right).for_each(|(i, j)| self.join(i, j));
             }
@@ -84,7 +85,8 @@ pub(super) fn chained(description: &Description) -> Description {
         let alone = kinds.len() == 1;
         for (k, &kind) in kinds.iter().enumerate() {
             let last = k + 1 == kinds.len();
-            let mut link = if last { body.clone() } else { BodyDescription { mass: 0.0, com: [0.0; 3], inertia: [0.0; 6], ..body.clone() } };
+            let mut link =
+                if last { body.clone() } else { BodyDescription { mass: 0.0, com: [0.0; 3], inertia: [0.0; 6], ..body.clone() } };
             link.parent = parent;
             link.joint.kind = kind;
             if !last {

@@ -12,7 +12,8 @@ use serde_json::{Value, json};
 pub(super) fn rows(context: &Context, problem: &Problem, finished: &[Finished]) -> Vec<Record> {
     let mut rows = Vec::new();
     for (cell, outcome) in finished.iter().filter(|(cell, _)| cell.quantity == READING) {
-        let of_engine: Vec<&Finished> = finished.iter().filter(|(other, _)| other.subject == cell.subject && other.quantity != READING).collect();
+        let of_engine: Vec<&Finished> =
+            finished.iter().filter(|(other, _)| other.subject == cell.subject && other.quantity != READING).collect();
         let engine = Engine { context, problem, cell, of_engine };
         match outcome {
             Outcome::Reading(reading) => rows.extend(engine.read(reading)),
@@ -38,7 +39,13 @@ impl Engine<'_> {
     }
 
     fn row(&self, cell: &Cell, metric: &str) -> Record {
-        Record { case: "all".into(), metric: metric.into(), unit: "1".into(), reference: self.reference().into(), ..row(cell, self.problem) }
+        Record {
+            case: "all".into(),
+            metric: metric.into(),
+            unit: "1".into(),
+            reference: self.reference().into(),
+            ..row(cell, self.problem)
+        }
     }
 
     /// The cell's parameters with more beside them: what a reader of the row needs.
@@ -61,7 +68,8 @@ impl Engine<'_> {
         let own = Model::of(&comparison, self.problem);
         rows.extend(comparison.findings.iter().map(|finding| self.difference(finding, &own)));
         // Those that are no difference of the numbers compared are told as they are.
-        let answers: Vec<(&Cell, Result<&[f64], &Refusal>)> = self.of_engine.iter().map(|(cell, outcome)| (cell, values(outcome))).collect();
+        let answers: Vec<(&Cell, Result<&[f64], &Refusal>)> =
+            self.of_engine.iter().map(|(cell, outcome)| (cell, values(outcome))).collect();
         for (cell, answer) in &answers {
             if let Err(refusal) = answer {
                 rows.push(self.refused(cell, refusal));
@@ -121,7 +129,9 @@ impl Engine<'_> {
         let Some(reference) = Reference::new(&self.problem.description, states) else {
             return error("our kernels have no answer on the reference reading");
         };
-        let Some(replayed) = replay(&problem, engine) else { return error("the engine's answers have another shape than the robot it read") };
+        let Some(replayed) = replay(&problem, engine) else {
+            return error("the engine's answers have another shape than the robot it read");
+        };
         let read = reference.effect(&problem.description, problem.states.nv, engine);
         let mut rows = Vec::new();
         for (metric, effect) in [("as_read", read), ("replayed", replayed.effect)] {

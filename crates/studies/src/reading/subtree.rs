@@ -36,7 +36,9 @@ pub(super) fn unexplained(description: &Description, replay: &Replay) -> Vec<Sub
         .collect();
     let nv = next;
     let largest = |errors: &mut dyn Iterator<Item = f64>| errors.fold(0.0, harness::measure::worst);
-    let block = |i: usize, j: usize| largest(&mut dofs[i].clone().flat_map(|m| dofs[j].clone().map(move |n| (m, n))).map(|(m, n)| replay.entry[m * nv + n]));
+    let block = |i: usize, j: usize| {
+        largest(&mut dofs[i].clone().flat_map(|m| dofs[j].clone().map(move |n| (m, n))).map(|(m, n)| replay.entry[m * nv + n]))
+    };
     let own: Vec<f64> = (0..dofs.len()).map(|i| block(i, i)).collect();
     // A block beside the diagonal couples a body with one below it: the error begins at the upper one.
     let coupled = || (0..dofs.len()).map(|i| largest(&mut (i..dofs.len()).map(|j| block(i, j)))).collect::<Vec<f64>>();
@@ -71,5 +73,10 @@ fn cut(description: &Description, root: usize) -> Description {
             bodies.push(model::BodyDescription { parent, ..body.clone() });
         }
     }
-    Description { name: format!("{}/{}", description.name, description.bodies[root].name), bodies, frames: Vec::new(), ..description.clone() }
+    Description {
+        name: format!("{}/{}", description.name, description.bodies[root].name),
+        bodies,
+        frames: Vec::new(),
+        ..description.clone()
+    }
 }
