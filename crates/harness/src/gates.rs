@@ -174,7 +174,8 @@ impl Gates {
         conditions.push(condition("rows at all".into(), 1, u64::from(!records.is_empty())));
         for deviation in self.deviations.iter().filter(|_| suite.thorough) {
             let known = suite.agreement.as_ref().is_some_and(|agreement| agreement.engines.contains(&deviation.engine));
-            let asked = records.iter().any(|row| row.engine == deviation.engine && deviation.names(&row.model));
+            let asked =
+                records.iter().any(|row| row.engine == deviation.engine && deviation.names(&row.model) && deviation.about(&row.quantity));
             if known && asked {
                 let excused = |row: &Record| row.verdict == Verdict::Deviation && row.reason.starts_with(&deviation.reason);
                 let seen = records.iter().any(|row| excused(row) && deviation.covers(row));
@@ -260,7 +261,7 @@ impl Deviation {
         self.engine == row.engine
             && self.version == row.engine_version
             && self.method.as_ref().is_none_or(|method| *method == row.method)
-            && self.quantities.as_ref().is_none_or(|quantities| quantities.contains(&row.quantity))
+            && self.about(&row.quantity)
             && self.cases.as_ref().is_none_or(|cases| cases.contains(&row.case))
             && self.names(&row.model)
             && row.value.is_none_or(within)
@@ -268,6 +269,10 @@ impl Deviation {
 
     fn names(&self, model: &str) -> bool {
         named(&self.models, model)
+    }
+
+    fn about(&self, quantity: &String) -> bool {
+        self.quantities.as_ref().is_none_or(|quantities| quantities.contains(quantity))
     }
 }
 

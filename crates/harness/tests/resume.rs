@@ -3,7 +3,9 @@
 
 use featherbench_harness::frame::Frame;
 use featherbench_harness::run::{Progress, Silent, compare, evaluate, plan};
-use featherbench_harness::{Cell, Context, Finished, Gates, HarnessError, OUTCOMES_NAME, Outcome, OutcomeStore, Problem, Refusal, Study};
+use featherbench_harness::{
+    Cell, Context, Finished, Gates, HarnessError, OUTCOMES_NAME, Outcome, OutcomeStore, Problem, Reading, ReadingNote, Refusal, Study,
+};
 use model::Random;
 use model::generate::Family;
 use rayon::ThreadPoolBuilder;

@@ -97,7 +97,8 @@ impl Sizes {
     }
 
     fn torque(&self, i: usize, difference: f64) -> f64 {
-        ratio(difference, self.torque[i])
+        // Where nothing of ours acts at all (no gravity, at rest), what theirs has is wholly different.
+        if self.torque[i] == 0.0 && difference.is_finite() && difference != 0.0 { 1.0 } else { ratio(difference, self.torque[i]) }
     }
 
     fn entry(&self, i: usize, j: usize, difference: f64) -> f64 {
