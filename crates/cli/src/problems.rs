@@ -96,7 +96,7 @@ impl Files<'_> {
     /// MuJoCo, started when the first MJCF file is read.
     fn compiler(&mut self) -> Result<&Oracle, Fail> {
         if self.compiler.is_none() {
-            let python = oracles::install(self.root)?;
+            let python = oracles::python(self.root).map_or_else(|| oracles::install(self.root), Ok)?;
             let started = oracles::start(self.root, &python, "mujoco", Limits::default());
             let missing = |message| Fail::Missing { message, advice: "look at `featherbench oracles status`".into() };
             self.compiler = Some(started.map_err(missing)?);

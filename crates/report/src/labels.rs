@@ -124,6 +124,7 @@ pub fn cause(name: &str) -> &str {
         "massless_link" => "the inertia of a fixed link without mass was left out",
         "total_mass" => "all masses have one factor: the total mass was set, or not",
         "between_joints" => "the pose of a link with several joints stands at another of them",
+        "other_root" => "the floating base has the frame of another link of the root",
         "geometry" => "computed from the shape of the body",
         "edited" => "replaced by the parser, as it says itself",
         "mimic" => "the joint follows another one",

@@ -241,7 +241,7 @@ impl Comparison<'_> {
                             reference: other.subject.clone(),
                             ..row(cell, self.problem)
                         };
-                        rows.push(row.informed(errors.into_iter().fold(0.0, worst)));
+                        rows.push(self.context.gates.explain(row.informed(errors.into_iter().fold(0.0, worst))));
                     }
                 }
             }
@@ -267,7 +267,7 @@ impl Comparison<'_> {
                 reference: "native on the model read back".into(),
                 ..row(cell, self.problem)
             };
-            rows.push(row.informed(errors.into_iter().fold(0.0, worst)));
+            rows.push(self.context.gates.explain(row.informed(errors.into_iter().fold(0.0, worst))));
         }
         rows
     }

@@ -287,3 +287,22 @@ fn a_joint_of_another_type_is_one_difference() {
     );
     assert_eq!(found[0].field.weight(), Weight::Dynamics);
 }
+
+#[test]
+fn a_base_that_floats_by_another_link_is_told_from_a_joint_that_is_elsewhere() {
+    let turn = rotation(&mut Random::new(11, 0));
+    let mut ours = robot("anymal_c");
+    let root = ours.bodies.iter().position(|body| body.joint.kind == JointType::Free).unwrap();
+    let placement = Placement { rotation: turn.to_array(), translation: [0.1, 0.0, 0.0] };
+    ours.frames.push(model::Frame { name: "inner".into(), body: Some(root), placement });
+    let mut theirs = ours.clone();
+    theirs.bodies[root].name = "inner".into();
+    let back = placement.to_transform().inverse();
+    for body in theirs.bodies.iter_mut().filter(|body| body.parent == Some(root)) {
+        body.joint.placement = Placement::from_transform(&back.compose(&body.joint.placement.to_transform()));
+    }
+    let placements: Vec<Difference> = found(&ours, &theirs).into_iter().filter(|difference| difference.field == Field::Placement).collect();
+    assert!(!placements.is_empty() && placements.iter().all(|difference| difference.cause == Cause::OtherRoot), "{placements:#?}");
+    theirs.bodies[root].name = ours.bodies[root].name.clone();
+    assert!(found(&ours, &theirs).iter().all(|difference| difference.cause != Cause::OtherRoot));
+}

@@ -3,7 +3,7 @@
 use super::comparison::Finding;
 use super::fields::{self, ROUNDING};
 use super::{Cause, Difference, Field};
-use model::{BodyDescription, Description};
+use model::{BodyDescription, Description, JointType, Placement};
 use spatial::Transform;
 
 /// Names what is left; `written` is their robot in our frames.
@@ -14,6 +14,7 @@ pub(super) fn explain(ours: &Description, written: &[Option<BodyDescription>], f
         unexplained(findings).filter(whole).for_each(|difference| difference.cause = Cause::TotalMass);
     }
     between_joints(ours, written, findings, reach);
+    other_root(ours, written, findings, reach);
 }
 
 /// Differences without a cause yet.
@@ -47,6 +48,25 @@ fn one_factor(ours: &Description, written: &[Option<BodyDescription>]) -> bool {
     let same = |a: f64, b: f64, size: f64| (a - b).abs() <= 4.0 * ROUNDING * size;
     let scaled = |(body, theirs): (&BodyDescription, &BodyDescription)| same(theirs.mass, factor * body.mass, theirs.mass);
     pairs().count() > 1 && (factor - 1.0).abs() > 4.0 * ROUNDING && factor > 0.0 && pairs().all(scaled)
+}
+
+/// A floating base whose coordinates are those of another link: of one that is fixed to our root, where the parser drops an empty root.
+fn other_root(ours: &Description, written: &[Option<BodyDescription>], findings: &mut [Finding], reach: f64) {
+    for (root, theirs) in written.iter().enumerate() {
+        let Some(theirs) = theirs.as_ref().filter(|theirs| theirs.joint.kind == JointType::Free) else { continue };
+        let Some(frame) = ours.frames.iter().find(|frame| frame.body == Some(root) && frame.name == theirs.name) else { continue };
+        let from_root = frame.placement.to_transform();
+        for (child, body) in ours.bodies.iter().enumerate().filter(|(_, body)| body.parent == Some(root)) {
+            let Some(theirs) = &written[child] else { continue };
+            let behind = Placement::from_transform(&from_root.compose(&theirs.joint.placement.to_transform()));
+            let moved = BodyDescription { joint: model::JointDescription { placement: behind, ..body.joint.clone() }, ..body.clone() };
+            let same = fields::size(Field::Placement, body, &moved, reach) <= 4.0 * ROUNDING;
+            let of_child = |difference: &&mut Difference| difference.field == Field::Placement && difference.body == body.name;
+            unexplained(findings)
+                .filter(|difference| same && of_child(difference))
+                .for_each(|difference| difference.cause = Cause::OtherRoot);
+        }
+    }
 }
 
 /// The joints of one link are a chain of massless bodies before it. Where the chain as a whole leads to the same place and its parts do not,

@@ -104,6 +104,8 @@ pub enum Cause {
     TotalMass,
     /// A link with several joints stands between them instead of before them.
     BetweenJoints,
+    /// The floating base has the frame of another link that is fixed to the root.
+    OtherRoot,
     /// Computed from the shape of the body.
     Geometry,
     /// Replaced by the parser, in its own words.
@@ -179,6 +181,7 @@ impl Cause {
             Self::MasslessLink => "massless_link",
             Self::TotalMass => "total_mass",
             Self::BetweenJoints => "between_joints",
+            Self::OtherRoot => "other_root",
             Self::Geometry => "geometry",
             Self::Edited => "edited",
             Self::Mimic => "mimic",

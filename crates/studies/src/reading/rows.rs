@@ -1,6 +1,6 @@
 //! The rows of one robot: what each engine read, how it differs, what that does, and whether it explains the engine's answers.
 
-use super::replay::{Answers, Reference, Replay, replay};
+use super::replay::{Answers, Reference, Replay, carried, replay};
 use super::subtree::{SubTree, unexplained};
 use super::{Comparison, Effect, Finding, READING, REPLAYED, Weight, as_read, reference};
 use crate::row;
@@ -65,9 +65,8 @@ impl Engine<'_> {
     fn read(&self, reading: &Reading) -> Vec<Record> {
         let comparison = Comparison::of(&self.problem.description, &reading.description, &reading.notes);
         let mut rows = vec![self.count(&comparison, reading)];
-        let own = Model::of(&comparison, self.problem);
+        let own = alterable(&comparison, self.problem);
         rows.extend(comparison.findings.iter().map(|finding| self.difference(finding, &own)));
-        // Those that are no difference of the numbers compared are told as they are.
         let answers: Vec<(&Cell, Result<&[f64], &Refusal>)> =
             self.of_engine.iter().map(|(cell, outcome)| (cell, values(outcome))).collect();
         for (cell, answer) in &answers {
@@ -95,9 +94,9 @@ impl Engine<'_> {
         Record { params: self.params(more), ..self.row(self.cell, "differences") }.informed(felt as f64)
     }
 
-    fn difference(&self, finding: &Finding, own: &Option<Model>) -> Record {
+    fn difference(&self, finding: &Finding, own: &Option<Reference>) -> Record {
         let difference = &finding.difference;
-        let alone = finding.alone.as_ref().zip(own.as_ref()).and_then(|(alone, own)| own.0.effect_of(alone));
+        let alone = finding.alone.as_ref().zip(own.as_ref()).and_then(|(alone, own)| own.effect_of(alone));
         let number = |of: fn(&Effect) -> f64| alone.as_ref().map(of).filter(|error| error.is_finite());
         let more = json!({
             "cause": difference.cause.name(),
@@ -125,7 +124,7 @@ impl Engine<'_> {
             Err(refusal) => return error(&refusal.to_string()),
         };
         // What only they have stands still on their side: it must do so on ours.
-        let states = super::replay::carried(&problem.description, &problem.states, &self.problem.description, &self.problem.model);
+        let states = carried(&problem.description, &problem.states, &self.problem.description, &self.problem.model);
         let Some(reference) = Reference::new(&self.problem.description, states) else {
             return error("our kernels have no answer on the reference reading");
         };
@@ -165,12 +164,8 @@ fn values(outcome: &Outcome) -> Result<&[f64], &Refusal> {
 }
 
 /// Our robot as the findings alter it, with its answers.
-struct Model(Reference);
-
-impl Model {
-    fn of(comparison: &Comparison, problem: &Problem) -> Option<Self> {
-        let model = model::Model::build(&comparison.ours).ok()?;
-        let states = super::replay::carried(&problem.description, &problem.states, &comparison.ours, &model);
-        Reference::new(&comparison.ours, states).map(Self)
-    }
+fn alterable(comparison: &Comparison, problem: &Problem) -> Option<Reference> {
+    let model = model::Model::build(&comparison.ours).ok()?;
+    let states = carried(&problem.description, &problem.states, &comparison.ours, &model);
+    Reference::new(&comparison.ours, states)
 }
