@@ -63,7 +63,7 @@ fn broken_suites_are_refused_by_file_and_key() {
         (
             "two sources",
             good.replace("model = \"panda\"", "model = \"panda\"\ngenerate = \"hand\""),
-            &["exactly one of model, generate and urdf"],
+            &["exactly one of model, generate, urdf and mjcf"],
         ),
         ("unknown family", good.replace("model = \"panda\"", "generate = \"spider\""), &["spider", "chain"]),
         ("not TOML", good.replace("seed = 1", "seed 1"), &["line"]),
