@@ -18,15 +18,18 @@ Examples:
   featherbench                                 the default suite against the recorded answers; no Python needed
   featherbench run --live                      ask the engines themselves (installs them on first use)
   featherbench run --only 'panda/.*/fd'        only some cells
+  featherbench compare my_robot.urdf           do the engines read my robot alike, and if not, why?
   featherbench gen chain --n 1000 --out c.json a robot of one's own
   featherbench explain 3f2a reports/LATEST     what a cell asked and what was answered
 
-Exit codes: 0 good, 1 a gate failed, 2 usage or bad input, 3 a required engine is missing.";
+Exit codes: 0 good, 1 a gate failed or engines disagree, 2 usage or bad input, 3 a required engine is missing.";
 
 #[derive(Debug, Subcommand)]
 pub enum Command {
     /// Run a suite: evaluate, compare, judge, report.
     Run(RunArgs),
+    /// Ask whether the engines read robots' files alike, and if not, where and why.
+    Compare(CompareArgs),
     /// Write the report of a run again from its records.
     Report(FolderArgs),
     /// Judge a run by its records: exit 1 when a gate fails.
@@ -87,6 +90,34 @@ pub struct RunArgs {
     /// Address space of each engine's process, in MiB.
     #[arg(long, value_name = "MIB", default_value_t = 8192)]
     pub memory: u64,
+}
+
+#[derive(Debug, Clone, Args)]
+#[command(after_help = "\
+Examples:
+  featherbench compare my_robot.urdf                     a fixed base, all engines
+  featherbench compare my_robot.urdf --floating          the same robot on a free joint
+  featherbench compare a.urdf b.urdf --engines pinocchio,mujoco
+  featherbench compare scene.xml --out reports/scene     an MJCF file; MuJoCo's compiler is the reference
+
+Two routes, kept apart. Neutral: one model through each engine's programming interface; a difference there is an algorithm's. As read: the
+file through each engine's own parser; a difference there is told by body, field and cause, and the engine's answers are replayed with our
+kernels on what it says to have read. What that does not explain is called unexplained.
+
+Exit codes: 0 the engines read the files alike, 1 they differ, 2 a file cannot be read, 3 an engine is missing.")]
+pub struct CompareArgs {
+    /// Robots: URDF or MJCF files.
+    #[arg(required = true, value_name = "FILE")]
+    pub files: Vec<PathBuf>,
+    /// Give each URDF's base six degrees of freedom (an MJCF says itself what floats).
+    #[arg(long)]
+    pub floating: bool,
+    /// The engines that are asked.
+    #[arg(long, value_delimiter = ',', value_name = "NAMES")]
+    pub engines: Option<Vec<String>>,
+    /// The run's folder; by default a new one in reports/.
+    #[arg(long, value_name = "DIR")]
+    pub out: Option<PathBuf>,
 }
 
 #[derive(Debug, Clone, Args)]

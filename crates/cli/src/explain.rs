@@ -33,6 +33,11 @@ pub fn explain(args: &ExplainArgs) -> Result<(), Fail> {
                 let head: Vec<String> = values.iter().take(6).map(|value| format!("{value:?}")).collect();
                 println!("answer    {} numbers: {}{}", values.len(), head.join(", "), if values.len() > 6 { ", …" } else { "" });
             }
+            Some(Outcome::Reading(reading)) => {
+                let description = &reading.description;
+                println!("answer    a robot of {} bodies and {} dofs", description.bodies.len(), description.nv());
+                reading.notes.iter().for_each(|note| println!("note      {}: {}", note.cause, note.text));
+            }
             Some(Outcome::Refused(Refusal::Unsupported(reason))) => println!("answer    not offered: {reason}"),
             Some(Outcome::Refused(Refusal::Failed(reason))) => println!("answer    failed: {reason}"),
             None => println!("answer    not kept"),

@@ -10,7 +10,7 @@ use engines::Native;
 use harness::{Context, Gates, Study, Subject};
 use model::generate::Family;
 use std::io::Write;
-use studies::{Agreement, Conditioning, Digits, Structure, Timing};
+use studies::{Agreement, Conditioning, Digits, Reading, Structure, Timing};
 
 /// Prints what there is to run.
 pub fn list(root: &Root, args: &ListArgs) -> Result<(), Fail> {
@@ -29,7 +29,7 @@ fn text(root: &Root, args: &ListArgs) -> Result<String, Fail> {
         let gates = Gates::read(&root.gates())?;
         let context = Context { problems: &loaded.problems, subjects: &subjects, gates: &gates, seed: loaded.suite.seed };
         let timing = Timing { states: 1, seconds: 0.0, kernels: engines::timed };
-        let studies: [&dyn Study; 5] = [&Agreement, &Digits, &Conditioning, &Structure, &timing];
+        let studies: [&dyn Study; 6] = [&Agreement, &Reading, &Digits, &Conditioning, &Structure, &timing];
         let cells = studies.iter().flat_map(|study| study.plan(&context));
         return Ok(cells.map(|cell| format!("{}  {}\n", cell.id(), cell.path())).collect());
     }
@@ -48,7 +48,7 @@ fn text(root: &Root, args: &ListArgs) -> Result<String, Fail> {
         );
     }
     text += &format!("\nengines:  native, {}, {IN_PROCESS}\npeers:    {}\n", ENGINES.join(", "), PEERS.join(", "));
-    text += "studies:  agreement, digits, conditioning, structure, timing\n";
+    text += "studies:  agreement, reading, digits, conditioning, structure, reproductions, step_limit, timing\n";
     text += "\nfamilies of generated robots, with their parameters:\n";
     for name in Family::NAMES {
         let family = Family::parse(name).map_err(|error| Fail::input(error.to_string()))?;

@@ -2,6 +2,7 @@
 
 mod args;
 mod check;
+mod compare;
 mod explain;
 mod fail;
 mod generate;
@@ -13,9 +14,11 @@ mod problems;
 mod progress;
 mod record;
 mod report;
+mod robot_file;
 mod root;
 mod run;
 mod subjects;
+mod table;
 
 use args::{Cli, Command, OraclesAction, RunArgs};
 use clap::Parser;
@@ -39,6 +42,7 @@ fn dispatch(cli: Cli) -> Result<(), Fail> {
     let default = || Command::Run(RunArgs::default_suite());
     match cli.command.unwrap_or_else(default) {
         Command::Run(args) => run::run(&root, &args),
+        Command::Compare(args) => compare::compare(&root, &args),
         Command::Report(args) => report::write(&args.folder),
         Command::Gate(args) => report::gate(&root, &args),
         Command::List(args) => list::list(&root, &args),

@@ -4,8 +4,9 @@ use crate::fail::Fail;
 use crate::oracles;
 use crate::root::Root;
 use ::record::ModelOrigin;
+use engines::{Limits, Oracle};
 use formats::urdf::{Base, Note, Options};
-use harness::{Problem, ProblemEntry, Suite};
+use harness::{FileBase, FileFormat, Problem, ProblemEntry, Refusal, RobotFile, Subject, Suite};
 use model::generate::Family;
 use model::{Description, StateBatch};
 use std::path::{Path, PathBuf};
@@ -24,50 +25,111 @@ pub fn load(root: &Root, suite: &str, live: bool, seed: Option<u64>) -> Result<L
     let (mut parsed, hash) = Suite::read(&path)?;
     parsed.seed = seed.unwrap_or(parsed.seed);
     let states = parsed.agreement.as_ref().map_or(1, |agreement| agreement.states);
+    let mut files = Files { root, live, compiler: None };
     let mut problems: Vec<Problem> = Vec::with_capacity(parsed.problem.len());
     for entry in &parsed.problem {
-        let (description, origin) = describe(root, entry, live)?;
-        let bad = |error: &dyn std::error::Error| Fail::input(format!("{}: robot '{}': {error}", path.display(), description.name));
-        let states = entry.states.unwrap_or(states);
-        let mut problem = Problem::new(&description, &entry.family, origin, states, parsed.seed).map_err(|error| bad(&error))?;
-        if entry.reach.is_some() || entry.speed.is_some() {
-            let (reach, speed) = (entry.reach.unwrap_or(std::f64::consts::PI), entry.speed.unwrap_or(1.0));
-            let drawn = StateBatch::narrow(&problem.model, states, parsed.seed, reach, speed);
-            problem = problem.at(drawn);
+        for (base, named) in entry.bases() {
+            let (description, origin, file) = files.describe(entry, base)?;
+            let bad = |error: &dyn std::error::Error| Fail::input(format!("{}: robot '{}': {error}", path.display(), description.name));
+            let states = entry.states.unwrap_or(states);
+            let mut problem = Problem::new(&description, &entry.family, origin, states, parsed.seed).map_err(|error| bad(&error))?;
+            if entry.reach.is_some() || entry.speed.is_some() {
+                let (reach, speed) = (entry.reach.unwrap_or(std::f64::consts::PI), entry.speed.unwrap_or(1.0));
+                let drawn = StateBatch::narrow(&problem.model, states, parsed.seed, reach, speed);
+                problem = problem.at(drawn);
+            }
+            if let Some(file) = file {
+                problem = problem.from_file(file);
+            }
+            let name = entry.name.clone().unwrap_or(problem.name);
+            problem.name = if named { format!("{name}-free") } else { name };
+            problem.studies.clone_from(&entry.studies);
+            if problems.iter().any(|known| known.name == problem.name) {
+                return Err(Fail::input(format!("{}: two robots are named '{}'", path.display(), problem.name)));
+            }
+            problems.push(problem);
         }
-        problem.name = entry.name.clone().unwrap_or(problem.name);
-        problem.studies.clone_from(&entry.studies);
-        if problems.iter().any(|known| known.name == problem.name) {
-            return Err(Fail::input(format!("{}: two robots are named '{}'", path.display(), problem.name)));
-        }
-        problems.push(problem);
     }
     let name = path.file_stem().map(|stem| stem.to_string_lossy().into_owned()).unwrap_or_default();
     Ok(Loaded { name, suite: parsed, hash, problems })
 }
 
-fn describe(root: &Root, entry: &ProblemEntry, live: bool) -> Result<(Description, ModelOrigin), Fail> {
-    if let Some(name) = &entry.model {
-        let description = read_model(&root.models().join(format!("{name}.json")))?;
-        let origin = if description.provenance.is_some() { ModelOrigin::Robot } else { ModelOrigin::Generated };
-        return Ok((description, origin));
+/// Where the robots of a suite come from.
+struct Files<'a> {
+    root: &'a Root,
+    live: bool,
+    /// MuJoCo, once a robot has asked for it.
+    compiler: Option<Oracle>,
+}
+
+impl Files<'_> {
+    fn describe(&mut self, entry: &ProblemEntry, base: FileBase) -> Result<(Description, ModelOrigin, Option<RobotFile>), Fail> {
+        if let Some(name) = &entry.model {
+            let description = read_model(&self.root.models().join(format!("{name}.json")))?;
+            let origin = if description.provenance.is_some() { ModelOrigin::Robot } else { ModelOrigin::Generated };
+            return Ok((description, origin, None));
+        }
+        if let Some(spec) = &entry.generate {
+            let generated = Family::parse(spec).and_then(|family| family.generate());
+            return generated
+                .map(|description| (description, ModelOrigin::Generated, None))
+                .map_err(|error| Fail::input(error.to_string()));
+        }
+        let (file, folder, format) = match &entry.mjcf {
+            Some(file) => (file.as_str(), self.live.then(|| self.root.packages()), FileFormat::Mjcf),
+            None => {
+                let folder = self.live.then(|| oracles::robots(self.root)).flatten();
+                (entry.urdf.as_deref().unwrap_or_default(), folder, FileFormat::Urdf)
+            }
+        };
+        let folder = folder.filter(|folder| folder.is_dir()).ok_or_else(|| {
+            let message = format!("the suite takes {file} from the packages of robots, which only live runs have");
+            Fail::Missing { message, advice: "run it with --live, after `featherbench oracles install`".into() }
+        })?;
+        let file = RobotFile::open(&folder.join(file), format, base)?;
+        let description = match format {
+            FileFormat::Urdf => read_urdf(&file)?,
+            FileFormat::Mjcf => read_mjcf(&file, self.compiler()?)?,
+        };
+        Ok((description, ModelOrigin::Robot, Some(file)))
     }
-    if let Some(spec) = &entry.generate {
-        let generated = Family::parse(spec).and_then(|family| family.generate());
-        return generated.map(|description| (description, ModelOrigin::Generated)).map_err(|error| Fail::input(error.to_string()));
+
+    /// MuJoCo, started when the first MJCF file is read.
+    fn compiler(&mut self) -> Result<&Oracle, Fail> {
+        if self.compiler.is_none() {
+            let python = oracles::python(self.root).map_or_else(|| oracles::install(self.root), Ok)?;
+            let started = oracles::start(self.root, &python, "mujoco", Limits::default());
+            let missing = |message| Fail::Missing { message, advice: "look at `featherbench oracles status`".into() };
+            self.compiler = Some(started.map_err(missing)?);
+        }
+        self.compiler.as_ref().ok_or_else(|| Fail::input("MuJoCo was not started".into()))
     }
-    let file = entry.urdf.as_deref().unwrap_or_default();
-    let folder = live.then(|| oracles::robots(root)).flatten().ok_or_else(|| {
-        let message = format!("the suite takes {file} from the package of robots, which only live runs have");
-        Fail::Missing { message, advice: "run it with --live, after `featherbench oracles install`".into() }
-    })?;
-    let base = if entry.floating { Base::Floating } else { Base::Fixed };
-    // As engines read such files by default: mimics move on their own, and a body without mass is known by its warning.
+}
+
+/// The reference reading of a URDF file: ours. As engines read such files by default: mimics move on their own, and a body without mass is
+/// known by its warning.
+pub fn read_urdf(file: &RobotFile) -> Result<Description, Fail> {
+    let base = match file.base {
+        FileBase::Fixed => Base::Fixed,
+        FileBase::Free => Base::Floating,
+    };
     let options = Options { base, independent_mimics: true, allow_massless: true };
-    let (mut description, _) = import(&folder.join(file), &options)?;
+    let (mut description, _) = import(&file.path, &options)?;
     // One package holds several variants of one robot's name: the file's name tells them apart.
-    description.name = Path::new(file).file_stem().map_or(description.name, |stem| stem.to_string_lossy().into_owned());
-    Ok((description, ModelOrigin::Robot))
+    description.name = stem(&file.path, description.name);
+    Ok(description)
+}
+
+/// The reference reading of an MJCF file: that of MuJoCo's compiler.
+pub fn read_mjcf(file: &RobotFile, compiler: &dyn Subject) -> Result<Description, Fail> {
+    let refused = |refusal: Refusal| Fail::input(format!("{}: MuJoCo does not read it: {refusal}", file.path.display()));
+    let mut description = compiler.read(file).map_err(refused)?.description;
+    description.name = stem(&file.path, description.name);
+    Ok(description)
+}
+
+fn stem(path: &Path, otherwise: String) -> String {
+    path.file_stem().map_or(otherwise, |stem| stem.to_string_lossy().into_owned())
 }
 
 /// Reads a description file.

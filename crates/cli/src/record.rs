@@ -123,6 +123,7 @@ fn check(path: &Path, now: &Recording, problem: &Problem) -> Vec<String> {
 fn brief(outcome: &Outcome) -> String {
     match outcome {
         Outcome::Values(values) => format!("{} numbers", values.len()),
+        Outcome::Reading(reading) => format!("a robot of {} bodies", reading.description.bodies.len()),
         Outcome::Refused(refusal) => format!("'{refusal}'"),
     }
 }

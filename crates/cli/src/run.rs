@@ -13,7 +13,7 @@ use regex::Regex;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::time::{Instant, SystemTime};
-use studies::{Agreement, Conditioning, Digits, Reproductions, StepLimit, Structure, Timing};
+use studies::{Agreement, Conditioning, Digits, Reading, Reproductions, StepLimit, Structure, Timing};
 
 /// The file that holds what a resumed run must share with the first one.
 const FINGERPRINT_NAME: &str = "fingerprint.json";
@@ -28,10 +28,8 @@ pub fn run(root: &Root, args: &RunArgs) -> Result<(), Fail> {
     let subjects = subjects::open(root, args, &loaded)?;
 
     let started = SystemTime::now();
-    let (folder, id) = folder(root, args, &loaded.name, started)?;
-    let mut info = describe(root, args, &loaded, &subjects);
-    info.conventions = harness::conventions::read(&root.conventions())?;
-    info.conventions.retain(|row| info.engines.iter().any(|engine| engine.name == row.engine));
+    let (folder, id) = folder(root, args.out.as_deref(), args.resume, &loaded.name, started)?;
+    let mut info = describe(root, args.live, &loaded, &subjects)?;
     info.run = id;
     info.started = humantime::format_rfc3339_seconds(started).to_string();
     check_fingerprint(&folder, args, &info)?;
@@ -39,20 +37,7 @@ pub fn run(root: &Root, args: &RunArgs) -> Result<(), Fail> {
 
     let context = Context { problems: &loaded.problems, subjects: &subjects.subjects, gates: &gates, seed: loaded.suite.seed };
     let keep = |cell: &Cell| only.as_ref().is_none_or(|only| only.is_match(&cell.path()));
-    let store = OutcomeStore::open(&folder)?;
-    let progress = Bar::new();
-    let mut records: Vec<Record> = Vec::new();
-    for study in studies(root, &loaded, args) {
-        let phase = Instant::now();
-        let cells = harness::run::plan(study.as_ref(), &context, &keep);
-        let finished = harness::run::evaluate(study.as_ref(), &context, cells, &store, &progress)?;
-        records.extend(harness::run::compare(study.as_ref(), &context, finished));
-        info.seconds.insert(study.name().into(), phase.elapsed().as_secs_f64());
-    }
-    for record in &mut records {
-        record.run.clone_from(&info.run);
-    }
-    info.rows = records.len() as u64;
+    let records = conduct(&studies(root, &loaded, args), &context, &folder, &keep, &mut info)?;
     let complete = only.is_none();
     info.expected = gates.conditions(&loaded.suite, &records, complete);
     for engine in subjects.missing() {
@@ -64,11 +49,40 @@ pub fn run(root: &Root, args: &RunArgs) -> Result<(), Fail> {
     report::conclude(&info, &records, &page)
 }
 
+/// Plans, evaluates and compares study after study; the outcomes are kept in the folder as they come.
+pub fn conduct(
+    studies: &[Box<dyn Study>],
+    context: &Context,
+    folder: &Path,
+    keep: &(dyn Fn(&Cell) -> bool + Sync),
+    info: &mut RunInfo,
+) -> Result<Vec<Record>, Fail> {
+    let store = OutcomeStore::open(folder)?;
+    let progress = Bar::new();
+    let mut records: Vec<Record> = Vec::new();
+    for study in studies {
+        let phase = Instant::now();
+        let cells = harness::run::plan(study.as_ref(), context, keep);
+        let finished = harness::run::evaluate(study.as_ref(), context, cells, &store, &progress)?;
+        records.extend(harness::run::compare(study.as_ref(), context, finished));
+        info.seconds.insert(study.name().into(), phase.elapsed().as_secs_f64());
+    }
+    for record in &mut records {
+        record.run.clone_from(&info.run);
+    }
+    info.rows = records.len() as u64;
+    Ok(records)
+}
+
 /// The studies that a suite names, in the order of the report; timing last, because it wants a quiet machine.
 fn studies(root: &Root, loaded: &Loaded, args: &RunArgs) -> Vec<Box<dyn Study>> {
     let mut studies: Vec<Box<dyn Study>> = Vec::new();
     if loaded.suite.agreement.is_some() {
         studies.push(Box::new(Agreement));
+    }
+    // What engines read from files is not recorded.
+    if loaded.suite.reading && args.live {
+        studies.push(Box::new(Reading));
     }
     if loaded.suite.digits {
         studies.push(Box::new(Digits));
@@ -92,15 +106,15 @@ fn studies(root: &Root, loaded: &Loaded, args: &RunArgs) -> Vec<Box<dyn Study>> 
 }
 
 /// The run's folder and id: a new folder, an empty one, or with `--resume` the one that is there.
-fn folder(root: &Root, args: &RunArgs, suite: &str, started: SystemTime) -> Result<(PathBuf, String), Fail> {
+pub fn folder(root: &Root, out: Option<&Path>, resume: bool, suite: &str, started: SystemTime) -> Result<(PathBuf, String), Fail> {
     let stamp: String = humantime::format_rfc3339_seconds(started).to_string().chars().filter(|c| !":-Z".contains(*c)).collect();
-    let folder = args.out.clone().unwrap_or_else(|| root.reports().join(format!("{suite}-{}", stamp.replace('T', "-"))));
+    let folder = out.map_or_else(|| root.reports().join(format!("{suite}-{}", stamp.replace('T', "-"))), Path::to_owned);
     let io = |source| Fail::from(HarnessError::io(&folder, source));
     let occupied = folder.exists() && std::fs::read_dir(&folder).map_err(io)?.next().is_some();
-    if args.resume && !folder.join(FINGERPRINT_NAME).is_file() {
+    if resume && !folder.join(FINGERPRINT_NAME).is_file() {
         return Err(HarnessError::NothingToResume { path: folder }.into());
     }
-    if occupied && !args.resume {
+    if occupied && !resume {
         return Err(HarnessError::Occupied { path: folder }.into());
     }
     std::fs::create_dir_all(&folder).map_err(io)?;
@@ -130,7 +144,7 @@ fn check_fingerprint(folder: &Path, args: &RunArgs, info: &RunInfo) -> Result<()
 }
 
 /// Everything about the run that its rows share.
-fn describe(root: &Root, args: &RunArgs, loaded: &Loaded, subjects: &Subjects) -> RunInfo {
+pub fn describe(root: &Root, live: bool, loaded: &Loaded, subjects: &Subjects) -> Result<RunInfo, Fail> {
     let command = std::env::args().skip(1).map(|word| if word.contains(' ') { format!("'{word}'") } else { word });
     let models = loaded.problems.iter().map(|problem| {
         let provenance = problem.description.provenance.clone().unwrap_or_default();
@@ -146,19 +160,22 @@ fn describe(root: &Root, args: &RunArgs, loaded: &Loaded, subjects: &Subjects) -
             depth: problem.depth as u64,
         }
     });
-    RunInfo {
+    let mut conventions = harness::conventions::read(&root.conventions())?;
+    conventions.retain(|row| subjects.engines.iter().any(|engine| engine.name == row.engine));
+    Ok(RunInfo {
         suite: loaded.name.clone(),
         suite_hash: loaded.hash.clone(),
         command: ["cargo run --release --".to_owned()].into_iter().chain(command).collect::<Vec<_>>().join(" "),
         seed: loaded.suite.seed,
-        live: args.live,
+        live,
         engines: subjects.engines.clone(),
         models: models.collect(),
+        conventions,
         ..provenance::collect(root.path())
-    }
+    })
 }
 
-fn missing_engine(name: &str, reason: &str) -> ::record::Expectation {
+pub fn missing_engine(name: &str, reason: &str) -> ::record::Expectation {
     ::record::Expectation {
         what: format!("engine {name} answers"),
         expected: 1,

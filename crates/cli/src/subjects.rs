@@ -33,12 +33,17 @@ pub fn open(root: &Root, args: &RunArgs, loaded: &Loaded) -> Result<Subjects, Fa
     let limits = limits(args);
     if args.live && !others.is_empty() {
         let python = oracles::install(root)?;
-        for engine in others {
-            let oracle = if native::PEERS.contains(&engine.as_str()) {
-                native::start(root, engine, limits, None)
-            } else {
-                oracles::start(root, &python, engine, limits)
+        // Together: an engine's start is its libraries being read from disk.
+        let started: Vec<_> = std::thread::scope(|scope| {
+            let start = |engine: &str| match native::PEERS.contains(&engine) {
+                true => native::start(root, engine, limits, None),
+                false => oracles::start(root, &python, engine, limits),
             };
+            let starting: Vec<_> = others.iter().map(|engine| scope.spawn(move || start(engine))).collect();
+            let lost = |_| Err("the engine's start broke off".into());
+            starting.into_iter().map(|thread| thread.join().unwrap_or_else(lost)).collect()
+        });
+        for (engine, oracle) in others.into_iter().zip(started) {
             opened.add(oracle.map(|oracle| Box::new(oracle) as Box<dyn Subject>), engine, EngineSource::Live);
         }
     } else if !others.is_empty() {

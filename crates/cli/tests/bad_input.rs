@@ -77,7 +77,7 @@ fn broken_suites_are_refused_by_file_and_key() {
         (
             "two sources",
             good.replace("model = \"panda\"", "model = \"panda\"\ngenerate = \"hand\""),
-            &["exactly one of model, generate and urdf"],
+            &["exactly one of model, generate, urdf and mjcf"],
         ),
         ("unknown family", good.replace("model = \"panda\"", "generate = \"spider\""), &["spider", "chain"]),
         ("not TOML", good.replace("seed = 1", "seed 1"), &["line"]),
@@ -169,4 +169,34 @@ fn a_missing_python_is_exit_code_three() {
     let ended = support::Ended::new(command.env("PATH", &empty).output().unwrap());
     ended.expect(3, &["python3", "Python 3.11", "recorded answers"]);
     sandbox.run(&["oracles", "status"]).expect(3, &["not installed", "oracles install"]);
+}
+
+/// What is no robot's file is told before any engine is installed or started.
+#[test]
+fn what_cannot_be_compared_gets_advice() {
+    let sandbox = Sandbox::new();
+    let cases: [(&str, &[u8], &str); 13] = [
+        ("part.stl", b"solid part", "a .stl file holds a shape"),
+        ("model.bin", b"\x00\x01robot", "binary file"),
+        ("renamed.urdf", b"\x00\x01robot", "binary file"),
+        ("empty.urdf", b"", "is empty"),
+        ("blank.xml", b" \n ", "is empty"),
+        ("robot.xacro", b"<robot/>", "xacro FILE > robot.urdf"),
+        ("calls.urdf", b"<robot xmlns:xacro='x'><xacro:arm/></robot>", "xacro FILE > robot.urdf"),
+        ("part.xml", b"<mujocoinclude/>", "whose root element is <mujoco>"),
+        ("world.sdf", b"<?xml version='1.0'?><sdf/>", "convert it to URDF or MJCF"),
+        ("page.html", b"<!-- x --><html></html>", "the root element is <html>"),
+        ("robot.json", b"{\"format\":1}", "looks like a description file"),
+        ("notes.txt", b"a robot", "neither URDF nor MJCF"),
+        ("broken.urdf", b"not XML", "no XML element"),
+    ];
+    for (name, bytes, words) in cases {
+        std::fs::write(sandbox.path(name), bytes).unwrap();
+        sandbox.run(&["compare", name]).expect(2, &[name, words]);
+    }
+    sandbox.run(&["compare", "nowhere.urdf"]).expect(2, &["nowhere.urdf"]);
+    sandbox.run(&["compare", "datasets"]).expect(2, &["this is a folder"]);
+    let good = sandbox.write("good.urdf", &urdf(JOINT));
+    sandbox.run(&["compare", good.to_str().unwrap(), "--engines", "pinochio"]).expect(2, &["'pinochio'", "pinocchio, mujoco, drake"]);
+    sandbox.run(&["compare"]).expect(2, &["FILE"]);
 }

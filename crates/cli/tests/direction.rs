@@ -12,7 +12,7 @@ const ALLOWED: [(&str, &[&str]); 11] = [
     ("reference", &["model"]),
     ("record", &[]),
     ("report", &["record"]),
-    ("harness", &["spatial", "model", "dynamics", "record"]),
+    ("harness", &["spatial", "model", "formats", "dynamics", "record"]),
     ("engines", &["spatial", "model", "formats", "dynamics", "record", "harness"]),
     ("studies", &["spatial", "model", "dynamics", "record", "harness"]),
     ("cli", &["spatial", "model", "formats", "dynamics", "record", "report", "harness", "engines", "studies"]),

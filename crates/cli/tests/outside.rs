@@ -9,8 +9,11 @@ mod native;
 mod support;
 mod written;
 
+use engines::{Limits, Oracle};
+use harness::{FileBase, FileFormat, RobotFile, Subject};
 use std::path::Path;
 use std::process::{Command, ExitCode};
+use studies::reading::{Cause, Comparison, Difference, Field};
 use support::{Ended, Sandbox, project};
 
 type Test = fn() -> Outcome;
@@ -26,6 +29,7 @@ enum Outcome {
 
 fn main() -> ExitCode {
     let tests: &[(&str, Test)] = &[
+        ("a number that one engine's file has alone is named", one_file_is_another),
         ("a missing wheel is exit code three and can be tried again", missing_wheel),
         ("the oracles pass their own tests", oracles_by_themselves),
         ("the engines keep the conventions of the ledger", conventions),
@@ -235,6 +239,57 @@ fn live_run() -> Outcome {
     let run =
         command.current_dir(project()).args(["run", "--suite", "smoke", "--live", "--no-timing", "--out"]).arg(folder.path().join("live"));
     checked(run)
+}
+
+/// A URDF of a pendulum on a slide, with some numbers of its own.
+fn pendulum(mass: &str, axis: &str, inertial: &str) -> String {
+    format!(
+        r#"<robot name="p"><link name="base"/>
+        <link name="cart"><inertial><mass value="2"/><inertia ixx="0.1" ixy="0" ixz="0" iyy="0.1" iyz="0" izz="0.1"/></inertial></link>
+        <link name="rod"><inertial><origin xyz="0 0 0.5" rpy="{inertial}"/><mass value="{mass}"/>
+        <inertia ixx="0.08" ixy="0" ixz="0" iyy="0.09" iyz="0" izz="0.02"/></inertial></link>
+        <joint name="slide" type="prismatic"><parent link="base"/><child link="cart"/><axis xyz="1 0 0"/><limit lower="-1" upper="1" effort="1" velocity="1"/></joint>
+        <joint name="hinge" type="revolute"><parent link="cart"/><child link="rod"/><origin xyz="0 0 0.1"/><axis xyz="{axis}"/><limit lower="-1" upper="1" effort="1" velocity="1"/></joint>
+        </robot>"#
+    )
+}
+
+/// Each engine reads files of its own: one has another number in it, and the others are read alike.
+fn one_file_is_another() -> Outcome {
+    let python = match installed_python() {
+        Ok(python) => python,
+        Err(skipped) => return skipped,
+    };
+    let folder = tempfile::tempdir().unwrap();
+    let write = |name: &str, text: String| {
+        let path = folder.path().join(name);
+        std::fs::write(&path, text).unwrap();
+        RobotFile::open(&path, FileFormat::Urdf, FileBase::Fixed).unwrap()
+    };
+    let honest = write("honest.urdf", pendulum("1", "0 1 0", "0.3 0 0"));
+    let (ours, _) = formats::urdf::read(&honest.path, &formats::urdf::Options::default()).unwrap();
+    let planted = [
+        ("mass", pendulum("1.5", "0 1 0", "0.3 0 0"), Field::Mass, Cause::Number),
+        ("grams", pendulum("1000", "0 1 0", "0.3 0 0"), Field::Mass, Cause::Unit),
+        ("flipped", pendulum("1", "0 -1 0", "0.3 0 0"), Field::Axis, Cause::Flipped),
+        ("lost", pendulum("1", "0 1 0", "0 0 0"), Field::Inertia, Cause::InertialRotationLost),
+    ]
+    .map(|(name, text, field, cause)| (write(&format!("{name}.urdf"), text), field, cause));
+    for engine in ["pinocchio", "mujoco", "drake"] {
+        let program = project().join(format!("oracles/{engine}.py"));
+        let oracle = Oracle::start(vec![python.clone().into(), program.into()], Limits::default()).unwrap();
+        let compared = |file: &RobotFile| {
+            let reading = oracle.read(file).unwrap();
+            Comparison::of(&ours, &reading.description, &reading.notes).differences().cloned().collect::<Vec<Difference>>()
+        };
+        assert_eq!(compared(&honest), [], "{engine}");
+        for (file, field, cause) in &planted {
+            let found = compared(file);
+            let named: Vec<_> = found.iter().map(|found| (found.body.as_str(), found.field, found.cause)).collect();
+            assert_eq!(named, [("rod", *field, *cause)], "{engine}: {}", file.path.display());
+        }
+    }
+    Outcome::Passed
 }
 
 fn browser() -> Outcome {

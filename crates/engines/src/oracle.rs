@@ -3,7 +3,7 @@
 pub use crate::process::Limits;
 use crate::process::Process;
 use harness::frame::{Block, Frame};
-use harness::{Identity, Prepared, Problem, Quantity, Refusal, Subject};
+use harness::{Identity, Prepared, Problem, Quantity, Reading, ReadingNote, Refusal, RobotFile, Route, Subject};
 use model::StateBatch;
 use record::EngineSource;
 use serde_json::{Value, json};
@@ -30,9 +30,12 @@ pub struct Oracle {
 /// A process and what it was told last.
 struct Session {
     process: Process,
+    /// Hash of the robot that it holds, or of the file and base that it has read.
     model: String,
     readback: Vec<f64>,
     states: Option<String>,
+    /// The file that it has read, while nothing else was built since.
+    reading: Option<(RobotFile, Reading)>,
 }
 
 impl Oracle {
@@ -60,7 +63,7 @@ impl Oracle {
             return Err("hello: engine and version must not be empty".into());
         }
         let clock = hello.header.get("clock").and_then(Value::as_bool).unwrap_or(false);
-        let session = Session { process, model: String::new(), readback: Vec::new(), states: None };
+        let session = Session { process, model: String::new(), readback: Vec::new(), states: None, reading: None };
         Ok(Self { identity, methods, clock, command, limits, idle: Mutex::new(vec![session]) })
     }
 
@@ -79,7 +82,7 @@ impl Oracle {
             Some(session) => Ok(session),
             None => {
                 let process = Process::start(&self.command, self.limits).map_err(Refusal::Failed)?;
-                Ok(Session { process, model: String::new(), readback: Vec::new(), states: None })
+                Ok(Session { process, model: String::new(), readback: Vec::new(), states: None, reading: None })
             }
         }
     }
@@ -100,6 +103,13 @@ impl Subject for Oracle {
             Quantity::Readback => vec!["build".into()],
             _ => self.methods.get(quantity.name()).cloned().unwrap_or_default(),
         }
+    }
+
+    fn read(&self, file: &RobotFile) -> Result<Reading, Refusal> {
+        let mut session = self.session()?;
+        let reading = session.read(file);
+        self.give_back(session);
+        reading
     }
 
     fn prepare<'a>(
@@ -141,8 +151,12 @@ impl Session {
         if self.model == problem.hash {
             return Ok(());
         }
+        if problem.route == Route::AsRead {
+            return self.build_as_read(problem);
+        }
         self.model.clear();
         self.states = None;
+        self.reading = None;
         let line = formats::neutral::to_line(&problem.description).map_err(|error| Refusal::Failed(error.to_string()))?;
         let description: Value = serde_json::from_str(&line).map_err(|error| Refusal::Failed(error.to_string()))?;
         let answer = self.ask(json!({"op": "prepare", "model": description}), Vec::new())?;
@@ -156,6 +170,49 @@ impl Session {
         self.readback = sized(&answer, "readback", Quantity::Readback.size(problem))?;
         self.model.clone_from(&problem.hash);
         Ok(())
+    }
+
+    /// Has the engine read the robot's file again, and holds it to what it read before.
+    fn build_as_read(&mut self, problem: &Problem) -> Result<(), Refusal> {
+        let file = problem.file.as_ref().ok_or_else(|| Refusal::Failed("the robot has no file to read".into()))?;
+        let reading = self.read(file)?;
+        if reading.description.bodies != problem.description.bodies || reading.description.gravity != problem.description.gravity {
+            return Err(Refusal::Failed("the engine does not read the same robot twice from the same file".into()));
+        }
+        self.model.clone_from(&problem.hash);
+        Ok(())
+    }
+
+    /// Has the engine's own parser read a file, and asks what it holds then.
+    fn read(&mut self, file: &RobotFile) -> Result<Reading, Refusal> {
+        if let Some((_, reading)) = self.reading.as_ref().filter(|(known, _)| known == file) {
+            return Ok(reading.clone());
+        }
+        self.model.clear();
+        self.states = None;
+        self.reading = None;
+        self.readback.clear();
+        let path = file.path.to_str().ok_or_else(|| Refusal::Failed("the file's path is not UTF-8; rename it".into()))?;
+        let header = json!({"op": "read", "file": path, "format": file.format.name(), "base": file.base.name()});
+        let answer = self.ask(header, Vec::new())?;
+        let bad = |message: String| Refusal::Failed(format!("the engine's reading: {message}"));
+        let model = answer.header.get("model").ok_or_else(|| bad("there is no model".into()))?;
+        let description = formats::neutral::parse(&model.to_string(), "the model").map_err(|error| bad(error.to_string()))?;
+        let canonical = description.canonical().map_err(|error| bad(error.to_string()))?;
+        // States and answers are in the order of the bodies: one that would change here would mix them up.
+        if canonical.bodies != description.bodies {
+            return Err(bad("its bodies are not in depth-first order without fixed joints".into()));
+        }
+        for (key, expected) in [("nq", canonical.nq()), ("nv", canonical.nv())] {
+            let found = answer.header.get(key).and_then(Value::as_u64);
+            if found != Some(expected as u64) {
+                return Err(bad(format!("{key} is {found:?}, the model has {expected}")));
+            }
+        }
+        let notes = answer.header.get("notes").and_then(Value::as_array).map_or(&[][..], Vec::as_slice);
+        let reading = Reading { description: canonical, notes: notes.iter().map(note).collect() };
+        self.reading = Some((file.clone(), reading.clone()));
+        Ok(reading)
     }
 
     fn send_states(&mut self, problem: &Problem, states: &StateBatch) -> Result<(), Refusal> {
@@ -241,7 +298,12 @@ impl Drop for Asked<'_> {
     }
 }
 
-/// The answer, when its status is `ok`.
+/// A parser's note; what is no text in it is left empty.
+fn note(note: &Value) -> ReadingNote {
+    let text = |key: &str| note.get(key).and_then(Value::as_str).map(str::to_owned);
+    ReadingNote { cause: text("cause").unwrap_or_default(), subject: text("subject"), text: text("text").unwrap_or_default() }
+}
+
 /// An answer whose status is `ok`, or what its status says.
 pub(crate) fn checked(answer: Frame) -> Result<Frame, Refusal> {
     let reason = || match answer.text("reason") {

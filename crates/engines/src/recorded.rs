@@ -75,6 +75,7 @@ impl Recording {
                 match outcome {
                     Outcome::Refused(Refusal::Unsupported(reason)) => writer.part(header("unsupported", reason), &[]),
                     Outcome::Refused(Refusal::Failed(reason)) => writer.part(header("error", reason), &[]),
+                    Outcome::Reading(_) => writer.part(header("unsupported", "what an engine reads from a file is not recorded"), &[]),
                     Outcome::Values(values) => {
                         let base = bases.get(quantity).filter(|base| base.len() == values.len());
                         let mut header = header("ok", "");
@@ -320,7 +321,7 @@ impl Subject for Recorded {
         match outcomes.into_iter().find(|(q, m, _)| *q == quantity && m == method) {
             Some((_, _, Outcome::Values(values))) => Ok(Box::new(Played { values, size: quantity.size(problem), range: 0..0 })),
             Some((_, _, Outcome::Refused(refusal))) => Err(refusal.clone()),
-            None => Err(Refusal::Failed(format!("{} by {method} was not recorded", quantity.name()))),
+            Some((_, _, Outcome::Reading(_))) | None => Err(Refusal::Failed(format!("{} by {method} was not recorded", quantity.name()))),
         }
     }
 }

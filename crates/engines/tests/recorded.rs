@@ -69,6 +69,7 @@ type Bits = (Quantity, String, Result<Vec<u64>, Refusal>);
 /// Everything of a recording.
 fn bits(recording: &Recording) -> Vec<(Identity, Vec<Bits>)> {
     let outcome = |outcome: &Outcome| match outcome {
+        Outcome::Reading(_) => panic!("readings are not recorded"),
         Outcome::Values(values) => Ok(values.iter().map(|x| x.to_bits()).collect()),
         Outcome::Refused(refusal) => Err(refusal.clone()),
     };

@@ -1,7 +1,7 @@
 //! The cell: the unit of work.
 
-use crate::Refusal;
 use crate::hash;
+use crate::{Reading, Refusal};
 use serde_json::{Value, json};
 
 /// One evaluation: what is asked of whom, about which problem.
@@ -46,6 +46,8 @@ impl Cell {
 pub enum Outcome {
     /// The values, state after state.
     Values(Vec<f64>),
+    /// What the subject read from a file: the answer to cells of the reading study alone.
+    Reading(Box<Reading>),
     /// No values, and why.
     Refused(Refusal),
 }
@@ -55,7 +57,7 @@ impl Outcome {
     pub fn values(&self) -> Option<&[f64]> {
         match self {
             Self::Values(values) => Some(values),
-            Self::Refused(_) => None,
+            Self::Reading(_) | Self::Refused(_) => None,
         }
     }
 }

@@ -71,7 +71,7 @@ impl Deviation {
         self.engine == row.engine
             && self.version == row.engine_version
             && self.method.as_ref().is_none_or(|method| *method == row.method)
-            && self.quantities.as_ref().is_none_or(|quantities| quantities.contains(&row.quantity))
+            && self.about(&row.quantity)
             && self.cases.as_ref().is_none_or(|cases| cases.contains(&row.case))
             && self.names(&row.model)
     }
@@ -84,6 +84,10 @@ impl Deviation {
 
     pub(crate) fn names(&self, model: &str) -> bool {
         named(&self.models, model)
+    }
+
+    pub(crate) fn about(&self, quantity: &String) -> bool {
+        self.quantities.as_ref().is_none_or(|quantities| quantities.contains(quantity))
     }
 
     /// Whether a row is there because of it.

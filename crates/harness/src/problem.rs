@@ -1,8 +1,19 @@
 //! A problem: a robot with the states at which questions are asked.
 
 use crate::measure::Magnitudes;
+use crate::{Reading, RobotFile};
 use model::{Description, Malformed, Model, StateBatch};
 use record::ModelOrigin;
+
+/// How the robot of a problem gets into an engine.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+pub enum Route {
+    /// The description, through the engine's programming interface.
+    #[default]
+    Neutral,
+    /// The file, through the engine's own parser.
+    AsRead,
+}
 
 /// A robot and its states.
 #[derive(Clone, Debug)]
@@ -23,6 +34,10 @@ pub struct Problem {
     pub states: StateBatch,
     /// Depth of the tree of described bodies.
     pub depth: usize,
+    /// The file that the robot was read from, where engines can read it too.
+    pub file: Option<RobotFile>,
+    /// How it gets into an engine.
+    pub route: Route,
     /// The studies that take it; all, when there is no list.
     pub studies: Option<Vec<String>>,
 }
@@ -47,8 +62,31 @@ impl Problem {
             hash,
             states,
             depth,
+            file: None,
+            route: Route::Neutral,
             studies: None,
         })
+    }
+
+    /// The same robot, known to come from a file.
+    pub fn from_file(mut self, file: RobotFile) -> Self {
+        self.hash = crate::hash::of_parts(&[self.hash.as_bytes(), file.hash.as_bytes(), file.format.name().as_bytes()]);
+        self.file = Some(file);
+        self
+    }
+
+    /// The robot that an engine read from this problem's file, at the states that `states` draws for it.
+    ///
+    /// # Errors
+    /// [`Malformed`] when what the engine holds is no robot.
+    pub fn as_read(&self, reading: &Reading, states: impl FnOnce(&Model<f64>) -> StateBatch) -> Result<Self, Malformed> {
+        let description = reading.description.canonical()?;
+        let model = Model::build(&description)?;
+        let states = states(&model);
+        let hash =
+            crate::hash::of_parts(&[self.hash.as_bytes(), format!("as read {:?}", (&description.bodies, description.gravity)).as_bytes()]);
+        let (depth, route) = (description.depth(), Route::AsRead);
+        Ok(Self { description, model, states, hash, depth, route, ..self.clone() })
     }
 
     /// The same robot at other states, with the states' own hash.

@@ -1,8 +1,9 @@
 //! The outcomes of a run on disk: what makes it resumable.
 
 use crate::frame::{Block, Frame, FrameError};
-use crate::{Cell, HarnessError, Outcome, Refusal};
-use serde_json::json;
+use crate::{Cell, HarnessError, Outcome, Reading, ReadingNote, Refusal};
+use formats::neutral;
+use serde_json::{Value, json};
 use std::collections::HashMap;
 use std::fs::{File, OpenOptions};
 use std::io::{BufReader, Seek};
@@ -89,10 +90,31 @@ impl OutcomeStore {
 fn to_frame(id: &str, cell: &Cell, outcome: &Outcome) -> Frame {
     let (status, reason, blocks) = match outcome {
         Outcome::Values(values) => ("ok", "", vec![Block::new("value", &[values.len()], values)]),
+        Outcome::Reading(_) => ("read", "", Vec::new()),
         Outcome::Refused(Refusal::Unsupported(reason)) => ("unsupported", reason.as_str(), Vec::new()),
         Outcome::Refused(Refusal::Failed(reason)) => ("error", reason.as_str(), Vec::new()),
     };
-    Frame::new(json!({"cell": id, "path": cell.path(), "status": status, "reason": reason}), blocks)
+    let mut header = json!({"cell": id, "path": cell.path(), "status": status, "reason": reason});
+    if let Outcome::Reading(reading) = outcome {
+        header["reading"] = written(reading);
+    }
+    Frame::new(header, blocks)
+}
+
+/// A reading as JSON: the description's text, and the notes.
+fn written(reading: &Reading) -> Value {
+    let note = |note: &ReadingNote| json!({"cause": note.cause, "subject": note.subject, "text": note.text});
+    // A description that is no robot has no text, and reads back as a damaged frame: its cell is asked again.
+    let model = neutral::to_string(&reading.description).unwrap_or_default();
+    json!({"model": model, "notes": reading.notes.iter().map(note).collect::<Vec<_>>()})
+}
+
+fn reading(value: &Value) -> Option<Reading> {
+    let text = |value: &Value| value.as_str().map(str::to_owned);
+    let note =
+        |note: &Value| Some(ReadingNote { cause: text(&note["cause"])?, subject: text(&note["subject"]), text: text(&note["text"])? });
+    let description = neutral::parse(value["model"].as_str()?, OUTCOMES_NAME).ok()?;
+    Some(Reading { description, notes: value["notes"].as_array()?.iter().map(note).collect::<Option<_>>()? })
 }
 
 fn from_frame(mut frame: Frame) -> Option<(String, Outcome)> {
@@ -100,6 +122,7 @@ fn from_frame(mut frame: Frame) -> Option<(String, Outcome)> {
     let reason = frame.text("reason").to_owned();
     let outcome = match frame.text("status") {
         "ok" => Outcome::Values(frame.blocks.pop()?.data),
+        "read" => Outcome::Reading(Box::new(reading(frame.header.get("reading")?)?)),
         "unsupported" => Outcome::Refused(Refusal::Unsupported(reason)),
         "error" => Outcome::Refused(Refusal::Failed(reason)),
         _ => return None,

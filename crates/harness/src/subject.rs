@@ -1,6 +1,6 @@
 //! The trait [`Subject`]: anyone who answers.
 
-use crate::{Problem, Quantity, Stepper};
+use crate::{Problem, Quantity, Reading, RobotFile, Stepper};
 use model::StateBatch;
 use record::EngineSource;
 use std::collections::BTreeMap;
@@ -123,6 +123,15 @@ pub trait Subject: Send + Sync {
 
     /// Its methods for a quantity, its usual one first; none when it does not offer the quantity.
     fn methods(&self, quantity: Quantity) -> Vec<String>;
+
+    /// Reads a robot's file with the subject's own parser and says what it holds then.
+    ///
+    /// # Errors
+    /// [`Refusal`] when the subject has no parser, or its parser refuses the file.
+    fn read(&self, file: &RobotFile) -> Result<Reading, Refusal> {
+        let format = file.format.name();
+        Err(Refusal::Unsupported(format!("{} has no parser of {format} files", self.identity().name)))
+    }
 
     /// Gets ready to evaluate a quantity by a method over a batch of states.
     ///

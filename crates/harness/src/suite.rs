@@ -1,12 +1,12 @@
 //! Suites: what a run contains.
 
-use crate::HarnessError;
+use crate::{FileBase, HarnessError};
 use serde::Deserialize;
 use std::collections::BTreeMap;
 use std::path::Path;
 
 /// A suite file, `datasets/suites/NAME.toml`. Unknown keys are errors.
-#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Suite {
     /// What the suite is for, one sentence.
@@ -24,6 +24,9 @@ pub struct Suite {
     /// Whether the digits study is made.
     #[serde(default)]
     pub digits: bool,
+    /// Whether the reading study is made: of live runs alone, and of robots that come from a file.
+    #[serde(default)]
+    pub reading: bool,
     /// Whether the conditioning study is made.
     #[serde(default)]
     pub conditioning: bool,
@@ -54,9 +57,13 @@ pub struct ProblemEntry {
     pub generate: Option<String>,
     /// A URDF file below the package folder of example-robot-data.
     pub urdf: Option<String>,
+    /// An MJCF file below the folder of packages; MuJoCo's compiler says what robot it is.
+    pub mjcf: Option<String>,
     /// Whether the URDF's base floats.
     #[serde(default)]
     pub floating: bool,
+    /// The bases of a file's robot, `fixed` and `free`, each a robot of its own; the free one has `-free` behind its name.
+    pub bases: Option<Vec<String>>,
     /// The family in records.
     pub family: String,
     /// Agreement states, where they differ from the suite's.
@@ -91,6 +98,16 @@ pub struct TimingEntry {
     pub seconds: f64,
 }
 
+impl ProblemEntry {
+    /// The bases of a file's robot, and whether each needs a name of its own.
+    pub fn bases(&self) -> Vec<(FileBase, bool)> {
+        match &self.bases {
+            None => vec![(if self.floating { FileBase::Free } else { FileBase::Fixed }, false)],
+            Some(bases) => bases.iter().filter_map(|base| FileBase::parse(base)).map(|base| (base, base == FileBase::Free)).collect(),
+        }
+    }
+}
+
 impl Suite {
     /// Reads a suite file, with the hash of its text.
     ///
@@ -109,9 +126,18 @@ impl Suite {
         let suite: Self =
             toml::from_str(text).map_err(|error| HarnessError::Config { path: path.to_owned(), message: error.to_string() })?;
         for entry in &suite.problem {
-            let sources = [&entry.model, &entry.generate, &entry.urdf];
+            let sources = [&entry.model, &entry.generate, &entry.urdf, &entry.mjcf];
             if sources.into_iter().flatten().count() != 1 {
-                let message = format!("a [[problem]] of family '{}' must have exactly one of model, generate and urdf", entry.family);
+                let message = format!("a [[problem]] of family '{}' must have exactly one of model, generate, urdf and mjcf", entry.family);
+                return Err(HarnessError::Config { path: path.to_owned(), message });
+            }
+            let of_file = entry.urdf.is_some() || entry.mjcf.is_some();
+            let known = |bases: &Vec<String>| of_file && !entry.floating && bases.iter().all(|base| FileBase::parse(base).is_some());
+            if !entry.bases.as_ref().is_none_or(known) {
+                let message = format!(
+                    "a [[problem]] of family '{}': bases is a list of fixed and free, for urdf and mjcf, without floating",
+                    entry.family
+                );
                 return Err(HarnessError::Config { path: path.to_owned(), message });
             }
         }

@@ -3,7 +3,9 @@
 
 use featherbench_harness::frame::Frame;
 use featherbench_harness::run::{Progress, Silent, compare, evaluate, plan};
-use featherbench_harness::{Cell, Context, Finished, Gates, HarnessError, OUTCOMES_NAME, Outcome, OutcomeStore, Problem, Refusal, Study};
+use featherbench_harness::{
+    Cell, Context, Finished, Gates, HarnessError, OUTCOMES_NAME, Outcome, OutcomeStore, Problem, Reading, ReadingNote, Refusal, Study,
+};
 use model::Random;
 use model::generate::Family;
 use rayon::ThreadPoolBuilder;
@@ -73,6 +75,11 @@ impl Study for Counting {
         match method % 6 {
             4 => Outcome::Refused(Refusal::Unsupported("not \"this\", or\nthat".into())),
             5 => Outcome::Refused(Refusal::Failed("it broke".into())),
+            3 => {
+                let description = Family::parse("chain:n=2").unwrap().generate().unwrap();
+                let note = ReadingNote { cause: "warning".into(), subject: None, text: "not \"this\"".into() };
+                Outcome::Reading(Box::new(Reading { description, notes: vec![note] }))
+            }
             _ => {
                 let mut random = Random::named(context.seed, &cell.id());
                 Outcome::Values((0..1 + 40 * method).map(|_| random.uniform(-1.0, 1.0)).collect())
@@ -85,6 +92,7 @@ impl Study for Counting {
             let blank = Record { cell: cell.id(), model: problem.name.clone(), method: cell.method.clone(), ..Record::default() };
             match outcome {
                 Outcome::Values(values) => blank.informed(values.iter().sum()),
+                Outcome::Reading(reading) => blank.informed((reading.description.bodies.len() + reading.notes.len()) as f64),
                 Outcome::Refused(Refusal::Unsupported(reason)) => blank.without_value(Verdict::Skip, reason.as_str()),
                 Outcome::Refused(Refusal::Failed(reason)) => blank.without_value(Verdict::Error, reason.as_str()),
             }

@@ -27,6 +27,7 @@ mod page;
 mod pairwise;
 mod plots;
 mod provenance;
+mod reading;
 mod steps;
 mod tally;
 mod tradeoff;
@@ -56,6 +57,7 @@ const SCRIPT: &str = concat!(
     include_str!("../assets/digits.js"),
     include_str!("../assets/tradeoff.js"),
     include_str!("../assets/steps.js"),
+    include_str!("../assets/reading.js"),
 );
 
 /// Where a report was written.

@@ -6,16 +6,18 @@ use record::{CSV_NAME, RUN_NAME, Record, RunInfo, SCHEMA_NAME};
 use crate::figures::Figures;
 use crate::findings::Findings;
 use crate::overview::{Overview, REPRODUCTIONS};
+use crate::reading::Readings;
 use crate::truth::Truth;
 use crate::{
-    conditioning, conventions, digits_section, heatmap, joint_matrix, known, method, pairwise, plots, provenance, steps, tradeoff, truth,
-    unpassed, verdict,
+    conditioning, conventions, digits_section, heatmap, joint_matrix, known, method, pairwise, plots, provenance, reading, steps, tradeoff,
+    truth, unpassed, verdict,
 };
 
 /// The sections: anchor, entry in the navigation.
 const SECTIONS: &[(&str, &str)] = &[
     ("verdict", "Verdict"),
     ("agreement", "Agreement"),
+    ("reading", "Readings"),
     ("joints", "Joints"),
     ("digits", "Digits"),
     ("depth", "Error"),
@@ -35,6 +37,7 @@ const SECTIONS: &[(&str, &str)] = &[
 pub fn render(run: &RunInfo, records: &[Record], overview: &Overview, figures: &Figures) -> String {
     let findings = Findings::of(run, overview, records);
     let truth = Truth::of(overview, &figures.digits, records);
+    let readings = Readings::of(overview, records);
     let page = html! {
         (DOCTYPE)
         html lang="en" {
@@ -52,10 +55,11 @@ pub fn render(run: &RunInfo, records: &[Record], overview: &Overview, figures: &
             }
             body {
                 a.to-content href="#verdict" { "Skip to the verdict" }
-                (header(run, overview, figures))
+                (header(run, overview, figures, &readings))
                 main {
                     (verdict::section(run, overview, records, &findings, truth::markup(overview, &figures.digits, &truth)))
                     (heatmap::section(overview, &findings))
+                    (reading::section(overview, &readings))
                     (joint_matrix::section(overview, &figures.joints))
                     (digits_section::section(overview, &figures.digits))
                     (plots::depth(figures))
@@ -97,8 +101,9 @@ pub fn opener(chunk: &str, filters: &[(&str, &str)], text: &str) -> Markup {
 }
 
 /// The sections that this run has: some appear with their rows alone.
-fn sections(overview: &Overview, figures: &Figures) -> impl Iterator<Item = (&'static str, &'static str)> {
+fn sections(overview: &Overview, figures: &Figures, readings: &Readings) -> impl Iterator<Item = (&'static str, &'static str)> {
     let absent = |anchor| match anchor {
+        "reading" => readings.is_empty(),
         "joints" => figures.joints.rows.is_empty(),
         "digits" => figures.digits.subjects.is_empty(),
         "tradeoff" => figures.tradeoffs.is_empty(),
@@ -110,7 +115,7 @@ fn sections(overview: &Overview, figures: &Figures) -> impl Iterator<Item = (&'s
     SECTIONS.iter().copied().filter(move |&(anchor, _)| !absent(anchor))
 }
 
-fn header(run: &RunInfo, overview: &Overview, figures: &Figures) -> Markup {
+fn header(run: &RunInfo, overview: &Overview, figures: &Figures, readings: &Readings) -> Markup {
     html! {
         header {
             div.bar {
@@ -119,7 +124,7 @@ fn header(run: &RunInfo, overview: &Overview, figures: &Figures) -> Markup {
                     span { "featherbench" }
                 }
                 nav aria-label="Sections" {
-                    @for (anchor, name) in sections(overview, figures) { a href={ "#" (anchor) } { (name) } }
+                    @for (anchor, name) in sections(overview, figures, readings) { a href={ "#" (anchor) } { (name) } }
                 }
                 button #theme type="button" aria-label="Switch between light and dark" title="Light or dark" { "◐" }
             }

@@ -129,6 +129,7 @@ impl Comparison<'_> {
         let Some(quantity) = Quantity::parse(&cell.quantity) else { return Vec::new() };
         let values = match outcome {
             Outcome::Values(values) => values,
+            Outcome::Reading(_) => return Vec::new(),
             Outcome::Refused(refusal) => {
                 let verdict = if matches!(refusal, Refusal::Unsupported(_)) { Verdict::Skip } else { Verdict::Error };
                 let row = Record { reference: REFERENCE.into(), ..row(cell, self.problem) };
@@ -240,7 +241,7 @@ impl Comparison<'_> {
                             reference: other.subject.clone(),
                             ..row(cell, self.problem)
                         };
-                        rows.push(row.informed(errors.into_iter().fold(0.0, worst)));
+                        rows.push(self.context.gates.explain(row.informed(errors.into_iter().fold(0.0, worst))));
                     }
                 }
             }
@@ -266,7 +267,7 @@ impl Comparison<'_> {
                 reference: "native on the model read back".into(),
                 ..row(cell, self.problem)
             };
-            rows.push(row.informed(errors.into_iter().fold(0.0, worst)));
+            rows.push(self.context.gates.explain(row.informed(errors.into_iter().fold(0.0, worst))));
         }
         rows
     }

@@ -91,7 +91,7 @@ impl Study for Digits {
                 let (verdict, reason) = match outcome {
                     Outcome::Refused(Refusal::Unsupported(reason)) => (Verdict::Skip, reason.clone()),
                     Outcome::Refused(Refusal::Failed(reason)) => (Verdict::Error, reason.clone()),
-                    Outcome::Values(_) => (Verdict::Error, format!("there is no quantity {}", cell.quantity)),
+                    Outcome::Values(_) | Outcome::Reading(_) => (Verdict::Error, format!("there is no quantity {}", cell.quantity)),
                 };
                 rows.push(context.gates.explain(blank.without_value(verdict, reason)));
                 continue;

@@ -3,6 +3,7 @@
 //! - [`Agreement`]: do the engines agree on one and the same model?
 //! - [`Digits`]: how far is each from the truth, and who is right?
 //! - [`Conditioning`]: how does κ(M) grow, and does it matter?
+//! - [`Reading`]: do they read one and the same file alike, and if not, where and why?
 //! - [`Reproductions`]: are the engines' known deviations still there, and as large as they were?
 //! - [`StepLimit`]: how does the acceleration of a step approach the true one, and what do steps do to energy?
 //! - [`Structure`]: are the counts of the sparse algorithms the integers that theory says?
@@ -11,6 +12,7 @@
 mod agreement;
 mod conditioning;
 mod digits;
+pub mod reading;
 mod reproductions;
 mod step_limit;
 mod structure;
@@ -19,6 +21,7 @@ mod timing;
 pub use agreement::Agreement;
 pub use conditioning::Conditioning;
 pub use digits::Digits;
+pub use reading::Reading;
 pub use reproductions::{Reproduce, Reproductions};
 pub use step_limit::StepLimit;
 pub use structure::Structure;

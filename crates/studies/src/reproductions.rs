@@ -83,6 +83,7 @@ fn rows(context: &Context, known: &Reproduction, cell: &Cell, outcome: &Outcome)
     }
     let values = match outcome {
         Outcome::Values(values) => values,
+        Outcome::Reading(_) => return Vec::new(),
         Outcome::Refused(refusal) => return vec![blank.without_value(Verdict::Error, refusal.to_string())],
     };
     // A NaN among them must not be passed over: it is neither small nor large.

@@ -90,6 +90,7 @@ impl Study for Timing {
                 ..row(cell, problem)
             };
             match outcome {
+                Outcome::Reading(_) => {}
                 Outcome::Refused(refusal) => rows.push(blank.without_value(Verdict::Error, refusal.to_string())),
                 Outcome::Values(blocks) => {
                     let mut sorted = blocks.clone();

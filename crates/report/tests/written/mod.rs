@@ -1,5 +1,7 @@
 //! A report on disk, and how tests look into it.
 
+#![allow(dead_code, reason = "every test file compiles this module and uses a part of it")]
+
 use std::fs;
 
 use record::{Record, RunInfo};

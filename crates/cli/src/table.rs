@@ -1,0 +1,130 @@
+//! The table of a comparison in the terminal, from its records alone.
+
+use crate::compare::neutral;
+use ::record::Record;
+use harness::{Problem, Subject};
+use serde_json::Value;
+use std::collections::BTreeMap;
+
+/// Differences that are listed of one engine; the report has them all.
+const LISTED: usize = 12;
+
+/// What each engine makes of a robot, as text.
+pub fn of(problem: &Problem, subjects: &[Box<dyn Subject>], records: &[Record]) -> String {
+    let states = &problem.states;
+    let reference = records.iter().find(|row| row.study == "reading" && row.model == problem.name).map_or("native", |row| &row.reference);
+    let reference = if reference == "native" { "featherbench's own reading" } else { "the reading of MuJoCo's compiler" };
+    let mut text = format!("\n{} ({}, {} bodies, {} dofs), against {reference}\n", problem.name, problem.base(), states.bodies, states.nv);
+    for subject in subjects.iter().filter(|subject| subject.identity().name != "native") {
+        let identity = subject.identity();
+        let rows: Vec<&Record> = records.iter().filter(|row| row.model == problem.name && row.engine == identity.name).collect();
+        text += &format!("\n  {} {}\n", identity.name, identity.version);
+        let computed = neutral(&rows).map_or_else(
+            || rows.iter().find(|row| row.study == "agreement" && row.value.is_none()).map_or("no answer".into(), |row| row.reason.clone()),
+            |error| format!("id, bias and M agree to {error:.1e}"),
+        );
+        text += &format!("    one neutral model   {computed}\n");
+        text += &as_read(&rows.into_iter().filter(|row| row.study == "reading").collect::<Vec<_>>());
+    }
+    text
+}
+
+fn as_read(rows: &[&Record]) -> String {
+    let value =
+        |metric: &str, quantity: &str| rows.iter().find(|row| row.metric == metric && row.quantity == quantity).and_then(|row| row.value);
+    let Some(read) = rows.iter().find(|row| row.metric == "differences") else { return String::new() };
+    let Some(count) = read.value else { return format!("    the file as read    not read: {}\n", read.reason) };
+    let differences: Vec<(&Record, Value)> = rows.iter().filter(|row| row.metric == "difference").map(|row| (*row, params(row))).collect();
+    let felt: Vec<&(&Record, Value)> = differences.iter().filter(|(_, params)| params["weight"] != "information").collect();
+    let mut text = match count as u64 {
+        0 => "    the file as read    alike".to_owned(),
+        1 => "    the file as read    differs in one place".to_owned(),
+        many => format!("    the file as read    differs in {many} places"),
+    };
+    if let (Some(id), Some(mass)) = (value("as_read", "id"), value("as_read", "mass_matrix")) {
+        text += &format!(" (id off by {id:.1e}, M by {mass:.1e})");
+    }
+    text += "\n";
+    // The gravest first: what changes the mass matrix or the torques most.
+    let (mut ranked, carried): (Vec<_>, Vec<_>) = felt.into_iter().partition(|(_, params)| params["weight"] == "dynamics");
+    let effect = |params: &Value| params["mass_matrix"].as_f64().unwrap_or(f64::MAX).max(params["id"].as_f64().unwrap_or(f64::MAX));
+    ranked.sort_by(|(_, a), (_, b)| effect(b).total_cmp(&effect(a)));
+    for (row, params) in ranked.iter().take(LISTED) {
+        text += &line(row, params);
+    }
+    if ranked.len() > LISTED {
+        text += &format!("      … and {} more, in the report\n", ranked.len() - LISTED);
+    }
+    text += &together(&carried);
+    let told: Vec<&(&Record, Value)> = differences.iter().filter(|(_, params)| params["weight"] == "information").collect();
+    for (_, params) in told.iter().filter(|(row, _)| row.quantity == "dof_order") {
+        text += &format!("      other order of joints: {} where the file has {}\n", some(&params["theirs"]), some(&params["ours"]));
+    }
+    let limits = told.iter().filter(|(row, _)| row.quantity == "limits").count();
+    if limits > 0 {
+        text += &format!("      limits of position differ at {limits} joints\n");
+    }
+    text + &explained(rows)
+}
+
+fn line(row: &Record, params: &Value) -> String {
+    let body = if row.case.is_empty() { "the robot" } else { &row.case };
+    let number = |key: &str| params[key].as_f64().map_or("–".to_owned(), |error| format!("{error:.1e}"));
+    let effect = format!("id {}, M {}", number("id"), number("mass_matrix"));
+    let cause = params["cause"].as_str().unwrap_or_default().replace('_', " ");
+    let cause = if cause == "number" { String::new() } else { format!(" [{cause}]") };
+    let mut text = format!(
+        "      {body}: {}{cause}: {} instead of {} ({effect})\n",
+        row.quantity.replace('_', " "),
+        some(&params["theirs"]),
+        some(&params["ours"])
+    );
+    if let Some(note) = params["note"].as_str() {
+        text += &format!("        its parser: {note}\n");
+    }
+    text
+}
+
+/// What enters an engine's own simulation alone, one line for each field and cause.
+fn together(carried: &[&(&Record, Value)]) -> String {
+    let mut groups: BTreeMap<(&str, &str), Vec<String>> = BTreeMap::new();
+    for (row, params) in carried {
+        let change = format!("{} ({} instead of {})", row.case, some(&params["theirs"]), some(&params["ours"]));
+        groups.entry((&row.quantity, params["cause"].as_str().unwrap_or_default())).or_default().push(change);
+    }
+    let line = |((field, cause), bodies): (&(&str, &str), &Vec<String>)| {
+        let cause = if *cause == "unsupported" { "not read" } else { "read otherwise" };
+        let beyond = if bodies.len() > 3 { format!(", … ({} in all)", bodies.len()) } else { String::new() };
+        format!("      {field} {cause}: {}{beyond}; no part of id and M\n", bodies.iter().take(3).cloned().collect::<Vec<_>>().join(", "))
+    };
+    groups.iter().map(line).collect()
+}
+
+/// A text of the parameters, cut where a line ends.
+fn some(value: &Value) -> String {
+    const LONGEST: usize = 100;
+    let text = value.as_str().unwrap_or_default();
+    if text.chars().count() <= LONGEST { text.to_owned() } else { text.chars().take(LONGEST).chain(" …".chars()).collect() }
+}
+
+fn explained(rows: &[&Record]) -> String {
+    let Some(row) = rows.iter().find(|row| row.metric == "unexplained") else { return String::new() };
+    let params = params(row);
+    match row.value {
+        None => format!("    replayed            {}\n", row.reason),
+        Some(0.0) => "    replayed            our kernels on what it read give its answers: nothing is left unexplained\n".into(),
+        Some(_) => {
+            let mut text = "    replayed            unexplained: it computes something else than what it says to have read\n".to_owned();
+            for tree in params["unexplained"].as_array().into_iter().flatten() {
+                let bodies: Vec<&str> = tree["bodies"].as_array().into_iter().flatten().filter_map(Value::as_str).collect();
+                let quantity = tree["quantity"].as_str().unwrap_or_default();
+                text += &format!("      {quantity} off by {} in the sub-tree {}\n", tree["error"], bodies.join(", "));
+            }
+            text
+        }
+    }
+}
+
+fn params(row: &Record) -> Value {
+    serde_json::from_str(&row.params).unwrap_or_default()
+}

@@ -1,0 +1,93 @@
+//! A robot's file, and what an engine's own parser makes of it.
+
+use crate::{HarnessError, hash};
+use model::Description;
+use std::path::{Path, PathBuf};
+
+/// A robot as its author wrote it: the file that every engine reads for itself.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct RobotFile {
+    /// The file, by its absolute path.
+    pub path: PathBuf,
+    /// How it is written.
+    pub format: FileFormat,
+    /// What the root link stands on.
+    pub base: FileBase,
+    /// Hash of the file's content. Files that it includes are not in it.
+    pub hash: String,
+}
+
+/// How a robot's file is written.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum FileFormat {
+    /// The Unified Robot Description Format.
+    Urdf,
+    /// MuJoCo's own format.
+    Mjcf,
+}
+
+/// What the root link of a file stands on.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum FileBase {
+    /// The world, or what the file itself says.
+    Fixed,
+    /// A free joint.
+    Free,
+}
+
+/// What an engine holds after its own parser has read a file.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Reading {
+    /// The robot that it holds, canonical.
+    pub description: Description,
+    /// What the parser is known to have done on the way.
+    pub notes: Vec<ReadingNote>,
+}
+
+/// Something that a parser did beyond reading, or left unread.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct ReadingNote {
+    /// A word of `oracles/PROTOCOL.md`, such as `mass_edited`.
+    pub cause: String,
+    /// The link, joint or element that it is about.
+    pub subject: Option<String>,
+    /// What was done, one sentence.
+    pub text: String,
+}
+
+impl RobotFile {
+    /// The file at a path, with the hash of its content.
+    ///
+    /// # Errors
+    /// [`HarnessError::Io`] when it cannot be found or read.
+    pub fn open(path: &Path, format: FileFormat, base: FileBase) -> Result<Self, HarnessError> {
+        let io = |source| HarnessError::io(path, source);
+        let bytes = std::fs::read(path).map_err(io)?;
+        Ok(Self { path: std::path::absolute(path).map_err(io)?, format, base, hash: hash::of(&bytes) })
+    }
+}
+
+impl FileFormat {
+    /// The word for it in the oracle protocol.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Urdf => "urdf",
+            Self::Mjcf => "mjcf",
+        }
+    }
+}
+
+impl FileBase {
+    /// The base named by a word.
+    pub fn parse(word: &str) -> Option<Self> {
+        [Self::Fixed, Self::Free].into_iter().find(|base| base.name() == word)
+    }
+
+    /// The word for it in the oracle protocol.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Fixed => "fixed",
+            Self::Free => "free",
+        }
+    }
+}

@@ -1,0 +1,64 @@
+//! The section on how engines read robots' files: what the rows say stands there, and runs without such rows have no section.
+
+use record::{Record, Relation, RunInfo, Verdict};
+use written::Written;
+
+mod support;
+mod written;
+
+/// Rows of two robots: one is read alike, differs and is refused; the other is unexplained.
+fn rows(run: &RunInfo) -> Vec<Record> {
+    let row = |model: &str, engine: &str, quantity: &str, metric: &str, params: &str| Record {
+        run: run.run.clone(),
+        cell: format!("{model}{engine}{quantity}{metric}"),
+        study: "reading".into(),
+        problem: "robot".into(),
+        model: model.into(),
+        engine: engine.into(),
+        quantity: quantity.into(),
+        metric: metric.into(),
+        params: params.into(),
+        reference: "native".into(),
+        ..Record::default()
+    };
+    let edited = r#"{"cause":"balanced","id":0.1,"mass_matrix":0.2,"note":null,"ours":"1 kg","theirs":"2 kg","weight":"dynamics"}"#;
+    let tree = r#"{"unexplained":[{"bodies":["arm"],"error":0.5,"quantity":"mass_matrix"}]}"#;
+    vec![
+        row("one", "pinocchio", "reading", "differences", "{}").informed(0.0),
+        row("one", "pinocchio", "id", "as_read", "{}").informed(1e-15),
+        row("one", "pinocchio", "reading", "unexplained", "{}").gated(0.0, Relation::Le, 0.0),
+        row("one", "mujoco", "reading", "differences", "{}").informed(1.0),
+        row("one", "mujoco", "inertia", "difference", edited).informed(0.5),
+        row("one", "mujoco", "id", "as_read", "{}").informed(0.25),
+        row("one", "drake", "reading", "differences", "{}").without_value(Verdict::Error, "no <such> joint"),
+        row("two", "drake", "reading", "differences", "{}").informed(0.0),
+        row("two", "drake", "id", "as_read", "{}").informed(0.5),
+        row("two", "drake", "reading", "unexplained", tree).gated(1.0, Relation::Le, 0.0),
+    ]
+}
+
+#[test]
+fn each_reading_has_its_cell_and_each_cause_its_count() {
+    let run = support::run_info();
+    let written = Written::of(&run, &rows(&run));
+    let section = written.section("reading");
+    assert_eq!(section.matches("data-reading=").count(), 4, "four readings");
+    let cell = |model: &str, engine: &str| {
+        let line = section.split("<tr>").find(|line| line.contains(&format!("<th scope=\"row\">{model}</th>"))).unwrap();
+        let cells = line.split("<td").find(|cell| cell.contains(&format!("data-engine=\"{engine}\"")));
+        cells.unwrap_or_else(|| panic!("{engine} has no cell of {model}: {line}")).to_owned()
+    };
+    assert!(cell("one", "pinocchio").contains("number d0") && cell("one", "pinocchio").contains('✓'));
+    assert!(cell("one", "mujoco").contains("number d5") && cell("one", "mujoco").contains(">1<"));
+    assert!(cell("one", "drake").contains('–') && cell("one", "drake").contains("no &lt;such&gt; joint"));
+    assert!(cell("two", "drake").contains("class=\"unexplained\">?"), "{}", cell("two", "drake"));
+    assert!(section.contains("impossible principal moments were made equal"));
+    assert!(written.index.contains("href=\"#reading\""));
+}
+
+#[test]
+fn a_run_that_did_not_ask_has_no_section() {
+    let run = support::run_info();
+    let written = Written::of(&run, &support::records(&run));
+    assert!(!written.index.contains("<section id=\"reading\"") && !written.index.contains("href=\"#reading\""));
+}

@@ -1,0 +1,237 @@
+//! Two readings of one robot, compared body by body: a pure function of two descriptions and of what the parser says about itself.
+
+use super::align::aligned;
+use super::cause::cause;
+use super::fields::{self, OF_A_BODY, differs, digits};
+use super::pairs::{chained, pairs};
+use super::{Cause, Difference, Field};
+use harness::ReadingNote;
+use model::{BodyDescription, Description, JointType};
+use std::collections::HashMap;
+
+/// What a comparison finds.
+#[derive(Clone, Debug)]
+pub struct Comparison {
+    /// Every difference: what is missing or added first, then body by body in our order, then what is about the whole robot.
+    pub findings: Vec<Finding>,
+    /// Our robot without the bodies that theirs does not have as moving bodies.
+    pub ours: Description,
+}
+
+/// A difference, and our robot with this difference alone.
+#[derive(Clone, Debug)]
+pub struct Finding {
+    /// The difference.
+    pub difference: Difference,
+    /// Our robot where this one field has their value; none where that is another robot altogether.
+    pub alone: Option<Description>,
+}
+
+impl Comparison {
+    /// Compares their reading of a robot with ours. Both must be canonical.
+    pub fn of(ours: &Description, theirs: &Description, notes: &[ReadingNote]) -> Self {
+        let (ours, theirs) = (chained(ours), chained(theirs));
+        let partner = pairs(&ours, &theirs);
+        let gone: Vec<usize> = (0..ours.bodies.len()).filter(|&i| partner[i].is_none()).collect();
+        let extra: Vec<usize> = (0..theirs.bodies.len()).filter(|j| !partner.contains(&Some(*j))).collect();
+        let mut findings: Vec<Finding> = extra.iter().map(|&j| added(&theirs.bodies[j])).collect();
+        let names: HashMap<&str, &str> = partner
+            .iter()
+            .enumerate()
+            .filter_map(|(i, j)| Some((ours.bodies[i].name.as_str(), theirs.bodies[(*j)?].name.as_str())))
+            .collect();
+        let Some(reduced) = without(&theirs, &extra, Mass::Kept) else {
+            findings.splice(0..0, gone.iter().map(|&i| missing(&ours.bodies[i], Mass::Kept, notes)));
+            return Self { findings, ours };
+        };
+        // A body that is gone was merged into its parent, or dropped with its mass: the numbers of the others tell.
+        let mut best: Option<(usize, Mass, Description, Vec<Finding>)> = None;
+        let hypotheses: &[Mass] = if gone.is_empty() { &[Mass::Kept] } else { &[Mass::Kept, Mass::Dropped] };
+        for &mass in hypotheses {
+            let Some(left) = without(&ours, &gone, mass) else { continue };
+            let found = shared(&left, &reduced, &names, notes);
+            let count = found.iter().filter(|finding| finding.difference.field.weight() == super::Weight::Dynamics).count();
+            if best.as_ref().is_none_or(|(fewest, ..)| count < *fewest) {
+                best = Some((count, mass, left, found));
+            }
+        }
+        let (mass, left, found) = best.map_or((Mass::Kept, ours.clone(), Vec::new()), |(_, mass, left, found)| (mass, left, found));
+        findings.splice(0..0, gone.iter().map(|&i| missing(&ours.bodies[i], mass, notes)));
+        findings.extend(found);
+        Self { findings, ours: left }
+    }
+
+    /// The differences alone.
+    pub fn differences(&self) -> impl Iterator<Item = &Difference> {
+        self.findings.iter().map(|finding| &finding.difference)
+    }
+}
+
+/// What became of the mass of a body that no longer moves.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Mass {
+    Kept,
+    Dropped,
+}
+
+/// The robot with some bodies fixed to their parents, if anything still moves.
+fn without(description: &Description, gone: &[usize], mass: Mass) -> Option<Description> {
+    let mut reduced = description.clone();
+    for &i in gone {
+        let body = &mut reduced.bodies[i];
+        body.joint = model::JointDescription { name: body.joint.name.clone(), placement: body.joint.placement, ..Default::default() };
+        if mass == Mass::Dropped {
+            (body.mass, body.inertia) = (0.0, [0.0; 6]);
+        }
+    }
+    reduced.canonical().ok()
+}
+
+fn missing(body: &BodyDescription, mass: Mass, notes: &[ReadingNote]) -> Finding {
+    let (cause, theirs) = match mass {
+        Mass::Kept => (Cause::Merged, "fixed to its parent"),
+        Mass::Dropped => (Cause::Dropped, "none, and its mass is gone"),
+    };
+    let ours = format!("{} joint '{}'", body.joint.kind.name(), body.joint.name);
+    let mut finding = whole(&body.name, Field::Body, ours, theirs.into(), cause);
+    let root = body.parent.is_none();
+    let about = |note: &&ReadingNote| match note.cause.as_str() {
+        "root_welded" => root,
+        "mimic" | "fused" => note.subject.as_deref().is_some_and(|name| name == body.name || name == body.joint.name),
+        _ => false,
+    };
+    finding.difference.note = notes.iter().find(about).map(|note| note.text.clone());
+    finding
+}
+
+fn added(body: &BodyDescription) -> Finding {
+    let theirs = format!("{} joint '{}', {} kg", body.joint.kind.name(), body.joint.name, digits(body.mass, 0.0));
+    whole(&body.name, Field::Body, "none".into(), theirs, Cause::Added)
+}
+
+/// A difference of a kind that has no number: its size is one.
+fn whole(body: &str, field: Field, ours: String, theirs: String, cause: Cause) -> Finding {
+    Finding { difference: Difference { body: body.to_owned(), field, ours, theirs, size: 1.0, cause, note: None }, alone: None }
+}
+
+/// The differences of two robots with the same bodies; `names` leads from ours to theirs.
+fn shared(ours: &Description, theirs: &Description, names: &HashMap<&str, &str>, notes: &[ReadingNote]) -> Vec<Finding> {
+    let place: HashMap<&str, usize> = theirs.bodies.iter().enumerate().map(|(j, body)| (body.name.as_str(), j)).collect();
+    let partner: Vec<Option<usize>> =
+        ours.bodies.iter().map(|body| names.get(body.name.as_str()).and_then(|name| place.get(name)).copied()).collect();
+    let reach = fields::reach(ours).max(fields::reach(theirs));
+    let written = aligned(ours, theirs, &partner, reach);
+    let mut findings = Vec::new();
+    for (i, body) in ours.bodies.iter().enumerate() {
+        let (Some(aligned), Some(j)) = (&written[i], partner[i]) else { continue };
+        let about = about(ours, i, &theirs.bodies[j], notes);
+        let above = ours.bodies[i].parent.and_then(|parent| partner[parent]);
+        if above != theirs.bodies[j].parent {
+            let name =
+                |description: &Description, parent: Option<usize>| parent.map_or("world".into(), |p| description.bodies[p].name.clone());
+            let (a, b) = (name(ours, body.parent), name(theirs, theirs.bodies[j].parent));
+            findings.push(whole(&body.name, Field::Parent, a, b, Cause::Number));
+        }
+        for field in OF_A_BODY {
+            let size = fields::size(field, body, aligned, reach);
+            if differs(size, fields::rounding(ours, i)) {
+                findings.push(finding(ours, i, aligned, field, size, &about));
+            }
+        }
+    }
+    super::context::explain(ours, &written, &mut findings, reach);
+    findings.extend(gravity(ours, theirs));
+    findings.extend(order(ours, &partner));
+    findings
+}
+
+fn finding(ours: &Description, i: usize, aligned: &BodyDescription, field: Field, size: f64, notes: &[&ReadingNote]) -> Finding {
+    let body = &ours.bodies[i];
+    let (cause, note) = cause(field, body, aligned, notes);
+    let [a, b] = [body, aligned].map(|body| fields::written(field, body, size));
+    let difference = Difference { body: body.name.clone(), field, ours: a, theirs: b, size, cause, note };
+    // Other coordinates, or none: not this robot with one number changed.
+    let comparable = field != Field::JointType || body.joint.kind.nv() == aligned.joint.kind.nv();
+    let alone = comparable.then(|| {
+        let mut alone = ours.clone();
+        fields::copy(field, aligned, &mut alone.bodies[i]);
+        alone
+    });
+    Finding { difference, alone }
+}
+
+/// What the parser says about a body: about its link, its joint or the links that are fixed to it, or about the whole file.
+fn about<'a>(ours: &Description, i: usize, theirs: &BodyDescription, notes: &'a [ReadingNote]) -> Vec<&'a ReadingNote> {
+    let body = &ours.bodies[i];
+    let fixed = |name: &str| ours.frames.iter().any(|frame| frame.body == Some(i) && frame.name == name);
+    let named =
+        |name: &str| [&body.name, &body.joint.name, &theirs.name, &theirs.joint.name].into_iter().any(|own| own == name) || fixed(name);
+    let own = |name: &str| !name.is_empty() && named(name);
+    // A sentence about many links names them.
+    let among = |text: &str| text.split(|c: char| c.is_whitespace() || c == ',').any(own);
+    let concerns = |note: &&ReadingNote| match (&note.subject, note.cause.as_str()) {
+        (Some(subject), _) => named(subject),
+        (None, "from_geometry") => among(&note.text),
+        (None, _) => true,
+    };
+    notes.iter().filter(concerns).collect()
+}
+
+fn gravity(ours: &Description, theirs: &Description) -> Option<Finding> {
+    let far = fields::norm(ours.gravity).max(fields::norm(theirs.gravity));
+    let size = harness::measure::ratio(fields::distance(ours.gravity, theirs.gravity), far);
+    let text = |g: [f64; 3]| format!("({}) m/s²", g.map(|x| digits(x, size)).join(", "));
+    differs(size, fields::ROUNDING).then(|| {
+        let mut finding = whole("", Field::Gravity, text(ours.gravity), text(theirs.gravity), Cause::Number);
+        finding.difference.size = size;
+        finding.alone = Some(Description { gravity: theirs.gravity, ..ours.clone() });
+        finding
+    })
+}
+
+/// The order of joints, told from the first to the last that stands elsewhere.
+fn order(ours: &Description, partner: &[Option<usize>]) -> Option<Finding> {
+    let mut sorted: Vec<(usize, usize)> = partner.iter().enumerate().filter_map(|(i, j)| Some(((*j)?, i))).collect();
+    let own: Vec<usize> = sorted.iter().map(|&(_, i)| i).collect();
+    sorted.sort_unstable();
+    let theirs: Vec<usize> = sorted.into_iter().map(|(_, i)| i).collect();
+    let moved = own.iter().zip(&theirs).filter(|(a, b)| a != b).count();
+    let (first, last) = (own.iter().zip(&theirs).position(|(a, b)| a != b)?, own.iter().zip(&theirs).rposition(|(a, b)| a != b)?);
+    let text = |list: &[usize]| {
+        let name = |&i: &usize| ours.bodies[i].joint.name.as_str();
+        list[first..=last].iter().map(name).collect::<Vec<_>>().join(", ")
+    };
+    let mut finding = whole("", Field::DofOrder, text(&own), text(&theirs), Cause::Order);
+    finding.difference.size = moved as f64 / own.len() as f64;
+    Some(finding)
+}
+
+/// The degrees of freedom of the bodies that both robots have with the same joint: (first of ours, first of theirs, how many), and the
+/// same of the coordinates.
+pub(super) struct Shared {
+    pub dofs: Vec<[usize; 3]>,
+    pub coordinates: Vec<[usize; 3]>,
+}
+
+/// What two robots share.
+pub(super) fn shared_coordinates(ours: &Description, theirs: &Description) -> Shared {
+    let (ours, theirs) = (chained(ours), chained(theirs));
+    let starts = |description: &Description, count: fn(JointType) -> usize| -> Vec<usize> {
+        let running = description.bodies.iter().scan(0, |next, body| {
+            let start = *next;
+            *next += count(body.joint.kind);
+            Some(start)
+        });
+        running.collect()
+    };
+    let shared = |count: fn(JointType) -> usize| {
+        let (from, to) = (starts(&ours, count), starts(&theirs, count));
+        let partners = pairs(&ours, &theirs).into_iter().enumerate().filter_map(|(i, j)| Some((i, j?)));
+        let alike = partners.filter(|&(i, j)| {
+            let [a, b] = [ours.bodies[i].joint.kind, theirs.bodies[j].joint.kind];
+            a.nq() == b.nq() && a.nv() == b.nv()
+        });
+        alike.map(|(i, j)| [from[i], to[j], count(ours.bodies[i].joint.kind)]).collect()
+    };
+    Shared { dofs: shared(JointType::nv), coordinates: shared(JointType::nq) }
+}

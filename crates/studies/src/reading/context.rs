@@ -1,0 +1,95 @@
+//! Causes that one number alone does not show: what happened to the body beside it, to its chain, or to the whole robot.
+
+use super::comparison::Finding;
+use super::fields::{self, ROUNDING};
+use super::{Cause, Difference, Field};
+use model::{BodyDescription, Description, JointType, Placement};
+use spatial::Transform;
+
+/// Names what is left; `written` is their robot in our frames.
+pub(super) fn explain(ours: &Description, written: &[Option<BodyDescription>], findings: &mut [Finding], reach: f64) {
+    with_the_mass(findings);
+    if one_factor(ours, written) {
+        let whole = |difference: &&mut Difference| matches!(difference.field, Field::Mass | Field::Inertia);
+        unexplained(findings).filter(whole).for_each(|difference| difference.cause = Cause::TotalMass);
+    }
+    between_joints(ours, written, findings, reach);
+    other_root(ours, written, findings, reach);
+}
+
+/// Differences without a cause yet.
+fn unexplained(findings: &mut [Finding]) -> impl Iterator<Item = &mut Difference> {
+    findings.iter_mut().map(|finding| &mut finding.difference).filter(|difference| difference.cause == Cause::Number)
+}
+
+/// A parser that edits a link's mass moves the centre of mass and the inertia of the body that the link is fixed to.
+fn with_the_mass(findings: &mut [Finding]) {
+    let edits = [Cause::Bounds, Cause::ZeroMass, Cause::Geometry, Cause::Edited];
+    let masses: Vec<(String, Cause)> = findings
+        .iter()
+        .map(|finding| &finding.difference)
+        .filter(|difference| difference.field == Field::Mass && edits.contains(&difference.cause))
+        .map(|difference| (difference.body.clone(), difference.cause))
+        .collect();
+    for difference in findings.iter_mut().map(|finding| &mut finding.difference) {
+        let follows =
+            matches!(difference.field, Field::Com | Field::Inertia) && [Cause::Number, Cause::ZeroMass].contains(&difference.cause);
+        if let Some((_, cause)) = masses.iter().find(|(body, _)| follows && *body == difference.body) {
+            difference.cause = *cause;
+        }
+    }
+}
+
+/// Whether all masses of the robot are ours times one factor that is not one.
+fn one_factor(ours: &Description, written: &[Option<BodyDescription>]) -> bool {
+    let pairs =
+        || ours.bodies.iter().zip(written).filter_map(|(body, theirs)| Some((body, theirs.as_ref()?))).filter(|(body, _)| body.mass > 0.0);
+    let Some(factor) = pairs().map(|(body, theirs)| theirs.mass / body.mass).next() else { return false };
+    let same = |a: f64, b: f64, size: f64| (a - b).abs() <= 4.0 * ROUNDING * size;
+    let scaled = |(body, theirs): (&BodyDescription, &BodyDescription)| same(theirs.mass, factor * body.mass, theirs.mass);
+    pairs().count() > 1 && (factor - 1.0).abs() > 4.0 * ROUNDING && factor > 0.0 && pairs().all(scaled)
+}
+
+/// A floating base whose coordinates are those of another link: of one that is fixed to our root, where the parser drops an empty root.
+fn other_root(ours: &Description, written: &[Option<BodyDescription>], findings: &mut [Finding], reach: f64) {
+    for (root, theirs) in written.iter().enumerate() {
+        let Some(theirs) = theirs.as_ref().filter(|theirs| theirs.joint.kind == JointType::Free) else { continue };
+        let Some(frame) = ours.frames.iter().find(|frame| frame.body == Some(root) && frame.name == theirs.name) else { continue };
+        let from_root = frame.placement.to_transform();
+        for (child, body) in ours.bodies.iter().enumerate().filter(|(_, body)| body.parent == Some(root)) {
+            let Some(theirs) = &written[child] else { continue };
+            let behind = Placement::from_transform(&from_root.compose(&theirs.joint.placement.to_transform()));
+            let moved = BodyDescription { joint: model::JointDescription { placement: behind, ..body.joint.clone() }, ..body.clone() };
+            let same = fields::size(Field::Placement, body, &moved, reach) <= 4.0 * ROUNDING;
+            let of_child = |difference: &&mut Difference| difference.field == Field::Placement && difference.body == body.name;
+            unexplained(findings)
+                .filter(|difference| same && of_child(difference))
+                .for_each(|difference| difference.cause = Cause::OtherRoot);
+        }
+    }
+}
+
+/// The joints of one link are a chain of massless bodies before it. Where the chain as a whole leads to the same place and its parts do not,
+/// the link's pose was put at another joint of it.
+fn between_joints(ours: &Description, written: &[Option<BodyDescription>], findings: &mut [Finding], reach: f64) {
+    for end in 0..ours.bodies.len() {
+        let mut chain = vec![end];
+        while let Some(parent) = ours.bodies[chain[chain.len() - 1]].parent.filter(|&parent| ours.bodies[parent].mass == 0.0) {
+            chain.push(parent);
+        }
+        let theirs: Option<Vec<&BodyDescription>> = chain.iter().map(|&i| written[i].as_ref()).collect();
+        let Some(theirs) = theirs.filter(|theirs| theirs.len() > 1) else { continue };
+        let through = |bodies: &mut dyn Iterator<Item = &BodyDescription>| {
+            bodies.fold(Transform::identity(), |behind, body: &BodyDescription| body.joint.placement.to_transform().compose(&behind))
+        };
+        let (a, b) = (through(&mut chain.iter().map(|&i| &ours.bodies[i])), through(&mut theirs.into_iter()));
+        let turned = a.rotation.to_array().iter().zip(b.rotation.to_array()).any(|(x, y)| (x - y).abs() > 4.0 * ROUNDING);
+        if turned || fields::norm((a.translation - b.translation).to_array()) > 4.0 * ROUNDING * reach {
+            continue;
+        }
+        let of_chain = |difference: &&mut Difference| {
+            difference.field == Field::Placement && chain.iter().any(|&i| ours.bodies[i].name == difference.body)
+        };
+        unexplained(findings).filter(of_chain).for_each(|difference| difference.cause = Cause::BetweenJoints);
+    }
+}

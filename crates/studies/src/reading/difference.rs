@@ -1,0 +1,191 @@
+//! A difference between two readings of one robot: where, in which field, how large, and why.
+
+/// One difference between our reading of a robot and another one.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Difference {
+    /// The body, by its name in our reading (in theirs, where we have none); empty for the robot as a whole.
+    pub body: String,
+    /// What differs.
+    pub field: Field,
+    /// The value in our reading, with its unit.
+    pub ours: String,
+    /// The value in theirs.
+    pub theirs: String,
+    /// How far they are apart, free of units: relative to the number itself, lengths to the robot's reach, inertias to their trace.
+    pub size: f64,
+    /// Why, as far as numbers and the parser's own words tell.
+    pub cause: Cause,
+    /// What the parser itself says about this body.
+    pub note: Option<String>,
+}
+
+/// What can differ between two readings.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum Field {
+    /// Whether there is such a moving body at all.
+    Body,
+    /// The body that carries it.
+    Parent,
+    /// The kind of its joint.
+    JointType,
+    /// The joint's axis.
+    Axis,
+    /// The pitch of a helical joint.
+    Pitch,
+    /// Where the joint stands on the parent.
+    Placement,
+    /// The mass.
+    Mass,
+    /// The centre of mass.
+    Com,
+    /// The rotational inertia.
+    Inertia,
+    /// The joint's armature.
+    Armature,
+    /// The joint's viscous damping.
+    Damping,
+    /// The joint's dry friction.
+    Friction,
+    /// Gravity.
+    Gravity,
+    /// The order of the degrees of freedom.
+    DofOrder,
+    /// Limits of position.
+    Limits,
+}
+
+/// What a difference in a field means.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Weight {
+    /// It changes the mass matrix or the inverse dynamics.
+    Dynamics,
+    /// It is carried by the engine and enters its own simulation.
+    Carried,
+    /// The same robot, written down otherwise; or a limit, which enters nothing that is compared.
+    Information,
+}
+
+/// Why two readings differ.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum Cause {
+    /// One reads another number than the other; nothing more is known.
+    Number,
+    /// The principal moments are the same: the rotation of the inertial frame was lost.
+    InertialRotationLost,
+    /// The principal moments are the same: a rotation of the inertial frame was applied that the other reading lacks.
+    InertialRotationApplied,
+    /// The principal moments are the same, about other axes.
+    InertiaTurned,
+    /// The axis points the other way.
+    Flipped,
+    /// A factor of a thousand, or of its square or cube: metres for millimetres, kilograms for grams.
+    Unit,
+    /// Degrees for radians.
+    Degrees,
+    /// The same joints in another order.
+    Order,
+    /// The body became part of its parent.
+    Merged,
+    /// The body and its mass are gone.
+    Dropped,
+    /// A body that the other reading does not have.
+    Added,
+    /// A mass of zero was replaced.
+    ZeroMass,
+    /// Raised to the least mass or inertia that the engine takes.
+    Bounds,
+    /// Principal moments that violate the triangle inequality were made equal.
+    Balanced,
+    /// An inertia that no body can have was replaced.
+    Unphysical,
+    /// The inertia of a fixed link without mass was left out.
+    MasslessLink,
+    /// Every mass has the same factor: the mass of the whole robot was set, or not.
+    TotalMass,
+    /// A link with several joints stands between them instead of before them.
+    BetweenJoints,
+    /// The floating base has the frame of another link that is fixed to the root.
+    OtherRoot,
+    /// Computed from the shape of the body.
+    Geometry,
+    /// Replaced by the parser, in its own words.
+    Edited,
+    /// The joint follows another one.
+    Mimic,
+    /// Not read: the parser knows no such element.
+    Unsupported,
+}
+
+impl Field {
+    /// The word for it in records.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Body => "body",
+            Self::Parent => "parent",
+            Self::JointType => "joint_type",
+            Self::Axis => "axis",
+            Self::Pitch => "pitch",
+            Self::Placement => "placement",
+            Self::Mass => "mass",
+            Self::Com => "com",
+            Self::Inertia => "inertia",
+            Self::Armature => "armature",
+            Self::Damping => "damping",
+            Self::Friction => "friction",
+            Self::Gravity => "gravity",
+            Self::DofOrder => "dof_order",
+            Self::Limits => "limits",
+        }
+    }
+
+    /// What a difference in it means.
+    pub fn weight(self) -> Weight {
+        match self {
+            Self::Damping | Self::Friction => Weight::Carried,
+            Self::DofOrder | Self::Limits => Weight::Information,
+            _ => Weight::Dynamics,
+        }
+    }
+}
+
+impl Weight {
+    /// The word for it in records.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Dynamics => "dynamics",
+            Self::Carried => "carried",
+            Self::Information => "information",
+        }
+    }
+}
+
+impl Cause {
+    /// The word for it in records.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Number => "number",
+            Self::InertialRotationLost => "inertial_rotation_lost",
+            Self::InertialRotationApplied => "inertial_rotation_applied",
+            Self::InertiaTurned => "inertia_turned",
+            Self::Flipped => "flipped",
+            Self::Unit => "unit",
+            Self::Degrees => "degrees",
+            Self::Order => "order",
+            Self::Merged => "merged",
+            Self::Dropped => "dropped",
+            Self::Added => "added",
+            Self::ZeroMass => "zero_mass",
+            Self::Bounds => "bounds",
+            Self::Balanced => "balanced",
+            Self::Unphysical => "unphysical",
+            Self::MasslessLink => "massless_link",
+            Self::TotalMass => "total_mass",
+            Self::BetweenJoints => "between_joints",
+            Self::OtherRoot => "other_root",
+            Self::Geometry => "geometry",
+            Self::Edited => "edited",
+            Self::Mimic => "mimic",
+            Self::Unsupported => "unsupported",
+        }
+    }
+}

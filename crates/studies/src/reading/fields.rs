@@ -1,0 +1,229 @@
+//! How far two readings of one body are apart, field by field, and how each is written.
+
+use super::Field;
+use model::{BodyDescription, Description, JointType};
+use spatial::{Mat3, Vec3};
+
+/// What rounding may leave between two honest readings of one link: 16 ε. Parsers turn Euler angles into quaternions and those into
+/// matrices, and diagonalise inertias; each rounds some ten times. What a parser changes is larger by many decades.
+pub(super) const ROUNDING: f64 = 16.0 * f64::EPSILON;
+
+/// The fields of a body, in the order of reports.
+pub(super) const OF_A_BODY: [Field; 11] = [
+    Field::JointType,
+    Field::Axis,
+    Field::Pitch,
+    Field::Placement,
+    Field::Mass,
+    Field::Com,
+    Field::Inertia,
+    Field::Armature,
+    Field::Damping,
+    Field::Friction,
+    Field::Limits,
+];
+
+/// What rounding may leave of a body: each link that is fixed to it is turned, shifted, added and diagonalised once more.
+pub(super) fn rounding(description: &Description, body: usize) -> f64 {
+    let fixed = description.frames.iter().filter(|frame| frame.body == Some(body)).count();
+    (1 + fixed) as f64 * ROUNDING
+}
+
+/// Whether a size is more than rounding. What is not a number differs.
+pub(super) fn differs(size: f64, rounding: f64) -> bool {
+    size.is_nan() || size > rounding
+}
+
+/// The robot's length scale: the longest path from the world along placements and to a centre of mass, m.
+pub(super) fn reach(description: &Description) -> f64 {
+    let mut along: Vec<f64> = Vec::with_capacity(description.bodies.len());
+    let mut longest = 0.0_f64;
+    for body in &description.bodies {
+        let path = body.parent.map_or(0.0, |parent: usize| along[parent]) + norm(body.joint.placement.translation);
+        longest = longest.max(path + norm(body.com));
+        along.push(path);
+    }
+    longest
+}
+
+/// How far two readings of a body are apart in a field, free of units: at most about two.
+pub(super) fn size(field: Field, ours: &BodyDescription, theirs: &BodyDescription, reach: f64) -> f64 {
+    let (a, b) = (&ours.joint, &theirs.joint);
+    let same_kind = a.kind.name() == b.kind.name();
+    match field {
+        Field::JointType => f64::from(u8::from(!same_kind)),
+        Field::Axis => match (a.kind.axis(), b.kind.axis()) {
+            (Some(x), Some(y)) if same_kind => distance(x, y),
+            _ => 0.0,
+        },
+        Field::Pitch => match (a.kind, b.kind) {
+            (JointType::Helical { pitch: x, .. }, JointType::Helical { pitch: y, .. }) => relative(&[x], &[y]),
+            _ => 0.0,
+        },
+        Field::Placement => {
+            let turned = largest(a.placement.rotation.iter().zip(&b.placement.rotation).map(|(x, y)| x - y));
+            let far = norm(a.placement.translation).max(norm(b.placement.translation)).max(reach);
+            turned.max(over(distance(a.placement.translation, b.placement.translation), far))
+        }
+        Field::Mass => relative(&[ours.mass], &[theirs.mass]),
+        // A centre of no mass is nowhere.
+        Field::Com if ours.mass == 0.0 || theirs.mass == 0.0 => 0.0,
+        Field::Com => over(distance(ours.com, theirs.com), norm(ours.com).max(norm(theirs.com)).max(reach)),
+        Field::Inertia => {
+            let difference = largest(ours.inertia.iter().zip(&theirs.inertia).map(|(x, y)| x - y));
+            over(difference, inertia_scale(ours).max(inertia_scale(theirs)))
+        }
+        Field::Armature => {
+            if same_kind {
+                per_dof(&a.armature, &b.armature)
+            } else {
+                0.0
+            }
+        }
+        Field::Damping => {
+            if same_kind {
+                per_dof(&a.damping, &b.damping)
+            } else {
+                0.0
+            }
+        }
+        Field::Friction => {
+            if same_kind {
+                per_dof(&a.friction, &b.friction)
+            } else {
+                0.0
+            }
+        }
+        Field::Limits => {
+            if same_kind {
+                limits(&a.lower, &b.lower).max(limits(&a.upper, &b.upper))
+            } else {
+                0.0
+            }
+        }
+        Field::Body | Field::Parent | Field::Gravity | Field::DofOrder => 0.0,
+    }
+}
+
+/// Trace of the inertia about the body's origin, where engines hold it.
+pub(super) fn inertia_scale(body: &BodyDescription) -> f64 {
+    let [xx, _, _, yy, _, zz] = body.inertia;
+    xx.abs() + yy.abs() + zz.abs() + 2.0 * body.mass * norm(body.com).powi(2)
+}
+
+/// Copies one field from a body to another.
+pub(super) fn copy(field: Field, from: &BodyDescription, to: &mut BodyDescription) {
+    let joint = &from.joint;
+    match field {
+        Field::JointType | Field::Axis | Field::Pitch => to.joint.kind = joint.kind,
+        Field::Placement => to.joint.placement = joint.placement,
+        Field::Mass => to.mass = from.mass,
+        Field::Com => to.com = from.com,
+        Field::Inertia => to.inertia = from.inertia,
+        Field::Armature => to.joint.armature.clone_from(&joint.armature),
+        Field::Damping => to.joint.damping.clone_from(&joint.damping),
+        Field::Friction => to.joint.friction.clone_from(&joint.friction),
+        Field::Limits => {
+            to.joint.lower.clone_from(&joint.lower);
+            to.joint.upper.clone_from(&joint.upper);
+        }
+        Field::Body | Field::Parent | Field::Gravity | Field::DofOrder => {}
+    }
+}
+
+/// A field of a body in words, with as many digits as show a difference of this size.
+pub(super) fn written(field: Field, body: &BodyDescription, size: f64) -> String {
+    let joint = &body.joint;
+    let list = |numbers: &[f64]| match numbers {
+        [] => "none".to_owned(),
+        [one] => digits(*one, size),
+        many => format!("({})", many.iter().map(|&x| digits(x, size)).collect::<Vec<_>>().join(", ")),
+    };
+    match field {
+        Field::JointType => joint.kind.name().to_owned(),
+        Field::Axis => joint.kind.axis().map_or_else(|| "none".into(), |axis| list(&axis)),
+        Field::Pitch => match joint.kind {
+            JointType::Helical { pitch, .. } => format!("{} m/rad", list(&[pitch])),
+            _ => "none".into(),
+        },
+        Field::Placement => {
+            let rpy = rpy(joint.placement.rotation);
+            let turned = if rpy == [0.0; 3] { String::new() } else { format!(", rpy {} rad", list(&rpy)) };
+            format!("{} m{turned}", list(&joint.placement.translation))
+        }
+        Field::Mass => format!("{} kg", list(&[body.mass])),
+        Field::Com => format!("{} m", list(&body.com)),
+        Field::Inertia => format!("{} kg·m²", list(&body.inertia)),
+        Field::Armature => list(&joint.armature),
+        Field::Damping => list(&joint.damping),
+        Field::Friction => list(&joint.friction),
+        Field::Limits => format!("{} to {}", list(&joint.lower), list(&joint.upper)),
+        Field::Body | Field::Parent | Field::Gravity | Field::DofOrder => String::new(),
+    }
+}
+
+/// A number with as many digits as show a relative difference of this size, at least four.
+pub(super) fn digits(x: f64, size: f64) -> String {
+    let needed = if size > 0.0 { (3.0 - size.log10()).ceil().clamp(4.0, 17.0) as usize } else { 4 };
+    let rounded: f64 = format!("{x:.*e}", needed - 1).parse().unwrap_or(x);
+    // No minus before a zero.
+    format!("{:?}", rounded + 0.0).trim_end_matches(".0").to_owned()
+}
+
+/// Roll, pitch and yaw of a rotation matrix, R = Rz(yaw)·Ry(pitch)·Rx(roll).
+pub(super) fn rpy(rotation: [f64; 9]) -> [f64; 3] {
+    let r = rotation;
+    let across = r[0].hypot(r[3]);
+    if across > ROUNDING {
+        [r[7].atan2(r[8]), (-r[6]).atan2(across), r[3].atan2(r[0])]
+    } else {
+        [(-r[5]).atan2(r[4]), (-r[6]).atan2(across), 0.0]
+    }
+}
+
+/// The rotation matrix of roll, pitch and yaw.
+pub(super) fn from_rpy([roll, pitch, yaw]: [f64; 3]) -> [f64; 9] {
+    let about = |axis: [f64; 3], angle: f64| spatial::Transform::axis_rotation(Vec3::from_array(axis), angle.sin(), angle.cos());
+    let turned: Mat3<f64> = about([0.0, 0.0, 1.0], yaw) * about([0.0, 1.0, 0.0], pitch) * about([1.0, 0.0, 0.0], roll);
+    turned.to_array()
+}
+
+pub(super) fn norm(v: [f64; 3]) -> f64 {
+    Vec3::from_array(v).norm()
+}
+
+pub(super) fn distance(a: [f64; 3], b: [f64; 3]) -> f64 {
+    norm(std::array::from_fn(|k| a[k] - b[k]))
+}
+
+fn largest(differences: impl Iterator<Item = f64>) -> f64 {
+    differences.fold(0.0, |largest: f64, x| if x.is_nan() { x } else { largest.max(x.abs()) })
+}
+
+/// A difference over its scale; zero over zero is zero.
+fn over(difference: f64, scale: f64) -> f64 {
+    harness::measure::ratio(difference, scale)
+}
+
+/// The largest difference over the larger of the two numbers.
+pub(super) fn relative(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(x, y)| over(x - y, x.abs().max(y.abs()))).fold(0.0, harness::measure::worst)
+}
+
+/// The same per degree of freedom; a list that is absent is zero.
+fn per_dof(a: &[f64], b: &[f64]) -> f64 {
+    let count = a.len().max(b.len());
+    let whole = |list: &[f64]| -> Vec<f64> { (0..count).map(|k| list.get(k).copied().unwrap_or(0.0)).collect() };
+    relative(&whole(a), &whole(b))
+}
+
+/// The same for limits, where beyond a million radians or metres is without one.
+fn limits(a: &[f64], b: &[f64]) -> f64 {
+    let limited = |list: &[f64], k: usize| list.get(k).copied().filter(|x| x.abs() < 1e6);
+    let one = |k: usize| match (limited(a, k), limited(b, k)) {
+        (None, None) => 0.0,
+        (Some(x), Some(y)) => relative(&[x], &[y]),
+        _ => 1.0,
+    };
+    (0..a.len().max(b.len())).map(one).fold(0.0, f64::max)
+}

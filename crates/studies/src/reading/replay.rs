@@ -1,0 +1,196 @@
+//! Replays: our kernels on a reading, and how far two readings of one robot are apart in inverse dynamics and mass matrix.
+
+use super::comparison::shared_coordinates;
+use dynamics::{Crba, Rnea, TreeSparse};
+use harness::Problem;
+use harness::measure::{Magnitudes, ratio, worst};
+use model::{Description, JointKind, Malformed, Model, StateBatch};
+use record::ModelOrigin;
+
+/// Inverse dynamics and mass matrix, state after state.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Answers {
+    pub id: Vec<f64>,
+    pub mass_matrix: Vec<f64>,
+}
+
+/// How far a reading is apart from another in what it computes: the worst state, in the measures of the agreement study.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Effect {
+    /// Inverse dynamics.
+    pub id: f64,
+    /// Mass matrix.
+    pub mass_matrix: f64,
+}
+
+/// Our kernels on a robot at its states. The model has the states' shape, or there is no answer.
+pub(super) fn answers(model: &Model<f64>, states: &StateBatch) -> Option<Answers> {
+    let (mut rnea, mut crba) = (Rnea::new(&model.topology), Crba::new(&model.topology));
+    let mut matrix = TreeSparse::new(&model.topology);
+    let nv = states.nv;
+    let mut answers = Answers { id: vec![0.0; states.count() * nv], mass_matrix: Vec::with_capacity(states.count() * nv * nv) };
+    for (k, tau) in answers.id.chunks_exact_mut(nv).enumerate() {
+        rnea.run(model, states.q(k), states.v(k), states.a(k), None, tau).ok()?;
+        crba.run(model, states.q(k), &mut matrix).ok()?;
+        answers.mass_matrix.extend(matrix.to_dense().iter());
+    }
+    Some(answers)
+}
+
+/// The same states for another reading of the robot: what both have moves alike, the rest stands still in its neutral place.
+pub(super) fn carried(ours: &Description, states: &StateBatch, theirs: &Description, model: &Model<f64>) -> StateBatch {
+    let shared = shared_coordinates(ours, theirs);
+    let (count, nq, nv, bodies) = (states.count(), model.topology.nq(), model.topology.nv(), model.described.len());
+    let neutral: Vec<f64> = neutral(model);
+    let mut batch = StateBatch { nq, nv, bodies, cases: states.cases.clone(), ..StateBatch::default() };
+    let copy = |from: &[f64], to: &mut [f64], places: &[[usize; 3]]| {
+        for &[a, b, n] in places {
+            to[b..b + n].copy_from_slice(&from[a..a + n]);
+        }
+    };
+    for k in 0..count {
+        let mut q = neutral.clone();
+        copy(states.q(k), &mut q, &shared.coordinates);
+        batch.q.extend(q);
+        for (from, to) in [(states.v(k), &mut batch.v), (states.a(k), &mut batch.a), (states.tau(k), &mut batch.tau)] {
+            let mut x = vec![0.0; nv];
+            copy(from, &mut x, &shared.dofs);
+            to.extend(x);
+        }
+    }
+    batch.wrench = vec![0.0; count * 6 * bodies];
+    batch
+}
+
+fn neutral(model: &Model<f64>) -> Vec<f64> {
+    let of_joint = |kind: JointKind| match kind {
+        JointKind::Spherical => vec![0.0, 0.0, 0.0, 1.0],
+        JointKind::Free => vec![0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0],
+        JointKind::Revolute | JointKind::Prismatic | JointKind::Helical => vec![0.0],
+    };
+    model.topology.joints().iter().flat_map(|joint| of_joint(joint.kind)).collect()
+}
+
+/// What errors are measured against at a state: the measures of the agreement study, with a least size.
+///
+/// An engine holds a file's robot in frames of its own. What is exactly zero in ours (a torque about an axis through the centre of mass, the
+/// inertia of a body without any) is a difference of larger numbers in theirs, and is measured as such: torques and inertias of a dof count
+/// at least as a thousandth of the robot's largest, torques in the kinetic-energy norm, inertias by what the dof carries.
+struct Sizes {
+    torque: Vec<f64>,
+    inertia: Vec<f64>,
+}
+
+/// The least size, as a part of the largest: three decades, of the nine between rounding and what a parser changes.
+const LEAST: f64 = 1e-3;
+
+impl Sizes {
+    fn new(at: &Magnitudes, mass: &[f64]) -> Self {
+        let nv = at.joint_force.len();
+        let largest = |list: &mut dyn Iterator<Item = f64>| list.filter(|x| x.is_finite()).fold(0.0, f64::max);
+        let diagonal: Vec<f64> = (0..nv).map(|i| mass[i * nv + i].abs().sqrt()).collect();
+        let heaviest = largest(&mut diagonal.iter().copied());
+        let inertia: Vec<f64> = diagonal.iter().map(|&root| if root > 0.0 { root } else { LEAST * heaviest }).collect();
+        let strongest = largest(&mut at.joint_force.iter().zip(&inertia).map(|(force, root)| force / root));
+        let torque = at.joint_force.iter().zip(&inertia).map(|(&force, root)| force.max(LEAST * strongest * root)).collect();
+        Self { torque, inertia }
+    }
+
+    fn torque(&self, i: usize, difference: f64) -> f64 {
+        // Where nothing of ours acts at all (no gravity, at rest), what theirs has is wholly different.
+        if self.torque[i] == 0.0 && difference.is_finite() && difference != 0.0 { 1.0 } else { ratio(difference, self.torque[i]) }
+    }
+
+    fn entry(&self, i: usize, j: usize, difference: f64) -> f64 {
+        ratio(difference, self.inertia[i] * self.inertia[j])
+    }
+}
+
+/// A robot with its answers, against which other readings of it are measured.
+pub(super) struct Reference {
+    problem: Problem,
+    at: Vec<Magnitudes>,
+    answers: Answers,
+}
+
+impl Reference {
+    /// Our robot at these states.
+    pub fn new(description: &Description, states: StateBatch) -> Option<Self> {
+        let problem = bare(description).ok()?.at(states);
+        let answers = answers(&problem.model, &problem.states)?;
+        Some(Self { at: problem.magnitudes(), problem, answers })
+    }
+
+    /// How far answers about another reading, at the states that were carried over to it, are from ours, on the dofs that both have.
+    pub fn effect(&self, theirs: &Description, nv: usize, answers: &Answers) -> Effect {
+        let shared = shared_coordinates(&self.problem.description, theirs).dofs;
+        let dofs: Vec<(usize, usize)> = shared.iter().flat_map(|&[a, b, n]| (0..n).map(move |k| (a + k, b + k))).collect();
+        let own = self.problem.states.nv;
+        let mut worst_of = Effect { id: 0.0, mass_matrix: 0.0 };
+        for (k, at) in self.at.iter().enumerate() {
+            let (id, mass) = (&self.answers.id[k * own..(k + 1) * own], &self.answers.mass_matrix[k * own * own..(k + 1) * own * own]);
+            let (their_id, their_mass) = (&answers.id[k * nv..(k + 1) * nv], &answers.mass_matrix[k * nv * nv..(k + 1) * nv * nv]);
+            // What only one of them has is not compared: there ours stands on both sides.
+            let (mut id_here, mut mass_here) = (id.to_vec(), mass.to_vec());
+            for &(i, j) in &dofs {
+                id_here[i] = their_id[j];
+                for &(m, n) in &dofs {
+                    mass_here[i * own + m] = their_mass[j * nv + n];
+                }
+            }
+            let sizes = Sizes::new(at, mass);
+            for i in 0..own {
+                worst_of.id = worst(worst_of.id, sizes.torque(i, id_here[i] - id[i]));
+                for j in 0..own {
+                    worst_of.mass_matrix = worst(worst_of.mass_matrix, sizes.entry(i, j, mass_here[i * own + j] - mass[i * own + j]));
+                }
+            }
+        }
+        worst_of
+    }
+
+    /// How far another reading is apart from ours, our own kernels answering for both.
+    pub fn effect_of(&self, theirs: &Description) -> Option<Effect> {
+        let model = Model::<f64>::build(theirs).ok()?;
+        let states = carried(&self.problem.description, &self.problem.states, theirs, &model);
+        Some(self.effect(theirs, states.nv, &answers(&model, &states)?))
+    }
+}
+
+/// A problem without states of its own.
+fn bare(description: &Description) -> Result<Problem, Malformed> {
+    Problem::new(description, "reading", ModelOrigin::Robot, 0, 0)
+}
+
+/// Our kernels on their reading against their engine's own answers: the worst error of each quantity, and the same per dof of the worst
+/// state, entries of the mass matrix between dof and dof first.
+pub(super) struct Replay {
+    pub effect: Effect,
+    /// Per dof, the error of its torque.
+    pub torque: Vec<f64>,
+    /// Per pair of dofs, the error of the entry of the mass matrix; row-major.
+    pub entry: Vec<f64>,
+}
+
+/// Replays their answers.
+pub(super) fn replay(problem: &Problem, engine: &Answers) -> Option<Replay> {
+    let ours = answers(&problem.model, &problem.states)?;
+    let nv = problem.states.nv;
+    if engine.id.len() != ours.id.len() || engine.mass_matrix.len() != ours.mass_matrix.len() {
+        return None;
+    }
+    let (mut torque, mut entry) = (vec![0.0; nv], vec![0.0; nv * nv]);
+    for (k, at) in problem.magnitudes().iter().enumerate() {
+        let here = k * nv * nv..(k + 1) * nv * nv;
+        let (mass, their_mass) = (&ours.mass_matrix[here.clone()], &engine.mass_matrix[here]);
+        let sizes = Sizes::new(at, mass);
+        for i in 0..nv {
+            torque[i] = worst(torque[i], sizes.torque(i, engine.id[k * nv + i] - ours.id[k * nv + i]));
+            for j in 0..nv {
+                entry[i * nv + j] = worst(entry[i * nv + j], sizes.entry(i, j, their_mass[i * nv + j] - mass[i * nv + j]));
+            }
+        }
+    }
+    let largest = |list: &[f64]| list.iter().copied().fold(0.0, worst);
+    Some(Replay { effect: Effect { id: largest(&torque), mass_matrix: largest(&entry) }, torque, entry })
+}

@@ -1,0 +1,171 @@
+//! The rows of one robot: what each engine read, how it differs, what that does, and whether it explains the engine's answers.
+
+use super::replay::{Answers, Reference, Replay, carried, replay};
+use super::subtree::{SubTree, unexplained};
+use super::{Comparison, Effect, Finding, READING, REPLAYED, Weight, as_read, reference};
+use crate::row;
+use harness::{Cell, Context, Finished, Outcome, Problem, Quantity, Reading, Refusal};
+use record::{Record, Verdict, canonical_json};
+use serde_json::{Value, json};
+
+/// The rows of a problem, engine by engine.
+pub(super) fn rows(context: &Context, problem: &Problem, finished: &[Finished]) -> Vec<Record> {
+    let mut rows = Vec::new();
+    for (cell, outcome) in finished.iter().filter(|(cell, _)| cell.quantity == READING) {
+        let of_engine: Vec<&Finished> =
+            finished.iter().filter(|(other, _)| other.subject == cell.subject && other.quantity != READING).collect();
+        let engine = Engine { context, problem, cell, of_engine };
+        match outcome {
+            Outcome::Reading(reading) => rows.extend(engine.read(reading)),
+            Outcome::Refused(refusal) => rows.push(engine.refused(cell, refusal)),
+            Outcome::Values(_) => {}
+        }
+    }
+    rows
+}
+
+struct Engine<'a> {
+    context: &'a Context<'a>,
+    problem: &'a Problem,
+    /// The cell of its reading.
+    cell: &'a Cell,
+    /// What it computed with the robot as read.
+    of_engine: Vec<&'a Finished>,
+}
+
+impl Engine<'_> {
+    fn reference(&self) -> &'static str {
+        self.problem.file.as_ref().map_or("native", |file| reference(file.format))
+    }
+
+    fn row(&self, cell: &Cell, metric: &str) -> Record {
+        Record {
+            case: "all".into(),
+            metric: metric.into(),
+            unit: "1".into(),
+            reference: self.reference().into(),
+            ..row(cell, self.problem)
+        }
+    }
+
+    /// The cell's parameters with more beside them: what a reader of the row needs.
+    fn params(&self, more: Value) -> String {
+        let mut params = self.cell.params.clone();
+        if let (Value::Object(params), Value::Object(more)) = (&mut params, more) {
+            params.extend(more);
+        }
+        canonical_json(&params)
+    }
+
+    fn refused(&self, cell: &Cell, refusal: &Refusal) -> Record {
+        let verdict = if matches!(refusal, Refusal::Unsupported(_)) { Verdict::Skip } else { Verdict::Error };
+        self.context.gates.explain(self.row(cell, "differences").without_value(verdict, refusal.to_string()))
+    }
+
+    fn read(&self, reading: &Reading) -> Vec<Record> {
+        let comparison = Comparison::of(&self.problem.description, &reading.description, &reading.notes);
+        let mut rows = vec![self.count(&comparison, reading)];
+        let own = alterable(&comparison, self.problem);
+        rows.extend(comparison.findings.iter().map(|finding| self.difference(finding, &own)));
+        let answers: Vec<(&Cell, Result<&[f64], &Refusal>)> =
+            self.of_engine.iter().map(|(cell, outcome)| (cell, values(outcome))).collect();
+        for (cell, answer) in &answers {
+            if let Err(refusal) = answer {
+                rows.push(self.refused(cell, refusal));
+            }
+        }
+        let find = |quantity: Quantity| {
+            let cell = answers.iter().find(|(cell, _)| cell.quantity == quantity.name());
+            cell.and_then(|(cell, answer)| Some((*cell, answer.ok()?.to_vec())))
+        };
+        if let (Some((id_cell, id)), Some((mass_cell, mass_matrix))) = (find(Quantity::InverseDynamics), find(Quantity::MassMatrix)) {
+            rows.extend(self.computed(reading, [id_cell, mass_cell], &Answers { id, mass_matrix }));
+        }
+        rows
+    }
+
+    /// How many differences there are that a simulation would feel.
+    fn count(&self, comparison: &Comparison, reading: &Reading) -> Record {
+        let of = |weight: Weight| comparison.differences().filter(|difference| difference.field.weight() == weight).count();
+        let notes: Vec<Value> =
+            reading.notes.iter().map(|note| json!({"cause": note.cause, "subject": note.subject, "text": note.text})).collect();
+        let (felt, told) = (of(Weight::Dynamics) + of(Weight::Carried), of(Weight::Information));
+        let more = json!({"dynamics": of(Weight::Dynamics), "carried": of(Weight::Carried), "information": told, "notes": notes});
+        Record { params: self.params(more), ..self.row(self.cell, "differences") }.informed(felt as f64)
+    }
+
+    fn difference(&self, finding: &Finding, own: &Option<Reference>) -> Record {
+        let difference = &finding.difference;
+        let alone = finding.alone.as_ref().zip(own.as_ref()).and_then(|(alone, own)| own.effect_of(alone));
+        let number = |of: fn(&Effect) -> f64| alone.as_ref().map(of).filter(|error| error.is_finite());
+        let more = json!({
+            "cause": difference.cause.name(),
+            "ours": difference.ours,
+            "theirs": difference.theirs,
+            "weight": difference.field.weight().name(),
+            "note": difference.note,
+            "id": number(|effect| effect.id),
+            "mass_matrix": number(|effect| effect.mass_matrix),
+        });
+        let row = Record {
+            case: difference.body.clone(),
+            quantity: difference.field.name().into(),
+            params: self.params(more),
+            ..self.row(self.cell, "difference")
+        };
+        row.informed(difference.size)
+    }
+
+    /// The engine's answers against the reference, against the replay, and what the replay leaves unexplained.
+    fn computed(&self, reading: &Reading, [id, mass]: [&Cell; 2], engine: &Answers) -> Vec<Record> {
+        let error = |reason: &str| vec![self.row(self.cell, "unexplained").without_value(Verdict::Error, reason)];
+        let problem = match as_read(self.problem, reading) {
+            Ok(problem) => problem,
+            Err(refusal) => return error(&refusal.to_string()),
+        };
+        // What only they have stands still on their side: it must do so on ours.
+        let states = carried(&problem.description, &problem.states, &self.problem.description, &self.problem.model);
+        let Some(reference) = Reference::new(&self.problem.description, states) else {
+            return error("our kernels have no answer on the reference reading");
+        };
+        let Some(replayed) = replay(&problem, engine) else {
+            return error("the engine's answers have another shape than the robot it read");
+        };
+        let read = reference.effect(&problem.description, problem.states.nv, engine);
+        let mut rows = Vec::new();
+        for (metric, effect) in [("as_read", read), ("replayed", replayed.effect)] {
+            rows.push(self.row(id, metric).informed(effect.id));
+            rows.push(self.row(mass, metric).informed(effect.mass_matrix));
+        }
+        rows.push(self.unexplained(&problem, &replayed));
+        rows
+    }
+
+    fn unexplained(&self, problem: &Problem, replayed: &Replay) -> Record {
+        let trees = unexplained(&problem.description, replayed);
+        let tree = |tree: &SubTree| {
+            let bodies: Vec<&str> = tree.robot.bodies.iter().map(|body| body.name.as_str()).collect();
+            let error = if tree.error.is_finite() { json!(tree.error) } else { json!(tree.error.to_string()) };
+            json!({"quantity": tree.quantity, "error": error, "bodies": bodies})
+        };
+        let trees: Vec<Value> = trees.iter().map(tree).collect();
+        let count = trees.len() as f64;
+        let row = Record { params: self.params(json!({"unexplained": trees, "gate": REPLAYED})), ..self.row(self.cell, "unexplained") };
+        self.context.gates.judge(row, count, 1.0)
+    }
+}
+
+fn values(outcome: &Outcome) -> Result<&[f64], &Refusal> {
+    match outcome {
+        Outcome::Values(values) => Ok(values),
+        Outcome::Refused(refusal) => Err(refusal),
+        Outcome::Reading(_) => Ok(&[]),
+    }
+}
+
+/// Our robot as the findings alter it, with its answers.
+fn alterable(comparison: &Comparison, problem: &Problem) -> Option<Reference> {
+    let model = model::Model::build(&comparison.ours).ok()?;
+    let states = carried(&problem.description, &problem.states, &comparison.ours, &model);
+    Reference::new(&comparison.ours, states)
+}

@@ -1,0 +1,178 @@
+//! The reading study convicts: an engine that computes something else than what it says to have read is called unexplained, with the
+//! smallest sub-tree that shows it; one that tells the truth about an edited robot is not.
+
+mod support;
+
+use engines::Native;
+use featherbench_studies::Reading;
+use harness::{FileBase, FileFormat, Identity, Prepared, Problem, Quantity, Reading as Read, ReadingNote, Refusal, RobotFile, Subject};
+use model::{Description, Model, StateBatch};
+use record::{EngineSource, Record, Verdict};
+use serde_json::Value;
+use std::collections::BTreeMap;
+use support::{gates, robot, whole};
+
+/// An engine with a parser: it says to have read one robot and computes with another of the same shape.
+struct Parser {
+    identity: Identity,
+    native: Native,
+    says: Result<Read, Refusal>,
+    holds: Option<Problem>,
+}
+
+impl Parser {
+    fn new(says: Description, holds: &Description, problem: &Problem) -> Self {
+        let mut held = problem.clone();
+        held.description = holds.canonical().unwrap();
+        held.model = Model::build(&held.description).unwrap();
+        let note = ReadingNote { cause: "warning".into(), subject: None, text: "something".into() };
+        Self { says: Ok(Read { description: says.canonical().unwrap(), notes: vec![note] }), holds: Some(held), ..Self::refusing("") }
+    }
+
+    fn refusing(reason: &str) -> Self {
+        let identity = Identity { name: "parser".into(), version: "1".into(), source: EngineSource::Native, build: BTreeMap::new() };
+        Self { identity, native: Native::new(), says: Err(Refusal::Failed(reason.into())), holds: None }
+    }
+}
+
+impl Subject for Parser {
+    fn identity(&self) -> &Identity {
+        &self.identity
+    }
+
+    fn methods(&self, quantity: Quantity) -> Vec<String> {
+        self.native.methods(quantity)
+    }
+
+    fn read(&self, _: &RobotFile) -> Result<Read, Refusal> {
+        self.says.clone()
+    }
+
+    fn prepare<'a>(
+        &'a self,
+        _: &'a Problem,
+        quantity: Quantity,
+        method: &str,
+        states: &'a StateBatch,
+    ) -> Result<Box<dyn Prepared + 'a>, Refusal> {
+        let holds = self.holds.as_ref().ok_or_else(|| Refusal::Failed("nothing was read".into()))?;
+        self.native.prepare(holds, quantity, method, states)
+    }
+}
+
+/// A robot that is said to come from a file.
+fn filed(spec: &str) -> Problem {
+    let file = RobotFile { path: "robot.urdf".into(), format: FileFormat::Urdf, base: FileBase::Fixed, hash: "0".into() };
+    robot(spec).from_file(file)
+}
+
+fn records(problem: &Problem, parser: Parser) -> Vec<Record> {
+    whole(&Reading, problem, &gates(""), &[Box::new(Native::new()), Box::new(parser)])
+}
+
+fn row<'a>(records: &'a [Record], metric: &str, quantity: &str) -> &'a Record {
+    records.iter().find(|row| row.metric == metric && row.quantity == quantity).unwrap_or_else(|| panic!("no {metric} of {quantity}"))
+}
+
+fn params(row: &Record) -> Value {
+    serde_json::from_str(&row.params).unwrap()
+}
+
+#[test]
+fn a_robot_read_as_it_is_has_no_differences_and_is_explained() {
+    let problem = filed("humanoid");
+    let records = records(&problem, Parser::new(problem.description.clone(), &problem.description, &problem));
+    assert_eq!(row(&records, "differences", "reading").value, Some(0.0));
+    assert_eq!(
+        (row(&records, "unexplained", "reading").value, row(&records, "unexplained", "reading").verdict),
+        (Some(0.0), Verdict::Pass)
+    );
+    for (metric, quantity) in [("as_read", "id"), ("as_read", "mass_matrix"), ("replayed", "id"), ("replayed", "mass_matrix")] {
+        assert_eq!(row(&records, metric, quantity).value, Some(0.0), "{metric} {quantity}");
+    }
+    assert!(records.iter().all(|row| row.metric != "difference"));
+}
+
+#[test]
+fn an_edited_robot_that_is_told_is_a_difference_and_explained() {
+    let problem = filed("humanoid");
+    let mut edited = problem.description.clone();
+    let body = edited.bodies.len() - 1;
+    edited.bodies[body].mass *= 2.0;
+    let records = records(&problem, Parser::new(edited.clone(), &edited, &problem));
+    let difference = row(&records, "difference", "mass");
+    assert_eq!(difference.case, edited.bodies[body].name);
+    assert_eq!(difference.value, Some(0.5), "half of the larger mass");
+    assert_eq!(row(&records, "differences", "reading").value, Some(1.0));
+    assert_eq!(row(&records, "unexplained", "reading").verdict, Verdict::Pass);
+    // The only difference makes the whole error.
+    let as_read = row(&records, "as_read", "mass_matrix").value.unwrap();
+    let alone = params(difference)["mass_matrix"].as_f64().unwrap();
+    assert!(as_read > 1e-6 && (as_read - alone).abs() < 1e-12 * as_read, "{as_read} {alone}");
+}
+
+#[test]
+fn an_engine_that_lies_about_what_it_read_is_unexplained_from_the_body_on() {
+    for spec in ["humanoid", "quadruped", "tree:n=20,joints=all,base=fixed"] {
+        let problem = filed(spec);
+        let bodies = &problem.description.bodies;
+        for body in (0..bodies.len()).step_by(3) {
+            let mut held = problem.description.clone();
+            held.bodies[body].mass += 1.0;
+            held.bodies[body].inertia = held.bodies[body].inertia.map(|x| 2.0 * x);
+            let records = records(&problem, Parser::new(problem.description.clone(), &held, &problem));
+            assert_eq!(row(&records, "differences", "reading").value, Some(0.0), "it says that it read the same");
+            let left = row(&records, "unexplained", "reading");
+            assert_eq!(left.verdict, Verdict::Fail, "{spec}: {}", bodies[body].name);
+            let trees = params(left)["unexplained"].as_array().unwrap().clone();
+            let roots: Vec<&str> = trees.iter().map(|tree| tree["bodies"][0].as_str().unwrap()).collect();
+            assert_eq!(roots, [bodies[body].name.as_str()], "{spec}");
+        }
+    }
+}
+
+#[test]
+fn gravity_that_is_not_told_is_unexplained_by_torques_alone() {
+    let problem = filed("humanoid");
+    let mut held = problem.description.clone();
+    held.gravity = [0.0, 0.0, -1.0];
+    let records = records(&problem, Parser::new(problem.description.clone(), &held, &problem));
+    let left = row(&records, "unexplained", "reading");
+    assert_eq!(left.verdict, Verdict::Fail);
+    assert!(params(left)["unexplained"].as_array().unwrap().iter().all(|tree| tree["quantity"] == "id"));
+    assert!(row(&records, "replayed", "mass_matrix").value.unwrap() == 0.0);
+}
+
+#[test]
+fn a_body_less_is_compared_on_what_is_left() {
+    let problem = filed("quadruped");
+    let mut fewer = problem.description.clone();
+    let leaf = fewer.bodies.len() - 1;
+    let joint = &mut fewer.bodies[leaf].joint;
+    *joint = model::JointDescription { name: joint.name.clone(), placement: joint.placement, ..Default::default() };
+    let fewer = fewer.canonical().unwrap();
+    let mut parser = Parser::new(fewer.clone(), &fewer, &problem);
+    // Its states are those of the smaller robot.
+    parser.holds.as_mut().unwrap().depth = fewer.depth();
+    let records = records(&problem, parser);
+    let difference = row(&records, "difference", "body");
+    assert_eq!(params(difference)["cause"], "merged");
+    assert_eq!(row(&records, "unexplained", "reading").verdict, Verdict::Pass);
+    let error = row(&records, "as_read", "mass_matrix").value.unwrap();
+    assert!(error < 1e-12, "the joint stands still on both sides: {error}");
+}
+
+#[test]
+fn a_refusal_is_a_row_with_its_reason() {
+    let problem = filed("hand");
+    let records = records(&problem, Parser::refusing("line 3: no"));
+    assert_eq!(records.len(), 1);
+    assert_eq!((records[0].verdict, records[0].reason.as_str()), (Verdict::Error, "line 3: no"));
+}
+
+#[test]
+fn a_robot_without_a_file_is_not_asked_about() {
+    let problem = robot("hand");
+    let parser = Parser::new(problem.description.clone(), &problem.description, &problem);
+    assert!(records(&problem, parser).is_empty());
+}
