@@ -21,6 +21,11 @@ pub struct Subjects {
 pub fn open(root: &Root, args: &RunArgs, loaded: &Loaded) -> Result<Subjects, Fail> {
     let mut opened = Subjects { subjects: Vec::new(), engines: Vec::new() };
     opened.add(Ok(Box::new(Native::new())), "native", EngineSource::Native);
+    if let Some(timing) = loaded.suite.timing.as_ref().filter(|_| !args.no_timing) {
+        for name in &timing.peers {
+            opened.add(peer(name), name, EngineSource::Live);
+        }
+    }
     let Some(agreement) = &loaded.suite.agreement else { return Ok(opened) };
     if args.live {
         let python = oracles::install(root)?;
@@ -40,6 +45,11 @@ pub fn open(root: &Root, args: &RunArgs, loaded: &Loaded) -> Result<Subjects, Fa
         }
     }
     Ok(opened)
+}
+
+/// A native peer, by its name.
+fn peer(name: &str) -> Result<Box<dyn Subject>, String> {
+    Err(format!("no native peer '{name}' is built here"))
 }
 
 impl Subjects {
@@ -69,8 +79,9 @@ impl Subjects {
         self.subjects.extend(subject);
     }
 
-    /// The engines that should be there and are not.
-    pub fn missing(&self) -> Vec<&EngineInfo> {
-        self.engines.iter().filter(|engine| engine.status != "ok").collect()
+    /// The engines that should be there and are not. A peer of the timing study may be missing: the report says so.
+    pub fn missing(&self, loaded: &Loaded) -> Vec<&EngineInfo> {
+        let due = |engine: &EngineInfo| loaded.suite.agreement.as_ref().is_some_and(|agreement| agreement.engines.contains(&engine.name));
+        self.engines.iter().filter(|engine| engine.status != "ok" && due(engine)).collect()
     }
 }

@@ -52,6 +52,11 @@ pub trait Study: Sync {
 
     /// Turns the outcomes of one problem into records.
     fn compare(&self, context: &Context, problem: &Problem, finished: &[Finished]) -> Vec<Record>;
+
+    /// What of the outcomes is worth a file of its own beside the records: its name and its text.
+    fn side_file(&self, _: &[Finished]) -> Option<(&'static str, String)> {
+        None
+    }
 }
 
 /// Groups finished cells by problem, in the order of the problems.

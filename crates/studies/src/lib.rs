@@ -4,7 +4,7 @@
 //! - [`Digits`]: how far is each from the truth, and who is right?
 //! - [`Conditioning`]: how does κ(M) grow, and does it matter?
 //! - [`Structure`]: are the counts of the sparse algorithms the integers that theory says?
-//! - [`Timing`]: how long do the native kernels take?
+//! - [`Timing`]: how long does everyone take, in a paired experiment?
 
 mod agreement;
 mod conditioning;
