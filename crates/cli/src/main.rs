@@ -1,9 +1,11 @@
 //! The `featherbench` command: wires engines and studies into the harness.
 
 mod args;
+mod diff;
 mod explain;
 mod fail;
 mod generate;
+mod history;
 mod list;
 mod oracles;
 mod problems;
@@ -38,6 +40,8 @@ fn dispatch(cli: Cli) -> Result<(), Fail> {
         Command::Run(args) => run::run(&root, &args),
         Command::Report(args) => report::write(&args.folder),
         Command::Gate(args) => report::gate(&root, &args),
+        Command::Diff(args) => diff::compare(&args),
+        Command::History(args) => history::append(&root, &args),
         Command::List(args) => list::list(&root, &args),
         Command::Explain(args) => explain::explain(&args),
         Command::Record(args) => record::record(&root, &args),

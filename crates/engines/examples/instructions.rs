@@ -2,7 +2,7 @@
 //!
 //! Prints a line `kernel,model,calls` before each; everything that is counted happens in [`featherbench_measured`], called once per line.
 
-use engines::{Native, timed};
+use featherbench_engines::{Native, timed};
 use harness::{Prepared, Problem, Subject};
 use model::StateBatch;
 use model::generate::Family;

@@ -24,6 +24,8 @@ mod page;
 mod pairwise;
 mod plots;
 mod provenance;
+mod speed;
+mod speed_section;
 mod tally;
 mod tradeoff;
 mod truth;
@@ -50,6 +52,7 @@ const SCRIPT: &str = concat!(
     include_str!("../assets/figures.js"),
     include_str!("../assets/digits.js"),
     include_str!("../assets/tradeoff.js"),
+    include_str!("../assets/speed.js"),
 );
 
 /// Where a report was written.

@@ -7,15 +7,16 @@ use crate::figures::Figures;
 use crate::findings::Findings;
 use crate::overview::Overview;
 use crate::truth::Truth;
-use crate::{conditioning, digits_section, heatmap, method, pairwise, plots, provenance, tradeoff, truth, unpassed, verdict};
+use crate::{conditioning, digits_section, heatmap, method, pairwise, plots, provenance, speed_section, tradeoff, truth, unpassed, verdict};
 
 /// The sections: anchor, entry in the navigation.
-const SECTIONS: [(&str, &str); 11] = [
+const SECTIONS: [(&str, &str); 12] = [
     ("verdict", "Verdict"),
     ("agreement", "Agreement"),
     ("digits", "Digits"),
     ("depth", "Error"),
     ("time", "Time"),
+    ("speed", "Speed"),
     ("tradeoff", "Work–precision"),
     ("conditioning", "Conditioning"),
     ("pairs", "Pairs"),
@@ -52,6 +53,7 @@ pub fn render(run: &RunInfo, records: &[Record], overview: &Overview, figures: &
                     (digits_section::section(overview, &figures.digits))
                     (plots::depth(figures))
                     (plots::time(overview, figures))
+                    (speed_section::section(run, overview, &figures.speed))
                     (tradeoff::section(overview, &figures.tradeoffs))
                     (conditioning::section(overview, &figures.conditions))
                     (pairwise::section(overview, records))
@@ -89,6 +91,7 @@ pub fn opener(chunk: &str, filters: &[(&str, &str)], text: &str) -> Markup {
 fn sections(figures: &Figures) -> impl Iterator<Item = (&'static str, &'static str)> {
     let absent = |anchor| match anchor {
         "digits" => figures.digits.subjects.is_empty(),
+        "speed" => figures.speed.is_empty(),
         "tradeoff" => figures.tradeoffs.is_empty(),
         "conditioning" => figures.conditions.is_empty(),
         _ => false,
