@@ -24,7 +24,7 @@ TARGET = ROOT / "target/instructions"
 COLUMNS = ["rustc", "kernel", "model", "instructions"]
 # Inlining decisions elsewhere in a file move counts by tenths of a percent; a lost vectorisation or bounds check by several.
 TOLERANCE = 0.02
-FUNCTION = "*featherbench_measured*"
+FUNCTION = "instructions::featherbench_measured"
 
 
 def compiler():
