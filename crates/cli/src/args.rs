@@ -114,7 +114,9 @@ pub struct DiffArgs {
 }
 
 #[derive(Debug, Clone, Args)]
-#[command(after_help = "Example:\n  python ci/instructions.py --out counts.csv\n  featherbench history reports/timing --instructions counts.csv")]
+#[command(
+    after_help = "Example:\n  python ci/instructions.py --out counts.csv\n  featherbench history reports/timing --instructions counts.csv"
+)]
 pub struct HistoryArgs {
     /// The folder of a run with times.
     pub folder: PathBuf,

@@ -37,7 +37,8 @@ fn columns(changed: &Changed) -> [String; 8] {
         }
     };
     let factor = changed.factor().filter(|factor| factor.is_finite()).map_or_else(|| "–".into(), |factor| format!("{factor:.3}"));
-    let measure = |row: &Record| [&row.metric, &row.case].into_iter().filter(|word| !word.is_empty()).cloned().collect::<Vec<_>>().join(" ");
+    let measure =
+        |row: &Record| [&row.metric, &row.case].into_iter().filter(|word| !word.is_empty()).cloned().collect::<Vec<_>>().join(" ");
     let Some(row) = changed.after.or(changed.before) else { return Default::default() };
     [
         changed.change.as_str().to_owned(),
@@ -69,7 +70,8 @@ fn summary(before: &RunInfo, after: &RunInfo, found: &Diff) -> String {
         .collect();
     let what = if counts.is_empty() { "nothing changed beyond noise".to_owned() } else { counts.join(", ") };
     let revision = |run: &RunInfo| run.git.revision.chars().take(10).collect::<String>();
-    let mut text = format!("{} ({}) to {} ({}): {} rows compared, {what}", before.run, revision(before), after.run, revision(after), found.compared);
+    let mut text =
+        format!("{} ({}) to {} ({}): {} rows compared, {what}", before.run, revision(before), after.run, revision(after), found.compared);
     if found.void > 0 {
         let _ = write!(text, "; {} times are void in one of the runs and were not compared", found.void);
     }

@@ -25,7 +25,12 @@ pub fn append(root: &Root, args: &HistoryArgs) -> Result<(), Fail> {
     let before = if path.exists() { std::fs::read_to_string(&path).map_err(|error| failed(&path, &error))? } else { String::new() };
     let text = merged(&before, &lines).map_err(|what| failed(&path, &what))?;
     atomic_write(&path, text.as_bytes())?;
-    println!("{} kernels in {}{}", lines.len(), path.display(), if void > 0 { format!("; {void} void times left out") } else { String::new() });
+    println!(
+        "{} kernels in {}{}",
+        lines.len(),
+        path.display(),
+        if void > 0 { format!("; {void} void times left out") } else { String::new() }
+    );
     Ok(())
 }
 

@@ -43,7 +43,9 @@ fn two_runs_are_compared_as_a_table_and_as_markdown() {
     sandbox.run(&["diff", "a", "a"]).expect(0, &["3 rows compared, nothing changed beyond noise"]);
     sandbox.run(&["diff", "a", "b"]).expect(0, &["nothing changed"]);
     sandbox.run(&["diff", "a", "c"]).expect(1, &["time", "humanoid", "native x", "100.0 ns", "130.0 ns", "1.300", "1 of 3 rows"]);
-    sandbox.run(&["diff", "a", "c", "--markdown"]).expect(1, &["| change | robot |", "| time | humanoid | native x | id | ns_per_call stream | 100.0 ns | 130.0 ns | 1.300 |"]);
+    sandbox
+        .run(&["diff", "a", "c", "--markdown"])
+        .expect(1, &["| change | robot |", "| time | humanoid | native x | id | ns_per_call stream | 100.0 ns | 130.0 ns | 1.300 |"]);
     sandbox.run(&["diff", "a", "nowhere"]).expect(2, &["nowhere"]);
     sandbox.run(&["diff", "--help"]).expect(0, &["Exit codes: 0 nothing changed"]);
 }
@@ -65,7 +67,10 @@ fn a_night_is_kept_once_with_its_instructions() {
     assert_eq!(files.len(), 1);
     assert!(files[0].file_name().unwrap().to_str().unwrap().starts_with("an-example-cpu-4-"), "{files:?}");
     let text = std::fs::read_to_string(&files[0]).unwrap();
-    assert_eq!(text, "date,revision,kernel,model,ns,ns_low,ns_high,instructions\n2026-03-04,0123456789,id/x,humanoid,123.4,122.2,124.6,4567\n");
+    assert_eq!(
+        text,
+        "date,revision,kernel,model,ns,ns_low,ns_high,instructions\n2026-03-04,0123456789,id/x,humanoid,123.4,122.2,124.6,4567\n"
+    );
     sandbox.run(&["history", "a", "--model", "panda"]).expect(2, &["no valid times", "panda"]);
     sandbox.write("bad.csv", "rustc,kernel,model,instructions\n1.0,id/x,humanoid,many\n");
     sandbox.run(&["history", "a", "--instructions", "bad.csv"]).expect(2, &["bad.csv", "line 2", "many"]);

@@ -9,8 +9,16 @@ fn error(model: &str, value: f64, bound: f64) -> Record {
 
 /// A time with its interval, and the interval of its experiment's control.
 fn time(value: f64, spread: f64, control: f64) -> Vec<Record> {
-    let row = Record { study: "timing".into(), model: "panda".into(), quantity: "id".into(), case: "stream".into(), kind: Kind::Measured, ..Record::default() };
-    let of = |engine: &str, metric: &str, value: f64| Record { engine: engine.into(), metric: metric.into(), ..row.clone() }.informed(value);
+    let row = Record {
+        study: "timing".into(),
+        model: "panda".into(),
+        quantity: "id".into(),
+        case: "stream".into(),
+        kind: Kind::Measured,
+        ..Record::default()
+    };
+    let of =
+        |engine: &str, metric: &str, value: f64| Record { engine: engine.into(), metric: metric.into(), ..row.clone() }.informed(value);
     vec![
         of("native", "ns_per_call", value),
         of("native", "ns_low", value * (1.0 - spread)),
@@ -39,10 +47,12 @@ fn verdicts_errors_counts_and_rows() {
     assert_eq!(changes(&base, &[error("a", 1.3e-14, 1e-13), error("b", 1e-15, 1e-14)]), [Change::Error]);
     assert_eq!(changes(&[error("a", 1.3e-14, 1e-13)], &[error("a", 3e-15, 1e-13)]), [Change::Error], "smaller is a change too");
     assert_eq!(changes(&[error("a", 1e-17, 1e-13)], &[error("a", 8e-16, 1e-13)]), [], "both are as good as none");
-    let worse = diff(&base, &[error("b", 2e-14, 1e-14)]).changes.iter().map(|changed| (changed.change, changed.factor())).collect::<Vec<_>>();
+    let worse =
+        diff(&base, &[error("b", 2e-14, 1e-14)]).changes.iter().map(|changed| (changed.change, changed.factor())).collect::<Vec<_>>();
     assert_eq!(worse, [(Change::Verdict, Some(2e-14 / 1e-15)), (Change::Gone, None)]);
     assert_eq!(changes(&base[..1], &base), [Change::New]);
-    let count = |value: f64| [Record { study: "structure".into(), unit: "numbers".into(), ..Record::default() }.gated(value, Relation::Eq, value)];
+    let count =
+        |value: f64| [Record { study: "structure".into(), unit: "numbers".into(), ..Record::default() }.gated(value, Relation::Eq, value)];
     assert_eq!(changes(&count(666.0), &count(666.0)), []);
     assert_eq!(changes(&count(666.0), &count(667.0)), [Change::Count]);
     let skipped = Record { verdict: Verdict::Pass, ..error("a", 1e-15, 1e-14) }.without_value(Verdict::Skip, "not offered");
@@ -55,9 +65,9 @@ fn times_change_beyond_their_intervals_and_the_controls() {
     for (after, expected) in [
         (time(105.0, 0.005, 0.01), vec![Change::Time]),
         (time(95.0, 0.005, 0.01), vec![Change::Time]),
-        (time(101.5, 0.001, 0.001), vec![]),          // apart, and within the noise that is always there
-        (time(105.0, 0.06, 0.01), vec![]),            // beyond the noise, and the intervals overlap
-        (time(105.0, 0.005, 0.06), vec![]),           // beyond both, but the second run was noisy by its own control
+        (time(101.5, 0.001, 0.001), vec![]), // apart, and within the noise that is always there
+        (time(105.0, 0.06, 0.01), vec![]),   // beyond the noise, and the intervals overlap
+        (time(105.0, 0.005, 0.06), vec![]),  // beyond both, but the second run was noisy by its own control
     ] {
         assert_eq!(changes(&base, &after), expected, "{:?}", after[0].value);
     }
@@ -65,6 +75,11 @@ fn times_change_beyond_their_intervals_and_the_controls() {
     void[0].reason = "void: the machine was not quiet".into();
     let found = diff(&base, &void);
     assert_eq!((found.changes.len(), found.void), (0, 1));
-    let ratios = |value| time(value, 0.005, 0.01).into_iter().map(|row| Record { metric: row.metric.replace("ns_per_call", "ratio").replace("ns_", "ratio_"), ..row }).collect::<Vec<_>>();
+    let ratios = |value| {
+        time(value, 0.005, 0.01)
+            .into_iter()
+            .map(|row| Record { metric: row.metric.replace("ns_per_call", "ratio").replace("ns_", "ratio_"), ..row })
+            .collect::<Vec<_>>()
+    };
     assert_eq!(changes(&ratios(2.0), &ratios(2.2)), [Change::Time]);
 }

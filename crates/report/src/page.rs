@@ -7,7 +7,9 @@ use crate::figures::Figures;
 use crate::findings::Findings;
 use crate::overview::Overview;
 use crate::truth::Truth;
-use crate::{conditioning, digits_section, heatmap, method, pairwise, plots, provenance, speed_section, tradeoff, truth, unpassed, verdict};
+use crate::{
+    conditioning, digits_section, heatmap, method, pairwise, plots, provenance, speed_section, tradeoff, truth, unpassed, verdict,
+};
 
 /// The sections: anchor, entry in the navigation.
 const SECTIONS: [(&str, &str); 12] = [

@@ -21,8 +21,20 @@ fn demo() -> (RunInfo, Vec<Record>, Written) {
 fn the_page_has_its_sections_and_stays_small() {
     let (_, records, written) = demo();
     assert!(records.len() > 10_000);
-    let order =
-        ["verdict", "agreement", "digits", "depth", "time", "speed", "tradeoff", "conditioning", "pairs", "provenance", "method", "unpassed"];
+    let order = [
+        "verdict",
+        "agreement",
+        "digits",
+        "depth",
+        "time",
+        "speed",
+        "tradeoff",
+        "conditioning",
+        "pairs",
+        "provenance",
+        "method",
+        "unpassed",
+    ];
     let places: Vec<usize> = order.iter().map(|id| written.index.find(&format!("<section id=\"{id}\"")).unwrap()).collect();
     assert!(places.is_sorted(), "{places:?}");
     for id in order {
@@ -113,7 +125,8 @@ fn ratios_have_intervals_a_mean_and_a_least() {
         };
         Record { reason: reason.into(), ..row.informed(value) }
     };
-    let machine = |metric: &str, value: f64| Record { quantity: "machine".into(), model: String::new(), ..timing("native", "", metric, value, "") };
+    let machine =
+        |metric: &str, value: f64| Record { quantity: "machine".into(), model: String::new(), ..timing("native", "", metric, value, "") };
     let mut rows = vec![machine("fma_per_ns", 56.8), machine("fma_per_ns_per_lane", 7.1), timing("native", "a", "ns_per_call", 280.0, "")];
     for (model, ratio, reason) in [("a", 2.0, ""), ("b", 8.0, ""), ("c", 0.5, "void: noise")] {
         for (metric, value) in [("ratio", ratio), ("ratio_low", 0.9 * ratio), ("ratio_high", 1.1 * ratio)] {

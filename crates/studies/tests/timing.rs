@@ -10,7 +10,8 @@ use support::{Double, gates, robot, whole};
 mod support;
 
 fn study() -> Timing {
-    let kernels = |_: &Problem| vec![(Quantity::InverseDynamics, "rnea"), (Quantity::ForwardDynamics, "aba"), (Quantity::ForwardDynamics, "ltdl")];
+    let kernels =
+        |_: &Problem| vec![(Quantity::InverseDynamics, "rnea"), (Quantity::ForwardDynamics, "aba"), (Quantity::ForwardDynamics, "ltdl")];
     Timing { states: 20, seconds: 0.0, kernels, peers: vec!["double".into(), "absent".into()] }
 }
 
@@ -51,7 +52,10 @@ fn everyone_has_times_ratios_and_intervals_beside_a_control() {
         assert!(of(&rows, "double", quantity, "worst_error").iter().all(|row| row.verdict == Verdict::Pass));
     }
     let machine: Vec<_> = rows.iter().filter(|row| row.quantity == "machine").collect();
-    assert_eq!(machine.iter().map(|row| row.metric.as_str()).collect::<Vec<_>>(), ["fma_per_ns", "fma_per_ns_per_lane", "clock_ns", "empty_call_ns"]);
+    assert_eq!(
+        machine.iter().map(|row| row.metric.as_str()).collect::<Vec<_>>(),
+        ["fma_per_ns", "fma_per_ns_per_lane", "clock_ns", "empty_call_ns"]
+    );
     assert!(machine.iter().all(|row| row.model.is_empty() && row.value.is_some_and(|value| value > 0.0)));
     assert!(rows.iter().all(|row| row.engine != "absent"));
 }

@@ -80,7 +80,8 @@ impl Study for Timing {
                 let listed: Vec<Value> = entrants.iter().map(Entrant::to_params).collect();
                 for regime in REGIMES {
                     let states = if regime == "hot" { 1 } else { states };
-                    let params = json!({"what": EXPERIMENT, "cache": regime, "states": states, "seconds": self.seconds, "entrants": listed});
+                    let params =
+                        json!({"what": EXPERIMENT, "cache": regime, "states": states, "seconds": self.seconds, "entrants": listed});
                     cells.push(self.cell(problem, native, quantity, &usual.method, params));
                 }
             }

@@ -148,7 +148,12 @@ impl<'a> Experiment<'a> {
             let usual = format!("{REFERENCE} {}", self.cell.method);
             if entrant.control {
                 let blank = Record { unit: "1".into(), reference: format!("{usual}, its first copy"), ..blank };
-                rows.extend(self.control.iter().flat_map(|control| estimate(&blank, ["control", "control_low", "control_high"], control)));
+                let mut own: Vec<Record> =
+                    self.control.iter().flat_map(|control| estimate(&blank, ["control", "control_low", "control_high"], control)).collect();
+                if let Some(reason) = &own_noise {
+                    own.iter_mut().for_each(|row| row.reason = format!("void: {reason}"));
+                }
+                rows.extend(own);
                 continue;
             }
             let check = checks

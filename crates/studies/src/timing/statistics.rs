@@ -219,10 +219,12 @@ mod tests {
     #[test]
     fn the_ratio_of_two_medians_would_be_misled_where_the_median_of_ratios_is_not() {
         let worst = |of: fn(Vec<f64>, Vec<f64>) -> f64| {
-            (0..TRIALS as u64).map(|seed| {
-                let (reference, subject) = blocks(frequencies, 1.0, seed);
-                (of(subject, reference) - 1.0).abs()
-            }).fold(0.0, f64::max)
+            (0..TRIALS as u64)
+                .map(|seed| {
+                    let (reference, subject) = blocks(frequencies, 1.0, seed);
+                    (of(subject, reference) - 1.0).abs()
+                })
+                .fold(0.0, f64::max)
         };
         let unpaired = worst(|mut subject, mut reference| median(&mut subject) / median(&mut reference));
         let paired = worst(|subject, reference| median(&mut subject.iter().zip(&reference).map(|(a, b)| a / b).collect::<Vec<_>>()));
