@@ -156,7 +156,7 @@ impl<'a> Summary<'a> {
 }
 
 /// What a row of an experiment is about.
-fn about<'a>(row: &'a Record) -> [&'a str; 5] {
+fn about(row: &Record) -> [&str; 5] {
     [&row.model, &row.engine, &row.method, &row.quantity, &row.case]
 }
 

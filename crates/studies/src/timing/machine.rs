@@ -107,7 +107,7 @@ impl Pinned {
         let Some(core) = (0..rustix::thread::CpuSet::MAX_CPU).rev().find(|&core| before.is_set(core)) else { return Self(None) };
         let mut one = rustix::thread::CpuSet::new();
         one.set(core);
-        move_to(&one).then_some(Self(Some(before))).unwrap_or(Self(None))
+        Self(move_to(&one).then_some(before))
     }
 }
 
