@@ -45,6 +45,13 @@ impl Budget {
         Self { rounds, block: Duration::from_secs_f64((epoch / rounds as f64).max(0.0)).max(BLOCK) }
     }
 
+    /// Rounds of an epoch in which `count` contestants take so long for one: fewer where single calls take longer than a block should.
+    fn rounds_of(&self, round: Duration, count: usize) -> usize {
+        let meant = self.block.as_secs_f64() * (self.rounds * count) as f64;
+        // Blocks overshoot by up to twice their length: that alone costs no round.
+        ((2.0 * meant / round.as_secs_f64().max(1e-9)) as usize).clamp(1, self.rounds)
+    }
+
     /// Preparing someone anew at each epoch must not take longer than timing it, or twenty times a block where that is more.
     fn affords(&self, preparing: Duration) -> bool {
         preparing <= self.block * 20.max(self.rounds as u32)
@@ -59,16 +66,19 @@ pub(super) fn experiment<'a>(
     budget: Budget,
     random: &mut Random,
 ) -> Samples {
-    let mut samples = Samples::new(count, EPOCHS * budget.rounds);
-    let mut movable = Vec::with_capacity(count);
+    let (mut calls, mut movable, mut round_time) = (Vec::with_capacity(count), Vec::with_capacity(count), Duration::ZERO);
     let mut contestants: Vec<Contestant> = Vec::with_capacity(count);
     for which in 0..count {
         let start = Instant::now();
         let mut contestant = prepare(which);
         movable.push(budget.affords(start.elapsed()));
-        samples.calls[which] = calls_of_a_block(&mut contestant, budget.block);
+        let (of_block, time) = calls_of_a_block(&mut contestant, budget.block);
+        calls.push(of_block);
+        round_time += time;
         contestants.push(contestant);
     }
+    let rounds = budget.rounds_of(round_time, count);
+    let mut samples = Samples::new(calls, EPOCHS * rounds);
     let mut order: Vec<usize> = (0..count).collect();
     for epoch in 0..EPOCHS {
         for which in (0..count).filter(|&which| epoch > 0 && movable[which]) {
@@ -79,7 +89,7 @@ pub(super) fn experiment<'a>(
                 drop(shift);
             }
         }
-        for round in epoch * budget.rounds..(epoch + 1) * budget.rounds {
+        for round in epoch * rounds..(epoch + 1) * rounds {
             shuffle(&mut order, random);
             for &which in &order {
                 let (calls, state) = (samples.calls[which], random.below(states));
@@ -103,8 +113,8 @@ fn block(contestant: &mut Contestant, state: usize, calls: usize) -> Result<Dura
     prepared.clock(state + warm..state + warm + calls)
 }
 
-/// Warms a contestant up and finds how many calls last as long as a block; 1 of one that refuses.
-fn calls_of_a_block(contestant: &mut Contestant, block: Duration) -> usize {
+/// Warms a contestant up and finds how many calls last as long as a block, and how long they last; 1 and nothing of one that refuses.
+fn calls_of_a_block(contestant: &mut Contestant, block: Duration) -> (usize, Duration) {
     let mut calls = 1;
     while let Ok(prepared) = contestant {
         match prepared.clock(0..calls) {
@@ -113,11 +123,11 @@ fn calls_of_a_block(contestant: &mut Contestant, block: Duration) -> usize {
                 let missing = block.as_secs_f64() / time.as_secs_f64().max(1e-9);
                 calls = (calls as f64 * missing.clamp(1.1, 8.0)).ceil() as usize;
             }
-            Ok(_) => break,
+            Ok(time) => return (calls, time),
             Err(refusal) => *contestant = Err(refusal),
         }
     }
-    calls
+    (1, Duration::ZERO)
 }
 
 /// Every order with the same probability (Fisher and Yates).
@@ -176,7 +186,7 @@ mod tests {
 
     #[test]
     fn every_round_has_a_block_of_each_from_any_state_in_changing_order() {
-        let (fast, slow) = (Duration::from_nanos(100), Duration::from_millis(3));
+        let (fast, slow) = (Duration::from_nanos(100), Duration::from_micros(300));
         let (samples, log) = scripted(&[(fast, usize::MAX), (fast * 2, usize::MAX), (slow, usize::MAX)]);
         assert_eq!(samples.calls[2], 1);
         let length = samples.calls[0] as u32 * fast;
@@ -222,6 +232,8 @@ mod tests {
         assert_eq!(Budget::of(0.0), Budget { rounds: 1, block: BLOCK });
         assert_eq!(Budget::of(0.02), Budget { rounds: 3, block: Duration::from_secs_f64(0.02 / 90.0) });
         assert_eq!(Budget::of(0.3), Budget { rounds: MOST_ROUNDS, block: Duration::from_millis(1) });
+        let rounds = |millis, count| Budget::of(0.3).rounds_of(Duration::from_millis(millis), count);
+        assert_eq!([rounds(4, 4), rounds(8, 4), rounds(16, 4), rounds(1000, 4)], [10, 10, 5, 1]);
         assert!(Budget::of(0.3).affords(Duration::from_millis(20)) && !Budget::of(0.3).affords(Duration::from_millis(21)));
     }
 }

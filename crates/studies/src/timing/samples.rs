@@ -14,9 +14,9 @@ pub(super) struct Samples {
 }
 
 impl Samples {
-    /// Room for the blocks.
-    pub fn new(contestants: usize, rounds: usize) -> Self {
-        Self { calls: vec![1; contestants], rounds, ns: vec![f64::NAN; contestants * rounds] }
+    /// Room for the blocks of contestants with these calls.
+    pub fn new(calls: Vec<usize>, rounds: usize) -> Self {
+        Self { ns: vec![f64::NAN; calls.len() * rounds], calls, rounds }
     }
 
     /// Keeps a block.
@@ -115,8 +115,7 @@ mod tests {
 
     #[test]
     fn samples_survive_being_an_outcome() {
-        let mut samples = Samples::new(2, 3);
-        samples.calls = vec![7, 1];
+        let mut samples = Samples::new(vec![7, 1], 3);
         samples.set(1, 2, 5.5);
         let again = Samples::from_values(&samples.to_values()).unwrap();
         assert_eq!(again.calls, [7, 1]);
