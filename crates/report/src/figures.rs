@@ -183,9 +183,9 @@ fn times<'a>(overview: &Overview<'a>, records: &'a [Record]) -> Vec<TimeLine<'a>
         .into_iter()
         .filter_map(|([engine, algorithm, method, scalar, family, case, _], mut points)| {
             points.sort_by_key(|point| (point.size, point.model));
-            let counted = || points.iter().filter(|point| !point.void);
-            let per_call = power_law(counted().map(|point| (point.size as f64, point.ns)));
-            let per_joint = power_law(counted().map(|point| (point.size as f64, point.ns / point.joints as f64)));
+            // Void times too: they are off by some percent, and a fit spans decades.
+            let per_call = power_law(points.iter().map(|point| (point.size as f64, point.ns)));
+            let per_joint = power_law(points.iter().map(|point| (point.size as f64, point.ns / point.joints as f64)));
             let engine = overview.engine(engine)?;
             Some(TimeLine { engine, algorithm, method, scalar, family, case, points, per_call, per_joint })
         })
