@@ -110,10 +110,10 @@ CLOSED = "return !document.querySelector('#rows').open"
 BACKGROUND = "return getComputedStyle(document.body).backgroundColor"
 # Every section in its order; those that are not in ALWAYS appear with their rows alone.
 SECTIONS = [
-    "verdict", "agreement", "joints", "digits", "depth", "time", "tradeoff", "conditioning", "steps", "pairs", "conventions", "known", "provenance",
-    "method", "unpassed",
+    "verdict", "agreement", "reading", "joints", "digits", "depth", "time", "speed", "tradeoff", "conditioning", "steps", "pairs", "conventions",
+    "known", "provenance", "method", "unpassed",
 ]
-ALWAYS = set(SECTIONS) - {"joints", "digits", "tradeoff", "conditioning", "steps", "known"}
+ALWAYS = set(SECTIONS) - {"reading", "joints", "digits", "speed", "tradeoff", "conditioning", "steps", "known"}
 FOCUS = "const cell = document.activeElement.closest('td'); return cell ? [cell.parentElement.rowIndex, cell.cellIndex] : null"
 
 
@@ -136,7 +136,7 @@ def checks(page, address, shots):
     yield "the page is no wider than its window", width[0] <= width[1], width
     shot("top")
 
-    for box in ["digits-plot", "depth-plot", "time-plot", "tradeoff-plot", "conditioning-plot", "floor-plot"]:
+    for box in ["digits-plot", "depth-plot", "time-plot", "speed-plot", "tradeoff-plot", "conditioning-plot", "floor-plot"]:
         if has(f"#{box}"):
             traces = page.until(DRAWN, box)
             yield f"{box} has traces", traces > 0, traces
@@ -226,6 +226,9 @@ def checks(page, address, shots):
         page.choose("#time-unit", "joint")
         title = page.until("return document.querySelector('#time-plot .ytitle').textContent.includes('joint')")
         yield "time per joint can be plotted", title, ""
+
+    if has("#speed-plot"):
+        yield from speed(page, shot)
 
     if has("#unpassed [data-chunk]"):
         page.click("#unpassed [data-chunk]")
@@ -346,6 +349,30 @@ def digits(page, shot):
     left = page.run("return [...document.querySelectorAll('#digits-table tr[data-m]')].filter(row => !row.hidden).length")
     yield "the filter hides models of the digits", left == 0, left
     page.run("const box = document.querySelector('#digits-filter'); box.value = ''; box.dispatchEvent(new Event('input'))")
+
+
+def speed(page, shot):
+    """The checks of the section on speed."""
+    title = "return document.querySelector('#speed-plot .ytitle').textContent"
+    for quantity in page.run("return [...document.querySelector('#speed-quantity').options].map(option => option.value)")[::-1]:
+        words = page.run("return document.querySelector('#speed-quantity').options[arguments[0]].textContent", int(quantity))
+        for case in ["hot", "stream"]:
+            page.choose("#speed-case", case)
+            page.choose("#speed-quantity", quantity)
+            seen = page.until(f"const now = (() => {{ {title} }})(); return now.startsWith(arguments[0]) && now", words)
+            ends = page.until("return document.querySelectorAll('#speed-plot .errorbar').length")
+            yield f"ratios of {words}, {case}, are plotted with intervals", bool(seen) and page.until(DRAWN, "speed-plot") > 0 and ends > 0, [seen, ends]
+    rows = page.run("""
+        const means = [...document.querySelectorAll('#speed-summary tbody tr')].map(row => [...row.querySelectorAll('td.number')].map(cell => parseFloat(cell.textContent)));
+        return means.map(([robots, mean, least, largest]) => least <= mean && mean <= largest && robots > 0)""")
+    yield "every geometric mean lies between its least and its largest", bool(rows) and all(rows), rows
+    page.run("document.querySelectorAll('#speed details').forEach(part => { part.open = true; })")
+    for table in ["speed-summary", "speed-controls"]:
+        found = page.run("return document.querySelectorAll(`#${arguments[0]} tbody tr`).length", table)
+        yield f"{table} has rows", found > 0, found
+        page.run("document.getElementById(arguments[0]).scrollIntoView({block: 'center', behavior: 'instant'})", table)
+        shot(table)
+    page.run("document.querySelectorAll('#speed details').forEach(part => { part.open = false; })")
 
 
 def main():

@@ -22,7 +22,7 @@ Examples:
   featherbench gen chain --n 1000 --out c.json a robot of one's own
   featherbench explain 3f2a reports/LATEST     what a cell asked and what was answered
 
-Exit codes: 0 good, 1 a gate failed or engines disagree, 2 usage or bad input, 3 a required engine is missing.";
+Exit codes: 0 good, 1 a gate failed, engines disagree or two runs differ, 2 usage or bad input, 3 a required engine is missing.";
 
 #[derive(Debug, Subcommand)]
 pub enum Command {
@@ -36,6 +36,10 @@ pub enum Command {
     Gate(GateArgs),
     /// List suites, robots, engines, studies and families of generated robots.
     List(ListArgs),
+    /// Compare two runs: what changed beyond noise; exit 1 when something did.
+    Diff(DiffArgs),
+    /// Append the times of our kernels in a run to datasets/history.
+    History(HistoryArgs),
     /// Explain a cell of a run: what was asked, what was answered, how it was judged.
     Explain(ExplainArgs),
     /// Ask the engines and keep their answers in datasets/recorded.
@@ -139,6 +143,37 @@ pub struct GateArgs {
     /// Print the counts of rows that pass or deviate as known, in the form of a suite's `expect` tables.
     #[arg(long)]
     pub counts: bool,
+}
+
+#[derive(Debug, Clone, Args)]
+#[command(
+    after_help = "What changes: a verdict; a count; an error by a factor of 4; a time when the intervals of both runs are apart and their ratio is beyond 2 % and the A/A controls of both; a row that only one run has. Void times are not compared.\n\nExit codes: 0 nothing changed beyond noise, 1 something did, 2 usage or bad input.\n\nExample:\n  featherbench diff reports/before reports/after --markdown"
+)]
+pub struct DiffArgs {
+    /// The folder of the first run.
+    #[arg(value_name = "RUN_A")]
+    pub before: PathBuf,
+    /// The folder of the second run.
+    #[arg(value_name = "RUN_B")]
+    pub after: PathBuf,
+    /// Print a Markdown table.
+    #[arg(long)]
+    pub markdown: bool,
+}
+
+#[derive(Debug, Clone, Args)]
+#[command(
+    after_help = "Example:\n  python ci/instructions.py --out counts.csv\n  featherbench history reports/timing --instructions counts.csv"
+)]
+pub struct HistoryArgs {
+    /// The folder of a run with times.
+    pub folder: PathBuf,
+    /// The robot whose times are kept.
+    #[arg(long, default_value = "humanoid")]
+    pub model: String,
+    /// Instruction counts, as `ci/instructions.py --out` writes them.
+    #[arg(long, value_name = "CSV")]
+    pub instructions: Option<PathBuf>,
 }
 
 #[derive(Debug, Clone, Args)]

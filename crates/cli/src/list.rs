@@ -28,7 +28,7 @@ fn text(root: &Root, args: &ListArgs) -> Result<String, Fail> {
         let subjects: Vec<Box<dyn Subject>> = vec![Box::new(Native::new())];
         let gates = Gates::read(&root.gates())?;
         let context = Context { problems: &loaded.problems, subjects: &subjects, gates: &gates, seed: loaded.suite.seed };
-        let timing = Timing { states: 1, seconds: 0.0, kernels: engines::timed };
+        let timing = Timing { states: 1, seconds: 0.0, kernels: engines::timed, peers: Vec::new() };
         let studies: [&dyn Study; 6] = [&Agreement, &Reading, &Digits, &Conditioning, &Structure, &timing];
         let cells = studies.iter().flat_map(|study| study.plan(&context));
         return Ok(cells.map(|cell| format!("{}  {}\n", cell.id(), cell.path())).collect());

@@ -3,10 +3,12 @@
 mod args;
 mod check;
 mod compare;
+mod diff;
 mod explain;
 mod fail;
 mod generate;
 mod guest;
+mod history;
 mod list;
 mod native;
 mod oracles;
@@ -45,6 +47,8 @@ fn dispatch(cli: Cli) -> Result<(), Fail> {
         Command::Compare(args) => compare::compare(&root, &args),
         Command::Report(args) => report::write(&args.folder),
         Command::Gate(args) => report::gate(&root, &args),
+        Command::Diff(args) => diff::compare(&args),
+        Command::History(args) => history::append(&root, &args),
         Command::List(args) => list::list(&root, &args),
         Command::Explain(args) => explain::explain(&args),
         Command::Record(args) => record::record(&root, &args),

@@ -23,7 +23,7 @@ pub fn record(root: &Root, args: &RecordArgs) -> Result<(), Fail> {
     let loaded = problems::load(root, &args.suite, false, None)?;
     let gates = Gates::read(&root.gates())?;
     let opened = subjects::open(root, &run, &loaded)?;
-    if let Some(missing) = opened.missing().first() {
+    if let Some(missing) = opened.missing(&loaded).first() {
         let message = format!("{} does not answer: {}", missing.name, missing.reason);
         return Err(Fail::Missing { message, advice: "look at `featherbench oracles status`".into() });
     }

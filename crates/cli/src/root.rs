@@ -35,6 +35,11 @@ impl Root {
         self.0.join("datasets/recorded")
     }
 
+    /// Times night after night, a file per machine.
+    pub fn history(&self) -> PathBuf {
+        self.0.join("datasets/history")
+    }
+
     pub fn gates(&self) -> PathBuf {
         self.0.join("ci")
     }

@@ -40,7 +40,7 @@ pub fn run(root: &Root, args: &RunArgs) -> Result<(), Fail> {
     let records = conduct(&studies(root, &loaded, args), &context, &folder, &keep, &mut info)?;
     let complete = only.is_none();
     info.expected = gates.conditions(&loaded.suite, &records, complete);
-    for engine in subjects.missing() {
+    for engine in subjects.missing(&loaded) {
         info.expected.push(missing_engine(&engine.name, &engine.reason));
     }
     info.seconds.insert("total".into(), start.elapsed().as_secs_f64());
@@ -64,6 +64,9 @@ pub fn conduct(
         let phase = Instant::now();
         let cells = harness::run::plan(study.as_ref(), context, keep);
         let finished = harness::run::evaluate(study.as_ref(), context, cells, &store, &progress)?;
+        if let Some((name, text)) = study.side_file(&finished) {
+            ::record::atomic_write(&folder.join(name), text.as_bytes())?;
+        }
         records.extend(harness::run::compare(study.as_ref(), context, finished));
         info.seconds.insert(study.name().into(), phase.elapsed().as_secs_f64());
     }
@@ -100,7 +103,8 @@ fn studies(root: &Root, loaded: &Loaded, args: &RunArgs) -> Vec<Box<dyn Study>> 
         studies.push(Box::new(Reproductions { reproduce: crate::oracles::reproducer(root, subjects::limits(args)) }));
     }
     if let Some(timing) = loaded.suite.timing.as_ref().filter(|_| !args.no_timing) {
-        studies.push(Box::new(Timing { states: timing.states, seconds: timing.seconds, kernels: engines::timed }));
+        let (states, seconds, peers) = (timing.states, timing.seconds, timing.peers.clone());
+        studies.push(Box::new(Timing { states, seconds, kernels: engines::timed, peers }));
     }
     studies
 }

@@ -26,11 +26,17 @@ pub fn open(root: &Root, args: &RunArgs, loaded: &Loaded) -> Result<Subjects, Fa
     let engines: &[String] = loaded.suite.agreement.as_ref().map_or(&[], |agreement| &agreement.engines);
     let taken: Vec<&str> = ["native"].into_iter().chain(engines.iter().map(String::as_str)).collect();
     guest::check_names(&args.guests, &taken)?;
+    let limits = limits(args);
+    if let Some(timing) = loaded.suite.timing.as_ref().filter(|_| !args.no_timing) {
+        for name in &timing.peers {
+            let peer = native::start(root, name, limits, None).map(|peer| Box::new(peer) as Box<dyn Subject>);
+            opened.add(peer, name, EngineSource::Live);
+        }
+    }
     let (here, others): (Vec<&String>, Vec<&String>) = engines.iter().partition(|engine| *engine == oracles::IN_PROCESS);
     for engine in here {
         opened.add(Ok(Box::new(Rapier::new())), engine, EngineSource::Live);
     }
-    let limits = limits(args);
     if args.live && !others.is_empty() {
         let python = oracles::install(root)?;
         // Together: an engine's start is its libraries being read from disk.
@@ -94,8 +100,9 @@ impl Subjects {
         self.subjects.extend(subject);
     }
 
-    /// The engines that should be there and are not.
-    pub fn missing(&self) -> Vec<&EngineInfo> {
-        self.engines.iter().filter(|engine| engine.status != "ok").collect()
+    /// The engines that should be there and are not. A peer of the timing study may be missing: the report says so.
+    pub fn missing(&self, loaded: &Loaded) -> Vec<&EngineInfo> {
+        let due = |engine: &EngineInfo| loaded.suite.agreement.as_ref().is_some_and(|agreement| agreement.engines.contains(&engine.name));
+        self.engines.iter().filter(|engine| engine.status != "ok" && due(engine)).collect()
     }
 }

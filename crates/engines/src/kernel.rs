@@ -71,6 +71,7 @@ pub fn timed(problem: &Problem) -> Vec<(Quantity, &'static str)> {
         (Quantity::ForwardDynamics, "refined_1"),
         (Quantity::ForwardDynamics, "refined_2"),
         (Quantity::KineticEnergy, "kinematics"),
+        (Quantity::CenterOfMass, "kinematics"),
         (Quantity::Momentum, "kinematics"),
         (Quantity::BodyAcceleration, "kinematics"),
         (Quantity::BodyJacobian, "kinematics"),

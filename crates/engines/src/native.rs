@@ -6,7 +6,9 @@ use harness::{Identity, Prepared, Problem, Quantity, Refusal, Subject};
 use model::StateBatch;
 use record::EngineSource;
 use std::collections::BTreeMap;
+use std::hint::black_box;
 use std::ops::Range;
+use std::time::{Duration, Instant};
 
 /// Our own kernels.
 pub struct Native {
@@ -52,7 +54,7 @@ impl Subject for Native {
     ) -> Result<Box<dyn Prepared + 'a>, Refusal> {
         states.check(&problem.model).map_err(|error| Refusal::Failed(error.to_string()))?;
         let kernel = kernel(problem, quantity, method, states)?;
-        Ok(Box::new(Ready { kernel, size: quantity.size(problem), values: Vec::new() }))
+        Ok(Box::new(Ready { kernel, size: quantity.size(problem), states: states.count(), values: Vec::new() }))
     }
 }
 
@@ -60,6 +62,7 @@ impl Subject for Native {
 struct Ready<'a> {
     kernel: Kernel<'a>,
     size: usize,
+    states: usize,
     values: Vec<f64>,
 }
 
@@ -70,6 +73,19 @@ impl Prepared for Ready<'_> {
             (self.kernel)(k, out).map_err(|error| Refusal::Failed(error.to_string()))?;
         }
         Ok(())
+    }
+
+    /// Every answer goes to the same place: a stream of answers would measure the memory.
+    fn clock(&mut self, range: Range<usize>) -> Result<Duration, Refusal> {
+        self.values.resize(self.size, 0.0);
+        let mut state = range.start % self.states;
+        let start = Instant::now();
+        for _ in range {
+            (self.kernel)(state, &mut self.values).map_err(|error| Refusal::Failed(error.to_string()))?;
+            black_box(&mut self.values);
+            state = if state + 1 == self.states { 0 } else { state + 1 };
+        }
+        Ok(start.elapsed())
     }
 
     fn read(&self) -> &[f64] {

@@ -62,6 +62,17 @@ impl Outcome {
     }
 }
 
+impl Outcome {
+    /// The values, or why there are none; a reading stands for none.
+    pub fn answer(&self) -> Result<&[f64], Refusal> {
+        match self {
+            Self::Values(values) => Ok(values),
+            Self::Refused(refusal) => Err(refusal.clone()),
+            Self::Reading(_) => Err(Refusal::Failed("the outcome is a robot that was read, and numbers are due".into())),
+        }
+    }
+}
+
 impl From<Result<Vec<f64>, Refusal>> for Outcome {
     fn from(result: Result<Vec<f64>, Refusal>) -> Self {
         result.map_or_else(Self::Refused, Self::Values)

@@ -57,6 +57,11 @@ pub trait Study: Sync {
     fn compare_all(&self, _context: &Context, _finished: &[Finished]) -> Vec<Record> {
         Vec::new()
     }
+
+    /// What of the outcomes is worth a file of its own beside the records: its name and its text.
+    fn side_file(&self, _: &[Finished]) -> Option<(&'static str, String)> {
+        None
+    }
 }
 
 /// Groups finished cells by problem, in the order of the problems.

@@ -162,6 +162,9 @@ pub trait Prepared: Send {
     /// Evaluates the states of the range and says how long that took: one reading of the clock before the loop over the states and one
     /// after it, both in the process that runs the loop.
     ///
+    /// Beyond the end of the batch its states begin again (a subject that is timed answers so; this plain form does not), and no answer but
+    /// the last need be kept.
+    ///
     /// # Errors
     /// [`Refusal`] when the subject fails.
     fn clock(&mut self, range: Range<usize>) -> Result<Duration, Refusal> {

@@ -94,8 +94,11 @@ pub struct AgreementEntry {
 pub struct TimingEntry {
     /// Distinct states in the stream.
     pub states: usize,
-    /// Seconds for each kernel on each robot and cache regime.
+    /// Seconds for everyone who is timed, on each quantity of each robot in each cache regime.
     pub seconds: f64,
+    /// Native peers that are timed beside our own kernels, where they are installed.
+    #[serde(default)]
+    pub peers: Vec<String>,
 }
 
 impl ProblemEntry {

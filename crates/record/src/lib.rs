@@ -15,6 +15,7 @@
 //! ```
 
 mod columns;
+mod diff;
 mod error;
 mod file;
 mod names;
@@ -23,6 +24,7 @@ mod row;
 mod run_info;
 
 pub use columns::{COLUMNS, Column, ColumnType, schema_json};
+pub use diff::{Change, Changed, Diff, ERROR_FACTOR, ERROR_FLOOR, TIME_NOISE, diff};
 pub use error::RecordError;
 pub use file::{CSV_NAME, RUN_NAME, SCHEMA_NAME, atomic_write, parse_csv, read_csv, read_run, to_csv, write_csv, write_run};
 pub use names::{Kind, Relation, Verdict};

@@ -76,7 +76,8 @@ featherbench.ready(() => {
     const traces = [];
     for (const line of lines) {
       const per = (point, ns) => (joint ? ns / point.joints : ns);
-      const style = families.indexOf(line.family);
+      // Several engines are told apart by their dashes, as several families are.
+      const style = engines.size > 1 ? [...engines].indexOf(line.engine) : families.indexOf(line.family);
       const ink = colour(algorithms.indexOf(line.algorithm));
       const name = joined(engines.size > 1 ? overview.engines[line.engine] : "", line.algorithm, line.method === line.algorithm ? "" : line.method,
         families.length > 1 ? line.family : "", line.scalar === "f64" ? "" : line.scalar);
@@ -84,8 +85,8 @@ featherbench.ready(() => {
       traces.push({
         name: fit ? `${name}  <i>p = ${fit.slope.toFixed(2)}</i>` : name, legendgroup: name, mode: "markers+lines",
         x: line.points.map((point) => point.size), y: line.points.map((point) => per(point, point.ns)),
-        line: { color: ink, width: 1, dash: dash(style) }, marker: { color: ink, size: 7, symbol: symbol(style) },
-        error_y: bars(line.points, ...["p10", "ns", "p90"].map((key) => (point) => (point[key] === null ? null : per(point, point[key]))), ink),
+        line: { color: ink, width: 1, dash: dash(style) }, marker: { color: ink, size: 7, symbol: line.points.map((point) => symbol(style) + (point.void ? "-open" : "")) },
+        error_y: bars(line.points, ...[["low", "p10"], ["ns"], ["high", "p90"]].map((keys) => (point) => { const found = keys.map((key) => point[key]).find((ns) => ns !== null); return found === undefined ? null : per(point, found); }), ink),
         text: line.points.map((point) => `<b>${plain(overview.models[point.model].name)}</b> nv ${point.size}<br>${short(point.ns)} ns per call<br>${short(point.ns / point.joints)} ns per joint`),
         hovertemplate: `%{text}<extra>${name}</extra>`,
         customdata: line.points.map((point) => ({ model: point.model, filters: { study: "timing", engine: overview.engines[line.engine], quantity: line.algorithm, case: line.case } })),

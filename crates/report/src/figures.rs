@@ -11,6 +11,7 @@ use crate::fit::{Fit, power_law};
 use crate::joint_matrix::JointMatrix;
 use crate::labels;
 use crate::overview::{AGREEMENT, Overview, PAIRWISE, TIMING};
+use crate::speed::{Speed, VOID};
 use crate::steps::{self, StepLine};
 use crate::tradeoff::{Tradeoff, tradeoffs};
 
@@ -26,6 +27,8 @@ pub struct Figures<'a> {
     pub times: Vec<TimeLine<'a>>,
     /// Errors against the truth.
     pub digits: Digits<'a>,
+    /// Ratios of times.
+    pub speed: Speed<'a>,
     /// Methods with both a time and a true error.
     pub tradeoffs: Vec<Tradeoff<'a>>,
     /// Condition numbers.
@@ -100,6 +103,12 @@ pub struct TimePoint {
     pub p10: Option<f64>,
     /// Its last decile.
     pub p90: Option<f64>,
+    /// Lower end of the interval of the median, where the run has it.
+    pub low: Option<f64>,
+    /// Its upper end.
+    pub high: Option<f64>,
+    /// Whether the time does not count.
+    pub void: bool,
 }
 
 impl<'a> Figures<'a> {
@@ -108,6 +117,7 @@ impl<'a> Figures<'a> {
         let (times, digits) = (times(overview, records), Digits::of(overview, records));
         Self {
             errors: errors(overview, records),
+            speed: Speed::of(overview, records),
             tradeoffs: tradeoffs(&digits, &times),
             conditions: conditioning::families(overview, records),
             joints: JointMatrix::of(overview, records),
@@ -159,7 +169,7 @@ fn times<'a>(overview: &Overview<'a>, records: &'a [Record]) -> Vec<TimeLine<'a>
     let timing: Vec<&Record> = records.iter().filter(|row| row.study == TIMING && row.value.is_some()).collect();
     let spread: BTreeMap<(&str, Spread), f64> = timing
         .iter()
-        .filter(|row| row.metric == "ns_p10" || row.metric == "ns_p90")
+        .filter(|row| ["ns_p10", "ns_p90", "ns_low", "ns_high"].contains(&row.metric.as_str()))
         .filter_map(|row| Some(((row.metric.as_str(), (row.model.as_str(), what(row))), row.value?)))
         .collect();
 
@@ -169,16 +179,19 @@ fn times<'a>(overview: &Overview<'a>, records: &'a [Record]) -> Vec<TimeLine<'a>
         let Some(size) = overview.models[model].nv.filter(|&size| size > 0) else { continue };
         let joints = overview.models[model].bodies.filter(|&bodies| bodies > 0).unwrap_or(size);
         let key = what(row);
-        let decile = |metric| spread.get(&(metric, (row.model.as_str(), key))).copied();
+        let spread_of = |metric| spread.get(&(metric, (row.model.as_str(), key))).copied();
         // Parameters tell spreads apart, but not lines: a line may change its number of states with the size.
         let [engine, algorithm, method, scalar, family, case, _] = key;
         let line = [engine, algorithm, method, scalar, family, case, ""];
-        lines.entry(line).or_default().push(TimePoint { model, size, joints, ns, p10: decile("ns_p10"), p90: decile("ns_p90") });
+        let [p10, p90, low, high] = ["ns_p10", "ns_p90", "ns_low", "ns_high"].map(spread_of);
+        let void = row.reason.starts_with(VOID);
+        lines.entry(line).or_default().push(TimePoint { model, size, joints, ns, p10, p90, low, high, void });
     }
     lines
         .into_iter()
         .filter_map(|([engine, algorithm, method, scalar, family, case, _], mut points)| {
             points.sort_by_key(|point| (point.size, point.model));
+            // Void times too: they are off by some percent, and a fit spans decades.
             let per_call = power_law(points.iter().map(|point| (point.size as f64, point.ns)));
             let per_joint = power_law(points.iter().map(|point| (point.size as f64, point.ns / point.joints as f64)));
             let engine = overview.engine(engine)?;

@@ -28,6 +28,8 @@ mod pairwise;
 mod plots;
 mod provenance;
 mod reading;
+mod speed;
+mod speed_section;
 mod steps;
 mod tally;
 mod tradeoff;
@@ -58,6 +60,7 @@ const SCRIPT: &str = concat!(
     include_str!("../assets/tradeoff.js"),
     include_str!("../assets/steps.js"),
     include_str!("../assets/reading.js"),
+    include_str!("../assets/speed.js"),
 );
 
 /// Where a report was written.

@@ -56,7 +56,7 @@ pub fn section(run: &RunInfo, overview: &Overview, figures: &Figures) -> Markup 
                         }
                         @if !figures.times.is_empty() {
                             dt { "Times" }
-                            dd { "One thread, pinned to one core where the system allows it, after all accuracy work is done. stream reads another state at each call, hot the same one again. Inside the clock is everything from q, q̇, q̈ or τ to the result: sines and cosines, gravity, rotors' inertia, copying the result out; only factorization and solve start from a mass matrix or factors made before. A value is the median over blocks of at least 50 µs, its bars their first and last decile." }
+                            dd { "One thread, pinned to one core where the system allows it, after all accuracy work is done. stream reads another state at each call, hot the same one again. Inside the clock is everything from q, q̇, q̈ or τ to the result: sines and cosines, gravity, rotors' inertia; only factorization and solve start from a mass matrix or factors made before. Everyone who is timed has one block per round, in random order, beside a second copy of ours; a value is the median over the rounds, its bars the 95 % interval of a bootstrap that draws whole epochs, each with a memory layout of its own." }
                         }
                         dt { "Recorded and live" }
                         dd {

@@ -9,8 +9,8 @@ use crate::overview::{Overview, REPRODUCTIONS};
 use crate::reading::Readings;
 use crate::truth::Truth;
 use crate::{
-    conditioning, conventions, digits_section, heatmap, joint_matrix, known, method, pairwise, plots, provenance, reading, steps, tradeoff,
-    truth, unpassed, verdict,
+    conditioning, conventions, digits_section, heatmap, joint_matrix, known, method, pairwise, plots, provenance, reading, speed_section,
+    steps, tradeoff, truth, unpassed, verdict,
 };
 
 /// The sections: anchor, entry in the navigation.
@@ -22,6 +22,7 @@ const SECTIONS: &[(&str, &str)] = &[
     ("digits", "Digits"),
     ("depth", "Error"),
     ("time", "Time"),
+    ("speed", "Speed"),
     ("tradeoff", "Work–precision"),
     ("conditioning", "Conditioning"),
     ("steps", "Steps"),
@@ -64,6 +65,7 @@ pub fn render(run: &RunInfo, records: &[Record], overview: &Overview, figures: &
                     (digits_section::section(overview, &figures.digits))
                     (plots::depth(figures))
                     (plots::time(overview, figures))
+                    (speed_section::section(run, overview, &figures.speed))
                     (tradeoff::section(overview, &figures.tradeoffs))
                     (conditioning::section(overview, &figures.conditions))
                     (steps::section(overview, &figures.steps))
@@ -106,6 +108,7 @@ fn sections(overview: &Overview, figures: &Figures, readings: &Readings) -> impl
         "reading" => readings.is_empty(),
         "joints" => figures.joints.rows.is_empty(),
         "digits" => figures.digits.subjects.is_empty(),
+        "speed" => figures.speed.is_empty(),
         "tradeoff" => figures.tradeoffs.is_empty(),
         "conditioning" => figures.conditions.is_empty(),
         "known" => !overview.studies.contains(&REPRODUCTIONS),

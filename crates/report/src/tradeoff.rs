@@ -56,6 +56,7 @@ pub fn tradeoffs<'a>(digits: &Digits<'a>, times: &[TimeLine<'a>]) -> Vec<Tradeof
     for line in times.iter().filter(|line| line.algorithm == QUANTITY && line.case == INPUTS) {
         let TimeLine { engine, method, scalar, .. } = *line;
         let Some(&subject) = subjects.get(&(engine, method, scalar)) else { continue };
+        // A void time is off by some percent; here decades matter.
         for point in &line.points {
             let Some(cell) = digits.cell(point.model, subject) else { continue };
             let Some(error) = cell.median else { continue };

@@ -27,6 +27,7 @@ fn the_page_has_its_sections_and_stays_small() {
         "digits",
         "depth",
         "time",
+        "speed",
         "tradeoff",
         "conditioning",
         "pairs",
@@ -105,6 +106,52 @@ fn every_row_lies_in_one_chunk_and_chunks_parse() {
     let figures = written.data("figures");
     assert!(figures["errors"].as_array().unwrap().iter().any(|plot| plot["quantity"] == "fd" && plot["metric"] == "backward"));
     assert!(figures["times"].as_array().unwrap().iter().all(|line| line["points"][0]["p90"].is_f64()));
+}
+
+#[test]
+fn ratios_have_intervals_a_mean_and_a_least() {
+    let timing = |engine: &str, model: &str, metric: &str, value: f64, reason: &str| {
+        let row = Record {
+            study: "timing".into(),
+            engine: engine.into(),
+            model: model.into(),
+            method: "rnea".into(),
+            quantity: "id".into(),
+            case: "stream".into(),
+            metric: metric.into(),
+            reference: "native rnea".into(),
+            bodies: Some(7),
+            nv: Some(7),
+            ..Record::default()
+        };
+        Record { reason: reason.into(), ..row.informed(value) }
+    };
+    let machine =
+        |metric: &str, value: f64| Record { quantity: "machine".into(), model: String::new(), ..timing("native", "", metric, value, "") };
+    let mut rows = vec![machine("fma_per_ns", 56.8), machine("fma_per_ns_per_lane", 7.1), timing("native", "a", "ns_per_call", 280.0, "")];
+    for (model, ratio, reason) in [("a", 2.0, ""), ("b", 8.0, ""), ("c", 0.5, "void: noise")] {
+        for (metric, value) in [("ratio", ratio), ("ratio_low", 0.9 * ratio), ("ratio_high", 1.1 * ratio)] {
+            rows.push(timing("pinocchio", model, metric, value, reason));
+        }
+    }
+    for (metric, value) in [("control", 1.001), ("control_low", 0.995), ("control_high", 1.004)] {
+        rows.push(timing("native", "a", metric, value, ""));
+    }
+    let written = Written::of(&RunInfo::default(), &rows);
+    let section = written.section("speed");
+    // √(2·8) over the two that count, the least on a; the void one is listed and not averaged.
+    assert!(section.contains("4.000") && section.contains("<td class=\"number\">2.000</td><td>a</td>"), "{section}");
+    assert!(section.contains("1.800") && section.contains("2.200") && section.contains("0.500"));
+    assert!(section.contains("1 of 1 such A/A control</b>") && section.contains("noise") && section.contains("(3 rows)"));
+    // 142 operations at 7.1 per nanosecond are 20 ns; 280 ns for seven joints are twice as much.
+    assert!(section.contains("<td class=\"number\">40</td><td class=\"number\">20</td><td class=\"number\">2.000</td>"), "{section}");
+    assert!(section.contains("timing.jsonl"));
+    let speed = &written.data("figures")["speed"];
+    assert_eq!(speed["ratios"].as_array().unwrap().len(), 3);
+    assert_eq!((&speed["ratios"][2]["void"], &speed["ratios"][0]["low"]), (&true.into(), &1.8.into()));
+
+    let none = Written::of(&RunInfo::default(), &rows[2..3]);
+    assert!(!none.index.contains("<section id=\"speed\"") && !none.index.contains("href=\"#speed\""));
 }
 
 #[test]

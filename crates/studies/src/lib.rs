@@ -7,7 +7,7 @@
 //! - [`Reproductions`]: are the engines' known deviations still there, and as large as they were?
 //! - [`StepLimit`]: how does the acceleration of a step approach the true one, and what do steps do to energy?
 //! - [`Structure`]: are the counts of the sparse algorithms the integers that theory says?
-//! - [`Timing`]: how long do the native kernels take?
+//! - [`Timing`]: how long does everyone take, in a paired experiment?
 
 mod agreement;
 mod conditioning;

@@ -81,10 +81,9 @@ fn rows(context: &Context, known: &Reproduction, cell: &Cell, outcome: &Outcome)
         let reason = format!("the range is that of {} {}, here is {}", known.engine, known.version, installed.unwrap_or_default());
         return vec![blank.without_value(Verdict::Error, reason)];
     }
-    let values = match outcome {
-        Outcome::Values(values) => values,
-        Outcome::Reading(_) => return Vec::new(),
-        Outcome::Refused(refusal) => return vec![blank.without_value(Verdict::Error, refusal.to_string())],
+    let values = match outcome.answer() {
+        Ok(values) => values,
+        Err(refusal) => return vec![blank.without_value(Verdict::Error, refusal.to_string())],
     };
     // A NaN among them must not be passed over: it is neither small nor large.
     let fold = |pick: fn(f64, f64) -> f64| {

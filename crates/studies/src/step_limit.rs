@@ -77,10 +77,9 @@ impl Study for StepLimit {
         let mut rows = Vec::new();
         for (cell, outcome) in finished {
             let blank = Record { unit: "1".into(), reference: "native".into(), ..row(cell, problem) };
-            let values = match outcome {
-                Outcome::Values(values) => values,
-                Outcome::Reading(_) => continue,
-                Outcome::Refused(refusal) => {
+            let values = match outcome.answer() {
+                Ok(values) => values,
+                Err(refusal) => {
                     let verdict = if matches!(refusal, Refusal::Unsupported(_)) { Verdict::Skip } else { Verdict::Error };
                     rows.push(context.gates.explain(blank.without_value(verdict, refusal.to_string())));
                     continue;

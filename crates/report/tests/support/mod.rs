@@ -172,6 +172,21 @@ pub fn run_info() -> RunInfo {
     }
 }
 
+/// What the machine of the times can do.
+fn machine(run: &RunInfo, rows: &mut Vec<Record>) {
+    let row = Record {
+        run: run.run.clone(),
+        study: "timing".into(),
+        engine: "native".into(),
+        quantity: "machine".into(),
+        kind: Kind::Measured,
+        ..Record::default()
+    };
+    for (metric, value) in [("fma_per_ns", 57.0), ("fma_per_ns_per_lane", 7.125), ("clock_ns", 20.0), ("empty_call_ns", 1.4)] {
+        rows.push(Record { metric: metric.into(), ..row.clone() }.informed(value));
+    }
+}
+
 /// About 12 000 rows of agreement, pairs, times, structure, digits and conditioning.
 pub fn records(run: &RunInfo) -> Vec<Record> {
     let mut random = Random(1);
@@ -188,6 +203,7 @@ pub fn records(run: &RunInfo) -> Vec<Record> {
         };
         rows.push(structure.gated((model.nv * 2) as f64, Relation::Eq, (model.nv * 2) as f64));
     }
+    machine(run, &mut rows);
     truth::records(run, &mut random, &mut rows);
     rows
 }
@@ -293,8 +309,29 @@ fn times(run: &RunInfo, model: &ModelInfo, random: &mut Random, rows: &mut Vec<R
                 params: canonical_json(&serde_json::json!({"algorithm": algorithm, "states": 1000, "cache": case})),
                 ..base(run, model)
             };
-            for (metric, factor) in [("ns_per_call", 1.0), ("ns_p10", 0.97), ("ns_p90", 1.1)] {
+            for (metric, factor) in [("ns_per_call", 1.0), ("ns_p10", 0.97), ("ns_p90", 1.1), ("ns_low", 0.99), ("ns_high", 1.02)] {
                 rows.push(Record { metric: metric.into(), ..row.clone() }.informed(ns * factor));
+            }
+            if model.name == HOSTILE || random.unit() < 0.5 {
+                continue;
+            }
+            let ratios = Record { unit: "1".into(), reference: format!("native {method}"), ..row };
+            let control = 1.0 + 0.02 * (random.unit() - 0.5);
+            for (metric, value) in [("control", control), ("control_low", control - 0.006), ("control_high", control + 0.006)] {
+                let mut row = Record { metric: metric.into(), ..ratios.clone() }.informed(value);
+                if (control - 1.0).abs() > 0.006 {
+                    row.reason = "void: the second copy of native over the first is not 1".into();
+                }
+                rows.push(row);
+            }
+            let other = 1.1 + 2.0 * random.unit();
+            for (metric, value) in [("ratio", other), ("ratio_low", 0.98 * other), ("ratio_high", 1.03 * other)] {
+                let row = Record { engine: "pinocchio".into(), method: "peer".into(), metric: metric.into(), ..ratios.clone() };
+                let mut row = row.informed(value);
+                if (control - 1.0).abs() > 0.006 {
+                    row.reason = "void: the second copy of native over the first is not 1".into();
+                }
+                rows.push(row);
             }
         }
     }

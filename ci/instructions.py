@@ -1,0 +1,126 @@
+#!/usr/bin/env python3
+"""Counts the instructions of every native kernel under callgrind and compares them with the committed baseline.
+
+    python ci/instructions.py             exit 1 when a kernel needs more than 2 % above ci/instructions.csv
+    python ci/instructions.py --accept    make what is counted now the baseline of this compiler
+    python ci/instructions.py --out FILE  write what is counted as CSV, and judge nothing
+
+Instructions do not depend on a neighbour's work or a processor's frequency, so they can gate a change where times only inform. They are
+those of a build for x86-64-v3 in a target folder of its own: valgrind cannot read AVX-512. Another compiler has a baseline of its own;
+where there is none, the counts inform and fail nothing. Prints a Markdown table.
+"""
+
+import argparse
+import csv
+import pathlib
+import re
+import subprocess
+import sys
+import tempfile
+
+ROOT = pathlib.Path(__file__).resolve().parent.parent
+BASELINE = ROOT / "ci/instructions.csv"
+TARGET = ROOT / "target/instructions"
+COLUMNS = ["rustc", "kernel", "model", "instructions"]
+# Inlining decisions elsewhere in a file move counts by tenths of a percent; a lost vectorisation or bounds check by several.
+TOLERANCE = 0.02
+FUNCTION = "instructions::featherbench_measured"
+
+
+def compiler():
+    """The compiler's version, with its commit: `1.97.0 (0123456 2026-01-01)`."""
+    return subprocess.run(["rustc", "--version"], check=True, capture_output=True, text=True).stdout.strip().removeprefix("rustc ")
+
+
+def build():
+    """Builds the program that runs the kernels, and returns its path."""
+    import os
+    environment = {**os.environ, "RUSTFLAGS": "-C target-cpu=x86-64-v3", "CARGO_TARGET_DIR": str(TARGET)}
+    subprocess.run(["cargo", "build", "--release", "--quiet", "-p", "featherbench-engines", "--example", "instructions"], check=True, cwd=ROOT, env=environment)
+    return TARGET / "release/examples/instructions"
+
+
+def count(program):
+    """Instructions per call as {(kernel, model): number}: callgrind writes one file each time the measured function is left."""
+    with tempfile.TemporaryDirectory() as folder:
+        flags = ["--tool=callgrind", f"--toggle-collect={FUNCTION}", f"--dump-after={FUNCTION}", "--callgrind-out-file=out", "--quiet"]
+        ended = subprocess.run(["valgrind", *flags, str(program)], cwd=folder, capture_output=True, text=True)
+        if ended.returncode != 0:
+            sys.exit(f"valgrind failed ({ended.returncode}): {ended.stderr.strip()[-400:]}")
+        runs = [line.split(",") for line in ended.stdout.splitlines()]
+        files = sorted((path for path in pathlib.Path(folder).glob("out.*")), key=lambda path: int(path.suffix[1:]))
+        totals = [int(re.search(r"^(?:totals|summary): (\d+)", path.read_text(), re.MULTILINE)[1]) for path in files]
+    totals = [total for total in totals if total > 0]
+    if not runs or len(runs) != len(totals):
+        sys.exit(f"{len(runs)} kernels ran, callgrind counted {len(totals)}: is '{FUNCTION}' still the measured function's name?")
+    return {(kernel, model): round(total / int(calls)) for (kernel, model, calls), total in zip(runs, totals)}
+
+
+def read(path, rustc):
+    """The counts of one compiler."""
+    if not path.exists():
+        return {}
+    with path.open(newline="") as file:
+        return {(row["kernel"], row["model"]): int(row["instructions"]) for row in csv.DictReader(file) if row["rustc"] == rustc}
+
+
+def write(path, rustc, counts, keep):
+    """Writes the counts in one step, with the rows of other compilers where they are kept."""
+    rows = []
+    if keep and path.exists():
+        with path.open(newline="") as file:
+            rows = [row for row in csv.DictReader(file) if row["rustc"] != rustc]
+    rows += [{"rustc": rustc, "kernel": kernel, "model": model, "instructions": number} for (kernel, model), number in counts.items()]
+    temporary = path.with_suffix(".tmp")
+    with temporary.open("w", newline="") as file:
+        writer = csv.DictWriter(file, COLUMNS, lineterminator="\n")
+        writer.writeheader()
+        writer.writerows(rows)
+    temporary.replace(path)
+
+
+def compare(baseline, counts):
+    """Lines of a Markdown table, and what is wrong: kernels that need more, and kernels that are gone."""
+    lines = ["| kernel | robot | baseline | now | change |", "|---|---|---:|---:|---:|"]
+    wrong = []
+    for (kernel, model), now in counts.items():
+        before = baseline.get((kernel, model))
+        change = None if before is None else now / before - 1
+        said = "new" if change is None else f"{change:+.2%}"
+        if change is not None and change > TOLERANCE:
+            said = f"**{said}**"
+            wrong.append(f"{kernel} on {model}: {said}")
+        lines.append(f"| {kernel} | {model} | {before if before is not None else '–'} | {now} | {said} |")
+    for kernel, model in baseline.keys() - counts.keys():
+        lines.append(f"| {kernel} | {model} | {baseline[kernel, model]} | – | gone |")
+        wrong.append(f"{kernel} on {model} is no longer counted")
+    return lines, wrong
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--accept", action="store_true", help="make what is counted now the baseline")
+    parser.add_argument("--out", type=pathlib.Path, help="write the counts here, and judge nothing")
+    arguments = parser.parse_args()
+    rustc = compiler()
+    counts = count(build())
+    if arguments.out:
+        write(arguments.out, rustc, counts, keep=False)
+        return
+    baseline = read(BASELINE, rustc)
+    lines, wrong = compare(baseline, counts)
+    print(f"Instructions per call, rustc {rustc}\n")
+    print("\n".join(lines))
+    if arguments.accept:
+        write(BASELINE, rustc, counts, keep=True)
+        print(f"\naccepted: {len(counts)} counts in {BASELINE.relative_to(ROOT)}")
+    elif not baseline:
+        print(f"\nno baseline of this compiler: nothing is judged. `python ci/instructions.py --accept` makes one.")
+    elif wrong:
+        print(f"\n{len(wrong)} above the baseline by more than {TOLERANCE:.0%}, or gone:\n- " + "\n- ".join(wrong))
+        print("\nWhere that is meant, `python ci/instructions.py --accept` makes it the baseline.")
+        sys.exit(1)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,77 @@
+//! `featherbench diff` and `featherbench history` from the outside.
+
+mod support;
+
+use support::Sandbox;
+
+/// A finished run's folder with these rows of times: (engine, quantity, method, case, metric, value, reason).
+fn run(sandbox: &Sandbox, name: &str, rows: &[(&str, &str, f64, &str)]) {
+    let records: Vec<record::Record> = rows
+        .iter()
+        .map(|(quantity, metric, value, reason)| {
+            let row = record::Record {
+                study: "timing".into(),
+                engine: "native".into(),
+                model: "humanoid".into(),
+                method: "x".into(),
+                quantity: (*quantity).into(),
+                case: "stream".into(),
+                metric: (*metric).into(),
+                unit: "ns".into(),
+                kind: record::Kind::Measured,
+                ..record::Record::default()
+            };
+            record::Record { reason: (*reason).into(), ..row.informed(*value) }
+        })
+        .collect();
+    let host = record::Host { cpu: "An Example CPU".into(), cores: 4, ..record::Host::default() };
+    let git = record::GitInfo { revision: "0123456789abcdef".into(), dirty: false };
+    let info = record::RunInfo { run: name.into(), started: "2026-03-04T05:06:07Z".into(), host, git, ..record::RunInfo::default() };
+    record::write_run(&sandbox.path(name), &info, &records).unwrap();
+}
+
+fn times(ns: f64) -> Vec<(&'static str, &'static str, f64, &'static str)> {
+    vec![("id", "ns_per_call", ns, ""), ("id", "ns_low", 0.99 * ns, ""), ("id", "ns_high", 1.01 * ns, "")]
+}
+
+#[test]
+fn two_runs_are_compared_as_a_table_and_as_markdown() {
+    let sandbox = Sandbox::new();
+    run(&sandbox, "a", &times(100.0));
+    run(&sandbox, "b", &times(101.0));
+    run(&sandbox, "c", &times(130.0));
+    sandbox.run(&["diff", "a", "a"]).expect(0, &["3 rows compared, nothing changed beyond noise"]);
+    sandbox.run(&["diff", "a", "b"]).expect(0, &["nothing changed"]);
+    sandbox.run(&["diff", "a", "c"]).expect(1, &["time", "humanoid", "native x", "100.0 ns", "130.0 ns", "1.300", "1 of 3 rows"]);
+    sandbox
+        .run(&["diff", "a", "c", "--markdown"])
+        .expect(1, &["| change | robot |", "| time | humanoid | native x | id | ns_per_call stream | 100.0 ns | 130.0 ns | 1.300 |"]);
+    sandbox.run(&["diff", "a", "nowhere"]).expect(2, &["nowhere"]);
+    sandbox.run(&["diff", "--help"]).expect(0, &["Exit codes: 0 nothing changed"]);
+}
+
+#[test]
+fn a_night_is_kept_once_with_its_instructions() {
+    let sandbox = Sandbox::new();
+    // A project whose data nobody else has.
+    std::fs::remove_file(sandbox.path("datasets")).unwrap();
+    std::fs::create_dir_all(sandbox.path("datasets/suites")).unwrap();
+    let mut rows = times(123.4);
+    rows.push(("fd", "ns_per_call", 200.0, "void: the machine was not quiet"));
+    run(&sandbox, "a", &rows);
+    sandbox.write("counts.csv", "rustc,kernel,model,instructions\n1.0 (a, b),id/x,humanoid,4567\n");
+    for _ in 0..2 {
+        sandbox.run(&["history", "a", "--instructions", "counts.csv"]).expect(0, &["1 kernels", "1 void"]);
+    }
+    let files: Vec<_> = std::fs::read_dir(sandbox.path("datasets/history")).unwrap().map(|entry| entry.unwrap().path()).collect();
+    assert_eq!(files.len(), 1);
+    assert!(files[0].file_name().unwrap().to_str().unwrap().starts_with("an-example-cpu-4-"), "{files:?}");
+    let text = std::fs::read_to_string(&files[0]).unwrap();
+    assert_eq!(
+        text,
+        "date,revision,kernel,model,ns,ns_low,ns_high,instructions\n2026-03-04,0123456789,id/x,humanoid,123.4,122.2,124.6,4567\n"
+    );
+    sandbox.run(&["history", "a", "--model", "panda"]).expect(2, &["no valid times", "panda"]);
+    sandbox.write("bad.csv", "rustc,kernel,model,instructions\n1.0,id/x,humanoid,many\n");
+    sandbox.run(&["history", "a", "--instructions", "bad.csv"]).expect(2, &["bad.csv", "line 2", "many"]);
+}

@@ -1,0 +1,41 @@
+//! Runs every native kernel on some robots for `ci/instructions.py`, which counts their instructions under callgrind.
+//!
+//! Prints a line `kernel,model,calls` before each; everything that is counted happens in [`featherbench_measured`], called once per line.
+
+use featherbench_engines::{Native, timed};
+use harness::{Prepared, Problem, Subject};
+use model::StateBatch;
+use model::generate::Family;
+use record::ModelOrigin;
+use std::hint::black_box;
+
+/// One robot of each shape: an arm, a long chain, a tree of short branches, a floating base.
+const ROBOTS: [&str; 4] = ["chain:n=10,layout=spatial", "chain:n=100,layout=spatial", "binary_tree:depth=6", "humanoid"];
+/// Calls of each kernel, at one state each.
+const CALLS: usize = 4;
+const SEED: u64 = 1;
+
+fn main() -> Result<(), Box<dyn std::error::Error>> {
+    let native = Native::new();
+    for robot in ROBOTS {
+        let description = Family::parse(robot)?.generate()?;
+        let problem = Problem::new(&description, "instructions", ModelOrigin::Generated, 1, SEED)?;
+        let states = StateBatch::random(&problem.model, CALLS, SEED);
+        for (quantity, method) in timed(&problem) {
+            let mut prepared = native.prepare(&problem, quantity, method, &states)?;
+            // The first call may allocate.
+            prepared.clock(0..CALLS)?;
+            println!("{}/{method},{},{CALLS}", quantity.name(), problem.name);
+            featherbench_measured(prepared.as_mut())?;
+        }
+    }
+    Ok(())
+}
+
+/// What callgrind counts.
+#[inline(never)]
+fn featherbench_measured(prepared: &mut dyn Prepared) -> Result<(), harness::Refusal> {
+    prepared.clock(0..CALLS)?;
+    black_box(prepared.read());
+    Ok(())
+}

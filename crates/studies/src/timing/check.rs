@@ -1,0 +1,114 @@
+//! Whether a time counts: the answers of everyone who is timed, against ours, at every state of the stream.
+
+use dynamics::{Crba, Rnea, TreeSparse};
+use harness::measure::{Magnitudes, ratio, scaled_error, worst};
+use harness::{Problem, Quantity, Refusal, Subject};
+
+/// The error up to which an answer is an answer to the same question, for a robot of this depth.
+///
+/// Each entry is measured against the magnitudes of its terms, so rounding leaves 1e-14 and less per joint of the path; a hundred times
+/// that is far from any wrong model or convention. Factors of M are not backward stable entry by entry: they carry the conditioning of M
+/// (κ = 1e10 at a thousand links), and what is checked is that they are factors of the same matrix in the same order.
+pub(super) fn limit(quantity: Quantity, depth: usize) -> f64 {
+    if quantity == Quantity::Factorization { 1e-6 } else { 1e-12 * depth.max(1) as f64 }
+}
+
+/// The error of a subject's answer at each state of the problem, against the usual native method's.
+///
+/// Forward dynamics and solving are checked backwards: the answer goes into inverse dynamics, or is multiplied with M, and what should be τ
+/// is compared with τ. One state at a time: the answers to a whole stream would not fit the memory.
+pub(super) fn errors(
+    problem: &Problem,
+    native: &dyn Subject,
+    subject: &dyn Subject,
+    quantity: Quantity,
+    method: &str,
+) -> Result<Vec<f64>, Refusal> {
+    let usual = native.methods(quantity).into_iter().next().ok_or_else(|| Refusal::Failed("there is no native reference".into()))?;
+    let mut reference = native.prepare(problem, quantity, &usual, &problem.states)?;
+    let mut prepared = subject.prepare(problem, quantity, method, &problem.states)?;
+    let due = quantity.size(problem);
+    let mut answered = problem.clone();
+    // The reference must answer every state; its errors are the agreement study's subject.
+    let itself = subject.identity() == native.identity() && method == usual;
+    (0..problem.states.count())
+        .map(|state| {
+            prepared.run(state..state + 1)?;
+            let value = prepared.read();
+            if value.len() != due {
+                return Err(Refusal::Failed(format!("{} numbers came, {due} are due", value.len())));
+            }
+            match quantity {
+                _ if itself => Ok(0.0),
+                Quantity::ForwardDynamics => through_inverse_dynamics(&mut answered, state, value),
+                Quantity::Solve => through_mass_matrix(problem, state, value),
+                _ => {
+                    reference.run(state..state + 1)?;
+                    Ok(match quantity {
+                        Quantity::MassMatrixSparse => sparse_mass_matrix(problem, reference.read(), value),
+                        _ => scaled_error(problem, quantity, &Magnitudes::new(problem, state), reference.read(), value),
+                    })
+                }
+            }
+        })
+        .collect()
+}
+
+/// max |τ − ID(q, v, a)|_i over the magnitudes of the terms that were added to form it.
+///
+/// The answer takes the place of the state's acceleration.
+fn through_inverse_dynamics(problem: &mut Problem, state: usize, a: &[f64]) -> Result<f64, Refusal> {
+    let nv = problem.states.nv;
+    problem.states.a[state * nv..(state + 1) * nv].copy_from_slice(a);
+    let (model, states) = (&problem.model, &problem.states);
+    let mut tau = vec![f64::NAN; nv];
+    Rnea::new(&model.topology).run(model, states.q(state), states.v(state), a, None, &mut tau).map_err(failed)?;
+    let magnitudes = Magnitudes::new(problem, state).joint_force;
+    Ok(largest(tau.iter().zip(states.tau(state)).zip(magnitudes).map(|((found, given), size)| (found - given, size + given.abs()))))
+}
+
+/// max |M x − τ|_i / (Σ_j |M_ij||x_j| + |τ_i|).
+fn through_mass_matrix(problem: &Problem, state: usize, x: &[f64]) -> Result<f64, Refusal> {
+    let topology = &problem.model.topology;
+    let mut matrix = TreeSparse::new(topology);
+    Crba::new(topology).run(&problem.model, problem.states.q(state), &mut matrix).map_err(failed)?;
+    let tau = problem.states.tau(state);
+    let mut product: Vec<f64> = tau.iter().map(|tau| -tau).collect();
+    let mut size: Vec<f64> = tau.iter().map(|tau| tau.abs()).collect();
+    for i in 0..x.len() {
+        for (&j, &m) in topology.row_dofs(i).iter().zip(&matrix.values()[topology.row(i)]) {
+            product[i] += m * x[j];
+            size[i] += (m * x[j]).abs();
+            if i != j {
+                product[j] += m * x[i];
+                size[j] += (m * x[i]).abs();
+            }
+        }
+    }
+    Ok(largest(product.into_iter().zip(size)))
+}
+
+/// max |ΔM_ij| / √(M_ii·M_jj) over the stored entries.
+fn sparse_mass_matrix(problem: &Problem, reference: &[f64], value: &[f64]) -> f64 {
+    let topology = &problem.model.topology;
+    let diagonal = |i: usize| {
+        let at = topology.row_dofs(i).iter().position(|&j| j == i);
+        at.map_or(f64::NAN, |at| reference[topology.row(i)][at].sqrt())
+    };
+    let root: Vec<f64> = (0..topology.nv()).map(diagonal).collect();
+    largest((0..topology.nv()).flat_map(|i| {
+        let row = topology.row(i);
+        let pairs = value[row.clone()].iter().zip(&reference[row]).zip(topology.row_dofs(i));
+        let entries: Vec<(f64, f64)> = pairs.map(|((v, r), &j)| (v - r, root[i] * root[j])).collect();
+        entries
+    }))
+}
+
+/// The largest difference over its magnitude.
+fn largest(pairs: impl Iterator<Item = (f64, f64)>) -> f64 {
+    pairs.fold(0.0, |error, (difference, size)| worst(error, ratio(difference, size)))
+}
+
+fn failed(error: impl std::fmt::Display) -> Refusal {
+    Refusal::Failed(error.to_string())
+}

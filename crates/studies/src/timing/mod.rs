@@ -1,0 +1,181 @@
+//! Timing: a paired experiment. Everyone who computes the same quantity is timed in alternating blocks on one core, over a stream of
+//! distinct states and `hot` on one, beside a second copy of ourselves.
+//!
+//! What a time includes: everything from raw q, v, a or τ to the result, sine and cosine, gravity, armature and full inertias among it.
+//! `factorization` and `solve` start from a mass matrix or factors made beforehand. Converting coordinates and reading results are outside
+//! the clock for everyone. METHODOLOGY.md tells the protocol, the statistics and what each number means.
+//!
+//! Three kinds of cells: the *machine* (its peak, its clock, an empty call), a *check* for everyone who is timed (the error of its answer at
+//! every state of the stream), and an *experiment* for each quantity and cache regime (all blocks of all rounds). Rows are made from them
+//! by a pure function: a time without a good check does not count, and where the second copy of ourselves differs from the first, no time
+//! of that robot does. Such rows keep their values and say why they are void.
+
+mod check;
+mod machine;
+mod protocol;
+mod rows;
+mod samples;
+mod statistics;
+
+use harness::{Cell, Context, Finished, Outcome, Problem, Quantity, Refusal, Study, Subject};
+use machine::{Machine, Pinned};
+use model::{Random, StateBatch};
+use protocol::{Budget, Contestant};
+use record::Record;
+use samples::Entrant;
+use serde_json::{Value, json};
+
+/// The timing study.
+pub struct Timing {
+    /// Distinct states in the stream.
+    pub states: usize,
+    /// Seconds for everyone who is timed, in each experiment.
+    pub seconds: f64,
+    /// The native kernels to time on a robot, as (quantity, method): the first of a quantity is what others are compared with.
+    pub kernels: fn(&Problem) -> Vec<(Quantity, &'static str)>,
+    /// Names of the subjects that are timed beside ours: all their methods for the quantities of the kernels.
+    pub peers: Vec<String>,
+}
+
+/// Name of the side file with the raw samples in a run's folder.
+const SAMPLES_NAME: &str = "timing.jsonl";
+
+/// Our own kernels, with whom everyone is compared.
+const REFERENCE: &str = "native";
+/// The kinds of cells, as their parameter `what`.
+const MACHINE: &str = "machine";
+const CHECK: &str = "check";
+const EXPERIMENT: &str = "experiment";
+/// The cache regimes.
+const REGIMES: [&str; 2] = ["stream", "hot"];
+/// No more than this many numbers of states are held at once: 100 MB, far more than any cache.
+const MOST_NUMBERS: usize = 12_000_000;
+/// Nor more than this many numbers of mass matrices, where a quantity is or needs one: what the registry keeps of them.
+const MOST_ENTRIES: usize = 4 << 20;
+
+impl Study for Timing {
+    fn name(&self) -> &'static str {
+        "timing"
+    }
+
+    fn exclusive(&self) -> bool {
+        true
+    }
+
+    fn plan(&self, context: &Context) -> Vec<Cell> {
+        let mut cells = Vec::new();
+        let Some(native) = context.subject(REFERENCE) else { return cells };
+        for problem in context.problems.iter().filter(|problem| problem.takes(self.name())) {
+            if cells.is_empty() {
+                // The machine is asked once, in the company of the first robot.
+                cells.push(self.cell(problem, native, Quantity::StoredEntries, "empty", json!({"what": MACHINE})));
+            }
+            for (quantity, entrants) in self.experiments(context, problem) {
+                let states = self.stream_length(problem, quantity);
+                for entrant in entrants.iter().filter(|entrant| !entrant.control) {
+                    let Some(subject) = context.subject(&entrant.engine) else { continue };
+                    cells.push(self.cell(problem, subject, quantity, &entrant.method, json!({"what": CHECK, "states": states})));
+                }
+                let Some(usual) = entrants.first() else { continue };
+                let listed: Vec<Value> = entrants.iter().map(Entrant::to_params).collect();
+                for regime in REGIMES {
+                    let states = if regime == "hot" { 1 } else { states };
+                    let params =
+                        json!({"what": EXPERIMENT, "cache": regime, "states": states, "seconds": self.seconds, "entrants": listed});
+                    cells.push(self.cell(problem, native, quantity, &usual.method, params));
+                }
+            }
+        }
+        cells
+    }
+
+    fn evaluate(&self, context: &Context, cell: &Cell) -> Outcome {
+        let lost = || Refusal::Failed("there is no problem, subject or quantity of this cell".into());
+        let answer = || -> Result<Vec<f64>, Refusal> {
+            let problem = context.problem(&cell.problem).ok_or_else(lost)?;
+            let native = context.subject(REFERENCE).ok_or_else(lost)?;
+            let subject = context.subject(&cell.subject).ok_or_else(lost)?;
+            let quantity = Quantity::parse(&cell.quantity).ok_or_else(lost)?;
+            if cell.params["what"] == MACHINE {
+                let mut empty = native.prepare(problem, quantity, "topology", &problem.states)?;
+                let _pinned = Pinned::to_one_core();
+                return Ok(Machine::measure(empty.as_mut())?.to_values());
+            }
+            let count = cell.params["states"].as_u64().and_then(|count| usize::try_from(count).ok()).ok_or_else(lost)?;
+            let states = StateBatch::random(&problem.model, count, context.seed);
+            if cell.params["what"] == CHECK {
+                return check::errors(&problem.clone().at(states), native, subject, quantity, &cell.method);
+            }
+            let _pinned = Pinned::to_one_core();
+            let entrants = Entrant::of(cell);
+            let prepare = |which: usize| -> Contestant {
+                let Entrant { engine, method, .. } = &entrants[which];
+                context.subject(engine).ok_or_else(lost)?.prepare(problem, quantity, method, &states)
+            };
+            let mut random = Random::named(context.seed, &cell.id());
+            Ok(protocol::experiment(&prepare, entrants.len(), count, Budget::of(self.seconds), &mut random).to_values())
+        };
+        answer().into()
+    }
+
+    fn compare(&self, context: &Context, problem: &Problem, finished: &[Finished]) -> Vec<Record> {
+        rows::rows(context.gates, problem, finished)
+    }
+
+    /// The raw samples.
+    fn side_file(&self, finished: &[Finished]) -> Option<(&'static str, String)> {
+        (!finished.is_empty()).then(|| (SAMPLES_NAME, samples::lines(finished)))
+    }
+}
+
+impl Timing {
+    fn cell(&self, problem: &Problem, subject: &dyn Subject, quantity: Quantity, method: &str, params: Value) -> Cell {
+        Cell {
+            study: self.name().into(),
+            problem: problem.name.clone(),
+            problem_hash: problem.hash.clone(),
+            params,
+            subject: subject.identity().name.clone(),
+            version: subject.identity().version.clone(),
+            method: method.into(),
+            quantity: quantity.name().into(),
+            scalar: "f64".into(),
+        }
+    }
+
+    /// The quantities, each with everyone who is timed on it: our usual method, its second copy, our other methods, the peers.
+    fn experiments(&self, context: &Context, problem: &Problem) -> Vec<(Quantity, Vec<Entrant>)> {
+        let entrant = |subject: &dyn Subject, method: &str, control| Entrant {
+            engine: subject.identity().name.clone(),
+            version: subject.identity().version.clone(),
+            method: method.to_owned(),
+            control,
+        };
+        let Some(native) = context.subject(REFERENCE) else { return Vec::new() };
+        let mut experiments: Vec<(Quantity, Vec<Entrant>)> = Vec::new();
+        for (quantity, method) in (self.kernels)(problem) {
+            match experiments.iter_mut().find(|(known, _)| *known == quantity) {
+                Some((_, entrants)) => entrants.push(entrant(native, method, false)),
+                None => experiments.push((quantity, vec![entrant(native, method, false), entrant(native, method, true)])),
+            }
+        }
+        for (quantity, entrants) in &mut experiments {
+            for peer in self.peers.iter().filter_map(|name| context.subject(name)) {
+                entrants.extend(peer.methods(*quantity).iter().map(|method| entrant(peer, method, false)));
+            }
+        }
+        experiments
+    }
+
+    /// The stream's length for a quantity of a robot: as asked, or fewer where the states or their matrices would not fit.
+    fn stream_length(&self, problem: &Problem, quantity: Quantity) -> usize {
+        let numbers = problem.states.nq + 3 * problem.states.nv + 6 * problem.states.bodies;
+        let entries = match quantity {
+            Quantity::MassMatrixSparse | Quantity::Factorization | Quantity::Solve => problem.model.topology.stored(),
+            // Factorizing one is a way to forward dynamics; ten times as many as are kept take a second or two.
+            Quantity::ForwardDynamics => problem.model.topology.stored() / 10,
+            _ => 1,
+        };
+        self.states.min(1 + MOST_NUMBERS / numbers.max(1)).min(1 + MOST_ENTRIES / entries.max(1))
+    }
+}

@@ -1,0 +1,239 @@
+//! The experiment: contestants in alternating blocks.
+//!
+//! Rounds come in *epochs*. At the start of an epoch everyone is prepared anew, at other places of the memory: where data lie moves a time
+//! by up to some percent, and a ratio from one layout would be a ratio of two accidents. In each round every contestant has one block, in
+//! random order, from a random state on; the batch begins again at its end. Before a block its contestant makes a tenth as many calls
+//! beside the clock, at the states before: others ran since its last block, and their data lie in the caches.
+
+use super::samples::Samples;
+use harness::{Prepared, Refusal};
+use model::Random;
+use std::hint::black_box;
+use std::time::{Duration, Instant};
+
+/// How long a block lasts at least: some thousand times the clock's resolution and the cost of reading it, so short that most blocks are not
+/// interrupted (a tick of the system's timer comes every 4 ms).
+const BLOCK: Duration = Duration::from_micros(200);
+/// Epochs of an experiment, and so the fewest rounds: the median of thirty samples is known to a fifth of their spread.
+pub(super) const EPOCHS: usize = 30;
+/// Rounds of an epoch are not more: then blocks become longer.
+const MOST_ROUNDS: usize = 10;
+/// Calls beside the clock before a block, as a share of its calls.
+const WARM: usize = 10;
+/// A call that takes less than this would fill a block with more calls than any clock needs.
+const MOST_CALLS: usize = 1 << 24;
+/// The largest shift of the memory between two epochs, in bytes: a few pages, which is what matters to caches.
+const LARGEST_SHIFT: usize = 1 << 16;
+
+/// Who is timed, ready to run, or why it is not.
+pub(super) type Contestant<'a> = Result<Box<dyn Prepared + 'a>, Refusal>;
+
+/// How an experiment spends its time.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Budget {
+    /// Rounds of each epoch.
+    pub rounds: usize,
+    /// Least length of a block.
+    pub block: Duration,
+}
+
+impl Budget {
+    /// What `seconds` for each contestant allow.
+    pub fn of(seconds: f64) -> Self {
+        let epoch = seconds / EPOCHS as f64;
+        let rounds = ((epoch / BLOCK.as_secs_f64()) as usize).clamp(1, MOST_ROUNDS);
+        Self { rounds, block: Duration::from_secs_f64((epoch / rounds as f64).max(0.0)).max(BLOCK) }
+    }
+
+    /// Rounds of an epoch in which `count` contestants take so long for one: fewer where single calls take longer than a block should.
+    fn rounds_of(&self, round: Duration, count: usize) -> usize {
+        let meant = self.block.as_secs_f64() * (self.rounds * count) as f64;
+        // Blocks overshoot by up to twice their length: that alone costs no round.
+        ((2.0 * meant / round.as_secs_f64().max(1e-9)) as usize).clamp(1, self.rounds)
+    }
+
+    /// Preparing someone anew at each epoch must not take longer than timing it, or twenty times a block where that is more.
+    fn affords(&self, preparing: Duration) -> bool {
+        preparing <= self.block * 20.max(self.rounds as u32)
+    }
+}
+
+/// Times `count` contestants over a batch of `states` states; `prepare` makes one of them ready. One that refuses has NaN from then on.
+pub(super) fn experiment<'a>(
+    prepare: &dyn Fn(usize) -> Contestant<'a>,
+    count: usize,
+    states: usize,
+    budget: Budget,
+    random: &mut Random,
+) -> Samples {
+    let (mut calls, mut movable, mut round_time) = (Vec::with_capacity(count), Vec::with_capacity(count), Duration::ZERO);
+    let mut contestants: Vec<Contestant> = Vec::with_capacity(count);
+    for which in 0..count {
+        let start = Instant::now();
+        let mut contestant = prepare(which);
+        movable.push(budget.affords(start.elapsed()));
+        let (of_block, time) = calls_of_a_block(&mut contestant, budget.block);
+        calls.push(of_block);
+        round_time += time;
+        contestants.push(contestant);
+    }
+    let rounds = budget.rounds_of(round_time, count);
+    let mut samples = Samples::new(calls, EPOCHS * rounds);
+    let mut order: Vec<usize> = (0..count).collect();
+    for epoch in 0..EPOCHS {
+        for which in (0..count).filter(|&which| epoch > 0 && movable[which]) {
+            if contestants[which].is_ok() {
+                // What lies between the old place and the new one is freed once everyone has moved on.
+                let shift = black_box(vec![0_u8; 64 * (1 + random.below(LARGEST_SHIFT / 64))]);
+                contestants[which] = prepare(which);
+                drop(shift);
+            }
+        }
+        for round in epoch * rounds..(epoch + 1) * rounds {
+            shuffle(&mut order, random);
+            for &which in &order {
+                let (calls, state) = (samples.calls[which], random.below(states));
+                match block(&mut contestants[which], state, calls) {
+                    Ok(time) => samples.set(which, round, time.as_secs_f64() * 1e9 / calls as f64),
+                    Err(refusal) => contestants[which] = Err(refusal),
+                }
+            }
+        }
+    }
+    samples
+}
+
+/// One block from a state on, and the calls before it.
+fn block(contestant: &mut Contestant, state: usize, calls: usize) -> Result<Duration, Refusal> {
+    let prepared = contestant.as_mut().map_err(|refusal| refusal.clone())?;
+    let warm = calls / WARM;
+    if warm > 0 {
+        prepared.clock(state..state + warm)?;
+    }
+    prepared.clock(state + warm..state + warm + calls)
+}
+
+/// Warms a contestant up and finds how many calls last as long as a block, and how long they last; 1 and nothing of one that refuses.
+fn calls_of_a_block(contestant: &mut Contestant, block: Duration) -> (usize, Duration) {
+    let mut calls = 1;
+    while let Ok(prepared) = contestant {
+        match prepared.clock(0..calls) {
+            Ok(time) if time < block && calls < MOST_CALLS => {
+                // Towards the block in few steps, none of them blind: a first call is slower than those after it.
+                let missing = block.as_secs_f64() / time.as_secs_f64().max(1e-9);
+                calls = (calls as f64 * missing.clamp(1.1, 8.0)).ceil() as usize;
+            }
+            Ok(time) => return (calls, time),
+            Err(refusal) => *contestant = Err(refusal),
+        }
+    }
+    (1, Duration::ZERO)
+}
+
+/// Every order with the same probability (Fisher and Yates).
+fn shuffle(order: &mut [usize], random: &mut Random) {
+    for last in (1..order.len()).rev() {
+        order.swap(last, random.below(last + 1));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::ops::Range;
+    use std::sync::{Arc, Mutex};
+
+    /// What was asked of whom: contestant, first state, calls.
+    type Log = Arc<Mutex<Vec<(usize, Range<usize>)>>>;
+
+    /// A contestant whose calls take a given time, by its own word, and that dies after some blocks.
+    struct Scripted {
+        who: usize,
+        call: Duration,
+        blocks: usize,
+        log: Log,
+    }
+
+    impl Prepared for Scripted {
+        fn run(&mut self, _: Range<usize>) -> Result<(), Refusal> {
+            Ok(())
+        }
+
+        fn clock(&mut self, range: Range<usize>) -> Result<Duration, Refusal> {
+            self.log.lock().unwrap().push((self.who, range.clone()));
+            self.blocks = self.blocks.checked_sub(1).ok_or_else(|| Refusal::Failed("it died".into()))?;
+            Ok(self.call * range.len() as u32)
+        }
+
+        fn read(&self) -> &[f64] {
+            &[]
+        }
+    }
+
+    const BUDGET: Budget = Budget { rounds: 4, block: Duration::from_micros(200) };
+
+    /// The samples and the log of contestants with these times of a call, each dying after so many blocks.
+    fn scripted(contestants: &[(Duration, usize)]) -> (Samples, Vec<(usize, Range<usize>)>) {
+        let log = Log::default();
+        let prepare = |who: usize| -> Contestant {
+            let (call, blocks) = contestants[who];
+            Ok(Box::new(Scripted { who, call, blocks, log: log.clone() }))
+        };
+        let samples = experiment(&prepare, contestants.len(), 1000, BUDGET, &mut Random::new(1, 2));
+        let log = log.lock().unwrap().clone();
+        (samples, log)
+    }
+
+    #[test]
+    fn every_round_has_a_block_of_each_from_any_state_in_changing_order() {
+        let (fast, slow) = (Duration::from_nanos(100), Duration::from_micros(300));
+        let (samples, log) = scripted(&[(fast, usize::MAX), (fast * 2, usize::MAX), (slow, usize::MAX)]);
+        assert_eq!(samples.calls[2], 1);
+        let length = samples.calls[0] as u32 * fast;
+        assert!(length >= BUDGET.block && length < 2 * BUDGET.block, "{:?}", samples.calls);
+        for (which, call) in [fast, fast * 2, slow].into_iter().enumerate() {
+            assert_eq!(samples.of(which).len(), EPOCHS * BUDGET.rounds);
+            assert!(samples.of(which).iter().all(|ns| (ns - call.as_nanos() as f64).abs() < 1e-6), "{:?}", samples.of(which));
+        }
+        // After everyone's first calls come the blocks, each but the slow one's behind its warming up.
+        let rounds = 5 * EPOCHS * BUDGET.rounds;
+        let blocks: Vec<_> = log[log.len() - rounds..].iter().filter(|(who, range)| range.len() == samples.calls[*who]).collect();
+        let mut orders: Vec<Vec<usize>> = Vec::new();
+        for round in blocks.chunks(3) {
+            orders.push(round.iter().map(|(who, _)| *who).collect());
+            let mut everyone = orders[orders.len() - 1].clone();
+            everyone.sort_unstable();
+            assert_eq!(everyone, [0, 1, 2]);
+        }
+        orders.sort();
+        orders.dedup();
+        assert_eq!(orders.len(), 6, "every order comes");
+        let mut starts: Vec<usize> = blocks.iter().map(|(_, range)| range.start % 1000).collect();
+        starts.sort_unstable();
+        starts.dedup();
+        assert!(starts.len() > 200, "{} of 1000 states begin a block", starts.len());
+        for pair in log.windows(2).filter(|pair| pair[0].1.len() * WARM == pair[1].1.len() && pair[0].1.start > 0) {
+            assert_eq!(pair[0].1.end, pair[1].1.start, "the calls before a block are at the states before it");
+        }
+    }
+
+    #[test]
+    fn one_that_dies_leaves_the_others_their_rounds() {
+        let call = Duration::from_micros(50);
+        // Two calls find the length of a block, three more are its rounds.
+        let (samples, _) = scripted(&[(call, usize::MAX), (call, 5), (call, 0)]);
+        assert!(samples.of(0).iter().all(|ns| ns.is_finite()));
+        assert!(samples.of(1)[2].is_finite() && samples.of(1)[3..].iter().all(|ns| ns.is_nan()));
+        assert!(samples.of(2).iter().all(|ns| ns.is_nan()));
+    }
+
+    #[test]
+    fn seconds_become_rounds_and_then_longer_blocks() {
+        assert_eq!(Budget::of(0.0), Budget { rounds: 1, block: BLOCK });
+        assert_eq!(Budget::of(0.02), Budget { rounds: 3, block: Duration::from_secs_f64(0.02 / 90.0) });
+        assert_eq!(Budget::of(0.3), Budget { rounds: MOST_ROUNDS, block: Duration::from_millis(1) });
+        let rounds = |millis, count| Budget::of(0.3).rounds_of(Duration::from_millis(millis), count);
+        assert_eq!([rounds(4, 4), rounds(8, 4), rounds(16, 4), rounds(1000, 4)], [10, 10, 5, 1]);
+        assert!(Budget::of(0.3).affords(Duration::from_millis(20)) && !Budget::of(0.3).affords(Duration::from_millis(21)));
+    }
+}

@@ -1,0 +1,248 @@
+//! What can be concluded from the blocks of a paired experiment.
+//!
+//! Each round gives every contestant one block, in random order; a *ratio* is formed within a round, of two blocks that ran within
+//! milliseconds of each other, and the median over the rounds is taken. What is slow or fast for a while (a neighbour, a processor's
+//! frequency) stands on both sides of such a ratio and cancels; in the ratio of two medians it need not.
+//!
+//! Intervals are percentile bootstrap intervals: epochs (rounds in one layout of the memory) are drawn with replacement, whole, with all
+//! blocks of their rounds together; the median is taken again, and the interval holds the middle of what came out. So it tells how far the
+//! median would move in other layouts too. Every draw comes from a generator with a seed.
+
+use super::protocol::EPOCHS;
+use crate::quantile;
+use model::Random;
+
+/// Share of the bootstrap's medians inside an interval that is reported.
+pub(super) const LEVEL: f64 = 0.95;
+/// The same for an A/A control: a robot has some twenty of them, and chance alone must not void it more often than once in fifty runs.
+pub(super) const CONTROL_LEVEL: f64 = 0.999;
+/// Two subjects differ when their ratio's interval lies beyond one by more than this; the control of an experiment must lie within it.
+pub(super) const NOISE: f64 = 0.02;
+/// Times that the epochs are drawn again: the ends of an interval at [`CONTROL_LEVEL`] then have one median beyond them.
+const RESAMPLES: usize = 2000;
+
+/// A median with its interval.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Estimate {
+    /// The median of the samples.
+    pub value: f64,
+    /// Lower end of its interval.
+    pub low: f64,
+    /// Upper end.
+    pub high: f64,
+}
+
+/// How a subject compares with the reference.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Finding {
+    /// It takes longer, by more than the noise.
+    Slower,
+    /// It takes less time, by more than the noise.
+    Faster,
+    /// This experiment cannot tell them apart.
+    Alike,
+}
+
+impl Estimate {
+    /// The median of samples; the share `level` of the bootstrap's medians lies in its interval. NaN of no samples, or where one is NaN.
+    pub fn median(samples: &[f64], level: f64, random: &mut Random) -> Self {
+        if samples.is_empty() || samples.iter().any(|sample| sample.is_nan()) {
+            return Self { value: f64::NAN, low: f64::NAN, high: f64::NAN };
+        }
+        // Fewer samples than epochs are each their own.
+        let epoch = (samples.len() / EPOCHS).max(1);
+        let epochs = samples.len() / epoch;
+        let mut drawn = samples.to_vec();
+        let mut medians: Vec<f64> = (0..RESAMPLES)
+            .map(|_| {
+                for place in drawn.chunks_exact_mut(epoch) {
+                    let from = epoch * draw(random, epochs);
+                    place.copy_from_slice(&samples[from..from + epoch]);
+                }
+                median(&mut drawn)
+            })
+            .collect();
+        medians.sort_unstable_by(f64::total_cmp);
+        drawn.copy_from_slice(samples);
+        let tail = 0.5 * (1.0 - level);
+        Self { value: median(&mut drawn), low: quantile(&medians, tail), high: quantile(&medians, 1.0 - tail) }
+    }
+
+    /// The median over the rounds of a subject's block over the reference's.
+    pub fn ratio(subject: &[f64], reference: &[f64], level: f64, random: &mut Random) -> Self {
+        let ratios: Vec<f64> = subject.iter().zip(reference).map(|(a, b)| a / b).collect();
+        Self::median(&ratios, level, random)
+    }
+
+    /// What this ratio says: a difference is one beyond the noise, not one beyond one.
+    pub fn finding(&self) -> Finding {
+        if self.low > 1.0 + NOISE {
+            Finding::Slower
+        } else if self.high < 1.0 / (1.0 + NOISE) {
+            Finding::Faster
+        } else {
+            Finding::Alike
+        }
+    }
+
+    /// Why this ratio of two copies of one program shows that the machine was not quiet: its interval does not hold 1, or goes beyond the
+    /// noise. `None` when it does not show that.
+    pub fn complaint(&self) -> Option<String> {
+        let Self { value, low, high } = self;
+        let good = *low <= 1.0 && *high >= 1.0 && *low >= 1.0 - NOISE && *high <= 1.0 + NOISE;
+        (!good).then(|| format!("the second copy of native over the first is {value:.4} [{low:.4}, {high:.4}]: not 1 within ± {NOISE}"))
+    }
+}
+
+/// Uniform among 0 … count−1, from 32 bits: four draws from one block of the generator.
+fn draw(random: &mut Random, count: usize) -> usize {
+    ((u64::from(random.bits32()) * count as u64) >> 32) as usize
+}
+
+/// The middle of the samples, or the mean of the two in the middle; their order changes.
+fn median(samples: &mut [f64]) -> f64 {
+    let (middle, odd) = (samples.len() / 2, samples.len() % 2 == 1);
+    let (below, &mut upper, _) = samples.select_nth_unstable_by(middle, f64::total_cmp);
+    if odd {
+        return upper;
+    }
+    let lower = below.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    0.5 * (lower + upper)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use spatial::Real;
+
+    /// Rounds of an experiment: ten in each epoch.
+    const ROUNDS: usize = 10 * EPOCHS;
+    /// Experiments of each kind: what must hold is counted.
+    const TRIALS: usize = 60;
+
+    /// A machine's noise: what it does to the two blocks of each round.
+    type Noise = fn(&mut Random, usize) -> [f64; 2];
+
+    /// A standard normal number (Box and Muller).
+    fn normal(random: &mut Random) -> f64 {
+        let (radius, angle) = ((-2.0 * (1.0 - random.unit()).ln()).sqrt(), std::f64::consts::TAU * random.unit());
+        radius * Real::sin_cos(angle).1
+    }
+
+    fn jitter(random: &mut Random, _: usize) -> [f64; 2] {
+        [(); 2].map(|()| 1.0 + 0.02 * normal(random).abs())
+    }
+
+    /// One block in eight is interrupted, and takes up to three times as long.
+    fn interruptions(random: &mut Random, round: usize) -> [f64; 2] {
+        let block = jitter(random, round);
+        block.map(|time| if random.below(8) == 0 { time * random.uniform(1.1, 3.0) } else { time })
+    }
+
+    /// The machine becomes slower by two fifths in the course of the run.
+    fn drift(random: &mut Random, round: usize) -> [f64; 2] {
+        jitter(random, round).map(|time| time * (1.0 + 0.4 * round as f64 / ROUNDS as f64))
+    }
+
+    /// Another program comes and goes: every seven rounds the frequency changes, or does not.
+    fn frequencies(random: &mut Random, round: usize) -> [f64; 2] {
+        let slow = Random::new(5, round as u64 / 7).below(2) == 1;
+        jitter(random, round).map(|time| if slow { 1.3 * time } else { time })
+    }
+
+    /// Each layout of the memory has a price of its own for each of the two.
+    fn layouts(random: &mut Random, round: usize) -> [f64; 2] {
+        let mut layout = Random::new(6, round as u64 / 10);
+        jitter(random, round).map(|time| time * (1.0 + 0.01 * layout.unit()))
+    }
+
+    const MACHINES: [(&str, Noise); 5] =
+        [("jitter", jitter), ("interruptions", interruptions), ("drift", drift), ("frequencies", frequencies), ("layouts", layouts)];
+
+    /// Reference and subject on a noisy machine, the subject this much slower.
+    fn blocks(noise: Noise, slower: f64, seed: u64) -> (Vec<f64>, Vec<f64>) {
+        let mut random = Random::new(seed, 7);
+        let rounds = (0..ROUNDS).map(|round| {
+            let [reference, subject] = noise(&mut random, round);
+            (1000.0 * reference, 1000.0 * slower * subject)
+        });
+        rounds.unzip()
+    }
+
+    fn ratio(noise: Noise, slower: f64, seed: u64, level: f64) -> Estimate {
+        let (reference, subject) = blocks(noise, slower, seed);
+        Estimate::ratio(&subject, &reference, level, &mut Random::new(seed, 8))
+    }
+
+    fn count(trial: impl Fn(u64) -> bool) -> usize {
+        (0..TRIALS as u64).filter(|&seed| trial(seed)).count()
+    }
+
+    #[test]
+    fn five_percent_are_convicted_and_half_a_percent_is_not() {
+        for (name, noise) in MACHINES {
+            let found = |slower: f64, finding| count(|seed| ratio(noise, slower, seed, LEVEL).finding() == finding);
+            assert_eq!(found(1.05, Finding::Slower), TRIALS, "{name}");
+            assert_eq!(found(1.005, Finding::Alike), TRIALS, "{name}");
+            assert_eq!(found(1.0, Finding::Alike), TRIALS, "{name}");
+            assert_eq!(found(1.0 / 1.05, Finding::Faster), TRIALS, "{name}");
+        }
+    }
+
+    #[test]
+    fn the_interval_holds_the_true_ratio_as_often_as_it_says() {
+        for (name, noise) in MACHINES {
+            let held = count(|seed| {
+                let Estimate { value, low, high } = ratio(noise, 1.03, seed, LEVEL);
+                assert!(low <= value && value <= high);
+                low <= 1.03 && 1.03 <= high
+            });
+            // 95 % of 60 are 57 ± 1.7: three deviations below.
+            assert!(held >= 52, "{name}: {held} of {TRIALS}");
+        }
+    }
+
+    #[test]
+    fn chance_alone_does_not_void_a_run_and_a_noisy_machine_does() {
+        for (name, noise) in MACHINES {
+            let voided = count(|seed| ratio(noise, 1.0, seed, CONTROL_LEVEL).complaint().is_some());
+            assert!(voided <= 1, "{name}: {voided} of {TRIALS}");
+            let unseen = count(|seed| ratio(noise, 1.03, seed, CONTROL_LEVEL).complaint().is_none());
+            assert_eq!(unseen, 0, "{name}: copies that differ by 3 %");
+        }
+        // Blocks that scatter by half: the interval is wider than the noise allows.
+        let wild: Noise = |random, _| [(); 2].map(|()| random.uniform(1.0, 2.0));
+        assert_eq!(count(|seed| ratio(wild, 1.0, seed, CONTROL_LEVEL).complaint().is_some()), TRIALS);
+    }
+
+    /// Why ratios are formed within rounds: two medians may fall into different states of the machine.
+    #[test]
+    fn the_ratio_of_two_medians_would_be_misled_where_the_median_of_ratios_is_not() {
+        let worst = |of: fn(Vec<f64>, Vec<f64>) -> f64| {
+            (0..TRIALS as u64)
+                .map(|seed| {
+                    let (reference, subject) = blocks(frequencies, 1.0, seed);
+                    (of(subject, reference) - 1.0).abs()
+                })
+                .fold(0.0, f64::max)
+        };
+        let unpaired = worst(|mut subject, mut reference| median(&mut subject) / median(&mut reference));
+        let paired = worst(|subject, reference| median(&mut subject.iter().zip(&reference).map(|(a, b)| a / b).collect::<Vec<_>>()));
+        assert!(paired < 0.006 && unpaired > 2.0 * paired, "paired {paired}, unpaired {unpaired}");
+    }
+
+    #[test]
+    fn medians_and_intervals_of_few_samples() {
+        assert_eq!(median(&mut [3.0, 1.0, 2.0]), 2.0);
+        assert_eq!(median(&mut [4.0, 1.0, 3.0, 2.0]), 2.5);
+        let of = |samples: &[f64]| Estimate::median(samples, LEVEL, &mut Random::new(1, 1));
+        assert_eq!(of(&[7.0; 40]), Estimate { value: 7.0, low: 7.0, high: 7.0 });
+        assert_eq!(of(&[5.0]), Estimate { value: 5.0, low: 5.0, high: 5.0 });
+        assert!(of(&[]).value.is_nan() && of(&[1.0, f64::NAN]).low.is_nan());
+        let few = of(&[1.0, 2.0, 3.0, 4.0, 5.0]);
+        assert!(few.value == 3.0 && few.low <= 2.0 && few.high >= 4.0, "{few:?}");
+        assert_eq!(of(&[1.0, 2.0, 3.0]), of(&[1.0, 2.0, 3.0]), "the same seed, the same interval");
+        assert_eq!(Estimate { value: f64::NAN, low: f64::NAN, high: f64::NAN }.finding(), Finding::Alike);
+        assert!(Estimate { value: f64::NAN, low: f64::NAN, high: f64::NAN }.complaint().is_some());
+    }
+}

@@ -1,0 +1,156 @@
+//! The timing study as a whole: its cells, what is checked before a time counts, what is void and why. Nothing here depends on a time.
+
+use engines::Native;
+use featherbench_studies::Timing;
+use harness::run::{Silent, compare, evaluate, plan};
+use harness::{Context, Outcome, OutcomeStore, Problem, Quantity, Study, Subject};
+use record::{Record, Verdict};
+use support::{Double, gates, robot, whole};
+
+mod support;
+
+fn study() -> Timing {
+    let kernels =
+        |_: &Problem| vec![(Quantity::InverseDynamics, "rnea"), (Quantity::ForwardDynamics, "aba"), (Quantity::ForwardDynamics, "ltdl")];
+    Timing { states: 20, seconds: 0.0, kernels, peers: vec!["double".into(), "absent".into()] }
+}
+
+/// The rows of a robot timed beside a double.
+fn rows(double: Double) -> Vec<Record> {
+    let subjects: [Box<dyn Subject>; 2] = [Box::new(Native::new()), Box::new(double)];
+    whole(&study(), &robot("chain:n=4,layout=spatial"), &gates(""), &subjects)
+}
+
+fn robot4() -> Problem {
+    robot("chain:n=4,layout=spatial")
+}
+
+fn of<'a>(rows: &'a [Record], engine: &str, quantity: &str, metric: &str) -> Vec<&'a Record> {
+    rows.iter().filter(|row| row.engine == engine && row.quantity == quantity && row.metric == metric).collect()
+}
+
+#[test]
+fn everyone_has_times_ratios_and_intervals_beside_a_control() {
+    let rows = rows(Double::of(&robot4()));
+    for (quantity, methods) in [("id", 1), ("fd", 4)] {
+        for (engine, timed) in [("native", if quantity == "fd" { 2 } else { 1 }), ("double", methods)] {
+            for metric in ["ns_per_call", "ns_low", "ns_high", "ns_p10", "ns_p90"] {
+                let found = of(&rows, engine, quantity, metric);
+                assert_eq!(found.len(), 2 * timed, "{engine} {quantity} {metric}: stream and hot");
+                assert!(found.iter().all(|row| row.value.is_some_and(|ns| ns > 0.0) && row.verdict == Verdict::Info && row.unit == "ns"));
+            }
+        }
+        assert_eq!(of(&rows, "native", quantity, "control").len(), 2);
+        for row in of(&rows, "double", quantity, "ratio") {
+            let end = |metric| {
+                let same = |other: &&Record| other.method == row.method && other.case == row.case;
+                of(&rows, "double", quantity, metric).into_iter().find(same).unwrap().value.unwrap()
+            };
+            assert!(end("ratio_low") <= row.value.unwrap() && row.value.unwrap() <= end("ratio_high"));
+            assert_eq!(row.reference, if quantity == "id" { "native rnea" } else { "native aba" });
+        }
+        assert!(of(&rows, "double", quantity, "worst_error").iter().all(|row| row.verdict == Verdict::Pass));
+    }
+    let machine: Vec<_> = rows.iter().filter(|row| row.quantity == "machine").collect();
+    assert_eq!(
+        machine.iter().map(|row| row.metric.as_str()).collect::<Vec<_>>(),
+        ["fma_per_ns", "fma_per_ns_per_lane", "clock_ns", "empty_call_ns"]
+    );
+    assert!(machine.iter().all(|row| row.model.is_empty() && row.value.is_some_and(|value| value > 0.0)));
+    assert!(rows.iter().all(|row| row.engine != "absent"));
+}
+
+#[test]
+fn a_wrong_answer_at_one_state_voids_its_times_and_nobody_elses() {
+    let rows = rows(Double::twisting(&robot4(), |answer| {
+        if answer.quantity == Quantity::InverseDynamics && answer.state == 17 {
+            answer.values[2] *= 1.0 + 1e-9;
+        }
+    }));
+    let failed: Vec<_> = rows.iter().filter(|row| row.verdict == Verdict::Fail).collect();
+    assert_eq!(failed.len(), 1);
+    assert_eq!((failed[0].engine.as_str(), failed[0].quantity.as_str(), failed[0].metric.as_str()), ("double", "id", "worst_error"));
+    for row in of(&rows, "double", "id", "ns_per_call").into_iter().chain(of(&rows, "double", "id", "ratio")) {
+        assert!(row.reason.starts_with("void: a wrong answer has no time"), "{}", row.reason);
+    }
+    for engine in ["native", "double"] {
+        assert!(of(&rows, engine, "fd", "ns_per_call").iter().all(|row| !row.reason.contains("wrong answer")));
+    }
+}
+
+#[test]
+fn one_that_refuses_is_a_row_with_its_reason_and_no_time() {
+    let rows = rows(Double::refusing(&robot4()));
+    let refused: Vec<_> = rows.iter().filter(|row| row.engine == "double").collect();
+    assert_eq!(refused.len(), 5, "one for each method");
+    assert!(refused.iter().all(|row| row.verdict == Verdict::Skip && row.reason == "it supports nothing" && row.value.is_none()));
+    assert_eq!(of(&rows, "native", "fd", "ns_per_call").len(), 4);
+}
+
+#[test]
+fn forward_dynamics_is_checked_backwards() {
+    let altered = |factor: f64| {
+        let double = Double::altered(&robot4(), |description| description.bodies[3].mass *= factor);
+        let rows = rows(double);
+        of(&rows, "double", "fd", "worst_error").iter().map(|row| (row.value.unwrap(), row.verdict)).collect::<Vec<_>>()
+    };
+    assert!(altered(1.0).iter().all(|&(error, verdict)| error < 1e-14 && verdict == Verdict::Pass));
+    let wrong = altered(1.0 + 1e-8);
+    assert!(wrong.iter().filter(|(_, verdict)| *verdict == Verdict::Fail).count() == 4, "{wrong:?}");
+}
+
+/// A finished study whose outcomes are rewritten before they are compared.
+fn rewritten(rewrite: impl Fn(&mut Vec<f64>)) -> Vec<Record> {
+    let (problem, gates, subjects) = (robot4(), gates(""), [Box::new(Native::new()) as Box<dyn Subject>]);
+    let context = Context { problems: std::slice::from_ref(&problem), subjects: &subjects, gates: &gates, seed: 1 };
+    let folder = tempfile::tempdir().unwrap();
+    let store = OutcomeStore::open(folder.path()).unwrap();
+    let cells = plan(&study(), &context, &|_| true);
+    let mut finished = evaluate(&study(), &context, cells, &store, &Silent).unwrap();
+    for (cell, outcome) in &mut finished {
+        if let Outcome::Values(values) = outcome
+            && cell.params["what"] == "experiment"
+        {
+            rewrite(values);
+        }
+    }
+    let text = study().side_file(&finished).unwrap().1;
+    let entrants = finished.iter().filter_map(|(cell, _)| cell.params["entrants"].as_array()).map(Vec::len).sum::<usize>();
+    assert_eq!(text.lines().count(), entrants, "a line for each entrant of each experiment");
+    for line in text.lines() {
+        let line: serde_json::Value = serde_json::from_str(line).unwrap();
+        assert!(finished.iter().any(|(cell, _)| cell.id() == line["cell"]), "{line}");
+        assert!(line["ns"].as_array().unwrap().len() >= 30);
+    }
+    compare(&study(), &context, finished)
+}
+
+/// The samples of an experiment stand behind the number of entrants and their calls, entrant by entrant.
+fn fill(values: &mut [f64], ns: impl Fn(usize, usize) -> f64) {
+    let entrants = values[0] as usize;
+    let rounds = (values.len() - 1 - entrants) / entrants;
+    for (place, value) in values[1 + entrants..].iter_mut().enumerate() {
+        *value = ns(place / rounds, place % rounds);
+    }
+}
+
+#[test]
+fn a_control_that_is_not_one_voids_the_times() {
+    let quiet = rewritten(|values| fill(values, |_, round| 100.0 + (round % 3) as f64));
+    assert!(quiet.iter().all(|row| row.reason.is_empty()));
+    assert!(quiet.iter().filter(|row| row.metric == "control").all(|row| row.value == Some(1.0)));
+    // The second copy, which stands behind the first, is slower by three percent.
+    let noisy = rewritten(|values| fill(values, |entrant, round| if entrant == 1 { 103.0 } else { 100.0 } + (round % 3) as f64));
+    let times: Vec<_> = noisy.iter().filter(|row| row.metric.starts_with("ns_")).collect();
+    assert!(!times.is_empty() && times.iter().all(|row| row.reason.starts_with("void: ") && row.value.is_some()));
+    assert!(times[0].reason.contains("4 of 4 A/A controls"), "{}", times[0].reason);
+}
+
+#[test]
+fn one_that_stops_answering_is_an_error() {
+    let rows = rewritten(|values| *values.last_mut().unwrap() = f64::NAN);
+    let errors: Vec<_> = rows.iter().filter(|row| row.verdict == Verdict::Error).collect();
+    // The last entrant of forward dynamics is ltdl; the last of inverse dynamics is the control, which has no row then.
+    assert_eq!(errors.len(), 2);
+    assert!(errors.iter().all(|row| row.method == "ltdl" && row.reason.contains("stopped answering")));
+}
