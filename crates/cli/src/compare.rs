@@ -27,7 +27,7 @@ pub fn compare(root: &Root, args: &CompareArgs) -> Result<(), Fail> {
     eprintln!("starting {} …", loaded.suite.agreement.iter().flat_map(|entry| entry.engines.clone()).collect::<Vec<_>>().join(", "));
     let live = RunArgs { live: true, ..RunArgs::default_suite() };
     let subjects = subjects::open(root, &live, &loaded)?;
-    if let Some(missing) = subjects.missing().first() {
+    if let Some(missing) = subjects.missing(&loaded).first() {
         let message = format!("{} does not answer: {}", missing.name, missing.reason);
         return Err(Fail::Missing { message, advice: "look at `featherbench oracles status`, or leave it out with --engines".into() });
     }
