@@ -69,6 +69,21 @@ impl<T: Real> TreeSparse<T> {
         &self.values
     }
 
+    /// The stored numbers, to be written.
+    pub fn values_mut(&mut self) -> &mut [T] {
+        &mut self.values
+    }
+
+    /// Exchanges the stored numbers with as many others: matrices of one topology in turn, without a copy.
+    ///
+    /// # Errors
+    /// [`DimensionError`] when there are not as many; nothing is exchanged then.
+    pub fn exchange(&mut self, values: &mut Vec<T>) -> Result<(), DimensionError> {
+        expect("stored numbers of the tree-sparse matrix", self.values.len(), values.len())?;
+        std::mem::swap(&mut self.values, values);
+        Ok(())
+    }
+
     /// Entry (i, j): zero where neither dof supports the other, or where there is no such entry.
     pub fn get(&self, i: usize, j: usize) -> T {
         let (upper, lower) = (i.min(j), i.max(j));

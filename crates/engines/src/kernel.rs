@@ -191,16 +191,15 @@ fn refined_forward_dynamics<'a>(problem: &'a Problem, states: &'a StateBatch, st
     Ok(Box::new(move |k, a| refined.run(&model, states.q(k), states.v(k), states.tau(k), None, a)))
 }
 
-/// Mass matrices of a batch, made beforehand: factorizing and solving do not include making them.
-fn matrices(model: &Model<f64>, states: &StateBatch) -> Result<Vec<TreeSparse<f64>>, Refusal> {
-    let mut crba = Crba::new(&model.topology);
+/// The stored numbers of the mass matrices of a batch, made beforehand: factorizing and solving do not include making them.
+fn matrices(model: &Model<f64>, states: &StateBatch) -> Result<Vec<Vec<f64>>, Refusal> {
+    let (mut crba, mut matrix) = (Crba::new(&model.topology), TreeSparse::new(&model.topology));
     // Of big robots a few matrices go round: thousands of them would not fit the memory.
     let count = states.count().min(1 + (32 << 20) / (8 * model.topology.stored().max(1)));
     (0..count)
         .map(|k| {
-            let mut matrix = TreeSparse::new(&model.topology);
             crba.run(model, states.q(k), &mut matrix).map_err(|error| Refusal::Failed(error.to_string()))?;
-            Ok(matrix)
+            Ok(matrix.values().to_vec())
         })
         .collect()
 }
@@ -209,18 +208,28 @@ fn factorization<'a>(model: &'a Model<f64>, states: &'a StateBatch) -> Result<Ke
     let matrices = matrices(model, states)?;
     let mut ltdl = Ltdl::new(&model.topology);
     Ok(Box::new(move |k, out| {
-        ltdl.run(&matrices[k % matrices.len()])?;
+        ltdl.matrix_mut().values_mut().copy_from_slice(&matrices[k % matrices.len()]);
+        ltdl.factor()?;
         out.copy_from_slice(ltdl.factors().values());
         Ok(())
     }))
 }
 
 fn solve<'a>(model: &'a Model<f64>, states: &'a StateBatch) -> Result<Kernel<'a>, Refusal> {
-    let factored: Result<Vec<Ltdl<f64>>, _> = matrices(model, states)?.into_iter().map(TreeSparse::into_ltdl).collect();
-    let factored = factored.map_err(|error| Refusal::Failed(error.to_string()))?;
+    let mut ltdl = Ltdl::new(&model.topology);
+    let mut factors = matrices(model, states)?;
+    for matrix in &mut factors {
+        ltdl.matrix_mut().values_mut().copy_from_slice(matrix);
+        ltdl.factor().map_err(|error| Refusal::Failed(error.to_string()))?;
+        matrix.copy_from_slice(ltdl.factors().values());
+    }
     Ok(Box::new(move |k, x| {
         x.copy_from_slice(states.tau(k));
-        Ok(factored[k % factored.len()].solve(x)?)
+        let at = k % factors.len();
+        ltdl.matrix_mut().exchange(&mut factors[at])?;
+        let solved = ltdl.solve(x);
+        ltdl.matrix_mut().exchange(&mut factors[at])?;
+        Ok(solved?)
     }))
 }
 

@@ -27,11 +27,10 @@ void read_sparse(fb_handle &robot, double *mass) {
   fb_tree_sparse(robot.nv(), robot.dof_parent.data(), dense.data(), mass);
 }
 
-// Mass matrices of the states. Of big robots a few go round: thousands of them would not fit the memory.
+// Mass matrices of the states, each of which is answered from its own.
 void ready_masses(fb_handle &robot) {
-  const size_t most = 1 + (size_t(32) << 20) / (8 * robot.data->M.size());
   robot.matrices.clear();
-  for (size_t k = 0; k < std::min(robot.count, most); k++) robot.matrices.push_back(mass_matrix(robot, k));
+  for (size_t k = 0; k < robot.count; k++) robot.matrices.push_back(mass_matrix(robot, k));
 }
 
 // Into Data and out again by exchanging pointers: no copy is timed.
