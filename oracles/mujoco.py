@@ -4,19 +4,38 @@ Joints of several degrees of freedom are slides and hinges in one body, in the o
 hinge z), universal (hinge x, y), translation (slide x, y, z), cylindrical (hinge, slide), euler_zyx (hinge z, y, x). There is no helical
 joint. The compiler is told to edit nothing. Inertias go in by principal axes: MuJoCo's own diagonalisation of a full inertia leaves a
 quaternion whose length is 3e-15 off one, and forgets the axes altogether where no centre of mass was set. Damping, dry friction, limits,
-contacts and actuators are never set and constraints are disabled, so qfrc_passive is zero. A massless or unphysical moving body is refused
-by the compiler: its words are the reason given.
+contacts and actuators are never set and constraints are disabled, so qfrc_passive is zero.
+
+A massless or unphysical moving body is refused by the compiler: its words are the reason given. But massless bodies whose one child stands
+in their axes, as an MJCF body with several joints is described, are folded into it as joints of one body. MuJoCo has no such bodies then:
+what asks for each body is unsupported.
 """
 
 from __future__ import annotations
 
 import sys
+from collections import Counter
+from collections.abc import Sequence
+from itertools import pairwise
 from pathlib import Path
 
 import mujoco_reading
 import numpy as np
 
-from protocol import Array, Body, Change, Description, Question, Reading, Unsupported, mass_matrix_probe, readback_row, rotation, serve
+from protocol import (
+    Array,
+    Body,
+    Change,
+    Description,
+    Joint,
+    Question,
+    Reading,
+    Unsupported,
+    mass_matrix_probe,
+    readback_row,
+    rotation,
+    serve,
+)
 
 sys.path.pop(0)  # this directory, where this very file would be taken for the package imported next
 import mujoco as mj  # noqa: E402
@@ -105,15 +124,43 @@ def principal(inertia: Array) -> tuple[Array, Array]:
     return moments, axes
 
 
-def add_body(parent: mj.MjsBody, body: Body, index: int) -> mj.MjsBody:
-    """Adds a body with its joints."""
-    joint = body.joint
-    child = parent.add_body(name=f"{index}: {body.name}", pos=joint.translation, quat=wxyz(joint.rotation))
+def chains(robot: Description) -> list[range]:
+    """The bodies that become one of MuJoCo's each: a body, and before it the massless ones that are folded into it."""
+    children = Counter(body.parent for body in robot.bodies)
+    ends = [i for i in range(len(robot.bodies)) if children[i] != 1 or not _folds(robot.bodies[i], robot.bodies[i + 1])]
+    return [range(before + 1, end + 1) for before, end in pairwise([-1, *ends])]
+
+
+def _folds(body: Body, child: Body) -> bool:
+    """Whether a body is nothing but a joint before its one child: joints of one MuJoCo body stand in the same axes."""
+    nothing = body.mass == 0 and not body.com.any() and not body.inertia.any()
+    return nothing and (child.joint.rotation == np.eye(3)).all() and "free" not in (body.joint.type, child.joint.type)
+
+
+def anchors(bodies: Sequence[Body]) -> list[Array]:
+    """Where the joints of a chain stand in the frame of its last body, all coordinates being zero."""
+    translations = [body.joint.translation for body in bodies[1:]]
+    return [-sum(translations[k:], np.zeros(3)) for k in range(len(bodies))]
+
+
+def add_body(parent: mj.MjsBody, bodies: Sequence[Body], index: int) -> mj.MjsBody:
+    """Adds a chain as one body with its joints."""
+    body, first, places = bodies[-1], bodies[0].joint, anchors(bodies)
+    position = first.translation - first.rotation @ places[0]
+    child = parent.add_body(name=f"{index}: {body.name}", pos=position, quat=wxyz(first.rotation))
     child.explicitinertial = True
     child.mass, child.ipos = body.mass, body.com
     child.inertia, axes = principal(body.inertia)
     child.iquat = wxyz(axes)
-    parts = {
+    for joint, place in zip((part.joint for part in bodies), places, strict=True):
+        for kind, axis in motions(joint):
+            child.add_joint(type=kind, axis=axis, pos=place)
+    return child
+
+
+def motions(joint: Joint) -> list[tuple[mj.mjtJoint, Array]]:
+    """MuJoCo's joints that a joint is, with their axes."""
+    return {
         "revolute": [(HINGE, joint.axis)],
         "prismatic": [(SLIDE, joint.axis)],
         "spherical": [(BALL, Z)],
@@ -123,10 +170,7 @@ def add_body(parent: mj.MjsBody, body: Body, index: int) -> mj.MjsBody:
         "translation": [(SLIDE, X), (SLIDE, Y), (SLIDE, Z)],
         "cylindrical": [(HINGE, joint.axis), (SLIDE, joint.axis)],
         "euler_zyx": [(HINGE, Z), (HINGE, Y), (HINGE, X)],
-    }
-    for kind, axis in parts[joint.type]:
-        child.add_joint(type=kind, axis=axis)
-    return child
+    }[joint.type]
 
 
 def refuse_unsupported(body: Body) -> None:
@@ -143,15 +187,17 @@ def refuse_unsupported(body: Body) -> None:
 def build(robot: Description) -> mj.MjModel:
     """The model of a description."""
     spec = empty_spec(robot)
-    bodies = [spec.worldbody]
-    for i, body in enumerate(robot.bodies):
-        refuse_unsupported(body)
-        bodies.append(add_body(bodies[body.parent + 1], body, i))
+    held = {-1: spec.worldbody}
+    for chain in chains(robot):
+        bodies = [robot.bodies[i] for i in chain]
+        for body in bodies:
+            refuse_unsupported(body)
+        held[chain[-1]] = add_body(held[bodies[0].parent], bodies, chain[-1])
     try:
         model = spec.compile()
     except ValueError as reason:
         raise Unsupported(f"MuJoCo refuses the model: {reason}") from reason
-    if (model.body_dofadr[1:] != [body.joint.v.start for body in robot.bodies]).any():
+    if (model.body_dofadr[1:] != [robot.bodies[chain[0]].joint.v.start for chain in chains(robot)]).any():
         raise RuntimeError("MuJoCo put the degrees of freedom in another order")
     model.dof_armature = np.concatenate([body.joint.armature for body in robot.bodies])
     mj.mj_setConst(model, mj.MjData(model))  # MuJoCo keeps constants that depend on armature
@@ -159,18 +205,31 @@ def build(robot: Description) -> mj.MjModel:
 
 
 class MujocoRobot:
-    """A robot in MuJoCo; where it was built from the description, body i is MuJoCo's body i + 1, as body 0 is the world."""
+    """A robot in MuJoCo; where it was built from the description, chain i is MuJoCo's body i + 1, as body 0 is the world."""
 
     def __init__(self, robot: Description, model: mj.MjModel) -> None:
         self.robot, self.model, self.data = robot, model, mj.MjData(model)
+        self.held = {chain[-1]: i for i, chain in enumerate(chains(robot), start=1)}
+
+    def _all_held(self, quantity: str) -> None:
+        """Raises `Unsupported` where MuJoCo lacks bodies of the description."""
+        folded = len(self.robot.bodies) - len(self.held)
+        if folded:
+            raise Unsupported(f"MuJoCo has no massless bodies: {folded} are joints of the next one, and have no {quantity} of their own")
 
     def readback(self) -> list[Array]:
-        """Inertias come back from MuJoCo's principal axes: I = R diag(principal) R'."""
+        """Inertias come back from MuJoCo's principal axes: I = R diag(principal) R'. Of a folded body there is its joint's place alone."""
         m, rows = self.model, []
-        for i in range(1, m.nbody):
+        for i, chain in enumerate(chains(self.robot), start=1):
+            turn, joint = from_wxyz(m.body_quat[i]), m.body_jntadr[i]
+            place = m.body_pos[i] + turn @ m.jnt_pos[joint]
+            for body in chain[:-1]:
+                rows.append(readback_row(0.0, np.zeros(3), np.zeros((3, 3)), turn, place))
+                before, joint = joint, joint + len(motions(self.robot.bodies[body].joint))
+                turn, place = np.eye(3), m.jnt_pos[joint] - m.jnt_pos[before]
             axes = from_wxyz(m.body_iquat[i])
             inertia = (axes * m.body_inertia[i]) @ axes.T
-            rows.append(readback_row(m.body_mass[i], m.body_ipos[i], inertia, from_wxyz(m.body_quat[i]), m.body_pos[i]))
+            rows.append(readback_row(m.body_mass[i], m.body_ipos[i], inertia, turn, place))
         return rows
 
     def _update(self, ask: Question) -> Change:
@@ -205,6 +264,7 @@ class MujocoRobot:
 
     def inverse_wrench(self, ask: Question) -> Array:
         """tau = mj_inverse - Σ J' f, as mj_inverse does not look at applied forces."""
+        self._all_held("wrench")
         change = self._update(ask)
         tau = self._inverse(change.to_engine_a(ask.a))
         applied = np.zeros(self.model.nv)
@@ -289,11 +349,13 @@ class MujocoRobot:
 
     def placement(self, ask: Question) -> Array:
         """Rotation and origin of each body."""
+        self._all_held("placement")
         self._update(ask)
         return np.hstack([self.data.xmat[1:], self.data.xpos[1:]])
 
     def velocity(self, ask: Question) -> Array:
         """Velocity of each body in world axes at its origin."""
+        self._all_held("velocity")
         self._update(ask)
         velocities = np.empty((self.model.nbody, 6))
         for i, row in enumerate(velocities):
@@ -302,6 +364,7 @@ class MujocoRobot:
 
     def acceleration(self, ask: Question) -> Array:
         """Classical acceleration of each body; MuJoCo gives it as if the world accelerated by -g, which is taken off."""
+        self._all_held("acceleration")
         change = self._update(ask)
         self.data.qacc = change.to_engine_a(ask.a)
         mj.mj_rnePostConstraint(self.model, self.data)
@@ -312,9 +375,11 @@ class MujocoRobot:
 
     def jacobian(self, ask: Question) -> Array:
         """J of the asked body in world axes at its origin."""
+        if ask.body not in self.held:
+            self._all_held("Jacobian")
         change = self._update(ask)
         angular, linear = np.zeros((2, 3, self.model.nv))
-        mj.mj_jacBody(self.model, self.data, linear, angular, ask.body + 1)
+        mj.mj_jacBody(self.model, self.data, linear, angular, self.held[ask.body])
         return change.to_neutral_jacobian(np.vstack([angular, linear]))
 
 

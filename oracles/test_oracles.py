@@ -417,6 +417,47 @@ def test_refusals(oracles: dict[str, Oracle]) -> None:
         check(f"{name} ends with its input", oracle.end(), 0)
 
 
+def test_folded(oracles: dict[str, Oracle]) -> None:
+    """Chains of massless bodies in one another's axes are one body with several joints in MuJoCo, which then lacks them as bodies."""
+    rng = np.random.default_rng(11)
+    kinds = ["free", "revolute", "prismatic", "revolute", "universal", "prismatic", "revolute", "planar", "revolute"]
+    data = random_robot(rng, "folded", [*kinds, "prismatic", "spherical"])
+    nothing = {"mass": 0.0, "com": [0.0] * 3, "inertia": [0.0] * 6}
+    massless = (1, 2, 4, 7, 9)
+    for i, body in enumerate(data["bodies"]):
+        body["parent"] = i - 1
+        if i in massless:
+            body.update(nothing)
+            data["bodies"][i + 1]["joint"]["placement"]["rotation"] = np.eye(3).ravel().tolist()
+    data["bodies"][9]["parent"] = 3  # a branch
+    robot = Description.read(data)
+    states, count = random_states(rng, robot), 22
+    mujoco, pinocchio = oracles["mujoco"], oracles["pinocchio"]
+    methods = {name: oracles[name].must({"op": "hello"})[0]["methods"] for name in ("mujoco", "pinocchio")}
+    readback = mujoco.must({"op": "prepare", "model": data})[1]["readback"]
+    test_readback("mujoco (folded)", robot, readback)
+    check("mujoco: massless bodies come back without mass", np.abs(readback[list(massless), :10]).max(), 0.0)
+    pinocchio.must({"op": "prepare", "model": data})
+    for quantity in ("mass_matrix", "id", "bias", "fd", "kinetic_energy", "potential_energy", "com", "momentum"):
+        right = pinocchio.at(states, quantity, methods["pinocchio"][quantity][-1])  # the last one: of kinetic energy, the right one
+        for method in methods["mujoco"][quantity]:
+            value = mujoco.at(states, quantity, method)
+            size = np.abs(right).max(axis=tuple(range(1, right.ndim)), keepdims=True)
+            size = np.maximum(size, np.abs(right[:20]).max())  # where a sum is small, its terms are not
+            tolerance = INVERSE if quantity == "fd" else EXACT
+            check(f"mujoco: {quantity} by {method} of a folded robot", ratio((value - right) / size), tolerance)
+    right = pinocchio.value("body_jacobian", methods["pinocchio"]["body_jacobian"][0], count, 8)
+    check("mujoco: Jacobian of a folded robot", ratio(mujoco.value("body_jacobian", "jac_body", count, 8) - right), 1e-12)
+    evaluate = {"op": "evaluate", "first": 0, "count": 1, "body": 1}
+    for quantity in ("id_wrench", "body_placement", "body_velocity", "body_acceleration", "body_jacobian"):
+        ask = {**evaluate, "quantity": quantity, "method": methods["mujoco"][quantity][0]}
+        expect(f"mujoco: {quantity} of a folded body", mujoco.ask(ask), "unsupported")
+    skew = random_robot(rng, "skew", ["revolute", "revolute"])
+    skew["bodies"][0].update(nothing)
+    skew["bodies"][1]["parent"] = 0
+    expect("mujoco: massless bodies in skew axes are not folded", mujoco.ask({"op": "prepare", "model": skew}), "unsupported")
+
+
 def expect(name: str, answer: Answer, status: str) -> None:
     """The answer has that status, and a reason unless all is well."""
     right = answer[0]["status"] == status and (status == "ok" or 5 < len(answer[0]["reason"].splitlines()[0]))
@@ -501,6 +542,7 @@ def test_all(oracles: dict[str, Oracle]) -> None:
         test_robot({name: oracles[name] for name in engines}, robot, k)
     test_small_rotations(oracles["dart"])
     test_dart_reads(oracles["dart"])
+    test_folded(oracles)
     test_refusals(oracles)
     test_noise()
 

@@ -44,7 +44,7 @@ pub enum Command {
     Explain(ExplainArgs),
     /// Ask the engines and keep their answers in datasets/recorded.
     Record(RecordArgs),
-    /// Write a robot, generated or read from URDF, as a description, URDF or MJCF.
+    /// Write a robot, generated or read from URDF or MJCF, as a description, URDF or MJCF.
     Gen(GenArgs),
     /// Set up and look at the reference engines.
     Oracles(OraclesArgs),
@@ -213,10 +213,10 @@ pub struct RecordArgs {
 
 #[derive(Debug, Clone, Args)]
 #[command(
-    after_help = "Examples:\n  featherbench gen chain --n 1000 --out chain.json\n  featherbench gen tree --seed 7 --set joints=all --set base=free --out tree.json\n  featherbench gen urdf --file robot.urdf --floating --out robot.json\n  featherbench gen neutral --file robot.json --out robot.urdf\n  featherbench gen humanoid --lossy --out humanoid.xml\n\n`featherbench list` names the families and their parameters."
+    after_help = "Examples:\n  featherbench gen chain --n 1000 --out chain.json\n  featherbench gen tree --seed 7 --set joints=all --set base=free --out tree.json\n  featherbench gen urdf --file robot.urdf --floating --out robot.json\n  featherbench gen mjcf --file scene.xml --out robot.json   what MuJoCo's compiler makes of it\n  featherbench gen neutral --file robot.json --out robot.urdf\n  featherbench gen humanoid --lossy --out humanoid.xml\n\n`featherbench list` names the families and their parameters."
 )]
 pub struct GenArgs {
-    /// A family of generated robots (also with its parameters, as in `chain:n=20,layout=spatial`), or a file's format: `urdf`, `neutral`.
+    /// A family of generated robots (also with its parameters, as in `chain:n=20,layout=spatial`), or a file's format: `urdf`, `mjcf`, `neutral`.
     pub family: String,
     /// Number of links.
     #[arg(long)]
@@ -227,8 +227,8 @@ pub struct GenArgs {
     /// Any other parameter, as key=value; may be repeated.
     #[arg(long = "set", value_name = "KEY=VALUE")]
     pub parameters: Vec<String>,
-    /// The file, for `urdf` and `neutral`.
-    #[arg(long, value_name = "FILE", required_if_eq_any([("family", "urdf"), ("family", "neutral")]))]
+    /// The file, for `urdf`, `mjcf` and `neutral`.
+    #[arg(long, value_name = "FILE", required_if_eq_any([("family", "urdf"), ("family", "mjcf"), ("family", "neutral")]))]
     pub file: Option<PathBuf>,
     /// Give the URDF's base six degrees of freedom.
     #[arg(long)]

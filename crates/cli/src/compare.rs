@@ -11,7 +11,7 @@ use harness::{AgreementEntry, Context, FileFormat, Gates, Problem, RobotFile, Su
 use std::time::{Instant, SystemTime};
 use studies::{Agreement, Reading, reading::REPLAYED};
 
-/// States per robot: one of each case.
+/// States per robot, besides the keyframes of its file: one of each case.
 const STATES: usize = model::StateBatch::HEAD;
 /// Seed of the states.
 const SEED: u64 = 1;
@@ -90,17 +90,19 @@ fn hashes(files: &[RobotFile]) -> String {
 
 /// The reference reading of a file, at its states.
 fn problem(file: RobotFile, subjects: &[Box<dyn Subject>]) -> Result<Problem, Fail> {
-    let description = match file.format {
-        FileFormat::Urdf => problems::read_urdf(&file)?,
+    let (description, keyframes) = match file.format {
+        FileFormat::Urdf => (problems::read_urdf(&file)?, Vec::new()),
         FileFormat::Mjcf => {
             let compiler = subjects.iter().find(|subject| subject.identity().name == "mujoco");
             let message =
                 || format!("{}: MuJoCo's compiler is the reference of MJCF files; do not leave it out of --engines", file.path.display());
-            problems::read_mjcf(&file, compiler.ok_or_else(|| Fail::input(message()))?.as_ref())?
+            let reading = problems::read_mjcf(&file, compiler.ok_or_else(|| Fail::input(message()))?.as_ref())?;
+            (reading.description, reading.keyframes)
         }
     };
-    let malformed = |error| Fail::input(format!("{}: {error}", file.path.display()));
-    let problem = Problem::new(&description, "file", ModelOrigin::Robot, STATES, SEED).map_err(malformed)?;
+    let malformed = |error: &dyn std::error::Error| Fail::input(format!("{}: {error}", file.path.display()));
+    let problem = Problem::new(&description, "file", ModelOrigin::Robot, STATES, SEED).map_err(|error| malformed(&error))?;
+    let problem = problem.with_keyframes(&keyframes, SEED).map_err(|error| malformed(&error))?;
     Ok(problem.from_file(file))
 }
 

@@ -2,14 +2,17 @@
 
 use crate::args::{Format, GenArgs};
 use crate::fail::Fail;
-use crate::problems;
+use crate::root::Root;
+use crate::{oracles, problems, robot_file};
 use formats::OnLoss;
 use formats::urdf::{Base, Options};
+use harness::FileFormat;
 use model::Description;
 use model::generate::Family;
+use std::path::Path;
 
 /// Generates or imports a robot and writes it.
-pub fn generate(args: &GenArgs) -> Result<(), Fail> {
+pub fn generate(root: &Root, args: &GenArgs) -> Result<(), Fail> {
     let description = match (&args.file, args.family.as_str()) {
         (Some(file), "urdf") => {
             let base = if args.floating { Base::Floating } else { Base::Fixed };
@@ -18,6 +21,7 @@ pub fn generate(args: &GenArgs) -> Result<(), Fail> {
             notes.iter().for_each(|note| eprintln!("note: {}: {note}", file.display()));
             description
         }
+        (Some(file), "mjcf") => compiled(root, file, args.floating)?,
         (Some(file), "neutral") => problems::read_model(file)?,
         (_, spec) if spec.contains(':') => {
             let generated = Family::parse(spec).and_then(|family| family.generate());
@@ -35,6 +39,32 @@ pub fn generate(args: &GenArgs) -> Result<(), Fail> {
         None => print!("{text}"),
     }
     Ok(())
+}
+
+/// What MuJoCo's compiler makes of an MJCF file, with its notes.
+fn compiled(root: &Root, path: &Path, floating: bool) -> Result<Description, Fail> {
+    // A bad file is told before any engine is started.
+    let file = robot_file::open(path, false)?;
+    if file.format == FileFormat::Urdf {
+        return Err(Fail::input(format!("{}: this is a URDF; read it by `featherbench gen urdf --file …`", path.display())));
+    }
+    if floating {
+        return Err(Fail::input("--floating: an MJCF says itself what floats; give its root body a <freejoint/>".into()));
+    }
+    let python = oracles::python(root).ok_or_else(|| Fail::Missing {
+        message: format!("{}: MuJoCo's compiler reads MJCF files, and it is not installed", path.display()),
+        advice: "install the reference engines by `featherbench oracles install`".into(),
+    })?;
+    let reading = problems::read_mjcf(&file, &problems::compiler(root, &python)?)?;
+    for note in &reading.notes {
+        let subject = note.subject.as_ref().map_or_else(String::new, |subject| format!("{subject}: "));
+        eprintln!("note: {}: {subject}{}", path.display(), note.text);
+    }
+    if !reading.keyframes.is_empty() {
+        let count = reading.keyframes.len();
+        eprintln!("note: {}: keyframes, which a description does not hold (`compare` takes them as states): {count}", path.display());
+    }
+    Ok(reading.description)
 }
 
 /// The robot in the format asked for, with a note on everything that was left out.

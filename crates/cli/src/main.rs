@@ -52,7 +52,7 @@ fn dispatch(cli: Cli) -> Result<(), Fail> {
         Command::List(args) => list::list(&root, &args),
         Command::Explain(args) => explain::explain(&args),
         Command::Record(args) => record::record(&root, &args),
-        Command::Gen(args) => generate::generate(&args),
+        Command::Gen(args) => generate::generate(&root, &args),
         Command::Oracles(args) => match args.action {
             OraclesAction::Install(args) => oracles::install(&root).and_then(|_| if args.native { native::install(&root) } else { Ok(()) }),
             OraclesAction::Status => oracles::status(&root),

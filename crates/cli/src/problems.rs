@@ -6,7 +6,7 @@ use crate::root::Root;
 use ::record::ModelOrigin;
 use engines::{Limits, Oracle};
 use formats::urdf::{Base, Note, Options};
-use harness::{FileBase, FileFormat, Problem, ProblemEntry, Refusal, RobotFile, Subject, Suite};
+use harness::{FileBase, FileFormat, Problem, ProblemEntry, Reading, Refusal, RobotFile, Subject, Suite};
 use model::generate::Family;
 use model::{Description, StateBatch};
 use std::path::{Path, PathBuf};
@@ -29,7 +29,7 @@ pub fn load(root: &Root, suite: &str, live: bool, seed: Option<u64>) -> Result<L
     let mut problems: Vec<Problem> = Vec::with_capacity(parsed.problem.len());
     for entry in &parsed.problem {
         for (base, named) in entry.bases() {
-            let (description, origin, file) = files.describe(entry, base)?;
+            let Described { description, origin, file, keyframes } = files.describe(entry, base)?;
             let bad = |error: &dyn std::error::Error| Fail::input(format!("{}: robot '{}': {error}", path.display(), description.name));
             let states = entry.states.unwrap_or(states);
             let mut problem = Problem::new(&description, &entry.family, origin, states, parsed.seed).map_err(|error| bad(&error))?;
@@ -38,6 +38,7 @@ pub fn load(root: &Root, suite: &str, live: bool, seed: Option<u64>) -> Result<L
                 let drawn = StateBatch::narrow(&problem.model, states, parsed.seed, reach, speed);
                 problem = problem.at(drawn);
             }
+            problem = problem.with_keyframes(&keyframes, parsed.seed).map_err(|error| bad(&error))?;
             if let Some(file) = file {
                 problem = problem.from_file(file);
             }
@@ -54,6 +55,20 @@ pub fn load(root: &Root, suite: &str, live: bool, seed: Option<u64>) -> Result<L
     Ok(Loaded { name, suite: parsed, hash, problems })
 }
 
+/// A robot and where it came from.
+struct Described {
+    description: Description,
+    origin: ModelOrigin,
+    file: Option<RobotFile>,
+    keyframes: Vec<Vec<f64>>,
+}
+
+impl Described {
+    fn without_file(description: Description, origin: ModelOrigin) -> Self {
+        Self { description, origin, file: None, keyframes: Vec::new() }
+    }
+}
+
 /// Where the robots of a suite come from.
 struct Files<'a> {
     root: &'a Root,
@@ -63,16 +78,16 @@ struct Files<'a> {
 }
 
 impl Files<'_> {
-    fn describe(&mut self, entry: &ProblemEntry, base: FileBase) -> Result<(Description, ModelOrigin, Option<RobotFile>), Fail> {
+    fn describe(&mut self, entry: &ProblemEntry, base: FileBase) -> Result<Described, Fail> {
         if let Some(name) = &entry.model {
             let description = read_model(&self.root.models().join(format!("{name}.json")))?;
             let origin = if description.provenance.is_some() { ModelOrigin::Robot } else { ModelOrigin::Generated };
-            return Ok((description, origin, None));
+            return Ok(Described::without_file(description, origin));
         }
         if let Some(spec) = &entry.generate {
             let generated = Family::parse(spec).and_then(|family| family.generate());
             return generated
-                .map(|description| (description, ModelOrigin::Generated, None))
+                .map(|description| Described::without_file(description, ModelOrigin::Generated))
                 .map_err(|error| Fail::input(error.to_string()));
         }
         let (file, folder, format) = match &entry.mjcf {
@@ -87,23 +102,30 @@ impl Files<'_> {
             Fail::Missing { message, advice: "run it with --live, after `featherbench oracles install`".into() }
         })?;
         let file = RobotFile::open(&folder.join(file), format, base)?;
-        let description = match format {
-            FileFormat::Urdf => read_urdf(&file)?,
-            FileFormat::Mjcf => read_mjcf(&file, self.compiler()?)?,
+        let (description, keyframes) = match format {
+            FileFormat::Urdf => (read_urdf(&file)?, Vec::new()),
+            FileFormat::Mjcf => {
+                let reading = read_mjcf(&file, self.compiler()?)?;
+                (reading.description, reading.keyframes)
+            }
         };
-        Ok((description, ModelOrigin::Robot, Some(file)))
+        Ok(Described { description, origin: ModelOrigin::Robot, file: Some(file), keyframes })
     }
 
     /// MuJoCo, started when the first MJCF file is read.
     fn compiler(&mut self) -> Result<&Oracle, Fail> {
         if self.compiler.is_none() {
             let python = oracles::python(self.root).map_or_else(|| oracles::install(self.root), Ok)?;
-            let started = oracles::start(self.root, &python, "mujoco", Limits::default());
-            let missing = |message| Fail::Missing { message, advice: "look at `featherbench oracles status`".into() };
-            self.compiler = Some(started.map_err(missing)?);
+            self.compiler = Some(compiler(self.root, &python)?);
         }
         self.compiler.as_ref().ok_or_else(|| Fail::input("MuJoCo was not started".into()))
     }
+}
+
+/// MuJoCo, whose compiler is the reference of MJCF files.
+pub fn compiler(root: &Root, python: &Path) -> Result<Oracle, Fail> {
+    let missing = |message| Fail::Missing { message, advice: "look at `featherbench oracles status`".into() };
+    oracles::start(root, python, "mujoco", Limits::default()).map_err(missing)
 }
 
 /// The reference reading of a URDF file: ours. As engines read such files by default: mimics move on their own, and a body without mass is
@@ -121,11 +143,11 @@ pub fn read_urdf(file: &RobotFile) -> Result<Description, Fail> {
 }
 
 /// The reference reading of an MJCF file: that of MuJoCo's compiler.
-pub fn read_mjcf(file: &RobotFile, compiler: &dyn Subject) -> Result<Description, Fail> {
+pub fn read_mjcf(file: &RobotFile, compiler: &dyn Subject) -> Result<Reading, Fail> {
     let refused = |refusal: Refusal| Fail::input(format!("{}: MuJoCo does not read it: {refusal}", file.path.display()));
-    let mut description = compiler.read(file).map_err(refused)?.description;
-    description.name = stem(&file.path, description.name);
-    Ok(description)
+    let mut reading = compiler.read(file).map_err(refused)?;
+    reading.description.name = stem(&file.path, reading.description.name);
+    Ok(reading)
 }
 
 fn stem(path: &Path, otherwise: String) -> String {

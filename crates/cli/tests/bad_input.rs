@@ -193,10 +193,17 @@ fn what_cannot_be_compared_gets_advice() {
     for (name, bytes, words) in cases {
         std::fs::write(sandbox.path(name), bytes).unwrap();
         sandbox.run(&["compare", name]).expect(2, &[name, words]);
+        sandbox.run(&["gen", "mjcf", "--file", name]).expect(2, &[name, words]);
     }
     sandbox.run(&["compare", "nowhere.urdf"]).expect(2, &["nowhere.urdf"]);
     sandbox.run(&["compare", "datasets"]).expect(2, &["this is a folder"]);
     let good = sandbox.write("good.urdf", &urdf(JOINT));
     sandbox.run(&["compare", good.to_str().unwrap(), "--engines", "pinochio"]).expect(2, &["'pinochio'", "pinocchio, mujoco, drake"]);
     sandbox.run(&["compare"]).expect(2, &["FILE"]);
+    sandbox.run(&["gen", "mjcf"]).expect(2, &["--file"]);
+    sandbox.run(&["gen", "mjcf", "--file", "nowhere.xml"]).expect(2, &["nowhere.xml"]);
+    sandbox.run(&["gen", "mjcf", "--file", good.to_str().unwrap()]).expect(2, &["good.urdf", "this is a URDF", "gen urdf"]);
+    sandbox.write("good.xml", "<mujoco/>");
+    sandbox.run(&["gen", "mjcf", "--file", "good.xml", "--floating"]).expect(2, &["says itself what floats"]);
+    sandbox.run(&["gen", "mjcf", "--file", "good.xml"]).expect(3, &["good.xml", "MuJoCo", "not installed", "oracles install"]);
 }

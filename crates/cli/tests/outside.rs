@@ -4,6 +4,8 @@
 //! with `FEATHERBENCH_NIGHTLY` set.
 //! Not libtest: its captured output would hide the skips.
 
+#[path = "outside/compiled.rs"]
+mod compiled;
 #[path = "outside/native.rs"]
 mod native;
 mod support;
@@ -38,6 +40,8 @@ fn main() -> ExitCode {
         ("a small oracle runs beside the recorded engines", small_oracle),
         ("a live run agrees with the recorded answers", live_run),
         ("MuJoCo reads the MJCF that we write", || with_engines(written::mjcf_round_trip)),
+        ("MuJoCo's compiler writes a description", || with_engines(compiled::gen_mjcf)),
+        ("a file's keyframes are states", || with_engines(compiled::keyframes)),
         ("engines read alike the URDF that we write", || with_engines(written::urdf_read_alike)),
         ("a browser clicks through the report", browser),
         ("a pendulum in C agrees with our kernels", native::pendulum_answers),

@@ -209,8 +209,9 @@ impl Session {
                 return Err(bad(format!("{key} is {found:?}, the model has {expected}")));
             }
         }
+        let keyframes = keyframes(&answer, canonical.nq()).map_err(bad)?;
         let notes = answer.header.get("notes").and_then(Value::as_array).map_or(&[][..], Vec::as_slice);
-        let reading = Reading { description: canonical, notes: notes.iter().map(note).collect() };
+        let reading = Reading { description: canonical, notes: notes.iter().map(note).collect(), keyframes };
         self.reading = Some((file.clone(), reading.clone()));
         Ok(reading)
     }
@@ -299,6 +300,18 @@ impl Drop for Asked<'_> {
 }
 
 /// A parser's note; what is no text in it is left empty.
+/// The configurations that the file names, if any.
+fn keyframes(answer: &Frame, nq: usize) -> Result<Vec<Vec<f64>>, String> {
+    let Some(block) = answer.block("keyframes") else { return Ok(Vec::new()) };
+    if nq == 0 || block.shape.get(1..) != Some(&[nq]) {
+        return Err(format!("block 'keyframes' has the shape {:?}, rows of {nq} numbers are due", block.shape));
+    }
+    if let Some(at) = block.data.iter().position(|x| !x.is_finite()) {
+        return Err(format!("keyframe {} is not finite", at / nq));
+    }
+    Ok(block.data.chunks_exact(nq).map(<[f64]>::to_vec).collect())
+}
+
 fn note(note: &Value) -> ReadingNote {
     let text = |key: &str| note.get(key).and_then(Value::as_str).map(str::to_owned);
     ReadingNote { cause: text("cause").unwrap_or_default(), subject: text("subject"), text: text("text").unwrap_or_default() }

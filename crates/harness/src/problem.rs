@@ -2,8 +2,11 @@
 
 use crate::measure::Magnitudes;
 use crate::{Reading, RobotFile};
-use model::{Description, Malformed, Model, StateBatch};
+use model::{BadState, Description, Malformed, Model, StateBatch};
 use record::ModelOrigin;
+
+/// The most configurations of a file that become states: a recorded motion has thousands.
+const KEYFRAMES: usize = 16;
 
 /// How the robot of a problem gets into an engine.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
@@ -95,6 +98,19 @@ impl Problem {
         self.hash = crate::hash::of_parts(&[self.hash.as_bytes(), &bytes]);
         self.states = states;
         self
+    }
+
+    /// The same robot, at the configurations of its file as well; of very many the first 16.
+    ///
+    /// # Errors
+    /// [`BadState`] of a configuration that is not this robot's.
+    pub fn with_keyframes(self, keyframes: &[Vec<f64>], seed: u64) -> Result<Self, BadState> {
+        if keyframes.is_empty() {
+            return Ok(self);
+        }
+        let some = &keyframes[..keyframes.len().min(KEYFRAMES)];
+        let states = self.states.clone().with_keyframes(&self.model, some, seed)?;
+        Ok(self.at(states))
     }
 
     /// The body whose Jacobian is asked for: the first of the deepest ones.

@@ -42,6 +42,8 @@ pub struct Reading {
     pub description: Description,
     /// What the parser is known to have done on the way.
     pub notes: Vec<ReadingNote>,
+    /// Configurations in which the file has the robot stand, in the description's coordinates; quaternions as the engine holds them.
+    pub keyframes: Vec<Vec<f64>>,
 }
 
 /// Something that a parser did beyond reading, or left unread.

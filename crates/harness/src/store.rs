@@ -90,7 +90,10 @@ impl OutcomeStore {
 fn to_frame(id: &str, cell: &Cell, outcome: &Outcome) -> Frame {
     let (status, reason, blocks) = match outcome {
         Outcome::Values(values) => ("ok", "", vec![Block::new("value", &[values.len()], values)]),
-        Outcome::Reading(_) => ("read", "", Vec::new()),
+        Outcome::Reading(reading) => {
+            let shape = [reading.keyframes.len(), reading.description.nq()];
+            ("read", "", vec![Block::new("keyframes", &shape, &reading.keyframes.concat())])
+        }
         Outcome::Refused(Refusal::Unsupported(reason)) => ("unsupported", reason.as_str(), Vec::new()),
         Outcome::Refused(Refusal::Failed(reason)) => ("error", reason.as_str(), Vec::new()),
     };
@@ -109,12 +112,13 @@ fn written(reading: &Reading) -> Value {
     json!({"model": model, "notes": reading.notes.iter().map(note).collect::<Vec<_>>()})
 }
 
-fn reading(value: &Value) -> Option<Reading> {
+fn reading(value: &Value, keyframes: &Block) -> Option<Reading> {
     let text = |value: &Value| value.as_str().map(str::to_owned);
     let note =
         |note: &Value| Some(ReadingNote { cause: text(&note["cause"])?, subject: text(&note["subject"]), text: text(&note["text"])? });
     let description = neutral::parse(value["model"].as_str()?, OUTCOMES_NAME).ok()?;
-    Some(Reading { description, notes: value["notes"].as_array()?.iter().map(note).collect::<Option<_>>()? })
+    let keyframes = keyframes.data.chunks_exact(description.nq().max(1)).map(<[f64]>::to_vec).collect();
+    Some(Reading { description, notes: value["notes"].as_array()?.iter().map(note).collect::<Option<_>>()?, keyframes })
 }
 
 fn from_frame(mut frame: Frame) -> Option<(String, Outcome)> {
@@ -122,7 +126,7 @@ fn from_frame(mut frame: Frame) -> Option<(String, Outcome)> {
     let reason = frame.text("reason").to_owned();
     let outcome = match frame.text("status") {
         "ok" => Outcome::Values(frame.blocks.pop()?.data),
-        "read" => Outcome::Reading(Box::new(reading(frame.header.get("reading")?)?)),
+        "read" => Outcome::Reading(Box::new(reading(frame.header.get("reading")?, frame.block("keyframes")?)?)),
         "unsupported" => Outcome::Refused(Refusal::Unsupported(reason)),
         "error" => Outcome::Refused(Refusal::Failed(reason)),
         _ => return None,

@@ -78,7 +78,7 @@ impl Study for Counting {
             3 => {
                 let description = Family::parse("chain:n=2").unwrap().generate().unwrap();
                 let note = ReadingNote { cause: "warning".into(), subject: None, text: "not \"this\"".into() };
-                Outcome::Reading(Box::new(Reading { description, notes: vec![note] }))
+                Outcome::Reading(Box::new(Reading { description, notes: vec![note], keyframes: vec![vec![0.1, -0.2]] }))
             }
             _ => {
                 let mut random = Random::named(context.seed, &cell.id());

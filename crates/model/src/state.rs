@@ -1,6 +1,6 @@
 //! States: configurations, velocities, accelerations, forces and wrenches, many at a time.
 
-use crate::{JointKind, Model, Random};
+use crate::{Joint, JointKind, Model, Random};
 use thiserror::Error;
 
 /// What is special about a state.
@@ -16,6 +16,8 @@ pub enum Case {
     Fast,
     /// Random, with each limited joint at its lower or upper limit.
     Limit,
+    /// q where the robot's file has it stand; v, a, τ and wrenches random.
+    Keyframe,
 }
 
 impl Case {
@@ -27,12 +29,13 @@ impl Case {
             Self::Straight => "straight",
             Self::Fast => "fast",
             Self::Limit => "limit",
+            Self::Keyframe => "keyframe",
         }
     }
 
     /// The case named by a word.
     pub fn parse(word: &str) -> Option<Self> {
-        [Self::Random, Self::Zero, Self::Straight, Self::Fast, Self::Limit].into_iter().find(|case| case.name() == word)
+        [Self::Random, Self::Zero, Self::Straight, Self::Fast, Self::Limit, Self::Keyframe].into_iter().find(|case| case.name() == word)
     }
 }
 
@@ -125,11 +128,7 @@ impl StateBatch {
         }
         for state in 0..count {
             for joint in model.topology.joints() {
-                let index = match joint.kind {
-                    JointKind::Spherical => joint.q,
-                    JointKind::Free => joint.q + 3,
-                    JointKind::Revolute | JointKind::Prismatic | JointKind::Helical => continue,
-                };
+                let Some(index) = quaternion_of(joint) else { continue };
                 let quaternion = &self.q[state * nq + index..state * nq + index + 4];
                 let length = quaternion.iter().map(|x| x * x).sum::<f64>().sqrt();
                 if (length - 1.0).abs() > QUATERNION_TOLERANCE {
@@ -213,6 +212,42 @@ impl StateBatch {
         batch
     }
 
+    /// The batch with one state more for each of these configurations, at velocities, accelerations, forces and wrenches in (−1, 1).
+    ///
+    /// Quaternions are normalised; one of length zero, which no rotation has, becomes the identity, as MuJoCo has it.
+    ///
+    /// # Errors
+    /// [`BadState`] of a configuration that is not this model's.
+    pub fn with_keyframes(mut self, model: &Model<f64>, configurations: &[Vec<f64>], seed: u64) -> Result<Self, BadState> {
+        for configuration in configurations {
+            let mut q = configuration.clone();
+            let quaternions = model.topology.joints().iter().filter_map(quaternion_of);
+            for index in quaternions {
+                let Some(quaternion) = q.get_mut(index..index + 4) else { break };
+                let length = quaternion.iter().map(|x| x * x).sum::<f64>().sqrt();
+                if length > 0.0 {
+                    quaternion.iter_mut().for_each(|x| *x /= length);
+                } else if length == 0.0 {
+                    quaternion.copy_from_slice(&[0.0, 0.0, 0.0, 1.0]);
+                }
+            }
+            let mut random = Random::new(seed, self.count() as u64);
+            self.q.extend(q);
+            self.draw_motion(&mut random, 1.0, 1.0);
+            self.cases.push(Case::Keyframe);
+        }
+        self.check(model)?;
+        Ok(self)
+    }
+
+    /// Draws v, a, τ and wrenches of one state.
+    fn draw_motion(&mut self, random: &mut Random, speed: f64, effort: f64) {
+        self.v.extend((0..self.nv).map(|_| random.uniform(-1.0, 1.0) * speed * effort));
+        self.a.extend((0..self.nv).map(|_| random.uniform(-1.0, 1.0) * effort));
+        self.tau.extend((0..self.nv).map(|_| random.uniform(-1.0, 1.0) * effort));
+        self.wrench.extend((0..6 * self.bodies).map(|_| random.uniform(-1.0, 1.0) * effort));
+    }
+
     fn draw(model: &Model<f64>, cases: Vec<Case>, seed: u64) -> Self {
         let (nq, nv, bodies) = (model.topology.nq(), model.topology.nv(), model.described.len());
         let mut batch = Self { nq, nv, bodies, ..Self::default() };
@@ -221,13 +256,19 @@ impl StateBatch {
             let speed = if case == Case::Fast { 1e3 } else { 1.0 };
             let effort = if case == Case::Zero { 0.0 } else { 1.0 };
             draw_configuration(model, case, &mut random, &mut batch.q);
-            batch.v.extend((0..nv).map(|_| random.uniform(-1.0, 1.0) * speed * effort));
-            batch.a.extend((0..nv).map(|_| random.uniform(-1.0, 1.0) * effort));
-            batch.tau.extend((0..nv).map(|_| random.uniform(-1.0, 1.0) * effort));
-            batch.wrench.extend((0..6 * bodies).map(|_| random.uniform(-1.0, 1.0) * effort));
+            batch.draw_motion(&mut random, speed, effort);
         }
         batch.cases = cases;
         batch
+    }
+}
+
+/// Where a joint's quaternion begins in q, if it has one.
+fn quaternion_of(joint: &Joint) -> Option<usize> {
+    match joint.kind {
+        JointKind::Spherical => Some(joint.q),
+        JointKind::Free => Some(joint.q + 3),
+        JointKind::Revolute | JointKind::Prismatic | JointKind::Helical => None,
     }
 }
 

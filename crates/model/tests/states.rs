@@ -65,9 +65,27 @@ fn a_state_depends_on_the_seed_and_its_number_only() {
     assert_ne!(long.q(0), long.q(1));
 }
 
+/// Keyframes come behind the drawn states, which they leave as they are, with quaternions of length one.
+#[test]
+fn keyframes_are_states_of_their_own() {
+    let model = Model::build(&Family::parse("joints:kind=spherical,base=free").unwrap().generate().unwrap()).unwrap();
+    let drawn = StateBatch::agreement(&model, 6, 5);
+    let (nq, count) = (drawn.nq, drawn.count());
+    let stretched: Vec<f64> = drawn.q(0).iter().map(|x| 3.0 * x).collect();
+    let keyed = drawn.clone().with_keyframes(&model, &[stretched.clone(), vec![0.0; nq]], 5).unwrap();
+    assert_eq!((&keyed.cases[..count], &keyed.cases[count..]), (&drawn.cases[..], &[Case::Keyframe; 2][..]));
+    assert_eq!((&keyed.q[..count * nq], &keyed.v[..count * drawn.nv]), (&drawn.q[..], &drawn.v[..]));
+    assert_eq!(keyed.q(count)[..3], stretched[..3], "a position is as the file has it");
+    assert!(keyed.q(count)[3..7].iter().zip(&drawn.q(0)[3..7]).all(|(found, unit)| (found - unit).abs() < 1e-15), "two roundings of 1");
+    assert_eq!(keyed.q(count + 1)[..7], [0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0]);
+    assert!(keyed.v(count) != keyed.v(count + 1) && keyed.tau(count).iter().all(|x| x.abs() < 1.0));
+    assert!(drawn.clone().with_keyframes(&model, &[vec![0.0; nq - 1]], 5).is_err());
+    assert!(drawn.with_keyframes(&model, &[vec![f64::NAN; nq]], 5).is_err());
+}
+
 #[test]
 fn case_names_read_back() {
-    for case in [Case::Random, Case::Zero, Case::Straight, Case::Fast, Case::Limit] {
+    for case in [Case::Random, Case::Zero, Case::Straight, Case::Fast, Case::Limit, Case::Keyframe] {
         assert_eq!(Case::parse(case.name()), Some(case));
     }
     assert_eq!(Case::parse("typical"), None);
