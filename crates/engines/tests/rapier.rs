@@ -25,7 +25,7 @@ const TOLERANCE: f64 = 1e-14;
 fn it_agrees_on_every_joint_that_it_has() {
     let (native, rapier) = (Native::new(), Rapier::new());
     let mut compared = 0;
-    for kind in ["revolute", "prismatic", "spherical", "planar"] {
+    for kind in ["revolute", "prismatic", "spherical", "planar", "translation", "cylindrical"] {
         for base in ["fixed", "free"] {
             let problem = problem(&format!("joints:kind={kind},base={base}"));
             let at = problem.magnitudes();
@@ -47,18 +47,21 @@ fn it_agrees_on_every_joint_that_it_has() {
             }
         }
     }
-    assert_eq!(compared, 8 * 8);
+    assert_eq!(compared, 12 * 8);
 }
 
 #[test]
 fn it_has_armature() {
-    let problem = problem("quadruped");
-    assert!(problem.description.bodies.iter().any(|body| body.joint.armature.iter().any(|&armature| armature > 0.0)));
-    let [ours, theirs] =
-        [&Native::new() as &dyn Subject, &Rapier::new()].map(|subject| values(subject, &problem, Quantity::MassMatrix).unwrap());
-    let (at, size) = (problem.magnitudes(), Quantity::MassMatrix.size(&problem));
-    assert!(scaled_error(&problem, Quantity::MassMatrix, &at[0], &ours[..size], &theirs[..size]) <= TOLERANCE);
-    assert!(matches!(values(&Rapier::new(), &problem, Quantity::KineticEnergy), Err(Refusal::Unsupported(_))), "its energy has none");
+    for words in ["quadruped", "joints:kind=cylindrical,base=free,armature=true"] {
+        let problem = problem(words);
+        assert!(problem.description.bodies.iter().any(|body| body.joint.armature.iter().any(|&armature| armature > 0.0)), "{words}");
+        let [ours, theirs] =
+            [&Native::new() as &dyn Subject, &Rapier::new()].map(|subject| values(subject, &problem, Quantity::MassMatrix).unwrap());
+        let (at, size) = (problem.magnitudes(), Quantity::MassMatrix.size(&problem));
+        let error = scaled_error(&problem, Quantity::MassMatrix, &at[0], &ours[..size], &theirs[..size]);
+        assert!(error <= TOLERANCE, "{words}: {error:e}");
+        assert!(matches!(values(&Rapier::new(), &problem, Quantity::KineticEnergy), Err(Refusal::Unsupported(_))), "its energy has none");
+    }
 }
 
 #[test]
@@ -70,6 +73,7 @@ fn it_refuses_what_would_panic() {
     };
     refused(&problem("joints:kind=universal,base=fixed"), "universal");
     refused(&problem("joints:kind=helical,base=fixed"), "helical");
+    refused(&problem("joints:kind=euler_zyx,base=fixed"), "euler_zyx");
     let mut description = Family::parse("chain:n=3").unwrap().generate().unwrap();
     (description.bodies[2].mass, description.bodies[2].inertia) = (0.0, [0.0; 6]);
     // With armature, so that M is regular and only rapier's inverse of the mass is not.

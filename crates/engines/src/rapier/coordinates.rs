@@ -4,12 +4,15 @@
 //! |---|---|---|---|---|
 //! | revolute | angular x; both frames turned so that x is the axis | angle | identity | 0 |
 //! | prismatic | linear x; both frames turned | distance | identity | 0 |
+//! | cylindrical | linear and angular x; both frames turned | distance, angle | a swap: the angle comes first in ours | 0 |
 //! | planar | linear x and y, angular z | x, y, θ | identity | 0 |
+//! | translation | linear x, y, z | x, y, z | identity | 0 |
 //! | spherical | angular x, y, z | log R | R: angular velocity in joint-frame axes | 0 |
 //! | free | all six | p, log R | diag(R, R): [linear; angular] in joint-frame axes | [R (ω × v); 0] |
 //!
 //! R turns body axes to joint-frame axes. Two free angular axes are not implemented in rapier (it panics), hence no universal joint; a helical
-//! one would be a constraint between two joints.
+//! one would be a constraint between two joints; with three free angular axes the velocity is the angular one, whose change to the rates of
+//! Euler angles is not orthogonal, and singular at a pitch of ±90°.
 
 use harness::{Problem, Refusal};
 use model::{BodyDescription, JointType};
@@ -22,7 +25,9 @@ pub fn joint(body: &BodyDescription) -> Result<GenericJoint, Refusal> {
     let free = match kind {
         JointType::Revolute { .. } => JointAxesMask::ANG_X,
         JointType::Prismatic { .. } => JointAxesMask::LIN_X,
+        JointType::Cylindrical { .. } => JointAxesMask::LIN_X | JointAxesMask::ANG_X,
         JointType::Planar => JointAxesMask::LIN_X | JointAxesMask::LIN_Y | JointAxesMask::ANG_Z,
+        JointType::Translation => JointAxesMask::LIN_AXES,
         JointType::Spherical => JointAxesMask::ANG_AXES,
         JointType::Free => JointAxesMask::all(),
         _ => return Err(Refusal::Unsupported(format!("rapier's multibodies have no {} joint ({})", kind.name(), body.joint.name))),
@@ -56,6 +61,7 @@ pub fn displacement(problem: &Problem, q: &[f64]) -> Vec<f64> {
         let q = &q[at..at + body.joint.kind.nq()];
         at += q.len();
         match body.joint.kind {
+            JointType::Cylindrical { .. } => all.extend([q[1], q[0]]),
             JointType::Spherical => all.extend(logarithm(q)),
             JointType::Free => {
                 all.extend(&q[..3]);
@@ -78,10 +84,18 @@ fn logarithm(q: &[f64]) -> [f64; 3] {
 
 /// T and b at one state.
 pub struct Change {
-    /// The blocks of T that are not identity: where they stand, and the rotation.
-    blocks: Vec<(usize, Matrix)>,
+    /// The blocks of T that are not identity, and where they stand.
+    blocks: Vec<(usize, Block)>,
     /// b = (dT/dt) v.
     bias: Vec<f64>,
+}
+
+/// A block of T.
+enum Block {
+    /// A rotation of three numbers.
+    Turn(Matrix),
+    /// Two numbers in the other order.
+    Swap,
 }
 
 impl Change {
@@ -92,11 +106,14 @@ impl Change {
         for body in &problem.description.bodies {
             let kind = body.joint.kind;
             let end = at_q + kind.nq();
+            if matches!(kind, JointType::Cylindrical { .. }) {
+                blocks.push((at_v, Block::Swap));
+            }
             if matches!(kind, JointType::Spherical | JointType::Free) {
                 let r = Matrix::from_quat(Rotation::from_slice(&q[end - 4..end]).normalize());
-                blocks.push((at_v, r));
+                blocks.push((at_v, Block::Turn(r)));
                 if kind == JointType::Free {
-                    blocks.push((at_v + 3, r));
+                    blocks.push((at_v + 3, Block::Turn(r)));
                     let (linear, angular) = (Vector::from_slice(&v[at_v..]), Vector::from_slice(&v[at_v + 3..]));
                     bias[at_v..at_v + 3].copy_from_slice(&(r * angular.cross(linear)).to_array());
                 }
@@ -109,17 +126,16 @@ impl Change {
     /// T x: velocities, and forces, which T being orthogonal go the same way.
     pub fn forth(&self, x: &[f64]) -> Vec<f64> {
         let mut y = x.to_vec();
-        for &(at, r) in &self.blocks {
-            y[at..at + 3].copy_from_slice(&(r * Vector::from_slice(&x[at..])).to_array());
+        for (at, block) in &self.blocks {
+            block.apply(&mut y[*at..], |r, y| r * y);
         }
         y
     }
 
     /// Tᵀ x, in place: a force, or a row of a Jacobian.
     pub fn back(&self, x: &mut [f64]) {
-        for &(at, r) in &self.blocks {
-            let turned = r.transpose() * Vector::from_slice(&x[at..]);
-            x[at..at + 3].copy_from_slice(&turned.to_array());
+        for (at, block) in &self.blocks {
+            block.apply(&mut x[*at..], |r, x| r.transpose() * x);
         }
     }
 
@@ -129,5 +145,18 @@ impl Change {
             *a -= b;
         }
         self.back(a);
+    }
+}
+
+impl Block {
+    /// Changes the first numbers of `x`, in place; a swap is its own transpose.
+    fn apply(&self, x: &mut [f64], turn: impl Fn(&Matrix, Vector) -> Vector) {
+        match self {
+            Self::Turn(r) => {
+                let turned = turn(r, Vector::from_slice(x));
+                x[..3].copy_from_slice(&turned.to_array());
+            }
+            Self::Swap => x.swap(0, 1),
+        }
     }
 }

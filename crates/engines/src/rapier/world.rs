@@ -48,6 +48,8 @@ impl<'a> World<'a> {
         let mut made = Self { problem, world, bodies, joint, change: Change::new(problem, q, v) };
         let velocity = made.change.forth(v);
         let armature: Vec<f64> = description.bodies.iter().flat_map(|body| per_dof(&body.joint.armature, body.joint.kind.nv())).collect();
+        // A diagonal follows swaps as a vector does; where T turns, `check` has refused armature.
+        let armature = made.change.forth(&armature);
         let (multibody, bodies) = made.split()?;
         multibody.forward_kinematics(bodies, true);
         multibody.armature_mut().copy_from_slice(&armature);
@@ -144,6 +146,8 @@ impl<'a> World<'a> {
             let axes = above * coordinates::placement(body).rotation;
             let (force, torque) = match (kind, kind.axis()) {
                 (JointType::Prismatic { .. }, Some(axis)) => (tau[0] * Vector::from(axis), Vector::ZERO),
+                (JointType::Cylindrical { .. }, Some(axis)) => (tau[0] * Vector::from(axis), tau[1] * Vector::from(axis)),
+                (JointType::Translation, _) => (Vector::from_slice(tau), Vector::ZERO),
                 (JointType::Planar, _) => (Vector::new(tau[0], tau[1], 0.0), Vector::new(0.0, 0.0, tau[2])),
                 (JointType::Free, _) => (Vector::from_slice(tau), Vector::from_slice(&tau[3..])),
                 (_, Some(axis)) => (Vector::ZERO, tau[0] * Vector::from(axis)),
