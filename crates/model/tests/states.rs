@@ -47,6 +47,7 @@ fn cases_are_what_they_say() {
                     .fold((0, 0), |sum, x| (sum.0 + x.0, sum.1 + x.1));
                 assert!(lower > 0 && upper > 0, "both ends occur");
             }
+            Case::Keyframe => panic!("state {k}: a keyframe without a file"),
             Case::Random => assert!(
                 largest(q) < std::f64::consts::PI && (0.5..1.0).contains(&largest(v)) && largest(tau) > 0.5 && largest(wrench) > 0.5
             ),
