@@ -210,12 +210,11 @@ fn sentence(overview: &Overview, matrix: &JointMatrix, engine: usize) -> Markup 
         };
         largest.into_iter().map(words).collect::<Vec<_>>()
     };
-    let answered: BTreeSet<usize> = cells.iter().filter(|cell| cell.state != State::Unsupported).map(|cell| cell.at[0]).collect();
-    let mut lacking = rows_where(&|cell| !answered.contains(&cell.at[0]));
+    let mut lacking = rows_where(&|cell| cell.state == State::Unsupported);
     // Without the joint there is no armature on it either.
     let types = lacking.clone();
     lacking.retain(|row| row.strip_suffix(WITH_ARMATURE).is_none_or(|kind| !types.iter().any(|other| other == kind)));
-    let mut partly = rows_where(&|cell| !cell.lacking.is_empty());
+    let mut partly = rows_where(&|cell| cell.state != State::Unsupported && !cell.lacking.is_empty());
     partly.retain(|row| !lacking.contains(row));
 
     let agreeing = cells.iter().filter(|cell| cell.state == State::Agrees);
