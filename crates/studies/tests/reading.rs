@@ -26,7 +26,11 @@ impl Parser {
         held.description = holds.canonical().unwrap();
         held.model = Model::build(&held.description).unwrap();
         let note = ReadingNote { cause: "warning".into(), subject: None, text: "something".into() };
-        Self { says: Ok(Read { description: says.canonical().unwrap(), notes: vec![note] }), holds: Some(held), ..Self::refusing("") }
+        Self {
+            says: Ok(Read { description: says.canonical().unwrap(), notes: vec![note], keyframes: Vec::new() }),
+            holds: Some(held),
+            ..Self::refusing("")
+        }
     }
 
     fn refusing(reason: &str) -> Self {
