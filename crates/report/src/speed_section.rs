@@ -68,9 +68,12 @@ fn missing(run: &RunInfo) -> Markup {
 }
 
 fn summary(overview: &Overview, speed: &Speed) -> Markup {
+    let lines = speed.summaries();
     html! {
         h3 { "Over the robots" }
-        div.scroll {
+        @if lines.is_empty() {
+            p.empty #speed-all-void { "Every ratio is void (the reasons stand below): there is no mean. The suite timing has the rounds that this takes." }
+        } @else { div.scroll {
             table.compact.sortable #speed-summary {
                 thead {
                     tr {
@@ -79,7 +82,7 @@ fn summary(overview: &Overview, speed: &Speed) -> Markup {
                     }
                 }
                 tbody {
-                    @for line in speed.summaries() {
+                    @for line in &lines {
                         tr {
                             th scope="row" { (labels::quantity(line.of.quantity)) }
                             td { (line.of.case) }
@@ -95,7 +98,7 @@ fn summary(overview: &Overview, speed: &Speed) -> Markup {
                     }
                 }
             }
-        }
+        } }
     }
 }
 
