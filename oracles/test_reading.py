@@ -17,7 +17,7 @@ import numpy as np
 
 from protocol import Array, Description, Header
 from reading import turned
-from test_oracles import ENGINES, HERE, Oracle, check, expect, random_states, ratio, summary
+from trials import ENGINES, HERE, Oracle, check, expect, random_states, ratio, summary
 
 REPLAY = 1e-13  # unit-free; these robots are shallow, and M's terms are of the size of its diagonal
 DIGITS = 1e-15  # what reading a decimal, and one rotation by it, may lose

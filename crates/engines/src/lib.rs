@@ -15,6 +15,7 @@ mod process;
 mod rapier;
 mod recorded;
 mod reproducer;
+mod request;
 
 pub use native::{Native, timed};
 pub use oracle::{Limits, Oracle};

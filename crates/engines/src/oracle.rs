@@ -2,6 +2,7 @@
 
 pub use crate::process::Limits;
 use crate::process::Process;
+use crate::request;
 use harness::frame::{Block, Frame};
 use harness::{Identity, Prepared, Problem, Quantity, Reading, ReadingNote, Refusal, RobotFile, Route, Subject};
 use model::StateBatch;
@@ -157,8 +158,7 @@ impl Session {
         self.model.clear();
         self.states = None;
         self.reading = None;
-        let line = formats::neutral::to_line(&problem.description).map_err(|error| Refusal::Failed(error.to_string()))?;
-        let description: Value = serde_json::from_str(&line).map_err(|error| Refusal::Failed(error.to_string()))?;
+        let description = request::description(problem).map_err(Refusal::Failed)?;
         let answer = self.ask(json!({"op": "prepare", "model": description}), Vec::new())?;
         let topology = &problem.model.topology;
         for (key, expected) in [("nq", problem.description.nq()), ("nv", topology.nv())] {
@@ -223,16 +223,8 @@ impl Session {
         if self.states.as_ref() == Some(&key) {
             return Ok(());
         }
-        let (count, nv) = (states.count(), states.nv);
-        let blocks = vec![
-            Block::new("q", &[count, states.nq], &states.q),
-            Block::new("v", &[count, nv], &states.v),
-            Block::new("a", &[count, nv], &states.a),
-            Block::new("tau", &[count, nv], &states.tau),
-            Block::new("wrench", &[count, states.bodies, 6], &states.wrench),
-            Block::new("probe", &[4, nv], &problem.probe()),
-        ];
-        self.ask(json!({"op": "states", "count": count}), blocks)?;
+        let (header, blocks) = request::states(problem, states);
+        self.ask(header, blocks)?;
         self.states = Some(key);
         Ok(())
     }

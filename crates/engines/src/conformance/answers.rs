@@ -2,9 +2,10 @@
 
 use super::manners::Methods;
 use super::mistakes::{MISTAKES, Mistake};
-use super::talk::{Talk, states};
+use super::talk::Talk;
 use super::values::{Scene, same_bits};
 use super::{Standing, robots};
+use crate::request::states;
 use harness::{Problem, Quantity};
 use serde_json::{Value, json};
 use std::collections::BTreeMap;

@@ -1,8 +1,9 @@
 //! The conversation itself: hello, what has no answer, and the end.
 
-use super::talk::{Talk, description, states};
+use super::talk::Talk;
 use super::values::{Scene, same_bits};
 use super::{Standing, robots};
+use crate::request::{description, states};
 use harness::Quantity;
 use harness::frame::{Block, Frame};
 use serde_json::{Value, json};

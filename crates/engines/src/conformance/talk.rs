@@ -2,9 +2,9 @@
 
 use super::{Conformance, Finding, Standing};
 use crate::process::Process;
+use crate::request;
 use harness::Problem;
 use harness::frame::{Block, Frame};
-use model::StateBatch;
 use serde_json::{Value, json};
 
 /// A line to an oracle: a process, or whatever a test puts in its place.
@@ -97,7 +97,7 @@ impl<'a> Talk<'a> {
 
     /// Has the oracle build a robot.
     pub(super) fn prepare(&mut self, problem: &Problem) -> Result<Frame, String> {
-        self.ask(json!({"op": "prepare", "model": description(problem)?}), Vec::new())
+        self.ask(json!({"op": "prepare", "model": request::description(problem)?}), Vec::new())
     }
 
     /// Ends the oracle's input.
@@ -107,26 +107,6 @@ impl<'a> Talk<'a> {
             None => (self.start)()?.close(),
         }
     }
-}
-
-/// The description of a robot as it is sent.
-pub(super) fn description(problem: &Problem) -> Result<Value, String> {
-    let line = formats::neutral::to_line(&problem.description).map_err(|error| error.to_string())?;
-    serde_json::from_str(&line).map_err(|error| error.to_string())
-}
-
-/// The header and blocks of the request `states`.
-pub(super) fn states(problem: &Problem, states: &StateBatch) -> (Value, Vec<Block>) {
-    let (count, nv) = (states.count(), states.nv);
-    let blocks = vec![
-        Block::new("q", &[count, states.nq], &states.q),
-        Block::new("v", &[count, nv], &states.v),
-        Block::new("a", &[count, nv], &states.a),
-        Block::new("tau", &[count, nv], &states.tau),
-        Block::new("wrench", &[count, states.bodies, 6], &states.wrench),
-        Block::new("probe", &[4, nv], &problem.probe()),
-    ];
-    (json!({"op": "states", "count": count}), blocks)
 }
 
 /// What to do about a broken line.

@@ -1,0 +1,29 @@
+//! Requests of the oracle protocol that more than one place sends.
+
+use harness::Problem;
+use harness::frame::Block;
+use model::StateBatch;
+use serde_json::{Value, json};
+
+/// The description of a robot as it is sent.
+///
+/// # Errors
+/// A sentence, when the description is no robot.
+pub(crate) fn description(problem: &Problem) -> Result<Value, String> {
+    let line = formats::neutral::to_line(&problem.description).map_err(|error| error.to_string())?;
+    serde_json::from_str(&line).map_err(|error| error.to_string())
+}
+
+/// The header and blocks of the request `states`.
+pub(crate) fn states(problem: &Problem, states: &StateBatch) -> (Value, Vec<Block>) {
+    let (count, nv) = (states.count(), states.nv);
+    let blocks = vec![
+        Block::new("q", &[count, states.nq], &states.q),
+        Block::new("v", &[count, nv], &states.v),
+        Block::new("a", &[count, nv], &states.a),
+        Block::new("tau", &[count, nv], &states.tau),
+        Block::new("wrench", &[count, states.bodies, 6], &states.wrench),
+        Block::new("probe", &[4, nv], &problem.probe()),
+    ];
+    (json!({"op": "states", "count": count}), blocks)
+}
