@@ -35,7 +35,7 @@ def compiler():
 def build():
     """Builds the program that runs the kernels, and returns its path."""
     import os
-    environment = {**os.environ, "RUSTFLAGS": "-C target-cpu=x86-64-v3", "CARGO_TARGET_DIR": str(TARGET)}
+    environment = {**os.environ, "RUSTFLAGS": "-C target-cpu=x86-64-v3 -C no-vectorize-slp", "CARGO_TARGET_DIR": str(TARGET)}
     subprocess.run(["cargo", "build", "--release", "--quiet", "-p", "featherbench-engines", "--example", "instructions"], check=True, cwd=ROOT, env=environment)
     return TARGET / "release/examples/instructions"
 

@@ -55,6 +55,11 @@ impl<T: Real> Jacobian<T> {
         }
         Ok(&self.columns)
     }
+
+    /// The columns of the last run; zero before the first.
+    pub fn columns(&self) -> &[Motion<T>] {
+        &self.columns
+    }
 }
 
 /// The Jacobian of a compiled body without a workspace of one's own; it allocates.

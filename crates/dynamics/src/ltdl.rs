@@ -4,11 +4,27 @@
 //! triangular and D diagonal; they overwrite M. With d_k the depth of dof k: D1 = Σ (d_k − 1) divisions and D2 = Σ d_k (d_k − 1) / 2
 //! multiply-subtracts to factor, 2·D1 multiply-subtracts and n divisions to solve. Shapes: M is `nv`×`nv`, x and b have `nv` numbers.
 //! Units: those of M and b. Cost: O(Σ d_k²) and O(Σ d_k). A call does not allocate.
+//!
+//! Consecutive dofs, each the parent of the next, share the ancestors of the first: they go in *blocks*, so that what they do to an ancestor's
+//! row is done in one pass over it, in the book's order.
 
 use crate::error::{Pivot, expect};
+use crate::tree_sparse::BLOCK;
 use crate::{DimensionError, Error, NotPositiveDefinite, TreeSparse};
 use model::Topology;
 use spatial::Real;
+
+/// Calls a method that works on a block of this size; [`BLOCK`] is the largest.
+macro_rules! by_block {
+    ($size:expr, $self:ident.$method:ident($($argument:expr),+)) => {
+        match $size {
+            1 => $self.$method::<1>($($argument),+),
+            2 => $self.$method::<2>($($argument),+),
+            3 => $self.$method::<3>($($argument),+),
+            _ => $self.$method::<BLOCK>($($argument),+),
+        }
+    };
+}
 
 /// The factors of a tree-sparse matrix. All zero, and of no use, before the first factorization.
 #[derive(Clone, Debug)]
@@ -58,30 +74,24 @@ impl<T: Real> Ltdl<T> {
     pub fn solve(&self, x: &mut [T]) -> Result<(), DimensionError> {
         let n = self.matrix.size();
         expect("right-hand side x", n, x.len())?;
-        let values = self.matrix.values();
 
-        // Lᵀ y = b:  x_j −= L_kj x_k, from the leaves
-        for k in (0..n).rev() {
-            let x_k = -x[k];
-            for (dofs, entries) in self.matrix.ancestors(k) {
-                for (x_j, l) in x[dofs].iter_mut().zip(&values[entries]) {
-                    *x_j = l.mul_add(x_k, *x_j);
-                }
-            }
+        // Lᵀ y = b, from the leaves
+        let mut end = n;
+        while end > 0 {
+            let size = self.matrix.block_before(end);
+            end -= size;
+            by_block!(size, self.subtract_from_ancestors(end, x));
         }
         // D z = y
         for (x, d) in x.iter_mut().zip(self.matrix.diagonal()) {
             *x = *x / d;
         }
-        // L x = z:  x_k −= L_kj x_j, from the root
-        for k in 0..n {
-            let mut x_k = x[k];
-            for (dofs, entries) in self.matrix.ancestors(k) {
-                for (x_j, l) in x[dofs].iter().zip(&values[entries]) {
-                    x_k = (-*l).mul_add(*x_j, x_k);
-                }
-            }
-            x[k] = x_k;
+        // L x = z, from the root
+        let mut first = 0;
+        while first < n {
+            let size = self.matrix.block_from(first);
+            by_block!(size, self.subtract_ancestors(first, x));
+            first += size;
         }
         Ok(())
     }
@@ -93,26 +103,116 @@ impl<T: Real> Ltdl<T> {
     /// The factorization itself; what it leaves behind is meaningful only if the pivot is positive.
     fn eliminate(&mut self) -> Pivot {
         let mut smallest = Pivot::none();
-        for k in (0..self.matrix.size()).rev() {
-            let row = self.matrix.row(k);
-            let (rows, values) = self.matrix.parts_mut();
-            let (above, h_k) = values.split_at_mut(row.start);
-            let last = row.len() - 1;
-            let d = h_k[last];
-            smallest.note(k, d.min_lane());
-
-            // L_ki = H_ki / D_k,  H_i· −= L_ki H_k·  for every strict ancestor i of k, at position p of the row
-            let mut ancestor = rows[k].parent;
-            for p in (0..last).rev() {
-                let Some(i) = ancestor else { break };
-                let (l, start) = (h_k[p] / d, rows[i].start);
-                for (h_i, h_k) in above[start..=start + p].iter_mut().zip(&h_k[..=p]) {
-                    *h_i = (-l).mul_add(*h_k, *h_i);
-                }
-                h_k[p] = l;
-                ancestor = rows[i].parent;
-            }
+        let mut end = self.matrix.size();
+        while end > 0 {
+            let size = self.matrix.block_before(end);
+            end -= size;
+            by_block!(size, self.eliminate_block(end, &mut smallest));
         }
         smallest
     }
+
+    /// `L_ki = H_ki / D_k,  H_i· −= L_ki H_k·` for every dof k of a block, the last first, and every strict ancestor i of k.
+    #[inline(always)]
+    fn eliminate_block<const SIZE: usize>(&mut self, first: usize, smallest: &mut Pivot) {
+        let shared = self.matrix.depth(first) - 1;
+        let (places, values) = self.matrix.parts_mut();
+        let (above, rows) = values.split_at_mut(places[first].start);
+        let mut rows = split_rows::<T, SIZE>(rows, shared);
+
+        // ancestors in the block
+        let mut d = [T::zero(); SIZE];
+        for k in (0..SIZE).rev() {
+            let (before, rest) = rows.split_at_mut(k);
+            let h_k = &mut *rest[0];
+            d[k] = h_k[shared + k];
+            smallest.note(first + k, d[k].min_lane());
+            for (i, h_i) in before.iter_mut().enumerate().rev() {
+                let l = h_k[shared + i] / d[k];
+                for (h_i, h_k) in h_i.iter_mut().zip(h_k.iter()) {
+                    *h_i = (-l).mul_add(*h_k, *h_i);
+                }
+                h_k[shared + i] = l;
+            }
+        }
+        // ancestors of the block, at position p of each of its rows
+        let mut ancestor = places[first].parent;
+        for p in (0..shared).rev() {
+            let Some(i) = ancestor else { break };
+            let l: [T; SIZE] = std::array::from_fn(|k| rows[k][p] / d[k]);
+            let h_i = &mut above[places[i].start..][..=p];
+            let h: [&[T]; SIZE] = rows.each_ref().map(|row| &row[..h_i.len()]);
+            for j in 0..h_i.len() {
+                for k in (0..SIZE).rev() {
+                    h_i[j] = (-l[k]).mul_add(h[k][j], h_i[j]);
+                }
+            }
+            for (row, l) in rows.iter_mut().zip(l) {
+                row[p] = l;
+            }
+            ancestor = places[i].parent;
+        }
+    }
+
+    /// `x_j −= L_kj x_k` for every dof k of a block, the last first, and every strict ancestor j of k.
+    #[inline(always)]
+    fn subtract_from_ancestors<const SIZE: usize>(&self, first: usize, x: &mut [T]) {
+        let (shared, rows) = self.rows::<SIZE>(first);
+        let mut x_k = [T::zero(); SIZE];
+        for k in (0..SIZE).rev() {
+            x_k[k] = -x[first + k];
+            for (x_j, l) in x[first..first + k].iter_mut().zip(&rows[k][shared..]) {
+                *x_j = l.mul_add(x_k[k], *x_j);
+            }
+        }
+        for (dofs, entries) in self.matrix.ancestors(first) {
+            let x_j = &mut x[dofs];
+            let l: [&[T]; SIZE] = rows.map(|row| &row[entries.start..][..x_j.len()]);
+            for j in 0..x_j.len() {
+                for k in (0..SIZE).rev() {
+                    x_j[j] = l[k][j].mul_add(x_k[k], x_j[j]);
+                }
+            }
+        }
+    }
+
+    /// `x_k −= L_kj x_j` for every dof k of a block, the first first, and every strict ancestor j of k.
+    #[inline(always)]
+    fn subtract_ancestors<const SIZE: usize>(&self, first: usize, x: &mut [T]) {
+        let (shared, rows) = self.rows::<SIZE>(first);
+        let mut x_k: [T; SIZE] = std::array::from_fn(|k| x[first + k]);
+        for (dofs, entries) in self.matrix.ancestors(first) {
+            let x_j = &x[dofs];
+            let l: [&[T]; SIZE] = rows.map(|row| &row[entries.start..][..x_j.len()]);
+            for j in 0..x_j.len() {
+                for k in 0..SIZE {
+                    x_k[k] = (-l[k][j]).mul_add(x_j[j], x_k[k]);
+                }
+            }
+        }
+        for k in 0..SIZE {
+            for j in 0..k {
+                x_k[k] = (-rows[k][shared + j]).mul_add(x_k[j], x_k[k]);
+            }
+        }
+        x[first..first + SIZE].copy_from_slice(&x_k);
+    }
+
+    /// The rows of a block, and how many strict ancestors its first dof has.
+    #[inline(always)]
+    fn rows<const SIZE: usize>(&self, first: usize) -> (usize, [&[T]; SIZE]) {
+        let rows = std::array::from_fn(|k| &self.matrix.values()[self.matrix.row(first + k)]);
+        (self.matrix.depth(first) - 1, rows)
+    }
+}
+
+/// The rows of a block at the beginning of a slice: the first has one entry more than its dof has strict ancestors, each other one more than
+/// the row before it.
+#[inline(always)]
+fn split_rows<T, const SIZE: usize>(mut values: &mut [T], shared: usize) -> [&mut [T]; SIZE] {
+    std::array::from_fn(|k| {
+        let (row, rest) = std::mem::take(&mut values).split_at_mut(shared + k + 1);
+        values = rest;
+        row
+    })
 }

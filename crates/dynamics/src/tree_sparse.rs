@@ -11,6 +11,9 @@ use nalgebra::{DMatrix, Scalar};
 use spatial::Real;
 use std::ops::Range;
 
+/// The most dofs that are treated together: four rows and what they change leave room in the registers.
+pub(crate) const BLOCK: usize = 4;
+
 /// A tree-sparse symmetric matrix (or the factors of one, see [`Ltdl`](crate::Ltdl)).
 #[derive(Clone, Debug, PartialEq)]
 pub struct TreeSparse<T> {
@@ -107,9 +110,10 @@ impl<T: Real> TreeSparse<T> {
         expect("vector y", self.size(), y.len())?;
         for (dof, diagonal) in self.diagonal().enumerate() {
             y[dof] = diagonal * x[dof];
+            let row = &self.values[self.row(dof)];
             for (dofs, entries) in self.ancestors(dof) {
                 let mut sum = y[dof];
-                for ((m, x_j), y_j) in self.values[entries].iter().zip(&x[dofs.clone()]).zip(&mut y[dofs]) {
+                for ((m, x_j), y_j) in row[entries].iter().zip(&x[dofs.clone()]).zip(&mut y[dofs]) {
                     sum = m.mul_add(*x_j, sum);
                     *y_j = m.mul_add(x[dof], *y_j);
                 }
@@ -184,10 +188,23 @@ impl<T: Real> TreeSparse<T> {
         (&self.rows, &mut self.values)
     }
 
-    /// The strict ancestors of `dof`, run by run from the nearest to the root: their dofs, and their entries of row `dof`.
+    /// How many dofs before `end` stand in one run, [`BLOCK`] at most.
+    #[inline(always)]
+    pub(crate) fn block_before(&self, end: usize) -> usize {
+        (end - self.rows[end - 1].run).min(BLOCK)
+    }
+
+    /// How many dofs from `first` on stand in one run, [`BLOCK`] at most.
+    #[inline(always)]
+    pub(crate) fn block_from(&self, first: usize) -> usize {
+        let rows = &self.rows[first..];
+        rows.iter().take(BLOCK).take_while(|row| row.run == rows[0].run).count()
+    }
+
+    /// The strict ancestors of `dof`, run by run from the nearest to the root: their dofs, and their entries in row `dof`.
     #[inline(always)]
     pub(crate) fn ancestors(&self, dof: usize) -> impl Iterator<Item = (Range<usize>, Range<usize>)> + '_ {
-        let mut end = self.row(dof).end - 1;
+        let mut end = self.depth(dof) - 1;
         let mut next = self.rows[dof].parent;
         std::iter::from_fn(move || {
             let last = next?;

@@ -1,15 +1,60 @@
 //! The registry of native kernels: which algorithm answers which quantity.
 //!
-//! A kernel owns its workspace and writes one state's answer into a slice. Studies, the timing of runs and `cargo bench` all go through this
-//! list, so what is timed is what is checked.
+//! A kernel owns its workspace. Evaluating leaves one state's answer where its algorithm leaves it, as in any engine; reading it into a slice
+//! is a step of its own. Studies, the timing of runs and `cargo bench` all go through this list, so what is timed is what is checked.
 
 use dynamics::{Aba, Bias, CenterOfMass, Crba, Energy, Error, Jacobian, Kinematics, Ltdl, Momentum, Refined, Rnea, TreeSparse};
 use harness::{DENSE_LIMIT, Problem, Quantity, Refusal};
 use model::{Model, StateBatch};
 use spatial::{DoubleDouble, Force};
 
-/// Writes the answer for state `k` into `out`.
-pub(crate) type Kernel<'a> = Box<dyn FnMut(usize, &mut [f64]) -> Result<(), Error> + Send + 'a>;
+/// An algorithm over a batch of states.
+pub(crate) trait Evaluate: Send {
+    /// Evaluates state `k`.
+    fn evaluate(&mut self, k: usize) -> Result<(), Error>;
+
+    /// Writes the answer of the last evaluation into a slice as long as the quantity's value.
+    fn read(&self, out: &mut [f64]);
+}
+
+/// The kernel of a quantity and method.
+pub(crate) type Kernel<'a> = Box<dyn Evaluate + 'a>;
+
+/// A kernel of closures that share a workspace, in which the answer stays.
+struct Closures<W, E, R> {
+    work: W,
+    evaluate: E,
+    read: R,
+}
+
+impl<W, E, R> Evaluate for Closures<W, E, R>
+where
+    W: Send,
+    E: FnMut(&mut W, usize) -> Result<(), Error> + Send,
+    R: Fn(&W, &mut [f64]) + Send,
+{
+    fn evaluate(&mut self, k: usize) -> Result<(), Error> {
+        (self.evaluate)(&mut self.work, k)
+    }
+
+    fn read(&self, out: &mut [f64]) {
+        (self.read)(&self.work, out);
+    }
+}
+
+/// A kernel whose answer stays in its workspace.
+fn kept<'a, W: Send + 'a>(
+    work: W,
+    evaluate: impl FnMut(&mut W, usize) -> Result<(), Error> + Send + 'a,
+    read: impl Fn(&W, &mut [f64]) + Send + 'a,
+) -> Kernel<'a> {
+    Box::new(Closures { work, evaluate, read })
+}
+
+/// A kernel that writes its answer, of so many numbers, into a slice itself.
+fn written<'a>(size: usize, mut evaluate: impl FnMut(usize, &mut [f64]) -> Result<(), Error> + Send + 'a) -> Kernel<'a> {
+    kept(vec![0.0; size], move |out, k| evaluate(k, out), |answer, out| out.copy_from_slice(answer))
+}
 
 /// The methods of each quantity, the reference first.
 pub(crate) fn methods(quantity: Quantity) -> &'static [&'static str] {
@@ -82,13 +127,13 @@ pub fn timed(problem: &Problem) -> Vec<(Quantity, &'static str)> {
 
 fn inverse_dynamics<'a>(model: &'a Model<f64>, states: &'a StateBatch) -> Kernel<'a> {
     let mut rnea = Rnea::new(&model.topology);
-    Box::new(move |k, tau| Ok(rnea.run(model, states.q(k), states.v(k), states.a(k), None, tau)?))
+    written(model.topology.nv(), move |k, tau| Ok(rnea.run(model, states.q(k), states.v(k), states.a(k), None, tau)?))
 }
 
 fn inverse_dynamics_wrench<'a>(model: &'a Model<f64>, states: &'a StateBatch) -> Kernel<'a> {
     let mut rnea = Rnea::new(&model.topology);
     let mut wrenches = vec![Force::zero(); model.topology.bodies()];
-    Box::new(move |k, tau| {
+    written(model.topology.nv(), move |k, tau| {
         for (&body, w) in model.described.iter().zip(states.wrench(k).chunks_exact(6)) {
             wrenches[body] = Force::from_array([w[0], w[1], w[2], w[3], w[4], w[5]]);
         }
@@ -98,13 +143,11 @@ fn inverse_dynamics_wrench<'a>(model: &'a Model<f64>, states: &'a StateBatch) ->
 
 fn bias<'a>(model: &'a Model<f64>, states: &'a StateBatch) -> Kernel<'a> {
     let mut bias = Bias::new(&model.topology);
-    Box::new(move |k, h| Ok(bias.run(model, states.q(k), states.v(k), None, h)?))
+    written(model.topology.nv(), move |k, h| Ok(bias.run(model, states.q(k), states.v(k), None, h)?))
 }
 
 fn mass_matrix<'a>(model: &'a Model<f64>, states: &'a StateBatch) -> Kernel<'a> {
-    let (mut crba, mut matrix) = (Crba::new(&model.topology), TreeSparse::new(&model.topology));
-    Box::new(move |k, dense| {
-        crba.run(model, states.q(k), &mut matrix)?;
+    let read = |matrix: &TreeSparse<f64>, dense: &mut [f64]| {
         let n = model.topology.nv();
         dense.fill(0.0);
         for i in 0..n {
@@ -113,13 +156,14 @@ fn mass_matrix<'a>(model: &'a Model<f64>, states: &'a StateBatch) -> Kernel<'a> 
                 dense[j * n + i] = m;
             }
         }
-        Ok(())
-    })
+    };
+    let mut crba = Crba::new(&model.topology);
+    kept(TreeSparse::new(&model.topology), move |matrix, k| Ok(crba.run(model, states.q(k), matrix)?), read)
 }
 
 fn mass_matrix_probe<'a>(model: &'a Model<f64>, states: &'a StateBatch, probe: Vec<f64>) -> Kernel<'a> {
     let (mut crba, mut matrix) = (Crba::new(&model.topology), TreeSparse::new(&model.topology));
-    Box::new(move |k, out| {
+    written(6 * model.topology.nv(), move |k, out| {
         crba.run(model, states.q(k), &mut matrix)?;
         let n = model.topology.nv();
         let (products, rest) = out.split_at_mut(4 * n);
@@ -136,22 +180,19 @@ fn mass_matrix_probe<'a>(model: &'a Model<f64>, states: &'a StateBatch, probe: V
 }
 
 fn mass_matrix_sparse<'a>(model: &'a Model<f64>, states: &'a StateBatch) -> Kernel<'a> {
-    let (mut crba, mut matrix) = (Crba::new(&model.topology), TreeSparse::new(&model.topology));
-    Box::new(move |k, out| {
-        crba.run(model, states.q(k), &mut matrix)?;
-        out.copy_from_slice(matrix.values());
-        Ok(())
-    })
+    let mut crba = Crba::new(&model.topology);
+    let read = |matrix: &TreeSparse<f64>, out: &mut [f64]| out.copy_from_slice(matrix.values());
+    kept(TreeSparse::new(&model.topology), move |matrix, k| Ok(crba.run(model, states.q(k), matrix)?), read)
 }
 
 fn forward_dynamics<'a>(model: &'a Model<f64>, states: &'a StateBatch) -> Kernel<'a> {
     let mut aba = Aba::new(&model.topology);
-    Box::new(move |k, a| aba.run(model, states.q(k), states.v(k), states.tau(k), None, a))
+    written(model.topology.nv(), move |k, a| aba.run(model, states.q(k), states.v(k), states.tau(k), None, a))
 }
 
 fn forward_dynamics_by_factorization<'a>(model: &'a Model<f64>, states: &'a StateBatch) -> Kernel<'a> {
     let (mut crba, mut bias, mut ltdl) = (Crba::new(&model.topology), Bias::new(&model.topology), Ltdl::new(&model.topology));
-    Box::new(move |k, a| {
+    written(model.topology.nv(), move |k, a| {
         crba.run(model, states.q(k), ltdl.matrix_mut())?;
         ltdl.factor()?;
         bias.run(model, states.q(k), states.v(k), None, a)?;
@@ -167,28 +208,28 @@ fn forward_dynamics_single<'a>(model: &'a Model<f64>, states: &'a StateBatch, fa
     let model: Model<f32> = model.lift();
     let topology = model.topology.clone();
     let (mut aba, mut crba, mut bias, mut ltdl) = (Aba::new(&topology), Crba::new(&topology), Bias::new(&topology), Ltdl::new(&topology));
-    let mut a = vec![0.0_f32; topology.nv()];
-    Box::new(move |k, out| {
+    let read = |a: &Vec<f32>, out: &mut [f64]| out.iter_mut().zip(a).for_each(|(out, a)| *out = f64::from(*a));
+    let evaluate = move |a: &mut Vec<f32>, k| {
         let [q, v, tau] = [states.q(k), states.v(k), states.tau(k)].map(|values| values.iter().map(|&x| x as f32).collect::<Vec<_>>());
         if factorizing {
             crba.run(&model, &q, ltdl.matrix_mut())?;
             ltdl.factor()?;
-            bias.run(&model, &q, &v, None, &mut a)?;
+            bias.run(&model, &q, &v, None, a)?;
             a.iter_mut().zip(&tau).for_each(|(a, tau)| *a = tau - *a);
-            ltdl.solve(&mut a)?;
+            ltdl.solve(a)?;
         } else {
-            aba.run(&model, &q, &v, &tau, None, &mut a)?;
+            aba.run(&model, &q, &v, &tau, None, a)?;
         }
-        out.iter_mut().zip(&a).for_each(|(out, a)| *out = f64::from(*a));
         Ok(())
-    })
+    };
+    kept(vec![0.0; topology.nv()], evaluate, read)
 }
 
 /// Refined with the residual in double-double, of the robot as its description says it.
 fn refined_forward_dynamics<'a>(problem: &'a Problem, states: &'a StateBatch, steps: usize) -> Result<Kernel<'a>, Refusal> {
     let model: Model<DoubleDouble> = Model::build(&problem.description).map_err(|error| Refusal::Failed(error.to_string()))?;
     let mut refined = Refined::<DoubleDouble>::new(&model.topology, steps);
-    Ok(Box::new(move |k, a| refined.run(&model, states.q(k), states.v(k), states.tau(k), None, a)))
+    Ok(written(problem.model.topology.nv(), move |k, a| refined.run(&model, states.q(k), states.v(k), states.tau(k), None, a)))
 }
 
 /// The stored numbers of the mass matrices of a batch, made beforehand: factorizing and solving do not include making them.
@@ -206,13 +247,11 @@ fn matrices(model: &Model<f64>, states: &StateBatch) -> Result<Vec<Vec<f64>>, Re
 
 fn factorization<'a>(model: &'a Model<f64>, states: &'a StateBatch) -> Result<Kernel<'a>, Refusal> {
     let matrices = matrices(model, states)?;
-    let mut ltdl = Ltdl::new(&model.topology);
-    Ok(Box::new(move |k, out| {
+    let evaluate = move |ltdl: &mut Ltdl<f64>, k: usize| {
         ltdl.matrix_mut().values_mut().copy_from_slice(&matrices[k % matrices.len()]);
-        ltdl.factor()?;
-        out.copy_from_slice(ltdl.factors().values());
-        Ok(())
-    }))
+        Ok(ltdl.factor()?)
+    };
+    Ok(kept(Ltdl::new(&model.topology), evaluate, |ltdl, out| out.copy_from_slice(ltdl.factors().values())))
 }
 
 fn solve<'a>(model: &'a Model<f64>, states: &'a StateBatch) -> Result<Kernel<'a>, Refusal> {
@@ -223,7 +262,7 @@ fn solve<'a>(model: &'a Model<f64>, states: &'a StateBatch) -> Result<Kernel<'a>
         ltdl.factor().map_err(|error| Refusal::Failed(error.to_string()))?;
         matrix.copy_from_slice(ltdl.factors().values());
     }
-    Ok(Box::new(move |k, x| {
+    Ok(written(model.topology.nv(), move |k, x| {
         x.copy_from_slice(states.tau(k));
         let at = k % factors.len();
         ltdl.matrix_mut().exchange(&mut factors[at])?;
@@ -236,7 +275,7 @@ fn solve<'a>(model: &'a Model<f64>, states: &'a StateBatch) -> Result<Kernel<'a>
 /// Factors, then one solution for each column.
 fn mass_matrix_inverse<'a>(model: &'a Model<f64>, states: &'a StateBatch) -> Kernel<'a> {
     let (mut crba, mut ltdl) = (Crba::new(&model.topology), Ltdl::new(&model.topology));
-    Box::new(move |k, inverse| {
+    written(model.topology.nv() * model.topology.nv(), move |k, inverse| {
         crba.run(model, states.q(k), ltdl.matrix_mut())?;
         ltdl.factor()?;
         // M⁻¹ is symmetric: its columns are its rows.
@@ -251,7 +290,7 @@ fn mass_matrix_inverse<'a>(model: &'a Model<f64>, states: &'a StateBatch) -> Ker
 
 fn energy<'a>(model: &'a Model<f64>, states: &'a StateBatch, quantity: Quantity) -> Kernel<'a> {
     let mut energy = Energy::new(&model.topology);
-    Box::new(move |k, out| {
+    written(1, move |k, out| {
         let energies = energy.run(model, states.q(k), states.v(k))?;
         out[0] = if quantity == Quantity::KineticEnergy { energies.kinetic } else { energies.potential };
         Ok(())
@@ -260,7 +299,7 @@ fn energy<'a>(model: &'a Model<f64>, states: &'a StateBatch, quantity: Quantity)
 
 fn center_of_mass<'a>(model: &'a Model<f64>, states: &'a StateBatch) -> Kernel<'a> {
     let mut center = CenterOfMass::new(&model.topology);
-    Box::new(move |k, out| {
+    written(3, move |k, out| {
         out.copy_from_slice(&center.run(model, states.q(k))?.position.to_array());
         Ok(())
     })
@@ -268,16 +307,15 @@ fn center_of_mass<'a>(model: &'a Model<f64>, states: &'a StateBatch) -> Kernel<'
 
 fn momentum<'a>(model: &'a Model<f64>, states: &'a StateBatch) -> Kernel<'a> {
     let mut momentum = Momentum::new(&model.topology);
-    Box::new(move |k, out| {
+    written(6, move |k, out| {
         out.copy_from_slice(&momentum.run(model, states.q(k), states.v(k))?.momentum.to_array());
         Ok(())
     })
 }
 
 fn kinematics<'a>(model: &'a Model<f64>, states: &'a StateBatch, quantity: Quantity) -> Kernel<'a> {
-    let mut kinematics = Kinematics::new(&model.topology);
-    Box::new(move |k, out| {
-        kinematics.run(model, states.q(k), states.v(k), states.a(k))?;
+    let evaluate = |kinematics: &mut Kinematics<f64>, k| Ok(kinematics.run(model, states.q(k), states.v(k), states.a(k))?);
+    let read = move |kinematics: &Kinematics<f64>, out: &mut [f64]| {
         for (i, &body) in model.described.iter().enumerate() {
             let Some(motion) = kinematics.body(body) else { continue };
             match quantity {
@@ -289,26 +327,23 @@ fn kinematics<'a>(model: &'a Model<f64>, states: &'a StateBatch, quantity: Quant
                 _ => out[6 * i..6 * i + 6].copy_from_slice(&motion.acceleration.to_array()),
             }
         }
-        Ok(())
-    })
+    };
+    kept(Kinematics::new(&model.topology), evaluate, read)
 }
 
 fn jacobian<'a>(model: &'a Model<f64>, states: &'a StateBatch, body: usize) -> Kernel<'a> {
-    let mut jacobian = Jacobian::new(&model.topology);
-    Box::new(move |k, out| {
+    let evaluate = move |jacobian: &mut Jacobian<f64>, k| Ok(jacobian.run(model, states.q(k), body).map(|_| ())?);
+    let read = |jacobian: &Jacobian<f64>, out: &mut [f64]| {
         let n = model.topology.nv();
-        for (dof, column) in jacobian.run(model, states.q(k), body)?.iter().enumerate() {
+        for (dof, column) in jacobian.columns().iter().enumerate() {
             for (row, entry) in column.to_array().into_iter().enumerate() {
                 out[row * n + dof] = entry;
             }
         }
-        Ok(())
-    })
+    };
+    kept(Jacobian::new(&model.topology), evaluate, read)
 }
 
 fn constant<'a>(values: Vec<f64>) -> Kernel<'a> {
-    Box::new(move |_, out| {
-        out.copy_from_slice(&values);
-        Ok(())
-    })
+    kept(values, |_, _| Ok(()), |values, out| out.copy_from_slice(values))
 }

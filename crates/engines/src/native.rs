@@ -70,19 +70,19 @@ impl Prepared for Ready<'_> {
     fn run(&mut self, range: Range<usize>) -> Result<(), Refusal> {
         self.values.resize(range.len() * self.size, 0.0);
         for (k, out) in range.zip(self.values.chunks_exact_mut(self.size)) {
-            (self.kernel)(k, out).map_err(|error| Refusal::Failed(error.to_string()))?;
+            self.kernel.evaluate(k).map_err(|error| Refusal::Failed(error.to_string()))?;
+            self.kernel.read(out);
         }
         Ok(())
     }
 
-    /// Every answer goes to the same place: a stream of answers would measure the memory.
+    /// Every answer goes to the same place, in the kernel: a stream of answers would measure the memory.
     fn clock(&mut self, range: Range<usize>) -> Result<Duration, Refusal> {
-        self.values.resize(self.size, 0.0);
         let mut state = range.start % self.states;
         let start = Instant::now();
         for _ in range {
-            (self.kernel)(state, &mut self.values).map_err(|error| Refusal::Failed(error.to_string()))?;
-            black_box(&mut self.values);
+            self.kernel.evaluate(state).map_err(|error| Refusal::Failed(error.to_string()))?;
+            black_box(&mut self.kernel);
             state = if state + 1 == self.states { 0 } else { state + 1 };
         }
         Ok(start.elapsed())

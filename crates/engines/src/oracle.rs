@@ -23,6 +23,8 @@ pub struct Oracle {
     methods: BTreeMap<String, Vec<String>>,
     /// Whether it reads the clock itself.
     clock: bool,
+    /// Whether it can move its data.
+    scatter: bool,
     command: Vec<OsString>,
     limits: Limits,
     idle: Mutex<Vec<Session>>,
@@ -63,9 +65,10 @@ impl Oracle {
         if identity.name.is_empty() || identity.version.is_empty() {
             return Err("hello: engine and version must not be empty".into());
         }
-        let clock = hello.header.get("clock").and_then(Value::as_bool).unwrap_or(false);
+        let says = |key| hello.header.get(key).and_then(Value::as_bool).unwrap_or(false);
+        let (clock, scatter) = (says("clock"), says("scatter"));
         let session = Session { process, model: String::new(), readback: Vec::new(), states: None, reading: None };
-        Ok(Self { identity, methods, clock, command, limits, idle: Mutex::new(vec![session]) })
+        Ok(Self { identity, methods, clock, scatter, command, limits, idle: Mutex::new(vec![session]) })
     }
 
     /// The same oracle under another name; the engine's own name goes into its build, where it differs.
@@ -276,6 +279,14 @@ impl Prepared for Asked<'_> {
         let answer = session.ask(question, Vec::new())?;
         let nanoseconds = answer.header.get("nanoseconds").and_then(Value::as_u64);
         nanoseconds.map(Duration::from_nanos).ok_or_else(|| Refusal::Failed("the oracle's answer has no nanoseconds".into()))
+    }
+
+    fn scatter(&mut self, seed: u32) -> Result<bool, Refusal> {
+        if !self.oracle.scatter {
+            return Ok(false);
+        }
+        let session = self.session.as_mut().ok_or_else(|| Refusal::Failed("the oracle has ended".into()))?;
+        session.ask(json!({"op": "scatter", "seed": seed}), Vec::new()).map(|_| true)
     }
 
     fn read(&self) -> &[f64] {

@@ -28,9 +28,10 @@ impl Progress for Silent {
     fn end(&self) {}
 }
 
-/// The cells of a study that a filter lets through.
+/// The cells of a study that a filter lets through, and beside any of them those that belong to no robot.
 pub fn plan(study: &dyn Study, context: &Context, keep: &(dyn Fn(&Cell) -> bool + Sync)) -> Vec<Cell> {
-    study.plan(context).into_iter().filter(|cell| keep(cell)).collect()
+    let kept: Vec<Cell> = study.plan(context).into_iter().filter(|cell| keep(cell) || study.is_common(cell)).collect();
+    if kept.iter().all(|cell| study.is_common(cell) && !keep(cell)) { Vec::new() } else { kept }
 }
 
 /// Evaluates what is not finished yet of a study's cells, and returns all of them with their outcomes, in plan order.

@@ -47,6 +47,11 @@ pub trait Study: Sync {
     /// The cells, in the order of the report.
     fn plan(&self, context: &Context) -> Vec<Cell>;
 
+    /// Whether a cell belongs to no robot, so that it is asked wherever any cell of the study is.
+    fn is_common(&self, _cell: &Cell) -> bool {
+        false
+    }
+
     /// Evaluates one cell.
     fn evaluate(&self, context: &Context, cell: &Cell) -> Outcome;
 

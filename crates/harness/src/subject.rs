@@ -173,6 +173,15 @@ pub trait Prepared: Send {
         Ok(start.elapsed())
     }
 
+    /// Moves everything that it works on to other places of the memory, drawn with this seed, where that is not in this process: `false`
+    /// of a subject that is moved by preparing it anew.
+    ///
+    /// # Errors
+    /// [`Refusal`] when the subject fails.
+    fn scatter(&mut self, _seed: u32) -> Result<bool, Refusal> {
+        Ok(false)
+    }
+
     /// The values of the last run, state after state.
     fn read(&self) -> &[f64];
 }

@@ -250,6 +250,11 @@ impl Built<'_> {
         self.count
     }
 
+    /// The method and the body that were made ready last for these states.
+    pub(super) fn is_ready(&self) -> Option<(usize, usize)> {
+        self.ready
+    }
+
     /// Makes what a method starts from, unless it is made.
     ///
     /// # Errors

@@ -5,8 +5,9 @@
 mod library;
 
 use harness::frame::{Block, Frame};
-use harness::{Problem, Quantity, Refusal};
+use harness::{Problem, Quantity, Refusal, Scatter};
 use library::{Built, Library};
+use model::Random;
 use record::ModelOrigin;
 use serde_json::{Map, Value, json};
 use std::ffi::OsString;
@@ -34,7 +35,7 @@ pub fn serve(path: &Path, core: Option<usize>) -> Result<(), String> {
     rustix::stdio::dup2_stdout(rustix::stdio::stderr()).map_err(io)?;
     // Without a folder in its name a library would be looked for where the system keeps its own.
     let library = Library::open(&path.canonicalize().map_err(|error| format!("{}: {error}", path.display()))?)?;
-    let mut session = Session { library: &library, problem: None, robot: None };
+    let mut session = Session { library: &library, problem: None, states: None, robot: None };
     let mut requests = BufReader::new(stdin());
     while let Some(request) = Frame::read(&mut requests).map_err(|error| error.to_string())? {
         let answer = match session.answer(&request) {
@@ -64,6 +65,8 @@ fn pin(core: usize) -> Result<(), String> {
 struct Session<'a> {
     library: &'a Library,
     problem: Option<Problem>,
+    /// The last batch of states: how many, and q, v, a and τ.
+    states: Option<(usize, [Vec<f64>; 4])>,
     robot: Option<Built<'a>>,
 }
 
@@ -86,6 +89,7 @@ impl<'a> Session<'a> {
             "states" => self.states(request),
             "evaluate" => self.evaluate(request),
             "clock" => self.clock(request),
+            "scatter" => self.scatter(request),
             other => Err(failed(format!("unknown op {other}"))),
         }
     }
@@ -99,11 +103,14 @@ impl<'a> Session<'a> {
             let named = offered.entry(quantity).or_insert_with(|| json!([]));
             named.as_array_mut().into_iter().for_each(|named| named.push(method.as_str().into()));
         }
-        ok(json!({"protocol": 1, "engine": engine, "version": version, "build": build, "methods": offered, "clock": true}), Vec::new())
+        ok(
+            json!({"protocol": 1, "engine": engine, "version": version, "build": build, "methods": offered, "clock": true, "scatter": true}),
+            Vec::new(),
+        )
     }
 
     fn prepare(&mut self, request: &Frame) -> Answer {
-        (self.robot, self.problem) = (None, None);
+        (self.robot, self.states, self.problem) = (None, None, None);
         let model = request.header.get("model").ok_or_else(|| failed("no model came"))?;
         let description = formats::neutral::parse(&model.to_string(), "model").map_err(|error| failed(error.to_string()))?;
         // The problem brings the compiled tree and the sizes of quantities; its own states are not used.
@@ -116,10 +123,31 @@ impl<'a> Session<'a> {
     }
 
     fn states(&mut self, request: &Frame) -> Answer {
+        self.states = None;
         let count = number(request, "count")?;
         let robot = self.robot.as_mut().ok_or_else(|| failed("no model was prepared"))?;
-        let array = |name| request.block(name).map(|block| block.data.as_slice()).ok_or_else(|| failed(format!("block {name} is missing")));
-        robot.states(count, [array("q")?, array("v")?, array("a")?, array("tau")?])?;
+        let array = |name| request.block(name).map(|block| block.data.clone()).ok_or_else(|| failed(format!("block {name} is missing")));
+        let arrays = [array("q")?, array("v")?, array("a")?, array("tau")?];
+        robot.states(count, arrays.each_ref().map(Vec::as_slice))?;
+        self.states = Some((count, arrays));
+        ok(json!({}), Vec::new())
+    }
+
+    /// Robot, states and what the last method starts from once more, at other places of the memory.
+    fn scatter(&mut self, request: &Frame) -> Answer {
+        let (Some(problem), Some(robot)) = (&self.problem, self.robot.take()) else { return Err(failed("no model was prepared")) };
+        let ready = robot.is_ready();
+        // Before its successor: two of them may not fit the memory.
+        drop(robot);
+        let _scatter = Scatter::new(&mut Random::new(number(request, "seed")? as u64, 0));
+        let (mut robot, _) = self.library.build(problem)?;
+        if let Some((count, arrays)) = &self.states {
+            robot.states(*count, arrays.each_ref().map(Vec::as_slice))?;
+        }
+        if let Some((method, body)) = ready {
+            robot.ready(method, body)?;
+        }
+        self.robot = Some(robot);
         ok(json!({}), Vec::new())
     }
 

@@ -62,6 +62,10 @@ impl Study for Timing {
         true
     }
 
+    fn is_common(&self, cell: &Cell) -> bool {
+        cell.params["what"] == MACHINE
+    }
+
     fn plan(&self, context: &Context) -> Vec<Cell> {
         let mut cells = Vec::new();
         let Some(native) = context.subject(REFERENCE) else { return cells };

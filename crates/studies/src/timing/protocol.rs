@@ -1,14 +1,13 @@
 //! The experiment: contestants in alternating blocks.
 //!
-//! Rounds come in *epochs*. At the start of an epoch everyone is prepared anew, at other places of the memory: where data lie moves a time
-//! by up to some percent, and a ratio from one layout would be a ratio of two accidents. In each round every contestant has one block, in
+//! Rounds come in *epochs*. At the start of an epoch everyone moves, in random order, to other places of the memory, each in its own process:
+//! where data lie moves a time by up to some percent, and a ratio from one layout would be a ratio of two accidents. In each round every contestant has one block, in
 //! random order, from a random state on; the batch begins again at its end. Before a block its contestant makes a tenth as many calls
 //! beside the clock, at the states before: others ran since its last block, and their data lie in the caches.
 
 use super::samples::Samples;
-use harness::{Prepared, Refusal};
+use harness::{Prepared, Refusal, Scatter};
 use model::Random;
-use std::hint::black_box;
 use std::time::{Duration, Instant};
 
 /// How long a block lasts at least: some thousand times the clock's resolution and the cost of reading it, so short that most blocks are not
@@ -22,8 +21,6 @@ const MOST_ROUNDS: usize = 10;
 const WARM: usize = 10;
 /// A call that takes less than this would fill a block with more calls than any clock needs.
 const MOST_CALLS: usize = 1 << 24;
-/// The largest shift of the memory between two epochs, in bytes: a few pages, which is what matters to caches.
-const LARGEST_SHIFT: usize = 1 << 16;
 
 /// Who is timed, ready to run, or why it is not.
 pub(super) type Contestant<'a> = Result<Box<dyn Prepared + 'a>, Refusal>;
@@ -52,9 +49,9 @@ impl Budget {
         ((2.0 * meant / round.as_secs_f64().max(1e-9)) as usize).clamp(1, self.rounds)
     }
 
-    /// Preparing someone anew at each epoch must not take longer than timing it, or twenty times a block where that is more.
-    fn affords(&self, preparing: Duration) -> bool {
-        preparing <= self.block * 20.max(self.rounds as u32)
+    /// Moving someone at each epoch must not take longer than timing it, or twenty times a block where that is more.
+    fn affords(&self, moving: Duration) -> bool {
+        moving <= self.block * 20.max(self.rounds as u32)
     }
 }
 
@@ -81,12 +78,12 @@ pub(super) fn experiment<'a>(
     let mut samples = Samples::new(calls, EPOCHS * rounds);
     let mut order: Vec<usize> = (0..count).collect();
     for epoch in 0..EPOCHS {
-        for which in (0..count).filter(|&which| epoch > 0 && movable[which]) {
-            if contestants[which].is_ok() {
-                // What lies between the old place and the new one is freed once everyone has moved on.
-                let shift = black_box(vec![0_u8; 64 * (1 + random.below(LARGEST_SHIFT / 64))]);
-                contestants[which] = prepare(which);
-                drop(shift);
+        shuffle(&mut order, random);
+        for &which in order.iter().filter(|_| epoch > 0) {
+            if movable[which] {
+                let start = Instant::now();
+                relocate(&mut contestants[which], &|| prepare(which), random);
+                movable[which] = budget.affords(start.elapsed());
             }
         }
         for round in epoch * rounds..(epoch + 1) * rounds {
@@ -101,6 +98,20 @@ pub(super) fn experiment<'a>(
         }
     }
     samples
+}
+
+/// Moves a contestant to other places of the memory: itself, or else by preparing it anew.
+fn relocate<'a>(contestant: &mut Contestant<'a>, prepare: &dyn Fn() -> Contestant<'a>, random: &mut Random) {
+    let Ok(prepared) = contestant else { return };
+    match prepared.scatter(random.bits32()) {
+        Ok(true) => {}
+        Ok(false) => {
+            // The old one stays until the new one lies beside it.
+            let _scatter = Scatter::new(random);
+            *contestant = prepare();
+        }
+        Err(refusal) => *contestant = Err(refusal),
+    }
 }
 
 /// One block from a state on, and the calls before it.
@@ -182,6 +193,45 @@ mod tests {
         let samples = experiment(&prepare, contestants.len(), 1000, BUDGET, &mut Random::new(1, 2));
         let log = log.lock().unwrap().clone();
         (samples, log)
+    }
+
+    /// One that moves itself, one that must be prepared anew, one that fails to move; each time of a call is the number of moves.
+    #[test]
+    fn at_each_epoch_everyone_moves() {
+        struct Mover(Result<bool, ()>, u32);
+        impl Prepared for Mover {
+            fn run(&mut self, _: Range<usize>) -> Result<(), Refusal> {
+                Ok(())
+            }
+
+            fn clock(&mut self, range: Range<usize>) -> Result<Duration, Refusal> {
+                Ok(Duration::from_millis(u64::from(self.1)) * range.len() as u32)
+            }
+
+            fn scatter(&mut self, _: u32) -> Result<bool, Refusal> {
+                self.1 += 1;
+                self.0.map_err(|()| Refusal::Failed("it lost its robot".into()))
+            }
+
+            fn read(&self) -> &[f64] {
+                &[]
+            }
+        }
+        let prepared = std::cell::Cell::new([0; 3]);
+        let prepare = |who: usize| -> Contestant {
+            let mut count = prepared.get();
+            count[who] += 1;
+            prepared.set(count);
+            Ok(Box::new(Mover([Ok(true), Ok(false), Err(())][who], count[who])))
+        };
+        let samples = experiment(&prepare, 3, 1000, BUDGET, &mut Random::new(1, 2));
+        assert_eq!(prepared.get(), [1, EPOCHS, 1]);
+        let epoch = samples.of(0).len() / EPOCHS;
+        for (round, (own, anew)) in samples.of(0).iter().zip(samples.of(1)).enumerate() {
+            let moves = 1e6 * (1 + round / epoch) as f64;
+            assert!((own - moves).abs() < 1e-3 && (anew - moves).abs() < 1e-3, "round {round}: {own} and {anew} ns");
+            assert_eq!(samples.of(2)[round].is_nan(), round >= epoch, "one that is lost has no time from then on");
+        }
     }
 
     #[test]

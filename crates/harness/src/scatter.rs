@@ -1,0 +1,48 @@
+//! Disturbing the heap, so that what is allocated next lies at other places of the memory than it would.
+
+use model::Random;
+use std::hint::black_box;
+
+/// Blocks that disturb the heap.
+const BLOCKS: usize = 64;
+/// The least and the largest of them, in bytes: a cache line to some pages, below the size from which allocators map pages of their own.
+const SIZES: [f64; 2] = [64.0, 65536.0];
+
+/// Blocks of random sizes between holes of random sizes. What is allocated while it lives fills the holes and the room behind: how its
+/// parts lie to each other and to the pages changes with every draw.
+#[derive(Debug)]
+pub struct Scatter(#[expect(dead_code, reason = "what counts is that they take room")] Vec<Vec<u8>>);
+
+impl Scatter {
+    /// Draws blocks and holes.
+    pub fn new(random: &mut Random) -> Self {
+        let block = |_| {
+            let size = SIZES[0] * (SIZES[1] / SIZES[0]).powf(random.unit());
+            black_box(vec![0_u8; size as usize])
+        };
+        let blocks: Vec<Vec<u8>> = (0..2 * BLOCKS).map(block).collect();
+        Self(blocks.into_iter().enumerate().filter_map(|(k, block)| (k % 2 == 0).then_some(block)).collect())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_follows_lies_elsewhere_each_time() {
+        let mut random = Random::new(1, 1);
+        let places = (0..20).map(|_| {
+            let _scatter = Scatter::new(&mut random);
+            let (small, large) = (black_box(vec![0_u8; 100]), black_box(vec![0_u8; 20_000]));
+            (small.as_ptr().addr() % 4096, large.as_ptr().addr() % 4096)
+        });
+        let (mut small, mut large): (Vec<_>, Vec<_>) = places.unzip();
+        for places in [&mut small, &mut large] {
+            places.sort_unstable();
+            places.dedup();
+            // Of twenty places among 256 (every 16 bytes of a page) one or two would coincide by chance.
+            assert!(places.len() > 10, "{places:?}");
+        }
+    }
+}
