@@ -4,6 +4,7 @@ pub use crate::process::Limits;
 use crate::process::Process;
 use crate::request;
 use harness::frame::{Block, Frame};
+use harness::provenance::PROGRAM;
 use harness::{Identity, Prepared, Problem, Quantity, Reading, ReadingNote, Refusal, RobotFile, Route, Subject};
 use model::StateBatch;
 use record::EngineSource;
@@ -74,6 +75,12 @@ impl Oracle {
             let own = std::mem::replace(&mut self.identity.name, name.to_owned());
             self.identity.build.insert("engine".into(), own);
         }
+        self
+    }
+
+    /// The same oracle with the content hash of its program in its build.
+    pub fn with_program(mut self, hash: &str) -> Self {
+        self.identity.build.insert(PROGRAM.into(), hash.into());
         self
     }
 
