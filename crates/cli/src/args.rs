@@ -79,7 +79,7 @@ pub struct RunArgs {
     /// Continue the run in --out: finished cells are kept.
     #[arg(long, requires = "out")]
     pub resume: bool,
-    /// Continue although program, target features, libm or suite differ.
+    /// Continue although program, target features, libm, suite or a program of --engine differ.
     #[arg(long, requires = "resume")]
     pub mixed: bool,
     /// Leave the timing study out.

@@ -2,8 +2,9 @@
 
 use crate::fail::Fail;
 use engines::{Limits, Oracle};
+use harness::{HarnessError, hash};
 use std::ffi::OsString;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::str::FromStr;
 
 /// A program to be asked under a name.
@@ -51,27 +52,41 @@ fn words(text: &str) -> Result<Vec<String>, String> {
     Ok(words)
 }
 
-/// Refuses a program that is not there, before anything is started.
-pub fn find(command: &[OsString]) -> Result<(), Fail> {
+/// The file of a program; one that is not there is refused before anything is started.
+pub fn find(command: &[OsString]) -> Result<PathBuf, Fail> {
     let Some(program) = command.first() else { return Err(Fail::input("no program is named".into())) };
     let there = if Path::new(program).components().count() > 1 {
-        Path::new(program).is_file()
+        Some(PathBuf::from(program))
     } else {
-        std::env::var_os("PATH").is_some_and(|path| std::env::split_paths(&path).any(|folder| folder.join(program).is_file()))
+        std::env::var_os("PATH")
+            .and_then(|path| std::env::split_paths(&path).map(|folder| folder.join(program)).find(|file| file.is_file()))
     };
     let advice = "name a program on the path, or a file with its folder, as in ./my_oracle";
-    if there { Ok(()) } else { Err(Fail::input(format!("there is no program {}; {advice}", program.to_string_lossy()))) }
+    let absent = || Fail::input(format!("there is no program {}; {advice}", program.to_string_lossy()));
+    there.filter(|file| file.is_file()).ok_or_else(absent)
 }
 
 impl Guest {
     /// Starts the program, to be known by the name that the user gave it.
     pub fn start(&self, limits: Limits) -> Result<Oracle, Fail> {
-        find(&self.command)?;
+        let program = self.program()?;
         let oracle = Oracle::start(self.command.clone(), limits).map_err(|reason| Fail::Missing {
             message: format!("engine {} does not answer: {reason}", self.name),
             advice: format!("look at `featherbench oracles check {}`", shown(&self.command)),
         })?;
-        Ok(oracle.named(&self.name))
+        Ok(oracle.named(&self.name).with_program(&program))
+    }
+
+    /// The content hash of the command: of the program's file, of files that its arguments name (a script is the argument of its
+    /// interpreter), and of the other arguments as they are. What these files load in their turn is not in it.
+    fn program(&self) -> Result<String, Fail> {
+        let read = |path: &Path| std::fs::read(path).map_err(|source| Fail::from(HarnessError::io(path, source)));
+        let mut parts = vec![read(&find(&self.command)?)?];
+        for word in &self.command[1..] {
+            let file = Path::new(word);
+            parts.push(if file.is_file() { read(file)? } else { word.as_encoded_bytes().to_vec() });
+        }
+        Ok(hash::of_parts(&parts.iter().map(Vec::as_slice).collect::<Vec<_>>()))
     }
 }
 
@@ -104,5 +119,22 @@ mod tests {
         for bad in ["mine", "=x", "my engine=x", "a/b=x", "mine=", "mine=  ", "mine='x"] {
             assert!(bad.parse::<Guest>().is_err(), "{bad}");
         }
+    }
+    #[test]
+    fn a_program_is_its_files_and_its_other_arguments() {
+        let folder = tempfile::tempdir().unwrap();
+        let (script, copy) = (folder.path().join("a.sh"), folder.path().join("b.sh"));
+        for file in [&script, &copy] {
+            std::fs::write(file, "exit 1").unwrap();
+        }
+        let program = |file: &Path, rest: &str| {
+            let command = ["sh".into(), file.into(), rest.into()].to_vec();
+            Guest { name: "mine".into(), command }.program().ok().unwrap()
+        };
+        let first = program(&script, "--fast");
+        assert_eq!(program(&copy, "--fast"), first, "where it stands does not matter");
+        assert_ne!(program(&script, "--slow"), first);
+        std::fs::write(&script, "exit 2").unwrap();
+        assert_ne!(program(&script, "--fast"), first);
     }
 }

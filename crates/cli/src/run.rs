@@ -129,19 +129,19 @@ pub fn folder(root: &Root, out: Option<&Path>, resume: bool, suite: &str, starte
 /// Writes the fingerprint of a new run, or compares with that of the run which is continued.
 fn check_fingerprint(folder: &Path, args: &RunArgs, info: &RunInfo) -> Result<(), Fail> {
     let path = folder.join(FINGERPRINT_NAME);
-    let now: BTreeMap<&str, String> = provenance::fingerprint(info).into_iter().collect();
+    let now = provenance::fingerprint(info);
     if args.resume && !args.mixed {
         let text = std::fs::read_to_string(&path).map_err(|source| HarnessError::io(&path, source))?;
         let then: BTreeMap<String, String> =
             serde_json::from_str(&text).map_err(|error| Fail::input(format!("{}: {error}", path.display())))?;
-        for (what, now) in &now {
-            let then = then.get(*what).cloned().unwrap_or_default();
-            if then != *now {
-                let (what, now) = ((*what).to_owned(), now.clone());
-                return Err(HarnessError::Mixed { path: folder.to_owned(), what, then, now }.into());
+        let different = then.keys().chain(now.keys()).find(|what| then.get(*what) != now.get(*what));
+        return match different {
+            None => Ok(()),
+            Some(what) => {
+                let [then, now] = [&then, &now].map(|side| side.get(what).map_or("none", String::as_str).to_owned());
+                Err(HarnessError::Mixed { path: folder.to_owned(), what: what.clone(), then, now }.into())
             }
-        }
-        return Ok(());
+        };
     }
     let text = serde_json::to_string_pretty(&now).map_err(|error| Fail::input(error.to_string()))?;
     Ok(::record::atomic_write(&path, text.as_bytes())?)

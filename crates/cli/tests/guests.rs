@@ -66,6 +66,29 @@ fn a_guest_is_judged_beside_the_recorded_engines() {
     assert!(info.contains("\"engine\": \"shy\"") && info.contains("\"source\": \"live\""), "its own name and source are kept");
 }
 
+/// A version is what a program says of itself: outcomes are kept by what the program is.
+#[test]
+fn a_run_is_not_continued_with_another_program_of_a_guest() {
+    let sandbox = with_shy();
+    let run = |more: &[&str]| {
+        let common = ["run", "--suite", "smoke", "--no-timing", "--only", "/mine/", "--out", "out"];
+        sandbox.run(&[&common[..], more].concat())
+    };
+    let engine = ["--engine", "mine=sh 'shy oracle.sh'"];
+    let with = |more: &[&'static str]| [&engine[..], more].concat();
+    let asked = || std::fs::read(sandbox.path("out/outcomes.frames")).unwrap();
+    run(&with(&[])).expect(1, &["6 skip"]);
+    let first = asked();
+    run(&with(&["--resume"])).expect(1, &["6 skip"]);
+    assert_eq!(asked(), first, "nothing was asked twice");
+    sandbox.write("shy oracle.sh", &SHY.replace("no such robot", "no robot today"));
+    run(&with(&["--resume"])).expect(2, &["another program of engine mine", "--mixed"]);
+    run(&["--resume"]).expect(2, &["another program of engine mine", "none now"]);
+    assert_eq!(asked(), first, "and nothing is lost");
+    run(&with(&["--resume", "--mixed"])).expect(1, &["6 skip"]);
+    run(&with(&["--resume"])).expect(1, &["6 skip"]);
+}
+
 #[test]
 fn the_conformance_test_ends_with_the_right_code() {
     let sandbox = with_shy();

@@ -4,6 +4,7 @@ pub use crate::process::Limits;
 use crate::process::Process;
 use crate::request;
 use harness::frame::{Block, Frame};
+use harness::provenance::PROGRAM;
 use harness::{Identity, Prepared, Problem, Quantity, Reading, ReadingNote, Refusal, RobotFile, Route, Subject};
 use model::StateBatch;
 use record::EngineSource;
@@ -77,6 +78,12 @@ impl Oracle {
             let own = std::mem::replace(&mut self.identity.name, name.to_owned());
             self.identity.build.insert("engine".into(), own);
         }
+        self
+    }
+
+    /// The same oracle with the content hash of its program in its build.
+    pub fn with_program(mut self, hash: &str) -> Self {
+        self.identity.build.insert(PROGRAM.into(), hash.into());
         self
     }
 
@@ -198,23 +205,7 @@ impl Session {
         let path = file.path.to_str().ok_or_else(|| Refusal::Failed("the file's path is not UTF-8; rename it".into()))?;
         let header = json!({"op": "read", "file": path, "format": file.format.name(), "base": file.base.name()});
         let answer = self.ask(header, Vec::new())?;
-        let bad = |message: String| Refusal::Failed(format!("the engine's reading: {message}"));
-        let model = answer.header.get("model").ok_or_else(|| bad("there is no model".into()))?;
-        let description = formats::neutral::parse(&model.to_string(), "the model").map_err(|error| bad(error.to_string()))?;
-        let canonical = description.canonical().map_err(|error| bad(error.to_string()))?;
-        // States and answers are in the order of the bodies: one that would change here would mix them up.
-        if canonical.bodies != description.bodies {
-            return Err(bad("its bodies are not in depth-first order without fixed joints".into()));
-        }
-        for (key, expected) in [("nq", canonical.nq()), ("nv", canonical.nv())] {
-            let found = answer.header.get(key).and_then(Value::as_u64);
-            if found != Some(expected as u64) {
-                return Err(bad(format!("{key} is {found:?}, the model has {expected}")));
-            }
-        }
-        let keyframes = keyframes(&answer, canonical.nq()).map_err(bad)?;
-        let notes = answer.header.get("notes").and_then(Value::as_array).map_or(&[][..], Vec::as_slice);
-        let reading = Reading { description: canonical, notes: notes.iter().map(note).collect(), keyframes };
+        let reading = reading(&answer).map_err(|message| Refusal::Failed(format!("the engine's reading: {message}")))?;
         self.reading = Some((file.clone(), reading.clone()));
         Ok(reading)
     }
@@ -302,7 +293,34 @@ impl Drop for Asked<'_> {
     }
 }
 
-/// A parser's note; what is no text in it is left empty.
+/// What an answer to `read` tells.
+///
+/// # Errors
+/// A sentence, when it is no robot whose states and answers could be given in the order of its bodies.
+pub(crate) fn reading(answer: &Frame) -> Result<Reading, String> {
+    let model = answer.header.get("model").ok_or("there is no model")?;
+    let description = formats::neutral::parse(&model.to_string(), "the model").map_err(|error| error.to_string())?;
+    let canonical = description.canonical().map_err(|error| error.to_string())?;
+    // States and answers are in the order of the bodies: one that would change here would mix them up.
+    if canonical.bodies != description.bodies {
+        let moved = description.bodies.iter().zip(&canonical.bodies).find(|(given, due)| given.name != due.name);
+        let found = moved.map_or_else(
+            || "the last ones are fixed to others".to_owned(),
+            |(given, due)| format!("{} stands where {} is due", given.name, due.name),
+        );
+        return Err(format!("its bodies are not in depth-first order without fixed joints: {found}"));
+    }
+    for (key, due) in [("nq", canonical.nq()), ("nv", canonical.nv())] {
+        let found = answer.header.get(key).unwrap_or(&Value::Null);
+        if found.as_u64() != Some(due as u64) {
+            return Err(format!("{key} is {found}, the model has {due}"));
+        }
+    }
+    let keyframes = keyframes(answer, canonical.nq())?;
+    let notes = answer.header.get("notes").and_then(Value::as_array).map_or(&[][..], Vec::as_slice);
+    Ok(Reading { description: canonical, notes: notes.iter().map(note).collect(), keyframes })
+}
+
 /// The configurations that the file names, if any.
 fn keyframes(answer: &Frame, nq: usize) -> Result<Vec<Vec<f64>>, String> {
     let Some(block) = answer.block("keyframes") else { return Ok(Vec::new()) };
@@ -315,6 +333,7 @@ fn keyframes(answer: &Frame, nq: usize) -> Result<Vec<Vec<f64>>, String> {
     Ok(block.data.chunks_exact(nq).map(<[f64]>::to_vec).collect())
 }
 
+/// A parser's note; what is no text in it is left empty.
 fn note(note: &Value) -> ReadingNote {
     let text = |key: &str| note.get(key).and_then(Value::as_str).map(str::to_owned);
     ReadingNote { cause: text("cause").unwrap_or_default(), subject: text("subject"), text: text("text").unwrap_or_default() }

@@ -2,6 +2,7 @@
 
 use crate::hash;
 use record::{GitInfo, Host, RunInfo};
+use std::collections::BTreeMap;
 use std::path::Path;
 use std::process::Command;
 
@@ -22,15 +23,23 @@ pub fn collect(root: &Path) -> RunInfo {
     }
 }
 
-/// What a resumed run must share with the run that it continues: (name, value) pairs.
-pub fn fingerprint(info: &RunInfo) -> Vec<(&'static str, String)> {
-    vec![
+/// Where the build of an engine that a user brings along holds the content hash of its program: a version is what a program says of itself.
+pub const PROGRAM: &str = "program";
+
+/// What a resumed run must share with the run that it continues, by name.
+pub fn fingerprint(info: &RunInfo) -> BTreeMap<String, String> {
+    let run = [
         ("suite", info.suite_hash.clone()),
         ("program", info.binary_hash.clone()),
         ("set of target features", hash::of(info.target_features.join(",").as_bytes())),
         ("libm", libm()),
         ("source of answers", if info.live { "live".into() } else { "recorded".into() }),
-    ]
+    ];
+    let guests = info.engines.iter().filter_map(|engine| {
+        let program = engine.build.get(PROGRAM)?;
+        Some((format!("program of engine {}", engine.name), program.clone()))
+    });
+    run.into_iter().map(|(what, value)| (what.to_owned(), value)).chain(guests).collect()
 }
 
 /// A hash of the bits that the mathematics library gives for sines and cosines at fixed arguments.

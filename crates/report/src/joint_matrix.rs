@@ -210,12 +210,13 @@ fn sentence(overview: &Overview, matrix: &JointMatrix, engine: usize) -> Markup 
         };
         largest.into_iter().map(words).collect::<Vec<_>>()
     };
-    let mut lacking = rows_where(&|cell| cell.state == State::Unsupported);
+    // A row of which the engine answers one quantity and refuses another is offered in part, not lacking.
+    let answered: BTreeSet<usize> = cells.iter().filter(|cell| cell.state != State::Unsupported).map(|cell| cell.at[0]).collect();
+    let mut lacking = rows_where(&|cell| !answered.contains(&cell.at[0]));
     // Without the joint there is no armature on it either.
     let types = lacking.clone();
     lacking.retain(|row| row.strip_suffix(WITH_ARMATURE).is_none_or(|kind| !types.iter().any(|other| other == kind)));
-    let mut partly = rows_where(&|cell| cell.state != State::Unsupported && !cell.lacking.is_empty());
-    partly.retain(|row| !lacking.contains(row));
+    let partly = rows_where(&|cell| answered.contains(&cell.at[0]) && !cell.lacking.is_empty());
 
     let agreeing = cells.iter().filter(|cell| cell.state == State::Agrees);
     let closest = agreeing.filter_map(|cell| Some((cell.numbers[2]?, *cell))).min_by(|(one, _), (other, _)| one.total_cmp(other));

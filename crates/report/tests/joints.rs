@@ -58,6 +58,12 @@ fn cell(matrix: &Value, engine: usize, kind: &str, armature: bool) -> Option<(St
     Some((text(&cell["state"]), text(&cell["worst"][0]), text(&cell["worst"][3]), cell["robots"].as_u64()?, lacking))
 }
 
+/// What is said of an engine.
+fn sentence<'a>(section: &'a str, engine: &str) -> &'a str {
+    let start = section.find(&format!("<b>{engine}</b>")).unwrap();
+    &section[start..start + section[start..].find("</li>").unwrap()]
+}
+
 #[test]
 fn cells_tell_agreement_deviation_and_what_is_not_offered() {
     let written = Written::of(&RunInfo::default(), &rows());
@@ -91,14 +97,28 @@ fn cells_tell_agreement_deviation_and_what_is_not_offered() {
 
     let section = written.section("joints");
     assert_eq!(section.matches("<button").count(), 8);
-    let sentence = |engine: &str| {
-        let start = section.find(&format!("<b>{engine}</b>")).unwrap();
-        &section[start..start + section[start..].find("</li>").unwrap()]
-    };
+    let sentence = |engine| sentence(section, engine);
     assert!(sentence("pinocchio").contains("at least +0.6 decades"), "{}", sentence("pinocchio"));
     assert!(sentence("pinocchio").contains("; deviates by known cause in inverse dynamics (3e-12); does not offer planar with armature."));
     assert!(sentence("mujoco").contains("; does not offer helical; offers in part free."), "{}", sentence("mujoco"));
     assert!(sentence("mujoco").contains("; is outside its gate in inverse dynamics (1e-11); gives no answer in inverse dynamics;"));
+}
+
+#[test]
+fn a_row_with_an_answer_and_a_refusal_is_offered_in_part() {
+    let turning = |quantity: &str| row("rapier", "joints-revolute-free-armature", "revolute", quantity, "forces");
+    let ball = |quantity: &str| row("rapier", "joints-spherical-free-armature", "spherical", quantity, "forces");
+    let refused = |row: Record| row.without_value(Verdict::Skip, "no armature").deviating("known");
+    let rows = [
+        turning("id").gated(1e-16, Relation::Le, 1e-14),
+        refused(turning("kinetic_energy")),
+        refused(ball("id")),
+        refused(ball("kinetic_energy")),
+    ];
+    let section = Written::of(&RunInfo::default(), &rows).section("joints").to_owned();
+    let said = sentence(&section, "rapier");
+    assert!(said.contains("; does not offer spherical with armature; offers in part revolute with armature."), "{said}");
+    assert_eq!(section.matches("button class=\"skip\"").count(), 3, "each refused quantity is still shown as such");
 }
 
 #[test]

@@ -48,7 +48,12 @@ pub(super) fn ask(talk: &mut Talk, index: usize, scene: &Scene, offered: &Method
             talk.note(Standing::Wrong, "prepare reads the robot back", &found, &[]);
         }
     }
-    let (header, blocks) = states(problem, &problem.states);
+    evaluate_all(talk, index, scene, offered, answers);
+}
+
+/// Every quantity by every method of the robot that it holds.
+pub(super) fn evaluate_all(talk: &mut Talk, index: usize, scene: &Scene, offered: &Methods, answers: &mut Answers) {
+    let (header, blocks) = states(&scene.problem, &scene.problem.states);
     if talk.expect("states are taken", header, blocks, &["ok"]).is_none() {
         return;
     }
@@ -145,14 +150,14 @@ fn readback(talk: &mut Talk, scene: &Scene, found: &[f64]) {
 }
 
 impl Answers {
-    /// Compares with native, and looks for the mistake behind what differs.
-    pub(super) fn judge(&self, talk: &mut Talk, scenes: &[Scene]) {
+    /// Compares with native, and looks for the mistake behind what differs; `route` is added to what is noted.
+    pub(super) fn judge(&self, talk: &mut Talk, scenes: &[Scene], route: &str) {
         for ((quantity, method), given) in &self.given {
             let Some(quantity) = Quantity::parse(quantity) else { continue };
             let compared: Vec<Compared> =
                 given.iter().filter_map(|(index, value)| Compared::new(&scenes[*index], quantity, value)).collect();
             let wrong: Vec<&Compared> = compared.iter().filter(|answer| !answer.right()).collect();
-            let named = format!("{} by {method}", quantity.name());
+            let named = format!("{} by {method}{route}", quantity.name());
             let worst = compared.iter().map(|answer| answer.error).fold(0.0, harness::measure::worst);
             if wrong.is_empty() {
                 talk.note(Standing::Right, &named, &format!("{} robots, largest error {worst:.1e}", compared.len()), &[]);

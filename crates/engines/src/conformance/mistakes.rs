@@ -1,6 +1,9 @@
 //! Conventions that are easily mistaken, as hypotheses: what would an oracle answer that is right but for this?
 
-use super::turn::{ONE, SWAP, Turn, blocks, cross, of_free, of_planar, of_spherical, places, product, transposed, turned_back};
+use super::orders;
+use super::turn::{
+    ONE, SWAP, Turn, blocks, cross, of_free, of_order, of_planar, of_spherical, places, product, put_back, transposed, turned_back,
+};
 use harness::{Problem, Quantity};
 use model::{Description, JointType};
 use std::f64::consts::TAU;
@@ -38,7 +41,7 @@ pub(super) struct Mistake {
 const NONE: Mistake = Mistake { seems: "", advice: "", robot: |_| (), state: |_, _| (), turn: None, answer: |_, _, _, _| () };
 
 /// Every mistake that is looked for.
-pub(super) const MISTAKES: [Mistake; 35] = [
+pub(super) const MISTAKES: [Mistake; 41] = [
     // ---- configurations
     Mistake {
         seems: "quaternions are read as (w, x, y, z)",
@@ -111,6 +114,49 @@ pub(super) const MISTAKES: [Mistake; 35] = [
         seems: "the terms of velocity are left out",
         advice: "h(q, v) holds the Coriolis and centrifugal forces as well as gravity",
         state: |_, state| state.v.fill(0.0),
+        ..NONE
+    },
+    // ---- orders
+    Mistake {
+        seems: "a cylindrical joint's numbers are taken as [distance, angle]",
+        advice: "they are [angle, distance]",
+        state: |robot, state| put_back(&orders::joints_reversed(robot, is_cylindrical).q, &mut state.q),
+        turn: Some(|robot, _| of_order(&orders::joints_reversed(robot, is_cylindrical).v)),
+        ..NONE
+    },
+    Mistake {
+        seems: "Euler angles are taken as those about x, y and z",
+        advice: "they turn about z first, then about the moved y, then about the moved x",
+        state: |robot, state| put_back(&orders::joints_reversed(robot, |kind| kind == JointType::EulerZyx).q, &mut state.q),
+        turn: Some(|robot, _| of_order(&orders::joints_reversed(robot, |kind| kind == JointType::EulerZyx).v)),
+        ..NONE
+    },
+    Mistake {
+        seems: "degrees of freedom are taken depth-first with siblings by name",
+        advice: "q, v and what is dual to v stand in the order of the description's bodies",
+        state: |robot, state| put_back(&orders::siblings_by_name(robot).q, &mut state.q),
+        turn: Some(|robot, _| of_order(&orders::siblings_by_name(robot).v)),
+        ..NONE
+    },
+    Mistake {
+        seems: "degrees of freedom are taken depth-first with siblings from the last to the first",
+        advice: "q, v and what is dual to v stand in the order of the description's bodies",
+        state: |robot, state| put_back(&orders::siblings_reversed(robot).q, &mut state.q),
+        turn: Some(|robot, _| of_order(&orders::siblings_reversed(robot).v)),
+        ..NONE
+    },
+    Mistake {
+        seems: "degrees of freedom are taken level by level",
+        advice: "q, v and what is dual to v stand in the order of the description's bodies",
+        state: |robot, state| put_back(&orders::breadth_first(robot).q, &mut state.q),
+        turn: Some(|robot, _| of_order(&orders::breadth_first(robot).v)),
+        ..NONE
+    },
+    Mistake {
+        seems: "degrees of freedom are taken by the names of their joints",
+        advice: "q, v and what is dual to v stand in the order of the description's bodies",
+        state: |robot, state| put_back(&orders::by_name(robot).q, &mut state.q),
+        turn: Some(|robot, _| of_order(&orders::by_name(robot).v)),
         ..NONE
     },
     // ---- the description
@@ -325,6 +371,10 @@ fn turns_about_skew_axis(kind: JointType) -> bool {
         JointType::Revolute { axis } | JointType::Helical { axis, .. } => axis.iter().filter(|&&x| x != 0.0).count() > 1,
         _ => false,
     }
+}
+
+fn is_cylindrical(kind: JointType) -> bool {
+    matches!(kind, JointType::Cylindrical { .. })
 }
 
 fn inertias(robot: &mut Description, change: impl Fn([f64; 6]) -> [f64; 6]) {

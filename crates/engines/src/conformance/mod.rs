@@ -2,11 +2,13 @@
 //!
 //! It asks about small robots of every kind of joint. What the oracle does not offer is lacking, and no fault. What it answers is compared with
 //! the native kernels in the harness' measures; where it differs, the usual mistakes of convention are tried as hypotheses, one by one and in
-//! pairs, and the one that explains every answer is named.
+//! pairs, and the one that explains every answer is named. An oracle that reads files is asked about the robot that it tells in the same way.
 
 mod answers;
+mod files;
 mod manners;
 mod mistakes;
+mod orders;
 mod robots;
 mod talk;
 mod turn;
@@ -71,7 +73,7 @@ impl Conformance {
 /// Tests a program; `watch` is told what is being done.
 ///
 /// # Errors
-/// A sentence, when our own robots cannot be made; whatever the program does is a finding.
+/// A sentence, when our own robots or files cannot be made; whatever the program does is a finding.
 pub fn check_program(command: &[OsString], limits: Limits, watch: &dyn Fn(&str)) -> Result<Conformance, String> {
     let start = || Process::start(command, limits).map(|process| Box::new(process) as Box<dyn Line>);
     check(&start, watch)
@@ -80,7 +82,7 @@ pub fn check_program(command: &[OsString], limits: Limits, watch: &dyn Fn(&str))
 /// Tests whoever answers on the lines that `start` opens.
 ///
 /// # Errors
-/// A sentence, when our own robots cannot be made.
+/// A sentence, when our own robots or files cannot be made.
 pub fn check(start: &dyn Fn() -> Result<Box<dyn Line>, String>, watch: &dyn Fn(&str)) -> Result<Conformance, String> {
     let scenes: Vec<Scene> = robots::all()?.into_iter().map(|(shows, problem)| Scene::new(shows, problem)).collect();
     let mut talk = Talk::new(start);
@@ -101,8 +103,10 @@ pub fn check(start: &dyn Fn() -> Result<Box<dyn Line>, String>, watch: &dyn Fn(&
         answers::ask(&mut talk, index, scene, &offered, &mut answers);
     }
     watch("mistakes");
-    answers.judge(&mut talk, &scenes);
+    answers.judge(&mut talk, &scenes, "");
     answers::lacking(&mut talk, &offered);
+    watch("files");
+    files::read(&mut talk, &offered)?;
     watch("the end");
     manners::end(&mut talk);
     Ok(talk.conformance)

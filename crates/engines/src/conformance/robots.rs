@@ -6,7 +6,7 @@ use model::{Description, JointType};
 use record::ModelOrigin;
 
 /// What is shown, the generator's call, and how many of its bodies are kept.
-const ROBOTS: [(&str, &str, usize); 19] = [
+const ROBOTS: [(&str, &str, usize); 25] = [
     ("a revolute joint", "joints:kind=revolute,base=fixed,shape=single", 1),
     ("a chain of revolute joints", "joints:kind=revolute,base=fixed,shape=branched", 4),
     ("a tree of revolute joints", "joints:kind=revolute,base=fixed,shape=branched", usize::MAX),
@@ -20,17 +20,24 @@ const ROBOTS: [(&str, &str, usize); 19] = [
     ("a tree with planar joints", "joints:kind=planar,base=fixed,shape=branched", usize::MAX),
     ("a universal joint", "joints:kind=universal,base=fixed,shape=single", 1),
     ("a tree with universal joints", "joints:kind=universal,base=fixed,shape=branched", usize::MAX),
+    ("a translation joint", "joints:kind=translation,base=fixed,shape=single", 1),
+    ("a floating tree with translation joints", "joints:kind=translation,base=free,shape=branched", usize::MAX),
+    ("a cylindrical joint", "joints:kind=cylindrical,base=fixed,shape=single", 1),
+    ("a floating tree with cylindrical joints", "joints:kind=cylindrical,base=free,shape=branched", usize::MAX),
+    ("a joint of Euler angles", "joints:kind=euler_zyx,base=fixed,shape=single", 1),
+    ("a floating tree with joints of Euler angles", "joints:kind=euler_zyx,base=free,shape=branched", usize::MAX),
     ("a free body", "joints:kind=revolute,base=free,shape=single", 1),
     ("a revolute joint on a free body", "joints:kind=revolute,base=free,shape=single", usize::MAX),
     ("a floating tree of revolute joints", "joints:kind=revolute,base=free,shape=branched", usize::MAX),
     ("a floating tree with spherical joints", "joints:kind=spherical,base=free,shape=branched", usize::MAX),
-    ("a floating tree with every joint but helical", "joints:kind=common,base=free,shape=branched", usize::MAX),
-    ("a floating tree with every joint", "joints:kind=mixed,base=free,shape=branched", usize::MAX),
+    ("a floating tree with every joint from revolute to universal but helical", "joints:kind=common,base=free,shape=branched", usize::MAX),
+    ("a floating tree with every joint from revolute to universal", "joints:kind=mixed,base=free,shape=branched", usize::MAX),
 ];
 
 /// States at which each robot is asked: one of each case, and the fast one twice as far from the first as from the last.
 pub(super) const STATES: usize = 6;
-const SEED: u64 = 11;
+/// Seed of the states.
+pub(super) const SEED: u64 = 11;
 
 /// The robots with what each shows. One-dof joints have armature, all but free joints damping and dry friction, so that none can be mistaken
 /// for nothing.

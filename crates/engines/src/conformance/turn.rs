@@ -83,6 +83,20 @@ pub(super) fn of_planar(robot: &Description, state: &State) -> Turn {
     turn
 }
 
+/// v_e has our numbers in another order: T of the permutation that `ours` gives, the place in ours of each number of v_e.
+pub(super) fn of_order(ours: &[usize]) -> Turn {
+    let n = ours.len();
+    let mut turn = Turn { t: vec![0.0; n * n], b: vec![0.0; n] };
+    ours.iter().enumerate().for_each(|(row, &column)| *turn.entry(row, column) = 1.0);
+    turn
+}
+
+/// Numbers that were meant in another order, in ours.
+pub(super) fn put_back(ours: &[usize], numbers: &mut [f64]) {
+    let given = numbers.to_vec();
+    ours.iter().zip(given).for_each(|(&place, number)| numbers[place] = number);
+}
+
 impl Turn {
     fn identity(n: usize) -> Self {
         let t = (0..n * n).map(|at| if at / n == at % n { 1.0 } else { 0.0 }).collect();

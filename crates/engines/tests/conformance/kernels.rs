@@ -2,6 +2,7 @@
 
 use featherbench_engines::Native;
 use featherbench_engines::conformance::Line;
+use formats::urdf::{self, Base, Options};
 use harness::frame::{Block, Frame};
 use harness::{Problem, Quantity, Refusal, Subject};
 use model::StateBatch;
@@ -24,6 +25,8 @@ pub struct Kernels {
     pub problem: Option<Problem>,
     /// The states as they came.
     states: Option<(Frame, StateBatch)>,
+    /// Whether the robot is one of a file.
+    as_read: bool,
     /// Evaluations so far.
     pub evaluated: usize,
 }
@@ -46,6 +49,10 @@ pub const OFFERED: [Quantity; 14] = [
     Quantity::StoredEntries,
 ];
 
+/// What it answers of a robot as read.
+const AS_READ: [Quantity; 5] =
+    [Quantity::InverseDynamics, Quantity::Bias, Quantity::MassMatrix, Quantity::ForwardDynamics, Quantity::KineticEnergy];
+
 fn failed(reason: impl ToString) -> Refusal {
     Refusal::Failed(reason.to_string())
 }
@@ -53,7 +60,7 @@ fn failed(reason: impl ToString) -> Refusal {
 impl Kernels {
     /// An oracle that knows no robot yet.
     pub fn new(plant: Plant) -> Self {
-        Self { plant, problem: None, states: None, evaluated: 0 }
+        Self { plant, problem: None, states: None, as_read: false, evaluated: 0 }
     }
 
     fn answer(&mut self, request: &Frame) -> Result<Frame, Refusal> {
@@ -65,7 +72,7 @@ impl Kernels {
                 Ok(Frame::new(json!({"protocol": 1, "engine": "kernels", "version": "1", "build": {}, "methods": methods}), Vec::new()))
             }
             "prepare" => {
-                (self.problem, self.states) = (None, None);
+                (self.problem, self.states, self.as_read) = (None, None, false);
                 let model = request.header.get("model").ok_or_else(|| failed("there is no model"))?;
                 let description = formats::neutral::parse(&model.to_string(), "request").map_err(failed)?;
                 let problem = Problem::new(&description, "", ModelOrigin::Generated, 1, 0).map_err(failed)?;
@@ -73,6 +80,19 @@ impl Kernels {
                 let header = json!({"nq": problem.description.nq(), "nv": problem.states.nv});
                 self.problem = Some(problem);
                 Ok(Frame::new(header, vec![readback]))
+            }
+            "read" => {
+                (self.problem, self.states, self.as_read) = (None, None, true);
+                if request.text("format") != "urdf" {
+                    return Err(Refusal::Unsupported("the kernels read URDF alone".into()));
+                }
+                let base = if request.text("base") == "free" { Base::Floating } else { Base::Fixed };
+                let (description, _) = urdf::read(request.text("file"), &Options { base, ..Options::default() }).map_err(failed)?;
+                let problem = Problem::new(&description, "", ModelOrigin::Robot, 1, 0).map_err(failed)?;
+                let model: Value = serde_json::from_str(&formats::neutral::to_string(&description).map_err(failed)?).map_err(failed)?;
+                let header = json!({"nq": description.nq(), "nv": description.nv(), "model": model, "notes": []});
+                self.problem = Some(problem);
+                Ok(Frame::new(header, Vec::new()))
             }
             "states" => {
                 self.states = None;
@@ -98,6 +118,9 @@ impl Kernels {
                 let quantity = Quantity::parse(request.text("quantity")).filter(|quantity| OFFERED.contains(quantity));
                 let quantity = quantity.filter(|_| request.text("method") == "kernel");
                 let quantity = quantity.ok_or_else(|| Refusal::Unsupported("there is no such kernel".into()))?;
+                if self.as_read && !AS_READ.contains(&quantity) {
+                    return Err(Refusal::Unsupported("a robot as read has no such answer".into()));
+                }
                 let (Some(problem), Some((_, states))) = (&self.problem, &self.states) else { return Err(failed("nothing to evaluate")) };
                 let (first, count) = (number("first")?, number("count")?);
                 if first + count > states.count() {

@@ -2,11 +2,13 @@
 //! and each mistake is found and called by its name.
 
 mod kernels;
+mod reading;
 
 use featherbench_engines::conformance::{Conformance, Line, Standing, check};
 use harness::Problem;
 use harness::frame::Frame;
 use kernels::{HONEST, Kernels, OFFERED, Plant};
+use model::JointType;
 use serde_json::{Value, json};
 
 fn test(plant: Plant) -> Conformance {
@@ -21,7 +23,7 @@ fn wrong(plant: Plant) -> Vec<String> {
     told.collect()
 }
 
-/// Asserts that the mistake is named in the findings about these quantities, and that nothing else is wrong.
+/// Asserts that the mistake is named in the findings about these quantities, and that nothing else is wrong but the same of robots as read.
 #[track_caller]
 fn named(plant: Plant, quantities: &[&str], words: &str) {
     let wrong = wrong(plant);
@@ -30,7 +32,9 @@ fn named(plant: Plant, quantities: &[&str], words: &str) {
         let about = about.unwrap_or_else(|| panic!("{quantity} is not among {wrong:#?}"));
         assert!(about.contains(words) && !about.contains("another cause"), "'{words}' is not in {about}");
     }
-    assert_eq!(wrong.len(), quantities.len(), "{wrong:#?}");
+    let (as_read, built): (Vec<&String>, Vec<&String>) = wrong.iter().partition(|line| line.contains(", as read:"));
+    assert_eq!(built.len(), quantities.len(), "{wrong:#?}");
+    assert!(as_read.iter().all(|line| line.contains(words) && !line.contains("another cause")), "{as_read:#?}");
 }
 
 #[test]
@@ -38,10 +42,12 @@ fn an_honest_oracle_conforms() {
     let conformance = test(HONEST);
     assert!(conformance.conforms(), "{:#?}", conformance.of(Standing::Wrong).collect::<Vec<_>>());
     assert_eq!(conformance.engine, "kernels 1");
-    let values = conformance.of(Standing::Right).filter(|finding| finding.found.contains("19 robots")).count();
+    let values = conformance.of(Standing::Right).filter(|finding| finding.found.contains("25 robots")).count();
     assert_eq!(values, OFFERED.len(), "every quantity of every robot was compared");
+    let as_read = conformance.of(Standing::Right).filter(|finding| finding.found.contains("2 robots")).count();
+    assert_eq!(as_read, 5, "and every quantity that is answered of robots as read");
     let lacking: Vec<_> = conformance.of(Standing::Lacks).map(|finding| finding.what.as_str()).collect();
-    assert_eq!(lacking, ["the ids of requests", "quantities"]);
+    assert_eq!(lacking, ["the ids of requests", "quantities", "it reads an MJCF"]);
 }
 
 /// Changes a block of the request `states`, state after state, with the robot at hand.
@@ -85,7 +91,7 @@ fn quaternions_in_another_order() {
             let mut at = 0;
             for body in &problem.description.bodies {
                 let kind = body.joint.kind;
-                if matches!(kind, model::JointType::Spherical | model::JointType::Free) {
+                if matches!(kind, JointType::Spherical | JointType::Free) {
                     let end = at + kind.nq();
                     q[end - 4..end].rotate_left(1);
                 }
@@ -362,7 +368,7 @@ fn ids_and_deaths() {
             answer.header.insert("id".into(), id.clone());
         }
     };
-    assert!(test(Plant { answer: echo, ..HONEST }).of(Standing::Lacks).all(|finding| finding.what == "quantities"));
+    assert!(test(Plant { answer: echo, ..HONEST }).of(Standing::Lacks).all(|finding| finding.what != "the ids of requests"));
     let wrong_id = |answer: &mut Frame, _: &Frame, _: &Kernels| drop(answer.header.insert("id".into(), json!(7)));
     assert!(wrong(Plant { answer: wrong_id, ..HONEST }).iter().any(|line| line.contains("41 was sent, 7 came back")));
     let dies = |answer: &mut Frame, request: &Frame, _: &Kernels| {
@@ -372,4 +378,34 @@ fn ids_and_deaths() {
     };
     let found = wrong(Plant { answer: dies, ..HONEST });
     assert!(found.len() == 1 && found[0].contains("numbers that are none get an answer") && found[0].contains("died"), "{found:#?}");
+}
+
+/// The numbers of joints with several degrees of freedom in another order, there and back.
+#[test]
+fn coordinates_in_another_order() {
+    fn reversed(frame: &mut Frame, kernels: &Kernels, kind: &str) {
+        for (name, size) in
+            [("q", JointType::nq as fn(JointType) -> usize), ("v", JointType::nv), ("a", JointType::nv), ("tau", JointType::nv)]
+        {
+            each_state(frame, kernels, name, |x, _, problem| {
+                let mut at = 0;
+                for joint in problem.description.bodies.iter().map(|body| body.joint.kind) {
+                    if joint.name() == kind {
+                        x[at..at + size(joint)].reverse();
+                    }
+                    at += size(joint);
+                }
+            });
+        }
+    }
+    let distance_first = |frame: &mut Frame, kernels: &Kernels| reversed(frame, kernels, "cylindrical");
+    let x_first = |frame: &mut Frame, kernels: &Kernels| reversed(frame, kernels, "euler_zyx");
+    // What has no dofs in its answer tells alone: the rest would have to come back turned.
+    for (request, words) in [(distance_first as fn(&mut Frame, &Kernels), "[distance, angle]"), (x_first, "about x, y and z")] {
+        let found = wrong(Plant { request, ..HONEST });
+        for quantity in ["body_placement", "body_velocity", "kinetic_energy", "momentum"] {
+            let about = found.iter().find(|line| line.starts_with(quantity)).unwrap_or_else(|| panic!("{quantity}: {found:#?}"));
+            assert!(about.contains(words) && !about.contains("another cause"), "{about}");
+        }
+    }
 }

@@ -1,0 +1,299 @@
+//! The op `read`: files that we wrote, what the oracle tells of them, and its answers about the robot that it then holds.
+//!
+//! A parser may edit what it reads, so a robot that differs from the file is no fault here (`featherbench compare` says where engines
+//! differ). That the answers are those of the robot that it tells, in the order in which it tells it, is what is tested.
+
+use super::answers::{self, Answers};
+use super::manners::Methods;
+use super::talk::Talk;
+use super::values::Scene;
+use super::{Standing, robots};
+use formats::{OnLoss, mjcf, urdf};
+use harness::frame::Frame;
+use harness::{FileBase, FileFormat, Problem, Quantity, Reading};
+use model::generate::Family;
+use model::{BodyDescription, Description, JointType, Placement};
+use record::ModelOrigin;
+use serde_json::{Value, json};
+use std::path::Path;
+
+/// What is answered of a robot as read.
+const AS_READ: [Quantity; 6] = [
+    Quantity::InverseDynamics,
+    Quantity::Bias,
+    Quantity::MassMatrix,
+    Quantity::MassMatrixProbe,
+    Quantity::ForwardDynamics,
+    Quantity::KineticEnergy,
+];
+/// The causes that a note may give.
+const CAUSES: [&str; 13] = [
+    "mass_edited",
+    "com_edited",
+    "inertia_edited",
+    "balanceinertia",
+    "bounds",
+    "geometry_dropped",
+    "from_geometry",
+    "fused",
+    "root_welded",
+    "mimic",
+    "gravity_ignored",
+    "not_compared",
+    "warning",
+];
+/// Numbers of order one, through a parser that may diagonalise inertias and turn rotations into angles.
+const SAME: f64 = 1e-9;
+/// More elements in one another than an oracle takes.
+const NESTED: usize = 501;
+/// What no URDF of our own has, as its root is the world: a root that a free base moves. A link is fixed to it.
+const FLOATING: &str = r#"<robot name="floating">
+  <link name="trunk">
+    <inertial><origin xyz="0.02 -0.01 0.05" rpy="0 0 0"/><mass value="4"/>
+      <inertia ixx="0.05" ixy="0.002" ixz="-0.001" iyy="0.06" iyz="0.003" izz="0.04"/></inertial>
+  </link>
+  <link name="lamp">
+    <inertial><origin xyz="0 0 0.03" rpy="0 0 0"/><mass value="0.5"/>
+      <inertia ixx="0.002" ixy="0" ixz="0" iyy="0.003" iyz="0" izz="0.002"/></inertial>
+  </link>
+  <link name="arm">
+    <inertial><origin xyz="0.2 0.01 0" rpy="0 0 0"/><mass value="1"/>
+      <inertia ixx="0.002" ixy="0.0005" ixz="0" iyy="0.02" iyz="0.0001" izz="0.021"/></inertial>
+  </link>
+  <joint name="socket" type="fixed"><origin xyz="0.1 0 0.2" rpy="0 0 0.5"/><parent link="trunk"/><child link="lamp"/></joint>
+  <joint name="shoulder" type="continuous">
+    <origin xyz="0 0.2 0.1" rpy="0.3 -0.2 0.1"/><parent link="trunk"/><child link="arm"/><axis xyz="0 0.6 0.8"/></joint>
+</robot>
+"#;
+
+/// A file of ours.
+struct Written {
+    shows: &'static str,
+    name: &'static str,
+    format: FileFormat,
+    base: FileBase,
+    text: String,
+    /// The robot that it holds.
+    robot: Description,
+}
+
+/// A branched tree of the family `joints`, with names that no parser gives to joints of its own.
+fn tree(kind: &str, base: &str) -> Result<Description, String> {
+    let family = Family::parse(&format!("joints:kind={kind},base={base},shape=branched"));
+    let mut robot = family.and_then(|family| family.generate()).map_err(|error| error.to_string())?;
+    robot.bodies.iter_mut().for_each(|body| body.joint.name = format!("{}_axis", body.name));
+    Ok(robot)
+}
+
+fn files() -> Result<[Written; 3], String> {
+    let fixed = Description { gravity: [0.0, 0.0, -9.81], ..tree("prismatic", "fixed")? };
+    let (fixed_text, _) = urdf::to_string(&fixed, OnLoss::Refuse).map_err(|error| error.to_string())?;
+    let floating = urdf::Options { base: urdf::Base::Floating, ..urdf::Options::default() };
+    let (free, _) = urdf::import(FLOATING, "floating.urdf", &floating).map_err(|error| error.to_string())?;
+    let mut scene = tree("spherical", "free")?;
+    // What MJCF has no place for.
+    for joint in scene.bodies.iter_mut().map(|body| &mut body.joint) {
+        (joint.damping, joint.friction, joint.velocity) = Default::default();
+        if joint.kind == JointType::Free {
+            joint.placement = Placement::default();
+        }
+    }
+    let (scene_text, _) = mjcf::to_string(&scene, OnLoss::Refuse).map_err(|error| error.to_string())?;
+    let (urdf, mjcf) = (FileFormat::Urdf, FileFormat::Mjcf);
+    Ok([
+        Written {
+            shows: "a URDF on a fixed base",
+            name: "fixed.urdf",
+            format: urdf,
+            base: FileBase::Fixed,
+            text: fixed_text,
+            robot: fixed,
+        },
+        Written {
+            shows: "a URDF on a free base",
+            name: "free.urdf",
+            format: urdf,
+            base: FileBase::Free,
+            text: FLOATING.into(),
+            robot: free,
+        },
+        Written { shows: "an MJCF", name: "scene.xml", format: mjcf, base: FileBase::Fixed, text: scene_text, robot: scene },
+    ])
+}
+
+/// Has it read the files and asks about each; what it does not read is lacking.
+///
+/// # Errors
+/// A sentence, when the files cannot be written.
+pub(super) fn read(talk: &mut Talk, offered: &Methods) -> Result<(), String> {
+    let folder = tempfile::tempdir().map_err(|error| format!("the files to be read cannot be written: {error}"))?;
+    let offered: Methods = offered.clone().into_iter().filter(|(name, _)| Quantity::parse(name).is_some()).collect();
+    let as_read = |name: &str| Quantity::parse(name).is_some_and(|quantity| AS_READ.contains(&quantity));
+    let (due, beside): (Methods, Methods) = offered.into_iter().partition(|(name, _)| as_read(name));
+    let (mut scenes, mut answers, mut format) = (Vec::new(), Answers::default(), None);
+    for file in files()? {
+        let path = folder.path().join(file.name);
+        std::fs::write(&path, &file.text).map_err(|error| format!("{}: {error}", path.display()))?;
+        let Some(answer) = ask(talk, &file, &path) else { continue };
+        format = format.or(Some(file.format));
+        let reading = match crate::oracle::reading(&answer) {
+            Ok(reading) => reading,
+            Err(reason) => {
+                let advice =
+                    ["`model` is what the engine holds: bodies depth-first in its own order, fixed links merged; nq and nv are its sums"];
+                talk.note(Standing::Wrong, &what(&file), &reason, &advice);
+                continue;
+            }
+        };
+        notes(talk, &answer);
+        compare(talk, &file, &reading);
+        let problem = Problem::new(&reading.description, "conformance", ModelOrigin::Generated, robots::STATES, robots::SEED);
+        let scene = Scene::new(file.shows, problem.map_err(|error| error.to_string())?);
+        answers::evaluate_all(talk, scenes.len(), &scene, &due, &mut answers);
+        if let Some((quantity, methods)) = beside.iter().next() {
+            let header = json!({"op": "evaluate", "quantity": quantity, "method": methods[0], "first": 0, "count": 1, "body": 0});
+            talk.expect("quantities of bodies are unsupported of a robot as read", header, Vec::new(), &["unsupported"]);
+        }
+        scenes.push(scene);
+    }
+    answers.judge(talk, &scenes, ", as read");
+    if let Some(format) = format {
+        refusals(talk, format, folder.path())?;
+    }
+    Ok(())
+}
+
+fn what(file: &Written) -> String {
+    format!("it reads {}", file.shows)
+}
+
+fn request(path: &Path, format: FileFormat, base: FileBase) -> Value {
+    json!({"op": "read", "file": path.to_string_lossy(), "format": format.name(), "base": base.name()})
+}
+
+/// The answer, when it reads the file.
+fn ask(talk: &mut Talk, file: &Written, path: &Path) -> Option<Frame> {
+    // How it answers an op that it does not know: with the same words, it does not know this one.
+    let unknown = talk.ask(json!({"op": "dance"}), Vec::new()).map(|answer| answer.text("reason").replace("dance", "read"));
+    let what = what(file);
+    match talk.ask(request(path, file.format, file.base), Vec::new()) {
+        Err(reason) => talk.note(Standing::Wrong, &what, &reason, &["a file that it does not read is `unsupported`"]),
+        Ok(answer) => match answer.text("status") {
+            "ok" => return Some(answer),
+            "unsupported" => talk.note(Standing::Lacks, &what, answer.text("reason"), &[]),
+            _ if unknown.is_ok_and(|unknown| unknown == answer.text("reason")) => {
+                talk.note(Standing::Lacks, "the op `read`", answer.text("reason"), &[]);
+            }
+            _ => {
+                let advice = ["a file that the engine has no parser for is `unsupported`; `error` is for what should have worked"];
+                talk.note(Standing::Wrong, &what, answer.text("reason"), &advice);
+            }
+        },
+    }
+    None
+}
+
+/// Its notes: texts, of known causes.
+fn notes(talk: &mut Talk, answer: &Frame) {
+    let wrong = match answer.header.get("notes").and_then(Value::as_array) {
+        None => Some("`notes` is no list".to_owned()),
+        Some(notes) => notes.iter().find_map(|note| {
+            let cause = note["cause"].as_str().unwrap_or_default();
+            let subject = note["subject"].is_null() || note["subject"].is_string();
+            match CAUSES.contains(&cause) {
+                false => Some(format!("there is no cause '{cause}'; the causes are {}", CAUSES.join(", "))),
+                true if !subject || !note["text"].is_string() => {
+                    Some(format!("the note {note} has no `text`, or a `subject` that is no name"))
+                }
+                true => None,
+            }
+        }),
+    };
+    let standing = if wrong.is_none() { Standing::Right } else { Standing::Wrong };
+    talk.note(standing, "the notes of a reading have causes of the table", &wrong.unwrap_or_default(), &[]);
+}
+
+/// The robot that it tells beside the file's.
+fn compare(talk: &mut Talk, file: &Written, reading: &Reading) {
+    let (what, told) = (what(file), &reading.description);
+    let noted = |cause: &str| reading.notes.iter().any(|note| note.cause == cause);
+    let floats = |robot: &Description| robot.bodies.first().is_some_and(|body| body.joint.kind == JointType::Free);
+    if floats(&file.robot) && !floats(told) && !noted("root_welded") {
+        let advice =
+            ["with `base` free a URDF's root gets a free joint; where the engine fixes it all the same, a note `root_welded` says so"];
+        return talk.note(Standing::Wrong, &what, "the base is not free", &advice);
+    }
+    let known =
+        |name: &str| links(&file.robot).any(|link| link == name || name.strip_prefix(link).is_some_and(|rest| rest.starts_with('/')));
+    let own = |joint: &str| file.robot.bodies.iter().any(|body| body.joint.name == joint);
+    let stranger = told.bodies.iter().find_map(|body| match known(&body.name) {
+        false => Some(&body.name),
+        true => Some(&body.joint.name).filter(|name| body.joint.kind != JointType::Free && !own(name)),
+    });
+    if let Some(name) = stranger {
+        let found = format!("there is no '{name}' in the file");
+        return talk.note(Standing::Wrong, &what, &found, &["bodies and joints have the file's names"]);
+    }
+    let missing = links(&file.robot).filter(|&link| !links(told).any(|name| name == link)).map(|link| format!("link {link} is missing"));
+    let edits = file.robot.bodies.iter().filter_map(|body| {
+        let found = told.bodies.iter().find(|found| found.name == body.name)?;
+        let parent = |robot: &Description, body: &BodyDescription| body.parent.map(|parent| robot.bodies[parent].name.clone());
+        let same_parent = parent(&file.robot, body) == parent(told, found);
+        let differs = if same_parent { difference(body, found) } else { Some("parent") };
+        Some(format!("{} of {} is another", differs?, body.name))
+    });
+    let differences: Vec<String> = missing.chain(edits).collect();
+    match differences.is_empty() {
+        true => talk.note(Standing::Right, &what, "", &[]),
+        false => talk.note(Standing::Lacks, &format!("{} as it stands", file.shows), &differences.join("; "), &[]),
+    }
+}
+
+/// The names of bodies and frames.
+fn links(robot: &Description) -> impl Iterator<Item = &str> {
+    robot.bodies.iter().map(|body| body.name.as_str()).chain(robot.frames.iter().map(|frame| frame.name.as_str()))
+}
+
+/// The first thing in which two bodies of a name differ.
+fn difference(one: &BodyDescription, other: &BodyDescription) -> Option<&'static str> {
+    let axis = |body: &BodyDescription| body.joint.kind.axis().unwrap_or_default().to_vec();
+    let numbers = |body: &BodyDescription| {
+        let placement = body.joint.placement;
+        [
+            ("mass", vec![body.mass]),
+            ("com", body.com.to_vec()),
+            ("inertia", body.inertia.to_vec()),
+            ("axis", axis(body)),
+            ("rotation", placement.rotation.to_vec()),
+            ("translation", placement.translation.to_vec()),
+        ]
+    };
+    if one.joint.kind.name() != other.joint.kind.name() {
+        return Some("type of joint");
+    }
+    let far = |(one, other): (&Vec<f64>, &Vec<f64>)| one.iter().zip(other).any(|(a, b)| (a - b).abs() > SAME || b.is_nan());
+    let pairs = numbers(one).into_iter().zip(numbers(other));
+    pairs.into_iter().find(|((_, one), (_, other))| far((one, other))).map(|((field, _), _)| field)
+}
+
+/// Files that are none, and what comes after them.
+fn refusals(talk: &mut Talk, format: FileFormat, folder: &Path) -> Result<(), String> {
+    let root = if format == FileFormat::Urdf { "robot" } else { "mujoco" };
+    let broken = format!("<{root} name=\"broken\"><unclosed></{root}>");
+    let nested = format!("<{root} name=\"nested\">{}{}</{root}>", "<a>".repeat(NESTED), "</a>".repeat(NESTED));
+    for (what, text) in [
+        ("a file that is not there", None),
+        ("a file that is not well-formed", Some(broken)),
+        ("a file of 501 elements in one another", Some(nested)),
+    ] {
+        let path = folder.join(format!("{}.xml", what.replace(' ', "-")));
+        if let Some(text) = text {
+            std::fs::write(&path, text).map_err(|error| format!("{}: {error}", path.display()))?;
+        }
+        talk.expect(&format!("{what} is an error"), request(&path, format, FileBase::Fixed), Vec::new(), &["error"]);
+    }
+    let robot = robots::all()?.swap_remove(0).1;
+    let (header, blocks) = crate::request::states(&robot, &robot.states);
+    talk.expect("a file that was refused leaves no robot", header, blocks, &["error"]);
+    Ok(())
+}
