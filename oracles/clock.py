@@ -10,7 +10,6 @@ from __future__ import annotations
 import gc
 from collections.abc import Callable
 from dataclasses import dataclass
-from itertools import cycle, islice
 from statistics import median
 from time import perf_counter_ns
 from typing import TYPE_CHECKING, Any, Protocol
@@ -69,7 +68,9 @@ class Stream:
     def __init__(self, method: Calls, robot: Timed, nothing: Timed, asks: list[Question]) -> None:
         self.call = method.calls.__get__(robot)
         self.states = [method.arguments(robot, ask, robot.change(ask)) for ask in asks]
-        if len(asks) == 1:
+        self.next = 0
+        self.alone = len(asks) == 1
+        if self.alone:
             # An engine may see that it is given the same state again, and compute nothing: the last bit of q differs every other time.
             q, *others = self.states[0]
             self.states.append((q + np.spacing(np.maximum(np.abs(q), 1.0)), *others))
@@ -79,16 +80,23 @@ class Stream:
 
     def time(self, first: int, count: int) -> tuple[int, int]:
         """Nanoseconds that `count` calls take by themselves, from a state on, and the overhead that was subtracted from what was measured."""
-        stream = [self.states[k % len(self.states)] for k in range(first, first + count)]
         gc.disable()
         try:
             for _ in range(TRIALS):
-                spent, overhead = self._loop(stream), round(count * self._overhead(stream))
+                self.next = self.next if self.alone else first
+                spent = self._loop(self._taken(count))
+                overhead = round(count * self._overhead(self._taken(min(SAMPLE, count + 2))))
                 if spent > overhead:
                     return spent - overhead, overhead
         finally:
             gc.enable()
         raise ValueError(f"calling takes {overhead / count:.0f} ns of the {spent / count:.0f} ns that were measured: nothing is left to estimate")
+
+    def _taken(self, count: int) -> list[tuple[Any, ...]]:
+        """The next states."""
+        taken = [self.states[k % len(self.states)] for k in range(self.next, self.next + count)]
+        self.next += count
+        return taken
 
     def _loop(self, stream: list[tuple[Any, ...]]) -> int:
         """Nanoseconds of the calls as Python sees them."""
@@ -98,10 +106,10 @@ class Stream:
             call(*given)
         return perf_counter_ns() - start
 
-    def _overhead(self, stream: list[tuple[Any, ...]]) -> float:
+    def _overhead(self, sample: list[tuple[Any, ...]]) -> float:
         """Nanoseconds of a call that computes nothing, behind one that does: the median over a sample, without the clock's own."""
         call, call_nothing, nothing, found = self.call, self.call_nothing, self.nothing, []
-        for given in islice(cycle(stream), min(SAMPLE, len(stream) + 2)):
+        for given in sample:
             call(*given)
             start = perf_counter_ns()
             call_nothing(*nothing)

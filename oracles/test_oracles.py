@@ -260,10 +260,11 @@ def test_overhead() -> None:
         check("clock: no time below nothing", float("nothing is left" not in str(reason)), 0)
 
 
-def timed(oracle: Oracle, asked: Header) -> Array:
-    """Nanoseconds of a call and its overhead: medians of blocks, as other processes take the processor."""
-    answers = [oracle.must(asked)[0] for _ in range(15)]
-    return np.median([[answer["nanoseconds"], answer["overhead"]] for answer in answers], axis=0) / asked["count"]
+def timed(oracle: Oracle, asked: Header) -> tuple[float, float]:
+    """Nanoseconds of a call and its overhead, of the block that was interrupted least by other processes."""
+    answers = [oracle.must(asked)[0] for _ in range(25)]
+    least = min(answers, key=lambda answer: answer["nanoseconds"] + answer["overhead"])
+    return least["nanoseconds"] / asked["count"], least["overhead"] / asked["count"]
 
 
 def test_clock(oracles: dict[str, Oracle]) -> None:
@@ -276,7 +277,7 @@ def test_clock(oracles: dict[str, Oracle]) -> None:
         estimated = {"drake": 7, "dart": 7}.get(name, 0)
         check(f"{name}: methods that it times", len([m for by_method in hello.get("timed", {}).values() for m in by_method]) - estimated, 0)
         check(f"{name}: its clock", float(hello.get("clock") != ("estimate" if estimated else None)), 0)
-        clock = {"op": "clock", "quantity": "momentum", "method": hello["methods"]["momentum"][0], "first": 20, "count": 100, "body": 25}
+        clock = {"op": "clock", "quantity": "momentum", "method": hello["methods"]["momentum"][0], "first": 20, "count": 25, "body": 25}
         oracle.must({"op": "prepare", "model": data})
         expect(f"{name} times no state", oracle.ask(clock), "error")
         oracle.must({"op": "states", "count": 22}, states)
@@ -286,12 +287,14 @@ def test_clock(oracles: dict[str, Oracle]) -> None:
             before = oracle.must({**asked, "op": "evaluate", "first": 0, "count": 22})[1]["value"]
             expect(f"{name} times no calls", oracle.ask({**asked, "count": 0}), "error")
             streamed, overhead = timed(oracle, asked)
+            whole = streamed + overhead
             check(f"{name}: {quantity} takes time", float(not 100 < streamed < 1e7), 0)
             check(f"{name}: {quantity} has an overhead", float(not 100 < overhead < 1e5), 0)
             after = oracle.must({**asked, "op": "evaluate", "first": 0, "count": 22})[1]["value"]
             check(f"{name}: {quantity} is the same after the clock", float((before != after).any()), 0)
             oracle.must({"op": "states", "count": 1}, alone)
-            check(f"{name}: {quantity} is computed again for the same state", streamed / timed(oracle, asked)[0], 2)
+            check(f"{name}: {quantity} is computed again for the same state", whole / sum(timed(oracle, asked)), 2.5)
+            check(f"{name}: {quantity} is computed again in another block", whole / sum(timed(oracle, {**asked, "count": 1})), 2.5)
             oracle.must({"op": "states", "count": 22}, states)
 
 
