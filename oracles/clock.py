@@ -20,6 +20,8 @@ if TYPE_CHECKING:
     from protocol import Array, Change, Question
 
 SAMPLE = 64  # at most so many calls behind which the overhead is measured: as many as the loop has and two, so that one interruption is no median
+WARM = 5  # at most so many calls beside the clock before each loop: the process has slept, and a first call takes several times as long
+WARM_NS = 200_000  # but no longer than this and a call
 TRIALS = 3  # an interruption may make the overhead longer than everything: it is measured again before there is said to be no estimate
 NOTHING = -1  # the body that a robot without bodies is asked about: the world
 
@@ -79,11 +81,12 @@ class Stream:
         self.call_nothing(*self.nothing)
 
     def time(self, first: int, count: int) -> tuple[int, int]:
-        """Nanoseconds that `count` calls take by themselves, from a state on, and the overhead that was subtracted from what was measured."""
+        """Nanoseconds that `count` calls take by themselves, a few calls behind the state `first`, and the overhead that was subtracted."""
         gc.disable()
         try:
             for _ in range(TRIALS):
                 self.next = self.next if self.alone else first
+                self._warm_up()
                 spent = self._loop(self._taken(count))
                 overhead = round(count * self._overhead(self._taken(min(SAMPLE, count + 2))))
                 if spent > overhead:
@@ -97,6 +100,14 @@ class Stream:
         taken = [self.states[k % len(self.states)] for k in range(self.next, self.next + count)]
         self.next += count
         return taken
+
+    def _warm_up(self) -> None:
+        """Some calls that are not timed."""
+        end = perf_counter_ns() + WARM_NS
+        for _ in range(WARM):
+            self._loop(self._taken(1))
+            if perf_counter_ns() > end:
+                break
 
     def _loop(self, stream: list[tuple[Any, ...]]) -> int:
         """Nanoseconds of the calls as Python sees them."""
