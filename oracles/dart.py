@@ -16,6 +16,7 @@ import numpy as np
 from dartpy import dynamics
 from dartpy.math import Isometry3
 
+from clock import Calls
 from protocol import Array, Body, Change, Description, Joint, Question, Reading, Unsupported, mass_matrix_probe, readback_row, rotation, serve
 
 # ---- coordinates -----------------------------------------------------------------------------------------------------------------
@@ -145,67 +146,81 @@ class DartRobot:
             rows.append(readback_row(held.getMass(), held.getLocalCOM(), held.getMoment(), turned, placement.translation()))
         return rows
 
+    # ---- coordinates
+
+    def positions(self, q: Array) -> Array:
+        """q_e."""
+        return to_engine_q(self.robot, q)
+
+    def change(self, ask: Question) -> Change:
+        """T and b."""
+        return change_of_velocities(self.robot, ask.q, ask.v)
+
     def _update(self, ask: Question) -> Change:
         """Sets q and v."""
-        change = change_of_velocities(self.robot, ask.q, ask.v)
-        self.skeleton.setPositions(to_engine_q(self.robot, ask.q))
-        self.skeleton.setVelocities(change.to_engine_v(ask.v))
+        change = self.change(ask)
+        self._set(self.positions(ask.q), change.to_engine_v(ask.v))
         return change
+
+    def _set(self, q: Array, v: Array) -> None:
+        """Sets q_e and v_e; DART computes again what depends on a number that changes, and that only."""
+        self.skeleton.setPositions(q)
+        self.skeleton.setVelocities(v)
+
+    # ---- calls that can be timed, in DART's coordinates
+
+    def inverse_dynamics(self, q: Array, v: Array, a: Array) -> Array:
+        """tau_e = computeInverseDynamics."""
+        self._set(q, v)
+        self.skeleton.setAccelerations(a)
+        self.skeleton.computeInverseDynamics()
+        return self.skeleton.getForces()
+
+    def mass_matrix(self, q: Array) -> Array:
+        """M_e; DART finds it column by column."""
+        self.skeleton.setPositions(q)
+        return self.skeleton.getMassMatrix()
+
+    def aba(self, q: Array, v: Array, tau: Array) -> Array:
+        """a_e by the articulated body algorithm."""
+        self._set(q, v)
+        self.skeleton.setForces(tau)
+        self.skeleton.computeForwardDynamics()
+        return self.skeleton.getAccelerations()
+
+    def kinetic_energy(self, q: Array, v: Array) -> float:
+        """The sum over the bodies."""
+        self._set(q, v)
+        return self.skeleton.computeKineticEnergy()
+
+    def com(self, q: Array) -> Array:
+        """The centre of mass."""
+        self.skeleton.setPositions(q)
+        return self.skeleton.getCOM()
 
     # ---- dynamics
 
-    def _inverse(self, change: Change, a: Array, wrenches: bool = False) -> Array:
-        """tau at engine accelerations."""
-        self.skeleton.setAccelerations(a)
-        self.skeleton.computeInverseDynamics(wrenches)
-        return change.to_neutral_tau(self.skeleton.getForces())
-
-    def inverse_dynamics(self, ask: Question) -> Array:
-        """tau = computeInverseDynamics."""
-        change = self._update(ask)
-        return self._inverse(change, change.to_engine_a(ask.a))
-
     def inverse_wrench(self, ask: Question) -> Array:
-        """The same with a force on every body, in its axes at its origin."""
+        """tau = computeInverseDynamics with a force on every body, in its axes at its origin."""
         change = self._update(ask)
         for node, wrench in zip(self.bodies, ask.wrench, strict=True):
             node.setExtForce(wrench[3:], np.zeros(3), True, True)
             node.setExtTorque(wrench[:3], True)
-        tau = self._inverse(change, change.to_engine_a(ask.a), wrenches=True)
+        self.skeleton.setAccelerations(change.to_engine_a(ask.a))
+        self.skeleton.computeInverseDynamics(True)
         self.skeleton.clearExternalForces()
-        return tau
-
-    def bias_inverse(self, ask: Question) -> Array:
-        """h = computeInverseDynamics at a = 0."""
-        change = self._update(ask)
-        return self._inverse(change, change.b)
+        return change.to_neutral_tau(self.skeleton.getForces())
 
     def bias_forces(self, ask: Question) -> Array:
         """h = T' (Coriolis and gravity forces + M_e b)."""
         change = self._update(ask)
-        return change.to_neutral_tau(self._bias(change))
-
-    def _bias(self, change: Change) -> Array:
-        """h_e + M_e b."""
         bias = self.skeleton.getCoriolisAndGravityForces()
-        return bias + self.skeleton.getMassMatrix() @ change.b if change.b.any() else bias
-
-    def mass_matrix(self, ask: Question) -> Array:
-        """M; DART finds it column by column."""
-        change = self._update(ask)
-        return change.to_neutral_mass(self.skeleton.getMassMatrix())
+        return change.to_neutral_tau(bias + self.skeleton.getMassMatrix() @ change.b if change.b.any() else bias)
 
     def probe(self, ask: Question) -> Array:
-        """Products with, and parts of, that M."""
-        mass = self.mass_matrix(ask)
+        """Products with, and parts of, M."""
+        mass = self.change(ask).to_neutral_mass(self.mass_matrix(self.positions(ask.q)))
         return mass_matrix_probe(mass.__matmul__, np.diag(mass), ask.probe)
-
-    def aba(self, ask: Question) -> Array:
-        """The articulated body algorithm."""
-        change = self._update(ask)
-        self.skeleton.setForces(change.to_engine_tau(ask.tau))
-        self.skeleton.computeForwardDynamics()
-        return change.to_neutral_a(self.skeleton.getAccelerations())
 
     def inverse_mass_matrix(self, ask: Question) -> Array:
         """M^-1 (tau - h), M^-1 column by column by the articulated body algorithm."""
@@ -215,24 +230,15 @@ class DartRobot:
 
     # ---- energies, momentum, kinematics
 
-    def kinetic_energy(self, ask: Question) -> float:
-        """The sum over the bodies."""
-        self._update(ask)
-        return self.skeleton.computeKineticEnergy()
-
     def potential_energy(self, ask: Question) -> float:
         """-Σ m g·c."""
         self._update(ask)
         return self.skeleton.computePotentialEnergy()
 
-    def com(self, ask: Question) -> Array:
-        """The centre of mass."""
-        self._update(ask)
-        return self.skeleton.getCOM()
-
     def momentum(self, ask: Question) -> Array:
         """The sum over the bodies, of which DART answers each in its own axes about a point in them."""
-        center, total = self.com(ask), np.zeros(6)
+        self._update(ask)
+        center, total = self.skeleton.getCOM(), np.zeros(6)
         for node in self.bodies:
             r, p = node.getWorldTransform().rotation(), node.getWorldTransform().translation()
             total += np.append(r @ node.getAngularMomentum(r.T @ (center - p)), r @ node.getLinearMomentum())
@@ -268,15 +274,19 @@ class Dart:
     version = importlib.metadata.version("dartpy")
     build = {"language": "C++ (Python package dartpy)"}
     quantities = {
-        "id": {"inverse_dynamics": DartRobot.inverse_dynamics},
+        "id": {"inverse_dynamics": Calls("q v a", DartRobot.inverse_dynamics, Change.to_neutral_tau)},
         "id_wrench": {"inverse_dynamics": DartRobot.inverse_wrench},
-        "bias": {"coriolis_and_gravity": DartRobot.bias_forces, "inverse_dynamics": DartRobot.bias_inverse},
-        "mass_matrix": {"mass_matrix": DartRobot.mass_matrix},
+        "bias": {
+            "coriolis_and_gravity": DartRobot.bias_forces,
+            "inverse_dynamics": Calls("q v b", DartRobot.inverse_dynamics, Change.to_neutral_tau),
+        },
+        "mass_matrix": {"mass_matrix": Calls("q", DartRobot.mass_matrix, Change.to_neutral_mass)},
+        "mass_matrix_sparse": {"mass_matrix": Calls("q", DartRobot.mass_matrix, Change.to_neutral_mass)},
         "mass_matrix_probe": {"mass_matrix": DartRobot.probe},
-        "fd": {"aba": DartRobot.aba, "inverse_mass_matrix": DartRobot.inverse_mass_matrix},
-        "kinetic_energy": {"kinetic_energy": DartRobot.kinetic_energy},
+        "fd": {"aba": Calls("q v tau", DartRobot.aba, Change.to_neutral_a), "inverse_mass_matrix": DartRobot.inverse_mass_matrix},
+        "kinetic_energy": {"kinetic_energy": Calls("q v", DartRobot.kinetic_energy)},
         "potential_energy": {"potential_energy": DartRobot.potential_energy},
-        "com": {"center_of_mass": DartRobot.com},
+        "com": {"center_of_mass": Calls("q", DartRobot.com)},
         "momentum": {"body_momenta": DartRobot.momentum},
         "body_placement": {"world_transforms": DartRobot.placement},
         "body_velocity": {"world_velocities": DartRobot.velocity},

@@ -18,6 +18,7 @@ from pathlib import Path
 import drake_reading
 import numpy as np
 
+from clock import NOTHING, Calls
 from protocol import (
     Array,
     Body,
@@ -162,6 +163,7 @@ class DrakeRobot:
             raise RuntimeError("Drake put the degrees of freedom in another order")
         self.context = plant.CreateDefaultContext()
         self.forces = tree.MultibodyForces(plant)
+        self.drive = plant.get_applied_generalized_force_input_port().FixValue(self.context, np.zeros(plant.num_velocities()))
 
     def readback(self) -> list[Array]:
         """The inertia about the centre of mass is I = I_origin + m [c]x^2."""
@@ -174,41 +176,70 @@ class DrakeRobot:
             rows.append(readback_row(mass, com, inertia, placement.rotation().matrix(), placement.translation()))
         return rows
 
-    def _update(self, ask: Question) -> Change:
-        """Sets q and v."""
+    # ---- coordinates
+
+    def positions(self, q: Array) -> Array:
+        """q_e."""
+        return to_engine_q(self.robot, q)
+
+    def change(self, ask: Question) -> Change:
+        """T and b."""
         if not np.isfinite([*ask.q, *ask.v, *ask.a, *ask.tau]).all():
             raise ValueError("Drake ends the process at numbers that are not finite")
-        change = change_of_velocities(self.robot, ask.q, ask.v)
-        self.plant.SetPositions(self.context, to_engine_q(self.robot, ask.q))
-        self.plant.SetVelocities(self.context, change.to_engine_v(ask.v))
+        return change_of_velocities(self.robot, ask.q, ask.v)
+
+    def _update(self, ask: Question) -> Change:
+        """Sets q and v."""
+        change = self.change(ask)
+        self._set(self.positions(ask.q), change.to_engine_v(ask.v))
         return change
+
+    def _set(self, q: Array, v: Array) -> None:
+        """Sets q_e and v_e, whereupon Drake forgets what it has computed."""
+        self.plant.SetPositions(self.context, q)
+        self.plant.SetVelocities(self.context, v)
+
+    # ---- calls that can be timed, in Drake's coordinates
+
+    def inverse_dynamics(self, q: Array, v: Array, a: Array) -> Array:
+        """tau_e = CalcInverseDynamics under gravity."""
+        self._set(q, v)
+        self.plant.CalcForceElementsContribution(self.context, self.forces)
+        return self.plant.CalcInverseDynamics(self.context, a, self.forces)
+
+    def crba(self, q: Array) -> Array:
+        """M_e by the composite body algorithm."""
+        self.plant.SetPositions(self.context, q)
+        return self.plant.CalcMassMatrix(self.context)
+
+    def aba(self, q: Array, v: Array, tau: Array) -> Array:
+        """a_e by the articulated body algorithm."""
+        self._set(q, v)
+        self.drive.GetMutableData().get_mutable_value().SetFromVector(tau)
+        return self.plant.get_generalized_acceleration_output_port().Eval(self.context)
+
+    def kinetic_energy(self, q: Array, v: Array) -> float:
+        """½ v' M v."""
+        self._set(q, v)
+        return self.plant.CalcKineticEnergy(self.context)
+
+    def jacobian(self, q: Array, number: int) -> Array:
+        """J_e of a body, or of the world, in world axes at its origin."""
+        self.plant.SetPositions(self.context, q)
+        world, speeds = self.plant.world_frame(), tree.JacobianWrtVariable.kV
+        frame = world if number == NOTHING else self.bodies[number].body_frame()
+        return self.plant.CalcJacobianSpatialVelocity(self.context, speeds, frame, np.zeros(3), world, world)
 
     # ---- dynamics
 
-    def _inverse(self, a: Array) -> Array:
-        """tau_e at engine accelerations under `self.forces`."""
-        return self.plant.CalcInverseDynamics(self.context, a, self.forces)
-
-    def inverse_dynamics(self, ask: Question) -> Array:
-        """tau = CalcInverseDynamics under gravity."""
-        change = self._update(ask)
-        self.plant.CalcForceElementsContribution(self.context, self.forces)
-        return change.to_neutral_tau(self._inverse(change.to_engine_a(ask.a)))
-
     def inverse_wrench(self, ask: Question) -> Array:
-        """The same under gravity and a force on every body, in its axes at its origin."""
+        """tau = CalcInverseDynamics under gravity and a force on every body, in its axes at its origin."""
         change = self._update(ask)
         self.plant.CalcForceElementsContribution(self.context, self.forces)
         for body, wrench in zip(self.bodies, ask.wrench, strict=True):
             force = SpatialForce(tau=wrench[:3], f=wrench[3:])
             body.AddInForce(self.context, np.zeros(3), force, body.body_frame(), self.forces)
-        return change.to_neutral_tau(self._inverse(change.to_engine_a(ask.a)))
-
-    def bias_inverse(self, ask: Question) -> Array:
-        """h = CalcInverseDynamics at a = 0."""
-        change = self._update(ask)
-        self.plant.CalcForceElementsContribution(self.context, self.forces)
-        return change.to_neutral_tau(self._inverse(change.b))
+        return change.to_neutral_tau(self.plant.CalcInverseDynamics(self.context, change.to_engine_a(ask.a), self.forces))
 
     def bias_term(self, ask: Question) -> Array:
         """h = T' (C v - tau_gravity + M_e b)."""
@@ -218,11 +249,6 @@ class DrakeRobot:
             bias += self.plant.CalcMassMatrix(self.context) @ change.b
         return change.to_neutral_tau(bias)
 
-    def crba(self, ask: Question) -> Array:
-        """M by the composite body algorithm."""
-        change = self._update(ask)
-        return change.to_neutral_mass(self.plant.CalcMassMatrix(self.context))
-
     def mass_by_inverse_dynamics(self, ask: Question) -> Array:
         """M column by column from inverse dynamics."""
         change = self._update(ask)
@@ -230,21 +256,10 @@ class DrakeRobot:
 
     def probe(self, ask: Question) -> Array:
         """Products with, and parts of, the M of `crba`."""
-        mass = self.crba(ask)
+        mass = self.change(ask).to_neutral_mass(self.crba(self.positions(ask.q)))
         return mass_matrix_probe(mass.__matmul__, np.diag(mass), ask.probe)
 
-    def aba(self, ask: Question) -> Array:
-        """The articulated body algorithm."""
-        change = self._update(ask)
-        self.plant.get_applied_generalized_force_input_port().FixValue(self.context, change.to_engine_tau(ask.tau))
-        return change.to_neutral_a(self.plant.get_generalized_acceleration_output_port().Eval(self.context))
-
     # ---- energies, momentum, kinematics
-
-    def kinetic_energy(self, ask: Question) -> float:
-        """½ v' M v."""
-        self._update(ask)
-        return self.plant.CalcKineticEnergy(self.context)
 
     def potential_energy(self, ask: Question) -> float:
         """-Σ m g·c."""
@@ -280,14 +295,6 @@ class DrakeRobot:
         accelerations = [by_index[body.index()] for body in self.bodies]
         return [np.append(a.rotational(), a.translational()) for a in accelerations]
 
-    def jacobian(self, ask: Question) -> Array:
-        """J of the asked body in world axes at its origin."""
-        change = self._update(ask)
-        frame, world, speeds = self.bodies[ask.body].body_frame(), self.plant.world_frame(), tree.JacobianWrtVariable.kV
-        return change.to_neutral_jacobian(
-            self.plant.CalcJacobianSpatialVelocity(self.context, speeds, frame, np.zeros(3), world, world)
-        )
-
 
 class Drake:
     """The engine."""
@@ -296,20 +303,27 @@ class Drake:
     version = importlib.metadata.version("drake")
     build = {"language": "C++ (Python package drake)"}
     quantities = {
-        "id": {"inverse_dynamics": DrakeRobot.inverse_dynamics},
+        "id": {"inverse_dynamics": Calls("q v a", DrakeRobot.inverse_dynamics, Change.to_neutral_tau)},
         "id_wrench": {"inverse_dynamics": DrakeRobot.inverse_wrench},
-        "bias": {"bias_term": DrakeRobot.bias_term, "inverse_dynamics": DrakeRobot.bias_inverse},
-        "mass_matrix": {"crba": DrakeRobot.crba, "inverse_dynamics": DrakeRobot.mass_by_inverse_dynamics},
+        "bias": {
+            "bias_term": DrakeRobot.bias_term,
+            "inverse_dynamics": Calls("q v b", DrakeRobot.inverse_dynamics, Change.to_neutral_tau),
+        },
+        "mass_matrix": {
+            "crba": Calls("q", DrakeRobot.crba, Change.to_neutral_mass),
+            "inverse_dynamics": DrakeRobot.mass_by_inverse_dynamics,
+        },
+        "mass_matrix_sparse": {"crba": Calls("q", DrakeRobot.crba, Change.to_neutral_mass)},
         "mass_matrix_probe": {"crba": DrakeRobot.probe},
-        "fd": {"aba": DrakeRobot.aba},
-        "kinetic_energy": {"kinetic_energy": DrakeRobot.kinetic_energy},
+        "fd": {"aba": Calls("q v tau", DrakeRobot.aba, Change.to_neutral_a)},
+        "kinetic_energy": {"kinetic_energy": Calls("q v", DrakeRobot.kinetic_energy)},
         "potential_energy": {"potential_energy": DrakeRobot.potential_energy},
         "com": {"center_of_mass": DrakeRobot.com},
         "momentum": {"spatial_momentum": DrakeRobot.momentum},
         "body_placement": {"body_poses": DrakeRobot.placement},
         "body_velocity": {"body_velocities": DrakeRobot.velocity},
         "body_acceleration": {"spatial_accelerations": DrakeRobot.acceleration},
-        "body_jacobian": {"jacobian_spatial_velocity": DrakeRobot.jacobian},
+        "body_jacobian": {"jacobian_spatial_velocity": Calls("q body", DrakeRobot.jacobian, Change.to_neutral_jacobian)},
     }
 
     def prepare(self, description: Description) -> DrakeRobot:

@@ -19,6 +19,7 @@ from typing import Any, BinaryIO, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
+from clock import Calls, Stream
 from examination import examined
 
 Array = NDArray[np.float64]
@@ -142,6 +143,20 @@ class Description:
             inertia = symmetric(_numbers(item["inertia"], (6,), f"{where}: inertia"))
             bodies.append(Body(item["name"], mass, _numbers(item["com"], (3,), f"{where}: com"), inertia, parent, joint))
         return cls(data["name"], _numbers(data["gravity"], (3,), "gravity"), tuple(bodies), nq, nv)
+
+    def tree_sparse(self) -> tuple[list[int], list[int]]:
+        """Rows and columns of what the tree-sparse layout holds of M: for each dof the entries with those from the root to it."""
+        paths: list[list[int]] = []  # of the last dof of each body
+        rows: list[int] = []
+        columns: list[int] = []
+        for body in self.bodies:
+            path = list(paths[body.parent]) if body.parent >= 0 else []
+            for dof in range(body.joint.v.start, body.joint.v.stop):
+                path.append(dof)
+                rows += [dof] * len(path)
+                columns += path
+            paths.append(path)
+        return rows, columns
 
 
 def _read_joint(data: Mapping[str, Any], nq: int, nv: int) -> Joint:
@@ -320,6 +335,7 @@ SHAPES: dict[str, tuple[str | int, ...]] = {
     "body_acceleration": ("bodies", 6),
     "body_jacobian": (6, "nv"),
     "stored_entries": (1,),
+    "mass_matrix_sparse": ("stored",),
 }
 
 
@@ -336,6 +352,8 @@ class Session:
         self.robot: Robot | None = None
         self.states: Blocks | None = None
         self.as_read = False
+        self.nothing: Robot | None = None
+        self.stream: tuple[Any, Stream] | None = None  # what was timed last, and by what it is known
 
     def answer(self, header: Header, blocks: Blocks) -> Answer:
         """The answer to one request, without its status."""
@@ -345,6 +363,7 @@ class Session:
             "read": self.read,
             "states": self.set_states,
             "evaluate": self.evaluate,
+            "clock": self.clock,
         }
         if header.get("op") not in operations:
             raise ValueError(f"unknown op {header.get('op')}")
@@ -354,11 +373,14 @@ class Session:
         """Who answers, and by which methods."""
         engine = self.engine
         methods = {quantity: list(by_method) for quantity, by_method in engine.quantities.items()}
-        return {"protocol": PROTOCOL, "engine": engine.name, "version": engine.version, "build": engine.build, "methods": methods}, {}
+        hello = {"protocol": PROTOCOL, "engine": engine.name, "version": engine.version, "build": engine.build, "methods": methods}
+        timed = {name: [m for m, f in by_method.items() if isinstance(f, Calls)] for name, by_method in engine.quantities.items()}
+        estimated = {name: listed for name, listed in timed.items() if listed}
+        return ({**hello, "clock": "estimate", "timed": estimated} if estimated else hello), {}
 
     def prepare(self, header: Header, _blocks: Blocks) -> Answer:
         """Builds the robot and reads it back."""
-        self.description = self.robot = self.states = None
+        self.description = self.robot = self.states = self.stream = None
         self.as_read = False
         description = Description.read(header["model"])
         robot = self.engine.prepare(description)
@@ -368,7 +390,7 @@ class Session:
 
     def read(self, header: Header, _blocks: Blocks) -> Answer:
         """Has the engine's own parser read a file, and tells what the engine then holds."""
-        self.description = self.robot = self.states = None
+        self.description = self.robot = self.states = self.stream = None
         self.as_read = True
         form, base = header["format"], header.get("base", "fixed")
         if form not in ("urdf", "mjcf") or base not in ("fixed", "free"):
@@ -387,7 +409,7 @@ class Session:
         """Keeps the states for the evaluations to come."""
         if self.description is None:
             raise ValueError("no model was prepared")
-        self.states = None
+        self.states = self.stream = None
         n, nq, nv, bodies = header["count"], self.description.nq, self.description.nv, len(self.description.bodies)
         shapes = {"q": (n, nq), "v": (n, nv), "a": (n, nv), "tau": (n, nv), "wrench": (n, bodies, 6), "probe": (4, nv)}
         for name, shape in shapes.items():
@@ -398,25 +420,52 @@ class Session:
 
     def evaluate(self, header: Header, _blocks: Blocks) -> Answer:
         """One quantity by one method over a range of the states."""
-        quantity, method, first, count = (header[key] for key in ("quantity", "method", "first", "count"))
+        function, description, body = self._asked(header)
+        quantity, first, count = (header[key] for key in ("quantity", "first", "count"))
+        if not 0 <= first <= first + count <= len(self.states["q"]):
+            raise ValueError(f"states {first}..{first + count} do not exist")
+        entries = description.tree_sparse() if quantity == "mass_matrix_sparse" else None
+        sizes = {"nv": description.nv, "bodies": len(description.bodies), "stored": len(entries[0]) if entries else 0}
+        shape = tuple(sizes[n] if isinstance(n, str) else n for n in SHAPES[quantity])
+        value = np.empty((count, *shape))
+        for k in range(count):
+            answer = function(self.robot, self._question(first + k, body))
+            value[k] = np.reshape(answer[entries] if entries else answer, shape)
+        return {}, {"value": value}
+
+    def clock(self, header: Header, _blocks: Blocks) -> Answer:
+        """The time of a method's own calls over a stream of the states."""
+        function, _, body = self._asked(header)
+        first, count, asked = header["first"], header["count"], (header["quantity"], header["method"], body)
+        if not isinstance(function, Calls):
+            raise Unsupported(f"{self.engine.name} does not time {header['quantity']} by {header['method']}: it is more than calls of the engine")
+        if not (0 <= first and 0 < count and len(self.states["q"])):
+            raise ValueError(f"there are no {count} states from {first} on")
+        if self.stream is None or self.stream[0] != asked:
+            self.nothing = self.nothing or self.engine.prepare(Description("nothing", np.array([0, 0, -9.81]), (), 0, 0))
+            questions = [self._question(k, body) for k in range(len(self.states["q"]))]
+            self.stream = asked, Stream(function, self.robot, self.nothing, questions)
+        nanoseconds, overhead = self.stream[1].time(first, count)
+        return {"nanoseconds": nanoseconds, "overhead": overhead}, {}
+
+    def _asked(self, header: Header) -> tuple[Callable[[Any, Question], Any], Description, int]:
+        """The method that is asked for, the robot and the body, if all is there."""
+        quantity, method = header["quantity"], header["method"]
         if method not in self.engine.quantities.get(quantity, {}):
             raise Unsupported(f"{self.engine.name} offers no method {method} for {quantity}")
         if self.description is None or self.states is None:
-            raise ValueError("no model and states were given before evaluate")
+            raise ValueError("no model and states were given before")
         if self.as_read and quantity not in AS_READ:
             raise Unsupported(f"{quantity} is not told of a robot as read: its bodies need not be those of the description")
         body = header["body"] if quantity == "body_jacobian" else 0
-        if not 0 <= first <= first + count <= len(self.states["q"]) or not 0 <= body < len(self.description.bodies):
-            raise ValueError(f"states {first}..{first + count} or body {body} do not exist")
-        sizes = {"nv": self.description.nv, "bodies": len(self.description.bodies)}
-        shape = tuple(sizes[n] if isinstance(n, str) else n for n in SHAPES[quantity])
-        value = np.empty((count, *shape))
-        function = self.engine.quantities[quantity][method]
-        for k in range(count):
-            row = {name: self.states[name][first + k] for name in ("q", "v", "a", "tau", "wrench")}
-            question = Question(**row, probe=self.states["probe"], body=body)
-            value[k] = np.reshape(function(self.robot, question), shape)
-        return {}, {"value": value}
+        if not 0 <= body < len(self.description.bodies):
+            raise ValueError(f"body {body} does not exist")
+        return self.engine.quantities[quantity][method], self.description, body
+
+    def _question(self, k: int, body: int) -> Question:
+        """State k."""
+        row = {name: self.states[name][k] for name in ("q", "v", "a", "tau", "wrench")}
+        return Question(**row, probe=self.states["probe"], body=body)
 
 
 def serve(engine: Engine) -> None:

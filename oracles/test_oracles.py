@@ -13,11 +13,13 @@ import sys
 import tempfile
 from collections.abc import Callable
 from pathlib import Path
+from time import perf_counter_ns
 
 import numpy as np
 
+from clock import Calls, Stream
 from closed_forms import placement
-from protocol import JOINT_SIZES, Array, Blocks, Description, Header, rotation, skew
+from protocol import JOINT_SIZES, Array, Blocks, Change, Description, Header, Question, rotation, skew
 from trials import (
     DIFFERENCE,
     ENGINES,
@@ -52,6 +54,11 @@ def test_robot(oracles: dict[str, Oracle], data: Header, seed: int) -> None:
         if "stored_entries" in methods:
             stored = values.pop(("stored_entries", methods.pop("stored_entries")[0]))
             check(f"{name}: stored entries of M", float(np.abs(stored - stored_entries(robot)).max()), 0.0)
+        if "mass_matrix_sparse" in methods:
+            sparse = values.pop(("mass_matrix_sparse", methods.pop("mass_matrix_sparse")[0]))
+            rows, columns = robot.tree_sparse()
+            check(f"{name}: as many entries as the layout has", float(len(rows) != stored_entries(robot)), 0)
+            check(f"{name}: sparse M is M", ratio(sparse - values["mass_matrix", methods["mass_matrix"][0]][:, rows, columns]), 0.0)
         jacobian = methods["body_jacobian"][0]
         jacobians = np.array([oracle.value("body_jacobian", jacobian, count, body) for body in range(len(robot.bodies))])
         first = {q: values[q, methods[q][0]] for q in methods if q != "body_jacobian"}
@@ -218,6 +225,79 @@ def test_refusals(oracles: dict[str, Oracle]) -> None:
         check(f"{name} ends with its input", oracle.end(), 0)
 
 
+class Waiting:
+    """A robot whose only call takes as long as it is told."""
+
+    def __init__(self, nanoseconds: int) -> None:
+        self.nanoseconds = nanoseconds
+
+    def change(self, ask: Question) -> Change:
+        """None."""
+        return Change((), np.zeros(len(ask.v)))
+
+    def positions(self, q: Array) -> Array:
+        """As they are."""
+        return q
+
+    def wait(self, _q: Array, _v: Array) -> None:
+        """The call."""
+        end = perf_counter_ns() + self.nanoseconds
+        while perf_counter_ns() < end:
+            pass
+
+
+def test_overhead() -> None:
+    """What calls take on a robot without bodies is subtracted; where nothing is left, there is no estimate."""
+    ask, wait = Question(*np.zeros((6, 1)), body=0), Calls("q v", Waiting.wait)
+    stream = Stream(wait, Waiting(60_000), Waiting(20_000), [ask, ask])
+    nanoseconds, overhead = np.median([stream.time(1, 20) for _ in range(25)], axis=0)
+    check("clock: 60 µs less 20 µs of overhead, 20 times", abs(nanoseconds / 8e5 - 1), 0.2)
+    check("clock: the overhead is told", abs(overhead / 4e5 - 1), 0.2)
+    try:
+        Stream(wait, Waiting(20_000), Waiting(60_000), [ask]).time(0, 5)
+        check("clock: no time below nothing", 1, 0)
+    except ValueError as reason:
+        check("clock: no time below nothing", float("nothing is left" not in str(reason)), 0)
+
+
+def timed(oracle: Oracle, asked: Header) -> tuple[float, float]:
+    """Nanoseconds of a call and its overhead, of the block that was interrupted least by other processes."""
+    answers = [oracle.must(asked)[0] for _ in range(25)]
+    least = min(answers, key=lambda answer: answer["nanoseconds"] + answer["overhead"])
+    return least["nanoseconds"] / asked["count"], least["overhead"] / asked["count"]
+
+
+def test_clock(oracles: dict[str, Oracle]) -> None:
+    """What is timed is offered, answered and checked; a state that comes again and again is computed again and again."""
+    data = without_armature(random_robot(np.random.default_rng(12), "timed", ["free", *["revolute"] * 25]))
+    states = random_states(np.random.default_rng(13), Description.read(data))
+    alone = {name: block if name == "probe" else block[:1] for name, block in states.items()}
+    for name, oracle in oracles.items():
+        hello = oracle.must({"op": "hello"})[0]
+        estimated = {"drake": 7, "dart": 7}.get(name, 0)
+        check(f"{name}: methods that it times", len([m for by_method in hello.get("timed", {}).values() for m in by_method]) - estimated, 0)
+        check(f"{name}: its clock", float(hello.get("clock") != ("estimate" if estimated else None)), 0)
+        clock = {"op": "clock", "quantity": "momentum", "method": hello["methods"]["momentum"][0], "first": 20, "count": 25, "body": 25}
+        oracle.must({"op": "prepare", "model": data})
+        expect(f"{name} times no state", oracle.ask(clock), "error")
+        oracle.must({"op": "states", "count": 22}, states)
+        expect(f"{name} does not time momentum", oracle.ask(clock), "unsupported")
+        for quantity, method in ((quantity, method) for quantity, named in hello.get("timed", {}).items() for method in named):
+            asked = {**clock, "quantity": quantity, "method": method}
+            before = oracle.must({**asked, "op": "evaluate", "first": 0, "count": 22})[1]["value"]
+            expect(f"{name} times no calls", oracle.ask({**asked, "count": 0}), "error")
+            streamed, overhead = timed(oracle, asked)
+            whole = streamed + overhead
+            check(f"{name}: {quantity} takes time", float(not 100 < streamed < 1e7), 0)
+            check(f"{name}: {quantity} has an overhead", float(not 100 < overhead < 1e5), 0)
+            after = oracle.must({**asked, "op": "evaluate", "first": 0, "count": 22})[1]["value"]
+            check(f"{name}: {quantity} is the same after the clock", float((before != after).any()), 0)
+            oracle.must({"op": "states", "count": 1}, alone)
+            check(f"{name}: {quantity} is computed again for the same state", whole / sum(timed(oracle, asked)), 2.5)
+            check(f"{name}: {quantity} is computed again in another block", whole / sum(timed(oracle, {**asked, "count": 1})), 2.5)
+            oracle.must({"op": "states", "count": 22}, states)
+
+
 def test_folded(oracles: dict[str, Oracle]) -> None:
     """Chains of massless bodies in one another's axes are one body with several joints in MuJoCo, which then lacks them as bodies."""
     rng = np.random.default_rng(11)
@@ -337,6 +417,8 @@ def test_all(oracles: dict[str, Oracle]) -> None:
     test_small_rotations(oracles["dart"])
     test_dart_reads(oracles["dart"])
     test_folded(oracles)
+    test_overhead()
+    test_clock(oracles)
     test_refusals(oracles)
     test_noise()
 

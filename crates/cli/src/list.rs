@@ -3,7 +3,7 @@
 use crate::args::ListArgs;
 use crate::fail::Fail;
 use crate::native::PEERS;
-use crate::oracles::{ENGINES, IN_PROCESS};
+use crate::oracles::{ENGINES, ESTIMATING, IN_PROCESS};
 use crate::problems;
 use crate::root::Root;
 use engines::Native;
@@ -47,7 +47,8 @@ fn text(root: &Root, args: &ListArgs) -> Result<String, Fail> {
             problem.depth
         );
     }
-    text += &format!("\nengines:  native, {}, {IN_PROCESS}\npeers:    {}\n", ENGINES.join(", "), PEERS.join(", "));
+    let peers = [&PEERS[..], &ESTIMATING].concat().join(", ");
+    text += &format!("\nengines:  native, {}, {IN_PROCESS}\npeers:    {peers}\n", ENGINES.join(", "));
     text += "studies:  agreement, reading, digits, conditioning, structure, reproductions, step_limit, timing\n";
     text += "\nfamilies of generated robots, with their parameters:\n";
     for name in Family::NAMES {

@@ -14,6 +14,8 @@ use std::time::Duration;
 
 /// Engines that come with the project, in the order of reports.
 pub const ENGINES: [&str; 4] = ["pinocchio", "mujoco", "drake", "dart"];
+/// Those of them that estimate what their engine's own calls take, so that timing can name them as peers.
+pub const ESTIMATING: [&str; 2] = ["drake", "dart"];
 /// The engine that runs in this process, asked live in recorded runs as well.
 pub const IN_PROCESS: &str = "rapier";
 
@@ -123,6 +125,12 @@ fn stamp(root: &Root) -> Result<String, Fail> {
         asked.extend(std::fs::read(&path).map_err(|error| Fail::input(format!("{}: {error}", path.display())))?);
     }
     Ok(harness::hash::of(&asked))
+}
+
+/// Starts the oracle of an engine that is to be timed, where the engines are installed.
+pub fn start_timed(root: &Root, engine: &str, limits: Limits) -> Result<Oracle, String> {
+    let missing = "the reference engines are not installed: run `featherbench oracles install`";
+    start(root, &python(root).ok_or(missing)?, engine, limits)
 }
 
 /// Starts an engine's oracle.

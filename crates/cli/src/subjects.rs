@@ -28,9 +28,13 @@ pub fn open(root: &Root, args: &RunArgs, loaded: &Loaded) -> Result<Subjects, Fa
     guest::check_names(&args.guests, &taken)?;
     let limits = limits(args);
     if let Some(timing) = loaded.suite.timing.as_ref().filter(|_| !args.no_timing) {
-        for name in &timing.peers {
-            let peer = native::start(root, name, limits, None).map(|peer| Box::new(peer) as Box<dyn Subject>);
-            opened.add(peer, name, EngineSource::Live);
+        // One that is asked for agreement too is the same subject: see below.
+        for name in timing.peers.iter().filter(|name| !engines.contains(name)) {
+            let peer = match oracles::ESTIMATING.contains(&name.as_str()) {
+                true => oracles::start_timed(root, name, limits),
+                false => native::start(root, name, limits, None),
+            };
+            opened.add(peer.map(|peer| Box::new(peer) as Box<dyn Subject>), name, EngineSource::Live);
         }
     }
     let (here, others): (Vec<&String>, Vec<&String>) = engines.iter().partition(|engine| *engine == oracles::IN_PROCESS);

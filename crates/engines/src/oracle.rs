@@ -22,14 +22,26 @@ pub(crate) const PROTOCOL: u64 = 1;
 pub struct Oracle {
     identity: Identity,
     methods: BTreeMap<String, Vec<String>>,
-    /// Whether it reads the clock itself.
-    clock: bool,
+    clock: Clock,
     /// Whether it can move its data.
     scatter: bool,
     command: Vec<OsString>,
     limits: Limits,
     idle: Mutex<Vec<Session>>,
 }
+
+/// Who reads the clock.
+enum Clock {
+    /// We do, around the whole conversation.
+    Ours,
+    /// The oracle, beside its loop.
+    Its,
+    /// The oracle, in a language whose overhead it subtracts, and for these methods only.
+    Estimate(BTreeMap<String, Vec<String>>),
+}
+
+/// What the identity of an oracle says whose clock estimates.
+const ESTIMATE: &str = "estimate: the overhead of calling the engine is measured and subtracted";
 
 /// A process and what it was told last.
 struct Session {
@@ -56,7 +68,7 @@ impl Oracle {
         }
         let build = hello.header.get("build").cloned().unwrap_or_else(|| json!({}));
         let methods = hello.header.get("methods").cloned().unwrap_or_else(|| json!({}));
-        let identity = Identity {
+        let mut identity = Identity {
             name: hello.text("engine").to_owned(),
             version: hello.text("version").to_owned(),
             source: EngineSource::Live,
@@ -66,8 +78,16 @@ impl Oracle {
         if identity.name.is_empty() || identity.version.is_empty() {
             return Err("hello: engine and version must not be empty".into());
         }
-        let says = |key| hello.header.get(key).and_then(Value::as_bool).unwrap_or(false);
-        let (clock, scatter) = (says("clock"), says("scatter"));
+        let clock = match hello.header.get("clock") {
+            Some(Value::Bool(true)) => Clock::Its,
+            Some(Value::String(kind)) if kind == "estimate" => {
+                identity.build.insert("clock".into(), ESTIMATE.into());
+                let timed = hello.header.get("timed").cloned().unwrap_or_else(|| json!({}));
+                Clock::Estimate(serde_json::from_value(timed).map_err(|error| format!("hello: timed: {error}"))?)
+            }
+            _ => Clock::Ours,
+        };
+        let scatter = hello.header.get("scatter").and_then(Value::as_bool).unwrap_or(false);
         let session = Session { process, model: String::new(), readback: Vec::new(), states: None, reading: None };
         Ok(Self { identity, methods, clock, scatter, command, limits, idle: Mutex::new(vec![session]) })
     }
@@ -116,6 +136,17 @@ impl Subject for Oracle {
         }
     }
 
+    fn timed(&self, quantity: Quantity) -> Vec<String> {
+        match &self.clock {
+            Clock::Estimate(timed) => timed.get(quantity.name()).cloned().unwrap_or_default(),
+            Clock::Ours | Clock::Its => self.methods(quantity),
+        }
+    }
+
+    fn estimates(&self) -> bool {
+        matches!(self.clock, Clock::Estimate(_))
+    }
+
     fn read(&self, file: &RobotFile) -> Result<Reading, Refusal> {
         let mut session = self.session()?;
         let reading = session.read(file);
@@ -134,7 +165,7 @@ impl Subject for Oracle {
         match session.build(problem).and_then(|()| session.send_states(problem, states)) {
             Ok(()) => {
                 let method = method.to_owned();
-                Ok(Box::new(Asked { oracle: self, session: Some(session), problem, quantity, method, values: Vec::new() }))
+                Ok(Box::new(Asked { oracle: self, session: Some(session), problem, quantity, method, values: Vec::new(), overhead: None }))
             }
             Err(refusal) => {
                 self.give_back(session);
@@ -232,6 +263,8 @@ struct Asked<'a> {
     quantity: Quantity,
     method: String,
     values: Vec<f64>,
+    /// What the last time of the oracle's clock is without.
+    overhead: Option<Duration>,
 }
 
 impl Asked<'_> {
@@ -260,7 +293,7 @@ impl Prepared for Asked<'_> {
     /// By the oracle's own clock, where it has one: the values are then not sent, and [`Prepared::read`] still has those of the last `run`. A
     /// range that goes beyond the batch begins again at its first state.
     fn clock(&mut self, range: Range<usize>) -> Result<Duration, Refusal> {
-        if !self.oracle.clock {
+        if matches!(self.oracle.clock, Clock::Ours) {
             let start = Instant::now();
             self.run(range)?;
             return Ok(start.elapsed());
@@ -268,8 +301,16 @@ impl Prepared for Asked<'_> {
         let question = self.question("clock", &range);
         let session = self.session.as_mut().ok_or_else(|| Refusal::Failed("the oracle has ended".into()))?;
         let answer = session.ask(question, Vec::new())?;
-        let nanoseconds = answer.header.get("nanoseconds").and_then(Value::as_u64);
-        nanoseconds.map(Duration::from_nanos).ok_or_else(|| Refusal::Failed("the oracle's answer has no nanoseconds".into()))
+        let time = |key: &str| answer.header.get(key).and_then(Value::as_u64).map(Duration::from_nanos);
+        self.overhead = time("overhead");
+        if self.oracle.estimates() && self.overhead.is_none() {
+            return Err(Refusal::Failed("the oracle's answer has no overhead, and its times are estimates".into()));
+        }
+        time("nanoseconds").ok_or_else(|| Refusal::Failed("the oracle's answer has no nanoseconds".into()))
+    }
+
+    fn overhead(&self) -> Option<Duration> {
+        self.overhead
     }
 
     fn scatter(&mut self, seed: u32) -> Result<bool, Refusal> {

@@ -342,6 +342,41 @@ fn the_clock_is_the_oracles_where_it_has_one() {
     assert!(clocked >= Duration::from_millis(50) && values == [2.0, 2.0], "{clocked:?} {values:?}");
 }
 
+/// An oracle whose clock estimates names what it times, tells what it subtracted, and its identity says so.
+#[test]
+fn an_estimating_clock_is_known_as_one() {
+    let hello = |clock: &str| HELLO.replace(r#""methods":{"id":["x"]}"#, &format!(r#""methods":{{"id":["x","y"]}}{clock}"#));
+    let answering = |times: &str| Script {
+        hello: hello(r#","clock":"estimate","timed":{"id":["y"]}"#),
+        evaluate: format!(r#"echo '{{"status":"ok"{times}}}'"#),
+        ..Script::honest()
+    };
+    let clock = |times: &str| {
+        let trial = Trial::new(&answering(times), PATIENT);
+        let oracle = trial.oracle.as_ref().unwrap();
+        assert!(oracle.estimates());
+        assert_eq!((oracle.methods(Quantity::InverseDynamics).len(), oracle.timed(Quantity::InverseDynamics)), (2, vec!["y".to_owned()]));
+        assert!(oracle.timed(Quantity::Bias).is_empty());
+        assert!(oracle.identity().build["clock"].starts_with("estimate: "), "{:?}", oracle.identity().build);
+        let mut prepared = oracle.prepare(&trial.problem, Quantity::InverseDynamics, "y", &trial.problem.states)?;
+        assert_eq!(prepared.overhead(), None, "nothing was timed yet");
+        let clocked = prepared.clock(0..2)?;
+        Ok((clocked, prepared.overhead()))
+    };
+    let told = (Duration::from_nanos(1500), Some(Duration::from_nanos(900)));
+    assert_eq!(clock(r#","nanoseconds":1500,"overhead":900"#), Ok(told));
+    assert!(matches!(clock(r#","nanoseconds":1500"#), Err(Refusal::Failed(reason)) if reason.contains("overhead")));
+    assert!(matches!(clock(r#","overhead":900"#), Err(Refusal::Failed(reason)) if reason.contains("nanoseconds")));
+    for clock in ["", r#","clock":true"#, r#","clock":false"#] {
+        let trial = Trial::new(&Script::hello(&hello(clock)), PATIENT);
+        let oracle = trial.oracle.as_ref().unwrap();
+        assert!(!oracle.estimates() && !oracle.identity().build.contains_key("clock"), "{clock}");
+        assert_eq!(oracle.timed(Quantity::InverseDynamics).len(), 2);
+    }
+    let malformed = Trial::new(&Script::hello(&hello(r#","clock":"estimate","timed":7"#)), PATIENT);
+    assert!(malformed.oracle.is_err_and(|reason| reason.starts_with("hello: timed")));
+}
+
 #[test]
 fn numbers_that_are_none_come_through() {
     let trial = Trial::new(&Script::evaluate(r"value '\0\0\0\0\0\0\370\177\0\0\0\0\0\0\360\377'"), PATIENT);

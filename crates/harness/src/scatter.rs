@@ -3,10 +3,9 @@
 use model::Random;
 use std::hint::black_box;
 
-/// Blocks that disturb the heap.
-const BLOCKS: usize = 64;
-/// The least and the largest of them, in bytes: a cache line to some pages, below the size from which allocators map pages of their own.
-const SIZES: [f64; 2] = [64.0, 65536.0];
+/// Blocks that disturb the heap, twice as many as stay: how many, and between which sizes in bytes. Small ones use up what was freed last, which
+/// an allocator would give out again; large ones, a cache line to some pages, shift what follows. Beyond, pages are mapped anew for each.
+const BLOCKS: [(usize, f64, f64); 2] = [(2048, 16.0, 1024.0), (128, 1024.0, 65536.0)];
 
 /// Blocks of random sizes between holes of random sizes. What is allocated while it lives fills the holes and the room behind: how its
 /// parts lie to each other and to the pages changes with every draw.
@@ -16,12 +15,11 @@ pub struct Scatter(#[expect(dead_code, reason = "what counts is that they take r
 impl Scatter {
     /// Draws blocks and holes.
     pub fn new(random: &mut Random) -> Self {
-        let block = |_| {
-            let size = SIZES[0] * (SIZES[1] / SIZES[0]).powf(random.unit());
-            black_box(vec![0_u8; size as usize])
-        };
-        let blocks: Vec<Vec<u8>> = (0..2 * BLOCKS).map(block).collect();
-        Self(blocks.into_iter().enumerate().filter_map(|(k, block)| (k % 2 == 0).then_some(block)).collect())
+        let mut blocks = Vec::new();
+        for (count, least, largest) in BLOCKS {
+            blocks.extend((0..count).map(|_| black_box(vec![0_u8; (least * (largest / least).powf(random.unit())) as usize])));
+        }
+        Self(blocks.into_iter().filter(|_| random.below(2) == 0).collect())
     }
 }
 

@@ -145,6 +145,16 @@ pub trait Subject: Send + Sync {
         states: &'a StateBatch,
     ) -> Result<Box<dyn Prepared + 'a>, Refusal>;
 
+    /// Its methods for a quantity that can be timed.
+    fn timed(&self, quantity: Quantity) -> Vec<String> {
+        self.methods(quantity)
+    }
+
+    /// Whether its times are estimates: what it takes to call the engine was measured with them, and subtracted.
+    fn estimates(&self) -> bool {
+        false
+    }
+
     /// Its steps, where its forward dynamics is that of a step.
     fn stepper(&self) -> Option<&dyn Stepper> {
         None
@@ -180,6 +190,11 @@ pub trait Prepared: Send {
     /// [`Refusal`] when the subject fails.
     fn scatter(&mut self, _seed: u32) -> Result<bool, Refusal> {
         Ok(false)
+    }
+
+    /// What was subtracted from the time that [`Prepared::clock`] told last, where times are estimates.
+    fn overhead(&self) -> Option<Duration> {
+        None
     }
 
     /// The values of the last run, state after state.

@@ -96,7 +96,7 @@ pub struct TimingEntry {
     pub states: usize,
     /// Seconds for everyone who is timed, on each quantity of each robot in each cache regime.
     pub seconds: f64,
-    /// Native peers that are timed beside our own kernels, where they are installed.
+    /// Peers that are timed beside our own kernels, where they are installed: native libraries, and oracles whose clock estimates.
     #[serde(default)]
     pub peers: Vec<String>,
 }

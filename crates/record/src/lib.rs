@@ -29,5 +29,5 @@ pub use error::RecordError;
 pub use file::{CSV_NAME, RUN_NAME, SCHEMA_NAME, atomic_write, parse_csv, read_csv, read_run, to_csv, write_csv, write_run};
 pub use names::{Kind, Relation, Verdict};
 pub use params::canonical_json;
-pub use row::{MARGIN_LIMIT, Record};
+pub use row::{ESTIMATE, MARGIN_LIMIT, Record};
 pub use run_info::{Convention, EngineInfo, EngineSource, Expectation, GitInfo, Host, ModelInfo, ModelOrigin, RUN_FORMAT, RunInfo};

@@ -105,7 +105,15 @@ impl Default for Record {
     }
 }
 
+/// How the reason of a row says that its time is no measurement of the engine alone.
+pub const ESTIMATE: &str = "estimate: ";
+
 impl Record {
+    /// Whether its time is an estimate: a call's overhead was subtracted.
+    pub fn is_estimate(&self) -> bool {
+        self.reason.contains(ESTIMATE)
+    }
+
     /// Closes the row with a value that is judged: a pass or a failure with its margin.
     ///
     /// A value or a bound that is not finite makes the row an error that says so; the value is then absent.

@@ -113,7 +113,7 @@ featherbench.ready(() => {
     const cell = row.cells[column];
     const text = cell.textContent.trim();
     if (!cell.classList.contains("number")) return text;
-    const number = parseFloat(text.replace("−", "-").replace(/\u202f/g, ""));
+    const number = parseFloat(text.replace("−", "-").replace(/[\u202f≈]/g, ""));
     return Number.isNaN(number) ? -Infinity : number;
   };
   const order = (a, b) => (a === b ? 0 : a < b ? -1 : 1);

@@ -85,7 +85,7 @@ featherbench.ready(() => {
       traces.push({
         name: fit ? `${name}  <i>p = ${fit.slope.toFixed(2)}</i>` : name, legendgroup: name, mode: "markers+lines",
         x: line.points.map((point) => point.size), y: line.points.map((point) => per(point, point.ns)),
-        line: { color: ink, width: 1, dash: dash(style) }, marker: { color: ink, size: 7, symbol: line.points.map((point) => symbol(style) + (point.void ? "-open" : "")) },
+        line: { color: ink, width: 1, dash: dash(style) }, marker: { color: ink, size: 7, symbol: line.points.map((point) => (point.estimate ? "x" : symbol(style)) + (point.void ? "-open" : "")) },
         error_y: bars(line.points, ...[["low", "p10"], ["ns"], ["high", "p90"]].map((keys) => (point) => { const found = keys.map((key) => point[key]).find((ns) => ns !== null); return found === undefined ? null : per(point, found); }), ink),
         text: line.points.map((point) => `<b>${plain(overview.models[point.model].name)}</b> nv ${point.size}<br>${short(point.ns)} ns per call<br>${short(point.ns / point.joints)} ns per joint`),
         hovertemplate: `%{text}<extra>${name}</extra>`,

@@ -27,9 +27,9 @@ featherbench.ready(() => {
       const beside = subjects.length < 2 ? 0 : 0.5 * (place / (subjects.length - 1) - 0.5);
       return {
         name, mode: "markers", x: points.map((point) => robots.indexOf(point.model) + beside), y: points.map((point) => point.value),
-        marker: { color: ink, size: 9, symbol: points.map((point) => symbol(index) + (point.void ? "-open" : "")), line: { width: 1.2, color: ink } },
+        marker: { color: ink, size: 9, symbol: points.map((point) => (point.estimate ? "x" : symbol(index)) + (point.void ? "-open" : "")), line: { width: 1.2, color: ink } },
         error_y: { type: "data", symmetric: false, thickness: 1.5, width: 3, color: ink, array: points.map((point) => point.high - point.value), arrayminus: points.map((point) => point.value - point.low) },
-        text: points.map((point) => `<b>${plain(overview.models[point.model].name)}</b> nv ${size(point.model)}<br>${point.value.toFixed(3)} × ${plain(point.reference)}<br>[${point.low.toFixed(3)}, ${point.high.toFixed(3)}]${point.void ? "<br>void" : ""}`),
+        text: points.map((point) => `<b>${plain(overview.models[point.model].name)}</b> nv ${size(point.model)}<br>${point.estimate ? "≈ " : ""}${point.value.toFixed(3)} × ${plain(point.reference)}<br>[${point.low.toFixed(3)}, ${point.high.toFixed(3)}]${point.estimate ? "<br>estimate" : ""}${point.void ? "<br>void" : ""}`),
         hovertemplate: `%{text}<extra>${name}</extra>`,
         customdata: points.map((point) => ({ model: point.model, filters: { study: "timing", engine: overview.engines[engine], method: point.method, quantity, case: kind } })),
       };

@@ -109,6 +109,8 @@ pub struct TimePoint {
     pub high: Option<f64>,
     /// Whether the time does not count.
     pub void: bool,
+    /// Whether it is an estimate.
+    pub estimate: bool,
 }
 
 impl<'a> Figures<'a> {
@@ -184,8 +186,8 @@ fn times<'a>(overview: &Overview<'a>, records: &'a [Record]) -> Vec<TimeLine<'a>
         let [engine, algorithm, method, scalar, family, case, _] = key;
         let line = [engine, algorithm, method, scalar, family, case, ""];
         let [p10, p90, low, high] = ["ns_p10", "ns_p90", "ns_low", "ns_high"].map(spread_of);
-        let void = row.reason.starts_with(VOID);
-        lines.entry(line).or_default().push(TimePoint { model, size, joints, ns, p10, p90, low, high, void });
+        let (void, estimate) = (row.reason.starts_with(VOID), row.is_estimate());
+        lines.entry(line).or_default().push(TimePoint { model, size, joints, ns, p10, p90, low, high, void, estimate });
     }
     lines
         .into_iter()

@@ -48,7 +48,7 @@ pub fn time(overview: &Overview, figures: &Figures) -> Markup {
     html! {
         section #time {
             h2 { "Time against size" }
-            p.lead { "Time of one call on one pinned core, against the degrees of freedom. Bars are 95 % intervals of the median, hollow marks times that are void." }
+            p.lead { "Time of one call on one pinned core, against the degrees of freedom. Bars are 95 % intervals of the median, hollow marks times that are void, crosses estimates." }
             @if figures.times.is_empty() {
                 p.empty { "This run holds no times." }
             } @else {

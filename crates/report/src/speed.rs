@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use record::Record;
+use record::{ESTIMATE, Record};
 use serde::Serialize;
 
 use crate::labels;
@@ -57,6 +57,8 @@ pub struct Ratio<'a> {
     pub high: f64,
     /// Whether it does not count.
     pub void: bool,
+    /// Whether it is an estimate.
+    pub estimate: bool,
 }
 
 /// A time per joint beside the machine's limit.
@@ -72,6 +74,8 @@ pub struct Limit<'a> {
     pub quantity: &'a str,
     /// `stream` or `hot`.
     pub case: &'a str,
+    /// Whether the time is an estimate.
+    pub estimate: bool,
     /// Nanoseconds per joint.
     pub per_joint: f64,
     /// The least that the operations of a revolute joint take, one state at a time.
@@ -113,6 +117,7 @@ impl<'a> Speed<'a> {
         let machine = Machine::of(&timing);
         let mut void: BTreeMap<&str, usize> = BTreeMap::new();
         for reason in timing.iter().filter_map(|row| row.reason.strip_prefix(VOID)) {
+            let reason = reason.split_once(&format!("; {ESTIMATE}")).map_or(reason, |(reason, _)| reason);
             *void.entry(reason).or_default() += 1;
         }
         let ratios = ratios(overview, &timing, ["ratio", "ratio_low", "ratio_high"]);
@@ -180,6 +185,7 @@ fn ratios<'a>(overview: &Overview<'a>, timing: &[&'a Record], metrics: [&str; 3]
             low: end(metrics[1]),
             high: end(metrics[2]),
             void: row.reason.starts_with(VOID),
+            estimate: row.is_estimate(),
         })
     };
     timing.iter().filter(|row| row.metric == metrics[0]).filter_map(ratio).collect()
@@ -195,6 +201,7 @@ fn limits<'a>(overview: &Overview<'a>, timing: &[&'a Record], machine: Machine) 
             method: &row.method,
             quantity: &row.quantity,
             case: &row.case,
+            estimate: row.is_estimate(),
             per_joint: ns / joints as f64,
             least: operations / machine.lane,
         })

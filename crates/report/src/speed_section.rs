@@ -46,6 +46,7 @@ pub fn section(run: &RunInfo, overview: &Overview, speed: &Speed) -> Markup {
                     }
                     div #speed-plot.plot role="img" aria-label="Plot of ratios of times" {}
                     p.note { "Grey: ± 2 %, within which this experiment calls nothing a difference. Hollow marks are void: see below." }
+                    (estimates(overview, speed))
                     (summary(overview, speed))
                     (table(overview, speed))
                 }
@@ -65,6 +66,27 @@ fn missing(run: &RunInfo) -> Markup {
             p.warning { "Not timed: " @for (index, engine) in missing.iter().enumerate() { @if index > 0 { "; " } b { (engine.name) } " (" (engine.reason) ")" } "." }
         }
     }
+}
+
+/// What ≈ means, where something is estimated.
+fn estimates(overview: &Overview, speed: &Speed) -> Markup {
+    let mut engines: Vec<&str> = speed.ratios.iter().filter(|ratio| ratio.estimate).map(|ratio| overview.engines[ratio.engine]).collect();
+    engines.sort_unstable();
+    engines.dedup();
+    html! {
+        @if !engines.is_empty() {
+            p.note #speed-estimates {
+                "≈ and crosses: estimates. " (engines.join(" and ")) " are called through Python; what calling takes is measured by the same calls on a robot without bodies, and subtracted. "
+                "Where that was held against the engines' own libraries, estimates were 2 to 15 % too long, on a busy machine up to a quarter, so that an engine is rather faster than its estimate says. "
+                "Rows " code { "overhead_ns" } " hold what was subtracted from each call."
+            }
+        }
+    }
+}
+
+/// `≈` before an estimate.
+fn mark(estimate: bool) -> &'static str {
+    if estimate { "≈\u{202f}" } else { "" }
 }
 
 fn summary(overview: &Overview, speed: &Speed) -> Markup {
@@ -89,10 +111,10 @@ fn summary(overview: &Overview, speed: &Speed) -> Markup {
                             td { (overview.engines[line.of.engine]) " " small { (line.of.method) } }
                             td { (line.of.reference) }
                             td.number { (line.count) }
-                            td.number { (times(line.mean)) }
-                            td.number { (times(line.least.0)) }
+                            td.number { (mark(line.of.estimate)) (times(line.mean)) }
+                            td.number { (mark(line.of.estimate)) (times(line.least.0)) }
                             td { (overview.models[line.least.1].name) }
-                            td.number { (times(line.largest.0)) }
+                            td.number { (mark(line.of.estimate)) (times(line.largest.0)) }
                             td { (overview.models[line.largest.1].name) }
                         }
                     }
@@ -122,9 +144,9 @@ fn table(overview: &Overview, speed: &Speed) -> Markup {
                                 td { (ratio.case) }
                                 td { (overview.engines[ratio.engine]) " " small { (ratio.method) } }
                                 td { (ratio.reference) }
-                                td.number { (times(ratio.value)) }
-                                td.number { (times(ratio.low)) }
-                                td.number { (times(ratio.high)) }
+                                td.number { (mark(ratio.estimate)) (times(ratio.value)) }
+                                td.number { (mark(ratio.estimate)) (times(ratio.low)) }
+                                td.number { (mark(ratio.estimate)) (times(ratio.high)) }
                                 td { @if ratio.void { "void" } @else { "yes" } }
                             }
                         }
@@ -165,9 +187,9 @@ fn limits(overview: &Overview, speed: &Speed) -> Markup {
                                         td { (labels::quantity(limit.quantity)) }
                                         td { (limit.case) }
                                         td { (overview.engines[limit.engine]) " " small { (limit.method) } }
-                                        td.number { (short(limit.per_joint)) }
+                                        td.number { (mark(limit.estimate)) (short(limit.per_joint)) }
                                         td.number { (short(limit.least)) }
-                                        td.number { (times(limit.per_joint / limit.least)) }
+                                        td.number { (mark(limit.estimate)) (times(limit.per_joint / limit.least)) }
                                     }
                                 }
                             }

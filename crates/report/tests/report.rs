@@ -109,6 +109,47 @@ fn every_row_lies_in_one_chunk_and_chunks_parse() {
 }
 
 #[test]
+fn estimates_are_marked() {
+    let row = |engine: &str, metric: &str, value: f64, reason: &str| {
+        let row = Record {
+            study: "timing".into(),
+            engine: engine.into(),
+            model: "arm".into(),
+            method: "rnea".into(),
+            quantity: "id".into(),
+            case: "stream".into(),
+            metric: metric.into(),
+            nv: Some(7),
+            ..Record::default()
+        };
+        Record { reason: reason.into(), ..row.informed(value) }
+    };
+    let estimate = "estimate: with the overhead subtracted";
+    let rows = [
+        row("drake", "ratio", 3.25, estimate),
+        row("drake", "ns_per_call", 6500.0, estimate),
+        row("dart", "ratio", 4.25, &format!("void: noise; {estimate}")),
+        row("pinocchio", "ratio", 1.25, ""),
+        row("pinocchio", "ns_per_call", 2500.0, "void: noise"),
+    ];
+    let written = Written::of(&RunInfo::default(), &rows);
+    let section = written.section("speed");
+    // In the table of robots and in that of means; a void one is not averaged.
+    for (ratio, times) in [("≈\u{202f}3.250", 6), ("≈\u{202f}4.250", 3), ("≈\u{202f}1.250", 0), ("1.250", 6)] {
+        assert_eq!(section.matches(ratio).count(), times, "{ratio}: {section}");
+    }
+    let note = section.split("id=\"speed-estimates\"").nth(1).unwrap();
+    assert!(note[..200].contains("dart and drake are called through Python") && !note[..200].contains("pinocchio"), "{note}");
+    let flags = |values: &serde_json::Value| -> Vec<bool> {
+        values.as_array().unwrap().iter().map(|value| value["estimate"].as_bool().unwrap()).collect()
+    };
+    let figures = written.data("figures");
+    assert_eq!(flags(&figures["speed"]["ratios"]), [true, true, false]);
+    let points: Vec<bool> = figures["times"].as_array().unwrap().iter().flat_map(|line| flags(&line["points"])).collect();
+    assert_eq!(points.iter().filter(|&&estimate| estimate).count(), 1, "{points:?}");
+}
+
+#[test]
 fn ratios_have_intervals_a_mean_and_a_least() {
     let timing = |engine: &str, model: &str, metric: &str, value: f64, reason: &str| {
         let row = Record {
@@ -150,6 +191,7 @@ fn ratios_have_intervals_a_mean_and_a_least() {
     assert_eq!(speed["ratios"].as_array().unwrap().len(), 3);
     assert_eq!((&speed["ratios"][2]["void"], &speed["ratios"][0]["low"]), (&true.into(), &1.8.into()));
 
+    assert!(!section.contains('≈') && !section.contains("id=\"speed-estimates\""), "nothing is estimated");
     let none = Written::of(&RunInfo::default(), &rows[2..3]);
     assert!(!none.index.contains("<section id=\"speed\"") && !none.index.contains("href=\"#speed\""));
 }

@@ -99,6 +99,31 @@ fn forward_dynamics_is_checked_backwards() {
     assert!(wrong.iter().filter(|(_, verdict)| *verdict == Verdict::Fail).count() == 4, "{wrong:?}");
 }
 
+#[test]
+fn estimates_are_labelled_void_or_not_and_tell_what_was_subtracted() {
+    let estimate = |row: &&Record| row.is_estimate();
+    let plain = rows(Double::of(&robot4()));
+    assert!(!plain.iter().any(|row| row.is_estimate() || row.metric == "overhead_ns"));
+    let rows = rows(Double::estimating(Double::twisting(&robot4(), |answer| {
+        if answer.quantity == Quantity::InverseDynamics {
+            answer.values[0] += 1.0;
+        }
+    })));
+    assert!(rows.iter().filter(estimate).all(|row| row.engine == "double"));
+    let metrics = ["ns_per_call", "ns_low", "ns_high", "ns_p10", "ns_p90", "ratio", "ratio_low", "ratio_high", "finding"];
+    for (metric, count) in metrics.map(|metric| (metric, 2)).into_iter().chain([("overhead_ns", 1)]) {
+        for (quantity, void) in [("id", metric != "overhead_ns"), ("fd", false)] {
+            let found = of(&rows, "double", quantity, metric);
+            assert_eq!(found.len(), count, "{quantity} {metric}: one method is timed, over the stream and hot");
+            assert!(found.iter().all(|row| row.is_estimate() && row.value.is_some()), "{quantity} {metric}");
+            let wrong = |row: &&&Record| row.reason.starts_with("void: a wrong answer has no time");
+            assert_eq!(found.iter().filter(wrong).count(), if void { count } else { 0 }, "{quantity} {metric}: {}", found[0].reason);
+        }
+    }
+    assert!(of(&rows, "double", "fd", "overhead_ns").iter().all(|row| row.value == Some(700.0) && row.unit == "ns"));
+    assert!(of(&rows, "double", "fd", "worst_error").iter().all(|row| row.verdict == Verdict::Pass && row.reason.is_empty()));
+}
+
 /// A finished study whose outcomes are rewritten before they are compared.
 fn rewritten(rewrite: impl Fn(&mut Vec<f64>)) -> Vec<Record> {
     let (problem, gates, subjects) = (robot4(), gates(""), [Box::new(Native::new()) as Box<dyn Subject>]);

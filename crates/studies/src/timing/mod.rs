@@ -5,13 +5,14 @@
 //! `factorization` and `solve` start from a mass matrix or factors made beforehand. Converting coordinates and reading results are outside
 //! the clock for everyone. METHODOLOGY.md tells the protocol, the statistics and what each number means.
 //!
-//! Three kinds of cells: the *machine* (its peak, its clock, an empty call), a *check* for everyone who is timed (the error of its answer at
-//! every state of the stream), and an *experiment* for each quantity and cache regime (all blocks of all rounds). Rows are made from them
-//! by a pure function: a time without a good check does not count, and where the second copy of ourselves differs from the first, no time
+//! Four kinds of cells: the *machine* (its peak, its clock, an empty call), a *check* for everyone who is timed (the error of its answer at
+//! every state of the stream), the *overhead* of calling it where its times are estimates, and an *experiment* for each quantity and cache
+//! regime (all blocks of all rounds). Rows are made from them by a pure function: a time without a good check does not count, and where the second copy of ourselves differs from the first, no time
 //! of that robot does. Such rows keep their values and say why they are void.
 
 mod check;
 mod machine;
+mod overhead;
 mod protocol;
 mod rows;
 mod samples;
@@ -45,6 +46,7 @@ const REFERENCE: &str = "native";
 /// The kinds of cells, as their parameter `what`.
 const MACHINE: &str = "machine";
 const CHECK: &str = "check";
+const OVERHEAD: &str = "overhead";
 const EXPERIMENT: &str = "experiment";
 /// The cache regimes.
 const REGIMES: [&str; 2] = ["stream", "hot"];
@@ -79,6 +81,9 @@ impl Study for Timing {
                 for entrant in entrants.iter().filter(|entrant| !entrant.control) {
                     let Some(subject) = context.subject(&entrant.engine) else { continue };
                     cells.push(self.cell(problem, subject, quantity, &entrant.method, json!({"what": CHECK, "states": states})));
+                    if entrant.estimate {
+                        cells.push(self.cell(problem, subject, quantity, &entrant.method, json!({"what": OVERHEAD, "states": states})));
+                    }
                 }
                 let Some(usual) = entrants.first() else { continue };
                 let listed: Vec<Value> = entrants.iter().map(Entrant::to_params).collect();
@@ -111,6 +116,9 @@ impl Study for Timing {
                 return check::errors(&problem.clone().at(states), native, subject, quantity, &cell.method);
             }
             let _pinned = Pinned::to_one_core();
+            if cell.params["what"] == OVERHEAD {
+                return overhead::per_call(subject.prepare(problem, quantity, &cell.method, &states)?.as_mut());
+            }
             let entrants = Entrant::of(cell);
             let prepare = |which: usize| -> Contestant {
                 let Entrant { engine, method, .. } = &entrants[which];
@@ -154,6 +162,7 @@ impl Timing {
             version: subject.identity().version.clone(),
             method: method.to_owned(),
             control,
+            estimate: subject.estimates(),
         };
         let Some(native) = context.subject(REFERENCE) else { return Vec::new() };
         let mut experiments: Vec<(Quantity, Vec<Entrant>)> = Vec::new();
@@ -165,7 +174,7 @@ impl Timing {
         }
         for (quantity, entrants) in &mut experiments {
             for peer in self.peers.iter().filter_map(|name| context.subject(name)) {
-                entrants.extend(peer.methods(*quantity).iter().map(|method| entrant(peer, method, false)));
+                entrants.extend(peer.timed(*quantity).iter().map(|method| entrant(peer, method, false)));
             }
         }
         experiments

@@ -3,15 +3,18 @@
 use super::machine::{LANES, Machine};
 use super::samples::{Entrant, Samples, outcome_samples};
 use super::statistics::{CONTROL_LEVEL, Estimate, Finding, LEVEL};
-use super::{CHECK, EXPERIMENT, MACHINE, REFERENCE, check};
+use super::{CHECK, EXPERIMENT, MACHINE, OVERHEAD, REFERENCE, check};
 use crate::{quantile, row};
 use harness::measure::worst;
 use harness::{Cell, Finished, Gates, Outcome, Problem, Quantity, Refusal};
 use model::Random;
-use record::{Kind, Record, Relation, Verdict};
+use record::{ESTIMATE, Kind, Record, Relation, Verdict};
 
 /// An experiment whose A/A control fails is void by itself; when more than one in this many controls of a robot do, all its times are.
 const BAD_CONTROLS: usize = 4;
+
+/// What the rows of estimated times say, behind [`ESTIMATE`].
+const ESTIMATED: &str = "through a language whose call overhead is measured and subtracted";
 
 /// All rows of a robot.
 pub(super) fn rows(gates: &Gates, problem: &Problem, finished: &[Finished]) -> Vec<Record> {
@@ -21,8 +24,9 @@ pub(super) fn rows(gates: &Gates, problem: &Problem, finished: &[Finished]) -> V
     let noise = noise(&experiments);
     let machine = of_kind(MACHINE).flat_map(|(cell, outcome)| machine(cell, problem, outcome));
     let checked = checks.iter().filter_map(|check| check.row.clone());
+    let overheads = of_kind(OVERHEAD).filter_map(|finished| overhead(problem, finished));
     let timed = experiments.iter().flat_map(|experiment| experiment.rows(&checks, noise.as_deref()));
-    machine.chain(checked).chain(timed).collect()
+    machine.chain(checked).chain(overheads).chain(timed).collect()
 }
 
 /// Why no time of this robot counts: too many of its controls say that the machine was not quiet.
@@ -51,6 +55,29 @@ fn machine(cell: &Cell, problem: &Problem, outcome: &Outcome) -> Vec<Record> {
         ("empty_call_ns", "ns", empty),
     ];
     values.map(|(metric, unit, value)| Record { metric: metric.into(), unit: unit.into(), ..blank.clone() }.informed(value)).into()
+}
+
+/// What it takes to call an engine whose times are estimates, by the clock that subtracts it. One that does not offer the robot has its row
+/// in the check.
+fn overhead(problem: &Problem, (cell, outcome): &Finished) -> Option<Record> {
+    let blank =
+        Record { kind: Kind::Measured, case: "stream".into(), metric: "overhead_ns".into(), unit: "ns".into(), ..row(cell, problem) };
+    match outcome.answer() {
+        Ok(overheads) => {
+            let mut sorted = overheads.to_vec();
+            sorted.sort_unstable_by(f64::total_cmp);
+            Some(labelled(blank.informed(quantile(&sorted, 0.5))))
+        }
+        Err(Refusal::Unsupported(_)) => None,
+        Err(refusal) => Some(blank.without_value(Verdict::Error, refusal.to_string())),
+    }
+}
+
+/// A row of an estimated time: its reason says so, behind what else it says.
+fn labelled(mut row: Record) -> Record {
+    let separator = if row.reason.is_empty() { "" } else { "; " };
+    row.reason += &format!("{separator}{ESTIMATE}{ESTIMATED}");
+    row
 }
 
 /// Whether the times of one subject's method count.
@@ -189,7 +216,7 @@ impl<'a> Experiment<'a> {
             if let Some(reason) = void.or(noise).or(own_noise.as_deref()) {
                 own.iter_mut().for_each(|row| row.reason = format!("void: {reason}"));
             }
-            rows.extend(own);
+            rows.extend(own.into_iter().map(|row| if entrant.estimate { labelled(row) } else { row }));
         }
         rows
     }

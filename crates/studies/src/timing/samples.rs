@@ -56,13 +56,15 @@ pub(super) struct Entrant {
     pub method: String,
     /// Whether it is the second copy of the reference.
     pub control: bool,
+    /// Whether its times are estimates.
+    pub estimate: bool,
 }
 
 impl Entrant {
     /// As a parameter of the cell.
     pub fn to_params(&self) -> serde_json::Value {
-        let Self { engine, version, method, control } = self;
-        json!({"engine": engine, "version": version, "method": method, "control": control})
+        let Self { engine, version, method, control, estimate } = self;
+        json!({"engine": engine, "version": version, "method": method, "control": control, "estimate": estimate})
     }
 
     /// The entrants of an experiment's cell, in the order of its samples.
@@ -75,6 +77,7 @@ impl Entrant {
                 version: text(entrant, "version"),
                 method: text(entrant, "method"),
                 control: entrant["control"] == true,
+                estimate: entrant["estimate"] == true,
             })
             .collect()
     }
@@ -91,7 +94,7 @@ pub(super) fn lines(finished: &[Finished]) -> String {
             let ns: Vec<Option<f64>> = samples.of(which).iter().map(|ns| ns.is_finite().then(|| (ns * 1e4).round() / 1e4)).collect();
             let line = json!({
                 "cell": cell.id(), "model": cell.problem, "quantity": cell.quantity, "cache": cell.params["cache"],
-                "engine": entrant.engine, "method": entrant.method, "control": entrant.control,
+                "engine": entrant.engine, "method": entrant.method, "control": entrant.control, "estimate": entrant.estimate,
                 "calls": samples.calls[which], "ns": ns,
             });
             text += &line.to_string();

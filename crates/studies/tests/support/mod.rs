@@ -47,6 +47,9 @@ pub struct Answer<'a> {
     pub values: &'a mut Vec<f64>,
 }
 
+/// What a double whose times are estimates says to have subtracted.
+pub const OVERHEAD: Duration = Duration::from_nanos(700);
+
 /// What an engine does to its answers.
 pub type Twist = fn(Answer);
 
@@ -60,13 +63,14 @@ pub struct Double {
     states: Option<StateBatch>,
     twist: Twist,
     refuses: bool,
+    estimates: bool,
 }
 
 impl Double {
     /// An honest one.
     pub fn of(problem: &Problem) -> Self {
         let identity = Identity { name: "double".into(), version: "1".into(), source: EngineSource::Native, build: BTreeMap::new() };
-        Self { identity, native: Native::new(), held: problem.clone(), states: None, twist: |_| (), refuses: false }
+        Self { identity, native: Native::new(), held: problem.clone(), states: None, twist: |_| (), refuses: false, estimates: false }
     }
 
     /// One that holds an altered robot.
@@ -95,6 +99,11 @@ impl Double {
         self
     }
 
+    /// One whose times are estimates, of one method of each quantity.
+    pub fn estimating(self) -> Self {
+        Self { estimates: true, ..self }
+    }
+
     /// One that supports nothing, whatever it offers.
     pub fn refusing(problem: &Problem) -> Self {
         Self { refuses: true, ..Self::of(problem) }
@@ -108,6 +117,18 @@ impl Subject for Double {
 
     fn methods(&self, quantity: Quantity) -> Vec<String> {
         self.native.methods(quantity)
+    }
+
+    fn timed(&self, quantity: Quantity) -> Vec<String> {
+        let mut methods = self.methods(quantity);
+        if self.estimates {
+            methods.truncate(1);
+        }
+        methods
+    }
+
+    fn estimates(&self) -> bool {
+        self.estimates
     }
 
     fn prepare<'a>(
@@ -124,7 +145,15 @@ impl Subject for Double {
             return self.native.prepare(problem, quantity, method, states);
         }
         let inner = self.native.prepare(&self.held, quantity, method, self.states.as_ref().unwrap_or(states))?;
-        Ok(Box::new(Twisted { inner, problem, quantity, count: states.count(), twist: self.twist, values: Vec::new() }))
+        Ok(Box::new(Twisted {
+            inner,
+            problem,
+            quantity,
+            count: states.count(),
+            twist: self.twist,
+            overhead: self.estimates.then_some(OVERHEAD),
+            values: Vec::new(),
+        }))
     }
 }
 
@@ -134,6 +163,7 @@ struct Twisted<'a> {
     quantity: Quantity,
     count: usize,
     twist: Twist,
+    overhead: Option<Duration>,
     values: Vec<f64>,
 }
 
@@ -155,6 +185,10 @@ impl Prepared for Twisted<'_> {
             self.run(state % self.count..state % self.count + 1)?;
         }
         Ok(start.elapsed())
+    }
+
+    fn overhead(&self) -> Option<Duration> {
+        self.overhead
     }
 
     fn read(&self) -> &[f64] {
