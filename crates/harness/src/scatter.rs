@@ -5,7 +5,7 @@ use std::hint::black_box;
 
 /// Blocks that disturb the heap, twice as many as stay: how many, and between which sizes in bytes. Small ones use up what was freed last, which
 /// an allocator would give out again; large ones, a cache line to some pages, shift what follows. Beyond, pages are mapped anew for each.
-const BLOCKS: [(usize, f64, f64); 2] = [(2048, 16.0, 1024.0), (128, 1024.0, 65536.0)];
+const BLOCKS: [(usize, f64, f64); 2] = [(1024, 16.0, 1024.0), (64, 1024.0, 65536.0)];
 
 /// Blocks of random sizes between holes of random sizes. What is allocated while it lives fills the holes and the room behind: how its
 /// parts lie to each other and to the pages changes with every draw.
