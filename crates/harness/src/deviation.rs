@@ -68,26 +68,21 @@ impl Deviation {
 
     /// Whether it is about this row, of whatever size its value is.
     fn is_about(&self, row: &Record) -> bool {
+        self.version == row.engine_version && self.method.as_ref().is_none_or(|method| *method == row.method) && self.concerns(row)
+    }
+
+    /// Whether it is about the engine, robot, quantity and case of this row, by whatever method and in whatever version.
+    pub(crate) fn concerns(&self, row: &Record) -> bool {
         self.engine == row.engine
-            && self.version == row.engine_version
-            && self.method.as_ref().is_none_or(|method| *method == row.method)
-            && self.about(&row.quantity)
+            && named(&self.models, &row.model)
+            && self.quantities.as_ref().is_none_or(|quantities| quantities.contains(&row.quantity))
             && self.cases.as_ref().is_none_or(|cases| cases.contains(&row.case))
-            && self.names(&row.model)
     }
 
     /// The worst value of the rows of a run that it explains, or would if they were smaller.
     pub fn worst(&self, records: &[Record]) -> Option<f64> {
         let broken = |row: &&Record| matches!(row.verdict, Verdict::Fail | Verdict::Deviation) && row.bound.is_some() && self.is_about(row);
         records.iter().filter(broken).filter_map(|row| row.value).reduce(f64::max)
-    }
-
-    pub(crate) fn names(&self, model: &str) -> bool {
-        named(&self.models, model)
-    }
-
-    pub(crate) fn about(&self, quantity: &String) -> bool {
-        self.quantities.as_ref().is_none_or(|quantities| quantities.contains(quantity))
     }
 
     /// Whether a row is there because of it.

@@ -187,9 +187,7 @@ impl Gates {
         conditions.push(condition("rows at all".into(), 1, u64::from(!records.is_empty())));
         for deviation in self.deviations.iter().filter(|_| suite.thorough) {
             let known = suite.agreement.as_ref().is_some_and(|agreement| agreement.engines.contains(&deviation.engine));
-            let asked =
-                records.iter().any(|row| row.engine == deviation.engine && deviation.names(&row.model) && deviation.about(&row.quantity));
-            if known && asked {
+            if known && records.iter().any(|row| deviation.concerns(row)) {
                 let seen = records.iter().any(|row| deviation.excused(row));
                 let what = format!("known deviation of {} still seen: {}", deviation.engine, deviation.reason);
                 conditions.push(condition(what, 1, u64::from(seen)));

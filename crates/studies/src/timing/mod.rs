@@ -55,6 +55,14 @@ const MOST_NUMBERS: usize = 12_000_000;
 /// Nor more than this many numbers of mass matrices, where a quantity is or needs one: what the registry keeps of them.
 const MOST_ENTRIES: usize = 4 << 20;
 
+/// Robots up to so many dofs are timed through an interpreter: to convert a thousand states of a larger one for each method takes it minutes.
+const LARGEST_ESTIMATE: usize = 64;
+
+/// Whether a robot is too large for times that are estimates.
+fn refused(problem: &Problem, estimate: bool) -> bool {
+    estimate && problem.states.nv > LARGEST_ESTIMATE
+}
+
 impl Study for Timing {
     fn name(&self) -> &'static str {
         "timing"
@@ -81,12 +89,13 @@ impl Study for Timing {
                 for entrant in entrants.iter().filter(|entrant| !entrant.control) {
                     let Some(subject) = context.subject(&entrant.engine) else { continue };
                     cells.push(self.cell(problem, subject, quantity, &entrant.method, json!({"what": CHECK, "states": states})));
-                    if entrant.estimate {
+                    if entrant.estimate && !refused(problem, entrant.estimate) {
                         cells.push(self.cell(problem, subject, quantity, &entrant.method, json!({"what": OVERHEAD, "states": states})));
                     }
                 }
                 let Some(usual) = entrants.first() else { continue };
-                let listed: Vec<Value> = entrants.iter().map(Entrant::to_params).collect();
+                let timed = entrants.iter().filter(|entrant| !refused(problem, entrant.estimate));
+                let listed: Vec<Value> = timed.map(Entrant::to_params).collect();
                 for regime in REGIMES {
                     let states = if regime == "hot" { 1 } else { states };
                     let params =
@@ -109,6 +118,10 @@ impl Study for Timing {
                 let mut empty = native.prepare(problem, quantity, "topology", &problem.states)?;
                 let _pinned = Pinned::to_one_core();
                 return Ok(Machine::measure(empty.as_mut())?.to_values());
+            }
+            if refused(problem, subject.estimates()) {
+                let reason = format!("times that are estimates are taken of robots up to {LARGEST_ESTIMATE} degrees of freedom");
+                return Err(Refusal::Unsupported(reason));
             }
             let count = cell.params["states"].as_u64().and_then(|count| usize::try_from(count).ok()).ok_or_else(lost)?;
             let states = StateBatch::random(&problem.model, count, context.seed);
