@@ -363,7 +363,7 @@ def speed(page, shot):
             ends = page.until("return document.querySelectorAll('#speed-plot .errorbar').length")
             yield f"ratios of {words}, {case}, are plotted with intervals", bool(seen) and page.until(DRAWN, "speed-plot") > 0 and ends > 0, [seen, ends]
     rows = page.run("""
-        const means = [...document.querySelectorAll('#speed-summary tbody tr')].map(row => [...row.querySelectorAll('td.number')].map(cell => parseFloat(cell.textContent)));
+        const means = [...document.querySelectorAll('#speed-summary tbody tr')].map(row => [...row.querySelectorAll('td.number')].map(cell => parseFloat(cell.textContent.replace(/^[^0-9]+/, ''))));
         return means.map(([robots, mean, least, largest]) => least <= mean && mean <= largest && robots > 0)""")
     # On a machine that is not quiet every ratio may be void; the page then says so, and why.
     void = page.run("return !!document.querySelector('#speed-all-void') && document.querySelectorAll('#speed-void li').length > 0")
