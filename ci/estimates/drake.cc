@@ -1,7 +1,6 @@
 // Drake's own calls in a loop, without Python. The package has no headers: these few declarations name symbols that its library exports, and
 // the test of the answers in estimates.py shows that they are what they seem.
-#include <Eigen/Core>
-#include <chrono>
+#include "loop.h"
 
 namespace drake {
 namespace systems {
@@ -25,31 +24,19 @@ template <class T> class MultibodyPlant {
 }  // namespace drake
 
 using namespace drake;
-using Vector = Eigen::VectorXd;
-using Rows = Eigen::Map<const Eigen::Matrix<double, -1, -1, Eigen::RowMajor>>;
 
-// Nanoseconds of a call; `answer` gets the last one.
 extern "C" double loop(char what, void* const* engine, int states, int nq, int nv, const double* q, const double* v, const double* a, int calls, double* answer) {
   auto* plant = static_cast<multibody::MultibodyPlant<double>*>(engine[0]);
   auto* context = static_cast<systems::Context<double>*>(engine[1]);
   auto* forces = static_cast<multibody::MultibodyForces<double>*>(engine[2]);
-  Rows qs(q, states, nq), vs(v, states, nv), as(a, states, nv);
-  Vector qk(nq), vk(nv), ak(nv), tau(nv);
-  const auto start = std::chrono::steady_clock::now();
-  for (int call = 0; call < calls; ++call) {
-    const int k = call % states;
-    qk = qs.row(k), vk = vs.row(k);
-    plant->SetPositions(context, qk);
-    plant->SetVelocities(context, vk);
-    if (what == 'i') {
-      ak = as.row(k);
-      plant->CalcForceElementsContribution(*context, forces);
-      tau = plant->CalcInverseDynamics(*context, ak, *forces);
-    } else {
-      tau[0] = reinterpret_cast<systems::System<double>*>(plant)->CalcKineticEnergy(*context);
-    }
-  }
-  const auto stop = std::chrono::steady_clock::now();
-  Eigen::Map<Vector>(answer, nv) = tau;
-  return std::chrono::duration<double, std::nano>(stop - start).count() / calls;
+  const auto place = [&](const Vector& q, const Vector& v) {
+    plant->SetPositions(context, q);
+    plant->SetVelocities(context, v);
+  };
+  const auto torque = [&](const Vector& a) {
+    plant->CalcForceElementsContribution(*context, forces);
+    return plant->CalcInverseDynamics(*context, a, *forces);
+  };
+  const auto energy = [&] { return reinterpret_cast<systems::System<double>*>(plant)->CalcKineticEnergy(*context); };
+  return timed(Quantity(what), states, nq, nv, q, v, a, calls, answer, place, torque, energy);
 }
