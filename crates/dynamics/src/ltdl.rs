@@ -14,7 +14,10 @@ use crate::{DimensionError, Error, NotPositiveDefinite, TreeSparse};
 use model::Topology;
 use spatial::Real;
 
-/// Calls a method that works on a block of this size; [`BLOCK`] is the largest.
+// The arms of `by_block`.
+const _: () = assert!(BLOCK == 4);
+
+/// Calls a method that works on a block of this size, 1 … [`BLOCK`].
 macro_rules! by_block {
     ($size:expr, $self:ident.$method:ident($($argument:expr),+)) => {
         match $size {

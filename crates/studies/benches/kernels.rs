@@ -2,7 +2,7 @@
 //! states; and forward dynamics in single precision, which the digits study checks and no run times.
 //!
 //! A group is an algorithm and method, an id a robot and a regime: `stream` goes round a thousand random states, `hot` stays at one. The
-//! throughput is in dofs. A time includes everything from raw q, v, a or τ to the result copied out; `factorization` and `solve` start from
+//! throughput is in dofs. A time includes everything from raw q, v, a or τ to the result in the kernel's workspace; `factorization` and `solve` start from
 //! matrices or factors made before. `cargo bench -p featherbench-studies -- --test` calls each once, as a test.
 
 use criterion::measurement::WallTime;

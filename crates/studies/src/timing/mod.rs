@@ -7,8 +7,9 @@
 //!
 //! Four kinds of cells: the *machine* (its peak, its clock, an empty call), a *check* for everyone who is timed (the error of its answer at
 //! every state of the stream), the *overhead* of calling it where its times are estimates, and an *experiment* for each quantity and cache
-//! regime (all blocks of all rounds). Rows are made from them by a pure function: a time without a good check does not count, and where the second copy of ourselves differs from the first, no time
-//! of that robot does. Such rows keep their values and say why they are void.
+//! regime (all blocks of all rounds). Rows are made from them by a pure function: a time without a good check does not count, nor does one of
+//! an experiment in which the second copy of ourselves differs from the first, nor any of a robot on which that happens often. Such rows keep
+//! their values and say why they are void.
 
 mod check;
 mod machine;

@@ -1,9 +1,9 @@
 //! The experiment: contestants in alternating blocks.
 //!
 //! Rounds come in *epochs*. At the start of an epoch everyone moves, in random order, to other places of the memory, each in its own process:
-//! where data lie moves a time by up to some percent, and a ratio from one layout would be a ratio of two accidents. In each round every contestant has one block, in
-//! random order, from a random state on; the batch begins again at its end. Before a block its contestant makes a tenth as many calls
-//! beside the clock, at the states before: others ran since its last block, and their data lie in the caches.
+//! where data lie moves a time by up to some percent, and a ratio from one layout would be a ratio of two accidents. In each round every
+//! contestant has one block, in random order, from a random state on; the batch begins again at its end. Before a block its contestant makes a
+//! tenth as many calls beside the clock, at the states before: others ran since its last block, and their data lie in the caches.
 
 use super::samples::Samples;
 use harness::{Prepared, Refusal, Scatter};
@@ -13,8 +13,8 @@ use std::time::{Duration, Instant};
 /// How long a block lasts at least: some thousand times the clock's resolution and the cost of reading it, so short that most blocks are not
 /// interrupted (a tick of the system's timer comes every 4 ms).
 const BLOCK: Duration = Duration::from_micros(200);
-/// Epochs of an experiment, and so the fewest rounds. What layouts do scatters more than what rounds of one layout do: by thirty epochs of ten rounds
-/// a third of the controls of a quiet machine were known no better than ± 2.3 %, which voids them; the same time is better spent on many epochs.
+/// Epochs of an experiment, and so the fewest rounds. Layouts scatter times more than rounds of one layout do: with thirty epochs of ten
+/// rounds a third of all controls were void for intervals a little wider than the noise; the same time is better spent on many epochs.
 pub(super) const EPOCHS: usize = 60;
 /// Rounds of an epoch are not more: then blocks become longer.
 const MOST_ROUNDS: usize = 5;

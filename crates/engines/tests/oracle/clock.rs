@@ -1,0 +1,64 @@
+//! Who reads the clock, and whose times are estimates.
+
+use crate::script::{HELLO, PATIENT, Script, TWO, Trial};
+use harness::{Quantity, Refusal};
+use std::time::Duration;
+
+/// An oracle that has a clock is asked for it; of any other the whole conversation is timed.
+#[test]
+fn the_clock_is_the_oracles_where_it_has_one() {
+    let hello = HELLO.replace(r#""protocol":1"#, r#""protocol":1,"clock":true"#);
+    let answering = |nanoseconds: &str| Script {
+        hello: hello.clone(),
+        evaluate: format!(r#"case "$line" in *'"op":"clock"'*) echo '{{"status":"ok"{nanoseconds}}}';; *) {TWO};; esac"#),
+        ..Script::honest()
+    };
+    let clock = |script: &Script| {
+        let trial = Trial::new(script, PATIENT);
+        let oracle = trial.oracle.as_ref().unwrap();
+        let mut prepared = oracle.prepare(&trial.problem, Quantity::InverseDynamics, "x", &trial.problem.states)?;
+        let clocked = prepared.clock(0..2)?;
+        Ok((clocked, prepared.read().to_vec()))
+    };
+    assert_eq!(clock(&answering(r#","nanoseconds":1500"#)), Ok((Duration::from_nanos(1500), Vec::new())));
+    for broken in ["", r#","nanoseconds":"soon""#, r#","nanoseconds":-1"#] {
+        assert!(matches!(clock(&answering(broken)), Err(Refusal::Failed(reason)) if reason.contains("nanoseconds")), "{broken}");
+    }
+    let (clocked, values) = clock(&Script::evaluate(&format!("sleep 0.05; {TWO}"))).unwrap();
+    assert!(clocked >= Duration::from_millis(50) && values == [2.0, 2.0], "{clocked:?} {values:?}");
+}
+
+/// An oracle whose clock estimates names what it times, tells what it subtracted, and its identity says so.
+#[test]
+fn an_estimating_clock_is_known_as_one() {
+    let hello = |clock: &str| HELLO.replace(r#""methods":{"id":["x"]}"#, &format!(r#""methods":{{"id":["x","y"]}}{clock}"#));
+    let answering = |times: &str| Script {
+        hello: hello(r#","clock":"estimate","timed":{"id":["y"]}"#),
+        evaluate: format!(r#"echo '{{"status":"ok"{times}}}'"#),
+        ..Script::honest()
+    };
+    let clock = |times: &str| {
+        let trial = Trial::new(&answering(times), PATIENT);
+        let oracle = trial.oracle.as_ref().unwrap();
+        assert!(oracle.estimates());
+        assert_eq!((oracle.methods(Quantity::InverseDynamics).len(), oracle.timed(Quantity::InverseDynamics)), (2, vec!["y".to_owned()]));
+        assert!(oracle.timed(Quantity::Bias).is_empty());
+        assert!(oracle.identity().build["clock"].starts_with("estimate: "), "{:?}", oracle.identity().build);
+        let mut prepared = oracle.prepare(&trial.problem, Quantity::InverseDynamics, "y", &trial.problem.states)?;
+        assert_eq!(prepared.overhead(), None, "nothing was timed yet");
+        let clocked = prepared.clock(0..2)?;
+        Ok((clocked, prepared.overhead()))
+    };
+    let told = (Duration::from_nanos(1500), Some(Duration::from_nanos(900)));
+    assert_eq!(clock(r#","nanoseconds":1500,"overhead":900"#), Ok(told));
+    assert!(matches!(clock(r#","nanoseconds":1500"#), Err(Refusal::Failed(reason)) if reason.contains("overhead")));
+    assert!(matches!(clock(r#","overhead":900"#), Err(Refusal::Failed(reason)) if reason.contains("nanoseconds")));
+    for clock in ["", r#","clock":true"#, r#","clock":false"#] {
+        let trial = Trial::new(&Script::hello(&hello(clock)), PATIENT);
+        let oracle = trial.oracle.as_ref().unwrap();
+        assert!(!oracle.estimates() && !oracle.identity().build.contains_key("clock"), "{clock}");
+        assert_eq!(oracle.timed(Quantity::InverseDynamics).len(), 2);
+    }
+    let malformed = Trial::new(&Script::hello(&hello(r#","clock":"estimate","timed":7"#)), PATIENT);
+    assert!(malformed.oracle.is_err_and(|reason| reason.starts_with("hello: timed")));
+}
