@@ -9,7 +9,7 @@ mod script;
 
 use crate::script::{HASTY, HELLO, PATIENT, READBACK, SOON, Script, TWO, Trial, lives, robot, stillborn};
 use featherbench_engines::{Limits, Oracle};
-use harness::{Quantity, Refusal};
+use harness::{Quantity, Refusal, Subject};
 use model::StateBatch;
 use std::time::{Duration, Instant};
 

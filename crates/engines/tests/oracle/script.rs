@@ -1,7 +1,7 @@
 //! Shell oracles: what they answer, and how they are asked.
 
 use featherbench_engines::{Limits, Oracle};
-use harness::{Problem, Quantity, Refusal};
+use harness::{Problem, Quantity, Refusal, Subject};
 use model::generate::Family;
 use record::ModelOrigin;
 use std::ffi::OsString;
