@@ -303,10 +303,10 @@ fn no_fold_loses_what_is_not_a_number() {
     assert!(worst(f64::NAN, 1.0).is_nan() && worst(1.0, f64::NAN).is_nan());
     assert_eq!(worst(1.0, f64::INFINITY), f64::INFINITY);
     assert_eq!((ratio(0.0, 0.0), ratio(1e-300, 0.0), ratio(-2.0, 4.0)), (0.0, f64::INFINITY, 0.5));
-    assert!(ratio(f64::NAN, 1.0).is_nan() && ratio(1.0, f64::NAN).is_nan());
+    assert!(ratio(f64::NAN, 1.0).is_nan() && ratio(1.0, f64::NAN).is_nan() && ratio(0.0, f64::NAN).is_nan());
     let problem = problem("joints:kind=mixed,base=free", 1);
     let at = Magnitudes::new(&problem, 0);
-    for quantity in Quantity::ALL.into_iter().filter(|&quantity| quantity != Quantity::MassMatrixProbe) {
+    for quantity in Quantity::ALL {
         let reference = vec![1.0; quantity.size(&problem)];
         assert_eq!(scaled_error(&problem, quantity, &at, &reference, &reference), 0.0, "{quantity:?}");
         for entry in [0, reference.len() / 2, reference.len() - 1] {
