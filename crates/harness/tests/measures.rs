@@ -345,7 +345,17 @@ fn no_fold_loses_what_is_not_a_number() {
             value[entry] = f64::NAN;
             assert!(scaled_error(&problem, quantity, &at, &reference, &value).is_nan(), "{quantity:?}");
         }
-        assert!(!scaled_error(&problem, quantity, &at, &reference, &reference[1..]).is_finite(), "{quantity:?}: one number is missing");
+        let more = [&reference[..], &[1.0]].concat();
+        let fewer = &reference[1..];
+        for (reference, value) in
+            [(&reference[..], fewer), (&reference, &more), (fewer, &reference), (&more, &reference), (fewer, fewer), (&more, &more)]
+        {
+            assert_eq!(
+                scaled_error(&problem, quantity, &at, reference, value),
+                f64::INFINITY,
+                "{quantity:?}: one number too few or too many"
+            );
+        }
     }
 }
 

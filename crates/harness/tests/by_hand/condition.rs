@@ -40,15 +40,14 @@ fn eigenvalues(spec: &str) -> Vec<Eigenvalues> {
         let (true_least, true_largest) = (scaled.min(), scaled.max());
         Eigenvalues { least, largest: least * scale.condition, true_least, true_largest }
     };
-    // The second state of a batch is at rest: there a is zero and nothing is amplified.
-    scales.iter().enumerate().filter(|(_, scale)| scale.amplification.is_finite()).map(of_state).collect()
+    scales.iter().enumerate().map(of_state).collect()
 }
 
 /// λ_min from above and λ_max from below, so that what they bound is never looser than it should be; and neither is far off.
 ///
 /// The growth of a vector under a symmetric positive matrix never falls from step to step, and the growths of twelve steps multiply to at
 /// least λ¹²·|c|, where c is the share of the start in the eigenvector of λ. So the last one is at least λ·|c|^(1/12): with a share of 1e-3,
-/// small among 120, still 0.56 λ. Half is what is asked for.
+/// small among 120, still 0.56 λ. Half is what is asked for; 0.89 is what is seen.
 #[test]
 fn iterated_eigenvalues_are_on_the_strict_side_and_near() {
     let specs = ["chain:n=120", "chain:n=120,layout=spatial", "tree:n=120,seed=1,base=free,joints=all,armature=true", "chain:n=101"];
@@ -72,7 +71,7 @@ fn iterated_eigenvalues_are_on_the_strict_side_and_near() {
             );
         }
     }
-    assert!(seen >= specs.len(), "{seen} states");
+    assert_eq!(seen, 2 * specs.len());
 }
 
 /// A hundred dofs are still computed: no iteration of twelve steps comes that near.
@@ -80,7 +79,7 @@ fn iterated_eigenvalues_are_on_the_strict_side_and_near() {
 fn a_hundred_dofs_are_computed() {
     for spec in ["chain:n=100", "chain:n=100,layout=spatial"] {
         let all = eigenvalues(spec);
-        assert!(!all.is_empty());
+        assert_eq!(all.len(), 2);
         for Eigenvalues { least, largest, true_least, true_largest } in all {
             let rounding = 1e3 * f64::EPSILON * true_largest / true_least;
             assert!((least / true_least - 1.0).abs() <= rounding, "{spec}: λ_min {least:e}, truly {true_least:e}");
