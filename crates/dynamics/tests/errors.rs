@@ -4,11 +4,11 @@ mod common;
 
 use common::{ROBOTS, build, dyadic_chain};
 use featherbench_dynamics::{
-    Aba, Bias, CenterOfMass, Crba, DimensionError, Energy, Error, Jacobian, Kinematics, Ltdl, Momentum, NotPositiveDefinite, Rnea,
+    Aba, Bias, CenterOfMass, Crba, DimensionError, Energy, Error, Jacobian, Kinematics, Ltdl, Momentum, NotPositiveDefinite, Refined, Rnea,
     TreeSparse, forward_dynamics, inverse_dynamics, mass_matrix,
 };
-use model::{Case, Model, StateBatch};
-use spatial::Force;
+use model::{BodyDescription, Case, Description, JointDescription, JointKind, JointType, Model, StateBatch};
+use spatial::{Compensated, Force, RigidBodyInertia, Sym3, Vec3};
 
 /// What a refusal names, and what it counted.
 fn refusal(result: Result<(), impl Into<Error>>) -> (&'static str, usize, usize) {
@@ -94,11 +94,86 @@ fn workspaces_of_another_topology_are_refused() {
     assert_eq!(refusal(Ltdl::new(&star).run(&mass_matrix(&chain, &[0.0; 4]).unwrap())), (place, 4, 0));
 }
 
+/// As many bodies and another number of dofs, more dofs that begin alike, as many dofs and other configurations: each has its own check.
+#[test]
+fn workspaces_and_matrices_that_fit_in_part_are_refused() {
+    use JointKind::{Revolute, Spherical};
+    let star = |dofs: usize| common::topology(&vec![(-1, Revolute); dofs]);
+    let model = balls(&[JointType::Spherical, REVOLUTE]);
+    let t = &model.topology;
+    let q = [0.0, 0.0, 0.0, 1.0, 0.0];
+    let pair = star(2);
+    assert_eq!((pair.bodies(), pair.nv()), (t.bodies(), 2));
+    assert_eq!(refusal(Crba::new(&pair).run(&model, &q, &mut TreeSparse::new(t))), ("dofs of the workspace", 4, 2));
+    assert_eq!(refusal(Jacobian::new(&pair).run(&model, &q, 0).map(drop)), ("columns of the workspace", 4, 2));
+
+    // A star of five begins like a star of four, row by row.
+    let four = balls(&[REVOLUTE; 4]);
+    let dofs = "dofs of the tree-sparse matrix";
+    let mut crba = Crba::new(&four.topology);
+    assert_eq!(refusal(crba.run(&four, &[0.0; 4], &mut TreeSparse::new(&star(5)))), (dofs, 4, 5));
+    assert_eq!(refusal(crba.run(&four, &[0.0; 4], &mut TreeSparse::new(&star(3)))), (dofs, 4, 3));
+    assert_eq!(refusal(Ltdl::<f64>::new(&star(4)).run(&TreeSparse::new(&star(5)))), (dofs, 4, 5));
+    assert_eq!(refusal(Ltdl::<f64>::new(&star(5)).run(&TreeSparse::new(&star(4)))), (dofs, 5, 4));
+
+    // A quaternion has four numbers and three dofs.
+    let ball = balls(&[JointType::Spherical]);
+    let (q, x, mut a) = ([0.0, 0.0, 0.0, 1.0], [0.0; 3], [0.0; 3]);
+    let mut refine = |topology: &model::Topology| refusal(Refined::<Compensated>::new(topology, 1).run(&ball, &q, &x, &x, None, &mut a));
+    assert_eq!(refine(&star(3)), ("configuration numbers of the workspace", 4, 3));
+    assert_eq!(refine(&star(4)), ("dofs of the workspace", 3, 4));
+    assert_eq!(refine(&common::topology(&[(-1, Spherical), (0, Spherical)])), ("configuration numbers of the workspace", 4, 8));
+}
+
+const REVOLUTE: JointType = JointType::Revolute { axis: [0.0, 1.0, 0.0] };
+
+/// Balls of 1 kg, each on a joint of its own that stands on the ground.
+fn balls(kinds: &[JointType]) -> Model<f64> {
+    let ball = |(i, &kind): (usize, &JointType)| BodyDescription {
+        name: format!("ball{i}"),
+        parent: None,
+        mass: 1.0,
+        com: [0.0; 3],
+        inertia: [0.1, 0.0, 0.0, 0.1, 0.0, 0.1],
+        joint: JointDescription { name: format!("joint{i}"), kind, ..JointDescription::default() },
+    };
+    let bodies = kinds.iter().enumerate().map(ball).collect();
+    Model::build(&Description { bodies, ..Description::default() }).unwrap()
+}
+
+#[test]
+fn matrices_exchange_their_numbers_with_as_many() {
+    let topology = common::topology(&[(-1, JointKind::Revolute), (0, JointKind::Revolute), (0, JointKind::Revolute)]);
+    let mut matrix = TreeSparse::from_fn(&topology, |i, j| (10 * i + j) as f64);
+    let (own, mut others) = (matrix.values().to_vec(), vec![1.0, 2.0, 3.0, 4.0, 5.0]);
+    assert_eq!(own, [0.0, 10.0, 11.0, 20.0, 22.0]);
+    matrix.exchange(&mut others).unwrap();
+    assert_eq!((matrix.values(), &others), (&[1.0, 2.0, 3.0, 4.0, 5.0][..], &own));
+    for length in [4, 6] {
+        let mut wrong = vec![7.0; length];
+        assert_eq!(refusal(matrix.exchange(&mut wrong)), ("stored numbers of the tree-sparse matrix", 5, length));
+        assert_eq!((matrix.values(), wrong), (&[1.0, 2.0, 3.0, 4.0, 5.0][..], vec![7.0; length]), "nothing is exchanged");
+    }
+}
+
 #[test]
 fn a_model_with_a_missing_part_is_refused() {
-    let mut model = dyadic_chain(&[[0.0, 1.0, 0.0]], 3);
-    model.inertias.pop();
-    assert_eq!(refusal(inverse_dynamics(&model, &[0.0; 3], &[0.0; 3], &[0.0; 3]).map(drop)), ("inertias of the model", 3, 2));
+    let whole = dyadic_chain(&[[0.0, 1.0, 0.0]], 3);
+    let remove: [(&str, fn(&mut Model<f64>)); 4] = [
+        ("placements of the model", |model| model.placements.truncate(2)),
+        ("subspaces of the model", |model| model.subspaces.truncate(2)),
+        ("inertias of the model", |model| model.inertias.truncate(2)),
+        ("armature of the model", |model| model.armature.truncate(2)),
+    ];
+    let zero = [0.0; 3];
+    for (part, remove) in remove {
+        let mut model = whole.clone();
+        remove(&mut model);
+        let expected = (part, 3, 2);
+        assert_eq!(refusal(inverse_dynamics(&model, &zero, &zero, &zero).map(drop)), expected);
+        assert_eq!(refusal(forward_dynamics(&model, &zero, &zero, &zero).map(drop)), expected);
+        assert_eq!(refusal(mass_matrix(&model, &zero).map(drop)), expected);
+    }
 }
 
 #[test]
@@ -114,6 +189,33 @@ fn a_massless_tip_is_named() {
     // Armature is inertia enough.
     model.armature[2] = 0.1;
     assert!(forward_dynamics(&model, &zero, &zero, &zero).is_ok());
+}
+
+/// Which dof of a free or a spherical joint meets no inertia: a free joint's translation comes first.
+#[test]
+fn free_and_spherical_bodies_without_inertia_are_named_with_their_dof() {
+    let inertia = |mass: f64, about_com: [f64; 6]| RigidBodyInertia::from_com(mass, Vec3::zero(), Sym3::from_array(about_com));
+    let (nothing, point) = (RigidBodyInertia::zero(), inertia(2.0, [0.0; 6]));
+    let rod_along_z = inertia(2.0, [0.5, 0.0, 0.0, 0.5, 0.0, 0.0]);
+    let weightless = inertia(0.0, [0.5, 0.0, 0.0, 0.5, 0.0, 0.5]);
+    let cases = [
+        (JointType::Free, nothing, 0),
+        (JointType::Free, weightless, 0),
+        (JointType::Free, point, 3),
+        (JointType::Free, rod_along_z, 5),
+        (JointType::Spherical, nothing, 0),
+        (JointType::Spherical, point, 0),
+        (JointType::Spherical, rod_along_z, 2),
+    ];
+    for (kind, inertia, dof) in cases {
+        let mut model = balls(&[kind]);
+        let states = StateBatch::random(&model, 1, 1);
+        let (q, v, tau) = (states.q(0), states.v(0), states.tau(0));
+        assert!(forward_dynamics(&model, q, v, tau).is_ok());
+        model.inertias[0] = inertia;
+        let error = forward_dynamics(&model, q, v, tau).unwrap_err();
+        assert_eq!(error, Error::NotPositiveDefinite(NotPositiveDefinite { dof, pivot: 0.0 }), "{kind:?}");
+    }
 }
 
 #[test]

@@ -142,13 +142,13 @@ fn moved(before: &Record, after: &Record) -> Option<Change> {
     if before.kind == Kind::Measured || after.kind == Kind::Measured {
         return None;
     }
-    let (was, is) = (before.value?.abs(), after.value?.abs());
+    let (was, is) = (before.value?, after.value?);
     // What has a unit of its own, or must equal its bound, is a count; a pure number is an error.
     let count = after.unit != "1" || after.relation == Some(Relation::Eq);
     if count {
         return (was != is).then_some(Change::Count);
     }
-    let (was, is) = (was.max(ERROR_FLOOR), is.max(ERROR_FLOOR));
+    let (was, is) = (was.abs().max(ERROR_FLOOR), is.abs().max(ERROR_FLOOR));
     (is > was * ERROR_FACTOR || was > is * ERROR_FACTOR).then_some(Change::Error)
 }
 

@@ -10,6 +10,7 @@ use featherbench_record::{
     schema_json, to_csv, write_csv, write_run,
 };
 use proptest::prelude::*;
+use proptest::test_runner::RngSeed;
 
 /// Text with everything that CSV quotes.
 fn text() -> impl Strategy<Value = String> {
@@ -47,6 +48,8 @@ prop_compose! {
 }
 
 proptest! {
+    #![proptest_config(ProptestConfig { cases: 256, failure_persistence: None, rng_seed: RngSeed::Fixed(1), ..ProptestConfig::default() })]
+
     #[test]
     fn a_row_survives_csv_and_json(record in any_record()) {
         let folder = tempfile::tempdir().unwrap();

