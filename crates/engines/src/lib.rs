@@ -5,6 +5,7 @@
 //! oracle once answered. To add an engine, write such a program, or implement
 //! [`Subject`](harness::Subject) in a file of its own here.
 
+mod clock;
 mod coding;
 pub mod conformance;
 mod kernel;
@@ -17,6 +18,7 @@ mod recorded;
 mod reproducer;
 mod request;
 
+pub use clock::{Clock, SystemClock};
 pub use native::{Native, timed};
 pub use oracle::{Limits, Oracle};
 pub use rapier::Rapier;

@@ -1,5 +1,6 @@
 //! A subject behind the oracle protocol: one program, as many processes as there are threads asking.
 
+use crate::clock::{Clock, SystemClock};
 pub use crate::process::Limits;
 use crate::process::Process;
 use crate::request;
@@ -12,8 +13,8 @@ use serde_json::{Value, json};
 use std::collections::BTreeMap;
 use std::ffi::OsString;
 use std::ops::Range;
-use std::sync::{Mutex, PoisonError};
-use std::time::{Duration, Instant};
+use std::sync::{Arc, Mutex, PoisonError};
+use std::time::Duration;
 
 /// Version of the protocol that we speak.
 pub(crate) const PROTOCOL: u64 = 1;
@@ -22,20 +23,21 @@ pub(crate) const PROTOCOL: u64 = 1;
 pub struct Oracle {
     identity: Identity,
     methods: BTreeMap<String, Vec<String>>,
-    clock: Clock,
+    timed_by: TimedBy,
     /// Whether it can move its data.
     scatter: bool,
     command: Vec<OsString>,
     limits: Limits,
+    clock: Arc<dyn Clock>,
     idle: Mutex<Vec<Session>>,
 }
 
 /// Who reads the clock.
-enum Clock {
+enum TimedBy {
     /// We do, around the whole conversation.
-    Ours,
+    Us,
     /// The oracle, beside its loop.
-    Its,
+    Itself,
     /// The oracle, in a language whose overhead it subtracts, and for these methods only.
     Estimate(BTreeMap<String, Vec<String>>),
 }
@@ -60,7 +62,15 @@ impl Oracle {
     /// # Errors
     /// A sentence, when it does not start or does not speak the protocol.
     pub fn start(command: Vec<OsString>, limits: Limits) -> Result<Self, String> {
-        let mut process = Process::start(&command, limits)?;
+        Self::start_by(command, limits, Arc::new(SystemClock::default()))
+    }
+
+    /// Starts the program; its limits pass, and its times are taken, by this clock.
+    ///
+    /// # Errors
+    /// As of [`Oracle::start`].
+    pub fn start_by(command: Vec<OsString>, limits: Limits, clock: Arc<dyn Clock>) -> Result<Self, String> {
+        let mut process = Process::start_by(&command, limits, Arc::clone(&clock))?;
         let hello = checked(process.ask(&Frame::new(json!({"op": "hello"}), Vec::new()))?).map_err(|refusal| refusal.to_string())?;
         let protocol = hello.header.get("protocol").and_then(Value::as_u64);
         if protocol != Some(PROTOCOL) {
@@ -78,18 +88,18 @@ impl Oracle {
         if identity.name.is_empty() || identity.version.is_empty() {
             return Err("hello: engine and version must not be empty".into());
         }
-        let clock = match hello.header.get("clock") {
-            Some(Value::Bool(true)) => Clock::Its,
+        let timed_by = match hello.header.get("clock") {
+            Some(Value::Bool(true)) => TimedBy::Itself,
             Some(Value::String(kind)) if kind == "estimate" => {
                 identity.build.insert("clock".into(), ESTIMATE.into());
                 let timed = hello.header.get("timed").cloned().unwrap_or_else(|| json!({}));
-                Clock::Estimate(serde_json::from_value(timed).map_err(|error| format!("hello: timed: {error}"))?)
+                TimedBy::Estimate(serde_json::from_value(timed).map_err(|error| format!("hello: timed: {error}"))?)
             }
-            _ => Clock::Ours,
+            _ => TimedBy::Us,
         };
         let scatter = hello.header.get("scatter").and_then(Value::as_bool).unwrap_or(false);
         let session = Session { process, model: String::new(), readback: Vec::new(), states: None, reading: None };
-        Ok(Self { identity, methods, clock, scatter, command, limits, idle: Mutex::new(vec![session]) })
+        Ok(Self { identity, methods, timed_by, scatter, command, limits, clock, idle: Mutex::new(vec![session]) })
     }
 
     /// The same oracle under another name; the engine's own name goes into its build, where it differs.
@@ -112,7 +122,7 @@ impl Oracle {
         match idle {
             Some(session) => Ok(session),
             None => {
-                let process = Process::start(&self.command, self.limits).map_err(Refusal::Failed)?;
+                let process = Process::start_by(&self.command, self.limits, Arc::clone(&self.clock)).map_err(Refusal::Failed)?;
                 Ok(Session { process, model: String::new(), readback: Vec::new(), states: None, reading: None })
             }
         }
@@ -137,14 +147,14 @@ impl Subject for Oracle {
     }
 
     fn timed(&self, quantity: Quantity) -> Vec<String> {
-        match &self.clock {
-            Clock::Estimate(timed) => timed.get(quantity.name()).cloned().unwrap_or_default(),
-            Clock::Ours | Clock::Its => self.methods(quantity),
+        match &self.timed_by {
+            TimedBy::Estimate(timed) => timed.get(quantity.name()).cloned().unwrap_or_default(),
+            TimedBy::Us | TimedBy::Itself => self.methods(quantity),
         }
     }
 
     fn estimates(&self) -> bool {
-        matches!(self.clock, Clock::Estimate(_))
+        matches!(self.timed_by, TimedBy::Estimate(_))
     }
 
     fn read(&self, file: &RobotFile) -> Result<Reading, Refusal> {
@@ -293,10 +303,10 @@ impl Prepared for Asked<'_> {
     /// By the oracle's own clock, where it has one: the values are then not sent, and [`Prepared::read`] still has those of the last `run`. A
     /// range that goes beyond the batch begins again at its first state.
     fn clock(&mut self, range: Range<usize>) -> Result<Duration, Refusal> {
-        if matches!(self.oracle.clock, Clock::Ours) {
-            let start = Instant::now();
+        if matches!(self.oracle.timed_by, TimedBy::Us) {
+            let start = self.oracle.clock.now();
             self.run(range)?;
-            return Ok(start.elapsed());
+            return Ok(self.oracle.clock.now() - start);
         }
         let question = self.question("clock", &range);
         let session = self.session.as_mut().ok_or_else(|| Refusal::Failed("the oracle has ended".into()))?;

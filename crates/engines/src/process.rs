@@ -1,5 +1,6 @@
 //! A child process that speaks in frames, within limits of time and memory.
 
+use crate::clock::{Clock, SystemClock, wait};
 use harness::frame::{Frame, FrameError};
 use std::collections::VecDeque;
 use std::ffi::OsString;
@@ -8,7 +9,7 @@ use std::process::{Child, Command, Stdio};
 use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, SyncSender, channel, sync_channel};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::thread;
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 /// Limits of an oracle process.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -30,8 +31,9 @@ impl Default for Limits {
 /// How many of the last lines of standard error are kept for the reason of a failure.
 const KEPT_LINES: usize = 6;
 
-/// How long a process that answers no more may take to end by itself, and its last words to arrive.
-const GRACE: Duration = Duration::from_secs(1);
+/// How long a process that answers no more may take to end by itself, and its last words to arrive. One that crashes on a busy machine needs
+/// longer than a moment, and would be told from one that goes on by nothing else.
+const GRACE: Duration = Duration::from_secs(5);
 /// How long a process may take to end after its input did: an engine's libraries clean up.
 const LEAVE: Duration = Duration::from_secs(10);
 /// How often it is looked whether it has ended.
@@ -47,6 +49,8 @@ pub(crate) struct Process {
     /// Closes with standard error.
     silence: Receiver<()>,
     limits: Limits,
+    /// Who says that an answer is late.
+    clock: Arc<dyn Clock>,
     alive: bool,
     /// The number of the last request.
     asked: u64,
@@ -55,6 +59,11 @@ pub(crate) struct Process {
 impl Process {
     /// Starts a program.
     pub(crate) fn start(command: &[OsString], limits: Limits) -> Result<Self, String> {
+        Self::start_by(command, limits, Arc::new(SystemClock::default()))
+    }
+
+    /// Starts a program whose limits pass by this clock.
+    pub(crate) fn start_by(command: &[OsString], limits: Limits, clock: Arc<dyn Clock>) -> Result<Self, String> {
         let (program, arguments) = command.split_first().ok_or("no program is named")?;
         // The shell sets the limit of address space and then becomes the program.
         let mut child = Command::new("sh")
@@ -86,7 +95,7 @@ impl Process {
             keep_last_words(BufReader::new(errors), &kept);
             drop(talking);
         });
-        Ok(Self { child, requests: Some(requests), answers, last_words, silence, limits, alive: true, asked: 0 })
+        Ok(Self { child, requests: Some(requests), answers, last_words, silence, limits, clock, alive: true, asked: 0 })
     }
 
     /// Sends a request and waits for its answer.
@@ -112,7 +121,7 @@ impl Process {
             Err(_) => {
                 // A broken pipe says less than the dead process: its reason is found below.
                 let _ = requests.send(request.to_bytes());
-                self.answers.recv_timeout(self.limits.answer)
+                wait(&*self.clock, &self.answers, self.limits.answer)
             }
         };
         match answer {
@@ -132,7 +141,7 @@ impl Process {
     /// What it said, or did not do, instead of ending well.
     pub(crate) fn close(mut self) -> Result<(), String> {
         self.requests = None;
-        match self.answers.recv_timeout(LEAVE) {
+        match wait(&*self.clock, &self.answers, LEAVE) {
             Ok(Ok(None)) | Err(RecvTimeoutError::Disconnected) => {}
             Ok(Ok(Some(_))) => return Err("it sent an answer that nobody asked for".into()),
             Ok(Err(error)) => return Err(format!("something stands behind its last answer: {error}")),
@@ -153,7 +162,7 @@ impl Process {
         self.requests = None;
         let status = self.status();
         // Standard error closes with the process, unless a child of it holds on to it.
-        let _ = self.silence.recv_timeout(GRACE);
+        let _ = wait(&*self.clock, &self.silence, GRACE);
         let words = self.last_words.lock().unwrap_or_else(PoisonError::into_inner);
         let words: Vec<&str> = words.iter().map(String::as_str).collect();
         let limit = self.limits.memory >> 20;
@@ -165,11 +174,11 @@ impl Process {
 
     /// How the process ended. One that closes its standard output and lives on is ended.
     fn status(&mut self) -> String {
-        let start = Instant::now();
+        let start = self.clock.now();
         loop {
             match self.child.try_wait() {
                 Ok(Some(status)) => return status.to_string(),
-                Ok(None) if start.elapsed() < GRACE => thread::sleep(LOOK),
+                Ok(None) if self.clock.now().saturating_sub(start) < GRACE => thread::sleep(LOOK),
                 Ok(None) => {
                     self.end();
                     return "it closed its standard output and did not end".into();

@@ -93,7 +93,7 @@ pub fn diff<'a>(before: &'a [Record], after: &'a [Record]) -> Diff<'a> {
         };
         diff.compared += 1;
         let timed = is_time(row) && was.value.is_some() && row.value.is_some();
-        if timed && (is_void(was) || is_void(row)) {
+        if timed && (is_void(was) || is_void(row) || old_intervals.noise_beside(&new_intervals, row).is_nan()) {
             diff.void += 1;
             continue;
         }
@@ -148,6 +148,10 @@ fn moved(before: &Record, after: &Record) -> Option<Change> {
     if count {
         return (was != is).then_some(Change::Count);
     }
+    // NaN.max(x) is x: an error that is no number would be as good as none.
+    if was.is_nan() || is.is_nan() {
+        return (was.is_nan() != is.is_nan()).then_some(Change::Error);
+    }
     let (was, is) = (was.abs().max(ERROR_FLOOR), is.abs().max(ERROR_FLOOR));
     (is > was * ERROR_FACTOR || was > is * ERROR_FACTOR).then_some(Change::Error)
 }
@@ -165,7 +169,7 @@ impl<'a> Intervals<'a> {
         let mut noise: BTreeMap<[&str; 3], f64> = BTreeMap::new();
         for (row, value) in measured().filter(|(row, _)| row.metric == "control_low" || row.metric == "control_high") {
             let reach = noise.entry([&row.model, &row.quantity, &row.case]).or_default();
-            *reach = reach.max((value - 1.0).abs());
+            *reach = larger(*reach, (value - 1.0).abs());
         }
         Self { ends: measured().map(|(row, value)| (identity(row), value)).collect(), noise }
     }
@@ -182,13 +186,24 @@ impl<'a> Intervals<'a> {
         (end(stem[0]), end(stem[1]))
     }
 
-    /// Whether two times differ: disjoint intervals, and a ratio beyond the noise of both runs.
+    /// The noise of a time in both runs; NaN where a control is no number, and nothing can be told.
+    fn noise_beside(&self, after: &Self, row: &Record) -> f64 {
+        let key = [row.model.as_str(), row.quantity.as_str(), row.case.as_str()];
+        [self.noise.get(&key), after.noise.get(&key)].into_iter().flatten().copied().fold(TIME_NOISE, larger)
+    }
+
+    /// Whether two times differ: disjoint intervals, and a ratio beyond the noise of both runs; or one of the two is no number.
     fn apart(&self, before: &'a Record, after: &Self, row: &'a Record) -> bool {
         let (was, is) = (self.ends(before), after.ends(row));
-        let key = [row.model.as_str(), row.quantity.as_str(), row.case.as_str()];
-        let noise = [self.noise.get(&key), after.noise.get(&key)].into_iter().flatten().fold(TIME_NOISE, |noise, &reach| noise.max(reach));
+        let noise = self.noise_beside(after, row);
         let disjoint = is.0 > was.1 || is.1 < was.0;
-        let ratio = row.value.unwrap_or(f64::NAN) / before.value.unwrap_or(f64::NAN);
-        disjoint && (ratio > 1.0 + noise || ratio < 1.0 / (1.0 + noise))
+        let (value, other) = (row.value.unwrap_or(f64::NAN), before.value.unwrap_or(f64::NAN));
+        let ratio = value / other;
+        value.is_nan() != other.is_nan() || disjoint && (ratio > 1.0 + noise || ratio < 1.0 / (1.0 + noise))
     }
+}
+
+/// The larger of two numbers; NaN when either is, so that no fold can lose one.
+fn larger(a: f64, b: f64) -> f64 {
+    if a.is_nan() || b.is_nan() { f64::NAN } else { a.max(b) }
 }

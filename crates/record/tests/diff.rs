@@ -276,3 +276,30 @@ fn void_times_are_counted_and_not_compared() {
     assert_eq!(changes(&time(100.0, 0.005, 0.01), &failed), [Change::Verdict]);
     assert_eq!(changes(&failed, &time(100.0, 0.005, 0.01)), [Change::Verdict]);
 }
+
+/// A value that is no number is no small value: NaN.max(x) is x.
+#[test]
+fn no_number_is_lost() {
+    let lost = |row: &Record| Record { value: Some(f64::NAN), ..row.clone() };
+    let error = error("a", 1e-17, 1e-13);
+    assert_eq!(changes(std::slice::from_ref(&error), &[lost(&error)]), [Change::Error]);
+    assert_eq!(changes(&[lost(&error)], std::slice::from_ref(&error)), [Change::Error]);
+    assert_eq!(changes(&[lost(&error)], &[lost(&error)]), [], "it was lost before");
+    let base = time(100.0, 0.005, 0.01);
+    let without = |place: usize, rows: &[Record]| {
+        let mut rows = rows.to_vec();
+        rows[place] = lost(&rows[place]);
+        rows
+    };
+    assert_eq!(changes(&base, &without(0, &base)), [Change::Time]);
+    assert_eq!(changes(&without(0, &base), &base), [Change::Time]);
+    // A control that is no number tells nothing about the noise, in either run and at either end: the time is not compared.
+    for place in [3, 4] {
+        for (before, after) in
+            [(base.clone(), without(place, &time(150.0, 0.005, 0.01))), (without(place, &base), time(150.0, 0.005, 0.01))]
+        {
+            let found = diff(&before, &after);
+            assert_eq!((found.changes.len(), found.void), (0, 1), "place {place}");
+        }
+    }
+}

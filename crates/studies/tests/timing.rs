@@ -3,8 +3,8 @@
 use engines::Native;
 use featherbench_studies::Timing;
 use harness::run::{Silent, compare, evaluate, plan};
-use harness::{Context, Outcome, OutcomeStore, Problem, Quantity, Study, Subject};
-use record::{Record, Verdict};
+use harness::{Cell, Context, Outcome, OutcomeStore, Problem, Quantity, Study, Subject};
+use record::{Kind, Record, Verdict};
 use support::{Double, gates, robot, whole};
 
 mod support;
@@ -54,7 +54,7 @@ fn everyone_has_times_ratios_and_intervals_beside_a_control() {
     let machine: Vec<_> = rows.iter().filter(|row| row.quantity == "machine").collect();
     assert_eq!(
         machine.iter().map(|row| row.metric.as_str()).collect::<Vec<_>>(),
-        ["fma_per_ns", "fma_per_ns_per_lane", "clock_ns", "empty_call_ns"]
+        ["fma_per_ns", "fma_per_ns_per_lane", "fma_per_ns_scalar", "clock_ns", "empty_call_ns"]
     );
     assert!(machine.iter().all(|row| row.model.is_empty() && row.value.is_some_and(|value| value > 0.0)));
     assert!(rows.iter().all(|row| row.engine != "absent"));
@@ -124,8 +124,17 @@ fn estimates_are_labelled_void_or_not_and_tell_what_was_subtracted() {
     assert!(of(&rows, "double", "fd", "worst_error").iter().all(|row| row.verdict == Verdict::Pass && row.reason.is_empty()));
 }
 
-/// A finished study whose outcomes are rewritten before they are compared.
+/// A finished study whose experiments are rewritten before they are compared.
 fn rewritten(rewrite: impl Fn(&mut Vec<f64>)) -> Vec<Record> {
+    altered(|cell, values| {
+        if cell.params["what"] == "experiment" {
+            rewrite(values);
+        }
+    })
+}
+
+/// A finished study whose cells and their outcomes are altered before they are compared.
+fn altered(alter: impl Fn(&mut Cell, &mut Vec<f64>)) -> Vec<Record> {
     let (problem, gates, subjects) = (robot4(), gates(""), [Box::new(Native::new()) as Box<dyn Subject>]);
     let context = Context { problems: std::slice::from_ref(&problem), subjects: &subjects, gates: &gates, seed: 1 };
     let folder = tempfile::tempdir().unwrap();
@@ -133,10 +142,8 @@ fn rewritten(rewrite: impl Fn(&mut Vec<f64>)) -> Vec<Record> {
     let cells = plan(&study(), &context, &|_| true);
     let mut finished = evaluate(&study(), &context, cells, &store, &Silent).unwrap();
     for (cell, outcome) in &mut finished {
-        if let Outcome::Values(values) = outcome
-            && cell.params["what"] == "experiment"
-        {
-            rewrite(values);
+        if let Outcome::Values(values) = outcome {
+            alter(cell, values);
         }
     }
     let text = study().side_file(&finished).unwrap().1;
@@ -171,11 +178,142 @@ fn a_control_that_is_not_one_voids_the_times() {
     assert!(times[0].reason.contains("4 of 4 A/A controls"), "{}", times[0].reason);
 }
 
+/// A study on a machine without noise, but for what is done to the experiments of some quantity and cache regime.
+fn quiet_but(spoil: impl Fn(&mut Cell, &mut Vec<f64>) -> bool) -> [Vec<Record>; 2] {
+    let spoilt = std::cell::RefCell::new(Vec::new());
+    let rows = altered(|cell, values| {
+        if cell.params["what"] == "experiment" {
+            fill(values, |_, round| 100.0 + (round % 3) as f64);
+            if spoil(cell, values) {
+                spoilt.borrow_mut().push((cell.quantity.clone(), cell.params["cache"].as_str().unwrap().to_owned()));
+            }
+        }
+    });
+    assert!(!spoilt.borrow().is_empty());
+    let of_spoilt = |row: &Record| spoilt.borrow().contains(&(row.quantity.clone(), row.case.clone()));
+    let (spoilt, others) = rows.into_iter().filter(|row| row.kind == Kind::Measured && row.quantity != "machine").partition(of_spoilt);
+    [spoilt, others]
+}
+
+/// Everything but the rows of the control itself.
+fn times(rows: &[Record]) -> Vec<&Record> {
+    let times: Vec<_> = rows.iter().filter(|row| !row.metric.starts_with("control")).collect();
+    assert!(times.len() >= 5);
+    times
+}
+
+/// Whether an experiment is the one on one state of inverse dynamics.
+fn hot_id(cell: &Cell) -> bool {
+    cell.quantity == "id" && cell.params["cache"] == "hot"
+}
+
+fn slower_copy(values: &mut [f64]) {
+    fill(values, |entrant, round| if entrant == 1 { 103.0 } else { 100.0 } + (round % 3) as f64);
+}
+
+#[test]
+fn one_bad_control_of_four_voids_its_experiment_alone() {
+    let [spoilt, others] = quiet_but(|cell, values| {
+        if hot_id(cell) {
+            slower_copy(values);
+        }
+        hot_id(cell)
+    });
+    for row in &spoilt {
+        assert!(row.reason.starts_with("void: the second copy of native over the first is 1.0"), "{}: {}", row.metric, row.reason);
+        assert!(row.value.is_some());
+    }
+    assert!(spoilt.iter().any(|row| row.metric == "control") && !times(&spoilt).is_empty());
+    assert!(times(&others).iter().all(|row| row.reason.is_empty()));
+}
+
+#[test]
+fn two_bad_controls_of_four_void_the_robot() {
+    let [spoilt, others] = quiet_but(|cell, values| {
+        if cell.quantity == "id" {
+            slower_copy(values);
+        }
+        cell.quantity == "id"
+    });
+    let all = times(&spoilt).into_iter().chain(times(&others));
+    for row in all {
+        assert_eq!(row.reason, "void: 2 of 4 A/A controls of this robot are not 1: the machine was not quiet", "{}", row.metric);
+    }
+    let control = |rows: &[Record], void: bool| {
+        rows.iter().filter(|row| row.metric.starts_with("control") && row.reason.starts_with("void: the second") == void).count()
+    };
+    assert_eq!([control(&spoilt, true), control(&spoilt, false), control(&others, true), control(&others, false)], [6, 0, 0, 6]);
+}
+
+/// Who has no control, or lost it, knows nothing about the noise.
+#[test]
+fn without_a_control_no_time_counts() {
+    let lost_copy = |cell: &mut Cell, values: &mut Vec<f64>| {
+        if hot_id(cell) {
+            // The last block of the second entrant.
+            let entrants = values[0] as usize;
+            let rounds = (values.len() - 1 - entrants) / entrants;
+            values[entrants + 2 * rounds] = f64::NAN;
+        }
+        hot_id(cell)
+    };
+    let no_copy = |cell: &mut Cell, _: &mut Vec<f64>| {
+        if hot_id(cell) {
+            cell.params["entrants"][1]["control"] = false.into();
+        }
+        hot_id(cell)
+    };
+    for (spoil, words) in [
+        (&lost_copy as &dyn Fn(&mut Cell, &mut Vec<f64>) -> bool, "the A/A control or the reference stopped answering while it was timed"),
+        (&no_copy, "the experiment has no A/A control"),
+    ] {
+        let [spoilt, others] = quiet_but(spoil);
+        let void: Vec<_> = spoilt.iter().filter(|row| row.metric != "control").collect();
+        assert!(void.len() >= 5 && void.iter().all(|row| row.reason == format!("void: {words}") && row.value.is_some()), "{void:?}");
+        let controls: Vec<_> = spoilt.iter().filter(|row| row.metric == "control").collect();
+        assert!(controls.iter().all(|row| row.verdict == Verdict::Error && row.value.is_none() && row.reason == words), "{controls:?}");
+        assert_eq!(controls.len(), usize::from(words.contains("stopped")));
+        assert!(times(&others).iter().all(|row| row.reason.is_empty()), "one of four: the others count");
+    }
+    let rows = rewritten(|values| {
+        let entrants = values[0] as usize;
+        let rounds = (values.len() - 1 - entrants) / entrants;
+        fill(values, |entrant, round| if (entrant, round) == (1, rounds / 2) { f64::NAN } else { 100.0 });
+    });
+    let times: Vec<_> = rows.iter().filter(|row| row.metric.starts_with("ns_")).collect();
+    assert!(!times.is_empty() && times.iter().all(|row| row.reason.starts_with("void: 4 of 4 A/A controls")));
+}
+
+/// A peak that is none has no word in what a kernel's limit is.
+#[test]
+fn a_peak_below_what_single_doubles_make_is_void() {
+    let machine = |peak: f64| {
+        let rows = altered(|cell, values| {
+            if cell.params["what"] == "machine" {
+                *values = vec![peak, 6.5, 20.0, 1.0];
+            }
+        });
+        let found = |metric: &str| rows.iter().find(|row| row.metric == metric).unwrap().clone();
+        ["fma_per_ns", "fma_per_ns_per_lane", "fma_per_ns_scalar", "clock_ns", "empty_call_ns"].map(found)
+    };
+    let [vector, lane, rest @ ..] = machine(2.6);
+    for row in [vector, lane] {
+        assert!(row.value.is_some() && row.reason.starts_with("void: vectors of ") && row.reason.contains("0.40 times"), "{}", row.reason);
+    }
+    assert!(rest.iter().all(|row| row.reason.is_empty()));
+    let [vector, lane, scalar, ..] = machine(52.0);
+    assert!([&vector, &lane, &scalar].iter().all(|row| row.reason.is_empty()));
+    assert_eq!((vector.value, scalar.value), (Some(52.0), Some(6.5)));
+}
+
 #[test]
 fn one_that_stops_answering_is_an_error() {
     let rows = rewritten(|values| *values.last_mut().unwrap() = f64::NAN);
     let errors: Vec<_> = rows.iter().filter(|row| row.verdict == Verdict::Error).collect();
-    // The last entrant of forward dynamics is ltdl; the last of inverse dynamics is the control, which has no row then.
-    assert_eq!(errors.len(), 2);
-    assert!(errors.iter().all(|row| row.method == "ltdl" && row.reason.contains("stopped answering")));
+    // The last entrant of forward dynamics is ltdl, the last of inverse dynamics the control: without it nothing there counts.
+    assert_eq!(errors.len(), 4);
+    assert!(errors.iter().all(|row| row.reason.contains("stopped answering")));
+    assert_eq!(errors.iter().filter(|row| row.method == "ltdl" && row.metric == "ns_per_call").count(), 2);
+    assert_eq!(errors.iter().filter(|row| row.quantity == "id" && row.metric == "control").count(), 2);
+    assert!(rows.iter().filter(|row| row.quantity == "id" && row.metric.starts_with("ns_")).all(|row| row.reason.starts_with("void: ")));
 }

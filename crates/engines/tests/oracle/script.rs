@@ -1,12 +1,14 @@
 //! Shell oracles: what they answer, and how they are asked.
 
-use featherbench_engines::{Limits, Oracle};
+use featherbench_engines::{Clock, Limits, Oracle, SystemClock};
 use harness::{Problem, Quantity, Refusal, Subject};
 use model::generate::Family;
 use record::ModelOrigin;
 use std::ffi::OsString;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::process::Command;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Arc, Mutex};
 use std::time::Duration;
 use tempfile::TempDir;
 
@@ -78,12 +80,36 @@ pub(crate) struct Trial {
     pub(crate) problem: Problem,
 }
 
-/// Long enough that an honest shell is never late on a busy machine.
-pub(crate) const PATIENT: Limits = Limits { answer: Duration::from_secs(20), memory: 1 << 30 };
-/// Short enough for a test.
-pub(crate) const HASTY: Limits = Limits { answer: Duration::from_millis(500), memory: 1 << 30 };
-/// What a refusal may take beyond the limit of an answer: the grace for a dying process, and a busy machine.
-pub(crate) const SOON: Duration = Duration::from_secs(4);
+/// So long that an honest shell is never late, however busy the machine is: only a test that would hang for ever meets it.
+pub(crate) const PATIENT: Limits = Limits { answer: Duration::from_secs(900), memory: 1 << 30 };
+
+/// A clock that stands still until the test sets it going and the script says that it is late, by a file `late` in its folder. Then an hour
+/// passes between any two looks.
+pub(crate) struct Stopped {
+    late: PathBuf,
+    going: AtomicBool,
+    now: Mutex<Duration>,
+}
+
+impl Stopped {
+    pub(crate) fn set_going(&self, going: bool) {
+        self.going.store(going, Ordering::SeqCst);
+    }
+}
+
+impl Clock for Stopped {
+    fn now(&self) -> Duration {
+        let mut now = self.now.lock().unwrap();
+        if self.going.load(Ordering::SeqCst) && self.late.exists() {
+            *now += Duration::from_secs(3600);
+        }
+        *now
+    }
+
+    fn look_again(&self, left: Duration) -> Duration {
+        left.min(Duration::from_millis(5))
+    }
+}
 
 pub(crate) fn robot(spec: &str) -> Problem {
     let description = Family::parse(spec).unwrap().generate().unwrap();
@@ -92,8 +118,19 @@ pub(crate) fn robot(spec: &str) -> Problem {
 
 impl Trial {
     pub(crate) fn new(script: &Script, limits: Limits) -> Self {
+        Self::by(script, limits, tempfile::tempdir().unwrap(), Arc::new(SystemClock::default()))
+    }
+
+    /// An oracle whose limits pass when its script says so.
+    pub(crate) fn stopped(script: &Script) -> (Self, Arc<Stopped>) {
         let folder = tempfile::tempdir().unwrap();
-        let oracle = Oracle::start(script.command(folder.path()), limits);
+        let clock = Arc::new(Stopped { late: folder.path().join("late"), going: AtomicBool::new(false), now: Mutex::default() });
+        (Self::by(script, PATIENT, folder, Arc::clone(&clock) as Arc<dyn Clock>), clock)
+    }
+
+    /// An oracle whose limits pass, and whose times are taken, by this clock.
+    pub(crate) fn by(script: &Script, limits: Limits, folder: TempDir, clock: Arc<dyn Clock>) -> Self {
+        let oracle = Oracle::start_by(script.command(folder.path()), limits, clock);
         Self { folder, oracle, problem: robot("chain:n=1") }
     }
 

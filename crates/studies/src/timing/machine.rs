@@ -4,20 +4,24 @@ use harness::{Prepared, Refusal};
 use std::hint::black_box;
 use std::time::{Duration, Instant};
 
+/// A vector register of doubles of this build.
+#[cfg(target_feature = "avx512f")]
+type Vector = wide::f64x8;
+#[cfg(all(target_feature = "avx", not(target_feature = "avx512f")))]
+type Vector = wide::f64x4;
+#[cfg(not(target_feature = "avx"))]
+type Vector = wide::f64x2;
+
 /// Doubles in a vector register of this build.
-pub(super) const LANES: usize = if cfg!(target_feature = "avx512f") {
-    8
-} else if cfg!(target_feature = "avx") {
-    4
-} else {
-    2
-};
+pub(super) const LANES: usize = size_of::<Vector>() / size_of::<f64>();
 
 /// What the machine does at best, and what a measurement costs.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Machine {
     /// Fused multiply-adds of doubles per nanosecond, in full vectors.
     pub peak: f64,
+    /// The same of single doubles.
+    pub scalar: f64,
     /// Nanoseconds between two readings of the clock that differ.
     pub resolution: f64,
     /// Nanoseconds of a call that computes nothing.
@@ -27,47 +31,95 @@ pub(super) struct Machine {
 impl Machine {
     /// Measures it; `empty` is a subject's evaluation that computes nothing.
     pub fn measure(empty: &mut dyn Prepared) -> Result<Self, Refusal> {
-        Ok(Self { peak: peak(), resolution: resolution(), empty: empty_call(empty)? })
+        let peak = rate(VECTOR_WORK, || {
+            black_box(vector_chains(black_box(START), black_box(M), black_box(C)));
+        });
+        let scalar = rate(SCALAR_WORK, || {
+            black_box(scalar_chains(black_box(START), black_box(M), black_box(C)));
+        });
+        Ok(Self { peak, scalar, resolution: resolution(), empty: empty_call(empty)? })
     }
 
     /// As the outcome of a cell.
     pub fn to_values(self) -> Vec<f64> {
-        vec![self.peak, self.resolution, self.empty]
+        vec![self.peak, self.scalar, self.resolution, self.empty]
     }
 
     /// Read back.
     pub fn from_values(values: &[f64]) -> Option<Self> {
-        let &[peak, resolution, empty] = values else { return None };
-        Some(Self { peak, resolution, empty })
+        let &[peak, scalar, resolution, empty] = values else { return None };
+        Some(Self { peak, scalar, resolution, empty })
+    }
+
+    /// Why the peak is no limit, when the loop over single doubles shows that: vectors were taken apart by the compiler, or the machine was busy.
+    pub fn complaint(&self) -> Option<String> {
+        let (times, due) = (self.peak / self.scalar, least_gain(LANES));
+        let good = times >= due;
+        let vectors = format!("vectors of {LANES} doubles make {times:.2} times the multiply-adds of single doubles");
+        (!good).then(|| format!("{vectors}, {due:.2} times are due: the peak is measured too low"))
     }
 }
 
-/// Vectors in flight: more than the latency of a multiply-add times the number of units that make them.
-const CHAINS: usize = 12;
+/// How many times the multiply-adds of single doubles vectors of so many lanes make at least: half of the lanes where the wide unit is one and the
+/// narrow ones are two (AVX-512 of some processors), less a tenth for the frequency; and more than one, which is what vectors that were taken
+/// apart make at best.
+fn least_gain(lanes: usize) -> f64 {
+    if lanes > 2 { 0.45 * lanes as f64 } else { 1.2 }
+}
+
+/// Registers in flight: more than the latency of a multiply-add (4 cycles, 5 on older ones) times the units that make them (2; 4 on ARM cores,
+/// and where AVX-512 is there are as many registers as on those). With the two constants they fill no more than the registers.
+const CHAINS: usize = if cfg!(any(target_feature = "avx512f", target_arch = "aarch64")) { 20 } else { 12 };
 /// Blocks of which the best counts: a limit is what the machine can do, not what it usually does.
 const BLOCKS: usize = 200;
 /// Multiply-adds in each chain of a block.
 const STEPS: usize = 20_000;
+/// Multiply-adds of a block of vectors, and of one of single doubles.
+const VECTOR_WORK: usize = SCALAR_WORK * LANES;
+const SCALAR_WORK: usize = STEPS * CHAINS;
+/// Where the first chain starts, and the constants: numbers that neither overflow nor vanish.
+const START: f64 = 1.0;
+const M: f64 = 0.999;
+const C: f64 = 1e-3;
 
-/// Multiply-adds per nanosecond of independent chains of full vectors.
-fn peak() -> f64 {
-    let best = (0..BLOCKS).map(|_| {
+/// Multiply-adds per nanosecond of a block that makes so many; the best of many blocks.
+fn rate(work: usize, mut block: impl FnMut()) -> f64 {
+    let times = (0..BLOCKS).map(|_| {
         let start = Instant::now();
-        black_box(chains(black_box(1.0), black_box(1e-9)));
+        block();
         start.elapsed()
     });
-    (STEPS * CHAINS * LANES) as f64 / best.min().unwrap_or_default().as_nanos() as f64
+    best(work, times)
 }
 
-/// x ← x·m + c in every lane of every chain; a slow start of the first chain delays the others by nothing.
+/// Multiply-adds per nanosecond, by the shortest of these times.
+fn best(work: usize, times: impl Iterator<Item = Duration>) -> f64 {
+    work as f64 / times.min().unwrap_or_default().as_nanos() as f64
+}
+
+/// x ← x·m + c in every lane of every chain, by vector instructions. Each lane starts elsewhere, so that none can be taken for another.
+///
+/// The type names the instruction: a loop over arrays is packed into vectors or not, as the build's flags are.
 #[inline(never)]
-fn chains(m: f64, c: f64) -> [[f64; LANES]; CHAINS] {
-    let mut x = [[1.0_f64; LANES]; CHAINS];
+fn vector_chains(start: f64, m: f64, c: f64) -> [[f64; LANES]; CHAINS] {
+    let (m, c) = (Vector::splat(m), Vector::splat(c));
+    let mut x: [Vector; CHAINS] =
+        std::array::from_fn(|chain| Vector::from(std::array::from_fn::<f64, LANES, _>(|lane| start + (chain * LANES + lane) as f64)));
     for _ in 0..STEPS {
         for chain in &mut x {
-            for lane in chain {
-                *lane = spatial::Real::mul_add(*lane, m, c);
-            }
+            *chain = chain.mul_add(m, c);
+        }
+    }
+    x.map(Into::into)
+}
+
+/// The same of single doubles: the first lane of each chain.
+#[inline(never)]
+fn scalar_chains(start: f64, m: f64, c: f64) -> [f64; CHAINS] {
+    let mut x: [f64; CHAINS] = std::array::from_fn(|chain| start + (chain * LANES) as f64);
+    for _ in 0..STEPS {
+        for chain in &mut x {
+            *chain = spatial::Real::mul_add(*chain, m, c);
         }
     }
     x
@@ -166,12 +218,52 @@ mod tests {
         assert_eq!(before, after);
     }
 
+    /// Every lane of every chain has its own multiply-adds, as many as the peak counts, to the bit of a loop over one number.
     #[test]
     fn the_chains_compute_what_they_say() {
-        // x ← x + c, many times.
-        let x = chains(1.0, 0.5);
-        assert!(x.iter().flatten().all(|&lane| lane == 1.0 + 0.5 * STEPS as f64));
-        assert_eq!(Machine::from_values(&[1.0, 2.0, 3.0]).unwrap().to_values(), [1.0, 2.0, 3.0]);
-        assert_eq!(Machine::from_values(&[1.0]), None);
+        let (vector, scalar) = (vector_chains(START, M, C), scalar_chains(START, M, C));
+        let mut counted = 0;
+        for (chain, lanes) in vector.iter().enumerate() {
+            for (lane, x) in lanes.iter().enumerate() {
+                let start = START + (chain * LANES + lane) as f64;
+                let alone = (0..STEPS).fold(start, |x, _| {
+                    counted += 1;
+                    // Without such an instruction the crate rounds twice.
+                    if cfg!(any(target_feature = "fma", target_arch = "aarch64")) { x.mul_add(M, C) } else { x * M + C }
+                });
+                assert_eq!(*x, alone, "chain {chain}, lane {lane}");
+            }
+            assert!((scalar[chain] - lanes[0]).abs() <= 1e-12, "chain {chain}");
+        }
+        assert_eq!((counted, counted / LANES), (VECTOR_WORK, SCALAR_WORK));
+    }
+
+    /// A chain waits for its own result, and others go on meanwhile.
+    #[test]
+    fn the_chains_fill_the_units() {
+        let (latency, units, registers) = if cfg!(target_arch = "aarch64") { (4, 4, 32) } else { (5, 2, if LANES == 8 { 32 } else { 16 }) };
+        assert!(CHAINS >= latency * units && CHAINS + 2 <= registers);
+        assert!([2, 4, 8].contains(&LANES));
+    }
+
+    #[test]
+    fn a_rate_is_that_of_the_best_block() {
+        assert_eq!(best(1000, [500, 50, 100].into_iter().map(Duration::from_nanos)), 20.0);
+        assert_eq!(best(1000, std::iter::empty()), f64::INFINITY, "which no row takes for a value");
+    }
+
+    /// What was measured when the compiler took the vectors apart: 2.6 multiply-adds per nanosecond, where single doubles make 6.5.
+    #[test]
+    fn a_peak_below_what_single_doubles_make_is_none() {
+        let machine = |peak| Machine { peak, scalar: 6.5, resolution: 20.0, empty: 1.0 };
+        assert!(machine(2.6).complaint().is_some_and(|reason| reason.contains("0.40 times")));
+        assert!(machine(6.5).complaint().is_some(), "one lane of each");
+        assert!(machine(f64::NAN).complaint().is_some());
+        assert_eq!(machine(6.5 * LANES as f64).complaint(), None);
+        let due = 6.5 * least_gain(LANES);
+        assert!(machine(0.99 * due).complaint().is_some() && machine(1.01 * due).complaint().is_none());
+        assert_eq!([2, 4, 8].map(least_gain), [1.2, 1.8, 3.6]);
+        assert_eq!(Machine::from_values(&[1.0, 2.0, 3.0, 4.0]).unwrap().to_values(), [1.0, 2.0, 3.0, 4.0]);
+        assert_eq!(Machine::from_values(&[1.0, 2.0, 3.0]), None);
     }
 }

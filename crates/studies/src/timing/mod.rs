@@ -26,6 +26,7 @@ use protocol::{Budget, Contestant};
 use record::Record;
 use samples::Entrant;
 use serde_json::{Value, json};
+use std::time::Instant;
 
 /// The timing study.
 pub struct Timing {
@@ -139,7 +140,9 @@ impl Study for Timing {
                 context.subject(engine).ok_or_else(lost)?.prepare(problem, quantity, method, &states)
             };
             let mut random = Random::named(context.seed, &cell.id());
-            Ok(protocol::experiment(&prepare, entrants.len(), count, Budget::of(self.seconds), &mut random).to_values())
+            let start = Instant::now();
+            let clock = || start.elapsed();
+            Ok(protocol::experiment(&prepare, entrants.len(), count, Budget::of(self.seconds), &clock, &mut random).to_values())
         };
         answer().into()
     }

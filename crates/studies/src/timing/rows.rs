@@ -29,10 +29,10 @@ pub(super) fn rows(gates: &Gates, problem: &Problem, finished: &[Finished]) -> V
     machine.chain(checked).chain(overheads).chain(timed).collect()
 }
 
-/// Why no time of this robot counts: too many of its controls say that the machine was not quiet.
+/// Why no time of this robot counts: too many of its controls say that the machine was not quiet, or say nothing.
 fn noise(experiments: &[Experiment]) -> Option<String> {
-    let controls = experiments.iter().filter(|experiment| experiment.control.is_some()).count();
-    let bad = experiments.iter().filter(|experiment| experiment.noise().is_some()).count();
+    let timed = || experiments.iter().filter(|experiment| experiment.samples.is_ok());
+    let (controls, bad) = (timed().count(), timed().filter(|experiment| experiment.noise().is_some()).count());
     (bad * BAD_CONTROLS > controls).then(|| format!("{bad} of {controls} A/A controls of this robot are not 1: the machine was not quiet"))
 }
 
@@ -44,17 +44,28 @@ fn machine(cell: &Cell, problem: &Problem, outcome: &Outcome) -> Vec<Record> {
         Ok(values) => Machine::from_values(values).ok_or_else(|| "the outcome is no machine".to_owned()),
         Err(refusal) => Err(refusal.to_string()),
     };
-    let Machine { peak, resolution, empty } = match measured {
+    let measured = match measured {
         Ok(machine) => machine,
         Err(reason) => return vec![blank.without_value(Verdict::Error, reason)],
     };
+    let void = measured.complaint();
+    let Machine { peak, scalar, resolution, empty } = measured;
+    // The peak is a limit, and is void where it is none.
     let values = [
-        ("fma_per_ns", "1/ns", peak),
-        ("fma_per_ns_per_lane", "1/ns", peak / LANES as f64),
-        ("clock_ns", "ns", resolution),
-        ("empty_call_ns", "ns", empty),
+        ("fma_per_ns", "1/ns", peak, void.as_ref()),
+        ("fma_per_ns_per_lane", "1/ns", peak / LANES as f64, void.as_ref()),
+        ("fma_per_ns_scalar", "1/ns", scalar, None),
+        ("clock_ns", "ns", resolution, None),
+        ("empty_call_ns", "ns", empty, None),
     ];
-    values.map(|(metric, unit, value)| Record { metric: metric.into(), unit: unit.into(), ..blank.clone() }.informed(value)).into()
+    let row = |(metric, unit, value, void): (&str, &str, f64, Option<&String>)| {
+        let mut row = Record { metric: metric.into(), unit: unit.into(), ..blank.clone() }.informed(value);
+        if let Some(reason) = void.filter(|_| row.value.is_some()) {
+            row.reason = format!("void: {reason}");
+        }
+        row
+    };
+    values.map(row).into()
 }
 
 /// What it takes to call an engine whose times are estimates, by the clock that subtracts it. One that does not offer the robot has its row
@@ -125,8 +136,8 @@ struct Experiment<'a> {
     blank: Record,
     entrants: Vec<Entrant>,
     samples: Result<Samples, String>,
-    /// The second copy of the reference over the first.
-    control: Option<Estimate>,
+    /// The second copy of the reference over the first, or why it is not known.
+    control: Result<Estimate, &'static str>,
 }
 
 impl<'a> Experiment<'a> {
@@ -140,18 +151,22 @@ impl<'a> Experiment<'a> {
         // The entrants stand in rows of their own: a parameter that lists them would stand in each.
         let params = serde_json::json!({"algorithm": cell.quantity, "cache": case, "states": cell.params["states"], "seconds": cell.params["seconds"]});
         let blank = Record { kind: Kind::Measured, case, params: record::canonical_json(&params), ..row(cell, problem) };
-        let mut experiment = Self { cell, blank, entrants, samples, control: None };
-        experiment.control = experiment.entrants.iter().position(|entrant| entrant.control).and_then(|which| {
-            let samples = experiment.samples.as_ref().ok()?;
+        let mut experiment = Self { cell, blank, entrants, samples, control: Err("the experiment has no A/A control") };
+        if let (Some(which), Ok(samples)) = (experiment.entrants.iter().position(|entrant| entrant.control), &experiment.samples) {
             let ratio = Estimate::ratio(samples.of(which), samples.of(0), CONTROL_LEVEL, &mut experiment.random("control"));
-            ratio.value.is_finite().then_some(ratio)
-        });
+            let known = ratio.value.is_finite() && ratio.low.is_finite() && ratio.high.is_finite();
+            experiment.control =
+                if known { Ok(ratio) } else { Err("the A/A control or the reference stopped answering while it was timed") };
+        }
         experiment
     }
 
-    /// Why no time of this experiment counts, when its control says so.
+    /// Why no time of this experiment counts, when its control says so, or says nothing.
     fn noise(&self) -> Option<String> {
-        self.control.as_ref()?.complaint()
+        match &self.control {
+            Ok(control) => control.complaint(),
+            Err(reason) => Some((*reason).to_owned()),
+        }
     }
 
     fn random(&self, what: &str) -> Random {
@@ -175,9 +190,11 @@ impl<'a> Experiment<'a> {
             let usual = format!("{REFERENCE} {}", self.cell.method);
             if entrant.control {
                 let blank = Record { unit: "1".into(), reference: format!("{usual}, its first copy"), ..blank };
-                let mut own: Vec<Record> =
-                    self.control.iter().flat_map(|control| estimate(&blank, ["control", "control_low", "control_high"], control)).collect();
-                if let Some(reason) = &own_noise {
+                let mut own: Vec<Record> = match &self.control {
+                    Ok(control) => estimate(&blank, ["control", "control_low", "control_high"], control),
+                    Err(reason) => vec![Record { metric: "control".into(), ..blank }.without_value(Verdict::Error, *reason)],
+                };
+                if let Some(reason) = own_noise.as_ref().filter(|_| self.control.is_ok()) {
                     own.iter_mut().for_each(|row| row.reason = format!("void: {reason}"));
                 }
                 rows.extend(own);

@@ -49,10 +49,10 @@ impl Estimate {
         if samples.is_empty() || samples.iter().any(|sample| sample.is_nan()) {
             return Self { value: f64::NAN, low: f64::NAN, high: f64::NAN };
         }
-        // Fewer samples than epochs are each their own.
+        // Fewer samples than epochs are each their own; what does not fill an epoch is not drawn.
         let epoch = (samples.len() / EPOCHS).max(1);
         let epochs = samples.len() / epoch;
-        let mut drawn = samples.to_vec();
+        let mut drawn = samples[..epoch * epochs].to_vec();
         let mut medians: Vec<f64> = (0..RESAMPLES)
             .map(|_| {
                 for place in drawn.chunks_exact_mut(epoch) {
@@ -63,9 +63,8 @@ impl Estimate {
             })
             .collect();
         medians.sort_unstable_by(f64::total_cmp);
-        drawn.copy_from_slice(samples);
         let tail = 0.5 * (1.0 - level);
-        Self { value: median(&mut drawn), low: quantile(&medians, tail), high: quantile(&medians, 1.0 - tail) }
+        Self { value: median(&mut samples.to_vec()), low: quantile(&medians, tail), high: quantile(&medians, 1.0 - tail) }
     }
 
     /// The median over the rounds of a subject's block over the reference's.
@@ -106,13 +105,14 @@ fn median(samples: &mut [f64]) -> f64 {
     if odd {
         return upper;
     }
-    let lower = below.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    let lower = below.iter().copied().max_by(f64::total_cmp).unwrap_or(f64::NAN);
     0.5 * (lower + upper)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use harness::measure::worst;
     use spatial::Real;
 
     /// Rounds of an experiment: ten in each epoch.
@@ -218,16 +218,16 @@ mod tests {
     /// Why ratios are formed within rounds: two medians may fall into different states of the machine.
     #[test]
     fn the_ratio_of_two_medians_would_be_misled_where_the_median_of_ratios_is_not() {
-        let worst = |of: fn(Vec<f64>, Vec<f64>) -> f64| {
+        let farthest = |of: fn(Vec<f64>, Vec<f64>) -> f64| {
             (0..TRIALS as u64)
                 .map(|seed| {
                     let (reference, subject) = blocks(frequencies, 1.0, seed);
                     (of(subject, reference) - 1.0).abs()
                 })
-                .fold(0.0, f64::max)
+                .fold(0.0, worst)
         };
-        let unpaired = worst(|mut subject, mut reference| median(&mut subject) / median(&mut reference));
-        let paired = worst(|subject, reference| median(&mut subject.iter().zip(&reference).map(|(a, b)| a / b).collect::<Vec<_>>()));
+        let unpaired = farthest(|mut subject, mut reference| median(&mut subject) / median(&mut reference));
+        let paired = farthest(|subject, reference| median(&mut subject.iter().zip(&reference).map(|(a, b)| a / b).collect::<Vec<_>>()));
         assert!(paired < 0.006 && unpaired > 2.0 * paired, "paired {paired}, unpaired {unpaired}");
     }
 
@@ -244,5 +244,109 @@ mod tests {
         assert_eq!(of(&[1.0, 2.0, 3.0]), of(&[1.0, 2.0, 3.0]), "the same seed, the same interval");
         assert_eq!(Estimate { value: f64::NAN, low: f64::NAN, high: f64::NAN }.finding(), Finding::Alike);
         assert!(Estimate { value: f64::NAN, low: f64::NAN, high: f64::NAN }.complaint().is_some());
+    }
+
+    fn random() -> Random {
+        Random::new(3, 9)
+    }
+
+    /// The same by the book: epochs drawn whole, medians by sorting, and the ends between the two neighbours.
+    fn by_the_book(samples: &[f64], epoch: usize, level: f64) -> [f64; 3] {
+        let sorted = |mut numbers: Vec<f64>| {
+            numbers.sort_by(|a, b| a.partial_cmp(b).unwrap());
+            numbers
+        };
+        let middle = |numbers: Vec<f64>| {
+            let (numbers, n) = (sorted(numbers.clone()), numbers.len());
+            if n.is_multiple_of(2) { (numbers[n / 2 - 1] + numbers[n / 2]) / 2.0 } else { numbers[n / 2] }
+        };
+        let (mut random, epochs) = (random(), samples.len() / epoch);
+        let mut resampled = Vec::new();
+        for _ in 0..2000 {
+            let mut drawn = vec![f64::NAN; epochs * epoch];
+            for place in 0..epochs {
+                let from = (f64::from(random.bits32()) / 4_294_967_296.0 * epochs as f64).floor() as usize;
+                for k in 0..epoch {
+                    drawn[epoch * place + k] = samples[epoch * from + k];
+                }
+            }
+            resampled.push(middle(drawn));
+        }
+        let resampled = sorted(resampled);
+        let end = |share: f64| {
+            let (whole, part) = ((share * 1999.0).floor(), (share * 1999.0).fract());
+            resampled[whole as usize] + part * (resampled[(whole + 1.0).min(1999.0) as usize] - resampled[whole as usize])
+        };
+        [middle(samples.to_vec()), end((1.0 - level) / 2.0), end((1.0 + level) / 2.0)]
+    }
+
+    #[test]
+    fn an_interval_is_that_of_the_book() {
+        // One round an epoch, two, two and a rest that no epoch begins in, and fewer rounds than epochs.
+        for (rounds, epoch) in [(60, 1), (120, 2), (150, 2), (179, 2), (180, 3), (7, 1), (2, 1)] {
+            let mut random_samples = Random::new(11, rounds as u64);
+            let samples: Vec<f64> = (0..rounds).map(|_| random_samples.uniform(1.0, 2.0)).collect();
+            for level in [LEVEL, CONTROL_LEVEL, 0.5] {
+                let Estimate { value, low, high } = Estimate::median(&samples, level, &mut random());
+                let due = by_the_book(&samples, epoch, level);
+                for (found, due) in [value, low, high].into_iter().zip(due) {
+                    // The ends' place between two medians is rounded in another order.
+                    assert!((found - due).abs() <= 1e-12, "{rounds} rounds at {level}: {found} is not {due}");
+                }
+            }
+        }
+    }
+
+    /// Of two samples a and b, a quarter of the resamples has the median a, a half (a + b)/2, a quarter b.
+    #[test]
+    fn the_interval_of_two_samples_is_known() {
+        let ends = |level| {
+            let Estimate { value, low, high } = Estimate::median(&[1.0, 3.0], level, &mut random());
+            [value, low, high]
+        };
+        assert_eq!(ends(0.95), [2.0, 1.0, 3.0]);
+        assert_eq!(ends(0.6), [2.0, 1.0, 3.0], "a fifth in each tail is less than a quarter");
+        assert_eq!(ends(0.4), [2.0, 2.0, 2.0], "three tenths are more");
+        assert_eq!(ends(0.0), [2.0, 2.0, 2.0]);
+    }
+
+    #[test]
+    fn a_ratio_is_formed_within_rounds() {
+        // 2, 2, 3 and 0.5: the ratio of the medians, 5 over 1.5, is another.
+        let ratio = Estimate::ratio(&[2.0, 4.0, 6.0, 6.0], &[1.0, 2.0, 2.0, 12.0], LEVEL, &mut random());
+        assert_eq!((ratio.value, ratio.low >= 0.5, ratio.high <= 3.0), (2.0, true, true));
+        assert!(Estimate::ratio(&[1.0, 1.0], &[1.0, f64::NAN], LEVEL, &mut random()).high.is_nan());
+    }
+
+    #[test]
+    fn every_place_is_drawn_alike() {
+        let mut drawn = [0; 7];
+        let (mut bits, mut draws) = (random(), random());
+        for _ in 0..7000 {
+            let place = draw(&mut draws, 7);
+            assert_eq!(place, (f64::from(bits.bits32()) * 7.0 / 4_294_967_296.0).floor() as usize);
+            drawn[place] += 1;
+        }
+        // 1000 ± 29: four deviations.
+        assert!(drawn.iter().all(|&times| (880..=1120).contains(&times)), "{drawn:?}");
+    }
+
+    /// A finding and a complaint begin beyond the noise, on either side of one, and not at it.
+    #[test]
+    fn the_noise_ends_at_two_percent() {
+        let ends = |low: f64, high: f64| Estimate { value: 0.5 * (low + high), low, high };
+        let (above, below) = (1.02_f64, 1.0 / 1.02);
+        assert_eq!(ends(above, 1.1).finding(), Finding::Alike);
+        assert_eq!(ends(above.next_up(), 1.1).finding(), Finding::Slower);
+        assert_eq!(ends(0.9, below).finding(), Finding::Alike);
+        assert_eq!(ends(0.9, below.next_down()).finding(), Finding::Faster);
+        assert_eq!(ends(0.5, 2.0).finding(), Finding::Alike, "it cannot tell");
+        assert_eq!(ends(1.0, 1.0).finding(), Finding::Alike);
+        assert_eq!(ends(0.98, 1.02).complaint(), None);
+        assert!(ends(0.98_f64.next_down(), 1.0).complaint().is_some());
+        assert!(ends(1.0, 1.02_f64.next_up()).complaint().is_some());
+        assert!(ends(f64::NAN, 1.0).complaint().is_some() && ends(1.0, f64::NAN).complaint().is_some());
+        let reason = Estimate { value: 1.03, low: 1.01, high: 1.05 }.complaint().unwrap();
+        assert_eq!(reason, "the second copy of native over the first is 1.0300 [1.0100, 1.0500]: not 1 within ± 0.02");
     }
 }
