@@ -57,6 +57,41 @@ pub enum RecordError {
         /// Rows that `run.json` announces.
         expected: u64,
     },
+    /// A file has another checksum than it had when it was written.
+    #[error(
+        "{path}: its checksum is not the one in {sums}: one of the two files was altered or damaged after it was written; \
+         finish the run again with `run --resume`, or make the data again",
+        path = path.display(),
+        sums = sums.display()
+    )]
+    Checksum {
+        /// The file.
+        path: PathBuf,
+        /// The file of checksums.
+        sums: PathBuf,
+    },
+    /// A file that should have a checksum has none.
+    #[error("{sums}: has no checksum of {name}: the list was altered, or a part of it is missing", sums = sums.display())]
+    Unlisted {
+        /// The file of checksums.
+        sums: PathBuf,
+        /// The file's name.
+        name: String,
+    },
+    /// A file that has a checksum is not there.
+    #[error("{path}: is not there, but {sums} has its checksum", path = path.display(), sums = sums.display())]
+    Absent {
+        /// The file of checksums.
+        sums: PathBuf,
+        /// The file.
+        path: PathBuf,
+    },
+    /// There are no checksums: what the folder holds is not finished, or was written by a version that made none.
+    #[error("{path}: is not there: the run did not finish, or an earlier version wrote it; run it again, or continue it with --resume", path = path.display())]
+    Unfinished {
+        /// The file of checksums.
+        path: PathBuf,
+    },
     /// A `run.json` that does not parse; line and column are inside the message.
     #[error("{path}: {source}", path = path.display())]
     Json {

@@ -5,7 +5,7 @@ use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicU64, Ordering};
 
-use crate::{COLUMNS, ColumnType, Record, RecordError, RunInfo, schema_json};
+use crate::{COLUMNS, Checksums, ColumnType, Record, RecordError, RunInfo, schema_json};
 
 /// Name of the rows' file in a run's folder.
 pub const CSV_NAME: &str = "records.csv";
@@ -50,6 +50,9 @@ pub fn atomic_write(path: &Path, bytes: &[u8]) -> Result<(), RecordError> {
 }
 
 /// The rows as the text of a CSV file, header first. `path` only serves the error: it is where the text is meant to go.
+///
+/// A text that reads as a number or a truth value, such as the unit `1`, stands in quotes: a reader that guesses the type of a column from
+/// its first rows takes a quoted field for text. No number is quoted.
 pub fn to_csv(records: &[Record], path: &Path) -> Result<Vec<u8>, RecordError> {
     let failed = |error: csv::Error| RecordError::Io { path: path.to_owned(), source: io::Error::other(error) };
     let mut writer = csv::WriterBuilder::new().has_headers(false).from_writer(Vec::new());
@@ -62,7 +65,31 @@ pub fn to_csv(records: &[Record], path: &Path) -> Result<Vec<u8>, RecordError> {
         }
         writer.serialize(record).map_err(failed)?;
     }
-    writer.into_inner().map_err(|error| RecordError::Io { path: path.to_owned(), source: error.into_error() })
+    let plain = writer.into_inner().map_err(|error| RecordError::Io { path: path.to_owned(), source: error.into_error() })?;
+    let mut reader = csv::ReaderBuilder::new().has_headers(false).from_reader(plain.as_slice());
+    let (mut text, mut row) = (String::with_capacity(plain.len() + plain.len() / 8), csv::StringRecord::new());
+    while reader.read_record(&mut row).map_err(failed)? {
+        for (position, (field, column)) in row.iter().zip(&COLUMNS).enumerate() {
+            if position > 0 {
+                text.push(',');
+            }
+            let text_like_a_number = matches!(column.kind, ColumnType::Text | ColumnType::Word) && reads_as_another_type(field);
+            if text_like_a_number || field.contains([',', '"', '\n', '\r']) {
+                text.push('"');
+                text += &field.replace('"', "\"\"");
+                text.push('"');
+            } else {
+                text += field;
+            }
+        }
+        text.push('\n');
+    }
+    Ok(text.into_bytes())
+}
+
+/// Whether a reader that guesses types could take a text for a number or a truth value.
+fn reads_as_another_type(text: &str) -> bool {
+    text.trim().parse::<f64>().is_ok() || ["true", "false"].iter().any(|word| text.trim().eq_ignore_ascii_case(word))
 }
 
 /// Writes rows to a CSV file, in one step.
@@ -113,24 +140,55 @@ pub fn parse_csv(text: &str, path: &Path) -> Result<Vec<Record>, RecordError> {
     Ok(records)
 }
 
-/// Writes a run's three files into its folder: rows, columns, and last `run.json` with the number of rows, so that a folder without it is
-/// known to be unfinished.
+/// Writes a run's files into its folder, each in one step: rows, columns, `run.json`, and last the checksums of these, so that a folder
+/// without them is known to be unfinished.
+///
+/// # Errors
+/// [`RecordError`]; the folder then holds no valid checksums of what was written before.
 pub fn write_run(folder: &Path, run: &RunInfo, records: &[Record]) -> Result<(), RecordError> {
-    write_csv(&folder.join(CSV_NAME), records)?;
-    atomic_write(&folder.join(SCHEMA_NAME), schema_json().as_bytes())?;
-    RunInfo { rows: records.len() as u64, ..run.clone() }.write(&folder.join(RUN_NAME))
+    write_run_with(folder, run, records, &[])
 }
 
-/// Reads a run's folder back; rows that are missing or too many are an error.
+/// The same, with the checksums of more files of the run that stand in the folder already.
+///
+/// # Errors
+/// As [`write_run`].
+pub fn write_run_with(folder: &Path, run: &RunInfo, records: &[Record], more: &[&str]) -> Result<(), RecordError> {
+    write_csv(&folder.join(CSV_NAME), records)?;
+    atomic_write(&folder.join(SCHEMA_NAME), schema_json().as_bytes())?;
+    RunInfo { rows: records.len() as u64, ..run.clone() }.write(&folder.join(RUN_NAME))?;
+    Checksums::of(folder, &[&[CSV_NAME, SCHEMA_NAME, RUN_NAME], more].concat())?.write()
+}
+
+/// Reads a run's folder back.
+///
+/// # Errors
+/// [`RecordError`]: every file of the run must have its checksum, and there must be as many rows as were written.
 pub fn read_run(folder: &Path) -> Result<(RunInfo, Vec<Record>), RecordError> {
-    let run = RunInfo::read(&folder.join(RUN_NAME))?;
+    let sums = Checksums::read(folder)?;
+    let text = |name: &str| {
+        let path = folder.join(name);
+        // Bytes that have their checksum are those of a text: only a list that was made for another file holds others.
+        let text = String::from_utf8(sums.bytes(name)?);
+        text.map_err(|error| RecordError::Io { path, source: io::Error::new(io::ErrorKind::InvalidData, error) })
+    };
     let path = folder.join(CSV_NAME);
-    let records = read_csv(&path)?;
+    let run = RunInfo::parse(&text(RUN_NAME)?, &folder.join(RUN_NAME))?;
+    let records = parse_csv(&text(CSV_NAME)?, &path)?;
+    text(SCHEMA_NAME)?;
+    for name in sums.names() {
+        sums.bytes(name)?;
+    }
     let found = records.len() as u64;
     if found != run.rows {
         return Err(RecordError::RowCount { path, found, expected: run.rows });
     }
     Ok((run, records))
+}
+
+/// A whole file as bytes.
+pub(crate) fn read_bytes(path: &Path) -> Result<Vec<u8>, RecordError> {
+    fs::read(path).map_err(|source| RecordError::Io { path: path.to_owned(), source })
 }
 
 /// A whole file as text.

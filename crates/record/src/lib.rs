@@ -14,6 +14,7 @@
 //! assert_eq!((lost.value, lost.verdict), (None, Verdict::Error));
 //! ```
 
+mod checksum;
 mod columns;
 mod diff;
 mod error;
@@ -23,10 +24,13 @@ mod params;
 mod row;
 mod run_info;
 
+pub use checksum::{CHECKSUMS_NAME, Checksums, checksum, seal, unsealed};
 pub use columns::{COLUMNS, Column, ColumnType, schema_json};
 pub use diff::{Change, Changed, Diff, ERROR_FACTOR, ERROR_FLOOR, TIME_NOISE, diff};
 pub use error::RecordError;
-pub use file::{CSV_NAME, RUN_NAME, SCHEMA_NAME, atomic_write, parse_csv, read_csv, read_run, to_csv, write_csv, write_run};
+pub use file::{
+    CSV_NAME, RUN_NAME, SCHEMA_NAME, atomic_write, parse_csv, read_csv, read_run, to_csv, write_csv, write_run, write_run_with,
+};
 pub use names::{Kind, Relation, Verdict};
 pub use params::canonical_json;
 pub use row::{ESTIMATE, MARGIN_LIMIT, Record};

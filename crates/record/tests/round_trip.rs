@@ -5,9 +5,9 @@ use std::fs;
 use std::path::Path;
 
 use featherbench_record::{
-    COLUMNS, CSV_NAME, ColumnType, Convention, EngineInfo, EngineSource, Expectation, GitInfo, Host, Kind, ModelInfo, ModelOrigin,
-    RUN_FORMAT, RUN_NAME, Record, RecordError, Relation, RunInfo, SCHEMA_NAME, Verdict, atomic_write, canonical_json, read_csv, read_run,
-    schema_json, to_csv, write_csv, write_run,
+    COLUMNS, CSV_NAME, Checksums, ColumnType, Convention, EngineInfo, EngineSource, Expectation, GitInfo, Host, Kind, ModelInfo,
+    ModelOrigin, RUN_FORMAT, RUN_NAME, Record, RecordError, Relation, RunInfo, SCHEMA_NAME, Verdict, atomic_write, canonical_json,
+    read_csv, read_run, schema_json, to_csv, write_csv, write_run,
 };
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
@@ -291,6 +291,8 @@ fn a_run_that_was_altered_is_refused() {
     let text = fs::read_to_string(&path).unwrap();
     let read = |change: &str, to: &str| {
         fs::write(&path, text.replacen(change, to, 1)).unwrap();
+        // Altered by a program that makes the checksums anew.
+        Checksums::of(folder.path(), &[CSV_NAME, RUN_NAME, SCHEMA_NAME]).unwrap().write().unwrap();
         read_run(folder.path()).expect_err("altered").to_string()
     };
     assert!(read("\"format\": 1", "\"format\": 2").contains("format 2, this program reads format 1"));
@@ -309,6 +311,89 @@ fn numbers_that_are_not_finite_are_never_written() {
     let error = run.write(&path).unwrap_err().to_string();
     assert!(error.contains("`timing` is inf"), "{error}");
     assert!(!path.exists());
+}
+
+/// Readers that guess a column's type decide by its first rows: a field that reads as an integer, as a number, as a truth value or as
+/// anything else, where a field in quotes is text whatever stands in it. This is how polars does it, with a hundred rows.
+fn guessed(fields: &[&str]) -> &'static str {
+    let of = |field: &&str| match *field {
+        "" => None,
+        quoted if quoted.starts_with('"') => Some("text"),
+        field if field.parse::<i64>().is_ok() => Some("integer"),
+        field if field.parse::<f64>().is_ok() => Some("float"),
+        "true" | "false" => Some("truth value"),
+        _ => Some("text"),
+    };
+    let mut kinds: Vec<&str> = fields.iter().filter_map(of).collect();
+    kinds.sort_unstable();
+    kinds.dedup();
+    match kinds[..] {
+        [one] => one,
+        ["float", "integer"] => "float",
+        _ => "text",
+    }
+}
+
+/// The raw fields of a CSV line, quotes included.
+fn raw(line: &str) -> Vec<&str> {
+    let (mut fields, mut start, mut quoted) = (Vec::new(), 0, false);
+    for (at, c) in line.char_indices() {
+        match c {
+            '"' => quoted = !quoted,
+            ',' if !quoted => {
+                fields.push(&line[start..at]);
+                start = at + 1;
+            }
+            _ => {}
+        }
+    }
+    fields.push(&line[start..]);
+    fields
+}
+
+/// Two hundred rows of pure ratios whose engine has the version 1, then times in another unit by an engine of version 1.2.3: what the first
+/// hundred rows make a reader believe must be right of all that come after.
+#[test]
+fn the_first_hundred_rows_do_not_mislead_about_the_rest() {
+    let ratio = Record {
+        run: "20260101".into(),
+        cell: "12e45678".into(),
+        engine: "chain".into(),
+        engine_version: "1".into(),
+        unit: "1".into(),
+        reference: "true".into(),
+        method: "inf".into(),
+        nv: Some(7),
+        ..Record::default()
+    }
+    .gated(1.0, Relation::Le, 2.0);
+    let time = Record {
+        run: "today".into(),
+        cell: "ab".into(),
+        engine_version: "1.2.3".into(),
+        unit: "1/ns".into(),
+        reference: "truth".into(),
+        method: "fma".into(),
+        ..ratio.clone()
+    }
+    .informed(25.9);
+    let rows: Vec<Record> = std::iter::repeat_n(ratio, 200).chain(std::iter::repeat_n(time, 200)).collect();
+    let text = String::from_utf8(to_csv(&rows, Path::new("x")).unwrap()).unwrap();
+    let lines: Vec<Vec<&str>> = text.lines().skip(1).map(raw).collect();
+    assert!(lines.len() == 400 && lines.iter().all(|line| line.len() == COLUMNS.len()));
+    for (position, column) in COLUMNS.iter().enumerate() {
+        let of = |lines: &[Vec<&str>]| guessed(&lines.iter().map(|line| line[position]).collect::<Vec<_>>());
+        let (first, rest) = (of(&lines[..100]), of(&lines[100..]));
+        let due = match column.kind {
+            ColumnType::Text | ColumnType::Word => "text",
+            ColumnType::Integer => "integer",
+            ColumnType::Float => "float",
+        };
+        // A column without any number is no mistake of the first rows.
+        let empty = lines.iter().all(|line| line[position].is_empty());
+        assert!(empty || (first, rest) == (due, due) || rest == "text" && first == due, "{}: {first}, then {rest}", column.name);
+    }
+    assert_eq!(featherbench_record::parse_csv(&text, Path::new("x")).unwrap(), rows);
 }
 
 #[test]
