@@ -8,6 +8,7 @@ zero unless set. DART checks inertias with a warning only, so that unphysical bo
 from __future__ import annotations
 
 import importlib.metadata
+from collections.abc import Sequence
 from math import atan2, pi
 from pathlib import Path
 
@@ -22,7 +23,8 @@ from protocol import Array, Body, Change, Description, Joint, Question, Reading,
 # ---- coordinates -----------------------------------------------------------------------------------------------------------------
 # joint      q_e                     T                 b
 # free       log R, p                [[0, R], [R, 0]]  (0, R (ω × v)): [angular; linear] in the *parent body's* axes, R in T and b from body
-#                                                   to parent body (in log R to joint frame)
+#                                                   to parent body (in log R to joint frame). The axes are those of DART's body: of a robot
+#                                                   as read they need not be those of the description's, so DART itself is asked
 # spherical  log R                   identity          0: angular velocity in body axes
 # euler_zyx  z, -y, x                diag(1, -1, 1)    0: DART's order is x, y, z (Python cannot set another); its axes are turned by AXES
 # all other  q                       identity          0
@@ -53,14 +55,14 @@ def log(quaternion: Array) -> Array:
     return 2 * atan2(sine, w) / sine * u if sine > 0 else np.zeros(3)
 
 
-def change_of_velocities(robot: Description, q: Array, v: Array) -> Change:
-    """T and b of the table."""
+def change_of_velocities(robot: Description, made: Sequence[dynamics.Joint], q: Array, v: Array) -> Change:
+    """T and b of the table, for DART's joints of a robot."""
     blocks, bias = [], np.zeros(robot.nv)
-    for joint in (body.joint for body in robot.bodies):
+    for joint, mine in zip((body.joint for body in robot.bodies), made, strict=True):
         if joint.type == "euler_zyx":
             blocks.append((joint.v, MIRROR))
         if joint.type == "free":
-            r, zero = joint.rotation @ rotation(q[joint.q][3:]), np.zeros((3, 3))
+            r, zero = mine.getTransformFromParentBodyNode().rotation() @ rotation(q[joint.q][3:]), np.zeros((3, 3))
             linear, angular = v[joint.v][:3], v[joint.v][3:]
             blocks.append((joint.v, np.block([[zero, r], [r, zero]])))
             bias[joint.v] = np.append(np.zeros(3), r @ np.cross(angular, linear))
@@ -154,7 +156,7 @@ class DartRobot:
 
     def change(self, ask: Question) -> Change:
         """T and b."""
-        return change_of_velocities(self.robot, ask.q, ask.v)
+        return change_of_velocities(self.robot, self.joints, ask.q, ask.v)
 
     def _update(self, ask: Question) -> Change:
         """Sets q and v."""

@@ -18,7 +18,7 @@ from dartpy import common, dynamics, utils
 from dartpy.math import Isometry3
 
 from protocol import Array, Description, Header, Reading, Unsupported
-from reading import HeldJoint, Link, Place, describe, elements, mentioned, note, overheard
+from reading import HeldJoint, Link, Place, describe, elements, errors, mentioned, note, overheard
 
 # DART's name of a joint's type -> ours
 TYPES = {
@@ -49,7 +49,8 @@ def read(path: Path, form: str, base: str, make: Callable[[Description, dynamics
         if skeleton is not None:
             notes.append(note("geometry_dropped", None, "DART reads the file without its visual and collision elements only"))
     if skeleton is None:
-        raise ValueError(f"DART does not read {path.name}: {notes[-1]['text'] if notes else 'it does not say why'}")
+        said = errors(notes) or (notes[-1]["text"] if notes else "it does not say why")
+        raise ValueError(f"DART does not read {path.name}: {said}")
     nodes = skeleton.getBodyNodes()
     description = describe(skeleton.getName() or path.stem, skeleton.getGravity(), _links(nodes))
     description["frames"] = [frame for frame in description["frames"] if "/" not in frame["name"]]

@@ -209,14 +209,18 @@ def mentioned(path: Path) -> list[Header]:
 @contextmanager
 def overheard(path: Path, notes: list[Header]) -> Iterator[None]:
     """Adds what an engine prints meanwhile to the notes as `warning`, one for each line that begins a message; the standard error has it
-    as well. Of the file's path only the name is told.
+    as well. Of the file's path only the name is told. A failure meanwhile is told with the errors that the engine printed: libraries that
+    refuse a file print why, and the exception says only that they did.
     """
     kept = [(number, os.dup(number)) for number in (1, 2)]
+    failure: Exception | None = None
     with tempfile.TemporaryFile() as words:
         try:
             for number, _ in kept:
                 os.dup2(words.fileno(), number)
             yield
+        except Exception as reason:
+            failure = reason
         finally:
             sys.stderr.flush()
             for number, copy in kept:
@@ -232,3 +236,12 @@ def overheard(path: Path, notes: list[Header]) -> Iterator[None]:
                 elif line.strip():
                     messages.append(line)
             notes.extend(note("warning", None, message) for message in dict.fromkeys(messages))
+    if failure is not None:
+        said = errors(notes)
+        raise ValueError(f"{failure} It prints: {said}") if said else failure
+
+
+def errors(notes: Sequence[Header]) -> str:
+    """What an engine printed as errors, without the places in its own sources."""
+    texts = [n["text"] for n in notes if n["cause"] == "warning" and re.match(r"\S*error\b", n["text"], re.IGNORECASE)]
+    return "; ".join(re.sub(r"\S*error:?\s*|\s*at line \d+ in \S+", "", text, flags=re.IGNORECASE).strip() for text in texts)

@@ -8,6 +8,7 @@ description that it told: the description says what the engine computes with.
 
 from __future__ import annotations
 
+import re
 import sys
 import tempfile
 from dataclasses import dataclass
@@ -65,6 +66,9 @@ WORLD = f'<robot name="world"><link name="world"/>{link("arm")}{joint("hinge", "
 PLANE = f'<robot name="plane"><link name="stand"/>{link("sled")}{joint("skate", "planar", "stand", "sled", axis="0 0 1")}</robot>'
 STEEP = PLANE.replace('<axis xyz="0 0 1"/>', '<axis xyz="1 0 0"/>')
 FLOATING = f'<robot name="float"><link name="stand"/>{link("bird")}{joint("wing", "floating", "stand", "bird")}</robot>'
+SLED = PLANE.replace('<axis xyz="0 0 1"/>', '<axis xyz="0.6 0 0.8"/>').replace(
+    "</robot>", f"{link('bird')}{joint('wing', 'floating', 'sled', 'bird')}</robot>"
+)
 MESH = WORLD.replace("</link>", '<collision><geometry><mesh filename="package://nowhere/m.stl"/></geometry></collision></link>', 1)
 
 MJCF = """<mujoco model="toy"><compiler angle="radian"/><option gravity="0 1 -5"/>
@@ -255,6 +259,23 @@ def test_bases(readers: Readers, engine: str) -> None:
     same(f"{engine}: where its coordinates count from", bird["placement"]["translation"], zero)
 
 
+def test_floating_below(readers: Readers, engine: str) -> None:
+    """A floating joint below a planar one whose plane is not z: DART's velocities are in its own body's axes, not in the description's."""
+    if engine != "mujoco":  # which refuses a floating joint that does not hang on the world
+        true(f"{engine}: a bird on a sled", readers.read(engine, "sled.urdf", SLED).names() == ["sled", "bird"])
+
+
+def test_limitless(readers: Readers, engine: str) -> None:
+    """A revolute joint without limits: who refuses it says why, and which joint."""
+    path = readers.file("limitless.urdf", re.sub("<limit[^>]*>", "", WORLD.replace("continuous", "revolute")))
+    answer, _ = readers.oracles[engine].ask({"op": "read", "file": str(path), "format": "urdf", "base": "fixed"})
+    refuses = engine in ("pinocchio", "dart")
+    true(f"{engine}: a revolute joint without limits", answer["status"] == ("error" if refuses else "ok"))
+    if refuses:
+        told = "Joint [hinge] is of type REVOLUTE but it does not specify limits" in answer["reason"]
+        true(f"{engine}: why it refuses, without a path of its own sources", told and ".cpp" not in answer["reason"])
+
+
 def test_three(readers: Readers, engine: str) -> None:
     """Three joints in a body, and a hinge with a `ref`, by which Pinocchio shifts the limits."""
     read = readers.read(engine, "three.xml", THREE)
@@ -377,9 +398,10 @@ def main() -> int:
     """Runs all tests; an answer that should have been ok and is not ends them, which is a failure."""
     with tempfile.TemporaryDirectory() as folder:
         readers = Readers(Path(folder))
-        every = (test_arm, test_edits, test_bases, test_mjcf, test_three, test_warnings, test_include, test_refusals)
+        common = (test_arm, test_floating_below, test_limitless, test_refusals)
+        every = (*common, test_edits, test_bases, test_mjcf, test_three, test_warnings, test_include)
         for engine in ENGINES:
-            for test in (test_arm, test_refusals) if engine == "dart" else every:  # what else DART does to files: test_oracles.py
+            for test in common if engine == "dart" else every:  # what else DART does to files: test_oracles.py
                 try:
                     test(readers, engine)
                 except RuntimeError as reason:
