@@ -44,6 +44,7 @@ pub fn compare(root: &Root, args: &CompareArgs) -> Result<(), Fail> {
     let (folder, id) = run::folder(root, args.out.as_deref(), false, &loaded.name, started)?;
     let mut info = run::describe(root, true, &loaded, &subjects)?;
     info.run = id;
+    run::tell_notes(&info);
     info.started = humantime::format_rfc3339_seconds(started).to_string();
     info.seconds.insert("setup".into(), start.elapsed().as_secs_f64());
     let context = Context { problems: &loaded.problems, subjects: &subjects.subjects, gates: &gates, seed: SEED };
@@ -90,19 +91,22 @@ fn hashes(files: &[RobotFile]) -> String {
 
 /// The reference reading of a file, at its states.
 fn problem(file: RobotFile, subjects: &[Box<dyn Subject>]) -> Result<Problem, Fail> {
-    let (description, keyframes) = match file.format {
-        FileFormat::Urdf => (problems::read_urdf(&file)?, Vec::new()),
+    let (description, warnings, keyframes) = match file.format {
+        FileFormat::Urdf => {
+            let (description, warnings) = problems::read_urdf(&file)?;
+            (description, warnings, Vec::new())
+        }
         FileFormat::Mjcf => {
             let compiler = subjects.iter().find(|subject| subject.identity().name == "mujoco");
             let message =
                 || format!("{}: MuJoCo's compiler is the reference of MJCF files; do not leave it out of --engines", file.path.display());
             let reading = problems::read_mjcf(&file, compiler.ok_or_else(|| Fail::input(message()))?.as_ref())?;
-            (reading.description, reading.keyframes)
+            (reading.description, Vec::new(), reading.keyframes)
         }
     };
     let malformed = |error: &dyn std::error::Error| Fail::input(format!("{}: {error}", file.path.display()));
     let problem = Problem::new(&description, "file", ModelOrigin::Robot, STATES, SEED).map_err(|error| malformed(&error))?;
-    let problem = problem.with_keyframes(&keyframes, SEED).map_err(|error| malformed(&error))?;
+    let problem = problem.with_warnings(warnings).with_keyframes(&keyframes, SEED).map_err(|error| malformed(&error))?;
     Ok(problem.from_file(file))
 }
 

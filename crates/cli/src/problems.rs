@@ -8,7 +8,7 @@ use engines::{Limits, Oracle};
 use formats::urdf::{Base, Note, Options};
 use harness::{FileBase, FileFormat, Problem, ProblemEntry, Reading, Refusal, RobotFile, Subject, Suite};
 use model::generate::Family;
-use model::{Description, StateBatch};
+use model::{Description, StateBatch, Warning};
 use std::path::{Path, PathBuf};
 
 /// A suite with its file's hash and its robots.
@@ -29,7 +29,7 @@ pub fn load(root: &Root, suite: &str, live: bool, seed: Option<u64>) -> Result<L
     let mut problems: Vec<Problem> = Vec::with_capacity(parsed.problem.len());
     for entry in &parsed.problem {
         for (base, named) in entry.bases() {
-            let Described { description, origin, file, keyframes } = files.describe(entry, base)?;
+            let Described { description, warnings, origin, file, keyframes } = files.describe(entry, base)?;
             let bad = |error: &dyn std::error::Error| Fail::input(format!("{}: robot '{}': {error}", path.display(), description.name));
             let states = entry.states.unwrap_or(states);
             let mut problem = Problem::new(&description, &entry.family, origin, states, parsed.seed).map_err(|error| bad(&error))?;
@@ -38,7 +38,7 @@ pub fn load(root: &Root, suite: &str, live: bool, seed: Option<u64>) -> Result<L
                 let drawn = StateBatch::narrow(&problem.model, states, parsed.seed, reach, speed);
                 problem = problem.at(drawn);
             }
-            problem = problem.with_keyframes(&keyframes, parsed.seed).map_err(|error| bad(&error))?;
+            problem = problem.with_warnings(warnings).with_keyframes(&keyframes, parsed.seed).map_err(|error| bad(&error))?;
             if let Some(file) = file {
                 problem = problem.from_file(file);
             }
@@ -58,6 +58,8 @@ pub fn load(root: &Root, suite: &str, live: bool, seed: Option<u64>) -> Result<L
 /// A robot and where it came from.
 struct Described {
     description: Description,
+    /// What its reader normalised.
+    warnings: Vec<Warning>,
     origin: ModelOrigin,
     file: Option<RobotFile>,
     keyframes: Vec<Vec<f64>>,
@@ -65,7 +67,7 @@ struct Described {
 
 impl Described {
     fn without_file(description: Description, origin: ModelOrigin) -> Self {
-        Self { description, origin, file: None, keyframes: Vec::new() }
+        Self { description, warnings: Vec::new(), origin, file: None, keyframes: Vec::new() }
     }
 }
 
@@ -102,14 +104,17 @@ impl Files<'_> {
             Fail::Missing { message, advice: "run it with --live, after `featherbench oracles install`".into() }
         })?;
         let file = RobotFile::open(&folder.join(file), format, base)?;
-        let (description, keyframes) = match format {
-            FileFormat::Urdf => (read_urdf(&file)?, Vec::new()),
+        let (description, warnings, keyframes) = match format {
+            FileFormat::Urdf => {
+                let (description, warnings) = read_urdf(&file)?;
+                (description, warnings, Vec::new())
+            }
             FileFormat::Mjcf => {
                 let reading = read_mjcf(&file, self.compiler()?)?;
-                (reading.description, reading.keyframes)
+                (reading.description, Vec::new(), reading.keyframes)
             }
         };
-        Ok(Described { description, origin: ModelOrigin::Robot, file: Some(file), keyframes })
+        Ok(Described { description, warnings, origin: ModelOrigin::Robot, file: Some(file), keyframes })
     }
 
     /// MuJoCo, started when the first MJCF file is read.
@@ -129,17 +134,17 @@ pub fn compiler(root: &Root, python: &Path) -> Result<Oracle, Fail> {
 }
 
 /// The reference reading of a URDF file: ours. As engines read such files by default: mimics move on their own, and a body without mass is
-/// known by its warning.
-pub fn read_urdf(file: &RobotFile) -> Result<Description, Fail> {
+/// known by its warning. Beside the robot stands what was normalised.
+pub fn read_urdf(file: &RobotFile) -> Result<(Description, Vec<Warning>), Fail> {
     let base = match file.base {
         FileBase::Fixed => Base::Fixed,
         FileBase::Free => Base::Floating,
     };
     let options = Options { base, independent_mimics: true, allow_massless: true };
-    let (mut description, _) = import(&file.path, &options)?;
+    let (mut description, notes) = import(&file.path, &options)?;
     // One package holds several variants of one robot's name: the file's name tells them apart.
     description.name = stem(&file.path, description.name);
-    Ok(description)
+    Ok((description, notes.into_iter().filter_map(|note| note.warning).collect()))
 }
 
 /// The reference reading of an MJCF file: that of MuJoCo's compiler.

@@ -31,6 +31,7 @@ pub fn run(root: &Root, args: &RunArgs) -> Result<(), Fail> {
     let (folder, id) = folder(root, args.out.as_deref(), args.resume, &loaded.name, started)?;
     let mut info = describe(root, args.live, &loaded, &subjects)?;
     info.run = id;
+    tell_notes(&info);
     info.started = humantime::format_rfc3339_seconds(started).to_string();
     check_fingerprint(&folder, args, &info)?;
     info.seconds.insert("setup".into(), start.elapsed().as_secs_f64());
@@ -147,6 +148,13 @@ fn check_fingerprint(folder: &Path, args: &RunArgs, info: &RunInfo) -> Result<()
     Ok(::record::atomic_write(&path, text.as_bytes())?)
 }
 
+/// Tells what is unusual about the robots.
+pub fn tell_notes(info: &RunInfo) {
+    for model in &info.models {
+        model.notes.iter().for_each(|note| eprintln!("note: {}: {note}", model.name));
+    }
+}
+
 /// Everything about the run that its rows share.
 pub fn describe(root: &Root, live: bool, loaded: &Loaded, subjects: &Subjects) -> Result<RunInfo, Fail> {
     let command = std::env::args().skip(1).map(|word| if word.contains(' ') { format!("'{word}'") } else { word });
@@ -162,6 +170,7 @@ pub fn describe(root: &Root, live: bool, loaded: &Loaded, subjects: &Subjects) -
             nv: problem.states.nv as u64,
             bodies: problem.states.bodies as u64,
             depth: problem.depth as u64,
+            notes: problem.model.warnings.iter().map(ToString::to_string).collect(),
         }
     });
     let mut conventions = harness::conventions::read(&root.conventions())?;

@@ -7,7 +7,7 @@ use crate::request;
 use harness::frame::{Block, Frame};
 use harness::provenance::PROGRAM;
 use harness::{Identity, Prepared, Problem, Quantity, Reading, ReadingNote, Refusal, RobotFile, Route, Subject};
-use model::StateBatch;
+use model::{Description, StateBatch};
 use record::EngineSource;
 use serde_json::{Value, json};
 use std::collections::BTreeMap;
@@ -352,8 +352,9 @@ pub(crate) fn reading(answer: &Frame) -> Result<Reading, String> {
     let model = answer.header.get("model").ok_or("there is no model")?;
     let description = formats::neutral::parse(&model.to_string(), "the model").map_err(|error| error.to_string())?;
     let canonical = description.canonical().map_err(|error| error.to_string())?;
-    // States and answers are in the order of the bodies: one that would change here would mix them up.
-    if canonical.bodies != description.bodies {
+    // States and answers are in the order of the bodies: one that would change here would mix them up. Numbers may be normalised.
+    let order = |robot: &Description| robot.bodies.iter().map(|body| (body.name.clone(), body.parent)).collect::<Vec<_>>();
+    if order(&canonical) != order(&description) {
         let moved = description.bodies.iter().zip(&canonical.bodies).find(|(given, due)| given.name != due.name);
         let found = moved.map_or_else(
             || "the last ones are fixed to others".to_owned(),

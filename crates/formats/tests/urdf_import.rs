@@ -2,7 +2,7 @@
 
 use featherbench_formats::urdf::{self, Base, Options};
 use model::generate::{Chain, Family, Layout};
-use model::{Description, JointType, Model, Placement};
+use model::{Description, JointType, Model, Placement, Warning};
 use spatial::{Mat3, Sym3, Transform, Vec3};
 use std::fmt::Write;
 
@@ -92,11 +92,19 @@ fn joint_types_are_mapped() {
     assert_eq!(kind(&one_joint("floating", "")), JointType::Free);
     assert_eq!(kind(&one_joint("planar", r#"<axis xyz="0 0 1"/>"#)), JointType::Planar);
     let (robot, notes) = import(&one_joint("revolute", r#"<axis xyz="3 0 4"/><limit effort="1" velocity="inf"/>"#), Options::default());
-    assert_eq!(robot.bodies[0].joint.kind, JointType::Revolute { axis: [0.6000000000000001, 0.0, 0.8] });
+    assert_eq!(robot.bodies[0].joint.kind, JointType::Revolute { axis: [0.6, 0.0, 0.8] });
     assert_eq!(
         notes,
         ["line 2: the axis of joint 'j' has length 5; it is normalised", "line 2: joint 'j' gives no position limits and has none"]
     );
+    // romeo's axis: ½·(4.37114e-8)² too long
+    let text = one_joint("continuous", r#"<axis xyz="0 -1 -4.37114e-08"/>"#);
+    let (near, notes) = urdf::import(&text, "robot.urdf", &Options::default()).expect("a robot");
+    let JointType::Revolute { axis } = near.bodies[0].joint.kind else { panic!("revolute") };
+    assert_eq!(axis, [0.0, -0.999_999_999_999_999, -4.371_139_999_999_996e-8]);
+    let [note] = &notes[..] else { panic!("{notes:?}") };
+    assert!(matches!(note.warning, Some(Warning::Normalised { by, .. }) if (by - 9.5534e-16).abs() < 1e-19), "{note:?}");
+    assert!(note.text.contains("the axis of joint 'j' misses unit length by 9.55"), "{note}");
     let joint = &robot.bodies[0].joint;
     assert_eq!((joint.effort.len(), joint.velocity.len(), joint.lower.len()), (1, 0, 0));
     let (robot, _) = import(

@@ -2,7 +2,7 @@
 
 use crate::measure::Magnitudes;
 use crate::{Reading, RobotFile};
-use model::{BadState, Description, Malformed, Model, StateBatch};
+use model::{BadState, Description, Malformed, Model, StateBatch, Warning};
 use record::ModelOrigin;
 
 /// The most configurations of a file that become states: a recorded motion has thousands.
@@ -51,8 +51,8 @@ impl Problem {
     /// # Errors
     /// [`Malformed`] when the description is no robot.
     pub fn new(description: &Description, family: &str, origin: ModelOrigin, count: usize, seed: u64) -> Result<Self, Malformed> {
+        let model = Model::build(description)?;
         let description = description.canonical()?;
-        let model = Model::build(&description)?;
         let states = StateBatch::agreement(&model, count, seed);
         let hash = crate::hash::of_parts(&[format!("{:?}", (&description.bodies, description.gravity)).as_bytes(), &seed.to_le_bytes()]);
         let depth = description.depth();
@@ -97,6 +97,12 @@ impl Problem {
         let bytes: Vec<u8> = [&states.q, &states.v, &states.tau].into_iter().flatten().flat_map(|x| x.to_le_bytes()).collect();
         self.hash = crate::hash::of_parts(&[self.hash.as_bytes(), &bytes]);
         self.states = states;
+        self
+    }
+
+    /// The same robot, with what its reader normalised among the model's warnings.
+    pub fn with_warnings(mut self, warnings: impl IntoIterator<Item = Warning>) -> Self {
+        self.model.warnings.splice(0..0, warnings);
         self
     }
 

@@ -1,11 +1,17 @@
-//! The canonical form of a description: valid, fixed joints merged, bodies in depth-first order.
+//! The canonical form of a description: valid, axes and rotations normalised, fixed joints merged, bodies in depth-first order.
 
-use crate::{BodyDescription, Description, Frame, JointType, Malformed, Placement};
-use spatial::{Mat3, Sym3, Transform, Vec3};
+use crate::orthonormal::{nearest_rotation, rotation, unit};
+use crate::{BodyDescription, Description, Frame, JointDescription, JointType, Malformed, Placement};
+use spatial::{DoubleDouble, Mat3, Real, Sym3, Transform, Vec3};
 
 impl Description {
-    /// The canonical form: validated, fixed joints merged into their parents (each merged body leaving a frame), depth-first order with
-    /// siblings in their given order. Idempotent, and the identity on a description that is canonical already.
+    /// The canonical form: validated, axes and rotations of joints normalised, fixed joints merged into their parents (each merged body
+    /// leaving a frame), depth-first order with siblings in their given order. Idempotent, and the identity on a description that is
+    /// canonical already.
+    ///
+    /// A written axis stands for the unit vector along it, a written rotation for the nearest one. Both, and the products of merged
+    /// placements, are formed with 32 digits and rounded once. What that changes by more than an ulp is a
+    /// [`Warning`](crate::Warning) of the description as it was given.
     ///
     /// # Errors
     /// [`Malformed`], naming the body and field.
@@ -15,25 +21,31 @@ impl Description {
         let mut result = Self { bodies: Vec::with_capacity(order.len()), frames: Vec::new(), ..self.clone() };
 
         // For each given body: the body that it became part of, and its placement there.
-        let mut home: Vec<(Option<usize>, Transform<f64>)> = vec![(None, Transform::identity()); self.bodies.len()];
+        let mut home: Vec<(Option<usize>, Transform<DoubleDouble>)> = vec![(None, Transform::identity()); self.bodies.len()];
         for given in order {
             let body = &self.bodies[given];
             let (parent, on_parent) = body.parent.map_or((None, Transform::identity()), |parent| home[parent]);
-            let placement = on_parent.compose(&body.joint.placement.to_transform());
+            let written = rotation(body.joint.placement.rotation);
+            let exact = Transform::new(Mat3::from_array(written.exact), wide(body.joint.placement.translation));
+            // Numbers to which nothing was merged, and which are normalised, stay the same to the bit.
+            let (exact, placement) = if on_parent == Transform::identity() {
+                (exact, Placement { rotation: written.rounded, ..body.joint.placement })
+            } else {
+                let merged = merged(&on_parent, &exact);
+                (merged, narrow(&merged))
+            };
             if body.joint.kind == JointType::Fixed {
-                home[given] = (parent, placement);
-                result.frames.push(Frame { name: body.name.clone(), body: parent, placement: Placement::from_transform(&placement) });
+                home[given] = (parent, exact);
+                result.frames.push(Frame { name: body.name.clone(), body: parent, placement });
                 if let Some(parent) = parent {
-                    result.bodies[parent].absorb(body, &placement);
+                    result.bodies[parent].absorb(body, &placement.to_transform());
                 }
             } else {
                 home[given] = (Some(result.bodies.len()), Transform::identity());
                 let mut moved = body.clone();
                 moved.parent = parent;
-                // Untouched unless something was merged above, so that a canonical description stays the same to the bit.
-                if on_parent != Transform::identity() {
-                    moved.joint.placement = Placement::from_transform(&placement);
-                }
+                moved.joint.normalise();
+                moved.joint.placement = placement;
                 result.bodies.push(moved);
             }
         }
@@ -42,7 +54,9 @@ impl Description {
             let placement = if on_body == Transform::identity() {
                 frame.placement
             } else {
-                Placement::from_transform(&on_body.compose(&frame.placement.to_transform()))
+                let given =
+                    Transform::new(Mat3::from_array(frame.placement.rotation.map(Real::from_f64)), wide(frame.placement.translation));
+                narrow(&on_body.compose(&given))
             };
             result.frames.push(Frame { name: frame.name.clone(), body, placement });
         }
@@ -68,6 +82,31 @@ impl Description {
             stack.append(&mut children[body]);
         }
         order
+    }
+}
+
+fn wide(v: [f64; 3]) -> Vec3<DoubleDouble> {
+    Vec3::from_array(v.map(Real::from_f64))
+}
+
+/// The nearest doubles.
+fn narrow(x: &Transform<DoubleDouble>) -> Placement {
+    Placement::from_transform(&x.lift())
+}
+
+/// A placement on a body that was merged. Long products of rotations leave 32 digits too: they are normalised again.
+fn merged(on_parent: &Transform<DoubleDouble>, placement: &Transform<DoubleDouble>) -> Transform<DoubleDouble> {
+    let product = on_parent.compose(placement);
+    Transform::new(nearest_rotation(product.rotation), product.translation)
+}
+
+impl JointDescription {
+    /// Makes a unit vector of the axis and a rotation of the placement's matrix, each rounded once.
+    pub(crate) fn normalise(&mut self) {
+        if let Some(axis) = self.kind.axis_mut() {
+            *axis = unit(*axis).rounded;
+        }
+        self.placement.rotation = rotation(self.placement.rotation).rounded;
     }
 }
 

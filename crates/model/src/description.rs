@@ -61,7 +61,7 @@ pub struct JointDescription {
     pub effort: Vec<f64>,
 }
 
-/// The kind of a described joint. Axes are unit vectors in the joint frame.
+/// The kind of a described joint. Axes are unit vectors in the joint frame: a written axis stands for the unit vector along it.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
 pub enum JointType {
     /// No motion: the body is merged into its parent.
@@ -108,7 +108,7 @@ pub enum JointType {
 /// A constant rigid placement.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Placement {
-    /// Child axes to parent axes, row-major.
+    /// Child axes to parent axes, row-major: a written matrix stands for the nearest rotation.
     pub rotation: [f64; 9],
     /// The child's origin in the parent's frame, m.
     pub translation: [f64; 3],
@@ -181,6 +181,14 @@ impl JointType {
 
     /// The axis, for the kinds that have one.
     pub fn axis(self) -> Option<[f64; 3]> {
+        match self {
+            Self::Revolute { axis } | Self::Prismatic { axis } | Self::Helical { axis, .. } | Self::Cylindrical { axis } => Some(axis),
+            _ => None,
+        }
+    }
+
+    /// The axis, to be changed.
+    pub(crate) fn axis_mut(&mut self) -> Option<&mut [f64; 3]> {
         match self {
             Self::Revolute { axis } | Self::Prismatic { axis } | Self::Helical { axis, .. } | Self::Cylindrical { axis } => Some(axis),
             _ => None,

@@ -10,6 +10,7 @@ mod description;
 pub mod generate;
 mod joint;
 mod model;
+mod orthonormal;
 mod random;
 mod state;
 mod topology;

@@ -1,7 +1,9 @@
 //! The compiled model: a topology with its parameters.
 
+use crate::orthonormal::{rotation, unit};
 use crate::{Description, JointKind, JointType, Malformed, Topology, Warning};
 use spatial::{Lift, Mat3, Motion, Real, RigidBodyInertia, Sym3, Transform, Vec3};
+use std::array::from_fn;
 
 /// A robot as the kernels see it: primitive joints in depth-first order, parameters over the scalar `P`.
 #[derive(Clone, Debug, PartialEq)]
@@ -31,7 +33,10 @@ pub struct Model<P> {
 }
 
 impl<P: Real> Model<P> {
-    /// Compiles a description; inertias are formed in the arithmetic of `P`.
+    /// Compiles a description; inertias, axes and rotations are formed in the arithmetic of `P`.
+    ///
+    /// Canonical axes and rotations are rounded to doubles. A scalar that holds more digits gets the unit vectors and rotations that these
+    /// stand for; `f64` takes them as they are.
     ///
     /// The description need not be canonical: fixed joints are merged and the bodies put in depth-first order.
     ///
@@ -51,14 +56,15 @@ impl<P: Real> Model<P> {
             friction: Vec::new(),
             limits: Vec::new(),
             described: Vec::new(),
-            warnings: canonical.warnings(),
+            warnings: description.normalised().chain(canonical.warnings()).collect(),
         };
         for body in &canonical.bodies {
             let joint = &body.joint;
             let primitives = compile(joint.kind);
             let mut parent = body.parent.map(|parent| model.described[parent]);
-            let mut placement =
-                Transform::new(Mat3::from_array(joint.placement.rotation.map(P::from_f64)), vec3(joint.placement.translation));
+            let turned = rotation(joint.placement.rotation);
+            let turned = from_fn(|k| P::from_exact(turned.rounded[k], turned.exact[k]));
+            let mut placement = Transform::new(Mat3::from_array(turned), vec3(joint.placement.translation));
             for (k, &(kind, subspace)) in primitives.iter().enumerate() {
                 let last = k + 1 == primitives.len();
                 tree.push((parent, kind));
@@ -126,15 +132,19 @@ fn per_dof(values: &[f64], count: usize, absent: f64) -> impl Iterator<Item = f6
 
 /// The primitive joints of a described joint, from the parent outwards, each with its motion subspace.
 fn compile<P: Real>(kind: JointType) -> Vec<(JointKind, Motion<P>)> {
-    let turn = |axis: [f64; 3]| (JointKind::Revolute, Motion::new(vec3(axis), Vec3::zero()));
-    let slide = |axis: [f64; 3]| (JointKind::Prismatic, Motion::new(Vec3::zero(), vec3(axis)));
+    let direction = |axis: [f64; 3]| {
+        let axis = unit(axis);
+        Vec3::from_array(from_fn(|k| P::from_exact(axis.rounded[k], axis.exact[k])))
+    };
+    let turn = |axis: [f64; 3]| (JointKind::Revolute, Motion::new(direction(axis), Vec3::zero()));
+    let slide = |axis: [f64; 3]| (JointKind::Prismatic, Motion::new(Vec3::zero(), direction(axis)));
     let (x, y, z) = ([1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]);
     match kind {
         JointType::Fixed => Vec::new(),
         JointType::Revolute { axis } => vec![turn(axis)],
         JointType::Prismatic { axis } => vec![slide(axis)],
         JointType::Helical { axis, pitch } => {
-            let axis = vec3::<P>(axis);
+            let axis = direction(axis);
             vec![(JointKind::Helical, Motion::new(axis, axis * P::from_f64(pitch)))]
         }
         JointType::Spherical => vec![(JointKind::Spherical, Motion::zero())],

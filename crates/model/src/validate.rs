@@ -1,5 +1,6 @@
 //! The two levels of validation: malformed is an error, unusual is a warning that travels with the model.
 
+use crate::orthonormal::{rotation, unit};
 use crate::{BodyDescription, Description, JointType};
 use thiserror::Error;
 
@@ -167,6 +168,18 @@ pub enum Warning {
         /// Trace of the inertia.
         scale: f64,
     },
+    /// An axis or a rotation is normalised by more than an ulp.
+    #[error("body '{body}': the {field} of joint '{joint}' misses {} by {by:e}; it is normalised", if *.field == "axis" { "unit length" } else { "orthonormality" })]
+    Normalised {
+        /// The body's name.
+        body: String,
+        /// The joint's name.
+        joint: String,
+        /// `axis` or `rotation`.
+        field: &'static str,
+        /// | |u| − 1 | of an axis, half the largest entry of |RRᵀ − 1| of a rotation.
+        by: f64,
+    },
 }
 
 /// A rotation written with 17 digits is orthonormal to about 1e-15; one typed with 8 digits is not meant to be refused, one with 5 is.
@@ -220,9 +233,21 @@ impl Description {
         Ok(())
     }
 
-    /// What is unusual about the moving bodies.
+    /// What is unusual: axes and rotations that are normalised by more than an ulp, and moving bodies without mass or with an inertia that no
+    /// mass distribution has.
     pub fn warnings(&self) -> Vec<Warning> {
-        self.bodies.iter().filter(|body| body.joint.kind != JointType::Fixed).filter_map(BodyDescription::warning).collect()
+        let moving = self.bodies.iter().filter(|body| body.joint.kind != JointType::Fixed);
+        self.normalised().chain(moving.filter_map(BodyDescription::warning)).collect()
+    }
+
+    /// The axes and rotations that the canonical form normalises by more than an ulp. Of a canonical description there are none.
+    pub fn normalised(&self) -> impl Iterator<Item = Warning> + '_ {
+        self.bodies.iter().flat_map(|body| {
+            let axis = body.joint.kind.axis().map(|axis| ("axis", unit(axis).missed));
+            let turned = ("rotation", rotation(body.joint.placement.rotation).missed);
+            let missed = axis.into_iter().chain([turned]).filter(|&(_, by)| by > f64::EPSILON);
+            missed.map(|(field, by)| Warning::Normalised { body: body.name.clone(), joint: body.joint.name.clone(), field, by })
+        })
     }
 }
 

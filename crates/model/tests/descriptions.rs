@@ -190,19 +190,26 @@ fn merging_fixed_joints_conserves_the_inertia() {
     assert!(close(&found.first_moment.to_array(), &expected.first_moment.to_array()), "{found:?} {expected:?}");
     assert!(close(&found.rotational.to_array(), &expected.rotational.to_array()), "{found:?} {expected:?}");
 
+    // Products of doubles differ from those with 32 digits by a few ulps of numbers below one.
+    let same = |found: Placement, due: Transform<f64>| {
+        assert!(
+            close(&found.rotation, &due.rotation.to_array()) && close(&found.translation, &due.translation.to_array()),
+            "{found:?} {due:?}"
+        );
+    };
+
     // The base became part of the world, and its placement part of the arm's.
     assert_eq!(canonical.bodies[0].parent, None);
-    assert_eq!(canonical.bodies[0].joint.placement, Placement::from_transform(&at(0).compose(&at(1))));
+    same(canonical.bodies[0].joint.placement, at(0).compose(&at(1)));
     assert_eq!(canonical.bodies[1].parent, Some(0));
-    assert_eq!(canonical.bodies[1].joint.placement, Placement::from_transform(&at(4).compose(&at(5))));
+    same(canonical.bodies[1].joint.placement, at(4).compose(&at(5)));
 
     // Each merged body leaves a frame; a frame on a merged body moves with it.
     let frame = |name: &str| canonical.frames.iter().find(|frame| frame.name == name).unwrap_or_else(|| panic!("no frame {name}"));
     assert_eq!((frame("base").body, frame("base").placement), (None, Placement::from_transform(&at(0))));
-    assert_eq!((frame("camera").body, frame("camera").placement), (Some(0), Placement::from_transform(&camera)));
-    assert_eq!(frame("lens").body, Some(0));
-    let lens = Placement::from_transform(&camera.compose(&skew(1.0).to_transform()));
-    assert_eq!(frame("lens").placement, lens);
+    assert_eq!((frame("camera").body, frame("lens").body), (Some(0), Some(0)));
+    same(frame("camera").placement, camera);
+    same(frame("lens").placement, camera.compose(&skew(1.0).to_transform()));
     assert_eq!(canonical.canonical().as_ref(), Ok(&canonical));
 }
 

@@ -153,6 +153,9 @@ pub struct ModelInfo {
     pub bodies: u64,
     /// Joints on the longest path from base to leaf.
     pub depth: u64,
+    /// What is unusual about it: numbers that were normalised, bodies without mass.
+    #[serde(default)]
+    pub notes: Vec<String>,
 }
 
 /// A convention of an engine beside ours.

@@ -258,6 +258,7 @@ fn run_info() -> RunInfo {
             nv: 1,
             bodies: 1,
             depth: 1,
+            notes: vec!["the axis is normalised".into()],
         }],
         seconds: BTreeMap::from([("accuracy".into(), 0.1)]),
         expected: vec![Expectation { what: "id".into(), expected: 2, found: 1, verdict: Verdict::Fail, reason: "one is missing".into() }],

@@ -129,5 +129,9 @@ fn models(run: &RunInfo, overview: &Overview) -> Markup {
                 }
             }
         }
+        @if run.models.iter().any(|model| !model.notes.is_empty()) {
+            h3 { "Notes on models" }
+            ul #model-notes { @for model in &run.models { @for note in &model.notes { li { b { (model.name) } ": " (note) } } } }
+        }
     }
 }

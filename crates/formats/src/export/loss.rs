@@ -42,11 +42,6 @@ pub enum Reason {
     OneSided,
     /// URDF asks for all four limits of a joint, or on a revolute joint for speed and effort, or for none.
     IncompleteLimits,
-    /// The format's readers normalise axes, and this one misses unit length.
-    Axis {
-        /// By how much.
-        error: f64,
-    },
     /// The format's readers give rotations orthonormal to rounding, and this one misses that.
     Rotation {
         /// Largest difference of an entry.
@@ -85,7 +80,6 @@ impl Reason {
             | Self::IncompleteLimits
             | Self::EmptyRange { .. }
             | Self::FreePlacement
-            | Self::Axis { .. }
             | Self::Rotation { .. } => true,
             Self::JointType { .. }
             | Self::Massless
@@ -113,7 +107,6 @@ impl fmt::Display for Reason {
                     "limits in part: the format asks for lower, upper, velocity and effort (a revolute joint may have none, or the last two)"
                 )
             }
-            Self::Axis { error } => write!(f, "an axis that misses unit length by {error:e}; readers would normalise it, so do that first"),
             Self::Rotation { error } => {
                 write!(f, "a rotation that misses orthonormality by about {error:e}; the format has exact ones only, so correct it first")
             }

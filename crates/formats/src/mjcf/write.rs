@@ -7,7 +7,7 @@ use crate::export::order::{Item, carried};
 use crate::export::xml::{Attributes, Xml};
 use crate::export::{self, ExportError, Loss, OnLoss, Reason};
 use model::{BodyDescription, Description, Frame, JointType, Placement, Warning};
-use spatial::{Sym3, Vec3};
+use spatial::Sym3;
 use std::collections::HashSet;
 use std::path::Path;
 
@@ -137,8 +137,6 @@ fn joint(xml: &mut Xml, part: &Part) {
     });
 }
 
-/// What normalising an axis leaves: MuJoCo does not touch one that is as near to unit length.
-const AXIS_ROUNDING: f64 = 4.0 * f64::EPSILON;
 /// MuJoCo moves no body with a mass or a principal moment below this, kg and kg·m².
 const LEAST: f64 = 1e-15;
 
@@ -189,14 +187,8 @@ fn joint_losses(body: &BodyDescription) -> Vec<Reason> {
     if joint.kind == JointType::Free {
         reasons.extend(body.parent.is_some().then_some(Reason::FreeBelow));
         reasons.extend((joint.placement != Placement::default()).then_some(Reason::FreePlacement));
-    } else {
-        reasons.extend(rotation_loss(&joint.placement));
     }
     reasons.extend(parts(joint).err());
-    if let Some(axis) = joint.kind.axis() {
-        let error = (Vec3::from_array(axis).norm() - 1.0).abs();
-        reasons.extend((error > AXIS_ROUNDING).then_some(Reason::Axis { error }));
-    }
     reasons.extend((!joint.velocity.is_empty()).then_some(Reason::Property { field: "velocity" }));
     reasons.extend((joint.lower.is_empty() != joint.upper.is_empty()).then_some(Reason::OneSided));
     let is_one = |part: &Part| part.dofs.len() == 1;

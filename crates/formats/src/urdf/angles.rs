@@ -1,10 +1,11 @@
 //! Roll, pitch and yaw: what a URDF file says of a rotation, and the way back.
 
+use spatial::{DoubleDouble, Real};
 use std::f64::consts::TAU;
 
-/// Rz(yaw)·Ry(pitch)·Rx(roll), row-major.
-pub(super) fn rotation([roll, pitch, yaw]: [f64; 3]) -> [f64; 9] {
-    let ((sr, cr), (sp, cp), (sy, cy)) = (roll.sin_cos(), pitch.sin_cos(), yaw.sin_cos());
+/// Rz(yaw)·Ry(pitch)·Rx(roll), row-major: the doubles nearest to that rotation, which needs no normalising then.
+pub(super) fn rotation(angles: [f64; 3]) -> [f64; 9] {
+    let [(sr, cr), (sp, cp), (sy, cy)] = angles.map(sin_cos);
     let entries = [
         cy * cp,
         cy * sp * sr - sy * cr,
@@ -17,7 +18,12 @@ pub(super) fn rotation([roll, pitch, yaw]: [f64; 3]) -> [f64; 9] {
         cp * cr,
     ];
     // No negative zeros: the rotation of zero angles is the identity to the bit.
-    entries.map(|entry| entry + 0.0)
+    entries.map(|entry| entry.to_f64() + 0.0)
+}
+
+/// Sine and cosine with 32 digits.
+fn sin_cos(angle: f64) -> (DoubleDouble, DoubleDouble) {
+    DoubleDouble::from_f64(angle).sin_cos()
 }
 
 /// Angles of a rotation: the very ones wherever a triple gives these nine numbers, as it does for a rotation that was read from angles;
@@ -59,9 +65,12 @@ const ULPS: usize = 5;
 /// The first triple near these angles, or a turn away from them, that gives the rotation to the bit. Each angle is held against the entries
 /// that it makes alone before triples are tried.
 fn exact(r: &[f64; 9], [roll, pitch, yaw]: [f64; 3]) -> Option<[f64; 3]> {
-    neighbours(pitch).filter(|pitch| 0.0 - pitch.sin() == r[6]).find_map(|pitch| {
-        let cp = pitch.cos();
-        let made = |angle: &f64, sin: f64, cos: f64| angle.sin() * cp == sin && angle.cos() * cp == cos;
+    neighbours(pitch).filter(|pitch| 0.0 - sin_cos(*pitch).0.to_f64() == r[6]).find_map(|pitch| {
+        let cp = sin_cos(pitch).1;
+        let made = |angle: &f64, sin: f64, cos: f64| {
+            let (s, c) = sin_cos(*angle);
+            (s * cp).to_f64() == sin && (c * cp).to_f64() == cos
+        };
         let rolls = neighbours(roll).filter(|roll| made(roll, r[7], r[8]));
         rolls.into_iter().find_map(|roll| {
             let yaws = neighbours(yaw).filter(|yaw| made(yaw, r[3], r[0]));

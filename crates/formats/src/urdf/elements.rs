@@ -6,7 +6,7 @@ use super::error::{At, NoteAt, UrdfProblem};
 use super::xml::Element;
 use model::Placement;
 use roxmltree::{Document, Node};
-use spatial::{Mat3, Sym3, Vec3};
+use spatial::{DoubleDouble, Mat3, Real, Sym3, Vec3};
 use std::collections::{BTreeMap, HashSet};
 
 /// A file's content.
@@ -51,10 +51,9 @@ pub(super) enum Kind {
     Planar([f64; 3]),
 }
 
-/// An axis that misses unit length by more was not meant to be normal; less is rounding.
+/// An axis that misses unit length by more was not meant to be normal. One that misses it by less is a description's, whose canonical form
+/// normalises it and tells.
 const AXIS_TOLERANCE: f64 = 1e-6;
-/// What normalising leaves: three rounded components, and a length rounded as often when it is asked for again.
-const AXIS_ROUNDING: f64 = 4.0 * f64::EPSILON;
 
 impl Robot {
     pub fn read(document: &Document, options: &Options, notes: &mut Vec<NoteAt>) -> Result<Self, At> {
@@ -138,7 +137,7 @@ fn note_what_is_not_read(root: Node, notes: &mut Vec<NoteAt>) {
     }
     for (what, (count, offset)) in ignored {
         let times = if count == 1 { String::new() } else { format!(" ({count} times)") };
-        notes.push(NoteAt { offset, text: format!("{what} is not read{times}") });
+        notes.push(NoteAt { offset, text: format!("{what} is not read{times}"), warning: None });
     }
 }
 
@@ -179,7 +178,11 @@ impl Joint {
             if !options.independent_mimics {
                 return Err(mimic.problem(UrdfProblem::Mimic { joint: name.to_owned(), of: of.to_owned() }));
             }
-            notes.push(NoteAt { offset: mimic.offset(), text: format!("joint '{name}' mimics '{of}' and is read as a joint of its own") });
+            notes.push(NoteAt {
+                offset: mimic.offset(),
+                text: format!("joint '{name}' mimics '{of}' and is read as a joint of its own"),
+                warning: None,
+            });
         }
         let mut axis = || axis(element, name, notes);
         let kind_read = match kind {
@@ -214,7 +217,7 @@ impl Joint {
         if !matches!(self.kind, Kind::Revolute(_) | Kind::Prismatic(_)) {
             if let Some(found) = limit.or(dynamics).filter(|_| !matches!(self.kind, Kind::Fixed)) {
                 let text = format!("limits and friction of joint '{}' are not read: it has more than one degree of freedom", self.name);
-                notes.push(NoteAt { offset: found.offset(), text });
+                notes.push(NoteAt { offset: found.offset(), text, warning: None });
             }
             return Ok(());
         }
@@ -227,12 +230,20 @@ impl Joint {
                 self.lower.extend(side("lower", lower));
                 self.upper.extend(side("upper", upper));
             } else if !continuous {
-                notes.push(NoteAt { offset: limit.offset(), text: format!("joint '{}' gives no position limits and has none", self.name) });
+                notes.push(NoteAt {
+                    offset: limit.offset(),
+                    text: format!("joint '{}' gives no position limits and has none", self.name),
+                    warning: None,
+                });
             }
             self.velocity.extend(limit.limit("velocity")?);
             self.effort.extend(limit.limit("effort")?);
         } else if !continuous {
-            notes.push(NoteAt { offset: self.offset, text: format!("joint '{}' has no <limit> and is unlimited", self.name) });
+            notes.push(NoteAt {
+                offset: self.offset,
+                text: format!("joint '{}' has no <limit> and is unlimited", self.name),
+                warning: None,
+            });
         }
         if let Some(dynamics) = dynamics {
             self.damping.extend(dynamics.optional_number("damping")?);
@@ -252,23 +263,27 @@ fn axis(element: Element, joint: &str, notes: &mut Vec<NoteAt>) -> Result<[f64; 
     let Some((unit, length)) = unit(given) else {
         return Err(found.problem(UrdfProblem::ZeroAxis { joint: joint.to_owned() }));
     };
-    if (length - 1.0).abs() > AXIS_TOLERANCE {
-        notes.push(NoteAt { offset: found.offset(), text: format!("the axis of joint '{joint}' has length {length}; it is normalised") });
+    if unit != given {
+        notes.push(NoteAt {
+            offset: found.offset(),
+            text: format!("the axis of joint '{joint}' has length {length}; it is normalised"),
+            warning: None,
+        });
     }
     Ok(unit)
 }
 
-/// The direction of a vector and its length; none of a zero vector. A unit vector keeps its bits, so that an axis read from a file can be
-/// written back.
-pub(super) fn unit(given: [f64; 3]) -> Option<([f64; 3], f64)> {
+/// The direction of a vector and its length; none of a zero vector. An axis that a description may have keeps its bits.
+fn unit(given: [f64; 3]) -> Option<([f64; 3], f64)> {
     // Scaled first, so that squares neither overflow nor vanish.
     let largest = given.iter().fold(0.0_f64, |largest, x| largest.max(x.abs()));
     if largest == 0.0 {
         return None;
     }
-    let scaled = Vec3::from_array(given.map(|x| x / largest));
-    let length = largest * scaled.norm();
-    let unit = if (length - 1.0).abs() <= AXIS_ROUNDING { given } else { (scaled * (1.0 / scaled.norm())).to_array() };
+    let scaled = Vec3::from_array(given.map(|x| DoubleDouble::from_f64(x) / DoubleDouble::from_f64(largest)));
+    let norm = scaled.norm();
+    let length = largest * norm.to_f64();
+    let unit = if (length - 1.0).abs() <= AXIS_TOLERANCE { given } else { scaled.to_array().map(|x| (x / norm).to_f64()) };
     Some((unit, length))
 }
 

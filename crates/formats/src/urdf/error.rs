@@ -1,7 +1,7 @@
 //! What can be wrong with a URDF file.
 
 use crate::{Place, TextError};
-use model::Malformed;
+use model::{Malformed, Warning};
 use std::fmt;
 use thiserror::Error;
 
@@ -240,4 +240,5 @@ impl UrdfProblem {
 pub(super) struct NoteAt {
     pub offset: usize,
     pub text: String,
+    pub warning: Option<Warning>,
 }

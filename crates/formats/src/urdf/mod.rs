@@ -9,7 +9,7 @@
 //! - The root link stands on the world ([`Base::Fixed`]) or on a free joint named `root_joint` ([`Base::Floating`]).
 //!   Where a root without inertia, such as a link `world`, carries the robot on a `floating` joint, that joint is the floating base already.
 //! - Siblings keep the order in which their joints stand in the file. (Readers built on urdfdom sort them by joint name.)
-//! - `rpy` is R = Rz(yaw)·Ry(pitch)·Rx(roll); an axis is normalised, with a note when that changes more than its last digits.
+//! - `rpy` is R = Rz(yaw)·Ry(pitch)·Rx(roll); an axis is normalised, with a note when that changes more than its last digit.
 //! - Fixed joints are merged, each leaving a frame with the link's name.
 //! - A `floating` joint becomes free, a `planar` one planar in the plane normal to its axis, `continuous` revolute without position limits.
 //!   A `revolute` or `prismatic` joint whose `<limit>` gives neither `lower` nor `upper` has none (urdfdom would lock it at zero).
@@ -31,7 +31,7 @@ pub use error::{UrdfError, UrdfProblem};
 pub use write::{to_string, write};
 
 use crate::{Place, text};
-use model::Description;
+use model::{Description, Warning};
 use std::fmt;
 use std::path::Path;
 
@@ -60,12 +60,14 @@ pub struct Options {
 }
 
 /// Something that was left out or altered.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Note {
     /// The line it is about, counted from 1.
     pub line: usize,
     /// What was done.
     pub text: String,
+    /// The same as the model's warning, where it is one of a number that is normalised.
+    pub warning: Option<Warning>,
 }
 
 impl fmt::Display for Note {
@@ -107,5 +109,6 @@ pub fn import(text: &str, file: &str, options: &Options) -> Result<(Description,
         UrdfError { place: place(position), problem: Box::new(problem) }
     })?;
     let lines = text::Lines::new(text);
-    Ok((description, notes.into_iter().map(|note| Note { line: lines.line(note.offset), text: note.text }).collect()))
+    let note = |note: error::NoteAt| Note { line: lines.line(note.offset), text: note.text, warning: note.warning };
+    Ok((description, notes.into_iter().map(note).collect()))
 }

@@ -3,7 +3,7 @@
 use super::elements::{Joint, Kind, Link, Robot};
 use super::error::{At, NoteAt, UrdfProblem};
 use super::{Base, Options};
-use model::{BodyDescription, Description, JointDescription, JointType, Malformed, Placement};
+use model::{BodyDescription, Description, JointDescription, JointType, Malformed, Placement, Warning};
 use spatial::{Mat3, Transform, Vec3};
 use std::collections::HashMap;
 
@@ -20,13 +20,19 @@ pub(super) fn assemble(robot: &Robot, options: &Options, notes: &mut Vec<NoteAt>
             let (root, name) = (&robot.links[connected.root].name, &joint.name);
             let text =
                 format!("link '{root}' has no inertia and carries the robot on the floating joint '{name}': that joint is the base's");
-            notes.push(NoteAt { offset: joint.offset, text });
+            notes.push(NoteAt { offset: joint.offset, text, warning: None });
             Base::Fixed
         }
         _ => options.base,
     };
     let description = describe(robot, &connected, base);
     let canonical = description.canonical().map_err(|malformed| locate(robot, malformed))?;
+    // Rotations come from angles: their doubles miss by no more than rounding.
+    for warning in description.normalised() {
+        let Warning::Normalised { joint, field: "axis", .. } = &warning else { continue };
+        let offset = robot.joints.iter().find(|known| known.name == *joint).map_or(0, |known| known.offset);
+        notes.push(NoteAt { offset, text: warning.to_string(), warning: Some(warning) });
+    }
     check_masses(robot, &canonical, options, notes)?;
     Ok(canonical)
 }
@@ -165,6 +171,7 @@ fn plane(joint: &Joint) -> Option<Mat3<f64>> {
         return None;
     }
     let z = Vec3::from_array(axis);
+    let z = z * (1.0 / z.norm());
     // x: the coordinate axis farthest from z, made perpendicular to it.
     let [a, b, c] = axis.map(f64::abs);
     let helper = if a <= b && a <= c {
@@ -196,7 +203,7 @@ fn check_masses(robot: &Robot, canonical: &Description, options: &Options, notes
             let (link, joint) = (body.name.clone(), body.joint.name.clone());
             return Err(UrdfProblem::Massless { link, joint, has_inertial }.at(offset));
         }
-        notes.push(NoteAt { offset, text: format!("link '{}' moves and has no mass", body.name) });
+        notes.push(NoteAt { offset, text: format!("link '{}' moves and has no mass", body.name), warning: None });
     }
     Ok(())
 }

@@ -1,7 +1,6 @@
 //! Writing URDF: links and joints that [`read`](super::read) gives back.
 
 use super::angles::{angles, distance, rotation};
-use super::elements::unit;
 use super::tree::GRAVITY;
 use crate::export::names::{self, Names, ROOT};
 use crate::export::order::{Item, carried};
@@ -168,9 +167,8 @@ fn losses(robot: &Description) -> Vec<Loss> {
 }
 
 fn joint_losses(joint: &JointDescription) -> Vec<Reason> {
-    let mut reasons: Vec<Reason> = rotation_loss(&joint.placement).into_iter().collect();
     let missing = |advice| Some(Reason::JointType { kind: joint.kind.name(), advice });
-    reasons.extend(match joint.kind {
+    let joint_type = match joint.kind {
         JointType::Revolute { .. } | JointType::Prismatic { .. } | JointType::Free | JointType::Planar | JointType::Fixed => None,
         JointType::Helical { .. } => missing("keep the robot in the neutral format"),
         JointType::Spherical => missing("describe it as three revolute joints, or keep the neutral format or MJCF"),
@@ -178,11 +176,8 @@ fn joint_losses(joint: &JointDescription) -> Vec<Reason> {
         JointType::Translation => missing("describe it as three prismatic joints, or keep the neutral format or MJCF"),
         JointType::Cylindrical { .. } => missing("describe it as a revolute and a prismatic joint, or keep the neutral format or MJCF"),
         JointType::EulerZyx => missing("describe it as three revolute joints, or keep the neutral format or MJCF"),
-    });
-    if let Some(axis) = joint.kind.axis() {
-        let altered = unit(axis).filter(|(unit, _)| *unit != axis);
-        reasons.extend(altered.map(|(_, length)| Reason::Axis { error: (length - 1.0).abs() }));
-    }
+    };
+    let mut reasons = Vec::from_iter(joint_type);
     if joint.armature.iter().any(|&x| x != 0.0) {
         reasons.push(Reason::Property { field: "armature" });
     }

@@ -176,13 +176,13 @@ impl Family {
         Self::from_parameters(name.trim(), pairs.collect::<Result<Vec<_>, _>>()?)
     }
 
-    /// The robot.
+    /// The robot. Its axes and rotations are normalised as the canonical form does it.
     ///
     /// # Errors
     /// [`BadFamily::BadValue`] when a parameter is out of its range.
     pub fn generate(&self) -> Result<Description, BadFamily> {
         self.check()?;
-        Ok(match self {
+        let mut robot = match self {
             Self::Chain(chain) => chain.describe(),
             Self::Tree(tree) => tree.describe(),
             Self::BinaryTree(tree) => tree.describe(),
@@ -191,7 +191,9 @@ impl Family {
             Self::Quadruped(quadruped) => quadruped.describe(),
             Self::Hand(hand) => hand.describe(),
             Self::Joints(joints) => joints.describe(),
-        })
+        };
+        robot.bodies.iter_mut().for_each(|body| body.joint.normalise());
+        Ok(robot)
     }
 
     fn check(&self) -> Result<(), BadFamily> {

@@ -68,7 +68,18 @@ fn models() -> Vec<ModelInfo> {
         };
         let source = if origin == ModelOrigin::Robot { "example-robot-data 4.3".into() } else { format!("gen {family} --joints {joints}") };
         let hash = format!("{:064x}", joints * 7919 + name.len() as u64);
-        ModelInfo { name, hash, origin, licence: "BSD-3-Clause".into(), source, nq: joints + 1, nv: joints, bodies: joints, depth }
+        ModelInfo {
+            name,
+            hash,
+            origin,
+            licence: "BSD-3-Clause".into(),
+            source,
+            nq: joints + 1,
+            nv: joints,
+            bodies: joints,
+            depth,
+            notes: Vec::new(),
+        }
     };
     let generated = FAMILIES.iter().flat_map(|(family, stem, sizes)| {
         sizes.iter().map(move |&joints| model(format!("{stem}_{joints}"), joints, family, ModelOrigin::Generated))

@@ -45,6 +45,7 @@ pub fn models() -> Vec<ModelInfo> {
         nv: joints,
         bodies: joints,
         depth: joints,
+        notes: Vec::new(),
     };
     OWN.into_iter().map(model).collect()
 }

@@ -56,6 +56,11 @@ impl Real for Compensated {
     }
 
     #[inline(always)]
+    fn from_exact(_rounded: f64, exact: DoubleDouble) -> Self {
+        exact.into()
+    }
+
+    #[inline(always)]
     fn mul_add(self, factor: Self, addend: Self) -> Self {
         let (product, product_error) = two_product(self.value, factor.value);
         let (value, sum_error) = two_sum(product, addend.value);

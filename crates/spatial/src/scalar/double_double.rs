@@ -114,6 +114,11 @@ impl Real for DoubleDouble {
     }
 
     #[inline(always)]
+    fn from_exact(_rounded: f64, exact: DoubleDouble) -> Self {
+        exact
+    }
+
+    #[inline(always)]
     fn mul_add(self, factor: Self, addend: Self) -> Self {
         Self::sum(self.raw_product(factor), addend)
     }

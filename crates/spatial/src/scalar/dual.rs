@@ -1,6 +1,6 @@
 //! Dual numbers: a value and one directional derivative, over any scalar.
 
-use super::{Lift, Real};
+use super::{DoubleDouble, Lift, Real};
 use std::ops::{Add, AddAssign, Div, Mul, MulAssign, Neg, Sub, SubAssign};
 
 /// `value + derivative·ε` with ε² = 0: forward-mode differentiation in one direction.
@@ -32,6 +32,11 @@ impl<T: Real> Real for Dual<T> {
     #[inline(always)]
     fn from_f64(value: f64) -> Self {
         Self::constant(T::from_f64(value))
+    }
+
+    #[inline(always)]
+    fn from_exact(rounded: f64, exact: DoubleDouble) -> Self {
+        Self::constant(T::from_exact(rounded, exact))
     }
 
     #[inline(always)]

@@ -37,6 +37,12 @@ pub trait Real:
     /// The scalar nearest to `value`.
     fn from_f64(value: f64) -> Self;
 
+    /// The scalar nearest to `exact`, of which `rounded` is what an `f64` holds: a scalar that is no wider takes `rounded` as it is.
+    #[inline(always)]
+    fn from_exact(rounded: f64, _exact: DoubleDouble) -> Self {
+        Self::from_f64(rounded)
+    }
+
     /// `self · factor + addend`, rounded once where the hardware can.
     fn mul_add(self, factor: Self, addend: Self) -> Self;
 
