@@ -269,10 +269,10 @@ def _note_edits(spec: mj.MjSpec, model: mj.MjModel, notes: list[Header]) -> None
             elif model.body_mass[i]:
                 notes.append(note("mass_edited", name, f"no inertial in the file became {model.body_mass[i]} kg"))
             continue
-        if abs(model.body_mass[i] - body.mass) > EDITED * body.mass:
+        if not abs(model.body_mass[i] - body.mass) <= EDITED * body.mass:
             notes.append(note("mass_edited", name, f"{body.mass} kg in the file became {model.body_mass[i]} kg"))
         given, inertia = _given_inertia(body), _inertia(model, i)
-        if given is not None and np.abs(given - inertia).max() > EDITED * np.abs(given).max():
+        if given is not None and not np.abs(given - inertia).max() <= EDITED * np.abs(given).max():
             notes.append(note("inertia_edited", name, f"{_six(given)} in the file became {_six(inertia)} kg m²"))
         if (_inertial_frame(model, i).translation != model.body_ipos[i]).any():
             moved = f"MuJoCo computes as if the centre of mass, {tuple(model.body_ipos[i].tolist())}, were the origin, as it is within 1e-6"

@@ -3,7 +3,7 @@
     python oracles/test_oracles.py [-v]
 
 Prints every failure and 'N passed, N failed'; -v prints the largest residual of every check (`trials.py` says by what each is measured).
-FEATHERBENCH_TOL_SCALE scales all tolerances (0 shows every residual).
+FEATHERBENCH_TOL_SCALE scales all tolerances (at 0 every residual but zero fails, and is printed).
 """
 
 from __future__ import annotations
@@ -37,6 +37,7 @@ from trials import (
     ratio,
     residual,
     summary,
+    tolerance_scale,
     without_armature,
 )
 
@@ -382,6 +383,16 @@ def test_noise() -> None:
     oracle.end()
 
 
+def test_tolerance_scale() -> None:
+    """No factor turns the comparisons off."""
+    check("the factor on tolerances", float([tolerance_scale(text) for text in ("1", "0", " 1e3 ")] != [1.0, 0.0, 1000.0]), 0.0)
+    for text in ("", "nan", "-1", "inf", "1e999", "off"):
+        try:
+            check(f"a factor on tolerances of '{text}' is refused", float(np.isfinite(tolerance_scale(text))), -1.0)
+        except ValueError:
+            pass
+
+
 def main() -> int:
     """Runs all tests; an oracle that answers with an error where it must not ends them, which is a failure."""
     try:
@@ -395,6 +406,7 @@ def test_all(oracles: dict[str, Oracle]) -> None:
     """All robots, then what is refused."""
     rng = np.random.default_rng(20)
     common = ["revolute", "prismatic", "spherical", "planar", "universal", "translation", "cylindrical", "euler_zyx"]
+    test_tolerance_scale()
     test_placements(oracles)
     robots = [random_robot(rng, "fixed base", rng.permutation(common * 2).tolist()) for _ in range(3)]
     robots += [random_robot(rng, "free base", ["free", *rng.permutation(common * 2).tolist(), "free"]) for _ in range(3)]

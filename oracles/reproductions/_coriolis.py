@@ -20,5 +20,5 @@ def coriolis_deviation(joint: pin.JointModel, seed: int) -> float:
         bias = pin.nonLinearEffects(model, data, q, v).copy()
         gravity = pin.computeGeneralizedGravity(model, data, q).copy()
         matrix = pin.computeCoriolisMatrix(model, data, q, v)
-        worst = max(worst, float(np.linalg.norm(matrix @ v + gravity - bias) / np.linalg.norm(bias)))
-    return worst
+        worst = np.maximum(worst, np.linalg.norm(matrix @ v + gravity - bias) / np.linalg.norm(bias))  # max() would lose a NaN
+    return float(worst)

@@ -14,6 +14,12 @@ pub trait Stepper {
     /// [`Refusal`] when the robot or method is not supported, or the engine fails.
     fn step_acceleration(&self, problem: &Problem, method: &str, states: &StateBatch, k: usize, dt: f64) -> Result<Vec<f64>, Refusal>;
 
+    /// From which product of the step's length and the largest velocity on the engine may leave out the term that makes a step implicit, where it
+    /// does such a thing: the step is then explicit, and begins with the true acceleration, however long it is.
+    fn guard(&self) -> Option<f64> {
+        None
+    }
+
     /// A motion under gravity alone from state `k`: the energy, J, after each of `steps` steps of `dt` seconds; the potential
     /// part is zero at the world's origin.
     ///

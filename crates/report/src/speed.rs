@@ -10,6 +10,8 @@ use crate::overview::{Overview, TIMING};
 
 /// How the reasons of rows begin whose values do not count.
 pub const VOID: &str = "void: ";
+/// The quantity of the rows on the machine.
+const MACHINE: &str = "machine";
 /// Quantities whose best algorithm has an exact count of operations per revolute joint: multiply-adds, or single multiplications and
 /// additions, each of which fills the place of one.
 pub const OPERATIONS: [(&str, &str, f64); 2] = [("id", "RNEA", 142.0), ("fd", "ABA", 396.0)];
@@ -26,6 +28,9 @@ pub struct Speed<'a> {
     /// Times against the least that the machine could need.
     #[serde(skip)]
     pub limits: Vec<Limit<'a>>,
+    /// Why no time is set beside the limit: the peak was measured too low. [`Speed::limits`] is empty then.
+    #[serde(skip)]
+    pub limits_void: Option<String>,
     /// What the machine does at best.
     #[serde(skip)]
     pub machine: Option<Machine>,
@@ -116,7 +121,7 @@ impl<'a> Speed<'a> {
         let timing: Vec<&Record> = records.iter().filter(|row| row.study == TIMING).collect();
         let machine = Machine::of(&timing);
         let mut void: BTreeMap<&str, usize> = BTreeMap::new();
-        for reason in timing.iter().filter_map(|row| row.reason.strip_prefix(VOID)) {
+        for reason in timing.iter().filter(|row| row.quantity != MACHINE).filter_map(|row| row.reason.strip_prefix(VOID)) {
             let reason = reason.split_once(&format!("; {ESTIMATE}")).map_or(reason, |(reason, _)| reason);
             *void.entry(reason).or_default() += 1;
         }
@@ -124,9 +129,12 @@ impl<'a> Speed<'a> {
         let mut quantities: Vec<&str> = ratios.iter().map(|ratio| ratio.quantity).collect();
         quantities.sort_by_key(|name| labels::quantity_rank(name));
         quantities.dedup();
+        let limits = machine.map_or_else(Vec::new, |machine| limits(overview, &timing, machine));
+        let limits_void = void_peak(&timing).or_else(|| below(overview, &limits));
         Self {
             controls: self::ratios(overview, &timing, ["control", "control_low", "control_high"]),
-            limits: machine.map_or_else(Vec::new, |machine| limits(overview, &timing, machine)),
+            limits: if limits_void.is_some() { Vec::new() } else { limits },
+            limits_void,
             quantities: quantities.into_iter().map(|name| [name, labels::quantity(name)]).collect(),
             ratios,
             machine,
@@ -210,9 +218,24 @@ fn limits<'a>(overview: &Overview<'a>, timing: &[&'a Record], machine: Machine) 
     counted.filter_map(limit).collect()
 }
 
+/// Why the peak is void by its own row.
+fn void_peak(timing: &[&Record]) -> Option<String> {
+    let peak = timing.iter().find(|row| row.quantity == MACHINE && row.metric == "fma_per_ns")?;
+    peak.reason.strip_prefix(VOID).map(str::to_owned)
+}
+
+/// What is faster than its limit shows that the limit is none. (An estimate may be.)
+fn below(overview: &Overview, limits: &[Limit]) -> Option<String> {
+    let below: Vec<&Limit> = limits.iter().filter(|limit| !limit.estimate && !(limit.per_joint >= limit.least)).collect();
+    let least = below.iter().min_by(|a, b| (a.per_joint / a.least).total_cmp(&(b.per_joint / b.least)))?;
+    let (engine, model, share) = (overview.engines[least.engine], &overview.models[least.model].name, least.per_joint / least.least);
+    let first = format!("{engine} {} on {model} takes {share:.2} times its limit", least.method);
+    Some(format!("{} of {} times are below their limits ({first}): the peak was measured too low", below.len(), limits.len()))
+}
+
 impl Machine {
     fn of(timing: &[&Record]) -> Option<Self> {
-        let value = |metric: &str| timing.iter().find(|row| row.quantity == "machine" && row.metric == metric).and_then(|row| row.value);
+        let value = |metric: &str| timing.iter().find(|row| row.quantity == MACHINE && row.metric == metric).and_then(|row| row.value);
         let (vector, lane) = (value("fma_per_ns")?, value("fma_per_ns_per_lane")?);
         Some(Self { vector, lane, clock: value("clock_ns"), empty: value("empty_call_ns") })
     }

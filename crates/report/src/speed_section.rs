@@ -169,6 +169,9 @@ fn limits(overview: &Overview, speed: &Speed) -> Markup {
                 ". Other joints need other numbers, sines and cosines come on top."
                 @if let (Some(clock), Some(empty)) = (machine.clock, machine.empty) { " The clock's step is " (short(clock)) " ns, a call that computes nothing takes " (short(empty)) " ns." }
             }
+            @if let Some(reason) = &speed.limits_void {
+                p #speed-limits-void { b { "No time is set beside the limit." } " Void: " (reason) "." }
+            }
             @if !speed.limits.is_empty() {
                 details {
                     summary { "Nanoseconds per joint" }

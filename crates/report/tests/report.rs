@@ -196,6 +196,47 @@ fn ratios_have_intervals_a_mean_and_a_least() {
     assert!(!none.index.contains("<section id=\"speed\"") && !none.index.contains("href=\"#speed\""));
 }
 
+/// Nobody is faster than the machine: a time below its limit, or a peak that its own row calls void, and no time stands beside a limit.
+#[test]
+fn a_limit_that_is_none_is_void() {
+    let row = |quantity: &str, metric: &str, value: f64| {
+        let row = Record {
+            study: "timing".into(),
+            engine: "native".into(),
+            quantity: quantity.into(),
+            metric: metric.into(),
+            ..Record::default()
+        };
+        row.informed(value)
+    };
+    let time = |model: &str, ns: f64| {
+        let row = row("id", "ns_per_call", ns);
+        Record { model: model.into(), method: "rnea".into(), case: "stream".into(), bodies: Some(7), nv: Some(7), ..row }
+    };
+    let section = |peak: &str, lane: f64, ns: [f64; 2]| {
+        let machine = |metric, value| Record { reason: peak.into(), ..row("machine", metric, value) };
+        let rows = [machine("fma_per_ns", 8.0 * lane), machine("fma_per_ns_per_lane", lane), time("a", ns[0]), time("b", ns[1])];
+        Written::of(&RunInfo::default(), &rows).section("speed").to_owned()
+    };
+    let (table, void) = ("times the limit", "id=\"speed-limits-void\"");
+    // 142 operations for each of seven joints at 7.1 per nanosecond: 140 ns.
+    let good = section("", 7.1, [280.0, 140.0]);
+    assert!(good.contains(table) && !good.contains(void), "{good}");
+    let fast = section("", 7.1, [280.0, 126.0]);
+    assert!(
+        !fast.contains(table) && fast.contains("1 of 2 times are below their limits (native rnea on b takes 0.90 times its limit)"),
+        "{fast}"
+    );
+    // What was measured when the compiler took the vectors apart.
+    let slow = section("", 0.325, [280.0, 140.0]);
+    assert!(
+        !slow.contains(table) && slow.contains("2 of 2 times are below their limits (native rnea on b takes 0.05 times its limit)"),
+        "{slow}"
+    );
+    let told = section("void: vectors make too little", 7.1, [280.0, 140.0]);
+    assert!(!told.contains(table) && told.contains("Void: vectors make too little."), "{told}");
+}
+
 #[test]
 fn names_stay_text() {
     let (_, _, written) = demo();

@@ -6,6 +6,10 @@
 //!
 //! Orders are those of the engine's first way to step; what its own settings add (damping, substeps) shows beside it, and so does what it does
 //! at high speed.
+//!
+//! An engine may leave out the term that makes its steps implicit where a step is long and the robot fast ([`Stepper::guard`]). Such a step is
+//! *explicit*, and begins with the true acceleration: its error is rounding, while that of a shorter, *implicit* one is of first order. A row
+//! names the regime of its step, and an order is fitted over implicit steps alone.
 
 use crate::row;
 use dynamics::{energy, forward_dynamics};
@@ -87,27 +91,72 @@ impl Study for StepLimit {
             };
             let acceleration = cell.quantity == Quantity::ForwardDynamics.name();
             let (steps, metric) = if acceleration { (&STEPS[..], "step_error") } else { (&MOTION_STEPS[..], "energy_drift") };
-            let first = context.subject(&cell.subject).and_then(|subject| subject.stepper()?.step_methods().into_iter().next());
-            let cases = states(problem).into_iter().map(|(case, _)| case);
-            for (case, values) in cases.zip(values.chunks_exact(steps.len())) {
+            let stepper = context.subject(&cell.subject).and_then(|subject| subject.stepper());
+            let first = stepper.and_then(|stepper| stepper.step_methods().into_iter().next());
+            let plain = first.as_ref() == Some(&cell.method);
+            for ((case, state), values) in states(problem).into_iter().zip(values.chunks_exact(steps.len())) {
                 let blank = Record { case: case.name().into(), ..blank.clone() };
-                for (dt, &value) in steps.iter().zip(values) {
-                    let params = record::canonical_json(&json!({"dt": dt}));
-                    rows.push(Record { metric: metric.into(), params, ..blank.clone() }.informed(value));
+                // Where no force depends on velocity, a step of any length is exact and has no order.
+                let exact = values.iter().all(|error| error < STRAIGHT.start());
+                let guard = stepper.and_then(|stepper| stepper.guard()).filter(|_| acceleration && plain && !exact);
+                let regime = |dt: f64, error: f64| Some(Regime::of(dt, error, speed(problem.states.v(state)), guard?));
+                for (&dt, &value) in steps.iter().zip(values) {
+                    let mut params = json!({"dt": dt});
+                    let regime = regime(dt, value);
+                    if let Some(regime) = regime {
+                        params["regime"] = regime.name().into();
+                    }
+                    let mut row =
+                        Record { metric: metric.into(), params: record::canonical_json(&params), ..blank.clone() }.informed(value);
+                    if regime == Some(Regime::Explicit) && row.value.is_some() {
+                        row.reason = EXPLICIT.into();
+                    }
+                    rows.push(row);
                 }
+                // An explicit step's error lies below the straight part: an order is that of implicit steps.
                 let straight = |&(dt, error): &(f64, f64)| {
                     if acceleration { STRAIGHT.contains(&error) } else { STRAIGHT_MOTION.contains(&dt) }
                 };
                 let points: Vec<(f64, f64)> = steps.iter().copied().zip(values.iter().copied()).filter(straight).collect();
-                // Where no force depends on velocity, a step of any length is exact and has no order.
-                let exact = values.iter().all(|error| error < STRAIGHT.start());
-                if case == Case::Random && first.as_ref() == Some(&cell.method) && !exact {
+                if case == Case::Random && plain && !exact {
                     rows.extend(orders(context, &blank, &points));
                 }
             }
         }
         rows
     }
+}
+
+/// What the row of an explicit step says.
+const EXPLICIT: &str = "the engine's energy guard left out the implicit term: this step is explicit, and begins with the true acceleration";
+
+/// How a step was made by an engine that has a guard.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Regime {
+    /// With the term that makes it implicit: the error is of first order in its length.
+    Implicit,
+    /// Without: there is no error but rounding.
+    Explicit,
+}
+
+impl Regime {
+    /// The regime of a step with this error from a state with this speed: explicit are those that the guard may touch, and that have no error
+    /// of first order. (From the guard on, dt·|v| is 1e-3 and more, and the share of the implicit term is of that size.)
+    fn of(dt: f64, error: f64, speed: f64, guard: f64) -> Self {
+        if dt * speed >= guard && error < *STRAIGHT.start() { Self::Explicit } else { Self::Implicit }
+    }
+
+    fn name(self) -> &'static str {
+        match self {
+            Self::Implicit => "implicit",
+            Self::Explicit => "explicit",
+        }
+    }
+}
+
+/// ‖v‖₂: no smaller than the largest velocity in any axes that an engine turns a joint's into.
+fn speed(v: &[f64]) -> f64 {
+    v.iter().map(|v| v * v).sum::<f64>().sqrt()
 }
 
 /// The fitted order, and how far it is from one.
@@ -169,7 +218,25 @@ fn slope(points: &[(f64, f64)]) -> Option<f64> {
 
 #[cfg(test)]
 mod tests {
-    use super::slope;
+    use super::{Regime, STRAIGHT, slope, speed};
+
+    #[test]
+    fn an_explicit_step_is_long_fast_and_exact() {
+        let of = |dt, error, speed| Regime::of(dt, error, speed, 1e-3);
+        assert_eq!(of(1e-3, 3e-16, 1000.0), Regime::Explicit);
+        assert_eq!(of(1e-4, 5e-2, 1000.0), Regime::Implicit, "the guard looked and left the term in");
+        assert_eq!(of(1e-3, 3e-16, 0.9), Regime::Implicit, "the guard does not look");
+        assert_eq!(of(1e-3, 3e-16, 1.0), Regime::Explicit, "from its limit on it does");
+        assert_eq!(of(1e-3, f64::NAN, 1000.0), Regime::Implicit);
+        let edge = *STRAIGHT.start();
+        assert_eq!(
+            (of(1.0, edge, 1.0), of(1.0, edge.next_down(), 1.0)),
+            (Regime::Implicit, Regime::Explicit),
+            "no explicit step has an order"
+        );
+        assert_eq!([Regime::Implicit, Regime::Explicit].map(Regime::name), ["implicit", "explicit"]);
+        assert_eq!((speed(&[3.0, -4.0]), speed(&[])), (5.0, 0.0));
+    }
 
     #[test]
     fn the_slope_of_a_power_is_its_exponent() {

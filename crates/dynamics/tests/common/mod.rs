@@ -5,17 +5,9 @@
 use model::{BodyDescription, Description, JointDescription, JointKind, JointType, Model, Placement, Random, Topology};
 use spatial::{Dual, Force, Lift, Motion, Quaternion, Real, Sym3, Vec3};
 
-/// Asserts that a residual is finite and within its tolerance; with `FEATHERBENCH_TOL_SCALE=0` it prints the residual instead.
-#[track_caller]
-pub fn within(what: &str, residual: f64, tolerance: f64) {
-    let scale: f64 = std::env::var("FEATHERBENCH_TOL_SCALE").ok().and_then(|text| text.parse().ok()).unwrap_or(1.0);
-    assert!(residual.is_finite(), "{what}: residual {residual} is not finite");
-    if scale == 0.0 {
-        println!("{what}: residual {residual:.2e}, tolerance {tolerance:.2e}");
-    } else {
-        assert!(residual <= tolerance * scale, "{what}: residual {residual:e} exceeds {tolerance:e} × {scale}");
-    }
-}
+mod tolerance;
+
+pub use tolerance::assert_within as within;
 
 /// The largest |a − b|, NaN if any difference is.
 pub fn distance(a: &[f64], b: &[f64]) -> f64 {

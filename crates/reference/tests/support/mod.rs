@@ -4,6 +4,9 @@
 
 pub mod golden;
 pub mod oracle;
+// What reads the factor on tolerances knows nothing of dynamics.
+#[path = "../../../dynamics/tests/common/tolerance.rs"]
+mod tolerance;
 
 use featherbench_reference::Mp;
 use model::generate::Family;
@@ -94,13 +97,8 @@ pub fn distance(x: &[Mp], y: &[Mp]) -> Mp {
     if scale.is_zero() { gap } else { gap / scale }
 }
 
-/// Asserts a distance; with `FEATHERBENCH_TOL_SCALE=0` it prints the distance instead.
+/// Asserts a distance, as `FEATHERBENCH_TOL_SCALE` multiplies its tolerance.
+#[track_caller]
 pub fn close(what: &str, distance: &Mp, tolerance: f64) {
-    let (error, scale) =
-        (distance.to_f64(), std::env::var("FEATHERBENCH_TOL_SCALE").ok().and_then(|text| text.parse().ok()).unwrap_or(1.0));
-    if scale == 0.0 {
-        println!("{what}: {error:e} (at most {tolerance:e})");
-    } else {
-        assert!(error <= tolerance * scale, "{what}: {error:e} is more than {tolerance:e}");
-    }
+    tolerance::assert_within(what, distance.to_f64(), tolerance);
 }
