@@ -52,13 +52,15 @@ fn real_robots_are_whole() {
 
 #[test]
 fn every_description_is_readable_and_the_folder_small() {
-    let mut size = 0;
+    let (mut count, mut size) = (0, 0);
     for entry in std::fs::read_dir(folder()).expect("the folder exists") {
         let path = entry.expect("an entry").path();
         if path.extension().is_some_and(|extension| extension == "json") {
             neutral::read(&path).unwrap_or_else(|error| panic!("{error}"));
             size += path.metadata().expect("a file").len();
+            count += 1;
         }
     }
+    assert!(count >= 40, "{count} robots");
     assert!(size < 600_000, "{size} bytes of robots");
 }

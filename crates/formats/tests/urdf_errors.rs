@@ -2,6 +2,7 @@
 
 use featherbench_formats::urdf::{self, Base, Options, UrdfProblem};
 use proptest::prelude::*;
+use proptest::test_runner::RngSeed;
 
 const GOOD: &str = r#"<?xml version="1.0"?>
 <robot name="r">
@@ -217,7 +218,7 @@ fn files_that_are_no_text_are_refused() {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 4096, failure_persistence: None, ..ProptestConfig::default() })]
+    #![proptest_config(ProptestConfig { cases: 4096, failure_persistence: None, rng_seed: RngSeed::Fixed(1), ..ProptestConfig::default() })]
 
     /// A file with characters changed, cut or doubled is read or refused, never a panic; what is read is canonical.
     #[test]

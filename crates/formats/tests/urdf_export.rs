@@ -7,6 +7,7 @@ use featherbench_formats::{ExportError, Loss, OnLoss, Reason, neutral};
 use model::generate::Family;
 use model::{BodyDescription, Description, Frame, JointDescription, JointType, Placement};
 use proptest::prelude::*;
+use proptest::test_runner::RngSeed;
 use std::path::Path;
 
 const OPTIONS: Options = Options { base: urdf::Base::Fixed, allow_massless: true, independent_mimics: false };
@@ -166,7 +167,7 @@ fn files_are_written_whole_or_not_at_all() {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 512, failure_persistence: None, ..ProptestConfig::default() })]
+    #![proptest_config(ProptestConfig { cases: 512, failure_persistence: None, rng_seed: RngSeed::Fixed(1), ..ProptestConfig::default() })]
 
     #[test]
     fn any_robot_goes_round(robot in robots::of(&[robots::Kind::Revolute, robots::Kind::Prismatic, robots::Kind::Planar, robots::Kind::Free])) {

@@ -79,6 +79,7 @@ fn estimate(r: &[f64; 9]) -> [f64; 4] {
 mod tests {
     use super::*;
     use proptest::prelude::*;
+    use proptest::test_runner::RngSeed;
 
     fn component() -> impl Strategy<Value = f64> {
         let small = (-1.0..1.0, -20..0).prop_map(|(x, e): (f64, i32)| x * 10_f64.powi(e));
@@ -86,7 +87,7 @@ mod tests {
     }
 
     proptest! {
-        #![proptest_config(ProptestConfig { cases: 1_000, failure_persistence: None, ..ProptestConfig::default() })]
+        #![proptest_config(ProptestConfig { cases: 1_000, failure_persistence: None, rng_seed: RngSeed::Fixed(1), ..ProptestConfig::default() })]
 
         /// Any rotation is met within 8ε, and the second trip gives the same bits.
         #[test]

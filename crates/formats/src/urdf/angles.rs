@@ -92,6 +92,7 @@ fn neighbours(angle: f64) -> impl Iterator<Item = f64> {
 mod tests {
     use super::*;
     use proptest::prelude::*;
+    use proptest::test_runner::RngSeed;
     use std::f64::consts::{FRAC_PI_2, PI};
 
     /// Angles as files have them: anything, few digits, quarter turns, and whatever lies close to these.
@@ -104,7 +105,7 @@ mod tests {
     }
 
     proptest! {
-        #![proptest_config(ProptestConfig { cases: 20_000, failure_persistence: None, ..ProptestConfig::default() })]
+        #![proptest_config(ProptestConfig { cases: 20_000, failure_persistence: None, rng_seed: RngSeed::Fixed(1), ..ProptestConfig::default() })]
 
         /// A rotation that was read from angles is written back to the bit.
         #[test]
