@@ -17,6 +17,7 @@ mod rapier;
 mod recorded;
 mod reproducer;
 mod request;
+mod shape;
 
 pub use clock::{Clock, SystemClock};
 pub use native::{Native, timed};

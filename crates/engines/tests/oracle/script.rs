@@ -57,7 +57,7 @@ impl Script {
         let states = 8 * (2 * (4 + 6) + 4);
         let script = format!(
             r#"
-            value() {{ echo '{{"status":"ok","blocks":[{{"name":"value","shape":[2]}}]}}'; printf "$1"; }}
+            value() {{ echo '{{"status":"ok","blocks":[{{"name":"value","shape":[2,1]}}]}}'; printf "$1"; }}
             echo $$ >> "$1/pids"
             while read -r line; do
                 case "$line" in
