@@ -1,7 +1,8 @@
-//! The direction of dependencies, held over `cargo metadata`: nothing points back.
+//! What holds over the whole workspace: nothing points back, kernels know nothing about files, and no test draws other numbers every time.
 
-use cargo_metadata::{DependencyKind, MetadataCommand, Package};
+use cargo_metadata::{DependencyKind, Metadata, MetadataCommand, Package};
 use std::collections::BTreeSet;
+use std::path::{Path, PathBuf};
 
 /// What each crate may depend on among our own.
 const ALLOWED: [(&str, &[&str]); 11] = [
@@ -18,6 +19,11 @@ const ALLOWED: [(&str, &[&str]); 11] = [
     ("cli", &["spatial", "model", "formats", "dynamics", "record", "report", "harness", "engines", "studies"]),
 ];
 
+/// The manifests of the workspace.
+fn metadata() -> Metadata {
+    MetadataCommand::new().manifest_path("../../Cargo.toml").no_deps().other_options(vec!["--offline".into()]).exec().unwrap()
+}
+
 fn short(name: &str) -> Option<&str> {
     if name == "featherbench" { Some("cli") } else { name.strip_prefix("featherbench-") }
 }
@@ -28,8 +34,7 @@ fn normal(package: &Package) -> impl Iterator<Item = &str> {
 
 #[test]
 fn nothing_points_back() {
-    let metadata =
-        MetadataCommand::new().manifest_path("../../Cargo.toml").no_deps().other_options(vec!["--offline".into()]).exec().unwrap();
+    let metadata = metadata();
     let mut seen = BTreeSet::new();
     for package in metadata.workspace_packages() {
         let name = short(&package.name).unwrap_or_else(|| panic!("{} is named unlike the others", package.name));
@@ -42,16 +47,84 @@ fn nothing_points_back() {
     assert_eq!(seen.len(), ALLOWED.len(), "a crate of the design is missing");
 }
 
-/// Kernels and models know nothing about files: no serde below `formats` and `harness`.
+/// The names of all packages that one reaches through normal dependencies, itself among them.
+fn reached(package: &str) -> BTreeSet<String> {
+    let mut command = std::process::Command::new(env!("CARGO"));
+    let tree = command.current_dir("../..").args(["tree", "--offline", "--edges", "normal", "--prefix", "none", "--package", package]);
+    let output = tree.output().unwrap();
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let text = String::from_utf8(output.stdout).unwrap();
+    let names: BTreeSet<String> = text.lines().filter_map(|line| line.split_whitespace().next()).map(str::to_owned).collect();
+    assert!(names.contains(package), "cargo tree says nothing about {package}: {text}");
+    names
+}
+
+/// What reads or writes files among what one package reaches: serde itself and whatever is named after it, and parsers.
+fn serialization(package: &str) -> Vec<String> {
+    let parsers = ["csv", "toml", "basic-toml", "roxmltree", "ron", "bincode", "postcard"];
+    reached(package).into_iter().filter(|name| name.split(['-', '_']).any(|word| word == "serde") || parsers.contains(&&**name)).collect()
+}
+
+/// Kernels and models know nothing about files: no serialization below `formats` and `harness`.
 #[test]
 fn kernels_reach_no_serialization() {
     for kernel in ["featherbench-spatial", "featherbench-model", "featherbench-dynamics", "featherbench-reference"] {
-        let mut command = std::process::Command::new(env!("CARGO"));
-        let tree = command.current_dir("../..").args(["tree", "--offline", "--edges", "normal", "--prefix", "none", "--package", kernel]);
-        let output = tree.output().unwrap();
-        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
-        let reached = String::from_utf8(output.stdout).unwrap();
-        assert!(reached.lines().count() > 1 || kernel == "featherbench-spatial", "cargo tree says nothing about {kernel}");
-        assert!(!reached.lines().any(|line| line.starts_with("serde ")), "{kernel} reaches serde:\n{reached}");
+        let found = serialization(kernel);
+        assert!(found.is_empty(), "{kernel} reaches {found:?}");
     }
+    // The crates that may are seen to: the search finds what it is for.
+    let formats = serialization("featherbench-formats");
+    for name in ["serde", "serde_json", "serde_path_to_error", "roxmltree"] {
+        assert!(formats.iter().any(|found| found == name), "{name} is not among {formats:?}");
+    }
+}
+
+/// The direct dependencies of the kernels on crates of others. One more is a decision, which is taken here.
+#[test]
+fn kernels_depend_on_few_crates_of_others() {
+    let outside: [(&str, &[&str]); 4] = [
+        ("spatial", &[]),
+        ("model", &["thiserror"]),
+        ("dynamics", &["nalgebra", "thiserror"]),
+        ("reference", &["dashu-float", "thiserror"]),
+    ];
+    let metadata = metadata();
+    for (kernel, allowed) in outside {
+        let package = metadata.workspace_packages().into_iter().find(|package| short(&package.name) == Some(kernel)).unwrap();
+        let found: BTreeSet<&str> = normal(package).filter(|name| short(name).is_none()).collect();
+        assert_eq!(found, allowed.iter().copied().collect(), "{kernel}");
+    }
+}
+
+/// The Rust files below a folder.
+fn sources(folder: &Path) -> Vec<PathBuf> {
+    let paths = std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path());
+    paths
+        .flat_map(|path| match path.is_dir() {
+            true => sources(&path),
+            false => vec![path],
+        })
+        .filter(|path| path.extension().is_some_and(|extension| extension == "rs"))
+        .collect()
+}
+
+/// Every property test draws the same cases in every run, and writes nothing into the source tree when it fails.
+#[test]
+fn property_tests_draw_the_same_cases_in_every_run() {
+    let mut blocks = 0;
+    for path in sources(Path::new("..")) {
+        let text = std::fs::read_to_string(&path).unwrap();
+        let here = text.lines().filter(|line| line.trim() == "proptest! {").count();
+        if here > 0 {
+            let of = |words: &str| text.matches(words).count();
+            assert_eq!(of("#![proptest_config("), here, "{}: a block has no configuration of its own", path.display());
+            for (setting, due) in
+                [("rng_seed: RngSeed::Fixed(", true), ("failure_persistence: None", true), ("(ProptestConfig::with_cases(", false)]
+            {
+                assert_eq!(of(setting) > 0, due, "{}: {setting}", path.display());
+            }
+        }
+        blocks += here;
+    }
+    assert!(blocks >= 16, "{blocks} blocks of property tests");
 }
