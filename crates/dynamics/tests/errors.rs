@@ -159,14 +159,15 @@ fn matrices_exchange_their_numbers_with_as_many() {
 #[test]
 fn a_model_with_a_missing_part_is_refused() {
     let whole = dyadic_chain(&[[0.0, 1.0, 0.0]], 3);
-    let remove: [(&str, fn(&mut Model<f64>)); 4] = [
+    type Remove = fn(&mut Model<f64>);
+    let parts: [(&str, Remove); 4] = [
         ("placements of the model", |model| model.placements.truncate(2)),
         ("subspaces of the model", |model| model.subspaces.truncate(2)),
         ("inertias of the model", |model| model.inertias.truncate(2)),
         ("armature of the model", |model| model.armature.truncate(2)),
     ];
     let zero = [0.0; 3];
-    for (part, remove) in remove {
+    for (part, remove) in parts {
         let mut model = whole.clone();
         remove(&mut model);
         let expected = (part, 3, 2);
