@@ -11,6 +11,9 @@ use std::path::PathBuf;
 pub struct Cli {
     #[command(subcommand)]
     pub command: Option<Command>,
+    /// The project's folder; by default the one that FEATHERBENCH_ROOT names, the nearest one from here upwards, or the one that the program was built in.
+    #[arg(long, global = true, value_name = "DIR")]
+    pub root: Option<PathBuf>,
 }
 
 const EXAMPLES: &str = "\
@@ -38,7 +41,7 @@ pub enum Command {
     List(ListArgs),
     /// Compare two runs: what changed beyond noise; exit 1 when something did.
     Diff(DiffArgs),
-    /// Append the times of our kernels in a run to datasets/history.
+    /// Append the times of our kernels in a run to a history, one file per machine.
     History(HistoryArgs),
     /// Explain a cell of a run: what was asked, what was answered, how it was judged.
     Explain(ExplainArgs),
@@ -163,7 +166,7 @@ pub struct DiffArgs {
 
 #[derive(Debug, Clone, Args)]
 #[command(
-    after_help = "Example:\n  python ci/instructions.py --out counts.csv\n  featherbench history reports/timing --instructions counts.csv"
+    after_help = "Example:\n  python ci/instructions.py --out counts.csv\n  featherbench history reports/timing --instructions counts.csv --to datasets/history"
 )]
 pub struct HistoryArgs {
     /// The folder of a run with times.
@@ -174,6 +177,9 @@ pub struct HistoryArgs {
     /// Instruction counts, as `ci/instructions.py --out` writes them.
     #[arg(long, value_name = "CSV")]
     pub instructions: Option<PathBuf>,
+    /// The folder of histories; by default reports/history, which git ignores. The project's own are in datasets/history.
+    #[arg(long, value_name = "DIR")]
+    pub to: Option<PathBuf>,
 }
 
 #[derive(Debug, Clone, Args)]

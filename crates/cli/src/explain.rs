@@ -2,7 +2,8 @@
 
 use crate::args::ExplainArgs;
 use crate::fail::Fail;
-use ::record::Record;
+use crate::shell::{quoted, words};
+use ::record::{Record, RunInfo};
 use harness::{OUTCOMES_NAME, Outcome, OutcomeStore, Quantity, Refusal};
 
 /// Prints what a cell asked, what was answered, and how it was judged.
@@ -28,7 +29,8 @@ pub fn explain(args: &ExplainArgs) -> Result<(), Fail> {
     println!("quantity  {}: {quantity}", first.quantity);
     println!("params    {}", first.params);
     if args.folder.join(OUTCOMES_NAME).is_file() {
-        match OutcomeStore::open(&args.folder)?.get(&first.cell) {
+        let (outcomes, lost) = OutcomeStore::look(&args.folder)?;
+        match outcomes.get(&first.cell) {
             Some(Outcome::Values(values)) => {
                 let head: Vec<String> = values.iter().take(6).map(|value| format!("{value:?}")).collect();
                 println!("answer    {} numbers: {}{}", values.len(), head.join(", "), if values.len() > 6 { ", …" } else { "" });
@@ -40,7 +42,7 @@ pub fn explain(args: &ExplainArgs) -> Result<(), Fail> {
             }
             Some(Outcome::Refused(Refusal::Unsupported(reason))) => println!("answer    not offered: {reason}"),
             Some(Outcome::Refused(Refusal::Failed(reason))) => println!("answer    failed: {reason}"),
-            None => println!("answer    not kept"),
+            None => println!("answer    not kept{}", lost.map_or_else(String::new, |lost| format!(": {lost}"))),
         }
     }
     println!();
@@ -59,11 +61,47 @@ pub fn explain(args: &ExplainArgs) -> Result<(), Fail> {
             row.reason
         );
     }
-    println!(
-        "\nagain     cargo run --release -- run --suite {} --only '^{}/{}/{}/{}/{}$'",
-        info.suite, first.study, first.model, first.engine, first.quantity, first.method
-    );
+    println!("\nagain     {}", again(&info, first).map_err(Fail::input)?);
     Ok(())
+}
+
+/// Options of a run that say where it was written and how much of it: each with its value.
+const OF_THE_RUN: [&str; 2] = ["--only", "--out"];
+/// Options that continue a run.
+const CONTINUING: [&str; 2] = ["--resume", "--mixed"];
+
+/// The command that makes a cell's rows again: that of the run, with a filter that leaves the study of the robot. The rows compare an answer
+/// with those of others, so the others are asked too.
+fn again(info: &RunInfo, row: &Record) -> Result<String, String> {
+    let all = words(&info.command)?;
+    let (program, given) = all.split_at(all.iter().position(|word| word == "--").map_or(0, |at| at + 1));
+    let mut kept: Vec<String> = Vec::new();
+    let mut words = given.iter();
+    while let Some(word) = words.next() {
+        if OF_THE_RUN.contains(&word.as_str()) {
+            words.next();
+        } else if !CONTINUING.contains(&word.as_str()) && !OF_THE_RUN.iter().any(|option| word.starts_with(&format!("{option}="))) {
+            kept.push(word.clone());
+        }
+    }
+    let has = |kept: &[String], option: &str| kept.iter().any(|word| word == option || word.starts_with(&format!("{option}=")));
+    // A comparison of files has no filter: it is made again as a whole.
+    if !has(&kept, "compare") {
+        if !has(&kept, "run") {
+            kept.push("run".into());
+        }
+        if !has(&kept, "--suite") && info.suite != "default" {
+            kept.extend(["--suite".into(), info.suite.clone()]);
+        }
+        if !has(&kept, "--live") && info.live {
+            kept.push("--live".into());
+        }
+        // Cells that belong to no robot, or draw one, are known by their study.
+        let of_study = row.model.is_empty() || row.study == "repeatability";
+        let robot = if of_study { String::new() } else { format!("{}/", regex::escape(&row.model)) };
+        kept.extend(["--only".into(), format!("^{}/{robot}", row.study)]);
+    }
+    Ok(program.iter().chain(&kept).map(|word| quoted(word)).collect::<Vec<_>>().join(" "))
 }
 
 fn count(number: Option<u64>) -> String {
@@ -94,5 +132,30 @@ fn describe(quantity: Quantity) -> &'static str {
         Quantity::Factorization => "factors of M = LᵀDL",
         Quantity::Solve => "M⁻¹τ with given factors",
         Quantity::MassMatrixInverse => "M⁻¹",
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn of(command: &str, live: bool, suite: &str) -> String {
+        let info = RunInfo { command: command.into(), live, suite: suite.into(), ..RunInfo::default() };
+        let row = Record { study: "agreement".into(), model: "tree-20-spread0.3".into(), ..Record::default() };
+        again(&info, &row).unwrap()
+    }
+
+    #[test]
+    fn the_command_keeps_what_the_answer_depends_on() {
+        let only = "--only '^agreement/tree-20-spread0\\.3/'";
+        assert_eq!(of("cargo run --release --", false, "default"), format!("cargo run --release -- run {only}"));
+        assert_eq!(
+            of("cargo run --release -- run --suite smoke --live --seed 3 --only 'x|y' --out a --resume", true, "smoke"),
+            format!("cargo run --release -- run --suite smoke --live --seed 3 {only}")
+        );
+        assert_eq!(of("run --only=x --out=a --mixed", true, "smoke"), format!("run --suite smoke --live {only}"));
+        let guest = "run --engine 'mine=sh '\"'\"'my oracle.sh'\"'\"''";
+        assert_eq!(of(guest, false, "default"), format!("{guest} {only}"));
+        assert_eq!(of("compare 'my robot.urdf' --floating --out x", true, "compare"), "compare 'my robot.urdf' --floating");
     }
 }

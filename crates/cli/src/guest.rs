@@ -1,6 +1,7 @@
 //! Engines that a user brings along: `--engine NAME=PROGRAM`.
 
 use crate::fail::Fail;
+use crate::shell::{quoted, words};
 use engines::{Limits, Oracle};
 use harness::{HarnessError, hash};
 use std::ffi::OsString;
@@ -30,26 +31,6 @@ impl FromStr for Guest {
         }
         Ok(Self { name: name.to_owned(), command })
     }
-}
-
-fn words(text: &str) -> Result<Vec<String>, String> {
-    let (mut words, mut word, mut quote) = (Vec::new(), None::<String>, None);
-    for c in text.chars() {
-        match quote {
-            Some(end) if c == end => quote = None,
-            None if c == '"' || c == '\'' => {
-                quote = Some(c);
-                word.get_or_insert_default();
-            }
-            None if c.is_whitespace() => words.extend(word.take()),
-            _ => word.get_or_insert_default().push(c),
-        }
-    }
-    if let Some(open) = quote {
-        return Err(format!("a quote {open} is not closed in {text}"));
-    }
-    words.extend(word);
-    Ok(words)
 }
 
 /// The file of a program; one that is not there is refused before anything is started.
@@ -102,7 +83,7 @@ pub fn check_names(guests: &[Guest], taken: &[&str]) -> Result<(), Fail> {
 }
 
 fn shown(command: &[OsString]) -> String {
-    command.iter().map(|word| word.to_string_lossy()).collect::<Vec<_>>().join(" ")
+    command.iter().map(|word| quoted(&word.to_string_lossy())).collect::<Vec<_>>().join(" ")
 }
 
 #[cfg(test)]

@@ -12,8 +12,9 @@ const HEADER: &str = "date,revision,kernel,model,ns,ns_low,ns_high,instructions"
 /// A history is cut to this many bytes, the oldest nights first: the data of this repository are small.
 const LIMIT: usize = 24_000;
 
-/// Appends a run's times of our kernels on one robot to the history of its machine.
-pub fn append(root: &Root, args: &HistoryArgs) -> Result<(), Fail> {
+/// Appends a run's times of our kernels on one robot to the history of its machine: in the folder that is named, or in `reports/history` of
+/// the project, which only then must be found.
+pub fn append(root: &dyn Fn() -> Result<Root, Fail>, args: &HistoryArgs) -> Result<(), Fail> {
     let (run, records) = read_run(&args.folder)?;
     let instructions = args.instructions.as_deref().map(read_instructions).transpose()?.unwrap_or_default();
     let (lines, void) = lines(&run, &records, &args.model, &instructions);
@@ -21,7 +22,8 @@ pub fn append(root: &Root, args: &HistoryArgs) -> Result<(), Fail> {
         let message = format!("{} holds no valid times of native kernels on '{}' ({void} are void)", args.folder.display(), args.model);
         return Err(Fail::input(message));
     }
-    let path = root.history().join(format!("{}.csv", machine(&run.host)));
+    let folder = args.to.clone().map_or_else(|| root().map(|root| root.reports().join("history")), Ok)?;
+    let path = folder.join(format!("{}.csv", machine(&run.host)));
     let before = if path.exists() { std::fs::read_to_string(&path).map_err(|error| failed(&path, &error))? } else { String::new() };
     let text = merged(&before, &lines).map_err(|what| failed(&path, &what))?;
     atomic_write(&path, text.as_bytes())?;

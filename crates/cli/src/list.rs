@@ -49,7 +49,7 @@ fn text(root: &Root, args: &ListArgs) -> Result<String, Fail> {
     }
     let peers = [&PEERS[..], &ESTIMATING].concat().join(", ");
     text += &format!("\nengines:  native, {}, {IN_PROCESS}\npeers:    {peers}\n", ENGINES.join(", "));
-    text += "studies:  agreement, reading, digits, conditioning, structure, reproductions, step_limit, timing\n";
+    text += "studies:  agreement, reading, digits, conditioning, structure, reproductions, step_limit, repeatability, timing\n";
     text += "\nfamilies of generated robots, with their parameters:\n";
     for name in Family::NAMES {
         let family = Family::parse(name).map_err(|error| Fail::input(error.to_string()))?;

@@ -11,6 +11,8 @@ mod guest;
 mod history;
 mod list;
 mod native;
+mod offers;
+mod only;
 mod oracles;
 mod problems;
 mod progress;
@@ -19,6 +21,7 @@ mod report;
 mod robot_file;
 mod root;
 mod run;
+mod shell;
 mod subjects;
 mod table;
 
@@ -39,23 +42,27 @@ fn main() -> ExitCode {
     }
 }
 
+/// Finds the project's folder for the commands that need it: a run's folder can be looked at without.
 fn dispatch(cli: Cli) -> Result<(), Fail> {
-    let root = Root::find()?;
+    let root = || Root::find(cli.root.as_deref());
     let default = || Command::Run(RunArgs::default_suite());
     match cli.command.unwrap_or_else(default) {
-        Command::Run(args) => run::run(&root, &args),
-        Command::Compare(args) => compare::compare(&root, &args),
+        Command::Run(args) => run::run(&root()?, &args),
+        Command::Compare(args) => compare::compare(&root()?, &args),
         Command::Report(args) => report::write(&args.folder),
-        Command::Gate(args) => report::gate(&root, &args),
+        Command::Gate(args) => report::gate(&root()?, &args),
         Command::Diff(args) => diff::compare(&args),
         Command::History(args) => history::append(&root, &args),
-        Command::List(args) => list::list(&root, &args),
+        Command::List(args) => list::list(&root()?, &args),
         Command::Explain(args) => explain::explain(&args),
-        Command::Record(args) => record::record(&root, &args),
-        Command::Gen(args) => generate::generate(&root, &args),
+        Command::Record(args) => record::record(&root()?, &args),
+        Command::Gen(args) => generate::generate(&root()?, &args),
         Command::Oracles(args) => match args.action {
-            OraclesAction::Install(args) => oracles::install(&root).and_then(|_| if args.native { native::install(&root) } else { Ok(()) }),
-            OraclesAction::Status => oracles::status(&root),
+            OraclesAction::Install(args) => {
+                let root = root()?;
+                oracles::install(&root).and_then(|_| if args.native { native::install(&root) } else { Ok(()) })
+            }
+            OraclesAction::Status => oracles::status(&root()?),
             OraclesAction::Check(args) => check::check(&args),
         },
         Command::Peer(args) => engines::peer::serve(&args.library, args.core).map_err(Fail::input),

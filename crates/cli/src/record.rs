@@ -6,12 +6,13 @@ use crate::problems;
 use crate::progress::Bar;
 use crate::root::Root;
 use crate::subjects;
+use ::record::Verdict;
 use engines::{EngineRecording, Recording, recording_name};
 use harness::measure::{ForwardScale, scaled_error, worst};
 use harness::run::Progress;
 use harness::{Cell, Context, Gates, Outcome, OutcomeStore, Problem, Quantity, Study};
 use std::path::Path;
-use studies::{Agreement, Structure};
+use studies::{Agreement, Repeatability, Structure};
 
 /// An answer may move by this much in the measures of DESIGN idea 10 before the recording counts as stale: the same binary on another
 /// processor may choose other vector kernels, and no more.
@@ -34,13 +35,31 @@ pub fn record(root: &Root, args: &RecordArgs) -> Result<(), Fail> {
     let store = OutcomeStore::open(&scratch)?;
     let bar = Bar::new();
     let mut finished = Vec::new();
+    let foreign = |cell: &Cell| cell.subject != "native";
     let studies: [&dyn Study; 2] = [&Agreement, &Structure];
     for study in studies {
-        let foreign = |cell: &Cell| cell.subject != "native";
         let cells = harness::run::plan(study, &context, &foreign);
         finished.extend(harness::run::evaluate(study, &context, cells, &store, &bar as &dyn Progress)?);
     }
+    // What is recorded is never asked again in a run: an engine whose answers vary is found here.
+    let repeatability = Repeatability { key: harness::provenance::collect(root.path()).binary_hash };
+    let again = harness::run::evaluate(
+        &repeatability,
+        &context,
+        harness::run::plan(&repeatability, &context, &foreign),
+        &store,
+        &bar as &dyn Progress,
+    )?;
+    let rows = harness::run::compare(&repeatability, &context, again);
     std::fs::remove_dir_all(&scratch).map_err(io)?;
+    let varying: Vec<String> = rows
+        .iter()
+        .filter(|row| row.verdict != Verdict::Pass)
+        .map(|row| format!("  {} about {}: {}", row.engine, row.model, row.reason))
+        .collect();
+    if !varying.is_empty() {
+        return Err(Fail::Gate(format!("nothing was recorded: the same question has two answers:\n{}", varying.join("\n"))));
+    }
 
     let folder = args.recorded.clone().unwrap_or_else(|| root.recorded());
     std::fs::create_dir_all(&folder).map_err(|source| harness::HarnessError::io(&folder, source))?;

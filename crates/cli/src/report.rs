@@ -4,7 +4,7 @@ use crate::args::GateArgs;
 use crate::fail::Fail;
 use crate::root::Root;
 use ::record::{Record, RunInfo, Verdict};
-use harness::{Gates, Suite, accounted};
+use harness::{Gates, Suite, accounted, provenance};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
@@ -33,7 +33,8 @@ pub fn gate(root: &Root, args: &GateArgs) -> Result<(), Fail> {
         return print_ranges(&Gates::read(&root.gates())?, &records, &args.others);
     }
     let (suite, _) = Suite::read(&root.suites().join(format!("{}.toml", info.suite)))?;
-    let gates = Gates::read(&root.gates())?;
+    let guests = info.engines.iter().filter(|engine| engine.build.contains_key(provenance::PROGRAM)).map(|engine| engine.name.as_str());
+    let gates = Gates::read(&root.gates())?.with_guests(&guests.collect::<Vec<_>>());
     let missing: Vec<_> = info.expected.iter().filter(|condition| condition.what.starts_with("engine ")).cloned().collect();
     info.expected = gates.conditions(&suite, &records, true);
     info.expected.extend(missing);

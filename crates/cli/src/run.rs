@@ -2,10 +2,14 @@
 
 use crate::args::RunArgs;
 use crate::fail::Fail;
+use crate::guest::Guest;
+use crate::offers;
+use crate::only;
 use crate::problems::{self, Loaded};
 use crate::progress::Bar;
 use crate::report;
 use crate::root::Root;
+use crate::shell::quoted;
 use crate::subjects::{self, Subjects};
 use ::record::{ModelInfo, Record, RunInfo, Verdict};
 use harness::{Cell, Context, Gates, HarnessError, OutcomeStore, Study, provenance};
@@ -13,7 +17,7 @@ use regex::Regex;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::time::{Instant, SystemTime};
-use studies::{Agreement, Conditioning, Digits, Reading, Reproductions, StepLimit, Structure, Timing};
+use studies::{Agreement, Conditioning, Digits, Reading, Repeatability, Reproductions, StepLimit, Structure, Timing};
 
 /// The file that holds what a resumed run must share with the first one.
 const FINGERPRINT_NAME: &str = "fingerprint.json";
@@ -24,27 +28,42 @@ pub fn run(root: &Root, args: &RunArgs) -> Result<(), Fail> {
     let only = args.only.as_deref().map(Regex::new).transpose();
     let only = only.map_err(|error| Fail::input(format!("--only: {error}")))?;
     let loaded = problems::load(root, &args.suite, args.live, args.seed)?;
-    let gates = Gates::read(&root.gates())?;
+    let guests: Vec<&str> = args.guests.iter().map(|guest: &Guest| guest.name.as_str()).collect();
+    let gates = Gates::read(&root.gates())?.with_guests(&guests);
     let subjects = subjects::open(root, args, &loaded)?;
+    let mut info = describe(root, args.live, &loaded, &subjects)?;
+    let studies = studies(root, &loaded, args, &info.binary_hash);
+    let context = Context { problems: &loaded.problems, subjects: &subjects.subjects, gates: &gates, seed: loaded.suite.seed };
+    let cells: Vec<Cell> = studies.iter().flat_map(|study| study.plan(&context)).collect();
+    let filtered = || match args.only.as_ref().zip(only.as_ref()) {
+        Some((text, only)) => only::check(text, only, &loaded.name, &cells.iter().map(Cell::path).collect::<Vec<_>>()),
+        None => Ok(()),
+    };
+    // Before a folder is made; of a run that goes on, that it is the same comes first.
+    if !args.resume {
+        filtered()?;
+    }
 
     let started = SystemTime::now();
     let (folder, id) = folder(root, args.out.as_deref(), args.resume, &loaded.name, started)?;
-    let mut info = describe(root, args.live, &loaded, &subjects)?;
     info.run = id;
     info.started = humantime::format_rfc3339_seconds(started).to_string();
     check_fingerprint(&folder, args, &info)?;
+    filtered()?;
     info.seconds.insert("setup".into(), start.elapsed().as_secs_f64());
 
-    let context = Context { problems: &loaded.problems, subjects: &subjects.subjects, gates: &gates, seed: loaded.suite.seed };
     let keep = |cell: &Cell| only.as_ref().is_none_or(|only| only.is_match(&cell.path()));
-    let records = conduct(&studies(root, &loaded, args), &context, &folder, &keep, &mut info)?;
+    let (records, files) = conduct_with_files(&studies, &context, &folder, &keep, &mut info)?;
     let complete = only.is_none();
     info.expected = gates.conditions(&loaded.suite, &records, complete);
+    let engines = loaded.suite.agreement.iter().flat_map(|agreement| &agreement.engines).map(String::as_str);
+    let asked: Vec<&str> = engines.chain(guests.iter().copied()).collect();
+    info.expected.extend(offers::conditions(&subjects, &asked, &cells, &records, complete));
     for engine in subjects.missing(&loaded) {
         info.expected.push(missing_engine(&engine.name, &engine.reason));
     }
     info.seconds.insert("total".into(), start.elapsed().as_secs_f64());
-    ::record::write_run(&folder, &info, &records)?;
+    ::record::write_run_with(&folder, &info, &records, &files)?;
     let page = report::render(&folder, &info, &records)?;
     report::conclude(&info, &records, &page)
 }
@@ -57,15 +76,30 @@ pub fn conduct(
     keep: &(dyn Fn(&Cell) -> bool + Sync),
     info: &mut RunInfo,
 ) -> Result<Vec<Record>, Fail> {
+    Ok(conduct_with_files(studies, context, folder, keep, info)?.0)
+}
+
+/// The same, with the names of the files that studies left beside the records.
+fn conduct_with_files(
+    studies: &[Box<dyn Study>],
+    context: &Context,
+    folder: &Path,
+    keep: &(dyn Fn(&Cell) -> bool + Sync),
+    info: &mut RunInfo,
+) -> Result<(Vec<Record>, Vec<&'static str>), Fail> {
     let store = OutcomeStore::open(folder)?;
+    if let Some(lost) = store.lost() {
+        eprintln!("{lost}: its cells are evaluated again");
+    }
     let progress = Bar::new();
-    let mut records: Vec<Record> = Vec::new();
+    let (mut records, mut files): (Vec<Record>, Vec<&str>) = (Vec::new(), Vec::new());
     for study in studies {
         let phase = Instant::now();
         let cells = harness::run::plan(study.as_ref(), context, keep);
         let finished = harness::run::evaluate(study.as_ref(), context, cells, &store, &progress)?;
         if let Some((name, text)) = study.side_file(&finished) {
             ::record::atomic_write(&folder.join(name), text.as_bytes())?;
+            files.push(name);
         }
         records.extend(harness::run::compare(study.as_ref(), context, finished));
         info.seconds.insert(study.name().into(), phase.elapsed().as_secs_f64());
@@ -74,11 +108,12 @@ pub fn conduct(
         record.run.clone_from(&info.run);
     }
     info.rows = records.len() as u64;
-    Ok(records)
+    Ok((records, files))
 }
 
-/// The studies that a suite names, in the order of the report; timing last, because it wants a quiet machine.
-fn studies(root: &Root, loaded: &Loaded, args: &RunArgs) -> Vec<Box<dyn Study>> {
+/// The studies that a suite names, in the order of the report; what runs alone comes behind all others, timing last, because it wants a quiet
+/// machine. `program` is the hash of this program.
+fn studies(root: &Root, loaded: &Loaded, args: &RunArgs, program: &str) -> Vec<Box<dyn Study>> {
     let mut studies: Vec<Box<dyn Study>> = Vec::new();
     if loaded.suite.agreement.is_some() {
         studies.push(Box::new(Agreement));
@@ -101,6 +136,9 @@ fn studies(root: &Root, loaded: &Loaded, args: &RunArgs) -> Vec<Box<dyn Study>> 
     }
     if loaded.suite.reproductions {
         studies.push(Box::new(Reproductions { reproduce: crate::oracles::reproducer(root, subjects::limits(args)) }));
+    }
+    if loaded.suite.agreement.is_some() {
+        studies.push(Box::new(Repeatability { key: program.to_owned() }));
     }
     if let Some(timing) = loaded.suite.timing.as_ref().filter(|_| !args.no_timing) {
         let (states, seconds, peers) = (timing.states, timing.seconds, timing.peers.clone());
@@ -149,7 +187,7 @@ fn check_fingerprint(folder: &Path, args: &RunArgs, info: &RunInfo) -> Result<()
 
 /// Everything about the run that its rows share.
 pub fn describe(root: &Root, live: bool, loaded: &Loaded, subjects: &Subjects) -> Result<RunInfo, Fail> {
-    let command = std::env::args().skip(1).map(|word| if word.contains(' ') { format!("'{word}'") } else { word });
+    let command = std::env::args().skip(1).map(|word| quoted(&word));
     let models = loaded.problems.iter().map(|problem| {
         let provenance = problem.description.provenance.clone().unwrap_or_default();
         ModelInfo {

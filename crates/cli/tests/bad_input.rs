@@ -91,6 +91,17 @@ fn broken_suites_are_refused_by_file_and_key() {
     sandbox.run(&["run", "--only", "("]).expect(2, &["--only"]);
 }
 
+/// A filter that lets nothing through is no good run.
+#[test]
+fn a_filter_without_a_match_is_told_what_there_is() {
+    let sandbox = Sandbox::new();
+    let run = |only: &str| sandbox.run(&["run", "--suite", "smoke", "--no-timing", "--out", "out", "--only", only]);
+    run("pandas/.*/fdd").expect(2, &["no cell of the suite smoke matches", "'pandas': nearest are panda", "'fdd': nearest are fd"]);
+    run("pinocchio/panda").expect(2, &["a path is study/robot/engine/quantity/method", "the engines drake, mujoco, native, pinocchio"]);
+    assert!(!sandbox.path("out").exists(), "nothing was begun");
+    run("panda/native/fd/aba$").expect(0, &["report:"]);
+}
+
 #[test]
 fn wrong_usage_is_exit_code_two() {
     let sandbox = Sandbox::new();
@@ -148,8 +159,16 @@ fn damaged_runs_are_refused_by_file() {
     let sandbox = Sandbox::new();
     sandbox.run(&["run", "--suite", "smoke", "--only", "structure", "--out", "out"]).expect(0, &["report:"]);
     sandbox.run(&["report", "out"]).expect(0, &["out/index.html"]);
-    let cell =
-        std::fs::read_to_string(sandbox.path("out/records.csv")).unwrap().lines().nth(1).unwrap().split(',').nth(1).unwrap().to_owned();
+    let cell = std::fs::read_to_string(sandbox.path("out/records.csv"))
+        .unwrap()
+        .lines()
+        .nth(1)
+        .unwrap()
+        .split(',')
+        .nth(1)
+        .unwrap()
+        .trim_matches('"')
+        .to_owned();
     sandbox.run(&["explain", &cell[..6], "out"]).expect(0, &["structure", "again"]);
     sandbox.run(&["explain", "zz", "out"]).expect(2, &["no cell that begins with 'zz'"]);
 
@@ -157,6 +176,14 @@ fn damaged_runs_are_refused_by_file() {
     let whole = std::fs::read(&path).unwrap();
     std::fs::write(&path, &whole[..whole.len() - 40]).unwrap();
     sandbox.run(&["gate", "out"]).expect(2, &["records.csv"]);
+    // One bit, which leaves a row that reads well.
+    let at = whole.iter().rposition(u8::is_ascii_digit).unwrap();
+    let mut flipped = whole.clone();
+    flipped[at] ^= 1;
+    std::fs::write(&path, flipped).unwrap();
+    for arguments in [&["report", "out"][..], &["gate", "out"], &["diff", "out", "out"], &["explain", &cell[..6], "out"]] {
+        sandbox.run(arguments).expect(2, &["records.csv", "its checksum is not the one in", "checksums.txt"]);
+    }
     sandbox.run(&["report", "nowhere"]).expect(2, &["nowhere"]);
 }
 

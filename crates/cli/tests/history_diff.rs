@@ -56,6 +56,7 @@ fn a_night_is_kept_once_with_its_instructions() {
     // A project whose data nobody else has.
     std::fs::remove_file(sandbox.path("datasets")).unwrap();
     std::fs::create_dir_all(sandbox.path("datasets/suites")).unwrap();
+    std::fs::create_dir(sandbox.path("datasets/history")).unwrap();
     let mut rows = times(123.4);
     rows.push(("fd", "ns_per_call", 200.0, "void: the machine was not quiet"));
     run(&sandbox, "a", &rows);
@@ -63,7 +64,11 @@ fn a_night_is_kept_once_with_its_instructions() {
     for _ in 0..2 {
         sandbox.run(&["history", "a", "--instructions", "counts.csv"]).expect(0, &["1 kernels", "1 void"]);
     }
-    let files: Vec<_> = std::fs::read_dir(sandbox.path("datasets/history")).unwrap().map(|entry| entry.unwrap().path()).collect();
+    let files = |folder: &str| -> Vec<_> { std::fs::read_dir(sandbox.path(folder)).unwrap().map(|entry| entry.unwrap().path()).collect() };
+    assert_eq!(files("datasets/history").len(), 0, "data are written where they are asked for");
+    sandbox.run(&["history", "a", "--to", "datasets/history"]).expect(0, &["1 kernels", "datasets/history"]);
+    assert_eq!(files("datasets/history").len(), 1);
+    let files = files("reports/history");
     assert_eq!(files.len(), 1);
     assert!(files[0].file_name().unwrap().to_str().unwrap().starts_with("an-example-cpu-4-"), "{files:?}");
     let text = std::fs::read_to_string(&files[0]).unwrap();

@@ -16,6 +16,7 @@ mod rapier;
 mod recorded;
 mod reproducer;
 mod request;
+mod shape;
 
 pub use native::{Native, timed};
 pub use oracle::{Limits, Oracle};

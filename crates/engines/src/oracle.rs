@@ -2,7 +2,7 @@
 
 pub use crate::process::Limits;
 use crate::process::Process;
-use crate::request;
+use crate::{request, shape};
 use harness::frame::{Block, Frame};
 use harness::provenance::PROGRAM;
 use harness::{Identity, Prepared, Problem, Quantity, Reading, ReadingNote, Refusal, RobotFile, Route, Subject};
@@ -208,7 +208,7 @@ impl Session {
                 return Err(Refusal::Failed(format!("the engine reports {key} {found:?}, the robot has {expected}")));
             }
         }
-        self.readback = sized(&answer, "readback", Quantity::Readback.size(problem))?;
+        self.readback = shaped(&answer, "readback", &shape::of_readback(problem))?;
         self.model.clone_from(&problem.hash);
         Ok(())
     }
@@ -286,7 +286,7 @@ impl Prepared for Asked<'_> {
             return Ok(());
         }
         let answer = session.ask(question, Vec::new())?;
-        self.values = sized(&answer, "value", self.quantity.size(self.problem) * range.len())?;
+        self.values = shaped(&answer, "value", &shape::of_value(self.quantity, self.problem, range.len()))?;
         Ok(())
     }
 
@@ -394,11 +394,7 @@ pub(crate) fn checked(answer: Frame) -> Result<Frame, Refusal> {
     }
 }
 
-/// The numbers of a block, of which there must be so many.
-pub(crate) fn sized(answer: &Frame, name: &str, length: usize) -> Result<Vec<f64>, Refusal> {
-    let block = answer.block(name).ok_or_else(|| Refusal::Failed(format!("the oracle's answer has no block '{name}'")))?;
-    if block.data.len() != length {
-        return Err(Refusal::Failed(format!("block '{name}' has {} numbers, {length} are due", block.data.len())));
-    }
-    Ok(block.data.clone())
+/// The numbers of a block that must have this shape.
+pub(crate) fn shaped(answer: &Frame, name: &str, due: &[usize]) -> Result<Vec<f64>, Refusal> {
+    shape::block(answer, name, due).map(<[f64]>::to_vec).map_err(Refusal::Failed)
 }

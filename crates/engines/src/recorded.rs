@@ -2,8 +2,9 @@
 //!
 //! A recording is about one robot and holds what every engine answered. It is a sequence of parts, each a line of JSON with the number of
 //! raw bytes that follow it: first the robot and the states; then, for each engine, who it is and its outcomes, one after the other; at last
-//! how many parts there were, so that a truncated file is known as such. The first answer to a quantity stands as plain doubles, later ones as
-//! their distances from it in units in the last place: exact, and an eighth of the size.
+//! how many parts there were. The first answer to a quantity stands as plain doubles, later ones as their distances from it in units in the
+//! last place: exact, and an eighth of the size. The last line is the checksum of all bytes before it: a file of which one bit differs is
+//! refused.
 
 use crate::coding::{delta, from_delta, from_plain, plain};
 use harness::{Identity, Outcome, Prepared, Problem, Quantity, Refusal, Subject};
@@ -53,6 +54,9 @@ pub struct EngineRecording {
     pub outcomes: Vec<(Quantity, String, Outcome)>,
 }
 
+/// Version of the form of recordings.
+const FORMAT: u64 = 2;
+
 /// Name of a robot's recording.
 pub fn recording_name(model: &str) -> String {
     format!("{model}.recording")
@@ -62,7 +66,7 @@ impl Recording {
     /// The recording as bytes.
     pub fn to_bytes(&self, problem: &Problem) -> Vec<u8> {
         let mut writer = Writer { bytes: Vec::new(), parts: 0 };
-        let head = json!({"recording": 1, "model": problem.name, "problem": problem.hash, "states": problem.states.count()});
+        let head = json!({"recording": FORMAT, "model": problem.name, "problem": problem.hash, "states": problem.states.count()});
         writer.part(head, &plain(&states(&problem.states)));
         let topology = &problem.model.topology;
         let mut bases: HashMap<Quantity, Vec<f64>> = HashMap::new();
@@ -88,6 +92,7 @@ impl Recording {
         }
         let parts = writer.parts;
         writer.part(json!({"end": parts}), &[]);
+        record::seal(&mut writer.bytes);
         writer.bytes
     }
 
@@ -105,8 +110,13 @@ impl Recording {
     /// # Errors
     /// What is truncated, damaged, or about another robot or other states, in words.
     pub fn from_bytes(bytes: &[u8], problem: &Problem) -> Result<Self, String> {
-        let mut reader = Reader { bytes, parts: 0 };
+        let body = record::unsealed(bytes);
+        let body = body.ok_or("its last line is not the checksum of the bytes before it: the file is truncated or damaged")?;
+        let mut reader = Reader { bytes: body, parts: 0 };
         let (head, raw) = reader.part()?;
+        if head["recording"].as_u64() != Some(FORMAT) {
+            return Err(format!("it is a recording of format {}, this program reads format {FORMAT}", head["recording"]));
+        }
         let recorded = from_plain(raw).ok_or("the states are damaged")?;
         let bits = |values: &[f64]| values.iter().map(|x| x.to_bits()).collect::<Vec<_>>();
         if head["problem"] != problem.hash.as_str() || bits(&recorded) != bits(&states(&problem.states)) {

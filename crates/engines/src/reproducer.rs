@@ -1,6 +1,6 @@
 //! Reproductions of known deviations: programs of `oracles/reproductions`, each asked in a process of its own.
 
-use crate::oracle::{Limits, checked, sized};
+use crate::oracle::{Limits, checked, shaped};
 use crate::process::Process;
 use harness::Refusal;
 use harness::frame::Frame;
@@ -15,5 +15,5 @@ pub fn reproduce(command: &[OsString], limits: Limits, name: &str, seeds: u64) -
     let mut process = Process::start(command, limits).map_err(Refusal::Failed)?;
     let request = Frame::new(json!({"op": "reproduce", "name": name, "seeds": seeds}), Vec::new());
     let answer = checked(process.ask(&request).map_err(Refusal::Failed)?)?;
-    sized(&answer, "value", seeds as usize)
+    shaped(&answer, "value", &[seeds as usize])
 }

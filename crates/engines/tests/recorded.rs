@@ -80,6 +80,17 @@ fn bits(recording: &Recording) -> Vec<(Identity, Vec<Bits>)> {
     recording.engines.iter().map(engine).collect()
 }
 
+/// A recording without its last line, and one that is given its checksum anew: for damage that a checksum does not show.
+fn unsealed(bytes: &[u8]) -> &[u8] {
+    record::unsealed(bytes).unwrap()
+}
+
+fn sealed(bytes: &[u8]) -> Vec<u8> {
+    let mut bytes = bytes.to_vec();
+    record::seal(&mut bytes);
+    bytes
+}
+
 #[track_caller]
 fn damaged(path: &Path, problem: &Problem) -> String {
     match Recording::read(path, problem) {
@@ -113,33 +124,68 @@ fn a_truncated_file_is_damaged_wherever_it_ends() {
     // Every cut near an end of line, where parts begin, and every 61st elsewhere: coprime with the eight bytes of a double.
     let near_a_line = |cut: &usize| whole[cut.saturating_sub(2)..(cut + 2).min(whole.len())].contains(&b'\n');
     for cut in (0..whole.len()).filter(|cut| cut % 61 == 0 || near_a_line(cut)) {
-        damaged(&write(folder.path(), &problem, &whole[..cut]), &problem);
+        let message = damaged(&write(folder.path(), &problem, &whole[..cut]), &problem);
+        assert!(message.contains("checksum") && message.contains("truncated"), "{message}");
+        // Below the checksum: what is cut is missed by its own parts too.
+        if cut < unsealed(&whole).len() {
+            damaged(&write(folder.path(), &problem, &sealed(&whole[..cut])), &problem);
+        }
     }
     let path = write(folder.path(), &problem, &[&whole[..], b"x"].concat());
+    assert!(damaged(&path, &problem).contains("checksum"));
+    let path = write(folder.path(), &problem, &sealed(&[unsealed(&whole), b"x"].concat()));
     assert!(damaged(&path, &problem).contains("behind the end"));
     write(folder.path(), &problem, &whole);
     assert!(Recording::read(&path, &problem).is_ok());
 }
 
-/// Whole parts that are missing, doubled or not understood.
+/// Every bit of the file, whatever it stands for.
+#[test]
+fn every_flipped_bit_is_an_error_that_names_the_file() {
+    let problem = robot("chain:n=2");
+    let folder = tempfile::tempdir().unwrap();
+    let whole = recording(&problem).to_bytes(&problem);
+    assert!(Recording::from_bytes(&whole, &problem).is_ok());
+    for at in 0..whole.len() {
+        for bit in 0..8 {
+            let mut flipped = whole.clone();
+            flipped[at] ^= 1 << bit;
+            assert!(Recording::from_bytes(&flipped, &problem).is_err(), "bit {bit} of byte {at}");
+            // Through the file itself for one byte in sixteen: the message is made in one place.
+            if at % 16 == 0 {
+                damaged(&write(folder.path(), &problem, &flipped), &problem);
+            }
+        }
+    }
+    assert!(whole.len() > 2000, "{} bytes", whole.len());
+}
+
+/// Whole parts that are missing, doubled or not understood, each with a right checksum.
 #[test]
 fn an_altered_file_is_damaged() {
     let problem = robot("chain:n=2");
     let folder = tempfile::tempdir().unwrap();
     let whole = recording(&problem).to_bytes(&problem);
+    let whole = unsealed(&whole);
     let last = br#"{"bytes":0,"end":"#;
     let end = whole.windows(last.len()).rposition(|window| window == last).unwrap();
     for bytes in [b"".to_vec(), b"\n".to_vec(), b"{}\n".to_vec(), b"[]\n".to_vec(), b"null\n".to_vec(), whole[end..].to_vec(), vec![0; 100]]
     {
-        damaged(&write(folder.path(), &problem, &bytes), &problem);
+        damaged(&write(folder.path(), &problem, &sealed(&bytes)), &problem);
     }
     let second = whole.iter().position(|&byte| byte == b'\n').unwrap() + 1 + 8 * 4 * (2 * 4 + 6 * 2);
     assert_eq!(whole[second], b'{', "the states are four times q, v, a and τ of two dofs and wrenches of two bodies");
-    damaged(&write(folder.path(), &problem, &[&whole[..second], &whole[end..]].concat()), &problem);
+    damaged(&write(folder.path(), &problem, &sealed(&[&whole[..second], &whole[end..]].concat())), &problem);
     let huge = b"{\"bytes\":18446744073709551615,\"engine\":\"e\",\"version\":\"1\"}\n";
-    damaged(&write(folder.path(), &problem, &[&whole[..second], huge].concat()), &problem);
+    damaged(&write(folder.path(), &problem, &sealed(&[&whole[..second], huge].concat())), &problem);
     let orphan = b"{\"bytes\":0,\"quantity\":\"id\",\"status\":\"ok\"}\n";
-    assert!(damaged(&write(folder.path(), &problem, &[&whole[..second], orphan].concat()), &problem).contains("before its engine"));
+    assert!(
+        damaged(&write(folder.path(), &problem, &sealed(&[&whole[..second], orphan].concat())), &problem).contains("before its engine")
+    );
+    let head = whole.iter().position(|&byte| byte == b'\n').unwrap();
+    let older = String::from_utf8(whole[..head].to_vec()).unwrap().replace("\"recording\":2", "\"recording\":1");
+    let message = damaged(&write(folder.path(), &problem, &sealed(&[older.as_bytes(), &whole[head..]].concat())), &problem);
+    assert!(message.contains("format 1") && message.contains("record it again"), "{message}");
 }
 
 #[test]

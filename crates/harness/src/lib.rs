@@ -33,7 +33,7 @@ pub use quantity::{DENSE_LIMIT, Quantity};
 pub use reading::{FileBase, FileFormat, Reading, ReadingNote, RobotFile};
 pub use scatter::Scatter;
 pub use stepper::Stepper;
-pub use store::{OUTCOMES_NAME, OutcomeStore};
+pub use store::{Lost, OUTCOMES_NAME, OutcomeStore};
 pub use study::{Context, Finished, Study};
 pub use subject::{Identity, Prepared, Refusal, Subject};
 pub use suite::{AgreementEntry, ProblemEntry, Suite, TimingEntry};

@@ -6,17 +6,39 @@ use formats::neutral;
 use serde_json::{Value, json};
 use std::collections::HashMap;
 use std::fs::{File, OpenOptions};
-use std::io::{BufReader, Seek};
+use std::io::{BufReader, Read, Seek};
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, PoisonError};
 
 /// Every finished cell's outcome, in memory and appended to `outcomes.frames` as it comes.
 ///
-/// A run that is killed leaves at most one incomplete frame at the end; opening the store again cuts it off.
+/// Each frame holds a checksum of all that is in it. A run that is killed leaves at most one incomplete frame at the end. A frame that is
+/// incomplete or damaged ends what can be trusted: opening the store cuts it off with all that stands behind it, and [`Self::lost`] tells.
 #[derive(Debug)]
 pub struct OutcomeStore {
     path: PathBuf,
+    lost: Option<Lost>,
     inner: Mutex<Inner>,
+}
+
+/// What of a file of outcomes could not be used.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Lost {
+    /// The file.
+    pub path: PathBuf,
+    /// The first frame that could not be used, counted from one.
+    pub frame: u64,
+    /// What is wrong with it.
+    pub what: String,
+    /// The bytes from the beginning of that frame to the end of the file.
+    pub bytes: u64,
+}
+
+impl std::fmt::Display for Lost {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let Self { path, frame, what, bytes } = self;
+        write!(f, "{}: frame {frame}: {what}; it and what stands behind it ({bytes} bytes) are not used", path.display())
+    }
 }
 
 #[derive(Debug)]
@@ -29,7 +51,7 @@ struct Inner {
 pub const OUTCOMES_NAME: &str = "outcomes.frames";
 
 impl OutcomeStore {
-    /// Opens the store of a run's folder, reading what is there.
+    /// Opens the store of a run's folder, reading what is there and cutting off what cannot be used.
     ///
     /// # Errors
     /// When the file cannot be read or written.
@@ -37,25 +59,26 @@ impl OutcomeStore {
         let path = folder.join(OUTCOMES_NAME);
         let io = |source| HarnessError::io(&path, source);
         let file = OpenOptions::new().create(true).truncate(false).read(true).write(true).open(&path).map_err(io)?;
-        let mut reader = BufReader::new(file);
-        let mut outcomes = HashMap::new();
-        let mut good = 0;
-        // A frame that is cut off or damaged ends what can be trusted: cells after it are evaluated again.
-        loop {
-            match Frame::read(&mut reader) {
-                Ok(Some(frame)) => {
-                    let Some((id, outcome)) = from_frame(frame) else { break };
-                    outcomes.insert(id, outcome);
-                    good = reader.stream_position().map_err(io)?;
-                }
-                Err(FrameError::Io(source)) => return Err(HarnessError::io(&path, source)),
-                Ok(None) | Err(FrameError::Truncated | FrameError::Header(_)) => break,
-            }
-        }
-        let mut file = reader.into_inner();
+        let (mut file, Whole { outcomes, good, lost }) = read(file, &path)?;
         file.set_len(good).map_err(io)?;
         file.seek(std::io::SeekFrom::End(0)).map_err(io)?;
-        Ok(Self { path, inner: Mutex::new(Inner { file, outcomes }) })
+        Ok(Self { path, lost, inner: Mutex::new(Inner { file, outcomes }) })
+    }
+
+    /// The outcomes of a run's folder by cell, and what of the file cannot be used. The file stays as it is.
+    ///
+    /// # Errors
+    /// When the file cannot be read.
+    pub fn look(folder: &Path) -> Result<(HashMap<String, Outcome>, Option<Lost>), HarnessError> {
+        let path = folder.join(OUTCOMES_NAME);
+        let file = File::open(&path).map_err(|source| HarnessError::io(&path, source))?;
+        let (_, Whole { outcomes, lost, .. }) = read(file, &path)?;
+        Ok((outcomes, lost))
+    }
+
+    /// What of the file was cut off when it was opened: its cells are evaluated again.
+    pub fn lost(&self) -> Option<&Lost> {
+        self.lost.as_ref()
     }
 
     /// The outcome of a cell, if it is finished.
@@ -87,6 +110,38 @@ impl OutcomeStore {
     }
 }
 
+/// What of a file of outcomes is whole.
+struct Whole {
+    outcomes: HashMap<String, Outcome>,
+    /// Its length in bytes.
+    good: u64,
+    lost: Option<Lost>,
+}
+
+/// Reads frame after frame as far as they are whole.
+fn read<S: Read + Seek>(mut source: S, path: &Path) -> Result<(S, Whole), HarnessError> {
+    let io = |source| HarnessError::io(path, source);
+    let length = source.seek(std::io::SeekFrom::End(0)).map_err(io)?;
+    source.rewind().map_err(io)?;
+    let mut reader = BufReader::new(source);
+    let (mut outcomes, mut good, mut frames) = (HashMap::new(), 0, 0);
+    let what = loop {
+        frames += 1;
+        match Frame::read(&mut reader) {
+            Ok(None) => break None,
+            Ok(Some(frame)) => match from_frame(frame) {
+                Ok((id, outcome)) => drop(outcomes.insert(id, outcome)),
+                Err(what) => break Some(what),
+            },
+            Err(FrameError::Io(source)) => return Err(io(source)),
+            Err(error @ (FrameError::Truncated | FrameError::Header(_))) => break Some(error.to_string()),
+        }
+        good = reader.stream_position().map_err(io)?;
+    };
+    let lost = what.map(|what| Lost { path: path.to_owned(), frame: frames, what, bytes: length.saturating_sub(good) });
+    Ok((reader.into_inner(), Whole { outcomes, good, lost }))
+}
+
 fn to_frame(id: &str, cell: &Cell, outcome: &Outcome) -> Frame {
     let (status, reason, blocks) = match outcome {
         Outcome::Values(values) => ("ok", "", vec![Block::new("value", &[values.len()], values)]),
@@ -101,8 +156,13 @@ fn to_frame(id: &str, cell: &Cell, outcome: &Outcome) -> Frame {
     if let Outcome::Reading(reading) = outcome {
         header["reading"] = written(reading);
     }
-    Frame::new(header, blocks)
+    let mut frame = Frame::new(header, blocks);
+    frame.header.insert(CHECKSUM.into(), record::checksum(&frame.to_bytes()).into());
+    frame
 }
+
+/// The key of a frame's checksum: that of its bytes without this key.
+const CHECKSUM: &str = "blake3";
 
 /// A reading as JSON: the description's text, and the notes.
 fn written(reading: &Reading) -> Value {
@@ -121,22 +181,35 @@ fn reading(value: &Value, keyframes: &Block) -> Option<Reading> {
     Some(Reading { description, notes: value["notes"].as_array()?.iter().map(note).collect::<Option<_>>()?, keyframes })
 }
 
-fn from_frame(mut frame: Frame) -> Option<(String, Outcome)> {
+/// The cell and its outcome, or what is wrong with the frame.
+fn from_frame(mut frame: Frame) -> Result<(String, Outcome), String> {
+    let Some(Value::String(due)) = frame.header.remove(CHECKSUM) else { return Err("it has no checksum".into()) };
+    if record::checksum(&frame.to_bytes()) != due {
+        return Err("its checksum is another one: it is damaged".into());
+    }
     let id = frame.text("cell").to_owned();
     let reason = frame.text("reason").to_owned();
     let outcome = match frame.text("status") {
-        "ok" => Outcome::Values(frame.blocks.pop()?.data),
-        "read" => Outcome::Reading(Box::new(reading(frame.header.get("reading")?, frame.block("keyframes")?)?)),
-        "unsupported" => Outcome::Refused(Refusal::Unsupported(reason)),
-        "error" => Outcome::Refused(Refusal::Failed(reason)),
-        _ => return None,
+        "ok" => frame.blocks.pop().map(|block| Outcome::Values(block.data)),
+        "read" => {
+            let keyframes = frame.block("keyframes");
+            let reading = frame.header.get("reading").zip(keyframes).and_then(|(value, keyframes)| reading(value, keyframes));
+            reading.map(|reading| Outcome::Reading(Box::new(reading)))
+        }
+        "unsupported" => Some(Outcome::Refused(Refusal::Unsupported(reason))),
+        "error" => Some(Outcome::Refused(Refusal::Failed(reason))),
+        _ => None,
     };
-    (!id.is_empty()).then_some((id, outcome))
+    match outcome {
+        Some(outcome) if !id.is_empty() => Ok((id, outcome)),
+        _ => Err("it holds no outcome of a cell".into()),
+    }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use model::generate::Family;
 
     fn cell(method: &str) -> Cell {
         let text = |s: &str| s.to_owned();
@@ -175,5 +248,54 @@ mod tests {
             let again = OutcomeStore::open(folder.path()).unwrap();
             assert_eq!(again.get(&cell("c").id()), Some(values.clone()), "appended after a cut at {cut}");
         }
+    }
+    /// Outcomes of every kind.
+    fn outcomes() -> Vec<(Cell, Outcome)> {
+        let description = Family::parse("chain:n=1").unwrap().generate().unwrap();
+        let note = ReadingNote { cause: "warning".into(), subject: Some("link".into()), text: "not \"this\"".into() };
+        vec![
+            (cell("a"), Outcome::Values(vec![0.1, f64::NAN, -0.0])),
+            (cell("b"), Outcome::Refused(Refusal::Failed("it \"broke\"".into()))),
+            (cell("c"), Outcome::Reading(Box::new(Reading { description, notes: vec![note], keyframes: vec![vec![0.5]] }))),
+            (cell("d"), Outcome::Refused(Refusal::Unsupported("no such joint".into()))),
+            (cell("e"), Outcome::Values(vec![1.5])),
+        ]
+    }
+
+    /// The outcome of a cell with its numbers as bits.
+    fn bits(outcome: &Outcome) -> String {
+        format!("{outcome:?} {:?}", outcome.values().map(|values| values.iter().map(|x| x.to_bits()).collect::<Vec<_>>()))
+    }
+
+    /// Every bit of a file: what comes back is what was written, or is missing and said to be.
+    #[test]
+    fn no_flipped_bit_makes_another_outcome() {
+        let folder = tempfile::tempdir().unwrap();
+        let store = OutcomeStore::open(folder.path()).unwrap();
+        for (cell, outcome) in outcomes() {
+            store.insert(&cell, outcome).unwrap();
+        }
+        let path = folder.path().join(OUTCOMES_NAME);
+        let whole = std::fs::read(&path).unwrap();
+        let written: HashMap<String, String> = outcomes().iter().map(|(cell, outcome)| (cell.id(), bits(outcome))).collect();
+        assert_eq!(OutcomeStore::look(folder.path()).unwrap().0.len(), written.len());
+        let mut discarded = 0;
+        for at in 0..whole.len() {
+            for bit in 0..8 {
+                let mut damaged = whole.clone();
+                damaged[at] ^= 1 << bit;
+                let (_, Whole { outcomes: found, lost, .. }) = read(std::io::Cursor::new(damaged), &path).unwrap();
+                for (id, outcome) in &found {
+                    assert_eq!(written.get(id), Some(&bits(outcome)), "bit {bit} of byte {at}");
+                }
+                assert_eq!(found.len() < written.len(), lost.is_some(), "bit {bit} of byte {at}");
+                if let Some(lost) = lost {
+                    let message = lost.to_string();
+                    assert!(message.contains(OUTCOMES_NAME) && message.contains(&format!("frame {}:", found.len() + 1)), "{message}");
+                    discarded += 1;
+                }
+            }
+        }
+        assert!(discarded == 8 * whole.len() && whole.len() > 1000, "{discarded} of {}", 8 * whole.len());
     }
 }

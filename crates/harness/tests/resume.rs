@@ -188,6 +188,27 @@ fn a_damaged_file_is_used_as_far_as_it_is_whole() {
     }
 }
 
+/// One flipped bit anywhere: the rows of the resumed run are those of the whole one, and where a frame was lost that is said.
+#[test]
+fn a_flipped_bit_never_makes_other_rows() {
+    let (bytes, csv, ids) = whole();
+    let first = bytes.iter().position(|&byte| byte == b'\n').unwrap();
+    let mut random = Random::named(3, "flips");
+    let anywhere = (0..300).map(|_| random.below(bytes.len())).collect::<Vec<_>>();
+    for at in (0..=first).chain(anywhere) {
+        let folder = tempfile::tempdir().unwrap();
+        let mut flipped = bytes.clone();
+        flipped[at] ^= 1 << random.below(8);
+        std::fs::write(folder.path().join(OUTCOMES_NAME), &flipped).unwrap();
+        let (found, lost) = OutcomeStore::look(folder.path()).unwrap();
+        let lost = lost.unwrap_or_else(|| panic!("nothing was noticed at {at}")).to_string();
+        assert!(lost.contains(OUTCOMES_NAME) && lost.contains(&format!("frame {}:", found.len() + 1)), "{lost}");
+        let study = Counting::default();
+        assert_eq!(run_in(folder.path(), &study, &Silent).unwrap(), csv, "at {at}");
+        assert_eq!(study.counts().len(), ids.len() - found.len(), "at {at}");
+    }
+}
+
 const FOLDER: &str = "FEATHERBENCH_TEST_DIE_IN";
 const MOMENT: &str = "FEATHERBENCH_TEST_DIE_AT";
 

@@ -9,6 +9,7 @@
 mod support;
 
 use featherbench_reference::{Mp, Precision, nearest_doubles};
+use record::Checksums;
 use serde_json::{Value, json};
 use std::error::Error;
 use std::io::Write;
@@ -72,6 +73,8 @@ fn make(python: &Path) -> Result<(), Box<dyn Error>> {
         "cases": cases,
     });
     std::fs::write(folder().join("index.json"), serde_json::to_string_pretty(&index)? + "\n")?;
+    let names: Vec<String> = CASES.iter().map(|case| format!("{}.csv", case.name)).chain(["index.json".to_owned()]).collect();
+    Checksums::of(&folder(), &names.iter().map(String::as_str).collect::<Vec<_>>())?.write()?;
     Ok(())
 }
 

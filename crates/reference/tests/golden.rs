@@ -6,6 +6,7 @@ mod support;
 
 use featherbench_reference::{Precision, nearest_doubles};
 use model::Random;
+use record::{CHECKSUMS_NAME, Checksums};
 use serde_json::Value;
 use support::CASES;
 use support::golden::{Answers, COLUMNS, DIGITS, SEED, folder, hash_of_doubles, hash_of_python, hash_of_rust, hash_of_state};
@@ -14,13 +15,19 @@ use support::golden::{Answers, COLUMNS, DIGITS, SEED, folder, hash_of_doubles, h
 const AGAIN: &str = "run `cargo run --release -p featherbench-reference --example golden -- make` (it needs Python with mpmath and numpy: \
                      `featherbench oracles install`) and commit datasets/truth";
 
+/// A golden file, which must have its checksum.
+fn text(name: &str) -> String {
+    let bytes = Checksums::read(&folder()).and_then(|sums| sums.bytes(name)).unwrap_or_else(|error| panic!("{error}; {AGAIN}"));
+    String::from_utf8(bytes).unwrap()
+}
+
 fn index() -> Value {
-    serde_json::from_str(&std::fs::read_to_string(folder().join("index.json")).unwrap()).unwrap()
+    serde_json::from_str(&text("index.json")).unwrap()
 }
 
 /// The rows of a golden file, each with its columns.
 fn rows(name: &str) -> Vec<Vec<String>> {
-    let text = std::fs::read_to_string(folder().join(format!("{name}.csv"))).unwrap();
+    let text = text(&format!("{name}.csv"));
     let mut lines = text.lines().map(|line| line.split(',').map(str::to_owned).collect::<Vec<_>>());
     assert_eq!(lines.next().unwrap(), COLUMNS);
     lines.collect()
@@ -42,9 +49,51 @@ fn golden_data_are_those_of_the_witnesses() {
     }
 }
 
+/// The index and one file per case have a checksum, and no other file has.
+#[test]
+fn every_golden_file_has_its_checksum() {
+    let sums = Checksums::read(&folder()).unwrap();
+    let mut due: Vec<String> = CASES.iter().map(|case| format!("{}.csv", case.name)).chain(["index.json".to_owned()]).collect();
+    due.sort_unstable();
+    assert_eq!(sums.names().collect::<Vec<_>>(), due);
+    due.iter().for_each(|name| assert!(!text(name).is_empty()));
+}
+
+/// Damage in one bit of a file, of the index or of the checksums themselves.
+#[test]
+fn a_flipped_bit_of_golden_data_is_an_error_that_names_the_file() {
+    let copy = tempfile::tempdir().unwrap();
+    let names = ["planar_small_10.csv", "index.json", CHECKSUMS_NAME];
+    for name in std::fs::read_dir(folder()).unwrap().map(|entry| entry.unwrap().file_name()) {
+        std::fs::copy(folder().join(&name), copy.path().join(&name)).unwrap();
+    }
+    let check = || Checksums::read(copy.path()).and_then(|sums| sums.names().try_for_each(|name| sums.bytes(name).map(drop)));
+    check().unwrap();
+    let mut flips = 0;
+    for name in names {
+        let path = copy.path().join(name);
+        let whole = std::fs::read(&path).unwrap();
+        // All eight bits of every byte of the first line, one of each byte behind it.
+        let first = whole.iter().position(|&byte| byte == b'\n').unwrap();
+        for at in 0..whole.len() {
+            for bit in if at <= first { 0..8 } else { at % 8..at % 8 + 1 } {
+                let mut flipped = whole.clone();
+                flipped[at] ^= 1 << bit;
+                std::fs::write(&path, flipped).unwrap();
+                let error = check().expect_err(&format!("bit {bit} of byte {at} of {name}")).to_string();
+                assert!(error.contains(name), "bit {bit} of byte {at} of {name}: {error}");
+                flips += 1;
+            }
+        }
+        std::fs::write(&path, &whole).unwrap();
+    }
+    assert!(flips > 5000, "{flips} flips");
+}
+
 #[test]
 fn golden_data_are_small() {
-    let bytes: u64 = std::fs::read_dir(folder()).unwrap().map(|entry| entry.unwrap().metadata().unwrap().len()).sum();
+    let files = std::fs::read_dir(folder()).unwrap().map(Result::unwrap).filter(|entry| entry.file_name() != CHECKSUMS_NAME);
+    let bytes: u64 = files.map(|entry| entry.metadata().unwrap().len()).sum();
     assert!(bytes <= 100_000, "{bytes} bytes in datasets/truth");
 }
 

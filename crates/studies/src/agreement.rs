@@ -15,7 +15,7 @@ use serde_json::json;
 const REFERENCE: &str = "native";
 
 /// What every engine is asked.
-const QUANTITIES: [Quantity; 15] = [
+pub(crate) const QUANTITIES: [Quantity; 15] = [
     Quantity::Readback,
     Quantity::InverseDynamics,
     Quantity::InverseDynamicsWrench,
@@ -73,7 +73,7 @@ impl Study for Agreement {
 }
 
 /// Whether a quantity is asked of a robot: the whole mass matrix of small ones, a probe of big ones.
-fn asked(problem: &Problem, quantity: Quantity) -> bool {
+pub(crate) fn asked(problem: &Problem, quantity: Quantity) -> bool {
     let big = problem.states.nv > DENSE_LIMIT;
     match quantity {
         Quantity::MassMatrix => !big,

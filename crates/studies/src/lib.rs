@@ -4,6 +4,7 @@
 //! - [`Digits`]: how far is each from the truth, and who is right?
 //! - [`Conditioning`]: how does κ(M) grow, and does it matter?
 //! - [`Reading`]: do they read one and the same file alike, and if not, where and why?
+//! - [`Repeatability`]: does the same question have the same answer?
 //! - [`Reproductions`]: are the engines' known deviations still there, and as large as they were?
 //! - [`StepLimit`]: how does the acceleration of a step approach the true one, and what do steps do to energy?
 //! - [`Structure`]: are the counts of the sparse algorithms the integers that theory says?
@@ -13,6 +14,7 @@ mod agreement;
 mod conditioning;
 mod digits;
 pub mod reading;
+mod repeatability;
 mod reproductions;
 mod step_limit;
 mod structure;
@@ -22,12 +24,13 @@ pub use agreement::Agreement;
 pub use conditioning::Conditioning;
 pub use digits::Digits;
 pub use reading::Reading;
+pub use repeatability::Repeatability;
 pub use reproductions::{Reproduce, Reproductions};
 pub use step_limit::StepLimit;
 pub use structure::Structure;
 pub use timing::Timing;
 
-use harness::{Cell, Context, Outcome, Problem, Quantity, Refusal};
+use harness::{Cell, Context, Outcome, Problem, Quantity, Refusal, Subject};
 use record::Record;
 
 /// A row with everything that its cell and problem say; the study adds case, metric and value.
@@ -57,14 +60,17 @@ fn evaluate(context: &Context, cell: &Cell) -> Outcome {
     let Some(problem) = context.problem(&cell.problem) else { return lost("problem") };
     let Some(subject) = context.subject(&cell.subject) else { return lost("subject") };
     let Some(quantity) = Quantity::parse(&cell.quantity) else { return lost("quantity") };
+    asked(subject, problem, quantity, &cell.method).into()
+}
+
+/// Asks a subject for a quantity at a problem's states.
+fn asked(subject: &dyn Subject, problem: &Problem, quantity: Quantity, method: &str) -> Result<Vec<f64>, Refusal> {
     let count = quantity.states(problem.states.count());
-    let evaluated = subject.prepare(problem, quantity, &cell.method, &problem.states).and_then(|mut prepared| {
-        prepared.run(0..count)?;
-        let (values, due) = (prepared.read().to_vec(), count * quantity.size(problem));
-        // Fewer states would be compared, and nobody would know.
-        if values.len() == due { Ok(values) } else { Err(Refusal::Failed(format!("{} numbers came, {due} are due", values.len()))) }
-    });
-    evaluated.into()
+    let mut prepared = subject.prepare(problem, quantity, method, &problem.states)?;
+    prepared.run(0..count)?;
+    let (values, due) = (prepared.read().to_vec(), count * quantity.size(problem));
+    // Fewer states would be compared, and nobody would know.
+    if values.len() == due { Ok(values) } else { Err(Refusal::Failed(format!("{} numbers came, {due} are due", values.len()))) }
 }
 
 /// The value below which a fraction of the sorted samples lies.

@@ -6,7 +6,8 @@ use super::talk::Talk;
 use super::values::{Scene, same_bits};
 use super::{Standing, robots};
 use crate::request::states;
-use harness::{Problem, Quantity};
+use crate::shape;
+use harness::Quantity;
 use serde_json::{Value, json};
 use std::collections::BTreeMap;
 
@@ -40,13 +41,9 @@ pub(super) fn ask(talk: &mut Talk, index: usize, scene: &Scene, offered: &Method
             talk.note(Standing::Wrong, "prepare tells nq and nv", &format!("{key} of {} is {found}, {due} is due", scene.shows), &[]);
         }
     }
-    let bodies = problem.description.bodies.len();
-    match built.block("readback").filter(|block| block.shape == [bodies, 22]) {
-        Some(block) => readback(talk, scene, &block.data),
-        None => {
-            let found = format!("no block `readback` of shape [{bodies}, 22] for {}", scene.shows);
-            talk.note(Standing::Wrong, "prepare reads the robot back", &found, &[]);
-        }
+    match shape::block(&built, "readback", &shape::of_readback(problem)) {
+        Ok(numbers) => readback(talk, scene, numbers),
+        Err(found) => talk.note(Standing::Wrong, "prepare reads the robot back", &format!("{}: {found}", scene.shows), &[]),
     }
     evaluate_all(talk, index, scene, offered, answers);
 }
@@ -104,25 +101,12 @@ fn evaluate(talk: &mut Talk, scene: &Scene, quantity: Quantity, method: &str, fi
             return None;
         }
     }
-    let due = shape(quantity, problem, count);
-    let found = match answer.block("value") {
-        None => "no block `value`".to_owned(),
-        Some(block) if block.shape == due => return Some(block.data.clone()),
-        Some(block) => format!("block `value` has the shape {:?}", block.shape),
-    };
-    talk.note(Standing::Wrong, &named, &format!("{found} for {}; {due:?} is due", scene.shows), &[]);
-    None
-}
-
-/// `[count, …]` as the protocol's table of quantities has it.
-fn shape(quantity: Quantity, problem: &Problem, count: usize) -> Vec<usize> {
-    let (nv, bodies) = (problem.states.nv, problem.description.bodies.len());
-    match quantity {
-        Quantity::MassMatrix => vec![count, nv, nv],
-        Quantity::MassMatrixProbe | Quantity::BodyJacobian => vec![count, 6, nv],
-        Quantity::BodyPlacement => vec![count, bodies, 12],
-        Quantity::BodyVelocity | Quantity::BodyAcceleration => vec![count, bodies, 6],
-        _ => vec![count, quantity.size(problem)],
+    match shape::block(&answer, "value", &shape::of_value(quantity, problem, count)) {
+        Ok(values) => Some(values.to_vec()),
+        Err(found) => {
+            talk.note(Standing::Wrong, &named, &format!("{}: {found}", scene.shows), &[]);
+            None
+        }
     }
 }
 

@@ -4,6 +4,7 @@
 
 mod library;
 
+use crate::shape;
 use harness::frame::{Block, Frame};
 use harness::{Problem, Quantity, Refusal, Scatter};
 use library::{Built, Library};
@@ -151,8 +152,8 @@ impl<'a> Session<'a> {
         ok(json!({}), Vec::new())
     }
 
-    /// The robot with the asked method ready, the range, and the numbers per state.
-    fn asked(&mut self, request: &Frame) -> Result<(&mut Built<'a>, usize, usize, usize), Refusal> {
+    /// The robot with the asked method ready, the range, and the shape of the answer.
+    fn asked(&mut self, request: &Frame) -> Result<(&mut Built<'a>, usize, usize, Vec<usize>), Refusal> {
         let (quantity, method) = (request.text("quantity"), request.text("method"));
         let named = |(of, name): &(String, String)| of == quantity && name == method;
         let index = self.library.methods.iter().position(named);
@@ -164,21 +165,23 @@ impl<'a> Session<'a> {
             return Err(failed(format!("there is no body {body}")));
         }
         robot.ready(index, body)?;
-        Ok((robot, number(request, "first")?, number(request, "count")?, quantity.size(problem)))
+        let (first, count) = (number(request, "first")?, number(request, "count")?);
+        Ok((robot, first, count, shape::of_value(quantity, problem, count)))
     }
 
     fn evaluate(&mut self, request: &Frame) -> Answer {
-        let (robot, first, count, size) = self.asked(request)?;
+        let (robot, first, count, shape) = self.asked(request)?;
         if first.checked_add(count).is_none_or(|end| end > robot.count()) {
             return Err(failed(format!("{count} states from {first} on do not exist")));
         }
+        let size: usize = shape[1..].iter().product();
         let mut values = vec![0.0; count * size];
         // A robot that cannot move has nothing to say of itself.
         for (k, value) in values.chunks_exact_mut(size.max(1)).enumerate() {
             robot.run(first + k, 1)?;
             robot.read(value)?;
         }
-        ok(json!({}), vec![Block::new("value", &[count, size], &values)])
+        ok(json!({}), vec![Block::new("value", &shape, &values)])
     }
 
     fn clock(&mut self, request: &Frame) -> Answer {

@@ -1,7 +1,7 @@
 //! Who reads the clock, and whose times are estimates.
 
 use crate::script::{HELLO, PATIENT, Script, TWO, Trial};
-use harness::{Quantity, Refusal};
+use harness::{Quantity, Refusal, Subject};
 use std::time::Duration;
 
 /// An oracle that has a clock is asked for it; of any other the whole conversation is timed.

@@ -9,7 +9,7 @@ mod script;
 
 use crate::script::{HASTY, HELLO, PATIENT, READBACK, SOON, Script, TWO, Trial, lives, robot, stillborn};
 use featherbench_engines::{Limits, Oracle};
-use harness::{Quantity, Refusal};
+use harness::{Quantity, Refusal, Subject};
 use model::StateBatch;
 use std::time::{Duration, Instant};
 
@@ -97,7 +97,7 @@ fn a_crash_is_told_with_its_last_words() {
         Script::evaluate("echo 'Segmentation fault, as they say' >&2; exit 3"),
         // In the middle of a block.
         Script::evaluate(
-            r#"echo '{"status":"ok","blocks":[{"name":"value","shape":[2]}]}'; printf '12345678'; echo 'Segmentation fault, as they say' >&2; exit 3"#,
+            r#"echo '{"status":"ok","blocks":[{"name":"value","shape":[2,1]}]}'; printf '12345678'; echo 'Segmentation fault, as they say' >&2; exit 3"#,
         ),
         // In the middle of a header.
         Script::evaluate(r#"printf '{"status":'; echo 'Segmentation fault, as they say' >&2; exit 3"#),
@@ -160,8 +160,13 @@ fn floods_drown_nobody() {
 fn a_lying_header_is_refused() {
     let cases = [
         (r#"echo '{"status":"ok"}'"#, "no block 'value'"),
-        (r#"echo '{"status":"ok","blocks":[{"name":"value","shape":[3]}]}'; head -c 24 /dev/zero"#, "has 3 numbers, 2 are due"),
-        (r#"echo '{"status":"ok","blocks":[{"name":"value","shape":[0]}]}'"#, "has 0 numbers, 2 are due"),
+        (r#"echo '{"status":"ok","blocks":[{"name":"value","shape":[3]}]}'; head -c 24 /dev/zero"#, "has the shape [3]; [2, 1] is due"),
+        (
+            r#"echo '{"status":"ok","blocks":[{"name":"value","shape":[1,2]}]}'; head -c 16 /dev/zero"#,
+            "has the shape [1, 2]; [2, 1] is due",
+        ),
+        (r#"echo '{"status":"ok","blocks":[{"name":"value","shape":[2]}]}'; head -c 16 /dev/zero"#, "has the shape [2]; [2, 1] is due"),
+        (r#"echo '{"status":"ok","blocks":[{"name":"value","shape":[0]}]}'"#, "has the shape [0]; [2, 1] is due"),
         (r#"echo '{"status":"ok","blocks":[{"name":"value","shape":[1000000000000]}]}'"#, "too long"),
         (r#"echo '{"status":"ok","blocks":[{"name":"value","shape":[-2]}]}'"#, "a block must be"),
         ("echo '[1, 2]'", "not in the protocol"),
@@ -217,7 +222,7 @@ fn a_late_answer_belongs_to_no_later_question() {
 fn an_answer_to_another_request_is_noticed() {
     let numbered = |id: u64| TWO.replace("value ", &format!("value{id} "));
     let value = |id: u64| {
-        format!(r#"value{id}() {{ echo '{{"status":"ok","id":{id},"blocks":[{{"name":"value","shape":[2]}}]}}'; printf "$1"; }}"#)
+        format!(r#"value{id}() {{ echo '{{"status":"ok","id":{id},"blocks":[{{"name":"value","shape":[2,1]}}]}}'; printf "$1"; }}"#)
     };
     // The fourth request of the process: hello, prepare, states, evaluate.
     let right = Script::evaluate(&format!("{}; {}", value(4), numbered(4)));

@@ -1,7 +1,7 @@
 //! Files that an oracle reads.
 
 use crate::script::{PATIENT, READING, Script, Trial, robot};
-use harness::{FileBase, FileFormat, Reading, Refusal, RobotFile};
+use harness::{FileBase, FileFormat, Reading, Refusal, RobotFile, Subject};
 use model::StateBatch;
 
 impl Trial {

@@ -1,7 +1,7 @@
 //! Shell oracles: what they answer, and how they are asked.
 
 use featherbench_engines::{Limits, Oracle};
-use harness::{Problem, Quantity, Refusal};
+use harness::{Problem, Quantity, Refusal, Subject};
 use model::generate::Family;
 use record::ModelOrigin;
 use std::ffi::OsString;
@@ -55,7 +55,7 @@ impl Script {
         let states = 8 * (2 * (4 + 6) + 4);
         let script = format!(
             r#"
-            value() {{ echo '{{"status":"ok","blocks":[{{"name":"value","shape":[2]}}]}}'; printf "$1"; }}
+            value() {{ echo '{{"status":"ok","blocks":[{{"name":"value","shape":[2,1]}}]}}'; printf "$1"; }}
             echo $$ >> "$1/pids"
             while read -r line; do
                 case "$line" in

@@ -1,0 +1,68 @@
+//! The program from another folder than the checkout it was built in: which data it takes, and where it writes.
+
+mod support;
+
+use std::collections::BTreeSet;
+use std::path::{Path, PathBuf};
+use support::{Ended, Sandbox, project};
+
+const VARIABLE: &str = "FEATHERBENCH_ROOT";
+
+/// Runs the program in a folder that is no project, with this in the environment.
+fn run(here: &Path, root: Option<&Path>, arguments: &[&str]) -> Ended {
+    let mut command = std::process::Command::new(env!("CARGO_BIN_EXE_featherbench"));
+    command.args(arguments).current_dir(here).env("NO_COLOR", "1").env_remove(VARIABLE);
+    if let Some(root) = root {
+        command.env(VARIABLE, root);
+    }
+    Ended::new(command.output().unwrap())
+}
+
+fn entries(folder: PathBuf) -> BTreeSet<PathBuf> {
+    std::fs::read_dir(folder).into_iter().flatten().map(|entry| entry.unwrap().path()).collect()
+}
+
+/// A copy of the project stands for the checkout: what is read and written is its own, and the one of the build stays as it is.
+#[test]
+fn a_project_that_is_named_is_the_one_that_is_used() {
+    let (copy, here) = (Sandbox::new(), tempfile::tempdir().unwrap());
+    // A suite that only the copy has.
+    std::fs::remove_file(copy.path("datasets")).unwrap();
+    std::fs::create_dir_all(copy.path("datasets/suites")).unwrap();
+    std::os::unix::fs::symlink(project().join("datasets/models"), copy.path("datasets/models")).unwrap();
+    let suite = "about = \"one\"\nseed = 1\nstructure = true\n[[problem]]\nmodel = \"chain-planar-2\"\nfamily = \"chain\"\n";
+    copy.write("datasets/suites/own.toml", suite);
+    let before = entries(project().join("reports"));
+    run(here.path(), Some(copy.folder.path()), &["run", "--suite", "own"]).expect(0, &["report:"]);
+    let folder = copy.folder.path().to_str().unwrap();
+    run(here.path(), None, &["--root", folder, "run", "--suite", "own", "--out", "mine"]).expect(0, &["report:"]);
+    run(here.path(), None, &["list", "--suite", "own", "--root", folder]).expect(0, &["chain-planar-2"]);
+    assert_eq!(entries(copy.path("reports")).len(), 1, "a run without --out lands in the project's reports");
+    assert!(here.path().join("mine/records.csv").is_file(), "and one with it where it says");
+    // What is named comes before the folder one stands in.
+    run(copy.folder.path(), Some(&project()), &["list", "--suite", "own"]).expect(2, &["own.toml"]);
+    assert_eq!(entries(project().join("reports")), before);
+}
+
+#[test]
+fn a_folder_that_is_no_project_is_named_with_what_it_lacks() {
+    let here = tempfile::tempdir().unwrap();
+    run(here.path(), Some(here.path()), &["list"]).expect(2, &[VARIABLE, "no project's folder", "datasets/suites"]);
+    run(here.path(), None, &["list", "--root", "nowhere"]).expect(2, &["--root", "nowhere", "ci/gates.toml"]);
+}
+
+/// A run's folder is looked at without any project.
+#[test]
+fn what_needs_no_project_asks_for_none() {
+    let here = tempfile::tempdir().unwrap();
+    let row = record::Record { cell: "abcd".into(), study: "structure".into(), ..record::Record::default() }.informed(1.0);
+    record::write_run(&here.path().join("run"), &record::RunInfo::default(), &[row]).unwrap();
+    let nowhere = here.path().join("nowhere");
+    for (arguments, words) in
+        [(&["report", "run"][..], "report:"), (&["diff", "run", "run"], "nothing changed"), (&["explain", "ab", "run"], "again")]
+    {
+        run(here.path(), Some(&nowhere), arguments).expect(0, &[words]);
+    }
+    run(here.path(), Some(&nowhere), &["gate", "run"]).expect(2, &[VARIABLE]);
+    run(here.path(), Some(&nowhere), &["oracles", "check", "./nothing"]).expect(2, &["there is no program ./nothing"]);
+}

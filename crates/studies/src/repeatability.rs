@@ -1,0 +1,220 @@
+//! Repeatability: one question, put twice to the same process, has one answer, to the bit.
+//!
+//! A counter draws a robot and a method for each engine and each quantity that it offers. The cells run after all others and alone: the
+//! question, a question about another robot, and the first question again. The value is the largest distance between the two answers in
+//! units in the last place. The bound is zero: an engine that is not repeatable (random numbers, memory that was not initialised, sums over
+//! threads in any order) has no answer that could be checked, and no known deviation excuses it. A recording answers nothing anew: its
+//! engine is asked when it is recorded.
+
+use crate::agreement::{self, QUANTITIES};
+use crate::{asked, row};
+use harness::{Cell, Context, Finished, Outcome, Problem, Quantity, Refusal, Study, Subject, hash};
+use model::Random;
+use record::{EngineSource, Record, Relation, Verdict};
+use serde_json::json;
+
+/// The repeatability study.
+pub struct Repeatability {
+    /// What the draw depends on besides the seed, the engine and the quantity: the hash of the program, so that another build asks about
+    /// other cells, and a resumed run about the same.
+    pub key: String,
+}
+
+/// The failures after which no further robot is tried: they have rows of their own in the agreement study.
+const PATIENCE: usize = 3;
+
+/// Something that an engine can be asked.
+type Candidate<'a> = (&'a Problem, String);
+
+/// The robots of the agreement study by the methods of a quantity.
+fn candidates<'a>(context: &Context<'a>, subject: &dyn Subject, quantity: Quantity) -> Vec<Candidate<'a>> {
+    let methods = subject.methods(quantity);
+    let problems = context.problems.iter().filter(|problem| problem.takes("agreement") && agreement::asked(problem, quantity));
+    problems.flat_map(|problem| methods.iter().map(move |method| (problem, method.clone()))).collect()
+}
+
+/// What came of asking twice, as the values of an outcome.
+struct Twice {
+    /// Which of the candidates was asked.
+    candidate: usize,
+    /// Numbers that differ.
+    differing: usize,
+    /// Numbers of the answer.
+    total: usize,
+    /// The largest distance in units in the last place.
+    ulps: f64,
+}
+
+impl Twice {
+    fn new(candidate: usize, first: &[f64], second: &[f64]) -> Self {
+        let distances = first.iter().zip(second).map(|(a, b)| (ordered(*a) - ordered(*b)).unsigned_abs());
+        let (mut differing, mut largest) = (0, 0);
+        for distance in distances {
+            differing += usize::from(distance > 0);
+            largest = largest.max(distance);
+        }
+        Self { candidate, differing, total: first.len(), ulps: largest as f64 }
+    }
+
+    fn to_values(&self) -> Vec<f64> {
+        vec![self.candidate as f64, self.differing as f64, self.total as f64, self.ulps]
+    }
+
+    fn from_values(values: &[f64]) -> Option<Self> {
+        let [candidate, differing, total, ulps] = *values else { return None };
+        Some(Self { candidate: candidate as usize, differing: differing as usize, total: total as usize, ulps })
+    }
+}
+
+/// The bits of a double as an integer that grows with the double: two doubles have the same one when they have the same bits.
+fn ordered(x: f64) -> i128 {
+    let bits = x.to_bits() as i64;
+    i128::from(bits ^ (bits >> 63) & i64::MAX)
+}
+
+impl Repeatability {
+    /// The order in which candidates are tried.
+    fn order(&self, context: &Context, cell: &Cell, count: usize) -> Vec<usize> {
+        let mut random = Random::named(context.seed, &format!("repeatability {} {} {}", self.key, cell.subject, cell.quantity));
+        let mut order: Vec<usize> = (0..count).collect();
+        for last in (1..count).rev() {
+            order.swap(last, random.below(last + 1));
+        }
+        order
+    }
+}
+
+impl Study for Repeatability {
+    fn name(&self) -> &'static str {
+        "repeatability"
+    }
+
+    /// Alone: then the process that is asked again is the one that was asked before.
+    fn exclusive(&self) -> bool {
+        true
+    }
+
+    fn plan(&self, context: &Context) -> Vec<Cell> {
+        let mut cells = Vec::new();
+        let live = context.subjects.iter().filter(|subject| subject.identity().source != EngineSource::Recorded);
+        for subject in live {
+            let identity = subject.identity();
+            for quantity in QUANTITIES {
+                let candidates = candidates(context, subject.as_ref(), quantity);
+                if candidates.is_empty() {
+                    continue;
+                }
+                let parts: Vec<&[u8]> =
+                    candidates.iter().flat_map(|(problem, method)| [problem.hash.as_bytes(), method.as_bytes()]).collect();
+                cells.push(Cell {
+                    study: self.name().into(),
+                    problem: "all".into(),
+                    problem_hash: hash::of_parts(&parts),
+                    params: json!({"draw": self.key, "quantity": quantity.name()}),
+                    subject: identity.name.clone(),
+                    version: identity.version.clone(),
+                    method: "drawn".into(),
+                    quantity: quantity.name().into(),
+                    scalar: "f64".into(),
+                });
+            }
+        }
+        cells
+    }
+
+    fn evaluate(&self, context: &Context, cell: &Cell) -> Outcome {
+        let (Some(subject), Some(quantity)) = (context.subject(&cell.subject), Quantity::parse(&cell.quantity)) else {
+            return Outcome::Refused(Refusal::Failed("there is no subject or quantity of this cell".into()));
+        };
+        let candidates = candidates(context, subject, quantity);
+        let order = self.order(context, cell, candidates.len());
+        let ask = |index: usize| asked(subject, candidates[index].0, quantity, &candidates[index].1);
+        let mut failures = 0;
+        for (place, &index) in order.iter().enumerate() {
+            match ask(index) {
+                Ok(first) => {
+                    // An answer that is merely kept would be no second one. What comes of this question is none of this study's business.
+                    let other = order[place + 1..].iter().find(|&&other| candidates[other].0.hash != candidates[index].0.hash);
+                    let _ = other.map(|&other| ask(other));
+                    let (problem, method) = &candidates[index];
+                    let again = ask(index).map_err(|refusal| {
+                        Refusal::Failed(format!("{} of {} by {method} was answered, and then not: {refusal}", cell.quantity, problem.name))
+                    });
+                    return again.map(|second| Twice::new(index, &first, &second).to_values()).into();
+                }
+                Err(Refusal::Unsupported(_)) => {}
+                Err(Refusal::Failed(_)) => {
+                    failures += 1;
+                    if failures == PATIENCE {
+                        break;
+                    }
+                }
+            }
+        }
+        Outcome::Refused(Refusal::Unsupported("there is no robot about which it answers".into()))
+    }
+
+    fn compare(&self, _: &Context, _: &Problem, _: &[Finished]) -> Vec<Record> {
+        Vec::new()
+    }
+
+    fn compare_all(&self, context: &Context, finished: &[Finished]) -> Vec<Record> {
+        finished.iter().filter_map(|(cell, outcome)| self.judged(context, cell, outcome)).collect()
+    }
+}
+
+impl Repeatability {
+    /// The row of a cell; none where the engine answers about no robot, which the rows of the agreement study say.
+    fn judged(&self, context: &Context, cell: &Cell, outcome: &Outcome) -> Option<Record> {
+        let blank = Record {
+            cell: cell.id(),
+            study: self.name().into(),
+            problem: "all".into(),
+            params: record::canonical_json(&cell.params),
+            engine: cell.subject.clone(),
+            engine_version: cell.version.clone(),
+            scalar: cell.scalar.clone(),
+            quantity: self.name().into(),
+            case: "all".into(),
+            metric: "repeated".into(),
+            unit: "ulp".into(),
+            reference: "the same question before".into(),
+            ..Record::default()
+        };
+        let lost = |reason: &str| Some(blank.clone().without_value(Verdict::Error, reason));
+        let values = match outcome {
+            Outcome::Refused(Refusal::Unsupported(_)) => return None,
+            Outcome::Refused(Refusal::Failed(reason)) => return lost(reason),
+            Outcome::Reading(_) => return lost("the outcome is a robot that was read"),
+            Outcome::Values(values) => values,
+        };
+        let subject = context.subject(&cell.subject)?;
+        let quantity = Quantity::parse(&cell.quantity)?;
+        let candidates = candidates(context, subject, quantity);
+        let Some((twice, (problem, method))) =
+            Twice::from_values(values).and_then(|twice| Some((candidates.get(twice.candidate)?, twice))).map(|(of, twice)| (twice, of))
+        else {
+            return lost("the outcome is none of this study");
+        };
+        let of_robot = row(cell, problem);
+        let row = Record {
+            problem: of_robot.problem,
+            model: of_robot.model,
+            nq: of_robot.nq,
+            nv: of_robot.nv,
+            bodies: of_robot.bodies,
+            depth: of_robot.depth,
+            method: method.clone(),
+            ..blank
+        };
+        let mut row = row.gated(twice.ulps, Relation::Eq, 0.0);
+        if row.verdict == Verdict::Fail {
+            let Twice { differing, total, ulps, .. } = twice;
+            row.reason = format!(
+                "asked twice for {}, it answers otherwise: {differing} of {total} numbers differ, by up to {ulps} units in the last place",
+                cell.quantity
+            );
+        }
+        Some(row)
+    }
+}
