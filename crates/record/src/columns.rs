@@ -69,7 +69,7 @@ pub const COLUMNS: [Column; 27] = [
     text("metric", "measure of the value: scaled, forward, backward, kappa, pairwise, ns_per_call, …"),
     word("kind", &["exact", "measured"], "exact: the same bits on every run; measured: taken on a machine"),
     float("value", "unit", "the result; empty when there is none or it was not finite"),
-    text("unit", "unit of value, bound and floor; 1 for a pure ratio"),
+    text("unit", "unit of value, bound and floor; `ratio` for a pure ratio"),
     text("reference", "with what the value was compared: an engine, a closed form, a data set"),
     word("relation", &["le", "ge", "eq", "within"], "how value must stand to bound; empty when nothing is judged; within: |value| ≤ bound"),
     float("bound", "unit", "the gate"),

@@ -14,6 +14,9 @@ pub const RUN_NAME: &str = "run.json";
 /// Name of the description of the columns in a run's folder.
 pub const SCHEMA_NAME: &str = "schema.json";
 
+/// How the unit 1 is written in a CSV file.
+pub const RATIO: &str = "ratio";
+
 /// Replaces a file in one step: after a crash or a full disk there is the old file or the new one, never a part.
 ///
 /// The bytes go to a temporary file in the same folder, are flushed to the disk, and the file is renamed. Missing folders are made.
@@ -51,8 +54,8 @@ pub fn atomic_write(path: &Path, bytes: &[u8]) -> Result<(), RecordError> {
 
 /// The rows as the text of a CSV file, header first. `path` only serves the error: it is where the text is meant to go.
 ///
-/// A text that reads as a number or a truth value, such as the unit `1`, stands in quotes: a reader that guesses the type of a column from
-/// its first rows takes a quoted field for text. No number is quoted.
+/// The unit 1 of a pure ratio is written as the word [`RATIO`]: readers that guess the type of a column from its first rows took a column that
+/// begins with many `1` for integers, and broke at the first other unit. Quotes do not help against that.
 pub fn to_csv(records: &[Record], path: &Path) -> Result<Vec<u8>, RecordError> {
     let failed = |error: csv::Error| RecordError::Io { path: path.to_owned(), source: io::Error::other(error) };
     let mut writer = csv::WriterBuilder::new().has_headers(false).from_writer(Vec::new());
@@ -63,33 +66,13 @@ pub fn to_csv(records: &[Record], path: &Path) -> Result<Vec<u8>, RecordError> {
                 return Err(RecordError::NonFinite { path: path.to_owned(), field: format!("{name} of row {}", index + 1), value });
             }
         }
-        writer.serialize(record).map_err(failed)?;
-    }
-    let plain = writer.into_inner().map_err(|error| RecordError::Io { path: path.to_owned(), source: error.into_error() })?;
-    let mut reader = csv::ReaderBuilder::new().has_headers(false).from_reader(plain.as_slice());
-    let (mut text, mut row) = (String::with_capacity(plain.len() + plain.len() / 8), csv::StringRecord::new());
-    while reader.read_record(&mut row).map_err(failed)? {
-        for (position, (field, column)) in row.iter().zip(&COLUMNS).enumerate() {
-            if position > 0 {
-                text.push(',');
-            }
-            let text_like_a_number = matches!(column.kind, ColumnType::Text | ColumnType::Word) && reads_as_another_type(field);
-            if text_like_a_number || field.contains([',', '"', '\n', '\r']) {
-                text.push('"');
-                text += &field.replace('"', "\"\"");
-                text.push('"');
-            } else {
-                text += field;
-            }
+        if record.unit == "1" {
+            writer.serialize(Record { unit: RATIO.into(), ..record.clone() }).map_err(failed)?;
+        } else {
+            writer.serialize(record).map_err(failed)?;
         }
-        text.push('\n');
     }
-    Ok(text.into_bytes())
-}
-
-/// Whether a reader that guesses types could take a text for a number or a truth value.
-fn reads_as_another_type(text: &str) -> bool {
-    text.trim().parse::<f64>().is_ok() || ["true", "false"].iter().any(|word| text.trim().eq_ignore_ascii_case(word))
+    writer.into_inner().map_err(|error| RecordError::Io { path: path.to_owned(), source: error.into_error() })
 }
 
 /// Writes rows to a CSV file, in one step.
@@ -131,7 +114,10 @@ pub fn parse_csv(text: &str, path: &Path) -> Result<Vec<Record>, RecordError> {
         if let Some((column, what)) = unknown_word(&raw) {
             return Err(field_error(column, what));
         }
-        let record: Record = raw.deserialize(Some(&header)).map_err(|error| csv_error(path, &error))?;
+        let mut record: Record = raw.deserialize(Some(&header)).map_err(|error| csv_error(path, &error))?;
+        if record.unit == RATIO {
+            record.unit = "1".into();
+        }
         if let Some((column, what)) = record.contradiction() {
             return Err(field_error(column, what));
         }
