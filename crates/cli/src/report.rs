@@ -66,7 +66,8 @@ fn print_ranges(gates: &Gates, first: &[Record], others: &[PathBuf]) -> Result<(
         known().zip(&mut worst).for_each(|(deviation, worst)| worst.extend(deviation.worst(&records)));
     }
     for (deviation, worst) in known().zip(worst) {
-        let (low, high) = worst.iter().fold((f64::INFINITY, 0.0_f64), |(low, high), &value| (low.min(value), high.max(value)));
+        let high = worst.iter().copied().fold(0.0, harness::measure::worst);
+        let low = -worst.iter().map(|value| -value).fold(f64::NEG_INFINITY, harness::measure::worst);
         let range = if worst.is_empty() { "not seen".into() } else { format!("range = [{low:.1e}, {high:.1e}]") };
         println!("{range}  # {} of {} runs: {} {}", worst.len(), 1 + others.len(), deviation.engine, deviation.reason);
     }

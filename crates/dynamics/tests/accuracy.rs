@@ -5,7 +5,7 @@
 
 mod common;
 
-use common::{ROBOTS, build, dyadic_chain, largest, lifted, within};
+use common::{ROBOTS, build, dyadic_chain, larger, largest, lifted, within};
 use featherbench_dynamics::{bias_force, forward_dynamics, inverse_dynamics, mass_matrix};
 use model::{Model, StateBatch};
 use spatial::{DoubleDouble, Lift, Real};
@@ -44,7 +44,7 @@ fn inverse_dynamics_is_good_to_the_last_digits() {
             let (matrix, bias) = (mass_matrix(model, q).unwrap().to_dense(), bias_force(model, q, v).unwrap());
             for i in 0..n {
                 let terms = (0..n).map(|j| (matrix[(i, j)] * a[j]).abs()).sum::<f64>() + bias[i].abs() + tau[i].abs();
-                worst = worst.max(error(tau[i], truth[i]) / terms);
+                worst = larger(worst, error(tau[i], truth[i]) / terms);
                 assert!(tau[i].is_finite());
             }
         }
@@ -62,7 +62,7 @@ fn mass_matrix_is_good_to_the_last_digits() {
             for j in 0..=i {
                 let off = error(matrix.get(i, j), truth.get(i, j)) / (diagonal[i] * diagonal[j]).sqrt();
                 assert!(off.is_finite());
-                worst = worst.max(off);
+                worst = larger(worst, off);
             }
         }
         within(&format!("{name} {n}: M"), worst, 1e-14);
@@ -80,7 +80,7 @@ fn forward_dynamics_loses_little_where_the_condition_number_loses_everything() {
             let off = a.iter().zip(&truth).map(|(a, t)| error(*a, *t).powi(2)).sum::<f64>().sqrt();
             let norm = a.iter().map(|a| a * a).sum::<f64>().sqrt();
             assert!(norm.is_finite());
-            worst = worst.max(off / norm);
+            worst = larger(worst, off / norm);
         }
         // κ(M) is 4e9 for the longest straight chain.
         within(&format!("{name} {n}: ABA"), worst, 1e-13);

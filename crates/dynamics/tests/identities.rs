@@ -2,7 +2,7 @@
 
 mod common;
 
-use common::{ROBOTS, build, distance, gap, largest, robot, within, wrenches};
+use common::{ROBOTS, build, distance, gap, larger, largest, robot, within, wrenches};
 use featherbench_dynamics::{
     Aba, Bias, Crba, Energy, Jacobian, Kinematics, Ltdl, Momentum, Rnea, TreeSparse, bias_force, center_of_mass, centroidal_momentum,
     energy, forward_dynamics, forward_kinematics, inverse_dynamics, jacobian, mass_matrix,
@@ -38,7 +38,7 @@ fn forward_dynamics_inverts_inverse_dynamics() {
         let matrix = mass_matrix(model, q).unwrap();
         let bias = bias_force(model, q, v).unwrap();
         // A relative perturbation ε of the forces moves the acceleration by at most κ ε of (|τ| + |h|)/least inertia.
-        let least = matrix.diagonal().fold(f64::INFINITY, f64::min);
+        let least = matrix.diagonal().fold(f64::INFINITY, |least, d| -larger(-least, -d));
         let scale = largest(a) + (largest(&tau) + largest(&bias)) / least;
         within(&format!("{name}: FD∘ID"), distance(&back, a) / scale, condition(&matrix) * f64::EPSILON);
     });
@@ -91,7 +91,7 @@ fn equation_of_motion() {
         let mut back = vec![0.0; a.len()];
         Aba::new(&model.topology).run(model, q, v, &tau, Some(&f), &mut back).unwrap();
         let kappa = condition(&mass_matrix(model, q).unwrap());
-        let least = mass_matrix(model, q).unwrap().diagonal().fold(f64::INFINITY, f64::min);
+        let least = mass_matrix(model, q).unwrap().diagonal().fold(f64::INFINITY, |least, d| -larger(-least, -d));
         let scale = largest(a) + (largest(&tau) + largest(&bias)) / least;
         within(&format!("{name}: FD∘ID with wrenches"), distance(&back, a) / scale, kappa * f64::EPSILON);
     });
@@ -112,7 +112,7 @@ fn columns_of_the_mass_matrix_are_inverse_dynamics_of_unit_accelerations() {
             unit[j] = 1.0;
             let column = inverse_dynamics(&model, q, &vec![0.0; n], &unit).unwrap();
             // Two routes of at most fourteen bodies each, in units of the geometric mean of the diagonal.
-            let residual = (0..n).map(|i| (column[i] - dense[(i, j)]).abs() / (diagonal[i] * diagonal[j]).sqrt()).fold(0.0, f64::max);
+            let residual = (0..n).map(|i| (column[i] - dense[(i, j)]).abs() / (diagonal[i] * diagonal[j]).sqrt()).fold(0.0, larger);
             within(&format!("{name}: column {j}"), residual, 1e-14);
         }
     });

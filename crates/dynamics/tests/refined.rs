@@ -5,7 +5,7 @@
 
 mod common;
 
-use common::{ROBOTS, build, distance, largest, lifted, within, wrenches};
+use common::{ROBOTS, build, distance, larger, largest, lifted, within, wrenches};
 use featherbench_dynamics::{
     Aba, Crba, Error, Ltdl, NotPositiveDefinite, Refined, Rnea, forward_dynamics, mass_matrix, refined_forward_dynamics,
 };
@@ -126,7 +126,7 @@ fn every_case_of_the_table_is_right_to_the_last_digit() {
             within(&format!("{name}: M-norm"), energy_error(&model, q, &unrounded, &truth), 4.0 * f64::EPSILON);
 
             // A plain residual: inverse dynamics loses as it sums along the path, like the square root of its length or slower.
-            let bound = 8.0 * f64::EPSILON * f64::max(1.0, (model.topology.nv() as f64 / 50.0).sqrt());
+            let bound = 8.0 * f64::EPSILON * (model.topology.nv() as f64 / 50.0).sqrt().max(1.0);
             within(&format!("{name}: f64 residual"), error(&refined::<f64>(1, &model, q, v, tau).0, &truth), bound);
         }
     }
@@ -216,7 +216,7 @@ fn steps_converge_and_say_how_far_they_moved() {
                 // Rounded accelerations are off by the rounding as well.
                 assert!(moved <= 1.1 * off + ROUNDING * norm(before.iter().copied()), "{moved:e} against {off:e}");
             }
-            *worst = worst.max(error(workspace.accelerations(), &truth));
+            *worst = larger(*worst, error(workspace.accelerations(), &truth));
         }
     }
     let [plain, one, two, three] = errors;

@@ -53,7 +53,12 @@ fn assert_same(read: &Description, expected: &Description) -> (usize, usize) {
         level.bodies.iter_mut().map(|body| &mut body.joint.placement).chain(level.frames.iter_mut().map(|frame| &mut frame.placement));
     let wanted = expected.bodies.iter().map(|body| &body.joint.placement).chain(expected.frames.iter().map(|frame| &frame.placement));
     for (placement, wanted) in pairs.zip(wanted) {
-        let error = placement.rotation.iter().zip(&wanted.rotation).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+        let error = placement
+            .rotation
+            .iter()
+            .zip(&wanted.rotation)
+            .map(|(a, b)| (a - b).abs())
+            .fold(0.0, |worst, x| if x > worst || x.is_nan() { x } else { worst });
         assert!(error <= 8.0 * f64::EPSILON, "{}: {error:e}", read.name);
         exact = (exact.0 + usize::from(error == 0.0), exact.1 + 1);
         placement.rotation = wanted.rotation;

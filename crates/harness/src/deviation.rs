@@ -82,7 +82,7 @@ impl Deviation {
     /// The worst value of the rows of a run that it explains, or would if they were smaller.
     pub fn worst(&self, records: &[Record]) -> Option<f64> {
         let broken = |row: &&Record| matches!(row.verdict, Verdict::Fail | Verdict::Deviation) && row.bound.is_some() && self.is_about(row);
-        records.iter().filter(broken).filter_map(|row| row.value).reduce(f64::max)
+        records.iter().filter(broken).filter_map(|row| row.value).reduce(crate::measure::worst)
     }
 
     /// Whether a row is there because of it.

@@ -1,5 +1,6 @@
 //! The truth of the harness against the independent multi-precision witness, and the floor against perturbed inputs.
 
+use featherbench_harness::measure::worst;
 use featherbench_harness::truth::{TruthModel, structured_floor};
 use featherbench_harness::{Problem, hash};
 use model::generate::Family;
@@ -16,8 +17,8 @@ fn problem(spec: &str, states: usize) -> Problem {
 
 /// Largest |a − b| over the largest |b|.
 fn apart(a: &[f64], b: &[f64]) -> f64 {
-    let largest = b.iter().fold(0.0_f64, |largest, x| largest.max(x.abs()));
-    a.iter().zip(b).fold(0.0, |worst, (a, b)| f64::max(worst, (a - b).abs() / largest))
+    let largest = b.iter().map(|x| x.abs()).fold(0.0, worst);
+    a.iter().zip(b).map(|(a, b)| (a - b).abs() / largest).fold(0.0, worst)
 }
 
 /// Asserts that both say the same to within a tolerance relative to the largest entry.
@@ -82,7 +83,7 @@ fn half_an_ulp_in_the_inputs_moves_the_answer_by_the_floor_at_most() {
                 body.joint.placement.translation.iter_mut().for_each(&mut nudge);
             });
             let moved: Vec<f64> = truth(&nudged).iter().zip(&still).map(|(a, b)| a - b).collect();
-            farthest = farthest.max(norm(&moved) / norm(&still) / 1_048_576.0);
+            farthest = worst(farthest, norm(&moved) / norm(&still) / 1_048_576.0);
         }
         assert!(farthest <= floor, "{spec}: {farthest:e} beyond the floor {floor:e}");
         assert!(farthest >= 0.002 * floor, "{spec}: the floor {floor:e} is no worst case of {farthest:e}, it is out of sight");

@@ -335,7 +335,7 @@ fn rotation_error(r: &[f64; 9]) -> f64 {
     let dot = |a: usize, b: usize| (0..3).map(|k| r[3 * a + k] * r[3 * b + k]).sum::<f64>();
     let gram = (0..3).flat_map(|a| (0..3).map(move |b| (a, b))).map(|(a, b)| (dot(a, b) - f64::from(a == b)).abs());
     let det = r[0] * (r[4] * r[8] - r[5] * r[7]) - r[1] * (r[3] * r[8] - r[5] * r[6]) + r[2] * (r[3] * r[7] - r[4] * r[6]);
-    gram.fold((det - 1.0).abs(), f64::max)
+    gram.fold((det - 1.0).abs(), |worst, x| if x > worst || x.is_nan() { x } else { worst })
 }
 
 /// Smallest eigenvalue of a symmetric 3×3 matrix by the trigonometric formula (O. K. Smith 1961); good to about 1e-8 of its scale, far

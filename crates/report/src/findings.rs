@@ -6,7 +6,7 @@ use record::{Record, RunInfo, Verdict};
 
 use crate::figures::is_error_measure;
 use crate::labels;
-use crate::numbers::{count, listed, short};
+use crate::numbers::{count, larger, listed, short};
 use crate::overview::{DIGITS, Overview, severity};
 use crate::tally::Tally;
 
@@ -196,7 +196,7 @@ fn agreements<'a>(overview: &Overview<'a>, records: &'a [Record]) -> Vec<Agreeme
             account.models.insert(&row.model);
             // An error over its floor is a ratio and no error: it is judged, and not told in this sentence.
             if row.metric != "error_over_floor" {
-                account.largest = account.largest.max(row.value.unwrap_or_default().abs());
+                account.largest = larger(account.largest, row.value.unwrap_or_default().abs());
             }
         }
     }
@@ -208,7 +208,7 @@ fn agreements<'a>(overview: &Overview<'a>, records: &'a [Record]) -> Vec<Agreeme
         if account.tally.verdict() == Verdict::Pass {
             let entry = kept.entry((reference, *quantity)).or_default();
             entry.0.push(*engine);
-            entry.1 = entry.1.max(account.largest);
+            entry.1 = larger(entry.1, account.largest);
             entry.2.push(account.models.len());
         }
     }

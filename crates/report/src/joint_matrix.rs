@@ -11,7 +11,7 @@ use serde::Serialize;
 
 use crate::heatmap::{inside, outside};
 use crate::labels;
-use crate::numbers::{decades, listed, short};
+use crate::numbers::{decades, larger, listed, short};
 use crate::overview::{AGREEMENT, Overview, PAIRWISE, severity};
 use crate::tally::Tally;
 
@@ -202,7 +202,7 @@ fn sentence(overview: &Overview, matrix: &JointMatrix, engine: usize) -> Markup 
         let mut largest: BTreeMap<usize, Option<f64>> = BTreeMap::new();
         for cell in cells.iter().filter(|cell| cell.state == state) {
             let known = largest.entry(cell.at[2]).or_default();
-            *known = [*known, cell.numbers[0]].into_iter().flatten().reduce(f64::max);
+            *known = [*known, cell.numbers[0]].into_iter().flatten().reduce(larger);
         }
         let words = |(quantity, value): (usize, Option<f64>)| {
             let title = labels::quantity(overview.quantities[quantity]);

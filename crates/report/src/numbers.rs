@@ -48,6 +48,11 @@ pub fn listed(names: &[String]) -> String {
     }
 }
 
+/// The larger of two numbers; NaN when either is, so that no fold can lose one.
+pub fn larger(a: f64, b: f64) -> f64 {
+    if a.is_nan() || b.is_nan() { f64::NAN } else { a.max(b) }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

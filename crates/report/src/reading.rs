@@ -7,7 +7,7 @@ use record::{Record, Verdict};
 use serde_json::Value;
 
 use crate::labels;
-use crate::numbers::{count, short};
+use crate::numbers::{count, larger, short};
 use crate::overview::Overview;
 
 /// The study whose rows the section shows.
@@ -49,7 +49,7 @@ impl<'a> Readings<'a> {
             match row.metric.as_str() {
                 "differences" if row.quantity == READING => cell.read = Some(row),
                 "unexplained" => cell.unexplained = Some(row),
-                "as_read" => cell.error = row.value.map(|value| cell.error.unwrap_or(0.0).max(value)).or(cell.error),
+                "as_read" => cell.error = row.value.map(|value| larger(cell.error.unwrap_or(0.0), value)).or(cell.error),
                 "difference" => {
                     let params: Value = serde_json::from_str(&row.params).unwrap_or_default();
                     let cause = params["cause"].as_str().unwrap_or_default().to_owned();

@@ -226,7 +226,7 @@ fn void_peak(timing: &[&Record]) -> Option<String> {
 
 /// What is faster than its limit shows that the limit is none. (An estimate may be.)
 fn below(overview: &Overview, limits: &[Limit]) -> Option<String> {
-    let below: Vec<&Limit> = limits.iter().filter(|limit| !limit.estimate && !(limit.per_joint >= limit.least)).collect();
+    let below: Vec<&Limit> = limits.iter().filter(|limit| !limit.estimate && limit.per_joint < limit.least).collect();
     let least = below.iter().min_by(|a, b| (a.per_joint / a.least).total_cmp(&(b.per_joint / b.least)))?;
     let (engine, model, share) = (overview.engines[least.engine], &overview.models[least.model].name, least.per_joint / least.least);
     let first = format!("{engine} {} on {model} takes {share:.2} times its limit", least.method);

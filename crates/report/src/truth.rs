@@ -7,7 +7,7 @@ use record::{Record, Verdict};
 
 use crate::digits::{Digits, is_judged, rank, shown_quantity};
 use crate::labels;
-use crate::numbers::{count, decades, listed, short};
+use crate::numbers::{count, decades, larger, listed, short};
 use crate::overview::{Overview, severity};
 use crate::page::opener;
 
@@ -118,7 +118,7 @@ fn kept<'a>(overview: &Overview<'a>, accounts: &BTreeMap<((usize, &'a str), usiz
         }
         let rows = of_quantity.iter().filter(|(_, account)| keeps(account)).flat_map(|(_, account)| account.values());
         // An error over its floor is a ratio and no error.
-        let largest = rows.filter(|row| row.metric != "error_over_floor").filter_map(|row| row.value).fold(0.0, f64::max);
+        let largest = rows.filter(|row| row.metric != "error_over_floor").filter_map(|row| row.value).fold(0.0, larger);
         let models = || of_quantity.iter().filter(|(_, account)| keeps(account)).map(|(_, account)| account.len());
         let models = models().min().zip(models().max());
         kept.extend(models.map(|models| Kept { quantity: quantity.1, subjects, models, largest }));
@@ -130,7 +130,7 @@ fn medians(overview: &Overview, digits: &Digits) -> Vec<(String, f64)> {
     let mut largest: BTreeMap<usize, f64> = BTreeMap::new();
     for cell in digits.cells.iter().filter(|cell| digits.subjects[cell.subject].quantity == "fd") {
         let entry = largest.entry(cell.subject).or_default();
-        *entry = entry.max(cell.median.unwrap_or_default());
+        *entry = larger(*entry, cell.median.unwrap_or_default());
     }
     let mut medians: Vec<(String, f64)> = largest.into_iter().map(|(subject, error)| (digits.name(overview, subject), error)).collect();
     medians.sort_by(|a, b| a.1.total_cmp(&b.1));

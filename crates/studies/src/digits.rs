@@ -105,8 +105,7 @@ impl Study for Digits {
                     rows.push(context.gates.explain(blank.without_value(Verdict::Error, "M is singular: there is no true answer")));
                     continue;
                 };
-                let worst = errors.iter().max_by(|a, b| (a.energy / a.bound).total_cmp(&(b.energy / b.bound)));
-                if let Some(worst) = worst {
+                if let Some(worst) = most_off(&errors) {
                     let row = Record { metric: "true_forward".into(), floor, ..blank.clone() };
                     rows.push(context.gates.judge(row, worst.energy, worst.bound));
                 }
@@ -154,6 +153,20 @@ struct ForwardErrors {
     plain: f64,
 }
 
+/// The error that is the largest share of its bound; one that is no number is larger than any.
+fn most_off(errors: &[ForwardErrors]) -> Option<&ForwardErrors> {
+    let share = |error: &ForwardErrors| error.energy / error.bound;
+    errors.iter().reduce(|a, b| if share(a).is_nan() || share(a) >= share(b) { a } else { b })
+}
+
+/// Sorts errors. Where one is no number all are: such a one has a sign, and may stand below all numbers.
+fn sort(errors: &mut [f64]) {
+    if errors.iter().any(|error| error.is_nan()) {
+        errors.fill(f64::NAN);
+    }
+    errors.sort_unstable_by(f64::total_cmp);
+}
+
 fn forward_errors(a: &[f64], truth: &[f64], scale: &ForwardScale) -> ForwardErrors {
     let norm = |values: &mut dyn Iterator<Item = f64>| values.map(|x| x * x).sum::<f64>().sqrt();
     let plain = harness::measure::ratio(norm(&mut a.iter().zip(truth).map(|(a, t)| a - t)), norm(&mut truth.iter().copied()));
@@ -186,7 +199,7 @@ fn probe(mass: &TreeSparse<f64>, vectors: &[f64]) -> Vec<f64> {
 
 /// First quartile, median, third quartile and largest of the errors, as rows that are measured, and judged where a gate says so.
 fn quartiles(context: &Context, blank: &Record, errors: &mut [f64]) -> Vec<Record> {
-    errors.sort_unstable_by(f64::total_cmp);
+    sort(errors);
     let metrics = [("error_q1", 0.25), ("error_median", 0.5), ("error_q3", 0.75), ("error_worst", 1.0)];
     let rows = metrics.map(|(metric, fraction)| {
         let row = Record { metric: metric.into(), ..blank.clone() };
@@ -204,7 +217,7 @@ fn over_floor(context: &Context, blank: &Record, errors: &[f64], floors: &[f64])
 }
 
 fn median(values: &mut [f64]) -> Option<f64> {
-    values.sort_unstable_by(f64::total_cmp);
+    sort(values);
     (!values.is_empty()).then(|| crate::quantile(values, 0.5))
 }
 
@@ -235,5 +248,23 @@ mod tests {
         assert_eq!(at_the_wall(&errors([1.0e-11, 1.1e-11, 1.5e-11]), Some(2e-16)), Some(3), "three engines at the error of the reference");
         assert_eq!(at_the_wall(&errors([1e-15, 1e-12, 1e-9]), Some(2e-16)), None, "each where its algorithm puts it");
         assert_eq!(at_the_wall(&errors([3e-16, 3e-16, 3e-16]), Some(2e-16)), None, "all at the floor: nothing is wrong");
+    }
+
+    /// What 0/0 and ∞ − ∞ give on x86 has a sign, and stands below all numbers in their total order.
+    #[test]
+    fn an_answer_that_is_no_number_is_the_worst() {
+        let answers = |energies: [f64; 3]| energies.map(|energy| ForwardErrors { energy, bound: 2.0, plain: energy });
+        assert_eq!(most_off(&answers([1.0, 3.0, 2.0])).unwrap().energy, 3.0);
+        assert!(most_off(&[]).is_none());
+        for lost in [f64::NAN, -f64::NAN] {
+            for place in 0..3 {
+                let mut energies = [1.0, 3.0, 2.0];
+                energies[place] = lost;
+                assert!(most_off(&answers(energies)).unwrap().energy.is_nan(), "at {place}");
+                assert!(median(&mut energies).unwrap().is_nan(), "at {place}");
+                assert!(energies.iter().all(|error| error.is_nan()), "no quartile is a number");
+            }
+        }
+        assert_eq!(median(&mut [3.0, 1.0, 2.0]), Some(2.0));
     }
 }

@@ -6,6 +6,7 @@
 
 mod support;
 
+use harness::measure::worst;
 use model::{BodyDescription, JointType};
 use rayon::prelude::*;
 use record::{Record, Verdict};
@@ -145,7 +146,7 @@ fn convicts(spec: &str) {
             }
             let failed = doubles(&records, Verdict::Fail);
             let convicted = !failed.is_empty() && is_red(&records);
-            let margin = failed.iter().filter_map(|row| row.margin).fold(f64::INFINITY, f64::min);
+            let margin = -failed.iter().filter_map(|row| row.margin).map(|margin| -margin).fold(f64::NEG_INFINITY, worst);
             if convicted { Ok(margin) } else { Err(format!("{plant:?} of {} escapes", bodies[body].name)) }
         })
         .collect();

@@ -4,6 +4,7 @@ use crate::Outcome;
 use crate::support::project;
 use formats::{ExportError, OnLoss, mjcf, neutral, urdf};
 use harness::frame::{Block, Frame};
+use harness::measure::worst;
 use model::{Description, JointType};
 use serde_json::{Value, json};
 use std::io::BufReader;
@@ -97,7 +98,7 @@ fn robots() -> Vec<Description> {
 }
 
 fn far(a: &[f64], b: &[f64]) -> f64 {
-    a.iter().zip(b).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max)
+    a.iter().zip(b).map(|(a, b)| (a - b).abs()).fold(0.0, worst)
 }
 
 /// Neutral → MJCF → MuJoCo's reading: scalars and vectors to the bit, rotations and inertias within 8ε; a second trip changes nothing.
@@ -138,7 +139,7 @@ fn assert_same_robot(robot: &Description, read: &Description) {
         let what = format!("{}, {}", robot.name, body.name);
         let found = read.bodies.iter().find(|found| found.name == body.name).unwrap_or_else(|| panic!("{what} is missing"));
         assert_eq!((body.mass, body.com), (found.mass, found.com), "{what}");
-        let size = body.inertia.iter().fold(0.0_f64, |size, x| size.max(x.abs()));
+        let size = body.inertia.iter().map(|x| x.abs()).fold(0.0, worst);
         assert!(far(&body.inertia, &found.inertia) <= ROUNDING * size, "{what}: {:?} {:?}", body.inertia, found.inertia);
         let mut row = vec![found];
         while row.iter().map(|body| body.joint.kind.nv()).sum::<usize>() < body.joint.kind.nv() {
@@ -186,7 +187,7 @@ pub fn urdf_read_alike(python: &Path) -> Outcome {
             let torques: Vec<f64> = order.iter().map(|&i| read[1][i]).collect();
             for (quantity, read, built) in [("M", &mass, &built[0]), ("ID", &torques, &built[1])] {
                 // Rotations read from angles differ by an ulp or two on each of up to twenty joints.
-                let error = far(read, built) / built.iter().fold(0.0_f64, |size, x| size.max(x.abs()));
+                let error = far(read, built) / built.iter().map(|x| x.abs()).fold(0.0, worst);
                 assert!(error <= 1e-13, "{engine}, {}: {quantity} differs by {error:e}", robot.name);
             }
             compared += 1;

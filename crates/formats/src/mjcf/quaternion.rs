@@ -23,7 +23,9 @@ fn rotation([w, x, y, z]: [f64; 4]) -> [f64; 9] {
 /// elsewhere the nearest of those on grids so coarse that they are found again from their own rotations. So a second trip changes nothing.
 pub(super) fn quaternion(r: &[f64; 9]) -> ([f64; 4], f64) {
     let near = estimate(r);
-    let error = |q: &[f64; 4]| r.iter().zip(rotation(*q)).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+    let error = |q: &[f64; 4]| {
+        r.iter().zip(rotation(*q)).map(|(a, b)| (a - b).abs()).fold(0.0, |worst, x| if x > worst || x.is_nan() { x } else { worst })
+    };
     let on_grids = GRIDS.into_iter().map(|grid| on_grid(near, grid));
     let exact = on_grids.chain(neighbours(near, last_place)).find(|q| error(q) == 0.0);
     let q = exact.unwrap_or_else(|| {

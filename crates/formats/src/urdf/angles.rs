@@ -34,7 +34,7 @@ pub(super) fn angles(r: &[f64; 9]) -> [f64; 3] {
 
 /// The largest difference of two rotations' entries.
 pub(super) fn distance(a: &[f64; 9], b: &[f64; 9]) -> f64 {
-    a.iter().zip(b).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max)
+    a.iter().zip(b).map(|(a, b)| (a - b).abs()).fold(0.0, |worst, x| if x > worst || x.is_nan() { x } else { worst })
 }
 
 /// The angles that give exactly this rotation, or else the candidate that comes nearest.

@@ -276,7 +276,7 @@ fn axis(element: Element, joint: &str, notes: &mut Vec<NoteAt>) -> Result<[f64; 
 /// The direction of a vector and its length; none of a zero vector. An axis that a description may have keeps its bits.
 fn unit(given: [f64; 3]) -> Option<([f64; 3], f64)> {
     // Scaled first, so that squares neither overflow nor vanish.
-    let largest = given.iter().fold(0.0_f64, |largest, x| largest.max(x.abs()));
+    let largest = given.iter().map(|x| x.abs()).fold(0.0, |largest, x| if x > largest || x.is_nan() { x } else { largest });
     if largest == 0.0 {
         return None;
     }

@@ -4,6 +4,7 @@
 //! sum of lengths. Lengths do not depend on the axes, so the magnitudes belong to the robot and its state, not to an algorithm. Angular
 //! velocities enter products with their true length: their sums hardly cancel, and squared sums of lengths would blind the measure.
 
+use super::worst;
 use crate::Problem;
 use spatial::{Motion, Vec3};
 
@@ -65,7 +66,7 @@ fn sizes(problem: &Problem) -> Vec<f64> {
     let mut sizes: Vec<f64> = (0..model.topology.bodies()).map(center).collect();
     for (joint, placement) in model.topology.joints().iter().zip(&model.placements) {
         if let Some(parent) = joint.parent {
-            sizes[parent] = sizes[parent].max(placement.translation.norm());
+            sizes[parent] = worst(sizes[parent], placement.translation.norm());
         }
     }
     sizes

@@ -83,7 +83,7 @@ fn at_every_table_entry() {
             let x = DoubleDouble::from_sum(f64::from(k) / 64.0, offset / 64.0);
             let error = worst(x);
             assert!(error.is_finite());
-            most = most.max(error);
+            most = if error > most { error } else { most };
         }
     }
     assert!(most <= BOUND, "{most} u²");

@@ -131,7 +131,7 @@ fn close(a: &[f64; 9], b: &[f64; 9]) -> bool {
 
 /// Whether one list is the other times the factor of a unit.
 fn scaled(ours: &[f64], theirs: &[f64]) -> bool {
-    let size = |list: &[f64]| list.iter().fold(0.0_f64, |largest, x| largest.max(x.abs()));
+    let size = |list: &[f64]| list.iter().map(|x| x.abs()).fold(0.0, harness::measure::worst);
     let by = |unit: f64| ours.iter().zip(theirs).all(|(x, y)| (x * unit - y).abs() <= TESTED * size(theirs));
     size(ours) > 0.0 && size(theirs) > 0.0 && ours.len() == theirs.len() && UNITS.into_iter().any(by)
 }

@@ -1,6 +1,7 @@
 //! How far two readings of one body are apart, field by field, and how each is written.
 
 use super::Field;
+use harness::measure::worst;
 use model::{BodyDescription, Description, JointType};
 use spatial::{Mat3, Vec3};
 
@@ -40,7 +41,7 @@ pub(super) fn reach(description: &Description) -> f64 {
     let mut longest = 0.0_f64;
     for body in &description.bodies {
         let path = body.parent.map_or(0.0, |parent: usize| along[parent]) + norm(body.joint.placement.translation);
-        longest = longest.max(path + norm(body.com));
+        longest = worst(longest, path + norm(body.com));
         along.push(path);
     }
     longest
@@ -63,7 +64,7 @@ pub(super) fn size(field: Field, ours: &BodyDescription, theirs: &BodyDescriptio
         Field::Placement => {
             let turned = largest(a.placement.rotation.iter().zip(&b.placement.rotation).map(|(x, y)| x - y));
             let far = norm(a.placement.translation).max(norm(b.placement.translation)).max(reach);
-            turned.max(over(distance(a.placement.translation, b.placement.translation), far))
+            worst(turned, over(distance(a.placement.translation, b.placement.translation), far))
         }
         Field::Mass => relative(&[ours.mass], &[theirs.mass]),
         // A centre of no mass is nowhere.
@@ -96,7 +97,7 @@ pub(super) fn size(field: Field, ours: &BodyDescription, theirs: &BodyDescriptio
         }
         Field::Limits => {
             if same_kind {
-                limits(&a.lower, &b.lower).max(limits(&a.upper, &b.upper))
+                worst(limits(&a.lower, &b.lower), limits(&a.upper, &b.upper))
             } else {
                 0.0
             }
@@ -197,7 +198,7 @@ pub(super) fn distance(a: [f64; 3], b: [f64; 3]) -> f64 {
 }
 
 fn largest(differences: impl Iterator<Item = f64>) -> f64 {
-    differences.fold(0.0, |largest: f64, x| if x.is_nan() { x } else { largest.max(x.abs()) })
+    differences.map(f64::abs).fold(0.0, worst)
 }
 
 /// A difference over its scale; zero over zero is zero.
@@ -207,7 +208,7 @@ fn over(difference: f64, scale: f64) -> f64 {
 
 /// The largest difference over the larger of the two numbers.
 pub(super) fn relative(a: &[f64], b: &[f64]) -> f64 {
-    a.iter().zip(b).map(|(x, y)| over(x - y, x.abs().max(y.abs()))).fold(0.0, harness::measure::worst)
+    a.iter().zip(b).map(|(x, y)| over(x - y, x.abs().max(y.abs()))).fold(0.0, worst)
 }
 
 /// The same per degree of freedom; a list that is absent is zero.
@@ -225,5 +226,5 @@ fn limits(a: &[f64], b: &[f64]) -> f64 {
         (Some(x), Some(y)) => relative(&[x], &[y]),
         _ => 1.0,
     };
-    (0..a.len().max(b.len())).map(one).fold(0.0, f64::max)
+    (0..a.len().max(b.len())).map(one).fold(0.0, worst)
 }

@@ -87,7 +87,7 @@ const LEAST: f64 = 1e-3;
 impl Sizes {
     fn new(at: &Magnitudes, mass: &[f64]) -> Self {
         let nv = at.joint_force.len();
-        let largest = |list: &mut dyn Iterator<Item = f64>| list.filter(|x| x.is_finite()).fold(0.0, f64::max);
+        let largest = |list: &mut dyn Iterator<Item = f64>| list.filter(|x| x.is_finite()).fold(0.0, worst);
         let diagonal: Vec<f64> = (0..nv).map(|i| mass[i * nv + i].abs().sqrt()).collect();
         let heaviest = largest(&mut diagonal.iter().copied());
         let inertia: Vec<f64> = diagonal.iter().map(|&root| if root > 0.0 { root } else { LEAST * heaviest }).collect();

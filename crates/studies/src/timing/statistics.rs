@@ -266,9 +266,7 @@ mod tests {
             let mut drawn = vec![f64::NAN; epochs * epoch];
             for place in 0..epochs {
                 let from = (f64::from(random.bits32()) / 4_294_967_296.0 * epochs as f64).floor() as usize;
-                for k in 0..epoch {
-                    drawn[epoch * place + k] = samples[epoch * from + k];
-                }
+                drawn[epoch * place..][..epoch].copy_from_slice(&samples[epoch * from..][..epoch]);
             }
             resampled.push(middle(drawn));
         }
