@@ -12,6 +12,8 @@ mod history;
 mod list;
 mod native;
 mod oracles;
+mod outcome;
+mod patience;
 mod problems;
 mod progress;
 mod record;
