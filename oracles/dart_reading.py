@@ -18,7 +18,7 @@ from dartpy import common, dynamics, utils
 from dartpy.math import Isometry3
 
 from protocol import Array, Description, Header, Reading, Unsupported
-from reading import HeldJoint, Link, Place, describe, elements, errors, mentioned, note, overheard
+from reading import HeldJoint, Link, Place, describe, elements, errors, inertial, mentioned, note, overheard
 
 # DART's name of a joint's type -> ours
 TYPES = {
@@ -146,15 +146,16 @@ def _note(path: Path, nodes: list[dynamics.BodyNode], notes: list[Header]) -> No
     for joint in elements(path, "joint"):
         if joint.find("mimic") is not None:
             notes.append(note("mimic", joint.get("name"), "this joint mimics another; DART makes it a joint of its own, driven as a mimic"))
-    held = {node.getName(): node.getMass() for node in nodes}
+    held = {node.getName(): node.getInertia() for node in nodes}
     for link in elements(path, "link"):
         name, mass = link.get("name"), link.find("inertial/mass")
         if name not in held:
             continue
         words = (mass.get("value") if mass is not None else None) or "0"
         try:
-            edited = abs(float(words) - held[name]) > EDITED * abs(float(words))
+            edited = abs(float(words) - held[name].getMass()) > EDITED * abs(float(words))
         except ValueError:
             edited = True
         if edited:
-            notes.append(note("mass_edited", name, f"{words} kg in the file became {held[name]} kg"))
+            numbers = inertial(held[name].getMass(), held[name].getLocalCOM(), np.array(held[name].getMoment()))
+            notes.append(note("mass_edited", name, f"{words} kg in the file became {held[name].getMass()} kg", numbers))

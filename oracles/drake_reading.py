@@ -17,7 +17,7 @@ from xml.etree import ElementTree
 import numpy as np
 
 from protocol import Array, Description, Header, Reading, skew, symmetric
-from reading import HeldJoint, Link, Place, describe, elements, mentioned, note, overheard
+from reading import HeldJoint, Link, Place, describe, elements, inertial, mentioned, note, overheard
 
 _here = sys.path.pop(0)  # this directory, where other files are called like the packages they import
 from pydrake.math import RigidTransform  # noqa: E402
@@ -182,7 +182,7 @@ def _note_edits(plant: MultibodyPlant, path: Path, notes: list[Header]) -> None:
         inertia = held.CalcRotationalInertia().CopyToFullMatrix3() + mass * skew(com) @ skew(com)
         words = _given(link, "mass", ["value"])
         if not _near(words, [mass]):
-            notes.append(note("mass_edited", name, f"{' '.join(words)} kg in the file became {mass} kg"))
+            notes.append(note("mass_edited", name, f"{' '.join(words)} kg in the file became {mass} kg", inertial(mass, com, inertia)))
         words = _given(link, "inertia", ["ixx", "ixy", "ixz", "iyy", "iyz", "izz"])
         try:
             given = np.linalg.eigvalsh(symmetric(np.array(words, dtype=float))).tolist()
@@ -190,7 +190,8 @@ def _note_edits(plant: MultibodyPlant, path: Path, notes: list[Header]) -> None:
             given = []
         moments = np.linalg.eigvalsh(inertia).tolist()
         if not _near(given, moments):
-            notes.append(note("inertia_edited", name, f"moments {_few(given)} in the file became {_few(moments)} kg m²"))
+            became = f"moments {_few(given)} in the file became {_few(moments)} kg m²"
+            notes.append(note("inertia_edited", name, became, inertial(mass, com, inertia)))
 
 
 def _given(link: ElementTree.Element, tag: str, keys: list[str]) -> list[str]:

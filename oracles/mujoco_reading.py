@@ -11,13 +11,14 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Callable, Iterator
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from protocol import Array, Description, Header, Reading
-from reading import HeldJoint, Link, Place, describe, listed, note, overheard, turned
+from reading import HeldJoint, Link, Place, describe, inertial, listed, note, overheard, turned, without_free_armature
 
 _here = sys.path.pop(0)  # this directory, where another file would be taken for the package imported next
 import mujoco as mj  # noqa: E402
@@ -41,23 +42,27 @@ def read(path: Path, form: str, base: str, make: Callable[[Description, mj.MjMod
     notes: list[Header] = []
     floating = form == "urdf" and base == "free"
     with overheard(path, notes):
-        spec, model, settings = _compiled(path, floating, notes)
-        whole_spec, whole = _unfused(path, floating, settings)
+        spec, model, settings, given = _compiled(path, floating, notes)
+        # a second time only if a link was fused: compiling takes time that grows with the cube of the number of bodies
+        whole_spec, whole = _unfused(path, floating, settings) if model.nbody < given else (spec, model)
     _note_edits(whole_spec, whole, notes)
     _note_not_compared(model, notes)
     if form == "urdf" and model.neq:
         notes.append(note("mimic", None, f"{model.neq} joints that mimic others are joints of their own with an equality constraint"))
     names = [_named(model.body(i).name, "body", i) for i in range(model.nbody)]
-    links = [_link(spec, model, names, i) for i in range(1, model.nbody)]
-    weightless = model.opt.disableflags & mj.mjtDisableBit.mjDSBL_GRAVITY
-    description = describe(spec.modelname or path.stem, np.zeros(3) if weightless else model.opt.gravity, links)
+    links = without_free_armature([_link(spec, model, names, i) for i in range(1, model.nbody)], notes)
+    gravity = np.zeros(3) if model.opt.disableflags & mj.mjtDisableBit.mjDSBL_GRAVITY else model.opt.gravity
+    description = describe(spec.modelname or path.stem, gravity, links)
+    written = None
+    if form == "mjcf" and (_balance in settings or _bound in settings):
+        written = describe(spec.modelname or path.stem, gravity, _as_written(whole_spec, whole))
     if floating and not any(body["joint"]["type"] == "free" for body in description["bodies"]):
         notes.append(note("root_welded", None, "the file has no single root link that could float"))
     _add_fused_frames(description, names, whole, notes)
     keyframes = {_named(model.key(i).name, "key", i): neutral_q(model, model.key_qpos[i]) for i in range(model.nkey)}
     _without_extras(model)
     held = Description.read(description)
-    return Reading(description, held, notes, make(held, model), keyframes)
+    return Reading(description, held, notes, make(held, model), keyframes, written)
 
 
 def neutral_q(model: mj.MjModel, qpos: Array) -> Array:
@@ -111,12 +116,13 @@ REMEDIES: tuple[tuple[str, Setting, str], ...] = (
 )
 
 
-def _compiled(path: Path, floating: bool, notes: list[Header]) -> tuple[mj.MjSpec, mj.MjModel, list[Setting]]:
-    """The spec, the model, and the settings that were needed."""
+def _compiled(path: Path, floating: bool, notes: list[Header]) -> tuple[mj.MjSpec, mj.MjModel, list[Setting], int]:
+    """The spec, the model, the settings that were needed, and how many bodies the file has, the world among them."""
     settings: list[Setting] = []
     remedies, tried = list(REMEDIES), []
     while True:
         spec = _loaded(path, floating, settings)
+        given = len(spec.bodies)
         try:
             model = spec.compile()
             break
@@ -130,7 +136,7 @@ def _compiled(path: Path, floating: bool, notes: list[Header]) -> tuple[mj.MjSpe
         settings.append(setting)
         tried.append(note(cause, None, f"{text}; MuJoCo said: {refusal}"))
     notes.extend(n for n in tried if n["cause"] != "balanceinertia" or tried[-1] is n)
-    return spec, model, settings
+    return spec, model, settings, given
 
 
 def _loaded(path: Path, floating: bool, settings: list[Setting]) -> mj.MjSpec:
@@ -178,6 +184,37 @@ def _inertia(model: mj.MjModel, i: int) -> Array:
     """Body i's inertia about its centre of mass in its axes: R diag(principal moments) R'."""
     axes = _inertial_frame(model, i).rotation
     return (axes * model.body_inertia[i]) @ axes.T
+
+
+def _as_written(spec: mj.MjSpec, model: mj.MjModel) -> list[Link]:
+    """The links with the inertials of the file, where the compiler's repairs changed them. A link without an inertial has the mass of its
+    geometry, or none."""
+    names = [_named(model.body(i).name, "body", i) for i in range(model.nbody)]
+    links = without_free_armature([_link(spec, model, names, i) for i in range(1, model.nbody)], [])
+    for body in spec.bodies[1:]:
+        mass, com, inertia = _given(body, model)
+        links[body.id - 1] = replace(links[body.id - 1], mass=mass, com=com, inertia=inertia)
+    return links
+
+
+def _given(body: mj.MjsBody, model: mj.MjModel) -> tuple[float, Array, Array]:
+    """Mass, centre of mass and inertia of a link as the file has them; as compiled where it leaves them to geometry."""
+    i = body.id
+    held = float(model.body_mass[i]), _inertial_frame(model, i).translation, _inertia(model, i)
+    if not body.explicitinertial:
+        return held if body.geoms else (0.0, np.zeros(3), np.zeros((3, 3)))
+    six = _given_inertia(body)
+    if six is not None and not _edited(six, held[2]):
+        six = held[2]  # the compiler's rounding is no repair
+    if six is None:  # principal moments, about axes that the compiler keeps
+        axes = turned(*model.body_iquat[i])
+        six = (axes * body.inertia) @ axes.T
+    return float(body.mass), np.array(body.ipos), six
+
+
+def _edited(given: Array, held: Array) -> bool:
+    """Whether an inertia is another one, beyond rounding."""
+    return bool(np.abs(given - held).max() > EDITED * np.abs(given).max())
 
 
 def _given_inertia(body: mj.MjsBody) -> Array | None:
@@ -251,8 +288,15 @@ def _without_extras(model: mj.MjModel) -> None:
     model.opt.disableflags |= disable.mjDSBL_SPRING | disable.mjDSBL_DAMPER | disable.mjDSBL_ACTUATION | disable.mjDSBL_SENSOR
     model.opt.enableflags = 0
     model.opt.density = model.opt.viscosity = 0
-    model.body_gravcomp[:] = model.tendon_armature[:] = model.actuator_armature[:] = 0
-    mj.mj_setConst(model, mj.MjData(model))
+    held = [model.body_gravcomp, model.tendon_armature, model.actuator_armature]
+    for j in range(model.njnt):
+        if model.jnt_type[j] == mj.mjtJoint.mjJNT_FREE:
+            held.append(model.dof_armature[model.jnt_dofadr[j] : model.jnt_dofadr[j] + 6])
+    changed = any(numbers.any() for numbers in held)
+    for numbers in held:
+        numbers[:] = 0
+    if changed:  # what follows from them; it takes time that grows with the cube of the number of bodies
+        mj.mj_setConst(model, mj.MjData(model))
 
 
 # ---- notes -----------------------------------------------------------------------------------------------------------------------
@@ -260,25 +304,31 @@ def _without_extras(model: mj.MjModel) -> None:
 
 def _note_edits(spec: mj.MjSpec, model: mj.MjModel, notes: list[Header]) -> None:
     """Notes on every link whose mass or inertia is not the file's."""
-    computed = []
     for body in spec.bodies[1:]:
         i, name = body.id, _named(body.name, "body", body.id)
+        inertia = _inertia(model, i)
+        numbers = inertial(model.body_mass[i], _inertial_frame(model, i).translation, inertia)
         if not body.explicitinertial:
             if model.body_mass[i] and body.geoms:
-                computed.append(name)
+                computed = f"it has no inertial: {model.body_mass[i]:.6g} kg were computed from its geometry"
+                notes.append(note("from_geometry", name, computed, numbers))
             elif model.body_mass[i]:
-                notes.append(note("mass_edited", name, f"no inertial in the file became {model.body_mass[i]} kg"))
+                notes.append(note("mass_edited", name, f"no inertial in the file became {model.body_mass[i]} kg", _both(body, model, numbers)))
             continue
+        numbers = _both(body, model, numbers)
         if not abs(model.body_mass[i] - body.mass) <= EDITED * body.mass:
-            notes.append(note("mass_edited", name, f"{body.mass} kg in the file became {model.body_mass[i]} kg"))
-        given, inertia = _given_inertia(body), _inertia(model, i)
-        if given is not None and not np.abs(given - inertia).max() <= EDITED * np.abs(given).max():
-            notes.append(note("inertia_edited", name, f"{_six(given)} in the file became {_six(inertia)} kg m²"))
+            notes.append(note("mass_edited", name, f"{body.mass} kg in the file became {model.body_mass[i]} kg", numbers))
+        given = _given(body, model)[2]
+        if _edited(given, inertia):
+            notes.append(note("inertia_edited", name, f"{_six(given)} in the file became {_six(inertia)} kg m²", numbers))
         if (_inertial_frame(model, i).translation != model.body_ipos[i]).any():
             moved = f"MuJoCo computes as if the centre of mass, {tuple(model.body_ipos[i].tolist())}, were the origin, as it is within 1e-6"
             notes.append(note("com_edited", name, moved))
-    if computed:
-        notes.append(note("from_geometry", None, f"{len(computed)} links have no inertial: computed from geometry: {listed(computed)}"))
+
+
+def _both(body: mj.MjsBody, model: mj.MjModel, held: list[float]) -> list[float]:
+    """The ten numbers of a link's inertia as the file has them, then those that are held."""
+    return [*inertial(*_given(body, model)), *held]
 
 
 def _six(inertia: Array) -> str:

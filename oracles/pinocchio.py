@@ -300,6 +300,7 @@ class Pinocchio:
 
     def prepare(self, description: Description) -> PinocchioRobot:
         """Builds the robot."""
+        pinocchio_reading.affordable(description.nv)
         return PinocchioRobot(description, build(description))
 
     def read(self, path: Path, form: str, base: str) -> Reading:

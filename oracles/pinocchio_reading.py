@@ -6,6 +6,7 @@ Pinocchio's joints of a moving frame are the bodies here: links of fixed joints 
 
 from __future__ import annotations
 
+import resource
 import sys
 from collections.abc import Callable, Iterator
 from pathlib import Path
@@ -14,14 +15,15 @@ from typing import Any
 import numpy as np
 
 from protocol import Array, Description, Header, Reading, Unsupported
-from reading import HeldJoint, Link, Place, describe, elements, mentioned, note, overheard
+from reading import HeldJoint, Link, Place, describe, elements, mentioned, note, overheard, without_free_armature
 
 _here = sys.path.pop(0)  # this directory, where another file would be taken for the package imported next
 import pinocchio as pin  # noqa: E402
 
 sys.path.insert(0, _here)
 
-LARGEST = 400  # degrees of freedom; Pinocchio's Data takes 15 kB times their square, and ends the process where that is not there
+WORKSPACE = 15e3  # bytes of Pinocchio's Data per degree of freedom squared (1.4 GB at 300); it may end the process where they are not there
+SHARE = 0.8  # of the process's address space: the rest holds the libraries
 UNBOUNDED = 1e300  # a limit of the largest double is none
 KINDS = {"R": "revolute", "P": "prismatic", "H": "helical"}
 WHOLE = {"Spherical": "spherical", "FreeFlyer": "free", "Planar": "planar", "Universal": "universal"}
@@ -38,16 +40,26 @@ def read(path: Path, form: str, base: str, make: Callable[[Description, pin.Mode
             model = pin.buildModelFromUrdf(str(path), pin.JointModelFreeFlyer(), "root_joint")
         else:
             model = pin.buildModelFromUrdf(str(path))
-    if model.nv > LARGEST:
-        raise Unsupported(f"{model.nv} degrees of freedom: Pinocchio's Data would take {15e-6 * model.nv**2:.0f} GB")
-    links = [_link(model, i, path) for i in range(1, model.njoints)]
+    affordable(model.nv)
+    links = without_free_armature([_link(model, i, path) for i in range(1, model.njoints)], notes)
     description = describe(model.name or path.stem, model.gravity.linear, links)
     _add_frames(description, model)
     _note_mimics(path, notes)
     _note_gravity(path, model, notes)
     notes.extend(mentioned(path))
     held = Description.read(description)
+    for joint, link in zip(list(model.joints)[1:], links, strict=True):
+        if any(part.type == "free" for part in link.joints):
+            model.armature[joint.idx_v : joint.idx_v + joint.nv] = 0
     return Reading(description, held, notes, make(held, model, _turning(model)), {})
+
+
+def affordable(nv: int) -> None:
+    """Raises Unsupported for a robot whose workspace does not fit into the address space that this process may have."""
+    need, most = WORKSPACE * nv**2, resource.getrlimit(resource.RLIMIT_AS)[0]
+    if most != resource.RLIM_INFINITY and need > SHARE * most:
+        told = f"its workspace (pinocchio.Data) needs about {need / 1e9:.3g} GB for {nv} degrees of freedom"
+        raise Unsupported(f"Pinocchio: {told}, and this process may have {most / 1e9:.3g} GB")
 
 
 def _place(placement: pin.SE3) -> Place:

@@ -290,13 +290,15 @@ class Question:
 @dataclass(frozen=True)
 class Reading:
     """What an engine holds of a file that its own parser read: the description in both forms, notes (`reading.note`), the engine's robot
-    in the description's coordinates, and the file's keyframes by name."""
+    in the description's coordinates, and the file's keyframes by name. `written` is the description with the file's own inertias, where the
+    engine refuses those and holds repaired ones."""
 
     model: Header
     description: Description
     notes: list[Header]
     robot: Any
     keyframes: dict[str, Array]
+    written: Header | None = None
 
 
 class Robot(Protocol):
@@ -401,6 +403,8 @@ class Session:
         reading = reader(examined(Path(header["file"])), form, base)
         self.description, self.robot = reading.description, reading.robot
         answer = {"nq": self.description.nq, "nv": self.description.nv, "model": reading.model, "notes": reading.notes}
+        if reading.written is not None:
+            answer["written"] = reading.written
         if not reading.keyframes:
             return answer, {}
         return {**answer, "keyframes": list(reading.keyframes)}, {"keyframes": np.array(list(reading.keyframes.values()))}

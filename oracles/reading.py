@@ -13,7 +13,7 @@ import sys
 import tempfile
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from xml.etree import ElementTree
 
@@ -84,9 +84,29 @@ class Link:
     joints: Sequence[HeldJoint]
 
 
-def note(cause: str, subject: str | None, text: str) -> Header:
-    """A note of the answer: what the parser did to what."""
-    return {"cause": cause, "subject": subject, "text": " ".join(text.split())}
+def note(cause: str, subject: str | None, text: str, numbers: Sequence[float] = ()) -> Header:
+    """A note of the answer: what the parser did to what, with the numbers that PROTOCOL.md gives this cause."""
+    told: Header = {"cause": cause, "subject": subject, "text": " ".join(text.split())}
+    return {**told, "numbers": [float(x) for x in numbers]} if len(numbers) else told
+
+
+def inertial(mass: float, com: Array, inertia: Array) -> list[float]:
+    """The ten numbers of a link's inertia in a note: mass, centre of mass, inertia about it (xx, xy, xz, yy, yz, zz), in the link's frame."""
+    return [float(mass), *np.asarray(com, dtype=float).tolist(), *inertia[np.triu_indices(3)].tolist()]
+
+
+def without_free_armature(links: Sequence[Link], notes: list[Header]) -> list[Link]:
+    """The links without the armature of free joints, which descriptions do not have, as engines mean different things by it. It is told."""
+    result = []
+    for link in links:
+        for joint in link.joints:
+            armature = joint.dofs.get("armature", np.zeros(0))
+            if joint.type == "free" and armature.any():
+                held = f"armature {tuple(armature.tolist())} on the free joint is held, and taken out of what is compared"
+                notes.append(note("free_armature", joint.name, held, armature))
+        joints = [replace(j, dofs={**j.dofs, "armature": np.zeros(6)}) if j.type == "free" else j for j in link.joints]
+        result.append(replace(link, joints=joints))
+    return result
 
 
 def listed(names: Sequence[str]) -> str:

@@ -92,6 +92,13 @@ THREE = """<mujoco model="three"><compiler angle="radian"/><worldbody><body name
  <inertial pos=".1 0 0" mass="1" diaginertia=".02 .03 .04"/>
  <body name="mast" pos="0 0 1"><joint name="ref" axis="0 1 0" ref=".3" range="-1 1"/>
  <inertial pos=".1 0 0" mass="1" diaginertia=".02 .03 .04"/></body></body></worldbody></mujoco>"""
+REFUSED = """<mujoco model="refused"><worldbody>
+ <body name="flat"><joint name="h" axis="0 1 0"/><inertial pos=".1 0 0" quat=".6 0 0 .8" mass="1" diaginertia=".01 .02 .05"/>
+ <body name="empty" pos="0 0 1"><joint name="k" axis="0 1 0"/></body></body></worldbody></mujoco>"""
+DRAGGED = """<mujoco model="dragged"><default><joint armature=".25"/></default><worldbody>
+ <body name="base"><joint name="root" type="free"/><inertial pos=".1 0 0" mass="1" diaginertia=".02 .03 .04"/>
+ <body name="arm" pos="0 0 1"><joint name="k" axis="0 1 0"/><inertial pos=".1 0 0" mass="1" diaginertia=".02 .03 .04"/></body></body>
+</worldbody><actuator><motor joint="k"/></actuator></mujoco>"""
 LOOSE = """<body name="loose" pos="1 2 3"><freejoint name="fly"/><inertial pos="0 0 .1" mass="3" diaginertia=".02 .03 .04"/></body>"""
 
 
@@ -345,6 +352,33 @@ def test_warnings(readers: Readers, engine: str) -> None:
         true("drake: its words on friction, without the folder", any("friction" in w and str(readers.folder) not in w for w in warned))
 
 
+def test_repairs(readers: Readers, engine: str) -> None:
+    """An MJCF that MuJoCo refuses as written: it is told with the file's own inertias beside the repaired ones."""
+    if engine != "mujoco":
+        return
+    read = readers.read(engine, "refused.xml", REFUSED)
+    written = {body["name"]: body for body in read.header["written"]["bodies"]}
+    axes = turned(0.6, 0, 0, 0.8)
+    given = (axes * [0.01, 0.02, 0.05]) @ axes.T
+    same("mujoco: the file's own inertia", written["flat"]["inertia"], given[np.triu_indices(3)], 1e-16)
+    same("mujoco: the repaired one", np.array(read.body("flat")["inertia"])[[0, 3, 5]], [0.08 / 3] * 3)
+    true("mujoco: a body of nothing weighs nothing in the file", written["empty"]["mass"] == 0 and not any(written["empty"]["inertia"]))
+    same("mujoco: and the bound where it was repaired", read.body("empty")["mass"], 1e-6)
+    numbers = next(note["numbers"] for note in read.header["notes"] if note["cause"] == "inertia_edited")
+    same("mujoco: what was given and what is held", numbers[4:10], given[np.triu_indices(3)], 1e-16)
+    same("mujoco: what is held", numbers[14:], read.body("flat")["inertia"], 1e-16)
+    true("mujoco: what it takes as it is was not repaired", "written" not in readers.read(engine, "three.xml", THREE).header)
+
+
+def test_free_armature(readers: Readers, engine: str) -> None:
+    """The armature that a class gives to a free joint is told and taken out of what is compared."""
+    read = readers.read(engine, "dragged.xml", DRAGGED)
+    told = [note["numbers"] for note in read.header["notes"] if note["cause"] == "free_armature" and note["subject"] == "root"]
+    true(f"{engine}: armature of a free joint, which Drake forgets", told == ([] if engine == "drake" else [[0.25] * 6]))
+    same(f"{engine}: it is no part of the description", read.body("base")["joint"]["armature"], [0.0] * 6)
+    same(f"{engine}: that of a hinge is", read.body("arm")["joint"]["armature"], [0.25])
+
+
 def test_include(readers: Readers, engine: str) -> None:
     """MuJoCo's includes and keyframes, with quaternions that end with w."""
     if engine != "mujoco":
@@ -399,7 +433,7 @@ def main() -> int:
     with tempfile.TemporaryDirectory() as folder:
         readers = Readers(Path(folder))
         common = (test_arm, test_floating_below, test_limitless, test_refusals)
-        every = (*common, test_edits, test_bases, test_mjcf, test_three, test_warnings, test_include)
+        every = (*common, test_edits, test_bases, test_mjcf, test_three, test_warnings, test_repairs, test_free_armature, test_include)
         for engine in ENGINES:
             for test in common if engine == "dart" else every:  # what else DART does to files: test_oracles.py
                 try:

@@ -111,7 +111,15 @@ Two routes, kept apart. Neutral: one model through each engine's programming int
 file through each engine's own parser; a difference there is told by body, field and cause, and the engine's answers are replayed with our
 kernels on what it says to have read. What that does not explain is called unexplained.
 
-Exit codes: 0 the engines read the files alike, 1 they differ, 2 a file cannot be read, 3 an engine is missing.")]
+A difference is of one of three classes. Physics: the mass matrix or the inverse dynamics change by more than rounding (1e-12, and 1e-14 for each
+joint of a chain beyond a hundred), a body or joint is another, the answers are not explained, or the engine refuses the file. Rounding: a
+field that enters them differs, and they do not. Not read: what enters neither, such as damping, friction, limits or the order of joints. Only
+physics makes the exit code 1; with --strict the two others do as well.
+
+Limits: XML nested 500 elements deep, 10 MB; an engine that gives no answer in time, or whose workspace does not fit into its memory, is left out
+with a row that says so, and counts as a difference with --strict only.
+
+Exit codes: 0 the engines read the files alike, 1 the physics differ, 2 a file cannot be compared (the others are), 3 an engine is missing.")]
 pub struct CompareArgs {
     /// Robots: URDF or MJCF files.
     #[arg(required = true, value_name = "FILE")]
@@ -122,6 +130,12 @@ pub struct CompareArgs {
     /// The engines that are asked.
     #[arg(long, value_delimiter = ',', value_name = "NAMES")]
     pub engines: Option<Vec<String>>,
+    /// Exit 1 also for differences that change no physics: fields that an engine does not read, rounding, files beyond its limits.
+    #[arg(long)]
+    pub strict: bool,
+    /// Longest wait for one answer of an engine, in seconds; it is asked no more about that robot then.
+    #[arg(long, value_name = "SECONDS", default_value_t = 60)]
+    pub answer_within: u64,
     /// The run's folder; by default a new one in reports/.
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,

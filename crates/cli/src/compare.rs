@@ -3,41 +3,68 @@
 use crate::args::{CompareArgs, RunArgs};
 use crate::fail::Fail;
 use crate::oracles::ENGINES;
+use crate::patience::Patient;
 use crate::problems::{self, Loaded};
 use crate::root::Root;
-use crate::{report, robot_file, run, subjects, table};
-use ::record::{Expectation, ModelOrigin, Record, Verdict};
-use harness::{AgreementEntry, Context, FileFormat, Gates, Problem, RobotFile, Subject, Suite, hash, measure::worst};
+use crate::{outcome, report, robot_file, run, subjects, table};
+use ::record::{ModelOrigin, Verdict};
+use harness::{AgreementEntry, Cell, Context, FileFormat, Gates, Problem, RobotFile, Subject, Suite, hash};
 use std::time::{Instant, SystemTime};
-use studies::{Agreement, Reading, reading::REPLAYED};
+use studies::{Agreement, Reading};
 
 /// States per robot, besides the keyframes of its file: one of each case.
 const STATES: usize = model::StateBatch::HEAD;
 /// Seed of the states.
 const SEED: u64 = 1;
+/// A robot with more degrees of freedom is asked on the neutral route for what the comparison shows, and for nothing else.
+const LARGE: usize = 500;
 
 /// Compares robots by both routes and reports.
 pub fn compare(root: &Root, args: &CompareArgs) -> Result<(), Fail> {
     let start = Instant::now();
     let engines = engines(args)?;
-    // Bad files are told before anything is installed or started.
-    let files = args.files.iter().map(|file| robot_file::open(file, args.floating)).collect::<Result<Vec<_>, _>>()?;
+    // Bad files are told before anything is installed or started, and the others are compared.
+    let mut bad: Vec<Fail> = Vec::new();
+    let opened: Vec<RobotFile> = args.files.iter().filter_map(|file| kept(robot_file::open(file, args.floating), &mut bad)).collect();
+    // Our own reading of a URDF needs no engine.
+    let read = opened
+        .into_iter()
+        .map(|file| if file.format == FileFormat::Urdf { robot(file, &[]).map(Some) } else { Ok(Some(Robot::Unread(file))) });
+    let files: Vec<Robot> = read.filter_map(|robot| kept(robot, &mut bad).flatten()).collect();
+    if files.is_empty() {
+        return Err(ended(bad));
+    }
     let gates = Gates::read(&root.gates())?;
     let mut loaded = Loaded { name: "compare".into(), suite: suite(engines), hash: hashes(&files), problems: Vec::new() };
     eprintln!("starting {} …", loaded.suite.agreement.iter().flat_map(|entry| entry.engines.clone()).collect::<Vec<_>>().join(", "));
-    let live = RunArgs { live: true, ..RunArgs::default_suite() };
-    let subjects = subjects::open(root, &live, &loaded)?;
+    let live = RunArgs { live: true, answer_within: args.answer_within, ..RunArgs::default_suite() };
+    let mut subjects = subjects::open(root, &live, &loaded)?;
     if let Some(missing) = subjects.missing(&loaded).first() {
         let message = format!("{} does not answer: {}", missing.name, missing.reason);
         return Err(Fail::Missing { message, advice: "look at `featherbench oracles status`, or leave it out with --engines".into() });
     }
+    let patient = |subject: Box<dyn Subject>| match subject.identity().name.as_str() {
+        "native" => subject,
+        _ => Box::new(Patient::new(subject)) as Box<dyn Subject>,
+    };
+    subjects.subjects = subjects.subjects.into_iter().map(patient).collect();
+    let mut remarks: Vec<(String, Vec<String>)> = Vec::new();
     for file in files {
-        let problem = problem(file, &subjects.subjects)?;
+        let read = match file {
+            Robot::Unread(file) => robot(file, &subjects.subjects),
+            read => Ok(read),
+        };
+        let Some(Robot::Read { problem, remarks: about }) = kept(read, &mut bad) else { continue };
+        let problem = *problem;
         let twice =
             loaded.problems.iter().filter(|known| known.name == problem.name || known.name.starts_with(&format!("{} (", problem.name)));
         let count = twice.count();
         let name = if count == 0 { problem.name.clone() } else { format!("{} ({})", problem.name, count + 1) };
+        remarks.push((name.clone(), about));
         loaded.problems.push(Problem { name, ..problem });
+    }
+    if loaded.problems.is_empty() {
+        return Err(ended(bad));
     }
 
     let started = SystemTime::now();
@@ -48,20 +75,69 @@ pub fn compare(root: &Root, args: &CompareArgs) -> Result<(), Fail> {
     info.started = humantime::format_rfc3339_seconds(started).to_string();
     info.seconds.insert("setup".into(), start.elapsed().as_secs_f64());
     let context = Context { problems: &loaded.problems, subjects: &subjects.subjects, gates: &gates, seed: SEED };
-    let records = run::conduct(&[Box::new(Reading), Box::new(Agreement)], &context, &folder, &|_| true, &mut info)?;
-    info.expected = loaded.problems.iter().flat_map(|problem| conditions(problem, &subjects.subjects, &records)).collect();
+    let shown = ["readback", "id", "bias", "mass_matrix_probe"];
+    let keep = |cell: &Cell| {
+        let large = loaded.problems.iter().any(|problem| problem.name == cell.problem && problem.states.nv > LARGE);
+        cell.study != "agreement" || !large || shown.contains(&cell.quantity.as_str())
+    };
+    let records = run::conduct(&[Box::new(Reading), Box::new(Agreement)], &context, &folder, &keep, &mut info)?;
+    let conditions = |problem| outcome::conditions(problem, &subjects.subjects, &records, args.strict);
+    info.expected = loaded.problems.iter().flat_map(conditions).collect();
     info.seconds.insert("total".into(), start.elapsed().as_secs_f64());
     ::record::write_run(&folder, &info, &records)?;
     let page = report::render(&folder, &info, &records)?;
-    for problem in &loaded.problems {
-        print!("{}", table::of(problem, &subjects.subjects, &records));
+    for (problem, (_, remarks)) in loaded.problems.iter().zip(&remarks) {
+        print!("{}", table::of(problem, remarks, &subjects.subjects, &records));
     }
     println!("report: {}", page.display());
-    let unmet = info.expected.iter().filter(|condition| condition.verdict != Verdict::Pass).count();
-    if unmet == 0 {
+    let unmet: Vec<_> = info.expected.iter().filter(|condition| condition.verdict != Verdict::Pass).collect();
+    for condition in &unmet {
+        println!("differs: {}: {}", condition.what, condition.reason);
+    }
+    if !bad.is_empty() {
+        return Err(ended(bad));
+    }
+    if unmet.is_empty() {
         Ok(())
     } else {
-        Err(Fail::Gate(format!("the engines differ: {unmet} of {} questions have the answer no", info.expected.len())))
+        Err(Fail::Gate(format!("the engines differ: {} of {} questions have the answer no", unmet.len(), info.expected.len())))
+    }
+}
+
+/// The good ones; what is wrong with a file is told at once and kept for the end.
+fn kept<T>(result: Result<T, Fail>, bad: &mut Vec<Fail>) -> Option<T> {
+    match result {
+        Ok(good) => Some(good),
+        Err(fail) => {
+            eprintln!("not compared: {fail}");
+            bad.push(fail);
+            None
+        }
+    }
+}
+
+/// The end of a comparison of which some files, or all, are bad.
+fn ended(mut bad: Vec<Fail>) -> Fail {
+    match bad.len() {
+        1 => bad.remove(0),
+        many => Fail::input(format!("{many} files cannot be compared: {}", bad.iter().map(Fail::to_string).collect::<Vec<_>>().join("; "))),
+    }
+}
+
+/// A robot on its way to being compared.
+enum Robot {
+    /// Its reference reading needs MuJoCo.
+    Unread(RobotFile),
+    /// The reference reading, and what it leaves out that a user should know.
+    Read { problem: Box<Problem>, remarks: Vec<String> },
+}
+
+impl Robot {
+    fn hash(&self) -> &str {
+        match self {
+            Self::Unread(file) => &file.hash,
+            Self::Read { problem, .. } => &problem.hash,
+        }
     }
 }
 
@@ -85,73 +161,31 @@ fn suite(engines: Vec<String>) -> Suite {
     }
 }
 
-fn hashes(files: &[RobotFile]) -> String {
-    hash::of_parts(&files.iter().map(|file| file.hash.as_bytes()).collect::<Vec<_>>())
+fn hashes(files: &[Robot]) -> String {
+    hash::of_parts(&files.iter().map(|file| file.hash().as_bytes()).collect::<Vec<_>>())
 }
 
 /// The reference reading of a file, at its states.
-fn problem(file: RobotFile, subjects: &[Box<dyn Subject>]) -> Result<Problem, Fail> {
-    let (description, warnings, keyframes) = match file.format {
+fn robot(mut file: RobotFile, subjects: &[Box<dyn Subject>]) -> Result<Robot, Fail> {
+    let (description, warnings, keyframes, remarks) = match file.format {
         FileFormat::Urdf => {
-            let (description, warnings) = problems::read_urdf(&file)?;
-            (description, warnings, Vec::new())
+            let (description, notes) = problems::read_urdf(&file)?;
+            file.links = problems::links(&file)?;
+            let remarks = notes.iter().map(ToString::to_string).filter(|note| note.contains("mimic")).collect();
+            (description, problems::normalised(notes), Vec::new(), remarks)
         }
         FileFormat::Mjcf => {
             let compiler = subjects.iter().find(|subject| subject.identity().name == "mujoco");
             let message =
                 || format!("{}: MuJoCo's compiler is the reference of MJCF files; do not leave it out of --engines", file.path.display());
             let reading = problems::read_mjcf(&file, compiler.ok_or_else(|| Fail::input(message()))?.as_ref())?;
-            (reading.description, Vec::new(), reading.keyframes)
+            let remarks = reading.notes.iter().filter(|note| note.cause == "free_armature");
+            let remarks = remarks.map(|note| format!("joint '{}': {}", note.subject.as_deref().unwrap_or_default(), note.text)).collect();
+            (reading.description, Vec::new(), reading.keyframes, remarks)
         }
     };
     let malformed = |error: &dyn std::error::Error| Fail::input(format!("{}: {error}", file.path.display()));
     let problem = Problem::new(&description, "file", ModelOrigin::Robot, STATES, SEED).map_err(|error| malformed(&error))?;
     let problem = problem.with_warnings(warnings).with_keyframes(&keyframes, SEED).map_err(|error| malformed(&error))?;
-    Ok(problem.from_file(file))
-}
-
-/// What must hold for the engines to be called alike on a robot.
-fn conditions(problem: &Problem, subjects: &[Box<dyn Subject>], records: &[Record]) -> Vec<Expectation> {
-    let engines = subjects.iter().map(|subject| subject.identity().name.as_str()).filter(|name| *name != "native");
-    engines.flat_map(|engine| of_engine(&problem.name, engine, records)).collect()
-}
-
-fn of_engine(robot: &str, engine: &str, records: &[Record]) -> [Expectation; 3] {
-    let rows: Vec<&Record> = records.iter().filter(|row| row.model == robot && row.engine == engine).collect();
-    let read = rows.iter().find(|row| row.study == "reading" && row.metric == "differences");
-    let left = rows.iter().find(|row| row.study == "reading" && row.metric == "unexplained");
-    let condition = |what: String, row: Option<&&Record>| {
-        let reason = row.map_or("there is no answer".to_owned(), |row| row.reason.clone());
-        let found = row.and_then(|row| row.value).map_or(1, |value| value as u64);
-        let good = found == 0;
-        let reason = if good {
-            String::new()
-        } else if reason.is_empty() {
-            format!("found {found}")
-        } else {
-            reason
-        };
-        Expectation { what, expected: 0, found, verdict: if good { Verdict::Pass } else { Verdict::Fail }, reason }
-    };
-    let far = neutral(&rows).filter(|error| error.is_nan() || *error > REPLAYED);
-    let verdict = if far.is_some() { Verdict::Fail } else { Verdict::Pass };
-    [
-        condition(format!("differences in what {engine} reads of {robot}"), read),
-        condition(format!("sub-trees of {robot} that this does not explain in {engine}'s answers"), left),
-        Expectation {
-            what: format!("{engine} computes otherwise from the neutral model of {robot}"),
-            expected: 0,
-            found: u64::from(far.is_some()),
-            verdict,
-            reason: far.map_or_else(String::new, |error| format!("off by {error:e}")),
-        },
-    ]
-}
-
-/// The worst error of inverse dynamics, bias and mass matrix on the neutral route, by an engine's usual method.
-pub fn neutral(rows: &[&Record]) -> Option<f64> {
-    let usual = |row: &&&Record| {
-        row.study == "agreement" && row.metric == "scaled" && ["id", "bias", "mass_matrix"].contains(&row.quantity.as_str())
-    };
-    rows.iter().filter(usual).filter_map(|row| row.value).reduce(worst)
+    Ok(Robot::Read { problem: Box::new(problem.from_file(file)), remarks })
 }

@@ -14,6 +14,8 @@ mod native;
 mod offers;
 mod only;
 mod oracles;
+mod outcome;
+mod patience;
 mod problems;
 mod progress;
 mod record;

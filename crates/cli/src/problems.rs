@@ -5,8 +5,8 @@ use crate::oracles;
 use crate::root::Root;
 use ::record::ModelOrigin;
 use engines::{Limits, Oracle};
-use formats::urdf::{Base, Note, Options};
-use harness::{FileBase, FileFormat, Problem, ProblemEntry, Reading, Refusal, RobotFile, Subject, Suite};
+use formats::urdf::{Base, Inertial, LinkInFile, Note, Options};
+use harness::{FileBase, FileFormat, FileInertial, FileLink, Problem, ProblemEntry, Reading, Refusal, RobotFile, Subject, Suite, WATER};
 use model::generate::Family;
 use model::{Description, StateBatch, Warning};
 use std::path::{Path, PathBuf};
@@ -103,11 +103,12 @@ impl Files<'_> {
             let message = format!("the suite takes {file} from the packages of robots, which only live runs have");
             Fail::Missing { message, advice: "run it with --live, after `featherbench oracles install`".into() }
         })?;
-        let file = RobotFile::open(&folder.join(file), format, base)?;
+        let mut file = RobotFile::open(&folder.join(file), format, base)?;
         let (description, warnings, keyframes) = match format {
             FileFormat::Urdf => {
-                let (description, warnings) = read_urdf(&file)?;
-                (description, warnings, Vec::new())
+                file.links = links(&file)?;
+                let (description, notes) = read_urdf(&file)?;
+                (description, normalised(notes), Vec::new())
             }
             FileFormat::Mjcf => {
                 let reading = read_mjcf(&file, self.compiler()?)?;
@@ -134,8 +135,8 @@ pub fn compiler(root: &Root, python: &Path) -> Result<Oracle, Fail> {
 }
 
 /// The reference reading of a URDF file: ours. As engines read such files by default: mimics move on their own, and a body without mass is
-/// known by its warning. Beside the robot stands what was normalised.
-pub fn read_urdf(file: &RobotFile) -> Result<(Description, Vec<Warning>), Fail> {
+/// known by its warning. With notes on what is read otherwise than it is written.
+pub fn read_urdf(file: &RobotFile) -> Result<(Description, Vec<Note>), Fail> {
     let base = match file.base {
         FileBase::Fixed => Base::Fixed,
         FileBase::Free => Base::Floating,
@@ -144,13 +145,29 @@ pub fn read_urdf(file: &RobotFile) -> Result<(Description, Vec<Warning>), Fail> 
     let (mut description, notes) = import(&file.path, &options)?;
     // One package holds several variants of one robot's name: the file's name tells them apart.
     description.name = stem(&file.path, description.name);
-    Ok((description, notes.into_iter().filter_map(|note| note.warning).collect()))
+    Ok((description, notes))
 }
 
-/// The reference reading of an MJCF file: that of MuJoCo's compiler.
+/// The warnings among a reader's notes: what was normalised.
+pub fn normalised(notes: Vec<Note>) -> Vec<Warning> {
+    notes.into_iter().filter_map(|note| note.warning).collect()
+}
+
+/// What a URDF file says of its links one by one.
+pub fn links(file: &RobotFile) -> Result<Vec<FileLink>, Fail> {
+    let text = std::fs::read_to_string(&file.path).map_err(|error| Fail::input(format!("{}: {error}", file.path.display())))?;
+    let inertial = |x: Inertial| FileInertial { mass: x.mass, com: x.com, rotation: x.rotation, inertia: x.inertia };
+    let link = |link: LinkInFile| FileLink { name: link.name, inertial: link.inertial.map(inertial), solids: link.solids.map(inertial) };
+    Ok(formats::urdf::links(&text, WATER).into_iter().map(link).collect())
+}
+
+/// The reference reading of an MJCF file: that of MuJoCo's compiler, with the file's own inertias where the compiler refuses those.
 pub fn read_mjcf(file: &RobotFile, compiler: &dyn Subject) -> Result<Reading, Fail> {
     let refused = |refusal: Refusal| Fail::input(format!("{}: MuJoCo does not read it: {refusal}", file.path.display()));
     let mut reading = compiler.read(file).map_err(refused)?;
+    if let Some(written) = reading.written.take() {
+        reading.description = written.canonical().map_err(|error| Fail::input(format!("{}: {error}", file.path.display())))?;
+    }
     reading.description.name = stem(&file.path, reading.description.name);
     Ok(reading)
 }

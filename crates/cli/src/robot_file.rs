@@ -10,6 +10,8 @@ use std::path::Path;
 const MESHES: [&str; 9] = ["stl", "obj", "dae", "ply", "gltf", "glb", "msh", "3ds", "fbx"];
 /// How much of a file is looked at: comments may stand before the root element.
 const HEAD: u64 = 1 << 20;
+/// Elements within each other, as `oracles/examination.py` has it.
+const DEEPEST: usize = 500;
 
 /// Recognises a robot's file.
 pub fn open(path: &Path, floating: bool) -> Result<RobotFile, Fail> {
@@ -33,6 +35,11 @@ fn format(path: &Path) -> Result<FileFormat, String> {
     if head.iter().all(u8::is_ascii_whitespace) {
         return Err("the file is empty; name a URDF or MJCF file".into());
     }
+    if let Some(encoding) = other_encoding(&head) {
+        return Err(format!(
+            "the file is {encoding}; engines read UTF-8: `iconv -f {encoding} -t UTF-8 FILE > robot.xml`, and let its XML declaration say UTF-8"
+        ));
+    }
     if head.contains(&0) {
         return Err("this is a binary file (a mesh, or a compiled model?); name the URDF or MJCF text that it was made from".into());
     }
@@ -40,6 +47,18 @@ fn format(path: &Path) -> Result<FileFormat, String> {
     // What xacro wrote keeps the declaration of its names, and its macros in comments; a macro that is called must still be run.
     if ending == "xacro" || without_comments(&text).contains("<xacro:") {
         return Err("this is a xacro file, a program that writes URDF; run it first: `xacro FILE > robot.urdf`".into());
+    }
+    if text.contains("<!ENTITY") {
+        return Err("the file declares a document type with entities, which no parser here expands; write their text out and remove the <!DOCTYPE …> \
+                    (`xmllint --noent --dropdtd FILE > robot.xml`)"
+            .into());
+    }
+    let deepest = nesting(path)?;
+    if deepest > DEEPEST {
+        return Err(format!(
+            "its elements are nested {deepest} deep; engines' parsers call themselves for each level and run out of stack, so the limit is {DEEPEST}: \
+             make the chain of bodies shorter, or write it as URDF, which is flat"
+        ));
     }
     match root_element(&text) {
         Some("robot") => Ok(FileFormat::Urdf),
@@ -57,6 +76,48 @@ fn format(path: &Path) -> Result<FileFormat, String> {
     }
 }
 
+/// How deeply a file nests its elements, as far as it is well-formed: one pass over the tags, without a stack.
+fn nesting(path: &Path) -> Result<usize, String> {
+    let bytes = std::fs::read(path).map_err(|error| error.to_string())?;
+    Ok(depth(&without_comments(&String::from_utf8_lossy(&bytes))))
+}
+
+fn depth(text: &str) -> usize {
+    let (mut depth, mut deepest) = (0_usize, 0);
+    for tag in text.split('<').skip(1) {
+        if tag.starts_with('/') {
+            depth = depth.saturating_sub(1);
+        } else if !tag.starts_with(['?', '!']) {
+            // A `>` may stand in an attribute: the tag ends at the last one before the next tag, or the text behind it.
+            let mut quote = None;
+            let end = tag.char_indices().find(|&(_, c)| match quote {
+                Some(open) => {
+                    quote = quote.filter(|_| c != open);
+                    false
+                }
+                None => {
+                    quote = Some(c).filter(|c| matches!(c, '"' | '\''));
+                    c == '>'
+                }
+            });
+            deepest = deepest.max(depth + 1);
+            depth += usize::from(!end.is_some_and(|(at, _)| tag[..at].ends_with('/')));
+        }
+    }
+    deepest
+}
+
+/// The name of an encoding other than UTF-8, told by its mark or by where the zeros of Latin letters stand.
+fn other_encoding(head: &[u8]) -> Option<&'static str> {
+    match head {
+        [0xff, 0xfe, 0, 0, ..] | [b'<', 0, 0, 0, ..] => Some("UTF-32LE"),
+        [0, 0, 0xfe, 0xff, ..] | [0, 0, 0, b'<', ..] => Some("UTF-32BE"),
+        [0xff, 0xfe, ..] | [b'<', 0, ..] => Some("UTF-16LE"),
+        [0xfe, 0xff, ..] | [0, b'<', ..] => Some("UTF-16BE"),
+        _ => None,
+    }
+}
+
 fn without_comments(text: &str) -> String {
     let mut pieces = text.split("<!--");
     let first = pieces.next().unwrap_or_default().to_owned();
@@ -69,6 +130,10 @@ fn root_element(text: &str) -> Option<&str> {
     loop {
         let skip = if rest.starts_with("<!--") {
             rest.find("-->")? + 3
+        } else if rest.starts_with("<!DOCTYPE") && rest.find('[') < rest.find('>') && rest.contains('[') {
+            // The declarations inside have their own ends.
+            let inside = rest.find(']')?;
+            inside + rest[inside..].find('>')? + 1
         } else if rest.starts_with("<?") || rest.starts_with("<!") {
             rest.find('>')? + 1
         } else {
@@ -83,7 +148,30 @@ fn root_element(text: &str) -> Option<&str> {
 
 #[cfg(test)]
 mod tests {
-    use super::{root_element, without_comments};
+    use super::{depth, other_encoding, root_element, without_comments};
+
+    #[test]
+    fn nesting_is_counted_without_a_parser() {
+        assert_eq!(depth("<a/>"), 1);
+        assert_eq!(depth("<?xml?><!DOCTYPE a><a><b x='1>2' y=\"/>\"/><c><d/></c></a>"), 3);
+        assert_eq!(depth(&format!("{}{}", "<b>".repeat(600), "</b>".repeat(600))), 600);
+        assert_eq!(depth(&"<b/>".repeat(600)), 1);
+        assert_eq!(depth("</a></a><b>"), 1);
+    }
+
+    #[test]
+    fn encodings_are_told_by_their_first_bytes() {
+        let utf16 = |text: &str, mark: bool| -> Vec<u8> {
+            let mark = mark.then_some(0xfeff);
+            mark.into_iter().chain(text.encode_utf16()).flat_map(u16::to_le_bytes).collect()
+        };
+        assert_eq!(other_encoding(&utf16("<robot/>", true)), Some("UTF-16LE"));
+        assert_eq!(other_encoding(&utf16("<robot/>", false)), Some("UTF-16LE"));
+        let swapped: Vec<u8> = utf16("<robot/>", true).chunks(2).flat_map(|pair| [pair[1], pair[0]]).collect();
+        assert_eq!(other_encoding(&swapped), Some("UTF-16BE"));
+        assert_eq!(other_encoding(b"\xef\xbb\xbf<robot/>"), None);
+        assert_eq!(other_encoding(b"\0\x01robot"), None);
+    }
 
     #[test]
     fn comments_are_left_out() {
@@ -95,6 +183,7 @@ mod tests {
     fn the_root_element_is_behind_declarations_and_comments() {
         assert_eq!(root_element("<robot name='a'/>"), Some("robot"));
         assert_eq!(root_element("\u{feff}<?xml version='1.0'?>\n<!-- <sdf> -->\n<!DOCTYPE x>\n<mujoco>"), Some("mujoco"));
+        assert_eq!(root_element("<!DOCTYPE robot [<!ELEMENT robot ANY>]>\n<robot/>"), Some("robot"));
         assert_eq!(root_element("<!-- never ends <robot>"), None);
         assert_eq!(root_element("solid cube"), None);
         assert_eq!(root_element("< robot>"), None);

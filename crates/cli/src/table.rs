@@ -1,20 +1,25 @@
 //! The table of a comparison in the terminal, from its records alone.
 
-use crate::compare::neutral;
-use ::record::Record;
+use crate::outcome::{neutral, params};
+use ::record::{Record, Verdict};
 use harness::{Problem, Subject};
 use serde_json::Value;
 use std::collections::BTreeMap;
+use studies::reading::LARGEST;
 
 /// Differences that are listed of one engine; the report has them all.
 const LISTED: usize = 12;
 
 /// What each engine makes of a robot, as text.
-pub fn of(problem: &Problem, subjects: &[Box<dyn Subject>], records: &[Record]) -> String {
+pub fn of(problem: &Problem, remarks: &[String], subjects: &[Box<dyn Subject>], records: &[Record]) -> String {
     let states = &problem.states;
     let reference = records.iter().find(|row| row.study == "reading" && row.model == problem.name).map_or("native", |row| &row.reference);
     let reference = if reference == "native" { "featherbench's own reading" } else { "the reading of MuJoCo's compiler" };
     let mut text = format!("\n{} ({}, {} bodies, {} dofs), against {reference}\n", problem.name, problem.base(), states.bodies, states.nv);
+    text += &refusals(problem, subjects, records);
+    for remark in remarks {
+        text += &format!("  not compared: {remark}\n");
+    }
     for subject in subjects.iter().filter(|subject| subject.identity().name != "native") {
         let identity = subject.identity();
         let rows: Vec<&Record> = records.iter().filter(|row| row.model == problem.name && row.engine == identity.name).collect();
@@ -29,6 +34,25 @@ pub fn of(problem: &Problem, subjects: &[Box<dyn Subject>], records: &[Record]) 
     text
 }
 
+/// Who refuses the file as it is written, and what was repaired to go on: first of all, as whoever reads it faithfully is not to blame.
+fn refusals(problem: &Problem, subjects: &[Box<dyn Subject>], records: &[Record]) -> String {
+    let repairs = ["balanceinertia", "bounds", "geometry_dropped"];
+    let mut text = String::new();
+    for name in subjects.iter().map(|subject| &subject.identity().name) {
+        let read = records.iter().find(|row| row.model == problem.name && row.engine == *name && row.metric == "differences");
+        let Some(row) = read.filter(|row| row.study == "reading") else { continue };
+        if row.value.is_none() {
+            let how = if row.verdict == Verdict::Skip { "does not read the file" } else { "refuses the file" };
+            text += &format!("  {name} {how}: {}\n", row.reason);
+        }
+        let params = params(row);
+        for note in params["notes"].as_array().into_iter().flatten().filter(|note| repairs.iter().any(|word| note["cause"] == *word)) {
+            text += &format!("  {name} refuses the file as written; repaired to go on: {}\n", note["text"].as_str().unwrap_or_default());
+        }
+    }
+    text
+}
+
 fn as_read(rows: &[&Record]) -> String {
     let value =
         |metric: &str, quantity: &str| rows.iter().find(|row| row.metric == metric && row.quantity == quantity).and_then(|row| row.value);
@@ -36,10 +60,15 @@ fn as_read(rows: &[&Record]) -> String {
     let Some(count) = read.value else { return format!("    the file as read    not read: {}\n", read.reason) };
     let differences: Vec<(&Record, Value)> = rows.iter().filter(|row| row.metric == "difference").map(|row| (*row, params(row))).collect();
     let felt: Vec<&(&Record, Value)> = differences.iter().filter(|(_, params)| params["weight"] != "information").collect();
+    let classes = params(read);
+    let class = |name: &str| classes[name].as_u64().unwrap_or(0);
+    let counted = [("physics", "change the physics"), ("rounding", "are rounding"), ("not_read", "are not read or carried otherwise")];
+    let counted: Vec<String> =
+        counted.into_iter().filter(|(name, _)| class(name) > 0).map(|(name, words)| format!("{} {words}", class(name))).collect();
     let mut text = match count as u64 {
         0 => "    the file as read    alike".to_owned(),
-        1 => "    the file as read    differs in one place".to_owned(),
-        many => format!("    the file as read    differs in {many} places"),
+        1 => format!("    the file as read    differs in one place: {}", counted.join(", ")),
+        many => format!("    the file as read    differs in {many} places: {}", counted.join(", ")),
     };
     if let (Some(id), Some(mass)) = (value("as_read", "id"), value("as_read", "mass_matrix")) {
         text += &format!(" (id off by {id:.1e}, M by {mass:.1e})");
@@ -64,6 +93,9 @@ fn as_read(rows: &[&Record]) -> String {
     if limits > 0 {
         text += &format!("      limits of position differ at {limits} joints\n");
     }
+    if rows.iter().all(|row| !["id", "mass_matrix"].contains(&row.quantity.as_str())) {
+        return text + &format!("    replayed            not asked: the limit is {LARGEST} dofs\n");
+    }
     text + &explained(rows)
 }
 
@@ -79,6 +111,11 @@ fn line(row: &Record, params: &Value) -> String {
         some(&params["theirs"]),
         some(&params["ours"])
     );
+    if let Some(account) = params["account"].as_str() {
+        text += &format!("        {account}\n");
+    } else if params["cause"] == "number" {
+        text += "        no cause is known that gives this number\n";
+    }
     if let Some(note) = params["note"].as_str() {
         text += &format!("        its parser: {note}\n");
     }
@@ -123,8 +160,4 @@ fn explained(rows: &[&Record]) -> String {
             text
         }
     }
-}
-
-fn params(row: &Record) -> Value {
-    serde_json::from_str(&row.params).unwrap_or_default()
 }

@@ -222,6 +222,22 @@ fn what_cannot_be_compared_gets_advice() {
         sandbox.run(&["compare", name]).expect(2, &[name, words]);
         sandbox.run(&["gen", "mjcf", "--file", name]).expect(2, &[name, words]);
     }
+    let deep = format!("<mujoco><worldbody>{}{}</worldbody></mujoco>", "<body>".repeat(600), "</body>".repeat(600));
+    let utf16: Vec<u8> = "<robot name='r'/>".encode_utf16().flat_map(u16::to_be_bytes).collect();
+    let entities = "<?xml version='1.0'?><!DOCTYPE robot [<!ENTITY m '1'>]>\n<robot name='r'/>";
+    let limits: [(&str, &[u8], &[&str]); 3] = [
+        ("deep.xml", deep.as_bytes(), &["nested 602 deep", "the limit is 500"]),
+        ("wide.urdf", &utf16, &["UTF-16BE", "iconv -f UTF-16BE -t UTF-8"]),
+        ("entities.urdf", entities.as_bytes(), &["document type with entities", "xmllint --noent"]),
+    ];
+    for (name, bytes, words) in limits {
+        std::fs::write(sandbox.path(name), bytes).unwrap();
+        sandbox.run(&["compare", name]).expect(2, &[&[name], words].concat());
+    }
+    // Every bad file is told, and the end names them all.
+    sandbox
+        .run(&["compare", "deep.xml", "wide.urdf"])
+        .expect(2, &["not compared: deep.xml", "not compared: wide.urdf", "2 files cannot be compared"]);
     sandbox.run(&["compare", "nowhere.urdf"]).expect(2, &["nowhere.urdf"]);
     sandbox.run(&["compare", "datasets"]).expect(2, &["this is a folder"]);
     let good = sandbox.write("good.urdf", &urdf(JOINT));

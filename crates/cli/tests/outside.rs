@@ -4,6 +4,8 @@
 //! with `FEATHERBENCH_NIGHTLY` set.
 //! Not libtest: its captured output would hide the skips.
 
+#[path = "outside/compared.rs"]
+mod compared;
 #[path = "outside/compiled.rs"]
 mod compiled;
 #[path = "outside/native.rs"]
@@ -42,6 +44,10 @@ fn main() -> ExitCode {
         ("MuJoCo reads the MJCF that we write", || with_engines(written::mjcf_round_trip)),
         ("MuJoCo's compiler writes a description", || with_engines(compiled::gen_mjcf)),
         ("a file's keyframes are states", || with_engines(compiled::keyframes)),
+        ("a file that an engine refuses is compared as written", || with_engines(compared::refused_files)),
+        ("armature of a free joint is compared as a number", || with_engines(compared::free_armature)),
+        ("classes of differences and bad files among good ones", || with_engines(compared::classes_and_bad_files)),
+        ("a robot beyond an engine's limits is told", || with_engines(compared::limits)),
         ("engines read alike the URDF that we write", || with_engines(written::urdf_read_alike)),
         ("a browser clicks through the report", browser),
         ("a pendulum in C agrees with our kernels", native::pendulum_answers),
@@ -284,7 +290,7 @@ fn one_file_is_another() -> Outcome {
         let oracle = Oracle::start(vec![python.clone().into(), program.into()], Limits::default()).unwrap();
         let compared = |file: &RobotFile| {
             let reading = oracle.read(file).unwrap();
-            Comparison::of(&ours, &reading.description, &reading.notes).differences().cloned().collect::<Vec<Difference>>()
+            Comparison::of(&ours, &reading.description, &[], &reading.notes).differences().cloned().collect::<Vec<Difference>>()
         };
         assert_eq!(compared(&honest), [], "{engine}");
         for (file, field, cause) in &planted {

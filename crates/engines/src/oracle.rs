@@ -7,7 +7,7 @@ use crate::{request, shape};
 use harness::frame::{Block, Frame};
 use harness::provenance::PROGRAM;
 use harness::{Identity, Prepared, Problem, Quantity, Reading, ReadingNote, Refusal, RobotFile, Route, Subject};
-use model::{Description, StateBatch};
+use model::{BodyDescription, Description, StateBatch};
 use record::EngineSource;
 use serde_json::{Value, json};
 use std::collections::BTreeMap;
@@ -350,7 +350,8 @@ impl Drop for Asked<'_> {
 /// A sentence, when it is no robot whose states and answers could be given in the order of its bodies.
 pub(crate) fn reading(answer: &Frame) -> Result<Reading, String> {
     let model = answer.header.get("model").ok_or("there is no model")?;
-    let description = formats::neutral::parse(&model.to_string(), "the model").map_err(|error| error.to_string())?;
+    let parse = |model: &Value| formats::neutral::parse(&model.to_string(), "the model").map_err(|error| error.to_string());
+    let description = parse(model)?;
     let canonical = description.canonical().map_err(|error| error.to_string())?;
     // States and answers are in the order of the bodies: one that would change here would mix them up. Numbers may be normalised.
     let order = |robot: &Description| robot.bodies.iter().map(|body| (body.name.clone(), body.parent)).collect::<Vec<_>>();
@@ -370,7 +371,18 @@ pub(crate) fn reading(answer: &Frame) -> Result<Reading, String> {
     }
     let keyframes = keyframes(answer, canonical.nq())?;
     let notes = answer.header.get("notes").and_then(Value::as_array).map_or(&[][..], Vec::as_slice);
-    Ok(Reading { description: canonical, notes: notes.iter().map(note).collect(), keyframes })
+    let written = answer.header.get("written").map(parse).transpose().map_err(|error| format!("as written: {error}"))?;
+    if let Some(written) = written.as_ref().filter(|written| !same_tree(written, &canonical)) {
+        return Err(format!("'{}' as written has other bodies or joints than as read", written.name));
+    }
+    Ok(Reading { description: canonical, notes: notes.iter().map(note).collect(), keyframes, written })
+}
+
+/// Whether two descriptions have the same bodies on the same joints: states of one are states of the other.
+fn same_tree(a: &Description, b: &Description) -> bool {
+    let known =
+        |x: &BodyDescription, y: &BodyDescription| (&x.name, x.parent, x.joint.kind.name()) == (&y.name, y.parent, y.joint.kind.name());
+    a.bodies.len() == b.bodies.len() && a.bodies.iter().zip(&b.bodies).all(|(x, y)| known(x, y))
 }
 
 /// The configurations that the file names, if any.
@@ -388,7 +400,13 @@ fn keyframes(answer: &Frame, nq: usize) -> Result<Vec<Vec<f64>>, String> {
 /// A parser's note; what is no text in it is left empty.
 fn note(note: &Value) -> ReadingNote {
     let text = |key: &str| note.get(key).and_then(Value::as_str).map(str::to_owned);
-    ReadingNote { cause: text("cause").unwrap_or_default(), subject: text("subject"), text: text("text").unwrap_or_default() }
+    let numbers: Option<Vec<f64>> = note.get("numbers").and_then(Value::as_array).and_then(|list| list.iter().map(Value::as_f64).collect());
+    ReadingNote {
+        cause: text("cause").unwrap_or_default(),
+        subject: text("subject"),
+        text: text("text").unwrap_or_default(),
+        numbers: numbers.unwrap_or_default(),
+    }
 }
 
 /// An answer whose status is `ok`, or what its status says.

@@ -214,6 +214,7 @@ fn what_is_left_out_is_noted() {
         "line 1: <collision> in <link> is not read (2 times)",
         "line 2: <safety_controller> in <joint> is not read",
         "line 2: joint 'j' mimics 'other' and is read as a joint of its own",
+        "line 2: joint 'j' mimics 'other', which is not there",
         "line 2: <calibration> in <joint> is not read",
         "line 2: <gazebo> is not read (2 times)",
         "line 2: <transmission> is not read",
@@ -244,4 +245,28 @@ fn a_second_reader_agrees() {
         assert_eq!((body.joint.effort[0], body.joint.velocity[0]), (joint.limit.effort, joint.limit.velocity));
         assert_eq!(body.joint.damping.first().copied(), joint.dynamics.as_ref().map(|dynamics| dynamics.damping));
     }
+}
+
+/// Joints that mimic nothing, or each other, are told: engines leave them out without a word.
+#[test]
+fn mimics_that_nothing_drives_are_noted() {
+    let joint = |name: &str, parent: &str, child: &str, of: &str| {
+        format!(
+            r#"<joint name="{name}" type="continuous"><parent link="{parent}"/><child link="{child}"/><axis xyz="0 0 1"/><mimic joint="{of}"/></joint>"#
+        )
+    };
+    let text = |of: [&str; 3]| {
+        let inertial = r#"<inertial><mass value="1"/><inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/></inertial>"#;
+        let links: String = ["a", "b", "c"].map(|name| format!(r#"<link name="{name}">{inertial}</link>"#)).concat();
+        let joints = joint("i", "w", "a", of[0]) + &joint("j", "a", "b", of[1]) + &joint("k", "b", "c", of[2]);
+        format!(r#"<robot name="r"><link name="w"/>{links}{joints}</robot>"#)
+    };
+    let circles = |of: [&str; 3]| -> Vec<String> {
+        let (_, notes) = import(&text(of), Options { independent_mimics: true, ..Options::default() });
+        let told = notes.into_iter().filter(|note| !note.contains("joint of its own"));
+        told.map(|note| note.split_once(": ").unwrap().1.to_owned()).collect()
+    };
+    assert_eq!(circles(["k", "i", "j"]), ["the joints 'i' → 'k' → 'j' → 'i' mimic each other in a circle: nothing drives them"]);
+    assert_eq!(circles(["j", "j", "j"]), ["the joints 'j' → 'j' mimic each other in a circle: nothing drives them"]);
+    assert_eq!(circles(["nowhere", "i", "i"]), ["joint 'i' mimics 'nowhere', which is not there"]);
 }

@@ -30,7 +30,7 @@ pub use error::HarnessError;
 pub use gates::{Factor, Gate, Gates, Sharpness, accounted};
 pub use problem::{Problem, Route};
 pub use quantity::{DENSE_LIMIT, Quantity};
-pub use reading::{FileBase, FileFormat, Reading, ReadingNote, RobotFile};
+pub use reading::{FileBase, FileFormat, FileInertial, FileLink, Reading, ReadingNote, RobotFile, WATER};
 pub use scatter::Scatter;
 pub use stepper::Stepper;
 pub use store::{Lost, OUTCOMES_NAME, OutcomeStore};

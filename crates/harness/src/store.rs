@@ -166,19 +166,26 @@ const CHECKSUM: &str = "blake3";
 
 /// A reading as JSON: the description's text, and the notes.
 fn written(reading: &Reading) -> Value {
-    let note = |note: &ReadingNote| json!({"cause": note.cause, "subject": note.subject, "text": note.text});
+    let note = |note: &ReadingNote| json!({"cause": note.cause, "subject": note.subject, "text": note.text, "numbers": note.numbers});
     // A description that is no robot has no text, and reads back as a damaged frame: its cell is asked again.
     let model = neutral::to_string(&reading.description).unwrap_or_default();
-    json!({"model": model, "notes": reading.notes.iter().map(note).collect::<Vec<_>>()})
+    let written = reading.written.as_ref().map(|written| neutral::to_string(written).unwrap_or_default());
+    json!({"model": model, "written": written, "notes": reading.notes.iter().map(note).collect::<Vec<_>>()})
 }
 
 fn reading(value: &Value, keyframes: &Block) -> Option<Reading> {
     let text = |value: &Value| value.as_str().map(str::to_owned);
-    let note =
-        |note: &Value| Some(ReadingNote { cause: text(&note["cause"])?, subject: text(&note["subject"]), text: text(&note["text"])? });
+    let note = |note: &Value| {
+        let numbers = note["numbers"].as_array()?.iter().map(Value::as_f64).collect::<Option<_>>()?;
+        Some(ReadingNote { cause: text(&note["cause"])?, subject: text(&note["subject"]), text: text(&note["text"])?, numbers })
+    };
     let description = neutral::parse(value["model"].as_str()?, OUTCOMES_NAME).ok()?;
     let keyframes = keyframes.data.chunks_exact(description.nq().max(1)).map(<[f64]>::to_vec).collect();
-    Some(Reading { description, notes: value["notes"].as_array()?.iter().map(note).collect::<Option<_>>()?, keyframes })
+    let written = match value["written"].as_str() {
+        Some(text) => Some(neutral::parse(text, OUTCOMES_NAME).ok()?),
+        None => None,
+    };
+    Some(Reading { description, notes: value["notes"].as_array()?.iter().map(note).collect::<Option<_>>()?, keyframes, written })
 }
 
 /// The cell and its outcome, or what is wrong with the frame.

@@ -77,8 +77,9 @@ impl Study for Counting {
             5 => Outcome::Refused(Refusal::Failed("it broke".into())),
             3 => {
                 let description = Family::parse("chain:n=2").unwrap().generate().unwrap();
-                let note = ReadingNote { cause: "warning".into(), subject: None, text: "not \"this\"".into() };
-                Outcome::Reading(Box::new(Reading { description, notes: vec![note], keyframes: vec![vec![0.1, -0.2]] }))
+                let note = ReadingNote { cause: "warning".into(), subject: None, text: "not \"this\"".into(), numbers: vec![0.1, -2.0] };
+                let written = Some(description.clone());
+                Outcome::Reading(Box::new(Reading { description, notes: vec![note], keyframes: vec![vec![0.1, -0.2]], written }))
             }
             _ => {
                 let mut random = Random::named(context.seed, &cell.id());

@@ -31,6 +31,10 @@ fn rows(run: &RunInfo) -> Vec<Record> {
         row("one", "mujoco", "inertia", "difference", edited).informed(0.5),
         row("one", "mujoco", "id", "as_read", "{}").informed(0.25),
         row("one", "drake", "reading", "differences", "{}").without_value(Verdict::Error, "no <such> joint"),
+        // A long chain, whose rounding the study bounds by its depth.
+        row("two", "pinocchio", "reading", "differences", "{}").informed(0.0),
+        row("two", "pinocchio", "id", "as_read", "{}").informed(7.8e-12),
+        row("two", "pinocchio", "reading", "unexplained", r#"{"gate":1e-11}"#).gated(0.0, Relation::Le, 0.0),
         row("two", "drake", "reading", "differences", "{}").informed(0.0),
         row("two", "drake", "id", "as_read", "{}").informed(0.5),
         row("two", "drake", "reading", "unexplained", tree).gated(1.0, Relation::Le, 0.0),
@@ -42,13 +46,14 @@ fn each_reading_has_its_cell_and_each_cause_its_count() {
     let run = support::run_info();
     let written = Written::of(&run, &rows(&run));
     let section = written.section("reading");
-    assert_eq!(section.matches("data-reading=").count(), 4, "four readings");
+    assert_eq!(section.matches("data-reading=").count(), 5, "five readings");
     let cell = |model: &str, engine: &str| {
         let line = section.split("<tr>").find(|line| line.contains(&format!("<th scope=\"row\">{model}</th>"))).unwrap();
         let cells = line.split("<td").find(|cell| cell.contains(&format!("data-engine=\"{engine}\"")));
         cells.unwrap_or_else(|| panic!("{engine} has no cell of {model}: {line}")).to_owned()
     };
     assert!(cell("one", "pinocchio").contains("number d0") && cell("one", "pinocchio").contains('✓'));
+    assert!(cell("two", "pinocchio").contains("number d0"), "{}", cell("two", "pinocchio"));
     assert!(cell("one", "mujoco").contains("number d5") && cell("one", "mujoco").contains(">1<"));
     assert!(cell("one", "drake").contains('–') && cell("one", "drake").contains("no &lt;such&gt; joint"));
     assert!(cell("two", "drake").contains("class=\"unexplained\">?"), "{}", cell("two", "drake"));

@@ -25,9 +25,9 @@ impl Parser {
         let mut held = problem.clone();
         held.description = holds.canonical().unwrap();
         held.model = Model::build(&held.description).unwrap();
-        let note = ReadingNote { cause: "warning".into(), subject: None, text: "something".into() };
+        let note = ReadingNote { cause: "warning".into(), subject: None, text: "something".into(), numbers: Vec::new() };
         Self {
-            says: Ok(Read { description: says.canonical().unwrap(), notes: vec![note], keyframes: Vec::new() }),
+            says: Ok(Read { description: says.canonical().unwrap(), notes: vec![note], keyframes: Vec::new(), written: None }),
             holds: Some(held),
             ..Self::refusing("")
         }
@@ -66,7 +66,8 @@ impl Subject for Parser {
 
 /// A robot that is said to come from a file.
 fn filed(spec: &str) -> Problem {
-    let file = RobotFile { path: "robot.urdf".into(), format: FileFormat::Urdf, base: FileBase::Fixed, hash: "0".into() };
+    let file =
+        RobotFile { path: "robot.urdf".into(), format: FileFormat::Urdf, base: FileBase::Fixed, hash: "0".into(), links: Vec::new() };
     robot(spec).from_file(file)
 }
 

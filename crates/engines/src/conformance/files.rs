@@ -27,7 +27,7 @@ const AS_READ: [Quantity; 6] = [
     Quantity::KineticEnergy,
 ];
 /// The causes that a note may give.
-const CAUSES: [&str; 13] = [
+const CAUSES: [&str; 14] = [
     "mass_edited",
     "com_edited",
     "inertia_edited",
@@ -35,6 +35,7 @@ const CAUSES: [&str; 13] = [
     "bounds",
     "geometry_dropped",
     "from_geometry",
+    "free_armature",
     "fused",
     "root_welded",
     "mimic",

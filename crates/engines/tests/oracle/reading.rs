@@ -6,7 +6,7 @@ use model::StateBatch;
 
 impl Trial {
     fn file(&self) -> RobotFile {
-        RobotFile { path: "/robots/p.urdf".into(), format: FileFormat::Urdf, base: FileBase::Free, hash: "0".into() }
+        RobotFile { path: "/robots/p.urdf".into(), format: FileFormat::Urdf, base: FileBase::Free, hash: "0".into(), links: Vec::new() }
     }
 
     fn read(&self) -> Result<Reading, Refusal> {

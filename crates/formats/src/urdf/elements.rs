@@ -7,7 +7,7 @@ use super::xml::Element;
 use model::Placement;
 use roxmltree::{Document, Node};
 use spatial::{DoubleDouble, Mat3, Real, Sym3, Vec3};
-use std::collections::{BTreeMap, HashSet};
+use std::collections::{BTreeMap, HashMap, HashSet};
 
 /// A file's content.
 pub(super) struct Robot {
@@ -40,6 +40,8 @@ pub(super) struct Joint {
     pub effort: Vec<f64>,
     pub damping: Vec<f64>,
     pub friction: Vec<f64>,
+    /// The joint that it mimics, and where that stands.
+    pub mimics: Option<(String, usize)>,
 }
 
 /// A joint's type with its unit axis.
@@ -88,6 +90,7 @@ impl Robot {
         if robot.links.is_empty() {
             return Err(UrdfProblem::NoLinks.at(root.range().start));
         }
+        note_mimics_of_nothing(&robot.joints, notes);
         note_what_is_not_read(root, notes);
         Ok(robot)
     }
@@ -116,6 +119,26 @@ fn refuse_macros(root: Node) -> Result<(), At> {
         }
     }
     Ok(())
+}
+
+/// Joints that mimic one which is not there, and circles of joints that mimic each other: nothing drives them.
+fn note_mimics_of_nothing(joints: &[Joint], notes: &mut Vec<NoteAt>) {
+    let index: HashMap<&str, usize> = joints.iter().enumerate().map(|(k, joint)| (joint.name.as_str(), k)).collect();
+    for (k, joint) in joints.iter().enumerate() {
+        let Some((of, offset)) = &joint.mimics else { continue };
+        if !index.contains_key(of.as_str()) {
+            notes.push(NoteAt { offset: *offset, text: format!("joint '{}' mimics '{of}', which is not there", joint.name) });
+        }
+        let follow = |k: &usize| joints[*k].mimics.as_ref().and_then(|(of, _)| index.get(of.as_str()).copied());
+        let behind: Vec<usize> = std::iter::successors(follow(&k), follow).take(joints.len()).collect();
+        // A circle is told once, at the first of its joints.
+        let Some(length) = behind.iter().position(|&at| at == k) else { continue };
+        let circle = &behind[..=length];
+        if circle.iter().all(|&at| at >= k) {
+            let names = std::iter::once(&k).chain(circle).map(|&at| format!("'{}'", joints[at].name)).collect::<Vec<_>>().join(" → ");
+            notes.push(NoteAt { offset: *offset, text: format!("the joints {names} mimic each other in a circle: nothing drives them") });
+        }
+    }
 }
 
 /// One note per kind of element that plays no part.
@@ -149,14 +172,9 @@ impl Link {
             return Ok(link);
         };
         link.has_inertial = true;
-        let mass = inertial.required("mass")?;
-        link.mass = mass.number("value")?;
+        (link.mass, link.inertia) = Self::mass_and_tensor(inertial)?;
         if link.mass < 0.0 {
-            return Err(mass.problem(UrdfProblem::NegativeMass { link: link.name, mass: link.mass }));
-        }
-        let tensor = inertial.required("inertia")?;
-        for (entry, name) in link.inertia.iter_mut().zip(["ixx", "ixy", "ixz", "iyy", "iyz", "izz"]) {
-            *entry = tensor.number(name)?;
+            return Err(inertial.required("mass")?.problem(UrdfProblem::NegativeMass { link: link.name, mass: link.mass }));
         }
         let origin = origin(inertial)?;
         link.com = origin.translation;
@@ -164,6 +182,17 @@ impl Link {
             link.inertia = Sym3::from_array(link.inertia).rotate(Mat3::from_array(origin.rotation)).to_array();
         }
         Ok(link)
+    }
+
+    /// The numbers of an `<inertial>`, in its own axes.
+    pub fn mass_and_tensor(inertial: Element) -> Result<(f64, [f64; 6]), At> {
+        let mass = inertial.required("mass")?.number("value")?;
+        let tensor = inertial.required("inertia")?;
+        let mut inertia = [0.0; 6];
+        for (entry, name) in inertia.iter_mut().zip(["ixx", "ixy", "ixz", "iyy", "iyz", "izz"]) {
+            *entry = tensor.number(name)?;
+        }
+        Ok((mass, inertia))
     }
 }
 
@@ -173,6 +202,7 @@ impl Joint {
         let kind = element.attribute("type")?;
         let (parent, child) = (element.required("parent")?.attribute("link")?, element.required("child")?.attribute("link")?);
         let placement = origin(element)?;
+        let mut mimics = None;
         if let Some(mimic) = element.optional("mimic")? {
             let of = mimic.attribute("joint")?;
             if !options.independent_mimics {
@@ -183,6 +213,7 @@ impl Joint {
                 text: format!("joint '{name}' mimics '{of}' and is read as a joint of its own"),
                 warning: None,
             });
+            mimics = Some((of.to_owned(), mimic.offset()));
         }
         let mut axis = || axis(element, name, notes);
         let kind_read = match kind {
@@ -206,6 +237,7 @@ impl Joint {
             effort: Vec::new(),
             damping: Vec::new(),
             friction: Vec::new(),
+            mimics,
         };
         joint.read_properties(element, kind == "continuous", notes)?;
         Ok(joint)
@@ -288,7 +320,7 @@ fn unit(given: [f64; 3]) -> Option<([f64; 3], f64)> {
 }
 
 /// The placement of an `<origin>`; the identity where there is none.
-fn origin(element: Element) -> Result<Placement, At> {
+pub(super) fn origin(element: Element) -> Result<Placement, At> {
     let Some(origin) = element.optional("origin")? else {
         return Ok(Placement::default());
     };

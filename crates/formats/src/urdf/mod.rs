@@ -23,11 +23,13 @@
 mod angles;
 mod elements;
 mod error;
+mod links;
 mod tree;
 mod write;
 mod xml;
 
 pub use error::{UrdfError, UrdfProblem};
+pub use links::{Inertial, LinkInFile, links};
 pub use write::{to_string, write};
 
 use crate::{Place, text};

@@ -1,41 +1,24 @@
-//! Why two readings of a field differ: hypotheses that are tested on the numbers. What a parser says about itself is evidence where the
-//! numbers allow it, and never a cause alone.
+//! Why two readings of a field differ, where the links of the body do not account for it: hypotheses that predict the field and are tested on
+//! its numbers. What a parser says about itself is shown beside them, and names no cause alone.
 
-use super::fields::{ROUNDING, distance, from_rpy, inertia_scale, norm, rpy};
+use super::account::{TESTED, UNITS};
+use super::fields::{distance, from_rpy, inertia_scale, norm, rpy};
 use super::{Cause, Field};
 use harness::ReadingNote;
-use model::{BodyDescription, Description, Warning};
-use spatial::{Sym3, Vec3};
+use model::BodyDescription;
+use spatial::{Mat3, Sym3, Vec3};
+use std::f64::consts::PI;
 
-/// Factors that a wrong unit leaves: lengths or masses by a thousand, areas by its square.
-const UNITS: [f64; 4] = [1e3, 1e-3, 1e6, 1e-6];
-/// Rounding of a hypothesis: the numbers compared went through a few more operations than two readings, each with its factor.
-const TESTED: f64 = 4.0 * ROUNDING;
-
-/// The cause of a difference in a field, with the parser's own sentence where it has one about it.
+/// The cause of a difference in a field that the links do not account for, with the parser's own sentence where it has one about it.
 pub(super) fn cause(field: Field, ours: &BodyDescription, theirs: &BodyDescription, notes: &[&ReadingNote]) -> (Cause, Option<String>) {
     let said = |code: &str| notes.iter().find(|note| note.cause == code);
     let sentence = |codes: &[&str]| codes.iter().find_map(|code| said(code)).map(|note| note.text.clone());
-    let warned = notes.iter().find(|note| note.cause == "warning" && note.text.contains("inertia")).map(|note| note.text.clone());
     let unread = |list: &[f64]| list.iter().all(|&x| x == 0.0);
     match field {
-        Field::Mass => match mass(ours.mass, theirs.mass, &said) {
-            Cause::Number if said("mass_edited").is_some() => (Cause::Edited, sentence(&["mass_edited"])),
-            cause => (cause, sentence(&["mass_edited", "bounds", "from_geometry"])),
-        },
-        Field::Com if ours.mass == 0.0 => (Cause::ZeroMass, sentence(&["mass_edited"])),
-        Field::Com if said("from_geometry").is_some() => (Cause::Geometry, sentence(&["from_geometry"])),
-        Field::Com => (if scaled(&ours.com, &theirs.com) { Cause::Unit } else { Cause::Number }, None),
-        Field::Inertia => match inertia(ours, theirs) {
-            Cause::Number if ours.mass == 0.0 && theirs.mass > 0.0 => (Cause::ZeroMass, sentence(&["inertia_edited", "mass_edited"])),
-            Cause::Number if said("from_geometry").is_some() => (Cause::Geometry, sentence(&["from_geometry"])),
-            Cause::Number if said("bounds").is_some() && trace(theirs) > trace(ours) => (Cause::Bounds, sentence(&["bounds"])),
-            Cause::Number if said("inertia_edited").is_some() => (Cause::Edited, sentence(&["inertia_edited"])),
-            Cause::Number if !physical(ours) && physical(theirs) => (Cause::Unphysical, None),
-            // A link that is fixed to this one may be what it is about: its own inertia is not seen in the sum.
-            Cause::Number if warned.is_some() => (Cause::Edited, warned),
-            cause => (cause, sentence(&["balanceinertia", "inertia_edited"])),
-        },
+        // A sentence is shown beside a number that it does not account for, and names no cause.
+        Field::Mass => (Cause::Number, sentence(&["mass_edited", "from_geometry"])),
+        Field::Com => (Cause::Number, sentence(&["com_edited", "mass_edited", "from_geometry"])),
+        Field::Inertia => (inertia(ours, theirs), sentence(&["inertia_edited", "mass_edited", "from_geometry"])),
         Field::Axis => match (ours.joint.kind.axis(), theirs.joint.kind.axis()) {
             (Some(x), Some(y)) if distance(x, y.map(|y| -y)) <= TESTED => (Cause::Flipped, None),
             _ => (Cause::Number, None),
@@ -50,37 +33,12 @@ pub(super) fn cause(field: Field, ours: &BodyDescription, theirs: &BodyDescripti
     }
 }
 
-fn mass<'a>(ours: f64, theirs: f64, said: &impl Fn(&str) -> Option<&'a &'a ReadingNote>) -> Cause {
-    if said("bounds").is_some_and(|note| raised(theirs - ours, &note.text)) {
-        Cause::Bounds
-    } else if said("from_geometry").is_some() && theirs > 0.0 {
-        Cause::Geometry
-    } else if ours == 0.0 {
-        Cause::ZeroMass
-    } else if scaled(&[ours], &[theirs]) {
-        Cause::Unit
-    } else {
-        Cause::Number
-    }
-}
-
-/// Whether a mass was raised to the least one that the sentence names, or the masses of a few links of one body.
-fn raised(by: f64, sentence: &str) -> bool {
-    let numbers = sentence.split(|c: char| c.is_whitespace() || c == ',').filter_map(|word| word.parse::<f64>().ok());
-    let times = |least: f64| by / least;
-    numbers.filter(|&least| least > 0.0).any(|least| {
-        times(least) > 0.0 && times(least) < 1.0 + 1e-3 || {
-            // Rounding of the sum, of which the bound is a small part.
-            let off = (times(least) - times(least).round()).abs();
-            times(least) >= 1.0 && times(least) < 100.0 && off < 1e-3
-        }
-    })
-}
-
+/// What happened to an inertia whose links are not known one by one: the same principal moments in other axes, or three equal ones.
 fn inertia(ours: &BodyDescription, theirs: &BodyDescription) -> Cause {
     let scale = inertia_scale(ours).max(inertia_scale(theirs));
     let [a, b] = [ours.inertia, theirs.inertia].map(Sym3::from_array);
-    let mean = trace(ours) / 3.0;
+    let [xx, _, _, yy, _, zz] = ours.inertia;
+    let mean = (xx + yy + zz) / 3.0;
     let balanced = [mean, 0.0, 0.0, mean, 0.0, mean];
     if same_moments(a, b, scale) {
         return match (diagonal(a, scale), diagonal(b, scale)) {
@@ -89,25 +47,7 @@ fn inertia(ours: &BodyDescription, theirs: &BodyDescription) -> Cause {
             _ => Cause::InertiaTurned,
         };
     }
-    if theirs.inertia.iter().zip(balanced).all(|(x, y)| (x - y).abs() <= TESTED * scale) {
-        return Cause::Balanced;
-    }
-    if scaled(&ours.inertia, &theirs.inertia) {
-        Cause::Unit
-    } else if less_a_body(ours, theirs, scale) {
-        Cause::MasslessLink
-    } else {
-        Cause::Number
-    }
-}
-
-/// Whether theirs is ours less an inertia that a body could have, with the same mass and centre of mass.
-fn less_a_body(ours: &BodyDescription, theirs: &BodyDescription, scale: f64) -> bool {
-    let missing: [f64; 6] = std::array::from_fn(|k| ours.inertia[k] - theirs.inertia[k]);
-    let body = BodyDescription { inertia: missing, ..ours.clone() };
-    let same = |a: f64, b: f64, size: f64| (a - b).abs() <= TESTED * size;
-    let same_com = distance(ours.com, theirs.com) <= TESTED * norm(ours.com);
-    same(ours.mass, theirs.mass, ours.mass) && same_com && trace(&body) > TESTED * scale && physical(&body)
+    if theirs.inertia.iter().zip(balanced).all(|(x, y)| (x - y).abs() <= TESTED * scale) { Cause::Balanced } else { Cause::Number }
 }
 
 fn placement(ours: &BodyDescription, theirs: &BodyDescription) -> Cause {
@@ -117,11 +57,40 @@ fn placement(ours: &BodyDescription, theirs: &BodyDescription) -> Cause {
         return if scaled(&a.translation, &b.translation) { Cause::Unit } else { Cause::Number };
     }
     let far = norm(a.translation).max(norm(b.translation));
-    let same_place = distance(a.translation, b.translation) <= TESTED * far;
+    if distance(a.translation, b.translation) > TESTED * far {
+        return Cause::Number;
+    }
+    if close(&Mat3::from_array(a.rotation).transpose().to_array(), &b.rotation) {
+        return Cause::Transposed;
+    }
     let [x, y] = [rpy(a.rotation), rpy(b.rotation)];
     // The smaller angles are the numbers of the file, read once as what they are not.
     let degrees = |small: [f64; 3], large: &[f64; 9]| close(&from_rpy(small.map(f64::to_degrees)), large);
-    if same_place && (degrees(x, &b.rotation) || degrees(y, &a.rotation)) { Cause::Degrees } else { Cause::Number }
+    if degrees(x, &b.rotation) || degrees(y, &a.rotation) {
+        return Cause::Degrees;
+    }
+    if in_default_sequence(a.rotation).any(|read| close(&read, &b.rotation)) { Cause::EulerSequence } else { Cause::Number }
+}
+
+/// The rotations that a parser makes of an MJCF's `euler`, where the file's `eulerseq` gave this rotation and the parser takes `xyz`: the angles
+/// in each of the six orders of three axes, about moving axes and about fixed ones.
+fn in_default_sequence(rotation: [f64; 9]) -> impl Iterator<Item = [f64; 9]> {
+    let entry = move |i: usize, j: usize| rotation[3 * i + j];
+    let orders = [[0, 1, 2], [1, 2, 0], [2, 0, 1], [0, 2, 1], [2, 1, 0], [1, 0, 2]];
+    orders.into_iter().flat_map(move |[i, j, k]: [usize; 3]| {
+        // R = Rᵢ(a) Rⱼ(b) Rₖ(c); the sign is that of the permutation.
+        let sign = if (j + 3 - i) % 3 == 1 { 1.0 } else { -1.0 };
+        let (a, c) = ((-sign * entry(j, k)).atan2(entry(k, k)), (-sign * entry(i, j)).atan2(entry(i, i)));
+        let b = (sign * entry(i, k)).atan2(entry(i, i).hypot(entry(i, j)));
+        // The same rotation by the other three angles.
+        let twice = [[a, b, c], [a + PI, PI - b, c + PI]];
+        twice.into_iter().flat_map(|[a, b, c]| [[a, b, c], [c, b, a]]).map(from_xyz)
+    })
+}
+
+/// Rx(a) Ry(b) Rz(c).
+fn from_xyz([a, b, c]: [f64; 3]) -> [f64; 9] {
+    Mat3::from_array(from_rpy([-a, -b, -c])).transpose().to_array()
 }
 
 /// Whether two rotations are the same; an angle of many turns has lost digits in proportion.
@@ -134,17 +103,6 @@ fn scaled(ours: &[f64], theirs: &[f64]) -> bool {
     let size = |list: &[f64]| list.iter().map(|x| x.abs()).fold(0.0, harness::measure::worst);
     let by = |unit: f64| ours.iter().zip(theirs).all(|(x, y)| (x * unit - y).abs() <= TESTED * size(theirs));
     size(ours) > 0.0 && size(theirs) > 0.0 && ours.len() == theirs.len() && UNITS.into_iter().any(by)
-}
-
-/// Whether some distribution of mass has this inertia: no moment is larger than the sum of the two others, about any axes.
-fn physical(body: &BodyDescription) -> bool {
-    let alone = Description { bodies: vec![body.clone()], ..Description::default() };
-    !alone.warnings().iter().any(|warning| matches!(warning, Warning::Unphysical { .. }))
-}
-
-fn trace(body: &BodyDescription) -> f64 {
-    let [xx, _, _, yy, _, zz] = body.inertia;
-    xx + yy + zz
 }
 
 fn diagonal(inertia: Sym3<f64>, scale: f64) -> bool {

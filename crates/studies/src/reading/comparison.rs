@@ -1,11 +1,12 @@
 //! Two readings of one robot, compared body by body: a pure function of two descriptions and of what the parser says about itself.
 
+use super::account::{Account, OF_MASS, Parts};
 use super::align::aligned;
 use super::cause::cause;
 use super::fields::{self, OF_A_BODY, differs, digits};
 use super::pairs::{chained, pairs};
 use super::{Cause, Difference, Field};
-use harness::ReadingNote;
+use harness::{FileLink, ReadingNote};
 use model::{BodyDescription, Description, JointType};
 use std::collections::HashMap;
 
@@ -28,8 +29,8 @@ pub struct Finding {
 }
 
 impl Comparison {
-    /// Compares their reading of a robot with ours. Both must be canonical.
-    pub fn of(ours: &Description, theirs: &Description, notes: &[ReadingNote]) -> Self {
+    /// Compares their reading of a robot with ours. Both must be canonical. `links` is what the file says link by link, as far as that is known.
+    pub fn of(ours: &Description, theirs: &Description, links: &[FileLink], notes: &[ReadingNote]) -> Self {
         let (ours, theirs) = (chained(ours), chained(theirs));
         let partner = pairs(&ours, &theirs);
         let gone: Vec<usize> = (0..ours.bodies.len()).filter(|&i| partner[i].is_none()).collect();
@@ -49,7 +50,7 @@ impl Comparison {
         let hypotheses: &[Mass] = if gone.is_empty() { &[Mass::Kept] } else { &[Mass::Kept, Mass::Dropped] };
         for &mass in hypotheses {
             let Some(left) = without(&ours, &gone, mass) else { continue };
-            let found = shared(&left, &reduced, &names, notes);
+            let found = shared(&left, &reduced, &names, links, notes);
             let count = found.iter().filter(|finding| finding.difference.field.weight() == super::Weight::Dynamics).count();
             if best.as_ref().is_none_or(|(fewest, ..)| count < *fewest) {
                 best = Some((count, mass, left, found));
@@ -111,11 +112,20 @@ fn added(body: &BodyDescription) -> Finding {
 
 /// A difference of a kind that has no number: its size is one.
 fn whole(body: &str, field: Field, ours: String, theirs: String, cause: Cause) -> Finding {
-    Finding { difference: Difference { body: body.to_owned(), field, ours, theirs, size: 1.0, cause, note: None }, alone: None }
+    Finding {
+        difference: Difference { body: body.to_owned(), field, ours, theirs, size: 1.0, cause, account: None, note: None },
+        alone: None,
+    }
 }
 
 /// The differences of two robots with the same bodies; `names` leads from ours to theirs.
-fn shared(ours: &Description, theirs: &Description, names: &HashMap<&str, &str>, notes: &[ReadingNote]) -> Vec<Finding> {
+fn shared(
+    ours: &Description,
+    theirs: &Description,
+    names: &HashMap<&str, &str>,
+    links: &[FileLink],
+    notes: &[ReadingNote],
+) -> Vec<Finding> {
     let place: HashMap<&str, usize> = theirs.bodies.iter().enumerate().map(|(j, body)| (body.name.as_str(), j)).collect();
     let partner: Vec<Option<usize>> =
         ours.bodies.iter().map(|body| names.get(body.name.as_str()).and_then(|name| place.get(name)).copied()).collect();
@@ -132,24 +142,41 @@ fn shared(ours: &Description, theirs: &Description, names: &HashMap<&str, &str>,
             let (a, b) = (name(ours, body.parent), name(theirs, theirs.bodies[j].parent));
             findings.push(whole(&body.name, Field::Parent, a, b, Cause::Number));
         }
-        for field in OF_A_BODY {
-            let size = fields::size(field, body, aligned, reach);
-            if differs(size, fields::rounding(ours, i)) {
-                findings.push(finding(ours, i, aligned, field, size, &about));
-            }
+        let rounding = fields::rounding(ours, i);
+        let different: Vec<(Field, f64)> = OF_A_BODY
+            .into_iter()
+            .map(|field| (field, fields::size(field, body, aligned, reach)))
+            .filter(|&(_, size)| differs(size, rounding))
+            .collect();
+        // What one thing that happened to the links accounts for as a whole, and else each field alone.
+        let of_mass = different.iter().any(|(field, _)| OF_MASS.contains(field));
+        let parts = of_mass.then(|| Parts::new(ours, i, links, &about, reach));
+        let whole = parts.as_ref().and_then(|parts| parts.account(aligned, &OF_MASS));
+        for (field, size) in different {
+            let alone = || parts.as_ref().and_then(|parts| parts.account(aligned, &[field]));
+            let account = if OF_MASS.contains(&field) { whole.clone().or_else(alone) } else { None };
+            findings.push(finding(ours, i, aligned, (field, size), account, &about));
         }
     }
-    super::context::explain(ours, &written, &mut findings, reach);
+    super::context::explain(ours, (theirs, &partner), &written, &mut findings, reach);
     findings.extend(gravity(ours, theirs));
     findings.extend(order(ours, &partner));
     findings
 }
 
-fn finding(ours: &Description, i: usize, aligned: &BodyDescription, field: Field, size: f64, notes: &[&ReadingNote]) -> Finding {
+fn finding(
+    ours: &Description,
+    i: usize,
+    aligned: &BodyDescription,
+    (field, size): (Field, f64),
+    account: Option<Account>,
+    notes: &[&ReadingNote],
+) -> Finding {
     let body = &ours.bodies[i];
-    let (cause, note) = cause(field, body, aligned, notes);
+    let (untested, note) = cause(field, body, aligned, notes);
+    let (cause, account) = account.map_or((untested, None), |account| (account.cause, Some(account.text)));
     let [a, b] = [body, aligned].map(|body| fields::written(field, body, size));
-    let difference = Difference { body: body.name.clone(), field, ours: a, theirs: b, size, cause, note };
+    let difference = Difference { body: body.name.clone(), field, ours: a, theirs: b, size, cause, account, note };
     // Other coordinates, or none: not this robot with one number changed.
     let comparable = field != Field::JointType || body.joint.kind.nv() == aligned.joint.kind.nv();
     let alone = comparable.then(|| {
@@ -166,12 +193,8 @@ fn about<'a>(ours: &Description, i: usize, theirs: &BodyDescription, notes: &'a 
     let fixed = |name: &str| ours.frames.iter().any(|frame| frame.body == Some(i) && frame.name == name);
     let named =
         |name: &str| [&body.name, &body.joint.name, &theirs.name, &theirs.joint.name].into_iter().any(|own| own == name) || fixed(name);
-    let own = |name: &str| !name.is_empty() && named(name);
-    // A sentence about many links names them.
-    let among = |text: &str| text.split(|c: char| c.is_whitespace() || c == ',').any(own);
     let concerns = |note: &&ReadingNote| match (&note.subject, note.cause.as_str()) {
         (Some(subject), _) => named(subject),
-        (None, "from_geometry") => among(&note.text),
         (None, _) => true,
     };
     notes.iter().filter(concerns).collect()

@@ -4,11 +4,17 @@ use super::comparison::Finding;
 use super::fields::{self, ROUNDING};
 use super::{Cause, Difference, Field};
 use model::{BodyDescription, Description, JointType, Placement};
-use spatial::Transform;
+use spatial::{Sym3, Transform, Vec3};
 
-/// Names what is left; `written` is their robot in our frames.
-pub(super) fn explain(ours: &Description, written: &[Option<BodyDescription>], findings: &mut [Finding], reach: f64) {
-    with_the_mass(findings);
+/// Names what is left; `written` is their robot in our frames, `theirs` in its own, with the partners of our bodies.
+pub(super) fn explain(
+    ours: &Description,
+    theirs: (&Description, &[Option<usize>]),
+    written: &[Option<BodyDescription>],
+    findings: &mut [Finding],
+    reach: f64,
+) {
+    planar_axis(ours, theirs, findings, reach);
     if one_factor(ours, written) {
         let whole = |difference: &&mut Difference| matches!(difference.field, Field::Mass | Field::Inertia);
         unexplained(findings).filter(whole).for_each(|difference| difference.cause = Cause::TotalMass);
@@ -22,20 +28,46 @@ fn unexplained(findings: &mut [Finding]) -> impl Iterator<Item = &mut Difference
     findings.iter_mut().map(|finding| &mut finding.difference).filter(|difference| difference.cause == Cause::Number)
 }
 
-/// A parser that edits a link's mass moves the centre of mass and the inertia of the body that the link is fixed to.
-fn with_the_mass(findings: &mut [Finding]) {
-    let edits = [Cause::Bounds, Cause::ZeroMass, Cause::Geometry, Cause::Edited];
-    let masses: Vec<(String, Cause)> = findings
-        .iter()
-        .map(|finding| &finding.difference)
-        .filter(|difference| difference.field == Field::Mass && edits.contains(&difference.cause))
-        .map(|difference| (difference.body.clone(), difference.cause))
-        .collect();
-    for difference in findings.iter_mut().map(|finding| &mut finding.difference) {
-        let follows =
-            matches!(difference.field, Field::Com | Field::Inertia) && [Cause::Number, Cause::ZeroMass].contains(&difference.cause);
-        if let Some((_, cause)) = masses.iter().find(|(body, _)| follows && *body == difference.body) {
-            difference.cause = *cause;
+/// A planar joint whose plane is z, whatever axis the file gives: the link has the joint's own frame. `chained` writes the joint as two slides
+/// and a turn, and our reader leaves a frame where the link is in the plane.
+fn planar_axis(ours: &Description, (theirs, partner): (&Description, &[Option<usize>]), findings: &mut [Finding], reach: f64) {
+    for end in 2..ours.bodies.len() {
+        let body = &ours.bodies[end];
+        let first = end - 2;
+        let of_plane = ours.bodies[first].name == format!("{}/0", body.name);
+        let Some(frame) = ours.frames.iter().find(|frame| of_plane && frame.body == Some(end) && frame.placement.translation == [0.0; 3])
+        else {
+            continue;
+        };
+        let (link, back) = (frame.placement.to_transform(), frame.placement.to_transform().inverse());
+        let placed = |i: usize, placement: Transform<f64>| {
+            let mut body = ours.bodies[i].clone();
+            body.joint.placement = Placement::from_transform(&placement);
+            body
+        };
+        let mut due =
+            vec![(first, placed(first, ours.bodies[first].joint.placement.to_transform().compose(&link)), vec![Field::Placement])];
+        let mut turned = body.clone();
+        turned.com = back.point(Vec3::from_array(body.com)).to_array();
+        turned.inertia = Sym3::from_array(body.inertia).rotate(back.rotation).to_array();
+        due.push((end, turned, vec![Field::Com, Field::Inertia]));
+        for child in (end + 1..ours.bodies.len()).filter(|&child| ours.bodies[child].parent == Some(end)) {
+            due.push((child, placed(child, back.compose(&ours.bodies[child].joint.placement.to_transform())), vec![Field::Placement]));
+        }
+        let same = |(i, due, fields): &(usize, BodyDescription, Vec<Field>)| {
+            let held = partner[*i].map(|j| &theirs.bodies[j]);
+            held.is_some_and(|held| fields.iter().all(|&field| fields::size(field, due, held, reach) <= 4.0 * ROUNDING))
+        };
+        if due.iter().all(same) {
+            let names: Vec<&str> = (first..=end).chain(due.iter().map(|(i, ..)| *i)).map(|i| ours.bodies[i].name.as_str()).collect();
+            let moved = |difference: &&mut Difference| {
+                names.contains(&difference.body.as_str())
+                    && matches!(difference.field, Field::Axis | Field::Placement | Field::Com | Field::Inertia)
+            };
+            findings.iter_mut().map(|finding| &mut finding.difference).filter(moved).for_each(|difference| {
+                difference.cause = Cause::PlanarAxis;
+                difference.account = None;
+            });
         }
     }
 }

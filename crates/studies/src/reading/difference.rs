@@ -15,6 +15,8 @@ pub struct Difference {
     pub size: f64,
     /// Why, as far as numbers and the parser's own words tell.
     pub cause: Cause,
+    /// What happened to which links of the body, where that predicts the numbers of theirs.
+    pub account: Option<String>,
     /// What the parser itself says about this body.
     pub note: Option<String>,
 }
@@ -90,8 +92,6 @@ pub enum Cause {
     Dropped,
     /// A body that the other reading does not have.
     Added,
-    /// A mass of zero was replaced.
-    ZeroMass,
     /// Raised to the least mass or inertia that the engine takes.
     Bounds,
     /// Principal moments that violate the triangle inequality were made equal.
@@ -114,6 +114,20 @@ pub enum Cause {
     Mimic,
     /// Not read: the parser knows no such element.
     Unsupported,
+    /// A link without an inertial was given the engine's own: one kilogram and one kg·m² about each axis.
+    DefaultInertia,
+    /// The centre of mass with the other sign, or a coordinate of it.
+    ComSign,
+    /// The products of inertia were left out.
+    OffDiagonals,
+    /// The inertia was taken to be about the link's origin, or about the centre of mass where it is not.
+    AboutOrigin,
+    /// The transpose of a rotation.
+    Transposed,
+    /// The plane of a planar joint is normal to z, whatever its axis.
+    PlanarAxis,
+    /// Euler angles were taken in the default sequence and not in the file's `eulerseq`.
+    EulerSequence,
 }
 
 impl Field {
@@ -148,6 +162,38 @@ impl Field {
     }
 }
 
+/// What a difference does to the answers, which decides how a comparison ends.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Class {
+    /// The mass matrix or the inverse dynamics change by more than rounding, or there is another robot.
+    Physics,
+    /// A field that enters them differs, and they do not beyond rounding.
+    Rounding,
+    /// No quantity here has it: damping, friction, limits, an order.
+    NotRead,
+}
+
+impl Class {
+    /// The class of a difference: `effect` is the larger change of M and inverse dynamics by it alone, where that can be asked, and `bound` what
+    /// rounding may leave there.
+    pub fn of(field: Field, effect: Option<f64>, bound: f64) -> Self {
+        match (field.weight(), effect) {
+            (Weight::Dynamics, Some(effect)) if effect <= bound => Self::Rounding,
+            (Weight::Dynamics, _) => Self::Physics,
+            (Weight::Carried | Weight::Information, _) => Self::NotRead,
+        }
+    }
+
+    /// The word for it in records.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Physics => "physics",
+            Self::Rounding => "rounding",
+            Self::NotRead => "not_read",
+        }
+    }
+}
+
 impl Weight {
     /// The word for it in records.
     pub fn name(self) -> &'static str {
@@ -174,7 +220,6 @@ impl Cause {
             Self::Merged => "merged",
             Self::Dropped => "dropped",
             Self::Added => "added",
-            Self::ZeroMass => "zero_mass",
             Self::Bounds => "bounds",
             Self::Balanced => "balanced",
             Self::Unphysical => "unphysical",
@@ -186,6 +231,13 @@ impl Cause {
             Self::Edited => "edited",
             Self::Mimic => "mimic",
             Self::Unsupported => "unsupported",
+            Self::DefaultInertia => "default_inertia",
+            Self::ComSign => "com_sign",
+            Self::OffDiagonals => "off_diagonals",
+            Self::AboutOrigin => "about_origin",
+            Self::Transposed => "transposed",
+            Self::PlanarAxis => "planar_axis",
+            Self::EulerSequence => "euler_sequence",
         }
     }
 }

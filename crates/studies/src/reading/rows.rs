@@ -2,9 +2,10 @@
 
 use super::replay::{Answers, Reference, Replay, carried, replay};
 use super::subtree::{SubTree, unexplained};
-use super::{Comparison, Effect, Finding, READING, REPLAYED, Weight, as_read, reference};
+use super::{Class, Comparison, Effect, Finding, LARGEST, READING, Weight, armature, as_read, bound, reference};
 use crate::row;
-use harness::{Cell, Context, Finished, Outcome, Problem, Quantity, Reading, Refusal};
+use harness::measure::worst;
+use harness::{Cell, Context, FileFormat, Finished, Outcome, Problem, Quantity, Reading, ReadingNote, Refusal};
 use record::{Record, Verdict, canonical_json};
 use serde_json::{Value, json};
 
@@ -14,7 +15,7 @@ pub(super) fn rows(context: &Context, problem: &Problem, finished: &[Finished]) 
     for (cell, outcome) in finished.iter().filter(|(cell, _)| cell.quantity == READING) {
         let of_engine: Vec<&Finished> =
             finished.iter().filter(|(other, _)| other.subject == cell.subject && other.quantity != READING).collect();
-        let engine = Engine { context, problem, cell, of_engine };
+        let engine = Engine { context, problem, cell, of_engine, compiler: compiler(problem, finished) };
         match outcome {
             Outcome::Reading(reading) => rows.extend(engine.read(reading)),
             Outcome::Refused(refusal) => rows.push(engine.refused(cell, refusal)),
@@ -24,6 +25,21 @@ pub(super) fn rows(context: &Context, problem: &Problem, finished: &[Finished]) 
     rows
 }
 
+/// Entries of mass matrices that are computed to tell the effect of each difference alone: some ten seconds. A robot of a hundred dofs and six
+/// states has it for every one of 60 000 differences, one of a thousand dofs for the first 600; for the rest the effect is not told.
+const WORK: usize = 4_000_000_000;
+/// Differences whose effect is told however large the robot is.
+const LEAST_ALONE: usize = 8;
+
+/// What MuJoCo's compiler, whose reading is the reference of an MJCF, tells about it.
+fn compiler<'a>(problem: &Problem, finished: &'a [Finished]) -> Option<&'a [ReadingNote]> {
+    problem.file.as_ref().filter(|file| file.format == FileFormat::Mjcf)?;
+    finished.iter().find_map(|(cell, outcome)| match outcome {
+        Outcome::Reading(reading) if cell.subject == reference(FileFormat::Mjcf) => Some(reading.notes.as_slice()),
+        _ => None,
+    })
+}
+
 struct Engine<'a> {
     context: &'a Context<'a>,
     problem: &'a Problem,
@@ -31,6 +47,7 @@ struct Engine<'a> {
     cell: &'a Cell,
     /// What it computed with the robot as read.
     of_engine: Vec<&'a Finished>,
+    compiler: Option<&'a [ReadingNote]>,
 }
 
 impl Engine<'_> {
@@ -63,10 +80,19 @@ impl Engine<'_> {
     }
 
     fn read(&self, reading: &Reading) -> Vec<Record> {
-        let comparison = Comparison::of(&self.problem.description, &reading.description, &reading.notes);
-        let mut rows = vec![self.count(&comparison, reading)];
+        let links = self.problem.file.as_ref().map_or(&[][..], |file| &file.links);
+        let mut comparison = Comparison::of(&self.problem.description, &reading.description, links, &reading.notes);
+        comparison.findings.extend(self.compiler.into_iter().flat_map(|notes| armature::on_free_joints(notes, &reading.notes)));
         let own = alterable(&comparison, self.problem);
-        rows.extend(comparison.findings.iter().map(|finding| self.difference(finding, &own)));
+        let states = &self.problem.states;
+        let afforded = (WORK / (states.count() * states.nv * states.nv).max(1)).max(LEAST_ALONE);
+        let alone = |(k, finding): (usize, &Finding)| {
+            let alone = finding.alone.as_ref().filter(|_| k < afforded);
+            alone.zip(own.as_ref()).and_then(|(alone, own)| own.effect_of(alone))
+        };
+        let effects: Vec<Option<Effect>> = comparison.findings.iter().enumerate().map(alone).collect();
+        let mut rows = vec![self.count(&comparison, &effects, reading)];
+        rows.extend(comparison.findings.iter().zip(&effects).map(|(finding, effect)| self.difference(finding, effect.as_ref())));
         let answers: Vec<(&Cell, Result<&[f64], &Refusal>)> =
             self.of_engine.iter().map(|(cell, outcome)| (cell, values(outcome))).collect();
         for (cell, answer) in &answers {
@@ -84,25 +110,40 @@ impl Engine<'_> {
         rows
     }
 
-    /// How many differences there are that a simulation would feel.
-    fn count(&self, comparison: &Comparison, reading: &Reading) -> Record {
+    fn class(&self, finding: &Finding, effect: Option<&Effect>) -> Class {
+        let largest = effect.map(|effect| worst(effect.id, effect.mass_matrix));
+        Class::of(finding.difference.field, largest, bound(self.problem.depth))
+    }
+
+    /// How many differences there are that a simulation would feel, and how many of each class.
+    fn count(&self, comparison: &Comparison, effects: &[Option<Effect>], reading: &Reading) -> Record {
         let of = |weight: Weight| comparison.differences().filter(|difference| difference.field.weight() == weight).count();
-        let notes: Vec<Value> =
-            reading.notes.iter().map(|note| json!({"cause": note.cause, "subject": note.subject, "text": note.text})).collect();
+        let notes: Vec<Value> = reading
+            .notes
+            .iter()
+            .map(|note| json!({"cause": note.cause, "subject": note.subject, "text": note.text, "numbers": note.numbers}))
+            .collect();
+        let classes: Vec<Class> =
+            comparison.findings.iter().zip(effects).map(|(finding, effect)| self.class(finding, effect.as_ref())).collect();
+        let class = |class: Class| classes.iter().filter(|found| **found == class).count();
         let (felt, told) = (of(Weight::Dynamics) + of(Weight::Carried), of(Weight::Information));
-        let more = json!({"dynamics": of(Weight::Dynamics), "carried": of(Weight::Carried), "information": told, "notes": notes});
+        let more = json!({
+            "dynamics": of(Weight::Dynamics), "carried": of(Weight::Carried), "information": told, "notes": notes,
+            "physics": class(Class::Physics), "rounding": class(Class::Rounding), "not_read": class(Class::NotRead),
+        });
         Record { params: self.params(more), ..self.row(self.cell, "differences") }.informed(felt as f64)
     }
 
-    fn difference(&self, finding: &Finding, own: &Option<Reference>) -> Record {
+    fn difference(&self, finding: &Finding, alone: Option<&Effect>) -> Record {
         let difference = &finding.difference;
-        let alone = finding.alone.as_ref().zip(own.as_ref()).and_then(|(alone, own)| own.effect_of(alone));
-        let number = |of: fn(&Effect) -> f64| alone.as_ref().map(of).filter(|error| error.is_finite());
+        let number = |of: fn(&Effect) -> f64| alone.map(of).filter(|error| error.is_finite());
         let more = json!({
             "cause": difference.cause.name(),
+            "class": self.class(finding, alone).name(),
             "ours": difference.ours,
             "theirs": difference.theirs,
             "weight": difference.field.weight().name(),
+            "account": difference.account,
             "note": difference.note,
             "id": number(|effect| effect.id),
             "mass_matrix": number(|effect| effect.mass_matrix),
@@ -150,7 +191,10 @@ impl Engine<'_> {
         };
         let trees: Vec<Value> = trees.iter().map(tree).collect();
         let count = trees.len() as f64;
-        let row = Record { params: self.params(json!({"unexplained": trees, "gate": REPLAYED})), ..self.row(self.cell, "unexplained") };
+        let row = Record {
+            params: self.params(json!({"unexplained": trees, "gate": bound(problem.depth)})),
+            ..self.row(self.cell, "unexplained")
+        };
         self.context.gates.judge(row, count, 1.0)
     }
 }
@@ -165,6 +209,9 @@ fn values(outcome: &Outcome) -> Result<&[f64], &Refusal> {
 
 /// Our robot as the findings alter it, with its answers.
 fn alterable(comparison: &Comparison, problem: &Problem) -> Option<Reference> {
+    if problem.states.nv > LARGEST {
+        return None;
+    }
     let model = model::Model::build(&comparison.ours).ok()?;
     let states = carried(&problem.description, &problem.states, &comparison.ours, &model);
     Reference::new(&comparison.ours, states)

@@ -1,0 +1,163 @@
+//! An engine that is asked about a robot no more once it has not answered in time: what did not come within the limit is a stated outcome, and the
+//! other engines go on.
+
+use harness::{FileFormat, Identity, Prepared, Problem, Quantity, Reading, Refusal, RobotFile, Subject};
+use model::StateBatch;
+use std::collections::BTreeMap;
+use std::ops::Range;
+use std::path::PathBuf;
+use std::sync::{Mutex, PoisonError};
+
+/// How the refusal of a process begins that did not answer in time.
+const LATE: &str = "no answer within ";
+
+/// An engine, and the robots that it was too slow for.
+pub struct Patient {
+    engine: Box<dyn Subject>,
+    /// By the file, what was asked in vain, in words.
+    late: Mutex<BTreeMap<PathBuf, String>>,
+}
+
+impl Patient {
+    pub fn new(engine: Box<dyn Subject>) -> Self {
+        Self { engine, late: Mutex::new(BTreeMap::new()) }
+    }
+
+    /// Refuses what is about a robot that the engine was too slow for.
+    fn admit(&self, file: Option<&RobotFile>) -> Result<(), Refusal> {
+        let late = self.late.lock().unwrap_or_else(PoisonError::into_inner);
+        match file.and_then(|file| late.get(&file.path)) {
+            Some(before) => Err(Refusal::Unsupported(format!("not asked again: {before}"))),
+            None => Ok(()),
+        }
+    }
+
+    /// Keeps that an answer did not come in time. It says nothing about the robot, so it is no failure.
+    fn judged<T>(&self, file: Option<&RobotFile>, doing: &str, answer: Result<T, Refusal>) -> Result<T, Refusal> {
+        match answer {
+            Err(Refusal::Failed(reason)) if reason.starts_with(LATE) => {
+                let reason = format!("{reason} ({doing})");
+                if let Some(file) = file {
+                    self.late.lock().unwrap_or_else(PoisonError::into_inner).insert(file.path.clone(), reason.clone());
+                }
+                Err(Refusal::Unsupported(reason))
+            }
+            answer => answer,
+        }
+    }
+}
+
+impl Subject for Patient {
+    fn identity(&self) -> &Identity {
+        self.engine.identity()
+    }
+
+    fn methods(&self, quantity: Quantity) -> Vec<String> {
+        self.engine.methods(quantity)
+    }
+
+    fn read(&self, file: &RobotFile) -> Result<Reading, Refusal> {
+        self.admit(Some(file))?;
+        let kind = if file.format == FileFormat::Urdf { "URDF" } else { "MJCF" };
+        self.judged(Some(file), &format!("reading the {kind}"), self.engine.read(file))
+    }
+
+    fn prepare<'a>(
+        &'a self,
+        problem: &'a Problem,
+        quantity: Quantity,
+        method: &str,
+        states: &'a StateBatch,
+    ) -> Result<Box<dyn Prepared + 'a>, Refusal> {
+        let file = problem.file.as_ref();
+        self.admit(file)?;
+        let doing = format!("building {} bodies", problem.states.bodies);
+        let prepared = self.judged(file, &doing, self.engine.prepare(problem, quantity, method, states))?;
+        Ok(Box::new(Waiting { patient: self, file, quantity, prepared }))
+    }
+}
+
+/// An evaluation that may not come in time.
+struct Waiting<'a> {
+    patient: &'a Patient,
+    file: Option<&'a RobotFile>,
+    quantity: Quantity,
+    prepared: Box<dyn Prepared + 'a>,
+}
+
+impl Prepared for Waiting<'_> {
+    fn run(&mut self, range: Range<usize>) -> Result<(), Refusal> {
+        self.patient.admit(self.file)?;
+        let doing = format!("{} at {} states", self.quantity.name(), range.len());
+        self.patient.judged(self.file, &doing, self.prepared.run(range))
+    }
+
+    fn read(&self) -> &[f64] {
+        self.prepared.read()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Identity, Patient, Prepared, Problem, Quantity, Reading, Refusal, RobotFile, StateBatch, Subject};
+    use ::record::EngineSource;
+    use harness::{FileBase, FileFormat};
+    use std::collections::BTreeMap;
+    use std::sync::atomic::{AtomicUsize, Ordering};
+
+    /// An engine that refuses every file with one sentence, and counts how often it is asked.
+    struct Slow {
+        identity: Identity,
+        reason: &'static str,
+        asked: std::sync::Arc<AtomicUsize>,
+    }
+
+    impl Subject for Slow {
+        fn identity(&self) -> &Identity {
+            &self.identity
+        }
+
+        fn methods(&self, _: Quantity) -> Vec<String> {
+            Vec::new()
+        }
+
+        fn read(&self, _: &RobotFile) -> Result<Reading, Refusal> {
+            self.asked.fetch_add(1, Ordering::Relaxed);
+            Err(Refusal::Failed(self.reason.into()))
+        }
+
+        fn prepare<'a>(&'a self, _: &'a Problem, _: Quantity, _: &str, _: &'a StateBatch) -> Result<Box<dyn Prepared + 'a>, Refusal> {
+            Err(Refusal::Failed(self.reason.into()))
+        }
+    }
+
+    fn file(name: &str) -> RobotFile {
+        RobotFile { path: name.into(), format: FileFormat::Urdf, base: FileBase::Fixed, hash: "0".into(), links: Vec::new() }
+    }
+
+    fn patient(reason: &'static str) -> (Patient, std::sync::Arc<AtomicUsize>) {
+        let asked = std::sync::Arc::new(AtomicUsize::new(0));
+        let identity = Identity { name: "slow".into(), version: "1".into(), source: EngineSource::Live, build: BTreeMap::new() };
+        (Patient::new(Box::new(Slow { identity, reason, asked: asked.clone() })), asked)
+    }
+
+    #[test]
+    fn who_is_late_is_not_asked_again_about_that_robot() {
+        let (engine, asked) = patient("no answer within 60 s");
+        let refused = |name: &str| engine.read(&file(name)).unwrap_err();
+        assert_eq!(refused("a.urdf"), Refusal::Unsupported("no answer within 60 s (reading the URDF)".into()));
+        assert_eq!(refused("a.urdf"), Refusal::Unsupported("not asked again: no answer within 60 s (reading the URDF)".into()));
+        assert_eq!(asked.load(Ordering::Relaxed), 1);
+        refused("b.urdf");
+        assert_eq!(asked.load(Ordering::Relaxed), 2);
+    }
+
+    #[test]
+    fn other_failures_stay_failures_and_are_asked_again() {
+        let (engine, asked) = patient("line 3: no");
+        for _ in 0..2 {
+            assert_eq!(engine.read(&file("a.urdf")).unwrap_err(), Refusal::Failed("line 3: no".into()));
+        }
+        assert_eq!(asked.load(Ordering::Relaxed), 2);
+    }
+}

@@ -1,0 +1,119 @@
+//! `compare` on files that engines refuse, repair or read with a default of their own: who is named, for what, and how the command ends.
+
+use crate::Outcome;
+use crate::support::{Ended, Sandbox, project};
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+const INERTIAL: &str = r#"<inertial pos=".1 0 0" mass="1" diaginertia=".02 .03 .04"/>"#;
+
+fn compare(files: &[PathBuf], more: &[&str], out: &Path) -> Ended {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_featherbench"));
+    command.current_dir(project()).env("NO_COLOR", "1").arg("compare").args(files).args(more).arg("--out").arg(out);
+    Ended::new(command.output().unwrap())
+}
+
+/// The rows of differences of an engine: field and cause.
+fn differences(out: &Path, engine: &str) -> Vec<(String, String)> {
+    let rows = std::fs::read_to_string(out.join("records.csv")).unwrap();
+    let of_engine = rows.lines().filter(|row| row.contains(",difference,") && row.contains(&format!(",{engine},")));
+    let word = |row: &str, key: &str| {
+        let start = row.split_once(&format!("\"\"{key}\"\":\"\"")).unwrap_or_else(|| panic!("{key}: {row}")).1;
+        start.split("\"\"").next().unwrap().to_owned()
+    };
+    let field =
+        |row: &str| ["mass", "inertia", "com", "armature", "friction"].into_iter().find(|field| row.contains(&format!(",{field},")));
+    of_engine.filter_map(|row| Some((field(row)?.to_owned(), word(row, "cause")))).collect()
+}
+
+/// An MJCF that MuJoCo refuses: it is said first, MuJoCo's repair is its own difference, and who reads the file faithfully is alike.
+pub fn refused_files(_: &Path) -> Outcome {
+    let sandbox = Sandbox::new();
+    let unbalanced = INERTIAL.replace(".02 .03 .04", ".01 .01 .05");
+    let hinge = r#"<joint name="h" axis="0 1 0"/>"#;
+    let file = sandbox
+        .write("flat.xml", &format!(r#"<mujoco model="flat"><worldbody><body name="a">{hinge}{unbalanced}</body></worldbody></mujoco>"#));
+    let out = sandbox.path("flat");
+    let ended = compare(&[file], &["--engines", "mujoco,pinocchio"], &out);
+    ended.expect(1, &["mujoco refuses the file as written; repaired to go on: balanceinertia", "differs: differences of flat in mujoco"]);
+    let (first, second) = (ended.output.find("refuses the file as written").unwrap(), ended.output.find("one neutral model").unwrap());
+    assert!(first < second, "{}", ended.output);
+    assert_eq!(differences(&out, "mujoco"), [("inertia".to_owned(), "balanced".to_owned())]);
+    assert_eq!(differences(&out, "pinocchio"), []);
+
+    // A body of nothing: the reference is the file, MuJoCo's bound and DART's kilogram are named.
+    let empty = format!(
+        r#"<mujoco model="m"><worldbody><body name="a">{hinge}{INERTIAL}<body name="b" pos="0 0 1">{}</body></body></worldbody></mujoco>"#,
+        hinge.replace("\"h\"", "\"k\"")
+    );
+    let out = sandbox.path("empty");
+    compare(&[sandbox.write("empty.xml", &empty)], &["--engines", "mujoco,dart,pinocchio"], &out)
+        .expect(1, &["refuses the file as written"]);
+    let both = |cause: &str| vec![("mass".to_owned(), cause.to_owned()), ("inertia".to_owned(), cause.to_owned())];
+    assert_eq!(differences(&out, "mujoco"), both("bounds"));
+    assert_eq!(differences(&out, "dart"), both("default_inertia"));
+    assert_eq!(differences(&out, "pinocchio"), []);
+    Outcome::Passed
+}
+
+/// Armature that a class gives to a free joint is compared as a number and left out of the answers.
+pub fn free_armature(_: &Path) -> Outcome {
+    let sandbox = Sandbox::new();
+    let file = sandbox.write(
+        "dragged.xml",
+        &format!(
+            r#"<mujoco model="dragged"><default><joint armature=".1"/></default><worldbody><body name="base"><joint name="root" type="free"/>{INERTIAL}
+            <body name="arm" pos="0 0 1"><joint name="h" axis="0 1 0"/>{INERTIAL}</body></body></worldbody><actuator><motor joint="h"/></actuator></mujoco>"#
+        ),
+    );
+    let out = sandbox.path("out");
+    let ended = compare(&[file], &["--engines", "mujoco,pinocchio,drake"], &out);
+    ended.expect(1, &["not compared: joint 'root': armature (0.1, 0.1, 0.1, 0.1, 0.1, 0.1) on the free joint"]);
+    assert!(!ended.output.contains("unexplained:"), "{}", ended.output);
+    assert_eq!(differences(&out, "mujoco"), []);
+    assert_eq!(differences(&out, "pinocchio"), []);
+    assert_eq!(differences(&out, "drake"), [("armature".to_owned(), "unsupported".to_owned())]);
+    Outcome::Passed
+}
+
+/// One bad file does not stop the others; friction alone is no difference of physics; a mimic that nothing drives is told.
+pub fn classes_and_bad_files(_: &Path) -> Outcome {
+    let sandbox = Sandbox::new();
+    let link = |name: &str| {
+        format!(
+            r#"<link name="{name}"><inertial><mass value="1"/><inertia ixx=".02" ixy="0" ixz="0" iyy=".03" iyz="0" izz=".04"/></inertial></link>"#
+        )
+    };
+    let joint = |name: &str, child: &str, more: &str| {
+        format!(r#"<joint name="{name}" type="continuous"><parent link="stand"/><child link="{child}"/><axis xyz="0 0 1"/>{more}</joint>"#)
+    };
+    let robot = |more: [&str; 2]| {
+        format!(
+            r#"<robot name="r"><link name="stand"/>{}{}{}{}</robot>"#,
+            link("a"),
+            link("b"),
+            joint("i", "a", more[0]),
+            joint("j", "b", more[1])
+        )
+    };
+    let friction = sandbox.write("friction.urdf", &robot([r#"<dynamics damping="0.1" friction="0.3"/>"#, ""]));
+    let bad = sandbox.write("bad.urdf", "<robot name='r'><link/></robot>");
+    let drake = |files: &[PathBuf], more: &[&str], out: &str| compare(files, &[&["--engines", "drake"], more].concat(), &sandbox.path(out));
+    drake(&[friction.clone()], &[], "alone").expect(0, &["1 are not read or carried otherwise", "friction not read"]);
+    assert_eq!(differences(&sandbox.path("alone"), "drake"), [("friction".to_owned(), "unsupported".to_owned())]);
+    drake(&[friction.clone()], &["--strict"], "strict").expect(1, &["other differences in what drake reads of friction: found 1"]);
+    drake(&[bad, friction], &[], "both").expect(2, &["not compared:", "bad.urdf", "friction (fixed, 2 bodies", "friction not read"]);
+    let circle = sandbox.write("circle.urdf", &robot([r#"<mimic joint="j"/>"#, r#"<mimic joint="i"/>"#]));
+    drake(&[circle], &[], "circle").expect(0, &["the joints 'i' → 'j' → 'i' mimic each other in a circle"]);
+    Outcome::Passed
+}
+
+/// A robot beyond a workspace is a row that says so, and no difference.
+pub fn limits(_: &Path) -> Outcome {
+    let sandbox = Sandbox::new();
+    sandbox.run(&["gen", "chain:n=800", "--lossy", "--out", "long.urdf"]).expect(0, &["800 bodies"]);
+    let files = [sandbox.path("long.urdf")];
+    compare(&files, &["--engines", "pinocchio"], &sandbox.path("memory"))
+        .expect(0, &["its workspace (pinocchio.Data) needs about 9.6 GB for 800 degrees of freedom"]);
+    Outcome::Passed
+}

@@ -1,0 +1,171 @@
+//! The links of a file one by one, before fixed ones are merged: what a parser's edit of a link started from.
+
+use super::elements::{Link, origin};
+use super::error::At;
+use super::xml::Element;
+use crate::text;
+use model::Placement;
+use roxmltree::Node;
+use spatial::{RigidBodyInertia, Sym3, Transform, Vec3};
+use std::f64::consts::PI;
+
+/// Mass properties, with axes of their own.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Inertial {
+    /// kg.
+    pub mass: f64,
+    /// The centre of mass in the link's frame, m.
+    pub com: [f64; 3],
+    /// The rotation of the inertial's axes in the link's frame, row-major.
+    pub rotation: [f64; 9],
+    /// Inertia about the centre of mass in the inertial's axes: ixx, ixy, ixz, iyy, iyz, izz, kg·m².
+    pub inertia: [f64; 6],
+}
+
+/// A link as the file has it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct LinkInFile {
+    /// Its name.
+    pub name: String,
+    /// Its `<inertial>`.
+    pub inertial: Option<Inertial>,
+    /// What its collision geometry is at a density; none where there is none, or a shape other than box, sphere, cylinder and capsule.
+    pub solids: Option<Inertial>,
+}
+
+/// The links of a URDF text in the order of the file, with their collision geometry at a density (kg/m³). A text that is no URDF has none.
+pub fn links(text: &str, density: f64) -> Vec<LinkInFile> {
+    let read = || -> Result<Vec<LinkInFile>, At> {
+        let text = text::check(text, super::LIMIT).unwrap_or_default();
+        let document = super::xml::parse(text)?;
+        let nodes = document.root_element().children().filter(|node| node.has_tag_name("link"));
+        nodes.map(|node| link(Element { node, owner: "the link" }, density)).collect()
+    };
+    read().unwrap_or_default()
+}
+
+fn link(element: Element, density: f64) -> Result<LinkInFile, At> {
+    let name = element.attribute("name")?;
+    let inertial = element.optional("inertial")?.map(|inertial| -> Result<Inertial, At> {
+        let place = origin(inertial)?;
+        let (mass, inertia) = Link::mass_and_tensor(inertial)?;
+        Ok(Inertial { mass, com: place.translation, rotation: place.rotation, inertia })
+    });
+    Ok(LinkInFile { name: name.to_owned(), inertial: inertial.transpose()?, solids: solids(element, density)? })
+}
+
+/// All collision geometry of a link together.
+fn solids(link: Element, density: f64) -> Result<Option<Inertial>, At> {
+    let mut whole = RigidBodyInertia::zero();
+    for node in link.node.children().filter(|node| node.has_tag_name("collision")) {
+        let collision = Element { node, ..link };
+        let shape = collision.optional("geometry")?.and_then(|geometry| geometry.node.children().find(Node::is_element));
+        let Some((volume, moments)) = shape.map(|node| solid(Element { node, ..link })).transpose()?.flatten() else { return Ok(None) };
+        let Placement { rotation, translation } = origin(collision)?;
+        let place = Transform::new(spatial::Mat3::from_array(rotation), Vec3::from_array(translation));
+        let mass = density * volume;
+        let [x, y, z] = moments.map(|moment| mass * moment);
+        whole = whole + RigidBodyInertia::from_com(mass, Vec3::zero(), Sym3::from_array([x, 0.0, 0.0, y, 0.0, z])).to_parent(&place);
+    }
+    Ok((whole.mass > 0.0).then(|| {
+        let com = whole.com();
+        let about_com = (whole.rotational + Sym3::point_mass(-whole.mass, com)).to_array();
+        Inertial { mass: whole.mass, com: com.to_array(), rotation: Placement::default().rotation, inertia: about_com }
+    }))
+}
+
+/// Volume (m³) and moments of inertia per mass (m²) of a shape about its middle; none of a shape that is not known.
+fn solid(shape: Element) -> Result<Option<(f64, [f64; 3])>, At> {
+    Ok(match shape.node.tag_name().name() {
+        "box" => shape.optional_vector("size")?.map(|[x, y, z]| {
+            let (xx, yy, zz) = (x * x / 12.0, y * y / 12.0, z * z / 12.0);
+            (x * y * z, [yy + zz, xx + zz, xx + yy])
+        }),
+        "sphere" => shape.optional_number("radius")?.map(|r| (4.0 / 3.0 * PI * r.powi(3), [0.4 * r * r; 3])),
+        "cylinder" => shape.optional_number("radius")?.zip(shape.optional_number("length")?).map(|(r, l)| {
+            let across = r * r / 4.0 + l * l / 12.0;
+            (PI * r * r * l, [across, across, r * r / 2.0])
+        }),
+        "capsule" => shape.optional_number("radius")?.zip(shape.optional_number("length")?).map(|(r, l)| {
+            // A cylinder, and two half balls whose centres of mass are 3r/8 beyond its ends.
+            let (middle, ends) = (PI * r * r * l, 4.0 / 3.0 * PI * r.powi(3));
+            let ball = 0.4 * r * r + l * l / 4.0 + 3.0 / 8.0 * l * r;
+            let across = (middle * (r * r / 4.0 + l * l / 12.0) + ends * ball) / (middle + ends);
+            let along = (middle * r * r / 2.0 + ends * 0.4 * r * r) / (middle + ends);
+            (middle + ends, [across, across, along])
+        }),
+        _ => None,
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::links;
+
+    fn one(inside: &str) -> super::LinkInFile {
+        links(&format!(r#"<robot name="r"><link name="a">{inside}</link></robot>"#), 1000.0).remove(0)
+    }
+
+    fn collision(origin: &str, shape: &str) -> String {
+        format!(r#"<collision><origin {origin}/><geometry>{shape}</geometry></collision>"#)
+    }
+
+    #[test]
+    fn solids_have_the_masses_and_moments_of_the_textbook() {
+        let cuboid = one(&collision(r#"xyz="1 2 3""#, r#"<box size="0.1 0.2 0.3"/>"#)).solids.unwrap();
+        assert!((cuboid.mass - 6.0).abs() < 1e-14, "{}", cuboid.mass);
+        assert!(cuboid.com.iter().zip([1.0, 2.0, 3.0]).all(|(x, y)| (x - y).abs() < 1e-14), "{:?}", cuboid.com);
+        // m/12 (b² + c²); the parallel axis of 14 m² leaves 1e-14 of its size.
+        let due = [0.065, 0.0, 0.0, 0.05, 0.0, 0.025];
+        assert!(cuboid.inertia.iter().zip(due).all(|(x, y)| (x - y).abs() < 1e-12), "{:?}", cuboid.inertia);
+        let (r, l) = (0.1, 0.4);
+        let cylinder = one(&collision(r#"rpy="1.5707963267948966 0 0""#, r#"<cylinder radius="0.1" length="0.4"/>"#)).solids.unwrap();
+        let m = std::f64::consts::PI * r * r * l * 1000.0;
+        assert!((cylinder.mass - m).abs() < 1e-13 * m);
+        let (across, along) = (m * (3.0 * r * r + l * l) / 12.0, m * r * r / 2.0);
+        let due = [across, 0.0, 0.0, along, 0.0, across];
+        assert!(cylinder.inertia.iter().zip(due).all(|(x, y)| (x - y).abs() < 1e-15), "{:?}", cylinder.inertia);
+    }
+
+    /// Without a cylinder between them, the half balls of a capsule are a ball.
+    #[test]
+    fn a_capsule_of_no_length_is_a_ball_and_a_long_one_is_thin() {
+        let ball = one(&collision("", r#"<sphere radius="0.2"/>"#)).solids.unwrap();
+        let capsule = one(&collision("", r#"<capsule radius="0.2" length="0"/>"#)).solids.unwrap();
+        assert!((ball.mass - capsule.mass).abs() < 1e-13 && (ball.inertia[0] - capsule.inertia[0]).abs() < 1e-14);
+        assert!(
+            (ball.mass - 4.0 / 3.0 * std::f64::consts::PI * 8.0).abs() < 1e-12 && (ball.inertia[0] - 0.4 * ball.mass * 0.04).abs() < 1e-14
+        );
+        // Summed over thin slices.
+        let (r, l, n) = (0.1_f64, 0.3_f64, 200_000);
+        let h = (l + 2.0 * r) / f64::from(n);
+        let slice = |k: u32| {
+            let z = -l / 2.0 - r + (f64::from(k) + 0.5) * h;
+            let beyond = (z.abs() - l / 2.0).max(0.0);
+            let square = r * r - beyond * beyond;
+            let mass = std::f64::consts::PI * square * h * 1000.0;
+            [mass, mass * (square / 4.0 + z * z), mass * square / 2.0]
+        };
+        let due = (0..n).map(slice).fold([0.0; 3], |sum, x| std::array::from_fn(|k| sum[k] + x[k]));
+        let solid = one(&collision("", r#"<capsule radius="0.1" length="0.3"/>"#)).solids.unwrap();
+        for (found, due) in [solid.mass, solid.inertia[0], solid.inertia[5]].into_iter().zip(due) {
+            assert!((found - due).abs() < 1e-8 * due, "{found} {due}");
+        }
+    }
+
+    #[test]
+    fn several_shapes_add_up_and_a_mesh_is_unknown() {
+        let two =
+            collision(r#"xyz="1 0 0""#, r#"<box size="0.1 0.1 0.1"/>"#) + &collision(r#"xyz="-1 0 0""#, r#"<box size="0.1 0.1 0.1"/>"#);
+        let solids = one(&two).solids.unwrap();
+        assert!((solids.mass - 2.0).abs() < 1e-14 && solids.com.iter().all(|x| x.abs() < 1e-15));
+        assert!((solids.inertia[3] - 2.0 * (1.0 + 0.01 / 6.0)).abs() < 1e-14, "{:?}", solids.inertia);
+        assert_eq!(one(&(two + &collision("", r#"<mesh filename="a.stl"/>"#))).solids, None);
+        assert_eq!(one("").solids, None);
+        let text = r#"<inertial><origin xyz="1 2 3" rpy="0 0 1.5707963267948966"/><mass value="2"/>
+            <inertia ixx="1" ixy="0" ixz="0" iyy="2" iyz="0" izz="3"/></inertial>"#;
+        let inertial = one(text).inertial.unwrap();
+        assert_eq!((inertial.mass, inertial.com, inertial.inertia), (2.0, [1.0, 2.0, 3.0], [1.0, 0.0, 0.0, 2.0, 0.0, 3.0]));
+        assert!((inertial.rotation[1] + 1.0).abs() < 1e-15, "{:?}", inertial.rotation);
+    }
+}
