@@ -214,7 +214,7 @@ def _given(body: mj.MjsBody, model: mj.MjModel) -> tuple[float, Array, Array]:
 
 def _edited(given: Array, held: Array) -> bool:
     """Whether an inertia is another one, beyond rounding."""
-    return bool(np.abs(given - held).max() > EDITED * np.abs(given).max())
+    return not np.abs(given - held).max() <= EDITED * np.abs(given).max()  # NaN is an edit
 
 
 def _given_inertia(body: mj.MjsBody) -> Array | None:

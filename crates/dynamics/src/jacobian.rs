@@ -1,7 +1,7 @@
 //! The Jacobian of a body: its velocity is `J v`.
 //!
-//! Source: the book, body Jacobians: column j is the motion subspace of dof j if j supports the body, else zero. On the
-//! way from the body to the root, columns are formed in the body's frame from relative placements: no offset of the robot enters.
+//! Source: the book, body Jacobians: column j is the motion subspace of dof j if j supports the body, else zero. Rotations are added up
+//! from the root to the body, and ways in world axes from the body to the root: each column is rotated once, and no offset of the robot enters.
 //! Frame: world axes [ang; lin] at the origin of the body's frame. Shapes: q has `nq` numbers; J has `nv` columns of six.
 //! Units: SI. Cost: O(n). A call does not allocate.
 
@@ -9,19 +9,33 @@ use crate::DimensionError;
 use crate::error::expect;
 use crate::step::expect_bodies;
 use model::{Model, Topology};
-use spatial::{Lift, Motion, Real, Transform};
+use spatial::{Lift, Mat3, Motion, Real, Transform, Vec3};
 
 /// The Jacobian of a body, and the room for it.
 #[derive(Clone, Debug)]
 pub struct Jacobian<T> {
     bodies: usize,
     columns: Vec<Motion<T>>,
+    /// From the body to the root.
+    path: Vec<Link<T>>,
+}
+
+/// A body on the path.
+#[derive(Clone, Copy, Debug)]
+struct Link<T> {
+    /// Its index.
+    body: usize,
+    /// Its rotation: in the parent, then in the world.
+    rotation: Mat3<T>,
+    /// The way from the parent's origin: in the parent's axes, then in the world's.
+    step: Vec3<T>,
 }
 
 impl<T: Real> Jacobian<T> {
     /// Room for the Jacobian of a body of this topology.
     pub fn new(topology: &Topology) -> Self {
-        Self { bodies: topology.bodies(), columns: vec![Motion::zero(); topology.nv()] }
+        let bodies = topology.bodies();
+        Self { bodies, columns: vec![Motion::zero(); topology.nv()], path: Vec::with_capacity(bodies) }
     }
 
     /// The Jacobian of compiled body `body` at configuration `q`: one column per dof.
@@ -37,21 +51,29 @@ impl<T: Real> Jacobian<T> {
         }
 
         self.columns.fill(Motion::zero());
-        let mut placement = Transform::identity();
+        self.path.clear();
         let mut ancestor = Some(body);
         while let Some(i) = ancestor {
-            // J_j = X⁻¹ S_j in the body's frame
-            let joint = &model.topology.joints()[i];
-            for k in 0..joint.kind.nv() {
-                self.columns[joint.v + k] = placement.inverse_motion(joint.kind.column(&model.subspaces[i], k));
-            }
-            placement = model.joint_transform(i, q).compose(&placement);
-            ancestor = joint.parent;
+            let Transform { rotation, translation: step } = model.joint_transform(i, q);
+            self.path.push(Link { body: i, rotation, step });
+            ancestor = model.topology.joints()[i].parent;
         }
-        // in world axes
-        let r = placement.rotation;
-        for column in &mut self.columns {
-            *column = Motion::new(r * column.ang, r * column.lin);
+        // R_i = R_p R,  r = R_p (p_i − p_p)
+        let mut parent = Mat3::identity();
+        for link in self.path.iter_mut().rev() {
+            (link.step, link.rotation) = (parent * link.step, parent * link.rotation);
+            parent = link.rotation;
+        }
+        // J_j = [R S_ω; R S_p + R S_ω × d], d the way from the joint's body to the body
+        let mut way = Vec3::zero();
+        for Link { body, rotation, step } in self.path.iter().copied() {
+            let joint = &model.topology.joints()[body];
+            for k in 0..joint.kind.nv() {
+                let column: Motion<T> = joint.kind.column(&model.subspaces[body], k);
+                let ang = rotation * column.ang;
+                self.columns[joint.v + k] = Motion::new(ang, ang.cross_add(way, rotation * column.lin));
+            }
+            way += step;
         }
         Ok(&self.columns)
     }

@@ -2,13 +2,15 @@
 //!
 //! Source: the book, section 5.3 (the outward pass of table 5.1), with classical accelerations.
 //! Frames: results stand in world axes: the placement of the body's frame, the velocity [ω; ṗ] and acceleration [ω̇; p̈] of its origin p.
+//! Velocities and accelerations are added up in world axes, with r the way from the parent's origin to the body's and J = R S:
+//! `ω = ω_p + J_ω q̇`, `ṗ = ṗ_p + ω_p × r + J_p q̇`, and their derivatives. So each term is rotated once, whatever the depth.
 //! Gravity plays no part. Shapes: q has `nq` numbers; v and a have `nv`. Units: SI, angles in radians. Cost: O(n). A call does not allocate.
 
 use crate::DimensionError;
 use crate::error::expect;
-use crate::step::{add_joint, cross_joint, expect_bodies, parent_link};
-use model::{Model, Topology};
-use spatial::{Lift, Motion, Real, Transform};
+use crate::step::{add_joint, expect_bodies, parent_link, slides, turns};
+use model::{JointKind, Model, Topology};
+use spatial::{Lift, Mat3, Motion, Real, Transform, Vec3};
 
 /// The workspace of forward kinematics, and its results.
 #[derive(Clone, Debug)]
@@ -28,23 +30,27 @@ pub struct BodyMotion<T> {
     pub acceleration: Motion<T>,
 }
 
-/// A body's kinematics in its own axes.
+/// A body's kinematics.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Link<T> {
     /// Placement in the parent.
     pub(crate) x: Transform<T>,
+    /// The way from the parent's origin, in world axes.
+    step: Vec3<T>,
     /// Placement in the world.
     pub(crate) world: Transform<T>,
-    /// Velocity of the origin.
+    /// Velocity of the origin in body axes.
     pub(crate) v: Motion<T>,
-    /// Classical acceleration of the origin.
-    pub(crate) a: Motion<T>,
+    /// Velocity and classical acceleration of the origin in world axes.
+    velocity: Motion<T>,
+    acceleration: Motion<T>,
 }
 
 impl<T: Real> Kinematics<T> {
     /// A workspace for models of this topology.
     pub fn new(topology: &Topology) -> Self {
-        let rest = Link { x: Transform::identity(), world: Transform::identity(), v: Motion::zero(), a: Motion::zero() };
+        let (place, still) = (Transform::identity(), Motion::zero());
+        let rest = Link { x: place, step: Vec3::zero(), world: place, v: still, velocity: still, acceleration: still };
         Self { links: vec![rest; topology.bodies() + 1] }
     }
 
@@ -53,15 +59,27 @@ impl<T: Real> Kinematics<T> {
     /// # Errors
     /// [`DimensionError`] when an argument or the workspace does not fit the model.
     pub fn run<P: Real + Lift<T>>(&mut self, model: &Model<P>, q: &[T], v: &[T], a: &[T]) -> Result<(), DimensionError> {
+        expect("velocity v", model.topology.nv(), v.len())?;
         expect("acceleration a", model.topology.nv(), a.len())?;
         self.place(model, q)?;
-        self.set_moving(model, v)?;
-        // a_i = X a_p + S q̈ + c
         for (i, joint) in model.topology.joints().iter().enumerate() {
-            let (kind, subspace, parent) = (joint.kind, &model.subspaces[i], self.links[parent_link(joint)]);
-            let link = &mut self.links[i + 1];
-            let (_, carried) = cross_joint(kind, &link.x, parent.v.ang, Some(parent.a), kind.motion(subspace, &v[joint.v..]));
-            link.a = add_joint(kind, carried, kind.motion(subspace, &a[joint.v..]));
+            let parent = self.links[parent_link(joint)];
+            let (kind, subspace, link) = (joint.kind, &model.subspaces[i], &mut self.links[i + 1]);
+            let (r, turned) = (link.step, |m: Motion<T>| rotated(kind, &link.world.rotation, m));
+            let (rate, rate_of_rate) = (turned(kind.motion(subspace, &v[joint.v..])), turned(kind.motion(subspace, &a[joint.v..])));
+            // v = [ω_p; ṗ_p + ω_p × r] + J q̇
+            let (omega, alpha) = (parent.velocity.ang, parent.acceleration.ang);
+            let swing = omega.cross(r);
+            link.velocity = add_joint(kind, Motion::new(omega, parent.velocity.lin + swing), rate);
+            // a = [ω̇_p; p̈_p + ω̇_p × r + ω_p × (ω_p × r)] + [ω_p × ω_J; (ω_p + ω) × v_J] + J q̈
+            let mut carried = Motion::new(alpha, parent.acceleration.lin + omega.cross_add(swing, alpha.cross(r)));
+            if turns(kind) {
+                carried.ang += omega.cross(rate.ang);
+            }
+            if slides(kind) {
+                carried.lin += (omega + link.velocity.ang).cross(rate.lin);
+            }
+            link.acceleration = add_joint(kind, carried, rate_of_rate);
         }
         Ok(())
     }
@@ -76,7 +94,7 @@ impl<T: Real> Kinematics<T> {
         self.bodies().iter().map(Link::in_world)
     }
 
-    /// The bodies' kinematics in their own axes.
+    /// The bodies' kinematics.
     pub(crate) fn bodies(&self) -> &[Link<T>] {
         &self.links[1..]
     }
@@ -87,13 +105,16 @@ impl<T: Real> Kinematics<T> {
         expect("configuration q", model.topology.nq(), q.len())?;
         for (i, joint) in model.topology.joints().iter().enumerate() {
             let x = model.joint_transform(i, q);
-            let world = self.links[parent_link(joint)].world.compose(&x);
-            (self.links[i + 1].x, self.links[i + 1].world) = (x, world);
+            let parent = self.links[parent_link(joint)].world;
+            let step = parent.rotation * x.translation;
+            let world = Transform::new(parent.rotation * x.rotation, parent.translation + step);
+            let link = &mut self.links[i + 1];
+            (link.x, link.step, link.world) = (x, step, world);
         }
         Ok(())
     }
 
-    /// Velocities, once the bodies are placed: `v_i = X v_p + S q̇`.
+    /// Velocities in body axes, once the bodies are placed: `v_i = X v_p + S q̇`.
     pub(crate) fn set_moving<P: Real + Lift<T>>(&mut self, model: &Model<P>, v: &[T]) -> Result<(), DimensionError> {
         expect("velocity v", model.topology.nv(), v.len())?;
         for (i, joint) in model.topology.joints().iter().enumerate() {
@@ -106,10 +127,14 @@ impl<T: Real> Kinematics<T> {
 
 impl<T: Real> Link<T> {
     fn in_world(&self) -> BodyMotion<T> {
-        let r = &self.world.rotation;
-        let turned = |m: Motion<T>| Motion::new(*r * m.ang, *r * m.lin);
-        BodyMotion { placement: self.world, velocity: turned(self.v), acceleration: turned(self.a) }
+        BodyMotion { placement: self.world, velocity: self.velocity, acceleration: self.acceleration }
     }
+}
+
+/// A motion across a joint of this kind, turned by `r`.
+#[inline(always)]
+fn rotated<T: Real>(kind: JointKind, r: &Mat3<T>, m: Motion<T>) -> Motion<T> {
+    Motion::new(if turns(kind) { *r * m.ang } else { m.ang }, if slides(kind) { *r * m.lin } else { m.lin })
 }
 
 /// Forward kinematics in a workspace of its own; it allocates.

@@ -66,7 +66,8 @@ pub(crate) fn cross_joint<T: Real>(
     // ṗ_p + ω̇_p × r + ω_p × (ω_p × r), still in parent axes
     let swing = parent_omega.cross(p);
     let lin = match parent_acceleration {
-        Some(a) => parent_omega.cross_add(swing, a.ang.cross_add(p, a.lin)),
+        // The products first, and their sum rounded once to the size of p̈_p.
+        Some(a) => a.lin + parent_omega.cross_add(swing, a.ang.cross(p)),
         None => parent_omega.cross(swing),
     };
     let lin = r.transpose_mul(lin);

@@ -6,7 +6,7 @@
 mod common;
 
 use common::{ROBOTS, build, dyadic_chain, larger, largest, lifted, within};
-use featherbench_dynamics::{bias_force, forward_dynamics, inverse_dynamics, mass_matrix};
+use featherbench_dynamics::{bias_force, forward_dynamics, forward_kinematics, inverse_dynamics, jacobian, mass_matrix};
 use model::{Model, StateBatch};
 use spatial::{DoubleDouble, Lift, Real};
 
@@ -20,7 +20,7 @@ fn error(value: f64, truth: DoubleDouble) -> f64 {
 }
 
 /// The chains and states of SCIENCE.md §1: name, model, states, reach of the angles.
-fn chains(each: impl Fn(&str, usize, &Model<f64>, &StateBatch)) {
+fn chains(mut each: impl FnMut(&str, usize, &Model<f64>, &StateBatch)) {
     for (name, axes, reach) in
         [("planar, straight", &PLANAR[..], 0.0), ("planar", &PLANAR, 0.2 / 3.15), ("space", &SPACE, 1.0), ("skew", &SKEW, 1.0)]
     {
@@ -67,6 +67,31 @@ fn mass_matrix_is_good_to_the_last_digits() {
         }
         within(&format!("{name} {n}: M"), worst, 1e-14);
     });
+}
+
+/// Turns about parallel axes keep the axis to the bit, along any chain: no 1 is ever rounded.
+#[test]
+fn parallel_axes_stay_parallel_to_the_bit() {
+    let mut seen = 0;
+    chains(|name, n, model, states| {
+        if !name.starts_with("planar") {
+            return;
+        }
+        for k in 0..states.count() {
+            let columns = jacobian(model, states.q(k), n - 1).unwrap();
+            assert!(columns.iter().all(|column| column.ang.to_array() == PLANAR[0]), "{name} {n}: an axis is turned");
+            let kinematics = forward_kinematics(model, states.q(k), states.v(k), states.a(k)).unwrap();
+            for (i, body) in kinematics.iter().enumerate() {
+                let rates: f64 = states.v(k)[..=i].iter().sum();
+                let velocity = body.velocity.ang.to_array();
+                assert_eq!((velocity[0], velocity[2]), (0.0, 0.0), "{name} {n}: body {i} leaves its plane");
+                // The same numbers in the same order.
+                assert_eq!(velocity[1], rates, "{name} {n}: body {i}");
+            }
+            seen += 1;
+        }
+    });
+    assert!(seen >= 18, "{seen} states");
 }
 
 #[test]

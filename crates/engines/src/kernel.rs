@@ -4,7 +4,7 @@
 //! is a step of its own. Studies, the timing of runs and `cargo bench` all go through this list, so what is timed is what is checked.
 
 use dynamics::{Aba, Bias, CenterOfMass, Crba, Energy, Error, Jacobian, Kinematics, Ltdl, Momentum, Refined, Rnea, TreeSparse};
-use harness::{DENSE_LIMIT, Problem, Quantity, Refusal};
+use harness::{DENSE_LIMIT, Problem, Quantity, Refusal, layout};
 use model::{Model, StateBatch};
 use spatial::{DoubleDouble, Force};
 
@@ -165,17 +165,7 @@ fn mass_matrix_probe<'a>(model: &'a Model<f64>, states: &'a StateBatch, probe: V
     let (mut crba, mut matrix) = (Crba::new(&model.topology), TreeSparse::new(&model.topology));
     written(6 * model.topology.nv(), move |k, out| {
         crba.run(model, states.q(k), &mut matrix)?;
-        let n = model.topology.nv();
-        let (products, rest) = out.split_at_mut(4 * n);
-        for (x, y) in probe.chunks_exact(n).zip(products.chunks_exact_mut(n)) {
-            matrix.mul(x, y)?;
-        }
-        let (diagonal, last) = rest.split_at_mut(n);
-        for (i, (diagonal, last)) in diagonal.iter_mut().zip(last).enumerate() {
-            *diagonal = matrix.get(i, i);
-            *last = matrix.get(n - 1, i);
-        }
-        Ok(())
+        Ok(layout::probe(&matrix, &probe, out)?)
     })
 }
 
@@ -315,32 +305,13 @@ fn momentum<'a>(model: &'a Model<f64>, states: &'a StateBatch) -> Kernel<'a> {
 
 fn kinematics<'a>(model: &'a Model<f64>, states: &'a StateBatch, quantity: Quantity) -> Kernel<'a> {
     let evaluate = |kinematics: &mut Kinematics<f64>, k| Ok(kinematics.run(model, states.q(k), states.v(k), states.a(k))?);
-    let read = move |kinematics: &Kinematics<f64>, out: &mut [f64]| {
-        for (i, &body) in model.described.iter().enumerate() {
-            let Some(motion) = kinematics.body(body) else { continue };
-            match quantity {
-                Quantity::BodyPlacement => {
-                    out[12 * i..12 * i + 9].copy_from_slice(&motion.placement.rotation.to_array());
-                    out[12 * i + 9..12 * i + 12].copy_from_slice(&motion.placement.translation.to_array());
-                }
-                Quantity::BodyVelocity => out[6 * i..6 * i + 6].copy_from_slice(&motion.velocity.to_array()),
-                _ => out[6 * i..6 * i + 6].copy_from_slice(&motion.acceleration.to_array()),
-            }
-        }
-    };
+    let read = move |kinematics: &Kinematics<f64>, out: &mut [f64]| layout::bodies(quantity, kinematics, &model.described, out);
     kept(Kinematics::new(&model.topology), evaluate, read)
 }
 
 fn jacobian<'a>(model: &'a Model<f64>, states: &'a StateBatch, body: usize) -> Kernel<'a> {
     let evaluate = move |jacobian: &mut Jacobian<f64>, k| Ok(jacobian.run(model, states.q(k), body).map(|_| ())?);
-    let read = |jacobian: &Jacobian<f64>, out: &mut [f64]| {
-        let n = model.topology.nv();
-        for (dof, column) in jacobian.columns().iter().enumerate() {
-            for (row, entry) in column.to_array().into_iter().enumerate() {
-                out[row * n + dof] = entry;
-            }
-        }
-    };
+    let read = |jacobian: &Jacobian<f64>, out: &mut [f64]| layout::jacobian(jacobian.columns(), out);
     kept(Jacobian::new(&model.topology), evaluate, read)
 }
 

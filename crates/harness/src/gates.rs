@@ -1,7 +1,7 @@
 //! Gates: every threshold, and every known deviation from one, as data.
 
 use crate::deviation::{SLACK, named};
-use crate::{Deviation, HarnessError, Reproduction, Suite};
+use crate::{Deviation, HarnessError, Mean, Reproduction, Suite};
 use record::{Expectation, Record, Relation, Verdict};
 use serde::Deserialize;
 use serde_json::Value;
@@ -13,6 +13,7 @@ use std::path::Path;
 pub struct Gates {
     gates: Vec<Gate>,
     sharp: Option<Sharpness>,
+    means: Vec<Mean>,
     deviations: Vec<Deviation>,
     reproductions: Vec<Reproduction>,
     guests: Vec<String>,
@@ -79,6 +80,8 @@ pub enum Factor {
 struct GateFile {
     gate: Vec<Gate>,
     sharp: Option<Sharpness>,
+    #[serde(default)]
+    mean: Vec<Mean>,
 }
 
 #[derive(Deserialize)]
@@ -112,7 +115,7 @@ impl Gates {
     /// # Errors
     /// [`HarnessError`], naming file, line and key.
     pub fn parse(gates: &str, deviations: &str, folder: &Path) -> Result<Self, HarnessError> {
-        let GateFile { gate: gates, sharp } = parse_toml(gates, &folder.join("gates.toml"))?;
+        let GateFile { gate: gates, sharp, mean: means } = parse_toml(gates, &folder.join("gates.toml"))?;
         let path = folder.join("deviations.toml");
         let DeviationFile { deviation: deviations, reproduction: reproductions } = parse_toml(deviations, &path)?;
         for deviation in &deviations {
@@ -135,7 +138,7 @@ impl Gates {
                 return Err(HarnessError::Config { path, message });
             }
         }
-        Ok(Self { gates, sharp, deviations, reproductions, guests: Vec::new() })
+        Ok(Self { gates, sharp, means, deviations, reproductions, guests: Vec::new() })
     }
 
     /// The known deviations.
@@ -210,6 +213,7 @@ impl Gates {
             }
         }
         conditions.extend(self.sharp.iter().filter(|_| suite.thorough).flat_map(|sharp| sharp.conditions(suite, records)));
+        conditions.extend(self.means.iter().filter(|_| suite.thorough).flat_map(|mean| mean.conditions(records)));
         for (engine, quantities) in &suite.expect {
             for (quantity, &expected) in quantities {
                 let of_these = |row: &&Record| row.engine == *engine && row.quantity == *quantity && accounted(row);
@@ -227,7 +231,7 @@ pub fn accounted(row: &Record) -> bool {
     row.verdict == Verdict::Pass || row.verdict == Verdict::Deviation && row.value.is_some()
 }
 
-fn condition(what: String, expected: u64, found: u64) -> Expectation {
+pub(crate) fn condition(what: String, expected: u64, found: u64) -> Expectation {
     let met = expected == found;
     let reason = if met { String::new() } else { format!("expected {expected}, found {found}") };
     Expectation { what, expected, found, verdict: if met { Verdict::Pass } else { Verdict::Fail }, reason }

@@ -4,10 +4,10 @@
 //! below what f64 can show. That the kernels themselves are right is for the crate `reference` and `oracles/truth.py` to say, which share no
 //! text with them and agree with them where it was recorded.
 
-use crate::Problem;
-use dynamics::{Aba, Crba, Rnea, TreeSparse};
+use crate::{Problem, Quantity, layout};
+use dynamics::{Aba, Bias, CenterOfMass, Crba, Energy, Jacobian, Kinematics, Momentum, Rnea, TreeSparse};
 use model::Model;
-use spatial::{DoubleDouble, Dual, Lift, Real};
+use spatial::{DoubleDouble, Dual, Force, Lift, Real};
 
 /// A model in extended precision, its inertias formed there from the description.
 pub struct TruthModel(Model<DoubleDouble>);
@@ -27,6 +27,52 @@ impl TruthModel {
     /// The model of a problem; `None` when its description cannot be built.
     pub fn new(problem: &Problem) -> Option<Self> {
         Model::build(&problem.description).ok().map(Self)
+    }
+
+    /// The true answer to a quantity at state `k`, in the quantity's layout; `None` where there is none, or where nobody asks for it.
+    pub fn answer(&self, problem: &Problem, quantity: Quantity, k: usize) -> Option<Vec<f64>> {
+        let (model, states) = (&self.0, &problem.states);
+        let topology = &model.topology;
+        let wide = |values: &[f64]| -> Vec<DoubleDouble> { values.iter().map(|&x| x.lift()).collect() };
+        let (q, v, a) = (wide(states.q(k)), wide(states.v(k)), wide(states.a(k)));
+        let mut out = vec![DoubleDouble::zero(); quantity.size(problem)];
+        match quantity {
+            Quantity::InverseDynamics => Rnea::new(topology).run(model, &q, &v, &a, None, &mut out).ok()?,
+            Quantity::InverseDynamicsWrench => {
+                let mut wrenches = vec![Force::zero(); topology.bodies()];
+                for (&body, w) in model.described.iter().zip(states.wrench(k).chunks_exact(6)) {
+                    wrenches[body] = Force::from_array([w[0], w[1], w[2], w[3], w[4], w[5]].map(Real::from_f64));
+                }
+                Rnea::new(topology).run(model, &q, &v, &a, Some(&wrenches), &mut out).ok()?;
+            }
+            Quantity::Bias => Bias::new(topology).run(model, &q, &v, None, &mut out).ok()?,
+            Quantity::ForwardDynamics => Aba::new(topology).run(model, &q, &v, &wide(states.tau(k)), None, &mut out).ok()?,
+            Quantity::MassMatrix | Quantity::MassMatrixProbe => {
+                let mut mass = TreeSparse::new(topology);
+                Crba::new(topology).run(model, &q, &mut mass).ok()?;
+                match quantity {
+                    Quantity::MassMatrix => layout::dense(&mass, &mut out),
+                    _ => layout::probe(&mass, &wide(&problem.probe()), &mut out).ok()?,
+                }
+            }
+            Quantity::KineticEnergy => out[0] = Energy::new(topology).run(model, &q, &v).ok()?.kinetic,
+            Quantity::PotentialEnergy => out[0] = Energy::new(topology).run(model, &q, &v).ok()?.potential,
+            Quantity::CenterOfMass => {
+                out.copy_from_slice(&CenterOfMass::new(topology).run(model, &q).ok()?.position.to_array());
+            }
+            Quantity::Momentum => out.copy_from_slice(&Momentum::new(topology).run(model, &q, &v).ok()?.momentum.to_array()),
+            Quantity::BodyPlacement | Quantity::BodyVelocity | Quantity::BodyAcceleration => {
+                let mut kinematics = Kinematics::new(topology);
+                kinematics.run(model, &q, &v, &a).ok()?;
+                layout::bodies(quantity, &kinematics, &model.described, &mut out);
+            }
+            Quantity::BodyJacobian => {
+                let body = model.described[problem.deepest_body()];
+                layout::jacobian(Jacobian::new(topology).run(model, &q, body).ok()?, &mut out);
+            }
+            _ => return None,
+        }
+        Some(out.iter().map(|x| x.to_f64()).collect())
     }
 
     /// What is true at state `k`.

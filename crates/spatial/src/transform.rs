@@ -66,21 +66,26 @@ impl<T: Real> Transform<T> {
 
     /// The rotation by the angle with this sine and cosine about the unit vector `u` (Rodrigues):
     /// `R = c·1 + s·u× + (1−c) u uᵀ`.
+    ///
+    /// Of an axis of the frame it is exact: 1, c and s, as given. For 1−c is rounded to `versine`, and what that leaves, exactly
+    /// `rest = (1 − versine) − c`, is on the diagonal.
     #[inline(always)]
     pub fn axis_rotation(u: Vec3<T>, sin: T, cos: T) -> Mat3<T> {
         let versine = T::one() - cos;
+        let rest = (T::one() - versine) - cos;
         let (vx, vy, vz) = (u.x * versine, u.y * versine, u.z * versine);
         let (sx, sy, sz) = (u.x * sin, u.y * sin, u.z * sin);
+        let diagonal = |v: T, u: T| v.mul_add(u, (u * rest).mul_add(u, cos));
         Mat3::from_array([
-            vx.mul_add(u.x, cos),
+            diagonal(vx, u.x),
             vx.mul_add(u.y, -sz),
             vx.mul_add(u.z, sy),
             vx.mul_add(u.y, sz),
-            vy.mul_add(u.y, cos),
+            diagonal(vy, u.y),
             vy.mul_add(u.z, -sx),
             vx.mul_add(u.z, -sy),
             vy.mul_add(u.z, sx),
-            vz.mul_add(u.z, cos),
+            diagonal(vz, u.z),
         ])
     }
 

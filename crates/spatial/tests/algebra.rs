@@ -72,6 +72,16 @@ proptest! {
     }
 
     #[test]
+    fn a_turn_about_an_axis_of_the_frame_is_exact(angle in -10.0..10.0_f64, sign in prop::sample::select(vec![-1.0, 1.0])) {
+        let (s, c) = angle.sin_cos();
+        let s_u = sign * s;
+        let of = |axis: [f64; 3]| Transform::axis_rotation(Vec3::from_array(axis.map(|x| x * sign)), s, c).to_array();
+        prop_assert_eq!(of([1.0, 0.0, 0.0]), [1.0, 0.0, 0.0, 0.0, c, -s_u, 0.0, s_u, c]);
+        prop_assert_eq!(of([0.0, 1.0, 0.0]), [c, 0.0, s_u, 0.0, 1.0, 0.0, -s_u, 0.0, c]);
+        prop_assert_eq!(of([0.0, 0.0, 1.0]), [c, -s_u, 0.0, s_u, c, 0.0, 0.0, 0.0, 1.0]);
+    }
+
+    #[test]
     fn power_does_not_depend_on_the_frame(x in placement(), m in motion(), f in force()) {
         prop_assert!((x.motion(m).dot(x.force(f)) - m.dot(f)).abs() <= 10.0 * TOLERANCE, "sums of products of shifted vectors, ten times larger");
     }

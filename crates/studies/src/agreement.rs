@@ -3,6 +3,7 @@
 //! Until extended precision is at hand the reference is native f64 and is called so; the rows with another engine as `reference` compare
 //! engines with each other, so that a reader can see who stands alone.
 
+use crate::accuracy::over_best;
 use crate::row;
 use dynamics::Rnea;
 use harness::measure::{ForwardScale, Magnitudes, scaled_error, worst};
@@ -68,6 +69,7 @@ impl Study for Agreement {
         }
         rows.extend(comparison.pairs());
         rows.extend(comparison.on_readback());
+        rows.extend(over_best(REFERENCE, problem, finished, &comparison.at, &comparison.forward));
         rows
     }
 }

@@ -1,6 +1,6 @@
 //! Studies: the questions that featherbench asks, one file each.
 //!
-//! - [`Agreement`]: do the engines agree on one and the same model?
+//! - [`Agreement`]: do the engines agree on one and the same model, and how far are we from the truth beside the best of them?
 //! - [`Digits`]: how far is each from the truth, and who is right?
 //! - [`Conditioning`]: how does κ(M) grow, and does it matter?
 //! - [`Reading`]: do they read one and the same file alike, and if not, where and why?
@@ -10,6 +10,7 @@
 //! - [`Structure`]: are the counts of the sparse algorithms the integers that theory says?
 //! - [`Timing`]: how long does everyone take, in a paired experiment?
 
+mod accuracy;
 mod agreement;
 mod conditioning;
 mod digits;

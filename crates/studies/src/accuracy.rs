@@ -1,0 +1,69 @@
+//! Accuracy: our error over that of the best engine, for every quantity.
+//!
+//! Both errors are distances from the truth in double-double arithmetic ([`harness::truth`]), in the measures of the agreement study, at the
+//! worst of the states. Ours is that of our usual method; the best engine's is the smallest of all others and their methods. An error below
+//! half an ulp, 2⁻⁵³, counts as half an ulp: rounding the exact answer leaves as much.
+
+use crate::row;
+use harness::measure::{ForwardScale, Magnitudes, ratio, scaled_error, worst};
+use harness::truth::TruthModel;
+use harness::{Finished, Problem, Quantity};
+use record::Record;
+use serde_json::json;
+
+/// What is compared with the truth.
+const QUANTITIES: [Quantity; 14] = [
+    Quantity::InverseDynamics,
+    Quantity::InverseDynamicsWrench,
+    Quantity::Bias,
+    Quantity::MassMatrix,
+    Quantity::MassMatrixProbe,
+    Quantity::ForwardDynamics,
+    Quantity::KineticEnergy,
+    Quantity::PotentialEnergy,
+    Quantity::CenterOfMass,
+    Quantity::Momentum,
+    Quantity::BodyPlacement,
+    Quantity::BodyVelocity,
+    Quantity::BodyAcceleration,
+    Quantity::BodyJacobian,
+];
+/// The metric of the rows.
+const METRIC: &str = "over_best";
+/// Half an ulp of one.
+const FLOOR: f64 = 0.5 * f64::EPSILON;
+/// Robots with more dofs are left out: their matrices in double-double take seconds.
+const DOFS: usize = 300;
+
+/// One row for each quantity that we and another engine answered.
+pub(crate) fn over_best(own: &str, problem: &Problem, finished: &[Finished], at: &[Magnitudes], forward: &[ForwardScale]) -> Vec<Record> {
+    let Some(truth) = TruthModel::new(problem).filter(|_| problem.states.nv <= DOFS) else { return Vec::new() };
+    let of = |quantity: Quantity| -> Option<Record> {
+        let answers: Vec<&Finished> =
+            finished.iter().filter(|(cell, outcome)| cell.quantity == quantity.name() && outcome.values().is_some()).collect();
+        let (ours, _) = answers.iter().find(|(cell, _)| cell.subject == own)?;
+        answers.iter().find(|(cell, _)| cell.subject != own)?;
+        let count = quantity.states(problem.states.count());
+        let true_values: Vec<Vec<f64>> = (0..count).map(|k| truth.answer(problem, quantity, k)).collect::<Option<_>>()?;
+        let error = |values: &[f64]| {
+            let states = values.chunks_exact(quantity.size(problem)).zip(&true_values).enumerate();
+            let errors = states.map(|(k, (value, truth))| match quantity {
+                Quantity::ForwardDynamics => forward[k].forward_error(truth, value),
+                _ => scaled_error(problem, quantity, &at[k], truth, value),
+            });
+            errors.fold(0.0, worst)
+        };
+        let errors: Vec<(&Finished, f64)> =
+            answers.iter().filter_map(|item| item.1.values().map(|values| (*item, error(values)))).collect();
+        let (_, ours_error) = errors.iter().find(|((cell, _), _)| cell == ours)?;
+        let others = errors.iter().filter(|((cell, _), error)| cell.subject != own && !error.is_nan());
+        let ((best, _), best_error) = others.min_by(|(_, a), (_, b)| a.total_cmp(b))?;
+        let (above, below) = (worst(*ours_error, FLOOR), worst(*best_error, FLOOR));
+        let mut row =
+            Record { case: "all".into(), metric: METRIC.into(), unit: "1".into(), reference: best.subject.clone(), ..row(ours, problem) };
+        let params = json!({"base": problem.base(), "ours": ours_error, "best": best_error, "by": best.method});
+        row.params = record::canonical_json(&params);
+        Some(row.informed(ratio(above, below)))
+    };
+    QUANTITIES.into_iter().filter_map(of).collect()
+}
