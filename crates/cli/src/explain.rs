@@ -141,13 +141,13 @@ mod tests {
 
     fn of(command: &str, live: bool, suite: &str) -> String {
         let info = RunInfo { command: command.into(), live, suite: suite.into(), ..RunInfo::default() };
-        let row = Record { study: "agreement".into(), model: "tree-20-spread0.3".into(), ..Record::default() };
+        let row = Record { study: "agreement".into(), model: "tree_0.3".into(), ..Record::default() };
         again(&info, &row).unwrap()
     }
 
     #[test]
     fn the_command_keeps_what_the_answer_depends_on() {
-        let only = "--only '^agreement/tree-20-spread0\\.3/'";
+        let only = "--only '^agreement/tree_0\\.3/'";
         assert_eq!(of("cargo run --release --", false, "default"), format!("cargo run --release -- run {only}"));
         assert_eq!(
             of("cargo run --release -- run --suite smoke --live --seed 3 --only 'x|y' --out a --resume", true, "smoke"),
