@@ -196,7 +196,9 @@ fn a_bound_that_is_told_is_still_a_bound() {
     };
     let numbers = [&[0.0; 10][..], &[1e-6, 0.0, 0.0, 0.0, 1e-6, 0.0, 0.0, 1e-6, 0.0, 1e-6]].concat();
     let note = ReadingNote { cause: "mass_edited".into(), subject: Some("arm".into()), text: "raised".into(), numbers };
-    let comparison = Comparison::of(&body(0.0, 0.0), &body(1e-6, 1e-6), &[], &[note]);
+    let mut held = body(1e-6, 1e-6);
+    held.bodies[0].com = [0.0, 0.0, 1.0];
+    let comparison = Comparison::of(&body(0.0, 0.0), &held, &[], &[note]);
     assert!(comparison.differences().all(|d| d.cause == Cause::Bounds), "{:#?}", comparison.findings);
     // DART's mass of the file with moments of its own.
     let comparison = Comparison::of(&body(2.0, 0.3), &body(2.0, 1.0), &[], &[]);
