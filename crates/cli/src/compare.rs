@@ -43,9 +43,8 @@ pub fn compare(root: &Root, args: &CompareArgs) -> Result<(), Fail> {
         let message = format!("{} does not answer: {}", missing.name, missing.reason);
         return Err(Fail::Missing { message, advice: "look at `featherbench oracles status`, or leave it out with --engines".into() });
     }
-    let patient = |subject: Box<dyn Subject>| match subject.identity().name.as_str() {
-        "native" => subject,
-        _ => Box::new(Patient::new(subject)) as Box<dyn Subject>,
+    let patient = |subject: Box<dyn Subject>| -> Box<dyn Subject> {
+        if subject.identity().name == "native" { subject } else { Box::new(Patient::new(subject)) }
     };
     subjects.subjects = subjects.subjects.into_iter().map(patient).collect();
     let mut remarks: Vec<(String, Vec<String>)> = Vec::new();

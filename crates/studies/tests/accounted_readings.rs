@@ -187,6 +187,24 @@ fn one_kilogram_for_nothing_is_a_default_and_no_unit() {
     assert_eq!(of(body(0.0, 0.0), body(1e-6, 1e-6)), [(Field::Mass, Cause::Bounds), (Field::Inertia, Cause::Bounds)]);
 }
 
+/// Numbers of the file beside those that are held: the bound is named, not only that the parser says so.
+#[test]
+fn a_bound_that_is_told_is_still_a_bound() {
+    let body = |mass: f64, moment: f64| {
+        let inertial = BodyDescription { mass, inertia: [moment, 0.0, 0.0, moment, 0.0, moment], com: [0.0; 3], ..merged(|_| None) };
+        Description { bodies: vec![inertial], ..Description::default() }
+    };
+    let numbers = [&[0.0; 10][..], &[1e-6, 0.0, 0.0, 0.0, 1e-6, 0.0, 0.0, 1e-6, 0.0, 1e-6]].concat();
+    let note = ReadingNote { cause: "mass_edited".into(), subject: Some("arm".into()), text: "raised".into(), numbers };
+    let mut held = body(1e-6, 1e-6);
+    held.bodies[0].com = [0.0, 0.0, 1.0];
+    let comparison = Comparison::of(&body(0.0, 0.0), &held, &[], &[note]);
+    assert!(comparison.differences().all(|d| d.cause == Cause::Bounds), "{:#?}", comparison.findings);
+    // DART's mass of the file with moments of its own.
+    let comparison = Comparison::of(&body(2.0, 0.3), &body(2.0, 1.0), &[], &[]);
+    assert_eq!(comparison.differences().map(|d| d.cause).collect::<Vec<_>>(), [Cause::DefaultInertia]);
+}
+
 /// The angles of a file in one order, taken in the order x, y, z.
 #[test]
 fn a_sequence_of_angles_that_is_ignored_is_named() {

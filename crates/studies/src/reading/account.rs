@@ -119,7 +119,10 @@ impl<'a> Parts<'a> {
         }
         let predicted = self.merged(sum);
         let agrees = |field: &Field| {
-            // A centre of no mass is nowhere: it predicts nothing.
+            // A centre of no mass is nowhere: no reading of it differs (MuJoCo puts it where the body stands in its parent), and it predicts nothing.
+            if *field == Field::Com && self.body.mass == 0.0 {
+                return true;
+            }
             let nowhere = *field == Field::Com && predicted.mass == 0.0 && theirs.mass != 0.0;
             !nowhere && !differs(fields::size(*field, &predicted, theirs, self.reach), self.rounding)
         };
@@ -197,7 +200,7 @@ fn change(name: &str, from: &FileInertial, to: &FileInertial) -> String {
 fn rule_of(cause: Cause) -> &'static str {
     match cause {
         Cause::Geometry => "its collision geometry at 1000 kg/m³",
-        Cause::DefaultInertia => "the engine's default of a link without inertial",
+        Cause::DefaultInertia => "the engine's default inertia",
         Cause::Bounds => "raised to MuJoCo's bounds of 1e-6",
         Cause::Balanced => "three equal moments for an unphysical inertia",
         Cause::Unphysical => "a ball of water of its mass for an unphysical inertia",
@@ -226,6 +229,8 @@ fn rules() -> Vec<(bool, Rule)> {
             true,
             Box::new(|part| part.given.is_none().then_some((Cause::DefaultInertia, FileInertial { mass: 1.0, inertia: UNIT, ..NOTHING }))),
         ),
+        // DART leaves an MJCF's inertial and keeps the mass: what it does not compute from geometry is its default.
+        (true, of_given(Cause::DefaultInertia, |x| FileInertial { mass: x.mass, inertia: UNIT, ..NOTHING })),
         (true, Box::new(|part| repaired(part, false))),
         (false, Box::new(move |part| geometry(part).or_else(|| repaired(part, false)))),
         (false, Box::new(|part| repaired(part, true))),
