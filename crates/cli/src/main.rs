@@ -14,6 +14,7 @@ mod native;
 mod oracles;
 mod problems;
 mod progress;
+mod ranges;
 mod record;
 mod report;
 mod robot_file;

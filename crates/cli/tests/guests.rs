@@ -13,8 +13,7 @@ while read -r line; do
     esac
 done
 "#;
-const NO_ROBOT: &str =
-    "\n[[deviation]]\nengine = \"mine\"\nversion = \"7\"\nmodels = [\"*\"]\nverdict = \"skip\"\nreason = \"a shell has no robots\"\n";
+const NO_ROBOT: &str = "\n[[not_offered]]\nengine = \"mine\"\nversion = \"7\"\nmodels = [\"*\"]\nreason = \"a shell has no robots\"\n";
 
 fn with_shy() -> Sandbox {
     let sandbox = Sandbox::new();
@@ -56,7 +55,11 @@ fn a_guest_is_judged_beside_the_recorded_engines() {
     std::fs::copy(ci.join("gates.toml"), sandbox.path("ci/gates.toml")).unwrap();
     let known = std::fs::read_to_string(ci.join("deviations.toml")).unwrap();
     sandbox.write("ci/deviations.toml", &(known + NO_ROBOT));
-    sandbox.run(&[&run[..], &["green"]].concat()).expect(0, &["6 deviation"]);
+    std::fs::create_dir(sandbox.path("ci/deviations")).unwrap();
+    for file in std::fs::read_dir(ci.join("deviations")).unwrap().map(|entry| entry.unwrap().path()) {
+        std::fs::copy(&file, sandbox.path("ci/deviations").join(file.file_name().unwrap())).unwrap();
+    }
+    sandbox.run(&[&run[..], &["green"]].concat()).expect(0, &["6 skip"]);
     let rows = std::fs::read_to_string(sandbox.path("green/records.csv")).unwrap();
     assert_eq!(rows.lines().filter(|row| row.contains(",mine,7,guess,")).count(), 3, "one row of `id` for each robot");
     assert!(rows.contains("shy has no such robot"));
