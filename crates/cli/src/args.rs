@@ -148,15 +148,21 @@ pub struct FolderArgs {
 }
 
 #[derive(Debug, Clone, Args)]
+#[command(
+    after_help = "Example, the sizes of known deviations over twenty seeds:\n  for seed in $(seq 1 20); do featherbench run --live --no-timing --seed $seed --out reports/seed-$seed; done\n  featherbench gate reports/seed-* --ranges --write"
+)]
 pub struct GateArgs {
     /// A run's folder.
     pub folder: PathBuf,
     /// More runs, for --ranges.
     #[arg(requires = "ranges", value_name = "FOLDER")]
     pub others: Vec<PathBuf>,
-    /// Print, for each known deviation, the smallest and largest of the runs' worst values: the `range` of ci/deviations.toml.
+    /// Measure how large each known deviation is on each robot, over runs of one suite with different seeds.
     #[arg(long, conflicts_with = "counts")]
     pub ranges: bool,
+    /// With --ranges: write what was measured into ci/deviations/SUITE.csv, in the place of what stands there.
+    #[arg(long, requires = "ranges")]
+    pub write: bool,
     /// Print the counts of rows that pass or deviate as known, in the form of a suite's `expect` tables.
     #[arg(long)]
     pub counts: bool,

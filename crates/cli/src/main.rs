@@ -18,6 +18,7 @@ mod outcome;
 mod patience;
 mod problems;
 mod progress;
+mod ranges;
 mod record;
 mod report;
 mod robot_file;

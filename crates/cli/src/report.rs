@@ -2,6 +2,7 @@
 
 use crate::args::GateArgs;
 use crate::fail::Fail;
+use crate::ranges;
 use crate::root::Root;
 use ::record::{Record, RunInfo, Verdict};
 use harness::{Gates, Suite, accounted, provenance};
@@ -30,7 +31,7 @@ pub fn gate(root: &Root, args: &GateArgs) -> Result<(), Fail> {
         return Ok(());
     }
     if args.ranges {
-        return print_ranges(&Gates::read(&root.gates())?, &records, &args.others);
+        return ranges::measure(root, args, &info, &records);
     }
     let (suite, _) = Suite::read(&root.suites().join(format!("{}.toml", info.suite)))?;
     let guests = info.engines.iter().filter(|engine| engine.build.contains_key(provenance::PROGRAM)).map(|engine| engine.name.as_str());
@@ -55,23 +56,6 @@ fn print_counts(records: &[Record]) {
         }
         println!("{quantity} = {count}");
     }
-}
-
-/// Prints the range of each known deviation over several runs.
-fn print_ranges(gates: &Gates, first: &[Record], others: &[PathBuf]) -> Result<(), Fail> {
-    let known = || gates.deviations().iter().filter(|deviation| deviation.verdict == Verdict::Fail.as_str());
-    let mut worst: Vec<Vec<f64>> = known().map(|deviation| deviation.worst(first).into_iter().collect()).collect();
-    for folder in others {
-        let (_, records) = ::record::read_run(folder)?;
-        known().zip(&mut worst).for_each(|(deviation, worst)| worst.extend(deviation.worst(&records)));
-    }
-    for (deviation, worst) in known().zip(worst) {
-        let high = worst.iter().copied().fold(0.0, harness::measure::worst);
-        let low = -worst.iter().map(|value| -value).fold(f64::NEG_INFINITY, harness::measure::worst);
-        let range = if worst.is_empty() { "not seen".into() } else { format!("range = [{low:.1e}, {high:.1e}]") };
-        println!("{range}  # {} of {} runs: {} {}", worst.len(), 1 + others.len(), deviation.engine, deviation.reason);
-    }
-    Ok(())
 }
 
 /// Prints the verdict, and the report's page last.

@@ -41,6 +41,11 @@ impl Root {
         self.0.join("ci")
     }
 
+    /// How large the known deviations are on each robot.
+    pub fn ranges(&self) -> PathBuf {
+        self.gates().join("deviations")
+    }
+
     pub fn reports(&self) -> PathBuf {
         self.0.join("reports")
     }

@@ -1,14 +1,18 @@
-//! Known deviations, as data: rows that are no pass for a cause that is known, and reproductions that show such a cause by itself.
+//! Known deviations, as data: answers that miss their gate for a cause that is known, questions that an engine does not offer, and
+//! reproductions that show a deviation by itself.
 
+use crate::RangeKey;
 use record::{Record, Verdict};
 use serde::Deserialize;
 
-/// Seeds over which the range of a deviation is measured.
+/// Seeds over which the size of a deviation is measured.
 pub const SEEDS: u64 = 20;
 /// How far outside its range a value may lie, as a factor: a twenty-first draw, or another processor's rounding, moves it by little more.
 pub const SLACK: f64 = 2.0;
 
-/// A known deviation: rows that match may fail, be skipped or be errors, as it says.
+/// A known deviation: answers that match may fail or be errors, as it says.
+///
+/// The cause stands here, by class of robots; how large a failure is stands robot by robot in [`Ranges`](crate::Ranges).
 #[derive(Clone, Debug, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Deviation {
@@ -24,15 +28,30 @@ pub struct Deviation {
     pub models: Vec<String>,
     /// The cases, or all of them.
     pub cases: Option<Vec<String>>,
-    /// The verdict that it explains: fail, skip or error.
+    /// The verdict that it explains: fail or error.
     pub verdict: String,
     /// The cause.
     pub reason: String,
-    /// Smallest and largest of the worst values of [`SEEDS`] runs, each with other states. A value beyond it stays a failure, and a thorough
-    /// run whose worst value lies below it fails the gate; both by more than [`SLACK`].
-    pub range: Option<[f64; 2]>,
     /// The reproduction that shows the cause by itself, where there is one.
     pub reproduction: Option<String>,
+}
+
+/// What an engine does not offer: its rows stay skips, and their cause is known.
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct NotOffered {
+    /// The engine.
+    pub engine: String,
+    /// The engine's version; in another version it may be offered.
+    pub version: String,
+    /// The quantities, or all of them.
+    pub quantities: Option<Vec<String>>,
+    /// The models: names, a trailing `*` standing for any rest.
+    pub models: Vec<String>,
+    /// The cases, or all of them.
+    pub cases: Option<Vec<String>>,
+    /// Why it is not offered.
+    pub reason: String,
 }
 
 /// A program that shows a deviation by itself: `oracles/reproductions/NAME.py`.
@@ -56,39 +75,59 @@ pub struct Reproduction {
 }
 
 impl Deviation {
-    pub(crate) fn explains(&self, row: &Record) -> bool {
-        self.verdict == row.verdict.as_str() && self.covers(row)
-    }
-
-    /// Whether it is about this row and its value, whatever became of it.
-    pub(crate) fn covers(&self, row: &Record) -> bool {
-        let within = |value: f64| self.range.is_none_or(|[_, high]| value <= SLACK * high);
-        self.is_about(row) && row.value.is_none_or(within)
-    }
-
-    /// Whether it is about this row, of whatever size its value is.
-    fn is_about(&self, row: &Record) -> bool {
+    /// Whether it is about this row: engine, version, method, quantity, robot and case; whatever the value and the verdict.
+    pub fn is_about(&self, row: &Record) -> bool {
         self.version == row.engine_version && self.method.as_ref().is_none_or(|method| *method == row.method) && self.concerns(row)
+    }
+
+    /// Whether it is about failures, whose size is measured.
+    pub fn is_measured(&self) -> bool {
+        self.verdict == Verdict::Fail.as_str()
+    }
+
+    /// Whether a range may belong to it.
+    pub fn has(&self, key: &RangeKey) -> bool {
+        self.is_measured()
+            && self.engine == key.engine
+            && self.version == key.version
+            && self.method.as_ref().is_none_or(|method| *method == key.method)
+            && self.quantities.as_ref().is_none_or(|quantities| quantities.contains(&key.quantity))
+            && named(&self.models, &key.model)
+    }
+
+    /// Whether it explains that a row is an error.
+    pub(crate) fn explains_error(&self, row: &Record) -> bool {
+        row.verdict == Verdict::Error && self.verdict == Verdict::Error.as_str() && self.is_about(row)
     }
 
     /// Whether it is about the engine, robot, quantity and case of this row, by whatever method and in whatever version.
     pub(crate) fn concerns(&self, row: &Record) -> bool {
-        self.engine == row.engine
-            && named(&self.models, &row.model)
-            && self.quantities.as_ref().is_none_or(|quantities| quantities.contains(&row.quantity))
-            && self.cases.as_ref().is_none_or(|cases| cases.contains(&row.case))
-    }
-
-    /// The worst value of the rows of a run that it explains, or would if they were smaller.
-    pub fn worst(&self, records: &[Record]) -> Option<f64> {
-        let broken = |row: &&Record| matches!(row.verdict, Verdict::Fail | Verdict::Deviation) && row.bound.is_some() && self.is_about(row);
-        records.iter().filter(broken).filter_map(|row| row.value).reduce(crate::measure::worst)
+        concerns(&self.engine, self.quantities.as_deref(), &self.models, self.cases.as_deref(), row)
     }
 
     /// Whether a row is there because of it.
     pub(crate) fn excused(&self, row: &Record) -> bool {
-        row.verdict == Verdict::Deviation && row.reason.starts_with(&self.reason) && self.covers(row)
+        row.verdict == Verdict::Deviation && row.reason.starts_with(&self.reason) && self.is_about(row)
     }
+}
+
+impl NotOffered {
+    /// Whether it explains that a row is a skip.
+    pub(crate) fn explains(&self, row: &Record) -> bool {
+        row.verdict == Verdict::Skip && self.version == row.engine_version && self.concerns(row)
+    }
+
+    /// Whether it is about the engine, robot, quantity and case of this row, in whatever version.
+    pub(crate) fn concerns(&self, row: &Record) -> bool {
+        concerns(&self.engine, self.quantities.as_deref(), &self.models, self.cases.as_deref(), row)
+    }
+}
+
+fn concerns(engine: &str, quantities: Option<&[String]>, models: &[String], cases: Option<&[String]>, row: &Record) -> bool {
+    engine == row.engine
+        && named(models, &row.model)
+        && quantities.is_none_or(|quantities| quantities.contains(&row.quantity))
+        && cases.is_none_or(|cases| cases.contains(&row.case))
 }
 
 /// Whether a list of names, a trailing `*` standing for any rest, holds a name.

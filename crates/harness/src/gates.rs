@@ -1,22 +1,25 @@
 //! Gates: every threshold, and every known deviation from one, as data.
 
-use crate::deviation::{SLACK, named};
-use crate::{Deviation, HarnessError, Mean, Reproduction, Suite};
+use crate::deviation::named;
+use crate::measure::worst;
+use crate::{Deviation, HarnessError, Mean, NotOffered, RangeKey, Ranges, Reproduction, Suite};
 use record::{Expectation, Record, Relation, Verdict};
 use serde::Deserialize;
 use serde_json::Value;
 use std::collections::{BTreeMap, HashMap};
 use std::path::Path;
 
-/// The thresholds of `ci/gates.toml` and the known deviations of `ci/deviations.toml`.
+/// The thresholds of `ci/gates.toml`, the known deviations of `ci/deviations.toml` and their sizes in `ci/deviations/`.
 #[derive(Clone, Debug, PartialEq, Default)]
 pub struct Gates {
     gates: Vec<Gate>,
     sharp: Option<Sharpness>,
     means: Vec<Mean>,
     deviations: Vec<Deviation>,
+    not_offered: Vec<NotOffered>,
     reproductions: Vec<Reproduction>,
     guests: Vec<String>,
+    ranges: Ranges,
 }
 
 /// A computed bound may be so wide that it sees nothing: each engine's method must meet one below this, for each kind of joint and base.
@@ -90,15 +93,25 @@ struct DeviationFile {
     #[serde(default)]
     deviation: Vec<Deviation>,
     #[serde(default)]
+    not_offered: Vec<NotOffered>,
+    #[serde(default)]
     reproduction: Vec<Reproduction>,
 }
 
 impl Gates {
-    /// Reads `gates.toml` and `deviations.toml` from a folder.
+    /// Reads `gates.toml`, `deviations.toml` and the files of `deviations/` from a folder.
     ///
     /// # Errors
     /// [`HarnessError`], naming file, line and key.
     pub fn read(folder: &Path) -> Result<Self, HarnessError> {
+        Self::read_without_ranges(folder)?.with_ranges(Ranges::read(&folder.join("deviations"))?, folder)
+    }
+
+    /// Reads `gates.toml` and `deviations.toml` alone: what is needed to measure the sizes of deviations.
+    ///
+    /// # Errors
+    /// [`HarnessError`], naming file, line and key.
+    pub fn read_without_ranges(folder: &Path) -> Result<Self, HarnessError> {
         let read = |path: &Path| std::fs::read_to_string(path).map_err(|source| HarnessError::io(path, source));
         Self::parse(&read(&folder.join("gates.toml"))?, &read(&folder.join("deviations.toml"))?, folder)
     }
@@ -110,17 +123,20 @@ impl Gates {
         self
     }
 
-    /// The gates and deviations of two texts; errors call them `gates.toml` and `deviations.toml` in `folder`.
+    /// The gates and deviations of two texts, without the deviations' sizes; errors call them `gates.toml` and `deviations.toml` in `folder`.
     ///
     /// # Errors
     /// [`HarnessError`], naming file, line and key.
     pub fn parse(gates: &str, deviations: &str, folder: &Path) -> Result<Self, HarnessError> {
         let GateFile { gate: gates, sharp, mean: means } = parse_toml(gates, &folder.join("gates.toml"))?;
         let path = folder.join("deviations.toml");
-        let DeviationFile { deviation: deviations, reproduction: reproductions } = parse_toml(deviations, &path)?;
+        let DeviationFile { deviation: deviations, not_offered, reproduction: reproductions } = parse_toml(deviations, &path)?;
         for deviation in &deviations {
-            if !["fail", "skip", "error"].contains(&deviation.verdict.as_str()) {
-                let message = format!("deviation of {}: verdict '{}' is none of fail, skip, error", deviation.engine, deviation.verdict);
+            if !["fail", "error"].contains(&deviation.verdict.as_str()) {
+                let message = format!(
+                    "deviation of {}: verdict '{}' is none of fail, error (what an engine does not offer is a [[not_offered]])",
+                    deviation.engine, deviation.verdict
+                );
                 return Err(HarnessError::Config { path, message });
             }
             if let Some(name) = &deviation.reproduction
@@ -130,20 +146,40 @@ impl Gates {
                 return Err(HarnessError::Config { path, message });
             }
         }
-        let of_deviations = deviations.iter().filter_map(|deviation| Some((&deviation.engine, deviation.range?)));
-        let of_reproductions = reproductions.iter().map(|reproduction| (&reproduction.name, reproduction.range));
-        for (name, [low, high]) in of_deviations.chain(of_reproductions) {
-            if !(0.0 < low && low <= high && high.is_finite()) {
+        for Reproduction { name, range: [low, high], .. } in &reproductions {
+            if !(0.0 < *low && low <= high && high.is_finite()) {
                 let message = format!("{name}: range [{low}, {high}] is not that of a deviation");
                 return Err(HarnessError::Config { path, message });
             }
         }
-        Ok(Self { gates, sharp, means, deviations, reproductions, guests: Vec::new() })
+        Ok(Self { gates, sharp, means, deviations, not_offered, reproductions, guests: Vec::new(), ranges: Ranges::default() })
+    }
+
+    /// The same gates, with the deviations' sizes; `folder` is where errors say that they stand.
+    ///
+    /// # Errors
+    /// [`HarnessError`], when a size belongs to no known deviation.
+    pub fn with_ranges(self, ranges: Ranges, folder: &Path) -> Result<Self, HarnessError> {
+        for (key, _) in ranges.iter() {
+            if !self.deviations.iter().any(|deviation| deviation.has(key)) {
+                let RangeKey { engine, version, method, quantity, model, .. } = key;
+                let message = format!(
+                    "a range is known of {engine} {version} {method}, {quantity}, {model}, and deviations.toml names no such deviation;                      remove the row, or write the file again with `featherbench gate --ranges … --write`"
+                );
+                return Err(HarnessError::Config { path: folder.join("deviations"), message });
+            }
+        }
+        Ok(Self { ranges, ..self })
     }
 
     /// The known deviations.
     pub fn deviations(&self) -> &[Deviation] {
         &self.deviations
+    }
+
+    /// The sizes of the known deviations.
+    pub fn ranges(&self) -> &Ranges {
+        &self.ranges
     }
 
     /// The reproductions of known deviations.
@@ -171,49 +207,70 @@ impl Gates {
         self.explain(row)
     }
 
-    /// Turns a row that is no pass into a deviation where one is known.
+    /// Tells the known cause of a row that is no pass. A failure within the range that was measured for its robot, and an error, become known
+    /// deviations; what an engine does not offer stays a skip; a failure without a range, or beyond it, stays a failure and says so.
     pub fn explain(&self, row: Record) -> Record {
-        match self.deviations.iter().find(|deviation| deviation.explains(&row)) {
-            Some(deviation) => row.deviating(&deviation.reason),
-            None => row,
+        match row.verdict {
+            Verdict::Skip => match self.not_offered.iter().find(|known| known.explains(&row)) {
+                Some(known) => Record { reason: format!("{} ({})", known.reason, row.reason), ..row },
+                None => row,
+            },
+            Verdict::Error => match self.deviations.iter().find(|known| known.explains_error(&row)) {
+                Some(known) => row.deviating(&known.reason),
+                None => row,
+            },
+            Verdict::Fail => match (self.measured(&row), self.ranges.get(&row)) {
+                (None, _) => row,
+                (Some(known), Some(range)) if row.value.is_some_and(|value| range.admits(value)) => row.deviating(&known.reason),
+                (Some(known), Some(range)) => {
+                    let reason = format!(
+                        "{}; larger than the known deviation, which is at most {:e} in {} seeds on this robot: {}",
+                        row.reason, range.high, range.seeds, known.reason
+                    );
+                    Record { reason, ..row }
+                }
+                (Some(known), None) => {
+                    let reason = format!(
+                        "{}; the cause may be known, but no range was measured on this robot (`featherbench gate --ranges … --write`): {}",
+                        row.reason, known.reason
+                    );
+                    Record { reason, ..row }
+                }
+            },
+            Verdict::Pass | Verdict::Info | Verdict::Deviation => row,
         }
+    }
+
+    /// The known deviation, of those whose size is measured, that is about a row.
+    fn measured(&self, row: &Record) -> Option<&Deviation> {
+        self.deviations.iter().find(|known| known.is_measured() && known.is_about(row))
     }
 
     /// What keeps a set of records from being green: one expectation per condition, passing or not.
     ///
     /// Conditions: no row fails; none is skipped or an error unexplained; and, when the run is `complete`, the suite's
-    /// counts of rows are met exactly, and a thorough suite shows every known deviation and sharp bounds.
+    /// counts of rows are met exactly, and a thorough suite shows every known deviation as large as it is known to be, everything that is not
+    /// offered, and sharp bounds.
     pub fn conditions(&self, suite: &Suite, records: &[Record], complete: bool) -> Vec<Expectation> {
-        let excused = |row: &Record| row.verdict == Verdict::Skip && self.guests.contains(&row.engine);
-        let count = |verdict: Verdict| records.iter().filter(|row| row.verdict == verdict && !excused(row)).count() as u64;
-        let mut conditions: Vec<Expectation> = [
-            (Verdict::Fail, "rows outside their bound"),
-            (Verdict::Error, "rows without a value that was due"),
-            (Verdict::Skip, "rows that a subject does not offer and ci/deviations.toml does not name"),
-        ]
-        .map(|(verdict, what)| condition(what.to_owned(), 0, count(verdict)))
-        .into();
+        let count = |of_these: &dyn Fn(&Record) -> bool| records.iter().filter(|row| of_these(row)).count() as u64;
+        let unknown = |row: &Record| {
+            let excused = self.guests.contains(&row.engine) || self.not_offered.iter().any(|known| known.explains(row));
+            row.verdict == Verdict::Skip && !excused
+        };
+        let mut conditions = vec![
+            condition("rows outside their bound".into(), 0, count(&|row| row.verdict == Verdict::Fail)),
+            condition("rows without a value that was due".into(), 0, count(&|row| row.verdict == Verdict::Error)),
+            condition("rows that a subject does not offer and ci/deviations.toml does not name".into(), 0, count(&unknown)),
+        ];
         if !complete {
             return conditions;
         }
         conditions.push(condition("rows at all".into(), 1, u64::from(!records.is_empty())));
-        for deviation in self.deviations.iter().filter(|_| suite.thorough) {
-            let known = suite.agreement.as_ref().is_some_and(|agreement| agreement.engines.contains(&deviation.engine));
-            if known && records.iter().any(|row| deviation.concerns(row)) {
-                let seen = records.iter().any(|row| deviation.excused(row));
-                let what = format!("known deviation of {} still seen: {}", deviation.engine, deviation.reason);
-                conditions.push(condition(what, 1, u64::from(seen)));
-                if let (Some([low, _]), Some(worst)) = (deviation.range, deviation.worst(records)) {
-                    let what = format!(
-                        "known deviation of {} as large as known ({low:e}, here {worst:e}): {}",
-                        deviation.engine, deviation.reason
-                    );
-                    conditions.push(condition(what, 1, u64::from(worst >= low / SLACK)));
-                }
-            }
+        if suite.thorough {
+            conditions.extend(self.still_seen(suite, records));
+            conditions.extend(self.sharp.iter().flat_map(|sharp| sharp.conditions(suite, records)));
+            conditions.extend(self.means.iter().flat_map(|mean| mean.conditions(records)));
         }
-        conditions.extend(self.sharp.iter().filter(|_| suite.thorough).flat_map(|sharp| sharp.conditions(suite, records)));
-        conditions.extend(self.means.iter().filter(|_| suite.thorough).flat_map(|mean| mean.conditions(records)));
         for (engine, quantities) in &suite.expect {
             for (quantity, &expected) in quantities {
                 let of_these = |row: &&Record| row.engine == *engine && row.quantity == *quantity && accounted(row);
@@ -222,6 +279,53 @@ impl Gates {
             }
         }
         conditions
+    }
+
+    /// One condition per known deviation of the suite's engines and robots, that it is still seen; one more, where its size is measured, that
+    /// it is as large as known on every robot; and one per thing that is not offered.
+    fn still_seen(&self, suite: &Suite, records: &[Record]) -> Vec<Expectation> {
+        let asked = |engine: &String| suite.agreement.as_ref().is_some_and(|agreement| agreement.engines.contains(engine));
+        let mut conditions = Vec::new();
+        for known in self.deviations.iter().filter(|known| asked(&known.engine)) {
+            if records.iter().any(|row| known.concerns(row)) {
+                let seen = records.iter().any(|row| known.excused(row));
+                conditions.push(condition(format!("known deviation of {} still seen: {}", known.engine, known.reason), 1, u64::from(seen)));
+                conditions.extend(self.still_large(known, records));
+            }
+        }
+        for known in self.not_offered.iter().filter(|known| asked(&known.engine)) {
+            if records.iter().any(|row| known.concerns(row)) {
+                let seen = records.iter().any(|row| known.explains(row));
+                conditions.push(condition(format!("{} still does not offer: {}", known.engine, known.reason), 1, u64::from(seen)));
+            }
+        }
+        conditions
+    }
+
+    /// The condition that a deviation is as large as known on each of its robots; none, where no robot of the run shows it at every seed.
+    fn still_large(&self, known: &Deviation, records: &[Record]) -> Option<Expectation> {
+        let mut found: BTreeMap<RangeKey, f64> = BTreeMap::new();
+        let judged = records.iter().filter(|row| row.bound.is_some() && known.is_measured() && known.is_about(row));
+        for (row, value) in judged.filter_map(|row| Some((row, row.value?))) {
+            if self.ranges.get(row).is_some_and(|range| range.outside == range.seeds) {
+                let largest = found.entry(RangeKey::of(row)).or_insert(value);
+                *largest = worst(*largest, value);
+            }
+        }
+        if found.is_empty() {
+            return None;
+        }
+        let shrunk = found.iter().filter_map(|(key, &value)| {
+            let range = self.ranges.of(key).filter(|range| range.has_shrunk(value))?;
+            Some(format!("{} {} {} ({value:e}, known from {:e})", key.model, key.method, key.quantity, range.low))
+        });
+        let shrunk: Vec<String> = shrunk.collect();
+        let what = format!("robots on which a known deviation of {} is smaller than known: {}", known.engine, known.reason);
+        let mut condition = condition(what, 0, shrunk.len() as u64);
+        if !shrunk.is_empty() {
+            condition.reason = format!("{}: {}", condition.reason, shrunk.join(", "));
+        }
+        Some(condition)
     }
 }
 

@@ -1,11 +1,12 @@
 //! Files that people write: what is wrong in `gates.toml`, `deviations.toml` or a suite is told with the file and the key, and nothing
 //! unknown is passed over.
 
-use featherbench_harness::{Gates, HarnessError, Suite};
+use featherbench_harness::{Gates, HarnessError, Ranges, Suite};
 use std::path::Path;
 
 const GATE: &str = "[[gate]]\nstudy = \"agreement\"\nquantities = [\"id\"]\nmetric = \"scaled\"\nbound = 1e-14\nreason = \"rounding\"\n";
 const DEVIATION: &str = "[[deviation]]\nengine = \"e\"\nversion = \"1\"\nmodels = [\"m\"]\nverdict = \"fail\"\nreason = \"known\"\n";
+const NOT_OFFERED: &str = "[[not_offered]]\nengine = \"e\"\nversion = \"1\"\nmodels = [\"m\"]\nreason = \"none\"\n";
 const SUITE: &str = "about = \"a suite\"\nseed = 1\n[[problem]]\ngenerate = \"humanoid\"\nfamily = \"humanoid\"\n";
 
 /// Asserts that an error names its file and these words.
@@ -30,6 +31,7 @@ fn gates(gates: &str, deviations: &str) -> (Result<Gates, HarnessError>, tempfil
 fn gates_name_what_is_wrong() {
     assert!(gates(GATE, DEVIATION).0.is_ok());
     assert!(gates(GATE, "").0.is_ok(), "nothing need deviate");
+    assert!(gates(GATE, &format!("{DEVIATION}{NOT_OFFERED}")).0.is_ok());
     let cases = [
         (format!("{GATE}max_dept = 20\n"), "max_dept"),
         (GATE.replace("bound = 1e-14\n", ""), "bound"),
@@ -57,6 +59,10 @@ fn deviations_name_what_is_wrong() {
         (DEVIATION.replace("reason = \"known\"\n", ""), "reason"),
         (DEVIATION.replace("\"fail\"", "\"pass\""), "pass"),
         (DEVIATION.replace("\"fail\"", "\"Fail\""), "Fail"),
+        (DEVIATION.replace("\"fail\"", "\"skip\""), "[[not_offered]]"),
+        (format!("{DEVIATION}range = [1e-14, 1e-13]\n"), "range"),
+        (NOT_OFFERED.replace("reason", "cause"), "cause"),
+        (format!("{NOT_OFFERED}verdict = \"skip\"\n"), "verdict"),
         (DEVIATION.replace("[\"m\"]", "\"m\""), "models"),
         (DEVIATION.replace("[[deviation]]", "[[deviations]]"), "deviations"),
     ];
@@ -109,7 +115,11 @@ fn suites_name_what_is_wrong() {
 #[test]
 fn our_own_files_are_right() {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
-    Gates::read(&root.join("ci")).unwrap();
+    let gates = Gates::read(&root.join("ci")).unwrap();
+    for known in gates.deviations().iter().filter(|known| known.is_measured()) {
+        let sizes = gates.ranges().iter().filter(|(key, _)| known.has(key)).count();
+        assert!(sizes > 0, "a deviation without a size excuses nothing: {} {:?}", known.engine, known.models);
+    }
     let suites: Vec<_> = std::fs::read_dir(root.join("datasets/suites")).unwrap().map(|entry| entry.unwrap().path()).collect();
     let suites: Vec<_> = suites.iter().filter(|path| path.extension().is_some_and(|ending| ending == "toml")).collect();
     assert!(suites.len() >= 5, "{} suites", suites.len());
@@ -135,4 +145,54 @@ fn reproductions_name_what_is_wrong() {
         let (result, folder) = gates(GATE, &text);
         names(result, &folder.path().join("deviations.toml"), &[word]);
     }
+}
+
+/// The files that `gate --ranges … --write` writes are data of a gate: each line is checked.
+#[test]
+fn ranges_name_what_is_wrong() {
+    const HEAD: &str = "engine,version,method,quantity,model,metric,low,high,outside,seeds\n";
+    const LINE: &str = "e,1,rnea,id,m,scaled,1e-14,2e-14,20,20\n";
+    let path = Path::new("default.csv");
+    let parse = |text: &str| Ranges::parse(text, path);
+    assert_eq!(parse(&format!("{HEAD}{LINE}")).unwrap().iter().count(), 1);
+    assert_eq!(parse(HEAD).unwrap(), Ranges::default());
+    let cases = [
+        (String::new(), "line 1"),
+        (HEAD.replace("low,high", "high,low") + LINE, "line 1"),
+        (format!("{HEAD}{LINE}{LINE}"), "line 3"),
+        (format!("{HEAD}{}", LINE.replace(",20,20", ",20")), "9 columns"),
+        (format!("{HEAD}{}", LINE.replace("1e-14,", "small,")), "low"),
+        (format!("{HEAD}{}", LINE.replace("2e-14", "NaN")), "high"),
+        (format!("{HEAD}{}", LINE.replace("2e-14", "inf")), "high"),
+        (format!("{HEAD}{}", LINE.replace("1e-14,", "-1e-14,")), "low"),
+        (format!("{HEAD}{}", LINE.replace("1e-14,", "3e-14,")), "low, high"),
+        (format!("{HEAD}{}", LINE.replace("1e-14,2e-14", "0,0")), "low, high"),
+        (format!("{HEAD}{}", LINE.replace("20,20", "x,20")), "outside"),
+        (format!("{HEAD}{}", LINE.replace("20,20", "20,-1")), "seeds"),
+        (format!("{HEAD}{}", LINE.replace("20,20", "21,20")), "outside"),
+        (format!("{HEAD}{}", LINE.replace("20,20", "0,20")), "outside"),
+    ];
+    for (text, word) in cases {
+        names(parse(&text), path, &[word]);
+    }
+    // A size of nothing that is known is a file that was left behind.
+    let known = || gates(GATE, DEVIATION).0.unwrap();
+    let here = Path::new("ci");
+    let sizes = |line: &str| parse(&format!("{HEAD}{line}")).unwrap();
+    assert!(known().with_ranges(sizes(LINE), here).is_ok());
+    for (old, new) in [("e,1", "f,1"), ("e,1", "e,2"), (",m,", ",other,")] {
+        names(
+            known().with_ranges(sizes(&LINE.replace(old, new)), here),
+            &here.join("deviations"),
+            &["deviations.toml names no such deviation"],
+        );
+    }
+    let narrow = format!("{DEVIATION}method = \"crba\"\nquantities = [\"mass_matrix\"]\n");
+    let narrow = || gates(GATE, &narrow).0.unwrap();
+    assert!(narrow().with_ranges(sizes("e,1,crba,mass_matrix,m,scaled,1e-14,2e-14,20,20\n"), here).is_ok());
+    for line in ["e,1,rnea,mass_matrix,m,scaled,1e-14,2e-14,20,20\n", "e,1,crba,id,m,scaled,1e-14,2e-14,20,20\n"] {
+        assert!(narrow().with_ranges(sizes(line), here).is_err(), "{line}");
+    }
+    let error = || gates(GATE, &DEVIATION.replace("\"fail\"", "\"error\"")).0.unwrap();
+    assert!(error().with_ranges(sizes(LINE), here).is_err(), "an error has no size");
 }

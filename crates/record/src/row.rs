@@ -158,7 +158,7 @@ impl Record {
         self
     }
 
-    /// Turns a failure, an error or a skip into a known deviation: value and margin stay, the cause is put before the old reason.
+    /// Turns a failure or an error into a known deviation: value and margin stay, the cause is put before the old reason.
     pub fn deviating(mut self, cause: &str) -> Self {
         self.reason = if self.reason.is_empty() { cause.to_owned() } else { format!("{cause} ({})", self.reason) };
         self.verdict = Verdict::Deviation;

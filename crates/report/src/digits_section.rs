@@ -219,7 +219,7 @@ fn legend() -> Markup {
             (swatch("", "✕", "a gate is missed"))
             (swatch("", "≈", "missed by known cause"))
             (swatch("error", "!", "no answer"))
-            (swatch("skip", "–", "skipped"))
+            (swatch("skip", "–", "not offered"))
         }
     }
 }

@@ -157,8 +157,8 @@ fn legend() -> Markup {
             (swatch("p4", "3", "3–4"))
             (swatch("p5", "4", "4 or more"))
             (swatch("error", "!", "no answer"))
-            (swatch("skip", "–", "skipped"))
-            (swatch("p3 part", "2", "partly skipped"))
+            (swatch("skip", "–", "not offered"))
+            (swatch("p3 part", "2", "passes where it is offered"))
             (swatch("deviation", "≈", "known deviation"))
             (swatch("info", "·", "not judged"))
         }

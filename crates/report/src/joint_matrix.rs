@@ -131,8 +131,8 @@ impl<'a> Shown<'a> {
 
 impl<'a> Fold<'a> {
     fn add(&mut self, row: &'a Record) {
-        // Without a value, a skip and a known deviation both say that the engine has no such joint or armature.
-        if row.value.is_none() && matches!(row.verdict, Verdict::Skip | Verdict::Deviation) {
+        // A skip says that the engine has no such joint or armature: it is neither right nor wrong.
+        if row.verdict == Verdict::Skip {
             self.lacking.insert(&row.model);
             self.refused = self.refused.or(Some(row));
             return;

@@ -159,7 +159,7 @@ pub const fn verdict(verdict: Verdict) -> &'static str {
         Verdict::Fail => "failed",
         Verdict::Error => "errors",
         Verdict::Deviation => "known deviations",
-        Verdict::Skip => "skipped",
+        Verdict::Skip => "not offered",
         Verdict::Info => "not judged",
     }
 }

@@ -39,7 +39,7 @@ pub fn section(run: &RunInfo, overview: &Overview, figures: &Figures) -> Markup 
                     h3 { "What is included" }
                     dl.measures {
                         dt { "Verdict" }
-                        dd { "A value stands to its gate as its row says (≤, ≥, =, or |value| ≤). What could not be computed is a row too: an error or a skip with its reason, never a gap. A known deviation is a failure whose cause is written down." }
+                        dd { "A value stands to its gate as its row says (≤, ≥, =, or |value| ≤). What could not be computed is a row too: an error or a skip with its reason, never a gap. A skip is a question that the engine does not offer to answer: it counts neither for nor against it. A known deviation is a failure, or an error, whose cause is written down; a failure also needs a range that was measured on its robot, and is none beyond it." }
                         dt { "Margin" }
                         dd { "log₁₀(bound/|value|), or log₁₀(value/bound) where the bound is a least value; positive inside; an error of exactly zero counts as 16 decades." }
                         dt { "States" }

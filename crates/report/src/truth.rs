@@ -83,7 +83,7 @@ impl<'a> Truth<'a> {
             groups
         };
         let failed = missed(|row| matches!(row.verdict, Verdict::Fail | Verdict::Error));
-        // A known deviation without a value is a question that the engine cannot be asked.
+        // A known error (a singular M) is no answer that the truth could be held against.
         let known = missed(|row| row.verdict == Verdict::Deviation && row.value.is_some());
         let kept = kept(overview, &accounts);
         Self { kept, failed, known, medians: medians(overview, digits) }

@@ -33,7 +33,7 @@ pub fn section(records: &[Record]) -> Markup {
         section #unpassed {
             h2 { "Everything that did not pass" }
             @if groups.is_empty() {
-                p.empty { "Every judged row passed; nothing was skipped." }
+                p.empty { "Every judged row passed, and everything was offered." }
             } @else {
                 p.lead {
                     (count(total, "row")) " for " (count(groups.len(), "reason")) ": "

@@ -7,7 +7,7 @@
 mod support;
 
 use engines::Native;
-use harness::{Gates, Problem, Quantity, Subject};
+use harness::{Gates, Problem, Quantity, Range, RangeKey, Ranges, RangesMeter, Subject};
 use model::{Description, JointType, Model, StateBatch};
 use record::{Record, Verdict};
 use std::collections::BTreeSet;
@@ -372,17 +372,21 @@ fn trial(gates: &Gates, problem: &Problem, double: Double) -> (usize, usize, usi
 }
 
 #[test]
-fn a_skip_is_red_unless_a_deviation_names_it() {
+fn a_skip_is_red_unless_it_is_known_that_it_is_not_offered() {
     let problem = robot(FREE);
     let (deviations, _, skips, green) = trial(&gates(""), &problem, Double::refusing(&problem));
     assert_eq!((deviations, green), (0, false));
     assert!(skips > EVERYTHING.len(), "the forward dynamics has two methods: {skips}");
-    let (deviations, _, left, green) = trial(&excusing("skip", ""), &problem, Double::refusing(&problem));
-    assert_eq!((deviations, left, green), (skips, 0, true));
-    assert_eq!(trial(&excusing("skip", "range = [1e-18, 1e-18]"), &problem, Double::refusing(&problem)).0, skips, "a limit is for values");
-    // A deviation of another version, robot, quantity or verdict explains nothing.
-    for (verdict, more) in [("fail", ""), ("error", ""), ("skip", "quantities = [\"com\"]"), ("skip", "method = \"crba\"")] {
-        assert!(!trial(&excusing(verdict, more), &problem, Double::refusing(&problem)).3, "{verdict} {more}");
+    let not_offered = |more: &str| {
+        let text =
+            format!("[[not_offered]]\nengine = \"double\"\nversion = \"1\"\nmodels = [\"joints-*\"]\nreason = \"a known cause\"\n{more}");
+        gates(&text)
+    };
+    let (deviations, _, left, green) = trial(&not_offered(""), &problem, Double::refusing(&problem));
+    assert_eq!((deviations, left, green), (0, skips, true), "what is not offered is no deviation, and no longer red");
+    assert!(!trial(&not_offered("quantities = [\"com\"]"), &problem, Double::refusing(&problem)).3);
+    for verdict in ["fail", "error"] {
+        assert!(!trial(&excusing(verdict, ""), &problem, Double::refusing(&problem)).3, "{verdict}");
     }
 }
 
@@ -408,6 +412,7 @@ fn a_deviation_is_seen_in_its_own_rows() {
     };
     let other = deviation("double", "fail", "quantities = [\"id\"]");
     let gates = gates(&(deviation("double", "fail", "quantities = [\"bias\"]") + &other + &deviation("native", "fail", "")));
+    let gates = measured(gates, &problem, Double::twisting(&problem, wrong), 1.0);
     let records = beside_native(&problem, &gates, Double::twisting(&problem, wrong));
     let mut suite = suite(&records);
     suite.agreement.as_mut().unwrap().engines.push("native".into());
@@ -416,21 +421,37 @@ fn a_deviation_is_seen_in_its_own_rows() {
     assert_eq!(red(&conditions), unseen);
 }
 
+/// The same gates with the double's ranges as large as it shows them, times a factor.
+fn measured(gates: Gates, problem: &Problem, double: Double, factor: f64) -> Gates {
+    let mut meter = RangesMeter::default();
+    meter.add(gates.deviations(), &beside_native(problem, &gates, double));
+    let scale = |(key, range): (&RangeKey, &Range)| (key.clone(), Range { low: range.low * factor, high: range.high * factor, ..*range });
+    let ranges: Ranges = meter.ranges().iter().map(scale).collect();
+    assert!(ranges.iter().count() > 0);
+    gates.with_ranges(ranges, &support::gates_folder()).unwrap()
+}
+
 #[test]
-fn a_deviation_explains_no_more_than_it_says() {
+fn a_deviation_explains_no_more_than_was_measured() {
     let problem = robot(FREE);
-    let wrong = || Double::altered(&problem, |description| description.bodies[3].mass *= 1.0 + 1e-10);
-    let (_, fails, _, green) = trial(&gates(""), &problem, wrong());
+    let wrong = |problem: &Problem| Double::altered(problem, |description| description.bodies[3].mass *= 1.0 + 1e-10);
+    let (_, fails, _, green) = trial(&gates(""), &problem, wrong(&problem));
     assert!(fails > 0 && !green);
-    let (deviations, left, _, green) = trial(&excusing("fail", "range = [1e-11, 1e-9]"), &problem, wrong());
-    assert_eq!((deviations, left, green), (fails, 0, true));
-    let (deviations, left, _, green) = trial(&excusing("fail", "range = [1e-13, 1e-12]"), &problem, wrong());
-    assert!(deviations > 0 && left > 0 && !green, "{deviations} explained, {left} beyond the limit");
+    let (deviations, left, _, green) = trial(&excusing("fail", ""), &problem, wrong(&problem));
+    assert_eq!((deviations, left, green), (0, fails, false), "a cause without a size excuses nothing");
+    let sized = |more: &str, factor: f64| measured(excusing("fail", more), &problem, wrong(&problem), factor);
+    assert_eq!(trial(&sized("", 1.0), &problem, wrong(&problem)), (fails, 0, 0, true));
+    let (deviations, left, _, green) = trial(&sized("", 0.1), &problem, wrong(&problem));
+    assert!(left > deviations && !green, "ten times as large as known; the largest case has the range: {deviations} excused, {left} not");
     assert_eq!(deviations + left, fails);
     // Smaller than it is known to be: every row is explained, and the list is to be corrected.
-    let (deviations, left, _, green) = trial(&excusing("fail", "range = [1e-7, 1e-6]"), &problem, wrong());
-    assert_eq!((deviations, left, green), (fails, 0, false));
-    let (deviations, left, _, green) = trial(&excusing("fail", "quantities = [\"id\"]"), &problem, wrong());
+    assert_eq!(trial(&sized("", 10.0), &problem, wrong(&problem)), (fails, 0, 0, false));
+    let (deviations, left, _, green) = trial(&sized("quantities = [\"id\"]", 1.0), &problem, wrong(&problem));
     assert!(deviations > 0 && left > 0 && !green);
     assert_eq!(deviations + left, fails);
+    // What was measured on one robot excuses no other one of its class.
+    let other = robot("joints:kind=mixed,base=fixed");
+    let elsewhere = measured(excusing("fail", ""), &other, wrong(&other), 1.0);
+    let (deviations, left, _, green) = trial(&elsewhere, &problem, wrong(&problem));
+    assert_eq!((deviations, left, green), (0, fails, false));
 }

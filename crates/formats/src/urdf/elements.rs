@@ -127,7 +127,8 @@ fn note_mimics_of_nothing(joints: &[Joint], notes: &mut Vec<NoteAt>) {
     for (k, joint) in joints.iter().enumerate() {
         let Some((of, offset)) = &joint.mimics else { continue };
         if !index.contains_key(of.as_str()) {
-            notes.push(NoteAt { offset: *offset, text: format!("joint '{}' mimics '{of}', which is not there", joint.name) });
+            let text = format!("joint '{}' mimics '{of}', which is not there", joint.name);
+            notes.push(NoteAt { offset: *offset, text, warning: None });
         }
         let follow = |k: &usize| joints[*k].mimics.as_ref().and_then(|(of, _)| index.get(of.as_str()).copied());
         let behind: Vec<usize> = std::iter::successors(follow(&k), follow).take(joints.len()).collect();
@@ -136,7 +137,8 @@ fn note_mimics_of_nothing(joints: &[Joint], notes: &mut Vec<NoteAt>) {
         let circle = &behind[..=length];
         if circle.iter().all(|&at| at >= k) {
             let names = std::iter::once(&k).chain(circle).map(|&at| format!("'{}'", joints[at].name)).collect::<Vec<_>>().join(" → ");
-            notes.push(NoteAt { offset: *offset, text: format!("the joints {names} mimic each other in a circle: nothing drives them") });
+            let text = format!("the joints {names} mimic each other in a circle: nothing drives them");
+            notes.push(NoteAt { offset: *offset, text, warning: None });
         }
     }
 }
