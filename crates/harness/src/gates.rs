@@ -164,7 +164,8 @@ impl Gates {
             if !self.deviations.iter().any(|deviation| deviation.has(key)) {
                 let RangeKey { engine, version, method, quantity, model, .. } = key;
                 let message = format!(
-                    "a range is known of {engine} {version} {method}, {quantity}, {model}, and deviations.toml names no such deviation;                      remove the row, or write the file again with `featherbench gate --ranges … --write`"
+                    "a range is known of {engine} {version} {method}, {quantity}, {model}, and deviations.toml names no such deviation; \
+                     remove the row, or write the file again with `featherbench gate --ranges … --write`"
                 );
                 return Err(HarnessError::Config { path: folder.join("deviations"), message });
             }
