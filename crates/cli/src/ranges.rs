@@ -69,7 +69,7 @@ fn check(folder: &Path, first: &RunInfo, other: &RunInfo, seeds: &[u64]) -> Resu
 fn print(deviations: &[Deviation], ranges: &Ranges, runs: usize) {
     for deviation in deviations.iter().filter(|deviation| deviation.is_measured()) {
         let of_it: Vec<_> = ranges.iter().filter(|(key, _)| deviation.has(key)).collect();
-        let low = of_it.iter().map(|(_, range)| range.low).fold(f64::INFINITY, f64::min);
+        let low = -of_it.iter().map(|(_, range)| -range.low).fold(f64::NEG_INFINITY, harness::measure::worst);
         let high = of_it.iter().map(|(_, range)| range.high).fold(0.0, harness::measure::worst);
         let always = of_it.iter().filter(|(_, range)| range.outside == range.seeds).count();
         let span = match of_it.len() {

@@ -31,7 +31,7 @@ pub use cell::{Cell, Outcome};
 pub use deviation::{Deviation, NotOffered, Reproduction, SEEDS, SLACK};
 pub use error::HarnessError;
 pub use gates::{Factor, Gate, Gates, Sharpness, accounted};
-pub use means::Mean;
+pub use means::{Known, Mean};
 pub use problem::{Problem, Route};
 pub use quantity::{DENSE_LIMIT, Quantity};
 pub use ranges::{Range, RangeKey, Ranges, RangesMeter};

@@ -222,7 +222,7 @@ impl RangesMeter {
     /// The ranges of what was outside its bound in one of the runs.
     pub fn ranges(&self) -> Ranges {
         let range = |runs: &Vec<Worst>| Range {
-            low: runs.iter().map(|run| run.value).fold(f64::INFINITY, f64::min),
+            low: -runs.iter().map(|run| -run.value).fold(f64::NEG_INFINITY, worst),
             high: runs.iter().map(|run| run.value).fold(0.0, worst),
             outside: runs.iter().filter(|run| run.outside).count() as u64,
             seeds: runs.len() as u64,

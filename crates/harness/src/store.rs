@@ -259,11 +259,13 @@ mod tests {
     /// Outcomes of every kind.
     fn outcomes() -> Vec<(Cell, Outcome)> {
         let description = Family::parse("chain:n=1").unwrap().generate().unwrap();
-        let note = ReadingNote { cause: "warning".into(), subject: Some("link".into()), text: "not \"this\"".into() };
+        let text = "not \"this\"".into();
+        let note = ReadingNote { cause: "warning".into(), subject: Some("link".into()), text, numbers: vec![0.1, -2.0] };
+        let written = Some(description.clone());
         vec![
             (cell("a"), Outcome::Values(vec![0.1, f64::NAN, -0.0])),
             (cell("b"), Outcome::Refused(Refusal::Failed("it \"broke\"".into()))),
-            (cell("c"), Outcome::Reading(Box::new(Reading { description, notes: vec![note], keyframes: vec![vec![0.5]] }))),
+            (cell("c"), Outcome::Reading(Box::new(Reading { description, notes: vec![note], keyframes: vec![vec![0.5]], written }))),
             (cell("d"), Outcome::Refused(Refusal::Unsupported("no such joint".into()))),
             (cell("e"), Outcome::Values(vec![1.5])),
         ]

@@ -52,11 +52,10 @@ impl Description {
         for frame in &self.frames {
             let (body, on_body) = frame.body.map_or((None, Transform::identity()), |body| home[body]);
             let placement = if on_body == Transform::identity() {
-                frame.placement
+                frame.placement.normalised()
             } else {
-                let given =
-                    Transform::new(Mat3::from_array(frame.placement.rotation.map(Real::from_f64)), wide(frame.placement.translation));
-                narrow(&on_body.compose(&given))
+                let exact = Mat3::from_array(rotation(frame.placement.rotation).exact);
+                narrow(&merged(&on_body, &Transform::new(exact, wide(frame.placement.translation))))
             };
             result.frames.push(Frame { name: frame.name.clone(), body, placement });
         }
@@ -130,6 +129,11 @@ impl BodyDescription {
 }
 
 impl Placement {
+    /// The same placement with the doubles of the rotation that its matrix stands for. The matrix must be one that validation accepts.
+    pub fn normalised(&self) -> Self {
+        Self { rotation: rotation(self.rotation).rounded, ..*self }
+    }
+
     /// As a spatial transform.
     pub fn to_transform(&self) -> Transform<f64> {
         Transform::new(Mat3::from_array(self.rotation), Vec3::from_array(self.translation))

@@ -118,6 +118,14 @@ pub enum Malformed {
         /// The joint's name.
         joint: String,
     },
+    /// The rotation of a frame is not orthonormal, or turns right to left.
+    #[error("frame '{frame}': its rotation misses orthonormality by {error:e}; give a rotation matrix in row-major order")]
+    FrameNotARotation {
+        /// The frame's name.
+        frame: String,
+        /// Largest entry of |RRᵀ − 1|, or of |det R − 1|.
+        error: f64,
+    },
     /// A frame is fixed to a body that does not exist.
     #[error("frame '{frame}': body {body} does not exist")]
     FrameOrphan {
@@ -133,7 +141,7 @@ impl Malformed {
     pub fn subject(&self) -> Option<&str> {
         match self {
             Self::Empty => None,
-            Self::FrameOrphan { frame, .. } => Some(frame),
+            Self::FrameOrphan { frame, .. } | Self::FrameNotARotation { frame, .. } => Some(frame),
             Self::NotFinite { body, .. }
             | Self::NegativeMass { body, .. }
             | Self::Orphan { body, .. }
@@ -212,6 +220,10 @@ impl Description {
             }
             finite(&frame.name, "frame placement", &frame.placement.rotation)?;
             finite(&frame.name, "frame placement", &frame.placement.translation)?;
+            let error = rotation_error(&frame.placement.rotation);
+            if error > ROTATION_TOLERANCE {
+                return Err(Malformed::FrameNotARotation { frame: frame.name.clone(), error });
+            }
         }
         Ok(())
     }

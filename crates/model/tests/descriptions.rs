@@ -98,6 +98,9 @@ fn malformed_descriptions_are_refused_by_name() {
     let mut framed = changed(|_| ());
     framed.frames.push(Frame { name: "tool".to_owned(), body: Some(2), placement: Placement::default() });
     assert_eq!(refused(&framed), Malformed::FrameOrphan { frame: "tool".to_owned(), body: 2 });
+    framed.frames[0] = Frame { name: "tool".to_owned(), body: Some(0), placement: Placement::default() };
+    framed.frames[0].placement.rotation[8] = 1.0 + 1e-3;
+    assert!(matches!(refused(&framed), Malformed::FrameNotARotation { frame, error } if frame == "tool" && error > 1e-3));
 }
 
 #[test]

@@ -11,7 +11,7 @@ use harness::{Gates, Problem, Quantity, Range, RangeKey, Ranges, RangesMeter, Su
 use model::{Description, JointType, Model, StateBatch};
 use record::{Record, Verdict};
 use std::collections::BTreeSet;
-use support::{Answer, Double, SHARPNESS, Twist, agreement, beside_native, doubles, gates, red, robot, suite};
+use support::{Answer, Double, OVER_BEST, SHARPNESS, Twist, agreement, beside_native, doubles, gates, red, robot, suite};
 
 /// A robot with every kind of joint on a free base.
 const FREE: &str = "joints:kind=mixed,base=free";
@@ -332,6 +332,9 @@ fn nothing_at_all_is_not_green() {
     let gates = gates("");
     let conditions = gates.conditions(&suite(&[]), &[], true);
     assert_eq!(red(&conditions), ["rows at all"]);
+    // Each quantity asks for a mean and for a largest value, and nothing has neither.
+    let over_best: Vec<_> = conditions.iter().filter(|condition| condition.what.contains(OVER_BEST)).collect();
+    assert!(over_best.len() >= 24 && over_best.iter().all(|condition| condition.verdict == Verdict::Fail), "{over_best:?}");
 }
 
 /// One robot whose forward bounds see nothing, and one with sharp ones.

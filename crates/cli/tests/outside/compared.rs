@@ -15,15 +15,13 @@ fn compare(files: &[PathBuf], more: &[&str], out: &Path) -> Ended {
 
 /// The rows of differences of an engine: field and cause.
 fn differences(out: &Path, engine: &str) -> Vec<(String, String)> {
-    let rows = std::fs::read_to_string(out.join("records.csv")).unwrap();
-    let of_engine = rows.lines().filter(|row| row.contains(",difference,") && row.contains(&format!(",{engine},")));
-    let word = |row: &str, key: &str| {
-        let start = row.split_once(&format!("\"\"{key}\"\":\"\"")).unwrap_or_else(|| panic!("{key}: {row}")).1;
-        start.split("\"\"").next().unwrap().to_owned()
+    let (_, rows) = record::read_run(out).unwrap();
+    let of_engine = rows.iter().filter(|row| row.metric == "difference" && row.engine == engine);
+    let cause = |row: &record::Record| {
+        let params: serde_json::Value = serde_json::from_str(&row.params).unwrap();
+        params["cause"].as_str().unwrap_or_else(|| panic!("{params}")).to_owned()
     };
-    let field =
-        |row: &str| ["mass", "inertia", "com", "armature", "friction"].into_iter().find(|field| row.contains(&format!(",{field},")));
-    of_engine.filter_map(|row| Some((field(row)?.to_owned(), word(row, "cause")))).collect()
+    of_engine.map(|row| (row.quantity.clone(), cause(row))).collect()
 }
 
 /// An MJCF that MuJoCo refuses: it is said first, MuJoCo's repair is its own difference, and who reads the file faithfully is alike.

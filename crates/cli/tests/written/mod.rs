@@ -36,7 +36,8 @@ impl Oracle {
     /// What the engine makes of a file.
     fn read(&mut self, path: &Path, format: &str) -> Result<Description, String> {
         let answer = self.ask(json!({"op": "read", "file": path, "format": format, "base": "fixed"}), Vec::new())?;
-        Ok(neutral::parse(&answer.header["model"].to_string(), "as read").unwrap_or_else(|error| panic!("{error}")))
+        let read = neutral::parse(&answer.header["model"].to_string(), "as read").unwrap_or_else(|error| panic!("{error}"));
+        Ok(read.canonical().unwrap_or_else(|error| panic!("{error}")))
     }
 
     /// The mass matrix and the inverse dynamics at a state of the robot that it holds; each dof's numbers follow from its name alone.

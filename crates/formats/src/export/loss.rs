@@ -42,11 +42,6 @@ pub enum Reason {
     OneSided,
     /// URDF asks for all four limits of a joint, or on a revolute joint for speed and effort, or for none.
     IncompleteLimits,
-    /// The format's readers give rotations orthonormal to rounding, and this one misses that.
-    Rotation {
-        /// Largest difference of an entry.
-        error: f64,
-    },
     /// An interval of limits that is a point, where the format asks for more.
     EmptyRange {
         /// The field.
@@ -79,8 +74,7 @@ impl Reason {
             | Self::OneSided
             | Self::IncompleteLimits
             | Self::EmptyRange { .. }
-            | Self::FreePlacement
-            | Self::Rotation { .. } => true,
+            | Self::FreePlacement => true,
             Self::JointType { .. }
             | Self::Massless
             | Self::Unphysical
@@ -106,9 +100,6 @@ impl fmt::Display for Reason {
                     f,
                     "limits in part: the format asks for lower, upper, velocity and effort (a revolute joint may have none, or the last two)"
                 )
-            }
-            Self::Rotation { error } => {
-                write!(f, "a rotation that misses orthonormality by about {error:e}; the format has exact ones only, so correct it first")
             }
             Self::EmptyRange { field } => write!(f, "{field} that leave no range; the format asks for a lower end below the upper one"),
             Self::FreePlacement => {

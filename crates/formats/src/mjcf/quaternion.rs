@@ -1,5 +1,7 @@
 //! Quaternions: what an MJCF file says of a rotation, and the way back.
 
+use model::Placement;
+
 /// The rotation of a quaternion (w, x, y, z) of any length, row-major: the formula, operation by operation, by which the MuJoCo oracle turns
 /// what MuJoCo read into numbers of a description (`turned` in `oracles/reading.py`).
 fn rotation([w, x, y, z]: [f64; 4]) -> [f64; 9] {
@@ -19,18 +21,23 @@ fn rotation([w, x, y, z]: [f64; 4]) -> [f64; 9] {
     entries.map(|entry| entry / n + 0.0)
 }
 
+/// The rotation that a description has of what MuJoCo read: normalised as the canonical form does it.
+fn read(q: [f64; 4]) -> [f64; 9] {
+    Placement { rotation: rotation(q), ..Placement::default() }.normalised().rotation
+}
+
 /// A quaternion of a rotation, with the largest difference of an entry: one that gives these nine numbers where there is one close by;
 /// elsewhere the nearest of those on grids so coarse that they are found again from their own rotations. So a second trip changes nothing.
 pub(super) fn quaternion(r: &[f64; 9]) -> ([f64; 4], f64) {
     let near = estimate(r);
     let error = |q: &[f64; 4]| {
-        r.iter().zip(rotation(*q)).map(|(a, b)| (a - b).abs()).fold(0.0, |worst, x| if x > worst || x.is_nan() { x } else { worst })
+        r.iter().zip(read(*q)).map(|(a, b)| (a - b).abs()).fold(0.0, |worst, x| if x > worst || x.is_nan() { x } else { worst })
     };
     let on_grids = GRIDS.into_iter().map(|grid| on_grid(near, grid));
     let exact = on_grids.chain(neighbours(near, last_place)).find(|q| error(q) == 0.0);
     let q = exact.unwrap_or_else(|| {
         let candidates = GRIDS.into_iter().flat_map(|grid| neighbours(near, move |_| grid).map(move |q| (grid, on_grid(q, grid))));
-        let found_again = candidates.filter(|&(grid, q)| on_grid(estimate(&rotation(q)), grid) == q).map(|(_, q)| q);
+        let found_again = candidates.filter(|&(grid, q)| on_grid(estimate(&read(q)), grid) == q).map(|(_, q)| q);
         found_again.min_by(|a, b| error(a).total_cmp(&error(b))).unwrap_or(near)
     });
     (q.map(|x| x + 0.0), error(&q))
@@ -96,9 +103,9 @@ mod tests {
         fn the_second_trip_changes_nothing(q in [component(), component(), component(), component()]) {
             let length = q.iter().map(|x| x * x).sum::<f64>().sqrt();
             prop_assume!(length > 1e-3);
-            let given = rotation(q.map(|x| x / length));
+            let given = read(q.map(|x| x / length));
             let (first, error) = quaternion(&given);
-            let read = rotation(first);
+            let read = read(first);
             prop_assert!(error <= 8.0 * f64::EPSILON, "{error:e}");
             prop_assert_eq!(quaternion(&read).1, 0.0, "{:?}", first);
         }
@@ -107,11 +114,11 @@ mod tests {
         #[test]
         fn products_of_rotations_are_met_within_rounding(a in [component(), component(), component(), component()], b in [component(), component(), component(), component()]) {
             prop_assume!([a, b].iter().all(|q| q.iter().any(|x| x.abs() > 1e-3)));
-            let (a, b) = (rotation(a), rotation(b));
+            let (a, b) = (read(a), read(b));
             let product: [f64; 9] = std::array::from_fn(|k| (0..3).map(|j| a[3 * (k / 3) + j] * b[3 * j + k % 3]).sum());
             let (first, error) = quaternion(&product);
             prop_assert!(error <= 8.0 * f64::EPSILON, "{error:e}");
-            prop_assert_eq!(quaternion(&rotation(first)).1, 0.0, "{:?}", first);
+            prop_assert_eq!(quaternion(&read(first)).1, 0.0, "{:?}", first);
         }
     }
 }

@@ -168,8 +168,6 @@ fn losses(robot: &Description, carried: &[Vec<Item>]) -> Vec<Loss> {
     }
     for frame in robot.frames.iter().filter(|frame| !is_world(frame)) {
         bodies.take("frame", &frame.name, &mut losses);
-        let reason = rotation_loss(&frame.placement);
-        losses.extend(reason.map(|reason| Loss { subject: format!("frame '{}'", frame.name), reason }));
     }
     losses
 }
@@ -205,10 +203,4 @@ fn joint_losses(body: &BodyDescription) -> Vec<Reason> {
         reasons.extend((!list.is_empty()).then_some(Reason::SeveralDofs { field }));
     }
     reasons
-}
-
-/// What keeps a quaternion from saying a rotation: none comes within 8ε.
-fn rotation_loss(placement: &Placement) -> Option<Reason> {
-    let (_, error) = quaternion(&placement.rotation);
-    (error > 8.0 * f64::EPSILON).then_some(Reason::Rotation { error })
 }

@@ -65,7 +65,7 @@ fn solids(link: Element, density: f64) -> Result<Option<Inertial>, At> {
         let place = Transform::new(spatial::Mat3::from_array(rotation), Vec3::from_array(translation));
         let mass = density * volume;
         let [x, y, z] = moments.map(|moment| mass * moment);
-        whole = whole + RigidBodyInertia::from_com(mass, Vec3::zero(), Sym3::from_array([x, 0.0, 0.0, y, 0.0, z])).to_parent(&place);
+        whole += RigidBodyInertia::from_com(mass, Vec3::zero(), Sym3::from_array([x, 0.0, 0.0, y, 0.0, z])).to_parent(&place);
     }
     Ok((whole.mass > 0.0).then(|| {
         let com = whole.com();

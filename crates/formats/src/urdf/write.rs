@@ -1,6 +1,6 @@
 //! Writing URDF: links and joints that [`read`](super::read) gives back.
 
-use super::angles::{angles, distance, rotation};
+use super::angles::angles;
 use super::tree::GRAVITY;
 use crate::export::names::{self, Names, ROOT};
 use crate::export::order::{Item, carried};
@@ -160,8 +160,6 @@ fn losses(robot: &Description) -> Vec<Loss> {
     }
     for frame in robot.frames.iter().filter(|frame| !is_root(frame)) {
         links.take("frame", &frame.name, &mut losses);
-        let reason = rotation_loss(&frame.placement);
-        losses.extend(reason.map(|reason| Loss { subject: format!("frame '{}'", frame.name), reason }));
     }
     losses
 }
@@ -192,10 +190,4 @@ fn joint_losses(joint: &JointDescription) -> Vec<Reason> {
         reasons.extend((!list.is_empty()).then_some(Reason::SeveralDofs { field }));
     }
     reasons
-}
-
-/// What keeps three angles from saying a rotation: no triple comes within 8ε.
-fn rotation_loss(placement: &Placement) -> Option<Reason> {
-    let error = distance(&rotation(angles(&placement.rotation)), &placement.rotation);
-    (error > 8.0 * f64::EPSILON).then_some(Reason::Rotation { error })
 }

@@ -119,7 +119,7 @@ fn every_factor_is_seen_in_the_matrix_that_it_makes() {
     let at = Magnitudes::new(&problem, 0);
     let factors = [2.0, 0.5, 9.0];
     let (delta, root) = (1e-3, (4.25_f64 * 9.0).sqrt());
-    let worst = |errors: [f64; 3]| errors.into_iter().fold(0.0, f64::max);
+    let worst = |errors: [f64; 3]| errors.into_iter().fold(0.0, featherbench_harness::measure::worst);
     let moved = 0.5 + delta;
     let expected = [
         delta / 4.25,
