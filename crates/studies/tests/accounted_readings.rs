@@ -34,7 +34,7 @@ fn merged(replace: impl Fn(&FileLink) -> Option<FileInertial>) -> BodyDescriptio
     for (link, place) in links() {
         if let Some(x) = replace(&link).or(link.inertial) {
             let about_com = Sym3::from_array(x.inertia).rotate(Mat3::from_array(x.rotation));
-            sum = sum + RigidBodyInertia::from_com(x.mass, Vec3::from_array(x.com), about_com).to_parent(&place);
+            sum += RigidBodyInertia::from_com(x.mass, Vec3::from_array(x.com), about_com).to_parent(&place);
         }
     }
     let com = sum.com();

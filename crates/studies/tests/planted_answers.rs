@@ -46,7 +46,7 @@ impl Default {
         let agreement = suite.agreement.clone().unwrap();
         let robot = |entry: &harness::ProblemEntry| {
             let description = match &entry.model {
-                Some(name) => formats::neutral::read(&root.join(format!("datasets/models/{name}.json"))).unwrap(),
+                Some(name) => formats::neutral::read(root.join(format!("datasets/models/{name}.json"))).unwrap(),
                 None => Family::parse(entry.generate.as_ref().unwrap()).unwrap().generate().unwrap(),
             };
             let states = entry.states.unwrap_or(agreement.states);

@@ -84,7 +84,7 @@ impl Prepared for Spoiled<'_> {
             let count = self.of.answers.fetch_add(1, Ordering::Relaxed);
             match self.of.fault {
                 Fault::Noise => self.values.iter_mut().for_each(|x| *x *= 1.0 + 2.0 * f64::EPSILON * count as f64),
-                Fault::SignOfZero => self.values[0] = if count % 3 == 0 { 0.0 } else { -0.0 },
+                Fault::SignOfZero => self.values[0] = if count.is_multiple_of(3) { 0.0 } else { -0.0 },
                 Fault::Once if count > 1 => return Err(Refusal::Failed("the buffer is gone".into())),
                 _ => {}
             }

@@ -115,7 +115,7 @@ impl<'a> Parts<'a> {
         let mut sum = self.rest;
         for (k, part) in self.parts.iter().enumerate() {
             let changed = changes.iter().find(|(at, ..)| *at == k).map(|(_, _, to)| to);
-            sum = sum + placed(part, changed.or(part.given.as_ref()));
+            sum += placed(part, changed.or(part.given.as_ref()));
         }
         let predicted = self.merged(sum);
         let agrees = |field: &Field| {
