@@ -258,7 +258,9 @@ def overheard(path: Path, notes: list[Header]) -> Iterator[None]:
             notes.extend(note("warning", None, message) for message in dict.fromkeys(messages))
     if failure is not None:
         said = errors(notes)
-        raise ValueError(f"{failure} It prints: {said}") if said else failure
+        # What is not offered stays that, whatever was printed on the way.
+        told = failure if isinstance(failure, Unsupported) or not said else ValueError(f"{failure} It prints: {said}")
+        raise told
 
 
 def errors(notes: Sequence[Header]) -> str:
