@@ -226,6 +226,9 @@ def mentioned(path: Path) -> list[Header]:
     return [note("not_compared", None, f"elements of <{kind}>: {count}") for kind, count in counts.items() if count]
 
 
+_COLOURS = re.compile(r"\x1b\[[0-9;]*[A-Za-z]")  # the escape sequences of terminals
+
+
 @contextmanager
 def overheard(path: Path, notes: list[Header]) -> Iterator[None]:
     """Adds what an engine prints meanwhile to the notes as `warning`, one for each line that begins a message; the standard error has it
@@ -250,7 +253,7 @@ def overheard(path: Path, notes: list[Header]) -> Iterator[None]:
             text = words.read().decode(errors="replace")
             sys.stderr.write(text)
             messages: list[str] = []
-            for line in text.replace(str(path), path.name).splitlines():
+            for line in _COLOURS.sub("", text).replace(str(path), path.name).splitlines():
                 if messages and not re.match(r"\S*(warning|error)\b", line, re.IGNORECASE):
                     messages[-1] += " " + line
                 elif line.strip():

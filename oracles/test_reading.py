@@ -8,6 +8,7 @@ description that it told: the description says what the engine computes with.
 
 from __future__ import annotations
 
+import os
 import re
 import sys
 import tempfile
@@ -17,7 +18,7 @@ from pathlib import Path
 import numpy as np
 
 from protocol import Array, Description, Header
-from reading import turned
+from reading import overheard, turned
 from trials import ENGINES, HERE, Oracle, check, expect, random_states, ratio, summary
 
 REPLAY = 1e-13  # unit-free; these robots are shallow, and M's terms are of the size of its diagonal
@@ -433,9 +434,18 @@ def test_refusals(readers: Readers, engine: str) -> None:
     expect(f"{engine} tells no single bodies of a file", oracle.ask(asked), "unsupported")
 
 
+def test_colours(folder: Path) -> None:
+    """What an engine prints in colours is told without the terminal's escape sequences."""
+    notes: list[Header] = []
+    with overheard(folder / "a.urdf", notes):
+        os.write(2, f"\x1b[1;33mWarning\x1b[0m: in {folder}/a.urdf\n".encode())
+    true("printed in colours", [note["text"] for note in notes] == ["Warning: in a.urdf"])
+
+
 def main() -> int:
     """Runs all tests; an answer that should have been ok and is not ends them, which is a failure."""
     with tempfile.TemporaryDirectory() as folder:
+        test_colours(Path(folder))
         readers = Readers(Path(folder))
         common = (test_arm, test_floating_below, test_limitless, test_refusals)
         every = (*common, test_edits, test_bases, test_mjcf, test_three, test_warnings, test_repairs, test_free_armature, test_include)

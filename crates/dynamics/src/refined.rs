@@ -33,13 +33,13 @@
 //! **What is solved.** The equations of motion with the numbers of the [`Model`] as they stand: `f64` parameters are lifted, with first
 //! moments and inertias about the bodies' origins as `Model<f64>::build` rounded them. For the robot as its description says it, build and
 //! pass a `Model<DoubleDouble>`: steps 1, 3 and 4 round its parameters, step 2 does not, and so the result is the description's. States
-//! are exact; a quaternion stands for the rotation of the normalized one, axes and placements for the matrices that they form, whether or
-//! not these are orthonormal in the last place.
+//! are exact; a quaternion stands for the rotation of the normalized one, axes and placements for the rotations that they stand for
+//! ([`model::Description::canonical`]).
 //!
 //! Frames, shapes and units: as in [`Aba`]. Cost: O(n). A call does not allocate.
 
 use crate::error::expect;
-use crate::step::{add_joint, expect_wrenches, parent_link};
+use crate::step::{add_joint, parent_link};
 use crate::{Aba, DimensionError, Error, Rnea};
 use model::{Model, Topology};
 use spatial::{Compensated, Force, Lift, Motion, Real};
@@ -100,7 +100,6 @@ where
         a: &mut [f64],
     ) -> Result<(), Error> {
         self.expect_shapes(&model.topology)?;
-        expect_wrenches(model, wrenches)?;
         self.aba.run(model, q, v, tau, wrenches, a)?;
         lift_into(a, &mut self.a);
         self.correction.fill(0.0);

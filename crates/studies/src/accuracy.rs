@@ -4,6 +4,7 @@
 //! worst of the states. Ours is that of our usual method; the best engine's is the smallest of all others and their methods. An error below
 //! half an ulp, 2⁻⁵³, counts as half an ulp: rounding the exact answer leaves as much.
 
+use crate::agreement::QUANTITIES;
 use crate::row;
 use harness::measure::{ForwardScale, Magnitudes, ratio, scaled_error, worst};
 use harness::truth::TruthModel;
@@ -11,23 +12,6 @@ use harness::{Finished, Problem, Quantity};
 use record::Record;
 use serde_json::json;
 
-/// What is compared with the truth.
-const QUANTITIES: [Quantity; 14] = [
-    Quantity::InverseDynamics,
-    Quantity::InverseDynamicsWrench,
-    Quantity::Bias,
-    Quantity::MassMatrix,
-    Quantity::MassMatrixProbe,
-    Quantity::ForwardDynamics,
-    Quantity::KineticEnergy,
-    Quantity::PotentialEnergy,
-    Quantity::CenterOfMass,
-    Quantity::Momentum,
-    Quantity::BodyPlacement,
-    Quantity::BodyVelocity,
-    Quantity::BodyAcceleration,
-    Quantity::BodyJacobian,
-];
 /// The metric of the rows.
 const METRIC: &str = "over_best";
 /// Half an ulp of one.
@@ -65,5 +49,5 @@ pub(crate) fn over_best(own: &str, problem: &Problem, finished: &[Finished], at:
         row.params = record::canonical_json(&params);
         Some(row.informed(ratio(above, below)))
     };
-    QUANTITIES.into_iter().filter_map(of).collect()
+    QUANTITIES.into_iter().filter(|&quantity| quantity != Quantity::Readback).filter_map(of).collect()
 }
