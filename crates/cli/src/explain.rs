@@ -98,7 +98,7 @@ fn again(info: &RunInfo, row: &Record) -> Result<String, String> {
         }
         // Cells that belong to no robot, or draw one, are known by their study.
         let of_study = row.model.is_empty() || row.study == "repeatability";
-        let robot = if of_study { String::new() } else { format!("{}/", regex::escape(&row.model)) };
+        let robot = if of_study { String::new() } else { format!("{}/", regex_lite::escape(&row.model)) };
         kept.extend(["--only".into(), format!("^{}/{robot}", row.study)]);
     }
     Ok(program.iter().chain(&kept).map(|word| quoted(word)).collect::<Vec<_>>().join(" "))

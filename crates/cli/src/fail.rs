@@ -1,12 +1,11 @@
 //! How the command ends when it does not end well.
 
 use harness::HarnessError;
-use miette::Diagnostic;
 use std::process::ExitCode;
 use thiserror::Error;
 
 /// A failure with its exit code.
-#[derive(Debug, Error, Diagnostic)]
+#[derive(Debug, Error)]
 pub enum Fail {
     /// A gate failed, or engines disagree.
     #[error("{0}")]
@@ -15,12 +14,8 @@ pub enum Fail {
     #[error("{0}")]
     Input(String),
     /// A required engine is missing.
-    #[error("{message}")]
-    Missing {
-        message: String,
-        #[help]
-        advice: String,
-    },
+    #[error("{message}\n  {advice}")]
+    Missing { message: String, advice: String },
 }
 
 impl Fail {

@@ -38,9 +38,8 @@ fn main() -> ExitCode {
     match dispatch(Cli::parse()) {
         Ok(()) => ExitCode::SUCCESS,
         Err(fail) => {
-            let code = fail.code();
-            eprintln!("{:?}", miette::Report::new(fail));
-            code
+            eprintln!("error: {fail}");
+            fail.code()
         }
     }
 }

@@ -1,7 +1,7 @@
 //! `--only`: a filter that lets nothing through is a mistake, and its words are compared with those that there are.
 
 use crate::fail::Fail;
-use regex::Regex;
+use regex_lite::Regex;
 use std::collections::BTreeSet;
 
 /// Names that are shown for each word that is none.

@@ -13,7 +13,7 @@ use crate::shell::quoted;
 use crate::subjects::{self, Subjects};
 use ::record::{ModelInfo, Record, RunInfo, Verdict};
 use harness::{Cell, Context, Gates, HarnessError, OutcomeStore, Study, provenance};
-use regex::Regex;
+use regex_lite::Regex;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::time::{Instant, SystemTime};
