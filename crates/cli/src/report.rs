@@ -73,6 +73,7 @@ pub fn conclude(info: &RunInfo, records: &[Record], page: &Path) -> Result<(), F
     for condition in &broken {
         println!("  gate: {}: {}", condition.what, condition.reason);
     }
+    ::report::summary(info, records).iter().for_each(|line| println!("{line}"));
     println!("report: {}", page.display());
     if broken.is_empty() {
         return Ok(());

@@ -147,7 +147,7 @@ fn error(random: &mut Random) -> f64 {
 
 /// Whether two errors are the same but for rounding: a difference of a thousandth rounds by 4e-13, scales of some dozen terms by less.
 fn same(a: f64, b: f64) -> bool {
-    a == b || (a - b).abs() <= 1e-11 * a.abs().max(b.abs())
+    a == b || (a - b).abs() <= 1e-11 * a.abs().min(b.abs())
 }
 
 proptest! {

@@ -31,6 +31,7 @@ mod reading;
 mod speed;
 mod speed_section;
 mod steps;
+mod summary;
 mod tally;
 mod tradeoff;
 mod truth;
@@ -40,6 +41,8 @@ mod verdict;
 use std::path::{Path, PathBuf};
 
 use record::{Record, RecordError, RunInfo};
+
+pub use crate::summary::summary;
 
 use crate::figures::Figures;
 use crate::overview::Overview;

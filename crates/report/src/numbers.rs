@@ -53,6 +53,11 @@ pub fn larger(a: f64, b: f64) -> f64 {
     if a.is_nan() || b.is_nan() { f64::NAN } else { a.max(b) }
 }
 
+/// The smaller of two numbers; NaN when either is.
+pub fn smaller(a: f64, b: f64) -> f64 {
+    -larger(-a, -b)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

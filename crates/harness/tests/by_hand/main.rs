@@ -7,9 +7,9 @@ mod forward;
 mod magnitudes;
 mod robots;
 
-/// Whether two numbers are the same but for the rounding of a few dozen operations on numbers without cancellation.
+/// Whether two numbers are the same but for the rounding of a few dozen operations on numbers without cancellation; infinity is near nothing.
 fn close(a: f64, b: f64) -> bool {
-    (a - b).abs() <= 1e-13 * a.abs().max(b.abs())
+    (a - b).abs() <= 1e-13 * a.abs().min(b.abs())
 }
 
 /// Asserts that two lists are the same but for rounding, and names the first number that is not.
