@@ -257,14 +257,19 @@ fn built() -> Vec<(String, PathBuf)> {
     text.lines().filter(|line| line.ends_with(".so")).filter_map(library).collect()
 }
 
-/// How many times as much as rounding may leave is known of an engine, by ci/deviations.toml: 5e-13 of MuJoCo's M and of what starts from it;
-/// and computeMinverse works in world axes, where digits go as (distance/size)² (1.2 times on tree-common-16, a hundredth elsewhere).
-fn slack(peer: &str, quantity: Quantity) -> f64 {
-    match quantity {
-        Quantity::MassMatrix | Quantity::MassMatrixSparse | Quantity::Factorization | Quantity::Solve if peer == "mujoco-native" => 50.0,
-        Quantity::MassMatrixInverse if peer.starts_with("pinocchio") => 2.0,
-        _ => 1.0,
-    }
+/// How many times as much as rounding may leave is known of an engine (ci/deviations.toml): twice the largest share of twenty seeds of states,
+/// which is given beside each robot. MuJoCo takes inertias and axes about the robot's centre of mass; computeMinverse works in world axes.
+fn slack(peer: &str, quantity: Quantity, robot: &str) -> f64 {
+    let largest = match quantity {
+        Quantity::MassMatrix | Quantity::MassMatrixSparse | Quantity::Factorization if peer == "mujoco-native" => match robot {
+            "chain-spatial-100" => 16.5,
+            "panda" => 1.51,
+            _ => 6.1,
+        },
+        Quantity::MassMatrixInverse if peer.starts_with("pinocchio") && robot.starts_with("tree-common-16") => 9.03,
+        _ => 0.5,
+    };
+    2.0 * largest
 }
 
 pub fn peers_agree() -> Outcome {
@@ -287,7 +292,7 @@ pub fn peers_agree() -> Outcome {
                 }
                 // MuJoCo alone has no helical joint.
                 let excused = matches!(&share, Err(Refusal::Unsupported(why)) if name == "mujoco-native" && why.contains("helical"));
-                assert!(excused || share.is_ok_and(|share| share <= slack(&name, quantity)), "{line}");
+                assert!(excused || share.is_ok_and(|share| share <= slack(&name, quantity, spec)), "{line}");
             }
         }
     }
