@@ -17,8 +17,12 @@ fn study() -> Timing {
 
 /// The rows of a robot timed beside a double.
 fn rows(double: Double) -> Vec<Record> {
+    rows_of(&study(), double)
+}
+
+fn rows_of(study: &Timing, double: Double) -> Vec<Record> {
     let subjects: [Box<dyn Subject>; 2] = [Box::new(Native::new()), Box::new(double)];
-    whole(&study(), &robot("chain:n=4,layout=spatial"), &gates(""), &subjects)
+    whole(study, &robot4(), &gates(""), &subjects)
 }
 
 fn robot4() -> Problem {
@@ -97,6 +101,24 @@ fn forward_dynamics_is_checked_backwards() {
     assert!(altered(1.0).iter().all(|&(error, verdict)| error < 1e-14 && verdict == Verdict::Pass));
     let wrong = altered(1.0 + 1e-8);
     assert!(wrong.iter().filter(|(_, verdict)| *verdict == Verdict::Fail).count() == 4, "{wrong:?}");
+}
+
+#[test]
+fn factors_are_checked_by_the_matrix_that_they_make() {
+    let wrong = |twist: support::Twist| {
+        let study = Timing { kernels: |_| vec![(Quantity::Factorization, "ltdl")], ..study() };
+        let rows = rows_of(&study, Double::twisting(&robot4(), twist));
+        let errors = of(&rows, "double", "factorization", "worst_error");
+        (errors.len(), errors.iter().filter(|row| row.verdict == Verdict::Fail).count())
+    };
+    let (honest, none) = wrong(|_| ());
+    assert!(honest > 0 && none == 0);
+    let (twisted, failed) = wrong(|answer| {
+        if answer.quantity == Quantity::Factorization {
+            answer.values[0] *= 1.0 + 1e-10;
+        }
+    });
+    assert_eq!((twisted, failed), (honest, honest), "1e-10 of one entry");
 }
 
 #[test]

@@ -7,10 +7,10 @@ use harness::{Problem, Quantity, Refusal, Subject};
 /// The error up to which an answer is an answer to the same question, for a robot of this depth.
 ///
 /// Each entry is measured against the magnitudes of its terms, so rounding leaves 1e-14 and less per joint of the path; a hundred times
-/// that is far from any wrong model or convention. Factors of M are not backward stable entry by entry: they carry the conditioning of M
-/// (κ = 1e10 at a thousand links), and what is checked is that they are factors of the same matrix in the same order.
-pub(super) fn limit(quantity: Quantity, depth: usize) -> f64 {
-    if quantity == Quantity::Factorization { 1e-6 } else { 1e-12 * depth.max(1) as f64 }
+/// that is far from any wrong model or convention. Factors of M carry κ(M) entry by entry (1e10 at a thousand links); they are compared by the
+/// matrix that they make, which does not.
+pub(super) fn limit(depth: usize) -> f64 {
+    1e-12 * depth.max(1) as f64
 }
 
 /// The error of a subject's answer at each state of the problem, against the usual native method's.

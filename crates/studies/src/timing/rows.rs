@@ -6,7 +6,7 @@ use super::statistics::{CONTROL_LEVEL, Estimate, Finding, LEVEL};
 use super::{CHECK, EXPERIMENT, MACHINE, OVERHEAD, REFERENCE, check};
 use crate::{quantile, row};
 use harness::measure::worst;
-use harness::{Cell, Finished, Gates, Outcome, Problem, Quantity, Refusal};
+use harness::{Cell, Finished, Gates, Outcome, Problem, Refusal};
 use model::Random;
 use record::{ESTIMATE, Kind, Record, Relation, Verdict};
 
@@ -110,7 +110,7 @@ impl Check {
             reference: REFERENCE.into(),
             ..row(cell, problem)
         };
-        let limit = Quantity::parse(&cell.quantity).map_or(0.0, |quantity| check::limit(quantity, problem.depth));
+        let limit = check::limit(problem.depth);
         let row = match outcome.answer() {
             Err(refusal) => {
                 let verdict = if matches!(refusal, Refusal::Unsupported(_)) { Verdict::Skip } else { Verdict::Error };
