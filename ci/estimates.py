@@ -1,6 +1,6 @@
-"""By how much the estimates of Drake's and DART's times are off: the clock of oracles/clock.py against loops in C++ over the same libraries.
+"""By how much the estimates of Drake's and DART's times are off: the clock of the oracles against loops in C++ over the same libraries.
 
-    PYTHON ci/estimates.py drake|dart --eigen FOLDER       PYTHON is the engines' environment's, FOLDER holds Eigen/Core
+    PYTHONPATH=oracles PYTHON ci/estimates.py drake|dart --eigen FOLDER       PYTHON is the engines' environment's, FOLDER holds Eigen/Core
 
 Needs g++ and a quiet machine. The C++ loops call what the packages' libraries export, on the very objects that Python holds.
 """
@@ -9,50 +9,51 @@ from __future__ import annotations
 
 import argparse
 import ctypes
-import importlib.util
+import importlib
 import json
 import os
 import subprocess
 import sys
 import tempfile
 from pathlib import Path
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
+
+from featherbench_oracles.clock import Stream
+from featherbench_oracles.protocol import Question
+from featherbench_oracles.robot import JOINT_SIZES, Description
+from featherbench_oracles.testing.draws import random_states
 
 ROOT = Path(__file__).resolve().parent.parent
 ROBOTS = ("ur5", "panda", "anymal_c", "g1")
 QUANTITIES = {"id": "inverse_dynamics", "kinetic_energy": "kinetic_energy"}
 STATES, CALLS, BLOCKS = 22, 60, 301
 
-sys.path[0] = str(ROOT / "oracles")  # the oracle takes it out where its engine's package has the oracle's name
-from clock import Stream  # noqa: E402
-from protocol import JOINT_SIZES, Description, Question  # noqa: E402
-from trials import random_states  # noqa: E402
-
 
 def main() -> None:
-    """Prints a line for each robot and quantity."""
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    """Print a line for each robot and quantity."""
+    parser = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
     parser.add_argument("engine", choices=["drake", "dart"])
     parser.add_argument("--eigen", type=Path, required=True)
     arguments = parser.parse_args()
     os.sched_setaffinity(0, {max(os.sched_getaffinity(0))})
     sys.setdlopenflags(os.RTLD_NOW | os.RTLD_GLOBAL)  # the loops find the engine's symbols in what Python has loaded
-    spec = importlib.util.spec_from_file_location(f"oracle_{arguments.engine}", ROOT / f"oracles/{arguments.engine}.py")
-    module = importlib.util.module_from_spec(spec)
-    sys.modules[spec.name] = module
-    spec.loader.exec_module(module)
-    engine = {"drake": "Drake", "dart": "Dart"}[arguments.engine]
+    module = importlib.import_module(f"featherbench_oracles.{arguments.engine}.oracle")
+    engine = getattr(module, {"drake": "Drake", "dart": "Dart"}[arguments.engine])()
     library = compiled(arguments.engine, arguments.eigen)
     print(f"{'robot':<10} {'quantity':<15} {'C++ ns':>8} {'estimate':>9} {'overhead':>9} {'off by':>7}")
     for robot in ROBOTS:
         for quantity in QUANTITIES:
-            true, estimate, overhead = held_against(getattr(module, engine)(), library, robot, quantity)
-            print(f"{robot:<10} {quantity:<15} {true:8.0f} {estimate:9.0f} {overhead:9.0f} {100 * (estimate / true - 1):+6.1f}%", flush=True)
+            true, estimate, overhead = held_against(engine, library, robot, quantity)
+            print(
+                f"{robot:<10} {quantity:<15} {true:8.0f} {estimate:9.0f} {overhead:9.0f} {100 * (estimate / true - 1):+6.1f}%", flush=True
+            )
 
 
 def compiled(engine: str, eigen: Path) -> ctypes.CDLL:
-    """The loops; Drake's symbols are in a library of their own, DART's in its module."""
+    """Compile the loops; Drake's symbols are in a library of their own, DART's in its module."""
     folder = Path(tempfile.mkdtemp())
     command = ["g++", "-std=c++20", "-O2", "-DNDEBUG", "-fPIC", "-shared", "-isystem", str(eigen)]
     subprocess.run([*command, str(ROOT / f"ci/estimates/{engine}.cc"), "-o", str(folder / "loops.so")], check=True)
@@ -66,19 +67,20 @@ def compiled(engine: str, eigen: Path) -> ctypes.CDLL:
 
 
 def described(name: str) -> Description:
-    """A robot of datasets/models, what it leaves out filled in."""
+    """Read a robot of datasets/models, what it leaves out filled in."""
     data = json.loads((ROOT / f"datasets/models/{name}.json").read_text())
     for joint in (body["joint"] for body in data["bodies"]):
         joint.setdefault("armature", [0.0] * JOINT_SIZES[joint["type"]][1])
     return Description.read(data)
 
 
-def held_against(engine: object, library: ctypes.CDLL, name: str, quantity: str) -> np.ndarray:
-    """Nanoseconds of a call in C++ and by the estimate, and the overhead: medians of alternating blocks."""
+def held_against(engine: Any, library: ctypes.CDLL, name: str, quantity: str) -> NDArray[np.float64]:
+    """Measure nanoseconds of a call in C++ and by the estimate, and the overhead: medians of alternating blocks."""
     description = described(name)
     robot, nothing = engine.prepare(description), engine.prepare(Description("nothing", np.array([0, 0, -9.81]), (), 0, 0))
     drawn = random_states(np.random.default_rng(1), description)
-    asks = [Question(*(drawn[key][k] for key in ("q", "v", "a", "tau", "wrench")), drawn["probe"], 0) for k in range(STATES)]
+    rows = [[drawn[key][k] for key in ("q", "v", "a", "tau", "wrench")] for k in range(STATES)]
+    asks = [Question(q, v, a, tau, wrench, drawn["probe"], 0) for q, v, a, tau, wrench in rows]
     method = engine.quantities[quantity][QUANTITIES[quantity]]
     stream = Stream(method, robot, nothing, asks)
     changes = [robot.change(ask) for ask in asks]
@@ -92,7 +94,9 @@ def held_against(engine: object, library: ctypes.CDLL, name: str, quantity: str)
     numbers = [array.ctypes.data_as(ctypes.c_void_p) for array in (q, v, a, answer)]
 
     def loop(calls: int) -> float:
-        return library.loop(ctypes.c_char(quantity[0].encode()), engine_pointers, STATES, q.shape[1], v.shape[1], *numbers[:3], calls, numbers[3])
+        shape = (STATES, q.shape[1], v.shape[1])
+        spent: float = library.loop(ctypes.c_char(quantity[0].encode()), engine_pointers, *shape, *numbers[:3], calls, numbers[3])
+        return spent
 
     loop(STATES)
     due = np.atleast_1d(stream.call(*stream.states[-1]))

@@ -7,14 +7,14 @@ import sys
 import numpy as np
 
 
-class Unsupported(Exception):
+class Unsupported(Exception):  # noqa: N818 (no error: it is the protocol's answer `unsupported`)
     """A robot, quantity or method that this oracle does not have."""
 
 
 def inverse_dynamics(model, q, v, a, gravity=1.0):
-    """tau = M(q) a + h(q, v) in world axes, armature included; a world that accelerates by -g stands for gravity."""
+    """Compute tau = M(q) a + h(q, v) in world axes, armature included; a world that accelerates by -g stands for gravity."""
     turned, origin, omega, alpha, acc, passed = np.eye(3), *np.zeros((3, 3)), -gravity * np.array(model["gravity"]), []
-    for body, angle, rate, push in zip(model["bodies"], q, v, a):
+    for body, angle, rate, push in zip(model["bodies"], q, v, a, strict=True):
         joint, (xx, xy, xz, yy, yz, zz) = body["joint"], body["inertia"]
         step, (x, y, z) = turned @ joint["placement"]["translation"], joint["axis"]
         cross = np.array([[0, -z, y], [z, 0, -x], [-y, x, 0]])  # exp(angle cross) is the turn about the axis
@@ -26,13 +26,22 @@ def inverse_dynamics(model, q, v, a, gravity=1.0):
         c, inertia = turned @ body["com"], turned @ [[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]] @ turned.T
         force = body["mass"] * (acc + np.cross(alpha, c) + np.cross(omega, np.cross(omega, c)))
         passed.append((axis, origin, origin + c, force, inertia @ alpha + np.cross(omega, inertia @ omega), joint["armature"][0] * push))
-    carried = lambda o, links: sum(moment + np.cross(at - o, force) for _, _, at, force, moment, _ in links)
+
+    def carried(o, links):
+        return sum(moment + np.cross(at - o, force) for _, _, at, force, moment, _ in links)
+
     return [axis @ carried(o, passed[i:]) + rotor for i, (axis, o, *_, rotor) in enumerate(passed)]
 
 
 def mass_matrix(model, q, v, a):
     """Row i of M is tau at rest without gravity for a = e_i."""
     return [inverse_dynamics(model, q, 0 * v, unit, gravity=0.0) for unit in np.eye(len(q))]
+
+
+def readback(body):
+    """List what is held of one body: mass, centre of mass, inertia, and the placement of its joint; 22 numbers."""
+    place = body["joint"]["placement"]
+    return [body["mass"], *body["com"], *body["inertia"], *place["rotation"], *place["translation"]]
 
 
 METHODS = {"id": {"newton_euler": inverse_dynamics}, "mass_matrix": {"newton_euler": mass_matrix}}
@@ -52,8 +61,7 @@ def answer(ask, blocks):
         for i, body in enumerate(ask["model"]["bodies"]):
             if body["joint"]["type"] != "revolute" or body["parent"] != i - 1:
                 raise Unsupported(f"chain has revolute joints without branches only, not {body['joint']['type']} {body['joint']['name']}")
-        place = lambda body: [*body["joint"]["placement"]["rotation"], *body["joint"]["placement"]["translation"]]
-        held = np.reshape([[b["mass"], *b["com"], *b["inertia"], *place(b)] for b in ask["model"]["bodies"]], (-1, 22))
+        held = np.reshape([readback(body) for body in ask["model"]["bodies"]], (-1, 22))
         model = ask["model"]
         return {"nq": len(held), "nv": len(held)}, ("readback", held)
     if ask["op"] == "states":
@@ -67,7 +75,7 @@ def answer(ask, blocks):
     if not 0 <= ask["first"] <= ask["first"] + ask["count"] <= len(states[0]):
         raise ValueError(f"there are no states {ask['first']} to {ask['first'] + ask['count']}")
     chosen = [numbers[ask["first"] : ask["first"] + ask["count"]] for numbers in states]
-    return {}, ("value", [METHODS[ask["quantity"]][ask["method"]](model, *state) for state in zip(*chosen)])
+    return {}, ("value", [METHODS[ask["quantity"]][ask["method"]](model, *state) for state in zip(*chosen, strict=True)])
 
 
 while line := sys.stdin.buffer.readline():

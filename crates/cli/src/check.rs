@@ -3,14 +3,17 @@
 use crate::args::CheckArgs;
 use crate::fail::Fail;
 use crate::guest;
+use crate::package;
+use crate::root::Root;
 use engines::Limits;
 use engines::conformance::{Conformance, Finding, Standing, check_program};
 use std::io::{IsTerminal, Write};
 use std::time::Duration;
 
-/// Tests the program and prints what was found.
-pub fn check(args: &CheckArgs) -> Result<(), Fail> {
+/// Tests the program and prints what was found. In a project the program may import the package of its oracles.
+pub fn check(root: Option<&Root>, args: &CheckArgs) -> Result<(), Fail> {
     guest::find(&args.command)?;
+    let command = root.map_or_else(|| Ok(args.command.clone()), |root| package::reachable(root, &args.command)).map_err(Fail::input)?;
     let limits = Limits { answer: Duration::from_secs(args.answer_within), memory: args.memory << 20 };
     let terminal = std::io::stderr().is_terminal();
     let watch = |what: &str| {
@@ -18,7 +21,7 @@ pub fn check(args: &CheckArgs) -> Result<(), Fail> {
             eprint!("\r\x1b[2K{what} …");
         }
     };
-    let conformance = check_program(&args.command, limits, &watch).map_err(Fail::Input)?;
+    let conformance = check_program(&command, limits, &watch).map_err(Fail::Input)?;
     if terminal {
         eprint!("\r\x1b[2K");
     }

@@ -1,6 +1,8 @@
 //! Engines that a user brings along: `--engine NAME=PROGRAM`.
 
 use crate::fail::Fail;
+use crate::package;
+use crate::root::Root;
 use crate::shell::{quoted, words};
 use engines::{Limits, Oracle};
 use harness::{HarnessError, hash};
@@ -49,9 +51,10 @@ pub fn find(command: &[OsString]) -> Result<PathBuf, Fail> {
 
 impl Guest {
     /// Starts the program, to be known by the name that the user gave it.
-    pub fn start(&self, limits: Limits) -> Result<Oracle, Fail> {
-        let program = self.program()?;
-        let oracle = Oracle::start(self.command.clone(), limits).map_err(|reason| Fail::Missing {
+    pub fn start(&self, root: &Root, limits: Limits) -> Result<Oracle, Fail> {
+        let program = self.program(root)?;
+        let command = package::reachable(root, &self.command).map_err(Fail::input)?;
+        let oracle = Oracle::start(command, limits).map_err(|reason| Fail::Missing {
             message: format!("engine {} does not answer: {reason}", self.name),
             advice: format!("look at `featherbench oracles check {}`", shown(&self.command)),
         })?;
@@ -59,13 +62,20 @@ impl Guest {
     }
 
     /// The content hash of the command: of the program's file, of files that its arguments name (a script is the argument of its
-    /// interpreter), and of the other arguments as they are. What these files load in their turn is not in it.
-    fn program(&self) -> Result<String, Fail> {
+    /// interpreter, and a module of `python -m` is its package), and of the other arguments as they are. What these files load in their turn
+    /// is not in it.
+    fn program(&self, root: &Root) -> Result<String, Fail> {
         let read = |path: &Path| std::fs::read(path).map_err(|source| Fail::from(HarnessError::io(path, source)));
         let mut parts = vec![read(&find(&self.command)?)?];
-        for word in &self.command[1..] {
+        for pair in self.command.windows(2) {
+            let [before, word] = pair else { continue };
             let file = Path::new(word);
             parts.push(if file.is_file() { read(file)? } else { word.as_encoded_bytes().to_vec() });
+            if before == "-m" {
+                for source in package::sources(root, word) {
+                    parts.push(read(&source)?);
+                }
+            }
         }
         Ok(hash::of_parts(&parts.iter().map(Vec::as_slice).collect::<Vec<_>>()))
     }
@@ -105,17 +115,34 @@ mod tests {
     fn a_program_is_its_files_and_its_other_arguments() {
         let folder = tempfile::tempdir().unwrap();
         let (script, copy) = (folder.path().join("a.sh"), folder.path().join("b.sh"));
+        let root = Root::find(None).ok().unwrap();
         for file in [&script, &copy] {
             std::fs::write(file, "exit 1").unwrap();
         }
         let program = |file: &Path, rest: &str| {
             let command = ["sh".into(), file.into(), rest.into()].to_vec();
-            Guest { name: "mine".into(), command }.program().ok().unwrap()
+            Guest { name: "mine".into(), command }.program(&root).ok().unwrap()
         };
         let first = program(&script, "--fast");
         assert_eq!(program(&copy, "--fast"), first, "where it stands does not matter");
         assert_ne!(program(&script, "--slow"), first);
         std::fs::write(&script, "exit 2").unwrap();
         assert_ne!(program(&script, "--fast"), first);
+    }
+
+    /// `python -m package.module` runs sources that no argument names as files.
+    #[test]
+    fn a_module_is_the_sources_of_its_package() {
+        let root = Root::find(None).ok().unwrap();
+        let sources = package::sources(&root, "featherbench_oracles.mujoco".as_ref());
+        for file in ["session.py", "mujoco/oracle.py"] {
+            assert!(sources.contains(&root.oracles().join("featherbench_oracles").join(file)), "{file}");
+        }
+        assert_eq!(package::sources(&root, "no_such_package.mujoco".as_ref()), Vec::<PathBuf>::new());
+        let program = |words: &[&str]| {
+            let command = words.iter().map(OsString::from).collect();
+            Guest { name: "mine".into(), command }.program(&root).ok().unwrap()
+        };
+        assert_ne!(program(&["sh", "-m", "featherbench_oracles.mujoco"]), program(&["sh", "-x", "featherbench_oracles.mujoco"]));
     }
 }

@@ -15,6 +15,7 @@ mod offers;
 mod only;
 mod oracles;
 mod outcome;
+mod package;
 mod patience;
 mod problems;
 mod progress;
@@ -65,7 +66,7 @@ fn dispatch(cli: Cli) -> Result<(), Fail> {
                 oracles::install(&root).and_then(|_| if args.native { native::install(&root) } else { Ok(()) })
             }
             OraclesAction::Status => oracles::status(&root()?),
-            OraclesAction::Check(args) => check::check(&args),
+            OraclesAction::Check(args) => check::check(root().ok().as_ref(), &args),
         },
         Command::Peer(args) => engines::peer::serve(&args.library, args.core).map_err(Fail::input),
     }

@@ -2,6 +2,7 @@
 
 use crate::fail::Fail;
 use crate::native;
+use crate::package;
 use crate::root::Root;
 use engines::{Limits, Oracle};
 use harness::{Refusal, Subject};
@@ -135,16 +136,16 @@ pub fn start_timed(root: &Root, engine: &str, limits: Limits) -> Result<Oracle, 
 
 /// Starts an engine's oracle.
 pub fn start(root: &Root, python: &Path, engine: &str, limits: Limits) -> Result<Oracle, String> {
-    let program = root.oracles().join(format!("{engine}.py"));
-    Oracle::start(vec![python.as_os_str().to_owned(), program.into_os_string()], limits)
+    Oracle::start(package::command(root, python, engine)?, limits)
 }
 
 /// Evaluates reproductions of known deviations in the engines' environment.
 pub fn reproducer(root: &Root, limits: Limits) -> studies::Reproduce {
-    let command = python(root).map(|python| vec![python.into_os_string(), root.oracles().join("reproduce.py").into_os_string()]);
+    let missing = || "the reference engines are not installed; run `featherbench oracles install`".to_owned();
+    let command = python(root).ok_or_else(missing).and_then(|python| package::command(root, &python, "reproduce"));
     Box::new(move |name, seeds| match &command {
-        Some(command) => engines::reproduce(command, limits, name, seeds),
-        None => Err(Refusal::Failed("the reference engines are not installed; run `featherbench oracles install`".into())),
+        Ok(command) => engines::reproduce(command, limits, name, seeds),
+        Err(reason) => Err(Refusal::Failed(reason.clone())),
     })
 }
 

@@ -67,7 +67,7 @@ pub fn open(root: &Root, args: &RunArgs, loaded: &Loaded) -> Result<Subjects, Fa
         }
     }
     for guest in &args.guests {
-        opened.add(Ok(Box::new(guest.start(limits)?)), &guest.name, EngineSource::Live);
+        opened.add(Ok(Box::new(guest.start(root, limits)?)), &guest.name, EngineSource::Live);
     }
     Ok(opened)
 }

@@ -16,9 +16,15 @@ fn ledger() -> Vec<record::Convention> {
 #[test]
 fn each_row_has_its_test_and_each_test_its_row() {
     let rows = ledger();
-    let text: String = ["pinocchio", "mujoco", "drake", "dart"].map(|engine| read(&format!("oracles/conventions/of_{engine}.py"))).concat();
-    let tests: BTreeSet<&str> =
-        text.lines().filter_map(|line| line.strip_prefix("def test_")?.split_once('(')).map(|(name, _)| name).collect();
+    let text: String = ["pinocchio", "mujoco", "drake", "dart"]
+        .map(|engine| read(&format!("oracles/featherbench_oracles/{engine}/conventions.py")))
+        .concat();
+    let tests: BTreeSet<&str> = text
+        .lines()
+        .filter(|line| line.ends_with("-> Claims:"))
+        .filter_map(|line| line.strip_prefix("def ")?.split_once('('))
+        .map(|(name, _)| name)
+        .collect();
     let named: Vec<&str> = rows.iter().map(|row| row.test.as_str()).collect();
     let distinct: BTreeSet<&str> = named.iter().copied().collect();
     assert_eq!(named.len(), distinct.len(), "two rows name one test");
@@ -38,7 +44,7 @@ fn each_named_function_exists() {
         assert!(!named.is_empty() || row.conversion.starts_with('–'), "{}: neither a function nor '–'", row.test);
         for word in named {
             let (file, function) = word.split_once(": ").unwrap_or_else(|| panic!("{word} is not `file: function`"));
-            let text = read(&format!("oracles/{file}"));
+            let text = read(&format!("oracles/featherbench_oracles/{file}"));
             assert!(text.contains(&format!("def {function}(")), "{}: {file} has no function {function}", row.test);
             found += 1;
         }

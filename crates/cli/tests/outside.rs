@@ -15,6 +15,7 @@ mod written;
 
 use engines::{Limits, Oracle};
 use harness::{FileBase, FileFormat, RobotFile, Subject};
+use std::ffi::OsString;
 use std::path::Path;
 use std::process::{Command, ExitCode};
 use studies::reading::{Cause, Comparison, Difference, Field};
@@ -125,40 +126,64 @@ fn with_engines(test: fn(&Path) -> Outcome) -> Outcome {
     installed_python().map_or_else(|skipped| skipped, |python| test(&python))
 }
 
-fn oracles_by_themselves() -> Outcome {
-    with_engines(|python| {
-        let run = |test: &str| checked(Command::new(python).arg(project().join("oracles").join(test)));
-        match run("test_oracles.py") {
-            Outcome::Passed => run("test_reading.py"),
-            other => other,
-        }
-    })
+/// The command of a module of the oracles' package.
+fn oracle_command(python: &Path, module: &str) -> Vec<OsString> {
+    let mut place = OsString::from("PYTHONPATH=");
+    place.push(project().join("oracles"));
+    vec!["env".into(), place, python.into(), "-P".into(), "-m".into(), format!("featherbench_oracles.{module}").into()]
 }
 
-/// Every test of a convention passes, and fails where it claims the alternative.
-fn conventions() -> Outcome {
+/// Runs tests of the oracles by pytest.
+fn pytest(arguments: &[&str]) -> Outcome {
     let python = match installed_python() {
         Ok(python) => python,
         Err(skipped) => return skipped,
     };
-    let tests = project().join("oracles/test_conventions.py");
-    match checked(Command::new(&python).arg(&tests)) {
-        Outcome::Passed => checked(Command::new(&python).arg(&tests).arg("--otherwise")),
-        other => other,
+    let there = Command::new(&python).args(["-c", "import pytest"]).output().unwrap().status.success();
+    if !there {
+        return Outcome::Skipped("pytest is not installed (`ci/python-tools`)".into());
+    }
+    checked(Command::new(&python).current_dir(project().join("oracles")).args(["-m", "pytest", "-q"]).args(arguments))
+}
+
+fn oracles_by_themselves() -> Outcome {
+    pytest(&["--ignore", "tests/test_conventions.py"])
+}
+
+/// Every claim about a convention holds, and its alternative does not.
+fn conventions() -> Outcome {
+    pytest(&["tests/test_conventions.py"])
+}
+
+/// What `featherbench oracles check` says about a program, which may import packages from these folders.
+fn conformance(program: &[OsString], packages: Option<&Path>) -> Ended {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_featherbench"));
+    command.current_dir(project()).args(["oracles", "check"]).args(program);
+    if let Some(packages) = packages {
+        command.env("PYTHONPATH", packages);
+    }
+    Ended::new(command.output().unwrap())
+}
+
+/// One of our own oracles as a user starts it: `chain` by its file, which lies in `folder`, the others by their modules.
+fn by_hand(python: &Path, folder: &Path, name: &str) -> Vec<OsString> {
+    match name {
+        "chain" => vec![python.into(), folder.join("chain.py").into()],
+        _ => vec![python.into(), "-P".into(), "-m".into(), format!("featherbench_oracles.{name}").into()],
     }
 }
 
-/// What `featherbench oracles check` says about a file of oracles.
-fn conformance(python: &Path, program: &Path) -> Ended {
-    Ended::new(
-        Command::new(env!("CARGO_BIN_EXE_featherbench"))
-            .current_dir(project())
-            .args(["oracles", "check"])
-            .arg(python)
-            .arg(program)
-            .output()
-            .unwrap(),
-    )
+/// Copies a folder's Python files, and those of the folders within.
+fn copy_python(from: &Path, to: &Path) {
+    std::fs::create_dir_all(to).unwrap();
+    for path in std::fs::read_dir(from).unwrap().map(|entry| entry.unwrap().path()) {
+        let copy = to.join(path.file_name().unwrap());
+        if path.is_dir() {
+            copy_python(&path, &copy);
+        } else if path.extension().is_some_and(|ending| ending == "py") {
+            std::fs::copy(&path, &copy).unwrap();
+        }
+    }
 }
 
 fn own_oracles() -> Outcome {
@@ -167,7 +192,7 @@ fn own_oracles() -> Outcome {
         Err(skipped) => return skipped,
     };
     for (name, code) in [("chain", 0), ("mujoco", 0), ("drake", 0), ("pinocchio", 1)] {
-        let ended = conformance(&python, &project().join(format!("oracles/{name}.py")));
+        let ended = conformance(&by_hand(&python, &project().join("oracles"), name), None);
         ended.expect(
             code,
             if code == 0 {
@@ -190,31 +215,46 @@ fn forgetful_oracles() -> Outcome {
         ("chain", " + rotor for", " for", "armature is left out"),
         ("chain", "-gravity * np.array", "gravity * np.array", "gravity has the wrong sign"),
         ("chain", ", (xx, xy, xz, yy, yz, zz) =", ", (xx, yy, zz, xy, xz, yz) =", "inertias are read as xx, yy, zz, xy, xz, yz"),
-        ("mujoco", "blocks.append((linear, r))", "r = np.eye(3)", "linear velocity is taken in world axes: T = diag(R, 1)"),
-        ("mujoco", "bias[linear] = r @", "bias[linear] = 0 * r @", "the term b is missing"),
-        ("mujoco", "child.mass, child.ipos = body.mass, body.com", "child.mass, child.ipos = body.mass, 0 * body.com", "com of body"),
-        ("drake", "2 * pi * joint.pitch", "joint.pitch", "pitch of a helical joint is taken per revolution"),
-        ("drake", "blocks.append((joint.v, rotation(q[joint.q])))", "pass", "spherical joint's velocity is taken in joint-frame axes"),
-        ("pinocchio", "blocks.append((joint.v, t))", "bias[joint.v] = 0", "planar joint's linear velocity is taken in body axes"),
+        ("mujoco/coordinates", "blocks.append((linear, r))", "r = np.eye(3)", "linear velocity is taken in world axes: T = diag(R, 1)"),
+        ("mujoco/coordinates", "bias[linear] = r @", "bias[linear] = 0 * r @", "the term b is missing"),
         (
-            "pinocchio",
+            "mujoco/building",
+            "child.mass, child.ipos = body.mass, body.com",
+            "child.mass, child.ipos = body.mass, 0 * body.com",
+            "com of body",
+        ),
+        ("drake/building", "2 * pi * joint.pitch", "joint.pitch", "pitch of a helical joint is taken per revolution"),
+        (
+            "drake/coordinates",
+            "blocks.append((joint.v, rotation(q[joint.q])))",
+            "pass",
+            "spherical joint's velocity is taken in joint-frame axes",
+        ),
+        (
+            "pinocchio/coordinates",
+            "blocks.append((joint.v, t))",
+            "bias[joint.v] = 0",
+            "planar joint's linear velocity is taken in body axes",
+        ),
+        (
+            "pinocchio/coordinates",
             "np.concatenate([motion.angular, motion.linear])",
             "np.concatenate([motion.linear, motion.angular])",
             "6-vectors are sent as [linear; angular]",
         ),
     ];
-    let folder = tempfile::tempdir().unwrap();
-    for file in std::fs::read_dir(project().join("oracles")).unwrap().map(|file| file.unwrap().path()) {
-        if file.extension().is_some_and(|ending| ending == "py") {
-            std::fs::copy(&file, folder.path().join(file.file_name().unwrap())).unwrap();
-        }
-    }
-    for (name, right, wrong, named) in cases {
-        let text = std::fs::read_to_string(project().join(format!("oracles/{name}.py"))).unwrap();
-        assert!(text.contains(right), "{name}.py has no '{right}' any more");
-        let path = folder.path().join(format!("{name}.py"));
+    let copy = tempfile::tempdir().unwrap();
+    copy_python(&project().join("oracles/featherbench_oracles"), &copy.path().join("featherbench_oracles"));
+    std::fs::copy(project().join("oracles/chain.py"), copy.path().join("chain.py")).unwrap();
+    for (file, right, wrong, named) in cases {
+        let (name, path) = match file.split_once('/') {
+            None => (file, copy.path().join(format!("{file}.py"))),
+            Some((engine, _)) => (engine, copy.path().join(format!("featherbench_oracles/{file}.py"))),
+        };
+        let text = std::fs::read_to_string(&path).unwrap();
+        assert!(text.contains(right), "{file}.py has no '{right}' any more");
         std::fs::write(&path, text.replace(right, wrong)).unwrap();
-        conformance(&python, &path).expect(1, &[named]);
+        conformance(&by_hand(&python, copy.path(), name), Some(copy.path())).expect(1, &[named]);
         std::fs::write(&path, text).unwrap();
     }
     Outcome::Passed
@@ -286,8 +326,7 @@ fn one_file_is_another() -> Outcome {
     ]
     .map(|(name, text, field, cause)| (write(&format!("{name}.urdf"), text), field, cause));
     for engine in ["pinocchio", "mujoco", "drake"] {
-        let program = project().join(format!("oracles/{engine}.py"));
-        let oracle = Oracle::start(vec![python.clone().into(), program.into()], Limits::default()).unwrap();
+        let oracle = Oracle::start(oracle_command(&python, engine), Limits::default()).unwrap();
         let compared = |file: &RobotFile| {
             let reading = oracle.read(file).unwrap();
             Comparison::of(&ours, &reading.description, &[], &reading.notes).differences().cloned().collect::<Vec<Difference>>()

@@ -1,4 +1,4 @@
-//! Reproductions of known deviations: programs of `oracles/reproductions`, each asked in a process of its own.
+//! Reproductions of known deviations: modules of `oracles/featherbench_oracles/ENGINE/reproductions`, each asked in a process of its own.
 
 use crate::oracle::{Limits, checked, shaped};
 use crate::process::Process;
@@ -7,7 +7,7 @@ use harness::frame::Frame;
 use serde_json::json;
 use std::ffi::OsString;
 
-/// Asks `command` (that of `oracles/reproduce.py`) for a reproduction's values at the seeds 0..`seeds`.
+/// Asks `command` (`python -m featherbench_oracles.reproduce`) for a reproduction's values at the seeds 0..`seeds`.
 ///
 /// # Errors
 /// [`Refusal::Failed`] when the process or the reproduction fails, or another number of values comes.

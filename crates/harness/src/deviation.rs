@@ -54,7 +54,7 @@ pub struct NotOffered {
     pub reason: String,
 }
 
-/// A program that shows a deviation by itself: `oracles/reproductions/NAME.py`.
+/// A program that shows a deviation by itself: `deviation` of the module `featherbench_oracles.ENGINE.reproductions.NAME`.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Reproduction {

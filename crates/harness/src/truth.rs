@@ -1,8 +1,8 @@
 //! Truth at hand: the same questions answered in double-double arithmetic from the description's own numbers, and the structured floor.
 //!
 //! The kernels are ours, the arithmetic carries 32 digits: what is left of an error in them is rounding at 1e-32 times the conditioning, far
-//! below what f64 can show. That the kernels themselves are right is for the crate `reference` and `oracles/truth.py` to say, which share no
-//! text with them and agree with them where it was recorded.
+//! below what f64 can show. That the kernels themselves are right is for the crate `reference` and `oracles/featherbench_oracles/truth.py` to
+//! say, which share no text with them and agree with them where it was recorded.
 
 use crate::{Problem, Quantity, layout};
 use dynamics::{Aba, Bias, CenterOfMass, Crba, Energy, Jacobian, Kinematics, Momentum, Rnea, TreeSparse};

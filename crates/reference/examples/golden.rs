@@ -14,9 +14,9 @@ use serde_json::{Value, json};
 use std::error::Error;
 use std::io::Write;
 use std::path::{Path, PathBuf};
-use std::process::{Command, Stdio};
+use std::process::Stdio;
 use support::golden::{Answers, COLUMNS, DIGITS, SEED, folder, hash_of_doubles, hash_of_python, hash_of_rust, hash_of_state};
-use support::{CASES, Case, State, distance, oracle, project};
+use support::{CASES, Case, State, distance, oracle};
 
 /// Digits that the witnesses exchange.
 const EXCHANGED: usize = 130;
@@ -90,7 +90,7 @@ fn write(case: &Case, answers: &Answers) -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-/// What `truth.py --decimals` is asked.
+/// What `python -m featherbench_oracles.truth --decimals` is asked.
 fn question(case: &Case, state: &State) -> Result<String, Box<dyn Error>> {
     let model = formats::neutral::to_line(&case.describe())?;
     let State { q, v, a, tau } = state;
@@ -98,8 +98,7 @@ fn question(case: &Case, state: &State) -> Result<String, Box<dyn Error>> {
 }
 
 fn ask(python: &Path, question: &str) -> Result<Value, Box<dyn Error>> {
-    let program = project().join("oracles/truth.py");
-    let mut child = Command::new(python).arg(program).arg("--decimals").stdin(Stdio::piped()).stdout(Stdio::piped()).spawn()?;
+    let mut child = oracle::module(python, "truth").arg("--decimals").stdin(Stdio::piped()).stdout(Stdio::piped()).spawn()?;
     writeln!(child.stdin.take().ok_or("no standard input")?, "{question}")?;
     let output = child.wait_with_output()?;
     Ok(serde_json::from_slice(&output.stdout)?)

@@ -28,7 +28,7 @@ pub fn section(records: &[Record]) -> Markup {
             section #known {
                 h2 { "Known deviations, reproduced" }
                 p.lead {
-                    "Each by a program of a few lines in the engine's own interface, oracles/reproductions, over seeded draws. A deviation that has gone, or left its "
+                    "Each by a program of a few lines in the engine's own interface, oracles/featherbench_oracles/ENGINE/reproductions, over seeded draws. A deviation that has gone, or left its "
                     "range, fails the gate."
                 }
                 div.scroll {

@@ -19,8 +19,9 @@ struct Oracle {
 
 impl Oracle {
     fn start(python: &Path, engine: &str) -> Self {
-        let mut command = Command::new(python);
-        command.arg(project().join(format!("oracles/{engine}.py"))).stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::null());
+        let words = crate::oracle_command(python, engine);
+        let mut command = Command::new(&words[0]);
+        command.args(&words[1..]).stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::null());
         let mut process = command.spawn().unwrap();
         let output = BufReader::new(process.stdout.take().unwrap());
         Self { process, output }

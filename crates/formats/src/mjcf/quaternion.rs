@@ -3,7 +3,7 @@
 use model::Placement;
 
 /// The rotation of a quaternion (w, x, y, z) of any length, row-major: the formula, operation by operation, by which the MuJoCo oracle turns
-/// what MuJoCo read into numbers of a description (`turned` in `oracles/reading.py`).
+/// what MuJoCo read into numbers of a description (`turned` in `oracles/featherbench_oracles/reading.py`).
 fn rotation([w, x, y, z]: [f64; 4]) -> [f64; 9] {
     let (ww, xx, yy, zz) = (w * w, x * x, y * y, z * z);
     let n = ((ww + xx) + yy) + zz;

@@ -92,7 +92,7 @@ pub fn hash_of_rust() -> String {
 
 /// The hash of the Python witness.
 pub fn hash_of_python() -> String {
-    let root = project().join("oracles");
+    let root = project().join("oracles/featherbench_oracles");
     hash_of_files(&root, &[root.join("truth.py")])
 }
 

@@ -14,6 +14,13 @@ pub fn python(module: &str) -> Option<PathBuf> {
     import.is_ok_and(|status| status.success()).then_some(python)
 }
 
+/// A module of the oracles' package, to be run by this interpreter.
+pub fn module(python: &std::path::Path, name: &str) -> Command {
+    let mut command = Command::new(python);
+    command.args(["-P", "-m", &format!("featherbench_oracles.{name}")]).env("PYTHONPATH", project().join("oracles"));
+    command
+}
+
 /// A running oracle.
 pub struct Oracle {
     child: Child,
@@ -23,9 +30,7 @@ pub struct Oracle {
 
 impl Oracle {
     pub fn start(python: &std::path::Path, engine: &str) -> Self {
-        let program = project().join(format!("oracles/{engine}.py"));
-        let mut child =
-            Command::new(python).arg(program).stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::null()).spawn().unwrap();
+        let mut child = module(python, engine).stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::null()).spawn().unwrap();
         let (requests, answers) = (child.stdin.take().unwrap(), BufReader::new(child.stdout.take().unwrap()));
         Self { child, requests, answers }
     }

@@ -16,7 +16,7 @@ use std::f64::consts::PI;
 pub(super) const TESTED: f64 = 4.0 * ROUNDING;
 /// The fields that a hypothesis about links predicts.
 pub(super) const OF_MASS: [Field; 3] = [Field::Mass, Field::Com, Field::Inertia];
-/// MuJoCo's bounds of mass and inertia, where its compiler refuses a file without (`BOUND` in `oracles/mujoco_reading.py`).
+/// MuJoCo's bounds of mass and inertia, where its compiler refuses a file without (`BOUND` in `oracles/featherbench_oracles/mujoco/reading.py`).
 const BOUND: f64 = 1e-6;
 /// Factors that a wrong unit leaves: lengths or masses by a thousand, areas by its square.
 pub(super) const UNITS: [f64; 4] = [1e3, 1e-3, 1e6, 1e-6];

@@ -1,0 +1,60 @@
+"""Arrays of doubles, and the small matrices that several modules need."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+
+
+def symmetric(six: Array) -> Array:
+    """Unpack a symmetric matrix.
+
+    Parameters
+    ----------
+    six : ndarray, shape (6,)
+        The entries xx, xy, xz, yy, yz, zz.
+
+    Returns
+    -------
+    ndarray, shape (3, 3)
+        The matrix, in the unit of its entries.
+    """
+    xx, xy, xz, yy, yz, zz = six
+    return np.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]])
+
+
+def rotation(quaternion: Array) -> Array:
+    """Turn a quaternion into a rotation matrix: I + 2 (w [u]x + [u]x^2) / |quaternion|^2.
+
+    Parameters
+    ----------
+    quaternion : ndarray, shape (4,)
+        The numbers (x, y, z, w), of any length but 0.
+
+    Returns
+    -------
+    ndarray, shape (3, 3)
+        The rotation, without unit.
+    """
+    u, w = skew(quaternion[:3]), quaternion[3]
+    matrix: Array = np.eye(3) + (2 / (quaternion @ quaternion)) * (w * u + u @ u)
+    return matrix
+
+
+def skew(u: Array) -> Array:
+    """Make the matrix of the cross product u x.
+
+    Parameters
+    ----------
+    u : ndarray, shape (3,)
+        A vector.
+
+    Returns
+    -------
+    ndarray, shape (3, 3)
+        The antisymmetric matrix K with K x = u x x, in the unit of `u`.
+    """
+    x, y, z = u
+    return np.array([[0, -z, y], [z, 0, -x], [-y, x, 0]])

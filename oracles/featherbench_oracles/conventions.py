@@ -1,0 +1,103 @@
+"""Conventions: how an engine is asked about one, past its oracle, with one body and numbers in which nothing is symmetric.
+
+Each row of conventions.toml has a function of that name in `featherbench_oracles.ENGINE.conventions`. It yields claims: what the engine
+answers, what that is by the convention, and what it would be otherwise.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from math import cos, sin
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from featherbench_oracles.algebra import Array, skew
+
+CLOSE, APART = 1e-12, 1e-2  # rounding of numbers of size one; far below what any convention of these changes
+
+
+@dataclass(frozen=True)
+class Claim:
+    """Measured numbers are those of the convention, and not those of any other.
+
+    Attributes
+    ----------
+    measured, convention : ndarray
+        What the engine answers and what that is by the convention, of one shape and unit.
+    otherwise : tuple of ndarray
+        What it would be by each alternative, of a shape that broadcasts to that one.
+    """
+
+    measured: Array
+    convention: Array
+    otherwise: tuple[Array, ...]
+
+    def swapped(self) -> Claim:
+        """Claim the first alternative in place of the convention."""
+        return Claim(self.measured, np.broadcast_to(self.otherwise[0], self.measured.shape), (self.convention,))
+
+    def refutation(self) -> str | None:
+        """Tell what is wrong with the claim.
+
+        Returns
+        -------
+        str or None
+            A sentence where the convention does not hold, or could not be told from an alternative; None where all is well.
+        """
+        if self.measured.shape != self.convention.shape:
+            return f"shape {self.measured.shape}, not {self.convention.shape}"
+        if not np.abs(self.measured - self.convention).max() <= CLOSE:
+            return f"measured {self.measured.tolist()}, by the convention {self.convention.tolist()}"
+        for other in self.otherwise:
+            if not np.abs(self.measured - other).max() >= APART:
+                return f"the alternative {other.tolist()} fits as well"
+        return None
+
+
+Claims = Iterator[Claim]
+Convention = Callable[[], Claims]
+
+
+def claim(measured: ArrayLike, convention: ArrayLike, *otherwise: ArrayLike) -> Claim:
+    """Claim that measured numbers are those of a convention.
+
+    Parameters
+    ----------
+    measured, convention : array_like
+        What the engine answers and what that is by the convention, of one shape and unit.
+    *otherwise : array_like
+        What it would be by each alternative, of which there is at least one.
+
+    Returns
+    -------
+    Claim
+        With copies of the numbers: engines hand out memory that they write again.
+    """
+    if not otherwise:
+        raise ValueError("a convention without an alternative says nothing")
+    return Claim(np.array(measured, float), np.array(convention, float), tuple(np.array(other, float) for other in otherwise))
+
+
+def about(axis: Array, angle: float) -> Array:
+    """Make the rotation of shape (3, 3) about a unit vector of shape (3,) by an angle in rad."""
+    return np.eye(3) + sin(angle) * skew(axis) + (1 - cos(angle)) * skew(axis) @ skew(axis)
+
+
+def turned(xyzw: Array) -> Array:
+    """Make the rotation of shape (3, 3) of a unit quaternion (x, y, z, w) by its angle and axis."""
+    return about(xyzw[:3] / np.linalg.norm(xyzw[:3]), 2 * np.arctan2(np.linalg.norm(xyzw[:3]), xyzw[3]))
+
+
+P, V, W = np.array([0.3, -0.5, 0.7]), np.array([0.4, -0.9, 0.2]), np.array([1.1, 0.6, -0.8])
+A, ALPHA = np.array([-0.7, 0.3, 0.5]), np.array([0.2, -0.4, 0.9])
+XYZW = np.array([0.1, -0.5, 0.7, 0.5])
+MASS, COM, GRAVITY = 2.0, np.array([0.1, -0.2, 0.15]), np.array([1.3, -2.1, -9.2])
+MOMENTS = np.array([[0.31, 0.02, -0.03], [0.02, 0.27, 0.04], [-0.03, 0.04, 0.22]])
+AXIS = np.array([2.0, -1.0, 2.0]) / 3
+X, Y, Z = np.eye(3)
+WXYZ = np.roll(XYZW, 1)
+R = turned(XYZW)
+WRONG_R = turned(np.roll(XYZW, -1))  # the four numbers taken for (w, x, y, z)
+ABOUT_ORIGIN = MOMENTS - MASS * skew(COM) @ skew(COM)

@@ -1,0 +1,105 @@
+"""DART's coordinates.
+
+::
+
+    joint      q_e                     T                 b
+    free       log R, p                [[0, R], [R, 0]]  (0, R (ω × v)): [angular; linear] in the *parent body's* axes
+    spherical  log R                   identity          0: angular velocity in body axes
+    euler_zyx  z, -y, x                diag(1, -1, 1)    0: DART's order is x, y, z (Python cannot set another); its axes are turned by AXES
+    all other  q                       identity          0
+
+Of a free joint R in T and b is from body to parent body, in log R to the joint's frame. The axes are those of DART's body: of a robot as
+read they need not be those of the description's, so DART itself is asked.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from math import atan2
+
+import numpy as np
+from dartpy import dynamics
+
+from featherbench_oracles.algebra import Array, rotation
+from featherbench_oracles.change import Change
+from featherbench_oracles.robot import Description, Joint
+
+AXES = np.array([[0.0, 0.0, 1.0], [0.0, -1.0, 0.0], [1.0, 0.0, 0.0]])  # takes DART's x, y, z to our z, -y, x
+MIRROR = np.diag([1.0, -1.0, 1.0])
+
+
+def to_engine_q(robot: Description, q: Array) -> Array:
+    """Bring coordinates to DART.
+
+    Parameters
+    ----------
+    robot : Description
+        The robot.
+    q : ndarray, shape (nq,)
+        Neutral coordinates, m, rad or quaternions.
+
+    Returns
+    -------
+    ndarray, shape (nv,)
+        q_e of the table, m, rad or rotation vectors.
+    """
+    return np.concatenate([_joint_q(body.joint, q[body.joint.q]) for body in robot.bodies])
+
+
+def _joint_q(joint: Joint, q: Array) -> Array:
+    if joint.type == "spherical":
+        return log(q)
+    if joint.type == "free":
+        return np.append(log(q[3:]), q[:3])
+    if joint.type == "euler_zyx":
+        return MIRROR @ q
+    return q
+
+
+def log(quaternion: Array) -> Array:
+    """Find the rotation vector of a quaternion: no arccos, which loses half of the digits near 0.
+
+    Parameters
+    ----------
+    quaternion : ndarray, shape (4,)
+        (x, y, z, w).
+
+    Returns
+    -------
+    ndarray, shape (3,)
+        Of length at most pi, rad.
+    """
+    u, w = (quaternion[:3], quaternion[3]) if quaternion[3] >= 0 else (-quaternion[:3], -quaternion[3])
+    sine = np.linalg.norm(u)
+    return 2 * atan2(sine, w) / sine * u if sine > 0 else np.zeros(3)
+
+
+def change_of_velocities(robot: Description, made: Sequence[dynamics.Joint], q: Array, v: Array) -> Change:
+    """Find T and b of the table.
+
+    Parameters
+    ----------
+    robot : Description
+        The robot.
+    made : Sequence[dynamics.Joint]
+        DART's joints of the robot, whose positions are set.
+    q : ndarray, shape (nq,)
+        Neutral coordinates, m, rad or quaternions.
+    v : ndarray, shape (nv,)
+        Neutral velocities, m/s or rad/s.
+
+    Returns
+    -------
+    Change
+        The change at that state.
+    """
+    blocks, bias = [], np.zeros(robot.nv)
+    for joint, mine in zip((body.joint for body in robot.bodies), made, strict=True):
+        if joint.type == "euler_zyx":
+            blocks.append((joint.v, MIRROR))
+        if joint.type == "free":
+            r, zero = mine.getTransformFromParentBodyNode().rotation() @ rotation(q[joint.q][3:]), np.zeros((3, 3))
+            linear, angular = v[joint.v][:3], v[joint.v][3:]
+            blocks.append((joint.v, np.block([[zero, r], [r, zero]])))
+            bias[joint.v] = np.append(np.zeros(3), r @ np.cross(angular, linear))
+    return Change(tuple(blocks), bias)

@@ -1,0 +1,391 @@
+"""DART as an oracle."""
+
+from __future__ import annotations
+
+import importlib.metadata
+from pathlib import Path
+
+import numpy as np
+from dartpy import dynamics
+
+from featherbench_oracles.algebra import Array
+from featherbench_oracles.change import Change
+from featherbench_oracles.clock import Calls
+from featherbench_oracles.dart import reading
+from featherbench_oracles.dart.building import build
+from featherbench_oracles.dart.coordinates import AXES, change_of_velocities, to_engine_q
+from featherbench_oracles.protocol import Quantities, Question, Reading, mass_matrix_probe, readback_row
+from featherbench_oracles.robot import Description
+
+
+class DartRobot:
+    """A robot in DART. Every method that takes a question answers one quantity at its state.
+
+    Parameters
+    ----------
+    robot : Description
+        The robot's coordinates.
+    skeleton : dynamics.Skeleton
+        The robot.
+    joints : list of dynamics.Joint
+        The joint of each body, of a cylindrical one the first.
+    bodies : list of dynamics.BodyNode
+        The bodies that they move.
+    """
+
+    def __init__(
+        self, robot: Description, skeleton: dynamics.Skeleton, joints: list[dynamics.Joint], bodies: list[dynamics.BodyNode]
+    ) -> None:
+        self.robot, self.skeleton, self.joints, self.bodies = robot, skeleton, joints, bodies
+        for mine, joint in zip(joints, (body.joint for body in robot.bodies), strict=True):
+            if mine.getIndexInSkeleton(0) != joint.v.start:
+                raise RuntimeError(f"DART put joint {joint.name} elsewhere")
+
+    def readback(self) -> list[Array]:
+        """Tell what DART holds; it keeps the inertia about the centre of mass.
+
+        Returns
+        -------
+        list of ndarray, shape (22,)
+            Of each body a row of `readback_row`.
+        """
+        rows = []
+        for node, joint, mine in zip(self.bodies, self.joints, self.robot.bodies, strict=True):
+            held, placement = node.getInertia(), joint.getTransformFromParentBodyNode()
+            turned = placement.rotation() @ AXES.T if mine.joint.type == "euler_zyx" else placement.rotation()
+            rows.append(readback_row(held.getMass(), held.getLocalCOM(), held.getMoment(), turned, placement.translation()))
+        return rows
+
+    # ---- coordinates
+
+    def positions(self, q: Array) -> Array:
+        """Bring coordinates to DART.
+
+        Parameters
+        ----------
+        q : ndarray, shape (nq,)
+            Neutral coordinates, m, rad or quaternions.
+
+        Returns
+        -------
+        ndarray, shape (nv,)
+            q_e, m, rad or rotation vectors.
+        """
+        return to_engine_q(self.robot, q)
+
+    def change(self, ask: Question) -> Change:
+        """Find T and b at a state.
+
+        Parameters
+        ----------
+        ask : Question
+            The state.
+
+        Returns
+        -------
+        Change
+            The change there.
+        """
+        return change_of_velocities(self.robot, self.joints, ask.q, ask.v)
+
+    def _update(self, ask: Question) -> Change:
+        """Set q and v."""
+        change = self.change(ask)
+        self._set(self.positions(ask.q), change.to_engine_v(ask.v))
+        return change
+
+    def _set(self, q: Array, v: Array) -> None:
+        """Set q_e and v_e; DART computes again what depends on a number that changes, and that only."""
+        self.skeleton.setPositions(q)
+        self.skeleton.setVelocities(v)
+
+    # ---- calls that can be timed, in DART's coordinates
+
+    def inverse_dynamics(self, q: Array, v: Array, a: Array) -> Array:
+        """Compute tau_e by computeInverseDynamics; this can be timed.
+
+        Parameters
+        ----------
+        q : ndarray, shape (nv,)
+            q_e.
+        v : ndarray, shape (nv,)
+            v_e, m/s or rad/s.
+        a : ndarray, shape (nv,)
+            a_e, m/s² or rad/s².
+
+        Returns
+        -------
+        ndarray, shape (nv,)
+            tau_e, N or N m.
+        """
+        self._set(q, v)
+        self.skeleton.setAccelerations(a)
+        self.skeleton.computeInverseDynamics()
+        return self.skeleton.getForces()
+
+    def mass_matrix(self, q: Array) -> Array:
+        """Compute M_e, which DART finds column by column; this can be timed.
+
+        Parameters
+        ----------
+        q : ndarray, shape (nv,)
+            q_e.
+
+        Returns
+        -------
+        ndarray, shape (nv, nv)
+            M_e, kg, kg m or kg m².
+        """
+        self.skeleton.setPositions(q)
+        return self.skeleton.getMassMatrix()
+
+    def aba(self, q: Array, v: Array, tau: Array) -> Array:
+        """Compute a_e by the articulated body algorithm; this can be timed.
+
+        Parameters
+        ----------
+        q : ndarray, shape (nv,)
+            q_e.
+        v : ndarray, shape (nv,)
+            v_e, m/s or rad/s.
+        tau : ndarray, shape (nv,)
+            tau_e, N or N m.
+
+        Returns
+        -------
+        ndarray, shape (nv,)
+            a_e, m/s² or rad/s².
+        """
+        self._set(q, v)
+        self.skeleton.setForces(tau)
+        self.skeleton.computeForwardDynamics()
+        return self.skeleton.getAccelerations()
+
+    def kinetic_energy(self, q: Array, v: Array) -> float:
+        """Compute the sum over the bodies; this can be timed.
+
+        Parameters
+        ----------
+        q : ndarray, shape (nv,)
+            q_e.
+        v : ndarray, shape (nv,)
+            v_e, m/s or rad/s.
+
+        Returns
+        -------
+        float
+            In J.
+        """
+        self._set(q, v)
+        return self.skeleton.computeKineticEnergy()
+
+    def com(self, q: Array) -> Array:
+        """Compute where the centre of mass is; this can be timed.
+
+        Parameters
+        ----------
+        q : ndarray, shape (nv,)
+            q_e.
+
+        Returns
+        -------
+        ndarray, shape (3,)
+            In world axes, m.
+        """
+        self.skeleton.setPositions(q)
+        return self.skeleton.getCOM()
+
+    # ---- dynamics
+
+    def inverse_wrench(self, ask: Question) -> Array:
+        """Answer `id_wrench` by computeInverseDynamics with a force on every body, in its axes at its origin.
+
+        Returns
+        -------
+        ndarray, shape (nv,)
+            Forces of the joints, N or N m.
+        """
+        change = self._update(ask)
+        for node, wrench in zip(self.bodies, ask.wrench, strict=True):
+            node.setExtForce(wrench[3:], np.zeros(3), True, True)
+            node.setExtTorque(wrench[:3], True)
+        self.skeleton.setAccelerations(change.to_engine_a(ask.a))
+        self.skeleton.computeInverseDynamics(True)
+        self.skeleton.clearExternalForces()
+        return change.to_neutral_tau(self.skeleton.getForces())
+
+    def bias_forces(self, ask: Question) -> Array:
+        """Answer `bias` by h = T' (Coriolis and gravity forces + M_e b).
+
+        Returns
+        -------
+        ndarray, shape (nv,)
+            Forces of the joints, N or N m.
+        """
+        change = self._update(ask)
+        bias = self.skeleton.getCoriolisAndGravityForces()
+        return change.to_neutral_tau(bias + self.skeleton.getMassMatrix() @ change.b if change.b.any() else bias)
+
+    def probe(self, ask: Question) -> Array:
+        """Answer `mass_matrix_probe` by the M of `mass_matrix`.
+
+        Returns
+        -------
+        ndarray, shape (6, nv)
+            M x for the four rows x of `probe`, the diagonal of M, its last row.
+        """
+        mass = self.change(ask).to_neutral_mass(self.mass_matrix(self.positions(ask.q)))
+        return mass_matrix_probe(mass.__matmul__, np.diag(mass), ask.probe)
+
+    def inverse_mass_matrix(self, ask: Question) -> Array:
+        """Answer `fd` by M^-1 (tau - h), M^-1 column by column by the articulated body algorithm.
+
+        Returns
+        -------
+        ndarray, shape (nv,)
+            Accelerations, m/s² or rad/s².
+        """
+        change = self._update(ask)
+        force = change.to_engine_tau(ask.tau) - self.skeleton.getCoriolisAndGravityForces()
+        return change.to_neutral_a(self.skeleton.getInvMassMatrix() @ force)
+
+    # ---- energies, momentum, kinematics
+
+    def potential_energy(self, ask: Question) -> float:
+        """Answer -Σ m g·c.
+
+        Returns
+        -------
+        float
+            In J.
+        """
+        self._update(ask)
+        return self.skeleton.computePotentialEnergy()
+
+    def momentum(self, ask: Question) -> Array:
+        """Answer the sum over the bodies, of which DART answers each in its own axes about a point in them.
+
+        Returns
+        -------
+        ndarray, shape (6,)
+            [angular about the centre of mass; linear] in world axes, kg m²/s and kg m/s.
+        """
+        self._update(ask)
+        center, total = self.skeleton.getCOM(), np.zeros(6)
+        for node in self.bodies:
+            r, p = node.getWorldTransform().rotation(), node.getWorldTransform().translation()
+            total += np.append(r @ node.getAngularMomentum(r.T @ (center - p)), r @ node.getLinearMomentum())
+        return total
+
+    def placement(self, ask: Question) -> list[Array]:
+        """Answer where each body is.
+
+        Returns
+        -------
+        list of ndarray, shape (12,)
+            Of each body its rotation to world axes, row by row, and its origin in m.
+        """
+        self._update(ask)
+        poses = [node.getWorldTransform() for node in self.bodies]
+        return [np.append(pose.rotation().ravel(), pose.translation()) for pose in poses]
+
+    def velocity(self, ask: Question) -> list[Array]:
+        """Answer the velocity of each body in world axes at its origin.
+
+        Returns
+        -------
+        list of ndarray, shape (6,)
+            Of each body [angular; linear], rad/s and m/s.
+        """
+        self._update(ask)
+        return [np.append(node.getAngularVelocity(), node.getLinearVelocity()) for node in self.bodies]
+
+    def acceleration(self, ask: Question) -> list[Array]:
+        """Answer the acceleration of each body: DART's linear one is the classical one of the body's origin.
+
+        Returns
+        -------
+        list of ndarray, shape (6,)
+            Of each body [angular; linear], without gravity, rad/s² and m/s².
+        """
+        change = self._update(ask)
+        self.skeleton.setAccelerations(change.to_engine_a(ask.a))
+        return [np.append(node.getAngularAcceleration(), node.getLinearAcceleration()) for node in self.bodies]
+
+    def jacobian(self, ask: Question) -> Array:
+        """Answer J of the asked body in world axes at its origin.
+
+        Returns
+        -------
+        ndarray, shape (6, nv)
+            J with J v = [angular; linear], m or without unit.
+        """
+        change = self._update(ask)
+        return change.to_neutral_jacobian(self.skeleton.getWorldJacobian(self.bodies[ask.body]))
+
+
+class Dart:
+    """The engine: what `session.serve` asks."""
+
+    name = "dart"
+    version = importlib.metadata.version("dartpy")
+    build = {"language": "C++ (Python package dartpy)"}
+    quantities: Quantities = {
+        "id": {"inverse_dynamics": Calls("q v a", DartRobot.inverse_dynamics, Change.to_neutral_tau)},
+        "id_wrench": {"inverse_dynamics": DartRobot.inverse_wrench},
+        "bias": {
+            "coriolis_and_gravity": DartRobot.bias_forces,
+            "inverse_dynamics": Calls("q v b", DartRobot.inverse_dynamics, Change.to_neutral_tau),
+        },
+        "mass_matrix": {"mass_matrix": Calls("q", DartRobot.mass_matrix, Change.to_neutral_mass)},
+        "mass_matrix_sparse": {"mass_matrix": Calls("q", DartRobot.mass_matrix, Change.to_neutral_mass)},
+        "mass_matrix_probe": {"mass_matrix": DartRobot.probe},
+        "fd": {"aba": Calls("q v tau", DartRobot.aba, Change.to_neutral_a), "inverse_mass_matrix": DartRobot.inverse_mass_matrix},
+        "kinetic_energy": {"kinetic_energy": Calls("q v", DartRobot.kinetic_energy)},
+        "potential_energy": {"potential_energy": DartRobot.potential_energy},
+        "com": {"center_of_mass": Calls("q", DartRobot.com)},
+        "momentum": {"body_momenta": DartRobot.momentum},
+        "body_placement": {"world_transforms": DartRobot.placement},
+        "body_velocity": {"world_velocities": DartRobot.velocity},
+        "body_acceleration": {"world_accelerations": DartRobot.acceleration},
+        "body_jacobian": {"world_jacobian": DartRobot.jacobian},
+    }
+
+    def prepare(self, description: Description) -> DartRobot:
+        """Build the robot.
+
+        Parameters
+        ----------
+        description : Description
+            The robot.
+
+        Returns
+        -------
+        DartRobot
+            The same in DART.
+
+        Raises
+        ------
+        Unsupported
+            If DART has no such robot.
+        """
+        return DartRobot(description, *build(description))
+
+    def read(self, path: Path, form: str, base: str) -> Reading:
+        """Have DART's own parser read a file.
+
+        Parameters
+        ----------
+        path : Path
+            The file.
+        form : str
+            `urdf` or `mjcf`.
+        base : str
+            `fixed` or `free`.
+
+        Returns
+        -------
+        Reading
+            What DART holds of it.
+        """
+        return reading.read(path, form, base, DartRobot)

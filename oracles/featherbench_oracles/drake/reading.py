@@ -1,0 +1,228 @@
+"""Drake's own parser: `Parser` on a continuous plant without a scene graph, so that no mesh is looked for; what the plant holds is told.
+
+Drake keeps the links of fixed joints as bodies: they are merged in the description. A body of an MJCF with several joints has bodies of
+Drake's own between them, which get the names that such bodies have in a description. Drake's log is told as warnings.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+from math import pi
+from pathlib import Path
+from typing import Any
+from xml.etree import ElementTree
+
+import numpy as np
+from pydrake.math import RigidTransform
+from pydrake.multibody import tree
+from pydrake.multibody.parsing import Parser
+from pydrake.multibody.plant import MultibodyPlant
+
+from featherbench_oracles.algebra import Array, skew, symmetric
+from featherbench_oracles.frames import Header
+from featherbench_oracles.protocol import Reading
+from featherbench_oracles.reading import HeldJoint, Link, Place, describe, elements, inertial, mentioned, note, overheard
+from featherbench_oracles.robot import Description
+
+TYPES = {
+    "revolute": "revolute",
+    "prismatic": "prismatic",
+    "screw": "helical",
+    "ball_rpy": "spherical",
+    "quaternion_floating": "free",
+    "planar": "planar",
+    "universal": "universal",
+}
+EDITED = 1e-9  # of a link's mass or inertia: what is told as edited
+
+
+def read(path: Path, form: str, base: str, make: Callable[[Description, MultibodyPlant, list[list[tree.Joint]]], Any]) -> Reading:
+    """Read a file.
+
+    Parameters
+    ----------
+    path : Path
+        The file.
+    form : str
+        `urdf` or `mjcf`.
+    base : str
+        `fixed` or `free`: whether the root of a URDF floats.
+    make : callable
+        Makes a robot of the description, the plant and each body's joint.
+
+    Returns
+    -------
+    Reading
+        What Drake holds of the file.
+    """
+    notes: list[Header] = []
+    plant = MultibodyPlant(0.0)
+    with overheard(path, notes):
+        Parser(plant).AddModels(str(path))
+        if form == "urdf":
+            _stand(plant, path, base, notes)
+        damping = {joint.index(): joint.default_damping_vector().copy() for joint in _joints(plant)}
+        for joint in _joints(plant):
+            joint.set_default_damping_vector(np.zeros(joint.num_velocities()))
+        plant.Finalize()
+    joints = _ordered(plant)
+    names = [plant.GetModelInstanceName(tree.ModelInstanceIndex(i)) for i in range(2, plant.num_model_instances())]
+    links = _links(plant, joints, damping)
+    named = _chained(links, path) if form == "mjcf" else links
+    description = describe(next(iter(names), path.stem), plant.gravity_field().gravity_vector(), named)
+    own = {after.name for before, after in zip(links, named, strict=True) if before.name != after.name}  # no links of the file
+    description["frames"] = [frame for frame in description["frames"] if frame["name"] not in own]
+    _note_edits(plant, path, notes)
+    if plant.num_constraints():
+        notes.append(note("not_compared", None, f"constraints: {plant.num_constraints()}"))
+    mimics = sum(joint.find("mimic") is not None for joint in elements(path, "joint"))
+    if mimics:
+        by = f"{plant.num_constraints()} coupler constraints" if plant.num_constraints() else "no constraint"
+        notes.append(note("mimic", None, f"{mimics} joints that mimic others are joints of their own with {by}"))
+    notes.extend(mentioned(path))
+    held = Description.read(description)
+    return Reading(description, held, notes, make(held, plant, [[joint] for joint in joints if joint.num_velocities()]), {})
+
+
+# ---- the plant -------------------------------------------------------------------------------------------------------------------
+
+
+def _joints(plant: MultibodyPlant) -> list[tree.Joint]:
+    """List all joints, fixed ones included."""
+    return [plant.get_joint(i) for i in plant.GetJointIndices()]
+
+
+def _stand(plant: MultibodyPlant, path: Path, base: str, notes: list[Header]) -> None:
+    """Weld a URDF's root link to the world for a fixed base. A root that is called `world` is the world already."""
+    links, carried = ([element.get(key) for element in elements(path, tag)] for tag, key in (("link", "name"), ("child", "link")))
+    for root in links:
+        if root in carried or root is None:
+            continue
+        if root == "world" and base == "free":
+            notes.append(note("root_welded", root, "Drake takes a link called world for the world"))
+        if root != "world" and base == "fixed":
+            plant.WeldFrames(plant.world_frame(), plant.GetBodyByName(root).body_frame(), RigidTransform())
+
+
+def _ordered(plant: MultibodyPlant) -> list[tree.Joint]:
+    """List the joints depth-first, siblings by their place among the velocities."""
+    below: dict[int, list[tree.Joint]] = {}
+    for joint in _joints(plant):
+        below.setdefault(int(joint.parent_body().index()), []).append(joint)
+    order: list[tree.Joint] = []
+    bodies = [plant.world_body()]
+    pending: list[tree.Joint] = []
+    while bodies:
+        children = below.get(int(bodies.pop().index()), [])
+        pending.extend(sorted(children, key=lambda joint: joint.velocity_start(), reverse=True))
+        if pending:
+            order.append(pending.pop())
+            bodies.append(order[-1].child_body())
+    q = v = 0
+    for joint in order:
+        if joint.num_velocities() and (joint.position_start(), joint.velocity_start()) != (q, v):
+            raise RuntimeError(f"Drake put the coordinates of joint {joint.name()} elsewhere than depth-first")
+        q, v = q + joint.num_positions(), v + joint.num_velocities()
+    return order
+
+
+def _place(pose: RigidTransform) -> Place:
+    return Place(pose.rotation().matrix().copy(), pose.translation().copy())
+
+
+def _links(plant: MultibodyPlant, joints: list[tree.Joint], damping: dict[Any, Array]) -> list[Link]:
+    """Tell the bodies as links, each with the one joint above it."""
+    context = plant.CreateDefaultContext()
+    index = {int(plant.world_body().index()): -1}
+    motors = [plant.get_joint_actuator(i) for i in plant.GetJointActuatorIndices()]
+    actuators = {motor.joint().index(): motor for motor in motors}
+    links = []
+    for k, joint in enumerate(joints):
+        body = joint.child_body()
+        index[int(body.index())] = k
+        outer = _place(joint.frame_on_parent().GetFixedPoseInBodyFrame())
+        inner = _place(joint.frame_on_child().GetFixedPoseInBodyFrame())
+        held = []
+        if joint.type_name() == "weld":
+            outer = outer @ _place(joint.X_FM())
+        else:
+            held = [_held(joint, inner, damping.get(joint.index(), np.zeros(joint.num_velocities())), actuators.get(joint.index()))]
+        inertia = body.CalcSpatialInertiaInBodyFrame(context)
+        mass, com = inertia.get_mass(), inertia.get_com().copy()
+        about_com = inertia.CalcRotationalInertia().CopyToFullMatrix3() + mass * skew(com) @ skew(com)
+        place = outer if inner.identical() else outer @ inner.inverse()
+        links.append(Link(body.name(), mass, com, about_com, index[int(joint.parent_body().index())], place, held))
+    return links
+
+
+def _held(joint: tree.Joint, inner: Place, damping: Array, actuator: tree.JointActuator | None) -> HeldJoint:
+    """Tell a joint; its armature is an actuator's rotor inertia times the square of the gear ratio."""
+    kind = TYPES.get(joint.type_name(), joint.type_name())
+    dofs = {"damping": damping, "velocity": joint.velocity_upper_limits().copy()}
+    if joint.num_positions() == joint.num_velocities() and kind != "spherical":
+        dofs |= {"lower": joint.position_lower_limits().copy(), "upper": joint.position_upper_limits().copy()}
+    if actuator is not None:
+        dofs["armature"] = np.array([actuator.default_rotor_inertia() * actuator.default_gear_ratio() ** 2])
+        dofs["effort"] = np.array([actuator.effort_limit()])
+    axes = {"revolute": "revolute_axis", "prismatic": "translation_axis", "helical": "screw_axis"}
+    axis = np.array(getattr(joint, axes[kind])()) if kind in axes else None
+    pitch = joint.screw_pitch() / (2 * pi) if kind == "helical" else 0.0
+    return HeldJoint(joint.name(), kind, axis, pitch, inner, dofs=dofs)
+
+
+def _chained(links: list[Link], path: Path) -> list[Link]:
+    """Give bodies that are not the file's the names of a description: `<link>/<joint>` for the link below."""
+    known = {body.get("name") for body in elements(path, "body")}
+    renamed, below = list(links), ""
+    for k in reversed(range(len(links))):
+        link = links[k]
+        own = k + 1 < len(links) and link.name not in known and not link.mass and links[k + 1].parent == k
+        if own and link.joints:
+            renamed[k] = replace(link, name=f"{below}/{link.joints[0].name}")
+        else:
+            below = link.name
+    return renamed
+
+
+def _note_edits(plant: MultibodyPlant, path: Path, notes: list[Header]) -> None:
+    """Note links of a URDF whose mass or principal moments are not the file's."""
+    context = plant.CreateDefaultContext()
+    for link in elements(path, "link"):
+        name = link.get("name")
+        if name is None or name == "world" or not plant.HasBodyNamed(name):
+            continue
+        held = plant.GetBodyByName(name).CalcSpatialInertiaInBodyFrame(context)
+        mass, com = held.get_mass(), held.get_com()
+        inertia = held.CalcRotationalInertia().CopyToFullMatrix3() + mass * skew(com) @ skew(com)
+        words = _given(link, "mass", ["value"])
+        if not _near(words, [mass]):
+            notes.append(note("mass_edited", name, f"{' '.join(words)} kg in the file became {mass} kg", inertial(mass, com, inertia)))
+        words = _given(link, "inertia", ["ixx", "ixy", "ixz", "iyy", "iyz", "izz"])
+        try:
+            given = np.linalg.eigvalsh(symmetric(np.array(words, dtype=float))).tolist()
+        except ValueError:
+            given = []
+        moments = np.linalg.eigvalsh(inertia).tolist()
+        if not _near(given, moments):
+            became = f"moments {_few(given)} in the file became {_few(moments)} kg m²"
+            notes.append(note("inertia_edited", name, became, inertial(mass, com, inertia)))
+
+
+def _given(link: ElementTree.Element, tag: str, keys: list[str]) -> list[str]:
+    """Find the words of a link's inertial; what is absent is 0."""
+    element = link.find(f"inertial/{tag}")
+    return [(element.get(key) if element is not None else None) or "0" for key in keys]
+
+
+def _near(given: list[Any], held: list[float]) -> bool:
+    """Tell whether the engine holds the numbers of the file."""
+    try:
+        x, y = np.array(given, dtype=float), np.array(held)
+        return x.shape == y.shape and bool(np.abs(x - y).max() <= EDITED * np.abs(x).max())
+    except ValueError:
+        return False
+
+
+def _few(numbers: list[float]) -> str:
+    return "(" + ", ".join(f"{x:.6g}" for x in numbers) + ")"

@@ -1,0 +1,75 @@
+"""Frames of the protocol: one line of JSON, then the blocks of doubles that the line announces."""
+
+from __future__ import annotations
+
+import json
+import math
+from typing import Any, BinaryIO
+
+import numpy as np
+
+from featherbench_oracles.algebra import Array
+
+Blocks = dict[str, Array]
+Header = dict[str, Any]
+Answer = tuple[Header, Blocks]
+
+
+def read_frame(stream: BinaryIO) -> Answer | None:
+    """Read the next frame.
+
+    Parameters
+    ----------
+    stream : BinaryIO
+        A stream that stands at the beginning of a frame.
+
+    Returns
+    -------
+    tuple of dict and dict, or None
+        The header, and the blocks by name, each in the shape that the header announces. None at the end of the stream.
+
+    Raises
+    ------
+    ValueError
+        If the header is no JSON object, or a shape is none.
+    EOFError
+        If the stream ends within a block.
+    """
+    line = stream.readline()
+    if not line:
+        return None
+    header = json.loads(line)
+    if not isinstance(header, dict):
+        raise ValueError("a frame's header is not a JSON object")
+    blocks: Blocks = {}
+    for block in header.get("blocks", []):
+        shape = tuple(block["shape"])
+        if not all(isinstance(n, int) and n >= 0 for n in shape):
+            raise ValueError(f"block {block['name']} has the shape {list(shape)}")
+        size = 8 * math.prod(shape)
+        data = stream.read(size)
+        if len(data) < size:
+            raise EOFError(f"the stream ended within block {block['name']}")
+        blocks[block["name"]] = np.frombuffer(data, "<f8").reshape(shape).astype(np.float64)
+    return header, blocks
+
+
+def write_frame(stream: BinaryIO, header: Header, blocks: Blocks | None = None) -> None:
+    """Write a frame, and flush the stream.
+
+    Parameters
+    ----------
+    stream : BinaryIO
+        Where the frame goes.
+    header : dict
+        The header without its announcement of blocks, which is added.
+    blocks : dict of str to ndarray, optional
+        The blocks by name, of any shape.
+    """
+    frame = dict(header)
+    if blocks:
+        frame["blocks"] = [{"name": name, "shape": list(block.shape)} for name, block in blocks.items()]
+    stream.write(json.dumps(frame).encode() + b"\n")
+    for block in (blocks or {}).values():
+        stream.write(np.ascontiguousarray(block, "<f8").tobytes())
+    stream.flush()

@@ -1,0 +1,377 @@
+"""MuJoCo as an oracle."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import mujoco as mj
+import numpy as np
+
+from featherbench_oracles.algebra import Array
+from featherbench_oracles.change import Change
+from featherbench_oracles.mujoco import reading
+from featherbench_oracles.mujoco.building import build, chains, motions
+from featherbench_oracles.mujoco.coordinates import change_of_velocities, from_wxyz, to_engine_q
+from featherbench_oracles.protocol import Quantities, Question, Reading, Unsupported, mass_matrix_probe, readback_row
+from featherbench_oracles.robot import Description
+
+
+class MujocoRobot:
+    """A robot in MuJoCo. Every method that takes a question answers one quantity at its state.
+
+    Parameters
+    ----------
+    robot : Description
+        The robot's coordinates.
+    model : mj.MjModel
+        The robot; where it was built from the description, chain i is MuJoCo's body i + 1, as body 0 is the world.
+    """
+
+    def __init__(self, robot: Description, model: mj.MjModel) -> None:
+        self.robot, self.model, self.data = robot, model, mj.MjData(model)
+        self.held = {chain[-1]: i for i, chain in enumerate(chains(robot), start=1)}
+
+    def _all_held(self, quantity: str) -> None:
+        """Refuse a quantity where MuJoCo lacks bodies of the description."""
+        folded = len(self.robot.bodies) - len(self.held)
+        if folded:
+            raise Unsupported(f"MuJoCo has no massless bodies: {folded} are joints of the next one, and have no {quantity} of their own")
+
+    def readback(self) -> list[Array]:
+        """Tell what MuJoCo holds: I = R diag(principal) R'. Of a folded body there is its joint's place alone.
+
+        Returns
+        -------
+        list of ndarray, shape (22,)
+            Of each body a row of `readback_row`.
+        """
+        m, rows = self.model, []
+        for i, chain in enumerate(chains(self.robot), start=1):
+            turn, joint = from_wxyz(m.body_quat[i]), m.body_jntadr[i]
+            place = m.body_pos[i] + turn @ m.jnt_pos[joint]
+            for body in chain[:-1]:
+                rows.append(readback_row(0.0, np.zeros(3), np.zeros((3, 3)), turn, place))
+                before, joint = joint, joint + len(motions(self.robot.bodies[body].joint))
+                turn, place = np.eye(3), m.jnt_pos[joint] - m.jnt_pos[before]
+            axes = from_wxyz(m.body_iquat[i])
+            inertia = (axes * m.body_inertia[i]) @ axes.T
+            rows.append(readback_row(m.body_mass[i], m.body_ipos[i], inertia, turn, place))
+        return rows
+
+    def _update(self, ask: Question) -> Change:
+        """Set q and v, and compute what depends on them."""
+        change = change_of_velocities(self.robot, ask.q, ask.v)
+        self.data.qpos = to_engine_q(self.robot, ask.q)
+        self.data.qvel = change.to_engine_v(ask.v)
+        mj.mj_fwdPosition(self.model, self.data)
+        mj.mj_fwdVelocity(self.model, self.data)
+        return change
+
+    # ---- dynamics
+
+    def _inverse(self, a: Array) -> Array:
+        """Compute tau_e at engine accelerations."""
+        self.data.qacc = a
+        mj.mj_inverse(self.model, self.data)
+        return self.data.qfrc_inverse.copy()
+
+    def inverse(self, ask: Question) -> Array:
+        """Answer `id` by mj_inverse, armature included.
+
+        Returns
+        -------
+        ndarray, shape (nv,)
+            Forces of the joints, N or N m.
+        """
+        change = self._update(ask)
+        return change.to_neutral_tau(self._inverse(change.to_engine_a(ask.a)))
+
+    def rne(self, ask: Question) -> Array:
+        """Answer `id` by mj_rne + armature a_e.
+
+        Returns
+        -------
+        ndarray, shape (nv,)
+            Forces of the joints, N or N m.
+        """
+        change = self._update(ask)
+        self.data.qacc = change.to_engine_a(ask.a)
+        tau = np.empty(self.model.nv)
+        mj.mj_rne(self.model, self.data, 1, tau)
+        return change.to_neutral_tau(tau + self.model.dof_armature * self.data.qacc)
+
+    def inverse_wrench(self, ask: Question) -> Array:
+        """Answer `id_wrench` by mj_inverse - Σ J' f, as mj_inverse does not look at applied forces.
+
+        Returns
+        -------
+        ndarray, shape (nv,)
+            Forces of the joints, N or N m.
+        """
+        self._all_held("wrench")
+        change = self._update(ask)
+        tau = self._inverse(change.to_engine_a(ask.a))
+        applied = np.zeros(self.model.nv)
+        for i, wrench in enumerate(ask.wrench, start=1):
+            r = self.data.xmat[i].reshape(3, 3)
+            mj.mj_applyFT(self.model, self.data, r @ wrench[3:], r @ wrench[:3], self.data.xpos[i], i, applied)
+        return change.to_neutral_tau(tau - applied)
+
+    def qfrc_bias(self, ask: Question) -> Array:
+        """Answer `bias` by h = T' (qfrc_bias + M_e b).
+
+        Returns
+        -------
+        ndarray, shape (nv,)
+            Forces of the joints, N or N m.
+        """
+        change = self._update(ask)
+        return change.to_neutral_tau(self.data.qfrc_bias + self._product(change.b))
+
+    def bias_inverse(self, ask: Question) -> Array:
+        """Answer `bias` by mj_inverse at a = 0.
+
+        Returns
+        -------
+        ndarray, shape (nv,)
+            Forces of the joints, N or N m.
+        """
+        change = self._update(ask)
+        return change.to_neutral_tau(self._inverse(change.b))
+
+    def _product(self, x: Array) -> Array:
+        """Compute M_e x."""
+        y = np.empty(self.model.nv)
+        mj.mj_mulM(self.model, self.data, y, x)
+        return y
+
+    def crb(self, ask: Question) -> Array:
+        """Answer `mass_matrix` by the composite rigid body algorithm.
+
+        Returns
+        -------
+        ndarray, shape (nv, nv)
+            Both triangles of M, kg, kg m or kg m².
+        """
+        change = self._update(ask)
+        mass = np.empty((self.model.nv, self.model.nv))
+        mj.mj_fullM(self.model, self.data, mass)
+        return change.to_neutral_mass(mass)
+
+    def probe(self, ask: Question) -> Array:
+        """Answer `mass_matrix_probe` by mj_mulM.
+
+        The diagonal ends the rows of the sparse M; where T is not identity it is e_i' M e_i.
+
+        Returns
+        -------
+        ndarray, shape (6, nv)
+            M x for the four rows x of `probe`, the diagonal of M, its last row.
+        """
+        change = self._update(ask)
+
+        def product(x: Array) -> Array:
+            return change.to_neutral_tau(self._product(change.to_engine_v(x)))
+
+        diagonal = self.data.M[self.model.M_rowadr + self.model.M_rownnz - 1]
+        for dofs, _ in change.blocks:
+            for i in range(dofs.start, dofs.stop):
+                unit = np.zeros(self.model.nv)
+                unit[i] = 1
+                diagonal[i] = product(unit)[i]
+        return mass_matrix_probe(product, diagonal, ask.probe)
+
+    def forward(self, ask: Question) -> Array:
+        """Answer `fd` by a = M^-1 (tau - h) of mj_forward: the sparse factors L' D L of M.
+
+        Returns
+        -------
+        ndarray, shape (nv,)
+            Accelerations, m/s² or rad/s².
+        """
+        change = self._update(ask)
+        self.data.qfrc_applied = change.to_engine_tau(ask.tau)
+        mj.mj_forward(self.model, self.data)
+        return change.to_neutral_a(self.data.qacc.copy())
+
+    def stored(self, _ask: Question) -> float:
+        """Answer nM: the numbers that MuJoCo stores of M, one for each dof and ancestor.
+
+        Returns
+        -------
+        float
+            A count.
+        """
+        return self.model.nM
+
+    # ---- energies, momentum, kinematics
+
+    def kinetic_energy(self, ask: Question) -> float:
+        """Answer ½ v' M v.
+
+        Returns
+        -------
+        float
+            In J.
+        """
+        self._update(ask)
+        mj.mj_energyVel(self.model, self.data)
+        return self.data.energy[1]
+
+    def potential_energy(self, ask: Question) -> float:
+        """Answer -Σ m g·c.
+
+        Returns
+        -------
+        float
+            In J.
+        """
+        self._update(ask)
+        mj.mj_energyPos(self.model, self.data)
+        return self.data.energy[0]
+
+    def com(self, ask: Question) -> Array:
+        """Answer where the centre of mass is.
+
+        Returns
+        -------
+        ndarray, shape (3,)
+            In world axes, m.
+        """
+        self._update(ask)
+        return self.data.subtree_com[0]
+
+    def momentum(self, ask: Question) -> Array:
+        """Answer the momentum; linear is total mass times the centre's velocity.
+
+        Returns
+        -------
+        ndarray, shape (6,)
+            [angular about the centre of mass; linear] in world axes, kg m²/s and kg m/s.
+        """
+        self._update(ask)
+        mj.mj_subtreeVel(self.model, self.data)
+        return np.append(self.data.subtree_angmom[0], self.model.body_subtreemass[0] * self.data.subtree_linvel[0])
+
+    def placement(self, ask: Question) -> Array:
+        """Answer where each body is.
+
+        Returns
+        -------
+        ndarray, shape (bodies, 12)
+            Of each its rotation to world axes, row by row, and its origin in m.
+        """
+        self._all_held("placement")
+        self._update(ask)
+        return np.hstack([self.data.xmat[1:], self.data.xpos[1:]])
+
+    def velocity(self, ask: Question) -> Array:
+        """Answer the velocity of each body in world axes at its origin.
+
+        Returns
+        -------
+        ndarray, shape (bodies, 6)
+            Of each [angular; linear], rad/s and m/s.
+        """
+        self._all_held("velocity")
+        self._update(ask)
+        velocities = np.empty((self.model.nbody, 6))
+        for i, row in enumerate(velocities):
+            mj.mj_objectVelocity(self.model, self.data, mj.mjtObj.mjOBJ_XBODY, i, row, 0)
+        return velocities[1:]
+
+    def acceleration(self, ask: Question) -> Array:
+        """Answer the classical acceleration of each body; MuJoCo gives it as if the world accelerated by -g, which is taken off.
+
+        Returns
+        -------
+        ndarray, shape (bodies, 6)
+            Of each [angular; linear], without gravity, rad/s² and m/s².
+        """
+        self._all_held("acceleration")
+        change = self._update(ask)
+        self.data.qacc = change.to_engine_a(ask.a)
+        mj.mj_rnePostConstraint(self.model, self.data)
+        accelerations = np.empty((self.model.nbody, 6))
+        for i, row in enumerate(accelerations):
+            mj.mj_objectAcceleration(self.model, self.data, mj.mjtObj.mjOBJ_XBODY, i, row, 0)
+        return accelerations[1:] + np.append(np.zeros(3), self.model.opt.gravity)
+
+    def jacobian(self, ask: Question) -> Array:
+        """Answer J of the asked body in world axes at its origin.
+
+        Returns
+        -------
+        ndarray, shape (6, nv)
+            J with J v = [angular; linear], m or without unit.
+        """
+        if ask.body not in self.held:
+            self._all_held("Jacobian")
+        change = self._update(ask)
+        angular, linear = np.zeros((2, 3, self.model.nv))
+        mj.mj_jacBody(self.model, self.data, linear, angular, self.held[ask.body])
+        return change.to_neutral_jacobian(np.vstack([angular, linear]))
+
+
+class Mujoco:
+    """The engine: what `session.serve` asks."""
+
+    name = "mujoco"
+    version = mj.mj_versionString()
+    build = {"language": "C (Python package mujoco)"}
+    quantities: Quantities = {
+        "id": {"inverse": MujocoRobot.inverse, "rne": MujocoRobot.rne},
+        "id_wrench": {"inverse": MujocoRobot.inverse_wrench},
+        "bias": {"qfrc_bias": MujocoRobot.qfrc_bias, "inverse": MujocoRobot.bias_inverse},
+        "mass_matrix": {"crb": MujocoRobot.crb},
+        "mass_matrix_probe": {"crb": MujocoRobot.probe},
+        "fd": {"forward": MujocoRobot.forward},
+        "kinetic_energy": {"energy_vel": MujocoRobot.kinetic_energy},
+        "potential_energy": {"energy_pos": MujocoRobot.potential_energy},
+        "com": {"subtree_com": MujocoRobot.com},
+        "momentum": {"subtree_vel": MujocoRobot.momentum},
+        "body_placement": {"kinematics": MujocoRobot.placement},
+        "body_velocity": {"object_velocity": MujocoRobot.velocity},
+        "body_acceleration": {"object_acceleration": MujocoRobot.acceleration},
+        "body_jacobian": {"jac_body": MujocoRobot.jacobian},
+        "stored_entries": {"nM": MujocoRobot.stored},
+    }
+
+    def prepare(self, description: Description) -> MujocoRobot:
+        """Build the robot.
+
+        Parameters
+        ----------
+        description : Description
+            The robot.
+
+        Returns
+        -------
+        MujocoRobot
+            The same in MuJoCo.
+
+        Raises
+        ------
+        Unsupported
+            If MuJoCo has no such robot.
+        """
+        return MujocoRobot(description, build(description))
+
+    def read(self, path: Path, form: str, base: str) -> Reading:
+        """Have MuJoCo's own parser read a file.
+
+        Parameters
+        ----------
+        path : Path
+            The file.
+        form : str
+            `urdf` or `mjcf`.
+        base : str
+            `fixed` or `free`.
+
+        Returns
+        -------
+        Reading
+            What MuJoCo holds of it.
+        """
+        return reading.read(path, form, base, MujocoRobot)

@@ -1,0 +1,84 @@
+"""Pinocchio's coordinates.
+
+::
+
+    joint      q_e                      T               b
+    planar     x, y, cos θ, sin θ       diag(R(θ)', 1)  (θ̇ v_y, -θ̇ v_x, 0) with v = R(θ)' (ẋ, ẏ): Pinocchio's v is in body axes
+    all other  q                        identity        0
+"""
+
+from __future__ import annotations
+
+import numpy as np
+import pinocchio as pin
+
+from featherbench_oracles.algebra import Array
+from featherbench_oracles.change import Change
+from featherbench_oracles.robot import Description
+
+
+def to_engine_q(robot: Description, q: Array) -> Array:
+    """Bring coordinates to Pinocchio: a planar joint's angle becomes its cosine and sine.
+
+    Parameters
+    ----------
+    robot : Description
+        The robot.
+    q : ndarray, shape (nq,)
+        Neutral coordinates, m, rad or quaternions.
+
+    Returns
+    -------
+    ndarray, shape (nq of the table,)
+        q_e, m, rad or without unit.
+    """
+    return np.concatenate([_planar_q(*q[b.joint.q]) if b.joint.type == "planar" else q[b.joint.q] for b in robot.bodies])
+
+
+def _planar_q(x: float, y: float, theta: float) -> Array:
+    return np.array([x, y, np.cos(theta), np.sin(theta)])
+
+
+def change_of_velocities(robot: Description, q: Array, v: Array) -> Change:
+    """Find T and b of the table.
+
+    Parameters
+    ----------
+    robot : Description
+        The robot.
+    q : ndarray, shape (nq,)
+        Neutral coordinates, m, rad or quaternions.
+    v : ndarray, shape (nv,)
+        Neutral velocities, m/s or rad/s.
+
+    Returns
+    -------
+    Change
+        The change at that state.
+    """
+    blocks, bias = [], np.zeros(robot.nv)
+    for joint in (body.joint for body in robot.bodies):
+        if joint.type == "planar":
+            theta, rate = q[joint.q][2], v[joint.v][2]
+            c, s = np.cos(theta), np.sin(theta)
+            t = np.array([[c, s, 0], [-s, c, 0], [0, 0, 1]])
+            vx, vy, _ = t @ v[joint.v]
+            blocks.append((joint.v, t))
+            bias[joint.v] = rate * vy, -rate * vx, 0
+    return Change(tuple(blocks), bias)
+
+
+def to_angular_first(motion: pin.Motion | pin.Force) -> Array:
+    """Reorder a 6-vector of Pinocchio, which begins with the linear part.
+
+    Parameters
+    ----------
+    motion : pin.Motion | pin.Force
+        A motion or a force.
+
+    Returns
+    -------
+    ndarray, shape (6,)
+        [angular; linear], in the units of the motion.
+    """
+    return np.concatenate([motion.angular, motion.linear])

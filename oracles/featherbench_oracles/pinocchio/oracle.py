@@ -1,0 +1,387 @@
+"""Pinocchio as an oracle."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+
+import eigenpy
+import numpy as np
+import pinocchio as pin
+
+from featherbench_oracles.algebra import Array
+from featherbench_oracles.change import Change
+from featherbench_oracles.pinocchio import reading
+from featherbench_oracles.pinocchio.building import build
+from featherbench_oracles.pinocchio.coordinates import change_of_velocities, to_angular_first, to_engine_q
+from featherbench_oracles.protocol import Quantities, Question, Reading, mass_matrix_probe, readback_row
+from featherbench_oracles.robot import Description
+
+
+class PinocchioRobot:
+    """A robot in Pinocchio. Every method that takes a question answers one quantity at its state.
+
+    Parameters
+    ----------
+    robot : Description
+        The robot's coordinates.
+    model : pin.Model
+        The robot; where it was built from the description, body i is joint i + 1, as joint 0 is the universe.
+    turning : sequence of int
+        The indices of the angles, in the q_e of `coordinates`, that are (cos, sin) in the model: continuous joints as read.
+    """
+
+    def __init__(self, robot: Description, model: pin.Model, turning: Sequence[int] = ()) -> None:
+        self.robot, self.model, self.turning = robot, model, list(turning)
+        self.data = model.createData()
+        if not self.model.check(self.data):
+            raise RuntimeError("Pinocchio's own check of the model fails")
+
+    def readback(self) -> list[Array]:
+        """Tell what `model.inertias` and `model.jointPlacements` hold.
+
+        Returns
+        -------
+        list of ndarray, shape (22,)
+            Of each body a row of `readback_row`.
+        """
+        held = list(zip(self.model.inertias, self.model.jointPlacements, strict=True))[1:]
+        return [readback_row(y.mass, y.lever, y.inertia, m.rotation, m.translation) for y, m in held]
+
+    # ---- dynamics
+
+    def _state(self, ask: Question) -> tuple[Array, Array, Change]:
+        """Find q_e, v_e and the change of coordinates."""
+        change = change_of_velocities(self.robot, ask.q, ask.v)
+        return self._engine_q(ask.q), change.to_engine_v(ask.v), change
+
+    def _engine_q(self, q: Array) -> Array:
+        """Find q_e, with (cos, sin) for the angles that the model has so."""
+        q_e = to_engine_q(self.robot, q)
+        angles = q_e[self.turning]
+        q_e[self.turning] = np.cos(angles)
+        return np.insert(q_e, [k + 1 for k in self.turning], np.sin(angles))
+
+    def rnea(self, ask: Question) -> Array:
+        """Answer `id` by tau = RNEA(q, v, a).
+
+        Returns
+        -------
+        ndarray, shape (nv,)
+            Forces of the joints, N or N m.
+        """
+        q, v, change = self._state(ask)
+        return change.to_neutral_tau(pin.rnea(self.model, self.data, q, v, change.to_engine_a(ask.a)))
+
+    def rnea_wrench(self, ask: Question) -> Array:
+        """Answer `id_wrench` by RNEA with forces on the bodies, given like ours in body axes about the body's origin.
+
+        Returns
+        -------
+        ndarray, shape (nv,)
+            Forces of the joints, N or N m.
+        """
+        q, v, change = self._state(ask)
+        forces = pin.StdVec_Force([pin.Force.Zero(), *(pin.Force(w[3:], w[:3]) for w in ask.wrench)])
+        return change.to_neutral_tau(pin.rnea(self.model, self.data, q, v, change.to_engine_a(ask.a), forces))
+
+    def bias_rnea(self, ask: Question) -> Array:
+        """Answer `bias` by h = RNEA(q, v, a = 0).
+
+        Returns
+        -------
+        ndarray, shape (nv,)
+            Forces of the joints, N or N m.
+        """
+        q, v, change = self._state(ask)
+        return change.to_neutral_tau(pin.rnea(self.model, self.data, q, v, change.b))
+
+    def nonlinear_effects(self, ask: Question) -> Array:
+        """Answer `bias` by h = T' (h_e + M_e b).
+
+        Returns
+        -------
+        ndarray, shape (nv,)
+            Forces of the joints, N or N m.
+        """
+        q, v, change = self._state(ask)
+        bias = pin.nonLinearEffects(self.model, self.data, q, v).copy()
+        if change.b.any():
+            bias += self._mass_e(q, pin.Convention.LOCAL) @ change.b
+        return change.to_neutral_tau(bias)
+
+    def _mass_e(self, q: Array, convention: pin.Convention) -> Array:
+        """Compute M_e; crba promises its upper triangle only."""
+        upper = np.triu(pin.crba(self.model, self.data, q, convention))
+        return upper + np.triu(upper, 1).T
+
+    def crba_local(self, ask: Question) -> Array:
+        """Answer `mass_matrix` by the composite rigid body algorithm in body frames.
+
+        Returns
+        -------
+        ndarray, shape (nv, nv)
+            Both triangles of M, kg, kg m or kg m².
+        """
+        q, _, change = self._state(ask)
+        return change.to_neutral_mass(self._mass_e(q, pin.Convention.LOCAL))
+
+    def crba_world(self, ask: Question) -> Array:
+        """Answer `mass_matrix` by the composite rigid body algorithm in the world frame.
+
+        Returns
+        -------
+        ndarray, shape (nv, nv)
+            Both triangles of M, kg, kg m or kg m².
+        """
+        q, _, change = self._state(ask)
+        return change.to_neutral_mass(self._mass_e(q, pin.Convention.WORLD))
+
+    def probe_local(self, ask: Question) -> Array:
+        """Answer `mass_matrix_probe` by the M of `crba_local`.
+
+        Returns
+        -------
+        ndarray, shape (6, nv)
+            M x for the four rows x of `probe`, the diagonal of M, its last row.
+        """
+        mass = self.crba_local(ask)
+        return mass_matrix_probe(mass.__matmul__, np.diag(mass), ask.probe)
+
+    def probe_world(self, ask: Question) -> Array:
+        """Answer `mass_matrix_probe` by the M of `crba_world`.
+
+        Returns
+        -------
+        ndarray, shape (6, nv)
+            M x for the four rows x of `probe`, the diagonal of M, its last row.
+        """
+        mass = self.crba_world(ask)
+        return mass_matrix_probe(mass.__matmul__, np.diag(mass), ask.probe)
+
+    def _aba(self, ask: Question, convention: pin.Convention) -> Array:
+        q, v, change = self._state(ask)
+        return change.to_neutral_a(pin.aba(self.model, self.data, q, v, change.to_engine_tau(ask.tau), convention))
+
+    def aba_local(self, ask: Question) -> Array:
+        """Answer `fd` by the articulated body algorithm in body frames.
+
+        Returns
+        -------
+        ndarray, shape (nv,)
+            Accelerations, m/s² or rad/s².
+        """
+        return self._aba(ask, pin.Convention.LOCAL)
+
+    def aba_world(self, ask: Question) -> Array:
+        """Answer `fd` by the articulated body algorithm in the world frame.
+
+        Returns
+        -------
+        ndarray, shape (nv,)
+            Accelerations, m/s² or rad/s².
+        """
+        return self._aba(ask, pin.Convention.WORLD)
+
+    def crba_cholesky(self, ask: Question) -> Array:
+        """Answer `fd` by a = M^-1 (tau - h) with Pinocchio's tree-sparse factors U D U' of its M.
+
+        Returns
+        -------
+        ndarray, shape (nv,)
+            Accelerations, m/s² or rad/s².
+        """
+        q, v, change = self._state(ask)
+        rest = change.to_engine_tau(ask.tau) - pin.nonLinearEffects(self.model, self.data, q, v)
+        pin.crba(self.model, self.data, q)
+        pin.cholesky.decompose(self.model, self.data)
+        return change.to_neutral_a(pin.cholesky.solve(self.model, self.data, rest))
+
+    def minverse(self, ask: Question) -> Array:
+        """Answer `fd` by a = M^-1 (tau - h) with the direct inverse of M, of which the upper triangle is promised.
+
+        Returns
+        -------
+        ndarray, shape (nv,)
+            Accelerations, m/s² or rad/s².
+        """
+        q, v, change = self._state(ask)
+        rest = change.to_engine_tau(ask.tau) - pin.nonLinearEffects(self.model, self.data, q, v)
+        upper = np.triu(pin.computeMinverse(self.model, self.data, q))
+        return change.to_neutral_a(upper @ rest + np.triu(upper, 1).T @ rest)
+
+    # ---- energies, momentum, kinematics
+
+    def kinetic_energy(self, ask: Question) -> float:
+        """Answer ½ v' M v.
+
+        Pinocchio 4.1.0 itself leaves out the armature of RevoluteUnaligned and HelicalUnaligned joints here.
+
+        Returns
+        -------
+        float
+            In J.
+        """
+        q, v, _ = self._state(ask)
+        return pin.computeKineticEnergy(self.model, self.data, q, v)
+
+    def kinetic_energy_crba(self, ask: Question) -> float:
+        """Answer ½ v' M v with the M of `crba_local`.
+
+        Returns
+        -------
+        float
+            In J.
+        """
+        q, v, _ = self._state(ask)
+        return float(v @ self._mass_e(q, pin.Convention.LOCAL) @ v / 2)
+
+    def potential_energy(self, ask: Question) -> float:
+        """Answer -Σ m g·c.
+
+        Returns
+        -------
+        float
+            In J.
+        """
+        return pin.computePotentialEnergy(self.model, self.data, to_engine_q(self.robot, ask.q))
+
+    def com(self, ask: Question) -> Array:
+        """Answer where the centre of mass is.
+
+        Returns
+        -------
+        ndarray, shape (3,)
+            In world axes, m.
+        """
+        return pin.centerOfMass(self.model, self.data, to_engine_q(self.robot, ask.q))
+
+    def momentum(self, ask: Question) -> Array:
+        """Answer the centroidal momentum.
+
+        Returns
+        -------
+        ndarray, shape (6,)
+            [angular about the centre of mass; linear] in world axes, kg m²/s and kg m/s.
+        """
+        q, v, _ = self._state(ask)
+        return to_angular_first(pin.computeCentroidalMomentum(self.model, self.data, q, v))
+
+    def placement(self, ask: Question) -> list[Array]:
+        """Answer where each body is.
+
+        Returns
+        -------
+        list of ndarray, shape (12,)
+            Of each body its rotation to world axes, row by row, and its origin in m.
+        """
+        pin.forwardKinematics(self.model, self.data, to_engine_q(self.robot, ask.q))
+        return [np.append(m.rotation.ravel(), m.translation) for m in list(self.data.oMi)[1:]]
+
+    def velocity(self, ask: Question) -> list[Array]:
+        """Answer the velocity of each body in world axes at its origin.
+
+        Returns
+        -------
+        list of ndarray, shape (6,)
+            Of each body [angular; linear], rad/s and m/s.
+        """
+        q, v, _ = self._state(ask)
+        pin.forwardKinematics(self.model, self.data, q, v)
+        frame, joints = pin.LOCAL_WORLD_ALIGNED, range(1, self.model.njoints)
+        return [to_angular_first(pin.getVelocity(self.model, self.data, i, frame)) for i in joints]
+
+    def acceleration(self, ask: Question) -> list[Array]:
+        """Answer the classical acceleration of each body in world axes at its origin.
+
+        Returns
+        -------
+        list of ndarray, shape (6,)
+            Of each body [angular; linear], without gravity, rad/s² and m/s².
+        """
+        q, v, change = self._state(ask)
+        pin.forwardKinematics(self.model, self.data, q, v, change.to_engine_a(ask.a))
+        frame, joints = pin.LOCAL_WORLD_ALIGNED, range(1, self.model.njoints)
+        return [to_angular_first(pin.getClassicalAcceleration(self.model, self.data, i, frame)) for i in joints]
+
+    def jacobian(self, ask: Question) -> Array:
+        """Answer J of the asked body in world axes at its origin.
+
+        Returns
+        -------
+        ndarray, shape (6, nv)
+            J with J v = [angular; linear], m or without unit.
+        """
+        q, _, change = self._state(ask)
+        pin.computeJointJacobians(self.model, self.data, q)
+        linear_first = pin.getJointJacobian(self.model, self.data, ask.body + 1, pin.LOCAL_WORLD_ALIGNED)
+        return change.to_neutral_jacobian(np.roll(linear_first, 3, axis=0))
+
+
+class Pinocchio:
+    """The engine: what `session.serve` asks."""
+
+    name = "pinocchio"
+    version = pin.__version__
+    build = {"language": "C++ (Python package pin)", "simd": eigenpy.SimdInstructionSetsInUse(), "eigenpy": eigenpy.__version__}
+    quantities: Quantities = {
+        "id": {"rnea": PinocchioRobot.rnea},
+        "id_wrench": {"rnea": PinocchioRobot.rnea_wrench},
+        "bias": {"nonlinear_effects": PinocchioRobot.nonlinear_effects, "rnea": PinocchioRobot.bias_rnea},
+        "mass_matrix": {"crba_local": PinocchioRobot.crba_local, "crba_world": PinocchioRobot.crba_world},
+        "mass_matrix_probe": {"crba_local": PinocchioRobot.probe_local, "crba_world": PinocchioRobot.probe_world},
+        "fd": {
+            "aba_local": PinocchioRobot.aba_local,
+            "aba_world": PinocchioRobot.aba_world,
+            "crba_cholesky": PinocchioRobot.crba_cholesky,
+            "minverse": PinocchioRobot.minverse,
+        },
+        "kinetic_energy": {"kinetic_energy": PinocchioRobot.kinetic_energy, "crba": PinocchioRobot.kinetic_energy_crba},
+        "potential_energy": {"potential_energy": PinocchioRobot.potential_energy},
+        "com": {"center_of_mass": PinocchioRobot.com},
+        "momentum": {"centroidal_momentum": PinocchioRobot.momentum},
+        "body_placement": {"forward_kinematics": PinocchioRobot.placement},
+        "body_velocity": {"forward_kinematics": PinocchioRobot.velocity},
+        "body_acceleration": {"forward_kinematics": PinocchioRobot.acceleration},
+        "body_jacobian": {"joint_jacobian": PinocchioRobot.jacobian},
+    }
+
+    def prepare(self, description: Description) -> PinocchioRobot:
+        """Build the robot.
+
+        Parameters
+        ----------
+        description : Description
+            The robot.
+
+        Returns
+        -------
+        PinocchioRobot
+            The same in Pinocchio.
+
+        Raises
+        ------
+        Unsupported
+            If Pinocchio has no such robot, or no memory for it.
+        """
+        reading.affordable(description.nv)
+        return PinocchioRobot(description, build(description))
+
+    def read(self, path: Path, form: str, base: str) -> Reading:
+        """Have Pinocchio's own parser read a file.
+
+        Parameters
+        ----------
+        path : Path
+            The file.
+        form : str
+            `urdf` or `mjcf`.
+        base : str
+            `fixed` or `free`.
+
+        Returns
+        -------
+        Reading
+            What Pinocchio holds of it.
+        """
+        return reading.read(path, form, base, PinocchioRobot)

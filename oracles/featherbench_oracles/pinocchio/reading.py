@@ -1,0 +1,228 @@
+"""Pinocchio's own parsers: `buildModelFromUrdf` and `buildModelFromMJCF`, and what the model then holds is told.
+
+Pinocchio's joints of a moving frame are the bodies here: links of fixed joints are merged already, and leave frames. A joint of several
+(JointModelComposite) is taken apart. A continuous joint's (cos, sin) is an angle here.
+"""
+
+from __future__ import annotations
+
+import resource
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pinocchio as pin
+
+from featherbench_oracles.algebra import Array
+from featherbench_oracles.frames import Header
+from featherbench_oracles.protocol import Reading, Unsupported
+from featherbench_oracles.reading import HeldJoint, Link, Place, describe, elements, mentioned, note, overheard, without_free_armature
+from featherbench_oracles.robot import Description
+
+WORKSPACE = 15e3  # bytes of Pinocchio's Data per degree of freedom squared (1.4 GB at 300); it may end the process where they are not there
+SHARE = 0.8  # of the process's address space: the rest holds the libraries
+UNBOUNDED = 1e300  # a limit of the largest double is none
+KINDS = {"R": "revolute", "P": "prismatic", "H": "helical"}
+WHOLE = {"Spherical": "spherical", "FreeFlyer": "free", "Planar": "planar", "Universal": "universal"}
+WHOLE |= {"SphericalZYX": "euler_zyx", "Translation": "translation"}
+
+
+def read(path: Path, form: str, base: str, make: Callable[[Description, pin.Model, list[int]], Any]) -> Reading:
+    """Read a file.
+
+    Parameters
+    ----------
+    path : Path
+        The file.
+    form : str
+        `urdf` or `mjcf`.
+    base : str
+        `fixed` or `free`: whether the root of a URDF floats.
+    make : callable
+        Makes a robot of the description, Pinocchio's model, and the indices of angles that are (cos, sin) there.
+
+    Returns
+    -------
+    Reading
+        What Pinocchio holds of the file.
+    """
+    notes: list[Header] = []
+    with overheard(path, notes):
+        if form == "mjcf":
+            model = pin.buildModelFromMJCF(str(path))
+        elif base == "free":
+            model = pin.buildModelFromUrdf(str(path), pin.JointModelFreeFlyer(), "root_joint")
+        else:
+            model = pin.buildModelFromUrdf(str(path))
+    affordable(model.nv)
+    links = without_free_armature([_link(model, i, path) for i in range(1, model.njoints)], notes)
+    description = describe(model.name or path.stem, model.gravity.linear, links)
+    _add_frames(description, model)
+    _note_mimics(path, notes)
+    _note_gravity(path, model, notes)
+    notes.extend(mentioned(path))
+    held = Description.read(description)
+    for joint, link in zip(list(model.joints)[1:], links, strict=True):
+        if any(part.type == "free" for part in link.joints):
+            model.armature[joint.idx_v : joint.idx_v + joint.nv] = 0
+    return Reading(description, held, notes, make(held, model, _turning(model)), {})
+
+
+def affordable(nv: int) -> None:
+    """Refuse a robot whose workspace does not fit into the address space that this process may have.
+
+    Parameters
+    ----------
+    nv : int
+        Its degrees of freedom.
+
+    Raises
+    ------
+    Unsupported
+        If it does not fit.
+    """
+    need, most = WORKSPACE * nv**2, resource.getrlimit(resource.RLIMIT_AS)[0]
+    if most != resource.RLIM_INFINITY and need > SHARE * most:
+        told = f"its workspace (pinocchio.Data) needs about {need / 1e9:.3g} GB for {nv} degrees of freedom"
+        raise Unsupported(f"Pinocchio: {told}, and this process may have {most / 1e9:.3g} GB")
+
+
+def _place(placement: pin.SE3) -> Place:
+    return Place(placement.rotation.copy(), placement.translation.copy())
+
+
+def _turning(model: pin.Model) -> list[int]:
+    """List where angles as (cos, sin) stand, counting each as one number."""
+    indices, count = [], 0
+    for i in range(1, model.njoints):
+        for joint, _ in _parts(model.joints[i]):
+            turning = joint.nq == 2 and joint.nv == 1
+            if turning:
+                indices.append(count)
+            count += 1 if turning else joint.nq
+    return indices
+
+
+def _link(model: pin.Model, i: int, path: Path) -> Link:
+    """Tell joint i with the body that it carries."""
+    parts = list(_parts(model.joints[i]))
+    names = [model.names[i]] if len(parts) == 1 else _names(model, i, len(parts), path)
+    whole = Place()  # from the whole joint's frame to what it moves
+    places = []
+    for _, placement in parts:
+        whole = whole @ placement
+        places.append(whole)
+    on_joint = _on_joint(model, i)
+    back = (whole @ on_joint).inverse()
+    joints = []
+    q, v = model.idx_qs[i], model.idx_vs[i]
+    for name, (joint, _), place in zip(names, parts, places, strict=True):
+        kind, axis, pitch = _type(joint, model.names[i])
+        dofs = _dofs(model, slice(q, q + joint.nq), slice(v, v + joint.nv))
+        joints.append(HeldJoint(name, kind, axis, pitch, on_joint.inverse() if place is whole else back @ place, dofs=dofs))
+        q, v = q + joint.nq, v + joint.nv
+    inertia, parent = model.inertias[i], int(model.parents[i]) - 1
+    place = _on_joint(model, parent + 1).inverse() @ _place(model.jointPlacements[i]) @ whole @ on_joint
+    axes, com = on_joint.rotation, on_joint.inverse() @ Place(translation=inertia.lever)
+    return Link(_carried(model, i), inertia.mass, com.translation, axes.T @ inertia.inertia @ axes, parent, place, joints)
+
+
+def _parts(joint: pin.JointModel) -> Iterator[tuple[pin.JointModel, Place]]:
+    """List the joints that a joint is made of, each with its place in the one before."""
+    if joint.shortname() != "JointModelComposite":
+        yield joint, Place()
+        return
+    whole = joint.extract() if hasattr(joint, "extract") else joint
+    for part, placement in zip(whole.joints, whole.jointPlacements, strict=True):
+        yield part, _place(placement)
+
+
+def _names(model: pin.Model, i: int, count: int, path: Path) -> list[str]:
+    """Name the joints within joint i: Pinocchio forgets their names; the file's are taken where its body has as many."""
+    link = _carried(model, i)
+    for body in elements(path, "body"):
+        names = [joint.get("name") for joint in body if joint.tag in ("joint", "freejoint")]
+        if body.get("name") == link and len(names) == count and all(names):
+            return [str(name) for name in names]
+    return [f"{model.names[i]} {k}" for k in range(count)]
+
+
+def _frame(model: pin.Model, i: int) -> pin.Frame | None:
+    """Find the frame of the link that joint i carries: the first body frame on it."""
+    return next((frame for frame in model.frames if i and frame.type == pin.BODY and frame.parentJoint == i), None)
+
+
+def _carried(model: pin.Model, i: int) -> str:
+    """Name the link that joint i carries."""
+    frame = _frame(model, i)
+    return frame.name if frame is not None else model.names[i]
+
+
+def _on_joint(model: pin.Model, i: int) -> Place:
+    """Find where that link is in joint i's frame."""
+    frame = _frame(model, i)
+    return _place(frame.placement) if frame is not None else Place()
+
+
+def _type(joint: pin.JointModel, name: str) -> tuple[str, Array | None, float]:
+    """Find type, axis and pitch of a joint that is not composite."""
+    short = joint.shortname().removeprefix("JointModel")
+    if short in WHOLE:
+        return WHOLE[short], None, 0.0
+    whole = joint.extract() if hasattr(joint, "extract") else joint
+    for prefix, kind in KINDS.items():
+        letter = short.removeprefix(prefix).removeprefix("UB")
+        if short.startswith(prefix) and letter in "XYZ" and len(letter) == 1:
+            return kind, np.eye(3)["XYZ".index(letter)], float(getattr(whole, "pitch", 0.0))
+    named = {"RevoluteUnaligned": "revolute", "RevoluteUnboundedUnaligned": "revolute", "PrismaticUnaligned": "prismatic"}
+    named["HelicalUnaligned"] = "helical"
+    if short in named:
+        return named[short], _axis(joint, whole), float(getattr(whole, "pitch", 0.0))
+    raise Unsupported(f"joint {name} is Pinocchio's {short}, a type that descriptions do not have")
+
+
+def _axis(joint: pin.JointModel, whole: object) -> Array:
+    """Find the axis of a joint with one; Pinocchio 4.1 does not show that of an unbounded joint, whose motion subspace says it."""
+    if hasattr(whole, "axis"):
+        return np.array(whole.axis, dtype=float)
+    data = joint.createData()
+    joint.calc(data, np.array([1.0, 0.0]))
+    return np.array(data.S, dtype=float).reshape(6)[3:]
+
+
+def _dofs(model: pin.Model, q: slice, v: slice) -> dict[str, Array]:
+    """Collect armature, damping, friction and limits of one joint."""
+    dofs = {"armature": model.armature[v], "damping": model.damping[v], "friction": model.upperDryFrictionLimit[v]}
+    limits = {"velocity": model.upperVelocityLimit[v], "effort": model.upperEffortLimit[v]}
+    if q.stop - q.start == v.stop - v.start:
+        limits |= {"lower": model.lowerPositionLimit[q], "upper": model.upperPositionLimit[q]}
+    return {key: value.copy() for key, value in {**dofs, **limits}.items() if key in dofs or (np.abs(value) < UNBOUNDED).all()}
+
+
+def _add_frames(description: Header, model: pin.Model) -> None:
+    """Add a frame for each link that no joint carries."""
+    bodies = {body["name"]: k for k, body in enumerate(description["bodies"])}
+    frames = {frame["name"]: Place.of(frame["placement"]) for frame in description["frames"]}
+    carriers = [_carried(model, i) for i in range(model.njoints)]
+    for frame in model.frames:
+        link = carriers[frame.parentJoint]
+        if frame.type == pin.BODY and (frame.parentJoint == 0 or frame.name != link):
+            on_link = _on_joint(model, frame.parentJoint).inverse() @ _place(frame.placement)
+            place = frames.get(link, Place()) @ on_link if frame.parentJoint else on_link
+            body = bodies[link] if frame.parentJoint else -1
+            description["frames"].append({"name": frame.name, "body": body, "placement": place.json()})
+
+
+def _note_mimics(path: Path, notes: list[Header]) -> None:
+    """Note that joints that mimic another are joints of their own, unless asked otherwise."""
+    names = [joint.get("name") or "" for joint in elements(path, "joint") if joint.find("mimic") is not None]
+    notes.extend(note("mimic", name, "this joint mimics another; Pinocchio reads it as a joint of its own") for name in names)
+
+
+def _note_gravity(path: Path, model: pin.Model, notes: list[Header]) -> None:
+    """Note the gravity of an MJCF, which Pinocchio does not hold."""
+    for option in elements(path, "option"):
+        given = option.get("gravity")
+        if given is not None and given.split() != [f"{x:g}" for x in model.gravity.linear]:
+            notes.append(note("gravity_ignored", None, f"the file says ({given}), Pinocchio holds {tuple(model.gravity.linear.tolist())}"))

@@ -1,0 +1,54 @@
+"""Evaluates a reproduction of a known deviation over seeds, through the frames of PROTOCOL.md.
+
+The request `{"op":"reproduce","name":NAME,"seeds":n}` is answered by a block `value` of shape (n,): the deviation for the seeds 0..n-1.
+NAME is `ENGINE_SHORT` for the module `featherbench_oracles.ENGINE.reproductions.SHORT`.
+"""
+
+from __future__ import annotations
+
+import importlib
+import os
+import sys
+import traceback
+from collections.abc import Callable
+
+import numpy as np
+
+from featherbench_oracles.frames import read_frame, write_frame
+
+
+def reproduction(name: str) -> Callable[[int], float]:
+    """Find a reproduction.
+
+    Parameters
+    ----------
+    name : str
+        The name that ci/deviations.toml gives it, as in `drake_zero_mass`.
+
+    Returns
+    -------
+    callable
+        Its function `deviation`, which takes a seed to the size of the deviation.
+    """
+    engine, _, short = name.partition("_")
+    found: Callable[[int], float] = importlib.import_module(f"featherbench_oracles.{engine}.reproductions.{short}").deviation
+    return found
+
+
+def main() -> None:
+    """Answer until the standard input ends; whatever an engine prints goes to the standard error."""
+    answers = os.fdopen(os.dup(1), "wb")
+    os.dup2(2, 1)
+    while (request := read_frame(sys.stdin.buffer)) is not None:
+        header, _ = request
+        try:
+            deviation = reproduction(header["name"])
+            values = np.array([deviation(seed) for seed in range(header["seeds"])])
+            write_frame(answers, {"status": "ok"}, {"value": values})
+        except Exception as reason:  # a reproduction's failure is an answer
+            traceback.print_exc()
+            write_frame(answers, {"status": "error", "reason": f"{type(reason).__name__}: {' '.join(str(reason).split())}"})
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,218 @@
+"""The main loop of an oracle: requests come in frames, are answered by an engine, and go back in frames.
+
+Every answer is computed for one state at a time, by a function `(robot, question) -> numbers` from the engine's table
+`quantities[quantity][method]`.
+"""
+
+from __future__ import annotations
+
+import os
+import sys
+import traceback
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from featherbench_oracles.clock import Calls, Stream
+from featherbench_oracles.examination import examined
+from featherbench_oracles.frames import Answer, Blocks, Header, read_frame, write_frame
+from featherbench_oracles.protocol import AS_READ, PROTOCOL, SHAPES, Engine, Question, Reading, Unsupported
+from featherbench_oracles.robot import Description
+
+
+class Session:
+    """The state between requests: the robot and its states.
+
+    Parameters
+    ----------
+    engine : Engine
+        Who answers.
+    """
+
+    def __init__(self, engine: Engine) -> None:
+        self.engine = engine
+        self.description: Description | None = None
+        self.robot: Any = None
+        self.states: Blocks | None = None
+        self.as_read = False
+        self.nothing: Any = None
+        self.stream: tuple[Any, Stream] | None = None  # what was timed last, and by what it is known
+
+    def answer(self, header: Header, blocks: Blocks) -> Answer:
+        """Answer one request.
+
+        Parameters
+        ----------
+        header : dict
+            The request.
+        blocks : dict of str to ndarray
+            Its blocks.
+
+        Returns
+        -------
+        tuple of dict and dict
+            The answer's header without its status, and the answer's blocks.
+
+        Raises
+        ------
+        Unsupported
+            If the engine has no such thing.
+        ValueError
+            If the request is malformed.
+        """
+        operations = {
+            "hello": self.hello,
+            "prepare": self.prepare,
+            "read": self.read,
+            "states": self.set_states,
+            "evaluate": self.evaluate,
+            "clock": self.clock,
+        }
+        if header.get("op") not in operations:
+            raise ValueError(f"unknown op {header.get('op')}")
+        return operations[header["op"]](header, blocks)
+
+    def hello(self, _header: Header, _blocks: Blocks) -> Answer:
+        """Tell who answers, and by which methods."""
+        engine = self.engine
+        methods = {quantity: list(by_method) for quantity, by_method in engine.quantities.items()}
+        hello = {"protocol": PROTOCOL, "engine": engine.name, "version": engine.version, "build": engine.build, "methods": methods}
+        timed = {name: [m for m, f in by_method.items() if isinstance(f, Calls)] for name, by_method in engine.quantities.items()}
+        estimated = {name: listed for name, listed in timed.items() if listed}
+        return ({**hello, "clock": "estimate", "timed": estimated} if estimated else hello), {}
+
+    def prepare(self, header: Header, _blocks: Blocks) -> Answer:
+        """Build the robot and read it back: block `readback` of shape (bodies, 22)."""
+        self._forget()
+        self.as_read = False
+        description = Description.read(header["model"])
+        robot = self.engine.prepare(description)
+        readback = np.array(robot.readback()).reshape(len(description.bodies), 22)
+        self.description, self.robot = description, robot
+        return {"nq": description.nq, "nv": description.nv}, {"readback": readback}
+
+    def read(self, header: Header, _blocks: Blocks) -> Answer:
+        """Have the engine's own parser read a file, and tell what the engine then holds; block `keyframes` of shape (keyframes, nq)."""
+        self._forget()
+        self.as_read = True
+        form, base = header["format"], header.get("base", "fixed")
+        if form not in ("urdf", "mjcf") or base not in ("fixed", "free"):
+            raise ValueError(f"there is no format {form} with base {base}")
+        reader: Callable[[Path, str, str], Reading] | None = getattr(self.engine, "read", None)
+        if reader is None:
+            raise Unsupported(f"{self.engine.name} reads no files")
+        reading = reader(examined(Path(header["file"])), form, base)
+        self.description, self.robot = reading.description, reading.robot
+        answer = {"nq": self.description.nq, "nv": self.description.nv, "model": reading.model, "notes": reading.notes}
+        if reading.written is not None:
+            answer["written"] = reading.written
+        if not reading.keyframes:
+            return answer, {}
+        return {**answer, "keyframes": list(reading.keyframes)}, {"keyframes": np.array(list(reading.keyframes.values()))}
+
+    def set_states(self, header: Header, blocks: Blocks) -> Answer:
+        """Keep the states for the evaluations to come."""
+        if self.description is None:
+            raise ValueError("no model was prepared")
+        self.states = self.stream = None
+        n, nq, nv, bodies = header["count"], self.description.nq, self.description.nv, len(self.description.bodies)
+        shapes = {"q": (n, nq), "v": (n, nv), "a": (n, nv), "tau": (n, nv), "wrench": (n, bodies, 6), "probe": (4, nv)}
+        for name, shape in shapes.items():
+            if name not in blocks or blocks[name].shape != shape:
+                raise ValueError(f"block {name} is missing or not of shape {list(shape)}")
+        self.states = blocks
+        return {}, {}
+
+    def evaluate(self, header: Header, _blocks: Blocks) -> Answer:
+        """Answer one quantity by one method over a range of the states: block `value` of shape (count, *shape of the quantity)."""
+        function, description, states, body = self._asked(header)
+        quantity, first, count = (header[key] for key in ("quantity", "first", "count"))
+        if not 0 <= first <= first + count <= len(states["q"]):
+            raise ValueError(f"states {first}..{first + count} do not exist")
+        entries = description.tree_sparse() if quantity == "mass_matrix_sparse" else None
+        sizes = {"nv": description.nv, "bodies": len(description.bodies), "stored": len(entries[0]) if entries else 0}
+        shape = tuple(sizes[n] if isinstance(n, str) else n for n in SHAPES[quantity])
+        value = np.empty((count, *shape))
+        for k in range(count):
+            answer = function(self.robot, _question(states, first + k, body))
+            value[k] = np.reshape(answer[entries] if entries else answer, shape)
+        return {}, {"value": value}
+
+    def clock(self, header: Header, _blocks: Blocks) -> Answer:
+        """Time a method's own calls over a stream of the states: `nanoseconds` and `overhead` of the whole stream."""
+        function, _, states, body = self._asked(header)
+        first, count, asked = header["first"], header["count"], (header["quantity"], header["method"], body)
+        if not isinstance(function, Calls):
+            raise Unsupported(
+                f"{self.engine.name} does not time {header['quantity']} by {header['method']}: it is more than calls of the engine"
+            )
+        if not (first >= 0 and count > 0 and len(states["q"])):
+            raise ValueError(f"there are no {count} states from {first} on")
+        if self.stream is None or self.stream[0] != asked:
+            self.nothing = self.nothing or self.engine.prepare(Description("nothing", np.array([0, 0, -9.81]), (), 0, 0))
+            questions = [_question(states, k, body) for k in range(len(states["q"]))]
+            self.stream = asked, Stream(function, self.robot, self.nothing, questions)
+        nanoseconds, overhead = self.stream[1].time(first, count)
+        return {"nanoseconds": nanoseconds, "overhead": overhead}, {}
+
+    def _forget(self) -> None:
+        """Drop the robot before."""
+        self.description = self.robot = self.states = self.stream = None
+
+    def _asked(self, header: Header) -> tuple[Callable[[Any, Question], Any], Description, Blocks, int]:
+        """Find the method that is asked for, the robot, its states and the body, if all is there."""
+        quantity, method = header["quantity"], header["method"]
+        if method not in self.engine.quantities.get(quantity, {}):
+            raise Unsupported(f"{self.engine.name} offers no method {method} for {quantity}")
+        if self.description is None or self.states is None:
+            raise ValueError("no model and states were given before")
+        if self.as_read and quantity not in AS_READ:
+            raise Unsupported(f"{quantity} is not told of a robot as read: its bodies need not be those of the description")
+        body = header["body"] if quantity == "body_jacobian" else 0
+        if not 0 <= body < len(self.description.bodies):
+            raise ValueError(f"body {body} does not exist")
+        return self.engine.quantities[quantity][method], self.description, self.states, body
+
+
+def _question(states: Blocks, k: int, body: int) -> Question:
+    """Make the question about state k."""
+    row = {name: states[name][k] for name in ("q", "v", "a", "tau", "wrench")}
+    return Question(**row, probe=states["probe"], body=body)
+
+
+def serve(engine: Engine) -> None:
+    """Answer requests until the standard input ends. Whatever an engine prints itself goes to the standard error.
+
+    Parameters
+    ----------
+    engine : Engine
+        Who answers.
+    """
+    answers = os.fdopen(os.dup(1), "wb")
+    os.dup2(2, 1)
+    session = Session(engine)
+    running = True
+    while running:
+        echo: Header = {}
+        try:
+            request = read_frame(sys.stdin.buffer)
+            running = request is not None
+            if request is not None:
+                echo = {key: request[0][key] for key in ("id",) if key in request[0]}
+                header, blocks = session.answer(*request)
+                write_frame(answers, {"status": "ok", **echo, **header}, blocks)
+        except Unsupported as reason:
+            write_frame(answers, {"status": "unsupported", **echo, "reason": _sentence(reason)})
+        except BrokenPipeError:
+            running = False
+        except Exception as reason:  # an engine's failure is an answer
+            traceback.print_exc()
+            write_frame(answers, {"status": "error", **echo, "reason": _sentence(reason)})
+
+
+def _sentence(reason: Exception) -> str:
+    """Tell the exception in one line."""
+    text = " ".join(str(reason).split()) or "no message"
+    return text if isinstance(reason, (Unsupported, ValueError)) else f"{type(reason).__name__}: {text}"

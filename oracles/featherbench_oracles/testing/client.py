@@ -1,0 +1,136 @@
+"""A client of an oracle's process."""
+
+from __future__ import annotations
+
+import os
+import sys
+from pathlib import Path
+from subprocess import DEVNULL, PIPE, Popen
+from typing import BinaryIO, cast
+
+from featherbench_oracles.algebra import Array
+from featherbench_oracles.frames import Answer, Blocks, Header, read_frame, write_frame
+
+HOME = Path(__file__).resolve().parents[2]  # the folder in which the package lies
+Methods = dict[str, list[str]]
+
+
+class Oracle:
+    """An oracle's process.
+
+    Parameters
+    ----------
+    *arguments : str
+        What Python is given, as in `-m featherbench_oracles.mujoco`; it finds this package, and nothing in the current folder.
+    """
+
+    def __init__(self, *arguments: str) -> None:
+        paths = [str(HOME), *filter(None, [os.environ.get("PYTHONPATH")])]
+        environment = {**os.environ, "PYTHONPATH": os.pathsep.join(paths)}
+        command = [sys.executable, "-P", *arguments]
+        self.process = Popen(command, stdin=PIPE, stdout=PIPE, stderr=DEVNULL, env=environment)
+        self.requests, self.answers = cast(BinaryIO, self.process.stdin), cast(BinaryIO, self.process.stdout)
+
+    @classmethod
+    def of(cls, engine: str) -> Oracle:
+        """Start the oracle of an engine of this package."""
+        return cls("-m", f"featherbench_oracles.{engine}")
+
+    def ask(self, header: Header, blocks: Blocks | None = None) -> Answer:
+        """Put one request.
+
+        Parameters
+        ----------
+        header : dict
+            The request.
+        blocks : Blocks | None
+            Its blocks.
+
+        Returns
+        -------
+        tuple of dict and dict
+            The answer's header and blocks.
+        """
+        write_frame(self.requests, header, blocks)
+        return self.answer()
+
+    def answer(self) -> Answer:
+        """Read the next answer; its status is `ended` where there is none."""
+        return read_frame(self.answers) or ({"status": "ended", "reason": "the oracle ended"}, {})
+
+    def must(self, header: Header, blocks: Blocks | None = None) -> Answer:
+        """Put a request that has to succeed.
+
+        Parameters
+        ----------
+        header : dict
+            The request.
+        blocks : Blocks | None
+            Its blocks.
+
+        Returns
+        -------
+        tuple of dict and dict
+            The answer's header and blocks.
+
+        Raises
+        ------
+        RuntimeError
+            If the status is not `ok`.
+        """
+        answer, values = self.ask(header, blocks)
+        if answer["status"] != "ok":
+            raise RuntimeError(f"{header['op']}: {answer}")
+        return answer, values
+
+    def value(self, quantity: str, method: str, count: int, body: int | None = None) -> Array:
+        """Ask for a quantity at the first states.
+
+        Parameters
+        ----------
+        quantity : str
+            The quantity.
+        method : str
+            The method.
+        count : int
+            How many states.
+        body : int | None
+            The body, where the quantity is one body's.
+
+        Returns
+        -------
+        ndarray, shape (count, *shape of the quantity)
+            The numbers, in the units of PROTOCOL.md.
+        """
+        header = {"op": "evaluate", "quantity": quantity, "method": method, "first": 0, "count": count}
+        return self.must(header if body is None else {**header, "body": body})[1]["value"]
+
+    def at(self, states: Blocks, quantity: str, method: str) -> Array:
+        """Ask for a quantity at these states.
+
+        Parameters
+        ----------
+        states : dict of str to ndarray
+            As of `draws.random_states`.
+        quantity : str
+            The quantity.
+        method : str
+            The method.
+
+        Returns
+        -------
+        ndarray, shape (states, *shape of the quantity)
+            The numbers, in the units of PROTOCOL.md.
+        """
+        self.must({"op": "states", "count": len(states["q"])}, states)
+        return self.value(quantity, method, len(states["q"]))
+
+    def end(self) -> int:
+        """End its input, and wait for it; the exit status."""
+        self.requests.close()
+        return self.process.wait(timeout=60)
+
+    def methods(self) -> Methods:
+        """Tell its quantities, each with its methods."""
+        methods: Methods = self.must({"op": "hello"})[0]["methods"]
+        return methods

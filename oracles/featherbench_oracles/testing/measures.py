@@ -1,0 +1,170 @@
+"""Measures of residuals, and the tolerances that they are held to.
+
+A residual has no unit: M is scaled by its diagonal, a force by the sum of the magnitudes of its terms, an acceleration by the norm of M,
+other things by the largest number of their kind in that state (the robots' lengths being about a metre).
+"""
+
+from __future__ import annotations
+
+import math
+import os
+from dataclasses import dataclass
+
+import numpy as np
+
+from featherbench_oracles.algebra import Array
+from featherbench_oracles.frames import Blocks
+from featherbench_oracles.robot import Description
+
+
+def tolerance_scale(text: str) -> float:
+    """Read the factor on every tolerance: at 0 each residual but zero fails.
+
+    Parameters
+    ----------
+    text : str
+        A number.
+
+    Returns
+    -------
+    float
+        The factor.
+
+    Raises
+    ------
+    ValueError
+        If it would turn a comparison off: it is no finite number, or less than 0.
+    """
+    try:
+        scale = float(text)
+    except ValueError:
+        scale = math.nan
+    if not (math.isfinite(scale) and scale >= 0):
+        raise ValueError(f"FEATHERBENCH_TOL_SCALE is '{text}': it must be a finite number, 0 or more")
+    return scale
+
+
+TOLERANCE_SCALE = tolerance_scale(os.environ.get("FEATHERBENCH_TOL_SCALE", "1"))
+
+
+def within(tolerance: float) -> float:
+    """Scale a tolerance by FEATHERBENCH_TOL_SCALE."""
+    return tolerance * TOLERANCE_SCALE
+
+
+EXACT = within(2e-13)  # of algorithms that lose a few digits in sums
+INVERSE = within(1e-9)  # of id after fd, where an explicit inverse loses the condition of M
+DIFFERENCE = within(1e-8)  # of differences of fourth order
+
+
+def ratio(difference: Array, scale: Array | float = 1.0) -> float:
+    """Compute max |difference| / max |scale|; no difference is 0 whatever the scale.
+
+    Parameters
+    ----------
+    difference : ndarray
+        Of any shape.
+    scale : ndarray or float
+        Of any shape, in the unit of the difference.
+
+    Returns
+    -------
+    float
+        Without unit.
+    """
+    top = np.abs(difference).max()
+    return 0.0 if top == 0 else float(top / np.abs(scale).max())
+
+
+def residual(quantity: str, x: Array, y: Array, reference: Reference) -> float:
+    """Measure the worst difference of x from y over the states.
+
+    Parameters
+    ----------
+    quantity : str
+        The quantity.
+    x : ndarray, shape (states, *shape of the quantity)
+        One answer.
+    y : ndarray, shape (states, *shape of the quantity)
+        The other.
+    reference : Reference
+        What it is measured by.
+
+    Returns
+    -------
+    float
+        Without unit.
+    """
+    worst = []
+    for k, (xk, yk) in enumerate(zip(x, y, strict=True)):
+        m, force = reference.mass[k], reference.force[k]
+        d = np.sqrt(np.diag(m))
+        if quantity == "mass_matrix":
+            worst.append(ratio((xk - yk) / np.outer(d, d)))
+        elif quantity == "mass_matrix_probe":
+            worst.append(np.max([ratio((xk - yk)[i] / d, yk[i] / d) for i in range(6)]))  # max() would lose a NaN
+        elif quantity in ("id", "id_wrench", "bias"):
+            worst.append(ratio((xk - yk) / force))
+        elif quantity == "fd":
+            condition = np.linalg.cond(m / np.outer(d, d))  # |force / d| is what a must be found from
+            error, size = np.sqrt([(xk - yk) @ m @ (xk - yk), yk @ m @ yk])
+            worst.append(error / (size + np.linalg.norm(force / d)) / condition)
+        elif quantity == "body_placement":
+            worst.append(ratio((xk - yk)[:, :9]) + ratio((xk - yk)[:, 9:], yk[:, 9:]))
+        else:
+            scale = {"potential_energy": y, "body_acceleration": reference.acceleration[k]}.get(quantity, yk)
+            worst.append(ratio(xk - yk, scale))
+    return float(np.max(worst))
+
+
+@dataclass(frozen=True)
+class Reference:
+    """What residuals are measured by, at each state: M, and of other quantities the sum of the magnitudes of their terms.
+
+    `id` is inverse dynamics by Newton's and Euler's equations of every body, from one oracle's kinematics:
+    tau = Σ J' (I α + ω × I ω + c × m (a_c - g); m (a_c - g)) + armature a.
+    """
+
+    mass: Array
+    id: Array
+    force: Array
+    acceleration: Array
+
+    @classmethod
+    def make(cls, robot: Description, states: Blocks, x: Blocks, jacobians: Array) -> Reference:
+        """Make the reference from one oracle's values.
+
+        Parameters
+        ----------
+        robot : Description
+            The robot.
+        states : dict of str to ndarray
+            As of `draws.random_states`.
+        x : dict of str to ndarray
+            The values by quantity.
+        jacobians : ndarray, shape (bodies, states, 6, nv)
+            Of each body.
+
+        Returns
+        -------
+        Reference
+            The reference.
+        """
+        acceleration = np.abs(x["body_acceleration"]).max(axis=(1, 2)) + (x["body_velocity"] ** 2).max(axis=(1, 2))
+        tau = np.concatenate([body.joint.armature for body in robot.bodies]) * states["a"]
+        force = np.abs(tau) + np.abs(np.einsum("kij,kj->ki", x["mass_matrix"], states["a"]))
+        for k, b in np.ndindex(len(tau), len(robot.bodies)):
+            body, r = robot.bodies[b], x["body_placement"][k, b, :9].reshape(3, 3)
+            inertia, c = r @ body.inertia @ r.T, r @ body.com
+            (omega, v), (alpha, a) = (x[name][k, b].reshape(2, 3) for name in ("body_velocity", "body_acceleration"))
+            push = body.mass * (a + np.cross(alpha, c) + np.cross(omega, np.cross(omega, c)) - robot.gravity)
+            moments = inertia @ alpha, np.cross(omega, inertia @ omega), np.cross(c, push)
+            tau[k] += jacobians[b, k].T @ np.append(sum(moments), push)
+            spatial = body.mass * np.linalg.norm(omega) * np.linalg.norm(v)  # m ω × v, of which spatial algorithms rid themselves
+            wrench = np.linalg.norm(states["wrench"][k, b].reshape(2, 3), axis=1)
+            # Products of vectors round by the product of their lengths, also where they cancel: the cross product of parallel vectors does.
+            gyroscopic = np.linalg.norm(omega) * np.linalg.norm(inertia @ omega)
+            thrust = np.linalg.norm(push) + body.mass * acceleration[k]
+            sizes = wrench + spatial + [np.linalg.norm(moments[0]) + gyroscopic + np.linalg.norm(c) * thrust, thrust]
+            force[k] += np.abs(jacobians[b, k].T) @ np.repeat(sizes, 3)
+        return cls(x["mass_matrix"], tau, force, acceleration)

@@ -1,0 +1,54 @@
+"""What all tests share: the oracles' processes, and what happens where an engine is not installed."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterator
+from importlib.util import find_spec
+
+import pytest
+
+from featherbench_oracles.testing.client import Oracle
+
+# engine -> the package that has to be installed
+PACKAGES = {"pinocchio": "pinocchio", "mujoco": "mujoco", "drake": "pydrake", "dart": "dartpy", "truth": "mpmath"}
+REQUIRE_ALL = "FEATHERBENCH_REQUIRE_ALL"
+
+
+def require(engine: str) -> None:
+    """Skip the test where the engine is not installed; fail it where FEATHERBENCH_REQUIRE_ALL is set."""
+    if find_spec(PACKAGES[engine]) is not None:
+        return
+    reason = f"{engine} is not installed (`featherbench oracles install`)"
+    if os.environ.get(REQUIRE_ALL) is not None:
+        pytest.fail(f"{reason}, and {REQUIRE_ALL} is set")
+    pytest.skip(reason)
+
+
+class Oracles:
+    """The engines' oracles, each started when it is first asked for, and again once it has ended."""
+
+    def __init__(self) -> None:
+        self.running: dict[str, Oracle] = {}
+
+    def __getitem__(self, engine: str) -> Oracle:
+        """Find the oracle of an engine, which has to be installed."""
+        require(engine)
+        oracle = self.running.get(engine)
+        if oracle is None or oracle.process.poll() is not None:
+            oracle = self.running[engine] = Oracle.of(engine)
+        return oracle
+
+    def end(self) -> None:
+        """End them all."""
+        for oracle in self.running.values():
+            if oracle.process.poll() is None:
+                oracle.end()
+
+
+@pytest.fixture(scope="session")
+def oracles() -> Iterator[Oracles]:
+    """Give the oracles, and end them behind the last test."""
+    running = Oracles()
+    yield running
+    running.end()

@@ -1,0 +1,148 @@
+"""Times that an oracle tells of its engine's own calls."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from featherbench_oracles import ENGINES
+from featherbench_oracles.algebra import Array
+from featherbench_oracles.change import Change
+from featherbench_oracles.clock import Calls, Stream
+from featherbench_oracles.frames import Header
+from featherbench_oracles.protocol import Question
+from featherbench_oracles.robot import Description
+from featherbench_oracles.testing.client import Oracle
+from featherbench_oracles.testing.draws import COUNT, random_robot, random_states, without_armature
+
+from .conftest import Oracles
+from .test_session import status_of
+
+ESTIMATING = ("drake", "dart")
+# quantity and method of what both time, seven each
+TIMED = {
+    "drake": [
+        ("id", "inverse_dynamics"),
+        ("bias", "inverse_dynamics"),
+        ("mass_matrix", "crba"),
+        ("mass_matrix_sparse", "crba"),
+        ("fd", "aba"),
+        ("kinetic_energy", "kinetic_energy"),
+        ("body_jacobian", "jacobian_spatial_velocity"),
+    ],
+    "dart": [
+        ("id", "inverse_dynamics"),
+        ("bias", "inverse_dynamics"),
+        ("mass_matrix", "mass_matrix"),
+        ("mass_matrix_sparse", "mass_matrix"),
+        ("fd", "aba"),
+        ("kinetic_energy", "kinetic_energy"),
+        ("com", "center_of_mass"),
+    ],
+}
+MODEL = without_armature(random_robot(np.random.default_rng(12), "timed", ["free", *["revolute"] * 25]))
+STATES = random_states(np.random.default_rng(13), Description.read(MODEL))
+ALONE = {name: block if name == "probe" else block[:1] for name, block in STATES.items()}
+CLOCK: Header = {"op": "clock", "first": 20, "count": 25, "body": 25}
+
+
+class Ticks:
+    """A clock that goes on when a call says so, and by 50 ns whenever it is read."""
+
+    def __init__(self) -> None:
+        self.now = 0
+
+    def __call__(self) -> int:
+        """Tell the time."""
+        self.now += 50
+        return self.now
+
+
+class Waiting:
+    """A robot whose only call takes as long as it is told, by this clock."""
+
+    def __init__(self, ticks: Ticks, nanoseconds: int) -> None:
+        self.ticks, self.nanoseconds = ticks, nanoseconds
+
+    def change(self, ask: Question) -> Change:
+        """Change nothing."""
+        return Change((), np.zeros(len(ask.v)))
+
+    def positions(self, q: Array) -> Array:
+        """Leave them as they are."""
+        return q
+
+    def wait(self, _q: Array, _v: Array) -> None:
+        """Let the time pass."""
+        self.ticks.now += self.nanoseconds
+
+
+ONE = np.zeros(1)
+ASK = Question(ONE, ONE, ONE, ONE, ONE, ONE, body=0)
+WAIT = Calls("q v", Waiting.wait)
+
+
+def test_overhead_is_subtracted() -> None:
+    """Of 60 µs the 20 µs on a robot without bodies are subtracted, 20 times; the loop holds one reading of the clock."""
+    ticks = Ticks()
+    stream = Stream(WAIT, Waiting(ticks, 60_000), Waiting(ticks, 20_000), [ASK, ASK], ticks)
+    nanoseconds, overhead = stream.time(1, 20)
+    assert nanoseconds == 800_050
+    assert overhead == 400_000
+
+
+def test_no_time_below_nothing() -> None:
+    """Where calling takes as long as what was measured, there is no estimate."""
+    ticks = Ticks()
+    stream = Stream(WAIT, Waiting(ticks, 20_000), Waiting(ticks, 60_000), [ASK], ticks)
+    with pytest.raises(ValueError, match="nothing is left"):
+        stream.time(0, 5)
+
+
+@pytest.mark.parametrize("engine", ENGINES)
+def test_what_is_timed_is_told(oracles: Oracles, engine: str) -> None:
+    """An engine that is called through Python says that its times are estimates, and of which methods."""
+    hello = oracles[engine].must({"op": "hello"})[0]
+    told = [(quantity, method) for quantity, methods in hello.get("timed", {}).items() for method in methods]
+    assert sorted(told) == sorted(TIMED.get(engine, []))
+    assert hello.get("clock") == ("estimate" if engine in ESTIMATING else None)
+
+
+@pytest.mark.parametrize("engine", ENGINES)
+def test_what_is_not_timed_is_unsupported(oracles: Oracles, engine: str) -> None:
+    """Without states a time is an error, and a method that is more than calls of the engine has none."""
+    oracle = oracles[engine]
+    clock = {**CLOCK, "quantity": "momentum", "method": oracle.methods()["momentum"][0]}
+    oracle.must({"op": "prepare", "model": MODEL})
+    assert status_of(oracle.ask(clock)) == "error"
+    oracle.must({"op": "states", "count": COUNT}, STATES)
+    assert status_of(oracle.ask(clock)) == "unsupported"
+
+
+def _timed(oracle: Oracle, asked: Header) -> tuple[float, float]:
+    """Time a call and its overhead in nanoseconds, of the block that was interrupted least by other processes."""
+    answers = [oracle.must(asked)[0] for _ in range(25)]
+    least = min(answers, key=lambda answer: answer["nanoseconds"] + answer["overhead"])
+    return least["nanoseconds"] / asked["count"], least["overhead"] / asked["count"]
+
+
+@pytest.mark.parametrize(("engine", "quantity", "method"), [(e, *pair) for e in ESTIMATING for pair in TIMED[e]])
+def test_time_of_calls(oracles: Oracles, engine: str, quantity: str, method: str) -> None:
+    """A call takes some time and has some overhead; it answers the same behind the clock, and is computed again for the same state.
+
+    Between a stream and one state again and again there may be a factor of 2.5: caches make one state faster, but not for nothing.
+    """
+    oracle, asked = oracles[engine], {**CLOCK, "quantity": quantity, "method": method}
+    evaluate = {**asked, "op": "evaluate", "first": 0, "count": COUNT}
+    oracle.must({"op": "prepare", "model": MODEL})
+    oracle.must({"op": "states", "count": COUNT}, STATES)
+    before = oracle.must(evaluate)[1]["value"]
+    assert status_of(oracle.ask({**asked, "count": 0})) == "error"
+    streamed, overhead = _timed(oracle, asked)
+    whole = streamed + overhead
+    assert 100 < streamed < 1e7
+    assert 100 < overhead < 1e5
+    assert (oracle.must(evaluate)[1]["value"] == before).all()
+    oracle.must({"op": "states", "count": 1}, ALONE)
+    assert whole / sum(_timed(oracle, asked)) <= 2.5
+    assert whole / sum(_timed(oracle, {**asked, "count": 1})) <= 2.5
