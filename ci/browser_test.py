@@ -7,6 +7,8 @@ Needs chromium and chromedriver on the path, and nothing but Python's own librar
 Prints each check and `N passed, N failed`; ends with 0 if all passed, 1 if one failed, 2 if the browser could not be started.
 """
 
+from __future__ import annotations
+
 import argparse
 import base64
 import json
@@ -19,6 +21,8 @@ import tempfile
 import time
 import urllib.error
 import urllib.request
+from collections.abc import Callable, Iterator
+from typing import Any
 
 ELEMENT = "element-6066-11e4-a52e-4f735466cecf"
 ESCAPE, ARROW_RIGHT, ARROW_DOWN, ENTER = "\ue00c", "\ue014", "\ue015", "\ue007"
@@ -27,19 +31,31 @@ ESCAPE, ARROW_RIGHT, ARROW_DOWN, ENTER = "\ue00c", "\ue014", "\ue015", "\ue007"
 class Browser:
     """One page of Chromium, driven through chromedriver."""
 
-    def __init__(self, profile):
+    def __init__(self, profile: str) -> None:
         self.driver = subprocess.Popen(["chromedriver", "--port=0"], stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
-        self.session = None
+        self.session: str | None = None
         try:
-            for line in self.driver.stdout:
+            for line in self.driver.stdout or ():
                 if port := re.search(r"started successfully on port (\d+)", line):
                     self.base = f"http://127.0.0.1:{port[1]}"
                     break
             else:
                 raise RuntimeError("chromedriver did not start")
-            flags = ["--headless=new", "--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run", "--disable-background-networking",
-                     "--disable-component-update", "--disable-sync", "--disable-dev-shm-usage", "--force-prefers-reduced-motion", f"--user-data-dir={profile}", "--window-size=1440,1000"]
-            options = {"args": flags}
+            flags = [
+                "--headless=new",
+                "--no-sandbox",
+                "--disable-gpu",
+                "--disable-quic",
+                "--no-first-run",
+                "--disable-background-networking",
+                "--disable-component-update",
+                "--disable-sync",
+                "--disable-dev-shm-usage",
+                "--force-prefers-reduced-motion",
+                f"--user-data-dir={profile}",
+                "--window-size=1440,1000",
+            ]
+            options: dict[str, Any] = {"args": flags}
             if binary := shutil.which("chromium") or shutil.which("chromium-browser") or shutil.which("google-chrome"):
                 options["binary"] = binary
             wanted = {"browserName": "chrome", "goog:chromeOptions": options, "goog:loggingPrefs": {"browser": "ALL", "performance": "ALL"}}
@@ -48,7 +64,8 @@ class Browser:
             self.close()
             raise
 
-    def call(self, method, path, body=None):
+    def call(self, method: str, path: str, body: dict[str, Any] | None = None) -> Any:
+        """Send a command of WebDriver, and return its value."""
         data = None if body is None else json.dumps(body).encode()
         request = urllib.request.Request(self.base + path, data, {"Content-Type": "application/json"}, method=method)
         try:
@@ -57,46 +74,59 @@ class Browser:
         except urllib.error.HTTPError as error:
             raise RuntimeError(json.load(error)["value"]["message"].splitlines()[0]) from None
 
-    def post(self, path, **body):
+    def post(self, path: str, **body: Any) -> Any:
+        """Send a command of this session."""
         return self.call("POST", f"/session/{self.session}{path}", body)
 
-    def open(self, address):
+    def open(self, address: str) -> None:
+        """Go to an address."""
         self.post("/url", url=address)
 
-    def run(self, script, *arguments):
-        """Runs a script in the page; its `return` is the value."""
+    def run(self, script: str, *arguments: Any) -> Any:
+        """Run a script in the page; its `return` is the value."""
         return self.post("/execute/sync", script=script, args=list(arguments))
 
-    def find(self, selector):
-        return self.post("/element", using="css selector", value=selector)[ELEMENT]
+    def find(self, selector: str) -> str:
+        """Find the first element of a selector."""
+        return str(self.post("/element", using="css selector", value=selector)[ELEMENT])
 
-    def click(self, selector):
-        """A real click, at the element's place on the screen: one that is covered or off the screen fails."""
+    def click(self, selector: str) -> None:
+        """Click at the element's place on the screen: one that is covered or off the screen fails."""
         self.run("document.querySelector(arguments[0]).scrollIntoView({block: 'center', behavior: 'instant'})", selector)
         self.post(f"/element/{self.find(selector)}/click")
 
-    def press(self, *keys):
+    def press(self, *keys: str) -> None:
+        """Press keys, one after the other."""
         actions = [{"type": kind, "value": key} for key in keys for kind in ("keyDown", "keyUp")]
         self.post("/actions", actions=[{"type": "key", "id": "keyboard", "actions": actions}])
 
-    def choose(self, selector, value):
-        """Chooses an option of a list as a reader's choice does: with its event."""
-        self.run("const list = document.querySelector(arguments[0]); list.value = arguments[1]; list.dispatchEvent(new Event('change', {bubbles: true}))", selector, value)
+    def choose(self, selector: str, value: str) -> None:
+        """Choose an option of a list as a reader's choice does: with its event."""
+        self.run(
+            "const list = document.querySelector(arguments[0]); list.value = arguments[1];"
+            " list.dispatchEvent(new Event('change', {bubbles: true}))",
+            selector,
+            value,
+        )
 
-    def until(self, script, *arguments, seconds=20):
-        """Waits until a script returns something true, and returns that; whatever it was last if it never does."""
+    def until(self, script: str, *arguments: Any, seconds: float = 20) -> Any:
+        """Wait until a script returns something true, and returns that; whatever it was last if it never does."""
         end = time.monotonic() + seconds
         while not (value := self.run(script, *arguments)) and time.monotonic() < end:
             time.sleep(0.05)
         return value
 
-    def log(self, kind):
-        return self.post("/se/log", type=kind)
+    def log(self, kind: str) -> list[dict[str, Any]]:
+        """Take what a log holds since it was taken last."""
+        entries: list[dict[str, Any]] = self.post("/se/log", type=kind)
+        return entries
 
-    def shot(self, path):
+    def shot(self, path: pathlib.Path) -> None:
+        """Write a picture of the window."""
         path.write_bytes(base64.b64decode(self.call("GET", f"/session/{self.session}/screenshot")))
 
-    def close(self):
+    def close(self) -> None:
+        """End the page and the driver."""
         if self.session:
             self.call("DELETE", f"/session/{self.session}")
         self.driver.terminate()
@@ -110,22 +140,39 @@ CLOSED = "return !document.querySelector('#rows').open"
 BACKGROUND = "return getComputedStyle(document.body).backgroundColor"
 # Every section in its order; those that are not in ALWAYS appear with their rows alone.
 SECTIONS = [
-    "verdict", "agreement", "reading", "joints", "digits", "depth", "time", "speed", "tradeoff", "conditioning", "steps", "pairs", "conventions",
-    "known", "provenance", "method", "unpassed",
+    "verdict",
+    "agreement",
+    "reading",
+    "joints",
+    "digits",
+    "depth",
+    "time",
+    "speed",
+    "tradeoff",
+    "conditioning",
+    "steps",
+    "pairs",
+    "conventions",
+    "known",
+    "provenance",
+    "method",
+    "unpassed",
 ]
 ALWAYS = set(SECTIONS) - {"reading", "joints", "digits", "speed", "tradeoff", "conditioning", "steps", "known"}
+Checks = Iterator[tuple[str, Any, Any]]  # what, whether it is so, what was seen
+Shot = Callable[[str], None]  # takes a picture of that name
 FOCUS = "const cell = document.activeElement.closest('td'); return cell ? [cell.parentElement.rowIndex, cell.cellIndex] : null"
 
 
-def checks(page, address, shots):
-    """Yields (what, whether it is so, what was seen)."""
+def checks(page: Browser, address: str, shots: pathlib.Path | None) -> Checks:
+    """Yield (what, whether it is so, what was seen)."""
 
-    def shot(name):
+    def shot(name: str) -> None:
         if shots:
             page.shot(shots / f"{name}.png")
 
-    def has(selector):
-        return page.run("return document.querySelector(arguments[0]) !== null", selector)
+    def has(selector: str) -> bool:
+        return bool(page.run("return document.querySelector(arguments[0]) !== null", selector))
 
     page.open(address)
     sections = page.run("return [...document.querySelectorAll('main > section')].map(section => section.id)")
@@ -195,7 +242,10 @@ def checks(page, address, shots):
         yield "one engine can be chosen", shown == 1, shown
         shot("engine")
         page.choose("#heat-engine", "")
-        page.run("const box = document.querySelector('#heat-filter'); box.value = 'no model has this name'; box.dispatchEvent(new Event('input'))")
+        page.run(
+            "const box = document.querySelector('#heat-filter'); box.value = 'no model has this name';"
+            " box.dispatchEvent(new Event('input'))"
+        )
         shown = page.run("return [...document.querySelectorAll('#heat tr[data-m]')].filter(row => !row.hidden).length")
         yield "the filter hides models", shown == 0, shown
         page.run("const box = document.querySelector('#heat-filter'); box.value = ''; box.dispatchEvent(new Event('input'))")
@@ -209,12 +259,20 @@ def checks(page, address, shots):
     if has("#depth-quantity"):
         title = "return document.querySelector('#depth-plot .ytitle').textContent"
         before = page.run(title)
-        others = page.run("const list = document.querySelector('#depth-quantity'); return [...list.options].filter(option => option.value !== list.value).map(option => option.value)")
+        others = page.run(
+            "const list = document.querySelector('#depth-quantity');"
+            " return [...list.options].filter(option => option.value !== list.value).map(option => option.value)"
+        )
         if others:
             page.choose("#depth-quantity", others[0])
             after = page.until(f"const now = (() => {{ {title} }})(); return now !== arguments[0] && now", before)
             yield "another quantity can be plotted", bool(after) and page.until(DRAWN, "depth-plot") > 0, [before, after]
-        marks = "const mark = document.querySelector('#depth-plot .points path'); if (!mark) return null; mark.scrollIntoView({block: 'center', behavior: 'instant'}); const box = mark.getBoundingClientRect(); return [box.x + box.width / 2, box.y + box.height / 2]"
+        marks = """
+            const mark = document.querySelector('#depth-plot .points path');
+            if (!mark) return null;
+            mark.scrollIntoView({block: 'center', behavior: 'instant'});
+            const box = mark.getBoundingClientRect();
+            return [box.x + box.width / 2, box.y + box.height / 2]"""
         place = page.run(marks)
         if place:
             move = {"type": "pointerMove", "duration": 50, "x": round(place[0]), "y": round(place[1])}
@@ -243,7 +301,11 @@ def checks(page, address, shots):
     after = page.run(BACKGROUND)
     yield "the theme changes", before != after, [before, after]
     if plot_before:
-        yield "the plots change with it", page.until(f"const now = (() => {{ {ink} }})(); return now !== arguments[0] && now", plot_before), plot_before
+        yield (
+            "the plots change with it",
+            page.until(f"const now = (() => {{ {ink} }})(); return now !== arguments[0] && now", plot_before),
+            plot_before,
+        )
     shot("theme")
     if shots:
         for place in sections:
@@ -260,7 +322,7 @@ def checks(page, address, shots):
 
     errors = [entry["message"] for entry in page.log("browser") if entry["level"] in ("SEVERE", "WARNING")]
     yield "the console is silent", not errors, errors[:3]
-    asked = set()
+    asked: set[str] = set()
     for entry in page.log("performance"):
         message = json.loads(entry["message"])["message"]
         if message["method"] == "Network.requestWillBeSent":
@@ -269,8 +331,8 @@ def checks(page, address, shots):
     yield "nothing is asked of the network", bool(asked) and not outside, outside[:3]
 
 
-def joints(page, shot):
-    """The checks of the joint matrix."""
+def joints(page: Browser, shot: Shot) -> Checks:
+    """Check the joint matrix."""
     page.run("document.getElementById('joints').scrollIntoView({behavior: 'instant'})")
     shot("joints")
     drawn = page.run("return document.querySelectorAll('#joints-table td button').length")
@@ -278,11 +340,14 @@ def joints(page, shot):
     yield "the joint matrix shows every cell", drawn == told > 0, [drawn, told]
     kinds = {"unsupported": "skip", "deviates": "deviation", "agrees": "p"}
     for state, style in kinds.items():
-        tip = page.run("""
+        tip = page.run(
+            """
             const button = document.querySelector(`#joints-table td button[class^='${arguments[0]}']`);
             if (!button) return null;
             button.focus();
-            return document.querySelector('#tip').textContent""", style)
+            return document.querySelector('#tip').textContent""",
+            style,
+        )
         words = {"unsupported": "not offered", "deviates": "deviates by known cause", "agrees": "method"}[state]
         yield f"a cell of the joint matrix that {state} says so", tip is None or words in tip, tip
     shot("joints-tip")
@@ -292,7 +357,11 @@ def joints(page, shot):
         const heads = [...document.querySelectorAll('#rows-table th')].map(head => head.textContent);
         const table = [...document.querySelectorAll('#rows-table tbody tr')];
         return ['engine', 'quantity', 'model'].map(name => [...new Set(table.map(row => row.cells[heads.indexOf(name)].textContent))])""")
-    yield "a click on a cell of the joint matrix shows its rows alone", rows > 0 and all(len(part) == 1 for part in seen) and seen[2][0].startswith("joints-"), seen
+    yield (
+        "a click on a cell of the joint matrix shows its rows alone",
+        rows > 0 and all(len(part) == 1 for part in seen) and seen[2][0].startswith("joints-"),
+        seen,
+    )
     page.press(ESCAPE)
     page.run("document.querySelector('#joints-table td button').focus()")
     start = page.run(FOCUS)
@@ -302,13 +371,18 @@ def joints(page, shot):
     yield "arrow keys walk the joint matrix", start and end and end != start, [start, end]
 
 
-def digits(page, shot):
-    """The checks of the digits section."""
+def digits(page: Browser, shot: Shot) -> Checks:
+    """Check the digits section."""
     shown = "[...document.querySelectorAll('#digits-table td button')].find(button => !button.closest('[hidden]'))"
-    yield "a cell of the digits says its quartiles", "quartiles" in page.run(f"""
+    yield (
+        "a cell of the digits says its quartiles",
+        "quartiles"
+        in page.run("""
         const button = [...document.querySelectorAll('#digits-table td button[class^=d]')].find(button => !button.closest('[hidden]'));
         button.focus();
-        return document.querySelector('#tip').textContent"""), ""
+        return document.querySelector('#tip').textContent"""),
+        "",
+    )
     shot("digits-cell")
     page.run(f"{shown}.id = 'clicked'")
     page.click("#clicked")
@@ -318,7 +392,11 @@ def digits(page, shot):
         const table = [...document.querySelectorAll('#rows-table tbody tr')];
         const values = name => [...new Set(table.map(row => row.cells[heads.indexOf(name)].textContent))];
         return [values('engine'), values('method'), values('quantity'), document.querySelector('#rows-filters [name=study]').value]""")
-    yield "a click on a cell of the digits shows its method's rows alone", rows > 0 and [len(part) for part in seen[:3]] == [1, 1, 1] and seen[3] == "digits", seen
+    yield (
+        "a click on a cell of the digits shows its method's rows alone",
+        rows > 0 and [len(part) for part in seen[:3]] == [1, 1, 1] and seen[3] == "digits",
+        seen,
+    )
     page.press(ESCAPE)
 
     page.run(f"{shown}.focus()")
@@ -335,24 +413,30 @@ def digits(page, shot):
         yield f"the digits of {quantity} can be chosen", heads == 1 and plotted, heads
     if page.run("return document.querySelector('#digits-axis') !== null"):
         title = "return document.querySelector('#digits-plot .xtitle').textContent"
-        titles = set()
+        titles: set[str] = set()
         axes = page.run("return [...document.querySelector('#digits-axis').options].map(option => option.value)")
         for axis in axes[::-1]:
             page.choose("#digits-axis", axis)
             now = page.until(f"const now = (() => {{ {title} }})(); return !arguments[0].includes(now) && now", sorted(titles))
             family = page.run("return document.querySelector('#digits-family').value")
-            yield f"the digits can be plotted against {axis}", bool(now) and page.until(DRAWN, "digits-plot") > 0 and family != "", [now, family]
+            yield (
+                f"the digits can be plotted against {axis}",
+                bool(now) and page.until(DRAWN, "digits-plot") > 0 and family != "",
+                [now, family],
+            )
             titles.add(now)
             page.run("document.getElementById('digits-plot').scrollIntoView({block: 'center', behavior: 'instant'})")
             shot(f"digits-{axis}")
-    page.run("const box = document.querySelector('#digits-filter'); box.value = 'no model has this name'; box.dispatchEvent(new Event('input'))")
+    page.run(
+        "const box = document.querySelector('#digits-filter'); box.value = 'no model has this name'; box.dispatchEvent(new Event('input'))"
+    )
     left = page.run("return [...document.querySelectorAll('#digits-table tr[data-m]')].filter(row => !row.hidden).length")
     yield "the filter hides models of the digits", left == 0, left
     page.run("const box = document.querySelector('#digits-filter'); box.value = ''; box.dispatchEvent(new Event('input'))")
 
 
-def speed(page, shot):
-    """The checks of the section on speed."""
+def speed(page: Browser, shot: Shot) -> Checks:
+    """Check the section on speed."""
     title = "return document.querySelector('#speed-plot .ytitle').textContent"
     for quantity in page.run("return [...document.querySelector('#speed-quantity').options].map(option => option.value)")[::-1]:
         words = page.run("return document.querySelector('#speed-quantity').options[arguments[0]].textContent", int(quantity))
@@ -361,13 +445,23 @@ def speed(page, shot):
             page.choose("#speed-quantity", quantity)
             seen = page.until(f"const now = (() => {{ {title} }})(); return now.startsWith(arguments[0]) && now", words)
             ends = page.until("return document.querySelectorAll('#speed-plot .errorbar').length")
-            yield f"ratios of {words}, {case}, are plotted with intervals", bool(seen) and page.until(DRAWN, "speed-plot") > 0 and ends > 0, [seen, ends]
+            yield (
+                f"ratios of {words}, {case}, are plotted with intervals",
+                bool(seen) and page.until(DRAWN, "speed-plot") > 0 and ends > 0,
+                [seen, ends],
+            )
     rows = page.run("""
-        const means = [...document.querySelectorAll('#speed-summary tbody tr')].map(row => [...row.querySelectorAll('td.number')].map(cell => parseFloat(cell.textContent.replace(/^[^0-9]+/, ''))));
+        const number = cell => parseFloat(cell.textContent.replace(/^[^0-9]+/, ''));
+        const rows = [...document.querySelectorAll('#speed-summary tbody tr')];
+        const means = rows.map(row => [...row.querySelectorAll('td.number')].map(number));
         return means.map(([robots, mean, least, largest]) => least <= mean && mean <= largest && robots > 0)""")
     # On a machine that is not quiet every ratio may be void; the page then says so, and why.
     void = page.run("return !!document.querySelector('#speed-all-void') && document.querySelectorAll('#speed-void li').length > 0")
-    yield "every geometric mean lies between its least and its largest, or all ratios are void and the page says why", bool(rows) != void and all(rows), [rows, void]
+    yield (
+        "every geometric mean lies between its least and its largest, or all ratios are void and the page says why",
+        bool(rows) != void and all(rows),
+        [rows, void],
+    )
     page.run("document.querySelectorAll('#speed details').forEach(part => { part.open = true; })")
     for table in ["speed-controls"] if void else ["speed-summary", "speed-controls"]:
         found = page.run("return document.querySelectorAll(`#${arguments[0]} tbody tr`).length", table)
@@ -377,8 +471,9 @@ def speed(page, shot):
     page.run("document.querySelectorAll('#speed details').forEach(part => { part.open = false; })")
 
 
-def main():
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+def main() -> int:
+    """Run the checks."""
+    parser = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
     parser.add_argument("report", type=pathlib.Path, help="folder that holds index.html")
     parser.add_argument("--shots", type=pathlib.Path, help="folder for screenshots")
     arguments = parser.parse_args()

@@ -12,6 +12,7 @@ where there is none, the counts inform and fail nothing. Prints a Markdown table
 
 import argparse
 import csv
+import os
 import pathlib
 import re
 import subprocess
@@ -25,47 +26,50 @@ COLUMNS = ["rustc", "kernel", "model", "instructions"]
 # Inlining decisions elsewhere in a file move counts by tenths of a percent; a lost vectorisation or bounds check by several.
 TOLERANCE = 0.02
 FUNCTION = "instructions::featherbench_measured"
+Counts = dict[tuple[str, str], int]  # (kernel, model) -> instructions per call
 
 
-def compiler():
-    """The compiler's version, with its commit: `1.97.0 (0123456 2026-01-01)`."""
+def compiler() -> str:
+    """Tell the compiler's version, with its commit: `1.97.0 (0123456 2026-01-01)`."""
     return subprocess.run(["rustc", "--version"], check=True, capture_output=True, text=True).stdout.strip().removeprefix("rustc ")
 
 
-def build():
-    """Builds the program that runs the kernels, and returns its path."""
-    import os
+def build() -> pathlib.Path:
+    """Build the program that runs the kernels, and returns its path."""
     environment = {**os.environ, "RUSTFLAGS": "-C target-cpu=x86-64-v3 -C no-vectorize-slp", "CARGO_TARGET_DIR": str(TARGET)}
-    subprocess.run(["cargo", "build", "--release", "--quiet", "-p", "featherbench-engines", "--example", "instructions"], check=True, cwd=ROOT, env=environment)
+    command = ["cargo", "build", "--release", "--quiet", "-p", "featherbench-engines", "--example", "instructions"]
+    subprocess.run(command, check=True, cwd=ROOT, env=environment)
     return TARGET / "release/examples/instructions"
 
 
-def count(program):
-    """Instructions per call as {(kernel, model): number}: callgrind writes one file each time the measured function is left."""
+def count(program: pathlib.Path) -> Counts:
+    """Count instructions per call as {(kernel, model): number}: callgrind writes one file each time the measured function is left."""
     with tempfile.TemporaryDirectory() as folder:
         flags = ["--tool=callgrind", f"--toggle-collect={FUNCTION}", f"--dump-after={FUNCTION}", "--callgrind-out-file=out", "--quiet"]
         ended = subprocess.run(["valgrind", *flags, str(program)], cwd=folder, capture_output=True, text=True)
         if ended.returncode != 0:
             sys.exit(f"valgrind failed ({ended.returncode}): {ended.stderr.strip()[-400:]}")
         runs = [line.split(",") for line in ended.stdout.splitlines()]
-        files = sorted((path for path in pathlib.Path(folder).glob("out.*")), key=lambda path: int(path.suffix[1:]))
-        totals = [int(re.search(r"^(?:totals|summary): (\d+)", path.read_text(), re.MULTILINE)[1]) for path in files]
-    totals = [total for total in totals if total > 0]
+        files = sorted(pathlib.Path(folder).glob("out.*"), key=lambda path: int(path.suffix[1:]))
+        counted = [
+            int(number) for path in files for number in re.findall(r"^(?:totals|summary): (\d+)", path.read_text(), re.MULTILINE)[:1]
+        ]
+    totals = [total for total in counted if total > 0]
     if not runs or len(runs) != len(totals):
         sys.exit(f"{len(runs)} kernels ran, callgrind counted {len(totals)}: is '{FUNCTION}' still the measured function's name?")
-    return {(kernel, model): round(total / int(calls)) for (kernel, model, calls), total in zip(runs, totals)}
+    return {(kernel, model): round(total / int(calls)) for (kernel, model, calls), total in zip(runs, totals, strict=True)}
 
 
-def read(path, rustc):
-    """The counts of one compiler."""
+def read(path: pathlib.Path, rustc: str) -> Counts:
+    """Read the counts of one compiler."""
     if not path.exists():
         return {}
     with path.open(newline="") as file:
         return {(row["kernel"], row["model"]): int(row["instructions"]) for row in csv.DictReader(file) if row["rustc"] == rustc}
 
 
-def write(path, rustc, counts, keep):
-    """Writes the counts in one step, with the rows of other compilers where they are kept."""
+def write(path: pathlib.Path, rustc: str, counts: Counts, keep: bool) -> None:
+    """Write the counts in one step, with the rows of other compilers where they are kept."""
     rows = []
     if keep and path.exists():
         with path.open(newline="") as file:
@@ -79,8 +83,8 @@ def write(path, rustc, counts, keep):
     temporary.replace(path)
 
 
-def compare(baseline, counts):
-    """Lines of a Markdown table, and what is wrong: kernels that need more, and kernels that are gone."""
+def compare(baseline: Counts, counts: Counts) -> tuple[list[str], list[str]]:
+    """Make lines of a Markdown table, and what is wrong: kernels that need more, and kernels that are gone."""
     lines = ["| kernel | robot | baseline | now | change |", "|---|---|---:|---:|---:|"]
     wrong = []
     for (kernel, model), now in counts.items():
@@ -97,7 +101,8 @@ def compare(baseline, counts):
     return lines, wrong
 
 
-def main():
+def main() -> None:
+    """Count, and compare or accept."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--accept", action="store_true", help="make what is counted now the baseline")
     parser.add_argument("--out", type=pathlib.Path, help="write the counts here, and judge nothing")
@@ -115,7 +120,7 @@ def main():
         write(BASELINE, rustc, counts, keep=True)
         print(f"\naccepted: {len(counts)} counts in {BASELINE.relative_to(ROOT)}")
     elif not baseline:
-        print(f"\nno baseline of this compiler: nothing is judged. `python ci/instructions.py --accept` makes one.")
+        print("\nno baseline of this compiler: nothing is judged. `python ci/instructions.py --accept` makes one.")
     elif wrong:
         print(f"\n{len(wrong)} above the baseline by more than {TOLERANCE:.0%}, or gone:\n- " + "\n- ".join(wrong))
         print("\nWhere that is meant, `python ci/instructions.py --accept` makes it the baseline.")
