@@ -1,6 +1,6 @@
 /* Building the robot by MjSpec's C interface, and its states.
  *
- * What the engine holds, and how coordinates change, is as in oracles/mujoco.py: free joints have q_e = (p of the world, quaternion wxyz),
+ * What the engine holds, and how coordinates change, is as in oracles/featherbench_oracles/mujoco: free joints have q_e = (p of the world, quaternion wxyz),
  * T = diag(R, 1) and b = (R (ω × v), 0); spherical joints a quaternion wxyz; planar and universal joints are several in one body.
  */
 #include "robot.h"

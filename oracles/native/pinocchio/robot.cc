@@ -1,6 +1,6 @@
 // Building the robot by `addJoint` and `appendBodyToJoint`, states, and the table of the library.
 //
-// Coordinates: as in oracles/pinocchio.py. Planar joints have q_e = (x, y, cos θ, sin θ), T = diag(R(θ)', 1) and b = (θ̇ v_y, -θ̇ v_x, 0) with
+// Coordinates: as in oracles/featherbench_oracles/pinocchio. Planar joints have q_e = (x, y, cos θ, sin θ), T = diag(R(θ)', 1) and b = (θ̇ v_y, -θ̇ v_x, 0) with
 // v = R(θ)' (ẋ, ẏ); everything else is neutral.
 
 #include "robot.h"
