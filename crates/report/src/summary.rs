@@ -154,7 +154,7 @@ mod tests {
             lines[1],
             "  1. drake, bias force h: 2e-14 where 1e-14 is allowed (panda, fast, aba); far (too) from it (1 is not at most 2)"
         );
-        assert_eq!(lines[2], "  2. dart, forward dynamics: 1e-3 where 1e-14 is allowed (panda, fast, aba); known: far (too) from it");
+        assert_eq!(lines[2], "  2. dart, forward dynamics: 0.0010 where 1e-14 is allowed (panda, fast, aba); known: far (too) from it");
         assert!(lines[3].starts_with("  3. mujoco, "), "{lines:?}");
     }
 
