@@ -325,6 +325,9 @@ pub struct InstallArgs {
     /// Also build the native peers that timing takes, with clang and g++ where they are found (some minutes, once).
     #[arg(long)]
     pub native: bool,
+    /// Build rapier with cargo (a minute or two, once); the other engines only with --native. A suite that asks for rapier builds it as well.
+    #[arg(long)]
+    pub rapier: bool,
 }
 
 #[derive(Debug, Clone, Args)]

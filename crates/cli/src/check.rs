@@ -40,6 +40,9 @@ fn text(conformance: &Conformance, all: bool) -> String {
     for (quantity, methods) in &conformance.methods {
         text += &format!("offers  {quantity} by {}\n", methods.join(", "));
     }
+    if !conformance.steps.is_empty() {
+        text += &format!("offers  steps by {}\n", conformance.steps.join(", "));
+    }
     let sections = [("right", Standing::Right), ("lacks", Standing::Lacks), ("wrong", Standing::Wrong)];
     for (title, standing) in sections {
         let findings: Vec<&Finding> = conformance.of(standing).collect();

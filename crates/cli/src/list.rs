@@ -3,8 +3,9 @@
 use crate::args::ListArgs;
 use crate::fail::Fail;
 use crate::native::PEERS;
-use crate::oracles::{ENGINES, ESTIMATING, IN_PROCESS};
+use crate::oracles::{ENGINES, ESTIMATING};
 use crate::problems;
+use crate::rapier;
 use crate::root::Root;
 use engines::Native;
 use harness::{Context, Gates, Study, Subject};
@@ -48,7 +49,7 @@ fn text(root: &Root, args: &ListArgs) -> Result<String, Fail> {
         );
     }
     let peers = [&PEERS[..], &ESTIMATING].concat().join(", ");
-    text += &format!("\nengines:  native, {}, {IN_PROCESS}\npeers:    {peers}\n", ENGINES.join(", "));
+    text += &format!("\nengines:  native, {}, {}\npeers:    {peers}\n", ENGINES.join(", "), rapier::NAME);
     text += "studies:  agreement, reading, digits, conditioning, structure, reproductions, step_limit, repeatability, timing\n";
     text += "\nfamilies of generated robots, with their parameters:\n";
     for name in Family::NAMES {

@@ -20,6 +20,7 @@ mod patience;
 mod problems;
 mod progress;
 mod ranges;
+mod rapier;
 mod record;
 mod report;
 mod robot_file;
@@ -63,7 +64,14 @@ fn dispatch(cli: Cli) -> Result<(), Fail> {
         Command::Oracles(args) => match args.action {
             OraclesAction::Install(args) => {
                 let root = root()?;
-                oracles::install(&root).and_then(|_| if args.native { native::install(&root) } else { Ok(()) })
+                if args.rapier {
+                    let program = rapier::install(&root)?;
+                    eprintln!("rapier is built: {}", program.display());
+                }
+                if args.native || !args.rapier {
+                    oracles::install(&root)?;
+                }
+                if args.native { native::install(&root) } else { Ok(()) }
             }
             OraclesAction::Status => oracles::status(&root()?),
             OraclesAction::Check(args) => check::check(root().ok().as_ref(), &args),

@@ -3,6 +3,7 @@
 use crate::fail::Fail;
 use crate::native;
 use crate::package;
+use crate::rapier;
 use crate::root::Root;
 use engines::{Limits, Oracle};
 use harness::{Refusal, Subject};
@@ -17,8 +18,6 @@ use std::time::Duration;
 pub const ENGINES: [&str; 4] = ["pinocchio", "mujoco", "drake", "dart"];
 /// Those of them that estimate what their engine's own calls take, so that timing can name them as peers.
 pub const ESTIMATING: [&str; 2] = ["drake", "dart"];
-/// The engine that runs in this process, asked live in recorded runs as well.
-pub const IN_PROCESS: &str = "rapier";
 
 /// The environment's Python, or `None` when the engines are not installed in these versions.
 pub fn python(root: &Root) -> Option<PathBuf> {
@@ -40,7 +39,7 @@ pub fn install(root: &Root) -> Result<PathBuf, Fail> {
     let requirements = root.oracles().join("requirements.txt");
     let packages = root.oracles().join("packages.txt");
     let python = environment.join("bin/python");
-    let bar = spinner();
+    let bar = spinner("installing the reference engines (about 1.4 GB) …");
     let text = |path: &Path| path.as_os_str().to_owned();
     let uv = Command::new("uv").arg("--version").output().is_ok_and(|output| output.status.success());
     if uv {
@@ -105,9 +104,10 @@ fn step(bar: &ProgressBar, program: &str, arguments: &[OsString]) -> Result<(), 
     Err(missing(format!("`{program} {}` failed ({status}): {last}", shown.join(" "))))
 }
 
-fn spinner() -> ProgressBar {
+/// Progress of something long; where nobody watches, `announced` is said once.
+pub fn spinner(announced: &str) -> ProgressBar {
     if !std::io::stderr().is_terminal() {
-        eprintln!("installing the reference engines (about 1.4 GB) …");
+        eprintln!("{announced}");
         return ProgressBar::hidden();
     }
     let bar = ProgressBar::new_spinner();
@@ -152,6 +152,7 @@ pub fn reproducer(root: &Root, limits: Limits) -> studies::Reproduce {
 /// Prints what answers.
 pub fn status(root: &Root) -> Result<(), Fail> {
     native::status(root);
+    rapier::status(root);
     let Some(python) = python(root) else {
         let message = "the reference engines are not installed (or in other versions than oracles/requirements.txt asks)".into();
         return Err(Fail::Missing { message, advice: "run `featherbench oracles install`".into() });

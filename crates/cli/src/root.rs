@@ -64,6 +64,11 @@ impl Root {
         self.0.join("target/oracles")
     }
 
+    /// Where rapier is built.
+    pub fn rapier(&self) -> PathBuf {
+        self.engines().join("rapier")
+    }
+
     /// Where the packages of MJCF robots are unpacked.
     pub fn packages(&self) -> PathBuf {
         self.engines().join("packages")

@@ -6,9 +6,10 @@ use crate::guest;
 use crate::native;
 use crate::oracles;
 use crate::problems::Loaded;
+use crate::rapier;
 use crate::root::Root;
 use ::record::{EngineInfo, EngineSource};
-use engines::{Limits, Native, Rapier, Recorded, read_recordings};
+use engines::{Limits, Native, Recorded, read_recordings};
 use harness::{Problem, Subject};
 use std::sync::Arc;
 use std::time::Duration;
@@ -37,9 +38,10 @@ pub fn open(root: &Root, args: &RunArgs, loaded: &Loaded) -> Result<Subjects, Fa
             opened.add(peer.map(|peer| Box::new(peer) as Box<dyn Subject>), name, EngineSource::Live);
         }
     }
-    let (here, others): (Vec<&String>, Vec<&String>) = engines.iter().partition(|engine| *engine == oracles::IN_PROCESS);
-    for engine in here {
-        opened.add(Ok(Box::new(Rapier::new())), engine, EngineSource::Live);
+    // Rapier is not recorded: a run that asks for it builds it and asks it itself.
+    let (unrecorded, others): (Vec<&String>, Vec<&String>) = engines.iter().partition(|engine| *engine == rapier::NAME);
+    for engine in unrecorded {
+        opened.add(Ok(Box::new(rapier::start(root, limits)?)), engine, EngineSource::Live);
     }
     if args.live && !others.is_empty() {
         let python = oracles::install(root)?;

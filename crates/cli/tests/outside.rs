@@ -1,4 +1,4 @@
-//! Tests that need what a fresh machine may not have: Python, the reference engines, a browser.
+//! Tests that need what a fresh machine may not have: Python, the reference engines, rapier, a browser.
 //!
 //! Each is run where it can be and listed as skipped where it cannot; with `FEATHERBENCH_REQUIRE_ALL` set, as in CI, a skip is a failure; the native peers are due at night only,
 //! with `FEATHERBENCH_NIGHTLY` set.
@@ -10,6 +10,8 @@ mod compared;
 mod compiled;
 #[path = "outside/native.rs"]
 mod native;
+#[path = "outside/rapier.rs"]
+mod rapier;
 mod support;
 mod written;
 
@@ -57,6 +59,15 @@ fn main() -> ExitCode {
         ("the native peers agree with our kernels", native::peers_agree),
         ("big robots are refused or answered by the native peers", native::big_robots_are_refused_or_answered),
         ("native peers that are not there are named", native::no_compiler),
+        ("rapier that cannot be built is named", rapier::not_to_be_built),
+        ("rapier conforms", rapier::conforms),
+        ("rapier agrees on every joint that it has", || rapier::with_rapier(rapier::agrees)),
+        ("rapier has armature", || rapier::with_rapier(rapier::has_armature)),
+        ("rapier refuses what would panic", || rapier::with_rapier(rapier::refuses)),
+        ("rapier's steps approach a limit", || rapier::with_rapier(rapier::steps_approach_a_limit)),
+        ("rapier's steps have two regimes at a fast state", || rapier::with_rapier(rapier::a_fast_state_has_two_regimes)),
+        ("no step of rapier is explicit below its guard", || rapier::with_rapier(rapier::no_step_is_explicit_below_the_guard)),
+        ("the suite of rapier passes its gates", rapier::suite),
     ];
     let (mut passed, mut failed, mut skipped) = (0, 0, 0);
     // Like libtest: words on the command line choose the tests whose names contain one of them.

@@ -1,9 +1,8 @@
 //! Subjects: who answers.
 //!
 //! [`Native`] runs the kernels of this workspace; [`Oracle`] asks a program that speaks the protocol of `oracles/PROTOCOL.md`;
-//! [`peer`] serves an engine's native library by the same protocol; [`Rapier`] is a library in this process; [`Recorded`] plays back what an
-//! oracle once answered. To add an engine, write such a program, or implement
-//! [`Subject`](harness::Subject) in a file of its own here.
+//! [`peer`] serves an engine's native library by the same protocol; [`Recorded`] plays back what an oracle once answered. To add an engine,
+//! write such a program, in Rust too (`oracles/rapier`), or implement [`Subject`](harness::Subject) in a file of its own here.
 
 mod clock;
 mod coding;
@@ -13,7 +12,6 @@ mod native;
 mod oracle;
 pub mod peer;
 mod process;
-mod rapier;
 mod recorded;
 mod reproducer;
 mod request;
@@ -22,6 +20,5 @@ mod shape;
 pub use clock::{Clock, SystemClock};
 pub use native::{Native, timed};
 pub use oracle::{Limits, Oracle};
-pub use rapier::Rapier;
 pub use recorded::{EngineRecording, Recorded, Recording, RecordingError, Recordings, read_recordings, recording_name};
 pub use reproducer::reproduce;

@@ -1,12 +1,14 @@
 //! A subject behind the oracle protocol: one program, as many processes as there are threads asking.
 
+pub(crate) mod steps;
+
 use crate::clock::{Clock, SystemClock};
 pub use crate::process::Limits;
 use crate::process::Process;
 use crate::{request, shape};
 use harness::frame::{Block, Frame};
-use harness::provenance::PROGRAM;
-use harness::{Identity, Prepared, Problem, Quantity, Reading, ReadingNote, Refusal, RobotFile, Route, Subject};
+use harness::provenance::{PROGRAM, SOURCES};
+use harness::{Identity, Prepared, Problem, Quantity, Reading, ReadingNote, Refusal, RobotFile, Route, Stepper, Subject};
 use model::{BodyDescription, Description, StateBatch};
 use record::EngineSource;
 use serde_json::{Value, json};
@@ -15,6 +17,7 @@ use std::ffi::OsString;
 use std::ops::Range;
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Duration;
+use steps::Steps;
 
 /// Version of the protocol that we speak.
 pub(crate) const PROTOCOL: u64 = 1;
@@ -26,6 +29,8 @@ pub struct Oracle {
     timed_by: TimedBy,
     /// Whether it can move its data.
     scatter: bool,
+    /// What it offers of steps, if it integrates.
+    steps: Option<Steps>,
     command: Vec<OsString>,
     limits: Limits,
     clock: Arc<dyn Clock>,
@@ -98,8 +103,9 @@ impl Oracle {
             _ => TimedBy::Us,
         };
         let scatter = hello.header.get("scatter").and_then(Value::as_bool).unwrap_or(false);
+        let steps = Steps::offered(hello.header.get("steps")).map_err(|reason| format!("hello: {reason}"))?;
         let session = Session { process, model: String::new(), readback: Vec::new(), states: None, reading: None };
-        Ok(Self { identity, methods, timed_by, scatter, command, limits, clock, idle: Mutex::new(vec![session]) })
+        Ok(Self { identity, methods, timed_by, scatter, steps, command, limits, clock, idle: Mutex::new(vec![session]) })
     }
 
     /// The same oracle under another name; the engine's own name goes into its build, where it differs.
@@ -111,9 +117,18 @@ impl Oracle {
         self
     }
 
-    /// The same oracle with the content hash of its program in its build.
-    pub fn with_program(mut self, hash: &str) -> Self {
-        self.identity.build.insert(PROGRAM.into(), hash.into());
+    /// The same oracle with the content hash of its program in its build, as one that a user brings along.
+    pub fn with_program(self, hash: &str) -> Self {
+        self.with_hash(PROGRAM, hash)
+    }
+
+    /// The same oracle with the hash of the sources in its build that its program was compiled from.
+    pub fn with_sources(self, hash: &str) -> Self {
+        self.with_hash(SOURCES, hash)
+    }
+
+    fn with_hash(mut self, of: &str, hash: &str) -> Self {
+        self.identity.build.insert(of.into(), hash.into());
         self
     }
 
@@ -182,6 +197,10 @@ impl Subject for Oracle {
                 Err(refusal)
             }
         }
+    }
+
+    fn stepper(&self) -> Option<&dyn Stepper> {
+        self.steps.is_some().then_some(self)
     }
 }
 

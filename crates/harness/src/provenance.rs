@@ -26,6 +26,9 @@ pub fn collect(root: &Path) -> RunInfo {
 /// Where the build of an engine that a user brings along holds the content hash of its program: a version is what a program says of itself.
 pub const PROGRAM: &str = "program";
 
+/// Where the build of an engine that is compiled from the project's sources holds their hash.
+pub const SOURCES: &str = "sources";
+
 /// What a resumed run must share with the run that it continues, by name.
 pub fn fingerprint(info: &RunInfo) -> BTreeMap<String, String> {
     let run = [
@@ -35,11 +38,11 @@ pub fn fingerprint(info: &RunInfo) -> BTreeMap<String, String> {
         ("libm", libm()),
         ("source of answers", if info.live { "live".into() } else { "recorded".into() }),
     ];
-    let guests = info.engines.iter().filter_map(|engine| {
-        let program = engine.build.get(PROGRAM)?;
-        Some((format!("program of engine {}", engine.name), program.clone()))
+    let programs = info.engines.iter().flat_map(|engine| {
+        let hash = move |what: &str| Some((format!("{what} of engine {}", engine.name), engine.build.get(what)?.clone()));
+        [PROGRAM, SOURCES].into_iter().filter_map(hash)
     });
-    run.into_iter().map(|(what, value)| (what.to_owned(), value)).chain(guests).collect()
+    run.into_iter().map(|(what, value)| (what.to_owned(), value)).chain(programs).collect()
 }
 
 /// A hash of the bits that the mathematics library gives for sines and cosines at fixed arguments.
@@ -83,5 +86,28 @@ fn host() -> Host {
         load: read("/proc/loadavg").split_whitespace().next().and_then(|load| load.parse().ok()),
         kernel: read("/proc/sys/kernel/osrelease"),
         memory: (kilobytes > 0).then_some(kilobytes << 10),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use record::{EngineInfo, EngineSource};
+
+    #[test]
+    fn a_run_shares_the_programs_and_the_sources_of_its_engines() {
+        let engine = |name: &str, key: &str, hash: &str| EngineInfo {
+            name: name.into(),
+            version: "1".into(),
+            source: EngineSource::Live,
+            build: [(key.to_owned(), hash.to_owned())].into(),
+            status: "ok".into(),
+            reason: String::new(),
+        };
+        let engines = vec![engine("mine", PROGRAM, "1"), engine("rapier", SOURCES, "2"), engine("drake", "language", "Python")];
+        let shared = fingerprint(&RunInfo { engines, ..RunInfo::default() });
+        let of_engines: Vec<(&str, &str)> =
+            shared.iter().filter(|(what, _)| what.contains(" of engine ")).map(|(what, hash)| (what.as_str(), hash.as_str())).collect();
+        assert_eq!(of_engines, [("program of engine mine", "1"), ("sources of engine rapier", "2")]);
     }
 }

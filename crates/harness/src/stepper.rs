@@ -1,4 +1,4 @@
-//! The trait [`Stepper`]: an engine that integrates, asked what a step of a given length does.
+//! The trait [`Stepper`]: an engine that integrates, asked what a step of a given length does. Oracles offer it by the operations `step` and `fall`.
 
 use crate::{Problem, Refusal};
 use model::StateBatch;

@@ -1,59 +1,114 @@
-//! The study of small steps on a robot whose fast state meets the energy guard of rapier.
+//! The study of small steps on an engine of our own that is implicit, has an energy guard, and drifts in the first order.
 
-use engines::Rapier;
+use dynamics::{energy, forward_dynamics};
 use featherbench_studies::StepLimit;
-use harness::Subject;
-use record::{Record, Verdict};
+use harness::{Identity, Prepared, Problem, Quantity, Refusal, Stepper, Subject};
+use model::StateBatch;
+use record::{EngineSource, Record, Verdict};
 use serde_json::Value;
+use std::collections::BTreeMap;
 use support::{gates, robot, whole};
 
 mod support;
+
+/// dt·‖v‖ from which on the engine looks whether its implicit term adds energy.
+const GUARD: f64 = 1e-3;
+/// dt·‖v‖ from which on it does, and the step is explicit.
+const EXPLICIT: f64 = 0.3;
+
+/// An engine that only steps.
+struct Implicit(Identity);
+
+impl Implicit {
+    fn new() -> Self {
+        Self(Identity { name: "implicit".into(), version: "1".into(), source: EngineSource::Live, build: BTreeMap::new() })
+    }
+}
+
+impl Subject for Implicit {
+    fn identity(&self) -> &Identity {
+        &self.0
+    }
+
+    fn methods(&self, _: Quantity) -> Vec<String> {
+        Vec::new()
+    }
+
+    fn prepare<'a>(&'a self, _: &'a Problem, _: Quantity, _: &str, _: &'a StateBatch) -> Result<Box<dyn Prepared + 'a>, Refusal> {
+        Err(Refusal::Unsupported("it only steps".into()))
+    }
+
+    fn stepper(&self) -> Option<&dyn Stepper> {
+        Some(self)
+    }
+}
+
+fn speed(v: &[f64]) -> f64 {
+    v.iter().map(|v| v * v).sum::<f64>().sqrt()
+}
+
+impl Stepper for Implicit {
+    fn step_methods(&self) -> Vec<String> {
+        vec!["step".into(), "step_default".into()]
+    }
+
+    /// The true acceleration, smaller by its dt·‖v‖-th part if the step is implicit; with damping by a tenth of it as well.
+    fn step_acceleration(&self, problem: &Problem, method: &str, states: &StateBatch, k: usize, dt: f64) -> Result<Vec<f64>, Refusal> {
+        let exact = forward_dynamics(&problem.model, states.q(k), states.v(k), states.tau(k)).unwrap();
+        let first_order = dt * speed(states.v(k));
+        let damped = if method == "step" { 0.0 } else { 0.1 };
+        let share = 1.0 - damped - if first_order >= EXPLICIT { 0.0 } else { first_order };
+        Ok(exact.iter().map(|a| share * a).collect())
+    }
+
+    fn guard(&self) -> Option<f64> {
+        Some(GUARD)
+    }
+
+    fn fall(&self, problem: &Problem, _: &str, states: &StateBatch, k: usize, dt: f64, steps: usize) -> Result<Vec<f64>, Refusal> {
+        let start = energy(&problem.model, states.q(k), states.v(k)).unwrap();
+        Ok((1..=steps).map(|i| start.kinetic + start.potential + dt * i as f64 / steps as f64).collect())
+    }
+}
 
 fn params(row: &Record) -> (f64, Option<String>) {
     let params: Value = serde_json::from_str(&row.params).unwrap();
     (params["dt"].as_f64().unwrap(), params["regime"].as_str().map(str::to_owned))
 }
 
-/// Checks the rows of one robot; how many of its steps are explicit, and how many of those at a fast state implicit.
-fn regimes(spec: &str) -> [usize; 2] {
-    let subjects: [Box<dyn Subject>; 1] = [Box::new(Rapier::new())];
-    let rows = whole(&StepLimit, &robot(spec), &gates(""), &subjects);
-    let steps = |method: &str| -> Vec<&Record> { rows.iter().filter(|row| row.metric == "step_error" && row.method == method).collect() };
-    assert_eq!((steps("step").len(), steps("step_default").len()), (18, 18), "{spec}");
-    let (mut explicit, mut implicit) = (0, 0);
-    for row in steps("step") {
-        let (dt, regime) = params(row);
-        let value = row.value.unwrap();
-        match regime.as_deref() {
-            Some("explicit") => {
-                assert!(
-                    value < 1e-14 && row.case == "fast" && row.reason.contains("this step is explicit"),
-                    "{dt}: {value:e}: {}",
-                    row.reason
-                );
-                explicit += 1;
-            }
-            Some("implicit") => {
-                assert!(value > 1e-14 && row.reason.is_empty(), "{dt}: {value:e}: {}", row.reason);
-                implicit += usize::from(row.case == "fast");
-            }
-            other => panic!("{other:?}"),
-        }
-        assert_eq!(row.verdict, Verdict::Info);
-    }
-    // With damping and substeps the acceleration has another limit, and its error no regime.
-    assert!(steps("step_default").iter().all(|row| params(row).1.is_none() && row.reason.is_empty()));
-    assert!(rows.iter().filter(|row| row.metric == "energy_drift").all(|row| params(row).1.is_none()));
-    let order: Vec<f64> = rows.iter().filter(|row| row.metric == "order" && row.quantity == "fd").map(|row| row.value.unwrap()).collect();
-    assert!(order.len() == 1 && (order[0] - 1.0).abs() < 0.01, "{order:?}");
-    [explicit, implicit]
-}
-
 #[test]
 fn each_step_names_its_regime() {
-    let robots =
-        ["chain:n=3,layout=spatial", "chain:n=6,layout=spatial", "joints:kind=spherical,base=fixed", "joints:kind=revolute,base=fixed"];
-    let found = robots.map(regimes);
-    assert!(found.iter().any(|[explicit, _]| *explicit > 0), "{found:?}");
-    assert!(found.iter().all(|[explicit, implicit]| explicit + implicit == 9 && *implicit >= 6), "{found:?}");
+    for spec in ["chain:n=3,layout=spatial", "joints:kind=spherical,base=fixed", "joints:kind=revolute,base=fixed"] {
+        let subjects: [Box<dyn Subject>; 1] = [Box::new(Implicit::new())];
+        let problem = robot(spec);
+        let rows = whole(&StepLimit, &problem, &gates(""), &subjects);
+        let steps =
+            |method: &str| -> Vec<&Record> { rows.iter().filter(|row| row.metric == "step_error" && row.method == method).collect() };
+        assert_eq!((steps("step").len(), steps("step_default").len()), (18, 18), "{spec}");
+        let (mut explicit, mut implicit_beyond) = (0, 0);
+        for row in steps("step") {
+            let ((dt, regime), value) = (params(row), row.value.unwrap());
+            let state = problem.states.cases.iter().position(|case| case.name() == row.case).unwrap();
+            let first_order = dt * speed(problem.states.v(state));
+            implicit_beyond += usize::from((GUARD..EXPLICIT).contains(&first_order));
+            if first_order >= EXPLICIT {
+                explicit += 1;
+                assert!(value < 1e-14 && row.reason.contains("this step is explicit"), "{dt}: {value:e}: {}", row.reason);
+                assert_eq!(regime.as_deref(), Some("explicit"), "{dt}");
+            } else {
+                assert!(value > 1e-14 && row.reason.is_empty(), "{dt}: {value:e}: {}", row.reason);
+                assert_eq!(regime.as_deref(), Some("implicit"), "{dt}");
+            }
+            assert_eq!(row.verdict, Verdict::Info);
+        }
+        assert!(explicit > 0 && implicit_beyond > 0, "{spec}: {explicit} {implicit_beyond}");
+        // With damping the acceleration has another limit, and its error no regime.
+        assert!(steps("step_default").iter().all(|row| params(row).1.is_none() && row.reason.is_empty()));
+        assert!(rows.iter().filter(|row| row.metric == "energy_drift").all(|row| params(row).1.is_none()));
+        for quantity in ["fd", "kinetic_energy"] {
+            let orders: Vec<f64> =
+                rows.iter().filter(|row| row.metric == "order" && row.quantity == quantity).map(|row| row.value.unwrap()).collect();
+            assert!(orders.len() == 1 && (orders[0] - 1.0).abs() < 0.01, "{spec} {quantity}: {orders:?}");
+        }
+    }
 }

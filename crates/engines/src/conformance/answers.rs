@@ -20,18 +20,25 @@ pub(super) struct Answers {
     given: BTreeMap<(String, String), Given>,
 }
 
-/// Asks everything about a robot.
-pub(super) fn ask(talk: &mut Talk, index: usize, scene: &Scene, offered: &Methods, answers: &mut Answers) {
+/// Asks for every quantity of a robot; whether the oracle holds robot and states then.
+pub(super) fn ask(talk: &mut Talk, index: usize, scene: &Scene, offered: &Methods, answers: &mut Answers) -> bool {
     let problem = &scene.problem;
     let built = match talk.prepare(problem) {
         Ok(built) => built,
-        Err(reason) => return talk.note(Standing::Wrong, scene.shows, &reason, &[]),
+        Err(reason) => {
+            talk.note(Standing::Wrong, scene.shows, &reason, &[]);
+            return false;
+        }
     };
     match built.text("status") {
-        "unsupported" => return talk.note(Standing::Lacks, scene.shows, built.text("reason"), &[]),
+        "unsupported" => {
+            talk.note(Standing::Lacks, scene.shows, built.text("reason"), &[]);
+            return false;
+        }
         "error" => {
             let advice = ["a robot that the engine does not have is `unsupported`; `error` is for what should have worked"];
-            return talk.note(Standing::Wrong, scene.shows, built.text("reason"), &advice);
+            talk.note(Standing::Wrong, scene.shows, built.text("reason"), &advice);
+            return false;
         }
         _ => {}
     }
@@ -45,14 +52,14 @@ pub(super) fn ask(talk: &mut Talk, index: usize, scene: &Scene, offered: &Method
         Ok(numbers) => readback(talk, scene, numbers),
         Err(found) => talk.note(Standing::Wrong, "prepare reads the robot back", &format!("{}: {found}", scene.shows), &[]),
     }
-    evaluate_all(talk, index, scene, offered, answers);
+    evaluate_all(talk, index, scene, offered, answers)
 }
 
-/// Every quantity by every method of the robot that it holds.
-pub(super) fn evaluate_all(talk: &mut Talk, index: usize, scene: &Scene, offered: &Methods, answers: &mut Answers) {
+/// Every quantity by every method of the robot that it holds; whether it took the states.
+pub(super) fn evaluate_all(talk: &mut Talk, index: usize, scene: &Scene, offered: &Methods, answers: &mut Answers) -> bool {
     let (header, blocks) = states(&scene.problem, &scene.problem.states);
     if talk.expect("states are taken", header, blocks, &["ok"]).is_none() {
-        return;
+        return false;
     }
     for (quantity, method) in offered.iter().flat_map(|(quantity, methods)| methods.iter().map(move |method| (quantity, method))) {
         let Some(asked) = Quantity::parse(quantity) else { continue };
@@ -60,17 +67,27 @@ pub(super) fn evaluate_all(talk: &mut Talk, index: usize, scene: &Scene, offered
             answers.given.entry((quantity.clone(), method.clone())).or_default().push((index, value));
         }
     }
+    true
 }
 
-/// One quantity by one method: the whole batch, the same again, and parts of it.
+/// One quantity by one method, asked for in several ways.
 fn evaluations(talk: &mut Talk, scene: &Scene, quantity: Quantity, method: &str) -> Option<Vec<f64>> {
     let named = format!("{} by {method}", quantity.name());
-    let whole = evaluate(talk, scene, quantity, method, 0, robots::STATES)?;
-    let size = quantity.size(&scene.problem);
+    repeated(talk, &named, quantity.size(&scene.problem), |talk, first, count| evaluate(talk, scene, quantity, method, first, count))
+}
+
+/// Answers of so many numbers per state: about the whole batch, the same again, and parts of it.
+pub(super) fn repeated(
+    talk: &mut Talk,
+    named: &str,
+    size: usize,
+    mut ask: impl FnMut(&mut Talk, usize, usize) -> Option<Vec<f64>>,
+) -> Option<Vec<f64>> {
+    let whole = ask(talk, 0, robots::STATES)?;
     for (first, count, what) in
         [(0, robots::STATES, "asked twice"), (1, 3, "for a range of states"), (robots::STATES - 1, 1, "for one state")]
     {
-        let part = evaluate(talk, scene, quantity, method, first, count)?;
+        let part = ask(talk, first, count)?;
         let same = same_bits(&part, &whole[first * size..(first + count) * size]);
         let standing = if same { Standing::Right } else { Standing::Wrong };
         let found = if same { String::new() } else { format!("{named} has other bits") };
@@ -83,31 +100,24 @@ fn evaluate(talk: &mut Talk, scene: &Scene, quantity: Quantity, method: &str, fi
     let (problem, named) = (&scene.problem, format!("{} by {method}", quantity.name()));
     let body = problem.deepest_body();
     let header = json!({"op": "evaluate", "quantity": quantity.name(), "method": method, "first": first, "count": count, "body": body});
-    let answer = match talk.ask(header, Vec::new()) {
-        Ok(answer) => answer,
-        Err(reason) => {
-            talk.note(Standing::Wrong, &named, &format!("{}: {reason}", scene.shows), &[]);
-            return None;
-        }
+    numbers(talk, scene, &named, header, &shape::of_value(quantity, problem, count))
+}
+
+/// The numbers of the block `value` that answers a question, if it is answered; if not, why is noted.
+pub(super) fn numbers(talk: &mut Talk, scene: &Scene, named: &str, question: Value, due: &[usize]) -> Option<Vec<f64>> {
+    let (standing, found) = match talk.ask(question, Vec::new()) {
+        Err(reason) => (Standing::Wrong, reason),
+        Ok(answer) => match answer.text("status") {
+            "ok" => match shape::block(&answer, "value", due) {
+                Ok(values) => return Some(values.to_vec()),
+                Err(found) => (Standing::Wrong, found),
+            },
+            "unsupported" => (Standing::Lacks, answer.text("reason").to_owned()),
+            _ => (Standing::Wrong, answer.text("reason").to_owned()),
+        },
     };
-    match answer.text("status") {
-        "ok" => {}
-        "unsupported" => {
-            talk.note(Standing::Lacks, &named, &format!("{}: {}", scene.shows, answer.text("reason")), &[]);
-            return None;
-        }
-        _ => {
-            talk.note(Standing::Wrong, &named, &format!("{}: {}", scene.shows, answer.text("reason")), &[]);
-            return None;
-        }
-    }
-    match shape::block(&answer, "value", &shape::of_value(quantity, problem, count)) {
-        Ok(values) => Some(values.to_vec()),
-        Err(found) => {
-            talk.note(Standing::Wrong, &named, &format!("{}: {found}", scene.shows), &[]);
-            None
-        }
-    }
+    talk.note(standing, named, &format!("{}: {found}", scene.shows), &[]);
+    None
 }
 
 /// Names the first field that was not read back as it was given.

@@ -3,6 +3,7 @@
 use super::talk::Talk;
 use super::values::{Scene, same_bits};
 use super::{Standing, robots};
+use crate::oracle::steps::Steps;
 use crate::request::{description, states};
 use harness::Quantity;
 use harness::frame::{Block, Frame};
@@ -14,9 +15,9 @@ const PROTOCOL: u64 = crate::oracle::PROTOCOL;
 /// Quantities by method.
 pub(super) type Methods = BTreeMap<String, Vec<String>>;
 
-/// Asks who it is. Without an answer there is nothing more to ask.
-pub(super) fn hello(talk: &mut Talk) -> bool {
-    let Some(answer) = talk.expect("it answers hello", json!({"op": "hello"}), Vec::new(), &["ok"]) else { return false };
+/// Asks who it is, and what it offers of steps. Without an answer there is nothing more to ask.
+pub(super) fn hello(talk: &mut Talk) -> Option<Steps> {
+    let answer = talk.expect("it answers hello", json!({"op": "hello"}), Vec::new(), &["ok"])?;
     let mut wrong = Vec::new();
     let header = &answer.header;
     if header.get("protocol").and_then(Value::as_u64) != Some(PROTOCOL) {
@@ -41,12 +42,18 @@ pub(super) fn hello(talk: &mut Talk) -> bool {
             wrong.extend(empty.map(|(quantity, _)| format!("`methods` has no method, or one without a name, for {quantity}")));
         }
     }
+    let steps = Steps::offered(header.get("steps")).unwrap_or_else(|reason| {
+        wrong.push(reason);
+        None
+    });
     let standing = if wrong.is_empty() { Standing::Right } else { Standing::Wrong };
     talk.note(standing, "hello names protocol, engine, version, build and methods", &wrong.join("; "), &[]);
     talk.conformance.engine = format!("{} {}", answer.text("engine"), answer.text("version"));
     talk.conformance.methods = methods.unwrap_or_default();
     talk.conformance.methods.retain(|quantity, _| Quantity::parse(quantity).is_some());
-    true
+    let steps = steps.unwrap_or_default();
+    talk.conformance.steps.clone_from(&steps.methods);
+    Some(steps)
 }
 
 /// Requests that cannot be met while there is no robot.

@@ -2,7 +2,8 @@
 //!
 //! It asks about small robots of every kind of joint. What the oracle does not offer is lacking, and no fault. What it answers is compared with
 //! the native kernels in the harness' measures; where it differs, the usual mistakes of convention are tried as hypotheses, one by one and in
-//! pairs, and the one that explains every answer is named. An oracle that reads files is asked about the robot that it tells in the same way.
+//! pairs, and the one that explains every answer is named. An oracle that reads files is asked about the robot that it tells in the same way,
+//! one that integrates about its steps.
 
 mod answers;
 mod files;
@@ -10,6 +11,7 @@ mod manners;
 mod mistakes;
 mod orders;
 mod robots;
+mod steps;
 mod talk;
 mod turn;
 mod values;
@@ -54,6 +56,8 @@ pub struct Conformance {
     pub engine: String,
     /// The methods that it offers, by quantity.
     pub methods: BTreeMap<String, Vec<String>>,
+    /// The ways to step that it offers, if it integrates.
+    pub steps: Vec<String>,
     /// The findings, in the order in which they were made.
     pub findings: Vec<Finding>,
 }
@@ -87,9 +91,7 @@ pub fn check(start: &dyn Fn() -> Result<Box<dyn Line>, String>, watch: &dyn Fn(&
     let scenes: Vec<Scene> = robots::all()?.into_iter().map(|(shows, problem)| Scene::new(shows, problem)).collect();
     let mut talk = Talk::new(start);
     watch("hello");
-    if !manners::hello(&mut talk) {
-        return Ok(talk.conformance);
-    }
+    let Some(steps) = manners::hello(&mut talk) else { return Ok(talk.conformance) };
     watch("what has no answer");
     manners::before_prepare(&mut talk);
     let offered = talk.conformance.methods.clone();
@@ -97,13 +99,16 @@ pub fn check(start: &dyn Fn() -> Result<Box<dyn Line>, String>, watch: &dyn Fn(&
     if let Some(scene) = built {
         manners::with_robot(&mut talk, scene, &offered);
     }
-    let mut answers = Answers::default();
+    let (mut answers, mut stepped) = (Answers::default(), steps::Found::default());
     for (index, scene) in scenes.iter().enumerate() {
         watch(scene.shows);
-        answers::ask(&mut talk, index, scene, &offered, &mut answers);
+        if answers::ask(&mut talk, index, scene, &offered, &mut answers) {
+            steps::ask(&mut talk, scene, &steps, &mut stepped);
+        }
     }
     watch("mistakes");
     answers.judge(&mut talk, &scenes, "");
+    steps::judge(&mut talk, &steps, &stepped);
     answers::lacking(&mut talk, &offered);
     watch("files");
     files::read(&mut talk, &offered)?;

@@ -37,6 +37,13 @@ impl Scene {
         states.map(|((r, x), at)| scaled_error(&self.problem, quantity, at, r, x)).fold(0.0, worst)
     }
 
+    /// The largest difference of energies from native's at the first state, in the measure of the potential energy.
+    pub(super) fn drift(&self, energies: &[f64]) -> Option<f64> {
+        let start = self.native(Quantity::KineticEnergy)?[0] + self.native(Quantity::PotentialEnergy)?[0];
+        let off = |&energy: &f64| scaled_error(&self.problem, Quantity::PotentialEnergy, &self.at[0], &[start], &[energy]);
+        Some(energies.iter().map(off).fold(0.0, worst))
+    }
+
     /// The error up to which an answer is right.
     pub(super) fn tolerance(quantity: Quantity) -> f64 {
         if quantity == Quantity::ForwardDynamics { RIGHT_FORWARD } else { RIGHT }

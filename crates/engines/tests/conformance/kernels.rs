@@ -141,8 +141,40 @@ impl Kernels {
                 };
                 Ok(Frame::new(json!({}), vec![Block::new("value", &shape, prepared.read())]))
             }
+            op @ ("step" | "fall") => self.step(op, request),
             other => Err(failed(format!("there is no op '{other}'"))),
         }
+    }
+}
+
+impl Kernels {
+    /// An integrator without error: steps begin with the acceleration of forward dynamics, and a fall keeps its energy.
+    fn step(&self, op: &str, request: &Frame) -> Result<Frame, Refusal> {
+        let number = |key: &str| request.header.get(key).and_then(Value::as_u64).map(|n| n as usize).unwrap_or_default();
+        if request.text("method") != "exact" {
+            return Err(Refusal::Unsupported("there is no such way to step".into()));
+        }
+        let dt = request.header.get("dt").and_then(Value::as_f64).unwrap_or_default();
+        let (Some(problem), Some((_, states))) = (&self.problem, &self.states) else { return Err(failed("nothing to step")) };
+        let (first, count) = (number("first"), number("count"));
+        if dt <= 0.0 || first + count > states.count() {
+            return Err(failed("there is no such step"));
+        }
+        let native = Native::new();
+        let values = |quantity: Quantity| {
+            let method = native.methods(quantity).swap_remove(0);
+            let mut prepared = native.prepare(problem, quantity, &method, states)?;
+            prepared.run(first..first + count)?;
+            Ok::<_, Refusal>(prepared.read().to_vec())
+        };
+        let (each, value) = if op == "step" {
+            (problem.states.nv, values(Quantity::ForwardDynamics)?)
+        } else {
+            let (kinetic, potential) = (values(Quantity::KineticEnergy)?, values(Quantity::PotentialEnergy)?);
+            let steps = number("steps");
+            (steps, kinetic.iter().zip(potential).flat_map(|(k, p)| vec![k + p; steps]).collect())
+        };
+        Ok(Frame::new(json!({}), vec![Block::new("value", &[count, each], &value)]))
     }
 }
 

@@ -3,6 +3,7 @@
 
 mod kernels;
 mod reading;
+mod steps;
 
 use featherbench_engines::conformance::{Conformance, Line, Standing, check};
 use harness::Problem;

@@ -6,6 +6,7 @@
 mod clock;
 mod reading;
 mod script;
+mod steps;
 
 use crate::script::{HELLO, PATIENT, READBACK, Script, TWO, Trial, lives, robot, stillborn};
 use featherbench_engines::{Limits, Oracle};

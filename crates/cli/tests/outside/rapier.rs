@@ -1,11 +1,102 @@
-//! Rapier beside the native kernels, on robots of every joint that it has, and what it refuses.
+//! Rapier, where it is built: beside the native kernels on robots of every joint that it has, what it refuses, and what its steps do. And what
+//! is said where it cannot be built.
 
-use featherbench_engines::{Native, Rapier};
+use super::{Outcome, checked};
+use crate::support::{Ended, Sandbox, project};
+use engines::{Limits, Native, Oracle};
 use harness::measure::{ForwardScale, scaled_error, worst};
 use harness::{Problem, Quantity, Refusal, Subject};
 use model::Case;
 use model::generate::Family;
 use record::ModelOrigin;
+use std::path::PathBuf;
+use std::process::Command;
+use std::sync::LazyLock;
+
+/// The program, if it is made of the present sources.
+static PROGRAM: LazyLock<Option<PathBuf>> = LazyLock::new(|| {
+    let sandbox = sources();
+    std::fs::create_dir_all(sandbox.path("target/oracles")).unwrap();
+    std::os::unix::fs::symlink(project().join("target/oracles/rapier"), sandbox.path("target/oracles/rapier")).unwrap();
+    // The other engines are not there, so that nothing of theirs is started.
+    let status = sandbox.run(&["oracles", "status"]).output;
+    let line = status.lines().find(|line| line.starts_with("rapier")).unwrap_or_else(|| panic!("rapier is not in {status}"));
+    let program = PathBuf::from(line.rsplit(' ').next().unwrap());
+    let there = program.is_file().then(|| project().join("target/oracles/rapier/release").join(program.file_name().unwrap()));
+    there.filter(|program| program.is_file())
+});
+
+/// A project with the sources of rapier's oracle, and nothing built.
+fn sources() -> Sandbox {
+    let sandbox = Sandbox::new();
+    for name in ["Cargo.toml", ".cargo", "crates"] {
+        std::os::unix::fs::symlink(project().join(name), sandbox.path(name)).unwrap();
+    }
+    sandbox
+}
+
+fn program() -> Result<PathBuf, Outcome> {
+    PROGRAM.clone().ok_or_else(|| Outcome::Skipped("rapier is not built (`featherbench oracles install --rapier`)".into()))
+}
+
+/// A test that asks rapier.
+pub fn with_rapier(test: fn(&Oracle)) -> Outcome {
+    match program() {
+        Ok(program) => {
+            test(&Oracle::start(vec![program.into_os_string()], Limits::default()).unwrap());
+            Outcome::Passed
+        }
+        Err(skipped) => skipped,
+    }
+}
+
+/// It keeps the whole protocol, steps too.
+pub fn conforms() -> Outcome {
+    let program = match program() {
+        Ok(program) => program,
+        Err(skipped) => return skipped,
+    };
+    let command = &mut Command::new(env!("CARGO_BIN_EXE_featherbench"));
+    let ended = Ended::new(command.current_dir(project()).args(["oracles", "check"]).arg(program).output().unwrap());
+    ended.expect(0, &["conforms", "offers  steps by step, step_default", "step by step: 17 robots", "fall by step: 5 robots"]);
+    Outcome::Passed
+}
+
+/// The suite that is its own, judged by the gates.
+pub fn suite() -> Outcome {
+    if let Err(skipped) = program() {
+        return skipped;
+    }
+    let folder = tempfile::tempdir().unwrap();
+    let command = &mut Command::new(env!("CARGO_BIN_EXE_featherbench"));
+    match checked(command.current_dir(project()).args(["run", "--suite", "engines", "--out"]).arg(folder.path().join("out"))) {
+        Outcome::Passed => {}
+        other => return other,
+    }
+    let rows = std::fs::read_to_string(folder.path().join("out/records.csv")).unwrap();
+    for regime in ["explicit", "implicit"] {
+        assert!(rows.lines().any(|row| row.contains(",rapier,") && row.contains(regime)), "no step is {regime}");
+    }
+    Outcome::Passed
+}
+
+/// Without cargo, and without a registry, the engine that a suite asks for is missing, with what to do about it.
+pub fn not_to_be_built() -> Outcome {
+    let sandbox = sources();
+    let empty = sandbox.path("nothing");
+    std::fs::create_dir(&empty).unwrap();
+    let advice = ["rapier cannot be built", "oracles install --rapier"];
+    for arguments in [&["run", "--suite", "engines", "--out", "out"][..], &["oracles", "install", "--rapier"]] {
+        let without_cargo = Ended::new(sandbox.command(arguments).env("PATH", &empty).output().unwrap());
+        without_cargo.expect(3, &[&advice[..], &["cargo cannot be started"]].concat());
+        let offline = sandbox.command(arguments).env("CARGO_HOME", &empty).env("CARGO_NET_OFFLINE", "true").output().unwrap();
+        Ended::new(offline).expect(3, &[&advice[..], &["cargo build", "failed (exit status: 101): error"]].concat());
+    }
+    assert!(!sandbox.path("out").exists(), "no folder is made for a run that cannot be");
+    let status = sandbox.run(&["oracles", "status"]).output;
+    assert!(status.contains("rapier           is not built: run `featherbench oracles install --rapier`"), "{status}");
+    Outcome::Passed
+}
 
 fn problem(words: &str) -> Problem {
     let description = Family::parse(words).unwrap().generate().unwrap();
@@ -22,9 +113,9 @@ fn values(subject: &dyn Subject, problem: &Problem, quantity: Quantity) -> Resul
 /// The gate of the agreement study.
 const TOLERANCE: f64 = 1e-14;
 
-#[test]
-fn it_agrees_on_every_joint_that_it_has() {
-    let (native, rapier) = (Native::new(), Rapier::new());
+/// It agrees on every joint that it has.
+pub fn agrees(rapier: &Oracle) {
+    let native = Native::new();
     let mut compared = 0;
     for kind in ["revolute", "prismatic", "spherical", "planar", "translation", "cylindrical"] {
         for base in ["fixed", "free"] {
@@ -33,7 +124,7 @@ fn it_agrees_on_every_joint_that_it_has() {
             let forward = ForwardScale::all(&problem, &at);
             for quantity in Quantity::ALL.into_iter().filter(|&quantity| !rapier.methods(quantity).is_empty()) {
                 let size = quantity.size(&problem);
-                let (ours, theirs) = (values(&native, &problem, quantity).unwrap(), values(&rapier, &problem, quantity).unwrap());
+                let (ours, theirs) = (values(&native, &problem, quantity).unwrap(), values(rapier, &problem, quantity).unwrap());
                 assert_eq!(theirs.len(), ours.len(), "{kind} {base} {}", quantity.name());
                 let states = ours.chunks_exact(size).zip(theirs.chunks_exact(size)).enumerate();
                 let error = states.fold(0.0, |error, (k, (ours, theirs))| {
@@ -51,24 +142,23 @@ fn it_agrees_on_every_joint_that_it_has() {
     assert_eq!(compared, 12 * 8);
 }
 
-#[test]
-fn it_has_armature() {
+/// It has armature, but for its energy.
+pub fn has_armature(rapier: &Oracle) {
     for words in ["quadruped", "joints:kind=cylindrical,base=free,armature=true"] {
         let problem = problem(words);
         assert!(problem.description.bodies.iter().any(|body| body.joint.armature.iter().any(|&armature| armature > 0.0)), "{words}");
         let [ours, theirs] =
-            [&Native::new() as &dyn Subject, &Rapier::new()].map(|subject| values(subject, &problem, Quantity::MassMatrix).unwrap());
+            [&Native::new() as &dyn Subject, rapier].map(|subject| values(subject, &problem, Quantity::MassMatrix).unwrap());
         let (at, size) = (problem.magnitudes(), Quantity::MassMatrix.size(&problem));
         let error = scaled_error(&problem, Quantity::MassMatrix, &at[0], &ours[..size], &theirs[..size]);
         assert!(error <= TOLERANCE, "{words}: {error:e}");
-        assert!(matches!(values(&Rapier::new(), &problem, Quantity::KineticEnergy), Err(Refusal::Unsupported(_))), "its energy has none");
+        assert!(matches!(values(rapier, &problem, Quantity::KineticEnergy), Err(Refusal::Unsupported(_))), "its energy has none");
     }
 }
 
-#[test]
-fn it_refuses_what_would_panic() {
-    let rapier = Rapier::new();
-    let refused = |problem: &Problem, word: &str| match values(&rapier, problem, Quantity::MassMatrix) {
+/// It refuses what would panic.
+pub fn refuses(rapier: &Oracle) {
+    let refused = |problem: &Problem, word: &str| match values(rapier, problem, Quantity::MassMatrix) {
         Err(Refusal::Unsupported(reason)) => assert!(reason.contains(word), "{reason}"),
         other => panic!("{word}: {other:?}"),
     };
@@ -82,9 +172,9 @@ fn it_refuses_what_would_panic() {
     refused(&Problem::new(&description, "test", ModelOrigin::Generated, 2, 3).unwrap(), "positive");
 }
 
-#[test]
-fn its_steps_approach_its_limit() {
-    let (problem, rapier) = (problem("joints:kind=spherical,base=free"), Rapier::new());
+/// Its steps approach its limit.
+pub fn steps_approach_a_limit(rapier: &Oracle) {
+    let problem = problem("joints:kind=spherical,base=free");
     let stepper = rapier.stepper().unwrap();
     let at = problem.magnitudes();
     let scale = &ForwardScale::all(&problem, &at)[0];
@@ -99,8 +189,7 @@ fn its_steps_approach_its_limit() {
 const ROUNDING: f64 = 1e-15;
 
 /// The errors of steps at a state against the limit of short steps.
-fn step_errors<const N: usize>(problem: &Problem, k: usize, steps: [f64; N]) -> [f64; N] {
-    let rapier = Rapier::new();
+fn step_errors<const N: usize>(rapier: &Oracle, problem: &Problem, k: usize, steps: [f64; N]) -> [f64; N] {
     let stepper = rapier.stepper().unwrap();
     let scale = &ForwardScale::all(problem, &problem.magnitudes())[k];
     let step = |dt| stepper.step_acceleration(problem, "step", &problem.states, k, dt).unwrap();
@@ -109,26 +198,24 @@ fn step_errors<const N: usize>(problem: &Problem, k: usize, steps: [f64; N]) -> 
 }
 
 /// At a fast state a step of 1e-2 or 1e-3 s is explicit, and has no error; one of 1e-4 s is implicit, and has one of first order.
-#[test]
-fn a_fast_state_has_two_regimes() {
+pub fn a_fast_state_has_two_regimes(rapier: &Oracle) {
     let problem = problem("joints:kind=spherical,base=free");
     assert_eq!(problem.states.cases[7], Case::Fast);
-    let [hundredth, thousandth, implicit @ ..] = step_errors(&problem, 7, [1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7]);
+    let [hundredth, thousandth, implicit @ ..] = step_errors(rapier, &problem, 7, [1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7]);
     assert!(hundredth <= ROUNDING && thousandth <= ROUNDING, "{hundredth:e} {thousandth:e}");
     assert!((3e-2..4e-2).contains(&implicit[0]), "{implicit:?}");
     assert!(implicit.windows(2).all(|pair| (pair[0] / pair[1] - 10.0).abs() < 0.5), "{implicit:?}");
 }
 
 /// What is explicit is beyond the guard, at every state; what is not has an error in proportion to its length. Beyond the guard both occur.
-#[test]
-fn no_step_is_explicit_below_the_guard() {
+pub fn no_step_is_explicit_below_the_guard(rapier: &Oracle) {
     const STEPS: [f64; 9] = [1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9];
-    let guard = Rapier::new().stepper().unwrap().guard().unwrap();
+    let guard = rapier.stepper().unwrap().guard().unwrap();
     let (mut explicit, mut implicit_beyond, mut implicit_below) = (0, 0, 0);
     for words in ["chain:n=2,layout=spatial", "chain:n=3,layout=spatial", "joints:kind=spherical,base=free"] {
         let problem = problem(words);
         for k in 0..problem.states.count() {
-            let errors = step_errors(&problem, k, STEPS);
+            let errors = step_errors(rapier, &problem, k, STEPS);
             // At rest, or where no force depends on velocity, a step of any length is exact.
             let Some(shortest) = errors.last().filter(|&&error| error > ROUNDING) else { continue };
             // No joint's velocity is larger in any axes.

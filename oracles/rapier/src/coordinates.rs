@@ -14,8 +14,8 @@
 //! one would be a constraint between two joints; with three free angular axes the velocity is the angular one, whose change to the rates of
 //! Euler angles is not orthogonal, and singular at a pitch of ±90°.
 
-use harness::{Problem, Refusal};
-use model::{BodyDescription, JointType};
+use crate::refusal::Refusal;
+use model::{BodyDescription, Description, JointType};
 use rapier3d_f64::math::{Matrix, Pose, Rotation, Vector};
 use rapier3d_f64::prelude::{GenericJoint, GenericJointBuilder, JointAxesMask};
 
@@ -54,10 +54,10 @@ pub fn placement_of(joint: &GenericJoint) -> Pose {
 }
 
 /// What rapier's joints are displaced by from zero.
-pub fn displacement(problem: &Problem, q: &[f64]) -> Vec<f64> {
-    let mut all = Vec::with_capacity(problem.states.nv);
+pub fn displacement(robot: &Description, q: &[f64]) -> Vec<f64> {
+    let mut all = Vec::with_capacity(robot.nv());
     let mut at = 0;
-    for body in &problem.description.bodies {
+    for body in &robot.bodies {
         let q = &q[at..at + body.joint.kind.nq()];
         at += q.len();
         match body.joint.kind {
@@ -100,10 +100,10 @@ enum Block {
 
 impl Change {
     /// T and b of the table.
-    pub fn new(problem: &Problem, q: &[f64], v: &[f64]) -> Self {
+    pub fn new(robot: &Description, q: &[f64], v: &[f64]) -> Self {
         let (mut blocks, mut bias) = (Vec::new(), vec![0.0; v.len()]);
         let (mut at_q, mut at_v) = (0, 0);
-        for body in &problem.description.bodies {
+        for body in &robot.bodies {
             let kind = body.joint.kind;
             let end = at_q + kind.nq();
             if matches!(kind, JointType::Cylindrical { .. }) {

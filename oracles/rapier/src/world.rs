@@ -1,8 +1,8 @@
 //! One robot at one state in a world of rapier's.
 
-use super::coordinates::{self, Change};
-use harness::{Problem, Refusal};
-use model::{BodyDescription, JointType};
+use crate::coordinates::{self, Change};
+use crate::refusal::Refusal;
+use model::{BodyDescription, Description, JointType};
 use nalgebra::{DMatrix, Matrix3, SymmetricEigen};
 use rapier3d_f64::math::{Matrix, Rotation, Vector};
 use rapier3d_f64::prelude::MassProperties;
@@ -11,7 +11,7 @@ use rapier3d_f64::prelude::{Multibody, MultibodyJointHandle, PhysicsWorld, Rigid
 /// What a step may be left to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Settings {
-    /// No damping, one substep: the mechanics of the description.
+    /// No damping, one substep: the mechanics of the robot.
     Plain,
     /// As rapier comes: damping of 0.1 on every angular axis, four substeps.
     Default,
@@ -19,7 +19,7 @@ pub enum Settings {
 
 /// The robot, hung on one fixed body.
 pub struct World<'a> {
-    problem: &'a Problem,
+    robot: &'a Description,
     world: PhysicsWorld,
     bodies: Vec<RigidBodyHandle>,
     joint: MultibodyJointHandle,
@@ -29,14 +29,13 @@ pub struct World<'a> {
 
 impl<'a> World<'a> {
     /// Builds the robot at a state.
-    pub fn new(problem: &'a Problem, q: &[f64], v: &[f64], settings: Settings) -> Result<Self, Refusal> {
-        let description = &problem.description;
+    pub fn new(robot: &'a Description, q: &[f64], v: &[f64], settings: Settings) -> Result<Self, Refusal> {
         let mut world = PhysicsWorld::new();
-        world.gravity = Vector::from(description.gravity);
+        world.gravity = Vector::from(robot.gravity);
         let root = world.insert_body(RigidBodyBuilder::fixed());
-        let mut bodies = Vec::with_capacity(description.bodies.len());
+        let mut bodies = Vec::with_capacity(robot.bodies.len());
         let mut last = None;
-        for body in &description.bodies {
+        for body in &robot.bodies {
             let mass = mass_properties(body)?;
             let handle = world.insert_body(RigidBodyBuilder::dynamic().additional_mass_properties(mass).can_sleep(false));
             world.bodies[handle].recompute_mass_properties_from_colliders(&world.colliders);
@@ -45,9 +44,9 @@ impl<'a> World<'a> {
             bodies.push(handle);
         }
         let joint = last.ok_or_else(|| Refusal::Unsupported("rapier has no robot without a joint".into()))?;
-        let mut made = Self { problem, world, bodies, joint, change: Change::new(problem, q, v) };
+        let mut made = Self { robot, world, bodies, joint, change: Change::new(robot, q, v) };
         let velocity = made.change.forth(v);
-        let armature: Vec<f64> = description.bodies.iter().flat_map(|body| per_dof(&body.joint.armature, body.joint.kind.nv())).collect();
+        let armature: Vec<f64> = robot.bodies.iter().flat_map(|body| per_dof(&body.joint.armature, body.joint.kind.nv())).collect();
         // A diagonal follows swaps as a vector does; where T turns, `check` has refused armature.
         let armature = made.change.forth(&armature);
         let (multibody, bodies) = made.split()?;
@@ -56,7 +55,7 @@ impl<'a> World<'a> {
         if settings == Settings::Plain {
             multibody.damping_mut().fill(0.0);
         }
-        multibody.apply_displacements(&coordinates::displacement(problem, q));
+        multibody.apply_displacements(&coordinates::displacement(robot, q));
         multibody.forward_kinematics(bodies, false);
         multibody.update_rigid_bodies(bodies, true);
         multibody.generalized_velocity_mut().copy_from_slice(&velocity);
@@ -137,7 +136,7 @@ impl<'a> World<'a> {
     /// Puts rapier's generalized forces on the bodies.
     fn push(&mut self, tau: &[f64]) {
         let mut at = 0;
-        for (body, &handle) in self.problem.description.bodies.iter().zip(&self.bodies) {
+        for (body, &handle) in self.robot.bodies.iter().zip(&self.bodies) {
             let kind = body.joint.kind;
             let tau = &tau[at..at + kind.nv()];
             at += tau.len();

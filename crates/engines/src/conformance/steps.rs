@@ -1,0 +1,102 @@
+//! Steps, where an oracle offers them: shapes, repetition, ranges, what has no answer, that a short step begins with native's acceleration, and
+//! that a short fall keeps its energy.
+
+use super::answers::{numbers, repeated};
+use super::talk::Talk;
+use super::values::Scene;
+use super::{Standing, robots};
+use crate::oracle::steps::Steps;
+use harness::Quantity;
+use harness::measure::worst;
+use serde_json::{Value, json};
+
+/// A step so short, s, that at every state its own error is small, and so is the rounding of a difference of velocities.
+const SHORT: f64 = 1e-9;
+/// By how much such a step's acceleration may be off, in the measure of forward dynamics: mistaken conventions are off by more.
+const NEAR: f64 = 1e-4;
+/// A fall from the first state: the length of its steps, s, and their number.
+const FALL: (f64, usize) = (2e-5, 100);
+/// By how much its energy may drift, in the measure of the potential energy.
+const HELD: f64 = 1e-4;
+
+/// How far the answers of the first way to step, which has no extras, are off: robot by robot.
+#[derive(Default)]
+pub(super) struct Found {
+    accelerations: Vec<(&'static str, f64)>,
+    energies: Vec<(&'static str, f64)>,
+}
+
+/// Asks for steps of the robot and from the states that the oracle holds.
+pub(super) fn ask(talk: &mut Talk, scene: &Scene, steps: &Steps, found: &mut Found) {
+    let Some(plain) = steps.methods.first() else { return };
+    refusals(talk, plain);
+    for method in &steps.methods {
+        let accelerations = answers(talk, scene, question("step", method, SHORT), scene.problem.states.nv);
+        let energies = answers(talk, scene, question("fall", method, FALL.0), FALL.1);
+        if method != plain {
+            continue;
+        }
+        let due = accelerations.zip(scene.native(Quantity::ForwardDynamics));
+        found.accelerations.extend(due.map(|(value, due)| (scene.shows, scene.error(Quantity::ForwardDynamics, &due, &value))));
+        found.energies.extend(energies.and_then(|value| Some((scene.shows, scene.drift(&value[..FALL.1])?))));
+    }
+}
+
+/// Notes what was found about all robots.
+pub(super) fn judge(talk: &mut Talk, steps: &Steps, found: &Found) {
+    let Some(plain) = steps.methods.first() else { return };
+    let accelerations = [
+        "a short step begins with the acceleration of forward dynamics: in neutral coordinates, under gravity and the state's tau",
+        "the first way to step has no damping, friction, limits or contacts of the engine's own",
+    ];
+    let energies = [
+        "a fall is under gravity alone, without tau; its energies are those *after* each step, kinetic (armature included) and potential",
+        "the potential energy is zero at the world's origin",
+    ];
+    let about = [("step", &found.accelerations, NEAR, accelerations), ("fall", &found.energies, HELD, energies)];
+    for (op, errors, tolerance, advice) in about {
+        let (named, largest) = (format!("{op} by {plain}"), errors.iter().map(|(_, error)| *error).fold(0.0, worst));
+        // A NaN is no small error.
+        let wrong: Vec<_> = errors.iter().filter(|(_, error)| !matches!(error.partial_cmp(&tolerance), Some(o) if o.is_le())).collect();
+        match wrong.first() {
+            None if errors.is_empty() => {}
+            None => talk.note(Standing::Right, &named, &format!("{} robots, largest error {largest:.1e}", errors.len()), &[]),
+            Some((shows, error)) => {
+                let (some, all) = (wrong.len(), errors.len());
+                let reason = format!("{some} of {all} robots are off, the first being {shows} by {error:.1e} (at most {tolerance:.0e})");
+                talk.note(Standing::Wrong, &named, &reason, &advice);
+            }
+        }
+    }
+}
+
+/// A question about one state.
+fn question(op: &str, method: &str, dt: f64) -> Value {
+    json!({"op": op, "method": method, "first": 0, "count": 1, "dt": dt, "steps": FALL.1})
+}
+
+/// What no step answers.
+fn refusals(talk: &mut Talk, method: &str) {
+    for op in ["step", "fall"] {
+        let nothing = question(op, "no such way", SHORT);
+        talk.expect(&format!("a {op} by a way that it does not have is unsupported"), nothing, Vec::new(), &["unsupported"]);
+    }
+    // What the robot does not have may be said first.
+    let refused = ["error", "unsupported"];
+    for op in ["step", "fall"] {
+        talk.expect(&format!("a {op} of no length is refused"), question(op, method, 0.0), Vec::new(), &refused);
+        let mut beyond = question(op, method, SHORT);
+        beyond["first"] = robots::STATES.into();
+        talk.expect(&format!("a {op} from a state that was not sent is refused"), beyond, Vec::new(), &refused);
+    }
+}
+
+/// The answers at every state, each of so many numbers, asked for in several ways.
+fn answers(talk: &mut Talk, scene: &Scene, question: Value, size: usize) -> Option<Vec<f64>> {
+    let named = format!("{} by {}", question["op"].as_str()?, question["method"].as_str()?);
+    repeated(talk, &named, size, |talk, first, count| {
+        let mut header = question.clone();
+        (header["first"], header["count"]) = (first.into(), count.into());
+        numbers(talk, scene, &named, header, &[count, size])
+    })
+}

@@ -1,0 +1,68 @@
+//! Rapier3d in double precision, its reduced-coordinate multibodies, as an oracle: it speaks `../../PROTOCOL.md` on standard input and output.
+
+mod coordinates;
+mod refusal;
+mod robot;
+mod session;
+mod world;
+
+use formats::frame::Frame;
+use refusal::{Refusal, failed};
+use serde_json::json;
+use session::Session;
+use std::any::Any;
+use std::io::{BufRead, Write, stdin, stdout};
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::process::ExitCode;
+
+fn main() -> ExitCode {
+    match converse(&mut stdin().lock(), &mut stdout().lock()) {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(reason) => {
+            eprintln!("{reason}");
+            ExitCode::FAILURE
+        }
+    }
+}
+
+/// Answers request after request until the input ends, or is no frame: behind one that cannot be read nobody knows where the next begins.
+fn converse(input: &mut impl BufRead, output: &mut impl Write) -> Result<(), String> {
+    let mut session = Session::default();
+    loop {
+        let request = match Frame::read(input) {
+            Ok(Some(request)) => request,
+            Ok(None) => return Ok(()),
+            Err(error) => {
+                answered(Err(failed(&error))).write(output).map_err(|error| error.to_string())?;
+                return Err(error.to_string());
+            }
+        };
+        // Rapier panics where it has no answer. A robot or states that were being taken are then not there.
+        let result = catch_unwind(AssertUnwindSafe(|| session.answer(&request)));
+        let mut answer = answered(result.unwrap_or_else(|panic| Err(failed(format!("rapier panicked: {}", words(&*panic))))));
+        if let Some(id) = request.header.get("id") {
+            answer.header.insert("id".into(), id.clone());
+        }
+        answer.write(output).map_err(|error| error.to_string())?;
+    }
+}
+
+/// An answer with its status.
+fn answered(result: Result<Frame, Refusal>) -> Frame {
+    match result {
+        Ok(mut frame) => {
+            frame.header.insert("status".into(), "ok".into());
+            frame
+        }
+        Err(refusal) => {
+            let (status, reason) = refusal.told();
+            Frame::new(json!({"status": status, "reason": reason}), Vec::new())
+        }
+    }
+}
+
+/// What a panic says.
+fn words(panic: &(dyn Any + Send)) -> &str {
+    let text = panic.downcast_ref::<&str>().copied();
+    text.or_else(|| panic.downcast_ref::<String>().map(String::as_str)).unwrap_or("without a word")
+}
