@@ -122,6 +122,19 @@ fn factors_are_checked_by_the_matrix_that_they_make() {
 }
 
 #[test]
+fn a_reference_that_refuses_from_the_start_is_one_row_with_its_reason() {
+    let mut description = robot4().description.clone();
+    let last = description.bodies.last_mut().unwrap();
+    (last.mass, last.inertia) = (0.0, [0.0; 6]);
+    let problem = Problem::new(&description, "test", record::ModelOrigin::Generated, 20, 1).unwrap();
+    let study = Timing { kernels: |_| vec![(Quantity::Factorization, "ltdl")], peers: vec![], ..study() };
+    let rows = whole(&study, &problem, &gates(""), &[Box::new(Native::new()) as Box<dyn Subject>]);
+    let rows: Vec<_> = rows.iter().filter(|row| row.quantity == "factorization").collect();
+    assert_eq!(rows.len(), 1, "{rows:?}");
+    assert!(rows[0].verdict == Verdict::Error && rows[0].reason.contains("not positive definite"), "{rows:?}");
+}
+
+#[test]
 fn estimates_are_labelled_void_or_not_and_tell_what_was_subtracted() {
     let estimate = |row: &&Record| row.is_estimate();
     let plain = rows(Double::of(&robot4()));

@@ -187,8 +187,15 @@ impl<'a> Experiment<'a> {
                 method: entrant.method.clone(),
                 ..self.blank.clone()
             };
+            let check = checks
+                .iter()
+                .find(|check| check.subject == entrant.engine && check.method == entrant.method && check.quantity == self.cell.quantity);
             let usual = format!("{REFERENCE} {}", self.cell.method);
             if entrant.control {
+                // A reference that refused from the start has its row in the check, and nothing to compare.
+                if self.control.is_err() && check.is_some_and(|check| check.complaint.is_some()) {
+                    continue;
+                }
                 let blank = Record { unit: "1".into(), reference: format!("{usual}, its first copy"), ..blank };
                 let mut own: Vec<Record> = match &self.control {
                     Ok(control) => estimate(&blank, ["control", "control_low", "control_high"], control),
@@ -200,9 +207,6 @@ impl<'a> Experiment<'a> {
                 rows.extend(own);
                 continue;
             }
-            let check = checks
-                .iter()
-                .find(|check| check.subject == entrant.engine && check.method == entrant.method && check.quantity == self.cell.quantity);
             let void = match check {
                 None => Some("its answers were not checked in this run"),
                 Some(check) => check.complaint.as_deref(),
