@@ -105,6 +105,7 @@ impl<'a> Findings<'a> {
         match self.status {
             Status::Empty => "Nothing was judged in this run".into(),
             Status::Passed => match self.tally.get(Verdict::Deviation) {
+                0 if judged == 1 => "The one judged row is inside its gate".into(),
                 0 => format!("All {} are inside their gates", count(judged, "judged row")),
                 known => {
                     format!("{} are inside their gates, {} by known cause", count(judged - known, "judged row"), count(known, "deviation"))
