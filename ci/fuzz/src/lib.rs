@@ -3,13 +3,13 @@
 //! What is read must also be written and read again alike. `ci/fuzz/run` gives them to libFuzzer; `crates/cli/tests/parsers.rs` compiles this
 //! very file and gives them some thousand mutations of the seeds in every test run.
 
-use engines::{EngineRecording, Recording};
-use formats::urdf::{Base, Options};
-use formats::{OnLoss, mjcf, neutral, urdf};
-use harness::frame::Frame;
-use harness::{Gates, Identity, Outcome, Problem, Quantity, Refusal, Suite};
-use model::generate::{Chain, Family};
-use record::{EngineSource, ModelOrigin, Record, Relation, RunInfo, Verdict};
+use featherbench_bench::frame::Frame;
+use featherbench_bench::{Gates, Identity, Outcome, Problem, Quantity, Refusal, Suite};
+use featherbench_engines::{EngineRecording, Recording};
+use featherbench_formats::urdf::{Base, Options};
+use featherbench_formats::{OnLoss, mjcf, neutral, urdf};
+use featherbench_model::generate::{Chain, Family};
+use featherbench_results::{EngineSource, ModelOrigin, Record, Relation, RunInfo, Verdict};
 use std::collections::BTreeMap;
 use std::path::Path;
 use std::sync::LazyLock;
@@ -75,7 +75,7 @@ pub fn frame(mut bytes: &[u8]) {
 pub fn recording(bytes: &[u8]) {
     static PROBLEM: LazyLock<Problem> = LazyLock::new(recorded_problem);
     let mut sealed = bytes.to_vec();
-    record::seal(&mut sealed);
+    featherbench_results::seal(&mut sealed);
     let read = Recording::from_bytes(bytes, &PROBLEM).or_else(|_| Recording::from_bytes(&sealed, &PROBLEM));
     let Ok(recording) = read else { return };
     let written = recording.to_bytes(&PROBLEM);
@@ -114,12 +114,12 @@ pub fn records_seed() -> Vec<u8> {
         row.clone().informed(0.5),
         row.without_value(Verdict::Skip, "not offered"),
     ];
-    record::to_csv(&rows, file()).expect("finite")
+    featherbench_results::to_csv(&rows, file()).expect("finite")
 }
 
 /// The `run.json` of an empty run.
 pub fn run_info_seed() -> Vec<u8> {
-    let run = RunInfo { format: record::RUN_FORMAT, run: "r".into(), ..RunInfo::default() };
+    let run = RunInfo { format: featherbench_results::RUN_FORMAT, run: "r".into(), ..RunInfo::default() };
     serde_json::to_vec(&run).expect("plain data")
 }
 
@@ -128,7 +128,7 @@ pub fn made_seeds(target: &str) -> Vec<Vec<u8>> {
     match target {
         "recording" => {
             let sealed = recording_seed();
-            let bare = record::unsealed(&sealed).map(<[u8]>::to_vec);
+            let bare = featherbench_results::unsealed(&sealed).map(<[u8]>::to_vec);
             [Some(sealed.clone()), bare].into_iter().flatten().collect()
         }
         "records" => vec![records_seed()],
@@ -162,9 +162,9 @@ pub fn gates(bytes: &[u8]) {
 
 /// A file of records.
 pub fn records(bytes: &[u8]) {
-    let Ok(rows) = record::parse_csv(text(bytes), file()) else { return };
-    let written = record::to_csv(&rows, file()).unwrap_or_else(|error| panic!("{error}"));
-    let again = record::parse_csv(text(&written), file()).unwrap_or_else(|error| panic!("{error}"));
+    let Ok(rows) = featherbench_results::parse_csv(text(bytes), file()) else { return };
+    let written = featherbench_results::to_csv(&rows, file()).unwrap_or_else(|error| panic!("{error}"));
+    let again = featherbench_results::parse_csv(text(&written), file()).unwrap_or_else(|error| panic!("{error}"));
     assert_eq!(again, rows);
 }
 

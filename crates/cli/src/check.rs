@@ -5,8 +5,8 @@ use crate::fail::Fail;
 use crate::guest;
 use crate::package;
 use crate::root::Root;
-use engines::Limits;
-use engines::conformance::{Conformance, Finding, Standing, check_program};
+use featherbench_engines::Limits;
+use featherbench_engines::conformance::{Conformance, Finding, Standing, check_program};
 use std::io::{IsTerminal, Write};
 use std::time::Duration;
 

@@ -7,13 +7,13 @@ use crate::patience::Patient;
 use crate::problems::{self, Loaded};
 use crate::root::Root;
 use crate::{outcome, report, robot_file, run, subjects, table};
-use ::record::{ModelOrigin, Verdict};
-use harness::{AgreementEntry, Cell, Context, FileFormat, Gates, Problem, RobotFile, Subject, Suite, hash};
+use ::featherbench_results::{ModelOrigin, Verdict};
+use featherbench_bench::{AgreementEntry, Cell, Context, FileFormat, Gates, Problem, RobotFile, Subject, Suite, hash};
+use featherbench_studies::{Agreement, Reading};
 use std::time::{Instant, SystemTime};
-use studies::{Agreement, Reading};
 
 /// States per robot, besides the keyframes of its file: one of each case.
-const STATES: usize = model::StateBatch::HEAD;
+const STATES: usize = featherbench_model::StateBatch::HEAD;
 /// Seed of the states.
 const SEED: u64 = 1;
 /// A robot with more degrees of freedom is asked on the neutral route for what the comparison shows, and for nothing else.
@@ -83,7 +83,7 @@ pub fn compare(root: &Root, args: &CompareArgs) -> Result<(), Fail> {
     let conditions = |problem| outcome::conditions(problem, &subjects.subjects, &records, args.strict);
     info.expected = loaded.problems.iter().flat_map(conditions).collect();
     info.seconds.insert("total".into(), start.elapsed().as_secs_f64());
-    ::record::write_run(&folder, &info, &records)?;
+    ::featherbench_results::write_run(&folder, &info, &records)?;
     let page = report::render(&folder, &info, &records)?;
     for (problem, (_, remarks)) in loaded.problems.iter().zip(&remarks) {
         print!("{}", table::of(problem, remarks, &subjects.subjects, &records));

@@ -2,7 +2,7 @@
 
 use crate::args::DiffArgs;
 use crate::fail::Fail;
-use ::record::{Change, Changed, Diff, ERROR_FACTOR, Record, RunInfo, TIME_NOISE, diff, read_run};
+use ::featherbench_results::{Change, Changed, Diff, ERROR_FACTOR, Record, RunInfo, TIME_NOISE, diff, read_run};
 use std::fmt::Write as _;
 
 /// Rows of each kind of change that are listed one by one.

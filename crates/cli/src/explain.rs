@@ -3,12 +3,12 @@
 use crate::args::ExplainArgs;
 use crate::fail::Fail;
 use crate::shell::{quoted, words};
-use ::record::{Record, RunInfo};
-use harness::{OUTCOMES_NAME, Outcome, OutcomeStore, Quantity, Refusal};
+use ::featherbench_results::{Record, RunInfo};
+use featherbench_bench::{OUTCOMES_NAME, Outcome, OutcomeStore, Quantity, Refusal};
 
 /// Prints what a cell asked, what was answered, and how it was judged.
 pub fn explain(args: &ExplainArgs) -> Result<(), Fail> {
-    let (info, records) = ::record::read_run(&args.folder)?;
+    let (info, records) = ::featherbench_results::read_run(&args.folder)?;
     let rows: Vec<&Record> = records.iter().filter(|row| row.cell.starts_with(&args.cell)).collect();
     let Some(first) = rows.first() else {
         let message = format!(

@@ -1,6 +1,6 @@
 //! How the command ends when it does not end well.
 
-use harness::HarnessError;
+use featherbench_bench::HarnessError;
 use std::process::ExitCode;
 use thiserror::Error;
 
@@ -38,8 +38,8 @@ impl From<HarnessError> for Fail {
     }
 }
 
-impl From<record::RecordError> for Fail {
-    fn from(error: record::RecordError) -> Self {
+impl From<featherbench_results::RecordError> for Fail {
+    fn from(error: featherbench_results::RecordError) -> Self {
         Self::Input(error.to_string())
     }
 }

@@ -4,11 +4,11 @@ use crate::args::{Format, GenArgs};
 use crate::fail::Fail;
 use crate::root::Root;
 use crate::{oracles, problems, robot_file};
-use formats::OnLoss;
-use formats::urdf::{Base, Options};
-use harness::FileFormat;
-use model::Description;
-use model::generate::Family;
+use featherbench_bench::FileFormat;
+use featherbench_formats::OnLoss;
+use featherbench_formats::urdf::{Base, Options};
+use featherbench_model::Description;
+use featherbench_model::generate::Family;
 use std::path::Path;
 
 /// Generates or imports a robot and writes it.
@@ -33,7 +33,7 @@ pub fn generate(root: &Root, args: &GenArgs) -> Result<(), Fail> {
     let text = written(&description, args)?;
     match &args.out {
         Some(path) => {
-            ::record::atomic_write(path, text.as_bytes())?;
+            ::featherbench_results::atomic_write(path, text.as_bytes())?;
             eprintln!("{}: {} ({} bodies, {} dofs)", path.display(), description.name, description.bodies.len(), description.nv());
         }
         None => print!("{text}"),
@@ -77,9 +77,9 @@ fn written(description: &Description, args: &GenArgs) -> Result<String, Fail> {
     };
     let on_loss = if args.lossy { OnLoss::LeaveOut } else { OnLoss::Refuse };
     let exported = match args.format.unwrap_or(by_ending) {
-        Format::Neutral => return formats::neutral::to_string(description).map_err(|error| Fail::input(error.to_string())),
-        Format::Urdf => formats::urdf::to_string(description, on_loss),
-        Format::Mjcf => formats::mjcf::to_string(description, on_loss),
+        Format::Neutral => return featherbench_formats::neutral::to_string(description).map_err(|error| Fail::input(error.to_string())),
+        Format::Urdf => featherbench_formats::urdf::to_string(description, on_loss),
+        Format::Mjcf => featherbench_formats::mjcf::to_string(description, on_loss),
     };
     let (text, losses) = exported.map_err(|error| {
         let way_out = if error.can_be_left_out() { "\n(--lossy leaves this out)" } else { "" };

@@ -3,7 +3,7 @@
 use crate::args::HistoryArgs;
 use crate::fail::Fail;
 use crate::root::Root;
-use ::record::{Host, Record, RunInfo, atomic_write, read_run};
+use ::featherbench_results::{Host, Record, RunInfo, atomic_write, read_run};
 use std::collections::BTreeMap;
 use std::path::Path;
 
@@ -40,7 +40,7 @@ pub fn append(root: &dyn Fn() -> Result<Root, Fail>, args: &HistoryArgs) -> Resu
 fn machine(host: &Host) -> String {
     let words: String = host.cpu.to_lowercase().chars().map(|c| if c.is_ascii_alphanumeric() { c } else { ' ' }).collect();
     let words: Vec<&str> = words.split_whitespace().take(4).collect();
-    let hash = harness::hash::of(format!("{}/{}", host.cpu, host.cores).as_bytes());
+    let hash = featherbench_bench::hash::of(format!("{}/{}", host.cpu, host.cores).as_bytes());
     let mut parts: Vec<String> = words.into_iter().map(str::to_owned).collect();
     parts.extend([host.cores.to_string(), hash[..6].to_owned()]);
     parts.join("-")

@@ -7,11 +7,11 @@ use crate::oracles::{ENGINES, ESTIMATING};
 use crate::problems;
 use crate::rapier;
 use crate::root::Root;
-use engines::Native;
-use harness::{Context, Gates, Study, Subject};
-use model::generate::Family;
+use featherbench_bench::{Context, Gates, Study, Subject};
+use featherbench_engines::Native;
+use featherbench_model::generate::Family;
+use featherbench_studies::{Agreement, Conditioning, Digits, Reading, Structure, Timing};
 use std::io::Write;
-use studies::{Agreement, Conditioning, Digits, Reading, Structure, Timing};
 
 /// Prints what there is to run.
 pub fn list(root: &Root, args: &ListArgs) -> Result<(), Fail> {
@@ -22,14 +22,14 @@ pub fn list(root: &Root, args: &ListArgs) -> Result<(), Fail> {
 
 fn text(root: &Root, args: &ListArgs) -> Result<String, Fail> {
     if args.conventions {
-        return Ok(harness::conventions::markdown(&harness::conventions::read(&root.conventions())?));
+        return Ok(featherbench_bench::conventions::markdown(&featherbench_bench::conventions::read(&root.conventions())?));
     }
     let loaded = problems::load(root, &args.suite, false, None)?;
     if args.cells {
         let subjects: Vec<Box<dyn Subject>> = vec![Box::new(Native::new())];
         let gates = Gates::read(&root.gates())?;
         let context = Context { problems: &loaded.problems, subjects: &subjects, gates: &gates, seed: loaded.suite.seed };
-        let timing = Timing { states: 1, seconds: 0.0, kernels: engines::timed, peers: Vec::new() };
+        let timing = Timing { states: 1, seconds: 0.0, kernels: featherbench_engines::timed, peers: Vec::new() };
         let studies: [&dyn Study; 6] = [&Agreement, &Reading, &Digits, &Conditioning, &Structure, &timing];
         let cells = studies.iter().flat_map(|study| study.plan(&context));
         return Ok(cells.map(|cell| format!("{}  {}\n", cell.id(), cell.path())).collect());

@@ -6,8 +6,8 @@
 use crate::fail::Fail;
 use crate::oracles;
 use crate::root::Root;
-use engines::{Limits, Oracle, peer};
-use harness::{Identity, Subject, hash};
+use featherbench_bench::{Identity, Subject, hash};
+use featherbench_engines::{Limits, Oracle, peer};
 use indicatif::{ProgressBar, ProgressStyle};
 use std::ffi::OsString;
 use std::io::IsTerminal;

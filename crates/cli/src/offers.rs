@@ -1,8 +1,8 @@
 //! Whether an engine that was asked for takes part at all.
 
 use crate::subjects::Subjects;
-use ::record::{Expectation, Record, Verdict};
-use harness::{Cell, Quantity};
+use ::featherbench_results::{Expectation, Record, Verdict};
+use featherbench_bench::{Cell, Quantity};
 use std::collections::BTreeSet;
 
 /// One condition for each engine that was asked for and answered to its name: its `hello` offers something that the suite asks, and in a

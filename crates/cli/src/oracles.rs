@@ -5,8 +5,8 @@ use crate::native;
 use crate::package;
 use crate::rapier;
 use crate::root::Root;
-use engines::{Limits, Oracle};
-use harness::{Refusal, Subject};
+use featherbench_bench::{Refusal, Subject};
+use featherbench_engines::{Limits, Oracle};
 use indicatif::{ProgressBar, ProgressStyle};
 use std::ffi::OsString;
 use std::io::{BufRead, BufReader, IsTerminal};
@@ -65,7 +65,7 @@ pub fn install(root: &Root) -> Result<PathBuf, Fail> {
     }
     bar.finish_and_clear();
     let stamp = stamp(root)?;
-    ::record::atomic_write(&folder.join("installed"), stamp.as_bytes())?;
+    ::featherbench_results::atomic_write(&folder.join("installed"), stamp.as_bytes())?;
     eprintln!("installed the reference engines in {}", folder.display());
     Ok(python)
 }
@@ -125,7 +125,7 @@ fn stamp(root: &Root) -> Result<String, Fail> {
         let path = root.oracles().join(name);
         asked.extend(std::fs::read(&path).map_err(|error| Fail::input(format!("{}: {error}", path.display())))?);
     }
-    Ok(harness::hash::of(&asked))
+    Ok(featherbench_bench::hash::of(&asked))
 }
 
 /// Starts the oracle of an engine that is to be timed, where the engines are installed.
@@ -140,11 +140,11 @@ pub fn start(root: &Root, python: &Path, engine: &str, limits: Limits) -> Result
 }
 
 /// Evaluates reproductions of known deviations in the engines' environment.
-pub fn reproducer(root: &Root, limits: Limits) -> studies::Reproduce {
+pub fn reproducer(root: &Root, limits: Limits) -> featherbench_studies::Reproduce {
     let missing = || "the reference engines are not installed; run `featherbench oracles install`".to_owned();
     let command = python(root).ok_or_else(missing).and_then(|python| package::command(root, &python, "reproduce"));
     Box::new(move |name, seeds| match &command {
-        Ok(command) => engines::reproduce(command, limits, name, seeds),
+        Ok(command) => featherbench_engines::reproduce(command, limits, name, seeds),
         Err(reason) => Err(Refusal::Failed(reason.clone())),
     })
 }

@@ -1,9 +1,9 @@
 //! How a comparison ends for an engine and a robot: four questions, each with its row, and which of them make the exit code.
 
-use ::record::{Expectation, Record, Verdict};
-use harness::{Problem, Subject, measure::worst};
+use ::featherbench_results::{Expectation, Record, Verdict};
+use featherbench_bench::{Problem, Subject, measure::worst};
+use featherbench_studies::reading::bound;
 use serde_json::Value;
-use studies::reading::bound;
 
 /// The questions of all engines about a robot; `strict` counts what is only not read, and rounding, as well.
 pub fn conditions(problem: &Problem, subjects: &[Box<dyn Subject>], records: &[Record], strict: bool) -> Vec<Expectation> {

@@ -1,8 +1,8 @@
 //! An engine that is asked about a robot no more once it has not answered in time: what did not come within the limit is a stated outcome, and the
 //! other engines go on.
 
-use harness::{FileFormat, Identity, Prepared, Problem, Quantity, Reading, Refusal, RobotFile, Subject};
-use model::StateBatch;
+use featherbench_bench::{FileFormat, Identity, Prepared, Problem, Quantity, Reading, Refusal, RobotFile, Subject};
+use featherbench_model::StateBatch;
 use std::collections::BTreeMap;
 use std::ops::Range;
 use std::path::PathBuf;
@@ -100,8 +100,8 @@ impl Prepared for Waiting<'_> {
 #[cfg(test)]
 mod tests {
     use super::{Identity, Patient, Prepared, Problem, Quantity, Reading, Refusal, RobotFile, StateBatch, Subject};
-    use ::record::EngineSource;
-    use harness::{FileBase, FileFormat};
+    use ::featherbench_results::EngineSource;
+    use featherbench_bench::{FileBase, FileFormat};
     use std::collections::BTreeMap;
     use std::sync::atomic::{AtomicUsize, Ordering};
 

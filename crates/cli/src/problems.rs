@@ -3,12 +3,14 @@
 use crate::fail::Fail;
 use crate::oracles;
 use crate::root::Root;
-use ::record::ModelOrigin;
-use engines::{Limits, Oracle};
-use formats::urdf::{Base, Inertial, LinkInFile, Note, Options};
-use harness::{FileBase, FileFormat, FileInertial, FileLink, Problem, ProblemEntry, Reading, Refusal, RobotFile, Subject, Suite, WATER};
-use model::generate::Family;
-use model::{Description, StateBatch, Warning};
+use ::featherbench_results::ModelOrigin;
+use featherbench_bench::{
+    FileBase, FileFormat, FileInertial, FileLink, Problem, ProblemEntry, Reading, Refusal, RobotFile, Subject, Suite, WATER,
+};
+use featherbench_engines::{Limits, Oracle};
+use featherbench_formats::urdf::{Base, Inertial, LinkInFile, Note, Options};
+use featherbench_model::generate::Family;
+use featherbench_model::{Description, StateBatch, Warning};
 use std::path::{Path, PathBuf};
 
 /// A suite with its file's hash and its robots.
@@ -158,7 +160,7 @@ pub fn links(file: &RobotFile) -> Result<Vec<FileLink>, Fail> {
     let text = std::fs::read_to_string(&file.path).map_err(|error| Fail::input(format!("{}: {error}", file.path.display())))?;
     let inertial = |x: Inertial| FileInertial { mass: x.mass, com: x.com, rotation: x.rotation, inertia: x.inertia };
     let link = |link: LinkInFile| FileLink { name: link.name, inertial: link.inertial.map(inertial), solids: link.solids.map(inertial) };
-    Ok(formats::urdf::links(&text, WATER).into_iter().map(link).collect())
+    Ok(featherbench_formats::urdf::links(&text, WATER).into_iter().map(link).collect())
 }
 
 /// The reference reading of an MJCF file: that of MuJoCo's compiler, with the file's own inertias where the compiler refuses those.
@@ -178,10 +180,10 @@ fn stem(path: &Path, otherwise: String) -> String {
 
 /// Reads a description file.
 pub fn read_model(path: &Path) -> Result<Description, Fail> {
-    formats::neutral::read(path).map_err(|error| Fail::input(error.to_string()))
+    featherbench_formats::neutral::read(path).map_err(|error| Fail::input(error.to_string()))
 }
 
 /// Reads a URDF file, with notes on what was left out.
 pub fn import(path: &Path, options: &Options) -> Result<(Description, Vec<Note>), Fail> {
-    formats::urdf::read(path, options).map_err(|error| Fail::input(error.to_string()))
+    featherbench_formats::urdf::read(path, options).map_err(|error| Fail::input(error.to_string()))
 }

@@ -1,7 +1,7 @@
 //! Progress on standard error: a bar on a terminal, a line per phase elsewhere.
 
-use harness::run::Progress;
-use harness::{Cell, Outcome};
+use featherbench_bench::run::Progress;
+use featherbench_bench::{Cell, Outcome};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use std::io::IsTerminal;
 use std::sync::{Mutex, PoisonError};

@@ -3,8 +3,8 @@
 use crate::args::GateArgs;
 use crate::fail::Fail;
 use crate::root::Root;
-use ::record::{Record, RunInfo};
-use harness::{Deviation, Gates, Ranges, RangesMeter, SEEDS, SLACK};
+use ::featherbench_results::{Record, RunInfo};
+use featherbench_bench::{Deviation, Gates, Ranges, RangesMeter, SEEDS, SLACK};
 use std::path::Path;
 
 /// Measures the ranges over the runs that the arguments name, the first of which is read already, prints them by cause, and writes them where
@@ -15,7 +15,7 @@ pub fn measure(root: &Root, args: &GateArgs, info: &RunInfo, first: &[Record]) -
     let mut seeds = vec![info.seed];
     meter.add(gates.deviations(), first);
     for folder in &args.others {
-        let (other, records) = ::record::read_run(folder)?;
+        let (other, records) = ::featherbench_results::read_run(folder)?;
         check(folder, info, &other, &seeds)?;
         seeds.push(other.seed);
         meter.add(gates.deviations(), &records);
@@ -37,7 +37,7 @@ pub fn measure(root: &Root, args: &GateArgs, info: &RunInfo, first: &[Record]) -
     }
     gates.with_ranges(ranges.clone(), &root.gates())?;
     let path = root.ranges().join(format!("{}.csv", info.suite));
-    ::record::atomic_write(&path, ranges.to_csv().as_bytes())?;
+    ::featherbench_results::atomic_write(&path, ranges.to_csv().as_bytes())?;
     println!("written: {}", path.display());
     if (seeds.len() as u64) < SEEDS {
         println!("a range is that of {SEEDS} seeds; here are {}", seeds.len());
@@ -69,8 +69,8 @@ fn check(folder: &Path, first: &RunInfo, other: &RunInfo, seeds: &[u64]) -> Resu
 fn print(deviations: &[Deviation], ranges: &Ranges, runs: usize) {
     for deviation in deviations.iter().filter(|deviation| deviation.is_measured()) {
         let of_it: Vec<_> = ranges.iter().filter(|(key, _)| deviation.has(key)).collect();
-        let low = -of_it.iter().map(|(_, range)| -range.low).fold(f64::NEG_INFINITY, harness::measure::worst);
-        let high = of_it.iter().map(|(_, range)| range.high).fold(0.0, harness::measure::worst);
+        let low = -of_it.iter().map(|(_, range)| -range.low).fold(f64::NEG_INFINITY, featherbench_bench::measure::worst);
+        let high = of_it.iter().map(|(_, range)| range.high).fold(0.0, featherbench_bench::measure::worst);
         let always = of_it.iter().filter(|(_, range)| range.outside == range.seeds).count();
         let span = match of_it.len() {
             0 => "not seen".into(),

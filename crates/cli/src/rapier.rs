@@ -5,8 +5,8 @@
 use crate::fail::Fail;
 use crate::oracles::spinner;
 use crate::root::Root;
-use engines::{Limits, Oracle};
-use harness::{Subject, hash};
+use featherbench_bench::{Subject, hash};
+use featherbench_engines::{Limits, Oracle};
 use std::io::{BufRead, BufReader};
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
@@ -99,7 +99,7 @@ fn build(root: &Root) -> Result<PathBuf, String> {
     if !program.is_file() {
         return Err(format!("cargo built something, but not {}; a CARGO_BUILD_TARGET would be why", program.display()));
     }
-    ::record::atomic_write(&stamp, made_of.as_bytes()).map_err(|error| error.to_string())?;
+    ::featherbench_results::atomic_write(&stamp, made_of.as_bytes()).map_err(|error| error.to_string())?;
     eprintln!("built rapier in {:.0} s: {}", start.elapsed().as_secs_f64(), program.display());
     Ok(program)
 }

@@ -6,13 +6,13 @@ use crate::problems;
 use crate::progress::Bar;
 use crate::root::Root;
 use crate::subjects;
-use ::record::Verdict;
-use engines::{EngineRecording, Recording, recording_name};
-use harness::measure::{ForwardScale, scaled_error, worst};
-use harness::run::Progress;
-use harness::{Cell, Context, Gates, Outcome, OutcomeStore, Problem, Quantity, Study};
+use ::featherbench_results::Verdict;
+use featherbench_bench::measure::{ForwardScale, scaled_error, worst};
+use featherbench_bench::run::Progress;
+use featherbench_bench::{Cell, Context, Gates, Outcome, OutcomeStore, Problem, Quantity, Study};
+use featherbench_engines::{EngineRecording, Recording, recording_name};
+use featherbench_studies::{Agreement, Repeatability, Structure};
 use std::path::Path;
-use studies::{Agreement, Repeatability, Structure};
 
 /// An answer may move by this much in the measures of DESIGN idea 10 before the recording counts as stale: the same binary on another
 /// processor may choose other vector kernels, and no more.
@@ -30,7 +30,7 @@ pub fn record(root: &Root, args: &RecordArgs) -> Result<(), Fail> {
     }
     let context = Context { problems: &loaded.problems, subjects: &opened.subjects, gates: &gates, seed: loaded.suite.seed };
     let scratch = root.engines().join(format!("record-{}", std::process::id()));
-    let io = |source| Fail::from(harness::HarnessError::io(&scratch, source));
+    let io = |source| Fail::from(featherbench_bench::HarnessError::io(&scratch, source));
     std::fs::create_dir_all(&scratch).map_err(io)?;
     let store = OutcomeStore::open(&scratch)?;
     let bar = Bar::new();
@@ -38,19 +38,19 @@ pub fn record(root: &Root, args: &RecordArgs) -> Result<(), Fail> {
     let foreign = |cell: &Cell| cell.subject != "native";
     let studies: [&dyn Study; 2] = [&Agreement, &Structure];
     for study in studies {
-        let cells = harness::run::plan(study, &context, &foreign);
-        finished.extend(harness::run::evaluate(study, &context, cells, &store, &bar as &dyn Progress)?);
+        let cells = featherbench_bench::run::plan(study, &context, &foreign);
+        finished.extend(featherbench_bench::run::evaluate(study, &context, cells, &store, &bar as &dyn Progress)?);
     }
     // What is recorded is never asked again in a run: an engine whose answers vary is found here.
-    let repeatability = Repeatability { key: harness::provenance::collect(root.path()).binary_hash };
-    let again = harness::run::evaluate(
+    let repeatability = Repeatability { key: featherbench_bench::provenance::collect(root.path()).binary_hash };
+    let again = featherbench_bench::run::evaluate(
         &repeatability,
         &context,
-        harness::run::plan(&repeatability, &context, &foreign),
+        featherbench_bench::run::plan(&repeatability, &context, &foreign),
         &store,
         &bar as &dyn Progress,
     )?;
-    let rows = harness::run::compare(&repeatability, &context, again);
+    let rows = featherbench_bench::run::compare(&repeatability, &context, again);
     std::fs::remove_dir_all(&scratch).map_err(io)?;
     let varying: Vec<String> = rows
         .iter()
@@ -62,7 +62,7 @@ pub fn record(root: &Root, args: &RecordArgs) -> Result<(), Fail> {
     }
 
     let folder = args.recorded.clone().unwrap_or_else(|| root.recorded());
-    std::fs::create_dir_all(&folder).map_err(|source| harness::HarnessError::io(&folder, source))?;
+    std::fs::create_dir_all(&folder).map_err(|source| featherbench_bench::HarnessError::io(&folder, source))?;
     let mut stale = Vec::new();
     for problem in &loaded.problems {
         let engines = opened.subjects[1..].iter().map(|subject| {
@@ -80,7 +80,7 @@ pub fn record(root: &Root, args: &RecordArgs) -> Result<(), Fail> {
         if args.check {
             stale.extend(check(&path, &recording, problem));
         } else {
-            ::record::atomic_write(&path, &recording.to_bytes(problem))?;
+            ::featherbench_results::atomic_write(&path, &recording.to_bytes(problem))?;
         }
     }
     if !stale.is_empty() {

@@ -4,14 +4,14 @@ use crate::args::GateArgs;
 use crate::fail::Fail;
 use crate::ranges;
 use crate::root::Root;
-use ::record::{Record, RunInfo, Verdict};
-use harness::{Gates, Suite, accounted, provenance};
+use ::featherbench_results::{Record, RunInfo, Verdict};
+use featherbench_bench::{Gates, Suite, accounted, provenance};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 /// Writes the report of a finished run again.
 pub fn write(folder: &Path) -> Result<(), Fail> {
-    let (info, records) = ::record::read_run(folder)?;
+    let (info, records) = ::featherbench_results::read_run(folder)?;
     let page = render(folder, &info, &records)?;
     println!("report: {}", page.display());
     Ok(())
@@ -19,13 +19,13 @@ pub fn write(folder: &Path) -> Result<(), Fail> {
 
 /// Renders the report into the run's folder and returns its page.
 pub fn render(folder: &Path, info: &RunInfo, records: &[Record]) -> Result<PathBuf, Fail> {
-    let paths = ::report::write(info, records, folder).map_err(|error| Fail::input(error.to_string()))?;
+    let paths = featherbench_report::write(info, records, folder).map_err(|error| Fail::input(error.to_string()))?;
     Ok(paths.index)
 }
 
 /// Judges a finished run again, by today's gates of its suite.
 pub fn gate(root: &Root, args: &GateArgs) -> Result<(), Fail> {
-    let (mut info, records) = ::record::read_run(&args.folder)?;
+    let (mut info, records) = ::featherbench_results::read_run(&args.folder)?;
     if args.counts {
         print_counts(&records);
         return Ok(());
@@ -73,7 +73,7 @@ pub fn conclude(info: &RunInfo, records: &[Record], page: &Path) -> Result<(), F
     for condition in &broken {
         println!("  gate: {}: {}", condition.what, condition.reason);
     }
-    ::report::summary(info, records).iter().for_each(|line| println!("{line}"));
+    featherbench_report::summary(info, records).iter().for_each(|line| println!("{line}"));
     println!("report: {}", page.display());
     if broken.is_empty() {
         return Ok(());

@@ -1,7 +1,7 @@
 //! What kind of file a robot comes in, told by its content, with advice where it is none that engines read.
 
 use crate::fail::Fail;
-use harness::{FileBase, FileFormat, RobotFile};
+use featherbench_bench::{FileBase, FileFormat, RobotFile};
 use std::fs::File;
 use std::io::Read;
 use std::path::Path;

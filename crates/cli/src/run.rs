@@ -11,13 +11,13 @@ use crate::report;
 use crate::root::Root;
 use crate::shell::quoted;
 use crate::subjects::{self, Subjects};
-use ::record::{ModelInfo, Record, RunInfo, Verdict};
-use harness::{Cell, Context, Gates, HarnessError, OutcomeStore, Study, provenance};
+use ::featherbench_results::{ModelInfo, Record, RunInfo, Verdict};
+use featherbench_bench::{Cell, Context, Gates, HarnessError, OutcomeStore, Study, provenance};
+use featherbench_studies::{Agreement, Conditioning, Digits, Reading, Repeatability, Reproductions, StepLimit, Structure, Timing};
 use regex_lite::Regex;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::time::{Instant, SystemTime};
-use studies::{Agreement, Conditioning, Digits, Reading, Repeatability, Reproductions, StepLimit, Structure, Timing};
 
 /// The file that holds what a resumed run must share with the first one.
 const FINGERPRINT_NAME: &str = "fingerprint.json";
@@ -64,7 +64,7 @@ pub fn run(root: &Root, args: &RunArgs) -> Result<(), Fail> {
         info.expected.push(missing_engine(&engine.name, &engine.reason));
     }
     info.seconds.insert("total".into(), start.elapsed().as_secs_f64());
-    ::record::write_run_with(&folder, &info, &records, &files)?;
+    ::featherbench_results::write_run_with(&folder, &info, &records, &files)?;
     let page = report::render(&folder, &info, &records)?;
     report::conclude(&info, &records, &page)
 }
@@ -96,13 +96,13 @@ fn conduct_with_files(
     let (mut records, mut files): (Vec<Record>, Vec<&str>) = (Vec::new(), Vec::new());
     for study in studies {
         let phase = Instant::now();
-        let cells = harness::run::plan(study.as_ref(), context, keep);
-        let finished = harness::run::evaluate(study.as_ref(), context, cells, &store, &progress)?;
+        let cells = featherbench_bench::run::plan(study.as_ref(), context, keep);
+        let finished = featherbench_bench::run::evaluate(study.as_ref(), context, cells, &store, &progress)?;
         if let Some((name, text)) = study.side_file(&finished) {
-            ::record::atomic_write(&folder.join(name), text.as_bytes())?;
+            ::featherbench_results::atomic_write(&folder.join(name), text.as_bytes())?;
             files.push(name);
         }
-        records.extend(harness::run::compare(study.as_ref(), context, finished));
+        records.extend(featherbench_bench::run::compare(study.as_ref(), context, finished));
         info.seconds.insert(study.name().into(), phase.elapsed().as_secs_f64());
     }
     for record in &mut records {
@@ -143,7 +143,7 @@ fn studies(root: &Root, loaded: &Loaded, args: &RunArgs, program: &str) -> Vec<B
     }
     if let Some(timing) = loaded.suite.timing.as_ref().filter(|_| !args.no_timing) {
         let (states, seconds, peers) = (timing.states, timing.seconds, timing.peers.clone());
-        studies.push(Box::new(Timing { states, seconds, kernels: engines::timed, peers }));
+        studies.push(Box::new(Timing { states, seconds, kernels: featherbench_engines::timed, peers }));
     }
     studies
 }
@@ -183,7 +183,7 @@ fn check_fingerprint(folder: &Path, args: &RunArgs, info: &RunInfo) -> Result<()
         };
     }
     let text = serde_json::to_string_pretty(&now).map_err(|error| Fail::input(error.to_string()))?;
-    Ok(::record::atomic_write(&path, text.as_bytes())?)
+    Ok(::featherbench_results::atomic_write(&path, text.as_bytes())?)
 }
 
 /// Tells what is unusual about the robots.
@@ -211,7 +211,7 @@ pub fn describe(root: &Root, live: bool, loaded: &Loaded, subjects: &Subjects) -
             notes: problem.model.warnings.iter().map(ToString::to_string).collect(),
         }
     });
-    let mut conventions = harness::conventions::read(&root.conventions())?;
+    let mut conventions = featherbench_bench::conventions::read(&root.conventions())?;
     conventions.retain(|row| subjects.engines.iter().any(|engine| engine.name == row.engine));
     Ok(RunInfo {
         suite: loaded.name.clone(),
@@ -226,8 +226,8 @@ pub fn describe(root: &Root, live: bool, loaded: &Loaded, subjects: &Subjects) -
     })
 }
 
-pub fn missing_engine(name: &str, reason: &str) -> ::record::Expectation {
-    ::record::Expectation {
+pub fn missing_engine(name: &str, reason: &str) -> ::featherbench_results::Expectation {
+    ::featherbench_results::Expectation {
         what: format!("engine {name} answers"),
         expected: 1,
         found: 0,

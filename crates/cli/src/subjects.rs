@@ -8,9 +8,9 @@ use crate::oracles;
 use crate::problems::Loaded;
 use crate::rapier;
 use crate::root::Root;
-use ::record::{EngineInfo, EngineSource};
-use engines::{Limits, Native, Recorded, read_recordings};
-use harness::{Problem, Subject};
+use ::featherbench_results::{EngineInfo, EngineSource};
+use featherbench_bench::{Problem, Subject};
+use featherbench_engines::{Limits, Native, Recorded, read_recordings};
 use std::sync::Arc;
 use std::time::Duration;
 

@@ -1,11 +1,11 @@
 //! The table of a comparison in the terminal, from its records alone.
 
 use crate::outcome::{neutral, params};
-use ::record::{Record, Verdict};
-use harness::{Problem, Subject};
+use ::featherbench_results::{Record, Verdict};
+use featherbench_bench::{Problem, Subject};
+use featherbench_studies::reading::LARGEST;
 use serde_json::Value;
 use std::collections::BTreeMap;
-use studies::reading::LARGEST;
 
 /// Differences that are listed of one engine; the report has them all.
 const LISTED: usize = 12;

@@ -9,8 +9,8 @@ fn read(name: &str) -> String {
     std::fs::read_to_string(project().join(name)).unwrap()
 }
 
-fn ledger() -> Vec<record::Convention> {
-    harness::conventions::read(&project().join("oracles/conventions.toml")).unwrap()
+fn ledger() -> Vec<featherbench_results::Convention> {
+    featherbench_bench::conventions::read(&project().join("oracles/conventions.toml")).unwrap()
 }
 
 #[test]
@@ -54,7 +54,7 @@ fn each_named_function_exists() {
 
 #[test]
 fn the_page_shows_the_ledger() {
-    let table = harness::conventions::markdown(&ledger());
+    let table = featherbench_bench::conventions::markdown(&ledger());
     let page = read("CONVENTIONS.md");
     assert!(page.contains(&table), "put the output of `featherbench list --conventions` into CONVENTIONS.md, in the place of its tables");
     let sandbox = Sandbox::new();
@@ -69,7 +69,7 @@ fn a_bad_ledger_is_told_by_file_and_key() {
     let row = "[[convention]]\nengine = \"e\"\nsubject = \"s\"\ntheirs = \"t\"\nconversion = \"–\"\ntest = \"e_s\"\n";
     let ours = "[ours]\ns = \"o\"\n";
     let good = sandbox.write("good.toml", &format!("{ours}{row}"));
-    assert_eq!(harness::conventions::read(&good).unwrap().len(), 1);
+    assert_eq!(featherbench_bench::conventions::read(&good).unwrap().len(), 1);
     let cases = [
         (format!("[ours]\n{row}"), "'s' has no entry"),
         (format!("{ours}z = \"o\"\n{row}"), "about 'z'"),
@@ -78,7 +78,7 @@ fn a_bad_ledger_is_told_by_file_and_key() {
     ];
     for (text, words) in cases {
         let path = sandbox.write("bad.toml", &text);
-        let message = harness::conventions::read(&path).unwrap_err().to_string();
+        let message = featherbench_bench::conventions::read(&path).unwrap_err().to_string();
         assert!(message.contains(words) && message.contains("bad.toml"), "{message}");
     }
 }

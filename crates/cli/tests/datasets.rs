@@ -2,8 +2,8 @@
 
 mod support;
 
-use formats::neutral;
-use model::generate::Family;
+use featherbench_formats::neutral;
+use featherbench_model::generate::Family;
 use std::path::Path;
 use support::project;
 

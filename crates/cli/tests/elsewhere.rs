@@ -55,8 +55,9 @@ fn a_folder_that_is_no_project_is_named_with_what_it_lacks() {
 #[test]
 fn what_needs_no_project_asks_for_none() {
     let here = tempfile::tempdir().unwrap();
-    let row = record::Record { cell: "abcd".into(), study: "structure".into(), ..record::Record::default() }.informed(1.0);
-    record::write_run(&here.path().join("run"), &record::RunInfo::default(), &[row]).unwrap();
+    let row = featherbench_results::Record { cell: "abcd".into(), study: "structure".into(), ..featherbench_results::Record::default() }
+        .informed(1.0);
+    featherbench_results::write_run(&here.path().join("run"), &featherbench_results::RunInfo::default(), &[row]).unwrap();
     let nowhere = here.path().join("nowhere");
     for (arguments, words) in
         [(&["report", "run"][..], "report:"), (&["diff", "run", "run"], "nothing changed"), (&["explain", "ab", "run"], "again")]

@@ -24,9 +24,9 @@ fn again(ended: &Ended) -> String {
 fn the_printed_command_makes_the_rows_again() {
     let sandbox = Sandbox::new();
     sandbox.run(&["run", "--suite", "smoke", "--no-timing", "--out", "out"]).expect(0, &["report:"]);
-    let (_, records) = record::read_run(&sandbox.path("out")).unwrap();
+    let (_, records) = featherbench_results::read_run(&sandbox.path("out")).unwrap();
     // A value against ours, one against another engine, one without a number, a count, and a cell that belongs to no robot.
-    let find = |what: &dyn Fn(&record::Record) -> bool| records.iter().find(|row| what(row)).unwrap().cell.clone();
+    let find = |what: &dyn Fn(&featherbench_results::Record) -> bool| records.iter().find(|row| what(row)).unwrap().cell.clone();
     let chosen = [
         find(&|row| row.engine == "pinocchio" && row.quantity == "fd" && row.metric == "forward" && row.model == "chain-planar-2"),
         find(&|row| row.engine == "drake" && row.metric == "pairwise" && row.reference == "mujoco" && row.model == "panda"),
@@ -51,14 +51,19 @@ fn the_printed_command_makes_the_rows_again() {
 #[test]
 fn the_command_of_a_live_run_stays_live() {
     let sandbox = Sandbox::new();
-    let row = record::Record { cell: "abcd".into(), study: "agreement".into(), model: "panda".into(), ..record::Record::default() };
-    let info = record::RunInfo {
+    let row = featherbench_results::Record {
+        cell: "abcd".into(),
+        study: "agreement".into(),
+        model: "panda".into(),
+        ..featherbench_results::Record::default()
+    };
+    let info = featherbench_results::RunInfo {
         suite: "smoke".into(),
         command: "cargo run --release -- run --suite smoke --live --seed 7 --engine 'mine=sh a.sh' --only panda --out out".into(),
         live: true,
-        ..record::RunInfo::default()
+        ..featherbench_results::RunInfo::default()
     };
-    record::write_run(&sandbox.path("out"), &info, &[row]).unwrap();
+    featherbench_results::write_run(&sandbox.path("out"), &info, &[row]).unwrap();
     let command = again(&sandbox.run(&["explain", "ab", "out"]));
     assert!(command.ends_with("run --suite smoke --live --seed 7 --engine 'mine=sh a.sh' --only '^agreement/panda/'"), "{command}");
 }

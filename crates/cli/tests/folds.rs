@@ -1,6 +1,6 @@
 //! No fold loses a NaN: `NaN.max(x)` is x, so that the largest of some errors, one of which is no number, would be a number.
 //!
-//! The sources are searched for what folds with `max` or `min` of floats. The function for it is `harness::measure::worst`, below it a closure
+//! The sources are searched for what folds with `max` or `min` of floats. The function for it is `featherbench_bench::measure::worst`, below it a closure
 //! that keeps what is no number.
 
 use std::path::{Path, PathBuf};
@@ -12,7 +12,7 @@ const HARMLESS: [(&str, &str, &str); 19] = [
     ("crates/cli/tests/outside/native.rs", "asked.min(", "durations"),
     ("crates/dynamics/src/tree_sparse.rs", "rows[parent].end.max(", "indices"),
     ("crates/formats/src/export/order.rs", "first_frame[parent].min(", "indices"),
-    ("crates/harness/src/gates.rs", "known.min(bound)", "a row's bound is finite"),
+    ("crates/bench/src/gates.rs", "known.min(bound)", "a row's bound is finite"),
     ("crates/reference/examples/golden.rs", "disagreement.max(", "the multi-precision numbers know no NaN"),
     ("crates/reference/src/decimal.rs", "digits.max(1)", "a count"),
     ("crates/reference/tests/closed.rs", "gap.max(", "the multi-precision numbers know no NaN"),
@@ -93,7 +93,7 @@ fn no_fold_loses_a_nan() {
         }
     }
     assert!(searched > 200, "{searched} sources");
-    assert!(found.is_empty(), "these lose a NaN; fold with harness::measure::worst:\n{}", found.join("\n"));
+    assert!(found.is_empty(), "these lose a NaN; fold with featherbench_bench::measure::worst:\n{}", found.join("\n"));
     for ((file, part, why), count) in HARMLESS.iter().zip(harmless) {
         assert!(count > 0, "{file} has no `{part}` any more ({why}): take it from the list");
     }

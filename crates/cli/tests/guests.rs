@@ -2,7 +2,7 @@
 
 mod support;
 
-use harness::{Problem, Quantity, Subject};
+use featherbench_bench::{Problem, Quantity, Subject};
 use support::Sandbox;
 
 /// A shell that builds no robot.
@@ -59,9 +59,9 @@ fn names_and_programs_are_checked_before_anything_runs() {
 /// The table's answers: those of our kernels, each number multiplied by a factor.
 fn with_table(more: &str, factor: f64) -> Sandbox {
     let sandbox = Sandbox::new();
-    let description = formats::neutral::read(support::project().join("datasets/models/chain-planar-2.json")).unwrap();
-    let problem = Problem::new(&description, "chain", record::ModelOrigin::Generated, 20, 1).unwrap();
-    let native = engines::Native::new();
+    let description = featherbench_formats::neutral::read(support::project().join("datasets/models/chain-planar-2.json")).unwrap();
+    let problem = Problem::new(&description, "chain", featherbench_results::ModelOrigin::Generated, 20, 1).unwrap();
+    let native = featherbench_engines::Native::new();
     let mut rnea = native.prepare(&problem, Quantity::InverseDynamics, "rnea", &problem.states).unwrap();
     rnea.run(0..20).unwrap();
     let bytes = |values: &[f64]| values.iter().flat_map(|x| x.to_le_bytes()).collect::<Vec<u8>>();

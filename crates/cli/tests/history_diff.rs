@@ -6,10 +6,10 @@ use support::Sandbox;
 
 /// A finished run's folder with these rows of times: (engine, quantity, method, case, metric, value, reason).
 fn run(sandbox: &Sandbox, name: &str, rows: &[(&str, &str, f64, &str)]) {
-    let records: Vec<record::Record> = rows
+    let records: Vec<featherbench_results::Record> = rows
         .iter()
         .map(|(quantity, metric, value, reason)| {
-            let row = record::Record {
+            let row = featherbench_results::Record {
                 study: "timing".into(),
                 engine: "native".into(),
                 model: "humanoid".into(),
@@ -18,16 +18,22 @@ fn run(sandbox: &Sandbox, name: &str, rows: &[(&str, &str, f64, &str)]) {
                 case: "stream".into(),
                 metric: (*metric).into(),
                 unit: "ns".into(),
-                kind: record::Kind::Measured,
-                ..record::Record::default()
+                kind: featherbench_results::Kind::Measured,
+                ..featherbench_results::Record::default()
             };
-            record::Record { reason: (*reason).into(), ..row.informed(*value) }
+            featherbench_results::Record { reason: (*reason).into(), ..row.informed(*value) }
         })
         .collect();
-    let host = record::Host { cpu: "An Example CPU".into(), cores: 4, ..record::Host::default() };
-    let git = record::GitInfo { revision: "0123456789abcdef".into(), dirty: false };
-    let info = record::RunInfo { run: name.into(), started: "2026-03-04T05:06:07Z".into(), host, git, ..record::RunInfo::default() };
-    record::write_run(&sandbox.path(name), &info, &records).unwrap();
+    let host = featherbench_results::Host { cpu: "An Example CPU".into(), cores: 4, ..featherbench_results::Host::default() };
+    let git = featherbench_results::GitInfo { revision: "0123456789abcdef".into(), dirty: false };
+    let info = featherbench_results::RunInfo {
+        run: name.into(),
+        started: "2026-03-04T05:06:07Z".into(),
+        host,
+        git,
+        ..featherbench_results::RunInfo::default()
+    };
+    featherbench_results::write_run(&sandbox.path(name), &info, &records).unwrap();
 }
 
 fn times(ns: f64) -> Vec<(&'static str, &'static str, f64, &'static str)> {

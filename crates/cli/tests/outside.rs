@@ -15,12 +15,12 @@ mod rapier;
 mod support;
 mod written;
 
-use engines::{Limits, Oracle};
-use harness::{FileBase, FileFormat, RobotFile, Subject};
+use featherbench_bench::{FileBase, FileFormat, RobotFile, Subject};
+use featherbench_engines::{Limits, Oracle};
+use featherbench_studies::reading::{Cause, Comparison, Difference, Field};
 use std::ffi::OsString;
 use std::path::Path;
 use std::process::{Command, ExitCode};
-use studies::reading::{Cause, Comparison, Difference, Field};
 use support::{Ended, Sandbox, project};
 
 type Test = fn() -> Outcome;
@@ -328,7 +328,7 @@ fn one_file_is_another() -> Outcome {
         RobotFile::open(&path, FileFormat::Urdf, FileBase::Fixed).unwrap()
     };
     let honest = write("honest.urdf", pendulum("1", "0 1 0", "0.3 0 0"));
-    let (ours, _) = formats::urdf::read(&honest.path, &formats::urdf::Options::default()).unwrap();
+    let (ours, _) = featherbench_formats::urdf::read(&honest.path, &featherbench_formats::urdf::Options::default()).unwrap();
     let planted = [
         ("mass", pendulum("1.5", "0 1 0", "0.3 0 0"), Field::Mass, Cause::Number),
         ("grams", pendulum("1000", "0 1 0", "0.3 0 0"), Field::Mass, Cause::Unit),

@@ -6,7 +6,7 @@
 #[allow(dead_code, reason = "the fuzzer's own entry points")]
 mod fuzz;
 
-use model::Random;
+use featherbench_model::Random;
 use std::path::Path;
 
 /// Inputs for each target.
@@ -59,25 +59,26 @@ fn damaged_texts_are_refused_or_read() {
 #[test]
 fn seeds_are_good() {
     let read = |name: &str| std::fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("../../ci/fuzz/seeds").join(name)).unwrap();
-    let options = formats::urdf::Options { allow_massless: true, independent_mimics: true, ..Default::default() };
+    let options = featherbench_formats::urdf::Options { allow_massless: true, independent_mimics: true, ..Default::default() };
     for name in ["urdf/arm.urdf", "urdf/floating.urdf"] {
-        formats::urdf::import(&read(name), name, &options).unwrap_or_else(|error| panic!("{error}"));
+        featherbench_formats::urdf::import(&read(name), name, &options).unwrap_or_else(|error| panic!("{error}"));
     }
     for name in ["neutral/all.json", "neutral/short.json"] {
-        formats::neutral::parse(&read(name), name).unwrap_or_else(|error| panic!("{error}"));
+        featherbench_formats::neutral::parse(&read(name), name).unwrap_or_else(|error| panic!("{error}"));
     }
-    harness::Suite::parse(&read("suite/small.toml"), Path::new("small.toml")).unwrap_or_else(|error| panic!("{error}"));
+    featherbench_bench::Suite::parse(&read("suite/small.toml"), Path::new("small.toml")).unwrap_or_else(|error| panic!("{error}"));
     let text = read("gates/small.toml");
     let (gates, deviations) = text.split_once("\n---\n").unwrap();
-    harness::Gates::parse(gates, deviations, Path::new("small")).unwrap_or_else(|error| panic!("{error}"));
-    assert!(engines::Recording::from_bytes(&fuzz::recording_seed(), &fuzz::recorded_problem()).is_ok());
+    featherbench_bench::Gates::parse(gates, deviations, Path::new("small")).unwrap_or_else(|error| panic!("{error}"));
+    assert!(featherbench_engines::Recording::from_bytes(&fuzz::recording_seed(), &fuzz::recorded_problem()).is_ok());
     for seed in [fuzz::records_seed(), fuzz::run_info_seed()] {
         assert!(std::str::from_utf8(&seed).is_ok_and(|text| !text.is_empty()));
     }
-    record::parse_csv(std::str::from_utf8(&fuzz::records_seed()).unwrap(), Path::new("rows")).unwrap_or_else(|error| panic!("{error}"));
-    record::RunInfo::parse(std::str::from_utf8(&fuzz::run_info_seed()).unwrap(), Path::new("run"))
+    featherbench_results::parse_csv(std::str::from_utf8(&fuzz::records_seed()).unwrap(), Path::new("rows"))
+        .unwrap_or_else(|error| panic!("{error}"));
+    featherbench_results::RunInfo::parse(std::str::from_utf8(&fuzz::run_info_seed()).unwrap(), Path::new("run"))
         .unwrap_or_else(|error| panic!("{error}"));
     for k in 0..8 {
-        assert!(model::generate::Family::parse(&read(&format!("family/{k}"))).is_ok(), "family {k}");
+        assert!(featherbench_model::generate::Family::parse(&read(&format!("family/{k}"))).is_ok(), "family {k}");
     }
 }

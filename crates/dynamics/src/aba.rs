@@ -8,8 +8,8 @@
 use crate::error::{Pivot, expect};
 use crate::step::{add_joint, by_kind, cross_joint, expect_bodies, expect_wrenches, newton_euler, parent_link};
 use crate::{DimensionError, Error};
-use model::{JointKind, Model, Topology};
-use spatial::{ArticulatedInertia, Force, Ldl3, Lift, Mat3, Motion, Real, Sym3, Transform, Vec3};
+use featherbench_model::{JointKind, Model, Topology};
+use featherbench_spatial::{ArticulatedInertia, Force, Ldl3, Lift, Mat3, Motion, Real, Sym3, Transform, Vec3};
 
 /// The workspace of the articulated-body algorithm.
 #[derive(Clone, Debug)]

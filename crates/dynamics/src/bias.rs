@@ -4,8 +4,8 @@
 //! terms in v̇; frames, shapes, units and cost O(n) are the same. A call does not allocate.
 
 use crate::{DimensionError, Rnea};
-use model::{Model, Topology};
-use spatial::{Force, Lift, Real};
+use featherbench_model::{Model, Topology};
+use featherbench_spatial::{Force, Lift, Real};
 
 /// The workspace of the bias force.
 #[derive(Clone, Debug)]

@@ -5,8 +5,8 @@
 //! Frame: world axes and origin. Shapes: q has `nq` numbers. Units: kg, m. Cost: O(n). A call does not allocate.
 
 use crate::{DimensionError, Kinematics};
-use model::{Model, Topology};
-use spatial::{Lift, Real, Transform, Vec3};
+use featherbench_model::{Model, Topology};
+use featherbench_spatial::{Lift, Real, Transform, Vec3};
 
 /// The workspace of the centre of mass.
 #[derive(Clone, Debug)]

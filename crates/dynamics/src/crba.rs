@@ -8,8 +8,8 @@
 use crate::error::expect;
 use crate::step::{by_kind, expect_bodies};
 use crate::{DimensionError, TreeSparse};
-use model::{JointKind, Model, Topology};
-use spatial::{Force, Lift, Motion, Real, RigidBodyInertia, Transform, Vec3};
+use featherbench_model::{JointKind, Model, Topology};
+use featherbench_spatial::{Force, Lift, Motion, Real, RigidBodyInertia, Transform, Vec3};
 use std::ops::Range;
 
 /// The workspace of the composite-rigid-body algorithm.

@@ -5,8 +5,8 @@
 //! Cost: O(n). A call does not allocate.
 
 use crate::{DimensionError, Kinematics};
-use model::{Model, Topology};
-use spatial::{Lift, Real, Vec3};
+use featherbench_model::{Model, Topology};
+use featherbench_spatial::{Lift, Real, Vec3};
 
 /// The workspace of energy.
 #[derive(Clone, Debug)]

@@ -8,8 +8,8 @@
 use crate::DimensionError;
 use crate::error::expect;
 use crate::step::expect_bodies;
-use model::{Model, Topology};
-use spatial::{Lift, Mat3, Motion, Real, Transform, Vec3};
+use featherbench_model::{Model, Topology};
+use featherbench_spatial::{Lift, Mat3, Motion, Real, Transform, Vec3};
 
 /// The Jacobian of a body, and the room for it.
 #[derive(Clone, Debug)]

@@ -9,8 +9,8 @@
 use crate::DimensionError;
 use crate::error::expect;
 use crate::step::{add_joint, expect_bodies, parent_link, slides, turns};
-use model::{JointKind, Model, Topology};
-use spatial::{Lift, Mat3, Motion, Real, Transform, Vec3};
+use featherbench_model::{JointKind, Model, Topology};
+use featherbench_spatial::{Lift, Mat3, Motion, Real, Transform, Vec3};
 
 /// The workspace of forward kinematics, and its results.
 #[derive(Clone, Debug)]

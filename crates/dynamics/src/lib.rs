@@ -1,13 +1,13 @@
 //! Rigid-body dynamics of trees: one file per algorithm.
 //!
-//! Each algorithm has a workspace, made from a [`Topology`](model::Topology), whose `run` does not allocate, and a function that makes a
+//! Each algorithm has a workspace, made from a [`Topology`](featherbench_model::Topology), whose `run` does not allocate, and a function that makes a
 //! workspace for one call. All are generic over the scalar of the state and over the scalar of the parameters, so the same text runs on
 //! `f64`, `f32`, dual numbers, counting and extended-precision scalars. "The book" is R. Featherstone, *Rigid Body Dynamics Algorithms*
 //! (2008).
 //!
 //! ```
 //! use featherbench_dynamics::{forward_dynamics, inverse_dynamics, mass_matrix};
-//! use model::{BodyDescription, Description, JointDescription, JointType, Model};
+//! use featherbench_model::{BodyDescription, Description, JointDescription, JointType, Model};
 //!
 //! // A pendulum: one kilogramme, half a metre below its axis.
 //! let joint = JointDescription { kind: JointType::Revolute { axis: [0.0, 1.0, 0.0] }, ..JointDescription::default() };

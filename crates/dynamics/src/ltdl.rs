@@ -11,8 +11,8 @@
 use crate::error::{Pivot, expect};
 use crate::tree_sparse::BLOCK;
 use crate::{DimensionError, Error, NotPositiveDefinite, TreeSparse};
-use model::Topology;
-use spatial::Real;
+use featherbench_model::Topology;
+use featherbench_spatial::Real;
 
 // The arms of `by_block`.
 const _: () = assert!(BLOCK == 4);

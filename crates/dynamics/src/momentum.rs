@@ -5,8 +5,8 @@
 //! kg·m/s. Cost: O(n). A call does not allocate.
 
 use crate::{CenterOfMass, DimensionError, MassCenter};
-use model::{Model, Topology};
-use spatial::{Force, Lift, Real};
+use featherbench_model::{Model, Topology};
+use featherbench_spatial::{Force, Lift, Real};
 
 /// The workspace of centroidal momentum.
 #[derive(Clone, Debug)]

@@ -34,15 +34,15 @@
 //! moments and inertias about the bodies' origins as `Model<f64>::build` rounded them. For the robot as its description says it, build and
 //! pass a `Model<DoubleDouble>`: steps 1, 3 and 4 round its parameters, step 2 does not, and so the result is the description's. States
 //! are exact; a quaternion stands for the rotation of the normalized one, axes and placements for the rotations that they stand for
-//! ([`model::Description::canonical`]).
+//! ([`featherbench_model::Description::canonical`]).
 //!
 //! Frames, shapes and units: as in [`Aba`]. Cost: O(n). A call does not allocate.
 
 use crate::error::expect;
 use crate::step::{add_joint, parent_link};
 use crate::{Aba, DimensionError, Error, Rnea};
-use model::{Model, Topology};
-use spatial::{Compensated, Force, Lift, Motion, Real};
+use featherbench_model::{Model, Topology};
+use featherbench_spatial::{Compensated, Force, Lift, Motion, Real};
 
 /// The workspace of refined forward dynamics, with the residual in `R`.
 #[derive(Clone, Debug)]

@@ -8,8 +8,8 @@
 use crate::DimensionError;
 use crate::error::expect;
 use crate::step::{add_joint, by_kind, cross_joint, expect_bodies, expect_wrenches, newton_euler, parent_link};
-use model::{JointKind, Model, Topology};
-use spatial::{Force, Lift, Motion, Real, Transform, Vec3};
+use featherbench_model::{JointKind, Model, Topology};
+use featherbench_spatial::{Force, Lift, Motion, Real, Transform, Vec3};
 
 /// The workspace of inverse dynamics.
 #[derive(Clone, Debug)]

@@ -6,8 +6,8 @@
 
 use crate::DimensionError;
 use crate::error::expect;
-use model::{Joint, JointKind, Model};
-use spatial::{Force, Motion, Real, RigidBodyInertia, Transform, Vec3};
+use featherbench_model::{Joint, JointKind, Model};
+use featherbench_spatial::{Force, Motion, Real, RigidBodyInertia, Transform, Vec3};
 
 /// Calls `step(kind, …)` from one arm per kind, so that each inlined copy is compiled with its kind known.
 macro_rules! by_kind {

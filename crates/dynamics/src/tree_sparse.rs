@@ -6,9 +6,9 @@
 
 use crate::error::expect;
 use crate::{DimensionError, NotPositiveDefinite};
-use model::Topology;
+use featherbench_model::Topology;
+use featherbench_spatial::Real;
 use nalgebra::{DMatrix, Scalar};
-use spatial::Real;
 use std::ops::Range;
 
 /// The most dofs that are treated together: four rows and what they change leave room in the registers.

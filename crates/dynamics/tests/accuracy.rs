@@ -7,8 +7,8 @@ mod common;
 
 use common::{ROBOTS, build, dyadic_chain, larger, largest, lifted, within};
 use featherbench_dynamics::{bias_force, forward_dynamics, forward_kinematics, inverse_dynamics, jacobian, mass_matrix};
-use model::{Model, StateBatch};
-use spatial::{DoubleDouble, Lift, Real};
+use featherbench_model::{Model, StateBatch};
+use featherbench_spatial::{DoubleDouble, Lift, Real};
 
 const PLANAR: [[f64; 3]; 1] = [[0.0, 1.0, 0.0]];
 const SPACE: [[f64; 3]; 3] = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
@@ -118,7 +118,7 @@ fn forward_dynamics_loses_little_where_the_condition_number_loses_everything() {
 fn far_and_fast_bases_lose_no_digits() {
     let model = dyadic_chain(&SPACE, 20);
     let mut far = model.clone();
-    far.placements[0].translation = spatial::Vec3::new(1e6, -1e6, 1e6);
+    far.placements[0].translation = featherbench_spatial::Vec3::new(1e6, -1e6, 1e6);
     let states = StateBatch::random(&model, 3, 4);
     for k in 0..states.count() {
         let (q, v, a, tau) = (states.q(k), states.v(k), states.a(k), states.tau(k));

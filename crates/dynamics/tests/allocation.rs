@@ -6,8 +6,8 @@ mod common;
 
 use common::{ROBOTS, build, wrenches};
 use featherbench_dynamics::{Aba, Bias, CenterOfMass, Crba, Energy, Jacobian, Kinematics, Ltdl, Momentum, Refined, Rnea, TreeSparse};
-use model::StateBatch;
-use spatial::{Compensated, DoubleDouble};
+use featherbench_model::StateBatch;
+use featherbench_spatial::{Compensated, DoubleDouble};
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::Cell;
 

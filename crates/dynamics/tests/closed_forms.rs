@@ -4,8 +4,8 @@ mod common;
 
 use common::within;
 use featherbench_dynamics::{bias_force, center_of_mass, centroidal_momentum, energy, forward_dynamics, inverse_dynamics, mass_matrix};
-use model::{BodyDescription, Description, JointDescription, JointType, Model, Placement};
-use spatial::{Motion, Quaternion, Sym3, Vec3};
+use featherbench_model::{BodyDescription, Description, JointDescription, JointType, Model, Placement};
+use featherbench_spatial::{Motion, Quaternion, Sym3, Vec3};
 
 /// A handful of operations on numbers of size one to a hundred.
 const FEW_ROUNDINGS: f64 = 64.0 * f64::EPSILON;

@@ -7,8 +7,8 @@ use featherbench_dynamics::{
     Rnea, bias_force, center_of_mass, centroidal_momentum, energy, forward_dynamics, forward_kinematics, inverse_dynamics, jacobian,
     mass_matrix,
 };
-use model::{Model, StateBatch};
-use spatial::{Dual, Force, Motion, Vec3};
+use featherbench_model::{Model, StateBatch};
+use featherbench_spatial::{Dual, Force, Motion, Vec3};
 
 fn each_state(mut check: impl FnMut(&str, &Model<f64>, &[f64], &[f64], &[f64], &[f64])) {
     for (name, recipe) in &ROBOTS {
@@ -179,7 +179,7 @@ fn parameters_may_be_duals() {
         for inertia in &mut scaled.inertias {
             inertia.mass = grow(inertia.mass);
             inertia.first_moment = Vec3::from_array(inertia.first_moment.to_array().map(grow));
-            inertia.rotational = spatial::Sym3::from_array(inertia.rotational.to_array().map(grow));
+            inertia.rotational = featherbench_spatial::Sym3::from_array(inertia.rotational.to_array().map(grow));
         }
         scaled.armature.iter_mut().for_each(|x| *x = grow(*x));
         let constant = |x: &[f64]| x.iter().map(|&x| Dual::constant(x)).collect::<Vec<_>>();

@@ -7,8 +7,8 @@ use featherbench_dynamics::{
     Aba, Bias, CenterOfMass, Crba, DimensionError, Energy, Error, Jacobian, Kinematics, Ltdl, Momentum, NotPositiveDefinite, Refined, Rnea,
     TreeSparse, forward_dynamics, inverse_dynamics, mass_matrix,
 };
-use model::{BodyDescription, Case, Description, JointDescription, JointKind, JointType, Model, StateBatch};
-use spatial::{Compensated, Force, RigidBodyInertia, Sym3, Vec3};
+use featherbench_model::{BodyDescription, Case, Description, JointDescription, JointKind, JointType, Model, StateBatch};
+use featherbench_spatial::{Compensated, Force, RigidBodyInertia, Sym3, Vec3};
 
 /// What a refusal names, and what it counted.
 fn refusal(result: Result<(), impl Into<Error>>) -> (&'static str, usize, usize) {
@@ -87,7 +87,7 @@ fn workspaces_of_another_topology_are_refused() {
 
     // A matrix as large, of another shape: a star instead of a chain.
     let chain = dyadic_chain(&[[0.0, 1.0, 0.0]], 4);
-    let star = common::topology(&[(-1, model::JointKind::Revolute); 4]);
+    let star = common::topology(&[(-1, featherbench_model::JointKind::Revolute); 4]);
     let parents = "dofs of the tree-sparse matrix with the model's parent dof";
     assert_eq!(refusal(Crba::new(&chain.topology).run(&chain, &[0.0; 4], &mut TreeSparse::new(&star))), (parents, 4, 1));
     let place = "dofs of the tree-sparse matrix with the same place in the tree";
@@ -119,7 +119,8 @@ fn workspaces_and_matrices_that_fit_in_part_are_refused() {
     // A quaternion has four numbers and three dofs.
     let ball = balls(&[JointType::Spherical]);
     let (q, x, mut a) = ([0.0, 0.0, 0.0, 1.0], [0.0; 3], [0.0; 3]);
-    let mut refine = |topology: &model::Topology| refusal(Refined::<Compensated>::new(topology, 1).run(&ball, &q, &x, &x, None, &mut a));
+    let mut refine =
+        |topology: &featherbench_model::Topology| refusal(Refined::<Compensated>::new(topology, 1).run(&ball, &q, &x, &x, None, &mut a));
     assert_eq!(refine(&star(3)), ("configuration numbers of the workspace", 4, 3));
     assert_eq!(refine(&star(4)), ("dofs of the workspace", 3, 4));
     assert_eq!(refine(&common::topology(&[(-1, Spherical), (0, Spherical)])), ("configuration numbers of the workspace", 4, 8));
@@ -180,7 +181,7 @@ fn a_model_with_a_missing_part_is_refused() {
 #[test]
 fn a_massless_tip_is_named() {
     let mut model = dyadic_chain(&[[0.0, 1.0, 0.0]], 3);
-    model.inertias[2] = spatial::RigidBodyInertia::zero();
+    model.inertias[2] = featherbench_spatial::RigidBodyInertia::zero();
     let zero = [0.0; 3];
     let expected = NotPositiveDefinite { dof: 2, pivot: 0.0 };
     assert_eq!(mass_matrix(&model, &zero).unwrap().into_ltdl().unwrap_err(), expected);
@@ -225,7 +226,7 @@ fn massless_spherical_and_free_tips_are_named() {
         let mut model = build(&ROBOTS[robot].1);
         let last = (0..model.topology.bodies()).rfind(|&i| model.topology.joints()[i].kind.nv() > 1).unwrap();
         for inertia in &mut model.inertias[last..] {
-            *inertia = spatial::RigidBodyInertia::zero();
+            *inertia = featherbench_spatial::RigidBodyInertia::zero();
         }
         model.armature.fill(0.0);
         let states = StateBatch::random(&model, 1, 1);

@@ -4,8 +4,8 @@ mod common;
 
 use common::{ROBOTS, build, lifted, within};
 use featherbench_dynamics::inverse_dynamics;
-use model::StateBatch;
-use spatial::{Compensated, DoubleDouble, Dual, Lift, Real};
+use featherbench_model::StateBatch;
+use featherbench_spatial::{Compensated, DoubleDouble, Dual, Lift, Real};
 
 fn dd(x: f64) -> DoubleDouble {
     DoubleDouble::from_f64(x)

@@ -7,8 +7,8 @@ use featherbench_dynamics::{
     Aba, Bias, Crba, Energy, Jacobian, Kinematics, Ltdl, Momentum, Rnea, TreeSparse, bias_force, center_of_mass, centroidal_momentum,
     energy, forward_dynamics, forward_kinematics, inverse_dynamics, jacobian, mass_matrix,
 };
-use model::{Model, StateBatch};
-use spatial::{Force, Motion, Vec3};
+use featherbench_model::{Model, StateBatch};
+use featherbench_spatial::{Force, Motion, Vec3};
 
 /// Each robot with ten states: zero, straight, fast, and random ones.
 fn each_state(mut check: impl FnMut(&str, &Model<f64>, &[f64], &[f64], &[f64], &[f64])) {
@@ -186,7 +186,7 @@ fn floating_base_block_is_the_composite_inertia() {
             .iter()
             .zip(kinematics.iter())
             .map(|(inertia, body)| inertia.to_parent(&base.compose(&body.placement)))
-            .fold(spatial::RigidBodyInertia::zero(), |sum, moved| sum + moved);
+            .fold(featherbench_spatial::RigidBodyInertia::zero(), |sum, moved| sum + moved);
         for j in 0..6 {
             let mut unit = [0.0; 6];
             unit[(j + 3) % 6] = 1.0;

@@ -9,9 +9,9 @@ use common::{ROBOTS, build, distance, larger, largest, lifted, within, wrenches}
 use featherbench_dynamics::{
     Aba, Crba, Error, Ltdl, NotPositiveDefinite, Refined, Rnea, forward_dynamics, mass_matrix, refined_forward_dynamics,
 };
-use model::generate::Family;
-use model::{Description, Model, StateBatch};
-use spatial::{Compensated, DoubleDouble, Force, Lift, Real};
+use featherbench_model::generate::Family;
+use featherbench_model::{Description, Model, StateBatch};
+use featherbench_spatial::{Compensated, DoubleDouble, Force, Lift, Real};
 use std::f64::consts::PI;
 
 /// Half a unit in the last place: what rounding the exact result makes of each number, and so of a vector's 2-norm.
@@ -274,7 +274,7 @@ fn massless_bodies_and_nan_are_answered() {
         let a = refined_forward_dynamics(&model, &ones, v, tau, 2).unwrap();
         assert!(a.iter().any(|a| a.is_nan()), "as the plain algorithm: what is not a number is not hidden");
     }
-    model.inertias[n - 1] = spatial::RigidBodyInertia::zero();
+    model.inertias[n - 1] = featherbench_spatial::RigidBodyInertia::zero();
     let refused = refined_forward_dynamics(&model, &ones, &ones, &ones, 1);
     assert!(matches!(refused, Err(Error::NotPositiveDefinite(NotPositiveDefinite { dof, .. })) if dof == n - 1));
 }

@@ -4,9 +4,9 @@ mod common;
 
 use common::{dyadic_chain, lifted, topology, within};
 use featherbench_dynamics::{Aba, Bias, Ltdl, NotPositiveDefinite, Rnea, TreeSparse, mass_matrix};
-use model::{JointKind, Model, Random, StateBatch, Topology};
+use featherbench_model::{JointKind, Model, Random, StateBatch, Topology};
+use featherbench_spatial::{Counted, Operations, Real};
 use nalgebra::DMatrix;
-use spatial::{Counted, Operations, Real};
 
 use JointKind::{Free, Revolute};
 
@@ -247,7 +247,7 @@ fn dofs_on_different_branches_do_not_couple() {
         let states = StateBatch::random(&model, 1, 2);
         let n = model.topology.nv();
         let mut weightless = model.clone();
-        weightless.gravity = spatial::Vec3::zero();
+        weightless.gravity = featherbench_spatial::Vec3::zero();
         let matrix = mass_matrix(&model, states.q(0)).unwrap();
         for j in 0..n {
             let mut unit = vec![0.0; n];

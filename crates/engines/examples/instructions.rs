@@ -2,11 +2,11 @@
 //!
 //! Prints a line `kernel,model,calls` before each; everything that is counted happens in [`featherbench_measured`], called once per line.
 
+use featherbench_bench::{Prepared, Problem, Subject};
 use featherbench_engines::{Native, timed};
-use harness::{Prepared, Problem, Subject};
-use model::StateBatch;
-use model::generate::Family;
-use record::ModelOrigin;
+use featherbench_model::StateBatch;
+use featherbench_model::generate::Family;
+use featherbench_results::ModelOrigin;
 use std::hint::black_box;
 
 /// One robot of each shape: an arm, a long chain, a tree of short branches, a floating base.
@@ -34,7 +34,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
 
 /// What callgrind counts.
 #[inline(never)]
-fn featherbench_measured(prepared: &mut dyn Prepared) -> Result<(), harness::Refusal> {
+fn featherbench_measured(prepared: &mut dyn Prepared) -> Result<(), featherbench_bench::Refusal> {
     prepared.clock(0..CALLS)?;
     black_box(prepared.read());
     Ok(())

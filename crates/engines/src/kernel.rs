@@ -3,10 +3,12 @@
 //! A kernel owns its workspace. Evaluating leaves one state's answer where its algorithm leaves it, as in any engine; reading it into a slice
 //! is a step of its own. Studies, the timing of runs and `cargo bench` all go through this list, so what is timed is what is checked.
 
-use dynamics::{Aba, Bias, CenterOfMass, Crba, Energy, Error, Jacobian, Kinematics, Ltdl, Momentum, Refined, Rnea, TreeSparse};
-use harness::{DENSE_LIMIT, Problem, Quantity, Refusal, layout};
-use model::{Model, StateBatch};
-use spatial::{DoubleDouble, Force};
+use featherbench_bench::{DENSE_LIMIT, Problem, Quantity, Refusal, layout};
+use featherbench_dynamics::{
+    Aba, Bias, CenterOfMass, Crba, Energy, Error, Jacobian, Kinematics, Ltdl, Momentum, Refined, Rnea, TreeSparse,
+};
+use featherbench_model::{Model, StateBatch};
+use featherbench_spatial::{DoubleDouble, Force};
 
 /// An algorithm over a batch of states.
 pub(crate) trait Evaluate: Send {

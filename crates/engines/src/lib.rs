@@ -2,7 +2,7 @@
 //!
 //! [`Native`] runs the kernels of this workspace; [`Oracle`] asks a program that speaks the protocol of `oracles/PROTOCOL.md`;
 //! [`peer`] serves an engine's native library by the same protocol; [`Recorded`] plays back what an oracle once answered. To add an engine,
-//! write such a program, in Rust too (`oracles/rapier`), or implement [`Subject`](harness::Subject) in a file of its own here.
+//! write such a program, in Rust too (`oracles/rapier`), or implement [`Subject`](featherbench_bench::Subject) in a file of its own here.
 
 mod clock;
 mod coding;

@@ -2,9 +2,9 @@
 
 pub use crate::kernel::timed;
 use crate::kernel::{Kernel, kernel, methods};
-use harness::{Identity, Prepared, Problem, Quantity, Refusal, Subject};
-use model::StateBatch;
-use record::EngineSource;
+use featherbench_bench::{Identity, Prepared, Problem, Quantity, Refusal, Subject};
+use featherbench_model::StateBatch;
+use featherbench_results::EngineSource;
 use std::collections::BTreeMap;
 use std::hint::black_box;
 use std::ops::Range;

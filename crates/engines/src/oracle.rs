@@ -6,11 +6,11 @@ use crate::clock::{Clock, SystemClock};
 pub use crate::process::Limits;
 use crate::process::Process;
 use crate::{request, shape};
-use harness::frame::{Block, Frame};
-use harness::provenance::{PROGRAM, SOURCES};
-use harness::{Identity, Prepared, Problem, Quantity, Reading, ReadingNote, Refusal, RobotFile, Route, Stepper, Subject};
-use model::{BodyDescription, Description, StateBatch};
-use record::EngineSource;
+use featherbench_bench::frame::{Block, Frame};
+use featherbench_bench::provenance::{PROGRAM, SOURCES};
+use featherbench_bench::{Identity, Prepared, Problem, Quantity, Reading, ReadingNote, Refusal, RobotFile, Route, Stepper, Subject};
+use featherbench_model::{BodyDescription, Description, StateBatch};
+use featherbench_results::EngineSource;
 use serde_json::{Value, json};
 use std::collections::BTreeMap;
 use std::ffi::OsString;
@@ -273,7 +273,7 @@ impl Session {
     fn send_states(&mut self, problem: &Problem, states: &StateBatch) -> Result<(), Refusal> {
         let numbers = [&states.q, &states.v, &states.a, &states.tau, &states.wrench].into_iter().flatten();
         let bytes: Vec<u8> = numbers.flat_map(|x| x.to_le_bytes()).collect();
-        let key = harness::hash::of(&bytes);
+        let key = featherbench_bench::hash::of(&bytes);
         if self.states.as_ref() == Some(&key) {
             return Ok(());
         }
@@ -369,7 +369,7 @@ impl Drop for Asked<'_> {
 /// A sentence, when it is no robot whose states and answers could be given in the order of its bodies.
 pub(crate) fn reading(answer: &Frame) -> Result<Reading, String> {
     let model = answer.header.get("model").ok_or("there is no model")?;
-    let parse = |model: &Value| formats::neutral::parse(&model.to_string(), "the model").map_err(|error| error.to_string());
+    let parse = |model: &Value| featherbench_formats::neutral::parse(&model.to_string(), "the model").map_err(|error| error.to_string());
     let description = parse(model)?;
     let canonical = description.canonical().map_err(|error| error.to_string())?;
     // States and answers are in the order of the bodies: one that would change here would mix them up. Numbers may be normalised.

@@ -1,7 +1,7 @@
 //! A child process that speaks in frames, within limits of time and memory.
 
 use crate::clock::{Clock, SystemClock, wait};
-use harness::frame::{Frame, FrameError};
+use featherbench_bench::frame::{Frame, FrameError};
 use std::collections::VecDeque;
 use std::ffi::OsString;
 use std::io::{BufRead, BufReader, Read, Write};

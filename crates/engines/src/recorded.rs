@@ -7,9 +7,9 @@
 //! refused.
 
 use crate::coding::{delta, from_delta, from_plain, plain};
-use harness::{Identity, Outcome, Prepared, Problem, Quantity, Refusal, Subject};
-use model::{StateBatch, Topology};
-use record::EngineSource;
+use featherbench_bench::{Identity, Outcome, Prepared, Problem, Quantity, Refusal, Subject};
+use featherbench_model::{StateBatch, Topology};
+use featherbench_results::EngineSource;
 use serde_json::{Value, json};
 use std::collections::{BTreeMap, HashMap};
 use std::ops::Range;
@@ -92,7 +92,7 @@ impl Recording {
         }
         let parts = writer.parts;
         writer.part(json!({"end": parts}), &[]);
-        record::seal(&mut writer.bytes);
+        featherbench_results::seal(&mut writer.bytes);
         writer.bytes
     }
 
@@ -110,7 +110,7 @@ impl Recording {
     /// # Errors
     /// What is truncated, damaged, or about another robot or other states, in words.
     pub fn from_bytes(bytes: &[u8], problem: &Problem) -> Result<Self, String> {
-        let body = record::unsealed(bytes);
+        let body = featherbench_results::unsealed(bytes);
         let body = body.ok_or("its last line is not the checksum of the bytes before it: the file is truncated or damaged")?;
         let mut reader = Reader { bytes: body, parts: 0 };
         let (head, raw) = reader.part()?;

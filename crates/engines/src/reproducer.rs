@@ -2,8 +2,8 @@
 
 use crate::oracle::{Limits, checked, shaped};
 use crate::process::Process;
-use harness::Refusal;
-use harness::frame::Frame;
+use featherbench_bench::Refusal;
+use featherbench_bench::frame::Frame;
 use serde_json::json;
 use std::ffi::OsString;
 

@@ -1,8 +1,8 @@
 //! Requests of the oracle protocol that more than one place sends.
 
-use harness::Problem;
-use harness::frame::Block;
-use model::StateBatch;
+use featherbench_bench::Problem;
+use featherbench_bench::frame::Block;
+use featherbench_model::StateBatch;
 use serde_json::{Value, json};
 
 /// The description of a robot as it is sent.
@@ -10,7 +10,7 @@ use serde_json::{Value, json};
 /// # Errors
 /// A sentence, when the description is no robot.
 pub(crate) fn description(problem: &Problem) -> Result<Value, String> {
-    let line = formats::neutral::to_line(&problem.description).map_err(|error| error.to_string())?;
+    let line = featherbench_formats::neutral::to_line(&problem.description).map_err(|error| error.to_string())?;
     serde_json::from_str(&line).map_err(|error| error.to_string())
 }
 

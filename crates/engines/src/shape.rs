@@ -1,7 +1,7 @@
 //! The shapes of blocks, as the tables of `oracles/PROTOCOL.md` have them: one place for runs, the conformance test and native peers.
 
-use harness::frame::Frame;
-use harness::{Problem, Quantity};
+use featherbench_bench::frame::Frame;
+use featherbench_bench::{Problem, Quantity};
 
 /// The shape of an answer about so many states: `[count, …]`.
 pub(crate) fn of_value(quantity: Quantity, problem: &Problem, count: usize) -> Vec<usize> {
@@ -37,8 +37,8 @@ pub(crate) fn block<'a>(answer: &'a Frame, name: &str, due: &[usize]) -> Result<
 #[cfg(test)]
 mod tests {
     use super::*;
-    use model::generate::Family;
-    use record::ModelOrigin;
+    use featherbench_model::generate::Family;
+    use featherbench_results::ModelOrigin;
 
     /// A robot of which no two of nv, bodies and stored are the same, and none a number of the tables.
     fn robot() -> Problem {
@@ -104,7 +104,7 @@ mod tests {
 
     #[test]
     fn a_block_of_another_shape_is_named_with_the_one_that_is_due() {
-        let answer = Frame::new(serde_json::json!({}), vec![harness::frame::Block::new("value", &[2, 3], &[0.0; 6])]);
+        let answer = Frame::new(serde_json::json!({}), vec![featherbench_bench::frame::Block::new("value", &[2, 3], &[0.0; 6])]);
         assert_eq!(block(&answer, "value", &[2, 3]).unwrap().len(), 6);
         for due in [&[3, 2][..], &[6], &[2, 3, 1]] {
             assert!(block(&answer, "value", due).unwrap_err().contains("[2, 3]"));

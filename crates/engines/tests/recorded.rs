@@ -1,11 +1,11 @@
 //! Recorded answers come back to the bit, and a file that is truncated, damaged or about something else is refused by its name: never a
 //! wrong answer, never a panic, and never a reason to give up the other robots.
 
+use featherbench_bench::{Identity, Outcome, Problem, Quantity, Refusal, Subject};
 use featherbench_engines::{EngineRecording, Native, Recorded, Recording, RecordingError, Recordings, read_recordings, recording_name};
-use harness::{Identity, Outcome, Problem, Quantity, Refusal, Subject};
-use model::Description;
-use model::generate::Family;
-use record::{EngineSource, ModelOrigin};
+use featherbench_model::Description;
+use featherbench_model::generate::Family;
+use featherbench_results::{EngineSource, ModelOrigin};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -82,12 +82,12 @@ fn bits(recording: &Recording) -> Vec<(Identity, Vec<Bits>)> {
 
 /// A recording without its last line, and one that is given its checksum anew: for damage that a checksum does not show.
 fn unsealed(bytes: &[u8]) -> &[u8] {
-    record::unsealed(bytes).unwrap()
+    featherbench_results::unsealed(bytes).unwrap()
 }
 
 fn sealed(bytes: &[u8]) -> Vec<u8> {
     let mut bytes = bytes.to_vec();
-    record::seal(&mut bytes);
+    featherbench_results::seal(&mut bytes);
     bytes
 }
 

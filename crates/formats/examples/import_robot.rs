@@ -6,7 +6,7 @@
 //! ```
 
 use featherbench_formats::{neutral, urdf};
-use model::{Description, Model, Provenance};
+use featherbench_model::{Description, Model, Provenance};
 use std::error::Error;
 use std::process::ExitCode;
 

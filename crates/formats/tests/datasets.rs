@@ -1,7 +1,7 @@
 //! The committed robots: readable, canonical, written by this version, with the words that allow their use.
 
 use featherbench_formats::neutral;
-use model::Model;
+use featherbench_model::Model;
 use std::path::{Path, PathBuf};
 
 /// Name, nq, nv.

@@ -1,9 +1,9 @@
 //! URDF: what a good file becomes.
 
 use featherbench_formats::urdf::{self, Base, Options};
-use model::generate::{Chain, Family, Layout};
-use model::{Description, JointType, Model, Placement, Warning};
-use spatial::{Mat3, Sym3, Transform, Vec3};
+use featherbench_model::generate::{Chain, Family, Layout};
+use featherbench_model::{Description, JointType, Model, Placement, Warning};
+use featherbench_spatial::{Mat3, Sym3, Transform, Vec3};
 use std::fmt::Write;
 
 fn import(text: &str, options: Options) -> (Description, Vec<String>) {

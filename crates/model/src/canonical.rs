@@ -2,7 +2,7 @@
 
 use crate::orthonormal::{nearest_rotation, rotation, unit};
 use crate::{BodyDescription, Description, Frame, JointDescription, JointType, Malformed, Placement};
-use spatial::{DoubleDouble, Mat3, Real, Sym3, Transform, Vec3};
+use featherbench_spatial::{DoubleDouble, Mat3, Real, Sym3, Transform, Vec3};
 
 impl Description {
     /// The canonical form: validated, axes and rotations of joints normalised, fixed joints merged into their parents (each merged body

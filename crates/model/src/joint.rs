@@ -1,6 +1,6 @@
 //! The primitive joints that kernels see.
 
-use spatial::{Force, Lift, Motion, Quaternion, Real, Transform, Vec3};
+use featherbench_spatial::{Force, Lift, Motion, Quaternion, Real, Transform, Vec3};
 
 /// A primitive joint. The first three are one-dof screws with a constant motion subspace `S`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]

@@ -2,7 +2,7 @@
 
 use crate::orthonormal::{rotation, unit};
 use crate::{Description, JointKind, JointType, Malformed, Topology, Warning};
-use spatial::{Lift, Mat3, Motion, Real, RigidBodyInertia, Sym3, Transform, Vec3};
+use featherbench_spatial::{Lift, Mat3, Motion, Real, RigidBodyInertia, Sym3, Transform, Vec3};
 use std::array::from_fn;
 
 /// A robot as the kernels see it: primitive joints in depth-first order, parameters over the scalar `P`.

@@ -5,7 +5,7 @@
 //! the bit, so that normalising twice is normalising once.
 //! Source: Higham, *Functions of Matrices* (2008), §8.3. Shapes: 3 and 9 numbers, rows first. Cost: O(1); nothing is allocated.
 
-use spatial::{DoubleDouble, Mat3, Real, Vec3};
+use featherbench_spatial::{DoubleDouble, Mat3, Real, Vec3};
 use std::array::from_fn;
 
 /// Largest entry of |uᵀu − 1| and |RRᵀ − 1| after rounding to doubles, δ = 2⁻⁵³.

@@ -1,7 +1,7 @@
 //! Descriptions: what is refused, what is remarked upon, and what the canonical form does.
 
 use featherbench_model::{BodyDescription, Description, Frame, JointDescription, JointType, Malformed, Model, Placement, Warning};
-use spatial::{Quaternion, RigidBodyInertia, Sym3, Transform, Vec3};
+use featherbench_spatial::{Quaternion, RigidBodyInertia, Sym3, Transform, Vec3};
 
 const REVOLUTE: JointType = JointType::Revolute { axis: [0.0, 0.0, 1.0] };
 

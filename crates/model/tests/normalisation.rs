@@ -1,7 +1,7 @@
 //! Axes and rotations that are not quite unit: what the canonical form makes of them, and what it tells.
 
 use featherbench_model::{BodyDescription, Description, JointDescription, JointType, Model, Placement, Random, Warning};
-use spatial::{DoubleDouble, Mat3, Quaternion, Real, Transform, Vec3};
+use featherbench_spatial::{DoubleDouble, Mat3, Quaternion, Real, Transform, Vec3};
 
 /// By how much written numbers miss: nothing, an ulp of one, and more.
 const OFF: [f64; 6] = [0.0, f64::EPSILON, 1e-15, 1e-12, 1e-9, 1e-7];

@@ -8,9 +8,9 @@
 #[path = "../tests/support/mod.rs"]
 mod support;
 
-use dynamics::Ltdl;
+use featherbench_dynamics::Ltdl;
+use featherbench_model::{Description, Model};
 use featherbench_reference::{Error, Precision, Robot, nearest_doubles};
-use model::{Description, Model};
 use std::collections::BTreeMap;
 use support::oracle::{Oracle, python};
 use support::{CASES, Case, Draw, State};
@@ -97,17 +97,17 @@ fn compare(
 fn native(model: &Model<f64>, quantity: &str, State { q, v, a, tau }: &State) -> Vec<(&'static str, Vec<f64>)> {
     const SOUND: &str = "a generated robot and its states fit each other";
     let n = v.len();
-    let mass = dynamics::mass_matrix(model, q).expect(SOUND);
+    let mass = featherbench_dynamics::mass_matrix(model, q).expect(SOUND);
     match quantity {
-        "id" => vec![("rnea", dynamics::inverse_dynamics(model, q, v, a).expect(SOUND))],
+        "id" => vec![("rnea", featherbench_dynamics::inverse_dynamics(model, q, v, a).expect(SOUND))],
         "mass_matrix" => vec![("crba", (0..n * n).map(|k| mass.get(k / n, k % n)).collect())],
         _ => {
-            let bias = dynamics::bias_force(model, q, v).expect(SOUND);
+            let bias = featherbench_dynamics::bias_force(model, q, v).expect(SOUND);
             let mut x: Vec<f64> = tau.iter().zip(bias).map(|(tau, h)| tau - h).collect();
             let mut factors = Ltdl::new(&model.topology);
             factors.run(&mass).expect(SOUND);
             factors.solve(&mut x).expect(SOUND);
-            vec![("aba", dynamics::forward_dynamics(model, q, v, tau).expect(SOUND)), ("ltdl", x)]
+            vec![("aba", featherbench_dynamics::forward_dynamics(model, q, v, tau).expect(SOUND)), ("ltdl", x)]
         }
     }
 }

@@ -9,7 +9,7 @@
 mod support;
 
 use featherbench_reference::{Mp, Precision, nearest_doubles};
-use record::Checksums;
+use featherbench_results::Checksums;
 use serde_json::{Value, json};
 use std::error::Error;
 use std::io::Write;
@@ -92,7 +92,7 @@ fn write(case: &Case, answers: &Answers) -> Result<(), Box<dyn Error>> {
 
 /// What `python -m featherbench_oracles.truth --decimals` is asked.
 fn question(case: &Case, state: &State) -> Result<String, Box<dyn Error>> {
-    let model = formats::neutral::to_line(&case.describe())?;
+    let model = featherbench_formats::neutral::to_line(&case.describe())?;
     let State { q, v, a, tau } = state;
     Ok(format!("{{\"model\":{model},\"q\":{q:?},\"v\":{v:?},\"a\":{a:?},\"tau\":{tau:?},\"digits\":{EXCHANGED}}}"))
 }

@@ -7,7 +7,7 @@ use thiserror::Error;
 pub enum Error {
     /// The description is no robot.
     #[error(transparent)]
-    Malformed(#[from] model::Malformed),
+    Malformed(#[from] featherbench_model::Malformed),
     /// A vector has the wrong length.
     #[error("{array} has {found} numbers; this robot takes {expected}")]
     Length {

@@ -8,7 +8,7 @@
 
 use crate::space::{Mat3, Vec3};
 use crate::{Error, Mp, Precision};
-use model::{BodyDescription, Description, JointType};
+use featherbench_model::{BodyDescription, Description, JointType};
 use std::array::from_fn;
 
 /// A joint's kind with its exact parameters.

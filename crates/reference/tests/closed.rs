@@ -2,9 +2,9 @@
 
 mod support;
 
+use featherbench_model::{BodyDescription, Description, JointDescription, JointType, Placement};
 use featherbench_reference::closed::{DoublePendulum, Elliptic, FreeTop, HeavyTop, Pendulum};
 use featherbench_reference::{Error, Mp, Precision, Robot};
-use model::{BodyDescription, Description, JointDescription, JointType, Placement};
 use support::{close, distance};
 
 const P: Precision = Precision::STANDARD;

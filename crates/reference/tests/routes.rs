@@ -2,8 +2,8 @@
 
 mod support;
 
+use featherbench_model::{Description, JointType, Model, StateBatch};
 use featherbench_reference::{Error, Factors, Mp, Precision, Robot, lagrange, maximal};
-use model::{Description, JointType, Model, StateBatch};
 use support::{CASES, Case, Draw, close, describe, distance};
 
 /// What routes must agree to; at 448 bits they do to about 1e-130 times the condition of the problem.

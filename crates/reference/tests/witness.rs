@@ -4,8 +4,8 @@
 
 mod support;
 
+use featherbench_model::{Model, StateBatch};
 use featherbench_reference::{Precision, Robot, nearest_doubles};
-use model::{Model, StateBatch};
 use std::io::Write;
 use support::oracle::{Oracle, python};
 use support::{State, describe};

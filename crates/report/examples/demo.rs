@@ -10,7 +10,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let folder = std::env::args_os().nth(1).map(PathBuf::from).ok_or("name the folder to write to")?;
     let run = support::run_info();
     let records = support::records(&run);
-    record::write_run(&folder, &run, &records)?;
+    featherbench_results::write_run(&folder, &run, &records)?;
     let paths = featherbench_report::write(&run, &records, &folder)?;
     println!("{} rows: {}", records.len(), paths.index.display());
     Ok(())

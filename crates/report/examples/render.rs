@@ -7,9 +7,9 @@ fn main() -> Result<(), Box<dyn Error>> {
     let mut folders = std::env::args_os().skip(1).map(PathBuf::from);
     let from = folders.next().ok_or("name the folder of the run")?;
     let out = folders.next().unwrap_or_else(|| from.clone());
-    let (run, records) = record::read_run(&from)?;
+    let (run, records) = featherbench_results::read_run(&from)?;
     if out != from {
-        record::write_run(&out, &run, &records)?;
+        featherbench_results::write_run(&out, &run, &records)?;
     }
     let paths = featherbench_report::write(&run, &records, &out)?;
     println!("{} rows: {}", records.len(), paths.index.display());

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use record::{COLUMNS, Record, Verdict};
+use featherbench_results::{COLUMNS, Record, Verdict};
 use serde::Serialize;
 
 use crate::ReportError;

@@ -2,8 +2,8 @@
 
 use std::collections::BTreeMap;
 
+use featherbench_results::{Record, Verdict};
 use maud::{Markup, html};
-use record::{Record, Verdict};
 use serde::Serialize;
 
 use crate::fit::{Fit, power_law};

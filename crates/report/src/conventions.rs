@@ -1,7 +1,7 @@
 //! Section: where the engines' conventions differ from ours, and what holds each statement.
 
+use featherbench_results::{Convention, RunInfo};
 use maud::{Markup, html};
-use record::{Convention, RunInfo};
 
 /// Writes the section.
 pub fn section(run: &RunInfo) -> Markup {

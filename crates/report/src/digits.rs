@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use record::{Record, Verdict};
+use featherbench_results::{Record, Verdict};
 use serde::Serialize;
 
 use crate::axes::{self, Axis};

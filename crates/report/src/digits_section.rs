@@ -2,8 +2,8 @@
 
 use std::collections::BTreeSet;
 
+use featherbench_results::Verdict;
 use maud::{Markup, html};
-use record::Verdict;
 
 use crate::axes::Axis;
 use crate::digits::{Cell, Digits, lost};

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use record::{Record, Relation};
+use featherbench_results::{Record, Relation};
 use serde::Serialize;
 
 use crate::conditioning::{self, Family};

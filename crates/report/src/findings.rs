@@ -2,7 +2,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use record::{Record, RunInfo, Verdict};
+use featherbench_results::{Record, RunInfo, Verdict};
 
 use crate::figures::is_error_measure;
 use crate::labels;

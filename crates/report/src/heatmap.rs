@@ -1,7 +1,7 @@
 //! Section: model × quantity × engine, coloured by the margin to the gate.
 
+use featherbench_results::Verdict;
 use maud::{Markup, html};
-use record::Verdict;
 
 use crate::findings::Findings;
 use crate::labels;

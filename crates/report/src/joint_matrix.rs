@@ -5,8 +5,8 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
+use featherbench_results::{Record, Verdict};
 use maud::{Markup, html};
-use record::{Record, Verdict};
 use serde::Serialize;
 
 use crate::heatmap::{inside, outside};

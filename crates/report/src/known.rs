@@ -2,8 +2,8 @@
 
 use std::collections::BTreeMap;
 
+use featherbench_results::{Record, Verdict};
 use maud::{Markup, html};
-use record::{Record, Verdict};
 use serde_json::Value;
 
 use crate::chunks::UNPASSED;

@@ -1,6 +1,6 @@
 //! Names in files and what they are called on the page.
 
-use record::Verdict;
+use featherbench_results::Verdict;
 
 /// A name with the words for it.
 pub struct Label {

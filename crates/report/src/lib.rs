@@ -40,7 +40,7 @@ mod verdict;
 
 use std::path::{Path, PathBuf};
 
-use record::{Record, RecordError, RunInfo};
+use featherbench_results::{Record, RecordError, RunInfo};
 
 pub use crate::summary::summary;
 
@@ -109,7 +109,7 @@ pub fn write(run: &RunInfo, records: &[Record], out: &Path) -> Result<ReportPath
     let mut written = Vec::with_capacity(files.len());
     for (name, bytes) in files {
         let path = out.join(name);
-        record::atomic_write(&path, &bytes)?;
+        featherbench_results::atomic_write(&path, &bytes)?;
         written.push(path);
     }
     Ok(ReportPaths { index: out.join("index.html"), files: written })

@@ -1,7 +1,7 @@
 //! Section: what the numbers mean, what is and is not included, and how to get them again.
 
+use featherbench_results::RunInfo;
 use maud::{Markup, html};
-use record::RunInfo;
 
 use crate::figures::Figures;
 use crate::labels::QUANTITIES;

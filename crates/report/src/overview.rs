@@ -2,7 +2,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use record::{Record, RunInfo, Verdict};
+use featherbench_results::{Record, RunInfo, Verdict};
 use serde::Serialize;
 
 use crate::labels;
@@ -231,7 +231,7 @@ fn models<'a>(run: &'a RunInfo, records: &'a [Record]) -> Vec<Model<'a>> {
         .map(|name| {
             let row = first_rows.get(name);
             let info = announced.get(name);
-            let size = |of_info: fn(&record::ModelInfo) -> u64, of_row: fn(&Record) -> Option<u64>| {
+            let size = |of_info: fn(&featherbench_results::ModelInfo) -> u64, of_row: fn(&Record) -> Option<u64>| {
                 info.map(|info| of_info(info)).or_else(|| row.and_then(|row| of_row(row)))
             };
             Model {

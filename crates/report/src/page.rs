@@ -1,7 +1,7 @@
 //! The page: its frame, and its sections in order.
 
+use featherbench_results::{CSV_NAME, RUN_NAME, Record, RunInfo, SCHEMA_NAME};
 use maud::{DOCTYPE, Markup, html};
-use record::{CSV_NAME, RUN_NAME, Record, RunInfo, SCHEMA_NAME};
 
 use crate::figures::Figures;
 use crate::findings::Findings;

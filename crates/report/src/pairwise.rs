@@ -2,8 +2,8 @@
 
 use std::collections::BTreeMap;
 
+use featherbench_results::Record;
 use maud::{Markup, html};
-use record::Record;
 
 use crate::labels;
 use crate::numbers::short;

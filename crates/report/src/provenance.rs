@@ -2,8 +2,8 @@
 
 use std::collections::BTreeMap;
 
+use featherbench_results::{ModelInfo, RunInfo};
 use maud::{Markup, html};
-use record::{ModelInfo, RunInfo};
 
 use crate::numbers::short;
 use crate::overview::Overview;

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use record::{ESTIMATE, Record};
+use featherbench_results::{ESTIMATE, Record};
 use serde::Serialize;
 
 use crate::labels;

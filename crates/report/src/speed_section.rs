@@ -1,7 +1,7 @@
 //! Section: who is how fast beside whom, how far from what the machine can do, and whether the machine was quiet.
 
+use featherbench_results::RunInfo;
 use maud::{Markup, html};
-use record::RunInfo;
 
 use crate::labels;
 use crate::numbers::{count, short};

@@ -2,7 +2,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use record::{Record, RunInfo, Verdict};
+use featherbench_results::{Record, RunInfo, Verdict};
 
 use crate::findings::{Findings, Status};
 use crate::labels;
@@ -23,7 +23,7 @@ const TIMED: [&str; 3] = ["id", "fd", "mass_matrix_sparse"];
 ///
 /// ```
 /// use featherbench_report::summary;
-/// use record::{Record, RunInfo, Verdict};
+/// use featherbench_results::{Record, RunInfo, Verdict};
 ///
 /// let row = Record { verdict: Verdict::Pass, value: Some(1e-16), bound: Some(1e-14), ..Record::default() };
 /// assert_eq!(summary(&RunInfo::default(), &[row]), ["passed: The one judged row is inside its gate"]);

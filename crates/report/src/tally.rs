@@ -1,6 +1,6 @@
 //! Counting verdicts.
 
-use record::Verdict;
+use featherbench_results::Verdict;
 
 /// How many rows have which verdict.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

@@ -2,8 +2,8 @@
 
 use std::collections::BTreeMap;
 
+use featherbench_results::{Record, Verdict};
 use maud::{Markup, html};
-use record::{Record, Verdict};
 
 use crate::chunks::{UNPASSED, is_unpassed};
 use crate::labels;

@@ -1,7 +1,7 @@
 //! Section: is the run good, and if not, where.
 
+use featherbench_results::{Record, RunInfo, Verdict};
 use maud::{Markup, html};
-use record::{Record, RunInfo, Verdict};
 
 use crate::findings::{Findings, Status};
 use crate::numbers::{count, decades, grouped, short};

@@ -1,6 +1,6 @@
 //! The joint matrix: what a run's rows of `joints-*` robots become, and that it appears with them alone.
 
-use record::{Record, Relation, RunInfo, Verdict};
+use featherbench_results::{Record, Relation, RunInfo, Verdict};
 use serde_json::Value;
 use written::Written;
 

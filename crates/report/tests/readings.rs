@@ -1,6 +1,6 @@
 //! The section on how engines read robots' files: what the rows say stands there, and runs without such rows have no section.
 
-use record::{Record, Relation, RunInfo, Verdict};
+use featherbench_results::{Record, Relation, RunInfo, Verdict};
 use written::Written;
 
 mod support;

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::fs;
 use std::path::Path;
 
-use record::{Record, Relation, RunInfo, Verdict};
+use featherbench_results::{Record, Relation, RunInfo, Verdict};
 use written::Written;
 
 mod support;
@@ -83,7 +83,7 @@ fn every_row_lies_in_one_chunk_and_chunks_parse() {
     for name in written.chunk_names().into_iter().filter(|name| name != "overview" && name != "figures") {
         let data = written.data(&name);
         let columns: Vec<&str> = data["columns"].as_array().unwrap().iter().map(|column| column.as_str().unwrap()).collect();
-        assert_eq!(columns, record::COLUMNS.map(|column| column.name));
+        assert_eq!(columns, featherbench_results::COLUMNS.map(|column| column.name));
         let rows: Vec<Record> = data["rows"]
             .as_array()
             .unwrap()
@@ -361,8 +361,13 @@ fn sentences_tell_who_agrees_and_who_does_not() {
 
     let good = Written::of(&RunInfo::default(), &rows[..5]);
     assert!(good.section("verdict").contains("All 5 judged rows are inside their gates"));
-    let expected =
-        record::Expectation { what: "id".into(), expected: 2, found: 1, verdict: Verdict::Fail, reason: "one is missing".into() };
+    let expected = featherbench_results::Expectation {
+        what: "id".into(),
+        expected: 2,
+        found: 1,
+        verdict: Verdict::Fail,
+        reason: "one is missing".into(),
+    };
     let short = Written::of(&RunInfo { expected: vec![expected], ..RunInfo::default() }, &rows[..5]);
     assert!(short.section("verdict").contains("verdict bad") && short.section("verdict").contains("1 expectation not met"));
 }

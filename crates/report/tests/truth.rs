@@ -1,6 +1,6 @@
 //! The sections of the studies that know the truth: they appear with their rows, say what those say, and leave the other sections alone.
 
-use record::{Record, Relation, RunInfo, Verdict};
+use featherbench_results::{Record, Relation, RunInfo, Verdict};
 use serde_json::Value;
 use written::Written;
 
@@ -146,7 +146,7 @@ fn a_deviation_is_neither_kept_nor_failed() {
         row("forward", "b").gated(1e-12, Relation::Le, 1e-14).deviating("far base"),
         // What it cannot be asked is no answer, right or wrong.
         row("other", "a").gated(1e-15, Relation::Le, 1e-14),
-        row("other", "b").without_value(record::Verdict::Skip, "no such joint"),
+        row("other", "b").without_value(featherbench_results::Verdict::Skip, "no such joint"),
     ];
     let written = Written::of(&RunInfo::default(), &rows);
     let verdict = written.section("verdict");

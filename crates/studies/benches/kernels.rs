@@ -7,11 +7,11 @@
 
 use criterion::measurement::WallTime;
 use criterion::{BenchmarkGroup, BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
-use engines::{Native, timed};
-use harness::{Problem, Quantity, Subject};
-use model::StateBatch;
-use model::generate::Family;
-use record::ModelOrigin;
+use featherbench_bench::{Problem, Quantity, Subject};
+use featherbench_engines::{Native, timed};
+use featherbench_model::StateBatch;
+use featherbench_model::generate::Family;
+use featherbench_results::ModelOrigin;
 use std::collections::BTreeMap;
 use std::hint::black_box;
 use std::time::Duration;

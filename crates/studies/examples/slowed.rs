@@ -3,13 +3,13 @@
 //!
 //! Ends with 1 unless, on every quantity whose A/A control says that the machine was quiet, the last is found slower and the others are not.
 
-use engines::Native;
+use featherbench_bench::run::{Silent, compare, evaluate, plan};
+use featherbench_bench::{Context, Gates, Identity, OutcomeStore, Prepared, Problem, Quantity, Refusal, Subject};
+use featherbench_engines::Native;
+use featherbench_model::StateBatch;
+use featherbench_model::generate::Family;
+use featherbench_results::{ModelOrigin, Record};
 use featherbench_studies::Timing;
-use harness::run::{Silent, compare, evaluate, plan};
-use harness::{Context, Gates, Identity, OutcomeStore, Prepared, Problem, Quantity, Refusal, Subject};
-use model::StateBatch;
-use model::generate::Family;
-use record::{ModelOrigin, Record};
 use std::ops::Range;
 use std::process::ExitCode;
 use std::time::{Duration, Instant};

@@ -1,15 +1,15 @@
 //! Accuracy: our error over that of the best engine, for every quantity.
 //!
-//! Both errors are distances from the truth in double-double arithmetic ([`harness::truth`]), in the measures of the agreement study, at the
+//! Both errors are distances from the truth in double-double arithmetic ([`featherbench_bench::truth`]), in the measures of the agreement study, at the
 //! worst of the states. Ours is that of our usual method; the best engine's is the smallest of all others and their methods. An error below
 //! half an ulp, 2⁻⁵³, counts as half an ulp: rounding the exact answer leaves as much.
 
 use crate::agreement::QUANTITIES;
 use crate::row;
-use harness::measure::{ForwardScale, Magnitudes, ratio, scaled_error, worst};
-use harness::truth::TruthModel;
-use harness::{Finished, Problem, Quantity};
-use record::Record;
+use featherbench_bench::measure::{ForwardScale, Magnitudes, ratio, scaled_error, worst};
+use featherbench_bench::truth::TruthModel;
+use featherbench_bench::{Finished, Problem, Quantity};
+use featherbench_results::Record;
 use serde_json::json;
 
 /// The metric of the rows.
@@ -46,7 +46,7 @@ pub(crate) fn over_best(own: &str, problem: &Problem, finished: &[Finished], at:
         let mut row =
             Record { case: "all".into(), metric: METRIC.into(), unit: "1".into(), reference: best.subject.clone(), ..row(ours, problem) };
         let params = json!({"base": problem.base(), "ours": ours_error, "best": best_error, "by": best.method});
-        row.params = record::canonical_json(&params);
+        row.params = featherbench_results::canonical_json(&params);
         Some(row.informed(ratio(above, below)))
     };
     QUANTITIES.into_iter().filter(|&quantity| quantity != Quantity::Readback).filter_map(of).collect()

@@ -5,11 +5,11 @@
 
 use crate::accuracy::over_best;
 use crate::row;
-use dynamics::Rnea;
-use harness::measure::{ForwardScale, Magnitudes, scaled_error, worst};
-use harness::{Cell, Context, DENSE_LIMIT, Finished, Outcome, Problem, Quantity, Refusal, Study, Subject};
-use model::{Case, Model};
-use record::{Record, Verdict};
+use featherbench_bench::measure::{ForwardScale, Magnitudes, scaled_error, worst};
+use featherbench_bench::{Cell, Context, DENSE_LIMIT, Finished, Outcome, Problem, Quantity, Refusal, Study, Subject};
+use featherbench_dynamics::Rnea;
+use featherbench_model::{Case, Model};
+use featherbench_results::{Record, Verdict};
 use serde_json::json;
 
 /// The subject that everything is compared with.
@@ -183,7 +183,7 @@ impl Comparison<'_> {
     fn judged(&self, cell: &Cell, metric: &str, errors: &[f64], amplification: Option<&[f64]>) -> Vec<Record> {
         let relative: Vec<f64> = match amplification {
             Some(amplification) => {
-                errors.iter().zip(amplification).map(|(error, growth)| harness::measure::ratio(*error, *growth)).collect()
+                errors.iter().zip(amplification).map(|(error, growth)| featherbench_bench::measure::ratio(*error, *growth)).collect()
             }
             None => errors.to_vec(),
         };

@@ -5,11 +5,11 @@
 //! of forward dynamics stands beside it and does not grow.
 
 use crate::row;
-use dynamics::mass_matrix;
-use harness::truth::structured_floor;
-use harness::{Cell, Context, Finished, Outcome, Problem, Quantity, Refusal, Study};
+use featherbench_bench::truth::structured_floor;
+use featherbench_bench::{Cell, Context, Finished, Outcome, Problem, Quantity, Refusal, Study};
+use featherbench_dynamics::mass_matrix;
+use featherbench_results::{Record, Verdict};
 use nalgebra::DMatrix;
-use record::{Record, Verdict};
 use serde_json::json;
 
 /// The conditioning study.

@@ -1,6 +1,6 @@
 //! Digits: how far each engine and method is from the truth, and who is right.
 //!
-//! The reference is not an engine but the answer in double-double arithmetic ([`harness::truth`]). Inverse dynamics and M are measured in
+//! The reference is not an engine but the answer in double-double arithmetic ([`featherbench_bench::truth`]). Inverse dynamics and M are measured in
 //! the unit-free measures of the agreement study; forward dynamics in the kinetic-energy norm, against the bound that a backward stable
 //! method keeps, and in the 2-norm for the comparison with published tables, with the structured floor beside it. The quartiles are over the
 //! states.
@@ -9,11 +9,11 @@
 //! engines stand at the wall.
 
 use crate::row;
-use dynamics::TreeSparse;
-use harness::measure::{ForwardScale, scaled_error};
-use harness::truth::{Truth, TruthModel, structured_floor};
-use harness::{Cell, Context, DENSE_LIMIT, Finished, Outcome, Problem, Quantity, Refusal, Study};
-use record::{Record, Verdict};
+use featherbench_bench::measure::{ForwardScale, scaled_error};
+use featherbench_bench::truth::{Truth, TruthModel, structured_floor};
+use featherbench_bench::{Cell, Context, DENSE_LIMIT, Finished, Outcome, Problem, Quantity, Refusal, Study};
+use featherbench_dynamics::TreeSparse;
+use featherbench_results::{Record, Verdict};
 use serde_json::json;
 
 /// The digits study.
@@ -128,7 +128,7 @@ impl Study for Digits {
                 let mut errors: Vec<f64> = answers
                     .map(|((value, truth), at)| scaled_error(problem, quantity, at, &true_value(problem, quantity, truth), value))
                     .collect();
-                let worst = errors.iter().copied().fold(0.0, harness::measure::worst);
+                let worst = errors.iter().copied().fold(0.0, featherbench_bench::measure::worst);
                 rows.push(context.gates.judge(Record { metric: "true".into(), ..blank.clone() }, worst, 1.0));
                 rows.extend(quartiles(context, &blank, &mut errors));
             }
@@ -169,7 +169,7 @@ fn sort(errors: &mut [f64]) {
 
 fn forward_errors(a: &[f64], truth: &[f64], scale: &ForwardScale) -> ForwardErrors {
     let norm = |values: &mut dyn Iterator<Item = f64>| values.map(|x| x * x).sum::<f64>().sqrt();
-    let plain = harness::measure::ratio(norm(&mut a.iter().zip(truth).map(|(a, t)| a - t)), norm(&mut truth.iter().copied()));
+    let plain = featherbench_bench::measure::ratio(norm(&mut a.iter().zip(truth).map(|(a, t)| a - t)), norm(&mut truth.iter().copied()));
     // The truth has no backward error: half of what two answers may differ by.
     ForwardErrors { energy: scale.forward_error(truth, a), bound: 0.5 * scale.amplification, plain }
 }
@@ -211,7 +211,8 @@ fn quartiles(context: &Context, blank: &Record, errors: &mut [f64]) -> Vec<Recor
 /// The largest error over the structured floor of its state: what the algorithm adds to what rounding the inputs may do.
 fn over_floor(context: &Context, blank: &Record, errors: &[f64], floors: &[f64]) -> Option<Record> {
     let pairs = errors.iter().zip(floors).filter(|(_, floor)| floor.is_finite());
-    let worst = pairs.map(|(error, floor)| harness::measure::ratio(*error, *floor)).reduce(harness::measure::worst)?;
+    let worst =
+        pairs.map(|(error, floor)| featherbench_bench::measure::ratio(*error, *floor)).reduce(featherbench_bench::measure::worst)?;
     let row = Record { metric: "error_over_floor".into(), ..blank.clone() };
     Some(context.gates.judge(row, worst, 1.0))
 }

@@ -31,8 +31,8 @@ pub use step_limit::StepLimit;
 pub use structure::Structure;
 pub use timing::Timing;
 
-use harness::{Cell, Context, Outcome, Problem, Quantity, Refusal, Subject};
-use record::Record;
+use featherbench_bench::{Cell, Context, Outcome, Problem, Quantity, Refusal, Subject};
+use featherbench_results::Record;
 
 /// A row with everything that its cell and problem say; the study adds case, metric and value.
 fn row(cell: &Cell, problem: &Problem) -> Record {
@@ -45,7 +45,7 @@ fn row(cell: &Cell, problem: &Problem) -> Record {
         nv: Some(problem.states.nv as u64),
         bodies: Some(problem.description.bodies.len() as u64),
         depth: Some(problem.depth as u64),
-        params: record::canonical_json(&cell.params),
+        params: featherbench_results::canonical_json(&cell.params),
         engine: cell.subject.clone(),
         engine_version: cell.version.clone(),
         method: cell.method.clone(),

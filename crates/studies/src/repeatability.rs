@@ -8,9 +8,9 @@
 
 use crate::agreement::{self, QUANTITIES};
 use crate::{asked, row};
-use harness::{Cell, Context, Finished, Outcome, Problem, Quantity, Refusal, Study, Subject, hash};
-use model::Random;
-use record::{EngineSource, Record, Relation, Verdict};
+use featherbench_bench::{Cell, Context, Finished, Outcome, Problem, Quantity, Refusal, Study, Subject, hash};
+use featherbench_model::Random;
+use featherbench_results::{EngineSource, Record, Relation, Verdict};
 use serde_json::json;
 
 /// The repeatability study.
@@ -170,7 +170,7 @@ impl Repeatability {
             cell: cell.id(),
             study: self.name().into(),
             problem: "all".into(),
-            params: record::canonical_json(&cell.params),
+            params: featherbench_results::canonical_json(&cell.params),
             engine: cell.subject.clone(),
             engine_version: cell.version.clone(),
             scalar: cell.scalar.clone(),

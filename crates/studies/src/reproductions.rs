@@ -4,8 +4,8 @@
 //! smallest value over the seeds must not lie below the range, the largest not above it, each by more than [`SLACK`]. So a
 //! deviation that its engine has mended fails the gate, as does one that has grown: the list is then to be corrected.
 
-use harness::{Cell, Context, Finished, Outcome, Problem, Refusal, Reproduction, SEEDS, SLACK, Study};
-use record::{Record, Relation, Verdict};
+use featherbench_bench::{Cell, Context, Finished, Outcome, Problem, Refusal, Reproduction, SEEDS, SLACK, Study};
+use featherbench_results::{Record, Relation, Verdict};
 use serde_json::json;
 
 /// Evaluates the reproduction of a name at the seeds from zero up to a number.
@@ -26,7 +26,7 @@ impl Study for Reproductions {
         let cell = |known: &Reproduction| Cell {
             study: self.name().into(),
             problem: known.name.clone(),
-            problem_hash: harness::hash::of(known.name.as_bytes()),
+            problem_hash: featherbench_bench::hash::of(known.name.as_bytes()),
             params: json!({
                 "condition": known.condition,
                 "measure": known.measure,
@@ -66,7 +66,7 @@ fn rows(context: &Context, known: &Reproduction, cell: &Cell, outcome: &Outcome)
         cell: cell.id(),
         study: cell.study.clone(),
         problem: cell.problem.clone(),
-        params: record::canonical_json(&cell.params),
+        params: featherbench_results::canonical_json(&cell.params),
         engine: cell.subject.clone(),
         engine_version: cell.version.clone(),
         method: cell.method.clone(),

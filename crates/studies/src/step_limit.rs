@@ -12,11 +12,11 @@
 //! names the regime of its step, and an order is fitted over implicit steps alone.
 
 use crate::row;
-use dynamics::{energy, forward_dynamics};
-use harness::measure::{ForwardScale, scaled_error, worst};
-use harness::{Cell, Context, Finished, Outcome, Problem, Quantity, Refusal, Stepper, Study};
-use model::Case;
-use record::{Record, Verdict};
+use featherbench_bench::measure::{ForwardScale, scaled_error, worst};
+use featherbench_bench::{Cell, Context, Finished, Outcome, Problem, Quantity, Refusal, Stepper, Study};
+use featherbench_dynamics::{energy, forward_dynamics};
+use featherbench_model::Case;
+use featherbench_results::{Record, Verdict};
 use serde_json::json;
 use std::ops::RangeInclusive;
 
@@ -106,8 +106,8 @@ impl Study for StepLimit {
                     if let Some(regime) = regime {
                         params["regime"] = regime.name().into();
                     }
-                    let mut row =
-                        Record { metric: metric.into(), params: record::canonical_json(&params), ..blank.clone() }.informed(value);
+                    let mut row = Record { metric: metric.into(), params: featherbench_results::canonical_json(&params), ..blank.clone() }
+                        .informed(value);
                     if regime == Some(Regime::Explicit) && row.value.is_some() {
                         row.reason = EXPLICIT.into();
                     }

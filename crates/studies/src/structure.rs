@@ -6,11 +6,11 @@
 //! kernels on a scalar that counts.
 
 use crate::row;
-use dynamics::{Crba, Ltdl, TreeSparse};
-use harness::{Cell, Context, Finished, Outcome, Problem, Quantity, Refusal, Study};
-use record::{Record, Relation, Verdict};
+use featherbench_bench::{Cell, Context, Finished, Outcome, Problem, Quantity, Refusal, Study};
+use featherbench_dynamics::{Crba, Ltdl, TreeSparse};
+use featherbench_results::{Record, Relation, Verdict};
+use featherbench_spatial::{Counted, Operations};
 use serde_json::json;
-use spatial::{Counted, Operations};
 
 /// The structure study.
 pub struct Structure;

@@ -1,10 +1,10 @@
 //! A cause is named only if it gives the engine's numbers: what parsers do to the links of a body, planted by their own rules, is named with its
 //! size, and the same sentences beside other numbers name nothing.
 
+use featherbench_bench::{FileInertial, FileLink, ReadingNote};
+use featherbench_model::{BodyDescription, Description, Frame, JointDescription, JointType, Placement, Random};
+use featherbench_spatial::{Mat3, RigidBodyInertia, Sym3, Transform, Vec3};
 use featherbench_studies::reading::{Cause, Comparison, Difference, Field, bound};
-use harness::{FileInertial, FileLink, ReadingNote};
-use model::{BodyDescription, Description, Frame, JointDescription, JointType, Placement, Random};
-use spatial::{Mat3, RigidBodyInertia, Sym3, Transform, Vec3};
 
 const NO_TURN: [f64; 9] = [1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0];
 

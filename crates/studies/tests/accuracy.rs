@@ -2,9 +2,9 @@
 
 mod support;
 
-use engines::Native;
-use harness::{Problem, Quantity, Subject};
-use record::Record;
+use featherbench_bench::{Problem, Quantity, Subject};
+use featherbench_engines::Native;
+use featherbench_results::Record;
 use support::{Answer, Double, Twist, agreement, gates, robot};
 
 /// The quantity that the twisted engines spoil.

@@ -3,9 +3,9 @@
 
 mod support;
 
-use engines::{Clock, Limits, Native, Oracle};
-use harness::Subject;
-use record::{Record, Verdict};
+use featherbench_bench::Subject;
+use featherbench_engines::{Clock, Limits, Native, Oracle};
+use featherbench_results::{Record, Verdict};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::Duration;

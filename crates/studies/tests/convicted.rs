@@ -6,10 +6,10 @@
 
 mod support;
 
-use engines::Native;
-use harness::{Gates, Problem, Quantity, Range, RangeKey, Ranges, RangesMeter, Subject};
-use model::{Description, JointType, Model, StateBatch};
-use record::{Record, Verdict};
+use featherbench_bench::{Gates, Problem, Quantity, Range, RangeKey, Ranges, RangesMeter, Subject};
+use featherbench_engines::Native;
+use featherbench_model::{Description, JointType, Model, StateBatch};
+use featherbench_results::{Record, Verdict};
 use std::collections::BTreeSet;
 use support::{Answer, Double, OVER_BEST, SHARPNESS, Twist, agreement, beside_native, doubles, gates, red, robot, suite};
 
@@ -79,7 +79,7 @@ fn world_axes_for_body_axes() {
     let twist = |Answer { problem, quantity, state, values }: Answer| {
         if quantity == Quantity::InverseDynamics {
             let x = problem.model.joint_transform(0, problem.states.q(state));
-            let world = |v: &[f64]| (x.rotation * spatial::Vec3::new(v[0], v[1], v[2])).to_array();
+            let world = |v: &[f64]| (x.rotation * featherbench_spatial::Vec3::new(v[0], v[1], v[2])).to_array();
             let (force, moment) = (world(&values[..3]), world(&values[3..6]));
             values[..3].copy_from_slice(&force);
             values[3..6].copy_from_slice(&moment);
@@ -153,7 +153,8 @@ fn spatial_acceleration_for_classical() {
     let twist = |Answer { problem, quantity, state, values }: Answer| {
         if quantity == Quantity::BodyAcceleration {
             let states = &problem.states;
-            let motion = dynamics::forward_kinematics(&problem.model, states.q(state), states.v(state), states.a(state)).unwrap();
+            let motion =
+                featherbench_dynamics::forward_kinematics(&problem.model, states.q(state), states.v(state), states.a(state)).unwrap();
             for (a, &body) in values.chunks_exact_mut(6).zip(&problem.model.described) {
                 let v = motion.body(body).unwrap().velocity;
                 a.iter_mut().skip(3).zip(v.ang.cross(v.lin).to_array()).for_each(|(a, term)| *a -= term);
@@ -249,8 +250,8 @@ fn quaternions(model: &Model<f64>, states: &mut StateBatch, change: impl Fn(&mut
     for q in states.q.chunks_exact_mut(states.nq) {
         for joint in model.topology.joints() {
             match joint.kind {
-                model::JointKind::Free => change(&mut q[joint.q + 3..joint.q + 7]),
-                model::JointKind::Spherical => change(&mut q[joint.q..joint.q + 4]),
+                featherbench_model::JointKind::Free => change(&mut q[joint.q + 3..joint.q + 7]),
+                featherbench_model::JointKind::Spherical => change(&mut q[joint.q..joint.q + 4]),
                 _ => (),
             }
         }
@@ -318,7 +319,7 @@ fn a_missing_engine_does_not_pass_unnoticed() {
     let problem = robot(FREE);
     let gates = gates("");
     let expected = suite(&beside_native(&problem, &gates, Double::of(&problem)));
-    let alone = agreement(&problem, &gates, &[Box::new(engines::Native::new())]);
+    let alone = agreement(&problem, &gates, &[Box::new(featherbench_engines::Native::new())]);
     assert!(alone.iter().all(|row| matches!(row.verdict, Verdict::Pass | Verdict::Info)), "nothing is wrong with what is there");
     let conditions = gates.conditions(&expected, &alone, true);
     let unmet = red(&conditions);

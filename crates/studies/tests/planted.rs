@@ -6,10 +6,10 @@
 
 mod support;
 
-use harness::measure::worst;
-use model::{BodyDescription, JointType};
+use featherbench_bench::measure::worst;
+use featherbench_model::{BodyDescription, JointType};
+use featherbench_results::{Record, Verdict};
 use rayon::prelude::*;
-use record::{Record, Verdict};
 use support::{Double, beside_native, doubles, gates, red, robot, suite};
 
 /// The error that is planted: four decades above the gates, six below what an eye sees in a plot.

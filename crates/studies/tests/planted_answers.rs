@@ -5,13 +5,13 @@
 
 mod support;
 
-use engines::{Native, Recorded, read_recordings};
+use featherbench_bench::run::{Silent, evaluate, plan};
+use featherbench_bench::{Context, Finished, Gates, Outcome, OutcomeStore, Problem, Quantity, Study, Subject, Suite};
+use featherbench_engines::{Native, Recorded, read_recordings};
+use featherbench_model::generate::Family;
+use featherbench_results::{ModelOrigin, Record, Verdict};
 use featherbench_studies::Agreement;
-use harness::run::{Silent, evaluate, plan};
-use harness::{Context, Finished, Gates, Outcome, OutcomeStore, Problem, Quantity, Study, Subject, Suite};
-use model::generate::Family;
 use rayon::prelude::*;
-use record::{ModelOrigin, Record, Verdict};
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -44,9 +44,9 @@ impl Default {
         let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
         let (suite, _) = Suite::read(&root.join("datasets/suites/default.toml")).unwrap();
         let agreement = suite.agreement.clone().unwrap();
-        let robot = |entry: &harness::ProblemEntry| {
+        let robot = |entry: &featherbench_bench::ProblemEntry| {
             let description = match &entry.model {
-                Some(name) => formats::neutral::read(root.join(format!("datasets/models/{name}.json"))).unwrap(),
+                Some(name) => featherbench_formats::neutral::read(root.join(format!("datasets/models/{name}.json"))).unwrap(),
                 None => Family::parse(entry.generate.as_ref().unwrap()).unwrap().generate().unwrap(),
             };
             let states = entry.states.unwrap_or(agreement.states);

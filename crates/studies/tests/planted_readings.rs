@@ -2,10 +2,10 @@
 //!
 //! Four hundred plants, drawn by seed over ten committed robots, as an engine's parser might have changed them.
 
+use featherbench_formats::neutral;
+use featherbench_model::{BodyDescription, Description, JointType, Placement, Random};
+use featherbench_spatial::{Mat3, Sym3, Transform, Vec3};
 use featherbench_studies::reading::{Cause, Comparison, Difference, Field, Weight};
-use formats::neutral;
-use model::{BodyDescription, Description, JointType, Placement, Random};
-use spatial::{Mat3, Sym3, Transform, Vec3};
 use std::path::Path;
 
 const ROBOTS: [&str; 10] =
@@ -174,7 +174,8 @@ fn reorder(description: &mut Description, random: &mut Random) -> Expected {
     order.swap(a, b);
     let place: Vec<usize> = (0..bodies.len()).map(|i| order.iter().position(|&o| o == i).unwrap()).collect();
     let moved = order.iter().map(|&i| BodyDescription { parent: bodies[i].parent.map(|parent| place[parent]), ..bodies[i].clone() });
-    let frames = description.frames.iter().map(|frame| model::Frame { body: frame.body.map(|body| place[body]), ..frame.clone() });
+    let frames =
+        description.frames.iter().map(|frame| featherbench_model::Frame { body: frame.body.map(|body| place[body]), ..frame.clone() });
     let reordered = Description { bodies: moved.collect(), frames: frames.collect(), ..description.clone() };
     *description = reordered.canonical().unwrap();
     (String::new(), Field::DofOrder, Some(Cause::Order))
@@ -294,7 +295,7 @@ fn bodies_that_are_merged_dropped_or_added_are_told_apart() {
     let name = ours.bodies[leaf].name.clone();
     let fixed = |description: &mut Description| {
         let joint = &mut description.bodies[leaf].joint;
-        *joint = model::JointDescription { name: joint.name.clone(), placement: joint.placement, ..Default::default() };
+        *joint = featherbench_model::JointDescription { name: joint.name.clone(), placement: joint.placement, ..Default::default() };
     };
     let mut merged = ours.clone();
     fixed(&mut merged);
@@ -329,7 +330,7 @@ fn a_base_that_floats_by_another_link_is_told_from_a_joint_that_is_elsewhere() {
     let mut ours = robot("anymal_c");
     let root = ours.bodies.iter().position(|body| body.joint.kind == JointType::Free).unwrap();
     let placement = Placement { rotation: turn.to_array(), translation: [0.1, 0.0, 0.0] };
-    ours.frames.push(model::Frame { name: "inner".into(), body: Some(root), placement });
+    ours.frames.push(featherbench_model::Frame { name: "inner".into(), body: Some(root), placement });
     let mut theirs = ours.clone();
     theirs.bodies[root].name = "inner".into();
     let back = placement.to_transform().inverse();

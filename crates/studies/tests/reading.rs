@@ -3,11 +3,13 @@
 
 mod support;
 
-use engines::Native;
+use featherbench_bench::{
+    FileBase, FileFormat, Identity, Prepared, Problem, Quantity, Reading as Read, ReadingNote, Refusal, RobotFile, Subject,
+};
+use featherbench_engines::Native;
+use featherbench_model::{Description, Model, StateBatch};
+use featherbench_results::{EngineSource, Record, Verdict};
 use featherbench_studies::Reading;
-use harness::{FileBase, FileFormat, Identity, Prepared, Problem, Quantity, Reading as Read, ReadingNote, Refusal, RobotFile, Subject};
-use model::{Description, Model, StateBatch};
-use record::{EngineSource, Record, Verdict};
 use serde_json::Value;
 use std::collections::BTreeMap;
 use support::{gates, robot, whole};
@@ -154,7 +156,7 @@ fn a_body_less_is_compared_on_what_is_left() {
     let mut fewer = problem.description.clone();
     let leaf = fewer.bodies.len() - 1;
     let joint = &mut fewer.bodies[leaf].joint;
-    *joint = model::JointDescription { name: joint.name.clone(), placement: joint.placement, ..Default::default() };
+    *joint = featherbench_model::JointDescription { name: joint.name.clone(), placement: joint.placement, ..Default::default() };
     let fewer = fewer.canonical().unwrap();
     let mut parser = Parser::new(fewer.clone(), &fewer, &problem);
     // Its states are those of the smaller robot.

@@ -1,13 +1,13 @@
 //! Engines that do not answer the same question alike: noise of a few units in the last place, a memory of what was asked before, an answer
 //! that comes only once. Each is a row that fails, with its size; honest engines pass, and recordings are not asked.
 
-use engines::Native;
+use featherbench_bench::run::{Silent, compare, evaluate, plan};
+use featherbench_bench::{Context, Gates, Identity, OutcomeStore, Prepared, Problem, Quantity, Refusal, Subject};
+use featherbench_engines::Native;
+use featherbench_model::StateBatch;
+use featherbench_model::generate::Family;
+use featherbench_results::{EngineSource, ModelOrigin, Record, Relation, Verdict};
 use featherbench_studies::Repeatability;
-use harness::run::{Silent, compare, evaluate, plan};
-use harness::{Context, Gates, Identity, OutcomeStore, Prepared, Problem, Quantity, Refusal, Subject};
-use model::StateBatch;
-use model::generate::Family;
-use record::{EngineSource, ModelOrigin, Record, Relation, Verdict};
 use std::collections::BTreeSet;
 use std::ops::Range;
 use std::sync::atomic::{AtomicU64, Ordering};

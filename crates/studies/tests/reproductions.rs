@@ -2,10 +2,10 @@
 
 mod support;
 
+use featherbench_bench::run::{Silent, compare, evaluate, plan};
+use featherbench_bench::{Context, Gates, OutcomeStore, Refusal, Subject};
+use featherbench_results::{Record, Verdict};
 use featherbench_studies::Reproductions;
-use harness::run::{Silent, compare, evaluate, plan};
-use harness::{Context, Gates, OutcomeStore, Refusal, Subject};
-use record::{Record, Verdict};
 use support::Double;
 
 const KNOWN: &str = r#"

@@ -1,10 +1,10 @@
 //! The study of small steps on an engine of our own that is implicit, has an energy guard, and drifts in the first order.
 
-use dynamics::{energy, forward_dynamics};
+use featherbench_bench::{Identity, Prepared, Problem, Quantity, Refusal, Stepper, Subject};
+use featherbench_dynamics::{energy, forward_dynamics};
+use featherbench_model::StateBatch;
+use featherbench_results::{EngineSource, Record, Verdict};
 use featherbench_studies::StepLimit;
-use harness::{Identity, Prepared, Problem, Quantity, Refusal, Stepper, Subject};
-use model::StateBatch;
-use record::{EngineSource, Record, Verdict};
 use serde_json::Value;
 use std::collections::BTreeMap;
 use support::{gates, robot, whole};

@@ -1,10 +1,10 @@
 //! The timing study as a whole: its cells, what is checked before a time counts, what is void and why. Nothing here depends on a time.
 
-use engines::Native;
+use featherbench_bench::run::{Silent, compare, evaluate, plan};
+use featherbench_bench::{Cell, Context, Outcome, OutcomeStore, Problem, Quantity, Study, Subject};
+use featherbench_engines::Native;
+use featherbench_results::{Kind, Record, Verdict};
 use featherbench_studies::Timing;
-use harness::run::{Silent, compare, evaluate, plan};
-use harness::{Cell, Context, Outcome, OutcomeStore, Problem, Quantity, Study, Subject};
-use record::{Kind, Record, Verdict};
 use support::{Double, gates, robot, whole};
 
 mod support;
@@ -126,7 +126,7 @@ fn a_reference_that_refuses_from_the_start_is_one_row_with_its_reason() {
     let mut description = robot4().description.clone();
     let last = description.bodies.last_mut().unwrap();
     (last.mass, last.inertia) = (0.0, [0.0; 6]);
-    let problem = Problem::new(&description, "test", record::ModelOrigin::Generated, 20, 1).unwrap();
+    let problem = Problem::new(&description, "test", featherbench_results::ModelOrigin::Generated, 20, 1).unwrap();
     let study = Timing { kernels: |_| vec![(Quantity::Factorization, "ltdl")], peers: vec![], ..study() };
     let rows = whole(&study, &problem, &gates(""), &[Box::new(Native::new()) as Box<dyn Subject>]);
     let rows: Vec<_> = rows.iter().filter(|row| row.quantity == "factorization").collect();

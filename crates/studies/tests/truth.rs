@@ -2,10 +2,10 @@
 
 mod support;
 
-use engines::Native;
+use featherbench_bench::{Problem, Quantity, Subject};
+use featherbench_engines::Native;
+use featherbench_results::{Record, Verdict};
 use featherbench_studies::Digits;
-use harness::{Problem, Quantity, Subject};
-use record::{Record, Verdict};
 use std::collections::BTreeSet;
 use support::{Answer, Double, gates, robot, whole};
 

@@ -15,7 +15,7 @@
 //! Euler angles is not orthogonal, and singular at a pitch of ±90°.
 
 use crate::refusal::Refusal;
-use model::{BodyDescription, Description, JointType};
+use featherbench_model::{BodyDescription, Description, JointType};
 use rapier3d_f64::math::{Matrix, Pose, Rotation, Vector};
 use rapier3d_f64::prelude::{GenericJoint, GenericJointBuilder, JointAxesMask};
 

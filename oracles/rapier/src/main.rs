@@ -6,7 +6,7 @@ mod robot;
 mod session;
 mod world;
 
-use formats::frame::Frame;
+use featherbench_formats::frame::Frame;
 use refusal::{Refusal, failed};
 use serde_json::json;
 use session::Session;

@@ -14,7 +14,7 @@
 use crate::coordinates;
 use crate::refusal::{Refusal, failed};
 use crate::world::{Settings, World, row_major};
-use model::{Description, JointType};
+use featherbench_model::{Description, JointType};
 use rapier3d_f64::math::Matrix;
 use rapier3d_f64::prelude::RigidBody;
 

@@ -2,8 +2,8 @@
 
 use crate::refusal::{Refusal, failed};
 use crate::robot::{GUARD, QUANTITIES, Robot, STEPS, State};
-use formats::frame::{Block, Frame};
-use formats::neutral;
+use featherbench_formats::frame::{Block, Frame};
+use featherbench_formats::neutral;
 use serde_json::{Map, Value, json};
 use std::ops::Range;
 

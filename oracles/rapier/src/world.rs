@@ -2,7 +2,7 @@
 
 use crate::coordinates::{self, Change};
 use crate::refusal::Refusal;
-use model::{BodyDescription, Description, JointType};
+use featherbench_model::{BodyDescription, Description, JointType};
 use nalgebra::{DMatrix, Matrix3, SymmetricEigen};
 use rapier3d_f64::math::{Matrix, Rotation, Vector};
 use rapier3d_f64::prelude::MassProperties;

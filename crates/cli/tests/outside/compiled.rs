@@ -35,7 +35,7 @@ pub fn gen_mjcf(_: &Path) -> Outcome {
     let generate = ["gen", "mjcf", "--file"];
     let ended = featherbench(&generate, &sandbox.path("scene.xml"), &["--out", out.to_str().unwrap()]);
     ended.expect(0, &["3 bodies, 8 dofs", "actuator", "keyframes", "compare"]);
-    let robot = formats::neutral::read(&out).unwrap();
+    let robot = featherbench_formats::neutral::read(&out).unwrap();
     let names: Vec<_> = robot.bodies.iter().map(|body| body.name.as_str()).collect();
     assert_eq!(names, ["base", "arm/a", "arm"]);
     assert_eq!(

@@ -2,11 +2,11 @@
 
 use super::{Outcome, exists};
 use crate::support::{Sandbox, project};
-use engines::{Clock, Limits, Native, Oracle, peer};
-use harness::measure::{ForwardScale, ratio, scaled_error, worst};
-use harness::{DENSE_LIMIT, Problem, Quantity, Refusal, Subject};
-use model::generate::Family;
-use record::ModelOrigin;
+use featherbench_bench::measure::{ForwardScale, ratio, scaled_error, worst};
+use featherbench_bench::{DENSE_LIMIT, Problem, Quantity, Refusal, Subject};
+use featherbench_engines::{Clock, Limits, Native, Oracle, peer};
+use featherbench_model::generate::Family;
+use featherbench_results::ModelOrigin;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::sync::Arc;
@@ -53,8 +53,11 @@ impl Clock for Stopped {
 
 fn robot(spec: &str, states: usize) -> Problem {
     let named = project().join(format!("datasets/models/{spec}.json"));
-    let description =
-        if named.is_file() { formats::neutral::read(named).unwrap() } else { Family::parse(spec).unwrap().generate().unwrap() };
+    let description = if named.is_file() {
+        featherbench_formats::neutral::read(named).unwrap()
+    } else {
+        Family::parse(spec).unwrap().generate().unwrap()
+    };
     Problem::new(&description, "test", ModelOrigin::Generated, states, 1).unwrap()
 }
 

@@ -3,12 +3,12 @@
 
 use super::{Outcome, checked};
 use crate::support::{Ended, Sandbox, project};
-use engines::{Limits, Native, Oracle};
-use harness::measure::{ForwardScale, scaled_error, worst};
-use harness::{Problem, Quantity, Refusal, Subject};
-use model::Case;
-use model::generate::Family;
-use record::ModelOrigin;
+use featherbench_bench::measure::{ForwardScale, scaled_error, worst};
+use featherbench_bench::{Problem, Quantity, Refusal, Subject};
+use featherbench_engines::{Limits, Native, Oracle};
+use featherbench_model::Case;
+use featherbench_model::generate::Family;
+use featherbench_results::ModelOrigin;
 use std::path::PathBuf;
 use std::process::Command;
 use std::sync::LazyLock;

@@ -2,10 +2,10 @@
 
 use crate::Outcome;
 use crate::support::project;
-use formats::{ExportError, OnLoss, mjcf, neutral, urdf};
-use harness::frame::{Block, Frame};
-use harness::measure::worst;
-use model::{Description, JointType};
+use featherbench_bench::frame::{Block, Frame};
+use featherbench_bench::measure::worst;
+use featherbench_formats::{ExportError, OnLoss, mjcf, neutral, urdf};
+use featherbench_model::{Description, JointType};
 use serde_json::{Value, json};
 use std::io::BufReader;
 use std::path::Path;
@@ -76,7 +76,7 @@ fn drawn(name: &str, salt: f64) -> f64 {
 }
 
 fn coordinates(robot: &Description) -> Vec<f64> {
-    let of = |joint: &model::JointDescription| match joint.kind {
+    let of = |joint: &featherbench_model::JointDescription| match joint.kind {
         JointType::Free => vec![0.1, -0.2, 0.3, 0.5, -0.5, 0.5, 0.5],
         _ => vec![drawn(&joint.name, 0.5); joint.kind.nq()],
     };
@@ -84,7 +84,7 @@ fn coordinates(robot: &Description) -> Vec<f64> {
 }
 
 fn rates(robot: &Description, salt: f64) -> Vec<f64> {
-    let of = |joint: &model::JointDescription| {
+    let of = |joint: &featherbench_model::JointDescription| {
         let name = if joint.kind == JointType::Free { "free" } else { &joint.name };
         (0..joint.kind.nv()).map(|k| drawn(name, salt + 0.1 * k as f64)).collect::<Vec<_>>()
     };
@@ -201,7 +201,8 @@ pub fn urdf_read_alike(python: &Path) -> Outcome {
 
 /// For each dof of `ours`, its place in `theirs`: joints by their names, but the free one, which engines name as they like.
 fn dofs(theirs: &Description, ours: &Description) -> Vec<usize> {
-    let named = |joint: &model::JointDescription| if joint.kind == JointType::Free { "free".to_owned() } else { joint.name.clone() };
+    let named =
+        |joint: &featherbench_model::JointDescription| if joint.kind == JointType::Free { "free".to_owned() } else { joint.name.clone() };
     let mut starts = std::collections::HashMap::new();
     let mut next = 0;
     for body in &theirs.bodies {

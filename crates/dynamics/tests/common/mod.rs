@@ -2,8 +2,8 @@
 
 #![allow(dead_code, unused_imports, reason = "every test file compiles this module and uses a part of it")]
 
-use model::{BodyDescription, Description, JointDescription, JointKind, JointType, Model, Placement, Random, Topology};
-use spatial::{Dual, Force, Lift, Motion, Quaternion, Real, Sym3, Vec3};
+use featherbench_model::{BodyDescription, Description, JointDescription, JointKind, JointType, Model, Placement, Random, Topology};
+use featherbench_spatial::{Dual, Force, Lift, Motion, Quaternion, Real, Sym3, Vec3};
 
 mod tolerance;
 

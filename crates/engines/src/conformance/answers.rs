@@ -7,7 +7,7 @@ use super::values::{Scene, same_bits};
 use super::{Standing, robots};
 use crate::request::states;
 use crate::shape;
-use harness::Quantity;
+use featherbench_bench::Quantity;
 use serde_json::{Value, json};
 use std::collections::BTreeMap;
 
@@ -152,7 +152,7 @@ impl Answers {
                 given.iter().filter_map(|(index, value)| Compared::new(&scenes[*index], quantity, value)).collect();
             let wrong: Vec<&Compared> = compared.iter().filter(|answer| !answer.right()).collect();
             let named = format!("{} by {method}{route}", quantity.name());
-            let worst = compared.iter().map(|answer| answer.error).fold(0.0, harness::measure::worst);
+            let worst = compared.iter().map(|answer| answer.error).fold(0.0, featherbench_bench::measure::worst);
             if wrong.is_empty() {
                 talk.note(Standing::Right, &named, &format!("{} robots, largest error {worst:.1e}", compared.len()), &[]);
                 continue;

@@ -8,12 +8,12 @@ use super::manners::Methods;
 use super::talk::Talk;
 use super::values::Scene;
 use super::{Standing, robots};
-use formats::{OnLoss, mjcf, urdf};
-use harness::frame::Frame;
-use harness::{FileBase, FileFormat, Problem, Quantity, Reading};
-use model::generate::Family;
-use model::{BodyDescription, Description, JointType, Placement};
-use record::ModelOrigin;
+use featherbench_bench::frame::Frame;
+use featherbench_bench::{FileBase, FileFormat, Problem, Quantity, Reading};
+use featherbench_formats::{OnLoss, mjcf, urdf};
+use featherbench_model::generate::Family;
+use featherbench_model::{BodyDescription, Description, JointType, Placement};
+use featherbench_results::ModelOrigin;
 use serde_json::{Value, json};
 use std::path::Path;
 

@@ -5,8 +5,8 @@ use super::values::{Scene, same_bits};
 use super::{Standing, robots};
 use crate::oracle::steps::Steps;
 use crate::request::{description, states};
-use harness::Quantity;
-use harness::frame::{Block, Frame};
+use featherbench_bench::Quantity;
+use featherbench_bench::frame::{Block, Frame};
 use serde_json::{Value, json};
 use std::collections::BTreeMap;
 

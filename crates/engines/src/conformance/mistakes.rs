@@ -4,8 +4,8 @@ use super::orders;
 use super::turn::{
     ONE, SWAP, Turn, blocks, cross, of_free, of_order, of_planar, of_spherical, places, product, put_back, transposed, turned_back,
 };
-use harness::{Problem, Quantity};
-use model::{Description, JointType};
+use featherbench_bench::{Problem, Quantity};
+use featherbench_model::{Description, JointType};
 use std::f64::consts::TAU;
 
 /// One state of a robot, as it is sent, and where native finds the bodies in it.
@@ -362,7 +362,7 @@ fn is_inverse(quantity: Quantity) -> bool {
     matches!(quantity, Quantity::InverseDynamics | Quantity::InverseDynamicsWrench | Quantity::Bias)
 }
 
-fn joints(robot: &mut Description, change: impl Fn(&mut model::JointDescription)) {
+fn joints(robot: &mut Description, change: impl Fn(&mut featherbench_model::JointDescription)) {
     robot.bodies.iter_mut().for_each(|body| change(&mut body.joint));
 }
 
@@ -414,7 +414,7 @@ fn quaternions(robot: &Description, q: &mut [f64], change: impl Fn(&mut [f64])) 
 }
 
 /// `law(v)` times each dof's coefficient.
-fn resistance(robot: &Description, of: fn(&model::JointDescription) -> &Vec<f64>, v: &[f64], law: fn(f64) -> f64) -> Vec<f64> {
+fn resistance(robot: &Description, of: fn(&featherbench_model::JointDescription) -> &Vec<f64>, v: &[f64], law: fn(f64) -> f64) -> Vec<f64> {
     let mut force = vec![0.0; v.len()];
     for (_, at, body) in places(robot) {
         for (k, coefficient) in of(&body.joint).iter().enumerate() {

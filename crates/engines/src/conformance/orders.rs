@@ -1,7 +1,7 @@
 //! Orders of the numbers in q and v that are taken for ours, as the place in ours of each number.
 
 use super::turn::places;
-use model::{Description, JointType};
+use featherbench_model::{Description, JointType};
 
 /// The places of q and of v.
 pub(super) struct Places {
@@ -73,7 +73,7 @@ pub(super) fn joints_reversed(robot: &Description, is: impl Fn(JointType) -> boo
 
 fn of_bodies(robot: &Description, order: &[usize]) -> Places {
     let ours = places(robot);
-    let of = |range: fn(&(usize, usize, &model::BodyDescription)) -> std::ops::Range<usize>| {
+    let of = |range: fn(&(usize, usize, &featherbench_model::BodyDescription)) -> std::ops::Range<usize>| {
         order.iter().flat_map(|&body| range(&ours[body])).collect::<Vec<_>>()
     };
     Places { q: of(|(q, _, body)| *q..q + body.joint.kind.nq()), v: of(|(_, v, body)| *v..v + body.joint.kind.nv()) }

@@ -1,9 +1,9 @@
 //! The small robots of the conformance test: every kind of joint alone, in branched trees, on a fixed and on a free base.
 
-use harness::Problem;
-use model::generate::Family;
-use model::{Description, JointType};
-use record::ModelOrigin;
+use featherbench_bench::Problem;
+use featherbench_model::generate::Family;
+use featherbench_model::{Description, JointType};
+use featherbench_results::ModelOrigin;
 
 /// What is shown, the generator's call, and how many of its bodies are kept.
 const ROBOTS: [(&str, &str, usize); 25] = [

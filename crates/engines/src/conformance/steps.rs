@@ -6,8 +6,8 @@ use super::talk::Talk;
 use super::values::Scene;
 use super::{Standing, robots};
 use crate::oracle::steps::Steps;
-use harness::Quantity;
-use harness::measure::worst;
+use featherbench_bench::Quantity;
+use featherbench_bench::measure::worst;
 use serde_json::{Value, json};
 
 /// A step so short, s, that at every state its own error is small, and so is the rounding of a difference of velocities.

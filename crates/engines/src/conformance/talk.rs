@@ -3,8 +3,8 @@
 use super::{Conformance, Finding, Standing};
 use crate::process::Process;
 use crate::request;
-use harness::Problem;
-use harness::frame::{Block, Frame};
+use featherbench_bench::Problem;
+use featherbench_bench::frame::{Block, Frame};
 use serde_json::{Value, json};
 
 /// A line to an oracle: a process, or whatever a test puts in its place.

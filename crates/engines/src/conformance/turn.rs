@@ -1,7 +1,7 @@
 //! Velocities that are taken for other ones.
 
 use super::mistakes::State;
-use model::{BodyDescription, Description, JointType};
+use featherbench_model::{BodyDescription, Description, JointType};
 
 /// v_e = T v and a_e = T a + b, with an orthogonal T, in place of v and a.
 pub(super) struct Turn {
@@ -143,7 +143,7 @@ pub(super) fn transposed(r: &[f64; 9]) -> [f64; 9] {
 
 /// R of the unit quaternion (x, y, z, w), row-major.
 fn rotation(quaternion: &[f64]) -> [f64; 9] {
-    let turn = spatial::Quaternion::from_array([quaternion[0], quaternion[1], quaternion[2], quaternion[3]]).to_rotation();
+    let turn = featherbench_spatial::Quaternion::from_array([quaternion[0], quaternion[1], quaternion[2], quaternion[3]]).to_rotation();
     turn.to_array()
 }
 

@@ -3,9 +3,9 @@
 use super::mistakes::{Mistake, State};
 use super::turn::Turn;
 use crate::Native;
-use harness::measure::{ForwardScale, Magnitudes, scaled_error, worst};
-use harness::{Problem, Quantity, Subject};
-use model::StateBatch;
+use featherbench_bench::measure::{ForwardScale, Magnitudes, scaled_error, worst};
+use featherbench_bench::{Problem, Quantity, Subject};
+use featherbench_model::StateBatch;
 
 /// Conformance asks for meaning, not for digits (those are the agreement study's): mistaken conventions show at 1e-3 and above, rounding at
 /// 1e-15, a loose but right algorithm in between.

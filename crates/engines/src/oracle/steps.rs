@@ -1,8 +1,8 @@
 //! Steps of an engine that integrates, asked by the operations `step` and `fall`.
 
 use super::{Oracle, shaped};
-use harness::{Problem, Refusal, Stepper};
-use model::StateBatch;
+use featherbench_bench::{Problem, Refusal, Stepper};
+use featherbench_model::StateBatch;
 use serde::Deserialize;
 use serde_json::{Value, json};
 

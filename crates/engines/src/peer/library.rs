@@ -4,8 +4,8 @@
 //! child process only. Everything that can be checked is: the version of the interface, missing functions, indices, and lengths.
 #![allow(unsafe_code, reason = "the functions of a foreign library cannot be called otherwise")]
 
-use harness::{Problem, Refusal};
-use model::JointType;
+use featherbench_bench::{Problem, Refusal};
+use featherbench_model::JointType;
 use std::ffi::{CStr, c_char, c_int};
 use std::path::Path;
 use std::ptr::{self, NonNull};
@@ -159,7 +159,7 @@ impl Library {
         })
     }
 
-    /// Builds a robot; with it come the numbers that the engine holds, as [`harness::Quantity::Readback`].
+    /// Builds a robot; with it come the numbers that the engine holds, as [`featherbench_bench::Quantity::Readback`].
     ///
     /// # Errors
     /// [`Refusal`], as the engine says.
@@ -176,7 +176,7 @@ impl Library {
             gravity: problem.description.gravity,
             dof_parent: dof_parent.as_ptr(),
         };
-        let mut readback = vec![f64::NAN; harness::Quantity::Readback.size(problem)];
+        let mut readback = vec![f64::NAN; featherbench_bench::Quantity::Readback.size(problem)];
         let mut handle = ptr::null_mut();
         // SAFETY: the robot's arrays have the announced lengths and outlive the call; `readback` has 22 numbers per body.
         checked(|reason| unsafe { (self.create)(&robot, &mut handle, readback.as_mut_ptr(), reason) })?;
@@ -186,7 +186,7 @@ impl Library {
 }
 
 /// A body as `peer.h` has it; a joint of which it has no number is refused by name.
-fn body(body: &model::BodyDescription) -> Result<Body, Refusal> {
+fn body(body: &featherbench_model::BodyDescription) -> Result<Body, Refusal> {
     let (joint, axis, pitch) = match body.joint.kind {
         JointType::Revolute { axis } => (0, axis, 0.0),
         JointType::Prismatic { axis } => (1, axis, 0.0),

@@ -5,11 +5,11 @@
 mod library;
 
 use crate::shape;
-use harness::frame::{Block, Frame};
-use harness::{Problem, Quantity, Refusal, Scatter};
+use featherbench_bench::frame::{Block, Frame};
+use featherbench_bench::{Problem, Quantity, Refusal, Scatter};
+use featherbench_model::Random;
+use featherbench_results::ModelOrigin;
 use library::{Built, Library};
-use model::Random;
-use record::ModelOrigin;
 use serde_json::{Map, Value, json};
 use std::ffi::OsString;
 use std::fs::File;
@@ -113,7 +113,7 @@ impl<'a> Session<'a> {
     fn prepare(&mut self, request: &Frame) -> Answer {
         (self.robot, self.states, self.problem) = (None, None, None);
         let model = request.header.get("model").ok_or_else(|| failed("no model came"))?;
-        let description = formats::neutral::parse(&model.to_string(), "model").map_err(|error| failed(error.to_string()))?;
+        let description = featherbench_formats::neutral::parse(&model.to_string(), "model").map_err(|error| failed(error.to_string()))?;
         // The problem brings the compiled tree and the sizes of quantities; its own states are not used.
         let problem = Problem::new(&description, "", ModelOrigin::Generated, 1, 0).map_err(|error| failed(error.to_string()))?;
         let (robot, readback) = self.library.build(&problem)?;

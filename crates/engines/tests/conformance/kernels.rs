@@ -1,12 +1,12 @@
 //! The native kernels as an oracle in this process.
 
+use featherbench_bench::frame::{Block, Frame};
+use featherbench_bench::{Problem, Quantity, Refusal, Subject};
 use featherbench_engines::Native;
 use featherbench_engines::conformance::Line;
-use formats::urdf::{self, Base, Options};
-use harness::frame::{Block, Frame};
-use harness::{Problem, Quantity, Refusal, Subject};
-use model::StateBatch;
-use record::ModelOrigin;
+use featherbench_formats::urdf::{self, Base, Options};
+use featherbench_model::StateBatch;
+use featherbench_results::ModelOrigin;
 use serde_json::{Value, json};
 
 /// What is done to requests before the honest oracle reads them, and to its answers before they are sent.
@@ -74,7 +74,7 @@ impl Kernels {
             "prepare" => {
                 (self.problem, self.states, self.as_read) = (None, None, false);
                 let model = request.header.get("model").ok_or_else(|| failed("there is no model"))?;
-                let description = formats::neutral::parse(&model.to_string(), "request").map_err(failed)?;
+                let description = featherbench_formats::neutral::parse(&model.to_string(), "request").map_err(failed)?;
                 let problem = Problem::new(&description, "", ModelOrigin::Generated, 1, 0).map_err(failed)?;
                 let readback = Block::new("readback", &[problem.description.bodies.len(), 22], &problem.readback());
                 let header = json!({"nq": problem.description.nq(), "nv": problem.states.nv});
@@ -89,7 +89,8 @@ impl Kernels {
                 let base = if request.text("base") == "free" { Base::Floating } else { Base::Fixed };
                 let (description, _) = urdf::read(request.text("file"), &Options { base, ..Options::default() }).map_err(failed)?;
                 let problem = Problem::new(&description, "", ModelOrigin::Robot, 1, 0).map_err(failed)?;
-                let model: Value = serde_json::from_str(&formats::neutral::to_string(&description).map_err(failed)?).map_err(failed)?;
+                let model: Value =
+                    serde_json::from_str(&featherbench_formats::neutral::to_string(&description).map_err(failed)?).map_err(failed)?;
                 let header = json!({"nq": description.nq(), "nv": description.nv(), "model": model, "notes": []});
                 self.problem = Some(problem);
                 Ok(Frame::new(header, Vec::new()))
@@ -103,7 +104,7 @@ impl Kernels {
                     block.map(|block| block.data.clone()).ok_or_else(|| failed(format!("block {name} is missing or has another length")))
                 };
                 let batch = StateBatch {
-                    cases: vec![model::Case::Random; count],
+                    cases: vec![featherbench_model::Case::Random; count],
                     q: take("q", empty.nq)?,
                     v: take("v", empty.nv)?,
                     a: take("a", empty.nv)?,

@@ -5,11 +5,11 @@ mod kernels;
 mod reading;
 mod steps;
 
+use featherbench_bench::Problem;
+use featherbench_bench::frame::Frame;
 use featherbench_engines::conformance::{Conformance, Line, Standing, check};
-use harness::Problem;
-use harness::frame::Frame;
+use featherbench_model::JointType;
 use kernels::{HONEST, Kernels, OFFERED, Plant};
-use model::JointType;
 use serde_json::{Value, json};
 
 fn test(plant: Plant) -> Conformance {

@@ -2,8 +2,8 @@
 
 use super::kernels::{HONEST, Kernels, Plant};
 use super::{test, wrong};
+use featherbench_bench::frame::Frame;
 use featherbench_engines::conformance::Standing;
-use harness::frame::Frame;
 use serde_json::{Value, json};
 
 /// What is lacking, as text.

@@ -2,8 +2,8 @@
 
 use crate::kernels::{HONEST, Kernels, Plant};
 use crate::{test, wrong};
+use featherbench_bench::frame::Frame;
 use featherbench_engines::conformance::Standing;
-use harness::frame::Frame;
 use serde_json::{Value, json};
 
 /// Lets `hello` say that about steps.

@@ -1,8 +1,8 @@
 //! Who reads the clock, and whose times are estimates.
 
 use crate::script::{HELLO, PATIENT, Script, TWO, Trial};
+use featherbench_bench::{Quantity, Refusal, Subject};
 use featherbench_engines::Clock;
-use harness::{Quantity, Refusal, Subject};
 use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::Duration;

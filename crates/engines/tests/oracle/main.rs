@@ -9,9 +9,9 @@ mod script;
 mod steps;
 
 use crate::script::{HELLO, PATIENT, READBACK, Script, TWO, Trial, lives, robot, stillborn};
+use featherbench_bench::{Quantity, Refusal, Subject};
 use featherbench_engines::{Limits, Oracle};
-use harness::{Quantity, Refusal, Subject};
-use model::StateBatch;
+use featherbench_model::StateBatch;
 use std::time::Duration;
 
 #[test]

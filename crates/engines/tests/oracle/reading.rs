@@ -1,8 +1,8 @@
 //! Files that an oracle reads.
 
 use crate::script::{PATIENT, READING, Script, Trial, robot};
-use harness::{FileBase, FileFormat, Reading, Refusal, RobotFile, Subject};
-use model::StateBatch;
+use featherbench_bench::{FileBase, FileFormat, Reading, Refusal, RobotFile, Subject};
+use featherbench_model::StateBatch;
 
 impl Trial {
     fn file(&self) -> RobotFile {

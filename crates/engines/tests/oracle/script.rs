@@ -1,9 +1,9 @@
 //! Shell oracles: what they answer, and how they are asked.
 
+use featherbench_bench::{Problem, Quantity, Refusal, Subject};
 use featherbench_engines::{Clock, Limits, Oracle, SystemClock};
-use harness::{Problem, Quantity, Refusal, Subject};
-use model::generate::Family;
-use record::ModelOrigin;
+use featherbench_model::generate::Family;
+use featherbench_results::ModelOrigin;
 use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 use std::process::Command;

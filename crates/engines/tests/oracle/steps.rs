@@ -1,7 +1,7 @@
 //! Shell oracles that integrate: what is sent, what comes back, and what a wrong `steps` is called.
 
 use crate::script::{HELLO, PATIENT, Script, Trial, stillborn};
-use harness::{Refusal, Stepper, Subject};
+use featherbench_bench::{Refusal, Stepper, Subject};
 
 /// One number, two, as the answer about one state.
 const STEP: &str = r#"echo '{"status":"ok","blocks":[{"name":"value","shape":[1,1]}]}'; printf '\0\0\0\0\0\0\0\100'"#;

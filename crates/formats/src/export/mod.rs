@@ -11,7 +11,7 @@ pub(crate) mod xml;
 pub use loss::{Loss, Reason};
 
 use crate::{Place, text};
-use model::Malformed;
+use featherbench_model::Malformed;
 use std::io;
 use std::path::Path;
 use thiserror::Error;

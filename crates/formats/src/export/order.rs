@@ -1,6 +1,6 @@
 //! The order in which bodies and frames are written, so that they are read back in the order that they had.
 
-use model::Description;
+use featherbench_model::Description;
 
 /// A body or a frame by its index.
 #[derive(Clone, Copy)]

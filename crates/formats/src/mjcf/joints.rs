@@ -1,7 +1,7 @@
 //! The joints of a body in MJCF: one or several for each joint of a description.
 
 use crate::export::Reason;
-use model::{BodyDescription, JointDescription, JointType};
+use featherbench_model::{BodyDescription, JointDescription, JointType};
 use std::ops::Range;
 
 /// An MJCF joint: a part of a description's joint.

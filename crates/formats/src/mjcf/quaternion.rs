@@ -1,6 +1,6 @@
 //! Quaternions: what an MJCF file says of a rotation, and the way back.
 
-use model::Placement;
+use featherbench_model::Placement;
 
 /// The rotation of a quaternion (w, x, y, z) of any length, row-major: the formula, operation by operation, by which the MuJoCo oracle turns
 /// what MuJoCo read into numbers of a description (`turned` in `oracles/featherbench_oracles/reading.py`).

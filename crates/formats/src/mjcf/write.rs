@@ -6,8 +6,8 @@ use crate::export::names::{self, Names, ROOT};
 use crate::export::order::{Item, carried};
 use crate::export::xml::{Attributes, Xml};
 use crate::export::{self, ExportError, Loss, OnLoss, Reason};
-use model::{BodyDescription, Description, Frame, JointType, Placement, Warning};
-use spatial::Sym3;
+use featherbench_model::{BodyDescription, Description, Frame, JointType, Placement, Warning};
+use featherbench_spatial::Sym3;
 use std::collections::HashSet;
 use std::path::Path;
 

@@ -1,7 +1,7 @@
 //! What can be wrong with a description file.
 
 use crate::{Place, TextError};
-use model::Malformed;
+use featherbench_model::Malformed;
 use std::fmt;
 use thiserror::Error;
 

@@ -2,7 +2,7 @@
 
 use super::{FORMAT, LIMIT, NeutralError, NeutralProblem};
 use crate::{Place, text};
-use model::{BodyDescription, Description, Frame, JointDescription, JointType, Malformed, Placement, Provenance};
+use featherbench_model::{BodyDescription, Description, Frame, JointDescription, JointType, Malformed, Placement, Provenance};
 use serde::Deserialize;
 use serde::de::IgnoredAny;
 use serde_json::error::Category;

@@ -2,7 +2,7 @@
 
 use super::{NeutralError, NeutralProblem};
 use crate::{Place, text};
-use model::{BodyDescription, Description, Frame, JointDescription, JointType, Malformed, Placement, Provenance};
+use featherbench_model::{BodyDescription, Description, Frame, JointDescription, JointType, Malformed, Placement, Provenance};
 use std::path::Path;
 
 /// Writes a description file, whole or not at all.

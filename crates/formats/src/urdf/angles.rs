@@ -1,6 +1,6 @@
 //! Roll, pitch and yaw: what a URDF file says of a rotation, and the way back.
 
-use spatial::{DoubleDouble, Real};
+use featherbench_spatial::{DoubleDouble, Real};
 use std::f64::consts::TAU;
 
 /// Rz(yaw)·Ry(pitch)·Rx(roll), row-major: the doubles nearest to that rotation, which needs no normalising then.

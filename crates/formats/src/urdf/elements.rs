@@ -4,9 +4,9 @@ use super::Options;
 use super::angles::rotation;
 use super::error::{At, NoteAt, UrdfProblem};
 use super::xml::Element;
-use model::Placement;
+use featherbench_model::Placement;
+use featherbench_spatial::{DoubleDouble, Mat3, Real, Sym3, Vec3};
 use roxmltree::{Document, Node};
-use spatial::{DoubleDouble, Mat3, Real, Sym3, Vec3};
 use std::collections::{BTreeMap, HashMap, HashSet};
 
 /// A file's content.

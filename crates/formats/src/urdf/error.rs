@@ -1,7 +1,7 @@
 //! What can be wrong with a URDF file.
 
 use crate::{Place, TextError};
-use model::{Malformed, Warning};
+use featherbench_model::{Malformed, Warning};
 use std::fmt;
 use thiserror::Error;
 

@@ -4,9 +4,9 @@ use super::elements::{Link, origin};
 use super::error::At;
 use super::xml::Element;
 use crate::text;
-use model::Placement;
+use featherbench_model::Placement;
+use featherbench_spatial::{RigidBodyInertia, Sym3, Transform, Vec3};
 use roxmltree::Node;
-use spatial::{RigidBodyInertia, Sym3, Transform, Vec3};
 use std::f64::consts::PI;
 
 /// Mass properties, with axes of their own.
@@ -62,7 +62,7 @@ fn solids(link: Element, density: f64) -> Result<Option<Inertial>, At> {
         let shape = collision.optional("geometry")?.and_then(|geometry| geometry.node.children().find(Node::is_element));
         let Some((volume, moments)) = shape.map(|node| solid(Element { node, ..link })).transpose()?.flatten() else { return Ok(None) };
         let Placement { rotation, translation } = origin(collision)?;
-        let place = Transform::new(spatial::Mat3::from_array(rotation), Vec3::from_array(translation));
+        let place = Transform::new(featherbench_spatial::Mat3::from_array(rotation), Vec3::from_array(translation));
         let mass = density * volume;
         let [x, y, z] = moments.map(|moment| mass * moment);
         whole += RigidBodyInertia::from_com(mass, Vec3::zero(), Sym3::from_array([x, 0.0, 0.0, y, 0.0, z])).to_parent(&place);

@@ -33,7 +33,7 @@ pub use links::{Inertial, LinkInFile, links};
 pub use write::{to_string, write};
 
 use crate::{Place, text};
-use model::{Description, Warning};
+use featherbench_model::{Description, Warning};
 use std::fmt;
 use std::path::Path;
 

@@ -3,8 +3,8 @@
 use super::elements::{Joint, Kind, Link, Robot};
 use super::error::{At, NoteAt, UrdfProblem};
 use super::{Base, Options};
-use model::{BodyDescription, Description, JointDescription, JointType, Malformed, Placement, Warning};
-use spatial::{Mat3, Transform, Vec3};
+use featherbench_model::{BodyDescription, Description, JointDescription, JointType, Malformed, Placement, Warning};
+use featherbench_spatial::{Mat3, Transform, Vec3};
 use std::collections::HashMap;
 
 /// The joint that a floating base hangs on.

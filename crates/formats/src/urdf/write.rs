@@ -6,7 +6,7 @@ use crate::export::names::{self, Names, ROOT};
 use crate::export::order::{Item, carried};
 use crate::export::xml::{Attributes, Xml};
 use crate::export::{self, ExportError, Loss, OnLoss, Reason};
-use model::{BodyDescription, Description, Frame, JointDescription, JointType, Placement};
+use featherbench_model::{BodyDescription, Description, Frame, JointDescription, JointType, Placement};
 use std::path::Path;
 
 /// Writes a URDF file, whole or not at all, and tells what was left out.

@@ -1,6 +1,6 @@
 //! Robots of any shape for round trips: extreme and ordinary numbers, names that need escaping, frames in any order.
 
-use model::{BodyDescription, Description, Frame, JointDescription, JointType, Placement};
+use featherbench_model::{BodyDescription, Description, Frame, JointDescription, JointType, Placement};
 use proptest::prelude::*;
 use proptest::sample::Index;
 

@@ -1,7 +1,7 @@
 //! Asking a program that speaks the oracle protocol, version 1.
 
 use super::{State, project};
-use model::Description;
+use featherbench_model::Description;
 use serde_json::{Value, json};
 use std::io::{BufRead, BufReader, Read, Write};
 use std::path::PathBuf;
@@ -70,7 +70,7 @@ impl Oracle {
     /// Gives it a robot and states; whether it can build the robot.
     pub fn prepare(&mut self, description: &Description, states: &[State]) -> bool {
         // Written by hand: the description is text already.
-        let request = format!("{{\"model\":{},\"op\":\"prepare\"", formats::neutral::to_line(description).unwrap());
+        let request = format!("{{\"model\":{},\"op\":\"prepare\"", featherbench_formats::neutral::to_line(description).unwrap());
         if self.ask(request, &[]).0["status"] != "ok" {
             return false;
         }

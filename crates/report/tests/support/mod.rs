@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use record::{
+use featherbench_results::{
     Convention, EngineInfo, EngineSource, Expectation, GitInfo, Host, Kind, ModelInfo, ModelOrigin, Record, Relation, RunInfo, Verdict,
     canonical_json,
 };

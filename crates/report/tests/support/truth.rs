@@ -1,6 +1,6 @@
 //! The studies that know the truth: digits of methods that lose them as real ones do, and condition numbers of straight chains.
 
-use record::{ModelInfo, ModelOrigin, Record, Relation, RunInfo, Verdict};
+use featherbench_results::{ModelInfo, ModelOrigin, Record, Relation, RunInfo, Verdict};
 
 use super::{HOSTILE, Random, base};
 

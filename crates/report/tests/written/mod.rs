@@ -4,7 +4,7 @@
 
 use std::fs;
 
-use record::{Record, RunInfo};
+use featherbench_results::{Record, RunInfo};
 use tempfile::TempDir;
 
 /// A report in a folder of its own.

@@ -6,10 +6,10 @@
 
 use super::fields::{self, ROUNDING, differs};
 use super::{Cause, Field};
-use harness::{FileInertial, FileLink, ReadingNote, WATER};
-use model::{BodyDescription, Description, Placement};
+use featherbench_bench::{FileInertial, FileLink, ReadingNote, WATER};
+use featherbench_model::{BodyDescription, Description, Placement};
+use featherbench_spatial::{Mat3, RigidBodyInertia, Sym3, Transform, Vec3};
 use nalgebra::{Matrix3, SymmetricEigen};
-use spatial::{Mat3, RigidBodyInertia, Sym3, Transform, Vec3};
 use std::f64::consts::PI;
 
 /// Rounding of a prediction: its numbers went through a few more operations than a reading, each with its factor.

@@ -7,8 +7,8 @@
 
 use super::fields::{ROUNDING, differs, rounding};
 use super::{Field, fields};
-use model::{BodyDescription, Description, JointType, Placement};
-use spatial::{Sym3, Transform, Vec3};
+use featherbench_model::{BodyDescription, Description, JointType, Placement};
+use featherbench_spatial::{Sym3, Transform, Vec3};
 
 /// The fields that depend on the choice of a frame.
 const GEOMETRIC: [Field; 4] = [Field::Axis, Field::Placement, Field::Com, Field::Inertia];

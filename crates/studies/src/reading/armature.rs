@@ -3,7 +3,7 @@
 use super::comparison::Finding;
 use super::fields::{digits, relative};
 use super::{Cause, Difference, Field};
-use harness::ReadingNote;
+use featherbench_bench::ReadingNote;
 
 /// The word of notes about it.
 const FREE_ARMATURE: &str = "free_armature";
@@ -41,7 +41,7 @@ pub(super) fn on_free_joints(reference: &[ReadingNote], notes: &[ReadingNote]) -
 #[cfg(test)]
 mod tests {
     use super::{Cause, Field, on_free_joints};
-    use harness::ReadingNote;
+    use featherbench_bench::ReadingNote;
 
     fn holds(armature: f64) -> Vec<ReadingNote> {
         vec![ReadingNote { cause: "free_armature".into(), subject: Some("root".into()), text: String::new(), numbers: vec![armature; 6] }]

@@ -4,9 +4,9 @@
 use super::account::{TESTED, UNITS};
 use super::fields::{distance, from_rpy, inertia_scale, norm, rpy};
 use super::{Cause, Field};
-use harness::ReadingNote;
-use model::BodyDescription;
-use spatial::{Mat3, Sym3, Vec3};
+use featherbench_bench::ReadingNote;
+use featherbench_model::BodyDescription;
+use featherbench_spatial::{Mat3, Sym3, Vec3};
 use std::f64::consts::PI;
 
 /// The cause of a difference in a field that the links do not account for, with the parser's own sentence where it has one about it.
@@ -100,7 +100,7 @@ fn close(a: &[f64; 9], b: &[f64; 9]) -> bool {
 
 /// Whether one list is the other times the factor of a unit.
 fn scaled(ours: &[f64], theirs: &[f64]) -> bool {
-    let size = |list: &[f64]| list.iter().map(|x| x.abs()).fold(0.0, harness::measure::worst);
+    let size = |list: &[f64]| list.iter().map(|x| x.abs()).fold(0.0, featherbench_bench::measure::worst);
     let by = |unit: f64| ours.iter().zip(theirs).all(|(x, y)| (x * unit - y).abs() <= TESTED * size(theirs));
     size(ours) > 0.0 && size(theirs) > 0.0 && ours.len() == theirs.len() && UNITS.into_iter().any(by)
 }

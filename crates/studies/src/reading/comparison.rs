@@ -6,8 +6,8 @@ use super::cause::cause;
 use super::fields::{self, OF_A_BODY, differs, digits};
 use super::pairs::{chained, pairs};
 use super::{Cause, Difference, Field};
-use harness::{FileLink, ReadingNote};
-use model::{BodyDescription, Description, JointType};
+use featherbench_bench::{FileLink, ReadingNote};
+use featherbench_model::{BodyDescription, Description, JointType};
 use std::collections::HashMap;
 
 /// What a comparison finds.
@@ -80,7 +80,8 @@ fn without(description: &Description, gone: &[usize], mass: Mass) -> Option<Desc
     let mut reduced = description.clone();
     for &i in gone {
         let body = &mut reduced.bodies[i];
-        body.joint = model::JointDescription { name: body.joint.name.clone(), placement: body.joint.placement, ..Default::default() };
+        body.joint =
+            featherbench_model::JointDescription { name: body.joint.name.clone(), placement: body.joint.placement, ..Default::default() };
         if mass == Mass::Dropped {
             (body.mass, body.inertia) = (0.0, [0.0; 6]);
         }
@@ -202,7 +203,7 @@ fn about<'a>(ours: &Description, i: usize, theirs: &BodyDescription, notes: &'a 
 
 fn gravity(ours: &Description, theirs: &Description) -> Option<Finding> {
     let far = fields::norm(ours.gravity).max(fields::norm(theirs.gravity));
-    let size = harness::measure::ratio(fields::distance(ours.gravity, theirs.gravity), far);
+    let size = featherbench_bench::measure::ratio(fields::distance(ours.gravity, theirs.gravity), far);
     let text = |g: [f64; 3]| format!("({}) m/s²", g.map(|x| digits(x, size)).join(", "));
     differs(size, fields::ROUNDING).then(|| {
         let mut finding = whole("", Field::Gravity, text(ours.gravity), text(theirs.gravity), Cause::Number);

@@ -3,8 +3,8 @@
 use super::comparison::Finding;
 use super::fields::{self, ROUNDING};
 use super::{Cause, Difference, Field};
-use model::{BodyDescription, Description, JointType, Placement};
-use spatial::{Sym3, Transform, Vec3};
+use featherbench_model::{BodyDescription, Description, JointType, Placement};
+use featherbench_spatial::{Sym3, Transform, Vec3};
 
 /// Names what is left; `written` is their robot in our frames, `theirs` in its own, with the partners of our bodies.
 pub(super) fn explain(
@@ -91,7 +91,8 @@ fn other_root(ours: &Description, written: &[Option<BodyDescription>], findings:
         for (child, body) in ours.bodies.iter().enumerate().filter(|(_, body)| body.parent == Some(root)) {
             let Some(theirs) = &written[child] else { continue };
             let behind = Placement::from_transform(&from_root.compose(&theirs.joint.placement.to_transform()));
-            let moved = BodyDescription { joint: model::JointDescription { placement: behind, ..body.joint.clone() }, ..body.clone() };
+            let moved =
+                BodyDescription { joint: featherbench_model::JointDescription { placement: behind, ..body.joint.clone() }, ..body.clone() };
             let same = fields::size(Field::Placement, body, &moved, reach) <= 4.0 * ROUNDING;
             let of_child = |difference: &&mut Difference| difference.field == Field::Placement && difference.body == body.name;
             unexplained(findings)

@@ -1,9 +1,9 @@
 //! How far two readings of one body are apart, field by field, and how each is written.
 
 use super::Field;
-use harness::measure::worst;
-use model::{BodyDescription, Description, JointType};
-use spatial::{Mat3, Vec3};
+use featherbench_bench::measure::worst;
+use featherbench_model::{BodyDescription, Description, JointType};
+use featherbench_spatial::{Mat3, Vec3};
 
 /// What rounding may leave between two honest readings of one link: 16 ε. Parsers turn Euler angles into quaternions and those into
 /// matrices, and diagonalise inertias; each rounds some ten times. What a parser changes is larger by many decades.
@@ -184,7 +184,8 @@ pub(super) fn rpy(rotation: [f64; 9]) -> [f64; 3] {
 
 /// The rotation matrix of roll, pitch and yaw.
 pub(super) fn from_rpy([roll, pitch, yaw]: [f64; 3]) -> [f64; 9] {
-    let about = |axis: [f64; 3], angle: f64| spatial::Transform::axis_rotation(Vec3::from_array(axis), angle.sin(), angle.cos());
+    let about =
+        |axis: [f64; 3], angle: f64| featherbench_spatial::Transform::axis_rotation(Vec3::from_array(axis), angle.sin(), angle.cos());
     let turned: Mat3<f64> = about([0.0, 0.0, 1.0], yaw) * about([0.0, 1.0, 0.0], pitch) * about([1.0, 0.0, 0.0], roll);
     turned.to_array()
 }
@@ -203,7 +204,7 @@ fn largest(differences: impl Iterator<Item = f64>) -> f64 {
 
 /// A difference over its scale; zero over zero is zero.
 fn over(difference: f64, scale: f64) -> f64 {
-    harness::measure::ratio(difference, scale)
+    featherbench_bench::measure::ratio(difference, scale)
 }
 
 /// The largest difference over the larger of the two numbers.

@@ -1,6 +1,6 @@
 //! Reading: do the engines read one file alike, and if not, where and why?
 //!
-//! Every engine reads the file with its own parser and says what it holds then ([`harness::Subject::read`]). That description is compared,
+//! Every engine reads the file with its own parser and says what it holds then ([`featherbench_bench::Subject::read`]). That description is compared,
 //! body by body and whatever frames it is written in, with the reference reading: ours of URDF, that of MuJoCo's compiler of MJCF
 //! ([`Comparison`]). Whether the differences found are all there are is then tested by replay: the engine computes with the robot it read,
 //! our kernels with the robot it says to have read. Where both agree the description explains the engine's answers completely. Where they do
@@ -24,8 +24,8 @@ pub use difference::{Cause, Class, Difference, Field, Weight};
 pub use replay::Effect;
 pub use subtree::{SubTree, bound};
 
-use harness::{Cell, Context, FileFormat, Finished, Outcome, Problem, Quantity, Reading as Read, Refusal, Study, Subject};
-use record::Record;
+use featherbench_bench::{Cell, Context, FileFormat, Finished, Outcome, Problem, Quantity, Reading as Read, Refusal, Study, Subject};
+use featherbench_results::Record;
 use serde_json::{Value, json};
 
 /// The reading study.
@@ -105,7 +105,8 @@ fn reference(format: FileFormat) -> &'static str {
 
 /// The robot as an engine read it, at the states of our reading.
 fn as_read(problem: &Problem, reading: &Read) -> Result<Problem, Refusal> {
-    let states = |model: &model::Model<f64>| replay::carried(&problem.description, &problem.states, &reading.description, model);
+    let states =
+        |model: &featherbench_model::Model<f64>| replay::carried(&problem.description, &problem.states, &reading.description, model);
     problem.as_read(reading, states).map_err(|error| Refusal::Failed(error.to_string()))
 }
 

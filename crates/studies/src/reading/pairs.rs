@@ -1,6 +1,6 @@
 //! Which body of one reading is which body of another.
 
-use model::{BodyDescription, Description, JointType, Placement};
+use featherbench_model::{BodyDescription, Description, JointType, Placement};
 
 /// For each body of `ours`, its partner in `theirs`: by its name, else by its joint's name, else by where it stands in the tree.
 pub(super) fn pairs(ours: &Description, theirs: &Description) -> Vec<Option<usize>> {
@@ -107,7 +107,7 @@ pub(super) fn chained(description: &Description) -> Description {
         }
         place.push(result.bodies.len() - 1);
     }
-    let frame = |frame: &model::Frame| model::Frame { body: frame.body.map(|body| place[body]), ..frame.clone() };
+    let frame = |frame: &featherbench_model::Frame| featherbench_model::Frame { body: frame.body.map(|body| place[body]), ..frame.clone() };
     result.frames = description.frames.iter().map(frame).collect();
     result
 }

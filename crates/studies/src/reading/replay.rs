@@ -1,11 +1,11 @@
 //! Replays: our kernels on a reading, and how far two readings of one robot are apart in inverse dynamics and mass matrix.
 
 use super::comparison::shared_coordinates;
-use dynamics::{Crba, Rnea, TreeSparse};
-use harness::Problem;
-use harness::measure::{Magnitudes, ratio, worst};
-use model::{Description, JointKind, Malformed, Model, StateBatch};
-use record::ModelOrigin;
+use featherbench_bench::Problem;
+use featherbench_bench::measure::{Magnitudes, ratio, worst};
+use featherbench_dynamics::{Crba, Rnea, TreeSparse};
+use featherbench_model::{Description, JointKind, Malformed, Model, StateBatch};
+use featherbench_results::ModelOrigin;
 
 /// Inverse dynamics and mass matrix, state after state.
 #[derive(Clone, Debug, PartialEq)]

@@ -4,9 +4,9 @@ use super::replay::{Answers, Reference, Replay, carried, replay};
 use super::subtree::{SubTree, unexplained};
 use super::{Class, Comparison, Effect, Finding, LARGEST, READING, Weight, armature, as_read, bound, reference};
 use crate::row;
-use harness::measure::worst;
-use harness::{Cell, Context, FileFormat, Finished, Outcome, Problem, Quantity, Reading, ReadingNote, Refusal};
-use record::{Record, Verdict, canonical_json};
+use featherbench_bench::measure::worst;
+use featherbench_bench::{Cell, Context, FileFormat, Finished, Outcome, Problem, Quantity, Reading, ReadingNote, Refusal};
+use featherbench_results::{Record, Verdict, canonical_json};
 use serde_json::{Value, json};
 
 /// The rows of a problem, engine by engine.
@@ -212,7 +212,7 @@ fn alterable(comparison: &Comparison, problem: &Problem) -> Option<Reference> {
     if problem.states.nv > LARGEST {
         return None;
     }
-    let model = model::Model::build(&comparison.ours).ok()?;
+    let model = featherbench_model::Model::build(&comparison.ours).ok()?;
     let states = carried(&problem.description, &problem.states, &comparison.ours, &model);
     Reference::new(&comparison.ours, states)
 }

@@ -4,7 +4,7 @@
 //! its own joint. So a body is where an error begins when its block differs and the blocks of all its children agree.
 
 use super::replay::Replay;
-use model::Description;
+use featherbench_model::Description;
 
 /// What our kernels may be apart from an engine on the very robot that it says to hold, of some depth (joints from the world to a tip):
 /// 1e-12, and 1e-14 for each joint beyond a hundred.
@@ -44,7 +44,7 @@ pub(super) fn unexplained(description: &Description, replay: &Replay) -> Vec<Sub
         })
         .collect();
     let nv = next;
-    let largest = |errors: &mut dyn Iterator<Item = f64>| errors.fold(0.0, harness::measure::worst);
+    let largest = |errors: &mut dyn Iterator<Item = f64>| errors.fold(0.0, featherbench_bench::measure::worst);
     let block = |i: usize, j: usize| {
         largest(&mut dofs[i].clone().flat_map(|m| dofs[j].clone().map(move |n| (m, n))).map(|(m, n)| replay.entry[m * nv + n]))
     };
@@ -75,7 +75,7 @@ fn cut(description: &Description, root: usize) -> Description {
         let parent = body.parent.and_then(|parent| place[parent]);
         if i == root || parent.is_some() {
             place[i] = Some(bodies.len());
-            bodies.push(model::BodyDescription { parent, ..body.clone() });
+            bodies.push(featherbench_model::BodyDescription { parent, ..body.clone() });
         }
     }
     Description {

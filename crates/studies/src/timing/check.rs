@@ -1,8 +1,8 @@
 //! Whether a time counts: the answers of everyone who is timed, against ours, at every state of the stream.
 
-use dynamics::{Crba, Rnea, TreeSparse};
-use harness::measure::{Magnitudes, ratio, scaled_error, worst};
-use harness::{Problem, Quantity, Refusal, Subject};
+use featherbench_bench::measure::{Magnitudes, ratio, scaled_error, worst};
+use featherbench_bench::{Problem, Quantity, Refusal, Subject};
+use featherbench_dynamics::{Crba, Rnea, TreeSparse};
 
 /// The error up to which an answer is an answer to the same question, for a robot of this depth.
 ///

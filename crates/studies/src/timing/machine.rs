@@ -1,6 +1,6 @@
 //! The machine: one core for everything that is timed, what it can do at best, and what a measurement costs.
 
-use harness::{Prepared, Refusal};
+use featherbench_bench::{Prepared, Refusal};
 use std::hint::black_box;
 use std::time::{Duration, Instant};
 
@@ -119,7 +119,7 @@ fn scalar_chains(start: f64, m: f64, c: f64) -> [f64; CHAINS] {
     let mut x: [f64; CHAINS] = std::array::from_fn(|chain| start + (chain * LANES) as f64);
     for _ in 0..STEPS {
         for chain in &mut x {
-            *chain = spatial::Real::mul_add(*chain, m, c);
+            *chain = featherbench_spatial::Real::mul_add(*chain, m, c);
         }
     }
     x

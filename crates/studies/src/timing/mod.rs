@@ -19,11 +19,11 @@ mod rows;
 mod samples;
 mod statistics;
 
-use harness::{Cell, Context, Finished, Outcome, Problem, Quantity, Refusal, Study, Subject};
+use featherbench_bench::{Cell, Context, Finished, Outcome, Problem, Quantity, Refusal, Study, Subject};
+use featherbench_model::{Random, StateBatch};
+use featherbench_results::Record;
 use machine::{Machine, Pinned};
-use model::{Random, StateBatch};
 use protocol::{Budget, Contestant};
-use record::Record;
 use samples::Entrant;
 use serde_json::{Value, json};
 use std::time::Instant;

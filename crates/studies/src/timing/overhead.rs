@@ -1,6 +1,6 @@
 //! What it takes to call an engine whose times are estimates: the overhead that its clock measures and subtracts.
 
-use harness::{Prepared, Refusal};
+use featherbench_bench::{Prepared, Refusal};
 
 /// Calls whose overhead is asked for, at as many states from the first on.
 const CALLS: usize = 31;

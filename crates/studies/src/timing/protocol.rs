@@ -9,8 +9,8 @@
 //! values, from the contestants' clocks and from a clock that is an argument.
 
 use super::samples::Samples;
-use harness::{Prepared, Refusal, Scatter};
-use model::Random;
+use featherbench_bench::{Prepared, Refusal, Scatter};
+use featherbench_model::Random;
 use std::collections::VecDeque;
 use std::time::Duration;
 

@@ -5,10 +5,10 @@ use super::samples::{Entrant, Samples, outcome_samples};
 use super::statistics::{CONTROL_LEVEL, Estimate, Finding, LEVEL};
 use super::{CHECK, EXPERIMENT, MACHINE, OVERHEAD, REFERENCE, check};
 use crate::{quantile, row};
-use harness::measure::worst;
-use harness::{Cell, Finished, Gates, Outcome, Problem, Refusal};
-use model::Random;
-use record::{ESTIMATE, Kind, Record, Relation, Verdict};
+use featherbench_bench::measure::worst;
+use featherbench_bench::{Cell, Finished, Gates, Outcome, Problem, Refusal};
+use featherbench_model::Random;
+use featherbench_results::{ESTIMATE, Kind, Record, Relation, Verdict};
 
 /// An experiment whose A/A control fails is void by itself; when more than one in this many controls of a robot do, all its times are.
 const BAD_CONTROLS: usize = 4;
@@ -150,7 +150,7 @@ impl<'a> Experiment<'a> {
         let case = cell.params["cache"].as_str().unwrap_or_default().to_owned();
         // The entrants stand in rows of their own: a parameter that lists them would stand in each.
         let params = serde_json::json!({"algorithm": cell.quantity, "cache": case, "states": cell.params["states"], "seconds": cell.params["seconds"]});
-        let blank = Record { kind: Kind::Measured, case, params: record::canonical_json(&params), ..row(cell, problem) };
+        let blank = Record { kind: Kind::Measured, case, params: featherbench_results::canonical_json(&params), ..row(cell, problem) };
         let mut experiment = Self { cell, blank, entrants, samples, control: Err("the experiment has no A/A control") };
         if let (Some(which), Ok(samples)) = (experiment.entrants.iter().position(|entrant| entrant.control), &experiment.samples) {
             let ratio = Estimate::ratio(samples.of(which), samples.of(0), CONTROL_LEVEL, &mut experiment.random("control"));

@@ -1,6 +1,6 @@
 //! Raw samples: what an experiment leaves behind, as the outcome of its cell and as a line of the run's side file.
 
-use harness::{Cell, Finished, Outcome};
+use featherbench_bench::{Cell, Finished, Outcome};
 use serde_json::json;
 
 /// The blocks of an experiment: nanoseconds per call, of every contestant in every round.

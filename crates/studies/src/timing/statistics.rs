@@ -10,7 +10,7 @@
 
 use super::protocol::EPOCHS;
 use crate::quantile;
-use model::Random;
+use featherbench_model::Random;
 
 /// Share of the bootstrap's medians inside an interval that is reported.
 pub(super) const LEVEL: f64 = 0.95;
@@ -112,8 +112,8 @@ fn median(samples: &mut [f64]) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use harness::measure::worst;
-    use spatial::Real;
+    use featherbench_bench::measure::worst;
+    use featherbench_spatial::Real;
 
     /// Rounds of an experiment: ten in each epoch.
     const ROUNDS: usize = 10 * EPOCHS;

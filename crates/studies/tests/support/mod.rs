@@ -2,13 +2,13 @@
 
 #![allow(dead_code, reason = "every test file compiles this module and uses a part of it")]
 
-use engines::Native;
+use featherbench_bench::run::{Silent, compare, evaluate, plan};
+use featherbench_bench::{Context, Gates, Identity, OutcomeStore, Prepared, Problem, Quantity, Refusal, Study, Subject, Suite, accounted};
+use featherbench_engines::Native;
+use featherbench_model::generate::Family;
+use featherbench_model::{Description, Model, StateBatch};
+use featherbench_results::{EngineSource, Expectation, ModelOrigin, Record, Verdict};
 use featherbench_studies::Agreement;
-use harness::run::{Silent, compare, evaluate, plan};
-use harness::{Context, Gates, Identity, OutcomeStore, Prepared, Problem, Quantity, Refusal, Study, Subject, Suite, accounted};
-use model::generate::Family;
-use model::{Description, Model, StateBatch};
-use record::{EngineSource, Expectation, ModelOrigin, Record, Verdict};
 use std::collections::BTreeMap;
 use std::ops::Range;
 use std::path::PathBuf;

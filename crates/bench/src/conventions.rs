@@ -1,0 +1,59 @@
+//! The ledger of conventions, `oracles/conventions.toml`: what each engine does, what we do, what converts, and which test holds it.
+
+use crate::HarnessError;
+use featherbench_results::Convention;
+use serde::Deserialize;
+use std::collections::BTreeMap;
+use std::path::Path;
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Ledger {
+    /// What we do, by subject.
+    ours: BTreeMap<String, String>,
+    convention: Vec<Row>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Row {
+    engine: String,
+    subject: String,
+    theirs: String,
+    conversion: String,
+    test: String,
+}
+
+/// Reads the ledger, in its order.
+///
+/// # Errors
+/// [`HarnessError`], naming file, line and key; a row whose subject has no entry in `[ours]`, and an entry without a row, are errors too.
+pub fn read(path: &Path) -> Result<Vec<Convention>, HarnessError> {
+    let text = std::fs::read_to_string(path).map_err(|source| HarnessError::io(path, source))?;
+    let wrong = |message: String| HarnessError::Config { path: path.to_owned(), message };
+    let ledger: Ledger = toml::from_str(&text).map_err(|error| wrong(error.to_string()))?;
+    if let Some(idle) = ledger.ours.keys().find(|subject| ledger.convention.iter().all(|row| row.subject != **subject)) {
+        return Err(wrong(format!("ours: no [[convention]] is about '{idle}'")));
+    }
+    let complete = |Row { engine, subject, theirs, conversion, test }: Row| {
+        let ours = ledger.ours.get(&subject).cloned();
+        let ours = ours.ok_or_else(|| wrong(format!("[[convention]] of {engine}: '{subject}' has no entry in [ours]")))?;
+        Ok(Convention { engine, subject, theirs, ours, conversion, test })
+    };
+    ledger.convention.into_iter().map(complete).collect()
+}
+
+/// The ledger as tables in Markdown, one for each engine: what `CONVENTIONS.md` shows.
+pub fn markdown(conventions: &[Convention]) -> String {
+    let mut text = String::new();
+    let mut engine = "";
+    for row in conventions {
+        if row.engine != engine {
+            engine = &row.engine;
+            text += &format!("\n### {engine}\n| | the engine | ours | converted by | held by |\n|---|---|---|---|---|\n");
+        }
+        let Convention { subject, theirs, ours, conversion, test, .. } = row;
+        text += &format!("| {subject} | {theirs} | {ours} | {conversion} | `{test}` |\n");
+    }
+    text
+}

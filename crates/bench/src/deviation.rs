@@ -1,0 +1,136 @@
+//! Known deviations, as data: answers that miss their gate for a cause that is known, questions that an engine does not offer, and
+//! reproductions that show a deviation by itself.
+
+use crate::RangeKey;
+use featherbench_results::{Record, Verdict};
+use serde::Deserialize;
+
+/// Seeds over which the size of a deviation is measured.
+pub const SEEDS: u64 = 20;
+/// How far outside its range a value may lie, as a factor: a twenty-first draw, or another processor's rounding, moves it by little more.
+pub const SLACK: f64 = 2.0;
+
+/// A known deviation: answers that match may fail or be errors, as it says.
+///
+/// The cause stands here, by class of robots; how large a failure is stands robot by robot in [`Ranges`](crate::Ranges).
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Deviation {
+    /// The engine.
+    pub engine: String,
+    /// The engine's version; another version makes the deviation void.
+    pub version: String,
+    /// The method, or all of them.
+    pub method: Option<String>,
+    /// The quantities, or all of them.
+    pub quantities: Option<Vec<String>>,
+    /// The models: names, a trailing `*` standing for any rest.
+    pub models: Vec<String>,
+    /// The cases, or all of them.
+    pub cases: Option<Vec<String>>,
+    /// The verdict that it explains: fail or error.
+    pub verdict: String,
+    /// The cause.
+    pub reason: String,
+    /// The reproduction that shows the cause by itself, where there is one.
+    pub reproduction: Option<String>,
+}
+
+/// What an engine does not offer: its rows stay skips, and their cause is known.
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct NotOffered {
+    /// The engine.
+    pub engine: String,
+    /// The engine's version; in another version it may be offered.
+    pub version: String,
+    /// The quantities, or all of them.
+    pub quantities: Option<Vec<String>>,
+    /// The models: names, a trailing `*` standing for any rest.
+    pub models: Vec<String>,
+    /// The cases, or all of them.
+    pub cases: Option<Vec<String>>,
+    /// Why it is not offered.
+    pub reason: String,
+}
+
+/// A program that shows a deviation by itself: `deviation` of the module `featherbench_oracles.ENGINE.reproductions.NAME`.
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Reproduction {
+    /// The file's name without its ending.
+    pub name: String,
+    /// The engine.
+    pub engine: String,
+    /// The version for which the range was measured.
+    pub version: String,
+    /// When it shows, one sentence.
+    pub condition: String,
+    /// What its value is.
+    pub measure: String,
+    /// Smallest and largest value over [`SEEDS`] seeds.
+    pub range: [f64; 2],
+    /// The public thread about it, or the words `none found`.
+    pub upstream: String,
+}
+
+impl Deviation {
+    /// Whether it is about this row: engine, version, method, quantity, robot and case; whatever the value and the verdict.
+    pub fn is_about(&self, row: &Record) -> bool {
+        self.version == row.engine_version && self.method.as_ref().is_none_or(|method| *method == row.method) && self.concerns(row)
+    }
+
+    /// Whether it is about failures, whose size is measured.
+    pub fn is_measured(&self) -> bool {
+        self.verdict == Verdict::Fail.as_str()
+    }
+
+    /// Whether a range may belong to it.
+    pub fn has(&self, key: &RangeKey) -> bool {
+        self.is_measured()
+            && self.engine == key.engine
+            && self.version == key.version
+            && self.method.as_ref().is_none_or(|method| *method == key.method)
+            && self.quantities.as_ref().is_none_or(|quantities| quantities.contains(&key.quantity))
+            && named(&self.models, &key.model)
+    }
+
+    /// Whether it explains that a row is an error.
+    pub(crate) fn explains_error(&self, row: &Record) -> bool {
+        row.verdict == Verdict::Error && self.verdict == Verdict::Error.as_str() && self.is_about(row)
+    }
+
+    /// Whether it is about the engine, robot, quantity and case of this row, by whatever method and in whatever version.
+    pub(crate) fn concerns(&self, row: &Record) -> bool {
+        concerns(&self.engine, self.quantities.as_deref(), &self.models, self.cases.as_deref(), row)
+    }
+
+    /// Whether a row is there because of it.
+    pub(crate) fn excused(&self, row: &Record) -> bool {
+        row.verdict == Verdict::Deviation && row.reason.starts_with(&self.reason) && self.is_about(row)
+    }
+}
+
+impl NotOffered {
+    /// Whether it explains that a row is a skip.
+    pub(crate) fn explains(&self, row: &Record) -> bool {
+        row.verdict == Verdict::Skip && self.version == row.engine_version && self.concerns(row)
+    }
+
+    /// Whether it is about the engine, robot, quantity and case of this row, in whatever version.
+    pub(crate) fn concerns(&self, row: &Record) -> bool {
+        concerns(&self.engine, self.quantities.as_deref(), &self.models, self.cases.as_deref(), row)
+    }
+}
+
+fn concerns(engine: &str, quantities: Option<&[String]>, models: &[String], cases: Option<&[String]>, row: &Record) -> bool {
+    engine == row.engine
+        && named(models, &row.model)
+        && quantities.is_none_or(|quantities| quantities.contains(&row.quantity))
+        && cases.is_none_or(|cases| cases.contains(&row.case))
+}
+
+/// Whether a list of names, a trailing `*` standing for any rest, holds a name.
+pub(crate) fn named(names: &[String], name: &str) -> bool {
+    names.iter().any(|known| known.strip_suffix('*').map_or(known == name, |stem| name.starts_with(stem)))
+}

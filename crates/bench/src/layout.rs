@@ -1,0 +1,56 @@
+//! Where the numbers of an answer stand: results of the kernels in the layout of their quantity, over any scalar.
+//!
+//! Our kernels in `f64` and the truth in double-double are written by the same text.
+
+use crate::Quantity;
+use featherbench_dynamics::{BodyMotion, DimensionError, Kinematics, TreeSparse};
+use featherbench_spatial::{Motion, Real};
+
+/// The whole matrix, row after row.
+pub fn dense<T: Real>(matrix: &TreeSparse<T>, out: &mut [T]) {
+    let n = matrix.size();
+    for (entry, out) in out.iter_mut().enumerate() {
+        *out = matrix.get(entry / n, entry % n);
+    }
+}
+
+/// Products with the vectors of the probe, the diagonal and the last row: [`Quantity::MassMatrixProbe`].
+///
+/// # Errors
+/// [`DimensionError`] when the vectors are not as long as the matrix is wide.
+pub fn probe<T: Real>(matrix: &TreeSparse<T>, vectors: &[T], out: &mut [T]) -> Result<(), DimensionError> {
+    let n = matrix.size();
+    let (products, rest) = out.split_at_mut(vectors.len());
+    for (x, y) in vectors.chunks_exact(n).zip(products.chunks_exact_mut(n)) {
+        matrix.mul(x, y)?;
+    }
+    for (i, value) in rest.iter_mut().enumerate() {
+        *value = if i < n { matrix.get(i, i) } else { matrix.get(n - 1, i - n) };
+    }
+    Ok(())
+}
+
+/// Placement, velocity or acceleration of each described body, as the quantity says; `described` names the compiled ones.
+pub fn bodies<T: Real>(quantity: Quantity, kinematics: &Kinematics<T>, described: &[usize], out: &mut [T]) {
+    let size = if quantity == Quantity::BodyPlacement { 12 } else { 6 };
+    for (out, &body) in out.chunks_exact_mut(size).zip(described) {
+        let Some(BodyMotion { placement, velocity, acceleration }) = kinematics.body(body) else { continue };
+        match quantity {
+            Quantity::BodyPlacement => {
+                out[..9].copy_from_slice(&placement.rotation.to_array());
+                out[9..].copy_from_slice(&placement.translation.to_array());
+            }
+            Quantity::BodyVelocity => out.copy_from_slice(&velocity.to_array()),
+            _ => out.copy_from_slice(&acceleration.to_array()),
+        }
+    }
+}
+
+/// A body's Jacobian, row after row.
+pub fn jacobian<T: Real>(columns: &[Motion<T>], out: &mut [T]) {
+    for (dof, column) in columns.iter().enumerate() {
+        for (row, entry) in column.to_array().into_iter().enumerate() {
+            out[row * columns.len() + dof] = entry;
+        }
+    }
+}

@@ -1,0 +1,111 @@
+//! Means: what rows of many robots must keep together.
+
+use crate::gates::condition;
+use crate::measure::worst;
+use featherbench_results::{Expectation, Record};
+use serde::Deserialize;
+
+/// A bound on the geometric mean of a metric over the robots of a run, and on the largest value.
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Mean {
+    /// The study.
+    pub study: String,
+    /// The metric, of positive values.
+    pub metric: String,
+    /// The quantities, each by itself.
+    pub quantities: Vec<String>,
+    /// What the geometric mean must not exceed.
+    pub mean: f64,
+    /// What no value may exceed.
+    pub bound: f64,
+    /// Why they are what they are.
+    pub reason: String,
+    /// Robots on which a value beyond the bound is known.
+    #[serde(default)]
+    pub known: Vec<Known>,
+}
+
+/// A robot on which the value of a quantity is known to be beyond the bound. It counts for the mean all the same.
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Known {
+    /// The quantity.
+    pub quantity: String,
+    /// The robot.
+    pub model: String,
+    /// What the value must not exceed.
+    pub up_to: f64,
+    /// The cause.
+    pub reason: String,
+}
+
+impl Mean {
+    /// Two conditions per quantity: the mean, and the largest value. Where no row has a value, neither is met. And one per robot that is known:
+    /// its value lies between the bound and what is known.
+    pub(crate) fn conditions(&self, records: &[Record]) -> Vec<Expectation> {
+        let of = |quantity: &String| {
+            let rows = records.iter().filter(|row| row.study == self.study && row.metric == self.metric && row.quantity == *quantity);
+            // A row without a value has none that is small enough.
+            let values: Vec<(&str, f64)> = rows.map(|row| (row.model.as_str(), row.value.unwrap_or(f64::NAN))).collect();
+            let count = values.len();
+            let mean = (values.iter().map(|(_, value)| value.ln()).sum::<f64>() / count as f64).exp();
+            let known = |model: &str| self.known.iter().find(|known| known.quantity == *quantity && known.model == model);
+            let others = values.iter().filter(|(model, _)| known(model).is_none()).map(|&(_, value)| value);
+            let largest = others.reduce(worst).unwrap_or(f64::NAN);
+            let held = |value: f64, bound: f64, name: &str| {
+                let what = format!("{name} of {} on {quantity} over {count} robots is {value:.2}, at most {bound}", self.metric);
+                condition(what, 1, u64::from(value <= bound))
+            };
+            let mut conditions = vec![held(mean, self.mean, "geometric mean"), held(largest, self.bound, "largest")];
+            conditions.extend(values.iter().filter_map(|&(model, value)| {
+                let Known { up_to, reason, .. } = known(model)?;
+                let what =
+                    format!("{} on {quantity} of {model} is {value:.2}, known from {} to {up_to}: {reason}", self.metric, self.bound);
+                Some(condition(what, 1, u64::from(self.bound < value && value <= *up_to)))
+            }));
+            conditions
+        };
+        self.quantities.iter().flat_map(of).collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use featherbench_results::Verdict;
+
+    fn rows(values: &[f64]) -> Vec<Record> {
+        let row = Record { study: "agreement".into(), metric: "over_best".into(), quantity: "id".into(), ..Record::default() };
+        values.iter().map(|&value| row.clone().informed(value)).collect()
+    }
+
+    #[test]
+    fn the_mean_and_the_largest_value_are_held_and_nothing_is_not_enough() {
+        let (study, metric, reason) = ("agreement".to_owned(), "over_best".to_owned(), String::new());
+        let mean = Mean { study, metric, quantities: vec!["id".into()], mean: 1.5, bound: 3.0, reason, known: Vec::new() };
+        let met = |values: &[f64]| mean.conditions(&rows(values)).iter().map(|c| c.verdict == Verdict::Pass).collect::<Vec<_>>();
+        assert_eq!(met(&[1.0, 2.25]), [true, true], "√(1·2.25) = 1.5");
+        assert_eq!(met(&[1.0, 2.3]), [false, true]);
+        assert_eq!(met(&[0.1, 3.0]), [true, true]);
+        assert_eq!(met(&[0.1, 3.01]), [true, false]);
+        assert_eq!(met(&[]), [false, false], "no row");
+        assert_eq!(met(&[f64::NAN, 1.0]), [false, false], "a row without a value");
+        // A robot that is known: it counts for the mean, and must be as far off as it is known to be.
+        let named = |value: f64| {
+            let mut records = rows(&[1.0, value]);
+            records[1].model = "far".into();
+            records
+        };
+        let known = Known { quantity: "id".into(), model: "far".into(), up_to: 4.0, reason: "a cause".into() };
+        let excusing = Mean { known: vec![known], ..mean.clone() };
+        let met = |value: f64| excusing.conditions(&named(value)).iter().map(|c| c.verdict == Verdict::Pass).collect::<Vec<_>>();
+        assert_eq!(met(3.5), [false, true, true], "√3.5 > 1.5");
+        assert_eq!(met(4.1), [false, true, false], "more than is known");
+        assert_eq!(met(2.0), [true, true, false], "no longer seen");
+        assert_eq!(met(f64::NAN), [false, true, false]);
+        let mut other = rows(&[1.0]);
+        other[0].quantity = "bias".into();
+        assert!(mean.conditions(&other).iter().all(|c| c.verdict == Verdict::Fail), "another quantity");
+    }
+}

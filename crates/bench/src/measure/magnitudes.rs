@@ -1,0 +1,171 @@
+//! Sums of the magnitudes of the terms from which a robot's kinematics and forces are added up.
+//!
+//! The recursions of the Newton–Euler algorithm (the book, table 5.1), with every vector term replaced by its length and every sum by the
+//! sum of lengths. Lengths do not depend on the axes, so the magnitudes belong to the robot and its state, not to an algorithm. Angular
+//! velocities enter products with their true length: their sums hardly cancel, and squared sums of lengths would blind the measure.
+
+use super::worst;
+use crate::Problem;
+use featherbench_spatial::{Motion, Vec3};
+
+/// The magnitudes at one state. Per body they refer to the body's origin.
+#[derive(Clone, Debug)]
+pub struct Magnitudes {
+    /// Length of the path from the world's origin to each body, m.
+    pub reach: Vec<f64>,
+    /// Size of each body: the distance from its origin to the farthest of its centre of mass and the joints on it, m.
+    pub size: Vec<f64>,
+    /// Angular velocity, rad/s.
+    pub angular_velocity: Vec<f64>,
+    /// Linear velocity, m/s.
+    pub linear_velocity: Vec<f64>,
+    /// Angular acceleration, rad/s².
+    pub angular_acceleration: Vec<f64>,
+    /// Linear acceleration without gravity, m/s².
+    pub linear_acceleration: Vec<f64>,
+    /// Joint force per dof: the terms that are added to form τ.
+    pub joint_force: Vec<f64>,
+    /// The same with the external wrenches of the state.
+    pub joint_force_wrench: Vec<f64>,
+    /// The same for the bias force: accelerations at zero.
+    pub bias_force: Vec<f64>,
+}
+
+/// Moment and force magnitudes on one body.
+#[derive(Clone, Copy, Default)]
+struct Load {
+    moment: f64,
+    force: f64,
+}
+
+impl Magnitudes {
+    /// The magnitudes of state `k`.
+    pub fn new(problem: &Problem, k: usize) -> Self {
+        let states = &problem.states;
+        let zero = vec![0.0; states.nv];
+        let still = Recursion::outward(problem, k, &zero);
+        let moving = Recursion::outward(problem, k, states.a(k));
+        let none = vec![0.0; states.wrench(k).len()];
+        Self {
+            joint_force: moving.inward(problem, states.a(k), &none),
+            joint_force_wrench: moving.inward(problem, states.a(k), states.wrench(k)),
+            bias_force: still.inward(problem, &zero, &none),
+            size: sizes(problem),
+            reach: moving.reach,
+            angular_velocity: moving.angular_velocity,
+            linear_velocity: moving.linear_velocity,
+            angular_acceleration: moving.angular_acceleration,
+            linear_acceleration: moving.linear_acceleration,
+        }
+    }
+}
+
+fn sizes(problem: &Problem) -> Vec<f64> {
+    let model = &problem.model;
+    let center = |i: usize| if model.inertias[i].mass > 0.0 { model.inertias[i].com().norm() } else { 0.0 };
+    let mut sizes: Vec<f64> = (0..model.topology.bodies()).map(center).collect();
+    for (joint, placement) in model.topology.joints().iter().zip(&model.placements) {
+        if let Some(parent) = joint.parent {
+            sizes[parent] = worst(sizes[parent], placement.translation.norm());
+        }
+    }
+    sizes
+}
+
+struct Recursion {
+    step: Vec<f64>,
+    spin: Vec<f64>,
+    reach: Vec<f64>,
+    angular_velocity: Vec<f64>,
+    linear_velocity: Vec<f64>,
+    angular_acceleration: Vec<f64>,
+    linear_acceleration: Vec<f64>,
+}
+
+impl Recursion {
+    /// From the root outwards: paths, velocities, accelerations.
+    fn outward(problem: &Problem, k: usize, a: &[f64]) -> Self {
+        let (model, states) = (&problem.model, &problem.states);
+        let bodies = model.topology.bodies();
+        let column = || Vec::with_capacity(bodies);
+        let mut r = Self {
+            step: column(),
+            spin: column(),
+            reach: column(),
+            angular_velocity: column(),
+            linear_velocity: column(),
+            angular_acceleration: column(),
+            linear_acceleration: column(),
+        };
+        let mut omega: Vec<Vec3<f64>> = Vec::with_capacity(bodies);
+        for (i, joint) in model.topology.joints().iter().enumerate() {
+            let x = model.joint_transform(i, states.q(k));
+            let (mount, subspace) = (model.placements[i].translation, &model.subspaces[i]);
+            let velocity: Motion<f64> = joint.kind.motion(subspace, &states.v(k)[joint.v..]);
+            let acceleration: Motion<f64> = joint.kind.motion(subspace, &a[joint.v..]);
+            let step = mount.norm() + (x.translation - mount).norm();
+            let at = |values: &[f64]| joint.parent.map_or(0.0, |parent| values[parent]);
+            let parent_omega = joint.parent.map_or(Vec3::zero(), |parent| omega[parent]);
+            let (carried, across) = (parent_omega.norm(), velocity.ang.norm());
+            let turned = x.rotation.transpose_mul(parent_omega) + velocity.ang;
+            let spin = turned.norm();
+
+            r.reach.push(at(&r.reach) + step);
+            r.linear_velocity.push(at(&r.linear_velocity) + at(&r.angular_velocity) * step + velocity.lin.norm());
+            r.angular_velocity.push(at(&r.angular_velocity) + across);
+            // a = a_p + α_p × r + ω_p × (ω_p × r) + (2ω_p + ω) × v_J + a_J
+            let transport = (2.0 * carried + spin) * velocity.lin.norm();
+            let swing = (at(&r.angular_acceleration) + carried * carried) * step;
+            r.linear_acceleration.push(at(&r.linear_acceleration) + swing + transport + acceleration.lin.norm());
+            // α = α_p + (ω_p + ω_J) × ω_J + α_J: that ω_J × ω_J vanishes is a cancellation too
+            r.angular_acceleration.push(at(&r.angular_acceleration) + (carried + across) * across + acceleration.ang.norm());
+            r.step.push(step);
+            r.spin.push(spin);
+            omega.push(turned);
+        }
+        r
+    }
+
+    /// From the leaves inwards: loads, and what each joint sees of them.
+    fn inward(&self, problem: &Problem, a: &[f64], wrench: &[f64]) -> Vec<f64> {
+        let model = &problem.model;
+        let gravity = model.gravity.norm();
+        let mut loads: Vec<Load> = (0..model.topology.bodies())
+            .map(|i| {
+                let inertia = &model.inertias[i];
+                let [xx, xy, xz, yy, yz, zz] = inertia.rotational.to_array();
+                let rotational = (xx * xx + yy * yy + zz * zz + 2.0 * (xy * xy + xz * xz + yz * yz)).sqrt();
+                let turning = self.angular_acceleration[i] + self.spin[i] * self.spin[i];
+                // The spatial acceleration differs from the classical one by ω × v: whichever an algorithm adds up, this term is in it.
+                let falling = self.linear_acceleration[i] + gravity + self.spin[i] * self.linear_velocity[i];
+                let lever = inertia.first_moment.norm();
+                Load { moment: rotational * turning + lever * falling, force: inertia.mass * falling + lever * turning }
+            })
+            .collect();
+        for (described, w) in model.described.iter().zip(wrench.chunks_exact(6)) {
+            loads[*described].moment += Vec3::new(w[0], w[1], w[2]).norm();
+            loads[*described].force += Vec3::new(w[3], w[4], w[5]).norm();
+        }
+        let mut tau = vec![0.0; model.topology.nv()];
+        for (i, joint) in model.topology.joints().iter().enumerate().rev() {
+            let Load { moment, force } = loads[i];
+            let subspace = &model.subspaces[i];
+            match joint.kind {
+                featherbench_model::JointKind::Free => {
+                    tau[joint.v..joint.v + 3].fill(force);
+                    tau[joint.v + 3..joint.v + 6].fill(moment);
+                }
+                featherbench_model::JointKind::Spherical => tau[joint.v..joint.v + 3].fill(moment),
+                _ => tau[joint.v] = subspace.ang.norm() * moment + subspace.lin.norm() * force,
+            }
+            if let Some(parent) = joint.parent {
+                loads[parent].force += force;
+                loads[parent].moment += moment + self.step[i] * force;
+            }
+        }
+        for (k, tau) in tau.iter_mut().enumerate() {
+            *tau += model.armature[k] * a[k].abs();
+        }
+        tau
+    }
+}

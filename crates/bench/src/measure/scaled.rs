@@ -1,0 +1,200 @@
+//! The unit-free error of one quantity at one state.
+
+use super::{Magnitudes, ratio, worst};
+use crate::{Problem, Quantity};
+use featherbench_model::JointKind;
+
+/// The largest difference between `value` and `reference`, each entry over the magnitude of its own terms at the state.
+///
+/// Forward dynamics has measures of its own ([`super::ForwardScale`]) and is measured here against the largest entry only. The result is
+/// NaN where an entry is, infinite where something differs that should be exactly zero, and infinite where a slice does not hold
+/// [`Quantity::size`] numbers.
+pub fn scaled_error(problem: &Problem, quantity: Quantity, at: &Magnitudes, reference: &[f64], value: &[f64]) -> f64 {
+    if reference.len() != quantity.size(problem) || value.len() != reference.len() {
+        return f64::INFINITY;
+    }
+    let nv = problem.model.topology.nv();
+    let mass = total_mass(problem);
+    match quantity {
+        Quantity::InverseDynamics => entries(reference, value, &at.joint_force),
+        Quantity::InverseDynamicsWrench => entries(reference, value, &at.joint_force_wrench),
+        Quantity::Bias => entries(reference, value, &at.bias_force),
+        Quantity::MassMatrix | Quantity::MassMatrixInverse => mass_matrix(nv, reference, value),
+        Quantity::MassMatrixSparse => mass_matrix_sparse(problem, reference, value),
+        Quantity::Factorization => mass_matrix_sparse(problem, &multiplied(problem, reference), &multiplied(problem, value)),
+        Quantity::MassMatrixProbe => mass_matrix_probe(nv, &problem.probe(), reference, value),
+        Quantity::KineticEnergy => entries(reference, value, reference),
+        Quantity::PotentialEnergy => {
+            let gravity = problem.model.gravity.norm();
+            entries(reference, value, &[mass * gravity * reach_of_mass(problem, at)])
+        }
+        Quantity::CenterOfMass => entries(reference, value, &[reach_of_mass(problem, at); 3]),
+        Quantity::Momentum => momentum(problem, at, reference, value),
+        Quantity::BodyPlacement => per_body(problem, reference, value, |body| {
+            let reach = at.reach[body];
+            [1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, reach, reach, reach]
+        }),
+        // A body moves as a whole: its origin may stand still on the joint's axis while the rest of it turns around.
+        Quantity::BodyVelocity => per_body(problem, reference, value, |body| {
+            halves(at.angular_velocity[body], at.linear_velocity[body] + at.angular_velocity[body] * at.size[body])
+        }),
+        Quantity::BodyAcceleration => {
+            // Gravity is a term: engines carry it in their accelerations, and taking it out again cancels.
+            let gravity = problem.model.gravity.norm();
+            per_body(problem, reference, value, |body| {
+                let swing = at.angular_acceleration[body] + at.angular_velocity[body] * at.angular_velocity[body];
+                halves(at.angular_acceleration[body], at.linear_acceleration[body] + gravity + swing * at.size[body])
+            })
+        }
+        Quantity::BodyJacobian => body_jacobian(problem, at, reference, value),
+        Quantity::Readback => readback(reference, value),
+        Quantity::StoredEntries => entries(reference, value, &[1.0]),
+        Quantity::ForwardDynamics | Quantity::ForwardDynamicsSingle | Quantity::Solve => {
+            let largest = reference.iter().fold(0.0_f64, |largest, x| worst(largest, x.abs()));
+            entries(reference, value, &vec![largest; reference.len()])
+        }
+    }
+}
+
+fn entries(reference: &[f64], value: &[f64], magnitude: &[f64]) -> f64 {
+    if reference.len() != value.len() || reference.len() != magnitude.len() {
+        return f64::INFINITY;
+    }
+    let pairs = reference.iter().zip(value).zip(magnitude);
+    pairs.fold(0.0, |error, ((r, v), m)| worst(error, ratio(v - r, *m)))
+}
+
+fn halves(angular: f64, linear: f64) -> [f64; 6] {
+    [angular, angular, angular, linear, linear, linear]
+}
+
+fn per_body<const N: usize>(problem: &Problem, reference: &[f64], value: &[f64], scale: impl Fn(usize) -> [f64; N]) -> f64 {
+    let magnitude: Vec<f64> = problem.model.described.iter().flat_map(|&body| scale(body)).collect();
+    entries(reference, value, &magnitude)
+}
+
+/// Per dof at unit rate: a turn carries the body along by no more than its reach, a slide by one.
+fn body_jacobian(problem: &Problem, at: &Magnitudes, reference: &[f64], value: &[f64]) -> f64 {
+    let model = &problem.model;
+    let reach = at.reach[model.described[problem.deepest_body()]];
+    let (slide, turn) = ((0.0, 1.0), (1.0, 0.0));
+    let dofs = model.topology.joints().iter().zip(&model.subspaces).flat_map(|(joint, subspace)| match joint.kind {
+        JointKind::Free => vec![slide, slide, slide, turn, turn, turn],
+        JointKind::Spherical => vec![turn; 3],
+        _ => vec![(subspace.ang.norm(), subspace.lin.norm())],
+    });
+    // What is left of a turn in the column of a slide is measured against the turn that carries the reach as far as the slide goes.
+    let scales = dofs.map(|(turn, slide)| (if turn > 0.0 || reach == 0.0 { turn } else { slide / reach }, turn * reach + slide));
+    let (angular, linear): (Vec<f64>, Vec<f64>) = scales.unzip();
+    entries(reference, value, &[angular.repeat(3), linear.repeat(3)].concat())
+}
+
+/// max |ΔM_ij| / √(M_ii·M_jj).
+fn mass_matrix(n: usize, reference: &[f64], value: &[f64]) -> f64 {
+    let root: Vec<f64> = (0..n).map(|i| reference[i * n + i].sqrt()).collect();
+    let magnitude: Vec<f64> = (0..n * n).map(|entry| root[entry / n] * root[entry % n]).collect();
+    entries(reference, value, &magnitude)
+}
+
+/// The same over the entries of the tree-sparse layout.
+fn mass_matrix_sparse(problem: &Problem, reference: &[f64], value: &[f64]) -> f64 {
+    let topology = &problem.model.topology;
+    let root: Vec<f64> = (0..topology.nv()).map(|i| reference[topology.row(i).end - 1].sqrt()).collect();
+    let pairs = (0..topology.nv()).flat_map(|i| topology.row_dofs(i).iter().map(move |&j| (i, j)));
+    let magnitude: Vec<f64> = pairs.map(|(i, j)| root[i] * root[j]).collect();
+    entries(reference, value, &magnitude)
+}
+
+/// M = LᵀDL of tree-sparse factors: what factors stand for. They themselves differ by more, as L follows κ(M).
+fn multiplied(problem: &Problem, factors: &[f64]) -> Vec<f64> {
+    let topology = &problem.model.topology;
+    let mut product = vec![0.0; factors.len()];
+    for k in 0..topology.nv() {
+        let mut l = factors[topology.row(k)].to_vec();
+        let Some(d) = l.last_mut().map(|last| std::mem::replace(last, 1.0)) else { continue };
+        // The row of a dof i on the path to k begins like k's own: M_ij += L_ki D_k L_kj.
+        for (&i, l_i) in topology.row_dofs(k).iter().zip(&l) {
+            for (entry, l_j) in product[topology.row(i)].iter_mut().zip(&l) {
+                *entry += l_i * d * l_j;
+            }
+        }
+    }
+    product
+}
+
+/// Products against Σ_j √(M_ii·M_jj)|x_j|, the diagonal and the last row as entries of M.
+fn mass_matrix_probe(n: usize, probe: &[f64], reference: &[f64], value: &[f64]) -> f64 {
+    let root: Vec<f64> = reference[4 * n..5 * n].iter().map(|diagonal| diagonal.sqrt()).collect();
+    let last = root.last().copied().unwrap_or(0.0);
+    let mut magnitude = Vec::with_capacity(6 * n);
+    for x in probe.chunks_exact(n) {
+        let weight: f64 = x.iter().zip(&root).map(|(x, r)| x.abs() * r).sum();
+        magnitude.extend(root.iter().map(|r| r * weight));
+    }
+    magnitude.extend(root.iter().map(|r| r * r));
+    magnitude.extend(root.iter().map(|r| r * last));
+    entries(reference, value, &magnitude)
+}
+
+fn total_mass(problem: &Problem) -> f64 {
+    problem.model.inertias.iter().map(|inertia| inertia.mass).sum()
+}
+
+/// Mass-weighted mean of the lengths of the paths to the bodies' centres of mass.
+fn reach_of_mass(problem: &Problem, at: &Magnitudes) -> f64 {
+    let moments = problem.model.inertias.iter().zip(&at.reach).map(|(inertia, reach)| inertia.mass * reach + inertia.first_moment.norm());
+    moments.sum::<f64>() / total_mass(problem)
+}
+
+/// Linear part over Σ(m|v| + |h||ω|); angular part over Σ(|Ī||ω| + |h||v| + reach·linear).
+fn momentum(problem: &Problem, at: &Magnitudes, reference: &[f64], value: &[f64]) -> f64 {
+    let (mut angular, mut linear) = (0.0, 0.0);
+    for (i, inertia) in problem.model.inertias.iter().enumerate() {
+        let (omega, v, lever) = (at.angular_velocity[i], at.linear_velocity[i], inertia.first_moment.norm());
+        let rotational = inertia.rotational.xx + inertia.rotational.yy + inertia.rotational.zz;
+        let share = inertia.mass * v + lever * omega;
+        linear += share;
+        angular += rotational * omega + lever * v + at.reach[i] * share;
+    }
+    entries(reference, value, &halves(angular, linear))
+}
+
+/// Mass and lengths relative to their own size, rotation to one, inertia to its trace about the body's origin, where most engines hold it.
+fn readback(reference: &[f64], value: &[f64]) -> f64 {
+    let magnitude: Vec<f64> = reference
+        .chunks_exact(22)
+        .flat_map(|body| {
+            let mut scale = [1.0; 22];
+            let length = |xyz: &[f64]| xyz.iter().map(|x| x * x).sum::<f64>().sqrt();
+            scale[0] = body[0];
+            scale[1..4].fill(length(&body[1..4]));
+            scale[4..10].fill(body[4].abs() + body[7].abs() + body[9].abs() + 2.0 * body[0] * length(&body[1..4]).powi(2));
+            scale[19..22].fill(length(&body[19..22]));
+            scale
+        })
+        .collect();
+    entries(reference, value, &magnitude)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn one_wrong_entry_of_a_light_joint_is_seen_beside_heavy_ones() {
+        let m = [1e6, 0.0, 0.0, 1e-6];
+        let mut wrong = m;
+        wrong[3] *= 1.0 + 1e-10;
+        let error = mass_matrix(2, &m, &wrong);
+        assert!((error - 1e-10).abs() < 1e-15, "{error}: relative to its own diagonal, rounding of 1 + 1e-10 aside");
+    }
+
+    #[test]
+    fn what_should_be_zero_and_is_not_is_infinitely_wrong_and_nan_stays() {
+        assert_eq!(entries(&[0.0], &[1e-300], &[0.0]), f64::INFINITY);
+        assert_eq!(entries(&[0.0], &[0.0], &[0.0]), 0.0);
+        assert!(entries(&[1.0, 1.0], &[f64::NAN, 2.0], &[1.0, 1.0]).is_nan());
+        assert_eq!(entries(&[1.0], &[1.0, 2.0], &[1.0]), f64::INFINITY);
+        assert_eq!(entries(&[1.0], &[1.0], &[1.0, 2.0]), f64::INFINITY);
+    }
+}

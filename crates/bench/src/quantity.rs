@@ -1,0 +1,146 @@
+//! What can be asked of a subject, as data.
+
+use crate::Problem;
+
+/// A quantity of a robot at a state. Shapes, units and frames are those of `oracles/PROTOCOL.md`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum Quantity {
+    /// Inverse dynamics τ = M a + h.
+    InverseDynamics,
+    /// Inverse dynamics under external wrenches.
+    InverseDynamicsWrench,
+    /// Bias force h.
+    Bias,
+    /// Joint-space inertia matrix M, dense.
+    MassMatrix,
+    /// Products M·x with four vectors, the diagonal and the last row of M, for robots too big for the whole matrix.
+    MassMatrixProbe,
+    /// Forward dynamics a = M⁻¹(τ − h).
+    ForwardDynamics,
+    /// The same in single precision.
+    ForwardDynamicsSingle,
+    /// Kinetic energy ½ vᵀMv.
+    KineticEnergy,
+    /// Potential energy −Σ m g·c.
+    PotentialEnergy,
+    /// Centre of mass.
+    CenterOfMass,
+    /// Centroidal momentum [angular; linear].
+    Momentum,
+    /// Placement of each body: rotation, origin.
+    BodyPlacement,
+    /// Velocity of each body's origin [angular; linear].
+    BodyVelocity,
+    /// Time derivative of the body velocity.
+    BodyAcceleration,
+    /// Jacobian of the deepest body's velocity.
+    BodyJacobian,
+    /// What a subject holds after building the model: inertias and placements.
+    Readback,
+    /// Stored numbers of the subject's sparse mass matrix.
+    StoredEntries,
+    /// M in the tree-sparse layout.
+    MassMatrixSparse,
+    /// The factors of M = LᵀDL in the tree-sparse layout.
+    Factorization,
+    /// M⁻¹τ with M factorized beforehand.
+    Solve,
+    /// M⁻¹, dense.
+    MassMatrixInverse,
+}
+
+/// Robots with more degrees of freedom than this are asked for [`Quantity::MassMatrixProbe`] and not for the whole matrix.
+pub const DENSE_LIMIT: usize = 64;
+
+impl Quantity {
+    /// All of them.
+    pub const ALL: [Self; 21] = [
+        Self::InverseDynamics,
+        Self::InverseDynamicsWrench,
+        Self::Bias,
+        Self::MassMatrix,
+        Self::MassMatrixProbe,
+        Self::ForwardDynamics,
+        Self::ForwardDynamicsSingle,
+        Self::KineticEnergy,
+        Self::PotentialEnergy,
+        Self::CenterOfMass,
+        Self::Momentum,
+        Self::BodyPlacement,
+        Self::BodyVelocity,
+        Self::BodyAcceleration,
+        Self::BodyJacobian,
+        Self::Readback,
+        Self::StoredEntries,
+        Self::MassMatrixSparse,
+        Self::Factorization,
+        Self::Solve,
+        Self::MassMatrixInverse,
+    ];
+
+    /// The word for it in records and in the oracle protocol.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::InverseDynamics => "id",
+            Self::InverseDynamicsWrench => "id_wrench",
+            Self::Bias => "bias",
+            Self::MassMatrix => "mass_matrix",
+            Self::MassMatrixProbe => "mass_matrix_probe",
+            Self::ForwardDynamics => "fd",
+            Self::ForwardDynamicsSingle => "fd_f32",
+            Self::KineticEnergy => "kinetic_energy",
+            Self::PotentialEnergy => "potential_energy",
+            Self::CenterOfMass => "com",
+            Self::Momentum => "momentum",
+            Self::BodyPlacement => "body_placement",
+            Self::BodyVelocity => "body_velocity",
+            Self::BodyAcceleration => "body_acceleration",
+            Self::BodyJacobian => "body_jacobian",
+            Self::Readback => "readback",
+            Self::StoredEntries => "stored_entries",
+            Self::MassMatrixSparse => "mass_matrix_sparse",
+            Self::Factorization => "factorization",
+            Self::Solve => "solve",
+            Self::MassMatrixInverse => "mass_matrix_inverse",
+        }
+    }
+
+    /// The quantity named by a word.
+    pub fn parse(word: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|quantity| quantity.name() == word)
+    }
+
+    /// Numbers per state for a problem.
+    pub fn size(self, problem: &Problem) -> usize {
+        let (nv, bodies) = (problem.model.topology.nv(), problem.description.bodies.len());
+        match self {
+            Self::InverseDynamics
+            | Self::InverseDynamicsWrench
+            | Self::Bias
+            | Self::ForwardDynamics
+            | Self::ForwardDynamicsSingle
+            | Self::Solve => nv,
+            Self::MassMatrix | Self::MassMatrixInverse => nv * nv,
+            Self::MassMatrixProbe | Self::BodyJacobian => 6 * nv,
+            Self::KineticEnergy | Self::PotentialEnergy | Self::StoredEntries => 1,
+            Self::CenterOfMass => 3,
+            Self::Momentum => 6,
+            Self::BodyPlacement => 12 * bodies,
+            Self::BodyVelocity | Self::BodyAcceleration => 6 * bodies,
+            Self::Readback => 22 * bodies,
+            Self::MassMatrixSparse | Self::Factorization => problem.model.topology.stored(),
+        }
+    }
+
+    /// Of how many states of an agreement batch it is asked: all where the claim is about the worst of them, the head of the batch for
+    /// the bulky kinematic quantities and external wrenches, one where it does not depend on the state.
+    pub fn states(self, count: usize) -> usize {
+        match self {
+            Self::Readback | Self::StoredEntries => count.min(1),
+            Self::InverseDynamicsWrench | Self::BodyPlacement | Self::BodyVelocity | Self::BodyAcceleration | Self::BodyJacobian => {
+                count.min(featherbench_model::StateBatch::HEAD)
+            }
+            _ => count,
+        }
+    }
+}

@@ -1,0 +1,101 @@
+//! Running a plan: accuracy cells on all cores, exclusive ones alone afterwards, each outcome kept as it comes.
+
+use crate::study::{Context, Finished, Study, by_problem};
+use crate::{Cell, HarnessError, Outcome, OutcomeStore, Refusal};
+use featherbench_results::Record;
+use rayon::prelude::*;
+use std::panic::{AssertUnwindSafe, catch_unwind};
+
+/// Who watches a run.
+pub trait Progress: Sync {
+    /// `count` cells are about to be evaluated.
+    fn begin(&self, phase: &str, count: usize);
+    /// A cell begins.
+    fn cell(&self, cell: &Cell);
+    /// A cell is done.
+    fn done(&self, cell: &Cell, outcome: &Outcome);
+    /// The phase ends.
+    fn end(&self);
+}
+
+/// A watcher that says nothing.
+pub struct Silent;
+
+impl Progress for Silent {
+    fn begin(&self, _: &str, _: usize) {}
+    fn cell(&self, _: &Cell) {}
+    fn done(&self, _: &Cell, _: &Outcome) {}
+    fn end(&self) {}
+}
+
+/// The cells of a study that a filter lets through, and beside any of them those that belong to no robot.
+pub fn plan(study: &dyn Study, context: &Context, keep: &(dyn Fn(&Cell) -> bool + Sync)) -> Vec<Cell> {
+    let kept: Vec<Cell> = study.plan(context).into_iter().filter(|cell| keep(cell) || study.is_common(cell)).collect();
+    if kept.iter().all(|cell| study.is_common(cell) && !keep(cell)) { Vec::new() } else { kept }
+}
+
+/// Evaluates what is not finished yet of a study's cells, and returns all of them with their outcomes, in plan order.
+///
+/// # Errors
+/// Only when an outcome cannot be kept; a subject that fails, or panics, is an outcome.
+pub fn evaluate(
+    study: &dyn Study,
+    context: &Context,
+    cells: Vec<Cell>,
+    store: &OutcomeStore,
+    progress: &dyn Progress,
+) -> Result<Vec<Finished>, HarnessError> {
+    let missing: Vec<&Cell> = cells.iter().filter(|cell| !store.contains(&cell.id())).collect();
+    progress.begin(study.name(), missing.len());
+    // One group per problem and subject, so that a process behind a subject builds each robot once.
+    let mut groups: Vec<Vec<&Cell>> = Vec::new();
+    for cell in missing {
+        match groups.last_mut() {
+            Some(group) if group[0].problem == cell.problem && group[0].subject == cell.subject => group.push(cell),
+            _ => groups.push(vec![cell]),
+        }
+    }
+    let work = |group: &Vec<&Cell>| -> Result<(), HarnessError> {
+        for cell in group {
+            progress.cell(cell);
+            let outcome = guarded(study, context, cell);
+            progress.done(cell, &outcome);
+            store.insert(cell, outcome)?;
+        }
+        Ok(())
+    };
+    if study.exclusive() {
+        groups.iter().try_for_each(work)?
+    } else {
+        groups.par_iter().with_max_len(1).try_for_each(work)?
+    }
+    progress.end();
+    Ok(cells
+        .into_iter()
+        .map(|cell| {
+            let lost = || Outcome::Refused(Refusal::Failed("the outcome was not kept".into()));
+            let outcome = store.get(&cell.id()).unwrap_or_else(lost);
+            (cell, outcome)
+        })
+        .collect())
+}
+
+/// A panic in a subject or study is that cell's failure and nobody else's.
+fn guarded(study: &dyn Study, context: &Context, cell: &Cell) -> Outcome {
+    catch_unwind(AssertUnwindSafe(|| study.evaluate(context, cell))).unwrap_or_else(|panic| {
+        let message = panic.downcast_ref::<String>().map(String::as_str).or_else(|| panic.downcast_ref::<&str>().copied());
+        Outcome::Refused(Refusal::Failed(format!("internal error: {}", message.unwrap_or("panic without a message"))))
+    })
+}
+
+/// Turns outcomes into records: those of no problem first, then problem by problem on all cores, in the order of the problems.
+pub fn compare(study: &dyn Study, context: &Context, finished: Vec<Finished>) -> Vec<Record> {
+    let together = study.compare_all(context, &finished);
+    let groups = by_problem(finished);
+    let compared: Vec<Vec<Record>> = context
+        .problems
+        .par_iter()
+        .map(|problem| groups.get(&problem.name).map_or_else(Vec::new, |group| study.compare(context, problem, group)))
+        .collect();
+    together.into_iter().chain(compared.into_iter().flatten()).collect()
+}

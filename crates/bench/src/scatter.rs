@@ -1,0 +1,46 @@
+//! Disturbing the heap, so that what is allocated next lies at other places of the memory than it would.
+
+use featherbench_model::Random;
+use std::hint::black_box;
+
+/// Blocks that disturb the heap, twice as many as stay: how many, and between which sizes in bytes. Small ones use up what was freed last, which
+/// an allocator would give out again; large ones, a cache line to some pages, shift what follows. Beyond, pages are mapped anew for each.
+const BLOCKS: [(usize, f64, f64); 2] = [(1024, 16.0, 1024.0), (64, 1024.0, 65536.0)];
+
+/// Blocks of random sizes between holes of random sizes. What is allocated while it lives fills the holes and the room behind: how its
+/// parts lie to each other and to the pages changes with every draw.
+#[derive(Debug)]
+pub struct Scatter(#[expect(dead_code, reason = "what counts is that they take room")] Vec<Vec<u8>>);
+
+impl Scatter {
+    /// Draws blocks and holes.
+    pub fn new(random: &mut Random) -> Self {
+        let mut blocks = Vec::new();
+        for (count, least, largest) in BLOCKS {
+            blocks.extend((0..count).map(|_| black_box(vec![0_u8; (least * (largest / least).powf(random.unit())) as usize])));
+        }
+        Self(blocks.into_iter().filter(|_| random.below(2) == 0).collect())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_follows_lies_elsewhere_each_time() {
+        let mut random = Random::new(1, 1);
+        let places = (0..20).map(|_| {
+            let _scatter = Scatter::new(&mut random);
+            let (small, large) = (black_box(vec![0_u8; 100]), black_box(vec![0_u8; 20_000]));
+            (small.as_ptr().addr() % 4096, large.as_ptr().addr() % 4096)
+        });
+        let (mut small, mut large): (Vec<_>, Vec<_>) = places.unzip();
+        for places in [&mut small, &mut large] {
+            places.sort_unstable();
+            places.dedup();
+            // Of twenty places among 256 (every 16 bytes of a page) one or two would coincide by chance.
+            assert!(places.len() > 10, "{places:?}");
+        }
+    }
+}

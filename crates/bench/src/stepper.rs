@@ -1,0 +1,29 @@
+//! The trait [`Stepper`]: an engine that integrates, asked what a step of a given length does. Oracles offer it by the operations `step` and `fall`.
+
+use crate::{Problem, Refusal};
+use featherbench_model::StateBatch;
+
+/// An engine whose acceleration is that of a step, and so depends on the step's length.
+pub trait Stepper {
+    /// Its ways to step, the one without numerical or physical extras first.
+    fn step_methods(&self) -> Vec<String>;
+
+    /// The acceleration (neutral coordinates, nv numbers) with which one step of `dt` seconds begins at state `k`, under gravity and the state's τ.
+    ///
+    /// # Errors
+    /// [`Refusal`] when the robot or method is not supported, or the engine fails.
+    fn step_acceleration(&self, problem: &Problem, method: &str, states: &StateBatch, k: usize, dt: f64) -> Result<Vec<f64>, Refusal>;
+
+    /// From which product of the step's length and the largest velocity on the engine may leave out the term that makes a step implicit, where it
+    /// does such a thing: the step is then explicit, and begins with the true acceleration, however long it is.
+    fn guard(&self) -> Option<f64> {
+        None
+    }
+
+    /// A motion under gravity alone from state `k`: the energy, J, after each of `steps` steps of `dt` seconds; the potential
+    /// part is zero at the world's origin.
+    ///
+    /// # Errors
+    /// [`Refusal`] when the robot or method is not supported, or the engine fails.
+    fn fall(&self, problem: &Problem, method: &str, states: &StateBatch, k: usize, dt: f64, steps: usize) -> Result<Vec<f64>, Refusal>;
+}

@@ -1,0 +1,310 @@
+//! The outcomes of a run on disk: what makes it resumable.
+
+use crate::frame::{Block, Frame, FrameError};
+use crate::{Cell, HarnessError, Outcome, Reading, ReadingNote, Refusal};
+use featherbench_formats::neutral;
+use serde_json::{Value, json};
+use std::collections::HashMap;
+use std::fs::{File, OpenOptions};
+use std::io::{BufReader, Read, Seek};
+use std::path::{Path, PathBuf};
+use std::sync::{Mutex, PoisonError};
+
+/// Every finished cell's outcome, in memory and appended to `outcomes.frames` as it comes.
+///
+/// Each frame holds a checksum of all that is in it. A run that is killed leaves at most one incomplete frame at the end. A frame that is
+/// incomplete or damaged ends what can be trusted: opening the store cuts it off with all that stands behind it, and [`Self::lost`] tells.
+#[derive(Debug)]
+pub struct OutcomeStore {
+    path: PathBuf,
+    lost: Option<Lost>,
+    inner: Mutex<Inner>,
+}
+
+/// What of a file of outcomes could not be used.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Lost {
+    /// The file.
+    pub path: PathBuf,
+    /// The first frame that could not be used, counted from one.
+    pub frame: u64,
+    /// What is wrong with it.
+    pub what: String,
+    /// The bytes from the beginning of that frame to the end of the file.
+    pub bytes: u64,
+}
+
+impl std::fmt::Display for Lost {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let Self { path, frame, what, bytes } = self;
+        write!(f, "{}: frame {frame}: {what}; it and what stands behind it ({bytes} bytes) are not used", path.display())
+    }
+}
+
+#[derive(Debug)]
+struct Inner {
+    file: File,
+    outcomes: HashMap<String, Outcome>,
+}
+
+/// Name of the file in a run's folder.
+pub const OUTCOMES_NAME: &str = "outcomes.frames";
+
+impl OutcomeStore {
+    /// Opens the store of a run's folder, reading what is there and cutting off what cannot be used.
+    ///
+    /// # Errors
+    /// When the file cannot be read or written.
+    pub fn open(folder: &Path) -> Result<Self, HarnessError> {
+        let path = folder.join(OUTCOMES_NAME);
+        let io = |source| HarnessError::io(&path, source);
+        let file = OpenOptions::new().create(true).truncate(false).read(true).write(true).open(&path).map_err(io)?;
+        let (mut file, Whole { outcomes, good, lost }) = read(file, &path)?;
+        file.set_len(good).map_err(io)?;
+        file.seek(std::io::SeekFrom::End(0)).map_err(io)?;
+        Ok(Self { path, lost, inner: Mutex::new(Inner { file, outcomes }) })
+    }
+
+    /// The outcomes of a run's folder by cell, and what of the file cannot be used. The file stays as it is.
+    ///
+    /// # Errors
+    /// When the file cannot be read.
+    pub fn look(folder: &Path) -> Result<(HashMap<String, Outcome>, Option<Lost>), HarnessError> {
+        let path = folder.join(OUTCOMES_NAME);
+        let file = File::open(&path).map_err(|source| HarnessError::io(&path, source))?;
+        let (_, Whole { outcomes, lost, .. }) = read(file, &path)?;
+        Ok((outcomes, lost))
+    }
+
+    /// What of the file was cut off when it was opened: its cells are evaluated again.
+    pub fn lost(&self) -> Option<&Lost> {
+        self.lost.as_ref()
+    }
+
+    /// The outcome of a cell, if it is finished.
+    pub fn get(&self, id: &str) -> Option<Outcome> {
+        self.lock().outcomes.get(id).cloned()
+    }
+
+    /// Whether a cell is finished.
+    pub fn contains(&self, id: &str) -> bool {
+        self.lock().outcomes.contains_key(id)
+    }
+
+    /// Keeps the outcome of a cell, on disk first.
+    ///
+    /// # Errors
+    /// When the disk refuses it.
+    pub fn insert(&self, cell: &Cell, outcome: Outcome) -> Result<(), HarnessError> {
+        let id = cell.id();
+        let frame = to_frame(&id, cell, &outcome);
+        let mut inner = self.lock();
+        frame.write(&mut inner.file).map_err(|source| HarnessError::io(&self.path, source))?;
+        inner.outcomes.insert(id, outcome);
+        Ok(())
+    }
+
+    /// A panic elsewhere does not make the map wrong: an outcome is inserted whole or not at all.
+    fn lock(&self) -> std::sync::MutexGuard<'_, Inner> {
+        self.inner.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
+/// What of a file of outcomes is whole.
+struct Whole {
+    outcomes: HashMap<String, Outcome>,
+    /// Its length in bytes.
+    good: u64,
+    lost: Option<Lost>,
+}
+
+/// Reads frame after frame as far as they are whole.
+fn read<S: Read + Seek>(mut source: S, path: &Path) -> Result<(S, Whole), HarnessError> {
+    let io = |source| HarnessError::io(path, source);
+    let length = source.seek(std::io::SeekFrom::End(0)).map_err(io)?;
+    source.rewind().map_err(io)?;
+    let mut reader = BufReader::new(source);
+    let (mut outcomes, mut good, mut frames) = (HashMap::new(), 0, 0);
+    let what = loop {
+        frames += 1;
+        match Frame::read(&mut reader) {
+            Ok(None) => break None,
+            Ok(Some(frame)) => match from_frame(frame) {
+                Ok((id, outcome)) => drop(outcomes.insert(id, outcome)),
+                Err(what) => break Some(what),
+            },
+            Err(FrameError::Io(source)) => return Err(io(source)),
+            Err(error @ (FrameError::Truncated | FrameError::Header(_))) => break Some(error.to_string()),
+        }
+        good = reader.stream_position().map_err(io)?;
+    };
+    let lost = what.map(|what| Lost { path: path.to_owned(), frame: frames, what, bytes: length.saturating_sub(good) });
+    Ok((reader.into_inner(), Whole { outcomes, good, lost }))
+}
+
+fn to_frame(id: &str, cell: &Cell, outcome: &Outcome) -> Frame {
+    let (status, reason, blocks) = match outcome {
+        Outcome::Values(values) => ("ok", "", vec![Block::new("value", &[values.len()], values)]),
+        Outcome::Reading(reading) => {
+            let shape = [reading.keyframes.len(), reading.description.nq()];
+            ("read", "", vec![Block::new("keyframes", &shape, &reading.keyframes.concat())])
+        }
+        Outcome::Refused(Refusal::Unsupported(reason)) => ("unsupported", reason.as_str(), Vec::new()),
+        Outcome::Refused(Refusal::Failed(reason)) => ("error", reason.as_str(), Vec::new()),
+    };
+    let mut header = json!({"cell": id, "path": cell.path(), "status": status, "reason": reason});
+    if let Outcome::Reading(reading) = outcome {
+        header["reading"] = written(reading);
+    }
+    let mut frame = Frame::new(header, blocks);
+    frame.header.insert(CHECKSUM.into(), featherbench_results::checksum(&frame.to_bytes()).into());
+    frame
+}
+
+/// The key of a frame's checksum: that of its bytes without this key.
+const CHECKSUM: &str = "blake3";
+
+/// A reading as JSON: the description's text, and the notes.
+fn written(reading: &Reading) -> Value {
+    let note = |note: &ReadingNote| json!({"cause": note.cause, "subject": note.subject, "text": note.text, "numbers": note.numbers});
+    // A description that is no robot has no text, and reads back as a damaged frame: its cell is asked again.
+    let model = neutral::to_string(&reading.description).unwrap_or_default();
+    let written = reading.written.as_ref().map(|written| neutral::to_string(written).unwrap_or_default());
+    json!({"model": model, "written": written, "notes": reading.notes.iter().map(note).collect::<Vec<_>>()})
+}
+
+fn reading(value: &Value, keyframes: &Block) -> Option<Reading> {
+    let text = |value: &Value| value.as_str().map(str::to_owned);
+    let note = |note: &Value| {
+        let numbers = note["numbers"].as_array()?.iter().map(Value::as_f64).collect::<Option<_>>()?;
+        Some(ReadingNote { cause: text(&note["cause"])?, subject: text(&note["subject"]), text: text(&note["text"])?, numbers })
+    };
+    let description = neutral::parse(value["model"].as_str()?, OUTCOMES_NAME).ok()?;
+    let keyframes = keyframes.data.chunks_exact(description.nq().max(1)).map(<[f64]>::to_vec).collect();
+    let written = match value["written"].as_str() {
+        Some(text) => Some(neutral::parse(text, OUTCOMES_NAME).ok()?),
+        None => None,
+    };
+    Some(Reading { description, notes: value["notes"].as_array()?.iter().map(note).collect::<Option<_>>()?, keyframes, written })
+}
+
+/// The cell and its outcome, or what is wrong with the frame.
+fn from_frame(mut frame: Frame) -> Result<(String, Outcome), String> {
+    let Some(Value::String(due)) = frame.header.remove(CHECKSUM) else { return Err("it has no checksum".into()) };
+    if featherbench_results::checksum(&frame.to_bytes()) != due {
+        return Err("its checksum is another one: it is damaged".into());
+    }
+    let id = frame.text("cell").to_owned();
+    let reason = frame.text("reason").to_owned();
+    let outcome = match frame.text("status") {
+        "ok" => frame.blocks.pop().map(|block| Outcome::Values(block.data)),
+        "read" => {
+            let keyframes = frame.block("keyframes");
+            let reading = frame.header.get("reading").zip(keyframes).and_then(|(value, keyframes)| reading(value, keyframes));
+            reading.map(|reading| Outcome::Reading(Box::new(reading)))
+        }
+        "unsupported" => Some(Outcome::Refused(Refusal::Unsupported(reason))),
+        "error" => Some(Outcome::Refused(Refusal::Failed(reason))),
+        _ => None,
+    };
+    match outcome {
+        Some(outcome) if !id.is_empty() => Ok((id, outcome)),
+        _ => Err("it holds no outcome of a cell".into()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use featherbench_model::generate::Family;
+
+    fn cell(method: &str) -> Cell {
+        let text = |s: &str| s.to_owned();
+        Cell {
+            study: text("s"),
+            problem: text("p"),
+            problem_hash: text("h"),
+            params: json!({}),
+            subject: text("e"),
+            version: text("1"),
+            method: text(method),
+            quantity: text("id"),
+            scalar: text("f64"),
+        }
+    }
+
+    #[test]
+    fn reopening_keeps_whole_frames_and_cuts_the_rest() {
+        let folder = tempfile::tempdir().unwrap();
+        let store = OutcomeStore::open(folder.path()).unwrap();
+        let values = Outcome::Values(vec![0.1, f64::MIN_POSITIVE, -3.0]);
+        store.insert(&cell("a"), values.clone()).unwrap();
+        store.insert(&cell("b"), Outcome::Refused(Refusal::Failed("broken".into()))).unwrap();
+        drop(store);
+
+        let path = folder.path().join(OUTCOMES_NAME);
+        let whole = std::fs::read(&path).unwrap();
+        for cut in 0..=whole.len() {
+            std::fs::write(&path, &whole[..cut]).unwrap();
+            let store = OutcomeStore::open(folder.path()).unwrap();
+            if let Some(found) = store.get(&cell("a").id()) {
+                assert_eq!(found, values);
+            }
+            store.insert(&cell("c"), values.clone()).unwrap();
+            drop(store);
+            let again = OutcomeStore::open(folder.path()).unwrap();
+            assert_eq!(again.get(&cell("c").id()), Some(values.clone()), "appended after a cut at {cut}");
+        }
+    }
+    /// Outcomes of every kind.
+    fn outcomes() -> Vec<(Cell, Outcome)> {
+        let description = Family::parse("chain:n=1").unwrap().generate().unwrap();
+        let text = "not \"this\"".into();
+        let note = ReadingNote { cause: "warning".into(), subject: Some("link".into()), text, numbers: vec![0.1, -2.0] };
+        let written = Some(description.clone());
+        vec![
+            (cell("a"), Outcome::Values(vec![0.1, f64::NAN, -0.0])),
+            (cell("b"), Outcome::Refused(Refusal::Failed("it \"broke\"".into()))),
+            (cell("c"), Outcome::Reading(Box::new(Reading { description, notes: vec![note], keyframes: vec![vec![0.5]], written }))),
+            (cell("d"), Outcome::Refused(Refusal::Unsupported("no such joint".into()))),
+            (cell("e"), Outcome::Values(vec![1.5])),
+        ]
+    }
+
+    /// The outcome of a cell with its numbers as bits.
+    fn bits(outcome: &Outcome) -> String {
+        format!("{outcome:?} {:?}", outcome.values().map(|values| values.iter().map(|x| x.to_bits()).collect::<Vec<_>>()))
+    }
+
+    /// Every bit of a file: what comes back is what was written, or is missing and said to be.
+    #[test]
+    fn no_flipped_bit_makes_another_outcome() {
+        let folder = tempfile::tempdir().unwrap();
+        let store = OutcomeStore::open(folder.path()).unwrap();
+        for (cell, outcome) in outcomes() {
+            store.insert(&cell, outcome).unwrap();
+        }
+        let path = folder.path().join(OUTCOMES_NAME);
+        let whole = std::fs::read(&path).unwrap();
+        let written: HashMap<String, String> = outcomes().iter().map(|(cell, outcome)| (cell.id(), bits(outcome))).collect();
+        assert_eq!(OutcomeStore::look(folder.path()).unwrap().0.len(), written.len());
+        let mut discarded = 0;
+        for at in 0..whole.len() {
+            for bit in 0..8 {
+                let mut damaged = whole.clone();
+                damaged[at] ^= 1 << bit;
+                let (_, Whole { outcomes: found, lost, .. }) = read(std::io::Cursor::new(damaged), &path).unwrap();
+                for (id, outcome) in &found {
+                    assert_eq!(written.get(id), Some(&bits(outcome)), "bit {bit} of byte {at}");
+                }
+                assert_eq!(found.len() < written.len(), lost.is_some(), "bit {bit} of byte {at}");
+                if let Some(lost) = lost {
+                    let message = lost.to_string();
+                    assert!(message.contains(OUTCOMES_NAME) && message.contains(&format!("frame {}:", found.len() + 1)), "{message}");
+                    discarded += 1;
+                }
+            }
+        }
+        assert!(discarded == 8 * whole.len() && whole.len() > 1000, "{discarded} of {}", 8 * whole.len());
+    }
+}

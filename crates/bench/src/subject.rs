@@ -1,0 +1,202 @@
+//! The trait [`Subject`]: anyone who answers.
+
+use crate::{Problem, Quantity, Reading, RobotFile, Stepper};
+use featherbench_model::StateBatch;
+use featherbench_results::EngineSource;
+use std::collections::BTreeMap;
+use std::ops::Range;
+use std::time::{Duration, Instant};
+use thiserror::Error;
+
+/// Who a subject is.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Identity {
+    /// The engine's name in records.
+    pub name: String,
+    /// The version it reports.
+    pub version: String,
+    /// Native, recorded or live.
+    pub source: EngineSource,
+    /// Language, flags, versions of libraries.
+    pub build: BTreeMap<String, String>,
+}
+
+/// Why there is no answer.
+#[derive(Clone, Debug, PartialEq, Eq, Error)]
+pub enum Refusal {
+    /// The subject does not offer this: known beforehand, a skip.
+    #[error("{0}")]
+    Unsupported(String),
+    /// It should have answered and did not: an error.
+    #[error("{0}")]
+    Failed(String),
+}
+
+/// An engine that can be asked about robots.
+///
+/// A whole engine, for one link on one revolute joint, asked about a robot that was drawn at random:
+///
+/// ```
+/// use featherbench_bench::measure::{Magnitudes, scaled_error};
+/// use featherbench_bench::{Identity, Prepared, Problem, Quantity, Refusal, Subject};
+/// use featherbench_model::{JointType, StateBatch, generate::Family};
+/// use featherbench_results::{EngineSource, ModelOrigin};
+/// use featherbench_spatial::{Mat3, Sym3, Vec3};
+///
+/// /// τ = (uᵀ I_o u + armature) a − u · (R c × m g'), with the gravity g' in body axes.
+/// struct Pendulum(Identity);
+///
+/// struct Swing<'a> {
+///     problem: &'a Problem,
+///     states: &'a StateBatch,
+///     tau: Vec<f64>,
+/// }
+///
+/// impl Subject for Pendulum {
+///     fn identity(&self) -> &Identity {
+///         &self.0
+///     }
+///
+///     fn methods(&self, quantity: Quantity) -> Vec<String> {
+///         if quantity == Quantity::InverseDynamics { vec!["lever".into()] } else { Vec::new() }
+///     }
+///
+///     fn prepare<'a>(
+///         &'a self,
+///         problem: &'a Problem,
+///         _: Quantity,
+///         _: &str,
+///         states: &'a StateBatch,
+///     ) -> Result<Box<dyn Prepared + 'a>, Refusal> {
+///         match problem.description.bodies.as_slice() {
+///             [body] if matches!(body.joint.kind, JointType::Revolute { .. }) => Ok(Box::new(Swing { problem, states, tau: Vec::new() })),
+///             _ => Err(Refusal::Unsupported("a pendulum is one link on one revolute joint".into())),
+///         }
+///     }
+/// }
+///
+/// impl Prepared for Swing<'_> {
+///     fn run(&mut self, range: std::ops::Range<usize>) -> Result<(), Refusal> {
+///         let body = &self.problem.description.bodies[0];
+///         let axis = Vec3::from_array(body.joint.kind.axis().ok_or_else(|| Refusal::Failed("no axis".into()))?);
+///         let com = Vec3::from_array(body.com);
+///         // u·(ω × I ω) vanishes for a turn about u: a pendulum's τ does not depend on its velocity.
+///         let about_origin = Sym3::from_array(body.inertia).to_mat3() * axis + com.cross(axis.cross(com)) * body.mass;
+///         let armature = body.joint.armature.first().copied().unwrap_or(0.0);
+///         let fixed = Mat3::from_array(body.joint.placement.rotation);
+///         self.tau = range
+///             .map(|k| {
+///                 let (sin, cos) = self.states.q(k)[0].sin_cos();
+///                 let falls = fixed.transpose_mul(Vec3::from_array(self.problem.description.gravity));
+///                 // Rodrigues' formula, by −q: gravity in body axes.
+///                 let gravity = falls * cos - axis.cross(falls) * sin + axis * (axis.dot(falls) * (1.0 - cos));
+///                 (axis.dot(about_origin) + armature) * self.states.a(k)[0] - axis.dot(com.cross(gravity * body.mass))
+///             })
+///             .collect();
+///         Ok(())
+///     }
+///
+///     fn read(&self) -> &[f64] {
+///         &self.tau
+///     }
+/// }
+///
+/// let description = Family::parse("joints:kind=revolute,base=fixed,shape=single").unwrap().generate().unwrap();
+/// let problem = Problem::new(&description, "pendulum", ModelOrigin::Generated, 20, 1).unwrap();
+/// let name = "pendulum".to_owned();
+/// let pendulum = Pendulum(Identity { name, version: "1".into(), source: EngineSource::Native, build: Default::default() });
+/// let mut swing = pendulum.prepare(&problem, Quantity::InverseDynamics, "lever", &problem.states).unwrap();
+/// swing.run(0..20).unwrap();
+/// let mut rnea = featherbench_dynamics::Rnea::new(&problem.model.topology);
+/// for (k, &tau) in swing.read().iter().enumerate() {
+///     let (states, mut due) = (&problem.states, [0.0]);
+///     rnea.run(&problem.model, states.q(k), states.v(k), states.a(k), None, &mut due).unwrap();
+///     let error = scaled_error(&problem, Quantity::InverseDynamics, &Magnitudes::new(&problem, k), &due, &[tau]);
+///     assert!(error < 1e-15, "state {k}: {error}");
+/// }
+/// ```
+///
+/// A run asks it beside the others when `crates/cli/src/subjects.rs` adds it to the subjects.
+pub trait Subject: Send + Sync {
+    /// Who it is.
+    fn identity(&self) -> &Identity;
+
+    /// Its methods for a quantity, its usual one first; none when it does not offer the quantity.
+    fn methods(&self, quantity: Quantity) -> Vec<String>;
+
+    /// Reads a robot's file with the subject's own parser and says what it holds then.
+    ///
+    /// # Errors
+    /// [`Refusal`] when the subject has no parser, or its parser refuses the file.
+    fn read(&self, file: &RobotFile) -> Result<Reading, Refusal> {
+        let format = file.format.name();
+        Err(Refusal::Unsupported(format!("{} has no parser of {format} files", self.identity().name)))
+    }
+
+    /// Gets ready to evaluate a quantity by a method over a batch of states.
+    ///
+    /// # Errors
+    /// [`Refusal`] when the robot, quantity or method is not supported, or the subject breaks.
+    fn prepare<'a>(
+        &'a self,
+        problem: &'a Problem,
+        quantity: Quantity,
+        method: &str,
+        states: &'a StateBatch,
+    ) -> Result<Box<dyn Prepared + 'a>, Refusal>;
+
+    /// Its methods for a quantity that can be timed.
+    fn timed(&self, quantity: Quantity) -> Vec<String> {
+        self.methods(quantity)
+    }
+
+    /// Whether its times are estimates: what it takes to call the engine was measured with them, and subtracted.
+    fn estimates(&self) -> bool {
+        false
+    }
+
+    /// Its steps, where its forward dynamics is that of a step.
+    fn stepper(&self) -> Option<&dyn Stepper> {
+        None
+    }
+}
+
+/// An evaluation that is ready: what is timed is what is checked.
+pub trait Prepared: Send {
+    /// Evaluates the states of the range.
+    ///
+    /// # Errors
+    /// [`Refusal`] when the subject fails.
+    fn run(&mut self, range: Range<usize>) -> Result<(), Refusal>;
+
+    /// Evaluates the states of the range and says how long that took: one reading of the clock before the loop over the states and one
+    /// after it, both in the process that runs the loop.
+    ///
+    /// Beyond the end of the batch its states begin again (a subject that is timed answers so; this plain form does not), and no answer but
+    /// the last need be kept.
+    ///
+    /// # Errors
+    /// [`Refusal`] when the subject fails.
+    fn clock(&mut self, range: Range<usize>) -> Result<Duration, Refusal> {
+        let start = Instant::now();
+        self.run(range)?;
+        Ok(start.elapsed())
+    }
+
+    /// Moves everything that it works on to other places of the memory, drawn with this seed, where that is not in this process: `false`
+    /// of a subject that is moved by preparing it anew.
+    ///
+    /// # Errors
+    /// [`Refusal`] when the subject fails.
+    fn scatter(&mut self, _seed: u32) -> Result<bool, Refusal> {
+        Ok(false)
+    }
+
+    /// What was subtracted from the time that [`Prepared::clock`] told last, where times are estimates.
+    fn overhead(&self) -> Option<Duration> {
+        None
+    }
+
+    /// The values of the last run, state after state.
+    fn read(&self) -> &[f64];
+}

@@ -1,0 +1,198 @@
+//! Files that people write: what is wrong in `gates.toml`, `deviations.toml` or a suite is told with the file and the key, and nothing
+//! unknown is passed over.
+
+use featherbench_bench::{Gates, HarnessError, Ranges, Suite};
+use std::path::Path;
+
+const GATE: &str = "[[gate]]\nstudy = \"agreement\"\nquantities = [\"id\"]\nmetric = \"scaled\"\nbound = 1e-14\nreason = \"rounding\"\n";
+const DEVIATION: &str = "[[deviation]]\nengine = \"e\"\nversion = \"1\"\nmodels = [\"m\"]\nverdict = \"fail\"\nreason = \"known\"\n";
+const NOT_OFFERED: &str = "[[not_offered]]\nengine = \"e\"\nversion = \"1\"\nmodels = [\"m\"]\nreason = \"none\"\n";
+const SUITE: &str = "about = \"a suite\"\nseed = 1\n[[problem]]\ngenerate = \"humanoid\"\nfamily = \"humanoid\"\n";
+
+/// Asserts that an error names its file and these words.
+#[track_caller]
+fn names<T: std::fmt::Debug>(result: Result<T, HarnessError>, file: &Path, words: &[&str]) {
+    let error = result.unwrap_err();
+    let message = error.to_string();
+    assert!(message.contains(&file.display().to_string()), "{message} does not name {}", file.display());
+    for word in words {
+        assert!(message.contains(word), "{message} does not name {word}");
+    }
+}
+
+fn gates(gates: &str, deviations: &str) -> (Result<Gates, HarnessError>, tempfile::TempDir) {
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::write(folder.path().join("gates.toml"), gates).unwrap();
+    std::fs::write(folder.path().join("deviations.toml"), deviations).unwrap();
+    (Gates::read(folder.path()), folder)
+}
+
+#[test]
+fn gates_name_what_is_wrong() {
+    assert!(gates(GATE, DEVIATION).0.is_ok());
+    assert!(gates(GATE, "").0.is_ok(), "nothing need deviate");
+    assert!(gates(GATE, &format!("{DEVIATION}{NOT_OFFERED}")).0.is_ok());
+    let cases = [
+        (format!("{GATE}max_dept = 20\n"), "max_dept"),
+        (GATE.replace("bound = 1e-14\n", ""), "bound"),
+        (GATE.replace("reason = \"rounding\"\n", ""), "reason"),
+        (GATE.replace("1e-14", "\"small\""), "bound"),
+        (format!("{GATE}times = \"width\"\n"), "width"),
+        (format!("{GATE}max_depth = -1\n"), "max_depth"),
+        (format!("threshold = 1\n{GATE}"), "threshold"),
+        (format!("{GATE}[sharp]\nstudy = \"agreement\"\n"), "quantity"),
+        (format!("{GATE}[[gate]\n"), "line 7"),
+        (String::new(), "gate"),
+    ];
+    for (text, word) in cases {
+        let (result, folder) = gates(&text, "");
+        names(result, &folder.path().join("gates.toml"), &[word]);
+    }
+}
+
+#[test]
+fn deviations_name_what_is_wrong() {
+    let cases = [
+        (format!("{DEVIATION}upto = 1e-9\n"), "upto"),
+        (DEVIATION.replace("version = \"1\"\n", ""), "version"),
+        (DEVIATION.replace("models = [\"m\"]\n", ""), "models"),
+        (DEVIATION.replace("reason = \"known\"\n", ""), "reason"),
+        (DEVIATION.replace("\"fail\"", "\"pass\""), "pass"),
+        (DEVIATION.replace("\"fail\"", "\"Fail\""), "Fail"),
+        (DEVIATION.replace("\"fail\"", "\"skip\""), "[[not_offered]]"),
+        (format!("{DEVIATION}range = [1e-14, 1e-13]\n"), "range"),
+        (NOT_OFFERED.replace("reason", "cause"), "cause"),
+        (format!("{NOT_OFFERED}verdict = \"skip\"\n"), "verdict"),
+        (DEVIATION.replace("[\"m\"]", "\"m\""), "models"),
+        (DEVIATION.replace("[[deviation]]", "[[deviations]]"), "deviations"),
+    ];
+    for (text, word) in cases {
+        let (result, folder) = gates(GATE, &text);
+        names(result, &folder.path().join("deviations.toml"), &[word]);
+    }
+}
+
+#[test]
+fn missing_files_are_named() {
+    let folder = tempfile::tempdir().unwrap();
+    names(Gates::read(folder.path()), &folder.path().join("gates.toml"), &[]);
+    std::fs::write(folder.path().join("gates.toml"), GATE).unwrap();
+    names(Gates::read(folder.path()), &folder.path().join("deviations.toml"), &[]);
+    let path = folder.path().join("none.toml");
+    names(Suite::read(&path), &path, &[]);
+}
+
+#[test]
+fn suites_name_what_is_wrong() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("suite.toml");
+    let read = |text: &str| {
+        std::fs::write(&path, text).unwrap();
+        Suite::read(&path)
+    };
+    let (suite, hash) = read(SUITE).unwrap();
+    assert_eq!((suite.about.as_str(), suite.problem.len(), suite.agreement), ("a suite", 1, None));
+    assert_ne!(read(&format!("{SUITE}\n")).unwrap().1, hash, "every byte of a suite counts");
+    let cases = [
+        (format!("speed = 3\n{SUITE}"), "speed"),
+        (format!("{SUITE}floats = true\n"), "floats"),
+        (format!("{SUITE}[agreement]\nstates = 3\n"), "engines"),
+        (format!("{SUITE}[agreement]\nstates = 3\nengines = []\nthreads = 2\n"), "threads"),
+        (format!("{SUITE}[timing]\nstates = 3\n"), "seconds"),
+        (format!("{SUITE}[expect]\nnative = 3\n"), "native"),
+        (format!("{SUITE}[expect.native]\nid = -3\n"), "id"),
+        (format!("{SUITE}model = \"g1\"\n"), "humanoid"),
+        (SUITE.replace("generate = \"humanoid\"\n", ""), "exactly one"),
+        (SUITE.replace("seed = 1\n", ""), "seed"),
+        (SUITE.replace("family = \"humanoid\"\n", ""), "family"),
+    ];
+    for (text, word) in cases {
+        names(read(&text), &path, &[word]);
+    }
+}
+
+/// The repository's own files are understood, and every suite of it.
+#[test]
+fn our_own_files_are_right() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
+    let gates = Gates::read(&root.join("ci")).unwrap();
+    for known in gates.deviations().iter().filter(|known| known.is_measured()) {
+        let sizes = gates.ranges().iter().filter(|(key, _)| known.has(key)).count();
+        assert!(sizes > 0, "a deviation without a size excuses nothing: {} {:?}", known.engine, known.models);
+    }
+    let suites: Vec<_> = std::fs::read_dir(root.join("datasets/suites")).unwrap().map(|entry| entry.unwrap().path()).collect();
+    let suites: Vec<_> = suites.iter().filter(|path| path.extension().is_some_and(|ending| ending == "toml")).collect();
+    assert!(suites.len() >= 5, "{} suites", suites.len());
+    for path in suites {
+        Suite::read(path).unwrap();
+    }
+}
+
+#[test]
+fn reproductions_name_what_is_wrong() {
+    let known = "[[reproduction]]\nname = \"loss\"\nengine = \"e\"\nversion = \"1\"\ncondition = \"always\"\nmeasure = \"a share\"\nrange = [0.1, 0.4]\nupstream = \"none found\"\n";
+    assert_eq!(gates(GATE, known).0.unwrap().reproductions().len(), 1);
+    assert!(gates(GATE, &format!("{DEVIATION}reproduction = \"loss\"\n{known}")).0.is_ok());
+    let cases = [
+        (known.replace("[0.1, 0.4]", "[0.4, 0.1]"), "range"),
+        (known.replace("[0.1, 0.4]", "[0.0, 0.1]"), "range"),
+        (known.replace("[0.1, 0.4]", "[0.1]"), "range"),
+        (known.replace("upstream = \"none found\"\n", ""), "upstream"),
+        (format!("{known}seeds = 20\n"), "seeds"),
+        (format!("{DEVIATION}reproduction = \"gain\"\n{known}"), "gain"),
+    ];
+    for (text, word) in cases {
+        let (result, folder) = gates(GATE, &text);
+        names(result, &folder.path().join("deviations.toml"), &[word]);
+    }
+}
+
+/// The files that `gate --ranges … --write` writes are data of a gate: each line is checked.
+#[test]
+fn ranges_name_what_is_wrong() {
+    const HEAD: &str = "engine,version,method,quantity,model,metric,low,high,outside,seeds\n";
+    const LINE: &str = "e,1,rnea,id,m,scaled,1e-14,2e-14,20,20\n";
+    let path = Path::new("default.csv");
+    let parse = |text: &str| Ranges::parse(text, path);
+    assert_eq!(parse(&format!("{HEAD}{LINE}")).unwrap().iter().count(), 1);
+    assert_eq!(parse(HEAD).unwrap(), Ranges::default());
+    let cases = [
+        (String::new(), "line 1"),
+        (HEAD.replace("low,high", "high,low") + LINE, "line 1"),
+        (format!("{HEAD}{LINE}{LINE}"), "line 3"),
+        (format!("{HEAD}{}", LINE.replace(",20,20", ",20")), "9 columns"),
+        (format!("{HEAD}{}", LINE.replace("1e-14,", "small,")), "low"),
+        (format!("{HEAD}{}", LINE.replace("2e-14", "NaN")), "high"),
+        (format!("{HEAD}{}", LINE.replace("2e-14", "inf")), "high"),
+        (format!("{HEAD}{}", LINE.replace("1e-14,", "-1e-14,")), "low"),
+        (format!("{HEAD}{}", LINE.replace("1e-14,", "3e-14,")), "low, high"),
+        (format!("{HEAD}{}", LINE.replace("1e-14,2e-14", "0,0")), "low, high"),
+        (format!("{HEAD}{}", LINE.replace("20,20", "x,20")), "outside"),
+        (format!("{HEAD}{}", LINE.replace("20,20", "20,-1")), "seeds"),
+        (format!("{HEAD}{}", LINE.replace("20,20", "21,20")), "outside"),
+        (format!("{HEAD}{}", LINE.replace("20,20", "0,20")), "outside"),
+    ];
+    for (text, word) in cases {
+        names(parse(&text), path, &[word]);
+    }
+    // A size of nothing that is known is a file that was left behind.
+    let known = || gates(GATE, DEVIATION).0.unwrap();
+    let here = Path::new("ci");
+    let sizes = |line: &str| parse(&format!("{HEAD}{line}")).unwrap();
+    assert!(known().with_ranges(sizes(LINE), here).is_ok());
+    for (old, new) in [("e,1", "f,1"), ("e,1", "e,2"), (",m,", ",other,")] {
+        names(
+            known().with_ranges(sizes(&LINE.replace(old, new)), here),
+            &here.join("deviations"),
+            &["deviations.toml names no such deviation"],
+        );
+    }
+    let narrow = format!("{DEVIATION}method = \"crba\"\nquantities = [\"mass_matrix\"]\n");
+    let narrow = || gates(GATE, &narrow).0.unwrap();
+    assert!(narrow().with_ranges(sizes("e,1,crba,mass_matrix,m,scaled,1e-14,2e-14,20,20\n"), here).is_ok());
+    for line in ["e,1,rnea,mass_matrix,m,scaled,1e-14,2e-14,20,20\n", "e,1,crba,id,m,scaled,1e-14,2e-14,20,20\n"] {
+        assert!(narrow().with_ranges(sizes(line), here).is_err(), "{line}");
+    }
+    let error = || gates(GATE, &DEVIATION.replace("\"fail\"", "\"error\"")).0.unwrap();
+    assert!(error().with_ranges(sizes(LINE), here).is_err(), "an error has no size");
+}

@@ -1,0 +1,406 @@
+//! What gates and known deviations say of rows made by hand: each condition in both directions.
+
+use featherbench_bench::{Gates, Range, RangeKey, Ranges, RangesMeter, SLACK, Suite, accounted};
+use featherbench_results::{Expectation, Record, Relation, Verdict};
+use std::path::Path;
+
+const GATES: &str = r#"
+[sharp]
+study = "agreement"
+quantity = "fd"
+metric = "forward"
+bound = 1e-12
+reason = "sharp"
+[[gate]]
+study = "agreement"
+quantities = ["id", "bias"]
+metric = "scaled"
+engines = ["crane"]
+methods = ["rnea"]
+models = ["gantry", "hoist-*"]
+max_depth = 20
+bound = 1e-14
+reason = "the first that matches"
+[[gate]]
+study = "agreement"
+quantities = ["id"]
+metric = "scaled"
+bound = 1e-10
+reason = "all others"
+[[gate]]
+study = "agreement"
+quantities = ["fd"]
+metric = "backward"
+bound = 1e-14
+times = "depth"
+reason = "per level"
+[[gate]]
+study = "agreement"
+quantities = ["fd"]
+metric = "forward"
+bound = 1e-14
+times = "depth_and_amplification"
+reason = "per level and growth"
+"#;
+
+/// A failure of one engine, version, method, quantity and case; an error; and what is not offered.
+const DEVIATIONS: &str = r#"
+[[deviation]]
+engine = "crane"
+version = "2"
+method = "rnea"
+quantities = ["id"]
+models = ["gantry", "hoist-*"]
+cases = ["fast"]
+verdict = "fail"
+reason = "cables stretch"
+[[deviation]]
+engine = "crane"
+version = "2"
+models = ["derrick"]
+verdict = "error"
+reason = "it has no foot"
+[[not_offered]]
+engine = "crane"
+version = "2"
+quantities = ["com"]
+models = ["hoist-*"]
+cases = ["zero"]
+reason = "no mass is known"
+"#;
+
+fn plain() -> Gates {
+    Gates::parse(GATES, DEVIATIONS, Path::new("here")).unwrap()
+}
+
+/// A row of the engine in question.
+fn row() -> Record {
+    Record {
+        study: "agreement".into(),
+        engine: "crane".into(),
+        engine_version: "2".into(),
+        method: "rnea".into(),
+        quantity: "id".into(),
+        model: "gantry".into(),
+        metric: "scaled".into(),
+        case: "fast".into(),
+        depth: Some(20),
+        ..Record::default()
+    }
+}
+
+fn on(model: &str) -> Record {
+    Record { model: model.into(), ..row() }
+}
+
+fn range(low: f64, high: f64, outside: u64, seeds: u64) -> Range {
+    Range { low, high, outside, seeds }
+}
+
+/// The gates with one range of a row's key.
+fn with(row: &Record, range: Range) -> Gates {
+    plain().with_ranges([(RangeKey::of(row), range)].into_iter().collect(), Path::new("here")).unwrap()
+}
+
+/// The suite that asks the crane, with what more it says.
+fn suite(more: &str) -> Suite {
+    let text = format!("about = \"a\"\nseed = 1\nthorough = true\n[agreement]\nstates = 1\nengines = [\"crane\"]\n{more}");
+    Suite::parse(&text, Path::new("suite.toml")).unwrap()
+}
+
+fn unmet(conditions: &[Expectation]) -> Vec<&str> {
+    conditions.iter().filter(|condition| condition.verdict != Verdict::Pass).map(|condition| condition.what.as_str()).collect()
+}
+
+fn red(gates: &Gates, records: &[Record]) -> Vec<String> {
+    unmet(&gates.conditions(&suite(""), records, true)).into_iter().map(str::to_owned).collect()
+}
+
+#[test]
+fn the_first_gate_that_matches_judges() {
+    let gates = plain();
+    let bound = |row: Record| gates.judge(row, 1e-16, 8.0).bound;
+    assert_eq!(bound(row()), Some(1e-14));
+    assert_eq!(bound(on("hoist-3")), Some(1e-14));
+    let others = [
+        Record { engine: "winch".into(), ..row() },
+        Record { method: "aba".into(), ..row() },
+        on("gantry-2"),
+        on("hoist"),
+        Record { depth: Some(21), ..row() },
+    ];
+    for other in others {
+        assert_eq!(bound(other.clone()), Some(1e-10), "{other:?}");
+    }
+    assert_eq!(bound(Record { depth: None, ..row() }), Some(1e-14), "a row without a depth is not deep");
+    for none in [
+        Record { quantity: "com".into(), ..row() },
+        Record { metric: "pairwise".into(), ..row() },
+        Record { study: "digits".into(), ..row() },
+    ] {
+        let row = gates.judge(none, 1.0, 8.0);
+        assert_eq!((row.bound, row.verdict), (None, Verdict::Info));
+    }
+    let forward = |metric: &str| bound(Record { quantity: "fd".into(), metric: metric.into(), depth: Some(4), ..row() });
+    assert_eq!((forward("backward"), forward("forward")), (Some(1e-14 * 4.0), Some(1e-14 * 32.0)));
+    let judged = |value: f64| gates.judge(Record { case: "zero".into(), ..row() }, value, 1.0).verdict;
+    assert_eq!((judged(1e-14), judged(1.1e-14)), (Verdict::Pass, Verdict::Fail));
+}
+
+#[test]
+fn a_deviation_excuses_its_own_rows_up_to_its_range() {
+    let gates = with(&row(), range(2e-14, 3e-14, 20, 20));
+    let judged = |row: Record, value: f64| gates.judge(row, value, 1.0);
+    let known = judged(row(), 2e-14);
+    assert_eq!((known.verdict, known.value), (Verdict::Deviation, Some(2e-14)));
+    assert_eq!(known.reason, "cables stretch (2e-14 is not at most 1e-14)");
+    assert_eq!(judged(row(), SLACK * 3e-14).verdict, Verdict::Deviation, "as far as a twenty-first draw may go");
+    let beyond = judged(row(), SLACK * 3.001e-14);
+    assert_eq!(beyond.verdict, Verdict::Fail);
+    for words in ["is not at most 1e-14", "at most 3e-14 in 20 seeds", "cables stretch"] {
+        assert!(beyond.reason.contains(words), "{}", beyond.reason);
+    }
+    // Whatever it is not about fails as it would without it.
+    let others = [
+        Record { engine: "winch".into(), quantity: "id".into(), ..row() },
+        Record { engine_version: "3".into(), ..row() },
+        Record { method: "aba".into(), ..row() },
+        Record { quantity: "bias".into(), ..row() },
+        Record { case: "zero".into(), ..row() },
+        on("gantry-2"),
+    ];
+    for other in others {
+        let judged = judged(other, 1e-9);
+        assert!(!judged.reason.contains("cables"), "{judged:?}");
+        assert_eq!(judged.verdict, Verdict::Fail);
+    }
+    // A robot of the same class that was never measured is not excused, and the row says what to do.
+    let unmeasured = judged(on("hoist-1"), 2e-14);
+    assert_eq!(unmeasured.verdict, Verdict::Fail);
+    assert!(unmeasured.reason.contains("no range was measured on this robot") && unmeasured.reason.contains("gate --ranges"));
+    // Nor is another measure of the same answer.
+    let other = gates.explain(Record { metric: "other".into(), ..row() }.gated(2e-14, Relation::Le, 1e-14));
+    assert_eq!(other.verdict, Verdict::Fail);
+    // A row within its gate needs no excuse.
+    assert_eq!(judged(row(), 1e-15).verdict, Verdict::Pass);
+}
+
+#[test]
+fn errors_and_what_is_not_offered_are_told_apart() {
+    let gates = plain();
+    let without = |row: Record, verdict| gates.explain(row.without_value(verdict, "it says so"));
+    let error = without(on("derrick"), Verdict::Error);
+    assert_eq!((error.verdict, error.reason.as_str()), (Verdict::Deviation, "it has no foot (it says so)"));
+    for other in [on("gantry"), Record { engine_version: "3".into(), ..on("derrick") }] {
+        assert_eq!(without(other, Verdict::Error).verdict, Verdict::Error);
+    }
+    assert_eq!(without(on("derrick"), Verdict::Skip).reason, "it says so", "an error's cause is none of a skip");
+    assert_eq!(gates.explain(on("derrick").gated(1.0, Relation::Le, 0.5)).verdict, Verdict::Fail);
+
+    let lacking = || Record { quantity: "com".into(), case: "zero".into(), ..on("hoist-9") };
+    let skip = without(lacking(), Verdict::Skip);
+    assert_eq!((skip.verdict, skip.reason.as_str()), (Verdict::Skip, "no mass is known (it says so)"), "it is no deviation");
+    assert!(!accounted(&skip));
+    assert_eq!(without(lacking(), Verdict::Error).verdict, Verdict::Error);
+    let known = |row: Record| !red(&gates, &[without(row, Verdict::Skip)]).iter().any(|what| what.starts_with("rows that a subject"));
+    assert!(known(lacking()));
+    let others = [
+        Record { quantity: "id".into(), ..lacking() },
+        Record { case: "fast".into(), ..lacking() },
+        Record { model: "gantry".into(), ..lacking() },
+        Record { engine: "winch".into(), ..lacking() },
+        Record { engine_version: "3".into(), ..lacking() },
+    ];
+    for other in others {
+        assert!(!known(other.clone()), "{other:?}");
+    }
+}
+
+#[test]
+fn a_row_that_is_no_pass_is_red_in_any_run() {
+    let gates = plain();
+    let pass = row().gated(1e-15, Relation::Le, 1e-14);
+    for complete in [true, false] {
+        let unmet = |rows: &[Record]| {
+            unmet(&gates.conditions(&Suite { thorough: false, ..suite("") }, rows, complete))
+                .into_iter()
+                .map(str::to_owned)
+                .collect::<Vec<_>>()
+        };
+        assert_eq!(unmet(std::slice::from_ref(&pass)), [""; 0]);
+        let of = |verdict| Record { verdict, ..pass.clone() };
+        assert_eq!(unmet(&[pass.clone(), of(Verdict::Fail)]), ["rows outside their bound"]);
+        assert_eq!(unmet(&[pass.clone(), of(Verdict::Error)]), ["rows without a value that was due"]);
+        assert_eq!(unmet(&[pass.clone(), of(Verdict::Skip)]), ["rows that a subject does not offer and ci/deviations.toml does not name"]);
+        assert_eq!(unmet(&[pass.clone(), of(Verdict::Info), of(Verdict::Deviation)]), [""; 0]);
+        assert_eq!(unmet(&[]).len(), usize::from(complete), "rows at all");
+    }
+    let two = [Record { verdict: Verdict::Fail, ..pass.clone() }, Record { verdict: Verdict::Fail, ..pass }];
+    assert_eq!(gates.conditions(&suite(""), &two, false)[0].found, 2);
+}
+
+#[test]
+fn a_suite_counts_its_rows() {
+    let gates = Gates::parse(GATES, "", Path::new("here")).unwrap();
+    let suite = suite("[expect.crane]\nid = 2\n");
+    let pass = row().gated(1e-15, Relation::Le, 1e-14);
+    let deviating = row().gated(1e-13, Relation::Le, 1e-14).deviating("known");
+    let lost = row().without_value(Verdict::Error, "lost").deviating("known");
+    assert_eq!([&pass, &deviating, &lost].map(accounted), [true, true, false]);
+    let is_met = |rows: &[Record]| unmet(&gates.conditions(&suite, rows, true)).is_empty();
+    assert!(is_met(&[pass.clone(), deviating.clone()]));
+    assert!(!is_met(std::slice::from_ref(&pass)) && !is_met(&[pass.clone(), pass.clone(), pass.clone()]));
+    assert!(!is_met(&[pass.clone(), lost]));
+    assert!(!is_met(&[pass.clone(), Record { quantity: "bias".into(), ..pass.clone() }]));
+    assert!(!is_met(&[pass.clone(), Record { engine: "winch".into(), ..pass.clone() }]));
+    assert!(
+        gates.conditions(&suite, &[pass], false).iter().all(|condition| !condition.what.starts_with("rows of crane")),
+        "of a part nothing is expected"
+    );
+}
+
+#[test]
+fn a_deviation_must_be_seen_where_its_robots_are() {
+    let gates = with(&row(), range(2e-14, 3e-14, 20, 20));
+    let seen = gates.judge(row(), 2.5e-14, 1.0);
+    assert_eq!(red(&gates, std::slice::from_ref(&seen)), [""; 0]);
+    let gone = "known deviation of crane still seen: cables stretch";
+    let small = "robots on which a known deviation of crane is smaller than known: cables stretch";
+    assert_eq!(red(&gates, &[gates.judge(row(), 1e-15, 1.0)]), [gone, small]);
+    // Rows of another version or method are due as well, and show nothing.
+    for other in [Record { engine_version: "3".into(), ..row() }, Record { method: "aba".into(), ..row() }] {
+        assert_eq!(red(&gates, &[gates.judge(other, 1e-15, 1.0)]), [gone]);
+    }
+    // A row that is there for another cause is no witness.
+    let other = Record { reason: "winds".into(), ..seen.clone() };
+    assert_eq!(red(&gates, &[other]), [gone]);
+    assert_eq!(red(&gates, &[Record { verdict: Verdict::Info, ..seen.clone() }]), [gone]);
+    // Where none of its robots, quantities or cases is asked, or the engine is a guest, nothing is due.
+    for elsewhere in [on("pulley"), Record { quantity: "bias".into(), ..row() }, Record { case: "zero".into(), ..row() }] {
+        assert_eq!(red(&gates, &[gates.judge(elsewhere, 1e-15, 1.0)]), [""; 0]);
+    }
+    let records = [gates.judge(row(), 1e-15, 1.0)];
+    let guest = Suite { agreement: None, ..suite("") };
+    assert!(unmet(&gates.conditions(&guest, &records, true)).is_empty());
+    assert!(unmet(&gates.conditions(&Suite { thorough: false, ..suite("") }, &records, true)).is_empty());
+    assert!(unmet(&gates.conditions(&suite(""), &records, false)).is_empty());
+
+    let error = || on("derrick").without_value(Verdict::Error, "it says so");
+    assert_eq!(red(&gates, &[gates.explain(error())]), [""; 0]);
+    let answered = on("derrick").gated(1e-15, Relation::Le, 1e-14);
+    assert_eq!(red(&gates, &[answered]), ["known deviation of crane still seen: it has no foot"]);
+
+    let lacking = || Record { quantity: "com".into(), case: "zero".into(), ..on("hoist-9") };
+    assert_eq!(red(&gates, &[gates.explain(lacking().without_value(Verdict::Skip, "it says so"))]), [""; 0]);
+    assert_eq!(red(&gates, &[lacking().gated(1e-15, Relation::Le, 1e-14)]), ["crane still does not offer: no mass is known"]);
+}
+
+/// The worst of a robot's rows is as large as known, or the list is to be corrected; where not every seed showed it, no value is too small.
+#[test]
+fn a_deviation_must_be_as_large_as_known() {
+    let small = "robots on which a known deviation of crane is smaller than known: cables stretch";
+    let judged = |gates: &Gates, values: &[f64]| -> Vec<String> {
+        let rows: Vec<Record> = values.iter().map(|&value| gates.judge(row(), value, 1.0)).collect();
+        red(gates, &rows)
+    };
+    let always = with(&row(), range(8e-14, 9e-14, 20, 20));
+    assert_eq!(judged(&always, &[8e-14 / SLACK]), [""; 0]);
+    assert_eq!(judged(&always, &[3.9e-14]), [small]);
+    assert_eq!(judged(&always, &[1.5e-14, 7e-14, 2e-14]), [""; 0], "the worst row counts");
+    let rows = [always.judge(row(), 3.9e-14, 1.0)];
+    let conditions = always.conditions(&suite(""), &rows, true);
+    let told = &conditions.iter().find(|condition| condition.what == small).unwrap().reason;
+    assert!(told.contains("gantry rnea id (3.9e-14, known from 8e-14)"), "{told}");
+    let sometimes = with(&row(), range(8e-14, 9e-14, 19, 20));
+    assert_eq!(judged(&sometimes, &[3.9e-14]), [""; 0]);
+    // Rows that nothing judges have no size.
+    assert_eq!(red(&always, &[always.judge(row(), 8e-14, 1.0), Record { model: "gantry".into(), ..row() }.informed(1e-20)]), [""; 0]);
+}
+
+#[test]
+fn a_computed_bound_must_be_sharp_somewhere() {
+    let gates = Gates::parse(GATES, "", Path::new("here")).unwrap();
+    let bounded = |engine: &str, method: &str, joints: &str, base: &str, bound: f64| Record {
+        engine: engine.into(),
+        method: method.into(),
+        quantity: "fd".into(),
+        metric: "forward".into(),
+        params: format!("{{\"base\":\"{base}\",\"joints\":[{joints}]}}"),
+        ..row().gated(0.0, Relation::Le, bound)
+    };
+    let blunt = |rows: &[Record]| -> Vec<(String, u64)> {
+        let of_bounds = |condition: &Expectation| condition.what.starts_with("kinds of joint and base");
+        gates.conditions(&suite(""), rows, true).into_iter().filter(of_bounds).map(|condition| (condition.what, condition.found)).collect()
+    };
+    let found = |rows: &[Record]| blunt(rows).into_iter().map(|(_, found)| found).collect::<Vec<_>>();
+    assert_eq!(found(&[bounded("crane", "aba", "\"revolute\"", "fixed", 1e-12)]), [0]);
+    assert_eq!(found(&[bounded("crane", "aba", "\"revolute\"", "fixed", 1.1e-12)]), [1]);
+    // The sharpest of several robots counts, for each joint, base and method by itself; the native kernels are asked as well, a guest is not.
+    let rows = [
+        bounded("crane", "aba", "\"revolute\",\"planar\"", "fixed", 1e-9),
+        bounded("crane", "aba", "\"revolute\"", "fixed", 1e-13),
+        bounded("crane", "aba", "\"revolute\"", "free", 1e-9),
+        bounded("crane", "lu", "\"revolute\"", "fixed", 1e-13),
+        bounded("native", "aba", "\"revolute\"", "fixed", 1e-9),
+        bounded("guest", "aba", "\"revolute\"", "fixed", 1e-9),
+    ];
+    let told = blunt(&rows);
+    assert_eq!(found(&rows), [2, 0, 1], "{told:?}");
+    assert!(told[0].0.contains("crane aba") && told[2].0.contains("native aba"), "{told:?}");
+    // Other studies, quantities and measures have no such bounds.
+    for other in [
+        Record { study: "digits".into(), ..bounded("crane", "aba", "\"revolute\"", "fixed", 1e-9) },
+        Record { quantity: "id".into(), ..bounded("crane", "aba", "\"revolute\"", "fixed", 1e-9) },
+        Record { metric: "backward".into(), ..bounded("crane", "aba", "\"revolute\"", "fixed", 1e-9) },
+    ] {
+        assert_eq!(blunt(&[other]), []);
+    }
+}
+
+#[test]
+fn ranges_are_measured_over_runs() {
+    let gates = plain();
+    let run = |values: &[(&str, &str, f64)]| -> Vec<Record> {
+        values.iter().map(|&(model, case, value)| gates.judge(Record { case: case.into(), ..on(model) }, value, 1.0)).collect()
+    };
+    let mut meter = RangesMeter::default();
+    meter.add(
+        gates.deviations(),
+        &run(&[("gantry", "fast", 2e-14), ("gantry", "fast", 4e-14), ("gantry", "zero", 1e-9), ("hoist-1", "fast", 5e-15)]),
+    );
+    meter.add(gates.deviations(), &run(&[("gantry", "fast", 1.5e-14), ("hoist-1", "fast", 3e-14), ("hoist-2", "fast", 1e-15)]));
+    meter.add(gates.deviations(), &run(&[("gantry", "fast", 8e-14), ("pulley", "fast", 1e-9)]));
+    let ranges = meter.ranges();
+    let expected: Ranges = [(RangeKey::of(&row()), range(1.5e-14, 8e-14, 3, 3)), (RangeKey::of(&on("hoist-1")), range(5e-15, 3e-14, 1, 2))]
+        .into_iter()
+        .collect();
+    assert_eq!(ranges, expected, "the worst of each run; another case, a robot always inside, and one without a cause do not count");
+    let (up, down) = meter.leaps();
+    assert_eq!((up.len(), down.len()), (2, 1));
+    assert!((up[0] - 2.0).abs() < 1e-12 && (up[1] - 6.0).abs() < 1e-12 && (down[0] - 4.0 / 1.5).abs() < 1e-12, "{up:?} {down:?}");
+    // Failures that are excused already are the same failures.
+    let gates = plain().with_ranges(ranges.clone(), Path::new("here")).unwrap();
+    let mut again = RangesMeter::default();
+    again.add(gates.deviations(), &[gates.judge(row(), 4e-14, 1.0)]);
+    assert_eq!(again.ranges().get(&row()), Some(&range(4e-14, 4e-14, 1, 1)));
+    assert_eq!(ranges.get(&on("hoist-2")), None);
+    // And text is nothing less.
+    let text = ranges.to_csv();
+    assert_eq!(Ranges::parse(&text, Path::new("ranges.csv")).unwrap(), ranges);
+    assert!(text.contains("crane,2,rnea,id,gantry,scaled,1.5e-14,8e-14,3,3\n"), "{text}");
+}
+
+/// A robot of two suites has the range of both.
+#[test]
+fn ranges_of_several_files_span_both() {
+    let folder = tempfile::tempdir().unwrap();
+    let write = |name: &str, range: Range| {
+        let ranges: Ranges = [(RangeKey::of(&row()), range)].into_iter().collect();
+        std::fs::write(folder.path().join(name), ranges.to_csv()).unwrap();
+    };
+    assert_eq!(Ranges::read(&folder.path().join("none")).unwrap(), Ranges::default());
+    write("a.csv", range(2e-14, 3e-14, 20, 20));
+    write("b.csv", range(1e-14, 2e-14, 4, 10));
+    std::fs::write(folder.path().join("README.md"), "no ranges").unwrap();
+    assert_eq!(Ranges::read(folder.path()).unwrap().get(&row()), Some(&range(1e-14, 3e-14, 24, 30)));
+}

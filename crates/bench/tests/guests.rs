@@ -1,0 +1,31 @@
+//! Gates of a run with an engine that a user brought along.
+
+use featherbench_bench::{Gates, Suite};
+use featherbench_results::{Record, Relation, Verdict};
+
+fn row(engine: &str) -> Record {
+    Record { engine: engine.into(), study: "agreement".into(), ..Record::default() }
+}
+
+/// The conditions that are not met.
+fn red(gates: &Gates, records: &[Record]) -> Vec<String> {
+    let conditions = gates.conditions(&Suite::default(), records, true).into_iter();
+    conditions.filter(|condition| condition.verdict != Verdict::Pass).map(|condition| condition.what).collect()
+}
+
+/// What a guest does not offer is no fault; what an engine of the project leaves out without a word still is, and so is a guest's failure.
+#[test]
+fn only_a_guest_may_leave_out_what_it_does_not_have() {
+    let skip = |engine: &str| row(engine).without_value(Verdict::Skip, "no such joint");
+    let (plain, with_guest) = (Gates::default(), Gates::default().with_guests(&["mine"]));
+    let unexplained = "rows that a subject does not offer and ci/deviations.toml does not name";
+    assert_eq!(red(&plain, &[skip("mine")]), [unexplained]);
+    assert!(red(&with_guest, &[skip("mine")]).is_empty());
+    for engine in ["pinocchio", "native", "mine2", ""] {
+        assert_eq!(red(&with_guest, &[skip("mine"), skip(engine)]), [unexplained], "{engine}");
+    }
+    let failed = row("mine").without_value(Verdict::Error, "it broke");
+    assert_eq!(red(&with_guest, &[failed]), ["rows without a value that was due"]);
+    let wrong = row("mine").gated(2.0, Relation::Le, 1.0);
+    assert_eq!(red(&with_guest, &[wrong]), ["rows outside their bound"]);
+}

@@ -1,0 +1,356 @@
+//! A run that is killed, at whatever moment and byte, goes on without repeating what is finished, and ends in the same bytes as one that was
+//! not: by truncating its file of outcomes, by the death of a real process, by a panic, and on any number of threads.
+
+use featherbench_bench::frame::Frame;
+use featherbench_bench::run::{Progress, Silent, compare, evaluate, plan};
+use featherbench_bench::{
+    Cell, Context, Finished, Gates, HarnessError, OUTCOMES_NAME, Outcome, OutcomeStore, Problem, Reading, ReadingNote, Refusal, Study,
+};
+use featherbench_model::Random;
+use featherbench_model::generate::Family;
+use featherbench_results::{ModelOrigin, Record, Verdict};
+use rayon::ThreadPoolBuilder;
+use std::collections::{BTreeMap, BTreeSet};
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::path::Path;
+use std::process::Command;
+use std::sync::Mutex;
+
+/// Cells per robot.
+const METHODS: usize = 12;
+
+/// A study that counts how often each cell is evaluated, and breaks where it is told to.
+#[derive(Default)]
+struct Counting {
+    evaluated: Mutex<BTreeMap<String, usize>>,
+    /// Panic in this many of the cells' methods, from the first.
+    panics: usize,
+    /// End the process at this evaluation, without a word.
+    dies_at: Option<usize>,
+    exclusive: bool,
+}
+
+impl Counting {
+    fn counts(&self) -> BTreeMap<String, usize> {
+        self.evaluated.lock().unwrap().clone()
+    }
+}
+
+impl Study for Counting {
+    fn name(&self) -> &'static str {
+        "counting"
+    }
+
+    fn exclusive(&self) -> bool {
+        self.exclusive
+    }
+
+    fn plan(&self, context: &Context) -> Vec<Cell> {
+        let cell = |problem: &Problem, method: usize| Cell {
+            study: self.name().into(),
+            problem: problem.name.clone(),
+            problem_hash: problem.hash.clone(),
+            params: serde_json::json!({"method": method}),
+            subject: ["some", "other"][method % 2].into(),
+            version: "1".into(),
+            method: format!("method {method}"),
+            quantity: "id".into(),
+            scalar: "f64".into(),
+        };
+        context.problems.iter().flat_map(|problem| (0..METHODS).map(move |method| cell(problem, method))).collect()
+    }
+
+    /// Some values that depend on the cell alone, refusals of both kinds among them.
+    fn evaluate(&self, context: &Context, cell: &Cell) -> Outcome {
+        let total = {
+            let mut evaluated = self.evaluated.lock().unwrap();
+            *evaluated.entry(cell.id()).or_default() += 1;
+            evaluated.values().sum::<usize>()
+        };
+        if self.dies_at == Some(total) {
+            std::process::exit(70);
+        }
+        let method = cell.params["method"].as_u64().unwrap() as usize;
+        assert!(method >= self.panics, "method {method} breaks");
+        match method % 6 {
+            4 => Outcome::Refused(Refusal::Unsupported("not \"this\", or\nthat".into())),
+            5 => Outcome::Refused(Refusal::Failed("it broke".into())),
+            3 => {
+                let description = Family::parse("chain:n=2").unwrap().generate().unwrap();
+                let note = ReadingNote { cause: "warning".into(), subject: None, text: "not \"this\"".into(), numbers: vec![0.1, -2.0] };
+                let written = Some(description.clone());
+                Outcome::Reading(Box::new(Reading { description, notes: vec![note], keyframes: vec![vec![0.1, -0.2]], written }))
+            }
+            _ => {
+                let mut random = Random::named(context.seed, &cell.id());
+                Outcome::Values((0..1 + 40 * method).map(|_| random.uniform(-1.0, 1.0)).collect())
+            }
+        }
+    }
+
+    fn compare(&self, _: &Context, problem: &Problem, finished: &[Finished]) -> Vec<Record> {
+        let row = |(cell, outcome): &Finished| {
+            let blank = Record { cell: cell.id(), model: problem.name.clone(), method: cell.method.clone(), ..Record::default() };
+            match outcome {
+                Outcome::Values(values) => blank.informed(values.iter().sum()),
+                Outcome::Reading(reading) => blank.informed((reading.description.bodies.len() + reading.notes.len()) as f64),
+                Outcome::Refused(Refusal::Unsupported(reason)) => blank.without_value(Verdict::Skip, reason.as_str()),
+                Outcome::Refused(Refusal::Failed(reason)) => blank.without_value(Verdict::Error, reason.as_str()),
+            }
+        };
+        finished.iter().map(row).collect()
+    }
+}
+
+fn robots() -> Vec<Problem> {
+    let robot = |n: usize| {
+        let description = Family::parse(&format!("chain:n={n}")).unwrap().generate().unwrap();
+        Problem::new(&description, "chain", ModelOrigin::Generated, 1, 1).unwrap()
+    };
+    // Not in the order of their names.
+    [3, 1, 4, 2].map(robot).into()
+}
+
+/// Runs or resumes in a folder and returns the final rows as bytes.
+fn run_in(folder: &Path, study: &Counting, progress: &dyn Progress) -> Result<Vec<u8>, HarnessError> {
+    let (problems, gates) = (robots(), Gates::default());
+    let context = Context { problems: &problems, subjects: &[], gates: &gates, seed: 7 };
+    let store = OutcomeStore::open(folder)?;
+    let finished = evaluate(study, &context, plan(study, &context, &|_| true), &store, progress)?;
+    Ok(featherbench_results::to_csv(&compare(study, &context, finished), folder).unwrap())
+}
+
+/// The ids in a file of outcomes, as far as its frames are whole.
+fn whole_frames(mut bytes: &[u8]) -> BTreeSet<String> {
+    std::iter::from_fn(|| Frame::read(&mut bytes).ok().flatten()).map(|frame| frame.text("cell").to_owned()).collect()
+}
+
+/// A finished run: its bytes on disk, its rows and the cells' ids.
+fn whole() -> (Vec<u8>, Vec<u8>, BTreeSet<String>) {
+    let folder = tempfile::tempdir().unwrap();
+    let study = Counting::default();
+    let csv = run_in(folder.path(), &study, &Silent).unwrap();
+    let counts = study.counts();
+    assert_eq!(counts.len(), 4 * METHODS);
+    assert!(counts.values().all(|&count| count == 1));
+    (std::fs::read(folder.path().join(OUTCOMES_NAME)).unwrap(), csv, counts.into_keys().collect())
+}
+
+#[test]
+fn a_killed_run_repeats_nothing_that_is_finished() {
+    let (bytes, csv, ids) = whole();
+    assert_eq!(whole_frames(&bytes), ids);
+    let mut random = Random::named(1, "cuts");
+    let cuts = [0, 1, bytes.len() - 1, bytes.len()].into_iter().chain((0..60).map(|_| random.below(bytes.len())));
+    for cut in cuts {
+        let folder = tempfile::tempdir().unwrap();
+        std::fs::write(folder.path().join(OUTCOMES_NAME), &bytes[..cut]).unwrap();
+        let study = Counting::default();
+        assert_eq!(run_in(folder.path(), &study, &Silent).unwrap(), csv, "cut at {cut}");
+        let missing: BTreeMap<String, usize> = ids.difference(&whole_frames(&bytes[..cut])).map(|id| (id.clone(), 1)).collect();
+        assert_eq!(study.counts(), missing, "cut at {cut}");
+        let again = Counting::default();
+        assert_eq!(run_in(folder.path(), &again, &Silent).unwrap(), csv);
+        assert!(again.counts().is_empty(), "a finished run has nothing left to do");
+    }
+}
+
+/// Kills that hit a resumed run again and again.
+#[test]
+fn many_kills_are_as_good_as_none() {
+    let (_, csv, ids) = whole();
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join(OUTCOMES_NAME);
+    let mut random = Random::named(2, "kills");
+    for _ in 0..20 {
+        assert_eq!(run_in(folder.path(), &Counting::default(), &Silent).unwrap(), csv);
+        let bytes = std::fs::read(&path).unwrap();
+        assert_eq!(whole_frames(&bytes), ids);
+        std::fs::write(&path, &bytes[..random.below(bytes.len() + 1)]).unwrap();
+    }
+}
+
+/// Damage in the middle: nothing behind it is trusted, and nothing of it comes into the rows.
+#[test]
+fn a_damaged_file_is_used_as_far_as_it_is_whole() {
+    let (bytes, csv, _) = whole();
+    let lines: Vec<usize> = (0..bytes.len()).filter(|&at| bytes[at..].starts_with(b"{\"blake3\"")).collect();
+    // One line per cell, its checksum first.
+    assert!(lines.len() >= 4 * METHODS, "{} lines", lines.len());
+    for &line in lines.iter().step_by(7) {
+        for junk in [&b"\n"[..], b"}", b"\0\0\0\0", b"{}\n"] {
+            let folder = tempfile::tempdir().unwrap();
+            let mut damaged = bytes.clone();
+            damaged[line..line + junk.len()].copy_from_slice(junk);
+            std::fs::write(folder.path().join(OUTCOMES_NAME), damaged).unwrap();
+            let study = Counting::default();
+            assert_eq!(run_in(folder.path(), &study, &Silent).unwrap(), csv, "{junk:?} at {line}");
+            assert_eq!(study.counts().len(), 4 * METHODS - whole_frames(&bytes[..line]).len());
+        }
+    }
+}
+
+/// One flipped bit anywhere: the rows of the resumed run are those of the whole one, and where a frame was lost that is said.
+#[test]
+fn a_flipped_bit_never_makes_other_rows() {
+    let (bytes, csv, ids) = whole();
+    let first = bytes.iter().position(|&byte| byte == b'\n').unwrap();
+    let mut random = Random::named(3, "flips");
+    let anywhere = (0..300).map(|_| random.below(bytes.len())).collect::<Vec<_>>();
+    for at in (0..=first).chain(anywhere) {
+        let folder = tempfile::tempdir().unwrap();
+        let mut flipped = bytes.clone();
+        flipped[at] ^= 1 << random.below(8);
+        std::fs::write(folder.path().join(OUTCOMES_NAME), &flipped).unwrap();
+        let (found, lost) = OutcomeStore::look(folder.path()).unwrap();
+        let lost = lost.unwrap_or_else(|| panic!("nothing was noticed at {at}")).to_string();
+        assert!(lost.contains(OUTCOMES_NAME) && lost.contains(&format!("frame {}:", found.len() + 1)), "{lost}");
+        let study = Counting::default();
+        assert_eq!(run_in(folder.path(), &study, &Silent).unwrap(), csv, "at {at}");
+        assert_eq!(study.counts().len(), ids.len() - found.len(), "at {at}");
+    }
+}
+
+const FOLDER: &str = "FEATHERBENCH_TEST_DIE_IN";
+const MOMENT: &str = "FEATHERBENCH_TEST_DIE_AT";
+
+/// What the process does that ends: the run, up to an evaluation that ends it.
+fn die(folder: &str, moment: &str) -> ! {
+    let study = Counting { dies_at: Some(moment.parse().unwrap()), ..Counting::default() };
+    run_in(folder.as_ref(), &study, &Silent).unwrap();
+    unreachable!("the study ends the process");
+}
+
+/// The test starts itself again: with the variables set it is the process that ends.
+#[test]
+fn a_process_that_dies_loses_only_what_it_was_doing() {
+    if let (Ok(folder), Ok(moment)) = (std::env::var(FOLDER), std::env::var(MOMENT)) {
+        die(&folder, &moment);
+    }
+    let (_, csv, ids) = whole();
+    let folder = tempfile::tempdir().unwrap();
+    let mut finished = 0;
+    for moment in [1_usize, 2, 7, 20] {
+        let mut child = Command::new(std::env::current_exe().unwrap());
+        child
+            .args(["--exact", "a_process_that_dies_loses_only_what_it_was_doing", "--nocapture"])
+            .env(FOLDER, folder.path())
+            .env(MOMENT, moment.to_string());
+        let output = child.output().unwrap();
+        assert_eq!(output.status.code(), Some(70), "{output:?}");
+        let done = whole_frames(&std::fs::read(folder.path().join(OUTCOMES_NAME)).unwrap());
+        assert!(done.is_subset(&ids));
+        // All that it began but the cells in flight, one per thread, are on disk; what other threads finish while the process goes down may be.
+        let threads = rayon::current_num_threads();
+        assert!((finished + moment).saturating_sub(threads) <= done.len(), "{} after {moment}", done.len());
+        finished = done.len();
+    }
+    let study = Counting::default();
+    assert_eq!(run_in(folder.path(), &study, &Silent).unwrap(), csv);
+    assert_eq!(study.counts().len(), ids.len() - finished);
+}
+
+/// One who watches and breaks down at the sight of a cell.
+struct Fainting(&'static str);
+
+impl Progress for Fainting {
+    fn begin(&self, _: &str, _: usize) {}
+    fn cell(&self, cell: &Cell) {
+        assert!(cell.path() != self.0, "a panic outside of any cell");
+    }
+    fn done(&self, _: &Cell, _: &Outcome) {}
+    fn end(&self) {}
+}
+
+#[test]
+fn a_panic_of_the_harness_itself_loses_nothing_finished() {
+    let (_, csv, ids) = whole();
+    let folder = tempfile::tempdir().unwrap();
+    let first = Counting::default();
+    let watcher = Fainting("counting/chain-planar-4/other/id/method 7");
+    assert!(catch_unwind(AssertUnwindSafe(|| run_in(folder.path(), &first, &watcher))).is_err());
+    let second = Counting::default();
+    assert_eq!(run_in(folder.path(), &second, &Silent).unwrap(), csv);
+    let (first, second): (BTreeSet<_>, BTreeSet<_>) = (first.counts().into_keys().collect(), second.counts().into_keys().collect());
+    assert!(first.is_disjoint(&second) && first.len() + second.len() == ids.len());
+}
+
+#[test]
+fn a_panic_is_the_failure_of_its_cell_alone() {
+    let folder = tempfile::tempdir().unwrap();
+    let (problems, gates) = (robots(), Gates::default());
+    let context = Context { problems: &problems, subjects: &[], gates: &gates, seed: 7 };
+    for study in [Counting { panics: 2, ..Counting::default() }, Counting { panics: 2, exclusive: true, ..Counting::default() }] {
+        let store = OutcomeStore::open(&tempfile::tempdir_in(&folder).unwrap().keep()).unwrap();
+        let finished = evaluate(&study, &context, study.plan(&context), &store, &Silent).unwrap();
+        assert_eq!(finished.len(), 4 * METHODS);
+        for (cell, outcome) in &finished {
+            let method = cell.params["method"].as_u64().unwrap();
+            if method < 2 {
+                let reason = format!("internal error: method {method} breaks");
+                assert_eq!(*outcome, Outcome::Refused(Refusal::Failed(reason)));
+            } else {
+                assert_eq!(*outcome, Counting::default().evaluate(&context, cell));
+            }
+        }
+        assert!(study.counts().values().all(|&count| count == 1));
+    }
+}
+
+#[test]
+fn threads_and_order_leave_no_trace() {
+    let (_, csv, ids) = whole();
+    for threads in [1, 4] {
+        for exclusive in [false, true] {
+            let folder = tempfile::tempdir().unwrap();
+            let study = Counting { exclusive, ..Counting::default() };
+            let pool = ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+            assert_eq!(pool.install(|| run_in(folder.path(), &study, &Silent)).unwrap(), csv, "{threads} threads");
+            assert_eq!(study.counts().len(), ids.len());
+        }
+    }
+}
+
+/// What a filter leaves out is not evaluated, and found by the whole run later.
+#[test]
+fn a_part_of_a_run_is_a_part_of_the_whole() {
+    let (_, csv, ids) = whole();
+    let folder = tempfile::tempdir().unwrap();
+    let (problems, gates, part) = (robots(), Gates::default(), Counting::default());
+    let context = Context { problems: &problems, subjects: &[], gates: &gates, seed: 7 };
+    let cells = plan(&part, &context, &|cell| cell.path().contains("chain-planar-4/some"));
+    assert_eq!(cells.len(), METHODS / 2);
+    evaluate(&part, &context, cells, &OutcomeStore::open(folder.path()).unwrap(), &Silent).unwrap();
+    let rest = Counting::default();
+    assert_eq!(run_in(folder.path(), &rest, &Silent).unwrap(), csv);
+    assert_eq!((part.counts().len(), rest.counts().len()), (METHODS / 2, ids.len() - METHODS / 2));
+}
+
+/// Whatever changes in a cell is another cell: an outcome of another version, robot or parameter is never taken.
+#[test]
+fn an_outcome_belongs_to_its_cell_to_the_last_letter() {
+    let (problems, gates, study) = (robots(), Gates::default(), Counting::default());
+    let context = Context { problems: &problems, subjects: &[], gates: &gates, seed: 7 };
+    let cells = study.plan(&context);
+    let ids: BTreeSet<String> = cells.iter().map(Cell::id).collect();
+    assert_eq!(ids.len(), cells.len());
+    let cell = &cells[0];
+    let changes: [fn(&mut Cell); 9] = [
+        |cell| cell.study += "x",
+        |cell| cell.problem += "x",
+        |cell| cell.problem_hash += "x",
+        |cell| cell.params["more"] = 1.into(),
+        |cell| cell.subject += "x",
+        |cell| cell.version += "x",
+        |cell| cell.method += "x",
+        |cell| cell.quantity += "x",
+        |cell| cell.scalar += "x",
+    ];
+    for change in changes {
+        let mut other = cell.clone();
+        change(&mut other);
+        assert!(!ids.contains(&other.id()));
+    }
+    let swapped = Cell { subject: cell.version.clone(), version: cell.subject.clone(), ..cell.clone() };
+    assert!(!ids.contains(&swapped.id()));
+}

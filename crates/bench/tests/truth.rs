@@ -1,0 +1,91 @@
+//! The truth of the harness against the independent multi-precision witness, and the floor against perturbed inputs.
+
+use featherbench_bench::measure::worst;
+use featherbench_bench::truth::{TruthModel, structured_floor};
+use featherbench_bench::{Problem, hash};
+use featherbench_model::generate::Family;
+use featherbench_model::{Random, StateBatch};
+use featherbench_reference::{Precision, Robot, nearest_doubles};
+use featherbench_results::ModelOrigin;
+
+fn problem(spec: &str, states: usize) -> Problem {
+    let family = Family::parse(spec).unwrap();
+    let problem = Problem::new(&family.generate().unwrap(), family.name(), ModelOrigin::Generated, states, 5).unwrap();
+    let narrow = StateBatch::narrow(&problem.model, states, 5, std::f64::consts::PI, 1.0);
+    problem.at(narrow)
+}
+
+/// Largest |a − b| over the largest |b|.
+fn apart(a: &[f64], b: &[f64]) -> f64 {
+    let largest = b.iter().map(|x| x.abs()).fold(0.0, worst);
+    a.iter().zip(b).map(|(a, b)| (a - b).abs() / largest).fold(0.0, worst)
+}
+
+/// Asserts that both say the same to within a tolerance relative to the largest entry.
+#[track_caller]
+fn agree(spec: &str, tolerance: f64) {
+    let problem = problem(spec, 3);
+    let truth = TruthModel::new(&problem).unwrap();
+    let witness = Robot::new(&problem.description, Precision::for_dofs(problem.states.nv)).unwrap();
+    for k in 0..problem.states.count() {
+        let states = &problem.states;
+        let (q, v, a, tau) = (states.q(k), states.v(k), states.a(k), states.tau(k));
+        let ours = truth.at(&problem, k).unwrap();
+        let id = nearest_doubles(&witness.inverse_dynamics(q, v, a).unwrap());
+        let fd = nearest_doubles(&witness.forward_dynamics(q, v, tau).unwrap());
+        let mass = nearest_doubles(witness.mass_matrix(q).unwrap().entries());
+        let n = states.nv;
+        let our_mass: Vec<f64> = (0..n * n).map(|entry| ours.mass.get(entry / n, entry % n)).collect();
+        for (name, error) in [
+            ("id", apart(&ours.inverse_dynamics, &id)),
+            ("M", apart(&our_mass, &mass)),
+            ("fd", apart(&ours.forward_dynamics.unwrap(), &fd)),
+        ] {
+            assert!(error <= tolerance, "{spec}, state {k}: {name} apart by {error:e}");
+        }
+    }
+}
+
+#[test]
+fn the_truth_is_that_of_the_independent_witness() {
+    // Both round the same numbers, half an ulp of the largest entry apart at the most.
+    for spec in [
+        "chain:n=12,layout=planar",
+        "chain:n=12,layout=spatial,tip_scale=1e6",
+        "chain:n=12,base_offset=1e6",
+        "star:n=4",
+        "humanoid:hand_mass=1000",
+        "joints:kind=common,base=free,shape=single",
+        "tree:n=6,joints=all,armature=true",
+    ] {
+        agree(spec, 0.5 * f64::EPSILON);
+    }
+}
+
+#[test]
+fn half_an_ulp_in_the_inputs_moves_the_answer_by_the_floor_at_most() {
+    for spec in ["chain:n=10,layout=planar", "chain:n=10,layout=spatial,tip_scale=1e3", "quadruped"] {
+        let problem = problem(spec, 1);
+        let floor = structured_floor(&problem, 0).unwrap();
+        let truth = |problem: &Problem| TruthModel::new(problem).unwrap().at(problem, 0).unwrap().forward_dynamics.unwrap();
+        let still = truth(&problem);
+        let norm = |values: &[f64]| values.iter().map(|x| x * x).sum::<f64>().sqrt();
+        let mut random = Random::named(3, &hash::of(spec.as_bytes()));
+        let mut farthest = 0.0_f64;
+        for _ in 0..20 {
+            // An ulp is too small to see beside the rounding of the answer: 2²⁰ of them, and the floor as many times higher.
+            let mut nudge = |x: &mut f64| *x *= 1.0 + random.uniform(-0.5, 0.5) * f64::EPSILON * 1_048_576.0;
+            let mut states = problem.states.clone();
+            [&mut states.v, &mut states.tau].into_iter().flatten().for_each(&mut nudge);
+            let mut nudged = problem.clone().at(states);
+            nudged.description.bodies.iter_mut().for_each(|body| {
+                nudge(&mut body.mass);
+                body.joint.placement.translation.iter_mut().for_each(&mut nudge);
+            });
+            let moved: Vec<f64> = truth(&nudged).iter().zip(&still).map(|(a, b)| a - b).collect();
+            farthest = worst(farthest, norm(&moved) / norm(&still) / 1_048_576.0);
+        }
+        assert!(farthest <= floor, "{spec}: {farthest:e} beyond the floor {floor:e}");
+        assert!(farthest >= 0.002 * floor, "{spec}: the floor {floor:e} is no worst case of {farthest:e}, it is out of sight");
+    }
+}
