@@ -455,15 +455,15 @@ def speed(page: Browser, shot: Shot) -> Checks:
         const rows = [...document.querySelectorAll('#speed-summary tbody tr')];
         const means = rows.map(row => [...row.querySelectorAll('td.number')].map(number));
         return means.map(([robots, mean, least, largest]) => least <= mean && mean <= largest && robots > 0)""")
-    # On a machine that is not quiet every ratio may be void; the page then says so, and why.
-    void = page.run("return !!document.querySelector('#speed-all-void') && document.querySelectorAll('#speed-void li').length > 0")
+    # On a machine that is not quiet no ratio may count; the page then says so, and why.
+    none = page.run("return !!document.querySelector('#speed-none-valid') && document.querySelectorAll('#speed-invalid li').length > 0")
     yield (
-        "every geometric mean lies between its least and its largest, or all ratios are void and the page says why",
-        bool(rows) != void and all(rows),
-        [rows, void],
+        "every geometric mean lies between its least and its largest, or no ratio counts and the page says why",
+        bool(rows) != none and all(rows),
+        [rows, none],
     )
     page.run("document.querySelectorAll('#speed details').forEach(part => { part.open = true; })")
-    for table in ["speed-controls"] if void else ["speed-summary", "speed-controls"]:
+    for table in ["speed-controls"] if none else ["speed-summary", "speed-controls"]:
         found = page.run("return document.querySelectorAll(`#${arguments[0]} tbody tr`).length", table)
         yield f"{table} has rows", found > 0, found
         page.run("document.getElementById(arguments[0]).scrollIntoView({block: 'center', behavior: 'instant'})", table)

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Counts the instructions of every native kernel under callgrind and compares them with the committed baseline.
+"""Counts the instructions of every kernel of ours under callgrind and compares them with the committed baseline.
 
     python ci/instructions.py             exit 1 when a kernel needs more than 2 % above ci/instructions.csv
     python ci/instructions.py --accept    make what is counted now the baseline of this compiler

@@ -135,14 +135,14 @@ class Link:
     joints: Sequence[HeldJoint]
 
 
-def note(cause: str, subject: str | None, text: str, numbers: Sequence[float] = ()) -> Header:
+def note(cause: str, about: str | None, text: str, numbers: Sequence[float] = ()) -> Header:
     """Make a note of the answer to `read`.
 
     Parameters
     ----------
     cause : str
         What the parser did, a word of PROTOCOL.md.
-    subject : str, optional
+    about : str, optional
         To which link or joint.
     text : str
         The same for a reader; line breaks become blanks.
@@ -154,7 +154,7 @@ def note(cause: str, subject: str | None, text: str, numbers: Sequence[float] = 
     dict
         The note.
     """
-    told: Header = {"cause": cause, "subject": subject, "text": " ".join(text.split())}
+    told: Header = {"cause": cause, "about": about, "text": " ".join(text.split())}
     return {**told, "numbers": [float(x) for x in numbers]} if len(numbers) else told
 
 

@@ -4,12 +4,12 @@
 //! very file and gives them some thousand mutations of the seeds in every test run.
 
 use featherbench_bench::frame::Frame;
-use featherbench_bench::{Gates, Identity, Outcome, Problem, Quantity, Refusal, Suite};
+use featherbench_bench::{Gates, Identity, NoAnswer, Outcome, Quantity, Robot, Suite};
 use featherbench_engines::{EngineRecording, Recording};
 use featherbench_formats::urdf::{Base, Options};
 use featherbench_formats::{OnLoss, mjcf, neutral, urdf};
 use featherbench_model::generate::{Chain, Family};
-use featherbench_results::{EngineSource, ModelOrigin, Record, Relation, RunInfo, Verdict};
+use featherbench_results::{EngineSource, ModelOrigin, Relation, Row, RunInfo, Verdict};
 use std::collections::BTreeMap;
 use std::path::Path;
 use std::sync::LazyLock;
@@ -73,7 +73,7 @@ pub fn frame(mut bytes: &[u8]) {
 
 /// A recording of one small robot's answers: as it comes, and with a right checksum, behind which the rest of the parser stands.
 pub fn recording(bytes: &[u8]) {
-    static PROBLEM: LazyLock<Problem> = LazyLock::new(recorded_problem);
+    static PROBLEM: LazyLock<Robot> = LazyLock::new(recorded_robot);
     let mut sealed = bytes.to_vec();
     featherbench_results::seal(&mut sealed);
     let read = Recording::from_bytes(bytes, &PROBLEM).or_else(|_| Recording::from_bytes(&sealed, &PROBLEM));
@@ -84,15 +84,15 @@ pub fn recording(bytes: &[u8]) {
 }
 
 /// The robot that the seeds of [`recording`] are about.
-pub fn recorded_problem() -> Problem {
+pub fn recorded_robot() -> Robot {
     let robot = Family::Chain(Chain { n: 2, ..Chain::default() }).generate().expect("a small chain");
-    Problem::new(&robot, "chain", ModelOrigin::Generated, 3, 1).expect("a small chain")
+    Robot::new(&robot, "chain", ModelOrigin::Generated, 3, 1).expect("a small chain")
 }
 
 /// A recording of it by one engine that answers twice and refuses once.
 pub fn recording_seed() -> Vec<u8> {
-    let problem = recorded_problem();
-    let states = problem.states.count();
+    let robot = recorded_robot();
+    let states = robot.states.count();
     let identity = Identity { name: "engine".into(), version: "1".into(), source: EngineSource::Recorded, build: BTreeMap::new() };
     let values = |length: usize| Outcome::Values((0..length * states).map(|k| 0.1 * k as f64).collect());
     let outcomes = vec![
@@ -100,14 +100,14 @@ pub fn recording_seed() -> Vec<u8> {
         (Quantity::InverseDynamics, "b".to_owned(), values(2)),
         (Quantity::MassMatrix, "a".to_owned(), values(4)),
         (Quantity::MassMatrix, "b".to_owned(), values(4)),
-        (Quantity::Bias, "a".to_owned(), Outcome::Refused(Refusal::Unsupported("why".into()))),
+        (Quantity::Bias, "a".to_owned(), Outcome::NoAnswer(NoAnswer::NotOffered("why".into()))),
     ];
-    Recording { engines: vec![EngineRecording { identity, outcomes }] }.to_bytes(&problem)
+    Recording { engines: vec![EngineRecording { identity, outcomes }] }.to_bytes(&robot)
 }
 
 /// A file of records with rows of every verdict.
 pub fn records_seed() -> Vec<u8> {
-    let row = Record { model: "m \"quoted\", é".into(), nv: Some(3), floor: Some(1e-17), ..Record::default() };
+    let row = Row { robot: "m \"quoted\", é".into(), nv: Some(3), floor: Some(1e-17), ..Row::default() };
     let rows = [
         row.clone().gated(1e-15, Relation::Le, 1e-14),
         row.clone().gated(1e-13, Relation::Within, 1e-14).deviating("known"),
@@ -147,7 +147,7 @@ pub fn family(bytes: &[u8]) {
 /// A suite file.
 pub fn suite(bytes: &[u8]) {
     if let Ok(suite) = Suite::parse(text(bytes), file()) {
-        assert!(suite.problem.iter().all(|entry| entry.model.is_some() || entry.generate.is_some() || entry.urdf.is_some()));
+        assert!(suite.robot.iter().all(|entry| entry.model.is_some() || entry.generate.is_some() || entry.urdf.is_some()));
     }
 }
 
@@ -155,7 +155,7 @@ pub fn suite(bytes: &[u8]) {
 pub fn gates(bytes: &[u8]) {
     let (gates, deviations) = text(bytes).split_once("\n---\n").unwrap_or((text(bytes), ""));
     if let Ok(gates) = Gates::parse(gates, deviations, file()) {
-        let row = gates.judge(Record { study: "agreement".into(), ..Record::default() }, 1e-15, 1.0);
+        let row = gates.judge(Row { study: "agreement".into(), ..Row::default() }, 1e-15, 1.0);
         assert!(row.verdict != Verdict::Pass || row.bound.is_some());
     }
 }

@@ -1,25 +1,25 @@
 //! The cell: the unit of work.
 
 use crate::hash;
-use crate::{Reading, Refusal};
+use crate::{NoAnswer, Reading};
 use serde_json::{Value, json};
 
-/// One evaluation: what is asked of whom, about which problem.
+/// One evaluation: what is asked of whom, about which robot.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Cell {
     /// The study that asks.
     pub study: String,
-    /// The problem's name.
-    pub problem: String,
-    /// The problem's content hash.
-    pub problem_hash: String,
+    /// The robot's name.
+    pub robot: String,
+    /// The robot's content hash.
+    pub robot_hash: String,
     /// What else defines the work.
     pub params: Value,
-    /// The subject's name.
-    pub subject: String,
-    /// The subject's version.
+    /// The engine's name.
+    pub engine: String,
+    /// The engine's version.
     pub version: String,
-    /// The subject's method.
+    /// The engine's method.
     pub method: String,
     /// What is asked.
     pub quantity: String,
@@ -30,14 +30,14 @@ pub struct Cell {
 impl Cell {
     /// The cell's id: a hash of everything in it.
     pub fn id(&self) -> String {
-        let Self { study, problem, problem_hash, params, subject, version, method, quantity, scalar } = self;
-        let content = json!([study, problem, problem_hash, params, subject, version, method, quantity, scalar]);
+        let Self { study, robot, robot_hash, params, engine, version, method, quantity, scalar } = self;
+        let content = json!([study, robot, robot_hash, params, engine, version, method, quantity, scalar]);
         hash::of(featherbench_results::canonical_json(&content).as_bytes())[..16].to_owned()
     }
 
     /// The cell as a path of words: what `--only` matches and progress shows.
     pub fn path(&self) -> String {
-        format!("{}/{}/{}/{}/{}", self.study, self.problem, self.subject, self.quantity, self.method)
+        format!("{}/{}/{}/{}/{}", self.study, self.robot, self.engine, self.quantity, self.method)
     }
 }
 
@@ -46,10 +46,10 @@ impl Cell {
 pub enum Outcome {
     /// The values, state after state.
     Values(Vec<f64>),
-    /// What the subject read from a file: the answer to cells of the reading study alone.
+    /// What the engine read from a file: the answer to cells of the reading study alone.
     Reading(Box<Reading>),
     /// No values, and why.
-    Refused(Refusal),
+    NoAnswer(NoAnswer),
 }
 
 impl Outcome {
@@ -57,24 +57,24 @@ impl Outcome {
     pub fn values(&self) -> Option<&[f64]> {
         match self {
             Self::Values(values) => Some(values),
-            Self::Reading(_) | Self::Refused(_) => None,
+            Self::Reading(_) | Self::NoAnswer(_) => None,
         }
     }
 }
 
 impl Outcome {
     /// The values, or why there are none; a reading stands for none.
-    pub fn answer(&self) -> Result<&[f64], Refusal> {
+    pub fn answer(&self) -> Result<&[f64], NoAnswer> {
         match self {
             Self::Values(values) => Ok(values),
-            Self::Refused(refusal) => Err(refusal.clone()),
-            Self::Reading(_) => Err(Refusal::Failed("the outcome is a robot that was read, and numbers are due".into())),
+            Self::NoAnswer(refusal) => Err(refusal.clone()),
+            Self::Reading(_) => Err(NoAnswer::Failed("the outcome is a robot that was read, and numbers are due".into())),
         }
     }
 }
 
-impl From<Result<Vec<f64>, Refusal>> for Outcome {
-    fn from(result: Result<Vec<f64>, Refusal>) -> Self {
-        result.map_or_else(Self::Refused, Self::Values)
+impl From<Result<Vec<f64>, NoAnswer>> for Outcome {
+    fn from(result: Result<Vec<f64>, NoAnswer>) -> Self {
+        result.map_or_else(Self::NoAnswer, Self::Values)
     }
 }

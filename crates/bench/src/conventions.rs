@@ -9,7 +9,7 @@ use std::path::Path;
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Ledger {
-    /// What we do, by subject.
+    /// What we do, by topic.
     ours: BTreeMap<String, String>,
     convention: Vec<Row>,
 }
@@ -18,7 +18,7 @@ struct Ledger {
 #[serde(deny_unknown_fields)]
 struct Row {
     engine: String,
-    subject: String,
+    topic: String,
     theirs: String,
     conversion: String,
     test: String,
@@ -27,18 +27,18 @@ struct Row {
 /// Reads the ledger, in its order.
 ///
 /// # Errors
-/// [`HarnessError`], naming file, line and key; a row whose subject has no entry in `[ours]`, and an entry without a row, are errors too.
+/// [`HarnessError`], naming file, line and key; a row whose topic has no entry in `[ours]`, and an entry without a row, are errors too.
 pub fn read(path: &Path) -> Result<Vec<Convention>, HarnessError> {
     let text = std::fs::read_to_string(path).map_err(|source| HarnessError::io(path, source))?;
     let wrong = |message: String| HarnessError::Config { path: path.to_owned(), message };
     let ledger: Ledger = toml::from_str(&text).map_err(|error| wrong(error.to_string()))?;
-    if let Some(idle) = ledger.ours.keys().find(|subject| ledger.convention.iter().all(|row| row.subject != **subject)) {
+    if let Some(idle) = ledger.ours.keys().find(|topic| ledger.convention.iter().all(|row| row.topic != **topic)) {
         return Err(wrong(format!("ours: no [[convention]] is about '{idle}'")));
     }
-    let complete = |Row { engine, subject, theirs, conversion, test }: Row| {
-        let ours = ledger.ours.get(&subject).cloned();
-        let ours = ours.ok_or_else(|| wrong(format!("[[convention]] of {engine}: '{subject}' has no entry in [ours]")))?;
-        Ok(Convention { engine, subject, theirs, ours, conversion, test })
+    let complete = |Row { engine, topic, theirs, conversion, test }: Row| {
+        let ours = ledger.ours.get(&topic).cloned();
+        let ours = ours.ok_or_else(|| wrong(format!("[[convention]] of {engine}: '{topic}' has no entry in [ours]")))?;
+        Ok(Convention { engine, topic, theirs, ours, conversion, test })
     };
     ledger.convention.into_iter().map(complete).collect()
 }
@@ -52,8 +52,8 @@ pub fn markdown(conventions: &[Convention]) -> String {
             engine = &row.engine;
             text += &format!("\n### {engine}\n| | the engine | ours | converted by | held by |\n|---|---|---|---|---|\n");
         }
-        let Convention { subject, theirs, ours, conversion, test, .. } = row;
-        text += &format!("| {subject} | {theirs} | {ours} | {conversion} | `{test}` |\n");
+        let Convention { topic, theirs, ours, conversion, test, .. } = row;
+        text += &format!("| {topic} | {theirs} | {ours} | {conversion} | `{test}` |\n");
     }
     text
 }

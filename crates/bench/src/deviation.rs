@@ -2,7 +2,7 @@
 //! reproductions that show a deviation by itself.
 
 use crate::RangeKey;
-use featherbench_results::{Record, Verdict};
+use featherbench_results::{Row, Verdict};
 use serde::Deserialize;
 
 /// Seeds over which the size of a deviation is measured.
@@ -18,16 +18,16 @@ pub const SLACK: f64 = 2.0;
 pub struct Deviation {
     /// The engine.
     pub engine: String,
-    /// The engine's version; another version makes the deviation void.
+    /// The engine's version; of another version the deviation says nothing.
     pub version: String,
     /// The method, or all of them.
     pub method: Option<String>,
     /// The quantities, or all of them.
     pub quantities: Option<Vec<String>>,
-    /// The models: names, a trailing `*` standing for any rest.
-    pub models: Vec<String>,
-    /// The cases, or all of them.
-    pub cases: Option<Vec<String>>,
+    /// The robots: names, a trailing `*` standing for any rest.
+    pub robots: Vec<String>,
+    /// The states, or all of them.
+    pub states: Option<Vec<String>>,
     /// The verdict that it explains: fail or error.
     pub verdict: String,
     /// The cause.
@@ -46,10 +46,12 @@ pub struct NotOffered {
     pub version: String,
     /// The quantities, or all of them.
     pub quantities: Option<Vec<String>>,
-    /// The models: names, a trailing `*` standing for any rest.
-    pub models: Vec<String>,
-    /// The cases, or all of them.
-    pub cases: Option<Vec<String>>,
+    /// The robots: names, a trailing `*` standing for any rest.
+    pub robots: Vec<String>,
+    /// The states, or all of them.
+    pub states: Option<Vec<String>>,
+    /// The study, or all of them.
+    pub study: Option<String>,
     /// Why it is not offered.
     pub reason: String,
 }
@@ -75,8 +77,8 @@ pub struct Reproduction {
 }
 
 impl Deviation {
-    /// Whether it is about this row: engine, version, method, quantity, robot and case; whatever the value and the verdict.
-    pub fn is_about(&self, row: &Record) -> bool {
+    /// Whether it is about this row: engine, version, method, quantity, robot and states; whatever the value and the verdict.
+    pub fn is_about(&self, row: &Row) -> bool {
         self.version == row.engine_version && self.method.as_ref().is_none_or(|method| *method == row.method) && self.concerns(row)
     }
 
@@ -92,42 +94,43 @@ impl Deviation {
             && self.version == key.version
             && self.method.as_ref().is_none_or(|method| *method == key.method)
             && self.quantities.as_ref().is_none_or(|quantities| quantities.contains(&key.quantity))
-            && named(&self.models, &key.model)
+            && named(&self.robots, &key.robot)
     }
 
     /// Whether it explains that a row is an error.
-    pub(crate) fn explains_error(&self, row: &Record) -> bool {
+    pub(crate) fn explains_error(&self, row: &Row) -> bool {
         row.verdict == Verdict::Error && self.verdict == Verdict::Error.as_str() && self.is_about(row)
     }
 
-    /// Whether it is about the engine, robot, quantity and case of this row, by whatever method and in whatever version.
-    pub(crate) fn concerns(&self, row: &Record) -> bool {
-        concerns(&self.engine, self.quantities.as_deref(), &self.models, self.cases.as_deref(), row)
+    /// Whether it is about the engine, robot, quantity and states of this row, by whatever method and in whatever version.
+    pub(crate) fn concerns(&self, row: &Row) -> bool {
+        concerns(&self.engine, self.quantities.as_deref(), &self.robots, self.states.as_deref(), row)
     }
 
     /// Whether a row is there because of it.
-    pub(crate) fn excused(&self, row: &Record) -> bool {
+    pub(crate) fn excused(&self, row: &Row) -> bool {
         row.verdict == Verdict::Deviation && row.reason.starts_with(&self.reason) && self.is_about(row)
     }
 }
 
 impl NotOffered {
     /// Whether it explains that a row is a skip.
-    pub(crate) fn explains(&self, row: &Record) -> bool {
+    pub(crate) fn explains(&self, row: &Row) -> bool {
         row.verdict == Verdict::Skip && self.version == row.engine_version && self.concerns(row)
     }
 
-    /// Whether it is about the engine, robot, quantity and case of this row, in whatever version.
-    pub(crate) fn concerns(&self, row: &Record) -> bool {
-        concerns(&self.engine, self.quantities.as_deref(), &self.models, self.cases.as_deref(), row)
+    /// Whether it is about the engine, robot, study, quantity and states of this row, in whatever version.
+    pub(crate) fn concerns(&self, row: &Row) -> bool {
+        self.study.as_ref().is_none_or(|study| *study == row.study)
+            && concerns(&self.engine, self.quantities.as_deref(), &self.robots, self.states.as_deref(), row)
     }
 }
 
-fn concerns(engine: &str, quantities: Option<&[String]>, models: &[String], cases: Option<&[String]>, row: &Record) -> bool {
+fn concerns(engine: &str, quantities: Option<&[String]>, robots: &[String], states: Option<&[String]>, row: &Row) -> bool {
     engine == row.engine
-        && named(models, &row.model)
+        && named(robots, &row.robot)
         && quantities.is_none_or(|quantities| quantities.contains(&row.quantity))
-        && cases.is_none_or(|cases| cases.contains(&row.case))
+        && states.is_none_or(|states| states.contains(&row.states))
 }
 
 /// Whether a list of names, a trailing `*` standing for any rest, holds a name.

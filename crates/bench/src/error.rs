@@ -1,4 +1,4 @@
-//! What can go wrong in the harness itself (a subject that fails is a row, not an error).
+//! What can go wrong in the harness itself (an engine that fails is a row, not an error).
 
 use std::io;
 use std::path::{Path, PathBuf};
@@ -49,7 +49,7 @@ pub enum HarnessError {
     },
     /// The records refuse.
     #[error(transparent)]
-    Record(#[from] featherbench_results::RecordError),
+    Row(#[from] featherbench_results::ResultsError),
 }
 
 impl HarnessError {

@@ -3,7 +3,7 @@
 use crate::deviation::named;
 use crate::measure::worst;
 use crate::{Deviation, HarnessError, Mean, NotOffered, RangeKey, Ranges, Reproduction, Suite};
-use featherbench_results::{Expectation, Record, Relation, Verdict};
+use featherbench_results::{Expectation, Relation, Row, Verdict};
 use serde::Deserialize;
 use serde_json::Value;
 use std::collections::{BTreeMap, HashMap};
@@ -52,8 +52,8 @@ pub struct Gate {
     pub engines: Option<Vec<String>>,
     /// The methods, or all of them.
     pub methods: Option<Vec<String>>,
-    /// The models, or all of them: names, a trailing `*` standing for any rest.
-    pub models: Option<Vec<String>>,
+    /// The robots, or all of them: names, a trailing `*` standing for any rest.
+    pub robots: Option<Vec<String>>,
     /// Only robots up to this depth are gated; deeper ones are measured.
     pub max_depth: Option<usize>,
     /// The threshold.
@@ -162,9 +162,9 @@ impl Gates {
     pub fn with_ranges(self, ranges: Ranges, folder: &Path) -> Result<Self, HarnessError> {
         for (key, _) in ranges.iter() {
             if !self.deviations.iter().any(|deviation| deviation.has(key)) {
-                let RangeKey { engine, version, method, quantity, model, .. } = key;
+                let RangeKey { engine, version, method, quantity, robot, .. } = key;
                 let message = format!(
-                    "a range is known of {engine} {version} {method}, {quantity}, {model}, and deviations.toml names no such deviation; \
+                    "a range is known of {engine} {version} {method}, {quantity}, {robot}, and deviations.toml names no such deviation; \
                      remove the row, or write the file again with `featherbench gate --ranges … --write`"
                 );
                 return Err(HarnessError::Config { path: folder.join("deviations"), message });
@@ -191,7 +191,7 @@ impl Gates {
     /// Closes a row with its value: judged where a gate matches, informed elsewhere, and then looked up among the known deviations.
     ///
     /// `amplification` turns a backward error into a forward one at the row's state (1 where that has no meaning).
-    pub fn judge(&self, row: Record, value: f64, amplification: f64) -> Record {
+    pub fn judge(&self, row: Row, value: f64, amplification: f64) -> Row {
         let depth = row.depth.unwrap_or(0);
         let gate = self.gates.iter().find(|gate| gate.matches(&row));
         let row = match gate {
@@ -210,10 +210,10 @@ impl Gates {
 
     /// Tells the known cause of a row that is no pass. A failure within the range that was measured for its robot, and an error, become known
     /// deviations; what an engine does not offer stays a skip; a failure without a range, or beyond it, stays a failure and says so.
-    pub fn explain(&self, row: Record) -> Record {
+    pub fn explain(&self, row: Row) -> Row {
         match row.verdict {
             Verdict::Skip => match self.not_offered.iter().find(|known| known.explains(&row)) {
-                Some(known) => Record { reason: format!("{} ({})", known.reason, row.reason), ..row },
+                Some(known) => Row { reason: format!("{} ({})", known.reason, row.reason), ..row },
                 None => row,
             },
             Verdict::Error => match self.deviations.iter().find(|known| known.explains_error(&row)) {
@@ -228,14 +228,14 @@ impl Gates {
                         "{}; larger than the known deviation, which is at most {:e} in {} seeds on this robot: {}",
                         row.reason, range.high, range.seeds, known.reason
                     );
-                    Record { reason, ..row }
+                    Row { reason, ..row }
                 }
                 (Some(known), None) => {
                     let reason = format!(
                         "{}; the cause may be known, but no range was measured on this robot (`featherbench gate --ranges … --write`): {}",
                         row.reason, known.reason
                     );
-                    Record { reason, ..row }
+                    Row { reason, ..row }
                 }
             },
             Verdict::Pass | Verdict::Info | Verdict::Deviation => row,
@@ -243,7 +243,7 @@ impl Gates {
     }
 
     /// The known deviation, of those whose size is measured, that is about a row.
-    fn measured(&self, row: &Record) -> Option<&Deviation> {
+    fn measured(&self, row: &Row) -> Option<&Deviation> {
         self.deviations.iter().find(|known| known.is_measured() && known.is_about(row))
     }
 
@@ -252,16 +252,16 @@ impl Gates {
     /// Conditions: no row fails; none is skipped or an error unexplained; and, when the run is `complete`, the suite's
     /// counts of rows are met exactly, and a thorough suite shows every known deviation as large as it is known to be, everything that is not
     /// offered, and sharp bounds.
-    pub fn conditions(&self, suite: &Suite, records: &[Record], complete: bool) -> Vec<Expectation> {
-        let count = |of_these: &dyn Fn(&Record) -> bool| records.iter().filter(|row| of_these(row)).count() as u64;
-        let unknown = |row: &Record| {
+    pub fn conditions(&self, suite: &Suite, records: &[Row], complete: bool) -> Vec<Expectation> {
+        let count = |of_these: &dyn Fn(&Row) -> bool| records.iter().filter(|row| of_these(row)).count() as u64;
+        let unknown = |row: &Row| {
             let excused = self.guests.contains(&row.engine) || self.not_offered.iter().any(|known| known.explains(row));
             row.verdict == Verdict::Skip && !excused
         };
         let mut conditions = vec![
             condition("rows outside their bound".into(), 0, count(&|row| row.verdict == Verdict::Fail)),
             condition("rows without a value that was due".into(), 0, count(&|row| row.verdict == Verdict::Error)),
-            condition("rows that a subject does not offer and ci/deviations.toml does not name".into(), 0, count(&unknown)),
+            condition("rows that an engine does not offer and ci/deviations.toml does not name".into(), 0, count(&unknown)),
         ];
         if !complete {
             return conditions;
@@ -274,7 +274,7 @@ impl Gates {
         }
         for (engine, quantities) in &suite.expect {
             for (quantity, &expected) in quantities {
-                let of_these = |row: &&Record| row.engine == *engine && row.quantity == *quantity && accounted(row);
+                let of_these = |row: &&Row| row.engine == *engine && row.quantity == *quantity && accounted(row);
                 let found = records.iter().filter(of_these).count() as u64;
                 conditions.push(condition(format!("rows of {engine} on {quantity} that pass or deviate as known"), expected, found));
             }
@@ -284,7 +284,7 @@ impl Gates {
 
     /// One condition per known deviation of the suite's engines and robots, that it is still seen; one more, where its size is measured, that
     /// it is as large as known on every robot; and one per thing that is not offered.
-    fn still_seen(&self, suite: &Suite, records: &[Record]) -> Vec<Expectation> {
+    fn still_seen(&self, suite: &Suite, records: &[Row]) -> Vec<Expectation> {
         let asked = |engine: &String| suite.agreement.as_ref().is_some_and(|agreement| agreement.engines.contains(engine));
         let mut conditions = Vec::new();
         for known in self.deviations.iter().filter(|known| asked(&known.engine)) {
@@ -304,7 +304,7 @@ impl Gates {
     }
 
     /// The condition that a deviation is as large as known on each of its robots; none, where no robot of the run shows it at every seed.
-    fn still_large(&self, known: &Deviation, records: &[Record]) -> Option<Expectation> {
+    fn still_large(&self, known: &Deviation, records: &[Row]) -> Option<Expectation> {
         let mut found: BTreeMap<RangeKey, f64> = BTreeMap::new();
         let judged = records.iter().filter(|row| row.bound.is_some() && known.is_measured() && known.is_about(row));
         for (row, value) in judged.filter_map(|row| Some((row, row.value?))) {
@@ -318,7 +318,7 @@ impl Gates {
         }
         let shrunk = found.iter().filter_map(|(key, &value)| {
             let range = self.ranges.of(key).filter(|range| range.has_shrunk(value))?;
-            Some(format!("{} {} {} ({value:e}, known from {:e})", key.model, key.method, key.quantity, range.low))
+            Some(format!("{} {} {} ({value:e}, known from {:e})", key.robot, key.method, key.quantity, range.low))
         });
         let shrunk: Vec<String> = shrunk.collect();
         let what = format!("robots on which a known deviation of {} is smaller than known: {}", known.engine, known.reason);
@@ -332,7 +332,7 @@ impl Gates {
 
 /// Whether a row counts for a suite's `[expect]`: it passes, or has a value that deviates as known. (Near a gate, rounding on another
 /// processor may turn one into the other; what counts is that the row is there.)
-pub fn accounted(row: &Record) -> bool {
+pub fn accounted(row: &Row) -> bool {
     row.verdict == Verdict::Pass || row.verdict == Verdict::Deviation && row.value.is_some()
 }
 
@@ -348,10 +348,10 @@ type Bounds = HashMap<(String, String), f64>;
 impl Sharpness {
     /// One condition per method of the suite's engines: for how many kinds of joints and bases there is no robot with a sharp bound. An engine
     /// that a user brought along need not have every kind.
-    fn conditions(&self, suite: &Suite, records: &[Record]) -> Vec<Expectation> {
+    fn conditions(&self, suite: &Suite, records: &[Row]) -> Vec<Expectation> {
         let mut sharpest: BTreeMap<(&str, &str), Bounds> = BTreeMap::new();
         let named = |engine: &String| suite.agreement.as_ref().is_some_and(|agreement| agreement.engines.contains(engine));
-        let own = records.iter().filter(|row| row.engine == "native" || named(&row.engine));
+        let own = records.iter().filter(|row| row.engine == "featherbench" || named(&row.engine));
         for row in own.filter(|row| row.study == self.study && row.quantity == self.quantity && row.metric == self.metric) {
             let (Some(bound), Ok(params)) = (row.bound, serde_json::from_str::<Value>(&row.params)) else { continue };
             let of_method = sharpest.entry((&row.engine, &row.method)).or_default();
@@ -371,14 +371,14 @@ impl Sharpness {
 }
 
 impl Gate {
-    fn matches(&self, row: &Record) -> bool {
+    fn matches(&self, row: &Row) -> bool {
         let among = |names: &Option<Vec<String>>, name: &String| names.as_ref().is_none_or(|names| names.contains(name));
         self.study == row.study
             && self.metric == row.metric
             && self.quantities.contains(&row.quantity)
             && among(&self.engines, &row.engine)
             && among(&self.methods, &row.method)
-            && self.models.as_ref().is_none_or(|models| named(models, &row.model))
+            && self.robots.as_ref().is_none_or(|robots| named(robots, &row.robot))
             && self.max_depth.is_none_or(|limit| row.depth.unwrap_or(0) <= limit as u64)
     }
 }

@@ -1,44 +1,44 @@
-//! The harness: problems, subjects, studies, cells, the run, the comparison and the gates.
+//! The harness: robots, engines, studies, cells, the run, the comparison and the gates.
 //!
-//! A [`Study`] asks [`Subject`]s about [`Problem`]s. It plans [`Cell`]s, each of which is evaluated once and whose [`Outcome`] is kept in an
+//! A [`Study`] asks [`Engine`]s about [`Robot`]s. It plans [`Cell`]s, each of which is evaluated once and whose [`Outcome`] is kept in an
 //! [`OutcomeStore`]; a pure comparison turns outcomes into records, judged by [`Gates`]. The error measures are in [`measure`].
 
 mod cell;
 pub mod conventions;
 mod deviation;
+mod engine;
 mod error;
 mod gates;
 pub mod hash;
 pub mod layout;
 mod means;
 pub mod measure;
-mod problem;
 pub mod provenance;
 mod quantity;
 mod ranges;
 mod reading;
+mod robot;
 pub mod run;
 mod scatter;
 mod stepper;
 mod store;
 mod study;
-mod subject;
 mod suite;
 pub mod truth;
 
 pub use cell::{Cell, Outcome};
 pub use deviation::{Deviation, NotOffered, Reproduction, SEEDS, SLACK};
+pub use engine::{Engine, Evaluation, Identity, NoAnswer};
 pub use error::HarnessError;
 pub use featherbench_formats::frame;
 pub use gates::{Factor, Gate, Gates, Sharpness, accounted};
 pub use means::{Known, Mean};
-pub use problem::{Problem, Route};
 pub use quantity::{DENSE_LIMIT, Quantity};
 pub use ranges::{Range, RangeKey, Ranges, RangesMeter};
 pub use reading::{FileBase, FileFormat, FileInertial, FileLink, Reading, ReadingNote, RobotFile, WATER};
+pub use robot::{Robot, Route};
 pub use scatter::Scatter;
 pub use stepper::Stepper;
 pub use store::{Lost, OUTCOMES_NAME, OutcomeStore};
 pub use study::{Context, Finished, Study};
-pub use subject::{Identity, Prepared, Refusal, Subject};
-pub use suite::{AgreementEntry, ProblemEntry, Suite, TimingEntry};
+pub use suite::{AgreementEntry, RobotEntry, Suite, TimingEntry};

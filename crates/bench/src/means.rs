@@ -2,7 +2,7 @@
 
 use crate::gates::condition;
 use crate::measure::worst;
-use featherbench_results::{Expectation, Record};
+use featherbench_results::{Expectation, Row};
 use serde::Deserialize;
 
 /// A bound on the geometric mean of a metric over the robots of a run, and on the largest value.
@@ -33,7 +33,7 @@ pub struct Known {
     /// The quantity.
     pub quantity: String,
     /// The robot.
-    pub model: String,
+    pub robot: String,
     /// What the value must not exceed.
     pub up_to: f64,
     /// The cause.
@@ -43,25 +43,25 @@ pub struct Known {
 impl Mean {
     /// Two conditions per quantity: the mean, and the largest value. Where no row has a value, neither is met. And one per robot that is known:
     /// its value lies between the bound and what is known.
-    pub(crate) fn conditions(&self, records: &[Record]) -> Vec<Expectation> {
+    pub(crate) fn conditions(&self, records: &[Row]) -> Vec<Expectation> {
         let of = |quantity: &String| {
             let rows = records.iter().filter(|row| row.study == self.study && row.metric == self.metric && row.quantity == *quantity);
             // A row without a value has none that is small enough.
-            let values: Vec<(&str, f64)> = rows.map(|row| (row.model.as_str(), row.value.unwrap_or(f64::NAN))).collect();
+            let values: Vec<(&str, f64)> = rows.map(|row| (row.robot.as_str(), row.value.unwrap_or(f64::NAN))).collect();
             let count = values.len();
             let mean = (values.iter().map(|(_, value)| value.ln()).sum::<f64>() / count as f64).exp();
-            let known = |model: &str| self.known.iter().find(|known| known.quantity == *quantity && known.model == model);
-            let others = values.iter().filter(|(model, _)| known(model).is_none()).map(|&(_, value)| value);
+            let known = |robot: &str| self.known.iter().find(|known| known.quantity == *quantity && known.robot == robot);
+            let others = values.iter().filter(|(robot, _)| known(robot).is_none()).map(|&(_, value)| value);
             let largest = others.reduce(worst).unwrap_or(f64::NAN);
             let held = |value: f64, bound: f64, name: &str| {
                 let what = format!("{name} of {} on {quantity} over {count} robots is {value:.2}, at most {bound}", self.metric);
                 condition(what, 1, u64::from(value <= bound))
             };
             let mut conditions = vec![held(mean, self.mean, "geometric mean"), held(largest, self.bound, "largest")];
-            conditions.extend(values.iter().filter_map(|&(model, value)| {
-                let Known { up_to, reason, .. } = known(model)?;
+            conditions.extend(values.iter().filter_map(|&(robot, value)| {
+                let Known { up_to, reason, .. } = known(robot)?;
                 let what =
-                    format!("{} on {quantity} of {model} is {value:.2}, known from {} to {up_to}: {reason}", self.metric, self.bound);
+                    format!("{} on {quantity} of {robot} is {value:.2}, known from {} to {up_to}: {reason}", self.metric, self.bound);
                 Some(condition(what, 1, u64::from(self.bound < value && value <= *up_to)))
             }));
             conditions
@@ -75,8 +75,8 @@ mod tests {
     use super::*;
     use featherbench_results::Verdict;
 
-    fn rows(values: &[f64]) -> Vec<Record> {
-        let row = Record { study: "agreement".into(), metric: "over_best".into(), quantity: "id".into(), ..Record::default() };
+    fn rows(values: &[f64]) -> Vec<Row> {
+        let row = Row { study: "agreement".into(), metric: "over_best".into(), quantity: "id".into(), ..Row::default() };
         values.iter().map(|&value| row.clone().informed(value)).collect()
     }
 
@@ -94,10 +94,10 @@ mod tests {
         // A robot that is known: it counts for the mean, and must be as far off as it is known to be.
         let named = |value: f64| {
             let mut records = rows(&[1.0, value]);
-            records[1].model = "far".into();
+            records[1].robot = "far".into();
             records
         };
-        let known = Known { quantity: "id".into(), model: "far".into(), up_to: 4.0, reason: "a cause".into() };
+        let known = Known { quantity: "id".into(), robot: "far".into(), up_to: 4.0, reason: "a cause".into() };
         let excusing = Mean { known: vec![known], ..mean.clone() };
         let met = |value: f64| excusing.conditions(&named(value)).iter().map(|c| c.verdict == Verdict::Pass).collect::<Vec<_>>();
         assert_eq!(met(3.5), [false, true, true], "√3.5 > 1.5");

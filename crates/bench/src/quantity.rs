@@ -1,6 +1,6 @@
-//! What can be asked of a subject, as data.
+//! What can be asked of an engine, as data.
 
-use crate::Problem;
+use crate::Robot;
 
 /// A quantity of a robot at a state. Shapes, units and frames are those of `oracles/PROTOCOL.md`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -35,9 +35,9 @@ pub enum Quantity {
     BodyAcceleration,
     /// Jacobian of the deepest body's velocity.
     BodyJacobian,
-    /// What a subject holds after building the model: inertias and placements.
+    /// What an engine holds after building the model: inertias and placements.
     Readback,
-    /// Stored numbers of the subject's sparse mass matrix.
+    /// Stored numbers of the engine's sparse mass matrix.
     StoredEntries,
     /// M in the tree-sparse layout.
     MassMatrixSparse,
@@ -110,9 +110,9 @@ impl Quantity {
         Self::ALL.into_iter().find(|quantity| quantity.name() == word)
     }
 
-    /// Numbers per state for a problem.
-    pub fn size(self, problem: &Problem) -> usize {
-        let (nv, bodies) = (problem.model.topology.nv(), problem.description.bodies.len());
+    /// Numbers per state for a robot.
+    pub fn size(self, robot: &Robot) -> usize {
+        let (nv, bodies) = (robot.model.topology.nv(), robot.description.bodies.len());
         match self {
             Self::InverseDynamics
             | Self::InverseDynamicsWrench
@@ -128,7 +128,7 @@ impl Quantity {
             Self::BodyPlacement => 12 * bodies,
             Self::BodyVelocity | Self::BodyAcceleration => 6 * bodies,
             Self::Readback => 22 * bodies,
-            Self::MassMatrixSparse | Self::Factorization => problem.model.topology.stored(),
+            Self::MassMatrixSparse | Self::Factorization => robot.model.topology.stored(),
         }
     }
 

@@ -6,13 +6,13 @@
 
 use crate::measure::worst;
 use crate::{Deviation, HarnessError, SLACK};
-use featherbench_results::{Record, Verdict};
+use featherbench_results::{Row, Verdict};
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
 use std::path::Path;
 
 /// The columns of a file, in order.
-const COLUMNS: [&str; 10] = ["engine", "version", "method", "quantity", "model", "metric", "low", "high", "outside", "seeds"];
+const COLUMNS: [&str; 10] = ["engine", "version", "method", "quantity", "robot", "metric", "low", "high", "outside", "seeds"];
 
 /// What has a range of its own.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -26,7 +26,7 @@ pub struct RangeKey {
     /// The quantity.
     pub quantity: String,
     /// The robot.
-    pub model: String,
+    pub robot: String,
     /// The error measure.
     pub metric: String,
 }
@@ -50,19 +50,19 @@ pub struct Ranges(BTreeMap<RangeKey, Range>);
 
 impl RangeKey {
     /// The key of a row.
-    pub fn of(row: &Record) -> Self {
+    pub fn of(row: &Row) -> Self {
         Self {
             engine: row.engine.clone(),
             version: row.engine_version.clone(),
             method: row.method.clone(),
             quantity: row.quantity.clone(),
-            model: row.model.clone(),
+            robot: row.robot.clone(),
             metric: row.metric.clone(),
         }
     }
 
     fn words(&self) -> [&str; 6] {
-        [&self.engine, &self.version, &self.method, &self.quantity, &self.model, &self.metric]
+        [&self.engine, &self.version, &self.method, &self.quantity, &self.robot, &self.metric]
     }
 }
 
@@ -128,7 +128,7 @@ impl Ranges {
         let mut all = BTreeMap::new();
         for (number, line) in lines {
             let words: Vec<&str> = line.split(',').collect();
-            let &[engine, version, method, quantity, model, metric, low, high, outside, seeds] = words.as_slice() else {
+            let &[engine, version, method, quantity, robot, metric, low, high, outside, seeds] = words.as_slice() else {
                 return Err(bad(number, format!("{} columns, not {}", words.len(), COLUMNS.len())));
             };
             let float = |name: &str, word: &str| {
@@ -149,9 +149,9 @@ impl Ranges {
             if range.outside == 0 || range.outside > range.seeds {
                 return Err(bad(number, format!("outside, seeds: outside in {outside} of {seeds} runs is no known deviation")));
             }
-            let [engine, version, method, quantity, model, metric] = [engine, version, method, quantity, model, metric].map(str::to_owned);
-            if all.insert(RangeKey { engine, version, method, quantity, model, metric }, range).is_some() {
-                return Err(bad(number, "the same engine, version, method, quantity, model and metric stand on an earlier line".into()));
+            let [engine, version, method, quantity, robot, metric] = [engine, version, method, quantity, robot, metric].map(str::to_owned);
+            if all.insert(RangeKey { engine, version, method, quantity, robot, metric }, range).is_some() {
+                return Err(bad(number, "the same engine, version, method, quantity, robot and metric stand on an earlier line".into()));
             }
         }
         Ok(Self(all))
@@ -169,7 +169,7 @@ impl Ranges {
     }
 
     /// The range of a row's engine, version, method, quantity, robot and metric.
-    pub fn get(&self, row: &Record) -> Option<&Range> {
+    pub fn get(&self, row: &Row) -> Option<&Range> {
         self.0.get(&RangeKey::of(row))
     }
 
@@ -204,7 +204,7 @@ struct Worst {
 impl RangesMeter {
     /// Adds the rows of one run. Rows that a deviation with the verdict `fail` is about count with their value, whether they miss their bound
     /// in this run or not.
-    pub fn add(&mut self, deviations: &[Deviation], records: &[Record]) {
+    pub fn add(&mut self, deviations: &[Deviation], records: &[Row]) {
         let mut run: BTreeMap<RangeKey, Worst> = BTreeMap::new();
         for row in records.iter().filter(|row| row.bound.is_some()) {
             let Some(value) = row.value.filter(|_| deviations.iter().any(|known| known.is_measured() && known.is_about(row))) else {

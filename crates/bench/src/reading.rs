@@ -83,7 +83,7 @@ pub struct ReadingNote {
     /// A word of `oracles/PROTOCOL.md`, such as `mass_edited`.
     pub cause: String,
     /// The link, joint or element that it is about.
-    pub subject: Option<String>,
+    pub about: Option<String>,
     /// What was done, one sentence.
     pub text: String,
     /// The numbers that `oracles/PROTOCOL.md` gives the cause; empty where the engine tells none.

@@ -1,8 +1,8 @@
 //! Running a plan: accuracy cells on all cores, exclusive ones alone afterwards, each outcome kept as it comes.
 
-use crate::study::{Context, Finished, Study, by_problem};
-use crate::{Cell, HarnessError, Outcome, OutcomeStore, Refusal};
-use featherbench_results::Record;
+use crate::study::{Context, Finished, Study, by_robot};
+use crate::{Cell, HarnessError, NoAnswer, Outcome, OutcomeStore};
+use featherbench_results::Row;
 use rayon::prelude::*;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
@@ -37,7 +37,7 @@ pub fn plan(study: &dyn Study, context: &Context, keep: &(dyn Fn(&Cell) -> bool 
 /// Evaluates what is not finished yet of a study's cells, and returns all of them with their outcomes, in plan order.
 ///
 /// # Errors
-/// Only when an outcome cannot be kept; a subject that fails, or panics, is an outcome.
+/// Only when an outcome cannot be kept; an engine that fails, or panics, is an outcome.
 pub fn evaluate(
     study: &dyn Study,
     context: &Context,
@@ -47,11 +47,11 @@ pub fn evaluate(
 ) -> Result<Vec<Finished>, HarnessError> {
     let missing: Vec<&Cell> = cells.iter().filter(|cell| !store.contains(&cell.id())).collect();
     progress.begin(study.name(), missing.len());
-    // One group per problem and subject, so that a process behind a subject builds each robot once.
+    // One group per robot and engine, so that a process behind an engine builds each robot once.
     let mut groups: Vec<Vec<&Cell>> = Vec::new();
     for cell in missing {
         match groups.last_mut() {
-            Some(group) if group[0].problem == cell.problem && group[0].subject == cell.subject => group.push(cell),
+            Some(group) if group[0].robot == cell.robot && group[0].engine == cell.engine => group.push(cell),
             _ => groups.push(vec![cell]),
         }
     }
@@ -73,29 +73,29 @@ pub fn evaluate(
     Ok(cells
         .into_iter()
         .map(|cell| {
-            let lost = || Outcome::Refused(Refusal::Failed("the outcome was not kept".into()));
+            let lost = || Outcome::NoAnswer(NoAnswer::Failed("the outcome was not kept".into()));
             let outcome = store.get(&cell.id()).unwrap_or_else(lost);
             (cell, outcome)
         })
         .collect())
 }
 
-/// A panic in a subject or study is that cell's failure and nobody else's.
+/// A panic in an engine or study is that cell's failure and nobody else's.
 fn guarded(study: &dyn Study, context: &Context, cell: &Cell) -> Outcome {
     catch_unwind(AssertUnwindSafe(|| study.evaluate(context, cell))).unwrap_or_else(|panic| {
         let message = panic.downcast_ref::<String>().map(String::as_str).or_else(|| panic.downcast_ref::<&str>().copied());
-        Outcome::Refused(Refusal::Failed(format!("internal error: {}", message.unwrap_or("panic without a message"))))
+        Outcome::NoAnswer(NoAnswer::Failed(format!("internal error: {}", message.unwrap_or("panic without a message"))))
     })
 }
 
-/// Turns outcomes into records: those of no problem first, then problem by problem on all cores, in the order of the problems.
-pub fn compare(study: &dyn Study, context: &Context, finished: Vec<Finished>) -> Vec<Record> {
+/// Turns outcomes into records: those of no robot first, then robot by robot on all cores, in the order of the robots.
+pub fn compare(study: &dyn Study, context: &Context, finished: Vec<Finished>) -> Vec<Row> {
     let together = study.compare_all(context, &finished);
-    let groups = by_problem(finished);
-    let compared: Vec<Vec<Record>> = context
-        .problems
+    let groups = by_robot(finished);
+    let compared: Vec<Vec<Row>> = context
+        .robots
         .par_iter()
-        .map(|problem| groups.get(&problem.name).map_or_else(Vec::new, |group| study.compare(context, problem, group)))
+        .map(|robot| groups.get(&robot.name).map_or_else(Vec::new, |group| study.compare(context, robot, group)))
         .collect();
     together.into_iter().chain(compared.into_iter().flatten()).collect()
 }

@@ -1,6 +1,6 @@
 //! The trait [`Stepper`]: an engine that integrates, asked what a step of a given length does. Oracles offer it by the operations `step` and `fall`.
 
-use crate::{Problem, Refusal};
+use crate::{NoAnswer, Robot};
 use featherbench_model::StateBatch;
 
 /// An engine whose acceleration is that of a step, and so depends on the step's length.
@@ -11,8 +11,8 @@ pub trait Stepper {
     /// The acceleration (neutral coordinates, nv numbers) with which one step of `dt` seconds begins at state `k`, under gravity and the state's τ.
     ///
     /// # Errors
-    /// [`Refusal`] when the robot or method is not supported, or the engine fails.
-    fn step_acceleration(&self, problem: &Problem, method: &str, states: &StateBatch, k: usize, dt: f64) -> Result<Vec<f64>, Refusal>;
+    /// [`NoAnswer`] when the robot or method is not supported, or the engine fails.
+    fn step_acceleration(&self, robot: &Robot, method: &str, states: &StateBatch, k: usize, dt: f64) -> Result<Vec<f64>, NoAnswer>;
 
     /// From which product of the step's length and the largest velocity on the engine may leave out the term that makes a step implicit, where it
     /// does such a thing: the step is then explicit, and begins with the true acceleration, however long it is.
@@ -24,6 +24,6 @@ pub trait Stepper {
     /// part is zero at the world's origin.
     ///
     /// # Errors
-    /// [`Refusal`] when the robot or method is not supported, or the engine fails.
-    fn fall(&self, problem: &Problem, method: &str, states: &StateBatch, k: usize, dt: f64, steps: usize) -> Result<Vec<f64>, Refusal>;
+    /// [`NoAnswer`] when the robot or method is not supported, or the engine fails.
+    fn fall(&self, robot: &Robot, method: &str, states: &StateBatch, k: usize, dt: f64, steps: usize) -> Result<Vec<f64>, NoAnswer>;
 }

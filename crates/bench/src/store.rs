@@ -1,7 +1,7 @@
 //! The outcomes of a run on disk: what makes it resumable.
 
 use crate::frame::{Block, Frame, FrameError};
-use crate::{Cell, HarnessError, Outcome, Reading, ReadingNote, Refusal};
+use crate::{Cell, HarnessError, NoAnswer, Outcome, Reading, ReadingNote};
 use featherbench_formats::neutral;
 use serde_json::{Value, json};
 use std::collections::HashMap;
@@ -149,8 +149,8 @@ fn to_frame(id: &str, cell: &Cell, outcome: &Outcome) -> Frame {
             let shape = [reading.keyframes.len(), reading.description.nq()];
             ("read", "", vec![Block::new("keyframes", &shape, &reading.keyframes.concat())])
         }
-        Outcome::Refused(Refusal::Unsupported(reason)) => ("unsupported", reason.as_str(), Vec::new()),
-        Outcome::Refused(Refusal::Failed(reason)) => ("error", reason.as_str(), Vec::new()),
+        Outcome::NoAnswer(NoAnswer::NotOffered(reason)) => ("unsupported", reason.as_str(), Vec::new()),
+        Outcome::NoAnswer(NoAnswer::Failed(reason)) => ("error", reason.as_str(), Vec::new()),
     };
     let mut header = json!({"cell": id, "path": cell.path(), "status": status, "reason": reason});
     if let Outcome::Reading(reading) = outcome {
@@ -166,7 +166,7 @@ const CHECKSUM: &str = "blake3";
 
 /// A reading as JSON: the description's text, and the notes.
 fn written(reading: &Reading) -> Value {
-    let note = |note: &ReadingNote| json!({"cause": note.cause, "subject": note.subject, "text": note.text, "numbers": note.numbers});
+    let note = |note: &ReadingNote| json!({"cause": note.cause, "about": note.about, "text": note.text, "numbers": note.numbers});
     // A description that is no robot has no text, and reads back as a damaged frame: its cell is asked again.
     let model = neutral::to_string(&reading.description).unwrap_or_default();
     let written = reading.written.as_ref().map(|written| neutral::to_string(written).unwrap_or_default());
@@ -177,7 +177,7 @@ fn reading(value: &Value, keyframes: &Block) -> Option<Reading> {
     let text = |value: &Value| value.as_str().map(str::to_owned);
     let note = |note: &Value| {
         let numbers = note["numbers"].as_array()?.iter().map(Value::as_f64).collect::<Option<_>>()?;
-        Some(ReadingNote { cause: text(&note["cause"])?, subject: text(&note["subject"]), text: text(&note["text"])?, numbers })
+        Some(ReadingNote { cause: text(&note["cause"])?, about: text(&note["about"]), text: text(&note["text"])?, numbers })
     };
     let description = neutral::parse(value["model"].as_str()?, OUTCOMES_NAME).ok()?;
     let keyframes = keyframes.data.chunks_exact(description.nq().max(1)).map(<[f64]>::to_vec).collect();
@@ -203,8 +203,8 @@ fn from_frame(mut frame: Frame) -> Result<(String, Outcome), String> {
             let reading = frame.header.get("reading").zip(keyframes).and_then(|(value, keyframes)| reading(value, keyframes));
             reading.map(|reading| Outcome::Reading(Box::new(reading)))
         }
-        "unsupported" => Some(Outcome::Refused(Refusal::Unsupported(reason))),
-        "error" => Some(Outcome::Refused(Refusal::Failed(reason))),
+        "unsupported" => Some(Outcome::NoAnswer(NoAnswer::NotOffered(reason))),
+        "error" => Some(Outcome::NoAnswer(NoAnswer::Failed(reason))),
         _ => None,
     };
     match outcome {
@@ -222,10 +222,10 @@ mod tests {
         let text = |s: &str| s.to_owned();
         Cell {
             study: text("s"),
-            problem: text("p"),
-            problem_hash: text("h"),
+            robot: text("p"),
+            robot_hash: text("h"),
             params: json!({}),
-            subject: text("e"),
+            engine: text("e"),
             version: text("1"),
             method: text(method),
             quantity: text("id"),
@@ -239,7 +239,7 @@ mod tests {
         let store = OutcomeStore::open(folder.path()).unwrap();
         let values = Outcome::Values(vec![0.1, f64::MIN_POSITIVE, -3.0]);
         store.insert(&cell("a"), values.clone()).unwrap();
-        store.insert(&cell("b"), Outcome::Refused(Refusal::Failed("broken".into()))).unwrap();
+        store.insert(&cell("b"), Outcome::NoAnswer(NoAnswer::Failed("broken".into()))).unwrap();
         drop(store);
 
         let path = folder.path().join(OUTCOMES_NAME);
@@ -260,13 +260,13 @@ mod tests {
     fn outcomes() -> Vec<(Cell, Outcome)> {
         let description = Family::parse("chain:n=1").unwrap().generate().unwrap();
         let text = "not \"this\"".into();
-        let note = ReadingNote { cause: "warning".into(), subject: Some("link".into()), text, numbers: vec![0.1, -2.0] };
+        let note = ReadingNote { cause: "warning".into(), about: Some("link".into()), text, numbers: vec![0.1, -2.0] };
         let written = Some(description.clone());
         vec![
             (cell("a"), Outcome::Values(vec![0.1, f64::NAN, -0.0])),
-            (cell("b"), Outcome::Refused(Refusal::Failed("it \"broke\"".into()))),
+            (cell("b"), Outcome::NoAnswer(NoAnswer::Failed("it \"broke\"".into()))),
             (cell("c"), Outcome::Reading(Box::new(Reading { description, notes: vec![note], keyframes: vec![vec![0.5]], written }))),
-            (cell("d"), Outcome::Refused(Refusal::Unsupported("no such joint".into()))),
+            (cell("d"), Outcome::NoAnswer(NoAnswer::NotOffered("no such joint".into()))),
             (cell("e"), Outcome::Values(vec![1.5])),
         ]
     }

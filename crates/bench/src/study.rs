@@ -1,15 +1,15 @@
 //! The trait [`Study`]: a question, asked as cells and answered as records.
 
-use crate::{Cell, Gates, Outcome, Problem, Subject};
-use featherbench_results::Record;
+use crate::{Cell, Engine, Gates, Outcome, Robot};
+use featherbench_results::Row;
 use std::collections::BTreeMap;
 
-/// What a study can see: the robots and the subjects.
+/// What a study can see: the robots and the engines.
 pub struct Context<'a> {
     /// The robots, in the suite's order.
-    pub problems: &'a [Problem],
-    /// The subjects, the native one first.
-    pub subjects: &'a [Box<dyn Subject>],
+    pub robots: &'a [Robot],
+    /// The engines, ours first.
+    pub engines: &'a [Box<dyn Engine>],
     /// Every threshold.
     pub gates: &'a Gates,
     /// The suite's seed.
@@ -17,21 +17,21 @@ pub struct Context<'a> {
 }
 
 impl Context<'_> {
-    /// The problem of a cell.
-    pub fn problem(&self, name: &str) -> Option<&Problem> {
-        self.problems.iter().find(|problem| problem.name == name)
+    /// The robot of a cell.
+    pub fn robot(&self, name: &str) -> Option<&Robot> {
+        self.robots.iter().find(|robot| robot.name == name)
     }
 
-    /// The subject of a cell.
-    pub fn subject(&self, name: &str) -> Option<&dyn Subject> {
-        self.subjects.iter().find(|subject| subject.identity().name == name).map(AsRef::as_ref)
+    /// The engine of a cell.
+    pub fn engine(&self, name: &str) -> Option<&dyn Engine> {
+        self.engines.iter().find(|engine| engine.identity().name == name).map(AsRef::as_ref)
     }
 }
 
 /// A finished cell.
 pub type Finished = (Cell, Outcome);
 
-/// A question about robots and subjects.
+/// A question about robots and engines.
 ///
 /// A study plans its cells, evaluates each by itself (in any order, on any thread, once), and turns the outcomes into records by a pure
 /// function: that is what makes a resumed run byte-identical.
@@ -55,11 +55,11 @@ pub trait Study: Sync {
     /// Evaluates one cell.
     fn evaluate(&self, context: &Context, cell: &Cell) -> Outcome;
 
-    /// Turns the outcomes of one problem into records.
-    fn compare(&self, context: &Context, problem: &Problem, finished: &[Finished]) -> Vec<Record>;
+    /// Turns the outcomes of one robot into records.
+    fn compare(&self, context: &Context, robot: &Robot, finished: &[Finished]) -> Vec<Row>;
 
-    /// Turns the outcomes into the records that belong to no problem. Most studies have none.
-    fn compare_all(&self, _context: &Context, _finished: &[Finished]) -> Vec<Record> {
+    /// Turns the outcomes into the records that belong to no robot. Most studies have none.
+    fn compare_all(&self, _context: &Context, _finished: &[Finished]) -> Vec<Row> {
         Vec::new()
     }
 
@@ -69,11 +69,11 @@ pub trait Study: Sync {
     }
 }
 
-/// Groups finished cells by problem, in the order of the problems.
-pub(crate) fn by_problem(finished: Vec<Finished>) -> BTreeMap<String, Vec<Finished>> {
+/// Groups finished cells by robot, in the order of the robots.
+pub(crate) fn by_robot(finished: Vec<Finished>) -> BTreeMap<String, Vec<Finished>> {
     let mut groups: BTreeMap<String, Vec<Finished>> = BTreeMap::new();
     for item in finished {
-        groups.entry(item.0.problem.clone()).or_default().push(item);
+        groups.entry(item.0.robot.clone()).or_default().push(item);
     }
     groups
 }

@@ -15,7 +15,7 @@ pub struct Suite {
     pub seed: u64,
     /// The robots.
     #[serde(default)]
-    pub problem: Vec<ProblemEntry>,
+    pub robot: Vec<RobotEntry>,
     /// The agreement study.
     pub agreement: Option<AgreementEntry>,
     /// The structure study.
@@ -50,7 +50,7 @@ pub struct Suite {
 /// A robot of a suite: a committed model, a generator's call, or a file of the robots' package that only live runs have.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct ProblemEntry {
+pub struct RobotEntry {
     /// Name of a file in `datasets/models`, without its ending.
     pub model: Option<String>,
     /// Arguments of `featherbench gen`.
@@ -84,7 +84,7 @@ pub struct ProblemEntry {
 pub struct AgreementEntry {
     /// States per robot.
     pub states: usize,
-    /// The engines beside the native one.
+    /// The engines beside ours.
     pub engines: Vec<String>,
 }
 
@@ -101,7 +101,7 @@ pub struct TimingEntry {
     pub peers: Vec<String>,
 }
 
-impl ProblemEntry {
+impl RobotEntry {
     /// The bases of a file's robot, and whether each needs a name of its own.
     pub fn bases(&self) -> Vec<(FileBase, bool)> {
         match &self.bases {
@@ -128,17 +128,17 @@ impl Suite {
     pub fn parse(text: &str, path: &Path) -> Result<Self, HarnessError> {
         let suite: Self =
             toml::from_str(text).map_err(|error| HarnessError::Config { path: path.to_owned(), message: error.to_string() })?;
-        for entry in &suite.problem {
+        for entry in &suite.robot {
             let sources = [&entry.model, &entry.generate, &entry.urdf, &entry.mjcf];
             if sources.into_iter().flatten().count() != 1 {
-                let message = format!("a [[problem]] of family '{}' must have exactly one of model, generate, urdf and mjcf", entry.family);
+                let message = format!("a [[robot]] of family '{}' must have exactly one of model, generate, urdf and mjcf", entry.family);
                 return Err(HarnessError::Config { path: path.to_owned(), message });
             }
             let of_file = entry.urdf.is_some() || entry.mjcf.is_some();
             let known = |bases: &Vec<String>| of_file && !entry.floating && bases.iter().all(|base| FileBase::parse(base).is_some());
             if !entry.bases.as_ref().is_none_or(known) {
                 let message = format!(
-                    "a [[problem]] of family '{}': bases is a list of fixed and free, for urdf and mjcf, without floating",
+                    "a [[robot]] of family '{}': bases is a list of fixed and free, for urdf and mjcf, without floating",
                     entry.family
                 );
                 return Err(HarnessError::Config { path: path.to_owned(), message });

@@ -4,7 +4,7 @@
 //! below what f64 can show. That the kernels themselves are right is for the crate `reference` and `oracles/featherbench_oracles/truth.py` to
 //! say, which share no text with them and agree with them where it was recorded.
 
-use crate::{Problem, Quantity, layout};
+use crate::{Quantity, Robot, layout};
 use featherbench_dynamics::{Aba, Bias, CenterOfMass, Crba, Energy, Jacobian, Kinematics, Momentum, Rnea, TreeSparse};
 use featherbench_model::Model;
 use featherbench_spatial::{DoubleDouble, Dual, Force, Lift, Real};
@@ -24,18 +24,18 @@ pub struct Truth {
 }
 
 impl TruthModel {
-    /// The model of a problem; `None` when its description cannot be built.
-    pub fn new(problem: &Problem) -> Option<Self> {
-        Model::build(&problem.description).ok().map(Self)
+    /// The model of a robot; `None` when its description cannot be built.
+    pub fn new(robot: &Robot) -> Option<Self> {
+        Model::build(&robot.description).ok().map(Self)
     }
 
     /// The true answer to a quantity at state `k`, in the quantity's layout; `None` where there is none, or where nobody asks for it.
-    pub fn answer(&self, problem: &Problem, quantity: Quantity, k: usize) -> Option<Vec<f64>> {
-        let (model, states) = (&self.0, &problem.states);
+    pub fn answer(&self, robot: &Robot, quantity: Quantity, k: usize) -> Option<Vec<f64>> {
+        let (model, states) = (&self.0, &robot.states);
         let topology = &model.topology;
         let wide = |values: &[f64]| -> Vec<DoubleDouble> { values.iter().map(|&x| x.lift()).collect() };
         let (q, v, a) = (wide(states.q(k)), wide(states.v(k)), wide(states.a(k)));
-        let mut out = vec![DoubleDouble::zero(); quantity.size(problem)];
+        let mut out = vec![DoubleDouble::zero(); quantity.size(robot)];
         match quantity {
             Quantity::InverseDynamics => Rnea::new(topology).run(model, &q, &v, &a, None, &mut out).ok()?,
             Quantity::InverseDynamicsWrench => {
@@ -52,7 +52,7 @@ impl TruthModel {
                 Crba::new(topology).run(model, &q, &mut mass).ok()?;
                 match quantity {
                     Quantity::MassMatrix => layout::dense(&mass, &mut out),
-                    _ => layout::probe(&mass, &wide(&problem.probe()), &mut out).ok()?,
+                    _ => layout::probe(&mass, &wide(&robot.probe()), &mut out).ok()?,
                 }
             }
             Quantity::KineticEnergy => out[0] = Energy::new(topology).run(model, &q, &v).ok()?.kinetic,
@@ -67,7 +67,7 @@ impl TruthModel {
                 layout::bodies(quantity, &kinematics, &model.described, &mut out);
             }
             Quantity::BodyJacobian => {
-                let body = model.described[problem.deepest_body()];
+                let body = model.described[robot.deepest_body()];
                 layout::jacobian(Jacobian::new(topology).run(model, &q, body).ok()?, &mut out);
             }
             _ => return None,
@@ -76,8 +76,8 @@ impl TruthModel {
     }
 
     /// What is true at state `k`.
-    pub fn at(&self, problem: &Problem, k: usize) -> Option<Truth> {
-        let (model, states) = (&self.0, &problem.states);
+    pub fn at(&self, robot: &Robot, k: usize) -> Option<Truth> {
+        let (model, states) = (&self.0, &robot.states);
         let topology = &model.topology;
         let wide = |values: &[f64]| -> Vec<DoubleDouble> { values.iter().map(|&x| x.lift()).collect() };
         let narrow = |values: &[DoubleDouble]| -> Vec<f64> { values.iter().map(|x| x.to_f64()).collect() };
@@ -102,15 +102,15 @@ impl TruthModel {
 ///
 /// Rotations and axes stay: moved entry by entry they would be none. It is a worst case, the magnitudes of all movements added up; random
 /// roundings of the inputs move the answer by about a tenth of it. By forward-mode differentiation through the articulated-body algorithm, input after input: O(n²). `None` where M is singular.
-pub fn structured_floor(problem: &Problem, k: usize) -> Option<f64> {
-    let states = &problem.states;
+pub fn structured_floor(robot: &Robot, k: usize) -> Option<f64> {
+    let states = &robot.states;
     let constant = |values: &[f64]| -> Vec<Number> { values.iter().map(|&x| Dual::constant(x)).collect() };
     let mut inputs = Inputs {
-        model: problem.model.lift(),
+        model: robot.model.lift(),
         q: constant(states.q(k)),
         v: constant(states.v(k)),
         tau: constant(states.tau(k)),
-        aba: Aba::new(&problem.model.topology),
+        aba: Aba::new(&robot.model.topology),
         a: vec![Dual::zero(); states.nv],
         moved: vec![0.0; states.nv],
     };
@@ -119,7 +119,7 @@ pub fn structured_floor(problem: &Problem, k: usize) -> Option<f64> {
     (0..states.nv).try_for_each(|i| inputs.move_by_itself(|inputs| &mut inputs.tau[i]))?;
     (0..states.nv).try_for_each(|i| inputs.move_by_itself(|inputs| &mut inputs.model.armature[i]))?;
     for parameter in PARAMETERS {
-        (0..problem.model.topology.bodies()).try_for_each(|body| inputs.move_by_itself(|inputs| parameter(&mut inputs.model, body)))?;
+        (0..robot.model.topology.bodies()).try_for_each(|body| inputs.move_by_itself(|inputs| parameter(&mut inputs.model, body)))?;
     }
     inputs.move_by_itself(|inputs| &mut inputs.model.gravity.x)?;
     inputs.move_by_itself(|inputs| &mut inputs.model.gravity.y)?;

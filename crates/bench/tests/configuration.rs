@@ -5,9 +5,9 @@ use featherbench_bench::{Gates, HarnessError, Ranges, Suite};
 use std::path::Path;
 
 const GATE: &str = "[[gate]]\nstudy = \"agreement\"\nquantities = [\"id\"]\nmetric = \"scaled\"\nbound = 1e-14\nreason = \"rounding\"\n";
-const DEVIATION: &str = "[[deviation]]\nengine = \"e\"\nversion = \"1\"\nmodels = [\"m\"]\nverdict = \"fail\"\nreason = \"known\"\n";
-const NOT_OFFERED: &str = "[[not_offered]]\nengine = \"e\"\nversion = \"1\"\nmodels = [\"m\"]\nreason = \"none\"\n";
-const SUITE: &str = "about = \"a suite\"\nseed = 1\n[[problem]]\ngenerate = \"humanoid\"\nfamily = \"humanoid\"\n";
+const DEVIATION: &str = "[[deviation]]\nengine = \"e\"\nversion = \"1\"\nrobots = [\"m\"]\nverdict = \"fail\"\nreason = \"known\"\n";
+const NOT_OFFERED: &str = "[[not_offered]]\nengine = \"e\"\nversion = \"1\"\nrobots = [\"m\"]\nreason = \"none\"\n";
+const SUITE: &str = "about = \"a suite\"\nseed = 1\n[[robot]]\ngenerate = \"humanoid\"\nfamily = \"humanoid\"\n";
 
 /// Asserts that an error names its file and these words.
 #[track_caller]
@@ -55,7 +55,7 @@ fn deviations_name_what_is_wrong() {
     let cases = [
         (format!("{DEVIATION}upto = 1e-9\n"), "upto"),
         (DEVIATION.replace("version = \"1\"\n", ""), "version"),
-        (DEVIATION.replace("models = [\"m\"]\n", ""), "models"),
+        (DEVIATION.replace("robots = [\"m\"]\n", ""), "robots"),
         (DEVIATION.replace("reason = \"known\"\n", ""), "reason"),
         (DEVIATION.replace("\"fail\"", "\"pass\""), "pass"),
         (DEVIATION.replace("\"fail\"", "\"Fail\""), "Fail"),
@@ -63,7 +63,7 @@ fn deviations_name_what_is_wrong() {
         (format!("{DEVIATION}range = [1e-14, 1e-13]\n"), "range"),
         (NOT_OFFERED.replace("reason", "cause"), "cause"),
         (format!("{NOT_OFFERED}verdict = \"skip\"\n"), "verdict"),
-        (DEVIATION.replace("[\"m\"]", "\"m\""), "models"),
+        (DEVIATION.replace("[\"m\"]", "\"m\""), "robots"),
         (DEVIATION.replace("[[deviation]]", "[[deviations]]"), "deviations"),
     ];
     for (text, word) in cases {
@@ -91,7 +91,7 @@ fn suites_name_what_is_wrong() {
         Suite::read(&path)
     };
     let (suite, hash) = read(SUITE).unwrap();
-    assert_eq!((suite.about.as_str(), suite.problem.len(), suite.agreement), ("a suite", 1, None));
+    assert_eq!((suite.about.as_str(), suite.robot.len(), suite.agreement), ("a suite", 1, None));
     assert_ne!(read(&format!("{SUITE}\n")).unwrap().1, hash, "every byte of a suite counts");
     let cases = [
         (format!("speed = 3\n{SUITE}"), "speed"),
@@ -99,8 +99,8 @@ fn suites_name_what_is_wrong() {
         (format!("{SUITE}[agreement]\nstates = 3\n"), "engines"),
         (format!("{SUITE}[agreement]\nstates = 3\nengines = []\nthreads = 2\n"), "threads"),
         (format!("{SUITE}[timing]\nstates = 3\n"), "seconds"),
-        (format!("{SUITE}[expect]\nnative = 3\n"), "native"),
-        (format!("{SUITE}[expect.native]\nid = -3\n"), "id"),
+        (format!("{SUITE}[expect]\nfeatherbench = 3\n"), "featherbench"),
+        (format!("{SUITE}[expect.featherbench]\nid = -3\n"), "id"),
         (format!("{SUITE}model = \"g1\"\n"), "humanoid"),
         (SUITE.replace("generate = \"humanoid\"\n", ""), "exactly one"),
         (SUITE.replace("seed = 1\n", ""), "seed"),
@@ -118,7 +118,7 @@ fn our_own_files_are_right() {
     let gates = Gates::read(&root.join("ci")).unwrap();
     for known in gates.deviations().iter().filter(|known| known.is_measured()) {
         let sizes = gates.ranges().iter().filter(|(key, _)| known.has(key)).count();
-        assert!(sizes > 0, "a deviation without a size excuses nothing: {} {:?}", known.engine, known.models);
+        assert!(sizes > 0, "a deviation without a size excuses nothing: {} {:?}", known.engine, known.robots);
     }
     let suites: Vec<_> = std::fs::read_dir(root.join("datasets/suites")).unwrap().map(|entry| entry.unwrap().path()).collect();
     let suites: Vec<_> = suites.iter().filter(|path| path.extension().is_some_and(|ending| ending == "toml")).collect();
@@ -150,7 +150,7 @@ fn reproductions_name_what_is_wrong() {
 /// The files that `gate --ranges … --write` writes are data of a gate: each line is checked.
 #[test]
 fn ranges_name_what_is_wrong() {
-    const HEAD: &str = "engine,version,method,quantity,model,metric,low,high,outside,seeds\n";
+    const HEAD: &str = "engine,version,method,quantity,robot,metric,low,high,outside,seeds\n";
     const LINE: &str = "e,1,rnea,id,m,scaled,1e-14,2e-14,20,20\n";
     let path = Path::new("default.csv");
     let parse = |text: &str| Ranges::parse(text, path);

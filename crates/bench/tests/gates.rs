@@ -1,7 +1,7 @@
 //! What gates and known deviations say of rows made by hand: each condition in both directions.
 
 use featherbench_bench::{Gates, Range, RangeKey, Ranges, RangesMeter, SLACK, Suite, accounted};
-use featherbench_results::{Expectation, Record, Relation, Verdict};
+use featherbench_results::{Expectation, Relation, Row, Verdict};
 use std::path::Path;
 
 const GATES: &str = r#"
@@ -17,7 +17,7 @@ quantities = ["id", "bias"]
 metric = "scaled"
 engines = ["crane"]
 methods = ["rnea"]
-models = ["gantry", "hoist-*"]
+robots = ["gantry", "hoist-*"]
 max_depth = 20
 bound = 1e-14
 reason = "the first that matches"
@@ -50,22 +50,22 @@ engine = "crane"
 version = "2"
 method = "rnea"
 quantities = ["id"]
-models = ["gantry", "hoist-*"]
-cases = ["fast"]
+robots = ["gantry", "hoist-*"]
+states = ["fast"]
 verdict = "fail"
 reason = "cables stretch"
 [[deviation]]
 engine = "crane"
 version = "2"
-models = ["derrick"]
+robots = ["derrick"]
 verdict = "error"
 reason = "it has no foot"
 [[not_offered]]
 engine = "crane"
 version = "2"
 quantities = ["com"]
-models = ["hoist-*"]
-cases = ["zero"]
+robots = ["hoist-*"]
+states = ["zero"]
 reason = "no mass is known"
 "#;
 
@@ -74,23 +74,23 @@ fn plain() -> Gates {
 }
 
 /// A row of the engine in question.
-fn row() -> Record {
-    Record {
+fn row() -> Row {
+    Row {
         study: "agreement".into(),
         engine: "crane".into(),
         engine_version: "2".into(),
         method: "rnea".into(),
         quantity: "id".into(),
-        model: "gantry".into(),
+        robot: "gantry".into(),
         metric: "scaled".into(),
-        case: "fast".into(),
+        states: "fast".into(),
         depth: Some(20),
-        ..Record::default()
+        ..Row::default()
     }
 }
 
-fn on(model: &str) -> Record {
-    Record { model: model.into(), ..row() }
+fn on(model: &str) -> Row {
+    Row { robot: model.into(), ..row() }
 }
 
 fn range(low: f64, high: f64, outside: u64, seeds: u64) -> Range {
@@ -98,7 +98,7 @@ fn range(low: f64, high: f64, outside: u64, seeds: u64) -> Range {
 }
 
 /// The gates with one range of a row's key.
-fn with(row: &Record, range: Range) -> Gates {
+fn with(row: &Row, range: Range) -> Gates {
     plain().with_ranges([(RangeKey::of(row), range)].into_iter().collect(), Path::new("here")).unwrap()
 }
 
@@ -112,45 +112,43 @@ fn unmet(conditions: &[Expectation]) -> Vec<&str> {
     conditions.iter().filter(|condition| condition.verdict != Verdict::Pass).map(|condition| condition.what.as_str()).collect()
 }
 
-fn red(gates: &Gates, records: &[Record]) -> Vec<String> {
+fn red(gates: &Gates, records: &[Row]) -> Vec<String> {
     unmet(&gates.conditions(&suite(""), records, true)).into_iter().map(str::to_owned).collect()
 }
 
 #[test]
 fn the_first_gate_that_matches_judges() {
     let gates = plain();
-    let bound = |row: Record| gates.judge(row, 1e-16, 8.0).bound;
+    let bound = |row: Row| gates.judge(row, 1e-16, 8.0).bound;
     assert_eq!(bound(row()), Some(1e-14));
     assert_eq!(bound(on("hoist-3")), Some(1e-14));
     let others = [
-        Record { engine: "winch".into(), ..row() },
-        Record { method: "aba".into(), ..row() },
+        Row { engine: "winch".into(), ..row() },
+        Row { method: "aba".into(), ..row() },
         on("gantry-2"),
         on("hoist"),
-        Record { depth: Some(21), ..row() },
+        Row { depth: Some(21), ..row() },
     ];
     for other in others {
         assert_eq!(bound(other.clone()), Some(1e-10), "{other:?}");
     }
-    assert_eq!(bound(Record { depth: None, ..row() }), Some(1e-14), "a row without a depth is not deep");
-    for none in [
-        Record { quantity: "com".into(), ..row() },
-        Record { metric: "pairwise".into(), ..row() },
-        Record { study: "digits".into(), ..row() },
-    ] {
+    assert_eq!(bound(Row { depth: None, ..row() }), Some(1e-14), "a row without a depth is not deep");
+    for none in
+        [Row { quantity: "com".into(), ..row() }, Row { metric: "pairwise".into(), ..row() }, Row { study: "digits".into(), ..row() }]
+    {
         let row = gates.judge(none, 1.0, 8.0);
         assert_eq!((row.bound, row.verdict), (None, Verdict::Info));
     }
-    let forward = |metric: &str| bound(Record { quantity: "fd".into(), metric: metric.into(), depth: Some(4), ..row() });
+    let forward = |metric: &str| bound(Row { quantity: "fd".into(), metric: metric.into(), depth: Some(4), ..row() });
     assert_eq!((forward("backward"), forward("forward")), (Some(1e-14 * 4.0), Some(1e-14 * 32.0)));
-    let judged = |value: f64| gates.judge(Record { case: "zero".into(), ..row() }, value, 1.0).verdict;
+    let judged = |value: f64| gates.judge(Row { states: "zero".into(), ..row() }, value, 1.0).verdict;
     assert_eq!((judged(1e-14), judged(1.1e-14)), (Verdict::Pass, Verdict::Fail));
 }
 
 #[test]
 fn a_deviation_excuses_its_own_rows_up_to_its_range() {
     let gates = with(&row(), range(2e-14, 3e-14, 20, 20));
-    let judged = |row: Record, value: f64| gates.judge(row, value, 1.0);
+    let judged = |row: Row, value: f64| gates.judge(row, value, 1.0);
     let known = judged(row(), 2e-14);
     assert_eq!((known.verdict, known.value), (Verdict::Deviation, Some(2e-14)));
     assert_eq!(known.reason, "cables stretch (2e-14 is not at most 1e-14)");
@@ -162,11 +160,11 @@ fn a_deviation_excuses_its_own_rows_up_to_its_range() {
     }
     // Whatever it is not about fails as it would without it.
     let others = [
-        Record { engine: "winch".into(), quantity: "id".into(), ..row() },
-        Record { engine_version: "3".into(), ..row() },
-        Record { method: "aba".into(), ..row() },
-        Record { quantity: "bias".into(), ..row() },
-        Record { case: "zero".into(), ..row() },
+        Row { engine: "winch".into(), quantity: "id".into(), ..row() },
+        Row { engine_version: "3".into(), ..row() },
+        Row { method: "aba".into(), ..row() },
+        Row { quantity: "bias".into(), ..row() },
+        Row { states: "zero".into(), ..row() },
         on("gantry-2"),
     ];
     for other in others {
@@ -179,7 +177,7 @@ fn a_deviation_excuses_its_own_rows_up_to_its_range() {
     assert_eq!(unmeasured.verdict, Verdict::Fail);
     assert!(unmeasured.reason.contains("no range was measured on this robot") && unmeasured.reason.contains("gate --ranges"));
     // Nor is another measure of the same answer.
-    let other = gates.explain(Record { metric: "other".into(), ..row() }.gated(2e-14, Relation::Le, 1e-14));
+    let other = gates.explain(Row { metric: "other".into(), ..row() }.gated(2e-14, Relation::Le, 1e-14));
     assert_eq!(other.verdict, Verdict::Fail);
     // A row within its gate needs no excuse.
     assert_eq!(judged(row(), 1e-15).verdict, Verdict::Pass);
@@ -188,28 +186,28 @@ fn a_deviation_excuses_its_own_rows_up_to_its_range() {
 #[test]
 fn errors_and_what_is_not_offered_are_told_apart() {
     let gates = plain();
-    let without = |row: Record, verdict| gates.explain(row.without_value(verdict, "it says so"));
+    let without = |row: Row, verdict| gates.explain(row.without_value(verdict, "it says so"));
     let error = without(on("derrick"), Verdict::Error);
     assert_eq!((error.verdict, error.reason.as_str()), (Verdict::Deviation, "it has no foot (it says so)"));
-    for other in [on("gantry"), Record { engine_version: "3".into(), ..on("derrick") }] {
+    for other in [on("gantry"), Row { engine_version: "3".into(), ..on("derrick") }] {
         assert_eq!(without(other, Verdict::Error).verdict, Verdict::Error);
     }
     assert_eq!(without(on("derrick"), Verdict::Skip).reason, "it says so", "an error's cause is none of a skip");
     assert_eq!(gates.explain(on("derrick").gated(1.0, Relation::Le, 0.5)).verdict, Verdict::Fail);
 
-    let lacking = || Record { quantity: "com".into(), case: "zero".into(), ..on("hoist-9") };
+    let lacking = || Row { quantity: "com".into(), states: "zero".into(), ..on("hoist-9") };
     let skip = without(lacking(), Verdict::Skip);
     assert_eq!((skip.verdict, skip.reason.as_str()), (Verdict::Skip, "no mass is known (it says so)"), "it is no deviation");
     assert!(!accounted(&skip));
     assert_eq!(without(lacking(), Verdict::Error).verdict, Verdict::Error);
-    let known = |row: Record| !red(&gates, &[without(row, Verdict::Skip)]).iter().any(|what| what.starts_with("rows that a subject"));
+    let known = |row: Row| !red(&gates, &[without(row, Verdict::Skip)]).iter().any(|what| what.starts_with("rows that an engine"));
     assert!(known(lacking()));
     let others = [
-        Record { quantity: "id".into(), ..lacking() },
-        Record { case: "fast".into(), ..lacking() },
-        Record { model: "gantry".into(), ..lacking() },
-        Record { engine: "winch".into(), ..lacking() },
-        Record { engine_version: "3".into(), ..lacking() },
+        Row { quantity: "id".into(), ..lacking() },
+        Row { states: "fast".into(), ..lacking() },
+        Row { robot: "gantry".into(), ..lacking() },
+        Row { engine: "winch".into(), ..lacking() },
+        Row { engine_version: "3".into(), ..lacking() },
     ];
     for other in others {
         assert!(!known(other.clone()), "{other:?}");
@@ -221,21 +219,21 @@ fn a_row_that_is_no_pass_is_red_in_any_run() {
     let gates = plain();
     let pass = row().gated(1e-15, Relation::Le, 1e-14);
     for complete in [true, false] {
-        let unmet = |rows: &[Record]| {
+        let unmet = |rows: &[Row]| {
             unmet(&gates.conditions(&Suite { thorough: false, ..suite("") }, rows, complete))
                 .into_iter()
                 .map(str::to_owned)
                 .collect::<Vec<_>>()
         };
         assert_eq!(unmet(std::slice::from_ref(&pass)), [""; 0]);
-        let of = |verdict| Record { verdict, ..pass.clone() };
+        let of = |verdict| Row { verdict, ..pass.clone() };
         assert_eq!(unmet(&[pass.clone(), of(Verdict::Fail)]), ["rows outside their bound"]);
         assert_eq!(unmet(&[pass.clone(), of(Verdict::Error)]), ["rows without a value that was due"]);
-        assert_eq!(unmet(&[pass.clone(), of(Verdict::Skip)]), ["rows that a subject does not offer and ci/deviations.toml does not name"]);
+        assert_eq!(unmet(&[pass.clone(), of(Verdict::Skip)]), ["rows that an engine does not offer and ci/deviations.toml does not name"]);
         assert_eq!(unmet(&[pass.clone(), of(Verdict::Info), of(Verdict::Deviation)]), [""; 0]);
         assert_eq!(unmet(&[]).len(), usize::from(complete), "rows at all");
     }
-    let two = [Record { verdict: Verdict::Fail, ..pass.clone() }, Record { verdict: Verdict::Fail, ..pass }];
+    let two = [Row { verdict: Verdict::Fail, ..pass.clone() }, Row { verdict: Verdict::Fail, ..pass }];
     assert_eq!(gates.conditions(&suite(""), &two, false)[0].found, 2);
 }
 
@@ -247,12 +245,12 @@ fn a_suite_counts_its_rows() {
     let deviating = row().gated(1e-13, Relation::Le, 1e-14).deviating("known");
     let lost = row().without_value(Verdict::Error, "lost").deviating("known");
     assert_eq!([&pass, &deviating, &lost].map(accounted), [true, true, false]);
-    let is_met = |rows: &[Record]| unmet(&gates.conditions(&suite, rows, true)).is_empty();
+    let is_met = |rows: &[Row]| unmet(&gates.conditions(&suite, rows, true)).is_empty();
     assert!(is_met(&[pass.clone(), deviating.clone()]));
     assert!(!is_met(std::slice::from_ref(&pass)) && !is_met(&[pass.clone(), pass.clone(), pass.clone()]));
     assert!(!is_met(&[pass.clone(), lost]));
-    assert!(!is_met(&[pass.clone(), Record { quantity: "bias".into(), ..pass.clone() }]));
-    assert!(!is_met(&[pass.clone(), Record { engine: "winch".into(), ..pass.clone() }]));
+    assert!(!is_met(&[pass.clone(), Row { quantity: "bias".into(), ..pass.clone() }]));
+    assert!(!is_met(&[pass.clone(), Row { engine: "winch".into(), ..pass.clone() }]));
     assert!(
         gates.conditions(&suite, &[pass], false).iter().all(|condition| !condition.what.starts_with("rows of crane")),
         "of a part nothing is expected"
@@ -268,15 +266,15 @@ fn a_deviation_must_be_seen_where_its_robots_are() {
     let small = "robots on which a known deviation of crane is smaller than known: cables stretch";
     assert_eq!(red(&gates, &[gates.judge(row(), 1e-15, 1.0)]), [gone, small]);
     // Rows of another version or method are due as well, and show nothing.
-    for other in [Record { engine_version: "3".into(), ..row() }, Record { method: "aba".into(), ..row() }] {
+    for other in [Row { engine_version: "3".into(), ..row() }, Row { method: "aba".into(), ..row() }] {
         assert_eq!(red(&gates, &[gates.judge(other, 1e-15, 1.0)]), [gone]);
     }
     // A row that is there for another cause is no witness.
-    let other = Record { reason: "winds".into(), ..seen.clone() };
+    let other = Row { reason: "winds".into(), ..seen.clone() };
     assert_eq!(red(&gates, &[other]), [gone]);
-    assert_eq!(red(&gates, &[Record { verdict: Verdict::Info, ..seen.clone() }]), [gone]);
+    assert_eq!(red(&gates, &[Row { verdict: Verdict::Info, ..seen.clone() }]), [gone]);
     // Where none of its robots, quantities or cases is asked, or the engine is a guest, nothing is due.
-    for elsewhere in [on("pulley"), Record { quantity: "bias".into(), ..row() }, Record { case: "zero".into(), ..row() }] {
+    for elsewhere in [on("pulley"), Row { quantity: "bias".into(), ..row() }, Row { states: "zero".into(), ..row() }] {
         assert_eq!(red(&gates, &[gates.judge(elsewhere, 1e-15, 1.0)]), [""; 0]);
     }
     let records = [gates.judge(row(), 1e-15, 1.0)];
@@ -290,7 +288,7 @@ fn a_deviation_must_be_seen_where_its_robots_are() {
     let answered = on("derrick").gated(1e-15, Relation::Le, 1e-14);
     assert_eq!(red(&gates, &[answered]), ["known deviation of crane still seen: it has no foot"]);
 
-    let lacking = || Record { quantity: "com".into(), case: "zero".into(), ..on("hoist-9") };
+    let lacking = || Row { quantity: "com".into(), states: "zero".into(), ..on("hoist-9") };
     assert_eq!(red(&gates, &[gates.explain(lacking().without_value(Verdict::Skip, "it says so"))]), [""; 0]);
     assert_eq!(red(&gates, &[lacking().gated(1e-15, Relation::Le, 1e-14)]), ["crane still does not offer: no mass is known"]);
 }
@@ -300,7 +298,7 @@ fn a_deviation_must_be_seen_where_its_robots_are() {
 fn a_deviation_must_be_as_large_as_known() {
     let small = "robots on which a known deviation of crane is smaller than known: cables stretch";
     let judged = |gates: &Gates, values: &[f64]| -> Vec<String> {
-        let rows: Vec<Record> = values.iter().map(|&value| gates.judge(row(), value, 1.0)).collect();
+        let rows: Vec<Row> = values.iter().map(|&value| gates.judge(row(), value, 1.0)).collect();
         red(gates, &rows)
     };
     let always = with(&row(), range(8e-14, 9e-14, 20, 20));
@@ -314,13 +312,13 @@ fn a_deviation_must_be_as_large_as_known() {
     let sometimes = with(&row(), range(8e-14, 9e-14, 19, 20));
     assert_eq!(judged(&sometimes, &[3.9e-14]), [""; 0]);
     // Rows that nothing judges have no size.
-    assert_eq!(red(&always, &[always.judge(row(), 8e-14, 1.0), Record { model: "gantry".into(), ..row() }.informed(1e-20)]), [""; 0]);
+    assert_eq!(red(&always, &[always.judge(row(), 8e-14, 1.0), Row { robot: "gantry".into(), ..row() }.informed(1e-20)]), [""; 0]);
 }
 
 #[test]
 fn a_computed_bound_must_be_sharp_somewhere() {
     let gates = Gates::parse(GATES, "", Path::new("here")).unwrap();
-    let bounded = |engine: &str, method: &str, joints: &str, base: &str, bound: f64| Record {
+    let bounded = |engine: &str, method: &str, joints: &str, base: &str, bound: f64| Row {
         engine: engine.into(),
         method: method.into(),
         quantity: "fd".into(),
@@ -328,30 +326,30 @@ fn a_computed_bound_must_be_sharp_somewhere() {
         params: format!("{{\"base\":\"{base}\",\"joints\":[{joints}]}}"),
         ..row().gated(0.0, Relation::Le, bound)
     };
-    let blunt = |rows: &[Record]| -> Vec<(String, u64)> {
+    let blunt = |rows: &[Row]| -> Vec<(String, u64)> {
         let of_bounds = |condition: &Expectation| condition.what.starts_with("kinds of joint and base");
         gates.conditions(&suite(""), rows, true).into_iter().filter(of_bounds).map(|condition| (condition.what, condition.found)).collect()
     };
-    let found = |rows: &[Record]| blunt(rows).into_iter().map(|(_, found)| found).collect::<Vec<_>>();
+    let found = |rows: &[Row]| blunt(rows).into_iter().map(|(_, found)| found).collect::<Vec<_>>();
     assert_eq!(found(&[bounded("crane", "aba", "\"revolute\"", "fixed", 1e-12)]), [0]);
     assert_eq!(found(&[bounded("crane", "aba", "\"revolute\"", "fixed", 1.1e-12)]), [1]);
-    // The sharpest of several robots counts, for each joint, base and method by itself; the native kernels are asked as well, a guest is not.
+    // The sharpest of several robots counts, for each joint, base and method by itself; our own kernels are asked as well, a guest is not.
     let rows = [
         bounded("crane", "aba", "\"revolute\",\"planar\"", "fixed", 1e-9),
         bounded("crane", "aba", "\"revolute\"", "fixed", 1e-13),
         bounded("crane", "aba", "\"revolute\"", "free", 1e-9),
         bounded("crane", "lu", "\"revolute\"", "fixed", 1e-13),
-        bounded("native", "aba", "\"revolute\"", "fixed", 1e-9),
+        bounded("featherbench", "aba", "\"revolute\"", "fixed", 1e-9),
         bounded("guest", "aba", "\"revolute\"", "fixed", 1e-9),
     ];
     let told = blunt(&rows);
     assert_eq!(found(&rows), [2, 0, 1], "{told:?}");
-    assert!(told[0].0.contains("crane aba") && told[2].0.contains("native aba"), "{told:?}");
+    assert!(told[0].0.contains("crane aba") && told[2].0.contains("featherbench aba"), "{told:?}");
     // Other studies, quantities and measures have no such bounds.
     for other in [
-        Record { study: "digits".into(), ..bounded("crane", "aba", "\"revolute\"", "fixed", 1e-9) },
-        Record { quantity: "id".into(), ..bounded("crane", "aba", "\"revolute\"", "fixed", 1e-9) },
-        Record { metric: "backward".into(), ..bounded("crane", "aba", "\"revolute\"", "fixed", 1e-9) },
+        Row { study: "digits".into(), ..bounded("crane", "aba", "\"revolute\"", "fixed", 1e-9) },
+        Row { quantity: "id".into(), ..bounded("crane", "aba", "\"revolute\"", "fixed", 1e-9) },
+        Row { metric: "backward".into(), ..bounded("crane", "aba", "\"revolute\"", "fixed", 1e-9) },
     ] {
         assert_eq!(blunt(&[other]), []);
     }
@@ -360,8 +358,8 @@ fn a_computed_bound_must_be_sharp_somewhere() {
 #[test]
 fn ranges_are_measured_over_runs() {
     let gates = plain();
-    let run = |values: &[(&str, &str, f64)]| -> Vec<Record> {
-        values.iter().map(|&(model, case, value)| gates.judge(Record { case: case.into(), ..on(model) }, value, 1.0)).collect()
+    let run = |values: &[(&str, &str, f64)]| -> Vec<Row> {
+        values.iter().map(|&(model, case, value)| gates.judge(Row { states: case.into(), ..on(model) }, value, 1.0)).collect()
     };
     let mut meter = RangesMeter::default();
     meter.add(

@@ -1,14 +1,14 @@
 //! Gates of a run with an engine that a user brought along.
 
 use featherbench_bench::{Gates, Suite};
-use featherbench_results::{Record, Relation, Verdict};
+use featherbench_results::{Relation, Row, Verdict};
 
-fn row(engine: &str) -> Record {
-    Record { engine: engine.into(), study: "agreement".into(), ..Record::default() }
+fn row(engine: &str) -> Row {
+    Row { engine: engine.into(), study: "agreement".into(), ..Row::default() }
 }
 
 /// The conditions that are not met.
-fn red(gates: &Gates, records: &[Record]) -> Vec<String> {
+fn red(gates: &Gates, records: &[Row]) -> Vec<String> {
     let conditions = gates.conditions(&Suite::default(), records, true).into_iter();
     conditions.filter(|condition| condition.verdict != Verdict::Pass).map(|condition| condition.what).collect()
 }
@@ -18,10 +18,10 @@ fn red(gates: &Gates, records: &[Record]) -> Vec<String> {
 fn only_a_guest_may_leave_out_what_it_does_not_have() {
     let skip = |engine: &str| row(engine).without_value(Verdict::Skip, "no such joint");
     let (plain, with_guest) = (Gates::default(), Gates::default().with_guests(&["mine"]));
-    let unexplained = "rows that a subject does not offer and ci/deviations.toml does not name";
+    let unexplained = "rows that an engine does not offer and ci/deviations.toml does not name";
     assert_eq!(red(&plain, &[skip("mine")]), [unexplained]);
     assert!(red(&with_guest, &[skip("mine")]).is_empty());
-    for engine in ["pinocchio", "native", "mine2", ""] {
+    for engine in ["pinocchio", "featherbench", "mine2", ""] {
         assert_eq!(red(&with_guest, &[skip("mine"), skip(engine)]), [unexplained], "{engine}");
     }
     let failed = row("mine").without_value(Verdict::Error, "it broke");

@@ -2,7 +2,7 @@
 //! known size has the backward error of that size, and no forward error exceeds its amplification.
 
 use featherbench_bench::measure::{ForwardScale, Magnitudes, ratio, scaled_error, worst};
-use featherbench_bench::{Problem, Quantity};
+use featherbench_bench::{Quantity, Robot};
 use featherbench_dynamics::{Ltdl, Rnea, TreeSparse, bias_force, forward_dynamics, forward_kinematics, inverse_dynamics, mass_matrix};
 use featherbench_model::generate::Family;
 use featherbench_model::{Description, JointKind, JointType, Model, Random};
@@ -14,9 +14,9 @@ use std::cell::Cell;
 /// Six states: one of each case.
 const STATES: usize = 6;
 
-fn problem(spec: &str, seed: u64) -> Problem {
+fn robot(spec: &str, seed: u64) -> Robot {
     let description = Family::parse(spec).unwrap().generate().unwrap();
-    Problem::new(&description, "test", ModelOrigin::Generated, STATES, seed).unwrap()
+    Robot::new(&description, "test", ModelOrigin::Generated, STATES, seed).unwrap()
 }
 
 /// Robots of every kind of joint, with and without armature, on either base.
@@ -61,10 +61,10 @@ impl Units {
     }
 
     /// The same robot at the same states, in these units.
-    fn convert(self, problem: &Problem) -> Problem {
+    fn convert(self, robot: &Robot) -> Robot {
         let Self { mass, length } = self;
-        let rates = self.rates(&problem.description);
-        let mut other = problem.clone();
+        let rates = self.rates(&robot.description);
+        let mut other = robot.clone();
         let description = &mut other.description;
         description.gravity = description.gravity.map(|g| g * length);
         let mut rate = rates.iter();
@@ -100,11 +100,11 @@ impl Units {
     }
 
     /// What each number of a quantity is multiplied with.
-    fn of(self, problem: &Problem, quantity: Quantity) -> Vec<f64> {
+    fn of(self, robot: &Robot, quantity: Quantity) -> Vec<f64> {
         let Self { mass, length } = self;
-        let rates = self.rates(&problem.description);
+        let rates = self.rates(&robot.description);
         let forces: Vec<f64> = rates.iter().map(|rate| self.moment() / rate).collect();
-        let bodies = problem.description.bodies.len();
+        let bodies = robot.description.bodies.len();
         match quantity {
             Quantity::InverseDynamics | Quantity::InverseDynamicsWrench | Quantity::Bias => forces,
             Quantity::MassMatrix => forces.iter().flat_map(|force| rates.iter().map(move |rate| force / rate)).collect(),
@@ -156,27 +156,27 @@ proptest! {
     #[test]
     fn errors_have_no_unit((spec, seed) in any_robot(), grams in any::<bool>(), millimetres in any::<bool>()) {
         let units = Units { mass: if grams { 1e3 } else { 0.4536 }, length: if millimetres { 1e3 } else { 3.281 } };
-        let problem = problem(&spec, seed);
-        let other = units.convert(&problem);
+        let robot = robot(&spec, seed);
+        let other = units.convert(&robot);
         let mut random = Random::named(seed, "errors");
-        for k in 0..problem.states.count() {
-            let (at, there) = (Magnitudes::new(&problem, k), Magnitudes::new(&other, k));
+        for k in 0..robot.states.count() {
+            let (at, there) = (Magnitudes::new(&robot, k), Magnitudes::new(&other, k));
             for quantity in MEASURED {
-                let factors = units.of(&problem, quantity);
-                prop_assert_eq!(factors.len(), quantity.size(&problem));
+                let factors = units.of(&robot, quantity);
+                prop_assert_eq!(factors.len(), quantity.size(&robot));
                 // Any numbers will do where the measure takes its scale from robot and state.
                 let reference: Vec<f64> = match quantity {
                     Quantity::MassMatrix => {
-                        let matrix = mass_matrix(&problem.model, problem.states.q(k)).unwrap();
-                        let n = problem.states.nv;
+                        let matrix = mass_matrix(&robot.model, robot.states.q(k)).unwrap();
+                        let n = robot.states.nv;
                         (0..n * n).map(|entry| matrix.get(entry / n, entry % n)).collect()
                     }
-                    Quantity::Readback => problem.readback(),
+                    Quantity::Readback => robot.readback(),
                     _ => factors.iter().map(|_| random.uniform(0.5, 1.5)).collect(),
                 };
                 let value: Vec<f64> = reference.iter().map(|x| x * (1.0 + error(&mut random))).collect();
                 let convert = |values: &[f64]| values.iter().zip(&factors).map(|(x, factor)| x * factor).collect::<Vec<f64>>();
-                let here = scaled_error(&problem, quantity, &at, &reference, &value);
+                let here = scaled_error(&robot, quantity, &at, &reference, &value);
                 let there = scaled_error(&other, quantity, &there, &convert(&reference), &convert(&value));
                 prop_assert!(same(here, there), "{spec}, {quantity:?} at state {k}: {here:e} and {there:e}");
             }
@@ -186,15 +186,15 @@ proptest! {
     #[test]
     fn forward_measures_have_no_unit((spec, seed) in any_robot()) {
         let units = Units { mass: 1e3, length: 1e3 };
-        let problem = problem(&spec, seed);
-        let other = units.convert(&problem);
-        let rates = units.rates(&problem.description);
+        let robot = robot(&spec, seed);
+        let other = units.convert(&robot);
+        let rates = units.rates(&robot.description);
         let convert = |a: &[f64]| a.iter().zip(&rates).map(|(x, rate)| x * rate).collect::<Vec<f64>>();
-        let (at, there) = (problem.magnitudes(), other.magnitudes());
+        let (at, there) = (robot.magnitudes(), other.magnitudes());
         let mut random = Random::named(seed, "forward");
-        for (k, (here, there)) in ForwardScale::all(&problem, &at).iter().zip(ForwardScale::all(&other, &there)).enumerate() {
-            let states = &problem.states;
-            let a = forward_dynamics(&problem.model, states.q(k), states.v(k), states.tau(k)).unwrap();
+        for (k, (here, there)) in ForwardScale::all(&robot, &at).iter().zip(ForwardScale::all(&other, &there)).enumerate() {
+            let states = &robot.states;
+            let a = forward_dynamics(&robot.model, states.q(k), states.v(k), states.tau(k)).unwrap();
             let wrong: Vec<f64> = a.iter().map(|x| x * (1.0 + error(&mut random))).collect();
             // Eigenvalues carry κ·ε relative to themselves, solutions their amplified rounding; a hundred covers the number of terms.
             let rounding = 100.0 * f64::EPSILON * (here.condition + here.amplification);
@@ -203,7 +203,7 @@ proptest! {
             prop_assert!(close(here.amplification, there.amplification), "{spec}: {} and {}", here.amplification, there.amplification);
             let (e, f) = (here.backward_error(&wrong), there.backward_error(&convert(&wrong)));
             // Relative to their terms, residuals round as the gate on them allows.
-            prop_assert!((e - f).abs() <= 1e-14 * problem.depth as f64, "{spec}: backward {e:e} and {f:e}");
+            prop_assert!((e - f).abs() <= 1e-14 * robot.depth as f64, "{spec}: backward {e:e} and {f:e}");
             let (e, f) = (here.forward_error(&a, &wrong), there.forward_error(&convert(&a), &convert(&wrong)));
             prop_assert!(close(e, f) || same(e, f), "{spec}: forward {e:e} and {f:e}");
         }
@@ -213,10 +213,10 @@ proptest! {
     /// where there is one term alone.
     #[test]
     fn magnitudes_bound_their_sums((spec, seed) in any_robot()) {
-        let problem = problem(&spec, seed);
-        let (model, states) = (&problem.model, &problem.states);
+        let robot = robot(&spec, seed);
+        let (model, states) = (&robot.model, &robot.states);
         let below = |value: f64, magnitude: f64| value.abs() <= magnitude * (1.0 + 1e-12);
-        for (k, at) in problem.magnitudes().iter().enumerate() {
+        for (k, at) in robot.magnitudes().iter().enumerate() {
             let (q, v, a) = (states.q(k), states.v(k), states.a(k));
             let motion = forward_kinematics(model, q, v, a).unwrap();
             for (body, moves) in motion.iter().enumerate() {
@@ -252,33 +252,33 @@ proptest! {
     /// two pays for the reference's rounding.
     #[test]
     fn no_forward_error_exceeds_its_amplification((spec, seed) in any_robot(), decades in 1_i32..10) {
-        let problem = problem(&spec, seed);
-        let (states, at) = (&problem.states, problem.magnitudes());
+        let robot = robot(&spec, seed);
+        let (states, at) = (&robot.states, robot.magnitudes());
         let size = 10.0_f64.powi(-decades);
         let mut random = Random::named(seed, "answers");
-        for (k, scale) in ForwardScale::all(&problem, &at).iter().enumerate() {
-            let a = forward_dynamics(&problem.model, states.q(k), states.v(k), states.tau(k)).unwrap();
+        for (k, scale) in ForwardScale::all(&robot, &at).iter().enumerate() {
+            let a = forward_dynamics(&robot.model, states.q(k), states.v(k), states.tau(k)).unwrap();
             let wrong: Vec<f64> = a.iter().map(|x| x * (1.0 + size * random.uniform(-1.0, 1.0))).collect();
             let (forward, backward) = (scale.forward_error(&a, &wrong), scale.backward_error(&wrong));
             // The denominators of the backward error are those of the wrong answer: larger by as much as it is off.
             let bound = scale.amplification * backward * (1.0 + size);
             prop_assert!(forward <= bound, "{spec} at state {k}: {forward:e} > {bound:e}");
-            prop_assert!(scale.backward_error(&a) <= 1e-14 * problem.depth as f64, "{spec}: our own answer");
+            prop_assert!(scale.backward_error(&a) <= 1e-14 * robot.depth as f64, "{spec}: our own answer");
         }
     }
 }
 
-/// An answer to a problem that is off by η has at most the backward error η, and its forward error is bounded accordingly: M and τ off at
+/// An answer to a robot that is off by η has at most the backward error η, and its forward error is bounded accordingly: M and τ off at
 /// random. Where all terms of one row are off to the same side, the backward error is η, no less.
 #[test]
 fn a_perturbation_of_a_known_size_is_seen_in_that_size() {
     let (checked, left_out) = (Cell::new(0), Cell::new(0));
     let result = TestRunner::new(cases(200)).run(&(any_robot(), 5_i32..10), |((spec, seed), decades)| {
-        let problem = problem(&spec, seed);
-        let (model, states, at) = (&problem.model, &problem.states, problem.magnitudes());
+        let robot = robot(&spec, seed);
+        let (model, states, at) = (&robot.model, &robot.states, robot.magnitudes());
         let eta = 10.0_f64.powi(-decades);
         let mut random = Random::named(seed, "perturbations");
-        for (k, scale) in ForwardScale::all(&problem, &at).iter().enumerate() {
+        for (k, scale) in ForwardScale::all(&robot, &at).iter().enumerate() {
             // A perturbation beyond the smallest eigenvalue is another question.
             if eta * scale.condition > 1e-3 {
                 left_out.set(left_out.get() + 1);
@@ -335,15 +335,15 @@ fn no_fold_loses_what_is_not_a_number() {
     assert_eq!(worst(1.0, f64::INFINITY), f64::INFINITY);
     assert_eq!((ratio(0.0, 0.0), ratio(1e-300, 0.0), ratio(-2.0, 4.0)), (0.0, f64::INFINITY, 0.5));
     assert!(ratio(f64::NAN, 1.0).is_nan() && ratio(1.0, f64::NAN).is_nan() && ratio(0.0, f64::NAN).is_nan());
-    let problem = problem("joints:kind=mixed,base=free", 1);
-    let at = Magnitudes::new(&problem, 0);
+    let robot = robot("joints:kind=mixed,base=free", 1);
+    let at = Magnitudes::new(&robot, 0);
     for quantity in Quantity::ALL {
-        let reference = vec![1.0; quantity.size(&problem)];
-        assert_eq!(scaled_error(&problem, quantity, &at, &reference, &reference), 0.0, "{quantity:?}");
+        let reference = vec![1.0; quantity.size(&robot)];
+        assert_eq!(scaled_error(&robot, quantity, &at, &reference, &reference), 0.0, "{quantity:?}");
         for entry in [0, reference.len() / 2, reference.len() - 1] {
             let mut value = reference.clone();
             value[entry] = f64::NAN;
-            assert!(scaled_error(&problem, quantity, &at, &reference, &value).is_nan(), "{quantity:?}");
+            assert!(scaled_error(&robot, quantity, &at, &reference, &value).is_nan(), "{quantity:?}");
         }
         let more = [&reference[..], &[1.0]].concat();
         let fewer = &reference[1..];
@@ -351,7 +351,7 @@ fn no_fold_loses_what_is_not_a_number() {
             [(&reference[..], fewer), (&reference, &more), (fewer, &reference), (&more, &reference), (fewer, fewer), (&more, &more)]
         {
             assert_eq!(
-                scaled_error(&problem, quantity, &at, reference, value),
+                scaled_error(&robot, quantity, &at, reference, value),
                 f64::INFINITY,
                 "{quantity:?}: one number too few or too many"
             );
@@ -363,11 +363,11 @@ fn no_fold_loses_what_is_not_a_number() {
 #[test]
 fn factors_are_measured_by_their_product() {
     for spec in ["humanoid", "tree:n=9,seed=2,base=free,armature=true", "chain:n=6"] {
-        let problem = problem(spec, 1);
-        let (topology, at) = (&problem.model.topology, &problem.magnitudes()[0]);
-        let sparse = mass_matrix(&problem.model, problem.states.q(0)).unwrap();
+        let robot = robot(spec, 1);
+        let (topology, at) = (&robot.model.topology, &robot.magnitudes()[0]);
+        let sparse = mass_matrix(&robot.model, robot.states.q(0)).unwrap();
         let mass = sparse.to_dense();
-        let error = |quantity, reference: &[f64], value: &[f64]| scaled_error(&problem, quantity, at, reference, value);
+        let error = |quantity, reference: &[f64], value: &[f64]| scaled_error(&robot, quantity, at, reference, value);
         let factors = sparse.clone().into_ltdl().unwrap().factors().values().to_vec();
         assert_eq!(error(Quantity::Factorization, &factors, &factors), 0.0);
 

@@ -2,11 +2,11 @@
 //! answer for the same robot. Each misses by one ulp to 1e-7; a product of three such joints too.
 
 use featherbench_bench::measure::{Magnitudes, scaled_error};
-use featherbench_bench::{Problem, Quantity};
+use featherbench_bench::{Quantity, Robot};
 use featherbench_dynamics::{Crba, Jacobian, Kinematics, Rnea, TreeSparse};
 use featherbench_model::generate::Family;
 use featherbench_model::{Description, JointType, Model, Random};
-use featherbench_reference::{Mp, Precision, Robot};
+use featherbench_reference::{Mp, Precision, Robot as Witness};
 use featherbench_results::ModelOrigin;
 use featherbench_spatial::{DoubleDouble, Lift};
 use std::path::Path;
@@ -66,17 +66,17 @@ fn apart(a: DoubleDouble, b: &Mp) -> f64 {
 /// Holds kernels, truth and witness together on a robot as it is written.
 #[track_caller]
 fn one_meaning(name: &str, written: &Description) {
-    let problem = Problem::new(written, "test", ModelOrigin::Generated, 3, 7).unwrap();
-    let witness = Robot::new(written, Precision::for_dofs(written.nv())).unwrap();
+    let robot = Robot::new(written, "test", ModelOrigin::Generated, 3, 7).unwrap();
+    let witness = Witness::new(written, Precision::for_dofs(written.nv())).unwrap();
     let truth = Model::<DoubleDouble>::build(written).unwrap();
-    let (model, states) = (&problem.model, &problem.states);
-    let (topology, nv, body) = (&model.topology, states.nv, model.described[problem.deepest_body()]);
+    let (model, states) = (&robot.model, &robot.states);
+    let (topology, nv, body) = (&model.topology, states.nv, model.described[robot.deepest_body()]);
     for k in 0..states.count() {
         let (q, v, a) = (states.q(k), states.v(k), states.a(k));
-        let at = Magnitudes::new(&problem, k);
+        let at = Magnitudes::new(&robot, k);
         let (wide_q, wide_v, wide_a) = (wide(q), wide(v), wide(a));
         let held = |quantity: Quantity, truth: &[DoubleDouble], ours: &[f64]| {
-            let error = scaled_error(&problem, quantity, &at, &narrow(truth), ours);
+            let error = scaled_error(&robot, quantity, &at, &narrow(truth), ours);
             assert!(error <= GATE, "{name}, state {k}: our {} is {error:e} from the truth", quantity.name());
         };
 
@@ -148,17 +148,17 @@ fn axes_and_rotations_that_are_not_quite_unit_mean_one_robot() {
 #[test]
 fn everybody_gets_the_canonical_numbers() {
     for off in OFF {
-        let problem = Problem::new(&moved(&panda(), off), "test", ModelOrigin::Robot, 1, 1).unwrap();
-        assert_eq!(problem.description.canonical().unwrap(), problem.description, "off by {off:e}");
+        let robot = Robot::new(&moved(&panda(), off), "test", ModelOrigin::Robot, 1, 1).unwrap();
+        assert_eq!(robot.description.canonical().unwrap(), robot.description, "off by {off:e}");
         // What is sent to an oracle is made of this description, once more canonical.
-        let line = featherbench_formats::neutral::to_line(&problem.description).unwrap();
+        let line = featherbench_formats::neutral::to_line(&robot.description).unwrap();
         let sent = featherbench_formats::neutral::parse(&line, "the line").unwrap();
-        for ((body, sent), turned) in problem.description.bodies.iter().zip(&sent.bodies).zip(&problem.model.placements) {
+        for ((body, sent), turned) in robot.description.bodies.iter().zip(&sent.bodies).zip(&robot.model.placements) {
             assert_eq!((body.joint.kind, body.joint.placement), (sent.joint.kind, sent.joint.placement), "off by {off:e}");
             assert_eq!(turned.rotation.to_array(), body.joint.placement.rotation);
         }
         if off > f64::EPSILON {
-            assert!(!problem.model.warnings.is_empty(), "off by {off:e}: nothing is told");
+            assert!(!robot.model.warnings.is_empty(), "off by {off:e}: nothing is told");
         }
     }
 }

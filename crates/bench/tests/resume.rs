@@ -4,11 +4,11 @@
 use featherbench_bench::frame::Frame;
 use featherbench_bench::run::{Progress, Silent, compare, evaluate, plan};
 use featherbench_bench::{
-    Cell, Context, Finished, Gates, HarnessError, OUTCOMES_NAME, Outcome, OutcomeStore, Problem, Reading, ReadingNote, Refusal, Study,
+    Cell, Context, Finished, Gates, HarnessError, NoAnswer, OUTCOMES_NAME, Outcome, OutcomeStore, Reading, ReadingNote, Robot, Study,
 };
 use featherbench_model::Random;
 use featherbench_model::generate::Family;
-use featherbench_results::{ModelOrigin, Record, Verdict};
+use featherbench_results::{ModelOrigin, Row, Verdict};
 use rayon::ThreadPoolBuilder;
 use std::collections::{BTreeMap, BTreeSet};
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -46,18 +46,18 @@ impl Study for Counting {
     }
 
     fn plan(&self, context: &Context) -> Vec<Cell> {
-        let cell = |problem: &Problem, method: usize| Cell {
+        let cell = |robot: &Robot, method: usize| Cell {
             study: self.name().into(),
-            problem: problem.name.clone(),
-            problem_hash: problem.hash.clone(),
+            robot: robot.name.clone(),
+            robot_hash: robot.hash.clone(),
             params: serde_json::json!({"method": method}),
-            subject: ["some", "other"][method % 2].into(),
+            engine: ["some", "other"][method % 2].into(),
             version: "1".into(),
             method: format!("method {method}"),
             quantity: "id".into(),
             scalar: "f64".into(),
         };
-        context.problems.iter().flat_map(|problem| (0..METHODS).map(move |method| cell(problem, method))).collect()
+        context.robots.iter().flat_map(|robot| (0..METHODS).map(move |method| cell(robot, method))).collect()
     }
 
     /// Some values that depend on the cell alone, refusals of both kinds among them.
@@ -73,11 +73,11 @@ impl Study for Counting {
         let method = cell.params["method"].as_u64().unwrap() as usize;
         assert!(method >= self.panics, "method {method} breaks");
         match method % 6 {
-            4 => Outcome::Refused(Refusal::Unsupported("not \"this\", or\nthat".into())),
-            5 => Outcome::Refused(Refusal::Failed("it broke".into())),
+            4 => Outcome::NoAnswer(NoAnswer::NotOffered("not \"this\", or\nthat".into())),
+            5 => Outcome::NoAnswer(NoAnswer::Failed("it broke".into())),
             3 => {
                 let description = Family::parse("chain:n=2").unwrap().generate().unwrap();
-                let note = ReadingNote { cause: "warning".into(), subject: None, text: "not \"this\"".into(), numbers: vec![0.1, -2.0] };
+                let note = ReadingNote { cause: "warning".into(), about: None, text: "not \"this\"".into(), numbers: vec![0.1, -2.0] };
                 let written = Some(description.clone());
                 Outcome::Reading(Box::new(Reading { description, notes: vec![note], keyframes: vec![vec![0.1, -0.2]], written }))
             }
@@ -88,24 +88,24 @@ impl Study for Counting {
         }
     }
 
-    fn compare(&self, _: &Context, problem: &Problem, finished: &[Finished]) -> Vec<Record> {
+    fn compare(&self, _: &Context, robot: &Robot, finished: &[Finished]) -> Vec<Row> {
         let row = |(cell, outcome): &Finished| {
-            let blank = Record { cell: cell.id(), model: problem.name.clone(), method: cell.method.clone(), ..Record::default() };
+            let blank = Row { cell: cell.id(), robot: robot.name.clone(), method: cell.method.clone(), ..Row::default() };
             match outcome {
                 Outcome::Values(values) => blank.informed(values.iter().sum()),
                 Outcome::Reading(reading) => blank.informed((reading.description.bodies.len() + reading.notes.len()) as f64),
-                Outcome::Refused(Refusal::Unsupported(reason)) => blank.without_value(Verdict::Skip, reason.as_str()),
-                Outcome::Refused(Refusal::Failed(reason)) => blank.without_value(Verdict::Error, reason.as_str()),
+                Outcome::NoAnswer(NoAnswer::NotOffered(reason)) => blank.without_value(Verdict::Skip, reason.as_str()),
+                Outcome::NoAnswer(NoAnswer::Failed(reason)) => blank.without_value(Verdict::Error, reason.as_str()),
             }
         };
         finished.iter().map(row).collect()
     }
 }
 
-fn robots() -> Vec<Problem> {
+fn robots() -> Vec<Robot> {
     let robot = |n: usize| {
         let description = Family::parse(&format!("chain:n={n}")).unwrap().generate().unwrap();
-        Problem::new(&description, "chain", ModelOrigin::Generated, 1, 1).unwrap()
+        Robot::new(&description, "chain", ModelOrigin::Generated, 1, 1).unwrap()
     };
     // Not in the order of their names.
     [3, 1, 4, 2].map(robot).into()
@@ -113,8 +113,8 @@ fn robots() -> Vec<Problem> {
 
 /// Runs or resumes in a folder and returns the final rows as bytes.
 fn run_in(folder: &Path, study: &Counting, progress: &dyn Progress) -> Result<Vec<u8>, HarnessError> {
-    let (problems, gates) = (robots(), Gates::default());
-    let context = Context { problems: &problems, subjects: &[], gates: &gates, seed: 7 };
+    let (robots, gates) = (robots(), Gates::default());
+    let context = Context { robots: &robots, engines: &[], gates: &gates, seed: 7 };
     let store = OutcomeStore::open(folder)?;
     let finished = evaluate(study, &context, plan(study, &context, &|_| true), &store, progress)?;
     Ok(featherbench_results::to_csv(&compare(study, &context, finished), folder).unwrap())
@@ -278,8 +278,8 @@ fn a_panic_of_the_harness_itself_loses_nothing_finished() {
 #[test]
 fn a_panic_is_the_failure_of_its_cell_alone() {
     let folder = tempfile::tempdir().unwrap();
-    let (problems, gates) = (robots(), Gates::default());
-    let context = Context { problems: &problems, subjects: &[], gates: &gates, seed: 7 };
+    let (robots, gates) = (robots(), Gates::default());
+    let context = Context { robots: &robots, engines: &[], gates: &gates, seed: 7 };
     for study in [Counting { panics: 2, ..Counting::default() }, Counting { panics: 2, exclusive: true, ..Counting::default() }] {
         let store = OutcomeStore::open(&tempfile::tempdir_in(&folder).unwrap().keep()).unwrap();
         let finished = evaluate(&study, &context, study.plan(&context), &store, &Silent).unwrap();
@@ -288,7 +288,7 @@ fn a_panic_is_the_failure_of_its_cell_alone() {
             let method = cell.params["method"].as_u64().unwrap();
             if method < 2 {
                 let reason = format!("internal error: method {method} breaks");
-                assert_eq!(*outcome, Outcome::Refused(Refusal::Failed(reason)));
+                assert_eq!(*outcome, Outcome::NoAnswer(NoAnswer::Failed(reason)));
             } else {
                 assert_eq!(*outcome, Counting::default().evaluate(&context, cell));
             }
@@ -316,8 +316,8 @@ fn threads_and_order_leave_no_trace() {
 fn a_part_of_a_run_is_a_part_of_the_whole() {
     let (_, csv, ids) = whole();
     let folder = tempfile::tempdir().unwrap();
-    let (problems, gates, part) = (robots(), Gates::default(), Counting::default());
-    let context = Context { problems: &problems, subjects: &[], gates: &gates, seed: 7 };
+    let (robots, gates, part) = (robots(), Gates::default(), Counting::default());
+    let context = Context { robots: &robots, engines: &[], gates: &gates, seed: 7 };
     let cells = plan(&part, &context, &|cell| cell.path().contains("chain-planar-4/some"));
     assert_eq!(cells.len(), METHODS / 2);
     evaluate(&part, &context, cells, &OutcomeStore::open(folder.path()).unwrap(), &Silent).unwrap();
@@ -329,18 +329,18 @@ fn a_part_of_a_run_is_a_part_of_the_whole() {
 /// Whatever changes in a cell is another cell: an outcome of another version, robot or parameter is never taken.
 #[test]
 fn an_outcome_belongs_to_its_cell_to_the_last_letter() {
-    let (problems, gates, study) = (robots(), Gates::default(), Counting::default());
-    let context = Context { problems: &problems, subjects: &[], gates: &gates, seed: 7 };
+    let (robots, gates, study) = (robots(), Gates::default(), Counting::default());
+    let context = Context { robots: &robots, engines: &[], gates: &gates, seed: 7 };
     let cells = study.plan(&context);
     let ids: BTreeSet<String> = cells.iter().map(Cell::id).collect();
     assert_eq!(ids.len(), cells.len());
     let cell = &cells[0];
     let changes: [fn(&mut Cell); 9] = [
         |cell| cell.study += "x",
-        |cell| cell.problem += "x",
-        |cell| cell.problem_hash += "x",
+        |cell| cell.robot += "x",
+        |cell| cell.robot_hash += "x",
         |cell| cell.params["more"] = 1.into(),
-        |cell| cell.subject += "x",
+        |cell| cell.engine += "x",
         |cell| cell.version += "x",
         |cell| cell.method += "x",
         |cell| cell.quantity += "x",
@@ -351,6 +351,6 @@ fn an_outcome_belongs_to_its_cell_to_the_last_letter() {
         change(&mut other);
         assert!(!ids.contains(&other.id()));
     }
-    let swapped = Cell { subject: cell.version.clone(), version: cell.subject.clone(), ..cell.clone() };
+    let swapped = Cell { engine: cell.version.clone(), version: cell.engine.clone(), ..cell.clone() };
     assert!(!ids.contains(&swapped.id()));
 }

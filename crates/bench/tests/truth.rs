@@ -2,17 +2,17 @@
 
 use featherbench_bench::measure::worst;
 use featherbench_bench::truth::{TruthModel, structured_floor};
-use featherbench_bench::{Problem, hash};
+use featherbench_bench::{Robot, hash};
 use featherbench_model::generate::Family;
 use featherbench_model::{Random, StateBatch};
-use featherbench_reference::{Precision, Robot, nearest_doubles};
+use featherbench_reference::{Precision, Robot as Witness, nearest_doubles};
 use featherbench_results::ModelOrigin;
 
-fn problem(spec: &str, states: usize) -> Problem {
+fn robot(spec: &str, states: usize) -> Robot {
     let family = Family::parse(spec).unwrap();
-    let problem = Problem::new(&family.generate().unwrap(), family.name(), ModelOrigin::Generated, states, 5).unwrap();
-    let narrow = StateBatch::narrow(&problem.model, states, 5, std::f64::consts::PI, 1.0);
-    problem.at(narrow)
+    let robot = Robot::new(&family.generate().unwrap(), family.name(), ModelOrigin::Generated, states, 5).unwrap();
+    let narrow = StateBatch::narrow(&robot.model, states, 5, std::f64::consts::PI, 1.0);
+    robot.at(narrow)
 }
 
 /// Largest |a − b| over the largest |b|.
@@ -24,13 +24,13 @@ fn apart(a: &[f64], b: &[f64]) -> f64 {
 /// Asserts that both say the same to within a tolerance relative to the largest entry.
 #[track_caller]
 fn agree(spec: &str, tolerance: f64) {
-    let problem = problem(spec, 3);
-    let truth = TruthModel::new(&problem).unwrap();
-    let witness = Robot::new(&problem.description, Precision::for_dofs(problem.states.nv)).unwrap();
-    for k in 0..problem.states.count() {
-        let states = &problem.states;
+    let robot = robot(spec, 3);
+    let truth = TruthModel::new(&robot).unwrap();
+    let witness = Witness::new(&robot.description, Precision::for_dofs(robot.states.nv)).unwrap();
+    for k in 0..robot.states.count() {
+        let states = &robot.states;
         let (q, v, a, tau) = (states.q(k), states.v(k), states.a(k), states.tau(k));
-        let ours = truth.at(&problem, k).unwrap();
+        let ours = truth.at(&robot, k).unwrap();
         let id = nearest_doubles(&witness.inverse_dynamics(q, v, a).unwrap());
         let fd = nearest_doubles(&witness.forward_dynamics(q, v, tau).unwrap());
         let mass = nearest_doubles(witness.mass_matrix(q).unwrap().entries());
@@ -65,19 +65,19 @@ fn the_truth_is_that_of_the_independent_witness() {
 #[test]
 fn half_an_ulp_in_the_inputs_moves_the_answer_by_the_floor_at_most() {
     for spec in ["chain:n=10,layout=planar", "chain:n=10,layout=spatial,tip_scale=1e3", "quadruped"] {
-        let problem = problem(spec, 1);
-        let floor = structured_floor(&problem, 0).unwrap();
-        let truth = |problem: &Problem| TruthModel::new(problem).unwrap().at(problem, 0).unwrap().forward_dynamics.unwrap();
-        let still = truth(&problem);
+        let robot = robot(spec, 1);
+        let floor = structured_floor(&robot, 0).unwrap();
+        let truth = |robot: &Robot| TruthModel::new(robot).unwrap().at(robot, 0).unwrap().forward_dynamics.unwrap();
+        let still = truth(&robot);
         let norm = |values: &[f64]| values.iter().map(|x| x * x).sum::<f64>().sqrt();
         let mut random = Random::named(3, &hash::of(spec.as_bytes()));
         let mut farthest = 0.0_f64;
         for _ in 0..20 {
             // An ulp is too small to see beside the rounding of the answer: 2²⁰ of them, and the floor as many times higher.
             let mut nudge = |x: &mut f64| *x *= 1.0 + random.uniform(-0.5, 0.5) * f64::EPSILON * 1_048_576.0;
-            let mut states = problem.states.clone();
+            let mut states = robot.states.clone();
             [&mut states.v, &mut states.tau].into_iter().flatten().for_each(&mut nudge);
-            let mut nudged = problem.clone().at(states);
+            let mut nudged = robot.clone().at(states);
             nudged.description.bodies.iter_mut().for_each(|body| {
                 nudge(&mut body.mass);
                 body.joint.placement.translation.iter_mut().for_each(&mut nudge);

@@ -4,11 +4,11 @@ use crate::args::{CompareArgs, RunArgs};
 use crate::fail::Fail;
 use crate::oracles::ENGINES;
 use crate::patience::Patient;
-use crate::problems::{self, Loaded};
+use crate::robots::{self, Loaded};
 use crate::root::Root;
-use crate::{outcome, report, robot_file, run, subjects, table};
+use crate::{engines, outcome, report, robot_file, run, table};
 use ::featherbench_results::{ModelOrigin, Verdict};
-use featherbench_bench::{AgreementEntry, Cell, Context, FileFormat, Gates, Problem, RobotFile, Subject, Suite, hash};
+use featherbench_bench::{AgreementEntry, Cell, Context, Engine, FileFormat, Gates, Robot, RobotFile, Suite, hash};
 use featherbench_studies::{Agreement, Reading};
 use std::time::{Instant, SystemTime};
 
@@ -29,64 +29,63 @@ pub fn compare(root: &Root, args: &CompareArgs) -> Result<(), Fail> {
     // Our own reading of a URDF needs no engine.
     let read = opened
         .into_iter()
-        .map(|file| if file.format == FileFormat::Urdf { robot(file, &[]).map(Some) } else { Ok(Some(Robot::Unread(file))) });
-    let files: Vec<Robot> = read.filter_map(|robot| kept(robot, &mut bad).flatten()).collect();
+        .map(|file| if file.format == FileFormat::Urdf { read_file(file, &[]).map(Some) } else { Ok(Some(Source::Unread(file))) });
+    let files: Vec<Source> = read.filter_map(|robot| kept(robot, &mut bad).flatten()).collect();
     if files.is_empty() {
         return Err(ended(bad));
     }
     let gates = Gates::read(&root.gates())?;
-    let mut loaded = Loaded { name: "compare".into(), suite: suite(engines), hash: hashes(&files), problems: Vec::new() };
+    let mut loaded = Loaded { name: "compare".into(), suite: suite(engines), hash: hashes(&files), robots: Vec::new() };
     eprintln!("starting {} …", loaded.suite.agreement.iter().flat_map(|entry| entry.engines.clone()).collect::<Vec<_>>().join(", "));
     let live = RunArgs { live: true, answer_within: args.answer_within, ..RunArgs::default_suite() };
-    let mut subjects = subjects::open(root, &live, &loaded)?;
-    if let Some(missing) = subjects.missing(&loaded).first() {
+    let mut opened = engines::open(root, &live, &loaded)?;
+    if let Some(missing) = opened.missing(&loaded).first() {
         let message = format!("{} does not answer: {}", missing.name, missing.reason);
         return Err(Fail::Missing { message, advice: "look at `featherbench oracles status`, or leave it out with --engines".into() });
     }
-    let patient = |subject: Box<dyn Subject>| -> Box<dyn Subject> {
-        if subject.identity().name == "native" { subject } else { Box::new(Patient::new(subject)) }
+    let patient = |engine: Box<dyn Engine>| -> Box<dyn Engine> {
+        if engine.identity().name == "featherbench" { engine } else { Box::new(Patient::new(engine)) }
     };
-    subjects.subjects = subjects.subjects.into_iter().map(patient).collect();
+    opened.engines = opened.engines.into_iter().map(patient).collect();
     let mut remarks: Vec<(String, Vec<String>)> = Vec::new();
     for file in files {
         let read = match file {
-            Robot::Unread(file) => robot(file, &subjects.subjects),
+            Source::Unread(file) => read_file(file, &opened.engines),
             read => Ok(read),
         };
-        let Some(Robot::Read { problem, remarks: about }) = kept(read, &mut bad) else { continue };
-        let problem = *problem;
-        let twice =
-            loaded.problems.iter().filter(|known| known.name == problem.name || known.name.starts_with(&format!("{} (", problem.name)));
+        let Some(Source::Read { robot, remarks: about }) = kept(read, &mut bad) else { continue };
+        let robot = *robot;
+        let twice = loaded.robots.iter().filter(|known| known.name == robot.name || known.name.starts_with(&format!("{} (", robot.name)));
         let count = twice.count();
-        let name = if count == 0 { problem.name.clone() } else { format!("{} ({})", problem.name, count + 1) };
+        let name = if count == 0 { robot.name.clone() } else { format!("{} ({})", robot.name, count + 1) };
         remarks.push((name.clone(), about));
-        loaded.problems.push(Problem { name, ..problem });
+        loaded.robots.push(Robot { name, ..robot });
     }
-    if loaded.problems.is_empty() {
+    if loaded.robots.is_empty() {
         return Err(ended(bad));
     }
 
     let started = SystemTime::now();
     let (folder, id) = run::folder(root, args.out.as_deref(), false, &loaded.name, started)?;
-    let mut info = run::describe(root, true, &loaded, &subjects)?;
+    let mut info = run::describe(root, true, &loaded, &opened)?;
     info.run = id;
     run::tell_notes(&info);
     info.started = humantime::format_rfc3339_seconds(started).to_string();
     info.seconds.insert("setup".into(), start.elapsed().as_secs_f64());
-    let context = Context { problems: &loaded.problems, subjects: &subjects.subjects, gates: &gates, seed: SEED };
+    let context = Context { robots: &loaded.robots, engines: &opened.engines, gates: &gates, seed: SEED };
     let shown = ["readback", "id", "bias", "mass_matrix_probe"];
     let keep = |cell: &Cell| {
-        let large = loaded.problems.iter().any(|problem| problem.name == cell.problem && problem.states.nv > LARGE);
+        let large = loaded.robots.iter().any(|robot| robot.name == cell.robot && robot.states.nv > LARGE);
         cell.study != "agreement" || !large || shown.contains(&cell.quantity.as_str())
     };
     let records = run::conduct(&[Box::new(Reading), Box::new(Agreement)], &context, &folder, &keep, &mut info)?;
-    let conditions = |problem| outcome::conditions(problem, &subjects.subjects, &records, args.strict);
-    info.expected = loaded.problems.iter().flat_map(conditions).collect();
+    let conditions = |robot| outcome::conditions(robot, &opened.engines, &records, args.strict);
+    info.expected = loaded.robots.iter().flat_map(conditions).collect();
     info.seconds.insert("total".into(), start.elapsed().as_secs_f64());
     ::featherbench_results::write_run(&folder, &info, &records)?;
     let page = report::render(&folder, &info, &records)?;
-    for (problem, (_, remarks)) in loaded.problems.iter().zip(&remarks) {
-        print!("{}", table::of(problem, remarks, &subjects.subjects, &records));
+    for (robot, (_, remarks)) in loaded.robots.iter().zip(&remarks) {
+        print!("{}", table::of(robot, remarks, &opened.engines, &records));
     }
     println!("report: {}", page.display());
     let unmet: Vec<_> = info.expected.iter().filter(|condition| condition.verdict != Verdict::Pass).collect();
@@ -124,18 +123,18 @@ fn ended(mut bad: Vec<Fail>) -> Fail {
 }
 
 /// A robot on its way to being compared.
-enum Robot {
+enum Source {
     /// Its reference reading needs MuJoCo.
     Unread(RobotFile),
     /// The reference reading, and what it leaves out that a user should know.
-    Read { problem: Box<Problem>, remarks: Vec<String> },
+    Read { robot: Box<Robot>, remarks: Vec<String> },
 }
 
-impl Robot {
+impl Source {
     fn hash(&self) -> &str {
         match self {
             Self::Unread(file) => &file.hash,
-            Self::Read { problem, .. } => &problem.hash,
+            Self::Read { robot, .. } => &robot.hash,
         }
     }
 }
@@ -160,31 +159,31 @@ fn suite(engines: Vec<String>) -> Suite {
     }
 }
 
-fn hashes(files: &[Robot]) -> String {
+fn hashes(files: &[Source]) -> String {
     hash::of_parts(&files.iter().map(|file| file.hash().as_bytes()).collect::<Vec<_>>())
 }
 
 /// The reference reading of a file, at its states.
-fn robot(mut file: RobotFile, subjects: &[Box<dyn Subject>]) -> Result<Robot, Fail> {
+fn read_file(mut file: RobotFile, engines: &[Box<dyn Engine>]) -> Result<Source, Fail> {
     let (description, warnings, keyframes, remarks) = match file.format {
         FileFormat::Urdf => {
-            let (description, notes) = problems::read_urdf(&file)?;
-            file.links = problems::links(&file)?;
+            let (description, notes) = robots::read_urdf(&file)?;
+            file.links = robots::links(&file)?;
             let remarks = notes.iter().map(ToString::to_string).filter(|note| note.contains("mimic")).collect();
-            (description, problems::normalised(notes), Vec::new(), remarks)
+            (description, robots::normalised(notes), Vec::new(), remarks)
         }
         FileFormat::Mjcf => {
-            let compiler = subjects.iter().find(|subject| subject.identity().name == "mujoco");
+            let compiler = engines.iter().find(|engine| engine.identity().name == "mujoco");
             let message =
                 || format!("{}: MuJoCo's compiler is the reference of MJCF files; do not leave it out of --engines", file.path.display());
-            let reading = problems::read_mjcf(&file, compiler.ok_or_else(|| Fail::input(message()))?.as_ref())?;
+            let reading = robots::read_mjcf(&file, compiler.ok_or_else(|| Fail::input(message()))?.as_ref())?;
             let remarks = reading.notes.iter().filter(|note| note.cause == "free_armature");
-            let remarks = remarks.map(|note| format!("joint '{}': {}", note.subject.as_deref().unwrap_or_default(), note.text)).collect();
+            let remarks = remarks.map(|note| format!("joint '{}': {}", note.about.as_deref().unwrap_or_default(), note.text)).collect();
             (reading.description, Vec::new(), reading.keyframes, remarks)
         }
     };
     let malformed = |error: &dyn std::error::Error| Fail::input(format!("{}: {error}", file.path.display()));
-    let problem = Problem::new(&description, "file", ModelOrigin::Robot, STATES, SEED).map_err(|error| malformed(&error))?;
-    let problem = problem.with_warnings(warnings).with_keyframes(&keyframes, SEED).map_err(|error| malformed(&error))?;
-    Ok(Robot::Read { problem: Box::new(problem.from_file(file)), remarks })
+    let robot = Robot::new(&description, "file", ModelOrigin::Robot, STATES, SEED).map_err(|error| malformed(&error))?;
+    let robot = robot.with_warnings(warnings).with_keyframes(&keyframes, SEED).map_err(|error| malformed(&error))?;
+    Ok(Source::Read { robot: Box::new(robot.from_file(file)), remarks })
 }

@@ -2,7 +2,7 @@
 
 use crate::args::DiffArgs;
 use crate::fail::Fail;
-use ::featherbench_results::{Change, Changed, Diff, ERROR_FACTOR, Record, RunInfo, TIME_NOISE, diff, read_run};
+use ::featherbench_results::{Change, Changed, Diff, ERROR_FACTOR, Row, RunInfo, TIME_NOISE, diff, read_run};
 use std::fmt::Write as _;
 
 /// Rows of each kind of change that are listed one by one.
@@ -29,7 +29,7 @@ const HEAD: [&str; 8] = ["change", "robot", "engine", "quantity", "measure", "be
 
 /// A changed row as the columns of a listing.
 fn columns(changed: &Changed) -> [String; 8] {
-    let shown = |row: Option<&Record>| match row {
+    let shown = |row: Option<&Row>| match row {
         None => "–".to_owned(),
         Some(row) => {
             let value = row.value.map_or_else(|| "–".to_owned(), |value| number(value, &row.unit));
@@ -37,12 +37,13 @@ fn columns(changed: &Changed) -> [String; 8] {
         }
     };
     let factor = changed.factor().filter(|factor| factor.is_finite()).map_or_else(|| "–".into(), |factor| format!("{factor:.3}"));
-    let measure =
-        |row: &Record| [&row.metric, &row.case].into_iter().filter(|word| !word.is_empty()).cloned().collect::<Vec<_>>().join(" ");
+    let measure = |row: &Row| {
+        [&row.metric, &row.body, &row.states, &row.cache].into_iter().filter(|word| !word.is_empty()).cloned().collect::<Vec<_>>().join(" ")
+    };
     let Some(row) = changed.after.or(changed.before) else { return Default::default() };
     [
         changed.change.as_str().to_owned(),
-        row.model.clone(),
+        row.robot.clone(),
         format!("{} {}", row.engine, row.method),
         row.quantity.clone(),
         measure(row),
@@ -72,8 +73,8 @@ fn summary(before: &RunInfo, after: &RunInfo, found: &Diff) -> String {
     let revision = |run: &RunInfo| run.git.revision.chars().take(10).collect::<String>();
     let mut text =
         format!("{} ({}) to {} ({}): {} rows compared, {what}", before.run, revision(before), after.run, revision(after), found.compared);
-    if found.void > 0 {
-        let _ = write!(text, "; {} times are void in one of the runs and were not compared", found.void);
+    if found.invalid > 0 {
+        let _ = write!(text, "; {} times do not count in one of the runs and were not compared", found.invalid);
     }
     if before.host.cpu != after.host.cpu || before.host.cores != after.host.cores {
         text += "; the runs are of two machines: their times compare the machines";

@@ -3,19 +3,16 @@
 use crate::args::ExplainArgs;
 use crate::fail::Fail;
 use crate::shell::{quoted, words};
-use ::featherbench_results::{Record, RunInfo};
-use featherbench_bench::{OUTCOMES_NAME, Outcome, OutcomeStore, Quantity, Refusal};
+use ::featherbench_results::{Row, RunInfo};
+use featherbench_bench::{NoAnswer, OUTCOMES_NAME, Outcome, OutcomeStore, Quantity};
 
 /// Prints what a cell asked, what was answered, and how it was judged.
 pub fn explain(args: &ExplainArgs) -> Result<(), Fail> {
     let (info, records) = ::featherbench_results::read_run(&args.folder)?;
-    let rows: Vec<&Record> = records.iter().filter(|row| row.cell.starts_with(&args.cell)).collect();
+    let rows: Vec<&Row> = records.iter().filter(|row| row.cell.starts_with(&args.cell)).collect();
     let Some(first) = rows.first() else {
-        let message = format!(
-            "{} has no cell that begins with '{}'; ids stand in the column 'cell' of records.csv",
-            args.folder.display(),
-            args.cell
-        );
+        let message =
+            format!("{} has no cell that begins with '{}'; ids stand in the column 'cell' of rows.csv", args.folder.display(), args.cell);
         return Err(Fail::input(message));
     };
     if let Some(other) = rows.iter().find(|row| row.cell != first.cell) {
@@ -24,8 +21,8 @@ pub fn explain(args: &ExplainArgs) -> Result<(), Fail> {
     let quantity = Quantity::parse(&first.quantity).map_or("", describe);
     println!("cell      {}", first.cell);
     println!("study     {}", first.study);
-    println!("robot     {} ({}; nv {}, depth {})", first.model, first.problem, count(first.nv), count(first.depth));
-    println!("asked     {} {} by {} in {}", first.engine, first.engine_version, first.method, first.scalar);
+    println!("robot     {} ({}; nv {}, depth {})", first.robot, first.family, count(first.nv), count(first.depth));
+    println!("asked     {} {} by {} in {}", first.engine, first.engine_version, first.method, first.precision);
     println!("quantity  {}: {quantity}", first.quantity);
     println!("params    {}", first.params);
     if args.folder.join(OUTCOMES_NAME).is_file() {
@@ -40,8 +37,8 @@ pub fn explain(args: &ExplainArgs) -> Result<(), Fail> {
                 println!("answer    a robot of {} bodies and {} dofs", description.bodies.len(), description.nv());
                 reading.notes.iter().for_each(|note| println!("note      {}: {}", note.cause, note.text));
             }
-            Some(Outcome::Refused(Refusal::Unsupported(reason))) => println!("answer    not offered: {reason}"),
-            Some(Outcome::Refused(Refusal::Failed(reason))) => println!("answer    failed: {reason}"),
+            Some(Outcome::NoAnswer(NoAnswer::NotOffered(reason))) => println!("answer    not offered: {reason}"),
+            Some(Outcome::NoAnswer(NoAnswer::Failed(reason))) => println!("answer    failed: {reason}"),
             None => println!("answer    not kept{}", lost.map_or_else(String::new, |lost| format!(": {lost}"))),
         }
     }
@@ -52,7 +49,7 @@ pub fn explain(args: &ExplainArgs) -> Result<(), Fail> {
         println!(
             "{:<9} {:<10} {:<24} {} {} (bound {}, margin {} decades){against} {}",
             row.verdict.as_str(),
-            row.case,
+            [row.body.as_str(), &row.states, &row.cache].concat(),
             row.metric,
             number(row.value),
             row.unit,
@@ -72,7 +69,7 @@ const CONTINUING: [&str; 2] = ["--resume", "--mixed"];
 
 /// The command that makes a cell's rows again: that of the run, with a filter that leaves the study of the robot. The rows compare an answer
 /// with those of others, so the others are asked too.
-fn again(info: &RunInfo, row: &Record) -> Result<String, String> {
+fn again(info: &RunInfo, row: &Row) -> Result<String, String> {
     let all = words(&info.command)?;
     let (program, given) = all.split_at(all.iter().position(|word| word == "--").map_or(0, |at| at + 1));
     let mut kept: Vec<String> = Vec::new();
@@ -97,8 +94,8 @@ fn again(info: &RunInfo, row: &Record) -> Result<String, String> {
             kept.push("--live".into());
         }
         // Cells that belong to no robot, or draw one, are known by their study.
-        let of_study = row.model.is_empty() || row.study == "repeatability";
-        let robot = if of_study { String::new() } else { format!("{}/", regex_lite::escape(&row.model)) };
+        let of_study = row.robot.is_empty() || row.study == "repeatability";
+        let robot = if of_study { String::new() } else { format!("{}/", regex_lite::escape(&row.robot)) };
         kept.extend(["--only".into(), format!("^{}/{robot}", row.study)]);
     }
     Ok(program.iter().chain(&kept).map(|word| quoted(word)).collect::<Vec<_>>().join(" "))
@@ -141,7 +138,7 @@ mod tests {
 
     fn of(command: &str, live: bool, suite: &str) -> String {
         let info = RunInfo { command: command.into(), live, suite: suite.into(), ..RunInfo::default() };
-        let row = Record { study: "agreement".into(), model: "tree_0.3".into(), ..Record::default() };
+        let row = Row { study: "agreement".into(), robot: "tree_0.3".into(), ..Row::default() };
         again(&info, &row).unwrap()
     }
 

@@ -38,8 +38,8 @@ impl From<HarnessError> for Fail {
     }
 }
 
-impl From<featherbench_results::RecordError> for Fail {
-    fn from(error: featherbench_results::RecordError) -> Self {
+impl From<featherbench_results::ResultsError> for Fail {
+    fn from(error: featherbench_results::ResultsError) -> Self {
         Self::Input(error.to_string())
     }
 }

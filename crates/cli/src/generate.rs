@@ -3,7 +3,7 @@
 use crate::args::{Format, GenArgs};
 use crate::fail::Fail;
 use crate::root::Root;
-use crate::{oracles, problems, robot_file};
+use crate::{oracles, robot_file, robots};
 use featherbench_bench::FileFormat;
 use featherbench_formats::OnLoss;
 use featherbench_formats::urdf::{Base, Options};
@@ -17,12 +17,12 @@ pub fn generate(root: &Root, args: &GenArgs) -> Result<(), Fail> {
         (Some(file), "urdf") => {
             let base = if args.floating { Base::Floating } else { Base::Fixed };
             let options = Options { base, independent_mimics: args.independent_mimics, allow_massless: args.allow_massless };
-            let (description, notes) = problems::import(file, &options)?;
+            let (description, notes) = robots::import(file, &options)?;
             notes.iter().for_each(|note| eprintln!("note: {}: {note}", file.display()));
             description
         }
         (Some(file), "mjcf") => compiled(root, file, args.floating)?,
-        (Some(file), "neutral") => problems::read_model(file)?,
+        (Some(file), "neutral") => robots::read_model(file)?,
         (_, spec) if spec.contains(':') => {
             let generated = Family::parse(spec).and_then(|family| family.generate());
             generated.map_err(|error| Fail::input(error.to_string()))?
@@ -55,10 +55,10 @@ fn compiled(root: &Root, path: &Path, floating: bool) -> Result<Description, Fai
         message: format!("{}: MuJoCo's compiler reads MJCF files, and it is not installed", path.display()),
         advice: "install the reference engines by `featherbench oracles install`".into(),
     })?;
-    let reading = problems::read_mjcf(&file, &problems::compiler(root, &python)?)?;
+    let reading = robots::read_mjcf(&file, &robots::compiler(root, &python)?)?;
     for note in &reading.notes {
-        let subject = note.subject.as_ref().map_or_else(String::new, |subject| format!("{subject}: "));
-        eprintln!("note: {}: {subject}{}", path.display(), note.text);
+        let about = note.about.as_ref().map_or_else(String::new, |about| format!("{about}: "));
+        eprintln!("note: {}: {about}{}", path.display(), note.text);
     }
     if !reading.keyframes.is_empty() {
         let count = reading.keyframes.len();

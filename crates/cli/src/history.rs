@@ -3,7 +3,7 @@
 use crate::args::HistoryArgs;
 use crate::fail::Fail;
 use crate::root::Root;
-use ::featherbench_results::{Host, Record, RunInfo, atomic_write, read_run};
+use ::featherbench_results::{Host, Row, RunInfo, atomic_write, read_run};
 use std::collections::BTreeMap;
 use std::path::Path;
 
@@ -17,9 +17,9 @@ const LIMIT: usize = 24_000;
 pub fn append(root: &dyn Fn() -> Result<Root, Fail>, args: &HistoryArgs) -> Result<(), Fail> {
     let (run, records) = read_run(&args.folder)?;
     let instructions = args.instructions.as_deref().map(read_instructions).transpose()?.unwrap_or_default();
-    let (lines, void) = lines(&run, &records, &args.model, &instructions);
+    let (lines, invalid) = lines(&run, &records, &args.model, &instructions);
     if lines.is_empty() {
-        let message = format!("{} holds no valid times of native kernels on '{}' ({void} are void)", args.folder.display(), args.model);
+        let message = format!("{} holds no valid times of own kernels on '{}' ({invalid} do not count)", args.folder.display(), args.model);
         return Err(Fail::input(message));
     }
     let folder = args.to.clone().map_or_else(|| root().map(|root| root.reports().join("history")), Ok)?;
@@ -31,7 +31,7 @@ pub fn append(root: &dyn Fn() -> Result<Root, Fail>, args: &HistoryArgs) -> Resu
         "{} kernels in {}{}",
         lines.len(),
         path.display(),
-        if void > 0 { format!("; {void} void times left out") } else { String::new() }
+        if invalid > 0 { format!("; {invalid} times that do not count left out") } else { String::new() }
     );
     Ok(())
 }
@@ -46,28 +46,25 @@ fn machine(host: &Host) -> String {
     parts.join("-")
 }
 
-/// One line per kernel over the stream, and how many times were void.
-fn lines(run: &RunInfo, records: &[Record], model: &str, instructions: &BTreeMap<(String, String), String>) -> (Vec<String>, usize) {
-    let native = |row: &&Record| row.study == "timing" && row.engine == "native" && row.case == "stream" && row.model == model;
-    let rows: Vec<&Record> = records.iter().filter(native).collect();
-    let (mut lines, mut void) = (Vec::new(), 0);
+/// One line per kernel over the stream, and how many times do not count.
+fn lines(run: &RunInfo, records: &[Row], model: &str, instructions: &BTreeMap<(String, String), String>) -> (Vec<String>, usize) {
+    let featherbench = |row: &&Row| row.study == "timing" && row.engine == "featherbench" && row.cache == "stream" && row.robot == model;
+    let rows: Vec<&Row> = records.iter().filter(featherbench).collect();
+    let (mut lines, mut invalid) = (Vec::new(), 0);
     for row in rows.iter().filter(|row| row.metric == "ns_per_call") {
         let Some(ns) = row.value else { continue };
-        if !row.reason.is_empty() {
-            void += 1;
+        if !row.valid {
+            invalid += 1;
             continue;
         }
-        let end = |metric: &str| {
-            let same = |other: &&&Record| other.metric == metric && other.quantity == row.quantity && other.method == row.method;
-            rows.iter().find(same).and_then(|other| other.value).unwrap_or(ns)
-        };
+        let (low, high) = (row.ci_low.unwrap_or(ns), row.ci_high.unwrap_or(ns));
         let kernel = format!("{}/{}", row.quantity, row.method);
         let count = instructions.get(&(kernel.clone(), model.to_owned())).map_or("", String::as_str);
         let date: String = run.started.chars().take(10).collect();
         let revision: String = run.git.revision.chars().take(10).collect();
-        lines.push(format!("{date},{revision},{kernel},{model},{ns:.1},{:.1},{:.1},{count}", end("ns_low"), end("ns_high")));
+        lines.push(format!("{date},{revision},{kernel},{model},{ns:.1},{low:.1},{high:.1},{count}"));
     }
-    (lines, void)
+    (lines, invalid)
 }
 
 /// The history with a night's lines: a line of the same date, revision, kernel and model is replaced; the oldest nights make room.

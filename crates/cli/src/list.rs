@@ -4,11 +4,11 @@ use crate::args::ListArgs;
 use crate::fail::Fail;
 use crate::native::PEERS;
 use crate::oracles::{ENGINES, ESTIMATING};
-use crate::problems;
 use crate::rapier;
+use crate::robots;
 use crate::root::Root;
-use featherbench_bench::{Context, Gates, Study, Subject};
-use featherbench_engines::Native;
+use featherbench_bench::{Context, Engine, Gates, Study};
+use featherbench_engines::Featherbench;
 use featherbench_model::generate::Family;
 use featherbench_studies::{Agreement, Conditioning, Digits, Reading, Structure, Timing};
 use std::io::Write;
@@ -24,11 +24,11 @@ fn text(root: &Root, args: &ListArgs) -> Result<String, Fail> {
     if args.conventions {
         return Ok(featherbench_bench::conventions::markdown(&featherbench_bench::conventions::read(&root.conventions())?));
     }
-    let loaded = problems::load(root, &args.suite, false, None)?;
+    let loaded = robots::load(root, &args.suite, false, None)?;
     if args.cells {
-        let subjects: Vec<Box<dyn Subject>> = vec![Box::new(Native::new())];
+        let engines: Vec<Box<dyn Engine>> = vec![Box::new(Featherbench::new())];
         let gates = Gates::read(&root.gates())?;
-        let context = Context { problems: &loaded.problems, subjects: &subjects, gates: &gates, seed: loaded.suite.seed };
+        let context = Context { robots: &loaded.robots, engines: &engines, gates: &gates, seed: loaded.suite.seed };
         let timing = Timing { states: 1, seconds: 0.0, kernels: featherbench_engines::timed, peers: Vec::new() };
         let studies: [&dyn Study; 6] = [&Agreement, &Reading, &Digits, &Conditioning, &Structure, &timing];
         let cells = studies.iter().flat_map(|study| study.plan(&context));
@@ -36,20 +36,20 @@ fn text(root: &Root, args: &ListArgs) -> Result<String, Fail> {
     }
     let mut text = format!("suite {}: {}\n\n", loaded.name, loaded.suite.about);
     text += "robot                     family       base   nv  bodies  depth\n";
-    for problem in &loaded.problems {
-        let states = &problem.states;
+    for robot in &loaded.robots {
+        let states = &robot.states;
         text += &format!(
             "{:<25} {:<12} {:<5} {:>4} {:>7} {:>6}\n",
-            problem.name,
-            problem.family,
-            problem.base(),
+            robot.name,
+            robot.family,
+            robot.base(),
             states.nv,
             states.bodies,
-            problem.depth
+            robot.depth
         );
     }
     let peers = [&PEERS[..], &ESTIMATING].concat().join(", ");
-    text += &format!("\nengines:  native, {}, {}\npeers:    {peers}\n", ENGINES.join(", "), rapier::NAME);
+    text += &format!("\nengines:  featherbench, {}, {}\npeers:    {peers}\n", ENGINES.join(", "), rapier::NAME);
     text += "studies:  agreement, reading, digits, conditioning, structure, reproductions, step_limit, repeatability, timing\n";
     text += "\nfamilies of generated robots, with their parameters:\n";
     for name in Family::NAMES {

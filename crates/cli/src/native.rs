@@ -6,7 +6,7 @@
 use crate::fail::Fail;
 use crate::oracles;
 use crate::root::Root;
-use featherbench_bench::{Identity, Subject, hash};
+use featherbench_bench::{Engine, Identity, hash};
 use featherbench_engines::{Limits, Oracle, peer};
 use indicatif::{ProgressBar, ProgressStyle};
 use std::ffi::OsString;

@@ -1,7 +1,7 @@
 //! Whether an engine that was asked for takes part at all.
 
-use crate::subjects::Subjects;
-use ::featherbench_results::{Expectation, Record, Verdict};
+use crate::engines::Opened;
+use ::featherbench_results::{Expectation, Row, Verdict};
 use featherbench_bench::{Cell, Quantity};
 use std::collections::BTreeSet;
 
@@ -9,16 +9,16 @@ use std::collections::BTreeSet;
 /// whole run it answers about some robot. Without it an engine without methods would be green for want of rows.
 ///
 /// `cells` are those of all studies, whatever a filter leaves.
-pub fn conditions(subjects: &Subjects, asked: &[&str], cells: &[Cell], records: &[Record], complete: bool) -> Vec<Expectation> {
-    let there = subjects.engines.iter().filter(|engine| engine.status == "ok" && asked.contains(&engine.name.as_str()));
+pub fn conditions(opened: &Opened, asked: &[&str], cells: &[Cell], records: &[Row], complete: bool) -> Vec<Expectation> {
+    let there = opened.infos.iter().filter(|engine| engine.status == "ok" && asked.contains(&engine.name.as_str()));
     there.map(|engine| condition(&engine.name, cells, records, complete)).collect()
 }
 
-fn condition(engine: &str, cells: &[Cell], records: &[Record], complete: bool) -> Expectation {
+fn condition(engine: &str, cells: &[Cell], records: &[Row], complete: bool) -> Expectation {
     let readback = Quantity::Readback.name();
     let of_dynamics = || cells.iter().filter(|cell| cell.study != "repeatability" && cell.quantity != readback);
-    let offered: BTreeSet<&str> = of_dynamics().filter(|cell| cell.subject == engine).map(|cell| cell.quantity.as_str()).collect();
-    let is_answer = |row: &&Record| row.engine == engine && row.value.is_some() && row.quantity != readback;
+    let offered: BTreeSet<&str> = of_dynamics().filter(|cell| cell.engine == engine).map(|cell| cell.quantity.as_str()).collect();
+    let is_answer = |row: &&Row| row.engine == engine && row.value.is_some() && row.quantity != readback;
     let answered = records.iter().any(|row| is_answer(&row));
     let reason = if offered.is_empty() {
         let due: BTreeSet<&str> = of_dynamics().map(|cell| cell.quantity.as_str()).collect();

@@ -5,7 +5,7 @@ use crate::native;
 use crate::package;
 use crate::rapier;
 use crate::root::Root;
-use featherbench_bench::{Refusal, Subject};
+use featherbench_bench::{Engine, NoAnswer};
 use featherbench_engines::{Limits, Oracle};
 use indicatif::{ProgressBar, ProgressStyle};
 use std::ffi::OsString;
@@ -145,7 +145,7 @@ pub fn reproducer(root: &Root, limits: Limits) -> featherbench_studies::Reproduc
     let command = python(root).ok_or_else(missing).and_then(|python| package::command(root, &python, "reproduce"));
     Box::new(move |name, seeds| match &command {
         Ok(command) => featherbench_engines::reproduce(command, limits, name, seeds),
-        Err(reason) => Err(Refusal::Failed(reason.clone())),
+        Err(reason) => Err(NoAnswer::Failed(reason.clone())),
     })
 }
 

@@ -1,7 +1,7 @@
 //! An engine that is asked about a robot no more once it has not answered in time: what did not come within the limit is a stated outcome, and the
 //! other engines go on.
 
-use featherbench_bench::{FileFormat, Identity, Prepared, Problem, Quantity, Reading, Refusal, RobotFile, Subject};
+use featherbench_bench::{Engine, Evaluation, FileFormat, Identity, NoAnswer, Quantity, Reading, Robot, RobotFile};
 use featherbench_model::StateBatch;
 use std::collections::BTreeMap;
 use std::ops::Range;
@@ -13,41 +13,41 @@ const LATE: &str = "no answer within ";
 
 /// An engine, and the robots that it was too slow for.
 pub struct Patient {
-    engine: Box<dyn Subject>,
+    engine: Box<dyn Engine>,
     /// By the file, what was asked in vain, in words.
     late: Mutex<BTreeMap<PathBuf, String>>,
 }
 
 impl Patient {
-    pub fn new(engine: Box<dyn Subject>) -> Self {
+    pub fn new(engine: Box<dyn Engine>) -> Self {
         Self { engine, late: Mutex::new(BTreeMap::new()) }
     }
 
     /// Refuses what is about a robot that the engine was too slow for.
-    fn admit(&self, file: Option<&RobotFile>) -> Result<(), Refusal> {
+    fn admit(&self, file: Option<&RobotFile>) -> Result<(), NoAnswer> {
         let late = self.late.lock().unwrap_or_else(PoisonError::into_inner);
         match file.and_then(|file| late.get(&file.path)) {
-            Some(before) => Err(Refusal::Unsupported(format!("not asked again: {before}"))),
+            Some(before) => Err(NoAnswer::NotOffered(format!("not asked again: {before}"))),
             None => Ok(()),
         }
     }
 
     /// Keeps that an answer did not come in time. It says nothing about the robot, so it is no failure.
-    fn judged<T>(&self, file: Option<&RobotFile>, doing: &str, answer: Result<T, Refusal>) -> Result<T, Refusal> {
+    fn judged<T>(&self, file: Option<&RobotFile>, doing: &str, answer: Result<T, NoAnswer>) -> Result<T, NoAnswer> {
         match answer {
-            Err(Refusal::Failed(reason)) if reason.starts_with(LATE) => {
+            Err(NoAnswer::Failed(reason)) if reason.starts_with(LATE) => {
                 let reason = format!("{reason} ({doing})");
                 if let Some(file) = file {
                     self.late.lock().unwrap_or_else(PoisonError::into_inner).insert(file.path.clone(), reason.clone());
                 }
-                Err(Refusal::Unsupported(reason))
+                Err(NoAnswer::NotOffered(reason))
             }
             answer => answer,
         }
     }
 }
 
-impl Subject for Patient {
+impl Engine for Patient {
     fn identity(&self) -> &Identity {
         self.engine.identity()
     }
@@ -56,7 +56,7 @@ impl Subject for Patient {
         self.engine.methods(quantity)
     }
 
-    fn read(&self, file: &RobotFile) -> Result<Reading, Refusal> {
+    fn read(&self, file: &RobotFile) -> Result<Reading, NoAnswer> {
         self.admit(Some(file))?;
         let kind = if file.format == FileFormat::Urdf { "URDF" } else { "MJCF" };
         self.judged(Some(file), &format!("reading the {kind}"), self.engine.read(file))
@@ -64,15 +64,15 @@ impl Subject for Patient {
 
     fn prepare<'a>(
         &'a self,
-        problem: &'a Problem,
+        robot: &'a Robot,
         quantity: Quantity,
         method: &str,
         states: &'a StateBatch,
-    ) -> Result<Box<dyn Prepared + 'a>, Refusal> {
-        let file = problem.file.as_ref();
+    ) -> Result<Box<dyn Evaluation + 'a>, NoAnswer> {
+        let file = robot.file.as_ref();
         self.admit(file)?;
-        let doing = format!("building {} bodies", problem.states.bodies);
-        let prepared = self.judged(file, &doing, self.engine.prepare(problem, quantity, method, states))?;
+        let doing = format!("building {} bodies", robot.states.bodies);
+        let prepared = self.judged(file, &doing, self.engine.prepare(robot, quantity, method, states))?;
         Ok(Box::new(Waiting { patient: self, file, quantity, prepared }))
     }
 }
@@ -82,11 +82,11 @@ struct Waiting<'a> {
     patient: &'a Patient,
     file: Option<&'a RobotFile>,
     quantity: Quantity,
-    prepared: Box<dyn Prepared + 'a>,
+    prepared: Box<dyn Evaluation + 'a>,
 }
 
-impl Prepared for Waiting<'_> {
-    fn run(&mut self, range: Range<usize>) -> Result<(), Refusal> {
+impl Evaluation for Waiting<'_> {
+    fn run(&mut self, range: Range<usize>) -> Result<(), NoAnswer> {
         self.patient.admit(self.file)?;
         let doing = format!("{} at {} states", self.quantity.name(), range.len());
         self.patient.judged(self.file, &doing, self.prepared.run(range))
@@ -99,7 +99,7 @@ impl Prepared for Waiting<'_> {
 
 #[cfg(test)]
 mod tests {
-    use super::{Identity, Patient, Prepared, Problem, Quantity, Reading, Refusal, RobotFile, StateBatch, Subject};
+    use super::{Engine, Evaluation, Identity, NoAnswer, Patient, Quantity, Reading, Robot, RobotFile, StateBatch};
     use ::featherbench_results::EngineSource;
     use featherbench_bench::{FileBase, FileFormat};
     use std::collections::BTreeMap;
@@ -112,7 +112,7 @@ mod tests {
         asked: std::sync::Arc<AtomicUsize>,
     }
 
-    impl Subject for Slow {
+    impl Engine for Slow {
         fn identity(&self) -> &Identity {
             &self.identity
         }
@@ -121,13 +121,13 @@ mod tests {
             Vec::new()
         }
 
-        fn read(&self, _: &RobotFile) -> Result<Reading, Refusal> {
+        fn read(&self, _: &RobotFile) -> Result<Reading, NoAnswer> {
             self.asked.fetch_add(1, Ordering::Relaxed);
-            Err(Refusal::Failed(self.reason.into()))
+            Err(NoAnswer::Failed(self.reason.into()))
         }
 
-        fn prepare<'a>(&'a self, _: &'a Problem, _: Quantity, _: &str, _: &'a StateBatch) -> Result<Box<dyn Prepared + 'a>, Refusal> {
-            Err(Refusal::Failed(self.reason.into()))
+        fn prepare<'a>(&'a self, _: &'a Robot, _: Quantity, _: &str, _: &'a StateBatch) -> Result<Box<dyn Evaluation + 'a>, NoAnswer> {
+            Err(NoAnswer::Failed(self.reason.into()))
         }
     }
 
@@ -145,8 +145,8 @@ mod tests {
     fn who_is_late_is_not_asked_again_about_that_robot() {
         let (engine, asked) = patient("no answer within 60 s");
         let refused = |name: &str| engine.read(&file(name)).unwrap_err();
-        assert_eq!(refused("a.urdf"), Refusal::Unsupported("no answer within 60 s (reading the URDF)".into()));
-        assert_eq!(refused("a.urdf"), Refusal::Unsupported("not asked again: no answer within 60 s (reading the URDF)".into()));
+        assert_eq!(refused("a.urdf"), NoAnswer::NotOffered("no answer within 60 s (reading the URDF)".into()));
+        assert_eq!(refused("a.urdf"), NoAnswer::NotOffered("not asked again: no answer within 60 s (reading the URDF)".into()));
         assert_eq!(asked.load(Ordering::Relaxed), 1);
         refused("b.urdf");
         assert_eq!(asked.load(Ordering::Relaxed), 2);
@@ -156,7 +156,7 @@ mod tests {
     fn other_failures_stay_failures_and_are_asked_again() {
         let (engine, asked) = patient("line 3: no");
         for _ in 0..2 {
-            assert_eq!(engine.read(&file("a.urdf")).unwrap_err(), Refusal::Failed("line 3: no".into()));
+            assert_eq!(engine.read(&file("a.urdf")).unwrap_err(), NoAnswer::Failed("line 3: no".into()));
         }
         assert_eq!(asked.load(Ordering::Relaxed), 2);
     }

@@ -3,13 +3,13 @@
 use crate::args::GateArgs;
 use crate::fail::Fail;
 use crate::root::Root;
-use ::featherbench_results::{Record, RunInfo};
+use ::featherbench_results::{Row, RunInfo};
 use featherbench_bench::{Deviation, Gates, Ranges, RangesMeter, SEEDS, SLACK};
 use std::path::Path;
 
 /// Measures the ranges over the runs that the arguments name, the first of which is read already, prints them by cause, and writes them where
 /// that is asked.
-pub fn measure(root: &Root, args: &GateArgs, info: &RunInfo, first: &[Record]) -> Result<(), Fail> {
+pub fn measure(root: &Root, args: &GateArgs, info: &RunInfo, first: &[Row]) -> Result<(), Fail> {
     let gates = Gates::read_without_ranges(&root.gates())?;
     let mut meter = RangesMeter::default();
     let mut seeds = vec![info.seed];

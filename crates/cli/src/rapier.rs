@@ -5,7 +5,7 @@
 use crate::fail::Fail;
 use crate::oracles::spinner;
 use crate::root::Root;
-use featherbench_bench::{Subject, hash};
+use featherbench_bench::{Engine, hash};
 use featherbench_engines::{Limits, Oracle};
 use std::io::{BufRead, BufReader};
 use std::path::{Path, PathBuf};

@@ -1,15 +1,15 @@
 //! `featherbench record`: asks the engines and keeps, or checks, their answers.
 
 use crate::args::{RecordArgs, RunArgs};
+use crate::engines;
 use crate::fail::Fail;
-use crate::problems;
 use crate::progress::Bar;
+use crate::robots;
 use crate::root::Root;
-use crate::subjects;
 use ::featherbench_results::Verdict;
 use featherbench_bench::measure::{ForwardScale, scaled_error, worst};
 use featherbench_bench::run::Progress;
-use featherbench_bench::{Cell, Context, Gates, Outcome, OutcomeStore, Problem, Quantity, Study};
+use featherbench_bench::{Cell, Context, Gates, Outcome, OutcomeStore, Quantity, Robot, Study};
 use featherbench_engines::{EngineRecording, Recording, recording_name};
 use featherbench_studies::{Agreement, Repeatability, Structure};
 use std::path::Path;
@@ -21,21 +21,21 @@ const STALE: f64 = 8.0 * f64::EPSILON;
 /// Records, or checks the recordings of, a suite.
 pub fn record(root: &Root, args: &RecordArgs) -> Result<(), Fail> {
     let run = RunArgs { suite: args.suite.clone(), live: true, ..RunArgs::default_suite() };
-    let loaded = problems::load(root, &args.suite, false, None)?;
+    let loaded = robots::load(root, &args.suite, false, None)?;
     let gates = Gates::read(&root.gates())?;
-    let opened = subjects::open(root, &run, &loaded)?;
+    let opened = engines::open(root, &run, &loaded)?;
     if let Some(missing) = opened.missing(&loaded).first() {
         let message = format!("{} does not answer: {}", missing.name, missing.reason);
         return Err(Fail::Missing { message, advice: "look at `featherbench oracles status`".into() });
     }
-    let context = Context { problems: &loaded.problems, subjects: &opened.subjects, gates: &gates, seed: loaded.suite.seed };
+    let context = Context { robots: &loaded.robots, engines: &opened.engines, gates: &gates, seed: loaded.suite.seed };
     let scratch = root.engines().join(format!("record-{}", std::process::id()));
     let io = |source| Fail::from(featherbench_bench::HarnessError::io(&scratch, source));
     std::fs::create_dir_all(&scratch).map_err(io)?;
     let store = OutcomeStore::open(&scratch)?;
     let bar = Bar::new();
     let mut finished = Vec::new();
-    let foreign = |cell: &Cell| cell.subject != "native";
+    let foreign = |cell: &Cell| cell.engine != "featherbench";
     let studies: [&dyn Study; 2] = [&Agreement, &Structure];
     for study in studies {
         let cells = featherbench_bench::run::plan(study, &context, &foreign);
@@ -55,7 +55,7 @@ pub fn record(root: &Root, args: &RecordArgs) -> Result<(), Fail> {
     let varying: Vec<String> = rows
         .iter()
         .filter(|row| row.verdict != Verdict::Pass)
-        .map(|row| format!("  {} about {}: {}", row.engine, row.model, row.reason))
+        .map(|row| format!("  {} about {}: {}", row.engine, row.robot, row.reason))
         .collect();
     if !varying.is_empty() {
         return Err(Fail::Gate(format!("nothing was recorded: the same question has two answers:\n{}", varying.join("\n"))));
@@ -64,23 +64,23 @@ pub fn record(root: &Root, args: &RecordArgs) -> Result<(), Fail> {
     let folder = args.recorded.clone().unwrap_or_else(|| root.recorded());
     std::fs::create_dir_all(&folder).map_err(|source| featherbench_bench::HarnessError::io(&folder, source))?;
     let mut stale = Vec::new();
-    for problem in &loaded.problems {
-        let engines = opened.subjects[1..].iter().map(|subject| {
-            let identity = subject.identity().clone();
-            let of_this = finished.iter().filter(|(cell, _)| cell.subject == identity.name && cell.problem == problem.name);
+    for robot in &loaded.robots {
+        let engines = opened.engines[1..].iter().map(|engine| {
+            let identity = engine.identity().clone();
+            let of_this = finished.iter().filter(|(cell, _)| cell.engine == identity.name && cell.robot == robot.name);
             let outcomes =
                 of_this.filter_map(|(cell, outcome)| Some((Quantity::parse(&cell.quantity)?, cell.method.clone(), outcome.clone())));
             EngineRecording { outcomes: outcomes.collect(), identity }
         });
         let recording = Recording { engines: engines.filter(|engine| !engine.outcomes.is_empty()).collect() };
-        let path = folder.join(recording_name(&problem.name));
+        let path = folder.join(recording_name(&robot.name));
         if recording.engines.is_empty() {
             continue;
         }
         if args.check {
-            stale.extend(check(&path, &recording, problem));
+            stale.extend(check(&path, &recording, robot));
         } else {
-            ::featherbench_results::atomic_write(&path, &recording.to_bytes(problem))?;
+            ::featherbench_results::atomic_write(&path, &recording.to_bytes(robot))?;
         }
     }
     if !stale.is_empty() {
@@ -93,8 +93,8 @@ pub fn record(root: &Root, args: &RecordArgs) -> Result<(), Fail> {
 }
 
 /// What in a recording differs from what the engines answer now.
-fn check(path: &Path, now: &Recording, problem: &Problem) -> Vec<String> {
-    let then = match Recording::read(path, problem) {
+fn check(path: &Path, now: &Recording, robot: &Robot) -> Vec<String> {
+    let then = match Recording::read(path, robot) {
         Ok(then) => then,
         Err(error) => return vec![error.to_string()],
     };
@@ -103,8 +103,8 @@ fn check(path: &Path, now: &Recording, problem: &Problem) -> Vec<String> {
     if then.engines.len() != now.engines.len() {
         complain(format!("{} engines are recorded, {} answer", then.engines.len(), now.engines.len()));
     }
-    let at = problem.magnitudes();
-    let forward = ForwardScale::all(problem, &at);
+    let at = robot.magnitudes();
+    let forward = ForwardScale::all(robot, &at);
     for (then, now) in then.engines.iter().zip(&now.engines) {
         let name = &now.identity.name;
         if (&then.identity.name, &then.identity.version) != (name, &now.identity.version) {
@@ -117,13 +117,13 @@ fn check(path: &Path, now: &Recording, problem: &Problem) -> Vec<String> {
             let label = format!("{name}: {} by {method}", quantity.name());
             match (recorded, answered) {
                 (Outcome::Values(recorded), Outcome::Values(answered)) => {
-                    let size = quantity.size(problem);
+                    let size = quantity.size(robot);
                     let states = recorded.chunks_exact(size).zip(answered.chunks_exact(size)).enumerate();
                     let error = states.fold(0.0, |error, (k, (old, new))| {
                         let moved = match quantity {
                             // How far a backward error of 8 ε may carry the answer.
                             Quantity::ForwardDynamics => forward[k].forward_error(old, new) / forward[k].amplification.max(1.0),
-                            _ => scaled_error(problem, *quantity, &at[k], old, new),
+                            _ => scaled_error(robot, *quantity, &at[k], old, new),
                         };
                         worst(error, moved)
                     });
@@ -131,7 +131,7 @@ fn check(path: &Path, now: &Recording, problem: &Problem) -> Vec<String> {
                         complain(format!("{label} moved by {error:e}"));
                     }
                 }
-                (Outcome::Refused(recorded), Outcome::Refused(answered)) if recorded == answered => {}
+                (Outcome::NoAnswer(recorded), Outcome::NoAnswer(answered)) if recorded == answered => {}
                 _ => complain(format!("{label} was {} and is {}", brief(recorded), brief(answered))),
             }
         }
@@ -143,6 +143,6 @@ fn brief(outcome: &Outcome) -> String {
     match outcome {
         Outcome::Values(values) => format!("{} numbers", values.len()),
         Outcome::Reading(reading) => format!("a robot of {} bodies", reading.description.bodies.len()),
-        Outcome::Refused(refusal) => format!("'{refusal}'"),
+        Outcome::NoAnswer(refusal) => format!("'{refusal}'"),
     }
 }

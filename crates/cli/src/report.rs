@@ -4,7 +4,7 @@ use crate::args::GateArgs;
 use crate::fail::Fail;
 use crate::ranges;
 use crate::root::Root;
-use ::featherbench_results::{Record, RunInfo, Verdict};
+use ::featherbench_results::{Row, RunInfo, Verdict};
 use featherbench_bench::{Gates, Suite, accounted, provenance};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -18,7 +18,7 @@ pub fn write(folder: &Path) -> Result<(), Fail> {
 }
 
 /// Renders the report into the run's folder and returns its page.
-pub fn render(folder: &Path, info: &RunInfo, records: &[Record]) -> Result<PathBuf, Fail> {
+pub fn render(folder: &Path, info: &RunInfo, records: &[Row]) -> Result<PathBuf, Fail> {
     let paths = featherbench_report::write(info, records, folder).map_err(|error| Fail::input(error.to_string()))?;
     Ok(paths.index)
 }
@@ -43,7 +43,7 @@ pub fn gate(root: &Root, args: &GateArgs) -> Result<(), Fail> {
 }
 
 /// Prints the rows that count per engine and quantity as a suite's `expect` tables.
-fn print_counts(records: &[Record]) {
+fn print_counts(records: &[Row]) {
     let mut counts: BTreeMap<(&str, &str), u64> = BTreeMap::new();
     for row in records.iter().filter(|row| accounted(row)) {
         *counts.entry((&row.engine, &row.quantity)).or_default() += 1;
@@ -59,14 +59,21 @@ fn print_counts(records: &[Record]) {
 }
 
 /// Prints the verdict, and the report's page last.
-pub fn conclude(info: &RunInfo, records: &[Record], page: &Path) -> Result<(), Fail> {
+pub fn conclude(info: &RunInfo, records: &[Row], page: &Path) -> Result<(), Fail> {
     let count = |verdict: Verdict| records.iter().filter(|row| row.verdict == verdict).count();
     let counts: Vec<String> = Verdict::ALL.iter().map(|&verdict| format!("{} {verdict}", count(verdict))).collect();
     println!("{} rows: {}", records.len(), counts.join(", "));
     for row in records.iter().filter(|row| matches!(row.verdict, Verdict::Fail | Verdict::Error)).take(20) {
         println!(
             "  {}: {} {} {} {} {} [{}]: {}",
-            row.verdict, row.model, row.engine, row.quantity, row.method, row.metric, row.case, row.reason
+            row.verdict,
+            row.robot,
+            row.engine,
+            row.quantity,
+            row.method,
+            row.metric,
+            [row.body.as_str(), &row.states, &row.cache].concat(),
+            row.reason
         );
     }
     let broken: Vec<_> = info.expected.iter().filter(|condition| condition.verdict != Verdict::Pass).collect();

@@ -15,7 +15,7 @@ const DEEPEST: usize = 500;
 
 /// Recognises a robot's file.
 pub fn open(path: &Path, floating: bool) -> Result<RobotFile, Fail> {
-    let format = format(path).map_err(|problem| Fail::input(format!("{}: {problem}", path.display())))?;
+    let format = format(path).map_err(|robot| Fail::input(format!("{}: {robot}", path.display())))?;
     // An MJCF says itself what floats.
     let base = if floating && format == FileFormat::Urdf { FileBase::Free } else { FileBase::Fixed };
     Ok(RobotFile::open(path, format, base)?)

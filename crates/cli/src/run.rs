@@ -1,17 +1,17 @@
 //! `featherbench run`: plan, evaluate, compare, judge, report.
 
 use crate::args::RunArgs;
+use crate::engines::{self, Opened};
 use crate::fail::Fail;
 use crate::guest::Guest;
 use crate::offers;
 use crate::only;
-use crate::problems::{self, Loaded};
 use crate::progress::Bar;
 use crate::report;
+use crate::robots::{self, Loaded};
 use crate::root::Root;
 use crate::shell::quoted;
-use crate::subjects::{self, Subjects};
-use ::featherbench_results::{ModelInfo, Record, RunInfo, Verdict};
+use ::featherbench_results::{ModelInfo, Row, RunInfo, Verdict};
 use featherbench_bench::{Cell, Context, Gates, HarnessError, OutcomeStore, Study, provenance};
 use featherbench_studies::{Agreement, Conditioning, Digits, Reading, Repeatability, Reproductions, StepLimit, Structure, Timing};
 use regex_lite::Regex;
@@ -27,13 +27,13 @@ pub fn run(root: &Root, args: &RunArgs) -> Result<(), Fail> {
     let start = Instant::now();
     let only = args.only.as_deref().map(Regex::new).transpose();
     let only = only.map_err(|error| Fail::input(format!("--only: {error}")))?;
-    let loaded = problems::load(root, &args.suite, args.live, args.seed)?;
+    let loaded = robots::load(root, &args.suite, args.live, args.seed)?;
     let guests: Vec<&str> = args.guests.iter().map(|guest: &Guest| guest.name.as_str()).collect();
     let gates = Gates::read(&root.gates())?.with_guests(&guests);
-    let subjects = subjects::open(root, args, &loaded)?;
-    let mut info = describe(root, args.live, &loaded, &subjects)?;
+    let opened = engines::open(root, args, &loaded)?;
+    let mut info = describe(root, args.live, &loaded, &opened)?;
     let studies = studies(root, &loaded, args, &info.binary_hash);
-    let context = Context { problems: &loaded.problems, subjects: &subjects.subjects, gates: &gates, seed: loaded.suite.seed };
+    let context = Context { robots: &loaded.robots, engines: &opened.engines, gates: &gates, seed: loaded.suite.seed };
     let cells: Vec<Cell> = studies.iter().flat_map(|study| study.plan(&context)).collect();
     let filtered = || match args.only.as_ref().zip(only.as_ref()) {
         Some((text, only)) => only::check(text, only, &loaded.name, &cells.iter().map(Cell::path).collect::<Vec<_>>()),
@@ -59,8 +59,8 @@ pub fn run(root: &Root, args: &RunArgs) -> Result<(), Fail> {
     info.expected = gates.conditions(&loaded.suite, &records, complete);
     let engines = loaded.suite.agreement.iter().flat_map(|agreement| &agreement.engines).map(String::as_str);
     let asked: Vec<&str> = engines.chain(guests.iter().copied()).collect();
-    info.expected.extend(offers::conditions(&subjects, &asked, &cells, &records, complete));
-    for engine in subjects.missing(&loaded) {
+    info.expected.extend(offers::conditions(&opened, &asked, &cells, &records, complete));
+    for engine in opened.missing(&loaded) {
         info.expected.push(missing_engine(&engine.name, &engine.reason));
     }
     info.seconds.insert("total".into(), start.elapsed().as_secs_f64());
@@ -76,7 +76,7 @@ pub fn conduct(
     folder: &Path,
     keep: &(dyn Fn(&Cell) -> bool + Sync),
     info: &mut RunInfo,
-) -> Result<Vec<Record>, Fail> {
+) -> Result<Vec<Row>, Fail> {
     Ok(conduct_with_files(studies, context, folder, keep, info)?.0)
 }
 
@@ -87,13 +87,13 @@ fn conduct_with_files(
     folder: &Path,
     keep: &(dyn Fn(&Cell) -> bool + Sync),
     info: &mut RunInfo,
-) -> Result<(Vec<Record>, Vec<&'static str>), Fail> {
+) -> Result<(Vec<Row>, Vec<&'static str>), Fail> {
     let store = OutcomeStore::open(folder)?;
     if let Some(lost) = store.lost() {
         eprintln!("{lost}: its cells are evaluated again");
     }
     let progress = Bar::new();
-    let (mut records, mut files): (Vec<Record>, Vec<&str>) = (Vec::new(), Vec::new());
+    let (mut records, mut files): (Vec<Row>, Vec<&str>) = (Vec::new(), Vec::new());
     for study in studies {
         let phase = Instant::now();
         let cells = featherbench_bench::run::plan(study.as_ref(), context, keep);
@@ -136,7 +136,7 @@ fn studies(root: &Root, loaded: &Loaded, args: &RunArgs, program: &str) -> Vec<B
         studies.push(Box::new(Structure));
     }
     if loaded.suite.reproductions {
-        studies.push(Box::new(Reproductions { reproduce: crate::oracles::reproducer(root, subjects::limits(args)) }));
+        studies.push(Box::new(Reproductions { reproduce: crate::oracles::reproducer(root, engines::limits(args)) }));
     }
     if loaded.suite.agreement.is_some() {
         studies.push(Box::new(Repeatability { key: program.to_owned() }));
@@ -194,32 +194,32 @@ pub fn tell_notes(info: &RunInfo) {
 }
 
 /// Everything about the run that its rows share.
-pub fn describe(root: &Root, live: bool, loaded: &Loaded, subjects: &Subjects) -> Result<RunInfo, Fail> {
+pub fn describe(root: &Root, live: bool, loaded: &Loaded, opened: &Opened) -> Result<RunInfo, Fail> {
     let command = std::env::args().skip(1).map(|word| quoted(&word));
-    let models = loaded.problems.iter().map(|problem| {
-        let provenance = problem.description.provenance.clone().unwrap_or_default();
+    let models = loaded.robots.iter().map(|robot| {
+        let provenance = robot.description.provenance.clone().unwrap_or_default();
         ModelInfo {
-            name: problem.name.clone(),
-            hash: problem.hash.clone(),
-            origin: problem.origin,
+            name: robot.name.clone(),
+            hash: robot.hash.clone(),
+            origin: robot.origin,
             licence: provenance.licence,
             source: provenance.source,
-            nq: problem.states.nq as u64,
-            nv: problem.states.nv as u64,
-            bodies: problem.states.bodies as u64,
-            depth: problem.depth as u64,
-            notes: problem.model.warnings.iter().map(ToString::to_string).collect(),
+            nq: robot.states.nq as u64,
+            nv: robot.states.nv as u64,
+            bodies: robot.states.bodies as u64,
+            depth: robot.depth as u64,
+            notes: robot.model.warnings.iter().map(ToString::to_string).collect(),
         }
     });
     let mut conventions = featherbench_bench::conventions::read(&root.conventions())?;
-    conventions.retain(|row| subjects.engines.iter().any(|engine| engine.name == row.engine));
+    conventions.retain(|row| opened.infos.iter().any(|engine| engine.name == row.engine));
     Ok(RunInfo {
         suite: loaded.name.clone(),
         suite_hash: loaded.hash.clone(),
         command: ["cargo run --release --".to_owned()].into_iter().chain(command).collect::<Vec<_>>().join(" "),
         seed: loaded.suite.seed,
         live,
-        engines: subjects.engines.clone(),
+        engines: opened.infos.clone(),
         models: models.collect(),
         conventions,
         ..provenance::collect(root.path())

@@ -1,8 +1,8 @@
 //! The table of a comparison in the terminal, from its records alone.
 
 use crate::outcome::{neutral, params};
-use ::featherbench_results::{Record, Verdict};
-use featherbench_bench::{Problem, Subject};
+use ::featherbench_results::{Row, Verdict};
+use featherbench_bench::{Engine, Robot};
 use featherbench_studies::reading::LARGEST;
 use serde_json::Value;
 use std::collections::BTreeMap;
@@ -11,18 +11,19 @@ use std::collections::BTreeMap;
 const LISTED: usize = 12;
 
 /// What each engine makes of a robot, as text.
-pub fn of(problem: &Problem, remarks: &[String], subjects: &[Box<dyn Subject>], records: &[Record]) -> String {
-    let states = &problem.states;
-    let reference = records.iter().find(|row| row.study == "reading" && row.model == problem.name).map_or("native", |row| &row.reference);
-    let reference = if reference == "native" { "featherbench's own reading" } else { "the reading of MuJoCo's compiler" };
-    let mut text = format!("\n{} ({}, {} bodies, {} dofs), against {reference}\n", problem.name, problem.base(), states.bodies, states.nv);
-    text += &refusals(problem, subjects, records);
+pub fn of(robot: &Robot, remarks: &[String], engines: &[Box<dyn Engine>], records: &[Row]) -> String {
+    let states = &robot.states;
+    let reference =
+        records.iter().find(|row| row.study == "reading" && row.robot == robot.name).map_or("featherbench", |row| &row.reference);
+    let reference = if reference == "featherbench" { "featherbench's own reading" } else { "the reading of MuJoCo's compiler" };
+    let mut text = format!("\n{} ({}, {} bodies, {} dofs), against {reference}\n", robot.name, robot.base(), states.bodies, states.nv);
+    text += &refusals(robot, engines, records);
     for remark in remarks {
         text += &format!("  not compared: {remark}\n");
     }
-    for subject in subjects.iter().filter(|subject| subject.identity().name != "native") {
-        let identity = subject.identity();
-        let rows: Vec<&Record> = records.iter().filter(|row| row.model == problem.name && row.engine == identity.name).collect();
+    for engine in engines.iter().filter(|engine| engine.identity().name != "featherbench") {
+        let identity = engine.identity();
+        let rows: Vec<&Row> = records.iter().filter(|row| row.robot == robot.name && row.engine == identity.name).collect();
         text += &format!("\n  {} {}\n", identity.name, identity.version);
         let computed = neutral(&rows).map_or_else(
             || rows.iter().find(|row| row.study == "agreement" && row.value.is_none()).map_or("no answer".into(), |row| row.reason.clone()),
@@ -35,11 +36,11 @@ pub fn of(problem: &Problem, remarks: &[String], subjects: &[Box<dyn Subject>], 
 }
 
 /// Who refuses the file as it is written, and what was repaired to go on: first of all, as whoever reads it faithfully is not to blame.
-fn refusals(problem: &Problem, subjects: &[Box<dyn Subject>], records: &[Record]) -> String {
+fn refusals(robot: &Robot, engines: &[Box<dyn Engine>], records: &[Row]) -> String {
     let repairs = ["balanceinertia", "bounds", "geometry_dropped"];
     let mut text = String::new();
-    for name in subjects.iter().map(|subject| &subject.identity().name) {
-        let read = records.iter().find(|row| row.model == problem.name && row.engine == *name && row.metric == "differences");
+    for name in engines.iter().map(|engine| &engine.identity().name) {
+        let read = records.iter().find(|row| row.robot == robot.name && row.engine == *name && row.metric == "differences");
         let Some(row) = read.filter(|row| row.study == "reading") else { continue };
         if row.value.is_none() {
             let how = if row.verdict == Verdict::Skip { "does not read the file" } else { "refuses the file" };
@@ -53,13 +54,13 @@ fn refusals(problem: &Problem, subjects: &[Box<dyn Subject>], records: &[Record]
     text
 }
 
-fn as_read(rows: &[&Record]) -> String {
+fn as_read(rows: &[&Row]) -> String {
     let value =
         |metric: &str, quantity: &str| rows.iter().find(|row| row.metric == metric && row.quantity == quantity).and_then(|row| row.value);
     let Some(read) = rows.iter().find(|row| row.metric == "differences") else { return String::new() };
     let Some(count) = read.value else { return format!("    the file as read    not read: {}\n", read.reason) };
-    let differences: Vec<(&Record, Value)> = rows.iter().filter(|row| row.metric == "difference").map(|row| (*row, params(row))).collect();
-    let felt: Vec<&(&Record, Value)> = differences.iter().filter(|(_, params)| params["weight"] != "information").collect();
+    let differences: Vec<(&Row, Value)> = rows.iter().filter(|row| row.metric == "difference").map(|row| (*row, params(row))).collect();
+    let felt: Vec<&(&Row, Value)> = differences.iter().filter(|(_, params)| params["weight"] != "information").collect();
     let classes = params(read);
     let class = |name: &str| classes[name].as_u64().unwrap_or(0);
     let counted = [("physics", "change the physics"), ("rounding", "are rounding"), ("not_read", "are not read or carried otherwise")];
@@ -85,7 +86,7 @@ fn as_read(rows: &[&Record]) -> String {
         text += &format!("      … and {} more, in the report\n", ranked.len() - LISTED);
     }
     text += &together(&carried);
-    let told: Vec<&(&Record, Value)> = differences.iter().filter(|(_, params)| params["weight"] == "information").collect();
+    let told: Vec<&(&Row, Value)> = differences.iter().filter(|(_, params)| params["weight"] == "information").collect();
     for (_, params) in told.iter().filter(|(row, _)| row.quantity == "dof_order") {
         text += &format!("      other order of joints: {} where the file has {}\n", some(&params["theirs"]), some(&params["ours"]));
     }
@@ -99,8 +100,8 @@ fn as_read(rows: &[&Record]) -> String {
     text + &explained(rows)
 }
 
-fn line(row: &Record, params: &Value) -> String {
-    let body = if row.case.is_empty() { "the robot" } else { &row.case };
+fn line(row: &Row, params: &Value) -> String {
+    let body = if row.body.is_empty() { "the robot" } else { &row.body };
     let number = |key: &str| params[key].as_f64().map_or("–".to_owned(), |error| format!("{error:.1e}"));
     let effect = format!("id {}, M {}", number("id"), number("mass_matrix"));
     let cause = params["cause"].as_str().unwrap_or_default().replace('_', " ");
@@ -123,10 +124,10 @@ fn line(row: &Record, params: &Value) -> String {
 }
 
 /// What enters an engine's own simulation alone, one line for each field and cause.
-fn together(carried: &[&(&Record, Value)]) -> String {
+fn together(carried: &[&(&Row, Value)]) -> String {
     let mut groups: BTreeMap<(&str, &str), Vec<String>> = BTreeMap::new();
     for (row, params) in carried {
-        let change = format!("{} ({} instead of {})", row.case, some(&params["theirs"]), some(&params["ours"]));
+        let change = format!("{} ({} instead of {})", row.body, some(&params["theirs"]), some(&params["ours"]));
         groups.entry((&row.quantity, params["cause"].as_str().unwrap_or_default())).or_default().push(change);
     }
     let line = |((field, cause), bodies): (&(&str, &str), &Vec<String>)| {
@@ -144,7 +145,7 @@ fn some(value: &Value) -> String {
     if text.chars().count() <= LONGEST { text.to_owned() } else { text.chars().take(LONGEST).chain(" …".chars()).collect() }
 }
 
-fn explained(rows: &[&Record]) -> String {
+fn explained(rows: &[&Row]) -> String {
     let Some(row) = rows.iter().find(|row| row.metric == "unexplained") else { return String::new() };
     let params = params(row);
     match row.value {

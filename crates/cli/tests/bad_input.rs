@@ -97,9 +97,10 @@ fn a_filter_without_a_match_is_told_what_there_is() {
     let sandbox = Sandbox::new();
     let run = |only: &str| sandbox.run(&["run", "--suite", "smoke", "--no-timing", "--out", "out", "--only", only]);
     run("pandas/.*/fdd").expect(2, &["no cell of the suite smoke matches", "'pandas': nearest are panda", "'fdd': nearest are fd"]);
-    run("pinocchio/panda").expect(2, &["a path is study/robot/engine/quantity/method", "the engines drake, mujoco, native, pinocchio"]);
+    run("pinocchio/panda")
+        .expect(2, &["a path is study/robot/engine/quantity/method", "the engines drake, featherbench, mujoco, pinocchio"]);
     assert!(!sandbox.path("out").exists(), "nothing was begun");
-    run("panda/native/fd/aba$").expect(0, &["report:"]);
+    run("panda/featherbench/fd/aba$").expect(0, &["report:"]);
 }
 
 #[test]
@@ -142,7 +143,7 @@ fn damaged_recordings_cost_their_robot_and_nothing_else() {
     std::fs::write(&panda, &whole[..whole.len() / 2]).unwrap();
     let ended = sandbox.run(&["run", "--suite", "smoke", "--no-timing", "--recorded", "recorded", "--out", "out"]);
     ended.expect(1, &["panda.recording", "truncated", "featherbench record", "report:"]);
-    let csv = std::fs::read_to_string(sandbox.path("out/records.csv")).unwrap();
+    let csv = std::fs::read_to_string(sandbox.path("out/rows.csv")).unwrap();
     let passing = |model: &str| {
         csv.lines().filter(|line| line.contains(&format!(",{model},")) && line.contains(",pinocchio,") && line.contains(",pass,")).count()
     };
@@ -159,7 +160,7 @@ fn damaged_runs_are_refused_by_file() {
     let sandbox = Sandbox::new();
     sandbox.run(&["run", "--suite", "smoke", "--only", "structure", "--out", "out"]).expect(0, &["report:"]);
     sandbox.run(&["report", "out"]).expect(0, &["out/index.html"]);
-    let cell = std::fs::read_to_string(sandbox.path("out/records.csv"))
+    let cell = std::fs::read_to_string(sandbox.path("out/rows.csv"))
         .unwrap()
         .lines()
         .nth(1)
@@ -172,17 +173,17 @@ fn damaged_runs_are_refused_by_file() {
     sandbox.run(&["explain", &cell[..6], "out"]).expect(0, &["structure", "again"]);
     sandbox.run(&["explain", "zz", "out"]).expect(2, &["no cell that begins with 'zz'"]);
 
-    let path = sandbox.path("out/records.csv");
+    let path = sandbox.path("out/rows.csv");
     let whole = std::fs::read(&path).unwrap();
     std::fs::write(&path, &whole[..whole.len() - 40]).unwrap();
-    sandbox.run(&["gate", "out"]).expect(2, &["records.csv"]);
+    sandbox.run(&["gate", "out"]).expect(2, &["rows.csv"]);
     // One bit, which leaves a row that reads well.
     let at = whole.iter().rposition(u8::is_ascii_digit).unwrap();
     let mut flipped = whole.clone();
     flipped[at] ^= 1;
     std::fs::write(&path, flipped).unwrap();
     for arguments in [&["report", "out"][..], &["gate", "out"], &["diff", "out", "out"], &["explain", &cell[..6], "out"]] {
-        sandbox.run(arguments).expect(2, &["records.csv", "its checksum is not the one in", "checksums.txt"]);
+        sandbox.run(arguments).expect(2, &["rows.csv", "its checksum is not the one in", "checksums.txt"]);
     }
     sandbox.run(&["report", "nowhere"]).expect(2, &["nowhere"]);
 }

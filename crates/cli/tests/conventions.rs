@@ -66,7 +66,7 @@ fn the_page_shows_the_ledger() {
 #[test]
 fn a_bad_ledger_is_told_by_file_and_key() {
     let sandbox = Sandbox::new();
-    let row = "[[convention]]\nengine = \"e\"\nsubject = \"s\"\ntheirs = \"t\"\nconversion = \"–\"\ntest = \"e_s\"\n";
+    let row = "[[convention]]\nengine = \"e\"\ntopic = \"s\"\ntheirs = \"t\"\nconversion = \"–\"\ntest = \"e_s\"\n";
     let ours = "[ours]\ns = \"o\"\n";
     let good = sandbox.write("good.toml", &format!("{ours}{row}"));
     assert_eq!(featherbench_bench::conventions::read(&good).unwrap().len(), 1);

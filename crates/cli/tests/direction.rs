@@ -11,12 +11,12 @@ const ALLOWED: [(&str, &[&str]); 11] = [
     ("formats", &["model", "spatial"]),
     ("dynamics", &["spatial", "model"]),
     ("reference", &["model"]),
-    ("record", &[]),
-    ("report", &["record"]),
-    ("harness", &["spatial", "model", "formats", "dynamics", "record"]),
-    ("engines", &["spatial", "model", "formats", "dynamics", "record", "harness"]),
-    ("studies", &["spatial", "model", "dynamics", "record", "harness"]),
-    ("cli", &["spatial", "model", "formats", "dynamics", "record", "report", "harness", "engines", "studies"]),
+    ("results", &[]),
+    ("report", &["results"]),
+    ("bench", &["spatial", "model", "formats", "dynamics", "results"]),
+    ("engines", &["spatial", "model", "formats", "dynamics", "results", "bench"]),
+    ("studies", &["spatial", "model", "dynamics", "results", "bench"]),
+    ("cli", &["spatial", "model", "formats", "dynamics", "results", "report", "bench", "engines", "studies"]),
 ];
 
 /// The manifests of the workspace.
@@ -65,7 +65,7 @@ fn serialization(package: &str) -> Vec<String> {
     reached(package).into_iter().filter(|name| name.split(['-', '_']).any(|word| word == "serde") || parsers.contains(&&**name)).collect()
 }
 
-/// Kernels and models know nothing about files: no serialization below `formats` and `harness`.
+/// Kernels and models know nothing about files: no serialization below `formats` and `bench`.
 #[test]
 fn kernels_reach_no_serialization() {
     for kernel in ["featherbench-spatial", "featherbench-model", "featherbench-dynamics", "featherbench-reference"] {

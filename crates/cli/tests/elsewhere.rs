@@ -30,7 +30,7 @@ fn a_project_that_is_named_is_the_one_that_is_used() {
     std::fs::remove_file(copy.path("datasets")).unwrap();
     std::fs::create_dir_all(copy.path("datasets/suites")).unwrap();
     std::os::unix::fs::symlink(project().join("datasets/models"), copy.path("datasets/models")).unwrap();
-    let suite = "about = \"one\"\nseed = 1\nstructure = true\n[[problem]]\nmodel = \"chain-planar-2\"\nfamily = \"chain\"\n";
+    let suite = "about = \"one\"\nseed = 1\nstructure = true\n[[robot]]\nmodel = \"chain-planar-2\"\nfamily = \"chain\"\n";
     copy.write("datasets/suites/own.toml", suite);
     let before = entries(project().join("reports"));
     run(here.path(), Some(copy.folder.path()), &["run", "--suite", "own"]).expect(0, &["report:"]);
@@ -38,7 +38,7 @@ fn a_project_that_is_named_is_the_one_that_is_used() {
     run(here.path(), None, &["--root", folder, "run", "--suite", "own", "--out", "mine"]).expect(0, &["report:"]);
     run(here.path(), None, &["list", "--suite", "own", "--root", folder]).expect(0, &["chain-planar-2"]);
     assert_eq!(entries(copy.path("reports")).len(), 1, "a run without --out lands in the project's reports");
-    assert!(here.path().join("mine/records.csv").is_file(), "and one with it where it says");
+    assert!(here.path().join("mine/rows.csv").is_file(), "and one with it where it says");
     // What is named comes before the folder one stands in.
     run(copy.folder.path(), Some(&project()), &["list", "--suite", "own"]).expect(2, &["own.toml"]);
     assert_eq!(entries(project().join("reports")), before);
@@ -55,8 +55,8 @@ fn a_folder_that_is_no_project_is_named_with_what_it_lacks() {
 #[test]
 fn what_needs_no_project_asks_for_none() {
     let here = tempfile::tempdir().unwrap();
-    let row = featherbench_results::Record { cell: "abcd".into(), study: "structure".into(), ..featherbench_results::Record::default() }
-        .informed(1.0);
+    let row =
+        featherbench_results::Row { cell: "abcd".into(), study: "structure".into(), ..featherbench_results::Row::default() }.informed(1.0);
     featherbench_results::write_run(&here.path().join("run"), &featherbench_results::RunInfo::default(), &[row]).unwrap();
     let nowhere = here.path().join("nowhere");
     for (arguments, words) in

@@ -8,7 +8,7 @@ use support::{Ended, Sandbox};
 
 /// The rows of a cell, without the run's own name in the first column.
 fn rows(folder: &Path, cell: &str) -> Vec<String> {
-    let csv = std::fs::read_to_string(folder.join("records.csv")).unwrap();
+    let csv = std::fs::read_to_string(folder.join("rows.csv")).unwrap();
     let rows = csv.lines().filter_map(|line| line.split_once(',')).filter(|(_, rest)| rest.trim_start_matches('"').starts_with(cell));
     rows.map(|(_, rest)| rest.to_owned()).collect()
 }
@@ -26,13 +26,13 @@ fn the_printed_command_makes_the_rows_again() {
     sandbox.run(&["run", "--suite", "smoke", "--no-timing", "--out", "out"]).expect(0, &["report:"]);
     let (_, records) = featherbench_results::read_run(&sandbox.path("out")).unwrap();
     // A value against ours, one against another engine, one without a number, a count, and a cell that belongs to no robot.
-    let find = |what: &dyn Fn(&featherbench_results::Record) -> bool| records.iter().find(|row| what(row)).unwrap().cell.clone();
+    let find = |what: &dyn Fn(&featherbench_results::Row) -> bool| records.iter().find(|row| what(row)).unwrap().cell.clone();
     let chosen = [
-        find(&|row| row.engine == "pinocchio" && row.quantity == "fd" && row.metric == "forward" && row.model == "chain-planar-2"),
-        find(&|row| row.engine == "drake" && row.metric == "pairwise" && row.reference == "mujoco" && row.model == "panda"),
-        find(&|row| row.engine == "mujoco" && row.metric == "scaled_on_readback" && row.model == "joints-common-free-single"),
-        find(&|row| row.study == "structure" && row.engine == "native"),
-        find(&|row| row.study == "repeatability" && row.engine == "native"),
+        find(&|row| row.engine == "pinocchio" && row.quantity == "fd" && row.metric == "forward" && row.robot == "chain-planar-2"),
+        find(&|row| row.engine == "drake" && row.metric == "pairwise" && row.reference == "mujoco" && row.robot == "panda"),
+        find(&|row| row.engine == "mujoco" && row.metric == "scaled_on_readback" && row.robot == "joints-common-free-single"),
+        find(&|row| row.study == "structure" && row.engine == "featherbench"),
+        find(&|row| row.study == "repeatability" && row.engine == "featherbench"),
     ];
     for (k, cell) in chosen.iter().enumerate() {
         let explained = sandbox.run(&["explain", cell, "out"]);
@@ -51,11 +51,11 @@ fn the_printed_command_makes_the_rows_again() {
 #[test]
 fn the_command_of_a_live_run_stays_live() {
     let sandbox = Sandbox::new();
-    let row = featherbench_results::Record {
+    let row = featherbench_results::Row {
         cell: "abcd".into(),
         study: "agreement".into(),
-        model: "panda".into(),
-        ..featherbench_results::Record::default()
+        robot: "panda".into(),
+        ..featherbench_results::Row::default()
     };
     let info = featherbench_results::RunInfo {
         suite: "smoke".into(),

@@ -2,7 +2,7 @@
 
 mod support;
 
-use featherbench_bench::{Problem, Quantity, Subject};
+use featherbench_bench::{Engine, Quantity, Robot};
 use support::Sandbox;
 
 /// A shell that builds no robot.
@@ -39,7 +39,7 @@ fn with_shy() -> Sandbox {
 fn names_and_programs_are_checked_before_anything_runs() {
     let sandbox = with_shy();
     let refused = [
-        ("native=sh 'shy oracle.sh'", 2, "the name 'native' is taken"),
+        ("featherbench=sh 'shy oracle.sh'", 2, "the name 'featherbench' is taken"),
         ("mujoco=sh 'shy oracle.sh'", 2, "the name 'mujoco' is taken"),
         ("mine=./nowhere", 2, "there is no program ./nowhere"),
         ("mine=no-such-program-anywhere", 2, "there is no program"),
@@ -60,17 +60,17 @@ fn names_and_programs_are_checked_before_anything_runs() {
 fn with_table(more: &str, factor: f64) -> Sandbox {
     let sandbox = Sandbox::new();
     let description = featherbench_formats::neutral::read(support::project().join("datasets/models/chain-planar-2.json")).unwrap();
-    let problem = Problem::new(&description, "chain", featherbench_results::ModelOrigin::Generated, 20, 1).unwrap();
-    let native = featherbench_engines::Native::new();
-    let mut rnea = native.prepare(&problem, Quantity::InverseDynamics, "rnea", &problem.states).unwrap();
+    let robot = Robot::new(&description, "chain", featherbench_results::ModelOrigin::Generated, 20, 1).unwrap();
+    let featherbench = featherbench_engines::Featherbench::new();
+    let mut rnea = featherbench.prepare(&robot, Quantity::InverseDynamics, "rnea", &robot.states).unwrap();
     rnea.run(0..20).unwrap();
     let bytes = |values: &[f64]| values.iter().flat_map(|x| x.to_le_bytes()).collect::<Vec<u8>>();
     let scaled = |factor: f64| rnea.read().iter().map(|x| x * factor).collect::<Vec<f64>>();
-    std::fs::write(sandbox.path("readback.bin"), bytes(&problem.readback())).unwrap();
+    std::fs::write(sandbox.path("readback.bin"), bytes(&robot.readback())).unwrap();
     std::fs::write(sandbox.path("id.bin"), bytes(&scaled(factor))).unwrap();
     std::fs::write(sandbox.path("noisy.bin"), bytes(&scaled(1.0 + 8.0 * f64::EPSILON))).unwrap();
-    let states = &problem.states;
-    let numbers = states.q.len() + states.v.len() + states.a.len() + states.tau.len() + states.wrench.len() + problem.probe().len();
+    let states = &robot.states;
+    let numbers = states.q.len() + states.v.len() + states.a.len() + states.tau.len() + states.wrench.len() + robot.probe().len();
     sandbox.write("table.sh", &TABLE.replace("STATES", &(8 * numbers).to_string()).replace("MORE", more));
     sandbox
 }
@@ -83,7 +83,7 @@ fn a_guest_is_judged_by_what_it_answers() {
     let sandbox = with_table(":", 1.0);
     sandbox.run(&[&TABLE_RUN[..], &["green"]].concat()).expect(0, &["4 skip"]);
     sandbox.run(&["gate", "green"]).expect(0, &["4 skip"]);
-    let rows = std::fs::read_to_string(sandbox.path("green/records.csv")).unwrap();
+    let rows = std::fs::read_to_string(sandbox.path("green/rows.csv")).unwrap();
     let of_table = |verdict: &str| rows.lines().filter(|row| row.contains(",mine,7,") && row.contains(&format!(",{verdict},"))).count();
     assert!(of_table("pass") > 3 && of_table("skip") == 4, "{rows}");
     assert!(rows.contains("the table has one robot"));

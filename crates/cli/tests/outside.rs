@@ -15,7 +15,7 @@ mod rapier;
 mod support;
 mod written;
 
-use featherbench_bench::{FileBase, FileFormat, RobotFile, Subject};
+use featherbench_bench::{Engine, FileBase, FileFormat, RobotFile};
 use featherbench_engines::{Limits, Oracle};
 use featherbench_studies::reading::{Cause, Comparison, Difference, Field};
 use std::ffi::OsString;
@@ -280,7 +280,7 @@ fn small_oracle() -> Outcome {
     let engine = format!("small='{}' oracles/chain.py", python.display());
     let only = "agreement/chain-planar-2/.*/(readback|id|mass_matrix)/.*";
     sandbox.run(&["run", "--suite", "smoke", "--no-timing", "--engine", &engine, "--only", only, "--out", "out"]).expect(0, &["report:"]);
-    let rows = std::fs::read_to_string(sandbox.path("out/records.csv")).unwrap();
+    let rows = std::fs::read_to_string(sandbox.path("out/rows.csv")).unwrap();
     for quantity in ["readback", "id", "mass_matrix"] {
         let judged = rows
             .lines()

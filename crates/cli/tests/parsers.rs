@@ -70,7 +70,7 @@ fn seeds_are_good() {
     let text = read("gates/small.toml");
     let (gates, deviations) = text.split_once("\n---\n").unwrap();
     featherbench_bench::Gates::parse(gates, deviations, Path::new("small")).unwrap_or_else(|error| panic!("{error}"));
-    assert!(featherbench_engines::Recording::from_bytes(&fuzz::recording_seed(), &fuzz::recorded_problem()).is_ok());
+    assert!(featherbench_engines::Recording::from_bytes(&fuzz::recording_seed(), &fuzz::recorded_robot()).is_ok());
     for seed in [fuzz::records_seed(), fuzz::run_info_seed()] {
         assert!(std::str::from_utf8(&seed).is_ok_and(|text| !text.is_empty()));
     }

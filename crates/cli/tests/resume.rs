@@ -13,7 +13,7 @@ use support::Sandbox;
 
 /// The exact rows of a run, without the run's own name in the first column.
 fn exact_rows(folder: &Path) -> Vec<String> {
-    let csv = std::fs::read_to_string(folder.join("records.csv")).unwrap();
+    let csv = std::fs::read_to_string(folder.join("rows.csv")).unwrap();
     let exact = csv.lines().filter(|line| line.contains(",exact,"));
     exact.map(|line| line.split_once(',').unwrap().1.to_owned()).collect()
 }

@@ -1,9 +1,9 @@
-//! Runs every native kernel on some robots for `ci/instructions.py`, which counts their instructions under callgrind.
+//! Runs every kernel of ours on some robots for `ci/instructions.py`, which counts their instructions under callgrind.
 //!
 //! Prints a line `kernel,model,calls` before each; everything that is counted happens in [`featherbench_measured`], called once per line.
 
-use featherbench_bench::{Prepared, Problem, Subject};
-use featherbench_engines::{Native, timed};
+use featherbench_bench::{Engine, Evaluation, Robot};
+use featherbench_engines::{Featherbench, timed};
 use featherbench_model::StateBatch;
 use featherbench_model::generate::Family;
 use featherbench_results::ModelOrigin;
@@ -16,16 +16,16 @@ const CALLS: usize = 4;
 const SEED: u64 = 1;
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
-    let native = Native::new();
+    let featherbench = Featherbench::new();
     for robot in ROBOTS {
         let description = Family::parse(robot)?.generate()?;
-        let problem = Problem::new(&description, "instructions", ModelOrigin::Generated, 1, SEED)?;
-        let states = StateBatch::random(&problem.model, CALLS, SEED);
-        for (quantity, method) in timed(&problem) {
-            let mut prepared = native.prepare(&problem, quantity, method, &states)?;
+        let robot = Robot::new(&description, "instructions", ModelOrigin::Generated, 1, SEED)?;
+        let states = StateBatch::random(&robot.model, CALLS, SEED);
+        for (quantity, method) in timed(&robot) {
+            let mut prepared = featherbench.prepare(&robot, quantity, method, &states)?;
             // The first call may allocate.
             prepared.clock(0..CALLS)?;
-            println!("{}/{method},{},{CALLS}", quantity.name(), problem.name);
+            println!("{}/{method},{},{CALLS}", quantity.name(), robot.name);
             featherbench_measured(prepared.as_mut())?;
         }
     }
@@ -34,7 +34,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
 
 /// What callgrind counts.
 #[inline(never)]
-fn featherbench_measured(prepared: &mut dyn Prepared) -> Result<(), featherbench_bench::Refusal> {
+fn featherbench_measured(prepared: &mut dyn Evaluation) -> Result<(), featherbench_bench::NoAnswer> {
     prepared.clock(0..CALLS)?;
     black_box(prepared.read());
     Ok(())

@@ -1,9 +1,9 @@
-//! The registry of native kernels: which algorithm answers which quantity.
+//! The registry of own kernels: which algorithm answers which quantity.
 //!
 //! A kernel owns its workspace. Evaluating leaves one state's answer where its algorithm leaves it, as in any engine; reading it into a slice
 //! is a step of its own. Studies, the timing of runs and `cargo bench` all go through this list, so what is timed is what is checked.
 
-use featherbench_bench::{DENSE_LIMIT, Problem, Quantity, Refusal, layout};
+use featherbench_bench::{DENSE_LIMIT, NoAnswer, Quantity, Robot, layout};
 use featherbench_dynamics::{
     Aba, Bias, CenterOfMass, Crba, Energy, Error, Jacobian, Kinematics, Ltdl, Momentum, Refined, Rnea, TreeSparse,
 };
@@ -75,21 +75,21 @@ pub(crate) fn methods(quantity: Quantity) -> &'static [&'static str] {
 }
 
 /// The kernel of a quantity and method over a batch of states.
-pub(crate) fn kernel<'a>(problem: &'a Problem, quantity: Quantity, method: &str, states: &'a StateBatch) -> Result<Kernel<'a>, Refusal> {
+pub(crate) fn kernel<'a>(robot: &'a Robot, quantity: Quantity, method: &str, states: &'a StateBatch) -> Result<Kernel<'a>, NoAnswer> {
     if !methods(quantity).contains(&method) {
-        return Err(Refusal::Unsupported(format!("there is no native {} by {method}", quantity.name())));
+        return Err(NoAnswer::NotOffered(format!("there is no own method of {} by {method}", quantity.name())));
     }
-    let model = &problem.model;
+    let model = &robot.model;
     Ok(match quantity {
         Quantity::InverseDynamics => inverse_dynamics(model, states),
         Quantity::InverseDynamicsWrench => inverse_dynamics_wrench(model, states),
         Quantity::Bias => bias(model, states),
         Quantity::MassMatrix => mass_matrix(model, states),
-        Quantity::MassMatrixProbe => mass_matrix_probe(model, states, problem.probe()),
+        Quantity::MassMatrixProbe => mass_matrix_probe(model, states, robot.probe()),
         Quantity::MassMatrixSparse => mass_matrix_sparse(model, states),
         Quantity::ForwardDynamics if method == "ltdl" => forward_dynamics_by_factorization(model, states),
-        Quantity::ForwardDynamics if method == "refined_1" => refined_forward_dynamics(problem, states, 1)?,
-        Quantity::ForwardDynamics if method == "refined_2" => refined_forward_dynamics(problem, states, 2)?,
+        Quantity::ForwardDynamics if method == "refined_1" => refined_forward_dynamics(robot, states, 1)?,
+        Quantity::ForwardDynamics if method == "refined_2" => refined_forward_dynamics(robot, states, 2)?,
         Quantity::ForwardDynamics => forward_dynamics(model, states),
         Quantity::ForwardDynamicsSingle => forward_dynamics_single(model, states, method == "ltdl"),
         Quantity::Factorization => factorization(model, states)?,
@@ -99,14 +99,14 @@ pub(crate) fn kernel<'a>(problem: &'a Problem, quantity: Quantity, method: &str,
         Quantity::CenterOfMass => center_of_mass(model, states),
         Quantity::Momentum => momentum(model, states),
         Quantity::BodyPlacement | Quantity::BodyVelocity | Quantity::BodyAcceleration => kinematics(model, states, quantity),
-        Quantity::BodyJacobian => jacobian(model, states, model.described[problem.deepest_body()]),
-        Quantity::Readback => constant(problem.readback()),
+        Quantity::BodyJacobian => jacobian(model, states, model.described[robot.deepest_body()]),
+        Quantity::Readback => constant(robot.readback()),
         Quantity::StoredEntries => constant(vec![model.topology.stored() as f64]),
     })
 }
 
 /// The quantities that the timing study takes: one pass of one algorithm each, from q, v, a or τ to its result.
-pub fn timed(problem: &Problem) -> Vec<(Quantity, &'static str)> {
+pub fn timed(robot: &Robot) -> Vec<(Quantity, &'static str)> {
     let whole = [
         (Quantity::InverseDynamics, "rnea"),
         (Quantity::Bias, "rnea"),
@@ -124,7 +124,7 @@ pub fn timed(problem: &Problem) -> Vec<(Quantity, &'static str)> {
         (Quantity::BodyJacobian, "kinematics"),
     ];
     // A body Jacobian is 6·nv numbers of mostly zeros on big robots: only its nonzero columns would be worth a time.
-    whole.into_iter().filter(|(quantity, _)| *quantity != Quantity::BodyJacobian || problem.states.nv <= DENSE_LIMIT).collect()
+    whole.into_iter().filter(|(quantity, _)| *quantity != Quantity::BodyJacobian || robot.states.nv <= DENSE_LIMIT).collect()
 }
 
 fn inverse_dynamics<'a>(model: &'a Model<f64>, states: &'a StateBatch) -> Kernel<'a> {
@@ -218,26 +218,26 @@ fn forward_dynamics_single<'a>(model: &'a Model<f64>, states: &'a StateBatch, fa
 }
 
 /// Refined with the residual in double-double, of the robot as its description says it.
-fn refined_forward_dynamics<'a>(problem: &'a Problem, states: &'a StateBatch, steps: usize) -> Result<Kernel<'a>, Refusal> {
-    let model: Model<DoubleDouble> = Model::build(&problem.description).map_err(|error| Refusal::Failed(error.to_string()))?;
+fn refined_forward_dynamics<'a>(robot: &'a Robot, states: &'a StateBatch, steps: usize) -> Result<Kernel<'a>, NoAnswer> {
+    let model: Model<DoubleDouble> = Model::build(&robot.description).map_err(|error| NoAnswer::Failed(error.to_string()))?;
     let mut refined = Refined::<DoubleDouble>::new(&model.topology, steps);
-    Ok(written(problem.model.topology.nv(), move |k, a| refined.run(&model, states.q(k), states.v(k), states.tau(k), None, a)))
+    Ok(written(robot.model.topology.nv(), move |k, a| refined.run(&model, states.q(k), states.v(k), states.tau(k), None, a)))
 }
 
 /// The stored numbers of the mass matrices of a batch, made beforehand: factorizing and solving do not include making them.
-fn matrices(model: &Model<f64>, states: &StateBatch) -> Result<Vec<Vec<f64>>, Refusal> {
+fn matrices(model: &Model<f64>, states: &StateBatch) -> Result<Vec<Vec<f64>>, NoAnswer> {
     let (mut crba, mut matrix) = (Crba::new(&model.topology), TreeSparse::new(&model.topology));
     // Of big robots a few matrices go round: thousands of them would not fit the memory.
     let count = states.count().min(1 + (32 << 20) / (8 * model.topology.stored().max(1)));
     (0..count)
         .map(|k| {
-            crba.run(model, states.q(k), &mut matrix).map_err(|error| Refusal::Failed(error.to_string()))?;
+            crba.run(model, states.q(k), &mut matrix).map_err(|error| NoAnswer::Failed(error.to_string()))?;
             Ok(matrix.values().to_vec())
         })
         .collect()
 }
 
-fn factorization<'a>(model: &'a Model<f64>, states: &'a StateBatch) -> Result<Kernel<'a>, Refusal> {
+fn factorization<'a>(model: &'a Model<f64>, states: &'a StateBatch) -> Result<Kernel<'a>, NoAnswer> {
     let matrices = matrices(model, states)?;
     let evaluate = move |ltdl: &mut Ltdl<f64>, k: usize| {
         ltdl.matrix_mut().values_mut().copy_from_slice(&matrices[k % matrices.len()]);
@@ -246,12 +246,12 @@ fn factorization<'a>(model: &'a Model<f64>, states: &'a StateBatch) -> Result<Ke
     Ok(kept(Ltdl::new(&model.topology), evaluate, |ltdl, out| out.copy_from_slice(ltdl.factors().values())))
 }
 
-fn solve<'a>(model: &'a Model<f64>, states: &'a StateBatch) -> Result<Kernel<'a>, Refusal> {
+fn solve<'a>(model: &'a Model<f64>, states: &'a StateBatch) -> Result<Kernel<'a>, NoAnswer> {
     let mut ltdl = Ltdl::new(&model.topology);
     let mut factors = matrices(model, states)?;
     for matrix in &mut factors {
         ltdl.matrix_mut().values_mut().copy_from_slice(matrix);
-        ltdl.factor().map_err(|error| Refusal::Failed(error.to_string()))?;
+        ltdl.factor().map_err(|error| NoAnswer::Failed(error.to_string()))?;
         matrix.copy_from_slice(ltdl.factors().values());
     }
     Ok(written(model.topology.nv(), move |k, x| {

@@ -1,15 +1,15 @@
-//! Subjects: who answers.
+//! Engines: who answers.
 //!
-//! [`Native`] runs the kernels of this workspace; [`Oracle`] asks a program that speaks the protocol of `oracles/PROTOCOL.md`;
+//! [`Featherbench`] runs the kernels of this workspace; [`Oracle`] asks a program that speaks the protocol of `oracles/PROTOCOL.md`;
 //! [`peer`] serves an engine's native library by the same protocol; [`Recorded`] plays back what an oracle once answered. To add an engine,
-//! write such a program, in Rust too (`oracles/rapier`), or implement [`Subject`](featherbench_bench::Subject) in a file of its own here.
+//! write such a program, in Rust too (`oracles/rapier`), or implement [`Engine`](featherbench_bench::Engine) in a file of its own here.
 
 mod clock;
 mod coding;
 pub mod conformance;
 mod kernel;
-mod native;
 mod oracle;
+mod own;
 pub mod peer;
 mod process;
 mod recorded;
@@ -18,7 +18,7 @@ mod request;
 mod shape;
 
 pub use clock::{Clock, SystemClock};
-pub use native::{Native, timed};
 pub use oracle::{Limits, Oracle};
+pub use own::{Featherbench, timed};
 pub use recorded::{EngineRecording, Recorded, Recording, RecordingError, Recordings, read_recordings, recording_name};
 pub use reproducer::reproduce;

@@ -1,4 +1,4 @@
-//! A subject behind the oracle protocol: one program, as many processes as there are threads asking.
+//! An engine behind the oracle protocol: one program, as many processes as there are threads asking.
 
 pub(crate) mod steps;
 
@@ -8,7 +8,7 @@ use crate::process::Process;
 use crate::{request, shape};
 use featherbench_bench::frame::{Block, Frame};
 use featherbench_bench::provenance::{PROGRAM, SOURCES};
-use featherbench_bench::{Identity, Prepared, Problem, Quantity, Reading, ReadingNote, Refusal, RobotFile, Route, Stepper, Subject};
+use featherbench_bench::{Engine, Evaluation, Identity, NoAnswer, Quantity, Reading, ReadingNote, Robot, RobotFile, Route, Stepper};
 use featherbench_model::{BodyDescription, Description, StateBatch};
 use featherbench_results::EngineSource;
 use serde_json::{Value, json};
@@ -132,12 +132,12 @@ impl Oracle {
         self
     }
 
-    fn session(&self) -> Result<Session, Refusal> {
+    fn session(&self) -> Result<Session, NoAnswer> {
         let idle = self.lock().pop();
         match idle {
             Some(session) => Ok(session),
             None => {
-                let process = Process::start_by(&self.command, self.limits, Arc::clone(&self.clock)).map_err(Refusal::Failed)?;
+                let process = Process::start_by(&self.command, self.limits, Arc::clone(&self.clock)).map_err(NoAnswer::Failed)?;
                 Ok(Session { process, model: String::new(), readback: Vec::new(), states: None, reading: None })
             }
         }
@@ -148,7 +148,7 @@ impl Oracle {
     }
 }
 
-impl Subject for Oracle {
+impl Engine for Oracle {
     fn identity(&self) -> &Identity {
         &self.identity
     }
@@ -172,7 +172,7 @@ impl Subject for Oracle {
         matches!(self.timed_by, TimedBy::Estimate(_))
     }
 
-    fn read(&self, file: &RobotFile) -> Result<Reading, Refusal> {
+    fn read(&self, file: &RobotFile) -> Result<Reading, NoAnswer> {
         let mut session = self.session()?;
         let reading = session.read(file);
         self.give_back(session);
@@ -181,16 +181,16 @@ impl Subject for Oracle {
 
     fn prepare<'a>(
         &'a self,
-        problem: &'a Problem,
+        robot: &'a Robot,
         quantity: Quantity,
         method: &str,
         states: &'a StateBatch,
-    ) -> Result<Box<dyn Prepared + 'a>, Refusal> {
+    ) -> Result<Box<dyn Evaluation + 'a>, NoAnswer> {
         let mut session = self.session()?;
-        match session.build(problem).and_then(|()| session.send_states(problem, states)) {
+        match session.build(robot).and_then(|()| session.send_states(robot, states)) {
             Ok(()) => {
                 let method = method.to_owned();
-                Ok(Box::new(Asked { oracle: self, session: Some(session), problem, quantity, method, values: Vec::new(), overhead: None }))
+                Ok(Box::new(Asked { oracle: self, session: Some(session), robot, quantity, method, values: Vec::new(), overhead: None }))
             }
             Err(refusal) => {
                 self.give_back(session);
@@ -213,48 +213,48 @@ impl Oracle {
 }
 
 impl Session {
-    fn ask(&mut self, header: Value, blocks: Vec<Block>) -> Result<Frame, Refusal> {
-        checked(self.process.ask(&Frame::new(header, blocks)).map_err(Refusal::Failed)?)
+    fn ask(&mut self, header: Value, blocks: Vec<Block>) -> Result<Frame, NoAnswer> {
+        checked(self.process.ask(&Frame::new(header, blocks)).map_err(NoAnswer::Failed)?)
     }
 
     /// Has the engine build the robot, unless it holds it already, and reads it back.
-    fn build(&mut self, problem: &Problem) -> Result<(), Refusal> {
-        if self.model == problem.hash {
+    fn build(&mut self, robot: &Robot) -> Result<(), NoAnswer> {
+        if self.model == robot.hash {
             return Ok(());
         }
-        if problem.route == Route::AsRead {
-            return self.build_as_read(problem);
+        if robot.route == Route::AsRead {
+            return self.build_as_read(robot);
         }
         self.model.clear();
         self.states = None;
         self.reading = None;
-        let description = request::description(problem).map_err(Refusal::Failed)?;
+        let description = request::description(robot).map_err(NoAnswer::Failed)?;
         let answer = self.ask(json!({"op": "prepare", "model": description}), Vec::new())?;
-        let topology = &problem.model.topology;
-        for (key, expected) in [("nq", problem.description.nq()), ("nv", topology.nv())] {
+        let topology = &robot.model.topology;
+        for (key, expected) in [("nq", robot.description.nq()), ("nv", topology.nv())] {
             let found = answer.header.get(key).and_then(Value::as_u64);
             if found != Some(expected as u64) {
-                return Err(Refusal::Failed(format!("the engine reports {key} {found:?}, the robot has {expected}")));
+                return Err(NoAnswer::Failed(format!("the engine reports {key} {found:?}, the robot has {expected}")));
             }
         }
-        self.readback = shaped(&answer, "readback", &shape::of_readback(problem))?;
-        self.model.clone_from(&problem.hash);
+        self.readback = shaped(&answer, "readback", &shape::of_readback(robot))?;
+        self.model.clone_from(&robot.hash);
         Ok(())
     }
 
     /// Has the engine read the robot's file again, and holds it to what it read before.
-    fn build_as_read(&mut self, problem: &Problem) -> Result<(), Refusal> {
-        let file = problem.file.as_ref().ok_or_else(|| Refusal::Failed("the robot has no file to read".into()))?;
+    fn build_as_read(&mut self, robot: &Robot) -> Result<(), NoAnswer> {
+        let file = robot.file.as_ref().ok_or_else(|| NoAnswer::Failed("the robot has no file to read".into()))?;
         let reading = self.read(file)?;
-        if reading.description.bodies != problem.description.bodies || reading.description.gravity != problem.description.gravity {
-            return Err(Refusal::Failed("the engine does not read the same robot twice from the same file".into()));
+        if reading.description.bodies != robot.description.bodies || reading.description.gravity != robot.description.gravity {
+            return Err(NoAnswer::Failed("the engine does not read the same robot twice from the same file".into()));
         }
-        self.model.clone_from(&problem.hash);
+        self.model.clone_from(&robot.hash);
         Ok(())
     }
 
     /// Has the engine's own parser read a file, and asks what it holds then.
-    fn read(&mut self, file: &RobotFile) -> Result<Reading, Refusal> {
+    fn read(&mut self, file: &RobotFile) -> Result<Reading, NoAnswer> {
         if let Some((_, reading)) = self.reading.as_ref().filter(|(known, _)| known == file) {
             return Ok(reading.clone());
         }
@@ -262,22 +262,22 @@ impl Session {
         self.states = None;
         self.reading = None;
         self.readback.clear();
-        let path = file.path.to_str().ok_or_else(|| Refusal::Failed("the file's path is not UTF-8; rename it".into()))?;
+        let path = file.path.to_str().ok_or_else(|| NoAnswer::Failed("the file's path is not UTF-8; rename it".into()))?;
         let header = json!({"op": "read", "file": path, "format": file.format.name(), "base": file.base.name()});
         let answer = self.ask(header, Vec::new())?;
-        let reading = reading(&answer).map_err(|message| Refusal::Failed(format!("the engine's reading: {message}")))?;
+        let reading = reading(&answer).map_err(|message| NoAnswer::Failed(format!("the engine's reading: {message}")))?;
         self.reading = Some((file.clone(), reading.clone()));
         Ok(reading)
     }
 
-    fn send_states(&mut self, problem: &Problem, states: &StateBatch) -> Result<(), Refusal> {
+    fn send_states(&mut self, robot: &Robot, states: &StateBatch) -> Result<(), NoAnswer> {
         let numbers = [&states.q, &states.v, &states.a, &states.tau, &states.wrench].into_iter().flatten();
         let bytes: Vec<u8> = numbers.flat_map(|x| x.to_le_bytes()).collect();
         let key = featherbench_bench::hash::of(&bytes);
         if self.states.as_ref() == Some(&key) {
             return Ok(());
         }
-        let (header, blocks) = request::states(problem, states);
+        let (header, blocks) = request::states(robot, states);
         self.ask(header, blocks)?;
         self.states = Some(key);
         Ok(())
@@ -288,7 +288,7 @@ impl Session {
 struct Asked<'a> {
     oracle: &'a Oracle,
     session: Option<Session>,
-    problem: &'a Problem,
+    robot: &'a Robot,
     quantity: Quantity,
     method: String,
     values: Vec<f64>,
@@ -301,52 +301,52 @@ impl Asked<'_> {
     fn question(&self, op: &str, range: &Range<usize>) -> Value {
         json!({
             "op": op, "quantity": self.quantity.name(), "method": self.method,
-            "first": range.start, "count": range.len(), "body": self.problem.deepest_body(),
+            "first": range.start, "count": range.len(), "body": self.robot.deepest_body(),
         })
     }
 }
 
-impl Prepared for Asked<'_> {
-    fn run(&mut self, range: Range<usize>) -> Result<(), Refusal> {
+impl Evaluation for Asked<'_> {
+    fn run(&mut self, range: Range<usize>) -> Result<(), NoAnswer> {
         let question = self.question("evaluate", &range);
-        let session = self.session.as_mut().ok_or_else(|| Refusal::Failed("the oracle has ended".into()))?;
+        let session = self.session.as_mut().ok_or_else(|| NoAnswer::Failed("the oracle has ended".into()))?;
         if self.quantity == Quantity::Readback {
             self.values.clone_from(&session.readback);
             return Ok(());
         }
         let answer = session.ask(question, Vec::new())?;
-        self.values = shaped(&answer, "value", &shape::of_value(self.quantity, self.problem, range.len()))?;
+        self.values = shaped(&answer, "value", &shape::of_value(self.quantity, self.robot, range.len()))?;
         Ok(())
     }
 
-    /// By the oracle's own clock, where it has one: the values are then not sent, and [`Prepared::read`] still has those of the last `run`. A
+    /// By the oracle's own clock, where it has one: the values are then not sent, and [`Evaluation::read`] still has those of the last `run`. A
     /// range that goes beyond the batch begins again at its first state.
-    fn clock(&mut self, range: Range<usize>) -> Result<Duration, Refusal> {
+    fn clock(&mut self, range: Range<usize>) -> Result<Duration, NoAnswer> {
         if matches!(self.oracle.timed_by, TimedBy::Us) {
             let start = self.oracle.clock.now();
             self.run(range)?;
             return Ok(self.oracle.clock.now() - start);
         }
         let question = self.question("clock", &range);
-        let session = self.session.as_mut().ok_or_else(|| Refusal::Failed("the oracle has ended".into()))?;
+        let session = self.session.as_mut().ok_or_else(|| NoAnswer::Failed("the oracle has ended".into()))?;
         let answer = session.ask(question, Vec::new())?;
         let time = |key: &str| answer.header.get(key).and_then(Value::as_u64).map(Duration::from_nanos);
         self.overhead = time("overhead");
         if self.oracle.estimates() && self.overhead.is_none() {
-            return Err(Refusal::Failed("the oracle's answer has no overhead, and its times are estimates".into()));
+            return Err(NoAnswer::Failed("the oracle's answer has no overhead, and its times are estimates".into()));
         }
-        time("nanoseconds").ok_or_else(|| Refusal::Failed("the oracle's answer has no nanoseconds".into()))
+        time("nanoseconds").ok_or_else(|| NoAnswer::Failed("the oracle's answer has no nanoseconds".into()))
     }
 
     fn overhead(&self) -> Option<Duration> {
         self.overhead
     }
 
-    fn scatter(&mut self, seed: u32) -> Result<bool, Refusal> {
+    fn scatter(&mut self, seed: u32) -> Result<bool, NoAnswer> {
         if !self.oracle.scatter {
             return Ok(false);
         }
-        let session = self.session.as_mut().ok_or_else(|| Refusal::Failed("the oracle has ended".into()))?;
+        let session = self.session.as_mut().ok_or_else(|| NoAnswer::Failed("the oracle has ended".into()))?;
         session.ask(json!({"op": "scatter", "seed": seed}), Vec::new()).map(|_| true)
     }
 
@@ -422,27 +422,27 @@ fn note(note: &Value) -> ReadingNote {
     let numbers: Option<Vec<f64>> = note.get("numbers").and_then(Value::as_array).and_then(|list| list.iter().map(Value::as_f64).collect());
     ReadingNote {
         cause: text("cause").unwrap_or_default(),
-        subject: text("subject"),
+        about: text("about"),
         text: text("text").unwrap_or_default(),
         numbers: numbers.unwrap_or_default(),
     }
 }
 
 /// An answer whose status is `ok`, or what its status says.
-pub(crate) fn checked(answer: Frame) -> Result<Frame, Refusal> {
+pub(crate) fn checked(answer: Frame) -> Result<Frame, NoAnswer> {
     let reason = || match answer.text("reason") {
         "" => "the oracle gives no reason".to_owned(),
         reason => reason.to_owned(),
     };
     match answer.text("status") {
         "ok" => Ok(answer),
-        "unsupported" => Err(Refusal::Unsupported(reason())),
-        "error" => Err(Refusal::Failed(reason())),
-        other => Err(Refusal::Failed(format!("the oracle answers with status '{other}'"))),
+        "unsupported" => Err(NoAnswer::NotOffered(reason())),
+        "error" => Err(NoAnswer::Failed(reason())),
+        other => Err(NoAnswer::Failed(format!("the oracle answers with status '{other}'"))),
     }
 }
 
 /// The numbers of a block that must have this shape.
-pub(crate) fn shaped(answer: &Frame, name: &str, due: &[usize]) -> Result<Vec<f64>, Refusal> {
-    shape::block(answer, name, due).map(<[f64]>::to_vec).map_err(Refusal::Failed)
+pub(crate) fn shaped(answer: &Frame, name: &str, due: &[usize]) -> Result<Vec<f64>, NoAnswer> {
+    shape::block(answer, name, due).map(<[f64]>::to_vec).map_err(NoAnswer::Failed)
 }

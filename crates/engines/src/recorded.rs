@@ -1,4 +1,4 @@
-//! A subject that plays back what an oracle answered: `datasets/recorded/MODEL.recording`.
+//! An engine that plays back what an oracle answered: `datasets/recorded/MODEL.recording`.
 //!
 //! A recording is about one robot and holds what every engine answered. It is a sequence of parts, each a line of JSON with the number of
 //! raw bytes that follow it: first the robot and the states; then, for each engine, who it is and its outcomes, one after the other; at last
@@ -7,7 +7,7 @@
 //! refused.
 
 use crate::coding::{delta, from_delta, from_plain, plain};
-use featherbench_bench::{Identity, Outcome, Prepared, Problem, Quantity, Refusal, Subject};
+use featherbench_bench::{Engine, Evaluation, Identity, NoAnswer, Outcome, Quantity, Robot};
 use featherbench_model::{StateBatch, Topology};
 use featherbench_results::EngineSource;
 use serde_json::{Value, json};
@@ -64,11 +64,11 @@ pub fn recording_name(model: &str) -> String {
 
 impl Recording {
     /// The recording as bytes.
-    pub fn to_bytes(&self, problem: &Problem) -> Vec<u8> {
+    pub fn to_bytes(&self, robot: &Robot) -> Vec<u8> {
         let mut writer = Writer { bytes: Vec::new(), parts: 0 };
-        let head = json!({"recording": FORMAT, "model": problem.name, "problem": problem.hash, "states": problem.states.count()});
-        writer.part(head, &plain(&states(&problem.states)));
-        let topology = &problem.model.topology;
+        let head = json!({"recording": FORMAT, "model": robot.name, "robot": robot.hash, "states": robot.states.count()});
+        writer.part(head, &plain(&states(&robot.states)));
+        let topology = &robot.model.topology;
         let mut bases: HashMap<Quantity, Vec<f64>> = HashMap::new();
         for engine in &self.engines {
             let Identity { name, version, build, .. } = &engine.identity;
@@ -77,8 +77,8 @@ impl Recording {
                 let header =
                     |status: &str, reason: &str| json!({"quantity": quantity.name(), "method": method, "status": status, "reason": reason});
                 match outcome {
-                    Outcome::Refused(Refusal::Unsupported(reason)) => writer.part(header("unsupported", reason), &[]),
-                    Outcome::Refused(Refusal::Failed(reason)) => writer.part(header("error", reason), &[]),
+                    Outcome::NoAnswer(NoAnswer::NotOffered(reason)) => writer.part(header("unsupported", reason), &[]),
+                    Outcome::NoAnswer(NoAnswer::Failed(reason)) => writer.part(header("error", reason), &[]),
                     Outcome::Reading(_) => writer.part(header("unsupported", "what an engine reads from a file is not recorded"), &[]),
                     Outcome::Values(values) => {
                         let base = bases.get(quantity).filter(|base| base.len() == values.len());
@@ -96,20 +96,20 @@ impl Recording {
         writer.bytes
     }
 
-    /// Reads the recording of a problem.
+    /// Reads the recording of a robot.
     ///
     /// # Errors
     /// [`RecordingError`], when the file is missing, truncated, damaged, or about another robot or other states.
-    pub fn read(path: &Path, problem: &Problem) -> Result<Self, RecordingError> {
+    pub fn read(path: &Path, robot: &Robot) -> Result<Self, RecordingError> {
         let bytes = std::fs::read(path).map_err(|source| RecordingError::Io { path: path.to_owned(), source })?;
-        Self::from_bytes(&bytes, problem).map_err(|what| RecordingError::Damaged { path: path.to_owned(), what })
+        Self::from_bytes(&bytes, robot).map_err(|what| RecordingError::Damaged { path: path.to_owned(), what })
     }
 
-    /// The recording of a problem in bytes.
+    /// The recording of a robot in bytes.
     ///
     /// # Errors
     /// What is truncated, damaged, or about another robot or other states, in words.
-    pub fn from_bytes(bytes: &[u8], problem: &Problem) -> Result<Self, String> {
+    pub fn from_bytes(bytes: &[u8], robot: &Robot) -> Result<Self, String> {
         let body = featherbench_results::unsealed(bytes);
         let body = body.ok_or("its last line is not the checksum of the bytes before it: the file is truncated or damaged")?;
         let mut reader = Reader { bytes: body, parts: 0 };
@@ -119,8 +119,8 @@ impl Recording {
         }
         let recorded = from_plain(raw).ok_or("the states are damaged")?;
         let bits = |values: &[f64]| values.iter().map(|x| x.to_bits()).collect::<Vec<_>>();
-        if head["problem"] != problem.hash.as_str() || bits(&recorded) != bits(&states(&problem.states)) {
-            return Err(format!("it was recorded for another version of '{}' or of its states", problem.name));
+        if head["robot"] != robot.hash.as_str() || bits(&recorded) != bits(&states(&robot.states)) {
+            return Err(format!("it was recorded for another version of '{}' or of its states", robot.name));
         }
         let mut engines: Vec<EngineRecording> = Vec::new();
         let mut bases: HashMap<Quantity, Vec<f64>> = HashMap::new();
@@ -143,14 +143,14 @@ impl Recording {
             let quantity = Quantity::parse(word("quantity")).ok_or("an outcome names no quantity")?;
             let reason = word("reason").to_owned();
             let outcome = match word("status") {
-                "unsupported" => Outcome::Refused(Refusal::Unsupported(reason)),
-                "error" => Outcome::Refused(Refusal::Failed(reason)),
+                "unsupported" => Outcome::NoAnswer(NoAnswer::NotOffered(reason)),
+                "error" => Outcome::NoAnswer(NoAnswer::Failed(reason)),
                 _ => {
                     let base = match word("coding") {
                         "delta" => bases.get(&quantity).map(Vec::as_slice),
                         _ => None,
                     };
-                    let values = decode(quantity, raw, base, &problem.model.topology);
+                    let values = decode(quantity, raw, base, &robot.model.topology);
                     let values = values.ok_or_else(|| format!("the values of {} are damaged", quantity.name()))?;
                     bases.entry(quantity).or_insert_with(|| values.clone());
                     Outcome::Values(values)
@@ -266,10 +266,10 @@ fn unpack(packed: &[f64], topology: &Topology) -> Vec<f64> {
 /// The recordings of a suite's robots, by name.
 pub type Recordings = BTreeMap<String, Result<Recording, String>>;
 
-/// Reads the recordings of problems from a folder. A missing or damaged one is that robot's reason, not an error.
-pub fn read_recordings(folder: &Path, problems: &[&Problem]) -> Recordings {
-    let read = |problem: &Problem| Recording::read(&folder.join(recording_name(&problem.name)), problem).map_err(|error| error.to_string());
-    problems.iter().map(|problem| (problem.name.clone(), read(problem))).collect()
+/// Reads the recordings of robots from a folder. A missing or damaged one is that robot's reason, not an error.
+pub fn read_recordings(folder: &Path, robots: &[&Robot]) -> Recordings {
+    let read = |robot: &Robot| Recording::read(&folder.join(recording_name(&robot.name)), robot).map_err(|error| error.to_string());
+    robots.iter().map(|robot| (robot.name.clone(), read(robot))).collect()
 }
 
 /// An engine whose answers were recorded.
@@ -306,7 +306,7 @@ impl Recorded {
     }
 }
 
-impl Subject for Recorded {
+impl Engine for Recorded {
     fn identity(&self) -> &Identity {
         &self.identity
     }
@@ -322,21 +322,21 @@ impl Subject for Recorded {
 
     fn prepare<'a>(
         &'a self,
-        problem: &'a Problem,
+        robot: &'a Robot,
         quantity: Quantity,
         method: &str,
         _states: &'a StateBatch,
-    ) -> Result<Box<dyn Prepared + 'a>, Refusal> {
-        let recording = match self.recordings.get(&problem.name) {
+    ) -> Result<Box<dyn Evaluation + 'a>, NoAnswer> {
+        let recording = match self.recordings.get(&robot.name) {
             Some(Ok(recording)) => recording,
-            Some(Err(message)) => return Err(Refusal::Failed(message.clone())),
-            None => return Err(Refusal::Failed(format!("nothing was recorded about '{}'", problem.name))),
+            Some(Err(message)) => return Err(NoAnswer::Failed(message.clone())),
+            None => return Err(NoAnswer::Failed(format!("nothing was recorded about '{}'", robot.name))),
         };
         let outcomes = recording.engine(&self.identity.name).map(|engine| &engine.outcomes).into_iter().flatten();
         match outcomes.into_iter().find(|(q, m, _)| *q == quantity && m == method) {
-            Some((_, _, Outcome::Values(values))) => Ok(Box::new(Played { values, size: quantity.size(problem), range: 0..0 })),
-            Some((_, _, Outcome::Refused(refusal))) => Err(refusal.clone()),
-            Some((_, _, Outcome::Reading(_))) | None => Err(Refusal::Failed(format!("{} by {method} was not recorded", quantity.name()))),
+            Some((_, _, Outcome::Values(values))) => Ok(Box::new(Played { values, size: quantity.size(robot), range: 0..0 })),
+            Some((_, _, Outcome::NoAnswer(refusal))) => Err(refusal.clone()),
+            Some((_, _, Outcome::Reading(_))) | None => Err(NoAnswer::Failed(format!("{} by {method} was not recorded", quantity.name()))),
         }
     }
 }
@@ -347,10 +347,10 @@ struct Played<'a> {
     range: Range<usize>,
 }
 
-impl Prepared for Played<'_> {
-    fn run(&mut self, range: Range<usize>) -> Result<(), Refusal> {
+impl Evaluation for Played<'_> {
+    fn run(&mut self, range: Range<usize>) -> Result<(), NoAnswer> {
         if range.end * self.size > self.values.len() {
-            return Err(Refusal::Failed(format!("{} numbers were recorded, {} are due", self.values.len(), range.end * self.size)));
+            return Err(NoAnswer::Failed(format!("{} numbers were recorded, {} are due", self.values.len(), range.end * self.size)));
         }
         self.range = range;
         Ok(())

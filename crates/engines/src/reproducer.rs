@@ -2,7 +2,7 @@
 
 use crate::oracle::{Limits, checked, shaped};
 use crate::process::Process;
-use featherbench_bench::Refusal;
+use featherbench_bench::NoAnswer;
 use featherbench_bench::frame::Frame;
 use serde_json::json;
 use std::ffi::OsString;
@@ -10,10 +10,10 @@ use std::ffi::OsString;
 /// Asks `command` (`python -m featherbench_oracles.reproduce`) for a reproduction's values at the seeds 0..`seeds`.
 ///
 /// # Errors
-/// [`Refusal::Failed`] when the process or the reproduction fails, or another number of values comes.
-pub fn reproduce(command: &[OsString], limits: Limits, name: &str, seeds: u64) -> Result<Vec<f64>, Refusal> {
-    let mut process = Process::start(command, limits).map_err(Refusal::Failed)?;
+/// [`NoAnswer::Failed`] when the process or the reproduction fails, or another number of values comes.
+pub fn reproduce(command: &[OsString], limits: Limits, name: &str, seeds: u64) -> Result<Vec<f64>, NoAnswer> {
+    let mut process = Process::start(command, limits).map_err(NoAnswer::Failed)?;
     let request = Frame::new(json!({"op": "reproduce", "name": name, "seeds": seeds}), Vec::new());
-    let answer = checked(process.ask(&request).map_err(Refusal::Failed)?)?;
+    let answer = checked(process.ask(&request).map_err(NoAnswer::Failed)?)?;
     shaped(&answer, "value", &[seeds as usize])
 }

@@ -1,6 +1,6 @@
 //! Requests of the oracle protocol that more than one place sends.
 
-use featherbench_bench::Problem;
+use featherbench_bench::Robot;
 use featherbench_bench::frame::Block;
 use featherbench_model::StateBatch;
 use serde_json::{Value, json};
@@ -9,13 +9,13 @@ use serde_json::{Value, json};
 ///
 /// # Errors
 /// A sentence, when the description is no robot.
-pub(crate) fn description(problem: &Problem) -> Result<Value, String> {
-    let line = featherbench_formats::neutral::to_line(&problem.description).map_err(|error| error.to_string())?;
+pub(crate) fn description(robot: &Robot) -> Result<Value, String> {
+    let line = featherbench_formats::neutral::to_line(&robot.description).map_err(|error| error.to_string())?;
     serde_json::from_str(&line).map_err(|error| error.to_string())
 }
 
 /// The header and blocks of the request `states`.
-pub(crate) fn states(problem: &Problem, states: &StateBatch) -> (Value, Vec<Block>) {
+pub(crate) fn states(robot: &Robot, states: &StateBatch) -> (Value, Vec<Block>) {
     let (count, nv) = (states.count(), states.nv);
     let blocks = vec![
         Block::new("q", &[count, states.nq], &states.q),
@@ -23,7 +23,7 @@ pub(crate) fn states(problem: &Problem, states: &StateBatch) -> (Value, Vec<Bloc
         Block::new("a", &[count, nv], &states.a),
         Block::new("tau", &[count, nv], &states.tau),
         Block::new("wrench", &[count, states.bodies, 6], &states.wrench),
-        Block::new("probe", &[4, nv], &problem.probe()),
+        Block::new("probe", &[4, nv], &robot.probe()),
     ];
     (json!({"op": "states", "count": count}), blocks)
 }

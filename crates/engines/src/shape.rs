@@ -1,25 +1,25 @@
 //! The shapes of blocks, as the tables of `oracles/PROTOCOL.md` have them: one place for runs, the conformance test and native peers.
 
 use featherbench_bench::frame::Frame;
-use featherbench_bench::{Problem, Quantity};
+use featherbench_bench::{Quantity, Robot};
 
 /// The shape of an answer about so many states: `[count, …]`.
-pub(crate) fn of_value(quantity: Quantity, problem: &Problem, count: usize) -> Vec<usize> {
-    let (nv, bodies) = (problem.states.nv, problem.description.bodies.len());
+pub(crate) fn of_value(quantity: Quantity, robot: &Robot, count: usize) -> Vec<usize> {
+    let (nv, bodies) = (robot.states.nv, robot.description.bodies.len());
     let per_state = match quantity {
         Quantity::MassMatrix | Quantity::MassMatrixInverse => vec![nv, nv],
         Quantity::MassMatrixProbe | Quantity::BodyJacobian => vec![6, nv],
         Quantity::BodyPlacement => vec![bodies, 12],
         Quantity::BodyVelocity | Quantity::BodyAcceleration => vec![bodies, 6],
         Quantity::Readback => vec![bodies, 22],
-        _ => vec![quantity.size(problem)],
+        _ => vec![quantity.size(robot)],
     };
     [&[count][..], &per_state].concat()
 }
 
 /// The shape of the block `readback`.
-pub(crate) fn of_readback(problem: &Problem) -> Vec<usize> {
-    vec![problem.description.bodies.len(), 22]
+pub(crate) fn of_readback(robot: &Robot) -> Vec<usize> {
+    vec![robot.description.bodies.len(), 22]
 }
 
 /// The numbers of a block that must be there in this shape.
@@ -41,9 +41,9 @@ mod tests {
     use featherbench_results::ModelOrigin;
 
     /// A robot of which no two of nv, bodies and stored are the same, and none a number of the tables.
-    fn robot() -> Problem {
+    fn robot() -> Robot {
         let description = Family::parse("joints:kind=mixed,base=free").unwrap().generate().unwrap();
-        Problem::new(&description, "joints", ModelOrigin::Generated, 2, 1).unwrap()
+        Robot::new(&description, "joints", ModelOrigin::Generated, 2, 1).unwrap()
     }
 
     fn project(file: &str) -> String {
@@ -51,8 +51,8 @@ mod tests {
     }
 
     /// The extents of a table's entry, words standing for those of a robot.
-    fn extents(words: &str, problem: &Problem) -> Vec<usize> {
-        let (nv, bodies, stored) = (problem.states.nv, problem.description.bodies.len(), problem.model.topology.stored());
+    fn extents(words: &str, robot: &Robot) -> Vec<usize> {
+        let (nv, bodies, stored) = (robot.states.nv, robot.description.bodies.len(), robot.model.topology.stored());
         assert!(nv != bodies && stored != nv && ![1, 3, 6, 12].iter().any(|n| [nv, bodies, stored].contains(n)), "{nv} {bodies} {stored}");
         let extent = |word: &str| match word {
             "nv" => nv,
@@ -66,16 +66,16 @@ mod tests {
     /// The page is what the authors of oracles read: what it says of each quantity is what runs and the conformance test ask for.
     #[test]
     fn the_page_and_the_checks_agree_on_every_quantity() {
-        let (page, problem) = (project("oracles/PROTOCOL.md"), robot());
+        let (page, robot) = (project("oracles/PROTOCOL.md"), robot());
         let (_, table) = page.split_once("| quantity | shape per state | meaning |").unwrap();
         let rows = table.lines().skip(2).take_while(|line| line.starts_with('|'));
         let mut seen = Vec::new();
         for row in rows {
             let columns: Vec<&str> = row.split('|').map(str::trim).collect();
             let quantity = Quantity::parse(columns[1].trim_matches('`')).unwrap_or_else(|| panic!("{row}"));
-            let due = [vec![5], extents(columns[2], &problem)].concat();
-            assert_eq!(of_value(quantity, &problem, 5), due, "{row}");
-            assert_eq!(due.iter().product::<usize>(), 5 * quantity.size(&problem), "{row}");
+            let due = [vec![5], extents(columns[2], &robot)].concat();
+            assert_eq!(of_value(quantity, &robot, 5), due, "{row}");
+            assert_eq!(due.iter().product::<usize>(), 5 * quantity.size(&robot), "{row}");
             seen.push(quantity);
         }
         // The read-back stands among the requests; single precision is ours alone.
@@ -85,20 +85,20 @@ mod tests {
         due.sort_unstable();
         assert_eq!(seen, due, "every quantity stands on the page once");
         assert!(page.contains("block `readback` `[bodies, 22]`"));
-        assert_eq!(of_readback(&problem), [problem.description.bodies.len(), 22]);
+        assert_eq!(of_readback(&robot), [robot.description.bodies.len(), 22]);
     }
 
     /// The shapes that our own oracles send.
     #[test]
     fn the_python_table_is_that_of_the_page() {
-        let (text, problem) = (project("oracles/featherbench_oracles/protocol.py"), robot());
+        let (text, robot) = (project("oracles/featherbench_oracles/protocol.py"), robot());
         let (_, table) = text.split_once("SHAPES: dict").unwrap();
         let rows: Vec<&str> = table.lines().skip(1).take_while(|line| !line.starts_with('}')).collect();
         assert!(rows.len() > 12);
         for row in rows {
             let (name, shape) = row.trim().trim_end_matches("),").split_once(": (").unwrap();
             let quantity = Quantity::parse(name.trim_matches('"')).unwrap_or_else(|| panic!("{row}"));
-            assert_eq!(of_value(quantity, &problem, 5), [vec![5], extents(shape, &problem)].concat(), "{row}");
+            assert_eq!(of_value(quantity, &robot, 5), [vec![5], extents(shape, &robot)].concat(), "{row}");
         }
     }
 

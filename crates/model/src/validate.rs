@@ -138,7 +138,7 @@ pub enum Malformed {
 
 impl Malformed {
     /// The body or frame that the error is about, so that a reader of files can say where it stands.
-    pub fn subject(&self) -> Option<&str> {
+    pub fn about(&self) -> Option<&str> {
         match self {
             Self::Empty => None,
             Self::FrameOrphan { frame, .. } | Self::FrameNotARotation { frame, .. } => Some(frame),

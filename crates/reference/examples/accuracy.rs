@@ -78,8 +78,8 @@ fn compare(
     };
     let model = Model::<f64>::build(description).expect("a generated robot is sound");
     for (state, truth) in states.iter().zip(truth) {
-        for (who, answer) in native(&model, quantity, state) {
-            add(format!("native {who}"), &answer, truth);
+        for (who, answer) in featherbench(&model, quantity, state) {
+            add(format!("featherbench {who}"), &answer, truth);
         }
     }
     for (engine, oracle) in oracles {
@@ -94,7 +94,7 @@ fn compare(
 }
 
 /// Our kernels' answers, by their names.
-fn native(model: &Model<f64>, quantity: &str, State { q, v, a, tau }: &State) -> Vec<(&'static str, Vec<f64>)> {
+fn featherbench(model: &Model<f64>, quantity: &str, State { q, v, a, tau }: &State) -> Vec<(&'static str, Vec<f64>)> {
     const SOUND: &str = "a generated robot and its states fit each other";
     let n = v.len();
     let mass = featherbench_dynamics::mass_matrix(model, q).expect(SOUND);

@@ -13,23 +13,23 @@ featherbench.ready(() => {
     tip: "mass at the tip, over the usual",
     offset: "distance of the base from the world's origin, m",
   };
-  const quantities = [...new Set(digits.subjects.map((subject) => subject.quantity))];
-  const cells = new Map(digits.cells.map((cell) => [`${cell.model} ${cell.subject}`, cell]));
+  const quantities = [...new Set(digits.answers.map((answer) => answer.quantity))];
+  const cells = new Map(digits.cells.map((cell) => [`${cell.model} ${cell.answer}`, cell]));
   const chosen = () => byId("digits-quantity").value;
-  const engine = (subject) => overview.engines[subject.engine];
-  const name = (subject) => [engine(subject), subject.method, subject.scalar === "f64" ? "" : subject.scalar].filter(Boolean).join(" ");
+  const engine = (answer) => overview.engines[answer.engine];
+  const name = (answer) => [engine(answer), answer.method, answer.scalar === "f64" ? "" : answer.scalar].filter(Boolean).join(" ");
   // As the list of quantities has it.
   const title = (quantity) => [...byId("digits-quantity").options].find((option) => option.value === quantity).textContent;
 
   function filters(cell) {
-    const subject = digits.subjects[cell.subject];
-    return { study: "digits", engine: engine(subject), method: subject.method, quantity: cell.quantity };
+    const answer = digits.answers[cell.answer];
+    return { study: "digits", engine: engine(answer), method: answer.method, quantity: cell.quantity };
   }
 
   // A cell in lines.
   function lines(cell) {
-    const subject = digits.subjects[cell.subject];
-    const found = [overview.models[cell.model].name, `${title(subject.quantity)}${cell.quantity === subject.quantity ? "" : ", seen through products"} by ${name(subject)}`];
+    const answer = digits.answers[cell.answer];
+    const found = [overview.models[cell.model].name, `${title(answer.quantity)}${cell.quantity === answer.quantity ? "" : ", seen through products"} by ${name(answer)}`];
     if (cell.median !== null) {
       found.push(`median ${short(cell.median)}, quartiles ${short(cell.q1)} to ${short(cell.q3)}, largest ${short(cell.worst)}`);
       const lost = Math.log10(cell.median / ULP);
@@ -42,7 +42,7 @@ featherbench.ready(() => {
 
   // --- The plot.
 
-  const curvesOf = (quantity, axis) => digits.curves.filter((curve) => curve.axis === axis && digits.subjects[curve.subject].quantity === quantity);
+  const curvesOf = (quantity, axis) => digits.curves.filter((curve) => curve.axis === axis && digits.answers[curve.answer].quantity === quantity);
 
   // The families of an axis; the choice stays where the new list has it, and falls to the one with the most to show.
   function fillFamilies() {
@@ -64,16 +64,16 @@ featherbench.ready(() => {
     const traces = [];
     let [least, most] = [Infinity, 0];
     for (const curve of curves) {
-      const subject = digits.subjects[curve.subject];
-      const index = methods.get(subject.engine) ?? 0;
-      methods.set(subject.engine, index + 1);
+      const answer = digits.answers[curve.answer];
+      const index = methods.get(answer.engine) ?? 0;
+      methods.set(answer.engine, index + 1);
       const points = curve.points.map(([x, cell]) => ({ x, ...digits.cells[cell] }));
       for (const { x, floor } of points) {
         [least, most] = [Math.min(least, x), Math.max(most, x)];
         if (floor !== null) floors.set(x, floor);
       }
-      const ink = colour(subject.engine);
-      const label = joined(engine(subject), subject.method, subject.scalar === "f64" ? "" : subject.scalar);
+      const ink = colour(answer.engine);
+      const label = joined(engine(answer), answer.method, answer.scalar === "f64" ? "" : answer.scalar);
       if (curve.fit) traces.push(fitted(curve.fit, curve.span, ink, label));
       traces.push({
         name: curve.fit ? `${label}  <i>p = ${curve.fit.slope.toFixed(2)}</i>` : label, legendgroup: label, mode: "markers+lines",
@@ -81,7 +81,7 @@ featherbench.ready(() => {
         line: { color: ink, width: 1.2, dash: dash(index) },
         marker: {
           color: ink, size: 8, line: { width: 1, color: ink },
-          symbol: points.map((point) => symbol(index) + (point.median < ZERO || point.quantity !== subject.quantity ? "-open" : "")),
+          symbol: points.map((point) => symbol(index) + (point.median < ZERO || point.quantity !== answer.quantity ? "-open" : "")),
         },
         error_y: bars(points, (point) => point.q1, (point) => point.median, (point) => point.q3, ink),
         text: points.map((point) => lines(point).map((line, place) => (place === 0 ? `<b>${plain(line)}</b>` : plain(line))).join("<br>")),
@@ -105,16 +105,16 @@ featherbench.ready(() => {
 
   // --- The table.
 
-  // As the page made them: a quantity's subjects, then its floor where it has one.
+  // As the page made them: a quantity's answers, then its floor where it has one.
   const columns = quantities.flatMap((quantity) => {
-    const subjects = digits.subjects.map((subject, index) => ({ subject: index, quantity })).filter(({ subject }) => digits.subjects[subject].quantity === quantity);
-    const floored = digits.cells.some((cell) => cell.floor !== null && digits.subjects[cell.subject].quantity === quantity);
-    return floored ? [...subjects, { quantity }] : subjects;
+    const answers = digits.answers.map((answer, index) => ({ answer: index, quantity })).filter(({ answer }) => digits.answers[answer].quantity === quantity);
+    const floored = digits.cells.some((cell) => cell.floor !== null && digits.answers[cell.answer].quantity === quantity);
+    return floored ? [...answers, { quantity }] : answers;
   });
 
   function cellOf(button) {
     const place = button.parentElement;
-    return cells.get(`${place.parentElement.dataset.m} ${columns[place.cellIndex - 1]?.subject}`);
+    return cells.get(`${place.parentElement.dataset.m} ${columns[place.cellIndex - 1]?.answer}`);
   }
 
   function about(button) {
@@ -129,7 +129,7 @@ featherbench.ready(() => {
   function open(button) {
     const model = button.closest("tr").dataset.m;
     const cell = button.parentElement.tagName === "TH" ? null : cellOf(button);
-    const heading = overview.models[model].name + (cell ? `: digits of ${name(digits.subjects[cell.subject])}` : "");
+    const heading = overview.models[model].name + (cell ? `: digits of ${name(digits.answers[cell.answer])}` : "");
     featherbench.open(`model-${model}`, cell ? filters(cell) : { study: "digits" }, heading);
   }
 

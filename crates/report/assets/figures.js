@@ -50,7 +50,7 @@ featherbench.ready(() => {
         hovertemplate: `%{text}<extra>${name}</extra>`,
         customdata: points.map((point) => ({
           model: point.model,
-          filters: { study: "agreement", engine: overview.engines[trace.engine], quantity: plot.quantity, metric: plot.metric, case: point.kind, method: trace.method },
+          filters: { study: "agreement", engine: overview.engines[trace.engine], quantity: plot.quantity, metric: plot.metric, states: point.kind, method: trace.method },
         })),
       });
     }
@@ -69,7 +69,7 @@ featherbench.ready(() => {
     const joint = byId("time-unit").value === "joint";
     const kind = byId("time-case").value;
     const family = byId("time-family").value;
-    const lines = figures.times.filter((line) => line.case === kind && (family === "" || line.family === family));
+    const lines = figures.times.filter((line) => line.cache === kind && (family === "" || line.family === family));
     const algorithms = [...new Set(figures.times.map((line) => line.algorithm))];
     const families = [...new Set(lines.map((line) => line.family))];
     const engines = new Set(lines.map((line) => line.engine));
@@ -85,11 +85,11 @@ featherbench.ready(() => {
       traces.push({
         name: fit ? `${name}  <i>p = ${fit.slope.toFixed(2)}</i>` : name, legendgroup: name, mode: "markers+lines",
         x: line.points.map((point) => point.size), y: line.points.map((point) => per(point, point.ns)),
-        line: { color: ink, width: 1, dash: dash(style) }, marker: { color: ink, size: 7, symbol: line.points.map((point) => (point.estimate ? "x" : symbol(style)) + (point.void ? "-open" : "")) },
+        line: { color: ink, width: 1, dash: dash(style) }, marker: { color: ink, size: 7, symbol: line.points.map((point) => (point.estimated ? "x" : symbol(style)) + (point.valid ? "" : "-open")) },
         error_y: bars(line.points, ...[["low", "p10"], ["ns"], ["high", "p90"]].map((keys) => (point) => { const found = keys.map((key) => point[key]).find((ns) => ns !== null); return found === undefined ? null : per(point, found); }), ink),
         text: line.points.map((point) => `<b>${plain(overview.models[point.model].name)}</b> nv ${point.size}<br>${short(point.ns)} ns per call<br>${short(point.ns / point.joints)} ns per joint`),
         hovertemplate: `%{text}<extra>${name}</extra>`,
-        customdata: line.points.map((point) => ({ model: point.model, filters: { study: "timing", engine: overview.engines[line.engine], quantity: line.algorithm, case: line.case } })),
+        customdata: line.points.map((point) => ({ model: point.model, filters: { study: "timing", engine: overview.engines[line.engine], quantity: line.algorithm, cache: line.cache } })),
       });
       if (fit && byId("time-fit").checked) {
         traces.push(fitted(fit, [line.points[0].size, line.points[line.points.length - 1].size], ink, name));

@@ -22,7 +22,7 @@ featherbench.ready(() => {
     if (params.note) cause.append(make("small", {}, params.note));
     const effect = (value) => make("td", { className: "number" }, params.weight === "dynamics" ? short(value) : "");
     return make("tr", { className: params.weight },
-      make("th", { scope: "row" }, row.case || "the robot"), make("td", {}, spaced(row.quantity)), make("td", {}, params.ours), make("td", {}, params.theirs),
+      make("th", { scope: "row" }, row.body || "the robot"), make("td", {}, spaced(row.quantity)), make("td", {}, params.ours), make("td", {}, params.theirs),
       cause, effect(params.id), effect(params.mass_matrix));
   }
 

@@ -1,10 +1,10 @@
 // The rows behind whatever was clicked: a dialog with filters and a table that sorts.
 (() => {
   const { byId, load, make, short, decades, glyphs, ready } = featherbench;
-  const FILTERS = ["study", "engine", "quantity", "case", "method", "metric", "reference", "verdict"];
-  const BRIEF = ["verdict", "model", "engine", "method", "scalar", "quantity", "case", "metric", "value", "relation", "bound", "margin", "reference", "reason"];
+  const FILTERS = ["study", "engine", "quantity", "states", "body", "cache", "method", "metric", "reference", "verdict"];
+  const BRIEF = ["verdict", "robot", "engine", "method", "precision", "quantity", "states", "body", "cache", "metric", "value", "relation", "bound", "margin", "reference", "reason"];
   const RELATIONS = { le: "≤", ge: "≥", eq: "=", within: "|·| ≤" };
-  const NUMBERS = ["nq", "nv", "bodies", "depth", "value", "bound", "floor", "margin"];
+  const NUMBERS = ["nq", "nv", "bodies", "depth", "value", "ci_low", "ci_high", "bound", "floor", "margin"];
   const PAGE = 400;
 
   const state = { name: "", table: null, filters: {}, text: "", sort: null, all: false, limit: PAGE };
@@ -26,7 +26,7 @@
     try {
       Object.assign(state, { name, table: await load(name), filters: { ...filters }, text: "", sort: null, limit: PAGE });
     } catch (error) {
-      byId("rows-count").textContent = `${error.message}: the rows are in records.csv as well.`;
+      byId("rows-count").textContent = `${error.message}: the rows are in rows.csv as well.`;
       return;
     }
     drawFilters();

@@ -11,27 +11,27 @@ featherbench.ready(() => {
   function drawSpeed() {
     const [quantity, title] = figures.speed.quantities[byId("speed-quantity").value];
     const kind = byId("speed-case").value;
-    const ratios = figures.speed.ratios.filter((ratio) => ratio.quantity === quantity && ratio.case === kind);
+    const ratios = figures.speed.ratios.filter((ratio) => ratio.quantity === quantity && ratio.cache === kind);
     const size = (model) => overview.models[model].nv ?? 0;
     const robots = [...new Set(ratios.map((ratio) => ratio.model))].sort((a, b) => size(a) - size(b) || a - b);
-    const subjects = [...new Set(ratios.map((ratio) => `${ratio.engine}\t${ratio.method}`))];
+    const candidates = [...new Set(ratios.map((ratio) => `${ratio.engine}\t${ratio.method}`))];
     const methods = new Map();
-    const traces = subjects.map((subject, place) => {
-      const points = ratios.filter((ratio) => `${ratio.engine}\t${ratio.method}` === subject);
+    const traces = candidates.map((candidate, place) => {
+      const points = ratios.filter((ratio) => `${ratio.engine}\t${ratio.method}` === candidate);
       const engine = points[0].engine;
       const index = methods.get(engine) ?? 0;
       methods.set(engine, index + 1);
       const ink = colour(engine);
       const name = joined(overview.engines[engine], points[0].method);
       // Marks of one robot stand beside each other, so that their bars can be seen.
-      const beside = subjects.length < 2 ? 0 : 0.5 * (place / (subjects.length - 1) - 0.5);
+      const beside = candidates.length < 2 ? 0 : 0.5 * (place / (candidates.length - 1) - 0.5);
       return {
         name, mode: "markers", x: points.map((point) => robots.indexOf(point.model) + beside), y: points.map((point) => point.value),
-        marker: { color: ink, size: 9, symbol: points.map((point) => (point.estimate ? "x" : symbol(index)) + (point.void ? "-open" : "")), line: { width: 1.2, color: ink } },
+        marker: { color: ink, size: 9, symbol: points.map((point) => (point.estimated ? "x" : symbol(index)) + (point.valid ? "" : "-open")), line: { width: 1.2, color: ink } },
         error_y: { type: "data", symmetric: false, thickness: 1.5, width: 3, color: ink, array: points.map((point) => point.high - point.value), arrayminus: points.map((point) => point.value - point.low) },
-        text: points.map((point) => `<b>${plain(overview.models[point.model].name)}</b> nv ${size(point.model)}<br>${point.estimate ? "≈ " : ""}${point.value.toFixed(3)} × ${plain(point.reference)}<br>[${point.low.toFixed(3)}, ${point.high.toFixed(3)}]${point.estimate ? "<br>estimate" : ""}${point.void ? "<br>void" : ""}`),
+        text: points.map((point) => `<b>${plain(overview.models[point.model].name)}</b> nv ${size(point.model)}<br>${point.estimated ? "≈ " : ""}${point.value.toFixed(3)} × ${plain(point.reference)}<br>[${point.low.toFixed(3)}, ${point.high.toFixed(3)}]${point.estimated ? "<br>estimate" : ""}${point.valid ? "" : "<br>does not count"}`),
         hovertemplate: `%{text}<extra>${name}</extra>`,
-        customdata: points.map((point) => ({ model: point.model, filters: { study: "timing", engine: overview.engines[engine], method: point.method, quantity, case: kind } })),
+        customdata: points.map((point) => ({ model: point.model, filters: { study: "timing", engine: overview.engines[engine], method: point.method, quantity, cache: kind } })),
       };
     });
     const shape = layout("", plain(`${title}: times ${ratios[0]?.reference ?? "ours"}`));

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use featherbench_results::{COLUMNS, Record, Verdict};
+use featherbench_results::{COLUMNS, Row, Verdict};
 use serde::Serialize;
 
 use crate::ReportError;
@@ -38,13 +38,13 @@ pub fn script(name: &str, data: &impl Serialize) -> Result<Vec<u8>, ReportError>
 }
 
 /// Whether a row belongs into the list of those that did not pass.
-pub fn is_unpassed(row: &Record) -> bool {
+pub fn is_unpassed(row: &Row) -> bool {
     !matches!(row.verdict, Verdict::Pass | Verdict::Info)
 }
 
 /// All rows: a chunk per model, one per study for rows without a model, and one with every row that did not pass.
-pub fn rows(overview: &Overview, records: &[Record]) -> Result<Vec<NamedFile>, ReportError> {
-    let mut chunks: BTreeMap<String, Vec<&Record>> = BTreeMap::new();
+pub fn rows(overview: &Overview, records: &[Row]) -> Result<Vec<NamedFile>, ReportError> {
+    let mut chunks: BTreeMap<String, Vec<&Row>> = BTreeMap::new();
     // A model without rows has a chunk as well: the click on it must find that there are none.
     for model in 0..overview.models.len() {
         chunks.insert(format!("model-{model}"), Vec::new());
@@ -64,9 +64,9 @@ struct Table {
 }
 
 impl Table {
-    fn of(records: &[&Record]) -> Result<Self, ReportError> {
+    fn of(records: &[&Row]) -> Result<Self, ReportError> {
         let columns: Vec<&str> = COLUMNS.iter().map(|column| column.name).collect();
-        let row = |record: &&Record| -> Result<Vec<serde_json::Value>, ReportError> {
+        let row = |record: &&Row| -> Result<Vec<serde_json::Value>, ReportError> {
             let mut fields = serde_json::to_value(record)?;
             Ok(columns.iter().map(|&name| fields[name].take()).collect())
         };

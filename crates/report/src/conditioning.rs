@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use featherbench_results::{Record, Verdict};
+use featherbench_results::{Row, Verdict};
 use maud::{Markup, html};
 use serde::Serialize;
 
@@ -47,12 +47,12 @@ pub struct Point<'a> {
 }
 
 /// Reads a run's rows.
-pub fn families<'a>(overview: &Overview<'a>, records: &'a [Record]) -> Vec<Family<'a>> {
+pub fn families<'a>(overview: &Overview<'a>, records: &'a [Row]) -> Vec<Family<'a>> {
     let mut found: BTreeMap<&str, BTreeMap<(u64, usize), Point>> = BTreeMap::new();
     for row in records.iter().filter(|row| row.study == CONDITIONING) {
-        let Some(model) = overview.model(&row.model) else { continue };
+        let Some(model) = overview.model(&row.robot) else { continue };
         let Some(size) = overview.models[model].nv.filter(|&size| size > 0) else { continue };
-        let point = found.entry(&row.problem).or_default().entry((size, model)).or_default();
+        let point = found.entry(&row.family).or_default().entry((size, model)).or_default();
         (point.model, point.size) = (model, size);
         point.floor = point.floor.or(row.floor);
         let judged = row.value.map(|value| (value, row.verdict));

@@ -26,14 +26,14 @@ pub fn section(run: &RunInfo) -> Markup {
                     table.compact.conventions {
                         thead {
                             tr {
-                                th scope="col" { "subject" } th scope="col" { "the engine" } th scope="col" { "ours" }
+                                th scope="col" { "topic" } th scope="col" { "the engine" } th scope="col" { "ours" }
                                 th scope="col" { "converted by" } th scope="col" { "held by" }
                             }
                         }
                         tbody {
                             @for row in rows {
                                 tr {
-                                    th scope="row" { (row.subject) }
+                                    th scope="row" { (row.topic) }
                                     td { (prose(&row.theirs)) }
                                     td.soft { (prose(&row.ours)) }
                                     td { (prose(&row.conversion)) }

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use featherbench_results::{Record, Verdict};
+use featherbench_results::{Row, Verdict};
 use serde::Serialize;
 
 use crate::axes::{self, Axis};
@@ -20,19 +20,19 @@ const ORDER: [&str; 3] = ["fd", "id", "mass_matrix"];
 #[derive(Debug, Serialize)]
 pub struct Digits<'a> {
     /// Who answered what: the table's columns.
-    pub subjects: Vec<Subject<'a>>,
-    /// What came of it: the table's cells, by model and subject.
+    pub answers: Vec<Answer<'a>>,
+    /// What came of it: the table's cells, by model and answer.
     pub cells: Vec<Cell<'a>>,
     /// How it grows.
     pub curves: Vec<Curve<'a>>,
     /// The rows that suspect the reference.
     #[serde(skip)]
-    pub walls: Vec<&'a Record>,
+    pub walls: Vec<&'a Row>,
 }
 
 /// An engine's method for one quantity.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
-pub struct Subject<'a> {
+pub struct Answer<'a> {
     /// Index of the engine.
     pub engine: usize,
     /// Its method.
@@ -43,13 +43,13 @@ pub struct Subject<'a> {
     pub quantity: &'a str,
 }
 
-/// The errors of a subject on one model.
+/// The errors of an answer on one model.
 #[derive(Clone, Debug, Serialize)]
 pub struct Cell<'a> {
     /// Index of the model.
     pub model: usize,
-    /// Index of the subject.
-    pub subject: usize,
+    /// Index of the answer.
+    pub answer: usize,
     /// The rows' own quantity.
     pub quantity: &'a str,
     /// First quartile over the states.
@@ -70,15 +70,15 @@ pub struct Cell<'a> {
     pub reason: &'a str,
 }
 
-/// A subject's errors along one axis of one family.
+/// An answer's errors along one axis of one family.
 #[derive(Debug, Serialize)]
 pub struct Curve<'a> {
     /// What is varied.
     pub axis: Axis,
     /// The family.
     pub family: &'a str,
-    /// Index of the subject.
-    pub subject: usize,
+    /// Index of the answer.
+    pub answer: usize,
     /// Place on the axis, index of the cell.
     pub points: Vec<(f64, usize)>,
     /// How the median grows.
@@ -100,7 +100,7 @@ pub fn rank(name: &str) -> (usize, &str) {
 }
 
 /// Whether a gate judged a row, or it has no answer that could be judged.
-pub fn is_judged(row: &Record) -> bool {
+pub fn is_judged(row: &Row) -> bool {
     row.study == DIGITS && row.metric != WALL && row.verdict != Verdict::Info
 }
 
@@ -111,16 +111,16 @@ pub fn lost(error: f64) -> f64 {
 
 impl<'a> Digits<'a> {
     /// Collects a run's rows.
-    pub fn of(overview: &Overview<'a>, records: &'a [Record]) -> Self {
+    pub fn of(overview: &Overview<'a>, records: &'a [Row]) -> Self {
         type Key<'a> = ((usize, &'a str), usize, &'a str, &'a str);
         let rows = || records.iter().filter(|row| row.study == DIGITS);
         let walls = rows().filter(|row| row.metric == WALL && row.value.is_some()).collect();
 
         let mut found: BTreeMap<Key, BTreeMap<usize, Cell>> = BTreeMap::new();
-        let mut deciding: BTreeMap<(Key, usize), &Record> = BTreeMap::new();
+        let mut deciding: BTreeMap<(Key, usize), &Row> = BTreeMap::new();
         for row in rows().filter(|row| row.metric != WALL && row.engine != EVERYONE) {
-            let (Some(model), Some(engine)) = (overview.model(&row.model), overview.engine(&row.engine)) else { continue };
-            let key = (rank(shown_quantity(&row.quantity)), engine, row.method.as_str(), row.scalar.as_str());
+            let (Some(model), Some(engine)) = (overview.model(&row.robot), overview.engine(&row.engine)) else { continue };
+            let key = (rank(shown_quantity(&row.quantity)), engine, row.method.as_str(), row.precision.as_str());
             let cell = found.entry(key).or_default().entry(model).or_insert_with(|| Cell::empty(model, &row.quantity));
             match row.metric.as_str() {
                 "error_q1" => cell.q1 = row.value,
@@ -139,32 +139,32 @@ impl<'a> Digits<'a> {
             }
         }
 
-        let (mut subjects, mut cells) = (Vec::new(), Vec::new());
+        let (mut answers, mut cells) = (Vec::new(), Vec::new());
         for (((_, quantity), engine, method, scalar), models) in found {
-            let subject = subjects.len();
-            subjects.push(Subject { engine, method, scalar, quantity });
-            cells.extend(models.into_values().map(|cell| Cell { subject, ..cell }));
+            let answer = answers.len();
+            answers.push(Answer { engine, method, scalar, quantity });
+            cells.extend(models.into_values().map(|cell| Cell { answer, ..cell }));
         }
         let curves = curves(overview, &cells);
-        Self { subjects, cells, curves, walls }
+        Self { answers, cells, curves, walls }
     }
 
-    /// The cell of a model and a subject.
-    pub fn cell(&self, model: usize, subject: usize) -> Option<&Cell<'a>> {
-        let at = self.cells.binary_search_by_key(&(subject, model), |cell| (cell.subject, cell.model));
+    /// The cell of a model and an answer.
+    pub fn cell(&self, model: usize, answer: usize) -> Option<&Cell<'a>> {
+        let at = self.cells.binary_search_by_key(&(answer, model), |cell| (cell.answer, cell.model));
         at.ok().map(|index| &self.cells[index])
     }
 
     /// Quantities in the order of the page.
     pub fn quantities(&self) -> Vec<&'a str> {
-        let mut quantities: Vec<&str> = self.subjects.iter().map(|subject| subject.quantity).collect();
+        let mut quantities: Vec<&str> = self.answers.iter().map(|answer| answer.quantity).collect();
         quantities.dedup();
         quantities
     }
 
-    /// `native aba`: engine, method, and arithmetic unless it is f64.
-    pub fn name(&self, overview: &Overview, subject: usize) -> String {
-        let Subject { engine, method, scalar, .. } = self.subjects[subject];
+    /// `featherbench aba`: engine, method, and arithmetic unless it is f64.
+    pub fn name(&self, overview: &Overview, answer: usize) -> String {
+        let Answer { engine, method, scalar, .. } = self.answers[answer];
         let scalar = if scalar == "f64" { "" } else { scalar };
         [overview.engines[engine], method, scalar].into_iter().filter(|part| !part.is_empty()).collect::<Vec<_>>().join(" ")
     }
@@ -174,7 +174,7 @@ impl<'a> Cell<'a> {
     fn empty(model: usize, quantity: &'a str) -> Self {
         Self {
             model,
-            subject: 0,
+            answer: 0,
             quantity,
             q1: None,
             median: None,
@@ -195,12 +195,12 @@ fn curves<'a>(overview: &Overview<'a>, cells: &[Cell]) -> Vec<Curve<'a>> {
     for (index, cell) in answered() {
         let model = &overview.models[cell.model];
         if let Some((axis, family, x)) = axes::place(model.name, model.nv, model.depth) {
-            found.entry((axis, family, cell.subject)).or_default().push((x, index));
+            found.entry((axis, family, cell.answer)).or_default().push((x, index));
         }
     }
     // The robot after which a family of tips is named is the one whose tip is as heavy as usual.
     for (index, cell) in answered() {
-        if let Some(points) = found.get_mut(&(Axis::Tip, overview.models[cell.model].name, cell.subject))
+        if let Some(points) = found.get_mut(&(Axis::Tip, overview.models[cell.model].name, cell.answer))
             && points.iter().all(|&(x, _)| x != 1.0)
         {
             points.push((1.0, index));
@@ -210,7 +210,7 @@ fn curves<'a>(overview: &Overview<'a>, cells: &[Cell]) -> Vec<Curve<'a>> {
     found
         .into_iter()
         .filter(|(_, points)| several(points))
-        .map(|((axis, family, subject), mut points)| {
+        .map(|((axis, family, answer), mut points)| {
             points.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
             // Below half the spacing of doubles an error is chance, or exactly zero.
             // Products with M and its entries are measured alike, but not the same thing: a line goes through one kind.
@@ -225,7 +225,7 @@ fn curves<'a>(overview: &Overview<'a>, cells: &[Cell]) -> Vec<Curve<'a>> {
                 _ => None,
             };
             let span = fitted.first().zip(fitted.last()).map(|(first, last)| [first.0, last.0]);
-            Curve { axis, family, subject, points, fit: power_law(fitted.into_iter()), span, last }
+            Curve { axis, family, answer, points, fit: power_law(fitted.into_iter()), span, last }
         })
         .collect()
 }

@@ -15,7 +15,7 @@ use crate::truth;
 /// Writes the section; nothing where the run holds no digits.
 pub fn section(overview: &Overview, digits: &Digits) -> Markup {
     html! {
-        @if !digits.subjects.is_empty() {
+        @if !digits.answers.is_empty() {
             section #digits {
                 h2 { "Digits: who is right" }
                 p.lead {
@@ -79,8 +79,8 @@ fn growth(overview: &Overview, digits: &Digits) -> Markup {
                 @for (index, curve) in digits.curves.iter().enumerate() {
                     @let end = curve.points.last().and_then(|&(_, cell)| digits.cells[cell].median);
                     tr data-k=(index) {
-                        th scope="row" { (digits.name(overview, curve.subject)) }
-                        td { (labels::quantity(digits.subjects[curve.subject].quantity)) }
+                        th scope="row" { (digits.name(overview, curve.answer)) }
+                        td { (labels::quantity(digits.answers[curve.answer].quantity)) }
                         td { (curve.axis.title()) }
                         td { (curve.family) }
                         td.number { (curve.points.len()) }
@@ -94,14 +94,14 @@ fn growth(overview: &Overview, digits: &Digits) -> Markup {
     }
 }
 
-/// Columns: a subject, or (`None`) the floor of the quantity to the left.
+/// Columns: an answer, or (`None`) the floor of the quantity to the left.
 pub fn columns(digits: &Digits) -> Vec<(Option<usize>, usize)> {
     let quantities = digits.quantities();
     let mut columns = Vec::new();
     for (group, quantity) in quantities.iter().enumerate() {
-        let subjects: Vec<usize> = (0..digits.subjects.len()).filter(|&index| digits.subjects[index].quantity == *quantity).collect();
-        let floored = digits.cells.iter().any(|cell| subjects.contains(&cell.subject) && cell.floor.is_some());
-        columns.extend(subjects.into_iter().map(|subject| (Some(subject), group)));
+        let answers: Vec<usize> = (0..digits.answers.len()).filter(|&index| digits.answers[index].quantity == *quantity).collect();
+        let floored = digits.cells.iter().any(|cell| answers.contains(&cell.answer) && cell.floor.is_some());
+        columns.extend(answers.into_iter().map(|answer| (Some(answer), group)));
         if floored {
             columns.push((None, group));
         }
@@ -123,10 +123,10 @@ fn table(overview: &Overview, digits: &Digits) -> Markup {
                     }
                 }
                 tr {
-                    @for (position, &(subject, group)) in columns.iter().enumerate() {
+                    @for (position, &(answer, group)) in columns.iter().enumerate() {
                         th.method.first[first(position)] scope="col" data-q=(group) {
-                            @if let Some(subject) = subject.map(|subject| &digits.subjects[subject]) {
-                                (overview.engines[subject.engine]) small { (subject.method) @if subject.scalar != "f64" { " " (subject.scalar) } }
+                            @if let Some(answer) = answer.map(|answer| &digits.answers[answer]) {
+                                (overview.engines[answer.engine]) small { (answer.method) @if answer.scalar != "f64" { " " (answer.scalar) } }
                             } @else { "floor" small { "structured" } }
                         }
                     }
@@ -141,10 +141,10 @@ fn table(overview: &Overview, digits: &Digits) -> Markup {
                                 button type="button" tabindex="-1" { (overview.models[model].name) }
                                 @if let Some(nv) = overview.models[model].nv { small { (nv) } }
                             }
-                            @for (position, &(subject, _)) in columns.iter().enumerate() {
+                            @for (position, &(answer, _)) in columns.iter().enumerate() {
                                 td.first[first(position)] {
-                                    @if let Some(subject) = subject {
-                                        @if let Some(cell) = digits.cell(model, subject) { (button(cell)) }
+                                    @if let Some(answer) = answer {
+                                        @if let Some(cell) = digits.cell(model, answer) { (button(cell)) }
                                     } @else if let Some(floor) = floor(digits, &columns, position, model) { span.floor { (exact(floor)) } }
                                 }
                             }
@@ -156,10 +156,10 @@ fn table(overview: &Overview, digits: &Digits) -> Markup {
     }
 }
 
-/// The floor of the quantity at a column, which is the same for all its subjects.
+/// The floor of the quantity at a column, which is the same for all its answers.
 fn floor(digits: &Digits, columns: &[(Option<usize>, usize)], position: usize, model: usize) -> Option<f64> {
     let group = columns[position].1;
-    columns.iter().filter(|&&(_, other)| other == group).find_map(|&(subject, _)| digits.cell(model, subject?)?.floor)
+    columns.iter().filter(|&&(_, other)| other == group).find_map(|&(answer, _)| digits.cell(model, answer?)?.floor)
 }
 
 /// The models of each family that have a cell.

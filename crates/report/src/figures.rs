@@ -2,8 +2,8 @@
 
 use std::collections::BTreeMap;
 
-use featherbench_results::{Record, Relation};
-use serde::Serialize;
+use featherbench_results::{Relation, Row};
+use serde::{Deserialize, Serialize};
 
 use crate::conditioning::{self, Family};
 use crate::digits::Digits;
@@ -11,7 +11,7 @@ use crate::fit::{Fit, power_law};
 use crate::joint_matrix::JointMatrix;
 use crate::labels;
 use crate::overview::{AGREEMENT, Overview, PAIRWISE, TIMING};
-use crate::speed::{Speed, VOID};
+use crate::speed::Speed;
 use crate::steps::{self, StepLine};
 use crate::tradeoff::{Tradeoff, tradeoffs};
 
@@ -79,7 +79,7 @@ pub struct TimeLine<'a> {
     /// The family of models.
     pub family: &'a str,
     /// `stream` or `hot`.
-    pub case: &'a str,
+    pub cache: &'a str,
     /// One per model, by size.
     pub points: Vec<TimePoint>,
     /// Growth of the time of a call with the number of degrees of freedom.
@@ -107,15 +107,15 @@ pub struct TimePoint {
     pub low: Option<f64>,
     /// Its upper end.
     pub high: Option<f64>,
-    /// Whether the time does not count.
-    pub void: bool,
+    /// Whether the time counts.
+    pub valid: bool,
     /// Whether it is an estimate.
-    pub estimate: bool,
+    pub estimated: bool,
 }
 
 impl<'a> Figures<'a> {
     /// Collects the plots' data.
-    pub fn of(overview: &Overview<'a>, records: &'a [Record]) -> Self {
+    pub fn of(overview: &Overview<'a>, records: &'a [Row]) -> Self {
         let (times, digits) = (times(overview, records), Digits::of(overview, records));
         Self {
             errors: errors(overview, records),
@@ -131,22 +131,22 @@ impl<'a> Figures<'a> {
 }
 
 /// Whether a row is the error of an answer that has a reference.
-pub fn is_error_measure(row: &Record) -> bool {
+pub fn is_error_measure(row: &Row) -> bool {
     let gated = matches!(row.relation, Some(Relation::Le | Relation::Within));
     row.study == AGREEMENT && row.metric != PAIRWISE && (gated || ERROR_METRICS.contains(&row.metric.as_str()))
 }
 
-fn errors<'a>(overview: &Overview<'a>, records: &'a [Record]) -> Vec<ErrorPlot<'a>> {
+fn errors<'a>(overview: &Overview<'a>, records: &'a [Row]) -> Vec<ErrorPlot<'a>> {
     type Key<'a> = (usize, &'a str, &'a str);
     let mut plots: BTreeMap<(&str, &str), BTreeMap<Key, Vec<ErrorPoint>>> = BTreeMap::new();
     for row in records.iter().filter(|row| is_error_measure(row)) {
-        let (Some(model), Some(engine), Some(value)) = (overview.model(&row.model), overview.engine(&row.engine), row.value) else {
+        let (Some(model), Some(engine), Some(value)) = (overview.model(&row.robot), overview.engine(&row.engine), row.value) else {
             continue;
         };
         if overview.models[model].depth.is_some_and(|depth| depth > 0) {
             let traces = plots.entry((&row.quantity, &row.metric)).or_default();
-            let points = traces.entry((engine, &row.method, &row.scalar)).or_default();
-            points.push(ErrorPoint(model, &row.case, value.abs(), row.bound, row.floor));
+            let points = traces.entry((engine, &row.method, &row.precision)).or_default();
+            points.push(ErrorPoint(model, &row.states, value.abs(), row.bound, row.floor));
         }
     }
     let mut plots: Vec<ErrorPlot> = plots
@@ -164,40 +164,33 @@ fn errors<'a>(overview: &Overview<'a>, records: &'a [Record]) -> Vec<ErrorPlot<'
     plots
 }
 
-fn times<'a>(overview: &Overview<'a>, records: &'a [Record]) -> Vec<TimeLine<'a>> {
-    type Spread<'a> = (&'a str, [&'a str; 7]);
-    let what =
-        |row: &'a Record| -> [&'a str; 7] { [&row.engine, &row.quantity, &row.method, &row.scalar, &row.problem, &row.case, &row.params] };
-    let timing: Vec<&Record> = records.iter().filter(|row| row.study == TIMING && row.value.is_some()).collect();
-    let spread: BTreeMap<(&str, Spread), f64> = timing
-        .iter()
-        .filter(|row| ["ns_p10", "ns_p90", "ns_low", "ns_high"].contains(&row.metric.as_str()))
-        .filter_map(|row| Some(((row.metric.as_str(), (row.model.as_str(), what(row))), row.value?)))
-        .collect();
+/// What a time's parameters say of the spread of its blocks.
+#[derive(Default, Deserialize)]
+struct Deciles {
+    p10: Option<f64>,
+    p90: Option<f64>,
+}
 
-    let mut lines: BTreeMap<[&str; 7], Vec<TimePoint>> = BTreeMap::new();
-    for row in timing.iter().filter(|row| row.metric == "ns_per_call") {
-        let (Some(model), Some(ns)) = (overview.model(&row.model), row.value) else { continue };
+fn times<'a>(overview: &Overview<'a>, records: &'a [Row]) -> Vec<TimeLine<'a>> {
+    let mut lines: BTreeMap<[&str; 6], Vec<TimePoint>> = BTreeMap::new();
+    for row in records.iter().filter(|row| row.study == TIMING && row.metric == "ns_per_call") {
+        let (Some(model), Some(ns)) = (overview.model(&row.robot), row.value) else { continue };
         let Some(size) = overview.models[model].nv.filter(|&size| size > 0) else { continue };
         let joints = overview.models[model].bodies.filter(|&bodies| bodies > 0).unwrap_or(size);
-        let key = what(row);
-        let spread_of = |metric| spread.get(&(metric, (row.model.as_str(), key))).copied();
-        // Parameters tell spreads apart, but not lines: a line may change its number of states with the size.
-        let [engine, algorithm, method, scalar, family, case, _] = key;
-        let line = [engine, algorithm, method, scalar, family, case, ""];
-        let [p10, p90, low, high] = ["ns_p10", "ns_p90", "ns_low", "ns_high"].map(spread_of);
-        let (void, estimate) = (row.reason.starts_with(VOID), row.is_estimate());
-        lines.entry(line).or_default().push(TimePoint { model, size, joints, ns, p10, p90, low, high, void, estimate });
+        let params: Deciles = serde_json::from_str(&row.params).unwrap_or_default();
+        let (valid, estimated, low, high) = (row.valid, row.estimated, row.ci_low, row.ci_high);
+        let point = TimePoint { model, size, joints, ns, p10: params.p10, p90: params.p90, low, high, valid, estimated };
+        lines.entry([&row.engine, &row.quantity, &row.method, &row.precision, &row.family, &row.cache]).or_default().push(point);
     }
     lines
         .into_iter()
-        .filter_map(|([engine, algorithm, method, scalar, family, case, _], mut points)| {
+        .filter_map(|([engine, algorithm, method, scalar, family, cache], mut points)| {
             points.sort_by_key(|point| (point.size, point.model));
-            // Void times too: they are off by some percent, and a fit spans decades.
+            // Invalid times too: they are off by some percent, and a fit spans decades.
             let per_call = power_law(points.iter().map(|point| (point.size as f64, point.ns)));
             let per_joint = power_law(points.iter().map(|point| (point.size as f64, point.ns / point.joints as f64)));
             let engine = overview.engine(engine)?;
-            Some(TimeLine { engine, algorithm, method, scalar, family, case, points, per_call, per_joint })
+            Some(TimeLine { engine, algorithm, method, scalar, family, cache, points, per_call, per_joint })
         })
         .collect()
 }

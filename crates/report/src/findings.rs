@@ -2,7 +2,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use featherbench_results::{Record, RunInfo, Verdict};
+use featherbench_results::{Row, RunInfo, Verdict};
 
 use crate::figures::is_error_measure;
 use crate::labels;
@@ -44,7 +44,7 @@ pub struct Disagreement<'a> {
     /// All its judged rows there.
     pub tally: Tally,
     /// The row that is worst.
-    pub worst: &'a Record,
+    pub worst: &'a Row,
 }
 
 /// Everything that the head of the page says.
@@ -60,14 +60,14 @@ pub struct Findings<'a> {
     /// Who breaks them, worst first.
     pub disagreements: Vec<Disagreement<'a>>,
     /// The passing row that is closest to its gate.
-    pub closest: Option<&'a Record>,
+    pub closest: Option<&'a Row>,
     /// What the answers were compared with.
     pub references: BTreeSet<&'a str>,
 }
 
 impl<'a> Findings<'a> {
     /// Reads the rows.
-    pub fn of(run: &RunInfo, overview: &Overview<'a>, records: &'a [Record]) -> Self {
+    pub fn of(run: &RunInfo, overview: &Overview<'a>, records: &'a [Row]) -> Self {
         let tally = Tally::of(records.iter().map(|row| row.verdict));
         let unmet = run
             .expected
@@ -132,8 +132,8 @@ impl<'a> Findings<'a> {
 }
 
 impl Agreement<'_> {
-    /// `drake and mujoco agree with native on`, the start of a sentence.
-    pub fn subject(&self) -> String {
+    /// `drake and mujoco agree with featherbench on`, the start of a sentence.
+    pub fn who(&self) -> String {
         let names: Vec<String> = self.engines.iter().map(|&name| name.to_owned()).collect();
         let verb = if names.len() == 1 { "agrees" } else { "agree" };
         format!("{} {verb} with {} on", listed(&names), self.reference)
@@ -149,7 +149,7 @@ impl Agreement<'_> {
 }
 
 impl Disagreement<'_> {
-    /// `3 of 124 rows of forward dynamics fail against native`.
+    /// `3 of 124 rows of forward dynamics fail against featherbench`.
     pub fn sentence(&self) -> String {
         let quantity = labels::quantity(self.quantity);
         let total = self.tally.total();
@@ -167,7 +167,8 @@ impl Disagreement<'_> {
     /// `chain_10, fast, forward 3.0e-9 over 1.0e-12`, or why there is no number.
     pub fn worst_words(&self) -> String {
         let row = self.worst;
-        let mut parts: Vec<String> = [&row.model, &row.case, &row.method].into_iter().filter(|part| !part.is_empty()).cloned().collect();
+        let mut parts: Vec<String> =
+            [&row.robot, &row.body, &row.states, &row.cache, &row.method].into_iter().filter(|part| !part.is_empty()).cloned().collect();
         match (row.value, row.bound) {
             (Some(value), Some(bound)) => parts.push(format!("{} {} where {} is allowed", row.metric, short(value), short(bound))),
             _ => parts.push(row.reason.clone()),
@@ -183,7 +184,7 @@ struct Account<'a> {
     largest: f64,
 }
 
-fn agreements<'a>(overview: &Overview<'a>, records: &'a [Record]) -> Vec<Agreement<'a>> {
+fn agreements<'a>(overview: &Overview<'a>, records: &'a [Row]) -> Vec<Agreement<'a>> {
     let mut accounts: BTreeMap<(&str, (usize, &str), usize), Account> = BTreeMap::new();
     for row in records.iter().filter(|row| is_error_measure(row) && !row.reference.is_empty() && row.reference != row.engine) {
         let Some(engine) = overview.engine(&row.engine) else { continue };
@@ -194,7 +195,7 @@ fn agreements<'a>(overview: &Overview<'a>, records: &'a [Record]) -> Vec<Agreeme
         });
         account.tally.add(row.verdict);
         if row.verdict == Verdict::Pass {
-            account.models.insert(&row.model);
+            account.models.insert(&row.robot);
             // An error over its floor is a ratio and no error: it is judged, and not told in this sentence.
             if row.metric != "error_over_floor" {
                 account.largest = larger(account.largest, row.value.unwrap_or_default().abs());
@@ -231,10 +232,10 @@ fn agreements<'a>(overview: &Overview<'a>, records: &'a [Record]) -> Vec<Agreeme
     sentences
 }
 
-fn disagreements(records: &[Record]) -> Vec<Disagreement<'_>> {
+fn disagreements(records: &[Row]) -> Vec<Disagreement<'_>> {
     let mut found: BTreeMap<(&str, &str, &str), Disagreement> = BTreeMap::new();
     // What the truth says is told apart from what engines say of each other.
-    let told_here = |row: &&Record| row.study != DIGITS && !matches!(row.verdict, Verdict::Info | Verdict::Skip);
+    let told_here = |row: &&Row| row.study != DIGITS && !matches!(row.verdict, Verdict::Info | Verdict::Skip);
     for row in records.iter().filter(told_here) {
         let group = found.entry((&row.engine, &row.reference, &row.quantity)).or_insert_with(|| Disagreement {
             engine: &row.engine,

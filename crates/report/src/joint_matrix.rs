@@ -5,7 +5,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use featherbench_results::{Record, Verdict};
+use featherbench_results::{Row, Verdict};
 use maud::{Markup, html};
 use serde::Serialize;
 
@@ -86,13 +86,13 @@ struct Fold<'a> {
     tally: Tally,
     answered: BTreeSet<&'a str>,
     lacking: BTreeSet<&'a str>,
-    worst: Option<&'a Record>,
-    refused: Option<&'a Record>,
+    worst: Option<&'a Row>,
+    refused: Option<&'a Row>,
 }
 
 impl<'a> JointMatrix<'a> {
     /// Folds a run's rows; empty when it has no such robots.
-    pub fn of(overview: &Overview, records: &'a [Record]) -> Self {
+    pub fn of(overview: &Overview, records: &'a [Row]) -> Self {
         let mut folds: BTreeMap<(Shown, usize, usize), Fold> = BTreeMap::new();
         for row in records.iter().filter(|row| row.study == AGREEMENT && row.metric != PAIRWISE && row.verdict != Verdict::Info) {
             let quantity = overview.quantities.iter().position(|&name| name == row.quantity);
@@ -118,8 +118,8 @@ impl<'a> JointMatrix<'a> {
 
 impl<'a> Shown<'a> {
     /// What the robot of a row shows: `joints-TYPE-BASE`, then perhaps `-single` and `-armature`; none where that is no single type.
-    fn of(row: &'a Record) -> Option<Self> {
-        let mut parts = row.model.strip_prefix(PREFIX)?.split('-');
+    fn of(row: &'a Row) -> Option<Self> {
+        let mut parts = row.robot.strip_prefix(PREFIX)?.split('-');
         let kind = parts.next()?;
         let armature = parts.any(|part| part == "armature");
         let params: serde_json::Value = serde_json::from_str(&row.params).ok()?;
@@ -130,15 +130,15 @@ impl<'a> Shown<'a> {
 }
 
 impl<'a> Fold<'a> {
-    fn add(&mut self, row: &'a Record) {
+    fn add(&mut self, row: &'a Row) {
         // A skip says that the engine has no such joint or armature: it is neither right nor wrong.
         if row.verdict == Verdict::Skip {
-            self.lacking.insert(&row.model);
+            self.lacking.insert(&row.robot);
             self.refused = self.refused.or(Some(row));
             return;
         }
         self.tally.add(row.verdict);
-        self.answered.insert(&row.model);
+        self.answered.insert(&row.robot);
         if self.worst.is_none_or(|worst| severity(row) < severity(worst)) {
             self.worst = Some(row);
         }
@@ -159,7 +159,7 @@ impl<'a> Fold<'a> {
             rows: self.tally.words(),
             robots: self.answered.len(),
             lacking: self.lacking.into_iter().collect(),
-            worst: [&row.model, &row.metric, &row.case, &row.method, &row.reason],
+            worst: [&row.robot, &row.metric, &row.states, &row.method, &row.reason],
             numbers: [row.value, row.bound, row.margin],
         })
     }

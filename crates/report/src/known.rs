@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use featherbench_results::{Record, Verdict};
+use featherbench_results::{Row, Verdict};
 use maud::{Markup, html};
 use serde_json::Value;
 
@@ -14,14 +14,14 @@ use crate::page::opener;
 
 /// Both rows of one reproduction, or the one that tells why there is no value.
 struct Known<'a> {
-    smallest: Option<&'a Record>,
-    largest: Option<&'a Record>,
-    gravest: &'a Record,
+    smallest: Option<&'a Row>,
+    largest: Option<&'a Row>,
+    gravest: &'a Row,
     params: Value,
 }
 
 /// Writes the section; nothing where the run reproduces none.
-pub fn section(records: &[Record]) -> Markup {
+pub fn section(records: &[Row]) -> Markup {
     let known = known(records);
     html! {
         @if !known.is_empty() {
@@ -47,7 +47,7 @@ pub fn section(records: &[Record]) -> Markup {
     }
 }
 
-fn known(records: &[Record]) -> Vec<Known<'_>> {
+fn known(records: &[Row]) -> Vec<Known<'_>> {
     let mut found: BTreeMap<(&str, &str), Known> = BTreeMap::new();
     for row in records.iter().filter(|row| row.study == REPRODUCTIONS) {
         let params = || serde_json::from_str(&row.params).unwrap_or_default();
@@ -72,7 +72,7 @@ fn known(records: &[Record]) -> Vec<Known<'_>> {
 fn row(known: &Known) -> Markup {
     let row = known.gravest;
     let word = |key: &str| known.params[key].as_str().unwrap_or_default().to_owned();
-    let value = |row: Option<&Record>| row.and_then(|row| row.value);
+    let value = |row: Option<&Row>| row.and_then(|row| row.value);
     let upstream = word("upstream");
     html! {
         tr {
@@ -91,7 +91,7 @@ fn row(known: &Known) -> Markup {
     }
 }
 
-fn status(row: &Record) -> &'static str {
+fn status(row: &Row) -> &'static str {
     match (row.verdict, row.metric.as_str()) {
         (Verdict::Pass, _) => "yes",
         (Verdict::Fail, "smallest") => "smaller, or gone",

@@ -40,7 +40,7 @@ mod verdict;
 
 use std::path::{Path, PathBuf};
 
-use featherbench_results::{Record, RecordError, RunInfo};
+use featherbench_results::{ResultsError, Row, RunInfo};
 
 pub use crate::summary::summary;
 
@@ -80,7 +80,7 @@ pub struct ReportPaths {
 pub enum ReportError {
     /// A file could not be written; the text names it.
     #[error(transparent)]
-    Write(#[from] RecordError),
+    Write(#[from] ResultsError),
     /// The data of the page could not be turned into JSON.
     #[error("the report's data: {0}")]
     Json(#[from] serde_json::Error),
@@ -89,9 +89,9 @@ pub enum ReportError {
     PlottingScript,
 }
 
-/// Writes the report of a run into the folder `out`, which may already hold the run's own files; the page links to `records.csv`,
+/// Writes the report of a run into the folder `out`, which may already hold the run's own files; the page links to `rows.csv`,
 /// `run.json` and `schema.json` beside it.
-pub fn write(run: &RunInfo, records: &[Record], out: &Path) -> Result<ReportPaths, ReportError> {
+pub fn write(run: &RunInfo, records: &[Row], out: &Path) -> Result<ReportPaths, ReportError> {
     let overview = Overview::of(run, records);
     let figures = Figures::of(&overview, records);
 

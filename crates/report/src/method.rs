@@ -32,7 +32,7 @@ pub fn section(run: &RunInfo, overview: &Overview, figures: &Figures) -> Markup 
                     p.note {
                         "Every error is divided by a size that belongs to it, entry by entry; sums of magnitudes replace every vector of a recursion by its length and every sum by the sum of lengths. "
                         "Zero over zero is zero, anything else over zero infinite. Norms over mixed units, which hide a wrong entry behind large right ones, judge nothing between engines."
-                        @if !figures.digits.subjects.is_empty() { " Digits of forward dynamics are in the 2-norm for the comparison with published tables." }
+                        @if !figures.digits.answers.is_empty() { " Digits of forward dynamics are in the 2-norm for the comparison with published tables." }
                     }
                 }
                 div {
@@ -46,7 +46,7 @@ pub fn section(run: &RunInfo, overview: &Overview, figures: &Figures) -> Markup 
                         dd { "random: drawn from the seed; zero: no velocity, acceleration and force; straight: the neutral configuration at random rates; fast: rates a thousand times larger; limit: at the joints' limits, where the robot has any." }
                         dt { "Terms" }
                         dd { "M, inverse and forward dynamics contain the rotors' inertia; inverse and forward dynamics and the bias force contain gravity; damping and dry friction are left out for every engine." }
-                        @if !figures.digits.subjects.is_empty() {
+                        @if !figures.digits.answers.is_empty() {
                             dt { "Truth" }
                             dd { "The reference of the digits is the answer in double-double arithmetic, 32 digits, from the description's own numbers. A gate on forward dynamics there is on ‖Δq̈‖_M / ‖q̈‖_M, against what a backward error of its size amounts to at that state." }
                             dt { "Digits lost" }

@@ -2,7 +2,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use featherbench_results::{Record, RunInfo, Verdict};
+use featherbench_results::{Row, RunInfo, Verdict};
 use serde::Serialize;
 
 use crate::labels;
@@ -46,7 +46,7 @@ pub struct Cell<'a> {
     /// Their verdicts.
     pub tally: Tally,
     /// The row that decides: of the gravest verdict, the one with the least margin.
-    pub worst: &'a Record,
+    pub worst: &'a Row,
 }
 
 /// The run's vocabulary, each list in the order of the page, and its heatmap.
@@ -69,14 +69,14 @@ pub struct Overview<'a> {
 
 impl<'a> Overview<'a> {
     /// Groups a run's rows.
-    pub fn of(run: &'a RunInfo, records: &'a [Record]) -> Self {
+    pub fn of(run: &'a RunInfo, records: &'a [Row]) -> Self {
         let met = records.iter().map(|row| row.engine.as_str()).filter(|&name| name != EVERYONE);
         let engines = in_order(run.engines.iter().map(|engine| engine.name.as_str()), met);
         let models = models(run, records);
         let model_index: BTreeMap<&str, usize> = models.iter().enumerate().map(|(index, model)| (model.name, index)).collect();
         let studies: BTreeSet<&str> = records.iter().map(|row| row.study.as_str()).collect();
 
-        let judged: Vec<&Record> = records.iter().filter(|row| in_heatmap(row)).collect();
+        let judged: Vec<&Row> = records.iter().filter(|row| in_heatmap(row)).collect();
         let named = judged.iter().filter(|row| !row.quantity.is_empty());
         let mut quantities: Vec<&str> = named.clone().map(|row| row.quantity.as_str()).collect::<BTreeSet<_>>().into_iter().collect();
         quantities.sort_by_key(|name| labels::quantity_rank(name));
@@ -86,7 +86,7 @@ impl<'a> Overview<'a> {
         let mut cells: BTreeMap<(usize, usize, usize), Cell> = BTreeMap::new();
         for row in named {
             if let (Some(&model), Some(engine), Some(quantity)) =
-                (model_index.get(row.model.as_str()), engine_index(&row.engine), quantity_index(&row.quantity))
+                (model_index.get(row.robot.as_str()), engine_index(&row.engine), quantity_index(&row.quantity))
             {
                 cells.entry((model, engine, quantity)).or_insert_with(|| Cell::empty(row)).add(row);
             }
@@ -95,7 +95,7 @@ impl<'a> Overview<'a> {
 
         // A row without a quantity speaks for the whole model: it fills what would be gaps. An engine that has no other rows has one column.
         for row in judged.iter().filter(|row| row.quantity.is_empty()) {
-            let (Some(&model), Some(engine)) = (model_index.get(row.model.as_str()), engine_index(&row.engine)) else { continue };
+            let (Some(&model), Some(engine)) = (model_index.get(row.robot.as_str()), engine_index(&row.engine)) else { continue };
             if !columns.iter().any(|&(other, _)| other == engine) {
                 let whole = quantities.iter().position(|name| name.is_empty()).unwrap_or(quantities.len());
                 if whole == quantities.len() {
@@ -122,8 +122,8 @@ impl<'a> Overview<'a> {
     }
 
     /// The name of the chunk in which a row lies: its model's, or its study's where it has no model.
-    pub fn chunk_of(&self, row: &Record) -> String {
-        match self.model(&row.model) {
+    pub fn chunk_of(&self, row: &Row) -> String {
+        match self.model(&row.robot) {
             Some(model) => format!("model-{model}"),
             None => format!("study-{}", self.studies.iter().position(|&study| study == row.study).unwrap_or_default()),
         }
@@ -140,7 +140,7 @@ impl<'a> Overview<'a> {
                 margin: row.margin,
                 value: row.value,
                 bound: row.bound,
-                worst: [&row.metric, &row.case, &row.method, &row.reason],
+                worst: [&row.metric, &row.states, &row.method, &row.reason],
             }
         });
         OverviewData {
@@ -176,11 +176,11 @@ struct CellData<'a> {
 }
 
 impl<'a> Cell<'a> {
-    fn empty(row: &'a Record) -> Self {
+    fn empty(row: &'a Row) -> Self {
         Self { tally: Tally::default(), worst: row }
     }
 
-    fn add(&mut self, row: &'a Record) {
+    fn add(&mut self, row: &'a Row) {
         self.tally.add(row.verdict);
         if severity(row) < severity(self.worst) {
             self.worst = row;
@@ -189,15 +189,15 @@ impl<'a> Cell<'a> {
 }
 
 /// Orders rows from the worst on: by verdict, then by margin; a failure without a margin is as bad as can be.
-pub fn severity(row: &Record) -> (usize, i64) {
+pub fn severity(row: &Row) -> (usize, i64) {
     let unknown = if matches!(row.verdict, Verdict::Fail | Verdict::Error) { i64::MIN } else { i64::MAX };
     // Margins are within ±16: millionths of decades order them as well as the numbers themselves would.
     (gravity(row.verdict), row.margin.map_or(unknown, |margin| (margin * 1e6) as i64))
 }
 
 /// Whether a row is about one engine's answer for one model, judged or excused.
-fn in_heatmap(row: &Record) -> bool {
-    row.study == AGREEMENT && row.metric != PAIRWISE && !row.model.is_empty()
+fn in_heatmap(row: &Row) -> bool {
+    row.study == AGREEMENT && row.metric != PAIRWISE && !row.robot.is_empty()
 }
 
 /// The names that were announced, then the others in alphabetical order.
@@ -215,11 +215,11 @@ fn in_order<'a>(announced: impl Iterator<Item = &'a str>, met: impl Iterator<Ite
 }
 
 /// Every model that was announced or met, families together, otherwise in the order of the announcement.
-fn models<'a>(run: &'a RunInfo, records: &'a [Record]) -> Vec<Model<'a>> {
-    let mut first_rows: BTreeMap<&str, &Record> = BTreeMap::new();
-    for row in records.iter().filter(|row| !row.model.is_empty()) {
+fn models<'a>(run: &'a RunInfo, records: &'a [Row]) -> Vec<Model<'a>> {
+    let mut first_rows: BTreeMap<&str, &Row> = BTreeMap::new();
+    for row in records.iter().filter(|row| !row.robot.is_empty()) {
         // The study of agreement knows the family; a timing row of the same model may call it otherwise.
-        let entry = first_rows.entry(&row.model).or_insert(row);
+        let entry = first_rows.entry(&row.robot).or_insert(row);
         if entry.study != AGREEMENT && row.study == AGREEMENT {
             *entry = row;
         }
@@ -231,12 +231,12 @@ fn models<'a>(run: &'a RunInfo, records: &'a [Record]) -> Vec<Model<'a>> {
         .map(|name| {
             let row = first_rows.get(name);
             let info = announced.get(name);
-            let size = |of_info: fn(&featherbench_results::ModelInfo) -> u64, of_row: fn(&Record) -> Option<u64>| {
+            let size = |of_info: fn(&featherbench_results::ModelInfo) -> u64, of_row: fn(&Row) -> Option<u64>| {
                 info.map(|info| of_info(info)).or_else(|| row.and_then(|row| of_row(row)))
             };
             Model {
                 name,
-                family: row.map_or_else(|| info.map_or("", |info| info.origin.as_str()), |row| row.problem.as_str()),
+                family: row.map_or_else(|| info.map_or("", |info| info.origin.as_str()), |row| row.family.as_str()),
                 nv: size(|info| info.nv, |row| row.nv),
                 bodies: size(|info| info.bodies, |row| row.bodies),
                 depth: size(|info| info.depth, |row| row.depth),

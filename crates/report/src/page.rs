@@ -1,6 +1,6 @@
 //! The page: its frame, and its sections in order.
 
-use featherbench_results::{CSV_NAME, RUN_NAME, Record, RunInfo, SCHEMA_NAME};
+use featherbench_results::{CSV_NAME, RUN_NAME, Row, RunInfo, SCHEMA_NAME};
 use maud::{DOCTYPE, Markup, html};
 
 use crate::figures::Figures;
@@ -35,7 +35,7 @@ const SECTIONS: &[(&str, &str)] = &[
 ];
 
 /// The whole page as text.
-pub fn render(run: &RunInfo, records: &[Record], overview: &Overview, figures: &Figures) -> String {
+pub fn render(run: &RunInfo, records: &[Row], overview: &Overview, figures: &Figures) -> String {
     let findings = Findings::of(run, overview, records);
     let truth = Truth::of(overview, &figures.digits, records);
     let readings = Readings::of(overview, records);
@@ -107,7 +107,7 @@ fn sections(overview: &Overview, figures: &Figures, readings: &Readings) -> impl
     let absent = |anchor| match anchor {
         "reading" => readings.is_empty(),
         "joints" => figures.joints.rows.is_empty(),
-        "digits" => figures.digits.subjects.is_empty(),
+        "digits" => figures.digits.answers.is_empty(),
         "speed" => figures.speed.is_empty(),
         "tradeoff" => figures.tradeoffs.is_empty(),
         "conditioning" => figures.conditions.is_empty(),

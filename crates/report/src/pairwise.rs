@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use featherbench_results::Record;
+use featherbench_results::Row;
 use maud::{Markup, html};
 
 use crate::labels;
@@ -11,10 +11,10 @@ use crate::overview::{Overview, PAIRWISE};
 use crate::page::opener;
 
 /// The largest difference of two engines on a quantity, and the row that holds it.
-type Largest<'a> = BTreeMap<(usize, usize), (f64, &'a Record)>;
+type Largest<'a> = BTreeMap<(usize, usize), (f64, &'a Row)>;
 
 /// Writes the section.
-pub fn section(overview: &Overview, records: &[Record]) -> Markup {
+pub fn section(overview: &Overview, records: &[Row]) -> Markup {
     let matrices = matrices(overview, records);
     html! {
         section #pairs {
@@ -34,7 +34,7 @@ pub fn section(overview: &Overview, records: &[Record]) -> Markup {
 }
 
 /// The rows that compare two engines in the quantity's own measure; a backward error measures something else.
-fn matrices<'a>(overview: &Overview, records: &'a [Record]) -> Vec<(&'a str, Largest<'a>)> {
+fn matrices<'a>(overview: &Overview, records: &'a [Row]) -> Vec<(&'a str, Largest<'a>)> {
     let mut found: BTreeMap<(usize, &str), Largest> = BTreeMap::new();
     for row in records.iter().filter(|row| [PAIRWISE, "scaled", "forward"].contains(&row.metric.as_str())) {
         let (Some(one), Some(other), Some(value)) = (overview.engine(&row.engine), overview.engine(&row.reference), row.value) else {
@@ -76,7 +76,7 @@ fn matrix(overview: &Overview, quantity: &str, largest: &Largest) -> Markup {
     }
 }
 
-fn cell(overview: &Overview, value: f64, row: &Record) -> Markup {
+fn cell(overview: &Overview, value: f64, row: &Row) -> Markup {
     opener(
         &overview.chunk_of(row),
         &[("engine", &row.engine), ("reference", &row.reference), ("quantity", &row.quantity), ("metric", &row.metric)],

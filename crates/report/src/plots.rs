@@ -44,11 +44,11 @@ pub fn time(overview: &Overview, figures: &Figures) -> Markup {
     // All families at once are a thicket: the plot opens on the one with the most to show.
     let points = |family: &&&str| figures.times.iter().filter(|line| line.family == **family).map(|line| line.points.len()).sum::<usize>();
     let opening = families.iter().max_by_key(points).copied();
-    let cases: BTreeSet<&str> = figures.times.iter().map(|line| line.case).collect();
+    let cases: BTreeSet<&str> = figures.times.iter().map(|line| line.cache).collect();
     html! {
         section #time {
             h2 { "Time against size" }
-            p.lead { "Time of one call on one pinned core, against the degrees of freedom. Bars are 95 % intervals of the median, hollow marks times that are void, crosses estimates." }
+            p.lead { "Time of one call on one pinned core, against the degrees of freedom. Bars are 95 % intervals of the median, hollow marks times that do not count, crosses estimates." }
             @if figures.times.is_empty() {
                 p.empty { "This run holds no times." }
             } @else {
@@ -106,7 +106,7 @@ fn growth(overview: &Overview, lines: &[TimeLine]) -> Markup {
                         th scope="row" { (overview.engines[line.engine]) }
                         td { (labels::quantity(line.algorithm)) @if line.method != line.algorithm { " " small { (line.method) } } }
                         td { (line.family) }
-                        td { (line.case) }
+                        td { (line.cache) }
                         td.number { (line.points.len()) }
                         td.number { (exponent(line.per_call)) }
                         td.number { (exponent(line.per_joint)) }

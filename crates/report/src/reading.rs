@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use featherbench_results::{Record, Verdict};
+use featherbench_results::{Row, Verdict};
 use maud::{Markup, html};
 use serde_json::Value;
 
@@ -17,9 +17,9 @@ const READING: &str = "reading";
 #[derive(Default)]
 struct Cell<'a> {
     /// The row that counts the differences, or says why there is no reading.
-    read: Option<&'a Record>,
+    read: Option<&'a Row>,
     /// The row that counts what the differences do not explain.
-    unexplained: Option<&'a Record>,
+    unexplained: Option<&'a Row>,
     /// The largest error of inverse dynamics and mass matrix as read, against the reference reading.
     error: Option<f64>,
 }
@@ -51,10 +51,10 @@ pub struct Readings<'a> {
 
 impl<'a> Readings<'a> {
     /// The readings among the records.
-    pub fn of(overview: &Overview, records: &'a [Record]) -> Self {
+    pub fn of(overview: &Overview, records: &'a [Row]) -> Self {
         let mut readings = Self { engines: Vec::new(), models: Vec::new(), cells: BTreeMap::new(), causes: BTreeMap::new() };
         for row in records.iter().filter(|row| row.study == READING) {
-            let (Some(model), Some(engine)) = (overview.model(&row.model), overview.engine(&row.engine)) else { continue };
+            let (Some(model), Some(engine)) = (overview.model(&row.robot), overview.engine(&row.engine)) else { continue };
             if !readings.models.contains(&model) {
                 readings.models.push(model);
             }

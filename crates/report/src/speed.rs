@@ -1,15 +1,13 @@
-//! What the paired experiments say: ratios with their intervals, controls, the machine's limit, and what is void.
+//! What the paired experiments say: ratios with their intervals, controls, the machine's limit, and what does not count.
 
 use std::collections::BTreeMap;
 
-use featherbench_results::{ESTIMATE, Record};
+use featherbench_results::Row;
 use serde::Serialize;
 
 use crate::labels;
 use crate::overview::{Overview, TIMING};
 
-/// How the reasons of rows begin whose values do not count.
-pub const VOID: &str = "void: ";
 /// The quantity of the rows on the machine.
 const MACHINE: &str = "machine";
 /// Quantities whose best algorithm has an exact count of operations per revolute joint: multiply-adds, or single multiplications and
@@ -30,13 +28,13 @@ pub struct Speed<'a> {
     pub limits: Vec<Limit<'a>>,
     /// Why no time is set beside the limit: the peak was measured too low. [`Speed::limits`] is empty then.
     #[serde(skip)]
-    pub limits_void: Option<String>,
+    pub no_limits: Option<String>,
     /// What the machine does at best.
     #[serde(skip)]
     pub machine: Option<Machine>,
-    /// Why times are void, and how many rows for each reason.
+    /// Why times do not count, and how many rows for each reason.
     #[serde(skip)]
-    pub void: BTreeMap<&'a str, usize>,
+    pub invalid: BTreeMap<&'a str, usize>,
 }
 
 /// A ratio of times with its interval.
@@ -51,7 +49,7 @@ pub struct Ratio<'a> {
     /// What is computed.
     pub quantity: &'a str,
     /// `stream` or `hot`.
-    pub case: &'a str,
+    pub cache: &'a str,
     /// With whom it is compared.
     pub reference: &'a str,
     /// Times that of the reference.
@@ -61,9 +59,9 @@ pub struct Ratio<'a> {
     /// Upper end.
     pub high: f64,
     /// Whether it does not count.
-    pub void: bool,
+    pub valid: bool,
     /// Whether it is an estimate.
-    pub estimate: bool,
+    pub estimated: bool,
 }
 
 /// A time per joint beside the machine's limit.
@@ -78,9 +76,9 @@ pub struct Limit<'a> {
     /// What is computed.
     pub quantity: &'a str,
     /// `stream` or `hot`.
-    pub case: &'a str,
+    pub cache: &'a str,
     /// Whether the time is an estimate.
-    pub estimate: bool,
+    pub estimated: bool,
     /// Nanoseconds per joint.
     pub per_joint: f64,
     /// The least that the operations of a revolute joint take, one state at a time.
@@ -117,28 +115,27 @@ pub struct Summary<'a> {
 
 impl<'a> Speed<'a> {
     /// Collects the rows of paired experiments.
-    pub fn of(overview: &Overview<'a>, records: &'a [Record]) -> Self {
-        let timing: Vec<&Record> = records.iter().filter(|row| row.study == TIMING).collect();
+    pub fn of(overview: &Overview<'a>, records: &'a [Row]) -> Self {
+        let timing: Vec<&Row> = records.iter().filter(|row| row.study == TIMING).collect();
         let machine = Machine::of(&timing);
-        let mut void: BTreeMap<&str, usize> = BTreeMap::new();
-        for reason in timing.iter().filter(|row| row.quantity != MACHINE).filter_map(|row| row.reason.strip_prefix(VOID)) {
-            let reason = reason.split_once(&format!("; {ESTIMATE}")).map_or(reason, |(reason, _)| reason);
-            *void.entry(reason).or_default() += 1;
+        let mut invalid: BTreeMap<&str, usize> = BTreeMap::new();
+        for row in timing.iter().filter(|row| row.quantity != MACHINE && !row.valid) {
+            *invalid.entry(&*row.reason).or_default() += 1;
         }
-        let ratios = ratios(overview, &timing, ["ratio", "ratio_low", "ratio_high"]);
+        let ratios = ratios(overview, &timing, "ratio");
         let mut quantities: Vec<&str> = ratios.iter().map(|ratio| ratio.quantity).collect();
         quantities.sort_by_key(|name| labels::quantity_rank(name));
         quantities.dedup();
         let limits = machine.map_or_else(Vec::new, |machine| limits(overview, &timing, machine));
-        let limits_void = void_peak(&timing).or_else(|| below(overview, &limits));
+        let no_limits = invalid_peak(&timing).or_else(|| below(overview, &limits));
         Self {
-            controls: self::ratios(overview, &timing, ["control", "control_low", "control_high"]),
-            limits: if limits_void.is_some() { Vec::new() } else { limits },
-            limits_void,
+            controls: self::ratios(overview, &timing, "control"),
+            limits: if no_limits.is_some() { Vec::new() } else { limits },
+            no_limits,
             quantities: quantities.into_iter().map(|name| [name, labels::quantity(name)]).collect(),
             ratios,
             machine,
-            void,
+            invalid,
         }
     }
 
@@ -150,9 +147,9 @@ impl<'a> Speed<'a> {
     /// Geometric mean, least and largest of each method on each quantity; only what counts.
     pub fn summaries(&self) -> Vec<Summary<'_>> {
         let mut groups: BTreeMap<_, Vec<&Ratio>> = BTreeMap::new();
-        for ratio in self.ratios.iter().filter(|ratio| !ratio.void && ratio.value > 0.0) {
+        for ratio in self.ratios.iter().filter(|ratio| ratio.valid && ratio.value > 0.0) {
             let rank = labels::quantity_rank(ratio.quantity);
-            groups.entry((rank, std::cmp::Reverse(ratio.case), ratio.engine, ratio.method)).or_default().push(ratio);
+            groups.entry((rank, std::cmp::Reverse(ratio.cache), ratio.engine, ratio.method)).or_default().push(ratio);
         }
         groups.into_values().filter_map(Summary::of).collect()
     }
@@ -168,65 +165,54 @@ impl<'a> Summary<'a> {
     }
 }
 
-/// What a row of an experiment is about.
-fn about(row: &Record) -> [&str; 5] {
-    [&row.model, &row.engine, &row.method, &row.quantity, &row.case]
-}
-
-fn ratios<'a>(overview: &Overview<'a>, timing: &[&'a Record], metrics: [&str; 3]) -> Vec<Ratio<'a>> {
-    let ends: BTreeMap<([&str; 5], &str), f64> = timing
-        .iter()
-        .filter(|row| metrics[1..].contains(&row.metric.as_str()))
-        .filter_map(|row| Some(((about(row), row.metric.as_str()), row.value?)))
-        .collect();
-    let ratio = |row: &&'a Record| {
+fn ratios<'a>(overview: &Overview<'a>, timing: &[&'a Row], metric: &str) -> Vec<Ratio<'a>> {
+    let ratio = |row: &&'a Row| {
         let value = row.value?;
-        let end = |metric| ends.get(&(about(row), metric)).copied().unwrap_or(value);
         Some(Ratio {
-            model: overview.model(&row.model)?,
+            model: overview.model(&row.robot)?,
             engine: overview.engine(&row.engine)?,
             method: &row.method,
             quantity: &row.quantity,
-            case: &row.case,
+            cache: &row.cache,
             reference: &row.reference,
             value,
-            low: end(metrics[1]),
-            high: end(metrics[2]),
-            void: row.reason.starts_with(VOID),
-            estimate: row.is_estimate(),
+            low: row.ci_low.unwrap_or(value),
+            high: row.ci_high.unwrap_or(value),
+            valid: row.valid,
+            estimated: row.estimated,
         })
     };
-    timing.iter().filter(|row| row.metric == metrics[0]).filter_map(ratio).collect()
+    timing.iter().filter(|row| row.metric == metric).filter_map(ratio).collect()
 }
 
-fn limits<'a>(overview: &Overview<'a>, timing: &[&'a Record], machine: Machine) -> Vec<Limit<'a>> {
-    let limit = |row: &&'a Record| {
+fn limits<'a>(overview: &Overview<'a>, timing: &[&'a Row], machine: Machine) -> Vec<Limit<'a>> {
+    let limit = |row: &&'a Row| {
         let &(_, _, operations) = OPERATIONS.iter().find(|(quantity, ..)| *quantity == row.quantity)?;
         let (ns, joints) = (row.value?, row.bodies.filter(|&bodies| bodies > 0)?);
         Some(Limit {
-            model: overview.model(&row.model)?,
+            model: overview.model(&row.robot)?,
             engine: overview.engine(&row.engine)?,
             method: &row.method,
             quantity: &row.quantity,
-            case: &row.case,
-            estimate: row.is_estimate(),
+            cache: &row.cache,
+            estimated: row.estimated,
             per_joint: ns / joints as f64,
             least: operations / machine.lane,
         })
     };
-    let counted = timing.iter().filter(|row| row.metric == "ns_per_call" && !row.reason.starts_with(VOID));
+    let counted = timing.iter().filter(|row| row.metric == "ns_per_call" && row.valid);
     counted.filter_map(limit).collect()
 }
 
-/// Why the peak is void by its own row.
-fn void_peak(timing: &[&Record]) -> Option<String> {
+/// Why the peak does not count by its own row.
+fn invalid_peak(timing: &[&Row]) -> Option<String> {
     let peak = timing.iter().find(|row| row.quantity == MACHINE && row.metric == "fma_per_ns")?;
-    peak.reason.strip_prefix(VOID).map(str::to_owned)
+    (!peak.valid).then(|| peak.reason.clone())
 }
 
 /// What is faster than its limit shows that the limit is none. (An estimate may be.)
 fn below(overview: &Overview, limits: &[Limit]) -> Option<String> {
-    let below: Vec<&Limit> = limits.iter().filter(|limit| !limit.estimate && limit.per_joint < limit.least).collect();
+    let below: Vec<&Limit> = limits.iter().filter(|limit| !limit.estimated && limit.per_joint < limit.least).collect();
     let least = below.iter().min_by(|a, b| (a.per_joint / a.least).total_cmp(&(b.per_joint / b.least)))?;
     let (engine, model, share) = (overview.engines[least.engine], &overview.models[least.model].name, least.per_joint / least.least);
     let first = format!("{engine} {} on {model} takes {share:.2} times its limit", least.method);
@@ -234,7 +220,7 @@ fn below(overview: &Overview, limits: &[Limit]) -> Option<String> {
 }
 
 impl Machine {
-    fn of(timing: &[&Record]) -> Option<Self> {
+    fn of(timing: &[&Row]) -> Option<Self> {
         let value = |metric: &str| timing.iter().find(|row| row.quantity == MACHINE && row.metric == metric).and_then(|row| row.value);
         let (vector, lane) = (value("fma_per_ns")?, value("fma_per_ns_per_lane")?);
         Some(Self { vector, lane, clock: value("clock_ns"), empty: value("empty_call_ns") })

@@ -23,7 +23,7 @@ const INCLUDED: [(&str, &str, &str); 7] = [
     ("body_jacobian", "q", "kinematics, and the columns of one body's Jacobian in world axes"),
 ];
 
-/// Reasons of void times that the page lists.
+/// Reasons why times do not count, as many as the page lists.
 const REASONS: usize = 12;
 
 /// Writes the section; nothing where there were no paired experiments.
@@ -45,7 +45,7 @@ pub fn section(run: &RunInfo, overview: &Overview, speed: &Speed) -> Markup {
                         label { "Inputs " select #speed-case { option value="stream" { "stream: another state each call" } option value="hot" { "hot: one state again and again" } } }
                     }
                     div #speed-plot.plot role="img" aria-label="Plot of ratios of times" {}
-                    p.note { "Grey: ± 2 %, within which this experiment calls nothing a difference. Hollow marks are void: see below." }
+                    p.note { "Grey: ± 2 %, within which this experiment calls nothing a difference. Hollow marks do not count: see below." }
                     (estimates(overview, speed))
                     (summary(overview, speed))
                     (table(overview, speed))
@@ -70,7 +70,7 @@ fn missing(run: &RunInfo) -> Markup {
 
 /// What ≈ means, where something is estimated.
 fn estimates(overview: &Overview, speed: &Speed) -> Markup {
-    let mut engines: Vec<&str> = speed.ratios.iter().filter(|ratio| ratio.estimate).map(|ratio| overview.engines[ratio.engine]).collect();
+    let mut engines: Vec<&str> = speed.ratios.iter().filter(|ratio| ratio.estimated).map(|ratio| overview.engines[ratio.engine]).collect();
     engines.sort_unstable();
     engines.dedup();
     html! {
@@ -85,8 +85,8 @@ fn estimates(overview: &Overview, speed: &Speed) -> Markup {
 }
 
 /// `≈` before an estimate.
-fn mark(estimate: bool) -> &'static str {
-    if estimate { "≈\u{202f}" } else { "" }
+fn mark(estimated: bool) -> &'static str {
+    if estimated { "≈\u{202f}" } else { "" }
 }
 
 fn summary(overview: &Overview, speed: &Speed) -> Markup {
@@ -94,7 +94,7 @@ fn summary(overview: &Overview, speed: &Speed) -> Markup {
     html! {
         h3 { "Over the robots" }
         @if lines.is_empty() {
-            p.empty #speed-all-void { "Every ratio is void (the reasons stand below): there is no mean. The suite timing has the rounds that this takes." }
+            p.empty #speed-none-valid { "No ratio counts (the reasons stand below): there is no mean. The suite timing has the rounds that this takes." }
         } @else { div.scroll {
             table.compact.sortable #speed-summary {
                 thead {
@@ -107,14 +107,14 @@ fn summary(overview: &Overview, speed: &Speed) -> Markup {
                     @for line in &lines {
                         tr {
                             th scope="row" { (labels::quantity(line.of.quantity)) }
-                            td { (line.of.case) }
+                            td { (line.of.cache) }
                             td { (overview.engines[line.of.engine]) " " small { (line.of.method) } }
                             td { (line.of.reference) }
                             td.number { (line.count) }
-                            td.number { (mark(line.of.estimate)) (times(line.mean)) }
-                            td.number { (mark(line.of.estimate)) (times(line.least.0)) }
+                            td.number { (mark(line.of.estimated)) (times(line.mean)) }
+                            td.number { (mark(line.of.estimated)) (times(line.least.0)) }
                             td { (overview.models[line.least.1].name) }
-                            td.number { (mark(line.of.estimate)) (times(line.largest.0)) }
+                            td.number { (mark(line.of.estimated)) (times(line.largest.0)) }
                             td { (overview.models[line.largest.1].name) }
                         }
                     }
@@ -141,13 +141,13 @@ fn table(overview: &Overview, speed: &Speed) -> Markup {
                             tr {
                                 th scope="row" { (overview.models[ratio.model].name) }
                                 td { (labels::quantity(ratio.quantity)) }
-                                td { (ratio.case) }
+                                td { (ratio.cache) }
                                 td { (overview.engines[ratio.engine]) " " small { (ratio.method) } }
                                 td { (ratio.reference) }
-                                td.number { (mark(ratio.estimate)) (times(ratio.value)) }
-                                td.number { (mark(ratio.estimate)) (times(ratio.low)) }
-                                td.number { (mark(ratio.estimate)) (times(ratio.high)) }
-                                td { @if ratio.void { "void" } @else { "yes" } }
+                                td.number { (mark(ratio.estimated)) (times(ratio.value)) }
+                                td.number { (mark(ratio.estimated)) (times(ratio.low)) }
+                                td.number { (mark(ratio.estimated)) (times(ratio.high)) }
+                                td { @if ratio.valid { "yes" } @else { "no" } }
                             }
                         }
                     }
@@ -169,8 +169,8 @@ fn limits(overview: &Overview, speed: &Speed) -> Markup {
                 ". Other joints need other numbers, sines and cosines come on top."
                 @if let (Some(clock), Some(empty)) = (machine.clock, machine.empty) { " The clock's step is " (short(clock)) " ns, a call that computes nothing takes " (short(empty)) " ns." }
             }
-            @if let Some(reason) = &speed.limits_void {
-                p #speed-limits-void { b { "No time is set beside the limit." } " Void: " (reason) "." }
+            @if let Some(reason) = &speed.no_limits {
+                p #speed-no-limits { b { "No time is set beside the limit." } " The peak does not count: " (reason) "." }
             }
             @if !speed.limits.is_empty() {
                 details {
@@ -188,11 +188,11 @@ fn limits(overview: &Overview, speed: &Speed) -> Markup {
                                     tr {
                                         th scope="row" { (overview.models[limit.model].name) }
                                         td { (labels::quantity(limit.quantity)) }
-                                        td { (limit.case) }
+                                        td { (limit.cache) }
                                         td { (overview.engines[limit.engine]) " " small { (limit.method) } }
-                                        td.number { (mark(limit.estimate)) (short(limit.per_joint)) }
+                                        td.number { (mark(limit.estimated)) (short(limit.per_joint)) }
                                         td.number { (short(limit.least)) }
-                                        td.number { (mark(limit.estimate)) (times(limit.per_joint / limit.least)) }
+                                        td.number { (mark(limit.estimated)) (times(limit.per_joint / limit.least)) }
                                     }
                                 }
                             }
@@ -205,20 +205,20 @@ fn limits(overview: &Overview, speed: &Speed) -> Markup {
 }
 
 fn controls(overview: &Overview, speed: &Speed) -> Markup {
-    let void: usize = speed.void.values().sum();
-    let good = speed.controls.iter().filter(|control| !control.void).count();
+    let invalid: usize = speed.invalid.values().sum();
+    let good = speed.controls.iter().filter(|control| control.valid).count();
     html! {
         @if !speed.controls.is_empty() {
             h3 { "Was the machine quiet?" }
             p {
                 "In every experiment a second copy of our usual method stands among the others. "
                 b { (good) " of " (count(speed.controls.len(), "such A/A control")) } " hold 1 and lie within ± 2 %. "
-                @if void > 0 { "Where one does not, the times of its experiment are void; where more than a quarter of a robot's do not, all its times are: " b { (count(void, "row")) } "." }
-                @else { "No time is void." }
+                @if invalid > 0 { "Where one does not, no time of its experiment counts; where more than a quarter of a robot's do not, none of its times does: " b { (count(invalid, "row")) } "." }
+                @else { "Every time counts." }
             }
-            @if void > 0 {
-                ul.findings #speed-void { @for (reason, rows) in speed.void.iter().take(REASONS) { li.known { (reason) " " span.number { "(" (count(*rows, "row")) ")" } } } }
-                @if speed.void.len() > REASONS { p.note { "And " (count(speed.void.len() - REASONS, "more reason")) " in the rows." } }
+            @if invalid > 0 {
+                ul.findings #speed-invalid { @for (reason, rows) in speed.invalid.iter().take(REASONS) { li.known { (reason) " " span.number { "(" (count(*rows, "row")) ")" } } } }
+                @if speed.invalid.len() > REASONS { p.note { "And " (count(speed.invalid.len() - REASONS, "more reason")) " in the rows." } }
             }
             details {
                 summary { "A/A controls" }
@@ -235,11 +235,11 @@ fn controls(overview: &Overview, speed: &Speed) -> Markup {
                                 tr {
                                     th scope="row" { (overview.models[control.model].name) }
                                     td { (labels::quantity(control.quantity)) }
-                                    td { (control.case) }
+                                    td { (control.cache) }
                                     td.number { (format!("{:.4}", control.value)) }
                                     td.number { (format!("{:.4}", control.low)) }
                                     td.number { (format!("{:.4}", control.high)) }
-                                    td { @if !control.void { span.badge.pass { "✓ quiet" } } @else { span.badge.deviation { "≈ not 1" } } }
+                                    td { @if control.valid { span.badge.pass { "✓ quiet" } } @else { span.badge.deviation { "≈ not 1" } } }
                                 }
                             }
                         }

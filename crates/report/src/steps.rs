@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use featherbench_results::{Record, Verdict};
+use featherbench_results::{Row, Verdict};
 use maud::{Markup, html};
 use serde::Serialize;
 
@@ -34,13 +34,13 @@ pub struct StepLine<'a> {
 }
 
 /// Reads a run's rows.
-pub fn lines<'a>(overview: &Overview<'a>, records: &'a [Record]) -> Vec<StepLine<'a>> {
+pub fn lines<'a>(overview: &Overview<'a>, records: &'a [Row]) -> Vec<StepLine<'a>> {
     let mut found: BTreeMap<(usize, usize, bool, &str, bool, &str), StepLine> = BTreeMap::new();
     for row in records.iter().filter(|row| row.study == STEP_LIMIT) {
-        let (Some(model), Some(engine), Some(value)) = (overview.model(&row.model), overview.engine(&row.engine), row.value) else {
+        let (Some(model), Some(engine), Some(value)) = (overview.model(&row.robot), overview.engine(&row.engine), row.value) else {
             continue;
         };
-        let (energy, method, case) = (row.quantity == "kinetic_energy", row.method.as_str(), row.case.as_str());
+        let (energy, method, case) = (row.quantity == "kinetic_energy", row.method.as_str(), row.states.as_str());
         let line = found.entry((model, engine, energy, method, case != "random", case)).or_insert_with(|| StepLine {
             model,
             engine,
@@ -105,7 +105,7 @@ pub fn section(overview: &Overview, lines: &[StepLine]) -> Markup {
                     }
                 }
                 p.note {
-                    "Errors of accelerations are relative, in the kinetic-energy norm, against native forward dynamics; drifts are over the sum of the magnitudes of the potential "
+                    "Errors of accelerations are relative, in the kinetic-energy norm, against our forward dynamics; drifts are over the sum of the magnitudes of the potential "
                     "energy's terms. Orders are slopes by least squares over the straight part. With an engine's own damping the acceleration has another limit. "
                     "Rapier's guard against added energy, from dt·|v| = 1e-3 on, may drop the implicit term: the acceleration is then the true one, and the error falls to rounding."
                 }

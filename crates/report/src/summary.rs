@@ -2,18 +2,18 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use featherbench_results::{Record, RunInfo, Verdict};
+use featherbench_results::{Row, RunInfo, Verdict};
 
 use crate::findings::{Findings, Status};
 use crate::labels;
 use crate::numbers::{larger, short, smaller};
 use crate::overview::{Overview, TIMING};
-use crate::speed::{Speed, VOID};
+use crate::speed::Speed;
 
 /// Findings that are told.
 const TOLD: usize = 3;
 /// Our kernels' name in rows.
-const OWN: &str = "native";
+const OWN: &str = "featherbench";
 /// Quantities whose times are told.
 const TIMED: [&str; 3] = ["id", "fd", "mass_matrix_sparse"];
 
@@ -23,12 +23,12 @@ const TIMED: [&str; 3] = ["id", "fd", "mass_matrix_sparse"];
 ///
 /// ```
 /// use featherbench_report::summary;
-/// use featherbench_results::{Record, RunInfo, Verdict};
+/// use featherbench_results::{Row, RunInfo, Verdict};
 ///
-/// let row = Record { verdict: Verdict::Pass, value: Some(1e-16), bound: Some(1e-14), ..Record::default() };
+/// let row = Row { verdict: Verdict::Pass, value: Some(1e-16), bound: Some(1e-14), ..Row::default() };
 /// assert_eq!(summary(&RunInfo::default(), &[row]), ["passed: The one judged row is inside its gate"]);
 /// ```
-pub fn summary(run: &RunInfo, records: &[Record]) -> Vec<String> {
+pub fn summary(run: &RunInfo, records: &[Row]) -> Vec<String> {
     let overview = Overview::of(run, records);
     let findings = Findings::of(run, &overview, records);
     let verdict = match findings.status {
@@ -43,9 +43,9 @@ pub fn summary(run: &RunInfo, records: &[Record]) -> Vec<String> {
 }
 
 /// The worst rows, one of each engine and quantity.
-fn worst(records: &[Record]) -> Vec<&Record> {
-    let counts = |row: &&Record| matches!(row.verdict, Verdict::Fail | Verdict::Error | Verdict::Deviation);
-    let mut rows: Vec<&Record> = records.iter().filter(counts).collect();
+fn worst(records: &[Row]) -> Vec<&Row> {
+    let counts = |row: &&Row| matches!(row.verdict, Verdict::Fail | Verdict::Error | Verdict::Deviation);
+    let mut rows: Vec<&Row> = records.iter().filter(counts).collect();
     rows.sort_by_key(|row| crate::overview::severity(row));
     let mut told = BTreeSet::new();
     rows.retain(|row| told.insert((&row.engine, &row.quantity)));
@@ -54,8 +54,9 @@ fn worst(records: &[Record]) -> Vec<&Record> {
 }
 
 /// `pinocchio, kinetic energy: 0.024 where 1e-14 is allowed (panda, random, crba): why`.
-fn sentence(row: &Record) -> String {
-    let place: Vec<&str> = [&row.model, &row.case, &row.method].into_iter().map(String::as_str).filter(|word| !word.is_empty()).collect();
+fn sentence(row: &Row) -> String {
+    let place: Vec<&str> =
+        [&row.robot, &row.body, &row.states, &row.method].into_iter().map(String::as_str).filter(|word| !word.is_empty()).collect();
     let who = format!("{}, {}", row.engine, labels::error(&row.quantity, &row.metric));
     let size = match (row.value, row.bound) {
         (Some(value), Some(bound)) => format!("{} where {} is allowed", short(value), short(bound)),
@@ -66,13 +67,13 @@ fn sentence(row: &Record) -> String {
 }
 
 /// Times of our kernels per body, and of the fastest other engine over ours; nothing where no time counts.
-fn speed(overview: &Overview, records: &[Record]) -> Option<String> {
-    let timed = |row: &&Record| row.study == TIMING && row.metric == "ns_per_call" && row.case == "stream" && row.engine == OWN;
+fn speed(overview: &Overview, records: &[Row]) -> Option<String> {
+    let timed = |row: &&Row| row.study == TIMING && row.metric == "ns_per_call" && row.cache == "stream" && row.engine == OWN;
     // The fastest method of each robot.
     let mut fastest: BTreeMap<(&str, &str), f64> = BTreeMap::new();
-    for row in records.iter().filter(timed).filter(|row| !row.reason.starts_with(VOID)) {
+    for row in records.iter().filter(timed).filter(|row| row.valid) {
         if let Some((ns, bodies)) = row.value.zip(row.bodies.filter(|&bodies| bodies > 0)) {
-            let each = fastest.entry((&row.quantity, &row.model)).or_insert(f64::INFINITY);
+            let each = fastest.entry((&row.quantity, &row.robot)).or_insert(f64::INFINITY);
             *each = smaller(*each, ns / bodies as f64);
         }
     }
@@ -91,7 +92,7 @@ fn speed(overview: &Overview, records: &[Record]) -> Option<String> {
     let summaries = speed.summaries();
     let others = TIMED.iter().filter_map(|name| {
         let others = summaries.iter().filter(|summary| overview.engines[summary.of.engine] != OWN);
-        let timed = others.filter(|summary| summary.of.quantity == *name && summary.of.case == "stream" && !summary.of.estimate);
+        let timed = others.filter(|summary| summary.of.quantity == *name && summary.of.cache == "stream" && !summary.of.estimated);
         let fastest = timed.min_by(|a, b| a.mean.total_cmp(&b.mean))?;
         Some(format!("{} {} ({})", labels::quantity(name), short(fastest.mean), overview.engines[fastest.of.engine]))
     });
@@ -104,16 +105,16 @@ fn speed(overview: &Overview, records: &[Record]) -> Option<String> {
 mod tests {
     use super::*;
 
-    fn row(engine: &str, quantity: &str, verdict: Verdict, value: f64) -> Record {
+    fn row(engine: &str, quantity: &str, verdict: Verdict, value: f64) -> Row {
         let (engine, quantity) = (engine.to_owned(), quantity.to_owned());
         let (model, case, method, metric) = ("panda".into(), "fast".into(), "aba".into(), "scaled".into());
-        let (study, reference, reason) = ("agreement".into(), "native".into(), "far (too) from it (1 is not at most 2)".into());
+        let (study, reference, reason) = ("agreement".into(), "featherbench".into(), "far (too) from it (1 is not at most 2)".into());
         let (value, bound, margin) = (Some(value), Some(1e-14), Some((1e-14 / value).log10()));
-        Record {
+        Row {
             engine,
             quantity,
-            model,
-            case,
+            robot: model,
+            states: case,
             method,
             metric,
             study,
@@ -123,14 +124,14 @@ mod tests {
             value,
             bound,
             margin,
-            ..Record::default()
+            ..Row::default()
         }
     }
 
-    fn time(model: &str, method: &str, ns: f64, reason: &str) -> Record {
-        let (study, metric, case, engine) = (TIMING.into(), "ns_per_call".into(), "stream".into(), OWN.into());
-        let (model, method, quantity, reason) = (model.into(), method.into(), "fd".into(), reason.into());
-        Record { study, metric, case, engine, model, method, quantity, reason, value: Some(ns), bodies: Some(10), ..Record::default() }
+    fn time(robot: &str, method: &str, ns: f64) -> Row {
+        let (study, metric, cache, engine) = (TIMING.into(), "ns_per_call".into(), "stream".into(), OWN.into());
+        let (robot, method, quantity) = (robot.into(), method.into(), "fd".into());
+        Row { study, metric, cache, engine, robot, method, quantity, bodies: Some(10), ..Row::default() }.informed(ns)
     }
 
     #[test]
@@ -158,12 +159,12 @@ mod tests {
     }
 
     #[test]
-    fn a_time_is_that_of_the_fastest_method_and_void_ones_do_not_count() {
+    fn a_time_is_that_of_the_fastest_method_and_invalid_ones_do_not_count() {
         let rows = [
-            time("a", "aba", 500.0, ""),
-            time("a", "refined", 9000.0, ""),
-            time("b", "aba", 800.0, ""),
-            time("c", "aba", 1.0, "void: the machine was not quiet"),
+            time("a", "aba", 500.0),
+            time("a", "refined", 9000.0),
+            time("b", "aba", 800.0),
+            time("c", "aba", 1.0).invalid("the machine was not quiet"),
         ];
         let lines = summary(&RunInfo::default(), &rows);
         assert_eq!(lines[1..], ["speed, per body of a robot: forward dynamics 50 to 80 ns"]);

@@ -45,20 +45,20 @@ pub struct Tradeoff<'a> {
 
 /// Every method that has both a time and an error, by model, the fastest first.
 pub fn tradeoffs<'a>(digits: &Digits<'a>, times: &[TimeLine<'a>]) -> Vec<Tradeoff<'a>> {
-    let subjects: BTreeMap<(usize, &str, &str), usize> = digits
-        .subjects
+    let answers: BTreeMap<(usize, &str, &str), usize> = digits
+        .answers
         .iter()
         .enumerate()
-        .filter(|(_, subject)| subject.quantity == QUANTITY)
-        .map(|(index, subject)| ((subject.engine, subject.method, subject.scalar), index))
+        .filter(|(_, answer)| answer.quantity == QUANTITY)
+        .map(|(index, answer)| ((answer.engine, answer.method, answer.scalar), index))
         .collect();
     let mut found: Vec<Tradeoff> = Vec::new();
-    for line in times.iter().filter(|line| line.algorithm == QUANTITY && line.case == INPUTS) {
+    for line in times.iter().filter(|line| line.algorithm == QUANTITY && line.cache == INPUTS) {
         let TimeLine { engine, method, scalar, .. } = *line;
-        let Some(&subject) = subjects.get(&(engine, method, scalar)) else { continue };
-        // A void time is off by some percent; here decades matter.
+        let Some(&answer) = answers.get(&(engine, method, scalar)) else { continue };
+        // An invalid time is off by some percent; here decades matter.
         for point in &line.points {
-            let Some(cell) = digits.cell(point.model, subject) else { continue };
+            let Some(cell) = digits.cell(point.model, answer) else { continue };
             let Some(error) = cell.median else { continue };
             let (model, ns, p10, p90, q1, q3) = (point.model, point.ns, point.p10, point.p90, cell.q1, cell.q3);
             found.push(Tradeoff { model, engine, method, scalar, ns, p10, p90, error, q1, q3, front: false });

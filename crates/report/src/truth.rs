@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use featherbench_results::{Record, Verdict};
+use featherbench_results::{Row, Verdict};
 use maud::{Markup, html};
 
 use crate::digits::{Digits, is_judged, rank, shown_quantity};
@@ -17,13 +17,13 @@ const TOLD: usize = 6;
 const NAMED: usize = 4;
 
 /// One engine's method on one quantity: the row that decides for each of its models.
-type Account<'a> = BTreeMap<usize, &'a Record>;
+type Account<'a> = BTreeMap<usize, &'a Row>;
 
 /// Who keeps every gate on a quantity.
 struct Kept<'a> {
     quantity: &'a str,
-    subjects: Vec<String>,
-    /// The fewest and the most models of any subject.
+    answers: Vec<String>,
+    /// The fewest and the most models of any answer.
     models: (usize, usize),
     largest: f64,
 }
@@ -35,7 +35,7 @@ struct Missed<'a> {
     quantity: &'a str,
     models: Vec<&'a str>,
     of: usize,
-    worst: &'a Record,
+    worst: &'a Row,
 }
 
 /// What the truth says of the engines.
@@ -49,20 +49,20 @@ pub struct Truth<'a> {
 
 impl<'a> Truth<'a> {
     /// Reads the rows.
-    pub fn of(overview: &Overview<'a>, digits: &Digits<'a>, records: &'a [Record]) -> Self {
+    pub fn of(overview: &Overview<'a>, digits: &Digits<'a>, records: &'a [Row]) -> Self {
         let mut accounts: BTreeMap<((usize, &str), usize, &str), Account> = BTreeMap::new();
         for row in records.iter().filter(|row| is_judged(row)) {
-            let (Some(model), Some(engine)) = (overview.model(&row.model), overview.engine(&row.engine)) else { continue };
+            let (Some(model), Some(engine)) = (overview.model(&row.robot), overview.engine(&row.engine)) else { continue };
             let account = accounts.entry((rank(shown_quantity(&row.quantity)), engine, &row.method)).or_default();
             let worst = account.entry(model).or_insert(row);
             if severity(row) < severity(worst) {
                 *worst = row;
             }
         }
-        let missed = |miss: fn(&Record) -> bool| -> Vec<Missed<'a>> {
+        let missed = |miss: fn(&Row) -> bool| -> Vec<Missed<'a>> {
             let mut groups: BTreeMap<_, Missed> = BTreeMap::new();
             for ((quantity, engine, method), account) in &accounts {
-                let rows: Vec<(usize, &Record)> = account.iter().filter(|(_, row)| miss(row)).map(|(&model, &row)| (model, row)).collect();
+                let rows: Vec<(usize, &Row)> = account.iter().filter(|(_, row)| miss(row)).map(|(&model, &row)| (model, row)).collect();
                 let Some(worst) = rows.iter().map(|&(_, row)| row).min_by_key(|row| severity(row)) else { continue };
                 let models: Vec<usize> = rows.iter().map(|&(model, _)| model).collect();
                 let group = groups.entry((*quantity, *engine, models.clone())).or_insert_with(|| Missed {
@@ -92,7 +92,7 @@ impl<'a> Truth<'a> {
 
 fn kept<'a>(overview: &Overview<'a>, accounts: &BTreeMap<((usize, &'a str), usize, &'a str), Account<'a>>) -> Vec<Kept<'a>> {
     let keeps = |account: &Account| {
-        let answered = |row: &&&Record| row.value.is_some() || row.verdict == Verdict::Error;
+        let answered = |row: &&&Row| row.value.is_some() || row.verdict == Verdict::Error;
         let judged: Vec<_> = account.values().filter(answered).collect();
         !judged.is_empty() && judged.iter().all(|row| row.verdict == Verdict::Pass)
     };
@@ -103,7 +103,7 @@ fn kept<'a>(overview: &Overview<'a>, accounts: &BTreeMap<((usize, &'a str), usiz
         let of_quantity: Vec<_> = accounts.iter().filter(|((other, ..), _)| *other == quantity).collect();
         let mut engines: Vec<usize> = of_quantity.iter().map(|((_, engine, _), _)| *engine).collect();
         engines.dedup();
-        let mut subjects = Vec::new();
+        let mut answers = Vec::new();
         for engine in engines {
             let methods: Vec<_> = of_quantity.iter().filter(|((_, other, _), _)| *other == engine).collect();
             let good: Vec<String> =
@@ -112,8 +112,8 @@ fn kept<'a>(overview: &Overview<'a>, accounts: &BTreeMap<((usize, &'a str), usiz
             // An engine all of whose methods keep their gates needs no methods.
             match good.len() {
                 0 => {}
-                all if all == methods.len() => subjects.push(name.to_owned()),
-                _ => subjects.push(format!("{name} {}", good.join("/"))),
+                all if all == methods.len() => answers.push(name.to_owned()),
+                _ => answers.push(format!("{name} {}", good.join("/"))),
             }
         }
         let rows = of_quantity.iter().filter(|(_, account)| keeps(account)).flat_map(|(_, account)| account.values());
@@ -121,24 +121,24 @@ fn kept<'a>(overview: &Overview<'a>, accounts: &BTreeMap<((usize, &'a str), usiz
         let largest = rows.filter(|row| row.metric != "error_over_floor").filter_map(|row| row.value).fold(0.0, larger);
         let models = || of_quantity.iter().filter(|(_, account)| keeps(account)).map(|(_, account)| account.len());
         let models = models().min().zip(models().max());
-        kept.extend(models.map(|models| Kept { quantity: quantity.1, subjects, models, largest }));
+        kept.extend(models.map(|models| Kept { quantity: quantity.1, answers, models, largest }));
     }
     kept
 }
 
 fn medians(overview: &Overview, digits: &Digits) -> Vec<(String, f64)> {
     let mut largest: BTreeMap<usize, f64> = BTreeMap::new();
-    for cell in digits.cells.iter().filter(|cell| digits.subjects[cell.subject].quantity == "fd") {
-        let entry = largest.entry(cell.subject).or_default();
+    for cell in digits.cells.iter().filter(|cell| digits.answers[cell.answer].quantity == "fd") {
+        let entry = largest.entry(cell.answer).or_default();
         *entry = larger(*entry, cell.median.unwrap_or_default());
     }
-    let mut medians: Vec<(String, f64)> = largest.into_iter().map(|(subject, error)| (digits.name(overview, subject), error)).collect();
+    let mut medians: Vec<(String, f64)> = largest.into_iter().map(|(answer, error)| (digits.name(overview, answer), error)).collect();
     medians.sort_by(|a, b| a.1.total_cmp(&b.1));
     medians
 }
 
 impl Missed<'_> {
-    fn subject(&self) -> String {
+    fn who(&self) -> String {
         let methods: Vec<String> = self.methods.iter().filter(|method| !method.is_empty()).map(|&method| method.to_owned()).collect();
         format!("{} {}", self.engine, listed(&methods)).trim_end().to_owned()
     }
@@ -159,14 +159,14 @@ fn missed(overview: &Overview, found: &[Missed], class: &str, verb: [&str; 2]) -
     html! {
         @for missed in found.iter().take(TOLD) {
             li class=(class) {
-                b { (missed.subject()) } " " (missed.sentence(verb)) ". Worst: "
+                b { (missed.who()) } " " (missed.sentence(verb)) ". Worst: "
                 @let row = missed.worst;
                 (opener(
                     &overview.chunk_of(row),
                     &[("study", &row.study), ("engine", &row.engine), ("method", &row.method), ("quantity", &row.quantity)],
                     &match (row.value, row.bound) {
-                        (Some(value), Some(bound)) => format!("{}, {} where {} is allowed", row.model, short(value), short(bound)),
-                        _ => format!("{}, {}", row.model, row.reason),
+                        (Some(value), Some(bound)) => format!("{}, {} where {} is allowed", row.robot, short(value), short(bound)),
+                        _ => format!("{}, {}", row.robot, row.reason),
                     },
                 ))
                 @if let Some(margin) = row.margin { " " span.number { "(" (decades(margin)) " decades)" } }
@@ -186,7 +186,7 @@ pub fn warning(overview: &Overview, digits: &Digits) -> Markup {
                 b { span aria-hidden="true" { "⚠ " } "The reference is the suspect: " }
                 @for (index, row) in digits.walls.iter().take(NAMED).enumerate() {
                     @if index > 0 { "; " }
-                    "at " (opener(&overview.chunk_of(row), &[("study", &row.study), ("metric", &row.metric)], &row.model))
+                    "at " (opener(&overview.chunk_of(row), &[("study", &row.study), ("metric", &row.metric)], &row.robot))
                     " " (count(row.value.unwrap_or_default() as usize, "engine")) " stop at the same error, well above the floor"
                 }
                 @if digits.walls.len() > NAMED { "; and so at " (count(digits.walls.len() - NAMED, "more model")) }
@@ -199,13 +199,13 @@ pub fn warning(overview: &Overview, digits: &Digits) -> Markup {
 /// The part of the page's head that says who is right.
 pub fn markup(overview: &Overview, digits: &Digits, truth: &Truth) -> Markup {
     html! {
-        @if !digits.subjects.is_empty() {
+        @if !digits.answers.is_empty() {
             h3 { "Against the truth" }
             (warning(overview, digits))
             ul.findings {
                 @for kept in &truth.kept {
                     li.pass {
-                        b { (listed(&kept.subjects)) } @if kept.subjects.len() == 1 { " keeps" } @else { " keep" }
+                        b { (listed(&kept.answers)) } @if kept.answers.len() == 1 { " keeps" } @else { " keep" }
                         " every gate on " (labels::quantity(kept.quantity)) " " span.number { "(" (short(kept.largest)) ")" }
                         " over " @if kept.models.0 < kept.models.1 { (kept.models.0) " to " } (count(kept.models.1, "model")) "."
                     }

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use featherbench_results::{Record, Verdict};
+use featherbench_results::{Row, Verdict};
 use maud::{Markup, html};
 
 use crate::chunks::{UNPASSED, is_unpassed};
@@ -22,11 +22,11 @@ struct Group<'a> {
     rows: usize,
     quantities: Vec<String>,
     models: Vec<String>,
-    worst: &'a Record,
+    worst: &'a Row,
 }
 
 /// Writes the section.
-pub fn section(records: &[Record]) -> Markup {
+pub fn section(records: &[Row]) -> Markup {
     let groups = groups(records);
     let total: usize = groups.iter().map(|group| group.rows).sum();
     html! {
@@ -87,7 +87,7 @@ fn some(names: &[String]) -> Markup {
 
 /// Failures of one engine, quantity and metric are one group: their reasons differ in the numbers alone, and the worst speaks for them.
 /// Of deviations, the cause before the parenthesis tells groups apart; of rows without a value, the reason alone.
-fn groups(records: &[Record]) -> Vec<Group<'_>> {
+fn groups(records: &[Row]) -> Vec<Group<'_>> {
     let mut groups: BTreeMap<_, Group> = BTreeMap::new();
     for row in records.iter().filter(|row| is_unpassed(row)) {
         let reason = match row.verdict {
@@ -107,8 +107,8 @@ fn groups(records: &[Record]) -> Vec<Group<'_>> {
         if !group.quantities.contains(&quantity) {
             group.quantities.push(quantity);
         }
-        if !row.model.is_empty() && !group.models.contains(&row.model) {
-            group.models.push(row.model.clone());
+        if !row.robot.is_empty() && !group.models.contains(&row.robot) {
+            group.models.push(row.robot.clone());
         }
         if severity(row) < severity(group.worst) {
             group.worst = row;

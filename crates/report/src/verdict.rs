@@ -1,6 +1,6 @@
 //! Section: is the run good, and if not, where.
 
-use featherbench_results::{Record, RunInfo, Verdict};
+use featherbench_results::{Row, RunInfo, Verdict};
 use maud::{Markup, html};
 
 use crate::findings::{Findings, Status};
@@ -14,7 +14,7 @@ use crate::{chunks, labels};
 const TOLD: usize = 8;
 
 /// Writes the section; `truth` is what the truth says of the engines.
-pub fn section(run: &RunInfo, overview: &Overview, records: &[Record], findings: &Findings, truth: Markup) -> Markup {
+pub fn section(run: &RunInfo, overview: &Overview, records: &[Row], findings: &Findings, truth: Markup) -> Markup {
     let (class, word) = match findings.status {
         Status::Passed => ("good", "Passed"),
         Status::Failed => ("bad", "Failed"),
@@ -68,7 +68,7 @@ fn agreement(findings: &Findings) -> Markup {
             ul.findings {
                 @for found in &findings.agreements {
                     li.pass {
-                        b { (found.subject()) } " "
+                        b { (found.who()) } " "
                         @for (index, (quantity, largest)) in found.quantities.iter().enumerate() {
                             @if index > 0 { ", " }
                             span.nowrap { (labels::quantity(quantity)) " " span.number { "(" (short(*largest)) ")" } }
@@ -79,7 +79,7 @@ fn agreement(findings: &Findings) -> Markup {
             }
             p.note { "In parentheses the largest error, in each quantity's own measure." }
         }
-        @if findings.references.contains("native") {
+        @if findings.references.contains("featherbench") {
             p.note {
                 "The reference here is our own f64 code, and not the truth: agreement shows that independent programs compute the same, "
                 "disagreement does not show who is wrong. See " a href="#pairs" { "every engine against every other" } "."
@@ -117,8 +117,8 @@ fn closest(overview: &Overview, findings: &Findings) -> Markup {
         @if let Some(row) = findings.closest {
             p.note {
                 "Closest call among what passed: "
-                (opener(&overview.chunk_of(row), &[("engine", &row.engine), ("quantity", &row.quantity), ("case", &row.case)],
-                    &format!("{}, {} on {}", row.engine, labels::error(&row.quantity, &row.metric), row.model)))
+                (opener(&overview.chunk_of(row), &[("engine", &row.engine), ("quantity", &row.quantity), ("states", &row.states), ("body", &row.body)],
+                    &format!("{}, {} on {}", row.engine, labels::error(&row.quantity, &row.metric), row.robot)))
                 @if let Some(margin) = row.margin { ", " span.number { (decades(margin)) } " decades inside its gate." }
             }
         }
@@ -141,7 +141,7 @@ fn tally_heads() -> Markup {
     }
 }
 
-fn by_engine(overview: &Overview, records: &[Record]) -> Markup {
+fn by_engine(overview: &Overview, records: &[Row]) -> Markup {
     html! {
         h3 { "By engine" }
         div.scroll { table.compact {
@@ -162,7 +162,7 @@ fn by_engine(overview: &Overview, records: &[Record]) -> Markup {
     }
 }
 
-fn by_study(overview: &Overview, records: &[Record]) -> Markup {
+fn by_study(overview: &Overview, records: &[Row]) -> Markup {
     html! {
         h3 { "By study" }
         div.scroll { table.compact {

@@ -1,29 +1,29 @@
 //! The joint matrix: what a run's rows of `joints-*` robots become, and that it appears with them alone.
 
-use featherbench_results::{Record, Relation, RunInfo, Verdict};
+use featherbench_results::{Relation, Row, RunInfo, Verdict};
 use serde_json::Value;
 use written::Written;
 
 mod written;
 
-fn row(engine: &str, model: &str, joint: &str, quantity: &str, method: &str) -> Record {
-    Record {
+fn row(engine: &str, model: &str, joint: &str, quantity: &str, method: &str) -> Row {
+    Row {
         study: "agreement".into(),
-        problem: "joints".into(),
+        family: "joints".into(),
         engine: engine.into(),
-        model: model.into(),
+        robot: model.into(),
         quantity: quantity.into(),
         method: method.into(),
         metric: "scaled".into(),
-        case: "random".into(),
-        reference: "native".into(),
+        states: "random".into(),
+        reference: "featherbench".into(),
         params: format!(r#"{{"base":"free","joints":["free","{joint}","revolute"]}}"#),
-        ..Record::default()
+        ..Row::default()
     }
 }
 
-fn rows() -> Vec<Record> {
-    let judged = |row: Record, value: f64| row.gated(value, Relation::Le, 1e-14);
+fn rows() -> Vec<Row> {
+    let judged = |row: Row, value: f64| row.gated(value, Relation::Le, 1e-14);
     vec![
         judged(row("pinocchio", "joints-planar-free", "planar", "id", "rnea"), 1e-16),
         judged(row("pinocchio", "joints-planar-free-single", "planar", "id", "rnea"), 1e-15),
@@ -38,10 +38,10 @@ fn rows() -> Vec<Record> {
         judged(row("mujoco", "joints-planar-free", "planar", "id", "inverse"), 1e-11),
         row("mujoco", "joints-revolute-free", "revolute", "id", "inverse").without_value(Verdict::Error, "signal 11"),
         // None of these shows one joint of another engine's answer.
-        judged(row("native", "joints-planar-free", "planar", "id", "rnea"), 1e-16),
+        judged(row("featherbench", "joints-planar-free", "planar", "id", "rnea"), 1e-16),
         judged(row("mujoco", "joints-common-free", "planar", "id", "inverse"), 1e-16),
         judged(row("mujoco", "humanoid", "revolute", "id", "inverse"), 1e-16),
-        judged(Record { metric: "pairwise".into(), ..row("mujoco", "joints-planar-free", "planar", "id", "inverse") }, 1e-9),
+        judged(Row { metric: "pairwise".into(), ..row("mujoco", "joints-planar-free", "planar", "id", "inverse") }, 1e-9),
         row("mujoco", "joints-planar-free", "planar", "id", "inverse").informed(1e-9),
     ]
 }
@@ -71,8 +71,8 @@ fn cells_tell_agreement_deviation_and_what_is_not_offered() {
         .collect();
     assert_eq!(kinds, [("revolute", false), ("helical", false), ("helical", true), ("free", false), ("planar", false), ("planar", true)]);
 
-    // Engines in alphabetical order: mujoco, native, pinocchio.
-    let (mujoco, native, pinocchio) = (0, 1, 2);
+    // Engines in alphabetical order: mujoco, featherbench, pinocchio.
+    let (mujoco, featherbench, pinocchio) = (0, 1, 2);
     let expected = |state: &str, model: &str, method: &str, robots, lacking| {
         Some((state.to_owned(), model.to_owned(), method.to_owned(), robots, lacking))
     };
@@ -83,7 +83,7 @@ fn cells_tell_agreement_deviation_and_what_is_not_offered() {
     assert_eq!(cell(matrix, mujoco, "free", false), expected("agrees", "joints-free-fixed-single", "inverse", 1, 1));
     assert_eq!(cell(matrix, mujoco, "planar", false), expected("fails", "joints-planar-free", "inverse", 1, 0));
     assert_eq!(cell(matrix, mujoco, "revolute", false), expected("error", "joints-revolute-free", "inverse", 1, 0));
-    assert_eq!(cell(matrix, native, "planar", false), None);
+    assert_eq!(cell(matrix, featherbench, "planar", false), None);
     assert_eq!(matrix["cells"].as_array().unwrap().len(), 8);
 
     // A click opens the rows of the robot that decided: there is a chunk for each.
@@ -106,7 +106,7 @@ fn cells_tell_agreement_deviation_and_what_is_not_offered() {
 fn a_row_with_an_answer_and_a_refusal_is_offered_in_part() {
     let turning = |quantity: &str| row("rapier", "joints-revolute-free-armature", "revolute", quantity, "forces");
     let ball = |quantity: &str| row("rapier", "joints-spherical-free-armature", "spherical", quantity, "forces");
-    let refused = |row: Record| row.without_value(Verdict::Skip, "known (no armature)");
+    let refused = |row: Row| row.without_value(Verdict::Skip, "known (no armature)");
     let rows = [
         turning("id").gated(1e-16, Relation::Le, 1e-14),
         refused(turning("kinetic_energy")),
@@ -123,7 +123,7 @@ fn a_row_with_an_answer_and_a_refusal_is_offered_in_part() {
 fn it_appears_with_its_rows_alone() {
     let with = Written::of(&RunInfo::default(), &rows());
     assert!(with.index.contains("href=\"#joints\""));
-    let without: Vec<Record> = rows().into_iter().filter(|row| !row.model.starts_with("joints-") || row.model.contains("common")).collect();
+    let without: Vec<Row> = rows().into_iter().filter(|row| !row.robot.starts_with("joints-") || row.robot.contains("common")).collect();
     let written = Written::of(&RunInfo::default(), &without);
     assert!(!written.index.contains("<section id=\"joints\"") && !written.index.contains("href=\"#joints\""));
 }
@@ -131,7 +131,7 @@ fn it_appears_with_its_rows_alone() {
 #[test]
 fn a_row_with_damaged_parameters_is_left_out() {
     for params in ["", "{", "[]", r#"{"joints":"planar"}"#] {
-        let damaged: Vec<Record> = rows().into_iter().map(|row| Record { params: params.into(), ..row }).collect();
+        let damaged: Vec<Row> = rows().into_iter().map(|row| Row { params: params.into(), ..row }).collect();
         assert!(!Written::of(&RunInfo::default(), &damaged).index.contains("<section id=\"joints\""), "{params}");
     }
 }

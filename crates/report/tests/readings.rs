@@ -1,25 +1,25 @@
 //! The section on how engines read robots' files: what the rows say stands there, and runs without such rows have no section.
 
-use featherbench_results::{Record, Relation, RunInfo, Verdict};
+use featherbench_results::{Relation, Row, RunInfo, Verdict};
 use written::Written;
 
 mod support;
 mod written;
 
 /// Rows of two robots: one is read alike, differs and is refused; the other is unexplained.
-fn rows(run: &RunInfo) -> Vec<Record> {
-    let row = |model: &str, engine: &str, quantity: &str, metric: &str, params: &str| Record {
+fn rows(run: &RunInfo) -> Vec<Row> {
+    let row = |model: &str, engine: &str, quantity: &str, metric: &str, params: &str| Row {
         run: run.run.clone(),
         cell: format!("{model}{engine}{quantity}{metric}"),
         study: "reading".into(),
-        problem: "robot".into(),
-        model: model.into(),
+        family: "robot".into(),
+        robot: model.into(),
         engine: engine.into(),
         quantity: quantity.into(),
         metric: metric.into(),
         params: params.into(),
-        reference: "native".into(),
-        ..Record::default()
+        reference: "featherbench".into(),
+        ..Row::default()
     };
     let edited = r#"{"cause":"balanced","id":0.1,"mass_matrix":0.2,"note":null,"ours":"1 kg","theirs":"2 kg","weight":"dynamics"}"#;
     let tree = r#"{"unexplained":[{"bodies":["arm"],"error":0.5,"quantity":"mass_matrix"}]}"#;

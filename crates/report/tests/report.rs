@@ -4,13 +4,13 @@ use std::collections::BTreeMap;
 use std::fs;
 use std::path::Path;
 
-use featherbench_results::{Record, Relation, RunInfo, Verdict};
+use featherbench_results::{Relation, Row, RunInfo, Verdict};
 use written::Written;
 
 mod support;
 mod written;
 
-fn demo() -> (RunInfo, Vec<Record>, Written) {
+fn demo() -> (RunInfo, Vec<Row>, Written) {
     let run = support::run_info();
     let records = support::records(&run);
     let written = Written::of(&run, &records);
@@ -43,7 +43,7 @@ fn the_page_has_its_sections_and_stays_small() {
     }
     assert!(written.index.len() < 1_000_000, "{} bytes", written.index.len());
     assert!(written.index.starts_with("<!DOCTYPE html><html lang=\"en\">"));
-    for link in ["records.csv", "run.json", "schema.json"] {
+    for link in ["rows.csv", "run.json", "schema.json"] {
         assert!(written.index.contains(&format!("href=\"{link}\"")), "{link} is not linked");
     }
 }
@@ -66,7 +66,7 @@ fn counts_on_the_page_are_those_of_the_records() {
         assert!(verdict.contains(&condition.what));
     }
     let cells = records.iter().filter(|row| row.study == "agreement" && row.metric != "pairwise");
-    let cells: std::collections::BTreeSet<_> = cells.map(|row| (&row.model, &row.engine, &row.quantity)).collect();
+    let cells: std::collections::BTreeSet<_> = cells.map(|row| (&row.robot, &row.engine, &row.quantity)).collect();
     assert_eq!(written.data("overview")["cells"].as_array().unwrap().len(), cells.len());
     assert_eq!(
         written.section("agreement").matches("<td").count()
@@ -84,7 +84,7 @@ fn every_row_lies_in_one_chunk_and_chunks_parse() {
         let data = written.data(&name);
         let columns: Vec<&str> = data["columns"].as_array().unwrap().iter().map(|column| column.as_str().unwrap()).collect();
         assert_eq!(columns, featherbench_results::COLUMNS.map(|column| column.name));
-        let rows: Vec<Record> = data["rows"]
+        let rows: Vec<Row> = data["rows"]
             .as_array()
             .unwrap()
             .iter()
@@ -97,11 +97,11 @@ fn every_row_lies_in_one_chunk_and_chunks_parse() {
         by_chunk.insert(name, rows);
     }
     let unpassed = by_chunk.remove("unpassed").unwrap();
-    let expected: Vec<&Record> = records.iter().filter(|row| !matches!(row.verdict, Verdict::Pass | Verdict::Info)).collect();
+    let expected: Vec<&Row> = records.iter().filter(|row| !matches!(row.verdict, Verdict::Pass | Verdict::Info)).collect();
     assert_eq!(unpassed.iter().collect::<Vec<_>>(), expected);
     assert_eq!(by_chunk.values().map(Vec::len).sum::<usize>(), records.len());
     for (name, rows) in by_chunk.iter().filter(|(name, _)| name.starts_with("model-")) {
-        assert!(rows.iter().all(|row| row.model == rows[0].model), "{name} mixes models");
+        assert!(rows.iter().all(|row| row.robot == rows[0].robot), "{name} mixes models");
     }
     let figures = written.data("figures");
     assert!(figures["errors"].as_array().unwrap().iter().any(|plot| plot["quantity"] == "fd" && plot["metric"] == "backward"));
@@ -110,38 +110,39 @@ fn every_row_lies_in_one_chunk_and_chunks_parse() {
 
 #[test]
 fn estimates_are_marked() {
-    let row = |engine: &str, metric: &str, value: f64, reason: &str| {
-        let row = Record {
+    let row = |engine: &str, metric: &str, value: f64, estimated: bool, valid: bool| {
+        let row = Row {
             study: "timing".into(),
             engine: engine.into(),
-            model: "arm".into(),
+            robot: "arm".into(),
             method: "rnea".into(),
             quantity: "id".into(),
-            case: "stream".into(),
+            cache: "stream".into(),
             metric: metric.into(),
             nv: Some(7),
-            ..Record::default()
-        };
-        Record { reason: reason.into(), ..row.informed(value) }
+            estimated,
+            ..Row::default()
+        }
+        .informed(value);
+        if valid { row } else { row.invalid("noise") }
     };
-    let estimate = "estimate: with the overhead subtracted";
     let rows = [
-        row("drake", "ratio", 3.25, estimate),
-        row("drake", "ns_per_call", 6500.0, estimate),
-        row("dart", "ratio", 4.25, &format!("void: noise; {estimate}")),
-        row("pinocchio", "ratio", 1.25, ""),
-        row("pinocchio", "ns_per_call", 2500.0, "void: noise"),
+        row("drake", "ratio", 3.25, true, true),
+        row("drake", "ns_per_call", 6500.0, true, true),
+        row("dart", "ratio", 4.25, true, false),
+        row("pinocchio", "ratio", 1.25, false, true),
+        row("pinocchio", "ns_per_call", 2500.0, false, false),
     ];
     let written = Written::of(&RunInfo::default(), &rows);
     let section = written.section("speed");
-    // In the table of robots and in that of means; a void one is not averaged.
+    // In the table of robots and in that of means; an invalid one is not averaged.
     for (ratio, times) in [("≈\u{202f}3.250", 6), ("≈\u{202f}4.250", 3), ("≈\u{202f}1.250", 0), ("1.250", 6)] {
         assert_eq!(section.matches(ratio).count(), times, "{ratio}: {section}");
     }
     let note = section.split("id=\"speed-estimates\"").nth(1).unwrap();
     assert!(note[..200].contains("dart and drake are called through Python") && !note[..200].contains("pinocchio"), "{note}");
     let flags = |values: &serde_json::Value| -> Vec<bool> {
-        values.as_array().unwrap().iter().map(|value| value["estimate"].as_bool().unwrap()).collect()
+        values.as_array().unwrap().iter().map(|value| value["estimated"].as_bool().unwrap()).collect()
     };
     let figures = written.data("figures");
     assert_eq!(flags(&figures["speed"]["ratios"]), [true, true, false]);
@@ -151,90 +152,91 @@ fn estimates_are_marked() {
 
 #[test]
 fn ratios_have_intervals_a_mean_and_a_least() {
-    let timing = |engine: &str, model: &str, metric: &str, value: f64, reason: &str| {
-        let row = Record {
+    let timing = |engine: &str, model: &str, metric: &str, value: f64, spread: f64| {
+        let row = Row {
             study: "timing".into(),
             engine: engine.into(),
-            model: model.into(),
+            robot: model.into(),
             method: "rnea".into(),
             quantity: "id".into(),
-            case: "stream".into(),
+            cache: "stream".into(),
             metric: metric.into(),
-            reference: "native rnea".into(),
+            reference: "featherbench rnea".into(),
             bodies: Some(7),
             nv: Some(7),
-            ..Record::default()
+            ..Row::default()
         };
-        Record { reason: reason.into(), ..row.informed(value) }
+        row.measured(value, (1.0 - spread) * value, (1.0 + spread) * value)
     };
-    let machine =
-        |metric: &str, value: f64| Record { quantity: "machine".into(), model: String::new(), ..timing("native", "", metric, value, "") };
-    let mut rows = vec![machine("fma_per_ns", 56.8), machine("fma_per_ns_per_lane", 7.1), timing("native", "a", "ns_per_call", 280.0, "")];
-    for (model, ratio, reason) in [("a", 2.0, ""), ("b", 8.0, ""), ("c", 0.5, "void: noise")] {
-        for (metric, value) in [("ratio", ratio), ("ratio_low", 0.9 * ratio), ("ratio_high", 1.1 * ratio)] {
-            rows.push(timing("pinocchio", model, metric, value, reason));
-        }
+    let machine = |metric: &str, value: f64| Row {
+        quantity: "machine".into(),
+        robot: String::new(),
+        ..timing("featherbench", "", metric, value, 0.0)
+    };
+    let mut rows =
+        vec![machine("fma_per_ns", 56.8), machine("fma_per_ns_per_lane", 7.1), timing("featherbench", "a", "ns_per_call", 280.0, 0.0)];
+    for (model, ratio) in [("a", 2.0), ("b", 8.0)] {
+        rows.push(timing("pinocchio", model, "ratio", ratio, 0.1));
     }
-    for (metric, value) in [("control", 1.001), ("control_low", 0.995), ("control_high", 1.004)] {
-        rows.push(timing("native", "a", metric, value, ""));
-    }
+    rows.push(timing("pinocchio", "c", "ratio", 0.5, 0.1).invalid("noise"));
+    rows.push(timing("featherbench", "a", "control", 1.001, 0.003));
     let written = Written::of(&RunInfo::default(), &rows);
     let section = written.section("speed");
-    // √(2·8) over the two that count, the least on a; the void one is listed and not averaged.
+    // √(2·8) over the two that count, the least on a; the invalid one is listed and not averaged.
     assert!(section.contains("4.000") && section.contains("<td class=\"number\">2.000</td><td>a</td>"), "{section}");
     assert!(section.contains("1.800") && section.contains("2.200") && section.contains("0.500"));
-    assert!(section.contains("1 of 1 such A/A control</b>") && section.contains("noise") && section.contains("(3 rows)"));
+    assert!(section.contains("1 of 1 such A/A control</b>") && section.contains("noise") && section.contains("(1 row)"));
     // 142 operations at 7.1 per nanosecond are 20 ns; 280 ns for seven joints are twice as much.
     assert!(section.contains("<td class=\"number\">40</td><td class=\"number\">20</td><td class=\"number\">2.000</td>"), "{section}");
     assert!(section.contains("timing.jsonl"));
     let speed = &written.data("figures")["speed"];
     assert_eq!(speed["ratios"].as_array().unwrap().len(), 3);
-    assert_eq!((&speed["ratios"][2]["void"], &speed["ratios"][0]["low"]), (&true.into(), &1.8.into()));
+    assert_eq!((&speed["ratios"][2]["valid"], &speed["ratios"][0]["low"]), (&false.into(), &1.8.into()));
 
     assert!(!section.contains('≈') && !section.contains("id=\"speed-estimates\""), "nothing is estimated");
     let none = Written::of(&RunInfo::default(), &rows[2..3]);
     assert!(!none.index.contains("<section id=\"speed\"") && !none.index.contains("href=\"#speed\""));
 }
 
-/// Nobody is faster than the machine: a time below its limit, or a peak that its own row calls void, and no time stands beside a limit.
+/// No kernel is faster than the machine: a time below its limit, or a peak that does not count, and no time stands beside a limit.
 #[test]
-fn a_limit_that_is_none_is_void() {
+fn a_limit_that_is_none_is_not_shown() {
     let row = |quantity: &str, metric: &str, value: f64| {
-        let row = Record {
+        let row = Row {
             study: "timing".into(),
-            engine: "native".into(),
+            engine: "featherbench".into(),
             quantity: quantity.into(),
             metric: metric.into(),
-            ..Record::default()
+            ..Row::default()
         };
         row.informed(value)
     };
     let time = |model: &str, ns: f64| {
         let row = row("id", "ns_per_call", ns);
-        Record { model: model.into(), method: "rnea".into(), case: "stream".into(), bodies: Some(7), nv: Some(7), ..row }
+        Row { robot: model.into(), method: "rnea".into(), cache: "stream".into(), bodies: Some(7), nv: Some(7), ..row }
     };
     let section = |peak: &str, lane: f64, ns: [f64; 2]| {
-        let machine = |metric, value| Record { reason: peak.into(), ..row("machine", metric, value) };
+        let machine = |metric, value| Row { valid: peak.is_empty(), reason: peak.into(), ..row("machine", metric, value) };
         let rows = [machine("fma_per_ns", 8.0 * lane), machine("fma_per_ns_per_lane", lane), time("a", ns[0]), time("b", ns[1])];
         Written::of(&RunInfo::default(), &rows).section("speed").to_owned()
     };
-    let (table, void) = ("times the limit", "id=\"speed-limits-void\"");
+    let (table, none) = ("times the limit", "id=\"speed-no-limits\"");
     // 142 operations for each of seven joints at 7.1 per nanosecond: 140 ns.
     let good = section("", 7.1, [280.0, 140.0]);
-    assert!(good.contains(table) && !good.contains(void), "{good}");
+    assert!(good.contains(table) && !good.contains(none), "{good}");
     let fast = section("", 7.1, [280.0, 126.0]);
     assert!(
-        !fast.contains(table) && fast.contains("1 of 2 times are below their limits (native rnea on b takes 0.90 times its limit)"),
+        !fast.contains(table) && fast.contains("1 of 2 times are below their limits (featherbench rnea on b takes 0.90 times its limit)"),
         "{fast}"
     );
     // What was measured when the compiler took the vectors apart.
     let slow = section("", 0.325, [280.0, 140.0]);
     assert!(
-        !slow.contains(table) && slow.contains("2 of 2 times are below their limits (native rnea on b takes 0.05 times its limit)"),
+        !slow.contains(table) && slow.contains("2 of 2 times are below their limits (featherbench rnea on b takes 0.05 times its limit)"),
         "{slow}"
     );
-    let told = section("void: vectors make too little", 7.1, [280.0, 140.0]);
-    assert!(!told.contains(table) && told.contains("Void: vectors make too little."), "{told}");
+    let told = section("vectors make too little", 7.1, [280.0, 140.0]);
+    assert!(!told.contains(table) && told.contains("The peak does not count: vectors make too little."), "{told}");
 }
 
 #[test]
@@ -265,19 +267,19 @@ fn every_text_of_a_run_is_escaped() {
     run.engines[1].reason = evil.into();
     run.engines[1].build.insert(evil.into(), evil.into());
     run.models[0].licence = evil.into();
-    let row = || Record {
-        model: "m".into(),
+    let row = || Row {
+        robot: "m".into(),
         study: evil.into(),
         engine: evil.into(),
         quantity: evil.into(),
         metric: evil.into(),
-        problem: evil.into(),
-        ..Record::default()
+        family: evil.into(),
+        ..Row::default()
     };
     let rows = [
         row().without_value(Verdict::Error, evil),
-        Record { study: "agreement".into(), reference: evil.into(), ..row() }.gated(2.0, Relation::Le, 1.0),
-        Record { study: "timing".into(), metric: "ns_per_call".into(), case: evil.into(), nv: Some(3), ..row() }.informed(3.0),
+        Row { study: "agreement".into(), reference: evil.into(), ..row() }.gated(2.0, Relation::Le, 1.0),
+        Row { study: "timing".into(), metric: "ns_per_call".into(), states: evil.into(), nv: Some(3), ..row() }.informed(3.0),
     ];
     let written = Written::of(&run, &rows);
     assert!(!written.index.contains("<img"));
@@ -304,7 +306,7 @@ fn nothing_reaches_the_network() {
 #[test]
 fn a_report_is_a_pure_function() {
     let run = support::run_info();
-    let records: Vec<Record> = support::records(&run).into_iter().step_by(7).collect();
+    let records: Vec<Row> = support::records(&run).into_iter().step_by(7).collect();
     let (one, other) = (Written::of(&run, &records), Written::of(&run, &records));
     let names = one.chunk_names().into_iter().map(|name| format!("data/{name}.js")).chain(["index.html".into()]);
     for name in names {
@@ -330,14 +332,14 @@ fn an_empty_run_says_so() {
 #[test]
 fn sentences_tell_who_agrees_and_who_does_not() {
     let row = |engine: &str, model: &str, quantity: &str, value| {
-        Record {
+        Row {
             study: "agreement".into(),
             engine: engine.into(),
-            model: model.into(),
+            robot: model.into(),
             quantity: quantity.into(),
             metric: "scaled".into(),
-            reference: "native".into(),
-            ..Record::default()
+            reference: "featherbench".into(),
+            ..Row::default()
         }
         .gated(value, Relation::Le, 1e-14)
     };
@@ -353,9 +355,11 @@ fn sentences_tell_who_agrees_and_who_does_not() {
     let written = Written::of(&engines, &rows);
     let verdict = written.section("verdict");
     assert!(verdict.contains("1 row of 6 outside their gates"), "{verdict}");
-    assert!(verdict.contains("mujoco and drake agree with native on") && verdict.contains("(2e-15)") && verdict.contains("over 2 models"));
-    assert!(verdict.contains("drake agrees with native on") && verdict.contains("over 1 model."));
-    assert!(verdict.contains("inverse dynamics: fails 1 of 1 row against native") && verdict.contains("(−3.0 decades)"));
+    assert!(
+        verdict.contains("mujoco and drake agree with featherbench on") && verdict.contains("(2e-15)") && verdict.contains("over 2 models")
+    );
+    assert!(verdict.contains("drake agrees with featherbench on") && verdict.contains("over 1 model."));
+    assert!(verdict.contains("inverse dynamics: fails 1 of 1 row against featherbench") && verdict.contains("(−3.0 decades)"));
     assert!(written.section("pairs").contains("1e-11"));
     assert!(written.section("unpassed").contains("1e-11 is not at most 1e-14"));
 

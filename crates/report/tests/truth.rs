@@ -1,15 +1,15 @@
 //! The sections of the studies that know the truth: they appear with their rows, say what those say, and leave the other sections alone.
 
-use featherbench_results::{Record, Relation, RunInfo, Verdict};
+use featherbench_results::{Relation, Row, RunInfo, Verdict};
 use serde_json::Value;
 use written::Written;
 
 mod support;
 mod written;
 
-fn of_studies(studies: &[&str]) -> (Vec<Record>, Written) {
+fn of_studies(studies: &[&str]) -> (Vec<Row>, Written) {
     let run = support::run_info();
-    let records: Vec<Record> = support::records(&run).into_iter().filter(|row| studies.contains(&row.study.as_str())).collect();
+    let records: Vec<Row> = support::records(&run).into_iter().filter(|row| studies.contains(&row.study.as_str())).collect();
     let written = Written::of(&run, &records);
     (records, written)
 }
@@ -20,19 +20,19 @@ fn has(written: &Written, section: &str) -> bool {
     section_is_there
 }
 
-/// The curve of a subject along an axis of a family.
-fn curve<'a>(figures: &'a Value, overview: &Value, axis: &str, family: &str, subject: [&str; 3]) -> &'a Value {
+/// The curve of a answer along an axis of a family.
+fn curve<'a>(figures: &'a Value, overview: &Value, axis: &str, family: &str, answer: [&str; 3]) -> &'a Value {
     let digits = &figures["digits"];
-    let is_subject = |about: &Value| {
+    let is_answer = |about: &Value| {
         [&overview["engines"][about["engine"].as_u64().unwrap() as usize], &about["method"], &about["quantity"]]
             .iter()
-            .zip(subject)
+            .zip(answer)
             .all(|(found, wanted)| *found == wanted)
     };
-    let index = digits["subjects"].as_array().unwrap().iter().position(is_subject).unwrap_or_else(|| panic!("no {subject:?}"));
+    let index = digits["answers"].as_array().unwrap().iter().position(is_answer).unwrap_or_else(|| panic!("no {answer:?}"));
     let curves = digits["curves"].as_array().unwrap();
-    let found = curves.iter().find(|curve| curve["axis"] == axis && curve["family"] == family && curve["subject"] == index);
-    found.unwrap_or_else(|| panic!("no curve of {subject:?} against {axis} in {family}"))
+    let found = curves.iter().find(|curve| curve["axis"] == axis && curve["family"] == family && curve["answer"] == index);
+    found.unwrap_or_else(|| panic!("no curve of {answer:?} against {axis} in {family}"))
 }
 
 #[test]
@@ -66,20 +66,20 @@ fn the_other_sections_stay_as_they_were() {
 fn growth_is_what_the_methods_were_made_with() {
     let (_, written) = of_studies(&["digits"]);
     let (figures, overview) = (written.data("figures"), written.data("overview"));
-    let slope = |axis, family, subject| curve(&figures, &overview, axis, family, subject)["fit"]["slope"].as_f64().unwrap();
+    let slope = |axis, family, answer| curve(&figures, &overview, axis, family, answer)["fit"]["slope"].as_f64().unwrap();
     let close = |found: f64, expected: f64| assert!((found - expected).abs() < 0.05, "{found}, not {expected}");
     close(slope("offset", "rand3d-20", ["pinocchio", "aba_world", "fd"]), 2.0);
-    close(slope("offset", "rand3d-20", ["native", "aba", "fd"]), 0.0);
+    close(slope("offset", "rand3d-20", ["featherbench", "aba", "fd"]), 0.0);
     close(slope("offset", "rand3d-20", ["mujoco", "forward", "fd"]), 1.0);
-    close(slope("depth", "chain_2d", ["native", "ltdl", "fd"]), 4.0);
+    close(slope("depth", "chain_2d", ["featherbench", "ltdl", "fd"]), 4.0);
     // Lighter tips cost nothing and are left out of the fit, but not out of the plot; the robot itself stands at one.
-    let tips = curve(&figures, &overview, "tip", "rand3d-20", ["native", "aba", "fd"]);
+    let tips = curve(&figures, &overview, "tip", "rand3d-20", ["featherbench", "aba", "fd"]);
     close(tips["fit"]["slope"].as_f64().unwrap(), 1.0);
     assert_eq!(tips["span"], serde_json::json!([1.0, 1e6]));
     let places: Vec<f64> = tips["points"].as_array().unwrap().iter().map(|point| point[0].as_f64().unwrap()).collect();
     assert_eq!(places, [1e-3, 1.0, 1e3, 1e6]);
     // A line goes through entries of M, or through products, but not from one to the other.
-    let matrix = curve(&figures, &overview, "depth", "chain_2d", ["native", "crba", "mass_matrix"]);
+    let matrix = curve(&figures, &overview, "depth", "chain_2d", ["featherbench", "crba", "mass_matrix"]);
     assert_eq!((matrix["points"].as_array().unwrap().len(), &matrix["fit"]["points"]), (6, &5.into()));
     assert!(written.section("digits").contains("<td class=\"number\">1.9") || written.section("digits").contains("2.00 ±"));
 }
@@ -89,9 +89,9 @@ fn the_table_holds_every_median_once() {
     let (records, written) = of_studies(&["digits"]);
     let section = written.section("digits");
     let table = &section[section.find("id=\"digits-table\"").unwrap()..];
-    let subjects = |row: &&Record| row.engine != "all";
+    let answers = |row: &&Row| row.engine != "all";
     let cells: std::collections::BTreeSet<_> =
-        records.iter().filter(subjects).map(|row| (&row.model, &row.engine, &row.method, &row.quantity)).collect();
+        records.iter().filter(answers).map(|row| (&row.robot, &row.engine, &row.method, &row.quantity)).collect();
     assert_eq!(written.data("figures")["digits"]["cells"].as_array().unwrap().len(), cells.len());
     // Every cell leads to a chunk that is there.
     let chunks = written.chunk_names();
@@ -114,7 +114,7 @@ fn the_verdict_says_who_is_right_by_truth() {
     let verdict = written.section("verdict");
     for words in [
         "Against the truth",
-        "<b>native aba and pinocchio aba_local</b>",
+        "<b>featherbench aba and pinocchio aba_local</b>",
         "keep every gate on forward dynamics",
         "pinocchio aba_world</b> fails on 2 of 22 models in forward dynamics: rand3d-20-offset1e4 and rand3d-20-offset1e6",
         "rand3d-20-offset1e6, 0.010 where 1e-7 is allowed",
@@ -131,15 +131,15 @@ fn the_verdict_says_who_is_right_by_truth() {
 
 #[test]
 fn a_deviation_is_neither_kept_nor_failed() {
-    let row = |method: &str, model: &str| Record {
+    let row = |method: &str, model: &str| Row {
         study: "digits".into(),
         engine: "mujoco".into(),
         method: method.into(),
-        model: model.into(),
+        robot: model.into(),
         quantity: "fd".into(),
         metric: "true_forward".into(),
         reference: "truth".into(),
-        ..Record::default()
+        ..Row::default()
     };
     let rows = [
         row("forward", "a").gated(1e-15, Relation::Le, 1e-14),
@@ -167,7 +167,7 @@ fn work_against_precision_has_its_front() {
     // On two joints the factorization is faster and less accurate: both stand; on a hundred it is beaten in both.
     assert_eq!(of_model("chain_2d_2"), [("ltdl", true), ("aba", true)]);
     assert_eq!(of_model("chain_2d_100"), [("aba", true), ("ltdl", false)]);
-    assert!(points.iter().all(|point| overview["engines"][point["engine"].as_u64().unwrap() as usize] == "native"));
+    assert!(points.iter().all(|point| overview["engines"][point["engine"].as_u64().unwrap() as usize] == "featherbench"));
     let section = written.section("tradeoff");
     assert_eq!(section.matches("● unbeaten").count(), points.iter().filter(|point| point["front"] == true).count());
 }
@@ -188,22 +188,22 @@ fn conditioning_shows_local_exponents_and_the_floor() {
 #[test]
 fn steps_become_lines_and_orders() {
     let run = support::run_info();
-    let blank = Record {
+    let blank = Row {
         study: "step_limit".into(),
-        model: run.models[0].name.clone(),
+        robot: run.models[0].name.clone(),
         engine: run.engines[0].name.clone(),
         quantity: "fd".into(),
         method: "step".into(),
-        case: "random".into(),
+        states: "random".into(),
         metric: "step_error".into(),
         unit: "1".into(),
-        ..Record::default()
+        ..Row::default()
     };
-    let at = |dt: &str, error: f64| Record { params: format!("{{\"dt\":{dt}}}"), ..blank.clone() }.informed(error);
-    let judged = Record { metric: "order_off_one".into(), verdict: Verdict::Fail, value: Some(0.25), ..blank.clone() };
-    let other = Record { method: "step_default".into(), ..at("0.001", 0.5) };
-    let drift = Record { quantity: "kinetic_energy".into(), metric: "energy_drift".into(), ..at("0.01", 0.125) };
-    let order = Record { metric: "order".into(), ..blank.clone() }.informed(1.25);
+    let at = |dt: &str, error: f64| Row { params: format!("{{\"dt\":{dt}}}"), ..blank.clone() }.informed(error);
+    let judged = Row { metric: "order_off_one".into(), verdict: Verdict::Fail, value: Some(0.25), ..blank.clone() };
+    let other = Row { method: "step_default".into(), ..at("0.001", 0.5) };
+    let drift = Row { quantity: "kinetic_energy".into(), metric: "energy_drift".into(), ..at("0.01", 0.125) };
+    let order = Row { metric: "order".into(), ..blank.clone() }.informed(1.25);
     let records = [at("0.001", 2e-3), at("0.01", 2e-2), at("1e-10", 2e-10), order, judged, other, drift];
 
     let written = Written::of(&run, &records);

@@ -7,7 +7,7 @@ use std::collections::BTreeMap;
 use std::io;
 use std::path::{Path, PathBuf};
 
-use crate::RecordError;
+use crate::ResultsError;
 use crate::file::{atomic_write, read_bytes};
 
 /// Name of the file of checksums in a folder.
@@ -46,32 +46,32 @@ impl Checksums {
     /// The checksums of files as they are now.
     ///
     /// # Errors
-    /// [`RecordError::Io`] when one of the files cannot be read.
-    pub fn of(folder: &Path, names: &[&str]) -> Result<Self, RecordError> {
+    /// [`ResultsError::Io`] when one of the files cannot be read.
+    pub fn of(folder: &Path, names: &[&str]) -> Result<Self, ResultsError> {
         let one = |name: &&str| Ok(((*name).to_owned(), checksum(&read_bytes(&folder.join(name))?)));
-        Ok(Self { folder: folder.to_owned(), by_name: names.iter().map(one).collect::<Result<_, RecordError>>()? })
+        Ok(Self { folder: folder.to_owned(), by_name: names.iter().map(one).collect::<Result<_, ResultsError>>()? })
     }
 
     /// Writes `checksums.txt`, in one step.
     ///
     /// # Errors
-    /// [`RecordError::Io`].
-    pub fn write(&self) -> Result<(), RecordError> {
+    /// [`ResultsError::Io`].
+    pub fn write(&self) -> Result<(), ResultsError> {
         atomic_write(&self.path(), self.to_text().as_bytes())
     }
 
     /// Reads the `checksums.txt` of a folder.
     ///
     /// # Errors
-    /// [`RecordError::Unfinished`] when there is none; [`RecordError::Damaged`], with its line, when it is not in the form that
+    /// [`ResultsError::Unfinished`] when there is none; [`ResultsError::Damaged`], with its line, when it is not in the form that
     /// [`write`](Self::write) gives it.
-    pub fn read(folder: &Path) -> Result<Self, RecordError> {
+    pub fn read(folder: &Path) -> Result<Self, ResultsError> {
         let path = folder.join(CHECKSUMS_NAME);
         let bytes = read_bytes(&path).map_err(|error| match error {
-            RecordError::Io { source, path } if source.kind() == io::ErrorKind::NotFound => RecordError::Unfinished { path },
+            ResultsError::Io { source, path } if source.kind() == io::ErrorKind::NotFound => ResultsError::Unfinished { path },
             other => other,
         })?;
-        let damaged = |line: usize| RecordError::Damaged {
+        let damaged = |line: usize| ResultsError::Damaged {
             path: path.clone(),
             line: line as u64 + 1,
             what: "the line is not a checksum, two blanks and a name, sorted by name".into(),
@@ -100,18 +100,18 @@ impl Checksums {
     /// The bytes of a file that has the checksum it should have.
     ///
     /// # Errors
-    /// [`RecordError::Unlisted`] when its checksum is not known, [`RecordError::Checksum`] when it has another one, and
-    /// [`RecordError::Io`].
-    pub fn bytes(&self, name: &str) -> Result<Vec<u8>, RecordError> {
+    /// [`ResultsError::Unlisted`] when its checksum is not known, [`ResultsError::Checksum`] when it has another one, and
+    /// [`ResultsError::Io`].
+    pub fn bytes(&self, name: &str) -> Result<Vec<u8>, ResultsError> {
         let (path, sums) = (self.folder.join(name), self.path());
-        let Some(due) = self.by_name.get(name) else { return Err(RecordError::Unlisted { sums, name: name.to_owned() }) };
+        let Some(due) = self.by_name.get(name) else { return Err(ResultsError::Unlisted { sums, name: name.to_owned() }) };
         let bytes = match read_bytes(&path) {
-            Err(RecordError::Io { source, .. }) if source.kind() == io::ErrorKind::NotFound => {
-                return Err(RecordError::Absent { sums, path });
+            Err(ResultsError::Io { source, .. }) if source.kind() == io::ErrorKind::NotFound => {
+                return Err(ResultsError::Absent { sums, path });
             }
             other => other?,
         };
-        if checksum(&bytes) == *due { Ok(bytes) } else { Err(RecordError::Checksum { path, sums }) }
+        if checksum(&bytes) == *due { Ok(bytes) } else { Err(ResultsError::Checksum { path, sums }) }
     }
 
     fn path(&self) -> PathBuf {

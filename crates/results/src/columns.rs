@@ -14,9 +14,11 @@ pub enum ColumnType {
     Float,
     /// One of the words listed with the column.
     Word,
+    /// `true` or `false`; never empty.
+    Flag,
 }
 
-/// One column of `records.csv`.
+/// One column of `rows.csv`.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Column {
     /// Its name in the header.
@@ -48,28 +50,35 @@ const fn word(name: &'static str, words: &'static [&'static str], description: &
     Column { name, kind: ColumnType::Word, unit: "", words, description }
 }
 
-/// The columns of `records.csv` in their order; [`Record`](crate::Record) has a field for each, in the same order.
-pub const COLUMNS: [Column; 27] = [
+const fn flag(name: &'static str, description: &'static str) -> Column {
+    Column { name, kind: ColumnType::Flag, unit: "", words: &["true", "false"], description }
+}
+
+/// The columns of `rows.csv` in their order; [`Row`](crate::Row) has a field for each, in the same order.
+pub const COLUMNS: [Column; 33] = [
     text("run", "id of the run that produced the row"),
     text("cell", "content hash of the unit of work that the row belongs to"),
-    text("study", "the question asked: agreement, timing, structure, …"),
-    text("problem", "family of the model, or problem of the study: chain, tree, humanoid, …"),
-    text("model", "name of the model; empty where a study has none"),
+    text("study", "the question asked: agreement, timing, operations, …"),
+    text("family", "family of the robot: chain, tree, humanoid, …"),
+    text("robot", "name of the robot; empty where a study has none"),
     integer("nq", "coordinates", "length of the configuration vector"),
     integer("nv", "degrees of freedom", "length of the velocity vector"),
-    integer("bodies", "bodies", "moving bodies of the model"),
+    integer("bodies", "bodies", "moving bodies of the robot"),
     integer("depth", "joints", "joints on the longest path from the base to a leaf"),
-    text("params", "parameters of the cell as canonical JSON: keys sorted, no spaces"),
-    text("engine", "who answered: native, pinocchio, mujoco, drake, …"),
+    text("engine", "the engine that answered: featherbench (our kernels), pinocchio, mujoco, drake, …"),
     text("engine_version", "the version that the engine itself reports"),
-    text("method", "the engine's algorithm, where it offers several"),
-    text("scalar", "arithmetic of the answer: f64, f32, …"),
-    text("quantity", "what was computed: id, mass_matrix, fd, … or the algorithm that was timed"),
-    text("case", "kind of input states: random, zero, straight, fast, limit; for times: stream, hot"),
+    text("method", "the engine's way to the quantity, where it offers several"),
+    text("precision", "arithmetic of the answer: f64, f32, …"),
+    text("quantity", "what was computed or timed: id, mass_matrix, fd, …"),
+    text("states", "kind of input states: random, zero, straight, fast, limit, all; empty where there are none"),
+    text("body", "the body that the row is about; empty where it is the whole robot"),
+    text("cache", "over what a time was taken: stream (many states in turn), hot (one state again and again); empty for the rest"),
     text("metric", "measure of the value: scaled, forward, backward, kappa, pairwise, ns_per_call, …"),
     word("kind", &["exact", "measured"], "exact: the same bits on every run; measured: taken on a machine"),
     float("value", "unit", "the result; empty when there is none or it was not finite"),
-    text("unit", "unit of value, bound and floor; `ratio` for a pure ratio"),
+    float("ci_low", "unit", "lower end of the confidence interval of a measured value, where it has one"),
+    float("ci_high", "unit", "upper end of that interval"),
+    text("unit", "unit of value, interval, bound and floor; `ratio` for a pure ratio"),
     text("reference", "with what the value was compared: an engine, a closed form, a data set"),
     word("relation", &["le", "ge", "eq", "within"], "how value must stand to bound; empty when nothing is judged; within: |value| ≤ bound"),
     float("bound", "unit", "the gate"),
@@ -80,7 +89,10 @@ pub const COLUMNS: [Column; 27] = [
         "distance to the gate, positive inside: log10(bound/|value|) for le and within, log10(value/bound) for ge, empty for eq; clamped to ±16",
     ),
     word("verdict", &["pass", "fail", "info", "skip", "error", "deviation"], "what became of the row"),
-    text("reason", "why the verdict is not pass; empty otherwise"),
+    flag("valid", "whether the value counts: false for a measurement that its control or a check rejects"),
+    flag("estimated", "whether the value is an estimate: the cost of calling the engine was measured with it and subtracted"),
+    text("reason", "why the verdict is not pass, or the value not valid; for people; empty otherwise"),
+    text("params", "what a study adds, as canonical JSON: keys sorted, no spaces"),
 ];
 
 /// The text of `schema.json`: format, and every column with type, unit, words and meaning.

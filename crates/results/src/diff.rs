@@ -1,6 +1,6 @@
 //! What changed between two runs beyond noise: a pure function over their rows.
 
-use crate::{Kind, Record, Relation};
+use crate::{Kind, Relation, Row};
 use std::collections::BTreeMap;
 
 /// An error has moved when it is this many times larger or smaller: rounding in another order of operations stays below.
@@ -9,9 +9,6 @@ pub const ERROR_FACTOR: f64 = 4.0;
 pub const ERROR_FLOOR: f64 = 8.9e-16;
 /// Two times differ when their ratio is beyond this, or beyond the A/A controls of their experiments where those are wider.
 pub const TIME_NOISE: f64 = 0.02;
-
-/// Reasons of rows whose value does not count begin so.
-const VOID: &str = "void: ";
 
 /// In which way a row changed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -53,9 +50,9 @@ pub struct Changed<'a> {
     /// In which way.
     pub change: Change,
     /// The row in the first run.
-    pub before: Option<&'a Record>,
+    pub before: Option<&'a Row>,
     /// The row in the second run.
-    pub after: Option<&'a Record>,
+    pub after: Option<&'a Row>,
 }
 
 impl Changed<'_> {
@@ -72,20 +69,20 @@ pub struct Diff<'a> {
     pub changes: Vec<Changed<'a>>,
     /// Rows that are in both runs.
     pub compared: usize,
-    /// Times that are void in one of the runs, and so were not compared.
-    pub void: usize,
+    /// Times that are not valid in one of the runs, and so were not compared.
+    pub invalid: usize,
 }
 
 /// What tells rows of a run apart. Parameters do not: a time may be taken with other settings and is still the same time.
-type Key<'a> = ([&'a str; 9], usize);
+type Key<'a> = ([&'a str; 11], usize);
 
 /// Compares two runs.
-pub fn diff<'a>(before: &'a [Record], after: &'a [Record]) -> Diff<'a> {
+pub fn diff<'a>(before: &'a [Row], after: &'a [Row]) -> Diff<'a> {
     let (old, new) = (keyed(before), keyed(after));
-    let (old_intervals, new_intervals) = (Intervals::of(before), Intervals::of(after));
-    let old_rows: BTreeMap<&Key, &Record> = old.iter().map(|(key, row)| (key, *row)).collect();
-    let new_rows: BTreeMap<&Key, &Record> = new.iter().map(|(key, row)| (key, *row)).collect();
-    let mut diff = Diff { changes: Vec::new(), compared: 0, void: 0 };
+    let (old_noise, new_noise) = (Noise::of(before), Noise::of(after));
+    let old_rows: BTreeMap<&Key, &Row> = old.iter().map(|(key, row)| (key, *row)).collect();
+    let new_rows: BTreeMap<&Key, &Row> = new.iter().map(|(key, row)| (key, *row)).collect();
+    let mut diff = Diff { changes: Vec::new(), compared: 0, invalid: 0 };
     for (key, row) in &new {
         let Some(&was) = old_rows.get(key) else {
             diff.changes.push(Changed { change: Change::New, before: None, after: Some(row) });
@@ -93,14 +90,14 @@ pub fn diff<'a>(before: &'a [Record], after: &'a [Record]) -> Diff<'a> {
         };
         diff.compared += 1;
         let timed = is_time(row) && was.value.is_some() && row.value.is_some();
-        if timed && (is_void(was) || is_void(row) || old_intervals.noise_beside(&new_intervals, row).is_nan()) {
-            diff.void += 1;
+        if timed && (!was.valid || !row.valid || old_noise.beside(&new_noise, row).is_nan()) {
+            diff.invalid += 1;
             continue;
         }
         let change = if was.verdict != row.verdict {
             Some(Change::Verdict)
         } else if timed {
-            old_intervals.apart(was, &new_intervals, row).then_some(Change::Time)
+            apart(was, row, old_noise.beside(&new_noise, row)).then_some(Change::Time)
         } else {
             moved(was, row)
         };
@@ -113,8 +110,8 @@ pub fn diff<'a>(before: &'a [Record], after: &'a [Record]) -> Diff<'a> {
 }
 
 /// Rows with what tells them apart; those that nothing does are numbered.
-fn keyed(rows: &[Record]) -> Vec<(Key<'_>, &Record)> {
-    let mut seen: BTreeMap<[&str; 9], usize> = BTreeMap::new();
+fn keyed(rows: &[Row]) -> Vec<(Key<'_>, &Row)> {
+    let mut seen: BTreeMap<[&str; 11], usize> = BTreeMap::new();
     rows.iter()
         .map(|row| {
             let count = seen.entry(identity(row)).or_default();
@@ -124,21 +121,29 @@ fn keyed(rows: &[Record]) -> Vec<(Key<'_>, &Record)> {
         .collect()
 }
 
-fn identity(row: &Record) -> [&str; 9] {
-    [&row.study, &row.model, &row.engine, &row.method, &row.scalar, &row.quantity, &row.case, &row.metric, &row.reference]
+fn identity(row: &Row) -> [&str; 11] {
+    [
+        &row.study,
+        &row.robot,
+        &row.engine,
+        &row.method,
+        &row.precision,
+        &row.quantity,
+        &row.states,
+        &row.body,
+        &row.cache,
+        &row.metric,
+        &row.reference,
+    ]
 }
 
 /// Whether a row is a time, or a ratio of times: what has an interval.
-fn is_time(row: &Record) -> bool {
+fn is_time(row: &Row) -> bool {
     row.kind == Kind::Measured && matches!(row.metric.as_str(), "ns_per_call" | "ratio")
 }
 
-fn is_void(row: &Record) -> bool {
-    row.reason.starts_with(VOID)
-}
-
 /// How an exact value changed, if it did.
-fn moved(before: &Record, after: &Record) -> Option<Change> {
+fn moved(before: &Row, after: &Row) -> Option<Change> {
     if before.kind == Kind::Measured || after.kind == Kind::Measured {
         return None;
     }
@@ -156,51 +161,39 @@ fn moved(before: &Record, after: &Record) -> Option<Change> {
     (is > was * ERROR_FACTOR || was > is * ERROR_FACTOR).then_some(Change::Error)
 }
 
-/// The intervals of a run's times, and the noise of its experiments.
-struct Intervals<'a> {
-    ends: BTreeMap<[&'a str; 9], f64>,
-    /// By model, quantity and case: how far the control's interval reaches from 1.
-    noise: BTreeMap<[&'a str; 3], f64>,
-}
+/// The noise of a run's experiments by robot, quantity and cache: how far the control's interval reaches from 1.
+struct Noise<'a>(BTreeMap<[&'a str; 3], f64>);
 
-impl<'a> Intervals<'a> {
-    fn of(rows: &'a [Record]) -> Self {
-        let measured = || rows.iter().filter(|row| row.kind == Kind::Measured).filter_map(|row| Some((row, row.value?)));
+impl<'a> Noise<'a> {
+    fn of(rows: &'a [Row]) -> Self {
         let mut noise: BTreeMap<[&str; 3], f64> = BTreeMap::new();
-        for (row, value) in measured().filter(|(row, _)| row.metric == "control_low" || row.metric == "control_high") {
-            let reach = noise.entry([&row.model, &row.quantity, &row.case]).or_default();
-            *reach = larger(*reach, (value - 1.0).abs());
+        for row in rows.iter().filter(|row| row.kind == Kind::Measured && row.metric == "control") {
+            let reach = noise.entry([&row.robot, &row.quantity, &row.cache]).or_default();
+            *reach = [row.ci_low, row.ci_high].into_iter().flatten().fold(*reach, |reach, end| larger(reach, (end - 1.0).abs()));
         }
-        Self { ends: measured().map(|(row, value)| (identity(row), value)).collect(), noise }
-    }
-
-    /// The interval of a time; a time without one is its own.
-    fn ends(&self, row: &'a Record) -> (f64, f64) {
-        let value = row.value.unwrap_or(f64::NAN);
-        let stem = if row.metric == "ratio" { ["ratio_low", "ratio_high"] } else { ["ns_low", "ns_high"] };
-        let end = |metric| {
-            let mut key = identity(row);
-            key[7] = metric;
-            self.ends.get(&key).copied().unwrap_or(value)
-        };
-        (end(stem[0]), end(stem[1]))
+        Self(noise)
     }
 
     /// The noise of a time in both runs; NaN where a control is no number, and nothing can be told.
-    fn noise_beside(&self, after: &Self, row: &Record) -> f64 {
-        let key = [row.model.as_str(), row.quantity.as_str(), row.case.as_str()];
-        [self.noise.get(&key), after.noise.get(&key)].into_iter().flatten().copied().fold(TIME_NOISE, larger)
+    fn beside(&self, after: &Self, row: &Row) -> f64 {
+        let key = [row.robot.as_str(), row.quantity.as_str(), row.cache.as_str()];
+        [self.0.get(&key), after.0.get(&key)].into_iter().flatten().copied().fold(TIME_NOISE, larger)
     }
+}
 
-    /// Whether two times differ: disjoint intervals, and a ratio beyond the noise of both runs; or one of the two is no number.
-    fn apart(&self, before: &'a Record, after: &Self, row: &'a Record) -> bool {
-        let (was, is) = (self.ends(before), after.ends(row));
-        let noise = self.noise_beside(after, row);
-        let disjoint = is.0 > was.1 || is.1 < was.0;
-        let (value, other) = (row.value.unwrap_or(f64::NAN), before.value.unwrap_or(f64::NAN));
-        let ratio = value / other;
-        value.is_nan() != other.is_nan() || disjoint && (ratio > 1.0 + noise || ratio < 1.0 / (1.0 + noise))
-    }
+/// The interval of a time; a time without one is its own.
+fn interval(row: &Row) -> (f64, f64) {
+    let value = row.value.unwrap_or(f64::NAN);
+    (row.ci_low.unwrap_or(value), row.ci_high.unwrap_or(value))
+}
+
+/// Whether two times differ: disjoint intervals, and a ratio beyond the noise of both runs; or one of the two is no number.
+fn apart(before: &Row, after: &Row, noise: f64) -> bool {
+    let (was, is) = (interval(before), interval(after));
+    let disjoint = is.0 > was.1 || is.1 < was.0;
+    let (value, other) = (after.value.unwrap_or(f64::NAN), before.value.unwrap_or(f64::NAN));
+    let ratio = value / other;
+    value.is_nan() != other.is_nan() || disjoint && (ratio > 1.0 + noise || ratio < 1.0 / (1.0 + noise))
 }
 
 /// The larger of two numbers; NaN when either is, so that no fold can lose one.

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 /// Why records or run information could not be read or written; the text names file, line and column as far as they are known.
 #[derive(Debug, thiserror::Error)]
-pub enum RecordError {
+pub enum ResultsError {
     /// The file system refused.
     #[error("{path}: {source}", path = path.display())]
     Io {

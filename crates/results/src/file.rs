@@ -5,10 +5,10 @@ use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicU64, Ordering};
 
-use crate::{COLUMNS, Checksums, ColumnType, Record, RecordError, RunInfo, schema_json};
+use crate::{COLUMNS, Checksums, ColumnType, ResultsError, Row, RunInfo, schema_json};
 
 /// Name of the rows' file in a run's folder.
-pub const CSV_NAME: &str = "records.csv";
+pub const CSV_NAME: &str = "rows.csv";
 /// Name of the provenance file in a run's folder.
 pub const RUN_NAME: &str = "run.json";
 /// Name of the description of the columns in a run's folder.
@@ -20,11 +20,11 @@ pub const RATIO: &str = "ratio";
 /// Replaces a file in one step: after a crash or a full disk there is the old file or the new one, never a part.
 ///
 /// The bytes go to a temporary file in the same folder, are flushed to the disk, and the file is renamed. Missing folders are made.
-pub fn atomic_write(path: &Path, bytes: &[u8]) -> Result<(), RecordError> {
+pub fn atomic_write(path: &Path, bytes: &[u8]) -> Result<(), ResultsError> {
     /// Distinguishes the temporary files of one process.
     static SERIAL: AtomicU64 = AtomicU64::new(0);
 
-    let io_error = |source| RecordError::Io { path: path.to_owned(), source };
+    let io_error = |source| ResultsError::Io { path: path.to_owned(), source };
     let name = path.file_name().ok_or_else(|| io_error(io::Error::new(io::ErrorKind::InvalidInput, "not the name of a file")))?;
     let folder = match path.parent() {
         Some(parent) if !parent.as_os_str().is_empty() => parent.to_owned(),
@@ -56,44 +56,44 @@ pub fn atomic_write(path: &Path, bytes: &[u8]) -> Result<(), RecordError> {
 ///
 /// The unit 1 of a pure ratio is written as the word [`RATIO`]: readers that guess the type of a column from its first rows took a column that
 /// begins with many `1` for integers, and broke at the first other unit. Quotes do not help against that.
-pub fn to_csv(records: &[Record], path: &Path) -> Result<Vec<u8>, RecordError> {
-    let failed = |error: csv::Error| RecordError::Io { path: path.to_owned(), source: io::Error::other(error) };
+pub fn to_csv(records: &[Row], path: &Path) -> Result<Vec<u8>, ResultsError> {
+    let failed = |error: csv::Error| ResultsError::Io { path: path.to_owned(), source: io::Error::other(error) };
     let mut writer = csv::WriterBuilder::new().has_headers(false).from_writer(Vec::new());
     writer.write_record(COLUMNS.iter().map(|column| column.name)).map_err(failed)?;
     for (index, record) in records.iter().enumerate() {
         for (name, value) in record.floats() {
             if let Some(value) = value.filter(|value| !value.is_finite()) {
-                return Err(RecordError::NonFinite { path: path.to_owned(), field: format!("{name} of row {}", index + 1), value });
+                return Err(ResultsError::NonFinite { path: path.to_owned(), field: format!("{name} of row {}", index + 1), value });
             }
         }
         if record.unit == "1" {
-            writer.serialize(Record { unit: RATIO.into(), ..record.clone() }).map_err(failed)?;
+            writer.serialize(Row { unit: RATIO.into(), ..record.clone() }).map_err(failed)?;
         } else {
             writer.serialize(record).map_err(failed)?;
         }
     }
-    writer.into_inner().map_err(|error| RecordError::Io { path: path.to_owned(), source: error.into_error() })
+    writer.into_inner().map_err(|error| ResultsError::Io { path: path.to_owned(), source: error.into_error() })
 }
 
 /// Writes rows to a CSV file, in one step.
-pub fn write_csv(path: &Path, records: &[Record]) -> Result<(), RecordError> {
+pub fn write_csv(path: &Path, records: &[Row]) -> Result<(), ResultsError> {
     atomic_write(path, &to_csv(records, path)?)
 }
 
 /// Reads rows from a CSV file. The header must be this version's, every field of its type, no row cut short, and no pass beyond its bound.
-pub fn read_csv(path: &Path) -> Result<Vec<Record>, RecordError> {
+pub fn read_csv(path: &Path) -> Result<Vec<Row>, ResultsError> {
     parse_csv(&read_text(path)?, path)
 }
 
 /// The rows of a CSV text, held to the same; `path` is what errors call it.
-pub fn parse_csv(text: &str, path: &Path) -> Result<Vec<Record>, RecordError> {
+pub fn parse_csv(text: &str, path: &Path) -> Result<Vec<Row>, ResultsError> {
     let mut reader = csv::ReaderBuilder::new().from_reader(text.as_bytes());
     let header = reader.headers().map_err(|error| csv_error(path, &error))?;
     for position in 0..header.len().max(COLUMNS.len()) {
         let found = header.get(position).unwrap_or_default();
         let expected = COLUMNS.get(position).map_or("", |column| column.name);
         if found != expected {
-            return Err(RecordError::Header {
+            return Err(ResultsError::Header {
                 path: path.to_owned(),
                 position: position + 1,
                 found: found.into(),
@@ -103,18 +103,18 @@ pub fn parse_csv(text: &str, path: &Path) -> Result<Vec<Record>, RecordError> {
     }
     if !text.ends_with('\n') {
         let line = text.lines().count() as u64;
-        return Err(RecordError::Damaged { path: path.to_owned(), line, what: "the file ends in the middle of a row".into() });
+        return Err(ResultsError::Damaged { path: path.to_owned(), line, what: "the file ends in the middle of a row".into() });
     }
     let header = header.clone();
     let mut records = Vec::new();
     let mut raw = csv::StringRecord::new();
     while reader.read_record(&mut raw).map_err(|error| csv_error(path, &error))? {
         let line = raw.position().map_or(0, csv::Position::line);
-        let field_error = |column: &str, what| RecordError::Field { path: path.to_owned(), line, column: column.to_owned(), what };
+        let field_error = |column: &str, what| ResultsError::Field { path: path.to_owned(), line, column: column.to_owned(), what };
         if let Some((column, what)) = unknown_word(&raw) {
             return Err(field_error(column, what));
         }
-        let mut record: Record = raw.deserialize(Some(&header)).map_err(|error| csv_error(path, &error))?;
+        let mut record: Row = raw.deserialize(Some(&header)).map_err(|error| csv_error(path, &error))?;
         if record.unit == RATIO {
             record.unit = "1".into();
         }
@@ -130,8 +130,8 @@ pub fn parse_csv(text: &str, path: &Path) -> Result<Vec<Record>, RecordError> {
 /// without them is known to be unfinished.
 ///
 /// # Errors
-/// [`RecordError`]; the folder then holds no valid checksums of what was written before.
-pub fn write_run(folder: &Path, run: &RunInfo, records: &[Record]) -> Result<(), RecordError> {
+/// [`ResultsError`]; the folder then holds no valid checksums of what was written before.
+pub fn write_run(folder: &Path, run: &RunInfo, records: &[Row]) -> Result<(), ResultsError> {
     write_run_with(folder, run, records, &[])
 }
 
@@ -139,7 +139,7 @@ pub fn write_run(folder: &Path, run: &RunInfo, records: &[Record]) -> Result<(),
 ///
 /// # Errors
 /// As [`write_run`].
-pub fn write_run_with(folder: &Path, run: &RunInfo, records: &[Record], more: &[&str]) -> Result<(), RecordError> {
+pub fn write_run_with(folder: &Path, run: &RunInfo, records: &[Row], more: &[&str]) -> Result<(), ResultsError> {
     write_csv(&folder.join(CSV_NAME), records)?;
     atomic_write(&folder.join(SCHEMA_NAME), schema_json().as_bytes())?;
     RunInfo { rows: records.len() as u64, ..run.clone() }.write(&folder.join(RUN_NAME))?;
@@ -149,14 +149,14 @@ pub fn write_run_with(folder: &Path, run: &RunInfo, records: &[Record], more: &[
 /// Reads a run's folder back.
 ///
 /// # Errors
-/// [`RecordError`]: every file of the run must have its checksum, and there must be as many rows as were written.
-pub fn read_run(folder: &Path) -> Result<(RunInfo, Vec<Record>), RecordError> {
+/// [`ResultsError`]: every file of the run must have its checksum, and there must be as many rows as were written.
+pub fn read_run(folder: &Path) -> Result<(RunInfo, Vec<Row>), ResultsError> {
     let sums = Checksums::read(folder)?;
     let text = |name: &str| {
         let path = folder.join(name);
         // Bytes that have their checksum are those of a text: only a list that was made for another file holds others.
         let text = String::from_utf8(sums.bytes(name)?);
-        text.map_err(|error| RecordError::Io { path, source: io::Error::new(io::ErrorKind::InvalidData, error) })
+        text.map_err(|error| ResultsError::Io { path, source: io::Error::new(io::ErrorKind::InvalidData, error) })
     };
     let path = folder.join(CSV_NAME);
     let run = RunInfo::parse(&text(RUN_NAME)?, &folder.join(RUN_NAME))?;
@@ -167,41 +167,41 @@ pub fn read_run(folder: &Path) -> Result<(RunInfo, Vec<Record>), RecordError> {
     }
     let found = records.len() as u64;
     if found != run.rows {
-        return Err(RecordError::RowCount { path, found, expected: run.rows });
+        return Err(ResultsError::RowCount { path, found, expected: run.rows });
     }
     Ok((run, records))
 }
 
 /// A whole file as bytes.
-pub(crate) fn read_bytes(path: &Path) -> Result<Vec<u8>, RecordError> {
-    fs::read(path).map_err(|source| RecordError::Io { path: path.to_owned(), source })
+pub(crate) fn read_bytes(path: &Path) -> Result<Vec<u8>, ResultsError> {
+    fs::read(path).map_err(|source| ResultsError::Io { path: path.to_owned(), source })
 }
 
 /// A whole file as text.
-pub(crate) fn read_text(path: &Path) -> Result<String, RecordError> {
-    fs::read_to_string(path).map_err(|source| RecordError::Io { path: path.to_owned(), source })
+pub(crate) fn read_text(path: &Path) -> Result<String, ResultsError> {
+    fs::read_to_string(path).map_err(|source| ResultsError::Io { path: path.to_owned(), source })
 }
 
 /// The first word in a row that its column does not know, as column and complaint; the CSV reader's own error would not name the column.
 fn unknown_word(row: &csv::StringRecord) -> Option<(&'static str, String)> {
     COLUMNS.iter().zip(row).find_map(|(column, word)| {
-        let known = column.kind != ColumnType::Word || word.is_empty() || column.words.contains(&word);
+        let known = column.words.is_empty() || word.is_empty() && column.kind == ColumnType::Word || column.words.contains(&word);
         (!known).then(|| (column.name, format!("`{word}` is none of {}", column.words.join(", "))))
     })
 }
 
 /// Names the file, line and column of what the CSV reader stumbled over.
-fn csv_error(path: &Path, error: &csv::Error) -> RecordError {
+fn csv_error(path: &Path, error: &csv::Error) -> ResultsError {
     let path = path.to_owned();
     let line = error.position().map_or(0, csv::Position::line);
     match error.kind() {
         csv::ErrorKind::Deserialize { err, .. } => match err.field().and_then(|field| COLUMNS.get(field as usize)) {
-            Some(column) => RecordError::Field { path, line, column: column.name.into(), what: err.kind().to_string() },
-            None => RecordError::Damaged { path, line, what: err.kind().to_string() },
+            Some(column) => ResultsError::Field { path, line, column: column.name.into(), what: err.kind().to_string() },
+            None => ResultsError::Damaged { path, line, what: err.kind().to_string() },
         },
         csv::ErrorKind::UnequalLengths { expected_len, len, .. } => {
-            RecordError::Damaged { path, line, what: format!("{len} fields instead of {expected_len}: the row is cut or altered") }
+            ResultsError::Damaged { path, line, what: format!("{len} fields instead of {expected_len}: the row is cut or altered") }
         }
-        _ => RecordError::Damaged { path, line, what: error.to_string() },
+        _ => ResultsError::Damaged { path, line, what: error.to_string() },
     }
 }

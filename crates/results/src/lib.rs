@@ -1,16 +1,16 @@
 //! The result row of featherbench, and how it is written and read back.
 //!
-//! A [`Record`] is the finest result that its question needs: one row of `records.csv`, with the columns of [`COLUMNS`]. A failure is a row
+//! A [`Row`] is the finest result that its question needs: one row of `rows.csv`, with the columns of [`COLUMNS`]. A failure is a row
 //! too, with its [`Verdict`] and its reason. [`RunInfo`] is what all the rows of one run share: where, when, with what. Together they are
 //! everything that a report needs, and this crate holds nothing that computes them.
 //!
 //! ```
-//! use featherbench_results::{Record, Relation, Verdict};
+//! use featherbench_results::{Row, Relation, Verdict};
 //!
-//! let row = Record { engine: "mujoco".into(), quantity: "id".into(), metric: "scaled".into(), ..Record::default() }
+//! let row = Row { engine: "mujoco".into(), quantity: "id".into(), metric: "scaled".into(), ..Row::default() }
 //!     .gated(3.1e-16, Relation::Le, 1e-14);
 //! assert_eq!(row.verdict, Verdict::Pass);
-//! let lost = Record::default().gated(f64::NAN, Relation::Le, 1e-14);
+//! let lost = Row::default().gated(f64::NAN, Relation::Le, 1e-14);
 //! assert_eq!((lost.value, lost.verdict), (None, Verdict::Error));
 //! ```
 
@@ -27,11 +27,11 @@ mod run_info;
 pub use checksum::{CHECKSUMS_NAME, Checksums, checksum, seal, unsealed};
 pub use columns::{COLUMNS, Column, ColumnType, schema_json};
 pub use diff::{Change, Changed, Diff, ERROR_FACTOR, ERROR_FLOOR, TIME_NOISE, diff};
-pub use error::RecordError;
+pub use error::ResultsError;
 pub use file::{
     CSV_NAME, RUN_NAME, SCHEMA_NAME, atomic_write, parse_csv, read_csv, read_run, to_csv, write_csv, write_run, write_run_with,
 };
 pub use names::{Kind, Relation, Verdict};
 pub use params::canonical_json;
-pub use row::{ESTIMATE, MARGIN_LIMIT, Record};
+pub use row::{MARGIN_LIMIT, Row};
 pub use run_info::{Convention, EngineInfo, EngineSource, Expectation, GitInfo, Host, ModelInfo, ModelOrigin, RUN_FORMAT, RunInfo};

@@ -70,7 +70,7 @@ words! {
         Fail = "fail",
         /// A value without a bound: nothing is judged.
         Info = "info",
-        /// Nothing was computed, and that was known beforehand: the subject does not offer it.
+        /// Nothing was computed, and that was known beforehand: the engine does not offer it.
         Skip = "skip",
         /// A value was due and none came, or it was not a finite number.
         Error = "error",

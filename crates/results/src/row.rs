@@ -9,20 +9,20 @@ pub const MARGIN_LIMIT: f64 = 16.0;
 
 /// One result. What each field means stands in [`COLUMNS`](crate::COLUMNS), which has a column for each, in this order.
 ///
-/// Fill in what identifies the row with a struct literal over [`Record::default`], then close it with one of [`gated`](Self::gated),
+/// Fill in what identifies the row with a struct literal over [`Row::default`], then close it with one of [`gated`](Self::gated),
 /// [`informed`](Self::informed) and [`without_value`](Self::without_value): they keep value, margin, verdict and reason consistent.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Record {
+pub struct Row {
     /// Id of the run.
     pub run: String,
     /// Content hash of the unit of work.
     pub cell: String,
     /// The question asked.
     pub study: String,
-    /// Family of the model, or problem of the study.
-    pub problem: String,
-    /// Name of the model, or empty.
-    pub model: String,
+    /// Family of the robot.
+    pub family: String,
+    /// Name of the robot, or empty.
+    pub robot: String,
     /// Length of the configuration vector.
     pub nq: Option<u64>,
     /// Degrees of freedom.
@@ -31,8 +31,6 @@ pub struct Record {
     pub bodies: Option<u64>,
     /// Joints on the longest path from base to leaf.
     pub depth: Option<u64>,
-    /// Parameters, in the form of [`canonical_json`](crate::canonical_json).
-    pub params: String,
     /// Who answered.
     pub engine: String,
     /// The version it reports.
@@ -40,17 +38,25 @@ pub struct Record {
     /// Its algorithm.
     pub method: String,
     /// Its arithmetic.
-    pub scalar: String,
+    pub precision: String,
     /// What was computed or timed.
     pub quantity: String,
-    /// Kind of input states.
-    pub case: String,
+    /// Kind of input states, or empty.
+    pub states: String,
+    /// The body that the row is about, or empty.
+    pub body: String,
+    /// Over what a time was taken, or empty.
+    pub cache: String,
     /// Measure of the value.
     pub metric: String,
     /// Reproducible to the bit, or measured.
     pub kind: Kind,
     /// The result: finite, or absent.
     pub value: Option<f64>,
+    /// Lower end of the interval of a measured value.
+    pub ci_low: Option<f64>,
+    /// Its upper end.
+    pub ci_high: Option<f64>,
     /// Unit of `value`, `bound` and `floor`.
     pub unit: String,
     /// With what the value was compared.
@@ -65,11 +71,17 @@ pub struct Record {
     pub margin: Option<f64>,
     /// What became of the row.
     pub verdict: Verdict,
-    /// Why it is not a pass.
+    /// Whether the value counts; a measurement does not where its control says so.
+    pub valid: bool,
+    /// Whether the value is an estimate: what calling the engine takes was measured with it, and subtracted.
+    pub estimated: bool,
+    /// Why it is not a pass, or not valid; for people, no program reads it.
     pub reason: String,
+    /// Parameters, in the form of [`canonical_json`](crate::canonical_json).
+    pub params: String,
 }
 
-impl Default for Record {
+impl Default for Row {
     /// An empty, exact, unjudged row with the parameters `{}`.
     fn default() -> Self {
         let empty = String::new;
@@ -77,22 +89,25 @@ impl Default for Record {
             run: empty(),
             cell: empty(),
             study: empty(),
-            problem: empty(),
-            model: empty(),
+            family: empty(),
+            robot: empty(),
             nq: None,
             nv: None,
             bodies: None,
             depth: None,
-            params: "{}".into(),
             engine: empty(),
             engine_version: empty(),
             method: empty(),
-            scalar: empty(),
+            precision: empty(),
             quantity: empty(),
-            case: empty(),
+            states: empty(),
+            body: empty(),
+            cache: empty(),
             metric: empty(),
             kind: Kind::Exact,
             value: None,
+            ci_low: None,
+            ci_high: None,
             unit: empty(),
             reference: empty(),
             relation: None,
@@ -100,20 +115,15 @@ impl Default for Record {
             floor: None,
             margin: None,
             verdict: Verdict::Info,
+            valid: true,
+            estimated: false,
             reason: empty(),
+            params: "{}".into(),
         }
     }
 }
 
-/// How the reason of a row says that its time is no measurement of the engine alone.
-pub const ESTIMATE: &str = "estimate: ";
-
-impl Record {
-    /// Whether its time is an estimate: a call's overhead was subtracted.
-    pub fn is_estimate(&self) -> bool {
-        self.reason.contains(ESTIMATE)
-    }
-
+impl Row {
     /// Closes the row with a value that is judged: a pass or a failure with its margin.
     ///
     /// A value or a bound that is not finite makes the row an error that says so; the value is then absent.
@@ -149,9 +159,28 @@ impl Record {
         self
     }
 
+    /// Closes a measured row with a value and its interval, judged by nothing. An end that is not finite makes it an error that says so.
+    pub fn measured(mut self, value: f64, low: f64, high: f64) -> Self {
+        self = self.informed(value);
+        if self.value.is_none() {
+            return self;
+        }
+        if let Some(end) = [low, high].into_iter().find(|end| !end.is_finite()) {
+            return self.without_value(Verdict::Error, format!("an end of the interval is {end}, not a finite number"));
+        }
+        (self.ci_low, self.ci_high) = (Some(low), Some(high));
+        self
+    }
+
+    /// Says that the value does not count, and why.
+    pub fn invalid(mut self, reason: impl Into<String>) -> Self {
+        (self.valid, self.reason) = (false, reason.into());
+        self
+    }
+
     /// Closes the row with no value: a skip or an error, and why.
     pub fn without_value(mut self, verdict: Verdict, reason: impl Into<String>) -> Self {
-        self.value = None;
+        (self.value, self.ci_low, self.ci_high) = (None, None, None);
         self.margin = None;
         self.verdict = verdict;
         self.reason = reason.into();
@@ -166,8 +195,9 @@ impl Record {
     }
 
     /// The numbers that must be finite, with their columns.
-    pub(crate) fn floats(&self) -> [(&'static str, Option<f64>); 4] {
-        [("value", self.value), ("bound", self.bound), ("floor", self.floor), ("margin", self.margin)]
+    pub(crate) fn floats(&self) -> [(&'static str, Option<f64>); 6] {
+        let (low, high) = (("ci_low", self.ci_low), ("ci_high", self.ci_high));
+        [("value", self.value), low, high, ("bound", self.bound), ("floor", self.floor), ("margin", self.margin)]
     }
 
     /// What contradicts itself in the row, as column and complaint: the trace of a row that was altered by hand.
@@ -251,32 +281,32 @@ mod tests {
 
     #[test]
     fn a_gate_passes_fails_and_catches_what_is_not_a_number() {
-        let pass = Record::default().gated(1e-15, Relation::Le, 1e-14);
+        let pass = Row::default().gated(1e-15, Relation::Le, 1e-14);
         assert_eq!((pass.verdict, pass.reason.as_str()), (Verdict::Pass, ""));
-        let fail = Record::default().gated(1e-13, Relation::Le, 1e-14);
+        let fail = Row::default().gated(1e-13, Relation::Le, 1e-14);
         assert_eq!((fail.verdict, fail.reason.as_str()), (Verdict::Fail, "1e-13 is not at most 1e-14"));
         for bad in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
-            let value = Record::default().gated(bad, Relation::Le, 1e-14);
+            let value = Row::default().gated(bad, Relation::Le, 1e-14);
             assert_eq!((value.value, value.bound, value.margin, value.verdict), (None, Some(1e-14), None, Verdict::Error));
             assert!(value.reason.contains("not a finite number"), "{}", value.reason);
-            let bound = Record::default().gated(1.0, Relation::Le, bad);
+            let bound = Row::default().gated(1.0, Relation::Le, bad);
             assert_eq!((bound.value, bound.bound, bound.verdict), (None, None, Verdict::Error));
-            let floor = Record { floor: Some(bad), ..Record::default() }.gated(1.0, Relation::Le, 2.0);
+            let floor = Row { floor: Some(bad), ..Row::default() }.gated(1.0, Relation::Le, 2.0);
             assert_eq!((floor.value, floor.floor, floor.verdict), (None, None, Verdict::Error));
-            assert_eq!(Record::default().informed(bad).verdict, Verdict::Error);
+            assert_eq!(Row::default().informed(bad).verdict, Verdict::Error);
         }
     }
 
     #[test]
     fn a_deviation_keeps_the_value_and_both_reasons() {
-        let row = Record::default().gated(1e-13, Relation::Le, 1e-14).deviating("heavy tip");
+        let row = Row::default().gated(1e-13, Relation::Le, 1e-14).deviating("heavy tip");
         assert_eq!(row.value, Some(1e-13));
         assert_eq!((row.verdict, row.reason.as_str()), (Verdict::Deviation, "heavy tip (1e-13 is not at most 1e-14)"));
     }
 
     #[test]
     fn an_altered_pass_contradicts_itself() {
-        let mut row = Record::default().gated(1e-15, Relation::Le, 1e-14);
+        let mut row = Row::default().gated(1e-15, Relation::Le, 1e-14);
         assert_eq!(row.contradiction(), None);
         row.value = Some(1e-3);
         assert_eq!(row.contradiction().map(|(column, _)| column), Some("verdict"));

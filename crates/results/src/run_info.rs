@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::file::{atomic_write, read_text};
 use crate::names::words;
-use crate::{RecordError, Verdict};
+use crate::{ResultsError, Verdict};
 
 /// Format of `run.json` and `schema.json` that this version writes and reads.
 pub const RUN_FORMAT: u32 = 1;
@@ -46,7 +46,7 @@ pub struct RunInfo {
     pub seed: u64,
     /// Whether the engines themselves answered, not recordings of them.
     pub live: bool,
-    /// How many rows `records.csv` holds.
+    /// How many rows `rows.csv` holds.
     pub rows: u64,
     /// Who answered, or should have.
     pub engines: Vec<EngineInfo>,
@@ -95,7 +95,7 @@ words! {
     /// Where an engine's answers came from.
     EngineSource {
         /// Our own kernels, in this process.
-        Native = "native",
+        Own = "own",
         /// Answers recorded earlier, read from a file.
         Recorded = "recorded",
         /// The engine itself, asked during the run.
@@ -165,7 +165,7 @@ pub struct Convention {
     /// The engine, as in the records.
     pub engine: String,
     /// What it is about: free v, screw pitch, armature.
-    pub subject: String,
+    pub topic: String,
     /// What the engine does.
     pub theirs: String,
     /// What we do.
@@ -194,36 +194,36 @@ pub struct Expectation {
 
 impl RunInfo {
     /// Reads a `run.json`; unknown fields, another format and a truncated file are errors.
-    pub fn read(path: &Path) -> Result<Self, RecordError> {
+    pub fn read(path: &Path) -> Result<Self, ResultsError> {
         Self::parse(&read_text(path)?, path)
     }
 
     /// The text of a `run.json`; `path` is what errors call it.
-    pub fn parse(text: &str, path: &Path) -> Result<Self, RecordError> {
+    pub fn parse(text: &str, path: &Path) -> Result<Self, ResultsError> {
         /// Read first, so that another format is named as such and not as an unknown field.
         #[derive(Deserialize)]
         struct Format {
             format: u32,
         }
-        let json = |source| RecordError::Json { path: path.to_owned(), source };
+        let json = |source| ResultsError::Json { path: path.to_owned(), source };
         let Format { format } = serde_json::from_str(text).map_err(json)?;
         if format != RUN_FORMAT {
-            return Err(RecordError::Format { path: path.to_owned(), found: format, expected: RUN_FORMAT });
+            return Err(ResultsError::Format { path: path.to_owned(), found: format, expected: RUN_FORMAT });
         }
         serde_json::from_str(text).map_err(json)
     }
 
     /// Writes a `run.json` in one step, with the present format.
-    pub fn write(&self, path: &Path) -> Result<(), RecordError> {
+    pub fn write(&self, path: &Path) -> Result<(), ResultsError> {
         let numbers =
             self.seconds.iter().map(|(phase, &seconds)| (phase.as_str(), seconds)).chain(self.host.load.map(|load| ("load", load)));
         for (field, value) in numbers {
             if !value.is_finite() {
-                return Err(RecordError::NonFinite { path: path.to_owned(), field: field.to_owned(), value });
+                return Err(ResultsError::NonFinite { path: path.to_owned(), field: field.to_owned(), value });
             }
         }
         let current = Self { format: RUN_FORMAT, ..self.clone() };
-        let mut text = serde_json::to_string_pretty(&current).map_err(|source| RecordError::Json { path: path.to_owned(), source })?;
+        let mut text = serde_json::to_string_pretty(&current).map_err(|source| ResultsError::Json { path: path.to_owned(), source })?;
         text.push('\n');
         atomic_write(path, text.as_bytes())
     }

@@ -4,14 +4,13 @@ use std::fs;
 use std::path::Path;
 
 use featherbench_results::{
-    CHECKSUMS_NAME, CSV_NAME, Checksums, RUN_NAME, Record, RecordError, Relation, RunInfo, SCHEMA_NAME, checksum, read_run, seal, unsealed,
+    CHECKSUMS_NAME, CSV_NAME, Checksums, RUN_NAME, Relation, ResultsError, Row, RunInfo, SCHEMA_NAME, checksum, read_run, seal, unsealed,
     write_run, write_run_with,
 };
 
 /// A run of three rows with one more file.
 fn write(folder: &Path) {
-    let row =
-        |value| Record { engine: "mujoco".into(), nv: Some(7), unit: "1".into(), ..Record::default() }.gated(value, Relation::Le, 1e-14);
+    let row = |value| Row { engine: "mujoco".into(), nv: Some(7), unit: "1".into(), ..Row::default() }.gated(value, Relation::Le, 1e-14);
     fs::write(folder.join("samples.csv"), "1,2,3\n").unwrap();
     let run = RunInfo { suite: "smoke".into(), seed: 7, ..RunInfo::default() };
     write_run_with(folder, &run, &[row(1e-16), row(2.5e-15), row(1e-13)], &["samples.csv"]).unwrap();
@@ -52,7 +51,7 @@ fn a_file_that_is_missing_or_not_listed_is_named() {
         let kept = fs::read(&path).unwrap();
         fs::remove_file(&path).unwrap();
         let error = read_run(folder.path()).unwrap_err();
-        assert!(matches!(&error, RecordError::Absent { path: absent, .. } if *absent == path), "{error}");
+        assert!(matches!(&error, ResultsError::Absent { path: absent, .. } if *absent == path), "{error}");
         fs::write(&path, kept).unwrap();
     }
     Checksums::of(folder.path(), &[CSV_NAME, RUN_NAME]).unwrap().write().unwrap();
@@ -69,7 +68,7 @@ fn rows_of_another_run_do_not_pass_for_those_of_this_one() {
     let folder = tempfile::tempdir().unwrap();
     write(folder.path());
     let other = tempfile::tempdir().unwrap();
-    write_run(other.path(), &RunInfo::default(), &[Record::default()]).unwrap();
+    write_run(other.path(), &RunInfo::default(), &[Row::default()]).unwrap();
     fs::copy(other.path().join(CSV_NAME), folder.path().join(CSV_NAME)).unwrap();
     assert!(read_run(folder.path()).unwrap_err().to_string().contains(CSV_NAME));
     write(folder.path());

@@ -6,8 +6,8 @@ use std::path::Path;
 
 use featherbench_results::{
     COLUMNS, CSV_NAME, Checksums, ColumnType, Convention, EngineInfo, EngineSource, Expectation, GitInfo, Host, Kind, ModelInfo,
-    ModelOrigin, RUN_FORMAT, RUN_NAME, Record, RecordError, Relation, RunInfo, SCHEMA_NAME, Verdict, atomic_write, canonical_json,
-    read_csv, read_run, schema_json, to_csv, write_csv, write_run,
+    ModelOrigin, RUN_FORMAT, RUN_NAME, Relation, ResultsError, Row, RunInfo, SCHEMA_NAME, Verdict, atomic_write, canonical_json, read_csv,
+    read_run, schema_json, to_csv, write_csv, write_run,
 };
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
@@ -27,22 +27,24 @@ fn word<T: Copy + std::fmt::Debug + 'static>(all: &'static [T]) -> impl Strategy
 
 prop_compose! {
     fn any_record()(
-        names in prop::collection::vec(text(), 15),
+        names in prop::collection::vec(text(), 17),
         sizes in prop::collection::vec(prop::option::of(any::<u64>()), 4),
-        numbers in prop::collection::vec(finite(), 4),
+        numbers in prop::collection::vec(finite(), 6),
+        flags in prop::collection::vec(any::<bool>(), 2),
         kind in word(Kind::ALL),
         relation in prop::option::of(word(Relation::ALL)),
         verdict in prop::sample::select(&[Verdict::Fail, Verdict::Info, Verdict::Skip, Verdict::Error, Verdict::Deviation][..]),
-    ) -> Record {
+    ) -> Row {
         let mut names = names.into_iter();
         let mut next = || names.next().unwrap_or_default();
-        Record {
-            run: next(), cell: next(), study: next(), problem: next(), model: next(),
+        Row {
+            run: next(), cell: next(), study: next(), family: next(), robot: next(),
             nq: sizes[0], nv: sizes[1], bodies: sizes[2], depth: sizes[3],
             params: canonical_json(&serde_json::json!({"k": next()})),
-            engine: next(), engine_version: next(), method: next(), scalar: next(), quantity: next(), case: next(), metric: next(),
-            kind, value: numbers[0], unit: next(), reference: next(), relation, bound: numbers[1], floor: numbers[2], margin: numbers[3],
-            verdict, reason: next(),
+            engine: next(), engine_version: next(), method: next(), precision: next(), quantity: next(), states: next(), body: next(), cache: next(),
+            metric: next(),
+            kind, value: numbers[0], ci_low: numbers[4], ci_high: numbers[5], unit: next(), reference: next(), relation, bound: numbers[1], floor: numbers[2], margin: numbers[3],
+            verdict, valid: flags[0], estimated: flags[1], reason: next(),
         }
     }
 }
@@ -54,19 +56,19 @@ proptest! {
     fn a_row_survives_csv_and_json(record in any_record()) {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("rows.csv");
-        let rows = vec![record.clone(), Record::default(), record.clone()];
+        let rows = vec![record.clone(), Row::default(), record.clone()];
         write_csv(&path, &rows).unwrap();
         let read = read_csv(&path).unwrap();
         prop_assert_eq!(&read, &rows);
         // Equality of doubles forgets the sign of zero; bits don't.
         prop_assert_eq!(read[0].value.map(f64::to_bits), record.value.map(f64::to_bits));
         let json = serde_json::to_string(&record).unwrap();
-        prop_assert_eq!(serde_json::from_str::<Record>(&json).unwrap(), record);
+        prop_assert_eq!(serde_json::from_str::<Row>(&json).unwrap(), record);
     }
 
     #[test]
     fn gated_rows_survive_too(value in any::<f64>(), bound in any::<f64>(), relation in word(Relation::ALL)) {
-        let row = Record { metric: "scaled".into(), ..Record::default() }.gated(value, relation, bound);
+        let row = Row { metric: "scaled".into(), ..Row::default() }.gated(value, relation, bound);
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("rows.csv");
         write_csv(&path, std::slice::from_ref(&row)).unwrap();
@@ -119,7 +121,7 @@ fn struct_header_and_schema_agree() {
 
     // The struct's own order, as serde sees it.
     let mut writer = csv::Writer::from_writer(Vec::new());
-    writer.serialize(Record::default()).unwrap();
+    writer.serialize(Row::default()).unwrap();
     let by_struct = String::from_utf8(writer.into_inner().unwrap()).unwrap();
     assert_eq!(by_struct.lines().next().unwrap(), names.join(","));
     let by_writer = String::from_utf8(to_csv(&[], Path::new("x")).unwrap()).unwrap();
@@ -128,13 +130,15 @@ fn struct_header_and_schema_agree() {
     let schema: serde_json::Value = serde_json::from_str(&schema_json()).unwrap();
     let columns = schema["columns"].as_array().unwrap();
     assert_eq!(schema["file"], CSV_NAME);
-    let row = serde_json::to_value(Record {
+    let row = serde_json::to_value(Row {
         nq: Some(1),
         nv: Some(1),
         bodies: Some(1),
         depth: Some(1),
         floor: Some(0.5),
-        ..Record::default().gated(0.5, Relation::Le, 1.5)
+        ci_low: Some(0.25),
+        ci_high: Some(0.75),
+        ..Row::default().gated(0.5, Relation::Le, 1.5)
     })
     .unwrap();
     assert_eq!(row.as_object().unwrap().len(), columns.len());
@@ -146,6 +150,7 @@ fn struct_header_and_schema_agree() {
             "text" => value.is_string(),
             "integer" => value.is_u64(),
             "float" => value.is_f64(),
+            "flag" => value.is_boolean(),
             "word" => column["words"].as_array().unwrap().contains(value),
             other => panic!("unknown type {other}"),
         };
@@ -167,10 +172,10 @@ fn words_are_those_of_the_schema() {
 }
 
 /// Three honest rows as text, and what reading them says after `change`.
-fn after(change: impl Fn(String) -> String) -> RecordError {
+fn after(change: impl Fn(String) -> String) -> ResultsError {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("rows.csv");
-    let row = |value| Record { engine: "mujoco".into(), nv: Some(7), ..Record::default() }.gated(value, Relation::Le, 1e-14);
+    let row = |value| Row { engine: "mujoco".into(), nv: Some(7), ..Row::default() }.gated(value, Relation::Le, 1e-14);
     let text = String::from_utf8(to_csv(&[row(1e-16), row(2.5e-15), row(1e-13)], &path).unwrap()).unwrap();
     fs::write(&path, change(text)).unwrap();
     read_csv(&path).expect_err("the file was damaged")
@@ -194,13 +199,13 @@ fn damage_is_named_with_file_line_and_column() {
     assert!(message.contains("rows.csv:4: the file ends in the middle of a row"), "{message}");
     let message = after(|text| text.replacen("mujoco,", "", 1)).to_string();
     assert!(message.contains("rows.csv:2: 26 fields instead of 27"), "{message}");
-    assert!(matches!(after(|_| String::new()), RecordError::Header { position: 1, .. }));
+    assert!(matches!(after(|_| String::new()), ResultsError::Header { position: 1, .. }));
 }
 
 #[test]
 fn every_truncation_is_an_error() {
     let folder = tempfile::tempdir().unwrap();
-    let row = Record { model: "a\nb".into(), reason: "x,\"y\"".into(), ..Record::default() }.informed(0.1);
+    let row = Row { robot: "a\nb".into(), reason: "x,\"y\"".into(), ..Row::default() }.informed(0.1);
     write_run(folder.path(), &RunInfo::default(), &[row.clone(), row]).unwrap();
     for name in [CSV_NAME, RUN_NAME] {
         let path = folder.path().join(name);
@@ -241,9 +246,9 @@ fn run_info() -> RunInfo {
         live: false,
         rows: 1,
         engines: vec![EngineInfo {
-            name: "native".into(),
+            name: "featherbench".into(),
             version: "0.1.0".into(),
-            source: EngineSource::Native,
+            source: EngineSource::Own,
             build: BTreeMap::from([("fma".into(), "on".into())]),
             status: "ok".into(),
             reason: "".into(),
@@ -263,8 +268,8 @@ fn run_info() -> RunInfo {
         seconds: BTreeMap::from([("accuracy".into(), 0.1)]),
         expected: vec![Expectation { what: "id".into(), expected: 2, found: 1, verdict: Verdict::Fail, reason: "one is missing".into() }],
         conventions: vec![Convention {
-            engine: "native".into(),
-            subject: "free q".into(),
+            engine: "featherbench".into(),
+            topic: "free q".into(),
             theirs: "wxyz".into(),
             ours: "xyzw".into(),
             conversion: "".into(),
@@ -276,7 +281,7 @@ fn run_info() -> RunInfo {
 #[test]
 fn a_run_survives_its_folder() {
     let folder = tempfile::tempdir().unwrap();
-    let rows = [Record::default().informed(0.1)];
+    let rows = [Row::default().informed(0.1)];
     write_run(&folder.path().join("new/run"), &run_info(), &rows).unwrap();
     let (run, read) = read_run(&folder.path().join("new/run")).unwrap();
     assert_eq!(run, run_info());
@@ -287,7 +292,7 @@ fn a_run_survives_its_folder() {
 #[test]
 fn a_run_that_was_altered_is_refused() {
     let folder = tempfile::tempdir().unwrap();
-    write_run(folder.path(), &run_info(), &[Record::default()]).unwrap();
+    write_run(folder.path(), &run_info(), &[Row::default()]).unwrap();
     let path = folder.path().join(RUN_NAME);
     let text = fs::read_to_string(&path).unwrap();
     let read = |change: &str, to: &str| {
@@ -305,8 +310,8 @@ fn a_run_that_was_altered_is_refused() {
 fn numbers_that_are_not_finite_are_never_written() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("rows.csv");
-    let row = Record { value: Some(f64::NAN), ..Record::default() };
-    let error = write_csv(&path, &[Record::default(), row]).unwrap_err().to_string();
+    let row = Row { value: Some(f64::NAN), ..Row::default() };
+    let error = write_csv(&path, &[Row::default(), row]).unwrap_err().to_string();
     assert!(error.contains("value of row 2"), "{error}");
     let run = RunInfo { seconds: BTreeMap::from([("timing".into(), f64::INFINITY)]), ..run_info() };
     let error = run.write(&path).unwrap_err().to_string();
@@ -356,17 +361,17 @@ fn raw(line: &str) -> Vec<&str> {
 /// after. A column that is empty there is guessed to be text, which every field is.
 #[test]
 fn the_first_hundred_rows_do_not_mislead_about_the_rest() {
-    let ratio = Record {
+    let ratio = Row {
         run: "today".into(),
-        engine: "native".into(),
+        engine: "featherbench".into(),
         engine_version: "0.1.0".into(),
         unit: "1".into(),
         nv: Some(7),
-        ..Record::default()
+        ..Row::default()
     }
     .gated(1.0, Relation::Le, 2.0);
-    let time = Record { unit: "1/ns".into(), floor: Some(0.5), ..ratio.clone() }.informed(25.9);
-    let rows: Vec<Record> = std::iter::repeat_n(ratio, 200).chain(std::iter::repeat_n(time, 200)).collect();
+    let time = Row { unit: "1/ns".into(), floor: Some(0.5), ..ratio.clone() }.informed(25.9);
+    let rows: Vec<Row> = std::iter::repeat_n(ratio, 200).chain(std::iter::repeat_n(time, 200)).collect();
     let text = String::from_utf8(to_csv(&rows, Path::new("x")).unwrap()).unwrap();
     let lines: Vec<Vec<&str>> = text.lines().skip(1).map(raw).collect();
     assert!(lines.len() == 400 && lines.iter().all(|line| line.len() == COLUMNS.len()));
@@ -377,6 +382,7 @@ fn the_first_hundred_rows_do_not_mislead_about_the_rest() {
             ColumnType::Text | ColumnType::Word => "text",
             ColumnType::Integer => "integer",
             ColumnType::Float => "float",
+            ColumnType::Flag => "truth value",
         };
         assert!(first == "nothing" || first == due, "{}: {first}", column.name);
         assert!(first == "nothing" || rest == "nothing" || rest == first, "{}: {first}, then {rest}", column.name);

@@ -1,4 +1,4 @@
-//! The native kernels under criterion: the registry that the agreement study checks and the timing study times, on the same robots and
+//! Our own kernels under criterion: the registry that the agreement study checks and the timing study times, on the same robots and
 //! states; and forward dynamics in single precision, which the digits study checks and no run times.
 //!
 //! A group is an algorithm and method, an id a robot and a regime: `stream` goes round a thousand random states, `hot` stays at one. The
@@ -7,8 +7,8 @@
 
 use criterion::measurement::WallTime;
 use criterion::{BenchmarkGroup, BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
-use featherbench_bench::{Problem, Quantity, Subject};
-use featherbench_engines::{Native, timed};
+use featherbench_bench::{Engine, Quantity, Robot};
+use featherbench_engines::{Featherbench, timed};
 use featherbench_model::StateBatch;
 use featherbench_model::generate::Family;
 use featherbench_results::ModelOrigin;
@@ -33,54 +33,54 @@ const SEED: u64 = 1;
 /// What is timed here alone: no peer computes in single precision.
 const SINGLE: [(Quantity, &str); 2] = [(Quantity::ForwardDynamicsSingle, "aba"), (Quantity::ForwardDynamicsSingle, "ltdl")];
 
-fn problem(spec: &str) -> Problem {
+fn robot(spec: &str) -> Robot {
     let description = Family::parse(spec).expect("a family").generate().expect("a robot");
-    Problem::new(&description, "bench", ModelOrigin::Generated, 1, SEED).expect("a valid robot")
+    Robot::new(&description, "bench", ModelOrigin::Generated, 1, SEED).expect("a valid robot")
 }
 
 /// Whether there is an answer at every state.
-fn answers(problem: &Problem, states: &StateBatch, quantity: Quantity, method: &str) -> bool {
-    let native = Native::new();
-    native.prepare(problem, quantity, method, states).is_ok_and(|mut prepared| prepared.run(0..states.count()).is_ok())
+fn answers(robot: &Robot, states: &StateBatch, quantity: Quantity, method: &str) -> bool {
+    let featherbench = Featherbench::new();
+    featherbench.prepare(robot, quantity, method, states).is_ok_and(|mut prepared| prepared.run(0..states.count()).is_ok())
 }
 
 fn kernels(criterion: &mut Criterion) {
-    let problems: Vec<(Problem, StateBatch)> = ROBOTS
+    let robots: Vec<(Robot, StateBatch)> = ROBOTS
         .into_iter()
         .map(|spec| {
-            let problem = problem(spec);
-            let numbers = problem.states.nq + 3 * problem.states.nv + 6 * problem.states.bodies;
-            let states = StateBatch::random(&problem.model, STREAM.min(1 + MOST_NUMBERS / numbers), SEED);
-            (problem, states)
+            let robot = robot(spec);
+            let numbers = robot.states.nq + 3 * robot.states.nv + 6 * robot.states.bodies;
+            let states = StateBatch::random(&robot.model, STREAM.min(1 + MOST_NUMBERS / numbers), SEED);
+            (robot, states)
         })
         .collect();
     // Criterion wants one group at a time: the robots of each kernel, in the order of the registry.
     let mut groups: BTreeMap<(usize, Quantity, &str), Vec<usize>> = BTreeMap::new();
-    for (robot, (problem, states)) in problems.iter().enumerate() {
-        for (place, (quantity, method)) in timed(problem).into_iter().chain(SINGLE).enumerate() {
+    for (index, (robot, states)) in robots.iter().enumerate() {
+        for (place, (quantity, method)) in timed(robot).into_iter().chain(SINGLE).enumerate() {
             // In single precision the mass matrix of a long chain has no factors: without an answer there is no time.
-            if SINGLE.contains(&(quantity, method)) && !answers(problem, states, quantity, method) {
+            if SINGLE.contains(&(quantity, method)) && !answers(robot, states, quantity, method) {
                 continue;
             }
-            groups.entry((place, quantity, method)).or_default().push(robot);
+            groups.entry((place, quantity, method)).or_default().push(index);
         }
     }
-    for ((_, quantity, method), robots) in groups {
+    for ((_, quantity, method), indices) in groups {
         let mut group = criterion.benchmark_group(format!("{}/{method}", quantity.name()));
-        for robot in robots {
-            let (problem, states) = &problems[robot];
-            group.throughput(Throughput::Elements(problem.states.nv as u64));
-            bench(&mut group, problem, states, quantity, method);
+        for index in indices {
+            let (robot, states) = &robots[index];
+            group.throughput(Throughput::Elements(robot.states.nv as u64));
+            bench(&mut group, robot, states, quantity, method);
         }
         group.finish();
     }
 }
 
-fn bench(group: &mut BenchmarkGroup<WallTime>, problem: &Problem, states: &StateBatch, quantity: Quantity, method: &str) {
-    let native = Native::new();
+fn bench(group: &mut BenchmarkGroup<WallTime>, robot: &Robot, states: &StateBatch, quantity: Quantity, method: &str) {
+    let featherbench = Featherbench::new();
     for (regime, count) in [("stream", states.count()), ("hot", 1)] {
-        group.bench_function(BenchmarkId::new(&problem.name, regime), |bencher| {
-            let mut prepared = native.prepare(problem, quantity, method, states).expect("a native kernel");
+        group.bench_function(BenchmarkId::new(&robot.name, regime), |bencher| {
+            let mut prepared = featherbench.prepare(robot, quantity, method, states).expect("an own kernel");
             let mut state = 0;
             bencher.iter(|| {
                 prepared.run(state..state + 1).expect("an answer");

@@ -1,19 +1,19 @@
-//! Agreement: one and the same model through every engine, every quantity by every method, against the native kernels.
+//! Agreement: one and the same model through every engine, every quantity by every method, against our own kernels.
 //!
-//! Until extended precision is at hand the reference is native f64 and is called so; the rows with another engine as `reference` compare
+//! Until extended precision is at hand the reference is our f64 and is called so; the rows with another engine as `reference` compare
 //! engines with each other, so that a reader can see who stands alone.
 
 use crate::accuracy::over_best;
 use crate::row;
 use featherbench_bench::measure::{ForwardScale, Magnitudes, scaled_error, worst};
-use featherbench_bench::{Cell, Context, DENSE_LIMIT, Finished, Outcome, Problem, Quantity, Refusal, Study, Subject};
+use featherbench_bench::{Cell, Context, DENSE_LIMIT, Engine, Finished, NoAnswer, Outcome, Quantity, Robot, Study};
 use featherbench_dynamics::Rnea;
 use featherbench_model::{Case, Model};
-use featherbench_results::{Record, Verdict};
+use featherbench_results::{Row, Verdict};
 use serde_json::json;
 
-/// The subject that everything is compared with.
-const REFERENCE: &str = "native";
+/// The engine that everything is compared with.
+const REFERENCE: &str = "featherbench";
 
 /// What every engine is asked.
 pub(crate) const QUANTITIES: [Quantity; 15] = [
@@ -44,11 +44,11 @@ impl Study for Agreement {
 
     fn plan(&self, context: &Context) -> Vec<Cell> {
         let mut cells = Vec::new();
-        for problem in context.problems.iter().filter(|problem| problem.takes(self.name())) {
-            for subject in context.subjects {
-                for quantity in QUANTITIES.into_iter().filter(|&quantity| asked(problem, quantity)) {
-                    let methods = subject.methods(quantity);
-                    cells.extend(methods.into_iter().map(|method| cell(problem, subject.as_ref(), quantity, method)));
+        for robot in context.robots.iter().filter(|robot| robot.takes(self.name())) {
+            for engine in context.engines {
+                for quantity in QUANTITIES.into_iter().filter(|&quantity| asked(robot, quantity)) {
+                    let methods = engine.methods(quantity);
+                    cells.extend(methods.into_iter().map(|method| cell(robot, engine.as_ref(), quantity, method)));
                 }
             }
         }
@@ -59,24 +59,24 @@ impl Study for Agreement {
         crate::evaluate(context, cell)
     }
 
-    fn compare(&self, context: &Context, problem: &Problem, finished: &[Finished]) -> Vec<Record> {
-        let at = problem.magnitudes();
-        let forward = ForwardScale::all(problem, &at);
-        let comparison = Comparison { context, problem, finished, at, forward };
+    fn compare(&self, context: &Context, robot: &Robot, finished: &[Finished]) -> Vec<Row> {
+        let at = robot.magnitudes();
+        let forward = ForwardScale::all(robot, &at);
+        let comparison = Comparison { context, robot, finished, at, forward };
         let mut rows = comparison.conditioning();
         for item in finished {
             rows.extend(comparison.rows(item));
         }
         rows.extend(comparison.pairs());
         rows.extend(comparison.on_readback());
-        rows.extend(over_best(REFERENCE, problem, finished, &comparison.at, &comparison.forward));
+        rows.extend(over_best(REFERENCE, robot, finished, &comparison.at, &comparison.forward));
         rows
     }
 }
 
 /// Whether a quantity is asked of a robot: the whole mass matrix of small ones, a probe of big ones.
-pub(crate) fn asked(problem: &Problem, quantity: Quantity) -> bool {
-    let big = problem.states.nv > DENSE_LIMIT;
+pub(crate) fn asked(robot: &Robot, quantity: Quantity) -> bool {
+    let big = robot.states.nv > DENSE_LIMIT;
     match quantity {
         Quantity::MassMatrix => !big,
         Quantity::MassMatrixProbe => big,
@@ -84,14 +84,14 @@ pub(crate) fn asked(problem: &Problem, quantity: Quantity) -> bool {
     }
 }
 
-fn cell(problem: &Problem, subject: &dyn Subject, quantity: Quantity, method: String) -> Cell {
-    let identity = subject.identity();
+fn cell(robot: &Robot, engine: &dyn Engine, quantity: Quantity, method: String) -> Cell {
+    let identity = engine.identity();
     Cell {
         study: "agreement".into(),
-        problem: problem.name.clone(),
-        problem_hash: problem.hash.clone(),
-        params: json!({"base": problem.base(), "joints": problem.joint_kinds(), "states": quantity.states(problem.states.count())}),
-        subject: identity.name.clone(),
+        robot: robot.name.clone(),
+        robot_hash: robot.hash.clone(),
+        params: json!({"base": robot.base(), "joints": robot.joint_kinds(), "states": quantity.states(robot.states.count())}),
+        engine: identity.name.clone(),
         version: identity.version.clone(),
         method,
         quantity: quantity.name().into(),
@@ -101,40 +101,40 @@ fn cell(problem: &Problem, subject: &dyn Subject, quantity: Quantity, method: St
 
 struct Comparison<'a> {
     context: &'a Context<'a>,
-    problem: &'a Problem,
+    robot: &'a Robot,
     finished: &'a [Finished],
     at: Vec<Magnitudes>,
     forward: Vec<ForwardScale<'a>>,
 }
 
 impl Comparison<'_> {
-    /// The native answer by the usual method.
+    /// Our answer by the usual method.
     fn reference(&self, quantity: Quantity) -> Option<&Finished> {
-        self.finished.iter().find(|(cell, _)| cell.subject == REFERENCE && cell.quantity == quantity.name())
+        self.finished.iter().find(|(cell, _)| cell.engine == REFERENCE && cell.quantity == quantity.name())
     }
 
     /// How badly scaled M is, per case: the worst states tell how much an error may grow.
-    fn conditioning(&self) -> Vec<Record> {
+    fn conditioning(&self) -> Vec<Row> {
         let Some((cell, _)) = self.reference(Quantity::ForwardDynamics) else { return Vec::new() };
         let per_state: Vec<f64> = self.forward.iter().map(|scale| scale.condition).collect();
         self.per_case(&per_state)
             .into_iter()
             .map(|(case, value, _)| {
-                let row = Record { case: case.name().into(), metric: "kappa_scaled".into(), unit: "1".into(), ..row(cell, self.problem) };
+                let row = Row { states: case.name().into(), metric: "kappa_scaled".into(), unit: "1".into(), ..row(cell, self.robot) };
                 self.context.gates.explain(row.informed(value))
             })
             .collect()
     }
 
     /// The rows of one finished cell.
-    fn rows(&self, (cell, outcome): &Finished) -> Vec<Record> {
+    fn rows(&self, (cell, outcome): &Finished) -> Vec<Row> {
         let Some(quantity) = Quantity::parse(&cell.quantity) else { return Vec::new() };
         let values = match outcome {
             Outcome::Values(values) => values,
             Outcome::Reading(_) => return Vec::new(),
-            Outcome::Refused(refusal) => {
-                let verdict = if matches!(refusal, Refusal::Unsupported(_)) { Verdict::Skip } else { Verdict::Error };
-                let row = Record { reference: REFERENCE.into(), ..row(cell, self.problem) };
+            Outcome::NoAnswer(refusal) => {
+                let verdict = if matches!(refusal, NoAnswer::NotOffered(_)) { Verdict::Skip } else { Verdict::Error };
+                let row = Row { reference: REFERENCE.into(), ..row(cell, self.robot) };
                 return vec![self.context.gates.explain(row.without_value(verdict, refusal.to_string()))];
             }
         };
@@ -147,24 +147,24 @@ impl Comparison<'_> {
         }
         let errors = match self.reference(quantity).map(|(_, outcome)| outcome.values()) {
             Some(Some(reference)) => self.errors(quantity, reference, values),
-            _ if quantity == Quantity::Readback => self.errors(quantity, &self.problem.readback(), values),
-            _ => return vec![row(cell, self.problem).without_value(Verdict::Error, "the native reference has no value")],
+            _ if quantity == Quantity::Readback => self.errors(quantity, &self.robot.readback(), values),
+            _ => return vec![row(cell, self.robot).without_value(Verdict::Error, "our reference has no value")],
         };
         self.judged(cell, "scaled", &errors, None)
     }
 
     /// Backward error by our inverse dynamics, and forward error in the kinetic-energy norm.
-    fn forward_rows(&self, cell: &Cell, values: &[f64]) -> Vec<Record> {
-        let states = values.chunks_exact(self.problem.states.nv);
+    fn forward_rows(&self, cell: &Cell, values: &[f64]) -> Vec<Row> {
+        let states = values.chunks_exact(self.robot.states.nv);
         let backward: Vec<f64> = states.clone().zip(&self.forward).map(|(a, scale)| scale.backward_error(a)).collect();
         let mut rows = self.judged(cell, "backward", &backward, None);
         if let Some((reference, outcome)) = self.reference(Quantity::ForwardDynamics).filter(|(reference, _)| reference != cell) {
             let Some(reference_values) = outcome.values() else {
-                let reason = format!("the native reference {} has no value", reference.method);
-                rows.push(self.context.gates.explain(row(cell, self.problem).without_value(Verdict::Error, reason)));
+                let reason = format!("our reference {} has no value", reference.method);
+                rows.push(self.context.gates.explain(row(cell, self.robot).without_value(Verdict::Error, reason)));
                 return rows;
             };
-            let pairs = states.zip(reference_values.chunks_exact(self.problem.states.nv)).zip(&self.forward);
+            let pairs = states.zip(reference_values.chunks_exact(self.robot.states.nv)).zip(&self.forward);
             let forward: Vec<f64> = pairs.map(|((a, reference), scale)| scale.forward_error(reference, a)).collect();
             let amplification: Vec<f64> = self.forward.iter().map(|scale| scale.amplification).collect();
             rows.extend(self.judged(cell, "forward", &forward, Some(&amplification)));
@@ -174,13 +174,13 @@ impl Comparison<'_> {
 
     /// The scaled error at each state.
     fn errors(&self, quantity: Quantity, reference: &[f64], values: &[f64]) -> Vec<f64> {
-        let size = quantity.size(self.problem);
+        let size = quantity.size(self.robot);
         let states = reference.chunks_exact(size).zip(values.chunks_exact(size)).zip(&self.at);
-        states.map(|((reference, value), at)| scaled_error(self.problem, quantity, at, reference, value)).collect()
+        states.map(|((reference, value), at)| scaled_error(self.robot, quantity, at, reference, value)).collect()
     }
 
     /// One judged row per case: its worst state, the one nearest to its bound where bounds differ.
-    fn judged(&self, cell: &Cell, metric: &str, errors: &[f64], amplification: Option<&[f64]>) -> Vec<Record> {
+    fn judged(&self, cell: &Cell, metric: &str, errors: &[f64], amplification: Option<&[f64]>) -> Vec<Row> {
         let relative: Vec<f64> = match amplification {
             Some(amplification) => {
                 errors.iter().zip(amplification).map(|(error, growth)| featherbench_bench::measure::ratio(*error, *growth)).collect()
@@ -190,12 +190,12 @@ impl Comparison<'_> {
         self.per_case(&relative)
             .into_iter()
             .map(|(case, _, state)| {
-                let row = Record {
-                    case: case.name().into(),
+                let row = Row {
+                    states: case.name().into(),
                     metric: metric.into(),
                     unit: "1".into(),
-                    reference: if metric == "backward" { "native id".into() } else { REFERENCE.into() },
-                    ..row(cell, self.problem)
+                    reference: if metric == "backward" { "featherbench id".into() } else { REFERENCE.into() },
+                    ..row(cell, self.robot)
                 };
                 self.context.gates.judge(row, errors[state], amplification.map_or(1.0, |growth| growth[state]))
             })
@@ -205,7 +205,7 @@ impl Comparison<'_> {
     /// The worst value of each case and its state, in the order of first appearance. A NaN is the worst of all.
     fn per_case(&self, values: &[f64]) -> Vec<(Case, f64, usize)> {
         let mut cases: Vec<(Case, f64, usize)> = Vec::new();
-        for (state, (&case, &value)) in self.problem.states.cases.iter().zip(values).enumerate() {
+        for (state, (&case, &value)) in self.robot.states.cases.iter().zip(values).enumerate() {
             match cases.iter_mut().find(|(known, ..)| *known == case) {
                 None => cases.push((case, value, state)),
                 Some((_, found, at)) => {
@@ -219,12 +219,12 @@ impl Comparison<'_> {
     }
 
     /// Engines against each other: the worst state of each pair's usual methods.
-    fn pairs(&self) -> Vec<Record> {
+    fn pairs(&self) -> Vec<Row> {
         let mut rows = Vec::new();
         for quantity in QUANTITIES.into_iter().filter(|&quantity| quantity != Quantity::Readback) {
             let mut usual: Vec<&Finished> = Vec::new();
             for item in self.finished.iter().filter(|(cell, _)| cell.quantity == quantity.name()) {
-                if usual.iter().all(|(cell, _)| cell.subject != item.0.subject) {
+                if usual.iter().all(|(cell, _)| cell.engine != item.0.engine) {
                     usual.push(item);
                 }
             }
@@ -236,12 +236,12 @@ impl Comparison<'_> {
                         } else {
                             self.errors(quantity, others, values)
                         };
-                        let row = Record {
-                            case: "all".into(),
+                        let row = Row {
+                            states: "all".into(),
                             metric: "pairwise".into(),
                             unit: "1".into(),
-                            reference: other.subject.clone(),
-                            ..row(cell, self.problem)
+                            reference: other.engine.clone(),
+                            ..row(cell, self.robot)
                         };
                         rows.push(self.context.gates.explain(row.informed(errors.into_iter().fold(0.0, worst))));
                     }
@@ -252,22 +252,22 @@ impl Comparison<'_> {
     }
 
     /// Each engine's inverse dynamics against ours *on the model that it read back*: what is left is the algorithm's.
-    fn on_readback(&self) -> Vec<Record> {
+    fn on_readback(&self) -> Vec<Row> {
         let mut rows = Vec::new();
         for (built, outcome) in
-            self.finished.iter().filter(|(cell, _)| cell.quantity == Quantity::Readback.name() && cell.subject != REFERENCE)
+            self.finished.iter().filter(|(cell, _)| cell.quantity == Quantity::Readback.name() && cell.engine != REFERENCE)
         {
             let usual =
-                self.finished.iter().find(|(cell, _)| cell.subject == built.subject && cell.quantity == Quantity::InverseDynamics.name());
+                self.finished.iter().find(|(cell, _)| cell.engine == built.engine && cell.quantity == Quantity::InverseDynamics.name());
             let (Some(readback), Some((cell, answered))) = (outcome.values(), usual) else { continue };
             let (Some(values), Some(ours)) = (answered.values(), self.inverse_dynamics_of(readback)) else { continue };
             let errors = self.errors(Quantity::InverseDynamics, &ours, values);
-            let row = Record {
-                case: "all".into(),
+            let row = Row {
+                states: "all".into(),
                 metric: "scaled_on_readback".into(),
                 unit: "1".into(),
-                reference: "native on the model read back".into(),
-                ..row(cell, self.problem)
+                reference: "featherbench on the model read back".into(),
+                ..row(cell, self.robot)
             };
             rows.push(self.context.gates.explain(row.informed(errors.into_iter().fold(0.0, worst))));
         }
@@ -276,7 +276,7 @@ impl Comparison<'_> {
 
     /// Our inverse dynamics at every state, of the robot with these inertias and placements.
     fn inverse_dynamics_of(&self, readback: &[f64]) -> Option<Vec<f64>> {
-        let mut description = self.problem.description.clone();
+        let mut description = self.robot.description.clone();
         for (body, numbers) in description.bodies.iter_mut().zip(readback.chunks_exact(22)) {
             body.mass = numbers[0];
             body.com.copy_from_slice(&numbers[1..4]);
@@ -285,7 +285,7 @@ impl Comparison<'_> {
             body.joint.placement.translation.copy_from_slice(&numbers[19..22]);
         }
         let model = Model::<f64>::build(&description).ok()?;
-        let states = &self.problem.states;
+        let states = &self.robot.states;
         let mut rnea = Rnea::new(&model.topology);
         let mut all = vec![0.0; states.count() * states.nv];
         for (k, tau) in all.chunks_exact_mut(states.nv).enumerate() {
@@ -295,7 +295,7 @@ impl Comparison<'_> {
     }
 
     fn forward_differences(&self, reference: &[f64], values: &[f64]) -> Vec<f64> {
-        let nv = self.problem.states.nv;
+        let nv = self.robot.states.nv;
         let states = reference.chunks_exact(nv).zip(values.chunks_exact(nv)).zip(&self.forward);
         states.map(|((reference, value), scale)| scale.forward_error(reference, value)).collect()
     }

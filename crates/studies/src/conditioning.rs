@@ -6,9 +6,9 @@
 
 use crate::row;
 use featherbench_bench::truth::structured_floor;
-use featherbench_bench::{Cell, Context, Finished, Outcome, Problem, Quantity, Refusal, Study};
+use featherbench_bench::{Cell, Context, Finished, NoAnswer, Outcome, Quantity, Robot, Study};
 use featherbench_dynamics::mass_matrix;
-use featherbench_results::{Record, Verdict};
+use featherbench_results::{Row, Verdict};
 use nalgebra::DMatrix;
 use serde_json::json;
 
@@ -24,51 +24,51 @@ impl Study for Conditioning {
     }
 
     fn plan(&self, context: &Context) -> Vec<Cell> {
-        let Some(native) = context.subject("native") else { return Vec::new() };
-        let problems = context.problems.iter().filter(|problem| problem.takes(self.name()) && problem.states.nv <= MOST_DOFS);
-        let cell = |problem: &Problem| Cell {
+        let Some(featherbench) = context.engine("featherbench") else { return Vec::new() };
+        let robots = context.robots.iter().filter(|robot| robot.takes(self.name()) && robot.states.nv <= MOST_DOFS);
+        let cell = |robot: &Robot| Cell {
             study: self.name().into(),
-            problem: problem.name.clone(),
-            problem_hash: problem.hash.clone(),
+            robot: robot.name.clone(),
+            robot_hash: robot.hash.clone(),
             params: json!({"configuration": "straight"}),
-            subject: native.identity().name.clone(),
-            version: native.identity().version.clone(),
+            engine: featherbench.identity().name.clone(),
+            version: featherbench.identity().version.clone(),
             method: "eigenvalues".into(),
             quantity: Quantity::MassMatrix.name().into(),
             scalar: "f64".into(),
         };
-        problems.map(cell).collect()
+        robots.map(cell).collect()
     }
 
     fn evaluate(&self, context: &Context, cell: &Cell) -> Outcome {
-        let problem = context.problem(&cell.problem).ok_or_else(|| Refusal::Failed("there is no problem of this cell".into()));
-        problem
-            .and_then(|problem| conditions(problem).ok_or_else(|| Refusal::Failed("M is singular at the straight configuration".into())))
+        let robot = context.robot(&cell.robot).ok_or_else(|| NoAnswer::Failed("there is no robot of this cell".into()));
+        robot
+            .and_then(|robot| conditions(robot).ok_or_else(|| NoAnswer::Failed("M is singular at the straight configuration".into())))
             .into()
     }
 
-    fn compare(&self, context: &Context, problem: &Problem, finished: &[Finished]) -> Vec<Record> {
-        let half = context.problems.iter().find(|other| {
+    fn compare(&self, context: &Context, robot: &Robot, finished: &[Finished]) -> Vec<Row> {
+        let half = context.robots.iter().find(|other| {
             other.takes(self.name())
-                && other.family == problem.family
-                && 2 * other.states.nv == problem.states.nv
-                && other.base() == problem.base()
+                && other.family == robot.family
+                && 2 * other.states.nv == robot.states.nv
+                && other.base() == robot.base()
         });
         let mut rows = Vec::new();
         for (cell, outcome) in finished {
-            let blank = Record { case: "straight".into(), unit: "1".into(), ..row(cell, problem) };
+            let blank = Row { states: "straight".into(), unit: "1".into(), ..row(cell, robot) };
             let Some(&[raw, scaled]) = outcome.values() else {
                 rows.push(blank.without_value(Verdict::Error, "there is no condition number"));
                 continue;
             };
-            let floor = structured_floor(problem, 0).filter(|floor| floor.is_finite());
-            rows.push(Record { metric: "kappa".into(), floor, ..blank.clone() }.informed(raw));
-            rows.push(Record { metric: "kappa_scaled".into(), floor, ..blank.clone() }.informed(scaled));
+            let floor = structured_floor(robot, 0).filter(|floor| floor.is_finite());
+            rows.push(Row { metric: "kappa".into(), floor, ..blank.clone() }.informed(raw));
+            rows.push(Row { metric: "kappa_scaled".into(), floor, ..blank.clone() }.informed(scaled));
             if let Some([half_raw, half_scaled]) = half.and_then(conditions).as_deref() {
                 for (metric, ratio) in [("kappa_exponent", raw / half_raw), ("kappa_scaled_exponent", scaled / half_scaled)] {
-                    rows.push(Record { metric: metric.into(), ..blank.clone() }.informed(ratio.log2()));
+                    rows.push(Row { metric: metric.into(), ..blank.clone() }.informed(ratio.log2()));
                 }
-                let row = Record { metric: "kappa_off_quartic".into(), ..blank.clone() };
+                let row = Row { metric: "kappa_off_quartic".into(), ..blank.clone() };
                 rows.push(context.gates.judge(row, ((raw / half_raw).log2() - 4.0).abs(), 1.0));
             }
         }
@@ -77,8 +77,8 @@ impl Study for Conditioning {
 }
 
 /// κ(M) and κ(D^-½ M D^-½) at q = 0.
-fn conditions(problem: &Problem) -> Option<Vec<f64>> {
-    let model = &problem.model;
+fn conditions(robot: &Robot) -> Option<Vec<f64>> {
+    let model = &robot.model;
     let mut q = vec![0.0; model.topology.nq()];
     for joint in model.topology.joints() {
         // A quaternion's scalar part is its last number.

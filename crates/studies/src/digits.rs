@@ -11,9 +11,9 @@
 use crate::row;
 use featherbench_bench::measure::{ForwardScale, scaled_error};
 use featherbench_bench::truth::{Truth, TruthModel, structured_floor};
-use featherbench_bench::{Cell, Context, DENSE_LIMIT, Finished, Outcome, Problem, Quantity, Refusal, Study};
+use featherbench_bench::{Cell, Context, DENSE_LIMIT, Finished, NoAnswer, Outcome, Quantity, Robot, Study};
 use featherbench_dynamics::TreeSparse;
-use featherbench_results::{Record, Verdict};
+use featherbench_results::{Row, Verdict};
 use serde_json::json;
 
 /// The digits study.
@@ -41,21 +41,21 @@ impl Study for Digits {
 
     fn plan(&self, context: &Context) -> Vec<Cell> {
         let mut cells = Vec::new();
-        for problem in context.problems.iter().filter(|problem| problem.takes(self.name())) {
-            let big = problem.states.nv > DENSE_LIMIT;
-            for subject in context.subjects {
-                let identity = subject.identity();
+        for robot in context.robots.iter().filter(|robot| robot.takes(self.name())) {
+            let big = robot.states.nv > DENSE_LIMIT;
+            for engine in context.engines {
+                let identity = engine.identity();
                 for quantity in QUANTITIES {
                     let other_form = if big { Quantity::MassMatrix } else { Quantity::MassMatrixProbe };
                     if quantity == other_form {
                         continue;
                     }
-                    cells.extend(subject.methods(quantity).into_iter().map(|method| Cell {
+                    cells.extend(engine.methods(quantity).into_iter().map(|method| Cell {
                         study: self.name().into(),
-                        problem: problem.name.clone(),
-                        problem_hash: problem.hash.clone(),
-                        params: json!({"base": problem.base(), "states": problem.states.count()}),
-                        subject: identity.name.clone(),
+                        robot: robot.name.clone(),
+                        robot_hash: robot.hash.clone(),
+                        params: json!({"base": robot.base(), "states": robot.states.count()}),
+                        engine: identity.name.clone(),
                         version: identity.version.clone(),
                         method,
                         quantity: quantity.name().into(),
@@ -71,33 +71,33 @@ impl Study for Digits {
         crate::evaluate(context, cell)
     }
 
-    fn compare(&self, context: &Context, problem: &Problem, finished: &[Finished]) -> Vec<Record> {
-        let model = TruthModel::new(problem);
-        let truth: Option<Vec<Truth>> = (0..problem.states.count()).map(|k| model.as_ref()?.at(problem, k)).collect();
+    fn compare(&self, context: &Context, robot: &Robot, finished: &[Finished]) -> Vec<Row> {
+        let model = TruthModel::new(robot);
+        let truth: Option<Vec<Truth>> = (0..robot.states.count()).map(|k| model.as_ref()?.at(robot, k)).collect();
         let Some(truth) = truth else {
-            let unknown = |(cell, _): &Finished| row(cell, problem).without_value(Verdict::Error, "there is no truth for this robot");
+            let unknown = |(cell, _): &Finished| row(cell, robot).without_value(Verdict::Error, "there is no truth for this robot");
             return finished.iter().map(unknown).collect();
         };
-        let at = problem.magnitudes();
-        let forward = ForwardScale::all(problem, &at);
-        let floors = if problem.states.nv <= FLOOR_DOFS { problem.states.count().min(FLOOR_STATES) } else { 0 };
-        let floors: Vec<f64> = (0..floors).map(|k| structured_floor(problem, k).unwrap_or(f64::NAN)).collect();
+        let at = robot.magnitudes();
+        let forward = ForwardScale::all(robot, &at);
+        let floors = if robot.states.nv <= FLOOR_DOFS { robot.states.count().min(FLOOR_STATES) } else { 0 };
+        let floors: Vec<f64> = (0..floors).map(|k| structured_floor(robot, k).unwrap_or(f64::NAN)).collect();
         let floor = median(&mut floors.iter().copied().filter(|floor| floor.is_finite()).collect::<Vec<_>>());
 
         let (mut rows, mut walls) = (Vec::new(), Vec::new());
         for (cell, outcome) in finished {
-            let blank = Record { reference: TRUTH.into(), unit: "1".into(), case: "all".into(), ..row(cell, problem) };
+            let blank = Row { reference: TRUTH.into(), unit: "1".into(), states: "all".into(), ..row(cell, robot) };
             let (Outcome::Values(values), Some(quantity)) = (outcome, Quantity::parse(&cell.quantity)) else {
                 let (verdict, reason) = match outcome {
-                    Outcome::Refused(Refusal::Unsupported(reason)) => (Verdict::Skip, reason.clone()),
-                    Outcome::Refused(Refusal::Failed(reason)) => (Verdict::Error, reason.clone()),
+                    Outcome::NoAnswer(NoAnswer::NotOffered(reason)) => (Verdict::Skip, reason.clone()),
+                    Outcome::NoAnswer(NoAnswer::Failed(reason)) => (Verdict::Error, reason.clone()),
                     Outcome::Values(_) | Outcome::Reading(_) => (Verdict::Error, format!("there is no quantity {}", cell.quantity)),
                 };
                 rows.push(context.gates.explain(blank.without_value(verdict, reason)));
                 continue;
             };
             if matches!(quantity, Quantity::ForwardDynamics | Quantity::ForwardDynamicsSingle) {
-                let answers = values.chunks_exact(problem.states.nv).zip(&truth).zip(&forward);
+                let answers = values.chunks_exact(robot.states.nv).zip(&truth).zip(&forward);
                 let Some(errors) = answers
                     .map(|((a, truth), scale)| Some(forward_errors(a, truth.forward_dynamics.as_ref()?, scale)))
                     .collect::<Option<Vec<_>>>()
@@ -106,37 +106,37 @@ impl Study for Digits {
                     continue;
                 };
                 if let Some(worst) = most_off(&errors) {
-                    let row = Record { metric: "true_forward".into(), floor, ..blank.clone() };
+                    let row = Row { metric: "true_forward".into(), floor, ..blank.clone() };
                     rows.push(context.gates.judge(row, worst.energy, worst.bound));
                 }
                 let mut plain: Vec<f64> = errors.iter().map(|error| error.plain).collect();
-                let blank = Record { floor, ..blank };
+                let blank = Row { floor, ..blank };
                 if quantity == Quantity::ForwardDynamics {
                     rows.extend(over_floor(context, &blank, &plain, &floors));
                     let mut residuals: Vec<f64> =
-                        values.chunks_exact(problem.states.nv).zip(&forward).map(|(a, scale)| scale.residual(a)).collect();
+                        values.chunks_exact(robot.states.nv).zip(&forward).map(|(a, scale)| scale.residual(a)).collect();
                     let typical = median(&mut residuals);
-                    rows.extend(typical.map(|residual| Record { metric: "residual_median".into(), ..blank.clone() }.informed(residual)));
+                    rows.extend(typical.map(|residual| Row { metric: "residual_median".into(), ..blank.clone() }.informed(residual)));
                 }
                 rows.extend(quartiles(context, &blank, &mut plain));
                 if quantity == Quantity::ForwardDynamics {
-                    walls.extend(median(&mut plain).map(|error| (cell.subject.clone(), error)));
+                    walls.extend(median(&mut plain).map(|error| (cell.engine.clone(), error)));
                 }
             } else {
-                let size = quantity.size(problem);
+                let size = quantity.size(robot);
                 let answers = values.chunks_exact(size).zip(&truth).zip(&at);
                 let mut errors: Vec<f64> = answers
-                    .map(|((value, truth), at)| scaled_error(problem, quantity, at, &true_value(problem, quantity, truth), value))
+                    .map(|((value, truth), at)| scaled_error(robot, quantity, at, &true_value(robot, quantity, truth), value))
                     .collect();
                 let worst = errors.iter().copied().fold(0.0, featherbench_bench::measure::worst);
-                rows.push(context.gates.judge(Record { metric: "true".into(), ..blank.clone() }, worst, 1.0));
+                rows.push(context.gates.judge(Row { metric: "true".into(), ..blank.clone() }, worst, 1.0));
                 rows.extend(quartiles(context, &blank, &mut errors));
             }
         }
         if let (Some((cell, _)), Some(standing)) = (finished.first(), at_the_wall(&walls, floor)) {
-            let row = Record { engine: "all".into(), engine_version: String::new(), method: String::new(), ..row(cell, problem) };
+            let row = Row { engine: "all".into(), engine_version: String::new(), method: String::new(), ..row(cell, robot) };
             let row =
-                Record { quantity: "fd".into(), metric: "engines_at_the_wall".into(), unit: "1".into(), case: "all".into(), floor, ..row };
+                Row { quantity: "fd".into(), metric: "engines_at_the_wall".into(), unit: "1".into(), states: "all".into(), floor, ..row };
             rows.push(row.informed(standing as f64));
         }
         rows
@@ -174,11 +174,11 @@ fn forward_errors(a: &[f64], truth: &[f64], scale: &ForwardScale) -> ForwardErro
     ForwardErrors { energy: scale.forward_error(truth, a), bound: 0.5 * scale.amplification, plain }
 }
 
-fn true_value(problem: &Problem, quantity: Quantity, truth: &Truth) -> Vec<f64> {
-    let n = problem.states.nv;
+fn true_value(robot: &Robot, quantity: Quantity, truth: &Truth) -> Vec<f64> {
+    let n = robot.states.nv;
     match quantity {
         Quantity::MassMatrix => (0..n * n).map(|entry| truth.mass.get(entry / n, entry % n)).collect(),
-        Quantity::MassMatrixProbe => probe(&truth.mass, &problem.probe()),
+        Quantity::MassMatrixProbe => probe(&truth.mass, &robot.probe()),
         _ => truth.inverse_dynamics.clone(),
     }
 }
@@ -198,22 +198,22 @@ fn probe(mass: &TreeSparse<f64>, vectors: &[f64]) -> Vec<f64> {
 }
 
 /// First quartile, median, third quartile and largest of the errors, as rows that are measured, and judged where a gate says so.
-fn quartiles(context: &Context, blank: &Record, errors: &mut [f64]) -> Vec<Record> {
+fn quartiles(context: &Context, blank: &Row, errors: &mut [f64]) -> Vec<Row> {
     sort(errors);
     let metrics = [("error_q1", 0.25), ("error_median", 0.5), ("error_q3", 0.75), ("error_worst", 1.0)];
     let rows = metrics.map(|(metric, fraction)| {
-        let row = Record { metric: metric.into(), ..blank.clone() };
+        let row = Row { metric: metric.into(), ..blank.clone() };
         context.gates.judge(row, crate::quantile(errors, fraction), 1.0)
     });
     rows.into()
 }
 
 /// The largest error over the structured floor of its state: what the algorithm adds to what rounding the inputs may do.
-fn over_floor(context: &Context, blank: &Record, errors: &[f64], floors: &[f64]) -> Option<Record> {
+fn over_floor(context: &Context, blank: &Row, errors: &[f64], floors: &[f64]) -> Option<Row> {
     let pairs = errors.iter().zip(floors).filter(|(_, floor)| floor.is_finite());
     let worst =
         pairs.map(|(error, floor)| featherbench_bench::measure::ratio(*error, *floor)).reduce(featherbench_bench::measure::worst)?;
-    let row = Record { metric: "error_over_floor".into(), ..blank.clone() };
+    let row = Row { metric: "error_over_floor".into(), ..blank.clone() };
     Some(context.gates.judge(row, worst, 1.0))
 }
 

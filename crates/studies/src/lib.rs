@@ -31,47 +31,47 @@ pub use step_limit::StepLimit;
 pub use structure::Structure;
 pub use timing::Timing;
 
-use featherbench_bench::{Cell, Context, Outcome, Problem, Quantity, Refusal, Subject};
-use featherbench_results::Record;
+use featherbench_bench::{Cell, Context, Engine, NoAnswer, Outcome, Quantity, Robot};
+use featherbench_results::Row;
 
-/// A row with everything that its cell and problem say; the study adds case, metric and value.
-fn row(cell: &Cell, problem: &Problem) -> Record {
-    Record {
+/// A row with everything that its cell and robot say; the study adds case, metric and value.
+fn row(cell: &Cell, robot: &Robot) -> Row {
+    Row {
         cell: cell.id(),
         study: cell.study.clone(),
-        problem: problem.family.clone(),
-        model: problem.name.clone(),
-        nq: Some(problem.states.nq as u64),
-        nv: Some(problem.states.nv as u64),
-        bodies: Some(problem.description.bodies.len() as u64),
-        depth: Some(problem.depth as u64),
+        family: robot.family.clone(),
+        robot: robot.name.clone(),
+        nq: Some(robot.states.nq as u64),
+        nv: Some(robot.states.nv as u64),
+        bodies: Some(robot.description.bodies.len() as u64),
+        depth: Some(robot.depth as u64),
         params: featherbench_results::canonical_json(&cell.params),
-        engine: cell.subject.clone(),
+        engine: cell.engine.clone(),
         engine_version: cell.version.clone(),
         method: cell.method.clone(),
-        scalar: cell.scalar.clone(),
+        precision: cell.scalar.clone(),
         quantity: cell.quantity.clone(),
-        ..Record::default()
+        ..Row::default()
     }
 }
 
-/// Asks a cell's subject for its quantity at the problem's states.
+/// Asks a cell's engine for its quantity at the robot's states.
 fn evaluate(context: &Context, cell: &Cell) -> Outcome {
-    let lost = |what: &str| Outcome::Refused(Refusal::Failed(format!("there is no {what} of this cell")));
-    let Some(problem) = context.problem(&cell.problem) else { return lost("problem") };
-    let Some(subject) = context.subject(&cell.subject) else { return lost("subject") };
+    let lost = |what: &str| Outcome::NoAnswer(NoAnswer::Failed(format!("there is no {what} of this cell")));
+    let Some(robot) = context.robot(&cell.robot) else { return lost("robot") };
+    let Some(engine) = context.engine(&cell.engine) else { return lost("engine") };
     let Some(quantity) = Quantity::parse(&cell.quantity) else { return lost("quantity") };
-    asked(subject, problem, quantity, &cell.method).into()
+    asked(engine, robot, quantity, &cell.method).into()
 }
 
-/// Asks a subject for a quantity at a problem's states.
-fn asked(subject: &dyn Subject, problem: &Problem, quantity: Quantity, method: &str) -> Result<Vec<f64>, Refusal> {
-    let count = quantity.states(problem.states.count());
-    let mut prepared = subject.prepare(problem, quantity, method, &problem.states)?;
+/// Asks an engine for a quantity at a robot's states.
+fn asked(engine: &dyn Engine, robot: &Robot, quantity: Quantity, method: &str) -> Result<Vec<f64>, NoAnswer> {
+    let count = quantity.states(robot.states.count());
+    let mut prepared = engine.prepare(robot, quantity, method, &robot.states)?;
     prepared.run(0..count)?;
-    let (values, due) = (prepared.read().to_vec(), count * quantity.size(problem));
+    let (values, due) = (prepared.read().to_vec(), count * quantity.size(robot));
     // Fewer states would be compared, and nobody would know.
-    if values.len() == due { Ok(values) } else { Err(Refusal::Failed(format!("{} numbers came, {due} are due", values.len()))) }
+    if values.len() == due { Ok(values) } else { Err(NoAnswer::Failed(format!("{} numbers came, {due} are due", values.len()))) }
 }
 
 /// The value below which a fraction of the sorted samples lies.

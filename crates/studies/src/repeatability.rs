@@ -8,9 +8,9 @@
 
 use crate::agreement::{self, QUANTITIES};
 use crate::{asked, row};
-use featherbench_bench::{Cell, Context, Finished, Outcome, Problem, Quantity, Refusal, Study, Subject, hash};
+use featherbench_bench::{Cell, Context, Engine, Finished, NoAnswer, Outcome, Quantity, Robot, Study, hash};
 use featherbench_model::Random;
-use featherbench_results::{EngineSource, Record, Relation, Verdict};
+use featherbench_results::{EngineSource, Relation, Row, Verdict};
 use serde_json::json;
 
 /// The repeatability study.
@@ -24,13 +24,13 @@ pub struct Repeatability {
 const PATIENCE: usize = 3;
 
 /// Something that an engine can be asked.
-type Candidate<'a> = (&'a Problem, String);
+type Candidate<'a> = (&'a Robot, String);
 
 /// The robots of the agreement study by the methods of a quantity.
-fn candidates<'a>(context: &Context<'a>, subject: &dyn Subject, quantity: Quantity) -> Vec<Candidate<'a>> {
-    let methods = subject.methods(quantity);
-    let problems = context.problems.iter().filter(|problem| problem.takes("agreement") && agreement::asked(problem, quantity));
-    problems.flat_map(|problem| methods.iter().map(move |method| (problem, method.clone()))).collect()
+fn candidates<'a>(context: &Context<'a>, engine: &dyn Engine, quantity: Quantity) -> Vec<Candidate<'a>> {
+    let methods = engine.methods(quantity);
+    let robots = context.robots.iter().filter(|robot| robot.takes("agreement") && agreement::asked(robot, quantity));
+    robots.flat_map(|robot| methods.iter().map(move |method| (robot, method.clone()))).collect()
 }
 
 /// What came of asking twice, as the values of an outcome.
@@ -75,7 +75,7 @@ fn ordered(x: f64) -> i128 {
 impl Repeatability {
     /// The order in which candidates are tried.
     fn order(&self, context: &Context, cell: &Cell, count: usize) -> Vec<usize> {
-        let mut random = Random::named(context.seed, &format!("repeatability {} {} {}", self.key, cell.subject, cell.quantity));
+        let mut random = Random::named(context.seed, &format!("repeatability {} {} {}", self.key, cell.engine, cell.quantity));
         let mut order: Vec<usize> = (0..count).collect();
         for last in (1..count).rev() {
             order.swap(last, random.below(last + 1));
@@ -96,22 +96,21 @@ impl Study for Repeatability {
 
     fn plan(&self, context: &Context) -> Vec<Cell> {
         let mut cells = Vec::new();
-        let live = context.subjects.iter().filter(|subject| subject.identity().source != EngineSource::Recorded);
-        for subject in live {
-            let identity = subject.identity();
+        let live = context.engines.iter().filter(|engine| engine.identity().source != EngineSource::Recorded);
+        for engine in live {
+            let identity = engine.identity();
             for quantity in QUANTITIES {
-                let candidates = candidates(context, subject.as_ref(), quantity);
+                let candidates = candidates(context, engine.as_ref(), quantity);
                 if candidates.is_empty() {
                     continue;
                 }
-                let parts: Vec<&[u8]> =
-                    candidates.iter().flat_map(|(problem, method)| [problem.hash.as_bytes(), method.as_bytes()]).collect();
+                let parts: Vec<&[u8]> = candidates.iter().flat_map(|(robot, method)| [robot.hash.as_bytes(), method.as_bytes()]).collect();
                 cells.push(Cell {
                     study: self.name().into(),
-                    problem: "all".into(),
-                    problem_hash: hash::of_parts(&parts),
+                    robot: "all".into(),
+                    robot_hash: hash::of_parts(&parts),
                     params: json!({"draw": self.key, "quantity": quantity.name()}),
-                    subject: identity.name.clone(),
+                    engine: identity.name.clone(),
                     version: identity.version.clone(),
                     method: "drawn".into(),
                     quantity: quantity.name().into(),
@@ -123,12 +122,12 @@ impl Study for Repeatability {
     }
 
     fn evaluate(&self, context: &Context, cell: &Cell) -> Outcome {
-        let (Some(subject), Some(quantity)) = (context.subject(&cell.subject), Quantity::parse(&cell.quantity)) else {
-            return Outcome::Refused(Refusal::Failed("there is no subject or quantity of this cell".into()));
+        let (Some(engine), Some(quantity)) = (context.engine(&cell.engine), Quantity::parse(&cell.quantity)) else {
+            return Outcome::NoAnswer(NoAnswer::Failed("there is no engine or quantity of this cell".into()));
         };
-        let candidates = candidates(context, subject, quantity);
+        let candidates = candidates(context, engine, quantity);
         let order = self.order(context, cell, candidates.len());
-        let ask = |index: usize| asked(subject, candidates[index].0, quantity, &candidates[index].1);
+        let ask = |index: usize| asked(engine, candidates[index].0, quantity, &candidates[index].1);
         let mut failures = 0;
         for (place, &index) in order.iter().enumerate() {
             match ask(index) {
@@ -136,14 +135,14 @@ impl Study for Repeatability {
                     // An answer that is merely kept would be no second one. What comes of this question is none of this study's business.
                     let other = order[place + 1..].iter().find(|&&other| candidates[other].0.hash != candidates[index].0.hash);
                     let _ = other.map(|&other| ask(other));
-                    let (problem, method) = &candidates[index];
+                    let (robot, method) = &candidates[index];
                     let again = ask(index).map_err(|refusal| {
-                        Refusal::Failed(format!("{} of {} by {method} was answered, and then not: {refusal}", cell.quantity, problem.name))
+                        NoAnswer::Failed(format!("{} of {} by {method} was answered, and then not: {refusal}", cell.quantity, robot.name))
                     });
                     return again.map(|second| Twice::new(index, &first, &second).to_values()).into();
                 }
-                Err(Refusal::Unsupported(_)) => {}
-                Err(Refusal::Failed(_)) => {
+                Err(NoAnswer::NotOffered(_)) => {}
+                Err(NoAnswer::Failed(_)) => {
                     failures += 1;
                     if failures == PATIENCE {
                         break;
@@ -151,55 +150,55 @@ impl Study for Repeatability {
                 }
             }
         }
-        Outcome::Refused(Refusal::Unsupported("there is no robot about which it answers".into()))
+        Outcome::NoAnswer(NoAnswer::NotOffered("there is no robot about which it answers".into()))
     }
 
-    fn compare(&self, _: &Context, _: &Problem, _: &[Finished]) -> Vec<Record> {
+    fn compare(&self, _: &Context, _: &Robot, _: &[Finished]) -> Vec<Row> {
         Vec::new()
     }
 
-    fn compare_all(&self, context: &Context, finished: &[Finished]) -> Vec<Record> {
+    fn compare_all(&self, context: &Context, finished: &[Finished]) -> Vec<Row> {
         finished.iter().filter_map(|(cell, outcome)| self.judged(context, cell, outcome)).collect()
     }
 }
 
 impl Repeatability {
     /// The row of a cell; none where the engine answers about no robot, which the rows of the agreement study say.
-    fn judged(&self, context: &Context, cell: &Cell, outcome: &Outcome) -> Option<Record> {
-        let blank = Record {
+    fn judged(&self, context: &Context, cell: &Cell, outcome: &Outcome) -> Option<Row> {
+        let blank = Row {
             cell: cell.id(),
             study: self.name().into(),
-            problem: "all".into(),
+            family: "all".into(),
             params: featherbench_results::canonical_json(&cell.params),
-            engine: cell.subject.clone(),
+            engine: cell.engine.clone(),
             engine_version: cell.version.clone(),
-            scalar: cell.scalar.clone(),
+            precision: cell.scalar.clone(),
             quantity: self.name().into(),
-            case: "all".into(),
+            states: "all".into(),
             metric: "repeated".into(),
             unit: "ulp".into(),
             reference: "the same question before".into(),
-            ..Record::default()
+            ..Row::default()
         };
         let lost = |reason: &str| Some(blank.clone().without_value(Verdict::Error, reason));
         let values = match outcome {
-            Outcome::Refused(Refusal::Unsupported(_)) => return None,
-            Outcome::Refused(Refusal::Failed(reason)) => return lost(reason),
+            Outcome::NoAnswer(NoAnswer::NotOffered(_)) => return None,
+            Outcome::NoAnswer(NoAnswer::Failed(reason)) => return lost(reason),
             Outcome::Reading(_) => return lost("the outcome is a robot that was read"),
             Outcome::Values(values) => values,
         };
-        let subject = context.subject(&cell.subject)?;
+        let engine = context.engine(&cell.engine)?;
         let quantity = Quantity::parse(&cell.quantity)?;
-        let candidates = candidates(context, subject, quantity);
-        let Some((twice, (problem, method))) =
+        let candidates = candidates(context, engine, quantity);
+        let Some((twice, (robot, method))) =
             Twice::from_values(values).and_then(|twice| Some((candidates.get(twice.candidate)?, twice))).map(|(of, twice)| (twice, of))
         else {
             return lost("the outcome is none of this study");
         };
-        let of_robot = row(cell, problem);
-        let row = Record {
-            problem: of_robot.problem,
-            model: of_robot.model,
+        let of_robot = row(cell, robot);
+        let row = Row {
+            family: of_robot.family,
+            robot: of_robot.robot,
             nq: of_robot.nq,
             nv: of_robot.nv,
             bodies: of_robot.bodies,

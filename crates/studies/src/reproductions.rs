@@ -4,12 +4,12 @@
 //! smallest value over the seeds must not lie below the range, the largest not above it, each by more than [`SLACK`]. So a
 //! deviation that its engine has mended fails the gate, as does one that has grown: the list is then to be corrected.
 
-use featherbench_bench::{Cell, Context, Finished, Outcome, Problem, Refusal, Reproduction, SEEDS, SLACK, Study};
-use featherbench_results::{Record, Relation, Verdict};
+use featherbench_bench::{Cell, Context, Finished, NoAnswer, Outcome, Reproduction, Robot, SEEDS, SLACK, Study};
+use featherbench_results::{Relation, Row, Verdict};
 use serde_json::json;
 
 /// Evaluates the reproduction of a name at the seeds from zero up to a number.
-pub type Reproduce = Box<dyn Fn(&str, u64) -> Result<Vec<f64>, Refusal> + Send + Sync>;
+pub type Reproduce = Box<dyn Fn(&str, u64) -> Result<Vec<f64>, NoAnswer> + Send + Sync>;
 
 /// The study of known deviations.
 pub struct Reproductions {
@@ -25,8 +25,8 @@ impl Study for Reproductions {
     fn plan(&self, context: &Context) -> Vec<Cell> {
         let cell = |known: &Reproduction| Cell {
             study: self.name().into(),
-            problem: known.name.clone(),
-            problem_hash: featherbench_bench::hash::of(known.name.as_bytes()),
+            robot: known.name.clone(),
+            robot_hash: featherbench_bench::hash::of(known.name.as_bytes()),
             params: json!({
                 "condition": known.condition,
                 "measure": known.measure,
@@ -34,7 +34,7 @@ impl Study for Reproductions {
                 "seeds": SEEDS,
                 "upstream": known.upstream,
             }),
-            subject: known.engine.clone(),
+            engine: known.engine.clone(),
             version: known.version.clone(),
             method: known.name.clone(),
             quantity: "deviation".into(),
@@ -44,39 +44,39 @@ impl Study for Reproductions {
     }
 
     fn evaluate(&self, _: &Context, cell: &Cell) -> Outcome {
-        (self.reproduce)(&cell.problem, SEEDS).into()
+        (self.reproduce)(&cell.robot, SEEDS).into()
     }
 
-    fn compare(&self, _: &Context, _: &Problem, _: &[Finished]) -> Vec<Record> {
+    fn compare(&self, _: &Context, _: &Robot, _: &[Finished]) -> Vec<Row> {
         Vec::new()
     }
 
-    fn compare_all(&self, context: &Context, finished: &[Finished]) -> Vec<Record> {
+    fn compare_all(&self, context: &Context, finished: &[Finished]) -> Vec<Row> {
         let known = context.gates.reproductions();
         let of = |(cell, outcome): &Finished| {
-            let reproduction = known.iter().find(|known| known.name == cell.problem)?;
+            let reproduction = known.iter().find(|known| known.name == cell.robot)?;
             Some(rows(context, reproduction, cell, outcome))
         };
         finished.iter().filter_map(of).flatten().collect()
     }
 }
 
-fn rows(context: &Context, known: &Reproduction, cell: &Cell, outcome: &Outcome) -> Vec<Record> {
-    let blank = Record {
+fn rows(context: &Context, known: &Reproduction, cell: &Cell, outcome: &Outcome) -> Vec<Row> {
+    let blank = Row {
         cell: cell.id(),
         study: cell.study.clone(),
-        problem: cell.problem.clone(),
+        family: cell.robot.clone(),
         params: featherbench_results::canonical_json(&cell.params),
-        engine: cell.subject.clone(),
+        engine: cell.engine.clone(),
         engine_version: cell.version.clone(),
         method: cell.method.clone(),
-        scalar: cell.scalar.clone(),
+        precision: cell.scalar.clone(),
         quantity: cell.quantity.clone(),
-        case: "seeds".into(),
+        states: "seeds".into(),
         unit: "1".into(),
-        ..Record::default()
+        ..Row::default()
     };
-    let installed = context.subject(&known.engine).map(|subject| subject.identity().version.clone());
+    let installed = context.engine(&known.engine).map(|engine| engine.identity().version.clone());
     if installed.as_ref().is_some_and(|installed| *installed != known.version) {
         let reason = format!("the range is that of {} {}, here is {}", known.engine, known.version, installed.unwrap_or_default());
         return vec![blank.without_value(Verdict::Error, reason)];
@@ -99,7 +99,7 @@ fn rows(context: &Context, known: &Reproduction, cell: &Cell, outcome: &Outcome)
     };
     let [low, high] = known.range;
     let judged = |metric: &str, value: Option<f64>, relation, bound| {
-        Record { metric: metric.into(), ..blank.clone() }.gated(value.unwrap_or(f64::NAN), relation, bound)
+        Row { metric: metric.into(), ..blank.clone() }.gated(value.unwrap_or(f64::NAN), relation, bound)
     };
     vec![judged("smallest", fold(f64::min), Relation::Ge, low / SLACK), judged("largest", fold(f64::max), Relation::Le, high * SLACK)]
 }

@@ -1,6 +1,6 @@
 //! The limit of small steps: how an engine whose acceleration is that of a step approaches the true one, and what its steps do to energy.
 //!
-//! *Acceleration*: the step's acceleration against native forward dynamics, in the kinetic-energy norm, at steps of 1e-2 … 1e-10 s, with the order
+//! *Acceleration*: the step's acceleration against our forward dynamics, in the kinetic-energy norm, at steps of 1e-2 … 1e-10 s, with the order
 //! of convergence: the slope of a line through the logarithms, over the straight part.
 //! *Energy*: a motion under gravity alone over [`HORIZON`] seconds, the largest difference of the energy from that at the start, with its order.
 //!
@@ -13,10 +13,10 @@
 
 use crate::row;
 use featherbench_bench::measure::{ForwardScale, scaled_error, worst};
-use featherbench_bench::{Cell, Context, Finished, Outcome, Problem, Quantity, Refusal, Stepper, Study};
+use featherbench_bench::{Cell, Context, Finished, NoAnswer, Outcome, Quantity, Robot, Stepper, Study};
 use featherbench_dynamics::{energy, forward_dynamics};
 use featherbench_model::Case;
-use featherbench_results::{Record, Verdict};
+use featherbench_results::{Row, Verdict};
 use serde_json::json;
 use std::ops::RangeInclusive;
 
@@ -43,18 +43,18 @@ impl Study for StepLimit {
 
     fn plan(&self, context: &Context) -> Vec<Cell> {
         let mut cells = Vec::new();
-        for problem in context.problems.iter().filter(|problem| problem.takes(self.name())) {
-            for subject in context.subjects {
-                let Some(stepper) = subject.stepper() else { continue };
-                let identity = subject.identity();
+        for robot in context.robots.iter().filter(|robot| robot.takes(self.name())) {
+            for engine in context.engines {
+                let Some(stepper) = engine.stepper() else { continue };
+                let identity = engine.identity();
                 for method in stepper.step_methods() {
                     for quantity in [Quantity::ForwardDynamics, Quantity::KineticEnergy] {
                         cells.push(Cell {
                             study: self.name().into(),
-                            problem: problem.name.clone(),
-                            problem_hash: problem.hash.clone(),
+                            robot: robot.name.clone(),
+                            robot_hash: robot.hash.clone(),
                             params: json!({}),
-                            subject: identity.name.clone(),
+                            engine: identity.name.clone(),
                             version: identity.version.clone(),
                             method: method.clone(),
                             quantity: quantity.name().into(),
@@ -68,45 +68,45 @@ impl Study for StepLimit {
     }
 
     fn evaluate(&self, context: &Context, cell: &Cell) -> Outcome {
-        let lost = || Outcome::Refused(Refusal::Failed("there is no problem or stepping subject of this cell".into()));
-        let Some(problem) = context.problem(&cell.problem) else { return lost() };
-        let Some(stepper) = context.subject(&cell.subject).and_then(|subject| subject.stepper()) else { return lost() };
+        let lost = || Outcome::NoAnswer(NoAnswer::Failed("there is no robot or stepping engine of this cell".into()));
+        let Some(robot) = context.robot(&cell.robot) else { return lost() };
+        let Some(stepper) = context.engine(&cell.engine).and_then(|engine| engine.stepper()) else { return lost() };
         match Quantity::parse(&cell.quantity) {
-            Some(Quantity::ForwardDynamics) => accelerations(problem, stepper, &cell.method).into(),
-            _ => drifts(problem, stepper, &cell.method).into(),
+            Some(Quantity::ForwardDynamics) => accelerations(robot, stepper, &cell.method).into(),
+            _ => drifts(robot, stepper, &cell.method).into(),
         }
     }
 
-    fn compare(&self, context: &Context, problem: &Problem, finished: &[Finished]) -> Vec<Record> {
+    fn compare(&self, context: &Context, robot: &Robot, finished: &[Finished]) -> Vec<Row> {
         let mut rows = Vec::new();
         for (cell, outcome) in finished {
-            let blank = Record { unit: "1".into(), reference: "native".into(), ..row(cell, problem) };
+            let blank = Row { unit: "1".into(), reference: "featherbench".into(), ..row(cell, robot) };
             let values = match outcome.answer() {
                 Ok(values) => values,
                 Err(refusal) => {
-                    let verdict = if matches!(refusal, Refusal::Unsupported(_)) { Verdict::Skip } else { Verdict::Error };
+                    let verdict = if matches!(refusal, NoAnswer::NotOffered(_)) { Verdict::Skip } else { Verdict::Error };
                     rows.push(context.gates.explain(blank.without_value(verdict, refusal.to_string())));
                     continue;
                 }
             };
             let acceleration = cell.quantity == Quantity::ForwardDynamics.name();
             let (steps, metric) = if acceleration { (&STEPS[..], "step_error") } else { (&MOTION_STEPS[..], "energy_drift") };
-            let stepper = context.subject(&cell.subject).and_then(|subject| subject.stepper());
+            let stepper = context.engine(&cell.engine).and_then(|engine| engine.stepper());
             let first = stepper.and_then(|stepper| stepper.step_methods().into_iter().next());
             let plain = first.as_ref() == Some(&cell.method);
-            for ((case, state), values) in states(problem).into_iter().zip(values.chunks_exact(steps.len())) {
-                let blank = Record { case: case.name().into(), ..blank.clone() };
+            for ((case, state), values) in states(robot).into_iter().zip(values.chunks_exact(steps.len())) {
+                let blank = Row { states: case.name().into(), ..blank.clone() };
                 // Where no force depends on velocity, a step of any length is exact and has no order.
                 let exact = values.iter().all(|error| error < STRAIGHT.start());
                 let guard = stepper.and_then(|stepper| stepper.guard()).filter(|_| acceleration && plain && !exact);
-                let regime = |dt: f64, error: f64| Some(Regime::of(dt, error, speed(problem.states.v(state)), guard?));
+                let regime = |dt: f64, error: f64| Some(Regime::of(dt, error, speed(robot.states.v(state)), guard?));
                 for (&dt, &value) in steps.iter().zip(values) {
                     let mut params = json!({"dt": dt});
                     let regime = regime(dt, value);
                     if let Some(regime) = regime {
                         params["regime"] = regime.name().into();
                     }
-                    let mut row = Record { metric: metric.into(), params: featherbench_results::canonical_json(&params), ..blank.clone() }
+                    let mut row = Row { metric: metric.into(), params: featherbench_results::canonical_json(&params), ..blank.clone() }
                         .informed(value);
                     if regime == Some(Regime::Explicit) && row.value.is_some() {
                         row.reason = EXPLICIT.into();
@@ -160,45 +160,45 @@ fn speed(v: &[f64]) -> f64 {
 }
 
 /// The fitted order, and how far it is from one.
-fn orders(context: &Context, blank: &Record, points: &[(f64, f64)]) -> Vec<Record> {
-    let order = Record { metric: "order".into(), ..blank.clone() };
+fn orders(context: &Context, blank: &Row, points: &[(f64, f64)]) -> Vec<Row> {
+    let order = Row { metric: "order".into(), ..blank.clone() };
     let Some(slope) = slope(points) else {
         return vec![context.gates.explain(order.without_value(Verdict::Error, "too few steps on the straight part"))];
     };
-    let off = Record { metric: "order_off_one".into(), ..blank.clone() };
+    let off = Row { metric: "order_off_one".into(), ..blank.clone() };
     vec![order.informed(slope), context.gates.judge(off, (slope - 1.0).abs(), 1.0)]
 }
 
-/// The first state of each case that the problem has.
-fn states(problem: &Problem) -> Vec<(Case, usize)> {
-    let first = |case| problem.states.cases.iter().position(|&other| other == case).map(|state| (case, state));
+/// The first state of each case that the robot has.
+fn states(robot: &Robot) -> Vec<(Case, usize)> {
+    let first = |case| robot.states.cases.iter().position(|&other| other == case).map(|state| (case, state));
     CASES.into_iter().filter_map(first).collect()
 }
 
 /// The error of the acceleration, case after case, at each step length.
-fn accelerations(problem: &Problem, stepper: &dyn Stepper, method: &str) -> Result<Vec<f64>, Refusal> {
-    let (at, batch) = (problem.magnitudes(), &problem.states);
-    let scales = ForwardScale::all(problem, &at);
+fn accelerations(robot: &Robot, stepper: &dyn Stepper, method: &str) -> Result<Vec<f64>, NoAnswer> {
+    let (at, batch) = (robot.magnitudes(), &robot.states);
+    let scales = ForwardScale::all(robot, &at);
     let mut errors = Vec::new();
-    for (_, k) in states(problem) {
-        let exact = forward_dynamics(&problem.model, batch.q(k), batch.v(k), batch.tau(k));
-        let exact = exact.map_err(|error| Refusal::Failed(error.to_string()))?;
+    for (_, k) in states(robot) {
+        let exact = forward_dynamics(&robot.model, batch.q(k), batch.v(k), batch.tau(k));
+        let exact = exact.map_err(|error| NoAnswer::Failed(error.to_string()))?;
         for dt in STEPS {
-            errors.push(scales[k].forward_error(&exact, &stepper.step_acceleration(problem, method, batch, k, dt)?));
+            errors.push(scales[k].forward_error(&exact, &stepper.step_acceleration(robot, method, batch, k, dt)?));
         }
     }
     Ok(errors)
 }
 
 /// The largest difference of the energy from the start's at each step length, in the measure of the potential energy.
-fn drifts(problem: &Problem, stepper: &dyn Stepper, method: &str) -> Result<Vec<f64>, Refusal> {
-    let batch = &problem.states;
-    let Some(&(_, k)) = states(problem).first() else { return Ok(Vec::new()) };
-    let start = energy(&problem.model, batch.q(k), batch.v(k)).map_err(|error| Refusal::Failed(error.to_string()))?;
-    let (start, at) = (start.kinetic + start.potential, problem.magnitudes());
+fn drifts(robot: &Robot, stepper: &dyn Stepper, method: &str) -> Result<Vec<f64>, NoAnswer> {
+    let batch = &robot.states;
+    let Some(&(_, k)) = states(robot).first() else { return Ok(Vec::new()) };
+    let start = energy(&robot.model, batch.q(k), batch.v(k)).map_err(|error| NoAnswer::Failed(error.to_string()))?;
+    let (start, at) = (start.kinetic + start.potential, robot.magnitudes());
     let drift = |dt: f64| {
-        let energies = stepper.fall(problem, method, batch, k, dt, (HORIZON / dt).round() as usize)?;
-        let drifts = energies.iter().map(|&energy| scaled_error(problem, Quantity::PotentialEnergy, &at[k], &[start], &[energy]));
+        let energies = stepper.fall(robot, method, batch, k, dt, (HORIZON / dt).round() as usize)?;
+        let drifts = energies.iter().map(|&energy| scaled_error(robot, Quantity::PotentialEnergy, &at[k], &[start], &[energy]));
         Ok(drifts.fold(0.0, worst))
     };
     MOTION_STEPS.iter().map(|&dt| drift(dt)).collect()

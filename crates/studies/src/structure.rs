@@ -6,9 +6,9 @@
 //! kernels on a scalar that counts.
 
 use crate::row;
-use featherbench_bench::{Cell, Context, Finished, Outcome, Problem, Quantity, Refusal, Study};
+use featherbench_bench::{Cell, Context, Finished, NoAnswer, Outcome, Quantity, Robot, Study};
 use featherbench_dynamics::{Crba, Ltdl, TreeSparse};
-use featherbench_results::{Record, Relation, Verdict};
+use featherbench_results::{Relation, Row, Verdict};
 use featherbench_spatial::{Counted, Operations};
 use serde_json::json;
 
@@ -18,7 +18,7 @@ pub struct Structure;
 /// Counting runs on a scalar that is a hundred times slower: bigger robots are counted in the tests of `dynamics`.
 const MOST_DOFS: usize = 1100;
 
-/// What is counted, in the order of a native cell's values.
+/// What is counted, in the order of our cell's values.
 const COUNTS: [(&str, &str); 5] = [
     ("stored", "stored numbers of M"),
     ("factor_divisions", "divisions of the factorization"),
@@ -34,21 +34,21 @@ impl Study for Structure {
 
     fn plan(&self, context: &Context) -> Vec<Cell> {
         let mut cells = Vec::new();
-        let problems = context.problems.iter().filter(|problem| problem.takes(self.name()) && problem.states.nv <= MOST_DOFS);
-        for problem in problems {
-            for subject in context.subjects {
-                let identity = subject.identity();
-                let method = match subject.methods(Quantity::StoredEntries).into_iter().next() {
-                    Some(_) if identity.name == "native" => "ltdl".to_owned(),
+        let robots = context.robots.iter().filter(|robot| robot.takes(self.name()) && robot.states.nv <= MOST_DOFS);
+        for robot in robots {
+            for engine in context.engines {
+                let identity = engine.identity();
+                let method = match engine.methods(Quantity::StoredEntries).into_iter().next() {
+                    Some(_) if identity.name == "featherbench" => "ltdl".to_owned(),
                     Some(method) => method,
                     None => continue,
                 };
                 cells.push(Cell {
                     study: self.name().into(),
-                    problem: problem.name.clone(),
-                    problem_hash: problem.hash.clone(),
+                    robot: robot.name.clone(),
+                    robot_hash: robot.hash.clone(),
                     params: json!({}),
-                    subject: identity.name.clone(),
+                    engine: identity.name.clone(),
                     version: identity.version.clone(),
                     method,
                     quantity: Quantity::StoredEntries.name().into(),
@@ -60,34 +60,34 @@ impl Study for Structure {
     }
 
     fn evaluate(&self, context: &Context, cell: &Cell) -> Outcome {
-        let (Some(problem), Some(subject)) = (context.problem(&cell.problem), context.subject(&cell.subject)) else {
-            return Outcome::Refused(Refusal::Failed("there is no problem or subject of this cell".into()));
+        let (Some(robot), Some(engine)) = (context.robot(&cell.robot), context.engine(&cell.engine)) else {
+            return Outcome::NoAnswer(NoAnswer::Failed("there is no robot or engine of this cell".into()));
         };
-        if cell.subject == "native" {
-            return counts(problem).map_err(Refusal::Failed).into();
+        if cell.engine == "featherbench" {
+            return counts(robot).map_err(NoAnswer::Failed).into();
         }
-        let stored = subject.prepare(problem, Quantity::StoredEntries, &cell.method, &problem.states).and_then(|mut prepared| {
+        let stored = engine.prepare(robot, Quantity::StoredEntries, &cell.method, &robot.states).and_then(|mut prepared| {
             prepared.run(0..1)?;
             Ok(prepared.read().to_vec())
         });
         stored.into()
     }
 
-    fn compare(&self, context: &Context, problem: &Problem, finished: &[Finished]) -> Vec<Record> {
-        let expected = expected(problem);
+    fn compare(&self, context: &Context, robot: &Robot, finished: &[Finished]) -> Vec<Row> {
+        let expected = expected(robot);
         let mut rows = Vec::new();
         for (cell, outcome) in finished {
             match outcome {
                 Outcome::Reading(_) => {}
                 Outcome::Values(values) => {
                     for ((&value, &expected), (metric, _)) in values.iter().zip(&expected).zip(COUNTS) {
-                        let row = Record { metric: metric.into(), unit: "1".into(), reference: "theory".into(), ..row(cell, problem) };
+                        let row = Row { metric: metric.into(), unit: "1".into(), reference: "theory".into(), ..row(cell, robot) };
                         rows.push(context.gates.explain(row.gated(value, Relation::Eq, expected)));
                     }
                 }
-                Outcome::Refused(refusal) => {
-                    let verdict = if matches!(refusal, Refusal::Unsupported(_)) { Verdict::Skip } else { Verdict::Error };
-                    rows.push(context.gates.explain(row(cell, problem).without_value(verdict, refusal.to_string())));
+                Outcome::NoAnswer(refusal) => {
+                    let verdict = if matches!(refusal, NoAnswer::NotOffered(_)) { Verdict::Skip } else { Verdict::Error };
+                    rows.push(context.gates.explain(row(cell, robot).without_value(verdict, refusal.to_string())));
                 }
             }
         }
@@ -96,8 +96,8 @@ impl Study for Structure {
 }
 
 /// The counts by theory, from the description alone.
-fn expected(problem: &Problem) -> [f64; 5] {
-    let bodies = &problem.description.bodies;
+fn expected(robot: &Robot) -> [f64; 5] {
+    let bodies = &robot.description.bodies;
     let mut depth_of_body = Vec::with_capacity(bodies.len());
     let (mut n, mut d1, mut d2) = (0_u64, 0_u64, 0_u64);
     for body in bodies {
@@ -114,8 +114,8 @@ fn expected(problem: &Problem) -> [f64; 5] {
 }
 
 /// The counts by running the kernels.
-fn counts(problem: &Problem) -> Result<Vec<f64>, String> {
-    let (model, states) = (&problem.model, &problem.states);
+fn counts(robot: &Robot) -> Result<Vec<f64>, String> {
+    let (model, states) = (&robot.model, &robot.states);
     let q: Vec<Counted> = states.q(0).iter().map(|&x| Counted(x)).collect();
     let mut matrix = TreeSparse::<Counted>::new(&model.topology);
     Crba::new(&model.topology).run(model, &q, &mut matrix).map_err(|error| error.to_string())?;

@@ -90,9 +90,9 @@ fn of_nothing(mass: f64, moment: f64) -> FileInertial {
 
 /// The sentence that MuJoCo's oracle tells beside its bounds, with a number that any mass is smaller than, and one of another link.
 fn told_of_bounds() -> Vec<ReadingNote> {
-    let note = |cause: &str, subject: Option<&str>, text: &str| ReadingNote {
+    let note = |cause: &str, about: Option<&str>, text: &str| ReadingNote {
         cause: cause.into(),
-        subject: subject.map(str::to_owned),
+        about: about.map(str::to_owned),
         text: text.into(),
         numbers: Vec::new(),
     };
@@ -161,7 +161,7 @@ fn what_an_engine_tells_is_held_against_its_body() {
     let held = FileInertial { mass: 3.3, com: [0.1, 0.0, 0.2], ..of_nothing(0.0, 0.07) };
     let note = |mass: f64| {
         let numbers = [&[mass][..], &held.com, &held.inertia].concat();
-        ReadingNote { cause: "mass_edited".into(), subject: Some("tool".into()), text: "0.5 kg became 3.3 kg".into(), numbers }
+        ReadingNote { cause: "mass_edited".into(), about: Some("tool".into()), text: "0.5 kg became 3.3 kg".into(), numbers }
     };
     let tool = |link: &FileLink| (link.name == "tool").then_some(held);
     named(&found(tool, &[note(3.3)]), Cause::Edited, &["'tool'", "0.5 kg became 3.3 kg"]);
@@ -195,7 +195,7 @@ fn a_bound_that_is_told_is_still_a_bound() {
         Description { bodies: vec![inertial], ..Description::default() }
     };
     let numbers = [&[0.0; 10][..], &[1e-6, 0.0, 0.0, 0.0, 1e-6, 0.0, 0.0, 1e-6, 0.0, 1e-6]].concat();
-    let note = ReadingNote { cause: "mass_edited".into(), subject: Some("arm".into()), text: "raised".into(), numbers };
+    let note = ReadingNote { cause: "mass_edited".into(), about: Some("arm".into()), text: "raised".into(), numbers };
     let mut held = body(1e-6, 1e-6);
     held.bodies[0].com = [0.0, 0.0, 1.0];
     let comparison = Comparison::of(&body(0.0, 0.0), &held, &[], &[note]);

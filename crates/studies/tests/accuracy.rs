@@ -2,9 +2,9 @@
 
 mod support;
 
-use featherbench_bench::{Problem, Quantity, Subject};
-use featherbench_engines::Native;
-use featherbench_results::Record;
+use featherbench_bench::{Engine, Quantity, Robot};
+use featherbench_engines::Featherbench;
+use featherbench_results::Row;
 use support::{Answer, Double, Twist, agreement, gates, robot};
 
 /// The quantity that the twisted engines spoil.
@@ -25,30 +25,30 @@ fn missing(answer: Answer) {
 }
 
 /// The rows beside doubles with these names and answers, and our own kernels unless a double has their name.
-fn rows(problem: &Problem, doubles: &[(&str, Twist)]) -> Vec<Record> {
-    let mut subjects: Vec<Box<dyn Subject>> =
-        doubles.iter().map(|(name, twist)| Box::new(Double::twisting(problem, *twist).named(name)) as Box<dyn Subject>).collect();
-    if doubles.iter().all(|(name, _)| *name != "native") {
-        subjects.insert(0, Box::new(Native::new()));
+fn rows(robot: &Robot, doubles: &[(&str, Twist)]) -> Vec<Row> {
+    let mut engines: Vec<Box<dyn Engine>> =
+        doubles.iter().map(|(name, twist)| Box::new(Double::twisting(robot, *twist).named(name)) as Box<dyn Engine>).collect();
+    if doubles.iter().all(|(name, _)| *name != "featherbench") {
+        engines.insert(0, Box::new(Featherbench::new()));
     }
-    let mut rows = agreement(problem, &gates(""), &subjects);
+    let mut rows = agreement(robot, &gates(""), &engines);
     rows.retain(|row| row.metric == "over_best");
     rows
 }
 
 /// The ratio on the spoiled quantity, and the engine that it is taken to.
-fn ratio(rows: &[Record]) -> (f64, &str) {
+fn ratio(rows: &[Row]) -> (f64, &str) {
     let row = rows.iter().find(|row| row.quantity == SPOILED.name()).unwrap();
     (row.value.unwrap(), &row.reference)
 }
 
 #[test]
 fn the_same_answers_have_the_same_error() {
-    let problem = robot("chain:n=4,layout=spatial");
-    let rows = rows(&problem, &[("a", |_| ())]);
+    let robot = robot("chain:n=4,layout=spatial");
+    let rows = rows(&robot, &[("a", |_| ())]);
     // Of forward dynamics, the doubles answer by our refined method too: better than our usual one.
-    let (fd, others): (Vec<&Record>, Vec<&Record>) = rows.iter().partition(|row| row.quantity == Quantity::ForwardDynamics.name());
-    assert!(others.iter().all(|row| row.engine == "native" && row.value == Some(1.0) && row.reference == "a"), "{others:?}");
+    let (fd, others): (Vec<&Row>, Vec<&Row>) = rows.iter().partition(|row| row.quantity == Quantity::ForwardDynamics.name());
+    assert!(others.iter().all(|row| row.engine == "featherbench" && row.value == Some(1.0) && row.reference == "a"), "{others:?}");
     assert!(fd.iter().all(|row| row.params.contains("\"by\":\"refined_1\"") && row.value > Some(1.0)), "{fd:?}");
     // Everything but the whole mass matrix of robots too large for it, and its products on all others; and readback, which nobody computes.
     assert_eq!(rows.len(), 13);
@@ -56,29 +56,29 @@ fn the_same_answers_have_the_same_error() {
 
 #[test]
 fn our_error_shows_at_its_size_against_the_best_of_all() {
-    let problem = robot("chain:n=4,layout=spatial");
-    let worse = rows(&problem, &[("native", off), ("honest", |_| ()), ("spoiled", off)]);
+    let robot = robot("chain:n=4,layout=spatial");
+    let worse = rows(&robot, &[("featherbench", off), ("honest", |_| ()), ("spoiled", off)]);
     let (value, reference) = ratio(&worse);
     // The error is 1e-9 of the torques, at the worst state at least a hundredth of the scale of their terms; the best error is at most 20
     // ulps, at least half of one.
     assert!((1e-11 / 20.0 / f64::EPSILON..=1e-9 / (0.5 * f64::EPSILON)).contains(&value), "{value:e}");
     assert_eq!(reference, "honest");
-    let unspoiled = |row: &&Record| ![SPOILED, Quantity::ForwardDynamics].iter().any(|quantity| row.quantity == quantity.name());
+    let unspoiled = |row: &&Row| ![SPOILED, Quantity::ForwardDynamics].iter().any(|quantity| row.quantity == quantity.name());
     assert!(worse.iter().filter(unspoiled).all(|row| row.value == Some(1.0)), "{worse:?}");
 }
 
 #[test]
 fn engines_that_err_or_answer_no_numbers_are_not_the_best() {
-    let problem = robot("chain:n=4,layout=spatial");
-    let spoiled = rows(&problem, &[("spoiled", off)]);
+    let robot = robot("chain:n=4,layout=spatial");
+    let spoiled = rows(&robot, &[("spoiled", off)]);
     let (value, reference) = ratio(&spoiled);
     assert!((0.5 * f64::EPSILON / 1e-9..=20.0 * f64::EPSILON / 1e-11).contains(&value), "{value:e}");
     assert_eq!(reference, "spoiled");
 
-    let with_nan = rows(&problem, &[("nan", missing), ("spoiled", off)]);
+    let with_nan = rows(&robot, &[("nan", missing), ("spoiled", off)]);
     assert_eq!(ratio(&with_nan), (value, "spoiled"));
-    let nan_alone = rows(&problem, &[("nan", missing)]);
+    let nan_alone = rows(&robot, &[("nan", missing)]);
     assert!(nan_alone.iter().all(|row| row.quantity != SPOILED.name()), "{nan_alone:?}");
-    let ours_is_nan = rows(&problem, &[("native", missing), ("honest", |_| ())]);
+    let ours_is_nan = rows(&robot, &[("featherbench", missing), ("honest", |_| ())]);
     assert!(ours_is_nan.iter().all(|row| row.quantity != SPOILED.name() || row.value.is_none()), "a NaN of ours is no good ratio");
 }

@@ -3,9 +3,9 @@
 
 mod support;
 
-use featherbench_bench::Subject;
-use featherbench_engines::{Clock, Limits, Native, Oracle};
-use featherbench_results::{Record, Verdict};
+use featherbench_bench::Engine;
+use featherbench_engines::{Clock, Featherbench, Limits, Oracle};
+use featherbench_results::{Row, Verdict};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::Duration;
@@ -33,7 +33,7 @@ impl Clock for Scripted {
 }
 
 /// A process that says hello, and then does this, while so many seconds pass between any two looks at the clock.
-fn broken(fault: &str, step: u64) -> Box<dyn Subject> {
+fn broken(fault: &str, step: u64) -> Box<dyn Engine> {
     let hello =
         r#"{"status":"ok","protocol":1,"engine":"broken","version":"1","methods":{"id":["a","b"],"fd":["a"],"body_jacobian":["a"]}}"#;
     let script = format!("while read -r line; do case \"$line\" in *'\"op\":\"hello\"'*) echo '{hello}';; *) {fault};; esac; done");
@@ -46,11 +46,11 @@ fn broken(fault: &str, step: u64) -> Box<dyn Subject> {
 
 #[track_caller]
 fn goes_on(fault: &str, step: u64, reason: &str) {
-    let problem = robot("joints:kind=revolute,base=fixed");
+    let robot = robot("joints:kind=revolute,base=fixed");
     let gates = gates("");
-    let alone = agreement(&problem, &gates, &[Box::new(Native::new())]);
-    let records = agreement(&problem, &gates, &[Box::new(Native::new()), broken(fault, step)]);
-    let (errors, rest): (Vec<Record>, Vec<Record>) = records.into_iter().partition(|row| row.engine == "broken");
+    let alone = agreement(&robot, &gates, &[Box::new(Featherbench::new())]);
+    let records = agreement(&robot, &gates, &[Box::new(Featherbench::new()), broken(fault, step)]);
+    let (errors, rest): (Vec<Row>, Vec<Row>) = records.into_iter().partition(|row| row.engine == "broken");
     assert_eq!(rest, alone);
     let quantities: Vec<&str> = errors.iter().map(|row| row.quantity.as_str()).collect();
     assert_eq!(quantities, ["readback", "id", "id", "fd", "body_jacobian"], "one row for each question");
@@ -58,7 +58,7 @@ fn goes_on(fault: &str, step: u64, reason: &str) {
         assert_eq!((row.verdict, row.value), (Verdict::Error, None));
         assert!(row.reason.contains(reason), "{}", row.reason);
     }
-    let all: Vec<Record> = rest.into_iter().chain(errors).collect();
+    let all: Vec<Row> = rest.into_iter().chain(errors).collect();
     assert_eq!(red(&gates.conditions(&suite(&all), &all, true)), ["rows without a value that was due"]);
 }
 

@@ -6,12 +6,12 @@
 
 mod support;
 
-use featherbench_bench::{Gates, Problem, Quantity, Range, RangeKey, Ranges, RangesMeter, Subject};
-use featherbench_engines::Native;
+use featherbench_bench::{Engine, Gates, Quantity, Range, RangeKey, Ranges, RangesMeter, Robot};
+use featherbench_engines::Featherbench;
 use featherbench_model::{Description, JointType, Model, StateBatch};
-use featherbench_results::{Record, Verdict};
+use featherbench_results::{Row, Verdict};
 use std::collections::BTreeSet;
-use support::{Answer, Double, OVER_BEST, SHARPNESS, Twist, agreement, beside_native, doubles, gates, red, robot, suite};
+use support::{Answer, Double, OVER_BEST, SHARPNESS, Twist, agreement, beside_native, doubles, gates, red, robot as robot_of, suite};
 
 /// A robot with every kind of joint on a free base.
 const FREE: &str = "joints:kind=mixed,base=free";
@@ -19,16 +19,16 @@ const FREE: &str = "joints:kind=mixed,base=free";
 const ARMATURED: &str = "tree:n=12,joints=all,base=free,armature=true";
 
 /// The quantities with rows of the double that fail.
-fn failing(records: &[Record]) -> BTreeSet<&str> {
+fn failing(records: &[Row]) -> BTreeSet<&str> {
     doubles(records, Verdict::Fail).into_iter().map(|row| row.quantity.as_str()).collect()
 }
 
-/// Asserts that the gates are red for the double in exactly these quantities, and green for the native kernels.
+/// Asserts that the gates are red for the double in exactly these quantities, and green for our own kernels.
 #[track_caller]
-fn fails_in(problem: &Problem, double: Double, quantities: &[&str]) {
+fn fails_in(robot: &Robot, double: Double, quantities: &[&str]) {
     let gates = gates("");
-    let expected = suite(&beside_native(problem, &gates, Double::of(problem)));
-    let records = beside_native(problem, &gates, double);
+    let expected = suite(&beside_native(robot, &gates, Double::of(robot)));
+    let records = beside_native(robot, &gates, double);
     assert_eq!(failing(&records), quantities.iter().copied().collect());
     assert!(doubles(&records, Verdict::Error).is_empty());
     let unmet = gates.conditions(&expected, &records, true);
@@ -37,22 +37,22 @@ fn fails_in(problem: &Problem, double: Double, quantities: &[&str]) {
     for quantity in quantities {
         assert!(unmet.iter().any(|what| what.starts_with(&format!("rows of double on {quantity} "))), "{quantity}: {unmet:?}");
     }
-    assert!(!unmet.iter().any(|what| what.starts_with("rows of native")), "the native kernels are innocent: {unmet:?}");
+    assert!(!unmet.iter().any(|what| what.starts_with("rows of featherbench")), "our own kernels are innocent: {unmet:?}");
 }
 
 /// Asserts that a twisted answer fails in exactly these quantities.
 #[track_caller]
 fn twisted(spec: &str, twist: Twist, quantities: &[&str]) {
-    let problem = robot(spec);
-    fails_in(&problem, Double::twisting(&problem, twist), quantities);
+    let robot = robot_of(spec);
+    fails_in(&robot, Double::twisting(&robot, twist), quantities);
 }
 
 #[test]
 fn an_honest_double_passes_everywhere() {
     for spec in [FREE, ARMATURED, "humanoid", "chain:n=10,layout=spatial"] {
-        let problem = robot(spec);
-        let records = beside_native(&problem, &gates(""), Double::of(&problem));
-        let judged: Vec<&Record> = records.iter().filter(|row| row.relation.is_some()).collect();
+        let robot = robot_of(spec);
+        let records = beside_native(&robot, &gates(""), Double::of(&robot));
+        let judged: Vec<&Row> = records.iter().filter(|row| row.relation.is_some()).collect();
         assert!(!judged.is_empty());
         assert!(judged.iter().all(|row| row.verdict == Verdict::Pass));
         assert!(records.iter().all(|row| matches!(row.verdict, Verdict::Pass | Verdict::Info)));
@@ -76,9 +76,9 @@ fn halves_of_the_free_joint_swapped() {
 /// The free joint's τ in world axes.
 #[test]
 fn world_axes_for_body_axes() {
-    let twist = |Answer { problem, quantity, state, values }: Answer| {
+    let twist = |Answer { robot, quantity, state, values }: Answer| {
         if quantity == Quantity::InverseDynamics {
-            let x = problem.model.joint_transform(0, problem.states.q(state));
+            let x = robot.model.joint_transform(0, robot.states.q(state));
             let world = |v: &[f64]| (x.rotation * featherbench_spatial::Vec3::new(v[0], v[1], v[2])).to_array();
             let (force, moment) = (world(&values[..3]), world(&values[3..6]));
             values[..3].copy_from_slice(&force);
@@ -125,9 +125,9 @@ fn a_jacobian_column_by_column() {
 /// The lower triangle of M alone.
 #[test]
 fn half_a_mass_matrix() {
-    let twist = |Answer { problem, quantity, values, .. }: Answer| {
+    let twist = |Answer { robot, quantity, values, .. }: Answer| {
         if quantity == Quantity::MassMatrix {
-            let n = problem.states.nv;
+            let n = robot.states.nv;
             (0..n).for_each(|i| values[i * n + i + 1..(i + 1) * n].fill(0.0));
         }
     };
@@ -150,12 +150,12 @@ fn momentum_about_another_point() {
 /// Spatial for classical acceleration: without ω × v.
 #[test]
 fn spatial_acceleration_for_classical() {
-    let twist = |Answer { problem, quantity, state, values }: Answer| {
+    let twist = |Answer { robot, quantity, state, values }: Answer| {
         if quantity == Quantity::BodyAcceleration {
-            let states = &problem.states;
+            let states = &robot.states;
             let motion =
-                featherbench_dynamics::forward_kinematics(&problem.model, states.q(state), states.v(state), states.a(state)).unwrap();
-            for (a, &body) in values.chunks_exact_mut(6).zip(&problem.model.described) {
+                featherbench_dynamics::forward_kinematics(&robot.model, states.q(state), states.v(state), states.a(state)).unwrap();
+            for (a, &body) in values.chunks_exact_mut(6).zip(&robot.model.described) {
                 let v = motion.body(body).unwrap().velocity;
                 a.iter_mut().skip(3).zip(v.ang.cross(v.lin).to_array()).for_each(|(a, term)| *a -= term);
             }
@@ -167,50 +167,50 @@ fn spatial_acceleration_for_classical() {
 /// Everything that forces have to do with, and nothing else.
 #[test]
 fn gravity_upside_down() {
-    let problem = robot(FREE);
-    let double = Double::altered(&problem, |description| description.gravity = description.gravity.map(|g| -g));
-    fails_in(&problem, double, &["id", "id_wrench", "bias", "fd", "potential_energy"]);
+    let robot = robot_of(FREE);
+    let double = Double::altered(&robot, |description| description.gravity = description.gravity.map(|g| -g));
+    fails_in(&robot, double, &["id", "id_wrench", "bias", "fd", "potential_energy"]);
 }
 
 #[test]
 fn gravity_off_by_little() {
-    let problem = robot("humanoid");
-    let double = Double::altered(&problem, |description| description.gravity[2] *= 1.0 + 1e-10);
-    fails_in(&problem, double, &["id", "id_wrench", "bias", "fd", "potential_energy"]);
+    let robot = robot_of("humanoid");
+    let double = Double::altered(&robot, |description| description.gravity[2] *= 1.0 + 1e-10);
+    fails_in(&robot, double, &["id", "id_wrench", "bias", "fd", "potential_energy"]);
 }
 
 #[test]
 fn armature_forgotten() {
-    let problem = robot(ARMATURED);
-    let double = Double::altered(&problem, |description| description.bodies.iter_mut().for_each(|body| body.joint.armature.clear()));
-    fails_in(&problem, double, &["id", "id_wrench", "mass_matrix", "fd", "kinetic_energy"]);
+    let robot = robot_of(ARMATURED);
+    let double = Double::altered(&robot, |description| description.bodies.iter_mut().for_each(|body| body.joint.armature.clear()));
+    fails_in(&robot, double, &["id", "id_wrench", "mass_matrix", "fd", "kinetic_energy"]);
 }
 
 /// Inertia about the body's origin taken for inertia about the centre of mass.
 #[test]
 fn inertia_about_another_point() {
-    let problem = robot("quadruped");
-    let double = Double::altered(&problem, |description| {
+    let robot = robot_of("quadruped");
+    let double = Double::altered(&robot, |description| {
         for body in &mut description.bodies {
             let (m, [x, y, z]) = (body.mass, body.com);
             let steiner = [y * y + z * z, -x * y, -x * z, x * x + z * z, -y * z, x * x + y * y];
             body.inertia.iter_mut().zip(steiner).for_each(|(entry, s)| *entry += m * s);
         }
     });
-    fails_in(&problem, double, &["id", "id_wrench", "bias", "mass_matrix", "fd", "kinetic_energy", "momentum"]);
+    fails_in(&robot, double, &["id", "id_wrench", "bias", "mass_matrix", "fd", "kinetic_energy", "momentum"]);
 }
 
 /// Transposed placements: child from parent for parent from child.
 #[test]
 fn rotations_the_other_way() {
-    let problem = robot(FREE);
-    let double = Double::altered(&problem, |description: &mut Description| {
+    let robot = robot_of(FREE);
+    let double = Double::altered(&robot, |description: &mut Description| {
         for body in description.bodies.iter_mut().skip(1) {
             let r = body.joint.placement.rotation;
             body.joint.placement.rotation = std::array::from_fn(|k| r[3 * (k % 3) + k / 3]);
         }
     });
-    fails_in(&problem, double, &EVERYTHING);
+    fails_in(&robot, double, &EVERYTHING);
 }
 
 /// Every quantity that depends on the configuration of a moving robot.
@@ -233,17 +233,17 @@ const EVERYTHING: [&str; 13] = [
 /// Quaternions read as w, x, y, z.
 #[test]
 fn quaternion_order() {
-    let problem = robot(FREE);
-    let double = Double::misreading(&problem, |states| quaternions(&problem.model, states, |quaternion| quaternion.rotate_right(1)));
-    fails_in(&problem, double, &EVERYTHING);
+    let robot = robot_of(FREE);
+    let double = Double::misreading(&robot, |states| quaternions(&robot.model, states, |quaternion| quaternion.rotate_right(1)));
+    fails_in(&robot, double, &EVERYTHING);
 }
 
 /// Quaternions of the opposite rotation.
 #[test]
 fn quaternion_conjugated() {
-    let problem = robot(FREE);
-    let double = Double::misreading(&problem, |states| quaternions(&problem.model, states, |quaternion| quaternion[3] *= -1.0));
-    fails_in(&problem, double, &EVERYTHING);
+    let robot = robot_of(FREE);
+    let double = Double::misreading(&robot, |states| quaternions(&robot.model, states, |quaternion| quaternion[3] *= -1.0));
+    fails_in(&robot, double, &EVERYTHING);
 }
 
 fn quaternions(model: &Model<f64>, states: &mut StateBatch, change: impl Fn(&mut [f64])) {
@@ -261,11 +261,10 @@ fn quaternions(model: &Model<f64>, states: &mut StateBatch, change: impl Fn(&mut
 /// Two joints of one parent in the other order: what name-sorted engines do.
 #[test]
 fn siblings_swapped() {
-    let problem = robot("quadruped");
-    let legs: Vec<usize> =
-        (0..problem.description.bodies.len()).filter(|&body| problem.description.bodies[body].parent == Some(0)).collect();
-    assert!(problem.description.bodies[0].joint.kind == JointType::Free && legs[..2] == [1, 4], "trunk and legs of three");
-    let double = Double::misreading(&problem, |states| {
+    let robot = robot_of("quadruped");
+    let legs: Vec<usize> = (0..robot.description.bodies.len()).filter(|&body| robot.description.bodies[body].parent == Some(0)).collect();
+    assert!(robot.description.bodies[0].joint.kind == JointType::Free && legs[..2] == [1, 4], "trunk and legs of three");
+    let double = Double::misreading(&robot, |states| {
         let (nq, nv) = (states.nq, states.nv);
         for q in states.q.chunks_exact_mut(nq) {
             q[7..13].rotate_left(3);
@@ -274,21 +273,21 @@ fn siblings_swapped() {
             v[6..12].rotate_left(3);
         }
     });
-    fails_in(&problem, double, &EVERYTHING);
+    fails_in(&robot, double, &EVERYTHING);
 }
 
 #[test]
 fn not_a_number_is_an_error() {
-    let problem = robot(FREE);
+    let robot = robot_of(FREE);
     let gates = gates("");
-    let expected = suite(&beside_native(&problem, &gates, Double::of(&problem)));
+    let expected = suite(&beside_native(&robot, &gates, Double::of(&robot)));
     // One NaN in one number of the last state: no worst-of may lose it.
     let twist = |Answer { quantity, state, values, .. }: Answer| {
         if quantity != Quantity::Readback && state + 1 == support::STATES {
             values[0] = f64::NAN;
         }
     };
-    let records = beside_native(&problem, &gates, Double::twisting(&problem, twist));
+    let records = beside_native(&robot, &gates, Double::twisting(&robot, twist));
     let errors: BTreeSet<&str> = doubles(&records, Verdict::Error).into_iter().map(|row| row.quantity.as_str()).collect();
     assert_eq!(errors, EVERYTHING.into_iter().collect());
     assert!(doubles(&records, Verdict::Fail).is_empty());
@@ -303,12 +302,12 @@ fn not_a_number_is_an_error() {
 /// Answers for some of the states, or for none, are no answers.
 #[test]
 fn too_few_numbers_are_an_error() {
-    let problem = robot(FREE);
+    let robot = robot_of(FREE);
     let some: Twist = |answer| answer.values.truncate(if answer.state > 2 { 0 } else { usize::MAX });
     let none: Twist = |answer| answer.values.clear();
     let one_more: Twist = |answer| answer.values.push(0.0);
     for twist in [some, none, one_more] {
-        let records = beside_native(&problem, &gates(""), Double::twisting(&problem, twist));
+        let records = beside_native(&robot, &gates(""), Double::twisting(&robot, twist));
         let errors: BTreeSet<&str> = doubles(&records, Verdict::Error).into_iter().map(|row| row.quantity.as_str()).collect();
         assert_eq!(errors, EVERYTHING.into_iter().collect());
     }
@@ -316,10 +315,10 @@ fn too_few_numbers_are_an_error() {
 
 #[test]
 fn a_missing_engine_does_not_pass_unnoticed() {
-    let problem = robot(FREE);
+    let robot = robot_of(FREE);
     let gates = gates("");
-    let expected = suite(&beside_native(&problem, &gates, Double::of(&problem)));
-    let alone = agreement(&problem, &gates, &[Box::new(featherbench_engines::Native::new())]);
+    let expected = suite(&beside_native(&robot, &gates, Double::of(&robot)));
+    let alone = agreement(&robot, &gates, &[Box::new(featherbench_engines::Featherbench::new())]);
     assert!(alone.iter().all(|row| matches!(row.verdict, Verdict::Pass | Verdict::Info)), "nothing is wrong with what is there");
     let conditions = gates.conditions(&expected, &alone, true);
     let unmet = red(&conditions);
@@ -342,11 +341,11 @@ fn nothing_at_all_is_not_green() {
 #[test]
 fn blind_bounds_are_red() {
     let gates = gates("");
-    // Every method of the double, and the native ones that are compared with the first.
-    let compared = 2 * Native::new().methods(Quantity::ForwardDynamics).len() - 1;
+    // Every method of the double, and our own that are compared with the first.
+    let compared = 2 * Featherbench::new().methods(Quantity::ForwardDynamics).len() - 1;
     let blunt = |spec: &str| {
-        let problem = robot(spec);
-        let records = beside_native(&problem, &gates, Double::of(&problem));
+        let robot = robot_of(spec);
+        let records = beside_native(&robot, &gates, Double::of(&robot));
         let conditions = gates.conditions(&suite(&records), &records, true);
         let sharpness: Vec<_> = conditions.into_iter().filter(|condition| condition.what.starts_with(SHARPNESS)).collect();
         assert_eq!(sharpness.len(), compared, "{spec}");
@@ -358,7 +357,7 @@ fn blind_bounds_are_red() {
 
 /// One known deviation of this version of an engine on robots with a name like this, with this verdict and what more it says.
 fn deviation(engine: &str, verdict: &str, more: &str) -> String {
-    let names = "models = [\"joints-*\"]\nreason = \"a known cause\"";
+    let names = "robots = [\"joints-*\"]\nreason = \"a known cause\"";
     format!("[[deviation]]\nengine = \"{engine}\"\nversion = \"1\"\n{names}\nverdict = \"{verdict}\"\n{more}\n")
 }
 
@@ -368,8 +367,8 @@ fn excusing(verdict: &str, more: &str) -> Gates {
 }
 
 /// The double's deviations, failures and skips, and whether a suite that expects those that are accounted for is green.
-fn trial(gates: &Gates, problem: &Problem, double: Double) -> (usize, usize, usize, bool) {
-    let records = beside_native(problem, gates, double);
+fn trial(gates: &Gates, robot: &Robot, double: Double) -> (usize, usize, usize, bool) {
+    let records = beside_native(robot, gates, double);
     let unmet = gates.conditions(&suite(&records), &records, true);
     let count = |verdict| doubles(&records, verdict).len();
     (count(Verdict::Deviation), count(Verdict::Fail), count(Verdict::Skip), red(&unmet).is_empty())
@@ -377,28 +376,28 @@ fn trial(gates: &Gates, problem: &Problem, double: Double) -> (usize, usize, usi
 
 #[test]
 fn a_skip_is_red_unless_it_is_known_that_it_is_not_offered() {
-    let problem = robot(FREE);
-    let (deviations, _, skips, green) = trial(&gates(""), &problem, Double::refusing(&problem));
+    let robot = robot_of(FREE);
+    let (deviations, _, skips, green) = trial(&gates(""), &robot, Double::refusing(&robot));
     assert_eq!((deviations, green), (0, false));
     assert!(skips > EVERYTHING.len(), "the forward dynamics has two methods: {skips}");
     let not_offered = |more: &str| {
         let text =
-            format!("[[not_offered]]\nengine = \"double\"\nversion = \"1\"\nmodels = [\"joints-*\"]\nreason = \"a known cause\"\n{more}");
+            format!("[[not_offered]]\nengine = \"double\"\nversion = \"1\"\nrobots = [\"joints-*\"]\nreason = \"a known cause\"\n{more}");
         gates(&text)
     };
-    let (deviations, _, left, green) = trial(&not_offered(""), &problem, Double::refusing(&problem));
+    let (deviations, _, left, green) = trial(&not_offered(""), &robot, Double::refusing(&robot));
     assert_eq!((deviations, left, green), (0, skips, true), "what is not offered is no deviation, and no longer red");
-    assert!(!trial(&not_offered("quantities = [\"com\"]"), &problem, Double::refusing(&problem)).3);
+    assert!(!trial(&not_offered("quantities = [\"com\"]"), &robot, Double::refusing(&robot)).3);
     for verdict in ["fail", "error"] {
-        assert!(!trial(&excusing(verdict, ""), &problem, Double::refusing(&problem)).3, "{verdict}");
+        assert!(!trial(&excusing(verdict, ""), &robot, Double::refusing(&robot)).3, "{verdict}");
     }
 }
 
 #[test]
 fn a_deviation_that_is_no_longer_seen_is_red() {
-    let problem = robot(FREE);
+    let robot = robot_of(FREE);
     let gates = excusing("fail", "");
-    let records = beside_native(&problem, &gates, Double::of(&problem));
+    let records = beside_native(&robot, &gates, Double::of(&robot));
     let conditions = gates.conditions(&suite(&records), &records, true);
     assert_eq!(red(&conditions), ["known deviation of double still seen: a known cause"]);
     // Of part of a run nothing can be said.
@@ -408,27 +407,27 @@ fn a_deviation_that_is_no_longer_seen_is_red() {
 /// Two engines may deviate for the same cause: one of them is no witness for the other, nor one quantity for another.
 #[test]
 fn a_deviation_is_seen_in_its_own_rows() {
-    let problem = robot(FREE);
+    let robot = robot_of(FREE);
     let wrong: Twist = |answer| {
         if answer.quantity == Quantity::Bias {
             answer.values[7] *= -1.0
         }
     };
     let other = deviation("double", "fail", "quantities = [\"id\"]");
-    let gates = gates(&(deviation("double", "fail", "quantities = [\"bias\"]") + &other + &deviation("native", "fail", "")));
-    let gates = measured(gates, &problem, Double::twisting(&problem, wrong), 1.0);
-    let records = beside_native(&problem, &gates, Double::twisting(&problem, wrong));
+    let gates = gates(&(deviation("double", "fail", "quantities = [\"bias\"]") + &other + &deviation("featherbench", "fail", "")));
+    let gates = measured(gates, &robot, Double::twisting(&robot, wrong), 1.0);
+    let records = beside_native(&robot, &gates, Double::twisting(&robot, wrong));
     let mut suite = suite(&records);
-    suite.agreement.as_mut().unwrap().engines.push("native".into());
+    suite.agreement.as_mut().unwrap().engines.push("featherbench".into());
     let conditions = gates.conditions(&suite, &records, true);
-    let unseen = ["known deviation of double still seen: a known cause", "known deviation of native still seen: a known cause"];
+    let unseen = ["known deviation of double still seen: a known cause", "known deviation of featherbench still seen: a known cause"];
     assert_eq!(red(&conditions), unseen);
 }
 
 /// The same gates with the double's ranges as large as it shows them, times a factor.
-fn measured(gates: Gates, problem: &Problem, double: Double, factor: f64) -> Gates {
+fn measured(gates: Gates, robot: &Robot, double: Double, factor: f64) -> Gates {
     let mut meter = RangesMeter::default();
-    meter.add(gates.deviations(), &beside_native(problem, &gates, double));
+    meter.add(gates.deviations(), &beside_native(robot, &gates, double));
     let scale = |(key, range): (&RangeKey, &Range)| (key.clone(), Range { low: range.low * factor, high: range.high * factor, ..*range });
     let ranges: Ranges = meter.ranges().iter().map(scale).collect();
     assert!(ranges.iter().count() > 0);
@@ -437,25 +436,25 @@ fn measured(gates: Gates, problem: &Problem, double: Double, factor: f64) -> Gat
 
 #[test]
 fn a_deviation_explains_no_more_than_was_measured() {
-    let problem = robot(FREE);
-    let wrong = |problem: &Problem| Double::altered(problem, |description| description.bodies[3].mass *= 1.0 + 1e-10);
-    let (_, fails, _, green) = trial(&gates(""), &problem, wrong(&problem));
+    let robot = robot_of(FREE);
+    let wrong = |robot: &Robot| Double::altered(robot, |description| description.bodies[3].mass *= 1.0 + 1e-10);
+    let (_, fails, _, green) = trial(&gates(""), &robot, wrong(&robot));
     assert!(fails > 0 && !green);
-    let (deviations, left, _, green) = trial(&excusing("fail", ""), &problem, wrong(&problem));
+    let (deviations, left, _, green) = trial(&excusing("fail", ""), &robot, wrong(&robot));
     assert_eq!((deviations, left, green), (0, fails, false), "a cause without a size excuses nothing");
-    let sized = |more: &str, factor: f64| measured(excusing("fail", more), &problem, wrong(&problem), factor);
-    assert_eq!(trial(&sized("", 1.0), &problem, wrong(&problem)), (fails, 0, 0, true));
-    let (deviations, left, _, green) = trial(&sized("", 0.1), &problem, wrong(&problem));
+    let sized = |more: &str, factor: f64| measured(excusing("fail", more), &robot, wrong(&robot), factor);
+    assert_eq!(trial(&sized("", 1.0), &robot, wrong(&robot)), (fails, 0, 0, true));
+    let (deviations, left, _, green) = trial(&sized("", 0.1), &robot, wrong(&robot));
     assert!(left > deviations && !green, "ten times as large as known; the largest case has the range: {deviations} excused, {left} not");
     assert_eq!(deviations + left, fails);
     // Smaller than it is known to be: every row is explained, and the list is to be corrected.
-    assert_eq!(trial(&sized("", 10.0), &problem, wrong(&problem)), (fails, 0, 0, false));
-    let (deviations, left, _, green) = trial(&sized("quantities = [\"id\"]", 1.0), &problem, wrong(&problem));
+    assert_eq!(trial(&sized("", 10.0), &robot, wrong(&robot)), (fails, 0, 0, false));
+    let (deviations, left, _, green) = trial(&sized("quantities = [\"id\"]", 1.0), &robot, wrong(&robot));
     assert!(deviations > 0 && left > 0 && !green);
     assert_eq!(deviations + left, fails);
     // What was measured on one robot excuses no other one of its class.
-    let other = robot("joints:kind=mixed,base=fixed");
+    let other = robot_of("joints:kind=mixed,base=fixed");
     let elsewhere = measured(excusing("fail", ""), &other, wrong(&other), 1.0);
-    let (deviations, left, _, green) = trial(&elsewhere, &problem, wrong(&problem));
+    let (deviations, left, _, green) = trial(&elsewhere, &robot, wrong(&robot));
     assert_eq!((deviations, left, green), (0, fails, false));
 }

@@ -8,7 +8,7 @@ mod support;
 
 use featherbench_bench::measure::worst;
 use featherbench_model::{BodyDescription, JointType};
-use featherbench_results::{Record, Verdict};
+use featherbench_results::{Row, Verdict};
 use rayon::prelude::*;
 use support::{Double, beside_native, doubles, gates, red, robot, suite};
 
@@ -120,18 +120,18 @@ fn across(v: [f64; 3]) -> [f64; 3] {
 /// Plants every error in every body, and asserts that each is convicted, and innocence acquitted.
 #[track_caller]
 fn convicts(spec: &str) {
-    let problem = robot(spec);
-    assert!(problem.depth <= 20, "deeper robots are measured, not gated");
+    let robot = robot(spec);
+    assert!(robot.depth <= 20, "deeper robots are measured, not gated");
     let gates = gates("");
-    let honest = beside_native(&problem, &gates, Double::of(&problem));
+    let honest = beside_native(&robot, &gates, Double::of(&robot));
     let suite = suite(&honest);
-    let is_red = |records: &[Record]| !red(&gates.conditions(&suite, records, true)).is_empty();
+    let is_red = |records: &[Row]| !red(&gates.conditions(&suite, records, true)).is_empty();
     for row in honest.iter().filter(|row| row.relation.is_some() || row.verdict != Verdict::Info) {
         assert_eq!(row.verdict, Verdict::Pass, "{} of {}: {}", row.quantity, row.engine, row.reason);
     }
     assert!(!is_red(&honest));
 
-    let bodies = &problem.description.bodies;
+    let bodies = &robot.description.bodies;
     let plants: Vec<(usize, Plant)> = (0..bodies.len())
         .flat_map(|body| Plant::ALL.map(|plant| (body, plant)))
         .filter(|&(body, plant)| !plant.absent(&bodies[body]))
@@ -139,8 +139,7 @@ fn convicts(spec: &str) {
     let margins: Vec<Result<f64, String>> = plants
         .par_iter()
         .map(|&(body, plant)| {
-            let records =
-                beside_native(&problem, &gates, Double::altered(&problem, |description| plant.sow(&mut description.bodies[body])));
+            let records = beside_native(&robot, &gates, Double::altered(&robot, |description| plant.sow(&mut description.bodies[body])));
             if unfelt(bodies, body, plant) {
                 return if records == honest { Ok(f64::NEG_INFINITY) } else { Err(format!("{plant:?} of {} is felt", bodies[body].name)) };
             }

@@ -6,10 +6,10 @@
 mod support;
 
 use featherbench_bench::run::{Silent, evaluate, plan};
-use featherbench_bench::{Context, Finished, Gates, Outcome, OutcomeStore, Problem, Quantity, Study, Subject, Suite};
-use featherbench_engines::{Native, Recorded, read_recordings};
+use featherbench_bench::{Context, Engine, Finished, Gates, Outcome, OutcomeStore, Quantity, Robot, Study, Suite};
+use featherbench_engines::{Featherbench, Recorded, read_recordings};
 use featherbench_model::generate::Family;
-use featherbench_results::{ModelOrigin, Record, Verdict};
+use featherbench_results::{ModelOrigin, Row, Verdict};
 use featherbench_studies::Agreement;
 use rayon::prelude::*;
 use std::collections::{BTreeMap, BTreeSet};
@@ -35,8 +35,8 @@ enum Escape {
 struct Default {
     suite: Suite,
     gates: Gates,
-    problems: Vec<Problem>,
-    subjects: Vec<Box<dyn Subject>>,
+    robots: Vec<Robot>,
+    engines: Vec<Box<dyn Engine>>,
 }
 
 impl Default {
@@ -44,25 +44,25 @@ impl Default {
         let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
         let (suite, _) = Suite::read(&root.join("datasets/suites/default.toml")).unwrap();
         let agreement = suite.agreement.clone().unwrap();
-        let robot = |entry: &featherbench_bench::ProblemEntry| {
+        let robot = |entry: &featherbench_bench::RobotEntry| {
             let description = match &entry.model {
                 Some(name) => featherbench_formats::neutral::read(root.join(format!("datasets/models/{name}.json"))).unwrap(),
                 None => Family::parse(entry.generate.as_ref().unwrap()).unwrap().generate().unwrap(),
             };
             let states = entry.states.unwrap_or(agreement.states);
-            let mut problem = Problem::new(&description, &entry.family, ModelOrigin::Generated, states, suite.seed).unwrap();
-            problem.studies.clone_from(&entry.studies);
-            problem
+            let mut robot = Robot::new(&description, &entry.family, ModelOrigin::Generated, states, suite.seed).unwrap();
+            robot.studies.clone_from(&entry.studies);
+            robot
         };
-        let mut problems: Vec<Problem> = suite.problem.iter().map(robot).collect();
-        problems.retain(|problem| problem.takes("agreement"));
-        let asked: Vec<&Problem> = problems.iter().collect();
+        let mut robots: Vec<Robot> = suite.robot.iter().map(robot).collect();
+        robots.retain(|robot| robot.takes("agreement"));
+        let asked: Vec<&Robot> = robots.iter().collect();
         let recordings = Arc::new(read_recordings(&recorded(&root), &asked));
-        let mut subjects: Vec<Box<dyn Subject>> = vec![Box::new(Native::new())];
+        let mut engines: Vec<Box<dyn Engine>> = vec![Box::new(Featherbench::new())];
         for engine in &agreement.engines {
-            subjects.push(Box::new(Recorded::new(&recordings, engine).unwrap()));
+            engines.push(Box::new(Recorded::new(&recordings, engine).unwrap()));
         }
-        Self { suite, gates: Gates::read(&gates_folder()).unwrap(), problems, subjects }
+        Self { suite, gates: Gates::read(&gates_folder()).unwrap(), robots, engines }
     }
 }
 
@@ -103,16 +103,16 @@ fn answered(default: &Default, context: &Context) -> Vec<Finished> {
 }
 
 /// Plants an error in every answer about one robot, and looks at what is red.
-fn trials(default: &Default, problem: &Problem, spoil: Spoil, error: f64) -> Trials {
+fn trials(default: &Default, robot: &Robot, spoil: Spoil, error: f64) -> Trials {
     let context =
-        Context { problems: std::slice::from_ref(problem), subjects: &default.subjects, gates: &default.gates, seed: default.suite.seed };
+        Context { robots: std::slice::from_ref(robot), engines: &default.engines, gates: &default.gates, seed: default.suite.seed };
     let finished = answered(default, &context);
-    // Everything is compared with the first answer of the native kernels, and each answer by itself: so the references are spoiled together
+    // Everything is compared with the first answer of our own kernels, and each answer by itself: so the references are spoiled together
     // in one trial, and all the others in another one.
     let mut references: BTreeSet<usize> = BTreeSet::new();
     let mut seen: BTreeSet<&str> = BTreeSet::new();
     for (index, (cell, _)) in finished.iter().enumerate() {
-        if cell.subject == "native" && seen.insert(&cell.quantity) {
+        if cell.engine == "featherbench" && seen.insert(&cell.quantity) {
             references.insert(index);
         }
     }
@@ -127,23 +127,23 @@ fn trials(default: &Default, problem: &Problem, spoil: Spoil, error: f64) -> Tri
             }
             let quantity = Quantity::parse(&cell.quantity).unwrap();
             let before = values.clone();
-            values.chunks_exact_mut(quantity.size(problem)).for_each(|state| spoil(state, error));
+            values.chunks_exact_mut(quantity.size(robot)).for_each(|state| spoil(state, error));
             if *values != before {
                 planted.push(index);
             }
         }
-        let judged = Agreement.compare(&context, problem, &spoiled);
+        let judged = Agreement.compare(&context, robot, &spoiled);
         for index in planted {
             let cell = &finished[index].0;
             let id = cell.id();
-            let concerned = |row: &&Record| row.cell == id || of_references && row.quantity == cell.quantity;
-            let rows: Vec<Record> = judged.iter().filter(concerned).cloned().collect();
+            let concerned = |row: &&Row| row.cell == id || of_references && row.quantity == cell.quantity;
+            let rows: Vec<Row> = judged.iter().filter(concerned).cloned().collect();
             trials.planted += 1;
             let conditions = default.gates.conditions(&default.suite, &rows, false);
             if conditions.iter().any(|condition| condition.verdict != Verdict::Pass) {
                 continue;
             }
-            let name = format!("{} {} {} {}", problem.name, cell.subject, cell.method, cell.quantity);
+            let name = format!("{} {} {} {}", robot.name, cell.engine, cell.method, cell.quantity);
             let known = rows.iter().any(|row| row.cell == id && row.verdict == Verdict::Deviation && row.value.is_some());
             let judged = rows.iter().any(|row| row.relation.is_some());
             let cause = match (known, judged) {
@@ -160,7 +160,7 @@ fn trials(default: &Default, problem: &Problem, spoil: Spoil, error: f64) -> Tri
 /// Plants an error in every answer about every robot, and counts what escapes by cause.
 fn escapes(spoil: Spoil, error: f64) -> (usize, BTreeMap<Escape, Vec<String>>) {
     let default = Default::open();
-    let all: Vec<Trials> = default.problems.par_iter().map(|problem| trials(&default, problem, spoil, error)).collect();
+    let all: Vec<Trials> = default.robots.par_iter().map(|robot| trials(&default, robot, spoil, error)).collect();
     let mut escaped: BTreeMap<Escape, Vec<String>> = BTreeMap::new();
     for (cause, name) in all.iter().flat_map(|trials| &trials.escaped) {
         escaped.entry(*cause).or_default().push(name.clone());

@@ -4,11 +4,11 @@
 mod support;
 
 use featherbench_bench::{
-    FileBase, FileFormat, Identity, Prepared, Problem, Quantity, Reading as Read, ReadingNote, Refusal, RobotFile, Subject,
+    Engine, Evaluation, FileBase, FileFormat, Identity, NoAnswer, Quantity, Reading as Read, ReadingNote, Robot, RobotFile,
 };
-use featherbench_engines::Native;
+use featherbench_engines::Featherbench;
 use featherbench_model::{Description, Model, StateBatch};
-use featherbench_results::{EngineSource, Record, Verdict};
+use featherbench_results::{EngineSource, Row, Verdict};
 use featherbench_studies::Reading;
 use serde_json::Value;
 use std::collections::BTreeMap;
@@ -17,17 +17,17 @@ use support::{gates, robot, whole};
 /// An engine with a parser: it says to have read one robot and computes with another of the same shape.
 struct Parser {
     identity: Identity,
-    native: Native,
-    says: Result<Read, Refusal>,
-    holds: Option<Problem>,
+    featherbench: Featherbench,
+    says: Result<Read, NoAnswer>,
+    holds: Option<Robot>,
 }
 
 impl Parser {
-    fn new(says: Description, holds: &Description, problem: &Problem) -> Self {
-        let mut held = problem.clone();
+    fn new(says: Description, holds: &Description, robot: &Robot) -> Self {
+        let mut held = robot.clone();
         held.description = holds.canonical().unwrap();
         held.model = Model::build(&held.description).unwrap();
-        let note = ReadingNote { cause: "warning".into(), subject: None, text: "something".into(), numbers: Vec::new() };
+        let note = ReadingNote { cause: "warning".into(), about: None, text: "something".into(), numbers: Vec::new() };
         Self {
             says: Ok(Read { description: says.canonical().unwrap(), notes: vec![note], keyframes: Vec::new(), written: None }),
             holds: Some(held),
@@ -36,59 +36,59 @@ impl Parser {
     }
 
     fn refusing(reason: &str) -> Self {
-        let identity = Identity { name: "parser".into(), version: "1".into(), source: EngineSource::Native, build: BTreeMap::new() };
-        Self { identity, native: Native::new(), says: Err(Refusal::Failed(reason.into())), holds: None }
+        let identity = Identity { name: "parser".into(), version: "1".into(), source: EngineSource::Own, build: BTreeMap::new() };
+        Self { identity, featherbench: Featherbench::new(), says: Err(NoAnswer::Failed(reason.into())), holds: None }
     }
 }
 
-impl Subject for Parser {
+impl Engine for Parser {
     fn identity(&self) -> &Identity {
         &self.identity
     }
 
     fn methods(&self, quantity: Quantity) -> Vec<String> {
-        self.native.methods(quantity)
+        self.featherbench.methods(quantity)
     }
 
-    fn read(&self, _: &RobotFile) -> Result<Read, Refusal> {
+    fn read(&self, _: &RobotFile) -> Result<Read, NoAnswer> {
         self.says.clone()
     }
 
     fn prepare<'a>(
         &'a self,
-        _: &'a Problem,
+        _: &'a Robot,
         quantity: Quantity,
         method: &str,
         states: &'a StateBatch,
-    ) -> Result<Box<dyn Prepared + 'a>, Refusal> {
-        let holds = self.holds.as_ref().ok_or_else(|| Refusal::Failed("nothing was read".into()))?;
-        self.native.prepare(holds, quantity, method, states)
+    ) -> Result<Box<dyn Evaluation + 'a>, NoAnswer> {
+        let holds = self.holds.as_ref().ok_or_else(|| NoAnswer::Failed("nothing was read".into()))?;
+        self.featherbench.prepare(holds, quantity, method, states)
     }
 }
 
 /// A robot that is said to come from a file.
-fn filed(spec: &str) -> Problem {
+fn filed(spec: &str) -> Robot {
     let file =
         RobotFile { path: "robot.urdf".into(), format: FileFormat::Urdf, base: FileBase::Fixed, hash: "0".into(), links: Vec::new() };
     robot(spec).from_file(file)
 }
 
-fn records(problem: &Problem, parser: Parser) -> Vec<Record> {
-    whole(&Reading, problem, &gates(""), &[Box::new(Native::new()), Box::new(parser)])
+fn records(robot: &Robot, parser: Parser) -> Vec<Row> {
+    whole(&Reading, robot, &gates(""), &[Box::new(Featherbench::new()), Box::new(parser)])
 }
 
-fn row<'a>(records: &'a [Record], metric: &str, quantity: &str) -> &'a Record {
+fn row<'a>(records: &'a [Row], metric: &str, quantity: &str) -> &'a Row {
     records.iter().find(|row| row.metric == metric && row.quantity == quantity).unwrap_or_else(|| panic!("no {metric} of {quantity}"))
 }
 
-fn params(row: &Record) -> Value {
+fn params(row: &Row) -> Value {
     serde_json::from_str(&row.params).unwrap()
 }
 
 #[test]
 fn a_robot_read_as_it_is_has_no_differences_and_is_explained() {
-    let problem = filed("humanoid");
-    let records = records(&problem, Parser::new(problem.description.clone(), &problem.description, &problem));
+    let robot = filed("humanoid");
+    let records = records(&robot, Parser::new(robot.description.clone(), &robot.description, &robot));
     assert_eq!(row(&records, "differences", "reading").value, Some(0.0));
     assert_eq!(
         (row(&records, "unexplained", "reading").value, row(&records, "unexplained", "reading").verdict),
@@ -102,13 +102,13 @@ fn a_robot_read_as_it_is_has_no_differences_and_is_explained() {
 
 #[test]
 fn an_edited_robot_that_is_told_is_a_difference_and_explained() {
-    let problem = filed("humanoid");
-    let mut edited = problem.description.clone();
+    let robot = filed("humanoid");
+    let mut edited = robot.description.clone();
     let body = edited.bodies.len() - 1;
     edited.bodies[body].mass *= 2.0;
-    let records = records(&problem, Parser::new(edited.clone(), &edited, &problem));
+    let records = records(&robot, Parser::new(edited.clone(), &edited, &robot));
     let difference = row(&records, "difference", "mass");
-    assert_eq!(difference.case, edited.bodies[body].name);
+    assert_eq!(difference.states, edited.bodies[body].name);
     assert_eq!(difference.value, Some(0.5), "half of the larger mass");
     assert_eq!(row(&records, "differences", "reading").value, Some(1.0));
     assert_eq!(row(&records, "unexplained", "reading").verdict, Verdict::Pass);
@@ -121,13 +121,13 @@ fn an_edited_robot_that_is_told_is_a_difference_and_explained() {
 #[test]
 fn an_engine_that_lies_about_what_it_read_is_unexplained_from_the_body_on() {
     for spec in ["humanoid", "quadruped", "tree:n=20,joints=all,base=fixed"] {
-        let problem = filed(spec);
-        let bodies = &problem.description.bodies;
+        let robot = filed(spec);
+        let bodies = &robot.description.bodies;
         for body in (0..bodies.len()).step_by(3) {
-            let mut held = problem.description.clone();
+            let mut held = robot.description.clone();
             held.bodies[body].mass += 1.0;
             held.bodies[body].inertia = held.bodies[body].inertia.map(|x| 2.0 * x);
-            let records = records(&problem, Parser::new(problem.description.clone(), &held, &problem));
+            let records = records(&robot, Parser::new(robot.description.clone(), &held, &robot));
             assert_eq!(row(&records, "differences", "reading").value, Some(0.0), "it says that it read the same");
             let left = row(&records, "unexplained", "reading");
             assert_eq!(left.verdict, Verdict::Fail, "{spec}: {}", bodies[body].name);
@@ -140,10 +140,10 @@ fn an_engine_that_lies_about_what_it_read_is_unexplained_from_the_body_on() {
 
 #[test]
 fn gravity_that_is_not_told_is_unexplained_by_torques_alone() {
-    let problem = filed("humanoid");
-    let mut held = problem.description.clone();
+    let robot = filed("humanoid");
+    let mut held = robot.description.clone();
     held.gravity = [0.0, 0.0, -1.0];
-    let records = records(&problem, Parser::new(problem.description.clone(), &held, &problem));
+    let records = records(&robot, Parser::new(robot.description.clone(), &held, &robot));
     let left = row(&records, "unexplained", "reading");
     assert_eq!(left.verdict, Verdict::Fail);
     assert!(params(left)["unexplained"].as_array().unwrap().iter().all(|tree| tree["quantity"] == "id"));
@@ -152,16 +152,16 @@ fn gravity_that_is_not_told_is_unexplained_by_torques_alone() {
 
 #[test]
 fn a_body_less_is_compared_on_what_is_left() {
-    let problem = filed("quadruped");
-    let mut fewer = problem.description.clone();
+    let robot = filed("quadruped");
+    let mut fewer = robot.description.clone();
     let leaf = fewer.bodies.len() - 1;
     let joint = &mut fewer.bodies[leaf].joint;
     *joint = featherbench_model::JointDescription { name: joint.name.clone(), placement: joint.placement, ..Default::default() };
     let fewer = fewer.canonical().unwrap();
-    let mut parser = Parser::new(fewer.clone(), &fewer, &problem);
+    let mut parser = Parser::new(fewer.clone(), &fewer, &robot);
     // Its states are those of the smaller robot.
     parser.holds.as_mut().unwrap().depth = fewer.depth();
-    let records = records(&problem, parser);
+    let records = records(&robot, parser);
     let difference = row(&records, "difference", "body");
     assert_eq!(params(difference)["cause"], "merged");
     assert_eq!(row(&records, "unexplained", "reading").verdict, Verdict::Pass);
@@ -171,15 +171,15 @@ fn a_body_less_is_compared_on_what_is_left() {
 
 #[test]
 fn a_refusal_is_a_row_with_its_reason() {
-    let problem = filed("hand");
-    let records = records(&problem, Parser::refusing("line 3: no"));
+    let robot = filed("hand");
+    let records = records(&robot, Parser::refusing("line 3: no"));
     assert_eq!(records.len(), 1);
     assert_eq!((records[0].verdict, records[0].reason.as_str()), (Verdict::Error, "line 3: no"));
 }
 
 #[test]
 fn a_robot_without_a_file_is_not_asked_about() {
-    let problem = robot("hand");
-    let parser = Parser::new(problem.description.clone(), &problem.description, &problem);
-    assert!(records(&problem, parser).is_empty());
+    let robot = robot("hand");
+    let parser = Parser::new(robot.description.clone(), &robot.description, &robot);
+    assert!(records(&robot, parser).is_empty());
 }

@@ -2,11 +2,11 @@
 //! that comes only once. Each is a row that fails, with its size; honest engines pass, and recordings are not asked.
 
 use featherbench_bench::run::{Silent, compare, evaluate, plan};
-use featherbench_bench::{Context, Gates, Identity, OutcomeStore, Prepared, Problem, Quantity, Refusal, Subject};
-use featherbench_engines::Native;
+use featherbench_bench::{Context, Engine, Evaluation, Gates, Identity, NoAnswer, OutcomeStore, Quantity, Robot};
+use featherbench_engines::Featherbench;
 use featherbench_model::StateBatch;
 use featherbench_model::generate::Family;
-use featherbench_results::{EngineSource, ModelOrigin, Record, Relation, Verdict};
+use featherbench_results::{EngineSource, ModelOrigin, Relation, Row, Verdict};
 use featherbench_studies::Repeatability;
 use std::collections::BTreeSet;
 use std::ops::Range;
@@ -30,7 +30,7 @@ enum Fault {
 
 struct Faulty {
     identity: Identity,
-    native: Native,
+    featherbench: Featherbench,
     fault: Fault,
     about: Quantity,
     answers: AtomicU64,
@@ -39,45 +39,45 @@ struct Faulty {
 impl Faulty {
     fn new(fault: Fault, source: EngineSource) -> Self {
         let identity = Identity { name: "faulty".into(), version: "1".into(), source, build: Default::default() };
-        Self { identity, native: Native::new(), fault, about: Quantity::Bias, answers: AtomicU64::new(0) }
+        Self { identity, featherbench: Featherbench::new(), fault, about: Quantity::Bias, answers: AtomicU64::new(0) }
     }
 }
 
 struct Spoiled<'a> {
     of: &'a Faulty,
-    honest: Box<dyn Prepared + 'a>,
+    honest: Box<dyn Evaluation + 'a>,
     quantity: Quantity,
     values: Vec<f64>,
 }
 
-impl Subject for Faulty {
+impl Engine for Faulty {
     fn identity(&self) -> &Identity {
         &self.identity
     }
 
     fn methods(&self, quantity: Quantity) -> Vec<String> {
-        self.native.methods(quantity)
+        self.featherbench.methods(quantity)
     }
 
     fn prepare<'a>(
         &'a self,
-        problem: &'a Problem,
+        robot: &'a Robot,
         quantity: Quantity,
         method: &str,
         states: &'a StateBatch,
-    ) -> Result<Box<dyn Prepared + 'a>, Refusal> {
+    ) -> Result<Box<dyn Evaluation + 'a>, NoAnswer> {
         match self.fault {
-            Fault::NoRobot => return Err(Refusal::Unsupported("no such robot".into())),
-            Fault::Broken => return Err(Refusal::Failed("no licence".into())),
+            Fault::NoRobot => return Err(NoAnswer::NotOffered("no such robot".into())),
+            Fault::Broken => return Err(NoAnswer::Failed("no licence".into())),
             _ => {}
         }
-        let honest = self.native.prepare(problem, quantity, method, states)?;
+        let honest = self.featherbench.prepare(robot, quantity, method, states)?;
         Ok(Box::new(Spoiled { of: self, honest, quantity, values: Vec::new() }))
     }
 }
 
-impl Prepared for Spoiled<'_> {
-    fn run(&mut self, range: Range<usize>) -> Result<(), Refusal> {
+impl Evaluation for Spoiled<'_> {
+    fn run(&mut self, range: Range<usize>) -> Result<(), NoAnswer> {
         self.honest.run(range)?;
         self.values = self.honest.read().to_vec();
         if self.quantity == self.of.about {
@@ -85,7 +85,7 @@ impl Prepared for Spoiled<'_> {
             match self.of.fault {
                 Fault::Noise => self.values.iter_mut().for_each(|x| *x *= 1.0 + 2.0 * f64::EPSILON * count as f64),
                 Fault::SignOfZero => self.values[0] = if count.is_multiple_of(3) { 0.0 } else { -0.0 },
-                Fault::Once if count > 1 => return Err(Refusal::Failed("the buffer is gone".into())),
+                Fault::Once if count > 1 => return Err(NoAnswer::Failed("the buffer is gone".into())),
                 _ => {}
             }
         }
@@ -97,15 +97,15 @@ impl Prepared for Spoiled<'_> {
     }
 }
 
-fn robots() -> Vec<Problem> {
-    let robot = |spec: &str| Problem::new(&Family::parse(spec).unwrap().generate().unwrap(), "test", ModelOrigin::Generated, 3, 1).unwrap();
+fn robots() -> Vec<Robot> {
+    let robot = |spec: &str| Robot::new(&Family::parse(spec).unwrap().generate().unwrap(), "test", ModelOrigin::Generated, 3, 1).unwrap();
     ["chain:n=2", "chain:n=3", "chain:n=4,layout=spatial", "joints:kind=revolute,base=free,shape=single"].map(robot).into()
 }
 
-fn rows_of(fault: Fault, source: EngineSource, key: &str, seed: u64) -> Vec<Record> {
-    let (problems, gates) = (robots(), Gates::default());
-    let subjects: Vec<Box<dyn Subject>> = vec![Box::new(Faulty::new(fault, source))];
-    let context = Context { problems: &problems, subjects: &subjects, gates: &gates, seed };
+fn rows_of(fault: Fault, source: EngineSource, key: &str, seed: u64) -> Vec<Row> {
+    let (robots, gates) = (robots(), Gates::default());
+    let engines: Vec<Box<dyn Engine>> = vec![Box::new(Faulty::new(fault, source))];
+    let context = Context { robots: &robots, engines: &engines, gates: &gates, seed };
     let study = Repeatability { key: key.into() };
     let folder = tempfile::tempdir().unwrap();
     let store = OutcomeStore::open(folder.path()).unwrap();
@@ -114,7 +114,7 @@ fn rows_of(fault: Fault, source: EngineSource, key: &str, seed: u64) -> Vec<Reco
 }
 
 /// The rows that do not pass.
-fn red(rows: &[Record]) -> Vec<&Record> {
+fn red(rows: &[Row]) -> Vec<&Row> {
     rows.iter().filter(|row| row.verdict != Verdict::Pass).collect()
 }
 
@@ -138,7 +138,7 @@ fn noise_below_every_bound_is_a_failing_row_with_its_size() {
     // Two answers later: 4 ε is 4 to 8 units in the last place, and one more by rounding.
     assert!(row.value.is_some_and(|ulps| (2.0..=10.0).contains(&ulps)), "{row:#?}");
     assert!(row.reason.contains("asked twice for bias") && row.reason.contains("units in the last place"), "{}", row.reason);
-    assert!(robots().iter().any(|robot| robot.name == row.model) && row.method == "rnea");
+    assert!(robots().iter().any(|robot| robot.name == row.robot) && row.method == "rnea");
 }
 
 #[test]
@@ -162,7 +162,7 @@ fn who_has_no_answer_at_all_has_no_row_here() {
     assert_eq!(rows_of(Fault::NoRobot, EngineSource::Live, "a", 1), []);
     assert_eq!(rows_of(Fault::Broken, EngineSource::Live, "a", 1), []);
     assert_eq!(rows_of(Fault::Noise, EngineSource::Recorded, "a", 1), [], "a recording answers nothing anew");
-    assert!(!rows_of(Fault::Honest, EngineSource::Native, "a", 1).is_empty(), "our own kernels are asked");
+    assert!(!rows_of(Fault::Honest, EngineSource::Own, "a", 1).is_empty(), "our own kernels are asked");
 }
 
 /// Other keys and seeds ask about other cells, the same ones about the same.
@@ -170,7 +170,7 @@ fn who_has_no_answer_at_all_has_no_row_here() {
 fn the_draw_is_by_a_counter_and_not_always_the_same() {
     let drawn = |key: &str, seed| {
         let rows = rows_of(Fault::Honest, EngineSource::Live, key, seed);
-        rows.into_iter().map(|row| (row.params.split("quantity").nth(1).map(str::to_owned), row.model, row.method)).collect::<Vec<_>>()
+        rows.into_iter().map(|row| (row.params.split("quantity").nth(1).map(str::to_owned), row.robot, row.method)).collect::<Vec<_>>()
     };
     assert_eq!(drawn("a", 1), drawn("a", 1));
     assert_ne!(drawn("a", 1), drawn("b", 1));

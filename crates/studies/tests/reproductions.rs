@@ -3,8 +3,8 @@
 mod support;
 
 use featherbench_bench::run::{Silent, compare, evaluate, plan};
-use featherbench_bench::{Context, Gates, OutcomeStore, Refusal, Subject};
-use featherbench_results::{Record, Verdict};
+use featherbench_bench::{Context, Engine, Gates, NoAnswer, OutcomeStore};
+use featherbench_results::{Row, Verdict};
 use featherbench_studies::Reproductions;
 use support::Double;
 
@@ -20,9 +20,9 @@ upstream = "none found"
 "#;
 
 /// The rows when the reproduction's values are these.
-fn rows(known: &Gates, values: impl Fn() -> Result<Vec<f64>, Refusal> + Send + Sync + 'static) -> Vec<Record> {
-    let subjects: Vec<Box<dyn Subject>> = vec![Box::new(Double::of(&support::robot("chain:n=2")))];
-    let context = Context { problems: &[], subjects: &subjects, gates: known, seed: 1 };
+fn rows(known: &Gates, values: impl Fn() -> Result<Vec<f64>, NoAnswer> + Send + Sync + 'static) -> Vec<Row> {
+    let engines: Vec<Box<dyn Engine>> = vec![Box::new(Double::of(&support::robot("chain:n=2")))];
+    let context = Context { robots: &[], engines: &engines, gates: known, seed: 1 };
     let study = Reproductions {
         reproduce: Box::new(move |name, seeds| {
             assert_eq!((name, seeds), ("loss", 20));
@@ -56,7 +56,7 @@ fn a_deviation_within_its_range_passes_and_others_do_not() {
 
 #[test]
 fn what_cannot_be_evaluated_is_an_error_with_its_reason() {
-    let failed = rows(&support::gates(KNOWN), || Err(Refusal::Failed("ImportError: no engine".into())));
+    let failed = rows(&support::gates(KNOWN), || Err(NoAnswer::Failed("ImportError: no engine".into())));
     assert_eq!(failed.len(), 1);
     assert_eq!((failed[0].verdict, failed[0].reason.as_str()), (Verdict::Error, "ImportError: no engine"));
     let other = rows(&support::gates(&KNOWN.replace("version = \"1\"", "version = \"0.9\"")), || Ok(vec![0.2]));

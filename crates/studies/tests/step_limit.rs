@@ -1,9 +1,9 @@
 //! The study of small steps on an engine of our own that is implicit, has an energy guard, and drifts in the first order.
 
-use featherbench_bench::{Identity, Prepared, Problem, Quantity, Refusal, Stepper, Subject};
+use featherbench_bench::{Engine, Evaluation, Identity, NoAnswer, Quantity, Robot, Stepper};
 use featherbench_dynamics::{energy, forward_dynamics};
 use featherbench_model::StateBatch;
-use featherbench_results::{EngineSource, Record, Verdict};
+use featherbench_results::{EngineSource, Row, Verdict};
 use featherbench_studies::StepLimit;
 use serde_json::Value;
 use std::collections::BTreeMap;
@@ -25,7 +25,7 @@ impl Implicit {
     }
 }
 
-impl Subject for Implicit {
+impl Engine for Implicit {
     fn identity(&self) -> &Identity {
         &self.0
     }
@@ -34,8 +34,8 @@ impl Subject for Implicit {
         Vec::new()
     }
 
-    fn prepare<'a>(&'a self, _: &'a Problem, _: Quantity, _: &str, _: &'a StateBatch) -> Result<Box<dyn Prepared + 'a>, Refusal> {
-        Err(Refusal::Unsupported("it only steps".into()))
+    fn prepare<'a>(&'a self, _: &'a Robot, _: Quantity, _: &str, _: &'a StateBatch) -> Result<Box<dyn Evaluation + 'a>, NoAnswer> {
+        Err(NoAnswer::NotOffered("it only steps".into()))
     }
 
     fn stepper(&self) -> Option<&dyn Stepper> {
@@ -53,8 +53,8 @@ impl Stepper for Implicit {
     }
 
     /// The true acceleration, smaller by its dt·‖v‖-th part if the step is implicit; with damping by a tenth of it as well.
-    fn step_acceleration(&self, problem: &Problem, method: &str, states: &StateBatch, k: usize, dt: f64) -> Result<Vec<f64>, Refusal> {
-        let exact = forward_dynamics(&problem.model, states.q(k), states.v(k), states.tau(k)).unwrap();
+    fn step_acceleration(&self, robot: &Robot, method: &str, states: &StateBatch, k: usize, dt: f64) -> Result<Vec<f64>, NoAnswer> {
+        let exact = forward_dynamics(&robot.model, states.q(k), states.v(k), states.tau(k)).unwrap();
         let first_order = dt * speed(states.v(k));
         let damped = if method == "step" { 0.0 } else { 0.1 };
         let share = 1.0 - damped - if first_order >= EXPLICIT { 0.0 } else { first_order };
@@ -65,13 +65,13 @@ impl Stepper for Implicit {
         Some(GUARD)
     }
 
-    fn fall(&self, problem: &Problem, _: &str, states: &StateBatch, k: usize, dt: f64, steps: usize) -> Result<Vec<f64>, Refusal> {
-        let start = energy(&problem.model, states.q(k), states.v(k)).unwrap();
+    fn fall(&self, robot: &Robot, _: &str, states: &StateBatch, k: usize, dt: f64, steps: usize) -> Result<Vec<f64>, NoAnswer> {
+        let start = energy(&robot.model, states.q(k), states.v(k)).unwrap();
         Ok((1..=steps).map(|i| start.kinetic + start.potential + dt * i as f64 / steps as f64).collect())
     }
 }
 
-fn params(row: &Record) -> (f64, Option<String>) {
+fn params(row: &Row) -> (f64, Option<String>) {
     let params: Value = serde_json::from_str(&row.params).unwrap();
     (params["dt"].as_f64().unwrap(), params["regime"].as_str().map(str::to_owned))
 }
@@ -79,17 +79,16 @@ fn params(row: &Record) -> (f64, Option<String>) {
 #[test]
 fn each_step_names_its_regime() {
     for spec in ["chain:n=3,layout=spatial", "joints:kind=spherical,base=fixed", "joints:kind=revolute,base=fixed"] {
-        let subjects: [Box<dyn Subject>; 1] = [Box::new(Implicit::new())];
-        let problem = robot(spec);
-        let rows = whole(&StepLimit, &problem, &gates(""), &subjects);
-        let steps =
-            |method: &str| -> Vec<&Record> { rows.iter().filter(|row| row.metric == "step_error" && row.method == method).collect() };
+        let engines: [Box<dyn Engine>; 1] = [Box::new(Implicit::new())];
+        let robot = robot(spec);
+        let rows = whole(&StepLimit, &robot, &gates(""), &engines);
+        let steps = |method: &str| -> Vec<&Row> { rows.iter().filter(|row| row.metric == "step_error" && row.method == method).collect() };
         assert_eq!((steps("step").len(), steps("step_default").len()), (18, 18), "{spec}");
         let (mut explicit, mut implicit_beyond) = (0, 0);
         for row in steps("step") {
             let ((dt, regime), value) = (params(row), row.value.unwrap());
-            let state = problem.states.cases.iter().position(|case| case.name() == row.case).unwrap();
-            let first_order = dt * speed(problem.states.v(state));
+            let state = robot.states.cases.iter().position(|case| case.name() == row.states).unwrap();
+            let first_order = dt * speed(robot.states.v(state));
             implicit_beyond += usize::from((GUARD..EXPLICIT).contains(&first_order));
             if first_order >= EXPLICIT {
                 explicit += 1;

@@ -1,7 +1,7 @@
 //! Forward dynamics: errors that κ(M) cannot excuse, and how far a backward error may grow.
 
 use super::{Magnitudes, ratio, worst};
-use crate::Problem;
+use crate::Robot;
 use featherbench_dynamics::{Bias, Crba, Ltdl, Rnea, TreeSparse};
 use nalgebra::DMatrix;
 
@@ -10,7 +10,7 @@ use nalgebra::DMatrix;
 /// Where M is singular at the state, everything is NaN, and so are the backward and the forward error of every answer: never a pass.
 #[derive(Clone, Debug)]
 pub struct ForwardScale<'a> {
-    problem: &'a Problem,
+    robot: &'a Robot,
     state: usize,
     mass: TreeSparse<f64>,
     /// Magnitude of the terms of h, and |τ|, added up per dof.
@@ -32,16 +32,16 @@ const EIGEN_LIMIT: usize = 100;
 const ITERATIONS: usize = 12;
 
 impl<'a> ForwardScale<'a> {
-    /// The scales of every state of a problem.
-    pub fn all(problem: &'a Problem, at: &[Magnitudes]) -> Vec<Self> {
-        at.iter().enumerate().map(|(state, at)| Self::new(problem, state, at)).collect()
+    /// The scales of every state of a robot.
+    pub fn all(robot: &'a Robot, at: &[Magnitudes]) -> Vec<Self> {
+        at.iter().enumerate().map(|(state, at)| Self::new(robot, state, at)).collect()
     }
 
-    fn new(problem: &'a Problem, state: usize, at: &Magnitudes) -> Self {
-        let (model, states) = (&problem.model, &problem.states);
+    fn new(robot: &'a Robot, state: usize, at: &Magnitudes) -> Self {
+        let (model, states) = (&robot.model, &robot.states);
         let topology = &model.topology;
         let mut scale = Self {
-            problem,
+            robot,
             state,
             mass: TreeSparse::new(topology),
             loads: vec![f64::NAN; states.nv],
@@ -76,7 +76,7 @@ impl<'a> ForwardScale<'a> {
     /// M and h in the measures in which these are compared. With |M_ij| and |h_i| in their place, an entry that is zero because its terms
     /// cancel would count as known exactly, and on symmetric robots at rest the measure would divide rounding by rounding.
     pub fn backward_error(&self, a: &[f64]) -> f64 {
-        let (model, states) = (&self.problem.model, &self.problem.states);
+        let (model, states) = (&self.robot.model, &self.robot.states);
         let mut tau = vec![f64::NAN; states.nv];
         let (q, v) = (states.q(self.state), states.v(self.state));
         if Rnea::new(&model.topology).run(model, q, v, a, None, &mut tau).is_err() {
@@ -88,7 +88,7 @@ impl<'a> ForwardScale<'a> {
 
     /// ‖τ − ID(q, v, a)‖₂ / ‖τ − h‖₂, our inverse dynamics evaluating: what is often taken for an error, and says little about it.
     pub fn residual(&self, a: &[f64]) -> f64 {
-        let (model, states) = (&self.problem.model, &self.problem.states);
+        let (model, states) = (&self.robot.model, &self.robot.states);
         let (q, v) = (states.q(self.state), states.v(self.state));
         let (mut taken, mut bias) = (vec![f64::NAN; states.nv], vec![f64::NAN; states.nv]);
         let evaluated = Rnea::new(&model.topology)
@@ -109,7 +109,7 @@ impl<'a> ForwardScale<'a> {
 
     /// The denominators w of the backward error.
     fn terms(&self, a: &[f64]) -> Vec<f64> {
-        let topology = &self.problem.model.topology;
+        let topology = &self.robot.model.topology;
         let root: Vec<f64> = self.mass.diagonal().map(f64::sqrt).collect();
         let mut terms = self.loads.clone();
         for i in 0..a.len() {

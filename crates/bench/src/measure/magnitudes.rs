@@ -5,7 +5,7 @@
 //! velocities enter products with their true length: their sums hardly cancel, and squared sums of lengths would blind the measure.
 
 use super::worst;
-use crate::Problem;
+use crate::Robot;
 use featherbench_spatial::{Motion, Vec3};
 
 /// The magnitudes at one state. Per body they refer to the body's origin.
@@ -40,17 +40,17 @@ struct Load {
 
 impl Magnitudes {
     /// The magnitudes of state `k`.
-    pub fn new(problem: &Problem, k: usize) -> Self {
-        let states = &problem.states;
+    pub fn new(robot: &Robot, k: usize) -> Self {
+        let states = &robot.states;
         let zero = vec![0.0; states.nv];
-        let still = Recursion::outward(problem, k, &zero);
-        let moving = Recursion::outward(problem, k, states.a(k));
+        let still = Recursion::outward(robot, k, &zero);
+        let moving = Recursion::outward(robot, k, states.a(k));
         let none = vec![0.0; states.wrench(k).len()];
         Self {
-            joint_force: moving.inward(problem, states.a(k), &none),
-            joint_force_wrench: moving.inward(problem, states.a(k), states.wrench(k)),
-            bias_force: still.inward(problem, &zero, &none),
-            size: sizes(problem),
+            joint_force: moving.inward(robot, states.a(k), &none),
+            joint_force_wrench: moving.inward(robot, states.a(k), states.wrench(k)),
+            bias_force: still.inward(robot, &zero, &none),
+            size: sizes(robot),
             reach: moving.reach,
             angular_velocity: moving.angular_velocity,
             linear_velocity: moving.linear_velocity,
@@ -60,8 +60,8 @@ impl Magnitudes {
     }
 }
 
-fn sizes(problem: &Problem) -> Vec<f64> {
-    let model = &problem.model;
+fn sizes(robot: &Robot) -> Vec<f64> {
+    let model = &robot.model;
     let center = |i: usize| if model.inertias[i].mass > 0.0 { model.inertias[i].com().norm() } else { 0.0 };
     let mut sizes: Vec<f64> = (0..model.topology.bodies()).map(center).collect();
     for (joint, placement) in model.topology.joints().iter().zip(&model.placements) {
@@ -84,8 +84,8 @@ struct Recursion {
 
 impl Recursion {
     /// From the root outwards: paths, velocities, accelerations.
-    fn outward(problem: &Problem, k: usize, a: &[f64]) -> Self {
-        let (model, states) = (&problem.model, &problem.states);
+    fn outward(robot: &Robot, k: usize, a: &[f64]) -> Self {
+        let (model, states) = (&robot.model, &robot.states);
         let bodies = model.topology.bodies();
         let column = || Vec::with_capacity(bodies);
         let mut r = Self {
@@ -127,8 +127,8 @@ impl Recursion {
     }
 
     /// From the leaves inwards: loads, and what each joint sees of them.
-    fn inward(&self, problem: &Problem, a: &[f64], wrench: &[f64]) -> Vec<f64> {
-        let model = &problem.model;
+    fn inward(&self, robot: &Robot, a: &[f64], wrench: &[f64]) -> Vec<f64> {
+        let model = &robot.model;
         let gravity = model.gravity.norm();
         let mut loads: Vec<Load> = (0..model.topology.bodies())
             .map(|i| {

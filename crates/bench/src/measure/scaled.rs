@@ -1,7 +1,7 @@
 //! The unit-free error of one quantity at one state.
 
 use super::{Magnitudes, ratio, worst};
-use crate::{Problem, Quantity};
+use crate::{Quantity, Robot};
 use featherbench_model::JointKind;
 
 /// The largest difference between `value` and `reference`, each entry over the magnitude of its own terms at the state.
@@ -9,44 +9,44 @@ use featherbench_model::JointKind;
 /// Forward dynamics has measures of its own ([`super::ForwardScale`]) and is measured here against the largest entry only. The result is
 /// NaN where an entry is, infinite where something differs that should be exactly zero, and infinite where a slice does not hold
 /// [`Quantity::size`] numbers.
-pub fn scaled_error(problem: &Problem, quantity: Quantity, at: &Magnitudes, reference: &[f64], value: &[f64]) -> f64 {
-    if reference.len() != quantity.size(problem) || value.len() != reference.len() {
+pub fn scaled_error(robot: &Robot, quantity: Quantity, at: &Magnitudes, reference: &[f64], value: &[f64]) -> f64 {
+    if reference.len() != quantity.size(robot) || value.len() != reference.len() {
         return f64::INFINITY;
     }
-    let nv = problem.model.topology.nv();
-    let mass = total_mass(problem);
+    let nv = robot.model.topology.nv();
+    let mass = total_mass(robot);
     match quantity {
         Quantity::InverseDynamics => entries(reference, value, &at.joint_force),
         Quantity::InverseDynamicsWrench => entries(reference, value, &at.joint_force_wrench),
         Quantity::Bias => entries(reference, value, &at.bias_force),
         Quantity::MassMatrix | Quantity::MassMatrixInverse => mass_matrix(nv, reference, value),
-        Quantity::MassMatrixSparse => mass_matrix_sparse(problem, reference, value),
-        Quantity::Factorization => mass_matrix_sparse(problem, &multiplied(problem, reference), &multiplied(problem, value)),
-        Quantity::MassMatrixProbe => mass_matrix_probe(nv, &problem.probe(), reference, value),
+        Quantity::MassMatrixSparse => mass_matrix_sparse(robot, reference, value),
+        Quantity::Factorization => mass_matrix_sparse(robot, &multiplied(robot, reference), &multiplied(robot, value)),
+        Quantity::MassMatrixProbe => mass_matrix_probe(nv, &robot.probe(), reference, value),
         Quantity::KineticEnergy => entries(reference, value, reference),
         Quantity::PotentialEnergy => {
-            let gravity = problem.model.gravity.norm();
-            entries(reference, value, &[mass * gravity * reach_of_mass(problem, at)])
+            let gravity = robot.model.gravity.norm();
+            entries(reference, value, &[mass * gravity * reach_of_mass(robot, at)])
         }
-        Quantity::CenterOfMass => entries(reference, value, &[reach_of_mass(problem, at); 3]),
-        Quantity::Momentum => momentum(problem, at, reference, value),
-        Quantity::BodyPlacement => per_body(problem, reference, value, |body| {
+        Quantity::CenterOfMass => entries(reference, value, &[reach_of_mass(robot, at); 3]),
+        Quantity::Momentum => momentum(robot, at, reference, value),
+        Quantity::BodyPlacement => per_body(robot, reference, value, |body| {
             let reach = at.reach[body];
             [1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, reach, reach, reach]
         }),
         // A body moves as a whole: its origin may stand still on the joint's axis while the rest of it turns around.
-        Quantity::BodyVelocity => per_body(problem, reference, value, |body| {
+        Quantity::BodyVelocity => per_body(robot, reference, value, |body| {
             halves(at.angular_velocity[body], at.linear_velocity[body] + at.angular_velocity[body] * at.size[body])
         }),
         Quantity::BodyAcceleration => {
             // Gravity is a term: engines carry it in their accelerations, and taking it out again cancels.
-            let gravity = problem.model.gravity.norm();
-            per_body(problem, reference, value, |body| {
+            let gravity = robot.model.gravity.norm();
+            per_body(robot, reference, value, |body| {
                 let swing = at.angular_acceleration[body] + at.angular_velocity[body] * at.angular_velocity[body];
                 halves(at.angular_acceleration[body], at.linear_acceleration[body] + gravity + swing * at.size[body])
             })
         }
-        Quantity::BodyJacobian => body_jacobian(problem, at, reference, value),
+        Quantity::BodyJacobian => body_jacobian(robot, at, reference, value),
         Quantity::Readback => readback(reference, value),
         Quantity::StoredEntries => entries(reference, value, &[1.0]),
         Quantity::ForwardDynamics | Quantity::ForwardDynamicsSingle | Quantity::Solve => {
@@ -68,15 +68,15 @@ fn halves(angular: f64, linear: f64) -> [f64; 6] {
     [angular, angular, angular, linear, linear, linear]
 }
 
-fn per_body<const N: usize>(problem: &Problem, reference: &[f64], value: &[f64], scale: impl Fn(usize) -> [f64; N]) -> f64 {
-    let magnitude: Vec<f64> = problem.model.described.iter().flat_map(|&body| scale(body)).collect();
+fn per_body<const N: usize>(robot: &Robot, reference: &[f64], value: &[f64], scale: impl Fn(usize) -> [f64; N]) -> f64 {
+    let magnitude: Vec<f64> = robot.model.described.iter().flat_map(|&body| scale(body)).collect();
     entries(reference, value, &magnitude)
 }
 
 /// Per dof at unit rate: a turn carries the body along by no more than its reach, a slide by one.
-fn body_jacobian(problem: &Problem, at: &Magnitudes, reference: &[f64], value: &[f64]) -> f64 {
-    let model = &problem.model;
-    let reach = at.reach[model.described[problem.deepest_body()]];
+fn body_jacobian(robot: &Robot, at: &Magnitudes, reference: &[f64], value: &[f64]) -> f64 {
+    let model = &robot.model;
+    let reach = at.reach[model.described[robot.deepest_body()]];
     let (slide, turn) = ((0.0, 1.0), (1.0, 0.0));
     let dofs = model.topology.joints().iter().zip(&model.subspaces).flat_map(|(joint, subspace)| match joint.kind {
         JointKind::Free => vec![slide, slide, slide, turn, turn, turn],
@@ -97,8 +97,8 @@ fn mass_matrix(n: usize, reference: &[f64], value: &[f64]) -> f64 {
 }
 
 /// The same over the entries of the tree-sparse layout.
-fn mass_matrix_sparse(problem: &Problem, reference: &[f64], value: &[f64]) -> f64 {
-    let topology = &problem.model.topology;
+fn mass_matrix_sparse(robot: &Robot, reference: &[f64], value: &[f64]) -> f64 {
+    let topology = &robot.model.topology;
     let root: Vec<f64> = (0..topology.nv()).map(|i| reference[topology.row(i).end - 1].sqrt()).collect();
     let pairs = (0..topology.nv()).flat_map(|i| topology.row_dofs(i).iter().map(move |&j| (i, j)));
     let magnitude: Vec<f64> = pairs.map(|(i, j)| root[i] * root[j]).collect();
@@ -106,8 +106,8 @@ fn mass_matrix_sparse(problem: &Problem, reference: &[f64], value: &[f64]) -> f6
 }
 
 /// M = LᵀDL of tree-sparse factors: what factors stand for. They themselves differ by more, as L follows κ(M).
-fn multiplied(problem: &Problem, factors: &[f64]) -> Vec<f64> {
-    let topology = &problem.model.topology;
+fn multiplied(robot: &Robot, factors: &[f64]) -> Vec<f64> {
+    let topology = &robot.model.topology;
     let mut product = vec![0.0; factors.len()];
     for k in 0..topology.nv() {
         let mut l = factors[topology.row(k)].to_vec();
@@ -136,20 +136,20 @@ fn mass_matrix_probe(n: usize, probe: &[f64], reference: &[f64], value: &[f64]) 
     entries(reference, value, &magnitude)
 }
 
-fn total_mass(problem: &Problem) -> f64 {
-    problem.model.inertias.iter().map(|inertia| inertia.mass).sum()
+fn total_mass(robot: &Robot) -> f64 {
+    robot.model.inertias.iter().map(|inertia| inertia.mass).sum()
 }
 
 /// Mass-weighted mean of the lengths of the paths to the bodies' centres of mass.
-fn reach_of_mass(problem: &Problem, at: &Magnitudes) -> f64 {
-    let moments = problem.model.inertias.iter().zip(&at.reach).map(|(inertia, reach)| inertia.mass * reach + inertia.first_moment.norm());
-    moments.sum::<f64>() / total_mass(problem)
+fn reach_of_mass(robot: &Robot, at: &Magnitudes) -> f64 {
+    let moments = robot.model.inertias.iter().zip(&at.reach).map(|(inertia, reach)| inertia.mass * reach + inertia.first_moment.norm());
+    moments.sum::<f64>() / total_mass(robot)
 }
 
 /// Linear part over Σ(m|v| + |h||ω|); angular part over Σ(|Ī||ω| + |h||v| + reach·linear).
-fn momentum(problem: &Problem, at: &Magnitudes, reference: &[f64], value: &[f64]) -> f64 {
+fn momentum(robot: &Robot, at: &Magnitudes, reference: &[f64], value: &[f64]) -> f64 {
     let (mut angular, mut linear) = (0.0, 0.0);
-    for (i, inertia) in problem.model.inertias.iter().enumerate() {
+    for (i, inertia) in robot.model.inertias.iter().enumerate() {
         let (omega, v, lever) = (at.angular_velocity[i], at.linear_velocity[i], inertia.first_moment.norm());
         let rotational = inertia.rotational.xx + inertia.rotational.yy + inertia.rotational.zz;
         let share = inertia.mass * v + lever * omega;

@@ -1,6 +1,6 @@
 //! The condition of big robots: computed up to 100 dofs, found by iteration beyond, against the eigenvalues of the dense matrix.
 
-use featherbench_bench::Problem;
+use featherbench_bench::Robot;
 use featherbench_bench::measure::ForwardScale;
 use featherbench_model::generate::Family;
 use featherbench_results::ModelOrigin;
@@ -18,9 +18,9 @@ struct Eigenvalues {
 /// gives λ_min, and then λ_max.
 fn eigenvalues(spec: &str) -> Vec<Eigenvalues> {
     let description = Family::parse(spec).unwrap().generate().unwrap();
-    let problem = Problem::new(&description, "test", ModelOrigin::Generated, 2, 1).unwrap();
-    let (model, states, at) = (&problem.model, &problem.states, problem.magnitudes());
-    let scales = ForwardScale::all(&problem, &at);
+    let robot = Robot::new(&description, "test", ModelOrigin::Generated, 2, 1).unwrap();
+    let (model, states, at) = (&robot.model, &robot.states, robot.magnitudes());
+    let scales = ForwardScale::all(&robot, &at);
     assert_eq!(scales.len(), 2);
     let of_state = |(k, scale): (usize, &ForwardScale)| {
         let mass = featherbench_dynamics::mass_matrix(model, states.q(k)).unwrap().to_dense();

@@ -3,7 +3,7 @@
 use crate::close;
 use crate::robots::{free_and_spherical, two_screws, two_slides};
 use featherbench_bench::measure::{Magnitudes, scaled_error};
-use featherbench_bench::{Problem, Quantity};
+use featherbench_bench::{Quantity, Robot};
 use featherbench_model::generate::Family;
 use featherbench_results::ModelOrigin;
 
@@ -21,11 +21,11 @@ fn some(count: usize) -> Vec<f64> {
 }
 
 /// Every entry in turn, off by a thousandth of its magnitude to either side; and all entries off by less than one of them.
-fn check(problem: &Problem, expected: &Expected) {
+fn check(robot: &Robot, expected: &Expected) {
     let Expected { quantity, reference, magnitudes } = expected;
-    let at = Magnitudes::new(problem, 0);
-    let error = |value: &[f64]| scaled_error(problem, *quantity, &at, reference, value);
-    assert_eq!(reference.len(), quantity.size(problem), "{quantity:?}");
+    let at = Magnitudes::new(robot, 0);
+    let error = |value: &[f64]| scaled_error(robot, *quantity, &at, reference, value);
+    assert_eq!(reference.len(), quantity.size(robot), "{quantity:?}");
     assert_eq!(magnitudes.len(), reference.len(), "{quantity:?}");
     assert!(!reference.is_empty() && magnitudes.iter().all(|m| *m > 0.0), "{quantity:?}");
     assert_eq!(error(reference), 0.0, "{quantity:?}");
@@ -51,8 +51,8 @@ fn check(problem: &Problem, expected: &Expected) {
 /// The numbers of the table in `robots.rs` and of the tests in `magnitudes.rs`.
 #[test]
 fn every_entry_of_two_screws_has_its_magnitude() {
-    let problem = two_screws();
-    let at = Magnitudes::new(&problem, 0);
+    let robot = two_screws();
+    let at = Magnitudes::new(&robot, 0);
     let spin: f64 = 5.8_f64.sqrt();
     let of =
         |quantity: Quantity, magnitudes: &[f64]| Expected { quantity, reference: some(magnitudes.len()), magnitudes: magnitudes.to_vec() };
@@ -66,7 +66,7 @@ fn every_entry_of_two_screws_has_its_magnitude() {
     // M = [4 1; 1 9] has the roots 2 and 3 on its diagonal.
     let matrix = [4.0, 1.0, 1.0, 9.0];
     // Products with four vectors, of which only the scale counts here; then the diagonal, then the last row.
-    let probe = problem.probe();
+    let probe = robot.probe();
     let products = probe.chunks_exact(2).flat_map(|x| {
         let weight = 2.0 * x[0].abs() + 3.0 * x[1].abs();
         [2.0 * weight, 3.0 * weight]
@@ -98,14 +98,14 @@ fn every_entry_of_two_screws_has_its_magnitude() {
         of(Quantity::BodyAcceleration, &[body(11.0, 70.5), body(25.0, 109.5 + spin / 2.0)].concat()),
         // A screw turns by one and carries its reach of 9 and its pitch along.
         of(Quantity::BodyJacobian, &[[1.0; 6], [9.5, 9.25, 9.5, 9.25, 9.5, 9.25]].concat()),
-        scaled(Quantity::Readback, &problem.readback(), &[held(2.0, 0.75, 3.75 + 2.25, 5.0), held(4.0, 0.5, 3.0 + 2.0, 3.0)].concat()),
+        scaled(Quantity::Readback, &robot.readback(), &[held(2.0, 0.75, 3.75 + 2.25, 5.0), held(4.0, 0.5, 3.0 + 2.0, 3.0)].concat()),
         of(Quantity::StoredEntries, &[1.0]),
         scaled(Quantity::ForwardDynamics, &[-8.0, 2.0], &[8.0; 2]),
         scaled(Quantity::ForwardDynamicsSingle, &[-8.0, 2.0], &[8.0; 2]),
         scaled(Quantity::Solve, &[-8.0, 2.0], &[8.0; 2]),
     ];
     for expected in &cases {
-        check(&problem, expected);
+        check(&robot, expected);
     }
     let missing: Vec<Quantity> =
         Quantity::ALL.into_iter().filter(|quantity| !cases.iter().any(|case| case.quantity == *quantity)).collect();
@@ -115,8 +115,8 @@ fn every_entry_of_two_screws_has_its_magnitude() {
 /// LᵀDL with D = (2, 9) and L_10 = 0.5: M_11 = D_1 = 9, M_10 = L_10·D_1 = 4.5, M_00 = D_0 + L_10²·D_1 = 4.25.
 #[test]
 fn every_factor_is_seen_in_the_matrix_that_it_makes() {
-    let problem = two_screws();
-    let at = Magnitudes::new(&problem, 0);
+    let robot = two_screws();
+    let at = Magnitudes::new(&robot, 0);
     let factors = [2.0, 0.5, 9.0];
     let (delta, root) = (1e-3, (4.25_f64 * 9.0).sqrt());
     let worst = |errors: [f64; 3]| errors.into_iter().fold(0.0, featherbench_bench::measure::worst);
@@ -129,7 +129,7 @@ fn every_factor_is_seen_in_the_matrix_that_it_makes() {
     for (entry, due) in expected.into_iter().enumerate() {
         let mut value = factors;
         value[entry] += delta;
-        let found = scaled_error(&problem, Quantity::Factorization, &at, &factors, &value);
+        let found = scaled_error(&robot, Quantity::Factorization, &at, &factors, &value);
         // Sums of the size of an entry round by 1e-16 of it, a difference of a thousandth by 1e-12 of itself.
         assert!((found - due).abs() <= 1e-12 * due, "factor {entry}: {found:e} instead of {due:e}");
     }
@@ -138,22 +138,22 @@ fn every_factor_is_seen_in_the_matrix_that_it_makes() {
 /// Of a free joint the first three dofs slide and the others turn; a spherical joint turns.
 #[test]
 fn columns_of_the_jacobian_slide_or_turn() {
-    let problem = free_and_spherical();
+    let robot = free_and_spherical();
     // What is left of a turn in the column of a slide: over the turn that carries the reach of 5.5 m as far as the slide goes.
     let angular = [[1.0 / 5.5; 3], [1.0; 3], [1.0; 3]].concat();
     let linear = [[1.0; 3], [5.5; 3], [5.5; 3]].concat();
     let magnitudes = [angular.repeat(3), linear.repeat(3)].concat();
-    check(&problem, &Expected { quantity: Quantity::BodyJacobian, reference: some(54), magnitudes });
+    check(&robot, &Expected { quantity: Quantity::BodyJacobian, reference: some(54), magnitudes });
 
     // Without a reach a slide cannot turn anything: whatever is not zero is infinitely wrong.
-    let problem = two_slides(4.0);
-    let at = Magnitudes::new(&problem, 0);
+    let robot = two_slides(4.0);
+    let at = Magnitudes::new(&robot, 0);
     let reference = [0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0, 1.0, 0.0, 0.0, 0.0, 0.0];
     for entry in 0..12 {
         let mut value = reference;
         value[entry] += 0.125;
         let due = if entry < 6 { f64::INFINITY } else { 0.125 };
-        assert_eq!(scaled_error(&problem, Quantity::BodyJacobian, &at, &reference, &value), due, "entry {entry}");
+        assert_eq!(scaled_error(&robot, Quantity::BodyJacobian, &at, &reference, &value), due, "entry {entry}");
     }
 }
 
@@ -162,17 +162,17 @@ fn columns_of_the_jacobian_slide_or_turn() {
 fn every_entry_of_a_branched_tree_has_its_magnitude() {
     for spec in ["tree:n=7,seed=3,base=fixed,joints=all,armature=true", "joints:kind=mixed,base=free"] {
         let description = Family::parse(spec).unwrap().generate().unwrap();
-        let problem = Problem::new(&description, "test", ModelOrigin::Generated, 1, 1).unwrap();
-        let topology = &problem.model.topology;
-        let sparse = featherbench_dynamics::mass_matrix(&problem.model, problem.states.q(0)).unwrap();
+        let robot = Robot::new(&description, "test", ModelOrigin::Generated, 1, 1).unwrap();
+        let topology = &robot.model.topology;
+        let sparse = featherbench_dynamics::mass_matrix(&robot.model, robot.states.q(0)).unwrap();
         let (n, dense) = (topology.nv(), sparse.to_dense());
         let magnitude = |i: usize, j: usize| (dense[(i, i)] * dense[(j, j)]).sqrt();
         let pairs = (0..n).flat_map(|i| topology.row_dofs(i).iter().map(move |&j| (i, j)));
         let magnitudes: Vec<f64> = pairs.map(|(i, j)| magnitude(i, j)).collect();
         assert!(magnitudes.len() < n * (n + 1) / 2, "{spec} has no branches");
-        check(&problem, &Expected { quantity: Quantity::MassMatrixSparse, reference: sparse.values().to_vec(), magnitudes });
+        check(&robot, &Expected { quantity: Quantity::MassMatrixSparse, reference: sparse.values().to_vec(), magnitudes });
 
-        let probe = problem.probe();
+        let probe = robot.probe();
         let (mut reference, mut magnitudes) = (Vec::new(), Vec::new());
         for x in probe.chunks_exact(n) {
             reference.extend((0..n).map(|i| (0..n).map(|j| dense[(i, j)] * x[j]).sum::<f64>()));
@@ -180,6 +180,6 @@ fn every_entry_of_a_branched_tree_has_its_magnitude() {
         }
         reference.extend((0..n).map(|i| dense[(i, i)]).chain((0..n).map(|j| dense[(n - 1, j)])));
         magnitudes.extend((0..n).map(|i| dense[(i, i)]).chain((0..n).map(|j| magnitude(n - 1, j))));
-        check(&problem, &Expected { quantity: Quantity::MassMatrixProbe, reference, magnitudes });
+        check(&robot, &Expected { quantity: Quantity::MassMatrixProbe, reference, magnitudes });
     }
 }

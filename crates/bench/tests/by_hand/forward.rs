@@ -13,9 +13,9 @@ fn same(found: f64, due: f64) {
 /// (22.5 + 19.5 + 9·2 + 6·3, 10 + 2 + 6·2 + 4·3) = (78, 36), and ‖a‖_M² = 6·2 + 4·3 = 24.
 #[test]
 fn condition_and_amplification_of_two_slides() {
-    let problem = two_slides(4.0);
-    let at = problem.magnitudes();
-    let scales = ForwardScale::all(&problem, &at);
+    let robot = two_slides(4.0);
+    let at = robot.magnitudes();
+    let scales = ForwardScale::all(&robot, &at);
     assert_eq!(scales.len(), 1);
     same(scales[0].condition, 5.0);
     // 2·√(78²/9 + 36²/4)/√(24/3)
@@ -24,9 +24,9 @@ fn condition_and_amplification_of_two_slides() {
 
 #[test]
 fn errors_of_two_slides() {
-    let problem = two_slides(4.0);
-    let at = problem.magnitudes();
-    let scale = &ForwardScale::all(&problem, &at)[0];
+    let robot = two_slides(4.0);
+    let at = robot.magnitudes();
+    let scale = &ForwardScale::all(&robot, &at)[0];
     let right = [2.0, -3.0];
     assert_eq!((scale.backward_error(&right), scale.residual(&right), scale.forward_error(&right, &right)), (0.0, 0.0, 0.0));
 
@@ -53,11 +53,11 @@ fn errors_of_two_slides() {
 /// A tip without mass: M is singular, and no answer is right, not even the one whose residual is exactly zero.
 #[test]
 fn nothing_passes_where_the_mass_matrix_is_singular() {
-    let mut problem = two_slides(0.0);
+    let mut robot = two_slides(0.0);
     // h = 1.5·(5, 0), and so a = 0 leaves no residual.
-    problem.states.tau = vec![7.5, 0.0];
-    let at = problem.magnitudes();
-    let scale = &ForwardScale::all(&problem, &at)[0];
+    robot.states.tau = vec![7.5, 0.0];
+    let at = robot.magnitudes();
+    let scale = &ForwardScale::all(&robot, &at)[0];
     assert!(scale.condition.is_nan() && scale.amplification.is_nan());
     for a in [[0.0, 0.0], [0.0, 1.0], [1.0, 0.0]] {
         assert!(scale.backward_error(&a).is_nan(), "{a:?}");

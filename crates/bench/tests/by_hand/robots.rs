@@ -1,6 +1,6 @@
 //! Three robots with round numbers, each at one state.
 
-use featherbench_bench::Problem;
+use featherbench_bench::Robot;
 use featherbench_model::{BodyDescription, Description, JointDescription, JointType, Placement};
 use featherbench_results::ModelOrigin;
 
@@ -25,15 +25,15 @@ fn body(parent: Option<usize>, kind: JointType, translation: [f64; 3], mass: f64
     BodyDescription { name: name.into(), parent, mass, com, inertia, joint }
 }
 
-fn problem(gravity: [f64; 3], bodies: Vec<BodyDescription>, state: State) -> Problem {
+fn robot(gravity: [f64; 3], bodies: Vec<BodyDescription>, state: State) -> Robot {
     let description = Description { name: "by hand".into(), gravity, bodies, ..Description::default() };
-    let mut problem = Problem::new(&description, "test", ModelOrigin::Generated, 1, 1).unwrap();
+    let mut robot = Robot::new(&description, "test", ModelOrigin::Generated, 1, 1).unwrap();
     let State { q, v, a, tau, wrench } = state;
-    let states = &mut problem.states;
+    let states = &mut robot.states;
     (states.q, states.v, states.a, states.tau, states.wrench) = (q, v, a, tau, wrench);
-    states.check(&problem.model).unwrap();
-    assert_eq!(problem.states.count(), 1);
-    problem
+    states.check(&robot.model).unwrap();
+    assert_eq!(robot.states.count(), 1);
+    robot
 }
 
 /// Two helical joints, with armature, inertia products, a turned placement and wrenches.
@@ -49,7 +49,7 @@ fn problem(gravity: [f64; 3], bodies: Vec<BodyDescription>, state: State) -> Pro
 /// | its Frobenius norm | √(1 + 6.25 + 6.25 + 2·(0.01 + 0.04 + 0.09)) = √13.78 | 3 |
 /// | wrench | moment 7, force 9 | moment 11, force 5 |
 /// | armature | 0.7 | 0.3 |
-pub fn two_screws() -> Problem {
+pub fn two_screws() -> Robot {
     // About the centre of mass: less m·c² = 1.125 in yy and zz of the first, less 1 in xx and yy of the second.
     let first = JointType::Helical { axis: [0.0, 0.0, 1.0], pitch: 0.5 };
     let mut first = body(None, first, [0.0, 3.0, 4.0], 2.0, [0.75, 0.0, 0.0], [1.0, 0.1, 0.2, 1.375, 0.3, 1.375]);
@@ -65,7 +65,7 @@ pub fn two_screws() -> Problem {
         tau: vec![1.0, -1.0],
         wrench: vec![2.0, 3.0, 6.0, 1.0, -4.0, 8.0, 2.0, -6.0, 9.0, 0.0, -3.0, 4.0],
     };
-    problem(GRAVITY, vec![first, second], state)
+    robot(GRAVITY, vec![first, second], state)
 }
 
 /// A free body that carries another on a spherical joint.
@@ -79,7 +79,7 @@ pub fn two_screws() -> Problem {
 /// | mass, centre of mass | 3 kg, at the origin | 2 kg, 1.5 m |
 /// | inertia about the origin | xx 2, yy 2, zz 1: norm 3 | xx 1, yy 5, zz 5: norm √51 |
 /// | armature | – | 0.1, 0.2, 0.3 |
-pub fn free_and_spherical() -> Problem {
+pub fn free_and_spherical() -> Robot {
     let first = body(None, JointType::Free, [0.0, 0.0, 2.0], 3.0, [0.0; 3], [2.0, 0.0, 0.0, 2.0, 0.0, 1.0]);
     let mut second = body(Some(0), JointType::Spherical, [0.0, 0.5, 0.0], 2.0, [1.5, 0.0, 0.0], [1.0, 0.0, 0.0, 0.5, 0.0, 0.5]);
     second.joint.armature = vec![0.1, 0.2, 0.3];
@@ -90,16 +90,16 @@ pub fn free_and_spherical() -> Problem {
         tau: vec![0.0; 9],
         wrench: vec![0.0; 12],
     };
-    problem(GRAVITY, vec![first, second], state)
+    robot(GRAVITY, vec![first, second], state)
 }
 
 /// Two slides along x, 5 kg and `tip` kg, in gravity (−1.5, 0, −2) of length 2.5 m/s², at rest at q = 0.
 ///
 /// With a tip of 4 kg: M = [9 4; 4 4], h = 1.5·(9, 4) = (13.5, 6), and τ = (19.5, 2) gives a = (2, −3), as M a = (6, −4).
-pub fn two_slides(tip: f64) -> Problem {
+pub fn two_slides(tip: f64) -> Robot {
     let slide = JointType::Prismatic { axis: [1.0, 0.0, 0.0] };
     let ball = |mass: f64| [mass, 0.0, 0.0, mass, 0.0, mass];
     let bodies = vec![body(None, slide, [0.0; 3], 5.0, [0.0; 3], ball(5.0)), body(Some(0), slide, [0.0; 3], tip, [0.0; 3], ball(tip))];
     let state = State { q: vec![0.0; 2], v: vec![0.0; 2], a: vec![0.0; 2], tau: vec![19.5, 2.0], wrench: vec![0.0; 12] };
-    problem([-1.5, 0.0, -2.0], bodies, state)
+    robot([-1.5, 0.0, -2.0], bodies, state)
 }

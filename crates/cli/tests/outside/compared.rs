@@ -19,7 +19,7 @@ const FIELDS: [&str; 5] = ["mass", "inertia", "com", "armature", "friction"];
 fn differences(out: &Path, engine: &str) -> Vec<(String, String)> {
     let (_, rows) = featherbench_results::read_run(out).unwrap();
     let of_engine = rows.iter().filter(|row| row.metric == "difference" && row.engine == engine && FIELDS.contains(&row.quantity.as_str()));
-    let cause = |row: &featherbench_results::Record| {
+    let cause = |row: &featherbench_results::Row| {
         let params: serde_json::Value = serde_json::from_str(&row.params).unwrap();
         params["cause"].as_str().unwrap_or_else(|| panic!("{params}")).to_owned()
     };

@@ -66,7 +66,7 @@ pub fn keyframes(_: &Path) -> Outcome {
     let out = sandbox.path("out");
     featherbench(&["compare"], &sandbox.path("scene.xml"), &["--engines", "mujoco", "--out", out.to_str().unwrap()])
         .expect(0, &["report:"]);
-    let rows = std::fs::read_to_string(out.join("records.csv")).unwrap();
+    let rows = std::fs::read_to_string(out.join("rows.csv")).unwrap();
     for quantity in ["id", "mass_matrix", "fd", "com"] {
         let at_keyframe = rows.lines().filter(|row| row.contains(",keyframe,") && row.contains(&format!(",{quantity},")));
         assert!(at_keyframe.clone().count() > 0, "{quantity}");

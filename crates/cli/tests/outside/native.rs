@@ -3,8 +3,8 @@
 use super::{Outcome, exists};
 use crate::support::{Sandbox, project};
 use featherbench_bench::measure::{ForwardScale, ratio, scaled_error, worst};
-use featherbench_bench::{DENSE_LIMIT, Problem, Quantity, Refusal, Subject};
-use featherbench_engines::{Clock, Limits, Native, Oracle, peer};
+use featherbench_bench::{DENSE_LIMIT, Engine, NoAnswer, Quantity, Robot};
+use featherbench_engines::{Clock, Featherbench, Limits, Oracle, peer};
 use featherbench_model::generate::Family;
 use featherbench_results::ModelOrigin;
 use std::path::{Path, PathBuf};
@@ -51,23 +51,23 @@ impl Clock for Stopped {
     }
 }
 
-fn robot(spec: &str, states: usize) -> Problem {
+fn robot(spec: &str, states: usize) -> Robot {
     let named = project().join(format!("datasets/models/{spec}.json"));
     let description = if named.is_file() {
         featherbench_formats::neutral::read(named).unwrap()
     } else {
         Family::parse(spec).unwrap().generate().unwrap()
     };
-    Problem::new(&description, "test", ModelOrigin::Generated, states, 1).unwrap()
+    Robot::new(&description, "test", ModelOrigin::Generated, states, 1).unwrap()
 }
 
 fn start(library: &Path, limits: Limits, core: Option<usize>) -> Result<Oracle, String> {
     Oracle::start(peer::command(Path::new(env!("CARGO_BIN_EXE_featherbench")), library, core), limits)
 }
 
-fn ask(subject: &dyn Subject, problem: &Problem, quantity: Quantity, method: &str) -> Result<Vec<f64>, Refusal> {
-    let mut prepared = subject.prepare(problem, quantity, method, &problem.states)?;
-    prepared.run(0..quantity.states(problem.states.count()))?;
+fn ask(engine: &dyn Engine, robot: &Robot, quantity: Quantity, method: &str) -> Result<Vec<f64>, NoAnswer> {
+    let mut prepared = engine.prepare(robot, quantity, method, &robot.states)?;
+    prepared.run(0..quantity.states(robot.states.count()))?;
     Ok(prepared.read().to_vec())
 }
 
@@ -89,21 +89,21 @@ fn pendulum(folder: &Path) -> Result<PathBuf, Outcome> {
 struct Found {
     quantity: Quantity,
     method: String,
-    share: Result<f64, Refusal>,
+    share: Result<f64, NoAnswer>,
 }
 
-/// Each method of a subject against our kernels, on every state.
-fn compare(subject: &dyn Subject, problem: &Problem, but: &[&str]) -> Vec<Found> {
-    let native = Native::new();
-    let (at, depth) = (problem.magnitudes(), problem.depth as f64);
-    let forward = ForwardScale::all(problem, &at);
-    let usual = |quantity| ask(&native, problem, quantity, &native.methods(quantity)[0]).unwrap();
+/// Each method of an engine against our kernels, on every state.
+fn compare(engine: &dyn Engine, robot: &Robot, but: &[&str]) -> Vec<Found> {
+    let featherbench = Featherbench::new();
+    let (at, depth) = (robot.magnitudes(), robot.depth as f64);
+    let forward = ForwardScale::all(robot, &at);
+    let usual = |quantity| ask(&featherbench, robot, quantity, &featherbench.methods(quantity)[0]).unwrap();
     let mass = usual(Quantity::MassMatrix);
     let mut found = Vec::new();
-    for quantity in QUANTITIES.into_iter().filter(|&quantity| problem.states.nv <= DENSE_LIMIT || quantity != Quantity::MassMatrixInverse) {
-        let (reference, size, masses) = (usual(quantity), quantity.size(problem), problem.states.nv * problem.states.nv);
-        for method in subject.methods(quantity).into_iter().filter(|method| !but.contains(&method.as_str())) {
-            let share = ask(subject, problem, quantity, &method).map(|values| {
+    for quantity in QUANTITIES.into_iter().filter(|&quantity| robot.states.nv <= DENSE_LIMIT || quantity != Quantity::MassMatrixInverse) {
+        let (reference, size, masses) = (usual(quantity), quantity.size(robot), robot.states.nv * robot.states.nv);
+        for method in engine.methods(quantity).into_iter().filter(|method| !but.contains(&method.as_str())) {
+            let share = ask(engine, robot, quantity, &method).map(|values| {
                 assert_eq!(values.len(), reference.len(), "{} by {method}", quantity.name());
                 let share = |k: usize| {
                     let (value, reference) = (&values[k * size..][..size], &reference[k * size..][..size]);
@@ -111,10 +111,10 @@ fn compare(subject: &dyn Subject, problem: &Problem, but: &[&str]) -> Vec<Found>
                     match quantity {
                         // As ci/gates.toml has it: some ε per level of the tree, for backward errors too; 45 ε up to depth twenty elsewhere.
                         Quantity::ForwardDynamics => forward[k].backward_error(value) / (1e-14 * depth),
-                        Quantity::Solve => residual(mass, value, problem.states.tau(k)) / (1e-14 * depth),
+                        Quantity::Solve => residual(mass, value, robot.states.tau(k)) / (1e-14 * depth),
                         Quantity::MassMatrixInverse => inverse_residual(mass, value) / (1e-14 * depth),
-                        Quantity::Readback => scaled_error(problem, quantity, &at[k], reference, value) / 3.6e-15,
-                        _ => scaled_error(problem, quantity, &at[k], reference, value) / (1e-14 * (depth / 20.0).max(1.0)),
+                        Quantity::Readback => scaled_error(robot, quantity, &at[k], reference, value) / 3.6e-15,
+                        _ => scaled_error(robot, quantity, &at[k], reference, value) / (1e-14 * (depth / 20.0).max(1.0)),
                     }
                 };
                 (0..values.len() / size).map(share).fold(0.0, worst)
@@ -168,9 +168,9 @@ pub fn pendulum_answers() -> Outcome {
         }
     }
     let two = ask(&peer, &robot("chain:n=2", 1), Quantity::InverseDynamics, "pendulum");
-    assert!(matches!(&two, Err(Refusal::Unsupported(reason)) if reason.contains("2 bodies")), "{two:?}");
+    assert!(matches!(&two, Err(NoAnswer::NotOffered(reason)) if reason.contains("2 bodies")), "{two:?}");
     let unknown = ask(&peer, &robot("chain:n=1", 1), Quantity::Momentum, "pendulum");
-    assert!(matches!(&unknown, Err(Refusal::Unsupported(reason)) if reason.contains("offers no method")), "{unknown:?}");
+    assert!(matches!(&unknown, Err(NoAnswer::NotOffered(reason)) if reason.contains("offers no method")), "{unknown:?}");
     Outcome::Passed
 }
 
@@ -185,8 +185,8 @@ pub fn pendulum_is_clocked() -> Outcome {
     let reason = start(&library, PATIENT, Some(1 << 20)).err().unwrap();
     assert!(reason.contains("core 1048576"), "{reason}");
     let peer = start(&library, PATIENT, Some(0)).unwrap();
-    let problem = robot("chain:n=1", 5);
-    let ready = |method| peer.prepare(&problem, Quantity::InverseDynamics, method, &problem.states).unwrap();
+    let robot = robot("chain:n=1", 5);
+    let ready = |method| peer.prepare(&robot, Quantity::InverseDynamics, method, &robot.states).unwrap();
     let mut slow = ready("slow");
     // Each call sleeps for a millisecond, or longer; the time lies within that of the question, whatever else the machine does. States beyond the
     // batch begin again.
@@ -224,7 +224,7 @@ pub fn pendulum_dies_alone() -> Outcome {
         Ok(library) => library,
         Err(skipped) => return skipped,
     };
-    let problem = robot("chain:n=1", 3);
+    let robot = robot("chain:n=1", 3);
     let clock = Arc::new(Stopped::default());
     let command = peer::command(Path::new(env!("CARGO_BIN_EXE_featherbench")), &library, None);
     let peer = Oracle::start_by(command, Limits { memory: 512 << 20, ..PATIENT }, Arc::clone(&clock) as Arc<dyn Clock>).unwrap();
@@ -236,14 +236,14 @@ pub fn pendulum_dies_alone() -> Outcome {
     ];
     for (method, words) in faults {
         for clocked in [false, true] {
-            let mut prepared = peer.prepare(&problem, Quantity::InverseDynamics, method, &problem.states).unwrap();
+            let mut prepared = peer.prepare(&robot, Quantity::InverseDynamics, method, &robot.states).unwrap();
             clock.going.store(method == "hang", Ordering::SeqCst);
             let end = if clocked { prepared.clock(0..3).map(|_| ()) } else { prepared.run(0..3) };
             clock.going.store(false, Ordering::SeqCst);
-            let Err(Refusal::Failed(reason)) = end else { panic!("{method} lived: {end:?}") };
+            let Err(NoAnswer::Failed(reason)) = end else { panic!("{method} lived: {end:?}") };
             assert!(words.iter().all(|word| reason.contains(word)), "{method}: {reason}");
         }
-        assert!(ask(&peer, &problem, Quantity::InverseDynamics, "pendulum").is_ok(), "after {method}");
+        assert!(ask(&peer, &robot, Quantity::InverseDynamics, "pendulum").is_ok(), "after {method}");
     }
     let reason = start(Path::new("/nowhere/at/all.so"), PATIENT, None).err().unwrap();
     assert!(reason.contains("/nowhere/at/all.so"), "{reason}");
@@ -283,18 +283,18 @@ pub fn peers_agree() -> Outcome {
     let robots =
         ["chain-spatial-10", "chain:n=36,layout=spatial", "chain-spatial-100", "humanoid", "panda", "tree-common-16-spread0.3-seed3"];
     for spec in robots {
-        let problem = robot(spec, 20);
+        let robot = robot(spec, 20);
         let start =
-            |(name, library): &(String, PathBuf)| (name.clone(), Box::new(start(library, PATIENT, None).unwrap()) as Box<dyn Subject>);
-        let ours: (String, Box<dyn Subject>) = ("native".into(), Box::new(Native::new()));
-        for (name, subject) in built.iter().map(start).chain([ours]) {
-            for Found { quantity, method, share } in compare(subject.as_ref(), &problem, &[]) {
+            |(name, library): &(String, PathBuf)| (name.clone(), Box::new(start(library, PATIENT, None).unwrap()) as Box<dyn Engine>);
+        let ours: (String, Box<dyn Engine>) = ("featherbench".into(), Box::new(Featherbench::new()));
+        for (name, engine) in built.iter().map(start).chain([ours]) {
+            for Found { quantity, method, share } in compare(engine.as_ref(), &robot, &[]) {
                 let line = format!("{name} {spec} {} by {method}: {share:.2?}", quantity.name());
                 if std::env::var_os("FEATHERBENCH_SHOW").is_some() {
                     println!("{line}");
                 }
                 // MuJoCo alone has no helical joint.
-                let excused = matches!(&share, Err(Refusal::Unsupported(why)) if name == "mujoco-native" && why.contains("helical"));
+                let excused = matches!(&share, Err(NoAnswer::NotOffered(why)) if name == "mujoco-native" && why.contains("helical"));
                 assert!(excused || share.is_ok_and(|share| share <= slack(&name, quantity, spec)), "{line}");
             }
         }
@@ -308,13 +308,13 @@ pub fn big_robots_are_refused_or_answered() -> Outcome {
     if built.is_empty() {
         return Outcome::Nightly("no native peer is built (`featherbench oracles install --native`)".into());
     }
-    let problem = robot("chain:n=1000,layout=spatial", 2);
+    let robot = robot("chain:n=1000,layout=spatial", 2);
     for (name, library) in &built {
         let peer = start(library, PATIENT, None).unwrap();
         let method = peer.methods(Quantity::InverseDynamics).remove(0);
-        match ask(&peer, &problem, Quantity::InverseDynamics, &method) {
+        match ask(&peer, &robot, Quantity::InverseDynamics, &method) {
             Ok(values) => assert!(name.starts_with("mujoco") && values.iter().all(|x| x.is_finite()), "{name}"),
-            Err(Refusal::Unsupported(reason)) => assert!(name.starts_with("pinocchio") && reason.contains("nv³"), "{name}: {reason}"),
+            Err(NoAnswer::NotOffered(reason)) => assert!(name.starts_with("pinocchio") && reason.contains("nv³"), "{name}: {reason}"),
             Err(refusal) => panic!("{name}: {refusal}"),
         }
     }

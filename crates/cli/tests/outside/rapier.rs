@@ -1,11 +1,11 @@
-//! Rapier, where it is built: beside the native kernels on robots of every joint that it has, what it refuses, and what its steps do. And what
+//! Rapier, where it is built: beside our own kernels on robots of every joint that it has, what it refuses, and what its steps do. And what
 //! is said where it cannot be built.
 
 use super::{Outcome, checked};
 use crate::support::{Ended, Sandbox, project};
 use featherbench_bench::measure::{ForwardScale, scaled_error, worst};
-use featherbench_bench::{Problem, Quantity, Refusal, Subject};
-use featherbench_engines::{Limits, Native, Oracle};
+use featherbench_bench::{Engine, NoAnswer, Quantity, Robot};
+use featherbench_engines::{Featherbench, Limits, Oracle};
 use featherbench_model::Case;
 use featherbench_model::generate::Family;
 use featherbench_results::ModelOrigin;
@@ -73,7 +73,7 @@ pub fn suite() -> Outcome {
         Outcome::Passed => {}
         other => return other,
     }
-    let rows = std::fs::read_to_string(folder.path().join("out/records.csv")).unwrap();
+    let rows = std::fs::read_to_string(folder.path().join("out/rows.csv")).unwrap();
     for regime in ["explicit", "implicit"] {
         assert!(rows.lines().any(|row| row.contains(",rapier,") && row.contains(regime)), "no step is {regime}");
     }
@@ -98,15 +98,15 @@ pub fn not_to_be_built() -> Outcome {
     Outcome::Passed
 }
 
-fn problem(words: &str) -> Problem {
+fn robot(words: &str) -> Robot {
     let description = Family::parse(words).unwrap().generate().unwrap();
-    Problem::new(&description, "test", ModelOrigin::Generated, 12, 3).unwrap()
+    Robot::new(&description, "test", ModelOrigin::Generated, 12, 3).unwrap()
 }
 
-fn values(subject: &dyn Subject, problem: &Problem, quantity: Quantity) -> Result<Vec<f64>, Refusal> {
-    let method = subject.methods(quantity)[0].clone();
-    let mut ready = subject.prepare(problem, quantity, &method, &problem.states)?;
-    ready.run(0..quantity.states(problem.states.count()))?;
+fn values(engine: &dyn Engine, robot: &Robot, quantity: Quantity) -> Result<Vec<f64>, NoAnswer> {
+    let method = engine.methods(quantity)[0].clone();
+    let mut ready = engine.prepare(robot, quantity, &method, &robot.states)?;
+    ready.run(0..quantity.states(robot.states.count()))?;
     Ok(ready.read().to_vec())
 }
 
@@ -115,22 +115,22 @@ const TOLERANCE: f64 = 1e-14;
 
 /// It agrees on every joint that it has.
 pub fn agrees(rapier: &Oracle) {
-    let native = Native::new();
+    let featherbench = Featherbench::new();
     let mut compared = 0;
     for kind in ["revolute", "prismatic", "spherical", "planar", "translation", "cylindrical"] {
         for base in ["fixed", "free"] {
-            let problem = problem(&format!("joints:kind={kind},base={base}"));
-            let at = problem.magnitudes();
-            let forward = ForwardScale::all(&problem, &at);
+            let robot = robot(&format!("joints:kind={kind},base={base}"));
+            let at = robot.magnitudes();
+            let forward = ForwardScale::all(&robot, &at);
             for quantity in Quantity::ALL.into_iter().filter(|&quantity| !rapier.methods(quantity).is_empty()) {
-                let size = quantity.size(&problem);
-                let (ours, theirs) = (values(&native, &problem, quantity).unwrap(), values(rapier, &problem, quantity).unwrap());
+                let size = quantity.size(&robot);
+                let (ours, theirs) = (values(&featherbench, &robot, quantity).unwrap(), values(rapier, &robot, quantity).unwrap());
                 assert_eq!(theirs.len(), ours.len(), "{kind} {base} {}", quantity.name());
                 let states = ours.chunks_exact(size).zip(theirs.chunks_exact(size)).enumerate();
                 let error = states.fold(0.0, |error, (k, (ours, theirs))| {
                     let off = match quantity {
                         Quantity::ForwardDynamics => forward[k].backward_error(theirs),
-                        _ => scaled_error(&problem, quantity, &at[k], ours, theirs),
+                        _ => scaled_error(&robot, quantity, &at[k], ours, theirs),
                     };
                     worst(error, off)
                 });
@@ -145,40 +145,40 @@ pub fn agrees(rapier: &Oracle) {
 /// It has armature, but for its energy.
 pub fn has_armature(rapier: &Oracle) {
     for words in ["quadruped", "joints:kind=cylindrical,base=free,armature=true"] {
-        let problem = problem(words);
-        assert!(problem.description.bodies.iter().any(|body| body.joint.armature.iter().any(|&armature| armature > 0.0)), "{words}");
+        let robot = robot(words);
+        assert!(robot.description.bodies.iter().any(|body| body.joint.armature.iter().any(|&armature| armature > 0.0)), "{words}");
         let [ours, theirs] =
-            [&Native::new() as &dyn Subject, rapier].map(|subject| values(subject, &problem, Quantity::MassMatrix).unwrap());
-        let (at, size) = (problem.magnitudes(), Quantity::MassMatrix.size(&problem));
-        let error = scaled_error(&problem, Quantity::MassMatrix, &at[0], &ours[..size], &theirs[..size]);
+            [&Featherbench::new() as &dyn Engine, rapier].map(|engine| values(engine, &robot, Quantity::MassMatrix).unwrap());
+        let (at, size) = (robot.magnitudes(), Quantity::MassMatrix.size(&robot));
+        let error = scaled_error(&robot, Quantity::MassMatrix, &at[0], &ours[..size], &theirs[..size]);
         assert!(error <= TOLERANCE, "{words}: {error:e}");
-        assert!(matches!(values(rapier, &problem, Quantity::KineticEnergy), Err(Refusal::Unsupported(_))), "its energy has none");
+        assert!(matches!(values(rapier, &robot, Quantity::KineticEnergy), Err(NoAnswer::NotOffered(_))), "its energy has none");
     }
 }
 
 /// It refuses what would panic.
 pub fn refuses(rapier: &Oracle) {
-    let refused = |problem: &Problem, word: &str| match values(rapier, problem, Quantity::MassMatrix) {
-        Err(Refusal::Unsupported(reason)) => assert!(reason.contains(word), "{reason}"),
+    let refused = |robot: &Robot, word: &str| match values(rapier, robot, Quantity::MassMatrix) {
+        Err(NoAnswer::NotOffered(reason)) => assert!(reason.contains(word), "{reason}"),
         other => panic!("{word}: {other:?}"),
     };
-    refused(&problem("joints:kind=universal,base=fixed"), "universal");
-    refused(&problem("joints:kind=helical,base=fixed"), "helical");
-    refused(&problem("joints:kind=euler_zyx,base=fixed"), "euler_zyx");
+    refused(&robot("joints:kind=universal,base=fixed"), "universal");
+    refused(&robot("joints:kind=helical,base=fixed"), "helical");
+    refused(&robot("joints:kind=euler_zyx,base=fixed"), "euler_zyx");
     let mut description = Family::parse("chain:n=3").unwrap().generate().unwrap();
     (description.bodies[2].mass, description.bodies[2].inertia) = (0.0, [0.0; 6]);
     // With armature, so that M is regular and only rapier's inverse of the mass is not.
     description.bodies[2].joint.armature = vec![0.1];
-    refused(&Problem::new(&description, "test", ModelOrigin::Generated, 2, 3).unwrap(), "positive");
+    refused(&Robot::new(&description, "test", ModelOrigin::Generated, 2, 3).unwrap(), "positive");
 }
 
 /// Its steps approach its limit.
 pub fn steps_approach_a_limit(rapier: &Oracle) {
-    let problem = problem("joints:kind=spherical,base=free");
+    let robot = robot("joints:kind=spherical,base=free");
     let stepper = rapier.stepper().unwrap();
-    let at = problem.magnitudes();
-    let scale = &ForwardScale::all(&problem, &at)[0];
-    let step = |dt| stepper.step_acceleration(&problem, "step", &problem.states, 0, dt).unwrap();
+    let at = robot.magnitudes();
+    let scale = &ForwardScale::all(&robot, &at)[0];
+    let step = |dt| stepper.step_acceleration(&robot, "step", &robot.states, 0, dt).unwrap();
     let limit = step(1e-30);
     let [far, near] = [1e-4, 1e-5].map(|dt| scale.forward_error(&limit, &step(dt)));
     // First order: a tenth of the step, a tenth of the error, up to the second order's share.
@@ -189,19 +189,19 @@ pub fn steps_approach_a_limit(rapier: &Oracle) {
 const ROUNDING: f64 = 1e-15;
 
 /// The errors of steps at a state against the limit of short steps.
-fn step_errors<const N: usize>(rapier: &Oracle, problem: &Problem, k: usize, steps: [f64; N]) -> [f64; N] {
+fn step_errors<const N: usize>(rapier: &Oracle, robot: &Robot, k: usize, steps: [f64; N]) -> [f64; N] {
     let stepper = rapier.stepper().unwrap();
-    let scale = &ForwardScale::all(problem, &problem.magnitudes())[k];
-    let step = |dt| stepper.step_acceleration(problem, "step", &problem.states, k, dt).unwrap();
+    let scale = &ForwardScale::all(robot, &robot.magnitudes())[k];
+    let step = |dt| stepper.step_acceleration(robot, "step", &robot.states, k, dt).unwrap();
     let limit = step(1e-30);
     steps.map(|dt| scale.forward_error(&limit, &step(dt)))
 }
 
 /// At a fast state a step of 1e-2 or 1e-3 s is explicit, and has no error; one of 1e-4 s is implicit, and has one of first order.
 pub fn a_fast_state_has_two_regimes(rapier: &Oracle) {
-    let problem = problem("joints:kind=spherical,base=free");
-    assert_eq!(problem.states.cases[7], Case::Fast);
-    let [hundredth, thousandth, implicit @ ..] = step_errors(rapier, &problem, 7, [1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7]);
+    let robot = robot("joints:kind=spherical,base=free");
+    assert_eq!(robot.states.cases[7], Case::Fast);
+    let [hundredth, thousandth, implicit @ ..] = step_errors(rapier, &robot, 7, [1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7]);
     assert!(hundredth <= ROUNDING && thousandth <= ROUNDING, "{hundredth:e} {thousandth:e}");
     assert!((3e-2..4e-2).contains(&implicit[0]), "{implicit:?}");
     assert!(implicit.windows(2).all(|pair| (pair[0] / pair[1] - 10.0).abs() < 0.5), "{implicit:?}");
@@ -213,13 +213,13 @@ pub fn no_step_is_explicit_below_the_guard(rapier: &Oracle) {
     let guard = rapier.stepper().unwrap().guard().unwrap();
     let (mut explicit, mut implicit_beyond, mut implicit_below) = (0, 0, 0);
     for words in ["chain:n=2,layout=spatial", "chain:n=3,layout=spatial", "joints:kind=spherical,base=free"] {
-        let problem = problem(words);
-        for k in 0..problem.states.count() {
-            let errors = step_errors(rapier, &problem, k, STEPS);
+        let robot = robot(words);
+        for k in 0..robot.states.count() {
+            let errors = step_errors(rapier, &robot, k, STEPS);
             // At rest, or where no force depends on velocity, a step of any length is exact.
             let Some(shortest) = errors.last().filter(|&&error| error > ROUNDING) else { continue };
             // No joint's velocity is larger in any axes.
-            let speed = problem.states.v(k).iter().map(|v| v * v).sum::<f64>().sqrt();
+            let speed = robot.states.v(k).iter().map(|v| v * v).sum::<f64>().sqrt();
             for (dt, error) in STEPS.into_iter().zip(errors) {
                 if error <= ROUNDING {
                     assert!(dt * speed >= guard, "{words}, state {k}, dt = {dt}");

@@ -1,4 +1,4 @@
-//! What the oracle answers about robots: shapes, repetition, ranges, and values against native.
+//! What the oracle answers about robots: shapes, repetition, ranges, and values against featherbench.
 
 use super::manners::Methods;
 use super::mistakes::{MISTAKES, Mistake};
@@ -22,8 +22,8 @@ pub(super) struct Answers {
 
 /// Asks for every quantity of a robot; whether the oracle holds robot and states then.
 pub(super) fn ask(talk: &mut Talk, index: usize, scene: &Scene, offered: &Methods, answers: &mut Answers) -> bool {
-    let problem = &scene.problem;
-    let built = match talk.prepare(problem) {
+    let robot = &scene.robot;
+    let built = match talk.prepare(robot) {
         Ok(built) => built,
         Err(reason) => {
             talk.note(Standing::Wrong, scene.shows, &reason, &[]);
@@ -42,13 +42,13 @@ pub(super) fn ask(talk: &mut Talk, index: usize, scene: &Scene, offered: &Method
         }
         _ => {}
     }
-    for (key, due) in [("nq", problem.description.nq()), ("nv", problem.states.nv)] {
+    for (key, due) in [("nq", robot.description.nq()), ("nv", robot.states.nv)] {
         let found = built.header.get(key).unwrap_or(&Value::Null);
         if found.as_u64() != Some(due as u64) {
             talk.note(Standing::Wrong, "prepare tells nq and nv", &format!("{key} of {} is {found}, {due} is due", scene.shows), &[]);
         }
     }
-    match shape::block(&built, "readback", &shape::of_readback(problem)) {
+    match shape::block(&built, "readback", &shape::of_readback(robot)) {
         Ok(numbers) => readback(talk, scene, numbers),
         Err(found) => talk.note(Standing::Wrong, "prepare reads the robot back", &format!("{}: {found}", scene.shows), &[]),
     }
@@ -57,7 +57,7 @@ pub(super) fn ask(talk: &mut Talk, index: usize, scene: &Scene, offered: &Method
 
 /// Every quantity by every method of the robot that it holds; whether it took the states.
 pub(super) fn evaluate_all(talk: &mut Talk, index: usize, scene: &Scene, offered: &Methods, answers: &mut Answers) -> bool {
-    let (header, blocks) = states(&scene.problem, &scene.problem.states);
+    let (header, blocks) = states(&scene.robot, &scene.robot.states);
     if talk.expect("states are taken", header, blocks, &["ok"]).is_none() {
         return false;
     }
@@ -73,7 +73,7 @@ pub(super) fn evaluate_all(talk: &mut Talk, index: usize, scene: &Scene, offered
 /// One quantity by one method, asked for in several ways.
 fn evaluations(talk: &mut Talk, scene: &Scene, quantity: Quantity, method: &str) -> Option<Vec<f64>> {
     let named = format!("{} by {method}", quantity.name());
-    repeated(talk, &named, quantity.size(&scene.problem), |talk, first, count| evaluate(talk, scene, quantity, method, first, count))
+    repeated(talk, &named, quantity.size(&scene.robot), |talk, first, count| evaluate(talk, scene, quantity, method, first, count))
 }
 
 /// Answers of so many numbers per state: about the whole batch, the same again, and parts of it.
@@ -97,10 +97,10 @@ pub(super) fn repeated(
 }
 
 fn evaluate(talk: &mut Talk, scene: &Scene, quantity: Quantity, method: &str, first: usize, count: usize) -> Option<Vec<f64>> {
-    let (problem, named) = (&scene.problem, format!("{} by {method}", quantity.name()));
-    let body = problem.deepest_body();
+    let (robot, named) = (&scene.robot, format!("{} by {method}", quantity.name()));
+    let body = robot.deepest_body();
     let header = json!({"op": "evaluate", "quantity": quantity.name(), "method": method, "first": first, "count": count, "body": body});
-    numbers(talk, scene, &named, header, &shape::of_value(quantity, problem, count))
+    numbers(talk, scene, &named, header, &shape::of_value(quantity, robot, count))
 }
 
 /// The numbers of the block `value` that answers a question, if it is answered; if not, why is noted.
@@ -124,11 +124,11 @@ pub(super) fn numbers(talk: &mut Talk, scene: &Scene, named: &str, question: Val
 fn readback(talk: &mut Talk, scene: &Scene, found: &[f64]) {
     const FIELDS: [(&str, usize, usize); 5] =
         [("mass", 0, 1), ("com", 1, 4), ("inertia", 4, 10), ("the placement's rotation", 10, 19), ("the placement's translation", 19, 22)];
-    let given = scene.problem.readback();
+    let given = scene.robot.readback();
     if scene.error(Quantity::Readback, &given, found) <= Scene::tolerance(Quantity::Readback) {
         return talk.note(Standing::Right, "prepare reads the robot back", "", &[]);
     }
-    let rows = given.chunks_exact(22).zip(found.chunks_exact(22)).zip(&scene.problem.description.bodies);
+    let rows = given.chunks_exact(22).zip(found.chunks_exact(22)).zip(&scene.robot.description.bodies);
     let wrong = rows.flat_map(|((given, found), body)| FIELDS.iter().map(move |field| (given, found, body, field)));
     let far = |given: &[f64], found: &[f64]| given.iter().zip(found).any(|(g, f)| (g - f).abs() > 1e-9 || f.is_nan());
     let first = wrong.into_iter().find(|(given, found, _, (_, from, to))| far(&given[*from..*to], &found[*from..*to]));
@@ -144,7 +144,7 @@ fn readback(talk: &mut Talk, scene: &Scene, found: &[f64]) {
 }
 
 impl Answers {
-    /// Compares with native, and looks for the mistake behind what differs; `route` is added to what is noted.
+    /// Compares with featherbench, and looks for the mistake behind what differs; `route` is added to what is noted.
     pub(super) fn judge(&self, talk: &mut Talk, scenes: &[Scene], route: &str) {
         for ((quantity, method), given) in &self.given {
             let Some(quantity) = Quantity::parse(quantity) else { continue };
@@ -159,7 +159,7 @@ impl Answers {
             }
             let first = wrong[0];
             let found = format!(
-                "{} of {} robots differ from native, the first being {} by {:.1e} (at most {:.0e})",
+                "{} of {} robots differ from featherbench, the first being {} by {:.1e} (at most {:.0e})",
                 wrong.len(),
                 compared.len(),
                 first.scene.shows,
@@ -173,7 +173,7 @@ impl Answers {
     }
 }
 
-/// An answer beside native's.
+/// An answer beside featherbench's.
 struct Compared<'a> {
     scene: &'a Scene,
     value: &'a [f64],
@@ -183,7 +183,7 @@ struct Compared<'a> {
 
 impl<'a> Compared<'a> {
     fn new(scene: &'a Scene, quantity: Quantity, value: &'a [f64]) -> Option<Self> {
-        let error = scene.error(quantity, &scene.native(quantity)?, value);
+        let error = scene.error(quantity, &scene.featherbench(quantity)?, value);
         Some(Self { scene, value, error, quantity })
     }
 
@@ -201,7 +201,7 @@ impl<'a> Compared<'a> {
 /// The mistakes, alone or two together, that explain every answer, or else as many of the wrong ones as any mistake does.
 fn advice(compared: &[Compared], quantity: Quantity) -> Vec<String> {
     if compared.iter().any(|answer| answer.value.iter().any(|x| !x.is_finite())) {
-        return vec!["some of its numbers are none (NaN or infinite) at states where native's are finite".into()];
+        return vec!["some of its numbers are none (NaN or infinite) at states where featherbench's are finite".into()];
     }
     let told = |mistakes: &[&Mistake]| mistakes.iter().map(|m| format!("{}: {}", m.seems, m.advice)).collect::<Vec<_>>();
     let all = |mistakes: &[&Mistake]| compared.iter().all(|answer| answer.explained(mistakes));

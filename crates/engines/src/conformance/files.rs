@@ -9,7 +9,7 @@ use super::talk::Talk;
 use super::values::Scene;
 use super::{Standing, robots};
 use featherbench_bench::frame::Frame;
-use featherbench_bench::{FileBase, FileFormat, Problem, Quantity, Reading};
+use featherbench_bench::{FileBase, FileFormat, Quantity, Reading, Robot};
 use featherbench_formats::{OnLoss, mjcf, urdf};
 use featherbench_model::generate::Family;
 use featherbench_model::{BodyDescription, Description, JointType, Placement};
@@ -148,8 +148,8 @@ pub(super) fn read(talk: &mut Talk, offered: &Methods) -> Result<(), String> {
         };
         notes(talk, &answer);
         compare(talk, &file, &reading);
-        let problem = Problem::new(&reading.description, "conformance", ModelOrigin::Generated, robots::STATES, robots::SEED);
-        let scene = Scene::new(file.shows, problem.map_err(|error| error.to_string())?);
+        let robot = Robot::new(&reading.description, "conformance", ModelOrigin::Generated, robots::STATES, robots::SEED);
+        let scene = Scene::new(file.shows, robot.map_err(|error| error.to_string())?);
         answers::evaluate_all(talk, scenes.len(), &scene, &due, &mut answers);
         if let Some((quantity, methods)) = beside.iter().next() {
             let header = json!({"op": "evaluate", "quantity": quantity, "method": methods[0], "first": 0, "count": 1, "body": 0});
@@ -200,12 +200,10 @@ fn notes(talk: &mut Talk, answer: &Frame) {
         None => Some("`notes` is no list".to_owned()),
         Some(notes) => notes.iter().find_map(|note| {
             let cause = note["cause"].as_str().unwrap_or_default();
-            let subject = note["subject"].is_null() || note["subject"].is_string();
+            let about = note["about"].is_null() || note["about"].is_string();
             match CAUSES.contains(&cause) {
                 false => Some(format!("there is no cause '{cause}'; the causes are {}", CAUSES.join(", "))),
-                true if !subject || !note["text"].is_string() => {
-                    Some(format!("the note {note} has no `text`, or a `subject` that is no name"))
-                }
+                true if !about || !note["text"].is_string() => Some(format!("the note {note} has no `text`, or a `about` that is no name")),
                 true => None,
             }
         }),

@@ -78,7 +78,7 @@ pub(super) fn before_prepare(talk: &mut Talk) {
 
 /// The first robot that it builds.
 pub(super) fn first_built<'a>(talk: &mut Talk, scenes: &'a [Scene]) -> Option<&'a Scene> {
-    let built = scenes.iter().find(|scene| talk.prepare(&scene.problem).is_ok_and(|answer| answer.text("status") == "ok"));
+    let built = scenes.iter().find(|scene| talk.prepare(&scene.robot).is_ok_and(|answer| answer.text("status") == "ok"));
     if built.is_none() {
         talk.note(Standing::Wrong, "it builds some robot", "none of the test's robots was built; the reasons follow", &[]);
     }
@@ -87,8 +87,8 @@ pub(super) fn first_built<'a>(talk: &mut Talk, scenes: &'a [Scene]) -> Option<&'
 
 /// What is wrong with a model or a request, and what comes after.
 pub(super) fn with_robot(talk: &mut Talk, scene: &Scene, offered: &Methods) {
-    let problem = &scene.problem;
-    let Ok(good) = description(problem) else { return };
+    let robot = &scene.robot;
+    let Ok(good) = description(robot) else { return };
     bad_models(talk, &good);
     let prepare = json!({"op": "prepare", "model": good});
     if talk.expect("after all that it builds a robot", prepare.clone(), Vec::new(), &["ok"]).is_none() {
@@ -100,7 +100,7 @@ pub(super) fn with_robot(talk: &mut Talk, scene: &Scene, offered: &Methods) {
     let evaluate = |quantity: &str, method: &str, first: usize, count: usize| json!({"op": "evaluate", "quantity": quantity, "method": method, "first": first, "count": count, "body": 0});
     let whole = evaluate(&quantity, &method, 0, robots::STATES);
     talk.expect("evaluate before states is an error", whole.clone(), Vec::new(), &["error"]);
-    let (header, blocks) = states(problem, &problem.states);
+    let (header, blocks) = states(robot, &robot.states);
     talk.expect("states of another count than their blocks are an error", json!({"op": "states", "count": 7}), blocks.clone(), &["error"]);
     talk.expect("evaluate after refused states is an error", whole.clone(), Vec::new(), &["error"]);
     talk.expect("states are taken", header.clone(), blocks.clone(), &["ok"]);
@@ -111,9 +111,9 @@ pub(super) fn with_robot(talk: &mut Talk, scene: &Scene, offered: &Methods) {
     talk.expect("a method that it does not have is unsupported", nothing, Vec::new(), &["unsupported"]);
     let beyond = evaluate(&quantity, &method, robots::STATES - 1, 2);
     talk.expect("states that were not sent are an error", beyond, Vec::new(), &["error"]);
-    let mut none = problem.states.clone();
+    let mut none = robot.states.clone();
     none.q.fill(f64::NAN);
-    let (header_none, blocks_none) = states(problem, &none);
+    let (header_none, blocks_none) = states(robot, &none);
     let (any, opened) = (["ok", "error", "unsupported"], talk.opened);
     talk.expect("numbers that are none get an answer", header_none, blocks_none, &any);
     talk.expect("and so does what is asked about them", whole.clone(), Vec::new(), &any);

@@ -4,11 +4,11 @@ use super::orders;
 use super::turn::{
     ONE, SWAP, Turn, blocks, cross, of_free, of_order, of_planar, of_spherical, places, product, put_back, transposed, turned_back,
 };
-use featherbench_bench::{Problem, Quantity};
+use featherbench_bench::{Quantity, Robot};
 use featherbench_model::{Description, JointType};
 use std::f64::consts::TAU;
 
-/// One state of a robot, as it is sent, and where native finds the bodies in it.
+/// One state of a robot, as it is sent, and where featherbench finds the bodies in it.
 #[derive(Clone, Default)]
 pub(super) struct State {
     pub(super) q: Vec<f64>,
@@ -16,13 +16,13 @@ pub(super) struct State {
     pub(super) a: Vec<f64>,
     pub(super) tau: Vec<f64>,
     pub(super) wrench: Vec<f64>,
-    /// Native's [`Quantity::BodyPlacement`].
+    /// featherbench's [`Quantity::BodyPlacement`].
     pub(super) placement: Vec<f64>,
-    /// Native's [`Quantity::BodyVelocity`].
+    /// featherbench's [`Quantity::BodyVelocity`].
     pub(super) velocity: Vec<f64>,
-    /// Native's [`Quantity::CenterOfMass`].
+    /// featherbench's [`Quantity::CenterOfMass`].
     pub(super) com: Vec<f64>,
-    /// Native's [`Quantity::Momentum`].
+    /// featherbench's [`Quantity::Momentum`].
     pub(super) momentum: Vec<f64>,
 }
 
@@ -35,7 +35,7 @@ pub(super) struct Mistake {
     pub(super) robot: fn(&mut Description),
     pub(super) state: fn(&Description, &mut State),
     pub(super) turn: Option<fn(&Description, &State) -> Turn>,
-    pub(super) answer: fn(&Problem, Quantity, &State, &mut [f64]),
+    pub(super) answer: fn(&Robot, Quantity, &State, &mut [f64]),
 }
 
 const NONE: Mistake = Mistake { seems: "", advice: "", robot: |_| (), state: |_, _| (), turn: None, answer: |_, _, _, _| () };
@@ -251,9 +251,9 @@ pub(super) const MISTAKES: [Mistake; 41] = [
             let force = resistance(robot, |joint| &joint.damping, &state.v, |v| v);
             state.tau.iter_mut().zip(force).for_each(|(tau, force)| *tau -= force);
         },
-        answer: |problem, quantity, state, value| {
+        answer: |robot, quantity, state, value| {
             if is_inverse(quantity) {
-                let force = resistance(&problem.description, |joint| &joint.damping, &state.v, |v| v);
+                let force = resistance(&robot.description, |joint| &joint.damping, &state.v, |v| v);
                 value.iter_mut().zip(force).for_each(|(tau, force)| *tau += force);
             }
         },
@@ -262,9 +262,9 @@ pub(super) const MISTAKES: [Mistake; 41] = [
     Mistake {
         seems: "dry friction is included",
         advice: "leave `friction` out: it is carried for information",
-        answer: |problem, quantity, state, value| {
+        answer: |robot, quantity, state, value| {
             if is_inverse(quantity) {
-                let force = resistance(&problem.description, |joint| &joint.friction, &state.v, f64::signum);
+                let force = resistance(&robot.description, |joint| &joint.friction, &state.v, f64::signum);
                 value.iter_mut().zip(force).for_each(|(tau, force)| *tau += force);
             }
         },
@@ -297,23 +297,23 @@ pub(super) const MISTAKES: [Mistake; 41] = [
     Mistake {
         seems: "only the upper triangle of M is filled",
         advice: "send both triangles",
-        answer: |problem, quantity, _, value| triangle(problem, quantity, value, |row, column| row <= column),
+        answer: |robot, quantity, _, value| triangle(robot, quantity, value, |row, column| row <= column),
         ..NONE
     },
     Mistake {
         seems: "only the lower triangle of M is filled",
         advice: "send both triangles",
-        answer: |problem, quantity, _, value| triangle(problem, quantity, value, |row, column| row >= column),
+        answer: |robot, quantity, _, value| triangle(robot, quantity, value, |row, column| row >= column),
         ..NONE
     },
     Mistake {
         seems: "6-vectors are sent as [linear; angular]",
         advice: "send [angular; linear]",
-        answer: |problem, quantity, _, value| match quantity {
+        answer: |robot, quantity, _, value| match quantity {
             Quantity::BodyVelocity | Quantity::BodyAcceleration | Quantity::Momentum => {
                 value.chunks_exact_mut(6).for_each(|vector| vector.rotate_left(3));
             }
-            Quantity::BodyJacobian => value.rotate_left(3 * problem.states.nv),
+            Quantity::BodyJacobian => value.rotate_left(3 * robot.states.nv),
             _ => {}
         },
         ..NONE
@@ -424,8 +424,8 @@ fn resistance(robot: &Description, of: fn(&featherbench_model::JointDescription)
     force
 }
 
-fn triangle(problem: &Problem, quantity: Quantity, value: &mut [f64], keeps: fn(usize, usize) -> bool) {
-    let n = problem.states.nv;
+fn triangle(robot: &Robot, quantity: Quantity, value: &mut [f64], keeps: fn(usize, usize) -> bool) {
+    let n = robot.states.nv;
     if quantity == Quantity::MassMatrix {
         value.iter_mut().enumerate().filter(|(at, _)| !keeps(at / n, at % n)).for_each(|(_, x)| *x = 0.0);
     }

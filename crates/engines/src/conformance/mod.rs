@@ -1,7 +1,7 @@
 //! A conformance test of any oracle: does it keep the protocol of `oracles/PROTOCOL.md`, and do its answers mean what they should?
 //!
 //! It asks about small robots of every kind of joint. What the oracle does not offer is lacking, and no fault. What it answers is compared with
-//! the native kernels in the harness' measures; where it differs, the usual mistakes of convention are tried as hypotheses, one by one and in
+//! our own kernels in the harness' measures; where it differs, the usual mistakes of convention are tried as hypotheses, one by one and in
 //! pairs, and the one that explains every answer is named. An oracle that reads files is asked about the robot that it tells in the same way,
 //! one that integrates about its steps.
 
@@ -32,7 +32,7 @@ pub enum Standing {
     Right,
     /// Not offered, which is no fault.
     Lacks,
-    /// Against the protocol, or another answer than native's.
+    /// Against the protocol, or another answer than featherbench's.
     Wrong,
 }
 
@@ -88,7 +88,7 @@ pub fn check_program(command: &[OsString], limits: Limits, watch: &dyn Fn(&str))
 /// # Errors
 /// A sentence, when our own robots or files cannot be made.
 pub fn check(start: &dyn Fn() -> Result<Box<dyn Line>, String>, watch: &dyn Fn(&str)) -> Result<Conformance, String> {
-    let scenes: Vec<Scene> = robots::all()?.into_iter().map(|(shows, problem)| Scene::new(shows, problem)).collect();
+    let scenes: Vec<Scene> = robots::all()?.into_iter().map(|(shows, robot)| Scene::new(shows, robot)).collect();
     let mut talk = Talk::new(start);
     watch("hello");
     let Some(steps) = manners::hello(&mut talk) else { return Ok(talk.conformance) };

@@ -1,6 +1,6 @@
 //! The small robots of the conformance test: every kind of joint alone, in branched trees, on a fixed and on a free base.
 
-use featherbench_bench::Problem;
+use featherbench_bench::Robot;
 use featherbench_model::generate::Family;
 use featherbench_model::{Description, JointType};
 use featherbench_results::ModelOrigin;
@@ -41,13 +41,13 @@ pub(super) const SEED: u64 = 11;
 
 /// The robots with what each shows. One-dof joints have armature, all but free joints damping and dry friction, so that none can be mistaken
 /// for nothing.
-pub(super) fn all() -> Result<Vec<(&'static str, Problem)>, String> {
+pub(super) fn all() -> Result<Vec<(&'static str, Robot)>, String> {
     let robot = |(shows, spec, keep): (&'static str, &str, usize)| {
         let mut description = Family::parse(spec).and_then(|family| family.generate()).map_err(|error| error.to_string())?;
         description.bodies.truncate(keep);
         equip(&mut description);
-        let problem = Problem::new(&description, "conformance", ModelOrigin::Generated, STATES, SEED).map_err(|error| error.to_string())?;
-        Ok((shows, problem))
+        let robot = Robot::new(&description, "conformance", ModelOrigin::Generated, STATES, SEED).map_err(|error| error.to_string())?;
+        Ok((shows, robot))
     };
     ROBOTS.into_iter().map(robot).collect()
 }

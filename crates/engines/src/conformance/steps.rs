@@ -1,4 +1,4 @@
-//! Steps, where an oracle offers them: shapes, repetition, ranges, what has no answer, that a short step begins with native's acceleration, and
+//! Steps, where an oracle offers them: shapes, repetition, ranges, what has no answer, that a short step begins with featherbench's acceleration, and
 //! that a short fall keeps its energy.
 
 use super::answers::{numbers, repeated};
@@ -31,12 +31,12 @@ pub(super) fn ask(talk: &mut Talk, scene: &Scene, steps: &Steps, found: &mut Fou
     let Some(plain) = steps.methods.first() else { return };
     refusals(talk, plain);
     for method in &steps.methods {
-        let accelerations = answers(talk, scene, question("step", method, SHORT), scene.problem.states.nv);
+        let accelerations = answers(talk, scene, question("step", method, SHORT), scene.robot.states.nv);
         let energies = answers(talk, scene, question("fall", method, FALL.0), FALL.1);
         if method != plain {
             continue;
         }
-        let due = accelerations.zip(scene.native(Quantity::ForwardDynamics));
+        let due = accelerations.zip(scene.featherbench(Quantity::ForwardDynamics));
         found.accelerations.extend(due.map(|(value, due)| (scene.shows, scene.error(Quantity::ForwardDynamics, &due, &value))));
         found.energies.extend(energies.and_then(|value| Some((scene.shows, scene.drift(&value[..FALL.1])?))));
     }

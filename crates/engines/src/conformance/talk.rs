@@ -3,7 +3,7 @@
 use super::{Conformance, Finding, Standing};
 use crate::process::Process;
 use crate::request;
-use featherbench_bench::Problem;
+use featherbench_bench::Robot;
 use featherbench_bench::frame::{Block, Frame};
 use serde_json::{Value, json};
 
@@ -96,8 +96,8 @@ impl<'a> Talk<'a> {
     }
 
     /// Has the oracle build a robot.
-    pub(super) fn prepare(&mut self, problem: &Problem) -> Result<Frame, String> {
-        self.ask(json!({"op": "prepare", "model": request::description(problem)?}), Vec::new())
+    pub(super) fn prepare(&mut self, robot: &Robot) -> Result<Frame, String> {
+        self.ask(json!({"op": "prepare", "model": request::description(robot)?}), Vec::new())
     }
 
     /// Ends the oracle's input.

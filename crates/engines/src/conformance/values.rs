@@ -2,9 +2,9 @@
 
 use super::mistakes::{Mistake, State};
 use super::turn::Turn;
-use crate::Native;
+use crate::Featherbench;
 use featherbench_bench::measure::{ForwardScale, Magnitudes, scaled_error, worst};
-use featherbench_bench::{Problem, Quantity, Subject};
+use featherbench_bench::{Engine, Quantity, Robot};
 use featherbench_model::StateBatch;
 
 /// Conformance asks for meaning, not for digits (those are the agreement study's): mistaken conventions show at 1e-3 and above, rounding at
@@ -13,34 +13,34 @@ pub(super) const RIGHT: f64 = 1e-11;
 /// The same for forward dynamics, where an explicit inverse loses the condition of M, here up to a thousand, on the way.
 pub(super) const RIGHT_FORWARD: f64 = 1e-9;
 
-/// A robot with native's answers to everything that is asked.
+/// A robot with featherbench's answers to everything that is asked.
 pub(super) struct Scene {
     pub(super) shows: &'static str,
-    pub(super) problem: Problem,
+    pub(super) robot: Robot,
     at: Vec<Magnitudes>,
 }
 
 impl Scene {
-    pub(super) fn new(shows: &'static str, problem: Problem) -> Self {
-        let at = problem.magnitudes();
-        Self { shows, problem, at }
+    pub(super) fn new(shows: &'static str, robot: Robot) -> Self {
+        let at = robot.magnitudes();
+        Self { shows, robot, at }
     }
 
     /// The worst error of an answer over all states, in the measures of the harness.
     pub(super) fn error(&self, quantity: Quantity, reference: &[f64], value: &[f64]) -> f64 {
-        let size = quantity.size(&self.problem);
+        let size = quantity.size(&self.robot);
         let states = reference.chunks_exact(size).zip(value.chunks_exact(size)).zip(&self.at);
         if quantity == Quantity::ForwardDynamics {
-            let scales = ForwardScale::all(&self.problem, &self.at);
+            let scales = ForwardScale::all(&self.robot, &self.at);
             return states.zip(scales).map(|(((r, x), _), scale)| scale.forward_error(r, x)).fold(0.0, worst);
         }
-        states.map(|((r, x), at)| scaled_error(&self.problem, quantity, at, r, x)).fold(0.0, worst)
+        states.map(|((r, x), at)| scaled_error(&self.robot, quantity, at, r, x)).fold(0.0, worst)
     }
 
-    /// The largest difference of energies from native's at the first state, in the measure of the potential energy.
+    /// The largest difference of energies from featherbench's at the first state, in the measure of the potential energy.
     pub(super) fn drift(&self, energies: &[f64]) -> Option<f64> {
-        let start = self.native(Quantity::KineticEnergy)?[0] + self.native(Quantity::PotentialEnergy)?[0];
-        let off = |&energy: &f64| scaled_error(&self.problem, Quantity::PotentialEnergy, &self.at[0], &[start], &[energy]);
+        let start = self.featherbench(Quantity::KineticEnergy)?[0] + self.featherbench(Quantity::PotentialEnergy)?[0];
+        let off = |&energy: &f64| scaled_error(&self.robot, Quantity::PotentialEnergy, &self.at[0], &[start], &[energy]);
         Some(energies.iter().map(off).fold(0.0, worst))
     }
 
@@ -49,19 +49,19 @@ impl Scene {
         if quantity == Quantity::ForwardDynamics { RIGHT_FORWARD } else { RIGHT }
     }
 
-    /// Native's answer at every state.
-    pub(super) fn native(&self, quantity: Quantity) -> Option<Vec<f64>> {
-        native(&self.problem, quantity)
+    /// featherbench's answer at every state.
+    pub(super) fn featherbench(&self, quantity: Quantity) -> Option<Vec<f64>> {
+        featherbench(&self.robot, quantity)
     }
 
     /// The answer of an oracle that is right but for these mistakes; none where they make no robot of it, or do not bear on the quantity.
     pub(super) fn supposed(&self, mistakes: &[&Mistake], quantity: Quantity) -> Option<Vec<f64>> {
-        let mut misread = self.problem.description.clone();
+        let mut misread = self.robot.description.clone();
         mistakes.iter().for_each(|mistake| (mistake.robot)(&mut misread));
-        let Problem { origin, family, states, .. } = &self.problem;
-        let problem = Problem::new(&misread, family, *origin, 1, 0).ok()?;
+        let Robot { origin, family, states, .. } = &self.robot;
+        let robot = Robot::new(&misread, family, *origin, 1, 0).ok()?;
         let (mut batch, mut seen) = (StateBatch { cases: states.cases.clone(), ..self.empty() }, Vec::new());
-        let placement = native(&self.problem, Quantity::BodyPlacement)?;
+        let placement = featherbench(&self.robot, Quantity::BodyPlacement)?;
         for k in 0..states.count() {
             let mut state = State {
                 q: states.q(k).to_vec(),
@@ -80,13 +80,13 @@ impl Scene {
             batch.tau.extend(state.tau);
             batch.wrench.extend(state.wrench);
         }
-        let problem = problem.at(batch);
-        let mut value = native(&problem, if quantity == Quantity::Bias { Quantity::InverseDynamics } else { quantity })?;
+        let robot = robot.at(batch);
+        let mut value = featherbench(&robot, if quantity == Quantity::Bias { Quantity::InverseDynamics } else { quantity })?;
         let [placement, velocity, com, momentum] =
             [Quantity::BodyPlacement, Quantity::BodyVelocity, Quantity::CenterOfMass, Quantity::Momentum]
-                .map(|about| native(&problem, about));
+                .map(|about| featherbench(&robot, about));
         let (placement, velocity, com, momentum) = (placement?, velocity?, com?, momentum?);
-        let (size, count) = (quantity.size(&problem), states.count());
+        let (size, count) = (quantity.size(&robot), states.count());
         for (k, (value, seen)) in value.chunks_exact_mut(size).zip(seen).enumerate() {
             for (mistake, (mut state, turn)) in mistakes.iter().zip(seen).rev() {
                 if let Some(turn) = turn {
@@ -96,7 +96,7 @@ impl Scene {
                 state.velocity = part(&velocity, count, k);
                 state.com = part(&com, count, k);
                 state.momentum = part(&momentum, count, k);
-                (mistake.answer)(&self.problem, quantity, &state, value);
+                (mistake.answer)(&self.robot, quantity, &state, value);
             }
         }
         Some(value)
@@ -105,8 +105,8 @@ impl Scene {
     /// Reads a state by a mistake; what it was before, and the turn of velocities.
     fn misread(&self, mistake: &Mistake, state: &mut State) -> (State, Option<Turn>) {
         let given = state.clone();
-        (mistake.state)(&self.problem.description, state);
-        let turn = mistake.turn.map(|turn| turn(&self.problem.description, state));
+        (mistake.state)(&self.robot.description, state);
+        let turn = mistake.turn.map(|turn| turn(&self.robot.description, state));
         if let Some(turn) = &turn {
             let rest: Vec<f64> = state.a.iter().zip(&turn.b).map(|(a, b)| a - b).collect();
             (state.v, state.a, state.tau) = (turn.back(&state.v), turn.back(&rest), turn.back(&state.tau));
@@ -115,7 +115,7 @@ impl Scene {
     }
 
     fn empty(&self) -> StateBatch {
-        let StateBatch { nq, nv, bodies, .. } = self.problem.states;
+        let StateBatch { nq, nv, bodies, .. } = self.robot.states;
         StateBatch { nq, nv, bodies, ..StateBatch::default() }
     }
 }
@@ -157,11 +157,11 @@ fn part(all: &[f64], count: usize, k: usize) -> Vec<f64> {
     all[k * size..(k + 1) * size].to_vec()
 }
 
-fn native(problem: &Problem, quantity: Quantity) -> Option<Vec<f64>> {
-    let native = Native::new();
-    let method = native.methods(quantity).into_iter().next()?;
-    let mut prepared = native.prepare(problem, quantity, &method, &problem.states).ok()?;
-    prepared.run(0..problem.states.count()).ok()?;
+fn featherbench(robot: &Robot, quantity: Quantity) -> Option<Vec<f64>> {
+    let featherbench = Featherbench::new();
+    let method = featherbench.methods(quantity).into_iter().next()?;
+    let mut prepared = featherbench.prepare(robot, quantity, &method, &robot.states).ok()?;
+    prepared.run(0..robot.states.count()).ok()?;
     Some(prepared.read().to_vec())
 }
 

@@ -1,7 +1,7 @@
 //! Steps of an engine that integrates, asked by the operations `step` and `fall`.
 
 use super::{Oracle, shaped};
-use featherbench_bench::{Problem, Refusal, Stepper};
+use featherbench_bench::{NoAnswer, Robot, Stepper};
 use featherbench_model::StateBatch;
 use serde::Deserialize;
 use serde_json::{Value, json};
@@ -35,9 +35,9 @@ impl Steps {
 
 impl Oracle {
     /// One question about a state; the answer's numbers, of which so many are due.
-    fn stepped(&self, problem: &Problem, states: &StateBatch, question: Value, due: usize) -> Result<Vec<f64>, Refusal> {
+    fn stepped(&self, robot: &Robot, states: &StateBatch, question: Value, due: usize) -> Result<Vec<f64>, NoAnswer> {
         let mut session = self.session()?;
-        let built = session.build(problem).and_then(|()| session.send_states(problem, states));
+        let built = session.build(robot).and_then(|()| session.send_states(robot, states));
         let answer = built.and_then(|()| shaped(&session.ask(question, Vec::new())?, "value", &[1, due]));
         self.give_back(session);
         answer
@@ -49,17 +49,17 @@ impl Stepper for Oracle {
         self.steps.as_ref().map(|steps| steps.methods.clone()).unwrap_or_default()
     }
 
-    fn step_acceleration(&self, problem: &Problem, method: &str, states: &StateBatch, k: usize, dt: f64) -> Result<Vec<f64>, Refusal> {
+    fn step_acceleration(&self, robot: &Robot, method: &str, states: &StateBatch, k: usize, dt: f64) -> Result<Vec<f64>, NoAnswer> {
         let question = json!({"op": "step", "method": method, "first": k, "count": 1, "dt": dt});
-        self.stepped(problem, states, question, states.nv)
+        self.stepped(robot, states, question, states.nv)
     }
 
     fn guard(&self) -> Option<f64> {
         self.steps.as_ref().and_then(|steps| steps.guard)
     }
 
-    fn fall(&self, problem: &Problem, method: &str, states: &StateBatch, k: usize, dt: f64, steps: usize) -> Result<Vec<f64>, Refusal> {
+    fn fall(&self, robot: &Robot, method: &str, states: &StateBatch, k: usize, dt: f64, steps: usize) -> Result<Vec<f64>, NoAnswer> {
         let question = json!({"op": "fall", "method": method, "first": k, "count": 1, "dt": dt, "steps": steps});
-        self.stepped(problem, states, question, steps)
+        self.stepped(robot, states, question, steps)
     }
 }

@@ -4,7 +4,7 @@
 //! child process only. Everything that can be checked is: the version of the interface, missing functions, indices, and lengths.
 #![allow(unsafe_code, reason = "the functions of a foreign library cannot be called otherwise")]
 
-use featherbench_bench::{Problem, Refusal};
+use featherbench_bench::{NoAnswer, Robot};
 use featherbench_model::JointType;
 use std::ffi::{CStr, c_char, c_int};
 use std::path::Path;
@@ -41,7 +41,7 @@ struct Body {
 
 /// `struct fb_robot`.
 #[repr(C)]
-struct Robot {
+struct RobotData {
     bodies: usize,
     nq: usize,
     nv: usize,
@@ -67,7 +67,7 @@ struct Method {
     name: *const c_char,
 }
 
-type Create = unsafe extern "C" fn(*const Robot, *mut *mut Handle, *mut f64, *mut c_char) -> c_int;
+type Create = unsafe extern "C" fn(*const RobotData, *mut *mut Handle, *mut f64, *mut c_char) -> c_int;
 type Destroy = unsafe extern "C" fn(*mut Handle);
 type SetStates = unsafe extern "C" fn(*mut Handle, *const States, *mut c_char) -> c_int;
 type Ready = unsafe extern "C" fn(*mut Handle, usize, usize, *mut c_char) -> c_int;
@@ -162,31 +162,31 @@ impl Library {
     /// Builds a robot; with it come the numbers that the engine holds, as [`featherbench_bench::Quantity::Readback`].
     ///
     /// # Errors
-    /// [`Refusal`], as the engine says.
-    pub(super) fn build(&self, problem: &Problem) -> Result<(Built<'_>, Vec<f64>), Refusal> {
-        let bodies: Vec<Body> = problem.description.bodies.iter().map(body).collect::<Result<_, _>>()?;
-        let topology = &problem.model.topology;
+    /// [`NoAnswer`], as the engine says.
+    pub(super) fn build(&self, robot: &Robot) -> Result<(Built<'_>, Vec<f64>), NoAnswer> {
+        let bodies: Vec<Body> = robot.description.bodies.iter().map(body).collect::<Result<_, _>>()?;
+        let topology = &robot.model.topology;
         let index = |parent: &Option<usize>| parent.map_or(-1, |parent| parent as i32);
         let dof_parent: Vec<i32> = topology.dof_parents().iter().map(index).collect();
-        let robot = Robot {
+        let data = RobotData {
             bodies: bodies.len(),
-            nq: problem.description.nq(),
+            nq: robot.description.nq(),
             nv: topology.nv(),
             body: bodies.as_ptr(),
-            gravity: problem.description.gravity,
+            gravity: robot.description.gravity,
             dof_parent: dof_parent.as_ptr(),
         };
-        let mut readback = vec![f64::NAN; featherbench_bench::Quantity::Readback.size(problem)];
+        let mut readback = vec![f64::NAN; featherbench_bench::Quantity::Readback.size(robot)];
         let mut handle = ptr::null_mut();
         // SAFETY: the robot's arrays have the announced lengths and outlive the call; `readback` has 22 numbers per body.
-        checked(|reason| unsafe { (self.create)(&robot, &mut handle, readback.as_mut_ptr(), reason) })?;
-        let handle = NonNull::new(handle).ok_or_else(|| Refusal::Failed("the peer made nothing and did not say why".into()))?;
-        Ok((Built { library: self, handle, nq: robot.nq, nv: robot.nv, count: 0, ready: None }, readback))
+        checked(|reason| unsafe { (self.create)(&data, &mut handle, readback.as_mut_ptr(), reason) })?;
+        let handle = NonNull::new(handle).ok_or_else(|| NoAnswer::Failed("the peer made nothing and did not say why".into()))?;
+        Ok((Built { library: self, handle, nq: data.nq, nv: data.nv, count: 0, ready: None }, readback))
     }
 }
 
 /// A body as `peer.h` has it; a joint of which it has no number is refused by name.
-fn body(body: &featherbench_model::BodyDescription) -> Result<Body, Refusal> {
+fn body(body: &featherbench_model::BodyDescription) -> Result<Body, NoAnswer> {
     let (joint, axis, pitch) = match body.joint.kind {
         JointType::Revolute { axis } => (0, axis, 0.0),
         JointType::Prismatic { axis } => (1, axis, 0.0),
@@ -197,7 +197,7 @@ fn body(body: &featherbench_model::BodyDescription) -> Result<Body, Refusal> {
         JointType::Universal => (6, [0.0; 3], 0.0),
         JointType::Fixed | JointType::Translation | JointType::Cylindrical { .. } | JointType::EulerZyx => {
             let reason = format!("native peers take no {} joint ({})", body.joint.kind.name(), body.joint.name);
-            return Err(Refusal::Unsupported(reason));
+            return Err(NoAnswer::NotOffered(reason));
         }
     };
     let mut armature = [0.0; 6];
@@ -232,11 +232,11 @@ impl Built<'_> {
     /// Gives the engine a batch of states: q, v, a and τ, row after row.
     ///
     /// # Errors
-    /// [`Refusal`], when the arrays are not as long as they should be or the engine fails.
-    pub(super) fn states(&mut self, count: usize, [q, v, a, tau]: [&[f64]; 4]) -> Result<(), Refusal> {
+    /// [`NoAnswer`], when the arrays are not as long as they should be or the engine fails.
+    pub(super) fn states(&mut self, count: usize, [q, v, a, tau]: [&[f64]; 4]) -> Result<(), NoAnswer> {
         (self.count, self.ready) = (0, None);
         if count == 0 || q.len() != count * self.nq || [v, a, tau].iter().any(|array| array.len() != count * self.nv) {
-            return Err(Refusal::Failed(format!("these are not {count} states of this robot")));
+            return Err(NoAnswer::Failed(format!("these are not {count} states of this robot")));
         }
         let states = States { count, q: q.as_ptr(), v: v.as_ptr(), a: a.as_ptr(), tau: tau.as_ptr() };
         // SAFETY: the handle is alive; the arrays have the announced lengths and outlive the call.
@@ -258,10 +258,10 @@ impl Built<'_> {
     /// Makes what a method starts from, unless it is made.
     ///
     /// # Errors
-    /// [`Refusal`], when there are no states or no such method, or the engine fails.
-    pub(super) fn ready(&mut self, method: usize, body: usize) -> Result<(), Refusal> {
+    /// [`NoAnswer`], when there are no states or no such method, or the engine fails.
+    pub(super) fn ready(&mut self, method: usize, body: usize) -> Result<(), NoAnswer> {
         if self.count == 0 || method >= self.library.methods.len() {
-            return Err(Refusal::Failed("there are no states, or there is no such method".into()));
+            return Err(NoAnswer::Failed("there are no states, or there is no such method".into()));
         }
         if self.ready != Some((method, body)) {
             self.ready = None;
@@ -275,9 +275,9 @@ impl Built<'_> {
     /// Evaluates states by the method that is ready: what is timed.
     ///
     /// # Errors
-    /// [`Refusal`], when none is ready or the engine fails.
-    pub(super) fn run(&mut self, first: usize, count: usize) -> Result<(), Refusal> {
-        let (method, _) = self.ready.ok_or_else(|| Refusal::Failed("no method is ready".into()))?;
+    /// [`NoAnswer`], when none is ready or the engine fails.
+    pub(super) fn run(&mut self, first: usize, count: usize) -> Result<(), NoAnswer> {
+        let (method, _) = self.ready.ok_or_else(|| NoAnswer::Failed("no method is ready".into()))?;
         // SAFETY: the handle is alive, has states, and the method is ready; states beyond the batch begin again.
         checked(|reason| unsafe { (self.library.run)(self.handle.as_ptr(), method, first, count, reason) })
     }
@@ -285,9 +285,9 @@ impl Built<'_> {
     /// Writes the value of the last state that was run, which has `value.len()` numbers.
     ///
     /// # Errors
-    /// [`Refusal`], when no method is ready or the engine fails.
-    pub(super) fn read(&mut self, value: &mut [f64]) -> Result<(), Refusal> {
-        let (method, _) = self.ready.ok_or_else(|| Refusal::Failed("no method is ready".into()))?;
+    /// [`NoAnswer`], when no method is ready or the engine fails.
+    pub(super) fn read(&mut self, value: &mut [f64]) -> Result<(), NoAnswer> {
+        let (method, _) = self.ready.ok_or_else(|| NoAnswer::Failed("no method is ready".into()))?;
         // SAFETY: the handle is alive and the method was run; the caller gives room for one value of its quantity, by `Quantity::size`.
         checked(|reason| unsafe { (self.library.read)(self.handle.as_ptr(), method, value.as_mut_ptr(), reason) })
     }
@@ -301,7 +301,7 @@ impl Drop for Built<'_> {
 }
 
 /// A call with room for its reason.
-fn checked(call: impl FnOnce(*mut c_char) -> c_int) -> Result<(), Refusal> {
+fn checked(call: impl FnOnce(*mut c_char) -> c_int) -> Result<(), NoAnswer> {
     let mut reason = [0_u8; REASON];
     let status = call(reason.as_mut_ptr().cast());
     let words = || match CStr::from_bytes_until_nul(&reason) {
@@ -310,7 +310,7 @@ fn checked(call: impl FnOnce(*mut c_char) -> c_int) -> Result<(), Refusal> {
     };
     match status {
         OK => Ok(()),
-        UNSUPPORTED => Err(Refusal::Unsupported(words())),
-        _ => Err(Refusal::Failed(words())),
+        UNSUPPORTED => Err(NoAnswer::NotOffered(words())),
+        _ => Err(NoAnswer::Failed(words())),
     }
 }

@@ -6,7 +6,7 @@ mod library;
 
 use crate::shape;
 use featherbench_bench::frame::{Block, Frame};
-use featherbench_bench::{Problem, Quantity, Refusal, Scatter};
+use featherbench_bench::{NoAnswer, Quantity, Robot, Scatter};
 use featherbench_model::Random;
 use featherbench_results::ModelOrigin;
 use library::{Built, Library};
@@ -36,7 +36,7 @@ pub fn serve(path: &Path, core: Option<usize>) -> Result<(), String> {
     rustix::stdio::dup2_stdout(rustix::stdio::stderr()).map_err(io)?;
     // Without a folder in its name a library would be looked for where the system keeps its own.
     let library = Library::open(&path.canonicalize().map_err(|error| format!("{}: {error}", path.display()))?)?;
-    let mut session = Session { library: &library, problem: None, states: None, robot: None };
+    let mut session = Session { library: &library, robot: None, states: None, built: None };
     let mut requests = BufReader::new(stdin());
     while let Some(request) = Frame::read(&mut requests).map_err(|error| error.to_string())? {
         let answer = match session.answer(&request) {
@@ -44,8 +44,8 @@ pub fn serve(path: &Path, core: Option<usize>) -> Result<(), String> {
                 header.insert("status".into(), "ok".into());
                 Frame { header, blocks }
             }
-            Err(Refusal::Unsupported(reason)) => Frame::new(json!({"status": "unsupported", "reason": reason}), Vec::new()),
-            Err(Refusal::Failed(reason)) => Frame::new(json!({"status": "error", "reason": reason}), Vec::new()),
+            Err(NoAnswer::NotOffered(reason)) => Frame::new(json!({"status": "unsupported", "reason": reason}), Vec::new()),
+            Err(NoAnswer::Failed(reason)) => Frame::new(json!({"status": "error", "reason": reason}), Vec::new()),
         };
         answer.write(&mut answers).and_then(|()| answers.flush()).map_err(|error| format!("standard output: {error}"))?;
     }
@@ -65,21 +65,21 @@ fn pin(core: usize) -> Result<(), String> {
 /// What the library was told last.
 struct Session<'a> {
     library: &'a Library,
-    problem: Option<Problem>,
+    robot: Option<Robot>,
     /// The last batch of states: how many, and q, v, a and τ.
     states: Option<(usize, [Vec<f64>; 4])>,
-    robot: Option<Built<'a>>,
+    built: Option<Built<'a>>,
 }
 
 /// The header of an answer, without its status, and the blocks behind it.
-type Answer = Result<(Map<String, Value>, Vec<Block>), Refusal>;
+type Answer = Result<(Map<String, Value>, Vec<Block>), NoAnswer>;
 
 fn ok(header: Value, blocks: Vec<Block>) -> Answer {
     Ok((Frame::new(header, Vec::new()).header, blocks))
 }
 
-fn failed(what: impl Into<String>) -> Refusal {
-    Refusal::Failed(what.into())
+fn failed(what: impl Into<String>) -> NoAnswer {
+    NoAnswer::Failed(what.into())
 }
 
 impl<'a> Session<'a> {
@@ -111,89 +111,89 @@ impl<'a> Session<'a> {
     }
 
     fn prepare(&mut self, request: &Frame) -> Answer {
-        (self.robot, self.states, self.problem) = (None, None, None);
+        (self.built, self.states, self.robot) = (None, None, None);
         let model = request.header.get("model").ok_or_else(|| failed("no model came"))?;
         let description = featherbench_formats::neutral::parse(&model.to_string(), "model").map_err(|error| failed(error.to_string()))?;
-        // The problem brings the compiled tree and the sizes of quantities; its own states are not used.
-        let problem = Problem::new(&description, "", ModelOrigin::Generated, 1, 0).map_err(|error| failed(error.to_string()))?;
-        let (robot, readback) = self.library.build(&problem)?;
-        let readback = Block::new("readback", &[problem.description.bodies.len(), 22], &readback);
-        let sizes = json!({"nq": problem.description.nq(), "nv": problem.model.topology.nv()});
-        (self.robot, self.problem) = (Some(robot), Some(problem));
+        // The robot brings the compiled tree and the sizes of quantities; its own states are not used.
+        let robot = Robot::new(&description, "", ModelOrigin::Generated, 1, 0).map_err(|error| failed(error.to_string()))?;
+        let (built, readback) = self.library.build(&robot)?;
+        let readback = Block::new("readback", &[robot.description.bodies.len(), 22], &readback);
+        let sizes = json!({"nq": robot.description.nq(), "nv": robot.model.topology.nv()});
+        (self.built, self.robot) = (Some(built), Some(robot));
         ok(sizes, vec![readback])
     }
 
     fn states(&mut self, request: &Frame) -> Answer {
         self.states = None;
         let count = number(request, "count")?;
-        let robot = self.robot.as_mut().ok_or_else(|| failed("no model was prepared"))?;
+        let built = self.built.as_mut().ok_or_else(|| failed("no model was prepared"))?;
         let array = |name| request.block(name).map(|block| block.data.clone()).ok_or_else(|| failed(format!("block {name} is missing")));
         let arrays = [array("q")?, array("v")?, array("a")?, array("tau")?];
-        robot.states(count, arrays.each_ref().map(Vec::as_slice))?;
+        built.states(count, arrays.each_ref().map(Vec::as_slice))?;
         self.states = Some((count, arrays));
         ok(json!({}), Vec::new())
     }
 
     /// Robot, states and what the last method starts from once more, at other places of the memory.
     fn scatter(&mut self, request: &Frame) -> Answer {
-        let (Some(problem), Some(robot)) = (&self.problem, self.robot.take()) else { return Err(failed("no model was prepared")) };
-        let ready = robot.is_ready();
+        let (Some(robot), Some(built)) = (&self.robot, self.built.take()) else { return Err(failed("no model was prepared")) };
+        let ready = built.is_ready();
         // Before its successor: two of them may not fit the memory.
-        drop(robot);
+        drop(built);
         let _scatter = Scatter::new(&mut Random::new(number(request, "seed")? as u64, 0));
-        let (mut robot, _) = self.library.build(problem)?;
+        let (mut built, _) = self.library.build(robot)?;
         if let Some((count, arrays)) = &self.states {
-            robot.states(*count, arrays.each_ref().map(Vec::as_slice))?;
+            built.states(*count, arrays.each_ref().map(Vec::as_slice))?;
         }
         if let Some((method, body)) = ready {
-            robot.ready(method, body)?;
+            built.ready(method, body)?;
         }
-        self.robot = Some(robot);
+        self.built = Some(built);
         ok(json!({}), Vec::new())
     }
 
     /// The robot with the asked method ready, the range, and the shape of the answer.
-    fn asked(&mut self, request: &Frame) -> Result<(&mut Built<'a>, usize, usize, Vec<usize>), Refusal> {
+    fn asked(&mut self, request: &Frame) -> Result<(&mut Built<'a>, usize, usize, Vec<usize>), NoAnswer> {
         let (quantity, method) = (request.text("quantity"), request.text("method"));
         let named = |(of, name): &(String, String)| of == quantity && name == method;
         let index = self.library.methods.iter().position(named);
-        let unsupported = || Refusal::Unsupported(format!("{} offers no method {method} for {quantity}", self.library.engine));
+        let unsupported = || NoAnswer::NotOffered(format!("{} offers no method {method} for {quantity}", self.library.engine));
         let (index, quantity) = index.zip(Quantity::parse(quantity)).ok_or_else(unsupported)?;
-        let (Some(problem), Some(robot)) = (&self.problem, &mut self.robot) else { return Err(failed("no model was prepared")) };
+        let (Some(robot), Some(built)) = (&self.robot, &mut self.built) else { return Err(failed("no model was prepared")) };
         let body = if quantity == Quantity::BodyJacobian { number(request, "body")? } else { 0 };
-        if body >= problem.description.bodies.len() {
+        if body >= robot.description.bodies.len() {
             return Err(failed(format!("there is no body {body}")));
         }
-        robot.ready(index, body)?;
+        built.ready(index, body)?;
         let (first, count) = (number(request, "first")?, number(request, "count")?);
-        Ok((robot, first, count, shape::of_value(quantity, problem, count)))
+        Ok((built, first, count, shape::of_value(quantity, robot, count)))
     }
 
     fn evaluate(&mut self, request: &Frame) -> Answer {
-        let (robot, first, count, shape) = self.asked(request)?;
-        if first.checked_add(count).is_none_or(|end| end > robot.count()) {
+        let (built, first, count, shape) = self.asked(request)?;
+        if first.checked_add(count).is_none_or(|end| end > built.count()) {
             return Err(failed(format!("{count} states from {first} on do not exist")));
         }
         let size: usize = shape[1..].iter().product();
         let mut values = vec![0.0; count * size];
         // A robot that cannot move has nothing to say of itself.
         for (k, value) in values.chunks_exact_mut(size.max(1)).enumerate() {
-            robot.run(first + k, 1)?;
-            robot.read(value)?;
+            built.run(first + k, 1)?;
+            built.read(value)?;
         }
         ok(json!({}), vec![Block::new("value", &shape, &values)])
     }
 
     fn clock(&mut self, request: &Frame) -> Answer {
-        let (robot, first, count, _) = self.asked(request)?;
+        let (built, first, count, _) = self.asked(request)?;
         let start = Instant::now();
-        robot.run(first, count)?;
+        built.run(first, count)?;
         let elapsed = start.elapsed();
         ok(json!({"nanoseconds": u64::try_from(elapsed.as_nanos()).unwrap_or(u64::MAX)}), Vec::new())
     }
 }
 
-fn number(request: &Frame, key: &str) -> Result<usize, Refusal> {
+fn number(request: &Frame, key: &str) -> Result<usize, NoAnswer> {
     let number = request.header.get(key).and_then(Value::as_u64).and_then(|number| usize::try_from(number).ok());
     number.ok_or_else(|| failed(format!("{key} must be a number")))
 }

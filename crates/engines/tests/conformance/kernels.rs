@@ -1,8 +1,8 @@
-//! The native kernels as an oracle in this process.
+//! Our own kernels as an oracle in this process.
 
 use featherbench_bench::frame::{Block, Frame};
-use featherbench_bench::{Problem, Quantity, Refusal, Subject};
-use featherbench_engines::Native;
+use featherbench_bench::{Engine, NoAnswer, Quantity, Robot};
+use featherbench_engines::Featherbench;
 use featherbench_engines::conformance::Line;
 use featherbench_formats::urdf::{self, Base, Options};
 use featherbench_model::StateBatch;
@@ -19,10 +19,10 @@ pub struct Plant {
 /// Nothing is done to them.
 pub const HONEST: Plant = Plant { request: |_, _| (), answer: |_, _, _| () };
 
-/// The native kernels as an oracle.
+/// Our own kernels as an oracle.
 pub struct Kernels {
     plant: Plant,
-    pub problem: Option<Problem>,
+    pub robot: Option<Robot>,
     /// The states as they came.
     states: Option<(Frame, StateBatch)>,
     /// Whether the robot is one of a file.
@@ -53,17 +53,17 @@ pub const OFFERED: [Quantity; 14] = [
 const AS_READ: [Quantity; 5] =
     [Quantity::InverseDynamics, Quantity::Bias, Quantity::MassMatrix, Quantity::ForwardDynamics, Quantity::KineticEnergy];
 
-fn failed(reason: impl ToString) -> Refusal {
-    Refusal::Failed(reason.to_string())
+fn failed(reason: impl ToString) -> NoAnswer {
+    NoAnswer::Failed(reason.to_string())
 }
 
 impl Kernels {
     /// An oracle that knows no robot yet.
     pub fn new(plant: Plant) -> Self {
-        Self { plant, problem: None, states: None, as_read: false, evaluated: 0 }
+        Self { plant, robot: None, states: None, as_read: false, evaluated: 0 }
     }
 
-    fn answer(&mut self, request: &Frame) -> Result<Frame, Refusal> {
+    fn answer(&mut self, request: &Frame) -> Result<Frame, NoAnswer> {
         let number =
             |key: &str| request.header.get(key).and_then(Value::as_u64).map(|n| n as usize).ok_or_else(|| failed("a number is missing"));
         match request.text("op") {
@@ -72,33 +72,33 @@ impl Kernels {
                 Ok(Frame::new(json!({"protocol": 1, "engine": "kernels", "version": "1", "build": {}, "methods": methods}), Vec::new()))
             }
             "prepare" => {
-                (self.problem, self.states, self.as_read) = (None, None, false);
+                (self.robot, self.states, self.as_read) = (None, None, false);
                 let model = request.header.get("model").ok_or_else(|| failed("there is no model"))?;
                 let description = featherbench_formats::neutral::parse(&model.to_string(), "request").map_err(failed)?;
-                let problem = Problem::new(&description, "", ModelOrigin::Generated, 1, 0).map_err(failed)?;
-                let readback = Block::new("readback", &[problem.description.bodies.len(), 22], &problem.readback());
-                let header = json!({"nq": problem.description.nq(), "nv": problem.states.nv});
-                self.problem = Some(problem);
+                let robot = Robot::new(&description, "", ModelOrigin::Generated, 1, 0).map_err(failed)?;
+                let readback = Block::new("readback", &[robot.description.bodies.len(), 22], &robot.readback());
+                let header = json!({"nq": robot.description.nq(), "nv": robot.states.nv});
+                self.robot = Some(robot);
                 Ok(Frame::new(header, vec![readback]))
             }
             "read" => {
-                (self.problem, self.states, self.as_read) = (None, None, true);
+                (self.robot, self.states, self.as_read) = (None, None, true);
                 if request.text("format") != "urdf" {
-                    return Err(Refusal::Unsupported("the kernels read URDF alone".into()));
+                    return Err(NoAnswer::NotOffered("the kernels read URDF alone".into()));
                 }
                 let base = if request.text("base") == "free" { Base::Floating } else { Base::Fixed };
                 let (description, _) = urdf::read(request.text("file"), &Options { base, ..Options::default() }).map_err(failed)?;
-                let problem = Problem::new(&description, "", ModelOrigin::Robot, 1, 0).map_err(failed)?;
+                let robot = Robot::new(&description, "", ModelOrigin::Robot, 1, 0).map_err(failed)?;
                 let model: Value =
                     serde_json::from_str(&featherbench_formats::neutral::to_string(&description).map_err(failed)?).map_err(failed)?;
                 let header = json!({"nq": description.nq(), "nv": description.nv(), "model": model, "notes": []});
-                self.problem = Some(problem);
+                self.robot = Some(robot);
                 Ok(Frame::new(header, Vec::new()))
             }
             "states" => {
                 self.states = None;
-                let (count, problem) = (number("count")?, self.problem.as_ref().ok_or_else(|| failed("there is no robot"))?);
-                let empty = &problem.states;
+                let (count, robot) = (number("count")?, self.robot.as_ref().ok_or_else(|| failed("there is no robot"))?);
+                let empty = &robot.states;
                 let take = |name: &str, each: usize| {
                     let block = request.block(name).filter(|block| block.data.len() == count * each);
                     block.map(|block| block.data.clone()).ok_or_else(|| failed(format!("block {name} is missing or has another length")))
@@ -118,27 +118,27 @@ impl Kernels {
             "evaluate" => {
                 let quantity = Quantity::parse(request.text("quantity")).filter(|quantity| OFFERED.contains(quantity));
                 let quantity = quantity.filter(|_| request.text("method") == "kernel");
-                let quantity = quantity.ok_or_else(|| Refusal::Unsupported("there is no such kernel".into()))?;
+                let quantity = quantity.ok_or_else(|| NoAnswer::NotOffered("there is no such kernel".into()))?;
                 if self.as_read && !AS_READ.contains(&quantity) {
-                    return Err(Refusal::Unsupported("a robot as read has no such answer".into()));
+                    return Err(NoAnswer::NotOffered("a robot as read has no such answer".into()));
                 }
-                let (Some(problem), Some((_, states))) = (&self.problem, &self.states) else { return Err(failed("nothing to evaluate")) };
+                let (Some(robot), Some((_, states))) = (&self.robot, &self.states) else { return Err(failed("nothing to evaluate")) };
                 let (first, count) = (number("first")?, number("count")?);
                 if first + count > states.count() {
                     return Err(failed("there are no such states"));
                 }
-                let native = Native::new();
-                let method = native.methods(quantity).swap_remove(0);
-                let mut prepared = native.prepare(problem, quantity, &method, states)?;
+                let featherbench = Featherbench::new();
+                let method = featherbench.methods(quantity).swap_remove(0);
+                let mut prepared = featherbench.prepare(robot, quantity, &method, states)?;
                 prepared.run(first..first + count)?;
                 self.evaluated += 1;
-                let (nv, bodies) = (problem.states.nv, problem.description.bodies.len());
+                let (nv, bodies) = (robot.states.nv, robot.description.bodies.len());
                 let shape = match quantity {
                     Quantity::MassMatrix => vec![count, nv, nv],
                     Quantity::BodyJacobian => vec![count, 6, nv],
                     Quantity::BodyPlacement => vec![count, bodies, 12],
                     Quantity::BodyVelocity | Quantity::BodyAcceleration => vec![count, bodies, 6],
-                    _ => vec![count, quantity.size(problem)],
+                    _ => vec![count, quantity.size(robot)],
                 };
                 Ok(Frame::new(json!({}), vec![Block::new("value", &shape, prepared.read())]))
             }
@@ -150,26 +150,26 @@ impl Kernels {
 
 impl Kernels {
     /// An integrator without error: steps begin with the acceleration of forward dynamics, and a fall keeps its energy.
-    fn step(&self, op: &str, request: &Frame) -> Result<Frame, Refusal> {
+    fn step(&self, op: &str, request: &Frame) -> Result<Frame, NoAnswer> {
         let number = |key: &str| request.header.get(key).and_then(Value::as_u64).map(|n| n as usize).unwrap_or_default();
         if request.text("method") != "exact" {
-            return Err(Refusal::Unsupported("there is no such way to step".into()));
+            return Err(NoAnswer::NotOffered("there is no such way to step".into()));
         }
         let dt = request.header.get("dt").and_then(Value::as_f64).unwrap_or_default();
-        let (Some(problem), Some((_, states))) = (&self.problem, &self.states) else { return Err(failed("nothing to step")) };
+        let (Some(robot), Some((_, states))) = (&self.robot, &self.states) else { return Err(failed("nothing to step")) };
         let (first, count) = (number("first"), number("count"));
         if dt <= 0.0 || first + count > states.count() {
             return Err(failed("there is no such step"));
         }
-        let native = Native::new();
+        let featherbench = Featherbench::new();
         let values = |quantity: Quantity| {
-            let method = native.methods(quantity).swap_remove(0);
-            let mut prepared = native.prepare(problem, quantity, &method, states)?;
+            let method = featherbench.methods(quantity).swap_remove(0);
+            let mut prepared = featherbench.prepare(robot, quantity, &method, states)?;
             prepared.run(first..first + count)?;
-            Ok::<_, Refusal>(prepared.read().to_vec())
+            Ok::<_, NoAnswer>(prepared.read().to_vec())
         };
         let (each, value) = if op == "step" {
-            (problem.states.nv, values(Quantity::ForwardDynamics)?)
+            (robot.states.nv, values(Quantity::ForwardDynamics)?)
         } else {
             let (kinetic, potential) = (values(Quantity::KineticEnergy)?, values(Quantity::PotentialEnergy)?);
             let steps = number("steps");
@@ -189,8 +189,8 @@ impl Line for Kernels {
                 frame.header.insert("status".into(), "ok".into());
                 frame
             }
-            Err(Refusal::Unsupported(reason)) => Frame::new(json!({"status": "unsupported", "reason": reason}), Vec::new()),
-            Err(Refusal::Failed(reason)) => Frame::new(json!({"status": "error", "reason": reason}), Vec::new()),
+            Err(NoAnswer::NotOffered(reason)) => Frame::new(json!({"status": "unsupported", "reason": reason}), Vec::new()),
+            Err(NoAnswer::Failed(reason)) => Frame::new(json!({"status": "error", "reason": reason}), Vec::new()),
         };
         (plant.answer)(&mut answer, request, self);
         if answer.text("status") == "dead" { Err("the oracle died".into()) } else { Ok(answer) }

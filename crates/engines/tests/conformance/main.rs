@@ -5,7 +5,7 @@ mod kernels;
 mod reading;
 mod steps;
 
-use featherbench_bench::Problem;
+use featherbench_bench::Robot;
 use featherbench_bench::frame::Frame;
 use featherbench_engines::conformance::{Conformance, Line, Standing, check};
 use featherbench_model::JointType;
@@ -52,13 +52,13 @@ fn an_honest_oracle_conforms() {
 }
 
 /// Changes a block of the request `states`, state after state, with the robot at hand.
-fn each_state(frame: &mut Frame, kernels: &Kernels, name: &str, change: impl Fn(&mut [f64], &[f64], &Problem)) {
-    let Some(problem) = kernels.problem.as_ref().filter(|_| frame.text("op") == "states") else { return };
+fn each_state(frame: &mut Frame, kernels: &Kernels, name: &str, change: impl Fn(&mut [f64], &[f64], &Robot)) {
+    let Some(robot) = kernels.robot.as_ref().filter(|_| frame.text("op") == "states") else { return };
     let q = frame.block("q").map(|block| block.data.clone()).unwrap_or_default();
-    let count = q.len() / problem.states.nq;
+    let count = q.len() / robot.states.nq;
     for block in frame.blocks.iter_mut().filter(|block| block.name == name && !block.data.is_empty()) {
         let size = block.data.len() / count;
-        block.data.chunks_exact_mut(size).zip(q.chunks_exact(problem.states.nq)).for_each(|(part, q)| change(part, q, problem));
+        block.data.chunks_exact_mut(size).zip(q.chunks_exact(robot.states.nq)).for_each(|(part, q)| change(part, q, robot));
     }
 }
 
@@ -88,9 +88,9 @@ const DYNAMICS: [&str; 4] = ["bias", "fd", "id", "id_wrench"];
 #[test]
 fn quaternions_in_another_order() {
     let request = |frame: &mut Frame, kernels: &Kernels| {
-        each_state(frame, kernels, "q", |q, _, problem| {
+        each_state(frame, kernels, "q", |q, _, robot| {
             let mut at = 0;
-            for body in &problem.description.bodies {
+            for body in &robot.description.bodies {
                 let kind = body.joint.kind;
                 if matches!(kind, JointType::Spherical | JointType::Free) {
                     let end = at + kind.nq();
@@ -112,8 +112,8 @@ fn quaternions_in_another_order() {
 fn a_free_velocity_in_another_order() {
     let swap = |frame: &mut Frame, kernels: &Kernels| {
         for name in ["v", "a", "tau"] {
-            each_state(frame, kernels, name, |x, _, problem| {
-                if problem.base() == "free" {
+            each_state(frame, kernels, name, |x, _, robot| {
+                if robot.base() == "free" {
                     x[..6].rotate_left(3);
                 }
             });
@@ -121,8 +121,8 @@ fn a_free_velocity_in_another_order() {
     };
     // The engine's own order is in its answers as well.
     let answer = |answer: &mut Frame, request: &Frame, kernels: &Kernels| {
-        let Some(problem) = kernels.problem.as_ref().filter(|problem| problem.base() == "free") else { return };
-        let nv = problem.states.nv;
+        let Some(robot) = kernels.robot.as_ref().filter(|robot| robot.base() == "free") else { return };
+        let nv = robot.states.nv;
         let Some(block) = answer.blocks.iter_mut().find(|block| block.name == "value") else { return };
         match request.text("quantity") {
             "id" | "id_wrench" | "bias" | "fd" => block.data.chunks_exact_mut(nv).for_each(|x| x[..6].rotate_left(3)),
@@ -142,21 +142,21 @@ fn a_free_velocity_in_another_order() {
 /// Linear velocity in world axes and nothing else said: v = [Rᵀ ṗ; ω], and the forces come back turned.
 #[test]
 fn a_free_velocity_in_world_axes() {
-    fn turn(problem: &Problem, q: &[f64]) -> [[f64; 3]; 3] {
+    fn turn(robot: &Robot, q: &[f64]) -> [[f64; 3]; 3] {
         let [x, y, z, w] = [q[3], q[4], q[5], q[6]];
         let r = [
             [1.0 - 2.0 * (y * y + z * z), 2.0 * (x * y - z * w), 2.0 * (x * z + y * w)],
             [2.0 * (x * y + z * w), 1.0 - 2.0 * (x * x + z * z), 2.0 * (y * z - x * w)],
             [2.0 * (x * z - y * w), 2.0 * (y * z + x * w), 1.0 - 2.0 * (x * x + y * y)],
         ];
-        let p = problem.description.bodies[0].joint.placement.rotation;
+        let p = robot.description.bodies[0].joint.placement.rotation;
         std::array::from_fn(|i| std::array::from_fn(|j| (0..3).map(|k| p[3 * i + k] * r[k][j]).sum()))
     }
     let request = |frame: &mut Frame, kernels: &Kernels| {
         // v, and with it nothing but the kinematics of velocities.
-        each_state(frame, kernels, "v", |v, q, problem| {
-            if problem.base() == "free" {
-                let r = turn(problem, q);
+        each_state(frame, kernels, "v", |v, q, robot| {
+            if robot.base() == "free" {
+                let r = turn(robot, q);
                 let linear: [f64; 3] = std::array::from_fn(|j| (0..3).map(|i| r[i][j] * v[i]).sum());
                 v[..3].copy_from_slice(&linear);
             }
@@ -222,8 +222,8 @@ fn two_mistakes() {
 #[test]
 fn half_a_matrix_and_numbers_that_are_none() {
     let upper = |answer: &mut Frame, request: &Frame, kernels: &Kernels| {
-        if let (Some(problem), "mass_matrix") = (&kernels.problem, request.text("quantity")) {
-            let n = problem.states.nv;
+        if let (Some(robot), "mass_matrix") = (&kernels.robot, request.text("quantity")) {
+            let n = robot.states.nv;
             for block in &mut answer.blocks {
                 block.data.iter_mut().enumerate().filter(|(k, _)| (k / n) % n > k % n).for_each(|(_, x)| *x = 0.0);
             }
@@ -388,9 +388,9 @@ fn coordinates_in_another_order() {
         for (name, size) in
             [("q", JointType::nq as fn(JointType) -> usize), ("v", JointType::nv), ("a", JointType::nv), ("tau", JointType::nv)]
         {
-            each_state(frame, kernels, name, |x, _, problem| {
+            each_state(frame, kernels, name, |x, _, robot| {
                 let mut at = 0;
-                for joint in problem.description.bodies.iter().map(|body| body.joint.kind) {
+                for joint in robot.description.bodies.iter().map(|body| body.joint.kind) {
                     if joint.name() == kind {
                         x[at..at + size(joint)].reverse();
                     }

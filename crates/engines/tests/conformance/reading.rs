@@ -100,14 +100,14 @@ fn mistakes_of_a_reading_are_named() {
         }),
         ("there is no cause 'rounded'", |answer, request, _| {
             if tells(answer, request) {
-                answer.header["notes"] = json!([{"cause": "rounded", "subject": null, "text": "x"}]);
+                answer.header["notes"] = json!([{"cause": "rounded", "about": null, "text": "x"}]);
             }
         }),
         ("the base is not free", |answer, request, kernels| {
             if tells(answer, request) && request.text("base") == "free" {
                 let fixed = Frame::new(json!({"op": "read", "file": request.text("file"), "format": "urdf", "base": "fixed"}), Vec::new());
                 *answer = featherbench_engines::conformance::Line::ask(&mut Kernels::new(HONEST), &fixed).unwrap();
-                assert!(kernels.problem.is_some());
+                assert!(kernels.robot.is_some());
             }
         }),
         ("quantities of bodies are unsupported of a robot as read: answered 'ok'", |answer, _, _| {

@@ -1,7 +1,7 @@
 //! Who reads the clock, and whose times are estimates.
 
 use crate::script::{HELLO, PATIENT, Script, TWO, Trial};
-use featherbench_bench::{Quantity, Refusal, Subject};
+use featherbench_bench::{Engine, NoAnswer, Quantity};
 use featherbench_engines::Clock;
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -31,13 +31,13 @@ fn the_clock_is_the_oracles_where_it_has_one() {
         let told = Arc::new(Told(folder.path().join("now")));
         let trial = Trial::by(script, PATIENT, folder, told);
         let oracle = trial.oracle.as_ref().unwrap();
-        let mut prepared = oracle.prepare(&trial.problem, Quantity::InverseDynamics, "x", &trial.problem.states)?;
+        let mut prepared = oracle.prepare(&trial.robot, Quantity::InverseDynamics, "x", &trial.robot.states)?;
         let clocked = prepared.clock(0..2)?;
         Ok((clocked, prepared.read().to_vec()))
     };
     assert_eq!(clock(&answering(r#","nanoseconds":1500"#)), Ok((Duration::from_nanos(1500), Vec::new())));
     for broken in ["", r#","nanoseconds":"soon""#, r#","nanoseconds":-1"#] {
-        assert!(matches!(clock(&answering(broken)), Err(Refusal::Failed(reason)) if reason.contains("nanoseconds")), "{broken}");
+        assert!(matches!(clock(&answering(broken)), Err(NoAnswer::Failed(reason)) if reason.contains("nanoseconds")), "{broken}");
     }
     let asked = Script::evaluate(&format!("echo 50 > \"$1/now\"; {TWO}"));
     assert_eq!(clock(&asked), Ok((Duration::from_millis(50), vec![2.0, 2.0])), "from the question to the answer");
@@ -59,15 +59,15 @@ fn an_estimating_clock_is_known_as_one() {
         assert_eq!((oracle.methods(Quantity::InverseDynamics).len(), oracle.timed(Quantity::InverseDynamics)), (2, vec!["y".to_owned()]));
         assert!(oracle.timed(Quantity::Bias).is_empty());
         assert!(oracle.identity().build["clock"].starts_with("estimate: "), "{:?}", oracle.identity().build);
-        let mut prepared = oracle.prepare(&trial.problem, Quantity::InverseDynamics, "y", &trial.problem.states)?;
+        let mut prepared = oracle.prepare(&trial.robot, Quantity::InverseDynamics, "y", &trial.robot.states)?;
         assert_eq!(prepared.overhead(), None, "nothing was timed yet");
         let clocked = prepared.clock(0..2)?;
         Ok((clocked, prepared.overhead()))
     };
     let told = (Duration::from_nanos(1500), Some(Duration::from_nanos(900)));
     assert_eq!(clock(r#","nanoseconds":1500,"overhead":900"#), Ok(told));
-    assert!(matches!(clock(r#","nanoseconds":1500"#), Err(Refusal::Failed(reason)) if reason.contains("overhead")));
-    assert!(matches!(clock(r#","overhead":900"#), Err(Refusal::Failed(reason)) if reason.contains("nanoseconds")));
+    assert!(matches!(clock(r#","nanoseconds":1500"#), Err(NoAnswer::Failed(reason)) if reason.contains("overhead")));
+    assert!(matches!(clock(r#","overhead":900"#), Err(NoAnswer::Failed(reason)) if reason.contains("nanoseconds")));
     for clock in ["", r#","clock":true"#, r#","clock":false"#] {
         let trial = Trial::new(&Script::hello(&hello(clock)), PATIENT);
         let oracle = trial.oracle.as_ref().unwrap();

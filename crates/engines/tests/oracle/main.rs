@@ -1,6 +1,6 @@
 //! Oracles that misbehave: each is a few lines of shell that speak the protocol of `oracles/PROTOCOL.md` until they do not.
 //!
-//! Whatever a program does, the harness gets a [`Refusal`] with a reason in time, no answer is taken for that to another question, and the
+//! Whatever a program does, the harness gets a [`NoAnswer`] with a reason in time, no answer is taken for that to another question, and the
 //! next question goes to a process that is well.
 
 mod clock;
@@ -9,7 +9,7 @@ mod script;
 mod steps;
 
 use crate::script::{HELLO, PATIENT, READBACK, Script, TWO, Trial, lives, robot, stillborn};
-use featherbench_bench::{Quantity, Refusal, Subject};
+use featherbench_bench::{Engine, NoAnswer, Quantity};
 use featherbench_engines::{Limits, Oracle};
 use featherbench_model::StateBatch;
 use std::time::Duration;
@@ -27,7 +27,7 @@ fn an_honest_shell_is_heard() {
     let pids = trial.pids();
     assert_eq!(pids.len(), 1, "one process answers one thread");
     let states = std::fs::read(trial.folder.path().join("states")).unwrap();
-    let q: Vec<u8> = trial.problem.states.q.iter().flat_map(|x| x.to_le_bytes()).collect();
+    let q: Vec<u8> = trial.robot.states.q.iter().flat_map(|x| x.to_le_bytes()).collect();
     assert_eq!(states[..16], q, "the states arrive to the bit");
     drop(trial);
     assert!(!lives(&pids[0]), "a dropped oracle is gone");
@@ -43,9 +43,9 @@ fn other_states_are_sent() {
     let numbers: [fn(&mut StateBatch) -> &mut Vec<f64>; 5] =
         [|states| &mut states.q, |states| &mut states.v, |states| &mut states.a, |states| &mut states.tau, |states| &mut states.wrench];
     for (k, of) in numbers.into_iter().enumerate() {
-        let mut states = trial.problem.states.clone();
+        let mut states = trial.robot.states.clone();
         of(&mut states)[1] += 0.5;
-        trial.oracle.as_ref().unwrap().prepare(&trial.problem, Quantity::InverseDynamics, "x", &states).unwrap();
+        trial.oracle.as_ref().unwrap().prepare(&trial.robot, Quantity::InverseDynamics, "x", &states).unwrap();
         assert_ne!(sent(), first, "array {k}");
         trial.ask().unwrap();
         assert_eq!(sent(), first, "and back again");
@@ -136,7 +136,7 @@ fn a_deaf_one_is_ended_in_time() {
     let (trial, clock) = Trial::stopped(&Script::hello(&format!("{HELLO}; touch \"$1/late\"; exec sleep 1000")));
     clock.set_going(true);
     let refusal = trial.ask_about(&robot("chain:n=1000")).unwrap_err();
-    assert_eq!(refusal, Refusal::Failed("no answer within 900 s".into()));
+    assert_eq!(refusal, NoAnswer::Failed("no answer within 900 s".into()));
     assert!(!lives(&trial.pids()[0]));
 }
 
@@ -198,7 +198,7 @@ fn what_is_not_supported_is_told_apart_and_the_process_kept() {
     for script in [Script::prepare(refuse), Script::evaluate(refuse)] {
         let trial = Trial::new(&script, PATIENT);
         for _ in 0..3 {
-            assert_eq!(trial.ask(), Err(Refusal::Unsupported("no such joint".into())));
+            assert_eq!(trial.ask(), Err(NoAnswer::NotOffered("no such joint".into())));
         }
         assert_eq!(trial.pids().len(), 1, "an answer is no reason to start again");
     }

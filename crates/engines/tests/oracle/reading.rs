@@ -1,7 +1,7 @@
 //! Files that an oracle reads.
 
 use crate::script::{PATIENT, READING, Script, Trial, robot};
-use featherbench_bench::{FileBase, FileFormat, Reading, Refusal, RobotFile, Subject};
+use featherbench_bench::{Engine, FileBase, FileFormat, NoAnswer, Reading, RobotFile};
 use featherbench_model::StateBatch;
 
 impl Trial {
@@ -9,7 +9,7 @@ impl Trial {
         RobotFile { path: "/robots/p.urdf".into(), format: FileFormat::Urdf, base: FileBase::Free, hash: "0".into(), links: Vec::new() }
     }
 
-    fn read(&self) -> Result<Reading, Refusal> {
+    fn read(&self) -> Result<Reading, NoAnswer> {
         self.oracle.as_ref().unwrap().read(&self.file())
     }
 
@@ -25,10 +25,10 @@ fn a_file_is_read_once_and_computed_with_as_it_was_read() {
     let trial = Trial::new(&Script::honest(), PATIENT);
     let reading = trial.read().unwrap();
     assert_eq!((reading.description.bodies.len(), reading.description.bodies[0].name.as_str()), (1, "rod"));
-    assert_eq!((reading.notes[0].cause.as_str(), reading.notes[0].subject.as_deref()), ("mass_edited", Some("rod")));
-    let problem = robot("chain:n=1").from_file(trial.file());
-    let as_read = problem.as_read(&reading, |model| StateBatch::agreement(model, 2, 1)).unwrap();
-    assert_ne!(as_read.hash, problem.hash, "the route is part of what is asked");
+    assert_eq!((reading.notes[0].cause.as_str(), reading.notes[0].about.as_deref()), ("mass_edited", Some("rod")));
+    let robot = robot("chain:n=1").from_file(trial.file());
+    let as_read = robot.as_read(&reading, |model| StateBatch::agreement(model, 2, 1)).unwrap();
+    assert_ne!(as_read.hash, robot.hash, "the route is part of what is asked");
     assert_eq!(trial.ask_about(&as_read).unwrap(), [2.0, 2.0]);
     assert_eq!(trial.reads().len(), 1, "the session still holds what it has read");
     assert!(
@@ -53,7 +53,7 @@ fn a_reading_that_is_no_robot_is_a_failure() {
     ];
     for (read, words) in cases {
         match Trial::new(&Script::reading(&read), PATIENT).read() {
-            Err(Refusal::Failed(reason)) => assert!(reason.contains(words), "{words}: {reason}"),
+            Err(NoAnswer::Failed(reason)) => assert!(reason.contains(words), "{words}: {reason}"),
             other => panic!("{words}: {other:?}"),
         }
     }
@@ -64,10 +64,10 @@ fn an_engine_that_reads_another_robot_the_second_time_is_not_believed() {
     let trial = Trial::new(&Script::honest(), PATIENT);
     let mut reading = trial.read().unwrap();
     reading.description.bodies[0].mass = 2.0;
-    let problem = robot("chain:n=1").from_file(trial.file());
-    let as_read = problem.as_read(&reading, |model| StateBatch::agreement(model, 2, 1)).unwrap();
+    let robot = robot("chain:n=1").from_file(trial.file());
+    let as_read = robot.as_read(&reading, |model| StateBatch::agreement(model, 2, 1)).unwrap();
     match trial.ask_about(&as_read) {
-        Err(Refusal::Failed(reason)) => assert!(reason.contains("does not read the same robot twice"), "{reason}"),
+        Err(NoAnswer::Failed(reason)) => assert!(reason.contains("does not read the same robot twice"), "{reason}"),
         other => panic!("{other:?}"),
     }
 }

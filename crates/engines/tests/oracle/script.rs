@@ -1,6 +1,6 @@
 //! Shell oracles: what they answer, and how they are asked.
 
-use featherbench_bench::{Problem, Quantity, Refusal, Subject};
+use featherbench_bench::{Engine, NoAnswer, Quantity, Robot};
 use featherbench_engines::{Clock, Limits, Oracle, SystemClock};
 use featherbench_model::generate::Family;
 use featherbench_results::ModelOrigin;
@@ -20,7 +20,7 @@ pub(crate) const HELLO: &str =
     r#"echo '{"status":"ok","protocol":1,"engine":"shell","version":"1","build":{"language":"sh"},"methods":{"id":["x"]}}'"#;
 
 /// A reading of one pendulum.
-pub(crate) const READING: &str = r#"echo '{"status":"ok","nq":1,"nv":1,"notes":[{"cause":"mass_edited","subject":"rod","text":"0 kg became 1 kg"}],"model":{"format":1,"name":"p","gravity":[0.0,0.0,-9.81],"bodies":[{"name":"rod","mass":1.0,"com":[0.5,0.0,0.0],"inertia":[0.01,0.0,0.0,0.08,0.0,0.08],"parent":-1,"joint":{"name":"hinge","type":"revolute","axis":[0.0,1.0,0.0],"placement":{"rotation":[1.0,0.0,0.0,0.0,1.0,0.0,0.0,0.0,1.0],"translation":[0.0,0.0,0.0]}}}]}}'"#;
+pub(crate) const READING: &str = r#"echo '{"status":"ok","nq":1,"nv":1,"notes":[{"cause":"mass_edited","about":"rod","text":"0 kg became 1 kg"}],"model":{"format":1,"name":"p","gravity":[0.0,0.0,-9.81],"bodies":[{"name":"rod","mass":1.0,"com":[0.5,0.0,0.0],"inertia":[0.01,0.0,0.0,0.08,0.0,0.08],"parent":-1,"joint":{"name":"hinge","type":"revolute","axis":[0.0,1.0,0.0],"placement":{"rotation":[1.0,0.0,0.0,0.0,1.0,0.0,0.0,0.0,1.0],"translation":[0.0,0.0,0.0]}}}]}}'"#;
 
 /// How a shell oracle answers; `$1` is a folder of its own.
 pub(crate) struct Script {
@@ -77,7 +77,7 @@ impl Script {
 pub(crate) struct Trial {
     pub(crate) folder: TempDir,
     pub(crate) oracle: Result<Oracle, String>,
-    pub(crate) problem: Problem,
+    pub(crate) robot: Robot,
 }
 
 /// So long that an honest shell is never late, however busy the machine is: only a test that would hang for ever meets it.
@@ -111,9 +111,9 @@ impl Clock for Stopped {
     }
 }
 
-pub(crate) fn robot(spec: &str) -> Problem {
+pub(crate) fn robot(spec: &str) -> Robot {
     let description = Family::parse(spec).unwrap().generate().unwrap();
-    Problem::new(&description, "chain", ModelOrigin::Generated, 2, 1).unwrap()
+    Robot::new(&description, "chain", ModelOrigin::Generated, 2, 1).unwrap()
 }
 
 impl Trial {
@@ -131,17 +131,17 @@ impl Trial {
     /// An oracle whose limits pass, and whose times are taken, by this clock.
     pub(crate) fn by(script: &Script, limits: Limits, folder: TempDir, clock: Arc<dyn Clock>) -> Self {
         let oracle = Oracle::start_by(script.command(folder.path()), limits, clock);
-        Self { folder, oracle, problem: robot("chain:n=1") }
+        Self { folder, oracle, robot: robot("chain:n=1") }
     }
 
     /// Asks for the inverse dynamics at both states.
-    pub(crate) fn ask(&self) -> Result<Vec<f64>, Refusal> {
-        self.ask_about(&self.problem)
+    pub(crate) fn ask(&self) -> Result<Vec<f64>, NoAnswer> {
+        self.ask_about(&self.robot)
     }
 
-    pub(crate) fn ask_about(&self, problem: &Problem) -> Result<Vec<f64>, Refusal> {
+    pub(crate) fn ask_about(&self, robot: &Robot) -> Result<Vec<f64>, NoAnswer> {
         let oracle = self.oracle.as_ref().unwrap();
-        let mut prepared = oracle.prepare(problem, Quantity::InverseDynamics, "x", &problem.states)?;
+        let mut prepared = oracle.prepare(robot, Quantity::InverseDynamics, "x", &robot.states)?;
         prepared.run(0..2)?;
         Ok(prepared.read().to_vec())
     }
@@ -150,7 +150,7 @@ impl Trial {
     #[track_caller]
     pub(crate) fn failure(&self) -> String {
         match self.ask() {
-            Err(Refusal::Failed(reason)) => reason,
+            Err(NoAnswer::Failed(reason)) => reason,
             other => panic!("{other:?}"),
         }
     }

@@ -1,7 +1,7 @@
 //! Shell oracles that integrate: what is sent, what comes back, and what a wrong `steps` is called.
 
 use crate::script::{HELLO, PATIENT, Script, Trial, stillborn};
-use featherbench_bench::{Refusal, Stepper, Subject};
+use featherbench_bench::{Engine, NoAnswer, Stepper};
 
 /// One number, two, as the answer about one state.
 const STEP: &str = r#"echo '{"status":"ok","blocks":[{"name":"value","shape":[1,1]}]}'; printf '\0\0\0\0\0\0\0\100'"#;
@@ -26,10 +26,10 @@ fn stepper(trial: &Trial) -> &dyn Stepper {
 #[test]
 fn steps_are_asked_for_and_heard() {
     let trial = trial(r#"{"methods":["x","y"],"guard":0.25}"#, STEP, FALL);
-    let (stepper, problem) = (stepper(&trial), &trial.problem);
+    let (stepper, robot) = (stepper(&trial), &trial.robot);
     assert_eq!((stepper.step_methods(), stepper.guard()), (vec!["x".to_owned(), "y".to_owned()], Some(0.25)));
-    assert_eq!(stepper.step_acceleration(problem, "x", &problem.states, 1, 1e-10), Ok(vec![2.0]));
-    assert_eq!(stepper.fall(problem, "y", &problem.states, 0, 0.1, 3), Ok(vec![2.0; 3]));
+    assert_eq!(stepper.step_acceleration(robot, "x", &robot.states, 1, 1e-10), Ok(vec![2.0]));
+    assert_eq!(stepper.fall(robot, "y", &robot.states, 0, 0.1, 3), Ok(vec![2.0; 3]));
     let asked = std::fs::read_to_string(trial.folder.path().join("asked")).unwrap();
     let asked: Vec<serde_json::Value> = asked.lines().map(|line| serde_json::from_str(line).unwrap()).collect();
     for (line, words) in asked.iter().zip([
@@ -53,14 +53,14 @@ fn one_that_does_not_integrate_offers_no_steps() {
 #[test]
 fn an_answer_of_another_shape_is_refused() {
     let trial = trial(r#"{"methods":["x"]}"#, FALL, STEP);
-    let (stepper, problem) = (stepper(&trial), &trial.problem);
+    let (stepper, robot) = (stepper(&trial), &trial.robot);
     assert_eq!(stepper.guard(), None);
     let reason = |answer| match answer {
-        Err(Refusal::Failed(reason)) => reason,
+        Err(NoAnswer::Failed(reason)) => reason,
         other => panic!("{other:?}"),
     };
-    let step = reason(stepper.step_acceleration(problem, "x", &problem.states, 0, 0.1));
-    let fall = reason(stepper.fall(problem, "x", &problem.states, 0, 0.1, 3));
+    let step = reason(stepper.step_acceleration(robot, "x", &robot.states, 0, 0.1));
+    let fall = reason(stepper.fall(robot, "x", &robot.states, 0, 0.1, 3));
     assert!(step.contains("[1, 3]") && step.contains("[1, 1] is due"), "{step}");
     assert!(fall.contains("[1, 1]") && fall.contains("[1, 3] is due"), "{fall}");
 }
@@ -69,9 +69,9 @@ fn an_answer_of_another_shape_is_refused() {
 fn what_it_does_not_have_is_unsupported_and_the_next_question_answered() {
     let lacking = r#"echo '{"status":"unsupported","reason":"no falls here"}'"#;
     let trial = trial(r#"{"methods":["x"]}"#, STEP, lacking);
-    let (stepper, problem) = (stepper(&trial), &trial.problem);
-    assert_eq!(stepper.fall(problem, "x", &problem.states, 0, 0.1, 3), Err(Refusal::Unsupported("no falls here".into())));
-    assert_eq!(stepper.step_acceleration(problem, "x", &problem.states, 0, 0.1), Ok(vec![2.0]));
+    let (stepper, robot) = (stepper(&trial), &trial.robot);
+    assert_eq!(stepper.fall(robot, "x", &robot.states, 0, 0.1, 3), Err(NoAnswer::NotOffered("no falls here".into())));
+    assert_eq!(stepper.step_acceleration(robot, "x", &robot.states, 0, 0.1), Ok(vec![2.0]));
     assert_eq!(trial.pids().len(), 1);
 }
 

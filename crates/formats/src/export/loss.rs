@@ -6,7 +6,7 @@ use std::fmt;
 #[derive(Clone, Debug, PartialEq)]
 pub struct Loss {
     /// What it is about: `joint 'elbow'`, `body 'arm'`, `frame 'tool'`, `the robot`.
-    pub subject: String,
+    pub about: String,
     /// What is in the way.
     pub reason: Reason,
 }
@@ -121,19 +121,19 @@ impl fmt::Display for Reason {
 
 impl fmt::Display for Loss {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{}: {}", self.subject, self.reason)
+        write!(f, "{}: {}", self.about, self.reason)
     }
 }
 
 /// All losses, one line for each reason.
 pub(super) fn listed(format: &str, losses: &[Loss]) -> String {
     let mut lines: Vec<(&Reason, Vec<&str>)> = Vec::new();
-    for Loss { subject, reason } in losses {
+    for Loss { about, reason } in losses {
         match lines.iter_mut().find(|(known, _)| *known == reason) {
-            Some((_, subjects)) => subjects.push(subject),
-            None => lines.push((reason, vec![subject])),
+            Some((_, all)) => all.push(about),
+            None => lines.push((reason, vec![about])),
         }
     }
-    let lines = lines.into_iter().map(|(reason, subjects)| format!("\n- {}: {reason}", subjects.join(", ")));
+    let lines = lines.into_iter().map(|(reason, about)| format!("\n- {}: {reason}", about.join(", ")));
     format!("{format} cannot hold this robot:{}", lines.collect::<String>())
 }

@@ -10,7 +10,7 @@ pub struct Names(HashSet<String>);
 impl Names {
     /// Takes a name, or says what is wrong with it.
     pub fn take(&mut self, what: &str, name: &str, losses: &mut Vec<Loss>) {
-        let mut lose = |reason| losses.push(Loss { subject: format!("{what} '{}'", name.escape_debug()), reason });
+        let mut lose = |reason| losses.push(Loss { about: format!("{what} '{}'", name.escape_debug()), reason });
         if name.is_empty() || !can_be_written(name) {
             lose(Reason::BadName);
         }
@@ -37,7 +37,7 @@ pub fn can_be_written(name: &str) -> bool {
 
 /// What is wrong with the robot's own name, which may be empty.
 pub fn of_robot(name: &str) -> Option<Loss> {
-    (!can_be_written(name)).then(|| Loss { subject: format!("robot '{}'", name.escape_debug()), reason: Reason::BadName })
+    (!can_be_written(name)).then(|| Loss { about: format!("robot '{}'", name.escape_debug()), reason: Reason::BadName })
 }
 
 /// The name of what does not move.

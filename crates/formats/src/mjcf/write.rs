@@ -152,19 +152,19 @@ fn losses(robot: &Description, carried: &[Vec<Item>]) -> Vec<Loss> {
         .collect();
     for (i, body) in robot.bodies.iter().enumerate() {
         bodies.take("body", &body.name, &mut losses);
-        let subject = || format!("body '{}'", body.name);
+        let about = || format!("body '{}'", body.name);
         if unphysical.contains(&body.name) {
-            losses.push(Loss { subject: subject(), reason: Reason::Unphysical });
+            losses.push(Loss { about: about(), reason: Reason::Unphysical });
         }
         if light(body) && row(robot, carried, i).len() == 1 {
-            losses.push(Loss { subject: subject(), reason: Reason::Massless });
+            losses.push(Loss { about: about(), reason: Reason::Massless });
         }
         match parts(&body.joint) {
             Ok(parts) => parts.iter().for_each(|part| joints.take("joint", &format!("{}{}", part.joint.name, part.suffix), &mut losses)),
             Err(_) => joints.take("joint", &body.joint.name, &mut losses),
         }
         let reasons = joint_losses(body).into_iter();
-        losses.extend(reasons.map(|reason| Loss { subject: format!("joint '{}'", body.joint.name), reason }));
+        losses.extend(reasons.map(|reason| Loss { about: format!("joint '{}'", body.joint.name), reason }));
     }
     for frame in robot.frames.iter().filter(|frame| !is_world(frame)) {
         bodies.take("frame", &frame.name, &mut losses);

@@ -82,7 +82,7 @@ fn key_position(text: &str, key: &str) -> Option<(usize, usize)> {
 
 /// Where the body stands that an error is about: its name is unique, but a joint or frame may be named alike, so this is a help, no more.
 fn body_position(text: &str, malformed: &Malformed) -> Option<(usize, usize)> {
-    let quoted = serde_json::Value::from(malformed.subject()?).to_string();
+    let quoted = serde_json::Value::from(malformed.about()?).to_string();
     text.find(&quoted).map(|place| text::position(text, place))
 }
 

@@ -188,7 +188,7 @@ fn plane(joint: &Joint) -> Option<Mat3<f64>> {
 
 /// A malformed description at the link that it is about.
 fn locate(robot: &Robot, malformed: Malformed) -> At {
-    let link = malformed.subject().and_then(|name| robot.links.iter().find(|link| link.name == name));
+    let link = malformed.about().and_then(|name| robot.links.iter().find(|link| link.name == name));
     // Numbers of joints are named by the body that the joint carries.
     let joint = link.and_then(|link| robot.joints.iter().find(|joint| joint.child == link.name));
     At { offset: joint.map(|joint| joint.offset).or(link.map(|link| link.offset)), problem: malformed.into() }

@@ -148,7 +148,7 @@ fn limits_are_whole(joint: &JointDescription) -> bool {
 fn losses(robot: &Description) -> Vec<Loss> {
     let mut losses = Vec::from_iter(names::of_robot(&robot.name));
     if robot.gravity != GRAVITY {
-        losses.push(Loss { subject: "the robot".to_owned(), reason: Reason::Gravity });
+        losses.push(Loss { about: "the robot".to_owned(), reason: Reason::Gravity });
     }
     let (mut links, mut joints) = (Names::default(), Names::default());
     links.fresh(ROOT);
@@ -156,7 +156,7 @@ fn losses(robot: &Description) -> Vec<Loss> {
         links.take("body", &body.name, &mut losses);
         joints.take("joint", &body.joint.name, &mut losses);
         let reasons = joint_losses(&body.joint).into_iter();
-        losses.extend(reasons.map(|reason| Loss { subject: format!("joint '{}'", body.joint.name), reason }));
+        losses.extend(reasons.map(|reason| Loss { about: format!("joint '{}'", body.joint.name), reason }));
     }
     for frame in robot.frames.iter().filter(|frame| !is_root(frame)) {
         links.take("frame", &frame.name, &mut losses);

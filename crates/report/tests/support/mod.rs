@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use featherbench_results::{
-    Convention, EngineInfo, EngineSource, Expectation, GitInfo, Host, Kind, ModelInfo, ModelOrigin, Record, Relation, RunInfo, Verdict,
+    Convention, EngineInfo, EngineSource, Expectation, GitInfo, Host, Kind, ModelInfo, ModelOrigin, Relation, Row, RunInfo, Verdict,
     canonical_json,
 };
 
@@ -94,27 +94,27 @@ fn family(model: &ModelInfo) -> &'static str {
     FAMILIES.iter().find(|(_, stem, _)| model.name.starts_with(stem)).map_or("robot", |(family, ..)| family)
 }
 
-fn base(run: &RunInfo, model: &ModelInfo) -> Record {
-    Record {
+fn base(run: &RunInfo, model: &ModelInfo) -> Row {
+    Row {
         run: run.run.clone(),
         cell: model.hash[..16].into(),
-        problem: family(model).into(),
-        model: model.name.clone(),
+        family: family(model).into(),
+        robot: model.name.clone(),
         nq: Some(model.nq),
         nv: Some(model.nv),
         bodies: Some(model.bodies),
         depth: Some(model.depth),
-        scalar: "f64".into(),
+        precision: "f64".into(),
         unit: "1".into(),
-        ..Record::default()
+        ..Row::default()
     }
 }
 
-fn convention(engine: &str, subject: &str) -> Convention {
+fn convention(engine: &str, topic: &str) -> Convention {
     Convention {
         engine: engine.into(),
-        subject: subject.into(),
-        theirs: format!("{subject} as {engine} has it"),
+        topic: topic.into(),
+        theirs: format!("{topic} as {engine} has it"),
         ours: "as we have it".into(),
         conversion: "`file.py: function`, twice".into(),
         test: format!("test_{engine}"),
@@ -154,13 +154,13 @@ pub fn run_info() -> RunInfo {
         },
         seed: 20_260_131,
         engines: vec![
-            engine("native", "0.1.0", EngineSource::Native, "ok", ""),
+            engine("featherbench", "0.1.0", EngineSource::Own, "ok", ""),
             engine("pinocchio", "4.1.0", EngineSource::Recorded, "ok", ""),
             engine("mujoco", "3.4.0", EngineSource::Recorded, "ok", ""),
             engine("drake", "1.48.0", EngineSource::Recorded, "ok", ""),
             engine("dart", "", EngineSource::Recorded, "missing", "no recording for this suite"),
         ],
-        conventions: [("mujoco", "free v"), ("drake", "screw <pitch>")].map(|(engine, subject)| convention(engine, subject)).into(),
+        conventions: [("mujoco", "free v"), ("drake", "screw <pitch>")].map(|(engine, topic)| convention(engine, topic)).into(),
         models: models(),
         seconds: BTreeMap::from([("accuracy".into(), 11.4), ("timing".into(), 30.25)]),
         expected: vec![
@@ -184,30 +184,30 @@ pub fn run_info() -> RunInfo {
 }
 
 /// What the machine of the times can do.
-fn machine(run: &RunInfo, rows: &mut Vec<Record>) {
-    let row = Record {
+fn machine(run: &RunInfo, rows: &mut Vec<Row>) {
+    let row = Row {
         run: run.run.clone(),
         study: "timing".into(),
-        engine: "native".into(),
+        engine: "featherbench".into(),
         quantity: "machine".into(),
         kind: Kind::Measured,
-        ..Record::default()
+        ..Row::default()
     };
     for (metric, value) in [("fma_per_ns", 57.0), ("fma_per_ns_per_lane", 7.125), ("clock_ns", 20.0), ("empty_call_ns", 1.4)] {
-        rows.push(Record { metric: metric.into(), ..row.clone() }.informed(value));
+        rows.push(Row { metric: metric.into(), ..row.clone() }.informed(value));
     }
 }
 
 /// About 12 000 rows of agreement, pairs, times, structure, digits and conditioning.
-pub fn records(run: &RunInfo) -> Vec<Record> {
+pub fn records(run: &RunInfo) -> Vec<Row> {
     let mut random = Random(1);
     let mut rows = Vec::new();
     for model in run.models.iter().filter(|model| !truth::is_own(model)) {
         agreement(run, model, &mut random, &mut rows);
         times(run, model, &mut random, &mut rows);
-        let structure = Record {
+        let structure = Row {
             study: "structure".into(),
-            engine: "native".into(),
+            engine: "featherbench".into(),
             quantity: "mass_matrix".into(),
             metric: "nonzeros".into(),
             ..base(run, model)
@@ -219,14 +219,14 @@ pub fn records(run: &RunInfo) -> Vec<Record> {
     rows
 }
 
-fn agreement(run: &RunInfo, model: &ModelInfo, random: &mut Random, rows: &mut Vec<Record>) {
+fn agreement(run: &RunInfo, model: &ModelInfo, random: &mut Random, rows: &mut Vec<Row>) {
     for (engine, methods) in METHODS {
         let version = run.engines.iter().find(|info| info.name == engine).map(|info| info.version.clone()).unwrap_or_default();
-        let of_engine = Record {
+        let of_engine = Row {
             study: "agreement".into(),
             engine: engine.into(),
             engine_version: version,
-            reference: "native".into(),
+            reference: "featherbench".into(),
             ..base(run, model)
         };
         if engine == "dart" {
@@ -234,7 +234,7 @@ fn agreement(run: &RunInfo, model: &ModelInfo, random: &mut Random, rows: &mut V
             continue;
         }
         for quantity in QUANTITIES {
-            let of_quantity = Record { quantity: quantity.into(), ..of_engine.clone() };
+            let of_quantity = Row { quantity: quantity.into(), ..of_engine.clone() };
             if engine == "mujoco" && family(model) == "joints" {
                 rows.push(of_quantity.without_value(Verdict::Skip, "a helical joint has no MuJoCo equivalent"));
                 continue;
@@ -246,18 +246,18 @@ fn agreement(run: &RunInfo, model: &ModelInfo, random: &mut Random, rows: &mut V
             let methods = if quantity == "fd" { methods } else { &methods[methods.len() - 1..] };
             for method in methods {
                 for case in CASES {
-                    let row = Record { method: (*method).into(), case: case.into(), ..of_quantity.clone() };
+                    let row = Row { method: (*method).into(), states: case.into(), ..of_quantity.clone() };
                     rows.extend(errors(&row, model, random));
                 }
             }
         }
         for other in ["pinocchio", "mujoco"].into_iter().filter(|&other| engine == "drake" || engine == "mujoco" && other == "pinocchio") {
             for quantity in ["mass_matrix", "id", "fd"] {
-                let row = Record {
+                let row = Row {
                     quantity: quantity.into(),
                     reference: other.into(),
                     metric: "pairwise".into(),
-                    case: "random".into(),
+                    states: "random".into(),
                     ..of_engine.clone()
                 };
                 rows.push(row.informed(1e-15 * (model.depth as f64).powf(1.5) * (1.0 + 5.0 * random.unit())));
@@ -267,34 +267,34 @@ fn agreement(run: &RunInfo, model: &ModelInfo, random: &mut Random, rows: &mut V
 }
 
 /// A row's errors: for forward dynamics a forward and a backward one.
-fn errors(row: &Record, model: &ModelInfo, random: &mut Random) -> Vec<Record> {
+fn errors(row: &Row, model: &ModelInfo, random: &mut Random) -> Vec<Row> {
     let depth = model.depth as f64;
     let spread = 10.0_f64.powf(1.5 * random.unit() - 1.0);
-    let fast = if row.case == "fast" { 3.0 } else { 1.0 };
+    let fast = if row.states == "fast" { 3.0 } else { 1.0 };
     if row.quantity != "fd" {
-        let value = if row.case == "zero" && row.quantity.ends_with("energy") { 0.0 } else { 2.2e-16 * depth.sqrt() * spread * fast };
+        let value = if row.states == "zero" && row.quantity.ends_with("energy") { 0.0 } else { 2.2e-16 * depth.sqrt() * spread * fast };
         // Gates of different comfort, so that the heatmap has something to show.
         let comfort = 10.0_f64.powi(QUANTITIES.iter().position(|&quantity| quantity == row.quantity).map_or(0, |index| index as i32 % 5));
-        return vec![Record { metric: "scaled".into(), ..row.clone() }.gated(value, Relation::Le, 1e-14 * comfort * depth.sqrt())];
+        return vec![Row { metric: "scaled".into(), ..row.clone() }.gated(value, Relation::Le, 1e-14 * comfort * depth.sqrt())];
     }
     // Factorising in world coordinates loses digits with depth; articulated bodies in local ones hardly do.
     let growth = if row.method == "aba_local" { depth } else { depth.powf(2.2) };
-    let forward = Record { metric: "forward".into(), floor: Some(1e-16 * depth), ..row.clone() };
+    let forward = Row { metric: "forward".into(), floor: Some(1e-16 * depth), ..row.clone() };
     let forward = forward.gated(2e-16 * growth * spread * fast, Relation::Le, 3e-14 * depth.powf(1.8));
-    let backward = Record { metric: "backward".into(), ..row.clone() };
-    let blunder = if row.engine == "drake" && model.name == "star_80" && row.case == "fast" { 1e4 } else { 1.0 };
+    let backward = Row { metric: "backward".into(), ..row.clone() };
+    let blunder = if row.engine == "drake" && model.name == "star_80" && row.states == "fast" { 1e4 } else { 1.0 };
     let mut backward = backward.gated(blunder * 2e-16 * growth.sqrt() * spread, Relation::Le, 1e-13);
     if row.engine == "pinocchio" && backward.verdict == Verdict::Fail {
         backward = backward.deviating("world frames lose digits on long chains");
     }
-    if row.engine == "mujoco" && model.name == HOSTILE && row.case == "limit" {
-        backward = Record { metric: "backward".into(), ..row.clone() }.gated(f64::NAN, Relation::Le, 1e-13);
+    if row.engine == "mujoco" && model.name == HOSTILE && row.states == "limit" {
+        backward = Row { metric: "backward".into(), ..row.clone() }.gated(f64::NAN, Relation::Le, 1e-13);
     }
-    let kappa = Record { metric: "kappa".into(), ..row.clone() }.informed(10.0 * depth * depth);
+    let kappa = Row { metric: "kappa".into(), ..row.clone() }.informed(10.0 * depth * depth);
     vec![forward, backward, kappa]
 }
 
-fn times(run: &RunInfo, model: &ModelInfo, random: &mut Random, rows: &mut Vec<Record>) {
+fn times(run: &RunInfo, model: &ModelInfo, random: &mut Random, rows: &mut Vec<Row>) {
     const ALGORITHMS: [(&str, &str, f64, f64); 7] = [
         ("id", "rnea", 22.0, 1.0),
         ("fd", "aba", 55.0, 1.0),
@@ -305,45 +305,36 @@ fn times(run: &RunInfo, model: &ModelInfo, random: &mut Random, rows: &mut Vec<R
         ("body_placement", "kinematics", 9.0, 1.0),
     ];
     for (algorithm, method, constant, exponent) in ALGORITHMS {
-        for case in ["stream", "hot"] {
-            let penalty = if case == "hot" { 0.8 } else { 1.0 };
+        for cache in ["stream", "hot"] {
+            let penalty = if cache == "hot" { 0.8 } else { 1.0 };
             let ns = 30.0 + constant * penalty * (model.nv as f64).powf(exponent) * (1.0 + 0.1 * random.unit());
-            let row = Record {
+            let row = Row {
                 study: "timing".into(),
-                engine: "native".into(),
+                engine: "featherbench".into(),
                 engine_version: "0.1.0".into(),
                 method: method.into(),
                 quantity: algorithm.into(),
-                case: case.into(),
+                cache: cache.into(),
                 kind: Kind::Measured,
                 unit: "ns".into(),
-                params: canonical_json(&serde_json::json!({"algorithm": algorithm, "states": 1000, "cache": case})),
+                params: canonical_json(&serde_json::json!({"states": 1000, "p10": 0.97 * ns, "p90": 1.1 * ns})),
                 ..base(run, model)
             };
-            for (metric, factor) in [("ns_per_call", 1.0), ("ns_p10", 0.97), ("ns_p90", 1.1), ("ns_low", 0.99), ("ns_high", 1.02)] {
-                rows.push(Record { metric: metric.into(), ..row.clone() }.informed(ns * factor));
-            }
+            rows.push(Row { metric: "ns_per_call".into(), ..row.clone() }.measured(ns, 0.99 * ns, 1.02 * ns));
             if model.name == HOSTILE || random.unit() < 0.5 {
                 continue;
             }
-            let ratios = Record { unit: "1".into(), reference: format!("native {method}"), ..row };
+            let ratios = Row { unit: "1".into(), reference: format!("featherbench {method}"), ..row };
             let control = 1.0 + 0.02 * (random.unit() - 0.5);
-            for (metric, value) in [("control", control), ("control_low", control - 0.006), ("control_high", control + 0.006)] {
-                let mut row = Record { metric: metric.into(), ..ratios.clone() }.informed(value);
-                if (control - 1.0).abs() > 0.006 {
-                    row.reason = "void: the second copy of native over the first is not 1".into();
-                }
-                rows.push(row);
-            }
+            let judged = |row: Row| {
+                let quiet = (control - 1.0).abs() <= 0.006;
+                if quiet { row } else { row.invalid("the second copy of featherbench over the first is not 1") }
+            };
+            let row = Row { metric: "control".into(), ..ratios.clone() };
+            rows.push(judged(row.measured(control, control - 0.006, control + 0.006)));
             let other = 1.1 + 2.0 * random.unit();
-            for (metric, value) in [("ratio", other), ("ratio_low", 0.98 * other), ("ratio_high", 1.03 * other)] {
-                let row = Record { engine: "pinocchio".into(), method: "peer".into(), metric: metric.into(), ..ratios.clone() };
-                let mut row = row.informed(value);
-                if (control - 1.0).abs() > 0.006 {
-                    row.reason = "void: the second copy of native over the first is not 1".into();
-                }
-                rows.push(row);
-            }
+            let row = Row { engine: "pinocchio".into(), method: "peer".into(), metric: "ratio".into(), ..ratios };
+            rows.push(judged(row.measured(other, 0.98 * other, 1.03 * other)));
         }
     }
 }

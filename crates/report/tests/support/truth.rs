@@ -1,6 +1,6 @@
 //! The studies that know the truth: digits of methods that lose them as real ones do, and condition numbers of straight chains.
 
-use featherbench_results::{ModelInfo, ModelOrigin, Record, Relation, RunInfo, Verdict};
+use featherbench_results::{ModelInfo, ModelOrigin, Relation, Row, RunInfo, Verdict};
 
 use super::{HOSTILE, Random, base};
 
@@ -21,15 +21,15 @@ const OWN: [(&str, &str, u64); 12] = [
 ];
 /// Engine, method, quantity.
 const SUBJECTS: [(&str, &str, &str); 10] = [
-    ("native", "aba", "fd"),
-    ("native", "ltdl", "fd"),
+    ("featherbench", "aba", "fd"),
+    ("featherbench", "ltdl", "fd"),
     ("pinocchio", "aba_local", "fd"),
     ("pinocchio", "aba_world", "fd"),
     ("mujoco", "forward", "fd"),
     ("drake", "aba", "fd"),
-    ("native", "rnea", "id"),
+    ("featherbench", "rnea", "id"),
     ("drake", "inverse_dynamics", "id"),
-    ("native", "crba", "mass_matrix"),
+    ("featherbench", "crba", "mass_matrix"),
     ("mujoco", "crb", "mass_matrix"),
 ];
 
@@ -56,10 +56,10 @@ pub fn is_own(model: &ModelInfo) -> bool {
 }
 
 /// Appends the rows.
-pub fn records(run: &RunInfo, random: &mut Random, rows: &mut Vec<Record>) {
+pub fn records(run: &RunInfo, random: &mut Random, rows: &mut Vec<Row>) {
     for model in &run.models {
         let family = OWN.iter().find(|(name, ..)| *name == model.name).map_or_else(|| super::family(model), |(_, family, _)| family);
-        let row = Record { problem: family.into(), ..base(run, model) };
+        let row = Row { family: family.into(), ..base(run, model) };
         if model.name.starts_with("straight") {
             conditioning(&row, model.nv as f64, rows);
         } else if is_own(model) || model.name.starts_with("chain") || model.name == HOSTILE {
@@ -87,15 +87,15 @@ fn median(method: &str, model: &ModelInfo) -> f64 {
         }
 }
 
-fn digits(row: &Record, model: &ModelInfo, random: &mut Random, rows: &mut Vec<Record>) {
+fn digits(row: &Row, model: &ModelInfo, random: &mut Random, rows: &mut Vec<Row>) {
     for (engine, method, quantity) in SUBJECTS {
         let quantity = if quantity == "mass_matrix" && model.nv > 64 { "mass_matrix_probe" } else { quantity };
-        let row = Record {
+        let row = Row {
             study: "digits".into(),
             engine: engine.into(),
             method: method.into(),
             quantity: quantity.into(),
-            case: "all".into(),
+            states: "all".into(),
             reference: "truth".into(),
             ..row.clone()
         };
@@ -110,32 +110,32 @@ fn digits(row: &Record, model: &ModelInfo, random: &mut Random, rows: &mut Vec<R
         let error = if model.nv == 2 && quantity == "id" { 0.0 } else { median(method, model) };
         let spread = 1.5 + random.unit();
         if quantity == "fd" {
-            let row = Record { metric: "true_forward".into(), floor: Some(2e-16 * model.nv as f64), ..row.clone() };
+            let row = Row { metric: "true_forward".into(), floor: Some(2e-16 * model.nv as f64), ..row.clone() };
             rows.push(row.gated(error, Relation::Le, 1e-7));
         } else {
-            rows.push(Record { metric: "true".into(), ..row.clone() }.gated(3.0 * error, Relation::Le, 1e-14));
+            rows.push(Row { metric: "true".into(), ..row.clone() }.gated(3.0 * error, Relation::Le, 1e-14));
         }
         let floor = (quantity == "fd").then_some(2e-16 * model.nv as f64);
         for (metric, factor) in [("error_q1", 1.0 / spread), ("error_median", 1.0), ("error_q3", spread), ("error_worst", 9.0)] {
-            rows.push(Record { metric: metric.into(), floor, ..row.clone() }.informed(error * factor));
+            rows.push(Row { metric: metric.into(), floor, ..row.clone() }.informed(error * factor));
         }
     }
     if model.name == "rand3d-20-tip1e6" {
-        let row = Record { study: "digits".into(), engine: "all".into(), quantity: "fd".into(), case: "all".into(), ..row.clone() };
-        rows.push(Record { metric: "engines_at_the_wall".into(), ..row }.informed(3.0));
+        let row = Row { study: "digits".into(), engine: "all".into(), quantity: "fd".into(), states: "all".into(), ..row.clone() };
+        rows.push(Row { metric: "engines_at_the_wall".into(), ..row }.informed(3.0));
     }
 }
 
-fn conditioning(row: &Record, n: f64, rows: &mut Vec<Record>) {
-    let row = Record {
+fn conditioning(row: &Row, n: f64, rows: &mut Vec<Row>) {
+    let row = Row {
         study: "conditioning".into(),
-        engine: "native".into(),
+        engine: "featherbench".into(),
         method: "eigenvalues".into(),
         quantity: "mass_matrix".into(),
-        case: "straight".into(),
+        states: "straight".into(),
         ..row.clone()
     };
-    let metric = |metric: &str, floor| Record { metric: metric.into(), floor, ..row.clone() };
+    let metric = |metric: &str, floor| Row { metric: metric.into(), floor, ..row.clone() };
     rows.push(metric("kappa", Some(1e-16 * n)).informed(3.0 * n.powi(4)));
     rows.push(metric("kappa_scaled", Some(1e-16 * n)).informed(2.0 * n.powf(4.25)));
     if n > 8.0 {

@@ -4,7 +4,7 @@
 
 use std::fs;
 
-use featherbench_results::{Record, RunInfo};
+use featherbench_results::{Row, RunInfo};
 use tempfile::TempDir;
 
 /// A report in a folder of its own.
@@ -17,7 +17,7 @@ pub struct Written {
 
 impl Written {
     /// Writes a report.
-    pub fn of(run: &RunInfo, records: &[Record]) -> Self {
+    pub fn of(run: &RunInfo, records: &[Row]) -> Self {
         let folder = tempfile::tempdir().unwrap();
         let paths = featherbench_report::write(run, records, folder.path()).unwrap();
         assert_eq!(paths.index, folder.path().join("index.html"));

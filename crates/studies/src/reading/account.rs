@@ -62,7 +62,7 @@ impl<'a> Parts<'a> {
             ours.frames.iter().filter(|frame| frame.body == Some(i)).map(|frame| (frame.name.as_str(), frame.placement.to_transform()));
         let named: Vec<(&str, Transform<f64>)> = itself.chain(fixed).collect();
         let told = |name: &str| {
-            let held = notes.iter().find(|note| note.subject.as_deref() == Some(name) && note.numbers.len() >= 10)?;
+            let held = notes.iter().find(|note| note.about.as_deref() == Some(name) && note.numbers.len() >= 10)?;
             let cause = if held.cause == "from_geometry" { Cause::Geometry } else { Cause::Edited };
             Some((cause, ten(&held.numbers[held.numbers.len() - 10..]), (held.numbers.len() == 20).then(|| ten(&held.numbers[..10]))))
         };

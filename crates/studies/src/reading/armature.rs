@@ -11,12 +11,12 @@ const FREE_ARMATURE: &str = "free_armature";
 /// Where an engine holds another armature on a free joint than the reference: both tell what they took out of their descriptions.
 pub(super) fn on_free_joints(reference: &[ReadingNote], notes: &[ReadingNote]) -> Vec<Finding> {
     let of = |notes: &[ReadingNote], joint: &str| -> Vec<f64> {
-        let held = notes.iter().find(|note| note.cause == FREE_ARMATURE && note.subject.as_deref() == Some(joint));
+        let held = notes.iter().find(|note| note.cause == FREE_ARMATURE && note.about.as_deref() == Some(joint));
         held.filter(|note| note.numbers.len() == 6).map_or_else(|| vec![0.0; 6], |note| note.numbers.clone())
     };
     let mut joints: Vec<&str> = Vec::new();
     for note in reference.iter().chain(notes).filter(|note| note.cause == FREE_ARMATURE) {
-        joints.extend(note.subject.as_deref().filter(|joint| !joints.contains(joint)));
+        joints.extend(note.about.as_deref().filter(|joint| !joints.contains(joint)));
     }
     let written = |list: &[f64], size: f64| format!("({})", list.iter().map(|&x| digits(x, size)).collect::<Vec<_>>().join(", "));
     let finding = |joint: &str| {
@@ -44,7 +44,7 @@ mod tests {
     use featherbench_bench::ReadingNote;
 
     fn holds(armature: f64) -> Vec<ReadingNote> {
-        vec![ReadingNote { cause: "free_armature".into(), subject: Some("root".into()), text: String::new(), numbers: vec![armature; 6] }]
+        vec![ReadingNote { cause: "free_armature".into(), about: Some("root".into()), text: String::new(), numbers: vec![armature; 6] }]
     }
 
     #[test]

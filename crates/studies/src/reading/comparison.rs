@@ -99,7 +99,7 @@ fn missing(body: &BodyDescription, mass: Mass, notes: &[ReadingNote]) -> Finding
     let root = body.parent.is_none();
     let about = |note: &&ReadingNote| match note.cause.as_str() {
         "root_welded" => root,
-        "mimic" | "fused" => note.subject.as_deref().is_some_and(|name| name == body.name || name == body.joint.name),
+        "mimic" | "fused" => note.about.as_deref().is_some_and(|name| name == body.name || name == body.joint.name),
         _ => false,
     };
     finding.difference.note = notes.iter().find(about).map(|note| note.text.clone());
@@ -194,8 +194,8 @@ fn about<'a>(ours: &Description, i: usize, theirs: &BodyDescription, notes: &'a 
     let fixed = |name: &str| ours.frames.iter().any(|frame| frame.body == Some(i) && frame.name == name);
     let named =
         |name: &str| [&body.name, &body.joint.name, &theirs.name, &theirs.joint.name].into_iter().any(|own| own == name) || fixed(name);
-    let concerns = |note: &&ReadingNote| match (&note.subject, note.cause.as_str()) {
-        (Some(subject), _) => named(subject),
+    let concerns = |note: &&ReadingNote| match (&note.about, note.cause.as_str()) {
+        (Some(about), _) => named(about),
         (None, _) => true,
     };
     notes.iter().filter(concerns).collect()

@@ -1,7 +1,7 @@
 //! Replays: our kernels on a reading, and how far two readings of one robot are apart in inverse dynamics and mass matrix.
 
 use super::comparison::shared_coordinates;
-use featherbench_bench::Problem;
+use featherbench_bench::Robot;
 use featherbench_bench::measure::{Magnitudes, ratio, worst};
 use featherbench_dynamics::{Crba, Rnea, TreeSparse};
 use featherbench_model::{Description, JointKind, Malformed, Model, StateBatch};
@@ -108,7 +108,7 @@ impl Sizes {
 
 /// A robot with its answers, against which other readings of it are measured.
 pub(super) struct Reference {
-    problem: Problem,
+    robot: Robot,
     at: Vec<Magnitudes>,
     answers: Answers,
 }
@@ -116,16 +116,16 @@ pub(super) struct Reference {
 impl Reference {
     /// Our robot at these states.
     pub fn new(description: &Description, states: StateBatch) -> Option<Self> {
-        let problem = bare(description).ok()?.at(states);
-        let answers = answers(&problem.model, &problem.states)?;
-        Some(Self { at: problem.magnitudes(), problem, answers })
+        let robot = bare(description).ok()?.at(states);
+        let answers = answers(&robot.model, &robot.states)?;
+        Some(Self { at: robot.magnitudes(), robot, answers })
     }
 
     /// How far answers about another reading, at the states that were carried over to it, are from ours, on the dofs that both have.
     pub fn effect(&self, theirs: &Description, nv: usize, answers: &Answers) -> Effect {
-        let shared = shared_coordinates(&self.problem.description, theirs).dofs;
+        let shared = shared_coordinates(&self.robot.description, theirs).dofs;
         let dofs: Vec<(usize, usize)> = shared.iter().flat_map(|&[a, b, n]| (0..n).map(move |k| (a + k, b + k))).collect();
-        let own = self.problem.states.nv;
+        let own = self.robot.states.nv;
         let mut worst_of = Effect { id: 0.0, mass_matrix: 0.0 };
         for (k, at) in self.at.iter().enumerate() {
             let (id, mass) = (&self.answers.id[k * own..(k + 1) * own], &self.answers.mass_matrix[k * own * own..(k + 1) * own * own]);
@@ -152,14 +152,14 @@ impl Reference {
     /// How far another reading is apart from ours, our own kernels answering for both.
     pub fn effect_of(&self, theirs: &Description) -> Option<Effect> {
         let model = Model::<f64>::build(theirs).ok()?;
-        let states = carried(&self.problem.description, &self.problem.states, theirs, &model);
+        let states = carried(&self.robot.description, &self.robot.states, theirs, &model);
         Some(self.effect(theirs, states.nv, &answers(&model, &states)?))
     }
 }
 
-/// A problem without states of its own.
-fn bare(description: &Description) -> Result<Problem, Malformed> {
-    Problem::new(description, "reading", ModelOrigin::Robot, 0, 0)
+/// A robot without states of its own.
+fn bare(description: &Description) -> Result<Robot, Malformed> {
+    Robot::new(description, "reading", ModelOrigin::Robot, 0, 0)
 }
 
 /// Our kernels on their reading against their engine's own answers: the worst error of each quantity, and the same per dof of the worst
@@ -173,14 +173,14 @@ pub(super) struct Replay {
 }
 
 /// Replays their answers.
-pub(super) fn replay(problem: &Problem, engine: &Answers) -> Option<Replay> {
-    let ours = answers(&problem.model, &problem.states)?;
-    let nv = problem.states.nv;
+pub(super) fn replay(robot: &Robot, engine: &Answers) -> Option<Replay> {
+    let ours = answers(&robot.model, &robot.states)?;
+    let nv = robot.states.nv;
     if engine.id.len() != ours.id.len() || engine.mass_matrix.len() != ours.mass_matrix.len() {
         return None;
     }
     let (mut torque, mut entry) = (vec![0.0; nv], vec![0.0; nv * nv]);
-    for (k, at) in problem.magnitudes().iter().enumerate() {
+    for (k, at) in robot.magnitudes().iter().enumerate() {
         let here = k * nv * nv..(k + 1) * nv * nv;
         let (mass, their_mass) = (&ours.mass_matrix[here.clone()], &engine.mass_matrix[here]);
         let sizes = Sizes::new(at, mass);

@@ -5,20 +5,20 @@ use super::subtree::{SubTree, unexplained};
 use super::{Class, Comparison, Effect, Finding, LARGEST, READING, Weight, armature, as_read, bound, reference};
 use crate::row;
 use featherbench_bench::measure::worst;
-use featherbench_bench::{Cell, Context, FileFormat, Finished, Outcome, Problem, Quantity, Reading, ReadingNote, Refusal};
-use featherbench_results::{Record, Verdict, canonical_json};
+use featherbench_bench::{Cell, Context, FileFormat, Finished, NoAnswer, Outcome, Quantity, Reading, ReadingNote, Robot};
+use featherbench_results::{Row, Verdict, canonical_json};
 use serde_json::{Value, json};
 
-/// The rows of a problem, engine by engine.
-pub(super) fn rows(context: &Context, problem: &Problem, finished: &[Finished]) -> Vec<Record> {
+/// The rows of a robot, engine by engine.
+pub(super) fn rows(context: &Context, robot: &Robot, finished: &[Finished]) -> Vec<Row> {
     let mut rows = Vec::new();
     for (cell, outcome) in finished.iter().filter(|(cell, _)| cell.quantity == READING) {
         let of_engine: Vec<&Finished> =
-            finished.iter().filter(|(other, _)| other.subject == cell.subject && other.quantity != READING).collect();
-        let engine = Engine { context, problem, cell, of_engine, compiler: compiler(problem, finished) };
+            finished.iter().filter(|(other, _)| other.engine == cell.engine && other.quantity != READING).collect();
+        let engine = OfEngine { context, robot, cell, of_engine, compiler: compiler(robot, finished) };
         match outcome {
             Outcome::Reading(reading) => rows.extend(engine.read(reading)),
-            Outcome::Refused(refusal) => rows.push(engine.refused(cell, refusal)),
+            Outcome::NoAnswer(refusal) => rows.push(engine.refused(cell, refusal)),
             Outcome::Values(_) => {}
         }
     }
@@ -32,17 +32,17 @@ const WORK: usize = 4_000_000_000;
 const LEAST_ALONE: usize = 8;
 
 /// What MuJoCo's compiler, whose reading is the reference of an MJCF, tells about it.
-fn compiler<'a>(problem: &Problem, finished: &'a [Finished]) -> Option<&'a [ReadingNote]> {
-    problem.file.as_ref().filter(|file| file.format == FileFormat::Mjcf)?;
+fn compiler<'a>(robot: &Robot, finished: &'a [Finished]) -> Option<&'a [ReadingNote]> {
+    robot.file.as_ref().filter(|file| file.format == FileFormat::Mjcf)?;
     finished.iter().find_map(|(cell, outcome)| match outcome {
-        Outcome::Reading(reading) if cell.subject == reference(FileFormat::Mjcf) => Some(reading.notes.as_slice()),
+        Outcome::Reading(reading) if cell.engine == reference(FileFormat::Mjcf) => Some(reading.notes.as_slice()),
         _ => None,
     })
 }
 
-struct Engine<'a> {
+struct OfEngine<'a> {
     context: &'a Context<'a>,
-    problem: &'a Problem,
+    robot: &'a Robot,
     /// The cell of its reading.
     cell: &'a Cell,
     /// What it computed with the robot as read.
@@ -50,19 +50,13 @@ struct Engine<'a> {
     compiler: Option<&'a [ReadingNote]>,
 }
 
-impl Engine<'_> {
+impl OfEngine<'_> {
     fn reference(&self) -> &'static str {
-        self.problem.file.as_ref().map_or("native", |file| reference(file.format))
+        self.robot.file.as_ref().map_or("featherbench", |file| reference(file.format))
     }
 
-    fn row(&self, cell: &Cell, metric: &str) -> Record {
-        Record {
-            case: "all".into(),
-            metric: metric.into(),
-            unit: "1".into(),
-            reference: self.reference().into(),
-            ..row(cell, self.problem)
-        }
+    fn row(&self, cell: &Cell, metric: &str) -> Row {
+        Row { states: "all".into(), metric: metric.into(), unit: "1".into(), reference: self.reference().into(), ..row(cell, self.robot) }
     }
 
     /// The cell's parameters with more beside them: what a reader of the row needs.
@@ -74,17 +68,17 @@ impl Engine<'_> {
         canonical_json(&params)
     }
 
-    fn refused(&self, cell: &Cell, refusal: &Refusal) -> Record {
-        let verdict = if matches!(refusal, Refusal::Unsupported(_)) { Verdict::Skip } else { Verdict::Error };
+    fn refused(&self, cell: &Cell, refusal: &NoAnswer) -> Row {
+        let verdict = if matches!(refusal, NoAnswer::NotOffered(_)) { Verdict::Skip } else { Verdict::Error };
         self.context.gates.explain(self.row(cell, "differences").without_value(verdict, refusal.to_string()))
     }
 
-    fn read(&self, reading: &Reading) -> Vec<Record> {
-        let links = self.problem.file.as_ref().map_or(&[][..], |file| &file.links);
-        let mut comparison = Comparison::of(&self.problem.description, &reading.description, links, &reading.notes);
+    fn read(&self, reading: &Reading) -> Vec<Row> {
+        let links = self.robot.file.as_ref().map_or(&[][..], |file| &file.links);
+        let mut comparison = Comparison::of(&self.robot.description, &reading.description, links, &reading.notes);
         comparison.findings.extend(self.compiler.into_iter().flat_map(|notes| armature::on_free_joints(notes, &reading.notes)));
-        let own = alterable(&comparison, self.problem);
-        let states = &self.problem.states;
+        let own = alterable(&comparison, self.robot);
+        let states = &self.robot.states;
         let afforded = (WORK / (states.count() * states.nv * states.nv).max(1)).max(LEAST_ALONE);
         let alone = |(k, finding): (usize, &Finding)| {
             let alone = finding.alone.as_ref().filter(|_| k < afforded);
@@ -93,7 +87,7 @@ impl Engine<'_> {
         let effects: Vec<Option<Effect>> = comparison.findings.iter().enumerate().map(alone).collect();
         let mut rows = vec![self.count(&comparison, &effects, reading)];
         rows.extend(comparison.findings.iter().zip(&effects).map(|(finding, effect)| self.difference(finding, effect.as_ref())));
-        let answers: Vec<(&Cell, Result<&[f64], &Refusal>)> =
+        let answers: Vec<(&Cell, Result<&[f64], &NoAnswer>)> =
             self.of_engine.iter().map(|(cell, outcome)| (cell, values(outcome))).collect();
         for (cell, answer) in &answers {
             if let Err(refusal) = answer {
@@ -112,16 +106,16 @@ impl Engine<'_> {
 
     fn class(&self, finding: &Finding, effect: Option<&Effect>) -> Class {
         let largest = effect.map(|effect| worst(effect.id, effect.mass_matrix));
-        Class::of(finding.difference.field, largest, bound(self.problem.depth))
+        Class::of(finding.difference.field, largest, bound(self.robot.depth))
     }
 
     /// How many differences there are that a simulation would feel, and how many of each class.
-    fn count(&self, comparison: &Comparison, effects: &[Option<Effect>], reading: &Reading) -> Record {
+    fn count(&self, comparison: &Comparison, effects: &[Option<Effect>], reading: &Reading) -> Row {
         let of = |weight: Weight| comparison.differences().filter(|difference| difference.field.weight() == weight).count();
         let notes: Vec<Value> = reading
             .notes
             .iter()
-            .map(|note| json!({"cause": note.cause, "subject": note.subject, "text": note.text, "numbers": note.numbers}))
+            .map(|note| json!({"cause": note.cause, "about": note.about, "text": note.text, "numbers": note.numbers}))
             .collect();
         let classes: Vec<Class> =
             comparison.findings.iter().zip(effects).map(|(finding, effect)| self.class(finding, effect.as_ref())).collect();
@@ -131,10 +125,10 @@ impl Engine<'_> {
             "dynamics": of(Weight::Dynamics), "carried": of(Weight::Carried), "information": told, "notes": notes,
             "physics": class(Class::Physics), "rounding": class(Class::Rounding), "not_read": class(Class::NotRead),
         });
-        Record { params: self.params(more), ..self.row(self.cell, "differences") }.informed(felt as f64)
+        Row { params: self.params(more), ..self.row(self.cell, "differences") }.informed(felt as f64)
     }
 
-    fn difference(&self, finding: &Finding, alone: Option<&Effect>) -> Record {
+    fn difference(&self, finding: &Finding, alone: Option<&Effect>) -> Row {
         let difference = &finding.difference;
         let number = |of: fn(&Effect) -> f64| alone.map(of).filter(|error| error.is_finite());
         let more = json!({
@@ -148,8 +142,9 @@ impl Engine<'_> {
             "id": number(|effect| effect.id),
             "mass_matrix": number(|effect| effect.mass_matrix),
         });
-        let row = Record {
-            case: difference.body.clone(),
+        let row = Row {
+            body: difference.body.clone(),
+            states: String::new(),
             quantity: difference.field.name().into(),
             params: self.params(more),
             ..self.row(self.cell, "difference")
@@ -158,32 +153,32 @@ impl Engine<'_> {
     }
 
     /// The engine's answers against the reference, against the replay, and what the replay leaves unexplained.
-    fn computed(&self, reading: &Reading, [id, mass]: [&Cell; 2], engine: &Answers) -> Vec<Record> {
+    fn computed(&self, reading: &Reading, [id, mass]: [&Cell; 2], engine: &Answers) -> Vec<Row> {
         let error = |reason: &str| vec![self.row(self.cell, "unexplained").without_value(Verdict::Error, reason)];
-        let problem = match as_read(self.problem, reading) {
-            Ok(problem) => problem,
+        let robot = match as_read(self.robot, reading) {
+            Ok(robot) => robot,
             Err(refusal) => return error(&refusal.to_string()),
         };
         // What only they have stands still on their side: it must do so on ours.
-        let states = carried(&problem.description, &problem.states, &self.problem.description, &self.problem.model);
-        let Some(reference) = Reference::new(&self.problem.description, states) else {
+        let states = carried(&robot.description, &robot.states, &self.robot.description, &self.robot.model);
+        let Some(reference) = Reference::new(&self.robot.description, states) else {
             return error("our kernels have no answer on the reference reading");
         };
-        let Some(replayed) = replay(&problem, engine) else {
+        let Some(replayed) = replay(&robot, engine) else {
             return error("the engine's answers have another shape than the robot it read");
         };
-        let read = reference.effect(&problem.description, problem.states.nv, engine);
+        let read = reference.effect(&robot.description, robot.states.nv, engine);
         let mut rows = Vec::new();
         for (metric, effect) in [("as_read", read), ("replayed", replayed.effect)] {
             rows.push(self.row(id, metric).informed(effect.id));
             rows.push(self.row(mass, metric).informed(effect.mass_matrix));
         }
-        rows.push(self.unexplained(&problem, &replayed));
+        rows.push(self.unexplained(&robot, &replayed));
         rows
     }
 
-    fn unexplained(&self, problem: &Problem, replayed: &Replay) -> Record {
-        let trees = unexplained(&problem.description, replayed);
+    fn unexplained(&self, robot: &Robot, replayed: &Replay) -> Row {
+        let trees = unexplained(&robot.description, replayed);
         let tree = |tree: &SubTree| {
             let bodies: Vec<&str> = tree.robot.bodies.iter().map(|body| body.name.as_str()).collect();
             let error = if tree.error.is_finite() { json!(tree.error) } else { json!(tree.error.to_string()) };
@@ -191,28 +186,26 @@ impl Engine<'_> {
         };
         let trees: Vec<Value> = trees.iter().map(tree).collect();
         let count = trees.len() as f64;
-        let row = Record {
-            params: self.params(json!({"unexplained": trees, "gate": bound(problem.depth)})),
-            ..self.row(self.cell, "unexplained")
-        };
+        let row =
+            Row { params: self.params(json!({"unexplained": trees, "gate": bound(robot.depth)})), ..self.row(self.cell, "unexplained") };
         self.context.gates.judge(row, count, 1.0)
     }
 }
 
-fn values(outcome: &Outcome) -> Result<&[f64], &Refusal> {
+fn values(outcome: &Outcome) -> Result<&[f64], &NoAnswer> {
     match outcome {
         Outcome::Values(values) => Ok(values),
-        Outcome::Refused(refusal) => Err(refusal),
+        Outcome::NoAnswer(refusal) => Err(refusal),
         Outcome::Reading(_) => Ok(&[]),
     }
 }
 
 /// Our robot as the findings alter it, with its answers.
-fn alterable(comparison: &Comparison, problem: &Problem) -> Option<Reference> {
-    if problem.states.nv > LARGEST {
+fn alterable(comparison: &Comparison, robot: &Robot) -> Option<Reference> {
+    if robot.states.nv > LARGEST {
         return None;
     }
     let model = featherbench_model::Model::build(&comparison.ours).ok()?;
-    let states = carried(&problem.description, &problem.states, &comparison.ours, &model);
+    let states = carried(&robot.description, &robot.states, &comparison.ours, &model);
     Reference::new(&comparison.ours, states)
 }

@@ -1,7 +1,7 @@
 //! Whether a time counts: the answers of everyone who is timed, against ours, at every state of the stream.
 
 use featherbench_bench::measure::{Magnitudes, ratio, scaled_error, worst};
-use featherbench_bench::{Problem, Quantity, Refusal, Subject};
+use featherbench_bench::{Engine, NoAnswer, Quantity, Robot};
 use featherbench_dynamics::{Crba, Rnea, TreeSparse};
 
 /// The error up to which an answer is an answer to the same question, for a robot of this depth.
@@ -13,40 +13,41 @@ pub(super) fn limit(depth: usize) -> f64 {
     1e-12 * depth.max(1) as f64
 }
 
-/// The error of a subject's answer at each state of the problem, against the usual native method's.
+/// The error of an engine's answer at each state of the robot, against our usual method's.
 ///
 /// Forward dynamics and solving are checked backwards: the answer goes into inverse dynamics, or is multiplied with M, and what should be τ
 /// is compared with τ. One state at a time: the answers to a whole stream would not fit the memory.
 pub(super) fn errors(
-    problem: &Problem,
-    native: &dyn Subject,
-    subject: &dyn Subject,
+    robot: &Robot,
+    featherbench: &dyn Engine,
+    engine: &dyn Engine,
     quantity: Quantity,
     method: &str,
-) -> Result<Vec<f64>, Refusal> {
-    let usual = native.methods(quantity).into_iter().next().ok_or_else(|| Refusal::Failed("there is no native reference".into()))?;
-    let mut reference = native.prepare(problem, quantity, &usual, &problem.states)?;
-    let mut prepared = subject.prepare(problem, quantity, method, &problem.states)?;
-    let due = quantity.size(problem);
-    let mut answered = problem.clone();
-    // The reference must answer every state; its errors are the agreement study's subject.
-    let itself = subject.identity() == native.identity() && method == usual;
-    (0..problem.states.count())
+) -> Result<Vec<f64>, NoAnswer> {
+    let usual =
+        featherbench.methods(quantity).into_iter().next().ok_or_else(|| NoAnswer::Failed("there is no featherbench reference".into()))?;
+    let mut reference = featherbench.prepare(robot, quantity, &usual, &robot.states)?;
+    let mut prepared = engine.prepare(robot, quantity, method, &robot.states)?;
+    let due = quantity.size(robot);
+    let mut answered = robot.clone();
+    // The reference must answer every state; its errors are the agreement study's engine.
+    let itself = engine.identity() == featherbench.identity() && method == usual;
+    (0..robot.states.count())
         .map(|state| {
             prepared.run(state..state + 1)?;
             let value = prepared.read();
             if value.len() != due {
-                return Err(Refusal::Failed(format!("{} numbers came, {due} are due", value.len())));
+                return Err(NoAnswer::Failed(format!("{} numbers came, {due} are due", value.len())));
             }
             match quantity {
                 _ if itself => Ok(0.0),
                 Quantity::ForwardDynamics => through_inverse_dynamics(&mut answered, state, value),
-                Quantity::Solve => through_mass_matrix(problem, state, value),
+                Quantity::Solve => through_mass_matrix(robot, state, value),
                 _ => {
                     reference.run(state..state + 1)?;
                     Ok(match quantity {
-                        Quantity::MassMatrixSparse => sparse_mass_matrix(problem, reference.read(), value),
-                        _ => scaled_error(problem, quantity, &Magnitudes::new(problem, state), reference.read(), value),
+                        Quantity::MassMatrixSparse => sparse_mass_matrix(robot, reference.read(), value),
+                        _ => scaled_error(robot, quantity, &Magnitudes::new(robot, state), reference.read(), value),
                     })
                 }
             }
@@ -57,22 +58,22 @@ pub(super) fn errors(
 /// max |τ − ID(q, v, a)|_i over the magnitudes of the terms that were added to form it.
 ///
 /// The answer takes the place of the state's acceleration.
-fn through_inverse_dynamics(problem: &mut Problem, state: usize, a: &[f64]) -> Result<f64, Refusal> {
-    let nv = problem.states.nv;
-    problem.states.a[state * nv..(state + 1) * nv].copy_from_slice(a);
-    let (model, states) = (&problem.model, &problem.states);
+fn through_inverse_dynamics(robot: &mut Robot, state: usize, a: &[f64]) -> Result<f64, NoAnswer> {
+    let nv = robot.states.nv;
+    robot.states.a[state * nv..(state + 1) * nv].copy_from_slice(a);
+    let (model, states) = (&robot.model, &robot.states);
     let mut tau = vec![f64::NAN; nv];
     Rnea::new(&model.topology).run(model, states.q(state), states.v(state), a, None, &mut tau).map_err(failed)?;
-    let magnitudes = Magnitudes::new(problem, state).joint_force;
+    let magnitudes = Magnitudes::new(robot, state).joint_force;
     Ok(largest(tau.iter().zip(states.tau(state)).zip(magnitudes).map(|((found, given), size)| (found - given, size + given.abs()))))
 }
 
 /// max |M x − τ|_i / (Σ_j |M_ij||x_j| + |τ_i|).
-fn through_mass_matrix(problem: &Problem, state: usize, x: &[f64]) -> Result<f64, Refusal> {
-    let topology = &problem.model.topology;
+fn through_mass_matrix(robot: &Robot, state: usize, x: &[f64]) -> Result<f64, NoAnswer> {
+    let topology = &robot.model.topology;
     let mut matrix = TreeSparse::new(topology);
-    Crba::new(topology).run(&problem.model, problem.states.q(state), &mut matrix).map_err(failed)?;
-    let tau = problem.states.tau(state);
+    Crba::new(topology).run(&robot.model, robot.states.q(state), &mut matrix).map_err(failed)?;
+    let tau = robot.states.tau(state);
     let mut product: Vec<f64> = tau.iter().map(|tau| -tau).collect();
     let mut size: Vec<f64> = tau.iter().map(|tau| tau.abs()).collect();
     for i in 0..x.len() {
@@ -89,8 +90,8 @@ fn through_mass_matrix(problem: &Problem, state: usize, x: &[f64]) -> Result<f64
 }
 
 /// max |ΔM_ij| / √(M_ii·M_jj) over the stored entries.
-fn sparse_mass_matrix(problem: &Problem, reference: &[f64], value: &[f64]) -> f64 {
-    let topology = &problem.model.topology;
+fn sparse_mass_matrix(robot: &Robot, reference: &[f64], value: &[f64]) -> f64 {
+    let topology = &robot.model.topology;
     let diagonal = |i: usize| {
         let at = topology.row_dofs(i).iter().position(|&j| j == i);
         at.map_or(f64::NAN, |at| reference[topology.row(i)][at].sqrt())
@@ -109,6 +110,6 @@ fn largest(pairs: impl Iterator<Item = (f64, f64)>) -> f64 {
     pairs.fold(0.0, |error, (difference, size)| worst(error, ratio(difference, size)))
 }
 
-fn failed(error: impl std::fmt::Display) -> Refusal {
-    Refusal::Failed(error.to_string())
+fn failed(error: impl std::fmt::Display) -> NoAnswer {
+    NoAnswer::Failed(error.to_string())
 }

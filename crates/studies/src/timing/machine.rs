@@ -1,6 +1,6 @@
 //! The machine: one core for everything that is timed, what it can do at best, and what a measurement costs.
 
-use featherbench_bench::{Prepared, Refusal};
+use featherbench_bench::{Evaluation, NoAnswer};
 use std::hint::black_box;
 use std::time::{Duration, Instant};
 
@@ -29,8 +29,8 @@ pub(super) struct Machine {
 }
 
 impl Machine {
-    /// Measures it; `empty` is a subject's evaluation that computes nothing.
-    pub fn measure(empty: &mut dyn Prepared) -> Result<Self, Refusal> {
+    /// Measures it; `empty` is an engine's evaluation that computes nothing.
+    pub fn measure(empty: &mut dyn Evaluation) -> Result<Self, NoAnswer> {
         let peak = rate(VECTOR_WORK, || {
             black_box(vector_chains(black_box(START), black_box(M), black_box(C)));
         });
@@ -140,7 +140,7 @@ fn resolution() -> f64 {
 }
 
 /// Nanoseconds of a call that computes nothing: the least of some blocks.
-fn empty_call(empty: &mut dyn Prepared) -> Result<f64, Refusal> {
+fn empty_call(empty: &mut dyn Evaluation) -> Result<f64, NoAnswer> {
     const CALLS: usize = 100_000;
     let mut least = Duration::MAX;
     for _ in 0..20 {

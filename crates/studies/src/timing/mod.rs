@@ -19,9 +19,9 @@ mod rows;
 mod samples;
 mod statistics;
 
-use featherbench_bench::{Cell, Context, Finished, Outcome, Problem, Quantity, Refusal, Study, Subject};
+use featherbench_bench::{Cell, Context, Engine, Finished, NoAnswer, Outcome, Quantity, Robot, Study};
 use featherbench_model::{Random, StateBatch};
-use featherbench_results::Record;
+use featherbench_results::Row;
 use machine::{Machine, Pinned};
 use protocol::{Budget, Contestant};
 use samples::Entrant;
@@ -34,9 +34,9 @@ pub struct Timing {
     pub states: usize,
     /// Seconds for everyone who is timed, in each experiment.
     pub seconds: f64,
-    /// The native kernels to time on a robot, as (quantity, method): the first of a quantity is what others are compared with.
-    pub kernels: fn(&Problem) -> Vec<(Quantity, &'static str)>,
-    /// Names of the subjects that are timed beside ours: all their methods for the quantities of the kernels.
+    /// Our own kernels to time on a robot, as (quantity, method): the first of a quantity is what others are compared with.
+    pub kernels: fn(&Robot) -> Vec<(Quantity, &'static str)>,
+    /// Names of the engines that are timed beside ours: all their methods for the quantities of the kernels.
     pub peers: Vec<String>,
 }
 
@@ -44,7 +44,7 @@ pub struct Timing {
 const SAMPLES_NAME: &str = "timing.jsonl";
 
 /// Our own kernels, with whom everyone is compared.
-const REFERENCE: &str = "native";
+const REFERENCE: &str = "featherbench";
 /// The kinds of cells, as their parameter `what`.
 const MACHINE: &str = "machine";
 const CHECK: &str = "check";
@@ -61,8 +61,8 @@ const MOST_ENTRIES: usize = 4 << 20;
 const LARGEST_ESTIMATE: usize = 64;
 
 /// Whether a robot is too large for times that are estimates.
-fn refused(problem: &Problem, estimate: bool) -> bool {
-    estimate && problem.states.nv > LARGEST_ESTIMATE
+fn refused(robot: &Robot, estimate: bool) -> bool {
+    estimate && robot.states.nv > LARGEST_ESTIMATE
 }
 
 impl Study for Timing {
@@ -80,29 +80,29 @@ impl Study for Timing {
 
     fn plan(&self, context: &Context) -> Vec<Cell> {
         let mut cells = Vec::new();
-        let Some(native) = context.subject(REFERENCE) else { return cells };
-        for problem in context.problems.iter().filter(|problem| problem.takes(self.name())) {
+        let Some(featherbench) = context.engine(REFERENCE) else { return cells };
+        for robot in context.robots.iter().filter(|robot| robot.takes(self.name())) {
             if cells.is_empty() {
                 // The machine is asked once, in the company of the first robot.
-                cells.push(self.cell(problem, native, Quantity::StoredEntries, "empty", json!({"what": MACHINE})));
+                cells.push(self.cell(robot, featherbench, Quantity::StoredEntries, "empty", json!({"what": MACHINE})));
             }
-            for (quantity, entrants) in self.experiments(context, problem) {
-                let states = self.stream_length(problem, quantity);
+            for (quantity, entrants) in self.experiments(context, robot) {
+                let states = self.stream_length(robot, quantity);
                 for entrant in entrants.iter().filter(|entrant| !entrant.control) {
-                    let Some(subject) = context.subject(&entrant.engine) else { continue };
-                    cells.push(self.cell(problem, subject, quantity, &entrant.method, json!({"what": CHECK, "states": states})));
-                    if entrant.estimate && !refused(problem, entrant.estimate) {
-                        cells.push(self.cell(problem, subject, quantity, &entrant.method, json!({"what": OVERHEAD, "states": states})));
+                    let Some(engine) = context.engine(&entrant.engine) else { continue };
+                    cells.push(self.cell(robot, engine, quantity, &entrant.method, json!({"what": CHECK, "states": states})));
+                    if entrant.estimate && !refused(robot, entrant.estimate) {
+                        cells.push(self.cell(robot, engine, quantity, &entrant.method, json!({"what": OVERHEAD, "states": states})));
                     }
                 }
                 let Some(usual) = entrants.first() else { continue };
-                let timed = entrants.iter().filter(|entrant| !refused(problem, entrant.estimate));
+                let timed = entrants.iter().filter(|entrant| !refused(robot, entrant.estimate));
                 let listed: Vec<Value> = timed.map(Entrant::to_params).collect();
                 for regime in REGIMES {
                     let states = if regime == "hot" { 1 } else { states };
                     let params =
                         json!({"what": EXPERIMENT, "cache": regime, "states": states, "seconds": self.seconds, "entrants": listed});
-                    cells.push(self.cell(problem, native, quantity, &usual.method, params));
+                    cells.push(self.cell(robot, featherbench, quantity, &usual.method, params));
                 }
             }
         }
@@ -110,34 +110,34 @@ impl Study for Timing {
     }
 
     fn evaluate(&self, context: &Context, cell: &Cell) -> Outcome {
-        let lost = || Refusal::Failed("there is no problem, subject or quantity of this cell".into());
-        let answer = || -> Result<Vec<f64>, Refusal> {
-            let problem = context.problem(&cell.problem).ok_or_else(lost)?;
-            let native = context.subject(REFERENCE).ok_or_else(lost)?;
-            let subject = context.subject(&cell.subject).ok_or_else(lost)?;
+        let lost = || NoAnswer::Failed("there is no robot, engine or quantity of this cell".into());
+        let answer = || -> Result<Vec<f64>, NoAnswer> {
+            let robot = context.robot(&cell.robot).ok_or_else(lost)?;
+            let featherbench = context.engine(REFERENCE).ok_or_else(lost)?;
+            let engine = context.engine(&cell.engine).ok_or_else(lost)?;
             let quantity = Quantity::parse(&cell.quantity).ok_or_else(lost)?;
             if cell.params["what"] == MACHINE {
-                let mut empty = native.prepare(problem, quantity, "topology", &problem.states)?;
+                let mut empty = featherbench.prepare(robot, quantity, "topology", &robot.states)?;
                 let _pinned = Pinned::to_one_core();
                 return Ok(Machine::measure(empty.as_mut())?.to_values());
             }
-            if refused(problem, subject.estimates()) {
+            if refused(robot, engine.estimates()) {
                 let reason = format!("times that are estimates are taken of robots up to {LARGEST_ESTIMATE} degrees of freedom");
-                return Err(Refusal::Unsupported(reason));
+                return Err(NoAnswer::NotOffered(reason));
             }
             let count = cell.params["states"].as_u64().and_then(|count| usize::try_from(count).ok()).ok_or_else(lost)?;
-            let states = StateBatch::random(&problem.model, count, context.seed);
+            let states = StateBatch::random(&robot.model, count, context.seed);
             if cell.params["what"] == CHECK {
-                return check::errors(&problem.clone().at(states), native, subject, quantity, &cell.method);
+                return check::errors(&robot.clone().at(states), featherbench, engine, quantity, &cell.method);
             }
             let _pinned = Pinned::to_one_core();
             if cell.params["what"] == OVERHEAD {
-                return overhead::per_call(subject.prepare(problem, quantity, &cell.method, &states)?.as_mut());
+                return overhead::per_call(engine.prepare(robot, quantity, &cell.method, &states)?.as_mut());
             }
             let entrants = Entrant::of(cell);
             let prepare = |which: usize| -> Contestant {
                 let Entrant { engine, method, .. } = &entrants[which];
-                context.subject(engine).ok_or_else(lost)?.prepare(problem, quantity, method, &states)
+                context.engine(engine).ok_or_else(lost)?.prepare(robot, quantity, method, &states)
             };
             let mut random = Random::named(context.seed, &cell.id());
             let start = Instant::now();
@@ -147,8 +147,8 @@ impl Study for Timing {
         answer().into()
     }
 
-    fn compare(&self, context: &Context, problem: &Problem, finished: &[Finished]) -> Vec<Record> {
-        rows::rows(context.gates, problem, finished)
+    fn compare(&self, context: &Context, robot: &Robot, finished: &[Finished]) -> Vec<Row> {
+        rows::rows(context.gates, robot, finished)
     }
 
     /// The raw samples.
@@ -158,14 +158,14 @@ impl Study for Timing {
 }
 
 impl Timing {
-    fn cell(&self, problem: &Problem, subject: &dyn Subject, quantity: Quantity, method: &str, params: Value) -> Cell {
+    fn cell(&self, robot: &Robot, engine: &dyn Engine, quantity: Quantity, method: &str, params: Value) -> Cell {
         Cell {
             study: self.name().into(),
-            problem: problem.name.clone(),
-            problem_hash: problem.hash.clone(),
+            robot: robot.name.clone(),
+            robot_hash: robot.hash.clone(),
             params,
-            subject: subject.identity().name.clone(),
-            version: subject.identity().version.clone(),
+            engine: engine.identity().name.clone(),
+            version: engine.identity().version.clone(),
             method: method.into(),
             quantity: quantity.name().into(),
             scalar: "f64".into(),
@@ -173,24 +173,24 @@ impl Timing {
     }
 
     /// The quantities, each with everyone who is timed on it: our usual method, its second copy, our other methods, the peers.
-    fn experiments(&self, context: &Context, problem: &Problem) -> Vec<(Quantity, Vec<Entrant>)> {
-        let entrant = |subject: &dyn Subject, method: &str, control| Entrant {
-            engine: subject.identity().name.clone(),
-            version: subject.identity().version.clone(),
+    fn experiments(&self, context: &Context, robot: &Robot) -> Vec<(Quantity, Vec<Entrant>)> {
+        let entrant = |engine: &dyn Engine, method: &str, control| Entrant {
+            engine: engine.identity().name.clone(),
+            version: engine.identity().version.clone(),
             method: method.to_owned(),
             control,
-            estimate: subject.estimates(),
+            estimate: engine.estimates(),
         };
-        let Some(native) = context.subject(REFERENCE) else { return Vec::new() };
+        let Some(featherbench) = context.engine(REFERENCE) else { return Vec::new() };
         let mut experiments: Vec<(Quantity, Vec<Entrant>)> = Vec::new();
-        for (quantity, method) in (self.kernels)(problem) {
+        for (quantity, method) in (self.kernels)(robot) {
             match experiments.iter_mut().find(|(known, _)| *known == quantity) {
-                Some((_, entrants)) => entrants.push(entrant(native, method, false)),
-                None => experiments.push((quantity, vec![entrant(native, method, false), entrant(native, method, true)])),
+                Some((_, entrants)) => entrants.push(entrant(featherbench, method, false)),
+                None => experiments.push((quantity, vec![entrant(featherbench, method, false), entrant(featherbench, method, true)])),
             }
         }
         for (quantity, entrants) in &mut experiments {
-            for peer in self.peers.iter().filter_map(|name| context.subject(name)) {
+            for peer in self.peers.iter().filter_map(|name| context.engine(name)) {
                 entrants.extend(peer.timed(*quantity).iter().map(|method| entrant(peer, method, false)));
             }
         }
@@ -198,12 +198,12 @@ impl Timing {
     }
 
     /// The stream's length for a quantity of a robot: as asked, or fewer where the states or their matrices would not fit.
-    fn stream_length(&self, problem: &Problem, quantity: Quantity) -> usize {
-        let numbers = problem.states.nq + 3 * problem.states.nv + 6 * problem.states.bodies;
+    fn stream_length(&self, robot: &Robot, quantity: Quantity) -> usize {
+        let numbers = robot.states.nq + 3 * robot.states.nv + 6 * robot.states.bodies;
         let entries = match quantity {
-            Quantity::MassMatrixSparse | Quantity::Factorization | Quantity::Solve => problem.model.topology.stored(),
+            Quantity::MassMatrixSparse | Quantity::Factorization | Quantity::Solve => robot.model.topology.stored(),
             // Factorizing one is a way to forward dynamics; ten times as many as are kept take a second or two.
-            Quantity::ForwardDynamics => problem.model.topology.stored() / 10,
+            Quantity::ForwardDynamics => robot.model.topology.stored() / 10,
             _ => 1,
         };
         self.states.min(1 + MOST_NUMBERS / numbers.max(1)).min(1 + MOST_ENTRIES / entries.max(1))

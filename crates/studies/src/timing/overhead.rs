@@ -1,15 +1,15 @@
 //! What it takes to call an engine whose times are estimates: the overhead that its clock measures and subtracts.
 
-use featherbench_bench::{Prepared, Refusal};
+use featherbench_bench::{Evaluation, NoAnswer};
 
 /// Calls whose overhead is asked for, at as many states from the first on.
 const CALLS: usize = 31;
 
 /// Nanoseconds of overhead of each of some calls.
-pub(super) fn per_call(prepared: &mut dyn Prepared) -> Result<Vec<f64>, Refusal> {
+pub(super) fn per_call(prepared: &mut dyn Evaluation) -> Result<Vec<f64>, NoAnswer> {
     let one = |state: usize| {
         prepared.clock(state..state + 1)?;
-        let overhead = prepared.overhead().ok_or_else(|| Refusal::Failed("its clock tells no overhead".into()))?;
+        let overhead = prepared.overhead().ok_or_else(|| NoAnswer::Failed("its clock tells no overhead".into()))?;
         Ok(overhead.as_nanos() as f64)
     };
     (0..CALLS).map(one).collect()

@@ -9,7 +9,7 @@
 //! values, from the contestants' clocks and from a clock that is an argument.
 
 use super::samples::Samples;
-use featherbench_bench::{Prepared, Refusal, Scatter};
+use featherbench_bench::{Evaluation, NoAnswer, Scatter};
 use featherbench_model::Random;
 use std::collections::VecDeque;
 use std::time::Duration;
@@ -34,7 +34,7 @@ const LAST_MOVES: usize = 5;
 const AGAIN: [usize; 2] = [1, 8];
 
 /// Who is timed, ready to run, or why it is not.
-pub(super) type Contestant<'a> = Result<Box<dyn Prepared + 'a>, Refusal>;
+pub(super) type Contestant<'a> = Result<Box<dyn Evaluation + 'a>, NoAnswer>;
 
 /// How an experiment spends its time.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -145,7 +145,7 @@ fn relocate<'a>(contestant: &mut Contestant<'a>, prepare: &dyn Fn() -> Contestan
 }
 
 /// One block from a state on, and the calls before it.
-fn block(contestant: &mut Contestant, state: usize, calls: usize) -> Result<Duration, Refusal> {
+fn block(contestant: &mut Contestant, state: usize, calls: usize) -> Result<Duration, NoAnswer> {
     let prepared = contestant.as_mut().map_err(|refusal| refusal.clone())?;
     let warm = calls / WARM;
     if warm > 0 {
@@ -177,7 +177,7 @@ fn calls_of_a_block(contestant: &mut Contestant, block: Duration) -> (usize, Dur
 }
 
 /// The least time of some trials of a block with so many calls; of the first that is short enough, where one is.
-fn least(prepared: &mut dyn Prepared, calls: usize, block: Duration) -> Result<Duration, Refusal> {
+fn least(prepared: &mut dyn Evaluation, calls: usize, block: Duration) -> Result<Duration, NoAnswer> {
     let mut least = prepared.clock(0..calls)?;
     for _ in 1..TRIALS {
         if least < block {
@@ -213,14 +213,14 @@ mod tests {
         log: Log,
     }
 
-    impl Prepared for Scripted {
-        fn run(&mut self, _: Range<usize>) -> Result<(), Refusal> {
+    impl Evaluation for Scripted {
+        fn run(&mut self, _: Range<usize>) -> Result<(), NoAnswer> {
             Ok(())
         }
 
-        fn clock(&mut self, range: Range<usize>) -> Result<Duration, Refusal> {
+        fn clock(&mut self, range: Range<usize>) -> Result<Duration, NoAnswer> {
             self.log.lock().unwrap().push((self.who, range.clone()));
-            self.blocks = self.blocks.checked_sub(1).ok_or_else(|| Refusal::Failed("it died".into()))?;
+            self.blocks = self.blocks.checked_sub(1).ok_or_else(|| NoAnswer::Failed("it died".into()))?;
             Ok(self.call * range.len() as u32)
         }
 
@@ -247,18 +247,18 @@ mod tests {
     #[test]
     fn at_each_epoch_everyone_moves() {
         struct Mover(Result<bool, ()>, u32);
-        impl Prepared for Mover {
-            fn run(&mut self, _: Range<usize>) -> Result<(), Refusal> {
+        impl Evaluation for Mover {
+            fn run(&mut self, _: Range<usize>) -> Result<(), NoAnswer> {
                 Ok(())
             }
 
-            fn clock(&mut self, range: Range<usize>) -> Result<Duration, Refusal> {
+            fn clock(&mut self, range: Range<usize>) -> Result<Duration, NoAnswer> {
                 Ok(Duration::from_millis(u64::from(self.1)) * range.len() as u32)
             }
 
-            fn scatter(&mut self, _: u32) -> Result<bool, Refusal> {
+            fn scatter(&mut self, _: u32) -> Result<bool, NoAnswer> {
                 self.1 += 1;
-                self.0.map_err(|()| Refusal::Failed("it lost its robot".into()))
+                self.0.map_err(|()| NoAnswer::Failed("it lost its robot".into()))
             }
 
             fn read(&self) -> &[f64] {
@@ -330,12 +330,12 @@ mod tests {
     fn a_stall_makes_no_short_blocks() {
         /// Ten times the block is lost at these of its calls.
         struct Stalling(Vec<usize>, usize);
-        impl Prepared for Stalling {
-            fn run(&mut self, _: Range<usize>) -> Result<(), Refusal> {
+        impl Evaluation for Stalling {
+            fn run(&mut self, _: Range<usize>) -> Result<(), NoAnswer> {
                 Ok(())
             }
 
-            fn clock(&mut self, range: Range<usize>) -> Result<Duration, Refusal> {
+            fn clock(&mut self, range: Range<usize>) -> Result<Duration, NoAnswer> {
                 self.1 += 1;
                 let stall = if self.0.contains(&self.1) { 10 * BUDGET.block } else { Duration::ZERO };
                 Ok(Duration::from_nanos(100) * range.len() as u32 + stall)

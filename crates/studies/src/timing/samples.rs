@@ -48,7 +48,7 @@ impl Samples {
 /// Who is timed in an experiment.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Entrant {
-    /// The subject's name.
+    /// The engine's name.
     pub engine: String,
     /// Its version.
     pub version: String,
@@ -93,7 +93,7 @@ pub(super) fn lines(finished: &[Finished]) -> String {
             // A tenth of a picosecond is far below what a clock can tell; the outcomes keep every bit.
             let ns: Vec<Option<f64>> = samples.of(which).iter().map(|ns| ns.is_finite().then(|| (ns * 1e4).round() / 1e4)).collect();
             let line = json!({
-                "cell": cell.id(), "model": cell.problem, "quantity": cell.quantity, "cache": cell.params["cache"],
+                "cell": cell.id(), "model": cell.robot, "quantity": cell.quantity, "cache": cell.params["cache"],
                 "engine": entrant.engine, "method": entrant.method, "control": entrant.control, "estimate": entrant.estimate,
                 "calls": samples.calls[which], "ns": ns,
             });

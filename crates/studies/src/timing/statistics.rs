@@ -16,7 +16,7 @@ use featherbench_model::Random;
 pub(super) const LEVEL: f64 = 0.95;
 /// The same for an A/A control: a robot has some twenty of them, and chance alone must not void it more often than once in fifty runs.
 pub(super) const CONTROL_LEVEL: f64 = 0.999;
-/// Two subjects differ when their ratio's interval lies beyond one by more than this; the control of an experiment must lie within it.
+/// Two engines differ when their ratio's interval lies beyond one by more than this; the control of an experiment must lie within it.
 pub(super) const NOISE: f64 = 0.02;
 /// Times that the epochs are drawn again: the ends of an interval at [`CONTROL_LEVEL`] then have one median beyond them.
 const RESAMPLES: usize = 2000;
@@ -32,7 +32,7 @@ pub(super) struct Estimate {
     pub high: f64,
 }
 
-/// How a subject compares with the reference.
+/// How an engine compares with the reference.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Finding {
     /// It takes longer, by more than the noise.
@@ -67,9 +67,9 @@ impl Estimate {
         Self { value: median(&mut samples.to_vec()), low: quantile(&medians, tail), high: quantile(&medians, 1.0 - tail) }
     }
 
-    /// The median over the rounds of a subject's block over the reference's.
-    pub fn ratio(subject: &[f64], reference: &[f64], level: f64, random: &mut Random) -> Self {
-        let ratios: Vec<f64> = subject.iter().zip(reference).map(|(a, b)| a / b).collect();
+    /// The median over the rounds of an engine's block over the reference's.
+    pub fn ratio(engine: &[f64], reference: &[f64], level: f64, random: &mut Random) -> Self {
+        let ratios: Vec<f64> = engine.iter().zip(reference).map(|(a, b)| a / b).collect();
         Self::median(&ratios, level, random)
     }
 
@@ -89,7 +89,8 @@ impl Estimate {
     pub fn complaint(&self) -> Option<String> {
         let Self { value, low, high } = self;
         let good = *low >= 1.0 - NOISE && *high <= 1.0 + NOISE;
-        (!good).then(|| format!("the second copy of native over the first is {value:.4} [{low:.4}, {high:.4}]: not 1 within ± {NOISE}"))
+        (!good)
+            .then(|| format!("the second copy of featherbench over the first is {value:.4} [{low:.4}, {high:.4}]: not 1 within ± {NOISE}"))
     }
 }
 
@@ -159,19 +160,19 @@ mod tests {
     const MACHINES: [(&str, Noise); 5] =
         [("jitter", jitter), ("interruptions", interruptions), ("drift", drift), ("frequencies", frequencies), ("layouts", layouts)];
 
-    /// Reference and subject on a noisy machine, the subject this much slower.
+    /// Reference and engine on a noisy machine, the engine this much slower.
     fn blocks(noise: Noise, slower: f64, seed: u64) -> (Vec<f64>, Vec<f64>) {
         let mut random = Random::new(seed, 7);
         let rounds = (0..ROUNDS).map(|round| {
-            let [reference, subject] = noise(&mut random, round);
-            (1000.0 * reference, 1000.0 * slower * subject)
+            let [reference, engine] = noise(&mut random, round);
+            (1000.0 * reference, 1000.0 * slower * engine)
         });
         rounds.unzip()
     }
 
     fn ratio(noise: Noise, slower: f64, seed: u64, level: f64) -> Estimate {
-        let (reference, subject) = blocks(noise, slower, seed);
-        Estimate::ratio(&subject, &reference, level, &mut Random::new(seed, 8))
+        let (reference, engine) = blocks(noise, slower, seed);
+        Estimate::ratio(&engine, &reference, level, &mut Random::new(seed, 8))
     }
 
     fn count(trial: impl Fn(u64) -> bool) -> usize {
@@ -221,13 +222,13 @@ mod tests {
         let farthest = |of: fn(Vec<f64>, Vec<f64>) -> f64| {
             (0..TRIALS as u64)
                 .map(|seed| {
-                    let (reference, subject) = blocks(frequencies, 1.0, seed);
-                    (of(subject, reference) - 1.0).abs()
+                    let (reference, engine) = blocks(frequencies, 1.0, seed);
+                    (of(engine, reference) - 1.0).abs()
                 })
                 .fold(0.0, worst)
         };
-        let unpaired = farthest(|mut subject, mut reference| median(&mut subject) / median(&mut reference));
-        let paired = farthest(|subject, reference| median(&mut subject.iter().zip(&reference).map(|(a, b)| a / b).collect::<Vec<_>>()));
+        let unpaired = farthest(|mut engine, mut reference| median(&mut engine) / median(&mut reference));
+        let paired = farthest(|engine, reference| median(&mut engine.iter().zip(&reference).map(|(a, b)| a / b).collect::<Vec<_>>()));
         assert!(paired < 0.006 && unpaired > 2.0 * paired, "paired {paired}, unpaired {unpaired}");
     }
 
@@ -345,6 +346,6 @@ mod tests {
         assert!(ends(1.0, 1.02_f64.next_up()).complaint().is_some());
         assert!(ends(f64::NAN, 1.0).complaint().is_some() && ends(1.0, f64::NAN).complaint().is_some());
         let reason = Estimate { value: 1.03, low: 1.01, high: 1.05 }.complaint().unwrap();
-        assert_eq!(reason, "the second copy of native over the first is 1.0300 [1.0100, 1.0500]: not 1 within ± 0.02");
+        assert_eq!(reason, "the second copy of featherbench over the first is 1.0300 [1.0100, 1.0500]: not 1 within ± 0.02");
     }
 }

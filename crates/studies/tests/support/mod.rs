@@ -3,11 +3,11 @@
 #![allow(dead_code, reason = "every test file compiles this module and uses a part of it")]
 
 use featherbench_bench::run::{Silent, compare, evaluate, plan};
-use featherbench_bench::{Context, Gates, Identity, OutcomeStore, Prepared, Problem, Quantity, Refusal, Study, Subject, Suite, accounted};
-use featherbench_engines::Native;
+use featherbench_bench::{Context, Engine, Evaluation, Gates, Identity, NoAnswer, OutcomeStore, Quantity, Robot, Study, Suite, accounted};
+use featherbench_engines::Featherbench;
 use featherbench_model::generate::Family;
 use featherbench_model::{Description, Model, StateBatch};
-use featherbench_results::{EngineSource, Expectation, ModelOrigin, Record, Verdict};
+use featherbench_results::{EngineSource, Expectation, ModelOrigin, Row, Verdict};
 use featherbench_studies::Agreement;
 use std::collections::BTreeMap;
 use std::ops::Range;
@@ -20,9 +20,9 @@ pub const STATES: usize = StateBatch::HEAD;
 pub const SEED: u64 = 1;
 
 /// The robot of a family, with its states.
-pub fn robot(spec: &str) -> Problem {
+pub fn robot(spec: &str) -> Robot {
     let family = Family::parse(spec).unwrap();
-    Problem::new(&family.generate().unwrap(), family.name(), ModelOrigin::Generated, STATES, SEED).unwrap()
+    Robot::new(&family.generate().unwrap(), family.name(), ModelOrigin::Generated, STATES, SEED).unwrap()
 }
 
 /// The folder of the repository's own gates.
@@ -40,7 +40,7 @@ pub fn gates(deviations: &str) -> Gates {
 
 /// A question and an answer for one state, to be spoiled.
 pub struct Answer<'a> {
-    pub problem: &'a Problem,
+    pub robot: &'a Robot,
     pub quantity: Quantity,
     /// The state asked about.
     pub state: usize,
@@ -58,8 +58,8 @@ pub type Twist = fn(Answer);
 /// It reads back what it was told: only the answers of its algorithms can reveal it.
 pub struct Double {
     identity: Identity,
-    native: Native,
-    held: Problem,
+    featherbench: Featherbench,
+    held: Robot,
     states: Option<StateBatch>,
     twist: Twist,
     refuses: bool,
@@ -68,29 +68,37 @@ pub struct Double {
 
 impl Double {
     /// An honest one.
-    pub fn of(problem: &Problem) -> Self {
-        let identity = Identity { name: "double".into(), version: "1".into(), source: EngineSource::Native, build: BTreeMap::new() };
-        Self { identity, native: Native::new(), held: problem.clone(), states: None, twist: |_| (), refuses: false, estimates: false }
+    pub fn of(robot: &Robot) -> Self {
+        let identity = Identity { name: "double".into(), version: "1".into(), source: EngineSource::Own, build: BTreeMap::new() };
+        Self {
+            identity,
+            featherbench: Featherbench::new(),
+            held: robot.clone(),
+            states: None,
+            twist: |_| (),
+            refuses: false,
+            estimates: false,
+        }
     }
 
     /// One that holds an altered robot.
-    pub fn altered(problem: &Problem, alter: impl FnOnce(&mut Description)) -> Self {
-        let mut double = Self::of(problem);
+    pub fn altered(robot: &Robot, alter: impl FnOnce(&mut Description)) -> Self {
+        let mut double = Self::of(robot);
         alter(&mut double.held.description);
         double.held.model = Model::build(&double.held.description).unwrap();
         double
     }
 
     /// One that spoils its answers.
-    pub fn twisting(problem: &Problem, twist: Twist) -> Self {
-        Self { twist, ..Self::of(problem) }
+    pub fn twisting(robot: &Robot, twist: Twist) -> Self {
+        Self { twist, ..Self::of(robot) }
     }
 
     /// One that misreads the states.
-    pub fn misreading(problem: &Problem, misread: impl FnOnce(&mut StateBatch)) -> Self {
-        let mut states = problem.states.clone();
+    pub fn misreading(robot: &Robot, misread: impl FnOnce(&mut StateBatch)) -> Self {
+        let mut states = robot.states.clone();
         misread(&mut states);
-        Self { states: Some(states), ..Self::of(problem) }
+        Self { states: Some(states), ..Self::of(robot) }
     }
 
     /// The same under another name.
@@ -105,18 +113,18 @@ impl Double {
     }
 
     /// One that supports nothing, whatever it offers.
-    pub fn refusing(problem: &Problem) -> Self {
-        Self { refuses: true, ..Self::of(problem) }
+    pub fn refusing(robot: &Robot) -> Self {
+        Self { refuses: true, ..Self::of(robot) }
     }
 }
 
-impl Subject for Double {
+impl Engine for Double {
     fn identity(&self) -> &Identity {
         &self.identity
     }
 
     fn methods(&self, quantity: Quantity) -> Vec<String> {
-        self.native.methods(quantity)
+        self.featherbench.methods(quantity)
     }
 
     fn timed(&self, quantity: Quantity) -> Vec<String> {
@@ -133,21 +141,21 @@ impl Subject for Double {
 
     fn prepare<'a>(
         &'a self,
-        problem: &'a Problem,
+        robot: &'a Robot,
         quantity: Quantity,
         method: &str,
         states: &'a StateBatch,
-    ) -> Result<Box<dyn Prepared + 'a>, Refusal> {
+    ) -> Result<Box<dyn Evaluation + 'a>, NoAnswer> {
         if self.refuses {
-            return Err(Refusal::Unsupported("it supports nothing".into()));
+            return Err(NoAnswer::NotOffered("it supports nothing".into()));
         }
         if quantity == Quantity::Readback {
-            return self.native.prepare(problem, quantity, method, states);
+            return self.featherbench.prepare(robot, quantity, method, states);
         }
-        let inner = self.native.prepare(&self.held, quantity, method, self.states.as_ref().unwrap_or(states))?;
+        let inner = self.featherbench.prepare(&self.held, quantity, method, self.states.as_ref().unwrap_or(states))?;
         Ok(Box::new(Twisted {
             inner,
-            problem,
+            robot,
             quantity,
             count: states.count(),
             twist: self.twist,
@@ -158,8 +166,8 @@ impl Subject for Double {
 }
 
 struct Twisted<'a> {
-    inner: Box<dyn Prepared + 'a>,
-    problem: &'a Problem,
+    inner: Box<dyn Evaluation + 'a>,
+    robot: &'a Robot,
     quantity: Quantity,
     count: usize,
     twist: Twist,
@@ -167,19 +175,19 @@ struct Twisted<'a> {
     values: Vec<f64>,
 }
 
-impl Prepared for Twisted<'_> {
-    fn run(&mut self, range: Range<usize>) -> Result<(), Refusal> {
+impl Evaluation for Twisted<'_> {
+    fn run(&mut self, range: Range<usize>) -> Result<(), NoAnswer> {
         self.inner.run(range.clone())?;
         self.values.clear();
-        for (state, values) in range.zip(self.inner.read().chunks_exact(self.quantity.size(self.problem))) {
+        for (state, values) in range.zip(self.inner.read().chunks_exact(self.quantity.size(self.robot))) {
             let mut values = values.to_vec();
-            (self.twist)(Answer { problem: self.problem, quantity: self.quantity, state, values: &mut values });
+            (self.twist)(Answer { robot: self.robot, quantity: self.quantity, state, values: &mut values });
             self.values.extend(values);
         }
         Ok(())
     }
 
-    fn clock(&mut self, range: Range<usize>) -> Result<Duration, Refusal> {
+    fn clock(&mut self, range: Range<usize>) -> Result<Duration, NoAnswer> {
         let start = Instant::now();
         for state in range {
             self.run(state % self.count..state % self.count + 1)?;
@@ -197,13 +205,13 @@ impl Prepared for Twisted<'_> {
 }
 
 /// The records of the whole agreement study: planned, evaluated with outcomes on disk, compared and judged.
-pub fn agreement(problem: &Problem, gates: &Gates, subjects: &[Box<dyn Subject>]) -> Vec<Record> {
-    whole(&Agreement, problem, gates, subjects)
+pub fn agreement(robot: &Robot, gates: &Gates, engines: &[Box<dyn Engine>]) -> Vec<Row> {
+    whole(&Agreement, robot, gates, engines)
 }
 
 /// The records of a whole study.
-pub fn whole(study: &dyn Study, problem: &Problem, gates: &Gates, subjects: &[Box<dyn Subject>]) -> Vec<Record> {
-    let context = Context { problems: std::slice::from_ref(problem), subjects, gates, seed: SEED };
+pub fn whole(study: &dyn Study, robot: &Robot, gates: &Gates, engines: &[Box<dyn Engine>]) -> Vec<Row> {
+    let context = Context { robots: std::slice::from_ref(robot), engines, gates, seed: SEED };
     let folder = tempfile::tempdir().unwrap();
     let store = OutcomeStore::open(folder.path()).unwrap();
     let cells = plan(study, &context, &|_| true);
@@ -211,13 +219,13 @@ pub fn whole(study: &dyn Study, problem: &Problem, gates: &Gates, subjects: &[Bo
     compare(study, &context, finished)
 }
 
-/// The records of the native kernels beside a double.
-pub fn beside_native(problem: &Problem, gates: &Gates, double: Double) -> Vec<Record> {
-    agreement(problem, gates, &[Box::new(Native::new()), Box::new(double)])
+/// The records of our own kernels beside a double.
+pub fn beside_native(robot: &Robot, gates: &Gates, double: Double) -> Vec<Row> {
+    agreement(robot, gates, &[Box::new(Featherbench::new()), Box::new(double)])
 }
 
-/// A suite that asks the double beside the native kernels, and expects as many rows that pass, or deviate as known, as are here.
-pub fn suite(expected: &[Record]) -> Suite {
+/// A suite that asks the double beside our own kernels, and expects as many rows that pass, or deviate as known, as are here.
+pub fn suite(expected: &[Row]) -> Suite {
     let mut expect: BTreeMap<(&str, &str), usize> = BTreeMap::new();
     for row in expected.iter().filter(|row| accounted(row)) {
         *expect.entry((&row.engine, &row.quantity)).or_default() += 1;
@@ -235,7 +243,7 @@ pub fn suite(expected: &[Record]) -> Suite {
 
 /// How the conditions on the sharpness of computed bounds begin.
 pub const SHARPNESS: &str = "kinds of joint and base for which";
-/// What the conditions on our own errors beside the best engine's have in common: they are about many robots, and native answers alone.
+/// What the conditions on our own errors beside the best engine's have in common: they are about many robots, and featherbench answers alone.
 pub const OVER_BEST: &str = " of over_best on ";
 
 /// The conditions that are not met; sharp bounds are asked of a suite as a whole, and not of one robot.
@@ -246,6 +254,6 @@ pub fn red(conditions: &[Expectation]) -> Vec<&str> {
 }
 
 /// The rows of the double with this verdict.
-pub fn doubles(records: &[Record], verdict: Verdict) -> Vec<&Record> {
+pub fn doubles(records: &[Row], verdict: Verdict) -> Vec<&Row> {
     records.iter().filter(|row| row.engine == "double" && row.verdict == verdict).collect()
 }

@@ -1,41 +1,41 @@
-//! Who is asked: the native kernels, and the engines of the suite, live or recorded.
+//! Who is asked: our own kernels, and the engines of the suite, live or recorded.
 
 use crate::args::RunArgs;
 use crate::fail::Fail;
 use crate::guest;
 use crate::native;
 use crate::oracles;
-use crate::problems::Loaded;
 use crate::rapier;
+use crate::robots::Loaded;
 use crate::root::Root;
 use ::featherbench_results::{EngineInfo, EngineSource};
-use featherbench_bench::{Problem, Subject};
-use featherbench_engines::{Limits, Native, Recorded, read_recordings};
+use featherbench_bench::{Engine, Robot};
+use featherbench_engines::{Featherbench, Limits, Recorded, read_recordings};
 use std::sync::Arc;
 use std::time::Duration;
 
-/// The subjects of a run, and what is to be said about each engine, the missing ones too.
-pub struct Subjects {
-    pub subjects: Vec<Box<dyn Subject>>,
-    pub engines: Vec<EngineInfo>,
+/// The engines of a run, and what is to be said about each engine, the missing ones too.
+pub struct Opened {
+    pub engines: Vec<Box<dyn Engine>>,
+    pub infos: Vec<EngineInfo>,
 }
 
-/// Opens the subjects that a run asks.
-pub fn open(root: &Root, args: &RunArgs, loaded: &Loaded) -> Result<Subjects, Fail> {
-    let mut opened = Subjects { subjects: Vec::new(), engines: Vec::new() };
-    opened.add(Ok(Box::new(Native::new())), "native", EngineSource::Native);
+/// Opens the engines that a run asks.
+pub fn open(root: &Root, args: &RunArgs, loaded: &Loaded) -> Result<Opened, Fail> {
+    let mut opened = Opened { engines: Vec::new(), infos: Vec::new() };
+    opened.add(Ok(Box::new(Featherbench::new())), "featherbench", EngineSource::Own);
     let engines: &[String] = loaded.suite.agreement.as_ref().map_or(&[], |agreement| &agreement.engines);
-    let taken: Vec<&str> = ["native"].into_iter().chain(engines.iter().map(String::as_str)).collect();
+    let taken: Vec<&str> = ["featherbench"].into_iter().chain(engines.iter().map(String::as_str)).collect();
     guest::check_names(&args.guests, &taken)?;
     let limits = limits(args);
     if let Some(timing) = loaded.suite.timing.as_ref().filter(|_| !args.no_timing) {
-        // One that is asked for agreement too is the same subject: see below.
+        // One that is asked for agreement too is the same engine: see below.
         for name in timing.peers.iter().filter(|name| !engines.contains(name)) {
             let peer = match oracles::ESTIMATING.contains(&name.as_str()) {
                 true => oracles::start_timed(root, name, limits),
                 false => native::start(root, name, limits, None),
             };
-            opened.add(peer.map(|peer| Box::new(peer) as Box<dyn Subject>), name, EngineSource::Live);
+            opened.add(peer.map(|peer| Box::new(peer) as Box<dyn Engine>), name, EngineSource::Live);
         }
     }
     // Rapier is not recorded: a run that asks for it builds it and asks it itself.
@@ -56,15 +56,14 @@ pub fn open(root: &Root, args: &RunArgs, loaded: &Loaded) -> Result<Subjects, Fa
             starting.into_iter().map(|thread| thread.join().unwrap_or_else(lost)).collect()
         });
         for (engine, oracle) in others.into_iter().zip(started) {
-            opened.add(oracle.map(|oracle| Box::new(oracle) as Box<dyn Subject>), engine, EngineSource::Live);
+            opened.add(oracle.map(|oracle| Box::new(oracle) as Box<dyn Engine>), engine, EngineSource::Live);
         }
     } else if !others.is_empty() {
         let folder = args.recorded.clone().unwrap_or_else(|| root.recorded());
-        let asked: Vec<&Problem> =
-            loaded.problems.iter().filter(|problem| problem.takes("agreement") || problem.takes("structure")).collect();
+        let asked: Vec<&Robot> = loaded.robots.iter().filter(|robot| robot.takes("agreement") || robot.takes("structure")).collect();
         let recordings = Arc::new(read_recordings(&folder, &asked));
         for engine in others {
-            let recorded = Recorded::new(&recordings, engine).map(|recorded| Box::new(recorded) as Box<dyn Subject>);
+            let recorded = Recorded::new(&recordings, engine).map(|recorded| Box::new(recorded) as Box<dyn Engine>);
             opened.add(recorded, engine, EngineSource::Recorded);
         }
     }
@@ -79,11 +78,11 @@ pub fn limits(args: &RunArgs) -> Limits {
     Limits { answer: Duration::from_secs(args.answer_within), memory: args.memory << 20 }
 }
 
-impl Subjects {
-    fn add(&mut self, subject: Result<Box<dyn Subject>, String>, name: &str, source: EngineSource) {
-        let info = match &subject {
-            Ok(subject) => {
-                let identity = subject.identity().clone();
+impl Opened {
+    fn add(&mut self, engine: Result<Box<dyn Engine>, String>, name: &str, source: EngineSource) {
+        let info = match &engine {
+            Ok(engine) => {
+                let identity = engine.identity().clone();
                 EngineInfo {
                     name: identity.name,
                     version: identity.version,
@@ -102,13 +101,13 @@ impl Subjects {
                 reason: reason.clone(),
             },
         };
-        self.engines.push(info);
-        self.subjects.extend(subject);
+        self.infos.push(info);
+        self.engines.extend(engine);
     }
 
     /// The engines that should be there and are not. A peer of the timing study may be missing: the report says so.
     pub fn missing(&self, loaded: &Loaded) -> Vec<&EngineInfo> {
         let due = |engine: &EngineInfo| loaded.suite.agreement.as_ref().is_some_and(|agreement| agreement.engines.contains(&engine.name));
-        self.engines.iter().filter(|engine| engine.status != "ok" && due(engine)).collect()
+        self.infos.iter().filter(|engine| engine.status != "ok" && due(engine)).collect()
     }
 }

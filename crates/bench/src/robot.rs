@@ -1,4 +1,4 @@
-//! A problem: a robot with the states at which questions are asked.
+//! A robot: a robot with the states at which questions are asked.
 
 use crate::measure::Magnitudes;
 use crate::{Reading, RobotFile};
@@ -8,7 +8,7 @@ use featherbench_results::ModelOrigin;
 /// The most configurations of a file that become states: a recorded motion has thousands.
 const KEYFRAMES: usize = 16;
 
-/// How the robot of a problem gets into an engine.
+/// How the robot of a robot gets into an engine.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub enum Route {
     /// The description, through the engine's programming interface.
@@ -18,9 +18,14 @@ pub enum Route {
     AsRead,
 }
 
+/// What defines a robot, whatever its name, as the text that content hashes are made of.
+fn canonical_json(description: &Description) -> Result<String, Malformed> {
+    featherbench_formats::neutral::to_line(&Description { name: String::new(), ..description.clone() })
+}
+
 /// A robot and its states.
 #[derive(Clone, Debug)]
-pub struct Problem {
+pub struct Robot {
     /// The robot's name.
     pub name: String,
     /// Its family: chain, tree, joints, robot, …
@@ -33,7 +38,7 @@ pub struct Problem {
     pub model: Model<f64>,
     /// Content hash of the canonical description and the states' seed.
     pub hash: String,
-    /// The states at which subjects are compared.
+    /// The states at which engines are compared.
     pub states: StateBatch,
     /// Depth of the tree of described bodies.
     pub depth: usize,
@@ -45,7 +50,7 @@ pub struct Problem {
     pub studies: Option<Vec<String>>,
 }
 
-impl Problem {
+impl Robot {
     /// Compiles a robot and draws `count` agreement states.
     ///
     /// # Errors
@@ -54,7 +59,7 @@ impl Problem {
         let model = Model::build(description)?;
         let description = description.canonical()?;
         let states = StateBatch::agreement(&model, count, seed);
-        let hash = crate::hash::of_parts(&[format!("{:?}", (&description.bodies, description.gravity)).as_bytes(), &seed.to_le_bytes()]);
+        let hash = crate::hash::of_parts(&[canonical_json(&description)?.as_bytes(), &seed.to_le_bytes()]);
         let depth = description.depth();
         Ok(Self {
             name: description.name.clone(),
@@ -78,7 +83,7 @@ impl Problem {
         self
     }
 
-    /// The robot that an engine read from this problem's file, at the states that `states` draws for it.
+    /// The robot that an engine read from this robot's file, at the states that `states` draws for it.
     ///
     /// # Errors
     /// [`Malformed`] when what the engine holds is no robot.
@@ -86,8 +91,7 @@ impl Problem {
         let description = reading.description.canonical()?;
         let model = Model::build(&description)?;
         let states = states(&model);
-        let hash =
-            crate::hash::of_parts(&[self.hash.as_bytes(), format!("as read {:?}", (&description.bodies, description.gravity)).as_bytes()]);
+        let hash = crate::hash::of_parts(&[self.hash.as_bytes(), b"imported", canonical_json(&description)?.as_bytes()]);
         let (depth, route) = (description.depth(), Route::AsRead);
         Ok(Self { description, model, states, hash, depth, route, ..self.clone() })
     }

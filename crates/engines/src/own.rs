@@ -1,8 +1,8 @@
-//! The native subject: the kernels of this workspace, in this process.
+//! Our engine, `featherbench`: the kernels of this workspace, in this process.
 
 pub use crate::kernel::timed;
 use crate::kernel::{Kernel, kernel, methods};
-use featherbench_bench::{Identity, Prepared, Problem, Quantity, Refusal, Subject};
+use featherbench_bench::{Engine, Evaluation, Identity, NoAnswer, Quantity, Robot};
 use featherbench_model::StateBatch;
 use featherbench_results::EngineSource;
 use std::collections::BTreeMap;
@@ -11,32 +11,27 @@ use std::ops::Range;
 use std::time::{Duration, Instant};
 
 /// Our own kernels.
-pub struct Native {
+pub struct Featherbench {
     identity: Identity,
 }
 
-impl Native {
+impl Featherbench {
     /// The kernels of this build.
     pub fn new() -> Self {
-        let name = "native".to_owned();
+        let name = "featherbench".to_owned();
         Self {
-            identity: Identity {
-                name,
-                version: env!("CARGO_PKG_VERSION").to_owned(),
-                source: EngineSource::Native,
-                build: BTreeMap::new(),
-            },
+            identity: Identity { name, version: env!("CARGO_PKG_VERSION").to_owned(), source: EngineSource::Own, build: BTreeMap::new() },
         }
     }
 }
 
-impl Default for Native {
+impl Default for Featherbench {
     fn default() -> Self {
         Self::new()
     }
 }
 
-impl Subject for Native {
+impl Engine for Featherbench {
     fn identity(&self) -> &Identity {
         &self.identity
     }
@@ -47,14 +42,14 @@ impl Subject for Native {
 
     fn prepare<'a>(
         &'a self,
-        problem: &'a Problem,
+        robot: &'a Robot,
         quantity: Quantity,
         method: &str,
         states: &'a StateBatch,
-    ) -> Result<Box<dyn Prepared + 'a>, Refusal> {
-        states.check(&problem.model).map_err(|error| Refusal::Failed(error.to_string()))?;
-        let kernel = kernel(problem, quantity, method, states)?;
-        Ok(Box::new(Ready { kernel, size: quantity.size(problem), states: states.count(), values: Vec::new() }))
+    ) -> Result<Box<dyn Evaluation + 'a>, NoAnswer> {
+        states.check(&robot.model).map_err(|error| NoAnswer::Failed(error.to_string()))?;
+        let kernel = kernel(robot, quantity, method, states)?;
+        Ok(Box::new(Ready { kernel, size: quantity.size(robot), states: states.count(), values: Vec::new() }))
     }
 }
 
@@ -66,22 +61,22 @@ struct Ready<'a> {
     values: Vec<f64>,
 }
 
-impl Prepared for Ready<'_> {
-    fn run(&mut self, range: Range<usize>) -> Result<(), Refusal> {
+impl Evaluation for Ready<'_> {
+    fn run(&mut self, range: Range<usize>) -> Result<(), NoAnswer> {
         self.values.resize(range.len() * self.size, 0.0);
         for (k, out) in range.zip(self.values.chunks_exact_mut(self.size)) {
-            self.kernel.evaluate(k).map_err(|error| Refusal::Failed(error.to_string()))?;
+            self.kernel.evaluate(k).map_err(|error| NoAnswer::Failed(error.to_string()))?;
             self.kernel.read(out);
         }
         Ok(())
     }
 
     /// Every answer goes to the same place, in the kernel: a stream of answers would measure the memory.
-    fn clock(&mut self, range: Range<usize>) -> Result<Duration, Refusal> {
+    fn clock(&mut self, range: Range<usize>) -> Result<Duration, NoAnswer> {
         let mut state = range.start % self.states;
         let start = Instant::now();
         for _ in range {
-            self.kernel.evaluate(state).map_err(|error| Refusal::Failed(error.to_string()))?;
+            self.kernel.evaluate(state).map_err(|error| NoAnswer::Failed(error.to_string()))?;
             black_box(&mut self.kernel);
             state = if state + 1 == self.states { 0 } else { state + 1 };
         }

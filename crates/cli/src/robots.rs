@@ -5,7 +5,7 @@ use crate::oracles;
 use crate::root::Root;
 use ::featherbench_results::ModelOrigin;
 use featherbench_bench::{
-    FileBase, FileFormat, FileInertial, FileLink, Problem, ProblemEntry, Reading, Refusal, RobotFile, Subject, Suite, WATER,
+    Engine, FileBase, FileFormat, FileInertial, FileLink, NoAnswer, Reading, Robot, RobotEntry, RobotFile, Suite, WATER,
 };
 use featherbench_engines::{Limits, Oracle};
 use featherbench_formats::urdf::{Base, Inertial, LinkInFile, Note, Options};
@@ -18,7 +18,7 @@ pub struct Loaded {
     pub name: String,
     pub suite: Suite,
     pub hash: String,
-    pub problems: Vec<Problem>,
+    pub robots: Vec<Robot>,
 }
 
 /// Reads a suite by name or path, and its robots; another seed than its own draws other states.
@@ -28,33 +28,33 @@ pub fn load(root: &Root, suite: &str, live: bool, seed: Option<u64>) -> Result<L
     parsed.seed = seed.unwrap_or(parsed.seed);
     let states = parsed.agreement.as_ref().map_or(1, |agreement| agreement.states);
     let mut files = Files { root, live, compiler: None };
-    let mut problems: Vec<Problem> = Vec::with_capacity(parsed.problem.len());
-    for entry in &parsed.problem {
+    let mut robots: Vec<Robot> = Vec::with_capacity(parsed.robot.len());
+    for entry in &parsed.robot {
         for (base, named) in entry.bases() {
             let Described { description, warnings, origin, file, keyframes } = files.describe(entry, base)?;
             let bad = |error: &dyn std::error::Error| Fail::input(format!("{}: robot '{}': {error}", path.display(), description.name));
             let states = entry.states.unwrap_or(states);
-            let mut problem = Problem::new(&description, &entry.family, origin, states, parsed.seed).map_err(|error| bad(&error))?;
+            let mut robot = Robot::new(&description, &entry.family, origin, states, parsed.seed).map_err(|error| bad(&error))?;
             if entry.reach.is_some() || entry.speed.is_some() {
                 let (reach, speed) = (entry.reach.unwrap_or(std::f64::consts::PI), entry.speed.unwrap_or(1.0));
-                let drawn = StateBatch::narrow(&problem.model, states, parsed.seed, reach, speed);
-                problem = problem.at(drawn);
+                let drawn = StateBatch::narrow(&robot.model, states, parsed.seed, reach, speed);
+                robot = robot.at(drawn);
             }
-            problem = problem.with_warnings(warnings).with_keyframes(&keyframes, parsed.seed).map_err(|error| bad(&error))?;
+            robot = robot.with_warnings(warnings).with_keyframes(&keyframes, parsed.seed).map_err(|error| bad(&error))?;
             if let Some(file) = file {
-                problem = problem.from_file(file);
+                robot = robot.from_file(file);
             }
-            let name = entry.name.clone().unwrap_or(problem.name);
-            problem.name = if named { format!("{name}-free") } else { name };
-            problem.studies.clone_from(&entry.studies);
-            if problems.iter().any(|known| known.name == problem.name) {
-                return Err(Fail::input(format!("{}: two robots are named '{}'", path.display(), problem.name)));
+            let name = entry.name.clone().unwrap_or(robot.name);
+            robot.name = if named { format!("{name}-free") } else { name };
+            robot.studies.clone_from(&entry.studies);
+            if robots.iter().any(|known| known.name == robot.name) {
+                return Err(Fail::input(format!("{}: two robots are named '{}'", path.display(), robot.name)));
             }
-            problems.push(problem);
+            robots.push(robot);
         }
     }
     let name = path.file_stem().map(|stem| stem.to_string_lossy().into_owned()).unwrap_or_default();
-    Ok(Loaded { name, suite: parsed, hash, problems })
+    Ok(Loaded { name, suite: parsed, hash, robots })
 }
 
 /// A robot and where it came from.
@@ -82,7 +82,7 @@ struct Files<'a> {
 }
 
 impl Files<'_> {
-    fn describe(&mut self, entry: &ProblemEntry, base: FileBase) -> Result<Described, Fail> {
+    fn describe(&mut self, entry: &RobotEntry, base: FileBase) -> Result<Described, Fail> {
         if let Some(name) = &entry.model {
             let description = read_model(&self.root.models().join(format!("{name}.json")))?;
             let origin = if description.provenance.is_some() { ModelOrigin::Robot } else { ModelOrigin::Generated };
@@ -164,8 +164,8 @@ pub fn links(file: &RobotFile) -> Result<Vec<FileLink>, Fail> {
 }
 
 /// The reference reading of an MJCF file: that of MuJoCo's compiler, with the file's own inertias where the compiler refuses those.
-pub fn read_mjcf(file: &RobotFile, compiler: &dyn Subject) -> Result<Reading, Fail> {
-    let refused = |refusal: Refusal| Fail::input(format!("{}: MuJoCo does not read it: {refusal}", file.path.display()));
+pub fn read_mjcf(file: &RobotFile, compiler: &dyn Engine) -> Result<Reading, Fail> {
+    let refused = |refusal: NoAnswer| Fail::input(format!("{}: MuJoCo does not read it: {refusal}", file.path.display()));
     let mut reading = compiler.read(file).map_err(refused)?;
     if let Some(written) = reading.written.take() {
         reading.description = written.canonical().map_err(|error| Fail::input(format!("{}: {error}", file.path.display())))?;

@@ -1,6 +1,6 @@
-//! The trait [`Subject`]: anyone who answers.
+//! The trait [`Engine`]: anyone who answers.
 
-use crate::{Problem, Quantity, Reading, RobotFile, Stepper};
+use crate::{Quantity, Reading, Robot, RobotFile, Stepper};
 use featherbench_model::StateBatch;
 use featherbench_results::EngineSource;
 use std::collections::BTreeMap;
@@ -8,14 +8,14 @@ use std::ops::Range;
 use std::time::{Duration, Instant};
 use thiserror::Error;
 
-/// Who a subject is.
+/// Who an engine is.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Identity {
     /// The engine's name in records.
     pub name: String,
     /// The version it reports.
     pub version: String,
-    /// Native, recorded or live.
+    /// Our own, recorded or live.
     pub source: EngineSource,
     /// Language, flags, versions of libraries.
     pub build: BTreeMap<String, String>,
@@ -23,10 +23,10 @@ pub struct Identity {
 
 /// Why there is no answer.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
-pub enum Refusal {
-    /// The subject does not offer this: known beforehand, a skip.
+pub enum NoAnswer {
+    /// The engine does not offer this: known beforehand, a skip.
     #[error("{0}")]
-    Unsupported(String),
+    NotOffered(String),
     /// It should have answered and did not: an error.
     #[error("{0}")]
     Failed(String),
@@ -38,7 +38,7 @@ pub enum Refusal {
 ///
 /// ```
 /// use featherbench_bench::measure::{Magnitudes, scaled_error};
-/// use featherbench_bench::{Identity, Prepared, Problem, Quantity, Refusal, Subject};
+/// use featherbench_bench::{Identity, Evaluation, Robot, Quantity, NoAnswer, Engine};
 /// use featherbench_model::{JointType, StateBatch, generate::Family};
 /// use featherbench_results::{EngineSource, ModelOrigin};
 /// use featherbench_spatial::{Mat3, Sym3, Vec3};
@@ -47,12 +47,12 @@ pub enum Refusal {
 /// struct Pendulum(Identity);
 ///
 /// struct Swing<'a> {
-///     problem: &'a Problem,
+///     robot: &'a Robot,
 ///     states: &'a StateBatch,
 ///     tau: Vec<f64>,
 /// }
 ///
-/// impl Subject for Pendulum {
+/// impl Engine for Pendulum {
 ///     fn identity(&self) -> &Identity {
 ///         &self.0
 ///     }
@@ -63,22 +63,22 @@ pub enum Refusal {
 ///
 ///     fn prepare<'a>(
 ///         &'a self,
-///         problem: &'a Problem,
+///         robot: &'a Robot,
 ///         _: Quantity,
 ///         _: &str,
 ///         states: &'a StateBatch,
-///     ) -> Result<Box<dyn Prepared + 'a>, Refusal> {
-///         match problem.description.bodies.as_slice() {
-///             [body] if matches!(body.joint.kind, JointType::Revolute { .. }) => Ok(Box::new(Swing { problem, states, tau: Vec::new() })),
-///             _ => Err(Refusal::Unsupported("a pendulum is one link on one revolute joint".into())),
+///     ) -> Result<Box<dyn Evaluation + 'a>, NoAnswer> {
+///         match robot.description.bodies.as_slice() {
+///             [body] if matches!(body.joint.kind, JointType::Revolute { .. }) => Ok(Box::new(Swing { robot, states, tau: Vec::new() })),
+///             _ => Err(NoAnswer::NotOffered("a pendulum is one link on one revolute joint".into())),
 ///         }
 ///     }
 /// }
 ///
-/// impl Prepared for Swing<'_> {
-///     fn run(&mut self, range: std::ops::Range<usize>) -> Result<(), Refusal> {
-///         let body = &self.problem.description.bodies[0];
-///         let axis = Vec3::from_array(body.joint.kind.axis().ok_or_else(|| Refusal::Failed("no axis".into()))?);
+/// impl Evaluation for Swing<'_> {
+///     fn run(&mut self, range: std::ops::Range<usize>) -> Result<(), NoAnswer> {
+///         let body = &self.robot.description.bodies[0];
+///         let axis = Vec3::from_array(body.joint.kind.axis().ok_or_else(|| NoAnswer::Failed("no axis".into()))?);
 ///         let com = Vec3::from_array(body.com);
 ///         // u·(ω × I ω) vanishes for a turn about u: a pendulum's τ does not depend on its velocity.
 ///         let about_origin = Sym3::from_array(body.inertia).to_mat3() * axis + com.cross(axis.cross(com)) * body.mass;
@@ -87,7 +87,7 @@ pub enum Refusal {
 ///         self.tau = range
 ///             .map(|k| {
 ///                 let (sin, cos) = self.states.q(k)[0].sin_cos();
-///                 let falls = fixed.transpose_mul(Vec3::from_array(self.problem.description.gravity));
+///                 let falls = fixed.transpose_mul(Vec3::from_array(self.robot.description.gravity));
 ///                 // Rodrigues' formula, by −q: gravity in body axes.
 ///                 let gravity = falls * cos - axis.cross(falls) * sin + axis * (axis.dot(falls) * (1.0 - cos));
 ///                 (axis.dot(about_origin) + armature) * self.states.a(k)[0] - axis.dot(com.cross(gravity * body.mass))
@@ -102,48 +102,48 @@ pub enum Refusal {
 /// }
 ///
 /// let description = Family::parse("joints:kind=revolute,base=fixed,shape=single").unwrap().generate().unwrap();
-/// let problem = Problem::new(&description, "pendulum", ModelOrigin::Generated, 20, 1).unwrap();
+/// let robot = Robot::new(&description, "pendulum", ModelOrigin::Generated, 20, 1).unwrap();
 /// let name = "pendulum".to_owned();
-/// let pendulum = Pendulum(Identity { name, version: "1".into(), source: EngineSource::Native, build: Default::default() });
-/// let mut swing = pendulum.prepare(&problem, Quantity::InverseDynamics, "lever", &problem.states).unwrap();
+/// let pendulum = Pendulum(Identity { name, version: "1".into(), source: EngineSource::Own, build: Default::default() });
+/// let mut swing = pendulum.prepare(&robot, Quantity::InverseDynamics, "lever", &robot.states).unwrap();
 /// swing.run(0..20).unwrap();
-/// let mut rnea = featherbench_dynamics::Rnea::new(&problem.model.topology);
+/// let mut rnea = featherbench_dynamics::Rnea::new(&robot.model.topology);
 /// for (k, &tau) in swing.read().iter().enumerate() {
-///     let (states, mut due) = (&problem.states, [0.0]);
-///     rnea.run(&problem.model, states.q(k), states.v(k), states.a(k), None, &mut due).unwrap();
-///     let error = scaled_error(&problem, Quantity::InverseDynamics, &Magnitudes::new(&problem, k), &due, &[tau]);
+///     let (states, mut due) = (&robot.states, [0.0]);
+///     rnea.run(&robot.model, states.q(k), states.v(k), states.a(k), None, &mut due).unwrap();
+///     let error = scaled_error(&robot, Quantity::InverseDynamics, &Magnitudes::new(&robot, k), &due, &[tau]);
 ///     assert!(error < 1e-15, "state {k}: {error}");
 /// }
 /// ```
 ///
-/// A run asks it beside the others when `crates/cli/src/subjects.rs` adds it to the subjects.
-pub trait Subject: Send + Sync {
+/// A run asks it beside the others when `crates/cli/src/engines.rs` adds it to the engines.
+pub trait Engine: Send + Sync {
     /// Who it is.
     fn identity(&self) -> &Identity;
 
     /// Its methods for a quantity, its usual one first; none when it does not offer the quantity.
     fn methods(&self, quantity: Quantity) -> Vec<String>;
 
-    /// Reads a robot's file with the subject's own parser and says what it holds then.
+    /// Reads a robot's file with the engine's own parser and says what it holds then.
     ///
     /// # Errors
-    /// [`Refusal`] when the subject has no parser, or its parser refuses the file.
-    fn read(&self, file: &RobotFile) -> Result<Reading, Refusal> {
+    /// [`NoAnswer`] when the engine has no parser, or its parser refuses the file.
+    fn read(&self, file: &RobotFile) -> Result<Reading, NoAnswer> {
         let format = file.format.name();
-        Err(Refusal::Unsupported(format!("{} has no parser of {format} files", self.identity().name)))
+        Err(NoAnswer::NotOffered(format!("{} has no parser of {format} files", self.identity().name)))
     }
 
     /// Gets ready to evaluate a quantity by a method over a batch of states.
     ///
     /// # Errors
-    /// [`Refusal`] when the robot, quantity or method is not supported, or the subject breaks.
+    /// [`NoAnswer`] when the robot, quantity or method is not supported, or the engine breaks.
     fn prepare<'a>(
         &'a self,
-        problem: &'a Problem,
+        robot: &'a Robot,
         quantity: Quantity,
         method: &str,
         states: &'a StateBatch,
-    ) -> Result<Box<dyn Prepared + 'a>, Refusal>;
+    ) -> Result<Box<dyn Evaluation + 'a>, NoAnswer>;
 
     /// Its methods for a quantity that can be timed.
     fn timed(&self, quantity: Quantity) -> Vec<String> {
@@ -162,37 +162,37 @@ pub trait Subject: Send + Sync {
 }
 
 /// An evaluation that is ready: what is timed is what is checked.
-pub trait Prepared: Send {
+pub trait Evaluation: Send {
     /// Evaluates the states of the range.
     ///
     /// # Errors
-    /// [`Refusal`] when the subject fails.
-    fn run(&mut self, range: Range<usize>) -> Result<(), Refusal>;
+    /// [`NoAnswer`] when the engine fails.
+    fn run(&mut self, range: Range<usize>) -> Result<(), NoAnswer>;
 
     /// Evaluates the states of the range and says how long that took: one reading of the clock before the loop over the states and one
     /// after it, both in the process that runs the loop.
     ///
-    /// Beyond the end of the batch its states begin again (a subject that is timed answers so; this plain form does not), and no answer but
+    /// Beyond the end of the batch its states begin again (an engine that is timed answers so; this plain form does not), and no answer but
     /// the last need be kept.
     ///
     /// # Errors
-    /// [`Refusal`] when the subject fails.
-    fn clock(&mut self, range: Range<usize>) -> Result<Duration, Refusal> {
+    /// [`NoAnswer`] when the engine fails.
+    fn clock(&mut self, range: Range<usize>) -> Result<Duration, NoAnswer> {
         let start = Instant::now();
         self.run(range)?;
         Ok(start.elapsed())
     }
 
     /// Moves everything that it works on to other places of the memory, drawn with this seed, where that is not in this process: `false`
-    /// of a subject that is moved by preparing it anew.
+    /// of an engine that is moved by preparing it anew.
     ///
     /// # Errors
-    /// [`Refusal`] when the subject fails.
-    fn scatter(&mut self, _seed: u32) -> Result<bool, Refusal> {
+    /// [`NoAnswer`] when the engine fails.
+    fn scatter(&mut self, _seed: u32) -> Result<bool, NoAnswer> {
         Ok(false)
     }
 
-    /// What was subtracted from the time that [`Prepared::clock`] told last, where times are estimates.
+    /// What was subtracted from the time that [`Evaluation::clock`] told last, where times are estimates.
     fn overhead(&self) -> Option<Duration> {
         None
     }
