@@ -1,7 +1,7 @@
 //! Bad input: each mistake ends with its exit code and a message that names file, line or field and the way out; nothing panics, nothing
 //! finished is lost.
 
-mod support;
+use crate::support;
 
 use support::{Sandbox, project};
 

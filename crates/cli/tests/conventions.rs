@@ -1,6 +1,6 @@
 //! The ledger of conventions: each row has its test, each test its row, each named function exists, and CONVENTIONS.md shows the ledger.
 
-mod support;
+use crate::support;
 
 use std::collections::BTreeSet;
 use support::{Sandbox, project};

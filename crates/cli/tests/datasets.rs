@@ -1,6 +1,6 @@
 //! The committed data: small, reproducible, and complete.
 
-mod support;
+use crate::support;
 
 use featherbench_formats::neutral;
 use featherbench_model::generate::Family;

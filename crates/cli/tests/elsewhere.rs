@@ -1,6 +1,6 @@
 //! The program from another folder than the checkout it was built in: which data it takes, and where it writes.
 
-mod support;
+use crate::support;
 
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};

@@ -1,6 +1,6 @@
 //! `featherbench explain`: the command that it prints makes the rows of the cell again.
 
-mod support;
+use crate::support;
 
 use std::path::Path;
 use std::process::Command;

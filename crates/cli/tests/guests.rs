@@ -1,6 +1,6 @@
 //! Engines that a user brings along, without any Python: programs of a few lines of shell.
 
-mod support;
+use crate::support;
 
 use featherbench_bench::{Engine, Quantity, Robot};
 use support::Sandbox;

@@ -1,6 +1,6 @@
 //! `featherbench diff` and `featherbench history` from the outside.
 
-mod support;
+use crate::support;
 
 use support::Sandbox;
 

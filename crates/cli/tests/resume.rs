@@ -1,6 +1,6 @@
 //! A run that is killed at a random moment continues: no finished evaluation is repeated, and the exact rows come out identical to the byte.
 
-mod support;
+use crate::support;
 
 use featherbench_bench::frame::Frame;
 use std::collections::HashSet;

@@ -3,7 +3,7 @@
 //! The measures are those of the reports: entries of M by the geometric mean of the diagonal, ID by the magnitudes that form each force,
 //! FD by its own norm.
 
-mod common;
+use crate::common;
 
 use common::{ROBOTS, build, dyadic_chain, larger, largest, lifted, within};
 use featherbench_dynamics::{bias_force, forward_dynamics, forward_kinematics, inverse_dynamics, jacobian, mass_matrix};

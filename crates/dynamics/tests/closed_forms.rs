@@ -1,6 +1,6 @@
 //! Robots whose equations of motion are written out in textbooks.
 
-mod common;
+use crate::common;
 
 use common::within;
 use featherbench_dynamics::{bias_force, center_of_mass, centroidal_momentum, energy, forward_dynamics, inverse_dynamics, mass_matrix};

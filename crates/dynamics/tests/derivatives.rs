@@ -1,6 +1,6 @@
 //! Derivatives along the motion, by dual numbers: each is an identity of mechanics. And every kernel on duals against differences.
 
-mod common;
+use crate::common;
 
 use common::{ROBOTS, build, distance, flow, gap, largest, rate, with_rate, within, wrenches};
 use featherbench_dynamics::{

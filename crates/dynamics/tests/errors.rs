@@ -1,6 +1,6 @@
 //! Bad input is answered, never with a panic: wrong shapes, singular matrices, NaN.
 
-mod common;
+use crate::common;
 
 use common::{ROBOTS, build, dyadic_chain};
 use featherbench_dynamics::{

@@ -1,6 +1,6 @@
 //! Dual numbers over double-double run through the kernels: derivatives with thirty digits.
 
-mod common;
+use crate::common;
 
 use common::{ROBOTS, build, lifted, within};
 use featherbench_dynamics::inverse_dynamics;

@@ -1,6 +1,6 @@
 //! Identities that hold for every robot and state, over robots with every kind of joint.
 
-mod common;
+use crate::common;
 
 use common::{ROBOTS, build, distance, gap, larger, largest, robot, within, wrenches};
 use featherbench_dynamics::{

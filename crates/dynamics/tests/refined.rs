@@ -3,7 +3,7 @@
 //! The truth here is the same algorithm's text in double-double, refined by a double-double residual, with an error below 10⁻²² on every
 //! case: enough to judge `f64` digits, but not an independent witness. That is crate `reference`'s task.
 
-mod common;
+use crate::common;
 
 use common::{ROBOTS, build, distance, larger, largest, lifted, within, wrenches};
 use featherbench_dynamics::{

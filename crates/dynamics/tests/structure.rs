@@ -1,6 +1,6 @@
 //! Structure as integers: what tree-sparse matrices store, what a factorization executes, and that recursions are linear.
 
-mod common;
+use crate::common;
 
 use common::{dyadic_chain, lifted, topology, within};
 use featherbench_dynamics::{Aba, Bias, Ltdl, NotPositiveDefinite, Rnea, TreeSparse, mass_matrix};

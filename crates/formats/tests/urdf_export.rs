@@ -1,6 +1,6 @@
 //! URDF out: what is written is read back, to the bit where URDF can say it, and a second trip changes nothing.
 
-mod robots;
+use crate::robots;
 
 use featherbench_formats::urdf::{self, Options};
 use featherbench_formats::{ExportError, Loss, OnLoss, Reason, neutral};

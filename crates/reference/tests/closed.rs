@@ -1,6 +1,6 @@
 //! Closed forms against published values, against their own equations of motion, and against the multi-precision dynamics.
 
-mod support;
+use crate::support;
 
 use featherbench_model::{BodyDescription, Description, JointDescription, JointType, Placement};
 use featherbench_reference::closed::{DoublePendulum, Elliptic, FreeTop, HeavyTop, Pendulum};

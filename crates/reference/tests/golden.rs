@@ -2,7 +2,7 @@
 //!
 //! `FEATHERBENCH_GOLDEN_SEED` chooses the twentieth (the day does otherwise), `FEATHERBENCH_GOLDEN_SHARE=1` derives all.
 
-mod support;
+use crate::support;
 
 use featherbench_model::Random;
 use featherbench_reference::{Precision, nearest_doubles};

@@ -1,6 +1,6 @@
 //! The arithmetic that everything rests on: rounding, texts, and sine and cosine against a series of our own, for huge and tiny arguments.
 
-mod support;
+use crate::support;
 
 use featherbench_reference::{Error, Mp, Precision, nearest_doubles};
 use proptest::prelude::*;

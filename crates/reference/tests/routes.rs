@@ -1,6 +1,6 @@
 //! Independent routes to the same truth agree to 1e-100; so do identities that mechanics demands.
 
-mod support;
+use crate::support;
 
 use featherbench_model::{Description, JointType, Model, StateBatch};
 use featherbench_reference::{Error, Factors, Mp, Precision, Robot, lagrange, maximal};

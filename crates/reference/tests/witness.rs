@@ -2,7 +2,7 @@
 //!
 //! Skipped where there is no Python with mpmath, unless `FEATHERBENCH_REQUIRE_ALL` is set.
 
-mod support;
+use crate::support;
 
 use featherbench_model::{Model, StateBatch};
 use featherbench_reference::{Precision, Robot, nearest_doubles};

@@ -4,7 +4,7 @@ use featherbench_results::{Relation, Row, RunInfo, Verdict};
 use serde_json::Value;
 use written::Written;
 
-mod written;
+use crate::written;
 
 fn row(engine: &str, model: &str, joint: &str, quantity: &str, method: &str) -> Row {
     Row {

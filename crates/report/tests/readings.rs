@@ -3,8 +3,8 @@
 use featherbench_results::{Relation, Row, RunInfo, Verdict};
 use written::Written;
 
-mod support;
-mod written;
+use crate::support;
+use crate::written;
 
 /// Rows of two robots: one is read alike, differs and is refused; the other is unexplained.
 fn rows(run: &RunInfo) -> Vec<Row> {

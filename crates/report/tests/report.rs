@@ -7,8 +7,8 @@ use std::path::Path;
 use featherbench_results::{Relation, Row, RunInfo, Verdict};
 use written::Written;
 
-mod support;
-mod written;
+use crate::support;
+use crate::written;
 
 fn demo() -> (RunInfo, Vec<Row>, Written) {
     let run = support::run_info();

@@ -4,8 +4,8 @@ use featherbench_results::{Relation, Row, RunInfo, Verdict};
 use serde_json::Value;
 use written::Written;
 
-mod support;
-mod written;
+use crate::support;
+use crate::written;
 
 fn of_studies(studies: &[&str]) -> (Vec<Row>, Written) {
     let run = support::run_info();

@@ -1,6 +1,6 @@
 //! Our error over the best engine's: whose answers count, and how far off ours may look.
 
-mod support;
+use crate::support;
 
 use featherbench_bench::{Engine, Quantity, Robot};
 use featherbench_engines::Featherbench;

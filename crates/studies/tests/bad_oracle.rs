@@ -1,7 +1,7 @@
 //! A run with a broken engine goes on: error rows for that engine alone, whether its process crashes or hangs, and everything else judged as
 //! if it were not there.
 
-mod support;
+use crate::support;
 
 use featherbench_bench::Engine;
 use featherbench_engines::{Clock, Featherbench, Limits, Oracle};

@@ -4,7 +4,7 @@
 //! The mistakes are those that bindings and algorithms make: frames and orders mixed up, signs, forgotten armature. Each must turn the gates
 //! of `ci/gates.toml` red in the quantities that it touches, and leave the others alone.
 
-mod support;
+use crate::support;
 
 use featherbench_bench::{Engine, Gates, Quantity, Range, RangeKey, Ranges, RangesMeter, Robot};
 use featherbench_engines::Featherbench;

@@ -4,7 +4,7 @@
 //! is what it was told, so that only the answers of its algorithms can reveal it. The whole agreement study runs with the gates of
 //! `ci/gates.toml`, for every body of several robots and every kind of parameter.
 
-mod support;
+use crate::support;
 
 use featherbench_bench::measure::worst;
 use featherbench_model::{BodyDescription, JointType};

@@ -3,7 +3,7 @@
 //! The answers are the recorded ones; the error is planted in finished answers and these are judged again by the gates and known deviations of
 //! `ci/`. What escapes is listed by cause, with its number: one more fails.
 
-mod support;
+use crate::support;
 
 use featherbench_bench::run::{Silent, evaluate, plan};
 use featherbench_bench::{Context, Engine, Finished, Gates, Outcome, OutcomeStore, Quantity, Robot, Study, Suite};

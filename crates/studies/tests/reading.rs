@@ -1,7 +1,7 @@
 //! The reading study convicts: an engine that computes something else than what it says to have read is called unexplained, with the
 //! smallest sub-tree that shows it; one that tells the truth about an edited robot is not.
 
-mod support;
+use crate::support;
 
 use featherbench_bench::{
     Engine, Evaluation, FileBase, FileFormat, Identity, NoAnswer, Quantity, Reading as Read, ReadingNote, Robot, RobotFile,

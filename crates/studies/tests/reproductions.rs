@@ -1,6 +1,6 @@
 //! Known deviations that are reproduced: one that is gone, has grown, or cannot be evaluated must turn the run red.
 
-mod support;
+use crate::support;
 
 use featherbench_bench::run::{Silent, compare, evaluate, plan};
 use featherbench_bench::{Context, Engine, Gates, NoAnswer, OutcomeStore};

@@ -9,7 +9,7 @@ use serde_json::Value;
 use std::collections::BTreeMap;
 use support::{gates, robot, whole};
 
-mod support;
+use crate::support;
 
 /// dt·‖v‖ from which on the engine looks whether its implicit term adds energy.
 const GUARD: f64 = 1e-3;

@@ -7,7 +7,7 @@ use featherbench_results::{Kind, Row, Verdict};
 use featherbench_studies::Timing;
 use support::{Double, gates, robot, whole};
 
-mod support;
+use crate::support;
 
 fn study() -> Timing {
     let kernels =

@@ -1,6 +1,6 @@
 //! The harness convicts by truth: who errs is named, whatever the majority says, and a reference that errs is suspected itself.
 
-mod support;
+use crate::support;
 
 use featherbench_bench::{Engine, Quantity, Robot};
 use featherbench_engines::Featherbench;

@@ -1,7 +1,7 @@
 //! One wrong number among many: for every quantity, δ in one entry is an error of exactly δ over the magnitude of this entry.
 
-use crate::close;
-use crate::robots::{free_and_spherical, two_screws, two_slides};
+use super::close;
+use super::robots::{free_and_spherical, two_screws, two_slides};
 use featherbench_bench::measure::{Magnitudes, scaled_error};
 use featherbench_bench::{Quantity, Robot};
 use featherbench_model::generate::Family;

@@ -1,7 +1,7 @@
 //! What forward dynamics is measured with, on the two slides of `robots.rs`: M = [9 4; 4 4], τ − h = (6, −4), a = (2, −3).
 
-use crate::close;
-use crate::robots::two_slides;
+use super::close;
+use super::robots::two_slides;
 use featherbench_bench::measure::ForwardScale;
 
 #[track_caller]

@@ -1,7 +1,7 @@
 //! Every field of [`Magnitudes`]. In the comments, |·| is a length, v_J and a_J are the joint's own velocity and acceleration, p the parent.
 
-use crate::assert_close;
-use crate::robots::{free_and_spherical, two_screws, two_slides};
+use super::assert_close;
+use super::robots::{free_and_spherical, two_screws, two_slides};
 use featherbench_bench::measure::Magnitudes;
 
 /// Joint 1: |ω_J| = 3, |v_J| = 1.5, |α_J| = 2, |a_J| = 1. Joint 2: |ω_J| = 2, |v_J| = 0.5, |α_J| = 4, |a_J| = 1.

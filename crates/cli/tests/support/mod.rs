@@ -1,6 +1,6 @@
 //! Running the command in a project of its own: a folder with links to the data and a `target` nobody else uses.
 
-#![allow(dead_code, reason = "every test file compiles this module and uses a part of it")]
+#![allow(dead_code, reason = "two test programs compile this module, each uses a part of it")]
 
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};

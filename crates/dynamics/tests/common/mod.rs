@@ -1,6 +1,6 @@
 //! What the tests share: robots, states, tolerances, and flow derivatives.
 
-#![allow(dead_code, unused_imports, reason = "every test file compiles this module and uses a part of it")]
+#![allow(dead_code, unused_imports, reason = "two test programs compile this module, each uses a part of it")]
 
 use featherbench_model::{BodyDescription, Description, JointDescription, JointKind, JointType, Model, Placement, Random, Topology};
 use featherbench_spatial::{Dual, Force, Lift, Motion, Quaternion, Real, Sym3, Vec3};

@@ -1,7 +1,7 @@
 //! Steps: an oracle that does not offer them hears nothing of them, and mistakes in them are found.
 
-use crate::kernels::{HONEST, Kernels, Plant};
-use crate::{test, wrong};
+use super::kernels::{HONEST, Kernels, Plant};
+use super::{test, wrong};
 use featherbench_bench::frame::Frame;
 use featherbench_engines::conformance::Standing;
 use serde_json::{Value, json};

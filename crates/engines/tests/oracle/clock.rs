@@ -1,6 +1,6 @@
 //! Who reads the clock, and whose times are estimates.
 
-use crate::script::{HELLO, PATIENT, Script, TWO, Trial};
+use super::script::{HELLO, PATIENT, Script, TWO, Trial};
 use featherbench_bench::{Engine, NoAnswer, Quantity};
 use featherbench_engines::Clock;
 use std::path::PathBuf;

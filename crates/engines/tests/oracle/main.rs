@@ -8,10 +8,10 @@ mod reading;
 mod script;
 mod steps;
 
-use crate::script::{HELLO, PATIENT, READBACK, Script, TWO, Trial, lives, robot, stillborn};
 use featherbench_bench::{Engine, NoAnswer, Quantity};
 use featherbench_engines::{Limits, Oracle};
 use featherbench_model::StateBatch;
+use script::{HELLO, PATIENT, READBACK, Script, TWO, Trial, lives, robot, stillborn};
 use std::time::Duration;
 
 #[test]

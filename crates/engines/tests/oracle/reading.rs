@@ -1,6 +1,6 @@
 //! Files that an oracle reads.
 
-use crate::script::{PATIENT, READING, Script, Trial, robot};
+use super::script::{PATIENT, READING, Script, Trial, robot};
 use featherbench_bench::{Engine, FileBase, FileFormat, NoAnswer, Reading, RobotFile};
 use featherbench_model::StateBatch;
 

@@ -1,6 +1,6 @@
 //! Shell oracles that integrate: what is sent, what comes back, and what a wrong `steps` is called.
 
-use crate::script::{HELLO, PATIENT, Script, Trial, stillborn};
+use super::script::{HELLO, PATIENT, Script, Trial, stillborn};
 use featherbench_bench::{Engine, NoAnswer, Stepper};
 
 /// One number, two, as the answer about one state.

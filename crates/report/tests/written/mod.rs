@@ -1,7 +1,5 @@
 //! A report on disk, and how tests look into it.
 
-#![allow(dead_code, reason = "every test file compiles this module and uses a part of it")]
-
 use std::fs;
 
 use featherbench_results::{Row, RunInfo};

@@ -1,6 +1,6 @@
 //! Double-double arithmetic against multi-precision arithmetic: the error bounds that its documentation states, in units of u² = 2⁻¹⁰⁶.
 
-use crate::multi_precision::{double_double, error_in_u2, exact, is_normalized, magnitude, nearly_opposite};
+use super::multi_precision::{double_double, error_in_u2, exact, is_normalized, magnitude, nearly_opposite};
 use featherbench_spatial::{DoubleDouble, Dual, Lift, Real};
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;

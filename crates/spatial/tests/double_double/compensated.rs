@@ -1,6 +1,6 @@
 //! Compensated numbers against multi-precision ones, in units of u² times the magnitudes that were added.
 
-use crate::multi_precision::{Big, double_double, error_in_u2, exact, magnitude};
+use super::multi_precision::{Big, double_double, error_in_u2, exact, magnitude};
 use featherbench_spatial::{Compensated, DoubleDouble, Lift, Real};
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;

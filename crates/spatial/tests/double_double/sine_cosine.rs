@@ -1,6 +1,6 @@
 //! Double-double sine and cosine against multi-precision ones: the relative error at every angle, in units of u² = 2⁻¹⁰⁶.
 
-use crate::multi_precision::{Big, double_double, error_in_u2, exact, is_normalized, parse};
+use super::multi_precision::{Big, double_double, error_in_u2, exact, is_normalized, parse};
 use featherbench_spatial::{DoubleDouble, Real};
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;

@@ -1,7 +1,5 @@
 //! What the tests of the studies share: an engine that is wrong on purpose, and a whole agreement run in memory.
 
-#![allow(dead_code, reason = "every test file compiles this module and uses a part of it")]
-
 use featherbench_bench::run::{Silent, compare, evaluate, plan};
 use featherbench_bench::{Context, Engine, Evaluation, Gates, Identity, NoAnswer, OutcomeStore, Quantity, Robot, Study, Suite, accounted};
 use featherbench_engines::Featherbench;

@@ -1,0 +1,14 @@
+//! The tests of the command line as one program: they share what is compiled for them.
+
+mod bad_input;
+mod conventions;
+mod datasets;
+mod direction;
+mod elsewhere;
+mod explain;
+mod folds;
+mod guests;
+mod history_diff;
+mod parsers;
+mod resume;
+mod support;

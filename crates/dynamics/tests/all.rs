@@ -1,0 +1,11 @@
+//! The tests of kernels as one program: they share what is compiled for them.
+
+mod accuracy;
+mod closed_forms;
+mod common;
+mod derivatives;
+mod errors;
+mod extended;
+mod identities;
+mod refined;
+mod structure;

@@ -1,0 +1,8 @@
+//! The tests of formats as one program: they share what is compiled for them.
+
+mod datasets;
+mod neutral;
+mod robots;
+mod urdf_errors;
+mod urdf_export;
+mod urdf_import;

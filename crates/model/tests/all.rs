@@ -1,0 +1,7 @@
+//! The tests of models as one program: they share what is compiled for them.
+
+mod anything;
+mod descriptions;
+mod generators;
+mod normalisation;
+mod states;

@@ -1,0 +1,8 @@
+//! The tests of the slow truth as one program: they share what is compiled for them.
+
+mod closed;
+mod golden;
+mod numbers;
+mod routes;
+mod support;
+mod witness;

@@ -1,0 +1,8 @@
+//! The tests of the report as one program: they share what is compiled for them.
+
+mod joints;
+mod readings;
+mod report;
+mod support;
+mod truth;
+mod written;
