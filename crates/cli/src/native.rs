@@ -1,56 +1,29 @@
-//! The native peers: engines as libraries that this program compiles, once, from `oracles/native` and the installed packages.
+//! The native peers: engines as libraries that CMake builds, once, from `oracles/native` and the installed packages.
 //!
-//! A library is kept in the user's cache folder under a hash of everything that it is made of: sources, flags, the compiler's and the
-//! packages' versions, and the processor, for which it is compiled.
+//! A library is kept in the user's cache folder under a hash of everything that it is made of: sources, the files that tell CMake how to
+//! compile them, the compiler's and the packages' versions, and the processor, for which it is compiled.
 
 use crate::fail::Fail;
-use crate::oracles;
+use crate::oracles::{self, spinner};
 use crate::root::Root;
 use featherbench_bench::{Engine, Identity, hash};
 use featherbench_engines::{Limits, Oracle, peer};
-use indicatif::{ProgressBar, ProgressStyle};
-use std::ffi::OsString;
-use std::io::IsTerminal;
+use std::io::{BufRead, BufReader};
 use std::path::{Path, PathBuf};
-use std::process::{Command, Output, Stdio};
-use std::sync::Mutex;
-use std::sync::atomic::{AtomicUsize, Ordering};
-use std::time::{Duration, Instant};
+use std::process::{Command, Stdio};
+use std::time::Instant;
 
 /// The peers, in the order of reports: Pinocchio by each compiler, because the compiler decides how fast it is.
 pub const PEERS: [&str; 3] = ["pinocchio-clang", "pinocchio-gcc", "mujoco-native"];
 
-/// What Pinocchio is compiled with: optimised for this processor, and with room for its many joint types in Boost's lists.
-const PINOCCHIO_FLAGS: [&str; 10] = [
-    "-std=c++17",
-    "-O3",
-    "-march=native",
-    "-DNDEBUG",
-    "-fPIC",
-    "-fvisibility=hidden",
-    "-DBOOST_MPL_LIMIT_LIST_SIZE=30",
-    "-DBOOST_MPL_LIMIT_VECTOR_SIZE=30",
-    "-DBOOST_MPL_CFG_NO_PREPROCESSED_HEADERS",
-    "-DBOOST_FUSION_INVOKE_MAX_ARITY=12",
-];
-/// What the C files beside MuJoCo's library are compiled with; the library itself is used as it is shipped.
-const MUJOCO_FLAGS: [&str; 5] = ["-std=c11", "-O3", "-march=native", "-fPIC", "-fvisibility=hidden"];
-
-/// The wheel of Eigen that fits Pinocchio's; the headers alone are taken from it.
-const EIGEN: &str = "cmeel-eigen==3.4.1";
+/// The oldest CMake that `oracles/native/CMakeLists.txt` takes.
+const CMAKE: (u32, u32) = (3, 22);
 
 /// Everything that goes into a library.
 struct Recipe {
     name: &'static str,
-    compiler: PathBuf,
-    flags: &'static [&'static str],
-    /// Folders of foreign headers.
-    include: Vec<PathBuf>,
-    sources: Vec<PathBuf>,
-    /// Behind the objects when linking.
-    link: Vec<OsString>,
-    /// Lines of `key=value`, for the peer's `hello`.
-    build: String,
+    /// CMake's settings: `-DNAME=VALUE`.
+    settings: Vec<String>,
     /// Where the library is, once it is made.
     library: PathBuf,
 }
@@ -79,19 +52,19 @@ pub fn install(root: &Root) -> Result<(), Fail> {
     let missing = |message: String| Fail::Missing {
         message,
         advice:
-            "native peers need clang++ or g++ (Debian: apt-get install clang), and for Pinocchio the headers of Eigen (fetched from the \
-                 package index, or Debian's libeigen3-dev)"
+            "native peers need clang++ or g++ (Debian: apt-get install clang), and from the package index Eigen's headers, CMake and Ninja \
+                 (or Debian's cmake and ninja-build)"
                 .into(),
     };
-    if let Err(reason) = eigen().map(|_| ()).or_else(|_| fetch_eigen(root)) {
-        // Pinocchio is then left out, and says so below.
+    if let Err(reason) = install_tools(root) {
+        // What is left out for want of them says so below.
         eprintln!("{reason}");
     }
     let mut built = 0;
     for name in PEERS {
         match Recipe::new(root, name) {
             Ok(recipe) if recipe.library.is_file() => eprintln!("{name} is built: {}", recipe.library.display()),
-            Ok(recipe) => recipe.make().map_err(missing)?,
+            Ok(recipe) => recipe.make(root).map_err(missing)?,
             // With one compiler there is one Pinocchio.
             Err(reason) => {
                 eprintln!("{name} is left out: {reason}");
@@ -121,116 +94,148 @@ impl Recipe {
     fn new(root: &Root, name: &str) -> Result<Self, String> {
         let known = || PEERS.into_iter().find(|known| *known == name);
         let name = known().ok_or_else(|| format!("there is no native peer {name}; there are {}", PEERS.join(", ")))?;
-        let folder = root.oracles().join("native");
-        let packages = packages(root)?;
-        let (flags, tools): (&[&str], &[&str]) = match name {
-            "pinocchio-clang" => (&PINOCCHIO_FLAGS[..], &["clang++"]),
-            "pinocchio-gcc" => (&PINOCCHIO_FLAGS[..], &["g++"]),
-            _ => (&MUJOCO_FLAGS[..], &["clang", "gcc", "cc"]),
+        let (native, packages) = (root.oracles().join("native"), packages(root)?);
+        let (engine, language, compilers): (_, _, &[&str]) = match name {
+            "pinocchio-clang" => ("pinocchio", "CXX", &["clang++"]),
+            "pinocchio-gcc" => ("pinocchio", "CXX", &["g++"]),
+            _ => ("mujoco", "C", &["clang", "gcc", "cc"]),
         };
-        let (compiler, version) =
-            tools.iter().find_map(|tool| compiler(tool)).ok_or_else(|| format!("there is no {}", tools.join(" or ")))?;
-        let (sources, headers, include, link, wheel) = if name == "mujoco-native" {
-            let (wheel, package) = (version_of(&packages, "mujoco")?, packages.join("mujoco"));
-            let engine = find(&package, "libmujoco.so.")?;
-            let link = vec![engine.into(), joined("-Wl,-rpath,", &package), "-lm".into()];
-            let group = folder.join("mujoco");
-            let own = vec![folder.join("peer.h"), folder.join("coordinates.h"), group.join("robot.h")];
-            (vec![group.join("robot.c"), group.join("methods.c")], own, vec![package.join("include")], link, wheel)
-        } else {
-            let (prefix, group) = (packages.join("cmeel.prefix/include"), folder.join("pinocchio"));
-            let (headers, eigen_version) = eigen()?;
-            let sources = ["robot", "inverse", "forward", "inertia", "kinematics"].map(|name| group.join(format!("{name}.cc")));
-            let own = vec![folder.join("peer.h"), folder.join("coordinates.h"), group.join("robot.h")];
-            let wheel = format!("{}, {eigen_version}", version_of(&packages, "libpinocchio")?);
-            (sources.into(), own, vec![prefix, headers], Vec::new(), wheel)
+        let found = compilers.iter().find_map(|name| Some((name, compiler(name)?)));
+        let (compiler, version) = found.ok_or_else(|| format!("there is no {}", compilers.join(" or ")))?;
+        // Where headers stand is no part of the hash; where a library is linked from is.
+        let (versions, linked) = match engine {
+            "mujoco" => (version_of(&packages, "mujoco")?, Some(packages.join("mujoco"))),
+            _ => {
+                let eigen = version_of(&packages, "cmeel_eigen")?;
+                (format!("{}, {}", version_of(&packages, "libpinocchio")?, eigen.trim_start_matches("cmeel_")), None)
+            }
         };
-        let build = format!("compiler={version}\nflags={}\npackages={wheel}", flags.join(" "));
-        // Where headers stand is no part of it; where a library is linked from is.
-        let mut parts = vec![format!("{name}\n{build}\n{:?}\n{link:?}", processor()).into_bytes()];
-        for source in sources.iter().chain(&headers) {
-            parts.push(std::fs::read(source).map_err(|error| format!("{}: {error}", source.display()))?);
+        let mut settings = vec![
+            format!("-DPEER_ENGINE={engine}"),
+            format!("-DPEER_COMPILER={version}"),
+            format!("-DPEER_VERSIONS={versions}"),
+            format!("-DCMAKE_{language}_COMPILER={compiler}"),
+        ];
+        let mut parts = vec![format!("{settings:?}\n{:?}\n{linked:?}", processor()).into_bytes()];
+        settings.push(format!("-DPEER_PACKAGES={}", packages.display()));
+        let folder = std::fs::read_dir(native.join(engine)).map_err(|error| format!("{}: {error}", native.join(engine).display()))?;
+        let mut files: Vec<PathBuf> = folder.flatten().map(|entry| entry.path()).collect();
+        files.sort();
+        for file in ["CMakeLists.txt", "coordinates.h", "peer.h"].map(|name| native.join(name)).iter().chain(&files) {
+            parts.push(std::fs::read(file).map_err(|error| format!("{}: {error}", file.display()))?);
         }
         let parts: Vec<&[u8]> = parts.iter().map(Vec::as_slice).collect();
         let library = cache()?.join(format!("{name}-{}.so", &hash::of_parts(&parts)[..16]));
-        Ok(Self { name, compiler, flags, include, sources, link, build, library })
+        Ok(Self { name, settings, library })
     }
 
-    /// Compiles and links in a folder of its own, then moves the library to its place.
-    fn make(&self) -> Result<(), String> {
+    /// Builds in a folder of its own, then moves the library to its place.
+    fn make(&self, root: &Root) -> Result<(), String> {
+        let (name, start) = (self.name, Instant::now());
+        let bar = spinner(&format!("building {name} (up to some minutes, once) …"));
         let folder = self.library.with_extension(format!("{}.part", std::process::id()));
-        std::fs::create_dir_all(&folder).map_err(|error| format!("{}: {error}", folder.display()))?;
-        let made = self.compile_in(&folder);
-        let moved = made.and_then(|library| std::fs::rename(library, &self.library).map_err(|error| error.to_string()));
-        // What is left of a build is of no use to anybody.
-        let _ = std::fs::remove_dir_all(&folder);
-        moved.map_err(|reason| format!("{}: {reason}", self.name))
-    }
-
-    fn compile_in(&self, folder: &Path) -> Result<PathBuf, String> {
-        let bar = bar(self.name, self.sources.len());
-        let start = Instant::now();
-        let (next, failures) = (AtomicUsize::new(0), Mutex::new(Vec::new()));
-        let object = |source: &Path| folder.join(source.file_name().unwrap_or_default()).with_extension("o");
-        let worker = || {
-            while let Some(source) = self.sources.get(next.fetch_add(1, Ordering::Relaxed)) {
-                let mut command = Command::new(&self.compiler);
-                command.args(self.flags).args(self.include.iter().flat_map(|folder| [OsString::from("-isystem"), folder.into()]));
-                command.args([text_macro("FB_ENGINE", self.name), text_macro("FB_BUILD", &self.build)]);
-                let result = finished(command.arg("-c").arg(source).arg("-o").arg(object(source)));
-                let name = source.file_name().unwrap_or_default().to_string_lossy();
-                match result {
-                    Ok(_) if bar.is_hidden() => eprintln!("{}: compiled {name} ({:.0} s)", self.name, start.elapsed().as_secs_f64()),
-                    Ok(_) => bar.inc(1),
-                    Err(reason) => failures.lock().unwrap_or_else(std::sync::PoisonError::into_inner).push(format!("{name}: {reason}")),
-                }
+        let (mut configure, mut build) = (tool(root, "cmake")?, tool(root, "cmake")?);
+        configure.args(["-G", "Ninja", "-S"]).arg(root.oracles().join("native")).arg("-B").arg(&folder).args(&self.settings);
+        // No more compilers than cores: each takes up to a gigabyte.
+        let cores = std::thread::available_parallelism().map_or(1, usize::from).to_string();
+        build.arg("--build").arg(&folder).args(["--target", name, "--parallel", &cores]);
+        let see = |line: &str| {
+            bar.set_message(format!("{name}: {line}"));
+            if let Some(source) =
+                line.split_once("] Building ").and_then(|(_, object)| object.rsplit('/').next()).filter(|_| bar.is_hidden())
+            {
+                eprintln!("{name}: compiled {} ({:.0} s)", source.trim_end_matches(".o"), start.elapsed().as_secs_f64());
             }
         };
-        // No more compilers than cores: each takes up to a gigabyte.
-        let cores = std::thread::available_parallelism().map_or(1, usize::from);
-        std::thread::scope(|scope| (0..cores.min(self.sources.len())).for_each(|_| drop(scope.spawn(worker))));
+        let built = run(configure, see).and_then(|()| run(build, see));
+        let moved =
+            built.and_then(|()| std::fs::rename(folder.join(format!("{name}.so")), &self.library).map_err(|error| error.to_string()));
         bar.finish_and_clear();
-        if let Some(failure) = failures.lock().unwrap_or_else(std::sync::PoisonError::into_inner).first() {
-            return Err(failure.clone());
+        // What is left of a build is of no use to anybody.
+        let _ = std::fs::remove_dir_all(&folder);
+        moved.map_err(|reason| format!("{name}: {reason}"))?;
+        eprintln!("built {name} in {:.0} s: {}", start.elapsed().as_secs_f64(), self.library.display());
+        Ok(())
+    }
+}
+
+/// Installs what `oracles/native/requirements.txt` pins into the engines' environment; not a tool that the system has.
+fn install_tools(root: &Root) -> Result<(), String> {
+    let (python, packages) = (python(root)?, packages(root)?);
+    let file = root.oracles().join("native/requirements.txt");
+    let pins = std::fs::read_to_string(&file).map_err(|error| format!("{}: {error}", file.display()))?;
+    let there = |pin: &str| match pin.split_once("==") {
+        Some((name, version)) => {
+            packages.join(format!("{}-{version}.dist-info", name.replace('-', "_"))).is_dir()
+                || tool(root, name).ok().and_then(answer).is_some_and(|words| name != "cmake" || new_enough(&words))
         }
-        let library = folder.join("peer.so");
-        let objects = self.sources.iter().map(|source| object(source));
-        let mut command = Command::new(&self.compiler);
-        finished(command.args(["-shared", "-Wl,--no-undefined", "-o"]).arg(&library).args(objects).args(&self.link))?;
-        eprintln!("built {} in {:.0} s: {}", self.name, start.elapsed().as_secs_f64(), self.library.display());
-        Ok(library)
+        None => pin.is_empty() || pin.starts_with('#'),
+    };
+    let pins: Vec<&str> = pins.lines().filter(|pin| !there(pin)).collect();
+    if pins.is_empty() {
+        return Ok(());
     }
+    let bar = spinner(&format!("installing {} …", pins.join(", ")));
+    let command = |program: &Path, arguments: &[&str]| {
+        let mut command = Command::new(program);
+        command.args(arguments).args(&pins);
+        command
+    };
+    // An environment that uv made has no pip.
+    let by_uv = || run(command(Path::new("uv"), &["pip", "install", "--no-deps", "--python", &python.to_string_lossy()]), |_| ());
+    let by_pip = run(command(&python, &["-m", "pip", "install", "--no-deps"]), |line| bar.set_message(line.to_owned()));
+    by_pip.or_else(|reason| by_uv().map_err(|_| format!("{} cannot be installed: {reason}", pins.join(", "))))
 }
 
-/// `-DNAME="text"` with the text as a C string.
-fn text_macro(name: &str, text: &str) -> String {
-    format!("-D{name}=\"{}\"", text.replace('\\', "\\\\").replace('"', "\\\"").replace('\n', "\\n"))
+/// A tool of the engines' environment, or else of the system.
+fn tool(root: &Root, name: &str) -> Result<Command, String> {
+    // CMake itself stands beside the script that a wheel has for it, which names the environment's first place and no later one.
+    let mut folders = vec![packages(root)?.join("cmake/data/bin"), python(root)?.with_file_name("")];
+    folders.extend(std::env::split_paths(&std::env::var_os("PATH").unwrap_or_default()));
+    let path = std::env::join_paths(folders).map_err(|error| format!("PATH: {error}"))?;
+    let mut command = Command::new(name);
+    command.env("PATH", path);
+    Ok(command)
 }
 
-fn joined(flag: &str, path: &Path) -> OsString {
-    let mut joined = OsString::from(flag);
-    joined.push(path);
-    joined
+/// Whether `cmake --version` tells of one that will do.
+fn new_enough(words: &str) -> bool {
+    let mut numbers = words.split([' ', '.']).filter_map(|number| number.parse().ok());
+    (numbers.next().unwrap_or(0), numbers.next().unwrap_or(0)) >= CMAKE
 }
 
-/// Runs a command to its end.
-fn finished(command: &mut Command) -> Result<Output, String> {
+/// What a program prints of its version.
+fn answer(mut command: Command) -> Option<String> {
+    let output = command.arg("--version").stdin(Stdio::null()).output().ok().filter(|output| output.status.success())?;
+    Some(String::from_utf8_lossy(&output.stdout).into_owned())
+}
+
+/// Runs a command to its end, and shows each of its lines to `see`.
+fn run(mut command: Command, see: impl Fn(&str)) -> Result<(), String> {
     let program = command.get_program().to_string_lossy().into_owned();
-    let output = command.stdin(Stdio::null()).output().map_err(|error| format!("{program} cannot be started: {error}"))?;
-    if output.status.success() {
-        return Ok(output);
-    }
-    let words = String::from_utf8_lossy(&output.stderr).into_owned();
-    let telling = words.lines().find(|line| line.contains("error")).or(words.lines().last()).unwrap_or("no message");
-    Err(format!("{program} failed ({}): {telling}", output.status))
+    let failed = |error: std::io::Error| format!("{program} cannot be started: {error}");
+    let (reader, writer) = std::io::pipe().map_err(failed)?;
+    let mut child = command.stdin(Stdio::null()).stdout(writer.try_clone().map_err(failed)?).stderr(writer).spawn().map_err(failed)?;
+    // It holds the other end of the pipe.
+    drop(command);
+    let lines: Vec<String> = BufReader::new(reader).lines().map_while(Result::ok).inspect(|line| see(line)).collect();
+    let status = child.wait().map_err(failed)?;
+    if status.success() { Ok(()) } else { Err(format!("{program} failed ({status}): {}", complaint(&lines))) }
 }
 
-/// A compiler on the path and the first line of its version.
-fn compiler(name: &str) -> Option<(PathBuf, String)> {
-    let output = finished(Command::new(name).arg("--version")).ok()?;
-    let version = String::from_utf8_lossy(&output.stdout).lines().next()?.to_owned();
+/// The first line that tells of an error. What CMake has to say stands in the lines below it, up to an empty one.
+fn complaint(lines: &[String]) -> String {
+    let first = lines.iter().position(|line| line.to_lowercase().contains("error")).unwrap_or(lines.len().saturating_sub(1));
+    let length = if lines.get(first).is_some_and(|line| line.starts_with("CMake Error")) { lines.len() } else { 1 };
+    let told: Vec<&str> = lines.iter().skip(first).take(length).map(|line| line.trim()).take_while(|line| !line.is_empty()).collect();
+    if told.is_empty() { "no message".into() } else { told.join(" ") }
+}
+
+/// The first line of the version of a compiler on the path.
+fn compiler(name: &str) -> Option<String> {
+    let version = answer(Command::new(name))?.lines().next()?.to_owned();
     // Some systems call clang `g++`: that would be the same library twice.
-    if name == "g++" && version.contains("clang") { None } else { Some((name.into(), version)) }
+    if name == "g++" && version.contains("clang") { None } else { Some(version) }
 }
 
 /// The processor's features, on which `-march=native` depends.
@@ -240,9 +245,14 @@ fn processor() -> Option<String> {
     Some(lines.take(2).collect())
 }
 
+/// The engines' Python.
+fn python(root: &Root) -> Result<PathBuf, String> {
+    oracles::python(root).ok_or_else(|| "the reference engines are not installed: run `featherbench oracles install`".into())
+}
+
 /// The folder of the installed packages.
 fn packages(root: &Root) -> Result<PathBuf, String> {
-    let python = oracles::python(root).ok_or("the reference engines are not installed: run `featherbench oracles install`")?;
+    let python = python(root)?;
     let library = python.parent().and_then(Path::parent).map(|environment| environment.join("lib")).ok_or("the environment has no lib")?;
     Ok(find(&library, "python3")?.join("site-packages"))
 }
@@ -256,7 +266,7 @@ fn find(folder: &Path, beginning: &str) -> Result<PathBuf, String> {
 
 /// `name version` of an installed package.
 fn version_of(packages: &Path, name: &str) -> Result<String, String> {
-    let entry = find(packages, &format!("{name}-"))?;
+    let entry = find(packages, &format!("{name}-")).map_err(|reason| format!("{reason}: run `featherbench oracles install --native`"))?;
     let entry = entry.file_name().unwrap_or_default().to_string_lossy().into_owned();
     Ok(entry.trim_end_matches(".dist-info").replace('-', " "))
 }
@@ -270,49 +280,30 @@ fn cache() -> Result<PathBuf, String> {
     Ok(folder.join("featherbench/peers"))
 }
 
-/// Eigen's headers and their version: the fetched wheel's, or else the system's.
-fn eigen() -> Result<(PathBuf, String), String> {
-    let wheel = cache()?.join(EIGEN);
-    let candidates = [wheel.join("cmeel.prefix/include/eigen3"), "/usr/include/eigen3".into()];
-    let found = candidates.into_iter().find(|folder| folder.join("Eigen/Core").is_file());
-    let headers = found
-        .ok_or("there are no headers of Eigen: `featherbench oracles install --native` fetches them, or install Debian's libeigen3-dev")?;
-    let macros = headers.join("Eigen/src/Core/util/Macros.h");
-    let text = std::fs::read_to_string(&macros).map_err(|error| format!("{}: {error}", macros.display()))?;
-    let number = |name: &str| {
-        let line = text.lines().find_map(|line| line.strip_prefix(&format!("#define EIGEN_{name}_VERSION ")));
-        line.map(|number| number.trim().to_owned()).unwrap_or_default()
-    };
-    let version = ["WORLD", "MAJOR", "MINOR"].map(number).join(".");
-    Ok((headers, format!("eigen {version}")))
-}
+#[cfg(test)]
+mod tests {
+    use super::*;
 
-/// Fetches Eigen's wheel into the cache folder and unpacks it; the environment of the engines stays as it is.
-fn fetch_eigen(root: &Root) -> Result<(), String> {
-    let folder = cache()?;
-    let part = folder.join(format!("{EIGEN}.{}.part", std::process::id()));
-    std::fs::create_dir_all(&part).map_err(|error| format!("{}: {error}", part.display()))?;
-    let python = oracles::python(root).ok_or("the reference engines are not installed: run `featherbench oracles install`")?;
-    let fetched = finished(Command::new(&python).args(["-m", "pip", "download", "--quiet", "--no-deps", "--dest"]).arg(&part).arg(EIGEN))
-        .and_then(|_| find(&part, "cmeel_eigen"))
-        .and_then(|wheel| finished(Command::new(&python).args(["-m", "zipfile", "-e"]).arg(wheel).arg(&part)))
-        // An environment made by uv has no pip.
-        .or_else(|_| finished(Command::new("uv").args(["pip", "install", "--no-deps", "--target"]).arg(&part).arg(EIGEN)))
-        .and_then(|_| std::fs::rename(&part, folder.join(EIGEN)).map_err(|error| error.to_string()));
-    let _ = std::fs::remove_dir_all(&part);
-    fetched.map_err(|reason| format!("Eigen's headers cannot be fetched: {reason}"))
-}
+    #[test]
+    fn the_first_error_is_told() {
+        let told = |text: &str| complaint(&text.lines().map(str::to_owned).collect::<Vec<_>>());
+        let cmake =
+            "-- The C compiler is unknown\nCMake Error at CMakeLists.txt:8 (message):\n  no headers:\n  install them\n\n\n-- Incomplete";
+        assert_eq!(told(cmake), "CMake Error at CMakeLists.txt:8 (message): no headers: install them");
+        let ninja =
+            "[1/3] Building C object robot.c.o\nFAILED: robot.c.o\ncc -c robot.c\nrobot.c:1:2: error: no such thing\n  int\nstopped";
+        assert_eq!(told(ninja), "robot.c:1:2: error: no such thing");
+        assert_eq!((told("one\nkilled"), told("")), ("killed".into(), "no message".into()));
+    }
 
-fn bar(name: &str, files: usize) -> ProgressBar {
-    if !std::io::stderr().is_terminal() {
-        eprintln!("building {name} (files to compile: {files}, up to a minute each) …");
-        return ProgressBar::hidden();
+    #[test]
+    fn an_old_cmake_will_not_do() {
+        assert!(
+            ["3.22.1", "3.31.6-gabc", "4.0.0"]
+                .map(|version| format!("cmake version {version}\n\nCMake suite"))
+                .iter()
+                .all(|words| new_enough(words))
+        );
+        assert!(["cmake version 3.21.9", "cmake version 2.99", "cmake", ""].iter().all(|words| !new_enough(words)));
     }
-    let bar = ProgressBar::new(files as u64);
-    if let Ok(style) = ProgressStyle::with_template("{spinner} {elapsed} compiling {prefix}: {pos} of {len} files") {
-        bar.set_style(style);
-    }
-    bar.set_prefix(name.to_owned());
-    bar.enable_steady_tick(Duration::from_millis(120));
-    bar
 }
