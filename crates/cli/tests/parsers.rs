@@ -1,6 +1,6 @@
 //! Every parser of ours is given some thousand damaged texts: what is not refused is read, written and read again alike, and nothing panics.
 //!
-//! The targets are those of `ci/fuzz`, which gives them a million inputs each.
+//! The targets are those of `ci/fuzz`, which fuzzes each of them for two minutes a night.
 
 #[path = "../../../ci/fuzz/src/lib.rs"]
 #[allow(dead_code, reason = "the fuzzer's own entry points")]
