@@ -7,14 +7,19 @@
 
 Instructions do not depend on a neighbour's work or a processor's frequency, so they can gate a change where times only inform. They are
 those of a build for x86-64-v3 in a target folder of its own: valgrind cannot read AVX-512. Another compiler has a baseline of its own;
-where there is none, the counts inform and fail nothing. Prints a Markdown table.
+where there is none, the counts inform. Prints a Markdown table.
+
+Where nothing can be counted, it prints `not counted:` and why. That is a failure, unless counts were only to be compared and valgrind is
+missing. With FEATHERBENCH_REQUIRE_ALL set, as in CI, a missing valgrind and a missing baseline are failures too.
 """
 
 import argparse
 import csv
 import os
 import pathlib
+import platform
 import re
+import shutil
 import subprocess
 import sys
 import tempfile
@@ -29,16 +34,42 @@ FUNCTION = "instructions::featherbench_measured"
 Counts = dict[tuple[str, str], int]  # (kernel, model) -> instructions per call
 
 
+class NotCountedError(Exception):
+    """Why there are no counts."""
+
+
+def missing() -> str | None:
+    """Tell what this machine lacks, if it lacks something."""
+    if platform.machine() != "x86_64":
+        return f"the counts are those of x86-64, and this machine is {platform.machine()}"
+    if shutil.which("valgrind") is None:
+        return "there is no valgrind (Debian: apt-get install valgrind)"
+    return None
+
+
+def run(command: list[str], folder: pathlib.Path, capture: bool = True, environment: dict[str, str] | None = None) -> str:
+    """Run a command, and return what it prints; where it fails, there are no counts."""
+    try:
+        ended = subprocess.run(command, cwd=folder, env=environment, capture_output=capture, text=True)
+    except OSError as error:
+        raise NotCountedError(f"{command[0]} cannot be started: {error.strerror}") from error
+    if ended.returncode != 0:
+        told = ended.stderr.strip()[-400:] if capture else "mend what it says above"
+        raise NotCountedError(f"`{' '.join(command)}` failed ({ended.returncode}): {told}")
+    return ended.stdout or ""
+
+
 def compiler() -> str:
     """Tell the compiler's version, with its commit: `1.97.0 (0123456 2026-01-01)`."""
-    return subprocess.run(["rustc", "--version"], check=True, capture_output=True, text=True).stdout.strip().removeprefix("rustc ")
+    # In the project's folder rustup takes the compiler of rust-toolchain.toml.
+    return run(["rustc", "--version"], ROOT).strip().removeprefix("rustc ")
 
 
 def build() -> pathlib.Path:
-    """Build the program that runs the kernels, and returns its path."""
+    """Build the program that runs the kernels, and return its path."""
     environment = {**os.environ, "RUSTFLAGS": "-C target-cpu=x86-64-v3 -C no-vectorize-slp", "CARGO_TARGET_DIR": str(TARGET)}
     command = ["cargo", "build", "--release", "--quiet", "-p", "featherbench-engines", "--example", "instructions"]
-    subprocess.run(command, check=True, cwd=ROOT, env=environment)
+    run(command, ROOT, capture=False, environment=environment)
     return TARGET / "release/examples/instructions"
 
 
@@ -46,17 +77,16 @@ def count(program: pathlib.Path) -> Counts:
     """Count instructions per call as {(kernel, model): number}: callgrind writes one file each time the measured function is left."""
     with tempfile.TemporaryDirectory() as folder:
         flags = ["--tool=callgrind", f"--toggle-collect={FUNCTION}", f"--dump-after={FUNCTION}", "--callgrind-out-file=out", "--quiet"]
-        ended = subprocess.run(["valgrind", *flags, str(program)], cwd=folder, capture_output=True, text=True)
-        if ended.returncode != 0:
-            sys.exit(f"valgrind failed ({ended.returncode}): {ended.stderr.strip()[-400:]}")
-        runs = [line.split(",") for line in ended.stdout.splitlines()]
+        runs = [line.split(",") for line in run(["valgrind", *flags, str(program)], pathlib.Path(folder)).splitlines()]
         files = sorted(pathlib.Path(folder).glob("out.*"), key=lambda path: int(path.suffix[1:]))
         counted = [
             int(number) for path in files for number in re.findall(r"^(?:totals|summary): (\d+)", path.read_text(), re.MULTILINE)[:1]
         ]
     totals = [total for total in counted if total > 0]
     if not runs or len(runs) != len(totals):
-        sys.exit(f"{len(runs)} kernels ran, callgrind counted {len(totals)}: is '{FUNCTION}' still the measured function's name?")
+        raise NotCountedError(
+            f"{len(runs)} kernels ran, callgrind told of {len(totals)}: is '{FUNCTION}' still the measured function's name?"
+        )
     return {(kernel, model): round(total / int(calls)) for (kernel, model, calls), total in zip(runs, totals, strict=True)}
 
 
@@ -107,8 +137,17 @@ def main() -> None:
     parser.add_argument("--accept", action="store_true", help="make what is counted now the baseline")
     parser.add_argument("--out", type=pathlib.Path, help="write the counts here, and judge nothing")
     arguments = parser.parse_args()
-    rustc = compiler()
-    counts = count(build())
+    required = "FEATHERBENCH_REQUIRE_ALL" in os.environ
+    if reason := missing():
+        print(f"not counted: {reason}")
+        # Whoever asks for numbers gets none.
+        sys.exit(1 if required or arguments.accept or arguments.out else 0)
+    try:
+        rustc = compiler()
+        counts = count(build())
+    except NotCountedError as error:
+        print(f"not counted: {error}")
+        sys.exit(1)
     if arguments.out:
         write(arguments.out, rustc, counts, keep=False)
         return
@@ -120,7 +159,8 @@ def main() -> None:
         write(BASELINE, rustc, counts, keep=True)
         print(f"\naccepted: {len(counts)} counts in {BASELINE.relative_to(ROOT)}")
     elif not baseline:
-        print("\nno baseline of this compiler: nothing is judged. `python ci/instructions.py --accept` makes one.")
+        print(f"\nnot judged: {BASELINE.relative_to(ROOT)} does not have this compiler. `python ci/instructions.py --accept` adds it.")
+        sys.exit(1 if required else 0)
     elif wrong:
         print(f"\n{len(wrong)} above the baseline by more than {TOLERANCE:.0%}, or gone:\n- " + "\n- ".join(wrong))
         print("\nWhere that is meant, `python ci/instructions.py --accept` makes it the baseline.")

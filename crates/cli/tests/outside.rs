@@ -8,6 +8,8 @@
 mod compared;
 #[path = "outside/compiled.rs"]
 mod compiled;
+#[path = "outside/counted.rs"]
+mod counted;
 #[path = "outside/native.rs"]
 mod native;
 #[path = "outside/rapier.rs"]
@@ -59,6 +61,7 @@ fn main() -> ExitCode {
         ("the native peers agree with our kernels", native::peers_agree),
         ("big robots are refused or answered by the native peers", native::big_robots_are_refused_or_answered),
         ("native peers that are not there are named", native::no_compiler),
+        ("instructions that were not counted are told", counted::not_counted),
         ("rapier that cannot be built is named", rapier::not_to_be_built),
         ("rapier conforms", rapier::conforms),
         ("rapier agrees on every joint that it has", || rapier::with_rapier(rapier::agrees)),
