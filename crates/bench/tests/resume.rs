@@ -233,7 +233,7 @@ fn a_process_that_dies_loses_only_what_it_was_doing() {
     for moment in [1_usize, 2, 7, 20] {
         let mut child = Command::new(std::env::current_exe().unwrap());
         child
-            .args(["--exact", "a_process_that_dies_loses_only_what_it_was_doing", "--nocapture"])
+            .args(["--exact", "resume::a_process_that_dies_loses_only_what_it_was_doing", "--nocapture"])
             .env(FOLDER, folder.path())
             .env(MOMENT, moment.to_string());
         let output = child.output().unwrap();

@@ -71,8 +71,8 @@ fn cells_tell_agreement_deviation_and_what_is_not_offered() {
         .collect();
     assert_eq!(kinds, [("revolute", false), ("helical", false), ("helical", true), ("free", false), ("planar", false), ("planar", true)]);
 
-    // Engines in alphabetical order: mujoco, featherbench, pinocchio.
-    let (mujoco, featherbench, pinocchio) = (0, 1, 2);
+    // Engines in alphabetical order: featherbench, mujoco, pinocchio.
+    let (featherbench, mujoco, pinocchio) = (0, 1, 2);
     let expected = |state: &str, model: &str, method: &str, robots, lacking| {
         Some((state.to_owned(), model.to_owned(), method.to_owned(), robots, lacking))
     };

@@ -198,7 +198,7 @@ fn damage_is_named_with_file_line_and_column() {
     let message = after(|text| text[..text.len() - 1].to_owned()).to_string();
     assert!(message.contains("rows.csv:4: the file ends in the middle of a row"), "{message}");
     let message = after(|text| text.replacen("mujoco,", "", 1)).to_string();
-    assert!(message.contains("rows.csv:2: 26 fields instead of 27"), "{message}");
+    assert!(message.contains("rows.csv:2: 32 fields instead of 33"), "{message}");
     assert!(matches!(after(|_| String::new()), ResultsError::Header { position: 1, .. }));
 }
 

@@ -108,7 +108,7 @@ fn an_edited_robot_that_is_told_is_a_difference_and_explained() {
     edited.bodies[body].mass *= 2.0;
     let records = records(&robot, Parser::new(edited.clone(), &edited, &robot));
     let difference = row(&records, "difference", "mass");
-    assert_eq!(difference.states, edited.bodies[body].name);
+    assert_eq!(difference.body, edited.bodies[body].name);
     assert_eq!(difference.value, Some(0.5), "half of the larger mass");
     assert_eq!(row(&records, "differences", "reading").value, Some(1.0));
     assert_eq!(row(&records, "unexplained", "reading").verdict, Verdict::Pass);

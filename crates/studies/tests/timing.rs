@@ -237,7 +237,7 @@ fn quiet_but(spoil: impl Fn(&mut Cell, &mut Vec<f64>) -> bool) -> [Vec<Row>; 2] 
 /// Everything but the rows of the control itself.
 fn times(rows: &[Row]) -> Vec<&Row> {
     let times: Vec<_> = rows.iter().filter(|row| row.metric != "control").collect();
-    assert!(times.len() >= 2);
+    assert!(!times.is_empty());
     times
 }
 
@@ -313,7 +313,7 @@ fn without_a_control_no_time_counts() {
     ] {
         let [spoilt, others] = quiet_but(spoil);
         let invalid: Vec<_> = spoilt.iter().filter(|row| row.metric != "control").collect();
-        assert!(invalid.len() >= 2 && invalid.iter().all(|row| !row.valid && row.reason == words && row.value.is_some()), "{invalid:?}");
+        assert!(!invalid.is_empty() && invalid.iter().all(|row| !row.valid && row.reason == words && row.value.is_some()), "{invalid:?}");
         let controls: Vec<_> = spoilt.iter().filter(|row| row.metric == "control").collect();
         assert!(controls.iter().all(|row| row.verdict == Verdict::Error && row.value.is_none() && row.reason == words), "{controls:?}");
         assert_eq!(controls.len(), usize::from(words.contains("stopped")));

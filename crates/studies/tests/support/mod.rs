@@ -228,7 +228,7 @@ pub fn suite(expected: &[Row]) -> Suite {
     for row in expected.iter().filter(|row| accounted(row)) {
         *expect.entry((&row.engine, &row.quantity)).or_default() += 1;
     }
-    let mut text = format!("about = \"one robot\"\nseed = {SEED}\nthorough = true\nproblem = []\n");
+    let mut text = format!("about = \"one robot\"\nseed = {SEED}\nthorough = true\nrobot = []\n");
     text += &format!("[agreement]\nstates = {STATES}\nengines = [\"double\"]\n[expect]\n");
     for ((engine, quantity), count) in expect {
         text += &format!("{engine}.{quantity} = {count}\n");
