@@ -1,7 +1,8 @@
 // Digits: the median error against the truth along one axis, and the table of all medians.
 featherbench.ready(() => {
   const { byId, chunks, decades, make, short, variable } = featherbench;
-  const { ZERO, bars, colour, dash, draw, fitted, joined, layout, live, plain, symbol } = featherbench.plots;
+  const { colour, dash, draw, exponent, fitted, joined, layout, least, live, symbol, ZERO } = featherbench.plots;
+  const { power } = featherbench.axes;
   const overview = chunks.get("overview");
   const digits = chunks.get("figures")?.digits;
   const table = byId("digits-table");
@@ -61,45 +62,34 @@ featherbench.ready(() => {
     const curves = curvesOf(chosen(), axis).filter((curve) => curve.family === family);
     const methods = new Map();
     const floors = new Map();
-    const traces = [];
-    let [least, most] = [Infinity, 0];
+    const series = [];
     for (const curve of curves) {
       const answer = digits.answers[curve.answer];
       const index = methods.get(answer.engine) ?? 0;
       methods.set(answer.engine, index + 1);
       const points = curve.points.map(([x, cell]) => ({ x, ...digits.cells[cell] }));
-      for (const { x, floor } of points) {
-        [least, most] = [Math.min(least, x), Math.max(most, x)];
-        if (floor !== null) floors.set(x, floor);
-      }
-      const ink = colour(answer.engine);
-      const label = joined(engine(answer), answer.method, answer.scalar === "f64" ? "" : answer.scalar);
-      if (curve.fit) traces.push(fitted(curve.fit, curve.span, ink, label));
-      traces.push({
-        name: curve.fit ? `${label}  <i>p = ${curve.fit.slope.toFixed(2)}</i>` : label, legendgroup: label, mode: "markers+lines",
-        x: points.map((point) => point.x), y: points.map((point) => Math.max(point.median, ZERO)),
-        line: { color: ink, width: 1.2, dash: dash(index) },
-        marker: {
-          color: ink, size: 8, line: { width: 1, color: ink },
-          symbol: points.map((point) => symbol(index) + (point.median < ZERO || point.quantity !== answer.quantity ? "-open" : "")),
-        },
-        error_y: bars(points, (point) => point.q1, (point) => point.median, (point) => point.q3, ink),
-        text: points.map((point) => lines(point).map((line, place) => (place === 0 ? `<b>${plain(line)}</b>` : plain(line))).join("<br>")),
-        hovertemplate: `%{text}<extra>${label}</extra>`,
-        customdata: points.map((point) => ({ model: point.model, filters: filters(point) })),
+      for (const { x, floor } of points) if (floor !== null) floors.set(x, floor);
+      series.push({
+        name: joined(engine(answer), answer.method, answer.scalar === "f64" ? "" : answer.scalar), note: exponent(curve.fit?.slope), ink: colour(answer.engine),
+        line: { width: 1.3, dash: dash(index) }, mark: { symbol: symbol(index), size: 8 }, broad: curve.fit ? fitted(curve.fit, curve.span) : [],
+        points: points.map((point) => ({
+          x: point.x, y: least(point.median), low: least(point.q1), high: least(point.q3), hollow: point.median < ZERO || point.quantity !== answer.quantity,
+          tip: lines(point), target: { model: point.model, filters: filters(point) },
+        })),
       });
     }
     if (floors.size > 0) {
-      const places = [...floors.keys()].sort((a, b) => a - b);
-      traces.push({ name: "structured floor", x: places, y: places.map((x) => floors.get(x)), mode: "lines+markers", line: { color: variable("--ink"), width: 1.5, dash: "dash" },
-        marker: { color: variable("--ink"), symbol: "line-ew-open", size: 10 }, hovertemplate: "floor %{y:.2e}<extra></extra>" });
+      series.push({
+        name: "structured floor", ink: variable("--ink"), line: { width: 1.5, dash: "dash" }, mark: { symbol: "tick", size: 10 },
+        points: [...floors].sort(([a], [b]) => a - b).map(([x, floor]) => ({ x, y: floor, tip: [`floor ${short(floor)}`] })),
+      });
     }
-    if (most > 0) traces.push({ name: "2⁻⁵²", x: [least, most], y: [ULP, ULP], mode: "lines", hoverinfo: "skip", line: { color: variable("--soft"), width: 1, dash: "dot" } });
-    const shape = layout(AXES[axis], innerWidth < 760 ? "median relative error" : `median relative error: ${plain(title(chosen()))}`);
-    // Marks at the robots themselves: between them there is nothing.
+    series.push({ name: "2⁻⁵²", ink: variable("--soft"), guide: ULP, line: { width: 1.2, dash: "dot" } });
+    const shape = layout(AXES[axis], `median relative error: ${title(chosen())}`, true);
+    // Ticks at the robots themselves: between them there is nothing.
     const places = [...new Set(curves.flatMap((curve) => curve.points.map(([x]) => x)))].sort((a, b) => a - b);
-    Object.assign(shape.xaxis, { tickvals: places, ticktext: places.map((x) => (x >= 1e-2 && x < 1e4 ? String(x) : `10<sup>${Number(Math.log10(x).toFixed(2))}</sup>`)) });
-    draw("digits-plot", traces, shape);
+    shape.x.ticks = places.map((x) => (x >= 1e-2 && x < 1e4 ? [x, String(x)] : [x, ...power(x)]));
+    draw("digits-plot", series, shape);
     for (const row of byId("digits-growth").tBodies[0].rows) row.hidden = !curves.includes(digits.curves[row.dataset.k]);
   }
 

@@ -1,7 +1,7 @@
 // What all plots share: colours, marks, axes, and the click on a mark that opens its rows.
 featherbench.plots = (() => {
-  const { byId, chunks, variable, make } = featherbench;
-  const SYMBOLS = ["circle", "square", "diamond", "triangle-up", "cross", "star", "pentagon", "hexagram"];
+  const { byId, chart, chunks, variable, make } = featherbench;
+  const SYMBOLS = ["circle", "square", "diamond", "triangle", "plus", "star", "pentagon", "hexagram"];
   const DASHES = ["solid", "dash", "dot", "dashdot", "longdash", "longdashdot"];
   const COLOURS = 8;
   // Logarithms have no place for zero: what is smaller stands here, hollow.
@@ -9,71 +9,33 @@ featherbench.plots = (() => {
   const colour = (index) => variable(`--series-${index % COLOURS}`);
   const symbol = (index) => SYMBOLS[index % SYMBOLS.length];
   const dash = (index) => DASHES[index % DASHES.length];
-  // The plotting script reads a little markup in its texts: names are data and must stay text.
-  const plain = (text) => String(text).replace(/&/g, "&amp;").replace(/</g, "&lt;").replace(/>/g, "&gt;");
-  const joined = (...parts) => plain(parts.filter(Boolean).join(" · "));
+  const joined = (...parts) => parts.filter(Boolean).join(" · ");
+  const least = (value) => (value === null ? null : Math.max(value, ZERO));
+  // The exponent of a fit beside a name.
+  const exponent = (slope, digits = 2) => (slope === undefined || slope === null ? "" : `p = ${slope.toFixed(digits).replace("-", "−")}`);
 
-  // Narrow windows have their legend below the plot.
-  const narrow = matchMedia("(max-width: 760px)");
-
-  function layout(x, y) {
-    const axis = (title) => ({
-      title: { text: title, standoff: 12 }, type: "log", exponentformat: "power", gridcolor: variable("--line"), zeroline: false,
-      linecolor: variable("--soft"), ticks: "outside", tickcolor: variable("--soft"), minor: { ticks: "outside", ticklen: 2, tickcolor: variable("--line") },
-    });
-    return {
-      paper_bgcolor: "rgba(0,0,0,0)", plot_bgcolor: "rgba(0,0,0,0)",
-      font: { family: variable("--sans"), size: 13, color: variable("--ink") },
-      margin: { l: 76, r: 16, t: 34, b: 56 },
-      modebar: { bgcolor: "rgba(0,0,0,0)", color: variable("--soft"), activecolor: variable("--accent") },
-      hovermode: "closest", hoverlabel: { bgcolor: variable("--panel"), bordercolor: variable("--line"), font: { color: variable("--ink") }, align: "left" },
-      legend: narrow.matches ? { orientation: "h", y: -0.22 } : { x: 1.01, y: 1 },
-      xaxis: axis(x), yaxis: axis(y),
-    };
+  // Two logarithmic axes; `zero` where what is as small as ZERO stands on the lower edge.
+  function layout(x, y, zero = false) {
+    return { x: { title: x, log: true }, y: { title: y, log: true, least: zero ? ZERO : undefined } };
   }
 
-  function draw(id, traces, shape) {
-    const element = byId(id);
-    if (typeof Plotly === "undefined") {
-      element.replaceChildren(make("p", { className: "empty" }, "plotly.min.js is missing: the plot cannot be drawn."));
-      return;
-    }
-    const config = { responsive: true, displaylogo: false, modeBarButtonsToRemove: ["select2d", "lasso2d", "autoScale2d"] };
-    Plotly.react(element, traces, shape, config);
-    if (!element.dataset.live) {
-      element.dataset.live = "yes";
-      element.on("plotly_click", (event) => {
-        const target = event.points[0]?.customdata;
-        if (target) featherbench.open(`model-${target.model}`, target.filters, chunks.get("overview").models[target.model].name);
-      });
-    }
-  }
-
-  // Bars from one quantile to another about the marks, kept on the paper of a logarithmic axis.
-  function bars(points, low, middle, high, ink) {
-    if (!points.some((point) => low(point) !== null && high(point) !== null)) return undefined;
-    const least = (value) => Math.max(value, ZERO);
-    const end = (point, of) => (of(point) === null ? 0 : Math.abs(least(of(point)) - least(middle(point))));
-    return { type: "data", symmetric: false, thickness: 1, width: 2, color: ink, array: points.map((point) => end(point, high)), arrayminus: points.map((point) => end(point, low)) };
+  function draw(id, series, shape) {
+    chart(byId(id), series, shape, (target) => featherbench.open(`model-${target.model}`, target.filters, chunks.get("overview").models[target.model].name));
   }
 
   // The broad line of a power law from one end to another.
-  const fitted = (fit, ends, ink, group) => ({
-    x: ends, y: ends.map((x) => 10 ** (fit.intercept + fit.slope * Math.log10(x))), mode: "lines", hoverinfo: "skip",
-    showlegend: false, legendgroup: group, line: { color: ink, width: 5 }, opacity: 0.18,
-  });
+  const fitted = (fit, ends) => ends.map((x) => [x, 10 ** (fit.intercept + fit.slope * Math.log10(x))]);
 
   function choices(select, values) {
     for (const value of values) if (value !== "") select.append(make("option", { value }, value));
   }
 
-  // Draws now, when a control changes, when the theme does, and when the window becomes narrow or wide.
+  // Draws now, when a control changes, and when the theme does: colours are part of the drawing.
   function live(task, ...controls) {
-    narrow.addEventListener("change", task);
     for (const id of controls) byId(id).addEventListener("change", task);
     document.addEventListener("themechange", task);
     task();
   }
 
-  return { ZERO, colour, symbol, dash, plain, joined, layout, draw, bars, fitted, choices, live };
+  return { ZERO, least, colour, symbol, dash, joined, exponent, layout, draw, fitted, choices, live };
 })();

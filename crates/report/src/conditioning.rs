@@ -84,8 +84,8 @@ pub fn section(overview: &Overview, families: &[Family]) -> Markup {
                     "Right, on one scale: the relative error that κ would excuse, κ·2⁻⁵³, and the structured floor, which rounding the inputs makes unavoidable."
                 }
                 div.pair {
-                    div #conditioning-plot.plot role="img" aria-label="Plot of the condition number against the degrees of freedom" {}
-                    div #floor-plot.plot role="img" aria-label="Plot of the error that the condition number would excuse, and of the structured floor" {}
+                    div #conditioning-plot.plot role="group" aria-label="Plot of the condition number against the degrees of freedom" {}
+                    div #floor-plot.plot role="group" aria-label="Plot of the error that the condition number would excuse, and of the structured floor" {}
                 }
                 div.scroll {
                     table.compact.sortable {

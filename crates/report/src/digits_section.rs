@@ -35,7 +35,7 @@ pub fn section(overview: &Overview, digits: &Digits) -> Markup {
                     }
                 }
                 @if !digits.curves.is_empty() {
-                    div #digits-plot.plot role="img" aria-label="Plot of the median error against the truth" {}
+                    div #digits-plot.plot role="group" aria-label="Plot of the median error against the truth" {}
                     p.note {
                         "Marks: the median over the states, with bars from the first to the third quartile. Dashed: the structured floor, what half a unit in the last "
                         "place of every input can do to the answer when all of it adds up; chance leaves about a tenth of it. Dotted: 2⁻⁵², where no digit is lost. "

@@ -28,7 +28,7 @@ pub fn depth(figures: &Figures) -> Markup {
                     label { "Family " select #depth-family { option value="" { "all" } } }
                     label { "States " select #depth-case { option value="" { "all" } } }
                 }
-                div #depth-plot.plot role="img" aria-label="Plot of error against depth" {}
+                div #depth-plot.plot role="group" aria-label="Plot of error against depth" {}
                 p.note {
                     "Dashed: the tightest gate at each depth. Dotted: half the spacing of doubles at 1, 2⁻⁵³. Hollow marks at the lower edge are errors of exactly zero. "
                     "Lines join the worst error at each depth."
@@ -67,7 +67,7 @@ pub fn time(overview: &Overview, figures: &Figures) -> Markup {
                     } }
                     label.check { input #time-fit type="checkbox" checked; " fitted lines" }
                 }
-                div #time-plot.plot role="img" aria-label="Plot of time against size" {}
+                div #time-plot.plot role="group" aria-label="Plot of time against size" {}
                 details {
                     summary { "Growth: fitted exponents" }
                     p.note { "Time ∝ nvᵖ by least squares on logarithms, with the standard error of p. Small models, where fixed costs rule, flatten a fit over all sizes." }

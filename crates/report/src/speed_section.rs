@@ -44,7 +44,7 @@ pub fn section(run: &RunInfo, overview: &Overview, speed: &Speed) -> Markup {
                         } }
                         label { "Inputs " select #speed-case { option value="stream" { "stream: another state each call" } option value="hot" { "hot: one state again and again" } } }
                     }
-                    div #speed-plot.plot role="img" aria-label="Plot of ratios of times" {}
+                    div #speed-plot.plot role="group" aria-label="Plot of ratios of times" {}
                     p.note { "Grey: ± 2 %, within which this experiment calls nothing a difference. Hollow marks do not count: see below." }
                     (estimates(overview, speed))
                     (summary(overview, speed))

@@ -89,8 +89,8 @@ pub fn section(overview: &Overview, lines: &[StepLine]) -> Markup {
                     } }
                 }
                 div.pair {
-                    div #steps-plot.plot role="img" aria-label="Plot of the acceleration's error against the step" {}
-                    div #drift-plot.plot role="img" aria-label="Plot of the energy's drift against the step" {}
+                    div #steps-plot.plot role="group" aria-label="Plot of the acceleration's error against the step" {}
+                    div #drift-plot.plot role="group" aria-label="Plot of the energy's drift against the step" {}
                 }
                 div.scroll.tall {
                     table.compact.sortable {

@@ -101,7 +101,7 @@ pub fn section(overview: &Overview, points: &[Tradeoff]) -> Markup {
                         @for &(model, _) in &models { option value=(model) selected[Some(model) == opening] { (overview.models[model].name) } }
                     } }
                 }
-                div #tradeoff-plot.plot role="img" aria-label="Plot of true error against time" {}
+                div #tradeoff-plot.plot role="group" aria-label="Plot of true error against time" {}
                 details {
                     summary { "As a table" }
                     div.scroll.tall {
