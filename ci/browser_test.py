@@ -34,6 +34,7 @@ class Browser:
     def __init__(self, profile: str) -> None:
         self.driver = subprocess.Popen(["chromedriver", "--port=0"], stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
         self.session: str | None = None
+        self.downloads = pathlib.Path(profile) / "downloads"
         try:
             for line in self.driver.stdout or ():
                 if port := re.search(r"started successfully on port (\d+)", line):
@@ -55,7 +56,7 @@ class Browser:
                 f"--user-data-dir={profile}",
                 "--window-size=1440,1000",
             ]
-            options: dict[str, Any] = {"args": flags}
+            options: dict[str, Any] = {"args": flags, "prefs": {"download.default_directory": str(self.downloads)}}
             if binary := shutil.which("chromium") or shutil.which("chromium-browser") or shutil.which("google-chrome"):
                 options["binary"] = binary
             wanted = {"browserName": "chrome", "goog:chromeOptions": options, "goog:loggingPrefs": {"browser": "ALL", "performance": "ALL"}}
@@ -135,7 +136,18 @@ class Browser:
 
 # What the page shows, as scripts for it.
 ROWS = "return document.querySelector('#rows').open ? document.querySelectorAll('#rows-table tbody tr').length : 0"
-DRAWN = "const box = document.getElementById(arguments[0]); return box.querySelectorAll('.scatterlayer .trace').length"
+DRAWN = "return document.getElementById(arguments[0]).querySelectorAll('.marks .mark').length"
+PLOTS = [
+    "digits-plot",
+    "depth-plot",
+    "time-plot",
+    "speed-plot",
+    "tradeoff-plot",
+    "conditioning-plot",
+    "floor-plot",
+    "steps-plot",
+    "drift-plot",
+]
 CLOSED = "return !document.querySelector('#rows').open"
 BACKGROUND = "return getComputedStyle(document.body).backgroundColor"
 # Every section in its order; those that are not in ALWAYS appear with their rows alone.
@@ -183,12 +195,24 @@ def checks(page: Browser, address: str, shots: pathlib.Path | None) -> Checks:
     yield "the page is no wider than its window", width[0] <= width[1], width
     shot("top")
 
-    for box in ["digits-plot", "depth-plot", "time-plot", "speed-plot", "tradeoff-plot", "conditioning-plot", "floor-plot"]:
-        if has(f"#{box}"):
-            traces = page.until(DRAWN, box)
-            yield f"{box} has traces", traces > 0, traces
-            page.run("document.getElementById(arguments[0]).scrollIntoView({block: 'center', behavior: 'instant'})", box)
-            shot(box)
+    plots = [box for box in PLOTS if has(f"#{box}")]
+    for box in plots:
+        points = page.until(DRAWN, box)
+        yield f"{box} draws points", points > 0, points
+        page.run("document.getElementById(arguments[0]).scrollIntoView({block: 'center', behavior: 'instant'})", box)
+        shot(box)
+    for box in plots:
+        yield from chart(page, box, shot)
+    if plots:
+        page.click(f"#{plots[0]} .chart-save")
+        file = page.downloads / f"featherbench-{plots[0]}.svg"
+        end = time.monotonic() + 20
+        while not file.is_file() and time.monotonic() < end:
+            time.sleep(0.05)
+        text = file.read_text() if file.is_file() else ""
+        yield "a figure is saved as a file", text.startswith("<svg xmlns=") and text.endswith("</svg>"), text[:200]
+    yield from axes(page)
+    yield from awkward(page)
 
     listed = page.run("return document.querySelectorAll('#conventions tbody tr').length")
     yield "conventions are listed", listed > 0, listed
@@ -268,7 +292,7 @@ def checks(page: Browser, address: str, shots: pathlib.Path | None) -> Checks:
             after = page.until(f"const now = (() => {{ {title} }})(); return now !== arguments[0] && now", before)
             yield "another quantity can be plotted", bool(after) and page.until(DRAWN, "depth-plot") > 0, [before, after]
         marks = """
-            const mark = document.querySelector('#depth-plot .points path');
+            const mark = document.querySelector('#depth-plot .marks .mark');
             if (!mark) return null;
             mark.scrollIntoView({block: 'center', behavior: 'instant'});
             const box = mark.getBoundingClientRect();
@@ -294,7 +318,7 @@ def checks(page: Browser, address: str, shots: pathlib.Path | None) -> Checks:
         page.press(ESCAPE)
 
     before = page.run(BACKGROUND)
-    ink = "const title = document.querySelector('.ytitle'); return title && title.style.fill"
+    ink = "const title = document.querySelector('.ytitle'); return title && title.getAttribute('fill')"
     plot_before = page.run(ink)
     page.run("scrollTo({top: 0, behavior: 'instant'})")
     page.click("#theme")
@@ -319,6 +343,12 @@ def checks(page: Browser, address: str, shots: pathlib.Path | None) -> Checks:
     narrow = page.until("return innerWidth < 600 && document.documentElement.scrollWidth <= innerWidth")
     yield "a narrow window does not scroll sideways", narrow, page.run("return [document.documentElement.scrollWidth, innerWidth]")
     shot("narrow")
+    if plots:
+        sizes = """
+            const drawings = arguments[0].map(id => document.querySelector(`#${id} svg[role=img]`));
+            return drawings.map(svg => [svg.viewBox.baseVal.width, svg.clientWidth])"""
+        fitted = f"return (() => {{ {sizes} }})().every(([drawn, wide]) => drawn === wide && wide < 500)"
+        yield "the plots are drawn again for a narrow window", page.until(fitted, plots), page.run(sizes, plots)
 
     errors = [entry["message"] for entry in page.log("browser") if entry["level"] in ("SEVERE", "WARNING")]
     yield "the console is silent", not errors, errors[:3]
@@ -329,6 +359,206 @@ def checks(page: Browser, address: str, shots: pathlib.Path | None) -> Checks:
             asked.add(message["params"]["request"]["url"])
     outside = [url for url in asked if url.startswith(("http:", "https:", "ws:", "wss:"))]
     yield "nothing is asked of the network", bool(asked) and not outside, outside[:3]
+
+
+# A plot as its reader has it: texts of the ticks, names that are switched on, and whether the zoom can be taken back.
+PLOT = """
+    const box = document.getElementById(arguments[0]);
+    const texts = selector => [...box.querySelectorAll(selector)].map(text => text.textContent);
+    return {
+      points: box.querySelectorAll('.marks .mark').length,
+      ticks: [texts('.xticks text'), texts('.yticks text')],
+      names: [...box.querySelectorAll('.chart-names button')].map(button => button.ariaPressed === 'true'),
+      nothing: texts('.nothing').join(''),
+      zoomed: !box.querySelector('.chart-back').hidden,
+    }"""
+# Where the mark is that has the most room about it, and the edges of the drawing.
+LONELY = """
+    const svg = document.querySelector(`#${arguments[0]} svg[role=img]`);
+    svg.scrollIntoView({block: 'center', behavior: 'instant'});
+    const middle = box => [box.x + box.width / 2, box.y + box.height / 2];
+    const marks = [...svg.querySelectorAll('.marks .mark')].map(mark => middle(mark.getBoundingClientRect()));
+    const room = ([x, y]) => Math.min(...marks.map(([a, b]) => Math.hypot(a - x, b - y)).filter(distance => distance > 1), 1e9);
+    const rooms = marks.map(room);
+    const edge = svg.getBoundingClientRect();
+    return {mark: marks[rooms.indexOf(Math.max(...rooms))], edge: [edge.left, edge.top, edge.right, edge.bottom]}"""
+# The lines that explain a mark.
+EXPLAINED = """
+    const tip = document.querySelector(`#${arguments[0]} .chart-tip`);
+    return tip.hidden ? '' : [...tip.children].map(line => line.textContent).join('|')"""
+
+
+def pointer(page: Browser, *steps: str | tuple[float, float]) -> None:
+    """Move the mouse to places on the screen, press (`down`) and let go (`up`)."""
+    actions: list[dict[str, Any]] = []
+    for step in steps:
+        if step == "down" or step == "up":
+            actions.append({"type": "pointerDown" if step == "down" else "pointerUp", "button": 0})
+        else:
+            actions.append({"type": "pointerMove", "duration": 30, "x": round(step[0]), "y": round(step[1])})  # type: ignore[arg-type]
+    page.post("/actions", actions=[{"type": "pointer", "id": "mouse", "actions": actions}])
+
+
+def chart(page: Browser, box: str, shot: Shot) -> Checks:
+    """Check what a plot does under the mouse and the keyboard."""
+    first = page.run(PLOT, box)
+    if first["points"] == 0:
+        return
+    numbers = [text for axis in first["ticks"] for text in axis]
+    yield (
+        f"{box} has ticks on both axes",
+        all(first["ticks"]) and all("NaN" not in text and "undefined" not in text for text in numbers),
+        numbers,
+    )
+    label = page.run("return document.querySelector(`#${arguments[0]} svg[role=img]`).ariaLabel", box)
+    yield f"{box} is described in words", f"{first['points']} points" in label, label
+
+    place = page.run(LONELY, box)
+    x, y = place["mark"]
+    pointer(page, (x + 3, y - 3), (x, y))
+    text = page.run(EXPLAINED, box)
+    yield f"{box} explains the mark that is pointed at", len(text) > 5 and "undefined" not in text and "NaN" not in text, text
+    shot(f"{box}-tip")
+    left, top, _, bottom = place["edge"]
+    pointer(page, (left + 2, bottom - 2))
+    yield f"{box} explains nothing where no mark is", page.run(EXPLAINED, box) == "", ""
+
+    page.run("document.querySelector(`#${arguments[0]} svg[role=img]`).focus()", box)
+    page.press(ARROW_RIGHT)
+    text = page.run(EXPLAINED, box)
+    page.press(ARROW_RIGHT)
+    page.press(ARROW_DOWN)
+    other = page.run(EXPLAINED, box)
+    yield f"{box} is walked with the arrow keys", len(text) > 5 and (first["points"] < 2 or other != text), [text, other]
+    page.press(ESCAPE)
+
+    name = f"#{box} .chart-names button"
+    page.click(name)
+    off = page.run(PLOT, box)
+    yield f"{box}: a click on a name switches it off", first["names"][0] and off["names"] == [False, *first["names"][1:]], off["names"]
+    page.run("document.querySelector(arguments[0]).focus()", name)
+    page.press(ENTER)
+    again = page.run(PLOT, box)
+    yield f"{box}: Enter on a name switches it on again", again == first, [again, first]
+    buttons = "[...document.querySelectorAll(`#${arguments[0]} .chart-names button`)]"
+    page.run(f"{buttons}.forEach(button => button.click())", box)
+    none = page.run(PLOT, box)
+    yield f"{box} without any series says so", none["points"] == 0 and none["nothing"] != "", none["nothing"]
+    page.run(f"{buttons}.forEach(button => button.click())", box)
+    yield f"{box} comes back whole", page.run(PLOT, box) == first, ""
+
+    place = page.run(LONELY, box)
+    x, y = place["mark"]
+    left, top, right, bottom = place["edge"]
+    for way in ["Escape", "a double click", "its button"]:
+        begin = (x - min(60, x - left - 5), max(y - 50, top + 5))
+        pointer(page, begin, "down", (x, y), (x + min(50, right - x - 5), y + min(40, bottom - y - 5)), "up")
+        zoomed = page.run(PLOT, box)
+        good = zoomed["zoomed"] and 0 < zoomed["points"] <= first["points"] and zoomed["ticks"] != first["ticks"]
+        yield f"{box}: a drawn rectangle zooms, and opens no rows", good and not page.run(ROWS), [zoomed["points"], zoomed["ticks"]]
+        if way == "Escape":
+            shot(f"{box}-zoom")
+            page.press(ESCAPE)
+        elif way == "its button":
+            page.click(f"#{box} .chart-back")
+        else:
+            corner = (left + 3, bottom - 3)
+            pointer(page, corner, "down", "up", "down", "up")
+        whole = page.run(PLOT, box)
+        yield f"{box} is whole again after {way}", whole == first, [whole["zoomed"], whole["points"]]
+        place = page.run(LONELY, box)
+        x, y = place["mark"]
+        left, top, right, bottom = place["edge"]
+
+    saved = page.run(
+        """
+        const text = featherbench.chart.figure(document.getElementById(arguments[0]));
+        const file = new DOMParser().parseFromString(text, 'image/svg+xml');
+        const named = [...document.querySelectorAll(`#${arguments[0]} .chart-names span`)].map(span => span.textContent);
+        return {
+          root: file.documentElement.tagName,
+          marks: file.querySelectorAll('.mark').length,
+          paper: file.querySelector('rect').getAttribute('fill'),
+          names: named.every(name => [...file.querySelectorAll('text')].some(text => text.textContent.startsWith(name))),
+          borrowed: text.includes('var(') || text.includes('currentColor'),
+        }""",
+        box,
+    )
+    whole = saved["root"] == "svg" and saved["marks"] == first["points"] and saved["names"]
+    yield f"{box} as a file has its marks, names and colours", whole and saved["paper"].startswith("#") and not saved["borrowed"], saved
+
+
+def axes(page: Browser) -> Checks:
+    """Check ticks and labels by numbers."""
+    found = page.run("""
+        const {ticks, labels, range} = featherbench.axes;
+        const texts = values => labels(values).map(([words, exponent]) => exponent === undefined ? words : `${words}^${exponent}`);
+        const near = values => values.map(value => Number(value.toPrecision(12)));
+        return [
+          texts(ticks(true, [-16.3, -7.9], 10).major),
+          ticks(true, [-16.3, -7.9], 10).minor.length > 0,
+          texts(ticks(true, [0.1, 2.2], 9).major),
+          texts(ticks(true, [2, 3], 5).major),
+          near(ticks(true, [Math.log10(1.2), Math.log10(1.9)], 8).major),
+          near(ticks(false, [-0.13, 0.52], 8).major),
+          texts([0, 12000, 250000]),
+          texts([2e-14, 5e-14]),
+          texts([-0.5, 1.5]),
+          range(true, [0, -1, NaN, null, undefined, Infinity]),
+          range(true, [10]),
+          range(false, [3, 3]),
+        ]""")
+    wanted = [
+        ["10^−16", "10^−15", "10^−14", "10^−13", "10^−12", "10^−11", "10^−10", "10^−9", "10^−8"],
+        True,
+        ["2", "5", "10", "20", "50", "100"],
+        ["100", "200", "500", "1000"],
+        [1.2, 1.3, 1.4, 1.5, 1.6, 1.7, 1.8, 1.9],
+        [-0.1, 0, 0.1, 0.2, 0.3, 0.4, 0.5],
+        ["0", "12\u202f000", "250\u202f000"],
+        ["2×10^−14", "5×10^−14"],
+        ["−0.5", "1.5"],
+        None,
+        [0.5, 1.5],
+        [2.7, 3.3],
+    ]
+    for index, (one, other) in enumerate(zip(found, wanted, strict=True)):
+        yield f"ticks and labels are right ({index + 1} of {len(wanted)})", one == other, [one, other]
+
+
+def awkward(page: Browser) -> Checks:
+    """Check plots of numbers that have no place."""
+    found = page.run("""
+        const place = document.createElement('div');
+        Object.assign(place, {id: 'awkward', className: 'plot'});
+        document.querySelector('main').append(place);
+        const log = {x: {title: 'x', log: true}, y: {title: 'y', log: true}};
+        const straight = {x: {title: 'x'}, y: {title: 'y'}};
+        const look = (points, shape, more) => {
+          featherbench.chart(place, [{name: 'one', ink: '#123456', points, mark: {symbol: 'circle', size: 8}, line: {}, ...more}], shape);
+          const odd = /NaN|Infinity|undefined/.test(place.querySelector('svg').outerHTML);
+          return [place.querySelectorAll('.mark').length, place.querySelector('.nothing')?.textContent ?? '', odd];
+        };
+        try {
+          return [
+            look([], log),
+            look(undefined, log),
+            look([{x: 0, y: 1}, {x: -1, y: 1}, {x: 1, y: NaN}, {x: null, y: 1}, {y: Infinity}], log),
+            look([{x: 1, y: 0}, {x: 1, y: 1e-300, low: 0, high: null}, {x: 1e300, y: 2}, {x: NaN, y: 2}], log),
+            look([{x: -1, y: 0, low: -2, high: 1}, {x: NaN, y: 0}], straight),
+            look([{x: 5, y: 5}], straight),
+            look([{x: 1, y: 1, label: 'a'}], log, {guide: 0, broad: [[0, 1], [1, 0]]}),
+            look([{x: 1, y: 1}], {...log, x: {range: [0, 2], ticks: [[1, 'a name'], [NaN, 'none']], turn: true}}),
+            look([], {...log, empty: 'words'}),
+          ];
+        } catch (error) {
+          return String(error);
+        } finally {
+          place.remove();
+        }""")
+    none = [0, "no values to draw", False]
+    wanted = [none, none, none, [2, "", False], [1, "", False], [1, "", False], [1, "", False], [1, "", False], [0, "words", False]]
+    yield "plots leave out what has no place, and say when nothing is left", found == wanted, found
 
 
 def joints(page: Browser, shot: Shot) -> Checks:
@@ -444,7 +674,7 @@ def speed(page: Browser, shot: Shot) -> Checks:
             page.choose("#speed-case", case)
             page.choose("#speed-quantity", quantity)
             seen = page.until(f"const now = (() => {{ {title} }})(); return now.startsWith(arguments[0]) && now", words)
-            ends = page.until("return document.querySelectorAll('#speed-plot .errorbar').length")
+            ends = page.until("return document.querySelectorAll('#speed-plot .bar').length")
             yield (
                 f"ratios of {words}, {case}, are plotted with intervals",
                 bool(seen) and page.until(DRAWN, "speed-plot") > 0 and ends > 0,
