@@ -1,8 +1,8 @@
 //! A run's records as a folder that opens in a browser: [`write()`] is a pure function of its arguments and reads no clock.
 //!
 //! The folder needs no network and no server: `index.html` carries every table that is worth printing, `data/*.js` carries the rows, which
-//! are read by adding a script element when a cell is clicked (a page under `file://` may not fetch), and the plots are drawn by the
-//! plotting script that lies beside them. Every number on the page is made from records, and every cell and point leads back to its rows.
+//! are read by adding a script element when a cell is clicked (a page under `file://` may not fetch), and `app.js` draws the plots as
+//! SVG. Every number on the page is made from records, and every cell and point leads back to its rows.
 //!
 //! Stages: records are grouped ([`overview`], [`figures`], [`digits`]), turned into HTML (one module per section) and into chunks ([`chunks`]), and
 //! everything is written with `index.html` last.
@@ -88,9 +88,6 @@ pub enum ReportError {
     /// The data of the page could not be turned into JSON.
     #[error("the report's data: {0}")]
     Json(#[from] serde_json::Error),
-    /// The plotting library has changed the form in which it hands out its script.
-    #[error("the plotting library no longer embeds its script as expected")]
-    PlottingScript,
 }
 
 /// Writes the report of a run into the folder `out`, which may already hold the run's own files; the page links to `rows.csv`,
@@ -102,7 +99,6 @@ pub fn write(run: &RunInfo, records: &[Row], out: &Path) -> Result<ReportPaths, 
     let mut files = vec![
         ("style.css".to_owned(), STYLE.as_bytes().to_vec()),
         ("app.js".to_owned(), SCRIPT.as_bytes().to_vec()),
-        ("plotly.min.js".to_owned(), plotting_script()?.into_bytes()),
         ("data/overview.js".to_owned(), chunks::script("overview", &overview.data())?),
         ("data/figures.js".to_owned(), chunks::script("figures", &figures)?),
     ];
@@ -117,14 +113,4 @@ pub fn write(run: &RunInfo, records: &[Row], out: &Path) -> Result<ReportPaths, 
         written.push(path);
     }
     Ok(ReportPaths { index: out.join("index.html"), files: written })
-}
-
-/// The plotting library's own script, taken out of the element in which the library wraps it.
-fn plotting_script() -> Result<String, ReportError> {
-    let sources = plotly::Plot::offline_js_sources();
-    let body = sources.split_once("<script type=\"text/javascript\">").and_then(|(_, rest)| rest.split_once("</script>"));
-    match body {
-        Some((script, _)) if script.contains("plotly.js") => Ok(script.to_owned()),
-        _ => Err(ReportError::PlottingScript),
-    }
 }

@@ -52,7 +52,6 @@ pub fn render(run: &RunInfo, records: &[Row], overview: &Overview, figures: &Fig
                 script src="app.js" {}
                 script defer src="data/overview.js" {}
                 script defer src="data/figures.js" {}
-                script defer src="plotly.min.js" {}
             }
             body {
                 a.to-content href="#verdict" { "Skip to the verdict" }
