@@ -586,7 +586,7 @@ def joints(page: Browser, shot: Shot) -> Checks:
     seen = page.run("""
         const heads = [...document.querySelectorAll('#rows-table th')].map(head => head.textContent);
         const table = [...document.querySelectorAll('#rows-table tbody tr')];
-        return ['engine', 'quantity', 'model'].map(name => [...new Set(table.map(row => row.cells[heads.indexOf(name)].textContent))])""")
+        return ['engine', 'quantity', 'robot'].map(name => [...new Set(table.map(row => row.cells[heads.indexOf(name)].textContent))])""")
     yield (
         "a click on a cell of the joint matrix shows its rows alone",
         rows > 0 and all(len(part) == 1 for part in seen) and seen[2][0].startswith("joints-"),
