@@ -138,7 +138,7 @@ class Browser:
 ROWS = "return document.querySelector('#rows').open ? document.querySelectorAll('#rows-table tbody tr').length : 0"
 DRAWN = "return document.getElementById(arguments[0]).querySelectorAll('.marks .mark').length"
 PLOTS = [
-    "digits-plot",
+    "accuracy-plot",
     "depth-plot",
     "time-plot",
     "speed-plot",
@@ -154,9 +154,9 @@ BACKGROUND = "return getComputedStyle(document.body).backgroundColor"
 SECTIONS = [
     "verdict",
     "agreement",
-    "reading",
+    "import",
     "joints",
-    "digits",
+    "accuracy",
     "depth",
     "time",
     "speed",
@@ -170,7 +170,7 @@ SECTIONS = [
     "method",
     "unpassed",
 ]
-ALWAYS = set(SECTIONS) - {"reading", "joints", "digits", "speed", "tradeoff", "conditioning", "steps", "known"}
+ALWAYS = set(SECTIONS) - {"import", "joints", "accuracy", "speed", "tradeoff", "conditioning", "steps", "known"}
 Checks = Iterator[tuple[str, Any, Any]]  # what, whether it is so, what was seen
 Shot = Callable[[str], None]  # takes a picture of that name
 FOCUS = "const cell = document.activeElement.closest('td'); return cell ? [cell.parentElement.rowIndex, cell.cellIndex] : null"
@@ -277,8 +277,8 @@ def checks(page: Browser, address: str, shots: pathlib.Path | None) -> Checks:
     if has("#joints-table td button"):
         yield from joints(page, shot)
 
-    if has("#digits-table td button"):
-        yield from digits(page, shot)
+    if has("#accuracy-table td button"):
+        yield from accuracy(page, shot)
 
     if has("#depth-quantity"):
         title = "return document.querySelector('#depth-plot .ytitle').textContent"
@@ -601,19 +601,19 @@ def joints(page: Browser, shot: Shot) -> Checks:
     yield "arrow keys walk the joint matrix", start and end and end != start, [start, end]
 
 
-def digits(page: Browser, shot: Shot) -> Checks:
+def accuracy(page: Browser, shot: Shot) -> Checks:
     """Check the digits section."""
-    shown = "[...document.querySelectorAll('#digits-table td button')].find(button => !button.closest('[hidden]'))"
+    shown = "[...document.querySelectorAll('#accuracy-table td button')].find(button => !button.closest('[hidden]'))"
     yield (
         "a cell of the digits says its quartiles",
         "quartiles"
         in page.run("""
-        const button = [...document.querySelectorAll('#digits-table td button[class^=d]')].find(button => !button.closest('[hidden]'));
+        const button = [...document.querySelectorAll('#accuracy-table td button[class^=d]')].find(button => !button.closest('[hidden]'));
         button.focus();
         return document.querySelector('#tip').textContent"""),
         "",
     )
-    shot("digits-cell")
+    shot("accuracy-cell")
     page.run(f"{shown}.id = 'clicked'")
     page.click("#clicked")
     rows = page.until(ROWS)
@@ -624,7 +624,7 @@ def digits(page: Browser, shot: Shot) -> Checks:
         return [values('engine'), values('method'), values('quantity'), document.querySelector('#rows-filters [name=study]').value]""")
     yield (
         "a click on a cell of the digits shows its method's rows alone",
-        rows > 0 and [len(part) for part in seen[:3]] == [1, 1, 1] and seen[3] == "digits",
+        rows > 0 and [len(part) for part in seen[:3]] == [1, 1, 1] and seen[3] == "accuracy",
         seen,
     )
     page.press(ESCAPE)
@@ -636,33 +636,33 @@ def digits(page: Browser, shot: Shot) -> Checks:
     end = page.run(FOCUS)
     yield "arrow keys walk the digits", start and end and end != start, [start, end]
 
-    for quantity in page.run("return [...document.querySelector('#digits-quantity').options].map(option => option.value)")[::-1]:
-        page.choose("#digits-quantity", quantity)
-        heads = page.run("return [...document.querySelectorAll('#digits-table th.engine')].filter(head => !head.hidden).length")
-        plotted = page.run("return !document.getElementById('digits-plot')") or page.until(DRAWN, "digits-plot") > 0
+    for quantity in page.run("return [...document.querySelector('#accuracy-quantity').options].map(option => option.value)")[::-1]:
+        page.choose("#accuracy-quantity", quantity)
+        heads = page.run("return [...document.querySelectorAll('#accuracy-table th.engine')].filter(head => !head.hidden).length")
+        plotted = page.run("return !document.getElementById('accuracy-plot')") or page.until(DRAWN, "accuracy-plot") > 0
         yield f"the digits of {quantity} can be chosen", heads == 1 and plotted, heads
-    if page.run("return document.querySelector('#digits-axis') !== null"):
-        title = "return document.querySelector('#digits-plot .xtitle').textContent"
+    if page.run("return document.querySelector('#accuracy-axis') !== null"):
+        title = "return document.querySelector('#accuracy-plot .xtitle').textContent"
         titles: set[str] = set()
-        axes = page.run("return [...document.querySelector('#digits-axis').options].map(option => option.value)")
+        axes = page.run("return [...document.querySelector('#accuracy-axis').options].map(option => option.value)")
         for axis in axes[::-1]:
-            page.choose("#digits-axis", axis)
+            page.choose("#accuracy-axis", axis)
             now = page.until(f"const now = (() => {{ {title} }})(); return !arguments[0].includes(now) && now", sorted(titles))
-            family = page.run("return document.querySelector('#digits-family').value")
+            family = page.run("return document.querySelector('#accuracy-family').value")
             yield (
                 f"the digits can be plotted against {axis}",
-                bool(now) and page.until(DRAWN, "digits-plot") > 0 and family != "",
+                bool(now) and page.until(DRAWN, "accuracy-plot") > 0 and family != "",
                 [now, family],
             )
             titles.add(now)
-            page.run("document.getElementById('digits-plot').scrollIntoView({block: 'center', behavior: 'instant'})")
-            shot(f"digits-{axis}")
+            page.run("document.getElementById('accuracy-plot').scrollIntoView({block: 'center', behavior: 'instant'})")
+            shot(f"accuracy-{axis}")
     page.run(
-        "const box = document.querySelector('#digits-filter'); box.value = 'no model has this name'; box.dispatchEvent(new Event('input'))"
+        "const box = document.querySelector('#accuracy-filter'); box.value = 'no model has this name'; box.dispatchEvent(new Event('input'))"
     )
-    left = page.run("return [...document.querySelectorAll('#digits-table tr[data-m]')].filter(row => !row.hidden).length")
+    left = page.run("return [...document.querySelectorAll('#accuracy-table tr[data-m]')].filter(row => !row.hidden).length")
     yield "the filter hides models of the digits", left == 0, left
-    page.run("const box = document.querySelector('#digits-filter'); box.value = ''; box.dispatchEvent(new Event('input'))")
+    page.run("const box = document.querySelector('#accuracy-filter'); box.value = ''; box.dispatchEvent(new Event('input'))")
 
 
 def speed(page: Browser, shot: Shot) -> Checks:

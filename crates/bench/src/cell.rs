@@ -1,7 +1,7 @@
 //! The cell: the unit of work.
 
 use crate::hash;
-use crate::{NoAnswer, Reading};
+use crate::{Import, NoAnswer};
 use serde_json::{Value, json};
 
 /// One evaluation: what is asked of whom, about which robot.
@@ -46,8 +46,8 @@ impl Cell {
 pub enum Outcome {
     /// The values, state after state.
     Values(Vec<f64>),
-    /// What the engine read from a file: the answer to cells of the reading study alone.
-    Reading(Box<Reading>),
+    /// What the engine read from a file: the answer to cells of the import study alone.
+    Import(Box<Import>),
     /// No values, and why.
     NoAnswer(NoAnswer),
 }
@@ -57,7 +57,7 @@ impl Outcome {
     pub fn values(&self) -> Option<&[f64]> {
         match self {
             Self::Values(values) => Some(values),
-            Self::Reading(_) | Self::NoAnswer(_) => None,
+            Self::Import(_) | Self::NoAnswer(_) => None,
         }
     }
 }
@@ -68,7 +68,7 @@ impl Outcome {
         match self {
             Self::Values(values) => Ok(values),
             Self::NoAnswer(refusal) => Err(refusal.clone()),
-            Self::Reading(_) => Err(NoAnswer::Failed("the outcome is a robot that was read, and numbers are due".into())),
+            Self::Import(_) => Err(NoAnswer::Failed("the outcome is a robot that was read, and numbers are due".into())),
         }
     }
 }

@@ -1,6 +1,6 @@
 //! The trait [`Engine`]: anyone who answers.
 
-use crate::{Quantity, Reading, Robot, RobotFile, Stepper};
+use crate::{Import, Quantity, Robot, RobotFile, Stepper};
 use featherbench_model::StateBatch;
 use featherbench_results::EngineSource;
 use std::collections::BTreeMap;
@@ -128,7 +128,7 @@ pub trait Engine: Send + Sync {
     ///
     /// # Errors
     /// [`NoAnswer`] when the engine has no parser, or its parser refuses the file.
-    fn read(&self, file: &RobotFile) -> Result<Reading, NoAnswer> {
+    fn read(&self, file: &RobotFile) -> Result<Import, NoAnswer> {
         let format = file.format.name();
         Err(NoAnswer::NotOffered(format!("{} has no parser of {format} files", self.identity().name)))
     }
@@ -188,7 +188,7 @@ pub trait Evaluation: Send {
     ///
     /// # Errors
     /// [`NoAnswer`] when the engine fails.
-    fn scatter(&mut self, _seed: u32) -> Result<bool, NoAnswer> {
+    fn relocate(&mut self, _seed: u32) -> Result<bool, NoAnswer> {
         Ok(false)
     }
 

@@ -18,7 +18,7 @@ pub struct Gates {
     deviations: Vec<Deviation>,
     not_offered: Vec<NotOffered>,
     reproductions: Vec<Reproduction>,
-    guests: Vec<String>,
+    externals: Vec<String>,
     ranges: Ranges,
 }
 
@@ -118,8 +118,8 @@ impl Gates {
 
     /// The same gates in a run with engines that a user brought along: what such an engine does not offer is no fault, as in the conformance
     /// test. Its answers are judged like any engine's, and its failures to answer.
-    pub fn with_guests(mut self, names: &[&str]) -> Self {
-        self.guests = names.iter().map(|&name| name.to_owned()).collect();
+    pub fn with_external(mut self, names: &[&str]) -> Self {
+        self.externals = names.iter().map(|&name| name.to_owned()).collect();
         self
     }
 
@@ -152,7 +152,7 @@ impl Gates {
                 return Err(HarnessError::Config { path, message });
             }
         }
-        Ok(Self { gates, sharp, means, deviations, not_offered, reproductions, guests: Vec::new(), ranges: Ranges::default() })
+        Ok(Self { gates, sharp, means, deviations, not_offered, reproductions, externals: Vec::new(), ranges: Ranges::default() })
     }
 
     /// The same gates, with the deviations' sizes; `folder` is where errors say that they stand.
@@ -255,7 +255,7 @@ impl Gates {
     pub fn conditions(&self, suite: &Suite, records: &[Row], complete: bool) -> Vec<Expectation> {
         let count = |of_these: &dyn Fn(&Row) -> bool| records.iter().filter(|row| of_these(row)).count() as u64;
         let unknown = |row: &Row| {
-            let excused = self.guests.contains(&row.engine) || self.not_offered.iter().any(|known| known.explains(row));
+            let excused = self.externals.contains(&row.engine) || self.not_offered.iter().any(|known| known.explains(row));
             row.verdict == Verdict::Skip && !excused
         };
         let mut conditions = vec![

@@ -1,7 +1,7 @@
 //! A robot: a robot with the states at which questions are asked.
 
 use crate::measure::Magnitudes;
-use crate::{Reading, RobotFile};
+use crate::{Import, RobotFile};
 use featherbench_model::{BadState, Description, Malformed, Model, StateBatch, Warning};
 use featherbench_results::ModelOrigin;
 
@@ -87,7 +87,7 @@ impl Robot {
     ///
     /// # Errors
     /// [`Malformed`] when what the engine holds is no robot.
-    pub fn as_read(&self, reading: &Reading, states: impl FnOnce(&Model<f64>) -> StateBatch) -> Result<Self, Malformed> {
+    pub fn as_read(&self, reading: &Import, states: impl FnOnce(&Model<f64>) -> StateBatch) -> Result<Self, Malformed> {
         let description = reading.description.canonical()?;
         let model = Model::build(&description)?;
         let states = states(&model);

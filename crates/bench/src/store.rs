@@ -1,7 +1,7 @@
 //! The outcomes of a run on disk: what makes it resumable.
 
 use crate::frame::{Block, Frame, FrameError};
-use crate::{Cell, HarnessError, NoAnswer, Outcome, Reading, ReadingNote};
+use crate::{Cell, HarnessError, Import, ImportNote, NoAnswer, Outcome};
 use featherbench_formats::neutral;
 use serde_json::{Value, json};
 use std::collections::HashMap;
@@ -145,7 +145,7 @@ fn read<S: Read + Seek>(mut source: S, path: &Path) -> Result<(S, Whole), Harnes
 fn to_frame(id: &str, cell: &Cell, outcome: &Outcome) -> Frame {
     let (status, reason, blocks) = match outcome {
         Outcome::Values(values) => ("ok", "", vec![Block::new("value", &[values.len()], values)]),
-        Outcome::Reading(reading) => {
+        Outcome::Import(reading) => {
             let shape = [reading.keyframes.len(), reading.description.nq()];
             ("read", "", vec![Block::new("keyframes", &shape, &reading.keyframes.concat())])
         }
@@ -153,8 +153,8 @@ fn to_frame(id: &str, cell: &Cell, outcome: &Outcome) -> Frame {
         Outcome::NoAnswer(NoAnswer::Failed(reason)) => ("error", reason.as_str(), Vec::new()),
     };
     let mut header = json!({"cell": id, "path": cell.path(), "status": status, "reason": reason});
-    if let Outcome::Reading(reading) = outcome {
-        header["reading"] = written(reading);
+    if let Outcome::Import(reading) = outcome {
+        header["import"] = written(reading);
     }
     let mut frame = Frame::new(header, blocks);
     frame.header.insert(CHECKSUM.into(), featherbench_results::checksum(&frame.to_bytes()).into());
@@ -165,19 +165,19 @@ fn to_frame(id: &str, cell: &Cell, outcome: &Outcome) -> Frame {
 const CHECKSUM: &str = "blake3";
 
 /// A reading as JSON: the description's text, and the notes.
-fn written(reading: &Reading) -> Value {
-    let note = |note: &ReadingNote| json!({"cause": note.cause, "about": note.about, "text": note.text, "numbers": note.numbers});
+fn written(reading: &Import) -> Value {
+    let note = |note: &ImportNote| json!({"cause": note.cause, "about": note.about, "text": note.text, "numbers": note.numbers});
     // A description that is no robot has no text, and reads back as a damaged frame: its cell is asked again.
     let model = neutral::to_string(&reading.description).unwrap_or_default();
     let written = reading.written.as_ref().map(|written| neutral::to_string(written).unwrap_or_default());
     json!({"model": model, "written": written, "notes": reading.notes.iter().map(note).collect::<Vec<_>>()})
 }
 
-fn reading(value: &Value, keyframes: &Block) -> Option<Reading> {
+fn reading(value: &Value, keyframes: &Block) -> Option<Import> {
     let text = |value: &Value| value.as_str().map(str::to_owned);
     let note = |note: &Value| {
         let numbers = note["numbers"].as_array()?.iter().map(Value::as_f64).collect::<Option<_>>()?;
-        Some(ReadingNote { cause: text(&note["cause"])?, about: text(&note["about"]), text: text(&note["text"])?, numbers })
+        Some(ImportNote { cause: text(&note["cause"])?, about: text(&note["about"]), text: text(&note["text"])?, numbers })
     };
     let description = neutral::parse(value["model"].as_str()?, OUTCOMES_NAME).ok()?;
     let keyframes = keyframes.data.chunks_exact(description.nq().max(1)).map(<[f64]>::to_vec).collect();
@@ -185,7 +185,7 @@ fn reading(value: &Value, keyframes: &Block) -> Option<Reading> {
         Some(text) => Some(neutral::parse(text, OUTCOMES_NAME).ok()?),
         None => None,
     };
-    Some(Reading { description, notes: value["notes"].as_array()?.iter().map(note).collect::<Option<_>>()?, keyframes, written })
+    Some(Import { description, notes: value["notes"].as_array()?.iter().map(note).collect::<Option<_>>()?, keyframes, written })
 }
 
 /// The cell and its outcome, or what is wrong with the frame.
@@ -200,8 +200,8 @@ fn from_frame(mut frame: Frame) -> Result<(String, Outcome), String> {
         "ok" => frame.blocks.pop().map(|block| Outcome::Values(block.data)),
         "read" => {
             let keyframes = frame.block("keyframes");
-            let reading = frame.header.get("reading").zip(keyframes).and_then(|(value, keyframes)| reading(value, keyframes));
-            reading.map(|reading| Outcome::Reading(Box::new(reading)))
+            let reading = frame.header.get("import").zip(keyframes).and_then(|(value, keyframes)| reading(value, keyframes));
+            reading.map(|reading| Outcome::Import(Box::new(reading)))
         }
         "unsupported" => Some(Outcome::NoAnswer(NoAnswer::NotOffered(reason))),
         "error" => Some(Outcome::NoAnswer(NoAnswer::Failed(reason))),
@@ -260,12 +260,12 @@ mod tests {
     fn outcomes() -> Vec<(Cell, Outcome)> {
         let description = Family::parse("chain:n=1").unwrap().generate().unwrap();
         let text = "not \"this\"".into();
-        let note = ReadingNote { cause: "warning".into(), about: Some("link".into()), text, numbers: vec![0.1, -2.0] };
+        let note = ImportNote { cause: "warning".into(), about: Some("link".into()), text, numbers: vec![0.1, -2.0] };
         let written = Some(description.clone());
         vec![
             (cell("a"), Outcome::Values(vec![0.1, f64::NAN, -0.0])),
             (cell("b"), Outcome::NoAnswer(NoAnswer::Failed("it \"broke\"".into()))),
-            (cell("c"), Outcome::Reading(Box::new(Reading { description, notes: vec![note], keyframes: vec![vec![0.5]], written }))),
+            (cell("c"), Outcome::Import(Box::new(Import { description, notes: vec![note], keyframes: vec![vec![0.5]], written }))),
             (cell("d"), Outcome::NoAnswer(NoAnswer::NotOffered("no such joint".into()))),
             (cell("e"), Outcome::Values(vec![1.5])),
         ]

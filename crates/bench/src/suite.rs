@@ -18,15 +18,15 @@ pub struct Suite {
     pub robot: Vec<RobotEntry>,
     /// The agreement study.
     pub agreement: Option<AgreementEntry>,
-    /// The structure study.
+    /// The operations study.
     #[serde(default)]
-    pub structure: bool,
-    /// Whether the digits study is made.
+    pub operations: bool,
+    /// Whether the accuracy study is made.
     #[serde(default)]
-    pub digits: bool,
-    /// Whether the reading study is made: of live runs alone, and of robots that come from a file.
+    pub accuracy: bool,
+    /// Whether the import study is made: of live runs alone, and of robots that come from a file.
     #[serde(default)]
-    pub reading: bool,
+    pub import: bool,
     /// Whether the conditioning study is made.
     #[serde(default)]
     pub conditioning: bool,
@@ -35,7 +35,7 @@ pub struct Suite {
     pub reproductions: bool,
     /// Whether the study of small steps is made, of the engines that integrate.
     #[serde(default)]
-    pub step_limit: bool,
+    pub steps: bool,
     /// The timing study.
     pub timing: Option<TimingEntry>,
     /// Whether the suite is broad enough to show every known deviation of its robots, and a sharp bound for each method, joint and base; a

@@ -102,7 +102,7 @@ impl TruthModel {
 ///
 /// Rotations and axes stay: moved entry by entry they would be none. It is a worst case, the magnitudes of all movements added up; random
 /// roundings of the inputs move the answer by about a tenth of it. By forward-mode differentiation through the articulated-body algorithm, input after input: O(n²). `None` where M is singular.
-pub fn structured_floor(robot: &Robot, k: usize) -> Option<f64> {
+pub fn conditioning_bound(robot: &Robot, k: usize) -> Option<f64> {
     let states = &robot.states;
     let constant = |values: &[f64]| -> Vec<Number> { values.iter().map(|&x| Dual::constant(x)).collect() };
     let mut inputs = Inputs {

@@ -3,8 +3,8 @@
 #[path = "by_hand/main.rs"]
 mod by_hand;
 mod configuration;
+mod external;
 mod gates;
-mod guests;
 mod measures;
 mod normalised;
 mod resume;

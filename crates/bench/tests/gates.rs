@@ -134,7 +134,7 @@ fn the_first_gate_that_matches_judges() {
     }
     assert_eq!(bound(Row { depth: None, ..row() }), Some(1e-14), "a row without a depth is not deep");
     for none in
-        [Row { quantity: "com".into(), ..row() }, Row { metric: "pairwise".into(), ..row() }, Row { study: "digits".into(), ..row() }]
+        [Row { quantity: "com".into(), ..row() }, Row { metric: "pairwise".into(), ..row() }, Row { study: "accuracy".into(), ..row() }]
     {
         let row = gates.judge(none, 1.0, 8.0);
         assert_eq!((row.bound, row.verdict), (None, Verdict::Info));
@@ -273,13 +273,13 @@ fn a_deviation_must_be_seen_where_its_robots_are() {
     let other = Row { reason: "winds".into(), ..seen.clone() };
     assert_eq!(red(&gates, &[other]), [gone]);
     assert_eq!(red(&gates, &[Row { verdict: Verdict::Info, ..seen.clone() }]), [gone]);
-    // Where none of its robots, quantities or cases is asked, or the engine is a guest, nothing is due.
+    // Where none of its robots, quantities or cases is asked, or the engine is a external, nothing is due.
     for elsewhere in [on("pulley"), Row { quantity: "bias".into(), ..row() }, Row { states: "zero".into(), ..row() }] {
         assert_eq!(red(&gates, &[gates.judge(elsewhere, 1e-15, 1.0)]), [""; 0]);
     }
     let records = [gates.judge(row(), 1e-15, 1.0)];
-    let guest = Suite { agreement: None, ..suite("") };
-    assert!(unmet(&gates.conditions(&guest, &records, true)).is_empty());
+    let external = Suite { agreement: None, ..suite("") };
+    assert!(unmet(&gates.conditions(&external, &records, true)).is_empty());
     assert!(unmet(&gates.conditions(&Suite { thorough: false, ..suite("") }, &records, true)).is_empty());
     assert!(unmet(&gates.conditions(&suite(""), &records, false)).is_empty());
 
@@ -333,21 +333,21 @@ fn a_computed_bound_must_be_sharp_somewhere() {
     let found = |rows: &[Row]| blunt(rows).into_iter().map(|(_, found)| found).collect::<Vec<_>>();
     assert_eq!(found(&[bounded("crane", "aba", "\"revolute\"", "fixed", 1e-12)]), [0]);
     assert_eq!(found(&[bounded("crane", "aba", "\"revolute\"", "fixed", 1.1e-12)]), [1]);
-    // The sharpest of several robots counts, for each joint, base and method by itself; our own kernels are asked as well, a guest is not.
+    // The sharpest of several robots counts, for each joint, base and method by itself; our own kernels are asked as well, a external is not.
     let rows = [
         bounded("crane", "aba", "\"revolute\",\"planar\"", "fixed", 1e-9),
         bounded("crane", "aba", "\"revolute\"", "fixed", 1e-13),
         bounded("crane", "aba", "\"revolute\"", "free", 1e-9),
         bounded("crane", "lu", "\"revolute\"", "fixed", 1e-13),
         bounded("featherbench", "aba", "\"revolute\"", "fixed", 1e-9),
-        bounded("guest", "aba", "\"revolute\"", "fixed", 1e-9),
+        bounded("external", "aba", "\"revolute\"", "fixed", 1e-9),
     ];
     let told = blunt(&rows);
     assert_eq!(found(&rows), [2, 0, 1], "{told:?}");
     assert!(told[0].0.contains("crane aba") && told[2].0.contains("featherbench aba"), "{told:?}");
     // Other studies, quantities and measures have no such bounds.
     for other in [
-        Row { study: "digits".into(), ..bounded("crane", "aba", "\"revolute\"", "fixed", 1e-9) },
+        Row { study: "accuracy".into(), ..bounded("crane", "aba", "\"revolute\"", "fixed", 1e-9) },
         Row { quantity: "id".into(), ..bounded("crane", "aba", "\"revolute\"", "fixed", 1e-9) },
         Row { metric: "backward".into(), ..bounded("crane", "aba", "\"revolute\"", "fixed", 1e-9) },
     ] {

@@ -4,7 +4,7 @@
 use featherbench_bench::frame::Frame;
 use featherbench_bench::run::{Progress, Silent, compare, evaluate, plan};
 use featherbench_bench::{
-    Cell, Context, Finished, Gates, HarnessError, NoAnswer, OUTCOMES_NAME, Outcome, OutcomeStore, Reading, ReadingNote, Robot, Study,
+    Cell, Context, Finished, Gates, HarnessError, Import, ImportNote, NoAnswer, OUTCOMES_NAME, Outcome, OutcomeStore, Robot, Study,
 };
 use featherbench_model::Random;
 use featherbench_model::generate::Family;
@@ -77,9 +77,9 @@ impl Study for Counting {
             5 => Outcome::NoAnswer(NoAnswer::Failed("it broke".into())),
             3 => {
                 let description = Family::parse("chain:n=2").unwrap().generate().unwrap();
-                let note = ReadingNote { cause: "warning".into(), about: None, text: "not \"this\"".into(), numbers: vec![0.1, -2.0] };
+                let note = ImportNote { cause: "warning".into(), about: None, text: "not \"this\"".into(), numbers: vec![0.1, -2.0] };
                 let written = Some(description.clone());
-                Outcome::Reading(Box::new(Reading { description, notes: vec![note], keyframes: vec![vec![0.1, -0.2]], written }))
+                Outcome::Import(Box::new(Import { description, notes: vec![note], keyframes: vec![vec![0.1, -0.2]], written }))
             }
             _ => {
                 let mut random = Random::named(context.seed, &cell.id());
@@ -93,7 +93,7 @@ impl Study for Counting {
             let blank = Row { cell: cell.id(), robot: robot.name.clone(), method: cell.method.clone(), ..Row::default() };
             match outcome {
                 Outcome::Values(values) => blank.informed(values.iter().sum()),
-                Outcome::Reading(reading) => blank.informed((reading.description.bodies.len() + reading.notes.len()) as f64),
+                Outcome::Import(reading) => blank.informed((reading.description.bodies.len() + reading.notes.len()) as f64),
                 Outcome::NoAnswer(NoAnswer::NotOffered(reason)) => blank.without_value(Verdict::Skip, reason.as_str()),
                 Outcome::NoAnswer(NoAnswer::Failed(reason)) => blank.without_value(Verdict::Error, reason.as_str()),
             }

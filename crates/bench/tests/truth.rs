@@ -1,7 +1,7 @@
 //! The truth of the harness against the independent multi-precision witness, and the floor against perturbed inputs.
 
 use featherbench_bench::measure::worst;
-use featherbench_bench::truth::{TruthModel, structured_floor};
+use featherbench_bench::truth::{TruthModel, conditioning_bound};
 use featherbench_bench::{Robot, hash};
 use featherbench_model::generate::Family;
 use featherbench_model::{Random, StateBatch};
@@ -66,7 +66,7 @@ fn the_truth_is_that_of_the_independent_witness() {
 fn half_an_ulp_in_the_inputs_moves_the_answer_by_the_floor_at_most() {
     for spec in ["chain:n=10,layout=planar", "chain:n=10,layout=spatial,tip_scale=1e3", "quadruped"] {
         let robot = robot(spec, 1);
-        let floor = structured_floor(&robot, 0).unwrap();
+        let floor = conditioning_bound(&robot, 0).unwrap();
         let truth = |robot: &Robot| TruthModel::new(robot).unwrap().at(robot, 0).unwrap().forward_dynamics.unwrap();
         let still = truth(&robot);
         let norm = |values: &[f64]| values.iter().map(|x| x * x).sum::<f64>().sqrt();

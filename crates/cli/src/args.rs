@@ -1,6 +1,6 @@
 //! The command line.
 
-use crate::guest::Guest;
+use crate::external::External;
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use std::ffi::OsString;
 use std::path::PathBuf;
@@ -72,7 +72,7 @@ pub struct RunArgs {
     pub seed: Option<u64>,
     /// An engine of one's own, as NAME=PROGRAM [ARGS…]: a program that speaks oracles/PROTOCOL.md; may be repeated.
     #[arg(long = "engine", value_name = "NAME=PROGRAM")]
-    pub guests: Vec<Guest>,
+    pub externals: Vec<External>,
     /// Only cells whose path study/robot/engine/quantity/method matches this regular expression.
     #[arg(long, value_name = "REGEX")]
     pub only: Option<String>,

@@ -1,8 +1,8 @@
 //! `featherbench oracles check`: the conformance test of a program that answers as an engine.
 
 use crate::args::CheckArgs;
+use crate::external;
 use crate::fail::Fail;
-use crate::guest;
 use crate::package;
 use crate::root::Root;
 use featherbench_engines::Limits;
@@ -12,7 +12,7 @@ use std::time::Duration;
 
 /// Tests the program and prints what was found. In a project the program may import the package of its oracles.
 pub fn check(root: Option<&Root>, args: &CheckArgs) -> Result<(), Fail> {
-    guest::find(&args.command)?;
+    external::find(&args.command)?;
     let command = root.map_or_else(|| Ok(args.command.clone()), |root| package::reachable(root, &args.command)).map_err(Fail::input)?;
     let limits = Limits { answer: Duration::from_secs(args.answer_within), memory: args.memory << 20 };
     let terminal = std::io::stderr().is_terminal();

@@ -9,7 +9,7 @@ use crate::root::Root;
 use crate::{engines, outcome, report, robot_file, run, table};
 use ::featherbench_results::{ModelOrigin, Verdict};
 use featherbench_bench::{AgreementEntry, Cell, Context, Engine, FileFormat, Gates, Robot, RobotFile, Suite, hash};
-use featherbench_studies::{Agreement, Reading};
+use featherbench_studies::{Agreement, Import};
 use std::time::{Instant, SystemTime};
 
 /// States per robot, besides the keyframes of its file: one of each case.
@@ -78,7 +78,7 @@ pub fn compare(root: &Root, args: &CompareArgs) -> Result<(), Fail> {
         let large = loaded.robots.iter().any(|robot| robot.name == cell.robot && robot.states.nv > LARGE);
         cell.study != "agreement" || !large || shown.contains(&cell.quantity.as_str())
     };
-    let records = run::conduct(&[Box::new(Reading), Box::new(Agreement)], &context, &folder, &keep, &mut info)?;
+    let records = run::conduct(&[Box::new(Import), Box::new(Agreement)], &context, &folder, &keep, &mut info)?;
     let conditions = |robot| outcome::conditions(robot, &opened.engines, &records, args.strict);
     info.expected = loaded.robots.iter().flat_map(conditions).collect();
     info.seconds.insert("total".into(), start.elapsed().as_secs_f64());
@@ -154,7 +154,7 @@ fn suite(engines: Vec<String>) -> Suite {
         about: "robots' files through each engine's parser".into(),
         seed: SEED,
         agreement: Some(AgreementEntry { states: STATES, engines }),
-        reading: true,
+        import: true,
         ..Suite::default()
     }
 }

@@ -1,8 +1,8 @@
 //! Who is asked: our own kernels, and the engines of the suite, live or recorded.
 
 use crate::args::RunArgs;
+use crate::external;
 use crate::fail::Fail;
-use crate::guest;
 use crate::native;
 use crate::oracles;
 use crate::rapier;
@@ -26,7 +26,7 @@ pub fn open(root: &Root, args: &RunArgs, loaded: &Loaded) -> Result<Opened, Fail
     opened.add(Ok(Box::new(Featherbench::new())), "featherbench", EngineSource::Own);
     let engines: &[String] = loaded.suite.agreement.as_ref().map_or(&[], |agreement| &agreement.engines);
     let taken: Vec<&str> = ["featherbench"].into_iter().chain(engines.iter().map(String::as_str)).collect();
-    guest::check_names(&args.guests, &taken)?;
+    external::check_names(&args.externals, &taken)?;
     let limits = limits(args);
     if let Some(timing) = loaded.suite.timing.as_ref().filter(|_| !args.no_timing) {
         // One that is asked for agreement too is the same engine: see below.
@@ -60,15 +60,15 @@ pub fn open(root: &Root, args: &RunArgs, loaded: &Loaded) -> Result<Opened, Fail
         }
     } else if !others.is_empty() {
         let folder = args.recorded.clone().unwrap_or_else(|| root.recorded());
-        let asked: Vec<&Robot> = loaded.robots.iter().filter(|robot| robot.takes("agreement") || robot.takes("structure")).collect();
+        let asked: Vec<&Robot> = loaded.robots.iter().filter(|robot| robot.takes("agreement") || robot.takes("operations")).collect();
         let recordings = Arc::new(read_recordings(&folder, &asked));
         for engine in others {
             let recorded = Recorded::new(&recordings, engine).map(|recorded| Box::new(recorded) as Box<dyn Engine>);
             opened.add(recorded, engine, EngineSource::Recorded);
         }
     }
-    for guest in &args.guests {
-        opened.add(Ok(Box::new(guest.start(root, limits)?)), &guest.name, EngineSource::Live);
+    for external in &args.externals {
+        opened.add(Ok(Box::new(external.start(root, limits)?)), &external.name, EngineSource::Live);
     }
     Ok(opened)
 }

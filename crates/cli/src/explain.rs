@@ -32,7 +32,7 @@ pub fn explain(args: &ExplainArgs) -> Result<(), Fail> {
                 let head: Vec<String> = values.iter().take(6).map(|value| format!("{value:?}")).collect();
                 println!("answer    {} numbers: {}{}", values.len(), head.join(", "), if values.len() > 6 { ", …" } else { "" });
             }
-            Some(Outcome::Reading(reading)) => {
+            Some(Outcome::Import(reading)) => {
                 let description = &reading.description;
                 println!("answer    a robot of {} bodies and {} dofs", description.bodies.len(), description.nv());
                 reading.notes.iter().for_each(|note| println!("note      {}: {}", note.cause, note.text));
@@ -151,8 +151,8 @@ mod tests {
             format!("cargo run --release -- run --suite smoke --live --seed 3 {only}")
         );
         assert_eq!(of("run --only=x --out=a --mixed", true, "smoke"), format!("run --suite smoke --live {only}"));
-        let guest = "run --engine 'mine=sh '\"'\"'my oracle.sh'\"'\"''";
-        assert_eq!(of(guest, false, "default"), format!("{guest} {only}"));
+        let external = "run --engine 'mine=sh '\"'\"'my oracle.sh'\"'\"''";
+        assert_eq!(of(external, false, "default"), format!("{external} {only}"));
         assert_eq!(of("compare 'my robot.urdf' --floating --out x", true, "compare"), "compare 'my robot.urdf' --floating");
     }
 }

@@ -10,7 +10,7 @@ use crate::root::Root;
 use featherbench_bench::{Context, Engine, Gates, Study};
 use featherbench_engines::Featherbench;
 use featherbench_model::generate::Family;
-use featherbench_studies::{Agreement, Conditioning, Digits, Reading, Structure, Timing};
+use featherbench_studies::{Accuracy, Agreement, Conditioning, Import, OperationCounts, Timing};
 use std::io::Write;
 
 /// Prints what there is to run.
@@ -30,7 +30,7 @@ fn text(root: &Root, args: &ListArgs) -> Result<String, Fail> {
         let gates = Gates::read(&root.gates())?;
         let context = Context { robots: &loaded.robots, engines: &engines, gates: &gates, seed: loaded.suite.seed };
         let timing = Timing { states: 1, seconds: 0.0, kernels: featherbench_engines::timed, peers: Vec::new() };
-        let studies: [&dyn Study; 6] = [&Agreement, &Reading, &Digits, &Conditioning, &Structure, &timing];
+        let studies: [&dyn Study; 6] = [&Agreement, &Import, &Accuracy, &Conditioning, &OperationCounts, &timing];
         let cells = studies.iter().flat_map(|study| study.plan(&context));
         return Ok(cells.map(|cell| format!("{}  {}\n", cell.id(), cell.path())).collect());
     }
@@ -50,7 +50,7 @@ fn text(root: &Root, args: &ListArgs) -> Result<String, Fail> {
     }
     let peers = [&PEERS[..], &ESTIMATING].concat().join(", ");
     text += &format!("\nengines:  featherbench, {}, {}\npeers:    {peers}\n", ENGINES.join(", "), rapier::NAME);
-    text += "studies:  agreement, reading, digits, conditioning, structure, reproductions, step_limit, repeatability, timing\n";
+    text += "studies:  agreement, import, accuracy, conditioning, operations, reproductions, steps, repeatability, timing\n";
     text += "\nfamilies of generated robots, with their parameters:\n";
     for name in Family::NAMES {
         let family = Family::parse(name).map_err(|error| Fail::input(error.to_string()))?;

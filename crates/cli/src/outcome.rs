@@ -2,7 +2,7 @@
 
 use ::featherbench_results::{Expectation, Row, Verdict};
 use featherbench_bench::{Engine, Robot, measure::worst};
-use featherbench_studies::reading::bound;
+use featherbench_studies::import::bound;
 use serde_json::Value;
 
 /// The questions of all engines about a robot; `strict` counts what is only not read, and rounding, as well.
@@ -14,7 +14,7 @@ pub fn conditions(robot: &Robot, engines: &[Box<dyn Engine>], records: &[Row], s
 fn of_engine(robot: &Robot, engine: &str, records: &[Row], strict: bool) -> Vec<Expectation> {
     let name = &robot.name;
     let rows: Vec<&Row> = records.iter().filter(|row| row.robot == *name && row.engine == engine).collect();
-    let of = |metric: &str| rows.iter().find(|row| row.study == "reading" && row.metric == metric);
+    let of = |metric: &str| rows.iter().find(|row| row.study == "import" && row.metric == metric);
     let read = of("differences");
     let bound = bound(robot.depth);
     let condition = |what: String, found: u64, reason: String| {
@@ -28,7 +28,7 @@ fn of_engine(robot: &Robot, engine: &str, records: &[Row], strict: bool) -> Vec<
     let mut list = vec![condition(format!("{engine} reads {name}"), u64::from(refused), reason)];
 
     let count = |class: &str| read.map_or(0, |row| params(row)[class].as_u64().unwrap_or(0));
-    let error = worst_of(rows.iter().filter(|row| row.study == "reading" && row.metric == "as_read"));
+    let error = worst_of(rows.iter().filter(|row| row.study == "import" && row.metric == "as_read"));
     let far = error.is_some_and(|error| error.is_nan() || error > bound);
     // Many small differences may add up to one that counts.
     let physics = count("physics").max(u64::from(far));

@@ -1,7 +1,7 @@
 //! An engine that is asked about a robot no more once it has not answered in time: what did not come within the limit is a stated outcome, and the
 //! other engines go on.
 
-use featherbench_bench::{Engine, Evaluation, FileFormat, Identity, NoAnswer, Quantity, Reading, Robot, RobotFile};
+use featherbench_bench::{Engine, Evaluation, FileFormat, Identity, Import, NoAnswer, Quantity, Robot, RobotFile};
 use featherbench_model::StateBatch;
 use std::collections::BTreeMap;
 use std::ops::Range;
@@ -56,7 +56,7 @@ impl Engine for Patient {
         self.engine.methods(quantity)
     }
 
-    fn read(&self, file: &RobotFile) -> Result<Reading, NoAnswer> {
+    fn read(&self, file: &RobotFile) -> Result<Import, NoAnswer> {
         self.admit(Some(file))?;
         let kind = if file.format == FileFormat::Urdf { "URDF" } else { "MJCF" };
         self.judged(Some(file), &format!("reading the {kind}"), self.engine.read(file))
@@ -99,7 +99,7 @@ impl Evaluation for Waiting<'_> {
 
 #[cfg(test)]
 mod tests {
-    use super::{Engine, Evaluation, Identity, NoAnswer, Patient, Quantity, Reading, Robot, RobotFile, StateBatch};
+    use super::{Engine, Evaluation, Identity, Import, NoAnswer, Patient, Quantity, Robot, RobotFile, StateBatch};
     use ::featherbench_results::EngineSource;
     use featherbench_bench::{FileBase, FileFormat};
     use std::collections::BTreeMap;
@@ -121,7 +121,7 @@ mod tests {
             Vec::new()
         }
 
-        fn read(&self, _: &RobotFile) -> Result<Reading, NoAnswer> {
+        fn read(&self, _: &RobotFile) -> Result<Import, NoAnswer> {
             self.asked.fetch_add(1, Ordering::Relaxed);
             Err(NoAnswer::Failed(self.reason.into()))
         }

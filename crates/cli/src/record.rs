@@ -11,7 +11,7 @@ use featherbench_bench::measure::{ForwardScale, scaled_error, worst};
 use featherbench_bench::run::Progress;
 use featherbench_bench::{Cell, Context, Gates, Outcome, OutcomeStore, Quantity, Robot, Study};
 use featherbench_engines::{EngineRecording, Recording, recording_name};
-use featherbench_studies::{Agreement, Repeatability, Structure};
+use featherbench_studies::{Agreement, OperationCounts, Repeatability};
 use std::path::Path;
 
 /// An answer may move by this much in the measures of DESIGN idea 10 before the recording counts as stale: the same binary on another
@@ -36,7 +36,7 @@ pub fn record(root: &Root, args: &RecordArgs) -> Result<(), Fail> {
     let bar = Bar::new();
     let mut finished = Vec::new();
     let foreign = |cell: &Cell| cell.engine != "featherbench";
-    let studies: [&dyn Study; 2] = [&Agreement, &Structure];
+    let studies: [&dyn Study; 2] = [&Agreement, &OperationCounts];
     for study in studies {
         let cells = featherbench_bench::run::plan(study, &context, &foreign);
         finished.extend(featherbench_bench::run::evaluate(study, &context, cells, &store, &bar as &dyn Progress)?);
@@ -142,7 +142,7 @@ fn check(path: &Path, now: &Recording, robot: &Robot) -> Vec<String> {
 fn brief(outcome: &Outcome) -> String {
     match outcome {
         Outcome::Values(values) => format!("{} numbers", values.len()),
-        Outcome::Reading(reading) => format!("a robot of {} bodies", reading.description.bodies.len()),
+        Outcome::Import(reading) => format!("a robot of {} bodies", reading.description.bodies.len()),
         Outcome::NoAnswer(refusal) => format!("'{refusal}'"),
     }
 }

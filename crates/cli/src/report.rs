@@ -34,8 +34,8 @@ pub fn gate(root: &Root, args: &GateArgs) -> Result<(), Fail> {
         return ranges::measure(root, args, &info, &records);
     }
     let (suite, _) = Suite::read(&root.suites().join(format!("{}.toml", info.suite)))?;
-    let guests = info.engines.iter().filter(|engine| engine.build.contains_key(provenance::PROGRAM)).map(|engine| engine.name.as_str());
-    let gates = Gates::read(&root.gates())?.with_guests(&guests.collect::<Vec<_>>());
+    let externals = info.engines.iter().filter(|engine| engine.build.contains_key(provenance::PROGRAM)).map(|engine| engine.name.as_str());
+    let gates = Gates::read(&root.gates())?.with_external(&externals.collect::<Vec<_>>());
     let missing: Vec<_> = info.expected.iter().filter(|condition| condition.what.starts_with("engine ")).cloned().collect();
     info.expected = gates.conditions(&suite, &records, true);
     info.expected.extend(missing);

@@ -5,7 +5,7 @@ use crate::oracles;
 use crate::root::Root;
 use ::featherbench_results::ModelOrigin;
 use featherbench_bench::{
-    Engine, FileBase, FileFormat, FileInertial, FileLink, NoAnswer, Reading, Robot, RobotEntry, RobotFile, Suite, WATER,
+    Engine, FileBase, FileFormat, FileInertial, FileLink, Import, NoAnswer, Robot, RobotEntry, RobotFile, Suite, WATER,
 };
 use featherbench_engines::{Limits, Oracle};
 use featherbench_formats::urdf::{Base, Inertial, LinkInFile, Note, Options};
@@ -164,7 +164,7 @@ pub fn links(file: &RobotFile) -> Result<Vec<FileLink>, Fail> {
 }
 
 /// The reference reading of an MJCF file: that of MuJoCo's compiler, with the file's own inertias where the compiler refuses those.
-pub fn read_mjcf(file: &RobotFile, compiler: &dyn Engine) -> Result<Reading, Fail> {
+pub fn read_mjcf(file: &RobotFile, compiler: &dyn Engine) -> Result<Import, Fail> {
     let refused = |refusal: NoAnswer| Fail::input(format!("{}: MuJoCo does not read it: {refusal}", file.path.display()));
     let mut reading = compiler.read(file).map_err(refused)?;
     if let Some(written) = reading.written.take() {

@@ -2,8 +2,8 @@
 
 use crate::args::RunArgs;
 use crate::engines::{self, Opened};
+use crate::external::External;
 use crate::fail::Fail;
-use crate::guest::Guest;
 use crate::offers;
 use crate::only;
 use crate::progress::Bar;
@@ -13,7 +13,7 @@ use crate::root::Root;
 use crate::shell::quoted;
 use ::featherbench_results::{ModelInfo, Row, RunInfo, Verdict};
 use featherbench_bench::{Cell, Context, Gates, HarnessError, OutcomeStore, Study, provenance};
-use featherbench_studies::{Agreement, Conditioning, Digits, Reading, Repeatability, Reproductions, StepLimit, Structure, Timing};
+use featherbench_studies::{Accuracy, Agreement, Conditioning, Import, OperationCounts, Repeatability, Reproductions, Steps, Timing};
 use regex_lite::Regex;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -28,8 +28,8 @@ pub fn run(root: &Root, args: &RunArgs) -> Result<(), Fail> {
     let only = args.only.as_deref().map(Regex::new).transpose();
     let only = only.map_err(|error| Fail::input(format!("--only: {error}")))?;
     let loaded = robots::load(root, &args.suite, args.live, args.seed)?;
-    let guests: Vec<&str> = args.guests.iter().map(|guest: &Guest| guest.name.as_str()).collect();
-    let gates = Gates::read(&root.gates())?.with_guests(&guests);
+    let externals: Vec<&str> = args.externals.iter().map(|external: &External| external.name.as_str()).collect();
+    let gates = Gates::read(&root.gates())?.with_external(&externals);
     let opened = engines::open(root, args, &loaded)?;
     let mut info = describe(root, args.live, &loaded, &opened)?;
     let studies = studies(root, &loaded, args, &info.binary_hash);
@@ -58,7 +58,7 @@ pub fn run(root: &Root, args: &RunArgs) -> Result<(), Fail> {
     let complete = only.is_none();
     info.expected = gates.conditions(&loaded.suite, &records, complete);
     let engines = loaded.suite.agreement.iter().flat_map(|agreement| &agreement.engines).map(String::as_str);
-    let asked: Vec<&str> = engines.chain(guests.iter().copied()).collect();
+    let asked: Vec<&str> = engines.chain(externals.iter().copied()).collect();
     info.expected.extend(offers::conditions(&opened, &asked, &cells, &records, complete));
     for engine in opened.missing(&loaded) {
         info.expected.push(missing_engine(&engine.name, &engine.reason));
@@ -120,20 +120,20 @@ fn studies(root: &Root, loaded: &Loaded, args: &RunArgs, program: &str) -> Vec<B
         studies.push(Box::new(Agreement));
     }
     // What engines read from files is not recorded.
-    if loaded.suite.reading && args.live {
-        studies.push(Box::new(Reading));
+    if loaded.suite.import && args.live {
+        studies.push(Box::new(Import));
     }
-    if loaded.suite.digits {
-        studies.push(Box::new(Digits));
+    if loaded.suite.accuracy {
+        studies.push(Box::new(Accuracy));
     }
     if loaded.suite.conditioning {
         studies.push(Box::new(Conditioning));
     }
-    if loaded.suite.step_limit {
-        studies.push(Box::new(StepLimit));
+    if loaded.suite.steps {
+        studies.push(Box::new(Steps));
     }
-    if loaded.suite.structure {
-        studies.push(Box::new(Structure));
+    if loaded.suite.operations {
+        studies.push(Box::new(OperationCounts));
     }
     if loaded.suite.reproductions {
         studies.push(Box::new(Reproductions { reproduce: crate::oracles::reproducer(root, engines::limits(args)) }));

@@ -3,7 +3,7 @@
 use crate::outcome::{neutral, params};
 use ::featherbench_results::{Row, Verdict};
 use featherbench_bench::{Engine, Robot};
-use featherbench_studies::reading::LARGEST;
+use featherbench_studies::import::LARGEST;
 use serde_json::Value;
 use std::collections::BTreeMap;
 
@@ -14,7 +14,7 @@ const LISTED: usize = 12;
 pub fn of(robot: &Robot, remarks: &[String], engines: &[Box<dyn Engine>], records: &[Row]) -> String {
     let states = &robot.states;
     let reference =
-        records.iter().find(|row| row.study == "reading" && row.robot == robot.name).map_or("featherbench", |row| &row.reference);
+        records.iter().find(|row| row.study == "import" && row.robot == robot.name).map_or("featherbench", |row| &row.reference);
     let reference = if reference == "featherbench" { "featherbench's own reading" } else { "the reading of MuJoCo's compiler" };
     let mut text = format!("\n{} ({}, {} bodies, {} dofs), against {reference}\n", robot.name, robot.base(), states.bodies, states.nv);
     text += &refusals(robot, engines, records);
@@ -30,7 +30,7 @@ pub fn of(robot: &Robot, remarks: &[String], engines: &[Box<dyn Engine>], record
             |error| format!("id, bias and M agree to {error:.1e}"),
         );
         text += &format!("    one neutral model   {computed}\n");
-        text += &as_read(&rows.into_iter().filter(|row| row.study == "reading").collect::<Vec<_>>());
+        text += &as_read(&rows.into_iter().filter(|row| row.study == "import").collect::<Vec<_>>());
     }
     text
 }
@@ -41,7 +41,7 @@ fn refusals(robot: &Robot, engines: &[Box<dyn Engine>], records: &[Row]) -> Stri
     let mut text = String::new();
     for name in engines.iter().map(|engine| &engine.identity().name) {
         let read = records.iter().find(|row| row.robot == robot.name && row.engine == *name && row.metric == "differences");
-        let Some(row) = read.filter(|row| row.study == "reading") else { continue };
+        let Some(row) = read.filter(|row| row.study == "import") else { continue };
         if row.value.is_none() {
             let how = if row.verdict == Verdict::Skip { "does not read the file" } else { "refuses the file" };
             text += &format!("  {name} {how}: {}\n", row.reason);

@@ -158,7 +158,7 @@ fn damaged_recordings_cost_their_robot_and_nothing_else() {
 #[test]
 fn damaged_runs_are_refused_by_file() {
     let sandbox = Sandbox::new();
-    sandbox.run(&["run", "--suite", "smoke", "--only", "structure", "--out", "out"]).expect(0, &["report:"]);
+    sandbox.run(&["run", "--suite", "smoke", "--only", "operations", "--out", "out"]).expect(0, &["report:"]);
     sandbox.run(&["report", "out"]).expect(0, &["out/index.html"]);
     let cell = std::fs::read_to_string(sandbox.path("out/rows.csv"))
         .unwrap()
@@ -170,7 +170,7 @@ fn damaged_runs_are_refused_by_file() {
         .unwrap()
         .trim_matches('"')
         .to_owned();
-    sandbox.run(&["explain", &cell[..6], "out"]).expect(0, &["structure", "again"]);
+    sandbox.run(&["explain", &cell[..6], "out"]).expect(0, &["operations", "again"]);
     sandbox.run(&["explain", "zz", "out"]).expect(2, &["no cell that begins with 'zz'"]);
 
     let path = sandbox.path("out/rows.csv");

@@ -30,7 +30,7 @@ fn a_project_that_is_named_is_the_one_that_is_used() {
     std::fs::remove_file(copy.path("datasets")).unwrap();
     std::fs::create_dir_all(copy.path("datasets/suites")).unwrap();
     std::os::unix::fs::symlink(project().join("datasets/models"), copy.path("datasets/models")).unwrap();
-    let suite = "about = \"one\"\nseed = 1\nstructure = true\n[[robot]]\nmodel = \"chain-planar-2\"\nfamily = \"chain\"\n";
+    let suite = "about = \"one\"\nseed = 1\noperations = true\n[[robot]]\nmodel = \"chain-planar-2\"\nfamily = \"chain\"\n";
     copy.write("datasets/suites/own.toml", suite);
     let before = entries(project().join("reports"));
     run(here.path(), Some(copy.folder.path()), &["run", "--suite", "own"]).expect(0, &["report:"]);
@@ -56,7 +56,7 @@ fn a_folder_that_is_no_project_is_named_with_what_it_lacks() {
 fn what_needs_no_project_asks_for_none() {
     let here = tempfile::tempdir().unwrap();
     let row =
-        featherbench_results::Row { cell: "abcd".into(), study: "structure".into(), ..featherbench_results::Row::default() }.informed(1.0);
+        featherbench_results::Row { cell: "abcd".into(), study: "operations".into(), ..featherbench_results::Row::default() }.informed(1.0);
     featherbench_results::write_run(&here.path().join("run"), &featherbench_results::RunInfo::default(), &[row]).unwrap();
     let nowhere = here.path().join("nowhere");
     for (arguments, words) in

@@ -31,7 +31,7 @@ fn the_printed_command_makes_the_rows_again() {
         find(&|row| row.engine == "pinocchio" && row.quantity == "fd" && row.metric == "forward" && row.robot == "chain-planar-2"),
         find(&|row| row.engine == "drake" && row.metric == "pairwise" && row.reference == "mujoco" && row.robot == "panda"),
         find(&|row| row.engine == "mujoco" && row.metric == "scaled_on_readback" && row.robot == "joints-common-free-single"),
-        find(&|row| row.study == "structure" && row.engine == "featherbench"),
+        find(&|row| row.study == "operations" && row.engine == "featherbench"),
         find(&|row| row.study == "repeatability" && row.engine == "featherbench"),
     ];
     for (k, cell) in chosen.iter().enumerate() {

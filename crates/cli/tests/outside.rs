@@ -19,7 +19,7 @@ mod written;
 
 use featherbench_bench::{Engine, FileBase, FileFormat, RobotFile};
 use featherbench_engines::{Limits, Oracle};
-use featherbench_studies::reading::{Cause, Comparison, Difference, Field};
+use featherbench_studies::import::{Cause, Comparison, Difference, Field};
 use std::ffi::OsString;
 use std::path::Path;
 use std::process::{Command, ExitCode};

@@ -67,7 +67,7 @@ fn a_killed_run_resumes_to_the_same_bytes_and_repeats_nothing() {
 #[test]
 fn a_run_of_another_program_or_suite_is_not_continued() {
     let sandbox = Sandbox::new();
-    let run = |arguments: &[&str]| sandbox.run(&[&["run", "--only", "structure", "--out", "out"], arguments].concat());
+    let run = |arguments: &[&str]| sandbox.run(&[&["run", "--only", "operations", "--out", "out"], arguments].concat());
     run(&["--suite", "smoke"]).expect(0, &["report:"]);
     let text = std::fs::read_to_string(support::project().join("datasets/suites/smoke.toml")).unwrap();
     let other = sandbox.write("other.toml", &text.replace("states = 100", "states = 101"));

@@ -8,7 +8,7 @@ use crate::process::Process;
 use crate::{request, shape};
 use featherbench_bench::frame::{Block, Frame};
 use featherbench_bench::provenance::{PROGRAM, SOURCES};
-use featherbench_bench::{Engine, Evaluation, Identity, NoAnswer, Quantity, Reading, ReadingNote, Robot, RobotFile, Route, Stepper};
+use featherbench_bench::{Engine, Evaluation, Identity, Import, ImportNote, NoAnswer, Quantity, Robot, RobotFile, Route, Stepper};
 use featherbench_model::{BodyDescription, Description, StateBatch};
 use featherbench_results::EngineSource;
 use serde_json::{Value, json};
@@ -28,7 +28,7 @@ pub struct Oracle {
     methods: BTreeMap<String, Vec<String>>,
     timed_by: TimedBy,
     /// Whether it can move its data.
-    scatter: bool,
+    relocate: bool,
     /// What it offers of steps, if it integrates.
     steps: Option<Steps>,
     command: Vec<OsString>,
@@ -58,7 +58,7 @@ struct Session {
     readback: Vec<f64>,
     states: Option<String>,
     /// The file that it has read, while nothing else was built since.
-    reading: Option<(RobotFile, Reading)>,
+    reading: Option<(RobotFile, Import)>,
 }
 
 impl Oracle {
@@ -102,10 +102,10 @@ impl Oracle {
             }
             _ => TimedBy::Us,
         };
-        let scatter = hello.header.get("scatter").and_then(Value::as_bool).unwrap_or(false);
+        let relocate = hello.header.get("relocate").and_then(Value::as_bool).unwrap_or(false);
         let steps = Steps::offered(hello.header.get("steps")).map_err(|reason| format!("hello: {reason}"))?;
         let session = Session { process, model: String::new(), readback: Vec::new(), states: None, reading: None };
-        Ok(Self { identity, methods, timed_by, scatter, steps, command, limits, clock, idle: Mutex::new(vec![session]) })
+        Ok(Self { identity, methods, timed_by, relocate, steps, command, limits, clock, idle: Mutex::new(vec![session]) })
     }
 
     /// The same oracle under another name; the engine's own name goes into its build, where it differs.
@@ -172,7 +172,7 @@ impl Engine for Oracle {
         matches!(self.timed_by, TimedBy::Estimate(_))
     }
 
-    fn read(&self, file: &RobotFile) -> Result<Reading, NoAnswer> {
+    fn read(&self, file: &RobotFile) -> Result<Import, NoAnswer> {
         let mut session = self.session()?;
         let reading = session.read(file);
         self.give_back(session);
@@ -254,7 +254,7 @@ impl Session {
     }
 
     /// Has the engine's own parser read a file, and asks what it holds then.
-    fn read(&mut self, file: &RobotFile) -> Result<Reading, NoAnswer> {
+    fn read(&mut self, file: &RobotFile) -> Result<Import, NoAnswer> {
         if let Some((_, reading)) = self.reading.as_ref().filter(|(known, _)| known == file) {
             return Ok(reading.clone());
         }
@@ -342,12 +342,12 @@ impl Evaluation for Asked<'_> {
         self.overhead
     }
 
-    fn scatter(&mut self, seed: u32) -> Result<bool, NoAnswer> {
-        if !self.oracle.scatter {
+    fn relocate(&mut self, seed: u32) -> Result<bool, NoAnswer> {
+        if !self.oracle.relocate {
             return Ok(false);
         }
         let session = self.session.as_mut().ok_or_else(|| NoAnswer::Failed("the oracle has ended".into()))?;
-        session.ask(json!({"op": "scatter", "seed": seed}), Vec::new()).map(|_| true)
+        session.ask(json!({"op": "relocate", "seed": seed}), Vec::new()).map(|_| true)
     }
 
     fn read(&self) -> &[f64] {
@@ -367,7 +367,7 @@ impl Drop for Asked<'_> {
 ///
 /// # Errors
 /// A sentence, when it is no robot whose states and answers could be given in the order of its bodies.
-pub(crate) fn reading(answer: &Frame) -> Result<Reading, String> {
+pub(crate) fn reading(answer: &Frame) -> Result<Import, String> {
     let model = answer.header.get("model").ok_or("there is no model")?;
     let parse = |model: &Value| featherbench_formats::neutral::parse(&model.to_string(), "the model").map_err(|error| error.to_string());
     let description = parse(model)?;
@@ -394,7 +394,7 @@ pub(crate) fn reading(answer: &Frame) -> Result<Reading, String> {
     if let Some(written) = written.as_ref().filter(|written| !same_tree(written, &canonical)) {
         return Err(format!("'{}' as written has other bodies or joints than as read", written.name));
     }
-    Ok(Reading { description: canonical, notes: notes.iter().map(note).collect(), keyframes, written })
+    Ok(Import { description: canonical, notes: notes.iter().map(note).collect(), keyframes, written })
 }
 
 /// Whether two descriptions have the same bodies on the same joints: states of one are states of the other.
@@ -417,10 +417,10 @@ fn keyframes(answer: &Frame, nq: usize) -> Result<Vec<Vec<f64>>, String> {
 }
 
 /// A parser's note; what is no text in it is left empty.
-fn note(note: &Value) -> ReadingNote {
+fn note(note: &Value) -> ImportNote {
     let text = |key: &str| note.get(key).and_then(Value::as_str).map(str::to_owned);
     let numbers: Option<Vec<f64>> = note.get("numbers").and_then(Value::as_array).and_then(|list| list.iter().map(Value::as_f64).collect());
-    ReadingNote {
+    ImportNote {
         cause: text("cause").unwrap_or_default(),
         about: text("about"),
         text: text("text").unwrap_or_default(),

@@ -71,7 +71,7 @@ type Bits = (Quantity, String, Result<Vec<u64>, NoAnswer>);
 /// Everything of a recording.
 fn bits(recording: &Recording) -> Vec<(Identity, Vec<Bits>)> {
     let outcome = |outcome: &Outcome| match outcome {
-        Outcome::Reading(_) => panic!("readings are not recorded"),
+        Outcome::Import(_) => panic!("readings are not recorded"),
         Outcome::Values(values) => Ok(values.iter().map(|x| x.to_bits()).collect()),
         Outcome::NoAnswer(refusal) => Err(refusal.clone()),
     };

@@ -15,7 +15,7 @@ featherbench.ready(() => {
       name: joined(overview.engines[line.engine], line.method, line.case), note: exponent(line.order, 3), ink: colour(method),
       line: { width: 1.4, dash: dash(kind) }, mark: { size: 8, symbol: symbol(kind) },
       points: line.points.map(([dt, error]) => ({
-        x: dt, y: least(error), tip: [`dt = ${short(dt)} s`, `error ${short(error)}`], target: { model: line.model, filters: { study: "step_limit", method: line.method } },
+        x: dt, y: least(error), tip: [`dt = ${short(dt)} s`, `error ${short(error)}`], target: { model: line.model, filters: { study: "steps", method: line.method } },
       })),
     };
   }

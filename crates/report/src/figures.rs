@@ -5,8 +5,8 @@ use std::collections::BTreeMap;
 use featherbench_results::{Relation, Row};
 use serde::{Deserialize, Serialize};
 
+use crate::accuracy::Accuracy;
 use crate::conditioning::{self, Family};
-use crate::digits::Digits;
 use crate::fit::{Fit, power_law};
 use crate::joint_matrix::JointMatrix;
 use crate::labels;
@@ -26,7 +26,7 @@ pub struct Figures<'a> {
     /// One line per algorithm, family and case.
     pub times: Vec<TimeLine<'a>>,
     /// Errors against the truth.
-    pub digits: Digits<'a>,
+    pub accuracy: Accuracy<'a>,
     /// Ratios of times.
     pub speed: Speed<'a>,
     /// Methods with both a time and a true error.
@@ -116,16 +116,16 @@ pub struct TimePoint {
 impl<'a> Figures<'a> {
     /// Collects the plots' data.
     pub fn of(overview: &Overview<'a>, records: &'a [Row]) -> Self {
-        let (times, digits) = (times(overview, records), Digits::of(overview, records));
+        let (times, accuracy) = (times(overview, records), Accuracy::of(overview, records));
         Self {
             errors: errors(overview, records),
             speed: Speed::of(overview, records),
-            tradeoffs: tradeoffs(&digits, &times),
+            tradeoffs: tradeoffs(&accuracy, &times),
             conditions: conditioning::families(overview, records),
             joints: JointMatrix::of(overview, records),
             steps: steps::lines(overview, records),
             times,
-            digits,
+            accuracy,
         }
     }
 }

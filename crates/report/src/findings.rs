@@ -7,7 +7,7 @@ use featherbench_results::{Row, RunInfo, Verdict};
 use crate::figures::is_error_measure;
 use crate::labels;
 use crate::numbers::{count, larger, listed, short};
-use crate::overview::{DIGITS, Overview, severity};
+use crate::overview::{ACCURACY, Overview, severity};
 use crate::tally::Tally;
 
 /// The state of a run in one word.
@@ -235,7 +235,7 @@ fn agreements<'a>(overview: &Overview<'a>, records: &'a [Row]) -> Vec<Agreement<
 fn disagreements(records: &[Row]) -> Vec<Disagreement<'_>> {
     let mut found: BTreeMap<(&str, &str, &str), Disagreement> = BTreeMap::new();
     // What the truth says is told apart from what engines say of each other.
-    let told_here = |row: &&Row| row.study != DIGITS && !matches!(row.verdict, Verdict::Info | Verdict::Skip);
+    let told_here = |row: &&Row| row.study != ACCURACY && !matches!(row.verdict, Verdict::Info | Verdict::Skip);
     for row in records.iter().filter(told_here) {
         let group = found.entry((&row.engine, &row.reference, &row.quantity)).or_insert_with(|| Disagreement {
             engine: &row.engine,

@@ -7,7 +7,7 @@ use serde::Serialize;
 pub struct Fit {
     /// The exponent p.
     pub slope: f64,
-    /// Its standard error, from the scatter about the line.
+    /// Its standard error, from the relocate about the line.
     pub error: f64,
     /// log₁₀ c.
     pub intercept: f64,
@@ -50,7 +50,7 @@ mod tests {
     }
 
     #[test]
-    fn scatter_shows_in_the_standard_error() {
+    fn relocation_shows_in_the_standard_error() {
         // Residuals (+d, -2d, +d)·… about a line of slope 1: by hand, Σr² = 6d², xx = 2, so the error is d·√3.
         let d = 0.01;
         let points = [(1.0, 1.0 + d), (2.0, 2.0 - 2.0 * d), (3.0, 3.0 + d)];

@@ -7,16 +7,17 @@
 //! Stages: records are grouped ([`overview`], [`figures`], [`digits`]), turned into HTML (one module per section) and into chunks ([`chunks`]), and
 //! everything is written with `index.html` last.
 
+mod accuracy;
+mod accuracy_section;
 mod axes;
 mod chunks;
 mod conditioning;
 mod conventions;
-mod digits;
-mod digits_section;
 mod figures;
 mod findings;
 mod fit;
 mod heatmap;
+mod imports;
 mod joint_matrix;
 mod known;
 mod labels;
@@ -27,7 +28,6 @@ mod page;
 mod pairwise;
 mod plots;
 mod provenance;
-mod reading;
 mod speed;
 mod speed_section;
 mod steps;
@@ -63,10 +63,10 @@ const SCRIPT: &str = concat!(
     include_str!("../assets/chart.js"),
     include_str!("../assets/plots.js"),
     include_str!("../assets/figures.js"),
-    include_str!("../assets/digits.js"),
+    include_str!("../assets/accuracy.js"),
     include_str!("../assets/tradeoff.js"),
     include_str!("../assets/steps.js"),
-    include_str!("../assets/reading.js"),
+    include_str!("../assets/imports.js"),
     include_str!("../assets/speed.js"),
 );
 

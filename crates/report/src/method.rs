@@ -9,7 +9,7 @@ use crate::overview::Overview;
 
 /// Writes the section.
 pub fn section(run: &RunInfo, overview: &Overview, figures: &Figures) -> Markup {
-    let quantities = [overview.quantities.as_slice(), &figures.digits.quantities()].concat();
+    let quantities = [overview.quantities.as_slice(), &figures.accuracy.quantities()].concat();
     html! {
         section #method {
             h2 { "How it was measured" }
@@ -32,7 +32,7 @@ pub fn section(run: &RunInfo, overview: &Overview, figures: &Figures) -> Markup 
                     p.note {
                         "Every error is divided by a size that belongs to it, entry by entry; sums of magnitudes replace every vector of a recursion by its length and every sum by the sum of lengths. "
                         "Zero over zero is zero, anything else over zero infinite. Norms over mixed units, which hide a wrong entry behind large right ones, judge nothing between engines."
-                        @if !figures.digits.answers.is_empty() { " Digits of forward dynamics are in the 2-norm for the comparison with published tables." }
+                        @if !figures.accuracy.answers.is_empty() { " Accuracy of forward dynamics are in the 2-norm for the comparison with published tables." }
                     }
                 }
                 div {
@@ -46,10 +46,10 @@ pub fn section(run: &RunInfo, overview: &Overview, figures: &Figures) -> Markup 
                         dd { "random: drawn from the seed; zero: no velocity, acceleration and force; straight: the neutral configuration at random rates; fast: rates a thousand times larger; limit: at the joints' limits, where the robot has any." }
                         dt { "Terms" }
                         dd { "M, inverse and forward dynamics contain the rotors' inertia; inverse and forward dynamics and the bias force contain gravity; damping and dry friction are left out for every engine." }
-                        @if !figures.digits.answers.is_empty() {
+                        @if !figures.accuracy.answers.is_empty() {
                             dt { "Truth" }
                             dd { "The reference of the digits is the answer in double-double arithmetic, 32 digits, from the description's own numbers. A gate on forward dynamics there is on ‖Δq̈‖_M / ‖q̈‖_M, against what a backward error of its size amounts to at that state." }
-                            dt { "Digits lost" }
+                            dt { "Accuracy lost" }
                             dd { "log₁₀(error/2⁻⁵²), none below. Medians and quartiles are over the states." }
                             dt { "Structured floor" }
                             dd { "How far the true q̈ moves, in the 2-norm and relative to itself, when q, q̇, τ and every mass, length and inertia moves by half a unit in its last place and all of it adds up: a worst case. Roundings of random sign leave about a tenth of it, so an error may lie below the floor." }

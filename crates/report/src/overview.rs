@@ -13,13 +13,13 @@ pub const AGREEMENT: &str = "agreement";
 /// The study whose rows are times.
 pub const TIMING: &str = "timing";
 /// The study whose rows compare with the truth.
-pub const DIGITS: &str = "digits";
+pub const ACCURACY: &str = "accuracy";
 /// The study whose rows are condition numbers.
 pub const CONDITIONING: &str = "conditioning";
 /// The study whose rows are reproductions of known deviations.
 pub const REPRODUCTIONS: &str = "reproductions";
 /// The study of small steps.
-pub const STEP_LIMIT: &str = "step_limit";
+pub const STEPS: &str = "steps";
 /// The engine of rows that speak of all engines together.
 pub const EVERYONE: &str = "all";
 /// The metric of rows that compare two engines with each other.

@@ -5,11 +5,11 @@ use maud::{DOCTYPE, Markup, html};
 
 use crate::figures::Figures;
 use crate::findings::Findings;
+use crate::imports::Imports;
 use crate::overview::{Overview, REPRODUCTIONS};
-use crate::reading::Readings;
 use crate::truth::Truth;
 use crate::{
-    conditioning, conventions, digits_section, heatmap, joint_matrix, known, method, pairwise, plots, provenance, reading, speed_section,
+    accuracy_section, conditioning, conventions, heatmap, imports, joint_matrix, known, method, pairwise, plots, provenance, speed_section,
     steps, tradeoff, truth, unpassed, verdict,
 };
 
@@ -17,9 +17,9 @@ use crate::{
 const SECTIONS: &[(&str, &str)] = &[
     ("verdict", "Verdict"),
     ("agreement", "Agreement"),
-    ("reading", "Readings"),
+    ("import", "Imports"),
     ("joints", "Joints"),
-    ("digits", "Digits"),
+    ("accuracy", "Accuracy"),
     ("depth", "Error"),
     ("time", "Time"),
     ("speed", "Speed"),
@@ -37,8 +37,8 @@ const SECTIONS: &[(&str, &str)] = &[
 /// The whole page as text.
 pub fn render(run: &RunInfo, records: &[Row], overview: &Overview, figures: &Figures) -> String {
     let findings = Findings::of(run, overview, records);
-    let truth = Truth::of(overview, &figures.digits, records);
-    let readings = Readings::of(overview, records);
+    let truth = Truth::of(overview, &figures.accuracy, records);
+    let readings = Imports::of(overview, records);
     let page = html! {
         (DOCTYPE)
         html lang="en" {
@@ -57,11 +57,11 @@ pub fn render(run: &RunInfo, records: &[Row], overview: &Overview, figures: &Fig
                 a.to-content href="#verdict" { "Skip to the verdict" }
                 (header(run, overview, figures, &readings))
                 main {
-                    (verdict::section(run, overview, records, &findings, truth::markup(overview, &figures.digits, &truth)))
+                    (verdict::section(run, overview, records, &findings, truth::markup(overview, &figures.accuracy, &truth)))
                     (heatmap::section(overview, &findings))
-                    (reading::section(overview, &readings))
+                    (imports::section(overview, &readings))
                     (joint_matrix::section(overview, &figures.joints))
-                    (digits_section::section(overview, &figures.digits))
+                    (accuracy_section::section(overview, &figures.accuracy))
                     (plots::depth(figures))
                     (plots::time(overview, figures))
                     (speed_section::section(run, overview, &figures.speed))
@@ -102,11 +102,11 @@ pub fn opener(chunk: &str, filters: &[(&str, &str)], text: &str) -> Markup {
 }
 
 /// The sections that this run has: some appear with their rows alone.
-fn sections(overview: &Overview, figures: &Figures, readings: &Readings) -> impl Iterator<Item = (&'static str, &'static str)> {
+fn sections(overview: &Overview, figures: &Figures, readings: &Imports) -> impl Iterator<Item = (&'static str, &'static str)> {
     let absent = |anchor| match anchor {
-        "reading" => readings.is_empty(),
+        "import" => readings.is_empty(),
         "joints" => figures.joints.rows.is_empty(),
-        "digits" => figures.digits.answers.is_empty(),
+        "accuracy" => figures.accuracy.answers.is_empty(),
         "speed" => figures.speed.is_empty(),
         "tradeoff" => figures.tradeoffs.is_empty(),
         "conditioning" => figures.conditions.is_empty(),
@@ -117,7 +117,7 @@ fn sections(overview: &Overview, figures: &Figures, readings: &Readings) -> impl
     SECTIONS.iter().copied().filter(move |&(anchor, _)| !absent(anchor))
 }
 
-fn header(run: &RunInfo, overview: &Overview, figures: &Figures, readings: &Readings) -> Markup {
+fn header(run: &RunInfo, overview: &Overview, figures: &Figures, readings: &Imports) -> Markup {
     html! {
         header {
             div.bar {

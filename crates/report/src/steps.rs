@@ -8,7 +8,7 @@ use serde::Serialize;
 
 use crate::labels;
 use crate::numbers::short;
-use crate::overview::{Overview, STEP_LIMIT};
+use crate::overview::{Overview, STEPS};
 use crate::page::opener;
 
 /// Errors of one engine's way to step on one robot.
@@ -36,7 +36,7 @@ pub struct StepLine<'a> {
 /// Reads a run's rows.
 pub fn lines<'a>(overview: &Overview<'a>, records: &'a [Row]) -> Vec<StepLine<'a>> {
     let mut found: BTreeMap<(usize, usize, bool, &str, bool, &str), StepLine> = BTreeMap::new();
-    for row in records.iter().filter(|row| row.study == STEP_LIMIT) {
+    for row in records.iter().filter(|row| row.study == STEPS) {
         let (Some(model), Some(engine), Some(value)) = (overview.model(&row.robot), overview.engine(&row.engine), row.value) else {
             continue;
         };
@@ -115,7 +115,7 @@ pub fn section(overview: &Overview, lines: &[StepLine]) -> Markup {
 }
 
 fn row(overview: &Overview, line: &StepLine) -> Markup {
-    let filters = [("study", STEP_LIMIT), ("method", line.method)];
+    let filters = [("study", STEPS), ("method", line.method)];
     html! {
         tr {
             th scope="row" { (opener(&format!("model-{}", line.model), &filters, overview.models[line.model].name)) }

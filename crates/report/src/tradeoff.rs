@@ -5,8 +5,8 @@ use std::collections::BTreeMap;
 use maud::{Markup, html};
 use serde::Serialize;
 
-use crate::digits::Digits;
-use crate::digits_section::exact;
+use crate::accuracy::Accuracy;
+use crate::accuracy_section::exact;
 use crate::figures::TimeLine;
 use crate::numbers::short;
 use crate::overview::Overview;
@@ -44,7 +44,7 @@ pub struct Tradeoff<'a> {
 }
 
 /// Every method that has both a time and an error, by model, the fastest first.
-pub fn tradeoffs<'a>(digits: &Digits<'a>, times: &[TimeLine<'a>]) -> Vec<Tradeoff<'a>> {
+pub fn tradeoffs<'a>(digits: &Accuracy<'a>, times: &[TimeLine<'a>]) -> Vec<Tradeoff<'a>> {
     let answers: BTreeMap<(usize, &str, &str), usize> = digits
         .answers
         .iter()

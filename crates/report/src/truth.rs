@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use featherbench_results::{Row, Verdict};
 use maud::{Markup, html};
 
-use crate::digits::{Digits, is_judged, rank, shown_quantity};
+use crate::accuracy::{Accuracy, is_judged, rank, shown_quantity};
 use crate::labels;
 use crate::numbers::{count, decades, larger, listed, short};
 use crate::overview::{Overview, severity};
@@ -49,7 +49,7 @@ pub struct Truth<'a> {
 
 impl<'a> Truth<'a> {
     /// Reads the rows.
-    pub fn of(overview: &Overview<'a>, digits: &Digits<'a>, records: &'a [Row]) -> Self {
+    pub fn of(overview: &Overview<'a>, digits: &Accuracy<'a>, records: &'a [Row]) -> Self {
         let mut accounts: BTreeMap<((usize, &str), usize, &str), Account> = BTreeMap::new();
         for row in records.iter().filter(|row| is_judged(row)) {
             let (Some(model), Some(engine)) = (overview.model(&row.robot), overview.engine(&row.engine)) else { continue };
@@ -126,7 +126,7 @@ fn kept<'a>(overview: &Overview<'a>, accounts: &BTreeMap<((usize, &'a str), usiz
     kept
 }
 
-fn medians(overview: &Overview, digits: &Digits) -> Vec<(String, f64)> {
+fn medians(overview: &Overview, digits: &Accuracy) -> Vec<(String, f64)> {
     let mut largest: BTreeMap<usize, f64> = BTreeMap::new();
     for cell in digits.cells.iter().filter(|cell| digits.answers[cell.answer].quantity == "fd") {
         let entry = largest.entry(cell.answer).or_default();
@@ -173,13 +173,13 @@ fn missed(overview: &Overview, found: &[Missed], class: &str, verb: [&str; 2]) -
             }
         }
         @if found.len() > TOLD {
-            li class=(class) { (found.len() - TOLD) " more: see " a href="#digits" { "the digits" } "." }
+            li class=(class) { (found.len() - TOLD) " more: see " a href="#accuracy" { "the digits" } "." }
         }
     }
 }
 
 /// The warning that the reference itself may be wrong; nothing where no row says so.
-pub fn warning(overview: &Overview, digits: &Digits) -> Markup {
+pub fn warning(overview: &Overview, digits: &Accuracy) -> Markup {
     html! {
         @if !digits.walls.is_empty() {
             p.warning role="note" {
@@ -197,7 +197,7 @@ pub fn warning(overview: &Overview, digits: &Digits) -> Markup {
 }
 
 /// The part of the page's head that says who is right.
-pub fn markup(overview: &Overview, digits: &Digits, truth: &Truth) -> Markup {
+pub fn markup(overview: &Overview, digits: &Accuracy, truth: &Truth) -> Markup {
     html! {
         @if !digits.answers.is_empty() {
             h3 { "Against the truth" }
@@ -225,7 +225,7 @@ pub fn markup(overview: &Overview, digits: &Digits, truth: &Truth) -> Markup {
             }
             p.note {
                 "The truth is the answer in double-double arithmetic: here a row convicts or acquits the engine it names. In parentheses the largest judged error, "
-                "of forward dynamics in the kinetic-energy norm. Every number is in " a href="#digits" { "digits" } "."
+                "of forward dynamics in the kinetic-energy norm. Every number is in " a href="#accuracy" { "accuracy" } "."
             }
         }
     }

@@ -1,7 +1,7 @@
 //! The tests of the report as one program: they share what is compiled for them.
 
+mod imports;
 mod joints;
-mod readings;
 mod report;
 mod support;
 mod truth;

@@ -24,7 +24,7 @@ fn the_page_has_its_sections_and_stays_small() {
     let order = [
         "verdict",
         "agreement",
-        "digits",
+        "accuracy",
         "depth",
         "time",
         "speed",

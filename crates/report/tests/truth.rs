@@ -22,7 +22,7 @@ fn has(written: &Written, section: &str) -> bool {
 
 /// The curve of a answer along an axis of a family.
 fn curve<'a>(figures: &'a Value, overview: &Value, axis: &str, family: &str, answer: [&str; 3]) -> &'a Value {
-    let digits = &figures["digits"];
+    let digits = &figures["accuracy"];
     let is_answer = |about: &Value| {
         [&overview["engines"][about["engine"].as_u64().unwrap() as usize], &about["method"], &about["quantity"]]
             .iter()
@@ -37,21 +37,21 @@ fn curve<'a>(figures: &'a Value, overview: &Value, axis: &str, family: &str, ans
 
 #[test]
 fn each_section_appears_with_its_rows_alone() {
-    let (_, written) = of_studies(&["agreement", "timing", "structure"]);
-    assert_eq!(["digits", "tradeoff", "conditioning"].map(|section| has(&written, section)), [false; 3]);
+    let (_, written) = of_studies(&["agreement", "timing", "operations"]);
+    assert_eq!(["accuracy", "tradeoff", "conditioning"].map(|section| has(&written, section)), [false; 3]);
     assert!(!written.section("verdict").contains("Against the truth"));
-    let (_, written) = of_studies(&["digits"]);
-    assert_eq!(["digits", "tradeoff", "conditioning"].map(|section| has(&written, section)), [true, false, false]);
+    let (_, written) = of_studies(&["accuracy"]);
+    assert_eq!(["accuracy", "tradeoff", "conditioning"].map(|section| has(&written, section)), [true, false, false]);
     let (_, written) = of_studies(&["conditioning"]);
-    assert_eq!(["digits", "tradeoff", "conditioning"].map(|section| has(&written, section)), [false, false, true]);
-    let (_, written) = of_studies(&["digits", "timing"]);
-    assert_eq!(["digits", "tradeoff", "conditioning"].map(|section| has(&written, section)), [true, true, false]);
+    assert_eq!(["accuracy", "tradeoff", "conditioning"].map(|section| has(&written, section)), [false, false, true]);
+    let (_, written) = of_studies(&["accuracy", "timing"]);
+    assert_eq!(["accuracy", "tradeoff", "conditioning"].map(|section| has(&written, section)), [true, true, false]);
 }
 
 #[test]
 fn the_other_sections_stay_as_they_were() {
-    let (_, without) = of_studies(&["agreement", "timing", "structure"]);
-    let (_, with) = of_studies(&["agreement", "timing", "structure", "digits", "conditioning"]);
+    let (_, without) = of_studies(&["agreement", "timing", "operations"]);
+    let (_, with) = of_studies(&["agreement", "timing", "operations", "accuracy", "conditioning"]);
     for id in ["agreement", "depth", "time", "pairs"] {
         assert_eq!(without.section(id), with.section(id), "{id}");
     }
@@ -64,7 +64,7 @@ fn the_other_sections_stay_as_they_were() {
 
 #[test]
 fn growth_is_what_the_methods_were_made_with() {
-    let (_, written) = of_studies(&["digits"]);
+    let (_, written) = of_studies(&["accuracy"]);
     let (figures, overview) = (written.data("figures"), written.data("overview"));
     let slope = |axis, family, answer| curve(&figures, &overview, axis, family, answer)["fit"]["slope"].as_f64().unwrap();
     let close = |found: f64, expected: f64| assert!((found - expected).abs() < 0.05, "{found}, not {expected}");
@@ -81,22 +81,22 @@ fn growth_is_what_the_methods_were_made_with() {
     // A line goes through entries of M, or through products, but not from one to the other.
     let matrix = curve(&figures, &overview, "depth", "chain_2d", ["featherbench", "crba", "mass_matrix"]);
     assert_eq!((matrix["points"].as_array().unwrap().len(), &matrix["fit"]["points"]), (6, &5.into()));
-    assert!(written.section("digits").contains("<td class=\"number\">1.9") || written.section("digits").contains("2.00 ±"));
+    assert!(written.section("accuracy").contains("<td class=\"number\">1.9") || written.section("accuracy").contains("2.00 ±"));
 }
 
 #[test]
 fn the_table_holds_every_median_once() {
-    let (records, written) = of_studies(&["digits"]);
-    let section = written.section("digits");
-    let table = &section[section.find("id=\"digits-table\"").unwrap()..];
+    let (records, written) = of_studies(&["accuracy"]);
+    let section = written.section("accuracy");
+    let table = &section[section.find("id=\"accuracy-table\"").unwrap()..];
     let answers = |row: &&Row| row.engine != "all";
     let cells: std::collections::BTreeSet<_> =
         records.iter().filter(answers).map(|row| (&row.robot, &row.engine, &row.method, &row.quantity)).collect();
-    assert_eq!(written.data("figures")["digits"]["cells"].as_array().unwrap().len(), cells.len());
+    assert_eq!(written.data("figures")["accuracy"]["cells"].as_array().unwrap().len(), cells.len());
     // Every cell leads to a chunk that is there.
     let chunks = written.chunk_names();
     let data = written.data("figures");
-    let models = data["digits"]["cells"].as_array().unwrap().iter().map(|cell| &cell["model"]);
+    let models = data["accuracy"]["cells"].as_array().unwrap().iter().map(|cell| &cell["model"]);
     assert!(models.map(|model| format!("model-{model}")).all(|name| chunks.contains(&name)));
     let heads = table.matches("<tr data-m").count();
     assert_eq!(table.matches("<button").count(), cells.len() + heads);
@@ -110,7 +110,7 @@ fn the_table_holds_every_median_once() {
 
 #[test]
 fn the_verdict_says_who_is_right_by_truth() {
-    let (_, written) = of_studies(&["digits"]);
+    let (_, written) = of_studies(&["accuracy"]);
     let verdict = written.section("verdict");
     for words in [
         "Against the truth",
@@ -125,14 +125,14 @@ fn the_verdict_says_who_is_right_by_truth() {
     ] {
         assert!(verdict.contains(words), "{words}: {verdict}");
     }
-    assert!(written.section("digits").contains("The reference is the suspect"));
+    assert!(written.section("accuracy").contains("The reference is the suspect"));
     assert!(!verdict.contains("Who does not"), "a failure against the truth is told once");
 }
 
 #[test]
 fn a_deviation_is_neither_kept_nor_failed() {
     let row = |method: &str, model: &str| Row {
-        study: "digits".into(),
+        study: "accuracy".into(),
         engine: "mujoco".into(),
         method: method.into(),
         robot: model.into(),
@@ -157,7 +157,7 @@ fn a_deviation_is_neither_kept_nor_failed() {
 
 #[test]
 fn work_against_precision_has_its_front() {
-    let (_, written) = of_studies(&["digits", "timing"]);
+    let (_, written) = of_studies(&["accuracy", "timing"]);
     let (figures, overview) = (written.data("figures"), written.data("overview"));
     let points = figures["tradeoffs"].as_array().unwrap();
     let of_model = |name: &str| -> Vec<(&str, bool)> {
@@ -189,7 +189,7 @@ fn conditioning_shows_local_exponents_and_the_floor() {
 fn steps_become_lines_and_orders() {
     let run = support::run_info();
     let blank = Row {
-        study: "step_limit".into(),
+        study: "steps".into(),
         robot: run.models[0].name.clone(),
         engine: run.engines[0].name.clone(),
         quantity: "fd".into(),

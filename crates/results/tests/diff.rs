@@ -48,7 +48,7 @@ fn verdicts_errors_counts_and_rows() {
     assert_eq!(worse, [(Change::Verdict, Some(2e-14 / 1e-15)), (Change::Gone, None)]);
     assert_eq!(changes(&base[..1], &base), [Change::New]);
     let count =
-        |value: f64| [Row { study: "structure".into(), unit: "numbers".into(), ..Row::default() }.gated(value, Relation::Eq, value)];
+        |value: f64| [Row { study: "operations".into(), unit: "numbers".into(), ..Row::default() }.gated(value, Relation::Eq, value)];
     assert_eq!(changes(&count(666.0), &count(666.0)), []);
     assert_eq!(changes(&count(666.0), &count(667.0)), [Change::Count]);
     let skipped = Row { verdict: Verdict::Pass, ..error("a", 1e-15, 1e-14) }.without_value(Verdict::Skip, "not offered");
@@ -82,7 +82,7 @@ fn times_change_beyond_their_intervals_and_the_controls() {
 
 /// A row of a study without a gate.
 fn exact(metric: &str, unit: &str, value: f64) -> Row {
-    Row { study: "structure".into(), metric: metric.into(), unit: unit.into(), ..Row::default() }.informed(value)
+    Row { study: "operations".into(), metric: metric.into(), unit: unit.into(), ..Row::default() }.informed(value)
 }
 
 /// A measured row that is no time.
@@ -95,7 +95,7 @@ fn measured(metric: &str, value: f64) -> Row {
 fn changes_are_listed_by_kind_and_then_in_the_order_of_the_run() {
     let small = |name: &str| error(name, 1e-15, 1e-14);
     let before = [vec![small("gone z"), small("gone a"), error("e2", 1e-15, 1.0), error("e1", 1e-15, 1.0)], time(100.0, 0.0, 0.0)].concat();
-    let count = |value| Row { study: "structure".into(), unit: "numbers".into(), ..Row::default() }.informed(value);
+    let count = |value| Row { study: "operations".into(), unit: "numbers".into(), ..Row::default() }.informed(value);
     let before = [before, vec![count(5.0), error("v", 1e-15, 1e-14)]].concat();
     let after = [
         vec![small("new z"), error("e2", 1e-13, 1.0), small("new a"), error("e1", 1e-13, 1.0)],

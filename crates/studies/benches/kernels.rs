@@ -1,5 +1,5 @@
 //! Our own kernels under criterion: the registry that the agreement study checks and the timing study times, on the same robots and
-//! states; and forward dynamics in single precision, which the digits study checks and no run times.
+//! states; and forward dynamics in single precision, which the accuracy study checks and no run times.
 //!
 //! A group is an algorithm and method, an id a robot and a regime: `stream` goes round a thousand random states, `hot` stays at one. The
 //! throughput is in dofs. A time includes everything from raw q, v, a or τ to the result in the kernel's workspace; `factorization` and `solve` start from

@@ -1,53 +1,277 @@
-//! Accuracy: our error over that of the best engine, for every quantity.
+//! Digits: how far each engine and method is from the truth, and who is right.
 //!
-//! Both errors are distances from the truth in double-double arithmetic ([`featherbench_bench::truth`]), in the measures of the agreement study, at the
-//! worst of the states. Ours is that of our usual method; the best engine's is the smallest of all others and their methods. An error below
-//! half an ulp, 2⁻⁵³, counts as half an ulp: rounding the exact answer leaves as much.
+//! The reference is not an engine but the answer in double-double arithmetic ([`featherbench_bench::truth`]). Inverse dynamics and M are measured in
+//! the unit-free measures of the agreement study; forward dynamics in the kinetic-energy norm, against the bound that a backward stable
+//! method keeps, and in the 2-norm for the comparison with published tables, with the structured floor beside it. The quartiles are over the
+//! states.
+//!
+//! *Wall*: when the best answers of several engines all lie at one error, it is the reference that ends there. A row per robot says how many
+//! engines stand at the wall.
 
-use crate::agreement::QUANTITIES;
 use crate::row;
-use featherbench_bench::measure::{ForwardScale, Magnitudes, ratio, scaled_error, worst};
-use featherbench_bench::truth::TruthModel;
-use featherbench_bench::{Finished, Quantity, Robot};
-use featherbench_results::Row;
+use featherbench_bench::measure::{ForwardScale, scaled_error};
+use featherbench_bench::truth::{Truth, TruthModel, conditioning_bound};
+use featherbench_bench::{Cell, Context, DENSE_LIMIT, Finished, NoAnswer, Outcome, Quantity, Robot, Study};
+use featherbench_dynamics::TreeSparse;
+use featherbench_results::{Row, Verdict};
 use serde_json::json;
 
-/// The metric of the rows.
-const METRIC: &str = "over_best";
-/// Half an ulp of one.
-const FLOOR: f64 = 0.5 * f64::EPSILON;
-/// Robots with more dofs are left out: their matrices in double-double take seconds.
-const DOFS: usize = 300;
+/// The accuracy study.
+pub struct Accuracy;
 
-/// One row for each quantity that we and another engine answered.
-pub(crate) fn over_best(own: &str, robot: &Robot, finished: &[Finished], at: &[Magnitudes], forward: &[ForwardScale]) -> Vec<Row> {
-    let Some(truth) = TruthModel::new(robot).filter(|_| robot.states.nv <= DOFS) else { return Vec::new() };
-    let of = |quantity: Quantity| -> Option<Row> {
-        let answers: Vec<&Finished> =
-            finished.iter().filter(|(cell, outcome)| cell.quantity == quantity.name() && outcome.values().is_some()).collect();
-        let (ours, _) = answers.iter().find(|(cell, _)| cell.engine == own)?;
-        answers.iter().find(|(cell, _)| cell.engine != own)?;
-        let count = quantity.states(robot.states.count());
-        let true_values: Vec<Vec<f64>> = (0..count).map(|k| truth.answer(robot, quantity, k)).collect::<Option<_>>()?;
-        let error = |values: &[f64]| {
-            let states = values.chunks_exact(quantity.size(robot)).zip(&true_values).enumerate();
-            let errors = states.map(|(k, (value, truth))| match quantity {
-                Quantity::ForwardDynamics => forward[k].forward_error(truth, value),
-                _ => scaled_error(robot, quantity, &at[k], truth, value),
-            });
-            errors.fold(0.0, worst)
+/// What is compared with the truth.
+const QUANTITIES: [Quantity; 5] = [
+    Quantity::InverseDynamics,
+    Quantity::MassMatrix,
+    Quantity::MassMatrixProbe,
+    Quantity::ForwardDynamics,
+    Quantity::ForwardDynamicsSingle,
+];
+/// The name of the reference in records.
+const TRUTH: &str = "truth";
+/// The floor hardly depends on the state: its median over a few is enough, and it costs O(n²) each.
+const FLOOR_STATES: usize = 3;
+/// Above this size no floor is computed.
+const FLOOR_DOFS: usize = 300;
+
+impl Study for Accuracy {
+    fn name(&self) -> &'static str {
+        "accuracy"
+    }
+
+    fn plan(&self, context: &Context) -> Vec<Cell> {
+        let mut cells = Vec::new();
+        for robot in context.robots.iter().filter(|robot| robot.takes(self.name())) {
+            let big = robot.states.nv > DENSE_LIMIT;
+            for engine in context.engines {
+                let identity = engine.identity();
+                for quantity in QUANTITIES {
+                    let other_form = if big { Quantity::MassMatrix } else { Quantity::MassMatrixProbe };
+                    if quantity == other_form {
+                        continue;
+                    }
+                    cells.extend(engine.methods(quantity).into_iter().map(|method| Cell {
+                        study: self.name().into(),
+                        robot: robot.name.clone(),
+                        robot_hash: robot.hash.clone(),
+                        params: json!({"base": robot.base(), "states": robot.states.count()}),
+                        engine: identity.name.clone(),
+                        version: identity.version.clone(),
+                        method,
+                        quantity: quantity.name().into(),
+                        scalar: if quantity == Quantity::ForwardDynamicsSingle { "f32" } else { "f64" }.into(),
+                    }));
+                }
+            }
+        }
+        cells
+    }
+
+    fn evaluate(&self, context: &Context, cell: &Cell) -> Outcome {
+        crate::evaluate(context, cell)
+    }
+
+    fn compare(&self, context: &Context, robot: &Robot, finished: &[Finished]) -> Vec<Row> {
+        let model = TruthModel::new(robot);
+        let truth: Option<Vec<Truth>> = (0..robot.states.count()).map(|k| model.as_ref()?.at(robot, k)).collect();
+        let Some(truth) = truth else {
+            let unknown = |(cell, _): &Finished| row(cell, robot).without_value(Verdict::Error, "there is no truth for this robot");
+            return finished.iter().map(unknown).collect();
         };
-        let errors: Vec<(&Finished, f64)> =
-            answers.iter().filter_map(|item| item.1.values().map(|values| (*item, error(values)))).collect();
-        let (_, ours_error) = errors.iter().find(|((cell, _), _)| cell == ours)?;
-        let others = errors.iter().filter(|((cell, _), error)| cell.engine != own && !error.is_nan());
-        let ((best, _), best_error) = others.min_by(|(_, a), (_, b)| a.total_cmp(b))?;
-        let (above, below) = (worst(*ours_error, FLOOR), worst(*best_error, FLOOR));
-        let mut row =
-            Row { states: "all".into(), metric: METRIC.into(), unit: "1".into(), reference: best.engine.clone(), ..row(ours, robot) };
-        let params = json!({"base": robot.base(), "ours": ours_error, "best": best_error, "by": best.method});
-        row.params = featherbench_results::canonical_json(&params);
-        Some(row.informed(ratio(above, below)))
-    };
-    QUANTITIES.into_iter().filter(|&quantity| quantity != Quantity::Readback).filter_map(of).collect()
+        let at = robot.magnitudes();
+        let forward = ForwardScale::all(robot, &at);
+        let floors = if robot.states.nv <= FLOOR_DOFS { robot.states.count().min(FLOOR_STATES) } else { 0 };
+        let floors: Vec<f64> = (0..floors).map(|k| conditioning_bound(robot, k).unwrap_or(f64::NAN)).collect();
+        let floor = median(&mut floors.iter().copied().filter(|floor| floor.is_finite()).collect::<Vec<_>>());
+
+        let (mut rows, mut walls) = (Vec::new(), Vec::new());
+        for (cell, outcome) in finished {
+            let blank = Row { reference: TRUTH.into(), unit: "1".into(), states: "all".into(), ..row(cell, robot) };
+            let (Outcome::Values(values), Some(quantity)) = (outcome, Quantity::parse(&cell.quantity)) else {
+                let (verdict, reason) = match outcome {
+                    Outcome::NoAnswer(NoAnswer::NotOffered(reason)) => (Verdict::Skip, reason.clone()),
+                    Outcome::NoAnswer(NoAnswer::Failed(reason)) => (Verdict::Error, reason.clone()),
+                    Outcome::Values(_) | Outcome::Import(_) => (Verdict::Error, format!("there is no quantity {}", cell.quantity)),
+                };
+                rows.push(context.gates.explain(blank.without_value(verdict, reason)));
+                continue;
+            };
+            if matches!(quantity, Quantity::ForwardDynamics | Quantity::ForwardDynamicsSingle) {
+                let answers = values.chunks_exact(robot.states.nv).zip(&truth).zip(&forward);
+                let Some(errors) = answers
+                    .map(|((a, truth), scale)| Some(forward_errors(a, truth.forward_dynamics.as_ref()?, scale)))
+                    .collect::<Option<Vec<_>>>()
+                else {
+                    rows.push(context.gates.explain(blank.without_value(Verdict::Error, "M is singular: there is no true answer")));
+                    continue;
+                };
+                if let Some(worst) = most_off(&errors) {
+                    let row = Row { metric: "true_forward".into(), floor, ..blank.clone() };
+                    rows.push(context.gates.judge(row, worst.energy, worst.bound));
+                }
+                let mut plain: Vec<f64> = errors.iter().map(|error| error.plain).collect();
+                let blank = Row { floor, ..blank };
+                if quantity == Quantity::ForwardDynamics {
+                    rows.extend(over_floor(context, &blank, &plain, &floors));
+                    let mut residuals: Vec<f64> =
+                        values.chunks_exact(robot.states.nv).zip(&forward).map(|(a, scale)| scale.residual(a)).collect();
+                    let typical = median(&mut residuals);
+                    rows.extend(typical.map(|residual| Row { metric: "residual_median".into(), ..blank.clone() }.informed(residual)));
+                }
+                rows.extend(quartiles(context, &blank, &mut plain));
+                if quantity == Quantity::ForwardDynamics {
+                    walls.extend(median(&mut plain).map(|error| (cell.engine.clone(), error)));
+                }
+            } else {
+                let size = quantity.size(robot);
+                let answers = values.chunks_exact(size).zip(&truth).zip(&at);
+                let mut errors: Vec<f64> = answers
+                    .map(|((value, truth), at)| scaled_error(robot, quantity, at, &true_value(robot, quantity, truth), value))
+                    .collect();
+                let worst = errors.iter().copied().fold(0.0, featherbench_bench::measure::worst);
+                rows.push(context.gates.judge(Row { metric: "true".into(), ..blank.clone() }, worst, 1.0));
+                rows.extend(quartiles(context, &blank, &mut errors));
+            }
+        }
+        if let (Some((cell, _)), Some(standing)) = (finished.first(), at_the_wall(&walls, floor)) {
+            let row = Row { engine: "all".into(), engine_version: String::new(), method: String::new(), ..row(cell, robot) };
+            let row = Row {
+                quantity: "fd".into(),
+                metric: "limited_by_the_reference".into(),
+                unit: "1".into(),
+                states: "all".into(),
+                floor,
+                ..row
+            };
+            rows.push(row.informed(standing as f64));
+        }
+        rows
+    }
+}
+
+/// The errors of one forward-dynamics answer.
+struct ForwardErrors {
+    /// In the kinetic-energy norm.
+    energy: f64,
+    /// What a backward error of one amounts to in that norm.
+    bound: f64,
+    /// In the 2-norm.
+    plain: f64,
+}
+
+/// The error that is the largest share of its bound; one that is no number is larger than any.
+fn most_off(errors: &[ForwardErrors]) -> Option<&ForwardErrors> {
+    let share = |error: &ForwardErrors| error.energy / error.bound;
+    errors.iter().reduce(|a, b| if share(a).is_nan() || share(a) >= share(b) { a } else { b })
+}
+
+/// Sorts errors. Where one is no number all are: such a one has a sign, and may stand below all numbers.
+fn sort(errors: &mut [f64]) {
+    if errors.iter().any(|error| error.is_nan()) {
+        errors.fill(f64::NAN);
+    }
+    errors.sort_unstable_by(f64::total_cmp);
+}
+
+fn forward_errors(a: &[f64], truth: &[f64], scale: &ForwardScale) -> ForwardErrors {
+    let norm = |values: &mut dyn Iterator<Item = f64>| values.map(|x| x * x).sum::<f64>().sqrt();
+    let plain = featherbench_bench::measure::ratio(norm(&mut a.iter().zip(truth).map(|(a, t)| a - t)), norm(&mut truth.iter().copied()));
+    // The truth has no backward error: half of what two answers may differ by.
+    ForwardErrors { energy: scale.forward_error(truth, a), bound: 0.5 * scale.amplification, plain }
+}
+
+fn true_value(robot: &Robot, quantity: Quantity, truth: &Truth) -> Vec<f64> {
+    let n = robot.states.nv;
+    match quantity {
+        Quantity::MassMatrix => (0..n * n).map(|entry| truth.mass.get(entry / n, entry % n)).collect(),
+        Quantity::MassMatrixProbe => probe(&truth.mass, &robot.probe()),
+        _ => truth.inverse_dynamics.clone(),
+    }
+}
+
+/// Products with the four vectors, diagonal and last row of M.
+fn probe(mass: &TreeSparse<f64>, vectors: &[f64]) -> Vec<f64> {
+    let n = mass.size();
+    let mut values = vec![f64::NAN; 4 * n];
+    for (x, y) in vectors.chunks_exact(n).zip(values.chunks_exact_mut(n)) {
+        if mass.mul(x, y).is_err() {
+            y.fill(f64::NAN);
+        }
+    }
+    values.extend(mass.diagonal());
+    values.extend((0..n).map(|j| mass.get(n - 1, j)));
+    values
+}
+
+/// First quartile, median, third quartile and largest of the errors, as rows that are measured, and judged where a gate says so.
+fn quartiles(context: &Context, blank: &Row, errors: &mut [f64]) -> Vec<Row> {
+    sort(errors);
+    let metrics = [("error_q1", 0.25), ("error_median", 0.5), ("error_q3", 0.75), ("error_worst", 1.0)];
+    let rows = metrics.map(|(metric, fraction)| {
+        let row = Row { metric: metric.into(), ..blank.clone() };
+        context.gates.judge(row, crate::quantile(errors, fraction), 1.0)
+    });
+    rows.into()
+}
+
+/// The largest error over the structured floor of its state: what the algorithm adds to what rounding the inputs may do.
+fn over_floor(context: &Context, blank: &Row, errors: &[f64], floors: &[f64]) -> Option<Row> {
+    let pairs = errors.iter().zip(floors).filter(|(_, floor)| floor.is_finite());
+    let worst =
+        pairs.map(|(error, floor)| featherbench_bench::measure::ratio(*error, *floor)).reduce(featherbench_bench::measure::worst)?;
+    let row = Row { metric: "error_over_floor".into(), ..blank.clone() };
+    Some(context.gates.judge(row, worst, 1.0))
+}
+
+fn median(values: &mut [f64]) -> Option<f64> {
+    sort(values);
+    (!values.is_empty()).then(|| crate::quantile(values, 0.5))
+}
+
+/// How many engines have their best method at the smallest error of all, within a factor of two, when that error is well above the floor: several
+/// at one place are no coincidence, and then the reference is the suspect. `None` where nobody stands with another.
+fn at_the_wall(errors: &[(String, f64)], floor: Option<f64>) -> Option<usize> {
+    let mut best: Vec<(&str, f64)> = Vec::new();
+    for (engine, error) in errors {
+        match best.iter_mut().find(|(known, _)| known == engine) {
+            Some((_, least)) => *least = least.min(*error),
+            None => best.push((engine, *error)),
+        }
+    }
+    let least = best.iter().map(|(_, error)| *error).fold(f64::INFINITY, f64::min);
+    let above_rounding = least > 64.0 * floor.unwrap_or(0.0).max(f64::EPSILON);
+    let standing = best.iter().filter(|(_, error)| *error <= 2.0 * least).count();
+    (above_rounding && standing >= 3).then_some(standing)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn curves_that_go_flat_together_make_a_wall() {
+        let errors =
+            |values: [f64; 3]| ["a", "b", "c"].into_iter().zip(values).map(|(name, error)| (name.to_owned(), error)).collect::<Vec<_>>();
+        assert_eq!(at_the_wall(&errors([1.0e-11, 1.1e-11, 1.5e-11]), Some(2e-16)), Some(3), "three engines at the error of the reference");
+        assert_eq!(at_the_wall(&errors([1e-15, 1e-12, 1e-9]), Some(2e-16)), None, "each where its algorithm puts it");
+        assert_eq!(at_the_wall(&errors([3e-16, 3e-16, 3e-16]), Some(2e-16)), None, "all at the floor: nothing is wrong");
+    }
+
+    /// What 0/0 and ∞ − ∞ give on x86 has a sign, and stands below all numbers in their total order.
+    #[test]
+    fn an_answer_that_is_no_number_is_the_worst() {
+        let answers = |energies: [f64; 3]| energies.map(|energy| ForwardErrors { energy, bound: 2.0, plain: energy });
+        assert_eq!(most_off(&answers([1.0, 3.0, 2.0])).unwrap().energy, 3.0);
+        assert!(most_off(&[]).is_none());
+        for lost in [f64::NAN, -f64::NAN] {
+            for place in 0..3 {
+                let mut energies = [1.0, 3.0, 2.0];
+                energies[place] = lost;
+                assert!(most_off(&answers(energies)).unwrap().energy.is_nan(), "at {place}");
+                assert!(median(&mut energies).unwrap().is_nan(), "at {place}");
+                assert!(energies.iter().all(|error| error.is_nan()), "no quartile is a number");
+            }
+        }
+        assert_eq!(median(&mut [3.0, 1.0, 2.0]), Some(2.0));
+    }
 }

@@ -3,7 +3,7 @@
 //! Until extended precision is at hand the reference is our f64 and is called so; the rows with another engine as `reference` compare
 //! engines with each other, so that a reader can see who stands alone.
 
-use crate::accuracy::over_best;
+use crate::over_best::over_best;
 use crate::row;
 use featherbench_bench::measure::{ForwardScale, Magnitudes, scaled_error, worst};
 use featherbench_bench::{Cell, Context, DENSE_LIMIT, Engine, Finished, NoAnswer, Outcome, Quantity, Robot, Study};
@@ -131,7 +131,7 @@ impl Comparison<'_> {
         let Some(quantity) = Quantity::parse(&cell.quantity) else { return Vec::new() };
         let values = match outcome {
             Outcome::Values(values) => values,
-            Outcome::Reading(_) => return Vec::new(),
+            Outcome::Import(_) => return Vec::new(),
             Outcome::NoAnswer(refusal) => {
                 let verdict = if matches!(refusal, NoAnswer::NotOffered(_)) { Verdict::Skip } else { Verdict::Error };
                 let row = Row { reference: REFERENCE.into(), ..row(cell, self.robot) };

@@ -5,7 +5,7 @@
 //! of forward dynamics stands beside it and does not grow.
 
 use crate::row;
-use featherbench_bench::truth::structured_floor;
+use featherbench_bench::truth::conditioning_bound;
 use featherbench_bench::{Cell, Context, Finished, NoAnswer, Outcome, Quantity, Robot, Study};
 use featherbench_dynamics::mass_matrix;
 use featherbench_results::{Row, Verdict};
@@ -61,7 +61,7 @@ impl Study for Conditioning {
                 rows.push(blank.without_value(Verdict::Error, "there is no condition number"));
                 continue;
             };
-            let floor = structured_floor(robot, 0).filter(|floor| floor.is_finite());
+            let floor = conditioning_bound(robot, 0).filter(|floor| floor.is_finite());
             rows.push(Row { metric: "kappa".into(), floor, ..blank.clone() }.informed(raw));
             rows.push(Row { metric: "kappa_scaled".into(), floor, ..blank.clone() }.informed(scaled));
             if let Some([half_raw, half_scaled]) = half.and_then(conditions).as_deref() {

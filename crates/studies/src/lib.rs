@@ -1,34 +1,34 @@
 //! Studies: the questions that featherbench asks, one file each.
 //!
 //! - [`Agreement`]: do the engines agree on one and the same model, and how far are we from the truth beside the best of them?
-//! - [`Digits`]: how far is each from the truth, and who is right?
+//! - [`Accuracy`]: how far is each from the truth, and who is right?
 //! - [`Conditioning`]: how does κ(M) grow, and does it matter?
-//! - [`Reading`]: do they read one and the same file alike, and if not, where and why?
+//! - [`Import`]: do they read one and the same file alike, and if not, where and why?
 //! - [`Repeatability`]: does the same question have the same answer?
 //! - [`Reproductions`]: are the engines' known deviations still there, and as large as they were?
-//! - [`StepLimit`]: how does the acceleration of a step approach the true one, and what do steps do to energy?
-//! - [`Structure`]: are the counts of the sparse algorithms the integers that theory says?
+//! - [`Steps`]: how does the acceleration of a step approach the true one, and what do steps do to energy?
+//! - [`OperationCounts`]: are the counts of the sparse algorithms the integers that theory says?
 //! - [`Timing`]: how long does everyone take, in a paired experiment?
 
 mod accuracy;
 mod agreement;
 mod conditioning;
-mod digits;
-pub mod reading;
+pub mod import;
+mod operations;
+mod over_best;
 mod repeatability;
 mod reproductions;
-mod step_limit;
-mod structure;
+mod steps;
 mod timing;
 
+pub use accuracy::Accuracy;
 pub use agreement::Agreement;
 pub use conditioning::Conditioning;
-pub use digits::Digits;
-pub use reading::Reading;
+pub use import::Import;
+pub use operations::OperationCounts;
 pub use repeatability::Repeatability;
 pub use reproductions::{Reproduce, Reproductions};
-pub use step_limit::StepLimit;
-pub use structure::Structure;
+pub use steps::Steps;
 pub use timing::Timing;
 
 use featherbench_bench::{Cell, Context, Engine, NoAnswer, Outcome, Quantity, Robot};

@@ -184,7 +184,7 @@ impl Repeatability {
         let values = match outcome {
             Outcome::NoAnswer(NoAnswer::NotOffered(_)) => return None,
             Outcome::NoAnswer(NoAnswer::Failed(reason)) => return lost(reason),
-            Outcome::Reading(_) => return lost("the outcome is a robot that was read"),
+            Outcome::Import(_) => return lost("the outcome is a robot that was read"),
             Outcome::Values(values) => values,
         };
         let engine = context.engine(&cell.engine)?;

@@ -1,10 +1,10 @@
 //! A cause is named only if it gives the engine's numbers: what parsers do to the links of a body, planted by their own rules, is named with its
 //! size, and the same sentences beside other numbers name nothing.
 
-use featherbench_bench::{FileInertial, FileLink, ReadingNote};
+use featherbench_bench::{FileInertial, FileLink, ImportNote};
 use featherbench_model::{BodyDescription, Description, Frame, JointDescription, JointType, Placement, Random};
 use featherbench_spatial::{Mat3, RigidBodyInertia, Sym3, Transform, Vec3};
-use featherbench_studies::reading::{Cause, Comparison, Difference, Field, bound};
+use featherbench_studies::import::{Cause, Comparison, Difference, Field, bound};
 
 const NO_TURN: [f64; 9] = [1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0];
 
@@ -52,7 +52,7 @@ fn robot(body: BodyDescription) -> Description {
     Description { name: "r".into(), bodies: vec![body], frames: fixed.collect(), ..Description::default() }
 }
 
-fn found(replace: impl Fn(&FileLink) -> Option<FileInertial>, notes: &[ReadingNote]) -> Vec<Difference> {
+fn found(replace: impl Fn(&FileLink) -> Option<FileInertial>, notes: &[ImportNote]) -> Vec<Difference> {
     let of_file: Vec<FileLink> = links().into_iter().map(|(link, _)| link).collect();
     let (ours, theirs) = (robot(merged(|_| None)), robot(merged(replace)));
     Comparison::of(&ours, &theirs, &of_file, notes).differences().cloned().collect()
@@ -89,8 +89,8 @@ fn of_nothing(mass: f64, moment: f64) -> FileInertial {
 }
 
 /// The sentence that MuJoCo's oracle tells beside its bounds, with a number that any mass is smaller than, and one of another link.
-fn told_of_bounds() -> Vec<ReadingNote> {
-    let note = |cause: &str, about: Option<&str>, text: &str| ReadingNote {
+fn told_of_bounds() -> Vec<ImportNote> {
+    let note = |cause: &str, about: Option<&str>, text: &str| ImportNote {
         cause: cause.into(),
         about: about.map(str::to_owned),
         text: text.into(),
@@ -161,7 +161,7 @@ fn what_an_engine_tells_is_held_against_its_body() {
     let held = FileInertial { mass: 3.3, com: [0.1, 0.0, 0.2], ..of_nothing(0.0, 0.07) };
     let note = |mass: f64| {
         let numbers = [&[mass][..], &held.com, &held.inertia].concat();
-        ReadingNote { cause: "mass_edited".into(), about: Some("tool".into()), text: "0.5 kg became 3.3 kg".into(), numbers }
+        ImportNote { cause: "mass_edited".into(), about: Some("tool".into()), text: "0.5 kg became 3.3 kg".into(), numbers }
     };
     let tool = |link: &FileLink| (link.name == "tool").then_some(held);
     named(&found(tool, &[note(3.3)]), Cause::Edited, &["'tool'", "0.5 kg became 3.3 kg"]);
@@ -195,7 +195,7 @@ fn a_bound_that_is_told_is_still_a_bound() {
         Description { bodies: vec![inertial], ..Description::default() }
     };
     let numbers = [&[0.0; 10][..], &[1e-6, 0.0, 0.0, 0.0, 1e-6, 0.0, 0.0, 1e-6, 0.0, 1e-6]].concat();
-    let note = ReadingNote { cause: "mass_edited".into(), about: Some("arm".into()), text: "raised".into(), numbers };
+    let note = ImportNote { cause: "mass_edited".into(), about: Some("arm".into()), text: "raised".into(), numbers };
     let mut held = body(1e-6, 1e-6);
     held.bodies[0].com = [0.0, 0.0, 1.0];
     let comparison = Comparison::of(&body(0.0, 0.0), &held, &[], &[note]);

@@ -5,7 +5,7 @@
 use featherbench_formats::neutral;
 use featherbench_model::{BodyDescription, Description, JointType, Placement, Random};
 use featherbench_spatial::{Mat3, Sym3, Transform, Vec3};
-use featherbench_studies::reading::{Cause, Comparison, Difference, Field, Weight};
+use featherbench_studies::import::{Cause, Comparison, Difference, Field, Weight};
 use std::path::Path;
 
 const ROBOTS: [&str; 10] =

@@ -186,8 +186,8 @@ fn altered(alter: impl Fn(&mut Cell, &mut Vec<f64>)) -> Vec<Row> {
         }
     }
     let text = study().side_file(&finished).unwrap().1;
-    let entrants = finished.iter().filter_map(|(cell, _)| cell.params["entrants"].as_array()).map(Vec::len).sum::<usize>();
-    assert_eq!(text.lines().count(), entrants, "a line for each entrant of each experiment");
+    let candidates = finished.iter().filter_map(|(cell, _)| cell.params["candidates"].as_array()).map(Vec::len).sum::<usize>();
+    assert_eq!(text.lines().count(), candidates, "a line for each candidate of each experiment");
     for line in text.lines() {
         let line: serde_json::Value = serde_json::from_str(line).unwrap();
         assert!(finished.iter().any(|(cell, _)| cell.id() == line["cell"]), "{line}");
@@ -196,11 +196,11 @@ fn altered(alter: impl Fn(&mut Cell, &mut Vec<f64>)) -> Vec<Row> {
     compare(&study(), &context, finished)
 }
 
-/// The samples of an experiment stand behind the number of entrants and their calls, entrant by entrant.
+/// The samples of an experiment stand behind the number of candidates and their calls, candidate by candidate.
 fn fill(values: &mut [f64], ns: impl Fn(usize, usize) -> f64) {
-    let entrants = values[0] as usize;
-    let rounds = (values.len() - 1 - entrants) / entrants;
-    for (place, value) in values[1 + entrants..].iter_mut().enumerate() {
+    let candidates = values[0] as usize;
+    let rounds = (values.len() - 1 - candidates) / candidates;
+    for (place, value) in values[1 + candidates..].iter_mut().enumerate() {
         *value = ns(place / rounds, place % rounds);
     }
 }
@@ -211,7 +211,7 @@ fn a_control_that_is_not_one_costs_the_times() {
     assert!(quiet.iter().all(|row| row.reason.is_empty()));
     assert!(quiet.iter().filter(|row| row.metric == "control").all(|row| row.value == Some(1.0)));
     // The second copy, which stands behind the first, is slower by three percent.
-    let noisy = rewritten(|values| fill(values, |entrant, round| if entrant == 1 { 103.0 } else { 100.0 } + (round % 3) as f64));
+    let noisy = rewritten(|values| fill(values, |candidate, round| if candidate == 1 { 103.0 } else { 100.0 } + (round % 3) as f64));
     let times: Vec<_> = noisy.iter().filter(|row| row.metric == "ns_per_call").collect();
     assert!(!times.is_empty() && times.iter().all(|row| !row.valid && row.value.is_some()));
     assert!(times[0].reason.contains("4 of 4 A/A controls"), "{}", times[0].reason);
@@ -247,7 +247,7 @@ fn hot_id(cell: &Cell) -> bool {
 }
 
 fn slower_copy(values: &mut [f64]) {
-    fill(values, |entrant, round| if entrant == 1 { 103.0 } else { 100.0 } + (round % 3) as f64);
+    fill(values, |candidate, round| if candidate == 1 { 103.0 } else { 100.0 } + (round % 3) as f64);
 }
 
 #[test]
@@ -294,16 +294,16 @@ fn two_bad_controls_of_four_cost_the_robot() {
 fn without_a_control_no_time_counts() {
     let lost_copy = |cell: &mut Cell, values: &mut Vec<f64>| {
         if hot_id(cell) {
-            // The last block of the second entrant.
-            let entrants = values[0] as usize;
-            let rounds = (values.len() - 1 - entrants) / entrants;
-            values[entrants + 2 * rounds] = f64::NAN;
+            // The last block of the second candidate.
+            let candidates = values[0] as usize;
+            let rounds = (values.len() - 1 - candidates) / candidates;
+            values[candidates + 2 * rounds] = f64::NAN;
         }
         hot_id(cell)
     };
     let no_copy = |cell: &mut Cell, _: &mut Vec<f64>| {
         if hot_id(cell) {
-            cell.params["entrants"][1]["control"] = false.into();
+            cell.params["candidates"][1]["control"] = false.into();
         }
         hot_id(cell)
     };
@@ -320,9 +320,9 @@ fn without_a_control_no_time_counts() {
         assert!(times(&others).iter().all(|row| row.reason.is_empty()), "one of four: the others count");
     }
     let rows = rewritten(|values| {
-        let entrants = values[0] as usize;
-        let rounds = (values.len() - 1 - entrants) / entrants;
-        fill(values, |entrant, round| if (entrant, round) == (1, rounds / 2) { f64::NAN } else { 100.0 });
+        let candidates = values[0] as usize;
+        let rounds = (values.len() - 1 - candidates) / candidates;
+        fill(values, |candidate, round| if (candidate, round) == (1, rounds / 2) { f64::NAN } else { 100.0 });
     });
     let times: Vec<_> = rows.iter().filter(|row| row.metric == "ns_per_call").collect();
     assert!(!times.is_empty() && times.iter().all(|row| !row.valid && row.reason.starts_with("4 of 4 A/A controls")));
@@ -358,7 +358,7 @@ fn a_peak_below_what_single_doubles_make_does_not_count() {
 fn one_that_stops_answering_is_an_error() {
     let rows = rewritten(|values| *values.last_mut().unwrap() = f64::NAN);
     let errors: Vec<_> = rows.iter().filter(|row| row.verdict == Verdict::Error).collect();
-    // The last entrant of forward dynamics is ltdl, the last of inverse dynamics the control: without it nothing there counts.
+    // The last candidate of forward dynamics is ltdl, the last of inverse dynamics the control: without it nothing there counts.
     assert_eq!(errors.len(), 4);
     assert!(errors.iter().all(|row| row.reason.contains("stopped answering")));
     assert_eq!(errors.iter().filter(|row| row.method == "ltdl" && row.metric == "ns_per_call").count(), 2);

@@ -5,7 +5,7 @@ use crate::support;
 use featherbench_bench::{Engine, Quantity, Robot};
 use featherbench_engines::Featherbench;
 use featherbench_results::{Row, Verdict};
-use featherbench_studies::Digits;
+use featherbench_studies::Accuracy;
 use std::collections::BTreeSet;
 use support::{Answer, Double, gates, robot, whole};
 
@@ -18,7 +18,7 @@ fn convicted(records: &[Row]) -> BTreeSet<&str> {
 fn records_of_a_wrong_majority(robot: &Robot, twist: support::Twist) -> Vec<Row> {
     let wrong = |name: &str| Box::new(Double::twisting(robot, twist).named(name)) as Box<dyn Engine>;
     let engines = [Box::new(Featherbench::new()) as Box<dyn Engine>, wrong("a"), wrong("b"), Box::new(Double::of(robot).named("c"))];
-    whole(&Digits, robot, &gates(""), &engines)
+    whole(&Accuracy, robot, &gates(""), &engines)
 }
 
 /// A relative error of 1e-11 in one quantity.
@@ -68,8 +68,8 @@ fn engines_that_stop_at_one_error_make_the_reference_the_suspect() {
         Box::new(heavier.named(name)) as Box<dyn Engine>
     };
     let walls = |engines: &[Box<dyn Engine>]| -> Vec<f64> {
-        let records = whole(&Digits, &robot, &gates(""), engines);
-        records.iter().filter(|row| row.metric == "engines_at_the_wall").filter_map(|row| row.value).collect()
+        let records = whole(&Accuracy, &robot, &gates(""), engines);
+        records.iter().filter(|row| row.metric == "limited_by_the_reference").filter_map(|row| row.value).collect()
     };
     assert_eq!(walls(&[other("a"), other("b"), other("c")]), [3.0]);
     assert_eq!(

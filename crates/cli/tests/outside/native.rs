@@ -211,7 +211,7 @@ pub fn pendulum_is_clocked() -> Outcome {
     quick.clock(0..5).unwrap();
     assert_eq!(quick.read(), there, "the clock leaves the values of the last run");
     assert!(quick.run(3..6).is_err(), "only the clock goes round");
-    assert_eq!(quick.scatter(1), Ok(true));
+    assert_eq!(quick.relocate(1), Ok(true));
     quick.run(3..5).unwrap();
     assert_eq!(quick.read(), there, "at another place of the memory the same robot, states and method");
     Outcome::Passed

@@ -9,7 +9,7 @@ use super::talk::Talk;
 use super::values::Scene;
 use super::{Standing, robots};
 use featherbench_bench::frame::Frame;
-use featherbench_bench::{FileBase, FileFormat, Quantity, Reading, Robot};
+use featherbench_bench::{FileBase, FileFormat, Import, Quantity, Robot};
 use featherbench_formats::{OnLoss, mjcf, urdf};
 use featherbench_model::generate::Family;
 use featherbench_model::{BodyDescription, Description, JointType, Placement};
@@ -213,7 +213,7 @@ fn notes(talk: &mut Talk, answer: &Frame) {
 }
 
 /// The robot that it tells beside the file's.
-fn compare(talk: &mut Talk, file: &Written, reading: &Reading) {
+fn compare(talk: &mut Talk, file: &Written, reading: &Import) {
     let (what, told) = (what(file), &reading.description);
     let noted = |cause: &str| reading.notes.iter().any(|note| note.cause == cause);
     let floats = |robot: &Description| robot.bodies.first().is_some_and(|body| body.joint.kind == JointType::Free);

@@ -6,7 +6,7 @@ mod library;
 
 use crate::shape;
 use featherbench_bench::frame::{Block, Frame};
-use featherbench_bench::{NoAnswer, Quantity, Robot, Scatter};
+use featherbench_bench::{NoAnswer, Quantity, Relocation, Robot};
 use featherbench_model::Random;
 use featherbench_results::ModelOrigin;
 use library::{Built, Library};
@@ -90,7 +90,7 @@ impl<'a> Session<'a> {
             "states" => self.states(request),
             "evaluate" => self.evaluate(request),
             "clock" => self.clock(request),
-            "scatter" => self.scatter(request),
+            "relocate" => self.relocate(request),
             other => Err(failed(format!("unknown op {other}"))),
         }
     }
@@ -105,7 +105,7 @@ impl<'a> Session<'a> {
             named.as_array_mut().into_iter().for_each(|named| named.push(method.as_str().into()));
         }
         ok(
-            json!({"protocol": 1, "engine": engine, "version": version, "build": build, "methods": offered, "clock": true, "scatter": true}),
+            json!({"protocol": 1, "engine": engine, "version": version, "build": build, "methods": offered, "clock": true, "relocate": true}),
             Vec::new(),
         )
     }
@@ -135,12 +135,12 @@ impl<'a> Session<'a> {
     }
 
     /// Robot, states and what the last method starts from once more, at other places of the memory.
-    fn scatter(&mut self, request: &Frame) -> Answer {
+    fn relocate(&mut self, request: &Frame) -> Answer {
         let (Some(robot), Some(built)) = (&self.robot, self.built.take()) else { return Err(failed("no model was prepared")) };
         let ready = built.is_ready();
         // Before its successor: two of them may not fit the memory.
         drop(built);
-        let _scatter = Scatter::new(&mut Random::new(number(request, "seed")? as u64, 0));
+        let _relocate = Relocation::new(&mut Random::new(number(request, "seed")? as u64, 0));
         let (mut built, _) = self.library.build(robot)?;
         if let Some((count, arrays)) = &self.states {
             built.states(*count, arrays.each_ref().map(Vec::as_slice))?;

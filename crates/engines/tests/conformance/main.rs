@@ -1,8 +1,8 @@
 //! The conformance test against an oracle in this process: our own kernels, honest or with one mistake planted by hand. An honest one conforms,
 //! and each mistake is found and called by its name.
 
+mod import;
 mod kernels;
-mod reading;
 mod steps;
 
 use featherbench_bench::Robot;

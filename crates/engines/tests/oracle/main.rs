@@ -4,7 +4,7 @@
 //! next question goes to a process that is well.
 
 mod clock;
-mod reading;
+mod import;
 mod script;
 mod steps;
 

@@ -206,7 +206,7 @@ pub fn records(run: &RunInfo) -> Vec<Row> {
         agreement(run, model, &mut random, &mut rows);
         times(run, model, &mut random, &mut rows);
         let structure = Row {
-            study: "structure".into(),
+            study: "operations".into(),
             engine: "featherbench".into(),
             quantity: "mass_matrix".into(),
             metric: "nonzeros".into(),

@@ -91,7 +91,7 @@ fn digits(row: &Row, model: &ModelInfo, random: &mut Random, rows: &mut Vec<Row>
     for (engine, method, quantity) in SUBJECTS {
         let quantity = if quantity == "mass_matrix" && model.nv > 64 { "mass_matrix_probe" } else { quantity };
         let row = Row {
-            study: "digits".into(),
+            study: "accuracy".into(),
             engine: engine.into(),
             method: method.into(),
             quantity: quantity.into(),
@@ -121,8 +121,8 @@ fn digits(row: &Row, model: &ModelInfo, random: &mut Random, rows: &mut Vec<Row>
         }
     }
     if model.name == "rand3d-20-tip1e6" {
-        let row = Row { study: "digits".into(), engine: "all".into(), quantity: "fd".into(), states: "all".into(), ..row.clone() };
-        rows.push(Row { metric: "engines_at_the_wall".into(), ..row }.informed(3.0));
+        let row = Row { study: "accuracy".into(), engine: "all".into(), quantity: "fd".into(), states: "all".into(), ..row.clone() };
+        rows.push(Row { metric: "limited_by_the_reference".into(), ..row }.informed(3.0));
     }
 }
 

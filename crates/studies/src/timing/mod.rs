@@ -23,8 +23,8 @@ use featherbench_bench::{Cell, Context, Engine, Finished, NoAnswer, Outcome, Qua
 use featherbench_model::{Random, StateBatch};
 use featherbench_results::Row;
 use machine::{Machine, Pinned};
-use protocol::{Budget, Contestant};
-use samples::Entrant;
+use protocol::{Budget, Ready};
+use samples::Candidate;
 use serde_json::{Value, json};
 use std::time::Instant;
 
@@ -86,22 +86,22 @@ impl Study for Timing {
                 // The machine is asked once, in the company of the first robot.
                 cells.push(self.cell(robot, featherbench, Quantity::StoredEntries, "empty", json!({"what": MACHINE})));
             }
-            for (quantity, entrants) in self.experiments(context, robot) {
+            for (quantity, candidates) in self.experiments(context, robot) {
                 let states = self.stream_length(robot, quantity);
-                for entrant in entrants.iter().filter(|entrant| !entrant.control) {
-                    let Some(engine) = context.engine(&entrant.engine) else { continue };
-                    cells.push(self.cell(robot, engine, quantity, &entrant.method, json!({"what": CHECK, "states": states})));
-                    if entrant.estimate && !refused(robot, entrant.estimate) {
-                        cells.push(self.cell(robot, engine, quantity, &entrant.method, json!({"what": OVERHEAD, "states": states})));
+                for candidate in candidates.iter().filter(|candidate| !candidate.control) {
+                    let Some(engine) = context.engine(&candidate.engine) else { continue };
+                    cells.push(self.cell(robot, engine, quantity, &candidate.method, json!({"what": CHECK, "states": states})));
+                    if candidate.estimate && !refused(robot, candidate.estimate) {
+                        cells.push(self.cell(robot, engine, quantity, &candidate.method, json!({"what": OVERHEAD, "states": states})));
                     }
                 }
-                let Some(usual) = entrants.first() else { continue };
-                let timed = entrants.iter().filter(|entrant| !refused(robot, entrant.estimate));
-                let listed: Vec<Value> = timed.map(Entrant::to_params).collect();
+                let Some(usual) = candidates.first() else { continue };
+                let timed = candidates.iter().filter(|candidate| !refused(robot, candidate.estimate));
+                let listed: Vec<Value> = timed.map(Candidate::to_params).collect();
                 for regime in REGIMES {
                     let states = if regime == "hot" { 1 } else { states };
                     let params =
-                        json!({"what": EXPERIMENT, "cache": regime, "states": states, "seconds": self.seconds, "entrants": listed});
+                        json!({"what": EXPERIMENT, "cache": regime, "states": states, "seconds": self.seconds, "candidates": listed});
                     cells.push(self.cell(robot, featherbench, quantity, &usual.method, params));
                 }
             }
@@ -134,15 +134,15 @@ impl Study for Timing {
             if cell.params["what"] == OVERHEAD {
                 return overhead::per_call(engine.prepare(robot, quantity, &cell.method, &states)?.as_mut());
             }
-            let entrants = Entrant::of(cell);
-            let prepare = |which: usize| -> Contestant {
-                let Entrant { engine, method, .. } = &entrants[which];
+            let candidates = Candidate::of(cell);
+            let prepare = |which: usize| -> Ready {
+                let Candidate { engine, method, .. } = &candidates[which];
                 context.engine(engine).ok_or_else(lost)?.prepare(robot, quantity, method, &states)
             };
             let mut random = Random::named(context.seed, &cell.id());
             let start = Instant::now();
             let clock = || start.elapsed();
-            Ok(protocol::experiment(&prepare, entrants.len(), count, Budget::of(self.seconds), &clock, &mut random).to_values())
+            Ok(protocol::experiment(&prepare, candidates.len(), count, Budget::of(self.seconds), &clock, &mut random).to_values())
         };
         answer().into()
     }
@@ -173,8 +173,8 @@ impl Timing {
     }
 
     /// The quantities, each with everyone who is timed on it: our usual method, its second copy, our other methods, the peers.
-    fn experiments(&self, context: &Context, robot: &Robot) -> Vec<(Quantity, Vec<Entrant>)> {
-        let entrant = |engine: &dyn Engine, method: &str, control| Entrant {
+    fn experiments(&self, context: &Context, robot: &Robot) -> Vec<(Quantity, Vec<Candidate>)> {
+        let candidate = |engine: &dyn Engine, method: &str, control| Candidate {
             engine: engine.identity().name.clone(),
             version: engine.identity().version.clone(),
             method: method.to_owned(),
@@ -182,16 +182,16 @@ impl Timing {
             estimate: engine.estimates(),
         };
         let Some(featherbench) = context.engine(REFERENCE) else { return Vec::new() };
-        let mut experiments: Vec<(Quantity, Vec<Entrant>)> = Vec::new();
+        let mut experiments: Vec<(Quantity, Vec<Candidate>)> = Vec::new();
         for (quantity, method) in (self.kernels)(robot) {
             match experiments.iter_mut().find(|(known, _)| *known == quantity) {
-                Some((_, entrants)) => entrants.push(entrant(featherbench, method, false)),
-                None => experiments.push((quantity, vec![entrant(featherbench, method, false), entrant(featherbench, method, true)])),
+                Some((_, candidates)) => candidates.push(candidate(featherbench, method, false)),
+                None => experiments.push((quantity, vec![candidate(featherbench, method, false), candidate(featherbench, method, true)])),
             }
         }
-        for (quantity, entrants) in &mut experiments {
+        for (quantity, candidates) in &mut experiments {
             for peer in self.peers.iter().filter_map(|name| context.engine(name)) {
-                entrants.extend(peer.timed(*quantity).iter().map(|method| entrant(peer, method, false)));
+                candidates.extend(peer.timed(*quantity).iter().map(|method| candidate(peer, method, false)));
             }
         }
         experiments

@@ -1,15 +1,15 @@
-//! The experiment: contestants in alternating blocks.
+//! The experiment: candidates in alternating blocks.
 //!
 //! Rounds come in *epochs*. At the start of an epoch everyone moves, in random order, to other places of the memory, each in its own process:
 //! where data lie moves a time by up to some percent, and a ratio from one layout would be a ratio of two accidents. In each round every
-//! contestant has one block, in random order, from a random state on; the batch begins again at its end. Before a block its contestant makes a
+//! candidate has one block, in random order, from a random state on; the batch begins again at its end. Before a block its candidate makes a
 //! tenth as many calls beside the clock, at the states before: others ran since its last block, and their data lie in the caches.
 //!
 //! What is decided by a time is decided by the least of several: a stall of the machine makes a time longer and none shorter. The times come as
-//! values, from the contestants' clocks and from a clock that is an argument.
+//! values, from the candidates' clocks and from a clock that is an argument.
 
 use super::samples::Samples;
-use featherbench_bench::{Evaluation, NoAnswer, Scatter};
+use featherbench_bench::{Evaluation, NoAnswer, Relocation};
 use featherbench_model::Random;
 use std::collections::VecDeque;
 use std::time::Duration;
@@ -17,7 +17,7 @@ use std::time::Duration;
 /// How long a block lasts at least: some thousand times the clock's resolution and the cost of reading it, so short that most blocks are not
 /// interrupted (a tick of the system's timer comes every 4 ms).
 const BLOCK: Duration = Duration::from_micros(200);
-/// Epochs of an experiment, and so the fewest rounds. Layouts scatter times more than rounds of one layout do: with thirty epochs of ten
+/// Epochs of an experiment, and so the fewest rounds. Layouts relocate times more than rounds of one layout do: with thirty epochs of ten
 /// rounds a third of all controls were void for intervals a little wider than the noise; the same time is better spent on many epochs.
 pub(super) const EPOCHS: usize = 60;
 /// Rounds of an epoch are not more: then blocks become longer.
@@ -34,7 +34,7 @@ const LAST_MOVES: usize = 5;
 const AGAIN: [usize; 2] = [1, 8];
 
 /// Who is timed, ready to run, or why it is not.
-pub(super) type Contestant<'a> = Result<Box<dyn Evaluation + 'a>, NoAnswer>;
+pub(super) type Ready<'a> = Result<Box<dyn Evaluation + 'a>, NoAnswer>;
 
 /// How an experiment spends its time.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -46,14 +46,14 @@ pub(super) struct Budget {
 }
 
 impl Budget {
-    /// What `seconds` for each contestant allow.
+    /// What `seconds` for each candidate allow.
     pub fn of(seconds: f64) -> Self {
         let epoch = seconds / EPOCHS as f64;
         let rounds = ((epoch / BLOCK.as_secs_f64()) as usize).clamp(1, MOST_ROUNDS);
         Self { rounds, block: Duration::from_secs_f64((epoch / rounds as f64).max(0.0)).max(BLOCK) }
     }
 
-    /// Rounds of an epoch in which `count` contestants take so long for one: fewer where single calls take longer than a block should.
+    /// Rounds of an epoch in which `count` candidates take so long for one: fewer where single calls take longer than a block should.
     fn rounds_of(&self, round: Duration, count: usize) -> usize {
         let meant = self.block.as_secs_f64() * (self.rounds * count) as f64;
         // Blocks overshoot by up to twice their length: that alone costs no round.
@@ -66,7 +66,7 @@ impl Budget {
     }
 }
 
-/// How long the last moves of a contestant took; that it was made ready is the first.
+/// How long the last moves of a candidate took; that it was made ready is the first.
 struct Moves(VecDeque<Duration>);
 
 impl Moves {
@@ -77,16 +77,16 @@ impl Moves {
         self.0.push_back(time);
     }
 
-    /// Whether the contestant moves at an epoch.
+    /// Whether the candidate moves at an epoch.
     fn are_due(&self, epoch: usize, budget: Budget) -> bool {
         AGAIN.contains(&epoch) || self.0.iter().min().is_some_and(|&least| budget.affords(least))
     }
 }
 
-/// Times `count` contestants over a batch of `states` states; `prepare` makes one of them ready, and `clock` tells the time since some moment.
+/// Times `count` candidates over a batch of `states` states; `prepare` makes one of them ready, and `clock` tells the time since some moment.
 /// One that refuses has NaN from then on.
 pub(super) fn experiment<'a>(
-    prepare: &dyn Fn(usize) -> Contestant<'a>,
+    prepare: &dyn Fn(usize) -> Ready<'a>,
     count: usize,
     states: usize,
     budget: Budget,
@@ -94,15 +94,15 @@ pub(super) fn experiment<'a>(
     random: &mut Random,
 ) -> Samples {
     let (mut calls, mut moves, mut round_time) = (Vec::with_capacity(count), Vec::with_capacity(count), Duration::ZERO);
-    let mut contestants: Vec<Contestant> = Vec::with_capacity(count);
+    let mut candidates: Vec<Ready> = Vec::with_capacity(count);
     for which in 0..count {
         let start = clock();
-        let mut contestant = prepare(which);
+        let mut candidate = prepare(which);
         moves.push(Moves(VecDeque::from([clock().saturating_sub(start)])));
-        let (of_block, time) = calls_of_a_block(&mut contestant, budget.block);
+        let (of_block, time) = calls_of_a_block(&mut candidate, budget.block);
         calls.push(of_block);
         round_time += time;
-        contestants.push(contestant);
+        candidates.push(candidate);
     }
     let rounds = budget.rounds_of(round_time, count);
     let mut samples = Samples::new(calls, EPOCHS * rounds);
@@ -112,7 +112,7 @@ pub(super) fn experiment<'a>(
         for &which in order.iter().filter(|_| epoch > 0) {
             if moves[which].are_due(epoch, budget) {
                 let start = clock();
-                relocate(&mut contestants[which], &|| prepare(which), random);
+                relocate(&mut candidates[which], &|| prepare(which), random);
                 moves[which].took(clock().saturating_sub(start));
             }
         }
@@ -120,9 +120,9 @@ pub(super) fn experiment<'a>(
             shuffle(&mut order, random);
             for &which in &order {
                 let (calls, state) = (samples.calls[which], random.below(states));
-                match block(&mut contestants[which], state, calls) {
+                match block(&mut candidates[which], state, calls) {
                     Ok(time) => samples.set(which, round, time.as_secs_f64() * 1e9 / calls as f64),
-                    Err(refusal) => contestants[which] = Err(refusal),
+                    Err(refusal) => candidates[which] = Err(refusal),
                 }
             }
         }
@@ -130,23 +130,23 @@ pub(super) fn experiment<'a>(
     samples
 }
 
-/// Moves a contestant to other places of the memory: itself, or else by preparing it anew.
-fn relocate<'a>(contestant: &mut Contestant<'a>, prepare: &dyn Fn() -> Contestant<'a>, random: &mut Random) {
-    let Ok(prepared) = contestant else { return };
-    match prepared.scatter(random.bits32()) {
+/// Moves a candidate to other places of the memory: itself, or else by preparing it anew.
+fn relocate<'a>(candidate: &mut Ready<'a>, prepare: &dyn Fn() -> Ready<'a>, random: &mut Random) {
+    let Ok(prepared) = candidate else { return };
+    match prepared.relocate(random.bits32()) {
         Ok(true) => {}
         Ok(false) => {
             // The old one stays until the new one lies beside it.
-            let _scatter = Scatter::new(random);
-            *contestant = prepare();
+            let _relocate = Relocation::new(random);
+            *candidate = prepare();
         }
-        Err(refusal) => *contestant = Err(refusal),
+        Err(refusal) => *candidate = Err(refusal),
     }
 }
 
 /// One block from a state on, and the calls before it.
-fn block(contestant: &mut Contestant, state: usize, calls: usize) -> Result<Duration, NoAnswer> {
-    let prepared = contestant.as_mut().map_err(|refusal| refusal.clone())?;
+fn block(candidate: &mut Ready, state: usize, calls: usize) -> Result<Duration, NoAnswer> {
+    let prepared = candidate.as_mut().map_err(|refusal| refusal.clone())?;
     let warm = calls / WARM;
     if warm > 0 {
         prepared.clock(state..state + warm)?;
@@ -154,15 +154,15 @@ fn block(contestant: &mut Contestant, state: usize, calls: usize) -> Result<Dura
     prepared.clock(state + warm..state + warm + calls)
 }
 
-/// Warms a contestant up and finds how many calls last as long as a block, and how long they last; 1 and nothing of one that refuses.
-fn calls_of_a_block(contestant: &mut Contestant, block: Duration) -> (usize, Duration) {
+/// Warms a candidate up and finds how many calls last as long as a block, and how long they last; 1 and nothing of one that refuses.
+fn calls_of_a_block(candidate: &mut Ready, block: Duration) -> (usize, Duration) {
     let mut calls = 1;
     // A first call may take many times as long as those after it, and would be taken for a whole block.
-    let first = contestant.as_mut().ok().and_then(|prepared| prepared.clock(0..1).err());
+    let first = candidate.as_mut().ok().and_then(|prepared| prepared.clock(0..1).err());
     if let Some(refusal) = first {
-        *contestant = Err(refusal);
+        *candidate = Err(refusal);
     }
-    while let Ok(prepared) = contestant {
+    while let Ok(prepared) = candidate {
         match least(prepared.as_mut(), calls, block) {
             Ok(time) if time < block && calls < MOST_CALLS => {
                 // Towards the block in few steps, none of them blind.
@@ -170,7 +170,7 @@ fn calls_of_a_block(contestant: &mut Contestant, block: Duration) -> (usize, Dur
                 calls = (calls as f64 * missing.clamp(1.1, 8.0)).ceil() as usize;
             }
             Ok(time) => return (calls, time),
-            Err(refusal) => *contestant = Err(refusal),
+            Err(refusal) => *candidate = Err(refusal),
         }
     }
     (1, Duration::ZERO)
@@ -202,10 +202,10 @@ mod tests {
     use std::ops::Range;
     use std::sync::{Arc, Mutex};
 
-    /// What was asked of whom: contestant, first state, calls.
+    /// What was asked of whom: candidate, first state, calls.
     type Log = Arc<Mutex<Vec<(usize, Range<usize>)>>>;
 
-    /// A contestant whose calls take a given time, by its own word, and that dies after some blocks.
+    /// A candidate whose calls take a given time, by its own word, and that dies after some blocks.
     struct Scripted {
         who: usize,
         call: Duration,
@@ -231,14 +231,14 @@ mod tests {
 
     const BUDGET: Budget = Budget { rounds: 4, block: Duration::from_micros(200) };
 
-    /// The samples and the log of contestants with these times of a call, each dying after so many blocks.
-    fn scripted(contestants: &[(Duration, usize)]) -> (Samples, Vec<(usize, Range<usize>)>) {
+    /// The samples and the log of candidates with these times of a call, each dying after so many blocks.
+    fn scripted(candidates: &[(Duration, usize)]) -> (Samples, Vec<(usize, Range<usize>)>) {
         let log = Log::default();
-        let prepare = |who: usize| -> Contestant {
-            let (call, blocks) = contestants[who];
+        let prepare = |who: usize| -> Ready {
+            let (call, blocks) = candidates[who];
             Ok(Box::new(Scripted { who, call, blocks, log: log.clone() }))
         };
-        let samples = experiment(&prepare, contestants.len(), 1000, BUDGET, &|| Duration::ZERO, &mut Random::new(1, 2));
+        let samples = experiment(&prepare, candidates.len(), 1000, BUDGET, &|| Duration::ZERO, &mut Random::new(1, 2));
         let log = log.lock().unwrap().clone();
         (samples, log)
     }
@@ -256,7 +256,7 @@ mod tests {
                 Ok(Duration::from_millis(u64::from(self.1)) * range.len() as u32)
             }
 
-            fn scatter(&mut self, _: u32) -> Result<bool, NoAnswer> {
+            fn relocate(&mut self, _: u32) -> Result<bool, NoAnswer> {
                 self.1 += 1;
                 self.0.map_err(|()| NoAnswer::Failed("it lost its robot".into()))
             }
@@ -266,7 +266,7 @@ mod tests {
             }
         }
         let prepared = std::cell::Cell::new([0; 3]);
-        let prepare = |who: usize| -> Contestant {
+        let prepare = |who: usize| -> Ready {
             let mut count = prepared.get();
             count[who] += 1;
             prepared.set(count);
@@ -285,10 +285,10 @@ mod tests {
     /// How long a move takes at an epoch; 0 is that of being made ready.
     type Script = fn(usize) -> Duration;
 
-    /// The epochs at which contestants moved whose moves take scripted times by the experiment's clock.
+    /// The epochs at which candidates moved whose moves take scripted times by the experiment's clock.
     fn epochs_of_moves<const N: usize>(scripts: [Script; N]) -> [Vec<usize>; N] {
         let (log, now, moves) = (Log::default(), Cell::new(Duration::ZERO), RefCell::new([const { Vec::new() }; N]));
-        let prepare = |who: usize| -> Contestant {
+        let prepare = |who: usize| -> Ready {
             // A call fills a block: everyone has one at first and those that find its length, and then one in each round.
             let epoch = log.lock().unwrap().len().checked_sub((1 + TRIALS) * N).map_or(0, |blocks| blocks / (N * BUDGET.rounds));
             now.set(now.get() + scripts[who](epoch));
@@ -302,7 +302,7 @@ mod tests {
         moves
     }
 
-    /// A stall of the machine at one of its moves, whenever it comes, makes no contestant immovable; one that takes long at each of them moves
+    /// A stall of the machine at one of its moves, whenever it comes, makes no candidate immovable; one that takes long at each of them moves
     /// twice, and one that takes long from some move on stops when that is plain.
     #[test]
     fn a_stall_costs_no_move() {
@@ -346,8 +346,8 @@ mod tests {
             }
         }
         let found = |stalls: &[usize]| {
-            let mut contestant: Contestant = Ok(Box::new(Stalling(stalls.to_vec(), 0)));
-            calls_of_a_block(&mut contestant, BUDGET.block)
+            let mut candidate: Ready = Ok(Box::new(Stalling(stalls.to_vec(), 0)));
+            calls_of_a_block(&mut candidate, BUDGET.block)
         };
         let (calls, time) = found(&[]);
         assert!(time == Duration::from_nanos(100) * calls as u32 && time >= BUDGET.block && time < 2 * BUDGET.block, "{calls} in {time:?}");

@@ -1,7 +1,7 @@
 //! Rows of the outcomes of a robot's cells.
 
 use super::machine::{LANES, Machine};
-use super::samples::{Entrant, Samples, outcome_samples};
+use super::samples::{Candidate, Samples, outcome_samples};
 use super::statistics::{CONTROL_LEVEL, Estimate, Finding, LEVEL};
 use super::{CHECK, EXPERIMENT, MACHINE, OVERHEAD, REFERENCE, check};
 use crate::{quantile, row};
@@ -131,7 +131,7 @@ impl Check {
 struct Experiment<'a> {
     cell: &'a Cell,
     blank: Row,
-    entrants: Vec<Entrant>,
+    candidates: Vec<Candidate>,
     samples: Result<Samples, String>,
     /// The second copy of the reference over the first, or why it is not known.
     control: Result<Estimate, &'static str>,
@@ -139,17 +139,17 @@ struct Experiment<'a> {
 
 impl<'a> Experiment<'a> {
     fn of(robot: &Robot, (cell, outcome): &'a Finished) -> Self {
-        let entrants = Entrant::of(cell);
+        let candidates = Candidate::of(cell);
         let samples = match outcome.answer() {
             Err(refusal) => Err(refusal.to_string()),
             Ok(_) => outcome_samples(cell, outcome).ok_or_else(|| "the outcome holds no samples".to_owned()),
         };
         let cache = cell.params["cache"].as_str().unwrap_or_default().to_owned();
-        // The entrants stand in rows of their own: a parameter that lists them would stand in each.
+        // The candidates stand in rows of their own: a parameter that lists them would stand in each.
         let params = json!({"states": cell.params["states"], "seconds": cell.params["seconds"]});
         let blank = Row { kind: Kind::Measured, cache, params: canonical_json(&params), ..row(cell, robot) };
-        let mut experiment = Self { cell, blank, entrants, samples, control: Err("the experiment has no A/A control") };
-        if let (Some(which), Ok(samples)) = (experiment.entrants.iter().position(|entrant| entrant.control), &experiment.samples) {
+        let mut experiment = Self { cell, blank, candidates, samples, control: Err("the experiment has no A/A control") };
+        if let (Some(which), Ok(samples)) = (experiment.candidates.iter().position(|candidate| candidate.control), &experiment.samples) {
             let ratio = Estimate::ratio(samples.of(which), samples.of(0), CONTROL_LEVEL, &mut experiment.random("control"));
             let known = ratio.value.is_finite() && ratio.low.is_finite() && ratio.high.is_finite();
             experiment.control =
@@ -177,18 +177,18 @@ impl<'a> Experiment<'a> {
         };
         let own_noise = self.noise();
         let mut rows = Vec::new();
-        for (which, entrant) in self.entrants.iter().enumerate() {
+        for (which, candidate) in self.candidates.iter().enumerate() {
             let blank = Row {
-                engine: entrant.engine.clone(),
-                engine_version: entrant.version.clone(),
-                method: entrant.method.clone(),
+                engine: candidate.engine.clone(),
+                engine_version: candidate.version.clone(),
+                method: candidate.method.clone(),
                 ..self.blank.clone()
             };
             let check = checks
                 .iter()
-                .find(|check| check.engine == entrant.engine && check.method == entrant.method && check.quantity == self.cell.quantity);
+                .find(|check| check.engine == candidate.engine && check.method == candidate.method && check.quantity == self.cell.quantity);
             let usual = format!("{REFERENCE} {}", self.cell.method);
-            if entrant.control {
+            if candidate.control {
                 // A reference that refused from the start has its row in the check, and nothing to compare.
                 if self.control.is_err() && check.is_some_and(|check| check.complaint.is_some()) {
                     continue;
@@ -213,10 +213,10 @@ impl<'a> Experiment<'a> {
                 }
                 continue;
             }
-            let name = format!("{} {}", entrant.engine, entrant.method);
+            let name = format!("{} {}", candidate.engine, candidate.method);
             let time = Estimate::median(ns, LEVEL, &mut self.random(&name));
             let complaint = complaint.or(noise).or(own_noise.as_deref());
-            let blank = Row { estimated: entrant.estimate, ..blank };
+            let blank = Row { estimated: candidate.estimate, ..blank };
             let timed =
                 Row { metric: "ns_per_call".into(), unit: "ns".into(), params: with_deciles(&self.blank.params, ns), ..blank.clone() };
             rows.push(judged(estimated(timed, &time), complaint));

@@ -3,33 +3,33 @@
 use featherbench_bench::{Cell, Finished, Outcome};
 use serde_json::json;
 
-/// The blocks of an experiment: nanoseconds per call, of every contestant in every round.
+/// The blocks of an experiment: nanoseconds per call, of every candidate in every round.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Samples {
-    /// Calls in a block of each contestant.
+    /// Calls in a block of each candidate.
     pub calls: Vec<usize>,
     rounds: usize,
-    /// Contestant by contestant; NaN where there was none.
+    /// Ready by candidate; NaN where there was none.
     ns: Vec<f64>,
 }
 
 impl Samples {
-    /// Room for the blocks of contestants with these calls.
+    /// Room for the blocks of candidates with these calls.
     pub fn new(calls: Vec<usize>, rounds: usize) -> Self {
         Self { ns: vec![f64::NAN; calls.len() * rounds], calls, rounds }
     }
 
     /// Keeps a block.
-    pub fn set(&mut self, contestant: usize, round: usize, ns: f64) {
-        self.ns[contestant * self.rounds + round] = ns;
+    pub fn set(&mut self, candidate: usize, round: usize, ns: f64) {
+        self.ns[candidate * self.rounds + round] = ns;
     }
 
-    /// A contestant's blocks, round by round.
-    pub fn of(&self, contestant: usize) -> &[f64] {
-        &self.ns[contestant * self.rounds..(contestant + 1) * self.rounds]
+    /// A candidate's blocks, round by round.
+    pub fn of(&self, candidate: usize) -> &[f64] {
+        &self.ns[candidate * self.rounds..(candidate + 1) * self.rounds]
     }
 
-    /// As the outcome of a cell: the number of contestants, their calls, their blocks.
+    /// As the outcome of a cell: the number of candidates, their calls, their blocks.
     pub fn to_values(&self) -> Vec<f64> {
         let calls = self.calls.iter().map(|&calls| calls as f64);
         std::iter::once(self.calls.len() as f64).chain(calls).chain(self.ns.iter().copied()).collect()
@@ -37,17 +37,17 @@ impl Samples {
 
     /// Read back; `None` of numbers that are no samples.
     pub fn from_values(values: &[f64]) -> Option<Self> {
-        let (&contestants, rest) = values.split_first()?;
-        let contestants = contestants as usize;
-        let (calls, ns) = rest.split_at_checked(contestants)?;
-        let whole = contestants > 0 && ns.len().is_multiple_of(contestants);
-        whole.then(|| Self { calls: calls.iter().map(|&calls| calls as usize).collect(), rounds: ns.len() / contestants, ns: ns.to_vec() })
+        let (&candidates, rest) = values.split_first()?;
+        let candidates = candidates as usize;
+        let (calls, ns) = rest.split_at_checked(candidates)?;
+        let whole = candidates > 0 && ns.len().is_multiple_of(candidates);
+        whole.then(|| Self { calls: calls.iter().map(|&calls| calls as usize).collect(), rounds: ns.len() / candidates, ns: ns.to_vec() })
     }
 }
 
 /// Who is timed in an experiment.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct Entrant {
+pub(super) struct Candidate {
     /// The engine's name.
     pub engine: String,
     /// Its version.
@@ -60,41 +60,41 @@ pub(super) struct Entrant {
     pub estimate: bool,
 }
 
-impl Entrant {
+impl Candidate {
     /// As a parameter of the cell.
     pub fn to_params(&self) -> serde_json::Value {
         let Self { engine, version, method, control, estimate } = self;
         json!({"engine": engine, "version": version, "method": method, "control": control, "estimate": estimate})
     }
 
-    /// The entrants of an experiment's cell, in the order of its samples.
+    /// The candidates of an experiment's cell, in the order of its samples.
     pub fn of(cell: &Cell) -> Vec<Self> {
-        let text = |entrant: &serde_json::Value, key: &str| entrant[key].as_str().unwrap_or_default().to_owned();
-        let entrants = cell.params["entrants"].as_array().into_iter().flatten();
-        entrants
-            .map(|entrant| Self {
-                engine: text(entrant, "engine"),
-                version: text(entrant, "version"),
-                method: text(entrant, "method"),
-                control: entrant["control"] == true,
-                estimate: entrant["estimate"] == true,
+        let text = |candidate: &serde_json::Value, key: &str| candidate[key].as_str().unwrap_or_default().to_owned();
+        let candidates = cell.params["candidates"].as_array().into_iter().flatten();
+        candidates
+            .map(|candidate| Self {
+                engine: text(candidate, "engine"),
+                version: text(candidate, "version"),
+                method: text(candidate, "method"),
+                control: candidate["control"] == true,
+                estimate: candidate["estimate"] == true,
             })
             .collect()
     }
 }
 
-/// The raw samples of every experiment as lines of JSON: cell, robot, quantity, cache regime, entrant, calls of a block, and the
+/// The raw samples of every experiment as lines of JSON: cell, robot, quantity, cache regime, candidate, calls of a block, and the
 /// nanoseconds per call of its blocks, round by round (`null` where there is none).
 pub(super) fn lines(finished: &[Finished]) -> String {
     let mut text = String::new();
     for (cell, outcome) in finished {
         let Some(samples) = outcome_samples(cell, outcome) else { continue };
-        for (which, entrant) in Entrant::of(cell).iter().enumerate() {
+        for (which, candidate) in Candidate::of(cell).iter().enumerate() {
             // A tenth of a picosecond is far below what a clock can tell; the outcomes keep every bit.
             let ns: Vec<Option<f64>> = samples.of(which).iter().map(|ns| ns.is_finite().then(|| (ns * 1e4).round() / 1e4)).collect();
             let line = json!({
                 "cell": cell.id(), "model": cell.robot, "quantity": cell.quantity, "cache": cell.params["cache"],
-                "engine": entrant.engine, "method": entrant.method, "control": entrant.control, "estimate": entrant.estimate,
+                "engine": candidate.engine, "method": candidate.method, "control": candidate.control, "estimate": candidate.estimate,
                 "calls": samples.calls[which], "ns": ns,
             });
             text += &line.to_string();
@@ -109,7 +109,7 @@ pub(super) fn outcome_samples(cell: &Cell, outcome: &Outcome) -> Option<Samples>
     if cell.params["what"] != super::EXPERIMENT {
         return None;
     }
-    Samples::from_values(outcome.values()?).filter(|samples| samples.calls.len() == Entrant::of(cell).len())
+    Samples::from_values(outcome.values()?).filter(|samples| samples.calls.len() == Candidate::of(cell).len())
 }
 
 #[cfg(test)]

@@ -1,6 +1,6 @@
 //! What can be concluded from the blocks of a paired experiment.
 //!
-//! Each round gives every contestant one block, in random order; a *ratio* is formed within a round, of two blocks that ran within
+//! Each round gives every candidate one block, in random order; a *ratio* is formed within a round, of two blocks that ran within
 //! milliseconds of each other, and the median over the rounds is taken. What is slow or fast for a while (a neighbour, a processor's
 //! frequency) stands on both sides of such a ratio and cancels; in the ratio of two medians it need not.
 //!
@@ -211,7 +211,7 @@ mod tests {
             let unseen = count(|seed| ratio(noise, 1.03, seed, CONTROL_LEVEL).complaint().is_none());
             assert_eq!(unseen, 0, "{name}: copies that differ by 3 %");
         }
-        // Blocks that scatter by half: the interval is wider than the noise allows.
+        // Blocks that relocate by half: the interval is wider than the noise allows.
         let wild: Noise = |random, _| [(); 2].map(|()| random.uniform(1.0, 2.0));
         assert_eq!(count(|seed| ratio(wild, 1.0, seed, CONTROL_LEVEL).complaint().is_some()), TRIALS);
     }

@@ -38,8 +38,8 @@ featherbench.ready(() => {
   async function show(button) {
     const engine = button.dataset.engine;
     const table = await load(button.dataset.reading);
-    const rows = objects(table).filter((row) => row.study === "reading" && row.engine === engine);
-    const read = rows.find(({ metric, quantity }) => metric === "differences" && quantity === "reading");
+    const rows = objects(table).filter((row) => row.study === "import" && row.engine === engine);
+    const read = rows.find(({ metric, quantity }) => metric === "differences" && quantity === "import");
     if (!read) return;
     const worst = (row) => { const params = JSON.parse(row.params); return Math.max(params.mass_matrix ?? 0, params.id ?? 0); };
     const found = rows.filter(({ metric }) => metric === "difference").sort((a, b) => worst(b) - worst(a));
@@ -53,7 +53,7 @@ featherbench.ready(() => {
       place.append(make("p", {}, "Like the reference in every body and field."));
     }
     const all = make("button", { type: "button", className: "open" }, "all rows");
-    all.addEventListener("click", () => featherbench.open(button.dataset.reading, { study: "reading", engine }, `${read.model} as ${engine} reads it`));
+    all.addEventListener("click", () => featherbench.open(button.dataset.reading, { study: "import", engine }, `${read.model} as ${engine} reads it`));
     place.append(make("p", {}, `${verdict(rows)} `, all));
     place.focus({ preventScroll: true });
     place.scrollIntoView({ block: "nearest" });

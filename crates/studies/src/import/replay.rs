@@ -159,7 +159,7 @@ impl Reference {
 
 /// A robot without states of its own.
 fn bare(description: &Description) -> Result<Robot, Malformed> {
-    Robot::new(description, "reading", ModelOrigin::Robot, 0, 0)
+    Robot::new(description, "import", ModelOrigin::Robot, 0, 0)
 }
 
 /// Our kernels on their reading against their engine's own answers: the worst error of each quantity, and the same per dof of the worst

@@ -11,7 +11,7 @@ use crate::numbers::{count, larger, short};
 use crate::overview::Overview;
 
 /// The study whose rows the section shows.
-const READING: &str = "reading";
+const READING: &str = "import";
 
 /// What became of one robot in one engine.
 #[derive(Default)]
@@ -41,7 +41,7 @@ impl Cell<'_> {
 }
 
 /// Everything that the section shows.
-pub struct Readings<'a> {
+pub struct Imports<'a> {
     engines: Vec<usize>,
     models: Vec<usize>,
     cells: BTreeMap<(usize, usize), Cell<'a>>,
@@ -49,7 +49,7 @@ pub struct Readings<'a> {
     causes: BTreeMap<(String, String), BTreeMap<usize, usize>>,
 }
 
-impl<'a> Readings<'a> {
+impl<'a> Imports<'a> {
     /// The readings among the records.
     pub fn of(overview: &Overview, records: &'a [Row]) -> Self {
         let mut readings = Self { engines: Vec::new(), models: Vec::new(), cells: BTreeMap::new(), causes: BTreeMap::new() };
@@ -85,7 +85,7 @@ impl<'a> Readings<'a> {
 }
 
 /// Writes the section, where the run asked.
-pub fn section(overview: &Overview, readings: &Readings) -> Markup {
+pub fn section(overview: &Overview, readings: &Imports) -> Markup {
     if readings.is_empty() {
         return html! {};
     }
@@ -114,7 +114,7 @@ pub fn section(overview: &Overview, readings: &Readings) -> Markup {
     }
 }
 
-fn summary(overview: &Overview, readings: &Readings) -> Markup {
+fn summary(overview: &Overview, readings: &Imports) -> Markup {
     let of = |engine: usize| readings.cells.iter().filter(move |((_, e), _)| *e == engine).map(|(_, cell)| cell);
     let value = |cell: &Cell| cell.read.and_then(|row| row.value);
     html! {
@@ -141,7 +141,7 @@ fn summary(overview: &Overview, readings: &Readings) -> Markup {
     }
 }
 
-fn matrix(overview: &Overview, readings: &Readings) -> Markup {
+fn matrix(overview: &Overview, readings: &Imports) -> Markup {
     html! {
         table.compact.reading {
             thead { tr { th scope="col" { "robot" } @for &engine in &readings.engines { th.number scope="col" { (overview.engines[engine]) } } } }
@@ -194,7 +194,7 @@ fn unexplained(cell: &Cell) -> bool {
     cell.unexplained.is_some_and(|row| row.verdict == Verdict::Error || row.value.is_some_and(|value| value > 0.0))
 }
 
-fn causes(overview: &Overview, readings: &Readings) -> Markup {
+fn causes(overview: &Overview, readings: &Imports) -> Markup {
     if readings.causes.is_empty() {
         return html! { p.empty { "There is no difference." } };
     }

@@ -66,11 +66,11 @@ pub enum FileBase {
 
 /// What an engine holds after its own parser has read a file.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Reading {
+pub struct Import {
     /// The robot that it holds, canonical.
     pub description: Description,
     /// What the parser is known to have done on the way.
-    pub notes: Vec<ReadingNote>,
+    pub notes: Vec<ImportNote>,
     /// Configurations in which the file has the robot stand, in the description's coordinates; quaternions as the engine holds them.
     pub keyframes: Vec<Vec<f64>>,
     /// The same robot with the file's own inertias, where the engine refuses those and holds repaired ones.
@@ -79,7 +79,7 @@ pub struct Reading {
 
 /// Something that a parser did beyond reading, or left unread.
 #[derive(Clone, Debug, PartialEq)]
-pub struct ReadingNote {
+pub struct ImportNote {
     /// A word of `oracles/PROTOCOL.md`, such as `mass_edited`.
     pub cause: String,
     /// The link, joint or element that it is about.

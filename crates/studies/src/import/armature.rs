@@ -3,14 +3,14 @@
 use super::comparison::Finding;
 use super::fields::{digits, relative};
 use super::{Cause, Difference, Field};
-use featherbench_bench::ReadingNote;
+use featherbench_bench::ImportNote;
 
 /// The word of notes about it.
 const FREE_ARMATURE: &str = "free_armature";
 
 /// Where an engine holds another armature on a free joint than the reference: both tell what they took out of their descriptions.
-pub(super) fn on_free_joints(reference: &[ReadingNote], notes: &[ReadingNote]) -> Vec<Finding> {
-    let of = |notes: &[ReadingNote], joint: &str| -> Vec<f64> {
+pub(super) fn on_free_joints(reference: &[ImportNote], notes: &[ImportNote]) -> Vec<Finding> {
+    let of = |notes: &[ImportNote], joint: &str| -> Vec<f64> {
         let held = notes.iter().find(|note| note.cause == FREE_ARMATURE && note.about.as_deref() == Some(joint));
         held.filter(|note| note.numbers.len() == 6).map_or_else(|| vec![0.0; 6], |note| note.numbers.clone())
     };
@@ -41,17 +41,17 @@ pub(super) fn on_free_joints(reference: &[ReadingNote], notes: &[ReadingNote]) -
 #[cfg(test)]
 mod tests {
     use super::{Cause, Field, on_free_joints};
-    use featherbench_bench::ReadingNote;
+    use featherbench_bench::ImportNote;
 
-    fn holds(armature: f64) -> Vec<ReadingNote> {
-        vec![ReadingNote { cause: "free_armature".into(), about: Some("root".into()), text: String::new(), numbers: vec![armature; 6] }]
+    fn holds(armature: f64) -> Vec<ImportNote> {
+        vec![ImportNote { cause: "free_armature".into(), about: Some("root".into()), text: String::new(), numbers: vec![armature; 6] }]
     }
 
     #[test]
     fn what_only_one_holds_or_both_hold_otherwise_is_found() {
         assert!(on_free_joints(&holds(0.1), &holds(0.1)).is_empty());
         assert!(on_free_joints(&[], &[]).is_empty());
-        let found = |ours: &[ReadingNote], theirs: &[ReadingNote]| {
+        let found = |ours: &[ImportNote], theirs: &[ImportNote]| {
             let found = on_free_joints(ours, theirs);
             assert_eq!(found.len(), 1);
             assert_eq!((found[0].difference.field, found[0].difference.body.as_str()), (Field::Armature, "root"));

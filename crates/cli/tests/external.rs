@@ -79,7 +79,7 @@ const TABLE_RUN: [&str; 7] = ["run", "--suite", "smoke", "--no-timing", "--engin
 
 /// What it does not offer is no fault, as in the conformance test; what it answers is judged, in the run and when the run is judged again.
 #[test]
-fn a_guest_is_judged_by_what_it_answers() {
+fn an_external_engine_is_judged_by_what_it_answers() {
     let sandbox = with_table(":", 1.0);
     sandbox.run(&[&TABLE_RUN[..], &["green"]].concat()).expect(0, &["4 skip"]);
     sandbox.run(&["gate", "green"]).expect(0, &["4 skip"]);
@@ -98,7 +98,7 @@ fn a_guest_is_judged_by_what_it_answers() {
 
 /// Numbers that move by a few units in the last place from one question to the next pass every bound, and are no answer.
 #[test]
-fn a_guest_that_does_not_repeat_itself_is_red() {
+fn an_external_engine_that_does_not_repeat_itself_is_red() {
     let noise = "if [ -e odd ]; then rm odd; cat noisy.bin; continue; fi; : > odd";
     let sandbox = with_table(noise, 1.0);
     let ended = sandbox.run(&[&TABLE_RUN[..], &["noisy"]].concat());
@@ -150,7 +150,7 @@ fn a_run_and_the_conformance_test_ask_for_the_same_shapes() {
 
 /// A version is what a program says of itself: outcomes are kept by what the program is.
 #[test]
-fn a_run_is_not_continued_with_another_program_of_a_guest() {
+fn a_run_is_not_continued_with_another_program_of_an_external_engine() {
     let sandbox = with_shy();
     let run = |more: &[&str]| {
         let common = ["run", "--suite", "smoke", "--no-timing", "--only", "/mine/", "--out", "out"];

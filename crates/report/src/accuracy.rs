@@ -7,10 +7,10 @@ use serde::Serialize;
 
 use crate::axes::{self, Axis};
 use crate::fit::{Fit, power_law};
-use crate::overview::{DIGITS, EVERYONE, Overview, severity};
+use crate::overview::{ACCURACY, EVERYONE, Overview, severity};
 
 /// The metric of rows that count the engines at one error.
-pub const WALL: &str = "engines_at_the_wall";
+pub const WALL: &str = "limited_by_the_reference";
 /// The spacing of doubles at one: an error of this size has lost no digit.
 pub const ULP: f64 = f64::EPSILON;
 /// Quantities in the order of the page: the one that loses most comes first.
@@ -18,7 +18,7 @@ const ORDER: [&str; 3] = ["fd", "id", "mass_matrix"];
 
 /// Everything that the section shows.
 #[derive(Debug, Serialize)]
-pub struct Digits<'a> {
+pub struct Accuracy<'a> {
     /// Who answered what: the table's columns.
     pub answers: Vec<Answer<'a>>,
     /// What came of it: the table's cells, by model and answer.
@@ -101,7 +101,7 @@ pub fn rank(name: &str) -> (usize, &str) {
 
 /// Whether a gate judged a row, or it has no answer that could be judged.
 pub fn is_judged(row: &Row) -> bool {
-    row.study == DIGITS && row.metric != WALL && row.verdict != Verdict::Info
+    row.study == ACCURACY && row.metric != WALL && row.verdict != Verdict::Info
 }
 
 /// Decades of error above [`ULP`], none below.
@@ -109,11 +109,11 @@ pub fn lost(error: f64) -> f64 {
     (error / ULP).log10().max(0.0)
 }
 
-impl<'a> Digits<'a> {
+impl<'a> Accuracy<'a> {
     /// Collects a run's rows.
     pub fn of(overview: &Overview<'a>, records: &'a [Row]) -> Self {
         type Key<'a> = ((usize, &'a str), usize, &'a str, &'a str);
-        let rows = || records.iter().filter(|row| row.study == DIGITS);
+        let rows = || records.iter().filter(|row| row.study == ACCURACY);
         let walls = rows().filter(|row| row.metric == WALL && row.value.is_some()).collect();
 
         let mut found: BTreeMap<Key, BTreeMap<usize, Cell>> = BTreeMap::new();

@@ -1,7 +1,7 @@
 //! Files that an oracle reads.
 
 use super::script::{PATIENT, READING, Script, Trial, robot};
-use featherbench_bench::{Engine, FileBase, FileFormat, NoAnswer, Reading, RobotFile};
+use featherbench_bench::{Engine, FileBase, FileFormat, Import, NoAnswer, RobotFile};
 use featherbench_model::StateBatch;
 
 impl Trial {
@@ -9,7 +9,7 @@ impl Trial {
         RobotFile { path: "/robots/p.urdf".into(), format: FileFormat::Urdf, base: FileBase::Free, hash: "0".into(), links: Vec::new() }
     }
 
-    fn read(&self) -> Result<Reading, NoAnswer> {
+    fn read(&self) -> Result<Import, NoAnswer> {
         self.oracle.as_ref().unwrap().read(&self.file())
     }
 

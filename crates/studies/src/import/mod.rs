@@ -1,4 +1,4 @@
-//! Reading: do the engines read one file alike, and if not, where and why?
+//! Import: do the engines read one file alike, and if not, where and why?
 //!
 //! Every engine reads the file with its own parser and says what it holds then ([`featherbench_bench::Engine::read`]). That description is compared,
 //! body by body and whatever frames it is written in, with the reference reading: ours of URDF, that of MuJoCo's compiler of MJCF
@@ -24,15 +24,15 @@ pub use difference::{Cause, Class, Difference, Field, Weight};
 pub use replay::Effect;
 pub use subtree::{SubTree, bound};
 
-use featherbench_bench::{Cell, Context, Engine, FileFormat, Finished, NoAnswer, Outcome, Quantity, Reading as Read, Robot, Study};
+use featherbench_bench::{Cell, Context, Engine, FileFormat, Finished, Import as Read, NoAnswer, Outcome, Quantity, Robot, Study};
 use featherbench_results::Row;
 use serde_json::{Value, json};
 
-/// The reading study.
-pub struct Reading;
+/// The import study.
+pub struct Import;
 
 /// The cells of an engine: what it reads, and what it then computes.
-const READING: &str = "reading";
+const READING: &str = "import";
 /// The method of a reading.
 const PARSER: &str = "parser";
 /// What is computed with the robot as read.
@@ -41,9 +41,9 @@ const COMPUTED: [Quantity; 2] = [Quantity::InverseDynamics, Quantity::MassMatrix
 /// times over (8 n² bytes a state; 18 MB here).
 pub const LARGEST: usize = 1500;
 
-impl Study for Reading {
+impl Study for Import {
     fn name(&self) -> &'static str {
-        "reading"
+        "import"
     }
 
     fn plan(&self, context: &Context) -> Vec<Cell> {
@@ -79,7 +79,7 @@ impl Study for Reading {
         let Some(file) = &robot.file else { return lost("file") };
         match (engine.read(file), Quantity::parse(&cell.quantity)) {
             (Err(refusal), _) => Outcome::NoAnswer(refusal),
-            (Ok(reading), None) => Outcome::Reading(Box::new(reading)),
+            (Ok(reading), None) => Outcome::Import(Box::new(reading)),
             (Ok(reading), Some(quantity)) => computed(robot, &reading, engine, quantity, &cell.method).into(),
         }
     }

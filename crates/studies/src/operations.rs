@@ -1,4 +1,4 @@
-//! Structure: the counts of the sparse algorithms are integers that theory knows.
+//! OperationCounts: the counts of the sparse algorithms are integers that theory knows.
 //!
 //! With d_k the depth of dof k in dofs, itself included: a tree-sparse matrix stores `n + Σ(d_k−1)` numbers, its LᵀDL factorization takes
 //! `Σ(d_k−1)` divisions and `Σ d_k(d_k−1)/2` multiply-subtracts, a solve `2·Σ(d_k−1)` multiply-adds and n divisions (the book, section 6.5).
@@ -12,8 +12,8 @@ use featherbench_results::{Relation, Row, Verdict};
 use featherbench_spatial::{Counted, Operations};
 use serde_json::json;
 
-/// The structure study.
-pub struct Structure;
+/// The operations study.
+pub struct OperationCounts;
 
 /// Counting runs on a scalar that is a hundred times slower: bigger robots are counted in the tests of `dynamics`.
 const MOST_DOFS: usize = 1100;
@@ -27,9 +27,9 @@ const COUNTS: [(&str, &str); 5] = [
     ("solve_divisions", "divisions of a solve"),
 ];
 
-impl Study for Structure {
+impl Study for OperationCounts {
     fn name(&self) -> &'static str {
-        "structure"
+        "operations"
     }
 
     fn plan(&self, context: &Context) -> Vec<Cell> {
@@ -78,7 +78,7 @@ impl Study for Structure {
         let mut rows = Vec::new();
         for (cell, outcome) in finished {
             match outcome {
-                Outcome::Reading(_) => {}
+                Outcome::Import(_) => {}
                 Outcome::Values(values) => {
                     for ((&value, &expected), (metric, _)) in values.iter().zip(&expected).zip(COUNTS) {
                         let row = Row { metric: metric.into(), unit: "1".into(), reference: "theory".into(), ..row(cell, robot) };

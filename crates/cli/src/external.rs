@@ -12,12 +12,12 @@ use std::str::FromStr;
 
 /// A program to be asked under a name.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Guest {
+pub struct External {
     pub name: String,
     pub command: Vec<OsString>,
 }
 
-impl FromStr for Guest {
+impl FromStr for External {
     type Err = String;
 
     /// Reads `NAME=PROGRAM ARGS…`: words are split at blanks, quotes of either kind keep blanks in a word.
@@ -49,7 +49,7 @@ pub fn find(command: &[OsString]) -> Result<PathBuf, Fail> {
     there.filter(|file| file.is_file()).ok_or_else(absent)
 }
 
-impl Guest {
+impl External {
     /// Starts the program, to be known by the name that the user gave it.
     pub fn start(&self, root: &Root, limits: Limits) -> Result<Oracle, Fail> {
         let program = self.program(root)?;
@@ -81,11 +81,11 @@ impl Guest {
     }
 }
 
-/// Refuses names that are taken, by another guest too.
-pub fn check_names(guests: &[Guest], taken: &[&str]) -> Result<(), Fail> {
-    for (k, guest) in guests.iter().enumerate() {
-        if taken.contains(&guest.name.as_str()) || guests[..k].iter().any(|other| other.name == guest.name) {
-            let message = format!("--engine: the name '{}' is taken; taken are {}", guest.name, taken.join(", "));
+/// Refuses names that are taken, by another external too.
+pub fn check_names(externals: &[External], taken: &[&str]) -> Result<(), Fail> {
+    for (k, external) in externals.iter().enumerate() {
+        if taken.contains(&external.name.as_str()) || externals[..k].iter().any(|other| other.name == external.name) {
+            let message = format!("--engine: the name '{}' is taken; taken are {}", external.name, taken.join(", "));
             return Err(Fail::input(message));
         }
     }
@@ -102,13 +102,13 @@ mod tests {
 
     #[test]
     fn words_are_split_at_blanks_and_kept_by_quotes() {
-        let guest: Guest = "mine=python3  'my oracle.py' --x=\"a 'b'\" ''".parse().unwrap();
+        let external: External = "mine=python3  'my oracle.py' --x=\"a 'b'\" ''".parse().unwrap();
         assert_eq!(
-            (guest.name.as_str(), guest.command),
+            (external.name.as_str(), external.command),
             ("mine", ["python3", "my oracle.py", "--x=a 'b'", ""].map(OsString::from).to_vec())
         );
         for bad in ["mine", "=x", "my engine=x", "a/b=x", "mine=", "mine=  ", "mine='x"] {
-            assert!(bad.parse::<Guest>().is_err(), "{bad}");
+            assert!(bad.parse::<External>().is_err(), "{bad}");
         }
     }
     #[test]
@@ -121,7 +121,7 @@ mod tests {
         }
         let program = |file: &Path, rest: &str| {
             let command = ["sh".into(), file.into(), rest.into()].to_vec();
-            Guest { name: "mine".into(), command }.program(&root).ok().unwrap()
+            External { name: "mine".into(), command }.program(&root).ok().unwrap()
         };
         let first = program(&script, "--fast");
         assert_eq!(program(&copy, "--fast"), first, "where it stands does not matter");
@@ -141,7 +141,7 @@ mod tests {
         assert_eq!(package::sources(&root, "no_such_package.mujoco".as_ref()), Vec::<PathBuf>::new());
         let program = |words: &[&str]| {
             let command = words.iter().map(OsString::from).collect();
-            Guest { name: "mine".into(), command }.program(&root).ok().unwrap()
+            External { name: "mine".into(), command }.program(&root).ok().unwrap()
         };
         assert_ne!(program(&["sh", "-m", "featherbench_oracles.mujoco"]), program(&["sh", "-x", "featherbench_oracles.mujoco"]));
     }

@@ -4,13 +4,13 @@
 use super::account::{TESTED, UNITS};
 use super::fields::{distance, from_rpy, inertia_scale, norm, rpy};
 use super::{Cause, Field};
-use featherbench_bench::ReadingNote;
+use featherbench_bench::ImportNote;
 use featherbench_model::BodyDescription;
 use featherbench_spatial::{Mat3, Sym3, Vec3};
 use std::f64::consts::PI;
 
 /// The cause of a difference in a field that the links do not account for, with the parser's own sentence where it has one about it.
-pub(super) fn cause(field: Field, ours: &BodyDescription, theirs: &BodyDescription, notes: &[&ReadingNote]) -> (Cause, Option<String>) {
+pub(super) fn cause(field: Field, ours: &BodyDescription, theirs: &BodyDescription, notes: &[&ImportNote]) -> (Cause, Option<String>) {
     let said = |code: &str| notes.iter().find(|note| note.cause == code);
     let sentence = |codes: &[&str]| codes.iter().find_map(|code| said(code)).map(|note| note.text.clone());
     let unread = |list: &[f64]| list.iter().all(|&x| x == 0.0);

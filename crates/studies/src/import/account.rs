@@ -6,7 +6,7 @@
 
 use super::fields::{self, ROUNDING, differs};
 use super::{Cause, Field};
-use featherbench_bench::{FileInertial, FileLink, ReadingNote, WATER};
+use featherbench_bench::{FileInertial, FileLink, ImportNote, WATER};
 use featherbench_model::{BodyDescription, Description, Placement};
 use featherbench_spatial::{Mat3, RigidBodyInertia, Sym3, Transform, Vec3};
 use nalgebra::{Matrix3, SymmetricEigen};
@@ -55,7 +55,7 @@ pub(super) struct Parts<'a> {
 
 impl<'a> Parts<'a> {
     /// The links of body `i`: those that the file names, else those that the parser's notes give the file's numbers of, else the body itself.
-    pub fn new(ours: &'a Description, i: usize, links: &[FileLink], notes: &[&ReadingNote], reach: f64) -> Self {
+    pub fn new(ours: &'a Description, i: usize, links: &[FileLink], notes: &[&ImportNote], reach: f64) -> Self {
         let body = &ours.bodies[i];
         let itself = std::iter::once((body.name.as_str(), Transform::identity()));
         let fixed =

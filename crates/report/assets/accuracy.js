@@ -4,8 +4,8 @@ featherbench.ready(() => {
   const { colour, dash, draw, exponent, fitted, joined, layout, least, live, symbol, ZERO } = featherbench.plots;
   const { power } = featherbench.axes;
   const overview = chunks.get("overview");
-  const digits = chunks.get("figures")?.digits;
-  const table = byId("digits-table");
+  const digits = chunks.get("figures")?.accuracy;
+  const table = byId("accuracy-table");
   if (!overview || !digits || !table) return;
 
   const ULP = 2 ** -52;
@@ -16,15 +16,15 @@ featherbench.ready(() => {
   };
   const quantities = [...new Set(digits.answers.map((answer) => answer.quantity))];
   const cells = new Map(digits.cells.map((cell) => [`${cell.model} ${cell.answer}`, cell]));
-  const chosen = () => byId("digits-quantity").value;
+  const chosen = () => byId("accuracy-quantity").value;
   const engine = (answer) => overview.engines[answer.engine];
   const name = (answer) => [engine(answer), answer.method, answer.scalar === "f64" ? "" : answer.scalar].filter(Boolean).join(" ");
   // As the list of quantities has it.
-  const title = (quantity) => [...byId("digits-quantity").options].find((option) => option.value === quantity).textContent;
+  const title = (quantity) => [...byId("accuracy-quantity").options].find((option) => option.value === quantity).textContent;
 
   function filters(cell) {
     const answer = digits.answers[cell.answer];
-    return { study: "digits", engine: engine(answer), method: answer.method, quantity: cell.quantity };
+    return { study: "accuracy", engine: engine(answer), method: answer.method, quantity: cell.quantity };
   }
 
   // A cell in lines.
@@ -47,18 +47,18 @@ featherbench.ready(() => {
 
   // The families of an axis; the choice stays where the new list has it, and falls to the one with the most to show.
   function fillFamilies() {
-    const select = byId("digits-family");
+    const select = byId("accuracy-family");
     const before = select.value;
     const points = new Map();
-    for (const curve of curvesOf(chosen(), byId("digits-axis").value)) points.set(curve.family, (points.get(curve.family) ?? 0) + curve.points.length);
+    for (const curve of curvesOf(chosen(), byId("accuracy-axis").value)) points.set(curve.family, (points.get(curve.family) ?? 0) + curve.points.length);
     select.replaceChildren(...[...points.keys()].map((family) => make("option", { value: family }, family)));
     const most = [...points].reduce((best, entry) => (entry[1] > best[1] ? entry : best), ["", 0])[0];
     select.value = points.has(before) ? before : most;
   }
 
   function drawDigits() {
-    const axis = byId("digits-axis").value;
-    const family = byId("digits-family").value;
+    const axis = byId("accuracy-axis").value;
+    const family = byId("accuracy-family").value;
     const curves = curvesOf(chosen(), axis).filter((curve) => curve.family === family);
     const methods = new Map();
     const floors = new Map();
@@ -89,8 +89,8 @@ featherbench.ready(() => {
     // Ticks at the robots themselves: between them there is nothing.
     const places = [...new Set(curves.flatMap((curve) => curve.points.map(([x]) => x)))].sort((a, b) => a - b);
     shape.x.ticks = places.map((x) => (x >= 1e-2 && x < 1e4 ? [x, String(x)] : [x, ...power(x)]));
-    draw("digits-plot", series, shape);
-    for (const row of byId("digits-growth").tBodies[0].rows) row.hidden = !curves.includes(digits.curves[row.dataset.k]);
+    draw("accuracy-plot", series, shape);
+    for (const row of byId("accuracy-growth").tBodies[0].rows) row.hidden = !curves.includes(digits.curves[row.dataset.k]);
   }
 
   // --- The table.
@@ -120,26 +120,26 @@ featherbench.ready(() => {
     const model = button.closest("tr").dataset.m;
     const cell = button.parentElement.tagName === "TH" ? null : cellOf(button);
     const heading = overview.models[model].name + (cell ? `: digits of ${name(digits.answers[cell.answer])}` : "");
-    featherbench.open(`model-${model}`, cell ? filters(cell) : { study: "digits" }, heading);
+    featherbench.open(`model-${model}`, cell ? filters(cell) : { study: "accuracy" }, heading);
   }
 
   const grid = featherbench.grid(table, about, open);
 
   function filter() {
-    const text = byId("digits-filter").value.toLowerCase();
+    const text = byId("accuracy-filter").value.toLowerCase();
     for (const head of table.querySelectorAll("th[data-q]")) head.hidden = quantities[head.dataset.q] !== chosen();
-    byId("digits-count").textContent = grid.filter(
+    byId("accuracy-count").textContent = grid.filter(
       (column) => columns[column].quantity === chosen(),
       (row) => overview.models[row.dataset.m].name.toLowerCase().includes(text) && [...row.querySelectorAll("td button")].some((button) => !button.parentElement.hidden),
     );
   }
 
-  byId("digits-filter").addEventListener("input", filter);
-  byId("digits-quantity").addEventListener("change", filter);
+  byId("accuracy-filter").addEventListener("input", filter);
+  byId("accuracy-quantity").addEventListener("change", filter);
   filter();
-  if (byId("digits-plot")) {
+  if (byId("accuracy-plot")) {
     fillFamilies();
-    for (const id of ["digits-quantity", "digits-axis"]) byId(id).addEventListener("change", fillFamilies);
-    live(drawDigits, "digits-quantity", "digits-axis", "digits-family");
+    for (const id of ["accuracy-quantity", "accuracy-axis"]) byId(id).addEventListener("change", fillFamilies);
+    live(drawDigits, "accuracy-quantity", "accuracy-axis", "accuracy-family");
   }
 });

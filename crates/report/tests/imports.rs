@@ -11,7 +11,7 @@ fn rows(run: &RunInfo) -> Vec<Row> {
     let row = |model: &str, engine: &str, quantity: &str, metric: &str, params: &str| Row {
         run: run.run.clone(),
         cell: format!("{model}{engine}{quantity}{metric}"),
-        study: "reading".into(),
+        study: "import".into(),
         family: "robot".into(),
         robot: model.into(),
         engine: engine.into(),
@@ -24,20 +24,20 @@ fn rows(run: &RunInfo) -> Vec<Row> {
     let edited = r#"{"cause":"balanced","id":0.1,"mass_matrix":0.2,"note":null,"ours":"1 kg","theirs":"2 kg","weight":"dynamics"}"#;
     let tree = r#"{"unexplained":[{"bodies":["arm"],"error":0.5,"quantity":"mass_matrix"}]}"#;
     vec![
-        row("one", "pinocchio", "reading", "differences", "{}").informed(0.0),
+        row("one", "pinocchio", "import", "differences", "{}").informed(0.0),
         row("one", "pinocchio", "id", "as_read", "{}").informed(1e-15),
-        row("one", "pinocchio", "reading", "unexplained", "{}").gated(0.0, Relation::Le, 0.0),
-        row("one", "mujoco", "reading", "differences", "{}").informed(1.0),
+        row("one", "pinocchio", "import", "unexplained", "{}").gated(0.0, Relation::Le, 0.0),
+        row("one", "mujoco", "import", "differences", "{}").informed(1.0),
         row("one", "mujoco", "inertia", "difference", edited).informed(0.5),
         row("one", "mujoco", "id", "as_read", "{}").informed(0.25),
-        row("one", "drake", "reading", "differences", "{}").without_value(Verdict::Error, "no <such> joint"),
+        row("one", "drake", "import", "differences", "{}").without_value(Verdict::Error, "no <such> joint"),
         // A long chain, whose rounding the study bounds by its depth.
-        row("two", "pinocchio", "reading", "differences", "{}").informed(0.0),
+        row("two", "pinocchio", "import", "differences", "{}").informed(0.0),
         row("two", "pinocchio", "id", "as_read", "{}").informed(7.8e-12),
-        row("two", "pinocchio", "reading", "unexplained", r#"{"gate":1e-11}"#).gated(0.0, Relation::Le, 0.0),
-        row("two", "drake", "reading", "differences", "{}").informed(0.0),
+        row("two", "pinocchio", "import", "unexplained", r#"{"gate":1e-11}"#).gated(0.0, Relation::Le, 0.0),
+        row("two", "drake", "import", "differences", "{}").informed(0.0),
         row("two", "drake", "id", "as_read", "{}").informed(0.5),
-        row("two", "drake", "reading", "unexplained", tree).gated(1.0, Relation::Le, 0.0),
+        row("two", "drake", "import", "unexplained", tree).gated(1.0, Relation::Le, 0.0),
     ]
 }
 
@@ -45,7 +45,7 @@ fn rows(run: &RunInfo) -> Vec<Row> {
 fn each_reading_has_its_cell_and_each_cause_its_count() {
     let run = support::run_info();
     let written = Written::of(&run, &rows(&run));
-    let section = written.section("reading");
+    let section = written.section("import");
     assert_eq!(section.matches("data-reading=").count(), 5, "five readings");
     let cell = |model: &str, engine: &str| {
         let line = section.split("<tr>").find(|line| line.contains(&format!("<th scope=\"row\">{model}</th>"))).unwrap();

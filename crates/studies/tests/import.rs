@@ -1,15 +1,15 @@
-//! The reading study convicts: an engine that computes something else than what it says to have read is called unexplained, with the
+//! The import study convicts: an engine that computes something else than what it says to have read is called unexplained, with the
 //! smallest sub-tree that shows it; one that tells the truth about an edited robot is not.
 
 use crate::support;
 
 use featherbench_bench::{
-    Engine, Evaluation, FileBase, FileFormat, Identity, NoAnswer, Quantity, Reading as Read, ReadingNote, Robot, RobotFile,
+    Engine, Evaluation, FileBase, FileFormat, Identity, Import as Read, ImportNote, NoAnswer, Quantity, Robot, RobotFile,
 };
 use featherbench_engines::Featherbench;
 use featherbench_model::{Description, Model, StateBatch};
 use featherbench_results::{EngineSource, Row, Verdict};
-use featherbench_studies::Reading;
+use featherbench_studies::Import;
 use serde_json::Value;
 use std::collections::BTreeMap;
 use support::{gates, robot, whole};
@@ -27,7 +27,7 @@ impl Parser {
         let mut held = robot.clone();
         held.description = holds.canonical().unwrap();
         held.model = Model::build(&held.description).unwrap();
-        let note = ReadingNote { cause: "warning".into(), about: None, text: "something".into(), numbers: Vec::new() };
+        let note = ImportNote { cause: "warning".into(), about: None, text: "something".into(), numbers: Vec::new() };
         Self {
             says: Ok(Read { description: says.canonical().unwrap(), notes: vec![note], keyframes: Vec::new(), written: None }),
             holds: Some(held),
@@ -74,7 +74,7 @@ fn filed(spec: &str) -> Robot {
 }
 
 fn records(robot: &Robot, parser: Parser) -> Vec<Row> {
-    whole(&Reading, robot, &gates(""), &[Box::new(Featherbench::new()), Box::new(parser)])
+    whole(&Import, robot, &gates(""), &[Box::new(Featherbench::new()), Box::new(parser)])
 }
 
 fn row<'a>(records: &'a [Row], metric: &str, quantity: &str) -> &'a Row {
@@ -89,11 +89,8 @@ fn params(row: &Row) -> Value {
 fn a_robot_read_as_it_is_has_no_differences_and_is_explained() {
     let robot = filed("humanoid");
     let records = records(&robot, Parser::new(robot.description.clone(), &robot.description, &robot));
-    assert_eq!(row(&records, "differences", "reading").value, Some(0.0));
-    assert_eq!(
-        (row(&records, "unexplained", "reading").value, row(&records, "unexplained", "reading").verdict),
-        (Some(0.0), Verdict::Pass)
-    );
+    assert_eq!(row(&records, "differences", "import").value, Some(0.0));
+    assert_eq!((row(&records, "unexplained", "import").value, row(&records, "unexplained", "import").verdict), (Some(0.0), Verdict::Pass));
     for (metric, quantity) in [("as_read", "id"), ("as_read", "mass_matrix"), ("replayed", "id"), ("replayed", "mass_matrix")] {
         assert_eq!(row(&records, metric, quantity).value, Some(0.0), "{metric} {quantity}");
     }
@@ -110,8 +107,8 @@ fn an_edited_robot_that_is_told_is_a_difference_and_explained() {
     let difference = row(&records, "difference", "mass");
     assert_eq!(difference.body, edited.bodies[body].name);
     assert_eq!(difference.value, Some(0.5), "half of the larger mass");
-    assert_eq!(row(&records, "differences", "reading").value, Some(1.0));
-    assert_eq!(row(&records, "unexplained", "reading").verdict, Verdict::Pass);
+    assert_eq!(row(&records, "differences", "import").value, Some(1.0));
+    assert_eq!(row(&records, "unexplained", "import").verdict, Verdict::Pass);
     // The only difference makes the whole error.
     let as_read = row(&records, "as_read", "mass_matrix").value.unwrap();
     let alone = params(difference)["mass_matrix"].as_f64().unwrap();
@@ -128,8 +125,8 @@ fn an_engine_that_lies_about_what_it_read_is_unexplained_from_the_body_on() {
             held.bodies[body].mass += 1.0;
             held.bodies[body].inertia = held.bodies[body].inertia.map(|x| 2.0 * x);
             let records = records(&robot, Parser::new(robot.description.clone(), &held, &robot));
-            assert_eq!(row(&records, "differences", "reading").value, Some(0.0), "it says that it read the same");
-            let left = row(&records, "unexplained", "reading");
+            assert_eq!(row(&records, "differences", "import").value, Some(0.0), "it says that it read the same");
+            let left = row(&records, "unexplained", "import");
             assert_eq!(left.verdict, Verdict::Fail, "{spec}: {}", bodies[body].name);
             let trees = params(left)["unexplained"].as_array().unwrap().clone();
             let roots: Vec<&str> = trees.iter().map(|tree| tree["bodies"][0].as_str().unwrap()).collect();
@@ -144,7 +141,7 @@ fn gravity_that_is_not_told_is_unexplained_by_torques_alone() {
     let mut held = robot.description.clone();
     held.gravity = [0.0, 0.0, -1.0];
     let records = records(&robot, Parser::new(robot.description.clone(), &held, &robot));
-    let left = row(&records, "unexplained", "reading");
+    let left = row(&records, "unexplained", "import");
     assert_eq!(left.verdict, Verdict::Fail);
     assert!(params(left)["unexplained"].as_array().unwrap().iter().all(|tree| tree["quantity"] == "id"));
     assert!(row(&records, "replayed", "mass_matrix").value.unwrap() == 0.0);
@@ -164,7 +161,7 @@ fn a_body_less_is_compared_on_what_is_left() {
     let records = records(&robot, parser);
     let difference = row(&records, "difference", "body");
     assert_eq!(params(difference)["cause"], "merged");
-    assert_eq!(row(&records, "unexplained", "reading").verdict, Verdict::Pass);
+    assert_eq!(row(&records, "unexplained", "import").verdict, Verdict::Pass);
     let error = row(&records, "as_read", "mass_matrix").value.unwrap();
     assert!(error < 1e-12, "the joint stands still on both sides: {error}");
 }

@@ -13,19 +13,19 @@ fn red(gates: &Gates, records: &[Row]) -> Vec<String> {
     conditions.filter(|condition| condition.verdict != Verdict::Pass).map(|condition| condition.what).collect()
 }
 
-/// What a guest does not offer is no fault; what an engine of the project leaves out without a word still is, and so is a guest's failure.
+/// What a external does not offer is no fault; what an engine of the project leaves out without a word still is, and so is a external's failure.
 #[test]
-fn only_a_guest_may_leave_out_what_it_does_not_have() {
+fn only_an_external_engine_may_leave_out_what_it_does_not_have() {
     let skip = |engine: &str| row(engine).without_value(Verdict::Skip, "no such joint");
-    let (plain, with_guest) = (Gates::default(), Gates::default().with_guests(&["mine"]));
+    let (plain, with_external) = (Gates::default(), Gates::default().with_external(&["mine"]));
     let unexplained = "rows that an engine does not offer and ci/deviations.toml does not name";
     assert_eq!(red(&plain, &[skip("mine")]), [unexplained]);
-    assert!(red(&with_guest, &[skip("mine")]).is_empty());
+    assert!(red(&with_external, &[skip("mine")]).is_empty());
     for engine in ["pinocchio", "featherbench", "mine2", ""] {
-        assert_eq!(red(&with_guest, &[skip("mine"), skip(engine)]), [unexplained], "{engine}");
+        assert_eq!(red(&with_external, &[skip("mine"), skip(engine)]), [unexplained], "{engine}");
     }
     let failed = row("mine").without_value(Verdict::Error, "it broke");
-    assert_eq!(red(&with_guest, &[failed]), ["rows without a value that was due"]);
+    assert_eq!(red(&with_external, &[failed]), ["rows without a value that was due"]);
     let wrong = row("mine").gated(2.0, Relation::Le, 1.0);
-    assert_eq!(red(&with_guest, &[wrong]), ["rows outside their bound"]);
+    assert_eq!(red(&with_external, &[wrong]), ["rows outside their bound"]);
 }

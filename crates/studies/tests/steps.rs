@@ -4,7 +4,7 @@ use featherbench_bench::{Engine, Evaluation, Identity, NoAnswer, Quantity, Robot
 use featherbench_dynamics::{energy, forward_dynamics};
 use featherbench_model::StateBatch;
 use featherbench_results::{EngineSource, Row, Verdict};
-use featherbench_studies::StepLimit;
+use featherbench_studies::Steps;
 use serde_json::Value;
 use std::collections::BTreeMap;
 use support::{gates, robot, whole};
@@ -81,7 +81,7 @@ fn each_step_names_its_regime() {
     for spec in ["chain:n=3,layout=spatial", "joints:kind=spherical,base=fixed", "joints:kind=revolute,base=fixed"] {
         let engines: [Box<dyn Engine>; 1] = [Box::new(Implicit::new())];
         let robot = robot(spec);
-        let rows = whole(&StepLimit, &robot, &gates(""), &engines);
+        let rows = whole(&Steps, &robot, &gates(""), &engines);
         let steps = |method: &str| -> Vec<&Row> { rows.iter().filter(|row| row.metric == "step_error" && row.method == method).collect() };
         assert_eq!((steps("step").len(), steps("step_default").len()), (18, 18), "{spec}");
         let (mut explicit, mut implicit_beyond) = (0, 0);

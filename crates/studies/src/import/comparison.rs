@@ -6,7 +6,7 @@ use super::cause::cause;
 use super::fields::{self, OF_A_BODY, differs, digits};
 use super::pairs::{chained, pairs};
 use super::{Cause, Difference, Field};
-use featherbench_bench::{FileLink, ReadingNote};
+use featherbench_bench::{FileLink, ImportNote};
 use featherbench_model::{BodyDescription, Description, JointType};
 use std::collections::HashMap;
 
@@ -30,7 +30,7 @@ pub struct Finding {
 
 impl Comparison {
     /// Compares their reading of a robot with ours. Both must be canonical. `links` is what the file says link by link, as far as that is known.
-    pub fn of(ours: &Description, theirs: &Description, links: &[FileLink], notes: &[ReadingNote]) -> Self {
+    pub fn of(ours: &Description, theirs: &Description, links: &[FileLink], notes: &[ImportNote]) -> Self {
         let (ours, theirs) = (chained(ours), chained(theirs));
         let partner = pairs(&ours, &theirs);
         let gone: Vec<usize> = (0..ours.bodies.len()).filter(|&i| partner[i].is_none()).collect();
@@ -89,7 +89,7 @@ fn without(description: &Description, gone: &[usize], mass: Mass) -> Option<Desc
     reduced.canonical().ok()
 }
 
-fn missing(body: &BodyDescription, mass: Mass, notes: &[ReadingNote]) -> Finding {
+fn missing(body: &BodyDescription, mass: Mass, notes: &[ImportNote]) -> Finding {
     let (cause, theirs) = match mass {
         Mass::Kept => (Cause::Merged, "fixed to its parent"),
         Mass::Dropped => (Cause::Dropped, "none, and its mass is gone"),
@@ -97,7 +97,7 @@ fn missing(body: &BodyDescription, mass: Mass, notes: &[ReadingNote]) -> Finding
     let ours = format!("{} joint '{}'", body.joint.kind.name(), body.joint.name);
     let mut finding = whole(&body.name, Field::Body, ours, theirs.into(), cause);
     let root = body.parent.is_none();
-    let about = |note: &&ReadingNote| match note.cause.as_str() {
+    let about = |note: &&ImportNote| match note.cause.as_str() {
         "root_welded" => root,
         "mimic" | "fused" => note.about.as_deref().is_some_and(|name| name == body.name || name == body.joint.name),
         _ => false,
@@ -120,13 +120,7 @@ fn whole(body: &str, field: Field, ours: String, theirs: String, cause: Cause) -
 }
 
 /// The differences of two robots with the same bodies; `names` leads from ours to theirs.
-fn shared(
-    ours: &Description,
-    theirs: &Description,
-    names: &HashMap<&str, &str>,
-    links: &[FileLink],
-    notes: &[ReadingNote],
-) -> Vec<Finding> {
+fn shared(ours: &Description, theirs: &Description, names: &HashMap<&str, &str>, links: &[FileLink], notes: &[ImportNote]) -> Vec<Finding> {
     let place: HashMap<&str, usize> = theirs.bodies.iter().enumerate().map(|(j, body)| (body.name.as_str(), j)).collect();
     let partner: Vec<Option<usize>> =
         ours.bodies.iter().map(|body| names.get(body.name.as_str()).and_then(|name| place.get(name)).copied()).collect();
@@ -171,7 +165,7 @@ fn finding(
     aligned: &BodyDescription,
     (field, size): (Field, f64),
     account: Option<Account>,
-    notes: &[&ReadingNote],
+    notes: &[&ImportNote],
 ) -> Finding {
     let body = &ours.bodies[i];
     let (untested, note) = cause(field, body, aligned, notes);
@@ -189,12 +183,12 @@ fn finding(
 }
 
 /// What the parser says about a body: about its link, its joint or the links that are fixed to it, or about the whole file.
-fn about<'a>(ours: &Description, i: usize, theirs: &BodyDescription, notes: &'a [ReadingNote]) -> Vec<&'a ReadingNote> {
+fn about<'a>(ours: &Description, i: usize, theirs: &BodyDescription, notes: &'a [ImportNote]) -> Vec<&'a ImportNote> {
     let body = &ours.bodies[i];
     let fixed = |name: &str| ours.frames.iter().any(|frame| frame.body == Some(i) && frame.name == name);
     let named =
         |name: &str| [&body.name, &body.joint.name, &theirs.name, &theirs.joint.name].into_iter().any(|own| own == name) || fixed(name);
-    let concerns = |note: &&ReadingNote| match (&note.about, note.cause.as_str()) {
+    let concerns = |note: &&ImportNote| match (&note.about, note.cause.as_str()) {
         (Some(about), _) => named(about),
         (None, _) => true,
     };

@@ -5,7 +5,7 @@ use super::subtree::{SubTree, unexplained};
 use super::{Class, Comparison, Effect, Finding, LARGEST, READING, Weight, armature, as_read, bound, reference};
 use crate::row;
 use featherbench_bench::measure::worst;
-use featherbench_bench::{Cell, Context, FileFormat, Finished, NoAnswer, Outcome, Quantity, Reading, ReadingNote, Robot};
+use featherbench_bench::{Cell, Context, FileFormat, Finished, Import, ImportNote, NoAnswer, Outcome, Quantity, Robot};
 use featherbench_results::{Row, Verdict, canonical_json};
 use serde_json::{Value, json};
 
@@ -17,7 +17,7 @@ pub(super) fn rows(context: &Context, robot: &Robot, finished: &[Finished]) -> V
             finished.iter().filter(|(other, _)| other.engine == cell.engine && other.quantity != READING).collect();
         let engine = OfEngine { context, robot, cell, of_engine, compiler: compiler(robot, finished) };
         match outcome {
-            Outcome::Reading(reading) => rows.extend(engine.read(reading)),
+            Outcome::Import(reading) => rows.extend(engine.read(reading)),
             Outcome::NoAnswer(refusal) => rows.push(engine.refused(cell, refusal)),
             Outcome::Values(_) => {}
         }
@@ -32,10 +32,10 @@ const WORK: usize = 4_000_000_000;
 const LEAST_ALONE: usize = 8;
 
 /// What MuJoCo's compiler, whose reading is the reference of an MJCF, tells about it.
-fn compiler<'a>(robot: &Robot, finished: &'a [Finished]) -> Option<&'a [ReadingNote]> {
+fn compiler<'a>(robot: &Robot, finished: &'a [Finished]) -> Option<&'a [ImportNote]> {
     robot.file.as_ref().filter(|file| file.format == FileFormat::Mjcf)?;
     finished.iter().find_map(|(cell, outcome)| match outcome {
-        Outcome::Reading(reading) if cell.engine == reference(FileFormat::Mjcf) => Some(reading.notes.as_slice()),
+        Outcome::Import(reading) if cell.engine == reference(FileFormat::Mjcf) => Some(reading.notes.as_slice()),
         _ => None,
     })
 }
@@ -47,7 +47,7 @@ struct OfEngine<'a> {
     cell: &'a Cell,
     /// What it computed with the robot as read.
     of_engine: Vec<&'a Finished>,
-    compiler: Option<&'a [ReadingNote]>,
+    compiler: Option<&'a [ImportNote]>,
 }
 
 impl OfEngine<'_> {
@@ -73,7 +73,7 @@ impl OfEngine<'_> {
         self.context.gates.explain(self.row(cell, "differences").without_value(verdict, refusal.to_string()))
     }
 
-    fn read(&self, reading: &Reading) -> Vec<Row> {
+    fn read(&self, reading: &Import) -> Vec<Row> {
         let links = self.robot.file.as_ref().map_or(&[][..], |file| &file.links);
         let mut comparison = Comparison::of(&self.robot.description, &reading.description, links, &reading.notes);
         comparison.findings.extend(self.compiler.into_iter().flat_map(|notes| armature::on_free_joints(notes, &reading.notes)));
@@ -110,7 +110,7 @@ impl OfEngine<'_> {
     }
 
     /// How many differences there are that a simulation would feel, and how many of each class.
-    fn count(&self, comparison: &Comparison, effects: &[Option<Effect>], reading: &Reading) -> Row {
+    fn count(&self, comparison: &Comparison, effects: &[Option<Effect>], reading: &Import) -> Row {
         let of = |weight: Weight| comparison.differences().filter(|difference| difference.field.weight() == weight).count();
         let notes: Vec<Value> = reading
             .notes
@@ -153,7 +153,7 @@ impl OfEngine<'_> {
     }
 
     /// The engine's answers against the reference, against the replay, and what the replay leaves unexplained.
-    fn computed(&self, reading: &Reading, [id, mass]: [&Cell; 2], engine: &Answers) -> Vec<Row> {
+    fn computed(&self, reading: &Import, [id, mass]: [&Cell; 2], engine: &Answers) -> Vec<Row> {
         let error = |reason: &str| vec![self.row(self.cell, "unexplained").without_value(Verdict::Error, reason)];
         let robot = match as_read(self.robot, reading) {
             Ok(robot) => robot,
@@ -196,7 +196,7 @@ fn values(outcome: &Outcome) -> Result<&[f64], &NoAnswer> {
     match outcome {
         Outcome::Values(values) => Ok(values),
         Outcome::NoAnswer(refusal) => Err(refusal),
-        Outcome::Reading(_) => Ok(&[]),
+        Outcome::Import(_) => Ok(&[]),
     }
 }
 

@@ -34,11 +34,11 @@ const STRAIGHT_MOTION: RangeInclusive<f64> = 0.0..=1e-3;
 const CASES: [Case; 2] = [Case::Random, Case::Fast];
 
 /// The study of small steps.
-pub struct StepLimit;
+pub struct Steps;
 
-impl Study for StepLimit {
+impl Study for Steps {
     fn name(&self) -> &'static str {
-        "step_limit"
+        "steps"
     }
 
     fn plan(&self, context: &Context) -> Vec<Cell> {

@@ -10,9 +10,9 @@ const BLOCKS: [(usize, f64, f64); 2] = [(1024, 16.0, 1024.0), (64, 1024.0, 65536
 /// Blocks of random sizes between holes of random sizes. What is allocated while it lives fills the holes and the room behind: how its
 /// parts lie to each other and to the pages changes with every draw.
 #[derive(Debug)]
-pub struct Scatter(#[expect(dead_code, reason = "what counts is that they take room")] Vec<Vec<u8>>);
+pub struct Relocation(#[expect(dead_code, reason = "what counts is that they take room")] Vec<Vec<u8>>);
 
-impl Scatter {
+impl Relocation {
     /// Draws blocks and holes.
     pub fn new(random: &mut Random) -> Self {
         let mut blocks = Vec::new();
@@ -31,7 +31,7 @@ mod tests {
     fn what_follows_lies_elsewhere_each_time() {
         let mut random = Random::new(1, 1);
         let places = (0..20).map(|_| {
-            let _scatter = Scatter::new(&mut random);
+            let _relocate = Relocation::new(&mut random);
             let (small, large) = (black_box(vec![0_u8; 100]), black_box(vec![0_u8; 20_000]));
             (small.as_ptr().addr() % 4096, large.as_ptr().addr() % 4096)
         });

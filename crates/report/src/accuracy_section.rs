@@ -5,37 +5,37 @@ use std::collections::BTreeSet;
 use featherbench_results::Verdict;
 use maud::{Markup, html};
 
+use crate::accuracy::{Accuracy, Cell, lost};
 use crate::axes::Axis;
-use crate::digits::{Cell, Digits, lost};
 use crate::labels;
 use crate::numbers::short;
 use crate::overview::Overview;
 use crate::truth;
 
 /// Writes the section; nothing where the run holds no digits.
-pub fn section(overview: &Overview, digits: &Digits) -> Markup {
+pub fn section(overview: &Overview, digits: &Accuracy) -> Markup {
     html! {
         @if !digits.answers.is_empty() {
-            section #digits {
-                h2 { "Digits: who is right" }
+            section #accuracy {
+                h2 { "Accuracy: who is right" }
                 p.lead {
                     "Relative error of each engine and method against the truth, the answer in double-double arithmetic. "
                     "Forward dynamics in the 2-norm, as published tables have it; inverse dynamics and M entry by entry in their unit-free measures."
                 }
                 (truth::warning(overview, digits))
                 div.controls {
-                    label { "Quantity " select #digits-quantity {
+                    label { "Quantity " select #accuracy-quantity {
                         @for quantity in digits.quantities() { option value=(quantity) { (labels::quantity(quantity)) } }
                     } }
                     @if !digits.curves.is_empty() {
-                        label { "Against " select #digits-axis {
+                        label { "Against " select #accuracy-axis {
                             @for axis in axes(digits) { option value=(axis.name()) { (axis.title()) } }
                         } }
-                        label { "Family " select #digits-family {} }
+                        label { "Family " select #accuracy-family {} }
                     }
                 }
                 @if !digits.curves.is_empty() {
-                    div #digits-plot.plot role="group" aria-label="Plot of the median error against the truth" {}
+                    div #accuracy-plot.plot role="group" aria-label="Plot of the median error against the truth" {}
                     p.note {
                         "Marks: the median over the states, with bars from the first to the third quartile. Dashed: the structured floor, what half a unit in the last "
                         "place of every input can do to the answer when all of it adds up; chance leaves about a tenth of it. Dotted: 2⁻⁵², where no digit is lost. "
@@ -50,8 +50,8 @@ pub fn section(overview: &Overview, digits: &Digits) -> Markup {
                 }
                 h3 { "Median errors" }
                 div.controls {
-                    label { "Model " input #digits-filter type="search" placeholder="part of a name" autocomplete="off"; }
-                    p #digits-count role="status" {}
+                    label { "Model " input #accuracy-filter type="search" placeholder="part of a name" autocomplete="off"; }
+                    p #accuracy-count role="status" {}
                 }
                 (legend())
                 div.heat-frame tabindex="-1" { (table(overview, digits)) }
@@ -61,14 +61,14 @@ pub fn section(overview: &Overview, digits: &Digits) -> Markup {
     }
 }
 
-fn axes(digits: &Digits) -> Vec<Axis> {
+fn axes(digits: &Accuracy) -> Vec<Axis> {
     let used: BTreeSet<Axis> = digits.curves.iter().map(|curve| curve.axis).collect();
     Axis::ALL.into_iter().filter(|axis| used.contains(axis)).collect()
 }
 
-fn growth(overview: &Overview, digits: &Digits) -> Markup {
+fn growth(overview: &Overview, digits: &Accuracy) -> Markup {
     html! {
-        table #digits-growth.compact.sortable {
+        table #accuracy-growth.compact.sortable {
             thead {
                 tr {
                     th scope="col" { "engine and method" } th scope="col" { "quantity" } th scope="col" { "against" } th scope="col" { "family" }
@@ -95,7 +95,7 @@ fn growth(overview: &Overview, digits: &Digits) -> Markup {
 }
 
 /// Columns: an answer, or (`None`) the floor of the quantity to the left.
-pub fn columns(digits: &Digits) -> Vec<(Option<usize>, usize)> {
+pub fn columns(digits: &Accuracy) -> Vec<(Option<usize>, usize)> {
     let quantities = digits.quantities();
     let mut columns = Vec::new();
     for (group, quantity) in quantities.iter().enumerate() {
@@ -109,11 +109,11 @@ pub fn columns(digits: &Digits) -> Vec<(Option<usize>, usize)> {
     columns
 }
 
-fn table(overview: &Overview, digits: &Digits) -> Markup {
+fn table(overview: &Overview, digits: &Accuracy) -> Markup {
     let columns = columns(digits);
     let first = |position: usize| position == 0 || columns[position - 1].1 != columns[position].1;
     html! {
-        table #digits-table.grid role="grid" aria-label="Median errors against the truth by model, quantity, engine and method" {
+        table #accuracy-table.grid role="grid" aria-label="Median errors against the truth by model, quantity, engine and method" {
             thead {
                 tr {
                     th.corner rowspan="2" scope="col" { "model" }
@@ -157,13 +157,13 @@ fn table(overview: &Overview, digits: &Digits) -> Markup {
 }
 
 /// The floor of the quantity at a column, which is the same for all its answers.
-fn floor(digits: &Digits, columns: &[(Option<usize>, usize)], position: usize, model: usize) -> Option<f64> {
+fn floor(digits: &Accuracy, columns: &[(Option<usize>, usize)], position: usize, model: usize) -> Option<f64> {
     let group = columns[position].1;
     columns.iter().filter(|&&(_, other)| other == group).find_map(|&(answer, _)| digits.cell(model, answer?)?.floor)
 }
 
 /// The models of each family that have a cell.
-fn families(overview: &Overview, digits: &Digits) -> Vec<Vec<usize>> {
+fn families(overview: &Overview, digits: &Accuracy) -> Vec<Vec<usize>> {
     let models: BTreeSet<usize> = digits.cells.iter().map(|cell| cell.model).collect();
     let mut families: Vec<Vec<usize>> = Vec::new();
     for model in models {
