@@ -406,7 +406,7 @@ def test_mjcf_motor(toy: Read, readers: Readers, engine: str, toy_text: str) -> 
 def test_armature_of_a_free_joint(readers: Readers, engine: str) -> None:
     """The armature that a class gives to a free joint is told and taken out of what is compared; Drake forgets it."""
     read = readers.read(engine, "dragged.xml", files.DRAGGED)
-    told = [note["numbers"] for note in read.header["notes"] if note["cause"] == "free_armature" and note["topic"] == "root"]
+    told = [note["numbers"] for note in read.header["notes"] if note["cause"] == "free_armature" and note["about"] == "root"]
     assert told == ([] if engine == "drake" else [[0.25] * 6])
     assert same(read.body("base")["joint"]["armature"], [0.0] * 6)
     assert same(read.body("arm")["joint"]["armature"], [0.25])
@@ -508,7 +508,7 @@ def test_dart_notes(readers: Readers, base: str) -> None:
     names = [body["joint"]["name"] for body in read.bodies]
     assert names[-2:] == ["hinge", "slide"]
     assert len(names) == 2 + (base == "free")
-    causes = {(note["cause"], note["topic"]) for note in read.header["notes"]}
+    causes = {(note["cause"], note["about"]) for note in read.header["notes"]}
     assert {("mimic", "slide"), ("mass_edited", "stand"), ("mass_edited", "empty")} <= causes
     assert read.bodies[-1]["mass"] == 1.0
     assert abs(read.bodies[-2]["joint"]["damping"][0] - 0.7) <= within(REPEATED)

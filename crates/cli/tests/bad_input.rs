@@ -72,7 +72,7 @@ fn broken_suites_are_refused_by_file_and_key() {
     let sandbox = Sandbox::new();
     let good = std::fs::read_to_string(project().join("datasets/suites/smoke.toml")).unwrap();
     let cases: [(&str, String, &[&str]); 6] = [
-        ("unknown key", good.replace("structure = true", "strukture = true"), &["strukture", "line"]),
+        ("unknown key", good.replace("operations = true", "operashuns = true"), &["operashuns", "line"]),
         ("unknown model", good.replace("\"panda\"", "\"pander\""), &["pander.json"]),
         (
             "two sources",

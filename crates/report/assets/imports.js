@@ -1,7 +1,7 @@
 // How engines read a robot's file: the differences of one robot in one engine, below the matrix.
 featherbench.ready(() => {
   const { byId, load, make, short } = featherbench;
-  const place = byId("reading-details");
+  const place = byId("import-details");
   if (!place) return;
   const HEADS = ["body", "field", "the reference reads", "it reads", "cause", "inverse dynamics", "M"];
 

@@ -90,7 +90,7 @@ pub fn section(overview: &Overview, readings: &Imports) -> Markup {
         return html! {};
     }
     html! {
-        section #reading {
+        section #import {
             h2 { "How engines read it" }
             p.lead {
                 "Every engine's own parser reads the robot's file, and what it then holds is compared body by body with the reference: "
@@ -107,7 +107,7 @@ pub fn section(overview: &Overview, readings: &Imports) -> Markup {
                 span.legend.unexplained { "?" } " answers that the differences do not explain. "
                 "The answers are replayed: the engine computes with what it read, our kernels with what it says to have read."
             }
-            div #reading-details role="region" aria-live="polite" tabindex="-1" {}
+            div #import-details role="region" aria-live="polite" tabindex="-1" {}
             h3 { "Causes" }
             (causes(overview, readings))
         }
