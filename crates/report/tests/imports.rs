@@ -58,12 +58,12 @@ fn each_reading_has_its_cell_and_each_cause_its_count() {
     assert!(cell("one", "drake").contains('–') && cell("one", "drake").contains("no &lt;such&gt; joint"));
     assert!(cell("two", "drake").contains("class=\"unexplained\">?"), "{}", cell("two", "drake"));
     assert!(section.contains("impossible principal moments were made equal"));
-    assert!(written.index.contains("href=\"#reading\""));
+    assert!(written.index.contains("href=\"#import\""));
 }
 
 #[test]
 fn a_run_that_did_not_ask_has_no_section() {
     let run = support::run_info();
     let written = Written::of(&run, &support::records(&run));
-    assert!(!written.index.contains("<section id=\"reading\"") && !written.index.contains("href=\"#reading\""));
+    assert!(!written.index.contains("<section id=\"import\"") && !written.index.contains("href=\"#import\""));
 }
