@@ -3,8 +3,8 @@
 
     python ci/browser_test.py REPORT_DIR [--shots FOLDER]
 
-Needs chromium and chromedriver on the path, and nothing but Python's own library: chromedriver speaks JSON over HTTP on this machine.
-Prints each check and `N passed, N failed`; ends with 0 if all passed, 1 if one failed, 2 if the browser could not be started.
+Needs chromium and chromedriver on the path, and no Python package: chromedriver is asked by JSON over local HTTP.
+Prints each check and `N passed, N failed`. Exit status: 0 if all passed, 1 if one failed, 2 if the browser could not be started.
 """
 
 from __future__ import annotations
@@ -102,7 +102,7 @@ class Browser:
         self.post("/actions", actions=[{"type": "key", "id": "keyboard", "actions": actions}])
 
     def choose(self, selector: str, value: str) -> None:
-        """Choose an option of a list as a reader's choice does: with its event."""
+        """Choose an option of a list with the event of a user's choice."""
         self.run(
             "const list = document.querySelector(arguments[0]); list.value = arguments[1];"
             " list.dispatchEvent(new Event('change', {bubbles: true}))",
@@ -111,14 +111,14 @@ class Browser:
         )
 
     def until(self, script: str, *arguments: Any, seconds: float = 20) -> Any:
-        """Wait until a script returns something true, and returns that; whatever it was last if it never does."""
+        """Wait until a script returns something true, and return it; if it never does, return the last value."""
         end = time.monotonic() + seconds
         while not (value := self.run(script, *arguments)) and time.monotonic() < end:
             time.sleep(0.05)
         return value
 
     def log(self, kind: str) -> list[dict[str, Any]]:
-        """Take what a log holds since it was taken last."""
+        """Take the new entries of a log."""
         entries: list[dict[str, Any]] = self.post("/se/log", type=kind)
         return entries
 
@@ -150,7 +150,7 @@ PLOTS = [
 ]
 CLOSED = "return !document.querySelector('#rows').open"
 BACKGROUND = "return getComputedStyle(document.body).backgroundColor"
-# Every section in its order; those that are not in ALWAYS appear with their rows alone.
+# Every section in its order. Those that are not in ALWAYS appear only if they have rows.
 SECTIONS = [
     "verdict",
     "agreement",
@@ -685,7 +685,7 @@ def speed(page: Browser, shot: Shot) -> Checks:
         const rows = [...document.querySelectorAll('#speed-summary tbody tr')];
         const means = rows.map(row => [...row.querySelectorAll('td.number')].map(number));
         return means.map(([robots, mean, least, largest]) => least <= mean && mean <= largest && robots > 0)""")
-    # On a machine that is not quiet no ratio may count; the page then says so, and why.
+    # On a machine that is not quiet, all ratios may be invalid. The page then says so, and why.
     none = page.run("return !!document.querySelector('#speed-none-valid') && document.querySelectorAll('#speed-invalid li').length > 0")
     yield (
         "every geometric mean lies between its least and its largest, or no ratio counts and the page says why",

@@ -1,8 +1,8 @@
-"""By how much the estimates of Drake's and DART's times are off: the clock of the oracles against loops in C++ over the same libraries.
+"""The errors of the estimated times of Drake and DART: the clock of the oracles against loops in C++ over the same libraries.
 
     PYTHONPATH=oracles PYTHON ci/estimates.py drake|dart --eigen FOLDER       PYTHON is the engines' environment's, FOLDER holds Eigen/Core
 
-Needs g++ and a quiet machine. The C++ loops call what the packages' libraries export, on the very objects that Python holds.
+Needs g++ and a quiet machine. The C++ loops call functions that the packages' libraries export, on the same objects that Python holds.
 """
 
 from __future__ import annotations
@@ -53,7 +53,7 @@ def main() -> None:
 
 
 def compiled(engine: str, eigen: Path) -> ctypes.CDLL:
-    """Compile the loops; Drake's symbols are in a library of their own, DART's in its module."""
+    """Compile the loops. Drake's symbols are in its own library, DART's in its module."""
     folder = Path(tempfile.mkdtemp())
     command = ["g++", "-std=c++20", "-O2", "-DNDEBUG", "-fPIC", "-shared", "-isystem", str(eigen)]
     subprocess.run([*command, str(ROOT / f"ci/estimates/{engine}.cc"), "-o", str(folder / "loops.so")], check=True)
@@ -67,7 +67,7 @@ def compiled(engine: str, eigen: Path) -> ctypes.CDLL:
 
 
 def described(name: str) -> Description:
-    """Read a robot of datasets/models, what it leaves out filled in."""
+    """Read a robot of datasets/models; armature that is left out is zero."""
     data = json.loads((ROOT / f"datasets/models/{name}.json").read_text())
     for joint in (body["joint"] for body in data["bodies"]):
         joint.setdefault("armature", [0.0] * JOINT_SIZES[joint["type"]][1])

@@ -1,16 +1,18 @@
 #!/usr/bin/env python3
-"""Counts the instructions of every kernel of ours under callgrind and compares them with the committed baseline.
+"""Counts the instructions of each of our kernels under callgrind and compares them with the committed baseline.
 
-    python ci/instructions.py             exit 1 when a kernel needs more than 2 % above ci/instructions.csv
-    python ci/instructions.py --accept    make what is counted now the baseline of this compiler
-    python ci/instructions.py --out FILE  write what is counted as CSV, and judge nothing
+    python ci/instructions.py             exit 1 if a kernel needs more than 2 % above ci/instructions.csv
 
-Instructions do not depend on a neighbour's work or a processor's frequency, so they can gate a change where times only inform. They are
-those of a build for x86-64-v3 in a target folder of its own: valgrind cannot read AVX-512. Another compiler has a baseline of its own;
-where there is none, the counts inform. Prints a Markdown table.
+    python ci/instructions.py --accept    make the counts the baseline of this compiler
 
-Where nothing can be counted, it prints `not counted:` and why. That is a failure, unless counts were only to be compared and valgrind is
-missing. With FEATHERBENCH_REQUIRE_ALL set, as in CI, a missing valgrind and a missing baseline are failures too.
+    python ci/instructions.py --out FILE  write the counts as CSV, and judge nothing
+
+Instructions do not depend on other load or on the processor's frequency. So they can gate a change, while times only inform. The build is
+for x86-64-v3, in its own target folder, because valgrind cannot read AVX-512. Each compiler has its own baseline. Without a baseline, the
+counts inform. Prints a Markdown table.
+
+If nothing can be counted, it prints `not counted:` and the reason. That is a failure, except for a comparison on a machine without valgrind
+or of another architecture. With FEATHERBENCH_REQUIRE_ALL set, as in CI, this and a missing baseline are failures too.
 """
 
 import argparse
@@ -28,7 +30,7 @@ ROOT = pathlib.Path(__file__).resolve().parent.parent
 BASELINE = ROOT / "ci/instructions.csv"
 TARGET = ROOT / "target/instructions"
 COLUMNS = ["rustc", "kernel", "model", "instructions"]
-# Inlining decisions elsewhere in a file move counts by tenths of a percent; a lost vectorisation or bounds check by several.
+# Inlining decisions elsewhere in a file change counts by tenths of a percent; a lost vectorisation or a bounds check by several percent.
 TOLERANCE = 0.02
 FUNCTION = "instructions::featherbench_measured"
 Counts = dict[tuple[str, str], int]  # (kernel, model) -> instructions per call
@@ -39,7 +41,7 @@ class NotCountedError(Exception):
 
 
 def missing() -> str | None:
-    """Tell what this machine lacks, if it lacks something."""
+    """Say what is missing on this machine, if anything."""
     if platform.machine() != "x86_64":
         return f"the counts are those of x86-64, and this machine is {platform.machine()}"
     if shutil.which("valgrind") is None:
@@ -48,7 +50,7 @@ def missing() -> str | None:
 
 
 def run(command: list[str], folder: pathlib.Path, capture: bool = True, environment: dict[str, str] | None = None) -> str:
-    """Run a command, and return what it prints; where it fails, there are no counts."""
+    """Run a command, and return what it prints; if it fails, raise `NotCountedError`."""
     try:
         ended = subprocess.run(command, cwd=folder, env=environment, capture_output=capture, text=True)
     except OSError as error:
@@ -61,7 +63,7 @@ def run(command: list[str], folder: pathlib.Path, capture: bool = True, environm
 
 def compiler() -> str:
     """Tell the compiler's version, with its commit: `1.97.0 (0123456 2026-01-01)`."""
-    # In the project's folder rustup takes the compiler of rust-toolchain.toml.
+    # In the project's folder rustup uses the compiler of rust-toolchain.toml.
     return run(["rustc", "--version"], ROOT).strip().removeprefix("rustc ")
 
 
@@ -140,7 +142,7 @@ def main() -> None:
     required = "FEATHERBENCH_REQUIRE_ALL" in os.environ
     if reason := missing():
         print(f"not counted: {reason}")
-        # Whoever asks for numbers gets none.
+        # `--accept` and `--out` ask for numbers, and there are none.
         sys.exit(1 if required or arguments.accept or arguments.out else 0)
     try:
         rustc = compiler()

@@ -1,4 +1,4 @@
-"""A whole oracle, to begin one's own from: tau and M of fixed-base chains of revolute joints, by Newton's and Euler's equations."""
+"""A complete oracle, to begin your own from: tau and M of fixed-base chains of revolute joints, by Newton's and Euler's equations."""
 
 import json
 import math
@@ -12,7 +12,7 @@ class Unsupported(Exception):  # noqa: N818 (no error: it is the protocol's answ
 
 
 def inverse_dynamics(model, q, v, a, gravity=1.0):
-    """Compute tau = M(q) a + h(q, v) in world axes, armature included; a world that accelerates by -g stands for gravity."""
+    """Compute tau = M(q) a + h(q, v) in world axes, armature included. Gravity is an acceleration of the world by -g."""
     turned, origin, omega, alpha, acc, passed = np.eye(3), *np.zeros((3, 3)), -gravity * np.array(model["gravity"]), []
     for body, angle, rate, push in zip(model["bodies"], q, v, a, strict=True):
         joint, (xx, xy, xz, yy, yz, zz) = body["joint"], body["inertia"]
@@ -39,7 +39,7 @@ def mass_matrix(model, q, v, a):
 
 
 def readback(body):
-    """List what is held of one body: mass, centre of mass, inertia, and the placement of its joint; 22 numbers."""
+    """List the 22 numbers of one body: mass, centre of mass, inertia, and the placement of its joint."""
     place = body["joint"]["placement"]
     return [body["mass"], *body["com"], *body["inertia"], *place["rotation"], *place["translation"]]
 
@@ -82,13 +82,13 @@ while line := sys.stdin.buffer.readline():
     block = None
     try:
         ask = json.loads(line)
-        # A request's blocks are read first: what stays in the pipe would be taken for the next request.
+        # A request's blocks are read first: bytes left in the pipe would be taken for the next request.
         raw = {b["name"]: (b["shape"], sys.stdin.buffer.read(8 * math.prod(b["shape"]))) for b in ask.get("blocks", [])}
         header, block = answer(ask, {name: np.frombuffer(data, "<f8").reshape(shape) for name, (shape, data) in raw.items()})
         header["status"] = "ok"
     except Unsupported as reason:
         header = {"status": "unsupported", "reason": str(reason)}
-    except Exception as reason:  # whatever went wrong is an answer, and no end
+    except Exception as reason:  # a failure is an answer, and the oracle continues
         header = {"status": "error", "reason": f"{type(reason).__name__}: {reason}"}
     data = b"" if block is None else np.array(block[1], "<f8")
     if block is not None:

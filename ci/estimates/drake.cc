@@ -1,5 +1,5 @@
-// Drake's own calls in a loop, without Python. The package has no headers: these few declarations name symbols that its library exports, and
-// the test of the answers in estimates.py shows that they are what they seem.
+// Drake's own calls in a loop, without Python. The package has no headers: these few declarations name symbols that its library exports. The
+// test of the answers in estimates.py shows that they are right.
 #include "loop.h"
 
 namespace drake {

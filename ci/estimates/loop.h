@@ -1,11 +1,11 @@
-// The loop that both engines share: what estimates.py calls, and what it calls in turn.
+// The loop of both engines, which estimates.py calls, and the functions that it calls.
 #pragma once
 #include <Eigen/Core>
 #include <chrono>
 
 using Vector = Eigen::VectorXd;
 
-// What is computed of a state.
+// What is computed at a state.
 enum class Quantity : char { inverse_dynamics = 'i', kinetic_energy = 'k' };
 
 // Nanoseconds of a call; `answer` gets the last one. `place(q, v)` sets a state, `torque(a)` is its inverse dynamics, `energy()` its kinetic

@@ -1,7 +1,7 @@
-"""Oracles: programs that answer questions about a robot through one physics engine.
+"""Oracles: programs that answer questions about a robot through one dynamics engine.
 
-`python -m featherbench_oracles.ENGINE` starts the oracle of `pinocchio`, `mujoco`, `drake` or `dart`, or the witness `truth`; it speaks the
-protocol of PROTOCOL.md on its standard input and output. `protocol` and `session` are what an engine of one's own needs.
+`python -m featherbench_oracles.ENGINE` starts the oracle of `pinocchio`, `mujoco`, `drake` or `dart`, or the witness `truth`. It speaks the
+protocol of PROTOCOL.md on its standard input and output. An engine of your own needs `protocol` and `session`.
 """
 
 ENGINES = ("pinocchio", "mujoco", "drake", "dart")

@@ -26,7 +26,7 @@ def symmetric(six: Array) -> Array:
 
 
 def rotation(quaternion: Array) -> Array:
-    """Turn a quaternion into a rotation matrix: I + 2 (w [u]x + [u]x^2) / |quaternion|^2.
+    """Compute the rotation matrix of a quaternion: I + 2 (w [u]x + [u]x^2) / |quaternion|^2.
 
     Parameters
     ----------

@@ -1,8 +1,8 @@
-"""Times of an engine's own calls through Python, the overhead of calling subtracted: estimates. Knows no engine.
+"""Times of an engine's own calls through Python, less the overhead of calling. They are estimates. This module depends on no engine.
 
-The same calls on a robot without bodies go the same way through Python and the engine's binding, and compute next to nothing. They stand
-right behind each call of a sample, because the call before has taken their code and data out of the caches: on their own, again and again,
-they are up to a quarter faster, and the estimate is the longer by that. METHODOLOGY.md, "Timing", says by how much estimates are off.
+The overhead is the time of the same calls on a robot without bodies. They go the same way through Python and the engine's binding, and
+compute next to nothing. Each is made directly after one call of a sample, which has taken their code and data out of the caches. In a
+loop of their own they are up to a quarter faster, and the estimate would be too long by that. METHODOLOGY.md, "Timing", gives the errors.
 """
 
 from __future__ import annotations
@@ -20,13 +20,13 @@ from featherbench_oracles.algebra import Array
 from featherbench_oracles.change import Change
 from featherbench_oracles.protocol import Question
 
-SAMPLE = 64  # at most so many calls before the overhead: as many as the loop has and two, so that one interruption is no median
-WARM = 5  # at most so many calls beside the clock before each loop: the process has slept, and a first call takes several times as long
-WARM_NS = 200_000  # but no longer than this and a call
-TRIALS = 3  # an interruption may make the overhead longer than everything: it is measured again before there is said to be no estimate
-NOTHING = -1  # the body that a robot without bodies is asked about: the world
+SAMPLE = 64  # calls that measure the overhead: at most these; else those of the loop plus two, so that one interruption is no median
+WARM = 5  # calls before each loop that are not timed, at most: after a pause the first call takes several times as long
+WARM_NS = 200_000  # no further such call after this time
+TRIALS = 3  # measurements before the answer is that there is no estimate: an interruption may make the overhead too long
+NOTHING = -1  # the body in a question to a robot without bodies: the world
 
-# what stands in `Calls.given` -> how it is made of a state
+# word of `Calls.given` -> how the argument is made from a state
 ARGUMENTS: dict[str, Callable[[Any, Any, Any], Any]] = {
     "q": lambda robot, _, ask: robot.positions(ask.q),
     "v": lambda _, change, ask: change.to_engine_v(ask.v),
@@ -38,27 +38,64 @@ ARGUMENTS: dict[str, Callable[[Any, Any, Any], Any]] = {
 
 
 class Timed(Protocol):
-    """What a robot needs for its calls to be timed."""
+    """The interface of a robot whose calls can be timed."""
 
     def change(self, ask: Question) -> Change:
-        """Find the change of velocities at the state."""
+        """Find T and b at a state.
+
+        Parameters
+        ----------
+        ask : Question
+            The state.
+
+        Returns
+        -------
+        Change
+            The change from neutral to engine coordinates there.
+        """
 
     def positions(self, q: Array) -> Array:
-        """Bring coordinates of shape (nq,) to the engine: shape (nq of the engine,), m, rad or quaternions."""
+        """Convert positions to the engine's.
+
+        Parameters
+        ----------
+        q : ndarray, shape (nq,)
+            Neutral positions, m, rad or quaternions.
+
+        Returns
+        -------
+        ndarray, shape (nq of the engine,)
+            q_e, in the units of the engine's table in its module `coordinates`.
+        """
 
 
 @dataclass(frozen=True)
 class Calls:
     """A method whose engine calls can be timed alone.
 
+    The calls take and return numbers in the engine's coordinates (e):
+
+    ::
+
+        word   argument                               shape                unit
+        q      q_e                                    (nq of the engine,)  m, rad, quaternions or rotation vectors
+        v      v_e                                    (nv,)                m/s or rad/s
+        a      a_e                                    (nv,)                m/s² or rad/s²
+        b      a_e where the neutral a is zero        (nv,)                m/s² or rad/s²
+        tau    tau_e                                  (nv,)                N or N m
+        body   the body's index in the description    -                    -
+
+    Their result is tau_e, a_e, M_e of shape (nv, nv) in kg, kg m or kg m², J_e of shape (6, nv), an energy in J, or the centre of mass
+    of shape (3,) in m.
+
     Attributes
     ----------
     given : str
-        What the calls are given: keys of `ARGUMENTS`, with blanks between.
+        The arguments of the calls: words of this table, separated by blanks.
     calls : callable
-        The calls, a function of the robot and of what they are given.
+        The calls, a function of the robot and these arguments.
     answer : callable
-        Turns the change of coordinates and the calls' result into the answer.
+        Converts the result of the calls, with the change of coordinates, to the answer.
     """
 
     given: str
@@ -66,7 +103,7 @@ class Calls:
     answer: Callable[[Change, Any], Any] = lambda _, result: result
 
     def arguments(self, robot: Timed, ask: Question, change: Change) -> tuple[Any, ...]:
-        """Find what the calls are given at a state, in the engine's coordinates.
+        """Compute the arguments of the calls at a state, in the engine's coordinates.
 
         Parameters
         ----------
@@ -80,7 +117,7 @@ class Calls:
         Returns
         -------
         tuple
-            As many as `given` has words.
+            One for each word of `given`.
         """
         return tuple(ARGUMENTS[name](robot, change, ask) for name in self.given.split())
 
@@ -104,18 +141,18 @@ class Calls:
 
 
 class Stream:
-    """The calls of one method, with what they are given at each state of a batch.
+    """The calls of one method, with their arguments at each state of a batch.
 
     Parameters
     ----------
     method : Calls
         The method.
     robot, nothing : Timed
-        The robot, and one without bodies, which measures what calling takes.
+        The robot, and one without bodies, which measures the overhead of calling.
     asks : list of Question
         The states.
     clock : callable
-        Tells the time in nanoseconds.
+        The time in nanoseconds.
     """
 
     def __init__(
@@ -127,7 +164,7 @@ class Stream:
         self.next = 0
         self.alone = len(asks) == 1
         if self.alone:
-            # An engine may see that it is given the same state again, and compute nothing: the last bit of q differs every other time.
+            # An engine may detect that the state is the same, and compute nothing. So the last bit of q differs every other time.
             q, *others = self.states[0]
             self.states.append((q + np.spacing(np.maximum(np.abs(q), 1.0)), *others))
         self.call_nothing = method.calls.__get__(nothing)
@@ -140,14 +177,14 @@ class Stream:
         Parameters
         ----------
         first : int
-            The state where the stream begins; a few calls that are not timed come before.
+            The state where the stream begins. A few calls that are not timed come before.
         count : int
             How many calls.
 
         Returns
         -------
         nanoseconds, overhead : int
-            What all calls take by themselves, and what was subtracted from their time, ns.
+            The time of all calls less their overhead, and that overhead, ns.
 
         Raises
         ------
@@ -191,7 +228,7 @@ class Stream:
         return clock() - start
 
     def _overhead(self, sample: list[tuple[Any, ...]]) -> float:
-        """Measure the nanoseconds of a call that computes nothing, behind one that does: the median, without the clock's own."""
+        """Measure the nanoseconds of a call that computes nothing, after one that does: the median, less the time of the clock itself."""
         call, call_nothing, nothing, clock, found = self.call, self.call_nothing, self.nothing, self.clock, []
         for given in sample:
             call(*given)

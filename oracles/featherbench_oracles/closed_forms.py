@@ -1,4 +1,4 @@
-"""Where each joint puts its body, in closed form and by the words of PROTOCOL.md alone: what the tests hold every engine to."""
+"""The pose of each joint's body in closed form, by PROTOCOL.md alone. The tests compare every engine with it."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ def turn(axis: Array, angle: float) -> Array:
 
 
 def across(joint: Joint, q: Array) -> tuple[Array, Array]:
-    """Find where the body of a joint is in the joint's frame.
+    """Compute the pose of a joint's body in the joint's frame.
 
     Parameters
     ----------
@@ -66,7 +66,7 @@ def across(joint: Joint, q: Array) -> tuple[Array, Array]:
 
 
 def placement(joint: Joint, q: Array) -> Array:
-    """Find where the body of a joint on the world is.
+    """Compute the pose in the world of a body whose joint hangs on the world.
 
     Parameters
     ----------

@@ -1,7 +1,7 @@
-"""Conventions: how an engine is asked about one, past its oracle, with one body and numbers in which nothing is symmetric.
+"""Conventions: an engine is asked about one directly, without its oracle.
 
-Each row of conventions.toml has a function of that name in `featherbench_oracles.ENGINE.conventions`. It yields claims: what the engine
-answers, what that is by the convention, and what it would be otherwise.
+The robot has one body, and numbers without symmetry. Each row of conventions.toml has a function of its name in
+`featherbench_oracles.ENGINE.conventions`. It yields claims: the engine's answer, the answer by the convention, and that by an alternative.
 """
 
 from __future__ import annotations
@@ -15,19 +15,19 @@ from numpy.typing import ArrayLike
 
 from featherbench_oracles.algebra import Array, skew
 
-CLOSE, APART = 1e-12, 1e-2  # rounding of numbers of size one; far below what any convention of these changes
+CLOSE, APART = 1e-12, 1e-2  # rounding of numbers of size one; much less than a wrong convention changes
 
 
 @dataclass(frozen=True)
 class Claim:
-    """Measured numbers are those of the convention, and not those of any other.
+    """A claim: measured numbers are those of the convention, and not those of any alternative.
 
     Attributes
     ----------
     measured, convention : ndarray
-        What the engine answers and what that is by the convention, of one shape and unit.
+        The engine's answer, and the answer by the convention, of one shape and unit.
     otherwise : tuple of ndarray
-        What it would be by each alternative, of a shape that broadcasts to that one.
+        The answer by each alternative, of a shape that broadcasts to that one.
     """
 
     measured: Array
@@ -39,12 +39,12 @@ class Claim:
         return Claim(self.measured, np.broadcast_to(self.otherwise[0], self.measured.shape), (self.convention,))
 
     def refutation(self) -> str | None:
-        """Tell what is wrong with the claim.
+        """Say what is wrong with the claim.
 
         Returns
         -------
         str or None
-            A sentence where the convention does not hold, or could not be told from an alternative; None where all is well.
+            A sentence if the convention does not hold, or an alternative holds as well; None if the claim is right.
         """
         if self.measured.shape != self.convention.shape:
             return f"shape {self.measured.shape}, not {self.convention.shape}"
@@ -66,14 +66,14 @@ def claim(measured: ArrayLike, convention: ArrayLike, *otherwise: ArrayLike) -> 
     Parameters
     ----------
     measured, convention : array_like
-        What the engine answers and what that is by the convention, of one shape and unit.
+        The engine's answer, and the answer by the convention, of one shape and unit.
     *otherwise : array_like
-        What it would be by each alternative, of which there is at least one.
+        The answer by each alternative. There is at least one.
 
     Returns
     -------
     Claim
-        With copies of the numbers: engines hand out memory that they write again.
+        With copies of the numbers, because engines reuse the memory of their results.
     """
     if not otherwise:
         raise ValueError("a convention without an alternative says nothing")

@@ -1,17 +1,17 @@
-"""What is looked at before an engine's parser is given a file: some parsers end their process over files that these checks refuse."""
+"""Checks of a file before an engine's parser gets it. Some parsers would end their process at files that fail these checks."""
 
 from __future__ import annotations
 
 from pathlib import Path
 from xml.parsers import expat
 
-DEEPEST = 500  # elements within each other: parsers that call themselves for each run out of stack
+DEEPEST = 500  # nested elements: recursive parsers run out of stack
 LARGEST = 10 << 20  # bytes
-MOST = 1000  # inclusions, a file counting as often as it is included
+MOST = 1000  # inclusions; a file counts as often as it is included
 
 
 def examined(path: Path) -> Path:
-    """Look at a file before an engine is given it.
+    """Check a file before an engine gets it.
 
     Parameters
     ----------
@@ -26,14 +26,14 @@ def examined(path: Path) -> Path:
     Raises
     ------
     ValueError
-        If no engine should be given the file: absent, too large, no XML, nested too deeply, or (MJCF) one that includes itself.
+        If the file is absent, too large, no XML or nested too deeply, or (MJCF) includes itself or too many files.
     """
     _examine(path, path.parent, [], [])
     return path
 
 
 def _examine(path: Path, folder: Path, above: list[Path], opened_before: list[Path]) -> None:
-    """Examine a file and those that it includes, whose names count from `folder`; what is absent there the engine will say."""
+    """Check a file and those that it includes, by their paths from `folder`. The engine reports included files that are absent."""
     if not path.is_file():
         raise ValueError(f"{path} is not a file")
     if path.stat().st_size > LARGEST:

@@ -1,4 +1,4 @@
-"""Frames of the protocol: one line of JSON, then the blocks of doubles that the line announces."""
+"""Frames of the protocol: one line of JSON, and then the blocks of doubles that it announces."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ def read_frame(stream: BinaryIO) -> Answer | None:
     Parameters
     ----------
     stream : BinaryIO
-        A stream that stands at the beginning of a frame.
+        A stream at the beginning of a frame.
 
     Returns
     -------
@@ -31,7 +31,7 @@ def read_frame(stream: BinaryIO) -> Answer | None:
     Raises
     ------
     ValueError
-        If the header is no JSON object, or a shape is none.
+        If the header is no JSON object, or a shape is not a list of sizes.
     EOFError
         If the stream ends within a block.
     """
@@ -60,9 +60,9 @@ def write_frame(stream: BinaryIO, header: Header, blocks: Blocks | None = None) 
     Parameters
     ----------
     stream : BinaryIO
-        Where the frame goes.
+        The stream that is written.
     header : dict
-        The header without its announcement of blocks, which is added.
+        The header without `blocks`, which is added.
     blocks : dict of str to ndarray, optional
         The blocks by name, of any shape.
     """

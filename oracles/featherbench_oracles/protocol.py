@@ -1,9 +1,10 @@
-"""What the protocol (PROTOCOL.md) says, without frames or any engine: quantities with their shapes, questions, and what an engine is."""
+"""The protocol (PROTOCOL.md) without frames: quantities with their shapes, questions, and the interface of an engine."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Any, Protocol
 
 import numpy as np
@@ -21,20 +22,20 @@ class Unsupported(Exception):  # noqa: N818 (no error: it is the protocol's answ
 
 @dataclass(frozen=True)
 class Question:
-    """One state in neutral coordinates, and the body that is asked about where the quantity is one body's.
+    """One state in neutral coordinates, and a body, for a quantity of one body.
 
     Attributes
     ----------
     q : ndarray, shape (nq,)
-        Coordinates, m, rad or quaternions.
+        Positions, m, rad or quaternions.
     v, a : ndarray, shape (nv,)
-        Velocities and accelerations, m/s or rad/s, and the same per second.
+        Velocities, m/s or rad/s; accelerations, m/s² or rad/s².
     tau : ndarray, shape (nv,)
         Forces of the joints, N or N m.
     wrench : ndarray, shape (bodies, 6)
-        Of each body [moment; force] in its axes at its origin, N m and N.
+        For each body [moment; force] in body axes at the body's origin, N m and N.
     probe : ndarray, shape (4, nv)
-        What M is multiplied by.
+        The vectors that M is multiplied by.
     body : int
         The index of the body.
     """
@@ -50,22 +51,22 @@ class Question:
 
 @dataclass(frozen=True)
 class Reading:
-    """What an engine holds of a file that its own parser read.
+    """What an engine holds after its own parser has read a file.
 
     Attributes
     ----------
     model : dict
         The description in its JSON form.
     description : Description
-        The same.
+        The same description.
     notes : list of dict
-        What the parser did to what (`reading.note`).
+        What the parser did, and to which link or joint (`reading.note`).
     robot : Any
         The engine's robot, in the description's coordinates.
     keyframes : dict of str to ndarray, shape (nq,)
         The file's keyframes by name.
     written : dict, optional
-        The description with the file's own inertias, where the engine refuses those and holds repaired ones.
+        The description with the file's own inertias, if the engine rejects those and holds repaired ones.
     """
 
     model: Header
@@ -80,16 +81,42 @@ class Robot(Protocol):
     """One robot, built through the engine's interface."""
 
     def readback(self) -> list[Array]:
-        """Tell what the engine holds of each body, by `readback_row`: for each body shape (22,)."""
+        """Read back what the engine holds.
+
+        Returns
+        -------
+        list of ndarray, shape (22,)
+            For each body a row of `readback_row`.
+        """
 
 
 Quantities = Mapping[str, Mapping[str, Callable[[Any, Question], Any]]]
 
 
 class Engine(Protocol):
-    """What an engine's module gives to `session.serve`.
+    """The interface of an engine, which `session.serve` takes. An engine that reads files is a `FileReader`.
 
-    An engine that reads files has a method `read(path, format, base) -> Reading` besides.
+    A function of `quantities` answers for one state, in neutral coordinates, with an array or a list of this shape:
+
+    ::
+
+        quantity             shape          unit            answer
+        id, id_wrench, bias  (nv,)          N or N m        forces of the joints, tau or h
+        mass_matrix          (nv, nv)       kg, kg m, kg m² both triangles of M
+        mass_matrix_sparse   (nv, nv)       kg, kg m, kg m² the same M; the session takes the stored entries
+        mass_matrix_probe    (6, nv)        kg, kg m, kg m² M x for the rows x of `probe`, the diagonal of M, its last row
+        fd                   (nv,)          m/s² or rad/s²  accelerations a = M^-1 (tau - h)
+        kinetic_energy       (1,)           J               v' M v / 2
+        potential_energy     (1,)           J               -Σ m g·c, zero at the world's origin
+        com                  (3,)           m               centre of mass in world axes
+        momentum             (6,)           kg m²/s, kg m/s [angular about the centre of mass; linear] in world axes
+        body_placement       (bodies, 12)   -, m            rotation from body to world axes, row by row, then the origin
+        body_velocity        (bodies, 6)    rad/s, m/s      [angular; linear] in world axes, of the body's origin
+        body_acceleration    (bodies, 6)    rad/s², m/s²    its time derivative (classical), without gravity
+        body_jacobian        (6, nv)        -, m            J of one body, with J v = its `body_velocity`
+        stored_entries       (1,)           -               how many numbers of M the engine stores
+
+    For kinetic_energy, potential_energy and stored_entries a plain number will do.
 
     Attributes
     ----------
@@ -98,7 +125,7 @@ class Engine(Protocol):
     build : dict of str to str
         What else its answers may depend on.
     quantities : mapping
-        Quantity -> method -> a function `(robot, question)` that answers for one state, in the shape of `SHAPES`.
+        Quantity -> method -> a function `(robot, question)`. The first method is the engine's usual one.
     """
 
     name: str
@@ -107,12 +134,51 @@ class Engine(Protocol):
     quantities: Quantities
 
     def prepare(self, description: Description) -> Robot:
-        """Build the robot.
+        """Build a robot through the engine's own interface, never through a file.
+
+        Parameters
+        ----------
+        description : Description
+            The robot.
+
+        Returns
+        -------
+        Robot
+            The same robot in the engine, at which the functions of `quantities` are asked.
 
         Raises
         ------
         Unsupported
-            If the engine cannot, with what it is that it cannot do.
+            If the engine cannot hold the robot; the message says why.
+        """
+
+
+class FileReader(Engine, Protocol):
+    """The interface of an engine that reads files."""
+
+    def read(self, path: Path, form: str, base: str) -> Reading:
+        """Read a file by the engine's own parser.
+
+        Parameters
+        ----------
+        path : Path
+            The file, which has passed the checks of `examination`.
+        form : str
+            `urdf` or `mjcf`.
+        base : str
+            `fixed` or `free`: whether the root of a URDF floats. An MJCF says itself what floats.
+
+        Returns
+        -------
+        Reading
+            What the engine holds of the file.
+
+        Raises
+        ------
+        Unsupported
+            If descriptions cannot hold what the engine read.
+        ValueError
+            If the engine rejects the file.
         """
 
 
@@ -137,12 +203,12 @@ SHAPES: dict[str, tuple[str | int, ...]] = {
 }
 
 
-# What is told of a robot as an engine read it: what does not ask for single bodies, nor counts masses that are fixed to the world.
+# The quantities of a robot read from a file: those that need no single bodies, and no masses that are fixed to the world.
 AS_READ = ("id", "bias", "mass_matrix", "mass_matrix_probe", "fd", "kinetic_energy")
 
 
 def readback_row(mass: float, com: Array, inertia: Array, rotation: Array, translation: Array) -> Array:
-    """Make one body's row of the answer to `prepare`.
+    """Write one body as a row of the answer to `prepare`.
 
     Parameters
     ----------

@@ -1,7 +1,10 @@
-"""What an engine holds of a file that its own parser read, as a description (PROTOCOL.md, "read"); knows no engine.
+"""The import: what an engine holds after its own parser has read a file, as a description (PROTOCOL.md, "read").
 
-An engine tells its links, each with the joints between it and its parent. `describe` takes a link's joints apart into a chain of bodies,
-merges links without a joint into their parents, leaving frames, and puts each body's origin at its joint.
+This module depends on no engine. An engine gives its links, each with the joints between it and its parent. `describe` makes a description:
+
+- a link with several joints becomes a chain of bodies;
+- a link without a joint is merged into its parent, and leaves a frame;
+- each body's origin is at its joint.
 """
 
 from __future__ import annotations
@@ -27,7 +30,7 @@ from featherbench_oracles.robot import JOINT_SIZES, WITH_AXIS
 
 @dataclass(frozen=True)
 class Place:
-    """A frame in another.
+    """The placement of an inner frame in an outer frame.
 
     Attributes
     ----------
@@ -41,7 +44,7 @@ class Place:
     translation: Array = field(default_factory=lambda: np.zeros(3))
 
     def __matmul__(self, inner: Place) -> Place:
-        """The place of `inner`, which is given in this frame, in the frame that this one is given in."""
+        """The placement of `inner` in the outer frame; `inner` is given in this frame."""
         return Place(self.rotation @ inner.rotation, self.rotation @ inner.translation + self.translation)
 
     def inverse(self) -> Place:
@@ -49,7 +52,7 @@ class Place:
         return Place(self.rotation.T, -(self.rotation.T @ self.translation))
 
     def identical(self) -> bool:
-        """Whether both frames are one, exactly."""
+        """Whether both frames are exactly the same."""
         return not self.translation.any() and bool((self.rotation == np.eye(3)).all())
 
     @classmethod
@@ -59,17 +62,17 @@ class Place:
         Parameters
         ----------
         placement : dict
-            With `rotation` and `translation`.
+            A placement with `rotation` and `translation`.
 
         Returns
         -------
         Place
-            The same.
+            The same placement.
         """
         return cls(np.reshape(placement["rotation"], (3, 3)), np.array(placement["translation"]))
 
     def json(self) -> Header:
-        """Write it as in a description; adding 0 makes -0 a 0."""
+        """Write the placement as in a description; adding 0 makes -0 a 0."""
         return {"rotation": (self.rotation.ravel() + 0.0).tolist(), "translation": (self.translation + 0.0).tolist()}
 
 
@@ -88,7 +91,7 @@ class HeldJoint:
     place : Place
         The joint's frame in the *link's* axes, from the link's origin.
     zero : float
-        The coordinate at which the link stands at its `place` in the parent (MJCF: `ref`), m or rad.
+        The coordinate at which the link is at its `place` in the parent (MJCF: `ref`), m or rad.
     dofs : dict of str to ndarray, shape (nv of the joint,)
         Armature, damping, friction and the limits that the engine holds; infinite limits are left out.
     """
@@ -104,9 +107,9 @@ class HeldJoint:
 
 @dataclass(frozen=True)
 class Link:
-    """A link.
+    """A link, with the joints between it and its parent.
 
-    Without joints it is fixed to its parent. With several, each moves what follows; all places are those of the zero configuration.
+    A link without joints is fixed to its parent. Of several joints each moves those that follow. All places are those at zero coordinates.
 
     Attributes
     ----------
@@ -123,7 +126,7 @@ class Link:
     place : Place
         The link in its parent.
     joints : sequence of HeldJoint
-        The joints between both, from the parent outwards.
+        The joints, from the parent outwards.
     """
 
     name: str
@@ -141,13 +144,13 @@ def note(cause: str, about: str | None, text: str, numbers: Sequence[float] = ()
     Parameters
     ----------
     cause : str
-        What the parser did, a word of PROTOCOL.md.
+        What the parser did: a word of PROTOCOL.md.
     about : str, optional
-        To which link or joint.
+        The link or joint.
     text : str
-        The same for a reader; line breaks become blanks.
+        A sentence for people. Line breaks become blanks.
     numbers : sequence of float
-        What PROTOCOL.md gives this cause.
+        The numbers that PROTOCOL.md defines for this cause.
 
     Returns
     -------
@@ -179,14 +182,14 @@ def inertial(mass: float, com: Array, inertia: Array) -> list[float]:
 
 
 def without_free_armature(links: Sequence[Link], notes: list[Header]) -> list[Link]:
-    """Take out the armature of free joints, which descriptions do not have, as engines mean different things by it.
+    """Take out the armature of free joints: engines disagree on its meaning, and descriptions do not have it.
 
     Parameters
     ----------
     links : sequence of Link
-        The links as they are held.
+        The links that the engine holds.
     notes : list of dict
-        Where it is told.
+        Gets a note for each such joint.
 
     Returns
     -------
@@ -206,7 +209,7 @@ def without_free_armature(links: Sequence[Link], notes: list[Header]) -> list[Li
 
 
 def listed(names: Sequence[str]) -> str:
-    """Write names for a sentence, of very many the first ten."""
+    """Write names for a sentence: all, or the first ten of more than twelve."""
     more = f" and {len(names) - 10} more" if len(names) > 12 else ""
     return ", ".join(names[: 10 if more else None]) + more
 
@@ -226,11 +229,11 @@ def describe(name: str, gravity: Array, links: Sequence[Link]) -> Header:
     Returns
     -------
     dict
-        The description in its JSON form, with a frame for each link that is no body.
+        The description in its JSON form, with a frame for each link that is not a body.
     """
     bodies: list[Header] = []
     frames: list[Header] = []
-    parts: list[list[tuple[float, Array, Array]]] = []  # what each body is made of
+    parts: list[list[tuple[float, Array, Array]]] = []  # the merged links of each body
     homes: list[tuple[int, Place]] = []  # the body of each link, and the link's place there
     for link in links:
         body, on_parent = homes[link.parent] if link.parent >= 0 else (-1, Place())
@@ -260,7 +263,7 @@ def describe(name: str, gravity: Array, links: Sequence[Link]) -> Header:
 def _gauge(joint: HeldJoint) -> tuple[Place, Array | None]:
     """Find the joint's frame in the link's, and its axis.
 
-    Where an axis says all, the frame has the link's axes, and where the axis may be anywhere, the link's origin.
+    A joint with an axis gets a frame with the link's axes. A prismatic joint's frame also has the link's origin.
     """
     if joint.type not in JOINT_SIZES:
         raise Unsupported(f"joint {joint.name} is of a type that descriptions do not have: {joint.type}")
@@ -293,12 +296,12 @@ def _joint(joint: HeldJoint, axis: Array | None, place: Place) -> Header:
 
 
 def merged(parts: Sequence[tuple[float, Array, Array]]) -> tuple[float, Array, Array]:
-    """Merge bodies that are given in one frame; a single one is returned as it is.
+    """Merge bodies that are given in one frame. A single one is returned unchanged.
 
     Parameters
     ----------
     parts : sequence of (float, ndarray, ndarray)
-        Of each its mass (kg), its centre of mass of shape (3,) (m), and its inertia about that of shape (3, 3) (kg m²).
+        For each its mass (kg), its centre of mass of shape (3,) (m), and its inertia about that point of shape (3, 3) (kg m²).
 
     Returns
     -------
@@ -318,7 +321,7 @@ def merged(parts: Sequence[tuple[float, Array, Array]]) -> tuple[float, Array, A
 
 
 def turned(w: float, x: float, y: float, z: float) -> Array:
-    """Turn a quaternion of any length into a rotation, by scalar operations in this order, each rounded once, none fused.
+    """Compute the rotation of a quaternion of any length, by scalar operations in this order, each rounded once, none fused.
 
     ::
 
@@ -327,7 +330,7 @@ def turned(w: float, x: float, y: float, z: float) -> Array:
         below it, at (1,0), (2,0), (2,1): (2 (x y + w z)) / n,  (2 (x z - w y)) / n,  (2 (y z + w x)) / n
         above it, at (0,1), (0,2), (1,2): (2 (x y - w z)) / n,  (2 (x z + w y)) / n,  (2 (y z - w x)) / n
 
-    Quarter turns are exact. A writer that wants a rotation back bit by bit can search quaternions with this.
+    Quarter turns are exact. A program that writes a file can search a quaternion that gives a rotation to the bit.
     """
     w, x, y, z = float(w), float(x), float(y), float(z)
     ww, xx, yy, zz = w * w, x * x, y * y, z * z
@@ -341,11 +344,11 @@ def turned(w: float, x: float, y: float, z: float) -> Array:
     )
 
 
-# ---- the file and the parser's words ---------------------------------------------------------------------------------------------
+# ---- the file, and what the parser prints --------------------------------------------------------------------------------------------
 
 
 def elements(path: Path, tag: str) -> Iterator[ElementTree.Element]:
-    """Find the elements of a tag in a file (not in files that it includes), for what an engine does not tell of what it left out.
+    """Find the elements of a tag in a file, but not in files that it includes. They show what an engine left out.
 
     Parameters
     ----------
@@ -363,7 +366,7 @@ def elements(path: Path, tag: str) -> Iterator[ElementTree.Element]:
 
 
 def mentioned(path: Path) -> list[Header]:
-    """Note what stands in an MJCF besides bodies and joints, for an engine that does not tell what it made of it.
+    """Note what an MJCF has besides bodies and joints, for an engine that does not tell what it made of this.
 
     Parameters
     ----------
@@ -373,7 +376,7 @@ def mentioned(path: Path) -> list[Header]:
     Returns
     -------
     list of dict
-        A note for each kind that there is.
+        A note for each kind in the file.
     """
     kinds = ("contact", "tendon", "actuator", "equality", "sensor", "keyframe")
     counts = {kind: sum(len(section) for section in ElementTree.parse(path).getroot().findall(kind)) for kind in kinds}
@@ -385,10 +388,10 @@ _COLOURS = re.compile(r"\x1b\[[0-9;]*[A-Za-z]")  # the escape sequences of termi
 
 @contextmanager
 def overheard(path: Path, notes: list[Header]) -> Iterator[None]:
-    """Add what an engine prints meanwhile to the notes as `warning`, one for each line that begins a message.
+    """Add each message that an engine prints in this context to the notes, as `warning`.
 
-    The standard error has it as well. Of the file's path only the name is told. A failure meanwhile is told with the errors that the engine
-    printed: libraries that refuse a file print why, and the exception says only that they did.
+    Standard error gets the messages as well. In the notes the file's path is shortened to its name. An exception is raised again with the
+    errors that the engine printed: a library that rejects a file prints the reason, and its exception does not have it.
     """
     kept = [(number, os.dup(number)) for number in (1, 2)]
     failure: Exception | None = None
@@ -416,13 +419,13 @@ def overheard(path: Path, notes: list[Header]) -> Iterator[None]:
             notes.extend(note("warning", None, message) for message in dict.fromkeys(messages))
     if failure is not None:
         said = errors(notes)
-        # What is not offered stays that, whatever was printed on the way.
+        # What is not offered stays so, whatever the engine printed.
         told = failure if isinstance(failure, Unsupported) or not said else ValueError(f"{failure} It prints: {said}")
         raise told
 
 
 def errors(notes: Sequence[Header]) -> str:
-    """Collect what an engine printed as errors, without the places in its own sources.
+    """Collect the errors that an engine printed, without the positions in its own sources.
 
     Parameters
     ----------

@@ -1,6 +1,6 @@
 """Evaluates a reproduction of a known deviation over seeds, through the frames of PROTOCOL.md.
 
-The request `{"op":"reproduce","name":NAME,"seeds":n}` is answered by a block `value` of shape (n,): the deviation for the seeds 0..n-1.
+The answer to the request `{"op":"reproduce","name":NAME,"seeds":n}` is a block `value` of shape (n,): the deviation for the seeds 0..n-1.
 NAME is `ENGINE_SHORT` for the module `featherbench_oracles.ENGINE.reproductions.SHORT`.
 """
 
@@ -28,7 +28,7 @@ def reproduction(name: str) -> Callable[[int], float]:
     Returns
     -------
     callable
-        Its function `deviation`, which takes a seed to the size of the deviation.
+        Its function `deviation`: seed -> size of the deviation.
     """
     engine, _, short = name.partition("_")
     found: Callable[[int], float] = importlib.import_module(f"featherbench_oracles.{engine}.reproductions.{short}").deviation
@@ -36,7 +36,7 @@ def reproduction(name: str) -> Callable[[int], float]:
 
 
 def main() -> None:
-    """Answer until the standard input ends; whatever an engine prints goes to the standard error."""
+    """Answer until standard input ends. What an engine prints goes to standard error."""
     answers = os.fdopen(os.dup(1), "wb")
     os.dup2(2, 1)
     while (request := read_frame(sys.stdin.buffer)) is not None:

@@ -1,4 +1,4 @@
-"""The description of a robot (PROTOCOL.md, "The description"): joints, bodies, and the reading of its JSON form."""
+"""The description of a robot (PROTOCOL.md, "The description"): joints, bodies, and its JSON form."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ WITH_AXIS = ("revolute", "prismatic", "helical", "cylindrical")
 
 @dataclass(frozen=True)
 class Joint:
-    """A joint. Its damping and dry friction take part in nothing, and are not kept.
+    """A joint. Damping and dry friction are not kept, because no quantity includes them.
 
     Attributes
     ----------
@@ -92,7 +92,7 @@ class Body:
 
 @dataclass(frozen=True)
 class Description:
-    """A robot: bodies in depth-first order, body i being the child of joint i.
+    """A robot: bodies in depth-first order. Body i is the child of joint i.
 
     Attributes
     ----------
@@ -129,7 +129,7 @@ class Description:
         Raises
         ------
         ValueError, KeyError
-            If something is malformed, which is named.
+            If something is malformed; the message names it.
         """
         if data["format"] != 1:
             raise ValueError(f"description format {data['format']} is not 1")
@@ -150,7 +150,7 @@ class Description:
         return cls(data["name"], _numbers(data["gravity"], (3,), "gravity"), tuple(bodies), nq, nv)
 
     def tree_sparse(self) -> tuple[list[int], list[int]]:
-        """List what the tree-sparse layout holds of M: for each dof the entries with those from the root to it.
+        """List the entries of M in the tree-sparse layout: row i holds those of the dofs from the root to i.
 
         Returns
         -------
@@ -190,7 +190,7 @@ def _read_joint(data: Mapping[str, Any], nq: int, nv: int) -> Joint:
 
 
 def _numbers(value: Any, shape: tuple[int, ...], what: str) -> Array:
-    """Make an array of finite numbers of `value`, which has that shape."""
+    """Make an array of that shape of `value`, whose numbers must be finite."""
     array = np.asarray(value, dtype=np.float64)
     if array.shape != shape or not np.isfinite(array).all():
         raise ValueError(f"{what}: expected {math.prod(shape)} finite number(s)")

@@ -1,7 +1,7 @@
-"""The main loop of an oracle: requests come in frames, are answered by an engine, and go back in frames.
+"""The main loop of an oracle: it reads a request, asks the engine, and writes the answer.
 
-Every answer is computed for one state at a time, by a function `(robot, question) -> numbers` from the engine's table
-`quantities[quantity][method]`.
+Every answer is computed for one state at a time. A function `(robot, question) -> numbers` of the engine's table
+`quantities[quantity][method]` computes it.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ class Session:
     Parameters
     ----------
     engine : Engine
-        Who answers.
+        The engine that answers.
     """
 
     def __init__(self, engine: Engine) -> None:
@@ -38,7 +38,7 @@ class Session:
         self.states: Blocks | None = None
         self.as_read = False
         self.nothing: Any = None
-        self.stream: tuple[Any, Stream] | None = None  # what was timed last, and by what it is known
+        self.stream: tuple[Any, Stream] | None = None  # what was timed last: its key, and its calls
 
     def answer(self, header: Header, blocks: Blocks) -> Answer:
         """Answer one request.
@@ -75,7 +75,7 @@ class Session:
         return operations[header["op"]](header, blocks)
 
     def hello(self, _header: Header, _blocks: Blocks) -> Answer:
-        """Tell who answers, and by which methods."""
+        """Name the engine and its methods."""
         engine = self.engine
         methods = {quantity: list(by_method) for quantity, by_method in engine.quantities.items()}
         hello = {"protocol": PROTOCOL, "engine": engine.name, "version": engine.version, "build": engine.build, "methods": methods}
@@ -94,7 +94,7 @@ class Session:
         return {"nq": description.nq, "nv": description.nv}, {"readback": readback}
 
     def read(self, header: Header, _blocks: Blocks) -> Answer:
-        """Have the engine's own parser read a file, and tell what the engine then holds; block `keyframes` of shape (keyframes, nq)."""
+        """Read a file by the engine's own parser, and tell what the engine then holds: block `keyframes` of shape (keyframes, nq)."""
         self._forget()
         self.as_read = True
         form, base = header["format"], header.get("base", "fixed")
@@ -113,7 +113,7 @@ class Session:
         return {**answer, "keyframes": list(reading.keyframes)}, {"keyframes": np.array(list(reading.keyframes.values()))}
 
     def set_states(self, header: Header, blocks: Blocks) -> Answer:
-        """Keep the states for the evaluations to come."""
+        """Keep the states for later evaluations."""
         if self.description is None:
             raise ValueError("no model was prepared")
         self.states = self.stream = None
@@ -158,11 +158,11 @@ class Session:
         return {"nanoseconds": nanoseconds, "overhead": overhead}, {}
 
     def _forget(self) -> None:
-        """Drop the robot before."""
+        """Forget the robot and its states."""
         self.description = self.robot = self.states = self.stream = None
 
     def _asked(self, header: Header) -> tuple[Callable[[Any, Question], Any], Description, Blocks, int]:
-        """Find the method that is asked for, the robot, its states and the body, if all is there."""
+        """Find the method, the robot, its states and the body of a request, if all are there."""
         quantity, method = header["quantity"], header["method"]
         if method not in self.engine.quantities.get(quantity, {}):
             raise Unsupported(f"{self.engine.name} offers no method {method} for {quantity}")
@@ -183,12 +183,12 @@ def _question(states: Blocks, k: int, body: int) -> Question:
 
 
 def serve(engine: Engine) -> None:
-    """Answer requests until the standard input ends. Whatever an engine prints itself goes to the standard error.
+    """Answer requests until standard input ends. What an engine prints goes to standard error.
 
     Parameters
     ----------
     engine : Engine
-        Who answers.
+        The engine that answers.
     """
     answers = os.fdopen(os.dup(1), "wb")
     os.dup2(2, 1)
@@ -213,6 +213,6 @@ def serve(engine: Engine) -> None:
 
 
 def _sentence(reason: Exception) -> str:
-    """Tell the exception in one line."""
+    """Write the exception in one line."""
     text = " ".join(str(reason).split()) or "no message"
     return text if isinstance(reason, (Unsupported, ValueError)) else f"{type(reason).__name__}: {text}"

@@ -1,6 +1,7 @@
-/* Between neutral coordinates and an engine's (e): v_e = T v, a_e = T a + b, tau_e = T tau, where T is the identity but for orthogonal 3×3
- * blocks. Everything returns by T': tau = T' tau_e, M = T' M_e T, a = T' (a_e - b), J = J_e T. Matrices are row-major. Nothing here is
- * timed.
+/* Between neutral coordinates and an engine's (e). T is the identity but for orthogonal 3×3 blocks. Matrices are row-major. Not timed.
+ *
+ *   v_e = T v, a_e = T a + b, tau_e = T tau
+ *   a = T' (a_e - b), tau = T' tau_e, M = T' M_e T, J = J_e T
  */
 #ifndef FEATHERBENCH_COORDINATES_H
 #define FEATHERBENCH_COORDINATES_H
@@ -88,8 +89,8 @@ static inline void fb_tree_sparse(size_t n, const int32_t *dof_parent, const dou
   }
 }
 
-/* Factors M_e = L'DL (L below the diagonal, D on it) to those of M, tree-sparse. Factors do not turn like M: where T is not the identity
- * they are multiplied, the product is carried over and factored again, by the book's table 6.3 without its sparsity. */
+/* Factors M_e = L'DL (L below the diagonal, D on it) to those of M, tree-sparse. Factors do not change like M. Where T is not the
+ * identity, they are multiplied; the product is converted and factored again, by the book's table 6.3 without its sparsity. */
 static inline void fb_factors_to_neutral(struct fb_change change, size_t n, const int32_t *dof_parent, double *factors, double *work,
                                          double *sparse) {
   if (change.count == 0) {

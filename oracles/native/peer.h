@@ -1,10 +1,10 @@
-/* A peer: an engine as a native library, behind one C interface, so that its loops can be timed beside ours.
+/* A native oracle (here: a peer): an engine as a library behind one C interface, so that its loops can be timed beside ours.
  *
  * A library exports one function, `featherbench_peer`, which answers a table of functions. The program loads it in a child process
- * (`featherbench peer LIBRARY`), where it may crash or take too much memory without harm. README.md says how to add one.
+ * (`featherbench peer LIBRARY`), where it may crash or take too much memory without effect on the run. README.md says how to add one.
  *
- * Coordinates: robots and states come, and values go, in the neutral coordinates of CONVENTIONS.md; quantities, methods and the shapes of
- * values are those of oracles/PROTOCOL.md. A peer converts states in `states` and values in `read`; `run`, and nothing else, is timed.
+ * Coordinates: robots, states and values are in the neutral coordinates of CONVENTIONS.md. Quantities, methods and the shapes of values are
+ * those of oracles/PROTOCOL.md. A peer converts states in `states` and values in `read`. Only `run` is timed.
  */
 #ifndef FEATHERBENCH_PEER_H
 #define FEATHERBENCH_PEER_H
@@ -16,13 +16,13 @@
 extern "C" {
 #endif
 
-/* The version of this interface: a library of another one is refused. */
+/* The version of this interface. A library of another version is not loaded. */
 #define FEATHERBENCH_PEER_VERSION 1
 
 /* Room for a reason, its terminating zero included. */
 #define FB_REASON 512
 
-/* What became of a call. Of the last two the reason tells more, in one sentence. */
+/* The result of a call. The last two come with a reason, one sentence. */
 enum { FB_OK = 0, FB_UNSUPPORTED = 1, FB_FAILED = 2 };
 
 /* Joint types of the description. */
@@ -64,7 +64,7 @@ struct fb_method {
 /* A robot in an engine, with its states. Each library has its own. */
 struct fb_handle;
 
-/* What a library answers. Everything that a caller passes is the caller's, and is valid during the call only. */
+/* The table of a library. Everything that a caller passes belongs to the caller, and is valid during the call only. */
 struct fb_peer {
   uint32_t version; /* FEATHERBENCH_PEER_VERSION */
   const char *engine;
@@ -80,12 +80,12 @@ struct fb_peer {
   /* Takes a batch of states and converts it to the engine's coordinates. */
   int (*states)(struct fb_handle *handle, const struct fb_states *states, char *reason);
 
-  /* Makes what a method starts from: for `factorization` and `solve` mass matrices and factors of the states. `body` is the body of a
+  /* Prepares a method: for `factorization` and `solve` it computes the mass matrices and factors of the states. `body` is the body of a
    * body Jacobian. Called before `run`, and again after `states`. */
   int (*ready)(struct fb_handle *handle, size_t method, size_t body, char *reason);
 
-  /* Evaluates `count` states from `first` on, one after the other; beyond the end of the batch they begin again. From the engine's
-   * q, v, a and tau to the result in the engine's own storage; no state uses a result of another. */
+  /* Evaluates `count` states from `first` on, one after the other. Beyond the end of the batch they begin again. The input is the engine's
+   * q, v, a and tau; the result is in the engine's own storage. No state uses a result of another. */
   int (*run)(struct fb_handle *handle, size_t method, size_t first, size_t count, char *reason);
 
   /* The value of the last state that `run` evaluated by this method, in neutral coordinates. */

@@ -1,7 +1,7 @@
-/* A pendulum as a peer: the smallest engine there is, for one revolute joint on the world. It shows what a peer has to do, and lets the tests
- * reach everything around a peer without an installed engine. Compiled with FB_FAULTS it also has methods that crash, hang and take memory.
+/* A pendulum as a native oracle, the smallest engine: one revolute joint on the world. It shows what a native oracle has to do. With it the tests
+ * need no installed engine. Compiled with FB_FAULTS it also has methods that crash, hang and take memory.
  *
- * With ẑ the axis, c the centre of mass seen from the joint and g gravity in joint axes: M = ẑ'(I + m(|c|² 1 - cc'))ẑ + armature, and
+ * With ẑ the axis, c the centre of mass from the joint's origin and g gravity in joint axes: M = ẑ'(I + m(|c|² 1 - cc'))ẑ + armature, and
  * h = -m (ẑ × R c)·g with R the rotation about ẑ by q. There is no velocity in h.
  */
 #include "coordinates.h"

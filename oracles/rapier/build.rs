@@ -1,4 +1,4 @@
-//! Passes on what the program tells of itself: the version of rapier that the lock file holds, and the compiler's.
+//! Sets what `hello` tells: the version of rapier in the lock file, and that of the compiler.
 
 use std::process::Command;
 

@@ -1,4 +1,4 @@
-"""What all tests share: the oracles' processes, and what happens where an engine is not installed."""
+"""Shared by all tests: the oracles' processes, and the skip of an engine that is not installed."""
 
 from __future__ import annotations
 
@@ -26,13 +26,13 @@ def require(engine: str) -> None:
 
 
 class Oracles:
-    """The engines' oracles, each started when it is first asked for, and again once it has ended."""
+    """The engines' oracles. Each is started when it is first needed, and again if it has ended."""
 
     def __init__(self) -> None:
         self.running: dict[str, Oracle] = {}
 
     def __getitem__(self, engine: str) -> Oracle:
-        """Find the oracle of an engine, which has to be installed."""
+        """Return the oracle of an engine, which has to be installed."""
         require(engine)
         oracle = self.running.get(engine)
         if oracle is None or oracle.process.poll() is not None:
@@ -48,7 +48,7 @@ class Oracles:
 
 @pytest.fixture(scope="session")
 def oracles() -> Iterator[Oracles]:
-    """Give the oracles, and end them behind the last test."""
+    """Provide the oracles, and end them after the last test."""
     running = Oracles()
     yield running
     running.end()

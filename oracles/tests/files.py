@@ -1,4 +1,4 @@
-"""Small files of robots, in which every number can be told from the others."""
+"""Small files of robots, in which every number differs from the others."""
 
 from __future__ import annotations
 

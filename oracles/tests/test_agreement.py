@@ -22,13 +22,13 @@ from .trials import TRIALS, Answered
 
 PAIRS = [(number, engine) for number, trial in enumerate(TRIALS) for engine in trial.engines]
 QUANTITIES = [quantity for quantity in SHAPES if quantity not in ("body_jacobian", "stored_entries", "mass_matrix_sparse")]
-# Quantities whose derivatives by time are held to other quantities. The rates of a fast state are too large for finite differences.
+# Quantities whose derivatives by time are compared with other quantities. The rates of a fast state are too large for finite differences.
 KEPT = slice(None, -1)
 
 
 @pytest.fixture(scope="module")
 def kept() -> dict[tuple[int, str], Answered]:
-    """Keep the answers about the last robot, for the engines that are held against the first one."""
+    """Keep the answers about the last robot, for the engines that are compared with the first one."""
     return {}
 
 
@@ -56,13 +56,13 @@ def answered(oracles: Oracles, kept: dict[tuple[int, str], Answered], pair: tupl
 
 @pytest.fixture(scope="module")
 def agreed(oracles: Oracles, kept: dict[tuple[int, str], Answered], pair: tuple[int, str]) -> Blocks:
-    """Give the answers of the engine that the others are held against."""
+    """Give the answers of the engine that the others are compared with."""
     return _answers(oracles, kept, pair[0], TRIALS[pair[0]].engines[0]).first
 
 
 @pytest.fixture(scope="module")
 def slow(answered: Answered) -> tuple[Blocks, Blocks]:
-    """Give states and answers without the fast state, which finite differences do not follow."""
+    """Give states and answers without the fast state, whose rates are too large for finite differences."""
     states = {key: value if key == "probe" else value[KEPT] for key, value in answered.states.items()}
     return states, {key: value[KEPT] for key, value in answered.first.items()}
 
@@ -76,27 +76,27 @@ def _asked(answered: Answered, quantity: str) -> Callable[[Blocks], Array]:
 
 
 def test_readback_of_mass_and_com(answered: Answered) -> None:
-    """Mass and centre of mass come back; MuJoCo's and DART's frames may cost an ulp."""
+    """Mass and centre of mass are read back; MuJoCo's and DART's frames may cost an ulp."""
     for body, row in zip(answered.robot.bodies, answered.readback, strict=True):
         assert ratio(row[:4] - np.append(body.mass, body.com)) <= within(1e-15)
 
 
 def test_readback_of_inertia(answered: Answered) -> None:
-    """The inertia comes back; principal axes and other reference points cost some ulps of the inertia about the origin."""
+    """The inertia is read back; principal axes and other reference points cost some ulps of the inertia about the origin."""
     for body, row in zip(answered.robot.bodies, answered.readback, strict=True):
         size = np.trace(body.inertia) + body.mass * body.com @ body.com
         assert ratio(row[4:10] - body.inertia[np.triu_indices(3)], size) <= within(4e-15)
 
 
 def test_readback_of_placement(answered: Answered) -> None:
-    """The joint's placement comes back; a quaternion costs some ulps."""
+    """The joint's placement is read back; a quaternion costs some ulps."""
     for body, row in zip(answered.robot.bodies, answered.readback, strict=True):
         place = np.append(body.joint.rotation.ravel(), body.joint.translation)
         assert ratio(row[10:] - place) <= within(4e-15)
 
 
 def _stored_entries(robot: Description) -> int:
-    """Count n + Σ (d_k - 1) = Σ d_k: each dof has an entry with itself and each dof that it hangs on."""
+    """Count n + Σ (d_k - 1) = Σ d_k: each dof has an entry with itself and with each of its ancestors."""
     depths: list[int] = []
     total = 0
     for body in robot.bodies:
@@ -108,13 +108,13 @@ def _stored_entries(robot: Description) -> int:
 
 
 def test_stored_entries(answered: Answered) -> None:
-    """The count of stored numbers of M is that of the tree."""
+    """The number of stored entries of M is that of the tree."""
     for method in answered.methods.get("stored_entries", []):
         assert (answered.values["stored_entries", method] == _stored_entries(answered.robot)).all()
 
 
 def test_sparse_mass_matrix(answered: Answered) -> None:
-    """M in the tree-sparse layout has as many entries as the tree, and they are those of M to the bit."""
+    """The number of entries of M in the tree-sparse layout is that of the tree, and they are those of M to the bit."""
     rows, columns = answered.robot.tree_sparse()
     assert len(rows) == _stored_entries(answered.robot)
     for method in answered.methods.get("mass_matrix_sparse", []):
@@ -126,14 +126,14 @@ def test_sparse_mass_matrix(answered: Answered) -> None:
 
 @pytest.mark.parametrize("quantity", QUANTITIES)
 def test_engines_agree(answered: Answered, agreed: Blocks, quantity: str) -> None:
-    """Every method answers as the first method of the first engine: sums in other orders lose a few digits."""
+    """Every method gives the answer of the first method of the first engine. Sums in other orders lose a few digits."""
     for method in answered.methods[quantity]:
         gap = residual(quantity, answered.values[quantity, method], agreed[quantity], answered.reference)
         assert gap <= EXACT, method
 
 
 def test_newton_and_euler(answered: Answered) -> None:
-    """Inverse dynamics is what Newton's and Euler's equations make of the engine's own kinematics."""
+    """Inverse dynamics is the result of Newton's and Euler's equations with the engine's own kinematics."""
     assert residual("id", answered.first["id"], answered.reference.id, answered.reference) <= EXACT
 
 
@@ -182,7 +182,7 @@ def test_jacobians_give_body_velocities(answered: Answered) -> None:
 
 
 def test_wrenches_act_by_jacobians(answered: Answered) -> None:
-    """Wrenches in body axes take Σ J' f off inverse dynamics."""
+    """Wrenches f in body axes change inverse dynamics by -Σ J' f."""
     x = answered.first
     for k, wrench in enumerate(answered.states["wrench"]):
         r = x["body_placement"][k, :, :9].reshape(-1, 3, 3)
@@ -192,7 +192,7 @@ def test_wrenches_act_by_jacobians(answered: Answered) -> None:
 
 
 def test_probe_is_of_the_mass_matrix(answered: Answered) -> None:
-    """The probe is products with M, its diagonal and its last row."""
+    """The probe is the products with M, its diagonal and its last row."""
     x = answered.first
     for k, m in enumerate(x["mass_matrix"]):
         d = np.sqrt(np.diag(m))
@@ -212,7 +212,7 @@ def test_bias_is_inverse_dynamics_without_acceleration(answered: Answered) -> No
 
 
 def test_inverse_undoes_forward_dynamics(answered: Answered) -> None:
-    """Inverse dynamics of the accelerations of forward dynamics is tau; an explicit inverse of M loses its condition."""
+    """Inverse dynamics of the accelerations of forward dynamics is tau; an explicit inverse of M loses its condition number."""
     for method in answered.methods["fd"]:
         driven = {**answered.states, "a": answered.at(answered.states, "fd", method)}
         for k, tau in enumerate(_asked(answered, "id")(driven)):
@@ -246,7 +246,7 @@ def test_linear_momentum_is_that_of_the_centre_of_mass(answered: Answered, slow:
 
 
 def test_energy_changes_by_power(answered: Answered, slow: tuple[Blocks, Blocks]) -> None:
-    """The derivative of the energy under forward dynamics is tau·v; energies are larger than their changes, which costs two digits."""
+    """The derivative of the energy under forward dynamics is tau·v. Energies are larger than their changes, which costs two digits."""
     states, x = slow
     driven = {**states, "a": x["fd"]}
     kinetic, potential = (derivative(answered.robot, driven, _asked(answered, f"{kind}_energy")) for kind in ("kinetic", "potential"))

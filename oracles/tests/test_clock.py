@@ -1,4 +1,4 @@
-"""Times that an oracle tells of its engine's own calls."""
+"""Times of an engine's own calls, measured by its oracle."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from .conftest import Oracles
 from .test_session import status_of
 
 ESTIMATING = ("drake", "dart")
-# quantity and method of what both time, seven each
+# quantities and methods that the two engines time, seven each
 TIMED = {
     "drake": [
         ("id", "inverse_dynamics"),
@@ -47,7 +47,7 @@ CLOCK: Header = {"op": "clock", "first": 20, "count": 25, "body": 25}
 
 
 class Ticks:
-    """A clock that goes on when a call says so, and by 50 ns whenever it is read."""
+    """A clock that a call sets forward. Each reading sets it forward by 50 ns."""
 
     def __init__(self) -> None:
         self.now = 0
@@ -59,7 +59,7 @@ class Ticks:
 
 
 class Waiting:
-    """A robot whose only call takes as long as it is told, by this clock."""
+    """A robot whose only call takes a given time, by this clock."""
 
     def __init__(self, ticks: Ticks, nanoseconds: int) -> None:
         self.ticks, self.nanoseconds = ticks, nanoseconds
@@ -83,7 +83,7 @@ WAIT = Calls("q v", Waiting.wait)
 
 
 def test_overhead_is_subtracted() -> None:
-    """Of 60 µs the 20 µs on a robot without bodies are subtracted, 20 times; the loop holds one reading of the clock."""
+    """From 60 µs the 20 µs on a robot without bodies are subtracted, 20 times. The loop holds one call of the clock."""
     ticks = Ticks()
     stream = Stream(WAIT, Waiting(ticks, 60_000), Waiting(ticks, 20_000), [ASK, ASK], ticks)
     nanoseconds, overhead = stream.time(1, 20)
@@ -92,7 +92,7 @@ def test_overhead_is_subtracted() -> None:
 
 
 def test_no_time_below_nothing() -> None:
-    """Where calling takes as long as what was measured, there is no estimate."""
+    """If the overhead is as long as the measured time, there is no estimate."""
     ticks = Ticks()
     stream = Stream(WAIT, Waiting(ticks, 20_000), Waiting(ticks, 60_000), [ASK], ticks)
     with pytest.raises(ValueError, match="nothing is left"):
@@ -110,7 +110,7 @@ def test_what_is_timed_is_told(oracles: Oracles, engine: str) -> None:
 
 @pytest.mark.parametrize("engine", ENGINES)
 def test_what_is_not_timed_is_unsupported(oracles: Oracles, engine: str) -> None:
-    """Without states a time is an error, and a method that is more than calls of the engine has none."""
+    """Without states a time is an error. A method that is more than calls of the engine has no time."""
     oracle = oracles[engine]
     clock = {**CLOCK, "quantity": "momentum", "method": oracle.methods()["momentum"][0]}
     oracle.must({"op": "prepare", "model": MODEL})
@@ -120,7 +120,7 @@ def test_what_is_not_timed_is_unsupported(oracles: Oracles, engine: str) -> None
 
 
 def _timed(oracle: Oracle, asked: Header) -> tuple[float, float]:
-    """Time a call and its overhead in nanoseconds, of the block that was interrupted least by other processes."""
+    """Time a call and its overhead in nanoseconds. The shortest block counts, as other processes interrupted it least."""
     answers = [oracle.must(asked)[0] for _ in range(25)]
     least = min(answers, key=lambda answer: answer["nanoseconds"] + answer["overhead"])
     return least["nanoseconds"] / asked["count"], least["overhead"] / asked["count"]
@@ -128,9 +128,9 @@ def _timed(oracle: Oracle, asked: Header) -> tuple[float, float]:
 
 @pytest.mark.parametrize(("engine", "quantity", "method"), [(e, *pair) for e in ESTIMATING for pair in TIMED[e]])
 def test_time_of_calls(oracles: Oracles, engine: str, quantity: str, method: str) -> None:
-    """A call takes some time and has some overhead; it answers the same behind the clock, and is computed again for the same state.
+    """A call takes some time and has some overhead. Timing does not change its answer, and the same state is computed again.
 
-    Between a stream and one state again and again there may be a factor of 2.5: caches make one state faster, but not for nothing.
+    A stream and one repeated state may differ by a factor of 2.5, because caches make one state faster.
     """
     oracle, asked = oracles[engine], {**CLOCK, "quantity": quantity, "method": method}
     evaluate = {**asked, "op": "evaluate", "first": 0, "count": COUNT}

@@ -1,7 +1,7 @@
 """The conventions of the engines, asked of the engines themselves: the rows of conventions.toml.
 
-Nothing here goes through our oracles. `featherbench_oracles.ENGINE.conventions` says what is measured, what it is by the convention, and
-what it would be otherwise. A test fails where the convention does not hold, and also where the two could not be told apart.
+Nothing here goes through our oracles. `featherbench_oracles.ENGINE.conventions` gives the measured numbers, those of the convention and
+those of its alternatives. A test fails if the convention does not hold, and also if an alternative holds as well.
 """
 
 from __future__ import annotations
@@ -38,7 +38,7 @@ def test_convention_holds(row: dict[str, str]) -> None:
 
 @of_each_row
 def test_alternative_is_refuted(row: dict[str, str]) -> None:
-    """A claim of the alternative in place of the convention is refuted, each of them by itself."""
+    """A claim of an alternative in place of the convention is refuted, for each claim by itself."""
     asked = claims(row)
     assert asked, "it asks nothing"
     assert all(one.swapped().refutation() is not None for one in asked)

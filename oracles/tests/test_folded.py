@@ -1,4 +1,4 @@
-"""Chains of massless bodies in one another's axes are one body with several joints in MuJoCo, which then lacks them as bodies."""
+"""Chains of massless bodies with the same axes are one body with several joints in MuJoCo. It then lacks them as bodies."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ RNG = np.random.default_rng(11)
 
 
 def _folded() -> Header:
-    """Draw a robot of which five bodies are nothing but joints."""
+    """Draw a robot with five bodies that are only joints."""
     kinds = ["free", "revolute", "prismatic", "revolute", "universal", "prismatic", "revolute", "planar", "revolute"]
     model = random_robot(RNG, "folded", [*kinds, "prismatic", "spherical"])
     for i, body in enumerate(model["bodies"]):
@@ -55,7 +55,7 @@ def readback(oracles: Oracles) -> Array:
 
 
 def test_readback(readback: Array) -> None:
-    """MuJoCo holds all bodies and all joints' places; massless bodies come back without mass."""
+    """MuJoCo holds all bodies and all joints' placements. Massless bodies are read back without mass."""
     for body, row in zip(ROBOT.bodies, readback, strict=True):
         size = np.trace(body.inertia) + body.mass * body.com @ body.com
         assert ratio(row[:4] - np.append(body.mass, body.com)) <= within(1e-15)
@@ -66,7 +66,7 @@ def test_readback(readback: Array) -> None:
 
 @pytest.mark.parametrize("quantity", ["mass_matrix", "id", "bias", "fd", "kinetic_energy", "potential_energy", "com", "momentum"])
 def test_quantity_is_pinocchios(oracles: Oracles, quantity: str) -> None:
-    """MuJoCo answers by each method as Pinocchio, whose last method of kinetic energy is the right one."""
+    """MuJoCo gives Pinocchio's answer by each method. Pinocchio's last method of kinetic energy is the right one."""
     mujoco, pinocchio = oracles["mujoco"], oracles["pinocchio"]
     for oracle in (mujoco, pinocchio):
         oracle.must(PREPARE)
@@ -79,7 +79,7 @@ def test_quantity_is_pinocchios(oracles: Oracles, quantity: str) -> None:
 
 
 def _jacobian(oracle: Oracle) -> Array:
-    """Ask for the Jacobian of a body behind folded ones."""
+    """Ask for the Jacobian of a body after folded ones."""
     oracle.must(PREPARE)
     oracle.must({"op": "states", "count": COUNT}, STATES)
     return oracle.value("body_jacobian", oracle.methods()["body_jacobian"][0], COUNT, 8)
@@ -92,7 +92,7 @@ def test_jacobian_is_pinocchios(oracles: Oracles) -> None:
 
 @pytest.mark.parametrize("quantity", ["id_wrench", "body_placement", "body_velocity", "body_acceleration", "body_jacobian"])
 def test_folded_body_has_no_answer(oracles: Oracles, quantity: str) -> None:
-    """What asks for a body that MuJoCo does not have is unsupported."""
+    """A quantity of a body that MuJoCo does not have is unsupported."""
     mujoco = oracles["mujoco"]
     mujoco.must(PREPARE)
     mujoco.must({"op": "states", "count": COUNT}, STATES)
@@ -101,5 +101,5 @@ def test_folded_body_has_no_answer(oracles: Oracles, quantity: str) -> None:
 
 
 def test_skew_axes_are_not_folded(oracles: Oracles) -> None:
-    """A massless body in other axes than its child's is refused."""
+    """A massless body with other axes than its child's is unsupported."""
     assert status_of(oracles["mujoco"].ask({"op": "prepare", "model": SKEW})) == "unsupported"

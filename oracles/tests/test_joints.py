@@ -1,4 +1,4 @@
-"""Each joint alone moves its body as its closed form says; `test_agreement` holds the rates to the same form."""
+"""Each joint alone moves its body by its closed form. `test_agreement` tests the rates."""
 
 from __future__ import annotations
 
@@ -33,14 +33,14 @@ DRAWN = _drawn()
 @pytest.mark.parametrize("kind", JOINT_SIZES)
 @pytest.mark.parametrize("engine", ENGINES)
 def test_joint_is_offered(oracles: Oracles, engine: str, kind: str) -> None:
-    """Every engine has every joint, but for those that are known to be lacking."""
+    """Every engine has every joint, except those that are known to be missing."""
     status = oracles[engine].ask({"op": "prepare", "model": DRAWN[kind][0]})[0]["status"]
     assert status == ("unsupported" if (engine, kind) in LACKING else "ok")
 
 
 @pytest.mark.parametrize(("engine", "kind"), [(e, k) for e in ENGINES for k in JOINT_SIZES if (e, k) not in LACKING])
 def test_joint_has_its_closed_form(oracles: Oracles, engine: str, kind: str) -> None:
-    """The body is where the joint's closed form puts it."""
+    """The pose of the body is that of the joint's closed form."""
     oracle, (model, states) = oracles[engine], DRAWN[kind]
     joint = Description.read(model).bodies[0].joint
     oracle.must({"op": "prepare", "model": model})
@@ -50,7 +50,7 @@ def test_joint_has_its_closed_form(oracles: Oracles, engine: str, kind: str) -> 
 
 
 def test_dart_at_small_rotations(oracles: Oracles) -> None:
-    """DART 6.20.0's exponential leaves out the third order below 1e-3 rad, K^3 / 6 of the rotation vector's matrix K, and nothing else."""
+    """DART 6.20.0's exponential of K = [rotation vector]x leaves out the third order below 1e-3 rad, K^3 / 6, and nothing else."""
     dart, rng, angle = oracles["dart"], np.random.default_rng(8), 9e-4
     model = without_armature(random_robot(rng, "ball", ["spherical"], plain=True))
     robot = Description.read(model)

@@ -1,7 +1,7 @@
-"""Reading files: what each engine tells of small files is what they say, or the known edit.
+"""The import: each engine holds what small files say, or the known edit.
 
-Of every file that an engine reads, the engine's M and inverse dynamics are compared with those of a robot built by `prepare` from the
-description that it told: the description says what the engine computes with.
+For every file that an engine reads, a robot is built by `prepare` from the description that the engine told. Its M and inverse dynamics are
+compared with those of the imported robot. So the description is what the engine computes with.
 """
 
 from __future__ import annotations
@@ -30,9 +30,9 @@ from .files import ARM, GIVEN, TURN, about
 from .test_session import status_of
 
 REPLAY = within(1e-13)  # unit-free; these robots are shallow, and M's terms are of the size of its diagonal
-DIGITS = 1e-15  # what reading a decimal, and one rotation by it, may lose
-REPEATED = 1e-16  # of what is told twice
-THREE_ENGINES = ("pinocchio", "mujoco", "drake")  # what else DART does to files: test_dart_computes_with_what_it_tells
+DIGITS = 1e-15  # relative error of reading a decimal, and of one rotation by it
+REPEATED = 1e-16  # relative error of a number that is told twice
+THREE_ENGINES = ("pinocchio", "mujoco", "drake")  # DART's other edits: test_dart_computes_with_what_it_tells
 
 
 @dataclass
@@ -57,12 +57,12 @@ class Read:
         return [body["name"] for body in self.bodies]
 
     def frame(self, name: str) -> tuple[int, Array]:
-        """Find body, and rotation and origin in one row, of a frame."""
+        """Find the body of a frame, and its rotation and origin in one row."""
         frame = next(frame for frame in self.header["model"]["frames"] if frame["name"] == name)
         return frame["body"], placed(frame)
 
     def causes(self) -> set[str]:
-        """Tell what the notes are about."""
+        """List what the notes are about."""
         return {note["cause"] for note in self.header["notes"]}
 
 
@@ -84,7 +84,7 @@ class Readers:
         return path
 
     def read(self, engine: str, name: str, text: str, base: str = "fixed", replay: bool = True) -> Read:
-        """Have the engine read a file that it must read, and compare it with what it told."""
+        """Have the engine read a file, which must succeed, and compare the robot with the description that it told."""
         path, oracle = self.file(name, text), self.oracles[engine]
         header = {"op": "read", "file": str(path), "format": "mjcf" if name.endswith(".xml") else "urdf", "base": base}
         answer, blocks = oracle.must(header)
@@ -93,7 +93,7 @@ class Readers:
         return Read(answer, blocks.get("keyframes"))
 
     def _replay(self, oracle: Oracle, answer: Header) -> None:
-        """Hold M, ID and h of the file as read to those of the description: by the same engine, or Pinocchio where that refuses."""
+        """Compare M, ID and h of the imported robot with those of the description, by the same engine or else by Pinocchio."""
         robot = Description.read(answer["model"])
         states = random_states(np.random.default_rng(3), robot)
         quantities = ("mass_matrix", "id", "bias")
@@ -114,12 +114,12 @@ class Readers:
 
 @pytest.fixture
 def readers(oracles: Oracles, tmp_path: Path) -> Readers:
-    """Give the oracles, and a folder for files."""
+    """Provide the oracles, and a folder for files."""
     return Readers(oracles, tmp_path)
 
 
 def same(value: ArrayLike, due: ArrayLike, tolerance: float = DIGITS) -> bool:
-    """Tell whether two arrays of numbers agree, by the largest number or by one."""
+    """Whether two arrays agree, relative to the largest number or to one."""
     x, y = np.asarray(value, dtype=float), np.asarray(due, dtype=float)
     return x.shape == y.shape and bool(np.abs(x - y).max() / max(1.0, float(np.abs(y).max())) <= within(tolerance))
 
@@ -157,7 +157,7 @@ def test_arm_joint(arm: Read, engine: str) -> None:
 
 @of_every_engine
 def test_arm_limits(arm: Read, engine: str) -> None:
-    """Limits are the file's. MuJoCo holds none of velocities, Drake effort limits of actuators only, and those of continuous joints."""
+    """Limits are the file's. MuJoCo holds no velocity limits; Drake holds those of continuous joints, and effort limits of actuators."""
     joint = arm.body("upper")["joint"]
     assert same([*joint["lower"], *joint["upper"]], [-1, 2])
     assert joint.get("velocity") == (None if engine == "mujoco" else [3.0])
@@ -168,7 +168,7 @@ def test_arm_limits(arm: Read, engine: str) -> None:
 
 @of_every_engine
 def test_arm_merged_inertia(arm: Read, engine: str) -> None:
-    """A fixed link is merged into its parent; an inertia alone comes in its own digits, which Drake recomputes."""
+    """A fixed link is merged into its parent. An inertia that is not merged keeps its digits, but Drake recomputes it."""
     upper = arm.body("upper")
     tilt = about(2, 0.6) @ about(1, 0.5) @ about(0, 0.4)
     c1, c2 = np.array([0.1, 0.2, 0.3]), TURN @ [0.1, 0.2, 0.3] + [0.1, 0.2, 0.3]
@@ -188,7 +188,7 @@ def test_arm_merged_inertia(arm: Read, engine: str) -> None:
 
 @of_every_engine
 def test_arm_frames(arm: Read) -> None:
-    """A fixed link leaves a frame on the body that it was merged into, and the root one on the world."""
+    """A fixed link leaves a frame on the body that it was merged into; the root link leaves one on the world."""
     body, place = arm.frame("flange")
     assert body == arm.names().index("upper")
     assert same(place, [*TURN.ravel(), 0.1, 0.2, 0.3])
@@ -214,7 +214,7 @@ def test_arm_with_a_free_base(arm: Read, readers: Readers, engine: str) -> None:
 
 @of_three_engines
 def test_link_without_mass(readers: Readers, engine: str) -> None:
-    """A link without mass has none, but MuJoCo's bound, which is told."""
+    """A link without mass has none. MuJoCo gives it the bound, and a note says so."""
     read = readers.read(engine, "light.urdf", files.LIGHT, replay=engine == "mujoco")
     assert same(read.body("empty")["mass"], {"pinocchio": 0.0, "mujoco": 1e-6, "drake": 0.0}[engine])
     assert ({"bounds", "mass_edited"} <= read.causes()) == (engine == "mujoco")
@@ -222,7 +222,7 @@ def test_link_without_mass(readers: Readers, engine: str) -> None:
 
 @of_three_engines
 def test_unphysical_inertia(readers: Readers, engine: str) -> None:
-    """An inertia that no body has is kept by Pinocchio, balanced by MuJoCo, and in Drake that of a ball as dense as water; it is told."""
+    """Pinocchio keeps an unphysical inertia, MuJoCo balances it, and Drake takes that of a ball as dense as water. A note says so."""
     read = readers.read(engine, "flat.urdf", files.FLAT)
     sphere = 0.4 * 2 * (3 * 2 / (4 * np.pi * 1000)) ** (2 / 3)  # of the link's mass
     moments = {"pinocchio": [0.01, 0.01, 0.05], "mujoco": [0.07 / 3] * 3, "drake": [sphere] * 3}[engine]
@@ -242,7 +242,7 @@ def test_no_mesh_is_needed(readers: Readers, engine: str) -> None:
 
 @of_three_engines
 def test_root_called_world(readers: Readers, engine: str) -> None:
-    """A root called world is the world; with a free base only Pinocchio sets it free, and the others say so."""
+    """A root called world is the world. With a free base only Pinocchio sets it free, and notes of the others say so."""
     assert readers.read(engine, "world.urdf", files.WORLD).names() == ["arm"]
     free = readers.read(engine, "world.urdf", files.WORLD, "free", replay=engine != "pinocchio")
     assert free.names() == (["world", "arm"] if engine == "pinocchio" else ["arm"])
@@ -251,7 +251,7 @@ def test_root_called_world(readers: Readers, engine: str) -> None:
 
 @of_three_engines
 def test_planar_joint(readers: Readers, engine: str) -> None:
-    """A planar joint is three in MuJoCo; it stands at its place."""
+    """A planar joint is three joints in MuJoCo; its placement is that of the file."""
     plane = readers.read(engine, "plane.urdf", files.PLANE)
     types = [body["joint"]["type"] for body in plane.bodies]
     assert types == (["prismatic", "prismatic", "revolute"] if engine == "mujoco" else ["planar"])
@@ -260,7 +260,7 @@ def test_planar_joint(readers: Readers, engine: str) -> None:
 
 @of_three_engines
 def test_normal_of_a_planar_joint(readers: Readers, engine: str) -> None:
-    """The plane's normal is the file's axis in Drake, and z in Pinocchio whatever the axis; MuJoCo's last joint turns about the axis."""
+    """The plane's normal is the file's axis in Drake, and always z in Pinocchio. MuJoCo's last joint turns about the axis."""
     place = np.reshape(readers.read(engine, "steep.urdf", files.STEEP).bodies[-1]["joint"]["placement"]["rotation"], (3, 3))
     if engine != "mujoco":
         assert same(place[:, 2], TURN[:, 0 if engine == "drake" else 2])
@@ -268,21 +268,21 @@ def test_normal_of_a_planar_joint(readers: Readers, engine: str) -> None:
 
 @of_three_engines
 def test_floating_joint(readers: Readers, engine: str) -> None:
-    """A floating joint is free; its coordinates count from its place in Pinocchio, from the world in the others."""
+    """A floating joint is free. Its coordinates are relative to its placement in Pinocchio, and to the world in the others."""
     joint = readers.read(engine, "float.urdf", files.FLOATING).body("bird")["joint"]
     assert joint["type"] == "free"
     assert same(joint["placement"]["translation"], [0.1, 0.2, 0.3] if engine == "pinocchio" else [0, 0, 0])
 
 
-@pytest.mark.parametrize("engine", [engine for engine in ENGINES if engine != "mujoco"])  # which refuses such a joint
+@pytest.mark.parametrize("engine", [engine for engine in ENGINES if engine != "mujoco"])  # MuJoCo rejects such a joint
 def test_floating_joint_below_another(readers: Readers, engine: str) -> None:
-    """A floating joint hangs below a planar one whose plane is not z: DART's velocities are in its own body's axes."""
+    """A floating joint below a planar one whose plane is not z. DART's velocities are in its own body's axes."""
     assert readers.read(engine, "sled.urdf", files.SLED).names() == ["sled", "bird"]
 
 
 @of_every_engine
 def test_revolute_joint_without_limits(readers: Readers, engine: str) -> None:
-    """Who refuses a revolute joint without limits says why and which joint, without a path of its own sources."""
+    """An engine that rejects a revolute joint without limits names the joint and the reason, without a path of its own sources."""
     path = readers.file("limitless.urdf", re.sub("<limit[^>]*>", "", files.WORLD.replace("continuous", "revolute")))
     answer, _ = readers.oracles[engine].ask({"op": "read", "file": str(path), "format": "urdf", "base": "fixed"})
     refuses = engine in ("pinocchio", "dart")
@@ -297,7 +297,7 @@ def test_revolute_joint_without_limits(readers: Readers, engine: str) -> None:
 
 @of_three_engines
 def test_three_joints_in_a_body(readers: Readers, engine: str) -> None:
-    """Three joints in a body are a chain, in which anchors count for hinges only; by `ref` Pinocchio shifts a hinge's limits."""
+    """Three joints in a body are a chain, in which only hinges have anchors. Pinocchio shifts a hinge's limits by `ref`."""
     read = readers.read(engine, "three.xml", files.THREE)
     assert read.names() == ["car/x", "car/y", "car", "mast"]
     places = [body["joint"]["placement"]["translation"] for body in read.bodies]
@@ -312,7 +312,7 @@ def test_three_joints_in_a_body(readers: Readers, engine: str) -> None:
 def toy_text(engine: str) -> str:
     """Write an MJCF with several joints in a body, anchors, a class of defaults, a `ref` and gravity."""
     text = files.MJCF.format(more="", key="")
-    # Pinocchio ends at a keyframe of another size than it expects.
+    # Pinocchio ends the process at a keyframe of another size than it expects.
     return text.replace("qpos=", "ctrl=") if engine == "pinocchio" else text
 
 
@@ -334,19 +334,19 @@ def test_mjcf_chain(toy: Read) -> None:
 
 @of_three_engines
 def test_mjcf_gravity(toy: Read, engine: str) -> None:
-    """Pinocchio ignores the gravity of the file, which is told."""
+    """Pinocchio ignores the gravity of the file, and a note says so."""
     assert same(toy.header["model"]["gravity"], [0, 0, -9.81] if engine == "pinocchio" else [0, 1, -5])
     assert ("gravity_ignored" in toy.causes()) == (engine == "pinocchio")
 
 
-POST = {"pinocchio": np.zeros(3)}  # Pinocchio forgets where a body that is fixed to the world is
+POST = {"pinocchio": np.zeros(3)}  # Pinocchio loses the pose of a body that is fixed to the world
 OWN = np.array([0.1, 0.2, 0.3])
 QUARTER = turned(0.6, 0, 0, 0.8)
 
 
 @of_three_engines
 def test_mjcf_placements(toy: Read, engine: str) -> None:
-    """Joints stand at their anchors; Drake puts the body's place behind its first joint."""
+    """Joints are at their anchors. Drake puts the body's pose behind its first joint."""
     post = POST.get(engine, np.array([0, 0, 1]))
     first = np.append(QUARTER.ravel(), post + OWN + QUARTER @ [0.5, 0, 0])
     second = np.append(np.eye(3).ravel(), [-0.5, 0.25, 0])
@@ -360,7 +360,7 @@ def test_mjcf_placements(toy: Read, engine: str) -> None:
 
 @of_three_engines
 def test_mjcf_slide_with_ref(toy: Read) -> None:
-    """A slide stands at its place in the file where it is `ref`."""
+    """A slide is at its place in the file when its coordinate is `ref`."""
     assert same(toy.body("rod")["joint"]["placement"]["translation"], [-0.5, 0.75, 0])
 
 
@@ -376,7 +376,7 @@ def test_mjcf_joints(toy: Read, engine: str) -> None:
 
 @of_three_engines
 def test_mjcf_inertias(toy: Read) -> None:
-    """A fixed body is merged into its parent, and an inertia comes from geometry where there is no other."""
+    """A fixed body is merged into its parent. Without an inertial, the inertia is computed from geometry."""
     com = (1.5 * OWN + 0.5 * np.array([0, 0, 0.5])) / 2 - [0, 0.25, 0]
     assert same([toy.body("arm")["mass"], *toy.body("arm")["com"]], [2, *com])
     assert same([toy.body("rod")["mass"], *toy.body("rod")["inertia"]], [2, 0.008, 0, 0, 0.008, 0, 0.008])
@@ -385,7 +385,7 @@ def test_mjcf_inertias(toy: Read) -> None:
 @of_three_engines
 @pytest.mark.parametrize("name", ["post", "arm", "cup"])
 def test_mjcf_frames(toy: Read, engine: str, name: str) -> None:
-    """Bodies of the file that are none of the description leave frames."""
+    """Bodies of the file that are not in the description leave frames."""
     post: ArrayLike = POST.get(engine, np.array([0, 0, 1]))
     homes: dict[str, tuple[int, ArrayLike]] = {"post": (-1, post), "arm": (1, [0, -0.25, 0]), "cup": (1, [0, -0.25, 0.4])}
     home, origin = homes[name]
@@ -396,7 +396,7 @@ def test_mjcf_frames(toy: Read, engine: str, name: str) -> None:
 
 @of_three_engines
 def test_mjcf_motor(toy: Read, readers: Readers, engine: str, toy_text: str) -> None:
-    """A motor is not compared, which is told; without it Drake forgets the joint's armature."""
+    """A motor is not compared, and a note says so. Without it Drake drops the joint's armature."""
     assert "not_compared" in toy.causes()
     idle = readers.read(engine, "idle.xml", toy_text.replace('<motor joint="pan"/>', "")).body("arm/pan")["joint"]
     assert same(idle["armature"], [0.0 if engine == "drake" else 0.25])
@@ -404,7 +404,7 @@ def test_mjcf_motor(toy: Read, readers: Readers, engine: str, toy_text: str) -> 
 
 @of_three_engines
 def test_armature_of_a_free_joint(readers: Readers, engine: str) -> None:
-    """The armature that a class gives to a free joint is told and taken out of what is compared; Drake forgets it."""
+    """The armature that a class gives to a free joint is noted, and taken out of the comparison. Drake drops it."""
     read = readers.read(engine, "dragged.xml", files.DRAGGED)
     told = [note["numbers"] for note in read.header["notes"] if note["cause"] == "free_armature" and note["about"] == "root"]
     assert told == ([] if engine == "drake" else [[0.25] * 6])
@@ -412,11 +412,11 @@ def test_armature_of_a_free_joint(readers: Readers, engine: str) -> None:
     assert same(read.body("arm")["joint"]["armature"], [0.25])
 
 
-# ---- words
+# ---- messages
 
 
 def test_mujoco_warnings_are_notes(readers: Readers) -> None:
-    """MuJoCo's words on a NaN are notes, and it leaves no log behind."""
+    """MuJoCo's messages about a NaN are notes, and it writes no log file."""
     log = Path("MUJOCO_LOG.TXT")
     before = log.exists()
     odd = files.MJCF.format(more="", key="").replace("<option ", '<option timestep="nan" ')
@@ -426,14 +426,14 @@ def test_mujoco_warnings_are_notes(readers: Readers) -> None:
 
 
 def test_drake_warnings_are_notes(readers: Readers) -> None:
-    """Drake's words on friction are notes, without the folder of the file."""
+    """Drake's messages about friction are notes, without the folder of the file."""
     read = readers.read("drake", "arm.urdf", ARM)
     warned = [note["text"] for note in read.header["notes"] if note["cause"] == "warning"]
     assert any("friction" in text and str(readers.folder) not in text for text in warned)
 
 
 def test_colours_are_left_out(tmp_path: Path) -> None:
-    """What an engine prints in colours is told without the terminal's escape sequences."""
+    """Notes of an engine that prints in colours have no escape sequences of the terminal."""
     notes: list[Header] = []
     with overheard(tmp_path / "a.urdf", notes):
         os.write(2, f"\x1b[1;33mWarning\x1b[0m: in {tmp_path}/a.urdf\n".encode())
@@ -444,7 +444,7 @@ def test_colours_are_left_out(tmp_path: Path) -> None:
 
 
 def test_mujoco_tells_repairs(readers: Readers) -> None:
-    """An MJCF that MuJoCo refuses as written is told with the file's own inertias beside the repaired ones."""
+    """For an MJCF that MuJoCo rejects as written, the answer has the file's own inertias beside the repaired ones."""
     read = readers.read("mujoco", "refused.xml", files.REFUSED)
     written = {body["name"]: body for body in read.header["written"]["bodies"]}
     given = (QUARTER * [0.01, 0.02, 0.05]) @ QUARTER.T
@@ -459,12 +459,12 @@ def test_mujoco_tells_repairs(readers: Readers) -> None:
 
 
 def test_mujoco_tells_no_repair_where_there_is_none(readers: Readers) -> None:
-    """What MuJoCo takes as it is was not repaired."""
+    """A file that MuJoCo accepts was not repaired."""
     assert "written" not in readers.read("mujoco", "three.xml", files.THREE).header
 
 
 def test_mujoco_reads_includes_and_keyframes(readers: Readers) -> None:
-    """An included body is read, its coordinates count from the world, and the quaternions of a keyframe end with w."""
+    """An included body is read. Its coordinates are relative to the world, and the quaternions of a keyframe end with w."""
     readers.file("loose.xml", f"<mujoco>{files.LOOSE}</mujoco>")
     read = readers.read("mujoco", "toy.xml", files.MJCF.format(more='<include file="loose.xml"/>', key="1 2 3 0 0 1 0"))
     assert read.names()[-1] == "loose"
@@ -476,7 +476,7 @@ def test_mujoco_reads_includes_and_keyframes(readers: Readers) -> None:
 
 
 def test_mujoco_tells_a_moved_centre_of_mass(readers: Readers) -> None:
-    """A centre of mass within 1e-6 of the origin is the origin to MuJoCo, which is told."""
+    """MuJoCo takes a centre of mass within 1e-6 of the origin for the origin, and a note says so."""
     near = files.MJCF.format(more="", key="").replace('pos=".1 0 0" mass="1"', 'pos="5e-7 0 0" mass="1"')
     read = readers.read("mujoco", "near.xml", near)
     assert read.body("ball")["com"] == [0, 0, 0]
@@ -488,7 +488,7 @@ def test_mujoco_tells_a_moved_centre_of_mass(readers: Readers) -> None:
 
 @pytest.mark.parametrize("base", ["fixed", "free"])
 def test_dart_computes_with_what_it_tells(readers: Readers, base: str) -> None:
-    """The robot that is built from the description answers as the file does, without damping and mimicking."""
+    """The robot built from the description gives the answers of the imported one, without damping and mimic joints."""
     dart = readers.oracles["dart"]
     read = readers.read("dart", "toy.urdf", files.TOY, base, replay=False)
     robot = Description.read(read.header["model"])
@@ -503,7 +503,7 @@ def test_dart_computes_with_what_it_tells(readers: Readers, base: str) -> None:
 
 @pytest.mark.parametrize("base", ["fixed", "free"])
 def test_dart_notes(readers: Readers, base: str) -> None:
-    """A link without an inertial is 1 kg in DART; that and mimicking are told, and damping is the file's."""
+    """A link without an inertial has 1 kg in DART. Notes tell this and mimic joints. Damping is the file's."""
     read = readers.read("dart", "toy.urdf", files.TOY, base, replay=False)
     names = [body["joint"]["name"] for body in read.bodies]
     assert names[-2:] == ["hinge", "slide"]
@@ -515,7 +515,7 @@ def test_dart_notes(readers: Readers, base: str) -> None:
 
 
 def test_dart_does_not_offer_two_robots(readers: Readers) -> None:
-    """A file of two robots is not offered, whatever DART's collision detector prints about capsules on the way."""
+    """A file of two robots is unsupported, also if DART's collision detector prints messages about capsules."""
     capsule = '<geom type="capsule" size=".1" fromto="0 0 0 0 0 1"/>'
     two = "".join(f'<body name="{name}"><joint name="{name}" axis="0 1 0"/>{capsule}</body>' for name in "ab")
     path = readers.file("two.xml", f"<mujoco><worldbody>{two}</worldbody></mujoco>")
@@ -523,7 +523,7 @@ def test_dart_does_not_offer_two_robots(readers: Readers) -> None:
     assert status_of(answer) == "unsupported"
 
 
-# ---- what no engine reads
+# ---- files that no engine reads
 
 NESTED = "<body>" * 600 + "</body>" * 600
 BAD: dict[str, tuple[str, str | None]] = {
@@ -543,7 +543,7 @@ FORMATS = {"xml": "mjcf", "urdf": "urdf", "sdf": "sdf"}
 @pytest.mark.parametrize("bad", BAD)
 @of_every_engine
 def test_bad_file_is_an_error(readers: Readers, engine: str, bad: str) -> None:
-    """A file that no engine can read is an error, and the oracle answers on."""
+    """A file that no engine can read is an error, and the oracle continues."""
     (name, text), oracle = BAD[bad], readers.oracles[engine]
     path = readers.folder / name if text is None else readers.file(name, text)
     request = {"op": "read", "base": "fixed", "file": str(path), "format": FORMATS[name.rpartition(".")[2]]}
@@ -554,7 +554,7 @@ def test_bad_file_is_an_error(readers: Readers, engine: str, bad: str) -> None:
 
 @of_every_engine
 def test_no_single_bodies_of_a_file(readers: Readers, engine: str) -> None:
-    """Single bodies of a robot as read are not told: they need not be those of the description."""
+    """Quantities of single bodies of an imported robot are unsupported: its bodies need not be those of the description."""
     oracle = readers.oracles[engine]
     path = readers.file("world.urdf", files.WORLD)
     told = oracle.must({"op": "read", "base": "fixed", "file": str(path), "format": "urdf"})[0]

@@ -1,4 +1,4 @@
-"""What an oracle answers to requests that it cannot follow: it says so, and nothing ends it."""
+"""Answers to wrong requests: an error or `unsupported`, and the oracle does not exit."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ MODELS = ("screw", "inner free", "heavy ball", "skater", "massless", "indefinite
 
 
 def _models() -> dict[str, Header]:
-    """Draw a good robot, and some that an engine may refuse."""
+    """Draw a good robot, and some that an engine may reject."""
     rng = np.random.default_rng(5)
     good = without_armature(random_robot(rng, "good", ["revolute"]))
     models = [random_robot(rng, "screw", ["helical"]), random_robot(rng, "inner free", ["revolute", "free"])]
@@ -46,7 +46,7 @@ EVALUATE: Header = {"op": "evaluate", "quantity": "com", "method": "", "first": 
 
 
 def status_of(answer: Answer) -> str:
-    """Find the status of an answer, which says why unless all is well."""
+    """Find the status of an answer. If it is not `ok`, there is a reason."""
     status: str = answer[0]["status"]
     assert status == "ok" or len(answer[0]["reason"].splitlines()[0]) > 5
     return status
@@ -55,14 +55,14 @@ def status_of(answer: Answer) -> str:
 @pytest.mark.parametrize("model", MODELS)
 @pytest.mark.parametrize("engine", ENGINES)
 def test_what_an_engine_lacks_is_unsupported(oracles: Oracles, engine: str, model: str) -> None:
-    """A robot that the engine does not have is refused, any other is built."""
+    """A robot that the engine cannot hold is unsupported; any other is built."""
     answer = oracles[engine].ask({"op": "prepare", "model": DRAWN[model]})
     assert status_of(answer) == ("unsupported" if model in UNSUPPORTED[engine] else "ok")
 
 
 @pytest.mark.parametrize("engine", ENGINES)
 def test_garbage_is_an_error(oracles: Oracles, engine: str) -> None:
-    """A line that is no JSON is an error, and the oracle lives on."""
+    """A line that is not JSON is an error, and the oracle continues."""
     oracle = oracles[engine]
     oracle.requests.write(b"this is no frame\n")
     oracle.requests.flush()
@@ -83,7 +83,7 @@ MALFORMED: dict[str, Header] = {
 @pytest.mark.parametrize("request_of", MALFORMED)
 @pytest.mark.parametrize("engine", ENGINES)
 def test_a_malformed_request_is_an_error(oracles: Oracles, engine: str, request_of: str) -> None:
-    """A malformed request is an error, and the oracle lives on."""
+    """A malformed request is an error, and the oracle continues."""
     oracle = oracles[engine]
     assert status_of(oracle.ask(MALFORMED[request_of])) == "error"
     assert status_of(oracle.ask(PREPARE)) == "ok"
@@ -91,7 +91,7 @@ def test_a_malformed_request_is_an_error(oracles: Oracles, engine: str, request_
 
 @pytest.mark.parametrize("engine", ENGINES)
 def test_a_refused_model_leaves_none(oracles: Oracles, engine: str) -> None:
-    """Behind a refused model there is no robot to be asked about."""
+    """After a model that was rejected there is no robot to ask about."""
     oracle = oracles[engine]
     known = {**EVALUATE, "method": oracle.methods()["com"][0]}
     oracle.ask(PREPARE)
@@ -102,7 +102,7 @@ def test_a_refused_model_leaves_none(oracles: Oracles, engine: str) -> None:
 
 @pytest.mark.parametrize("engine", ENGINES)
 def test_states_are_all_or_none(oracles: Oracles, engine: str) -> None:
-    """States are refused unless they are as many as announced, and a state beyond them is an error."""
+    """States of another number than announced are an error, and so is a state beyond them."""
     oracle = oracles[engine]
     known = {**EVALUATE, "method": oracle.methods()["com"][0]}
     oracle.must(PREPARE)
@@ -125,7 +125,7 @@ def test_an_unknown_quantity_or_method_is_unsupported(oracles: Oracles, engine: 
 
 @pytest.mark.parametrize("engine", ENGINES)
 def test_an_oracle_ends_with_its_input(engine: str) -> None:
-    """The process ends by itself, and well."""
+    """The process exits by itself with status 0."""
     require(engine)
     oracle = Oracle.of(engine)
     oracle.must(PREPARE)
@@ -160,6 +160,6 @@ def test_tolerances_can_be_scaled(text: str, scale: float) -> None:
 
 @pytest.mark.parametrize("text", ["", "nan", "-1", "inf", "1e999", "off"])
 def test_no_factor_turns_comparisons_off(text: str) -> None:
-    """A factor that would let everything pass is refused."""
+    """A factor that would let everything pass is an error."""
     with pytest.raises(ValueError, match="FEATHERBENCH_TOL_SCALE"):
         tolerance_scale(text)

@@ -18,7 +18,7 @@ COMMON = ("revolute", "prismatic", "spherical", "planar", "universal", "translat
 
 @dataclass(frozen=True)
 class Trial:
-    """A robot, the engines that have all of its joints (the first is the one that others are held against), and the seed of its states."""
+    """A robot, the engines that have all of its joints, and the seed of its states. The others are compared with the first engine."""
 
     model: Header
     engines: tuple[str, ...]
@@ -31,10 +31,10 @@ def _trials() -> list[Trial]:
     robots = [random_robot(rng, "fixed base", rng.permutation(COMMON * 2).tolist()) for _ in range(3)]
     robots += [random_robot(rng, "free base", ["free", *rng.permutation(COMMON * 2).tolist(), "free"]) for _ in range(3)]
     robots += [random_robot(rng, kind, [kind]) for kind in (*COMMON, "free")]
-    robots += [random_robot(rng, kind, [kind], plain=True) for kind in ("prismatic", "free")]  # for which MuJoCo has a short cut
+    robots += [random_robot(rng, kind, [kind], plain=True) for kind in ("prismatic", "free")]  # MuJoCo has a special case for these
     robots += [random_robot(rng, "plain", ["free", "prismatic", "prismatic", "revolute", *COMMON * 2, "revolute"], plain=True)]
     robots += [random_robot(rng, "chain", ["free", *["revolute", "prismatic", "revolute"] * 23])]
-    chains = ["revolute", "translation", "cylindrical", "euler_zyx"] * 2  # of one-dof joints in Drake, which has armature on them
+    chains = ["revolute", "translation", "cylindrical", "euler_zyx"] * 2  # chains of one-dof joints in Drake, which has armature on these
     robots += [random_robot(rng, "armature on chains", chains, geared=True)]
     asked = [(robot, ("pinocchio", "mujoco", "drake")) for robot in robots]
     inner = ["helical", *COMMON, "free", "helical", "free", "revolute"]
@@ -66,15 +66,15 @@ class Answered:
     Attributes
     ----------
     methods : dict of str to list of str
-        By which methods the engine answers, the first being the one that identities are asked of.
+        The engine's methods by quantity. Identities are tested with the first.
     values : dict of (str, str) to ndarray
-        The answers by quantity and method, but for the Jacobians.
+        The answers by quantity and method, except Jacobians.
     first : dict of str to ndarray
         The answers by the first method.
     jacobians : ndarray, shape (bodies, states, 6, nv)
         Of each body.
     reference : Reference
-        What residuals of this robot are measured by.
+        The scales of residuals for this robot.
     """
 
     def __init__(self, oracle: Oracle, engine: str, trial: Trial) -> None:
@@ -88,7 +88,7 @@ class Answered:
         self.values = {(quantity, method): oracle.value(quantity, method, COUNT) for quantity, method in asked}
         jacobian = self.methods["body_jacobian"][0]
         self.jacobians = np.array([oracle.value("body_jacobian", jacobian, COUNT, body) for body in range(len(self.robot.bodies))])
-        if engine == "pinocchio":  # whose own kinetic energy is a known fault
+        if engine == "pinocchio":  # its own kinetic energy is a known deviation
             self.methods["kinetic_energy"] = ["crba"]
         firsts = {quantity: methods[0] for quantity, methods in self.methods.items() if quantity != "body_jacobian"}
         self.first: Blocks = {quantity: self.values[quantity, method] for quantity, method in firsts.items()}

@@ -1,4 +1,4 @@
-//! Writes the seeds of a target that are made rather than kept into a folder: `cargo run --example seeds -- TARGET FOLDER`.
+//! Writes the generated seeds of a target into a folder: `cargo run --example seeds -- TARGET FOLDER`.
 
 use std::path::PathBuf;
 

@@ -1,7 +1,7 @@
-//! The fuzz targets: for every parser of ours, a function that takes any bytes.
+//! The fuzz targets: for each of our parsers, a function that takes any bytes.
 //!
-//! What is read must also be written and read again alike. `ci/fuzz/run` gives them to libFuzzer; `crates/cli/tests/parsers.rs` compiles this
-//! very file and gives them some thousand mutations of the seeds in every test run.
+//! A robot that is read must be written and read again alike. `ci/fuzz/run` gives the targets to libFuzzer. `crates/cli/tests/parsers.rs`
+//! compiles this file and gives them some thousand mutations of the seeds in every test run.
 
 use featherbench_bench::frame::Frame;
 use featherbench_bench::{Gates, Identity, NoAnswer, Outcome, Quantity, Robot, Suite};
@@ -71,7 +71,7 @@ pub fn frame(mut bytes: &[u8]) {
     }
 }
 
-/// A recording of one small robot's answers: as it comes, and with a right checksum, behind which the rest of the parser stands.
+/// A recording of one small robot's answers: as it is, and with a right checksum, which the rest of the parser requires.
 pub fn recording(bytes: &[u8]) {
     static PROBLEM: LazyLock<Robot> = LazyLock::new(recorded_robot);
     let mut sealed = bytes.to_vec();
@@ -89,7 +89,7 @@ pub fn recorded_robot() -> Robot {
     Robot::new(&robot, "chain", ModelOrigin::Generated, 3, 1).expect("a small chain")
 }
 
-/// A recording of it by one engine that answers twice and refuses once.
+/// A recording of it by one engine, with two answers and one error.
 pub fn recording_seed() -> Vec<u8> {
     let robot = recorded_robot();
     let states = robot.states.count();
@@ -105,7 +105,7 @@ pub fn recording_seed() -> Vec<u8> {
     Recording { engines: vec![EngineRecording { identity, outcomes }] }.to_bytes(&robot)
 }
 
-/// A file of records with rows of every verdict.
+/// A file of rows, with every verdict.
 pub fn records_seed() -> Vec<u8> {
     let row = Row { robot: "m \"quoted\", é".into(), nv: Some(3), floor: Some(1e-17), ..Row::default() };
     let rows = [
@@ -123,7 +123,7 @@ pub fn run_info_seed() -> Vec<u8> {
     serde_json::to_vec(&run).expect("plain data")
 }
 
-/// The seeds of a target that are made rather than kept, as they follow formats that change.
+/// The seeds of a target that are generated, because their formats change.
 pub fn made_seeds(target: &str) -> Vec<Vec<u8>> {
     match target {
         "recording" => {
@@ -151,7 +151,7 @@ pub fn suite(bytes: &[u8]) {
     }
 }
 
-/// Gates and deviations, parted by a line of hyphens.
+/// Gates and deviations, separated by a line of hyphens.
 pub fn gates(bytes: &[u8]) {
     let (gates, deviations) = text(bytes).split_once("\n---\n").unwrap_or((text(bytes), ""));
     if let Ok(gates) = Gates::parse(gates, deviations, file()) {
@@ -160,7 +160,7 @@ pub fn gates(bytes: &[u8]) {
     }
 }
 
-/// A file of records.
+/// A file of rows.
 pub fn records(bytes: &[u8]) {
     let Ok(rows) = featherbench_results::parse_csv(text(bytes), file()) else { return };
     let written = featherbench_results::to_csv(&rows, file()).unwrap_or_else(|error| panic!("{error}"));

@@ -1,1 +1,1 @@
-"""DART: the oracle, its reading of files, its conventions and reproductions of its known deviations."""
+"""DART: the oracle, its import of files, its conventions and reproductions of its known deviations."""

@@ -1,8 +1,8 @@
 """The robot, built with the calls of a `Skeleton`.
 
-Joints are DART's Revolute, Prismatic, Screw (whose pitch is per *revolution*), Ball, Free, Planar, Universal, Translational and Euler; a
+Joints are DART's Revolute, Prismatic, Screw (whose pitch is per *revolution*), Ball, Free, Planar, Universal, Translational and Euler. A
 cylindrical joint is a revolute and a prismatic one with a massless body between. DART has no armature. Damping, springs and friction are
-zero unless set. DART checks inertias with a warning only, so that unphysical bodies are answered for as well.
+zero unless set. DART's check of inertias gives a warning only, so unphysical bodies are allowed.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ def build(robot: Description) -> tuple[dynamics.Skeleton, list[dynamics.Joint], 
     skeleton : dynamics.Skeleton
         The robot.
     joints : list of dynamics.Joint
-        The joint of each body, of a cylindrical one the first.
+        The joint of each body; for a cylindrical joint the first of two.
     bodies : list of dynamics.BodyNode
         The bodies that they move.
 
@@ -59,21 +59,21 @@ def build(robot: Description) -> tuple[dynamics.Skeleton, list[dynamics.Joint], 
 
 
 def make_joint(add: dynamics.Skeleton, joint: Joint, parent: dynamics.BodyNode | None) -> tuple[dynamics.Joint, dynamics.BodyNode]:
-    """Make DART's joint of that type.
+    """Make DART's joint of the description's type.
 
     Parameters
     ----------
     add : dynamics.Skeleton
-        The skeleton, which makes joints.
+        The skeleton that gets the joint.
     joint : Joint
         The joint.
     parent : dynamics.BodyNode | None
-        The body that it hangs on; None is the world.
+        The parent body; None is the world.
 
     Returns
     -------
     made : dynamics.Joint
-        DART's joint, of a cylindrical one the first.
+        DART's joint; for a cylindrical joint the first of two.
     node : dynamics.BodyNode
         The body that it moves.
 

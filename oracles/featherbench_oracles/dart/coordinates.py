@@ -8,8 +8,8 @@
     euler_zyx  z, -y, x                diag(1, -1, 1)    0: DART's order is x, y, z (Python cannot set another); its axes are turned by AXES
     all other  q                       identity          0
 
-Of a free joint R in T and b is from body to parent body, in log R to the joint's frame. The axes are those of DART's body: of a robot as
-read they need not be those of the description's, so DART itself is asked.
+R of a free joint turns body axes to those of the parent body in T and b, and to those of the joint's frame in log R. The axes are those of
+DART's bodies. For a robot read from a file they need not be those of the description's bodies, so DART itself is asked.
 """
 
 from __future__ import annotations
@@ -29,20 +29,7 @@ MIRROR = np.diag([1.0, -1.0, 1.0])
 
 
 def to_engine_q(robot: Description, q: Array) -> Array:
-    """Bring coordinates to DART.
-
-    Parameters
-    ----------
-    robot : Description
-        The robot.
-    q : ndarray, shape (nq,)
-        Neutral coordinates, m, rad or quaternions.
-
-    Returns
-    -------
-    ndarray, shape (nv,)
-        q_e of the table, m, rad or rotation vectors.
-    """
+    """Convert positions to DART's: quaternions become rotation vectors, and nq of DART is nv."""
     return np.concatenate([_joint_q(body.joint, q[body.joint.q]) for body in robot.bodies])
 
 
@@ -57,7 +44,7 @@ def _joint_q(joint: Joint, q: Array) -> Array:
 
 
 def log(quaternion: Array) -> Array:
-    """Find the rotation vector of a quaternion: no arccos, which loses half of the digits near 0.
+    """Compute the rotation vector of a quaternion, without arccos, which loses half of the digits near 0.
 
     Parameters
     ----------
@@ -75,24 +62,7 @@ def log(quaternion: Array) -> Array:
 
 
 def change_of_velocities(robot: Description, made: Sequence[dynamics.Joint], q: Array, v: Array) -> Change:
-    """Find T and b of the table.
-
-    Parameters
-    ----------
-    robot : Description
-        The robot.
-    made : Sequence[dynamics.Joint]
-        DART's joints of the robot, whose positions are set.
-    q : ndarray, shape (nq,)
-        Neutral coordinates, m, rad or quaternions.
-    v : ndarray, shape (nv,)
-        Neutral velocities, m/s or rad/s.
-
-    Returns
-    -------
-    Change
-        The change at that state.
-    """
+    """Find T and b of the table; `made` are DART's joints of the robot."""
     blocks, bias = [], np.zeros(robot.nv)
     for joint, mine in zip((body.joint for body in robot.bodies), made, strict=True):
         if joint.type == "euler_zyx":

@@ -19,7 +19,7 @@ from featherbench_oracles.robot import Description
 
 
 class DartRobot:
-    """A robot in DART. Every method that takes a question answers one quantity at its state.
+    """A robot in DART. Every method that takes a question answers one quantity at its state, as `protocol.Engine` says.
 
     Parameters
     ----------
@@ -28,7 +28,7 @@ class DartRobot:
     skeleton : dynamics.Skeleton
         The robot.
     joints : list of dynamics.Joint
-        The joint of each body, of a cylindrical one the first.
+        The joint of each body; for a cylindrical joint the first of two.
     bodies : list of dynamics.BodyNode
         The bodies that they move.
     """
@@ -42,13 +42,7 @@ class DartRobot:
                 raise RuntimeError(f"DART put joint {joint.name} elsewhere")
 
     def readback(self) -> list[Array]:
-        """Tell what DART holds; it keeps the inertia about the centre of mass.
-
-        Returns
-        -------
-        list of ndarray, shape (22,)
-            Of each body a row of `readback_row`.
-        """
+        """Read back by getInertia, which is about the centre of mass, and getTransformFromParentBodyNode."""
         rows = []
         for node, joint, mine in zip(self.bodies, self.joints, self.robot.bodies, strict=True):
             held, placement = node.getInertia(), joint.getTransformFromParentBodyNode()
@@ -59,33 +53,11 @@ class DartRobot:
     # ---- coordinates
 
     def positions(self, q: Array) -> Array:
-        """Bring coordinates to DART.
-
-        Parameters
-        ----------
-        q : ndarray, shape (nq,)
-            Neutral coordinates, m, rad or quaternions.
-
-        Returns
-        -------
-        ndarray, shape (nv,)
-            q_e, m, rad or rotation vectors.
-        """
+        """Convert positions to DART's, of shape (nv,)."""
         return to_engine_q(self.robot, q)
 
     def change(self, ask: Question) -> Change:
-        """Find T and b at a state.
-
-        Parameters
-        ----------
-        ask : Question
-            The state.
-
-        Returns
-        -------
-        Change
-            The change there.
-        """
+        """Find T and b from DART's own joints."""
         return change_of_velocities(self.robot, self.joints, ask.q, ask.v)
 
     def _update(self, ask: Question) -> Change:
@@ -95,116 +67,45 @@ class DartRobot:
         return change
 
     def _set(self, q: Array, v: Array) -> None:
-        """Set q_e and v_e; DART computes again what depends on a number that changes, and that only."""
+        """Set q_e and v_e. DART computes again only what depends on a changed number."""
         self.skeleton.setPositions(q)
         self.skeleton.setVelocities(v)
 
-    # ---- calls that can be timed, in DART's coordinates
+    # ---- calls that can be timed, in DART's coordinates (`clock.Calls`)
 
     def inverse_dynamics(self, q: Array, v: Array, a: Array) -> Array:
-        """Compute tau_e by computeInverseDynamics; this can be timed.
-
-        Parameters
-        ----------
-        q : ndarray, shape (nv,)
-            q_e.
-        v : ndarray, shape (nv,)
-            v_e, m/s or rad/s.
-        a : ndarray, shape (nv,)
-            a_e, m/s² or rad/s².
-
-        Returns
-        -------
-        ndarray, shape (nv,)
-            tau_e, N or N m.
-        """
+        """Compute tau_e by computeInverseDynamics."""
         self._set(q, v)
         self.skeleton.setAccelerations(a)
         self.skeleton.computeInverseDynamics()
         return self.skeleton.getForces()
 
     def mass_matrix(self, q: Array) -> Array:
-        """Compute M_e, which DART finds column by column; this can be timed.
-
-        Parameters
-        ----------
-        q : ndarray, shape (nv,)
-            q_e.
-
-        Returns
-        -------
-        ndarray, shape (nv, nv)
-            M_e, kg, kg m or kg m².
-        """
+        """Compute M_e by getMassMatrix, column by column."""
         self.skeleton.setPositions(q)
         return self.skeleton.getMassMatrix()
 
     def aba(self, q: Array, v: Array, tau: Array) -> Array:
-        """Compute a_e by the articulated body algorithm; this can be timed.
-
-        Parameters
-        ----------
-        q : ndarray, shape (nv,)
-            q_e.
-        v : ndarray, shape (nv,)
-            v_e, m/s or rad/s.
-        tau : ndarray, shape (nv,)
-            tau_e, N or N m.
-
-        Returns
-        -------
-        ndarray, shape (nv,)
-            a_e, m/s² or rad/s².
-        """
+        """Compute a_e by computeForwardDynamics, the articulated body algorithm."""
         self._set(q, v)
         self.skeleton.setForces(tau)
         self.skeleton.computeForwardDynamics()
         return self.skeleton.getAccelerations()
 
     def kinetic_energy(self, q: Array, v: Array) -> float:
-        """Compute the sum over the bodies; this can be timed.
-
-        Parameters
-        ----------
-        q : ndarray, shape (nv,)
-            q_e.
-        v : ndarray, shape (nv,)
-            v_e, m/s or rad/s.
-
-        Returns
-        -------
-        float
-            In J.
-        """
+        """Compute the kinetic energy by computeKineticEnergy, a sum over the bodies."""
         self._set(q, v)
         return self.skeleton.computeKineticEnergy()
 
     def com(self, q: Array) -> Array:
-        """Compute where the centre of mass is; this can be timed.
-
-        Parameters
-        ----------
-        q : ndarray, shape (nv,)
-            q_e.
-
-        Returns
-        -------
-        ndarray, shape (3,)
-            In world axes, m.
-        """
+        """Compute the centre of mass by getCOM."""
         self.skeleton.setPositions(q)
         return self.skeleton.getCOM()
 
     # ---- dynamics
 
     def inverse_wrench(self, ask: Question) -> Array:
-        """Answer `id_wrench` by computeInverseDynamics with a force on every body, in its axes at its origin.
-
-        Returns
-        -------
-        ndarray, shape (nv,)
-            Forces of the joints, N or N m.
-        """
+        """Answer `id_wrench` by computeInverseDynamics with a force on every body, in its axes at its origin."""
         change = self._update(ask)
         for node, wrench in zip(self.bodies, ask.wrench, strict=True):
             node.setExtForce(wrench[3:], np.zeros(3), True, True)
@@ -215,36 +116,18 @@ class DartRobot:
         return change.to_neutral_tau(self.skeleton.getForces())
 
     def bias_forces(self, ask: Question) -> Array:
-        """Answer `bias` by h = T' (Coriolis and gravity forces + M_e b).
-
-        Returns
-        -------
-        ndarray, shape (nv,)
-            Forces of the joints, N or N m.
-        """
+        """Answer `bias` by h = T' (Coriolis and gravity forces + M_e b)."""
         change = self._update(ask)
         bias = self.skeleton.getCoriolisAndGravityForces()
         return change.to_neutral_tau(bias + self.skeleton.getMassMatrix() @ change.b if change.b.any() else bias)
 
     def probe(self, ask: Question) -> Array:
-        """Answer `mass_matrix_probe` by the M of `mass_matrix`.
-
-        Returns
-        -------
-        ndarray, shape (6, nv)
-            M x for the four rows x of `probe`, the diagonal of M, its last row.
-        """
+        """Answer `mass_matrix_probe` by the M of `mass_matrix`."""
         mass = self.change(ask).to_neutral_mass(self.mass_matrix(self.positions(ask.q)))
         return mass_matrix_probe(mass.__matmul__, np.diag(mass), ask.probe)
 
     def inverse_mass_matrix(self, ask: Question) -> Array:
-        """Answer `fd` by M^-1 (tau - h), M^-1 column by column by the articulated body algorithm.
-
-        Returns
-        -------
-        ndarray, shape (nv,)
-            Accelerations, m/s² or rad/s².
-        """
+        """Answer `fd` by a = M^-1 (tau - h), where the articulated body algorithm gives M^-1 column by column."""
         change = self._update(ask)
         force = change.to_engine_tau(ask.tau) - self.skeleton.getCoriolisAndGravityForces()
         return change.to_neutral_a(self.skeleton.getInvMassMatrix() @ force)
@@ -252,24 +135,12 @@ class DartRobot:
     # ---- energies, momentum, kinematics
 
     def potential_energy(self, ask: Question) -> float:
-        """Answer -Σ m g·c.
-
-        Returns
-        -------
-        float
-            In J.
-        """
+        """Answer `potential_energy` by computePotentialEnergy."""
         self._update(ask)
         return self.skeleton.computePotentialEnergy()
 
     def momentum(self, ask: Question) -> Array:
-        """Answer the sum over the bodies, of which DART answers each in its own axes about a point in them.
-
-        Returns
-        -------
-        ndarray, shape (6,)
-            [angular about the centre of mass; linear] in world axes, kg m²/s and kg m/s.
-        """
+        """Answer `momentum` by a sum over the bodies. DART gives each in the body's axes, about a point in them."""
         self._update(ask)
         center, total = self.skeleton.getCOM(), np.zeros(6)
         for node in self.bodies:
@@ -278,54 +149,30 @@ class DartRobot:
         return total
 
     def placement(self, ask: Question) -> list[Array]:
-        """Answer where each body is.
-
-        Returns
-        -------
-        list of ndarray, shape (12,)
-            Of each body its rotation to world axes, row by row, and its origin in m.
-        """
+        """Answer `body_placement` by getWorldTransform."""
         self._update(ask)
         poses = [node.getWorldTransform() for node in self.bodies]
         return [np.append(pose.rotation().ravel(), pose.translation()) for pose in poses]
 
     def velocity(self, ask: Question) -> list[Array]:
-        """Answer the velocity of each body in world axes at its origin.
-
-        Returns
-        -------
-        list of ndarray, shape (6,)
-            Of each body [angular; linear], rad/s and m/s.
-        """
+        """Answer `body_velocity` by getAngularVelocity and getLinearVelocity."""
         self._update(ask)
         return [np.append(node.getAngularVelocity(), node.getLinearVelocity()) for node in self.bodies]
 
     def acceleration(self, ask: Question) -> list[Array]:
-        """Answer the acceleration of each body: DART's linear one is the classical one of the body's origin.
-
-        Returns
-        -------
-        list of ndarray, shape (6,)
-            Of each body [angular; linear], without gravity, rad/s² and m/s².
-        """
+        """Answer `body_acceleration` by getAngularAcceleration and getLinearAcceleration, which is classical."""
         change = self._update(ask)
         self.skeleton.setAccelerations(change.to_engine_a(ask.a))
         return [np.append(node.getAngularAcceleration(), node.getLinearAcceleration()) for node in self.bodies]
 
     def jacobian(self, ask: Question) -> Array:
-        """Answer J of the asked body in world axes at its origin.
-
-        Returns
-        -------
-        ndarray, shape (6, nv)
-            J with J v = [angular; linear], m or without unit.
-        """
+        """Answer `body_jacobian` by getWorldJacobian."""
         change = self._update(ask)
         return change.to_neutral_jacobian(self.skeleton.getWorldJacobian(self.bodies[ask.body]))
 
 
 class Dart:
-    """The engine: what `session.serve` asks."""
+    """The engine DART, for `session.serve`."""
 
     name = "dart"
     version = importlib.metadata.version("dartpy")
@@ -352,40 +199,9 @@ class Dart:
     }
 
     def prepare(self, description: Description) -> DartRobot:
-        """Build the robot.
-
-        Parameters
-        ----------
-        description : Description
-            The robot.
-
-        Returns
-        -------
-        DartRobot
-            The same in DART.
-
-        Raises
-        ------
-        Unsupported
-            If DART has no such robot.
-        """
+        """Build the robot. DART has no armature."""
         return DartRobot(description, *build(description))
 
     def read(self, path: Path, form: str, base: str) -> Reading:
-        """Have DART's own parser read a file.
-
-        Parameters
-        ----------
-        path : Path
-            The file.
-        form : str
-            `urdf` or `mjcf`.
-        base : str
-            `fixed` or `free`.
-
-        Returns
-        -------
-        Reading
-            What DART holds of it.
-        """
+        """Read a file by DartLoader or MjcfParser."""
         return reading.read(path, form, base, DartRobot)

@@ -1,7 +1,7 @@
-"""DART's own parsers: `DartLoader` for URDF and `MjcfParser`, and what the skeleton then holds is told.
+"""DART's own parsers, `DartLoader` for URDF and `MjcfParser`, and what the skeleton then holds.
 
-DART keeps the links of fixed joints as bodies on weld joints: they are merged in the description. What it reads of damping, friction and
-springs, and joints that mimic others, is told and then taken out.
+DART keeps the links of fixed joints as bodies on weld joints. They are merged in the description. Damping, friction, springs and the
+coupling of joints that mimic others are reported and then taken out of the skeleton.
 """
 
 from __future__ import annotations
@@ -34,31 +34,14 @@ TYPES = {
     "UniversalJoint": "universal",
     "TranslationalJoint": "translation",
 }
-UNBOUNDED = 1e300  # a limit of the largest double is none
-DRESS = re.compile(r"\x1b\[[0-9;]*m|^\[[-0-9 :.]+\] \[\w+\] ")  # colours and times in what DART says
+UNBOUNDED = 1e300  # a limit beyond this is no limit
+DRESS = re.compile(r"\x1b\[[0-9;]*m|^\[[-0-9 :.]+\] \[\w+\] ")  # colours and times in DART's messages
 BETWEEN = re.compile(r"(.+)__mjcf_dof\d+")  # bodies of DART's own between the joints of an MJCF body
-EDITED = 1e-9  # of a link's mass: what is told as edited
+EDITED = 1e-9  # relative difference of a link's mass that is reported as an edit
 
 
 def read(path: Path, form: str, base: str, make: Callable[[Description, dynamics.Skeleton, Any, Any], Any]) -> Reading:
-    """Read a file.
-
-    Parameters
-    ----------
-    path : Path
-        The file.
-    form : str
-        `urdf` or `mjcf`.
-    base : str
-        `fixed` or `free`: whether the root of a URDF floats.
-    make : callable
-        Makes a robot of the description, the skeleton, its moving joints and their bodies.
-
-    Returns
-    -------
-    Reading
-        What DART holds of the file.
-    """
+    """Read a file as `protocol.FileReader` says; `make` takes the description, the skeleton, its moving joints and their bodies."""
     notes: list[Header] = []
     with overheard(path, notes):
         skeleton = _urdf(path, base) if form == "urdf" else _mjcf(path)
@@ -90,7 +73,7 @@ def read(path: Path, form: str, base: str, make: Callable[[Description, dynamics
 
 
 def _urdf(path: Path, base: str, bare: bool = False) -> dynamics.Skeleton | None:
-    """Load the skeleton of a URDF, if `bare` without its geometry, whose files DART has to find."""
+    """Load the skeleton of a URDF; if `bare`, without its geometry, whose files DART may not find."""
     roots = utils.DartLoaderRootJointType
     loader, options = utils.DartLoader(), utils.DartLoaderOptions()
     options.mDefaultRootJointType = roots.FLOATING if base == "free" else roots.FIXED
@@ -105,7 +88,7 @@ def _urdf(path: Path, base: str, bare: bool = False) -> dynamics.Skeleton | None
 
 
 def _mjcf(path: Path) -> dynamics.Skeleton | None:
-    """Load the one skeleton that moves: DART makes one of each body in the world."""
+    """Load the one skeleton that moves. DART makes a skeleton of each body in the world."""
     world = utils.MjcfParser.readWorld(common.Uri(str(path)))
     if world is None:
         return None
@@ -120,7 +103,7 @@ def _place(pose: Isometry3) -> Place:
 
 
 def _links(nodes: list[dynamics.BodyNode]) -> list[Link]:
-    """Tell the bodies as links, each with the one joint above it."""
+    """List the bodies as links, each with its joint to the parent."""
     index = {node.getName(): k for k, node in enumerate(nodes)}
     links = []
     for node in nodes:
@@ -137,7 +120,7 @@ def _links(nodes: list[dynamics.BodyNode]) -> list[Link]:
 
 
 def _held(joint: dynamics.Joint, inner: Place) -> HeldJoint:
-    """Tell a joint."""
+    """Describe a joint."""
     kind = TYPES.get(joint.getType(), joint.getType())
     count = joint.getNumDofs()
     dofs = {"damping": np.array([joint.getDampingCoefficient(k) for k in range(count)])}
@@ -152,7 +135,7 @@ def _held(joint: dynamics.Joint, inner: Place) -> HeldJoint:
 
 
 def _axes(joint: dynamics.Joint, kind: str) -> Array:
-    """Find our joint's axes in DART's joint frame: a planar joint may have others than x, y, z, a universal one than x, y."""
+    """Find our joint's axes in DART's joint frame. DART's planar joint may have others than x, y, z; a universal joint others than x, y."""
     if kind == "planar":
         return np.column_stack([joint.getTranslationalAxis1(), joint.getTranslationalAxis2(), joint.getRotationalAxis()])
     if kind == "universal":

@@ -1,1 +1,1 @@
-"""Drake: the oracle, its reading of files, its conventions and reproductions of its known deviations."""
+"""Drake: the oracle, its import of files, its conventions and reproductions of its known deviations."""

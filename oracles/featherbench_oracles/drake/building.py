@@ -1,10 +1,11 @@
 """The robot, built with the calls of a continuous `MultibodyPlant(0.0)`.
 
-Joints are Revolute, Prismatic, Screw (whose pitch is per *revolution*), BallRpy (Drake has no quaternion ball joint), QuaternionFloating,
-Planar and Universal; translation, cylindrical and euler_zyx, which Drake has not, are chains of Prismatic and Revolute joints with massless
-bodies between (BallRpy has the angles of euler_zyx, but not their rates: its velocity is the angular one). Armature is the rotor inertia,
-at gear ratio 1, of an actuator, which Drake gives to one-dof joints only. Damping is never set. Inertias skip Drake's validity check, so
-that unphysical bodies are answered for as well.
+Joints are Drake's Revolute, Prismatic, Screw (whose pitch is per *revolution*), BallRpy, QuaternionFloating, Planar and Universal. Drake
+has no quaternion ball joint, and no translation, cylindrical or euler_zyx joint. The last three are chains of Prismatic and Revolute joints
+with massless bodies between. (BallRpy has the angles of euler_zyx, but its velocity is the angular one.)
+
+Armature is the rotor inertia of an actuator at gear ratio 1. Drake has actuators on one-dof joints only. Damping is never set. Inertias
+skip Drake's validity check, so unphysical bodies are allowed.
 """
 
 from __future__ import annotations
@@ -23,7 +24,7 @@ from featherbench_oracles.robot import Body, Description, Joint
 
 
 def spatial_inertia(body: Body) -> tree.SpatialInertia:
-    """Make Drake's inertia, which is kept as the unit inertia about the *body's origin*: G = I / m - [c]x^2.
+    """Make Drake's inertia. It holds the unit inertia about the *body's origin*: G = I / m - [c]x^2.
 
     Parameters
     ----------
@@ -51,7 +52,7 @@ JointMaker = Callable[[str, tree.Frame, tree.Frame], tree.Joint]
 
 
 def joint_chain(joint: Joint) -> list[JointMaker]:
-    """List Drake's joint of that type, or the joints that make it up, from the parent outwards.
+    """List the Drake joints that make up a joint, from the parent outwards.
 
     Parameters
     ----------
@@ -61,7 +62,7 @@ def joint_chain(joint: Joint) -> list[JointMaker]:
     Returns
     -------
     list of callable
-        Each makes a joint of its name and its two frames.
+        Each makes a joint from its name and its two frames.
     """
 
     def turn(axis: Array) -> JointMaker:
@@ -99,7 +100,7 @@ def build(robot: Description) -> tuple[MultibodyPlant, list[list[tree.Joint]]]:
     plant : MultibodyPlant
         The robot.
     chains : list of list of Joint
-        For each body its joint, or the joints that make it up.
+        For each body its joint, or the joints that form it.
 
     Raises
     ------

@@ -20,20 +20,7 @@ from featherbench_oracles.robot import Description, Joint
 
 
 def to_engine_q(robot: Description, q: Array) -> Array:
-    """Bring coordinates to Drake.
-
-    Parameters
-    ----------
-    robot : Description
-        The robot.
-    q : ndarray, shape (nq,)
-        Neutral coordinates, m, rad or quaternions.
-
-    Returns
-    -------
-    ndarray, shape (nq of Drake,)
-        q_e of the table, m, rad or quaternions.
-    """
+    """Convert positions to Drake's."""
     return np.concatenate([_joint_q(body.joint, q[body.joint.q]) for body in robot.bodies])
 
 
@@ -46,22 +33,7 @@ def _joint_q(joint: Joint, q: Array) -> Array:
 
 
 def change_of_velocities(robot: Description, q: Array, v: Array) -> Change:
-    """Find T and b of the table.
-
-    Parameters
-    ----------
-    robot : Description
-        The robot.
-    q : ndarray, shape (nq,)
-        Neutral coordinates, m, rad or quaternions.
-    v : ndarray, shape (nv,)
-        Neutral velocities, m/s or rad/s.
-
-    Returns
-    -------
-    Change
-        The change at that state.
-    """
+    """Find T and b of the table, by the interface in `change`."""
     blocks, bias = [], np.zeros(robot.nv)
     for joint in (body.joint for body in robot.bodies):
         if joint.type == "spherical":

@@ -1,7 +1,7 @@
-"""Drake's own parser: `Parser` on a continuous plant without a scene graph, so that no mesh is looked for; what the plant holds is told.
+"""Drake's own parser, and what the plant then holds. The continuous plant has no scene graph, so `Parser` needs no meshes.
 
-Drake keeps the links of fixed joints as bodies: they are merged in the description. A body of an MJCF with several joints has bodies of
-Drake's own between them, which get the names that such bodies have in a description. Drake's log is told as warnings.
+Drake keeps the links of fixed joints as bodies. They are merged in the description. A body of an MJCF with several joints has bodies of
+Drake's own between them. They get the names that such bodies have in a description. Drake's log becomes notes with the cause `warning`.
 """
 
 from __future__ import annotations
@@ -34,28 +34,11 @@ TYPES = {
     "planar": "planar",
     "universal": "universal",
 }
-EDITED = 1e-9  # of a link's mass or inertia: what is told as edited
+EDITED = 1e-9  # relative difference of a link's mass or inertia that is reported as an edit
 
 
 def read(path: Path, form: str, base: str, make: Callable[[Description, MultibodyPlant, list[list[tree.Joint]]], Any]) -> Reading:
-    """Read a file.
-
-    Parameters
-    ----------
-    path : Path
-        The file.
-    form : str
-        `urdf` or `mjcf`.
-    base : str
-        `fixed` or `free`: whether the root of a URDF floats.
-    make : callable
-        Makes a robot of the description, the plant and each body's joint.
-
-    Returns
-    -------
-    Reading
-        What Drake holds of the file.
-    """
+    """Read a file as `protocol.FileReader` says; `make` takes the description, the plant and each body's joint."""
     notes: list[Header] = []
     plant = MultibodyPlant(0.0)
     with overheard(path, notes):
@@ -71,7 +54,7 @@ def read(path: Path, form: str, base: str, make: Callable[[Description, Multibod
     links = _links(plant, joints, damping)
     named = _chained(links, path) if form == "mjcf" else links
     description = describe(next(iter(names), path.stem), plant.gravity_field().gravity_vector(), named)
-    own = {after.name for before, after in zip(links, named, strict=True) if before.name != after.name}  # no links of the file
+    own = {after.name for before, after in zip(links, named, strict=True) if before.name != after.name}  # not links of the file
     description["frames"] = [frame for frame in description["frames"] if frame["name"] not in own]
     _note_edits(plant, path, notes)
     if plant.num_constraints():
@@ -94,7 +77,7 @@ def _joints(plant: MultibodyPlant) -> list[tree.Joint]:
 
 
 def _stand(plant: MultibodyPlant, path: Path, base: str, notes: list[Header]) -> None:
-    """Weld a URDF's root link to the world for a fixed base. A root that is called `world` is the world already."""
+    """Weld a URDF's root link to the world for a fixed base. A root with the name `world` is the world already."""
     links, carried = ([element.get(key) for element in elements(path, tag)] for tag, key in (("link", "name"), ("child", "link")))
     for root in links:
         if root in carried or root is None:
@@ -132,7 +115,7 @@ def _place(pose: RigidTransform) -> Place:
 
 
 def _links(plant: MultibodyPlant, joints: list[tree.Joint], damping: dict[Any, Array]) -> list[Link]:
-    """Tell the bodies as links, each with the one joint above it."""
+    """List the bodies as links, each with its joint to the parent."""
     context = plant.CreateDefaultContext()
     index = {int(plant.world_body().index()): -1}
     motors = [plant.get_joint_actuator(i) for i in plant.GetJointActuatorIndices()]
@@ -157,7 +140,7 @@ def _links(plant: MultibodyPlant, joints: list[tree.Joint], damping: dict[Any, A
 
 
 def _held(joint: tree.Joint, inner: Place, damping: Array, actuator: tree.JointActuator | None) -> HeldJoint:
-    """Tell a joint; its armature is an actuator's rotor inertia times the square of the gear ratio."""
+    """Describe a joint. Its armature is the rotor inertia of its actuator times the square of the gear ratio."""
     kind = TYPES.get(joint.type_name(), joint.type_name())
     dofs = {"damping": damping, "velocity": joint.velocity_upper_limits().copy()}
     if joint.num_positions() == joint.num_velocities() and kind != "spherical":
@@ -172,7 +155,7 @@ def _held(joint: tree.Joint, inner: Place, damping: Array, actuator: tree.JointA
 
 
 def _chained(links: list[Link], path: Path) -> list[Link]:
-    """Give bodies that are not the file's the names of a description: `<link>/<joint>` for the link below."""
+    """Give bodies that are not in the file the names of a description: `<link>/<joint>`, where the link is the next one outwards."""
     known = {body.get("name") for body in elements(path, "body")}
     renamed, below = list(links), ""
     for k in reversed(range(len(links))):
@@ -210,13 +193,13 @@ def _note_edits(plant: MultibodyPlant, path: Path, notes: list[Header]) -> None:
 
 
 def _given(link: ElementTree.Element, tag: str, keys: list[str]) -> list[str]:
-    """Find the words of a link's inertial; what is absent is 0."""
+    """Find the numbers of a link's inertial as text; an absent one is 0."""
     element = link.find(f"inertial/{tag}")
     return [(element.get(key) if element is not None else None) or "0" for key in keys]
 
 
 def _near(given: list[Any], held: list[float]) -> bool:
-    """Tell whether the engine holds the numbers of the file."""
+    """Whether the engine holds the numbers of the file."""
     try:
         x, y = np.array(given, dtype=float), np.array(held)
         return x.shape == y.shape and bool(np.abs(x - y).max() <= EDITED * np.abs(x).max())

@@ -1,1 +1,1 @@
-"""MuJoCo: the oracle, its reading of files, its conventions and reproductions of its known deviations."""
+"""MuJoCo: the oracle, its import of files, its conventions and reproductions of its known deviations."""

@@ -1,14 +1,24 @@
 """The robot, built with `MjSpec`.
 
-Joints of several degrees of freedom are slides and hinges in one body, in the order of the neutral coordinates: planar (slide x, slide y,
-hinge z), universal (hinge x, y), translation (slide x, y, z), cylindrical (hinge, slide), euler_zyx (hinge z, y, x). There is no helical
-joint. The compiler is told to edit nothing. Inertias go in by principal axes: MuJoCo's own diagonalisation of a full inertia leaves a
-quaternion whose length is 3e-15 off one, and forgets the axes altogether where no centre of mass was set. Damping, dry friction, limits,
-contacts and actuators are never set and constraints are disabled, so qfrc_passive is zero.
+Joints of several degrees of freedom are slides and hinges in one body, in the order of the neutral coordinates:
 
-A massless or unphysical moving body is refused by the compiler: its words are the reason given. But massless bodies whose one child stands
-in their axes, as an MJCF body with several joints is described, are folded into it as joints of one body. MuJoCo has no such bodies then:
-what asks for each body is unsupported.
+::
+
+    joint        MuJoCo's joints
+    planar       slide x, slide y, hinge z
+    universal    hinge x, hinge y
+    translation  slide x, slide y, slide z
+    cylindrical  hinge, slide
+    euler_zyx    hinge z, hinge y, hinge x
+    helical      none
+
+Settings of the compiler keep it from edits. Inertias are given by principal axes. MuJoCo's own diagonalisation of a full inertia leaves a
+quaternion whose length is 3e-15 off one, and drops the axes where no centre of mass was set. Damping, dry friction, limits, contacts and
+actuators are never set, and constraints are disabled. So qfrc_passive is zero.
+
+The compiler rejects a massless or unphysical moving body. Its message is the reason given. One kind of massless body is allowed: one whose
+only child has the same axes, as in the description of an MJCF body with several joints. Such a body is folded into its child, as a joint of
+one body. MuJoCo then lacks the body, so quantities of every body are unsupported.
 """
 
 from __future__ import annotations
@@ -30,7 +40,7 @@ X, Y, Z = np.eye(3)
 
 
 def empty_spec(robot: Description) -> mj.MjSpec:
-    """Make a spec that edits nothing, without constraints, contacts, fluid or automatic resets.
+    """Make a spec without edits, constraints, contacts, fluid and automatic resets.
 
     Parameters
     ----------
@@ -55,9 +65,9 @@ def empty_spec(robot: Description) -> mj.MjSpec:
 
 
 def principal(inertia: Array) -> tuple[Array, Array]:
-    """Find principal moments and axes; a diagonal inertia keeps the body's own axes.
+    """Compute principal moments and axes. A diagonal inertia keeps the body's own axes.
 
-    Axes close to the body's are given in another order: MuJoCo computes as if inertial axes within 1e-6 of the body's were the body's.
+    MuJoCo takes inertial axes within 1e-6 of the body's for the body's. So axes close to the body's are given in another order.
 
     Parameters
     ----------
@@ -82,7 +92,7 @@ def principal(inertia: Array) -> tuple[Array, Array]:
 
 
 def chains(robot: Description) -> list[range]:
-    """Find the bodies that become one of MuJoCo's each: a body, and before it the massless ones that are folded into it.
+    """Find the chains of bodies that become one body of MuJoCo: a body, and the massless ones before it that are folded into it.
 
     Parameters
     ----------
@@ -92,7 +102,7 @@ def chains(robot: Description) -> list[range]:
     Returns
     -------
     list of range
-        The indices of the bodies in each.
+        The indices of the bodies of each chain.
     """
     children = Counter(body.parent for body in robot.bodies)
     ends = [i for i in range(len(robot.bodies)) if children[i] != 1 or not _folds(robot.bodies[i], robot.bodies[i + 1])]
@@ -100,13 +110,13 @@ def chains(robot: Description) -> list[range]:
 
 
 def _folds(body: Body, child: Body) -> bool:
-    """Tell whether a body is nothing but a joint before its one child: joints of one MuJoCo body stand in the same axes."""
+    """Whether a body is only a joint before its one child. The joints of one MuJoCo body have the same axes."""
     nothing = body.mass == 0 and not body.com.any() and not body.inertia.any()
     return nothing and (child.joint.rotation == np.eye(3)).all() and "free" not in (body.joint.type, child.joint.type)
 
 
 def anchors(bodies: Sequence[Body]) -> list[Array]:
-    """Find where the joints of a chain stand in the frame of its last body, all coordinates being zero.
+    """Compute the anchors of a chain's joints in the frame of its last body, at zero coordinates.
 
     Parameters
     ----------
@@ -128,7 +138,7 @@ def add_body(parent: mj.MjsBody, bodies: Sequence[Body], index: int) -> mj.MjsBo
     Parameters
     ----------
     parent : mj.MjsBody
-        MuJoCo's body that it hangs on.
+        The parent body in MuJoCo.
     bodies : sequence of Body
         The chain.
     index : int
@@ -153,7 +163,7 @@ def add_body(parent: mj.MjsBody, bodies: Sequence[Body], index: int) -> mj.MjsBo
 
 
 def motions(joint: Joint) -> list[tuple[mj.mjtJoint, Array]]:
-    """List MuJoCo's joints that a joint is.
+    """List the MuJoCo joints that make up a joint.
 
     Parameters
     ----------
@@ -163,7 +173,7 @@ def motions(joint: Joint) -> list[tuple[mj.mjtJoint, Array]]:
     Returns
     -------
     list of, shape (mjtJoint, ndarray)
-        Of each its type and its axis of shape (3,).
+        For each its type and its axis of shape (3,).
     """
     return {
         "revolute": [(HINGE, joint.axis)],
@@ -179,7 +189,7 @@ def motions(joint: Joint) -> list[tuple[mj.mjtJoint, Array]]:
 
 
 def refuse_unsupported(body: Body) -> None:
-    """Refuse a joint that MuJoCo does not have.
+    """Check that MuJoCo has the joint of a body.
 
     Parameters
     ----------
@@ -189,7 +199,7 @@ def refuse_unsupported(body: Body) -> None:
     Raises
     ------
     Unsupported
-        If it has none such.
+        If MuJoCo has no such joint.
     """
     joint = body.joint
     if joint.type == "helical":
@@ -216,7 +226,7 @@ def build(robot: Description) -> mj.MjModel:
     Raises
     ------
     Unsupported
-        If a joint is none of MuJoCo's, or its compiler refuses the model.
+        If MuJoCo has no such joint, or its compiler rejects the model.
     """
     spec = empty_spec(robot)
     held = {-1: spec.worldbody}
@@ -232,5 +242,5 @@ def build(robot: Description) -> mj.MjModel:
     if (model.body_dofadr[1:] != [robot.bodies[chain[0]].joint.v.start for chain in chains(robot)]).any():
         raise RuntimeError("MuJoCo put the degrees of freedom in another order")
     model.dof_armature = np.concatenate([body.joint.armature for body in robot.bodies])
-    mj.mj_setConst(model, mj.MjData(model))  # MuJoCo keeps constants that depend on armature
+    mj.mj_setConst(model, mj.MjData(model))  # MuJoCo caches constants that depend on armature
     return model

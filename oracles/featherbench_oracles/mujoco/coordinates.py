@@ -21,20 +21,7 @@ from featherbench_oracles.robot import Body, Description
 
 
 def to_engine_q(robot: Description, q: Array) -> Array:
-    """Bring coordinates to MuJoCo.
-
-    Parameters
-    ----------
-    robot : Description
-        The robot.
-    q : ndarray, shape (nq,)
-        Neutral coordinates, m, rad or quaternions.
-
-    Returns
-    -------
-    ndarray, shape (nq,)
-        q_e of the table, m, rad or quaternions.
-    """
+    """Convert positions to MuJoCo's."""
     return np.concatenate([_joint_q(body, q[body.joint.q]) for body in robot.bodies])
 
 
@@ -50,22 +37,7 @@ def _joint_q(body: Body, q: Array) -> Array:
 
 
 def change_of_velocities(robot: Description, q: Array, v: Array) -> Change:
-    """Find T and b of the table.
-
-    Parameters
-    ----------
-    robot : Description
-        The robot.
-    q : ndarray, shape (nq,)
-        Neutral coordinates, m, rad or quaternions.
-    v : ndarray, shape (nv,)
-        Neutral velocities, m/s or rad/s.
-
-    Returns
-    -------
-    Change
-        The change at that state.
-    """
+    """Find T and b of the table, by the interface in `change`."""
     blocks, bias = [], np.zeros(robot.nv)
     for joint in (body.joint for body in robot.bodies):
         if joint.type == "free":
@@ -77,7 +49,7 @@ def change_of_velocities(robot: Description, q: Array, v: Array) -> Change:
 
 
 def wxyz(matrix: Array) -> Array:
-    """Find MuJoCo's quaternion of a rotation.
+    """Compute MuJoCo's quaternion of a rotation.
 
     Parameters
     ----------
@@ -95,7 +67,7 @@ def wxyz(matrix: Array) -> Array:
 
 
 def from_wxyz(quaternion: Array) -> Array:
-    """Find the rotation of MuJoCo's quaternion.
+    """Compute the rotation of MuJoCo's quaternion.
 
     Parameters
     ----------

@@ -17,7 +17,7 @@ from featherbench_oracles.robot import Description
 
 
 class MujocoRobot:
-    """A robot in MuJoCo. Every method that takes a question answers one quantity at its state.
+    """A robot in MuJoCo. Every method that takes a question answers one quantity at its state, as `protocol.Engine` says.
 
     Parameters
     ----------
@@ -32,19 +32,13 @@ class MujocoRobot:
         self.held = {chain[-1]: i for i, chain in enumerate(chains(robot), start=1)}
 
     def _all_held(self, quantity: str) -> None:
-        """Refuse a quantity where MuJoCo lacks bodies of the description."""
+        """Raise `Unsupported` if MuJoCo lacks bodies of the description that the quantity needs."""
         folded = len(self.robot.bodies) - len(self.held)
         if folded:
             raise Unsupported(f"MuJoCo has no massless bodies: {folded} are joints of the next one, and have no {quantity} of their own")
 
     def readback(self) -> list[Array]:
-        """Tell what MuJoCo holds: I = R diag(principal) R'. Of a folded body there is its joint's place alone.
-
-        Returns
-        -------
-        list of ndarray, shape (22,)
-            Of each body a row of `readback_row`.
-        """
+        """Read back I = R diag(principal) R'. A folded body has no inertia, only the placement of its joint."""
         m, rows = self.model, []
         for i, chain in enumerate(chains(self.robot), start=1):
             turn, joint = from_wxyz(m.body_quat[i]), m.body_jntadr[i]
@@ -76,24 +70,12 @@ class MujocoRobot:
         return self.data.qfrc_inverse.copy()
 
     def inverse(self, ask: Question) -> Array:
-        """Answer `id` by mj_inverse, armature included.
-
-        Returns
-        -------
-        ndarray, shape (nv,)
-            Forces of the joints, N or N m.
-        """
+        """Answer `id` by mj_inverse, armature included."""
         change = self._update(ask)
         return change.to_neutral_tau(self._inverse(change.to_engine_a(ask.a)))
 
     def rne(self, ask: Question) -> Array:
-        """Answer `id` by mj_rne + armature a_e.
-
-        Returns
-        -------
-        ndarray, shape (nv,)
-            Forces of the joints, N or N m.
-        """
+        """Answer `id` by mj_rne + armature a_e."""
         change = self._update(ask)
         self.data.qacc = change.to_engine_a(ask.a)
         tau = np.empty(self.model.nv)
@@ -101,13 +83,7 @@ class MujocoRobot:
         return change.to_neutral_tau(tau + self.model.dof_armature * self.data.qacc)
 
     def inverse_wrench(self, ask: Question) -> Array:
-        """Answer `id_wrench` by mj_inverse - Σ J' f, as mj_inverse does not look at applied forces.
-
-        Returns
-        -------
-        ndarray, shape (nv,)
-            Forces of the joints, N or N m.
-        """
+        """Answer `id_wrench` by mj_inverse - Σ J' f, because mj_inverse ignores applied forces."""
         self._all_held("wrench")
         change = self._update(ask)
         tau = self._inverse(change.to_engine_a(ask.a))
@@ -118,24 +94,12 @@ class MujocoRobot:
         return change.to_neutral_tau(tau - applied)
 
     def qfrc_bias(self, ask: Question) -> Array:
-        """Answer `bias` by h = T' (qfrc_bias + M_e b).
-
-        Returns
-        -------
-        ndarray, shape (nv,)
-            Forces of the joints, N or N m.
-        """
+        """Answer `bias` by h = T' (qfrc_bias + M_e b)."""
         change = self._update(ask)
         return change.to_neutral_tau(self.data.qfrc_bias + self._product(change.b))
 
     def bias_inverse(self, ask: Question) -> Array:
-        """Answer `bias` by mj_inverse at a = 0.
-
-        Returns
-        -------
-        ndarray, shape (nv,)
-            Forces of the joints, N or N m.
-        """
+        """Answer `bias` by mj_inverse at a = 0."""
         change = self._update(ask)
         return change.to_neutral_tau(self._inverse(change.b))
 
@@ -146,13 +110,7 @@ class MujocoRobot:
         return y
 
     def crb(self, ask: Question) -> Array:
-        """Answer `mass_matrix` by the composite rigid body algorithm.
-
-        Returns
-        -------
-        ndarray, shape (nv, nv)
-            Both triangles of M, kg, kg m or kg m².
-        """
+        """Answer `mass_matrix` by mj_fullM, after the composite rigid body algorithm."""
         change = self._update(ask)
         mass = np.empty((self.model.nv, self.model.nv))
         mj.mj_fullM(self.model, self.data, mass)
@@ -161,12 +119,7 @@ class MujocoRobot:
     def probe(self, ask: Question) -> Array:
         """Answer `mass_matrix_probe` by mj_mulM.
 
-        The diagonal ends the rows of the sparse M; where T is not identity it is e_i' M e_i.
-
-        Returns
-        -------
-        ndarray, shape (6, nv)
-            M x for the four rows x of `probe`, the diagonal of M, its last row.
+        The diagonal is the last entry of each row of the sparse M. Where T is not identity, it is e_i' M e_i.
         """
         change = self._update(ask)
 
@@ -182,97 +135,49 @@ class MujocoRobot:
         return mass_matrix_probe(product, diagonal, ask.probe)
 
     def forward(self, ask: Question) -> Array:
-        """Answer `fd` by a = M^-1 (tau - h) of mj_forward: the sparse factors L' D L of M.
-
-        Returns
-        -------
-        ndarray, shape (nv,)
-            Accelerations, m/s² or rad/s².
-        """
+        """Answer `fd` by mj_forward: a = M^-1 (tau - h) with the sparse factors L' D L of M."""
         change = self._update(ask)
         self.data.qfrc_applied = change.to_engine_tau(ask.tau)
         mj.mj_forward(self.model, self.data)
         return change.to_neutral_a(self.data.qacc.copy())
 
     def stored(self, _ask: Question) -> float:
-        """Answer nM: the numbers that MuJoCo stores of M, one for each dof and ancestor.
-
-        Returns
-        -------
-        float
-            A count.
-        """
+        """Answer `stored_entries` by nM: one number for each dof and ancestor."""
         return self.model.nM
 
     # ---- energies, momentum, kinematics
 
     def kinetic_energy(self, ask: Question) -> float:
-        """Answer ½ v' M v.
-
-        Returns
-        -------
-        float
-            In J.
-        """
+        """Answer `kinetic_energy` by mj_energyVel."""
         self._update(ask)
         mj.mj_energyVel(self.model, self.data)
         return self.data.energy[1]
 
     def potential_energy(self, ask: Question) -> float:
-        """Answer -Σ m g·c.
-
-        Returns
-        -------
-        float
-            In J.
-        """
+        """Answer `potential_energy` by mj_energyPos."""
         self._update(ask)
         mj.mj_energyPos(self.model, self.data)
         return self.data.energy[0]
 
     def com(self, ask: Question) -> Array:
-        """Answer where the centre of mass is.
-
-        Returns
-        -------
-        ndarray, shape (3,)
-            In world axes, m.
-        """
+        """Answer `com` by subtree_com."""
         self._update(ask)
         return self.data.subtree_com[0]
 
     def momentum(self, ask: Question) -> Array:
-        """Answer the momentum; linear is total mass times the centre's velocity.
-
-        Returns
-        -------
-        ndarray, shape (6,)
-            [angular about the centre of mass; linear] in world axes, kg m²/s and kg m/s.
-        """
+        """Answer `momentum` by mj_subtreeVel; the linear part is the total mass times the velocity of the centre of mass."""
         self._update(ask)
         mj.mj_subtreeVel(self.model, self.data)
         return np.append(self.data.subtree_angmom[0], self.model.body_subtreemass[0] * self.data.subtree_linvel[0])
 
     def placement(self, ask: Question) -> Array:
-        """Answer where each body is.
-
-        Returns
-        -------
-        ndarray, shape (bodies, 12)
-            Of each its rotation to world axes, row by row, and its origin in m.
-        """
+        """Answer `body_placement` by the xmat and xpos of mj_fwdPosition."""
         self._all_held("placement")
         self._update(ask)
         return np.hstack([self.data.xmat[1:], self.data.xpos[1:]])
 
     def velocity(self, ask: Question) -> Array:
-        """Answer the velocity of each body in world axes at its origin.
-
-        Returns
-        -------
-        ndarray, shape (bodies, 6)
-            Of each [angular; linear], rad/s and m/s.
-        """
+        """Answer `body_velocity` by mj_objectVelocity."""
         self._all_held("velocity")
         self._update(ask)
         velocities = np.empty((self.model.nbody, 6))
@@ -281,13 +186,7 @@ class MujocoRobot:
         return velocities[1:]
 
     def acceleration(self, ask: Question) -> Array:
-        """Answer the classical acceleration of each body; MuJoCo gives it as if the world accelerated by -g, which is taken off.
-
-        Returns
-        -------
-        ndarray, shape (bodies, 6)
-            Of each [angular; linear], without gravity, rad/s² and m/s².
-        """
+        """Answer `body_acceleration` by mj_objectAcceleration + g: MuJoCo's contains -g."""
         self._all_held("acceleration")
         change = self._update(ask)
         self.data.qacc = change.to_engine_a(ask.a)
@@ -298,13 +197,7 @@ class MujocoRobot:
         return accelerations[1:] + np.append(np.zeros(3), self.model.opt.gravity)
 
     def jacobian(self, ask: Question) -> Array:
-        """Answer J of the asked body in world axes at its origin.
-
-        Returns
-        -------
-        ndarray, shape (6, nv)
-            J with J v = [angular; linear], m or without unit.
-        """
+        """Answer `body_jacobian` by mj_jacBody."""
         if ask.body not in self.held:
             self._all_held("Jacobian")
         change = self._update(ask)
@@ -314,7 +207,7 @@ class MujocoRobot:
 
 
 class Mujoco:
-    """The engine: what `session.serve` asks."""
+    """The engine MuJoCo, for `session.serve`."""
 
     name = "mujoco"
     version = mj.mj_versionString()
@@ -338,40 +231,9 @@ class Mujoco:
     }
 
     def prepare(self, description: Description) -> MujocoRobot:
-        """Build the robot.
-
-        Parameters
-        ----------
-        description : Description
-            The robot.
-
-        Returns
-        -------
-        MujocoRobot
-            The same in MuJoCo.
-
-        Raises
-        ------
-        Unsupported
-            If MuJoCo has no such robot.
-        """
+        """Build the robot."""
         return MujocoRobot(description, build(description))
 
     def read(self, path: Path, form: str, base: str) -> Reading:
-        """Have MuJoCo's own parser read a file.
-
-        Parameters
-        ----------
-        path : Path
-            The file.
-        form : str
-            `urdf` or `mjcf`.
-        base : str
-            `fixed` or `free`.
-
-        Returns
-        -------
-        Reading
-            What MuJoCo holds of it.
-        """
+        """Read a file by MuJoCo's parser and compiler."""
         return reading.read(path, form, base, MujocoRobot)

@@ -1,10 +1,13 @@
-"""MuJoCo's own parser and compiler: a file is compiled as any user of MuJoCo compiles it, and what the model then holds is told.
+"""MuJoCo's own parser and compiler, and what the model then holds. A file is compiled as users of MuJoCo compile it.
 
-A URDF is read with MuJoCo's defaults: bodies of fixed joints are fused into their parents, visual geometry is discarded, and the root link
-is a part of the world, unless the base is free: then it gets a free joint. Where the compiler refuses a file, what a user tries next is
-tried: without the meshes that are not found, then with balanceinertia, then with lower bounds of mass and inertia. A note says so.
+A URDF is read with MuJoCo's defaults. Bodies of fixed joints are fused into their parents, and visual geometry is discarded. The root link
+is a part of the world for a fixed base, and gets a free joint for a free base. If the compiler rejects a file, it is compiled again:
 
-Positions are MuJoCo's own (`qpos`), so that a hinge with a `ref` stands at its place in the file when its coordinate is `ref`.
+- without the meshes that are not found;
+- then with balanceinertia;
+- then with lower bounds of mass and inertia.
+
+A note says so. Positions are MuJoCo's own (`qpos`): a hinge with a `ref` is at its place in the file when its coordinate is `ref`.
 """
 
 from __future__ import annotations
@@ -24,11 +27,12 @@ from featherbench_oracles.protocol import Reading
 from featherbench_oracles.reading import HeldJoint, Link, Place, describe, inertial, listed, note, overheard, turned, without_free_armature
 from featherbench_oracles.robot import Description
 
-mj.set_mju_user_warning(lambda text: print(f"warning: {text}", file=sys.stderr))  # else MuJoCo writes MUJOCO_LOG.TXT where it stands
+# Without this MuJoCo writes MUJOCO_LOG.TXT into the current folder.
+mj.set_mju_user_warning(lambda text: print(f"warning: {text}", file=sys.stderr))
 
-BOUND = 1e-6  # kg and kg m², where the compiler refuses a file without bounds
-DIAGONALISED = 64 * np.finfo(float).eps  # of an inertia: what MuJoCo's iteration for principal axes leaves (18 eps on a link of xarm7)
-EDITED = 1e-9  # of a body's mass or inertia: what is told as edited; MuJoCo's own rounding is a few eps
+BOUND = 1e-6  # kg and kg m², if the compiler rejects a file without bounds
+DIAGONALISED = 64 * np.finfo(float).eps  # of an inertia: error of MuJoCo's iteration for principal axes (18 eps on a link of xarm7)
+EDITED = 1e-9  # relative difference of a mass or inertia that is reported as an edit; MuJoCo's own rounding is a few eps
 TYPES = {
     mj.mjtJoint.mjJNT_HINGE: "revolute",
     mj.mjtJoint.mjJNT_SLIDE: "prismatic",
@@ -38,29 +42,12 @@ TYPES = {
 
 
 def read(path: Path, form: str, base: str, make: Callable[[Description, mj.MjModel], Any]) -> Reading:
-    """Read a file.
-
-    Parameters
-    ----------
-    path : Path
-        The file.
-    form : str
-        `urdf` or `mjcf`.
-    base : str
-        `fixed` or `free`: whether the root of a URDF floats.
-    make : callable
-        Makes a robot of MuJoCo's model and its description.
-
-    Returns
-    -------
-    Reading
-        What MuJoCo holds of the file.
-    """
+    """Read a file as `protocol.FileReader` says; `make` takes the description and MuJoCo's model."""
     notes: list[Header] = []
     floating = form == "urdf" and base == "free"
     with overheard(path, notes):
         spec, model, settings, given = _compiled(path, floating, notes)
-        # a second time only if a link was fused: compiling takes time that grows with the cube of the number of bodies
+        # a second time only if a link was fused: the time of compiling grows with the cube of the number of bodies
         whole_spec, whole = _unfused(path, floating, settings) if model.nbody < given else (spec, model)
     _note_edits(whole_spec, whole, notes)
     _note_not_compared(model, notes)
@@ -83,7 +70,7 @@ def read(path: Path, form: str, base: str, make: Callable[[Description, mj.MjMod
 
 
 def neutral_q(model: mj.MjModel, qpos: Array) -> Array:
-    """Bring MuJoCo's coordinates back: quaternions end with w.
+    """Convert MuJoCo's positions back: quaternions end with w.
 
     Parameters
     ----------
@@ -118,13 +105,13 @@ def _balance(spec: mj.MjSpec) -> None:
 
 
 def _bound(spec: mj.MjSpec) -> None:
-    """Repair them, and give every body at least this mass and inertia."""
+    """Repair inertias, and give every body at least the mass and inertia `BOUND`."""
     _balance(spec)
     spec.compiler.boundmass = spec.compiler.boundinertia = BOUND
 
 
 def _without_files(spec: mj.MjSpec) -> None:
-    """Take out what comes from other files: meshes and height fields with their geoms, skins, textures with their materials."""
+    """Delete what comes from other files: meshes and height fields with their geoms, skins, textures with their materials."""
     for geom in spec.geoms:
         geom.material = ""
         if geom.meshname or geom.hfieldname:
@@ -138,7 +125,7 @@ def _without_files(spec: mj.MjSpec) -> None:
             spec.delete(element)
 
 
-# what a user tries when the compiler refuses, in this order: the note's cause, the setting, what it does
+# the settings that are tried if the compiler rejects a file, in this order: the note's cause, the setting, its description
 REMEDIES: tuple[tuple[str, Setting, str], ...] = (
     ("geometry_dropped", _without_files, "meshes, height fields, skins and textures were dropped, as not all of their files can be read"),
     ("balanceinertia", _balance, "balanceinertia was needed: it gives a body of unphysical inertia three equal moments"),
@@ -147,7 +134,7 @@ REMEDIES: tuple[tuple[str, Setting, str], ...] = (
 
 
 def _compiled(path: Path, floating: bool, notes: list[Header]) -> tuple[mj.MjSpec, mj.MjModel, list[Setting], int]:
-    """Compile a file: the spec, the model, the settings that were needed, and how many bodies the file has, the world among them."""
+    """Compile a file. Returns the spec, the model, the settings that were needed, and the number of bodies in the file with the world."""
     settings: list[Setting] = []
     remedies, tried = list(REMEDIES), []
     while True:
@@ -170,7 +157,7 @@ def _compiled(path: Path, floating: bool, notes: list[Header]) -> tuple[mj.MjSpe
 
 
 def _loaded(path: Path, floating: bool, settings: list[Setting]) -> mj.MjSpec:
-    """Load the spec of the file, not compiled."""
+    """Load the spec of the file, without compiling it."""
     spec = mj.MjSpec.from_file(str(path))
     for setting in settings:
         setting(spec)
@@ -181,10 +168,10 @@ def _loaded(path: Path, floating: bool, settings: list[Setting]) -> mj.MjSpec:
 
 
 def _unfused(path: Path, floating: bool, settings: list[Setting]) -> tuple[mj.MjSpec, mj.MjModel]:
-    """Compile the same with every link a body of its own: it tells where fused links are, and what was edited link by link."""
+    """Compile without fusing links. The result shows where fused links are, and what was edited link by link."""
     spec = _loaded(path, floating, settings)
     spec.compiler.fusestatic = False
-    for joint in spec.joints:  # a free joint below a link may stand only if that is fused into the world
+    for joint in spec.joints:  # a free joint below a link is allowed only if the link is fused into the world
         if joint.type == mj.mjtJoint.mjJNT_FREE and joint.parent.parent.name != spec.worldbody.name:
             spec.delete(joint)
     return spec, spec.compile()
@@ -194,17 +181,17 @@ def _unfused(path: Path, floating: bool, settings: list[Setting]) -> tuple[mj.Mj
 
 
 def _named(name: str, kind: str, i: int) -> str:
-    """Find the name, or make one for what has none."""
+    """Return the name, or make one."""
     return name or f"{kind} {i}"
 
 
 def _place(model: mj.MjModel, i: int) -> Place:
-    """Find body i in its parent."""
+    """Find the placement of body i in its parent."""
     return Place(turned(*model.body_quat[i]), model.body_pos[i].copy())
 
 
 def _inertial_frame(model: mj.MjModel, i: int) -> Place:
-    """Find body i's centre of mass and principal axes, as MuJoCo computes with them: within 1e-6 of the body's frame they are that."""
+    """Find the centre of mass and principal axes of body i that MuJoCo uses: within 1e-6 of the body's frame it uses that frame."""
     same, kinds = model.body_sameframe[i], mj.mjtSameFrame
     axes = np.eye(3) if same in (kinds.mjSAMEFRAME_BODY, kinds.mjSAMEFRAME_BODYROT) else turned(*model.body_iquat[i])
     return Place(axes, np.zeros(3) if same == kinds.mjSAMEFRAME_BODY else model.body_ipos[i].copy())
@@ -217,7 +204,7 @@ def _inertia(model: mj.MjModel, i: int) -> Array:
 
 
 def _as_written(spec: mj.MjSpec, model: mj.MjModel) -> list[Link]:
-    """Tell the links with the inertials of the file, where the compiler's repairs changed them.
+    """List the links with the inertials of the file, in place of those that the compiler repaired.
 
     A link without an inertial has the mass of its geometry, or none.
     """
@@ -230,7 +217,7 @@ def _as_written(spec: mj.MjSpec, model: mj.MjModel) -> list[Link]:
 
 
 def _given(body: mj.MjsBody, model: mj.MjModel) -> tuple[float, Array, Array]:
-    """Find mass, centre of mass and inertia of a link as the file has them; as compiled where it leaves them to geometry."""
+    """Find mass, centre of mass and inertia of a link in the file; those of the model if the file leaves them to geometry."""
     i = body.id
     held = float(model.body_mass[i]), _inertial_frame(model, i).translation, _inertia(model, i)
     if not body.explicitinertial:
@@ -238,19 +225,19 @@ def _given(body: mj.MjsBody, model: mj.MjModel) -> tuple[float, Array, Array]:
     six = _given_inertia(body)
     if six is not None and not _edited(six, held[2]):
         six = held[2]  # the compiler's rounding is no repair
-    if six is None:  # principal moments, about axes that the compiler keeps
+    if six is None:  # the file has principal moments; the compiler keeps their axes
         axes = turned(*model.body_iquat[i])
         six = (axes * body.inertia) @ axes.T
     return float(body.mass), np.array(body.ipos), six
 
 
 def _edited(given: Array, held: Array) -> bool:
-    """Tell whether an inertia is another one, beyond rounding."""
+    """Whether two inertias differ by more than rounding."""
     return not np.abs(given - held).max() <= EDITED * np.abs(given).max()  # NaN is an edit
 
 
 def _given_inertia(body: mj.MjsBody) -> Array | None:
-    """Find the inertia in body axes as the file gives it, as far as the spec still knows."""
+    """Find the inertia of the file in body axes, if the spec still holds it."""
     six = body.fullinertia
     if not body.explicitinertial or not np.isfinite(six).all() or body.ialt.type != mj.mjtOrientation.mjORIENTATION_QUAT:
         return None
@@ -260,9 +247,9 @@ def _given_inertia(body: mj.MjsBody) -> Array | None:
 
 
 def _link(spec: mj.MjSpec, model: mj.MjModel, names: list[str], i: int) -> Link:
-    """Tell body i of the model.
+    """Describe body i of the model.
 
-    An inertia that the compiler's principal axes give back within rounding is told in the file's own digits.
+    If the compiler's principal axes give the file's inertia within rounding, the numbers of the file are used.
     """
     inertia = _inertia(model, i)
     body = spec.body(model.body(i).name) if model.body(i).name else None
@@ -270,13 +257,13 @@ def _link(spec: mj.MjSpec, model: mj.MjModel, names: list[str], i: int) -> Link:
     if given is not None and np.abs(given - inertia).max() <= DIAGONALISED * np.abs(given).max():
         inertia = given
     joints = [_joint(model, j) for j in range(model.body_jntadr[i], model.body_jntadr[i] + model.body_jntnum[i])]
-    place = Place() if joints and joints[0].type == "free" else _place(model, i)  # a free joint's coordinates are those of the world
+    place = Place() if joints and joints[0].type == "free" else _place(model, i)  # a free joint's coordinates are relative to the world
     parent = int(model.body_parentid[i]) - 1
     return Link(names[i], float(model.body_mass[i]), _inertial_frame(model, i).translation, inertia, parent, place, joints)
 
 
 def _joint(model: mj.MjModel, j: int) -> HeldJoint:
-    """Tell joint j."""
+    """Describe joint j."""
     kind = TYPES[mj.mjtJoint(model.jnt_type[j])]
     dof = model.jnt_dofadr[j]
     span = slice(dof, dof + {"spherical": 3, "free": 6}.get(kind, 1))
@@ -317,7 +304,7 @@ def _add_fused_frames(description: Header, names: list[str], whole: mj.MjModel, 
 
 
 def _without_extras(model: mj.MjModel) -> None:
-    """Take out of the model what the neutral quantities do not have: all but bodies, joints, gravity and joint armature."""
+    """Remove from the model all but bodies, joints, gravity and joint armature: the neutral quantities include nothing else."""
     disable = mj.mjtDisableBit
     model.opt.disableflags |= disable.mjDSBL_CONSTRAINT | disable.mjDSBL_CONTACT | disable.mjDSBL_AUTORESET
     model.opt.disableflags |= disable.mjDSBL_SPRING | disable.mjDSBL_DAMPER | disable.mjDSBL_ACTUATION | disable.mjDSBL_SENSOR
@@ -330,7 +317,7 @@ def _without_extras(model: mj.MjModel) -> None:
     changed = any(numbers.any() for numbers in held)
     for numbers in held:
         numbers[:] = 0
-    if changed:  # what follows from them; it takes time that grows with the cube of the number of bodies
+    if changed:  # updates what depends on them; its time grows with the cube of the number of bodies
         mj.mj_setConst(model, mj.MjData(model))
 
 
@@ -338,7 +325,7 @@ def _without_extras(model: mj.MjModel) -> None:
 
 
 def _note_edits(spec: mj.MjSpec, model: mj.MjModel, notes: list[Header]) -> None:
-    """Note every link whose mass or inertia is not the file's."""
+    """Note every link whose mass or inertia differs from the file's."""
     for body in spec.bodies[1:]:
         i, name = body.id, _named(body.name, "body", body.id)
         inertia = _inertia(model, i)
@@ -364,17 +351,17 @@ def _note_edits(spec: mj.MjSpec, model: mj.MjModel, notes: list[Header]) -> None
 
 
 def _both(body: mj.MjsBody, model: mj.MjModel, held: list[float]) -> list[float]:
-    """List the ten numbers of a link's inertia as the file has them, then those that are held."""
+    """List the ten numbers of a link's inertia in the file, then those in the model."""
     return [*inertial(*_given(body, model)), *held]
 
 
 def _six(inertia: Array) -> str:
-    """Write six numbers of an inertia for a reader."""
+    """Write the six numbers of an inertia as text."""
     return "(" + ", ".join(f"{x:.6g}" for x in inertia[np.triu_indices(3)]) + ")"
 
 
 def _extras(model: mj.MjModel) -> Iterator[tuple[str, int]]:
-    """List what the model has besides bodies and joints, and how many."""
+    """List what the model has besides bodies and joints, with counts."""
     yield "geoms that can collide", int(((model.geom_contype != 0) | (model.geom_conaffinity != 0)).sum())
     yield "contact pairs", model.npair
     yield "tendons", model.ntendon
@@ -390,7 +377,7 @@ def _extras(model: mj.MjModel) -> Iterator[tuple[str, int]]:
 
 
 def _note_not_compared(model: mj.MjModel, notes: list[Header]) -> None:
-    """Note each kind of thing that the neutral quantities leave out."""
+    """Note each kind of thing that the neutral quantities do not include."""
     for kind, count in _extras(model):
         if count:
             notes.append(note("not_compared", None, f"{kind}: {count}"))

@@ -1,1 +1,1 @@
-"""Pinocchio: the oracle, its reading of files, its conventions and reproductions of its known deviations."""
+"""Pinocchio: the oracle, its import of files, its conventions and reproductions of its known deviations."""

@@ -26,7 +26,7 @@ def about_axis(kind: str, axis: Array, *pitch: float) -> pin.JointModel:
     axis : ndarray, shape (3,)
         A unit vector.
     *pitch : float
-        Of a helical joint its pitch, m/rad.
+        The pitch of a helical joint, m/rad.
 
     Returns
     -------
@@ -40,7 +40,7 @@ def about_axis(kind: str, axis: Array, *pitch: float) -> pin.JointModel:
 
 
 def joint_model(joint: Joint) -> pin.JointModel:
-    """Make Pinocchio's native joint of that type.
+    """Make Pinocchio's joint of the description's type.
 
     Parameters
     ----------
@@ -72,7 +72,7 @@ def joint_model(joint: Joint) -> pin.JointModel:
 
 
 def spatial_inertia(body: Body) -> pin.Inertia:
-    """Set an inertia part by part: the constructor refuses an indefinite one, which the algorithms do not mind.
+    """Set an inertia part by part. The constructor rejects an indefinite inertia; the algorithms compute with it.
 
     Parameters
     ----------
@@ -100,7 +100,7 @@ def build(robot: Description) -> pin.Model:
     Returns
     -------
     pin.Model
-        The model, joint i + 1 carrying body i.
+        The model. Joint i + 1 carries body i.
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""The conventions of Pinocchio: one function for each row of conventions.toml, named like it, that yields claims."""
+"""The conventions of Pinocchio. Each row of conventions.toml has a function of its name here, which yields claims."""
 
 from __future__ import annotations
 

@@ -18,20 +18,7 @@ from featherbench_oracles.robot import Description
 
 
 def to_engine_q(robot: Description, q: Array) -> Array:
-    """Bring coordinates to Pinocchio: a planar joint's angle becomes its cosine and sine.
-
-    Parameters
-    ----------
-    robot : Description
-        The robot.
-    q : ndarray, shape (nq,)
-        Neutral coordinates, m, rad or quaternions.
-
-    Returns
-    -------
-    ndarray, shape (nq of the table,)
-        q_e, m, rad or without unit.
-    """
+    """Convert positions to Pinocchio's: a planar joint's angle becomes its cosine and sine."""
     return np.concatenate([_planar_q(*q[b.joint.q]) if b.joint.type == "planar" else q[b.joint.q] for b in robot.bodies])
 
 
@@ -40,22 +27,7 @@ def _planar_q(x: float, y: float, theta: float) -> Array:
 
 
 def change_of_velocities(robot: Description, q: Array, v: Array) -> Change:
-    """Find T and b of the table.
-
-    Parameters
-    ----------
-    robot : Description
-        The robot.
-    q : ndarray, shape (nq,)
-        Neutral coordinates, m, rad or quaternions.
-    v : ndarray, shape (nv,)
-        Neutral velocities, m/s or rad/s.
-
-    Returns
-    -------
-    Change
-        The change at that state.
-    """
+    """Find T and b of the table, by the interface in `change`."""
     blocks, bias = [], np.zeros(robot.nv)
     for joint in (body.joint for body in robot.bodies):
         if joint.type == "planar":

@@ -19,7 +19,7 @@ from featherbench_oracles.robot import Description
 
 
 class PinocchioRobot:
-    """A robot in Pinocchio. Every method that takes a question answers one quantity at its state.
+    """A robot in Pinocchio. Every method that takes a question answers one quantity at its state, as `protocol.Engine` says.
 
     Parameters
     ----------
@@ -28,7 +28,7 @@ class PinocchioRobot:
     model : pin.Model
         The robot; where it was built from the description, body i is joint i + 1, as joint 0 is the universe.
     turning : sequence of int
-        The indices of the angles, in the q_e of `coordinates`, that are (cos, sin) in the model: continuous joints as read.
+        The angles that are (cos, sin) in the model, by their indices in the q_e of `coordinates`: continuous joints as read.
     """
 
     def __init__(self, robot: Description, model: pin.Model, turning: Sequence[int] = ()) -> None:
@@ -38,13 +38,7 @@ class PinocchioRobot:
             raise RuntimeError("Pinocchio's own check of the model fails")
 
     def readback(self) -> list[Array]:
-        """Tell what `model.inertias` and `model.jointPlacements` hold.
-
-        Returns
-        -------
-        list of ndarray, shape (22,)
-            Of each body a row of `readback_row`.
-        """
+        """Read back `model.inertias` and `model.jointPlacements`."""
         held = list(zip(self.model.inertias, self.model.jointPlacements, strict=True))[1:]
         return [readback_row(y.mass, y.lever, y.inertia, m.rotation, m.translation) for y, m in held]
 
@@ -56,54 +50,30 @@ class PinocchioRobot:
         return self._engine_q(ask.q), change.to_engine_v(ask.v), change
 
     def _engine_q(self, q: Array) -> Array:
-        """Find q_e, with (cos, sin) for the angles that the model has so."""
+        """Find q_e, with (cos, sin) for the angles in `turning`."""
         q_e = to_engine_q(self.robot, q)
         angles = q_e[self.turning]
         q_e[self.turning] = np.cos(angles)
         return np.insert(q_e, [k + 1 for k in self.turning], np.sin(angles))
 
     def rnea(self, ask: Question) -> Array:
-        """Answer `id` by tau = RNEA(q, v, a).
-
-        Returns
-        -------
-        ndarray, shape (nv,)
-            Forces of the joints, N or N m.
-        """
+        """Answer `id` by tau = RNEA(q, v, a)."""
         q, v, change = self._state(ask)
         return change.to_neutral_tau(pin.rnea(self.model, self.data, q, v, change.to_engine_a(ask.a)))
 
     def rnea_wrench(self, ask: Question) -> Array:
-        """Answer `id_wrench` by RNEA with forces on the bodies, given like ours in body axes about the body's origin.
-
-        Returns
-        -------
-        ndarray, shape (nv,)
-            Forces of the joints, N or N m.
-        """
+        """Answer `id_wrench` by RNEA with forces on the bodies, in body axes about the body's origin like ours."""
         q, v, change = self._state(ask)
         forces = pin.StdVec_Force([pin.Force.Zero(), *(pin.Force(w[3:], w[:3]) for w in ask.wrench)])
         return change.to_neutral_tau(pin.rnea(self.model, self.data, q, v, change.to_engine_a(ask.a), forces))
 
     def bias_rnea(self, ask: Question) -> Array:
-        """Answer `bias` by h = RNEA(q, v, a = 0).
-
-        Returns
-        -------
-        ndarray, shape (nv,)
-            Forces of the joints, N or N m.
-        """
+        """Answer `bias` by h = RNEA(q, v, a = 0)."""
         q, v, change = self._state(ask)
         return change.to_neutral_tau(pin.rnea(self.model, self.data, q, v, change.b))
 
     def nonlinear_effects(self, ask: Question) -> Array:
-        """Answer `bias` by h = T' (h_e + M_e b).
-
-        Returns
-        -------
-        ndarray, shape (nv,)
-            Forces of the joints, N or N m.
-        """
+        """Answer `bias` by h = T' (h_e + M_e b)."""
         q, v, change = self._state(ask)
         bias = pin.nonLinearEffects(self.model, self.data, q, v).copy()
         if change.b.any():
@@ -111,51 +81,27 @@ class PinocchioRobot:
         return change.to_neutral_tau(bias)
 
     def _mass_e(self, q: Array, convention: pin.Convention) -> Array:
-        """Compute M_e; crba promises its upper triangle only."""
+        """Compute M_e. crba promises the upper triangle only."""
         upper = np.triu(pin.crba(self.model, self.data, q, convention))
         return upper + np.triu(upper, 1).T
 
     def crba_local(self, ask: Question) -> Array:
-        """Answer `mass_matrix` by the composite rigid body algorithm in body frames.
-
-        Returns
-        -------
-        ndarray, shape (nv, nv)
-            Both triangles of M, kg, kg m or kg m².
-        """
+        """Answer `mass_matrix` by the composite rigid body algorithm in body frames."""
         q, _, change = self._state(ask)
         return change.to_neutral_mass(self._mass_e(q, pin.Convention.LOCAL))
 
     def crba_world(self, ask: Question) -> Array:
-        """Answer `mass_matrix` by the composite rigid body algorithm in the world frame.
-
-        Returns
-        -------
-        ndarray, shape (nv, nv)
-            Both triangles of M, kg, kg m or kg m².
-        """
+        """Answer `mass_matrix` by the composite rigid body algorithm in the world frame."""
         q, _, change = self._state(ask)
         return change.to_neutral_mass(self._mass_e(q, pin.Convention.WORLD))
 
     def probe_local(self, ask: Question) -> Array:
-        """Answer `mass_matrix_probe` by the M of `crba_local`.
-
-        Returns
-        -------
-        ndarray, shape (6, nv)
-            M x for the four rows x of `probe`, the diagonal of M, its last row.
-        """
+        """Answer `mass_matrix_probe` by the M of `crba_local`."""
         mass = self.crba_local(ask)
         return mass_matrix_probe(mass.__matmul__, np.diag(mass), ask.probe)
 
     def probe_world(self, ask: Question) -> Array:
-        """Answer `mass_matrix_probe` by the M of `crba_world`.
-
-        Returns
-        -------
-        ndarray, shape (6, nv)
-            M x for the four rows x of `probe`, the diagonal of M, its last row.
-        """
+        """Answer `mass_matrix_probe` by the M of `crba_world`."""
         mass = self.crba_world(ask)
         return mass_matrix_probe(mass.__matmul__, np.diag(mass), ask.probe)
 
@@ -164,33 +110,15 @@ class PinocchioRobot:
         return change.to_neutral_a(pin.aba(self.model, self.data, q, v, change.to_engine_tau(ask.tau), convention))
 
     def aba_local(self, ask: Question) -> Array:
-        """Answer `fd` by the articulated body algorithm in body frames.
-
-        Returns
-        -------
-        ndarray, shape (nv,)
-            Accelerations, m/s² or rad/s².
-        """
+        """Answer `fd` by the articulated body algorithm in body frames."""
         return self._aba(ask, pin.Convention.LOCAL)
 
     def aba_world(self, ask: Question) -> Array:
-        """Answer `fd` by the articulated body algorithm in the world frame.
-
-        Returns
-        -------
-        ndarray, shape (nv,)
-            Accelerations, m/s² or rad/s².
-        """
+        """Answer `fd` by the articulated body algorithm in the world frame."""
         return self._aba(ask, pin.Convention.WORLD)
 
     def crba_cholesky(self, ask: Question) -> Array:
-        """Answer `fd` by a = M^-1 (tau - h) with Pinocchio's tree-sparse factors U D U' of its M.
-
-        Returns
-        -------
-        ndarray, shape (nv,)
-            Accelerations, m/s² or rad/s².
-        """
+        """Answer `fd` by a = M^-1 (tau - h) with Pinocchio's tree-sparse factors U D U' of its M."""
         q, v, change = self._state(ask)
         rest = change.to_engine_tau(ask.tau) - pin.nonLinearEffects(self.model, self.data, q, v)
         pin.crba(self.model, self.data, q)
@@ -198,13 +126,7 @@ class PinocchioRobot:
         return change.to_neutral_a(pin.cholesky.solve(self.model, self.data, rest))
 
     def minverse(self, ask: Question) -> Array:
-        """Answer `fd` by a = M^-1 (tau - h) with the direct inverse of M, of which the upper triangle is promised.
-
-        Returns
-        -------
-        ndarray, shape (nv,)
-            Accelerations, m/s² or rad/s².
-        """
+        """Answer `fd` by a = M^-1 (tau - h) with computeMinverse, which promises the upper triangle only."""
         q, v, change = self._state(ask)
         rest = change.to_engine_tau(ask.tau) - pin.nonLinearEffects(self.model, self.data, q, v)
         upper = np.triu(pin.computeMinverse(self.model, self.data, q))
@@ -213,105 +135,52 @@ class PinocchioRobot:
     # ---- energies, momentum, kinematics
 
     def kinetic_energy(self, ask: Question) -> float:
-        """Answer ½ v' M v.
+        """Answer `kinetic_energy` by computeKineticEnergy.
 
-        Pinocchio 4.1.0 itself leaves out the armature of RevoluteUnaligned and HelicalUnaligned joints here.
-
-        Returns
-        -------
-        float
-            In J.
+        Pinocchio 4.1.0 leaves out the armature of RevoluteUnaligned and HelicalUnaligned joints here.
         """
         q, v, _ = self._state(ask)
         return pin.computeKineticEnergy(self.model, self.data, q, v)
 
     def kinetic_energy_crba(self, ask: Question) -> float:
-        """Answer ½ v' M v with the M of `crba_local`.
-
-        Returns
-        -------
-        float
-            In J.
-        """
+        """Answer `kinetic_energy` by ½ v' M v with the M of `crba_local`."""
         q, v, _ = self._state(ask)
         return float(v @ self._mass_e(q, pin.Convention.LOCAL) @ v / 2)
 
     def potential_energy(self, ask: Question) -> float:
-        """Answer -Σ m g·c.
-
-        Returns
-        -------
-        float
-            In J.
-        """
+        """Answer `potential_energy` by computePotentialEnergy."""
         return pin.computePotentialEnergy(self.model, self.data, to_engine_q(self.robot, ask.q))
 
     def com(self, ask: Question) -> Array:
-        """Answer where the centre of mass is.
-
-        Returns
-        -------
-        ndarray, shape (3,)
-            In world axes, m.
-        """
+        """Answer `com` by centerOfMass."""
         return pin.centerOfMass(self.model, self.data, to_engine_q(self.robot, ask.q))
 
     def momentum(self, ask: Question) -> Array:
-        """Answer the centroidal momentum.
-
-        Returns
-        -------
-        ndarray, shape (6,)
-            [angular about the centre of mass; linear] in world axes, kg m²/s and kg m/s.
-        """
+        """Answer `momentum` by computeCentroidalMomentum."""
         q, v, _ = self._state(ask)
         return to_angular_first(pin.computeCentroidalMomentum(self.model, self.data, q, v))
 
     def placement(self, ask: Question) -> list[Array]:
-        """Answer where each body is.
-
-        Returns
-        -------
-        list of ndarray, shape (12,)
-            Of each body its rotation to world axes, row by row, and its origin in m.
-        """
+        """Answer `body_placement` by forwardKinematics."""
         pin.forwardKinematics(self.model, self.data, to_engine_q(self.robot, ask.q))
         return [np.append(m.rotation.ravel(), m.translation) for m in list(self.data.oMi)[1:]]
 
     def velocity(self, ask: Question) -> list[Array]:
-        """Answer the velocity of each body in world axes at its origin.
-
-        Returns
-        -------
-        list of ndarray, shape (6,)
-            Of each body [angular; linear], rad/s and m/s.
-        """
+        """Answer `body_velocity` by getVelocity in the frame LOCAL_WORLD_ALIGNED."""
         q, v, _ = self._state(ask)
         pin.forwardKinematics(self.model, self.data, q, v)
         frame, joints = pin.LOCAL_WORLD_ALIGNED, range(1, self.model.njoints)
         return [to_angular_first(pin.getVelocity(self.model, self.data, i, frame)) for i in joints]
 
     def acceleration(self, ask: Question) -> list[Array]:
-        """Answer the classical acceleration of each body in world axes at its origin.
-
-        Returns
-        -------
-        list of ndarray, shape (6,)
-            Of each body [angular; linear], without gravity, rad/s² and m/s².
-        """
+        """Answer `body_acceleration` by getClassicalAcceleration in the frame LOCAL_WORLD_ALIGNED."""
         q, v, change = self._state(ask)
         pin.forwardKinematics(self.model, self.data, q, v, change.to_engine_a(ask.a))
         frame, joints = pin.LOCAL_WORLD_ALIGNED, range(1, self.model.njoints)
         return [to_angular_first(pin.getClassicalAcceleration(self.model, self.data, i, frame)) for i in joints]
 
     def jacobian(self, ask: Question) -> Array:
-        """Answer J of the asked body in world axes at its origin.
-
-        Returns
-        -------
-        ndarray, shape (6, nv)
-            J with J v = [angular; linear], m or without unit.
-        """
+        """Answer `body_jacobian` by getJointJacobian in the frame LOCAL_WORLD_ALIGNED."""
         q, _, change = self._state(ask)
         pin.computeJointJacobians(self.model, self.data, q)
         linear_first = pin.getJointJacobian(self.model, self.data, ask.body + 1, pin.LOCAL_WORLD_ALIGNED)
@@ -319,7 +188,7 @@ class PinocchioRobot:
 
 
 class Pinocchio:
-    """The engine: what `session.serve` asks."""
+    """The engine Pinocchio, for `session.serve`."""
 
     name = "pinocchio"
     version = pin.__version__
@@ -347,41 +216,10 @@ class Pinocchio:
     }
 
     def prepare(self, description: Description) -> PinocchioRobot:
-        """Build the robot.
-
-        Parameters
-        ----------
-        description : Description
-            The robot.
-
-        Returns
-        -------
-        PinocchioRobot
-            The same in Pinocchio.
-
-        Raises
-        ------
-        Unsupported
-            If Pinocchio has no such robot, or no memory for it.
-        """
+        """Build the robot, if its workspace fits into the process's memory."""
         reading.affordable(description.nv)
         return PinocchioRobot(description, build(description))
 
     def read(self, path: Path, form: str, base: str) -> Reading:
-        """Have Pinocchio's own parser read a file.
-
-        Parameters
-        ----------
-        path : Path
-            The file.
-        form : str
-            `urdf` or `mjcf`.
-        base : str
-            `fixed` or `free`.
-
-        Returns
-        -------
-        Reading
-            What Pinocchio holds of it.
-        """
+        """Read a file by buildModelFromUrdf or buildModelFromMJCF."""
         return reading.read(path, form, base, PinocchioRobot)

@@ -1,7 +1,7 @@
-"""Pinocchio's own parsers: `buildModelFromUrdf` and `buildModelFromMJCF`, and what the model then holds is told.
+"""Pinocchio's own parsers, `buildModelFromUrdf` and `buildModelFromMJCF`, and what the model then holds.
 
-Pinocchio's joints of a moving frame are the bodies here: links of fixed joints are merged already, and leave frames. A joint of several
-(JointModelComposite) is taken apart. A continuous joint's (cos, sin) is an angle here.
+The bodies here are those that Pinocchio's moving joints carry. Links of fixed joints are already merged, and leave frames. A joint of
+several joints (JointModelComposite) is taken apart. The (cos, sin) of a continuous joint is an angle here.
 """
 
 from __future__ import annotations
@@ -20,33 +20,16 @@ from featherbench_oracles.protocol import Reading, Unsupported
 from featherbench_oracles.reading import HeldJoint, Link, Place, describe, elements, mentioned, note, overheard, without_free_armature
 from featherbench_oracles.robot import Description
 
-WORKSPACE = 15e3  # bytes of Pinocchio's Data per degree of freedom squared (1.4 GB at 300); it may end the process where they are not there
+WORKSPACE = 15e3  # bytes of Pinocchio's Data per degree of freedom squared (1.4 GB at 300); without it the process may end
 SHARE = 0.8  # of the process's address space: the rest holds the libraries
-UNBOUNDED = 1e300  # a limit of the largest double is none
+UNBOUNDED = 1e300  # a limit beyond this is no limit
 KINDS = {"R": "revolute", "P": "prismatic", "H": "helical"}
 WHOLE = {"Spherical": "spherical", "FreeFlyer": "free", "Planar": "planar", "Universal": "universal"}
 WHOLE |= {"SphericalZYX": "euler_zyx", "Translation": "translation"}
 
 
 def read(path: Path, form: str, base: str, make: Callable[[Description, pin.Model, list[int]], Any]) -> Reading:
-    """Read a file.
-
-    Parameters
-    ----------
-    path : Path
-        The file.
-    form : str
-        `urdf` or `mjcf`.
-    base : str
-        `fixed` or `free`: whether the root of a URDF floats.
-    make : callable
-        Makes a robot of the description, Pinocchio's model, and the indices of angles that are (cos, sin) there.
-
-    Returns
-    -------
-    Reading
-        What Pinocchio holds of the file.
-    """
+    """Read a file as `protocol.FileReader` says; `make` takes the description, the model and the indices of its (cos, sin) angles."""
     notes: list[Header] = []
     with overheard(path, notes):
         if form == "mjcf":
@@ -70,7 +53,7 @@ def read(path: Path, form: str, base: str, make: Callable[[Description, pin.Mode
 
 
 def affordable(nv: int) -> None:
-    """Refuse a robot whose workspace does not fit into the address space that this process may have.
+    """Check that the workspace of a robot fits into the address space that this process may have.
 
     Parameters
     ----------
@@ -93,7 +76,7 @@ def _place(placement: pin.SE3) -> Place:
 
 
 def _turning(model: pin.Model) -> list[int]:
-    """List where angles as (cos, sin) stand, counting each as one number."""
+    """List the indices of the angles that are (cos, sin), where each pair counts as one number."""
     indices, count = [], 0
     for i in range(1, model.njoints):
         for joint, _ in _parts(model.joints[i]):
@@ -105,7 +88,7 @@ def _turning(model: pin.Model) -> list[int]:
 
 
 def _link(model: pin.Model, i: int, path: Path) -> Link:
-    """Tell joint i with the body that it carries."""
+    """Describe joint i with the body that it carries."""
     parts = list(_parts(model.joints[i]))
     names = [model.names[i]] if len(parts) == 1 else _names(model, i, len(parts), path)
     whole = Place()  # from the whole joint's frame to what it moves
@@ -129,7 +112,7 @@ def _link(model: pin.Model, i: int, path: Path) -> Link:
 
 
 def _parts(joint: pin.JointModel) -> Iterator[tuple[pin.JointModel, Place]]:
-    """List the joints that a joint is made of, each with its place in the one before."""
+    """List the parts of a joint, each with its placement in the one before."""
     if joint.shortname() != "JointModelComposite":
         yield joint, Place()
         return
@@ -139,7 +122,7 @@ def _parts(joint: pin.JointModel) -> Iterator[tuple[pin.JointModel, Place]]:
 
 
 def _names(model: pin.Model, i: int, count: int, path: Path) -> list[str]:
-    """Name the joints within joint i: Pinocchio forgets their names; the file's are taken where its body has as many."""
+    """Name the parts of joint i. Pinocchio does not keep their names; those of the file are taken if its body has as many joints."""
     link = _carried(model, i)
     for body in elements(path, "body"):
         names = [joint.get("name") for joint in body if joint.tag in ("joint", "freejoint")]
@@ -160,7 +143,7 @@ def _carried(model: pin.Model, i: int) -> str:
 
 
 def _on_joint(model: pin.Model, i: int) -> Place:
-    """Find where that link is in joint i's frame."""
+    """Find the placement of that link in joint i's frame."""
     frame = _frame(model, i)
     return _place(frame.placement) if frame is not None else Place()
 
@@ -183,7 +166,7 @@ def _type(joint: pin.JointModel, name: str) -> tuple[str, Array | None, float]:
 
 
 def _axis(joint: pin.JointModel, whole: object) -> Array:
-    """Find the axis of a joint with one; Pinocchio 4.1 does not show that of an unbounded joint, whose motion subspace says it."""
+    """Find the axis of a joint. Pinocchio 4.1 does not show the axis of an unbounded joint; it is taken from the motion subspace."""
     if hasattr(whole, "axis"):
         return np.array(whole.axis, dtype=float)
     data = joint.createData()
@@ -215,7 +198,7 @@ def _add_frames(description: Header, model: pin.Model) -> None:
 
 
 def _note_mimics(path: Path, notes: list[Header]) -> None:
-    """Note that joints that mimic another are joints of their own, unless asked otherwise."""
+    """Note each joint that mimics another: Pinocchio reads it as an independent joint by default."""
     names = [joint.get("name") or "" for joint in elements(path, "joint") if joint.find("mimic") is not None]
     notes.extend(note("mimic", name, "this joint mimics another; Pinocchio reads it as a joint of its own") for name in names)
 

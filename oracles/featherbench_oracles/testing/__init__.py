@@ -1,1 +1,1 @@
-"""What tests of oracles share: a client of their processes, robots and states drawn by seed, and measures of residuals."""
+"""Shared by the tests of oracles: a client of their processes, robots and states drawn by seed, and measures of residuals."""

@@ -21,7 +21,7 @@ class Oracle:
     Parameters
     ----------
     *arguments : str
-        What Python is given, as in `-m featherbench_oracles.mujoco`; it finds this package, and nothing in the current folder.
+        The arguments of Python, as in `-m featherbench_oracles.mujoco`. It finds this package, and no module in the current folder.
     """
 
     def __init__(self, *arguments: str) -> None:
@@ -37,7 +37,7 @@ class Oracle:
         return cls("-m", f"featherbench_oracles.{engine}")
 
     def ask(self, header: Header, blocks: Blocks | None = None) -> Answer:
-        """Put one request.
+        """Send one request.
 
         Parameters
         ----------
@@ -55,11 +55,11 @@ class Oracle:
         return self.answer()
 
     def answer(self) -> Answer:
-        """Read the next answer; its status is `ended` where there is none."""
+        """Read the next answer; its status is `ended` if there is none."""
         return read_frame(self.answers) or ({"status": "ended", "reason": "the oracle ended"}, {})
 
     def must(self, header: Header, blocks: Blocks | None = None) -> Answer:
-        """Put a request that has to succeed.
+        """Send a request that has to succeed.
 
         Parameters
         ----------
@@ -126,11 +126,11 @@ class Oracle:
         return self.value(quantity, method, len(states["q"]))
 
     def end(self) -> int:
-        """End its input, and wait for it; the exit status."""
+        """Close the input, wait for the process, and return its exit status."""
         self.requests.close()
         return self.process.wait(timeout=60)
 
     def methods(self) -> Methods:
-        """Tell its quantities, each with its methods."""
+        """List its quantities, each with its methods."""
         methods: Methods = self.must({"op": "hello"})[0]["methods"]
         return methods

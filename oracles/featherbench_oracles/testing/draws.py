@@ -19,9 +19,9 @@ def random_robot(rng: np.random.Generator, name: str, types: Sequence[str], plai
     Parameters
     ----------
     rng : np.random.Generator
-        What draws.
+        The random generator.
     name : str
-        Its name; free joints hang on the world unless it ends in `inner free`.
+        The robot's name. Free joints hang on the world unless it ends in `inner free`.
     types : sequence of str
         The joints' types in their order.
     plain : bool
@@ -44,7 +44,7 @@ def random_robot(rng: np.random.Generator, name: str, types: Sequence[str], plai
         inertia = mass / 3 * turn @ np.diag(cuboid.sum() - cuboid) @ turn.T
         nv = JOINT_SIZES[kind][1]
         acting = np.full(nv, geared or nv == 1)
-        acting[: {"free": 3, "planar": 2}.get(kind, 0)] = False  # linear armature means something else where T is not identity
+        acting[: {"free": 3, "planar": 2}.get(kind, 0)] = False  # linear armature has another meaning where T is not identity
         joint: Header = {"name": f"j{i}", "type": kind, "pitch": 0.3, "damping": [0.7] * nv, "friction": [0.7] * nv}
         joint["armature"] = (acting * rng.uniform(0, 0.3, nv)).tolist()
         joint["placement"] = {"rotation": place.ravel().tolist(), "translation": rng.uniform(-0.5, 0.5, 3).tolist()}
@@ -69,12 +69,12 @@ def without_armature(robot: Header) -> Header:
 
 
 def random_states(rng: np.random.Generator, robot: Description) -> Blocks:
-    """Draw twenty states; the zero state and a fast one come behind them.
+    """Draw twenty states, and after them the zero state and a fast one.
 
     Parameters
     ----------
     rng : np.random.Generator
-        What draws.
+        The random generator.
     robot : Description
         The robot.
 
@@ -96,26 +96,26 @@ def random_states(rng: np.random.Generator, robot: Description) -> Blocks:
         q[0, last] = 0, 0.5**0.5, 0, 0.5**0.5  # a pitch of 90 degrees, for Drake's roll-pitch-yaw
         q[20, last] = 0, 0, 0, 1
     for joint in (b.joint for b in robot.bodies if b.joint.type == "euler_zyx"):
-        q[:, joint.q.start + 1] /= 2  # a pitch of 90 degrees makes M singular, and accelerations that finite differences do not follow
+        q[:, joint.q.start + 1] /= 2  # at a pitch of 90 degrees M is singular, and accelerations too large for finite differences
     return {"q": q, "v": v, "a": a, "tau": tau, "wrench": wrench, "probe": rng.normal(size=(4, nv))}
 
 
 def advance(robot: Description, q: Array, step: Array) -> Array:
-    """Move a configuration: its derivative by t at 0, for step = t v, is the one that the velocity v means.
+    """Move a configuration by a step: for step = t v, the derivative by t at 0 is the velocity v.
 
     Parameters
     ----------
     robot : Description
         The robot.
     q : ndarray, shape (nq,)
-        Where it begins, m, rad or quaternions.
+        The configuration before, m, rad or quaternions.
     step : ndarray, shape (nv,)
-        How far, m or rad.
+        The step, m or rad.
 
     Returns
     -------
     ndarray, shape (nq,)
-        Where it ends.
+        The configuration after.
     """
     end = q.copy()
     for joint in (body.joint for body in robot.bodies):
@@ -137,9 +137,9 @@ def derivative(robot: Description, states: Blocks, f: Callable[[Blocks], Array])
     robot : Description
         The robot.
     states : dict of str to ndarray
-        Where.
+        The states.
     f : callable
-        What, a function of states.
+        A function of states.
 
     Returns
     -------

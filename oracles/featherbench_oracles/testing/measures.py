@@ -1,7 +1,12 @@
-"""Measures of residuals, and the tolerances that they are held to.
+"""Measures of residuals, and their tolerances. A residual has no unit.
 
-A residual has no unit: M is scaled by its diagonal, a force by the sum of the magnitudes of its terms, an acceleration by the norm of M,
-other things by the largest number of their kind in that state (the robots' lengths being about a metre).
+::
+
+    quantity       scaled by
+    M              its diagonal
+    force          the sum of the magnitudes of its terms
+    acceleration   the norm of M
+    all other      the largest number of its kind in that state (the robots are about a metre long)
 """
 
 from __future__ import annotations
@@ -18,7 +23,7 @@ from featherbench_oracles.robot import Description
 
 
 def tolerance_scale(text: str) -> float:
-    """Read the factor on every tolerance: at 0 each residual but zero fails.
+    """Read the factor on every tolerance. At 0 each residual but zero fails.
 
     Parameters
     ----------
@@ -33,7 +38,7 @@ def tolerance_scale(text: str) -> float:
     Raises
     ------
     ValueError
-        If it would turn a comparison off: it is no finite number, or less than 0.
+        If it is not a finite number or less than 0: that would turn a comparison off.
     """
     try:
         scale = float(text)
@@ -52,13 +57,13 @@ def within(tolerance: float) -> float:
     return tolerance * TOLERANCE_SCALE
 
 
-EXACT = within(2e-13)  # of algorithms that lose a few digits in sums
-INVERSE = within(1e-9)  # of id after fd, where an explicit inverse loses the condition of M
-DIFFERENCE = within(1e-8)  # of differences of fourth order
+EXACT = within(2e-13)  # for algorithms that lose a few digits in sums
+INVERSE = within(1e-9)  # for id after fd, where an explicit inverse loses the condition number of M
+DIFFERENCE = within(1e-8)  # for differences of fourth order
 
 
 def ratio(difference: Array, scale: Array | float = 1.0) -> float:
-    """Compute max |difference| / max |scale|; no difference is 0 whatever the scale.
+    """Compute max |difference| / max |scale|; if the difference is 0, the result is 0 for any scale.
 
     Parameters
     ----------
@@ -88,7 +93,7 @@ def residual(quantity: str, x: Array, y: Array, reference: Reference) -> float:
     y : ndarray, shape (states, *shape of the quantity)
         The other.
     reference : Reference
-        What it is measured by.
+        The scales.
 
     Returns
     -------
@@ -119,9 +124,9 @@ def residual(quantity: str, x: Array, y: Array, reference: Reference) -> float:
 
 @dataclass(frozen=True)
 class Reference:
-    """What residuals are measured by, at each state: M, and of other quantities the sum of the magnitudes of their terms.
+    """The scales of residuals at each state: M, and for other quantities the sum of the magnitudes of their terms.
 
-    `id` is inverse dynamics by Newton's and Euler's equations of every body, from one oracle's kinematics:
+    `id` is inverse dynamics by Newton's and Euler's equations for every body, with one oracle's kinematics:
     tau = Σ J' (I α + ω × I ω + c × m (a_c - g); m (a_c - g)) + armature a.
     """
 
@@ -160,9 +165,9 @@ class Reference:
             push = body.mass * (a + np.cross(alpha, c) + np.cross(omega, np.cross(omega, c)) - robot.gravity)
             moments = inertia @ alpha, np.cross(omega, inertia @ omega), np.cross(c, push)
             tau[k] += jacobians[b, k].T @ np.append(sum(moments), push)
-            spatial = body.mass * np.linalg.norm(omega) * np.linalg.norm(v)  # m ω × v, of which spatial algorithms rid themselves
+            spatial = body.mass * np.linalg.norm(omega) * np.linalg.norm(v)  # m ω × v, a term that cancels in spatial algorithms
             wrench = np.linalg.norm(states["wrench"][k, b].reshape(2, 3), axis=1)
-            # Products of vectors round by the product of their lengths, also where they cancel: the cross product of parallel vectors does.
+            # Rounding of a product of vectors is relative to the product of their lengths, also if it cancels, as for parallel vectors.
             gyroscopic = np.linalg.norm(omega) * np.linalg.norm(inertia @ omega)
             thrust = np.linalg.norm(push) + body.mass * acceleration[k]
             sizes = wrench + spatial + [np.linalg.norm(moments[0]) + gyroscopic + np.linalg.norm(c) * thrust, thrust]

@@ -1,5 +1,4 @@
-/* MuJoCo's methods, and the table of the library. The stages that each adds up are written at its `run`; setting qpos, qvel and qacc is part of
- * them.
+/* MuJoCo's methods, and the table of the library. The stages of each method stand at its `run`. They include setting qpos, qvel and qacc.
  */
 #include "robot.h"
 
@@ -37,7 +36,7 @@ static void run_rne(struct fb_handle *h, size_t k) {
   for (size_t i = 0; i < h->nv; i++) h->result[i] += h->model->dof_armature[i] * h->data->qacc[i];
 }
 
-/* mj_inverse as its users call it: cameras, tendons, passive forces, M and the rest among it */
+/* mj_inverse as its users call it, with cameras, tendons, passive forces, M and more */
 static void run_inverse(struct fb_handle *h, size_t k) {
   set_q(h, k), set_v(h, k), set_a(h, k);
   mj_inverse(h->model, h->data);
@@ -169,13 +168,13 @@ static void read_jacobian(struct fb_handle *h, double *value) {
   for (size_t row = 0; row < 6; row++) fb_back(change(h), value + row * h->nv);
 }
 
-/* ---- what methods start from ---- */
+/* ---- preparation of methods ---- */
 
 static int ready_dense(struct fb_handle *h) {
   return make_room(&h->work[0], h->nv * h->nv) && make_room(&h->work[1], h->nv * h->nv);
 }
 
-/* Mass matrices of the states and their factors. Of big robots a few go round: thousands of them would not fit the memory. */
+/* Mass matrices of the states and their factors. For big robots a few are reused in turn: thousands of them would not fit into memory. */
 static int ready_matrices(struct fb_handle *h) {
   const size_t stored = (size_t)h->model->nC, most = 1 + ((size_t)32 << 20) / (8 * stored);
   h->made = h->count < most ? h->count : most;

@@ -1,6 +1,6 @@
 /* Building the robot by MjSpec's C interface, and its states.
  *
- * What the engine holds, and how coordinates change, is as in oracles/featherbench_oracles/mujoco: free joints have q_e = (p of the world, quaternion wxyz),
+ * The robot and the coordinates are as in oracles/featherbench_oracles/mujoco: free joints have q_e = (p of the world, quaternion wxyz),
  * T = diag(R, 1) and b = (R (ω × v), 0); spherical joints a quaternion wxyz; planar and universal joints are several in one body.
  */
 #include "robot.h"
@@ -29,7 +29,7 @@ struct fb_change change_at(const struct fb_handle *h, size_t k) {
 
 /* ---- the robot ---- */
 
-/* Principal moments and axes (columns of a rotation) by Jacobi's rotations, to the last bit: MuJoCo's own stop at 1e-12 kg·m². */
+/* Principal moments and axes (columns of a rotation) by Jacobi's rotations, to the last bit. MuJoCo's own iteration stops at 1e-12 kg·m². */
 static void principal(const double six[6], double moments[3], double axes[9]) {
   double a[3][3] = {{six[0], six[1], six[2]}, {six[1], six[3], six[4]}, {six[2], six[4], six[5]}};
   double turned[3][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
@@ -101,7 +101,7 @@ static const char *unsupported(const struct fb_body *body) {
   return NULL;
 }
 
-/* A spec that edits nothing, without constraints, contacts, fluid or automatic resets. */
+/* A spec without edits, constraints, contacts, fluid and automatic resets. */
 static mjSpec *empty_spec(const struct fb_robot *robot) {
   mjSpec *spec = mj_makeSpec();
   mjsCompiler *compiler = &spec->compiler;
@@ -126,7 +126,7 @@ void mujoco_destroy(struct fb_handle *h) {
   free(h);
 }
 
-/* Compiles the model; armature is set afterwards, as a joint takes only one number for all its degrees of freedom. */
+/* Compiles the model; armature is set afterwards, because a joint takes only one number for all its degrees of freedom. */
 static int compile(const struct fb_robot *robot, struct fb_handle *h, char *reason) {
   mjsBody **bodies = calloc(robot->bodies + 1, sizeof *bodies);
   if (bodies == NULL) return no_memory(reason);
@@ -177,7 +177,7 @@ static void read_back(const mjModel *model, double *value) {
   }
 }
 
-/* An error of MuJoCo ends the process, which is a row; its own handler would also write a file. */
+/* An error of MuJoCo ends the process, and a row says so. MuJoCo's own handler would also write a file. */
 static void end_with(const char *message) {
   fprintf(stderr, "MuJoCo: %s\n", message);
   abort();

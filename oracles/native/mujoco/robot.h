@@ -1,4 +1,4 @@
-/* A robot in MuJoCo with its states: what building it and running it share. */
+/* A robot in MuJoCo with its states, shared by building and running. */
 #ifndef FEATHERBENCH_MUJOCO_ROBOT_H
 #define FEATHERBENCH_MUJOCO_ROBOT_H
 
@@ -34,10 +34,10 @@ int mujoco_create(const struct fb_robot *robot, struct fb_handle **handle, doubl
 void mujoco_destroy(struct fb_handle *handle);
 int mujoco_states(struct fb_handle *handle, const struct fb_states *states, char *reason);
 
-/* Writes why memory is missing; returns FB_FAILED. */
+/* Writes the reason that memory is missing; returns FB_FAILED. */
 int no_memory(char *reason);
 
-/* Makes room for some numbers in place of what stood there; false when there is none. */
+/* Replaces the memory by room for some numbers; false if there is no memory. */
 int make_room(double **numbers, size_t count);
 
 /* The change of coordinates of a state. */

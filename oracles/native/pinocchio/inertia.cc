@@ -1,6 +1,6 @@
 // The mass matrix by crba in both conventions, its factors M = U D U' and solutions by them.
 //
-// Pinocchio's U is our L': both eliminate from the leaves, so that the factors are the same numbers.
+// Pinocchio's U is our L': both eliminate from the leaves, so the factors are the same numbers.
 
 #include "robot.h"
 
@@ -27,7 +27,7 @@ void read_sparse(fb_handle &robot, double *mass) {
   fb_tree_sparse(robot.nv(), robot.dof_parent.data(), dense.data(), mass);
 }
 
-// Mass matrices of the states, each of which is answered from its own.
+// Mass matrices of the states. Each state uses its own.
 void ready_masses(fb_handle &robot) {
   robot.matrices.clear();
   for (size_t k = 0; k < robot.count; k++) robot.matrices.push_back(mass_matrix(robot, k));

@@ -1,7 +1,7 @@
 // Building the robot by `addJoint` and `appendBodyToJoint`, states, and the table of the library.
 //
 // Coordinates: as in oracles/featherbench_oracles/pinocchio. Planar joints have q_e = (x, y, cos θ, sin θ), T = diag(R(θ)', 1) and b = (θ̇ v_y, -θ̇ v_x, 0) with
-// v = R(θ)' (ẋ, ẏ); everything else is neutral.
+// v = R(θ)' (ẋ, ẏ). All other coordinates are neutral.
 
 #include "robot.h"
 
@@ -38,7 +38,7 @@ int guarded(char *reason, Action action) {
   return FB_FAILED;
 }
 
-// Pinocchio's native joint of that type, in its aligned form where the axis is exactly a unit vector of the frame.
+// Pinocchio's joint of the description's type, in its aligned form if the axis is exactly a unit vector of the frame.
 pinocchio::JointModel joint_model(const fb_body &body) {
   using namespace pinocchio;
   const Eigen::Vector3d axis(body.axis);
@@ -67,7 +67,7 @@ pinocchio::JointModel joint_model(const fb_body &body) {
   }
 }
 
-// The inertia set part by part: the constructor refuses an indefinite one, which the algorithms do not mind.
+// The inertia set part by part. The constructor rejects an indefinite inertia; the algorithms compute with it.
 pinocchio::Inertia spatial_inertia(const fb_body &body) {
   const double *i = body.inertia;
   pinocchio::Inertia inertia = pinocchio::Inertia::Zero();

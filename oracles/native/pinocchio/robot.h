@@ -1,4 +1,4 @@
-// A robot in Pinocchio with its states: what the files of algorithms share.
+// A robot in Pinocchio with its states, shared by the files of algorithms.
 //
 // Every algorithm is instantiated here from Pinocchio's headers, with the flags of the build, and not taken from the wheel's libraries,
 // which are built for any processor. One file per group of algorithms keeps each compilation short.
@@ -20,13 +20,13 @@ struct fb_handle {
   pinocchio::Model model;
   std::unique_ptr<pinocchio::Data> data;
 
-  // The states in Pinocchio's coordinates, and how they came there.
+  // The states in Pinocchio's coordinates, and their conversion.
   size_t count = 0;
   std::vector<double> q_e, v_e, a_e, tau_e;
   std::vector<fb_turn> turns; // turns_per_state for each state
   size_t turns_per_state = 0;
 
-  // What a method starts from, and what it ends with where Pinocchio's Data does not keep it.
+  // The input of a method, and its result if Pinocchio's Data does not keep it.
   size_t body = 0;
   std::vector<Eigen::MatrixXd> matrices;           // mass matrices, or their factors U
   std::vector<Eigen::VectorXd> diagonals, inverse; // D and 1/D

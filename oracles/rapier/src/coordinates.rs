@@ -10,16 +10,18 @@
 //! | spherical | angular x, y, z | log R | R: angular velocity in joint-frame axes | 0 |
 //! | free | all six | p, log R | diag(R, R): [linear; angular] in joint-frame axes | [R (ω × v); 0] |
 //!
-//! R turns body axes to joint-frame axes. Two free angular axes are not implemented in rapier (it panics), hence no universal joint; a helical
-//! one would be a constraint between two joints; with three free angular axes the velocity is the angular one, whose change to the rates of
-//! Euler angles is not orthogonal, and singular at a pitch of ±90°.
+//! R turns body axes to joint-frame axes. Some joints are missing:
+//! - universal: rapier does not implement two free angular axes (it panics);
+//! - helical: it would be a constraint between two joints;
+//! - Euler angles: with three free angular axes the velocity is the angular one. Its conversion to rates of Euler angles is not orthogonal, and
+//!   singular at a pitch of ±90°.
 
 use crate::refusal::Refusal;
 use featherbench_model::{BodyDescription, Description, JointType};
 use rapier3d_f64::math::{Matrix, Pose, Rotation, Vector};
 use rapier3d_f64::prelude::{GenericJoint, GenericJointBuilder, JointAxesMask};
 
-/// Rapier's joint of that kind.
+/// Rapier's joint of the description's kind.
 pub fn joint(body: &BodyDescription) -> Result<GenericJoint, Refusal> {
     let kind = body.joint.kind;
     let free = match kind {
@@ -40,20 +42,20 @@ pub fn joint(body: &BodyDescription) -> Result<GenericJoint, Refusal> {
         .build())
 }
 
-/// Where the joint stands on the parent.
+/// The joint's placement on the parent.
 pub fn placement(body: &BodyDescription) -> Pose {
     let place = &body.joint.placement;
     let rotation = Rotation::from_mat3(&Matrix::from_cols_array(&place.rotation).transpose()).normalize();
     Pose::from_parts(Vector::from(place.translation), rotation)
 }
 
-/// Where the placement as described is found again: the joint's first frame without our turn.
+/// The placement of the description, read back: the joint's first frame without our turn.
 pub fn placement_of(joint: &GenericJoint) -> Pose {
     let turn = joint.local_frame2.rotation;
     Pose::from_parts(joint.local_frame1.translation, joint.local_frame1.rotation * turn.inverse())
 }
 
-/// What rapier's joints are displaced by from zero.
+/// The displacements of rapier's joints from zero.
 pub fn displacement(robot: &Description, q: &[f64]) -> Vec<f64> {
     let mut all = Vec::with_capacity(robot.nv());
     let mut at = 0;
@@ -84,7 +86,7 @@ fn logarithm(q: &[f64]) -> [f64; 3] {
 
 /// T and b at one state.
 pub struct Change {
-    /// The blocks of T that are not identity, and where they stand.
+    /// The blocks of T that are not identity, and their positions.
     blocks: Vec<(usize, Block)>,
     /// b = (dT/dt) v.
     bias: Vec<f64>,
@@ -123,7 +125,7 @@ impl Change {
         Self { blocks, bias }
     }
 
-    /// T x: velocities, and forces, which T being orthogonal go the same way.
+    /// T x, for velocities and for forces: T is orthogonal.
     pub fn forth(&self, x: &[f64]) -> Vec<f64> {
         let mut y = x.to_vec();
         for (at, block) in &self.blocks {

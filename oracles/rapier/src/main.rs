@@ -25,7 +25,7 @@ fn main() -> ExitCode {
     }
 }
 
-/// Answers request after request until the input ends, or is no frame: behind one that cannot be read nobody knows where the next begins.
+/// Answers requests until the input ends, or is not a frame: after a frame that cannot be read, the beginning of the next is unknown.
 fn converse(input: &mut impl BufRead, output: &mut impl Write) -> Result<(), String> {
     let mut session = Session::default();
     loop {
@@ -37,7 +37,7 @@ fn converse(input: &mut impl BufRead, output: &mut impl Write) -> Result<(), Str
                 return Err(error.to_string());
             }
         };
-        // Rapier panics where it has no answer. A robot or states that were being taken are then not there.
+        // Rapier panics if it has no answer. A `prepare` or `states` that panicked leaves nothing.
         let result = catch_unwind(AssertUnwindSafe(|| session.answer(&request)));
         let mut answer = answered(result.unwrap_or_else(|panic| Err(failed(format!("rapier panicked: {}", words(&*panic))))));
         if let Some(id) = request.header.get("id") {
@@ -61,7 +61,7 @@ fn answered(result: Result<Frame, Refusal>) -> Frame {
     }
 }
 
-/// What a panic says.
+/// The message of a panic.
 fn words(panic: &(dyn Any + Send)) -> &str {
     let text = panic.downcast_ref::<&str>().copied();
     text.or_else(|| panic.downcast_ref::<String>().map(String::as_str)).unwrap_or("without a word")

@@ -5,7 +5,7 @@
 pub enum Refusal {
     /// Rapier does not have it.
     Unsupported(String),
-    /// It went wrong, or the request did.
+    /// The engine failed, or the request is wrong.
     Failed(String),
 }
 

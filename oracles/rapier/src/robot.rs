@@ -1,15 +1,16 @@
 //! A robot that rapier can hold, and what it answers about it.
 //!
-//! Rapier is asked for what it has: M (it keeps LU factors of it), Jacobians, poses, velocities, kinetic energy, and the acceleration with
-//! which a step begins. A step is implicit in the velocity-dependent terms, so that its acceleration is the true one in the limit dt → 0 only:
-//! forward dynamics is a step so short that nothing of dt is left in the arithmetic, and the operation `step` answers at any dt.
+//! Rapier gives M (it keeps LU factors of it), Jacobians, poses, velocities, kinetic energy, and the acceleration with which a step begins.
 //!
-//! A step solves (M + dt·C) a = τ − h, where C is what the bias h changes by with the velocities (`Multibody::update_mass_matrix`,
-//! `update_acceleration`). From dt·max|v| = [`GUARD`] on it compares the energy that this a adds with the work of the forces; where it is more,
-//! by over a hundredth of the kinetic energy, a is M⁻¹ (τ − h) instead (`free_velocity_energy_guard`). So at a fast state a long step may begin
-//! with the true acceleration to the last digit, and a shorter one with an error of first order.
+//! A step solves (M + dt·C) a = τ − h, with C the change of the bias h with the velocities (`Multibody::update_mass_matrix`,
+//! `update_acceleration`). It is implicit in the velocity-dependent terms, so a is the true acceleration only in the limit dt → 0. Forward
+//! dynamics is a step so short that dt has no effect in the arithmetic. The operation `step` answers at any dt.
 //!
-//! The world is built anew at each state, because rapier's coordinates can only be moved by differences.
+//! From dt·max|v| = [`GUARD`] on, rapier compares the energy that a adds with the work of the forces (`free_velocity_energy_guard`). If the first
+//! is larger by more than a hundredth of the kinetic energy, a is M⁻¹ (τ − h) instead. So at a fast state a long step may begin with the true
+//! acceleration to the last digit, and a shorter one with an error of first order.
+//!
+//! The world is built again at each state, because rapier's coordinates can only be changed by differences.
 
 use crate::coordinates;
 use crate::refusal::{Refusal, failed};
@@ -32,10 +33,10 @@ pub const QUANTITIES: [(&str, &str); 7] = [
 /// The method of steps without damping and substeps, and that of rapier's own settings.
 pub const STEPS: [(&str, Settings); 2] = [("step", Settings::Plain), ("step_default", Settings::Default)];
 
-/// dt·max|v| from which on rapier looks whether the implicit term adds energy, and may leave it out.
+/// dt·max|v| from which on rapier checks whether the implicit term adds energy, and may leave it out.
 pub const GUARD: f64 = 1e-3;
 
-/// So short a step, in seconds, that dt times anything vanishes against what it is added to (at 0 rapier does not step).
+/// A step, in seconds, so short that terms with dt are lost in rounding (at 0 rapier does not step).
 const INSTANT: f64 = 1e-30;
 
 /// A robot that rapier can hold.
@@ -54,7 +55,7 @@ pub struct State<'a> {
 }
 
 impl Robot {
-    /// The robot, unless rapier does not have it.
+    /// The robot, if rapier can hold it.
     pub fn new(description: Description) -> Result<Self, Refusal> {
         for (at, body) in description.bodies.iter().enumerate() {
             if body.parent.is_some_and(|parent| parent >= at) {
@@ -74,7 +75,7 @@ impl Robot {
         &self.description
     }
 
-    /// What rapier holds of each body, in the layout of a read-back.
+    /// The numbers that rapier holds of each body, in the layout of a read-back.
     pub fn readback(&self) -> Result<Vec<f64>, Refusal> {
         let mut q = Vec::with_capacity(self.description.nq());
         for kind in self.description.bodies.iter().map(|body| body.joint.kind) {
@@ -93,7 +94,7 @@ impl Robot {
         }
         let mut world = self.world(state, Settings::Plain)?;
         Ok(match quantity {
-            // Column-major or row-major is one: up to rounding M is symmetric, and each triangle is rapier's own.
+            // Column-major and row-major agree up to rounding, because M is symmetric. Each triangle is rapier's own.
             "mass_matrix" => world.mass_matrix()?.transpose().as_slice().to_vec(),
             "mass_matrix_probe" => {
                 let mass = world.mass_matrix()?;

@@ -1,4 +1,4 @@
-//! The conversation: requests of `../../PROTOCOL.md` to a robot and its states, one answer each.
+//! The session: requests of `../../PROTOCOL.md` to a robot and its states, one answer each.
 
 use crate::refusal::{Refusal, failed};
 use crate::robot::{GUARD, QUANTITIES, Robot, STEPS, State};
@@ -7,7 +7,7 @@ use featherbench_formats::neutral;
 use serde_json::{Map, Value, json};
 use std::ops::Range;
 
-/// What was said so far.
+/// The robot and the states so far.
 #[derive(Default)]
 pub struct Session {
     robot: Option<Robot>,
@@ -108,7 +108,7 @@ impl Session {
 }
 
 impl States {
-    /// The block `value` of what is computed at each state of a range.
+    /// The block `value` with the results at each state of a range.
     fn answer(&self, range: Range<usize>, shape: &[usize], value: impl Fn(State) -> Result<Vec<f64>, Refusal>) -> Result<Frame, Refusal> {
         let (nq, nv) = (self.q.len() / self.count.max(1), self.probe.len() / 4);
         let (shape, mut values) = ([&[range.len()], shape].concat(), Vec::new());
@@ -120,7 +120,7 @@ impl States {
     }
 }
 
-/// Who this is.
+/// The answer to `hello`.
 fn hello() -> Frame {
     let methods: Map<String, Value> = QUANTITIES.iter().map(|&(quantity, method)| (quantity.to_owned(), json!([method]))).collect();
     let steps = STEPS.map(|(method, _)| method);

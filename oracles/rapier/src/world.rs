@@ -1,4 +1,4 @@
-//! One robot at one state in a world of rapier's.
+//! One robot at one state in a rapier world.
 
 use crate::coordinates::{self, Change};
 use crate::refusal::Refusal;
@@ -8,12 +8,12 @@ use rapier3d_f64::math::{Matrix, Rotation, Vector};
 use rapier3d_f64::prelude::MassProperties;
 use rapier3d_f64::prelude::{Multibody, MultibodyJointHandle, PhysicsWorld, RigidBody, RigidBodyBuilder, RigidBodyHandle};
 
-/// What a step may be left to.
+/// The settings of a step.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Settings {
     /// No damping, one substep: the mechanics of the robot.
     Plain,
-    /// As rapier comes: damping of 0.1 on every angular axis, four substeps.
+    /// Rapier's own settings: damping of 0.1 on every angular axis, four substeps.
     Default,
 }
 
@@ -47,7 +47,7 @@ impl<'a> World<'a> {
         let mut made = Self { robot, world, bodies, joint, change: Change::new(robot, q, v) };
         let velocity = made.change.forth(v);
         let armature: Vec<f64> = robot.bodies.iter().flat_map(|body| per_dof(&body.joint.armature, body.joint.kind.nv())).collect();
-        // A diagonal follows swaps as a vector does; where T turns, `check` has refused armature.
+        // A swap changes a diagonal like a vector. Where T is a rotation, `check` has rejected armature.
         let armature = made.change.forth(&armature);
         let (multibody, bodies) = made.split()?;
         multibody.forward_kinematics(bodies, true);
@@ -117,7 +117,7 @@ impl<'a> World<'a> {
 
     /// The acceleration that one step of `dt` seconds begins with, under gravity and the generalized forces `tau`.
     ///
-    /// Rapier takes no generalized force: each joint's is a force and a torque on its body and their opposites on the parent.
+    /// Rapier takes no generalized force. The force of a joint is a force and a torque on its body, and their opposites on the parent.
     pub fn acceleration(&mut self, tau: &[f64], dt: f64) -> Result<Vec<f64>, Refusal> {
         self.push(&self.change.forth(tau));
         self.step(dt);
@@ -163,7 +163,7 @@ impl<'a> World<'a> {
         }
     }
 
-    /// What rapier holds of each body, in the layout of a read-back.
+    /// The numbers that rapier holds of each body, in the layout of a read-back.
     pub fn readback(&mut self) -> Result<Vec<f64>, Refusal> {
         let handles = self.bodies.clone();
         let mut numbers = Vec::with_capacity(22 * handles.len());
@@ -183,18 +183,18 @@ impl<'a> World<'a> {
         Ok(numbers)
     }
 
-    /// Kinetic energy of all bodies as their velocities were at the last step.
+    /// Kinetic energy of all bodies, with their velocities of the last step.
     pub fn kinetic_energy(&self) -> f64 {
         self.bodies().map(RigidBody::kinetic_energy).sum()
     }
 
-    /// Potential energy of all bodies, zero at the world's origin. Rapier's own goes half a step back in time.
+    /// Potential energy of all bodies, zero at the world's origin. Rapier's own is that of half a step earlier.
     pub fn potential_energy(&self) -> f64 {
         self.bodies().map(|body| -body.mass() * self.world.gravity.dot(body.center_of_mass())).sum()
     }
 }
 
-/// Rapier keeps principal inertias and their axes, as their inverses: nothing may vanish.
+/// Rapier keeps the inverses of the mass and the principal inertias: all must be positive.
 fn mass_properties(body: &BodyDescription) -> Result<MassProperties, Refusal> {
     let [xx, xy, xz, yy, yz, zz] = body.inertia;
     let eigen = SymmetricEigen::new(Matrix3::new(xx, xy, xz, xy, yy, yz, xz, yz, zz));

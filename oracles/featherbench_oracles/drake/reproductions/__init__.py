@@ -1,1 +1,1 @@
-"""Known deviations of Drake, each by a program of a few lines in its own interface."""
+"""Known deviations of Drake, each shown by a program of a few lines in its own interface."""

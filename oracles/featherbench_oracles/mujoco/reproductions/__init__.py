@@ -1,1 +1,1 @@
-"""Known deviations of MuJoCo, each by a program of a few lines in its own interface."""
+"""Known deviations of MuJoCo, each shown by a program of a few lines in its own interface."""

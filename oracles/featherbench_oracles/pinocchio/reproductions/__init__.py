@@ -1,1 +1,1 @@
-"""Known deviations of Pinocchio, each by a program of a few lines in its own interface."""
+"""Known deviations of Pinocchio, each shown by a program of a few lines in its own interface."""
