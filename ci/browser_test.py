@@ -605,7 +605,7 @@ def accuracy(page: Browser, shot: Shot) -> Checks:
     """Check the digits section."""
     shown = "[...document.querySelectorAll('#accuracy-table td button')].find(button => !button.closest('[hidden]'))"
     yield (
-        "a cell of the digits says its quartiles",
+        "a cell of the accuracies says its quartiles",
         "quartiles"
         in page.run("""
         const button = [...document.querySelectorAll('#accuracy-table td button[class^=d]')].find(button => !button.closest('[hidden]'));
@@ -657,11 +657,9 @@ def accuracy(page: Browser, shot: Shot) -> Checks:
             titles.add(now)
             page.run("document.getElementById('accuracy-plot').scrollIntoView({block: 'center', behavior: 'instant'})")
             shot(f"accuracy-{axis}")
-    page.run(
-        "const box = document.querySelector('#accuracy-filter'); box.value = 'no model has this name'; box.dispatchEvent(new Event('input'))"
-    )
+    page.run("const box = document.querySelector('#accuracy-filter'); box.value = 'no such robot'; box.dispatchEvent(new Event('input'))")
     left = page.run("return [...document.querySelectorAll('#accuracy-table tr[data-m]')].filter(row => !row.hidden).length")
-    yield "the filter hides models of the digits", left == 0, left
+    yield "the filter hides robots of the table of accuracy", left == 0, left
     page.run("const box = document.querySelector('#accuracy-filter'); box.value = ''; box.dispatchEvent(new Event('input'))")
 
 

@@ -35,7 +35,7 @@ impl Cell {
         hash::of(featherbench_results::canonical_json(&content).as_bytes())[..16].to_owned()
     }
 
-    /// The cell as a path of words: what `--only` matches and progress shows.
+    /// The cell as a path of words: what `--filter` matches and progress shows.
     pub fn path(&self) -> String {
         format!("{}/{}/{}/{}/{}", self.study, self.robot, self.engine, self.quantity, self.method)
     }

@@ -30,7 +30,7 @@ pub enum HarnessError {
         path: PathBuf,
     },
     /// The run was started by another program or another plan.
-    #[error("{path} was made with another {what} ({then} then, {now} now); start a new run, or mix knowingly with --mixed")]
+    #[error("{path} was made with another {what} ({then} then, {now} now); start a new run, or mix knowingly with --allow-mixed")]
     Mixed {
         /// The folder.
         path: PathBuf,

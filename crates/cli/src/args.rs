@@ -20,7 +20,7 @@ const EXAMPLES: &str = "\
 Examples:
   featherbench                                 the default suite against the recorded answers; no Python needed
   featherbench run --live                      ask the engines themselves (installs them on first use)
-  featherbench run --only 'panda/.*/fd'        only some cells
+  featherbench run --filter 'panda/.*/fd'        only some cells
   featherbench compare my_robot.urdf           do the engines read my robot alike, and if not, why?
   featherbench gen chain --n 1000 --out c.json a robot of one's own
   featherbench explain 3f2a reports/LATEST     what a cell asked and what was answered
@@ -75,7 +75,7 @@ pub struct RunArgs {
     pub externals: Vec<External>,
     /// Only cells whose path study/robot/engine/quantity/method matches this regular expression.
     #[arg(long, value_name = "REGEX")]
-    pub only: Option<String>,
+    pub filter: Option<String>,
     /// The run's folder; by default a new one in reports/.
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
@@ -84,7 +84,7 @@ pub struct RunArgs {
     pub resume: bool,
     /// Continue although program, target features, libm, suite or a program of --engine differ.
     #[arg(long, requires = "resume")]
-    pub mixed: bool,
+    pub allow_mixed: bool,
     /// Leave the timing study out.
     #[arg(long)]
     pub no_timing: bool,
@@ -93,7 +93,7 @@ pub struct RunArgs {
     pub recorded: Option<PathBuf>,
     /// Longest wait for one answer of an engine, in seconds.
     #[arg(long, value_name = "SECONDS", default_value_t = 120)]
-    pub answer_within: u64,
+    pub timeout: u64,
     /// Address space of each engine's process, in MiB.
     #[arg(long, value_name = "MIB", default_value_t = 8192)]
     pub memory: u64,
@@ -135,7 +135,7 @@ pub struct CompareArgs {
     pub strict: bool,
     /// Longest wait for one answer of an engine, in seconds; it is asked no more about that robot then.
     #[arg(long, value_name = "SECONDS", default_value_t = 60)]
-    pub answer_within: u64,
+    pub timeout: u64,
     /// The run's folder; by default a new one in reports/.
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
@@ -311,7 +311,7 @@ pub struct CheckArgs {
     pub command: Vec<OsString>,
     /// Longest wait for one answer, in seconds.
     #[arg(long, value_name = "SECONDS", default_value_t = 30)]
-    pub answer_within: u64,
+    pub timeout: u64,
     /// Address space of the program, in MiB.
     #[arg(long, value_name = "MIB", default_value_t = 8192)]
     pub memory: u64,

@@ -14,7 +14,7 @@ use std::time::Duration;
 pub fn check(root: Option<&Root>, args: &CheckArgs) -> Result<(), Fail> {
     external::find(&args.command)?;
     let command = root.map_or_else(|| Ok(args.command.clone()), |root| package::reachable(root, &args.command)).map_err(Fail::input)?;
-    let limits = Limits { answer: Duration::from_secs(args.answer_within), memory: args.memory << 20 };
+    let limits = Limits { answer: Duration::from_secs(args.timeout), memory: args.memory << 20 };
     let terminal = std::io::stderr().is_terminal();
     let watch = |what: &str| {
         if terminal {

@@ -37,7 +37,7 @@ pub fn compare(root: &Root, args: &CompareArgs) -> Result<(), Fail> {
     let gates = Gates::read(&root.gates())?;
     let mut loaded = Loaded { name: "compare".into(), suite: suite(engines), hash: hashes(&files), robots: Vec::new() };
     eprintln!("starting {} …", loaded.suite.agreement.iter().flat_map(|entry| entry.engines.clone()).collect::<Vec<_>>().join(", "));
-    let live = RunArgs { live: true, answer_within: args.answer_within, ..RunArgs::default_suite() };
+    let live = RunArgs { live: true, timeout: args.timeout, ..RunArgs::default_suite() };
     let mut opened = engines::open(root, &live, &loaded)?;
     if let Some(missing) = opened.missing(&loaded).first() {
         let message = format!("{} does not answer: {}", missing.name, missing.reason);

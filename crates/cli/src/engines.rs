@@ -75,7 +75,7 @@ pub fn open(root: &Root, args: &RunArgs, loaded: &Loaded) -> Result<Opened, Fail
 
 /// The limits that a run's arguments set for each engine's process.
 pub fn limits(args: &RunArgs) -> Limits {
-    Limits { answer: Duration::from_secs(args.answer_within), memory: args.memory << 20 }
+    Limits { answer: Duration::from_secs(args.timeout), memory: args.memory << 20 }
 }
 
 impl Opened {

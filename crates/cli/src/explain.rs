@@ -63,9 +63,9 @@ pub fn explain(args: &ExplainArgs) -> Result<(), Fail> {
 }
 
 /// Options of a run that say where it was written and how much of it: each with its value.
-const OF_THE_RUN: [&str; 2] = ["--only", "--out"];
+const OF_THE_RUN: [&str; 2] = ["--filter", "--out"];
 /// Options that continue a run.
-const CONTINUING: [&str; 2] = ["--resume", "--mixed"];
+const CONTINUING: [&str; 2] = ["--resume", "--allow-mixed"];
 
 /// The command that makes a cell's rows again: that of the run, with a filter that leaves the study of the robot. The rows compare an answer
 /// with those of others, so the others are asked too.
@@ -96,7 +96,7 @@ fn again(info: &RunInfo, row: &Row) -> Result<String, String> {
         // Cells that belong to no robot, or draw one, are known by their study.
         let of_study = row.robot.is_empty() || row.study == "repeatability";
         let robot = if of_study { String::new() } else { format!("{}/", regex_lite::escape(&row.robot)) };
-        kept.extend(["--only".into(), format!("^{}/{robot}", row.study)]);
+        kept.extend(["--filter".into(), format!("^{}/{robot}", row.study)]);
     }
     Ok(program.iter().chain(&kept).map(|word| quoted(word)).collect::<Vec<_>>().join(" "))
 }
@@ -144,13 +144,13 @@ mod tests {
 
     #[test]
     fn the_command_keeps_what_the_answer_depends_on() {
-        let only = "--only '^agreement/tree_0\\.3/'";
+        let only = "--filter '^agreement/tree_0\\.3/'";
         assert_eq!(of("cargo run --release --", false, "default"), format!("cargo run --release -- run {only}"));
         assert_eq!(
-            of("cargo run --release -- run --suite smoke --live --seed 3 --only 'x|y' --out a --resume", true, "smoke"),
+            of("cargo run --release -- run --suite smoke --live --seed 3 --filter 'x|y' --out a --resume", true, "smoke"),
             format!("cargo run --release -- run --suite smoke --live --seed 3 {only}")
         );
-        assert_eq!(of("run --only=x --out=a --mixed", true, "smoke"), format!("run --suite smoke --live {only}"));
+        assert_eq!(of("run --filter=x --out=a --allow-mixed", true, "smoke"), format!("run --suite smoke --live {only}"));
         let external = "run --engine 'mine=sh '\"'\"'my oracle.sh'\"'\"''";
         assert_eq!(of(external, false, "default"), format!("{external} {only}"));
         assert_eq!(of("compare 'my robot.urdf' --floating --out x", true, "compare"), "compare 'my robot.urdf' --floating");

@@ -4,8 +4,8 @@ use crate::args::RunArgs;
 use crate::engines::{self, Opened};
 use crate::external::External;
 use crate::fail::Fail;
+use crate::filter;
 use crate::offers;
-use crate::only;
 use crate::progress::Bar;
 use crate::report;
 use crate::robots::{self, Loaded};
@@ -25,8 +25,8 @@ const FINGERPRINT_NAME: &str = "fingerprint.json";
 /// Runs a suite and reports on it.
 pub fn run(root: &Root, args: &RunArgs) -> Result<(), Fail> {
     let start = Instant::now();
-    let only = args.only.as_deref().map(Regex::new).transpose();
-    let only = only.map_err(|error| Fail::input(format!("--only: {error}")))?;
+    let only = args.filter.as_deref().map(Regex::new).transpose();
+    let only = only.map_err(|error| Fail::input(format!("--filter: {error}")))?;
     let loaded = robots::load(root, &args.suite, args.live, args.seed)?;
     let externals: Vec<&str> = args.externals.iter().map(|external: &External| external.name.as_str()).collect();
     let gates = Gates::read(&root.gates())?.with_external(&externals);
@@ -35,8 +35,8 @@ pub fn run(root: &Root, args: &RunArgs) -> Result<(), Fail> {
     let studies = studies(root, &loaded, args, &info.binary_hash);
     let context = Context { robots: &loaded.robots, engines: &opened.engines, gates: &gates, seed: loaded.suite.seed };
     let cells: Vec<Cell> = studies.iter().flat_map(|study| study.plan(&context)).collect();
-    let filtered = || match args.only.as_ref().zip(only.as_ref()) {
-        Some((text, only)) => only::check(text, only, &loaded.name, &cells.iter().map(Cell::path).collect::<Vec<_>>()),
+    let filtered = || match args.filter.as_ref().zip(only.as_ref()) {
+        Some((text, only)) => filter::check(text, only, &loaded.name, &cells.iter().map(Cell::path).collect::<Vec<_>>()),
         None => Ok(()),
     };
     // Before a folder is made; of a run that goes on, that it is the same comes first.
@@ -169,7 +169,7 @@ pub fn folder(root: &Root, out: Option<&Path>, resume: bool, suite: &str, starte
 fn check_fingerprint(folder: &Path, args: &RunArgs, info: &RunInfo) -> Result<(), Fail> {
     let path = folder.join(FINGERPRINT_NAME);
     let now = provenance::fingerprint(info);
-    if args.resume && !args.mixed {
+    if args.resume && !args.allow_mixed {
         let text = std::fs::read_to_string(&path).map_err(|source| HarnessError::io(&path, source))?;
         let then: BTreeMap<String, String> =
             serde_json::from_str(&text).map_err(|error| Fail::input(format!("{}: {error}", path.display())))?;

@@ -88,14 +88,14 @@ fn broken_suites_are_refused_by_file_and_key() {
         sandbox.run(&["run", "--suite", file.to_str().unwrap()]).expect(2, words);
     }
     sandbox.run(&["run", "--suite", "nowhere"]).expect(2, &["nowhere.toml"]);
-    sandbox.run(&["run", "--only", "("]).expect(2, &["--only"]);
+    sandbox.run(&["run", "--filter", "("]).expect(2, &["--filter"]);
 }
 
 /// A filter that lets nothing through is no good run.
 #[test]
 fn a_filter_without_a_match_is_told_what_there_is() {
     let sandbox = Sandbox::new();
-    let run = |only: &str| sandbox.run(&["run", "--suite", "smoke", "--no-timing", "--out", "out", "--only", only]);
+    let run = |only: &str| sandbox.run(&["run", "--suite", "smoke", "--no-timing", "--out", "out", "--filter", only]);
     run("pandas/.*/fdd").expect(2, &["no cell of the suite smoke matches", "'pandas': nearest are panda", "'fdd': nearest are fd"]);
     run("pinocchio/panda")
         .expect(2, &["a path is study/robot/engine/quantity/method", "the engines drake, featherbench, mujoco, pinocchio"]);
@@ -158,7 +158,7 @@ fn damaged_recordings_cost_their_robot_and_nothing_else() {
 #[test]
 fn damaged_runs_are_refused_by_file() {
     let sandbox = Sandbox::new();
-    sandbox.run(&["run", "--suite", "smoke", "--only", "operations", "--out", "out"]).expect(0, &["report:"]);
+    sandbox.run(&["run", "--suite", "smoke", "--filter", "operations", "--out", "out"]).expect(0, &["report:"]);
     sandbox.run(&["report", "out"]).expect(0, &["out/index.html"]);
     let cell = std::fs::read_to_string(sandbox.path("out/rows.csv"))
         .unwrap()

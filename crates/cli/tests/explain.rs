@@ -59,11 +59,11 @@ fn the_command_of_a_live_run_stays_live() {
     };
     let info = featherbench_results::RunInfo {
         suite: "smoke".into(),
-        command: "cargo run --release -- run --suite smoke --live --seed 7 --engine 'mine=sh a.sh' --only panda --out out".into(),
+        command: "cargo run --release -- run --suite smoke --live --seed 7 --engine 'mine=sh a.sh' --filter panda --out out".into(),
         live: true,
         ..featherbench_results::RunInfo::default()
     };
     featherbench_results::write_run(&sandbox.path("out"), &info, &[row]).unwrap();
     let command = again(&sandbox.run(&["explain", "ab", "out"]));
-    assert!(command.ends_with("run --suite smoke --live --seed 7 --engine 'mine=sh a.sh' --only '^agreement/panda/'"), "{command}");
+    assert!(command.ends_with("run --suite smoke --live --seed 7 --engine 'mine=sh a.sh' --filter '^agreement/panda/'"), "{command}");
 }

@@ -125,7 +125,7 @@ fn an_engine_that_answers_nothing_is_red() {
     let words =
         ["engine mine answers something that the suite asks", "its hello names no method for any quantity", "bias, body_acceleration"];
     sandbox.run(&[&run[..], &["mute"]].concat()).expect(1, &words);
-    let part = [&run[..], &["part", "--only", "agreement/panda/"]].concat();
+    let part = [&run[..], &["part", "--filter", "agreement/panda/"]].concat();
     sandbox.run(&part).expect(1, &words);
     // Another quantity than the suite's is as good as none.
     sandbox.write("shy oracle.sh", &SHY.replace("\"id\"", "\"fd_f32\""));
@@ -153,7 +153,7 @@ fn a_run_and_the_conformance_test_ask_for_the_same_shapes() {
 fn a_run_is_not_continued_with_another_program_of_an_external_engine() {
     let sandbox = with_shy();
     let run = |more: &[&str]| {
-        let common = ["run", "--suite", "smoke", "--no-timing", "--only", "/mine/", "--out", "out"];
+        let common = ["run", "--suite", "smoke", "--no-timing", "--filter", "/mine/", "--out", "out"];
         sandbox.run(&[&common[..], more].concat())
     };
     let engine = ["--engine", "mine=sh 'shy oracle.sh'"];
@@ -164,10 +164,10 @@ fn a_run_is_not_continued_with_another_program_of_an_external_engine() {
     run(&with(&["--resume"])).expect(0, &["6 skip"]);
     assert_eq!(asked(), first, "nothing was asked twice");
     sandbox.write("shy oracle.sh", &SHY.replace("no such robot", "no robot today"));
-    run(&with(&["--resume"])).expect(2, &["another program of engine mine", "--mixed"]);
+    run(&with(&["--resume"])).expect(2, &["another program of engine mine", "--allow-mixed"]);
     run(&["--resume"]).expect(2, &["another program of engine mine", "none now"]);
     assert_eq!(asked(), first, "and nothing is lost");
-    run(&with(&["--resume", "--mixed"])).expect(0, &["6 skip"]);
+    run(&with(&["--resume", "--allow-mixed"])).expect(0, &["6 skip"]);
     run(&with(&["--resume"])).expect(0, &["6 skip"]);
 }
 
@@ -180,7 +180,7 @@ fn the_conformance_test_ends_with_the_right_code() {
     mute.expect(1, &["it answers hello", "no licence", "does not conform"]);
     let chatty = sandbox.run(&["oracles", "check", "sh", "-c", "echo 'Welcome to Engine 3.1!'; cat > /dev/null"]);
     chatty.expect(1, &["not in the protocol", "standard output carries frames only"]);
-    let deaf = sandbox.run(&["oracles", "check", "--answer-within", "1", "sleep", "1000"]);
+    let deaf = sandbox.run(&["oracles", "check", "--timeout", "1", "sleep", "1000"]);
     deaf.expect(1, &["no answer within 1 s", "flush"]);
     let shy = sandbox.run(&["oracles", "check", "sh", "shy oracle.sh"]);
     shy.expect(1, &["shy 7", "an op that nobody knows is an error", "it builds some robot", "a free body: shy has no such robot"]);

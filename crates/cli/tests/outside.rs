@@ -282,7 +282,7 @@ fn small_oracle() -> Outcome {
     let sandbox = Sandbox::new();
     let engine = format!("small='{}' oracles/chain.py", python.display());
     let only = "agreement/chain-planar-2/.*/(readback|id|mass_matrix)/.*";
-    sandbox.run(&["run", "--suite", "smoke", "--no-timing", "--engine", &engine, "--only", only, "--out", "out"]).expect(0, &["report:"]);
+    sandbox.run(&["run", "--suite", "smoke", "--no-timing", "--engine", &engine, "--filter", only, "--out", "out"]).expect(0, &["report:"]);
     let rows = std::fs::read_to_string(sandbox.path("out/rows.csv")).unwrap();
     for quantity in ["readback", "id", "mass_matrix"] {
         let judged = rows

@@ -67,12 +67,12 @@ fn a_killed_run_resumes_to_the_same_bytes_and_repeats_nothing() {
 #[test]
 fn a_run_of_another_program_or_suite_is_not_continued() {
     let sandbox = Sandbox::new();
-    let run = |arguments: &[&str]| sandbox.run(&[&["run", "--only", "operations", "--out", "out"], arguments].concat());
+    let run = |arguments: &[&str]| sandbox.run(&[&["run", "--filter", "operations", "--out", "out"], arguments].concat());
     run(&["--suite", "smoke"]).expect(0, &["report:"]);
     let text = std::fs::read_to_string(support::project().join("datasets/suites/smoke.toml")).unwrap();
     let other = sandbox.write("other.toml", &text.replace("states = 100", "states = 101"));
-    run(&["--suite", other.to_str().unwrap(), "--resume"]).expect(2, &["another suite", "--mixed"]);
-    run(&["--suite", other.to_str().unwrap(), "--resume", "--mixed"]).expect(0, &["report:"]);
+    run(&["--suite", other.to_str().unwrap(), "--resume"]).expect(2, &["another suite", "--allow-mixed"]);
+    run(&["--suite", other.to_str().unwrap(), "--resume", "--allow-mixed"]).expect(0, &["report:"]);
     let path = sandbox.path("out/fingerprint.json");
     let text = std::fs::read_to_string(&path).unwrap();
     std::fs::write(&path, text.replace("\"libm\": \"", "\"libm\": \"0")).unwrap();

@@ -1,4 +1,4 @@
-//! `--only`: a filter that lets nothing through is a mistake, and its words are compared with those that there are.
+//! `--filter`: a filter that lets nothing through is a mistake, and its words are compared with those that there are.
 
 use crate::fail::Fail;
 use regex_lite::Regex;
@@ -20,7 +20,7 @@ pub fn check(text: &str, only: &Regex, suite: &str, paths: &[String]) -> Result<
         hints.push(format!("the studies are {}; the engines {}; the quantities {}", listed(0), listed(2), listed(3)));
     }
     Err(Fail::input(format!(
-        "--only: no cell of the suite {suite} matches '{text}'; a path is study/robot/engine/quantity/method; {}",
+        "--filter: no cell of the suite {suite} matches '{text}'; a path is study/robot/engine/quantity/method; {}",
         hints.join("; ")
     )))
 }
