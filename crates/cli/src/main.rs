@@ -1,4 +1,31 @@
-//! The `featherbench` command: wires engines and studies into the harness.
+//! The `featherbench` command, and the map of the house. Each command is one file here.
+//!
+//! # The way of the data
+//! ```text
+//! suite file → cells → engine → values → rows → gates
+//! robot file → description → model ↗       rows → sections → report
+//! ```
+//! Each stage has one type. A later stage never points back to an earlier one; a test over `cargo metadata` holds the directions of the crates.
+//! `featherbench_bench` follows a state, a robot file and a timing sample through it.
+//!
+//! # The house
+//! | crate | purpose | add here |
+//! |---|---|---|
+//! | `featherbench_spatial` | 6-D spatial algebra over any scalar, and the scalars | a scalar |
+//! | `featherbench_model` | what a robot is: joints, topology, parameters; generated robots and random states | a joint, a family of robots |
+//! | `featherbench_formats` | how a robot is written: neutral JSON, URDF, MJCF | a format |
+//! | `featherbench_dynamics` | what a robot does: one file per algorithm | an algorithm |
+//! | `featherbench_reference` | slow truth that shares no text with `dynamics` | a witness |
+//! | `featherbench_results` | the row: its columns, files, differences of runs | a column |
+//! | `featherbench_bench` | suite, cell, run, store, measures, gates; the traits `Engine` and `Study` | a measure of an error |
+//! | `featherbench_engines` | the engines: ours, an oracle process, recorded answers; the conformance test | a way to reach an engine |
+//! | `featherbench_studies` | one file or folder per study | a study |
+//! | `featherbench_report` | the report of a run | a section, a plot |
+//! | `oracles/` | the programs of the reference engines, in Python, C++ and Rust | an engine |
+//! | `datasets/` | robots, suites, recorded answers, golden data | a robot, a suite |
+//! | `ci/` | gates, known deviations with their ranges, scripts | a gate, a deviation |
+//!
+#![doc = include_str!("../../../GLOSSARY.md")]
 
 mod args;
 mod check;

@@ -4,7 +4,7 @@
 //! are read by adding a script element when a cell is clicked (a page under `file://` may not fetch), and `app.js` draws the plots as
 //! SVG. Every number on the page is made from records, and every cell and point leads back to its rows.
 //!
-//! Stages: records are grouped ([`overview`], [`figures`], [`digits`]), turned into HTML (one module per section) and into chunks ([`chunks`]), and
+//! Stages: records are grouped ([`overview`], [`figures`], [`accuracy`]), turned into HTML (one module per section) and into chunks ([`chunks`]), and
 //! everything is written with `index.html` last.
 
 mod accuracy;
