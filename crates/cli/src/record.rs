@@ -143,6 +143,6 @@ fn brief(outcome: &Outcome) -> String {
     match outcome {
         Outcome::Values(values) => format!("{} numbers", values.len()),
         Outcome::Import(reading) => format!("a robot of {} bodies", reading.description.bodies.len()),
-        Outcome::NoAnswer(refusal) => format!("'{refusal}'"),
+        Outcome::NoAnswer(no_answer) => format!("'{no_answer}'"),
     }
 }

@@ -165,7 +165,7 @@ pub fn links(file: &RobotFile) -> Result<Vec<FileLink>, Fail> {
 
 /// The reference reading of an MJCF file: that of MuJoCo's compiler, with the file's own inertias where the compiler refuses those.
 pub fn read_mjcf(file: &RobotFile, compiler: &dyn Engine) -> Result<Import, Fail> {
-    let refused = |refusal: NoAnswer| Fail::input(format!("{}: MuJoCo does not read it: {refusal}", file.path.display()));
+    let refused = |no_answer: NoAnswer| Fail::input(format!("{}: MuJoCo does not read it: {no_answer}", file.path.display()));
     let mut reading = compiler.read(file).map_err(refused)?;
     if let Some(written) = reading.written.take() {
         reading.description = written.canonical().map_err(|error| Fail::input(format!("{}: {error}", file.path.display())))?;

@@ -17,7 +17,7 @@ pub fn of(robot: &Robot, remarks: &[String], engines: &[Box<dyn Engine>], record
         records.iter().find(|row| row.study == "import" && row.robot == robot.name).map_or("featherbench", |row| &row.reference);
     let reference = if reference == "featherbench" { "featherbench's own reading" } else { "the reading of MuJoCo's compiler" };
     let mut text = format!("\n{} ({}, {} bodies, {} dofs), against {reference}\n", robot.name, robot.base(), states.bodies, states.nv);
-    text += &refusals(robot, engines, records);
+    text += &unread(robot, engines, records);
     for remark in remarks {
         text += &format!("  not compared: {remark}\n");
     }
@@ -36,7 +36,7 @@ pub fn of(robot: &Robot, remarks: &[String], engines: &[Box<dyn Engine>], record
 }
 
 /// Who refuses the file as it is written, and what was repaired to go on: first of all, as whoever reads it faithfully is not to blame.
-fn refusals(robot: &Robot, engines: &[Box<dyn Engine>], records: &[Row]) -> String {
+fn unread(robot: &Robot, engines: &[Box<dyn Engine>], records: &[Row]) -> String {
     let repairs = ["balanceinertia", "bounds", "geometry_dropped"];
     let mut text = String::new();
     for name in engines.iter().map(|engine| &engine.identity().name) {

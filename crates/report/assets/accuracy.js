@@ -80,7 +80,7 @@ featherbench.ready(() => {
     }
     if (floors.size > 0) {
       series.push({
-        name: "structured floor", ink: variable("--ink"), line: { width: 1.5, dash: "dash" }, mark: { symbol: "tick", size: 10 },
+        name: "conditioning bound", ink: variable("--ink"), line: { width: 1.5, dash: "dash" }, mark: { symbol: "tick", size: 10 },
         points: [...floors].sort(([a], [b]) => a - b).map(([x, floor]) => ({ x, y: floor, tip: [`floor ${short(floor)}`] })),
       });
     }

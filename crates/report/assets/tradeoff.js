@@ -58,7 +58,7 @@ featherbench.ready(() => {
     const [left, right] = [[], []];
     figures.conditions.forEach((family, index) => {
       left.push(line(family, index, "raw", "κ(M)", family.raw, 0, 1), line(family, index, "scaled", "κ scaled", family.scaled, 1, 1));
-      right.push(line(family, index, "raw", "κ(M)·2⁻⁵³", null, 0, HALF_ULP), line(family, index, "scaled", "κ scaled·2⁻⁵³", null, 1, HALF_ULP), line(family, index, "floor", "structured floor", null, 2, 1));
+      right.push(line(family, index, "raw", "κ(M)·2⁻⁵³", null, 0, HALF_ULP), line(family, index, "scaled", "κ scaled·2⁻⁵³", null, 1, HALF_ULP), line(family, index, "floor", "conditioning bound", null, 2, 1));
     });
     for (const [id, series, title] of [["conditioning-plot", left, "condition number"], ["floor-plot", right, "relative error"]]) {
       const shape = layout("degrees of freedom n", title);

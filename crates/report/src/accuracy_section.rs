@@ -37,7 +37,7 @@ pub fn section(overview: &Overview, digits: &Accuracy) -> Markup {
                 @if !digits.curves.is_empty() {
                     div #accuracy-plot.plot role="group" aria-label="Plot of the median error against the truth" {}
                     p.note {
-                        "Marks: the median over the states, with bars from the first to the third quartile. Dashed: the structured floor, what half a unit in the last "
+                        "Marks: the median over the states, with bars from the first to the third quartile. Dashed: the conditioning bound, what half a unit in the last "
                         "place of every input can do to the answer when all of it adds up; chance leaves about a tenth of it. Dotted: 2⁻⁵², where no digit is lost. "
                         "p: the fitted exponent, over errors of at least 2⁻⁵³, and of a tip's mass over ratios of at least one. Hollow marks on the plot's lower edge are errors below 10⁻¹⁸, "
                         "others are of M seen through products, where all its entries would be too many."

@@ -81,11 +81,11 @@ pub fn section(overview: &Overview, families: &[Family]) -> Markup {
                 h2 { "Conditioning" }
                 p.lead {
                     "How the condition number of M grows with the length of a straight chain, and how little it says. Left: κ of M, and of M scaled to a unit diagonal. "
-                    "Right, on one scale: the relative error that κ would excuse, κ·2⁻⁵³, and the structured floor, which rounding the inputs makes unavoidable."
+                    "Right, on one scale: the relative error that κ would excuse, κ·2⁻⁵³, and the conditioning bound, which rounding the inputs makes unavoidable."
                 }
                 div.pair {
                     div #conditioning-plot.plot role="group" aria-label="Plot of the condition number against the degrees of freedom" {}
-                    div #floor-plot.plot role="group" aria-label="Plot of the error that the condition number would excuse, and of the structured floor" {}
+                    div #floor-plot.plot role="group" aria-label="Plot of the error that the condition number would excuse, and of the conditioning bound" {}
                 }
                 div.scroll {
                     table.compact.sortable {

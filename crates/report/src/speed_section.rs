@@ -33,7 +33,7 @@ pub fn section(run: &RunInfo, overview: &Overview, speed: &Speed) -> Markup {
             section #speed {
                 h2 { "Speed, side by side" }
                 p.lead {
-                    "How many times as long as our usual method everyone takes for the same answer: the median over the rounds of a paired experiment, in which all stand in "
+                    "The time of each candidate over that of our usual method, for the same answer: the median over the rounds of a paired experiment, in which all stand in "
                     "alternating blocks on one core. Bars are 95 % bootstrap intervals. Above 1 ours is faster, below 1 the other."
                 }
                 (missing(run))
@@ -257,8 +257,8 @@ fn included(speed: &Speed) -> Markup {
             details {
                 summary { "What each number includes" }
                 p.note {
-                    "For everyone: the robot is loaded at run time, no result is carried from one state to the next, and the answer ends in the engine's own storage. Converting coordinates of states and "
-                    "answers is outside the clock. Everyone's answer was compared with ours at every state of the stream before its time counts; who refuses, or is wrong, is a row with the reason. "
+                    "For each candidate: the robot is loaded at run time, no result is carried from one state to the next, and the answer ends in the engine's own storage. Converting coordinates of states and "
+                    "answers is outside the clock. Each answer is compared with ours at every state of the stream before its time counts; a candidate without an answer, or with a wrong one, is a row with the reason. "
                     "Every block of every round is in " a href="timing.jsonl" { "timing.jsonl" } "."
                 }
                 div.scroll {

@@ -132,10 +132,10 @@ impl Comparison<'_> {
         let values = match outcome {
             Outcome::Values(values) => values,
             Outcome::Import(_) => return Vec::new(),
-            Outcome::NoAnswer(refusal) => {
-                let verdict = if matches!(refusal, NoAnswer::NotOffered(_)) { Verdict::Skip } else { Verdict::Error };
+            Outcome::NoAnswer(no_answer) => {
+                let verdict = if matches!(no_answer, NoAnswer::NotOffered(_)) { Verdict::Skip } else { Verdict::Error };
                 let row = Row { reference: REFERENCE.into(), ..row(cell, self.robot) };
-                return vec![self.context.gates.explain(row.without_value(verdict, refusal.to_string()))];
+                return vec![self.context.gates.explain(row.without_value(verdict, no_answer.to_string()))];
             }
         };
         if quantity == Quantity::ForwardDynamics {

@@ -85,9 +85,9 @@ impl Study for OperationCounts {
                         rows.push(context.gates.explain(row.gated(value, Relation::Eq, expected)));
                     }
                 }
-                Outcome::NoAnswer(refusal) => {
-                    let verdict = if matches!(refusal, NoAnswer::NotOffered(_)) { Verdict::Skip } else { Verdict::Error };
-                    rows.push(context.gates.explain(row(cell, robot).without_value(verdict, refusal.to_string())));
+                Outcome::NoAnswer(no_answer) => {
+                    let verdict = if matches!(no_answer, NoAnswer::NotOffered(_)) { Verdict::Skip } else { Verdict::Error };
+                    rows.push(context.gates.explain(row(cell, robot).without_value(verdict, no_answer.to_string())));
                 }
             }
         }

@@ -136,8 +136,8 @@ impl Study for Repeatability {
                     let other = order[place + 1..].iter().find(|&&other| candidates[other].0.hash != candidates[index].0.hash);
                     let _ = other.map(|&other| ask(other));
                     let (robot, method) = &candidates[index];
-                    let again = ask(index).map_err(|refusal| {
-                        NoAnswer::Failed(format!("{} of {} by {method} was answered, and then not: {refusal}", cell.quantity, robot.name))
+                    let again = ask(index).map_err(|no_answer| {
+                        NoAnswer::Failed(format!("{} of {} by {method} was answered, and then not: {no_answer}", cell.quantity, robot.name))
                     });
                     return again.map(|second| Twice::new(index, &first, &second).to_values()).into();
                 }

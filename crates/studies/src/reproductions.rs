@@ -83,7 +83,7 @@ fn rows(context: &Context, known: &Reproduction, cell: &Cell, outcome: &Outcome)
     }
     let values = match outcome.answer() {
         Ok(values) => values,
-        Err(refusal) => return vec![blank.without_value(Verdict::Error, refusal.to_string())],
+        Err(no_answer) => return vec![blank.without_value(Verdict::Error, no_answer.to_string())],
     };
     // A NaN among them must not be passed over: it is neither small nor large.
     let fold = |pick: fn(f64, f64) -> f64| {

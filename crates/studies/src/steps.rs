@@ -83,9 +83,9 @@ impl Study for Steps {
             let blank = Row { unit: "1".into(), reference: "featherbench".into(), ..row(cell, robot) };
             let values = match outcome.answer() {
                 Ok(values) => values,
-                Err(refusal) => {
-                    let verdict = if matches!(refusal, NoAnswer::NotOffered(_)) { Verdict::Skip } else { Verdict::Error };
-                    rows.push(context.gates.explain(blank.without_value(verdict, refusal.to_string())));
+                Err(no_answer) => {
+                    let verdict = if matches!(no_answer, NoAnswer::NotOffered(_)) { Verdict::Skip } else { Verdict::Error };
+                    rows.push(context.gates.explain(blank.without_value(verdict, no_answer.to_string())));
                     continue;
                 }
             };

@@ -78,7 +78,7 @@ impl Study for Import {
         let Some(engine) = context.engine(&cell.engine) else { return lost("engine") };
         let Some(file) = &robot.file else { return lost("file") };
         match (engine.read(file), Quantity::parse(&cell.quantity)) {
-            (Err(refusal), _) => Outcome::NoAnswer(refusal),
+            (Err(no_answer), _) => Outcome::NoAnswer(no_answer),
             (Ok(reading), None) => Outcome::Import(Box::new(reading)),
             (Ok(reading), Some(quantity)) => computed(robot, &reading, engine, quantity, &cell.method).into(),
         }

@@ -18,7 +18,7 @@ pub(super) fn rows(context: &Context, robot: &Robot, finished: &[Finished]) -> V
         let engine = OfEngine { context, robot, cell, of_engine, compiler: compiler(robot, finished) };
         match outcome {
             Outcome::Import(reading) => rows.extend(engine.read(reading)),
-            Outcome::NoAnswer(refusal) => rows.push(engine.refused(cell, refusal)),
+            Outcome::NoAnswer(no_answer) => rows.push(engine.refused(cell, no_answer)),
             Outcome::Values(_) => {}
         }
     }
@@ -68,9 +68,9 @@ impl OfEngine<'_> {
         canonical_json(&params)
     }
 
-    fn refused(&self, cell: &Cell, refusal: &NoAnswer) -> Row {
-        let verdict = if matches!(refusal, NoAnswer::NotOffered(_)) { Verdict::Skip } else { Verdict::Error };
-        self.context.gates.explain(self.row(cell, "differences").without_value(verdict, refusal.to_string()))
+    fn refused(&self, cell: &Cell, no_answer: &NoAnswer) -> Row {
+        let verdict = if matches!(no_answer, NoAnswer::NotOffered(_)) { Verdict::Skip } else { Verdict::Error };
+        self.context.gates.explain(self.row(cell, "differences").without_value(verdict, no_answer.to_string()))
     }
 
     fn read(&self, reading: &Import) -> Vec<Row> {
@@ -90,8 +90,8 @@ impl OfEngine<'_> {
         let answers: Vec<(&Cell, Result<&[f64], &NoAnswer>)> =
             self.of_engine.iter().map(|(cell, outcome)| (cell, values(outcome))).collect();
         for (cell, answer) in &answers {
-            if let Err(refusal) = answer {
-                rows.push(self.refused(cell, refusal));
+            if let Err(no_answer) = answer {
+                rows.push(self.refused(cell, no_answer));
             }
         }
         let find = |quantity: Quantity| {
@@ -157,7 +157,7 @@ impl OfEngine<'_> {
         let error = |reason: &str| vec![self.row(self.cell, "unexplained").without_value(Verdict::Error, reason)];
         let robot = match as_read(self.robot, reading) {
             Ok(robot) => robot,
-            Err(refusal) => return error(&refusal.to_string()),
+            Err(no_answer) => return error(&no_answer.to_string()),
         };
         // What only they have stands still on their side: it must do so on ours.
         let states = carried(&robot.description, &robot.states, &self.robot.description, &self.robot.model);
@@ -195,7 +195,7 @@ impl OfEngine<'_> {
 fn values(outcome: &Outcome) -> Result<&[f64], &NoAnswer> {
     match outcome {
         Outcome::Values(values) => Ok(values),
-        Outcome::NoAnswer(refusal) => Err(refusal),
+        Outcome::NoAnswer(no_answer) => Err(no_answer),
         Outcome::Import(_) => Ok(&[]),
     }
 }

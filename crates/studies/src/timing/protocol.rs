@@ -122,7 +122,7 @@ pub(super) fn experiment<'a>(
                 let (calls, state) = (samples.calls[which], random.below(states));
                 match block(&mut candidates[which], state, calls) {
                     Ok(time) => samples.set(which, round, time.as_secs_f64() * 1e9 / calls as f64),
-                    Err(refusal) => candidates[which] = Err(refusal),
+                    Err(no_answer) => candidates[which] = Err(no_answer),
                 }
             }
         }
@@ -140,13 +140,13 @@ fn relocate<'a>(candidate: &mut Ready<'a>, prepare: &dyn Fn() -> Ready<'a>, rand
             let _relocate = Relocation::new(random);
             *candidate = prepare();
         }
-        Err(refusal) => *candidate = Err(refusal),
+        Err(no_answer) => *candidate = Err(no_answer),
     }
 }
 
 /// One block from a state on, and the calls before it.
 fn block(candidate: &mut Ready, state: usize, calls: usize) -> Result<Duration, NoAnswer> {
-    let prepared = candidate.as_mut().map_err(|refusal| refusal.clone())?;
+    let prepared = candidate.as_mut().map_err(|no_answer| no_answer.clone())?;
     let warm = calls / WARM;
     if warm > 0 {
         prepared.clock(state..state + warm)?;
@@ -159,8 +159,8 @@ fn calls_of_a_block(candidate: &mut Ready, block: Duration) -> (usize, Duration)
     let mut calls = 1;
     // A first call may take many times as long as those after it, and would be taken for a whole block.
     let first = candidate.as_mut().ok().and_then(|prepared| prepared.clock(0..1).err());
-    if let Some(refusal) = first {
-        *candidate = Err(refusal);
+    if let Some(no_answer) = first {
+        *candidate = Err(no_answer);
     }
     while let Ok(prepared) = candidate {
         match least(prepared.as_mut(), calls, block) {
@@ -170,7 +170,7 @@ fn calls_of_a_block(candidate: &mut Ready, block: Duration) -> (usize, Duration)
                 calls = (calls as f64 * missing.clamp(1.1, 8.0)).ceil() as usize;
             }
             Ok(time) => return (calls, time),
-            Err(refusal) => *candidate = Err(refusal),
+            Err(no_answer) => *candidate = Err(no_answer),
         }
     }
     (1, Duration::ZERO)
@@ -245,7 +245,7 @@ mod tests {
 
     /// One that moves itself, one that must be prepared anew, one that fails to move; each time of a call is the number of moves.
     #[test]
-    fn at_each_epoch_everyone_moves() {
+    fn at_each_epoch_all_candidates_are_relocated() {
         struct Mover(Result<bool, ()>, u32);
         impl Evaluation for Mover {
             fn run(&mut self, _: Range<usize>) -> Result<(), NoAnswer> {
@@ -298,7 +298,7 @@ mod tests {
         let samples = experiment(&prepare, N, 1000, BUDGET, &|| now.get(), &mut Random::new(1, 2));
         assert_eq!(samples.of(0).len(), EPOCHS * BUDGET.rounds);
         let mut moves = moves.into_inner();
-        assert!(moves.iter_mut().all(|moves| moves.remove(0) == 0), "everyone was made ready first");
+        assert!(moves.iter_mut().all(|moves| moves.remove(0) == 0), "all were made ready first");
         moves
     }
 
@@ -374,9 +374,9 @@ mod tests {
         let mut orders: Vec<Vec<usize>> = Vec::new();
         for round in blocks.chunks(3) {
             orders.push(round.iter().map(|(who, _)| *who).collect());
-            let mut everyone = orders[orders.len() - 1].clone();
-            everyone.sort_unstable();
-            assert_eq!(everyone, [0, 1, 2]);
+            let mut all_candidates = orders[orders.len() - 1].clone();
+            all_candidates.sort_unstable();
+            assert_eq!(all_candidates, [0, 1, 2]);
         }
         orders.sort();
         orders.dedup();

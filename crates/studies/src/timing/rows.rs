@@ -40,7 +40,7 @@ fn machine(cell: &Cell, robot: &Robot, outcome: &Outcome) -> Vec<Row> {
     let blank = Row { family: String::new(), robot: String::new(), nq: None, nv: None, bodies: None, depth: None, ..blank };
     let measured = match outcome.answer() {
         Ok(values) => Machine::from_values(values).ok_or_else(|| "the outcome is no machine".to_owned()),
-        Err(refusal) => Err(refusal.to_string()),
+        Err(no_answer) => Err(no_answer.to_string()),
     };
     let measured = match measured {
         Ok(machine) => machine,
@@ -81,7 +81,7 @@ fn overhead(robot: &Robot, (cell, outcome): &Finished) -> Option<Row> {
             Some(blank.informed(quantile(&sorted, 0.5)))
         }
         Err(NoAnswer::NotOffered(_)) => None,
-        Err(refusal) => Some(blank.without_value(Verdict::Error, refusal.to_string())),
+        Err(no_answer) => Some(blank.without_value(Verdict::Error, no_answer.to_string())),
     }
 }
 
@@ -109,9 +109,9 @@ impl Check {
             Row { cache: "stream".into(), metric: "worst_error".into(), unit: "1".into(), reference: REFERENCE.into(), ..row(cell, robot) };
         let limit = check::limit(robot.depth);
         let row = match outcome.answer() {
-            Err(refusal) => {
-                let verdict = if matches!(refusal, NoAnswer::NotOffered(_)) { Verdict::Skip } else { Verdict::Error };
-                blank.without_value(verdict, refusal.to_string())
+            Err(no_answer) => {
+                let verdict = if matches!(no_answer, NoAnswer::NotOffered(_)) { Verdict::Skip } else { Verdict::Error };
+                blank.without_value(verdict, no_answer.to_string())
             }
             Ok(errors) => blank.gated(errors.iter().copied().fold(0.0, worst), Relation::Le, limit),
         };
@@ -141,7 +141,7 @@ impl<'a> Experiment<'a> {
     fn of(robot: &Robot, (cell, outcome): &'a Finished) -> Self {
         let candidates = Candidate::of(cell);
         let samples = match outcome.answer() {
-            Err(refusal) => Err(refusal.to_string()),
+            Err(no_answer) => Err(no_answer.to_string()),
             Ok(_) => outcome_samples(cell, outcome).ok_or_else(|| "the outcome holds no samples".to_owned()),
         };
         let cache = cell.params["cache"].as_str().unwrap_or_default().to_owned();
