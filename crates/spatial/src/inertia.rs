@@ -124,7 +124,7 @@ impl<T: Real> ArticulatedInertia<T> {
         )
     }
 
-    /// `Iᴬ − weight·U Uᵀ`: what is left when the motion with `U = Iᴬ S` is free (`weight = 1/D`).
+    /// `Iᴬ − weight·U Uᵀ`: the apparent inertia when the motion along S is free, with `U = Iᴬ S` and `weight = 1/D`.
     #[inline(always)]
     pub fn subtract_rank_one(&self, weight: T, u: Force<T>) -> Self {
         let scaled = u.ang * -weight;

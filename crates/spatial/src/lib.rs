@@ -1,8 +1,8 @@
 //! Six-dimensional spatial algebra, generic over the scalar [`Real`].
 //!
-//! Motion and force vectors have named parts, `ang` and `lin`; nothing is indexed. A [`Transform`] `X` is the placement of a child frame
-//! in its parent: it carries child coordinates to parent coordinates, and its `inverse_*` methods go the other way. Products are written
-//! with [`Real::mul_add`], because the compiler never fuses `a * b + c` by itself.
+//! Motion and force vectors have named parts, `ang` and `lin`; nothing is indexed.
+//! A [`Transform`] `X` is the placement of a child frame in its parent. It takes child coordinates to parent coordinates; its `inverse_*`
+//! methods go the other way. Products are written with [`Real::mul_add`]: the compiler never fuses `a * b + c` by itself.
 //!
 //! Source: R. Featherstone, *Rigid Body Dynamics Algorithms* (2008), chapter 2 and appendix A ("the book" in this workspace).
 

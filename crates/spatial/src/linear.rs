@@ -1,4 +1,4 @@
-//! Three-dimensional vectors and matrices, the parts that spatial quantities are made of.
+//! Three-dimensional vectors and matrices, the parts of spatial quantities.
 
 use crate::{Lift, Real};
 use std::ops::{Add, AddAssign, Mul, Neg, Sub, SubAssign};
@@ -337,7 +337,7 @@ impl<T: Real> Sym3<T> {
         Mat3::from_array([self.xx, self.xy, self.xz, self.xy, self.yy, self.yz, self.xz, self.yz, self.zz])
     }
 
-    /// `R S Rᵀ`: the same tensor in the axes that `R` leads to.
+    /// `R S Rᵀ`: the same tensor, in the axes to which `R` transforms.
     #[inline(always)]
     pub fn rotate(self, r: Mat3<T>) -> Self {
         // Rows of R S, then only the upper triangle of (R S) Rᵀ.
@@ -345,7 +345,7 @@ impl<T: Real> Sym3<T> {
         Self { xx: x.dot(r.x), xy: x.dot(r.y), xz: x.dot(r.z), yy: y.dot(r.y), yz: y.dot(r.z), zz: z.dot(r.z) }
     }
 
-    /// Solves `S x = b` by LDLᵀ without pivoting, and returns the smallest pivot beside the solver.
+    /// The factors of `S = L D Lᵀ`, without pivoting; the pivots are not checked.
     #[inline(always)]
     pub fn factor(self) -> Ldl3<T> {
         let d1 = self.xx;

@@ -1,4 +1,4 @@
-//! Placements of frames, and the spatial transforms that they are.
+//! Placements of frames, which are spatial transforms.
 
 use crate::{Force, Lift, Mat3, Motion, Real, Vec3};
 
@@ -18,7 +18,7 @@ impl<T: Real> Quaternion<T> {
         Self { v: Vec3::new(x, y, z), w }
     }
 
-    /// The rotation matrix, exactly orthonormal up to rounding also when the quaternion's length is not exactly one:
+    /// The rotation matrix. It is orthonormal up to rounding, also when the quaternion's length is not exactly one:
     /// `R = 1 + 2/|q|² (w·v× + v×v×)`.
     #[inline(always)]
     pub fn to_rotation(self) -> Mat3<T> {
@@ -67,8 +67,8 @@ impl<T: Real> Transform<T> {
     /// The rotation by the angle with this sine and cosine about the unit vector `u` (Rodrigues):
     /// `R = c·1 + s·u× + (1−c) u uᵀ`.
     ///
-    /// Of an axis of the frame it is exact: 1, c and s, as given. For 1−c is rounded to `versine`, and what that leaves, exactly
-    /// `rest = (1 − versine) − c`, is on the diagonal.
+    /// The rotation about an axis of the frame is exact: its entries are 1, c and s, as given. To that end the rounding error of
+    /// `versine = 1 − c`, which is exactly `rest = (1 − versine) − c`, is added on the diagonal.
     #[inline(always)]
     pub fn axis_rotation(u: Vec3<T>, sin: T, cos: T) -> Mat3<T> {
         let versine = T::one() - cos;

@@ -3,7 +3,7 @@
 use crate::{Lift, Real, Vec3};
 use std::ops::{Add, AddAssign, Mul, Neg, Sub, SubAssign};
 
-/// A spatial motion vector at a frame's origin: angular part, and linear part of the point at that origin.
+/// A spatial motion vector at a frame's origin: the angular part, and the linear part of the point at that origin.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Motion<T> {
     /// Angular part, rad/s for a velocity.

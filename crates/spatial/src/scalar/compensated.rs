@@ -1,10 +1,12 @@
-//! An `f64` with the sum of its rounding errors: double-double accuracy at half the price, where nothing is divided by what has cancelled.
+//! An `f64` with the sum of its rounding errors. It is as accurate as double-double at half the cost, where no divisor has cancelled.
 //!
-//! Source: pair arithmetic, M. Lange and S. M. Rump, *Faithfully rounded floating-point computations* (ACM TOMS 46, 2020), which is Ogita,
-//! Rump and Oishi's compensated dot product (2005) made into a number type. The upper part is what plain `f64` would compute; the lower
-//! part gathers its errors to first order and is never carried over. With u = 2⁻⁵³ an expression of sums and products with n operations
-//! on its longest path has an error of at most about n²u² times the same expression of magnitudes, so that cancellation costs digits as
-//! in a double-double of 106 − 2·log₂ n digits. Sine, cosine, quotients and roots renormalize their operands.
+//! Source: the pair arithmetic of M. Lange and S. M. Rump, *Faithfully rounded floating-point computations* (ACM TOMS 46, 2020). It makes a
+//! number type of the compensated dot product of Ogita, Rump and Oishi (2005).
+//! The upper part is what plain `f64` would compute. The lower part sums the errors to first order, and is never carried over.
+//!
+//! The error of an expression of sums and products is at most about n²u² times the same expression of magnitudes.
+//! Here u = 2⁻⁵³, and n is the number of operations on the longest path.
+//! So cancellation costs digits as in a double-double of 106 − 2·log₂ n bits. Sine, cosine, quotients and roots renormalize their operands.
 
 use super::error_free::{two_product, two_sum};
 use super::{DoubleDouble, Lift, Real};
@@ -12,7 +14,7 @@ use std::ops::{Add, AddAssign, Div, Mul, MulAssign, Neg, Sub, SubAssign};
 
 /// The sum `value + error`, where `error` is usually, but not always, the smaller.
 ///
-/// Two of them can be the same number and not be equal, which is why they cannot be compared; [`Compensated::to_double_double`] can.
+/// Two pairs can be the same number with different parts. So they cannot be compared; [`Compensated::to_double_double`] can.
 ///
 /// ```
 /// use featherbench_spatial::{Compensated, Lift, Real};
@@ -140,7 +142,7 @@ impl Div for Compensated {
         let other = other.renormalized();
         let value = self.value / other.value;
         let (product, error) = two_product(value, other.value);
-        // what is left of the dividend; the first difference is exact
+        // the remainder of the dividend; the first difference is exact
         let rest = ((self.value - product) - error) + Real::mul_add(-value, other.error, self.error);
         Self { value, error: rest / other.value }
     }

@@ -22,12 +22,13 @@ pub struct Operations {
 }
 
 impl Operations {
-    /// Everything but sine and cosine, a fused multiply-add counting once: instructions on a machine with fused multiply-add.
+    /// All operations but sine and cosine; a fused multiply-add counts once. These are the instructions of a machine with fused
+    /// multiply-add.
     pub fn total(&self) -> u64 {
         self.additions + self.multiplications + self.fused + self.divisions + self.roots
     }
 
-    /// Floating-point operations, a fused multiply-add counting twice, without sine and cosine.
+    /// Floating-point operations without sine and cosine; a fused multiply-add counts twice.
     pub fn flops(&self) -> u64 {
         self.total() + self.fused
     }

@@ -1,20 +1,22 @@
 //! Double-double numbers: about 32 digits in two `f64`.
 //!
 //! Sources: M. Joldes, J.-M. Muller and V. Popescu, *Tight and rigorous error bounds for basic building blocks of double-word arithmetic*
-//! (ACM TOMS 44, 2017), and V. Lefèvre, N. Louvet, J.-M. Muller, J. Picot and L. Rideau, *Accurate calculation of Euclidean norms using
-//! double-word arithmetic* (ACM TOMS 49, 2023) for the square root. With u = 2⁻⁵³ the relative errors are at most
+//! (ACM TOMS 44, 2017). For the square root: V. Lefèvre, N. Louvet, J.-M. Muller, J. Picot and L. Rideau, *Accurate calculation of
+//! Euclidean
+//! norms using double-word arithmetic* (ACM TOMS 49, 2023). The relative errors, with u = 2⁻⁵³:
 //!
-//! | operation | bound |
+//!
+//! | operation | relative error, at most |
 //! |---|---|
 //! | sum, difference | 3u² + 13u³, also where the operands cancel |
 //! | product | 5u² (4u² with fused multiply-add) |
 //! | quotient | 15u² + 56u³ |
 //! | square root | 25/8·u² |
 //! | `a·b + c` | 5u²·\|a·b\| + 6u²·\|a·b + c\| |
-//! | sine, cosine | 28u² (3u² is the most that was seen), also at huge angles and next to their zeros |
+//! | sine, cosine | 28u² (seen: 3u²), also at huge angles and next to their zeros |
 //!
-//! as long as nothing overflows or underflows: every nonzero operand and result within about 2⁻⁹⁰⁰ … 2⁹⁹⁰. An infinite result becomes NaN
-//! in the next operation at the latest, and NaN stays NaN.
+//! The bounds hold while nothing overflows or underflows: every nonzero operand and result is within about 2⁻⁹⁰⁰ … 2⁹⁹⁰.
+//! An infinite result becomes NaN in the next operation at the latest, and NaN stays NaN.
 
 use super::error_free::{fast_two_sum, two_product, two_sum};
 use super::trigonometry;
@@ -70,7 +72,7 @@ impl DoubleDouble {
         self.hi
     }
 
-    /// What [`DoubleDouble::to_f64`] leaves: at most half a unit in its last place.
+    /// The rest of this number after [`DoubleDouble::to_f64`]: at most half a unit in the last place of that.
     #[inline(always)]
     pub fn rest(self) -> f64 {
         self.lo
@@ -152,7 +154,7 @@ impl Lift<DoubleDouble> for f64 {
     }
 }
 
-/// Rounds: a model that was built in double-double lends its parameters to `f64` kernels.
+/// Rounds: a model that was built in double-double gives its parameters to `f64` kernels.
 impl Lift<f64> for DoubleDouble {
     #[inline(always)]
     fn lift(self) -> f64 {

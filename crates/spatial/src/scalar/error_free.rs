@@ -1,8 +1,10 @@
 //! Error-free transforms: sums and products of two `f64` as the rounded result and its rounding error, exactly.
 //!
-//! Sources: Knuth's two-sum, Dekker's fast two-sum, and the product by fused multiply-add or, where the machine has none, by Veltkamp's
-//! splitting and Dekker's product (T. J. Dekker, *A floating-point technique for extending the available precision*, 1971). All are exact in
-//! round-to-nearest unless something overflows; products also need an error that does not underflow (|a·b| above 2⁻⁹⁶⁹).
+//! Sources: Knuth's two-sum and Dekker's fast two-sum. The product is by fused multiply-add. Where the machine has none, it is by
+//! Veltkamp's
+//! splitting and Dekker's product (T. J. Dekker, *A floating-point technique for extending the available precision*, 1971).
+//! All are exact in round-to-nearest unless something overflows. A product also needs that its error does not underflow (|a·b| above
+//! 2⁻⁹⁶⁹).
 
 /// `a + b` and its error, exactly.
 #[inline(always)]
@@ -12,7 +14,7 @@ pub(crate) fn two_sum(a: f64, b: f64) -> (f64, f64) {
     (sum, (a - (sum - b_part)) + (b - b_part))
 }
 
-/// `a + b` and its error, exactly, if |a| ≥ |b|, if a is zero or, more generally, if `a` is a multiple of the last place of `b`.
+/// `a + b` and its error, exactly, if `a` is a multiple of the last place of `b`. That holds if |a| ≥ |b|, or if a is zero.
 #[inline(always)]
 pub(crate) fn fast_two_sum(a: f64, b: f64) -> (f64, f64) {
     let sum = a + b;

@@ -1,4 +1,4 @@
-//! The scalar trait: what a kernel may ask of a number.
+//! The scalar trait: the operations that a kernel may use.
 
 mod compensated;
 mod counted;
@@ -17,8 +17,8 @@ use std::ops::{Add, AddAssign, Div, Mul, MulAssign, Neg, Sub, SubAssign};
 
 /// A scalar of the dynamics kernels: a ring with division, a fused multiply-add, square root, sine and cosine.
 ///
-/// Nothing here compares, so kernels are branch-free in the scalar and the same text runs on `f64`, `f32`, SIMD lanes, dual numbers and
-/// extended precision. `min_lane` is the one way out: a factorization keeps its smallest pivot through it.
+/// Nothing here compares. So kernels are branch-free in the scalar, and the same text runs on `f64`, `f32`, SIMD lanes, dual numbers and
+/// extended precision. The one exception is `min_lane`: a factorization keeps its smallest pivot through it.
 pub trait Real:
     Copy
     + Debug
@@ -37,7 +37,7 @@ pub trait Real:
     /// The scalar nearest to `value`.
     fn from_f64(value: f64) -> Self;
 
-    /// The scalar nearest to `exact`, of which `rounded` is what an `f64` holds: a scalar that is no wider takes `rounded` as it is.
+    /// The scalar nearest to `exact`. An `f64` holds `rounded` of it, and a scalar that is no wider takes `rounded` as it is.
     #[inline(always)]
     fn from_exact(rounded: f64, _exact: DoubleDouble) -> Self {
         Self::from_f64(rounded)
@@ -68,10 +68,10 @@ pub trait Real:
     }
 }
 
-/// A parameter that can stand in a computation over `T`.
+/// A parameter that can be used in a computation over `T`.
 ///
-/// Kernels are written over a state scalar `T` and parameters `P: Lift<T>`: lanes of states keep `f64` parameters, and every scalar lifts to
-/// itself, so a dual or a lane of parameters costs nothing extra to write.
+/// Kernels have a state scalar `T` and parameters `P: Lift<T>`. Lanes of states keep `f64` parameters. Every scalar lifts to itself, so
+/// duals or lanes of parameters need no other code.
 pub trait Lift<T>: Copy {
     /// The parameter as a `T`.
     fn lift(self) -> T;

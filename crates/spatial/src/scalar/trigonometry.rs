@@ -1,12 +1,20 @@
 //! Sine and cosine of a double-double angle.
 //!
-//! The angle is reduced to r = x − n·π/2 with |r| ≤ π/4: by Cody and Waite's subtraction of the parts of n·π/2 where x is moderate and r
-//! not tiny, otherwise by the method of M. Payne and R. Hanek (1983), which multiplies those digits of 2/π that matter by the integer
-//! mantissas of x, so that 331 binary digits of the fraction of x·2/π are right at every magnitude. There are fewer than 2¹²⁸
-//! double-doubles, so by counting the nearest one comes within about 2⁻¹²⁸ of a multiple of π/2, and 200 of these digits are significant.
-//! Then d = |r| − k/64 with |d| ≤ 1/128, Taylor's series of sin d and cos d, and the addition theorem with tabulated sin k/64 and cos k/64.
-//! With u = 2⁻⁵³ the errors relative to the result are at most 9u² for r, 14u² for what is added to the tabulated value (where that is
-//! half the result; 1u² elsewhere), and 3u² for the addition.
+//! 1. The angle is reduced to r = x − n·π/2 with |r| ≤ π/4. Where x is moderate and r not tiny, Cody and Waite's method subtracts the parts
+//!    of
+//!    n·π/2. Otherwise the method of M. Payne and R. Hanek (1983) is used: it multiplies the digits of 2/π that matter by the integer
+//!    mantissas
+//!    of x. So 331 binary digits of the fraction of x·2/π are right at every magnitude. There are fewer than 2¹²⁸ double-doubles. So by
+//!    counting,
+//!    the nearest one comes within about 2⁻¹²⁸ of a multiple of π/2, and 200 of these digits are significant.
+//! 2. With d = |r| − k/64 and |d| ≤ 1/128, sin d and cos d come from Taylor's series.
+//! 3. The addition theorem combines them with tabulated sin k/64 and cos k/64.
+//!
+//! | step | error relative to the result, at most (u = 2⁻⁵³) |
+//! |---|---|
+//! | r | 9u² |
+//! | what is added to the tabulated value | 14u² where that is half the result, 1u² elsewhere |
+//! | the addition | 3u² |
 
 use super::Real;
 use super::double_double::DoubleDouble;
@@ -31,9 +39,9 @@ pub(super) fn sin_cos(x: DoubleDouble) -> (DoubleDouble, DoubleDouble) {
 /// The number n of quarter turns (right in its last two bits) and the rest x − n·π/2, at most about π/4.
 #[inline(always)]
 fn reduce(x: DoubleDouble) -> (u64, DoubleDouble) {
-    /// Below it n < 2³⁰, and n·π/2 by parts is good to n·2⁻¹⁶³.
+    /// Below this n < 2³⁰, and n·π/2 by parts has an error of n·2⁻¹⁶³.
     const MODERATE: f64 = 1.6e9;
-    /// Above it the partial sums are of the size of the rest itself, and its errors relative to it.
+    /// Above this the partial sums have the size of the rest itself, and their errors are relative to it.
     const NOT_TINY: f64 = 1.0 / 1048576.0;
 
     let turns = (x.to_f64() * FRAC_2_PI).round_ties_even();
@@ -55,7 +63,7 @@ fn reduce(x: DoubleDouble) -> (u64, DoubleDouble) {
     reduce_by_digits(x)
 }
 
-/// [`reduce`] at any magnitude and any nearness to a multiple of π/2.
+/// [`reduce`] at any magnitude, and however near to a multiple of π/2.
 #[cold]
 #[inline(never)]
 fn reduce_by_digits(x: DoubleDouble) -> (u64, DoubleDouble) {
@@ -90,7 +98,7 @@ fn quarter_turns(value: f64) -> Turns {
     let mut turns = [0; 7];
     let mut carry = 0;
     for (k, word) in turns.iter_mut().enumerate().rev() {
-        // bits of 2/π · 2^exponent, what is a multiple of 2⁶⁴ left out
+        // bits of 2/π · 2^exponent, without the multiples of 2⁶⁴
         let product = u128::from(bits(&DIGITS_2_PI, exponent - 64 + 64 * k as i64)) * u128::from(mantissa) + carry;
         *word = product as u64;
         carry = product >> 64;
@@ -174,7 +182,7 @@ const FRAC_PI_2: [f64; 3] = [std::f64::consts::FRAC_PI_2, 6.123233995736766e-17,
 
 const FRAC_2_PI: f64 = std::f64::consts::FRAC_2_PI;
 
-/// (−1)ᵏ/(2k + 3)!, and what the rounding of the first two left.
+/// (−1)ᵏ/(2k + 3)!, then the rounding errors of the first two.
 const SIN: [f64; 6] = [
     -0.16666666666666666,
     0.008333333333333333,
@@ -185,7 +193,7 @@ const SIN: [f64; 6] = [
 ];
 const SIN_REST: [f64; 2] = [-9.25185853854297e-18, 1.1564823173178714e-19];
 
-/// (−1)ᵏ/(2k + 2)!, and what the rounding of the first three left.
+/// (−1)ᵏ/(2k + 2)!, then the rounding errors of the first three.
 const COS: [f64; 7] = [
     -0.5,
     0.041666666666666664,

@@ -28,7 +28,7 @@ proptest! {
         }
     }
 
-    /// The same bound where nothing of the leading digits survives: it is relative to the sum.
+    /// The same bound where no leading digit survives: it is relative to the sum.
     #[test]
     fn cancelling_sums_too(a in double_double(REACH), change in -1.0..1.0_f64, digits in 1..106_i32) {
         let b = nearly_opposite(a, change * 2.0_f64.powi(-digits));

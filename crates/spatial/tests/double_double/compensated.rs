@@ -46,7 +46,7 @@ proptest! {
         prop_assert!(error(z.sin_cos().1, &cos, &cos) <= 28.0);
     }
 
-    /// Dividing by what has cancelled costs the digits that cancelled, and no more: the divisor is renormalized.
+    /// A divisor that has cancelled costs the digits that cancelled, and no more: the divisor is renormalized.
     #[test]
     fn quotients_by_what_has_cancelled(a in 1.0..2.0_f64, b in 1.0..2.0_f64, digits in 1..50_i32) {
         let small = 2.0_f64.powi(-digits) / 3.0;

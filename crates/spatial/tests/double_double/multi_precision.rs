@@ -17,7 +17,7 @@ pub fn exact(x: DoubleDouble) -> Big {
     part(x.to_f64()) + part(x.rest())
 }
 
-/// A number written in decimal digits, of which more than 100 significant ones would be lost.
+/// A number from decimal digits; it keeps 100 significant digits at least.
 pub fn parse(text: &str) -> Big {
     let decimal: DBig = text.parse().expect("a decimal number");
     decimal.with_base_and_precision::<2>(BITS).value().with_rounding()

@@ -5,7 +5,7 @@ use featherbench_spatial::{DoubleDouble, Real};
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
 
-/// The proven bound is 28u², but roundings rarely conspire: the worst of 20000 angles of every magnitude is 2.9u², and this twice that.
+/// The proven bound is 28u². Roundings rarely add up: the worst of 20000 angles of every magnitude is 2.9u², and this is twice that.
 const BOUND: f64 = 6.0;
 
 /// The larger relative error of the two, in u².
@@ -25,7 +25,7 @@ proptest! {
         prop_assert!(worst(x) <= BOUND);
     }
 
-    /// Where robots live.
+    /// The angles of robots.
     #[test]
     fn within_a_few_turns(hi in -20.0..20.0_f64, lo in -1.1e-16..1.1e-16_f64) {
         prop_assert!(worst(DoubleDouble::from_sum(hi, hi * lo)) <= BOUND);
@@ -64,7 +64,7 @@ fn golden_values_of_mpmath() {
         let (sin, cos) = DoubleDouble::from_sum(part(0), part(1)).sin_cos();
         for (value, digits) in [(sin, fields[2]), (cos, fields[3])] {
             let truth = parse(digits);
-            // A sine of 1e-300 has a lower part, and products on the way to it, of no full precision: they would be below 1e-308.
+            // Below 1e-308 numbers lose precision. The lower part of a sine of 1e-300, and products on the way to it, would be there.
             let bound = if value.abs().to_f64() < 1e-290 { 2.0_f64.powi(106 - 52) } else { BOUND };
             let error = error_in_u2(value, &truth, &truth);
             assert!(error <= bound, "{line}: {error} u²");
