@@ -5,13 +5,13 @@ use crate::{BodyDescription, Description, Frame, JointDescription, JointType, Ma
 use featherbench_spatial::{DoubleDouble, Mat3, Real, Sym3, Transform, Vec3};
 
 impl Description {
-    /// The canonical form: validated, axes and rotations of joints normalised, fixed joints merged into their parents (each merged body
-    /// leaving a frame), depth-first order with siblings in their given order. Idempotent, and the identity on a description that is
-    /// canonical already.
+    /// The canonical form: validated, axes and rotations of joints normalised, fixed joints merged into their parents, depth-first order.
+    /// Each merged body leaves a frame. Siblings keep their order. A canonical description is its own canonical form.
     ///
     /// A written axis stands for the unit vector along it, a written rotation for the nearest one. Both, and the products of merged
-    /// placements, are formed with 32 digits and rounded once. What that changes by more than an ulp is a
-    /// [`Warning`](crate::Warning) of the description as it was given.
+    /// placements,
+    /// are formed with 32 digits and rounded once. A change by more than an ulp is a [`Warning`](crate::Warning) of the description as
+    /// given.
     ///
     /// # Errors
     /// [`Malformed`], naming the body and field.
@@ -27,7 +27,7 @@ impl Description {
             let (parent, on_parent) = body.parent.map_or((None, Transform::identity()), |parent| home[parent]);
             let written = rotation(body.joint.placement.rotation);
             let exact = Transform::new(Mat3::from_array(written.exact), wide(body.joint.placement.translation));
-            // Numbers to which nothing was merged, and which are normalised, stay the same to the bit.
+            // Normalised numbers to which nothing was merged stay the same to the bit.
             let (exact, placement) = if on_parent == Transform::identity() {
                 (exact, Placement { rotation: written.rounded, ..body.joint.placement })
             } else {
@@ -93,7 +93,7 @@ fn narrow(x: &Transform<DoubleDouble>) -> Placement {
     Placement::from_transform(&x.lift())
 }
 
-/// A placement on a body that was merged. Long products of rotations leave 32 digits too: they are normalised again.
+/// A placement on a body that was merged. It is normalised again: a long product of rotations is orthonormal to fewer than 32 digits.
 fn merged(on_parent: &Transform<DoubleDouble>, placement: &Transform<DoubleDouble>) -> Transform<DoubleDouble> {
     let product = on_parent.compose(placement);
     Transform::new(nearest_rotation(product.rotation), product.translation)

@@ -1,4 +1,4 @@
-//! A robot as people write it down: plain numbers, no scalar, no compiled order.
+//! A robot as a user describes it: plain numbers, no scalar, no compiled order.
 
 /// A robot: bodies, each with the joint that carries it, and gravity.
 #[derive(Clone, Debug, PartialEq, Default)]
@@ -17,7 +17,7 @@ pub struct Description {
 
 /// A rigid body and the joint that connects it to its parent.
 ///
-/// The body's frame coincides with the joint's moving frame.
+/// The body's frame is the joint's moving frame.
 #[derive(Clone, Debug, PartialEq)]
 pub struct BodyDescription {
     /// The body's name, unique in the description.
@@ -34,22 +34,22 @@ pub struct BodyDescription {
     pub joint: JointDescription,
 }
 
-/// A joint: its kind, where it stands on the parent, and its per-dof properties.
+/// A joint: its kind, its placement on the parent, and its per-dof properties.
 ///
 /// The vectors hold one number per degree of freedom, or none at all for "zero" (armature, damping, friction) and "unlimited".
 #[derive(Clone, Debug, PartialEq, Default)]
 pub struct JointDescription {
     /// The joint's name.
     pub name: String,
-    /// What moves.
+    /// The kind of motion.
     pub kind: JointType,
     /// The joint frame in the parent's frame.
     pub placement: Placement,
     /// Armature (reflected rotor inertia), added to the diagonal of the mass matrix, kg·m² or kg.
     pub armature: Vec<f64>,
-    /// Viscous damping, carried and never part of the inverse dynamics.
+    /// Viscous damping. It is stored, and never part of inverse dynamics.
     pub damping: Vec<f64>,
-    /// Dry friction, carried and never part of the inverse dynamics.
+    /// Dry friction. It is stored, and never part of inverse dynamics.
     pub friction: Vec<f64>,
     /// Lower position limits, rad or m.
     pub lower: Vec<f64>,
@@ -94,14 +94,14 @@ pub enum JointType {
     Universal,
     /// Translation along the joint frame's x, y and z.
     Translation,
-    /// Rotation about an axis and translation along it, independent of each other; q is angle and distance. The two commute, so that their
-    /// order is that of the numbers alone: the angle first, as in every 6-vector here.
+    /// Rotation about an axis and translation along it, independent of each other; q is angle and distance. The two commute.
+    /// So their order is that of the numbers alone: the angle first, as in every 6-vector here.
     Cylindrical {
         /// The axis of both.
         axis: [f64; 3],
     },
-    /// Rotation about the joint frame's z, then about the moved y, then about the moved x; q is the three angles, v their rates. At ±90°
-    /// about y the first and the third axis fall together and the mass matrix is singular where no armature is.
+    /// Rotation about the joint frame's z, then about the moved y, then about the moved x; q is the three angles, v their rates.
+    /// At ±90° about y the first and third axis coincide. Then the mass matrix is singular without armature.
     EulerZyx,
 }
 
@@ -121,11 +121,11 @@ pub struct Frame {
     pub name: String,
     /// The body it is fixed to, or `None` for the world.
     pub body: Option<usize>,
-    /// Where it stands on that body.
+    /// Its placement on that body.
     pub placement: Placement,
 }
 
-/// Where a robot's numbers come from, with the words that allow their use.
+/// Where a robot's numbers come from, with the text that allows their use.
 #[derive(Clone, Debug, PartialEq, Default)]
 pub struct Provenance {
     /// Package, version and file.
@@ -136,7 +136,7 @@ pub struct Provenance {
     pub header: String,
     /// What the description folder's README or licence file says, quoted.
     pub readme: String,
-    /// What was changed on the way (merged links, dropped elements).
+    /// What was changed (merged links, dropped elements).
     pub notes: Vec<String>,
 }
 
@@ -213,7 +213,7 @@ impl Description {
         self.bodies.iter().map(|body| body.joint.kind.nv()).sum()
     }
 
-    /// The longest path of bodies from the world, of a canonical description.
+    /// The largest number of bodies on a path from the world, of a canonical description.
     pub fn depth(&self) -> usize {
         let mut depth = vec![0; self.bodies.len()];
         for (i, body) in self.bodies.iter().enumerate() {

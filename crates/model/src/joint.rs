@@ -1,4 +1,4 @@
-//! The primitive joints that kernels see.
+//! The primitive joints of the compiled model.
 
 use featherbench_spatial::{Force, Lift, Motion, Quaternion, Real, Transform, Vec3};
 

@@ -1,8 +1,12 @@
 //! What a robot is: its description, its compiled model, its states, and generators of robots.
 //!
-//! A [`Description`] is what people write: named bodies and joints of every kind, as plain numbers. [`Model::build`] compiles it:
-//! fixed joints are merged, bodies are put in depth-first order, and composed joints (planar, universal) become chains of the primitive
-//! joints of [`JointKind`] with massless bodies between, so that no kernel meets a configuration-dependent motion subspace.
+//! A [`Description`] is what users write: named bodies and joints of every kind, as plain numbers. [`Model::build`] compiles it:
+//! - fixed joints are merged;
+//! - bodies are put in depth-first order;
+//! - composed joints (planar, universal, …) become chains of the primitive joints of [`JointKind`], with massless bodies between. So no
+//!   kernel
+//!   meets a configuration-dependent motion subspace.
+//!
 //! [`Topology`] is the scalar-free part of a model; `Model<P>` adds the parameters.
 
 mod canonical;

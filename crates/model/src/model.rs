@@ -5,7 +5,7 @@ use crate::{Description, JointKind, JointType, Malformed, Topology, Warning};
 use featherbench_spatial::{Lift, Mat3, Motion, Real, RigidBodyInertia, Sym3, Transform, Vec3};
 use std::array::from_fn;
 
-/// A robot as the kernels see it: primitive joints in depth-first order, parameters over the scalar `P`.
+/// A robot as the kernels use it: primitive joints in depth-first order, parameters over the scalar `P`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Model<P> {
     /// The tree.
@@ -28,15 +28,16 @@ pub struct Model<P> {
     pub limits: Vec<(f64, f64)>,
     /// The compiled body of each described body.
     pub described: Vec<usize>,
-    /// What is unusual about the robot, though not wrong.
+    /// The warnings of validation.
     pub warnings: Vec<Warning>,
 }
 
 impl<P: Real> Model<P> {
     /// Compiles a description; inertias, axes and rotations are formed in the arithmetic of `P`.
     ///
-    /// Canonical axes and rotations are rounded to doubles. A scalar that holds more digits gets the unit vectors and rotations that these
-    /// stand for; `f64` takes them as they are.
+    /// Canonical axes and rotations are rounded to doubles. A scalar with more digits gets the unit vectors and rotations that these
+    /// doubles stand
+    /// for; `f64` takes the doubles as they are.
     ///
     /// The description need not be canonical: fixed joints are merged and the bodies put in depth-first order.
     ///

@@ -1,7 +1,9 @@
 //! Unit vectors and rotations: what written numbers stand for.
 //!
-//! Computes: a written axis u stands for u/|u|, and a written rotation R for the nearest rotation, its orthogonal polar factor, the limit of
-//! R ← ½(R + R⁻ᵀ). Both are formed with 32 digits and rounded once. Numbers that rounding a unit vector or a rotation may leave are kept to
+//! Computes: a written axis u stands for u/|u|. A written rotation R stands for the nearest rotation: its orthogonal polar factor, the
+//! limit of
+//! R ← ½(R + R⁻ᵀ). Both are formed with 32 digits and rounded once. Numbers that can come from rounding a unit vector or a rotation are
+//! kept to
 //! the bit, so that normalising twice is normalising once.
 //! Source: Higham, *Functions of Matrices* (2008), §8.3. Shapes: 3 and 9 numbers, rows first. Cost: O(1); nothing is allocated.
 
@@ -10,21 +12,22 @@ use std::array::from_fn;
 
 /// Largest entry of |uᵀu − 1| and |RRᵀ − 1| after rounding to doubles, δ = 2⁻⁵³.
 ///
-/// Entries become û_i(1 + δ_i) with |δ_i| ≤ δ/(1 + δ). By Cauchy and Schwarz a product of two rows moves by 2δ/(1 + δ) + δ² < 2⁻⁵² at most.
+/// Entries become û_i(1 + δ_i) with |δ_i| ≤ δ/(1 + δ). By Cauchy and Schwarz a product of two rows changes by 2δ/(1 + δ) + δ² < 2⁻⁵² at
+/// most.
 /// The factor leaves room for the rounding of 32-digit arithmetic, some 50·2⁻¹⁰⁶.
 const ROUNDED: f64 = f64::EPSILON * (1.0 + 64.0 * f64::EPSILON);
 
-/// From what validation lets through, 1e-6, an error is squared by each of these steps: 1e-12, 1e-24, 1e-48.
+/// Each step squares the error. Validation accepts 1e-6: after the steps it is 1e-12, 1e-24, 1e-48.
 const STEPS: usize = 3;
 
-/// Written numbers, and what they stand for.
+/// Written numbers, and the numbers that they stand for.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Normalised<const N: usize> {
-    /// The written numbers where rounding may have left them, else the doubles nearest to what they stand for.
+    /// The written numbers if rounding can have made them, else the doubles nearest to what they stand for.
     pub rounded: [f64; N],
     /// What `rounded` stands for, to 32 digits.
     pub exact: [DoubleDouble; N],
-    /// How far the written numbers miss: | |u| − 1 | of an axis, half the largest entry of |RRᵀ − 1| of a rotation.
+    /// The deviation of the written numbers: | |u| − 1 | of an axis, half the largest entry of |RRᵀ − 1| of a rotation.
     pub missed: f64,
 }
 

@@ -97,7 +97,7 @@ mod tests {
         assert_eq!(Random::named(7, "a").bits64(), Random::named(7, "a").bits64());
     }
 
-    /// Pinned: a change here would silently change every generated robot and state.
+    /// Pinned: a change here would change every generated robot and state without notice.
     #[test]
     fn first_numbers_are_pinned() {
         let mut random = Random::named(1, "featherbench");

@@ -3,7 +3,7 @@
 use crate::{Joint, JointKind, Model, Random};
 use thiserror::Error;
 
-/// What is special about a state.
+/// The kind of a state.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum Case {
     /// Everything drawn at random.
@@ -16,12 +16,12 @@ pub enum Case {
     Fast,
     /// Random, with each limited joint at its lower or upper limit.
     Limit,
-    /// q where the robot's file has it stand; v, a, τ and wrenches random.
+    /// q of a keyframe of the robot's file; v, a, τ and wrenches random.
     Keyframe,
 }
 
 impl Case {
-    /// The word for it in records.
+    /// The word for it in rows.
     pub fn name(self) -> &'static str {
         match self {
             Self::Random => "random",
@@ -46,9 +46,9 @@ pub struct StateBatch {
     pub nq: usize,
     /// Degrees of freedom.
     pub nv: usize,
-    /// Described bodies (wrenches act on these).
+    /// Number of described bodies (wrenches act on these).
     pub bodies: usize,
-    /// What each state is.
+    /// The case of each state.
     pub cases: Vec<Case>,
     /// Configurations, `count × nq`.
     pub q: Vec<f64>,
@@ -62,7 +62,7 @@ pub struct StateBatch {
     pub wrench: Vec<f64>,
 }
 
-/// How the agreement batch begins: one state of each case first, so that a short prefix covers them all.
+/// The cases at the beginning of an agreement batch: one of each first, so that a short prefix covers all.
 const OPENING: [Case; 10] =
     [Case::Random, Case::Zero, Case::Straight, Case::Fast, Case::Random, Case::Limit, Case::Straight, Case::Fast, Case::Limit, Case::Fast];
 
@@ -78,7 +78,7 @@ pub enum BadState {
         found: usize,
         /// States in the batch.
         count: usize,
-        /// Numbers due.
+        /// Numbers expected.
         expected: usize,
     },
     /// A number is NaN or infinite.
@@ -105,7 +105,7 @@ pub enum BadState {
     },
 }
 
-/// A quaternion that was normalised in double precision is off by a few 1e-16, one that was printed with 12 digits by 1e-12.
+/// Normalising in double precision leaves an error of a few 1e-16, printing with 12 digits one of 1e-12.
 const QUATERNION_TOLERANCE: f64 = 1e-9;
 
 impl StateBatch {
@@ -169,11 +169,11 @@ impl StateBatch {
         &self.wrench[k * 6 * self.bodies..(k + 1) * 6 * self.bodies]
     }
 
-    /// How many states at the head of an agreement batch cover every case at least once.
+    /// Length of a head of an agreement batch that covers every case at least once.
     pub const HEAD: usize = 6;
 
-    /// `count` states that cover every case: one zero, two straight, three fast, two at limits (where there are any), the rest random;
-    /// the first [`StateBatch::HEAD`] hold one of each.
+    /// `count` states that cover every case: one zero, two straight, three fast, two at limits (if there are any), the rest random.
+    /// The first [`StateBatch::HEAD`] include each case.
     ///
     /// A state depends on the seed, its case and its own number only. v, a, τ and wrenches are uniform in (−1, 1), angles in (−π, π),
     /// quaternions uniform on the sphere, positions in (−1, 1).
@@ -190,13 +190,13 @@ impl StateBatch {
         Self::draw(model, vec![Case::Random; count], seed)
     }
 
-    /// `count` random states with the angles of revolute joints uniform in (−reach, reach) and velocities `speed` times larger, every number
-    /// but the quaternions rounded to the nearest `f32`, so that single precision can be asked the same question.
+    /// `count` random states with the angles of revolute joints uniform in (−reach, reach) and velocities `speed` times larger.
+    /// Every number but the quaternions is rounded to the nearest `f32`, so that single precision can be asked the same question.
     pub fn narrow(model: &Model<f64>, count: usize, seed: u64, reach: f64, speed: f64) -> Self {
         let mut batch = Self::random(model, count, seed);
         let single = |x: &mut f64, factor: f64| *x = f64::from((*x * factor) as f32);
         for joint in model.topology.joints() {
-            // Coordinates before a quaternion, if there is one; a rounded quaternion would have no unit length.
+            // The coordinates before a quaternion, if there is one. A quaternion is not rounded: it would lose its unit length.
             let (numbers, factor) = match joint.kind {
                 JointKind::Revolute => (1, reach / std::f64::consts::PI),
                 JointKind::Prismatic | JointKind::Helical => (1, 1.0),
@@ -212,9 +212,9 @@ impl StateBatch {
         batch
     }
 
-    /// The batch with one state more for each of these configurations, at velocities, accelerations, forces and wrenches in (−1, 1).
+    /// The batch with one more state for each of these configurations; velocities, accelerations, forces and wrenches are in (−1, 1).
     ///
-    /// Quaternions are normalised; one of length zero, which no rotation has, becomes the identity, as MuJoCo has it.
+    /// Quaternions are normalised. One of length zero, which stands for no rotation, becomes the identity, as in MuJoCo.
     ///
     /// # Errors
     /// [`BadState`] of a configuration that is not this model's.

@@ -100,7 +100,7 @@ impl Topology {
         self.row_start[dof + 1] - self.row_start[dof]
     }
 
-    /// Where row `dof` of a tree-sparse matrix stands in its flat array: entries (dof, a) for each a of [`Topology::row_dofs`].
+    /// The range of row `dof` of a tree-sparse matrix in its flat array: entries (dof, a) for each a of [`Topology::row_dofs`].
     #[inline(always)]
     pub fn row(&self, dof: usize) -> std::ops::Range<usize> {
         self.row_start[dof]..self.row_start[dof + 1]
@@ -118,7 +118,7 @@ impl Topology {
         self.row_dofs.len()
     }
 
-    /// The largest number of bodies between the world and a body, itself included.
+    /// The largest number of bodies on a path from the world.
     pub fn depth(&self) -> usize {
         let mut depth = vec![0_usize; self.bodies()];
         for (i, joint) in self.joints.iter().enumerate() {

@@ -1,13 +1,13 @@
-//! The two levels of validation: malformed is an error, unusual is a warning that travels with the model.
+//! The two levels of validation: malformed is an error, unphysical is a warning of the model.
 
 use crate::orthonormal::{rotation, unit};
 use crate::{BodyDescription, Description, JointType};
 use thiserror::Error;
 
-/// Why a description is no robot. Every message names the body and says what to do.
+/// Why a description is not a robot. Every message names the body and says what to do.
 #[derive(Clone, Debug, PartialEq, Error)]
 pub enum Malformed {
-    /// Nothing moves.
+    /// No body moves.
     #[error("the robot has no moving body; give it at least one body whose joint is not fixed")]
     Empty,
     /// A number is NaN or infinite.
@@ -28,7 +28,7 @@ pub enum Malformed {
         /// The mass.
         mass: f64,
     },
-    /// The parent index points nowhere.
+    /// The parent index does not exist.
     #[error("body '{body}': parent {parent} does not exist (there are {count} bodies, counted from 0; the world is -1)")]
     Orphan {
         /// The body's name.
@@ -38,7 +38,7 @@ pub enum Malformed {
         /// How many bodies there are.
         count: usize,
     },
-    /// Following the parents comes back to the body.
+    /// The chain of parents returns to the body.
     #[error("body '{body}': its chain of parents returns to itself; cut the cycle so that every chain ends at the world")]
     Cycle {
         /// The body's name.
@@ -50,7 +50,7 @@ pub enum Malformed {
         /// The name.
         body: String,
     },
-    /// The axis has not length one.
+    /// The length of the axis is not one.
     #[error("body '{body}': the axis of joint '{joint}' has length {length}; give a unit vector")]
     NonUnitAxis {
         /// The body's name.
@@ -60,7 +60,7 @@ pub enum Malformed {
         /// The axis' length.
         length: f64,
     },
-    /// The rotation is not orthonormal, or turns right to left.
+    /// The rotation is not orthonormal, or it is a reflection.
     #[error("body '{body}': the rotation of joint '{joint}' misses orthonormality by {error:e}; give a rotation matrix in row-major order")]
     NotARotation {
         /// The body's name.
@@ -86,7 +86,7 @@ pub enum Malformed {
         /// Degrees of freedom.
         expected: usize,
     },
-    /// A per-dof number is negative that may not be.
+    /// A per-dof number is negative where it must not be.
     #[error("body '{body}': {field} of joint '{joint}' is negative ({value})")]
     Negative {
         /// The body's name.
@@ -118,7 +118,7 @@ pub enum Malformed {
         /// The joint's name.
         joint: String,
     },
-    /// The rotation of a frame is not orthonormal, or turns right to left.
+    /// The rotation of a frame is not orthonormal, or it is a reflection.
     #[error("frame '{frame}': its rotation misses orthonormality by {error:e}; give a rotation matrix in row-major order")]
     FrameNotARotation {
         /// The frame's name.
@@ -137,7 +137,7 @@ pub enum Malformed {
 }
 
 impl Malformed {
-    /// The body or frame that the error is about, so that a reader of files can say where it stands.
+    /// The body or frame of the error, so that a parser can say where it is in the file.
     pub fn about(&self) -> Option<&str> {
         match self {
             Self::Empty => None,
@@ -157,7 +157,7 @@ impl Malformed {
     }
 }
 
-/// Something unusual about a robot: not an error until an algorithm meets a pivot that is not positive.
+/// Something unusual about a robot. It is an error only where an algorithm meets a pivot that is not positive.
 #[derive(Clone, Debug, PartialEq, Error)]
 pub enum Warning {
     /// A moving body has no mass.
@@ -190,7 +190,7 @@ pub enum Warning {
     },
 }
 
-/// A rotation written with 17 digits is orthonormal to about 1e-15; one typed with 8 digits is not meant to be refused, one with 5 is.
+/// A rotation with 17 digits is orthonormal to about 1e-15. One typed with 8 digits must be accepted, one with 5 digits must not.
 const ROTATION_TOLERANCE: f64 = 1e-6;
 /// The same for the length of an axis.
 const AXIS_TOLERANCE: f64 = 1e-6;
@@ -228,7 +228,7 @@ impl Description {
         Ok(())
     }
 
-    /// Every chain of parents must end at the world within as many steps as there are bodies.
+    /// Every chain of parents must end at the world; a chain of more steps than there are bodies has a cycle.
     fn validate_acyclic(&self) -> Result<(), Malformed> {
         let mut grounded = vec![false; self.bodies.len()];
         for start in 0..self.bodies.len() {
@@ -245,14 +245,15 @@ impl Description {
         Ok(())
     }
 
-    /// What is unusual: axes and rotations that are normalised by more than an ulp, and moving bodies without mass or with an inertia that no
-    /// mass distribution has.
+    /// The warnings: axes and rotations that are normalised by more than an ulp, moving bodies without mass, and moving bodies with an
+    /// inertia that
+    /// no mass distribution has.
     pub fn warnings(&self) -> Vec<Warning> {
         let moving = self.bodies.iter().filter(|body| body.joint.kind != JointType::Fixed);
         self.normalised().chain(moving.filter_map(BodyDescription::warning)).collect()
     }
 
-    /// The axes and rotations that the canonical form normalises by more than an ulp. Of a canonical description there are none.
+    /// The axes and rotations that the canonical form normalises by more than an ulp. A canonical description has none.
     pub fn normalised(&self) -> impl Iterator<Item = Warning> + '_ {
         self.bodies.iter().flat_map(|body| {
             let axis = body.joint.kind.axis().map(|axis| ("axis", unit(axis).missed));
@@ -350,8 +351,8 @@ fn rotation_error(r: &[f64; 9]) -> f64 {
     gram.fold((det - 1.0).abs(), |worst, x| if x > worst || x.is_nan() { x } else { worst })
 }
 
-/// Smallest eigenvalue of a symmetric 3×3 matrix by the trigonometric formula (O. K. Smith 1961); good to about 1e-8 of its scale, far
-/// finer than the warning asks.
+/// Smallest eigenvalue of a symmetric 3×3 matrix by the trigonometric formula (O. K. Smith 1961). Its error is about 1e-8 of the scale, far
+/// below what the warning needs.
 fn least_eigenvalue([xx, xy, xz, yy, yz, zz]: [f64; 6]) -> f64 {
     let mean = (xx + yy + zz) / 3.0;
     let (a, b, c) = (xx - mean, yy - mean, zz - mean);

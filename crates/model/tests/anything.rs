@@ -1,10 +1,10 @@
-//! Any description at all, however wrong, is either refused or compiled: nothing panics.
+//! Any description, however wrong, gives an error or is compiled: nothing panics.
 
 use featherbench_model::{BodyDescription, Description, Frame, JointDescription, JointType, Model, Placement, StateBatch};
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
 
-/// Numbers as users get them wrong: mostly ordinary, sometimes zero, negative, huge, infinite or NaN.
+/// Numbers as users may write them: mostly ordinary, sometimes zero, negative, huge, infinite or NaN.
 fn number() -> impl Strategy<Value = f64> {
     prop_oneof![20 => -2.0..2.0, 4 => Just(0.0), 2 => Just(1.0), 1 => any::<f64>()]
 }
@@ -88,7 +88,7 @@ proptest! {
             prop_assert!(canonical.depth() <= canonical.bodies.len());
             let states = StateBatch::agreement(&model, 10, 1);
             prop_assert!(states.q.iter().chain(&states.v).all(|x| x.is_finite()));
-            // Merging may overflow when a number is near the largest; otherwise the canonical form is its own.
+            // Merging may overflow when a number is near the largest. Otherwise the canonical form is its own canonical form.
             if let Ok(again) = canonical.canonical() {
                 prop_assert_eq!(again, canonical);
             }

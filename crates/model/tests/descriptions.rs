@@ -1,4 +1,4 @@
-//! Descriptions: what is refused, what is remarked upon, and what the canonical form does.
+//! Descriptions: what is an error, what is a warning, and what the canonical form does.
 
 use featherbench_model::{BodyDescription, Description, Frame, JointDescription, JointType, Malformed, Model, Placement, Warning};
 use featherbench_spatial::{Quaternion, RigidBodyInertia, Sym3, Transform, Vec3};
@@ -116,7 +116,7 @@ fn unusual_bodies_are_remarked_upon() {
     // A thin rod and a point are limits of real bodies.
     assert_eq!(remarks([0.0, 0.0, 0.0, 0.02, 0.0, 0.02]), []);
     assert_eq!(remarks([0.0; 6]), []);
-    // diag(1, 1, 3) is positive definite, and still no body: its second moments are 1.5, 1.5, −0.5.
+    // diag(1, 1, 3) is positive definite, and still no body has it: its second moments are 1.5, 1.5, −0.5.
     match remarks([1.0, 0.0, 0.0, 1.0, 0.0, 3.0])[..] {
         [Warning::Unphysical { ref body, least, scale }] => {
             assert_eq!((body.as_str(), scale), ("second", 5.0));
@@ -248,7 +248,7 @@ fn composed_joints_become_primitives_with_massless_bodies_between() {
     assert_eq!(model.warnings, []);
 }
 
-/// Where the body of each composed joint stands, by hand: a quarter turn takes x to y, y to z, z to x about the axis that is left.
+/// The placement of the body of each composed joint, by hand. A quarter turn takes x to y, y to z, or z to x about the remaining axis.
 #[test]
 fn composed_joints_move_their_body_as_they_say() {
     let at = |kind: JointType, q: &[f64]| {

@@ -11,7 +11,7 @@ fn build(spec: &str) -> Model<f64> {
     Model::build(&generate(spec)).unwrap_or_else(|error| panic!("{spec}: {error}"))
 }
 
-/// Every family with several parameters: what a change of the generators must not break.
+/// Every family with several parameters; their bits are pinned below.
 const SPECS: [&str; 28] = [
     "chain",
     "chain:n=1",
@@ -120,7 +120,7 @@ fn fingerprint(robot: &Description) -> u64 {
     bytes.iter().fold(0xcbf2_9ce4_8422_2325, |hash, &byte| (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3))
 }
 
-/// Pinned: records name robots by family and parameters, so a generator may never change silently.
+/// Pinned: rows name robots by family and parameters. So a generator must never change without notice.
 #[test]
 fn bits_are_pinned() {
     let pinned = [

@@ -1,19 +1,19 @@
-//! Axes and rotations that are not quite unit: what the canonical form makes of them, and what it tells.
+//! Axes and rotations that are not exactly normalised: what the canonical form makes of them, and which warnings it gives.
 
 use featherbench_model::{BodyDescription, Description, JointDescription, JointType, Model, Placement, Random, Warning};
 use featherbench_spatial::{DoubleDouble, Mat3, Quaternion, Real, Transform, Vec3};
 
-/// By how much written numbers miss: nothing, an ulp of one, and more.
+/// The deviation of written numbers: nothing, an ulp of one, and more.
 const OFF: [f64; 6] = [0.0, f64::EPSILON, 1e-15, 1e-12, 1e-9, 1e-7];
 
-/// The numbers of a vector, each moved by up to `off` of it.
+/// The numbers of a vector, each changed by up to `off` of it.
 fn moved<const N: usize>(numbers: [f64; N], off: f64, random: &mut Random) -> [f64; N] {
     numbers.map(|x| x * (1.0 + off * random.uniform(-1.0, 1.0)))
 }
 
 fn axis(random: &mut Random) -> [f64; 3] {
     match random.below(4) {
-        // romeo's, and one whose small parts have many places
+        // an axis of romeo, and one whose small components have many digits
         0 => [0.0, -1.0, -4.371_14e-8],
         1 => [1.0, 1e-9 * random.uniform(-1.0, 1.0), 1e-20],
         _ => random.direction(),
@@ -27,7 +27,8 @@ fn turn(random: &mut Random) -> [f64; 9] {
     Quaternion::from_array(q).to_rotation().to_array()
 }
 
-/// Three bodies, the second and third with skew axes and placements that miss by up to `off`; the first one is fixed in a skew place.
+/// Three bodies. The second and third have skew axes and placements that deviate by up to `off`; the first one is fixed in a skew
+/// placement.
 fn robot(off: f64, random: &mut Random) -> Description {
     let mut bodies = Vec::new();
     for i in 0..4 {
@@ -66,7 +67,7 @@ fn normalising_twice_is_normalising_once_to_the_bit() {
             let twice = once.canonical().unwrap();
             assert_eq!(once, twice, "off by {off:e}: {written:?}");
             assert_eq!(once.normalised().count(), 0, "off by {off:e}: a canonical description is normalised");
-            // An f64 model holds these numbers, whatever of them was compiled.
+            // An f64 model has these numbers, whichever of the two was compiled.
             let model = Model::<f64>::build(&written).unwrap();
             for (i, body) in once.bodies.iter().enumerate() {
                 assert_eq!(model.placements[i].rotation.to_array(), body.joint.placement.rotation);
@@ -106,7 +107,7 @@ fn fixed_joints_are_normalised_before_they_are_merged_and_their_product_again() 
     for off in OFF {
         for _ in 0..100 {
             let written = robot(off, &mut random);
-            // The same placements, normalised one by one as those of moving joints are.
+            // The same placements, normalised one by one like those of moving joints.
             let mut alone = written.clone();
             for body in &mut alone.bodies {
                 body.joint.kind = JointType::Spherical;
@@ -152,7 +153,7 @@ fn what_is_normalised_by_more_than_an_ulp_is_told() {
     assert_eq!(Model::<f64>::build(&romeo).unwrap().warnings[..2], told, "they travel with the model");
     assert_eq!(romeo.canonical().unwrap().warnings(), [], "what is canonical has nothing left to tell");
 
-    // An ulp is what rounding leaves.
+    // Rounding leaves an ulp.
     let mut rounded = robot(0.0, &mut Random::named(15, "told"));
     rounded.bodies[1].joint.kind = JointType::Revolute { axis: [0.0, 1.0 + f64::EPSILON, 0.0] };
     assert_eq!(rounded.normalised().collect::<Vec<_>>(), []);

@@ -67,7 +67,7 @@ fn a_state_depends_on_the_seed_and_its_number_only() {
     assert_ne!(long.q(0), long.q(1));
 }
 
-/// Keyframes come behind the drawn states, which they leave as they are, with quaternions of length one.
+/// Keyframes come after the drawn states, which they do not change. Their quaternions have length one.
 #[test]
 fn keyframes_are_states_of_their_own() {
     let model = Model::build(&Family::parse("joints:kind=spherical,base=free").unwrap().generate().unwrap()).unwrap();
@@ -93,7 +93,7 @@ fn case_names_read_back() {
     assert_eq!(Case::parse("typical"), None);
 }
 
-/// What does not belong to a model is refused with the array, the state and the index.
+/// A batch that does not belong to a model is an error that names the array, the state and the index.
 #[test]
 fn batches_that_do_not_belong_to_a_model_are_refused() {
     let description = Family::parse("joints:kind=spherical,base=free").and_then(|family| family.generate()).expect("the family exists");

@@ -6,7 +6,7 @@ use super::{BadFamily, Base};
 use crate::{Description, JointType};
 use std::fmt;
 
-/// How a chain's axes lie. (A *straight* chain is a state, q = 0, of either.)
+/// The axes of a chain. (A *straight* chain is a state, q = 0, of either.)
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub enum Layout {
     /// All axes along y: the chain moves in the vertical xz-plane.
@@ -23,13 +23,13 @@ words!(Layout { Planar => "planar", Spatial => "spatial" });
 pub struct Chain {
     /// Revolute links; a free base is one link more.
     pub n: usize,
-    /// How the axes lie.
+    /// The layout of the axes.
     pub layout: Layout,
     /// Factor on the last link's mass and inertia.
     pub tip_scale: f64,
-    /// The first joint stands at (offset, offset, 0), m.
+    /// The first joint is at (offset, offset, 0), m.
     pub base_offset: f64,
-    /// What the chain hangs on.
+    /// The base of the chain.
     pub base: Base,
 }
 

@@ -1,4 +1,4 @@
-//! A floating hand of our own invention, about 1.1 kg: a free palm with six dofs, a thumb and four fingers of four.
+//! A floating hand designed for this project, about 1.1 kg: a free palm with six dofs, a thumb and four fingers of four.
 
 use super::parts::{GRAVITY, Part, X, Y, Z, free_box, limb};
 use crate::Description;

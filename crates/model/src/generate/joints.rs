@@ -71,27 +71,28 @@ impl Kind {
     }
 }
 
-/// How much of a tree stands around the joint.
+/// The size of the tree around the joint.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub enum Shape {
     /// The joint in the middle and at the tips of a branched tree.
     #[default]
     Branched,
-    /// The joint alone, on the world or on a heavy free body: so well conditioned that errors have nothing to hide behind.
+    /// The joint alone, on the world or on a heavy free body. This is so well conditioned that errors are easy to see.
     Single,
 }
 
 words!(Shape { Branched => "branched", Single => "single" });
 
-/// A root with two branches for each kind shown: the joint on the root, a revolute forearm on it, and the joint again at the tip of one
-/// branch; in the other branch the joint is the tip. Skew axes and placements, full inertias, masses within a factor of 1.5.
+/// A root with two branches for each kind shown. In one branch the joint is on the root, a revolute forearm on it, and the joint again at
+/// the
+/// tip. In the other branch the joint is the tip. Axes and placements are skew, inertias full, masses within a factor of 1.5.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub struct Joints {
     /// The joint shown.
     pub kind: Kind,
     /// On a fixed base the root of a branched tree is a revolute body; a free base is the root itself.
     pub base: Base,
-    /// How much of a tree there is.
+    /// The size of the tree.
     pub shape: Shape,
     /// Whether every joint but free ones has armature on each of its degrees of freedom.
     pub armature: bool,
@@ -121,7 +122,7 @@ impl Joints {
             Shape::Single => (self.single(&shown), "-single"),
         };
         if self.armature {
-            // A stream of its own, so that the switch changes nothing else.
+            // A separate stream, so that the switch changes nothing else.
             let mut random = Random::named(SEED, "joints/armature");
             for joint in bodies.iter_mut().map(|body| &mut body.joint).filter(|joint| joint.kind != JointType::Free) {
                 joint.armature = (0..joint.kind.nv()).map(|_| random.uniform(ARMATURE.0, ARMATURE.1)).collect();

@@ -1,10 +1,11 @@
 //! Generators of robots: each family a pure function of its parameters, the same bits on every platform.
 //!
-//! Families draw with [`crate::Random`] alone and use only sums, products, quotients and square roots: no sine or cosine, whose last bit
-//! depends on the library, and no fused products, which depend on the processor. What they return is canonical: depth-first, without
-//! fixed joints, with unique names.
+//! Families draw with [`crate::Random`] alone and use only sums, products, quotients and square roots. They use no sine or cosine, whose
+//! last bit
+//! depends on the library, and no fused products, which depend on the processor.
+//! The result is canonical: depth-first, without fixed joints, with unique names.
 //!
-//! A [`Family`] can be named by a text, `family` or `family:key=value,key=value`, which is how suites and the command line ask for one:
+//! A text names a [`Family`]: `family` or `family:key=value,key=value`. Suites and the command line use such texts:
 //!
 //! ```
 //! use featherbench_model::generate::Family;
@@ -38,7 +39,7 @@ use parameters::{Parameters, words};
 use std::fmt;
 use thiserror::Error;
 
-/// What the robot stands on.
+/// The base of the robot.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub enum Base {
     /// The world.
@@ -59,7 +60,7 @@ pub enum Family {
     Tree(Tree),
     /// A balanced binary tree.
     BinaryTree(BinaryTree),
-    /// Links that all hang on the world.
+    /// Links that are all joined to the world.
     Star(Star),
     /// A 36-dof humanoid.
     Humanoid(Humanoid),
@@ -98,7 +99,7 @@ pub enum BadFamily {
         /// The parameters it has.
         known: String,
     },
-    /// A parameter stands twice.
+    /// A parameter is given twice.
     #[error("family '{family}': parameter '{key}' is given twice")]
     Repeated {
         /// The family.
@@ -138,7 +139,7 @@ impl Family {
         }
     }
 
-    /// The family with this name and these parameters; the others stand at their defaults.
+    /// The family with this name and these parameters; the others have their defaults.
     ///
     /// # Errors
     /// [`BadFamily`], naming the family, the parameter and what it takes.

@@ -35,7 +35,7 @@ impl Parameters {
         value.parse().map_err(|_| BadFamily::BadValue { family: self.family, key, value, expected: expected.to_owned() })
     }
 
-    /// All that was given must have been taken.
+    /// An error if a given parameter was not taken.
     pub(super) fn finish(self) -> Result<(), BadFamily> {
         match self.given.into_iter().next() {
             None => Ok(()),

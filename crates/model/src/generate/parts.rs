@@ -1,4 +1,4 @@
-//! What the families are made of: links, boxes, random bodies.
+//! The parts of the families: links, boxes, random bodies.
 
 use crate::{BodyDescription, JointDescription, JointType, Placement, Random};
 
@@ -6,7 +6,7 @@ pub(super) const X: [f64; 3] = [1.0, 0.0, 0.0];
 pub(super) const Y: [f64; 3] = [0.0, 1.0, 0.0];
 pub(super) const Z: [f64; 3] = [0.0, 0.0, 1.0];
 
-/// Standard gravity as robots are usually given it, m/s².
+/// Standard gravity as most robot files give it, m/s².
 pub(super) const GRAVITY: [f64; 3] = [0.0, 0.0, -9.81];
 /// A dyadic gravity: exact in every binary format, m/s².
 pub(super) const DYADIC_GRAVITY: [f64; 3] = [0.0, 0.0, -9.8125];
@@ -70,7 +70,7 @@ pub(super) fn limb(bodies: &mut Vec<BodyDescription>, parent: usize, prefix: &st
     for part in parts {
         let mirror = |v: [f64; 3]| if side < 0.0 { [v[0], 0.0 - v[1], v[2]] } else { v };
         let name = format!("{prefix}{}", part.name);
-        // The mirror image of a rotation about y is the same rotation; about x and z it turns the other way.
+        // A mirror image keeps a rotation about y, and reverses one about x or z.
         let (low, high) = if side < 0.0 && part.axis != Y { (0.0 - part.range.1, 0.0 - part.range.0) } else { part.range };
         let kind = JointType::Revolute { axis: part.axis };
         let joint = JointDescription {
@@ -146,7 +146,7 @@ pub(super) fn random_body(
     BodyDescription { name, parent, mass, com, inertia, joint }
 }
 
-/// A uniformly distributed rotation, row-major. Plain products: a fused one would give other bits where the processor has none.
+/// A uniformly distributed rotation, row-major. The products are not fused: a fused one would give other bits on a processor without it.
 fn random_rotation(random: &mut Random) -> [f64; 9] {
     let [x, y, z, w] = random.direction::<4>();
     [

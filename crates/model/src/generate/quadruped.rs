@@ -1,4 +1,4 @@
-//! A quadruped of our own invention, about 24 kg: a free trunk with six dofs and four legs of three.
+//! A quadruped designed for this project, about 24 kg: a free trunk with six dofs and four legs of three.
 
 use super::parts::{GRAVITY, Part, X, Y, free_box, limb};
 use crate::Description;

@@ -1,4 +1,4 @@
-//! Stars: links that all hang on the world, so that the mass matrix is diagonal.
+//! Stars: links that are all joined to the world, so that the mass matrix is diagonal.
 
 use super::BadFamily;
 use super::parameters::{MOST_LINKS, Parameters, require};

@@ -27,12 +27,12 @@ pub struct Tree {
     pub n: usize,
     /// The seed of every draw.
     pub seed: u64,
-    /// The probability that a body starts a new branch, at an ancestor of the body before it chosen uniformly. The mean depth is about
-    /// 2/spread: 0 gives a chain, 1 a bush.
+    /// The probability that a body starts a new branch, at an ancestor of the body before it chosen uniformly.
+    /// The mean depth is about 2/spread: 0 gives a chain, 1 a shallow tree.
     pub spread: f64,
     /// Which joints it has.
     pub joints: Mix,
-    /// What it stands on.
+    /// The base.
     pub base: Base,
     /// Whether one-dof joints have armature.
     pub armature: bool,
