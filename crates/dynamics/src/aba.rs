@@ -1,9 +1,18 @@
-//! Forward dynamics by the articulated-body algorithm: the accelerations that joint forces cause.
+//! Forward dynamics by the articulated-body algorithm: the accelerations that joint forces cause, `v̇ = M⁻¹ (τ − h + Σ Jᵀf)`.
 //!
-//! Source: the book, table 7.1, with classical accelerations. Armature joins the diagonal of D.
-//! Frames: each body's quantities stand in its own axes at its own origin; external wrenches [moment; force] likewise, one per compiled
-//! body. Gravity enters as an acceleration −g of the base. Shapes: q has `nq` numbers; v, τ and v̇ have `nv`. Units: SI, angles in radians.
+//! Source: the book, table 7.1, with classical accelerations (see `step.rs`). Armature is added to the diagonal of D.
+//! Frames: each body's quantities are in its own axes, at its own origin. So are external wrenches [moment; force], one per compiled body.
+//! Gravity enters as an acceleration −g of the base. Shapes: q has `nq` numbers; v, τ and v̇ have `nv`. Units: SI, angles in radians.
 //! Cost: O(n), with one division per one-dof joint. A call does not allocate.
+//!
+//! The functions of one body and the book's symbols:
+//!
+//! | function | pass | computes |
+//! |---|---|---|
+//! | `set_moving` | 1, outward | ω, c, Iᴬ = I, pᴬ = v ×* I v |
+//! | `release` | 2, inward | U = Iᴬ S, D = Sᵀ U + armature, u = τ − Sᵀ pᴬ; adds X* Iᵃ X⁻¹ and X* pᵃ to the parent |
+//! | `accelerate` | 3, outward | a' = X a_p + c, q̈ = D⁻¹ (u − Uᵀ a'), a = a' + S q̈ |
+//! | `transmit` | 2 of [`Aba::respond`] | u and pᵃ = pᴬ + U D⁻¹ u, with U and D of the last run |
 
 use crate::error::{Pivot, expect};
 use crate::step::{add_joint, by_kind, cross_joint, expect_bodies, expect_wrenches, newton_euler, parent_link};
@@ -14,7 +23,7 @@ use featherbench_spatial::{ArticulatedInertia, Force, Ldl3, Lift, Mat3, Motion, 
 /// The workspace of the articulated-body algorithm.
 #[derive(Clone, Debug)]
 pub struct Aba<T> {
-    /// The world, then the bodies.
+    /// Link 0 is the world; link i + 1 is body i.
     links: Vec<Link<T>>,
 }
 
@@ -30,7 +39,7 @@ struct Link<T> {
     inertia: ArticulatedInertia<T>,
     /// Bias force pᴬ.
     p: Force<T>,
-    /// Of a screw joint: U/D, 1/D and u/D.
+    /// Of a one-dof joint: `u` = U/D (the local `u` of `release` is U itself), `d_inverse` = 1/D, `rate` = u/D.
     u: Force<T>,
     d_inverse: T,
     rate: T,
@@ -88,7 +97,7 @@ impl<T: Real> Aba<T> {
             }
         }
 
-        // inward: the inertia and bias force that the parent feels,  Iᴬ_p += X* Iᵃ X⁻¹,  pᴬ_p += X* pᵃ
+        // inward: Iᵃ = Iᴬ − U D⁻¹ Uᵀ,  pᵃ = pᴬ + Iᵃ c + U D⁻¹ u,  Iᴬ_p += X* Iᵃ X⁻¹,  pᴬ_p += X* pᵃ
         for (i, joint) in joints.iter().enumerate().rev() {
             let (before, rest) = self.links.split_at_mut(i + 1);
             let parent = joint.parent.map(|parent| &mut before[parent + 1]);
@@ -104,8 +113,9 @@ impl<T: Real> Aba<T> {
         Ok(smallest.check()?)
     }
 
-    /// The response `x = M⁻¹ f` to joint forces alone, at rest and without gravity, at the configuration of the last successful run with
-    /// this model: that run's articulated inertias serve again, which leaves a third of its time.
+    /// The response `x = M⁻¹ f` to joint forces alone: v = 0 and no gravity, at the configuration of the last successful run with this
+    /// model.
+    /// It uses the articulated inertias of that run again, and so takes a third of its time.
     ///
     /// # Errors
     /// [`DimensionError`] when an argument or the workspace does not fit the model.
@@ -125,7 +135,7 @@ impl<T: Real> Aba<T> {
             by_kind!(joint.kind, transmit, model, i, f, &mut rest[0], parent);
         }
 
-        // outward: as in a run
+        // outward: as in a run, with v = 0
         let mut smallest = Pivot::none();
         for (i, joint) in joints.iter().enumerate() {
             let (before, rest) = self.links.split_at_mut(i + 1);
@@ -159,7 +169,7 @@ impl<T: Real> Aba<T> {
     }
 }
 
-/// The first outward step of one body.
+/// Pass 1 for one body: ω, c, Iᴬ = I and pᴬ = v ×* I v.
 #[inline(always)]
 fn set_moving<T: Real, P: Real + Lift<T>>(kind: JointKind, model: &Model<P>, i: usize, parent_omega: Vec3<T>, v: &[T], link: &mut Link<T>) {
     let joint_velocity = kind.motion(&model.subspaces[i], &v[model.topology.joints()[i].v..]);
@@ -169,7 +179,9 @@ fn set_moving<T: Real, P: Real + Lift<T>>(kind: JointKind, model: &Model<P>, i: 
     link.p = newton_euler(&inertia, link.omega, None);
 }
 
-/// The inward step of one body: what is left of its inertia and bias force once its joint is free to move.
+/// Pass 2 for one body: the apparent inertia Iᵃ (`apparent`) and force pᵃ (`force`) that its parent feels across the free joint.
+///
+/// In the arm of one-dof joints `u` is the book's U, `d` is D, and `push` is Sᵀ pᴬ. `smallest` takes note of the pivots D.
 #[inline(always)]
 fn release<T: Real, P: Real + Lift<T>>(
     kind: JointKind,
@@ -210,7 +222,7 @@ fn release<T: Real, P: Real + Lift<T>>(
             (Some(apparent), u.scale_add(link.rate, p + apparent.mul(link.c)))
         }
         JointKind::Spherical => {
-            // S = [1; 0]: U = [I; Hᵀ],  D = I + R, R the diagonal armature. No difference of nearly equal numbers is formed:
+            // S = [1; 0]: U = [I; Hᵀ],  D = I + R, R the diagonal armature. The formulas form no difference of nearly equal numbers:
             // Iᵃ = R − R D⁻¹ R,  Hᵃ = R D⁻¹ H,  Mᵃ = M − Hᵀ D⁻¹ H
             let armature = spherical_armature(model, dof);
             let d = (inertia.rotational + diagonal(armature)).factor();
@@ -239,7 +251,9 @@ fn release<T: Real, P: Real + Lift<T>>(
     }
 }
 
-/// The inward step of one body, once its inertia is known: the force that it passes on to its parent.
+/// Pass 2 of [`Aba::respond`] for one body, whose Iᴬ, U and D are known: adds X* pᵃ, pᵃ = pᴬ + U D⁻¹ u, to the parent's pᴬ.
+///
+/// Here `push` is the book's u = f − Sᵀ pᴬ.
 #[inline(always)]
 fn transmit<T: Real, P: Real + Lift<T>>(
     kind: JointKind,
@@ -274,7 +288,9 @@ fn transmit<T: Real, P: Real + Lift<T>>(
     }
 }
 
-/// The second outward step of one body.
+/// Pass 3 for one body: q̈ = D⁻¹ (u − Uᵀ a') and a = a' + S q̈, where `carried` is a' = X a_p + c.
+///
+/// `push` is u − Uᵀ a' of a spherical joint, and τ − pᴬ of a free joint.
 #[inline(always)]
 #[expect(clippy::too_many_arguments, reason = "one body's step reads the model and the inputs, and writes the outputs")]
 fn accelerate<T: Real, P: Real + Lift<T>>(
@@ -291,7 +307,7 @@ fn accelerate<T: Real, P: Real + Lift<T>>(
     let carried = link.x.inverse_motion(parent_acceleration) + link.c;
     match kind {
         JointKind::Revolute | JointKind::Prismatic | JointKind::Helical => {
-            // the angular part is known first: two short sums, not one long one
+            // the angular part is known first: two short sums are faster than one long sum
             a[dof] = link.rate - link.u.ang.dot(carried.ang) - link.u.lin.dot(carried.lin);
         }
         JointKind::Spherical => {
@@ -311,7 +327,7 @@ fn accelerate<T: Real, P: Real + Lift<T>>(
     link.a = add_joint(kind, carried, kind.motion(&model.subspaces[i], &a[dof..]));
 }
 
-/// `A − B D⁻¹ Bᵀ` and `B D⁻¹`, where D is factored.
+/// `(B D⁻¹, A − B D⁻¹ Bᵀ)`; D is given by its factors.
 #[inline(always)]
 fn schur<T: Real>(a: Sym3<T>, b: Mat3<T>, d: &Ldl3<T>) -> (Mat3<T>, Sym3<T>) {
     let w = Mat3::from_rows(d.solve(b.x), d.solve(b.y), d.solve(b.z));
@@ -330,6 +346,7 @@ fn solve<T: Real>(inertia: &ArticulatedInertia<T>, f: Force<T>, dof: usize, smal
     Motion::new(ang, translation.solve(f.lin) - w.transpose_mul(ang))
 }
 
+/// Takes note of the three pivots of a 3×3 block whose first dof is `dof`.
 #[inline(always)]
 fn note_three<T: Real>(smallest: &mut Pivot, dof: usize, factors: &Ldl3<T>) {
     for (k, pivot) in factors.pivots.to_array().into_iter().enumerate() {
@@ -337,17 +354,20 @@ fn note_three<T: Real>(smallest: &mut Pivot, dof: usize, factors: &Ldl3<T>) {
     }
 }
 
+/// The diagonal matrix with these entries.
 #[inline(always)]
 fn diagonal<T: Real>(d: Vec3<T>) -> Sym3<T> {
     let zero = T::zero();
     Sym3 { xx: d.x, xy: zero, xz: zero, yy: d.y, yz: zero, zz: d.z }
 }
 
+/// The vector of the first three values.
 #[inline(always)]
 fn three<T: Real>(values: &[T]) -> Vec3<T> {
     Vec3::new(values[0], values[1], values[2])
 }
 
+/// The three armatures of the spherical joint whose first dof is `dof`: the diagonal of R.
 #[inline(always)]
 fn spherical_armature<T: Real, P: Real + Lift<T>>(model: &Model<P>, dof: usize) -> Vec3<T> {
     three(&model.armature[dof..]).lift()
@@ -359,7 +379,7 @@ fn free_force<T: Real>(tau: &[T]) -> Force<T> {
     Force::new(three(&tau[3..]), three(tau))
 }
 
-/// Forward dynamics without a workspace of one's own and without external wrenches; it allocates.
+/// Forward dynamics that makes its own workspace, without external wrenches; it allocates.
 ///
 /// # Errors
 /// [`Error`] when an argument does not fit the model, or a joint meets no inertia.

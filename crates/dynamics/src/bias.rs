@@ -1,7 +1,8 @@
 //! The bias force `h(q, v) = C(q, v) v + g(q)`: the joint forces at which the robot does not accelerate.
 //!
-//! Source: the book, chapter 6 (`C` there): inverse dynamics with v̇ = 0. It is [`Rnea`](crate::Rnea)'s recursion, compiled without the
-//! terms in v̇; frames, shapes, units and cost O(n) are the same. A call does not allocate.
+//! Source: the book, chapter 6 (`C` there): inverse dynamics with v̇ = 0. It is the recursion of [`Rnea`](crate::Rnea), compiled without
+//! the
+//! terms in v̇. Frames, shapes, units and cost O(n) are the same. A call does not allocate.
 
 use crate::{DimensionError, Rnea};
 use featherbench_model::{Model, Topology};
@@ -33,7 +34,7 @@ impl<T: Real> Bias<T> {
     }
 }
 
-/// The bias force without a workspace of one's own and without external wrenches; it allocates.
+/// The bias force that makes its own workspace, without external wrenches; it allocates.
 ///
 /// # Errors
 /// [`DimensionError`] when an argument does not fit the model.

@@ -1,7 +1,8 @@
 //! The robot's mass and centre of mass.
 //!
-//! Source: definition, summed inward: each body passes mass and first moment of mass on to its parent, and the sum is taken about the
-//! first body's origin. So a robot far from the world's origin loses no digits of its shape.
+//! Source: the definition `c = Σ m_i c_i / Σ m_i`, summed inward: each body adds its mass m and first moment of mass h to those of its
+//! parent,
+//! `h_p += R h + m r`. The sum is taken about the first body's origin. So a robot far from the world's origin loses no digits of its shape.
 //! Frame: world axes and origin. Shapes: q has `nq` numbers. Units: kg, m. Cost: O(n). A call does not allocate.
 
 use crate::{DimensionError, Kinematics};
@@ -74,7 +75,7 @@ impl<T: Real> CenterOfMass<T> {
     }
 }
 
-/// Mass and centre of mass without a workspace of one's own; it allocates.
+/// Mass and centre of mass, in a workspace of the call; it allocates.
 ///
 /// # Errors
 /// [`DimensionError`] when `q` does not fit the model.

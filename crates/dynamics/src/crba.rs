@@ -1,7 +1,9 @@
 //! The joint-space inertia matrix M(q) by the composite-rigid-body algorithm, into a tree-sparse matrix.
 //!
-//! Source: the book, table 6.2. Where the book carries one force at a time from its joint to the root, here the forces of all dofs that a
-//! body supports travel together, component by component, in that body's axes: they are consecutive dofs, so the loops are contiguous.
+//! Source: the book, table 6.2. The book carries one force `F_k = Iᶜ S_k` at a time from its joint to the root. Here the forces of all dofs
+//! that
+//! a body supports are carried together, component by component. They are consecutive dofs, so the loops are contiguous.
+//! Frames: the inertias Iᶜ and forces F are in the axes of the body that the loop has reached, at its origin.
 //! Armature is added to the diagonal. Shapes: q has `nq` numbers; M is `nv`×`nv`. Units: SI, angles in radians.
 //! Cost: O(n + Σ d_k), d_k the depth of dof k. A call does not allocate.
 
@@ -15,7 +17,7 @@ use std::ops::Range;
 /// The workspace of the composite-rigid-body algorithm.
 #[derive(Clone, Debug)]
 pub struct Crba<T> {
-    /// Inertia of each body with everything that it supports, Iᶜ.
+    /// Composite inertia Iᶜ: the body with everything that it supports.
     composites: Vec<RigidBodyInertia<T>>,
     /// Placement of each body in its parent.
     placements: Vec<Transform<T>>,
@@ -72,7 +74,7 @@ impl<T: Real> Crba<T> {
     }
 }
 
-/// One force per dof, stored component by component, with room before the first dof.
+/// One force F_k per dof k, stored component by component. `LANES` unused elements stand before the first dof.
 #[derive(Clone, Debug)]
 struct Forces<T> {
     ang: [Vec<T>; 3],
@@ -80,7 +82,7 @@ struct Forces<T> {
 }
 
 impl<T: Real> Forces<T> {
-    /// How many scalars fill a register of 64 bytes.
+    /// How many scalars fill a register of 64 bytes; at least 1.
     const LANES: usize = if size_of::<T>() < 64 { 64 / size_of::<T>() } else { 1 };
 
     fn new(dofs: usize) -> Self {
@@ -100,7 +102,8 @@ impl<T: Real> Forces<T> {
         (*fx, *fy, *fz) = (f.lin.x, f.lin.y, f.lin.z);
     }
 
-    /// `F_k = X* F_k` for every dof of a range, and for a few before it, to fill whole registers: these are not set yet.
+    /// `F_k = X* F_k` for every dof of a range. Whole registers are filled, so a few dofs before the range change too: these are not set
+    /// yet.
     #[inline(always)]
     fn carry_to_parent(&mut self, x: &Transform<T>, dofs: Range<usize>) {
         let end = Self::LANES + dofs.end;
@@ -111,7 +114,7 @@ impl<T: Real> Forces<T> {
     }
 }
 
-/// `F = X* F`, component by component; a function of its own, so that the compiler knows the slices to be apart.
+/// `F = X* F`, component by component. It is a function of its own: so the compiler knows that the slices do not overlap.
 #[inline(never)]
 fn transform<T: Real>(x: &Transform<T>, nx: &mut [T], ny: &mut [T], nz: &mut [T], fx: &mut [T], fy: &mut [T], fz: &mut [T]) {
     let x = *x;
@@ -122,7 +125,7 @@ fn transform<T: Real>(x: &Transform<T>, nx: &mut [T], ny: &mut [T], nz: &mut [T]
     }
 }
 
-/// `M_kj = S_jᵀ F_k` for every supported dof k; j is the first of them, and column `column` of its joint's motion subspace.
+/// `M_kj = S_jᵀ F_k` for every supported dof k. Dof j is the first of them, and column `column` of its joint's motion subspace.
 #[inline(always)]
 fn project<T: Real, P: Real + Lift<T>>(
     kind: JointKind,

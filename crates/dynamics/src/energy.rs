@@ -1,7 +1,7 @@
 //! Kinetic energy `½ vᵀM v`, armature included, and potential energy `−Σ m g·c`.
 //!
-//! Source: the book, chapter 2: the kinetic energy of a body is `½ v·I v`. Velocities stand in body axes, heights in world axes.
-//! Shapes: q has `nq` numbers, v has `nv`. Units: J; the potential energy is zero where centres of mass lie at the world's origin.
+//! Source: the book, chapter 2: the kinetic energy of a body is `½ v·I v`. Frames: velocities are in body axes, heights in world axes.
+//! Shapes: q has `nq` numbers, v has `nv`. Units: J. The potential energy is zero if every centre of mass is at the world's origin.
 //! Cost: O(n). A call does not allocate.
 
 use crate::{DimensionError, Kinematics};
@@ -52,7 +52,7 @@ impl<T: Real> Energy<T> {
     }
 }
 
-/// Kinetic and potential energy without a workspace of one's own; it allocates.
+/// Kinetic and potential energy, in a workspace of the call; it allocates.
 ///
 /// # Errors
 /// [`DimensionError`] when an argument does not fit the model.

@@ -2,7 +2,7 @@
 
 use thiserror::Error;
 
-/// A slice, workspace or matrix has not the size that the model needs.
+/// The size of a slice, workspace or matrix is not the size that the model needs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
 #[error("{what}: expected {expected}, found {found}; size it by the topology of the model that you pass")]
 pub struct DimensionError {
@@ -27,24 +27,24 @@ pub struct NotPositiveDefinite {
     pub pivot: f64,
 }
 
-/// What forward dynamics and factorizations may answer instead of a result.
+/// The errors of forward dynamics and factorizations.
 #[derive(Clone, Copy, Debug, PartialEq, Error)]
 pub enum Error {
     /// An argument has the wrong size.
     #[error(transparent)]
     Dimension(#[from] DimensionError),
-    /// The joint-space inertia matrix is singular or worse.
+    /// The joint-space inertia matrix is not positive definite.
     #[error(transparent)]
     NotPositiveDefinite(#[from] NotPositiveDefinite),
 }
 
-/// Refuses a count that is not the expected one.
+/// An error if a count is not the expected one.
 #[inline(always)]
 pub(crate) fn expect(what: &'static str, expected: usize, found: usize) -> Result<(), DimensionError> {
     if expected == found { Ok(()) } else { Err(DimensionError { what, expected, found }) }
 }
 
-/// The smallest pivot so far, or the first one that is not positive: what follows that one means nothing.
+/// The smallest pivot so far, or the first one that is not positive. Pivots after that one have no meaning.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Pivot {
     dof: usize,

@@ -1,7 +1,8 @@
 //! The Jacobian of a body: its velocity is `J v`.
 //!
-//! Source: the book, body Jacobians: column j is the motion subspace of dof j if j supports the body, else zero. Rotations are added up
-//! from the root to the body, and ways in world axes from the body to the root: each column is rotated once, and no offset of the robot enters.
+//! Source: the book, body Jacobians: column j is the motion subspace of dof j if j supports the body, else zero.
+//! Rotations are multiplied from the root to the body. Displacements in world axes are added from the body to the root. So each column is
+//! rotated once, and the robot's distance from the world's origin does not enter.
 //! Frame: world axes [ang; lin] at the origin of the body's frame. Shapes: q has `nq` numbers; J has `nv` columns of six.
 //! Units: SI. Cost: O(n). A call does not allocate.
 
@@ -11,7 +12,7 @@ use crate::step::expect_bodies;
 use featherbench_model::{Model, Topology};
 use featherbench_spatial::{Lift, Mat3, Motion, Real, Transform, Vec3};
 
-/// The Jacobian of a body, and the room for it.
+/// The Jacobian of a body, and its workspace.
 #[derive(Clone, Debug)]
 pub struct Jacobian<T> {
     bodies: usize,
@@ -27,12 +28,12 @@ struct Link<T> {
     body: usize,
     /// Its rotation: in the parent, then in the world.
     rotation: Mat3<T>,
-    /// The way from the parent's origin: in the parent's axes, then in the world's.
+    /// The displacement from the parent's origin: in the parent's axes, then in the world's.
     step: Vec3<T>,
 }
 
 impl<T: Real> Jacobian<T> {
-    /// Room for the Jacobian of a body of this topology.
+    /// A workspace for the Jacobian of a body of this topology.
     pub fn new(topology: &Topology) -> Self {
         let bodies = topology.bodies();
         Self { bodies, columns: vec![Motion::zero(); topology.nv()], path: Vec::with_capacity(bodies) }
@@ -64,7 +65,7 @@ impl<T: Real> Jacobian<T> {
             (link.step, link.rotation) = (parent * link.step, parent * link.rotation);
             parent = link.rotation;
         }
-        // J_j = [R S_ω; R S_p + R S_ω × d], d the way from the joint's body to the body
+        // J_j = [R S_ω; R S_p + R S_ω × d], d (`way`) the displacement from the origin of the joint's body to that of the body
         let mut way = Vec3::zero();
         for Link { body, rotation, step } in self.path.iter().copied() {
             let joint = &model.topology.joints()[body];
@@ -84,7 +85,7 @@ impl<T: Real> Jacobian<T> {
     }
 }
 
-/// The Jacobian of a compiled body without a workspace of one's own; it allocates.
+/// The Jacobian of a compiled body, in a workspace of the call; it allocates.
 ///
 /// # Errors
 /// [`DimensionError`] when `q` does not fit the model, or when there is no such body.

@@ -1,10 +1,11 @@
 //! Forward kinematics: placement, velocity and acceleration of every body.
 //!
 //! Source: the book, section 5.3 (the outward pass of table 5.1), with classical accelerations.
-//! Frames: results stand in world axes: the placement of the body's frame, the velocity [ω; ṗ] and acceleration [ω̇; p̈] of its origin p.
-//! Velocities and accelerations are added up in world axes, with r the way from the parent's origin to the body's and J = R S:
-//! `ω = ω_p + J_ω q̇`, `ṗ = ṗ_p + ω_p × r + J_p q̇`, and their derivatives. So each term is rotated once, whatever the depth.
-//! Gravity plays no part. Shapes: q has `nq` numbers; v and a have `nv`. Units: SI, angles in radians. Cost: O(n). A call does not allocate.
+//! Frames: results are in world axes: the placement of the body's frame, the velocity [ω; ṗ] and acceleration [ω̇; p̈] of its origin p.
+//! Velocities and accelerations are added in world axes: `ω = ω_p + J_ω q̇`, `ṗ = ṗ_p + ω_p × r + J_p q̇`, and their derivatives.
+//! Here r is the displacement from the parent's origin to the body's, and J = R S. So each term is rotated once, whatever the depth.
+//! Gravity does not enter. Shapes: q has `nq` numbers; v and a have `nv`. Units: SI, angles in radians. Cost: O(n). A call does not
+//! allocate.
 
 use crate::DimensionError;
 use crate::error::expect;
@@ -15,11 +16,11 @@ use featherbench_spatial::{Lift, Mat3, Motion, Real, Transform, Vec3};
 /// The workspace of forward kinematics, and its results.
 #[derive(Clone, Debug)]
 pub struct Kinematics<T> {
-    /// The world, then the bodies.
+    /// Link 0 is the world; link i + 1 is body i.
     links: Vec<Link<T>>,
 }
 
-/// How a body stands and moves, in world axes.
+/// Placement, velocity and acceleration of a body, in world axes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BodyMotion<T> {
     /// Placement of the body's frame in the world.
@@ -35,7 +36,7 @@ pub struct BodyMotion<T> {
 pub(crate) struct Link<T> {
     /// Placement in the parent.
     pub(crate) x: Transform<T>,
-    /// The way from the parent's origin, in world axes.
+    /// The displacement from the parent's origin, in world axes.
     step: Vec3<T>,
     /// Placement in the world.
     pub(crate) world: Transform<T>,
@@ -137,7 +138,7 @@ fn rotated<T: Real>(kind: JointKind, r: &Mat3<T>, m: Motion<T>) -> Motion<T> {
     Motion::new(if turns(kind) { *r * m.ang } else { m.ang }, if slides(kind) { *r * m.lin } else { m.lin })
 }
 
-/// Forward kinematics in a workspace of its own; it allocates.
+/// Forward kinematics in a workspace of the call; it allocates.
 ///
 /// # Errors
 /// [`DimensionError`] when an argument does not fit the model.

@@ -1,9 +1,12 @@
 //! Rigid-body dynamics of trees: one file per algorithm.
 //!
-//! Each algorithm has a workspace, made from a [`Topology`](featherbench_model::Topology), whose `run` does not allocate, and a function that makes a
-//! workspace for one call. All are generic over the scalar of the state and over the scalar of the parameters, so the same text runs on
-//! `f64`, `f32`, dual numbers, counting and extended-precision scalars. "The book" is R. Featherstone, *Rigid Body Dynamics Algorithms*
-//! (2008).
+//! Each algorithm has a workspace, made from a [`Topology`](featherbench_model::Topology). The workspace's `run` does not allocate. A
+//! function
+//! beside it makes a workspace for one call.
+//!
+//! All algorithms are generic over two scalars: that of the state and that of the parameters. The same text runs on `f64`, `f32`, dual
+//! numbers,
+//! and counting and extended-precision scalars. "The book" is R. Featherstone, *Rigid Body Dynamics Algorithms* (2008).
 //!
 //! ```
 //! use featherbench_dynamics::{forward_dynamics, inverse_dynamics, mass_matrix};

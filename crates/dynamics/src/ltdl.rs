@@ -1,12 +1,17 @@
 //! The factorization `M = LᵀDL` of a tree-sparse matrix without fill-in, and solutions of `M x = b`.
 //!
-//! Source: the book, section 6.5: eliminating from the leaves to the root keeps every zero of M. L is unit lower
-//! triangular and D diagonal; they overwrite M. With d_k the depth of dof k: D1 = Σ (d_k − 1) divisions and D2 = Σ d_k (d_k − 1) / 2
-//! multiply-subtracts to factor, 2·D1 multiply-subtracts and n divisions to solve. Shapes: M is `nv`×`nv`, x and b have `nv` numbers.
-//! Units: those of M and b. Cost: O(Σ d_k²) and O(Σ d_k). A call does not allocate.
+//! Source: the book, section 6.5: eliminating from the leaves to the root keeps every zero of M. L is unit lower triangular and D diagonal;
+//! they overwrite M. Shapes: M is `nv`×`nv`, x and b have `nv` numbers. Units: those of M and b. A call does not allocate.
+//! Cost, with d_k the depth of dof k, D1 = Σ (d_k − 1) and D2 = Σ d_k (d_k − 1) / 2:
 //!
-//! Consecutive dofs, each the parent of the next, share the ancestors of the first: they go in *blocks*, so that what they do to an ancestor's
-//! row is done in one pass over it, in the book's order.
+//! | | divisions | multiply-subtracts | order |
+//! |---|---|---|---|
+//! | factor | D1 | D2 | O(Σ d_k²) |
+//! | solve | n | 2·D1 | O(Σ d_k) |
+//!
+//! Dofs are eliminated in *blocks*: up to four consecutive dofs, each the parent of the next. They share the ancestors of the first, and
+//! change
+//! an ancestor's row in one pass over it. The operations on each number keep the book's order.
 
 use crate::error::{Pivot, expect};
 use crate::tree_sparse::BLOCK;
@@ -17,7 +22,7 @@ use featherbench_spatial::Real;
 // The arms of `by_block`.
 const _: () = assert!(BLOCK == 4);
 
-/// Calls a method that works on a block of this size, 1 … [`BLOCK`].
+/// Calls a method with the size of the block, 1 … [`BLOCK`], as a constant.
 macro_rules! by_block {
     ($size:expr, $self:ident.$method:ident($($argument:expr),+)) => {
         match $size {
@@ -29,14 +34,14 @@ macro_rules! by_block {
     };
 }
 
-/// The factors of a tree-sparse matrix. All zero, and of no use, before the first factorization.
+/// The factors of a tree-sparse matrix. Before the first factorization they are all zero, and not valid.
 #[derive(Clone, Debug)]
 pub struct Ltdl<T> {
     matrix: TreeSparse<T>,
 }
 
 impl<T: Real> Ltdl<T> {
-    /// Room for the factors of a matrix of this topology.
+    /// A workspace for the factors of a matrix of this topology.
     pub fn new(topology: &Topology) -> Self {
         Self::from_unfactored(TreeSparse::new(topology))
     }
@@ -51,8 +56,7 @@ impl<T: Real> Ltdl<T> {
         Ok(())
     }
 
-    /// The matrix before [`Ltdl::factor`], so that it can be written where it will be factored; its factors afterwards: L below the
-    /// diagonal, D on it.
+    /// Before [`Ltdl::factor`]: the matrix, to be written where it will be factored. Afterwards its factors: L below the diagonal, D on it.
     pub fn matrix_mut(&mut self) -> &mut TreeSparse<T> {
         &mut self.matrix
     }
@@ -103,7 +107,7 @@ impl<T: Real> Ltdl<T> {
         Self { matrix }
     }
 
-    /// The factorization itself; what it leaves behind is meaningful only if the pivot is positive.
+    /// The factorization itself. Its result is valid only if the smallest pivot is positive.
     fn eliminate(&mut self) -> Pivot {
         let mut smallest = Pivot::none();
         let mut end = self.matrix.size();
@@ -209,8 +213,8 @@ impl<T: Real> Ltdl<T> {
     }
 }
 
-/// The rows of a block at the beginning of a slice: the first has one entry more than its dof has strict ancestors, each other one more than
-/// the row before it.
+/// The rows of a block at the beginning of a slice. Row k of the block has `shared` + k + 1 entries; its first dof has `shared` strict
+/// ancestors.
 #[inline(always)]
 fn split_rows<T, const SIZE: usize>(mut values: &mut [T], shared: usize) -> [&mut [T]; SIZE] {
     std::array::from_fn(|k| {

@@ -1,8 +1,9 @@
 //! Centroidal momentum: angular momentum about the centre of mass, and linear momentum, without armature.
 //!
-//! Source: Orin, Goswami & Lee (2013), "Centroidal dynamics of a humanoid robot"; the sum over bodies of `X* I v`, taken inward like the
-//! book's composite inertias. Frame: world axes, at the centre of mass. Shapes: q has `nq` numbers, v has `nv`. Units: kg·m²/s and
-//! kg·m/s. Cost: O(n). A call does not allocate.
+//! Source: Orin, Goswami & Lee (2013), "Centroidal dynamics of a humanoid robot". It is the sum over bodies of `X* I v`, formed inward like
+//! the
+//! book's composite inertias. Frame: world axes, at the centre of mass. Shapes: q has `nq` numbers, v has `nv`. Units: kg·m²/s and kg·m/s.
+//! Cost: O(n). A call does not allocate.
 
 use crate::{CenterOfMass, DimensionError, MassCenter};
 use featherbench_model::{Model, Topology};
@@ -62,7 +63,7 @@ impl<T: Real> Momentum<T> {
     }
 }
 
-/// Centroidal momentum without a workspace of one's own; it allocates.
+/// Centroidal momentum, in a workspace of the call; it allocates.
 ///
 /// # Errors
 /// [`DimensionError`] when an argument does not fit the model.

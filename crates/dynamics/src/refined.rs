@@ -7,9 +7,11 @@
 //! 3. δ ← M⁻¹ r by [`Aba::respond`] in `f64`, and a ← a + δ in `R`;
 //! 4. each further step: r ← r − M δ in `f64`, and step 3 again.
 //!
-//! **What it gives and costs**: relative error in the 2-norm on chains of 10 to 512 links (planar, straight, spatial; tips 10⁻⁶ to 10⁶
-//! times as heavy as a link; a base 10⁶ m away; 10³ times as fast) and on humanoids with hands of 1 and 1000 kg; and time in calls of
-//! [`Aba::run`] on the 36-dof humanoid, sines and cosines included, measured in alternation.
+//! **What it gives and costs**: the largest relative error in the 2-norm, and the time in calls of [`Aba::run`].
+//! The errors are over chains of 10 to 512 links and over humanoids with hands of 1 and 1000 kg.
+//! The chains are planar, straight and spatial, with tips 10⁻⁶ to 10⁶ times as heavy as a link, with a base 10⁶ m away, and 10³ times as
+//! fast.
+//! The times are of the 36-dof humanoid, sines and cosines included, measured in alternation.
 //!
 //! | | largest error | time |
 //! |---|---|---|
@@ -19,22 +21,23 @@
 //! | `Refined<Compensated>`, 2 steps | the same, with tips up to 10⁸ times as heavy | 4.5 |
 //! | `Refined<DoubleDouble>`, 1 step | as `Compensated` | 6.3 |
 //!
-//! In the M-norm the rounding of the result is itself not small (10⁻¹³ on a straight chain of 200, whatever computed it);
-//! [`Refined::accelerations`] before rounding are right there too.
+//! In the M-norm the rounding of the result is itself not small: 10⁻¹³ on a straight chain of 200, whatever algorithm computed it.
+//! [`Refined::accelerations`] are not yet rounded, and right in that norm too.
 //!
-//! **Why r may be updated in `f64`.** That makes an error of 2⁻⁵³ relative to M δ, and δ is as small against a as the error ε of the start.
+//! **Why r may be updated in `f64`.** The error of that is 2⁻⁵³ relative to M δ. And δ is as small against a as the error ε of the start.
 //! The errors after steps 0, 1, 2, … fall like ε, ε², ε³, … until about 10⁻¹⁵·ε, far below what `f64` can show.
 //!
-//! **Where the digits go.** The loss on heavy tips is the inward pass's: Iᴬ and pᴬ are sums of a heavy part that cancels in the end and a
-//! light part that decides, so that U/D and u/D both carry 2⁻⁵³ times the ratio of the masses. The outward pass loses nothing: given
-//! U/D and u/D rounded from exact ones it is right to the last digits, given either alone it is not. Inverse dynamics has no such sums,
-//! which is why even its `f64` residual recovers nearly everything.
+//! **Where the digits are lost.** The loss on heavy tips is in the inward pass. Iᴬ and pᴬ are sums of a heavy part, which cancels in the
+//! end,
+//! and of a light part, which decides. So U/D and u/D both carry 2⁻⁵³ times the ratio of the masses. The outward pass loses nothing: given
+//! both U/D and u/D rounded from exact ones, it is right to the last digits; given only one of them so, it is not.
+//! Inverse dynamics has no such sums. So even its `f64` residual recovers nearly everything.
 //!
-//! **What is solved.** The equations of motion with the numbers of the [`Model`] as they stand: `f64` parameters are lifted, with first
-//! moments and inertias about the bodies' origins as `Model<f64>::build` rounded them. For the robot as its description says it, build and
-//! pass a `Model<DoubleDouble>`: steps 1, 3 and 4 round its parameters, step 2 does not, and so the result is the description's. States
-//! are exact; a quaternion stands for the rotation of the normalized one, axes and placements for the rotations that they stand for
-//! ([`featherbench_model::Description::canonical`]).
+//! **What is solved.** The equations of motion with the numbers of the [`Model`]. Parameters in `f64` are lifted, with first moments and
+//! inertias about the bodies' origins as `Model<f64>::build` rounded them. For the robot as its description says it, build and pass a
+//! `Model<DoubleDouble>`. Then steps 1, 3 and 4 round its parameters, but step 2 does not, and so the result is the description's.
+//! States are exact. A quaternion stands for the rotation of the normalized one; axes and placements stand for the rotations that
+//! [`featherbench_model::Description::canonical`] says.
 //!
 //! Frames, shapes and units: as in [`Aba`]. Cost: O(n). A call does not allocate.
 
@@ -66,8 +69,9 @@ impl<R: Real + Lift<f64>> Refined<R>
 where
     f64: Lift<R>,
 {
-    /// A workspace for models of this topology that refines in `steps` steps: one is enough where the plain algorithm keeps nine digits,
-    /// two where it keeps six; none is the plain algorithm.
+    /// A workspace for models of this topology that refines in `steps` steps. One step is enough where the plain algorithm keeps nine
+    /// digits,
+    /// two where it keeps six. With 0 steps it is the plain algorithm.
     pub fn new(topology: &Topology, steps: usize) -> Self {
         let (nq, nv, bodies) = (topology.nq(), topology.nv(), topology.bodies());
         let zeros = |count| vec![R::zero(); count];
@@ -89,7 +93,7 @@ where
     /// The accelerations `a` at configuration `q`, velocity `v`, joint forces `tau` and external wrenches.
     ///
     /// # Errors
-    /// [`Error`] when an argument or the workspace does not fit the model, or when a joint meets no inertia; `a` then means nothing.
+    /// [`Error`] when an argument or the workspace does not fit the model, or when a joint meets no inertia; `a` is not valid then.
     pub fn run<P: Real + Lift<f64> + Lift<R>>(
         &mut self,
         model: &Model<P>,
@@ -127,7 +131,7 @@ where
         &self.a
     }
 
-    /// What the last step of the last run added: an estimate of the error before that step, and so a bound on what is left.
+    /// The correction δ of the last step of the last run: an estimate of the error before that step, and so a bound on what is left.
     pub fn correction(&self) -> &[f64] {
         &self.correction
     }
@@ -210,7 +214,7 @@ where
     }
 }
 
-/// Forward dynamics refined by a residual of 32 digits, without a workspace of one's own and without external wrenches; it allocates.
+/// Forward dynamics refined by a residual of 32 digits, in a workspace of the call and without external wrenches; it allocates.
 ///
 /// # Errors
 /// [`Error`] when an argument does not fit the model, or a joint meets no inertia.

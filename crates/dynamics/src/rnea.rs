@@ -1,8 +1,9 @@
 //! Inverse dynamics by the recursive Newton–Euler algorithm: `τ = M(q) v̇ + h(q, v) − Σ Jᵀf`.
 //!
 //! Source: the book, table 5.1, in the three-dimensional form of Luh, Walker & Paul (1980), which needs no linear velocity.
-//! Frames: each body's quantities stand in its own axes at its own origin; external wrenches [moment; force] likewise, one per compiled
-//! body. Gravity enters as an acceleration −g of the base; armature adds `armature_k · v̇_k`.
+//! Accelerations are classical (see `step.rs`). So `v ×* I v` stands for [ω × Ī ω; ω × (ω × h)] in the comments below.
+//! Frames: each body's quantities are in its own axes, at its own origin. So are external wrenches [moment; force], one per compiled body.
+//! Gravity enters as an acceleration −g of the base. Armature adds `armature_k · v̇_k`.
 //! Shapes: q has `nq` numbers; v, a and τ have `nv`. Units: SI, angles in radians. Cost: O(n). A call does not allocate.
 
 use crate::DimensionError;
@@ -14,7 +15,7 @@ use featherbench_spatial::{Force, Lift, Motion, Real, Transform, Vec3};
 /// The workspace of inverse dynamics.
 #[derive(Clone, Debug)]
 pub struct Rnea<T> {
-    /// The world, then the bodies.
+    /// Link 0 is the world; link i + 1 is body i.
     links: Vec<Link<T>>,
 }
 
@@ -105,7 +106,7 @@ impl<T: Real> Rnea<T> {
     }
 }
 
-/// One body's outward step.
+/// The outward step of one body: ω, a and f.
 #[inline(always)]
 fn outward<T: Real, P: Real + Lift<T>, const ACCELERATED: bool>(
     kind: JointKind,
@@ -125,7 +126,7 @@ fn outward<T: Real, P: Real + Lift<T>, const ACCELERATED: bool>(
     link.f = newton_euler(&model.inertias[i].lift(), link.omega, Some(link.a));
 }
 
-/// Inverse dynamics without a workspace of one's own and without external wrenches; it allocates.
+/// Inverse dynamics that makes its own workspace, without external wrenches; it allocates.
 ///
 /// # Errors
 /// [`DimensionError`] when an argument does not fit the model.

@@ -1,8 +1,11 @@
 //! What the recursions share: the step across one joint, and the equations of motion of one body.
 //!
-//! Accelerations are *classical*: [ω̇; p̈], the rate of change of angular velocity and of the velocity of the body's origin, both in body
-//! axes. They transform between frames like the book's spatial accelerations; only the velocity products differ, and these contain no
-//! linear velocity. So no digit is lost on a robot that moves fast as a whole, and linear velocities need not be computed.
+//! Source: the book, sections 2.11 (spatial and classical acceleration) and 2.14 (equation of motion), written in 3-D vectors.
+//! Accelerations are *classical*: [ω̇; p̈], the rate of change of angular velocity and of the velocity of the body's origin, in body axes.
+//! They transform between frames like the book's spatial accelerations. Only the velocity products differ, and these contain no linear
+//! velocity.
+//! So no digit is lost on a robot that moves fast as a whole, and linear velocities need not be computed.
+//! Frames: each body's own axes and origin. Units: SI. Cost: O(1) for a joint or a body. Nothing here allocates.
 
 use crate::DimensionError;
 use crate::error::expect;
@@ -66,7 +69,7 @@ pub(crate) fn cross_joint<T: Real>(
     // ṗ_p + ω̇_p × r + ω_p × (ω_p × r), still in parent axes
     let swing = parent_omega.cross(p);
     let lin = match parent_acceleration {
-        // The products first, and their sum rounded once to the size of p̈_p.
+        // The products first: their sum is rounded once to the size of p̈_p.
         Some(a) => a.lin + parent_omega.cross_add(swing, a.ang.cross(p)),
         None => parent_omega.cross(swing),
     };
@@ -82,7 +85,7 @@ pub(crate) fn cross_joint<T: Real>(
     (omega, Motion::new(ang, lin))
 }
 
-/// Newton's and Euler's equations at the body's origin: the force that gives a body its acceleration.
+/// Newton's and Euler's equations at the body's origin: the force that gives a body its acceleration. h is the first moment of mass.
 ///
 /// `f = I a + [ω × Ī ω; ω × (ω × h)]`; without an acceleration, the velocity-dependent part alone.
 #[inline(always)]
@@ -98,7 +101,7 @@ pub(crate) fn newton_euler<T: Real>(inertia: &RigidBodyInertia<T>, omega: Vec3<T
     }
 }
 
-/// Checks that the model's parts have the sizes of its topology, and that a workspace has as many bodies.
+/// Checks that the model's parts have the sizes of its topology, and that the workspace has the same number of bodies.
 pub(crate) fn expect_bodies<P>(model: &Model<P>, workspace: usize) -> Result<(), DimensionError> {
     let bodies = model.topology.bodies();
     expect("bodies of the workspace", bodies, workspace)?;

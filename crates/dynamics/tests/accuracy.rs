@@ -1,7 +1,7 @@
 //! Accuracy against the same text in double-double arithmetic, on chains up to two hundred deep; and of `f32` against `f64`.
 //!
-//! The measures are those of the reports: entries of M by the geometric mean of the diagonal, ID by the magnitudes that form each force,
-//! FD by its own norm.
+//! The measures are those of the reports. An entry of M: √(M_ii·M_jj). Inverse dynamics: the sum of the magnitudes that form each force.
+//! Forward dynamics: its own norm.
 
 use crate::common;
 
@@ -19,7 +19,7 @@ fn error(value: f64, truth: DoubleDouble) -> f64 {
     (DoubleDouble::from_f64(value) - truth).to_f64().abs()
 }
 
-/// The chains and states of SCIENCE.md §1: name, model, states, reach of the angles.
+/// The reference chains and their states: name, model, states, reach of the angles.
 fn chains(mut each: impl FnMut(&str, usize, &Model<f64>, &StateBatch)) {
     for (name, axes, reach) in
         [("planar, straight", &PLANAR[..], 0.0), ("planar", &PLANAR, 0.2 / 3.15), ("space", &SPACE, 1.0), ("skew", &SKEW, 1.0)]
@@ -69,7 +69,7 @@ fn mass_matrix_is_good_to_the_last_digits() {
     });
 }
 
-/// Turns about parallel axes keep the axis to the bit, along any chain: no 1 is ever rounded.
+/// Rotations about parallel axes keep the axis to the bit, along any chain: no 1 is ever rounded.
 #[test]
 fn parallel_axes_stay_parallel_to_the_bit() {
     let mut seen = 0;
@@ -112,8 +112,9 @@ fn forward_dynamics_loses_little_where_the_condition_number_loses_everything() {
     });
 }
 
-/// Every robot, every kind of joint, fast and slow: an offset of the base by a thousand kilometres and a speed of a thousand metres per
-/// second change nothing in the relative motion.
+/// Robots with every kind of joint, fast and slow. An offset of the base by a thousand kilometres and a speed of a thousand metres per
+/// second
+/// change nothing in the relative motion.
 #[test]
 fn far_and_fast_bases_lose_no_digits() {
     let model = dyadic_chain(&SPACE, 20);
@@ -141,7 +142,7 @@ fn far_and_fast_bases_lose_no_digits() {
     }
 }
 
-/// The same text in single precision: its error is that of a rounding 2²⁹ times as large.
+/// The same text in single precision: its unit of rounding, and so its error, is 2²⁹ times as large.
 #[test]
 fn single_precision_is_as_much_worse_as_its_rounding() {
     fn residual<T: Real>(model: &Model<f64>, states: &StateBatch, k: usize) -> f64
@@ -161,7 +162,7 @@ fn single_precision_is_as_much_worse_as_its_rounding() {
         let mean = |residual: &dyn Fn(usize) -> f64| (0..states.count()).map(residual).map(f64::ln).sum::<f64>() / states.count() as f64;
         let ratio =
             (mean(&|k| residual::<f32>(&model, &states, k)) - mean(&|k| residual::<f64>(&model, &states, k))) / std::f64::consts::LN_2;
-        // Medians over states of one robot scatter by a factor of two or so: one bit of twenty-nine.
+        // Medians over the states of one robot vary by a factor of about two: one bit of twenty-nine.
         within(&format!("{name}: log₂ of the f32 to f64 residual, less 29"), (ratio - 29.0).abs(), 1.5);
         ratios.push(ratio);
     }

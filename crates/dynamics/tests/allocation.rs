@@ -18,7 +18,7 @@ thread_local! {
 }
 
 fn count() {
-    // A thread that is being torn down has no counter any more.
+    // A thread that is being torn down has no counter.
     let _ = ALLOCATIONS.try_with(|allocations| allocations.set(allocations.get() + 1));
 }
 

@@ -7,7 +7,7 @@ use featherbench_dynamics::{bias_force, center_of_mass, centroidal_momentum, ene
 use featherbench_model::{BodyDescription, Description, JointDescription, JointType, Model, Placement};
 use featherbench_spatial::{Motion, Quaternion, Sym3, Vec3};
 
-/// A handful of operations on numbers of size one to a hundred.
+/// A few operations on numbers of size one to a hundred.
 const FEW_ROUNDINGS: f64 = 64.0 * f64::EPSILON;
 
 fn body(parent: Option<usize>, mass: f64, com: [f64; 3], inertia: [f64; 6], kind: JointType, at: [f64; 3]) -> BodyDescription {
@@ -43,9 +43,9 @@ fn simple_pendulum() {
 struct TwoRods {
     m: [f64; 2],
     l: [f64; 2],
-    /// Distance of each centre of mass from its joint, as a part of the length.
+    /// Distance of each centre of mass from its joint, as a fraction of the length.
     center: f64,
-    /// Moment of inertia about the centre of mass, as a part of m l².
+    /// Moment of inertia about the centre of mass, as a fraction of m l².
     inertia: f64,
     g: f64,
 }
@@ -92,7 +92,7 @@ fn double_pendulum_of_the_lesson() {
     let (q, v, tau) = ([0.3, -0.5], [0.7, 0.4], [1.0, -0.5]);
     let uniform = TwoRods { m: [2.0, 1.0], l: [1.0, 0.5], center: 0.5, inertia: 1.0 / 12.0, g: 9.81 };
     let tips = TwoRods { center: 1.0, inertia: 0.0, ..TwoRods { m: uniform.m, l: uniform.l, g: uniform.g, ..uniform } };
-    // Ten decimals, from Lagrange's equations in thirty digits. (SCIENCE.md §8 prints −20.6120091041 for the last, a slip of two digits.)
+    // Ten decimals, from Lagrange's equations in thirty digits.
     for (rods, printed) in [(uniform, [8.8127960477, -43.1567473102]), (tips, [5.5110867986, -20.6120093841])] {
         let model = rods.model();
         let derived = rods.acceleration(q, v, tau);
@@ -171,8 +171,8 @@ fn spherical_pendulum_swings_like_a_plane_one() {
     within("spherical pendulum", common::distance(&a, &[0.0, 9.81 * l / (l * l + 1e-3), 0.0]), 20.0 * FEW_ROUNDINGS);
 }
 
-/// In the spirit of the book's example 7.1, derived here: a floating box that carries a cylinder on a joint without friction feels the
-/// cylinder's inertia in every direction but the joint's.
+/// Like the book's example 7.1, derived here: a floating box carries a cylinder on a joint without friction.
+/// The box feels the cylinder's inertia in every direction but the joint's.
 #[test]
 fn articulated_inertia_of_a_box_with_a_free_cylinder() {
     let (box_mass, cylinder_mass) = (4.0, 1.5);

@@ -1,4 +1,4 @@
-//! Derivatives along the motion, by dual numbers: each is an identity of mechanics. And every kernel on duals against differences.
+//! Derivatives along the motion, by dual numbers: each is an identity of mechanics. Every kernel on duals is compared with differences.
 
 use crate::common;
 
@@ -167,8 +167,8 @@ fn duals_agree_with_central_differences() {
     });
 }
 
-/// Duals of parameters: the derivative of inverse dynamics in the masses is inverse dynamics itself when all inertia scales (τ is linear in
-/// the inertial parameters).
+/// Duals of parameters. τ is linear in the inertial parameters. So if all of them scale, the derivative of inverse dynamics is inverse
+/// dynamics.
 #[test]
 fn parameters_may_be_duals() {
     fn grow(x: Dual<f64>) -> Dual<f64> {

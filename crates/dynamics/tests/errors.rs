@@ -1,4 +1,4 @@
-//! Bad input is answered, never with a panic: wrong shapes, singular matrices, NaN.
+//! Bad input gives an error, never a panic: wrong shapes, singular matrices, NaN.
 
 use crate::common;
 
@@ -10,7 +10,7 @@ use featherbench_dynamics::{
 use featherbench_model::{BodyDescription, Case, Description, JointDescription, JointKind, JointType, Model, StateBatch};
 use featherbench_spatial::{Compensated, Force, RigidBodyInertia, Sym3, Vec3};
 
-/// What a refusal names, and what it counted.
+/// What an error names, and what it counted.
 fn refusal(result: Result<(), impl Into<Error>>) -> (&'static str, usize, usize) {
     match result.map_err(Into::into) {
         Err(Error::Dimension(DimensionError { what, expected, found })) => (what, expected, found),
@@ -85,7 +85,7 @@ fn workspaces_of_another_topology_are_refused() {
     assert_eq!(refusal(CenterOfMass::new(t).run(&model, &q).map(drop)), expected);
     assert_eq!(refusal(Jacobian::new(t).run(&model, &q, 0).map(drop)), expected);
 
-    // A matrix as large, of another shape: a star instead of a chain.
+    // A matrix of the same size and another shape: a star instead of a chain.
     let chain = dyadic_chain(&[[0.0, 1.0, 0.0]], 4);
     let star = common::topology(&[(-1, featherbench_model::JointKind::Revolute); 4]);
     let parents = "dofs of the tree-sparse matrix with the model's parent dof";
@@ -94,7 +94,9 @@ fn workspaces_of_another_topology_are_refused() {
     assert_eq!(refusal(Ltdl::new(&star).run(&mass_matrix(&chain, &[0.0; 4]).unwrap())), (place, 4, 0));
 }
 
-/// As many bodies and another number of dofs, more dofs that begin alike, as many dofs and other configurations: each has its own check.
+/// Each of these has its own check: the same number of bodies with another number of dofs; more dofs that begin alike; the same number of
+/// dofs
+/// with other configurations.
 #[test]
 fn workspaces_and_matrices_that_fit_in_part_are_refused() {
     use JointKind::{Revolute, Spherical};
@@ -264,7 +266,7 @@ fn numbers_that_are_not_finite_do_no_harm() {
     }
 }
 
-/// The mass matrix does not depend on how the root joint of a tree stands.
+/// Whether number `k` of q belongs to a root joint. The mass matrix does not depend on these numbers.
 fn first_does_not_matter(model: &Model<f64>, k: usize) -> bool {
     model.topology.joints().iter().any(|joint| joint.parent.is_none() && (joint.q..joint.q + joint.kind.nq()).contains(&k))
 }

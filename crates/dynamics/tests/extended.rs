@@ -39,7 +39,7 @@ fn the_derivative_by_acceleration_is_a_difference() {
     }
 }
 
-/// Along joint angles, against a central difference with a step of 10⁻⁹, whose own error is the square of that.
+/// The derivative by joint angles, against a central difference with a step of 10⁻⁹, whose own error is of order 10⁻¹⁸.
 #[test]
 fn the_derivative_by_configuration_is_a_limit_of_differences() {
     let model = build(&ROBOTS[0].1);

@@ -1,4 +1,4 @@
-//! Identities that hold for every robot and state, over robots with every kind of joint.
+//! Identities that hold for every robot and state, tested on robots with every kind of joint.
 
 use crate::common;
 

@@ -1,7 +1,8 @@
-//! Refined forward dynamics is right to the last digit where the plain algorithm loses up to ten.
+//! Refined forward dynamics is right to the last digit where the plain algorithm loses up to ten digits.
 //!
-//! The truth here is the same algorithm's text in double-double, refined by a double-double residual, with an error below 10⁻²² on every
-//! case: enough to judge `f64` digits, but not an independent witness. That is crate `reference`'s task.
+//! The truth here is the same algorithm's text in double-double, refined by a double-double residual. Its error is below 10⁻²² in every
+//! case:
+//! enough to judge `f64` digits. It is not an independent witness; that is crate `reference`'s task.
 
 use crate::common;
 
@@ -72,7 +73,8 @@ where
     (a, unrounded)
 }
 
-/// SCIENCE.md §1's table: family, reach of the angles in π, factor on the velocities, states, and what the plain algorithm may lose.
+/// The table of the reference chains: family, reach of the angles in π, factor on the velocities, states, and the error that the plain
+/// algorithm may have.
 fn table() -> Vec<(String, f64, f64, usize, f64)> {
     let small = 0.2 / PI;
     let mut cases = Vec::new();
@@ -82,7 +84,7 @@ fn table() -> Vec<(String, f64, f64, usize, f64)> {
         }
     }
     for (layout, reach) in [("planar", small), ("spatial", 1.0)] {
-        // The loss is the ratio of the masses in units of the last place; a few hundred for what joins it on the way.
+        // The loss is the ratio of the masses in units of the last place, times a few hundred for other roundings.
         for (tip, loss) in [("1e-6", 1e-13), ("1e-3", 1e-13), ("1e3", 1e-11), ("1e6", 1e-8)] {
             cases.push((format!("chain:n=20,layout={layout},tip_scale={tip}"), reach, 1.0, 20, loss));
         }
@@ -113,7 +115,7 @@ fn every_case_of_the_table_is_right_to_the_last_digit() {
             let truth = truth(&model, q, v, tau, None);
             within(&format!("{name}: plain"), error(&forward_dynamics(&model, q, v, tau).unwrap(), &truth), loss);
 
-            // Every number is the exact one rounded, but for one in a thousand that lay between two: below the goal of 4·2⁻⁵².
+            // Every number is the exact one rounded; one in a thousand lay nearly between two doubles. That is below the goal of 4·2⁻⁵².
             let goal = ROUNDING * 1.001;
             let (one, unrounded) = refined::<Compensated>(1, &model, q, v, tau);
             within(&format!("{name}: one step"), error(&one, &truth), goal);
@@ -121,11 +123,11 @@ fn every_case_of_the_table_is_right_to_the_last_digit() {
             within(&format!("{name}: two steps"), error(&two, &truth), goal);
             within(&format!("{name}: double-double"), error(&refined::<DoubleDouble>(1, &model, q, v, tau).0, &truth), goal);
 
-            // Rounding to f64 is an error of up to 1e-12 in the energy norm of a straight chain; what is rounded has none to speak of.
+            // Rounding to f64 is an error of up to 1e-12 in the energy norm of a straight chain. Before rounding the error is negligible.
             let unrounded: Extended = unrounded.into_iter().map(Compensated::to_double_double).collect();
             within(&format!("{name}: M-norm"), energy_error(&model, q, &unrounded, &truth), 4.0 * f64::EPSILON);
 
-            // A plain residual: inverse dynamics loses as it sums along the path, like the square root of its length or slower.
+            // A plain residual: the error of inverse dynamics grows with the length of the path, like its square root or slower.
             let bound = 8.0 * f64::EPSILON * (model.topology.nv() as f64 / 50.0).sqrt().max(1.0);
             within(&format!("{name}: f64 residual"), error(&refined::<f64>(1, &model, q, v, tau).0, &truth), bound);
         }
@@ -192,7 +194,7 @@ fn a_model_in_double_double_gives_the_accelerations_of_the_description() {
     }
 }
 
-/// A tip ten thousand million times as heavy as a link leaves seven digits; each step multiplies their number.
+/// With a tip 10¹⁰ times as heavy as a link the plain algorithm keeps about five digits. Each step adds about as many.
 #[test]
 fn steps_converge_and_say_how_far_they_moved() {
     let model = Model::build(&description("chain:n=20,layout=spatial,tip_scale=1e10")).unwrap();
@@ -213,7 +215,7 @@ fn steps_converge_and_say_how_far_they_moved() {
                 let (before, _) = refined::<DoubleDouble>(steps - 1, &model, q, v, tau);
                 let moved = norm(workspace.correction().iter().copied());
                 let off = norm(before.iter().zip(&truth).map(|(a, truth)| (DoubleDouble::from_f64(*a) - *truth).to_f64()));
-                // Rounded accelerations are off by the rounding as well.
+                // Rounded accelerations have the error of the rounding as well.
                 assert!(moved <= 1.1 * off + ROUNDING * norm(before.iter().copied()), "{moved:e} against {off:e}");
             }
             *worst = larger(*worst, error(workspace.accelerations(), &truth));
@@ -221,7 +223,7 @@ fn steps_converge_and_say_how_far_they_moved() {
     }
     let [plain, one, two, three] = errors;
     assert!(plain > 1e-8, "the plain algorithm loses more than half of the digits: {plain:e}");
-    // Seen: 3e-6, 5e-11, 7e-16, 3e-20. Each step gains as many digits as the start had, less one.
+    // Seen: 3e-6, 5e-11, 7e-16, 3e-20. Each step adds about as many digits as the start had.
     assert!(one < 1e-4 * plain && two < 1e-4 * one && three < 1e-3 * two, "{errors:?}");
 }
 

@@ -1,4 +1,4 @@
-//! Structure as integers: what tree-sparse matrices store, what a factorization executes, and that recursions are linear.
+//! Structure as integers: what tree-sparse matrices store, what a factorization executes, and that the cost of recursions is linear.
 
 use crate::common;
 
@@ -52,7 +52,7 @@ fn binary(depth: u32) -> Vec<(i64, JointKind)> {
     tree
 }
 
-/// SCIENCE.md §2: tree, n, n + D1, D1, D2.
+/// Known counts: tree, n, n + D1, D1, D2.
 fn table() -> Vec<(&'static str, Topology, [u64; 4])> {
     let tree = |tree: Vec<_>| topology(&tree);
     vec![

@@ -28,7 +28,7 @@ pub fn largest(a: &[f64]) -> f64 {
 /// How a random robot is made.
 #[derive(Clone, Copy)]
 pub struct Recipe {
-    /// The kinds of joint in turn.
+    /// The kinds of joint, used in turn.
     pub kinds: &'static [Kind],
     pub bodies: usize,
     /// Whether a parent is drawn from the whole path to the last body, or is the last body.
@@ -53,7 +53,7 @@ pub enum Kind {
 
 use Kind::*;
 
-/// Robots that between them have every kind of joint, chain and branched, fixed and floating, and a free joint in the middle.
+/// Robots that have, between them: every kind of joint, chains and branches, fixed and floating bases, and a free joint in the middle.
 pub const ROBOTS: [(&str, Recipe); 10] = [
     ("revolute chain", Recipe { kinds: &[Revolute], bodies: 8, branched: false, armature: false }),
     ("prismatic chain", Recipe { kinds: &[Prismatic, Revolute], bodies: 6, branched: false, armature: true }),
@@ -139,7 +139,7 @@ pub fn build(recipe: &Recipe) -> Model<f64> {
     Model::build(&robot(recipe, 11)).expect("the recipe is well formed")
 }
 
-/// One revolute or other screw joint after another along x, unit mass, half a metre each: the chain of SCIENCE.md §1, dyadic numbers.
+/// A reference chain of dyadic numbers: one revolute or other screw joint after another along x, unit mass, half a metre each.
 pub fn dyadic_chain(axes: &[[f64; 3]], bodies: usize) -> Model<f64> {
     let body = |i: usize| BodyDescription {
         name: format!("body{i}"),

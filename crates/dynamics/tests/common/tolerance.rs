@@ -2,7 +2,7 @@
 
 /// Asserts that a residual is finite and no larger than its tolerance times the factor.
 ///
-/// Where the variable is set, every residual is printed. At 0 each residual but zero fails, and its message holds it: no factor turns an
+/// Where the variable is set, every residual is printed. At 0 each residual but zero fails, and its message contains it. No factor turns an
 /// assertion off.
 #[track_caller]
 pub fn assert_within(what: &str, residual: f64, tolerance: f64) {
