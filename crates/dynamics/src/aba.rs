@@ -7,12 +7,10 @@
 //!
 //! The functions of one body and the book's symbols:
 //!
-//! | function | pass | computes |
-//! |---|---|---|
-//! | `set_moving` | 1, outward | ω, c, Iᴬ = I, pᴬ = v ×* I v |
-//! | `release` | 2, inward | U = Iᴬ S, D = Sᵀ U + armature, u = τ − Sᵀ pᴬ; adds X* Iᵃ X⁻¹ and X* pᵃ to the parent |
-//! | `accelerate` | 3, outward | a' = X a_p + c, q̈ = D⁻¹ (u − Uᵀ a'), a = a' + S q̈ |
-//! | `transmit` | 2 of [`Aba::respond`] | u and pᵃ = pᴬ + U D⁻¹ u, with U and D of the last run |
+//! - `set_moving` (pass 1, outward): ω, c, Iᴬ = I, pᴬ = v ×* I v.
+//! - `release` (pass 2, inward): U = Iᴬ S, D = Sᵀ U + armature, u = τ − Sᵀ pᴬ. It adds X* Iᵃ X⁻¹ and X* pᵃ to the parent.
+//! - `accelerate` (pass 3, outward): a' = X a_p + c, q̈ = D⁻¹ (u − Uᵀ a'), a = a' + S q̈.
+//! - `transmit` (pass 2 of [`Aba::respond`]): u and pᵃ = pᴬ + U D⁻¹ u, with U and D of the last run.
 
 use crate::error::{Pivot, expect};
 use crate::step::{add_joint, by_kind, cross_joint, expect_bodies, expect_wrenches, newton_euler, parent_link};

@@ -1,8 +1,7 @@
 //! The bias force `h(q, v) = C(q, v) v + g(q)`: the joint forces at which the robot does not accelerate.
 //!
 //! Source: the book, chapter 6 (`C` there): inverse dynamics with v̇ = 0. It is the recursion of [`Rnea`](crate::Rnea), compiled without
-//! the
-//! terms in v̇. Frames, shapes, units and cost O(n) are the same. A call does not allocate.
+//! the terms in v̇. Frames, shapes, units and cost O(n) are the same. A call does not allocate.
 
 use crate::{DimensionError, Rnea};
 use featherbench_model::{Model, Topology};

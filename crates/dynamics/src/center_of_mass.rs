@@ -1,9 +1,8 @@
 //! The robot's mass and centre of mass.
 //!
 //! Source: the definition `c = Σ m_i c_i / Σ m_i`, summed inward: each body adds its mass m and first moment of mass h to those of its
-//! parent,
-//! `h_p += R h + m r`. The sum is taken about the first body's origin. So a robot far from the world's origin loses no digits of its shape.
-//! Frame: world axes and origin. Shapes: q has `nq` numbers. Units: kg, m. Cost: O(n). A call does not allocate.
+//! parent, `h_p += R h + m r`. The sum is taken about the first body's origin. So a robot far from the world's origin loses no digits of
+//! its shape. Frame: world axes and origin. Shapes: q has `nq` numbers. Units: kg, m. Cost: O(n). A call does not allocate.
 
 use crate::{DimensionError, Kinematics};
 use featherbench_model::{Model, Topology};

@@ -1,8 +1,7 @@
 //! The joint-space inertia matrix M(q) by the composite-rigid-body algorithm, into a tree-sparse matrix.
 //!
 //! Source: the book, table 6.2. The book carries one force `F_k = Iᶜ S_k` at a time from its joint to the root. Here the forces of all dofs
-//! that
-//! a body supports are carried together, component by component. They are consecutive dofs, so the loops are contiguous.
+//! that a body supports are carried together, component by component. They are consecutive dofs, so the loops are contiguous.
 //! Frames: the inertias Iᶜ and forces F are in the axes of the body that the loop has reached, at its origin.
 //! Armature is added to the diagonal. Shapes: q has `nq` numbers; M is `nv`×`nv`. Units: SI, angles in radians.
 //! Cost: O(n + Σ d_k), d_k the depth of dof k. A call does not allocate.

@@ -1,12 +1,10 @@
 //! Rigid-body dynamics of trees: one file per algorithm.
 //!
 //! Each algorithm has a workspace, made from a [`Topology`](featherbench_model::Topology). The workspace's `run` does not allocate. A
-//! function
-//! beside it makes a workspace for one call.
+//! function beside it makes a workspace for one call.
 //!
 //! All algorithms are generic over two scalars: that of the state and that of the parameters. The same text runs on `f64`, `f32`, dual
-//! numbers,
-//! and counting and extended-precision scalars. "The book" is R. Featherstone, *Rigid Body Dynamics Algorithms* (2008).
+//! numbers, and counting and extended-precision scalars. "The book" is R. Featherstone, *Rigid Body Dynamics Algorithms* (2008).
 //!
 //! ```
 //! use featherbench_dynamics::{forward_dynamics, inverse_dynamics, mass_matrix};

@@ -10,8 +10,7 @@
 //! | solve | n | 2·D1 | O(Σ d_k) |
 //!
 //! Dofs are eliminated in *blocks*: up to four consecutive dofs, each the parent of the next. They share the ancestors of the first, and
-//! change
-//! an ancestor's row in one pass over it. The operations on each number keep the book's order.
+//! change an ancestor's row in one pass over it. The operations on each number keep the book's order.
 
 use crate::error::{Pivot, expect};
 use crate::tree_sparse::BLOCK;

@@ -1,9 +1,8 @@
 //! Centroidal momentum: angular momentum about the centre of mass, and linear momentum, without armature.
 //!
 //! Source: Orin, Goswami & Lee (2013), "Centroidal dynamics of a humanoid robot". It is the sum over bodies of `X* I v`, formed inward like
-//! the
-//! book's composite inertias. Frame: world axes, at the centre of mass. Shapes: q has `nq` numbers, v has `nv`. Units: kg·m²/s and kg·m/s.
-//! Cost: O(n). A call does not allocate.
+//! the book's composite inertias. Frame: world axes, at the centre of mass. Shapes: q has `nq` numbers, v has `nv`. Units: kg·m²/s and
+//! kg·m/s. Cost: O(n). A call does not allocate.
 
 use crate::{CenterOfMass, DimensionError, MassCenter};
 use featherbench_model::{Model, Topology};

@@ -28,9 +28,8 @@
 //! The errors after steps 0, 1, 2, … fall like ε, ε², ε³, … until about 10⁻¹⁵·ε, far below what `f64` can show.
 //!
 //! **Where the digits are lost.** The loss on heavy tips is in the inward pass. Iᴬ and pᴬ are sums of a heavy part, which cancels in the
-//! end,
-//! and of a light part, which decides. So U/D and u/D both carry 2⁻⁵³ times the ratio of the masses. The outward pass loses nothing: given
-//! both U/D and u/D rounded from exact ones, it is right to the last digits; given only one of them so, it is not.
+//! end, and of a light part, which decides. So U/D and u/D both carry 2⁻⁵³ times the ratio of the masses. The outward pass loses nothing:
+//! given both U/D and u/D rounded from exact ones, it is right to the last digits; given only one of them so, it is not.
 //! Inverse dynamics has no such sums. So even its `f64` residual recovers nearly everything.
 //!
 //! **What is solved.** The equations of motion with the numbers of the [`Model`]. Parameters in `f64` are lifted, with first moments and
@@ -70,8 +69,7 @@ where
     f64: Lift<R>,
 {
     /// A workspace for models of this topology that refines in `steps` steps. One step is enough where the plain algorithm keeps nine
-    /// digits,
-    /// two where it keeps six. With 0 steps it is the plain algorithm.
+    /// digits, two where it keeps six. With 0 steps it is the plain algorithm.
     pub fn new(topology: &Topology, steps: usize) -> Self {
         let (nq, nv, bodies) = (topology.nq(), topology.nv(), topology.bodies());
         let zeros = |count| vec![R::zero(); count];

@@ -113,8 +113,7 @@ fn forward_dynamics_loses_little_where_the_condition_number_loses_everything() {
 }
 
 /// Robots with every kind of joint, fast and slow. An offset of the base by a thousand kilometres and a speed of a thousand metres per
-/// second
-/// change nothing in the relative motion.
+/// second change nothing in the relative motion.
 #[test]
 fn far_and_fast_bases_lose_no_digits() {
     let model = dyadic_chain(&SPACE, 20);

@@ -95,8 +95,7 @@ fn workspaces_of_another_topology_are_refused() {
 }
 
 /// Each of these has its own check: the same number of bodies with another number of dofs; more dofs that begin alike; the same number of
-/// dofs
-/// with other configurations.
+/// dofs with other configurations.
 #[test]
 fn workspaces_and_matrices_that_fit_in_part_are_refused() {
     use JointKind::{Revolute, Spherical};

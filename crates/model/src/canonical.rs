@@ -9,9 +9,8 @@ impl Description {
     /// Each merged body leaves a frame. Siblings keep their order. A canonical description is its own canonical form.
     ///
     /// A written axis stands for the unit vector along it, a written rotation for the nearest one. Both, and the products of merged
-    /// placements,
-    /// are formed with 32 digits and rounded once. A change by more than an ulp is a [`Warning`](crate::Warning) of the description as
-    /// given.
+    /// placements, are formed with 32 digits and rounded once. A change by more than an ulp is a [`Warning`](crate::Warning) of the
+    /// description as given.
     ///
     /// # Errors
     /// [`Malformed`], naming the body and field.

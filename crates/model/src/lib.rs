@@ -3,9 +3,9 @@
 //! A [`Description`] is what users write: named bodies and joints of every kind, as plain numbers. [`Model::build`] compiles it:
 //! - fixed joints are merged;
 //! - bodies are put in depth-first order;
-//! - composed joints (planar, universal, …) become chains of the primitive joints of [`JointKind`], with massless bodies between. So no
-//!   kernel
-//!   meets a configuration-dependent motion subspace.
+//! - composed joints (planar, universal, …) become chains of the primitive joints of [`JointKind`], with massless bodies between.
+//!
+//! So no kernel meets a configuration-dependent motion subspace.
 //!
 //! [`Topology`] is the scalar-free part of a model; `Model<P>` adds the parameters.
 

@@ -36,8 +36,7 @@ impl<P: Real> Model<P> {
     /// Compiles a description; inertias, axes and rotations are formed in the arithmetic of `P`.
     ///
     /// Canonical axes and rotations are rounded to doubles. A scalar with more digits gets the unit vectors and rotations that these
-    /// doubles stand
-    /// for; `f64` takes the doubles as they are.
+    /// doubles stand for; `f64` takes the doubles as they are.
     ///
     /// The description need not be canonical: fixed joints are merged and the bodies put in depth-first order.
     ///

@@ -1,10 +1,8 @@
 //! Unit vectors and rotations: what written numbers stand for.
 //!
 //! Computes: a written axis u stands for u/|u|. A written rotation R stands for the nearest rotation: its orthogonal polar factor, the
-//! limit of
-//! R ← ½(R + R⁻ᵀ). Both are formed with 32 digits and rounded once. Numbers that can come from rounding a unit vector or a rotation are
-//! kept to
-//! the bit, so that normalising twice is normalising once.
+//! limit of R ← ½(R + R⁻ᵀ). Both are formed with 32 digits and rounded once. Numbers that can come from rounding a unit vector or a
+//! rotation are kept to the bit, so that normalising twice is normalising once.
 //! Source: Higham, *Functions of Matrices* (2008), §8.3. Shapes: 3 and 9 numbers, rows first. Cost: O(1); nothing is allocated.
 
 use featherbench_spatial::{DoubleDouble, Mat3, Real, Vec3};

@@ -246,8 +246,7 @@ impl Description {
     }
 
     /// The warnings: axes and rotations that are normalised by more than an ulp, moving bodies without mass, and moving bodies with an
-    /// inertia that
-    /// no mass distribution has.
+    /// inertia that no mass distribution has.
     pub fn warnings(&self) -> Vec<Warning> {
         let moving = self.bodies.iter().filter(|body| body.joint.kind != JointType::Fixed);
         self.normalised().chain(moving.filter_map(BodyDescription::warning)).collect()

@@ -1,5 +1,5 @@
-//! A humanoid designed for this project, about 1.6 m and 52 kg: a free pelvis with six dofs, two legs of six, and three waist joints, which
-//! carry two arms of seven and a head of one.
+//! A humanoid designed for this project, about 1.6 m and 52 kg: a free pelvis with six dofs, two legs of six, and three waist joints.
+//! The waist carries two arms of seven and a head of one.
 
 use super::BadFamily;
 use super::parameters::{Parameters, require};

@@ -84,8 +84,7 @@ pub enum Shape {
 words!(Shape { Branched => "branched", Single => "single" });
 
 /// A root with two branches for each kind shown. In one branch the joint is on the root, a revolute forearm on it, and the joint again at
-/// the
-/// tip. In the other branch the joint is the tip. Axes and placements are skew, inertias full, masses within a factor of 1.5.
+/// the tip. In the other branch the joint is the tip. Axes and placements are skew, inertias full, masses within a factor of 1.5.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub struct Joints {
     /// The joint shown.

@@ -1,8 +1,7 @@
 //! Generators of robots: each family a pure function of its parameters, the same bits on every platform.
 //!
 //! Families draw with [`crate::Random`] alone and use only sums, products, quotients and square roots. They use no sine or cosine, whose
-//! last bit
-//! depends on the library, and no fused products, which depend on the processor.
+//! last bit depends on the library, and no fused products, which depend on the processor.
 //! The result is canonical: depth-first, without fixed joints, with unique names.
 //!
 //! A text names a [`Family`]: `family` or `family:key=value,key=value`. Suites and the command line use such texts:

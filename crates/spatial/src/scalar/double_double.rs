@@ -2,18 +2,14 @@
 //!
 //! Sources: M. Joldes, J.-M. Muller and V. Popescu, *Tight and rigorous error bounds for basic building blocks of double-word arithmetic*
 //! (ACM TOMS 44, 2017). For the square root: V. Lefèvre, N. Louvet, J.-M. Muller, J. Picot and L. Rideau, *Accurate calculation of
-//! Euclidean
-//! norms using double-word arithmetic* (ACM TOMS 49, 2023). The relative errors, with u = 2⁻⁵³:
+//! Euclidean norms using double-word arithmetic* (ACM TOMS 49, 2023). The relative errors, with u = 2⁻⁵³, are at most
 //!
-//!
-//! | operation | relative error, at most |
-//! |---|---|
-//! | sum, difference | 3u² + 13u³, also where the operands cancel |
-//! | product | 5u² (4u² with fused multiply-add) |
-//! | quotient | 15u² + 56u³ |
-//! | square root | 25/8·u² |
-//! | `a·b + c` | 5u²·\|a·b\| + 6u²·\|a·b + c\| |
-//! | sine, cosine | 28u² (seen: 3u²), also at huge angles and next to their zeros |
+//! - sum, difference: 3u² + 13u³, also where the operands cancel;
+//! - product: 5u² (4u² with fused multiply-add);
+//! - quotient: 15u² + 56u³;
+//! - square root: 25/8·u²;
+//! - `a·b + c`: 5u²·|a·b| + 6u²·|a·b + c|;
+//! - sine, cosine: 28u² (seen: 3u²), also at huge angles and next to their zeros.
 //!
 //! The bounds hold while nothing overflows or underflows: every nonzero operand and result is within about 2⁻⁹⁰⁰ … 2⁹⁹⁰.
 //! An infinite result becomes NaN in the next operation at the latest, and NaN stays NaN.

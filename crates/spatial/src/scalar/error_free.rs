@@ -1,8 +1,7 @@
 //! Error-free transforms: sums and products of two `f64` as the rounded result and its rounding error, exactly.
 //!
 //! Sources: Knuth's two-sum and Dekker's fast two-sum. The product is by fused multiply-add. Where the machine has none, it is by
-//! Veltkamp's
-//! splitting and Dekker's product (T. J. Dekker, *A floating-point technique for extending the available precision*, 1971).
+//! Veltkamp's splitting and Dekker's product (T. J. Dekker, *A floating-point technique for extending the available precision*, 1971).
 //! All are exact in round-to-nearest unless something overflows. A product also needs that its error does not underflow (|a·b| above
 //! 2⁻⁹⁶⁹).
 

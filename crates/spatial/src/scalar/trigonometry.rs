@@ -1,12 +1,9 @@
 //! Sine and cosine of a double-double angle.
 //!
 //! 1. The angle is reduced to r = x − n·π/2 with |r| ≤ π/4. Where x is moderate and r not tiny, Cody and Waite's method subtracts the parts
-//!    of
-//!    n·π/2. Otherwise the method of M. Payne and R. Hanek (1983) is used: it multiplies the digits of 2/π that matter by the integer
-//!    mantissas
-//!    of x. So 331 binary digits of the fraction of x·2/π are right at every magnitude. There are fewer than 2¹²⁸ double-doubles. So by
-//!    counting,
-//!    the nearest one comes within about 2⁻¹²⁸ of a multiple of π/2, and 200 of these digits are significant.
+//!    of n·π/2. Otherwise the method of M. Payne and R. Hanek (1983) is used: it multiplies the digits of 2/π that matter by the integer
+//!    mantissas of x. So 331 binary digits of the fraction of x·2/π are right at every magnitude. There are fewer than 2¹²⁸ double-doubles.
+//!    So by counting, the nearest one comes within about 2⁻¹²⁸ of a multiple of π/2, and 200 of these digits are significant.
 //! 2. With d = |r| − k/64 and |d| ≤ 1/128, sin d and cos d come from Taylor's series.
 //! 3. The addition theorem combines them with tabulated sin k/64 and cos k/64.
 //!
