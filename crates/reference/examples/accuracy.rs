@@ -1,9 +1,9 @@
-//! The table of SCIENCE §1: errors of forward and inverse dynamics and of M against the truth, medians and quartiles over twenty draws.
+//! The accuracy table: errors of forward and inverse dynamics and of M against the truth, medians and quartiles over twenty draws.
 //!
 //!     cargo run --release -p featherbench-reference --example accuracy [-- CASE…]
 //!
-//! Asks our kernels and those of Pinocchio, MuJoCo and Drake that are installed. Errors are relative 2-norms, as in the table; of M also the
-//! worst entry, over √(M_ii M_jj). The extra cases move the base away from the origin.
+//! Asks our kernels, and Pinocchio, MuJoCo and Drake where they are installed. Errors are relative 2-norms; of M also the worst entry, over
+//! √(M_ii M_jj). The extra cases move the base away from the origin.
 
 #[path = "../tests/support/mod.rs"]
 mod support;
@@ -25,7 +25,7 @@ const MORE: [Case; 3] = [
     Case { name: "offset_1e6", family: "chain:n=20,layout=spatial,base_offset=1e6", draw: Draw::Wide },
 ];
 
-/// Errors over the draws, by who made them.
+/// Errors over the draws, by engine and method.
 type Errors = BTreeMap<String, Vec<f64>>;
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {

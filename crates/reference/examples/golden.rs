@@ -1,9 +1,9 @@
-//! Makes the golden data of `datasets/truth` from both witnesses, or shows the question of one case.
+//! Makes the golden data of `datasets/truth` from both witnesses, or prints the question of one case.
 //!
 //!     cargo run --release -p featherbench-reference --example golden -- make [PYTHON]
 //!     cargo run --release -p featherbench-reference --example golden -- show planar_small_10
 //!
-//! PYTHON has mpmath and numpy; the default is the interpreter that `featherbench oracles install` makes.
+//! PYTHON is an interpreter with mpmath and numpy; the default is the one that `featherbench oracles install` makes.
 
 #[path = "../tests/support/mod.rs"]
 mod support;
@@ -90,7 +90,7 @@ fn write(case: &Case, answers: &Answers) -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-/// What `python -m featherbench_oracles.truth --decimals` is asked.
+/// The question for `python -m featherbench_oracles.truth --decimals`.
 fn question(case: &Case, state: &State) -> Result<String, Box<dyn Error>> {
     let model = featherbench_formats::neutral::to_line(&case.describe())?;
     let State { q, v, a, tau } = state;

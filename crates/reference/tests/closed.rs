@@ -34,7 +34,7 @@ fn body(name: &str, parent: Option<usize>, mass: f64, com: [f64; 3], inertia: [f
     BodyDescription { name: name.into(), parent, mass, com, inertia, joint }
 }
 
-/// Legendre's relation has no part of sn, cn, dn: known values, the addition theorem and the derivative do.
+/// Known values, the addition theorem and the derivative test sn, cn and dn; Legendre's relation would not.
 #[test]
 fn elliptic_functions() {
     // K(k = sin 45°) = Γ(1/4)²/(4√π), lemniscate.
@@ -95,8 +95,8 @@ fn pendulum() {
     assert!(Pendulum::passing(&natural, &number(-1.0)).is_err());
 }
 
-/// The 2R arm of the lesson: what it gives with uniform rods and with masses at the tips (often quoted with −20.6120091041, a slip of the
-/// pen), and the same from the bodies.
+/// The 2R arm: accelerations with uniform rods and with masses at the tips, and the same from the bodies. For the tips −20.6120091041 is
+/// often quoted, which is wrong.
 #[test]
 fn double_pendulum() {
     let parameters = || ([2.0, 1.0].map(number), [1.0, 0.5].map(number), parse("9.81"));
@@ -153,7 +153,7 @@ fn free_top() {
             close("period", &distance(&top.at(&(&t + top.period())), &omega), 1e-115);
         }
     }
-    // I₁(I₂ − I₁)ω₁² = I₃(I₃ − I₂)ω₃²: the separatrix; and no order of moments.
+    // I₁(I₂ − I₁)ω₁² = I₃(I₃ − I₂)ω₃²: the separatrix. And moments that are not in ascending order.
     assert!(FreeTop::new([1.0, 2.0, 3.0].map(number), &number(3.0).sqrt(), &number(1.0)).is_ok());
     assert!(FreeTop::new([1.0, 2.0, 4.0].map(number), &number(8.0).sqrt(), &number(1.0)).is_ok_and(|top| top.at(&Mp::zero())[1].is_zero()));
     assert!(FreeTop::new([2.0, 1.0, 3.0].map(number), &number(1.0), &number(1.0)).is_err());
@@ -162,7 +162,7 @@ fn free_top() {
 
 #[test]
 fn heavy_top() {
-    // 2 kg half a metre above the point on which it turns; A = 0.25 + 2·0.25 = 0.75, C = 0.5, mgl = 8.
+    // 2 kg half a metre above the fixed point; A = 0.25 + 2·0.25 = 0.75, C = 0.5, mgl = 8.
     let mut description = Description { gravity: [0.0, 0.0, -8.0], ..Description::default() };
     description.bodies.push(body("top", None, 2.0, [0.0, 0.0, 0.5], [0.25, 0.0, 0.0, 0.25, 0.0, 0.5], JointType::Spherical, [0.0; 3]));
     let robot = Robot::new(&description, P).unwrap();
@@ -193,7 +193,7 @@ fn heavy_top() {
         }
     }
     assert!(top.steady(&number(0.4), &number(1.0)).is_err(), "too slow to stand");
-    // Sleeping upright it precesses at any speed of spin; nutating, its momenta are those of L = T − V.
+    // An upright top precesses at any speed of spin. With nutation its momenta are those of L = T − V.
     let kept = top.conserved(&number(0.5), &number(2.0), &number(3.0), &number(4.0));
     let (sin, cos) = number(0.5).sin_cos();
     let along_axis = number(4.0) + number(3.0) * &cos;

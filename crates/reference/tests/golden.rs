@@ -1,6 +1,6 @@
-//! The golden data: they come from the witnesses that are here, and a random twentieth of them is derived again at every run.
+//! The golden data: they belong to the witnesses of this commit, and every run derives a random twentieth of them again.
 //!
-//! `FEATHERBENCH_GOLDEN_SEED` chooses the twentieth (the day does otherwise), `FEATHERBENCH_GOLDEN_SHARE=1` derives all.
+//! `FEATHERBENCH_GOLDEN_SEED` chooses the twentieth (without it the day does); `FEATHERBENCH_GOLDEN_SHARE=1` derives all.
 
 use crate::support;
 
@@ -59,7 +59,7 @@ fn every_golden_file_has_its_checksum() {
     due.iter().for_each(|name| assert!(!text(name).is_empty()));
 }
 
-/// Damage in one bit of a file, of the index or of the checksums themselves.
+/// An error in one bit of a file, of the index or of the checksums themselves.
 #[test]
 fn a_flipped_bit_of_golden_data_is_an_error_that_names_the_file() {
     let copy = tempfile::tempdir().unwrap();
@@ -73,7 +73,7 @@ fn a_flipped_bit_of_golden_data_is_an_error_that_names_the_file() {
     for name in names {
         let path = copy.path().join(name);
         let whole = std::fs::read(&path).unwrap();
-        // All eight bits of every byte of the first line, one of each byte behind it.
+        // All eight bits of every byte of the first line, one bit of each later byte.
         let first = whole.iter().position(|&byte| byte == b'\n').unwrap();
         for at in 0..whole.len() {
             for bit in if at <= first { 0..8 } else { at % 8..at % 8 + 1 } {
@@ -97,7 +97,7 @@ fn golden_data_are_small() {
     assert!((1_000..=100_000).contains(&bytes), "{bytes} bytes in datasets/truth");
 }
 
-/// Every number of a golden file is a decimal number that a reader of doubles rounds correctly.
+/// Every number of a golden file is a decimal number that correct rounding turns into the right double.
 #[test]
 fn golden_numbers_round_as_doubles() {
     for case in &CASES {

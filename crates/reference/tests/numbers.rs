@@ -1,4 +1,4 @@
-//! The arithmetic that everything rests on: rounding, texts, and sine and cosine against a series of our own, for huge and tiny arguments.
+//! The arithmetic of the reference: rounding, texts, and sine and cosine against a series written here, for huge and tiny arguments.
 
 use crate::support;
 
@@ -25,11 +25,11 @@ fn machin(precision: Precision) -> Mp {
     precision.integer(16) * arctan(5) - precision.integer(4) * arctan(239)
 }
 
-/// sin x and cos x by Taylor's series after x − k·2π, at a precision that holds k and all digits of x besides.
+/// sin x and cos x by Taylor's series after x − k·2π. The precision suffices for k and for all digits of x.
 fn series(x: &Mp, precision: Precision) -> (Mp, Mp) {
     let wide = Precision::bits(precision.get() + 1200);
     let turn = machin(wide).twice();
-    // The whole number of turns, bit by bit: no function of the crate but comparison and doubling.
+    // The whole number of turns, bit by bit: the crate's comparison and doubling are the only functions used.
     let mut rest = x.at(wide).abs();
     let mut multiples = vec![turn];
     while multiples[multiples.len() - 1] < rest {
@@ -53,8 +53,8 @@ fn series(x: &Mp, precision: Precision) -> (Mp, Mp) {
     (if x.is_negative() { -sin } else { sin }, cos)
 }
 
-/// Zeros of the sine to 16 digits, its steepest places, huge numbers (1e22 is the classic; 6381956970095103·2⁷⁹⁷ comes closest of
-/// all doubles to a multiple of π/2), the largest double, and numbers whose square is below any double.
+/// Zeros of the sine to 16 digits, its steepest places, huge numbers, the largest double, and numbers whose square is below any double.
+/// Among the huge ones: 1e22 is the classic, and of all doubles 6381956970095103·2⁷⁹⁷ comes closest to a multiple of π/2.
 const ARGUMENTS: [f64; 20] = [
     0.5,
     -0.5,
@@ -171,14 +171,14 @@ fn known_doubles_of_known_numbers() {
     for (text, x) in [("12.5e-1", 1.25), ("+.5", 0.5), ("-3.", -3.0), ("00100", 100.0), ("1E5", 1e5), ("1e-400", 0.0)] {
         assert_eq!(Precision::STANDARD.parse(text).unwrap().to_f64(), x);
     }
-    // Noise does not make a zero something, nor a tie nothing.
+    // Noise does not change a zero or a tie.
     let noise = Precision::STANDARD.parse("1e-130").unwrap();
     assert_eq!(
         nearest_doubles(&[&tie_of_two() + &noise, &tie_of_two() - &noise, noise, Mp::zero()]),
         [9_007_199_254_740_992.0, 9_007_199_254_740_992.0, 0.0, 0.0]
     );
     assert_eq!(nearest_doubles(&[Mp::zero()]), [0.0]);
-    // Ties go to even; what lies beside a tie does not.
+    // Ties go to even; a number beside a tie goes to the nearer double.
     let tie = tie_of_two();
     assert_eq!(tie.to_f64(), 9_007_199_254_740_992.0);
     assert_eq!((&tie + Precision::STANDARD.number(1e-60).unwrap()).to_f64(), 9_007_199_254_740_994.0);
@@ -190,7 +190,7 @@ fn known_doubles_of_known_numbers() {
 proptest! {
     #![proptest_config(ProptestConfig { cases: 256, failure_persistence: None, rng_seed: RngSeed::Fixed(1), ..ProptestConfig::default() })]
 
-    /// Every finite double is held exactly, written and read.
+    /// Every finite double is represented exactly, written and read back.
     #[test]
     fn doubles_pass_unharmed(bits in any::<u64>()) {
         let value = f64::from_bits(bits);
@@ -216,7 +216,7 @@ proptest! {
         }
     }
 
-    /// What is written with n digits and read is off by half a unit of the last of them at most.
+    /// A number that is written with n digits and read back has an error of at most half a unit of the last digit.
     #[test]
     fn texts_keep_their_digits(a in 1_i64..1_000_000_000, b in 1_i64..1_000_000_000, digits in 1_usize..120) {
         let x = Precision::STANDARD.integer(a) / Precision::STANDARD.integer(b);

@@ -1,4 +1,4 @@
-//! Independent routes to the same truth agree to 1e-100; so do identities that mechanics demands.
+//! Independent methods for the same truth agree to 1e-100. So do the two sides of identities of mechanics.
 
 use crate::support;
 
@@ -6,10 +6,10 @@ use featherbench_model::{Description, JointType, Model, StateBatch};
 use featherbench_reference::{Error, Factors, Mp, Precision, Robot, lagrange, maximal};
 use support::{CASES, Case, Draw, close, describe, distance};
 
-/// What routes must agree to; at 448 bits they do to about 1e-130 times the condition of the problem.
+/// How closely the methods must agree. At 448 bits they agree to about 1e-130 times the condition number of the problem.
 const AGREED: f64 = 1e-100;
 
-/// The chains of the table, short enough for every route.
+/// The chains of the accuracy table, short enough for every method.
 const CHAINS: [(&str, Draw); 7] = [
     ("chain:n=10", Draw::Small),
     ("chain:n=10,layout=spatial", Draw::Wide),
@@ -119,7 +119,7 @@ fn identities_of_mechanics_hold() {
         for i in 0..robot.nv() {
             (0..i).for_each(|j| assert_eq!(mass.get(i, j), mass.get(j, i)));
         }
-        // d/dt (T + V) = τ·v by a central difference so fine that its own error is below 1e-55.
+        // d/dt (T + V) = τ·v, by a central difference with an error below 1e-55.
         let q = exact(&robot, batch.q(0));
         let step = Precision::STANDARD.parse("1e-30").unwrap();
         let energy = |h: &Mp| {
@@ -155,7 +155,7 @@ fn advance(description: &Description, q: &[Mp], v: &[Mp], a: &[Mp], h: &Mp) -> V
             let twice = cross(&once);
             end.extend((0..3).map(|i| &q[i] + &local[i] + (&w * &once[i] + &twice[i]).twice() / &square));
         }
-        // q times (half the step, 1): the turn by the step, to third order.
+        // q times (half the step, 1): the rotation by the step, to third order.
         let half: Vec<Mp> = steps[steps.len() - 3..].iter().map(Mp::half).collect();
         end.push(&x + &w * &half[0] + &y * &half[2] - &z * &half[1]);
         end.push(&y + &w * &half[1] + &z * &half[0] - &x * &half[2]);
@@ -165,7 +165,7 @@ fn advance(description: &Description, q: &[Mp], v: &[Mp], a: &[Mp], h: &Mp) -> V
     end
 }
 
-/// More bits change nothing that fewer bits had settled.
+/// More bits do not change the digits that fewer bits gave.
 #[test]
 fn precision_is_what_it_says() {
     let case = &CASES[3];
@@ -199,7 +199,7 @@ fn what_is_no_question_is_refused() {
     assert!(matches!(Robot::new(&massless, Precision::STANDARD), Err(Error::Malformed(_))));
 }
 
-/// Directions and rotations are only approximated by doubles: the nearest exact ones are meant, whatever length they are given with.
+/// Doubles only approximate directions and rotations. The nearest exact ones are meant, whatever the given length is.
 #[test]
 fn what_stands_for_a_rotation_is_made_one() {
     let description = describe("joints:kind=common,base=free,shape=single");

@@ -1,4 +1,4 @@
-//! The Python witness, asked as an oracle: the doubles that it answers with are those of the Rust witness, to the bit.
+//! The Python witness, asked as an oracle: its doubles are those of the Rust witness, to the bit.
 //!
 //! Skipped where there is no Python with mpmath, unless `FEATHERBENCH_REQUIRE_ALL` is set.
 
@@ -10,7 +10,7 @@ use std::io::Write;
 use support::oracle::{Oracle, python};
 use support::{State, describe};
 
-/// Every kind of joint; few degrees of freedom, as Python takes its time.
+/// Every kind of joint, with few degrees of freedom: Python is slow.
 const ROBOTS: [&str; 4] = [
     "chain:n=12,layout=spatial,tip_scale=1e6",
     "joints:kind=common,base=free,shape=single",
@@ -21,7 +21,7 @@ const ROBOTS: [&str; 4] = [
 #[test]
 fn both_witnesses_round_to_the_same_doubles() {
     let Some(python) = python("mpmath, numpy") else {
-        // Not by a print macro, whose output a passing test hides.
+        // Written to standard error directly: a passing test hides the output of print macros.
         let skip = b"skipped: the Python witness: no mpmath below target/oracles; run `featherbench oracles install`\n";
         std::io::stderr().write_all(skip).unwrap();
         assert!(std::env::var_os("FEATHERBENCH_REQUIRE_ALL").is_none(), "the Python witness is missing");

@@ -1,4 +1,4 @@
-//! The golden data: what they consist of, how they are derived, what they depend on.
+//! The golden data: their contents, how they are derived, what they depend on.
 
 use super::{Case, State, project};
 use featherbench_reference::{Error, Motion, Mp, Precision, Robot};
@@ -15,7 +15,7 @@ pub fn folder() -> PathBuf {
     project().join("datasets/truth")
 }
 
-/// What the Rust witness says of one state.
+/// The answers of the Rust witness for one state.
 pub struct Answers {
     pub id: Vec<Mp>,
     pub fd: Vec<Mp>,
@@ -52,7 +52,7 @@ impl Answers {
         }
     }
 
-    /// The golden text of a column: decimal numbers, what is the rounding of a zero being zero.
+    /// The golden text of a column: decimal numbers. A number that is the rounding error of a zero is written as zero.
     pub fn text(&self, name: &str) -> Vec<String> {
         let column = self.column(name);
         let scale = column.iter().fold(Mp::zero(), |scale, x| scale.max(x.abs()));

@@ -1,10 +1,10 @@
-//! What the tests and examples share: the cases of the truth, their states, and programs to ask.
+//! What the tests and examples share: the cases of the truth, their states, and oracles.
 
 #![allow(dead_code, reason = "every test and example compiles this module and uses a part of it")]
 
 pub mod golden;
 pub mod oracle;
-// What reads the factor on tolerances knows nothing of dynamics.
+// The module for the factor on tolerances does not depend on dynamics.
 #[path = "../../../dynamics/tests/common/tolerance.rs"]
 mod tolerance;
 
@@ -20,7 +20,7 @@ pub enum Draw {
     Small,
     /// Angles in (−π, π).
     Wide,
-    /// As the harness draws random states, quaternions included.
+    /// Random states as in the agreement study, quaternions included.
     Random,
 }
 
@@ -32,7 +32,7 @@ pub struct Case {
     pub draw: Draw,
 }
 
-/// The chains of planar and spatial layout, heavy and light tips, a humanoid with light and heavy hands, and every common joint.
+/// Chains of planar and spatial layout, heavy and light tips, a humanoid with light and heavy hands, and every common joint.
 pub const CASES: [Case; 12] = [
     Case { name: "planar_small_10", family: "chain:n=10", draw: Draw::Small },
     Case { name: "planar_small_50", family: "chain:n=50", draw: Draw::Small },
@@ -97,7 +97,7 @@ pub fn distance(x: &[Mp], y: &[Mp]) -> Mp {
     if scale.is_zero() { gap } else { gap / scale }
 }
 
-/// Asserts a distance, as `FEATHERBENCH_TOL_SCALE` multiplies its tolerance.
+/// Asserts that a distance is within its tolerance, times the factor of `FEATHERBENCH_TOL_SCALE`.
 #[track_caller]
 pub fn close(what: &str, distance: &Mp, tolerance: f64) {
     tolerance::assert_within(what, distance.to_f64(), tolerance);

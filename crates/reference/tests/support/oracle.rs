@@ -1,4 +1,4 @@
-//! Asking a program that speaks the oracle protocol, version 1.
+//! Asks a program that follows the oracle protocol, version 1.
 
 use super::{State, project};
 use featherbench_model::Description;
@@ -35,7 +35,7 @@ impl Oracle {
         Self { child, requests, answers }
     }
 
-    /// One request with its blocks; the answer's header and the numbers of its only block.
+    /// Sends one request with its blocks; returns the answer's header and the numbers of its only block.
     pub fn ask(&mut self, mut header: String, blocks: &[(&str, Vec<usize>, Vec<f64>)]) -> (Value, Vec<f64>) {
         let announced: Vec<Value> = blocks.iter().map(|(name, shape, _)| json!({"name": name, "shape": shape})).collect();
         header.truncate(header.trim_end_matches('}').len().max(1));
@@ -67,7 +67,7 @@ impl Oracle {
             .map_or(Vec::new(), |names| names.iter().map(|name| name.as_str().unwrap().to_owned()).collect())
     }
 
-    /// Gives it a robot and states; whether it can build the robot.
+    /// Sends a robot and states; returns whether the oracle can build the robot.
     pub fn prepare(&mut self, description: &Description, states: &[State]) -> bool {
         // Written by hand: the description is text already.
         let request = format!("{{\"model\":{},\"op\":\"prepare\"", featherbench_formats::neutral::to_line(description).unwrap());
