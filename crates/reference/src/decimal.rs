@@ -1,19 +1,19 @@
 //! Decimal texts of multi-precision numbers, and numbers of decimal texts.
 //!
-//! Computes: x·10ᵏ with 64 bits to spare, rounded to a whole number whose digits are written; and back, the digits as a whole number times
-//! a power of ten. `dashu-float` 0.6.2 has conversions of its own that are not used: at low precisions they are wrong (0.65686… becomes 3e2
-//! with one digit and 6.56e-1 with three). Source: Steele & White, PLDI 1990, in its simplest form. Cost: O(digits) products.
+//! Computes: x·10ᵏ with 64 extra bits, rounded to a whole number whose digits are written. And back: the digits as a whole number times a
+//! power of ten. `dashu-float` 0.6.2 has conversions of its own, which are not used. At low precisions they are wrong: 0.65686… becomes 3e2
+//! with one digit and 6.56e-1 with three. Source: Steele & White, PLDI 1990, in its simplest form. Cost: O(digits) products.
 
 use crate::{Error, Mp, Precision};
 
 /// Bits beyond what the digits need.
 const SPARE: usize = 64;
 
-/// Digits that are converted at a time: a power of ten that fits 64 bits.
+/// Digits that are converted together: a power of ten that fits 64 bits.
 const CHUNK: usize = 18;
 
 impl Mp {
-    /// In scientific notation with so many significant digits (at least one), rounded to nearest.
+    /// In scientific notation with this number of significant digits (at least one), rounded to nearest.
     pub fn to_decimal(&self, digits: usize) -> String {
         if self.is_zero() {
             return "0".to_owned();
@@ -21,7 +21,7 @@ impl Mp {
         let digits = digits.max(1);
         let wide = Precision::bits(self.precision().get().max(digits * 10 / 3) + SPARE);
         let size = self.abs().at(wide);
-        // 10^exponent ≤ |x| < 10^(exponent + 1), but for the logarithm's rounding, which the number of digits shows.
+        // 10^exponent ≤ |x| < 10^(exponent + 1), except for the logarithm's rounding. The number of digits shows that.
         let mut exponent = (self.binary_exponent() as f64 * std::f64::consts::LOG10_2).floor() as i64;
         loop {
             let text = (&size * power_of_ten(digits as i64 - 1 - exponent, wide)).whole_digits();
@@ -71,7 +71,7 @@ impl Precision {
             number = number * power_of_ten(chunk.len() as i64, wide) + wide.integer(value);
         }
         let shift = i64::from(exponent) - i64::try_from(fraction.len()).ok()?;
-        // Dividing by a power that is exact, as short ones are, rounds once; multiplying by its reciprocal would round twice.
+        // Dividing by an exact power, as short ones are, rounds once; multiplying by its reciprocal would round twice.
         let number = if shift < 0 { number / power_of_ten(-shift, wide) } else { number * power_of_ten(shift, wide) };
         Some(if negative { -number } else { number }.at(self))
     }

@@ -1,11 +1,11 @@
-//! Why a question about the truth has no answer.
+//! Why the reference gives no answer.
 
 use thiserror::Error;
 
-/// Why a question about the truth has no answer.
+/// Why the reference gives no answer.
 #[derive(Clone, Debug, PartialEq, Error)]
 pub enum Error {
-    /// The description is no robot.
+    /// The description is not a robot.
     #[error(transparent)]
     Malformed(#[from] featherbench_model::Malformed),
     /// A vector has the wrong length.
@@ -15,7 +15,7 @@ pub enum Error {
         array: &'static str,
         /// Numbers found.
         found: usize,
-        /// Numbers due.
+        /// Numbers expected.
         expected: usize,
     },
     /// A number is NaN or infinite.
@@ -26,18 +26,18 @@ pub enum Error {
         /// The index.
         index: usize,
     },
-    /// A text is no decimal number.
+    /// A text is not a decimal number.
     #[error("'{text}' is no decimal number")]
     NotANumber {
         /// The text.
         text: String,
     },
-    /// A quaternion, an axis or a rotation cannot be made one, being zero or singular.
+    /// A quaternion, axis or rotation cannot be normalised: it is zero or singular.
     #[error("body '{body}': {what} has no direction; it is zero or singular")]
     NoDirection {
         /// The body's name.
         body: String,
-        /// What has none.
+        /// What has no direction.
         what: &'static str,
     },
     /// A pivot of the mass matrix is not positive.
@@ -52,7 +52,7 @@ pub enum Error {
         /// The row without a pivot.
         row: usize,
     },
-    /// The route does not know this joint.
+    /// The method does not support this joint.
     #[error("body '{body}': this route has no coordinates for a {kind} joint")]
     Unsupported {
         /// The body's name.
@@ -60,7 +60,7 @@ pub enum Error {
         /// The joint's kind.
         kind: &'static str,
     },
-    /// A closed form was asked outside of its domain.
+    /// A closed form was asked outside its domain.
     #[error("{what}")]
     Domain {
         /// What must hold.

@@ -1,17 +1,17 @@
 //! Lagrange's equations from positions alone, differentiated by nested dual numbers.
 //!
-//! Computes: where the bodies are, as functions of q; the innermost dual number carries q along v and so gives velocities without any
-//! formula for them; with Σ = ½tr(I)·1 − I the second moment of mass about the centre of mass,
+//! Computes the bodies' positions as functions of q. The innermost dual number moves q along v: so it gives velocities without any formula
+//! for them. With Σ = ½tr(I)·1 − I, the second moment of mass about the centre of mass, and A the armature:
 //!
 //! ```text
 //! L(q, v) = Σ_b ½ m |ċ|² + ½ tr(Ṙ Σ Ṙᵀ) + m g·c  + ½ Σ A v²
 //! τ_i = d/dt ∂L/∂v_i − ∂L/∂q_i          M_ij = ∂²L/∂v_i∂v_j
 //! ```
 //!
-//! The two outer levels carry (v along the i-th unit vector) and (q along v, v along a): the coefficient of their product is d/dt ∂L/∂v_i.
-//! Neither angular velocities nor Jacobians nor Coriolis terms occur. For joints whose q is as long as their v (revolute, prismatic,
-//! helical, planar, universal). Source: Lagrange (1788), II.4; dual numbers as in `scalar.rs`. Cost: O(bodies) per τ_i and entry of M,
-//! eight multi-precision numbers per number: for a handful of degrees of freedom.
+//! The two outer levels are (v along the i-th unit vector) and (q along v, v along a). The coefficient of their product is d/dt ∂L/∂v_i.
+//! There are no angular velocities, no Jacobians and no Coriolis terms. It is for joints whose q is as long as their v (revolute,
+//! prismatic, helical, planar, universal, …). Source: Lagrange (1788), II.4; dual numbers as in `scalar.rs`.
+//! Cost: O(bodies) per τ_i and per entry of M, with eight multi-precision numbers per number: usable for few degrees of freedom.
 
 use crate::linear::{Factors, Matrix};
 use crate::robot::{Kind, Robot};
@@ -30,10 +30,10 @@ fn hyper(value: &Mp, first: &Mp, second: &Mp) -> Hyper {
     Dual { value: Dual { value: value.clone(), rate: first.clone() }, rate: Dual { value: second.clone(), rate: Mp::zero() } }
 }
 
-/// τ = ID(q, v, a) for a robot without spherical and free joints.
+/// τ = ID(q, v, a) of a robot without spherical and free joints.
 ///
 /// # Errors
-/// [`Error::Length`], or [`Error::Unsupported`] naming a joint whose coordinates are no vector.
+/// [`Error::Length`], or [`Error::Unsupported`] naming a joint whose coordinates are not a vector.
 pub fn inverse_dynamics(robot: &Robot, q: &[Mp], v: &[Mp], a: &[Mp]) -> Result<Vec<Mp>, Error> {
     Robot::check("a", a.len(), robot.nv())?;
     check(robot, q, v)?;
@@ -52,7 +52,7 @@ pub fn inverse_dynamics(robot: &Robot, q: &[Mp], v: &[Mp], a: &[Mp]) -> Result<V
     Ok((0..robot.nv()).map(torque).collect())
 }
 
-/// M(q) = ∂²L/∂v² for a robot without spherical and free joints.
+/// M(q) = ∂²L/∂v² of a robot without spherical and free joints.
 ///
 /// # Errors
 /// As [`inverse_dynamics`].
@@ -74,7 +74,7 @@ pub fn mass_matrix(robot: &Robot, q: &[Mp]) -> Result<Matrix, Error> {
     Ok(mass)
 }
 
-/// q̈ = FD(q, v, τ) for a robot without spherical and free joints.
+/// q̈ = FD(q, v, τ) of a robot without spherical and free joints.
 ///
 /// # Errors
 /// As [`inverse_dynamics`], or [`Error::NotPositiveDefinite`].
@@ -93,7 +93,7 @@ fn check(robot: &Robot, q: &[Mp], v: &[Mp]) -> Result<(), Error> {
     Robot::check("v", v.len(), robot.nv())
 }
 
-/// L(q, v) over any scalar, by one dual number more.
+/// L(q, v) over any scalar, by one more dual number.
 fn lagrangian<T: Scalar>(robot: &Robot, q: &[T], v: &[T]) -> T {
     let moving: Vec<Dual<T>> = q.iter().zip(v).map(|(q, v)| Dual { value: q.clone(), rate: v.clone() }).collect();
     let mut twice = robot.armature.iter().zip(v).fold(T::zero(), |sum, (armature, v)| sum.plus(&T::constant(armature).times(v).times(v)));
@@ -116,7 +116,7 @@ fn lagrangian<T: Scalar>(robot: &Robot, q: &[T], v: &[T]) -> T {
             let rate = &center.0[i].rate;
             twice = twice.plus(&rate.times(rate).times(&mass));
             work = work.plus(&center.0[i].value.times(&mass).times(&T::constant(&robot.gravity.0[i])));
-            // Row i of Ṙ, squared with Σ.
+            // Row i of Ṙ: its quadratic form with Σ.
             let rates = Vec3::<T>(from_fn(|j| rotation.0[i].0[j].rate.clone()));
             twice = twice.plus(&rates.dot(&Mat3::constant(&second_moment(&body.inertia)).apply(&rates)));
         }
@@ -136,7 +136,7 @@ fn second_moment(inertia: &Mat3<Mp>) -> Mat3<Mp> {
     }))
 }
 
-/// Turn and shift of a joint whose coordinates are a vector.
+/// Rotation and translation across a joint whose coordinates are a vector.
 fn displacement<T: Scalar>(robot: &Robot, kind: &Kind, q: &[T]) -> (Mat3<T>, Vec3<T>) {
     let exact_one = robot.precision().integer(1);
     let one = T::constant(&exact_one);
@@ -157,7 +157,7 @@ fn displacement<T: Scalar>(robot: &Robot, kind: &Kind, q: &[T]) -> (Mat3<T>, Vec
             let [z, y, x] = from_fn(|k| Mat3::turn(&unit(2 - k), &q[k], &one));
             (z.product(&y).product(&x), Vec3::zero())
         }
-        // Refused by `check` before.
+        // `check` has returned an error before.
         Kind::Spherical | Kind::Free => (still(), Vec3::zero()),
     }
 }

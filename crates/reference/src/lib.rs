@@ -1,12 +1,12 @@
 //! Slow, independent truth for the dynamics of trees of rigid bodies.
 //!
-//! Four ways to the same numbers, none of which shares text or formulation with the kernels of `crates/dynamics`:
+//! Four methods for the same numbers. None shares text or formulation with the kernels of `crates/dynamics`:
 //! - [`Robot`] and [`Motion`]: Newton–Euler equations of every body projected by explicit Jacobians, in multi-precision;
 //! - [`maximal`]: bodies and constraints in maximal coordinates, one saddle-point system;
 //! - [`lagrange`]: the Lagrangian of positions alone, differentiated by nested dual numbers;
 //! - [`closed`]: closed forms of pendulums and tops.
 //!
-//! A fifth, in Python and by 4×4 matrices, is `oracles/featherbench_oracles/truth.py`.
+//! A fifth, in Python with 4×4 matrices, is `oracles/featherbench_oracles/truth.py`.
 //!
 //! ```
 //! use featherbench_reference::{Precision, Robot, nearest_doubles};

@@ -1,4 +1,4 @@
-//! Dense linear algebra in multi-precision: L D Lᵀ of positive definite matrices, Gaussian elimination with partial pivoting of others.
+//! Dense linear algebra in multi-precision: L D Lᵀ of positive definite matrices, and Gaussian elimination with partial pivoting of others.
 //!
 //! Source: Golub & Van Loan, *Matrix Computations* (2013), §4.1 and §3.4. Cost: n³/6 and n³/3 multiplications; entries that are exactly
 //! zero cost nothing.
@@ -43,7 +43,7 @@ impl Matrix {
         &self.entries
     }
 
-    /// The matrix times a vector (of its order; what a longer one has more is ignored).
+    /// The matrix times a vector of its order; further numbers of the vector are ignored.
     pub fn apply(&self, x: &[Mp]) -> Vec<Mp> {
         (0..self.n).map(|i| dot(self.row(i), x)).collect()
     }
@@ -98,7 +98,7 @@ pub struct Factors {
 }
 
 impl Factors {
-    /// Factors a symmetric matrix, whose lower triangle is read.
+    /// Factors a symmetric matrix; only its lower triangle is used.
     ///
     /// # Errors
     /// [`Error::NotPositiveDefinite`] at the first pivot that is not positive.

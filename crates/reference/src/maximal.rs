@@ -1,7 +1,12 @@
 //! Forward dynamics in maximal coordinates: every body free, every joint a constraint, all in one saddle-point system.
 //!
-//! Computes: with x the accelerations (c̈, α) of all bodies, B x the relative acceleration across a joint at the child's origin, β what
-//! that is without any q̈ and x, S the joint's columns, C a basis of what is orthogonal to them and D = S (SᵀS)⁻¹,
+//! Computes with these symbols, for each joint between two bodies:
+//!
+//! - x: accelerations (c̈, α) of all bodies;
+//! - B x: relative acceleration across the joint, at the child's origin;
+//! - β: the part of B x that depends neither on q̈ nor on x;
+//! - S: the joint's columns; C: a basis of the space orthogonal to them; D = S (SᵀS)⁻¹;
+//! - A: armature, an inertia on the joint's own rate.
 //!
 //! ```text
 //! B x = S q̈ + β     joint: C (B x − β) = 0     q̈ = Dᵀ (B x − β)
@@ -9,9 +14,8 @@
 //! ⎣ CB                 0     ⎦ ⎣ λ ⎦ = ⎣ Cβ                                ⎦
 //! ```
 //!
-//! (A: armature, an inertia on the joint's own rate.) Source: Newton–Euler with Lagrange multipliers, Featherstone, *Rigid Body Dynamics
-//! Algorithms* (2008), chapter 3; neither Jacobians along paths nor a mass matrix of the tree occur. Frame: world. Cost: O(bodies³) by
-//! dense elimination: 20 bodies take a fifth of a second.
+//! Source: Newton–Euler with Lagrange multipliers, Featherstone, *Rigid Body Dynamics Algorithms* (2008), chapter 3. There are no Jacobians
+//! along paths, and no mass matrix of the tree. Frame: world. Cost: O(bodies³) by dense elimination: 20 bodies take a fifth of a second.
 
 use crate::motion::Motion;
 use crate::robot::Robot;
@@ -34,7 +38,7 @@ pub fn forward_dynamics(motion: &Motion, tau: &[Mp]) -> Result<Vec<Mp>, Error> {
     let order = 6 * count + constrained;
     let (mut matrix, mut right) = (Matrix::zero(order), vec![Mp::zero(); order]);
 
-    // 𝓜 and the forces that need no joint.
+    // 𝓜 and the forces that act without joints.
     for (index, (body, b)) in robot.bodies.iter().zip(&motion.bodies).enumerate() {
         let gyroscopic = b.omega.cross(&b.inertia.apply(&b.omega));
         for i in 0..3 {
@@ -82,7 +86,7 @@ pub fn forward_dynamics(motion: &Motion, tau: &[Mp]) -> Result<Vec<Mp>, Error> {
 struct Joint {
     columns: Vec<Six>,
     drift: Six,
-    /// Body, sign and the joint's place from the body's centre of mass: child, then parent where there is one.
+    /// Body, sign, and the joint's position relative to the body's centre of mass: of the child, then of the parent if there is one.
     sides: Vec<(usize, bool, Vec3<Mp>)>,
 }
 
@@ -90,8 +94,8 @@ impl Joint {
     fn new(motion: &Motion, index: usize) -> Self {
         let (body, child) = (&motion.robot.bodies[index], &motion.bodies[index]);
         let arm = child.origin.minus(&child.com);
-        // β, what the rates alone do: angular Σ ż v; linear Σ l̇ v, the parent's turning under the moving origin, and from there to the
-        // child's centre.
+        // β, the effect of the rates alone. Angular: Σ ż v. Linear: Σ l̇ v, the rotation of the parent below the moving origin, and the way
+        // from there to the child's centre.
         let mut angular = Vec3::zero();
         let mut linear = Vec3::zero().minus(&child.omega.cross(&child.omega.cross(&arm)));
         let mut sides = vec![(index, true, arm)];
@@ -110,7 +114,7 @@ impl Joint {
         Self { columns, drift: joined(&angular, &linear), sides }
     }
 
-    /// Bᵀ f, as the entries that are not zero by construction: with B x = ±(α, c̈ + α × r), force f and moment n + r × f act at the centre.
+    /// Bᵀ f, as the entries that are not zero by construction. With B x = ±(α, c̈ + α × r), force f and moment n + r × f act at the centre.
     fn pull_back(&self, f: &Six) -> Vec<(usize, Mp)> {
         let moment = Vec3(from_fn(|i| f[i].clone()));
         let force = Vec3(from_fn(|i| f[3 + i].clone()));
@@ -133,7 +137,7 @@ fn inner(a: &Six, b: &Six) -> Mp {
     a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
 
-/// What is left of a vector beside some that are orthogonal to each other.
+/// The component of a vector that is orthogonal to some vectors, which are orthogonal to each other.
 fn beside(six: &Six, orthogonal: &[Six]) -> Six {
     orthogonal.iter().fold(six.clone(), |rest, basis| {
         let share = &inner(basis, &rest) / &inner(basis, basis);
@@ -141,7 +145,7 @@ fn beside(six: &Six, orthogonal: &[Six]) -> Six {
     })
 }
 
-/// Gram–Schmidt: an orthogonal basis of what the columns span.
+/// Gram–Schmidt: an orthogonal basis of the span of the columns.
 fn orthogonal<'a>(columns: impl IntoIterator<Item = &'a Six>) -> Vec<Six> {
     let mut basis: Vec<Six> = Vec::new();
     for column in columns {
@@ -150,7 +154,7 @@ fn orthogonal<'a>(columns: impl IntoIterator<Item = &'a Six>) -> Vec<Six> {
     basis
 }
 
-/// D = S (SᵀS)⁻¹ column by column: what is left of a column beside the others, of such a length that its product with the column is one.
+/// D = S (SᵀS)⁻¹ column by column: the component orthogonal to the other columns, scaled so that its product with the column is one.
 fn duals(columns: &[Six]) -> Vec<Six> {
     let dual = |k: usize| {
         let others = columns[..k].iter().chain(&columns[k + 1..]);
@@ -161,7 +165,7 @@ fn duals(columns: &[Six]) -> Vec<Six> {
     (0..columns.len()).map(dual).collect()
 }
 
-/// An orthogonal basis of the space orthogonal to the columns: Gram–Schmidt on the unit vectors, the one that keeps most taken first.
+/// An orthogonal basis of the space orthogonal to the columns: Gram–Schmidt on the unit vectors, the one with the largest rest first.
 fn complement(columns: &[Six], one: &Mp) -> Vec<Six> {
     let mut taken: Vec<Six> = orthogonal(columns);
     while taken.len() < 6 {

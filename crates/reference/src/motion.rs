@@ -1,15 +1,15 @@
-//! Where every body is and how it moves, in world axes, with the columns of all Jacobians and their derivatives in time.
+//! Positions and velocities of all bodies in world axes, with the columns of all Jacobians and their derivatives in time.
 //!
-//! Computes, from the root outwards, R, p, ω and ṗ of each body, and for each degree of freedom k of a joint the axis z_k of the angular
-//! velocity that it adds and the velocity l_k that it adds to the body's origin:
+//! Computes R, p, ω and ṗ of each body, from the root outwards. Each degree of freedom k of a joint has two columns: z_k, the axis of the
+//! angular velocity that it adds, and l_k, the velocity that it adds to the body's origin:
 //!
 //! ```text
 //! ω_b = ω_p + Σ z_k v_k          ṗ_b = ṗ_p + ω_p × (p_b − p_p) + Σ l_k v_k
 //! ```
 //!
 //! A column that is fixed in a frame of angular velocity Ω changes by ż = Ω × z, l̇ = Ω × l. Source: first principles, as in
-//! Kane & Levinson, *Dynamics: Theory and Applications* (1985), chapter 2 (partial velocities). Frame: world. Cost: O(bodies), and what
-//! the lists of degrees of freedom on each body's path take.
+//! Kane & Levinson, *Dynamics: Theory and Applications* (1985), chapter 2 (partial velocities). Frame: world.
+//! Cost: O(bodies), and the lists of degrees of freedom on each body's path.
 
 use crate::robot::{Body, Kind, Robot};
 use crate::space::{Mat3, Vec3};
@@ -32,7 +32,7 @@ pub(crate) struct BodyMotion {
     pub path: Vec<usize>,
 }
 
-/// What one degree of freedom does to the body that its joint carries, in world axes.
+/// The effect of one degree of freedom on the body of its joint, in world axes.
 #[derive(Clone, Debug)]
 pub(crate) struct Column {
     /// The body of the joint.
@@ -46,7 +46,7 @@ pub(crate) struct Column {
     pub l_rate: Vec3<Mp>,
 }
 
-/// A robot in a configuration, moving.
+/// A robot at a configuration and a velocity.
 ///
 /// Made by [`Robot::moving`] or [`Robot::at`]; the dynamics are its methods.
 #[derive(Clone, Debug)]
@@ -66,8 +66,8 @@ enum FixedIn {
     Child,
 }
 
-/// A joint at its configuration: its turn and its shift in the joint frame, and its columns, those fixed in the child in the child's axes
-/// and the others in the joint frame's.
+/// A joint at its configuration: rotation and translation in the joint frame, and the columns. A column that is fixed in the child is in
+/// the child's axes; the others are in the joint frame's.
 struct Across {
     turn: Mat3<Mp>,
     shift: Vec3<Mp>,
@@ -125,7 +125,7 @@ impl Robot {
                     (FixedIn::Parent, z.clone(), zero()),
                 ],
             },
-            // The second axis is the y of the turned frame, which the second turn leaves where it is.
+            // The second axis is y of the rotated frame, which the second rotation does not change.
             Kind::Universal => Across {
                 turn: Mat3::turn(x, &q[0], &one).product(&Mat3::turn(y, &q[1], &one)),
                 shift: zero(),
@@ -141,7 +141,7 @@ impl Robot {
                 shift: along(u, &q[1]),
                 columns: vec![(FixedIn::Parent, u.clone(), zero()), (FixedIn::Parent, zero(), u.clone())],
             },
-            // The first axis is the joint frame's z, the second the y that the first turn moved, the third the body's own x.
+            // The first axis is the joint frame's z, the second the y that the first rotation moved, the third the body's own x.
             Kind::EulerZyx => {
                 let first = Mat3::turn(z, &q[0], &one);
                 let columns = vec![
@@ -190,7 +190,7 @@ fn quaternion_turn(q: &[Mp], one: &Mp) -> Option<Mat3<Mp>> {
 }
 
 impl Motion<'_> {
-    /// Adds the next body, whose parent is there already.
+    /// Adds the next body; its parent has been added before.
     fn add(&mut self, index: usize, body: &Body, across: Across) {
         let (joint_rotation, joint_origin, omega_p, velocity_p, from_parent, mut path) = match body.parent.map(|p| &self.bodies[p]) {
             Some(parent) => {

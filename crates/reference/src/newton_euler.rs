@@ -9,8 +9,8 @@
 //! q̈ = M⁻¹ (τ − h)                                           (by L D Lᵀ)
 //! ```
 //!
-//! The sum over bodies in M is taken once per column, as the momentum P_k = Σ m J_k and the moment of momentum about the world's origin
-//! H_k = Σ c × m J_k + I z_k that all bodies have when only k moves, at unit rate: M_kl = l_l·P_k + z_l·(H_k − p_l × P_k) is Jᵀ of those.
+//! The sum over bodies in M is taken once per column k. For a unit rate of k alone, all bodies together have the momentum P_k = Σ m J_k,
+//! and H_k = Σ c × m J_k + I z_k about the world's origin. Jᵀ of these is M_kl = l_l·P_k + z_l·(H_k − p_l × P_k).
 //!
 //! Source: d'Alembert's principle; Kane & Levinson (1985), chapter 4. Frame: world; no recursion over forces or composite bodies.
 //! Cost: O(n·depth) for τ and M, O(n³) for q̈.
@@ -21,7 +21,7 @@ use crate::robot::Robot;
 use crate::space::Vec3;
 use crate::{Error, Mp};
 
-/// One body's columns: velocity of the centre of mass and angular velocity per unit rate, and both derivatives.
+/// The columns of one body: velocity of the centre of mass and angular velocity per unit rate, and the derivatives of both.
 struct BodyJacobian<'a> {
     linear: Vec<Vec3<Mp>>,
     linear_rate: Vec<Vec3<Mp>>,
@@ -53,7 +53,7 @@ impl Motion<'_> {
         Ok(self.torques(Some(a)))
     }
 
-    /// The bias force h: what holds the robot at zero acceleration.
+    /// The bias force h: the joint forces at zero acceleration.
     pub fn bias(&self) -> Vec<Mp> {
         self.torques(None)
     }
@@ -84,7 +84,7 @@ impl Motion<'_> {
     /// The mass matrix.
     pub fn mass_matrix(&self) -> Matrix {
         let n = self.robot.nv();
-        // (P_k, H_k): what all bodies together have when degree of freedom k alone moves, at unit rate.
+        // (P_k, H_k): momenta of all bodies for a unit rate of degree of freedom k alone.
         let mut momenta = vec![(Vec3::zero(), Vec3::zero()); n];
         for (index, body) in self.robot.bodies.iter().enumerate() {
             let b = &self.bodies[index];
@@ -139,7 +139,7 @@ impl Motion<'_> {
     }
 }
 
-/// Answers for doubles, taken exactly; the solution of a multi-precision computation each.
+/// Answers for doubles, which are taken exactly. Each is a multi-precision computation.
 impl Robot {
     /// τ = M(q) a + h(q, v).
     ///

@@ -1,28 +1,28 @@
 //! Multi-precision numbers: binary floating point of a chosen number of bits, rounded to nearest even.
 //!
-//! Computes: sums, products, quotients, square roots, sine, cosine and arcsine, each correctly rounded by `dashu-float`; what is relied
-//! on (argument reduction for huge arguments above all) is checked in `tests/numbers.rs` against series written there.
-//! Source: the interface only; the arithmetic is the crate's. Cost: at 400 bits about 0.2 µs for a product and 0.1 ms for a sine.
+//! Computes sums, products, quotients, square roots, sine, cosine and arcsine, each correctly rounded by `dashu-float`.
+//! Argument reduction for huge arguments, above all, is checked in `tests/numbers.rs` against series written there.
+//! Source: the arithmetic is that crate's; here is only the interface. Cost: at 400 bits about 0.2 µs for a product and 0.1 ms for a sine.
 
 use dashu_float::{FBig, round::mode::HalfEven};
 use std::fmt;
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
-/// How many bits the numbers of a computation carry.
+/// The number of bits that the numbers of a computation have.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Precision(usize);
 
 impl Precision {
-    /// The precision at which routes are compared: results agree to 1e-100 and better.
+    /// The precision at which methods are compared: results agree to 1e-100 and better.
     pub const STANDARD: Self = Self(448);
 
-    /// So many bits, at least 64.
+    /// This number of bits, or 64 if it is less.
     pub const fn bits(bits: usize) -> Self {
         Self(if bits < 64 { 64 } else { bits })
     }
 
-    /// Enough to round the dynamics of so many degrees of freedom correctly to double precision, and never less than
-    /// [`Precision::STANDARD`]: 106 + 7n bits.
+    /// 106 + 7n bits, and never less than [`Precision::STANDARD`]. This suffices to round the dynamics of n degrees of freedom correctly to
+    /// double precision.
     pub const fn for_dofs(nv: usize) -> Self {
         let bits = 106 + 7 * nv;
         Self(if bits < Self::STANDARD.0 { Self::STANDARD.0 } else { bits })
@@ -39,7 +39,7 @@ impl Precision {
         Some(Mp(exact.with_precision(self.0).value()))
     }
 
-    /// A whole number, exactly as long as it has fewer bits than the precision.
+    /// A whole number; exact if it has no more bits than the precision.
     pub fn integer(self, value: i64) -> Mp {
         Mp(FBig::from(value).with_precision(self.0).value())
     }
@@ -50,14 +50,14 @@ impl Precision {
     }
 }
 
-/// A binary floating-point number that knows its precision; the result of an operation has the larger precision of its operands.
+/// A binary floating-point number with its precision. The result of an operation has the larger precision of its operands.
 ///
-/// There is neither NaN nor infinity: division by zero panics, so whoever divides looks at the divisor first.
+/// There is no NaN and no infinity. Division by zero panics: a caller must test the divisor first.
 #[derive(Clone, PartialEq, PartialOrd)]
 pub struct Mp(FBig<HalfEven, 2>);
 
 impl Mp {
-    /// Zero, of no precision of its own.
+    /// Zero, without a precision.
     pub fn zero() -> Self {
         Self(FBig::ZERO)
     }
@@ -82,7 +82,7 @@ impl Mp {
         self.0.to_f64().value()
     }
 
-    /// The nearest double and the nearest double to what is left: about 32 digits.
+    /// The nearest double, and the double nearest to the rest: about 32 digits.
     pub fn to_pair(&self) -> (f64, f64) {
         let high = self.to_f64();
         let rest = self.precision().number(high).map_or(0.0, |exact| (self - &exact).to_f64());
@@ -150,8 +150,8 @@ impl Mp {
 
 /// The doubles nearest to a vector or matrix that was computed.
 ///
-/// A computation leaves noise in its last bits. Half of the bits are taken off first, so that a number that is half-way between two doubles
-/// is a tie and goes to the even one; and what is smaller than the largest number by more than those bits is the noise of a zero.
+/// The last bits of a computed number are noise. So half of the bits are removed first: a number half-way between two doubles is then a
+/// tie, and rounds to even. A number that is smaller than the largest by more than those bits is the noise of a zero.
 pub fn nearest_doubles(numbers: &[Mp]) -> Vec<f64> {
     let largest = numbers.iter().filter(|x| !x.is_zero()).max_by_key(|x| x.binary_exponent());
     let Some(largest) = largest else { return vec![0.0; numbers.len()] };

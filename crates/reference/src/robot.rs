@@ -1,9 +1,9 @@
-//! A robot in multi-precision: the numbers of a description, made exact where doubles cannot be.
+//! A robot in multi-precision: the numbers of a description, with exact directions and rotations.
 //!
-//! Computes: masses, centres, inertias, translations, pitches, armature and gravity are the doubles of the *canonical* description,
-//! exactly. What only approximates a rotation or a direction is replaced by the nearest one that is: an axis u by u/|u|, a quaternion p by
-//! p/|p|, and a rotation R by its orthogonal polar factor, the limit of R ← ½(R + R⁻ᵀ). Otherwise the question would have no answer beyond
-//! 1e-16: formulations that are equal for rigid bodies differ for sheared ones.
+//! Computes: masses, centres, inertias, translations, pitches, armature and gravity are exactly the doubles of the *canonical* description.
+//! Doubles only approximate a direction or a rotation. So an axis u is replaced by u/|u|, a quaternion p by p/|p|, and a rotation R by its
+//! orthogonal polar factor, the limit of R ← ½(R + R⁻ᵀ).
+//! Without that the question would have no answer beyond 1e-16: formulations that are equal for rigid bodies differ for sheared ones.
 //! Source: Higham, *Functions of Matrices* (2008), §8.3. Cost: O(bodies), a few dozen vector products each.
 
 use crate::space::{Mat3, Vec3};
@@ -40,7 +40,7 @@ pub(crate) struct Body {
     pub rotation: Mat3<Mp>,
     pub translation: Vec3<Mp>,
     pub kind: Kind,
-    /// Word for the kind.
+    /// The name of the kind.
     pub word: &'static str,
     /// Where the joint's numbers begin in q and v, and how many it has of v.
     pub q: usize,
@@ -62,10 +62,10 @@ pub struct Robot {
 }
 
 impl Robot {
-    /// The robot that a description means.
+    /// The robot of a description.
     ///
     /// # Errors
-    /// [`Error::Malformed`] when the description is no robot, [`Error::NoDirection`] when an axis or rotation is singular.
+    /// [`Error::Malformed`] when the description is not a robot, [`Error::NoDirection`] when an axis or rotation is singular.
     pub fn new(description: &Description, precision: Precision) -> Result<Self, Error> {
         let canonical = description.canonical()?;
         let vector = |v: [f64; 3]| exact_vector(precision, "description", v);
@@ -100,7 +100,7 @@ impl Robot {
         self.bodies.len()
     }
 
-    /// The precision it is evaluated at.
+    /// The precision of its computations.
     pub fn precision(&self) -> Precision {
         self.precision
     }
@@ -173,7 +173,7 @@ fn exact_body(precision: Precision, body: &BodyDescription, q: usize, v: usize) 
 
 /// The orthogonal polar factor, by Newton's iteration R ← ½(R + R⁻ᵀ): the error is squared in each step.
 fn nearest_rotation(precision: Precision, mut r: Mat3<Mp>) -> Option<Mat3<Mp>> {
-    // From 1e-6, what a description may miss, to 2^-bits: log2(bits/20) steps, and two more.
+    // From 1e-6, which a description may deviate, to 2^-bits: log2(bits/20) steps, and two more.
     let steps = 3 + usize::BITS - (precision.get() / 20).leading_zeros();
     for _ in 0..steps {
         let [a, b, c] = &r.0;

@@ -1,8 +1,8 @@
-//! What a number must be able to do, and dual numbers over any such number.
+//! The operations of a scalar, and dual numbers over any scalar.
 //!
-//! Computes: with x + ẋε and ε² = 0, a function's value and its derivative along ẋ; nested, mixed second and third derivatives without
-//! any differencing. Source: Griewank & Walther, *Evaluating Derivatives* (2008), chapter 3 (forward mode). Cost: each level doubles a sum
-//! and triples a product.
+//! Computes: with x + ẋε and ε² = 0, a function's value and its derivative along ẋ. Nested duals give mixed second and third derivatives,
+//! without any differences. Source: Griewank & Walther, *Evaluating Derivatives* (2008), chapter 3 (forward mode).
+//! Cost: each level doubles the cost of a sum and triples that of a product.
 
 use crate::Mp;
 
@@ -39,7 +39,7 @@ impl Scalar for Mp {
         self - other
     }
     fn times(&self, other: &Self) -> Self {
-        // Half of the entries of Jacobians are exactly zero.
+        // This saves time: half of the entries of Jacobians are exactly zero.
         if self.is_zero() || other.is_zero() { Self::zero() } else { self * other }
     }
     fn negated(&self) -> Self {

@@ -1,4 +1,4 @@
-//! Vectors and matrices of ordinary space, over any [`Scalar`]. Cost: nine products or fewer per vector operation, 27 per matrix product.
+//! Vectors and matrices of 3-D space, over any [`Scalar`]. Cost: at most nine products per vector operation, 27 per matrix product.
 
 use crate::Mp;
 use crate::scalar::Scalar;

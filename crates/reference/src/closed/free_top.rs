@@ -7,13 +7,13 @@
 //! ω₁ = ω₁(0) cn u   ω₂ = ±√(I₁(I₃ − I₁)/(I₂(I₃ − I₂))) |ω₁(0)| sn u   ω₃ = ω₃(0) dn u   u = |ω₃(0)| √((I₃ − I₂)(I₃ − I₁)/(I₁I₂)) t
 //! ```
 //!
-//! the sign being that of ω₁(0)ω₃(0); otherwise around the first axis, with 1 and 3 exchanged. Source: Landau & Lifshitz, *Mechanics*
+//! The sign is that of ω₁(0)ω₃(0). Otherwise it is around the first axis, with 1 and 3 exchanged. Source: Landau & Lifshitz, *Mechanics*
 //! (1976), §37. The attitude (a third kind of elliptic integral) is not given. Cost: one evaluation of elliptic functions.
 
 use super::Elliptic;
 use crate::{Error, Mp};
 
-/// A free body that turns, with no rotation about its middle axis at time zero.
+/// A free rotating body, without rotation about its middle axis at time zero.
 #[derive(Clone, Debug)]
 pub struct FreeTop {
     moments: [Mp; 3],

@@ -22,7 +22,7 @@ pub struct HeavyTop {
     pub weight: Mp,
 }
 
-/// What a top keeps while it moves.
+/// The conserved quantities of a top.
 #[derive(Clone, Debug)]
 pub struct TopMomenta {
     /// Angular momentum about the symmetry axis.
@@ -48,7 +48,7 @@ impl HeavyTop {
     /// The two steady precessions at tilt θ with the component ω₃ of the angular velocity along the symmetry axis: slow, then fast.
     ///
     /// # Errors
-    /// [`Error::Domain`] when the top is too slow to stand at that tilt, or horizontal (where one rate is infinite).
+    /// [`Error::Domain`] when the spin is too slow for that tilt, or the top horizontal (where one rate is infinite).
     pub fn steady(&self, tilt: &Mp, along_axis: &Mp) -> Result<[SteadyPrecession; 2], Error> {
         let cos = tilt.sin_cos().1;
         let momentum = &self.axial * along_axis;
@@ -57,7 +57,7 @@ impl HeavyTop {
         if discriminant.is_negative() || lever.is_zero() {
             return Err(Error::Domain { what: "a steadily precessing top has (Cω₃)² ≥ 4 A mgl cos θ and is not horizontal" });
         }
-        // The root that adds, and the other by their product mgl/(A cos θ): no cancellation.
+        // One root is a sum. The other follows from their product mgl/(A cos θ): no cancellation.
         let root = discriminant.sqrt();
         let larger = if momentum.is_negative() { &momentum - root } else { &momentum + root };
         let at = |precession: Mp| SteadyPrecession { tilt: tilt.clone(), spin: along_axis - &precession * &cos, precession };
@@ -77,7 +77,7 @@ impl HeavyTop {
 }
 
 impl SteadyPrecession {
-    /// Angular velocity and its derivative in body axes when the body has spun by ψ.
+    /// Angular velocity and its derivative in body axes, at the spin angle ψ.
     pub fn body_rates(&self, spin_angle: &Mp) -> ([Mp; 3], [Mp; 3]) {
         let across = &self.precession * self.tilt.sin_cos().0;
         let (sin, cos) = spin_angle.sin_cos();

@@ -1,7 +1,7 @@
-//! Closed forms: problems whose motion is known as a formula, at any precision.
+//! Closed forms: problems with a formula for the motion, at any precision.
 //!
 //! - [`Elliptic`]: the complete integral K and the functions sn, cn, dn of one modulus, by the arithmetic-geometric mean;
-//! - [`Pendulum`]: swinging and turning over;
+//! - [`Pendulum`]: swinging and full turns;
 //! - [`DoublePendulum`]: its accelerations;
 //! - [`FreeTop`]: a free rigid body with three different moments of inertia;
 //! - [`HeavyTop`]: steady precession and conserved quantities of a symmetric top.

@@ -22,7 +22,7 @@ impl Pendulum {
     /// The pendulum with small-swing angular frequency `natural` = √(mgl/J) that passes the bottom with the positive rate `rate`.
     ///
     /// # Errors
-    /// [`Error::Domain`] unless both are positive, and for the motion that comes to rest upright.
+    /// [`Error::Domain`] unless both are positive; also for the motion that ends at rest, upright.
     pub fn passing(natural: &Mp, rate: &Mp) -> Result<Self, Error> {
         if natural.is_negative() || natural.is_zero() || rate.is_negative() || rate.is_zero() {
             return Err(Error::Domain { what: "a pendulum's frequency and its rate at the bottom are positive" });
