@@ -1,4 +1,4 @@
-//! Converts a URDF file into a neutral description file with its provenance: how `datasets/models` was made (see its README).
+//! Converts a URDF file into a neutral description file with its provenance: the files of `datasets/models` were made so (see its README).
 //!
 //! ```text
 //! cargo run -p featherbench-formats --example import_robot -- robot.urdf out.json --name NAME --base fixed|floating

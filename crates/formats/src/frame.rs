@@ -1,6 +1,6 @@
-//! Frames: a line of JSON and the blocks of doubles that it announces.
+//! Frames: a line of JSON, followed by the blocks of doubles that it announces.
 //!
-//! Oracles speak in frames, recorded answers and the outcomes of a run are files of frames; `oracles/PROTOCOL.md` defines them.
+//! Messages to oracles are frames. Recorded answers and the outcomes of a run are files of frames. `oracles/PROTOCOL.md` defines them.
 
 use serde_json::{Map, Value, json};
 use std::io::{self, BufRead, Read, Write};
@@ -9,7 +9,7 @@ use thiserror::Error;
 /// A named array of doubles.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Block {
-    /// What it holds.
+    /// What it contains.
     pub name: String,
     /// Its extents; the numbers are in row-major order.
     pub shape: Vec<usize>,
@@ -17,7 +17,7 @@ pub struct Block {
     pub data: Vec<f64>,
 }
 
-/// A JSON object with blocks behind it.
+/// A JSON object with blocks after it.
 #[derive(Clone, Debug, PartialEq, Default)]
 pub struct Frame {
     /// The object, without its `blocks`.
@@ -40,7 +40,7 @@ pub enum FrameError {
     Header(String),
 }
 
-/// The longest header line, and the largest sum of block lengths in numbers: far above any robot, far below the memory.
+/// The longest header line, and the largest sum of block lengths in numbers: far more than any robot needs, far less than the memory.
 const HEADER_LIMIT: u64 = 256 << 20;
 const BLOCK_LIMIT: usize = 1 << 28;
 
@@ -94,8 +94,7 @@ impl Frame {
 
     /// Reads one frame; `None` at the end of the stream.
     ///
-    /// # Errors
-    /// [`FrameError`]; what a lying header announces is never allocated before it arrives.
+    /// [`FrameError`]. Memory is allocated only for data that arrives, whatever a wrong header announces.
     pub fn read(stream: &mut impl BufRead) -> Result<Option<Self>, FrameError> {
         let mut line = Vec::new();
         stream.by_ref().take(HEADER_LIMIT).read_until(b'\n', &mut line)?;

@@ -1,7 +1,8 @@
-//! How a robot is written: the neutral description file ([`neutral`]), URDF ([`urdf`]) and, to write only, MJCF ([`mjcf`]);
-//! and how numbers about it are sent and kept ([`frame`]).
+//! File formats of robots: the neutral description file ([`neutral`]), URDF ([`urdf`]) and, to write only, MJCF ([`mjcf`]);
+//! and of numbers about them ([`frame`]).
 //!
-//! Reading never panics and never repairs silently: what is wrong is a typed error that names file, line and field, what was left out is a
+//! Reading never panics, and repairs nothing without a note. An error is typed and names file, line and field. What was left out is a note.
+//! Sizes are limited; nothing recurses on the input.
 //! note. Sizes are limited, nothing recurses on the input.
 
 mod export;

@@ -1,4 +1,4 @@
-//! Text files: reading within limits, places in them, writing whole or not at all.
+//! Text files: reading within limits, places in them, writing completely or not at all.
 
 use std::fmt;
 use std::fs::File;
@@ -6,7 +6,7 @@ use std::io::{self, Read, Write};
 use std::path::Path;
 use thiserror::Error;
 
-/// Where in a file something is: the file's name, and line and column counted from 1 where they are known.
+/// A place in a file: the file's name, and line and column counted from 1 if they are known.
 #[derive(Clone, Debug, PartialEq, Eq, Default)]
 pub struct Place {
     /// The file as the caller named it.
@@ -24,7 +24,7 @@ impl fmt::Display for Place {
     }
 }
 
-/// Why a file is no text to read.
+/// Why a file is not text that can be read.
 #[derive(Debug, Error)]
 pub enum TextError {
     /// The file cannot be opened or read.
@@ -42,7 +42,7 @@ pub enum TextError {
         /// The first bad byte, counted from 0.
         byte: usize,
     },
-    /// There is nothing in it.
+    /// The file is empty.
     #[error("is empty")]
     Empty,
 }
@@ -50,7 +50,7 @@ pub enum TextError {
 /// The text of a file of at most `limit` bytes.
 pub(crate) fn read(path: &Path, limit: usize) -> Result<String, TextError> {
     let mut bytes = Vec::new();
-    // One byte more than allowed is enough to know; devices and pipes end there too.
+    // One byte more than allowed shows that the file is too long; reading devices and pipes ends there too.
     File::open(path)?.take(limit as u64 + 1).read_to_end(&mut bytes)?;
     if bytes.len() > limit {
         return Err(TextError::TooBig { limit });
@@ -69,7 +69,7 @@ pub(crate) fn check(text: &str, limit: usize) -> Result<&str, TextError> {
     Ok(text.strip_prefix('\u{feff}').unwrap_or(text))
 }
 
-/// Writes the file whole or not at all: into a neighbour first, which then takes its name.
+/// Writes the file completely or not at all: into a temporary file beside it, which is then renamed.
 pub(crate) fn write(path: &Path, text: &str) -> io::Result<()> {
     let name = path.file_name().ok_or_else(|| io::Error::new(io::ErrorKind::InvalidInput, "this is no file name"))?;
     let neighbour = path.with_file_name(format!(".{}.{}.part", name.to_string_lossy(), std::process::id()));
@@ -77,7 +77,7 @@ pub(crate) fn write(path: &Path, text: &str) -> io::Result<()> {
         .and_then(|mut file| file.write_all(text.as_bytes()).and_then(|()| file.sync_all()))
         .and_then(|()| std::fs::rename(&neighbour, path));
     if written.is_err() {
-        // The first error is the one worth reporting.
+        // Only the first error is reported.
         let _ = std::fs::remove_file(&neighbour);
     }
     written
@@ -90,7 +90,7 @@ pub(crate) fn position(text: &str, offset: usize) -> (usize, usize) {
     (before.bytes().filter(|&byte| byte == b'\n').count() + 1, before[line_start..].chars().count() + 1)
 }
 
-/// Where the lines of a text begin: many offsets to line numbers.
+/// The byte offsets of the lines of a text: they turn many offsets into line numbers.
 pub(crate) struct Lines(Vec<usize>);
 
 impl Lines {

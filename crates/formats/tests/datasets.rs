@@ -1,4 +1,4 @@
-//! The committed robots: readable, canonical, written by this version, with the words that allow their use.
+//! The committed robots: they can be read, are canonical, were written by this version, and quote the licence that allows their use.
 
 use featherbench_formats::neutral;
 use featherbench_model::Model;

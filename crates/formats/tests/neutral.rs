@@ -10,7 +10,7 @@ fn generate(spec: &str) -> Description {
     Family::parse(spec).and_then(|family| family.generate()).unwrap_or_else(|error| panic!("{spec}: {error}"))
 }
 
-/// All numbers of a description, so that −0 and 0 are told apart.
+/// All numbers of a description as bits, so that −0 and 0 differ.
 fn bits(robot: &Description) -> Vec<u64> {
     let placement = |p: &Placement| p.rotation.into_iter().chain(p.translation).collect::<Vec<f64>>();
     let mut numbers = robot.gravity.to_vec();
@@ -50,7 +50,7 @@ fn generated_robots_round_trip() {
     }
 }
 
-/// A robot with everything in it: fixed bodies, frames, provenance, quotes and line breaks in names, extreme numbers.
+/// A robot with every feature: fixed bodies, frames, provenance, quotes and line breaks in names, extreme numbers.
 fn everything() -> Description {
     let mut robot = generate("tree:n=6,joints=all,armature=true");
     robot.name = "quotes \" and \\ and\nlines, ünïcode \u{1F916}".to_owned();
@@ -221,7 +221,7 @@ proptest! {
         assert_round_trip(&robot);
     }
 
-    /// Any finite bits in the numbers that may be anything.
+    /// Any finite bits, in the fields where every number is allowed.
     #[test]
     fn any_number_round_trips(numbers in proptest::collection::vec(any::<u64>().prop_map(f64::from_bits).prop_filter("finite", |x| x.is_finite()), 12)) {
         let mut robot = generate("chain:n=1");
@@ -237,7 +237,7 @@ proptest! {
 proptest! {
     #![proptest_config(ProptestConfig { cases: 4096, failure_persistence: None, rng_seed: RngSeed::Fixed(1), ..ProptestConfig::default() })]
 
-    /// A file with bytes changed, cut or doubled is read or refused, never a panic.
+    /// A file with bytes changed, removed or doubled is read or gives an error, never a panic.
     #[test]
     fn mutated_files_never_panic(edits in proptest::collection::vec((any::<proptest::sample::Index>(), any::<proptest::sample::Index>(), 0..4, any::<char>()), 1..6)) {
         let mut text: Vec<char> = GOOD.chars().collect();

@@ -1,4 +1,4 @@
-//! URDF: every bad file gets an error that names the place and the thing.
+//! URDF: every bad file gives an error that names the position and the element.
 
 use featherbench_formats::urdf::{self, Base, Options, UrdfProblem};
 use proptest::prelude::*;
@@ -153,11 +153,11 @@ fn moving_links_need_mass() {
     );
     let zero = GOOD.replace("mass value=\"1\"", "mass value=\"0\"").replace("mass value=\"0.5\"", "mass value=\"0\"");
     assert!(refused(&zero, &Options::default()).contains("link 'arm' moves (joint 'shoulder') but has no mass"));
-    // What is fixed to it counts.
+    // The mass of a link that is fixed to it counts.
     let hand_only = GOOD.replacen("<inertial>", "<visual>", 1).replacen("</inertial>", "</visual>", 1);
     let (robot, _) = urdf::import(&hand_only, "f.urdf", &Options::default()).expect("the hand has mass");
     assert_eq!(robot.bodies[0].mass, 0.5);
-    // Only when asked for.
+    // Only on request.
     let (robot, notes) = urdf::import(&bare, "f.urdf", &Options { allow_massless: true, ..Options::default() }).expect("allowed");
     assert_eq!(robot.warnings().len(), 1);
     assert!(notes.iter().any(|note| note.to_string() == "line 4: link 'arm' moves and has no mass"), "{notes:?}");
@@ -187,7 +187,7 @@ fn size_depth_and_entities_are_bounded() {
     let error = refused(&format!("<!DOCTYPE r [{laughs}]><robot name=\"&l9;\"/>"), &Options::default());
     assert!(error.contains("document type"), "{error}");
 
-    // Ten thousand links in a row: nothing recurses.
+    // Ten thousand links in a chain: nothing recurses.
     let chain: String = (1..10_000)
         .map(|k| {
             format!("<link name='l{k}'/><joint name='j{k}' type='continuous'><parent link='l{}'/><child link='l{k}'/></joint>\n", k - 1)
@@ -220,7 +220,7 @@ fn files_that_are_no_text_are_refused() {
 proptest! {
     #![proptest_config(ProptestConfig { cases: 4096, failure_persistence: None, rng_seed: RngSeed::Fixed(1), ..ProptestConfig::default() })]
 
-    /// A file with characters changed, cut or doubled is read or refused, never a panic; what is read is canonical.
+    /// A file with characters changed, removed or doubled is imported or gives an error, never a panic. The result is canonical.
     #[test]
     fn mutated_files_never_panic(
         edits in proptest::collection::vec((any::<proptest::sample::Index>(), any::<proptest::sample::Index>(), 0..5, any::<char>()), 1..6),

@@ -1,4 +1,4 @@
-//! URDF out: what is written is read back, to the bit where URDF can say it, and a second trip changes nothing.
+//! URDF out: what is written is imported again, to the bit where URDF can express it, and a second round trip changes nothing.
 
 use crate::robots;
 
@@ -16,7 +16,7 @@ fn read(text: &str) -> Description {
     urdf::import(text, "written.urdf", &OPTIONS).unwrap_or_else(|error| panic!("{error}\n{text}")).0
 }
 
-/// Writes and reads twice. Everything but rotations must come back to the bit, rotations within 8ε, and the second trip must change nothing.
+/// Two round trips. Everything but rotations must be equal to the bit, rotations within 8ε, and the second trip must change nothing.
 fn round_trip(robot: &Description, on_loss: OnLoss) -> (Description, Vec<Loss>) {
     let (text, losses) = urdf::to_string(robot, on_loss).unwrap_or_else(|error| panic!("{}: {error}", robot.name));
     let once = read(&text);
@@ -45,7 +45,7 @@ fn expected(robot: &Description) -> Description {
     robot
 }
 
-/// Asserts equality but for rotations within 8ε; returns how many rotations were met to the bit, and how many there are.
+/// Asserts equality, of rotations within 8ε. Returns how many rotations are equal to the bit, and how many there are.
 fn assert_same(read: &Description, expected: &Description) -> (usize, usize) {
     let mut exact = (0, 0);
     let mut level = read.clone();
@@ -94,18 +94,18 @@ fn every_committed_robot_goes_round() {
         }
     }
     assert!(whole >= 15 && in_part >= 15, "{whole} written whole, {in_part} in part");
-    // Products of a merged link's rotations are no angles' rotation; all others are.
+    // Angles cannot express the products of a merged link's rotations to the bit; they can express all others.
     assert!(met * 10 > rotations * 9, "{met} of {rotations} rotations to the bit");
 }
 
-/// What URDF cannot hold is listed by name, all of it, with advice.
+/// Everything that URDF cannot hold is listed by name, with advice.
 #[test]
 fn what_urdf_lacks_is_refused_by_name() {
     let body = |name: &str, parent, kind: JointType| {
         let joint = JointDescription { name: format!("{name}_joint"), kind, ..JointDescription::default() };
         BodyDescription { name: name.to_owned(), parent, mass: 1.0, com: [0.0; 3], inertia: [1.0, 0.0, 0.0, 1.0, 0.0, 1.0], joint }
     };
-    // Rotations and axes that are not quite unit are normalised, not refused.
+    // Rotations and axes that deviate slightly are normalised; they are not errors.
     let (x, turned) = ([1.0, 0.0, 0.0], [1.0, 1e-9, 0.0, -1e-8, 1.0, 0.0, 0.0, 0.0, 1.0]);
     let mut bodies = vec![
         body("screw", None, JointType::Helical { axis: x, pitch: 0.1 }),
@@ -179,11 +179,11 @@ proptest! {
         let robot = Description { gravity: [0.0, 0.0, -9.81], ..robot };
         let (mut once, _) = round_trip(&robot, OnLoss::LeaveOut);
         let mut wanted = expected(&robot);
-        // Frames come back in depth-first order; here they were in any.
+        // The import has frames in depth-first order; here they had any order.
         for frames in [&mut once.frames, &mut wanted.frames] {
             frames.sort_by(|a, b| a.name.cmp(&b.name));
         }
-        // Limits in part are the one thing left out.
+        // Only incomplete limits are left out.
         for joint in wanted.bodies.iter_mut().map(|body| &mut body.joint) {
             let turns = matches!(joint.kind, JointType::Revolute { .. });
             let given = [&joint.lower, &joint.upper, &joint.velocity, &joint.effort].map(|list| !list.is_empty());

@@ -76,7 +76,7 @@ fn rotations_turn_about_z_then_y_then_x() {
         (&[-1.0][..], &[1.0][..], &[5.0][..], &[6.0][..])
     );
 
-    // The inertial frame turns the tensor into link axes, and keeps the centre.
+    // The inertial frame rotates the tensor into link axes, and keeps the centre.
     let inertial = turned.replace(r#"<origin xyz="0.1 0.2 0.3"/>"#, r#"<origin xyz="0.1 0.2 0.3" rpy="0.4 -0.7 1.9"/>"#);
     let body = &import(&inertial, Options::default()).0.bodies[0];
     let tensor = Sym3::from_array([0.3, 0.0, 0.0, 0.2, 0.0, 0.1]).rotate(expected);
@@ -115,7 +115,7 @@ fn joint_types_are_mapped() {
     assert_eq!([&joint.lower, &joint.upper, &joint.damping, &joint.friction], [&[0.0], &[2.0], &[0.5], &[0.25]]);
 }
 
-/// A planar joint moves in the plane normal to its axis: the origin stays in that plane, and at rest the link stands where it should.
+/// A planar joint moves in the plane normal to its axis: the origin stays in that plane, and at q = 0 the link is at its origin.
 #[test]
 fn planar_joints_move_normal_to_their_axis() {
     let axis = Vec3::from_array([0.6, 0.0, 0.8]);
@@ -155,7 +155,7 @@ fn the_root_stands_or_floats() {
     assert_eq!(floating.bodies[1].name, "leg");
 }
 
-/// A file whose robot floats on a link without inertia floats once, whichever base is asked for.
+/// A file whose robot floats on a link without inertia gets one floating base, with either option.
 #[test]
 fn a_base_that_floats_already_floats_once() {
     let text = one_joint("floating", r#"<origin xyz="0 0 1"/>"#);
@@ -164,7 +164,7 @@ fn a_base_that_floats_already_floats_once() {
     assert_eq!(robot, fixed);
     assert_eq!((robot.nv(), robot.bodies[0].joint.name.as_str()), (6, "j"));
     assert_eq!(notes, ["line 2: link 'base' has no inertia and carries the robot on the floating joint 'j': that joint is the base's"]);
-    // A base of its own floats, and what floats on it as well.
+    // A root with inertia gets its own floating base; the `floating` joint on it stays.
     let own = text.replace(r#"<link name="base"/>"#, &format!(r#"<link name="base">{INERTIAL}</link>"#));
     assert_eq!(import(&own, floating()).0.nv(), 12);
 }
@@ -222,7 +222,7 @@ fn what_is_left_out_is_noted() {
     assert_eq!(notes, expected);
 }
 
-/// Another reader (urdf-rs) finds the same numbers.
+/// Another parser (urdf-rs) gets the same numbers.
 #[test]
 fn a_second_reader_agrees() {
     let text = format!(
@@ -247,7 +247,7 @@ fn a_second_reader_agrees() {
     }
 }
 
-/// Joints that mimic nothing, or each other, are told: engines leave them out without a word.
+/// Joints that mimic a missing joint, or each other, are noted: engines leave them out without a message.
 #[test]
 fn mimics_that_nothing_drives_are_noted() {
     let joint = |name: &str, parent: &str, child: &str, of: &str| {

@@ -7,14 +7,14 @@ use std::fmt;
 pub struct Loss {
     /// What it is about: `joint 'elbow'`, `body 'arm'`, `frame 'tool'`, `the robot`.
     pub about: String,
-    /// What is in the way.
+    /// What the format cannot hold.
     pub reason: Reason,
 }
 
 /// Why a format cannot hold something.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Reason {
-    /// URDF has no gravity, and is read with (0, 0, −9.81).
+    /// URDF has no gravity, and is imported with (0, 0, −9.81).
     Gravity,
     /// The format has no such joint.
     JointType {
@@ -28,7 +28,7 @@ pub enum Reason {
         /// The field: `armature`, `velocity`, …
         field: &'static str,
     },
-    /// The format has this number for joints with one degree of freedom only.
+    /// The format has this number only for joints with one degree of freedom.
     SeveralDofs {
         /// The field.
         field: &'static str,
@@ -42,29 +42,29 @@ pub enum Reason {
     OneSided,
     /// URDF asks for all four limits of a joint, or on a revolute joint for speed and effort, or for none.
     IncompleteLimits,
-    /// An interval of limits that is a point, where the format asks for more.
+    /// An interval of limits of length zero, where the format needs a longer one.
     EmptyRange {
         /// The field.
         field: &'static str,
     },
-    /// A free joint whose coordinates do not begin at the world's origin, as MuJoCo's do.
+    /// A free joint whose coordinates do not begin at the world's origin, as those of MuJoCo do.
     FreePlacement,
     /// MuJoCo moves no body without mass.
     Massless,
-    /// MuJoCo compiles no inertia that no mass distribution has.
+    /// MuJoCo refuses an inertia that no mass distribution has.
     Unphysical,
     /// A free joint below another body.
     FreeBelow,
-    /// The name is empty, holds a control character, or reads as a macro of xacro.
+    /// The name is empty, contains a control character, or looks like a macro of xacro.
     BadName,
-    /// The name stands twice where the format asks for one.
+    /// The name occurs twice where the format needs it to be unique.
     RepeatedName,
-    /// The name is the format's own.
+    /// The name is reserved by the format.
     ReservedName,
 }
 
 impl Reason {
-    /// Whether the rest is still the robot, with the same bodies and joints in the same places to within rounding of what was meant.
+    /// Whether the rest is still the robot: the same bodies and joints in the same places, to within rounding.
     pub fn can_be_left_out(&self) -> bool {
         match self {
             Self::Gravity

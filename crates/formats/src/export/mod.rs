@@ -1,7 +1,7 @@
 //! Writing for other programs: what the formats have in common.
 //!
-//! Another format may lack something that the robot has. Nothing is dropped in silence: every such [`Loss`] is listed, and the file is
-//! written only when there is none or the caller asked to leave them out.
+//! Another format may lack something that the robot has. Every such [`Loss`] is listed. The file is written only when there is none, or
+//! when the caller asked to leave them out.
 
 mod loss;
 pub(crate) mod names;
@@ -29,7 +29,7 @@ pub enum OnLoss {
 /// Why a robot was not written.
 #[derive(Debug, Error)]
 pub enum ExportError {
-    /// The description is no robot.
+    /// The description is not a robot.
     #[error(transparent)]
     Malformed(#[from] Malformed),
     /// The format cannot hold all of the robot.
@@ -40,12 +40,12 @@ pub enum ExportError {
         /// Everything that it cannot hold.
         losses: Vec<Loss>,
     },
-    /// The file cannot be written; what stood there before still does.
+    /// The file cannot be written; an earlier file of this name is unchanged.
     #[error("{place}: the file cannot be written: {source}")]
     Io {
         /// The file.
         place: Place,
-        /// What the system says.
+        /// The error of the operating system.
         source: io::Error,
     },
 }
@@ -57,7 +57,7 @@ impl ExportError {
     }
 }
 
-/// Refuses the losses, or lets those pass that may be left out.
+/// An error for these losses, unless they may be left out.
 pub(crate) fn settle(format: &'static str, losses: Vec<Loss>, on_loss: OnLoss) -> Result<Vec<Loss>, ExportError> {
     let refused = |loss: &Loss| on_loss == OnLoss::Refuse || !loss.reason.can_be_left_out();
     if losses.iter().any(refused) {
@@ -66,7 +66,7 @@ pub(crate) fn settle(format: &'static str, losses: Vec<Loss>, on_loss: OnLoss) -
     Ok(losses)
 }
 
-/// Writes a text whole or not at all.
+/// Writes a text completely or not at all.
 pub(crate) fn write(path: &Path, text: &str) -> Result<(), ExportError> {
     let place = || Place { file: path.display().to_string(), position: None };
     text::write(path, text).map_err(|source| ExportError::Io { place: place(), source })

@@ -1,9 +1,9 @@
-//! Names: what a file can hold, each once.
+//! Names that a file can hold, each once.
 
 use super::{Loss, Reason};
 use std::collections::HashSet;
 
-/// The names of one space, each with the word for what carries it.
+/// The names of one kind, each of which must be unique.
 #[derive(Default)]
 pub struct Names(HashSet<String>);
 
@@ -19,7 +19,7 @@ impl Names {
         }
     }
 
-    /// Takes a name like this one that is not taken yet.
+    /// Takes a name like this one that is not yet used.
     pub fn fresh(&mut self, wish: &str) -> String {
         let mut name = wish.to_owned();
         while !self.0.insert(name.clone()) {
@@ -29,7 +29,7 @@ impl Names {
     }
 }
 
-/// Whether a name is one to XML, whose characters do not include the control characters, and no macro to a reader of URDF.
+/// Whether XML can hold a name (it excludes control characters), and no URDF parser takes it for a macro.
 pub fn can_be_written(name: &str) -> bool {
     let bad = |c: char| c.is_control() || matches!(c, '\u{fffe}' | '\u{ffff}');
     !name.contains(bad) && !name.contains("${") && !name.contains("$(")
@@ -40,5 +40,5 @@ pub fn of_robot(name: &str) -> Option<Loss> {
     (!can_be_written(name)).then(|| Loss { about: format!("robot '{}'", name.escape_debug()), reason: Reason::BadName })
 }
 
-/// The name of what does not move.
+/// The name of the fixed root.
 pub const ROOT: &str = "world";

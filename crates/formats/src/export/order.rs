@@ -1,4 +1,4 @@
-//! The order in which bodies and frames are written, so that they are read back in the order that they had.
+//! The order in which bodies and frames are written, so that reading the file gives their order back.
 
 use featherbench_model::Description;
 
@@ -9,8 +9,8 @@ pub enum Item {
     Frame(usize),
 }
 
-/// What stands on the world (first) and on each body: children in their order, frames in theirs, and a frame behind the children whose own
-/// branches hold frames that come before it. For frames in depth-first order that keeps their order.
+/// The items on the world (first) and on each body: children in their order, and frames in theirs. A frame comes after a child whose branch
+/// contains frames that precede it. So frames in depth-first order keep their order.
 pub fn carried(robot: &Description) -> Vec<Vec<Item>> {
     let place = |parent: Option<usize>| parent.map_or(0, |body| body + 1);
     let mut first_frame = vec![usize::MAX; robot.bodies.len() + 1];

@@ -1,15 +1,15 @@
-//! XML as text: elements on lines of their own, every attribute escaped, every number the shortest decimal that reads back to its bits.
+//! XML as text: each element on its own line, every attribute escaped, every number the shortest decimal that reads back to its bits.
 
 use std::fmt::Write;
 
-/// A document that grows.
+/// A document while it is written.
 #[derive(Default)]
 pub struct Xml {
     text: String,
     open: Vec<&'static str>,
 }
 
-/// An element's attributes, being written.
+/// An element's attributes while they are written.
 pub struct Attributes<'a>(&'a mut String);
 
 impl Xml {
@@ -34,7 +34,7 @@ impl Xml {
         self.text.push_str("/>\n");
     }
 
-    /// A comment; it cannot hold two hyphens in a row.
+    /// A comment; it must not contain two hyphens in a row.
     pub fn comment(&mut self, text: &str) {
         self.indent();
         let text: String = text.chars().map(|c| if c.is_control() { ' ' } else { c }).collect();

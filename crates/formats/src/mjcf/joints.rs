@@ -8,7 +8,7 @@ use std::ops::Range;
 pub(super) struct Part<'a> {
     /// The description's joint.
     pub joint: &'a JointDescription,
-    /// What is put behind its name.
+    /// The suffix of its name.
     pub suffix: &'static str,
     /// MJCF's word for its type.
     pub kind: &'static str,
@@ -22,7 +22,7 @@ const X: [f64; 3] = [1.0, 0.0, 0.0];
 const Y: [f64; 3] = [0.0, 1.0, 0.0];
 const Z: [f64; 3] = [0.0, 0.0, 1.0];
 
-/// The MJCF joints of a joint, the first one moving the others; or why there are none.
+/// The MJCF joints of a joint, from the parent outwards; or why there are none.
 pub(super) fn parts(joint: &JointDescription) -> Result<Vec<Part<'_>>, Reason> {
     let whole = |kind, axis| vec![Part { joint, suffix: "", kind, axis, dofs: 0..joint.kind.nv() }];
     let row = |parts: &[(&'static str, &'static str, [f64; 3])]| {
@@ -46,8 +46,8 @@ pub(super) fn parts(joint: &JointDescription) -> Result<Vec<Part<'_>>, Reason> {
     })
 }
 
-/// Whether a body is no more than a joint of the only body that it carries, as the parts of a joint are when they are read back: massless,
-/// on one hinge or slide, with that body's frame in its own.
+/// Whether a body is no more than a joint of the only body that it carries. The parts of a joint are so after an import: massless, on one
+/// hinge or slide, with that body's frame in its own.
 pub(super) fn is_part_of_child(body: &BodyDescription, child: &BodyDescription) -> bool {
     let one_dof = |body: &BodyDescription| matches!(body.joint.kind, JointType::Revolute { .. } | JointType::Prismatic { .. });
     body.mass == 0.0 && body.inertia == [0.0; 6] && one_dof(body) && one_dof(child) && child.joint.placement == Default::default()

@@ -1,4 +1,4 @@
-//! MJCF, MuJoCo's format: writing it. Reading it is MuJoCo's own business (defaults, includes, classes): its oracle does that.
+//! MJCF, MuJoCo's format: writing it. Only MuJoCo itself imports it (defaults, includes, classes), through its oracle.
 
 mod joints;
 mod quaternion;

@@ -1,9 +1,9 @@
-//! Quaternions: what an MJCF file says of a rotation, and the way back.
+//! Quaternions: the rotation of an MJCF quaternion, and the inverse.
 
 use featherbench_model::Placement;
 
-/// The rotation of a quaternion (w, x, y, z) of any length, row-major: the formula, operation by operation, by which the MuJoCo oracle turns
-/// what MuJoCo read into numbers of a description (`turned` in `oracles/featherbench_oracles/reading.py`).
+/// The rotation of a quaternion (w, x, y, z) of any length, row-major. It is operation by operation the formula of the MuJoCo oracle for
+/// numbers that MuJoCo imported (`turned` in `oracles/featherbench_oracles/reading.py`).
 fn rotation([w, x, y, z]: [f64; 4]) -> [f64; 9] {
     let (ww, xx, yy, zz) = (w * w, x * x, y * y, z * z);
     let n = ((ww + xx) + yy) + zz;
@@ -21,13 +21,14 @@ fn rotation([w, x, y, z]: [f64; 4]) -> [f64; 9] {
     entries.map(|entry| entry / n + 0.0)
 }
 
-/// The rotation that a description has of what MuJoCo read: normalised as the canonical form does it.
+/// The description's rotation of an imported quaternion: normalised as the canonical form does it.
 fn read(q: [f64; 4]) -> [f64; 9] {
     Placement { rotation: rotation(q), ..Placement::default() }.normalised().rotation
 }
 
-/// A quaternion of a rotation, with the largest difference of an entry: one that gives these nine numbers where there is one close by;
-/// elsewhere the nearest of those on grids so coarse that they are found again from their own rotations. So a second trip changes nothing.
+/// A quaternion of a rotation, and the largest error of an entry. If a quaternion nearby gives these nine numbers exactly, it is taken.
+/// Otherwise it is the nearest one on grids that are coarse enough to be found again from their own rotations.
+/// So a second round trip changes nothing.
 pub(super) fn quaternion(r: &[f64; 9]) -> ([f64; 4], f64) {
     let near = estimate(r);
     let error = |q: &[f64; 4]| {
@@ -43,11 +44,11 @@ pub(super) fn quaternion(r: &[f64; 9]) -> ([f64; 4], f64) {
     (q.map(|x| x + 0.0), error(&q))
 }
 
-/// From the error of an estimate, where few points are found again, to four times as much, where all are.
+/// From the error of an estimate, where few points are found again, to four times that, where all are.
 const GRIDS: [f64; 3] = [f64::EPSILON / 2.0, f64::EPSILON, 2.0 * f64::EPSILON];
 
-/// All components on the grid but the first large one, which makes the length one. (One is always at least a half; a threshold below that
-/// chooses the same one for equal components.)
+/// Rounds all components to the grid but the first large one, which follows from the length one. (One component is always at least ½. A
+/// lower threshold chooses the same one for equal components.)
 fn on_grid(q: [f64; 4], step: f64) -> [f64; 4] {
     let large = q.iter().position(|x| x.abs() > 0.49).unwrap_or(0);
     let mut grid = q.map(|x| (x / step).round() * step);
@@ -60,13 +61,13 @@ fn last_place(x: f64) -> f64 {
     x.abs().next_up() - x.abs()
 }
 
-/// A quaternion and those about it, each component up to two steps away.
+/// A quaternion and its neighbours, each component up to two steps away.
 fn neighbours(q: [f64; 4], step: impl Fn(f64) -> f64) -> impl Iterator<Item = [f64; 4]> {
     let [w, x, y, z] = q.map(|x| [0.0, 1.0, -1.0, 2.0, -2.0].map(|k| x + k * step(x)));
     (0..5_usize.pow(4)).map(move |k| [w[k % 5], x[k / 5 % 5], y[k / 25 % 5], z[k / 125]])
 }
 
-/// A unit quaternion of a rotation, with the component of largest magnitude positive: it is found by a root, the others by quotients.
+/// A unit quaternion of a rotation, with the component of largest magnitude positive. That one is a square root, the others are quotients.
 fn estimate(r: &[f64; 9]) -> [f64; 4] {
     let [xx, yy, zz] = [r[0], r[4], r[8]];
     let squares = [1.0 + xx + yy + zz, 1.0 + xx - yy - zz, 1.0 - xx + yy - zz, 1.0 - xx - yy + zz];
@@ -98,7 +99,7 @@ mod tests {
     proptest! {
         #![proptest_config(ProptestConfig { cases: 1_000, failure_persistence: None, rng_seed: RngSeed::Fixed(1), ..ProptestConfig::default() })]
 
-        /// Any rotation is met within 8ε, and the second trip gives the same bits.
+        /// The error of any rotation is at most 8ε, and the second round trip gives the same bits.
         #[test]
         fn the_second_trip_changes_nothing(q in [component(), component(), component(), component()]) {
             let length = q.iter().map(|x| x * x).sum::<f64>().sqrt();

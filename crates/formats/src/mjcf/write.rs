@@ -11,7 +11,7 @@ use featherbench_spatial::Sym3;
 use std::collections::HashSet;
 use std::path::Path;
 
-/// Writes an MJCF file, whole or not at all, and tells what was left out.
+/// Writes an MJCF file, completely or not at all, and returns what was left out.
 ///
 /// # Errors
 /// [`ExportError`], listing everything that MJCF cannot hold.
@@ -23,9 +23,10 @@ pub fn write(description: &Description, path: impl AsRef<Path>, on_loss: OnLoss)
 
 /// The robot's canonical form as the text of an MJCF file, and what was left out.
 ///
-/// A joint that MuJoCo does not have as one becomes several in one body, named after it; where they are read back as massless bodies, those
-/// become joints of one body again. Frames are bodies without joints. MuJoCo's compiler is told to edit nothing. Scalars and vectors are read
-/// back to the bit, rotations and inertias within 8ε, and a second trip changes nothing. The provenance stands in a comment.
+/// A joint that MuJoCo does not have becomes several joints in one body, named after it. If such joints were imported as massless bodies,
+/// these become joints of one body again. Frames are bodies without joints. MuJoCo's compiler is told to edit nothing.
+/// Scalars and vectors are imported to the bit, rotations and inertias within 8ε, and a second round trip changes nothing.
+/// The provenance is a comment of the file.
 ///
 /// # Errors
 /// [`ExportError`], listing everything that MJCF cannot hold.
@@ -46,7 +47,7 @@ pub fn to_string(description: &Description, on_loss: OnLoss) -> Result<(String, 
     xml.empty("option", |attributes| _ = attributes.numbers("gravity", &robot.gravity));
     xml.open("worldbody", |_| {});
     let world = xml.depth();
-    // Each item with the depth at which it stands.
+    // Each item with its depth.
     let mut stack: Vec<(usize, Item)> = carried[0].iter().rev().map(|&item| (world, item)).collect();
     while let Some((depth, item)) = stack.pop() {
         while xml.depth() > depth {
@@ -66,7 +67,7 @@ pub fn to_string(description: &Description, on_loss: OnLoss) -> Result<(String, 
     Ok((xml.finish(), losses))
 }
 
-/// A body, and behind it the bodies that are written as one with it: each is no more than a joint of the next.
+/// A body, followed by the bodies that are written as one with it: each is no more than a joint of the next.
 fn row(robot: &Description, carried: &[Vec<Item>], first: usize) -> Vec<usize> {
     let mut row = vec![first];
     let mut last = first;
@@ -137,7 +138,7 @@ fn joint(xml: &mut Xml, part: &Part) {
     });
 }
 
-/// MuJoCo moves no body with a mass or a principal moment below this, kg and kg·m².
+/// MuJoCo needs at least this mass (kg) and principal moment (kg·m²) of a moving body.
 const LEAST: f64 = 1e-15;
 
 /// Everything that MJCF cannot hold, in the order of the description.
@@ -172,7 +173,7 @@ fn losses(robot: &Description, carried: &[Vec<Item>]) -> Vec<Loss> {
     losses
 }
 
-/// Whether a body has less mass or a smaller principal moment than MuJoCo moves.
+/// Whether a body has less mass or a smaller principal moment than MuJoCo needs.
 fn light(body: &BodyDescription) -> bool {
     let [xx, xy, xz, yy, yz, zz] = body.inertia;
     let pivots = Sym3::from_array([xx - LEAST, xy, xz, yy - LEAST, yz, zz - LEAST]).factor().pivots.to_array();

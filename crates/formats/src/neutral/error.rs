@@ -5,7 +5,7 @@ use featherbench_model::Malformed;
 use std::fmt;
 use thiserror::Error;
 
-/// A description file that cannot be read or written: where, and why.
+/// A description file that cannot be read or written: the place, and why.
 #[derive(Debug)]
 pub struct NeutralError {
     /// The file, and the position where it is known.
@@ -29,18 +29,18 @@ impl std::error::Error for NeutralError {
 /// What is wrong with a description file.
 #[derive(Debug, Error)]
 pub enum NeutralProblem {
-    /// The file is no text.
+    /// The file is not text.
     #[error("the file {0}")]
     Text(#[from] TextError),
-    /// The text is no JSON.
+    /// The text is not JSON.
     #[error("this is not valid JSON: {message} (in {})", Field(field))]
     Syntax {
-        /// The path to the field that was being read; `.` for the whole file.
+        /// The path to the field; `.` for the whole file.
         field: String,
         /// What the parser expected.
         message: String,
     },
-    /// A field is missing, unknown or holds something else than it should.
+    /// A field is missing or unknown, or has a wrong type.
     #[error("{}: {message} (datasets/models/FORMAT.md lists the fields)", Field(field))]
     Field {
         /// The path to the field, such as `bodies[3].joint.axis`; `.` for the whole file.
@@ -51,19 +51,19 @@ pub enum NeutralProblem {
     /// Another version of the format.
     #[error("format {found} is not known; this version of featherbench reads \"format\": 1")]
     Version {
-        /// What the file says.
+        /// The version in the file.
         found: String,
     },
-    /// A section that the design foresees and this version does not read.
+    /// A section of the format that this version does not support.
     #[error("section '{section}' is not supported by this version of featherbench; remove it to read the rest of the robot")]
     UnsupportedSection {
         /// The section's key.
         section: &'static str,
     },
-    /// The numbers are no robot.
+    /// The numbers are not a robot.
     #[error(transparent)]
     Malformed(#[from] Malformed),
-    /// The file cannot be written; what stood there before still does.
+    /// The file cannot be written; an earlier file of this name is unchanged.
     #[error("the file cannot be written: {0}")]
     Write(#[source] std::io::Error),
 }

@@ -10,13 +10,13 @@
 //! ```
 //!
 //! The page `datasets/models/FORMAT.md` describes every field. In short:
-//! - `format` must be 1; a key that is not listed there is refused; keys may stand in any order.
-//! - `parent` is an index into `bodies`, or −1 for the world. Any order of bodies is read; [`write()`](fn@write) keeps the order given.
-//! - `type` is `fixed` or one of the joint types of the oracle protocol; `axis` stands for revolute, prismatic, helical and cylindrical
-//!   joints, `pitch` for helical ones.
-//! - `armature`, `damping`, `friction`, `lower`, `upper`, `velocity`, `effort` hold one number per degree of freedom or are left out.
-//! - `frames` and `provenance` are optional. The sections `actuation`, `loops`, `contacts`, `residuals` and `parameters` are refused by
-//!   name until a study reads them, rather than ignored.
+//! - `format` must be 1. A key that is not listed there is an error. Keys may be in any order.
+//! - `parent` is an index into `bodies`, or −1 for the world. Bodies may be in any order; [`write()`](fn@write) keeps it.
+//! - `type` is `fixed` or one of the joint types of the oracle protocol. `axis` belongs to revolute, prismatic, helical and cylindrical
+//!   joints, `pitch` to helical ones.
+//! - `armature`, `damping`, `friction`, `lower`, `upper`, `velocity`, `effort` have one number per degree of freedom, or are left out.
+//! - `frames` and `provenance` are optional. The sections `actuation`, `loops`, `contacts`, `residuals` and `parameters` are errors that
+//!   name the section, until a study supports them.
 //! - Numbers are written as the shortest decimal that reads back to the same bits, and read exactly.
 
 mod error;

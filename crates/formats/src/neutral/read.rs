@@ -1,4 +1,4 @@
-//! Reading: serde mirrors of the description, refused where they do not fit.
+//! Reading: serde mirrors of the description; what does not fit them is an error.
 
 use super::{FORMAT, LIMIT, NeutralError, NeutralProblem};
 use crate::{Place, text};
@@ -23,7 +23,7 @@ pub fn read(path: impl AsRef<Path>) -> Result<Description, NeutralError> {
     }
 }
 
-/// Reads a description from a text; `file` is what errors call it.
+/// Reads a description from a text; `file` is its name in errors.
 ///
 /// # Errors
 /// [`NeutralError`], naming file, line, column and field.
@@ -64,7 +64,7 @@ fn explain(field: String, error: &serde_json::Error) -> (Option<(usize, usize)>,
     let message = message.strip_suffix(&format!(" at line {line} column {column}")).unwrap_or(&message).to_owned();
     let problem = match error.classify() {
         Category::Data => NeutralProblem::Field { field, message },
-        // A list of fixed length must end after it: within the file these "trailing characters" are one item more.
+        // A list of fixed length must end after its last item. So "trailing characters" inside the file mean one item too many.
         Category::Syntax if field != "." && message == "trailing characters" => {
             NeutralProblem::Field { field, message: "the list is longer than it should be".to_owned() }
         }
@@ -73,14 +73,14 @@ fn explain(field: String, error: &serde_json::Error) -> (Option<(usize, usize)>,
     (Some((line, column)), problem)
 }
 
-/// Where the first key of this name stands. In valid JSON a quoted word before a colon is a key: quotes inside strings are escaped.
+/// The position of the first key of this name. In valid JSON a quoted word before a colon is a key: quotes inside strings are escaped.
 fn key_position(text: &str, key: &str) -> Option<(usize, usize)> {
     let quoted = format!("\"{key}\"");
     let is_key = |place: usize| text[place + quoted.len()..].trim_start().starts_with(':');
     text.match_indices(&quoted).map(|(place, _)| place).find(|&place| is_key(place)).map(|place| text::position(text, place))
 }
 
-/// Where the body stands that an error is about: its name is unique, but a joint or frame may be named alike, so this is a help, no more.
+/// The position of the body of an error. A body's name is unique, but a joint or frame may have the same name: the position is only a help.
 fn body_position(text: &str, malformed: &Malformed) -> Option<(usize, usize)> {
     let quoted = serde_json::Value::from(malformed.about()?).to_string();
     text.find(&quoted).map(|place| text::position(text, place))
@@ -265,7 +265,7 @@ impl TryFrom<JointFields> for Joint {
         if axis_is_given && described.axis().is_none() {
             return Err(format!("{kind} joint '{name}' has an 'axis', which such a joint has not; remove it"));
         }
-        // Other programs write a pitch of zero for every joint: that says nothing wrong.
+        // Other programs write a pitch of zero for every joint; that is not an error.
         if pitch.is_some_and(|pitch| pitch != 0.0) && !matches!(described, JointType::Helical { .. }) {
             return Err(format!("{kind} joint '{name}' has a 'pitch', which only a helical joint has; remove it"));
         }

@@ -5,7 +5,7 @@ use crate::{Place, text};
 use featherbench_model::{BodyDescription, Description, Frame, JointDescription, JointType, Malformed, Placement, Provenance};
 use std::path::Path;
 
-/// Writes a description file, whole or not at all.
+/// Writes a description file, completely or not at all.
 ///
 /// # Errors
 /// [`NeutralError`] when the description is malformed or the file cannot be written.
@@ -16,10 +16,10 @@ pub fn write(description: &Description, path: impl AsRef<Path>) -> Result<(), Ne
     text::write(path, &text).map_err(|io| error(NeutralProblem::Write(io)))
 }
 
-/// The description as the text of a file: a few lines per body, [`super::parse`] gives back the same bits.
+/// The description as the text of a file: a few lines per body. [`super::parse`] gives back the same bits.
 ///
 /// # Errors
-/// [`Malformed`] when the description is no robot (JSON has no NaN, for one).
+/// [`Malformed`] when the description is not a robot (for example, JSON has no NaN).
 pub fn to_string(description: &Description) -> Result<String, Malformed> {
     description.validate()?;
     let mut writer = Writer { text: String::new(), per_dof: PerDof::AsGiven, separator: ["\n ", "\n  ", "\n   ", "\n    "] };
@@ -28,11 +28,11 @@ pub fn to_string(description: &Description) -> Result<String, Malformed> {
     Ok(writer.text)
 }
 
-/// The robot alone on a single line without a newline, as an oracle takes it: canonical (depth-first, fixed joints merged), with armature,
-/// damping and friction written out for every degree of freedom, and without frames and provenance.
+/// The robot alone on a single line without a newline, as oracles receive it. It is canonical (depth-first, fixed joints merged), and has
+/// armature, damping and friction for every degree of freedom. It has no frames and no provenance.
 ///
 /// # Errors
-/// [`Malformed`] when the description is no robot.
+/// [`Malformed`] when the description is not a robot.
 pub fn to_line(description: &Description) -> Result<String, Malformed> {
     let canonical = description.canonical()?;
     let mut writer = Writer { text: String::new(), per_dof: PerDof::Complete, separator: [""; 4] };
@@ -40,7 +40,7 @@ pub fn to_line(description: &Description) -> Result<String, Malformed> {
     Ok(writer.text)
 }
 
-/// Whether an absent list of armature, damping or friction is left out or written as zeros.
+/// Whether a missing list of armature, damping or friction is left out or written as zeros.
 #[derive(PartialEq)]
 enum PerDof {
     AsGiven,
@@ -50,7 +50,7 @@ enum PerDof {
 struct Writer {
     text: String,
     per_dof: PerDof,
-    /// What separates the lines of each level: the file's keys, their items, a body's joint, the joint's lists.
+    /// The separators of the lines of each level: the file's keys, their items, a body's joint, the joint's lists.
     separator: [&'static str; 4],
 }
 
@@ -156,7 +156,7 @@ impl Writer {
         self.push(&format!("\"{name}\":"));
     }
 
-    /// Each number as the shortest decimal that reads back to the same bits: for finite numbers that is what `Debug` writes, and it is JSON.
+    /// Each number as the shortest decimal that reads back to the same bits. `Debug` writes that for finite numbers, and it is JSON.
     fn numbers(&mut self, numbers: &[f64]) {
         for (k, number) in numbers.iter().enumerate() {
             self.push(if k == 0 { "[" } else { "," });

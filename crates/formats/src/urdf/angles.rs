@@ -1,9 +1,9 @@
-//! Roll, pitch and yaw: what a URDF file says of a rotation, and the way back.
+//! Roll, pitch and yaw: the rotation of URDF angles, and the inverse.
 
 use featherbench_spatial::{DoubleDouble, Real};
 use std::f64::consts::TAU;
 
-/// Rz(yaw)·Ry(pitch)·Rx(roll), row-major: the doubles nearest to that rotation, which needs no normalising then.
+/// Rz(yaw)·Ry(pitch)·Rx(roll), row-major: the doubles nearest to that rotation, which then needs no normalising.
 pub(super) fn rotation(angles: [f64; 3]) -> [f64; 9] {
     let [(sr, cr), (sp, cp), (sy, cy)] = angles.map(sin_cos);
     let entries = [
@@ -26,8 +26,8 @@ fn sin_cos(angle: f64) -> (DoubleDouble, DoubleDouble) {
     DoubleDouble::from_f64(angle).sin_cos()
 }
 
-/// Angles of a rotation: the very ones wherever a triple gives these nine numbers, as it does for a rotation that was read from angles;
-/// elsewhere near ones. What is read back from them gives the same angles again. No negative zeros.
+/// Angles of a rotation. If a triple gives these nine numbers exactly, as for a rotation that was imported, it is taken; otherwise a near
+/// one. A second round trip gives the same angles. No negative zeros.
 pub(super) fn angles(r: &[f64; 9]) -> [f64; 3] {
     nearest(&rotation(nearest(r))).map(|angle| angle + 0.0)
 }
@@ -45,8 +45,8 @@ fn nearest(r: &[f64; 9]) -> [f64; 3] {
     exact.or_else(|| candidates.into_iter().min_by(|a, b| error(a).total_cmp(&error(b)))).unwrap_or_default()
 }
 
-/// Angles by inverse tangents. Both pitches belong to a rotation, θ and π − θ; and the yaw follows from the first column, whose entries
-/// lose nothing when the rotation was made from angles, or from the other two, which are good for any rotation near the poles as well.
+/// Angles by inverse tangents. Two pitches belong to a rotation: θ and π − θ. There are two formulas for the yaw. The first column of R
+/// loses nothing if the rotation was made from angles. The other two columns are good for any rotation, near the poles as well.
 fn candidates(r: &[f64; 9]) -> [[f64; 3]; 4] {
     let of = |side: f64| {
         let pitch = (-r[6]).atan2(side * r[7].hypot(r[8]));
@@ -59,11 +59,11 @@ fn candidates(r: &[f64; 9]) -> [[f64; 3]; 4] {
     [a, b, c, d]
 }
 
-/// How many units in the last place the inverse tangents may miss an angle by: each is good to about two, and its arguments to as many.
+/// The largest error of the inverse tangents, in units in the last place: each has about two, and its arguments as much.
 const ULPS: usize = 5;
 
-/// The first triple near these angles, or a turn away from them, that gives the rotation to the bit. Each angle is held against the entries
-/// that it makes alone before triples are tried.
+/// The first triple near these angles, or near a full turn away, that gives the rotation to the bit. Each angle is compared with the
+/// entries that it alone determines, before triples are tried.
 fn exact(r: &[f64; 9], [roll, pitch, yaw]: [f64; 3]) -> Option<[f64; 3]> {
     neighbours(pitch).filter(|pitch| 0.0 - sin_cos(*pitch).0.to_f64() == r[6]).find_map(|pitch| {
         let cp = sin_cos(pitch).1;
@@ -79,7 +79,7 @@ fn exact(r: &[f64; 9], [roll, pitch, yaw]: [f64; 3]) -> Option<[f64; 3]> {
     })
 }
 
-/// An angle, its neighbours among the doubles in order of distance, and the same a turn away, where files may have had it.
+/// An angle, its neighbours among the doubles in order of distance, and the same a full turn away, as files may have it.
 fn neighbours(angle: f64) -> impl Iterator<Item = f64> {
     [angle, angle - TAU, angle + TAU].into_iter().flat_map(|centre| {
         let up = std::iter::successors(Some(centre), |x| Some(x.next_up())).take(ULPS + 1);
@@ -95,7 +95,7 @@ mod tests {
     use proptest::test_runner::RngSeed;
     use std::f64::consts::{FRAC_PI_2, PI};
 
-    /// Angles as files have them: anything, few digits, quarter turns, and whatever lies close to these.
+    /// Angles as in files: anything, few digits, quarter turns, and numbers close to these.
     fn angle() -> impl Strategy<Value = f64> {
         let quarter = (-4..=4).prop_map(|k| f64::from(k) * FRAC_PI_2);
         let typed = (-6283..=6283).prop_map(|k| f64::from(k) / 1000.0);
@@ -107,7 +107,7 @@ mod tests {
     proptest! {
         #![proptest_config(ProptestConfig { cases: 20_000, failure_persistence: None, rng_seed: RngSeed::Fixed(1), ..ProptestConfig::default() })]
 
-        /// A rotation that was read from angles is written back to the bit.
+        /// A rotation that was imported from angles is written back to the bit.
         #[test]
         fn a_rotation_from_a_file_goes_back_exactly(given in [angle(), angle(), angle()]) {
             let read = rotation(given);
@@ -116,7 +116,8 @@ mod tests {
             prop_assert_eq!(angles(&again), angles(&read));
         }
 
-        /// A rotation from a quaternion, orthonormal to rounding, is met within 8ε, and the second trip gives the same bits.
+        /// The error of a rotation from a quaternion, orthonormal to rounding, is at most 8ε, and the second round trip gives the same
+        /// bits.
         #[test]
         fn any_rotation_is_met_within_rounding(q in [-1.0..1.0, -1.0..1.0, -1.0..1.0, -1.0..1.0_f64], pole in 0..3, exponent in -17..0) {
             let length = q.iter().map(|x| x * x).sum::<f64>().sqrt();

@@ -1,4 +1,4 @@
-//! The links and joints of a file, as they stand there.
+//! The links and joints of a file, unchanged.
 
 use super::Options;
 use super::angles::rotation;
@@ -40,7 +40,7 @@ pub(super) struct Joint {
     pub effort: Vec<f64>,
     pub damping: Vec<f64>,
     pub friction: Vec<f64>,
-    /// The joint that it mimics, and where that stands.
+    /// The joint that it mimics, and the byte offset of that element.
     pub mimics: Option<(String, usize)>,
 }
 
@@ -53,8 +53,8 @@ pub(super) enum Kind {
     Planar([f64; 3]),
 }
 
-/// An axis that misses unit length by more was not meant to be normal. One that misses it by less is a description's, whose canonical form
-/// normalises it and tells.
+/// An axis that deviates from length one by more is normalised at once. One that deviates by less keeps its bits: the canonical form
+/// normalises it, with a warning.
 const AXIS_TOLERANCE: f64 = 1e-6;
 
 impl Robot {
@@ -105,7 +105,8 @@ const OTHER_ROOTS: [(&str, &str); 5] = [
     ("launch", "a launch file"),
 ];
 
-/// Elements of xacro's namespace, or expressions in attributes, are not expanded yet. (The namespace's declaration stays when they are.)
+/// An error if xacro has not expanded the file: elements of its namespace, or expressions in attributes. (An expanded file keeps the
+/// declaration of the namespace.)
 fn refuse_macros(root: Node) -> Result<(), At> {
     for node in root.descendants().filter(Node::is_element) {
         let name = node.tag_name();
@@ -121,7 +122,7 @@ fn refuse_macros(root: Node) -> Result<(), At> {
     Ok(())
 }
 
-/// Joints that mimic one which is not there, and circles of joints that mimic each other: nothing drives them.
+/// Notes joints that mimic a missing joint, and cycles of joints that mimic each other: no joint drives them.
 fn note_mimics_of_nothing(joints: &[Joint], notes: &mut Vec<NoteAt>) {
     let index: HashMap<&str, usize> = joints.iter().enumerate().map(|(k, joint)| (joint.name.as_str(), k)).collect();
     for (k, joint) in joints.iter().enumerate() {
@@ -132,7 +133,7 @@ fn note_mimics_of_nothing(joints: &[Joint], notes: &mut Vec<NoteAt>) {
         }
         let follow = |k: &usize| joints[*k].mimics.as_ref().and_then(|(of, _)| index.get(of.as_str()).copied());
         let behind: Vec<usize> = std::iter::successors(follow(&k), follow).take(joints.len()).collect();
-        // A circle is told once, at the first of its joints.
+        // A cycle is noted once, at the first of its joints.
         let Some(length) = behind.iter().position(|&at| at == k) else { continue };
         let circle = &behind[..=length];
         if circle.iter().all(|&at| at >= k) {
@@ -143,7 +144,7 @@ fn note_mimics_of_nothing(joints: &[Joint], notes: &mut Vec<NoteAt>) {
     }
 }
 
-/// One note per kind of element that plays no part.
+/// One note per kind of element that is not used.
 fn note_what_is_not_read(root: Node, notes: &mut Vec<NoteAt>) {
     let mut ignored: BTreeMap<String, (usize, usize)> = BTreeMap::new();
     let mut tally = |path: String, node: Node| ignored.entry(path).or_insert((0, node.range().start)).0 += 1;
@@ -245,7 +246,7 @@ impl Joint {
         Ok(joint)
     }
 
-    /// Limits and friction. One number belongs to one dof: on other joints they are left out.
+    /// Limits and friction. URDF has one number each: on joints with several dofs they are left out.
     fn read_properties(&mut self, element: Element, continuous: bool, notes: &mut Vec<NoteAt>) -> Result<(), At> {
         let (limit, dynamics) = (element.optional("limit")?, element.optional("dynamics")?);
         if !matches!(self.kind, Kind::Revolute(_) | Kind::Prismatic(_)) {
@@ -259,7 +260,7 @@ impl Joint {
             let (lower, upper) = (limit.limit("lower")?, limit.limit("upper")?);
             let given = |name| limit.node.has_attribute(name);
             if !continuous && (given("lower") || given("upper")) {
-                // Where one is given the other is zero, as URDF has it.
+                // If one limit is given, the other is zero: so URDF defines it.
                 let side = |name, value: Option<f64>| if given(name) { value } else { Some(0.0) };
                 self.lower.extend(side("lower", lower));
                 self.upper.extend(side("upper", upper));
@@ -307,9 +308,9 @@ fn axis(element: Element, joint: &str, notes: &mut Vec<NoteAt>) -> Result<[f64; 
     Ok(unit)
 }
 
-/// The direction of a vector and its length; none of a zero vector. An axis that a description may have keeps its bits.
+/// The direction of a vector and its length; `None` of a zero vector. An axis that a description may have keeps its bits.
 fn unit(given: [f64; 3]) -> Option<([f64; 3], f64)> {
-    // Scaled first, so that squares neither overflow nor vanish.
+    // Scaled first, so that squares neither overflow nor underflow.
     let largest = given.iter().map(|x| x.abs()).fold(0.0, |largest, x| if x > largest || x.is_nan() { x } else { largest });
     if largest == 0.0 {
         return None;

@@ -5,7 +5,7 @@ use featherbench_model::{Malformed, Warning};
 use std::fmt;
 use thiserror::Error;
 
-/// A URDF file that cannot be imported: where, and why.
+/// A URDF file that cannot be imported: the place, and why.
 #[derive(Debug)]
 pub struct UrdfError {
     /// The file, and the position where it is known.
@@ -29,10 +29,10 @@ impl std::error::Error for UrdfError {
 /// What is wrong with a URDF file.
 #[derive(Debug, Error)]
 pub enum UrdfProblem {
-    /// The file is no text.
+    /// The file is not text.
     #[error("the file {0}")]
     Text(#[from] TextError),
-    /// The text is no XML.
+    /// The text is not XML.
     #[error("this is not well-formed XML: {message}")]
     Xml {
         /// What the parser found.
@@ -43,19 +43,19 @@ pub enum UrdfProblem {
     /// A document type declaration, which no URDF needs.
     #[error("the file declares a document type; entities are not expanded, remove the <!DOCTYPE …>")]
     DocumentType,
-    /// Another kind of file.
+    /// A file of another kind.
     #[error("this is {kind}, not URDF; give the <robot> file")]
     AnotherKind {
         /// What it is.
         kind: &'static str,
     },
-    /// The file must be expanded first.
+    /// The file must be expanded by xacro first.
     #[error("this is a xacro file ({found}); expand it first: xacro robot.urdf.xacro > robot.urdf")]
     Xacro {
         /// What shows it.
         found: String,
     },
-    /// The root element is another one.
+    /// The root element has another name.
     #[error("the root element is <{found}>, not <robot>; is this a URDF file?")]
     NotARobot {
         /// The element found.
@@ -79,7 +79,7 @@ pub enum UrdfProblem {
         /// The element.
         element: &'static str,
     },
-    /// An element stands twice where one is meant.
+    /// An element occurs twice where only one is allowed.
     #[error("{owner} has more than one <{element}>; keep one")]
     RepeatedElement {
         /// The link or joint.
@@ -87,7 +87,7 @@ pub enum UrdfProblem {
         /// The element.
         element: &'static str,
     },
-    /// An attribute is not the numbers that it should be.
+    /// An attribute is not the numbers that are expected.
     #[error("{attribute}=\"{value}\" of {owner} is not {expected}{}", if value.contains(',') { " (decimals have a point, and spaces between them)" } else { "" })]
     NotNumbers {
         /// The link or joint.
@@ -96,7 +96,7 @@ pub enum UrdfProblem {
         attribute: &'static str,
         /// Its value.
         value: String,
-        /// What it should be.
+        /// What is expected.
         expected: &'static str,
     },
     /// A number is NaN or infinite.
@@ -137,7 +137,7 @@ pub enum UrdfProblem {
         /// Whether it has an `<inertial>`.
         has_inertial: bool,
     },
-    /// An axis has no direction.
+    /// An axis is zero, and so has no direction.
     #[error("joint '{joint}' has the axis 0 0 0, which is no direction")]
     ZeroAxis {
         /// The joint.
@@ -151,12 +151,12 @@ pub enum UrdfProblem {
         /// Its type.
         kind: String,
     },
-    /// A joint follows another.
+    /// A joint mimics another.
     #[error("joint '{joint}' mimics joint '{of}', and constrained joints are not supported; import with independent mimics to free it")]
     Mimic {
         /// The joint.
         joint: String,
-        /// The joint that it follows.
+        /// The joint that it mimics.
         of: String,
     },
     /// Two elements share a name.
@@ -208,13 +208,13 @@ pub enum UrdfProblem {
     /// There are no links.
     #[error("the robot has no <link>")]
     NoLinks,
-    /// The numbers are no robot.
+    /// The numbers are not a robot.
     #[error(transparent)]
     Malformed(#[from] Malformed),
 }
 
 impl UrdfProblem {
-    /// The position, where the problem knows it better than the element that it was found in.
+    /// The position, if the problem has a more exact one than its element.
     pub(super) fn position(&self) -> Option<(usize, usize)> {
         match self {
             Self::Xml { position, .. } => Some(*position),

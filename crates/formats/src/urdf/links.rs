@@ -1,4 +1,4 @@
-//! The links of a file one by one, before fixed ones are merged: what a parser's edit of a link started from.
+//! The links of a file one by one, before fixed ones are merged. Edits by a parser are explained from these.
 
 use super::elements::{Link, origin};
 use super::error::At;
@@ -9,7 +9,7 @@ use featherbench_spatial::{RigidBodyInertia, Sym3, Transform, Vec3};
 use roxmltree::Node;
 use std::f64::consts::PI;
 
-/// Mass properties, with axes of their own.
+/// Mass properties, in axes of their own.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Inertial {
     /// kg.
@@ -29,11 +29,12 @@ pub struct LinkInFile {
     pub name: String,
     /// Its `<inertial>`.
     pub inertial: Option<Inertial>,
-    /// What its collision geometry is at a density; none where there is none, or a shape other than box, sphere, cylinder and capsule.
+    /// The mass properties of its collision geometry at a density. `None` without geometry, or with a shape other than box, sphere,
+    /// cylinder and capsule.
     pub solids: Option<Inertial>,
 }
 
-/// The links of a URDF text in the order of the file, with their collision geometry at a density (kg/m³). A text that is no URDF has none.
+/// The links of a URDF text in the order of the file, with their collision geometry at a density (kg/m³). A text that is not URDF has none.
 pub fn links(text: &str, density: f64) -> Vec<LinkInFile> {
     let read = || -> Result<Vec<LinkInFile>, At> {
         let text = text::check(text, super::LIMIT).unwrap_or_default();
@@ -74,7 +75,7 @@ fn solids(link: Element, density: f64) -> Result<Option<Inertial>, At> {
     }))
 }
 
-/// Volume (m³) and moments of inertia per mass (m²) of a shape about its middle; none of a shape that is not known.
+/// Volume (m³) and moments of inertia per mass (m²) of a shape about its centre; `None` of an unknown shape.
 fn solid(shape: Element) -> Result<Option<(f64, [f64; 3])>, At> {
     Ok(match shape.node.tag_name().name() {
         "box" => shape.optional_vector("size")?.map(|[x, y, z]| {

@@ -1,24 +1,26 @@
 //! URDF: links and joints of an XML file as a neutral description, and back.
 //!
-//! The file is read strictly. Engines repair silently (a missing inertia becomes zero, a word in a vector is skipped, an axis of length zero
-//! becomes x), and then disagree; here that is an error with file, line and column, and whatever is left out or altered leaves a [`Note`].
+//! The import is strict. Engines repair without a note: a missing inertia becomes zero, a word in a vector is skipped, an axis of length
+//! zero becomes x. Then they disagree. Here each of these is an error with file, line and column. Whatever is left out or altered gives a
+//! [`Note`].
 //!
-//! - A link without `<inertial>` has no mass. That is fine where it is fixed to one with mass; a link that moves without any mass is an error
-//!   unless [`Options::allow_massless`].
+//! - A link without `<inertial>` has no mass. That is allowed where it is fixed to a link with mass. A link that moves without any mass is
+//!   an error unless [`Options::allow_massless`].
 //! - Gravity is not part of URDF: (0, 0, −9.81).
-//! - The root link stands on the world ([`Base::Fixed`]) or on a free joint named `root_joint` ([`Base::Floating`]).
-//!   Where a root without inertia, such as a link `world`, carries the robot on a `floating` joint, that joint is the floating base already.
-//! - Siblings keep the order in which their joints stand in the file. (Readers built on urdfdom sort them by joint name.)
+//! - The root link is fixed to the world ([`Base::Fixed`]) or has a free joint named `root_joint` ([`Base::Floating`]).
+//!   A root without inertia, such as a link `world`, may carry the robot on a `floating` joint. Then that joint is the floating base.
+//! - Siblings keep the order of their joints in the file. (Parsers built on urdfdom sort them by joint name.)
 //! - `rpy` is R = Rz(yaw)·Ry(pitch)·Rx(roll); an axis is normalised, with a note when that changes more than its last digit.
 //! - Fixed joints are merged, each leaving a frame with the link's name.
 //! - A `floating` joint becomes free, a `planar` one planar in the plane normal to its axis, `continuous` revolute without position limits.
 //!   A `revolute` or `prismatic` joint whose `<limit>` gives neither `lower` nor `upper` has none (urdfdom would lock it at zero).
-//! - xacro is refused: macros must be expanded first. So are meshes and other formats, by name.
-//! - `mimic` is refused by name unless [`Options::independent_mimics`], which reads the joint as one of its own, as engines do by default.
-//! - Not read, and noted: visual and collision geometry, `safety_controller`, `calibration`, and every element of `<robot>` that is neither
-//!   link nor joint.
+//! - xacro is an error: macros must be expanded first. Meshes and other formats are errors that name the format.
+//! - `mimic` is an error that names the joints, unless [`Options::independent_mimics`]. Then the joint is independent, as in engines by
+//!   default.
+//! - Noted and not imported: visual and collision geometry, `safety_controller`, `calibration`, and every element of `<robot>` that is
+//!   neither link nor joint.
 //!
-//! Limits: 10 MB, a million XML nodes, no document type declaration (hence no entities to expand); nesting costs no stack.
+//! Limits: 10 MB, a million XML nodes, no document type declaration (hence no entities to expand). Nesting uses no stack.
 
 mod angles;
 mod elements;
@@ -40,10 +42,10 @@ use std::path::Path;
 /// The largest file that is read, bytes.
 pub const LIMIT: usize = 10 << 20;
 
-/// What the root link stands on.
+/// The joint of the root link.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub enum Base {
-    /// The world: its inertia plays no part.
+    /// Fixed to the world: its inertia has no effect.
     #[default]
     Fixed,
     /// A free joint.
@@ -53,11 +55,11 @@ pub enum Base {
 /// How a file is imported.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub struct Options {
-    /// What the root link stands on.
+    /// The joint of the root link.
     pub base: Base,
-    /// Whether a moving body may have no mass (with a note) instead of being an error.
+    /// Whether a moving body may have no mass (with a note); otherwise that is an error.
     pub allow_massless: bool,
-    /// Whether joints that mimic another are read as joints of their own (with a note) instead of being refused.
+    /// Whether joints that mimic another are imported as independent joints (with a note); otherwise they are errors.
     pub independent_mimics: bool,
 }
 
@@ -68,7 +70,7 @@ pub struct Note {
     pub line: usize,
     /// What was done.
     pub text: String,
-    /// The same as the model's warning, where it is one of a number that is normalised.
+    /// The model's warning for the same number, if it is one that is normalised.
     pub warning: Option<Warning>,
 }
 
@@ -91,7 +93,7 @@ pub fn read(path: impl AsRef<Path>, options: &Options) -> Result<(Description, V
     }
 }
 
-/// Imports URDF from a text; `file` is what errors call it.
+/// Imports URDF from a text; `file` is its name in errors.
 ///
 /// # Errors
 /// [`UrdfError`], naming file, line, column and the link or joint.

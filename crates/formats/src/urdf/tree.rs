@@ -7,7 +7,7 @@ use featherbench_model::{BodyDescription, Description, JointDescription, JointTy
 use featherbench_spatial::{Mat3, Transform, Vec3};
 use std::collections::HashMap;
 
-/// The joint that a floating base hangs on.
+/// The joint of a floating base.
 pub(super) const ROOT_JOINT: &str = "root_joint";
 /// Gravity, which URDF does not give, m/s².
 pub(super) const GRAVITY: [f64; 3] = [0.0, 0.0, -9.81];
@@ -27,7 +27,7 @@ pub(super) fn assemble(robot: &Robot, options: &Options, notes: &mut Vec<NoteAt>
     };
     let description = describe(robot, &connected, base);
     let canonical = description.canonical().map_err(|malformed| locate(robot, malformed))?;
-    // Rotations come from angles: their doubles miss by no more than rounding.
+    // Rotations come from angles: their doubles deviate by no more than rounding.
     for warning in description.normalised() {
         let Warning::Normalised { joint, field: "axis", .. } = &warning else { continue };
         let offset = robot.joints.iter().find(|known| known.name == *joint).map_or(0, |known| known.offset);
@@ -37,7 +37,7 @@ pub(super) fn assemble(robot: &Robot, options: &Options, notes: &mut Vec<NoteAt>
     Ok(canonical)
 }
 
-/// Which link each joint carries, and on which: indices instead of names.
+/// The child and parent link of each joint: indices instead of names.
 struct Connected {
     root: usize,
     /// (parent link, child link) of each joint.
@@ -62,7 +62,7 @@ impl Connected {
             ends.push((parent, child));
         }
 
-        // Each link has one carrier or none; what cannot be reached from a root hangs on a cycle.
+        // Each link has at most one joint to a parent. A link that cannot be reached from a root belongs to a cycle or its branches.
         let mut grounded = vec![false; robot.links.len()];
         for start in 0..robot.links.len() {
             let (mut path, mut at) = (Vec::new(), start);
@@ -88,14 +88,14 @@ impl Connected {
                 let name = |link: usize| robot.links[link].name.clone();
                 Err(UrdfProblem::TwoRoots { first: name(first), second: name(second), alone }.at(robot.links[second].offset))
             }
-            // Without a root every link is carried, and the walk above has met the cycle; without links there is nothing to walk.
+            // Without a root every link has a parent, and the loop above has found the cycle; or there are no links.
             (None, _) => Err(UrdfProblem::NoLinks.at(0)),
         }
     }
 }
 
 impl Connected {
-    /// The joint on which the robot floats already: the only one of a root without inertia, as a link called `world` is.
+    /// The joint of an existing floating base: the only joint of a root without inertia, such as a link `world`.
     fn floating_base<'a>(&self, robot: &'a Robot) -> Option<&'a Joint> {
         let mut carried = robot.joints.iter().zip(&self.ends).filter(|(_, (parent, _))| *parent == self.root);
         let (joint, _) = carried.next()?;
@@ -108,7 +108,7 @@ impl Connected {
 fn describe(robot: &Robot, connected: &Connected, base: Base) -> Description {
     let mut bodies = Vec::with_capacity(robot.links.len());
     let mut place = vec![0; robot.links.len()];
-    // Parents may stand behind their children: give every link its place first. A planar joint takes two places.
+    // Parents may come after their children in the file: each link gets its index first. A planar joint takes two indices.
     let mut next = 1;
     for (joint, &(_, child)) in robot.joints.iter().zip(&connected.ends) {
         next += usize::from(plane(joint).is_some());
@@ -172,7 +172,7 @@ fn plane(joint: &Joint) -> Option<Mat3<f64>> {
     }
     let z = Vec3::from_array(axis);
     let z = z * (1.0 / z.norm());
-    // x: the coordinate axis farthest from z, made perpendicular to it.
+    // x: the coordinate axis farthest from z, orthogonalised.
     let [a, b, c] = axis.map(f64::abs);
     let helper = if a <= b && a <= c {
         [1.0, 0.0, 0.0]
@@ -186,7 +186,7 @@ fn plane(joint: &Joint) -> Option<Mat3<f64>> {
     Some(Mat3::from_rows(y.cross(z), y, z).transpose())
 }
 
-/// A malformed description at the link that it is about.
+/// A malformed description, with the position of its link.
 fn locate(robot: &Robot, malformed: Malformed) -> At {
     let link = malformed.about().and_then(|name| robot.links.iter().find(|link| link.name == name));
     // Numbers of joints are named by the body that the joint carries.
@@ -194,7 +194,7 @@ fn locate(robot: &Robot, malformed: Malformed) -> At {
     At { offset: joint.map(|joint| joint.offset).or(link.map(|link| link.offset)), problem: malformed.into() }
 }
 
-/// Every moving body must have mass, or a note.
+/// An error if a moving body has no mass; a note if that is allowed.
 fn check_masses(robot: &Robot, canonical: &Description, options: &Options, notes: &mut Vec<NoteAt>) -> Result<(), At> {
     for body in canonical.bodies.iter().filter(|body| body.mass == 0.0) {
         let link = robot.links.iter().find(|link| link.name == body.name);

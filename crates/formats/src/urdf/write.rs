@@ -9,7 +9,7 @@ use crate::export::{self, ExportError, Loss, OnLoss, Reason};
 use featherbench_model::{BodyDescription, Description, Frame, JointDescription, JointType, Placement};
 use std::path::Path;
 
-/// Writes a URDF file, whole or not at all, and tells what was left out.
+/// Writes a URDF file, completely or not at all, and returns what was left out.
 ///
 /// # Errors
 /// [`ExportError`], listing everything that URDF cannot hold.
@@ -21,9 +21,10 @@ pub fn write(description: &Description, path: impl AsRef<Path>, on_loss: OnLoss)
 
 /// The robot's canonical form as the text of a URDF file, and what was left out.
 ///
-/// The root link is called `world` and does not move; a free body hangs on it by a `floating` joint, so the file is read with
-/// [`Base::Fixed`](super::Base::Fixed). Frames are links of their own, fixed. Scalars, vectors and inertias are read back to the bit,
-/// rotations within 8ε and to the bit where angles can say them; writing what was read gives the same text. The provenance stands in a comment.
+/// The root link is called `world` and does not move; a free body has a `floating` joint to it. So the file is imported with
+/// [`Base::Fixed`](super::Base::Fixed). Frames are links of their own, fixed. Scalars, vectors and inertias are imported to the bit.
+/// Rotations are within 8ε, and equal to the bit if angles can express them. Writing an imported file again gives the same text.
+/// The provenance is a comment of the file.
 ///
 /// # Errors
 /// [`ExportError`], listing everything that URDF cannot hold.
@@ -54,7 +55,7 @@ pub fn to_string(description: &Description, on_loss: OnLoss) -> Result<(String, 
     Ok((xml.finish(), losses))
 }
 
-/// Whether a frame is the world itself: the root link is read back as that.
+/// Whether a frame is the world itself: the root link is imported as that.
 fn is_root(frame: &Frame) -> bool {
     frame.name == ROOT && frame.body.is_none() && frame.placement == Placement::default()
 }
@@ -80,7 +81,7 @@ fn body(xml: &mut Xml, robot: &Description, body: &BodyDescription) {
         JointType::Prismatic { axis } => ("prismatic", Some(axis)),
         JointType::Free => ("floating", None),
         JointType::Planar => ("planar", Some([0.0, 0.0, 1.0])),
-        // The canonical form has none of the first, and the rest was refused.
+        // The canonical form has no fixed joint, and the others gave an error before.
         JointType::Fixed
         | JointType::Helical { .. }
         | JointType::Spherical
@@ -99,7 +100,7 @@ fn body(xml: &mut Xml, robot: &Description, body: &BodyDescription) {
     xml.close();
 }
 
-/// Limits and friction of a joint with one degree of freedom; limits that were not refused and are not whole are left out.
+/// Limits and friction of a joint with one degree of freedom. Incomplete limits that gave no error are left out.
 fn properties(xml: &mut Xml, joint: &JointDescription) {
     let limits = [("lower", &joint.lower), ("upper", &joint.upper), ("velocity", &joint.velocity), ("effort", &joint.effort)];
     let given = |attributes: &mut Attributes, lists: &[(&str, &Vec<f64>)]| {
@@ -136,7 +137,7 @@ fn parent(robot: &Description, body: Option<usize>) -> &str {
     body.map_or(ROOT, |body| &robot.bodies[body].name)
 }
 
-/// Whether URDF's readers find the limits that they ask for: all four, or on a revolute joint none or speed and effort.
+/// Whether the limits are those that URDF parsers need: all four, or on a revolute joint none or speed and effort.
 fn limits_are_whole(joint: &JointDescription) -> bool {
     let given = [&joint.lower, &joint.upper, &joint.velocity, &joint.effort].map(|list| !list.is_empty());
     let turns = matches!(joint.kind, JointType::Revolute { .. });

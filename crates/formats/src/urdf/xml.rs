@@ -1,4 +1,4 @@
-//! Elements and attributes, with the place of what is wrong with them.
+//! Elements and attributes, with the positions of errors in them.
 
 use super::error::{At, UrdfProblem};
 use roxmltree::{Document, Node, ParsingOptions};
@@ -31,7 +31,7 @@ fn offset(text: &str, (line, column): (usize, usize)) -> usize {
     start + text[start..].char_indices().nth(column.saturating_sub(1)).map_or(0, |(place, _)| place)
 }
 
-/// The kind of mesh that a text which is no XML begins like.
+/// The kind of mesh file, if a text that is not XML begins like one.
 fn mesh(text: &str) -> Option<&'static str> {
     let mut lines = text.lines().map(str::trim_start).filter(|line| !line.is_empty() && !line.starts_with('#'));
     let first = lines.next()?;

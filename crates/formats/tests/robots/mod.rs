@@ -13,7 +13,7 @@ pub enum Kind {
     Free,
 }
 
-/// Numbers as they come: mostly ordinary, some tiny, huge, zero or negative zero.
+/// Numbers: mostly ordinary, some tiny, huge, zero or negative zero.
 fn number() -> impl Strategy<Value = f64> {
     prop_oneof![12 => -2.0..2.0, 2 => Just(0.0), 1 => Just(-0.0), 1 => (-1.0..1.0, -300..300).prop_map(|(x, e): (f64, i32)| x * 10_f64.powi(e))]
 }
