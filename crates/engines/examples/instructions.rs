@@ -1,6 +1,6 @@
 //! Runs every kernel of ours on some robots for `ci/instructions.py`, which counts their instructions under callgrind.
 //!
-//! Prints a line `kernel,model,calls` before each; everything that is counted happens in [`featherbench_measured`], called once per line.
+//! Prints a line `kernel,model,calls` before each. Everything that is counted runs in [`featherbench_measured`], called once per line.
 
 use featherbench_bench::{Engine, Evaluation, Robot};
 use featherbench_engines::{Featherbench, timed};
@@ -32,7 +32,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     Ok(())
 }
 
-/// What callgrind counts.
+/// The function whose instructions callgrind counts.
 #[inline(never)]
 fn featherbench_measured(prepared: &mut dyn Evaluation) -> Result<(), featherbench_bench::NoAnswer> {
     prepared.clock(0..CALLS)?;

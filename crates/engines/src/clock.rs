@@ -1,15 +1,15 @@
-//! Time as a value: whatever hangs on a time asks a [`Clock`] for it, so that a test can say what time it is.
+//! Time as a value: whatever depends on a time asks a [`Clock`] for it. So a test can set the time.
 
 use std::sync::mpsc::{Receiver, RecvTimeoutError, TryRecvError};
 use std::time::{Duration, Instant};
 
-/// What tells the time to those who wait for a process.
+/// The time for those who wait for a process.
 pub trait Clock: Send + Sync {
-    /// The time since some moment of its own; it never goes back.
+    /// The time since a moment of the clock's own choice; it never decreases.
     fn now(&self) -> Duration;
 
-    /// How long to wait for an event before the clock is looked at again, when `left` remains until the limit. A clock that does not go with
-    /// the machine's wants to be looked at often.
+    /// How long to wait for an event before the clock is read again, when `left` remains until the limit. A clock that does not run with
+    /// the machine's clock must be read often.
     fn look_again(&self, left: Duration) -> Duration {
         left
     }
@@ -30,7 +30,7 @@ impl Clock for SystemClock {
     }
 }
 
-/// Waits for an event until the clock says that `limit` has passed.
+/// Waits for an event until `limit` has passed by the clock.
 ///
 /// # Errors
 /// The limit has passed without an event, or no event can come any more.
@@ -57,7 +57,7 @@ mod tests {
     use std::sync::Mutex;
     use std::sync::mpsc::channel;
 
-    /// A clock that goes on by a second whenever it is looked at.
+    /// A clock that advances by a second at each reading.
     #[derive(Default)]
     struct Ticking(Mutex<Duration>);
 
@@ -78,7 +78,7 @@ mod tests {
         let (sender, events) = channel::<u8>();
         let clock = Ticking::default();
         assert_eq!(wait(&clock, &events, Duration::from_secs(3)), Err(RecvTimeoutError::Timeout));
-        // The start, and three looks after which none of the three seconds is left.
+        // The start, and three queries, after which nothing is left of the three seconds.
         assert_eq!(*clock.0.lock().unwrap(), Duration::from_secs(4));
         sender.send(7).unwrap();
         assert_eq!(wait(&clock, &events, Duration::ZERO), Ok(7), "what is there is taken, however late it is");

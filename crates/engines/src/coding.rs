@@ -1,7 +1,7 @@
-//! Lossless coding of doubles that are nearly equal to others: what engines answer to one question differs by a few units in the last place,
-//! which takes one byte and not eight.
+//! Lossless coding of doubles that are nearly equal to others. The answers of engines to one question differ by a few units in the last
+//! place: that takes one byte instead of eight.
 
-/// The bits of a double as an integer that grows with the double: neighbouring doubles are neighbouring integers, −0 stands below 0.
+/// The bits of a double as an integer that increases with the double: neighbouring doubles are neighbouring integers, and −0 is below 0.
 fn ordered(x: f64) -> i64 {
     flipped(x.to_bits() as i64)
 }
@@ -11,7 +11,7 @@ fn unordered(n: i64) -> f64 {
     f64::from_bits(flipped(n) as u64)
 }
 
-/// Of a negative number, all bits but the sign are turned over; twice gives the number back.
+/// Inverts all bits but the sign of a negative number; twice gives the number back.
 fn flipped(bits: i64) -> i64 {
     bits ^ (bits >> 63) & i64::MAX
 }
@@ -27,9 +27,9 @@ pub(crate) fn from_plain(bytes: &[u8]) -> Option<Vec<f64>> {
     rest.is_empty().then(|| chunks.iter().map(|&chunk| f64::from_le_bytes(chunk)).collect())
 }
 
-/// The distances of the values from those of a base of the same length, in units in the last place: each value exact.
+/// The exact distances of the values from those of a base of the same length, in units in the last place.
 ///
-/// Zigzag numbers in LEB128; a zero is followed by the number of further zeros.
+/// They are zigzag numbers in LEB128; a zero is followed by the number of further zeros.
 pub(crate) fn delta(values: &[f64], base: &[f64]) -> Vec<u8> {
     let mut bytes = Vec::with_capacity(values.len());
     let mut distances = values.iter().zip(base).map(|(value, base)| distance(*value, *base)).peekable();

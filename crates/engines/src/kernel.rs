@@ -1,7 +1,7 @@
-//! The registry of own kernels: which algorithm answers which quantity.
+//! The registry of our own kernels: which algorithm answers which quantity.
 //!
-//! A kernel owns its workspace. Evaluating leaves one state's answer where its algorithm leaves it, as in any engine; reading it into a slice
-//! is a step of its own. Studies, the timing of runs and `cargo bench` all go through this list, so what is timed is what is checked.
+//! A kernel owns its workspace. Evaluating leaves the answer of one state where the algorithm puts it, as in any engine. Reading it into a
+//! slice is a separate step. Studies, the timing of runs and `cargo bench` all use this registry: so what is timed is what is checked.
 
 use featherbench_bench::{DENSE_LIMIT, NoAnswer, Quantity, Robot, layout};
 use featherbench_dynamics::{
@@ -22,7 +22,7 @@ pub(crate) trait Evaluate: Send {
 /// The kernel of a quantity and method.
 pub(crate) type Kernel<'a> = Box<dyn Evaluate + 'a>;
 
-/// A kernel of closures that share a workspace, in which the answer stays.
+/// A kernel of closures that share a workspace; the answer stays in it.
 struct Closures<W, E, R> {
     work: W,
     evaluate: E,
@@ -53,12 +53,12 @@ fn kept<'a, W: Send + 'a>(
     Box::new(Closures { work, evaluate, read })
 }
 
-/// A kernel that writes its answer, of so many numbers, into a slice itself.
+/// A kernel that writes its answer, of this number of values, into a slice itself.
 fn written<'a>(size: usize, mut evaluate: impl FnMut(usize, &mut [f64]) -> Result<(), Error> + Send + 'a) -> Kernel<'a> {
     kept(vec![0.0; size], move |out, k| evaluate(k, out), |answer, out| out.copy_from_slice(answer))
 }
 
-/// The methods of each quantity, the reference first.
+/// The methods of each quantity, the usual one first.
 pub(crate) fn methods(quantity: Quantity) -> &'static [&'static str] {
     match quantity {
         Quantity::InverseDynamics | Quantity::InverseDynamicsWrench | Quantity::Bias => &["rnea"],
@@ -105,7 +105,7 @@ pub(crate) fn kernel<'a>(robot: &'a Robot, quantity: Quantity, method: &str, sta
     })
 }
 
-/// The quantities that the timing study takes: one pass of one algorithm each, from q, v, a or τ to its result.
+/// The quantities of the timing study: one pass of one algorithm each, from q, v, a or τ to its result.
 pub fn timed(robot: &Robot) -> Vec<(Quantity, &'static str)> {
     let whole = [
         (Quantity::InverseDynamics, "rnea"),
@@ -123,7 +123,7 @@ pub fn timed(robot: &Robot) -> Vec<(Quantity, &'static str)> {
         (Quantity::BodyAcceleration, "kinematics"),
         (Quantity::BodyJacobian, "kinematics"),
     ];
-    // A body Jacobian is 6·nv numbers of mostly zeros on big robots: only its nonzero columns would be worth a time.
+    // A body Jacobian has 6·nv numbers, most of them zero on big robots. Only its nonzero columns would be worth timing.
     whole.into_iter().filter(|(quantity, _)| *quantity != Quantity::BodyJacobian || robot.states.nv <= DENSE_LIMIT).collect()
 }
 
@@ -224,10 +224,10 @@ fn refined_forward_dynamics<'a>(robot: &'a Robot, states: &'a StateBatch, steps:
     Ok(written(robot.model.topology.nv(), move |k, a| refined.run(&model, states.q(k), states.v(k), states.tau(k), None, a)))
 }
 
-/// The stored numbers of the mass matrices of a batch, made beforehand: factorizing and solving do not include making them.
+/// The stored numbers of the mass matrices of a batch, computed before: the time of factorizing and solving excludes computing them.
 fn matrices(model: &Model<f64>, states: &StateBatch) -> Result<Vec<Vec<f64>>, NoAnswer> {
     let (mut crba, mut matrix) = (Crba::new(&model.topology), TreeSparse::new(&model.topology));
-    // Of big robots a few matrices go round: thousands of them would not fit the memory.
+    // Big robots use a few matrices in turn: thousands of them would not fit the memory.
     let count = states.count().min(1 + (32 << 20) / (8 * model.topology.stored().max(1)));
     (0..count)
         .map(|k| {

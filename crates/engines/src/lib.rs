@@ -1,8 +1,12 @@
-//! Engines: who answers.
+//! The engines: whatever answers questions.
 //!
-//! [`Featherbench`] runs the kernels of this workspace; [`Oracle`] asks a program that speaks the protocol of `oracles/PROTOCOL.md`;
-//! [`peer`] serves an engine's native library by the same protocol; [`Recorded`] plays back what an oracle once answered. To add an engine,
-//! write such a program, in Rust too (`oracles/rapier`), or implement [`Engine`](featherbench_bench::Engine) in a file of its own here.
+//! - [`Featherbench`] runs the kernels of this workspace.
+//! - [`Oracle`] asks a program that follows the protocol of `oracles/PROTOCOL.md`.
+//! - [`peer`] serves an engine's native library by the same protocol.
+//! - [`Recorded`] repeats the recorded answers of an oracle.
+//!
+//! To add an engine, write such a program, in Rust too (`oracles/rapier`), or implement [`Engine`](featherbench_bench::Engine) in a new
+//! file here.
 
 mod clock;
 mod coding;

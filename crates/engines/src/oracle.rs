@@ -1,4 +1,4 @@
-//! An engine behind the oracle protocol: one program, as many processes as there are threads asking.
+//! An engine behind the oracle protocol: one program, with one process per thread that asks.
 
 pub(crate) mod steps;
 
@@ -19,15 +19,15 @@ use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Duration;
 use steps::Steps;
 
-/// Version of the protocol that we speak.
+/// The version of the protocol that we use.
 pub(crate) const PROTOCOL: u64 = 1;
 
-/// An engine that is asked through its own process.
+/// An engine that runs in its own process.
 pub struct Oracle {
     identity: Identity,
     methods: BTreeMap<String, Vec<String>>,
     timed_by: TimedBy,
-    /// Whether it can move its data.
+    /// Whether it can relocate its data in memory.
     relocate: bool,
     /// What it offers of steps, if it integrates.
     steps: Option<Steps>,
@@ -37,40 +37,40 @@ pub struct Oracle {
     idle: Mutex<Vec<Session>>,
 }
 
-/// Who reads the clock.
+/// Which clock measures a time.
 enum TimedBy {
-    /// We do, around the whole conversation.
+    /// Ours, around the whole request and answer.
     Us,
-    /// The oracle, beside its loop.
+    /// The oracle's, beside its loop.
     Itself,
-    /// The oracle, in a language whose overhead it subtracts, and for these methods only.
+    /// The oracle's, in a language whose overhead it subtracts, and for these methods only.
     Estimate(BTreeMap<String, Vec<String>>),
 }
 
-/// What the identity of an oracle says whose clock estimates.
+/// A part of the identity of an oracle whose times are estimates.
 const ESTIMATE: &str = "estimate: the overhead of calling the engine is measured and subtracted";
 
-/// A process and what it was told last.
+/// A process and its latest robot and states.
 struct Session {
     process: Process,
-    /// Hash of the robot that it holds, or of the file and base that it has read.
+    /// Hash of the robot that it has built, or of the file and base that it has imported.
     model: String,
     readback: Vec<f64>,
     states: Option<String>,
-    /// The file that it has read, while nothing else was built since.
+    /// The imported file, while no other robot was built after it.
     reading: Option<(RobotFile, Import)>,
 }
 
 impl Oracle {
-    /// Starts the program and asks who it is.
+    /// Starts the program and asks for its identity.
     ///
     /// # Errors
-    /// A sentence, when it does not start or does not speak the protocol.
+    /// A sentence, when it does not start or does not follow the protocol.
     pub fn start(command: Vec<OsString>, limits: Limits) -> Result<Self, String> {
         Self::start_by(command, limits, Arc::new(SystemClock::default()))
     }
 
-    /// Starts the program; its limits pass, and its times are taken, by this clock.
+    /// Starts the program. Its limits and its times are measured by this clock.
     ///
     /// # Errors
     /// As of [`Oracle::start`].
@@ -117,12 +117,12 @@ impl Oracle {
         self
     }
 
-    /// The same oracle with the content hash of its program in its build, as one that a user brings along.
+    /// The same oracle with the content hash of its program in its build. It is for oracles of users.
     pub fn with_program(self, hash: &str) -> Self {
         self.with_hash(PROGRAM, hash)
     }
 
-    /// The same oracle with the hash of the sources in its build that its program was compiled from.
+    /// The same oracle with the hash of its program's sources in its build.
     pub fn with_sources(self, hash: &str) -> Self {
         self.with_hash(SOURCES, hash)
     }
@@ -154,7 +154,7 @@ impl Engine for Oracle {
     }
 
     fn methods(&self, quantity: Quantity) -> Vec<String> {
-        // The read-back comes with every model.
+        // The read-back comes with every robot.
         match quantity {
             Quantity::Readback => vec!["build".into()],
             _ => self.methods.get(quantity.name()).cloned().unwrap_or_default(),
@@ -217,7 +217,7 @@ impl Session {
         checked(self.process.ask(&Frame::new(header, blocks)).map_err(NoAnswer::Failed)?)
     }
 
-    /// Has the engine build the robot, unless it holds it already, and reads it back.
+    /// Lets the engine build the robot, unless it has done so already, and reads it back.
     fn build(&mut self, robot: &Robot) -> Result<(), NoAnswer> {
         if self.model == robot.hash {
             return Ok(());
@@ -242,7 +242,7 @@ impl Session {
         Ok(())
     }
 
-    /// Has the engine read the robot's file again, and holds it to what it read before.
+    /// Lets the engine import the robot's file again; an error if the result differs from the first import.
     fn build_as_read(&mut self, robot: &Robot) -> Result<(), NoAnswer> {
         let file = robot.file.as_ref().ok_or_else(|| NoAnswer::Failed("the robot has no file to read".into()))?;
         let reading = self.read(file)?;
@@ -253,7 +253,7 @@ impl Session {
         Ok(())
     }
 
-    /// Has the engine's own parser read a file, and asks what it holds then.
+    /// Lets the engine's own parser import a file, and asks for the result.
     fn read(&mut self, file: &RobotFile) -> Result<Import, NoAnswer> {
         if let Some((_, reading)) = self.reading.as_ref().filter(|(known, _)| known == file) {
             return Ok(reading.clone());
@@ -284,7 +284,7 @@ impl Session {
     }
 }
 
-/// A question put to a session that holds robot and states.
+/// A question to a session that has robot and states.
 struct Asked<'a> {
     oracle: &'a Oracle,
     session: Option<Session>,
@@ -292,7 +292,7 @@ struct Asked<'a> {
     quantity: Quantity,
     method: String,
     values: Vec<f64>,
-    /// What the last time of the oracle's clock is without.
+    /// The overhead that was subtracted from the last time of the oracle's clock.
     overhead: Option<Duration>,
 }
 
@@ -319,8 +319,8 @@ impl Evaluation for Asked<'_> {
         Ok(())
     }
 
-    /// By the oracle's own clock, where it has one: the values are then not sent, and [`Evaluation::read`] still has those of the last `run`. A
-    /// range that goes beyond the batch begins again at its first state.
+    /// By the oracle's own clock, if it has one. Then the values are not sent, and [`Evaluation::read`] still has those of the last `run`.
+    /// A range that goes beyond the batch begins again at its first state.
     fn clock(&mut self, range: Range<usize>) -> Result<Duration, NoAnswer> {
         if matches!(self.oracle.timed_by, TimedBy::Us) {
             let start = self.oracle.clock.now();
@@ -363,16 +363,16 @@ impl Drop for Asked<'_> {
     }
 }
 
-/// What an answer to `read` tells.
+/// The result in an answer to `read`.
 ///
 /// # Errors
-/// A sentence, when it is no robot whose states and answers could be given in the order of its bodies.
+/// A sentence, when its bodies are not in an order in which states and answers can be given.
 pub(crate) fn reading(answer: &Frame) -> Result<Import, String> {
     let model = answer.header.get("model").ok_or("there is no model")?;
     let parse = |model: &Value| featherbench_formats::neutral::parse(&model.to_string(), "the model").map_err(|error| error.to_string());
     let description = parse(model)?;
     let canonical = description.canonical().map_err(|error| error.to_string())?;
-    // States and answers are in the order of the bodies: one that would change here would mix them up. Numbers may be normalised.
+    // States and answers are in the order of the bodies. An order that changed here would mix them up. Numbers may be normalised.
     let order = |robot: &Description| robot.bodies.iter().map(|body| (body.name.clone(), body.parent)).collect::<Vec<_>>();
     if order(&canonical) != order(&description) {
         let moved = description.bodies.iter().zip(&canonical.bodies).find(|(given, due)| given.name != due.name);
@@ -416,7 +416,7 @@ fn keyframes(answer: &Frame, nq: usize) -> Result<Vec<Vec<f64>>, String> {
     Ok(block.data.chunks_exact(nq).map(<[f64]>::to_vec).collect())
 }
 
-/// A parser's note; what is no text in it is left empty.
+/// A parser's note; a field that is not text is left empty.
 fn note(note: &Value) -> ImportNote {
     let text = |key: &str| note.get(key).and_then(Value::as_str).map(str::to_owned);
     let numbers: Option<Vec<f64>> = note.get("numbers").and_then(Value::as_array).and_then(|list| list.iter().map(Value::as_f64).collect());
@@ -428,7 +428,7 @@ fn note(note: &Value) -> ImportNote {
     }
 }
 
-/// An answer whose status is `ok`, or what its status says.
+/// The answer if its status is `ok`, else the error of its status.
 pub(crate) fn checked(answer: Frame) -> Result<Frame, NoAnswer> {
     let reason = || match answer.text("reason") {
         "" => "the oracle gives no reason".to_owned(),

@@ -1,4 +1,4 @@
-//! Our engine, `featherbench`: the kernels of this workspace, in this process.
+//! Our engine, `featherbench`: the kernels of this workspace, run in this process.
 
 pub use crate::kernel::timed;
 use crate::kernel::{Kernel, kernel, methods};
@@ -53,7 +53,7 @@ impl Engine for Featherbench {
     }
 }
 
-/// A kernel with room for its answers; it allocates when a longer range comes than ever before.
+/// A kernel with memory for its answers. It allocates when a range is longer than any before.
 struct Ready<'a> {
     kernel: Kernel<'a>,
     size: usize,
@@ -71,7 +71,7 @@ impl Evaluation for Ready<'_> {
         Ok(())
     }
 
-    /// Every answer goes to the same place, in the kernel: a stream of answers would measure the memory.
+    /// Every answer goes to the same place, in the kernel. Storing all answers would measure the memory.
     fn clock(&mut self, range: Range<usize>) -> Result<Duration, NoAnswer> {
         let mut state = range.start % self.states;
         let start = Instant::now();

@@ -1,4 +1,4 @@
-//! A child process that speaks in frames, within limits of time and memory.
+//! A child process that exchanges frames, with limits of time and memory.
 
 use crate::clock::{Clock, SystemClock, wait};
 use featherbench_bench::frame::{Frame, FrameError};
@@ -21,35 +21,35 @@ pub struct Limits {
 }
 
 impl Default for Limits {
-    /// Two minutes (the slowest honest answer of the default suite takes a few seconds, an import on a cold disk half a minute) and 8 GiB
-    /// (Pinocchio's workspace takes 1.4 GB at 300 dofs; Drake maps 3 GB on start).
+    /// Two minutes and 8 GiB. The slowest right answer of the default suite takes a few seconds, an import from a cold disk half a minute.
+    /// Pinocchio's workspace takes 1.4 GB at 300 dofs; Drake maps 3 GB at its start.
     fn default() -> Self {
         Self { answer: Duration::from_secs(120), memory: 8 << 30 }
     }
 }
 
-/// How many of the last lines of standard error are kept for the reason of a failure.
+/// How many lines at the end of standard error are kept for the reason of a failure.
 const KEPT_LINES: usize = 6;
 
-/// How long a process that answers no more may take to end by itself, and its last words to arrive. One that crashes on a busy machine needs
-/// longer than a moment, and would be told from one that goes on by nothing else.
+/// How long a process that no longer answers may take to exit, and the end of its standard error to arrive. A process that crashes on a
+/// busy machine needs some time; without it, it could not be told from one that goes on.
 const GRACE: Duration = Duration::from_secs(5);
-/// How long a process may take to end after its input did: an engine's libraries clean up.
+/// How long a process may take to exit after its input ended: an engine's libraries clean up.
 const LEAVE: Duration = Duration::from_secs(10);
-/// How often it is looked whether it has ended.
+/// The interval at which it is checked whether the process has exited.
 const LOOK: Duration = Duration::from_millis(5);
 
 /// A running oracle. Dropping it ends the process.
 pub(crate) struct Process {
     child: Child,
-    /// To the thread that writes: a process that does not read cannot stop us.
+    /// To the thread that writes: so a process that does not read cannot block us.
     requests: Option<Sender<Vec<u8>>>,
     answers: Receiver<Result<Option<Frame>, FrameError>>,
     last_words: Arc<Mutex<VecDeque<String>>>,
-    /// Closes with standard error.
+    /// Closes when standard error closes.
     silence: Receiver<()>,
     limits: Limits,
-    /// Who says that an answer is late.
+    /// The clock that decides whether an answer is late.
     clock: Arc<dyn Clock>,
     alive: bool,
     /// The number of the last request.
@@ -62,10 +62,10 @@ impl Process {
         Self::start_by(command, limits, Arc::new(SystemClock::default()))
     }
 
-    /// Starts a program whose limits pass by this clock.
+    /// Starts a program; its limits are measured by this clock.
     pub(crate) fn start_by(command: &[OsString], limits: Limits, clock: Arc<dyn Clock>) -> Result<Self, String> {
         let (program, arguments) = command.split_first().ok_or("no program is named")?;
-        // The shell sets the limit of address space and then becomes the program.
+        // The shell sets the limit of address space and then executes the program.
         let mut child = Command::new("sh")
             .arg("-c")
             .arg("ulimit -v \"$1\" && shift && exec \"$@\"")
@@ -84,7 +84,7 @@ impl Process {
         let (output, errors) = (child.stdout.take().ok_or("no standard output")?, child.stderr.take().ok_or("no standard error")?);
         let mut input = child.stdin.take().ok_or("no standard input")?;
         let (requests, due) = channel::<Vec<u8>>();
-        // When writing fails the process is gone or deaf; waiting for its answer finds out which.
+        // When writing fails, the process has exited or does not read. Waiting for its answer shows which.
         thread::spawn(move || due.into_iter().try_for_each(|bytes| input.write_all(&bytes).and_then(|()| input.flush())));
         let (sender, answers) = sync_channel(1);
         thread::spawn(move || forward_answers(BufReader::new(output), &sender));
@@ -100,7 +100,7 @@ impl Process {
 
     /// Sends a request and waits for its answer.
     ///
-    /// After an error the process is dead: a late answer must never be taken for the answer to a later question.
+    /// After an error the process is ended: a late answer must never be taken for the answer to a later question.
     pub(crate) fn ask(&mut self, request: &Frame) -> Result<Frame, String> {
         let result = self.try_ask(request);
         if result.is_err() {
@@ -115,11 +115,11 @@ impl Process {
         let id = request.header.entry("id").or_insert_with(|| self.asked.into()).clone();
         let requests = self.requests.as_ref().ok_or("the oracle has ended")?;
         let answer = match self.answers.try_recv() {
-            // It would be taken for the answer to this question.
+            // Otherwise it would be taken for the answer to this question.
             Ok(Ok(Some(_))) => return Err("the oracle's answer is not in the protocol: it came before the question".into()),
             Ok(end) => Ok(end),
             Err(_) => {
-                // A broken pipe says less than the dead process: its reason is found below.
+                // A broken pipe says less than the exit reason of the process, which is found below.
                 let _ = requests.send(request.to_bytes());
                 wait(&*self.clock, &self.answers, self.limits.answer)
             }
@@ -135,10 +135,10 @@ impl Process {
         }
     }
 
-    /// Ends its input and waits for its end.
+    /// Ends its input and waits for its exit.
     ///
     /// # Errors
-    /// What it said, or did not do, instead of ending well.
+    /// The reason, if it does not exit in time, exits with an error or sends something more.
     pub(crate) fn close(mut self) -> Result<(), String> {
         self.requests = None;
         match wait(&*self.clock, &self.answers, LEAVE) {
@@ -161,7 +161,7 @@ impl Process {
     fn obituary(&mut self) -> String {
         self.requests = None;
         let status = self.status();
-        // Standard error closes with the process, unless a child of it holds on to it.
+        // Standard error closes when the process exits, unless a child of it keeps it open.
         let _ = wait(&*self.clock, &self.silence, GRACE);
         let words = self.last_words.lock().unwrap_or_else(PoisonError::into_inner);
         let words: Vec<&str> = words.iter().map(String::as_str).collect();
@@ -172,7 +172,7 @@ impl Process {
         )
     }
 
-    /// How the process ended. One that closes its standard output and lives on is ended.
+    /// How the process exited. A process that closes its standard output and goes on is ended.
     fn status(&mut self) -> String {
         let start = self.clock.now();
         loop {
@@ -191,7 +191,7 @@ impl Process {
     fn end(&mut self) {
         self.alive = false;
         self.requests = None;
-        // Errors here mean that it is gone already.
+        // An error here means that it has exited already.
         let _ = self.child.kill();
         let _ = self.child.wait();
     }
@@ -215,7 +215,7 @@ fn forward_answers(mut output: impl BufRead, answers: &SyncSender<Result<Option<
 
 fn keep_last_words(mut errors: impl BufRead, kept: &Mutex<VecDeque<String>>) {
     let mut line = Vec::new();
-    // A line without an end cannot fill the memory: it is kept in pieces.
+    // A line without an end must not fill the memory: it is kept in pieces.
     while errors.by_ref().take(500).read_until(b'\n', &mut line).is_ok_and(|length| length > 0) {
         let text = String::from_utf8_lossy(&line).trim().to_owned();
         line.clear();

@@ -1,10 +1,13 @@
-//! An engine that plays back what an oracle answered: `datasets/recorded/MODEL.recording`.
+//! An engine that repeats the recorded answers of an oracle: `datasets/recorded/MODEL.recording`.
 //!
-//! A recording is about one robot and holds what every engine answered. It is a sequence of parts, each a line of JSON with the number of
-//! raw bytes that follow it: first the robot and the states; then, for each engine, who it is and its outcomes, one after the other; at last
-//! how many parts there were. The first answer to a quantity stands as plain doubles, later ones as their distances from it in units in the
-//! last place: exact, and an eighth of the size. The last line is the checksum of all bytes before it: a file of which one bit differs is
-//! refused.
+//! A recording is about one robot and has the answers of every engine. It is a sequence of parts. Each part is a line of JSON with the
+//! number of raw bytes that follow it. The parts are:
+//! - the robot and the states;
+//! - for each engine its identity, then its outcomes one by one;
+//! - the number of parts.
+//!
+//! The first answer to a quantity is stored as plain doubles. Later ones are stored as their distances from it in units in the last place:
+//! exact, and an eighth of the size. The last line is the checksum of all bytes before it. So a file in which one bit differs is an error.
 
 use crate::coding::{delta, from_delta, from_plain, plain};
 use featherbench_bench::{Engine, Evaluation, Identity, NoAnswer, Outcome, Quantity, Robot};
@@ -25,10 +28,10 @@ pub enum RecordingError {
     Io {
         /// The file.
         path: PathBuf,
-        /// What the system says.
+        /// The error of the operating system.
         source: std::io::Error,
     },
-    /// The file is damaged, or about something else.
+    /// The file is damaged, or about another robot.
     #[error("{path}: {what}; record it again with `featherbench record`")]
     Damaged {
         /// The file.
@@ -38,26 +41,26 @@ pub enum RecordingError {
     },
 }
 
-/// What engines answered about one robot.
+/// The engines' answers about one robot.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Recording {
     /// The engines, in the order in which they were asked.
     pub engines: Vec<EngineRecording>,
 }
 
-/// What one engine answered about one robot.
+/// The answers of one engine about one robot.
 #[derive(Clone, Debug, PartialEq)]
 pub struct EngineRecording {
-    /// Who answered.
+    /// The identity of the engine.
     pub identity: Identity,
     /// The outcomes by quantity and method.
     pub outcomes: Vec<(Quantity, String, Outcome)>,
 }
 
-/// Version of the form of recordings.
+/// Version of the format of recordings.
 const FORMAT: u64 = 2;
 
-/// Name of a robot's recording.
+/// File name of a robot's recording.
 pub fn recording_name(model: &str) -> String {
     format!("{model}.recording")
 }
@@ -160,7 +163,7 @@ impl Recording {
         }
     }
 
-    /// What an engine answered.
+    /// The answers of an engine.
     pub fn engine(&self, name: &str) -> Option<&EngineRecording> {
         self.engines.iter().find(|engine| engine.identity.name == name)
     }
@@ -207,7 +210,7 @@ fn identity(header: &Value) -> Result<Identity, String> {
     Ok(Identity { name: text("engine"), version: text("version"), source: EngineSource::Recorded, build })
 }
 
-/// The numbers of a batch that anybody is asked about: q, v, a, tau, and the wrenches of the states that `id_wrench` takes.
+/// The numbers of a batch that every engine is asked about: q, v, a, tau, and the wrenches of the states that `id_wrench` takes.
 fn states(states: &StateBatch) -> Vec<f64> {
     let wrenched = Quantity::InverseDynamicsWrench.states(states.count()) * 6 * states.bodies;
     let parts: [&[f64]; 5] = [&states.q, &states.v, &states.a, &states.tau, &states.wrench[..wrenched]];
@@ -221,10 +224,10 @@ fn pack(matrices: &[f64], topology: &Topology) -> Vec<f64> {
     matrices.chunks_exact(n * n).flat_map(|m| (0..n).flat_map(|i| row(m, i)).collect::<Vec<_>>()).collect()
 }
 
-/// The bytes of an answer, by its distance from a base where there is one.
+/// The bytes of an answer, by its distance from a base if there is one.
 ///
-/// Of mass matrices the tree-sparse entries come first, behind their length in bytes; then the distances of all entries from those of the
-/// symmetric matrix that these make, most of them zero.
+/// A mass matrix has two parts. First come the tree-sparse entries, after their length in bytes. Then come the distances of all entries
+/// from those of the symmetric matrix that these entries make; most of these distances are zero.
 fn encode(quantity: Quantity, values: &[f64], base: Option<&[f64]>, topology: &Topology) -> Vec<u8> {
     let code = |values: &[f64], base: Option<&[f64]>| base.map_or_else(|| plain(values), |base| delta(values, base));
     if quantity != Quantity::MassMatrix {
@@ -266,7 +269,8 @@ fn unpack(packed: &[f64], topology: &Topology) -> Vec<f64> {
 /// The recordings of a suite's robots, by name.
 pub type Recordings = BTreeMap<String, Result<Recording, String>>;
 
-/// Reads the recordings of robots from a folder. A missing or damaged one is that robot's reason, not an error.
+/// Reads the recordings of robots from a folder. A missing or damaged file becomes the reason of that robot, and not an error of the
+/// function.
 pub fn read_recordings(folder: &Path, robots: &[&Robot]) -> Recordings {
     let read = |robot: &Robot| Recording::read(&folder.join(recording_name(&robot.name)), robot).map_err(|error| error.to_string());
     robots.iter().map(|robot| (robot.name.clone(), read(robot))).collect()
@@ -283,7 +287,7 @@ impl Recorded {
     /// The engine of this name in a set of recordings.
     ///
     /// # Errors
-    /// Why there is none: no recording at all can be read, none has answers of the engine, or they come from several versions of it.
+    /// Why there is none: no recording can be read, none has answers of the engine, or they come from several versions of it.
     pub fn new(recordings: &Arc<Recordings>, engine: &str) -> Result<Self, String> {
         let mut methods: BTreeMap<Quantity, Vec<String>> = BTreeMap::new();
         let mut identity: Option<Identity> = None;
@@ -315,7 +319,7 @@ impl Engine for Recorded {
         self.methods.get(&quantity).cloned().unwrap_or_default()
     }
 
-    /// What was recorded takes no time.
+    /// Recorded answers have no time.
     fn timed(&self, _: Quantity) -> Vec<String> {
         Vec::new()
     }

@@ -1,4 +1,4 @@
-//! Reproductions of known deviations: modules of `oracles/featherbench_oracles/ENGINE/reproductions`, each asked in a process of its own.
+//! Reproductions of known deviations: modules of `oracles/featherbench_oracles/ENGINE/reproductions`, each run in a process of its own.
 
 use crate::oracle::{Limits, checked, shaped};
 use crate::process::Process;
@@ -10,7 +10,7 @@ use std::ffi::OsString;
 /// Asks `command` (`python -m featherbench_oracles.reproduce`) for a reproduction's values at the seeds 0..`seeds`.
 ///
 /// # Errors
-/// [`NoAnswer::Failed`] when the process or the reproduction fails, or another number of values comes.
+/// [`NoAnswer::Failed`] when the process or the reproduction fails, or the number of values is wrong.
 pub fn reproduce(command: &[OsString], limits: Limits, name: &str, seeds: u64) -> Result<Vec<f64>, NoAnswer> {
     let mut process = Process::start(command, limits).map_err(NoAnswer::Failed)?;
     let request = Frame::new(json!({"op": "reproduce", "name": name, "seeds": seeds}), Vec::new());

@@ -5,10 +5,10 @@ use featherbench_bench::frame::Block;
 use featherbench_model::StateBatch;
 use serde_json::{Value, json};
 
-/// The description of a robot as it is sent.
+/// The description of a robot in the form of the protocol.
 ///
 /// # Errors
-/// A sentence, when the description is no robot.
+/// A sentence, when the description is not a robot.
 pub(crate) fn description(robot: &Robot) -> Result<Value, String> {
     let line = featherbench_formats::neutral::to_line(&robot.description).map_err(|error| error.to_string())?;
     serde_json::from_str(&line).map_err(|error| error.to_string())

@@ -1,9 +1,9 @@
-//! The shapes of blocks, as the tables of `oracles/PROTOCOL.md` have them: one place for runs, the conformance test and native peers.
+//! The shapes of blocks, as in the tables of `oracles/PROTOCOL.md`. Runs, the conformance test and native oracles all use them.
 
 use featherbench_bench::frame::Frame;
 use featherbench_bench::{Quantity, Robot};
 
-/// The shape of an answer about so many states: `[count, …]`.
+/// The shape of an answer about this number of states: `[count, …]`.
 pub(crate) fn of_value(quantity: Quantity, robot: &Robot, count: usize) -> Vec<usize> {
     let (nv, bodies) = (robot.states.nv, robot.description.bodies.len());
     let per_state = match quantity {
@@ -25,7 +25,7 @@ pub(crate) fn of_readback(robot: &Robot) -> Vec<usize> {
 /// The numbers of a block that must be there in this shape.
 ///
 /// # Errors
-/// A sentence that names the block, its shape and the one that is due.
+/// A sentence that names the block, its shape and the expected one.
 pub(crate) fn block<'a>(answer: &'a Frame, name: &str, due: &[usize]) -> Result<&'a [f64], String> {
     let block = answer.block(name).ok_or_else(|| format!("the answer has no block '{name}'"))?;
     if block.shape != due {
@@ -40,7 +40,7 @@ mod tests {
     use featherbench_model::generate::Family;
     use featherbench_results::ModelOrigin;
 
-    /// A robot of which no two of nv, bodies and stored are the same, and none a number of the tables.
+    /// A robot for which nv, bodies and stored are all different, and none is a number of the tables.
     fn robot() -> Robot {
         let description = Family::parse("joints:kind=mixed,base=free").unwrap().generate().unwrap();
         Robot::new(&description, "joints", ModelOrigin::Generated, 2, 1).unwrap()
@@ -50,7 +50,7 @@ mod tests {
         std::fs::read_to_string(std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../..").join(file)).unwrap()
     }
 
-    /// The extents of a table's entry, words standing for those of a robot.
+    /// The extents of a table's entry; words stand for the numbers of a robot.
     fn extents(words: &str, robot: &Robot) -> Vec<usize> {
         let (nv, bodies, stored) = (robot.states.nv, robot.description.bodies.len(), robot.model.topology.stored());
         assert!(nv != bodies && stored != nv && ![1, 3, 6, 12].iter().any(|n| [nv, bodies, stored].contains(n)), "{nv} {bodies} {stored}");
@@ -63,7 +63,7 @@ mod tests {
         words.split(',').map(|word| word.trim().trim_matches('"')).filter(|word| !word.is_empty()).map(extent).collect()
     }
 
-    /// The page is what the authors of oracles read: what it says of each quantity is what runs and the conformance test ask for.
+    /// Authors of oracles use that page: its shapes must be those that runs and the conformance test expect.
     #[test]
     fn the_page_and_the_checks_agree_on_every_quantity() {
         let (page, robot) = (project("oracles/PROTOCOL.md"), robot());
@@ -78,7 +78,7 @@ mod tests {
             assert_eq!(due.iter().product::<usize>(), 5 * quantity.size(&robot), "{row}");
             seen.push(quantity);
         }
-        // The read-back stands among the requests; single precision is ours alone.
+        // The read-back is among the requests; only our engine has single precision.
         let asked = Quantity::ALL.into_iter().filter(|quantity| !matches!(quantity, Quantity::Readback | Quantity::ForwardDynamicsSingle));
         seen.sort_unstable();
         let mut due: Vec<Quantity> = asked.collect();

@@ -1,5 +1,5 @@
-//! Recorded answers come back to the bit, and a file that is truncated, damaged or about something else is refused by its name: never a
-//! wrong answer, never a panic, and never a reason to give up the other robots.
+//! Recorded answers are returned to the bit. A file that is truncated, damaged or about another robot is an error that names the file.
+//! It never gives a wrong answer, a panic, or a failure of the other robots.
 
 use featherbench_bench::{Engine, Identity, NoAnswer, Outcome, Quantity, Robot};
 use featherbench_engines::{
@@ -31,7 +31,7 @@ fn identity(engine: &str, version: &str) -> Identity {
     Identity { name: engine.into(), version: version.into(), source: EngineSource::Recorded, build }
 }
 
-/// What our kernels answer, each number moved by what an engine of this name might round.
+/// The answers of our kernels, each number k changed by ulps·(k mod 3) units in the last place.
 fn answers(robot: &Robot, engine: &str, version: &str, ulps: u64) -> EngineRecording {
     let featherbench = Featherbench::new();
     let mut outcomes = Vec::new();
@@ -46,7 +46,7 @@ fn answers(robot: &Robot, engine: &str, version: &str, ulps: u64) -> EngineRecor
     EngineRecording { identity: identity(engine, version), outcomes }
 }
 
-/// Two engines, one of which has answers that are none, refuses a question and fails at another.
+/// Two engines. One has numbers that are not finite, does not offer one question, and fails at another.
 fn recording(robot: &Robot) -> Recording {
     let mut second = answers(robot, "second", "2", 1);
     let Outcome::Values(values) = &mut second.outcomes[1].2 else { panic!("{:?}", second.outcomes[1]) };
@@ -68,7 +68,7 @@ fn write(folder: &Path, robot: &Robot, bytes: &[u8]) -> PathBuf {
 /// An outcome with its values as bits.
 type Bits = (Quantity, String, Result<Vec<u64>, NoAnswer>);
 
-/// Everything of a recording.
+/// The contents of a recording.
 fn bits(recording: &Recording) -> Vec<(Identity, Vec<Bits>)> {
     let outcome = |outcome: &Outcome| match outcome {
         Outcome::Import(_) => panic!("readings are not recorded"),
@@ -82,7 +82,7 @@ fn bits(recording: &Recording) -> Vec<(Identity, Vec<Bits>)> {
     recording.engines.iter().map(engine).collect()
 }
 
-/// A recording without its last line, and one that is given its checksum anew: for damage that a checksum does not show.
+/// A recording without its last line, for damage that the checksum does not show.
 fn unsealed(bytes: &[u8]) -> &[u8] {
     featherbench_results::unsealed(bytes).unwrap()
 }
@@ -128,7 +128,7 @@ fn a_truncated_file_is_damaged_wherever_it_ends() {
     for cut in (0..whole.len()).filter(|cut| cut % 61 == 0 || near_a_line(cut)) {
         let message = damaged(&write(folder.path(), &robot, &whole[..cut]), &robot);
         assert!(message.contains("checksum") && message.contains("truncated"), "{message}");
-        // Below the checksum: what is cut is missed by its own parts too.
+        // Without the checksum: the parts themselves show that something is missing.
         if cut < unsealed(&whole).len() {
             damaged(&write(folder.path(), &robot, &sealed(&whole[..cut])), &robot);
         }
@@ -141,7 +141,7 @@ fn a_truncated_file_is_damaged_wherever_it_ends() {
     assert!(Recording::read(&path, &robot).is_ok());
 }
 
-/// Every bit of the file, whatever it stands for.
+/// Every bit of the file.
 #[test]
 fn every_flipped_bit_is_an_error_that_names_the_file() {
     let robot = robot("chain:n=2");
@@ -153,7 +153,7 @@ fn every_flipped_bit_is_an_error_that_names_the_file() {
             let mut flipped = whole.clone();
             flipped[at] ^= 1 << bit;
             assert!(Recording::from_bytes(&flipped, &robot).is_err(), "bit {bit} of byte {at}");
-            // Through the file itself for one byte in sixteen: the message is made in one place.
+            // From the file itself for one byte in sixteen: one place makes the message.
             if at % 16 == 0 {
                 damaged(&write(folder.path(), &robot, &flipped), &robot);
             }
@@ -162,7 +162,7 @@ fn every_flipped_bit_is_an_error_that_names_the_file() {
     assert!(whole.len() > 2000, "{} bytes", whole.len());
 }
 
-/// Whole parts that are missing, doubled or not understood, each with a right checksum.
+/// Whole parts that are missing, doubled or unknown, each with a right checksum.
 #[test]
 fn an_altered_file_is_damaged() {
     let robot = robot("chain:n=2");
@@ -248,13 +248,13 @@ fn a_recorded_engine_answers_what_it_was_asked() {
     assert!(failed(ask(&good, Quantity::InverseDynamics, "abacus", 0..1)).contains("was not recorded"));
     assert_eq!(ask(&good, Quantity::Bias, "a", 0..1), Err(NoAnswer::NotOffered("no such joint".into())));
     assert_eq!(failed(ask(&good, Quantity::Bias, "b", 0..1)), "a \"quoted\"\nreason, ünïcode");
-    // The other robots are their own errors, which name their files.
+    // The other robots have their own errors, which name their files.
     assert!(failed(ask(&missing, Quantity::InverseDynamics, "rnea", 0..4)).contains("chain-planar-3.recording"));
     assert!(failed(ask(&broken, Quantity::InverseDynamics, "rnea", 0..4)).contains("chain-planar-2.recording"));
     assert!(failed(ask(&robot("chain:n=4"), Quantity::InverseDynamics, "rnea", 0..4)).contains("chain-planar-4"));
 }
 
-/// Rows carry one version: answers of several are no engine.
+/// Rows have one version: answers of several versions are not one engine.
 #[test]
 fn versions_do_not_mix() {
     let folder = tempfile::tempdir().unwrap();

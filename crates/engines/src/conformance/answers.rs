@@ -1,4 +1,4 @@
-//! What the oracle answers about robots: shapes, repetition, ranges, and values against featherbench.
+//! The oracle's answers about robots: shapes, repetition, ranges, and values compared with featherbench's.
 
 use super::manners::Methods;
 use super::mistakes::{MISTAKES, Mistake};
@@ -11,7 +11,7 @@ use featherbench_bench::Quantity;
 use serde_json::{Value, json};
 use std::collections::BTreeMap;
 
-/// Answers to one question: which robot, and the values at every state.
+/// Answers to one question: the robot's index, and the values at every state.
 type Given = Vec<(usize, Vec<f64>)>;
 
 /// The answers of an oracle, by quantity and method.
@@ -20,7 +20,7 @@ pub(super) struct Answers {
     given: BTreeMap<(String, String), Given>,
 }
 
-/// Asks for every quantity of a robot; whether the oracle holds robot and states then.
+/// Asks for every quantity of a robot; returns whether the oracle then has robot and states.
 pub(super) fn ask(talk: &mut Talk, index: usize, scene: &Scene, offered: &Methods, answers: &mut Answers) -> bool {
     let robot = &scene.robot;
     let built = match talk.prepare(robot) {
@@ -55,7 +55,7 @@ pub(super) fn ask(talk: &mut Talk, index: usize, scene: &Scene, offered: &Method
     evaluate_all(talk, index, scene, offered, answers)
 }
 
-/// Every quantity by every method of the robot that it holds; whether it took the states.
+/// Asks for every quantity by every method of the robot that it has built; returns whether it took the states.
 pub(super) fn evaluate_all(talk: &mut Talk, index: usize, scene: &Scene, offered: &Methods, answers: &mut Answers) -> bool {
     let (header, blocks) = states(&scene.robot, &scene.robot.states);
     if talk.expect("states are taken", header, blocks, &["ok"]).is_none() {
@@ -76,7 +76,7 @@ fn evaluations(talk: &mut Talk, scene: &Scene, quantity: Quantity, method: &str)
     repeated(talk, &named, quantity.size(&scene.robot), |talk, first, count| evaluate(talk, scene, quantity, method, first, count))
 }
 
-/// Answers of so many numbers per state: about the whole batch, the same again, and parts of it.
+/// Answers of this number of values per state: for the whole batch, for it again, and for parts of it.
 pub(super) fn repeated(
     talk: &mut Talk,
     named: &str,
@@ -103,7 +103,7 @@ fn evaluate(talk: &mut Talk, scene: &Scene, quantity: Quantity, method: &str, fi
     numbers(talk, scene, &named, header, &shape::of_value(quantity, robot, count))
 }
 
-/// The numbers of the block `value` that answers a question, if it is answered; if not, why is noted.
+/// The numbers of the block `value` that answers a question. If there is no answer, the reason is noted.
 pub(super) fn numbers(talk: &mut Talk, scene: &Scene, named: &str, question: Value, due: &[usize]) -> Option<Vec<f64>> {
     let (standing, found) = match talk.ask(question, Vec::new()) {
         Err(reason) => (Standing::Wrong, reason),
@@ -120,7 +120,7 @@ pub(super) fn numbers(talk: &mut Talk, scene: &Scene, named: &str, question: Val
     None
 }
 
-/// Names the first field that was not read back as it was given.
+/// Names the first field whose read-back differs from the description.
 fn readback(talk: &mut Talk, scene: &Scene, found: &[f64]) {
     const FIELDS: [(&str, usize, usize); 5] =
         [("mass", 0, 1), ("com", 1, 4), ("inertia", 4, 10), ("the placement's rotation", 10, 19), ("the placement's translation", 19, 22)];
@@ -144,7 +144,7 @@ fn readback(talk: &mut Talk, scene: &Scene, found: &[f64]) {
 }
 
 impl Answers {
-    /// Compares with featherbench, and looks for the mistake behind what differs; `route` is added to what is noted.
+    /// Compares with featherbench, and looks for the mistake that explains a difference; `route` is added to what is noted.
     pub(super) fn judge(&self, talk: &mut Talk, scenes: &[Scene], route: &str) {
         for ((quantity, method), given) in &self.given {
             let Some(quantity) = Quantity::parse(quantity) else { continue };
@@ -173,7 +173,7 @@ impl Answers {
     }
 }
 
-/// An answer beside featherbench's.
+/// An answer and featherbench's.
 struct Compared<'a> {
     scene: &'a Scene,
     value: &'a [f64],
@@ -198,7 +198,7 @@ impl<'a> Compared<'a> {
     }
 }
 
-/// The mistakes, alone or two together, that explain every answer, or else as many of the wrong ones as any mistake does.
+/// The mistakes, one or two together, that explain every answer. If there are none: the mistake that explains most of the wrong answers.
 fn advice(compared: &[Compared], quantity: Quantity) -> Vec<String> {
     if compared.iter().any(|answer| answer.value.iter().any(|x| !x.is_finite())) {
         return vec!["some of its numbers are none (NaN or infinite) at states where featherbench's are finite".into()];
@@ -229,7 +229,7 @@ fn advice(compared: &[Compared], quantity: Quantity) -> Vec<String> {
     }
 }
 
-/// Notes the quantities that it does not offer.
+/// Notes the quantities that the oracle does not offer.
 pub(super) fn lacking(talk: &mut Talk, offered: &Methods) {
     let ours = |quantity: &Quantity| matches!(quantity, Quantity::Readback | Quantity::ForwardDynamicsSingle | Quantity::MassMatrixSparse);
     let inner = |quantity: &Quantity| matches!(quantity, Quantity::Factorization | Quantity::Solve);

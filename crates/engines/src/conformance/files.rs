@@ -1,7 +1,7 @@
-//! The op `read`: files that we wrote, what the oracle tells of them, and its answers about the robot that it then holds.
+//! The op `read`: the oracle imports files that we wrote. Its import result is tested, and its answers about the robot that it then has.
 //!
-//! A parser may edit what it reads, so a robot that differs from the file is no fault here (`featherbench compare` says where engines
-//! differ). That the answers are those of the robot that it tells, in the order in which it tells it, is what is tested.
+//! A parser may edit a robot. So a robot that differs from the file is not a fault here (`featherbench compare` says where engines differ).
+//! What is tested: the answers are those of the robot that the oracle reports, in the order in which it reports it.
 
 use super::answers::{self, Answers};
 use super::manners::Methods;
@@ -17,7 +17,7 @@ use featherbench_results::ModelOrigin;
 use serde_json::{Value, json};
 use std::path::Path;
 
-/// What is answered of a robot as read.
+/// The quantities that are asked of an imported robot.
 const AS_READ: [Quantity; 6] = [
     Quantity::InverseDynamics,
     Quantity::Bias,
@@ -43,11 +43,11 @@ const CAUSES: [&str; 14] = [
     "not_compared",
     "warning",
 ];
-/// Numbers of order one, through a parser that may diagonalise inertias and turn rotations into angles.
+/// The tolerance for numbers of order one. The parser may diagonalise inertias and turn rotations into angles.
 const SAME: f64 = 1e-9;
-/// More elements in one another than an oracle takes.
+/// More nested elements than an oracle accepts.
 const NESTED: usize = 501;
-/// What no URDF of our own has, as its root is the world: a root that a free base moves. A link is fixed to it.
+/// A case that our own URDF files never have, as their root is the world: a root that a free base moves. A link is fixed to it.
 const FLOATING: &str = r#"<robot name="floating">
   <link name="trunk">
     <inertial><origin xyz="0.02 -0.01 0.05" rpy="0 0 0"/><mass value="4"/>
@@ -67,18 +67,18 @@ const FLOATING: &str = r#"<robot name="floating">
 </robot>
 "#;
 
-/// A file of ours.
+/// A file that we wrote.
 struct Written {
     shows: &'static str,
     name: &'static str,
     format: FileFormat,
     base: FileBase,
     text: String,
-    /// The robot that it holds.
+    /// The robot in it.
     robot: Description,
 }
 
-/// A branched tree of the family `joints`, with names that no parser gives to joints of its own.
+/// A branched tree of the family `joints`, with joint names that no parser uses itself.
 fn tree(kind: &str, base: &str) -> Result<Description, String> {
     let family = Family::parse(&format!("joints:kind={kind},base={base},shape=branched"));
     let mut robot = family.and_then(|family| family.generate()).map_err(|error| error.to_string())?;
@@ -92,7 +92,7 @@ fn files() -> Result<[Written; 3], String> {
     let floating = urdf::Options { base: urdf::Base::Floating, ..urdf::Options::default() };
     let (free, _) = urdf::import(FLOATING, "floating.urdf", &floating).map_err(|error| error.to_string())?;
     let mut scene = tree("spherical", "free")?;
-    // What MJCF has no place for.
+    // MJCF cannot hold these.
     for joint in scene.bodies.iter_mut().map(|body| &mut body.joint) {
         (joint.damping, joint.friction, joint.velocity) = Default::default();
         if joint.kind == JointType::Free {
@@ -122,7 +122,7 @@ fn files() -> Result<[Written; 3], String> {
     ])
 }
 
-/// Has it read the files and asks about each; what it does not read is lacking.
+/// Lets the oracle import the files, and asks about each. A format that it does not import is lacking.
 ///
 /// # Errors
 /// A sentence, when the files cannot be written.
@@ -172,9 +172,9 @@ fn request(path: &Path, format: FileFormat, base: FileBase) -> Value {
     json!({"op": "read", "file": path.to_string_lossy(), "format": format.name(), "base": base.name()})
 }
 
-/// The answer, when it reads the file.
+/// The answer, if it imports the file.
 fn ask(talk: &mut Talk, file: &Written, path: &Path) -> Option<Frame> {
-    // How it answers an op that it does not know: with the same words, it does not know this one.
+    // Its answer to an unknown op. If the answer to `read` has the same words, it does not know `read`.
     let unknown = talk.ask(json!({"op": "dance"}), Vec::new()).map(|answer| answer.text("reason").replace("dance", "read"));
     let what = what(file);
     match talk.ask(request(path, file.format, file.base), Vec::new()) {
@@ -194,7 +194,7 @@ fn ask(talk: &mut Talk, file: &Written, path: &Path) -> Option<Frame> {
     None
 }
 
-/// Its notes: texts, of known causes.
+/// Its notes: they must be texts with known causes.
 fn notes(talk: &mut Talk, answer: &Frame) {
     let wrong = match answer.header.get("notes").and_then(Value::as_array) {
         None => Some("`notes` is no list".to_owned()),
@@ -212,7 +212,7 @@ fn notes(talk: &mut Talk, answer: &Frame) {
     talk.note(standing, "the notes of a reading have causes of the table", &wrong.unwrap_or_default(), &[]);
 }
 
-/// The robot that it tells beside the file's.
+/// Compares the robot that it reports with the file's.
 fn compare(talk: &mut Talk, file: &Written, reading: &Import) {
     let (what, told) = (what(file), &reading.description);
     let noted = |cause: &str| reading.notes.iter().any(|note| note.cause == cause);
@@ -253,7 +253,7 @@ fn links(robot: &Description) -> impl Iterator<Item = &str> {
     robot.bodies.iter().map(|body| body.name.as_str()).chain(robot.frames.iter().map(|frame| frame.name.as_str()))
 }
 
-/// The first thing in which two bodies of a name differ.
+/// The first property in which two bodies of one name differ.
 fn difference(one: &BodyDescription, other: &BodyDescription) -> Option<&'static str> {
     let axis = |body: &BodyDescription| body.joint.kind.axis().unwrap_or_default().to_vec();
     let numbers = |body: &BodyDescription| {
@@ -275,7 +275,7 @@ fn difference(one: &BodyDescription, other: &BodyDescription) -> Option<&'static
     pairs.into_iter().find(|((_, one), (_, other))| far((one, other))).map(|((field, _), _)| field)
 }
 
-/// Files that are none, and what comes after them.
+/// Files that are invalid, and whether the oracle works afterwards.
 fn refusals(talk: &mut Talk, format: FileFormat, folder: &Path) -> Result<(), String> {
     let root = if format == FileFormat::Urdf { "robot" } else { "mujoco" };
     let broken = format!("<{root} name=\"broken\"><unclosed></{root}>");

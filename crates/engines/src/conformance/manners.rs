@@ -1,4 +1,4 @@
-//! The conversation itself: hello, what has no answer, and the end.
+//! Protocol tests: `hello`, requests that have no answer, and the end.
 
 use super::talk::Talk;
 use super::values::{Scene, same_bits};
@@ -15,7 +15,7 @@ const PROTOCOL: u64 = crate::oracle::PROTOCOL;
 /// Quantities by method.
 pub(super) type Methods = BTreeMap<String, Vec<String>>;
 
-/// Asks who it is, and what it offers of steps. Without an answer there is nothing more to ask.
+/// Asks for its identity and the steps that it offers. Without an answer the test ends here.
 pub(super) fn hello(talk: &mut Talk) -> Option<Steps> {
     let answer = talk.expect("it answers hello", json!({"op": "hello"}), Vec::new(), &["ok"])?;
     let mut wrong = Vec::new();
@@ -56,7 +56,7 @@ pub(super) fn hello(talk: &mut Talk) -> Option<Steps> {
     Some(steps)
 }
 
-/// Requests that cannot be met while there is no robot.
+/// Requests that have no answer while there is no robot.
 pub(super) fn before_prepare(talk: &mut Talk) {
     let block = || vec![Block::new("x", &[2], &[1.0, 2.0])];
     talk.expect("an op that nobody knows is an error", json!({"op": "dance"}), Vec::new(), &["error"]);
@@ -85,7 +85,7 @@ pub(super) fn first_built<'a>(talk: &mut Talk, scenes: &'a [Scene]) -> Option<&'
     built
 }
 
-/// What is wrong with a model or a request, and what comes after.
+/// Wrong models and requests, and whether the oracle works afterwards.
 pub(super) fn with_robot(talk: &mut Talk, scene: &Scene, offered: &Methods) {
     let robot = &scene.robot;
     let Ok(good) = description(robot) else { return };

@@ -1,4 +1,4 @@
-//! Conventions that are easily mistaken, as hypotheses: what would an oracle answer that is right but for this?
+//! Common mistakes of convention, as hypotheses: the answers of an oracle that makes this mistake and is right otherwise.
 
 use super::orders;
 use super::turn::{
@@ -8,7 +8,7 @@ use featherbench_bench::{Quantity, Robot};
 use featherbench_model::{Description, JointType};
 use std::f64::consts::TAU;
 
-/// One state of a robot, as it is sent, and where featherbench finds the bodies in it.
+/// One state of a robot as it is sent, and featherbench's results for the bodies in it.
 #[derive(Clone, Default)]
 pub(super) struct State {
     pub(super) q: Vec<f64>,
@@ -26,7 +26,7 @@ pub(super) struct State {
     pub(super) momentum: Vec<f64>,
 }
 
-/// A mistake: how the description and a state are read, and how an answer is written.
+/// A mistake: how the oracle interprets the description and a state, and how it writes an answer.
 pub(super) struct Mistake {
     /// What the oracle seems to do.
     pub(super) seems: &'static str,
@@ -40,7 +40,7 @@ pub(super) struct Mistake {
 
 const NONE: Mistake = Mistake { seems: "", advice: "", robot: |_| (), state: |_, _| (), turn: None, answer: |_, _, _, _| () };
 
-/// Every mistake that is looked for.
+/// The mistakes that the test knows.
 pub(super) const MISTAKES: [Mistake; 41] = [
     // ---- configurations
     Mistake {
@@ -356,7 +356,7 @@ pub(super) const MISTAKES: [Mistake; 41] = [
     },
 ];
 
-// ---- parts of mistakes
+// ---- building blocks
 
 fn is_inverse(quantity: Quantity) -> bool {
     matches!(quantity, Quantity::InverseDynamics | Quantity::InverseDynamicsWrench | Quantity::Bias)
@@ -381,7 +381,7 @@ fn inertias(robot: &mut Description, change: impl Fn([f64; 6]) -> [f64; 6]) {
     robot.bodies.iter_mut().for_each(|body| body.inertia = change(body.inertia));
 }
 
-/// The inertia about the centre of mass of a tensor that was meant for another point, at a distance of the centre.
+/// I + sign·m (|c|²·1 − c cᵀ): moves each inertia between the centre of mass c and the body's origin.
 fn shift_inertia(robot: &mut Description, sign: f64) {
     for body in &mut robot.bodies {
         let ([x, y, z], m) = (body.com, sign * body.mass);

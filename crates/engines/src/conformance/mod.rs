@@ -1,9 +1,9 @@
-//! A conformance test of any oracle: does it keep the protocol of `oracles/PROTOCOL.md`, and do its answers mean what they should?
+//! A conformance test of any oracle: does it keep the protocol of `oracles/PROTOCOL.md`, and do its answers have the right meaning?
 //!
-//! It asks about small robots of every kind of joint. What the oracle does not offer is lacking, and no fault. What it answers is compared with
-//! our own kernels in the harness' measures; where it differs, the usual mistakes of convention are tried as hypotheses, one by one and in
-//! pairs, and the one that explains every answer is named. An oracle that reads files is asked about the robot that it tells in the same way,
-//! one that integrates about its steps.
+//! It asks about small robots with every kind of joint. Something that the oracle does not offer is lacking, which is not a fault.
+//! Answers are compared with those of our own kernels, in the measures of [`featherbench_bench::measure`].
+//! Where they differ, common mistakes of convention are tried as hypotheses, one by one and in pairs. The one that explains every answer is
+//! named. An oracle that imports files is asked about the imported robot in the same way, and one that integrates about its steps.
 
 mod answers;
 mod files;
@@ -25,7 +25,7 @@ use std::ffi::OsString;
 use talk::Talk;
 use values::Scene;
 
-/// How a finding stands.
+/// The result of a finding.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Standing {
     /// As the protocol says.
@@ -36,12 +36,12 @@ pub enum Standing {
     Wrong,
 }
 
-/// One thing that was found out about an oracle.
+/// One finding about an oracle.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Finding {
-    /// How it stands.
+    /// Its result.
     pub standing: Standing,
-    /// What was looked at.
+    /// What was tested.
     pub what: String,
     /// What was found.
     pub found: String,
@@ -49,7 +49,7 @@ pub struct Finding {
     pub advice: Vec<String>,
 }
 
-/// Everything that was found out about an oracle.
+/// All findings about an oracle.
 #[derive(Clone, Debug, PartialEq, Default)]
 pub struct Conformance {
     /// The engine's name and version, as it gives them.
@@ -74,16 +74,16 @@ impl Conformance {
     }
 }
 
-/// Tests a program; `watch` is told what is being done.
+/// Tests a program; `watch` is called with the name of each part of the test.
 ///
 /// # Errors
-/// A sentence, when our own robots or files cannot be made; whatever the program does is a finding.
+/// A sentence, when our own robots or files cannot be made. Whatever the program does is a finding.
 pub fn check_program(command: &[OsString], limits: Limits, watch: &dyn Fn(&str)) -> Result<Conformance, String> {
     let start = || Process::start(command, limits).map(|process| Box::new(process) as Box<dyn Line>);
     check(&start, watch)
 }
 
-/// Tests whoever answers on the lines that `start` opens.
+/// Tests the oracle at the lines that `start` opens.
 ///
 /// # Errors
 /// A sentence, when our own robots or files cannot be made.

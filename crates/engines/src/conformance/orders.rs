@@ -1,4 +1,4 @@
-//! Orders of the numbers in q and v that are taken for ours, as the place in ours of each number.
+//! Common wrong orders of the numbers in q and v: for each number, its place in our order.
 
 use super::turn::places;
 use featherbench_model::{Description, JointType};
@@ -53,7 +53,7 @@ pub(super) fn by_name(robot: &Description) -> Places {
     of_bodies(robot, &order)
 }
 
-/// The bodies as they stand, but the numbers of some joints from the last to the first.
+/// The bodies in our order, but the numbers of some joints from the last to the first.
 pub(super) fn joints_reversed(robot: &Description, is: impl Fn(JointType) -> bool) -> Places {
     let (mut q, mut v) = (Vec::new(), Vec::new());
     for (at_q, at_v, body) in places(robot) {

@@ -5,7 +5,7 @@ use featherbench_model::generate::Family;
 use featherbench_model::{Description, JointType};
 use featherbench_results::ModelOrigin;
 
-/// What is shown, the generator's call, and how many of its bodies are kept.
+/// What it tests, the generator's text, and how many of its bodies are kept.
 const ROBOTS: [(&str, &str, usize); 25] = [
     ("a revolute joint", "joints:kind=revolute,base=fixed,shape=single", 1),
     ("a chain of revolute joints", "joints:kind=revolute,base=fixed,shape=branched", 4),
@@ -34,13 +34,13 @@ const ROBOTS: [(&str, &str, usize); 25] = [
     ("a floating tree with every joint from revolute to universal", "joints:kind=mixed,base=free,shape=branched", usize::MAX),
 ];
 
-/// States at which each robot is asked: one of each case, and the fast one twice as far from the first as from the last.
+/// States at which each robot is asked: one of each case. The fast one is twice as far from the first as from the last.
 pub(super) const STATES: usize = 6;
 /// Seed of the states.
 pub(super) const SEED: u64 = 11;
 
-/// The robots with what each shows. One-dof joints have armature, all but free joints damping and dry friction, so that none can be mistaken
-/// for nothing.
+/// The robots, with what each tests. One-dof joints have armature, and all but free joints have damping and dry friction. So a mistake
+/// about these is visible.
 pub(super) fn all() -> Result<Vec<(&'static str, Robot)>, String> {
     let robot = |(shows, spec, keep): (&'static str, &str, usize)| {
         let mut description = Family::parse(spec).and_then(|family| family.generate()).map_err(|error| error.to_string())?;

@@ -1,5 +1,5 @@
-//! Steps, where an oracle offers them: shapes, repetition, ranges, what has no answer, that a short step begins with featherbench's acceleration, and
-//! that a short fall keeps its energy.
+//! Steps, if an oracle offers them: shapes, repetition, ranges, requests without an answer. A short step must begin with featherbench's
+//! acceleration, and a short fall must keep its energy.
 
 use super::answers::{numbers, repeated};
 use super::talk::Talk;
@@ -10,23 +10,23 @@ use featherbench_bench::Quantity;
 use featherbench_bench::measure::worst;
 use serde_json::{Value, json};
 
-/// A step so short, s, that at every state its own error is small, and so is the rounding of a difference of velocities.
+/// A length of a step, s. It is so short that at every state its own error is small, and so is the rounding of a difference of velocities.
 const SHORT: f64 = 1e-9;
-/// By how much such a step's acceleration may be off, in the measure of forward dynamics: mistaken conventions are off by more.
+/// The largest error of such a step's acceleration, in the measure of forward dynamics; mistaken conventions cause a larger one.
 const NEAR: f64 = 1e-4;
 /// A fall from the first state: the length of its steps, s, and their number.
 const FALL: (f64, usize) = (2e-5, 100);
-/// By how much its energy may drift, in the measure of the potential energy.
+/// The largest drift of its energy, in the measure of the potential energy.
 const HELD: f64 = 1e-4;
 
-/// How far the answers of the first way to step, which has no extras, are off: robot by robot.
+/// The errors of the first method to step, which has no extras: robot by robot.
 #[derive(Default)]
 pub(super) struct Found {
     accelerations: Vec<(&'static str, f64)>,
     energies: Vec<(&'static str, f64)>,
 }
 
-/// Asks for steps of the robot and from the states that the oracle holds.
+/// Asks for steps of the robot from the states that the oracle has.
 pub(super) fn ask(talk: &mut Talk, scene: &Scene, steps: &Steps, found: &mut Found) {
     let Some(plain) = steps.methods.first() else { return };
     refusals(talk, plain);
@@ -42,7 +42,7 @@ pub(super) fn ask(talk: &mut Talk, scene: &Scene, steps: &Steps, found: &mut Fou
     }
 }
 
-/// Notes what was found about all robots.
+/// Notes the findings about all robots.
 pub(super) fn judge(talk: &mut Talk, steps: &Steps, found: &Found) {
     let Some(plain) = steps.methods.first() else { return };
     let accelerations = [
@@ -56,7 +56,7 @@ pub(super) fn judge(talk: &mut Talk, steps: &Steps, found: &Found) {
     let about = [("step", &found.accelerations, NEAR, accelerations), ("fall", &found.energies, HELD, energies)];
     for (op, errors, tolerance, advice) in about {
         let (named, largest) = (format!("{op} by {plain}"), errors.iter().map(|(_, error)| *error).fold(0.0, worst));
-        // A NaN is no small error.
+        // A NaN is not a small error.
         let wrong: Vec<_> = errors.iter().filter(|(_, error)| !matches!(error.partial_cmp(&tolerance), Some(o) if o.is_le())).collect();
         match wrong.first() {
             None if errors.is_empty() => {}
@@ -75,13 +75,13 @@ fn question(op: &str, method: &str, dt: f64) -> Value {
     json!({"op": op, "method": method, "first": 0, "count": 1, "dt": dt, "steps": FALL.1})
 }
 
-/// What no step answers.
+/// Requests for steps that have no answer.
 fn refusals(talk: &mut Talk, method: &str) {
     for op in ["step", "fall"] {
         let nothing = question(op, "no such way", SHORT);
         talk.expect(&format!("a {op} by a way that it does not have is unsupported"), nothing, Vec::new(), &["unsupported"]);
     }
-    // What the robot does not have may be said first.
+    // The oracle may report first what the robot does not have.
     let refused = ["error", "unsupported"];
     for op in ["step", "fall"] {
         talk.expect(&format!("a {op} of no length is refused"), question(op, method, 0.0), Vec::new(), &refused);
@@ -91,7 +91,7 @@ fn refusals(talk: &mut Talk, method: &str) {
     }
 }
 
-/// The answers at every state, each of so many numbers, asked for in several ways.
+/// The answers at every state, each with this number of values, asked for in several ways.
 fn answers(talk: &mut Talk, scene: &Scene, question: Value, size: usize) -> Option<Vec<f64>> {
     let named = format!("{} by {}", question["op"].as_str()?, question["method"].as_str()?);
     repeated(talk, &named, size, |talk, first, count| {

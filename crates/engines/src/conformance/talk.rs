@@ -1,4 +1,4 @@
-//! The conversation with an oracle, and what is noted down of it.
+//! The messages to an oracle and its answers, and the findings about them.
 
 use super::{Conformance, Finding, Standing};
 use crate::process::Process;
@@ -7,18 +7,18 @@ use featherbench_bench::Robot;
 use featherbench_bench::frame::{Block, Frame};
 use serde_json::{Value, json};
 
-/// A line to an oracle: a process, or whatever a test puts in its place.
+/// A line to an oracle: a process, or what a test uses instead.
 pub trait Line {
     /// Sends a request and waits for its answer.
     ///
     /// # Errors
-    /// A sentence, when no answer comes or what comes is no frame. The line is then dead.
+    /// A sentence, when there is no answer, or it is not a frame. The line cannot be used after that.
     fn ask(&mut self, request: &Frame) -> Result<Frame, String>;
 
     /// Ends the oracle's input and waits for its end.
     ///
     /// # Errors
-    /// A sentence, when it does not end, or not well, or says something more.
+    /// A sentence, when the oracle does not end, ends with an error, or sends something more.
     fn close(self: Box<Self>) -> Result<(), String>;
 }
 
@@ -32,11 +32,11 @@ impl Line for Process {
     }
 }
 
-/// The conversation. After a broken line the next question opens another.
+/// The messages to an oracle. After an error the next question opens another line.
 pub(super) struct Talk<'a> {
     start: &'a dyn Fn() -> Result<Box<dyn Line>, String>,
     line: Option<Box<dyn Line>>,
-    /// Lines that were opened so far: an oracle behind a new one knows nothing of what was sent before.
+    /// Lines that were opened so far. An oracle at a new line knows nothing of earlier messages.
     pub(super) opened: usize,
     pub(super) conformance: Conformance,
 }
@@ -46,7 +46,7 @@ impl<'a> Talk<'a> {
         Self { start, line: None, opened: 0, conformance: Conformance::default() }
     }
 
-    /// Asks; no answer at all, or one without a known status and a reason, is an error.
+    /// Asks. It is an error if there is no answer, or one without a known status or without a reason.
     pub(super) fn ask(&mut self, header: Value, blocks: Vec<Block>) -> Result<Frame, String> {
         let mut line = match self.line.take() {
             Some(line) => line,
@@ -65,7 +65,7 @@ impl<'a> Talk<'a> {
         }
     }
 
-    /// Asks and notes whether the answer has one of the statuses; the answer, if it has.
+    /// Asks, and notes whether the answer has one of the statuses. Returns the answer if it has.
     pub(super) fn expect(&mut self, what: &str, header: Value, blocks: Vec<Block>, allowed: &[&str]) -> Option<Frame> {
         match self.ask(header, blocks) {
             Ok(answer) if allowed.contains(&answer.text("status")) => {
@@ -86,7 +86,7 @@ impl<'a> Talk<'a> {
         }
     }
 
-    /// Notes a finding. What was found before about the same thing, and was as good, is not noted twice.
+    /// Notes a finding. It is not noted twice if an earlier one about the same thing was as good.
     pub(super) fn note(&mut self, standing: Standing, what: &str, found: &str, advice: &[&str]) {
         let advice = advice.iter().map(|&line| line.to_owned()).collect();
         let finding = Finding { standing, what: what.to_owned(), found: found.to_owned(), advice };
@@ -95,7 +95,7 @@ impl<'a> Talk<'a> {
         }
     }
 
-    /// Has the oracle build a robot.
+    /// Lets the oracle build a robot.
     pub(super) fn prepare(&mut self, robot: &Robot) -> Result<Frame, String> {
         self.ask(json!({"op": "prepare", "model": request::description(robot)?}), Vec::new())
     }
@@ -109,7 +109,7 @@ impl<'a> Talk<'a> {
     }
 }
 
-/// What to do about a broken line.
+/// What to do about a line with an error.
 fn advice(reason: &str) -> &'static [&'static str] {
     if reason.contains("not in the protocol") {
         &["standard output carries frames only: print everything else to standard error"]

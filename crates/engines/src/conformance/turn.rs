@@ -1,9 +1,9 @@
-//! Velocities that are taken for other ones.
+//! Velocities in other coordinates than ours.
 
 use super::mistakes::State;
 use featherbench_model::{BodyDescription, Description, JointType};
 
-/// v_e = T v and a_e = T a + b, with an orthogonal T, in place of v and a.
+/// v_e = T v and a_e = T a + b, with an orthogonal T, instead of v and a.
 pub(super) struct Turn {
     /// T, row-major.
     t: Vec<f64>,
@@ -38,7 +38,7 @@ pub(super) const SWAP: Six = [
 pub(super) struct Rotations {
     /// Body axes to joint-frame axes.
     pub(super) joint: [f64; 9],
-    /// Body axes to world axes, of a body that hangs on the world.
+    /// Body axes to world axes, of a body whose parent is the world.
     pub(super) world: [f64; 9],
 }
 
@@ -83,7 +83,7 @@ pub(super) fn of_planar(robot: &Description, state: &State) -> Turn {
     turn
 }
 
-/// v_e has our numbers in another order: T of the permutation that `ours` gives, the place in ours of each number of v_e.
+/// v_e has our numbers in another order. T is the permutation by `ours`, the place in our order of each number of v_e.
 pub(super) fn of_order(ours: &[usize]) -> Turn {
     let n = ours.len();
     let mut turn = Turn { t: vec![0.0; n * n], b: vec![0.0; n] };
@@ -91,7 +91,7 @@ pub(super) fn of_order(ours: &[usize]) -> Turn {
     turn
 }
 
-/// Numbers that were meant in another order, in ours.
+/// Puts numbers of another order into ours.
 pub(super) fn put_back(ours: &[usize], numbers: &mut [f64]) {
     let given = numbers.to_vec();
     ours.iter().zip(given).for_each(|(&place, number)| numbers[place] = number);

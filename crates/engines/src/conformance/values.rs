@@ -1,4 +1,4 @@
-//! What a right oracle answers, and what one answers that is right but for some mistakes.
+//! The answers of a right oracle, and of one with some mistakes.
 
 use super::mistakes::{Mistake, State};
 use super::turn::Turn;
@@ -7,13 +7,13 @@ use featherbench_bench::measure::{ForwardScale, Magnitudes, scaled_error, worst}
 use featherbench_bench::{Engine, Quantity, Robot};
 use featherbench_model::StateBatch;
 
-/// Conformance asks for meaning, not for digits (those are the agreement study's): mistaken conventions show at 1e-3 and above, rounding at
-/// 1e-15, a loose but right algorithm in between.
+/// The tolerance. Conformance tests the meaning of numbers; the agreement study tests their digits. Mistaken conventions give errors of
+/// 1e-3 and more, rounding gives 1e-15, and an inaccurate but right algorithm something between.
 pub(super) const RIGHT: f64 = 1e-11;
-/// The same for forward dynamics, where an explicit inverse loses the condition of M, here up to a thousand, on the way.
+/// The same for forward dynamics, where an explicit inverse loses the condition number of M, here up to a thousand.
 pub(super) const RIGHT_FORWARD: f64 = 1e-9;
 
-/// A robot with featherbench's answers to everything that is asked.
+/// A robot with featherbench's answers to every question.
 pub(super) struct Scene {
     pub(super) shows: &'static str,
     pub(super) robot: Robot,
@@ -26,7 +26,7 @@ impl Scene {
         Self { shows, robot, at }
     }
 
-    /// The worst error of an answer over all states, in the measures of the harness.
+    /// The worst error of an answer over all states, in the measures of `featherbench_bench`.
     pub(super) fn error(&self, quantity: Quantity, reference: &[f64], value: &[f64]) -> f64 {
         let size = quantity.size(&self.robot);
         let states = reference.chunks_exact(size).zip(value.chunks_exact(size)).zip(&self.at);
@@ -54,7 +54,8 @@ impl Scene {
         featherbench(&self.robot, quantity)
     }
 
-    /// The answer of an oracle that is right but for these mistakes; none where they make no robot of it, or do not bear on the quantity.
+    /// The answer of an oracle that is right but for these mistakes. `None` if the robot cannot be built with them, or if they do not
+    /// affect the quantity.
     pub(super) fn supposed(&self, mistakes: &[&Mistake], quantity: Quantity) -> Option<Vec<f64>> {
         let mut misread = self.robot.description.clone();
         mistakes.iter().for_each(|mistake| (mistake.robot)(&mut misread));
@@ -66,7 +67,7 @@ impl Scene {
             let mut state = State {
                 q: states.q(k).to_vec(),
                 v: states.v(k).to_vec(),
-                // h is inverse dynamics at a = 0: what is made of that zero is part of the mistake.
+                // h is inverse dynamics at a = 0; a mistake about accelerations changes that zero as well.
                 a: if quantity == Quantity::Bias { vec![0.0; states.nv] } else { states.a(k).to_vec() },
                 tau: states.tau(k).to_vec(),
                 wrench: states.wrench(k).to_vec(),
@@ -102,7 +103,7 @@ impl Scene {
         Some(value)
     }
 
-    /// Reads a state by a mistake; what it was before, and the turn of velocities.
+    /// Interprets a state by a mistake; returns the state before, and the change of velocities.
     fn misread(&self, mistake: &Mistake, state: &mut State) -> (State, Option<Turn>) {
         let given = state.clone();
         (mistake.state)(&self.robot.description, state);
@@ -120,7 +121,7 @@ impl Scene {
     }
 }
 
-/// The answer in the velocities that were taken for ours.
+/// The answer in the velocities that the oracle took for ours.
 fn returned(turn: &Turn, quantity: Quantity, value: &mut [f64]) {
     let n = turn.b.len();
     match quantity {

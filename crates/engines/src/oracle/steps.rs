@@ -6,17 +6,17 @@ use featherbench_model::StateBatch;
 use serde::Deserialize;
 use serde_json::{Value, json};
 
-/// What a `hello` says of its steps.
+/// The part of `hello` about steps.
 #[derive(Clone, Debug, PartialEq, Default, Deserialize)]
 pub(crate) struct Steps {
-    /// The ways to step, the one without extras first.
+    /// The methods to step, the one without extras first.
     pub(crate) methods: Vec<String>,
     /// See [`Stepper::guard`].
     pub(crate) guard: Option<f64>,
 }
 
 impl Steps {
-    /// What the header of a `hello` offers; nothing where it has no `steps`.
+    /// The steps that the header of a `hello` offers; `None` if it has no `steps`.
     ///
     /// # Errors
     /// A sentence, when `steps` are not what the protocol says.
@@ -34,7 +34,7 @@ impl Steps {
 }
 
 impl Oracle {
-    /// One question about a state; the answer's numbers, of which so many are due.
+    /// One question about a state; returns the answer's numbers, of which `due` are expected.
     fn stepped(&self, robot: &Robot, states: &StateBatch, question: Value, due: usize) -> Result<Vec<f64>, NoAnswer> {
         let mut session = self.session()?;
         let built = session.build(robot).and_then(|()| session.send_states(robot, states));

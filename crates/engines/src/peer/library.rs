@@ -1,7 +1,7 @@
-//! A peer's library behind the C interface of `oracles/native/peer.h`: the only unsafe code of this crate.
+//! The library of a native oracle, behind the C interface of `oracles/native/peer.h`: the only unsafe code of this crate.
 //!
-//! The layouts below repeat that header. What a library does inside its functions cannot be checked from here; that is why it is loaded in a
-//! child process only. Everything that can be checked is: the version of the interface, missing functions, indices, and lengths.
+//! The layouts below repeat that header. What a library does inside its functions cannot be checked from here. So it is loaded in a child
+//! process only. Everything that can be checked is checked: the version of the interface, missing functions, indices, and lengths.
 #![allow(unsafe_code, reason = "the functions of a foreign library cannot be called otherwise")]
 
 use featherbench_bench::{NoAnswer, Robot};
@@ -74,7 +74,7 @@ type Ready = unsafe extern "C" fn(*mut Handle, usize, usize, *mut c_char) -> c_i
 type Run = unsafe extern "C" fn(*mut Handle, usize, usize, usize, *mut c_char) -> c_int;
 type Read = unsafe extern "C" fn(*mut Handle, usize, *mut f64, *mut c_char) -> c_int;
 
-/// `struct fb_peer`. Functions are optional here, because a null pointer must never become a function.
+/// `struct fb_peer`. Functions are optional here: a null pointer must never become a function.
 #[repr(C)]
 struct Peer {
     version: u32,
@@ -107,7 +107,7 @@ pub(super) struct Library {
     ready: Ready,
     run: Run,
     read: Read,
-    /// Behind everything that points into it.
+    /// Declared last, so that it is dropped after everything that points into it.
     _library: libloading::Library,
 }
 
@@ -115,17 +115,17 @@ impl Library {
     /// Loads a library and reads its table.
     ///
     /// # Errors
-    /// A sentence, when it cannot be loaded or is no peer of this version.
+    /// A sentence, when it cannot be loaded or does not have this version of the interface.
     pub(super) fn open(path: &Path) -> Result<Self, String> {
         let complaint = |what: &str| format!("{}: {what}", path.display());
-        // SAFETY: loading runs the library's initialisers; they are trusted as much as the code that is timed, and run in this child process.
+        // SAFETY: loading runs the library's initialisers. They are trusted like the code that is timed, and run in this child process.
         let library = unsafe { libloading::Library::new(path) }.map_err(|error| complaint(&error.to_string()))?;
         // SAFETY: the header declares this symbol as a function of this type, and nothing else is exported under the name.
         let entry = unsafe { library.get::<unsafe extern "C" fn() -> *const Peer>(b"featherbench_peer") };
         let entry = entry.map_err(|_| complaint("it exports no featherbench_peer: it is not a peer"))?;
-        // SAFETY: the function takes nothing and returns null or a table that lives as long as the library.
+        // SAFETY: the function takes nothing, and returns null or a table that is valid as long as the library is loaded.
         let peer = unsafe { entry().as_ref() }.ok_or_else(|| complaint("it has no table"))?;
-        // The version stands first in every version of the table, so that reading it is sound whatever follows.
+        // The version is the first field in every version of the table, so reading it is sound whatever follows.
         if peer.version != VERSION {
             return Err(complaint(&format!("it has version {} of the peer interface, this program {VERSION}", peer.version)));
         }
@@ -133,13 +133,13 @@ impl Library {
             if words.is_null() {
                 return Err(complaint("a text of its table is missing"));
             }
-            // SAFETY: not null, and by the header a text that ends with a zero and lives as long as the library.
+            // SAFETY: not null, and by the header a text that ends with a zero and is valid as long as the library is loaded.
             Ok(unsafe { CStr::from_ptr(words) }.to_string_lossy().into_owned())
         };
         let listed = if peer.methods.is_null() {
             &[]
         } else {
-            // SAFETY: not null, and by the header an array of that many methods which lives as long as the library.
+            // SAFETY: not null, and by the header an array of that many methods, valid as long as the library is loaded.
             unsafe { std::slice::from_raw_parts(peer.methods, peer.method_count) }
         };
         let methods = listed.iter().map(|method| Ok((text(method.quantity)?, text(method.name)?))).collect::<Result<_, String>>()?;
@@ -159,10 +159,10 @@ impl Library {
         })
     }
 
-    /// Builds a robot; with it come the numbers that the engine holds, as [`featherbench_bench::Quantity::Readback`].
+    /// Builds a robot. Returns it with the numbers that the engine has, as [`featherbench_bench::Quantity::Readback`].
     ///
     /// # Errors
-    /// [`NoAnswer`], as the engine says.
+    /// [`NoAnswer`], with the engine's reason.
     pub(super) fn build(&self, robot: &Robot) -> Result<(Built<'_>, Vec<f64>), NoAnswer> {
         let bodies: Vec<Body> = robot.description.bodies.iter().map(body).collect::<Result<_, _>>()?;
         let topology = &robot.model.topology;
@@ -185,7 +185,7 @@ impl Library {
     }
 }
 
-/// A body as `peer.h` has it; a joint of which it has no number is refused by name.
+/// A body as `peer.h` has it. A joint without a number there is an error that names it.
 fn body(body: &featherbench_model::BodyDescription) -> Result<Body, NoAnswer> {
     let (joint, axis, pitch) = match body.joint.kind {
         JointType::Revolute { axis } => (0, axis, 0.0),
@@ -224,7 +224,7 @@ pub(super) struct Built<'a> {
     nq: usize,
     nv: usize,
     count: usize,
-    /// The method and body that were made ready for these states.
+    /// The method and body that are ready for these states.
     ready: Option<(usize, usize)>,
 }
 
@@ -239,7 +239,7 @@ impl Built<'_> {
             return Err(NoAnswer::Failed(format!("these are not {count} states of this robot")));
         }
         let states = States { count, q: q.as_ptr(), v: v.as_ptr(), a: a.as_ptr(), tau: tau.as_ptr() };
-        // SAFETY: the handle is alive; the arrays have the announced lengths and outlive the call.
+        // SAFETY: the handle is valid; the arrays have the announced lengths and outlive the call.
         checked(|reason| unsafe { (self.library.states)(self.handle.as_ptr(), &states, reason) })?;
         self.count = count;
         Ok(())
@@ -250,12 +250,12 @@ impl Built<'_> {
         self.count
     }
 
-    /// The method and the body that were made ready last for these states.
+    /// The last method and body that are ready for these states.
     pub(super) fn is_ready(&self) -> Option<(usize, usize)> {
         self.ready
     }
 
-    /// Makes what a method starts from, unless it is made.
+    /// Prepares the input of a method, unless that is done.
     ///
     /// # Errors
     /// [`NoAnswer`], when there are no states or no such method, or the engine fails.
@@ -265,7 +265,7 @@ impl Built<'_> {
         }
         if self.ready != Some((method, body)) {
             self.ready = None;
-            // SAFETY: the handle is alive and has states; the method is one of the table's.
+            // SAFETY: the handle is valid and has states; the method is one of the table's.
             checked(|reason| unsafe { (self.library.ready)(self.handle.as_ptr(), method, body, reason) })?;
             self.ready = Some((method, body));
         }
@@ -278,7 +278,7 @@ impl Built<'_> {
     /// [`NoAnswer`], when none is ready or the engine fails.
     pub(super) fn run(&mut self, first: usize, count: usize) -> Result<(), NoAnswer> {
         let (method, _) = self.ready.ok_or_else(|| NoAnswer::Failed("no method is ready".into()))?;
-        // SAFETY: the handle is alive, has states, and the method is ready; states beyond the batch begin again.
+        // SAFETY: the handle is valid, has states, and the method is ready; states beyond the batch begin again.
         checked(|reason| unsafe { (self.library.run)(self.handle.as_ptr(), method, first, count, reason) })
     }
 
@@ -288,7 +288,7 @@ impl Built<'_> {
     /// [`NoAnswer`], when no method is ready or the engine fails.
     pub(super) fn read(&mut self, value: &mut [f64]) -> Result<(), NoAnswer> {
         let (method, _) = self.ready.ok_or_else(|| NoAnswer::Failed("no method is ready".into()))?;
-        // SAFETY: the handle is alive and the method was run; the caller gives room for one value of its quantity, by `Quantity::size`.
+        // SAFETY: the handle is valid and the method was run; the caller gives space for one value of its quantity, by `Quantity::size`.
         checked(|reason| unsafe { (self.library.read)(self.handle.as_ptr(), method, value.as_mut_ptr(), reason) })
     }
 }
@@ -300,7 +300,7 @@ impl Drop for Built<'_> {
     }
 }
 
-/// A call with room for its reason.
+/// A call with space for its reason.
 fn checked(call: impl FnOnce(*mut c_char) -> c_int) -> Result<(), NoAnswer> {
     let mut reason = [0_u8; REASON];
     let status = call(reason.as_mut_ptr().cast());

@@ -1,6 +1,8 @@
-//! Native peers: an engine as a library, in a child process that speaks the oracle protocol and reads the clock next to the engine's loop.
+//! Native oracles: an engine as a library, in a child process that follows the oracle protocol. It reads the clock next to the engine's
+//! loop.
 //!
-//! [`command`] is what [`Oracle::start`](crate::Oracle::start) takes: this very program as `featherbench peer LIBRARY`, which calls [`serve`].
+//! [`command`] gives the command for [`Oracle::start`](crate::Oracle::start): this same program as `featherbench peer LIBRARY`, which calls
+//! [`serve`].
 
 mod library;
 
@@ -23,10 +25,10 @@ pub fn command(program: &Path, library: &Path, core: Option<usize>) -> Vec<OsStr
     [program.into(), "peer".into(), library.into()].into_iter().chain(pinned.into_iter().flatten()).collect()
 }
 
-/// Answers requests about a library on standard input and output until the input ends. Whatever the library prints goes to standard error.
+/// Answers requests about a library on standard input and output until the input ends. Output of the library goes to standard error.
 ///
 /// # Errors
-/// A sentence, when the library cannot be loaded, the core cannot be had or the stream breaks.
+/// A sentence, when the library cannot be loaded, the core is not available or the stream fails.
 pub fn serve(path: &Path, core: Option<usize>) -> Result<(), String> {
     if let Some(core) = core {
         pin(core)?;
@@ -34,7 +36,7 @@ pub fn serve(path: &Path, core: Option<usize>) -> Result<(), String> {
     let io = |error: rustix::io::Errno| format!("standard output: {error}");
     let mut answers = File::from(rustix::io::dup(rustix::stdio::stdout()).map_err(io)?);
     rustix::stdio::dup2_stdout(rustix::stdio::stderr()).map_err(io)?;
-    // Without a folder in its name a library would be looked for where the system keeps its own.
+    // Without a folder in its name a library would be searched in the system's folders.
     let library = Library::open(&path.canonicalize().map_err(|error| format!("{}: {error}", path.display()))?)?;
     let mut session = Session { library: &library, robot: None, states: None, built: None };
     let mut requests = BufReader::new(stdin());
@@ -62,16 +64,16 @@ fn pin(core: usize) -> Result<(), String> {
     rustix::thread::sched_setaffinity(None, &set).map_err(|error| refused(&error.to_string()))
 }
 
-/// What the library was told last.
+/// The latest robot and states of the library.
 struct Session<'a> {
     library: &'a Library,
     robot: Option<Robot>,
-    /// The last batch of states: how many, and q, v, a and τ.
+    /// The last batch of states: its number of states, and q, v, a and τ.
     states: Option<(usize, [Vec<f64>; 4])>,
     built: Option<Built<'a>>,
 }
 
-/// The header of an answer, without its status, and the blocks behind it.
+/// The header of an answer, without its status, and the blocks after it.
 type Answer = Result<(Map<String, Value>, Vec<Block>), NoAnswer>;
 
 fn ok(header: Value, blocks: Vec<Block>) -> Answer {
@@ -114,7 +116,7 @@ impl<'a> Session<'a> {
         (self.built, self.states, self.robot) = (None, None, None);
         let model = request.header.get("model").ok_or_else(|| failed("no model came"))?;
         let description = featherbench_formats::neutral::parse(&model.to_string(), "model").map_err(|error| failed(error.to_string()))?;
-        // The robot brings the compiled tree and the sizes of quantities; its own states are not used.
+        // The robot has the compiled tree and the sizes of quantities; its own states are not used.
         let robot = Robot::new(&description, "", ModelOrigin::Generated, 1, 0).map_err(|error| failed(error.to_string()))?;
         let (built, readback) = self.library.build(&robot)?;
         let readback = Block::new("readback", &[robot.description.bodies.len(), 22], &readback);
@@ -134,11 +136,11 @@ impl<'a> Session<'a> {
         ok(json!({}), Vec::new())
     }
 
-    /// Robot, states and what the last method starts from once more, at other places of the memory.
+    /// Builds robot, states and the input of the last method again, at other addresses (memory layout randomization).
     fn relocate(&mut self, request: &Frame) -> Answer {
         let (Some(robot), Some(built)) = (&self.robot, self.built.take()) else { return Err(failed("no model was prepared")) };
         let ready = built.is_ready();
-        // Before its successor: two of them may not fit the memory.
+        // Dropped before the new one is built: two of them may not fit the memory.
         drop(built);
         let _relocate = Relocation::new(&mut Random::new(number(request, "seed")? as u64, 0));
         let (mut built, _) = self.library.build(robot)?;
@@ -176,7 +178,7 @@ impl<'a> Session<'a> {
         }
         let size: usize = shape[1..].iter().product();
         let mut values = vec![0.0; count * size];
-        // A robot that cannot move has nothing to say of itself.
+        // A robot that cannot move has no values.
         for (k, value) in values.chunks_exact_mut(size.max(1)).enumerate() {
             built.run(first + k, 1)?;
             built.read(value)?;

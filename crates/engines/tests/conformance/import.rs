@@ -1,4 +1,4 @@
-//! The op `read`: an oracle without it lacks it, and mistakes in what is told of a file are named.
+//! The op `read`: an oracle without it lacks it, and mistakes in an import result are named.
 
 use super::kernels::{HONEST, Kernels, Plant};
 use super::{test, wrong};
@@ -6,14 +6,14 @@ use featherbench_bench::frame::Frame;
 use featherbench_engines::conformance::Standing;
 use serde_json::{Value, json};
 
-/// What is lacking, as text.
+/// The lacking findings, as text.
 fn lacking(plant: Plant) -> Vec<String> {
     let conformance = test(plant);
     assert!(conformance.conforms(), "{:#?}", conformance.of(Standing::Wrong).collect::<Vec<_>>());
     conformance.of(Standing::Lacks).map(|finding| format!("{}: {}", finding.what, finding.found)).collect()
 }
 
-/// An answer to `read` that tells a robot.
+/// Whether it is an answer to `read` that reports a robot.
 fn tells(answer: &Frame, request: &Frame) -> bool {
     request.text("op") == "read" && answer.text("status") == "ok"
 }
@@ -47,7 +47,7 @@ fn what_is_not_read_is_lacking() {
     assert!(found.len() == 2 && found.iter().all(|line| line.contains("ParserError: 7")), "{found:#?}");
 }
 
-/// An edit of the parser is no fault, where the answers are those of the robot that is told.
+/// An edit by the parser is not a fault, if the answers are those of the reported robot.
 #[test]
 fn an_edit_is_told_and_no_fault() {
     let mirrored = |answer: &mut Frame, request: &Frame, _: &Kernels| {
@@ -61,7 +61,7 @@ fn an_edit_is_told_and_no_fault() {
             bodies(answer)[1]["mass"] = json!(0.25);
         }
     };
-    // It says so and computes with the file's: that is a fault, and the two are told beside each other.
+    // It reports one robot and computes with the file's. That is a fault, and both robots are named.
     let conformance = test(Plant { answer: lighter, ..HONEST });
     let edits: Vec<_> = conformance.of(Standing::Lacks).filter(|finding| finding.what.ends_with("as it stands")).collect();
     assert!(edits[0].found == "mass of prismatic_middle is another" && edits.len() == 2, "{edits:#?}");
@@ -70,7 +70,7 @@ fn an_edit_is_told_and_no_fault() {
     assert_eq!(wrong, quantities, "{:#?}", conformance.findings);
 }
 
-/// Mistakes in what is told: what is planted, and words of the finding that names it.
+/// Mistakes in an import result: the planted mistake, and words of the finding that names it.
 #[test]
 fn mistakes_of_a_reading_are_named() {
     type Change = fn(&mut Frame, &Frame, &Kernels);
@@ -127,7 +127,7 @@ fn mistakes_of_a_reading_are_named() {
     }
 }
 
-/// The told bodies stand with the later of two branches first, the states are taken in the file's order.
+/// The reported bodies have the second of two branches first; the states are taken in the file's order.
 #[test]
 fn states_in_another_order_than_the_bodies_told() {
     let branches = |answer: &mut Frame, request: &Frame, _: &Kernels| {

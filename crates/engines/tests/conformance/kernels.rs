@@ -9,23 +9,23 @@ use featherbench_model::StateBatch;
 use featherbench_results::ModelOrigin;
 use serde_json::{Value, json};
 
-/// What is done to requests before the honest oracle reads them, and to its answers before they are sent.
+/// The changes of requests before the right oracle gets them, and of its answers before they are sent.
 #[derive(Clone, Copy)]
 pub struct Plant {
     pub request: fn(&mut Frame, &Kernels),
     pub answer: fn(&mut Frame, &Frame, &Kernels),
 }
 
-/// Nothing is done to them.
+/// No changes.
 pub const HONEST: Plant = Plant { request: |_, _| (), answer: |_, _, _| () };
 
 /// Our own kernels as an oracle.
 pub struct Kernels {
     plant: Plant,
     pub robot: Option<Robot>,
-    /// The states as they came.
+    /// The states as they were received.
     states: Option<(Frame, StateBatch)>,
-    /// Whether the robot is one of a file.
+    /// Whether the robot was imported from a file.
     as_read: bool,
     /// Evaluations so far.
     pub evaluated: usize,
@@ -49,7 +49,7 @@ pub const OFFERED: [Quantity; 14] = [
     Quantity::StoredEntries,
 ];
 
-/// What it answers of a robot as read.
+/// The quantities of an imported robot.
 const AS_READ: [Quantity; 5] =
     [Quantity::InverseDynamics, Quantity::Bias, Quantity::MassMatrix, Quantity::ForwardDynamics, Quantity::KineticEnergy];
 
@@ -58,7 +58,7 @@ fn failed(reason: impl ToString) -> NoAnswer {
 }
 
 impl Kernels {
-    /// An oracle that knows no robot yet.
+    /// An oracle without a robot.
     pub fn new(plant: Plant) -> Self {
         Self { plant, robot: None, states: None, as_read: false, evaluated: 0 }
     }

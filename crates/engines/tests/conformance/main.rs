@@ -1,5 +1,5 @@
-//! The conformance test against an oracle in this process: our own kernels, honest or with one mistake planted by hand. An honest one conforms,
-//! and each mistake is found and called by its name.
+//! The conformance test of an oracle in this process: our own kernels, right or with one planted mistake. The right one conforms, and each
+//! mistake is found and named.
 
 mod import;
 mod kernels;
@@ -24,7 +24,7 @@ fn wrong(plant: Plant) -> Vec<String> {
     told.collect()
 }
 
-/// Asserts that the mistake is named in the findings about these quantities, and that nothing else is wrong but the same of robots as read.
+/// Asserts that the findings about these quantities name the mistake, and that nothing else is wrong, except the same of imported robots.
 #[track_caller]
 fn named(plant: Plant, quantities: &[&str], words: &str) {
     let wrong = wrong(plant);
@@ -51,7 +51,7 @@ fn an_honest_oracle_conforms() {
     assert_eq!(lacking, ["the ids of requests", "quantities", "it reads an MJCF"]);
 }
 
-/// Changes a block of the request `states`, state after state, with the robot at hand.
+/// Changes a block of the request `states`, state after state; the change may use the robot.
 fn each_state(frame: &mut Frame, kernels: &Kernels, name: &str, change: impl Fn(&mut [f64], &[f64], &Robot)) {
     let Some(robot) = kernels.robot.as_ref().filter(|_| frame.text("op") == "states") else { return };
     let q = frame.block("q").map(|block| block.data.clone()).unwrap_or_default();
@@ -69,7 +69,7 @@ fn each_body(frame: &mut Frame, change: impl Fn(&mut Value)) {
     }
 }
 
-/// Puts the mass, centre and inertia that were given into the read-back, so that only the dynamics tell.
+/// Puts the given mass, centre and inertia into the read-back. So only the dynamics show the mistake.
 fn given_back(answer: &mut Frame, request: &Frame) {
     let (Some(block), Some(bodies)) =
         (answer.blocks.iter_mut().find(|b| b.name == "readback"), request.header.get("model").and_then(|model| model["bodies"].as_array()))
@@ -101,7 +101,7 @@ fn quaternions_in_another_order() {
         });
     };
     let found = wrong(Plant { request, ..HONEST });
-    // All that depends on q; the kinetic energy of a body alone does not.
+    // Every quantity that depends on q is wrong; the kinetic energy of a single body does not depend on it.
     assert!(found.len() > 8, "{found:#?}");
     for line in &found {
         assert!(line.contains("(w, x, y, z)") && !line.contains("another cause"), "{line}");
@@ -119,7 +119,7 @@ fn a_free_velocity_in_another_order() {
             });
         }
     };
-    // The engine's own order is in its answers as well.
+    // The engine's own order is in its answers too.
     let answer = |answer: &mut Frame, request: &Frame, kernels: &Kernels| {
         let Some(robot) = kernels.robot.as_ref().filter(|robot| robot.base() == "free") else { return };
         let nv = robot.states.nv;
@@ -139,7 +139,7 @@ fn a_free_velocity_in_another_order() {
     named(Plant { request: swap, answer }, &all, "[angular; linear]");
 }
 
-/// Linear velocity in world axes and nothing else said: v = [Rᵀ ṗ; ω], and the forces come back turned.
+/// Only the linear velocity is in world axes: v = [Rᵀ ṗ; ω], and the forces come back rotated.
 #[test]
 fn a_free_velocity_in_world_axes() {
     fn turn(robot: &Robot, q: &[f64]) -> [[f64; 3]; 3] {
@@ -153,7 +153,7 @@ fn a_free_velocity_in_world_axes() {
         std::array::from_fn(|i| std::array::from_fn(|j| (0..3).map(|k| p[3 * i + k] * r[k][j]).sum()))
     }
     let request = |frame: &mut Frame, kernels: &Kernels| {
-        // v, and with it nothing but the kinematics of velocities.
+        // v alone, and so nothing but the kinematics of velocities.
         each_state(frame, kernels, "v", |v, q, robot| {
             if robot.base() == "free" {
                 let r = turn(robot, q);
@@ -174,7 +174,7 @@ fn what_is_left_out_of_the_description() {
     let armature = |frame: &mut Frame, _: &Kernels| {
         each_body(frame, |body| body["joint"]["armature"].as_array_mut().into_iter().flatten().for_each(|x| *x = json!(0.0)));
     };
-    // The bias force has none.
+    // The bias force has no armature.
     named(Plant { request: armature, ..HONEST }, &["fd", "id", "id_wrench", "kinetic_energy", "mass_matrix"], "armature is left out");
     let upside_down = |frame: &mut Frame, _: &Kernels| {
         let gravity = frame.header.get_mut("model").and_then(|model| model.get_mut("gravity")).and_then(Value::as_array_mut);
@@ -204,7 +204,7 @@ fn what_is_left_out_of_the_description() {
     assert!(found.iter().any(|line| line.contains("the placement's rotation of body") && line.contains("read back")), "{found:#?}");
 }
 
-/// Two mistakes at once are told apart.
+/// Two mistakes at once are both named.
 #[test]
 fn two_mistakes() {
     let request = |frame: &mut Frame, _: &Kernels| {
@@ -244,7 +244,7 @@ fn half_a_matrix_and_numbers_that_are_none() {
     named(Plant { answer: odd, ..HONEST }, &["com"], "no usual mistake");
 }
 
-/// Faults of the conversation: what is planted, and the finding that names it.
+/// Faults of the protocol: the planted fault, and the finding that names it.
 #[test]
 fn bad_manners() {
     let faults: [(&str, Plant); 11] = [
@@ -381,7 +381,7 @@ fn ids_and_deaths() {
     assert!(found.len() == 1 && found[0].contains("numbers that are none get an answer") && found[0].contains("died"), "{found:#?}");
 }
 
-/// The numbers of joints with several degrees of freedom in another order, there and back.
+/// The numbers of joints with several degrees of freedom in another order, in requests and answers.
 #[test]
 fn coordinates_in_another_order() {
     fn reversed(frame: &mut Frame, kernels: &Kernels, kind: &str) {
@@ -401,7 +401,7 @@ fn coordinates_in_another_order() {
     }
     let distance_first = |frame: &mut Frame, kernels: &Kernels| reversed(frame, kernels, "cylindrical");
     let x_first = |frame: &mut Frame, kernels: &Kernels| reversed(frame, kernels, "euler_zyx");
-    // What has no dofs in its answer tells alone: the rest would have to come back turned.
+    // Answers without dofs suffice to show it: the others would have to be put back in order.
     for (request, words) in [(distance_first as fn(&mut Frame, &Kernels), "[distance, angle]"), (x_first, "about x, y and z")] {
         let found = wrong(Plant { request, ..HONEST });
         for quantity in ["body_placement", "body_velocity", "kinetic_energy", "momentum"] {

@@ -1,4 +1,4 @@
-//! Steps: an oracle that does not offer them hears nothing of them, and mistakes in them are found.
+//! Steps: an oracle that does not offer them gets no requests for them, and mistakes in them are found.
 
 use super::kernels::{HONEST, Kernels, Plant};
 use super::{test, wrong};
@@ -6,14 +6,14 @@ use featherbench_bench::frame::Frame;
 use featherbench_engines::conformance::Standing;
 use serde_json::{Value, json};
 
-/// Lets `hello` say that about steps.
+/// Makes `hello` say this about steps.
 fn told(answer: &mut Frame, request: &Frame, steps: Value) {
     if request.text("op") == "hello" {
         answer.header.insert("steps".into(), steps);
     }
 }
 
-/// Lets it offer the integrator without error.
+/// Makes it offer the integrator without error.
 fn offered(answer: &mut Frame, request: &Frame, _: &Kernels) {
     told(answer, request, json!({"methods": ["exact"]}));
 }

@@ -1,4 +1,4 @@
-//! Who reads the clock, and whose times are estimates.
+//! Which clock measures, and which times are estimates.
 
 use super::script::{HELLO, PATIENT, Script, TWO, Trial};
 use featherbench_bench::{Engine, NoAnswer, Quantity};
@@ -7,7 +7,7 @@ use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::Duration;
 
-/// A clock that shows the milliseconds which the script has written into the file `now` of its folder, or none.
+/// A clock that shows the milliseconds that the script has written into the file `now` of its folder, or zero.
 struct Told(PathBuf);
 
 impl Clock for Told {
@@ -17,7 +17,7 @@ impl Clock for Told {
     }
 }
 
-/// An oracle that has a clock is asked for it; of any other the whole conversation is timed.
+/// An oracle that has a clock is asked for the time. For any other oracle the whole request and answer are timed.
 #[test]
 fn the_clock_is_the_oracles_where_it_has_one() {
     let hello = HELLO.replace(r#""protocol":1"#, r#""protocol":1,"clock":true"#);
@@ -43,7 +43,7 @@ fn the_clock_is_the_oracles_where_it_has_one() {
     assert_eq!(clock(&asked), Ok((Duration::from_millis(50), vec![2.0, 2.0])), "from the question to the answer");
 }
 
-/// An oracle whose clock estimates names what it times, tells what it subtracted, and its identity says so.
+/// An oracle whose clock estimates lists the methods that it times and what it subtracted, and its identity says so.
 #[test]
 fn an_estimating_clock_is_known_as_one() {
     let hello = |clock: &str| HELLO.replace(r#""methods":{"id":["x"]}"#, &format!(r#""methods":{{"id":["x","y"]}}{clock}"#));

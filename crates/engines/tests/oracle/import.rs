@@ -1,4 +1,4 @@
-//! Files that an oracle reads.
+//! Files that an oracle imports.
 
 use super::script::{PATIENT, READING, Script, Trial, robot};
 use featherbench_bench::{Engine, FileBase, FileFormat, Import, NoAnswer, RobotFile};
@@ -13,7 +13,7 @@ impl Trial {
         self.oracle.as_ref().unwrap().read(&self.file())
     }
 
-    /// How often the engine was told to read.
+    /// The imports that the engine was asked for.
     fn reads(&self) -> Vec<String> {
         let text = std::fs::read_to_string(self.folder.path().join("read")).unwrap_or_default();
         text.lines().map(str::to_owned).collect()
@@ -36,7 +36,7 @@ fn a_file_is_read_once_and_computed_with_as_it_was_read() {
         "{:?}",
         trial.reads()
     );
-    // Something else in between: the file must be read again.
+    // Another request came between: the file must be imported again.
     assert_eq!(trial.ask().unwrap(), [2.0, 2.0]);
     assert_eq!(trial.ask_about(&as_read).unwrap(), [2.0, 2.0]);
     assert_eq!(trial.reads().len(), 2);

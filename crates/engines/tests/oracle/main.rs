@@ -1,7 +1,7 @@
-//! Oracles that misbehave: each is a few lines of shell that speak the protocol of `oracles/PROTOCOL.md` until they do not.
+//! Oracles with faults: each is a few lines of shell that follow the protocol of `oracles/PROTOCOL.md` up to one point.
 //!
-//! Whatever a program does, the harness gets a [`NoAnswer`] with a reason in time, no answer is taken for that to another question, and the
-//! next question goes to a process that is well.
+//! Whatever a program does, the caller gets a [`NoAnswer`] with a reason in time. No answer is taken for that to another question, and the
+//! next question goes to a new process.
 
 mod clock;
 mod import;
@@ -33,7 +33,7 @@ fn an_honest_shell_is_heard() {
     assert!(!lives(&pids[0]), "a dropped oracle is gone");
 }
 
-/// States are sent once, and again when any number of them is another.
+/// States are sent once, and again when any of their numbers changes.
 #[test]
 fn other_states_are_sent() {
     let trial = Trial::new(&Script::honest(), PATIENT);
@@ -110,7 +110,7 @@ fn a_crash_is_told_with_its_last_words() {
     assert!(reason.contains("signal: 9"), "{reason}");
 }
 
-/// The clock of the limit stands still until the oracle says that it hangs: no load of the machine decides.
+/// The clock of the limit stops until the oracle says that it hangs: the load of the machine has no influence.
 #[test]
 fn a_hanging_one_is_ended_in_time() {
     for script in [Script::prepare("touch \"$1/late\"; exec sleep 1000"), Script::evaluate("touch \"$1/late\"; exec sleep 1000")] {
@@ -121,7 +121,7 @@ fn a_hanging_one_is_ended_in_time() {
     }
 }
 
-/// Its answer has an end, and it has none: the grace of a dying process passes in vain, on any machine.
+/// Its output ends, and the process does not: the whole time-out for its exit passes, on any machine.
 #[test]
 fn one_that_closes_its_output_and_goes_on_is_ended() {
     let trial = Trial::new(&Script::evaluate("exec sleep 1000 >&-"), PATIENT);
@@ -130,7 +130,7 @@ fn one_that_closes_its_output_and_goes_on_is_ended() {
     assert!(!lives(&trial.pids()[0]), "it was ended");
 }
 
-/// A description of a thousand bodies does not fit a pipe: who never reads it must not stop us writing.
+/// A description of a thousand bodies does not fit a pipe. A process that never reads it must not block our writing.
 #[test]
 fn a_deaf_one_is_ended_in_time() {
     let (trial, clock) = Trial::stopped(&Script::hello(&format!("{HELLO}; touch \"$1/late\"; exec sleep 1000")));
@@ -153,12 +153,12 @@ fn a_glutton_meets_its_limit() {
 fn floods_drown_nobody() {
     let reason = Trial::new(&Script::prepare("exec yes garbage"), PATIENT).failure();
     assert!(reason.contains("not in the protocol"), "{reason}");
-    // Without an end of line there is no header to refuse.
+    // Without an end of line there is no header to check.
     let (trial, clock) = Trial::stopped(&Script::prepare("touch \"$1/late\"; exec cat /dev/zero"));
     clock.set_going(true);
     trial.failure();
     assert!(!lives(&trial.pids()[0]));
-    // On standard error it is free to talk, with and without lines.
+    // Standard error may have any output, with and without lines.
     let talk = format!("yes 'all is well' | head -n 200000 >&2; head -c 3000000 /dev/zero >&2; {TWO}");
     assert_eq!(Trial::new(&Script::evaluate(&talk), PATIENT).ask(), Ok(vec![2.0, 2.0]));
 }
@@ -221,7 +221,7 @@ fn a_late_answer_belongs_to_no_later_question() {
     clock.set_going(true);
     assert_eq!(trial.failure(), "no answer within 900 s");
     clock.set_going(false);
-    // Now the first one would answer, had it not been ended.
+    // Now the first process would answer, had it not been ended.
     std::fs::write(trial.folder.path().join("ended"), "").unwrap();
     for _ in 0..3 {
         assert_eq!(trial.ask(), Ok(vec![2.0, 2.0]));
@@ -229,7 +229,7 @@ fn a_late_answer_belongs_to_no_later_question() {
     assert_eq!(trial.pids().len(), 2, "the late one was ended, another one started");
 }
 
-/// Requests are numbered; an answer that bears another number is not taken.
+/// Requests are numbered. An answer with another number is an error.
 #[test]
 fn an_answer_to_another_request_is_noticed() {
     let numbered = |id: u64| TWO.replace("value ", &format!("value{id} "));
@@ -243,7 +243,7 @@ fn an_answer_to_another_request_is_noticed() {
     assert_eq!(reason, "the oracle's answer is to request 3, not to 4");
 }
 
-/// Whatever breaks the first process, the next question is answered by another.
+/// After any failure of the first process, another process answers the next question.
 #[test]
 fn after_a_failure_another_process_answers() {
     for fault in ["exit 1", "echo garbage", "printf '{'; exit 1", "exec cat /dev/zero | tr '\\0' '\\n'"] {
@@ -255,10 +255,10 @@ fn after_a_failure_another_process_answers() {
     }
 }
 
-/// One answer too many stands before the answer to the next question.
+/// An answer without a question comes before the answer to the next question.
 ///
-/// It can be noticed once it has arrived. Behind it the script writes more than a pipe and the reader's buffer hold: when that is written, the
-/// reader has handed over what came before.
+/// It can be noticed once it has arrived. After it the script writes more than a pipe and the reader's buffer can hold. When that is
+/// written, the reader has passed on what came before.
 #[test]
 fn an_answer_without_a_question_is_noticed() {
     let long = r#"echo '{"status":"ok","blocks":[{"name":"value","shape":[131072]}]}'; head -c 1048576 /dev/zero"#;

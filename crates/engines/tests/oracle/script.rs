@@ -12,14 +12,14 @@ use std::sync::{Arc, Mutex};
 use std::time::Duration;
 use tempfile::TempDir;
 
-/// The answer of an honest shell: the number two at each of two states.
+/// The answer of a right shell oracle: the number two at each of two states.
 pub(crate) const TWO: &str = r#"value '\0\0\0\0\0\0\0\100\0\0\0\0\0\0\0\100'"#;
 pub(crate) const READBACK: &str =
     r#"echo '{"status":"ok","nq":1,"nv":1,"blocks":[{"name":"readback","shape":[1,22]}]}'; head -c 176 /dev/zero"#;
 pub(crate) const HELLO: &str =
     r#"echo '{"status":"ok","protocol":1,"engine":"shell","version":"1","build":{"language":"sh"},"methods":{"id":["x"]}}'"#;
 
-/// A reading of one pendulum.
+/// An import result of a pendulum.
 pub(crate) const READING: &str = r#"echo '{"status":"ok","nq":1,"nv":1,"notes":[{"cause":"mass_edited","about":"rod","text":"0 kg became 1 kg"}],"model":{"format":1,"name":"p","gravity":[0.0,0.0,-9.81],"bodies":[{"name":"rod","mass":1.0,"com":[0.5,0.0,0.0],"inertia":[0.01,0.0,0.0,0.08,0.0,0.08],"parent":-1,"joint":{"name":"hinge","type":"revolute","axis":[0.0,1.0,0.0],"placement":{"rotation":[1.0,0.0,0.0,0.0,1.0,0.0,0.0,0.0,1.0],"translation":[0.0,0.0,0.0]}}}]}}'"#;
 
 /// How a shell oracle answers; `$1` is a folder of its own.
@@ -80,11 +80,11 @@ pub(crate) struct Trial {
     pub(crate) robot: Robot,
 }
 
-/// So long that an honest shell is never late, however busy the machine is: only a test that would hang for ever meets it.
+/// So long that a right shell oracle is never late, however busy the machine is. Only a test that would hang for ever reaches it.
 pub(crate) const PATIENT: Limits = Limits { answer: Duration::from_secs(900), memory: 1 << 30 };
 
-/// A clock that stands still until the test sets it going and the script says that it is late, by a file `late` in its folder. Then an hour
-/// passes between any two looks.
+/// A clock that stops until the test starts it and the script says that it is late, by a file `late` in its folder. From then on an hour
+/// passes between any two queries.
 pub(crate) struct Stopped {
     late: PathBuf,
     going: AtomicBool,
@@ -128,7 +128,7 @@ impl Trial {
         (Self::by(script, PATIENT, folder, Arc::clone(&clock) as Arc<dyn Clock>), clock)
     }
 
-    /// An oracle whose limits pass, and whose times are taken, by this clock.
+    /// An oracle whose limits and times are measured by this clock.
     pub(crate) fn by(script: &Script, limits: Limits, folder: TempDir, clock: Arc<dyn Clock>) -> Self {
         let oracle = Oracle::start_by(script.command(folder.path()), limits, clock);
         Self { folder, oracle, robot: robot("chain:n=1") }

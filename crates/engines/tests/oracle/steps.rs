@@ -1,4 +1,4 @@
-//! Shell oracles that integrate: what is sent, what comes back, and what a wrong `steps` is called.
+//! Shell oracles that integrate: what is sent, what is returned, and the error for wrong `steps`.
 
 use super::script::{HELLO, PATIENT, Script, Trial, stillborn};
 use featherbench_bench::{Engine, NoAnswer, Stepper};
@@ -13,7 +13,7 @@ fn hello(steps: &str) -> String {
     HELLO.replace(r#""methods""#, &format!(r#""steps":{steps},"methods""#))
 }
 
-/// An oracle that says this about its steps, and answers them so.
+/// An oracle that says this about its steps, and answers so.
 fn trial(steps: &str, step: &str, fall: &str) -> Trial {
     let evaluate = format!(r#"echo "$line" >> "$1/asked"; case "$line" in *'"op":"step"'*) {step};; *) {fall};; esac"#);
     Trial::new(&Script { hello: hello(steps), evaluate, ..Script::honest() }, PATIENT)
