@@ -1,4 +1,4 @@
-//! Passes on what only the compiler knows: its version, the profile and the target features.
+//! Passes the compiler's version, the profile and the target features on to the crate.
 
 use std::process::Command;
 

@@ -4,16 +4,16 @@ use crate::hash;
 use crate::{Import, NoAnswer};
 use serde_json::{Value, json};
 
-/// One evaluation: what is asked of whom, about which robot.
+/// One evaluation: an engine, its method, a quantity, a robot.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Cell {
-    /// The study that asks.
+    /// The study of the cell.
     pub study: String,
     /// The robot's name.
     pub robot: String,
     /// The robot's content hash.
     pub robot_hash: String,
-    /// What else defines the work.
+    /// The other parameters of the work.
     pub params: Value,
     /// The engine's name.
     pub engine: String,
@@ -21,7 +21,7 @@ pub struct Cell {
     pub version: String,
     /// The engine's method.
     pub method: String,
-    /// What is asked.
+    /// The quantity.
     pub quantity: String,
     /// The arithmetic.
     pub scalar: String,
@@ -35,18 +35,18 @@ impl Cell {
         hash::of(featherbench_results::canonical_json(&content).as_bytes())[..16].to_owned()
     }
 
-    /// The cell as a path of words: what `--filter` matches and progress shows.
+    /// The cell as a path of words: `--only` matches it, and progress shows it.
     pub fn path(&self) -> String {
         format!("{}/{}/{}/{}/{}", self.study, self.robot, self.engine, self.quantity, self.method)
     }
 }
 
-/// What became of a cell.
+/// The result of a cell.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Outcome {
     /// The values, state after state.
     Values(Vec<f64>),
-    /// What the engine read from a file: the answer to cells of the import study alone.
+    /// The result of an engine's import of a file: the answer to cells of the import study alone.
     Import(Box<Import>),
     /// No values, and why.
     NoAnswer(NoAnswer),
@@ -63,7 +63,7 @@ impl Outcome {
 }
 
 impl Outcome {
-    /// The values, or why there are none; a reading stands for none.
+    /// The values, or why there are none; an import result has none.
     pub fn answer(&self) -> Result<&[f64], NoAnswer> {
         match self {
             Self::Values(values) => Ok(values),

@@ -1,4 +1,4 @@
-//! The ledger of conventions, `oracles/conventions.toml`: what each engine does, what we do, what converts, and which test holds it.
+//! The list of conventions, `oracles/conventions.toml`: what each engine does, what we do, the conversion, and the test of it.
 
 use crate::HarnessError;
 use featherbench_results::Convention;
@@ -24,10 +24,10 @@ struct Row {
     test: String,
 }
 
-/// Reads the ledger, in its order.
+/// Reads the list, in its order.
 ///
 /// # Errors
-/// [`HarnessError`], naming file, line and key; a row whose topic has no entry in `[ours]`, and an entry without a row, are errors too.
+/// [`HarnessError`], naming file, line and key. A row whose topic has no entry in `[ours]` is an error, and so is an entry without a row.
 pub fn read(path: &Path) -> Result<Vec<Convention>, HarnessError> {
     let text = std::fs::read_to_string(path).map_err(|source| HarnessError::io(path, source))?;
     let wrong = |message: String| HarnessError::Config { path: path.to_owned(), message };
@@ -43,7 +43,7 @@ pub fn read(path: &Path) -> Result<Vec<Convention>, HarnessError> {
     ledger.convention.into_iter().map(complete).collect()
 }
 
-/// The ledger as tables in Markdown, one for each engine: what `CONVENTIONS.md` shows.
+/// The list as tables in Markdown, one for each engine, as in `CONVENTIONS.md`.
 pub fn markdown(conventions: &[Convention]) -> String {
     let mut text = String::new();
     let mut engine = "";

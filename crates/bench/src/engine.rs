@@ -1,4 +1,4 @@
-//! The trait [`Engine`]: anyone who answers.
+//! The trait [`Engine`]: anything that answers.
 
 use crate::{Import, Quantity, Robot, RobotFile, Stepper};
 use featherbench_model::StateBatch;
@@ -8,10 +8,10 @@ use std::ops::Range;
 use std::time::{Duration, Instant};
 use thiserror::Error;
 
-/// Who an engine is.
+/// The identity of an engine.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Identity {
-    /// The engine's name in records.
+    /// The engine's name in rows.
     pub name: String,
     /// The version it reports.
     pub version: String,
@@ -24,10 +24,10 @@ pub struct Identity {
 /// Why there is no answer.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 pub enum NoAnswer {
-    /// The engine does not offer this: known beforehand, a skip.
+    /// The engine does not offer this, which is known before: a skip.
     #[error("{0}")]
     NotOffered(String),
-    /// It should have answered and did not: an error.
+    /// It failed to answer: an error.
     #[error("{0}")]
     Failed(String),
 }
@@ -118,25 +118,25 @@ pub enum NoAnswer {
 ///
 /// A run asks it beside the others when `crates/cli/src/engines.rs` adds it to the engines.
 pub trait Engine: Send + Sync {
-    /// Who it is.
+    /// Its identity.
     fn identity(&self) -> &Identity;
 
-    /// Its methods for a quantity, its usual one first; none when it does not offer the quantity.
+    /// Its methods for a quantity, the usual one first; empty if it does not offer the quantity.
     fn methods(&self, quantity: Quantity) -> Vec<String>;
 
-    /// Reads a robot's file with the engine's own parser and says what it holds then.
+    /// Imports a robot's file by the engine's own parser, and returns the result.
     ///
     /// # Errors
-    /// [`NoAnswer`] when the engine has no parser, or its parser refuses the file.
+    /// [`NoAnswer`] when the engine has no parser, or its parser gives an error.
     fn read(&self, file: &RobotFile) -> Result<Import, NoAnswer> {
         let format = file.format.name();
         Err(NoAnswer::NotOffered(format!("{} has no parser of {format} files", self.identity().name)))
     }
 
-    /// Gets ready to evaluate a quantity by a method over a batch of states.
+    /// Prepares to evaluate a quantity by a method over a batch of states.
     ///
     /// # Errors
-    /// [`NoAnswer`] when the robot, quantity or method is not supported, or the engine breaks.
+    /// [`NoAnswer`] when the robot, quantity or method is not supported, or the engine fails.
     fn prepare<'a>(
         &'a self,
         robot: &'a Robot,
@@ -150,12 +150,12 @@ pub trait Engine: Send + Sync {
         self.methods(quantity)
     }
 
-    /// Whether its times are estimates: what it takes to call the engine was measured with them, and subtracted.
+    /// Whether its times are estimates: the overhead of calling it was measured too, and subtracted.
     fn estimates(&self) -> bool {
         false
     }
 
-    /// Its steps, where its forward dynamics is that of a step.
+    /// Its steps, if its forward dynamics is that of a step.
     fn stepper(&self) -> Option<&dyn Stepper> {
         None
     }
@@ -169,11 +169,11 @@ pub trait Evaluation: Send {
     /// [`NoAnswer`] when the engine fails.
     fn run(&mut self, range: Range<usize>) -> Result<(), NoAnswer>;
 
-    /// Evaluates the states of the range and says how long that took: one reading of the clock before the loop over the states and one
-    /// after it, both in the process that runs the loop.
+    /// Evaluates the states of the range and returns the time. The clock is read once before the loop over the states and once after it.
+    /// Both readings are in the process that runs the loop.
     ///
-    /// Beyond the end of the batch its states begin again (an engine that is timed answers so; this plain form does not), and no answer but
-    /// the last need be kept.
+    /// Beyond the end of the batch its states begin again. (An engine that is timed does so; this default does not.) Only the last answer
+    /// must be kept.
     ///
     /// # Errors
     /// [`NoAnswer`] when the engine fails.
@@ -183,8 +183,8 @@ pub trait Evaluation: Send {
         Ok(start.elapsed())
     }
 
-    /// Moves everything that it works on to other places of the memory, drawn with this seed, where that is not in this process: `false`
-    /// of an engine that is moved by preparing it anew.
+    /// Relocates all its data to other places in memory, drawn with this seed, if they are not in this process. `false` means that the
+    /// engine must be prepared again to relocate its data.
     ///
     /// # Errors
     /// [`NoAnswer`] when the engine fails.
@@ -192,7 +192,7 @@ pub trait Evaluation: Send {
         Ok(false)
     }
 
-    /// What was subtracted from the time that [`Evaluation::clock`] told last, where times are estimates.
+    /// The overhead that was subtracted from the last time of [`Evaluation::clock`], if times are estimates.
     fn overhead(&self) -> Option<Duration> {
         None
     }

@@ -1,10 +1,10 @@
-//! What can go wrong in the harness itself (an engine that fails is a row, not an error).
+//! Errors of a run itself. (An engine that fails is a row, not an error.)
 
 use std::io;
 use std::path::{Path, PathBuf};
 use thiserror::Error;
 
-/// An error of the harness. Each names the file and the way out.
+/// An error of a run. Each names the file and says what to do.
 #[derive(Debug, Error)]
 pub enum HarnessError {
     /// A file or folder could not be read or written.
@@ -12,10 +12,10 @@ pub enum HarnessError {
     Io {
         /// The file or folder.
         path: PathBuf,
-        /// What the system says.
+        /// The error of the operating system.
         source: io::Error,
     },
-    /// A configuration file is not understood.
+    /// A configuration file has an error.
     #[error("{path}: {message}")]
     Config {
         /// The file.
@@ -23,22 +23,22 @@ pub enum HarnessError {
         /// Line, field and what is expected there.
         message: String,
     },
-    /// The folder holds something already.
+    /// The folder is not empty.
     #[error("{path} exists and is not empty; name another folder with --out, or continue that run with --resume")]
     Occupied {
         /// The folder.
         path: PathBuf,
     },
-    /// The run was started by another program or another plan.
+    /// The run was started by another program or with another plan.
     #[error("{path} was made with another {what} ({then} then, {now} now); start a new run, or mix knowingly with --allow-mixed")]
     Mixed {
         /// The folder.
         path: PathBuf,
         /// What differs.
         what: String,
-        /// What it was.
+        /// Its value in the run that exists.
         then: String,
-        /// What it is.
+        /// Its value now.
         now: String,
     },
     /// There is no run to continue.
@@ -47,7 +47,7 @@ pub enum HarnessError {
         /// The folder.
         path: PathBuf,
     },
-    /// The records refuse.
+    /// An error of the rows.
     #[error(transparent)]
     Row(#[from] featherbench_results::ResultsError),
 }

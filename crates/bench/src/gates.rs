@@ -1,4 +1,4 @@
-//! Gates: every threshold, and every known deviation from one, as data.
+//! Gates: every threshold, and every known deviation, as data.
 
 use crate::deviation::named;
 use crate::measure::worst;
@@ -22,7 +22,7 @@ pub struct Gates {
     ranges: Ranges,
 }
 
-/// A computed bound may be so wide that it sees nothing: each engine's method must meet one below this, for each kind of joint and base.
+/// A computed bound may be too wide to find errors. So each engine's method must meet one below this, for each kind of joint and base.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Sharpness {
@@ -32,9 +32,9 @@ pub struct Sharpness {
     pub quantity: String,
     /// The error measure with computed bounds.
     pub metric: String,
-    /// What at least one bound must be below.
+    /// At least one bound must be below this.
     pub bound: f64,
-    /// Why it is what it is.
+    /// The reason for the value.
     pub reason: String,
 }
 
@@ -52,16 +52,16 @@ pub struct Gate {
     pub engines: Option<Vec<String>>,
     /// The methods, or all of them.
     pub methods: Option<Vec<String>>,
-    /// The robots, or all of them: names, a trailing `*` standing for any rest.
+    /// The robots, or all of them: names; a trailing `*` stands for any rest.
     pub robots: Option<Vec<String>>,
-    /// Only robots up to this depth are gated; deeper ones are measured.
+    /// Only robots up to this depth have the gate; deeper ones are measured without it.
     pub max_depth: Option<usize>,
     /// The threshold.
     pub bound: f64,
-    /// What the threshold is multiplied with.
+    /// The factor of the threshold.
     #[serde(default)]
     pub times: Factor,
-    /// Why it is what it is.
+    /// The reason for the value.
     pub reason: String,
 }
 
@@ -116,14 +116,15 @@ impl Gates {
         Self::parse(&read(&folder.join("gates.toml"))?, &read(&folder.join("deviations.toml"))?, folder)
     }
 
-    /// The same gates in a run with engines that a user brought along: what such an engine does not offer is no fault, as in the conformance
-    /// test. Its answers are judged like any engine's, and its failures to answer.
+    /// The same gates in a run with external engines. Something that such an engine does not offer is not a fault, as in the conformance
+    /// test. Its answers, and its failures to answer, are judged like any engine's.
     pub fn with_external(mut self, names: &[&str]) -> Self {
         self.externals = names.iter().map(|&name| name.to_owned()).collect();
         self
     }
 
-    /// The gates and deviations of two texts, without the deviations' sizes; errors call them `gates.toml` and `deviations.toml` in `folder`.
+    /// The gates and deviations of two texts, without the deviations' sizes. In errors they are named `gates.toml` and `deviations.toml` in
+    /// `folder`.
     ///
     /// # Errors
     /// [`HarnessError`], naming file, line and key.
@@ -155,7 +156,7 @@ impl Gates {
         Ok(Self { gates, sharp, means, deviations, not_offered, reproductions, externals: Vec::new(), ranges: Ranges::default() })
     }
 
-    /// The same gates, with the deviations' sizes; `folder` is where errors say that they stand.
+    /// The same gates, with the deviations' sizes; errors name `folder` as their place.
     ///
     /// # Errors
     /// [`HarnessError`], when a size belongs to no known deviation.
@@ -188,9 +189,9 @@ impl Gates {
         &self.reproductions
     }
 
-    /// Closes a row with its value: judged where a gate matches, informed elsewhere, and then looked up among the known deviations.
+    /// Closes a row with its value: judged if a gate matches, otherwise informed. Then known deviations are searched.
     ///
-    /// `amplification` turns a backward error into a forward one at the row's state (1 where that has no meaning).
+    /// `amplification` turns a backward error into a forward one at the row's state (1 where it does not apply).
     pub fn judge(&self, row: Row, value: f64, amplification: f64) -> Row {
         let depth = row.depth.unwrap_or(0);
         let gate = self.gates.iter().find(|gate| gate.matches(&row));
@@ -208,8 +209,10 @@ impl Gates {
         self.explain(row)
     }
 
-    /// Tells the known cause of a row that is no pass. A failure within the range that was measured for its robot, and an error, become known
-    /// deviations; what an engine does not offer stays a skip; a failure without a range, or beyond it, stays a failure and says so.
+    /// Gives a row that does not pass its known cause.
+    /// - A failure within the range that was measured for its robot becomes a known deviation, and so does an error.
+    /// - A question that an engine does not offer stays a skip.
+    /// - A failure without a range, or beyond it, stays a failure and says so.
     pub fn explain(&self, row: Row) -> Row {
         match row.verdict {
             Verdict::Skip => match self.not_offered.iter().find(|known| known.explains(&row)) {
@@ -242,16 +245,16 @@ impl Gates {
         }
     }
 
-    /// The known deviation, of those whose size is measured, that is about a row.
+    /// The known deviation with a measured size that is about a row.
     fn measured(&self, row: &Row) -> Option<&Deviation> {
         self.deviations.iter().find(|known| known.is_measured() && known.is_about(row))
     }
 
-    /// What keeps a set of records from being green: one expectation per condition, passing or not.
+    /// The conditions that a set of rows must meet: one expectation each, passing or not.
     ///
-    /// Conditions: no row fails; none is skipped or an error unexplained; and, when the run is `complete`, the suite's
-    /// counts of rows are met exactly, and a thorough suite shows every known deviation as large as it is known to be, everything that is not
-    /// offered, and sharp bounds.
+    /// - No row fails, and every skip and error is explained.
+    /// - If the run is `complete`, the suite's counts of rows are met exactly.
+    /// - A thorough suite then also shows every known deviation in its known size, everything that is not offered, and sharp bounds.
     pub fn conditions(&self, suite: &Suite, records: &[Row], complete: bool) -> Vec<Expectation> {
         let count = |of_these: &dyn Fn(&Row) -> bool| records.iter().filter(|row| of_these(row)).count() as u64;
         let unknown = |row: &Row| {
@@ -282,8 +285,8 @@ impl Gates {
         conditions
     }
 
-    /// One condition per known deviation of the suite's engines and robots, that it is still seen; one more, where its size is measured, that
-    /// it is as large as known on every robot; and one per thing that is not offered.
+    /// One condition per known deviation of the suite's engines and robots: it still occurs. If its size is measured, there is one more: it
+    /// has the known size on every robot. And there is one condition per thing that is not offered.
     fn still_seen(&self, suite: &Suite, records: &[Row]) -> Vec<Expectation> {
         let asked = |engine: &String| suite.agreement.as_ref().is_some_and(|agreement| agreement.engines.contains(engine));
         let mut conditions = Vec::new();
@@ -303,7 +306,7 @@ impl Gates {
         conditions
     }
 
-    /// The condition that a deviation is as large as known on each of its robots; none, where no robot of the run shows it at every seed.
+    /// The condition that a deviation has its known size on each of its robots; `None` if no robot of the run showed it at every seed.
     fn still_large(&self, known: &Deviation, records: &[Row]) -> Option<Expectation> {
         let mut found: BTreeMap<RangeKey, f64> = BTreeMap::new();
         let judged = records.iter().filter(|row| row.bound.is_some() && known.is_measured() && known.is_about(row));
@@ -330,8 +333,8 @@ impl Gates {
     }
 }
 
-/// Whether a row counts for a suite's `[expect]`: it passes, or has a value that deviates as known. (Near a gate, rounding on another
-/// processor may turn one into the other; what counts is that the row is there.)
+/// Whether a row counts for a suite's `[expect]`: it passes, or has a value with a known deviation. (Near a gate, the rounding of another
+/// processor may turn one into the other. The row must exist in any case.)
 pub fn accounted(row: &Row) -> bool {
     row.verdict == Verdict::Pass || row.verdict == Verdict::Deviation && row.value.is_some()
 }
@@ -346,8 +349,8 @@ pub(crate) fn condition(what: String, expected: u64, found: u64) -> Expectation 
 type Bounds = HashMap<(String, String), f64>;
 
 impl Sharpness {
-    /// One condition per method of the suite's engines: for how many kinds of joints and bases there is no robot with a sharp bound. An engine
-    /// that a user brought along need not have every kind.
+    /// One condition per method of the suite's engines: the number of kinds of joints and bases without a robot with a sharp bound is zero.
+    /// An external engine need not have every kind.
     fn conditions(&self, suite: &Suite, records: &[Row]) -> Vec<Expectation> {
         let mut sharpest: BTreeMap<(&str, &str), Bounds> = BTreeMap::new();
         let named = |engine: &String| suite.agreement.as_ref().is_some_and(|agreement| agreement.engines.contains(engine));

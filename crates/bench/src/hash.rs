@@ -5,7 +5,7 @@ pub fn of(bytes: &[u8]) -> String {
     of_parts(&[bytes])
 }
 
-/// The hash of several parts; where they are cut matters.
+/// The hash of several parts; it depends on where each part ends.
 pub fn of_parts(parts: &[&[u8]]) -> String {
     let mut hasher = blake3::Hasher::new();
     for part in parts {

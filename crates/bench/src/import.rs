@@ -1,21 +1,21 @@
-//! A robot's file, and what an engine's own parser makes of it.
+//! A robot's file, and the result of its import by an engine's own parser.
 
 use crate::{HarnessError, hash};
 use featherbench_model::Description;
 use std::path::{Path, PathBuf};
 
-/// A robot as its author wrote it: the file that every engine reads for itself.
+/// A robot as its author wrote it: the file that every engine imports itself.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RobotFile {
     /// The file, by its absolute path.
     pub path: PathBuf,
-    /// How it is written.
+    /// Its format.
     pub format: FileFormat,
-    /// What the root link stands on.
+    /// The joint of the root link.
     pub base: FileBase,
     /// Hash of the file's content. Files that it includes are not in it.
     pub hash: String,
-    /// What the file says of its links, where a reader of ours has looked.
+    /// The links of the file, if our own parser has read it.
     pub links: Vec<FileLink>,
 }
 
@@ -26,11 +26,11 @@ pub struct FileLink {
     pub name: String,
     /// Its inertial element.
     pub inertial: Option<FileInertial>,
-    /// Mass, centre of mass and inertia of its collision geometry at [`WATER`], where that is boxes, spheres, cylinders and capsules.
+    /// Mass, centre of mass and inertia of its collision geometry at [`WATER`], if that is boxes, spheres, cylinders and capsules.
     pub solids: Option<FileInertial>,
 }
 
-/// Density of water, kg/m³: what engines give to geometry that has none.
+/// Density of water, kg/m³: engines use it for geometry without a density.
 pub const WATER: f64 = 1000.0;
 
 /// Mass properties with axes of their own.
@@ -46,7 +46,7 @@ pub struct FileInertial {
     pub inertia: [f64; 6],
 }
 
-/// How a robot's file is written.
+/// The format of a robot's file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum FileFormat {
     /// The Unified Robot Description Format.
@@ -55,29 +55,29 @@ pub enum FileFormat {
     Mjcf,
 }
 
-/// What the root link of a file stands on.
+/// The joint of the root link of a file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum FileBase {
-    /// The world, or what the file itself says.
+    /// Fixed to the world, or as the file says.
     Fixed,
     /// A free joint.
     Free,
 }
 
-/// What an engine holds after its own parser has read a file.
+/// The result of a file's import by an engine's own parser.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Import {
-    /// The robot that it holds, canonical.
+    /// The engine's robot, canonical.
     pub description: Description,
-    /// What the parser is known to have done on the way.
+    /// The parser's known edits.
     pub notes: Vec<ImportNote>,
-    /// Configurations in which the file has the robot stand, in the description's coordinates; quaternions as the engine holds them.
+    /// Configurations that the file names, in the description's coordinates; quaternions as the engine has them.
     pub keyframes: Vec<Vec<f64>>,
-    /// The same robot with the file's own inertias, where the engine refuses those and holds repaired ones.
+    /// The same robot with the file's own inertias, if the engine repaired them.
     pub written: Option<Description>,
 }
 
-/// Something that a parser did beyond reading, or left unread.
+/// An edit by a parser, or an element that it did not import.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ImportNote {
     /// A word of `oracles/PROTOCOL.md`, such as `mass_edited`.
@@ -86,7 +86,7 @@ pub struct ImportNote {
     pub about: Option<String>,
     /// What was done, one sentence.
     pub text: String,
-    /// The numbers that `oracles/PROTOCOL.md` gives the cause; empty where the engine tells none.
+    /// The numbers that `oracles/PROTOCOL.md` defines for the cause; empty if the engine gives none.
     pub numbers: Vec<f64>,
 }
 

@@ -1,6 +1,6 @@
-//! Where the numbers of an answer stand: results of the kernels in the layout of their quantity, over any scalar.
+//! The layout of an answer's numbers: results of the kernels in the layout of their quantity, over any scalar.
 //!
-//! Our kernels in `f64` and the truth in double-double are written by the same text.
+//! The same text serves our kernels in `f64` and the truth in double-double.
 
 use crate::Quantity;
 use featherbench_dynamics::{BodyMotion, DimensionError, Kinematics, TreeSparse};
@@ -17,7 +17,7 @@ pub fn dense<T: Real>(matrix: &TreeSparse<T>, out: &mut [T]) {
 /// Products with the vectors of the probe, the diagonal and the last row: [`Quantity::MassMatrixProbe`].
 ///
 /// # Errors
-/// [`DimensionError`] when the vectors are not as long as the matrix is wide.
+/// [`DimensionError`] when a vector's length is not the matrix' width.
 pub fn probe<T: Real>(matrix: &TreeSparse<T>, vectors: &[T], out: &mut [T]) -> Result<(), DimensionError> {
     let n = matrix.size();
     let (products, rest) = out.split_at_mut(vectors.len());
@@ -30,7 +30,7 @@ pub fn probe<T: Real>(matrix: &TreeSparse<T>, vectors: &[T], out: &mut [T]) -> R
     Ok(())
 }
 
-/// Placement, velocity or acceleration of each described body, as the quantity says; `described` names the compiled ones.
+/// Placement, velocity or acceleration of each described body, as the quantity says; `described` gives the index of the compiled body.
 pub fn bodies<T: Real>(quantity: Quantity, kinematics: &Kinematics<T>, described: &[usize], out: &mut [T]) {
     let size = if quantity == Quantity::BodyPlacement { 12 } else { 6 };
     for (out, &body) in out.chunks_exact_mut(size).zip(described) {

@@ -1,4 +1,4 @@
-//! Means: what rows of many robots must keep together.
+//! Means: bounds on the rows of many robots together.
 
 use crate::gates::condition;
 use crate::measure::worst;
@@ -13,20 +13,20 @@ pub struct Mean {
     pub study: String,
     /// The metric, of positive values.
     pub metric: String,
-    /// The quantities, each by itself.
+    /// The quantities; each has its own mean.
     pub quantities: Vec<String>,
-    /// What the geometric mean must not exceed.
+    /// The largest allowed geometric mean.
     pub mean: f64,
-    /// What no value may exceed.
+    /// The largest allowed value.
     pub bound: f64,
-    /// Why they are what they are.
+    /// The reason for the values.
     pub reason: String,
-    /// Robots on which a value beyond the bound is known.
+    /// Robots with a known value beyond the bound.
     #[serde(default)]
     pub known: Vec<Known>,
 }
 
-/// A robot on which the value of a quantity is known to be beyond the bound. It counts for the mean all the same.
+/// A robot on which the value of a quantity is known to be beyond the bound. It still counts for the mean.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Known {
@@ -34,19 +34,19 @@ pub struct Known {
     pub quantity: String,
     /// The robot.
     pub robot: String,
-    /// What the value must not exceed.
+    /// The largest allowed value.
     pub up_to: f64,
     /// The cause.
     pub reason: String,
 }
 
 impl Mean {
-    /// Two conditions per quantity: the mean, and the largest value. Where no row has a value, neither is met. And one per robot that is known:
-    /// its value lies between the bound and what is known.
+    /// Two conditions per quantity: the mean, and the largest value. If no row has a value, neither is met. And one condition per known
+    /// robot: its value is between the bound and the known size.
     pub(crate) fn conditions(&self, records: &[Row]) -> Vec<Expectation> {
         let of = |quantity: &String| {
             let rows = records.iter().filter(|row| row.study == self.study && row.metric == self.metric && row.quantity == *quantity);
-            // A row without a value has none that is small enough.
+            // A row without a value counts as infinite.
             let values: Vec<(&str, f64)> = rows.map(|row| (row.robot.as_str(), row.value.unwrap_or(f64::NAN))).collect();
             let count = values.len();
             let mean = (values.iter().map(|(_, value)| value.ln()).sum::<f64>() / count as f64).exp();
@@ -91,7 +91,7 @@ mod tests {
         assert_eq!(met(&[0.1, 3.01]), [true, false]);
         assert_eq!(met(&[]), [false, false], "no row");
         assert_eq!(met(&[f64::NAN, 1.0]), [false, false], "a row without a value");
-        // A robot that is known: it counts for the mean, and must be as far off as it is known to be.
+        // A known robot counts for the mean, and must have its known size.
         let named = |value: f64| {
             let mut records = rows(&[1.0, value]);
             records[1].robot = "far".into();

@@ -1,4 +1,4 @@
-//! Where a run comes from: source, program, machine.
+//! The origin of a run: source, program, machine.
 
 use crate::hash;
 use featherbench_results::{GitInfo, Host, RunInfo};
@@ -6,7 +6,7 @@ use std::collections::BTreeMap;
 use std::path::Path;
 use std::process::Command;
 
-/// Everything about this program and machine that a run's records depend on; the caller adds suite, engines and models.
+/// The facts about this program and machine on which a run's rows depend; the caller adds suite, engines and models.
 pub fn collect(root: &Path) -> RunInfo {
     let features = env!("FEATHERBENCH_TARGET_FEATURES");
     let mut target_features: Vec<String> = features.split(',').filter(|feature| !feature.is_empty()).map(str::to_owned).collect();
@@ -23,13 +23,13 @@ pub fn collect(root: &Path) -> RunInfo {
     }
 }
 
-/// Where the build of an engine that a user brings along holds the content hash of its program: a version is what a program says of itself.
+/// The key in the build of an external engine with the content hash of its program. (Its version is only what the program says.)
 pub const PROGRAM: &str = "program";
 
-/// Where the build of an engine that is compiled from the project's sources holds their hash.
+/// The key in the build of an engine compiled from the project's sources, with their hash.
 pub const SOURCES: &str = "sources";
 
-/// What a resumed run must share with the run that it continues, by name.
+/// The facts, by name, that a resumed run must share with the run that it continues.
 pub fn fingerprint(info: &RunInfo) -> BTreeMap<String, String> {
     let run = [
         ("suite", info.suite_hash.clone()),
@@ -45,7 +45,7 @@ pub fn fingerprint(info: &RunInfo) -> BTreeMap<String, String> {
     run.into_iter().map(|(what, value)| (what.to_owned(), value)).chain(programs).collect()
 }
 
-/// A hash of the bits that the mathematics library gives for sines and cosines at fixed arguments.
+/// A hash of the bits of sines and cosines from the mathematics library at fixed arguments.
 fn libm() -> String {
     let mut random = featherbench_model::Random::named(0, "libm");
     let bits = (0..1000).flat_map(|_| {

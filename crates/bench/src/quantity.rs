@@ -1,4 +1,4 @@
-//! What can be asked of an engine, as data.
+//! The quantities of which an engine can be asked, as data.
 
 use crate::Robot;
 
@@ -35,7 +35,7 @@ pub enum Quantity {
     BodyAcceleration,
     /// Jacobian of the deepest body's velocity.
     BodyJacobian,
-    /// What an engine holds after building the model: inertias and placements.
+    /// The engine's own data after building the model: inertias and placements.
     Readback,
     /// Stored numbers of the engine's sparse mass matrix.
     StoredEntries,
@@ -78,7 +78,7 @@ impl Quantity {
         Self::MassMatrixInverse,
     ];
 
-    /// The word for it in records and in the oracle protocol.
+    /// The word for it in rows and in the oracle protocol.
     pub fn name(self) -> &'static str {
         match self {
             Self::InverseDynamics => "id",
@@ -132,8 +132,10 @@ impl Quantity {
         }
     }
 
-    /// Of how many states of an agreement batch it is asked: all where the claim is about the worst of them, the head of the batch for
-    /// the bulky kinematic quantities and external wrenches, one where it does not depend on the state.
+    /// The number of states of an agreement batch at which it is asked:
+    /// - all, where the worst one counts;
+    /// - the head of the batch, for the large kinematic quantities and external wrenches;
+    /// - one, where it does not depend on the state.
     pub fn states(self, count: usize) -> usize {
         match self {
             Self::Readback | Self::StoredEntries => count.min(1),

@@ -1,8 +1,9 @@
-//! How large the known deviations are, robot by robot: data files that `featherbench gate --ranges … --write` writes.
+//! The sizes of the known deviations for each robot: data files that `featherbench gate --ranges … --write` writes.
 //!
-//! A file is CSV, one row per engine, version, method, quantity, robot and metric, sorted. `low` and `high` are the smallest and the largest
-//! of the worst values of runs with different seeds, `outside` is the number of those runs in which a row was outside its bound, and `seeds`
-//! the number of runs.
+//! A file is sorted CSV, with one row per engine, version, method, quantity, robot and metric.
+//! - `low` and `high`: the smallest and the largest of the worst values of runs with different seeds.
+//! - `outside`: the number of those runs in which a row was outside its bound.
+//! - `seeds`: the number of runs.
 
 use crate::measure::worst;
 use crate::{Deviation, HarnessError, SLACK};
@@ -14,7 +15,7 @@ use std::path::Path;
 /// The columns of a file, in order.
 const COLUMNS: [&str; 10] = ["engine", "version", "method", "quantity", "robot", "metric", "low", "high", "outside", "seeds"];
 
-/// What has a range of its own.
+/// The key of a range.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct RangeKey {
     /// The engine.
@@ -67,12 +68,12 @@ impl RangeKey {
 }
 
 impl Range {
-    /// Whether a value is no larger than known.
+    /// Whether a value is at most as large as known.
     pub fn admits(&self, value: f64) -> bool {
         value <= SLACK * self.high
     }
 
-    /// Whether a run's worst value is smaller than known. Where not every run showed the deviation, no value is too small.
+    /// Whether a run's worst value is smaller than known. If not every run showed the deviation, no value is too small.
     pub fn has_shrunk(&self, value: f64) -> bool {
         self.outside == self.seeds && value < self.low / SLACK
     }
@@ -89,8 +90,8 @@ impl Range {
 }
 
 impl Ranges {
-    /// Reads every `.csv` file of a folder; none, where there is no folder. Where two files hold one key (a robot of two suites), the range
-    /// spans both.
+    /// Reads every `.csv` file of a folder; no ranges if there is no folder. If two files have the same key (a robot of two suites), the
+    /// range spans both.
     ///
     /// # Errors
     /// [`HarnessError`], naming file, line and column.
@@ -114,7 +115,7 @@ impl Ranges {
         Ok(all)
     }
 
-    /// The ranges of one text; `path` is what errors call it.
+    /// The ranges of one text; `path` is its name in errors.
     ///
     /// # Errors
     /// [`HarnessError`], naming file, line and column.
@@ -202,8 +203,8 @@ struct Worst {
 }
 
 impl RangesMeter {
-    /// Adds the rows of one run. Rows that a deviation with the verdict `fail` is about count with their value, whether they miss their bound
-    /// in this run or not.
+    /// Adds the rows of one run. Rows of a deviation with the verdict `fail` count with their value, whether they miss their bound in this
+    /// run or not.
     pub fn add(&mut self, deviations: &[Deviation], records: &[Row]) {
         let mut run: BTreeMap<RangeKey, Worst> = BTreeMap::new();
         for row in records.iter().filter(|row| row.bound.is_some()) {
@@ -219,7 +220,7 @@ impl RangesMeter {
         }
     }
 
-    /// The ranges of what was outside its bound in one of the runs.
+    /// The ranges of the keys that were outside their bound in one of the runs.
     pub fn ranges(&self) -> Ranges {
         let range = |runs: &Vec<Worst>| Range {
             low: -runs.iter().map(|run| -run.value).fold(f64::NEG_INFINITY, worst),
@@ -231,8 +232,8 @@ impl RangesMeter {
         Ranges(known.collect())
     }
 
-    /// How far one run lies outside the range of the others, as factors sorted from the smallest: above the largest, and, where every run was
-    /// outside its bound, below the smallest. [`SLACK`] is chosen by them.
+    /// How far the extreme run of each key is from the others, as sorted factors: largest / second largest. And second smallest / smallest,
+    /// if every run was outside its bound. [`SLACK`] is chosen from them.
     pub fn leaps(&self) -> (Vec<f64>, Vec<f64>) {
         let (mut up, mut down) = (Vec::new(), Vec::new());
         for runs in self.0.values().filter(|runs| runs.len() > 1 && runs.iter().any(|run| run.outside)) {

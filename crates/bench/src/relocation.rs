@@ -1,14 +1,15 @@
-//! Disturbing the heap, so that what is allocated next lies at other places of the memory than it would.
+//! Changes the heap, so that later allocations get other addresses (memory layout randomization).
 
 use featherbench_model::Random;
 use std::hint::black_box;
 
-/// Blocks that disturb the heap, twice as many as stay: how many, and between which sizes in bytes. Small ones use up what was freed last, which
-/// an allocator would give out again; large ones, a cache line to some pages, shift what follows. Beyond, pages are mapped anew for each.
+/// The blocks: how many are allocated, of which about half remain, and the smallest and largest size in bytes.
+/// Small blocks use up recently freed memory, which an allocator would return again. Large ones, from a cache line to some pages, shift
+/// what follows. Still larger ones would get new pages each time.
 const BLOCKS: [(usize, f64, f64); 2] = [(1024, 16.0, 1024.0), (64, 1024.0, 65536.0)];
 
-/// Blocks of random sizes between holes of random sizes. What is allocated while it lives fills the holes and the room behind: how its
-/// parts lie to each other and to the pages changes with every draw.
+/// Blocks of random sizes between holes of random sizes. Allocations while it exists fill the holes and the memory after it. So the
+/// positions of their parts, relative to each other and to the pages, change with every draw.
 #[derive(Debug)]
 pub struct Relocation(#[expect(dead_code, reason = "what counts is that they take room")] Vec<Vec<u8>>);
 
@@ -39,7 +40,7 @@ mod tests {
         for places in [&mut small, &mut large] {
             places.sort_unstable();
             places.dedup();
-            // Of twenty places among 256 (every 16 bytes of a page) one or two would coincide by chance.
+            // Of twenty addresses among 256 (every 16 bytes of a page) one or two would coincide by chance.
             assert!(places.len() > 10, "{places:?}");
         }
     }

@@ -1,14 +1,14 @@
-//! A robot: a robot with the states at which questions are asked.
+//! A robot with the states at which engines are asked.
 
 use crate::measure::Magnitudes;
 use crate::{Import, RobotFile};
 use featherbench_model::{BadState, Description, Malformed, Model, StateBatch, Warning};
 use featherbench_results::ModelOrigin;
 
-/// The most configurations of a file that become states: a recorded motion has thousands.
+/// The most configurations of a file that become states; a recorded motion may have thousands.
 const KEYFRAMES: usize = 16;
 
-/// How the robot of a robot gets into an engine.
+/// How a robot gets into an engine.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub enum Route {
     /// The description, through the engine's programming interface.
@@ -18,7 +18,7 @@ pub enum Route {
     AsRead,
 }
 
-/// What defines a robot, whatever its name, as the text that content hashes are made of.
+/// The text for content hashes: it contains everything that defines a robot except its name.
 fn canonical_json(description: &Description) -> Result<String, Malformed> {
     featherbench_formats::neutral::to_line(&Description { name: String::new(), ..description.clone() })
 }
@@ -42,11 +42,11 @@ pub struct Robot {
     pub states: StateBatch,
     /// Depth of the tree of described bodies.
     pub depth: usize,
-    /// The file that the robot was read from, where engines can read it too.
+    /// The file of the robot, if engines can import it too.
     pub file: Option<RobotFile>,
-    /// How it gets into an engine.
+    /// How the robot gets into an engine.
     pub route: Route,
-    /// The studies that take it; all, when there is no list.
+    /// The studies that use it; all, when there is no list.
     pub studies: Option<Vec<String>>,
 }
 
@@ -54,7 +54,7 @@ impl Robot {
     /// Compiles a robot and draws `count` agreement states.
     ///
     /// # Errors
-    /// [`Malformed`] when the description is no robot.
+    /// [`Malformed`] when the description is not a robot.
     pub fn new(description: &Description, family: &str, origin: ModelOrigin, count: usize, seed: u64) -> Result<Self, Malformed> {
         let model = Model::build(description)?;
         let description = description.canonical()?;
@@ -76,17 +76,17 @@ impl Robot {
         })
     }
 
-    /// The same robot, known to come from a file.
+    /// The same robot, with its file.
     pub fn from_file(mut self, file: RobotFile) -> Self {
         self.hash = crate::hash::of_parts(&[self.hash.as_bytes(), file.hash.as_bytes(), file.format.name().as_bytes()]);
         self.file = Some(file);
         self
     }
 
-    /// The robot that an engine read from this robot's file, at the states that `states` draws for it.
+    /// The result of an engine's import of this robot's file as a robot, at the states that `states` draws for it.
     ///
     /// # Errors
-    /// [`Malformed`] when what the engine holds is no robot.
+    /// [`Malformed`] when the import result is not a robot.
     pub fn as_read(&self, reading: &Import, states: impl FnOnce(&Model<f64>) -> StateBatch) -> Result<Self, Malformed> {
         let description = reading.description.canonical()?;
         let model = Model::build(&description)?;
@@ -104,13 +104,13 @@ impl Robot {
         self
     }
 
-    /// The same robot, with what its reader normalised among the model's warnings.
+    /// The same robot, with the numbers that its parser normalised among the model's warnings.
     pub fn with_warnings(mut self, warnings: impl IntoIterator<Item = Warning>) -> Self {
         self.model.warnings.splice(0..0, warnings);
         self
     }
 
-    /// The same robot, at the configurations of its file as well; of very many the first 16.
+    /// The same robot, with states at the configurations of its file; at most the first 16.
     ///
     /// # Errors
     /// [`BadState`] of a configuration that is not this robot's.
@@ -123,7 +123,7 @@ impl Robot {
         Ok(self.at(states))
     }
 
-    /// The body whose Jacobian is asked for: the first of the deepest ones.
+    /// The body whose Jacobian is evaluated: the first of the deepest ones.
     pub fn deepest_body(&self) -> usize {
         let mut depth = Vec::with_capacity(self.description.bodies.len());
         for body in &self.description.bodies {
@@ -138,7 +138,7 @@ impl Robot {
         (0..4 * self.model.topology.nv()).map(|_| random.uniform(-1.0, 1.0)).collect()
     }
 
-    /// Whether a study takes this robot.
+    /// Whether a study uses this robot.
     pub fn takes(&self, study: &str) -> bool {
         self.studies.as_ref().is_none_or(|studies| studies.iter().any(|name| name == study))
     }
@@ -154,7 +154,7 @@ impl Robot {
         (0..self.states.count()).map(|k| Magnitudes::new(self, k)).collect()
     }
 
-    /// What an exact engine reads back, in the layout of [`Quantity::Readback`](crate::Quantity::Readback).
+    /// The read-back of an exact engine, in the layout of [`Quantity::Readback`](crate::Quantity::Readback).
     pub fn readback(&self) -> Vec<f64> {
         let mut numbers = Vec::with_capacity(22 * self.description.bodies.len());
         for body in &self.description.bodies {

@@ -1,4 +1,4 @@
-//! Running a plan: accuracy cells on all cores, exclusive ones alone afterwards, each outcome kept as it comes.
+//! Runs a plan: accuracy cells on all cores, then exclusive ones alone. Each outcome is stored when it is known.
 
 use crate::study::{Context, Finished, Study, by_robot};
 use crate::{Cell, HarnessError, NoAnswer, Outcome, OutcomeStore};
@@ -6,7 +6,7 @@ use featherbench_results::Row;
 use rayon::prelude::*;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
-/// Who watches a run.
+/// Shows the progress of a run.
 pub trait Progress: Sync {
     /// `count` cells are about to be evaluated.
     fn begin(&self, phase: &str, count: usize);
@@ -18,7 +18,7 @@ pub trait Progress: Sync {
     fn end(&self);
 }
 
-/// A watcher that says nothing.
+/// Shows nothing.
 pub struct Silent;
 
 impl Progress for Silent {
@@ -28,16 +28,16 @@ impl Progress for Silent {
     fn end(&self) {}
 }
 
-/// The cells of a study that a filter lets through, and beside any of them those that belong to no robot.
+/// The cells of a study that a filter accepts. If there are any, the cells that belong to no robot come with them.
 pub fn plan(study: &dyn Study, context: &Context, keep: &(dyn Fn(&Cell) -> bool + Sync)) -> Vec<Cell> {
     let kept: Vec<Cell> = study.plan(context).into_iter().filter(|cell| keep(cell) || study.is_common(cell)).collect();
     if kept.iter().all(|cell| study.is_common(cell) && !keep(cell)) { Vec::new() } else { kept }
 }
 
-/// Evaluates what is not finished yet of a study's cells, and returns all of them with their outcomes, in plan order.
+/// Evaluates the unfinished cells of a study, and returns all of them with their outcomes, in plan order.
 ///
 /// # Errors
-/// Only when an outcome cannot be kept; an engine that fails, or panics, is an outcome.
+/// Only when an outcome cannot be stored. An engine that fails, or panics, is an outcome.
 pub fn evaluate(
     study: &dyn Study,
     context: &Context,
@@ -80,7 +80,7 @@ pub fn evaluate(
         .collect())
 }
 
-/// A panic in an engine or study is that cell's failure and nobody else's.
+/// A panic in an engine or study is a failure of that cell alone.
 fn guarded(study: &dyn Study, context: &Context, cell: &Cell) -> Outcome {
     catch_unwind(AssertUnwindSafe(|| study.evaluate(context, cell))).unwrap_or_else(|panic| {
         let message = panic.downcast_ref::<String>().map(String::as_str).or_else(|| panic.downcast_ref::<&str>().copied());
@@ -88,7 +88,7 @@ fn guarded(study: &dyn Study, context: &Context, cell: &Cell) -> Outcome {
     })
 }
 
-/// Turns outcomes into records: those of no robot first, then robot by robot on all cores, in the order of the robots.
+/// Turns outcomes into rows: first those of no robot, then robot by robot on all cores, in the order of the robots.
 pub fn compare(study: &dyn Study, context: &Context, finished: Vec<Finished>) -> Vec<Row> {
     let together = study.compare_all(context, &finished);
     let groups = by_robot(finished);

@@ -1,11 +1,11 @@
-//! The trait [`Stepper`]: an engine that integrates, asked what a step of a given length does. Oracles offer it by the operations `step` and `fall`.
+//! The trait [`Stepper`]: an engine that integrates, and one step of a given length. Oracles offer it by the operations `step` and `fall`.
 
 use crate::{NoAnswer, Robot};
 use featherbench_model::StateBatch;
 
 /// An engine whose acceleration is that of a step, and so depends on the step's length.
 pub trait Stepper {
-    /// Its ways to step, the one without numerical or physical extras first.
+    /// Its methods to step, the one without numerical or physical extras first.
     fn step_methods(&self) -> Vec<String>;
 
     /// The acceleration (neutral coordinates, nv numbers) with which one step of `dt` seconds begins at state `k`, under gravity and the state's τ.
@@ -14,8 +14,8 @@ pub trait Stepper {
     /// [`NoAnswer`] when the robot or method is not supported, or the engine fails.
     fn step_acceleration(&self, robot: &Robot, method: &str, states: &StateBatch, k: usize, dt: f64) -> Result<Vec<f64>, NoAnswer>;
 
-    /// From which product of the step's length and the largest velocity on the engine may leave out the term that makes a step implicit, where it
-    /// does such a thing: the step is then explicit, and begins with the true acceleration, however long it is.
+    /// The value of dt·max|v| from which on the engine may leave out the term that makes a step implicit; `None` if it never does. The step
+    /// is then explicit, and begins with the true acceleration, whatever its length.
     fn guard(&self) -> Option<f64> {
         None
     }

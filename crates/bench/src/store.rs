@@ -1,4 +1,4 @@
-//! The outcomes of a run on disk: what makes it resumable.
+//! The outcomes of a run on disk; a run resumes from them.
 
 use crate::frame::{Block, Frame, FrameError};
 use crate::{Cell, HarnessError, Import, ImportNote, NoAnswer, Outcome};
@@ -10,10 +10,10 @@ use std::io::{BufReader, Read, Seek};
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, PoisonError};
 
-/// Every finished cell's outcome, in memory and appended to `outcomes.frames` as it comes.
+/// Every finished cell's outcome, in memory and appended to `outcomes.frames` when it is known.
 ///
-/// Each frame holds a checksum of all that is in it. A run that is killed leaves at most one incomplete frame at the end. A frame that is
-/// incomplete or damaged ends what can be trusted: opening the store cuts it off with all that stands behind it, and [`Self::lost`] tells.
+/// Each frame has a checksum of all its contents. A run that is killed leaves at most one incomplete frame at the end. No frame after an
+/// incomplete or damaged one can be trusted: opening the store cuts off that frame and the rest of the file, and [`Self::lost`] reports it.
 #[derive(Debug)]
 pub struct OutcomeStore {
     path: PathBuf,
@@ -21,7 +21,7 @@ pub struct OutcomeStore {
     inner: Mutex<Inner>,
 }
 
-/// What of a file of outcomes could not be used.
+/// The part of a file of outcomes that could not be used.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Lost {
     /// The file.
@@ -51,7 +51,7 @@ struct Inner {
 pub const OUTCOMES_NAME: &str = "outcomes.frames";
 
 impl OutcomeStore {
-    /// Opens the store of a run's folder, reading what is there and cutting off what cannot be used.
+    /// Opens the store of a run's folder: reads the frames, and cuts off those that cannot be used.
     ///
     /// # Errors
     /// When the file cannot be read or written.
@@ -65,7 +65,7 @@ impl OutcomeStore {
         Ok(Self { path, lost, inner: Mutex::new(Inner { file, outcomes }) })
     }
 
-    /// The outcomes of a run's folder by cell, and what of the file cannot be used. The file stays as it is.
+    /// The outcomes of a run's folder by cell, and the part of the file that cannot be used. The file is not changed.
     ///
     /// # Errors
     /// When the file cannot be read.
@@ -76,7 +76,7 @@ impl OutcomeStore {
         Ok((outcomes, lost))
     }
 
-    /// What of the file was cut off when it was opened: its cells are evaluated again.
+    /// The part of the file that was cut off when it was opened: its cells are evaluated again.
     pub fn lost(&self) -> Option<&Lost> {
         self.lost.as_ref()
     }
@@ -91,10 +91,10 @@ impl OutcomeStore {
         self.lock().outcomes.contains_key(id)
     }
 
-    /// Keeps the outcome of a cell, on disk first.
+    /// Stores the outcome of a cell, first on disk.
     ///
     /// # Errors
-    /// When the disk refuses it.
+    /// When it cannot be written to disk.
     pub fn insert(&self, cell: &Cell, outcome: Outcome) -> Result<(), HarnessError> {
         let id = cell.id();
         let frame = to_frame(&id, cell, &outcome);
@@ -104,13 +104,13 @@ impl OutcomeStore {
         Ok(())
     }
 
-    /// A panic elsewhere does not make the map wrong: an outcome is inserted whole or not at all.
+    /// A panic elsewhere does not make the map wrong: an outcome is inserted completely or not at all.
     fn lock(&self) -> std::sync::MutexGuard<'_, Inner> {
         self.inner.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }
 
-/// What of a file of outcomes is whole.
+/// The part of a file of outcomes that can be used.
 struct Whole {
     outcomes: HashMap<String, Outcome>,
     /// Its length in bytes.
@@ -118,7 +118,7 @@ struct Whole {
     lost: Option<Lost>,
 }
 
-/// Reads frame after frame as far as they are whole.
+/// Reads frame after frame up to the first that is incomplete or damaged.
 fn read<S: Read + Seek>(mut source: S, path: &Path) -> Result<(S, Whole), HarnessError> {
     let io = |source| HarnessError::io(path, source);
     let length = source.seek(std::io::SeekFrom::End(0)).map_err(io)?;
@@ -161,13 +161,13 @@ fn to_frame(id: &str, cell: &Cell, outcome: &Outcome) -> Frame {
     frame
 }
 
-/// The key of a frame's checksum: that of its bytes without this key.
+/// The key of a frame's checksum, which is that of its bytes without this key.
 const CHECKSUM: &str = "blake3";
 
-/// A reading as JSON: the description's text, and the notes.
+/// An import result as JSON: the description's text, and the notes.
 fn written(reading: &Import) -> Value {
     let note = |note: &ImportNote| json!({"cause": note.cause, "about": note.about, "text": note.text, "numbers": note.numbers});
-    // A description that is no robot has no text, and reads back as a damaged frame: its cell is asked again.
+    // A description that is not a robot has no text, and reads back as a damaged frame: its cell is evaluated again.
     let model = neutral::to_string(&reading.description).unwrap_or_default();
     let written = reading.written.as_ref().map(|written| neutral::to_string(written).unwrap_or_default());
     json!({"model": model, "written": written, "notes": reading.notes.iter().map(note).collect::<Vec<_>>()})
@@ -276,7 +276,7 @@ mod tests {
         format!("{outcome:?} {:?}", outcome.values().map(|values| values.iter().map(|x| x.to_bits()).collect::<Vec<_>>()))
     }
 
-    /// Every bit of a file: what comes back is what was written, or is missing and said to be.
+    /// Every bit of a file: an outcome that is read is the one that was written; otherwise it is reported as lost.
     #[test]
     fn no_flipped_bit_makes_another_outcome() {
         let folder = tempfile::tempdir().unwrap();

@@ -1,10 +1,10 @@
-//! The trait [`Study`]: a question, asked as cells and answered as records.
+//! The trait [`Study`]: a question, asked as cells and answered as rows.
 
 use crate::{Cell, Engine, Gates, Outcome, Robot};
 use featherbench_results::Row;
 use std::collections::BTreeMap;
 
-/// What a study can see: the robots and the engines.
+/// The data of a study: the robots and the engines.
 pub struct Context<'a> {
     /// The robots, in the suite's order.
     pub robots: &'a [Robot],
@@ -33,10 +33,10 @@ pub type Finished = (Cell, Outcome);
 
 /// A question about robots and engines.
 ///
-/// A study plans its cells, evaluates each by itself (in any order, on any thread, once), and turns the outcomes into records by a pure
-/// function: that is what makes a resumed run byte-identical.
+/// A study plans its cells and evaluates each one alone (in any order, on any thread, once). It turns the outcomes into rows by a pure
+/// function. So a resumed run is byte-identical.
 pub trait Study: Sync {
-    /// The study's name in records.
+    /// The study's name in rows.
     fn name(&self) -> &'static str;
 
     /// Whether its cells run alone on a quiet machine, after all others.
@@ -47,7 +47,7 @@ pub trait Study: Sync {
     /// The cells, in the order of the report.
     fn plan(&self, context: &Context) -> Vec<Cell>;
 
-    /// Whether a cell belongs to no robot, so that it is asked wherever any cell of the study is.
+    /// Whether a cell belongs to no robot. It is evaluated whenever any cell of the study is.
     fn is_common(&self, _cell: &Cell) -> bool {
         false
     }
@@ -55,15 +55,15 @@ pub trait Study: Sync {
     /// Evaluates one cell.
     fn evaluate(&self, context: &Context, cell: &Cell) -> Outcome;
 
-    /// Turns the outcomes of one robot into records.
+    /// Turns the outcomes of one robot into rows.
     fn compare(&self, context: &Context, robot: &Robot, finished: &[Finished]) -> Vec<Row>;
 
-    /// Turns the outcomes into the records that belong to no robot. Most studies have none.
+    /// Turns the outcomes into the rows that belong to no robot. Most studies have none.
     fn compare_all(&self, _context: &Context, _finished: &[Finished]) -> Vec<Row> {
         Vec::new()
     }
 
-    /// What of the outcomes is worth a file of its own beside the records: its name and its text.
+    /// A file of its own beside the rows, if the outcomes need one: its name and its text.
     fn side_file(&self, _: &[Finished]) -> Option<(&'static str, String)> {
         None
     }

@@ -1,4 +1,4 @@
-//! Suites: what a run contains.
+//! Suites: the contents of a run.
 
 use crate::{FileBase, HarnessError};
 use serde::Deserialize;
@@ -9,7 +9,7 @@ use std::path::Path;
 #[derive(Clone, Debug, Default, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Suite {
-    /// What the suite is for, one sentence.
+    /// The purpose of the suite, one sentence.
     pub about: String,
     /// Seed of every state.
     pub seed: u64,
@@ -24,7 +24,7 @@ pub struct Suite {
     /// Whether the accuracy study is made.
     #[serde(default)]
     pub accuracy: bool,
-    /// Whether the import study is made: of live runs alone, and of robots that come from a file.
+    /// Whether the import study is made. It needs live engines, and robots that come from a file.
     #[serde(default)]
     pub import: bool,
     /// Whether the conditioning study is made.
@@ -33,48 +33,48 @@ pub struct Suite {
     /// Whether known deviations are reproduced.
     #[serde(default)]
     pub reproductions: bool,
-    /// Whether the study of small steps is made, of the engines that integrate.
+    /// Whether the study of small steps is made. It needs engines that integrate.
     #[serde(default)]
     pub steps: bool,
     /// The timing study.
     pub timing: Option<TimingEntry>,
-    /// Whether the suite is broad enough to show every known deviation of its robots, and a sharp bound for each method, joint and base; a
-    /// whole run must then show them.
+    /// Whether the suite can show every known deviation of its robots, and a sharp bound for each method, joint and base. A complete run
+    /// must then show them.
     #[serde(default)]
     pub thorough: bool,
-    /// Rows that a whole run must show, passing or deviating as known: engine → quantity → count.
+    /// Rows that a complete run must have, passing or with a known deviation: engine → quantity → count.
     #[serde(default)]
     pub expect: BTreeMap<String, BTreeMap<String, u64>>,
 }
 
-/// A robot of a suite: a committed model, a generator's call, or a file of the robots' package that only live runs have.
+/// A robot of a suite: a committed model, a generator's text, or a file of the robots' package, which only live runs have.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct RobotEntry {
-    /// Name of a file in `datasets/models`, without its ending.
+    /// Name of a file in `datasets/models`, without its extension.
     pub model: Option<String>,
     /// Arguments of `featherbench gen`.
     pub generate: Option<String>,
     /// A URDF file below the package folder of example-robot-data.
     pub urdf: Option<String>,
-    /// An MJCF file below the folder of packages; MuJoCo's compiler says what robot it is.
+    /// An MJCF file below the folder of packages; MuJoCo's compiler determines the robot.
     pub mjcf: Option<String>,
     /// Whether the URDF's base floats.
     #[serde(default)]
     pub floating: bool,
-    /// The bases of a file's robot, `fixed` and `free`, each a robot of its own; the free one has `-free` behind its name.
+    /// The bases of a file's robot, `fixed` and `free`. Each is a separate robot; `-free` is appended to the name of the free one.
     pub bases: Option<Vec<String>>,
-    /// The family in records.
+    /// The family in rows.
     pub family: String,
-    /// Agreement states, where they differ from the suite's.
+    /// The number of agreement states, if it is not the suite's.
     pub states: Option<usize>,
-    /// Where given, all states are random, with the angles of revolute joints in (−reach, reach).
+    /// If given, all states are random, with the angles of revolute joints in (−reach, reach).
     pub reach: Option<f64>,
-    /// Where given, all states are random, with velocities this many times larger.
+    /// If given, all states are random, with velocities this many times larger.
     pub speed: Option<f64>,
-    /// The name in records, where the model's own would stand twice.
+    /// The name in rows, if the model's own name would occur twice.
     pub name: Option<String>,
-    /// The studies that take it; all by default.
+    /// The studies that use it; all by default.
     pub studies: Option<Vec<String>>,
 }
 
@@ -94,9 +94,9 @@ pub struct AgreementEntry {
 pub struct TimingEntry {
     /// Distinct states in the stream.
     pub states: usize,
-    /// Seconds for everyone who is timed, on each quantity of each robot in each cache regime.
+    /// Seconds for each candidate, on each quantity of each robot in each cache regime.
     pub seconds: f64,
-    /// Peers that are timed beside our own kernels, where they are installed: native libraries, and oracles whose clock estimates.
+    /// Native oracles, and oracles whose clock estimates, that are timed beside our own kernels if they are installed.
     #[serde(default)]
     pub peers: Vec<String>,
 }
@@ -121,7 +121,7 @@ impl Suite {
         Ok((Self::parse(&text, path)?, crate::hash::of(text.as_bytes())))
     }
 
-    /// The suite of a text; `path` is what errors call it.
+    /// The suite of a text; `path` is its name in errors.
     ///
     /// # Errors
     /// [`HarnessError`], naming file, line and key.

@@ -1,18 +1,18 @@
-//! Truth at hand: the same questions answered in double-double arithmetic from the description's own numbers, and the structured floor.
+//! The truth: answers in double-double arithmetic from the description's own numbers. And the conditioning bound.
 //!
-//! The kernels are ours, the arithmetic carries 32 digits: what is left of an error in them is rounding at 1e-32 times the conditioning, far
-//! below what f64 can show. That the kernels themselves are right is for the crate `reference` and `oracles/featherbench_oracles/truth.py` to
-//! say, which share no text with them and agree with them where it was recorded.
+//! The kernels are ours, the arithmetic has 32 digits. Its rounding errors are 1e-32 times the conditioning, far below the digits of f64.
+//! The kernels themselves are confirmed by the crate `reference` and `oracles/featherbench_oracles/truth.py`. These share no text with
+//! them, and agree with them where that was recorded.
 
 use crate::{Quantity, Robot, layout};
 use featherbench_dynamics::{Aba, Bias, CenterOfMass, Crba, Energy, Jacobian, Kinematics, Momentum, Rnea, TreeSparse};
 use featherbench_model::Model;
 use featherbench_spatial::{DoubleDouble, Dual, Force, Lift, Real};
 
-/// A model in extended precision, its inertias formed there from the description.
+/// A model in extended precision; its inertias are formed in that precision from the description.
 pub struct TruthModel(Model<DoubleDouble>);
 
-/// What is true at one state, to the nearest f64.
+/// The truth at one state, to the nearest f64.
 #[derive(Clone, Debug)]
 pub struct Truth {
     /// Inverse dynamics.
@@ -29,7 +29,7 @@ impl TruthModel {
         Model::build(&robot.description).ok().map(Self)
     }
 
-    /// The true answer to a quantity at state `k`, in the quantity's layout; `None` where there is none, or where nobody asks for it.
+    /// The true answer to a quantity at state `k`, in the quantity's layout; `None` if there is none, or no study needs it.
     pub fn answer(&self, robot: &Robot, quantity: Quantity, k: usize) -> Option<Vec<f64>> {
         let (model, states) = (&self.0, &robot.states);
         let topology = &model.topology;
@@ -75,7 +75,7 @@ impl TruthModel {
         Some(out.iter().map(|x| x.to_f64()).collect())
     }
 
-    /// What is true at state `k`.
+    /// The truth at state `k`.
     pub fn at(&self, robot: &Robot, k: usize) -> Option<Truth> {
         let (model, states) = (&self.0, &robot.states);
         let topology = &model.topology;
@@ -97,11 +97,14 @@ impl TruthModel {
     }
 }
 
-/// The structured floor of forward dynamics at state `k`: how much the true answer moves, relative to itself, when every input moves by half a
-/// unit in its last place, `‖ |∂q̈/∂x|·|x|·u ‖₂ / ‖q̈‖₂` with u = 2⁻⁵³ and x = q, v, τ and every mass, length and inertia of the model.
+/// The conditioning bound of forward dynamics at state `k`. It is the relative change of the true answer when every input changes by half
+/// an ulp: `‖ |∂q̈/∂x|·|x|·u ‖₂ / ‖q̈‖₂`, with u = 2⁻⁵³. The inputs x are q, v, τ, armature,
+/// gravity, and all masses, lengths and inertias.
 ///
-/// Rotations and axes stay: moved entry by entry they would be none. It is a worst case, the magnitudes of all movements added up; random
-/// roundings of the inputs move the answer by about a tenth of it. By forward-mode differentiation through the articulated-body algorithm, input after input: O(n²). `None` where M is singular.
+/// Rotations and axes are constant: changed entry by entry they would not be rotations. It is a worst case: the magnitudes of all changes
+/// are added. Random roundings of the inputs change the answer by about a tenth of it.
+/// It is computed by forward-mode differentiation through the articulated-body algorithm, input after input: O(n²). `None` where M is
+/// singular.
 pub fn conditioning_bound(robot: &Robot, k: usize) -> Option<f64> {
     let states = &robot.states;
     let constant = |values: &[f64]| -> Vec<Number> { values.iter().map(|&x| Dual::constant(x)).collect() };
@@ -132,7 +135,7 @@ pub fn conditioning_bound(robot: &Robot, k: usize) -> Option<f64> {
 
 type Number = Dual<f64>;
 
-/// Everything that forward dynamics depends on, and how far the answer moved so far.
+/// The inputs of forward dynamics, and the change of the answer so far.
 struct Inputs {
     model: Model<Number>,
     q: Vec<Number>,
@@ -144,7 +147,7 @@ struct Inputs {
 }
 
 impl Inputs {
-    /// Moves one input at the rate of its own magnitude; one that is zero is exact and stays.
+    /// Changes one input at the rate of its own magnitude. An input that is zero is exact and does not change.
     fn move_by_itself(&mut self, input: impl Fn(&mut Self) -> &mut Number) -> Option<()> {
         let rate = input(self).value.abs();
         if rate == 0.0 {

@@ -1,5 +1,5 @@
-//! Files that people write: what is wrong in `gates.toml`, `deviations.toml` or a suite is told with the file and the key, and nothing
-//! unknown is passed over.
+//! Files that users write: an error in `gates.toml`, `deviations.toml` or a suite names the file and the key. Every unknown key is an
+//! error.
 
 use featherbench_bench::{Gates, HarnessError, Ranges, Suite};
 use std::path::Path;
@@ -9,7 +9,7 @@ const DEVIATION: &str = "[[deviation]]\nengine = \"e\"\nversion = \"1\"\nrobots 
 const NOT_OFFERED: &str = "[[not_offered]]\nengine = \"e\"\nversion = \"1\"\nrobots = [\"m\"]\nreason = \"none\"\n";
 const SUITE: &str = "about = \"a suite\"\nseed = 1\n[[robot]]\ngenerate = \"humanoid\"\nfamily = \"humanoid\"\n";
 
-/// Asserts that an error names its file and these words.
+/// Asserts that an error names its file and contains these words.
 #[track_caller]
 fn names<T: std::fmt::Debug>(result: Result<T, HarnessError>, file: &Path, words: &[&str]) {
     let error = result.unwrap_err();
@@ -111,7 +111,7 @@ fn suites_name_what_is_wrong() {
     }
 }
 
-/// The repository's own files are understood, and every suite of it.
+/// The repository's own files and all its suites are valid.
 #[test]
 fn our_own_files_are_right() {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
@@ -175,7 +175,7 @@ fn ranges_name_what_is_wrong() {
     for (text, word) in cases {
         names(parse(&text), path, &[word]);
     }
-    // A size of nothing that is known is a file that was left behind.
+    // A size without a known deviation is a leftover file.
     let known = || gates(GATE, DEVIATION).0.unwrap();
     let here = Path::new("ci");
     let sizes = |line: &str| parse(&format!("{HEAD}{line}")).unwrap();

@@ -1,4 +1,4 @@
-//! Gates of a run with an engine that a user brought along.
+//! Gates of a run with an external engine.
 
 use featherbench_bench::{Gates, Suite};
 use featherbench_results::{Relation, Row, Verdict};
@@ -13,7 +13,7 @@ fn red(gates: &Gates, records: &[Row]) -> Vec<String> {
     conditions.filter(|condition| condition.verdict != Verdict::Pass).map(|condition| condition.what).collect()
 }
 
-/// What a external does not offer is no fault; what an engine of the project leaves out without a word still is, and so is a external's failure.
+/// An external engine may leave something out. An engine of the project must say so, and a failure of an external engine is a failure.
 #[test]
 fn only_an_external_engine_may_leave_out_what_it_does_not_have() {
     let skip = |engine: &str| row(engine).without_value(Verdict::Skip, "no such joint");

@@ -1,4 +1,4 @@
-//! What gates and known deviations say of rows made by hand: each condition in both directions.
+//! Gates and known deviations on rows made by hand: each condition in both directions.
 
 use featherbench_bench::{Gates, Range, RangeKey, Ranges, RangesMeter, SLACK, Suite, accounted};
 use featherbench_results::{Expectation, Relation, Row, Verdict};
@@ -43,7 +43,7 @@ times = "depth_and_amplification"
 reason = "per level and growth"
 "#;
 
-/// A failure of one engine, version, method, quantity and case; an error; and what is not offered.
+/// A failure of one engine, version, method, quantity and case; an error; and something that is not offered.
 const DEVIATIONS: &str = r#"
 [[deviation]]
 engine = "crane"
@@ -102,7 +102,7 @@ fn with(row: &Row, range: Range) -> Gates {
     plain().with_ranges([(RangeKey::of(row), range)].into_iter().collect(), Path::new("here")).unwrap()
 }
 
-/// The suite that asks the crane, with what more it says.
+/// The suite that asks the crane, with further lines.
 fn suite(more: &str) -> Suite {
     let text = format!("about = \"a\"\nseed = 1\nthorough = true\n[agreement]\nstates = 1\nengines = [\"crane\"]\n{more}");
     Suite::parse(&text, Path::new("suite.toml")).unwrap()
@@ -158,7 +158,7 @@ fn a_deviation_excuses_its_own_rows_up_to_its_range() {
     for words in ["is not at most 1e-14", "at most 3e-14 in 20 seeds", "cables stretch"] {
         assert!(beyond.reason.contains(words), "{}", beyond.reason);
     }
-    // Whatever it is not about fails as it would without it.
+    // Any other row fails as without the deviation.
     let others = [
         Row { engine: "winch".into(), quantity: "id".into(), ..row() },
         Row { engine_version: "3".into(), ..row() },
@@ -265,15 +265,15 @@ fn a_deviation_must_be_seen_where_its_robots_are() {
     let gone = "known deviation of crane still seen: cables stretch";
     let small = "robots on which a known deviation of crane is smaller than known: cables stretch";
     assert_eq!(red(&gates, &[gates.judge(row(), 1e-15, 1.0)]), [gone, small]);
-    // Rows of another version or method are due as well, and show nothing.
+    // Rows of another version or method are expected as well, and show nothing.
     for other in [Row { engine_version: "3".into(), ..row() }, Row { method: "aba".into(), ..row() }] {
         assert_eq!(red(&gates, &[gates.judge(other, 1e-15, 1.0)]), [gone]);
     }
-    // A row that is there for another cause is no witness.
+    // A row with another cause does not count.
     let other = Row { reason: "winds".into(), ..seen.clone() };
     assert_eq!(red(&gates, &[other]), [gone]);
     assert_eq!(red(&gates, &[Row { verdict: Verdict::Info, ..seen.clone() }]), [gone]);
-    // Where none of its robots, quantities or cases is asked, or the engine is a external, nothing is due.
+    // Nothing is expected if none of its robots, quantities or cases is asked, or if the engine is external.
     for elsewhere in [on("pulley"), Row { quantity: "bias".into(), ..row() }, Row { states: "zero".into(), ..row() }] {
         assert_eq!(red(&gates, &[gates.judge(elsewhere, 1e-15, 1.0)]), [""; 0]);
     }
@@ -293,7 +293,7 @@ fn a_deviation_must_be_seen_where_its_robots_are() {
     assert_eq!(red(&gates, &[lacking().gated(1e-15, Relation::Le, 1e-14)]), ["crane still does not offer: no mass is known"]);
 }
 
-/// The worst of a robot's rows is as large as known, or the list is to be corrected; where not every seed showed it, no value is too small.
+/// The worst of a robot's rows has the known size, or the list must be corrected. If not every seed showed it, no value is too small.
 #[test]
 fn a_deviation_must_be_as_large_as_known() {
     let small = "robots on which a known deviation of crane is smaller than known: cables stretch";
@@ -311,7 +311,7 @@ fn a_deviation_must_be_as_large_as_known() {
     assert!(told.contains("gantry rnea id (3.9e-14, known from 8e-14)"), "{told}");
     let sometimes = with(&row(), range(8e-14, 9e-14, 19, 20));
     assert_eq!(judged(&sometimes, &[3.9e-14]), [""; 0]);
-    // Rows that nothing judges have no size.
+    // Rows without a verdict have no size.
     assert_eq!(red(&always, &[always.judge(row(), 8e-14, 1.0), Row { robot: "gantry".into(), ..row() }.informed(1e-20)]), [""; 0]);
 }
 
@@ -333,7 +333,7 @@ fn a_computed_bound_must_be_sharp_somewhere() {
     let found = |rows: &[Row]| blunt(rows).into_iter().map(|(_, found)| found).collect::<Vec<_>>();
     assert_eq!(found(&[bounded("crane", "aba", "\"revolute\"", "fixed", 1e-12)]), [0]);
     assert_eq!(found(&[bounded("crane", "aba", "\"revolute\"", "fixed", 1.1e-12)]), [1]);
-    // The sharpest of several robots counts, for each joint, base and method by itself; our own kernels are asked as well, a external is not.
+    // For each joint, base and method, the sharpest of several robots counts. Our own kernels are included; an external engine is not.
     let rows = [
         bounded("crane", "aba", "\"revolute\",\"planar\"", "fixed", 1e-9),
         bounded("crane", "aba", "\"revolute\"", "fixed", 1e-13),
@@ -382,7 +382,7 @@ fn ranges_are_measured_over_runs() {
     again.add(gates.deviations(), &[gates.judge(row(), 4e-14, 1.0)]);
     assert_eq!(again.ranges().get(&row()), Some(&range(4e-14, 4e-14, 1, 1)));
     assert_eq!(ranges.get(&on("hoist-2")), None);
-    // And text is nothing less.
+    // And the text gives the same ranges.
     let text = ranges.to_csv();
     assert_eq!(Ranges::parse(&text, Path::new("ranges.csv")).unwrap(), ranges);
     assert!(text.contains("crane,2,rnea,id,gantry,scaled,1.5e-14,8e-14,3,3\n"), "{text}");

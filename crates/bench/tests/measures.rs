@@ -1,5 +1,8 @@
-//! What the error measures promise: they do not depend on units, the magnitudes bound what they are the magnitudes of, a perturbation of a
-//! known size has the backward error of that size, and no forward error exceeds its amplification.
+//! Properties of the error measures:
+//! - they do not depend on units;
+//! - the magnitudes are upper bounds;
+//! - a perturbation of a known size has the backward error of that size;
+//! - no forward error exceeds its amplification.
 
 use featherbench_bench::measure::{ForwardScale, Magnitudes, ratio, scaled_error, worst};
 use featherbench_bench::{Quantity, Robot};
@@ -36,7 +39,7 @@ fn cases(count: u32) -> ProptestConfig {
     ProptestConfig { failure_persistence: None, rng_seed: RngSeed::Fixed(1), ..ProptestConfig::with_cases(count) }
 }
 
-/// A unit of mass and one of length, in kg and m, by which all numbers of a robot are divided; seconds stay.
+/// A unit of mass and one of length, in kg and m. All numbers of a robot are divided by them; seconds are unchanged.
 #[derive(Clone, Copy)]
 struct Units {
     mass: f64,
@@ -44,7 +47,7 @@ struct Units {
 }
 
 impl Units {
-    /// What the rate of each dof is multiplied with: angles have no unit.
+    /// The factor of each dof's rate: angles have no unit.
     fn rates(self, description: &Description) -> Vec<f64> {
         let of = |kind: JointType| match kind {
             JointType::Prismatic { .. } => vec![self.length],
@@ -55,7 +58,7 @@ impl Units {
         description.bodies.iter().flat_map(|body| of(body.joint.kind)).collect()
     }
 
-    /// Moments, which energies share the unit of.
+    /// The factor of moments; energies have the same unit.
     fn moment(self) -> f64 {
         self.mass * self.length * self.length
     }
@@ -99,7 +102,7 @@ impl Units {
         other
     }
 
-    /// What each number of a quantity is multiplied with.
+    /// The factor of each number of a quantity.
     fn of(self, robot: &Robot, quantity: Quantity) -> Vec<f64> {
         let Self { mass, length } = self;
         let rates = self.rates(&robot.description);
@@ -140,12 +143,12 @@ const MEASURED: [Quantity; 13] = [
     Quantity::Readback,
 ];
 
-/// A relative error of about a thousandth of either sign, and none so small that rounding would count beside it.
+/// A relative error of about a thousandth of either sign. It is never so small that rounding matters.
 fn error(random: &mut Random) -> f64 {
     random.uniform(0.5e-3, 1e-3) * if random.bits32() & 1 == 1 { 1.0 } else { -1.0 }
 }
 
-/// Whether two errors are the same but for rounding: a difference of a thousandth rounds by 4e-13, scales of some dozen terms by less.
+/// Whether two errors are equal but for rounding: a difference of a thousandth rounds by 4e-13, scales of some dozen terms by less.
 fn same(a: f64, b: f64) -> bool {
     a == b || (a - b).abs() <= 1e-11 * a.abs().min(b.abs())
 }
@@ -164,7 +167,7 @@ proptest! {
             for quantity in MEASURED {
                 let factors = units.of(&robot, quantity);
                 prop_assert_eq!(factors.len(), quantity.size(&robot));
-                // Any numbers will do where the measure takes its scale from robot and state.
+                // Any numbers, if the scale comes from robot and state.
                 let reference: Vec<f64> = match quantity {
                     Quantity::MassMatrix => {
                         let matrix = mass_matrix(&robot.model, robot.states.q(k)).unwrap();
@@ -196,21 +199,21 @@ proptest! {
             let states = &robot.states;
             let a = forward_dynamics(&robot.model, states.q(k), states.v(k), states.tau(k)).unwrap();
             let wrong: Vec<f64> = a.iter().map(|x| x * (1.0 + error(&mut random))).collect();
-            // Eigenvalues carry κ·ε relative to themselves, solutions their amplified rounding; a hundred covers the number of terms.
+            // Eigenvalues have relative errors of κ·ε, solutions their amplified rounding; a factor of a hundred covers the number of
+            // terms.
             let rounding = 100.0 * f64::EPSILON * (here.condition + here.amplification);
             let close = |a: f64, b: f64| a == b || (a - b).abs() <= rounding * a.abs();
             prop_assert!(close(here.condition, there.condition), "{spec}: {} and {}", here.condition, there.condition);
             prop_assert!(close(here.amplification, there.amplification), "{spec}: {} and {}", here.amplification, there.amplification);
             let (e, f) = (here.backward_error(&wrong), there.backward_error(&convert(&wrong)));
-            // Relative to their terms, residuals round as the gate on them allows.
+            // Relative to their terms, residuals have the rounding that the gate on them allows.
             prop_assert!((e - f).abs() <= 1e-14 * robot.depth as f64, "{spec}: backward {e:e} and {f:e}");
             let (e, f) = (here.forward_error(&a, &wrong), there.forward_error(&convert(&a), &convert(&wrong)));
             prop_assert!(close(e, f) || same(e, f), "{spec}: forward {e:e} and {f:e}");
         }
     }
 
-    /// What is added up with all signs alike is no smaller than what is added up with its signs. Rounding may take a little of that away
-    /// where there is one term alone.
+    /// A sum of magnitudes is at least as large as the magnitude of the sum. Rounding may reduce it a little if there is only one term.
     #[test]
     fn magnitudes_bound_their_sums((spec, seed) in any_robot()) {
         let robot = robot(&spec, seed);
@@ -248,8 +251,8 @@ proptest! {
         }
     }
 
-    /// Whatever the error of an answer, its forward error is at most its backward error amplified: the reference's share of the factor
-    /// two pays for the reference's rounding.
+    /// The forward error of any answer is at most its backward error times the amplification. The reference's share of the factor two
+    /// covers the reference's rounding.
     #[test]
     fn no_forward_error_exceeds_its_amplification((spec, seed) in any_robot(), decades in 1_i32..10) {
         let robot = robot(&spec, seed);
@@ -260,7 +263,7 @@ proptest! {
             let a = forward_dynamics(&robot.model, states.q(k), states.v(k), states.tau(k)).unwrap();
             let wrong: Vec<f64> = a.iter().map(|x| x * (1.0 + size * random.uniform(-1.0, 1.0))).collect();
             let (forward, backward) = (scale.forward_error(&a, &wrong), scale.backward_error(&wrong));
-            // The denominators of the backward error are those of the wrong answer: larger by as much as it is off.
+            // The denominators of the backward error are those of the wrong answer: larger by its error.
             let bound = scale.amplification * backward * (1.0 + size);
             prop_assert!(forward <= bound, "{spec} at state {k}: {forward:e} > {bound:e}");
             prop_assert!(scale.backward_error(&a) <= 1e-14 * robot.depth as f64, "{spec}: our own answer");
@@ -268,8 +271,8 @@ proptest! {
     }
 }
 
-/// An answer to a robot that is off by η has at most the backward error η, and its forward error is bounded accordingly: M and τ off at
-/// random. Where all terms of one row are off to the same side, the backward error is η, no less.
+/// An answer to a robot with a perturbation η has at most the backward error η, and its forward error is bounded accordingly: M and τ are
+/// perturbed at random. If all terms of one row are perturbed in the same direction, the backward error is η, no less.
 #[test]
 fn a_perturbation_of_a_known_size_is_seen_in_that_size() {
     let (checked, left_out) = (Cell::new(0), Cell::new(0));
@@ -290,7 +293,7 @@ fn a_perturbation_of_a_known_size_is_seen_in_that_size() {
             let root: Vec<f64> = matrix.diagonal().map(f64::sqrt).collect();
             let h = bias_force(model, q, v).unwrap();
             let exact = forward_dynamics(model, q, v, tau).unwrap();
-            // Accelerations with M_ij off by η·m(i, j)·√(M_ii·M_jj), and the right-hand side by η·r(i).
+            // Accelerations with M_ij changed by η·m(i, j)·√(M_ii·M_jj), and the right-hand side by η·r(i).
             let off = |m: &mut dyn FnMut(usize, usize) -> f64, r: &mut dyn FnMut(usize) -> f64| {
                 let perturbed = TreeSparse::from_fn(&model.topology, |i, j| matrix.get(i, j) + eta * m(i, j) * root[i] * root[j]);
                 let mut a: Vec<f64> = (0..states.nv).map(|i| tau[i] - h[i] + eta * r(i)).collect();
@@ -300,7 +303,7 @@ fn a_perturbation_of_a_known_size_is_seen_in_that_size() {
             };
             let mut sides = random.clone();
             let a = off(&mut |_, _| random.uniform(-1.0, 1.0), &mut |i| sides.uniform(-1.0, 1.0) * tau[i]);
-            // Solving rounds by some 1e-14, a share of η.
+            // Solving rounds by about 1e-14, a fraction of η.
             let allowed = eta * (1.0 + 1e-3);
             let backward = scale.backward_error(&a);
             prop_assert!(backward <= allowed, "{spec} at state {k}: {backward:e} > {eta:e}");
@@ -316,7 +319,7 @@ fn a_perturbation_of_a_known_size_is_seen_in_that_size() {
                 },
                 &mut |i| if i == row { -tau[i].abs() - at[k].bias_force[i] } else { 0.0 },
             );
-            // η·κ is a thousandth at most: that much may a sign of a near zero be another, and that much rounds.
+            // η·κ is at most a thousandth. So are the effects of rounding, and of other signs of numbers near zero.
             let backward = scale.backward_error(&aligned);
             prop_assert!(backward <= allowed && backward >= 0.99 * eta, "{spec} at state {k}, row {row}: {backward:e}, not {eta:e}");
         }
@@ -371,13 +374,13 @@ fn factors_are_measured_by_their_product() {
         let factors = sparse.clone().into_ltdl().unwrap().factors().values().to_vec();
         assert_eq!(error(Quantity::Factorization, &factors, &factors), 0.0);
 
-        // A factor more of D is a factor more of M, and nothing of an entry is larger than its diagonal ones.
+        // A factor on D is the same factor on M, and no entry is larger than its diagonal ones.
         let mut scaled = factors.clone();
         (0..topology.nv()).for_each(|k| scaled[topology.row(k).end - 1] *= 1.0 + 1e-6);
         let found = error(Quantity::Factorization, &factors, &scaled);
         assert!((found - 1e-6).abs() < 1e-12, "{spec}: {found}");
 
-        // Any entry of L moves an entry of M by as much as D weighs it.
+        // A change of any entry of L changes an entry of M, weighted by D.
         let last = topology.nv() - 1;
         let (row, mut wrong) = (topology.row(last), factors.clone());
         wrong[row.start] += 1e-6;

@@ -1,5 +1,5 @@
-//! One meaning for axes and rotations that are not quite unit: the `f64` kernels, the double-double truth and the multi-precision witness
-//! answer for the same robot. Each misses by one ulp to 1e-7; a product of three such joints too.
+//! One meaning for axes and rotations that are not exactly normalised: the `f64` kernels, the double-double truth and the multi-precision
+//! witness answer for the same robot. Each deviates by one ulp to 1e-7; so does a product of three such joints.
 
 use featherbench_bench::measure::{Magnitudes, scaled_error};
 use featherbench_bench::{Quantity, Robot};
@@ -13,7 +13,7 @@ use std::path::Path;
 
 /// An ulp of one, and more.
 const OFF: [f64; 5] = [f64::EPSILON, 1e-15, 1e-12, 1e-9, 1e-7];
-/// Gate on the agreement of engines (ci/gates.toml).
+/// The gate on the agreement of engines (ci/gates.toml).
 const GATE: f64 = 1e-14;
 /// Double-double against more digits: 2⁻¹⁰⁶ = 1.2e-32, some hundred roundings along a path of twenty joints, and cancellation by 100.
 const WIDE: f64 = 1e-28;
@@ -26,7 +26,7 @@ fn generated(spec: &str) -> Description {
     Family::parse(spec).unwrap().generate().unwrap()
 }
 
-/// Three joints of romeo's axis, one on the other.
+/// Three joints with romeo's axis, in a chain.
 fn romeo() -> Description {
     let mut robot = generated("chain:n=3,layout=spatial");
     for body in &mut robot.bodies {
@@ -35,7 +35,7 @@ fn romeo() -> Description {
     robot
 }
 
-/// The same robot, each number of an axis or rotation moved by up to `off` of it.
+/// The same robot, each number of an axis or rotation changed by up to `off` of it.
 fn moved(robot: &Description, off: f64) -> Description {
     let mut robot = robot.clone();
     let mut random = Random::named(21, "not quite unit");
@@ -63,7 +63,7 @@ fn apart(a: DoubleDouble, b: &Mp) -> f64 {
     (a - DoubleDouble::from_sum(high, low)).abs().to_f64()
 }
 
-/// Holds kernels, truth and witness together on a robot as it is written.
+/// Compares kernels, truth and witness on a robot as it is written.
 #[track_caller]
 fn one_meaning(name: &str, written: &Description) {
     let robot = Robot::new(written, "test", ModelOrigin::Generated, 3, 7).unwrap();
@@ -144,13 +144,13 @@ fn axes_and_rotations_that_are_not_quite_unit_mean_one_robot() {
     }
 }
 
-/// The numbers that every engine gets are the same as those of our kernels, and the witness's: canonical ones.
+/// Engines, our kernels and the witness all get the same canonical numbers.
 #[test]
 fn everybody_gets_the_canonical_numbers() {
     for off in OFF {
         let robot = Robot::new(&moved(&panda(), off), "test", ModelOrigin::Robot, 1, 1).unwrap();
         assert_eq!(robot.description.canonical().unwrap(), robot.description, "off by {off:e}");
-        // What is sent to an oracle is made of this description, once more canonical.
+        // The message to an oracle is made from this description, made canonical once more.
         let line = featherbench_formats::neutral::to_line(&robot.description).unwrap();
         let sent = featherbench_formats::neutral::parse(&line, "the line").unwrap();
         for ((body, sent), turned) in robot.description.bodies.iter().zip(&sent.bodies).zip(&robot.model.placements) {

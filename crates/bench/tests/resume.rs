@@ -1,5 +1,5 @@
-//! A run that is killed, at whatever moment and byte, goes on without repeating what is finished, and ends in the same bytes as one that was
-//! not: by truncating its file of outcomes, by the death of a real process, by a panic, and on any number of threads.
+//! A run may be killed at any moment and byte. The resumed run repeats nothing that is finished, and ends in the same bytes as a run that
+//! was not killed. Tested by truncating its file of outcomes, by ending a real process, by a panic, and on any number of threads.
 
 use featherbench_bench::frame::Frame;
 use featherbench_bench::run::{Progress, Silent, compare, evaluate, plan};
@@ -19,13 +19,13 @@ use std::sync::Mutex;
 /// Cells per robot.
 const METHODS: usize = 12;
 
-/// A study that counts how often each cell is evaluated, and breaks where it is told to.
+/// A study that counts how often each cell is evaluated, and fails where it is told to.
 #[derive(Default)]
 struct Counting {
     evaluated: Mutex<BTreeMap<String, usize>>,
     /// Panic in this many of the cells' methods, from the first.
     panics: usize,
-    /// End the process at this evaluation, without a word.
+    /// End the process at this evaluation, without a message.
     dies_at: Option<usize>,
     exclusive: bool,
 }
@@ -60,7 +60,7 @@ impl Study for Counting {
         context.robots.iter().flat_map(|robot| (0..METHODS).map(move |method| cell(robot, method))).collect()
     }
 
-    /// Some values that depend on the cell alone, refusals of both kinds among them.
+    /// Values that depend on the cell alone, among them both kinds of missing answers.
     fn evaluate(&self, context: &Context, cell: &Cell) -> Outcome {
         let total = {
             let mut evaluated = self.evaluated.lock().unwrap();
@@ -120,7 +120,7 @@ fn run_in(folder: &Path, study: &Counting, progress: &dyn Progress) -> Result<Ve
     Ok(featherbench_results::to_csv(&compare(study, &context, finished), folder).unwrap())
 }
 
-/// The ids in a file of outcomes, as far as its frames are whole.
+/// The ids in a file of outcomes, up to the first incomplete frame.
 fn whole_frames(mut bytes: &[u8]) -> BTreeSet<String> {
     std::iter::from_fn(|| Frame::read(&mut bytes).ok().flatten()).map(|frame| frame.text("cell").to_owned()).collect()
 }
@@ -155,7 +155,7 @@ fn a_killed_run_repeats_nothing_that_is_finished() {
     }
 }
 
-/// Kills that hit a resumed run again and again.
+/// A resumed run is killed many times.
 #[test]
 fn many_kills_are_as_good_as_none() {
     let (_, csv, ids) = whole();
@@ -170,7 +170,7 @@ fn many_kills_are_as_good_as_none() {
     }
 }
 
-/// Damage in the middle: nothing behind it is trusted, and nothing of it comes into the rows.
+/// Damage in the middle: no frame after it is trusted, and nothing of it gets into the rows.
 #[test]
 fn a_damaged_file_is_used_as_far_as_it_is_whole() {
     let (bytes, csv, _) = whole();
@@ -190,7 +190,7 @@ fn a_damaged_file_is_used_as_far_as_it_is_whole() {
     }
 }
 
-/// One flipped bit anywhere: the rows of the resumed run are those of the whole one, and where a frame was lost that is said.
+/// One flipped bit anywhere: the rows of the resumed run are those of the complete one, and a lost frame is reported.
 #[test]
 fn a_flipped_bit_never_makes_other_rows() {
     let (bytes, csv, ids) = whole();
@@ -214,14 +214,14 @@ fn a_flipped_bit_never_makes_other_rows() {
 const FOLDER: &str = "FEATHERBENCH_TEST_DIE_IN";
 const MOMENT: &str = "FEATHERBENCH_TEST_DIE_AT";
 
-/// What the process does that ends: the run, up to an evaluation that ends it.
+/// The process that exits: the run, up to an evaluation that ends it.
 fn die(folder: &str, moment: &str) -> ! {
     let study = Counting { dies_at: Some(moment.parse().unwrap()), ..Counting::default() };
     run_in(folder.as_ref(), &study, &Silent).unwrap();
     unreachable!("the study ends the process");
 }
 
-/// The test starts itself again: with the variables set it is the process that ends.
+/// The test starts itself again: with the variables set it is the process that exits.
 #[test]
 fn a_process_that_dies_loses_only_what_it_was_doing() {
     if let (Ok(folder), Ok(moment)) = (std::env::var(FOLDER), std::env::var(MOMENT)) {
@@ -240,7 +240,7 @@ fn a_process_that_dies_loses_only_what_it_was_doing() {
         assert_eq!(output.status.code(), Some(70), "{output:?}");
         let done = whole_frames(&std::fs::read(folder.path().join(OUTCOMES_NAME)).unwrap());
         assert!(done.is_subset(&ids));
-        // All that it began but the cells in flight, one per thread, are on disk; what other threads finish while the process goes down may be.
+        // All cells that it began, except one per thread, are on disk. Those that other threads finish during the exit may be.
         let threads = rayon::current_num_threads();
         assert!((finished + moment).saturating_sub(threads) <= done.len(), "{} after {moment}", done.len());
         finished = done.len();
@@ -250,7 +250,7 @@ fn a_process_that_dies_loses_only_what_it_was_doing() {
     assert_eq!(study.counts().len(), ids.len() - finished);
 }
 
-/// One who watches and breaks down at the sight of a cell.
+/// Progress that panics at a given cell.
 struct Fainting(&'static str);
 
 impl Progress for Fainting {
@@ -311,7 +311,7 @@ fn threads_and_order_leave_no_trace() {
     }
 }
 
-/// What a filter leaves out is not evaluated, and found by the whole run later.
+/// Cells outside the filter are not evaluated, and the complete run evaluates them later.
 #[test]
 fn a_part_of_a_run_is_a_part_of_the_whole() {
     let (_, csv, ids) = whole();
@@ -326,7 +326,7 @@ fn a_part_of_a_run_is_a_part_of_the_whole() {
     assert_eq!((part.counts().len(), rest.counts().len()), (METHODS / 2, ids.len() - METHODS / 2));
 }
 
-/// Whatever changes in a cell is another cell: an outcome of another version, robot or parameter is never taken.
+/// A change of any field makes another cell: an outcome of another version, robot or parameter is never used.
 #[test]
 fn an_outcome_belongs_to_its_cell_to_the_last_letter() {
     let (robots, gates, study) = (robots(), Gates::default(), Counting::default());

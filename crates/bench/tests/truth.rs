@@ -1,4 +1,4 @@
-//! The truth of the harness against the independent multi-precision witness, and the floor against perturbed inputs.
+//! The truth against the independent multi-precision witness, and the conditioning bound against perturbed inputs.
 
 use featherbench_bench::measure::worst;
 use featherbench_bench::truth::{TruthModel, conditioning_bound};
@@ -21,7 +21,7 @@ fn apart(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(a, b)| (a - b).abs() / largest).fold(0.0, worst)
 }
 
-/// Asserts that both say the same to within a tolerance relative to the largest entry.
+/// Asserts that both agree to within a tolerance relative to the largest entry.
 #[track_caller]
 fn agree(spec: &str, tolerance: f64) {
     let robot = robot(spec, 3);
@@ -48,7 +48,7 @@ fn agree(spec: &str, tolerance: f64) {
 
 #[test]
 fn the_truth_is_that_of_the_independent_witness() {
-    // Both round the same numbers, half an ulp of the largest entry apart at the most.
+    // Both round the same numbers: they differ by at most half an ulp of the largest entry.
     for spec in [
         "chain:n=12,layout=planar",
         "chain:n=12,layout=spatial,tip_scale=1e6",
@@ -73,7 +73,7 @@ fn half_an_ulp_in_the_inputs_moves_the_answer_by_the_floor_at_most() {
         let mut random = Random::named(3, &hash::of(spec.as_bytes()));
         let mut farthest = 0.0_f64;
         for _ in 0..20 {
-            // An ulp is too small to see beside the rounding of the answer: 2²⁰ of them, and the floor as many times higher.
+            // An ulp is too small beside the rounding of the answer: 2²⁰ ulps are used, and the bound is multiplied by the same.
             let mut nudge = |x: &mut f64| *x *= 1.0 + random.uniform(-0.5, 0.5) * f64::EPSILON * 1_048_576.0;
             let mut states = robot.states.clone();
             [&mut states.v, &mut states.tau].into_iter().flatten().for_each(&mut nudge);

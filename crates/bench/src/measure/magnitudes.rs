@@ -1,8 +1,9 @@
-//! Sums of the magnitudes of the terms from which a robot's kinematics and forces are added up.
+//! Sums of the magnitudes of the terms of a robot's kinematics and forces.
 //!
-//! The recursions of the Newton–Euler algorithm (the book, table 5.1), with every vector term replaced by its length and every sum by the
-//! sum of lengths. Lengths do not depend on the axes, so the magnitudes belong to the robot and its state, not to an algorithm. Angular
-//! velocities enter products with their true length: their sums hardly cancel, and squared sums of lengths would blind the measure.
+//! They come from the recursions of the Newton–Euler algorithm (the book, table 5.1). Every vector term is replaced by its length, and
+//! every sum by the sum of lengths. Lengths do not depend on the axes: so the magnitudes belong to the robot and its state, not to an
+//! algorithm. In products, angular velocities keep their true length. Their sums hardly cancel, and squared sums of lengths would make the
+//! measure too weak.
 
 use super::worst;
 use crate::Robot;
@@ -13,7 +14,7 @@ use featherbench_spatial::{Motion, Vec3};
 pub struct Magnitudes {
     /// Length of the path from the world's origin to each body, m.
     pub reach: Vec<f64>,
-    /// Size of each body: the distance from its origin to the farthest of its centre of mass and the joints on it, m.
+    /// Size of each body, m: the distance from its origin to its centre of mass or to the farthest joint on it, whichever is larger.
     pub size: Vec<f64>,
     /// Angular velocity, rad/s.
     pub angular_velocity: Vec<f64>,
@@ -27,7 +28,7 @@ pub struct Magnitudes {
     pub joint_force: Vec<f64>,
     /// The same with the external wrenches of the state.
     pub joint_force_wrench: Vec<f64>,
-    /// The same for the bias force: accelerations at zero.
+    /// The same for the bias force: accelerations are zero.
     pub bias_force: Vec<f64>,
 }
 
@@ -117,7 +118,7 @@ impl Recursion {
             let transport = (2.0 * carried + spin) * velocity.lin.norm();
             let swing = (at(&r.angular_acceleration) + carried * carried) * step;
             r.linear_acceleration.push(at(&r.linear_acceleration) + swing + transport + acceleration.lin.norm());
-            // α = α_p + (ω_p + ω_J) × ω_J + α_J: that ω_J × ω_J vanishes is a cancellation too
+            // α = α_p + (ω_p + ω_J) × ω_J + α_J: that ω_J × ω_J is zero is a cancellation too
             r.angular_acceleration.push(at(&r.angular_acceleration) + (carried + across) * across + acceleration.ang.norm());
             r.step.push(step);
             r.spin.push(spin);
@@ -126,7 +127,7 @@ impl Recursion {
         r
     }
 
-    /// From the leaves inwards: loads, and what each joint sees of them.
+    /// From the leaves inwards: loads, and the part of them at each joint.
     fn inward(&self, robot: &Robot, a: &[f64], wrench: &[f64]) -> Vec<f64> {
         let model = &robot.model;
         let gravity = model.gravity.norm();
@@ -136,7 +137,8 @@ impl Recursion {
                 let [xx, xy, xz, yy, yz, zz] = inertia.rotational.to_array();
                 let rotational = (xx * xx + yy * yy + zz * zz + 2.0 * (xy * xy + xz * xz + yz * yz)).sqrt();
                 let turning = self.angular_acceleration[i] + self.spin[i] * self.spin[i];
-                // The spatial acceleration differs from the classical one by ω × v: whichever an algorithm adds up, this term is in it.
+                // The spatial acceleration differs from the classical one by ω × v. An algorithm may use either, so this term is in the
+                // sum.
                 let falling = self.linear_acceleration[i] + gravity + self.spin[i] * self.linear_velocity[i];
                 let lever = inertia.first_moment.norm();
                 Load { moment: rotational * turning + lever * falling, force: inertia.mass * falling + lever * turning }

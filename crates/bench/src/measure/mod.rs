@@ -1,8 +1,8 @@
-//! Error measures that mean something: each difference over the magnitude of the terms that were added to form the number.
+//! Error measures: each difference is divided by the magnitude of the terms that were added to form the number.
 //!
-//! A norm over mixed units hides small numbers behind large ones, and a relative error of one number explodes where terms cancel. So every
-//! entry is measured against the sum of the magnitudes of its own terms ([`Magnitudes`]), entries of M against √(M_ii·M_jj), and forward
-//! dynamics in the kinetic-energy norm and by the backward error. METHODOLOGY.md explains them.
+//! A norm over mixed units hides small numbers behind large ones. A relative error of one number explodes where terms cancel.
+//! So every entry is measured against the sum of the magnitudes of its own terms ([`Magnitudes`]), and entries of M against √(M_ii·M_jj).
+//! Forward dynamics has the kinetic-energy norm and the backward error. METHODOLOGY.md explains them.
 
 mod forward;
 mod magnitudes;
@@ -12,7 +12,7 @@ pub use forward::ForwardScale;
 pub use magnitudes::Magnitudes;
 pub use scaled::scaled_error;
 
-/// The larger of two errors; NaN when either is, so that no fold can lose one.
+/// The larger of two errors; NaN when either is, so that a fold keeps every NaN.
 pub fn worst(a: f64, b: f64) -> f64 {
     if a.is_nan() || b.is_nan() { f64::NAN } else { a.max(b) }
 }

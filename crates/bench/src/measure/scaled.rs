@@ -6,8 +6,8 @@ use featherbench_model::JointKind;
 
 /// The largest difference between `value` and `reference`, each entry over the magnitude of its own terms at the state.
 ///
-/// Forward dynamics has measures of its own ([`super::ForwardScale`]) and is measured here against the largest entry only. The result is
-/// NaN where an entry is, infinite where something differs that should be exactly zero, and infinite where a slice does not hold
+/// Forward dynamics has its own measures ([`super::ForwardScale`]); here it is measured against the largest entry only.
+/// The result is NaN if an entry is. It is infinite if an entry differs that should be exactly zero, and if a slice does not have
 /// [`Quantity::size`] numbers.
 pub fn scaled_error(robot: &Robot, quantity: Quantity, at: &Magnitudes, reference: &[f64], value: &[f64]) -> f64 {
     if reference.len() != quantity.size(robot) || value.len() != reference.len() {
@@ -34,12 +34,12 @@ pub fn scaled_error(robot: &Robot, quantity: Quantity, at: &Magnitudes, referenc
             let reach = at.reach[body];
             [1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, reach, reach, reach]
         }),
-        // A body moves as a whole: its origin may stand still on the joint's axis while the rest of it turns around.
+        // The velocity of the whole body counts: its origin may be at rest on the joint's axis while the rest of it rotates.
         Quantity::BodyVelocity => per_body(robot, reference, value, |body| {
             halves(at.angular_velocity[body], at.linear_velocity[body] + at.angular_velocity[body] * at.size[body])
         }),
         Quantity::BodyAcceleration => {
-            // Gravity is a term: engines carry it in their accelerations, and taking it out again cancels.
+            // Gravity is a term: engines have it in their accelerations, and subtracting it cancels.
             let gravity = robot.model.gravity.norm();
             per_body(robot, reference, value, |body| {
                 let swing = at.angular_acceleration[body] + at.angular_velocity[body] * at.angular_velocity[body];
@@ -73,7 +73,7 @@ fn per_body<const N: usize>(robot: &Robot, reference: &[f64], value: &[f64], sca
     entries(reference, value, &magnitude)
 }
 
-/// Per dof at unit rate: a turn carries the body along by no more than its reach, a slide by one.
+/// Per dof at unit rate: a rotation moves the body by at most its reach, a slide by one.
 fn body_jacobian(robot: &Robot, at: &Magnitudes, reference: &[f64], value: &[f64]) -> f64 {
     let model = &robot.model;
     let reach = at.reach[model.described[robot.deepest_body()]];
@@ -83,7 +83,8 @@ fn body_jacobian(robot: &Robot, at: &Magnitudes, reference: &[f64], value: &[f64
         JointKind::Spherical => vec![turn; 3],
         _ => vec![(subspace.ang.norm(), subspace.lin.norm())],
     });
-    // What is left of a turn in the column of a slide is measured against the turn that carries the reach as far as the slide goes.
+    // The angular entries of a slide's column should be zero. They are measured against the rotation that moves the reach as far as the
+    // slide.
     let scales = dofs.map(|(turn, slide)| (if turn > 0.0 || reach == 0.0 { turn } else { slide / reach }, turn * reach + slide));
     let (angular, linear): (Vec<f64>, Vec<f64>) = scales.unzip();
     entries(reference, value, &[angular.repeat(3), linear.repeat(3)].concat())
@@ -105,14 +106,14 @@ fn mass_matrix_sparse(robot: &Robot, reference: &[f64], value: &[f64]) -> f64 {
     entries(reference, value, &magnitude)
 }
 
-/// M = LᵀDL of tree-sparse factors: what factors stand for. They themselves differ by more, as L follows κ(M).
+/// M = LᵀDL of tree-sparse factors. The factors themselves differ by more, as L grows with κ(M).
 fn multiplied(robot: &Robot, factors: &[f64]) -> Vec<f64> {
     let topology = &robot.model.topology;
     let mut product = vec![0.0; factors.len()];
     for k in 0..topology.nv() {
         let mut l = factors[topology.row(k)].to_vec();
         let Some(d) = l.last_mut().map(|last| std::mem::replace(last, 1.0)) else { continue };
-        // The row of a dof i on the path to k begins like k's own: M_ij += L_ki D_k L_kj.
+        // The row of a dof i on the path to k has the same columns as the beginning of k's row: M_ij += L_ki D_k L_kj.
         for (&i, l_i) in topology.row_dofs(k).iter().zip(&l) {
             for (entry, l_j) in product[topology.row(i)].iter_mut().zip(&l) {
                 *entry += l_i * d * l_j;
@@ -159,7 +160,7 @@ fn momentum(robot: &Robot, at: &Magnitudes, reference: &[f64], value: &[f64]) ->
     entries(reference, value, &halves(angular, linear))
 }
 
-/// Mass and lengths relative to their own size, rotation to one, inertia to its trace about the body's origin, where most engines hold it.
+/// Mass and lengths relative to their own size, rotation to one, inertia to its trace about the body's origin, where most engines store it.
 fn readback(reference: &[f64], value: &[f64]) -> f64 {
     let magnitude: Vec<f64> = reference
         .chunks_exact(22)

@@ -7,10 +7,10 @@ use featherbench_bench::{Quantity, Robot};
 use featherbench_model::generate::Family;
 use featherbench_results::ModelOrigin;
 
-/// What each entry of a quantity is measured against.
+/// The magnitude against which each entry of a quantity is measured.
 struct Expected {
     quantity: Quantity,
-    /// Any answer, where the measure takes its scale from robot and state.
+    /// Any answer, where the scale comes from robot and state.
     reference: Vec<f64>,
     magnitudes: Vec<f64>,
 }
@@ -20,7 +20,7 @@ fn some(count: usize) -> Vec<f64> {
     (0..count).map(|k| 0.25 * k as f64 - 0.5).collect()
 }
 
-/// Every entry in turn, off by a thousandth of its magnitude to either side; and all entries off by less than one of them.
+/// Every entry in turn, changed by a thousandth of its magnitude in either direction; and all entries changed by less than one of them.
 fn check(robot: &Robot, expected: &Expected) {
     let Expected { quantity, reference, magnitudes } = expected;
     let at = Magnitudes::new(robot, 0);
@@ -63,7 +63,7 @@ fn every_entry_of_two_screws_has_its_magnitude() {
     let body = |angular: f64, linear: f64| [[angular; 3], [linear; 3]].concat();
     // The path to the centre of mass, weighted: (2·5.5 + 1.5 + 4·9 + 2)/6, with the lever c = h/m.
     let reach_of_mass = 50.5 / 6.0;
-    // M = [4 1; 1 9] has the roots 2 and 3 on its diagonal.
+    // M = [4 1; 1 9] has the square roots 2 and 3 of its diagonal.
     let matrix = [4.0, 1.0, 1.0, 9.0];
     // Products with four vectors, of which only the scale counts here; then the diagonal, then the last row.
     let probe = robot.probe();
@@ -77,7 +77,7 @@ fn every_entry_of_two_screws_has_its_magnitude() {
     // Mass, centre of mass, trace about the body's origin (trace about the centre of mass + 2m·c²), rotation, placement.
     let held =
         |mass: f64, com: f64, trace: f64, length: f64| [vec![mass], vec![com; 3], vec![trace; 6], vec![1.0; 9], vec![length; 3]].concat();
-    // Momentum: linear m·v + |h|·ω = 2·1.5 + 1.5·3 = 7.5 and 4·12.5 + 2·5 = 60; angular tr(Ī)·ω + |h|·v + reach·linear =
+    // Momentum. Linear m·v + |h|·ω: 2·1.5 + 1.5·3 = 7.5 and 4·12.5 + 2·5 = 60. Angular tr(Ī)·ω + |h|·v + reach·linear:
     // 6·3 + 1.5·1.5 + 5.5·7.5 = 61.5 and 5·5 + 2·12.5 + 9·60 = 590.
     let cases = [
         of(Quantity::InverseDynamics, &at.joint_force),
@@ -96,7 +96,7 @@ fn every_entry_of_two_screws_has_its_magnitude() {
         of(Quantity::BodyVelocity, &[body(3.0, 10.5), body(5.0, 15.0)].concat()),
         // a + g + (α + ω²)·size: 5.5 + 5 + (11 + 9)·3 and 79.5 + √5.8/2 + 5 + (25 + 25)·0.5.
         of(Quantity::BodyAcceleration, &[body(11.0, 70.5), body(25.0, 109.5 + spin / 2.0)].concat()),
-        // A screw turns by one and carries its reach of 9 and its pitch along.
+        // A screw rotates by one, and moves by its reach of 9 and its pitch.
         of(Quantity::BodyJacobian, &[[1.0; 6], [9.5, 9.25, 9.5, 9.25, 9.5, 9.25]].concat()),
         scaled(Quantity::Readback, &robot.readback(), &[held(2.0, 0.75, 3.75 + 2.25, 5.0), held(4.0, 0.5, 3.0 + 2.0, 3.0)].concat()),
         of(Quantity::StoredEntries, &[1.0]),
@@ -130,22 +130,22 @@ fn every_factor_is_seen_in_the_matrix_that_it_makes() {
         let mut value = factors;
         value[entry] += delta;
         let found = scaled_error(&robot, Quantity::Factorization, &at, &factors, &value);
-        // Sums of the size of an entry round by 1e-16 of it, a difference of a thousandth by 1e-12 of itself.
+        // Sums of the size of an entry round by 1e-16 of it. A difference of a thousandth rounds by 1e-12 of itself.
         assert!((found - due).abs() <= 1e-12 * due, "factor {entry}: {found:e} instead of {due:e}");
     }
 }
 
-/// Of a free joint the first three dofs slide and the others turn; a spherical joint turns.
+/// The first three dofs of a free joint slide and the others rotate; a spherical joint rotates.
 #[test]
 fn columns_of_the_jacobian_slide_or_turn() {
     let robot = free_and_spherical();
-    // What is left of a turn in the column of a slide: over the turn that carries the reach of 5.5 m as far as the slide goes.
+    // The angular entries of a slide's column: over the rotation that moves the reach of 5.5 m as far as the slide.
     let angular = [[1.0 / 5.5; 3], [1.0; 3], [1.0; 3]].concat();
     let linear = [[1.0; 3], [5.5; 3], [5.5; 3]].concat();
     let magnitudes = [angular.repeat(3), linear.repeat(3)].concat();
     check(&robot, &Expected { quantity: Quantity::BodyJacobian, reference: some(54), magnitudes });
 
-    // Without a reach a slide cannot turn anything: whatever is not zero is infinitely wrong.
+    // Without a reach there is no such rotation: any angular entry but zero has an infinite error.
     let robot = two_slides(4.0);
     let at = Magnitudes::new(&robot, 0);
     let reference = [0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0, 1.0, 0.0, 0.0, 0.0, 0.0];

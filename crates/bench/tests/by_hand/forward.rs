@@ -1,4 +1,4 @@
-//! What forward dynamics is measured with, on the two slides of `robots.rs`: M = [9 4; 4 4], τ − h = (6, −4), a = (2, −3).
+//! The scales of forward dynamics, on the two slides of `robots.rs`: M = [9 4; 4 4], τ − h = (6, −4), a = (2, −3).
 
 use super::close;
 use super::robots::two_slides;
@@ -45,7 +45,7 @@ fn errors_of_two_slides() {
     for wrong in [[f64::NAN, -3.0], [2.0, f64::NAN]] {
         assert!(scale.backward_error(&wrong).is_nan() && scale.residual(&wrong).is_nan() && scale.forward_error(&right, &wrong).is_nan());
     }
-    // An answer with a number missing has no error that could pass.
+    // An answer with a missing number has no error that could pass.
     let short = &right[..1];
     assert!(scale.backward_error(short).is_nan() && scale.residual(short).is_nan() && scale.forward_error(&right, short).is_nan());
 }

@@ -6,7 +6,7 @@ use featherbench_bench::measure::Magnitudes;
 
 /// Joint 1: |ω_J| = 3, |v_J| = 1.5, |α_J| = 2, |a_J| = 1. Joint 2: |ω_J| = 2, |v_J| = 0.5, |α_J| = 4, |a_J| = 1.
 ///
-/// The angular velocities themselves: |ω_1| = 3, and of ω_2 = Rᵀω_1 + ω_J, where Rᵀω_1 = (0, 3, 0) before the turn about u and ω_J = −2u:
+/// The angular velocities themselves: |ω_1| = 3, and ω_2 = Rᵀω_1 + ω_J, where Rᵀω_1 = (0, 3, 0) before the rotation about u and ω_J = −2u:
 /// |ω_2|² = 9 + 4 − 2·2·3·0.6 = 5.8.
 #[test]
 fn two_screws_have_these_magnitudes() {
@@ -26,7 +26,7 @@ fn two_screws_have_these_magnitudes() {
     // a_p + (α_p + |ω_p|²)·step + (2|ω_p| + |ω|)·|v_J| + |a_J|: 3·1.5 + 1, and 5.5 + (11 + 9)·3.5 + (6 + √5.8)·0.5 + 1.
     assert_close("linear acceleration", &at.linear_acceleration, &[5.5, 79.5 + spin / 2.0]);
 
-    // Turning α + |ω|²: 11 + 9 = 20 and 25 + 5.8 = 30.8. Falling a + g + |ω|·v: 5.5 + 5 + 3·1.5 = 15, and the sum below.
+    // Turning is α + |ω|²: 11 + 9 = 20 and 25 + 5.8 = 30.8. Falling is a + g + |ω|·v: 5.5 + 5 + 3·1.5 = 15, and the sum below.
     let falling = 79.5 + spin / 2.0 + 5.0 + spin * 12.5;
     // Moment |Ī|·turning + |h|·falling and force m·falling + |h|·turning.
     let frobenius = 13.78_f64.sqrt();
@@ -45,7 +45,7 @@ fn two_screws_have_these_magnitudes() {
     let [first, second] = of(moment + 7.0, force + 9.0, tip_moment + 11.0, tip_force + 5.0);
     assert_close("joint force with wrenches", &at.joint_force_wrench, &[first + armature[0], second + armature[1]]);
 
-    // Without accelerations α is 9 and 9 + 10, a is 4.5 and 4.5 + (9 + 9)·3.5 + (6 + √5.8)·0.5, and nothing is due to armature.
+    // Without accelerations α is 9 and 9 + 10, a is 4.5 and 4.5 + (9 + 9)·3.5 + (6 + √5.8)·0.5, and armature adds nothing.
     let falling = 70.5 + spin / 2.0 + 5.0 + spin * 12.5;
     let (moment, force) = (frobenius * 18.0 + 1.5 * 14.0, 2.0 * 14.0 + 1.5 * 18.0);
     let expected = of(moment, force, 3.0 * 24.8 + 2.0 * falling, 4.0 * falling + 2.0 * 24.8);
@@ -69,7 +69,7 @@ fn free_and_spherical_joints_have_these_magnitudes() {
     // Turning 18.5 and 43.5 + 25 = 68.5; falling 7 + 5 + 3·2 = 18 and 16.25 + 5 + 5·3.5 = 38.75.
     let (tip_moment, tip_force) = (51.0_f64.sqrt() * 68.5 + 3.0 * 38.75, 2.0 * 38.75 + 3.0 * 68.5);
     let (force, moment) = (3.0 * 18.0 + tip_force, 3.0 * 18.5 + tip_moment + 0.5 * tip_force);
-    // Forces before moments, as the dofs of a free joint are; the armature of 0.2 meets |a| = 6.
+    // Forces before moments, as the dofs of a free joint are; the armature of 0.2 is multiplied by |a| = 6.
     let expected = [[force; 3], [moment; 3], [tip_moment, tip_moment + 0.2 * 6.0, tip_moment]].concat();
     assert_close("joint force", &at.joint_force, &expected);
     assert_close("joint force with wrenches of zero", &at.joint_force_wrench, &expected);
@@ -80,7 +80,7 @@ fn free_and_spherical_joints_have_these_magnitudes() {
     assert_close("bias force", &at.bias_force, &[[force; 3], [moment; 3], [tip_moment; 3]].concat());
 }
 
-/// Slides at rest feel the length of gravity, whatever its direction: m·2.5. A body without mass has its centre nowhere, and no size.
+/// Slides at rest have the length of gravity, whatever its direction: m·2.5. A body without mass has no centre of mass and no size.
 #[test]
 fn slides_at_rest_carry_the_weight_alone() {
     let at = Magnitudes::new(&two_slides(4.0), 0);

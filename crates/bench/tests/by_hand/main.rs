@@ -7,7 +7,8 @@ mod forward;
 mod magnitudes;
 mod robots;
 
-/// Whether two numbers are the same but for the rounding of a few dozen operations on numbers without cancellation; infinity is near nothing.
+/// Whether two numbers are equal but for the rounding of a few dozen operations on numbers without cancellation; infinity is close to
+/// nothing.
 fn close(a: f64, b: f64) -> bool {
     (a - b).abs() <= 1e-13 * a.abs().min(b.abs())
 }

@@ -36,7 +36,7 @@ fn robot(gravity: [f64; 3], bodies: Vec<BodyDescription>, state: State) -> Robot
     robot
 }
 
-/// Two helical joints, with armature, inertia products, a turned placement and wrenches.
+/// Two helical joints, with armature, inertia products, a rotated placement and wrenches.
 ///
 /// | | first | second |
 /// |---|---|---|
