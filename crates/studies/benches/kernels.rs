@@ -1,9 +1,9 @@
-//! Our own kernels under criterion: the registry that the agreement study checks and the timing study times, on the same robots and
-//! states; and forward dynamics in single precision, which the accuracy study checks and no run times.
+//! Our own kernels under criterion: the same registry, robots and states as in the agreement and timing studies. And forward dynamics in
+//! single precision, which the accuracy study checks and no run times.
 //!
-//! A group is an algorithm and method, an id a robot and a regime: `stream` goes round a thousand random states, `hot` stays at one. The
-//! throughput is in dofs. A time includes everything from raw q, v, a or τ to the result in the kernel's workspace; `factorization` and `solve` start from
-//! matrices or factors made before. `cargo bench -p featherbench-studies -- --test` calls each once, as a test.
+//! A group is an algorithm and method. An id is a robot and a regime: `stream` uses a thousand random states in turn, `hot` one. The
+//! throughput is in dofs. A time includes everything from raw q, v, a or τ to the result in the kernel's workspace. `factorization` and
+//! `solve` start from matrices or factors made before. `cargo bench -p featherbench-studies -- --test` calls each once, as a test.
 
 use criterion::measurement::WallTime;
 use criterion::{BenchmarkGroup, BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
@@ -25,12 +25,12 @@ const ROBOTS: [&str; 7] = [
     "humanoid",
     "quadruped",
 ];
-/// States in the stream, fewer where they would not fit eight million numbers: more would measure the memory.
+/// States in the stream, fewer if they exceed eight million numbers: more would measure the memory.
 const STREAM: usize = 1000;
 const MOST_NUMBERS: usize = 8_000_000;
 const SEED: u64 = 1;
 
-/// What is timed here alone: no peer computes in single precision.
+/// Timed only here: no native oracle computes in single precision.
 const SINGLE: [(Quantity, &str); 2] = [(Quantity::ForwardDynamicsSingle, "aba"), (Quantity::ForwardDynamicsSingle, "ltdl")];
 
 fn robot(spec: &str) -> Robot {
@@ -54,11 +54,11 @@ fn kernels(criterion: &mut Criterion) {
             (robot, states)
         })
         .collect();
-    // Criterion wants one group at a time: the robots of each kernel, in the order of the registry.
+    // Criterion needs one group at a time: the robots of each kernel, in the order of the registry.
     let mut groups: BTreeMap<(usize, Quantity, &str), Vec<usize>> = BTreeMap::new();
     for (index, (robot, states)) in robots.iter().enumerate() {
         for (place, (quantity, method)) in timed(robot).into_iter().chain(SINGLE).enumerate() {
-            // In single precision the mass matrix of a long chain has no factors: without an answer there is no time.
+            // In single precision the mass matrix of a long chain cannot be factored: without an answer there is no time.
             if SINGLE.contains(&(quantity, method)) && !answers(robot, states, quantity, method) {
                 continue;
             }

@@ -1,12 +1,13 @@
-//! Digits: how far each engine and method is from the truth, and who is right.
+//! Accuracy: the distance of each engine and method from the truth, which says which engine is right.
 //!
-//! The reference is not an engine but the answer in double-double arithmetic ([`featherbench_bench::truth`]). Inverse dynamics and M are measured in
-//! the unit-free measures of the agreement study; forward dynamics in the kinetic-energy norm, against the bound that a backward stable
-//! method keeps, and in the 2-norm for the comparison with published tables, with the structured floor beside it. The quartiles are over the
+//! The reference is the answer in double-double arithmetic ([`featherbench_bench::truth`]), not an engine. The quartiles are over the
 //! states.
+//! - Inverse dynamics and M have the unit-free measures of the agreement study.
+//! - Forward dynamics has the kinetic-energy norm, against the bound that a backward stable method keeps.
+//! - Forward dynamics also has the 2-norm, for the comparison with published tables, with the conditioning bound beside it.
 //!
-//! *Wall*: when the best answers of several engines all lie at one error, it is the reference that ends there. A row per robot says how many
-//! engines stand at the wall.
+//! When the best answers of several engines all have the same error, the accuracy of the reference may be the limit. A row per robot gives
+//! the number of engines that are limited by the reference (`limited_by_the_reference`).
 
 use crate::row;
 use featherbench_bench::measure::{ForwardScale, scaled_error};
@@ -19,7 +20,7 @@ use serde_json::json;
 /// The accuracy study.
 pub struct Accuracy;
 
-/// What is compared with the truth.
+/// The quantities that are compared with the truth.
 const QUANTITIES: [Quantity; 5] = [
     Quantity::InverseDynamics,
     Quantity::MassMatrix,
@@ -27,11 +28,11 @@ const QUANTITIES: [Quantity; 5] = [
     Quantity::ForwardDynamics,
     Quantity::ForwardDynamicsSingle,
 ];
-/// The name of the reference in records.
+/// The name of the reference in rows.
 const TRUTH: &str = "truth";
-/// The floor hardly depends on the state: its median over a few is enough, and it costs O(n²) each.
+/// The conditioning bound hardly depends on the state. Its median over a few is enough, and each costs O(n²).
 const FLOOR_STATES: usize = 3;
-/// Above this size no floor is computed.
+/// Above this size no conditioning bound is computed.
 const FLOOR_DOFS: usize = 300;
 
 impl Study for Accuracy {
@@ -153,19 +154,19 @@ impl Study for Accuracy {
 struct ForwardErrors {
     /// In the kinetic-energy norm.
     energy: f64,
-    /// What a backward error of one amounts to in that norm.
+    /// The bound for a backward error of one, in that norm.
     bound: f64,
     /// In the 2-norm.
     plain: f64,
 }
 
-/// The error that is the largest share of its bound; one that is no number is larger than any.
+/// The error with the largest ratio to its bound; a NaN counts as larger than any.
 fn most_off(errors: &[ForwardErrors]) -> Option<&ForwardErrors> {
     let share = |error: &ForwardErrors| error.energy / error.bound;
     errors.iter().reduce(|a, b| if share(a).is_nan() || share(a) >= share(b) { a } else { b })
 }
 
-/// Sorts errors. Where one is no number all are: such a one has a sign, and may stand below all numbers.
+/// Sorts errors. If one is NaN, all become NaN: a NaN has a sign, and its total order may put it below all numbers.
 fn sort(errors: &mut [f64]) {
     if errors.iter().any(|error| error.is_nan()) {
         errors.fill(f64::NAN);
@@ -176,7 +177,7 @@ fn sort(errors: &mut [f64]) {
 fn forward_errors(a: &[f64], truth: &[f64], scale: &ForwardScale) -> ForwardErrors {
     let norm = |values: &mut dyn Iterator<Item = f64>| values.map(|x| x * x).sum::<f64>().sqrt();
     let plain = featherbench_bench::measure::ratio(norm(&mut a.iter().zip(truth).map(|(a, t)| a - t)), norm(&mut truth.iter().copied()));
-    // The truth has no backward error: half of what two answers may differ by.
+    // The truth has no backward error: half of the amplification for two answers.
     ForwardErrors { energy: scale.forward_error(truth, a), bound: 0.5 * scale.amplification, plain }
 }
 
@@ -203,7 +204,7 @@ fn probe(mass: &TreeSparse<f64>, vectors: &[f64]) -> Vec<f64> {
     values
 }
 
-/// First quartile, median, third quartile and largest of the errors, as rows that are measured, and judged where a gate says so.
+/// First quartile, median, third quartile and largest of the errors, as measured rows. A row with a gate is judged.
 fn quartiles(context: &Context, blank: &Row, errors: &mut [f64]) -> Vec<Row> {
     sort(errors);
     let metrics = [("error_q1", 0.25), ("error_median", 0.5), ("error_q3", 0.75), ("error_worst", 1.0)];
@@ -214,7 +215,7 @@ fn quartiles(context: &Context, blank: &Row, errors: &mut [f64]) -> Vec<Row> {
     rows.into()
 }
 
-/// The largest error over the structured floor of its state: what the algorithm adds to what rounding the inputs may do.
+/// The largest ratio of an error to the conditioning bound of its state: what the algorithm adds to the effect of rounding the inputs.
 fn over_floor(context: &Context, blank: &Row, errors: &[f64], floors: &[f64]) -> Option<Row> {
     let pairs = errors.iter().zip(floors).filter(|(_, floor)| floor.is_finite());
     let worst =
@@ -228,8 +229,9 @@ fn median(values: &mut [f64]) -> Option<f64> {
     (!values.is_empty()).then(|| crate::quantile(values, 0.5))
 }
 
-/// How many engines have their best method at the smallest error of all, within a factor of two, when that error is well above the floor: several
-/// at one place are no coincidence, and then the reference is the suspect. `None` where nobody stands with another.
+/// The number of engines whose smallest error e is within a factor of two of the smallest of all, e ≤ 2·e_min. `None` unless there are at
+/// least three, and e_min > 64·max(ε, conditioning bound). Several engines at one error are no coincidence: then the reference is the
+/// suspect.
 fn at_the_wall(errors: &[(String, f64)], floor: Option<f64>) -> Option<usize> {
     let mut best: Vec<(&str, f64)> = Vec::new();
     for (engine, error) in errors {
@@ -257,7 +259,7 @@ mod tests {
         assert_eq!(at_the_wall(&errors([3e-16, 3e-16, 3e-16]), Some(2e-16)), None, "all at the floor: nothing is wrong");
     }
 
-    /// What 0/0 and ∞ − ∞ give on x86 has a sign, and stands below all numbers in their total order.
+    /// On x86 the NaN of 0/0 and ∞ − ∞ is negative, and below all numbers in the total order.
     #[test]
     fn an_answer_that_is_no_number_is_the_worst() {
         let answers = |energies: [f64; 3]| energies.map(|energy| ForwardErrors { energy, bound: 2.0, plain: energy });

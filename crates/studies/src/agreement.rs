@@ -1,7 +1,7 @@
-//! Agreement: one and the same model through every engine, every quantity by every method, against our own kernels.
+//! Agreement: the same model in every engine, every quantity by every method, against our own kernels.
 //!
-//! Until extended precision is at hand the reference is our f64 and is called so; the rows with another engine as `reference` compare
-//! engines with each other, so that a reader can see who stands alone.
+//! The reference is our f64, and each row says so; the accuracy study compares with the truth instead. Rows with another engine as
+//! `reference` compare engines with each other. So a reader can see which engine differs from all others.
 
 use crate::over_best::over_best;
 use crate::row;
@@ -12,10 +12,10 @@ use featherbench_model::{Case, Model};
 use featherbench_results::{Row, Verdict};
 use serde_json::json;
 
-/// The engine that everything is compared with.
+/// The engine that all others are compared with.
 const REFERENCE: &str = "featherbench";
 
-/// What every engine is asked.
+/// The quantities that every engine is asked for.
 pub(crate) const QUANTITIES: [Quantity; 15] = [
     Quantity::Readback,
     Quantity::InverseDynamics,
@@ -74,7 +74,7 @@ impl Study for Agreement {
     }
 }
 
-/// Whether a quantity is asked of a robot: the whole mass matrix of small ones, a probe of big ones.
+/// Whether a quantity is asked of a robot: the whole mass matrix of small robots, a probe of big ones.
 pub(crate) fn asked(robot: &Robot, quantity: Quantity) -> bool {
     let big = robot.states.nv > DENSE_LIMIT;
     match quantity {
@@ -113,7 +113,7 @@ impl Comparison<'_> {
         self.finished.iter().find(|(cell, _)| cell.engine == REFERENCE && cell.quantity == quantity.name())
     }
 
-    /// How badly scaled M is, per case: the worst states tell how much an error may grow.
+    /// The condition numbers of M per case. The worst state shows how much an error may grow.
     fn conditioning(&self) -> Vec<Row> {
         let Some((cell, _)) = self.reference(Quantity::ForwardDynamics) else { return Vec::new() };
         let per_state: Vec<f64> = self.forward.iter().map(|scale| scale.condition).collect();

@@ -1,8 +1,8 @@
-//! Conditioning: how κ(M) grows with the length of a chain, raw and scaled, and how little it says.
+//! Conditioning: the growth of κ(M) with the length of a chain, raw and scaled, and how little it says.
 //!
-//! κ of M and of D^-½ M D^-½ (D = diag M) at the straight configuration, by eigenvalues; local exponents `log₂(κ(n)/κ(n/2))` against the robot of
-//! the same family with half the dofs, where the suite has it. For the straight chain κ grows as n⁴ (Featherstone 2004); the structured floor
-//! of forward dynamics stands beside it and does not grow.
+//! The condition numbers of M and of D^-½ M D^-½ (D = diag M) at the straight configuration, by eigenvalues. The local exponent is
+//! `log₂(κ(n)/κ(n/2))`, against the robot of the same family with half the dofs, if the suite has it. For the straight chain κ grows as n⁴
+//! (Featherstone 2004). The conditioning bound of forward dynamics is beside it, and does not grow.
 
 use crate::row;
 use featherbench_bench::truth::conditioning_bound;
@@ -15,7 +15,7 @@ use serde_json::json;
 /// The conditioning study.
 pub struct Conditioning;
 
-/// Eigenvalues of bigger matrices take minutes.
+/// Eigenvalues of larger matrices take minutes.
 const MOST_DOFS: usize = 600;
 
 impl Study for Conditioning {

@@ -1,14 +1,14 @@
-//! Studies: the questions that featherbench asks, one file each.
+//! Studies: the questions of featherbench, one file or folder each.
 //!
-//! - [`Agreement`]: do the engines agree on one and the same model, and how far are we from the truth beside the best of them?
-//! - [`Accuracy`]: how far is each from the truth, and who is right?
+//! - [`Agreement`]: do the engines agree on the same model, and how large is our error compared with the best engine's?
+//! - [`Accuracy`]: how far is each from the truth, and which engine is right?
 //! - [`Conditioning`]: how does κ(M) grow, and does it matter?
-//! - [`Import`]: do they read one and the same file alike, and if not, where and why?
+//! - [`Import`]: do they import the same file alike, and if not, where and why do they differ?
 //! - [`Repeatability`]: does the same question have the same answer?
-//! - [`Reproductions`]: are the engines' known deviations still there, and as large as they were?
-//! - [`Steps`]: how does the acceleration of a step approach the true one, and what do steps do to energy?
-//! - [`OperationCounts`]: are the counts of the sparse algorithms the integers that theory says?
-//! - [`Timing`]: how long does everyone take, in a paired experiment?
+//! - [`Reproductions`]: do the engines' known deviations still exist, and in their known size?
+//! - [`Steps`]: how does the acceleration of a step approach the true one, and how do steps change the energy?
+//! - [`OperationCounts`]: are the counts of the sparse algorithms the integers of the theory?
+//! - [`Timing`]: how long does each candidate take, in a paired experiment?
 
 mod accuracy;
 mod agreement;
@@ -34,7 +34,7 @@ pub use timing::Timing;
 use featherbench_bench::{Cell, Context, Engine, NoAnswer, Outcome, Quantity, Robot};
 use featherbench_results::Row;
 
-/// A row with everything that its cell and robot say; the study adds case, metric and value.
+/// A row with the fields of its cell and robot; the study adds case, metric and value.
 fn row(cell: &Cell, robot: &Robot) -> Row {
     Row {
         cell: cell.id(),
@@ -70,11 +70,11 @@ fn asked(engine: &dyn Engine, robot: &Robot, quantity: Quantity, method: &str) -
     let mut prepared = engine.prepare(robot, quantity, method, &robot.states)?;
     prepared.run(0..count)?;
     let (values, due) = (prepared.read().to_vec(), count * quantity.size(robot));
-    // Fewer states would be compared, and nobody would know.
+    // Otherwise fewer states would be compared without notice.
     if values.len() == due { Ok(values) } else { Err(NoAnswer::Failed(format!("{} numbers came, {due} are due", values.len()))) }
 }
 
-/// The value below which a fraction of the sorted samples lies.
+/// The value below which a fraction of the sorted samples is.
 fn quantile(sorted: &[f64], fraction: f64) -> f64 {
     let at = fraction * (sorted.len().saturating_sub(1)) as f64;
     let (low, high) = (at.floor() as usize, at.ceil() as usize);

@@ -1,8 +1,11 @@
-//! OperationCounts: the counts of the sparse algorithms are integers that theory knows.
+//! Operations: the counts of the sparse algorithms are known integers.
 //!
-//! With d_k the depth of dof k in dofs, itself included: a tree-sparse matrix stores `n + Σ(d_k−1)` numbers, its LᵀDL factorization takes
-//! `Σ(d_k−1)` divisions and `Σ d_k(d_k−1)/2` multiply-subtracts, a solve `2·Σ(d_k−1)` multiply-adds and n divisions (the book, section 6.5).
-//! The depths are counted here from the description, without the topology that the kernels use; the operations are counted by running the
+//! Let d_k be the depth of dof k in dofs, itself included (the book, section 6.5):
+//! - a tree-sparse matrix stores `n + Σ(d_k−1)` numbers;
+//! - its LᵀDL factorization takes `Σ(d_k−1)` divisions and `Σ d_k(d_k−1)/2` multiply-subtracts;
+//! - a solve takes `2·Σ(d_k−1)` multiply-adds and n divisions.
+//!
+//! The depths are computed here from the description, without the topology of the kernels. The operations are counted by running the
 //! kernels on a scalar that counts.
 
 use crate::row;
@@ -15,10 +18,10 @@ use serde_json::json;
 /// The operations study.
 pub struct OperationCounts;
 
-/// Counting runs on a scalar that is a hundred times slower: bigger robots are counted in the tests of `dynamics`.
+/// A scalar that counts is a hundred times slower; larger robots are counted in the tests of `dynamics`.
 const MOST_DOFS: usize = 1100;
 
-/// What is counted, in the order of our cell's values.
+/// The counts, in the order of our cell's values.
 const COUNTS: [(&str, &str); 5] = [
     ("stored", "stored numbers of M"),
     ("factor_divisions", "divisions of the factorization"),

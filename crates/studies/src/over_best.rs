@@ -1,8 +1,8 @@
-//! Accuracy: our error over that of the best engine, for every quantity.
+//! Our error over that of the best engine, for every quantity.
 //!
-//! Both errors are distances from the truth in double-double arithmetic ([`featherbench_bench::truth`]), in the measures of the agreement study, at the
-//! worst of the states. Ours is that of our usual method; the best engine's is the smallest of all others and their methods. An error below
-//! half an ulp, 2⁻⁵³, counts as half an ulp: rounding the exact answer leaves as much.
+//! Both errors are distances from the truth in double-double arithmetic ([`featherbench_bench::truth`]), in the measures of the agreement
+//! study, at the worst of the states. Ours is that of our usual method. The best engine's is the smallest of all other engines and their
+//! methods. An error below half an ulp, 2⁻⁵³, counts as half an ulp: rounding the exact answer causes as much.
 
 use crate::agreement::QUANTITIES;
 use crate::row;

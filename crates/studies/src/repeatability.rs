@@ -1,10 +1,10 @@
-//! Repeatability: one question, put twice to the same process, has one answer, to the bit.
+//! Repeatability: the same question, put twice to the same process, must have the same answer to the bit.
 //!
-//! A counter draws a robot and a method for each engine and each quantity that it offers. The cells run after all others and alone: the
-//! question, a question about another robot, and the first question again. The value is the largest distance between the two answers in
-//! units in the last place. The bound is zero: an engine that is not repeatable (random numbers, memory that was not initialised, sums over
-//! threads in any order) has no answer that could be checked, and no known deviation excuses it. A recording answers nothing anew: its
-//! engine is asked when it is recorded.
+//! A counter-based generator draws a robot and a method for each engine and each quantity that it offers. The cells run alone, after all
+//! others: the question, a question about another robot, and the first question again. The value is the largest distance between the two
+//! answers in units in the last place. The bound is zero. An engine that is not repeatable has no answer that could be checked. So no known
+//! deviation excuses it. The causes may be random numbers, memory that was not initialised, or sums over threads in any order.
+//! Recorded answers cannot be asked twice: their engine is asked when it is recorded.
 
 use crate::agreement::{self, QUANTITIES};
 use crate::{asked, row};
@@ -15,27 +15,27 @@ use serde_json::json;
 
 /// The repeatability study.
 pub struct Repeatability {
-    /// What the draw depends on besides the seed, the engine and the quantity: the hash of the program, so that another build asks about
-    /// other cells, and a resumed run about the same.
+    /// The draw depends on the seed, the engine, the quantity and this: the hash of the program. So another build asks about other cells,
+    /// and a resumed run about the same.
     pub key: String,
 }
 
-/// The failures after which no further robot is tried: they have rows of their own in the agreement study.
+/// The number of failures after which no further robot is tried; the agreement study has rows for them.
 const PATIENCE: usize = 3;
 
-/// Something that an engine can be asked.
+/// A robot and a method that an engine can be asked about.
 type Candidate<'a> = (&'a Robot, String);
 
-/// The robots of the agreement study by the methods of a quantity.
+/// The robots of the agreement study, with the methods of a quantity.
 fn candidates<'a>(context: &Context<'a>, engine: &dyn Engine, quantity: Quantity) -> Vec<Candidate<'a>> {
     let methods = engine.methods(quantity);
     let robots = context.robots.iter().filter(|robot| robot.takes("agreement") && agreement::asked(robot, quantity));
     robots.flat_map(|robot| methods.iter().map(move |method| (robot, method.clone()))).collect()
 }
 
-/// What came of asking twice, as the values of an outcome.
+/// The result of asking twice, as the values of an outcome.
 struct Twice {
-    /// Which of the candidates was asked.
+    /// The index of the candidate that was asked.
     candidate: usize,
     /// Numbers that differ.
     differing: usize,
@@ -66,7 +66,7 @@ impl Twice {
     }
 }
 
-/// The bits of a double as an integer that grows with the double: two doubles have the same one when they have the same bits.
+/// The bits of a double as an integer that increases with the double: two doubles have the same integer if they have the same bits.
 fn ordered(x: f64) -> i128 {
     let bits = x.to_bits() as i64;
     i128::from(bits ^ (bits >> 63) & i64::MAX)
@@ -89,7 +89,7 @@ impl Study for Repeatability {
         "repeatability"
     }
 
-    /// Alone: then the process that is asked again is the one that was asked before.
+    /// Alone: so the same process is asked both times.
     fn exclusive(&self) -> bool {
         true
     }
@@ -132,7 +132,7 @@ impl Study for Repeatability {
         for (place, &index) in order.iter().enumerate() {
             match ask(index) {
                 Ok(first) => {
-                    // An answer that is merely kept would be no second one. What comes of this question is none of this study's business.
+                    // Otherwise a stored answer would count as a second one. The outcome of this question does not matter.
                     let other = order[place + 1..].iter().find(|&&other| candidates[other].0.hash != candidates[index].0.hash);
                     let _ = other.map(|&other| ask(other));
                     let (robot, method) = &candidates[index];
@@ -163,7 +163,7 @@ impl Study for Repeatability {
 }
 
 impl Repeatability {
-    /// The row of a cell; none where the engine answers about no robot, which the rows of the agreement study say.
+    /// The row of a cell; `None` if the engine answers about no robot, which the rows of the agreement study say.
     fn judged(&self, context: &Context, cell: &Cell, outcome: &Outcome) -> Option<Row> {
         let blank = Row {
             cell: cell.id(),

@@ -1,8 +1,8 @@
-//! Reproductions: are the engines' known deviations still there, and as large as they were?
+//! Reproductions: do the engines' known deviations still exist, and in their known size?
 //!
-//! `ci/deviations.toml` names each reproduction with the engine's version and the range of its value over twenty seeds. Two rows each: the
-//! smallest value over the seeds must not lie below the range, the largest not above it, each by more than [`SLACK`]. So a
-//! deviation that its engine has mended fails the gate, as does one that has grown: the list is then to be corrected.
+//! `ci/deviations.toml` names each reproduction with the engine's version and the range of its value over twenty seeds. There are two rows
+//! each: the smallest value over the seeds must not be below the range, and the largest must not be above it, each by more than [`SLACK`].
+//! So a deviation that its engine has corrected fails the gate, and so does one that has grown. Then the list must be corrected.
 
 use featherbench_bench::{Cell, Context, Finished, NoAnswer, Outcome, Reproduction, Robot, SEEDS, SLACK, Study};
 use featherbench_results::{Relation, Row, Verdict};
@@ -13,7 +13,7 @@ pub type Reproduce = Box<dyn Fn(&str, u64) -> Result<Vec<f64>, NoAnswer> + Send 
 
 /// The study of known deviations.
 pub struct Reproductions {
-    /// Who evaluates a reproduction.
+    /// Evaluates a reproduction.
     pub reproduce: Reproduce,
 }
 
@@ -85,7 +85,7 @@ fn rows(context: &Context, known: &Reproduction, cell: &Cell, outcome: &Outcome)
         Ok(values) => values,
         Err(no_answer) => return vec![blank.without_value(Verdict::Error, no_answer.to_string())],
     };
-    // A NaN among them must not be passed over: it is neither small nor large.
+    // A NaN must not be lost here: it is neither small nor large.
     let fold = |pick: fn(f64, f64) -> f64| {
         values.iter().copied().reduce(|a, b| {
             if a.is_nan() {

@@ -1,14 +1,16 @@
 //! The limit of small steps: how an engine whose acceleration is that of a step approaches the true one, and what its steps do to energy.
 //!
-//! *Acceleration*: the step's acceleration against our forward dynamics, in the kinetic-energy norm, at steps of 1e-2 … 1e-10 s, with the order
-//! of convergence: the slope of a line through the logarithms, over the straight part.
-//! *Energy*: a motion under gravity alone over [`HORIZON`] seconds, the largest difference of the energy from that at the start, with its order.
+//! *Acceleration*: the step's acceleration against our forward dynamics, in the kinetic-energy norm, at steps of 1e-2 … 1e-10 s. Its order
+//! of convergence is the slope of a line through the logarithms, over the straight part.
+//! *Energy*: a motion under gravity alone over [`HORIZON`] seconds. Its value is the largest difference of the energy from that at the
+//! start, with its order.
 //!
-//! Orders are those of the engine's first way to step; what its own settings add (damping, substeps) shows beside it, and so does what it does
-//! at high speed.
+//! Orders are those of the engine's first method to step. The effects of its own settings (damping, substeps) and of high speed are in
+//! other rows.
 //!
-//! An engine may leave out the term that makes its steps implicit where a step is long and the robot fast ([`Stepper::guard`]). Such a step is
-//! *explicit*, and begins with the true acceleration: its error is rounding, while that of a shorter, *implicit* one is of first order. A row
+//! An engine may leave out the term that makes its steps implicit when a step is long and the robot fast ([`Stepper::guard`]). Such a step
+//! is
+//! *explicit*, and begins with the true acceleration: its error is rounding. A shorter, *implicit* step has an error of first order. A row
 //! names the regime of its step, and an order is fitted over implicit steps alone.
 
 use crate::row;
@@ -26,11 +28,11 @@ const STEPS: [f64; 9] = [1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9, 1e-10];
 const MOTION_STEPS: [f64; 6] = [1e-2, 5e-3, 2e-3, 1e-3, 5e-4, 2e-4];
 /// Length of the motion, s.
 const HORIZON: f64 = 0.2;
-/// Errors of the straight part: below it rounding shows, above it the second order, whose share of an error e is about e.
+/// Errors of the straight part. Below it is rounding. Above it is the second order, whose relative share of an error e is about e.
 const STRAIGHT: RangeInclusive<f64> = 1e-11..=1e-2;
-/// Steps of the straight part of the energy, s: the second order's share falls with the step.
+/// Steps of the straight part of the energy, s: the share of the second order falls with the step.
 const STRAIGHT_MOTION: RangeInclusive<f64> = 0.0..=1e-3;
-/// The states asked about: the first one of each. The motion begins at the first.
+/// The cases: the first state of each is used. The motion begins at the first.
 const CASES: [Case; 2] = [Case::Random, Case::Fast];
 
 /// The study of small steps.
@@ -96,7 +98,7 @@ impl Study for Steps {
             let plain = first.as_ref() == Some(&cell.method);
             for ((case, state), values) in states(robot).into_iter().zip(values.chunks_exact(steps.len())) {
                 let blank = Row { states: case.name().into(), ..blank.clone() };
-                // Where no force depends on velocity, a step of any length is exact and has no order.
+                // If no force depends on velocity, a step of any length is exact and has no order.
                 let exact = values.iter().all(|error| error < STRAIGHT.start());
                 let guard = stepper.and_then(|stepper| stepper.guard()).filter(|_| acceleration && plain && !exact);
                 let regime = |dt: f64, error: f64| Some(Regime::of(dt, error, speed(robot.states.v(state)), guard?));
@@ -113,7 +115,7 @@ impl Study for Steps {
                     }
                     rows.push(row);
                 }
-                // An explicit step's error lies below the straight part: an order is that of implicit steps.
+                // An explicit step's error is below the straight part: an order belongs to implicit steps.
                 let straight = |&(dt, error): &(f64, f64)| {
                     if acceleration { STRAIGHT.contains(&error) } else { STRAIGHT_MOTION.contains(&dt) }
                 };
@@ -127,21 +129,21 @@ impl Study for Steps {
     }
 }
 
-/// What the row of an explicit step says.
+/// The reason in the row of an explicit step.
 const EXPLICIT: &str = "the engine's energy guard left out the implicit term: this step is explicit, and begins with the true acceleration";
 
-/// How a step was made by an engine that has a guard.
+/// The kind of a step by an engine that has a guard.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Regime {
     /// With the term that makes it implicit: the error is of first order in its length.
     Implicit,
-    /// Without: there is no error but rounding.
+    /// Without it: the error is rounding.
     Explicit,
 }
 
 impl Regime {
-    /// The regime of a step with this error from a state with this speed: explicit are those that the guard may touch, and that have no error
-    /// of first order. (From the guard on, dt·|v| is 1e-3 and more, and the share of the implicit term is of that size.)
+    /// The regime of a step with this error from a state with this speed. A step is explicit if dt·|v| ≥ guard and its error is not of
+    /// first order. (From the guard on, dt·|v| is 1e-3 and more, and so is the implicit term's share.)
     fn of(dt: f64, error: f64, speed: f64, guard: f64) -> Self {
         if dt * speed >= guard && error < *STRAIGHT.start() { Self::Explicit } else { Self::Implicit }
     }
@@ -154,7 +156,7 @@ impl Regime {
     }
 }
 
-/// ‖v‖₂: no smaller than the largest velocity in any axes that an engine turns a joint's into.
+/// ‖v‖₂: at least the largest velocity in any axes that an engine may use for a joint.
 fn speed(v: &[f64]) -> f64 {
     v.iter().map(|v| v * v).sum::<f64>().sqrt()
 }

@@ -1,5 +1,5 @@
-//! A cause is named only if it gives the engine's numbers: what parsers do to the links of a body, planted by their own rules, is named with its
-//! size, and the same sentences beside other numbers name nothing.
+//! A cause is named only if it gives the engine's numbers. Edits of the links of a body, planted by the parsers' own rules, are named with
+//! their size. The same notes beside other numbers name nothing.
 
 use featherbench_bench::{FileInertial, FileLink, ImportNote};
 use featherbench_model::{BodyDescription, Description, Frame, JointDescription, JointType, Placement, Random};
@@ -12,8 +12,8 @@ fn turn(axis: [f64; 3], angle: f64) -> Mat3<f64> {
     Transform::axis_rotation(Vec3::from_array(axis), angle.sin(), angle.cos())
 }
 
-/// The links of one moving body, each with its place on it: the body itself, a tool with a turned inertial, a shell without inertial but with
-/// geometry, a frame without either, and a link of unphysical inertia.
+/// The links of one moving body, each with its placement on the body. They are the body itself, a tool with a rotated inertial, a shell
+/// with geometry and no inertial, a frame with neither, and a link of unphysical inertia.
 fn links() -> Vec<(FileLink, Transform<f64>)> {
     let place = |k: f64| Transform::new(turn([0.0, 0.6, 0.8], k), Vec3::new(0.1 * k, -0.2, 0.05));
     let link = |name: &str, inertial, solids| FileLink { name: name.into(), inertial, solids };
@@ -28,7 +28,7 @@ fn links() -> Vec<(FileLink, Transform<f64>)> {
     ]
 }
 
-/// The body that these links make, with some of them replaced.
+/// The body made of these links, with some of them replaced.
 fn merged(replace: impl Fn(&FileLink) -> Option<FileInertial>) -> BodyDescription {
     let mut sum = RigidBodyInertia::zero();
     for (link, place) in links() {
@@ -58,7 +58,7 @@ fn found(replace: impl Fn(&FileLink) -> Option<FileInertial>, notes: &[ImportNot
     Comparison::of(&ours, &theirs, &of_file, notes).differences().cloned().collect()
 }
 
-/// All differences have this cause, and the account names these words.
+/// All differences have this cause, and the account contains these words.
 fn named(found: &[Difference], cause: Cause, words: &[&str]) {
     assert!(!found.is_empty(), "{cause:?} is found");
     for difference in found {
@@ -88,7 +88,7 @@ fn of_nothing(mass: f64, moment: f64) -> FileInertial {
     FileInertial { mass, inertia: [moment, 0.0, 0.0, moment, 0.0, moment], ..NOTHING }
 }
 
-/// The sentence that MuJoCo's oracle tells beside its bounds, with a number that any mass is smaller than, and one of another link.
+/// The notes of MuJoCo's oracle beside its bounds: one with a number larger than any mass, and one of another link.
 fn told_of_bounds() -> Vec<ImportNote> {
     let note = |cause: &str, about: Option<&str>, text: &str| ImportNote {
         cause: cause.into(),
@@ -108,11 +108,11 @@ fn geometry_that_weighs_is_not_called_a_bound_of_a_milligram() {
     let geometry = found(shell, &told_of_bounds());
     assert_eq!(geometry.iter().map(|d| d.field).collect::<Vec<_>>(), [Field::Mass, Field::Com, Field::Inertia]);
     named(&geometry, Cause::Geometry, &["'shell'", "0 kg became 29.4 kg", "1000 kg/m³"]);
-    // With the bounds of the other links beside it, the whole has the name of what weighs.
+    // Together with the bounds of other links, the cause of the largest change names the whole.
     let balanced = |x: FileInertial| if x.inertia[0] + x.inertia[3] < x.inertia[5] { of_mean(x) } else { x };
     let all = |link: &FileLink| Some(shell(link).unwrap_or_else(|| balanced(bounded(link.inertial.unwrap_or(NOTHING)))));
     named(&found(all, &told_of_bounds()), Cause::Geometry, &["'shell'", "'plate'", "three equal moments"]);
-    // A mass that nothing gives has no cause, whatever the sentences say.
+    // A mass that no rule gives has no cause, whatever the notes say.
     let other = |link: &FileLink| shell(link).map(|solids| FileInertial { mass: 21.7, ..solids });
     unknown(&found(other, &told_of_bounds()));
 }
@@ -155,7 +155,7 @@ fn what_parsers_do_to_links_is_named_with_its_size() {
     named(&found(only("tool", |_| NOTHING), &[]), Cause::Dropped, &["'tool'", "0.5 kg became 0 kg"]);
 }
 
-/// Numbers that the engine tells of a link name a cause where they give the body, and not where they do not.
+/// Numbers that the engine reports of a link name a cause if they give the body, and otherwise not.
 #[test]
 fn what_an_engine_tells_is_held_against_its_body() {
     let held = FileInertial { mass: 3.3, com: [0.1, 0.0, 0.2], ..of_nothing(0.0, 0.07) };
@@ -169,7 +169,7 @@ fn what_an_engine_tells_is_held_against_its_body() {
     unknown(&found(tool, &[]));
 }
 
-/// A body of nothing in an MJCF, where no link of the file is known: one kilogram is DART's default and not a unit of a milligram.
+/// A body without mass in an MJCF whose links are not known: one kilogram is DART's default, not a unit's factor on a milligram.
 #[test]
 fn one_kilogram_for_nothing_is_a_default_and_no_unit() {
     let body = |mass: f64, moment: f64| BodyDescription {
@@ -187,7 +187,7 @@ fn one_kilogram_for_nothing_is_a_default_and_no_unit() {
     assert_eq!(of(body(0.0, 0.0), body(1e-6, 1e-6)), [(Field::Mass, Cause::Bounds), (Field::Inertia, Cause::Bounds)]);
 }
 
-/// Numbers of the file beside those that are held: the bound is named, not only that the parser says so.
+/// The note has the numbers of the file: so the bound is named, not only that the parser reports it.
 #[test]
 fn a_bound_that_is_told_is_still_a_bound() {
     let body = |mass: f64, moment: f64| {
@@ -200,12 +200,12 @@ fn a_bound_that_is_told_is_still_a_bound() {
     held.bodies[0].com = [0.0, 0.0, 1.0];
     let comparison = Comparison::of(&body(0.0, 0.0), &held, &[], &[note]);
     assert!(comparison.differences().all(|d| d.cause == Cause::Bounds), "{:#?}", comparison.findings);
-    // DART's mass of the file with moments of its own.
+    // DART with the file's mass and its own moments.
     let comparison = Comparison::of(&body(2.0, 0.3), &body(2.0, 1.0), &[], &[]);
     assert_eq!(comparison.differences().map(|d| d.cause).collect::<Vec<_>>(), [Cause::DefaultInertia]);
 }
 
-/// The angles of a file in one order, taken in the order x, y, z.
+/// The angles of a file in one order, used in the order x, y, z.
 #[test]
 fn a_sequence_of_angles_that_is_ignored_is_named() {
     let axes = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
@@ -227,7 +227,7 @@ fn a_sequence_of_angles_that_is_ignored_is_named() {
     }
 }
 
-/// A planar joint about x, which a parser reads about z: our reader turns the plane and leaves a frame where the link is.
+/// A planar joint about x, which a parser imports about z. Our parser rotates the plane and leaves a frame where the link is.
 #[test]
 fn a_plane_that_is_always_z_is_named() {
     let z_to_x = turn([0.0, 1.0, 0.0], std::f64::consts::FRAC_PI_2);
@@ -261,13 +261,13 @@ fn a_plane_that_is_always_z_is_named() {
     let mut theirs = Description { bodies: vec![sled("sled", straight), child(straight)], ..Description::default() };
     let found: Vec<Difference> = Comparison::of(&ours, &theirs, &[], &[]).differences().cloned().collect();
     assert!(!found.is_empty() && found.iter().all(|difference| difference.cause == Cause::PlanarAxis), "{found:#?}");
-    // Another plane than z is another number.
+    // A plane other than z is a difference of numbers.
     theirs.bodies[0] = sled("sled", turn([1.0, 0.0, 0.0], 0.3));
     let found: Vec<Difference> = Comparison::of(&ours, &theirs, &[], &[]).differences().cloned().collect();
     assert!(!found.is_empty() && found.iter().all(|difference| difference.cause != Cause::PlanarAxis), "{found:#?}");
 }
 
-/// What is called alike and what is called unexplained have one bound, which grows with the depth.
+/// The limit between equal and unexplained is one bound, which grows with the depth.
 #[test]
 fn the_bound_of_rounding_grows_with_the_depth() {
     assert_eq!((bound(1), bound(100), bound(1000), bound(5000)), (1e-12, 1e-12, 1e-11, 5e-11));

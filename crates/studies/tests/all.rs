@@ -1,4 +1,4 @@
-//! The tests of studies as one program: they share what is compiled for them.
+//! The tests of studies as one program: so shared modules are compiled once.
 
 mod accounted_readings;
 mod bad_oracle;

@@ -1,5 +1,5 @@
-//! A run with a broken engine goes on: error rows for that engine alone, whether its process crashes or hangs, and everything else judged as
-//! if it were not there.
+//! A run with a broken engine goes on, whether the engine's process crashes or hangs. There are error rows for that engine alone, and
+//! everything else is judged as if it were not there.
 
 use crate::support;
 
@@ -11,10 +11,10 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::Duration;
 use support::{agreement, gates, red, robot, suite};
 
-/// The longest wait for an answer: by a clock of ours, so that no load of the machine decides.
+/// The longest wait for an answer, by a clock of the test: so the load of the machine has no influence.
 const LIMITS: Limits = Limits { answer: Duration::from_secs(1000), memory: 1 << 30 };
 
-/// A clock on which so many seconds pass between any two looks.
+/// A clock on which this number of seconds passes between any two queries.
 #[derive(Default)]
 struct Scripted {
     step: AtomicU64,
@@ -32,7 +32,7 @@ impl Clock for Scripted {
     }
 }
 
-/// A process that says hello, and then does this, while so many seconds pass between any two looks at the clock.
+/// A process that answers `hello` and then does this, while this number of seconds passes between any two queries of the clock.
 fn broken(fault: &str, step: u64) -> Box<dyn Engine> {
     let hello =
         r#"{"status":"ok","protocol":1,"engine":"broken","version":"1","methods":{"id":["a","b"],"fd":["a"],"body_jacobian":["a"]}}"#;

@@ -1,8 +1,8 @@
-//! The harness convicts engines that compute something else, answer nothing, or are not there; and known deviations excuse what they name,
-//! no further and no longer than it is seen.
+//! Engines fail that compute something else, answer nothing, or are missing. Known deviations excuse what they name, no more, and only as
+//! long as it occurs.
 //!
-//! The mistakes are those that bindings and algorithms make: frames and orders mixed up, signs, forgotten armature. Each must turn the gates
-//! of `ci/gates.toml` red in the quantities that it touches, and leave the others alone.
+//! The mistakes are those of bindings and algorithms: exchanged frames and orders, signs, missing armature. Each must fail the gates of
+//! `ci/gates.toml` in the quantities that it affects, and in no others.
 
 use crate::support;
 
@@ -18,12 +18,12 @@ const FREE: &str = "joints:kind=mixed,base=free";
 /// One with armature.
 const ARMATURED: &str = "tree:n=12,joints=all,base=free,armature=true";
 
-/// The quantities with rows of the double that fail.
+/// The quantities in which rows of the double fail.
 fn failing(records: &[Row]) -> BTreeSet<&str> {
     doubles(records, Verdict::Fail).into_iter().map(|row| row.quantity.as_str()).collect()
 }
 
-/// Asserts that the gates are red for the double in exactly these quantities, and green for our own kernels.
+/// Asserts that the gates fail for the double in exactly these quantities, and pass for our own kernels.
 #[track_caller]
 fn fails_in(robot: &Robot, double: Double, quantities: &[&str]) {
     let gates = gates("");
@@ -40,7 +40,7 @@ fn fails_in(robot: &Robot, double: Double, quantities: &[&str]) {
     assert!(!unmet.iter().any(|what| what.starts_with("rows of featherbench")), "our own kernels are innocent: {unmet:?}");
 }
 
-/// Asserts that a twisted answer fails in exactly these quantities.
+/// Asserts that a changed answer fails in exactly these quantities.
 #[track_caller]
 fn twisted(spec: &str, twist: Twist, quantities: &[&str]) {
     let robot = robot_of(spec);
@@ -122,7 +122,7 @@ fn a_jacobian_column_by_column() {
     twisted(FREE, twist, &["body_jacobian"]);
 }
 
-/// The lower triangle of M alone.
+/// Only the lower triangle of M.
 #[test]
 fn half_a_mass_matrix() {
     let twist = |Answer { robot, quantity, values, .. }: Answer| {
@@ -134,7 +134,7 @@ fn half_a_mass_matrix() {
     twisted(FREE, twist, &["mass_matrix"]);
 }
 
-/// Angular momentum about the world's origin for that about the centre of mass.
+/// Angular momentum about the world's origin instead of the centre of mass.
 #[test]
 fn momentum_about_another_point() {
     let twist = |Answer { quantity, values, .. }: Answer| {
@@ -147,7 +147,7 @@ fn momentum_about_another_point() {
     twisted(FREE, twist, &["momentum"]);
 }
 
-/// Spatial for classical acceleration: without ω × v.
+/// Spatial instead of classical acceleration: without ω × v.
 #[test]
 fn spatial_acceleration_for_classical() {
     let twist = |Answer { robot, quantity, state, values }: Answer| {
@@ -164,7 +164,7 @@ fn spatial_acceleration_for_classical() {
     twisted(FREE, twist, &["body_acceleration"]);
 }
 
-/// Everything that forces have to do with, and nothing else.
+/// All quantities that depend on forces, and no others.
 #[test]
 fn gravity_upside_down() {
     let robot = robot_of(FREE);
@@ -186,7 +186,7 @@ fn armature_forgotten() {
     fails_in(&robot, double, &["id", "id_wrench", "mass_matrix", "fd", "kinetic_energy"]);
 }
 
-/// Inertia about the body's origin taken for inertia about the centre of mass.
+/// Inertia about the body's origin used as inertia about the centre of mass.
 #[test]
 fn inertia_about_another_point() {
     let robot = robot_of("quadruped");
@@ -200,7 +200,7 @@ fn inertia_about_another_point() {
     fails_in(&robot, double, &["id", "id_wrench", "bias", "mass_matrix", "fd", "kinetic_energy", "momentum"]);
 }
 
-/// Transposed placements: child from parent for parent from child.
+/// Transposed placements: child from parent instead of parent from child.
 #[test]
 fn rotations_the_other_way() {
     let robot = robot_of(FREE);
@@ -230,7 +230,7 @@ const EVERYTHING: [&str; 13] = [
     "body_jacobian",
 ];
 
-/// Quaternions read as w, x, y, z.
+/// Quaternions interpreted as w, x, y, z.
 #[test]
 fn quaternion_order() {
     let robot = robot_of(FREE);
@@ -258,7 +258,7 @@ fn quaternions(model: &Model<f64>, states: &mut StateBatch, change: impl Fn(&mut
     }
 }
 
-/// Two joints of one parent in the other order: what name-sorted engines do.
+/// Two joints of one parent in the other order, as in engines that sort by name.
 #[test]
 fn siblings_swapped() {
     let robot = robot_of("quadruped");
@@ -281,7 +281,7 @@ fn not_a_number_is_an_error() {
     let robot = robot_of(FREE);
     let gates = gates("");
     let expected = suite(&beside_native(&robot, &gates, Double::of(&robot)));
-    // One NaN in one number of the last state: no worst-of may lose it.
+    // One NaN in one number of the last state: it must not be lost when the worst value is taken.
     let twist = |Answer { quantity, state, values, .. }: Answer| {
         if quantity != Quantity::Readback && state + 1 == support::STATES {
             values[0] = f64::NAN;
@@ -299,7 +299,7 @@ fn not_a_number_is_an_error() {
     }
 }
 
-/// Answers for some of the states, or for none, are no answers.
+/// Answers for only some of the states, or for none, are errors.
 #[test]
 fn too_few_numbers_are_an_error() {
     let robot = robot_of(FREE);
@@ -332,16 +332,16 @@ fn nothing_at_all_is_not_green() {
     let gates = gates("");
     let conditions = gates.conditions(&suite(&[]), &[], true);
     assert_eq!(red(&conditions), ["rows at all"]);
-    // Each quantity asks for a mean and for a largest value, and nothing has neither.
+    // Each quantity has a condition on a mean and one on a largest value; without rows neither is met.
     let over_best: Vec<_> = conditions.iter().filter(|condition| condition.what.contains(OVER_BEST)).collect();
     assert!(over_best.len() >= 24 && over_best.iter().all(|condition| condition.verdict == Verdict::Fail), "{over_best:?}");
 }
 
-/// One robot whose forward bounds see nothing, and one with sharp ones.
+/// One robot whose forward bounds are too wide to find errors, and one with sharp ones.
 #[test]
 fn blind_bounds_are_red() {
     let gates = gates("");
-    // Every method of the double, and our own that are compared with the first.
+    // Every method of the double, and our own methods except the first.
     let compared = 2 * Featherbench::new().methods(Quantity::ForwardDynamics).len() - 1;
     let blunt = |spec: &str| {
         let robot = robot_of(spec);
@@ -355,7 +355,7 @@ fn blind_bounds_are_red() {
     assert_eq!(blunt("chain:n=1"), 0);
 }
 
-/// One known deviation of this version of an engine on robots with a name like this, with this verdict and what more it says.
+/// One known deviation of this version of an engine on robots with a name like this, with this verdict and further keys.
 fn deviation(engine: &str, verdict: &str, more: &str) -> String {
     let names = "robots = [\"joints-*\"]\nreason = \"a known cause\"";
     format!("[[deviation]]\nengine = \"{engine}\"\nversion = \"1\"\n{names}\nverdict = \"{verdict}\"\n{more}\n")
@@ -366,7 +366,7 @@ fn excusing(verdict: &str, more: &str) -> Gates {
     gates(&deviation("double", verdict, more))
 }
 
-/// The double's deviations, failures and skips, and whether a suite that expects those that are accounted for is green.
+/// The double's deviations, failures and skips, and whether a suite that expects the explained ones passes.
 fn trial(gates: &Gates, robot: &Robot, double: Double) -> (usize, usize, usize, bool) {
     let records = beside_native(robot, gates, double);
     let unmet = gates.conditions(&suite(&records), &records, true);
@@ -400,11 +400,11 @@ fn a_deviation_that_is_no_longer_seen_is_red() {
     let records = beside_native(&robot, &gates, Double::of(&robot));
     let conditions = gates.conditions(&suite(&records), &records, true);
     assert_eq!(red(&conditions), ["known deviation of double still seen: a known cause"]);
-    // Of part of a run nothing can be said.
+    // A part of a run has no such conditions.
     assert!(red(&gates.conditions(&suite(&records), &records, false)).is_empty());
 }
 
-/// Two engines may deviate for the same cause: one of them is no witness for the other, nor one quantity for another.
+/// Two engines may deviate for the same cause: the rows of one do not show the other's, nor those of one quantity another's.
 #[test]
 fn a_deviation_is_seen_in_its_own_rows() {
     let robot = robot_of(FREE);
@@ -424,7 +424,7 @@ fn a_deviation_is_seen_in_its_own_rows() {
     assert_eq!(red(&conditions), unseen);
 }
 
-/// The same gates with the double's ranges as large as it shows them, times a factor.
+/// The same gates with the double's ranges in the size that it shows, times a factor.
 fn measured(gates: Gates, robot: &Robot, double: Double, factor: f64) -> Gates {
     let mut meter = RangesMeter::default();
     meter.add(gates.deviations(), &beside_native(robot, &gates, double));
@@ -447,12 +447,12 @@ fn a_deviation_explains_no_more_than_was_measured() {
     let (deviations, left, _, green) = trial(&sized("", 0.1), &robot, wrong(&robot));
     assert!(left > deviations && !green, "ten times as large as known; the largest case has the range: {deviations} excused, {left} not");
     assert_eq!(deviations + left, fails);
-    // Smaller than it is known to be: every row is explained, and the list is to be corrected.
+    // Smaller than known: every row is explained, and the list must be corrected.
     assert_eq!(trial(&sized("", 10.0), &robot, wrong(&robot)), (fails, 0, 0, false));
     let (deviations, left, _, green) = trial(&sized("quantities = [\"id\"]", 1.0), &robot, wrong(&robot));
     assert!(deviations > 0 && left > 0 && !green);
     assert_eq!(deviations + left, fails);
-    // What was measured on one robot excuses no other one of its class.
+    // A size that was measured on one robot excuses no other robot of its class.
     let other = robot_of("joints:kind=mixed,base=fixed");
     let elsewhere = measured(excusing("fail", ""), &other, wrong(&other), 1.0);
     let (deviations, left, _, green) = trial(&elsewhere, &robot, wrong(&robot));

@@ -1,5 +1,5 @@
-//! The import study convicts: an engine that computes something else than what it says to have read is called unexplained, with the
-//! smallest sub-tree that shows it; one that tells the truth about an edited robot is not.
+//! The import study fails an engine that computes with another robot than it reports: it is called unexplained, with the smallest sub-tree
+//! that shows it. An engine that reports its edits correctly does not fail.
 
 use crate::support;
 
@@ -14,7 +14,7 @@ use serde_json::Value;
 use std::collections::BTreeMap;
 use support::{gates, robot, whole};
 
-/// An engine with a parser: it says to have read one robot and computes with another of the same shape.
+/// An engine with a parser: it reports one robot and computes with another of the same shape.
 struct Parser {
     identity: Identity,
     featherbench: Featherbench,
@@ -66,7 +66,7 @@ impl Engine for Parser {
     }
 }
 
-/// A robot that is said to come from a file.
+/// A robot with a file.
 fn filed(spec: &str) -> Robot {
     let file =
         RobotFile { path: "robot.urdf".into(), format: FileFormat::Urdf, base: FileBase::Fixed, hash: "0".into(), links: Vec::new() };
@@ -109,7 +109,7 @@ fn an_edited_robot_that_is_told_is_a_difference_and_explained() {
     assert_eq!(difference.value, Some(0.5), "half of the larger mass");
     assert_eq!(row(&records, "differences", "import").value, Some(1.0));
     assert_eq!(row(&records, "unexplained", "import").verdict, Verdict::Pass);
-    // The only difference makes the whole error.
+    // The only difference causes the whole error.
     let as_read = row(&records, "as_read", "mass_matrix").value.unwrap();
     let alone = params(difference)["mass_matrix"].as_f64().unwrap();
     assert!(as_read > 1e-6 && (as_read - alone).abs() < 1e-12 * as_read, "{as_read} {alone}");

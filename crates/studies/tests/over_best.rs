@@ -1,4 +1,4 @@
-//! Our error over the best engine's: whose answers count, and how far off ours may look.
+//! Our error over the best engine's: which answers count, and the ratio that results.
 
 use crate::support;
 
@@ -7,7 +7,7 @@ use featherbench_engines::Featherbench;
 use featherbench_results::Row;
 use support::{Answer, Double, Twist, agreement, gates, robot};
 
-/// The quantity that the twisted engines spoil.
+/// The quantity that the changed answers are wrong in.
 const SPOILED: Quantity = Quantity::InverseDynamics;
 
 /// A relative error of 1e-9.
@@ -17,14 +17,14 @@ fn off(answer: Answer) {
     }
 }
 
-/// No number at all.
+/// Answers that are NaN.
 fn missing(answer: Answer) {
     if answer.quantity == SPOILED {
         answer.values.fill(f64::NAN);
     }
 }
 
-/// The rows beside doubles with these names and answers, and our own kernels unless a double has their name.
+/// The rows with doubles of these names and answers, and with our own kernels unless a double has their name.
 fn rows(robot: &Robot, doubles: &[(&str, Twist)]) -> Vec<Row> {
     let mut engines: Vec<Box<dyn Engine>> =
         doubles.iter().map(|(name, twist)| Box::new(Double::twisting(robot, *twist).named(name)) as Box<dyn Engine>).collect();
@@ -36,7 +36,7 @@ fn rows(robot: &Robot, doubles: &[(&str, Twist)]) -> Vec<Row> {
     rows
 }
 
-/// The ratio on the spoiled quantity, and the engine that it is taken to.
+/// The ratio for the wrong quantity, and the engine that is the best.
 fn ratio(rows: &[Row]) -> (f64, &str) {
     let row = rows.iter().find(|row| row.quantity == SPOILED.name()).unwrap();
     (row.value.unwrap(), &row.reference)
@@ -46,11 +46,12 @@ fn ratio(rows: &[Row]) -> (f64, &str) {
 fn the_same_answers_have_the_same_error() {
     let robot = robot("chain:n=4,layout=spatial");
     let rows = rows(&robot, &[("a", |_| ())]);
-    // Of forward dynamics, the doubles answer by our refined method too: better than our usual one.
+    // The doubles also answer forward dynamics by our refined method, which is better than our usual one.
     let (fd, others): (Vec<&Row>, Vec<&Row>) = rows.iter().partition(|row| row.quantity == Quantity::ForwardDynamics.name());
     assert!(others.iter().all(|row| row.engine == "featherbench" && row.value == Some(1.0) && row.reference == "a"), "{others:?}");
     assert!(fd.iter().all(|row| row.params.contains("\"by\":\"refined_1\"") && row.value > Some(1.0)), "{fd:?}");
-    // Everything but the whole mass matrix of robots too large for it, and its products on all others; and readback, which nobody computes.
+    // All quantities except: the whole mass matrix on robots too large for it, its products on all others, and the read-back, which no
+    // kernel computes.
     assert_eq!(rows.len(), 13);
 }
 
@@ -59,8 +60,8 @@ fn our_error_shows_at_its_size_against_the_best_of_all() {
     let robot = robot("chain:n=4,layout=spatial");
     let worse = rows(&robot, &[("featherbench", off), ("honest", |_| ()), ("spoiled", off)]);
     let (value, reference) = ratio(&worse);
-    // The error is 1e-9 of the torques, at the worst state at least a hundredth of the scale of their terms; the best error is at most 20
-    // ulps, at least half of one.
+    // The error is 1e-9 of the torques, and at the worst state at least a hundredth of that of the scale of their terms. The best error is
+    // between half an ulp and 20 ulps.
     assert!((1e-11 / 20.0 / f64::EPSILON..=1e-9 / (0.5 * f64::EPSILON)).contains(&value), "{value:e}");
     assert_eq!(reference, "honest");
     let unspoiled = |row: &&Row| ![SPOILED, Quantity::ForwardDynamics].iter().any(|quantity| row.quantity == quantity.name());

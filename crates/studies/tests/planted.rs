@@ -1,7 +1,7 @@
-//! The harness convicts: a relative error of 1e-10 in one number of one body turns the gates red, each time.
+//! Planted errors: a relative error of 1e-10 in one number of one body fails the gates, each time.
 //!
-//! An engine named `double` answers with our own kernels, on a copy of the robot in which one number of one body is off; what it reads back
-//! is what it was told, so that only the answers of its algorithms can reveal it. The whole agreement study runs with the gates of
+//! An engine named `double` answers with our own kernels, on a copy of the robot in which one number of one body is wrong. Its read-back is
+//! the right robot: so only the answers of its algorithms can show the error. The whole agreement study runs with the gates of
 //! `ci/gates.toml`, for every body of several robots and every kind of parameter.
 
 use crate::support;
@@ -12,12 +12,12 @@ use featherbench_results::{Row, Verdict};
 use rayon::prelude::*;
 use support::{Double, beside_native, doubles, gates, red, robot, suite};
 
-/// The error that is planted: four decades above the gates, six below what an eye sees in a plot.
+/// The planted error: four decades above the gates, and too small to see in a plot.
 const PLANTED: f64 = 1e-10;
-/// The axis about which placements are turned: a unit vector along no axis of any robot.
+/// The axis about which placements are rotated: a unit vector along no axis of any robot.
 const SKEW: [f64; 3] = [0.48, 0.6, 0.64];
 
-/// Where the error sits.
+/// The place of the error.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Plant {
     Mass,
@@ -25,15 +25,15 @@ enum Plant {
     Center(usize),
     /// The whole rotational inertia.
     Inertia,
-    /// The joint's axis, turned.
+    /// The joint's axis, rotated.
     Axis,
     /// The screw's translation per angle.
     Pitch,
     /// The rotor inertia of the joint's dofs.
     Armature,
-    /// The joint's place on the parent, farther out.
+    /// The joint's placement on the parent, farther out.
     Translation,
-    /// The joint's frame on the parent, turned.
+    /// The joint's frame on the parent, rotated.
     Rotation,
 }
 
@@ -51,7 +51,7 @@ impl Plant {
         Self::Rotation,
     ];
 
-    /// Whether a body has nothing of this kind that a relative error could change.
+    /// Whether a body has no number of this kind that a relative error could change.
     fn absent(self, body: &BodyDescription) -> bool {
         match self {
             Self::Mass | Self::Inertia | Self::Rotation => false,
@@ -93,7 +93,7 @@ impl Plant {
     }
 }
 
-/// v + θ·u × v: v turned by the planted angle about u, but for the square of the angle, 1e-20.
+/// v + θ·u × v: v rotated by the planted angle about u, except for the square of the angle, 1e-20.
 fn turned(v: [f64; 3], u: [f64; 3]) -> [f64; 3] {
     let w = cross(u, v);
     std::array::from_fn(|k| v[k] + PLANTED * w[k])
@@ -103,21 +103,21 @@ fn cross(u: [f64; 3], v: [f64; 3]) -> [f64; 3] {
     [u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]]
 }
 
-/// Whether nothing can feel the error: the rotational inertia of a body that no joint below it turns, at any state, is multiplied with
-/// angular velocities and accelerations that are exactly zero.
+/// Whether no answer depends on the error. It is so for the rotational inertia of a body without a rotating joint on its path. At any state
+/// it is multiplied by angular velocities and accelerations that are exactly zero.
 fn unfelt(bodies: &[BodyDescription], body: usize, plant: Plant) -> bool {
     let mut path = std::iter::successors(Some(body), |&body| bodies[body].parent);
     plant == Plant::Inertia && path.all(|body| matches!(bodies[body].joint.kind, JointType::Prismatic { .. }))
 }
 
-/// A unit vector across this one.
+/// A unit vector perpendicular to this one.
 fn across(v: [f64; 3]) -> [f64; 3] {
     let w = cross(SKEW, v);
     let length = w.iter().map(|x| x * x).sum::<f64>().sqrt();
     w.map(|x| x / length)
 }
 
-/// Plants every error in every body, and asserts that each is convicted, and innocence acquitted.
+/// Plants every error in every body. Asserts that each one fails, and that the right engine passes.
 #[track_caller]
 fn convicts(spec: &str) {
     let robot = robot(spec);

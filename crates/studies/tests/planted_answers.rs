@@ -1,7 +1,7 @@
-//! The run convicts: one part in 10¹² in any answer of any engine to any question about any robot of the default suite turns it red.
+//! Planted errors in answers: a relative error of 1e-12 in any answer of any engine about any robot of the default suite fails the run.
 //!
-//! The answers are the recorded ones; the error is planted in finished answers and these are judged again by the gates and known deviations of
-//! `ci/`. What escapes is listed by cause, with its number: one more fails.
+//! The answers are the recorded ones. The error is planted in finished answers, and these are judged again by the gates and known
+//! deviations of `ci/`. Errors that are not found are listed by cause, with their number: one more fails the test.
 
 use crate::support;
 
@@ -17,17 +17,17 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use support::gates_folder;
 
-/// The error that is planted.
+/// The planted error.
 const PLANTED: f64 = 1e-12;
 
-/// Why an error is not convicted.
+/// Why an error is not found.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 enum Escape {
     /// No gate judges the answer.
     Unjudged,
-    /// It is known that the engine misses the gate on this robot, in this quantity, by this method, and by more than what is planted.
+    /// The engine is known to miss the gate on this robot, in this quantity, by this method, by more than the planted error.
     Known,
-    /// What is asked for, or M times it, is small beside the terms that are added to form it, and so is the error.
+    /// The answer, or M times it, is small beside the terms that form it, and so is the error.
     Cancelled,
 }
 
@@ -70,22 +70,22 @@ fn recorded(root: &Path) -> PathBuf {
     root.join("datasets/recorded")
 }
 
-/// What is done to the numbers of one state.
+/// A change of the numbers of one state.
 type Spoil = fn(&mut [f64], f64);
 
-/// Every number, off by the same share.
+/// Changes every number by the same relative error.
 fn every_number(values: &mut [f64], error: f64) {
     values.iter_mut().for_each(|value| *value *= 1.0 + error);
 }
 
-/// The largest number alone.
+/// Changes the largest number alone.
 fn largest_number(values: &mut [f64], error: f64) {
     if let Some(value) = values.iter_mut().max_by(|a, b| a.abs().total_cmp(&b.abs())) {
         *value *= 1.0 + error;
     }
 }
 
-/// What became of the plants in one robot's answers.
+/// The results of the planted errors in one robot's answers.
 #[derive(Default)]
 struct Trials {
     /// The number of planted answers.
@@ -93,7 +93,7 @@ struct Trials {
     escaped: Vec<(Escape, String)>,
 }
 
-/// A study's cells about one robot, answered.
+/// A study's cells about one robot, with their outcomes.
 fn answered(default: &Default, context: &Context) -> Vec<Finished> {
     let folder = tempfile::tempdir().unwrap();
     let store = OutcomeStore::open(folder.path()).unwrap();
@@ -102,13 +102,13 @@ fn answered(default: &Default, context: &Context) -> Vec<Finished> {
     evaluate(&Agreement, context, cells, &store, &Silent).unwrap()
 }
 
-/// Plants an error in every answer about one robot, and looks at what is red.
+/// Plants an error in every answer about one robot, and looks at the rows that fail.
 fn trials(default: &Default, robot: &Robot, spoil: Spoil, error: f64) -> Trials {
     let context =
         Context { robots: std::slice::from_ref(robot), engines: &default.engines, gates: &default.gates, seed: default.suite.seed };
     let finished = answered(default, &context);
-    // Everything is compared with the first answer of our own kernels, and each answer by itself: so the references are spoiled together
-    // in one trial, and all the others in another one.
+    // Everything is compared with the first answer of our own kernels, and each answer is judged alone. So the references are changed
+    // together in one trial, and all other answers in another.
     let mut references: BTreeSet<usize> = BTreeSet::new();
     let mut seen: BTreeSet<&str> = BTreeSet::new();
     for (index, (cell, _)) in finished.iter().enumerate() {
@@ -157,7 +157,7 @@ fn trials(default: &Default, robot: &Robot, spoil: Spoil, error: f64) -> Trials 
     trials
 }
 
-/// Plants an error in every answer about every robot, and counts what escapes by cause.
+/// Plants an error in every answer about every robot, and counts by cause what is not found.
 fn escapes(spoil: Spoil, error: f64) -> (usize, BTreeMap<Escape, Vec<String>>) {
     let default = Default::open();
     let all: Vec<Trials> = default.robots.par_iter().map(|robot| trials(&default, robot, spoil, error)).collect();
@@ -168,7 +168,7 @@ fn escapes(spoil: Spoil, error: f64) -> (usize, BTreeMap<Escape, Vec<String>>) {
     (all.iter().map(|trials| trials.planted).sum(), escaped)
 }
 
-/// Prints what escapes, and asserts that no more does than is listed by cause and quantity.
+/// Prints the errors that are not found, and asserts that they are those listed by cause and quantity.
 #[track_caller]
 fn assert_escapes(spoil: Spoil, error: f64, listed: &[(Escape, &str, usize)]) {
     let (planted, escaped) = escapes(spoil, error);
@@ -188,8 +188,8 @@ fn assert_escapes(spoil: Spoil, error: f64, listed: &[(Escape, &str, usize)]) {
     }
 }
 
-/// What is known to be off by more than is planted: kinetic energies without armature, Pinocchio's inverse of M and WORLD convention, and the
-/// largest of MuJoCo's losses.
+/// The answers that are known to have a larger error than the planted one: kinetic energies without armature, Pinocchio's inverse of M and
+/// WORLD convention, and the largest of MuJoCo's errors.
 const KNOWN: [(Escape, &str, usize); 5] = [
     (Escape::Known, "fd", 13),
     (Escape::Known, "mass_matrix", 1),
@@ -198,8 +198,8 @@ const KNOWN: [(Escape, &str, usize); 5] = [
     (Escape::Known, "kinetic_energy", 2),
 ];
 
-/// All accelerations of chain-planar-100 together, M times which is small beside its terms, by nine methods; and the potential energy of star-30,
-/// whose centre of mass lies near the origin.
+/// All accelerations of chain-planar-100 together, by nine methods: M times them is small beside its terms. And the potential energy of
+/// star-30, whose centre of mass is near the origin.
 #[test]
 fn one_part_in_a_million_million_of_every_number() {
     let cancelled = [(Escape::Cancelled, "fd", 9), (Escape::Cancelled, "potential_energy", 4)];
@@ -213,7 +213,7 @@ fn one_part_in_a_million_million_of_the_largest_number() {
     assert_escapes(largest_number, PLANTED, &[&KNOWN[..], &cancelled].concat());
 }
 
-/// Kinetic energies without armature are off by more than that, and so is the inverse of chain-planar-50.
+/// Kinetic energies without armature have a larger error than that, and so has the inverse of chain-planar-50.
 #[test]
 fn one_part_in_a_thousand_million_of_every_number() {
     assert_escapes(every_number, 1e-9, &[(Escape::Known, "kinetic_energy", 2), (Escape::Known, "fd", 1)]);

@@ -1,6 +1,6 @@
-//! Two readings of one robot that differ in one planted place: the place is named, with its field, and nothing else is.
+//! Two import results of one robot with one planted difference: its place and its field are named, and nothing else is.
 //!
-//! Four hundred plants, drawn by seed over ten committed robots, as an engine's parser might have changed them.
+//! Four hundred differences, drawn by seed over ten committed robots, as an engine's parser might cause them.
 
 use featherbench_formats::neutral;
 use featherbench_model::{BodyDescription, Description, JointType, Placement, Random};
@@ -10,7 +10,7 @@ use std::path::Path;
 
 const ROBOTS: [&str; 10] =
     ["panda", "hyq", "g1", "g1_with_hands", "baxter", "centauro", "allegro_right", "simple_humanoid", "anymal_c", "xarm7"];
-/// Plants in all: forty on each robot.
+/// Planted differences: forty on each robot.
 const PLANTS: u64 = 400;
 
 fn robot(name: &str) -> Description {
@@ -18,7 +18,7 @@ fn robot(name: &str) -> Description {
     neutral::read(path).unwrap().canonical().unwrap()
 }
 
-/// What a parser may do to a robot.
+/// An edit by a parser.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Plant {
     Mass,
@@ -59,7 +59,7 @@ fn asymmetric(rotation: [f64; 9]) -> bool {
     [(1, 3), (2, 6), (5, 7)].into_iter().any(|(i, j)| (rotation[i] - rotation[j]).abs() > 1e-3)
 }
 
-/// What must be found: the body and field, and the cause where numbers alone tell it.
+/// What must be found: the body and field, and the cause if numbers alone determine it.
 type Expected = (String, Field, Option<Cause>);
 
 fn rotation(random: &mut Random) -> Mat3<f64> {
@@ -67,7 +67,7 @@ fn rotation(random: &mut Random) -> Mat3<f64> {
     Transform::axis_rotation(Vec3::from_array(random.direction()), angle.sin(), angle.cos())
 }
 
-/// Plants into some body that has what it takes.
+/// Plants into a body that has the necessary property.
 fn sow(description: &mut Description, plant: Plant, random: &mut Random) -> Expected {
     if plant == Plant::Order {
         return reorder(description, random);
@@ -89,7 +89,7 @@ fn sow(description: &mut Description, plant: Plant, random: &mut Random) -> Expe
     };
     let candidates: Vec<usize> = (0..description.bodies.len()).filter(|&i| fits(&description.bodies[i])).collect();
     if candidates.is_empty() {
-        // Some robots have isotropic inertias alone: something else is planted.
+        // Some robots have only isotropic inertias: another difference is planted.
         return sow(description, Plant::Moved, random);
     }
     let body = &mut description.bodies[candidates[random.below(candidates.len())]];
@@ -155,7 +155,7 @@ fn sow(description: &mut Description, plant: Plant, random: &mut Random) -> Expe
     }
 }
 
-/// Two siblings with everything that hangs on them change places.
+/// Exchanges two siblings with everything that they support.
 fn reorder(description: &mut Description, random: &mut Random) -> Expected {
     let bodies = &description.bodies;
     let families: Vec<Vec<usize>> = (0..=bodies.len())
@@ -163,12 +163,12 @@ fn reorder(description: &mut Description, random: &mut Random) -> Expected {
         .filter(|children: &Vec<usize>| children.len() > 1)
         .collect();
     if families.is_empty() {
-        // A chain has one order: something else is planted.
+        // A chain has one order: another difference is planted.
         return sow(description, Plant::Moved, random);
     }
     let children = &families[random.below(families.len())];
     let first = random.below(children.len() - 1);
-    // The description's own order of siblings is theirs: put the later one first.
+    // The description's order of siblings is theirs: the later one is put first.
     let (a, b) = (children[first], children[first + 1]);
     let mut order: Vec<usize> = (0..bodies.len()).collect();
     order.swap(a, b);
@@ -181,7 +181,7 @@ fn reorder(description: &mut Description, random: &mut Random) -> Expected {
     (String::new(), Field::DofOrder, Some(Cause::Order))
 }
 
-/// Everything but limits, which no plant changes.
+/// All fields but limits, which no planted difference changes.
 fn found(ours: &Description, theirs: &Description) -> Vec<Difference> {
     Comparison::of(ours, theirs, &[], &[]).differences().cloned().collect()
 }
@@ -206,7 +206,7 @@ fn each_plant_is_named_and_nothing_else_is() {
     assert!(missed.is_empty(), "{} of {PLANTS} are not named:\n{}", missed.len(), missed.join("\n"));
 }
 
-/// The robot written in other frames: each turned, slid along the axis of a turning joint or anywhere on a sliding one.
+/// The robot written in other frames: each rotated, and moved along the axis of a rotating joint or anywhere on a sliding one.
 fn regauged(description: &Description, random: &mut Random) -> Description {
     let mut result = description.clone();
     let mut gauges: Vec<Transform<f64>> = Vec::new();
@@ -235,7 +235,7 @@ fn frames_that_move_along_are_no_difference() {
         let ours = robot(name);
         let mut random = Random::new(7, k as u64);
         let theirs = regauged(&ours, &mut random);
-        // Every frame is a product of all before it: rounding grows with the depth, and a difference is what no rounding is.
+        // Every frame is a product of all frames before it: rounding grows with the depth. A difference is larger than rounding.
         let large: Vec<Difference> = found(&ours, &theirs).into_iter().filter(|difference| difference.size > 1e-12).collect();
         assert!(large.is_empty(), "{name}: {large:#?}");
     }

@@ -1,5 +1,5 @@
-//! Engines that do not answer the same question alike: noise of a few units in the last place, a memory of what was asked before, an answer
-//! that comes only once. Each is a row that fails, with its size; honest engines pass, and recordings are not asked.
+//! Engines whose answers to the same question differ: by noise of a few units in the last place, by a memory of earlier questions, or
+//! because only the first answer exists. Each has a row that fails, with its size. Right engines pass, and recordings are not asked.
 
 use featherbench_bench::run::{Silent, compare, evaluate, plan};
 use featherbench_bench::{Context, Engine, Evaluation, Gates, Identity, NoAnswer, OutcomeStore, Quantity, Robot};
@@ -12,15 +12,15 @@ use std::collections::BTreeSet;
 use std::ops::Range;
 use std::sync::atomic::{AtomicU64, Ordering};
 
-/// What an engine does wrong; it counts its answers to the quantity that it is wrong about.
+/// The fault of an engine; the engine counts its answers to the quantity that it is wrong about.
 #[derive(Clone, Copy, PartialEq)]
 enum Fault {
     Honest,
-    /// Every answer is multiplied by 1 + k·2ε, k being their count.
+    /// Every answer is multiplied by 1 + k·2ε, where k is their count.
     Noise,
     /// The sign of a zero depends on the count.
     SignOfZero,
-    /// Only the first answer about a robot is one.
+    /// Only the first question about a robot has an answer.
     Once,
     /// It has no robot.
     NoRobot,
@@ -123,7 +123,7 @@ fn an_honest_engine_passes_for_each_quantity_that_it_offers() {
     let rows = rows_of(Fault::Honest, EngineSource::Live, "a", 1);
     assert!(red(&rows).is_empty(), "{rows:#?}");
     let asked: BTreeSet<&str> = rows.iter().map(|row| row.params.as_str()).collect();
-    // The probe stands in for M of big robots only, and there is none.
+    // The probe replaces M on big robots only, and there is none.
     assert_eq!((rows.len(), asked.len()), (14, 14));
     assert!(rows.iter().all(|row| row.relation == Some(Relation::Eq) && row.bound == Some(0.0) && row.quantity == "repeatability"));
 }
@@ -165,7 +165,7 @@ fn who_has_no_answer_at_all_has_no_row_here() {
     assert!(!rows_of(Fault::Honest, EngineSource::Own, "a", 1).is_empty(), "our own kernels are asked");
 }
 
-/// Other keys and seeds ask about other cells, the same ones about the same.
+/// Other keys and seeds choose other cells, the same ones the same cells.
 #[test]
 fn the_draw_is_by_a_counter_and_not_always_the_same() {
     let drawn = |key: &str, seed| {

@@ -1,4 +1,4 @@
-//! Known deviations that are reproduced: one that is gone, has grown, or cannot be evaluated must turn the run red.
+//! Known deviations that are reproduced: one that no longer exists, has grown, or cannot be evaluated must fail the run.
 
 use crate::support;
 

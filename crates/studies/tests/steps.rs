@@ -1,4 +1,4 @@
-//! The study of small steps on an engine of our own that is implicit, has an energy guard, and drifts in the first order.
+//! The study of small steps on a test engine that is implicit, has an energy guard, and whose energy drifts in the first order.
 
 use featherbench_bench::{Engine, Evaluation, Identity, NoAnswer, Quantity, Robot, Stepper};
 use featherbench_dynamics::{energy, forward_dynamics};
@@ -11,9 +11,9 @@ use support::{gates, robot, whole};
 
 use crate::support;
 
-/// dt·‖v‖ from which on the engine looks whether its implicit term adds energy.
+/// The value of dt·‖v‖ from which the engine tests whether its implicit term adds energy.
 const GUARD: f64 = 1e-3;
-/// dt·‖v‖ from which on it does, and the step is explicit.
+/// The value of dt·‖v‖ from which it does, and the step is explicit.
 const EXPLICIT: f64 = 0.3;
 
 /// An engine that only steps.
@@ -52,7 +52,7 @@ impl Stepper for Implicit {
         vec!["step".into(), "step_default".into()]
     }
 
-    /// The true acceleration, smaller by its dt·‖v‖-th part if the step is implicit; with damping by a tenth of it as well.
+    /// The true acceleration a times 1 − dt·‖v‖ − d. The term dt·‖v‖ is zero if the step is explicit; d is 0.1 with damping, else zero.
     fn step_acceleration(&self, robot: &Robot, method: &str, states: &StateBatch, k: usize, dt: f64) -> Result<Vec<f64>, NoAnswer> {
         let exact = forward_dynamics(&robot.model, states.q(k), states.v(k), states.tau(k)).unwrap();
         let first_order = dt * speed(states.v(k));
@@ -101,7 +101,7 @@ fn each_step_names_its_regime() {
             assert_eq!(row.verdict, Verdict::Info);
         }
         assert!(explicit > 0 && implicit_beyond > 0, "{spec}: {explicit} {implicit_beyond}");
-        // With damping the acceleration has another limit, and its error no regime.
+        // With damping the acceleration has another limit, and its error has no regime.
         assert!(steps("step_default").iter().all(|row| params(row).1.is_none() && row.reason.is_empty()));
         assert!(rows.iter().filter(|row| row.metric == "energy_drift").all(|row| params(row).1.is_none()));
         for quantity in ["fd", "kinetic_energy"] {

@@ -1,4 +1,4 @@
-//! The timing study as a whole: its cells, what is checked before a time counts, what does not count and why. Nothing here depends on a time.
+//! The timing study as a whole: its cells, the checks before a time counts, and why some do not count. Nothing here depends on a time.
 
 use featherbench_bench::run::{Silent, compare, evaluate, plan};
 use featherbench_bench::{Cell, Context, Engine, Outcome, OutcomeStore, Quantity, Robot, Study};
@@ -15,7 +15,7 @@ fn study() -> Timing {
     Timing { states: 20, seconds: 0.0, kernels, peers: vec!["double".into(), "absent".into()] }
 }
 
-/// The rows of a robot timed beside a double.
+/// The rows of a robot timed with a double.
 fn rows(double: Double) -> Vec<Row> {
     rows_of(&study(), double)
 }
@@ -163,7 +163,7 @@ fn estimates_are_flagged_valid_or_not_and_tell_what_was_subtracted() {
     assert!(of(&rows, "double", "fd", "worst_error").iter().all(|row| row.verdict == Verdict::Pass && row.reason.is_empty()));
 }
 
-/// A finished study whose experiments are rewritten before they are compared.
+/// A finished study whose samples are rewritten before they are compared.
 fn rewritten(rewrite: impl Fn(&mut Vec<f64>)) -> Vec<Row> {
     altered(|cell, values| {
         if cell.params["what"] == "experiment" {
@@ -196,7 +196,7 @@ fn altered(alter: impl Fn(&mut Cell, &mut Vec<f64>)) -> Vec<Row> {
     compare(&study(), &context, finished)
 }
 
-/// The samples of an experiment stand behind the number of candidates and their calls, candidate by candidate.
+/// The samples of an experiment are after the number of candidates and their calls, candidate by candidate.
 fn fill(values: &mut [f64], ns: impl Fn(usize, usize) -> f64) {
     let candidates = values[0] as usize;
     let rounds = (values.len() - 1 - candidates) / candidates;
@@ -210,14 +210,14 @@ fn a_control_that_is_not_one_costs_the_times() {
     let quiet = rewritten(|values| fill(values, |_, round| 100.0 + (round % 3) as f64));
     assert!(quiet.iter().all(|row| row.reason.is_empty()));
     assert!(quiet.iter().filter(|row| row.metric == "control").all(|row| row.value == Some(1.0)));
-    // The second copy, which stands behind the first, is slower by three percent.
+    // The A/A replicate, which is after the first copy, is slower by three percent.
     let noisy = rewritten(|values| fill(values, |candidate, round| if candidate == 1 { 103.0 } else { 100.0 } + (round % 3) as f64));
     let times: Vec<_> = noisy.iter().filter(|row| row.metric == "ns_per_call").collect();
     assert!(!times.is_empty() && times.iter().all(|row| !row.valid && row.value.is_some()));
     assert!(times[0].reason.contains("4 of 4 A/A controls"), "{}", times[0].reason);
 }
 
-/// A study on a machine without noise, but for what is done to the experiments of some quantity and cache regime.
+/// A study on a machine without noise, except for the changes to the experiments of some quantity and cache regime.
 fn quiet_but(spoil: impl Fn(&mut Cell, &mut Vec<f64>) -> bool) -> [Vec<Row>; 2] {
     let spoilt = std::cell::RefCell::new(Vec::new());
     let rows = altered(|cell, values| {
@@ -234,14 +234,14 @@ fn quiet_but(spoil: impl Fn(&mut Cell, &mut Vec<f64>) -> bool) -> [Vec<Row>; 2] 
     [spoilt, others]
 }
 
-/// Everything but the rows of the control itself.
+/// All rows but that of the A/A ratio.
 fn times(rows: &[Row]) -> Vec<&Row> {
     let times: Vec<_> = rows.iter().filter(|row| row.metric != "control").collect();
     assert!(!times.is_empty());
     times
 }
 
-/// Whether an experiment is the one on one state of inverse dynamics.
+/// Whether it is the experiment of inverse dynamics at one state.
 fn hot_id(cell: &Cell) -> bool {
     cell.quantity == "id" && cell.params["cache"] == "hot"
 }
@@ -289,7 +289,7 @@ fn two_bad_controls_of_four_cost_the_robot() {
     assert_eq!([control(&spoilt, false), control(&spoilt, true), control(&others, false), control(&others, true)], [2, 0, 0, 2]);
 }
 
-/// Who has no control, or lost it, knows nothing about the noise.
+/// Without an A/A ratio nothing is known about the noise.
 #[test]
 fn without_a_control_no_time_counts() {
     let lost_copy = |cell: &mut Cell, values: &mut Vec<f64>| {
@@ -328,7 +328,7 @@ fn without_a_control_no_time_counts() {
     assert!(!times.is_empty() && times.iter().all(|row| !row.valid && row.reason.starts_with("4 of 4 A/A controls")));
 }
 
-/// A peak that is none has no word in what a kernel's limit is.
+/// A peak that is not valid does not count for a kernel's limit.
 #[test]
 fn a_peak_below_what_single_doubles_make_does_not_count() {
     let machine = |peak: f64| {
@@ -358,7 +358,7 @@ fn a_peak_below_what_single_doubles_make_does_not_count() {
 fn one_that_stops_answering_is_an_error() {
     let rows = rewritten(|values| *values.last_mut().unwrap() = f64::NAN);
     let errors: Vec<_> = rows.iter().filter(|row| row.verdict == Verdict::Error).collect();
-    // The last candidate of forward dynamics is ltdl, the last of inverse dynamics the control: without it nothing there counts.
+    // The last candidate of forward dynamics is ltdl, the last of inverse dynamics the A/A replicate: without it no time there counts.
     assert_eq!(errors.len(), 4);
     assert!(errors.iter().all(|row| row.reason.contains("stopped answering")));
     assert_eq!(errors.iter().filter(|row| row.method == "ltdl" && row.metric == "ns_per_call").count(), 2);

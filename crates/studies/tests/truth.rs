@@ -1,4 +1,4 @@
-//! The harness convicts by truth: who errs is named, whatever the majority says, and a reference that errs is suspected itself.
+//! The truth names the engine that is wrong, whatever the majority says; and a wrong reference is itself suspected.
 
 use crate::support;
 
@@ -14,7 +14,7 @@ fn convicted(records: &[Row]) -> BTreeSet<&str> {
     records.iter().filter(|row| row.verdict == Verdict::Fail).map(|row| row.engine.as_str()).collect()
 }
 
-/// Two engines that share a mistake, an honest one, and our kernels.
+/// Two engines that share a mistake, a right one, and our kernels.
 fn records_of_a_wrong_majority(robot: &Robot, twist: support::Twist) -> Vec<Row> {
     let wrong = |name: &str| Box::new(Double::twisting(robot, twist).named(name)) as Box<dyn Engine>;
     let engines = [Box::new(Featherbench::new()) as Box<dyn Engine>, wrong("a"), wrong("b"), Box::new(Double::of(robot).named("c"))];
@@ -37,7 +37,7 @@ fn a_wrong_majority_is_convicted_and_the_honest_minority_is_not() {
         assert_eq!(convicted(&records_of_a_wrong_majority(&robot, |answer| scaled(answer, Quantity::InverseDynamics))), guilty, "{spec}");
         assert_eq!(convicted(&records_of_a_wrong_majority(&robot, |answer| scaled(answer, Quantity::MassMatrix))), guilty, "{spec}");
     }
-    // Forward dynamics, where the clean error is far below 1e-12: the bound is sharp there.
+    // Forward dynamics, where the error without the mistake is far below 1e-12: the bound is sharp there.
     for spec in ["joints:kind=common,base=fixed,shape=single", "joints:kind=common,base=free,shape=single", "chain:n=2", "star:n=10"] {
         let robot = robot(spec);
         assert_eq!(convicted(&records_of_a_wrong_majority(&robot, |answer| scaled(answer, Quantity::ForwardDynamics))), guilty, "{spec}");
@@ -62,7 +62,7 @@ fn one_wrong_entry_of_m_or_of_the_torques_is_enough() {
 #[test]
 fn engines_that_stop_at_one_error_make_the_reference_the_suspect() {
     let robot = robot("chain:n=10,layout=spatial");
-    // To engines that all agree on another mass, the truth looks as if it ended at 1e-9.
+    // If all engines agree on another mass, the truth seems to be limited to 1e-9.
     let other = |name: &str| {
         let heavier = Double::altered(&robot, |description| description.bodies[4].mass *= 1.0 + 1e-9);
         Box::new(heavier.named(name)) as Box<dyn Engine>

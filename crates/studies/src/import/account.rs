@@ -1,8 +1,9 @@
-//! Accounts of mass properties: what a parser did to the links of a body, as a hypothesis that predicts the body's numbers.
+//! Accounts of mass properties: a parser's edit of the links of a body, as a hypothesis that predicts the body's numbers.
 //!
-//! A hypothesis is a rule for a link: what it becomes, if anything. The rule is applied to the links that the body is made of, they are put
-//! together again, and the result is held against the body that the engine holds. A cause is named only where mass, centre of mass and inertia
-//! all agree within the rounding of the fields; else field by field, where several things happened to one body; else there is no account.
+//! A hypothesis is a rule for a link: the link after the edit, if the rule applies. The rule is applied to the links of the body, these are
+//! merged again, and the result is compared with the engine's body. A cause is named if mass, centre of mass and inertia all agree within
+//! the rounding of the fields. If not, each field is tried alone, as several edits may have changed one body. Otherwise there is no
+//! account.
 
 use super::fields::{self, ROUNDING, differs};
 use super::{Cause, Field};
@@ -12,18 +13,19 @@ use featherbench_spatial::{Mat3, RigidBodyInertia, Sym3, Transform, Vec3};
 use nalgebra::{Matrix3, SymmetricEigen};
 use std::f64::consts::PI;
 
-/// Rounding of a prediction: its numbers went through a few more operations than a reading, each with its factor.
+/// Rounding of a prediction. Its numbers come from a few more operations than an import result.
 pub(super) const TESTED: f64 = 4.0 * ROUNDING;
 /// The fields that a hypothesis about links predicts.
 pub(super) const OF_MASS: [Field; 3] = [Field::Mass, Field::Com, Field::Inertia];
-/// MuJoCo's bounds of mass and inertia, where its compiler refuses a file without (`BOUND` in `oracles/featherbench_oracles/mujoco/reading.py`).
+/// MuJoCo's bounds of mass and inertia, with which its compiler accepts a file that it refuses without (`BOUND` in
+/// `oracles/featherbench_oracles/mujoco/reading.py`).
 const BOUND: f64 = 1e-6;
-/// Factors that a wrong unit leaves: lengths or masses by a thousand, areas by its square.
+/// The factors of a wrong unit: a thousand for lengths or masses, its square for areas.
 pub(super) const UNITS: [f64; 4] = [1e3, 1e-3, 1e6, 1e-6];
-/// Bodies of more links are not tried link by link: the time grows with the square.
+/// Bodies with more links are not tried link by link: the time grows with the square.
 const MOST_LINKS: usize = 200;
 
-/// Why a body has the numbers that it has, and the links that make the difference.
+/// Why a body has its numbers, and the links that make the difference.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Account {
     pub cause: Cause,
@@ -36,25 +38,25 @@ struct Part {
     place: Transform<f64>,
     given: Option<FileInertial>,
     solids: Option<FileInertial>,
-    /// What the engine says to hold of it, and the word for why.
+    /// The numbers that the engine reports for it, and the cause that it reports.
     told: Option<(Cause, FileInertial)>,
 }
 
-/// What becomes of a link.
+/// The edit of a link.
 type Rule = Box<dyn Fn(&Part) -> Option<(Cause, FileInertial)>>;
 
-/// A body of ours, taken apart into its links as far as they are known.
+/// A body of ours, split into its links as far as they are known.
 pub(super) struct Parts<'a> {
     body: &'a BodyDescription,
     parts: Vec<Part>,
-    /// What is not known link by link.
+    /// The part of it that is not known link by link.
     rest: RigidBodyInertia<f64>,
     rounding: f64,
     reach: f64,
 }
 
 impl<'a> Parts<'a> {
-    /// The links of body `i`: those that the file names, else those that the parser's notes give the file's numbers of, else the body itself.
+    /// The links of body `i`: those that the file names; or those whose numbers in the file the parser's notes give; or the body itself.
     pub fn new(ours: &'a Description, i: usize, links: &[FileLink], notes: &[&ImportNote], reach: f64) -> Self {
         let body = &ours.bodies[i];
         let itself = std::iter::once((body.name.as_str(), Transform::identity()));
@@ -91,7 +93,7 @@ impl<'a> Parts<'a> {
         Self { body, parts, rest: own + negative(sum), rounding, reach }
     }
 
-    /// The hypothesis that predicts these fields of theirs.
+    /// The hypothesis that predicts these fields of the engine's body.
     pub fn account(&self, theirs: &BodyDescription, fields: &[Field]) -> Option<Account> {
         rules().into_iter().find_map(|(each, rule)| {
             let mut choices: Vec<Vec<usize>> = vec![(0..self.parts.len()).collect()];
@@ -119,7 +121,8 @@ impl<'a> Parts<'a> {
         }
         let predicted = self.merged(sum);
         let agrees = |field: &Field| {
-            // A centre of no mass is nowhere: no reading of it differs (MuJoCo puts it where the body stands in its parent), and it predicts nothing.
+            // A body without mass has no centre of mass. So no import result of it differs (MuJoCo puts it where the body is in its
+            // parent).
             if *field == Field::Com && self.body.mass == 0.0 {
                 return true;
             }
@@ -138,7 +141,7 @@ impl<'a> Parts<'a> {
         body
     }
 
-    /// The links that make the difference, the largest first; it gives the whole its name.
+    /// The links that make the difference, the largest first; its cause is that of the whole.
     fn told(&self, changes: Vec<(usize, Cause, FileInertial)>) -> Account {
         let total = self.parts.iter().filter_map(|part| part.given).map(|given| given.mass).sum::<f64>().max(f64::MIN_POSITIVE);
         let scale = fields::inertia_scale(self.body).max(f64::MIN_POSITIVE);
@@ -182,7 +185,7 @@ fn negative(x: RigidBodyInertia<f64>) -> RigidBodyInertia<f64> {
     RigidBodyInertia { mass: -x.mass, first_moment: x.first_moment * -1.0, rotational }
 }
 
-/// What became of a link, in words.
+/// The edit of a link, in words.
 fn change(name: &str, from: &FileInertial, to: &FileInertial) -> String {
     let digits = |x: f64| fields::digits(x, 0.0);
     if from.mass != to.mass {
@@ -196,7 +199,7 @@ fn change(name: &str, from: &FileInertial, to: &FileInertial) -> String {
     format!("link '{name}': inertia ({}) became ({}) kg·m²", six(from), six(to))
 }
 
-/// The rule behind a cause, in words.
+/// The rule of a cause, in words.
 fn rule_of(cause: Cause) -> &'static str {
     match cause {
         Cause::Geometry => "its collision geometry at 1000 kg/m³",
@@ -216,7 +219,7 @@ fn rule_of(cause: Cause) -> &'static str {
     }
 }
 
-/// The hypotheses in the order in which they are tried, and whether one may hold for a single link of several.
+/// The hypotheses in the order in which they are tried, and whether one may apply to a single link of several.
 fn rules() -> Vec<(bool, Rule)> {
     let identity = NOTHING.rotation;
     let geometry = |part: &Part| part.given.is_none().then_some(part.solids?).map(|solids| (Cause::Geometry, solids));
@@ -229,13 +232,13 @@ fn rules() -> Vec<(bool, Rule)> {
             true,
             Box::new(|part| part.given.is_none().then_some((Cause::DefaultInertia, FileInertial { mass: 1.0, inertia: UNIT, ..NOTHING }))),
         ),
-        // DART leaves an MJCF's inertial and keeps the mass: what it does not compute from geometry is its default.
+        // DART ignores an MJCF's inertial except the mass: it computes the rest from geometry, or takes its default.
         (true, of_given(Cause::DefaultInertia, |x| FileInertial { mass: x.mass, inertia: UNIT, ..NOTHING })),
         (true, Box::new(|part| repaired(part, false))),
         (false, Box::new(move |part| geometry(part).or_else(|| repaired(part, false)))),
         (false, Box::new(|part| repaired(part, true))),
         (false, Box::new(move |part| geometry(part).or_else(|| repaired(part, true)))),
-        // Meshes are told by the engine: their volume is not known here.
+        // The engine reports the mass properties of meshes: their volume is not known here.
         (false, Box::new(move |part| told(part).filter(|(cause, _)| *cause == Cause::Geometry).or_else(|| repaired(part, true)))),
         (
             false,
@@ -280,7 +283,7 @@ fn rules() -> Vec<(bool, Rule)> {
 /// An inertia of one about every axis.
 const UNIT: [f64; 6] = [1.0, 0.0, 0.0, 1.0, 0.0, 1.0];
 
-/// What MuJoCo's compiler makes of a link: mass and moments raised to its bounds, and equal moments where one exceeds the sum of the others.
+/// A link after MuJoCo's compiler: mass and moments raised to its bounds, and equal moments if one exceeds the sum of the others.
 fn repaired(part: &Part, bounds: bool) -> Option<(Cause, FileInertial)> {
     let given = part.given.unwrap_or(NOTHING);
     let (mut moments, axes) = principal(&given);

@@ -1,9 +1,13 @@
-//! One reading written in the frames of the other.
+//! One import result written in the frames of the other.
 //!
-//! A placement that merely moves the frame of a body, while its axis, inertia and children move along, is no difference: a rotation of the
-//! body's frame, or a slide of it along a revolute axis. So before two readings are compared each body of theirs gets the frame that makes
-//! it most like ours: the frame that it has; or the one that stands, in the zero configuration, where ours stands; or the one that puts one
-//! of its children where ours has it. A frame of its own is taken only where it leaves fewer differences.
+//! A placement that only moves the frame of a body, together with its axis, inertia and children, is not a difference. Examples are a
+//! rotation of the body's frame, and a slide of it along a revolute axis. So before two import results are compared, each body of theirs
+//! gets the frame that makes it most like ours. There are three candidates:
+//! - its own frame;
+//! - the frame that coincides with ours in the zero configuration;
+//! - the frame in which one of its children is where ours has it.
+//!
+//! Another frame than its own is used only if it leaves fewer differences.
 
 use super::fields::{ROUNDING, differs, rounding};
 use super::{Field, fields};
@@ -36,7 +40,7 @@ struct Aligner<'a> {
 }
 
 impl Aligner<'_> {
-    /// What takes their parent's frame to ours.
+    /// The transform from their parent's frame to ours.
     fn above(&self, i: usize, j: usize, gauges: &[Transform<f64>]) -> Transform<f64> {
         match self.ours.bodies[i].parent {
             Some(parent) if self.partner[parent].is_some() && self.partner[parent] == self.theirs.bodies[j].parent => gauges[parent],
@@ -44,7 +48,7 @@ impl Aligner<'_> {
         }
     }
 
-    /// The frame that leaves the fewest differences, the body's own where nothing is won.
+    /// The frame with the fewest differences; the body's own if no other has fewer.
     fn gauge(&self, i: usize, j: usize, above: &Transform<f64>) -> Transform<f64> {
         let children = || self.children(i, j).map(|(c, d)| place(&self.ours.bodies[c]).compose(&place(&self.theirs.bodies[d]).inverse()));
         let mut best = (self.cost(i, j, above, &Transform::identity()), Transform::identity());
@@ -60,14 +64,14 @@ impl Aligner<'_> {
         best.1
     }
 
-    /// The frame that stands where ours stands in the zero configuration.
+    /// The frame that coincides with ours in the zero configuration.
     fn inherited(&self, i: usize, j: usize, above: &Transform<f64>) -> Transform<f64> {
         let gauge = place(&self.ours.bodies[i]).inverse().compose(&above.compose(&place(&self.theirs.bodies[j])));
-        // Rounding is no other frame: it would grow from body to body.
+        // Rounding is not another frame: it would grow from body to body.
         if is_identity(&gauge, self.reach) { Transform::identity() } else { gauge }
     }
 
-    /// Differences of the body with this frame, and children that would need some of their own.
+    /// The number of differences of the body with this frame, and of children that would need a frame of their own.
     fn cost(&self, i: usize, j: usize, above: &Transform<f64>, gauge: &Transform<f64>) -> usize {
         let child = |(c, d): (usize, usize)| {
             let own = self.count(c, d, gauge, &Transform::identity());
@@ -90,7 +94,7 @@ impl Aligner<'_> {
     }
 }
 
-/// Whether another frame on the moved body leaves the meaning of the joint's coordinates.
+/// Whether another frame on the moved body keeps the meaning of the joint's coordinates.
 fn preserves(kind: JointType, gauge: &Transform<f64>, reach: f64) -> bool {
     match kind {
         JointType::Prismatic { .. } => true,

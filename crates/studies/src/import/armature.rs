@@ -1,4 +1,4 @@
-//! Armature on free joints: descriptions do not have it, as engines mean different things by it, so it is compared by what parsers tell.
+//! Armature on free joints. Engines mean different things by it, so descriptions do not have it. The parsers' notes are compared instead.
 
 use super::comparison::Finding;
 use super::fields::{digits, relative};
@@ -8,7 +8,7 @@ use featherbench_bench::ImportNote;
 /// The word of notes about it.
 const FREE_ARMATURE: &str = "free_armature";
 
-/// Where an engine holds another armature on a free joint than the reference: both tell what they took out of their descriptions.
+/// Whether an engine has another armature on a free joint than the reference: the notes of both give what they removed.
 pub(super) fn on_free_joints(reference: &[ImportNote], notes: &[ImportNote]) -> Vec<Finding> {
     let of = |notes: &[ImportNote], joint: &str| -> Vec<f64> {
         let held = notes.iter().find(|note| note.cause == FREE_ARMATURE && note.about.as_deref() == Some(joint));

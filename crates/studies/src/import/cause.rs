@@ -1,5 +1,5 @@
-//! Why two readings of a field differ, where the links of the body do not account for it: hypotheses that predict the field and are tested on
-//! its numbers. What a parser says about itself is shown beside them, and names no cause alone.
+//! Why two import results differ in a field, if the links of the body do not account for it. Hypotheses predict the field and are tested on
+//! its numbers. A parser's own notes are shown beside them, but alone they name no cause.
 
 use super::account::{TESTED, UNITS};
 use super::fields::{distance, from_rpy, inertia_scale, norm, rpy};
@@ -9,13 +9,13 @@ use featherbench_model::BodyDescription;
 use featherbench_spatial::{Mat3, Sym3, Vec3};
 use std::f64::consts::PI;
 
-/// The cause of a difference in a field that the links do not account for, with the parser's own sentence where it has one about it.
+/// The cause of a difference in a field that the links do not account for, with the parser's own note if there is one about it.
 pub(super) fn cause(field: Field, ours: &BodyDescription, theirs: &BodyDescription, notes: &[&ImportNote]) -> (Cause, Option<String>) {
     let said = |code: &str| notes.iter().find(|note| note.cause == code);
     let sentence = |codes: &[&str]| codes.iter().find_map(|code| said(code)).map(|note| note.text.clone());
     let unread = |list: &[f64]| list.iter().all(|&x| x == 0.0);
     match field {
-        // A sentence is shown beside a number that it does not account for, and names no cause.
+        // A note is shown beside a number that it does not account for, and names no cause.
         Field::Mass => (Cause::Number, sentence(&["mass_edited", "from_geometry"])),
         Field::Com => (Cause::Number, sentence(&["com_edited", "mass_edited", "from_geometry"])),
         Field::Inertia => (inertia(ours, theirs), sentence(&["inertia_edited", "mass_edited", "from_geometry"])),
@@ -33,7 +33,7 @@ pub(super) fn cause(field: Field, ours: &BodyDescription, theirs: &BodyDescripti
     }
 }
 
-/// What happened to an inertia whose links are not known one by one: the same principal moments in other axes, or three equal ones.
+/// The cause for an inertia whose links are not known one by one: the same principal moments in other axes, or three equal ones.
 fn inertia(ours: &BodyDescription, theirs: &BodyDescription) -> Cause {
     let scale = inertia_scale(ours).max(inertia_scale(theirs));
     let [a, b] = [ours.inertia, theirs.inertia].map(Sym3::from_array);
@@ -64,7 +64,7 @@ fn placement(ours: &BodyDescription, theirs: &BodyDescription) -> Cause {
         return Cause::Transposed;
     }
     let [x, y] = [rpy(a.rotation), rpy(b.rotation)];
-    // The smaller angles are the numbers of the file, read once as what they are not.
+    // The smaller angles are those of the file, once taken in the wrong unit.
     let degrees = |small: [f64; 3], large: &[f64; 9]| close(&from_rpy(small.map(f64::to_degrees)), large);
     if degrees(x, &b.rotation) || degrees(y, &a.rotation) {
         return Cause::Degrees;
@@ -72,8 +72,8 @@ fn placement(ours: &BodyDescription, theirs: &BodyDescription) -> Cause {
     if in_default_sequence(a.rotation).any(|read| close(&read, &b.rotation)) { Cause::EulerSequence } else { Cause::Number }
 }
 
-/// The rotations that a parser makes of an MJCF's `euler`, where the file's `eulerseq` gave this rotation and the parser takes `xyz`: the angles
-/// in each of the six orders of three axes, about moving axes and about fixed ones.
+/// The rotations that a parser makes of an MJCF's `euler`, if the file's `eulerseq` gave this rotation and the parser takes `xyz`. There is
+/// one for each of the six orders of three axes, about moving axes and about fixed ones.
 fn in_default_sequence(rotation: [f64; 9]) -> impl Iterator<Item = [f64; 9]> {
     let entry = move |i: usize, j: usize| rotation[3 * i + j];
     let orders = [[0, 1, 2], [1, 2, 0], [2, 0, 1], [0, 2, 1], [2, 1, 0], [1, 0, 2]];
@@ -82,7 +82,7 @@ fn in_default_sequence(rotation: [f64; 9]) -> impl Iterator<Item = [f64; 9]> {
         let sign = if (j + 3 - i) % 3 == 1 { 1.0 } else { -1.0 };
         let (a, c) = ((-sign * entry(j, k)).atan2(entry(k, k)), (-sign * entry(i, j)).atan2(entry(i, i)));
         let b = (sign * entry(i, k)).atan2(entry(i, i).hypot(entry(i, j)));
-        // The same rotation by the other three angles.
+        // The same rotation by the other triple of angles.
         let twice = [[a, b, c], [a + PI, PI - b, c + PI]];
         twice.into_iter().flat_map(|[a, b, c]| [[a, b, c], [c, b, a]]).map(from_xyz)
     })

@@ -1,4 +1,4 @@
-//! Two readings of one robot, compared body by body: a pure function of two descriptions and of what the parser says about itself.
+//! Two import results of one robot, compared body by body: a pure function of two descriptions and of the parser's notes.
 
 use super::account::{Account, OF_MASS, Parts};
 use super::align::aligned;
@@ -10,10 +10,10 @@ use featherbench_bench::{FileLink, ImportNote};
 use featherbench_model::{BodyDescription, Description, JointType};
 use std::collections::HashMap;
 
-/// What a comparison finds.
+/// The result of a comparison.
 #[derive(Clone, Debug)]
 pub struct Comparison {
-    /// Every difference: what is missing or added first, then body by body in our order, then what is about the whole robot.
+    /// Every difference: first missing or added bodies, then body by body in our order, then those of the whole robot.
     pub findings: Vec<Finding>,
     /// Our robot without the bodies that theirs does not have as moving bodies.
     pub ours: Description,
@@ -24,12 +24,12 @@ pub struct Comparison {
 pub struct Finding {
     /// The difference.
     pub difference: Difference,
-    /// Our robot where this one field has their value; none where that is another robot altogether.
+    /// Our robot where this one field has their value; `None` if that is not the same robot any more.
     pub alone: Option<Description>,
 }
 
 impl Comparison {
-    /// Compares their reading of a robot with ours. Both must be canonical. `links` is what the file says link by link, as far as that is known.
+    /// Compares their import result of a robot with ours. Both must be canonical. `links` are the file's links, as far as they are known.
     pub fn of(ours: &Description, theirs: &Description, links: &[FileLink], notes: &[ImportNote]) -> Self {
         let (ours, theirs) = (chained(ours), chained(theirs));
         let partner = pairs(&ours, &theirs);
@@ -45,7 +45,7 @@ impl Comparison {
             findings.splice(0..0, gone.iter().map(|&i| missing(&ours.bodies[i], Mass::Kept, notes)));
             return Self { findings, ours };
         };
-        // A body that is gone was merged into its parent, or dropped with its mass: the numbers of the others tell.
+        // A missing body was merged into its parent, or dropped with its mass: the numbers of the other bodies show which.
         let mut best: Option<(usize, Mass, Description, Vec<Finding>)> = None;
         let hypotheses: &[Mass] = if gone.is_empty() { &[Mass::Kept] } else { &[Mass::Kept, Mass::Dropped] };
         for &mass in hypotheses {
@@ -68,14 +68,14 @@ impl Comparison {
     }
 }
 
-/// What became of the mass of a body that no longer moves.
+/// What happened to the mass of a body that no longer moves.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Mass {
     Kept,
     Dropped,
 }
 
-/// The robot with some bodies fixed to their parents, if anything still moves.
+/// The robot with some bodies fixed to their parents, if any body still moves.
 fn without(description: &Description, gone: &[usize], mass: Mass) -> Option<Description> {
     let mut reduced = description.clone();
     for &i in gone {
@@ -119,7 +119,7 @@ fn whole(body: &str, field: Field, ours: String, theirs: String, cause: Cause) -
     }
 }
 
-/// The differences of two robots with the same bodies; `names` leads from ours to theirs.
+/// The differences of two robots with the same bodies; `names` maps our names to theirs.
 fn shared(ours: &Description, theirs: &Description, names: &HashMap<&str, &str>, links: &[FileLink], notes: &[ImportNote]) -> Vec<Finding> {
     let place: HashMap<&str, usize> = theirs.bodies.iter().enumerate().map(|(j, body)| (body.name.as_str(), j)).collect();
     let partner: Vec<Option<usize>> =
@@ -143,7 +143,7 @@ fn shared(ours: &Description, theirs: &Description, names: &HashMap<&str, &str>,
             .map(|field| (field, fields::size(field, body, aligned, reach)))
             .filter(|&(_, size)| differs(size, rounding))
             .collect();
-        // What one thing that happened to the links accounts for as a whole, and else each field alone.
+        // One edit of the links may account for all fields; otherwise each field is explained alone.
         let of_mass = different.iter().any(|(field, _)| OF_MASS.contains(field));
         let parts = of_mass.then(|| Parts::new(ours, i, links, &about, reach));
         let whole = parts.as_ref().and_then(|parts| parts.account(aligned, &OF_MASS));
@@ -172,7 +172,7 @@ fn finding(
     let (cause, account) = account.map_or((untested, None), |account| (account.cause, Some(account.text)));
     let [a, b] = [body, aligned].map(|body| fields::written(field, body, size));
     let difference = Difference { body: body.name.clone(), field, ours: a, theirs: b, size, cause, account, note };
-    // Other coordinates, or none: not this robot with one number changed.
+    // Other coordinates, or none: that is not this robot with one number changed.
     let comparable = field != Field::JointType || body.joint.kind.nv() == aligned.joint.kind.nv();
     let alone = comparable.then(|| {
         let mut alone = ours.clone();
@@ -182,7 +182,7 @@ fn finding(
     Finding { difference, alone }
 }
 
-/// What the parser says about a body: about its link, its joint or the links that are fixed to it, or about the whole file.
+/// The parser's notes about a body: about its link, its joint or the links that are fixed to it, or about the whole file.
 fn about<'a>(ours: &Description, i: usize, theirs: &BodyDescription, notes: &'a [ImportNote]) -> Vec<&'a ImportNote> {
     let body = &ours.bodies[i];
     let fixed = |name: &str| ours.frames.iter().any(|frame| frame.body == Some(i) && frame.name == name);
@@ -207,7 +207,7 @@ fn gravity(ours: &Description, theirs: &Description) -> Option<Finding> {
     })
 }
 
-/// The order of joints, told from the first to the last that stands elsewhere.
+/// A difference in the order of joints, described from the first to the last that is elsewhere.
 fn order(ours: &Description, partner: &[Option<usize>]) -> Option<Finding> {
     let mut sorted: Vec<(usize, usize)> = partner.iter().enumerate().filter_map(|(i, j)| Some(((*j)?, i))).collect();
     let own: Vec<usize> = sorted.iter().map(|&(_, i)| i).collect();
@@ -224,8 +224,8 @@ fn order(ours: &Description, partner: &[Option<usize>]) -> Option<Finding> {
     Some(finding)
 }
 
-/// The degrees of freedom of the bodies that both robots have with the same joint: (first of ours, first of theirs, how many), and the
-/// same of the coordinates.
+/// The degrees of freedom of the bodies that both robots have with the same joint: (first of ours, first of theirs, how many). And the same
+/// of the coordinates.
 pub(super) struct Shared {
     pub dofs: Vec<[usize; 3]>,
     pub coordinates: Vec<[usize; 3]>,

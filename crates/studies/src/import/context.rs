@@ -1,4 +1,4 @@
-//! Causes that one number alone does not show: what happened to the body beside it, to its chain, or to the whole robot.
+//! Causes that need more than one number: an edit of a neighbouring body, of its chain, or of the whole robot.
 
 use super::comparison::Finding;
 use super::fields::{self, ROUNDING};
@@ -6,7 +6,8 @@ use super::{Cause, Difference, Field};
 use featherbench_model::{BodyDescription, Description, JointType, Placement};
 use featherbench_spatial::{Sym3, Transform, Vec3};
 
-/// Names what is left; `written` is their robot in our frames, `theirs` in its own, with the partners of our bodies.
+/// Names causes for the remaining differences; `written` is their robot in our frames, `theirs` in its own, with the partners of our
+/// bodies.
 pub(super) fn explain(
     ours: &Description,
     theirs: (&Description, &[Option<usize>]),
@@ -28,8 +29,8 @@ fn unexplained(findings: &mut [Finding]) -> impl Iterator<Item = &mut Difference
     findings.iter_mut().map(|finding| &mut finding.difference).filter(|difference| difference.cause == Cause::Number)
 }
 
-/// A planar joint whose plane is z, whatever axis the file gives: the link has the joint's own frame. `chained` writes the joint as two slides
-/// and a turn, and our reader leaves a frame where the link is in the plane.
+/// A planar joint whose plane is z, whatever axis the file gives: the link has the joint's own frame. `chained` writes the joint as two
+/// slides and a rotation, and our parser leaves a frame where the link is in the plane.
 fn planar_axis(ours: &Description, (theirs, partner): (&Description, &[Option<usize>]), findings: &mut [Finding], reach: f64) {
     for end in 2..ours.bodies.len() {
         let body = &ours.bodies[end];
@@ -72,7 +73,7 @@ fn planar_axis(ours: &Description, (theirs, partner): (&Description, &[Option<us
     }
 }
 
-/// Whether all masses of the robot are ours times one factor that is not one.
+/// Whether all masses of the robot are ours times one factor other than one.
 fn one_factor(ours: &Description, written: &[Option<BodyDescription>]) -> bool {
     let pairs =
         || ours.bodies.iter().zip(written).filter_map(|(body, theirs)| Some((body, theirs.as_ref()?))).filter(|(body, _)| body.mass > 0.0);
@@ -82,7 +83,7 @@ fn one_factor(ours: &Description, written: &[Option<BodyDescription>]) -> bool {
     pairs().count() > 1 && (factor - 1.0).abs() > 4.0 * ROUNDING && factor > 0.0 && pairs().all(scaled)
 }
 
-/// A floating base whose coordinates are those of another link: of one that is fixed to our root, where the parser drops an empty root.
+/// A floating base whose coordinates are those of another link: one that is fixed to our root, if the parser drops an empty root.
 fn other_root(ours: &Description, written: &[Option<BodyDescription>], findings: &mut [Finding], reach: f64) {
     for (root, theirs) in written.iter().enumerate() {
         let Some(theirs) = theirs.as_ref().filter(|theirs| theirs.joint.kind == JointType::Free) else { continue };
@@ -102,8 +103,8 @@ fn other_root(ours: &Description, written: &[Option<BodyDescription>], findings:
     }
 }
 
-/// The joints of one link are a chain of massless bodies before it. Where the chain as a whole leads to the same place and its parts do not,
-/// the link's pose was put at another joint of it.
+/// The joints of one link are a chain of massless bodies before it. If the whole chain leads to the same place and its parts do not, the
+/// link's pose was put at another joint of the chain.
 fn between_joints(ours: &Description, written: &[Option<BodyDescription>], findings: &mut [Finding], reach: f64) {
     for end in 0..ours.bodies.len() {
         let mut chain = vec![end];

@@ -1,32 +1,32 @@
-//! A difference between two readings of one robot: where, in which field, how large, and why.
+//! A difference between two import results of one robot: its place, its field, its size, and its cause.
 
-/// One difference between our reading of a robot and another one.
+/// One difference between our import result of a robot and another one.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Difference {
-    /// The body, by its name in our reading (in theirs, where we have none); empty for the robot as a whole.
+    /// The body, by its name in our import result (in theirs, if we do not have it); empty for the robot as a whole.
     pub body: String,
-    /// What differs.
+    /// The field.
     pub field: Field,
-    /// The value in our reading, with its unit.
+    /// The value in our import result, with its unit.
     pub ours: String,
     /// The value in theirs.
     pub theirs: String,
-    /// How far they are apart, free of units: relative to the number itself, lengths to the robot's reach, inertias to their trace.
+    /// The distance, free of units: relative to the number itself; lengths relative to the robot's reach, inertias to their trace.
     pub size: f64,
-    /// Why, as far as numbers and the parser's own words tell.
+    /// The cause, as far as numbers and the parser's notes show it.
     pub cause: Cause,
-    /// What happened to which links of the body, where that predicts the numbers of theirs.
+    /// The edit of the body's links, if it predicts their numbers.
     pub account: Option<String>,
-    /// What the parser itself says about this body.
+    /// The parser's own note about this body.
     pub note: Option<String>,
 }
 
-/// What can differ between two readings.
+/// The fields in which two import results can differ.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum Field {
-    /// Whether there is such a moving body at all.
+    /// Whether there is such a moving body.
     Body,
-    /// The body that carries it.
+    /// Its parent body.
     Parent,
     /// The kind of its joint.
     JointType,
@@ -34,7 +34,7 @@ pub enum Field {
     Axis,
     /// The pitch of a helical joint.
     Pitch,
-    /// Where the joint stands on the parent.
+    /// The joint's placement on the parent.
     Placement,
     /// The mass.
     Mass,
@@ -56,25 +56,25 @@ pub enum Field {
     Limits,
 }
 
-/// What a difference in a field means.
+/// The effect of a difference in a field.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Weight {
     /// It changes the mass matrix or the inverse dynamics.
     Dynamics,
-    /// It is carried by the engine and enters its own simulation.
+    /// The engine stores it and uses it in its own simulation.
     Carried,
-    /// The same robot, written down otherwise; or a limit, which enters nothing that is compared.
+    /// The same robot in another form; or a limit, which enters no compared quantity.
     Information,
 }
 
-/// Why two readings differ.
+/// Why two import results differ.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum Cause {
-    /// One reads another number than the other; nothing more is known.
+    /// The numbers differ; nothing more is known.
     Number,
     /// The principal moments are the same: the rotation of the inertial frame was lost.
     InertialRotationLost,
-    /// The principal moments are the same: a rotation of the inertial frame was applied that the other reading lacks.
+    /// The principal moments are the same: a rotation of the inertial frame was applied that the other import result lacks.
     InertialRotationApplied,
     /// The principal moments are the same, about other axes.
     InertiaTurned,
@@ -88,11 +88,11 @@ pub enum Cause {
     Order,
     /// The body became part of its parent.
     Merged,
-    /// The body and its mass are gone.
+    /// The body was dropped with its mass.
     Dropped,
-    /// A body that the other reading does not have.
+    /// A body that the other import result does not have.
     Added,
-    /// Raised to the least mass or inertia that the engine takes.
+    /// Raised to the smallest mass or inertia that the engine accepts.
     Bounds,
     /// Principal moments that violate the triangle inequality were made equal.
     Balanced,
@@ -102,21 +102,21 @@ pub enum Cause {
     MasslessLink,
     /// Every mass has the same factor: the mass of the whole robot was set, or not.
     TotalMass,
-    /// A link with several joints stands between them instead of before them.
+    /// A link with several joints is between them instead of after them.
     BetweenJoints,
     /// The floating base has the frame of another link that is fixed to the root.
     OtherRoot,
     /// Computed from the shape of the body.
     Geometry,
-    /// Replaced by the parser, in its own words.
+    /// Replaced by the parser, as its note says.
     Edited,
-    /// The joint follows another one.
+    /// The joint mimics another one.
     Mimic,
-    /// Not read: the parser knows no such element.
+    /// Not imported: the parser does not know the element.
     Unsupported,
     /// A link without an inertial was given the engine's own: one kilogram and one kg·m² about each axis.
     DefaultInertia,
-    /// The centre of mass with the other sign, or a coordinate of it.
+    /// The centre of mass, or one of its coordinates, with the other sign.
     ComSign,
     /// The products of inertia were left out.
     OffDiagonals,
@@ -131,7 +131,7 @@ pub enum Cause {
 }
 
 impl Field {
-    /// The word for it in records.
+    /// The word for it in rows.
     pub fn name(self) -> &'static str {
         match self {
             Self::Body => "body",
@@ -152,7 +152,7 @@ impl Field {
         }
     }
 
-    /// What a difference in it means.
+    /// The effect of a difference in it.
     pub fn weight(self) -> Weight {
         match self {
             Self::Damping | Self::Friction => Weight::Carried,
@@ -162,20 +162,20 @@ impl Field {
     }
 }
 
-/// What a difference does to the answers, which decides how a comparison ends.
+/// The effect of a difference on the answers, which decides the result of a comparison.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Class {
-    /// The mass matrix or the inverse dynamics change by more than rounding, or there is another robot.
+    /// The mass matrix or the inverse dynamics change by more than rounding, or it is another robot.
     Physics,
-    /// A field that enters them differs, and they do not beyond rounding.
+    /// A field that they depend on differs, but they change by no more than rounding.
     Rounding,
-    /// No quantity here has it: damping, friction, limits, an order.
+    /// No compared quantity depends on it: damping, friction, limits, an order.
     NotRead,
 }
 
 impl Class {
-    /// The class of a difference: `effect` is the larger change of M and inverse dynamics by it alone, where that can be asked, and `bound` what
-    /// rounding may leave there.
+    /// The class of a difference. `effect` is the larger change of M and inverse dynamics by it alone, if that can be computed. `bound` is
+    /// the change that rounding may cause.
     pub fn of(field: Field, effect: Option<f64>, bound: f64) -> Self {
         match (field.weight(), effect) {
             (Weight::Dynamics, Some(effect)) if effect <= bound => Self::Rounding,
@@ -184,7 +184,7 @@ impl Class {
         }
     }
 
-    /// The word for it in records.
+    /// The word for it in rows.
     pub fn name(self) -> &'static str {
         match self {
             Self::Physics => "physics",
@@ -195,7 +195,7 @@ impl Class {
 }
 
 impl Weight {
-    /// The word for it in records.
+    /// The word for it in rows.
     pub fn name(self) -> &'static str {
         match self {
             Self::Dynamics => "dynamics",
@@ -206,7 +206,7 @@ impl Weight {
 }
 
 impl Cause {
-    /// The word for it in records.
+    /// The word for it in rows.
     pub fn name(self) -> &'static str {
         match self {
             Self::Number => "number",

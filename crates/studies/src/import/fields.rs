@@ -1,12 +1,13 @@
-//! How far two readings of one body are apart, field by field, and how each is written.
+//! The distance of two import results of one body, field by field, and the text of each field.
 
 use super::Field;
 use featherbench_bench::measure::worst;
 use featherbench_model::{BodyDescription, Description, JointType};
 use featherbench_spatial::{Mat3, Vec3};
 
-/// What rounding may leave between two honest readings of one link: 16 ε. Parsers turn Euler angles into quaternions and those into
-/// matrices, and diagonalise inertias; each rounds some ten times. What a parser changes is larger by many decades.
+/// The largest distance that rounding may cause between two right import results of one link: 16 ε. Parsers turn Euler angles into
+/// quaternions and those into matrices, and diagonalise inertias; each rounds about ten times. An edit by a parser is larger by many
+/// decades.
 pub(super) const ROUNDING: f64 = 16.0 * f64::EPSILON;
 
 /// The fields of a body, in the order of reports.
@@ -24,13 +25,13 @@ pub(super) const OF_A_BODY: [Field; 11] = [
     Field::Limits,
 ];
 
-/// What rounding may leave of a body: each link that is fixed to it is turned, shifted, added and diagonalised once more.
+/// The rounding of a body: each link that is fixed to it is rotated, shifted, added and diagonalised once more.
 pub(super) fn rounding(description: &Description, body: usize) -> f64 {
     let fixed = description.frames.iter().filter(|frame| frame.body == Some(body)).count();
     (1 + fixed) as f64 * ROUNDING
 }
 
-/// Whether a size is more than rounding. What is not a number differs.
+/// Whether a size is more than rounding. A NaN differs.
 pub(super) fn differs(size: f64, rounding: f64) -> bool {
     size.is_nan() || size > rounding
 }
@@ -47,7 +48,7 @@ pub(super) fn reach(description: &Description) -> f64 {
     longest
 }
 
-/// How far two readings of a body are apart in a field, free of units: at most about two.
+/// The distance of two import results of a body in a field, free of units: at most about two.
 pub(super) fn size(field: Field, ours: &BodyDescription, theirs: &BodyDescription, reach: f64) -> f64 {
     let (a, b) = (&ours.joint, &theirs.joint);
     let same_kind = a.kind.name() == b.kind.name();
@@ -67,7 +68,7 @@ pub(super) fn size(field: Field, ours: &BodyDescription, theirs: &BodyDescriptio
             worst(turned, over(distance(a.placement.translation, b.placement.translation), far))
         }
         Field::Mass => relative(&[ours.mass], &[theirs.mass]),
-        // A centre of no mass is nowhere.
+        // A body without mass has no centre of mass.
         Field::Com if ours.mass == 0.0 || theirs.mass == 0.0 => 0.0,
         Field::Com => over(distance(ours.com, theirs.com), norm(ours.com).max(norm(theirs.com)).max(reach)),
         Field::Inertia => {
@@ -106,7 +107,7 @@ pub(super) fn size(field: Field, ours: &BodyDescription, theirs: &BodyDescriptio
     }
 }
 
-/// Trace of the inertia about the body's origin, where engines hold it.
+/// Trace of the inertia about the body's origin, where engines store it.
 pub(super) fn inertia_scale(body: &BodyDescription) -> f64 {
     let [xx, _, _, yy, _, zz] = body.inertia;
     xx.abs() + yy.abs() + zz.abs() + 2.0 * body.mass * norm(body.com).powi(2)
@@ -132,7 +133,7 @@ pub(super) fn copy(field: Field, from: &BodyDescription, to: &mut BodyDescriptio
     }
 }
 
-/// A field of a body in words, with as many digits as show a difference of this size.
+/// A field of a body in words, with enough digits to show a difference of this size.
 pub(super) fn written(field: Field, body: &BodyDescription, size: f64) -> String {
     let joint = &body.joint;
     let list = |numbers: &[f64]| match numbers {
@@ -163,11 +164,11 @@ pub(super) fn written(field: Field, body: &BodyDescription, size: f64) -> String
     }
 }
 
-/// A number with as many digits as show a relative difference of this size, at least four.
+/// A number with enough digits to show a relative difference of this size, at least four.
 pub(super) fn digits(x: f64, size: f64) -> String {
     let needed = if size > 0.0 { (3.0 - size.log10()).ceil().clamp(4.0, 17.0) as usize } else { 4 };
     let rounded: f64 = format!("{x:.*e}", needed - 1).parse().unwrap_or(x);
-    // No minus before a zero.
+    // A zero has no minus sign.
     format!("{:?}", rounded + 0.0).trim_end_matches(".0").to_owned()
 }
 
@@ -212,14 +213,14 @@ pub(super) fn relative(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(x, y)| over(x - y, x.abs().max(y.abs()))).fold(0.0, worst)
 }
 
-/// The same per degree of freedom; a list that is absent is zero.
+/// The same per degree of freedom; a missing list means zeros.
 fn per_dof(a: &[f64], b: &[f64]) -> f64 {
     let count = a.len().max(b.len());
     let whole = |list: &[f64]| -> Vec<f64> { (0..count).map(|k| list.get(k).copied().unwrap_or(0.0)).collect() };
     relative(&whole(a), &whole(b))
 }
 
-/// The same for limits, where beyond a million radians or metres is without one.
+/// The same for limits; more than a million radians or metres means no limit.
 fn limits(a: &[f64], b: &[f64]) -> f64 {
     let limited = |list: &[f64], k: usize| list.get(k).copied().filter(|x| x.abs() < 1e6);
     let one = |k: usize| match (limited(a, k), limited(b, k)) {

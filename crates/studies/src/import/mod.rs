@@ -1,10 +1,12 @@
-//! Import: do the engines read one file alike, and if not, where and why?
+//! Import: do the engines import one file alike, and if not, where and why do they differ?
 //!
-//! Every engine reads the file with its own parser and says what it holds then ([`featherbench_bench::Engine::read`]). That description is compared,
-//! body by body and whatever frames it is written in, with the reference reading: ours of URDF, that of MuJoCo's compiler of MJCF
-//! ([`Comparison`]). Whether the differences found are all there are is then tested by replay: the engine computes with the robot it read,
-//! our kernels with the robot it says to have read. Where both agree the description explains the engine's answers completely. Where they do
-//! not, the row `unexplained` counts the smallest sub-trees that show it.
+//! Every engine imports the file by its own parser and returns its robot ([`featherbench_bench::Engine::read`]). That description is
+//! compared body by body with the reference import, whatever frames it is written in ([`Comparison`]). The reference is our import of URDF,
+//! and that of MuJoCo's compiler of MJCF.
+//!
+//! A replay then tests whether all differences were found. The engine computes with the robot that it has imported, our kernels with the
+//! robot that it reports. If both agree, the description explains the engine's answers completely. If not, the row `unexplained` counts the
+//! smallest sub-trees that show the difference.
 
 mod account;
 mod align;
@@ -31,14 +33,14 @@ use serde_json::{Value, json};
 /// The import study.
 pub struct Import;
 
-/// The cells of an engine: what it reads, and what it then computes.
+/// The cells of an engine: its import, and its answers afterwards.
 const READING: &str = "import";
-/// The method of a reading.
+/// The method of an import.
 const PARSER: &str = "parser";
-/// What is computed with the robot as read.
+/// The quantities of an imported robot.
 const COMPUTED: [Quantity; 2] = [Quantity::InverseDynamics, Quantity::MassMatrix];
-/// Robots with more degrees of freedom are compared by what engines hold alone: whole mass matrices at all states would take gigabytes, several
-/// times over (8 n² bytes a state; 18 MB here).
+/// Robots with more degrees of freedom are compared by their descriptions alone. Whole mass matrices at all states would take gigabytes,
+/// several times over (8 n² bytes a state; 18 MB here).
 pub const LARGEST: usize = 1500;
 
 impl Study for Import {
@@ -50,7 +52,7 @@ impl Study for Import {
         let mut cells = Vec::new();
         for robot in context.robots.iter().filter(|robot| robot.takes(self.name())) {
             let Some(params) = params(robot) else { continue };
-            // Our own reading is the robot itself.
+            // Our own import is the robot itself.
             for engine in context.engines.iter().filter(|engine| engine.identity().name != "featherbench") {
                 let cell = |quantity: &str, method: String| Cell {
                     study: self.name().into(),
@@ -89,13 +91,13 @@ impl Study for Import {
     }
 }
 
-/// What defines the work besides robot and engine.
+/// The other parameters of the work, besides robot and engine.
 fn params(robot: &Robot) -> Option<Value> {
     let file = robot.file.as_ref()?;
     Some(json!({"base": file.base.name(), "format": file.format.name(), "states": robot.states.count()}))
 }
 
-/// Whose reading is the reference of a file.
+/// The engine whose import is the reference of a file.
 fn reference(format: FileFormat) -> &'static str {
     match format {
         FileFormat::Urdf => "featherbench",
@@ -103,7 +105,7 @@ fn reference(format: FileFormat) -> &'static str {
     }
 }
 
-/// The robot as an engine read it, at the states of our reading.
+/// The robot as an engine imported it, at the states of our import.
 fn as_read(robot: &Robot, reading: &Read) -> Result<Robot, NoAnswer> {
     let states = |model: &featherbench_model::Model<f64>| replay::carried(&robot.description, &robot.states, &reading.description, model);
     robot.as_read(reading, states).map_err(|error| NoAnswer::Failed(error.to_string()))

@@ -1,8 +1,8 @@
-//! Which body of one reading is which body of another.
+//! The pairs of bodies of two import results.
 
 use featherbench_model::{BodyDescription, Description, JointType, Placement};
 
-/// For each body of `ours`, its partner in `theirs`: by its name, else by its joint's name, else by where it stands in the tree.
+/// For each body of `ours`, its partner in `theirs`: by its name, else by its joint's name, else by its place in the tree.
 pub(super) fn pairs(ours: &Description, theirs: &Description) -> Vec<Option<usize>> {
     let mut pairing = Pairing { partner: vec![None; ours.bodies.len()], taken: vec![false; theirs.bodies.len()] };
     let by = |same: &dyn Fn(&BodyDescription, &BodyDescription) -> bool, pairing: &mut Pairing| {
@@ -30,7 +30,7 @@ impl Pairing {
         self.taken[j] = true;
     }
 
-    /// The parents of partners are partners: the massless bodies of a chain have no names of their own.
+    /// Parents of partners are partners: the massless bodies of a chain have no names of their own.
     fn upwards(&mut self, ours: &Description, theirs: &Description) {
         for i in (0..ours.bodies.len()).rev() {
             let Some(j) = self.partner[i] else { continue };
@@ -44,7 +44,7 @@ impl Pairing {
         }
     }
 
-    /// The remaining children of partners are partners in their order, where they are as many and have the same joints.
+    /// The remaining children of partners are partners in their order, if their number is the same and they have the same joints.
     fn downwards(&mut self, ours: &Description, theirs: &Description) {
         for above in std::iter::once(None).chain((0..ours.bodies.len()).map(Some)) {
             let theirs_above = match above {
@@ -68,8 +68,8 @@ impl Pairing {
     }
 }
 
-/// The robot with planar and universal joints written as the chains of one-dof joints that they are, with massless bodies between: some
-/// engines hold them so. Coordinates and their order stay the same.
+/// The robot with planar and universal joints written as chains of one-dof joints, with massless bodies between: some engines have them so.
+/// Coordinates and their order stay the same.
 pub(super) fn chained(description: &Description) -> Description {
     let (x, y, z) = ([1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]);
     let (slide, turn) = (|axis| JointType::Prismatic { axis }, |axis| JointType::Revolute { axis });

@@ -1,4 +1,4 @@
-//! Replays: our kernels on a reading, and how far two readings of one robot are apart in inverse dynamics and mass matrix.
+//! Replays: our kernels on an import result, and the distance of two import results of one robot in inverse dynamics and mass matrix.
 
 use super::comparison::shared_coordinates;
 use featherbench_bench::Robot;
@@ -14,7 +14,7 @@ pub(super) struct Answers {
     pub mass_matrix: Vec<f64>,
 }
 
-/// How far a reading is apart from another in what it computes: the worst state, in the measures of the agreement study.
+/// The distance of an import result from another in its answers: the worst state, in the measures of the agreement study.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Effect {
     /// Inverse dynamics.
@@ -23,7 +23,7 @@ pub struct Effect {
     pub mass_matrix: f64,
 }
 
-/// Our kernels on a robot at its states. The model has the states' shape, or there is no answer.
+/// Our kernels on a robot at its states. `None` if the model does not have the states' shape.
 pub(super) fn answers(model: &Model<f64>, states: &StateBatch) -> Option<Answers> {
     let (mut rnea, mut crba) = (Rnea::new(&model.topology), Crba::new(&model.topology));
     let mut matrix = TreeSparse::new(&model.topology);
@@ -37,7 +37,8 @@ pub(super) fn answers(model: &Model<f64>, states: &StateBatch) -> Option<Answers
     Some(answers)
 }
 
-/// The same states for another reading of the robot: what both have moves alike, the rest stands still in its neutral place.
+/// The same states for another import result of the robot: the joints that both have move alike, the others are at rest in their neutral
+/// position.
 pub(super) fn carried(ours: &Description, states: &StateBatch, theirs: &Description, model: &Model<f64>) -> StateBatch {
     let shared = shared_coordinates(ours, theirs);
     let (count, nq, nv, bodies) = (states.count(), model.topology.nq(), model.topology.nv(), model.described.len());
@@ -71,17 +72,17 @@ fn neutral(model: &Model<f64>) -> Vec<f64> {
     model.topology.joints().iter().flat_map(|joint| of_joint(joint.kind)).collect()
 }
 
-/// What errors are measured against at a state: the measures of the agreement study, with a least size.
+/// The magnitudes for errors at a state: those of the agreement study, with a smallest size.
 ///
-/// An engine holds a file's robot in frames of its own. What is exactly zero in ours (a torque about an axis through the centre of mass, the
-/// inertia of a body without any) is a difference of larger numbers in theirs, and is measured as such: torques and inertias of a dof count
-/// at least as a thousandth of the robot's largest, torques in the kinetic-energy norm, inertias by what the dof carries.
+/// An engine has a file's robot in its own frames. Some numbers are exactly zero in ours: a torque about an axis through the centre of
+/// mass, or the inertia of a body without any. In theirs they are differences of larger numbers. So torques and inertias of a dof count at
+/// least as a thousandth of the robot's largest: torques in the kinetic-energy norm, inertias by what the dof carries.
 struct Sizes {
     torque: Vec<f64>,
     inertia: Vec<f64>,
 }
 
-/// The least size, as a part of the largest: three decades, of the nine between rounding and what a parser changes.
+/// The smallest size, as a fraction of the largest: three of the nine decades between rounding and an edit by a parser.
 const LEAST: f64 = 1e-3;
 
 impl Sizes {
@@ -97,7 +98,7 @@ impl Sizes {
     }
 
     fn torque(&self, i: usize, difference: f64) -> f64 {
-        // Where nothing of ours acts at all (no gravity, at rest), what theirs has is wholly different.
+        // If no force acts in ours (no gravity, at rest), any force in theirs is a complete difference.
         if self.torque[i] == 0.0 && difference.is_finite() && difference != 0.0 { 1.0 } else { ratio(difference, self.torque[i]) }
     }
 
@@ -106,7 +107,7 @@ impl Sizes {
     }
 }
 
-/// A robot with its answers, against which other readings of it are measured.
+/// A robot with its answers, with which other import results of it are compared.
 pub(super) struct Reference {
     robot: Robot,
     at: Vec<Magnitudes>,
@@ -121,7 +122,7 @@ impl Reference {
         Some(Self { at: robot.magnitudes(), robot, answers })
     }
 
-    /// How far answers about another reading, at the states that were carried over to it, are from ours, on the dofs that both have.
+    /// The distance of the answers about another import result from ours, on the dofs that both have. The states were carried over to it.
     pub fn effect(&self, theirs: &Description, nv: usize, answers: &Answers) -> Effect {
         let shared = shared_coordinates(&self.robot.description, theirs).dofs;
         let dofs: Vec<(usize, usize)> = shared.iter().flat_map(|&[a, b, n]| (0..n).map(move |k| (a + k, b + k))).collect();
@@ -130,7 +131,7 @@ impl Reference {
         for (k, at) in self.at.iter().enumerate() {
             let (id, mass) = (&self.answers.id[k * own..(k + 1) * own], &self.answers.mass_matrix[k * own * own..(k + 1) * own * own]);
             let (their_id, their_mass) = (&answers.id[k * nv..(k + 1) * nv], &answers.mass_matrix[k * nv * nv..(k + 1) * nv * nv]);
-            // What only one of them has is not compared: there ours stands on both sides.
+            // Numbers that only one of them has are not compared: ours is used on both sides.
             let (mut id_here, mut mass_here) = (id.to_vec(), mass.to_vec());
             for &(i, j) in &dofs {
                 id_here[i] = their_id[j];
@@ -149,7 +150,7 @@ impl Reference {
         worst_of
     }
 
-    /// How far another reading is apart from ours, our own kernels answering for both.
+    /// The distance of another import result from ours, if our own kernels answer for both.
     pub fn effect_of(&self, theirs: &Description) -> Option<Effect> {
         let model = Model::<f64>::build(theirs).ok()?;
         let states = carried(&self.robot.description, &self.robot.states, theirs, &model);
@@ -162,8 +163,8 @@ fn bare(description: &Description) -> Result<Robot, Malformed> {
     Robot::new(description, "import", ModelOrigin::Robot, 0, 0)
 }
 
-/// Our kernels on their reading against their engine's own answers: the worst error of each quantity, and the same per dof of the worst
-/// state, entries of the mass matrix between dof and dof first.
+/// The errors of our kernels on their import result, against their engine's own answers. It has the worst error of each quantity. For the
+/// worst state it also has the error per dof, and per pair of dofs for the mass matrix.
 pub(super) struct Replay {
     pub effect: Effect,
     /// Per dof, the error of its torque.

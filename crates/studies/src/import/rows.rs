@@ -1,4 +1,4 @@
-//! The rows of one robot: what each engine read, how it differs, what that does, and whether it explains the engine's answers.
+//! The rows of one robot: each engine's import, its differences, their effect, and whether they explain the engine's answers.
 
 use super::replay::{Answers, Reference, Replay, carried, replay};
 use super::subtree::{SubTree, unexplained};
@@ -25,13 +25,13 @@ pub(super) fn rows(context: &Context, robot: &Robot, finished: &[Finished]) -> V
     rows
 }
 
-/// Entries of mass matrices that are computed to tell the effect of each difference alone: some ten seconds. A robot of a hundred dofs and six
-/// states has it for every one of 60 000 differences, one of a thousand dofs for the first 600; for the rest the effect is not told.
+/// The number of mass-matrix entries computed for the effects of single differences: some ten seconds. A robot of a hundred dofs and six
+/// states has the effect of each of 60 000 differences, one of a thousand dofs that of the first 600. The others have none.
 const WORK: usize = 4_000_000_000;
-/// Differences whose effect is told however large the robot is.
+/// The number of differences with an effect, however large the robot is.
 const LEAST_ALONE: usize = 8;
 
-/// What MuJoCo's compiler, whose reading is the reference of an MJCF, tells about it.
+/// The notes of MuJoCo's compiler, whose import is the reference of an MJCF.
 fn compiler<'a>(robot: &Robot, finished: &'a [Finished]) -> Option<&'a [ImportNote]> {
     robot.file.as_ref().filter(|file| file.format == FileFormat::Mjcf)?;
     finished.iter().find_map(|(cell, outcome)| match outcome {
@@ -43,9 +43,9 @@ fn compiler<'a>(robot: &Robot, finished: &'a [Finished]) -> Option<&'a [ImportNo
 struct OfEngine<'a> {
     context: &'a Context<'a>,
     robot: &'a Robot,
-    /// The cell of its reading.
+    /// The cell of its import.
     cell: &'a Cell,
-    /// What it computed with the robot as read.
+    /// Its answers about the imported robot.
     of_engine: Vec<&'a Finished>,
     compiler: Option<&'a [ImportNote]>,
 }
@@ -59,7 +59,7 @@ impl OfEngine<'_> {
         Row { states: "all".into(), metric: metric.into(), unit: "1".into(), reference: self.reference().into(), ..row(cell, self.robot) }
     }
 
-    /// The cell's parameters with more beside them: what a reader of the row needs.
+    /// The cell's parameters, with more that a reader of the row needs.
     fn params(&self, more: Value) -> String {
         let mut params = self.cell.params.clone();
         if let (Value::Object(params), Value::Object(more)) = (&mut params, more) {
@@ -109,7 +109,7 @@ impl OfEngine<'_> {
         Class::of(finding.difference.field, largest, bound(self.robot.depth))
     }
 
-    /// How many differences there are that a simulation would feel, and how many of each class.
+    /// The number of differences that affect a simulation, and the number of each class.
     fn count(&self, comparison: &Comparison, effects: &[Option<Effect>], reading: &Import) -> Row {
         let of = |weight: Weight| comparison.differences().filter(|difference| difference.field.weight() == weight).count();
         let notes: Vec<Value> = reading
@@ -152,14 +152,14 @@ impl OfEngine<'_> {
         row.informed(difference.size)
     }
 
-    /// The engine's answers against the reference, against the replay, and what the replay leaves unexplained.
+    /// The engine's answers against the reference and against the replay, and the part that the replay does not explain.
     fn computed(&self, reading: &Import, [id, mass]: [&Cell; 2], engine: &Answers) -> Vec<Row> {
         let error = |reason: &str| vec![self.row(self.cell, "unexplained").without_value(Verdict::Error, reason)];
         let robot = match as_read(self.robot, reading) {
             Ok(robot) => robot,
             Err(no_answer) => return error(&no_answer.to_string()),
         };
-        // What only they have stands still on their side: it must do so on ours.
+        // Joints that only they have are at rest on their side; so they must be on ours.
         let states = carried(&robot.description, &robot.states, &self.robot.description, &self.robot.model);
         let Some(reference) = Reference::new(&self.robot.description, states) else {
             return error("our kernels have no answer on the reference reading");
@@ -200,7 +200,7 @@ fn values(outcome: &Outcome) -> Result<&[f64], &NoAnswer> {
     }
 }
 
-/// Our robot as the findings alter it, with its answers.
+/// Our robot without the bodies that theirs lacks, with its answers.
 fn alterable(comparison: &Comparison, robot: &Robot) -> Option<Reference> {
     if robot.states.nv > LARGEST {
         return None;

@@ -1,35 +1,38 @@
-//! What the differences found do not explain, narrowed down to the smallest sub-trees that still show it.
+//! The smallest sub-trees whose answers the known differences do not explain.
 //!
-//! The mass matrix belongs to sub-trees: the diagonal block of a body is the composite inertia of everything that hangs on it, seen along
-//! its own joint. So a body is where an error begins when its block differs and the blocks of all its children agree.
+//! The mass matrix belongs to sub-trees. The diagonal block of a body is the composite inertia of everything that it supports, seen along
+//! its own joint. So an error begins at a body if its block differs and the blocks of all its children agree.
 
 use super::replay::Replay;
 use featherbench_model::Description;
 
-/// What our kernels may be apart from an engine on the very robot that it says to hold, of some depth (joints from the world to a tip):
-/// 1e-12, and 1e-14 for each joint beyond a hundred.
+/// The largest distance of our kernels from an engine on the robot that it reports: 1e-12 up to a depth of a hundred, and 1e-14 more for
+/// each further joint. Here the depth is the number of joints from the world to a tip.
 ///
-/// Algorithms differ by 1e-13 and less on robots of a few ten joints; MuJoCo alone loses up to 2e-12 far from the whole robot's centre of mass,
-/// which `ci/deviations.toml` names. Each joint of a chain rounds once more, and its error is carried to the world: 1e-14 is 45 ε a joint, and at
-/// a thousand joints MuJoCo leaves 7.8e-12. Whatever a parser does to a number shows at 1e-9 and above.
+/// - Algorithms differ by 1e-13 and less on robots of a few ten joints. MuJoCo alone loses up to 2e-12 far from the whole robot's centre of
+///   mass, which `ci/deviations.toml` names.
+/// - Each joint of a chain adds a rounding error, which is carried to the world: 1e-14 is 45 ε a joint. At a thousand joints MuJoCo's error
+///   is
+///   7.8e-12.
+/// - An edit by a parser causes 1e-9 and more.
 pub fn bound(depth: usize) -> f64 {
     const SHALLOW: f64 = 1e-12;
     const PER_JOINT: f64 = 1e-14;
     SHALLOW.max(PER_JOINT * depth as f64)
 }
 
-/// A part of a robot that its reading does not explain.
+/// A part of a robot that its import result does not explain.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SubTree {
     /// The largest error in it.
     pub error: f64,
     /// `mass_matrix`, or `id` where the mass matrix agrees.
     pub quantity: &'static str,
-    /// The robot cut down to it: the body where the error begins, standing on the world, and everything that hangs on it.
+    /// The robot cut down to it: the body where the error begins, with the world as its parent, and everything that it supports.
     pub robot: Description,
 }
 
-/// The smallest sub-trees of a reading whose answers are not those of the robot that it describes.
+/// The smallest sub-trees of an import result whose answers are not those of the described robot.
 pub(super) fn unexplained(description: &Description, replay: &Replay) -> Vec<SubTree> {
     let bound = bound(description.depth());
     let agrees = |error: f64| error <= bound;
@@ -49,7 +52,7 @@ pub(super) fn unexplained(description: &Description, replay: &Replay) -> Vec<Sub
         largest(&mut dofs[i].clone().flat_map(|m| dofs[j].clone().map(move |n| (m, n))).map(|(m, n)| replay.entry[m * nv + n]))
     };
     let own: Vec<f64> = (0..dofs.len()).map(|i| block(i, i)).collect();
-    // A block beside the diagonal couples a body with one below it: the error begins at the upper one.
+    // A block off the diagonal couples a body with one below it: the error begins at the upper one.
     let coupled = || (0..dofs.len()).map(|i| largest(&mut (i..dofs.len()).map(|j| block(i, j)))).collect::<Vec<f64>>();
     let torque = || dofs.iter().map(|range| largest(&mut range.clone().map(|m| replay.torque[m]))).collect::<Vec<f64>>();
     let wrong = |errors: &[f64]| errors.iter().any(|&error| !agrees(error));
@@ -67,7 +70,7 @@ pub(super) fn unexplained(description: &Description, replay: &Replay) -> Vec<Sub
     begins.map(|i| SubTree { error: errors[i], quantity, robot: cut(description, i) }).collect()
 }
 
-/// The sub-tree that hangs on a body, the body itself standing on the world.
+/// The sub-tree of a body; the world is the body's parent.
 fn cut(description: &Description, root: usize) -> Description {
     let mut place = vec![None; description.bodies.len()];
     let mut bodies = Vec::new();

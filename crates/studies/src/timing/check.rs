@@ -1,22 +1,22 @@
-//! Whether a time counts: the answers of everyone who is timed, against ours, at every state of the stream.
+//! Whether a time counts: the answers of all candidates, against ours, at every state of the stream.
 
 use featherbench_bench::measure::{Magnitudes, ratio, scaled_error, worst};
 use featherbench_bench::{Engine, NoAnswer, Quantity, Robot};
 use featherbench_dynamics::{Crba, Rnea, TreeSparse};
 
-/// The error up to which an answer is an answer to the same question, for a robot of this depth.
+/// The largest error of a right answer, for a robot of this depth.
 ///
-/// Each entry is measured against the magnitudes of its terms, so rounding leaves 1e-14 and less per joint of the path; a hundred times
-/// that is far from any wrong model or convention. Factors of M carry κ(M) entry by entry (1e10 at a thousand links); they are compared by the
-/// matrix that they make, which does not.
+/// Each entry is measured against the magnitudes of its terms: so rounding causes 1e-14 and less per joint of the path. The limit is a
+/// hundred times that, and far below the error of any wrong model or convention. Factors of M depend on κ(M) entry by entry (1e10 at a
+/// thousand links). They are compared by their product, which does not.
 pub(super) fn limit(depth: usize) -> f64 {
     1e-12 * depth.max(1) as f64
 }
 
 /// The error of an engine's answer at each state of the robot, against our usual method's.
 ///
-/// Forward dynamics and solving are checked backwards: the answer goes into inverse dynamics, or is multiplied with M, and what should be τ
-/// is compared with τ. One state at a time: the answers to a whole stream would not fit the memory.
+/// Forward dynamics and solving are checked backwards: the answer goes into inverse dynamics, or is multiplied with M, and the result is
+/// compared with τ. It is done state by state: the answers to a whole stream would not fit the memory.
 pub(super) fn errors(
     robot: &Robot,
     featherbench: &dyn Engine,
@@ -30,7 +30,7 @@ pub(super) fn errors(
     let mut prepared = engine.prepare(robot, quantity, method, &robot.states)?;
     let due = quantity.size(robot);
     let mut answered = robot.clone();
-    // The reference must answer every state; its errors are the agreement study's engine.
+    // The reference must answer every state; its errors belong to the agreement study.
     let itself = engine.identity() == featherbench.identity() && method == usual;
     (0..robot.states.count())
         .map(|state| {
@@ -57,7 +57,7 @@ pub(super) fn errors(
 
 /// max |τ − ID(q, v, a)|_i over the magnitudes of the terms that were added to form it.
 ///
-/// The answer takes the place of the state's acceleration.
+/// The answer is used as the state's acceleration.
 fn through_inverse_dynamics(robot: &mut Robot, state: usize, a: &[f64]) -> Result<f64, NoAnswer> {
     let nv = robot.states.nv;
     robot.states.a[state * nv..(state + 1) * nv].copy_from_slice(a);

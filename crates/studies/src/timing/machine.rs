@@ -1,4 +1,4 @@
-//! The machine: one core for everything that is timed, what it can do at best, and what a measurement costs.
+//! The machine: one core for all candidates, its peak performance, and the cost of a measurement.
 
 use featherbench_bench::{Evaluation, NoAnswer};
 use std::hint::black_box;
@@ -15,14 +15,14 @@ type Vector = wide::f64x2;
 /// Doubles in a vector register of this build.
 pub(super) const LANES: usize = size_of::<Vector>() / size_of::<f64>();
 
-/// What the machine does at best, and what a measurement costs.
+/// The machine's peak performance, and the cost of a measurement.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Machine {
-    /// Fused multiply-adds of doubles per nanosecond, in full vectors.
+    /// Fused multiply-adds of doubles per nanosecond, by full vector registers.
     pub peak: f64,
-    /// The same of single doubles.
+    /// The same by single doubles.
     pub scalar: f64,
-    /// Nanoseconds between two readings of the clock that differ.
+    /// Nanoseconds between two different values of the clock.
     pub resolution: f64,
     /// Nanoseconds of a call that computes nothing.
     pub empty: f64,
@@ -45,13 +45,13 @@ impl Machine {
         vec![self.peak, self.scalar, self.resolution, self.empty]
     }
 
-    /// Read back.
+    /// The machine from the outcome of a cell.
     pub fn from_values(values: &[f64]) -> Option<Self> {
         let &[peak, scalar, resolution, empty] = values else { return None };
         Some(Self { peak, scalar, resolution, empty })
     }
 
-    /// Why the peak is no limit, when the loop over single doubles shows that: vectors were taken apart by the compiler, or the machine was busy.
+    /// Why the peak is not valid, if the loop over single doubles shows that: the compiler did not use vectors, or the machine was busy.
     pub fn complaint(&self) -> Option<String> {
         let (times, due) = (self.peak / self.scalar, least_gain(LANES));
         let good = times >= due;
@@ -60,29 +60,30 @@ impl Machine {
     }
 }
 
-/// How many times the multiply-adds of single doubles vectors of so many lanes make at least: half of the lanes where the wide unit is one and the
-/// narrow ones are two (AVX-512 of some processors), less a tenth for the frequency; and more than one, which is what vectors that were taken
-/// apart make at best.
+/// The least ratio of the multiply-adds by vectors of this number of lanes to those by single doubles.
+///
+/// With more than two lanes it is half of the lanes less a tenth: some processors with AVX-512 have one wide unit and two narrow ones, and
+/// a lower frequency. With two lanes it is 1.2. It must be more than one, the ratio without vector instructions.
 fn least_gain(lanes: usize) -> f64 {
     if lanes > 2 { 0.45 * lanes as f64 } else { 1.2 }
 }
 
-/// Registers in flight: more than the latency of a multiply-add (4 cycles, 5 on older ones) times the units that make them (2; 4 on ARM cores,
-/// and where AVX-512 is there are as many registers as on those). With the two constants they fill no more than the registers.
+/// The number of chains: more than the latency of a multiply-add (4 cycles, 5 on older processors) times the number of units (2; 4 on ARM).
+/// With the two constants they need no more than the registers, of which AVX-512 has as many as ARM.
 const CHAINS: usize = if cfg!(any(target_feature = "avx512f", target_arch = "aarch64")) { 20 } else { 12 };
-/// Blocks of which the best counts: a limit is what the machine can do, not what it usually does.
+/// Number of blocks, of which the best counts: a limit is the peak of the machine, not its usual performance.
 const BLOCKS: usize = 200;
 /// Multiply-adds in each chain of a block.
 const STEPS: usize = 20_000;
 /// Multiply-adds of a block of vectors, and of one of single doubles.
 const VECTOR_WORK: usize = SCALAR_WORK * LANES;
 const SCALAR_WORK: usize = STEPS * CHAINS;
-/// Where the first chain starts, and the constants: numbers that neither overflow nor vanish.
+/// The start of the first chain, and the constants: numbers that neither overflow nor underflow.
 const START: f64 = 1.0;
 const M: f64 = 0.999;
 const C: f64 = 1e-3;
 
-/// Multiply-adds per nanosecond of a block that makes so many; the best of many blocks.
+/// Multiply-adds per nanosecond of a block with this number of them; the best of many blocks.
 fn rate(work: usize, mut block: impl FnMut()) -> f64 {
     let times = (0..BLOCKS).map(|_| {
         let start = Instant::now();
@@ -97,9 +98,9 @@ fn best(work: usize, times: impl Iterator<Item = Duration>) -> f64 {
     work as f64 / times.min().unwrap_or_default().as_nanos() as f64
 }
 
-/// x ← x·m + c in every lane of every chain, by vector instructions. Each lane starts elsewhere, so that none can be taken for another.
+/// x ← x·m + c in every lane of every chain, by vector instructions. Each lane starts with another number, so that no two are merged.
 ///
-/// The type names the instruction: a loop over arrays is packed into vectors or not, as the build's flags are.
+/// The type determines the instruction: whether a loop over arrays is vectorised depends on the build's flags.
 #[inline(never)]
 fn vector_chains(start: f64, m: f64, c: f64) -> [[f64; LANES]; CHAINS] {
     let (m, c) = (Vector::splat(m), Vector::splat(c));
@@ -139,7 +140,7 @@ fn resolution() -> f64 {
     (0..1000).map(step).min().unwrap_or_default().as_nanos() as f64
 }
 
-/// Nanoseconds of a call that computes nothing: the least of some blocks.
+/// Nanoseconds of a call that computes nothing: the smallest of some blocks.
 fn empty_call(empty: &mut dyn Evaluation) -> Result<f64, NoAnswer> {
     const CALLS: usize = 100_000;
     let mut least = Duration::MAX;
@@ -149,7 +150,7 @@ fn empty_call(empty: &mut dyn Evaluation) -> Result<f64, NoAnswer> {
     Ok(least.as_nanos() as f64 / CALLS as f64)
 }
 
-/// While it lives, this thread and every child process stay on one core; where the system refuses, nothing happens.
+/// While it exists, this thread and every child process stay on one core. If the system refuses, it has no effect.
 pub(super) struct Pinned(Option<rustix::thread::CpuSet>);
 
 impl Pinned {
@@ -166,13 +167,13 @@ impl Pinned {
 impl Drop for Pinned {
     fn drop(&mut self) {
         if let Some(before) = &self.0 {
-            // What cannot be freed again is only slower.
+            // A failure to restore the cores only costs time.
             move_to(before);
         }
     }
 }
 
-/// Moves this thread and every thread of every child process; whether at least this thread went.
+/// Moves this thread and every thread of every child process; returns whether at least this thread was moved.
 fn move_to(cores: &rustix::thread::CpuSet) -> bool {
     for child in children() {
         let _ = rustix::thread::sched_setaffinity(Some(child), cores);
@@ -180,7 +181,7 @@ fn move_to(cores: &rustix::thread::CpuSet) -> bool {
     rustix::thread::sched_setaffinity(None, cores).is_ok()
 }
 
-/// The threads of the processes that this one started; none where the system does not tell.
+/// The threads of the processes that this one started; empty if the system does not report them.
 fn children() -> Vec<rustix::thread::Pid> {
     let numbers = |path: &str| -> Vec<i32> {
         let text = std::fs::read_to_string(path).unwrap_or_default();
@@ -218,7 +219,7 @@ mod tests {
         assert_eq!(before, after);
     }
 
-    /// Every lane of every chain has its own multiply-adds, as many as the peak counts, to the bit of a loop over one number.
+    /// Every lane of every chain has its own multiply-adds, as counted for the peak, equal to the bit to a loop over one number.
     #[test]
     fn the_chains_compute_what_they_say() {
         let (vector, scalar) = (vector_chains(START, M, C), scalar_chains(START, M, C));
@@ -252,7 +253,7 @@ mod tests {
         assert_eq!(best(1000, std::iter::empty()), f64::INFINITY, "which no row takes for a value");
     }
 
-    /// What was measured when the compiler took the vectors apart: 2.6 multiply-adds per nanosecond, where single doubles make 6.5.
+    /// Measured when the compiler did not use vectors: 2.6 multiply-adds per nanosecond, where single doubles make 6.5.
     #[test]
     fn a_peak_below_what_single_doubles_make_is_none() {
         let machine = |peak| Machine { peak, scalar: 6.5, resolution: 20.0, empty: 1.0 };

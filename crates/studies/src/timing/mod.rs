@@ -1,15 +1,18 @@
-//! Timing: a paired experiment. Everyone who computes the same quantity is timed in alternating blocks on one core, over a stream of
-//! distinct states and `hot` on one, beside a second copy of ourselves.
+//! Timing: a paired experiment. All candidates for a quantity are timed in alternating blocks on one core, with an A/A replicate of our
+//! usual method. The regime `stream` uses many distinct states, `hot` one.
 //!
-//! What a time includes: everything from raw q, v, a or τ to the result, sine and cosine, gravity, armature and full inertias among it.
-//! `factorization` and `solve` start from a mass matrix or factors made beforehand. Converting coordinates and reading results are outside
-//! the clock for everyone. METHODOLOGY.md tells the protocol, the statistics and what each number means.
+//! A time includes everything from raw q, v, a or τ to the result: sine and cosine, gravity, armature and full inertias. `factorization`
+//! and `solve` start from a mass matrix or factors made before. Converting coordinates and reading results are outside the clock for all
+//! candidates. METHODOLOGY.md describes the protocol, the statistics and the meaning of each number.
 //!
-//! Four kinds of cells: the *machine* (its peak, its clock, an empty call), a *check* for everyone who is timed (the error of its answer at
-//! every state of the stream), the *overhead* of calling it where its times are estimates, and an *experiment* for each quantity and cache
-//! regime (all blocks of all rounds). Rows are made from them by a pure function: a time without a good check does not count, nor does one of
-//! an experiment in which the second copy of ourselves differs from the first, nor any of a robot on which that happens often. Such rows keep
-//! their values and say why they are void.
+//! There are four kinds of cells:
+//! - the *machine*: its peak, its clock, an empty call;
+//! - a *check* for each candidate: the error of its answer at every state of the stream;
+//! - the *overhead* of calling it, if its times are estimates;
+//! - an *experiment* for each quantity and cache regime: all blocks of all rounds.
+//!
+//! A pure function makes rows of them. A time does not count in three cases: without a good check; in an experiment whose A/A replicate
+//! differs from the first copy; and on a robot with many such experiments. These rows keep their values, are not valid and give the reason.
 
 mod check;
 mod machine;
@@ -32,18 +35,18 @@ use std::time::Instant;
 pub struct Timing {
     /// Distinct states in the stream.
     pub states: usize,
-    /// Seconds for everyone who is timed, in each experiment.
+    /// Seconds for each candidate in each experiment.
     pub seconds: f64,
-    /// Our own kernels to time on a robot, as (quantity, method): the first of a quantity is what others are compared with.
+    /// Our own kernels to time on a robot, as (quantity, method); the first of a quantity is the reference.
     pub kernels: fn(&Robot) -> Vec<(Quantity, &'static str)>,
-    /// Names of the engines that are timed beside ours: all their methods for the quantities of the kernels.
+    /// Names of the engines that are timed beside ours, by all their methods for the quantities of the kernels.
     pub peers: Vec<String>,
 }
 
 /// Name of the side file with the raw samples in a run's folder.
 const SAMPLES_NAME: &str = "timing.jsonl";
 
-/// Our own kernels, with whom everyone is compared.
+/// Our own kernels, with which all candidates are compared.
 const REFERENCE: &str = "featherbench";
 /// The kinds of cells, as their parameter `what`.
 const MACHINE: &str = "machine";
@@ -52,12 +55,12 @@ const OVERHEAD: &str = "overhead";
 const EXPERIMENT: &str = "experiment";
 /// The cache regimes.
 const REGIMES: [&str; 2] = ["stream", "hot"];
-/// No more than this many numbers of states are held at once: 100 MB, far more than any cache.
+/// The largest number of values of states in memory at once: 100 MB, far more than any cache.
 const MOST_NUMBERS: usize = 12_000_000;
-/// Nor more than this many numbers of mass matrices, where a quantity is or needs one: what the registry keeps of them.
+/// The largest number of entries of mass matrices, if a quantity is one or needs one: the registry keeps as many.
 const MOST_ENTRIES: usize = 4 << 20;
 
-/// Robots up to so many dofs are timed through an interpreter: to convert a thousand states of a larger one for each method takes it minutes.
+/// The largest robot, in dofs, that is timed through an interpreter. Converting a thousand states of a larger one takes minutes per method.
 const LARGEST_ESTIMATE: usize = 64;
 
 /// Whether a robot is too large for times that are estimates.
@@ -83,7 +86,7 @@ impl Study for Timing {
         let Some(featherbench) = context.engine(REFERENCE) else { return cells };
         for robot in context.robots.iter().filter(|robot| robot.takes(self.name())) {
             if cells.is_empty() {
-                // The machine is asked once, in the company of the first robot.
+                // The cell of the machine is evaluated once, with the first robot.
                 cells.push(self.cell(robot, featherbench, Quantity::StoredEntries, "empty", json!({"what": MACHINE})));
             }
             for (quantity, candidates) in self.experiments(context, robot) {
@@ -172,7 +175,7 @@ impl Timing {
         }
     }
 
-    /// The quantities, each with everyone who is timed on it: our usual method, its second copy, our other methods, the peers.
+    /// The quantities with their candidates: our usual method, its A/A replicate, our other methods, the other engines.
     fn experiments(&self, context: &Context, robot: &Robot) -> Vec<(Quantity, Vec<Candidate>)> {
         let candidate = |engine: &dyn Engine, method: &str, control| Candidate {
             engine: engine.identity().name.clone(),
@@ -197,12 +200,12 @@ impl Timing {
         experiments
     }
 
-    /// The stream's length for a quantity of a robot: as asked, or fewer where the states or their matrices would not fit.
+    /// The stream's length for a quantity of a robot: as requested, or fewer if the states or their matrices would not fit.
     fn stream_length(&self, robot: &Robot, quantity: Quantity) -> usize {
         let numbers = robot.states.nq + 3 * robot.states.nv + 6 * robot.states.bodies;
         let entries = match quantity {
             Quantity::MassMatrixSparse | Quantity::Factorization | Quantity::Solve => robot.model.topology.stored(),
-            // Factorizing one is a way to forward dynamics; ten times as many as are kept take a second or two.
+            // Forward dynamics may factorize a matrix. Ten times the number that are kept take a second or two.
             Quantity::ForwardDynamics => robot.model.topology.stored() / 10,
             _ => 1,
         };

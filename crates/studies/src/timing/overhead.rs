@@ -1,8 +1,8 @@
-//! What it takes to call an engine whose times are estimates: the overhead that its clock measures and subtracts.
+//! The overhead of calling an engine whose times are estimates. Its clock measures and subtracts it.
 
 use featherbench_bench::{Evaluation, NoAnswer};
 
-/// Calls whose overhead is asked for, at as many states from the first on.
+/// Number of calls whose overhead is asked for: one at each of the first states.
 const CALLS: usize = 31;
 
 /// Nanoseconds of overhead of each of some calls.

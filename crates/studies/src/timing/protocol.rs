@@ -1,12 +1,13 @@
 //! The experiment: candidates in alternating blocks.
 //!
-//! Rounds come in *epochs*. At the start of an epoch everyone moves, in random order, to other places of the memory, each in its own process:
-//! where data lie moves a time by up to some percent, and a ratio from one layout would be a ratio of two accidents. In each round every
-//! candidate has one block, in random order, from a random state on; the batch begins again at its end. Before a block its candidate makes a
-//! tenth as many calls beside the clock, at the states before: others ran since its last block, and their data lie in the caches.
+//! Rounds are grouped into *epochs*. At the start of an epoch all candidates relocate their data, in random order, each in its own process.
+//! The place of data in memory changes a time by up to some percent, and a ratio from one layout would depend on chance.
+//! In each round every candidate has one block, in random order, from a random state on. The batch begins again at its end. Before a block
+//! its candidate makes a tenth as many calls that are not timed, at the states before. Other candidates ran since its last block, and their
+//! data are in the caches.
 //!
-//! What is decided by a time is decided by the least of several: a stall of the machine makes a time longer and none shorter. The times come as
-//! values, from the candidates' clocks and from a clock that is an argument.
+//! A decision from a time uses the smallest of several: a stall of the machine makes a time longer, never shorter. Times are values, from
+//! the candidates' clocks and from a clock that is an argument.
 
 use super::samples::Samples;
 use featherbench_bench::{Evaluation, NoAnswer, Relocation};
@@ -14,59 +15,60 @@ use featherbench_model::Random;
 use std::collections::VecDeque;
 use std::time::Duration;
 
-/// How long a block lasts at least: some thousand times the clock's resolution and the cost of reading it, so short that most blocks are not
-/// interrupted (a tick of the system's timer comes every 4 ms).
+/// The shortest block. It is some thousand times the clock's resolution and the cost of reading it. It is so short that most blocks are not
+/// interrupted: the system's timer ticks every 4 ms.
 const BLOCK: Duration = Duration::from_micros(200);
-/// Epochs of an experiment, and so the fewest rounds. Layouts relocate times more than rounds of one layout do: with thirty epochs of ten
-/// rounds a third of all controls were void for intervals a little wider than the noise; the same time is better spent on many epochs.
+/// Epochs of an experiment, and so the fewest rounds. Times vary more between layouts than between rounds of one layout. With thirty epochs
+/// of ten rounds a third of all A/A ratios had an interval slightly wider than the noise. The same time is better spent on many epochs.
 pub(super) const EPOCHS: usize = 60;
-/// Rounds of an epoch are not more: then blocks become longer.
+/// Most rounds of an epoch: with more time the blocks become longer.
 const MOST_ROUNDS: usize = 5;
-/// Calls beside the clock before a block, as a share of its calls.
+/// Calls before a block that are not timed: one per this number of calls of the block.
 const WARM: usize = 10;
-/// A call that takes less than this would fill a block with more calls than any clock needs.
+/// Most calls of a block. A call that would need more is shorter than any clock can measure.
 const MOST_CALLS: usize = 1 << 24;
-/// A block is long enough when it was so in each of these trials: one alone may have met a stall, and all blocks would be too short to be timed.
+/// A block is long enough if it was so in each of these trials. One alone may include a stall, and then all blocks would be too short.
 const TRIALS: usize = 3;
-/// The last moves whose least time says how long a move takes.
+/// The last relocations; the shortest of them is taken as the time of one.
 const LAST_MOVES: usize = 5;
-/// Epochs at which everyone moves, however long its moves took: each of the times before may have met a stall.
+/// Epochs at which all candidates relocate, however long that took before: each of the earlier times may include a stall.
 const AGAIN: [usize; 2] = [1, 8];
 
-/// Who is timed, ready to run, or why it is not.
+/// A candidate that is ready to run, or why it is not.
 pub(super) type Ready<'a> = Result<Box<dyn Evaluation + 'a>, NoAnswer>;
 
-/// How an experiment spends its time.
+/// The time of an experiment.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Budget {
     /// Rounds of each epoch.
     pub rounds: usize,
-    /// Least length of a block.
+    /// The shortest block.
     pub block: Duration,
 }
 
 impl Budget {
-    /// What `seconds` for each candidate allow.
+    /// The budget for `seconds` for each candidate.
     pub fn of(seconds: f64) -> Self {
         let epoch = seconds / EPOCHS as f64;
         let rounds = ((epoch / BLOCK.as_secs_f64()) as usize).clamp(1, MOST_ROUNDS);
         Self { rounds, block: Duration::from_secs_f64((epoch / rounds as f64).max(0.0)).max(BLOCK) }
     }
 
-    /// Rounds of an epoch in which `count` candidates take so long for one: fewer where single calls take longer than a block should.
+    /// Rounds of an epoch in which `count` candidates need this time for one: fewer if single calls are longer than a block.
     fn rounds_of(&self, round: Duration, count: usize) -> usize {
         let meant = self.block.as_secs_f64() * (self.rounds * count) as f64;
-        // Blocks overshoot by up to twice their length: that alone costs no round.
+        // Blocks may be up to twice as long as intended; that alone does not reduce the rounds.
         ((2.0 * meant / round.as_secs_f64().max(1e-9)) as usize).clamp(1, self.rounds)
     }
 
-    /// Moving someone at each epoch must not take longer than timing it, or twenty times a block where that is more.
+    /// Whether a relocation at each epoch is short enough: no longer than the timing of the candidate, or than twenty blocks if that is
+    /// more.
     fn affords(&self, moving: Duration) -> bool {
         moving <= self.block * 20.max(self.rounds as u32)
     }
 }
 
-/// How long the last moves of a candidate took; that it was made ready is the first.
+/// The times of a candidate's last relocations; its preparation is the first.
 struct Moves(VecDeque<Duration>);
 
 impl Moves {
@@ -77,14 +79,14 @@ impl Moves {
         self.0.push_back(time);
     }
 
-    /// Whether the candidate moves at an epoch.
+    /// Whether the candidate relocates its data at an epoch.
     fn are_due(&self, epoch: usize, budget: Budget) -> bool {
         AGAIN.contains(&epoch) || self.0.iter().min().is_some_and(|&least| budget.affords(least))
     }
 }
 
-/// Times `count` candidates over a batch of `states` states; `prepare` makes one of them ready, and `clock` tells the time since some moment.
-/// One that refuses has NaN from then on.
+/// Times `count` candidates over a batch of `states` states. `prepare` makes one of them ready; `clock` gives the time since some moment.
+/// After an error a candidate's times are NaN.
 pub(super) fn experiment<'a>(
     prepare: &dyn Fn(usize) -> Ready<'a>,
     count: usize,
@@ -130,13 +132,13 @@ pub(super) fn experiment<'a>(
     samples
 }
 
-/// Moves a candidate to other places of the memory: itself, or else by preparing it anew.
+/// Relocates a candidate's data: by itself, or else by preparing it again.
 fn relocate<'a>(candidate: &mut Ready<'a>, prepare: &dyn Fn() -> Ready<'a>, random: &mut Random) {
     let Ok(prepared) = candidate else { return };
     match prepared.relocate(random.bits32()) {
         Ok(true) => {}
         Ok(false) => {
-            // The old one stays until the new one lies beside it.
+            // The old one exists until the new one is made, so that the memory differs.
             let _relocate = Relocation::new(random);
             *candidate = prepare();
         }
@@ -154,10 +156,10 @@ fn block(candidate: &mut Ready, state: usize, calls: usize) -> Result<Duration, 
     prepared.clock(state + warm..state + warm + calls)
 }
 
-/// Warms a candidate up and finds how many calls last as long as a block, and how long they last; 1 and nothing of one that refuses.
+/// Warms a candidate up. Returns how many calls last as long as a block, and their time; 1 and zero after an error.
 fn calls_of_a_block(candidate: &mut Ready, block: Duration) -> (usize, Duration) {
     let mut calls = 1;
-    // A first call may take many times as long as those after it, and would be taken for a whole block.
+    // A first call may take many times as long as later ones, and would be taken for a whole block.
     let first = candidate.as_mut().ok().and_then(|prepared| prepared.clock(0..1).err());
     if let Some(no_answer) = first {
         *candidate = Err(no_answer);
@@ -165,7 +167,7 @@ fn calls_of_a_block(candidate: &mut Ready, block: Duration) -> (usize, Duration)
     while let Ok(prepared) = candidate {
         match least(prepared.as_mut(), calls, block) {
             Ok(time) if time < block && calls < MOST_CALLS => {
-                // Towards the block in few steps, none of them blind.
+                // Approaches the length of a block in few steps.
                 let missing = block.as_secs_f64() / time.as_secs_f64().max(1e-9);
                 calls = (calls as f64 * missing.clamp(1.1, 8.0)).ceil() as usize;
             }
@@ -176,7 +178,7 @@ fn calls_of_a_block(candidate: &mut Ready, block: Duration) -> (usize, Duration)
     (1, Duration::ZERO)
 }
 
-/// The least time of some trials of a block with so many calls; of the first that is short enough, where one is.
+/// The smallest time of some trials of a block with this number of calls. It stops at the first trial that is short enough.
 fn least(prepared: &mut dyn Evaluation, calls: usize, block: Duration) -> Result<Duration, NoAnswer> {
     let mut least = prepared.clock(0..calls)?;
     for _ in 1..TRIALS {
@@ -202,10 +204,10 @@ mod tests {
     use std::ops::Range;
     use std::sync::{Arc, Mutex};
 
-    /// What was asked of whom: candidate, first state, calls.
+    /// The requests: candidate, first state, calls.
     type Log = Arc<Mutex<Vec<(usize, Range<usize>)>>>;
 
-    /// A candidate whose calls take a given time, by its own word, and that dies after some blocks.
+    /// A candidate whose calls take a given time by its own clock, and that fails after some blocks.
     struct Scripted {
         who: usize,
         call: Duration,
@@ -231,7 +233,7 @@ mod tests {
 
     const BUDGET: Budget = Budget { rounds: 4, block: Duration::from_micros(200) };
 
-    /// The samples and the log of candidates with these times of a call, each dying after so many blocks.
+    /// The samples and the log of candidates with these times of a call, each failing after this number of blocks.
     fn scripted(candidates: &[(Duration, usize)]) -> (Samples, Vec<(usize, Range<usize>)>) {
         let log = Log::default();
         let prepare = |who: usize| -> Ready {
@@ -243,7 +245,7 @@ mod tests {
         (samples, log)
     }
 
-    /// One that moves itself, one that must be prepared anew, one that fails to move; each time of a call is the number of moves.
+    /// One candidate relocates itself, one must be prepared again, one fails to relocate. The time of a call is the number of relocations.
     #[test]
     fn at_each_epoch_all_candidates_are_relocated() {
         struct Mover(Result<bool, ()>, u32);
@@ -282,14 +284,14 @@ mod tests {
         }
     }
 
-    /// How long a move takes at an epoch; 0 is that of being made ready.
+    /// The time of a relocation at an epoch; 0 is the preparation.
     type Script = fn(usize) -> Duration;
 
-    /// The epochs at which candidates moved whose moves take scripted times by the experiment's clock.
+    /// The epochs at which candidates relocated; their relocations take scripted times by the experiment's clock.
     fn epochs_of_moves<const N: usize>(scripts: [Script; N]) -> [Vec<usize>; N] {
         let (log, now, moves) = (Log::default(), Cell::new(Duration::ZERO), RefCell::new([const { Vec::new() }; N]));
         let prepare = |who: usize| -> Ready {
-            // A call fills a block: everyone has one at first and those that find its length, and then one in each round.
+            // A call fills a block. Each candidate has one call at first, then those that find its length, and then one in each round.
             let epoch = log.lock().unwrap().len().checked_sub((1 + TRIALS) * N).map_or(0, |blocks| blocks / (N * BUDGET.rounds));
             now.set(now.get() + scripts[who](epoch));
             moves.borrow_mut()[who].push(epoch);
@@ -302,8 +304,8 @@ mod tests {
         moves
     }
 
-    /// A stall of the machine at one of its moves, whenever it comes, makes no candidate immovable; one that takes long at each of them moves
-    /// twice, and one that takes long from some move on stops when that is plain.
+    /// A stall of the machine during one relocation, at any epoch, does not end the relocations of a candidate. A candidate that takes long
+    /// at each of them relocates twice. One that takes long from some epoch on stops when that is clear.
     #[test]
     fn a_stall_costs_no_move() {
         const SLOW: Duration = Duration::from_secs(1);
@@ -325,10 +327,10 @@ mod tests {
         assert_eq!(always, [1, 8]);
     }
 
-    /// A stall while the length of a block is found changes nothing in it.
+    /// A stall while the length of a block is determined does not change it.
     #[test]
     fn a_stall_makes_no_short_blocks() {
-        /// Ten times the block is lost at these of its calls.
+        /// Ten times the length of a block is lost at these of its calls.
         struct Stalling(Vec<usize>, usize);
         impl Evaluation for Stalling {
             fn run(&mut self, _: Range<usize>) -> Result<(), NoAnswer> {
@@ -368,7 +370,7 @@ mod tests {
             assert_eq!(samples.of(which).len(), EPOCHS * BUDGET.rounds);
             assert!(samples.of(which).iter().all(|ns| (ns - call.as_nanos() as f64).abs() < 1e-6), "{:?}", samples.of(which));
         }
-        // After everyone's first calls come the blocks, each but the slow one's behind its warming up.
+        // After the first calls of all candidates come the blocks, each after its warm-up, except that of the slow one.
         let rounds = 5 * EPOCHS * BUDGET.rounds;
         let blocks: Vec<_> = log[log.len() - rounds..].iter().filter(|(who, range)| range.len() == samples.calls[*who]).collect();
         let mut orders: Vec<Vec<usize>> = Vec::new();
@@ -393,7 +395,7 @@ mod tests {
     #[test]
     fn one_that_dies_leaves_the_others_their_rounds() {
         let call = Duration::from_micros(50);
-        // Two calls and three trials find the length of a block, two more are its rounds.
+        // Two calls and three trials determine the length of a block; two more are its rounds.
         let (samples, _) = scripted(&[(call, usize::MAX), (call, 7), (call, 0)]);
         assert!(samples.of(0).iter().all(|ns| ns.is_finite()));
         assert!(samples.of(1)[1].is_finite() && samples.of(1)[2..].iter().all(|ns| ns.is_nan()));

@@ -11,7 +11,7 @@ use featherbench_model::Random;
 use featherbench_results::{Kind, Relation, Row, Verdict, canonical_json};
 use serde_json::json;
 
-/// An experiment whose A/A control fails is invalid by itself; when more than one in this many controls of a robot do, all its times are.
+/// An experiment whose A/A ratio is bad is not valid. If more than one in this number of a robot's A/A ratios is bad, none of its times is.
 const BAD_CONTROLS: usize = 4;
 
 /// All rows of a robot.
@@ -27,14 +27,14 @@ pub(super) fn rows(gates: &Gates, robot: &Robot, finished: &[Finished]) -> Vec<R
     machine.chain(checked).chain(overheads).chain(timed).collect()
 }
 
-/// Why no time of this robot counts: too many of its controls say that the machine was not quiet, or say nothing.
+/// Why no time of this robot counts: too many of its A/A ratios show that the machine was not quiet, or are missing.
 fn noise(experiments: &[Experiment]) -> Option<String> {
     let timed = || experiments.iter().filter(|experiment| experiment.samples.is_ok());
     let (controls, bad) = (timed().count(), timed().filter(|experiment| experiment.noise().is_some()).count());
     (bad * BAD_CONTROLS > controls).then(|| format!("{bad} of {controls} A/A controls of this robot are not 1: the machine was not quiet"))
 }
 
-/// What the machine can do. The rows belong to no robot.
+/// The machine's performance. The rows belong to no robot.
 fn machine(cell: &Cell, robot: &Robot, outcome: &Outcome) -> Vec<Row> {
     let blank = Row { kind: Kind::Measured, quantity: MACHINE.into(), ..row(cell, robot) };
     let blank = Row { family: String::new(), robot: String::new(), nq: None, nv: None, bodies: None, depth: None, ..blank };
@@ -48,7 +48,7 @@ fn machine(cell: &Cell, robot: &Robot, outcome: &Outcome) -> Vec<Row> {
     };
     let complaint = measured.complaint();
     let Machine { peak, scalar, resolution, empty } = measured;
-    // The peak is a limit, and does not count where it is none.
+    // A peak that is not valid does not count.
     let values = [
         ("fma_per_ns", "1/ns", peak, complaint.as_ref()),
         ("fma_per_ns_per_lane", "1/ns", peak / LANES as f64, complaint.as_ref()),
@@ -63,8 +63,8 @@ fn machine(cell: &Cell, robot: &Robot, outcome: &Outcome) -> Vec<Row> {
     values.map(row).into()
 }
 
-/// What it takes to call an engine whose times are estimates, by the clock that subtracts it. One that does not offer the robot has its row
-/// in the check.
+/// The overhead of calling an engine whose times are estimates, by the clock that subtracts it. An engine that does not offer the robot has
+/// its row in the check.
 fn overhead(robot: &Robot, (cell, outcome): &Finished) -> Option<Row> {
     let blank = Row {
         kind: Kind::Measured,
@@ -85,7 +85,7 @@ fn overhead(robot: &Robot, (cell, outcome): &Finished) -> Option<Row> {
     }
 }
 
-/// A measured row that does not count where there is a complaint; a row without a value says already why.
+/// A measured row, not valid if there is a complaint. A row without a value has its reason already.
 fn judged(row: Row, complaint: Option<&str>) -> Row {
     match complaint.filter(|_| row.value.is_some()) {
         Some(reason) => row.invalid(reason),
@@ -98,7 +98,7 @@ struct Check {
     engine: String,
     method: String,
     quantity: String,
-    /// Why they do not.
+    /// The reason, if they do not.
     complaint: Option<String>,
     row: Option<Row>,
 }
@@ -120,7 +120,7 @@ impl Check {
             Verdict::Fail => Some(format!("a wrong answer has no time: {}", row.reason)),
             _ => Some(row.reason.clone()),
         };
-        // Our own good answers are the agreement study's engine; here only what others, or failures, say is news.
+        // Our own good answers belong to the agreement study; here only other engines and failures have rows.
         let news = cell.engine != REFERENCE || complaint.is_some();
         let (engine, method, quantity) = (cell.engine.clone(), cell.method.clone(), cell.quantity.clone());
         Self { engine, method, quantity, complaint, row: news.then(|| gates.explain(row)) }
@@ -133,7 +133,7 @@ struct Experiment<'a> {
     blank: Row,
     candidates: Vec<Candidate>,
     samples: Result<Samples, String>,
-    /// The second copy of the reference over the first, or why it is not known.
+    /// The ratio of the A/A replicate to the reference, or why it is not known.
     control: Result<Estimate, &'static str>,
 }
 
@@ -145,7 +145,7 @@ impl<'a> Experiment<'a> {
             Ok(_) => outcome_samples(cell, outcome).ok_or_else(|| "the outcome holds no samples".to_owned()),
         };
         let cache = cell.params["cache"].as_str().unwrap_or_default().to_owned();
-        // The candidates stand in rows of their own: a parameter that lists them would stand in each.
+        // The candidates have rows of their own: a parameter with all of them would be in each row.
         let params = json!({"states": cell.params["states"], "seconds": cell.params["seconds"]});
         let blank = Row { kind: Kind::Measured, cache, params: canonical_json(&params), ..row(cell, robot) };
         let mut experiment = Self { cell, blank, candidates, samples, control: Err("the experiment has no A/A control") };
@@ -158,7 +158,7 @@ impl<'a> Experiment<'a> {
         experiment
     }
 
-    /// Why no time of this experiment counts, when its control says so, or says nothing.
+    /// Why no time of this experiment counts, if its A/A ratio shows that or is missing.
     fn noise(&self) -> Option<String> {
         match &self.control {
             Ok(control) => control.complaint(),
@@ -189,7 +189,7 @@ impl<'a> Experiment<'a> {
                 .find(|check| check.engine == candidate.engine && check.method == candidate.method && check.quantity == self.cell.quantity);
             let usual = format!("{REFERENCE} {}", self.cell.method);
             if candidate.control {
-                // A reference that refused from the start has its row in the check, and nothing to compare.
+                // A reference that failed from the start has its row in the check, and there is nothing to compare.
                 if self.control.is_err() && check.is_some_and(|check| check.complaint.is_some()) {
                     continue;
                 }
@@ -206,7 +206,7 @@ impl<'a> Experiment<'a> {
             };
             let ns = samples.of(which);
             if ns.iter().any(|ns| ns.is_nan()) {
-                // One that refused from the start has its row in the check.
+                // A candidate that failed from the start has its row in the check.
                 if complaint.is_none() {
                     let row = Row { metric: "ns_per_call".into(), unit: "ns".into(), ..blank };
                     rows.push(row.without_value(Verdict::Error, "it stopped answering while it was timed"));

@@ -1,4 +1,4 @@
-//! Raw samples: what an experiment leaves behind, as the outcome of its cell and as a line of the run's side file.
+//! Raw samples: the data of an experiment, as the outcome of its cell and as a line of the run's side file.
 
 use featherbench_bench::{Cell, Finished, Outcome};
 use serde_json::json;
@@ -9,17 +9,17 @@ pub(super) struct Samples {
     /// Calls in a block of each candidate.
     pub calls: Vec<usize>,
     rounds: usize,
-    /// Ready by candidate; NaN where there was none.
+    /// Candidate after candidate, each round by round; NaN where there was none.
     ns: Vec<f64>,
 }
 
 impl Samples {
-    /// Room for the blocks of candidates with these calls.
+    /// Memory for the blocks of candidates with these calls.
     pub fn new(calls: Vec<usize>, rounds: usize) -> Self {
         Self { ns: vec![f64::NAN; calls.len() * rounds], calls, rounds }
     }
 
-    /// Keeps a block.
+    /// Stores a block.
     pub fn set(&mut self, candidate: usize, round: usize, ns: f64) {
         self.ns[candidate * self.rounds + round] = ns;
     }
@@ -35,7 +35,7 @@ impl Samples {
         std::iter::once(self.calls.len() as f64).chain(calls).chain(self.ns.iter().copied()).collect()
     }
 
-    /// Read back; `None` of numbers that are no samples.
+    /// Samples from the outcome of a cell; `None` if the numbers are not samples.
     pub fn from_values(values: &[f64]) -> Option<Self> {
         let (&candidates, rest) = values.split_first()?;
         let candidates = candidates as usize;
@@ -45,7 +45,7 @@ impl Samples {
     }
 }
 
-/// Who is timed in an experiment.
+/// A candidate of an experiment.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Candidate {
     /// The engine's name.
@@ -54,7 +54,7 @@ pub(super) struct Candidate {
     pub version: String,
     /// Its method.
     pub method: String,
-    /// Whether it is the second copy of the reference.
+    /// Whether it is the A/A replicate.
     pub control: bool,
     /// Whether its times are estimates.
     pub estimate: bool,
@@ -83,14 +83,14 @@ impl Candidate {
     }
 }
 
-/// The raw samples of every experiment as lines of JSON: cell, robot, quantity, cache regime, candidate, calls of a block, and the
-/// nanoseconds per call of its blocks, round by round (`null` where there is none).
+/// The raw samples of every experiment as lines of JSON. Each has cell, robot, quantity, cache regime, candidate, and calls of a block.
+/// Then come the nanoseconds per call of its blocks, round by round (`null` where there is none).
 pub(super) fn lines(finished: &[Finished]) -> String {
     let mut text = String::new();
     for (cell, outcome) in finished {
         let Some(samples) = outcome_samples(cell, outcome) else { continue };
         for (which, candidate) in Candidate::of(cell).iter().enumerate() {
-            // A tenth of a picosecond is far below what a clock can tell; the outcomes keep every bit.
+            // A tenth of a picosecond is far below the resolution of a clock; the outcomes keep every bit.
             let ns: Vec<Option<f64>> = samples.of(which).iter().map(|ns| ns.is_finite().then(|| (ns * 1e4).round() / 1e4)).collect();
             let line = json!({
                 "cell": cell.id(), "model": cell.robot, "quantity": cell.quantity, "cache": cell.params["cache"],

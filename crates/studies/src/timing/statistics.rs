@@ -1,24 +1,24 @@
-//! What can be concluded from the blocks of a paired experiment.
+//! Conclusions from the blocks of a paired experiment.
 //!
-//! Each round gives every candidate one block, in random order; a *ratio* is formed within a round, of two blocks that ran within
-//! milliseconds of each other, and the median over the rounds is taken. What is slow or fast for a while (a neighbour, a processor's
-//! frequency) stands on both sides of such a ratio and cancels; in the ratio of two medians it need not.
+//! Each round gives every candidate one block, in random order. A *ratio* is formed within a round, of two blocks that ran within
+//! milliseconds of each other. Then the median over the rounds is taken. A disturbance that lasts for a while (another program, a
+//! processor's frequency) is on both sides of such a ratio and cancels. In the ratio of two medians it need not.
 //!
-//! Intervals are percentile bootstrap intervals: epochs (rounds in one layout of the memory) are drawn with replacement, whole, with all
-//! blocks of their rounds together; the median is taken again, and the interval holds the middle of what came out. So it tells how far the
-//! median would move in other layouts too. Every draw comes from a generator with a seed.
+//! Intervals are percentile bootstrap intervals. Whole epochs (rounds in one layout of the memory) are drawn with replacement, with all
+//! blocks of their rounds. The median is taken of each draw, and the interval contains the middle of these medians. So it shows how much
+//! the median would vary in other layouts too. Every draw comes from a generator with a seed.
 
 use super::protocol::EPOCHS;
 use crate::quantile;
 use featherbench_model::Random;
 
-/// Share of the bootstrap's medians inside an interval that is reported.
+/// Fraction of the bootstrap's medians inside an interval that is reported.
 pub(super) const LEVEL: f64 = 0.95;
-/// The same for an A/A control: a robot has some twenty of them, and chance alone must not void it more often than once in fifty runs.
+/// The same for an A/A ratio. A robot has about twenty of them; chance alone must not invalidate it more often than once in fifty runs.
 pub(super) const CONTROL_LEVEL: f64 = 0.999;
-/// Two engines differ when their ratio's interval lies beyond one by more than this; the control of an experiment must lie within it.
+/// Two engines differ if the interval of their ratio is farther from one than this. The interval of an A/A ratio must be within it.
 pub(super) const NOISE: f64 = 0.02;
-/// Times that the epochs are drawn again: the ends of an interval at [`CONTROL_LEVEL`] then have one median beyond them.
+/// Number of bootstrap draws: one median is then beyond each end of an interval at [`CONTROL_LEVEL`].
 const RESAMPLES: usize = 2000;
 
 /// A median with its interval.
@@ -32,7 +32,7 @@ pub(super) struct Estimate {
     pub high: f64,
 }
 
-/// How an engine compares with the reference.
+/// The result of comparing an engine with the reference.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Finding {
     /// It takes longer, by more than the noise.
@@ -44,12 +44,12 @@ pub(super) enum Finding {
 }
 
 impl Estimate {
-    /// The median of samples; the share `level` of the bootstrap's medians lies in its interval. NaN of no samples, or where one is NaN.
+    /// The median of samples. The fraction `level` of the bootstrap's medians is in its interval. NaN without samples, or if one is NaN.
     pub fn median(samples: &[f64], level: f64, random: &mut Random) -> Self {
         if samples.is_empty() || samples.iter().any(|sample| sample.is_nan()) {
             return Self { value: f64::NAN, low: f64::NAN, high: f64::NAN };
         }
-        // Fewer samples than epochs are each their own; what does not fill an epoch is not drawn.
+        // If there are fewer samples than epochs, each is an epoch. Samples that do not fill an epoch are not drawn.
         let epoch = (samples.len() / EPOCHS).max(1);
         let epochs = samples.len() / epoch;
         let mut drawn = samples[..epoch * epochs].to_vec();
@@ -67,13 +67,13 @@ impl Estimate {
         Self { value: median(&mut samples.to_vec()), low: quantile(&medians, tail), high: quantile(&medians, 1.0 - tail) }
     }
 
-    /// The median over the rounds of an engine's block over the reference's.
+    /// The median over the rounds of the ratio of an engine's block to the reference's.
     pub fn ratio(engine: &[f64], reference: &[f64], level: f64, random: &mut Random) -> Self {
         let ratios: Vec<f64> = engine.iter().zip(reference).map(|(a, b)| a / b).collect();
         Self::median(&ratios, level, random)
     }
 
-    /// What this ratio says: a difference is one beyond the noise, not one beyond one.
+    /// The finding: a difference exists if the interval is beyond 1 ± noise, not just beyond one.
     pub fn finding(&self) -> Finding {
         if self.low > 1.0 + NOISE {
             Finding::Slower
@@ -84,8 +84,8 @@ impl Estimate {
         }
     }
 
-    /// Why this ratio of two copies of one program shows that the experiment cannot be believed: its interval goes beyond the noise. (Within
-    /// it the two may differ for good, as their data lie at other places: no finding is made of so little.) `None` when it does not show that.
+    /// Why the experiment is not valid: the interval of this ratio of two copies of one program is wider than 1 ± [`NOISE`]. `None` if it
+    /// is within. (Within it the two may really differ, as their data are at different places. No finding is made from so little.)
     pub fn complaint(&self) -> Option<String> {
         let Self { value, low, high } = self;
         let good = *low >= 1.0 - NOISE && *high <= 1.0 + NOISE;
@@ -99,7 +99,7 @@ fn draw(random: &mut Random, count: usize) -> usize {
     ((u64::from(random.bits32()) * count as u64) >> 32) as usize
 }
 
-/// The middle of the samples, or the mean of the two in the middle; their order changes.
+/// The median of the samples, or the mean of the two in the middle; it reorders them.
 fn median(samples: &mut [f64]) -> f64 {
     let (middle, odd) = (samples.len() / 2, samples.len() % 2 == 1);
     let (below, &mut upper, _) = samples.select_nth_unstable_by(middle, f64::total_cmp);
@@ -118,10 +118,10 @@ mod tests {
 
     /// Rounds of an experiment: ten in each epoch.
     const ROUNDS: usize = 10 * EPOCHS;
-    /// Experiments of each kind: what must hold is counted.
+    /// Experiments of each kind; the test counts those that are right.
     const TRIALS: usize = 60;
 
-    /// A machine's noise: what it does to the two blocks of each round.
+    /// The noise of a machine: factors on the two blocks of each round.
     type Noise = fn(&mut Random, usize) -> [f64; 2];
 
     /// A standard normal number (Box and Muller).
@@ -140,18 +140,18 @@ mod tests {
         block.map(|time| if random.below(8) == 0 { time * random.uniform(1.1, 3.0) } else { time })
     }
 
-    /// The machine becomes slower by two fifths in the course of the run.
+    /// The machine becomes 40 % slower during the run.
     fn drift(random: &mut Random, round: usize) -> [f64; 2] {
         jitter(random, round).map(|time| time * (1.0 + 0.4 * round as f64 / ROUNDS as f64))
     }
 
-    /// Another program comes and goes: every seven rounds the frequency changes, or does not.
+    /// Another program starts and stops: every seven rounds the frequency changes, or does not.
     fn frequencies(random: &mut Random, round: usize) -> [f64; 2] {
         let slow = Random::new(5, round as u64 / 7).below(2) == 1;
         jitter(random, round).map(|time| if slow { 1.3 * time } else { time })
     }
 
-    /// Each layout of the memory has a price of its own for each of the two.
+    /// Each layout of the memory has its own factor for each of the two.
     fn layouts(random: &mut Random, round: usize) -> [f64; 2] {
         let mut layout = Random::new(6, round as u64 / 10);
         jitter(random, round).map(|time| time * (1.0 + 0.01 * layout.unit()))
@@ -160,7 +160,7 @@ mod tests {
     const MACHINES: [(&str, Noise); 5] =
         [("jitter", jitter), ("interruptions", interruptions), ("drift", drift), ("frequencies", frequencies), ("layouts", layouts)];
 
-    /// Reference and engine on a noisy machine, the engine this much slower.
+    /// Reference and engine on a noisy machine; the engine is slower by this factor.
     fn blocks(noise: Noise, slower: f64, seed: u64) -> (Vec<f64>, Vec<f64>) {
         let mut random = Random::new(seed, 7);
         let rounds = (0..ROUNDS).map(|round| {
@@ -211,12 +211,12 @@ mod tests {
             let unseen = count(|seed| ratio(noise, 1.03, seed, CONTROL_LEVEL).complaint().is_none());
             assert_eq!(unseen, 0, "{name}: copies that differ by 3 %");
         }
-        // Blocks that relocate by half: the interval is wider than the noise allows.
+        // Blocks that vary by a factor of two: the interval is wider than the noise allows.
         let wild: Noise = |random, _| [(); 2].map(|()| random.uniform(1.0, 2.0));
         assert_eq!(count(|seed| ratio(wild, 1.0, seed, CONTROL_LEVEL).complaint().is_some()), TRIALS);
     }
 
-    /// Why ratios are formed within rounds: two medians may fall into different states of the machine.
+    /// Why ratios are formed within rounds: two medians may belong to different states of the machine.
     #[test]
     fn the_ratio_of_two_medians_would_be_misled_where_the_median_of_ratios_is_not() {
         let farthest = |of: fn(Vec<f64>, Vec<f64>) -> f64| {
@@ -251,7 +251,7 @@ mod tests {
         Random::new(3, 9)
     }
 
-    /// The same by the book: epochs drawn whole, medians by sorting, and the ends between the two neighbours.
+    /// The same by the textbook: whole epochs drawn, medians by sorting, and the ends between the two neighbours.
     fn by_the_book(samples: &[f64], epoch: usize, level: f64) -> [f64; 3] {
         let sorted = |mut numbers: Vec<f64>| {
             numbers.sort_by(|a, b| a.partial_cmp(b).unwrap());
@@ -281,7 +281,7 @@ mod tests {
 
     #[test]
     fn an_interval_is_that_of_the_book() {
-        // One round an epoch, two, two and a rest that no epoch begins in, and fewer rounds than epochs.
+        // One round per epoch, two, two with a remainder that fills no epoch, and fewer rounds than epochs.
         for (rounds, epoch) in [(60, 1), (120, 2), (150, 2), (179, 2), (180, 3), (7, 1), (2, 1)] {
             let mut random_samples = Random::new(11, rounds as u64);
             let samples: Vec<f64> = (0..rounds).map(|_| random_samples.uniform(1.0, 2.0)).collect();
@@ -289,14 +289,14 @@ mod tests {
                 let Estimate { value, low, high } = Estimate::median(&samples, level, &mut random());
                 let due = by_the_book(&samples, epoch, level);
                 for (found, due) in [value, low, high].into_iter().zip(due) {
-                    // The ends' place between two medians is rounded in another order.
+                    // The position of the ends between two medians is rounded in another order.
                     assert!((found - due).abs() <= 1e-12, "{rounds} rounds at {level}: {found} is not {due}");
                 }
             }
         }
     }
 
-    /// Of two samples a and b, a quarter of the resamples has the median a, a half (a + b)/2, a quarter b.
+    /// Of two samples a and b, a quarter of the resamples has the median a, half of them (a + b)/2, a quarter b.
     #[test]
     fn the_interval_of_two_samples_is_known() {
         let ends = |level| {
@@ -330,7 +330,7 @@ mod tests {
         assert!(drawn.iter().all(|&times| (880..=1120).contains(&times)), "{drawn:?}");
     }
 
-    /// A finding and a complaint begin beyond the noise, on either side of one, and not at it.
+    /// A finding and a complaint begin beyond the noise, on either side of one, not at its limit.
     #[test]
     fn the_noise_ends_at_two_percent() {
         let ends = |low: f64, high: f64| Estimate { value: 0.5 * (low + high), low, high };

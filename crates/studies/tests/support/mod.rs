@@ -1,4 +1,4 @@
-//! What the tests of the studies share: an engine that is wrong on purpose, and a whole agreement run in memory.
+//! What the tests of the studies share: an engine with planted errors, and a whole agreement run in memory.
 
 use featherbench_bench::run::{Silent, compare, evaluate, plan};
 use featherbench_bench::{Context, Engine, Evaluation, Gates, Identity, NoAnswer, OutcomeStore, Quantity, Robot, Study, Suite, accounted};
@@ -12,7 +12,7 @@ use std::ops::Range;
 use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
-/// One state of each case: what the gates see must be seen here already.
+/// One state of each case: errors that the gates can find must be found with these.
 pub const STATES: usize = StateBatch::HEAD;
 /// The seed of the states.
 pub const SEED: u64 = 1;
@@ -28,7 +28,7 @@ pub fn gates_folder() -> PathBuf {
     PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../../ci")
 }
 
-/// The repository's own gates, with no known deviation or with these.
+/// The repository's own gates, with these known deviations or with none.
 pub fn gates(deviations: &str) -> Gates {
     let folder = tempfile::tempdir().unwrap();
     std::fs::copy(gates_folder().join("gates.toml"), folder.path().join("gates.toml")).unwrap();
@@ -36,24 +36,24 @@ pub fn gates(deviations: &str) -> Gates {
     Gates::read(folder.path()).unwrap()
 }
 
-/// A question and an answer for one state, to be spoiled.
+/// A question and an answer for one state, to be changed.
 pub struct Answer<'a> {
     pub robot: &'a Robot,
     pub quantity: Quantity,
-    /// The state asked about.
+    /// The state of the question.
     pub state: usize,
     pub values: &'a mut Vec<f64>,
 }
 
-/// What a double whose times are estimates says to have subtracted.
+/// The overhead that a double subtracts if its times are estimates.
 pub const OVERHEAD: Duration = Duration::from_nanos(700);
 
-/// What an engine does to its answers.
+/// A change of an engine's answers.
 pub type Twist = fn(Answer);
 
-/// An engine named `double` that answers with our kernels, on another robot than it says, at other states, or with twisted answers.
+/// An engine named `double` that answers with our kernels, but on another robot than it reports, at other states, or with changed answers.
 ///
-/// It reads back what it was told: only the answers of its algorithms can reveal it.
+/// Its read-back is the right robot: only the answers of its algorithms can show the error.
 pub struct Double {
     identity: Identity,
     featherbench: Featherbench,
@@ -65,7 +65,7 @@ pub struct Double {
 }
 
 impl Double {
-    /// An honest one.
+    /// A right one.
     pub fn of(robot: &Robot) -> Self {
         let identity = Identity { name: "double".into(), version: "1".into(), source: EngineSource::Own, build: BTreeMap::new() };
         Self {
@@ -79,7 +79,7 @@ impl Double {
         }
     }
 
-    /// One that holds an altered robot.
+    /// One with an altered robot.
     pub fn altered(robot: &Robot, alter: impl FnOnce(&mut Description)) -> Self {
         let mut double = Self::of(robot);
         alter(&mut double.held.description);
@@ -87,12 +87,12 @@ impl Double {
         double
     }
 
-    /// One that spoils its answers.
+    /// One that changes its answers.
     pub fn twisting(robot: &Robot, twist: Twist) -> Self {
         Self { twist, ..Self::of(robot) }
     }
 
-    /// One that misreads the states.
+    /// One that misinterprets the states.
     pub fn misreading(robot: &Robot, misread: impl FnOnce(&mut StateBatch)) -> Self {
         let mut states = robot.states.clone();
         misread(&mut states);
@@ -105,12 +105,12 @@ impl Double {
         self
     }
 
-    /// One whose times are estimates, of one method of each quantity.
+    /// One whose times are estimates, for one method of each quantity.
     pub fn estimating(self) -> Self {
         Self { estimates: true, ..self }
     }
 
-    /// One that supports nothing, whatever it offers.
+    /// One that supports nothing, although it offers methods.
     pub fn refusing(robot: &Robot) -> Self {
         Self { refuses: true, ..Self::of(robot) }
     }
@@ -202,12 +202,12 @@ impl Evaluation for Twisted<'_> {
     }
 }
 
-/// The records of the whole agreement study: planned, evaluated with outcomes on disk, compared and judged.
+/// The rows of the whole agreement study: planned, evaluated with outcomes on disk, compared and judged.
 pub fn agreement(robot: &Robot, gates: &Gates, engines: &[Box<dyn Engine>]) -> Vec<Row> {
     whole(&Agreement, robot, gates, engines)
 }
 
-/// The records of a whole study.
+/// The rows of a whole study.
 pub fn whole(study: &dyn Study, robot: &Robot, gates: &Gates, engines: &[Box<dyn Engine>]) -> Vec<Row> {
     let context = Context { robots: std::slice::from_ref(robot), engines, gates, seed: SEED };
     let folder = tempfile::tempdir().unwrap();
@@ -217,12 +217,12 @@ pub fn whole(study: &dyn Study, robot: &Robot, gates: &Gates, engines: &[Box<dyn
     compare(study, &context, finished)
 }
 
-/// The records of our own kernels beside a double.
+/// The rows of our own kernels and a double.
 pub fn beside_native(robot: &Robot, gates: &Gates, double: Double) -> Vec<Row> {
     agreement(robot, gates, &[Box::new(Featherbench::new()), Box::new(double)])
 }
 
-/// A suite that asks the double beside our own kernels, and expects as many rows that pass, or deviate as known, as are here.
+/// A suite that asks the double beside our own kernels. It expects the number of given rows that pass or have a known deviation.
 pub fn suite(expected: &[Row]) -> Suite {
     let mut expect: BTreeMap<(&str, &str), usize> = BTreeMap::new();
     for row in expected.iter().filter(|row| accounted(row)) {
@@ -239,12 +239,13 @@ pub fn suite(expected: &[Row]) -> Suite {
     Suite::read(&path).unwrap().0
 }
 
-/// How the conditions on the sharpness of computed bounds begin.
+/// The beginning of the conditions on the sharpness of computed bounds.
 pub const SHARPNESS: &str = "kinds of joint and base for which";
-/// What the conditions on our own errors beside the best engine's have in common: they are about many robots, and featherbench answers alone.
+/// The common text of the conditions on our own errors over the best engine's. They need many robots; these tests have one, and no other
+/// engine.
 pub const OVER_BEST: &str = " of over_best on ";
 
-/// The conditions that are not met; sharp bounds are asked of a suite as a whole, and not of one robot.
+/// The conditions that are not met, except the sharp bounds, which a suite as a whole must have.
 pub fn red(conditions: &[Expectation]) -> Vec<&str> {
     let about_the_engine = |what: &str| !what.starts_with(SHARPNESS) && !what.contains(OVER_BEST);
     let unmet = conditions.iter().filter(|condition| condition.verdict != Verdict::Pass && about_the_engine(&condition.what));
