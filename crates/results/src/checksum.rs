@@ -1,7 +1,7 @@
-//! Checksums: what tells a damaged file from the one that was written.
+//! Checksums: they show whether a file was damaged after it was written.
 //!
-//! A file of our own format is *sealed*: its last line is the checksum of all bytes before it. Files that other programs read are not
-//! changed; `checksums.txt` in their folder holds their checksums in the form of `b3sum`, so that `b3sum --check checksums.txt` reads it too.
+//! A file of our own format is *sealed*: its last line is the checksum of all bytes before it. Files for other programs are not changed.
+//! `checksums.txt` in their folder has their checksums in the form of `b3sum`, so that `b3sum --check checksums.txt` reads it too.
 
 use std::collections::BTreeMap;
 use std::io;
@@ -43,7 +43,7 @@ pub struct Checksums {
 }
 
 impl Checksums {
-    /// The checksums of files as they are now.
+    /// The present checksums of files.
     ///
     /// # Errors
     /// [`ResultsError::Io`] when one of the files cannot be read.
@@ -97,10 +97,10 @@ impl Checksums {
         self.by_name.keys().map(String::as_str)
     }
 
-    /// The bytes of a file that has the checksum it should have.
+    /// The bytes of a file with the right checksum.
     ///
     /// # Errors
-    /// [`ResultsError::Unlisted`] when its checksum is not known, [`ResultsError::Checksum`] when it has another one, and
+    /// [`ResultsError::Unlisted`] when its checksum is not known, [`ResultsError::Checksum`] when it is different, and
     /// [`ResultsError::Io`].
     pub fn bytes(&self, name: &str) -> Result<Vec<u8>, ResultsError> {
         let (path, sums) = (self.folder.join(name), self.path());

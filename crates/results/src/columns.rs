@@ -1,8 +1,8 @@
-//! The one table from which the header, the schema and the documentation of a row are made.
+//! The one table of columns: the header, the schema and the documentation of a row are made from it.
 
 use serde::Serialize;
 
-/// How a column is written.
+/// The type of a column's text.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum ColumnType {
@@ -23,12 +23,12 @@ pub enum ColumnType {
 pub struct Column {
     /// Its name in the header.
     pub name: &'static str,
-    /// How it is written.
+    /// Its type.
     #[serde(rename = "type")]
     pub kind: ColumnType,
-    /// The unit of its numbers; empty for text, `unit` where the column of that name tells it.
+    /// The unit of its numbers. Empty for text; `unit` if the column of that name has it.
     pub unit: &'static str,
-    /// The words it may hold; empty unless it is a [`ColumnType::Word`].
+    /// The words that it may have; empty unless it is a [`ColumnType::Word`].
     pub words: &'static [&'static str],
     /// What it means.
     pub description: &'static str,

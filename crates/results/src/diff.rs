@@ -1,23 +1,23 @@
-//! What changed between two runs beyond noise: a pure function over their rows.
+//! The changes between two runs beyond noise: a pure function of their rows.
 
 use crate::{Kind, Relation, Row};
 use std::collections::BTreeMap;
 
-/// An error has moved when it is this many times larger or smaller: rounding in another order of operations stays below.
+/// An error has changed if it is this many times larger or smaller: rounding in another order of operations causes less.
 pub const ERROR_FACTOR: f64 = 4.0;
-/// Errors below this are as good as none: four roundings.
+/// Errors below this count as zero: four roundings.
 pub const ERROR_FLOOR: f64 = 8.9e-16;
-/// Two times differ when their ratio is beyond this, or beyond the A/A controls of their experiments where those are wider.
+/// Two times differ if their ratio is beyond this, or beyond the A/A ratios of their experiments if those are wider.
 pub const TIME_NOISE: f64 = 0.02;
 
-/// In which way a row changed.
+/// The kind of a change.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Change {
-    /// Its verdict is another.
+    /// The verdict differs.
     Verdict,
-    /// Its value, a count, is another.
+    /// The value, a count, differs.
     Count,
-    /// Its error moved by more than [`ERROR_FACTOR`].
+    /// The error changed by more than [`ERROR_FACTOR`].
     Error,
     /// Its time: the intervals of the two runs are apart, and their ratio is beyond the noise.
     Time,
@@ -47,7 +47,7 @@ impl Change {
 /// A row that changed.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Changed<'a> {
-    /// In which way.
+    /// The kind of change.
     pub change: Change,
     /// The row in the first run.
     pub before: Option<&'a Row>,
@@ -56,13 +56,13 @@ pub struct Changed<'a> {
 }
 
 impl Changed<'_> {
-    /// The value after over the value before, where both are there.
+    /// The value after over the value before, if both exist.
     pub fn factor(&self) -> Option<f64> {
         Some(self.after?.value? / self.before?.value?)
     }
 }
 
-/// What changed, and how much was compared.
+/// The changes, and how many rows were compared.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Diff<'a> {
     /// The rows that changed, by kind of change and then in the order of the second run.
@@ -73,7 +73,7 @@ pub struct Diff<'a> {
     pub invalid: usize,
 }
 
-/// What tells rows of a run apart. Parameters do not: a time may be taken with other settings and is still the same time.
+/// The columns that identify a row in a run. Parameters are not among them: the same time may be taken with other settings.
 type Key<'a> = ([&'a str; 11], usize);
 
 /// Compares two runs.
@@ -109,7 +109,7 @@ pub fn diff<'a>(before: &'a [Row], after: &'a [Row]) -> Diff<'a> {
     diff
 }
 
-/// Rows with what tells them apart; those that nothing does are numbered.
+/// Rows with the columns that identify them. Rows that have the same columns are numbered.
 fn keyed(rows: &[Row]) -> Vec<(Key<'_>, &Row)> {
     let mut seen: BTreeMap<[&str; 11], usize> = BTreeMap::new();
     rows.iter()
@@ -137,23 +137,23 @@ fn identity(row: &Row) -> [&str; 11] {
     ]
 }
 
-/// Whether a row is a time, or a ratio of times: what has an interval.
+/// Whether a row is a time, or a ratio of times: rows with an interval.
 fn is_time(row: &Row) -> bool {
     row.kind == Kind::Measured && matches!(row.metric.as_str(), "ns_per_call" | "ratio")
 }
 
-/// How an exact value changed, if it did.
+/// The kind of change of an exact value, if it changed.
 fn moved(before: &Row, after: &Row) -> Option<Change> {
     if before.kind == Kind::Measured || after.kind == Kind::Measured {
         return None;
     }
     let (was, is) = (before.value?, after.value?);
-    // What has a unit of its own, or must equal its bound, is a count; a pure number is an error.
+    // A value with a unit, or one that must equal its bound, is a count; a pure number is an error.
     let count = after.unit != "1" || after.relation == Some(Relation::Eq);
     if count {
         return (was != is).then_some(Change::Count);
     }
-    // NaN.max(x) is x: an error that is no number would be as good as none.
+    // NaN.max(x) is x: a NaN would count as zero.
     if was.is_nan() || is.is_nan() {
         return (was.is_nan() != is.is_nan()).then_some(Change::Error);
     }
@@ -161,7 +161,7 @@ fn moved(before: &Row, after: &Row) -> Option<Change> {
     (is > was * ERROR_FACTOR || was > is * ERROR_FACTOR).then_some(Change::Error)
 }
 
-/// The noise of a run's experiments by robot, quantity and cache: how far the control's interval reaches from 1.
+/// The noise of a run's experiments by robot, quantity and cache: the larger distance of the A/A interval's ends from 1.
 struct Noise<'a>(BTreeMap<[&'a str; 3], f64>);
 
 impl<'a> Noise<'a> {
@@ -174,20 +174,20 @@ impl<'a> Noise<'a> {
         Self(noise)
     }
 
-    /// The noise of a time in both runs; NaN where a control is no number, and nothing can be told.
+    /// The noise of a time in both runs; NaN if an A/A ratio is NaN, and the noise is not known.
     fn beside(&self, after: &Self, row: &Row) -> f64 {
         let key = [row.robot.as_str(), row.quantity.as_str(), row.cache.as_str()];
         [self.0.get(&key), after.0.get(&key)].into_iter().flatten().copied().fold(TIME_NOISE, larger)
     }
 }
 
-/// The interval of a time; a time without one is its own.
+/// The interval of a time; without one, the time itself.
 fn interval(row: &Row) -> (f64, f64) {
     let value = row.value.unwrap_or(f64::NAN);
     (row.ci_low.unwrap_or(value), row.ci_high.unwrap_or(value))
 }
 
-/// Whether two times differ: disjoint intervals, and a ratio beyond the noise of both runs; or one of the two is no number.
+/// Whether two times differ: disjoint intervals, and a ratio beyond the noise of both runs; or one of the two is NaN.
 fn apart(before: &Row, after: &Row, noise: f64) -> bool {
     let (was, is) = (interval(before), interval(after));
     let disjoint = is.0 > was.1 || is.1 < was.0;
@@ -196,7 +196,7 @@ fn apart(before: &Row, after: &Row, noise: f64) -> bool {
     value.is_nan() != other.is_nan() || disjoint && (ratio > 1.0 + noise || ratio < 1.0 / (1.0 + noise))
 }
 
-/// The larger of two numbers; NaN when either is, so that no fold can lose one.
+/// The larger of two numbers; NaN when either is, so that a fold keeps every NaN.
 fn larger(a: f64, b: f64) -> f64 {
     if a.is_nan() || b.is_nan() { f64::NAN } else { a.max(b) }
 }

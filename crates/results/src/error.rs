@@ -1,16 +1,16 @@
-//! What can go wrong between a row and its file.
+//! The errors between a row and its file.
 
 use std::path::PathBuf;
 
-/// Why records or run information could not be read or written; the text names file, line and column as far as they are known.
+/// Why rows or run information could not be read or written; the text names file, line and column as far as they are known.
 #[derive(Debug, thiserror::Error)]
 pub enum ResultsError {
-    /// The file system refused.
+    /// An error of the file system.
     #[error("{path}: {source}", path = path.display())]
     Io {
         /// The file that was being read or written.
         path: PathBuf,
-        /// What the system said.
+        /// The error of the operating system.
         source: std::io::Error,
     },
     /// The first line of a CSV file is not the list of columns in [`COLUMNS`](crate::COLUMNS).
@@ -20,9 +20,9 @@ pub enum ResultsError {
         path: PathBuf,
         /// Counted from one.
         position: usize,
-        /// What stands there (empty if the header ends before).
+        /// The column there (empty if the header ends before).
         found: String,
-        /// What this version writes there (empty if the header should have ended).
+        /// The column of this version (empty if the header should have ended).
         expected: String,
     },
     /// A field does not read as its column's type.
@@ -47,7 +47,7 @@ pub enum ResultsError {
         /// What is wrong with it.
         what: String,
     },
-    /// A whole number of rows is missing or was added: the file does not hold as many as its run wrote.
+    /// Whole rows are missing or were added: the file does not have as many as its run wrote.
     #[error("{path}: holds {found} rows, but its run wrote {expected}", path = path.display())]
     RowCount {
         /// The file.
@@ -57,7 +57,7 @@ pub enum ResultsError {
         /// Rows that `run.json` announces.
         expected: u64,
     },
-    /// A file has another checksum than it had when it was written.
+    /// A file's checksum is not the one from when it was written.
     #[error(
         "{path}: its checksum is not the one in {sums}: one of the two files was altered or damaged after it was written; \
          finish the run again with `run --resume`, or make the data again",
@@ -78,7 +78,7 @@ pub enum ResultsError {
         /// The file's name.
         name: String,
     },
-    /// A file that has a checksum is not there.
+    /// A file that has a checksum is missing.
     #[error("{path}: is not there, but {sums} has its checksum", path = path.display(), sums = sums.display())]
     Absent {
         /// The file of checksums.
@@ -86,7 +86,7 @@ pub enum ResultsError {
         /// The file.
         path: PathBuf,
     },
-    /// There are no checksums: what the folder holds is not finished, or was written by a version that made none.
+    /// There are no checksums: the run in the folder is not finished, or an older version wrote it.
     #[error("{path}: is not there: the run did not finish, or an earlier version wrote it; run it again, or continue it with --resume", path = path.display())]
     Unfinished {
         /// The file of checksums.
@@ -97,7 +97,7 @@ pub enum ResultsError {
     Json {
         /// The file.
         path: PathBuf,
-        /// What the parser said, with line and column.
+        /// The parser's error, with line and column.
         source: serde_json::Error,
     },
     /// A `run.json` of another format than [`RUN_FORMAT`](crate::RUN_FORMAT).
@@ -115,9 +115,9 @@ pub enum ResultsError {
     NonFinite {
         /// The file that would have been written.
         path: PathBuf,
-        /// Which number, with its row where it has one.
+        /// The number, with its row if it has one.
         field: String,
-        /// What it is.
+        /// Its value.
         value: f64,
     },
 }

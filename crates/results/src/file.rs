@@ -1,4 +1,4 @@
-//! Files: rows as CSV, whole runs, and writing that leaves either the old file or the new one.
+//! Files: rows as CSV, whole runs, and writing after which there is either the old file or the new one.
 
 use std::fs::{self, File, OpenOptions};
 use std::io::{self, Write};
@@ -40,7 +40,7 @@ pub fn atomic_write(path: &Path, bytes: &[u8]) -> Result<(), ResultsError> {
         file.sync_all()?;
         drop(file);
         fs::rename(&temporary, path)?;
-        // The rename itself lasts only once the folder is flushed; systems that cannot flush a folder are left as they are.
+        // The renaming is permanent only once the folder is flushed. Systems that cannot flush a folder are left as they are.
         if let Ok(folder) = File::open(&folder) {
             let _ = folder.sync_all();
         }
@@ -52,10 +52,10 @@ pub fn atomic_write(path: &Path, bytes: &[u8]) -> Result<(), ResultsError> {
     })
 }
 
-/// The rows as the text of a CSV file, header first. `path` only serves the error: it is where the text is meant to go.
+/// The rows as the text of a CSV file, header first. `path` is the file in errors: the text is meant for it.
 ///
-/// The unit 1 of a pure ratio is written as the word [`RATIO`]: readers that guess the type of a column from its first rows took a column that
-/// begins with many `1` for integers, and broke at the first other unit. Quotes do not help against that.
+/// The unit 1 of a pure ratio is written as the word [`RATIO`]. Some readers guess the type of a column from its first rows. They took a
+/// column that begins with many `1` for integers, and failed at the first other unit. Quotes do not help against that.
 pub fn to_csv(records: &[Row], path: &Path) -> Result<Vec<u8>, ResultsError> {
     let failed = |error: csv::Error| ResultsError::Io { path: path.to_owned(), source: io::Error::other(error) };
     let mut writer = csv::WriterBuilder::new().has_headers(false).from_writer(Vec::new());
@@ -80,12 +80,13 @@ pub fn write_csv(path: &Path, records: &[Row]) -> Result<(), ResultsError> {
     atomic_write(path, &to_csv(records, path)?)
 }
 
-/// Reads rows from a CSV file. The header must be this version's, every field of its type, no row cut short, and no pass beyond its bound.
+/// Reads rows from a CSV file. The header must be this version's, every field must have its type, every row all fields, and no pass a value
+/// beyond its bound.
 pub fn read_csv(path: &Path) -> Result<Vec<Row>, ResultsError> {
     parse_csv(&read_text(path)?, path)
 }
 
-/// The rows of a CSV text, held to the same; `path` is what errors call it.
+/// The rows of a CSV text, by the same rules; `path` is its name in errors.
 pub fn parse_csv(text: &str, path: &Path) -> Result<Vec<Row>, ResultsError> {
     let mut reader = csv::ReaderBuilder::new().from_reader(text.as_bytes());
     let header = reader.headers().map_err(|error| csv_error(path, &error))?;
@@ -126,16 +127,16 @@ pub fn parse_csv(text: &str, path: &Path) -> Result<Vec<Row>, ResultsError> {
     Ok(records)
 }
 
-/// Writes a run's files into its folder, each in one step: rows, columns, `run.json`, and last the checksums of these, so that a folder
-/// without them is known to be unfinished.
+/// Writes a run's files into its folder, each in one step: rows, columns, `run.json`, and last their checksums. So a folder without
+/// checksums is known to be unfinished.
 ///
 /// # Errors
-/// [`ResultsError`]; the folder then holds no valid checksums of what was written before.
+/// [`ResultsError`]; the folder then has no valid checksums of the earlier files.
 pub fn write_run(folder: &Path, run: &RunInfo, records: &[Row]) -> Result<(), ResultsError> {
     write_run_with(folder, run, records, &[])
 }
 
-/// The same, with the checksums of more files of the run that stand in the folder already.
+/// The same, with the checksums of further files of the run that are in the folder already.
 ///
 /// # Errors
 /// As [`write_run`].
@@ -149,12 +150,12 @@ pub fn write_run_with(folder: &Path, run: &RunInfo, records: &[Row], more: &[&st
 /// Reads a run's folder back.
 ///
 /// # Errors
-/// [`ResultsError`]: every file of the run must have its checksum, and there must be as many rows as were written.
+/// [`ResultsError`]: every file of the run must have its checksum, and the number of rows must be that which was written.
 pub fn read_run(folder: &Path) -> Result<(RunInfo, Vec<Row>), ResultsError> {
     let sums = Checksums::read(folder)?;
     let text = |name: &str| {
         let path = folder.join(name);
-        // Bytes that have their checksum are those of a text: only a list that was made for another file holds others.
+        // Bytes with the right checksum are a text, unless the list was made for another file.
         let text = String::from_utf8(sums.bytes(name)?);
         text.map_err(|error| ResultsError::Io { path, source: io::Error::new(io::ErrorKind::InvalidData, error) })
     };
@@ -182,7 +183,8 @@ pub(crate) fn read_text(path: &Path) -> Result<String, ResultsError> {
     fs::read_to_string(path).map_err(|source| ResultsError::Io { path: path.to_owned(), source })
 }
 
-/// The first word in a row that its column does not know, as column and complaint; the CSV reader's own error would not name the column.
+/// The first field with a word that its column does not have, as column and complaint. The CSV reader's own error would not name the
+/// column.
 fn unknown_word(row: &csv::StringRecord) -> Option<(&'static str, String)> {
     COLUMNS.iter().zip(row).find_map(|(column, word)| {
         let known = column.words.is_empty() || word.is_empty() && column.kind == ColumnType::Word || column.words.contains(&word);
@@ -190,7 +192,7 @@ fn unknown_word(row: &csv::StringRecord) -> Option<(&'static str, String)> {
     })
 }
 
-/// Names the file, line and column of what the CSV reader stumbled over.
+/// The file, line and column of the CSV reader's error.
 fn csv_error(path: &Path, error: &csv::Error) -> ResultsError {
     let path = path.to_owned();
     let line = error.position().map_or(0, csv::Position::line);

@@ -1,8 +1,8 @@
 //! The result row of featherbench, and how it is written and read back.
 //!
-//! A [`Row`] is the finest result that its question needs: one row of `rows.csv`, with the columns of [`COLUMNS`]. A failure is a row
-//! too, with its [`Verdict`] and its reason. [`RunInfo`] is what all the rows of one run share: where, when, with what. Together they are
-//! everything that a report needs, and this crate holds nothing that computes them.
+//! A [`Row`] is the unit of result: one row of `rows.csv`, with the columns of [`COLUMNS`]. A failure is a row too, with its [`Verdict`]
+//! and its reason. [`RunInfo`] is common to all rows of one run: where, when, with what. Together they are everything that a report needs.
+//! This crate computes no results.
 //!
 //! ```
 //! use featherbench_results::{Row, Relation, Verdict};

@@ -15,14 +15,14 @@ macro_rules! words {
             /// Every value, in the order of declaration.
             pub const ALL: &'static [Self] = &[$(Self::$variant),+];
 
-            /// The word that stands in files.
+            /// The word in files.
             pub const fn as_str(self) -> &'static str {
                 match self {
                     $(Self::$variant => $word),+
                 }
             }
 
-            /// The value that a word stands for, if it is one.
+            /// The value of a word, if there is one.
             pub fn parse(word: &str) -> Option<Self> {
                 Self::ALL.iter().copied().find(|value| value.as_str() == word)
             }
@@ -38,7 +38,7 @@ macro_rules! words {
 pub(crate) use words;
 
 words! {
-    /// Whether running again must give the same row.
+    /// Whether another run must give the same row.
     Kind {
         /// The same bits on every run, shard and thread count.
         Exact = "exact",
@@ -48,7 +48,7 @@ words! {
 }
 
 words! {
-    /// How `value` must stand to `bound` for the row to pass.
+    /// The relation between `value` and `bound` with which the row passes.
     Relation {
         /// value ≤ bound.
         Le = "le",
@@ -62,19 +62,19 @@ words! {
 }
 
 words! {
-    /// What became of a row.
+    /// The judgement of a row.
     Verdict {
-        /// The value stands to its bound as the relation asks.
+        /// The value and its bound have the relation.
         Pass = "pass",
-        /// It does not.
+        /// They do not.
         Fail = "fail",
-        /// A value without a bound: nothing is judged.
+        /// A value without a bound: it is not judged.
         Info = "info",
-        /// Nothing was computed, and that was known beforehand: the engine does not offer it.
+        /// No value, which was known before: the engine does not offer it.
         Skip = "skip",
-        /// A value was due and none came, or it was not a finite number.
+        /// A value is missing, or it was not a finite number.
         Error = "error",
-        /// The value fails its bound for a cause that is known and written down.
+        /// The value fails its bound for a known cause.
         Deviation = "deviation",
     }
 }

@@ -2,7 +2,7 @@
 
 use serde_json::Value;
 
-/// Writes JSON in the one form that identical parameters share: keys sorted, no spaces, numbers in their shortest exact decimals.
+/// Writes JSON so that identical parameters have identical text: keys sorted, no spaces, numbers in their shortest exact decimals.
 ///
 /// ```
 /// let params = serde_json::json!({"states": 1000, "algorithm": "aba"});
@@ -11,7 +11,7 @@ use serde_json::Value;
 pub fn canonical_json(value: &Value) -> String {
     match value {
         Value::Object(map) => {
-            // serde_json's own order depends on a feature that any crate of a build can switch on.
+            // serde_json's own order depends on a feature that any crate of a build can enable.
             let mut entries: Vec<_> = map.iter().collect();
             entries.sort_by_key(|(key, _)| key.as_str());
             let entries: Vec<String> =

@@ -4,13 +4,13 @@ use serde::{Deserialize, Serialize};
 
 use crate::{Kind, Relation, Verdict};
 
-/// Margins are clamped to this many decades: a value of exactly zero lies inside its bound by that, not by infinity.
+/// Margins are limited to this many decades: the margin of an exact zero is this, and not infinite.
 pub const MARGIN_LIMIT: f64 = 16.0;
 
-/// One result. What each field means stands in [`COLUMNS`](crate::COLUMNS), which has a column for each, in this order.
+/// One result. [`COLUMNS`](crate::COLUMNS) defines each field: it has a column for each, in this order.
 ///
-/// Fill in what identifies the row with a struct literal over [`Row::default`], then close it with one of [`gated`](Self::gated),
-/// [`informed`](Self::informed) and [`without_value`](Self::without_value): they keep value, margin, verdict and reason consistent.
+/// Set the fields that identify the row with a struct literal over [`Row::default`]. Then close it with one of [`gated`](Self::gated),
+/// [`informed`](Self::informed) and [`without_value`](Self::without_value). They keep value, margin, verdict and reason consistent.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Row {
     /// Id of the run.
@@ -31,7 +31,7 @@ pub struct Row {
     pub bodies: Option<u64>,
     /// Joints on the longest path from base to leaf.
     pub depth: Option<u64>,
-    /// Who answered.
+    /// The engine that answered.
     pub engine: String,
     /// The version it reports.
     pub engine_version: String,
@@ -39,13 +39,13 @@ pub struct Row {
     pub method: String,
     /// Its arithmetic.
     pub precision: String,
-    /// What was computed or timed.
+    /// The quantity that was computed or timed.
     pub quantity: String,
     /// Kind of input states, or empty.
     pub states: String,
     /// The body that the row is about, or empty.
     pub body: String,
-    /// Over what a time was taken, or empty.
+    /// The cache regime of a time, or empty.
     pub cache: String,
     /// Measure of the value.
     pub metric: String,
@@ -59,23 +59,23 @@ pub struct Row {
     pub ci_high: Option<f64>,
     /// Unit of `value`, `bound` and `floor`.
     pub unit: String,
-    /// With what the value was compared.
+    /// The engine or value with which the value was compared.
     pub reference: String,
-    /// How `value` must stand to `bound`.
+    /// The relation between `value` and `bound` that passes.
     pub relation: Option<Relation>,
     /// The gate.
     pub bound: Option<f64>,
-    /// Least error that the rounding of the inputs makes unavoidable.
+    /// The error that the rounding of the inputs makes unavoidable: the conditioning bound.
     pub floor: Option<f64>,
     /// Decades to the gate, positive inside.
     pub margin: Option<f64>,
-    /// What became of the row.
+    /// The judgement of the row.
     pub verdict: Verdict,
-    /// Whether the value counts; a measurement does not where its control says so.
+    /// Whether the value counts; a measurement does not if its A/A ratio is bad.
     pub valid: bool,
-    /// Whether the value is an estimate: what calling the engine takes was measured with it, and subtracted.
+    /// Whether the value is an estimate: the overhead of calling the engine was measured with it, and subtracted.
     pub estimated: bool,
-    /// Why it is not a pass, or not valid; for people, no program reads it.
+    /// Why it does not pass, or is not valid. It is for people; no program reads it.
     pub reason: String,
     /// Parameters, in the form of [`canonical_json`](crate::canonical_json).
     pub params: String,
@@ -126,7 +126,7 @@ impl Default for Row {
 impl Row {
     /// Closes the row with a value that is judged: a pass or a failure with its margin.
     ///
-    /// A value or a bound that is not finite makes the row an error that says so; the value is then absent.
+    /// A value or a bound that is not finite makes the row an error with that reason; the value is then absent.
     pub fn gated(mut self, value: f64, relation: Relation, bound: f64) -> Self {
         self.relation = Some(relation);
         if !bound.is_finite() {
@@ -144,7 +144,7 @@ impl Row {
         self
     }
 
-    /// Closes the row with a value that nothing judges. One that is not finite makes it an error that says so.
+    /// Closes the row with a value that is not judged. One that is not finite makes it an error with that reason.
     pub fn informed(mut self, value: f64) -> Self {
         if !value.is_finite() {
             return self.without_value(Verdict::Error, format!("the value is {value}, not a finite number"));
@@ -159,7 +159,8 @@ impl Row {
         self
     }
 
-    /// Closes a measured row with a value and its interval, judged by nothing. An end that is not finite makes it an error that says so.
+    /// Closes a measured row with a value and its interval, which is not judged. An end that is not finite makes it an error with that
+    /// reason.
     pub fn measured(mut self, value: f64, low: f64, high: f64) -> Self {
         self = self.informed(value);
         if self.value.is_none() {
@@ -172,7 +173,7 @@ impl Row {
         self
     }
 
-    /// Says that the value does not count, and why.
+    /// Marks the value as not valid, with the reason.
     pub fn invalid(mut self, reason: impl Into<String>) -> Self {
         (self.valid, self.reason) = (false, reason.into());
         self
@@ -187,7 +188,7 @@ impl Row {
         self
     }
 
-    /// Turns a failure or an error into a known deviation: value and margin stay, the cause is put before the old reason.
+    /// Turns a failure or an error into a known deviation: value and margin do not change, the cause is put before the old reason.
     pub fn deviating(mut self, cause: &str) -> Self {
         self.reason = if self.reason.is_empty() { cause.to_owned() } else { format!("{cause} ({})", self.reason) };
         self.verdict = Verdict::Deviation;
@@ -200,7 +201,7 @@ impl Row {
         [("value", self.value), low, high, ("bound", self.bound), ("floor", self.floor), ("margin", self.margin)]
     }
 
-    /// What contradicts itself in the row, as column and complaint: the trace of a row that was altered by hand.
+    /// A contradiction in the row, as column and complaint: it shows that a row was altered by hand.
     pub(crate) fn contradiction(&self) -> Option<(&'static str, String)> {
         if let Some((name, value)) = self.floats().into_iter().find_map(|(name, value)| Some((name, value.filter(|v| !v.is_finite())?))) {
             return Some((name, format!("{value} is not a finite number")));
@@ -219,7 +220,7 @@ impl Row {
 }
 
 impl Relation {
-    /// Whether `value` stands to `bound` as the relation asks; a NaN never does.
+    /// Whether `value` and `bound` have the relation; a NaN never has.
     pub fn holds(self, value: f64, bound: f64) -> bool {
         match self {
             Self::Le => value <= bound,
@@ -231,8 +232,8 @@ impl Relation {
 
     /// Distance to the gate in decades, positive inside: log₁₀(bound/|value|), or its negative for [`Ge`](Self::Ge).
     ///
-    /// Clamped to ±[`MARGIN_LIMIT`]; a value equal to its bound has margin 0 even where both are zero. None for [`Eq`](Self::Eq), which
-    /// knows no distance, and where value and bound have no ratio because one of them is negative.
+    /// Limited to ±[`MARGIN_LIMIT`]. A value equal to its bound has margin 0, even if both are zero. `None` for [`Eq`](Self::Eq), which has
+    /// no distance, and where value and bound have no ratio because one of them is negative.
     pub fn margin(self, value: f64, bound: f64) -> Option<f64> {
         let (small, large) = match self {
             Self::Le => (value, bound),
@@ -250,7 +251,7 @@ impl Relation {
         Some((large.log10() - small.log10()).clamp(-MARGIN_LIMIT, MARGIN_LIMIT))
     }
 
-    /// The relation in words, to stand between value and bound.
+    /// The relation in words, to be put between value and bound.
     pub fn phrase(self) -> &'static str {
         match self {
             Self::Le => "at most",

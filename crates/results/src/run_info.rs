@@ -1,4 +1,4 @@
-//! What all rows of a run share: `run.json`.
+//! `run.json`: what all rows of a run have in common.
 
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -12,13 +12,13 @@ use crate::{ResultsError, Verdict};
 /// Format of `run.json` and `schema.json` that this version writes and reads.
 pub const RUN_FORMAT: u32 = 1;
 
-/// Provenance of a run. Text that could not be found out is empty.
+/// Provenance of a run. Text that is not known is empty.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct RunInfo {
     /// [`RUN_FORMAT`] when it was written; [`write`](Self::write) sets it.
     pub format: u32,
-    /// Id of the run, as in the records.
+    /// Id of the run, as in the rows.
     pub run: String,
     /// Name of the suite.
     pub suite: String,
@@ -26,7 +26,7 @@ pub struct RunInfo {
     pub suite_hash: String,
     /// The exact command that reproduces the run.
     pub command: String,
-    /// When it started, as the caller wrote it (RFC 3339 by custom).
+    /// When it started, as the caller wrote it (usually RFC 3339).
     pub started: String,
     /// Version of featherbench.
     pub version: String,
@@ -42,21 +42,21 @@ pub struct RunInfo {
     pub target_features: Vec<String>,
     /// The machine.
     pub host: Host,
-    /// Seed of the run, from which each cell's is made.
+    /// Seed of the run; each cell's seed is made from it.
     pub seed: u64,
     /// Whether the engines themselves answered, not recordings of them.
     pub live: bool,
-    /// How many rows `rows.csv` holds.
+    /// Number of rows in `rows.csv`.
     pub rows: u64,
-    /// Who answered, or should have.
+    /// The engines.
     pub engines: Vec<EngineInfo>,
-    /// What they were asked about.
+    /// The robots.
     pub models: Vec<ModelInfo>,
     /// Wall time of each phase, in seconds.
     pub seconds: BTreeMap<String, f64>,
-    /// How many passing rows the suite expects, and what was found.
+    /// The number of passing rows that the suite expects, and the number found.
     pub expected: Vec<Expectation>,
-    /// In which conventions the engines differ from ours, or do not.
+    /// The conventions of the engines, compared with ours.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub conventions: Vec<Convention>,
 }
@@ -92,13 +92,13 @@ pub struct Host {
 }
 
 words! {
-    /// Where an engine's answers came from.
+    /// The source of an engine's answers.
     EngineSource {
         /// Our own kernels, in this process.
         Own = "own",
         /// Answers recorded earlier, read from a file.
         Recorded = "recorded",
-        /// The engine itself, asked during the run.
+        /// The engine itself, during the run.
         Live = "live",
     }
 }
@@ -107,24 +107,24 @@ words! {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct EngineInfo {
-    /// Name, as in the records.
+    /// Name, as in the rows.
     pub name: String,
     /// The version it reports.
     pub version: String,
-    /// Where its answers came from.
+    /// The source of its answers.
     pub source: EngineSource,
     /// Build flags and the like, by name.
     pub build: BTreeMap<String, String>,
-    /// `ok`, or a word for what went wrong.
+    /// `ok`, or a word for the error.
     pub status: String,
-    /// Why, where the status is not `ok`.
+    /// The reason, if the status is not `ok`.
     pub reason: String,
 }
 
 words! {
-    /// Where a model came from.
+    /// The origin of a model.
     ModelOrigin {
-        /// A generator of ours.
+        /// A generator.
         Generated = "generated",
         /// A description of a real robot.
         Robot = "robot",
@@ -135,7 +135,7 @@ words! {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct ModelInfo {
-    /// Name, as in the records.
+    /// Name, as in the rows.
     pub name: String,
     /// Content hash of its description.
     pub hash: String,
@@ -143,7 +143,7 @@ pub struct ModelInfo {
     pub origin: ModelOrigin,
     /// Licence of the description.
     pub licence: String,
-    /// Where the description was taken from, or the generator's call.
+    /// The source of the description, or the generator's text.
     pub source: String,
     /// Length of the configuration vector.
     pub nq: u64,
@@ -153,26 +153,26 @@ pub struct ModelInfo {
     pub bodies: u64,
     /// Joints on the longest path from base to leaf.
     pub depth: u64,
-    /// What is unusual about it: numbers that were normalised, bodies without mass.
+    /// Its warnings: numbers that were normalised, bodies without mass.
     #[serde(default)]
     pub notes: Vec<String>,
 }
 
-/// A convention of an engine beside ours.
+/// A convention of an engine, and ours.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Convention {
-    /// The engine, as in the records.
+    /// The engine, as in the rows.
     pub engine: String,
-    /// What it is about: free v, screw pitch, armature.
+    /// Its topic: free v, screw pitch, armature.
     pub topic: String,
-    /// What the engine does.
+    /// The engine's convention.
     pub theirs: String,
-    /// What we do.
+    /// Our convention.
     pub ours: String,
-    /// The function that converts, or how it comes that none is needed.
+    /// The function that converts, or why none is needed.
     pub conversion: String,
-    /// The test that asks the engine itself, and fails if the convention were otherwise.
+    /// The test that asks the engine itself, and fails if the convention does not hold.
     pub test: String,
 }
 
@@ -180,15 +180,15 @@ pub struct Convention {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Expectation {
-    /// What is counted: "drake: passing rows of fd".
+    /// The rows that are counted: "drake: passing rows of fd".
     pub what: String,
-    /// How many the suite asks for.
+    /// The number that the suite expects.
     pub expected: u64,
-    /// How many there are.
+    /// The number found.
     pub found: u64,
     /// The judgement.
     pub verdict: Verdict,
-    /// Why it is not a pass.
+    /// Why it does not pass.
     pub reason: String,
 }
 
@@ -198,9 +198,9 @@ impl RunInfo {
         Self::parse(&read_text(path)?, path)
     }
 
-    /// The text of a `run.json`; `path` is what errors call it.
+    /// The contents of a `run.json`; `path` is its name in errors.
     pub fn parse(text: &str, path: &Path) -> Result<Self, ResultsError> {
-        /// Read first, so that another format is named as such and not as an unknown field.
+        /// Read first: so another format is reported as that, and not as an unknown field.
         #[derive(Deserialize)]
         struct Format {
             format: u32,
@@ -213,7 +213,7 @@ impl RunInfo {
         serde_json::from_str(text).map_err(json)
     }
 
-    /// Writes a `run.json` in one step, with the present format.
+    /// Writes a `run.json` in one step, with the current format.
     pub fn write(&self, path: &Path) -> Result<(), ResultsError> {
         let numbers =
             self.seconds.iter().map(|(phase, &seconds)| (phase.as_str(), seconds)).chain(self.host.load.map(|load| ("load", load)));

@@ -1,4 +1,4 @@
-//! The tests of rows and runs as one program: they share what is compiled for them.
+//! The tests of rows and runs as one program: so shared modules are compiled once.
 
 mod diff;
 mod integrity;

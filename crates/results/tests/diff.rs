@@ -7,7 +7,7 @@ fn error(model: &str, value: f64, bound: f64) -> Row {
     Row { metric: "backward".into(), unit: "1".into(), ..row }.gated(value, Relation::Le, bound)
 }
 
-/// A time with its interval, and the interval of its experiment's control.
+/// A time with its interval, and the A/A interval of its experiment.
 fn time(value: f64, spread: f64, control: f64) -> Vec<Row> {
     let row = Row {
         study: "timing".into(),
@@ -85,12 +85,12 @@ fn exact(metric: &str, unit: &str, value: f64) -> Row {
     Row { study: "operations".into(), metric: metric.into(), unit: unit.into(), ..Row::default() }.informed(value)
 }
 
-/// A measured row that is no time.
+/// A measured row that is not a time.
 fn measured(metric: &str, value: f64) -> Row {
     Row { study: "timing".into(), metric: metric.into(), unit: "1".into(), kind: Kind::Measured, ..Row::default() }.informed(value)
 }
 
-/// The kinds in the order of [`Change::ALL`]; within a kind, the order of the second run, and of the first for what is gone.
+/// The kinds in the order of [`Change::ALL`]. Within a kind, the order of the second run; for rows that are gone, that of the first.
 #[test]
 fn changes_are_listed_by_kind_and_then_in_the_order_of_the_run() {
     let small = |name: &str| error(name, 1e-15, 1e-14);
@@ -122,7 +122,7 @@ fn changes_are_listed_by_kind_and_then_in_the_order_of_the_run() {
     assert_eq!((found.compared, found.invalid), (6, 0));
 }
 
-/// Rows that nothing tells apart are compared one by one, in their order.
+/// Rows with the same key are compared one by one, in their order.
 #[test]
 fn rows_that_nothing_tells_apart_are_numbered() {
     let before = [exact("links", "links", 1.0), exact("links", "links", 2.0)];
@@ -138,7 +138,7 @@ fn rows_that_nothing_tells_apart_are_numbered() {
     assert_eq!(changes(&after, &before), [Change::Count, Change::Gone]);
 }
 
-/// Only exact values are counts or errors: a measured row that is no time says nothing by moving, in either run.
+/// Only exact values are counts or errors. A measured row that is not a time has no changes, in either run.
 #[test]
 fn measured_values_are_no_errors() {
     for metric in ["control", "finding", "instructions"] {
@@ -148,7 +148,7 @@ fn measured_values_are_no_errors() {
     assert_eq!(changes(&[measured("spread", 1.0)], &[now_exact(9.0)]), []);
     assert_eq!(changes(&[now_exact(1.0)], &[measured("spread", 9.0)]), []);
     assert_eq!(changes(&[now_exact(1.0)], &[now_exact(9.0)]), [Change::Error]);
-    // An exact row with the name of a time is none.
+    // An exact row with the metric of a time is not a time.
     let named = |value| Row { kind: Kind::Exact, ..measured("ns_per_call", value) };
     assert_eq!(changes(&[named(1.0)], &[named(1.1)]), []);
     assert_eq!(changes(&[named(1.0)], &[named(5.0)]), [Change::Error]);
@@ -162,16 +162,16 @@ fn what_is_a_count_and_what_is_an_error() {
     let equal = |value: f64| [Row { unit: "1".into(), ..exact("same", "1", value) }.gated(value, Relation::Eq, value)];
     assert_eq!(changes(&equal(100.0), &equal(101.0)), [Change::Count]);
     assert_eq!(changes(&[exact("stored", "numbers", 0.0)], &[exact("stored", "numbers", 1e-17)]), [Change::Count], "counts have no floor");
-    // The sign of a count is a change, that of an error is none.
+    // The sign of a count is a change, that of an error is not.
     assert_eq!(changes(&[exact("energy", "J", 1.0)], &[exact("energy", "J", -1.0)]), [Change::Count]);
     assert_eq!(changes(&[exact("drift", "1", 1.0)], &[exact("drift", "1", -1.0)]), []);
     assert_eq!(changes(&[exact("drift", "1", -1.0)], &[exact("drift", "1", -5.0)]), [Change::Error]);
-    // A row that never had a value has none to move.
+    // A row that never had a value has no change of value.
     let none = || Row { unit: "numbers".into(), ..Row::default() }.without_value(Verdict::Skip, "not offered");
     assert_eq!(changes(&[none()], &[none()]), []);
 }
 
-/// [`ERROR_FACTOR`] itself is no change, and [`ERROR_FLOOR`] stands for whatever is smaller, on either side.
+/// [`ERROR_FACTOR`] itself is not a change, and [`ERROR_FLOOR`] replaces any smaller value, on either side.
 #[test]
 fn errors_move_by_more_than_the_factor_and_above_the_floor() {
     let of = |was: f64, is: f64| changes(&[exact("scaled", "1", was)], &[exact("scaled", "1", is)]);
@@ -191,7 +191,7 @@ fn errors_move_by_more_than_the_factor_and_above_the_floor() {
     }
 }
 
-/// The noise of an experiment is how far its control's interval reaches from one, on the side where it reaches farther, in either run.
+/// The noise of an experiment is the larger distance of its A/A interval's ends from one, in either run.
 #[test]
 fn the_noise_is_the_farther_end_of_the_control() {
     let with = |value: f64, low: f64, high: f64| {
@@ -212,7 +212,7 @@ fn the_noise_is_the_farther_end_of_the_control() {
         assert_eq!(changes(&quiet, &calm), [Change::Time], "10 % and a control of 8 %");
         assert_eq!(changes(&calm, &quiet), [Change::Time]);
     }
-    // The control of another robot, quantity or cache is another experiment's.
+    // An A/A ratio of another robot, quantity or cache belongs to another experiment.
     let rename: [fn(&mut Row); 3] = [|row| row.robot += "2", |row| row.quantity += "2", |row| row.cache += "2"];
     for rename in rename {
         let mut after = with(110.0, 1.0, 1.0);
@@ -223,7 +223,7 @@ fn the_noise_is_the_farther_end_of_the_control() {
     }
 }
 
-/// Times without intervals are their own; a ratio's interval is that of the ratio.
+/// Times without intervals are their own intervals; a ratio's interval is that of the ratio.
 #[test]
 fn times_without_intervals_are_compared_as_they_are() {
     let bare = |metric: &str, value: f64| vec![Row { unit: "ns".into(), ..measured(metric, value) }];
@@ -232,7 +232,7 @@ fn times_without_intervals_are_compared_as_they_are() {
         assert_eq!(changes(&bare(metric, 103.0), &bare(metric, 100.0)), [Change::Time]);
         assert_eq!(changes(&bare(metric, 100.0), &bare(metric, 101.5)), []);
         assert_eq!(changes(&bare(metric, 101.5), &bare(metric, 100.0)), []);
-        // Exactly the noise that is always there, and a little more.
+        // Exactly the smallest noise, and a little more.
         let edge = 100.0 * (1.0 + TIME_NOISE);
         assert_eq!(changes(&bare(metric, 100.0), &bare(metric, edge - 1e-9)), []);
         assert_eq!(changes(&bare(metric, 100.0), &bare(metric, edge + 1e-9)), [Change::Time]);
@@ -273,7 +273,7 @@ fn invalid_times_are_counted_and_not_compared() {
     assert_eq!(changes(&failed, &time(100.0, 0.005, 0.01)), [Change::Verdict]);
 }
 
-/// A value that is no number is no small value: NaN.max(x) is x.
+/// A NaN is not a small value: NaN.max(x) is x.
 #[test]
 fn no_number_is_lost() {
     let lost = |row: &Row| Row { value: Some(f64::NAN), ..row.clone() };
@@ -289,7 +289,7 @@ fn no_number_is_lost() {
     };
     assert_eq!(changes(&base, &without(0, &base)), [Change::Time]);
     assert_eq!(changes(&without(0, &base), &base), [Change::Time]);
-    // A control whose interval is no number tells nothing about the noise, in either run and at either end: the time is not compared.
+    // If an end of the A/A interval is NaN, the noise is not known, in either run and at either end: the time is not compared.
     let lost_end = |low: bool, rows: &[Row]| {
         let mut rows = rows.to_vec();
         let control = &mut rows[1];

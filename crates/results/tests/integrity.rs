@@ -25,7 +25,7 @@ fn every_flipped_bit_of_a_run_is_an_error_that_names_the_file() {
     for name in [CSV_NAME, RUN_NAME, SCHEMA_NAME, CHECKSUMS_NAME, "samples.csv"] {
         let path = folder.path().join(name);
         let whole = fs::read(&path).unwrap();
-        // The list of columns is the same in every run: of it every eighth byte, all bits of everything else.
+        // The list of columns is the same in every run: every eighth byte of it is tested, and all bits of all other files.
         for at in (0..whole.len()).step_by(if name == SCHEMA_NAME { 8 } else { 1 }) {
             for bit in 0..8 {
                 let mut damaged = whole.clone();
@@ -62,7 +62,7 @@ fn a_file_that_is_missing_or_not_listed_is_named() {
     assert!(error.contains(CHECKSUMS_NAME) && error.contains("did not finish"), "{error}");
 }
 
-/// A run that is written over is unreadable until its checksums are written too, and then whole.
+/// A run that is being overwritten is unreadable until its checksums are written too.
 #[test]
 fn rows_of_another_run_do_not_pass_for_those_of_this_one() {
     let folder = tempfile::tempdir().unwrap();

@@ -1,4 +1,4 @@
-//! Rows and runs survive their files; damage is named.
+//! Rows and runs are read back as they were written; damage is named.
 
 use std::collections::BTreeMap;
 use std::fs;
@@ -12,7 +12,7 @@ use featherbench_results::{
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
 
-/// Text with everything that CSV quotes.
+/// Text with every character that CSV quotes.
 fn text() -> impl Strategy<Value = String> {
     prop_oneof![Just(String::new()), "[a-z_0-9]{1,12}", "[ -~\\n\\r\t\"',;éπ漢]{0,20}", Just("</script>\r\n\"x\",".to_owned())]
 }
@@ -60,7 +60,7 @@ proptest! {
         write_csv(&path, &rows).unwrap();
         let read = read_csv(&path).unwrap();
         prop_assert_eq!(&read, &rows);
-        // Equality of doubles forgets the sign of zero; bits don't.
+        // Doubles compare equal for both signs of zero; their bits do not.
         prop_assert_eq!(read[0].value.map(f64::to_bits), record.value.map(f64::to_bits));
         let json = serde_json::to_string(&record).unwrap();
         prop_assert_eq!(serde_json::from_str::<Row>(&json).unwrap(), record);
@@ -171,7 +171,7 @@ fn words_are_those_of_the_schema() {
     assert_eq!(Verdict::parse("Pass"), None);
 }
 
-/// Three honest rows as text, and what reading them says after `change`.
+/// Three valid rows as text, and the error of reading them after `change`.
 fn after(change: impl Fn(String) -> String) -> ResultsError {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("rows.csv");
@@ -297,7 +297,7 @@ fn a_run_that_was_altered_is_refused() {
     let text = fs::read_to_string(&path).unwrap();
     let read = |change: &str, to: &str| {
         fs::write(&path, text.replacen(change, to, 1)).unwrap();
-        // Altered by a program that makes the checksums anew.
+        // Altered by a program that renews the checksums.
         Checksums::of(folder.path(), &[CSV_NAME, RUN_NAME, SCHEMA_NAME]).unwrap().write().unwrap();
         read_run(folder.path()).expect_err("altered").to_string()
     };
@@ -319,8 +319,8 @@ fn numbers_that_are_not_finite_are_never_written() {
     assert!(!path.exists());
 }
 
-/// Readers that guess a column's type decide by its first rows: a field that reads as an integer, as a number, as a truth value or as
-/// anything else, in quotes or not. This is how polars 2.1 does it, with a hundred rows; pandas does it part by part.
+/// Readers that guess a column's type use its first rows. A field is an integer, a number, a truth value or something else, in quotes or
+/// not. So does polars 2.1, with a hundred rows; pandas does it part by part.
 fn guessed(fields: &[&str]) -> &'static str {
     let of = |field: &&str| match field.trim_matches('"') {
         "" => None,
@@ -357,8 +357,8 @@ fn raw(line: &str) -> Vec<&str> {
     fields
 }
 
-/// Two hundred rows of pure ratios, then times in other units: what the first hundred rows make a reader believe must be right of all that come
-/// after. A column that is empty there is guessed to be text, which every field is.
+/// Two hundred rows of pure ratios, then times in other units. The type that a reader guesses from the first hundred rows must be right for
+/// all later ones. A column that is empty there is guessed to be text, which every field is.
 #[test]
 fn the_first_hundred_rows_do_not_mislead_about_the_rest() {
     let ratio = Row {
@@ -399,7 +399,7 @@ fn an_atomic_write_leaves_the_old_file_or_the_new_one() {
     atomic_write(&path, b"new").unwrap();
     assert_eq!(fs::read(&path).unwrap(), b"new");
     assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 1, "a temporary file was left behind");
-    // A folder in the place of the file: the write fails, names the path, and cleans up.
+    // A folder in the place of the file: the write fails, names the path, and removes its temporary file.
     let blocked = folder.path().join("blocked");
     fs::create_dir(&blocked).unwrap();
     fs::write(blocked.join("inside"), b"").unwrap();
