@@ -170,7 +170,7 @@ pub trait Evaluation: Send {
     fn run(&mut self, range: Range<usize>) -> Result<(), NoAnswer>;
 
     /// Evaluates the states of the range and returns the time. The clock is read once before the loop over the states and once after it.
-    /// Both readings are in the process that runs the loop.
+    /// The process that runs the loop reads it.
     ///
     /// Beyond the end of the batch its states begin again. (An engine that is timed does so; this default does not.) Only the last answer
     /// must be kept.
