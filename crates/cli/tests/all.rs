@@ -1,4 +1,4 @@
-//! The tests of the command line as one program: they share what is compiled for them.
+//! The tests of the command line as one program: so shared modules are compiled once.
 
 mod bad_input;
 mod conventions;

@@ -1,5 +1,5 @@
-//! Bad input: each mistake ends with its exit code and a message that names file, line or field and the way out; nothing panics, nothing
-//! finished is lost.
+//! Bad input: each mistake ends with its exit code and a message that names file, line or field and says what to do. Nothing panics, and no
+//! finished work is lost.
 
 use crate::support;
 
@@ -53,7 +53,7 @@ fn broken_urdf_is_refused_by_file_line_and_name() {
     sandbox.run(&["gen", "urdf", "--file", "nowhere.urdf"]).expect(2, &["nowhere.urdf"]);
 }
 
-/// What a format cannot hold is named, and written without it only when that is asked for.
+/// Something that a format cannot hold is named, and left out only on request.
 #[test]
 fn formats_refuse_what_they_cannot_hold() {
     let sandbox = Sandbox::new();
@@ -91,7 +91,7 @@ fn broken_suites_are_refused_by_file_and_key() {
     sandbox.run(&["run", "--filter", "("]).expect(2, &["--filter"]);
 }
 
-/// A filter that lets nothing through is no good run.
+/// A filter that matches nothing is an error.
 #[test]
 fn a_filter_without_a_match_is_told_what_there_is() {
     let sandbox = Sandbox::new();
@@ -123,7 +123,7 @@ fn output_folders_are_never_overwritten() {
     run("full").expect(2, &["full", "not empty", "--out", "--resume"]);
     assert_eq!(std::fs::read_to_string(sandbox.path("full/precious")).unwrap(), "kept");
     sandbox.run(&["run", "--suite", "smoke", "--resume", "--out", "full"]).expect(2, &["no run to resume"]);
-    // A folder in which nobody can write, not even root.
+    // A folder in which no user can write, not even root.
     run("/proc/featherbench").expect(2, &["/proc/featherbench"]);
     sandbox.write("file", "");
     run("file/below").expect(2, &["file/below"]);
@@ -177,7 +177,7 @@ fn damaged_runs_are_refused_by_file() {
     let whole = std::fs::read(&path).unwrap();
     std::fs::write(&path, &whole[..whole.len() - 40]).unwrap();
     sandbox.run(&["gate", "out"]).expect(2, &["rows.csv"]);
-    // One bit, which leaves a row that reads well.
+    // One bit, after which the row can still be read.
     let at = whole.iter().rposition(u8::is_ascii_digit).unwrap();
     let mut flipped = whole.clone();
     flipped[at] ^= 1;
@@ -199,7 +199,7 @@ fn a_missing_python_is_exit_code_three() {
     sandbox.run(&["oracles", "status"]).expect(3, &["not installed", "oracles install"]);
 }
 
-/// What is no robot's file is told before any engine is installed or started.
+/// A file that is not a robot's is reported before any engine is installed or started.
 #[test]
 fn what_cannot_be_compared_gets_advice() {
     let sandbox = Sandbox::new();
@@ -235,7 +235,7 @@ fn what_cannot_be_compared_gets_advice() {
         std::fs::write(sandbox.path(name), bytes).unwrap();
         sandbox.run(&["compare", name]).expect(2, &[&[name], words].concat());
     }
-    // Every bad file is told, and the end names them all.
+    // Every bad file is reported, and the end names them all.
     sandbox
         .run(&["compare", "deep.xml", "wide.urdf"])
         .expect(2, &["not compared: deep.xml", "not compared: wide.urdf", "2 files cannot be compared"]);

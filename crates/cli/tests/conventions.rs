@@ -1,4 +1,4 @@
-//! The ledger of conventions: each row has its test, each test its row, each named function exists, and CONVENTIONS.md shows the ledger.
+//! The list of conventions: each row has its test, each test its row, each named function exists, and CONVENTIONS.md shows the list.
 
 use crate::support;
 

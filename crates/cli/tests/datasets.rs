@@ -16,7 +16,7 @@ fn files(folder: &Path) -> Vec<std::path::PathBuf> {
     found
 }
 
-/// The generators' calls stand beside the models in the default suite: `model = "…" # family:parameters`.
+/// The generators' texts are beside the models in the default suite: `model = "…" # family:parameters`.
 fn generated() -> Vec<(String, String)> {
     let suite = std::fs::read_to_string(project().join("datasets/suites/default.toml")).unwrap();
     let lines = suite.lines().filter_map(|line| line.strip_prefix("model = \"")?.split_once("\" # "));

@@ -1,10 +1,10 @@
-//! What holds over the whole workspace: nothing points back, kernels know nothing about files, and no test draws other numbers every time.
+//! Rules for the whole workspace: no dependency points back, kernels do not depend on files, and tests draw the same numbers every time.
 
 use cargo_metadata::{DependencyKind, Metadata, MetadataCommand, Package};
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
-/// What each crate may depend on among our own.
+/// The crates of ours on which each crate may depend.
 const ALLOWED: [(&str, &[&str]); 11] = [
     ("spatial", &[]),
     ("model", &["spatial"]),
@@ -47,7 +47,7 @@ fn nothing_points_back() {
     assert_eq!(seen.len(), ALLOWED.len(), "a crate of the design is missing");
 }
 
-/// The names of all packages that one reaches through normal dependencies, itself among them.
+/// The names of all packages that one depends on through normal dependencies, directly or not, and its own.
 fn reached(package: &str) -> BTreeSet<String> {
     let mut command = std::process::Command::new(env!("CARGO"));
     let tree = command.current_dir("../..").args(["tree", "--offline", "--edges", "normal", "--prefix", "none", "--package", package]);
@@ -59,27 +59,27 @@ fn reached(package: &str) -> BTreeSet<String> {
     names
 }
 
-/// What reads or writes files among what one package reaches: serde itself and whatever is named after it, and parsers.
+/// The packages for reading or writing files on which one package depends: serde, packages named after it, and parsers.
 fn serialization(package: &str) -> Vec<String> {
     let parsers = ["csv", "toml", "basic-toml", "roxmltree", "ron", "bincode", "postcard"];
     reached(package).into_iter().filter(|name| name.split(['-', '_']).any(|word| word == "serde") || parsers.contains(&&**name)).collect()
 }
 
-/// Kernels and models know nothing about files: no serialization below `formats` and `bench`.
+/// Kernels and models do not depend on files: no serialization below `formats` and `bench`.
 #[test]
 fn kernels_reach_no_serialization() {
     for kernel in ["featherbench-spatial", "featherbench-model", "featherbench-dynamics", "featherbench-reference"] {
         let found = serialization(kernel);
         assert!(found.is_empty(), "{kernel} reaches {found:?}");
     }
-    // The crates that may are seen to: the search finds what it is for.
+    // A crate that may have them has them: so the search works.
     let formats = serialization("featherbench-formats");
     for name in ["serde", "serde_json", "serde_path_to_error", "roxmltree"] {
         assert!(formats.iter().any(|found| found == name), "{name} is not among {formats:?}");
     }
 }
 
-/// The direct dependencies of the kernels on crates of others. One more is a decision, which is taken here.
+/// The direct dependencies of the kernels on other authors' crates. One more is a decision, to be made here.
 #[test]
 fn kernels_depend_on_few_crates_of_others() {
     let outside: [(&str, &[&str]); 4] = [

@@ -1,4 +1,4 @@
-//! The program from another folder than the checkout it was built in: which data it takes, and where it writes.
+//! The program in another folder than the checkout in which it was built: the data that it uses, and where it writes.
 
 use crate::support;
 
@@ -8,7 +8,7 @@ use support::{Ended, Sandbox, project};
 
 const VARIABLE: &str = "FEATHERBENCH_ROOT";
 
-/// Runs the program in a folder that is no project, with this in the environment.
+/// Runs the program in a folder that is not a project, with this in the environment.
 fn run(here: &Path, root: Option<&Path>, arguments: &[&str]) -> Ended {
     let mut command = std::process::Command::new(env!("CARGO_BIN_EXE_featherbench"));
     command.args(arguments).current_dir(here).env("NO_COLOR", "1").env_remove(VARIABLE);
@@ -22,7 +22,7 @@ fn entries(folder: PathBuf) -> BTreeSet<PathBuf> {
     std::fs::read_dir(folder).into_iter().flatten().map(|entry| entry.unwrap().path()).collect()
 }
 
-/// A copy of the project stands for the checkout: what is read and written is its own, and the one of the build stays as it is.
+/// A copy of the project is used as the checkout: its own data are read and written, and the checkout of the build is not changed.
 #[test]
 fn a_project_that_is_named_is_the_one_that_is_used() {
     let (copy, here) = (Sandbox::new(), tempfile::tempdir().unwrap());
@@ -39,7 +39,7 @@ fn a_project_that_is_named_is_the_one_that_is_used() {
     run(here.path(), None, &["list", "--suite", "own", "--root", folder]).expect(0, &["chain-planar-2"]);
     assert_eq!(entries(copy.path("reports")).len(), 1, "a run without --out lands in the project's reports");
     assert!(here.path().join("mine/rows.csv").is_file(), "and one with it where it says");
-    // What is named comes before the folder one stands in.
+    // A named project comes before the current folder.
     run(copy.folder.path(), Some(&project()), &["list", "--suite", "own"]).expect(2, &["own.toml"]);
     assert_eq!(entries(project().join("reports")), before);
 }
@@ -51,7 +51,7 @@ fn a_folder_that_is_no_project_is_named_with_what_it_lacks() {
     run(here.path(), None, &["list", "--root", "nowhere"]).expect(2, &["--root", "nowhere", "ci/gates.toml"]);
 }
 
-/// A run's folder is looked at without any project.
+/// Commands on a run's folder need no project.
 #[test]
 fn what_needs_no_project_asks_for_none() {
     let here = tempfile::tempdir().unwrap();

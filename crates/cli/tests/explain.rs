@@ -1,4 +1,4 @@
-//! `featherbench explain`: the command that it prints makes the rows of the cell again.
+//! `featherbench explain`: the command that it prints gives the rows of the cell again.
 
 use crate::support;
 
@@ -13,7 +13,7 @@ fn rows(folder: &Path, cell: &str) -> Vec<String> {
     rows.map(|(_, rest)| rest.to_owned()).collect()
 }
 
-/// The printed command with this program in the place of `cargo run`.
+/// The printed command with this program instead of `cargo run`.
 fn again(ended: &Ended) -> String {
     let line = ended.output.lines().find_map(|line| line.strip_prefix("again")).unwrap_or_else(|| panic!("{ended:?}"));
     let arguments = line.trim().strip_prefix("cargo run --release -- ").unwrap_or_else(|| panic!("{line}"));
@@ -47,7 +47,7 @@ fn the_printed_command_makes_the_rows_again() {
     }
 }
 
-/// Answers of the engines themselves are asked for again as such, with the same seed and the same engines.
+/// The command of a live run asks the engines themselves again, with the same seed and the same engines.
 #[test]
 fn the_command_of_a_live_run_stays_live() {
     let sandbox = Sandbox::new();

@@ -1,4 +1,4 @@
-//! Engines that a user brings along, without any Python: programs of a few lines of shell.
+//! External engines, without any Python: programs of a few lines of shell.
 
 use crate::support;
 
@@ -15,7 +15,8 @@ while read -r line; do
 done
 "#;
 
-/// A shell with a table: it answers about one robot what stands in files beside it, and says so of all others. MORE goes before each answer.
+/// A shell with a table. It answers about one robot with the contents of files beside it, and does not support any other. MORE runs before
+/// each answer.
 const TABLE: &str = r#"#!/bin/sh
 while read -r line; do
     case "$line" in
@@ -77,7 +78,8 @@ fn with_table(more: &str, factor: f64) -> Sandbox {
 
 const TABLE_RUN: [&str; 7] = ["run", "--suite", "smoke", "--no-timing", "--engine", "mine=sh table.sh", "--out"];
 
-/// What it does not offer is no fault, as in the conformance test; what it answers is judged, in the run and when the run is judged again.
+/// Something that it does not offer is not a fault, as in the conformance test. Its answers are judged, in the run and when it is judged
+/// again.
 #[test]
 fn an_external_engine_is_judged_by_what_it_answers() {
     let sandbox = with_table(":", 1.0);
@@ -96,7 +98,7 @@ fn an_external_engine_is_judged_by_what_it_answers() {
     wrong.run(&["gate", "red"]).expect(1, &["rows outside their bound"]);
 }
 
-/// Numbers that move by a few units in the last place from one question to the next pass every bound, and are no answer.
+/// Numbers that change by a few units in the last place between questions pass every bound, but are not valid answers.
 #[test]
 fn an_external_engine_that_does_not_repeat_itself_is_red() {
     let noise = "if [ -e odd ]; then rm odd; cat noisy.bin; continue; fi; : > odd";
@@ -113,7 +115,7 @@ fn an_external_engine_that_does_not_repeat_itself_is_red() {
     );
 }
 
-/// No method, or no robot: no row would fail, and the run says so plainly.
+/// No method, or no robot: no row would fail, and the run says so.
 #[test]
 fn an_engine_that_answers_nothing_is_red() {
     let sandbox = with_shy();
@@ -127,12 +129,12 @@ fn an_engine_that_answers_nothing_is_red() {
     sandbox.run(&[&run[..], &["mute"]].concat()).expect(1, &words);
     let part = [&run[..], &["part", "--filter", "agreement/panda/"]].concat();
     sandbox.run(&part).expect(1, &words);
-    // Another quantity than the suite's is as good as none.
+    // A quantity that is not in the suite counts for nothing.
     sandbox.write("shy oracle.sh", &SHY.replace("\"id\"", "\"fd_f32\""));
     sandbox.run(&[&run[..], &["other"]].concat()).expect(1, &words);
 }
 
-/// A run refuses the shapes that the conformance test refuses.
+/// A run and the conformance test refuse the same shapes.
 #[test]
 fn a_run_and_the_conformance_test_ask_for_the_same_shapes() {
     let sandbox = with_table(":", 1.0);
@@ -148,7 +150,7 @@ fn a_run_and_the_conformance_test_ask_for_the_same_shapes() {
     }
 }
 
-/// A version is what a program says of itself: outcomes are kept by what the program is.
+/// A version is only what a program reports: outcomes are stored by the program's hash.
 #[test]
 fn a_run_is_not_continued_with_another_program_of_an_external_engine() {
     let sandbox = with_shy();

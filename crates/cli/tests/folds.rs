@@ -1,7 +1,7 @@
-//! No fold loses a NaN: `NaN.max(x)` is x, so that the largest of some errors, one of which is no number, would be a number.
+//! No fold loses a NaN. `NaN.max(x)` is x: so the largest of some errors, one of which is NaN, would be a number.
 //!
-//! The sources are searched for what folds with `max` or `min` of floats. The function for it is `featherbench_bench::measure::worst`, below it a closure
-//! that keeps what is no number.
+//! The test searches the sources for folds with `max` or `min` of floats. The right function is `featherbench_bench::measure::worst`, and
+//! below that crate a closure that keeps NaN.
 
 use std::path::{Path, PathBuf};
 
@@ -77,7 +77,7 @@ fn no_fold_loses_a_nan() {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
     let (mut searched, mut found, mut harmless) = (0, Vec::new(), [0; HARMLESS.len()]);
     for path in sources() {
-        // What is forbidden is written here.
+        // This file contains the forbidden forms.
         if path.ends_with("cli/tests/folds.rs") {
             continue;
         }

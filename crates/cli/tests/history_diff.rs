@@ -1,4 +1,4 @@
-//! `featherbench diff` and `featherbench history` from the outside.
+//! The commands `featherbench diff` and `featherbench history`.
 
 use crate::support;
 
@@ -60,7 +60,7 @@ fn two_runs_are_compared_as_a_table_and_as_markdown() {
 #[test]
 fn a_night_is_kept_once_with_its_instructions() {
     let sandbox = Sandbox::new();
-    // A project whose data nobody else has.
+    // A project with data of its own.
     std::fs::remove_file(sandbox.path("datasets")).unwrap();
     std::fs::create_dir_all(sandbox.path("datasets/suites")).unwrap();
     std::fs::create_dir(sandbox.path("datasets/history")).unwrap();

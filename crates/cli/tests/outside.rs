@@ -1,8 +1,8 @@
-//! Tests that need what a fresh machine may not have: Python, the reference engines, rapier, a browser.
+//! Tests that need what a new machine may not have: Python, the reference engines, rapier, a browser.
 //!
-//! Each is run where it can be and listed as skipped where it cannot; with `FEATHERBENCH_REQUIRE_ALL` set, as in CI, a skip is a failure; the native peers are due at night only,
-//! with `FEATHERBENCH_NIGHTLY` set.
-//! Not libtest: its captured output would hide the skips.
+//! Each is run if it can be, and otherwise listed as skipped. With `FEATHERBENCH_REQUIRE_ALL` set, as in CI, a skip is a failure. The
+//! native oracles are required at night only, with `FEATHERBENCH_NIGHTLY` set.
+//! The tests do not use libtest: its captured output would hide the skips.
 
 #[path = "outside/compared.rs"]
 mod compared;
@@ -27,12 +27,12 @@ use support::{Ended, Sandbox, project};
 
 type Test = fn() -> Outcome;
 
-/// What became of a test.
+/// The result of a test.
 enum Outcome {
     Passed,
     Failed(String),
     Skipped(String),
-    /// Not run here, and not due: it takes minutes of compiling, which the nightly run gives it.
+    /// Not run and not required here: it takes minutes of compiling, in the nightly run.
     Nightly(String),
 }
 
@@ -122,7 +122,7 @@ fn missing_wheel() -> Outcome {
         return Outcome::Skipped("there is no python3".into());
     }
     let sandbox = Sandbox::new();
-    // No index, nothing to find: as on a machine whose index lacks the wheel. Without uv on the path, so that pip is tried.
+    // An empty index: as on a machine whose index does not have the wheel. uv is not on the path, so that pip is used.
     let install = |arguments: &[&str]| {
         let mut command = sandbox.command(arguments);
         command.env("PIP_NO_INDEX", "1").env("PIP_FIND_LINKS", sandbox.folder.path()).env("UV_NO_INDEX", "1").env("UV_OFFLINE", "1");
@@ -164,12 +164,12 @@ fn oracles_by_themselves() -> Outcome {
     pytest(&["--ignore", "tests/test_conventions.py"])
 }
 
-/// Every claim about a convention holds, and its alternative does not.
+/// Every row about a convention holds, and its alternative does not.
 fn conventions() -> Outcome {
     pytest(&["tests/test_conventions.py"])
 }
 
-/// What `featherbench oracles check` says about a program, which may import packages from these folders.
+/// The output of `featherbench oracles check` about a program, which may import packages from these folders.
 fn conformance(program: &[OsString], packages: Option<&Path>) -> Ended {
     let mut command = Command::new(env!("CARGO_BIN_EXE_featherbench"));
     command.current_dir(project()).args(["oracles", "check"]).args(program);
@@ -179,7 +179,7 @@ fn conformance(program: &[OsString], packages: Option<&Path>) -> Ended {
     Ended::new(command.output().unwrap())
 }
 
-/// One of our own oracles as a user starts it: `chain` by its file, which lies in `folder`, the others by their modules.
+/// One of our own oracles as a user starts it: `chain` by its file in `folder`, the others by their modules.
 fn by_hand(python: &Path, folder: &Path, name: &str) -> Vec<OsString> {
     match name {
         "chain" => vec![python.into(), folder.join("chain.py").into()],
@@ -219,7 +219,7 @@ fn own_oracles() -> Outcome {
     Outcome::Passed
 }
 
-/// Our own oracles with one conversion taken out: the conformance test names it.
+/// Our own oracles with one conversion removed: the conformance test names it.
 fn forgetful_oracles() -> Outcome {
     let python = match installed_python() {
         Ok(python) => python,
@@ -305,7 +305,7 @@ fn live_run() -> Outcome {
     checked(run)
 }
 
-/// A URDF of a pendulum on a slide, with some numbers of its own.
+/// A URDF of a pendulum on a slide, with given numbers.
 fn pendulum(mass: &str, axis: &str, inertial: &str) -> String {
     format!(
         r#"<robot name="p"><link name="base"/>
@@ -318,7 +318,7 @@ fn pendulum(mass: &str, axis: &str, inertial: &str) -> String {
     )
 }
 
-/// Each engine reads files of its own: one has another number in it, and the others are read alike.
+/// Each engine imports its own file. One file has another number, and the imports of all others agree.
 fn one_file_is_another() -> Outcome {
     let python = match installed_python() {
         Ok(python) => python,

@@ -1,6 +1,7 @@
-//! Every parser of ours is given some thousand damaged texts: what is not refused is read, written and read again alike, and nothing panics.
+//! Every parser of ours gets some thousand damaged texts. A text that is accepted is written and read again with the same result. Nothing
+//! panics.
 //!
-//! The targets are those of `ci/fuzz`, which fuzzes each of them for two minutes a night.
+//! The targets are those of `ci/fuzz`, which fuzzes each of them at night.
 
 #[path = "../../../ci/fuzz/src/lib.rs"]
 #[allow(dead_code, reason = "the fuzzer's own entry points")]
@@ -12,7 +13,7 @@ use std::path::Path;
 /// Inputs for each target.
 const INPUTS: usize = 4000;
 
-/// A seed with some bytes changed, cut, doubled, or taken over from another.
+/// A seed with some bytes changed, removed, doubled, or taken from another seed.
 fn damaged(random: &mut Random, seeds: &[Vec<u8>]) -> Vec<u8> {
     let mut bytes = seeds[random.below(seeds.len())].clone();
     for _ in 0..1 + random.below(5) {
@@ -55,7 +56,7 @@ fn damaged_texts_are_refused_or_read() {
     }
 }
 
-/// A seed that is refused would leave the fuzzer at the door.
+/// Every seed must be accepted: the fuzzer cannot start from one that is not.
 #[test]
 fn seeds_are_good() {
     let read = |name: &str| std::fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("../../ci/fuzz/seeds").join(name)).unwrap();

@@ -1,4 +1,4 @@
-//! A run that is killed at a random moment continues: no finished evaluation is repeated, and the exact rows come out identical to the byte.
+//! A run that is killed at a random moment continues: no finished evaluation is repeated, and the exact rows are identical to the byte.
 
 use crate::support;
 
@@ -41,7 +41,7 @@ fn a_killed_run_resumes_to_the_same_bytes_and_repeats_nothing() {
         let name = format!("killed-{attempt}");
         let folder = sandbox.path(&name);
         let mut child = sandbox.command(&[&suite[..], &[&name]].concat()).stdout(Stdio::null()).stderr(Stdio::null()).spawn().unwrap();
-        // Kill when a random number of cells is finished, wherever the program is by then.
+        // Kill when a random number of cells is finished, wherever the program is then.
         let enough = random.below(cells);
         while finished(&folder).len() < enough && child.try_wait().unwrap().is_none() {
             sleep(Duration::from_millis(1));

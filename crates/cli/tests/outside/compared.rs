@@ -1,4 +1,5 @@
-//! `compare` on files that engines refuse, repair or read with a default of their own: who is named, for what, and how the command ends.
+//! `compare` on files that engines refuse, repair or import with a default of their own: which engine is named, for what, and the exit
+//! code.
 
 use crate::Outcome;
 use crate::support::{Ended, Sandbox, project};
@@ -26,7 +27,8 @@ fn differences(out: &Path, engine: &str) -> Vec<(String, String)> {
     of_engine.map(|row| (row.quantity.clone(), cause(row))).collect()
 }
 
-/// An MJCF that MuJoCo refuses: it is said first, MuJoCo's repair is its own difference, and who reads the file faithfully is alike.
+/// An MJCF that MuJoCo refuses. That is reported first, MuJoCo's repair is its own difference, and engines that import the file exactly
+/// agree.
 pub fn refused_files(_: &Path) -> Outcome {
     let sandbox = Sandbox::new();
     let unbalanced = INERTIAL.replace(".02 .03 .04", ".01 .01 .05");
@@ -41,7 +43,7 @@ pub fn refused_files(_: &Path) -> Outcome {
     assert_eq!(differences(&out, "mujoco"), [("inertia".to_owned(), "balanced".to_owned())]);
     assert_eq!(differences(&out, "pinocchio"), []);
 
-    // A body of nothing: the reference is the file, MuJoCo's bound and DART's kilogram are named.
+    // A body without mass: the reference is the file; MuJoCo's bound and DART's kilogram are named.
     let empty = format!(
         r#"<mujoco model="m"><worldbody><body name="a">{hinge}{INERTIAL}<body name="b" pos="0 0 1">{}</body></body></worldbody></mujoco>"#,
         hinge.replace("\"h\"", "\"k\"")
@@ -51,14 +53,14 @@ pub fn refused_files(_: &Path) -> Outcome {
         .expect(1, &["refuses the file as written"]);
     let both = |cause: &str| vec![("mass".to_owned(), cause.to_owned()), ("inertia".to_owned(), cause.to_owned())];
     assert_eq!(differences(&out, "mujoco"), both("bounds"));
-    // DART leaves the inertial of the other body too, and keeps its mass.
+    // DART ignores the inertial of the other body too, and keeps its mass.
     let left = ["com", "inertia", "mass", "inertia"].map(|field| (field.to_owned(), "default_inertia".to_owned()));
     assert_eq!(differences(&out, "dart"), left);
     assert_eq!(differences(&out, "pinocchio"), []);
     Outcome::Passed
 }
 
-/// Armature that a class gives to a free joint is compared as a number and left out of the answers.
+/// Armature that a class gives to a free joint is compared as a number, and left out of the answers.
 pub fn free_armature(_: &Path) -> Outcome {
     let sandbox = Sandbox::new();
     let file = sandbox.write(
@@ -78,7 +80,7 @@ pub fn free_armature(_: &Path) -> Outcome {
     Outcome::Passed
 }
 
-/// One bad file does not stop the others; friction alone is no difference of physics; a mimic that nothing drives is told.
+/// One bad file does not stop the others. Friction alone is not a difference of physics. A mimic without a driving joint is reported.
 pub fn classes_and_bad_files(_: &Path) -> Outcome {
     let sandbox = Sandbox::new();
     let link = |name: &str| {
@@ -111,7 +113,7 @@ pub fn classes_and_bad_files(_: &Path) -> Outcome {
     Outcome::Passed
 }
 
-/// A robot beyond a workspace is a row that says so, and no difference.
+/// A robot that is too large for a workspace has a row that says so, and no difference.
 pub fn limits(_: &Path) -> Outcome {
     let sandbox = Sandbox::new();
     sandbox.run(&["gen", "chain:n=800", "--lossy", "--out", "long.urdf"]).expect(0, &["800 bodies"]);

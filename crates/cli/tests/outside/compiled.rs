@@ -5,7 +5,7 @@ use crate::support::{Ended, Sandbox, project};
 use std::path::Path;
 use std::process::Command;
 
-/// Defaults, an included part, two joints in one body, an actuator, and a keyframe whose quaternion is twice as long as it should be.
+/// Defaults, an included part, two joints in one body, an actuator, and a keyframe whose quaternion has length two.
 const SCENE: &str = r#"<mujoco model="scene"><include file="part.xml"/>
 <worldbody><body name="base"><freejoint/><geom size=".1"/>
 <body name="arm" pos="0 0 1"><joint name="a" axis="1 0 0"/><joint name="b" axis="0 1 0" pos="0 0 .2" armature=".5"/><geom size=".1"/></body>
@@ -28,7 +28,7 @@ fn featherbench(arguments: &[&str], file: &Path, more: &[&str]) -> Ended {
     Ended::new(command.output().unwrap())
 }
 
-/// Defaults and includes are in the description, what it cannot hold is noted, and what MuJoCo refuses is told with exit code 2.
+/// Defaults and includes are in the description; what it cannot hold is noted; a file that MuJoCo refuses gives exit code 2.
 pub fn gen_mjcf(_: &Path) -> Outcome {
     let sandbox = scene();
     let out = sandbox.path("scene.json");
@@ -60,7 +60,7 @@ pub fn gen_mjcf(_: &Path) -> Outcome {
     Outcome::Passed
 }
 
-/// A comparison asks at the keyframe too, and MuJoCo, which takes both joints of the arm as its own, agrees there.
+/// A comparison asks at the keyframe too. MuJoCo imports both joints of the arm as they are, and agrees there.
 pub fn keyframes(_: &Path) -> Outcome {
     let sandbox = scene();
     let out = sandbox.path("out");

@@ -1,4 +1,4 @@
-//! Instruction counts that could not be taken say so, and why: silence would look like counts that did not change.
+//! Instruction counts that could not be taken are reported with the reason. Otherwise they would look like counts without changes.
 
 use super::{Outcome, exists};
 use crate::support::{Ended, project};
@@ -6,7 +6,7 @@ use std::os::unix::fs::PermissionsExt;
 use std::path::Path;
 use std::process::Command;
 
-/// `ci/instructions.py` where these are the only programs: their names, and what they do.
+/// Runs `ci/instructions.py` with these programs alone: their names, and what they do.
 fn counted(programs: &[(&str, &str)], python: &Path, arguments: &[&str], required: bool) -> Ended {
     let folder = tempfile::tempdir().unwrap();
     for (name, does) in programs {
@@ -26,7 +26,7 @@ pub fn not_counted() -> Outcome {
     if !exists("python3") || !cfg!(target_arch = "x86_64") {
         return Outcome::Skipped("there is no python3, or the machine is no x86-64".into());
     }
-    // Its place, as the path will have no Python.
+    // The interpreter's path, as the search path will have no Python.
     let output = Command::new("python3").args(["-c", "import sys; print(sys.executable)"]).output().unwrap();
     let text = String::from_utf8(output.stdout).unwrap();
     let python = Path::new(text.trim());

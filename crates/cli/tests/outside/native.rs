@@ -1,4 +1,4 @@
-//! Native peers: a small engine of ours through the C interface, and the big ones against our kernels where they are built.
+//! Native oracles: a small test engine through the C interface, and the large engines against our kernels where they are built.
 
 use super::{Outcome, exists};
 use crate::support::{Sandbox, project};
@@ -13,7 +13,7 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::time::{Duration, Instant};
 
-/// Everything that a peer may be asked.
+/// All quantities that a native oracle may be asked for.
 const QUANTITIES: [Quantity; 13] = [
     Quantity::Readback,
     Quantity::InverseDynamics,
@@ -30,10 +30,10 @@ const QUANTITIES: [Quantity; 13] = [
     Quantity::BodyJacobian,
 ];
 
-/// So long that no load of the machine decides: only a test that would hang for ever meets it.
+/// So long that the load of the machine has no influence: only a test that would hang for ever reaches it.
 const PATIENT: Limits = Limits { answer: Duration::from_secs(900), memory: 8 << 30 };
 
-/// A clock that stands still until it is set going; then an hour passes between any two looks.
+/// A clock that stops until it is started; from then on an hour passes between any two queries.
 #[derive(Default)]
 struct Stopped {
     going: AtomicBool,
@@ -84,7 +84,7 @@ fn pendulum(folder: &Path) -> Result<PathBuf, Outcome> {
     Ok(library)
 }
 
-/// The worst of all states, measured as a share of what rounding may leave.
+/// The worst of all states, divided by what rounding may cause.
 #[derive(Debug)]
 struct Found {
     quantity: Quantity,
@@ -109,7 +109,7 @@ fn compare(engine: &dyn Engine, robot: &Robot, but: &[&str]) -> Vec<Found> {
                     let (value, reference) = (&values[k * size..][..size], &reference[k * size..][..size]);
                     let mass = &mass[k * masses..][..masses];
                     match quantity {
-                        // As ci/gates.toml has it: some ε per level of the tree, for backward errors too; 45 ε up to depth twenty elsewhere.
+                        // As in ci/gates.toml: some ε per level of the tree, for backward errors too; 45 ε up to depth twenty elsewhere.
                         Quantity::ForwardDynamics => forward[k].backward_error(value) / (1e-14 * depth),
                         Quantity::Solve => residual(mass, value, robot.states.tau(k)) / (1e-14 * depth),
                         Quantity::MassMatrixInverse => inverse_residual(mass, value) / (1e-14 * depth),
@@ -137,8 +137,8 @@ fn residual(mass: &[f64], x: &[f64], b: &[f64]) -> f64 {
     })
 }
 
-/// max_ik |1 − M N|_ik / Σ_j √(M_ii·M_jj·N_jj·N_kk): what is left when each entry of a symmetric inverse N is known up to ε of its own two axes,
-/// as the entries of M are.
+/// max_ik |1 − M N|_ik / Σ_j √(M_ii·M_jj·N_jj·N_kk): what remains if each entry of a symmetric inverse N has an error of ε relative to its
+/// own two axes, as the entries of M have.
 fn inverse_residual(mass: &[f64], inverse: &[f64]) -> f64 {
     let n = inverse.len().isqrt();
     let root = |matrix: &[f64]| (0..n).map(|i| matrix[i * n + i].sqrt()).collect::<Vec<f64>>();
@@ -174,30 +174,30 @@ pub fn pendulum_answers() -> Outcome {
     Outcome::Passed
 }
 
-/// The clock is read beside the loop: it tells the time of the calls, all of it and nothing else.
+/// The clock is read beside the loop: its time is that of all calls, and nothing else.
 pub fn pendulum_is_clocked() -> Outcome {
     let folder = tempfile::tempdir().unwrap();
     let library = match pendulum(folder.path()) {
         Ok(library) => library,
         Err(skipped) => return skipped,
     };
-    // On a core of its own choice; on one that does not exist it does not start.
+    // On a core of its own choice; on a core that does not exist it does not start.
     let reason = start(&library, PATIENT, Some(1 << 20)).err().unwrap();
     assert!(reason.contains("core 1048576"), "{reason}");
     let peer = start(&library, PATIENT, Some(0)).unwrap();
     let robot = robot("chain:n=1", 5);
     let ready = |method| peer.prepare(&robot, Quantity::InverseDynamics, method, &robot.states).unwrap();
     let mut slow = ready("slow");
-    // Each call sleeps for a millisecond, or longer; the time lies within that of the question, whatever else the machine does. States beyond the
-    // batch begin again.
+    // Each call sleeps for a millisecond or longer. Its time is less than that of the whole question, whatever else the machine does.
+    // States beyond the batch begin again.
     for calls in [1, 5, 50] {
         let whole = Instant::now();
         let clocked = slow.clock(0..calls).unwrap();
         assert!(clocked >= Duration::from_millis(calls as u64) && clocked <= whole.elapsed(), "{calls} calls in {clocked:?}");
     }
     drop(slow);
-    // A call takes some nanoseconds, a question to the child some ten thousand: the conversation is not in the time. The least of either is taken:
-    // a busy machine interrupts some of two hundred calls, and not each within its nanoseconds.
+    // A call takes some nanoseconds, a question to the child some ten thousand: messages are not in the time. The smallest of each is used:
+    // a busy machine interrupts some of two hundred calls, but not each within its nanoseconds.
     let mut quick = ready("pendulum");
     let (mut clocked, mut asked) = (Duration::MAX, Duration::MAX);
     for _ in 0..200 {
@@ -217,7 +217,7 @@ pub fn pendulum_is_clocked() -> Outcome {
     Outcome::Passed
 }
 
-/// Whatever a library does to its process, it is a reason, and the next question is answered.
+/// Whatever a library does to its process becomes a reason, and the next question is answered.
 pub fn pendulum_dies_alone() -> Outcome {
     let folder = tempfile::tempdir().unwrap();
     let library = match pendulum(folder.path()) {
@@ -260,8 +260,8 @@ fn built() -> Vec<(String, PathBuf)> {
     text.lines().filter(|line| line.ends_with(".so")).filter_map(library).collect()
 }
 
-/// How many times as much as rounding may leave is known of an engine (ci/deviations.toml): twice the largest share of twenty seeds of states,
-/// which is given beside each robot. MuJoCo takes inertias and axes about the robot's centre of mass; computeMinverse works in world axes.
+/// The known ratio of an engine's error to what rounding may cause (ci/deviations.toml). It is twice the largest ratio over twenty seeds of
+/// states. MuJoCo uses inertias and axes about the robot's centre of mass; computeMinverse works in world axes.
 fn slack(peer: &str, quantity: Quantity, robot: &str) -> f64 {
     let largest = match quantity {
         Quantity::MassMatrix | Quantity::MassMatrixSparse | Quantity::Factorization if peer == "mujoco-native" => match robot {
@@ -293,7 +293,7 @@ pub fn peers_agree() -> Outcome {
                 if std::env::var_os("FEATHERBENCH_SHOW").is_some() {
                     println!("{line}");
                 }
-                // MuJoCo alone has no helical joint.
+                // Only MuJoCo has no helical joint.
                 let excused = matches!(&share, Err(NoAnswer::NotOffered(why)) if name == "mujoco-native" && why.contains("helical"));
                 assert!(excused || share.is_ok_and(|share| share <= slack(&name, quantity, spec)), "{line}");
             }
@@ -302,7 +302,7 @@ pub fn peers_agree() -> Outcome {
     Outcome::Passed
 }
 
-/// What a peer cannot hold is refused with a reason, and the machine's memory is never asked for.
+/// A robot that is too large for a native oracle is an error with a reason, before the machine's memory is requested.
 pub fn big_robots_are_refused_or_answered() -> Outcome {
     let built = built();
     if built.is_empty() {
@@ -321,7 +321,7 @@ pub fn big_robots_are_refused_or_answered() -> Outcome {
     Outcome::Passed
 }
 
-/// Without a compiler it is said what is missing.
+/// Without a compiler the message says what is missing.
 pub fn no_compiler() -> Outcome {
     let sandbox = Sandbox::new();
     let mut command = sandbox.command(&["oracles", "status"]);

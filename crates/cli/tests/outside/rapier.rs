@@ -1,5 +1,5 @@
-//! Rapier, where it is built: beside our own kernels on robots of every joint that it has, what it refuses, and what its steps do. And what
-//! is said where it cannot be built.
+//! Rapier, if it is built: its answers against our own kernels on robots with every joint that it has, its errors, and its steps. And the
+//! message if it cannot be built.
 
 use super::{Outcome, checked};
 use crate::support::{Ended, Sandbox, project};
@@ -13,12 +13,12 @@ use std::path::PathBuf;
 use std::process::Command;
 use std::sync::LazyLock;
 
-/// The program, if it is made of the present sources.
+/// The program, if it was compiled from the present sources.
 static PROGRAM: LazyLock<Option<PathBuf>> = LazyLock::new(|| {
     let sandbox = sources();
     std::fs::create_dir_all(sandbox.path("target/oracles")).unwrap();
     std::os::unix::fs::symlink(project().join("target/oracles/rapier"), sandbox.path("target/oracles/rapier")).unwrap();
-    // The other engines are not there, so that nothing of theirs is started.
+    // The other engines are missing, so that they are not started.
     let status = sandbox.run(&["oracles", "status"]).output;
     let line = status.lines().find(|line| line.starts_with("rapier")).unwrap_or_else(|| panic!("rapier is not in {status}"));
     let program = PathBuf::from(line.rsplit(' ').next().unwrap());
@@ -50,7 +50,7 @@ pub fn with_rapier(test: fn(&Oracle)) -> Outcome {
     }
 }
 
-/// It keeps the whole protocol, steps too.
+/// It conforms to the whole protocol, with steps.
 pub fn conforms() -> Outcome {
     let program = match program() {
         Ok(program) => program,
@@ -62,7 +62,7 @@ pub fn conforms() -> Outcome {
     Outcome::Passed
 }
 
-/// The suite that is its own, judged by the gates.
+/// Its own suite, judged by the gates.
 pub fn suite() -> Outcome {
     if let Err(skipped) = program() {
         return skipped;
@@ -80,7 +80,7 @@ pub fn suite() -> Outcome {
     Outcome::Passed
 }
 
-/// Without cargo, and without a registry, the engine that a suite asks for is missing, with what to do about it.
+/// Without cargo, and without a registry, an engine of the suite is missing; the message says what to do.
 pub fn not_to_be_built() -> Outcome {
     let sandbox = sources();
     let empty = sandbox.path("nothing");
@@ -142,7 +142,7 @@ pub fn agrees(rapier: &Oracle) {
     assert_eq!(compared, 12 * 8);
 }
 
-/// It has armature, but for its energy.
+/// It has armature, except in its energy.
 pub fn has_armature(rapier: &Oracle) {
     for words in ["quadruped", "joints:kind=cylindrical,base=free,armature=true"] {
         let robot = robot(words);
@@ -156,7 +156,7 @@ pub fn has_armature(rapier: &Oracle) {
     }
 }
 
-/// It refuses what would panic.
+/// It gives an error where it would panic.
 pub fn refuses(rapier: &Oracle) {
     let refused = |robot: &Robot, word: &str| match values(rapier, robot, Quantity::MassMatrix) {
         Err(NoAnswer::NotOffered(reason)) => assert!(reason.contains(word), "{reason}"),
@@ -167,12 +167,12 @@ pub fn refuses(rapier: &Oracle) {
     refused(&robot("joints:kind=euler_zyx,base=fixed"), "euler_zyx");
     let mut description = Family::parse("chain:n=3").unwrap().generate().unwrap();
     (description.bodies[2].mass, description.bodies[2].inertia) = (0.0, [0.0; 6]);
-    // With armature, so that M is regular and only rapier's inverse of the mass is not.
+    // With armature, so that M is regular and only rapier's inverse of the mass is singular.
     description.bodies[2].joint.armature = vec![0.1];
     refused(&Robot::new(&description, "test", ModelOrigin::Generated, 2, 3).unwrap(), "positive");
 }
 
-/// Its steps approach its limit.
+/// Its steps approach the limit of short steps.
 pub fn steps_approach_a_limit(rapier: &Oracle) {
     let robot = robot("joints:kind=spherical,base=free");
     let stepper = rapier.stepper().unwrap();
@@ -181,7 +181,7 @@ pub fn steps_approach_a_limit(rapier: &Oracle) {
     let step = |dt| stepper.step_acceleration(&robot, "step", &robot.states, 0, dt).unwrap();
     let limit = step(1e-30);
     let [far, near] = [1e-4, 1e-5].map(|dt| scale.forward_error(&limit, &step(dt)));
-    // First order: a tenth of the step, a tenth of the error, up to the second order's share.
+    // First order: a tenth of the step has a tenth of the error, except for the second order's share.
     assert!((far / near - 10.0).abs() < 0.1, "{far:e} {near:e}");
 }
 
@@ -197,7 +197,7 @@ fn step_errors<const N: usize>(rapier: &Oracle, robot: &Robot, k: usize, steps: 
     steps.map(|dt| scale.forward_error(&limit, &step(dt)))
 }
 
-/// At a fast state a step of 1e-2 or 1e-3 s is explicit, and has no error; one of 1e-4 s is implicit, and has one of first order.
+/// At a fast state a step of 1e-2 or 1e-3 s is explicit, and has no error. One of 1e-4 s is implicit, and has an error of first order.
 pub fn a_fast_state_has_two_regimes(rapier: &Oracle) {
     let robot = robot("joints:kind=spherical,base=free");
     assert_eq!(robot.states.cases[7], Case::Fast);
@@ -207,7 +207,8 @@ pub fn a_fast_state_has_two_regimes(rapier: &Oracle) {
     assert!(implicit.windows(2).all(|pair| (pair[0] / pair[1] - 10.0).abs() < 0.5), "{implicit:?}");
 }
 
-/// What is explicit is beyond the guard, at every state; what is not has an error in proportion to its length. Beyond the guard both occur.
+/// Every explicit step is beyond the guard, at every state. The error of an implicit one is proportional to its length. Beyond the guard
+/// both occur.
 pub fn no_step_is_explicit_below_the_guard(rapier: &Oracle) {
     const STEPS: [f64; 9] = [1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9];
     let guard = rapier.stepper().unwrap().guard().unwrap();
@@ -228,7 +229,7 @@ pub fn no_step_is_explicit_below_the_guard(rapier: &Oracle) {
                 }
                 let beyond = dt * speed >= guard;
                 *if beyond { &mut implicit_beyond } else { &mut implicit_below } += 1;
-                // Where the second order is small, the first is the same at every length.
+                // If the second order is small, error/dt is the same at every length.
                 let share = error / dt / (shortest / STEPS[STEPS.len() - 1]);
                 assert!(dt * speed > 0.15 || (share - 1.0).abs() < 0.5, "{words}, state {k}, dt = {dt}: {error:e}");
             }

@@ -1,4 +1,4 @@
-//! Running the command in a project of its own: a folder with links to the data and a `target` nobody else uses.
+//! Runs the command in a project of its own: a folder with links to the data and its own `target`.
 
 #![allow(dead_code, reason = "two test programs compile this module, each uses a part of it")]
 
@@ -46,7 +46,7 @@ impl Sandbox {
     }
 }
 
-/// How a command ended.
+/// The result of a command.
 #[derive(Debug)]
 pub struct Ended {
     pub code: Option<i32>,

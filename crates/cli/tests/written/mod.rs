@@ -1,4 +1,4 @@
-//! Files that we write, as the engines' own parsers read them.
+//! Files that we write, imported by the engines' own parsers.
 
 use crate::Outcome;
 use crate::support::project;
@@ -11,7 +11,7 @@ use std::io::BufReader;
 use std::path::Path;
 use std::process::{Child, ChildStdout, Command, Stdio};
 
-/// An oracle to which frames are written by hand.
+/// An oracle to which the test writes frames itself.
 struct Oracle {
     process: Child,
     output: BufReader<ChildStdout>,
@@ -34,14 +34,14 @@ impl Oracle {
         if answer.text("status") == "ok" { Ok(answer) } else { Err(answer.text("reason").to_owned()) }
     }
 
-    /// What the engine makes of a file.
+    /// The import result of a file.
     fn read(&mut self, path: &Path, format: &str) -> Result<Description, String> {
         let answer = self.ask(json!({"op": "read", "file": path, "format": format, "base": "fixed"}), Vec::new())?;
         let read = neutral::parse(&answer.header["model"].to_string(), "as read").unwrap_or_else(|error| panic!("{error}"));
         Ok(read.canonical().unwrap_or_else(|error| panic!("{error}")))
     }
 
-    /// The mass matrix and the inverse dynamics at a state of the robot that it holds; each dof's numbers follow from its name alone.
+    /// The mass matrix and the inverse dynamics at a state of the oracle's robot. Each dof's numbers depend on its name alone.
     fn dynamics(&mut self, robot: &Description) -> [Vec<f64>; 2] {
         let (nq, nv, bodies) = (robot.nq(), robot.nv(), robot.bodies.len());
         let mut blocks = vec![Block::new("q", &[1, nq], &coordinates(robot))];
@@ -63,13 +63,13 @@ impl Oracle {
 
 impl Drop for Oracle {
     fn drop(&mut self) {
-        // The process ends with its input.
+        // The process exits when its input ends.
         drop(self.process.stdin.take());
         let _ = self.process.wait();
     }
 }
 
-/// A number in (−1, 1) that follows from a name.
+/// A number in (−1, 1) that depends on a name.
 fn drawn(name: &str, salt: f64) -> f64 {
     let sum = name.bytes().fold(salt, |sum, byte| (sum * 31.0 + f64::from(byte)) % 1009.0);
     (sum * 12.9898).sin()
@@ -103,7 +103,7 @@ fn far(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(a, b)| (a - b).abs()).fold(0.0, worst)
 }
 
-/// Neutral → MJCF → MuJoCo's reading: scalars and vectors to the bit, rotations and inertias within 8ε; a second trip changes nothing.
+/// Neutral → MJCF → MuJoCo's import: scalars and vectors to the bit, rotations and inertias within 8ε; a second round trip changes nothing.
 pub fn mjcf_round_trip(python: &Path) -> Outcome {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("robot.xml");
@@ -133,7 +133,7 @@ pub fn mjcf_round_trip(python: &Path) -> Outcome {
     Outcome::Passed
 }
 
-/// Asserts that a reading is the robot, where a joint in several parts is a row of massless bodies.
+/// Asserts that an import result is the robot, where a joint in several parts is a chain of massless bodies.
 fn assert_same_robot(robot: &Description, read: &Description) {
     const ROUNDING: f64 = 8.0 * f64::EPSILON;
     assert_eq!((robot.nv(), robot.gravity), (read.nv(), read.gravity), "{}", robot.name);
@@ -163,7 +163,7 @@ fn assert_same_robot(robot: &Description, read: &Description) {
     }
 }
 
-/// What Pinocchio, MuJoCo and Drake read from a URDF of ours moves as what they build from the description.
+/// The robots that Pinocchio, MuJoCo and Drake import from our URDF move like those that they build from the description.
 pub fn urdf_read_alike(python: &Path) -> Outcome {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("robot.urdf");
@@ -175,7 +175,7 @@ pub fn urdf_read_alike(python: &Path) -> Outcome {
             std::fs::write(&path, &text).unwrap();
             let (ours, _) = urdf::import(&text, "written", &urdf::Options::default()).unwrap_or_else(|error| panic!("{error}"));
             let model: Value = serde_json::from_str(&neutral::to_line(&ours).unwrap()).unwrap();
-            // MuJoCo refuses some inertias on either way.
+            // MuJoCo refuses some inertias in both ways.
             if oracle.ask(json!({"op": "prepare", "model": model}), Vec::new()).is_err() {
                 continue;
             }
@@ -188,7 +188,7 @@ pub fn urdf_read_alike(python: &Path) -> Outcome {
             let mass: Vec<f64> = order.iter().flat_map(|&i| order.iter().map(move |&j| (i, j))).map(|(i, j)| read[0][i * n + j]).collect();
             let torques: Vec<f64> = order.iter().map(|&i| read[1][i]).collect();
             for (quantity, read, built) in [("M", &mass, &built[0]), ("ID", &torques, &built[1])] {
-                // Rotations read from angles differ by an ulp or two on each of up to twenty joints.
+                // Rotations imported from angles differ by an ulp or two on each of up to twenty joints.
                 let error = far(read, built) / built.iter().map(|x| x.abs()).fold(0.0, worst);
                 assert!(error <= 1e-13, "{engine}, {}: {quantity} differs by {error:e}", robot.name);
             }
@@ -199,7 +199,7 @@ pub fn urdf_read_alike(python: &Path) -> Outcome {
     Outcome::Passed
 }
 
-/// For each dof of `ours`, its place in `theirs`: joints by their names, but the free one, which engines name as they like.
+/// For each dof of `ours`, its place in `theirs`: joints by their names. The free joint is an exception, as engines name it differently.
 fn dofs(theirs: &Description, ours: &Description) -> Vec<usize> {
     let named =
         |joint: &featherbench_model::JointDescription| if joint.kind == JointType::Free { "free".to_owned() } else { joint.name.clone() };
