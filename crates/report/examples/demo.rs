@@ -1,4 +1,4 @@
-//! Writes the report of a run that never took place, to look at: `cargo run -p featherbench-report --example demo -- FOLDER`.
+//! Writes an example report with made-up rows: `cargo run -p featherbench-report --example demo -- FOLDER`.
 
 use std::error::Error;
 use std::path::PathBuf;

@@ -1,4 +1,4 @@
-//! Writes the report of a run that is already on disk: `cargo run -p featherbench-report --example render -- RUN_FOLDER [OUT]`.
+//! Writes the report of an existing run: `cargo run -p featherbench-report --example render -- RUN_FOLDER [OUT]`.
 
 use std::error::Error;
 use std::path::PathBuf;

@@ -1,4 +1,4 @@
-//! The data of the digits section: errors against the truth per model and method, and how they grow within families.
+//! The data of the accuracy section: errors against the truth per model and method, and their growth within families.
 
 use std::collections::BTreeMap;
 
@@ -9,23 +9,23 @@ use crate::axes::{self, Axis};
 use crate::fit::{Fit, power_law};
 use crate::overview::{ACCURACY, EVERYONE, Overview, severity};
 
-/// The metric of rows that count the engines at one error.
+/// The metric of rows that count the engines limited by the reference.
 pub const WALL: &str = "limited_by_the_reference";
 /// The spacing of doubles at one: an error of this size has lost no digit.
 pub const ULP: f64 = f64::EPSILON;
-/// Quantities in the order of the page: the one that loses most comes first.
+/// Quantities in the order of the page: first the one with the largest loss.
 const ORDER: [&str; 3] = ["fd", "id", "mass_matrix"];
 
-/// Everything that the section shows.
+/// The data of the section.
 #[derive(Debug, Serialize)]
 pub struct Accuracy<'a> {
-    /// Who answered what: the table's columns.
+    /// The table's columns: engine, method, quantity.
     pub answers: Vec<Answer<'a>>,
-    /// What came of it: the table's cells, by model and answer.
+    /// The table's cells, by model and answer.
     pub cells: Vec<Cell<'a>>,
-    /// How it grows.
+    /// The growth of errors.
     pub curves: Vec<Curve<'a>>,
-    /// The rows that suspect the reference.
+    /// The rows that report engines limited by the reference.
     #[serde(skip)]
     pub walls: Vec<&'a Row>,
 }
@@ -39,7 +39,7 @@ pub struct Answer<'a> {
     pub method: &'a str,
     /// Its arithmetic.
     pub scalar: &'a str,
-    /// The quantity; the matrix M is one, whether asked for whole or through products.
+    /// The quantity. The matrix M is one quantity, as a whole or through products.
     pub quantity: &'a str,
 }
 
@@ -60,9 +60,9 @@ pub struct Cell<'a> {
     pub q3: Option<f64>,
     /// Largest.
     pub worst: Option<f64>,
-    /// What rounding the inputs can do.
+    /// The conditioning bound.
     pub floor: Option<f64>,
-    /// Verdict of the row that decides, where a gate or the lack of an answer decides.
+    /// Verdict of the row that decides, if it has a gate or no answer.
     pub verdict: Option<Verdict>,
     /// Its decades to the gate.
     pub margin: Option<f64>,
@@ -73,7 +73,7 @@ pub struct Cell<'a> {
 /// An answer's errors along one axis of one family.
 #[derive(Debug, Serialize)]
 pub struct Curve<'a> {
-    /// What is varied.
+    /// The axis.
     pub axis: Axis,
     /// The family.
     pub family: &'a str,
@@ -81,25 +81,25 @@ pub struct Curve<'a> {
     pub answer: usize,
     /// Place on the axis, index of the cell.
     pub points: Vec<(f64, usize)>,
-    /// How the median grows.
+    /// The growth of the median.
     pub fit: Option<Fit>,
-    /// From where to where that was fitted.
+    /// The range of that fit.
     pub span: Option<[f64; 2]>,
     /// The exponent between the last two points.
     pub last: Option<f64>,
 }
 
-/// The quantity under whose name a row is shown.
+/// The quantity under which a row is shown.
 pub fn shown_quantity(name: &str) -> &str {
     if name == "mass_matrix_probe" { "mass_matrix" } else { name }
 }
 
-/// Where a quantity stands on the page.
+/// The place of a quantity on the page.
 pub fn rank(name: &str) -> (usize, &str) {
     (ORDER.iter().position(|&known| known == name).unwrap_or(ORDER.len()), name)
 }
 
-/// Whether a gate judged a row, or it has no answer that could be judged.
+/// Whether a row has a gate, or lacks an answer.
 pub fn is_judged(row: &Row) -> bool {
     row.study == ACCURACY && row.metric != WALL && row.verdict != Verdict::Info
 }
@@ -162,7 +162,7 @@ impl<'a> Accuracy<'a> {
         quantities
     }
 
-    /// `featherbench aba`: engine, method, and arithmetic unless it is f64.
+    /// `featherbench aba`: engine, method, and precision unless it is f64.
     pub fn name(&self, overview: &Overview, answer: usize) -> String {
         let Answer { engine, method, scalar, .. } = self.answers[answer];
         let scalar = if scalar == "f64" { "" } else { scalar };
@@ -198,7 +198,7 @@ fn curves<'a>(overview: &Overview<'a>, cells: &[Cell]) -> Vec<Curve<'a>> {
             found.entry((axis, family, cell.answer)).or_default().push((x, index));
         }
     }
-    // The robot after which a family of tips is named is the one whose tip is as heavy as usual.
+    // The robot that gives a family of tips its name is the one with the usual tip.
     for (index, cell) in answered() {
         if let Some(points) = found.get_mut(&(Axis::Tip, overview.models[cell.model].name, cell.answer))
             && points.iter().all(|&(x, _)| x != 1.0)
@@ -213,7 +213,7 @@ fn curves<'a>(overview: &Overview<'a>, cells: &[Cell]) -> Vec<Curve<'a>> {
         .map(|((axis, family, answer), mut points)| {
             points.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
             // Below half the spacing of doubles an error is chance, or exactly zero.
-            // Products with M and its entries are measured alike, but not the same thing: a line goes through one kind.
+            // Products with M and its entries have the same measure but are different quantities: a line connects one kind.
             let kind = cells[points[0].1].quantity;
             let fitted: Vec<(f64, f64)> = points
                 .iter()

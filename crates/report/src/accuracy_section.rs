@@ -12,7 +12,7 @@ use crate::numbers::short;
 use crate::overview::Overview;
 use crate::truth;
 
-/// Writes the section; nothing where the run holds no digits.
+/// Writes the section; nothing if the run has no accuracy rows.
 pub fn section(overview: &Overview, digits: &Accuracy) -> Markup {
     html! {
         @if !digits.answers.is_empty() {
@@ -94,7 +94,7 @@ fn growth(overview: &Overview, digits: &Accuracy) -> Markup {
     }
 }
 
-/// Columns: an answer, or (`None`) the floor of the quantity to the left.
+/// Columns: an answer, or (`None`) the conditioning bound of the quantity to the left.
 pub fn columns(digits: &Accuracy) -> Vec<(Option<usize>, usize)> {
     let quantities = digits.quantities();
     let mut columns = Vec::new();
@@ -156,7 +156,7 @@ fn table(overview: &Overview, digits: &Accuracy) -> Markup {
     }
 }
 
-/// The floor of the quantity at a column, which is the same for all its answers.
+/// The conditioning bound of the quantity at a column, which is the same for all its answers.
 fn floor(digits: &Accuracy, columns: &[(Option<usize>, usize)], position: usize, model: usize) -> Option<f64> {
     let group = columns[position].1;
     columns.iter().filter(|&&(_, other)| other == group).find_map(|&(answer, _)| digits.cell(model, answer?)?.floor)
@@ -175,7 +175,7 @@ fn families(overview: &Overview, digits: &Accuracy) -> Vec<Vec<usize>> {
     families
 }
 
-/// Three digits, always in scientific form: columns of them compare at a glance.
+/// Three digits, always in scientific form, so that columns of them are easy to compare.
 pub fn exact(value: f64) -> String {
     if value == 0.0 { "0".into() } else { format!("{value:.2e}") }
 }

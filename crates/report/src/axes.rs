@@ -1,20 +1,20 @@
-//! What a family of robots is varied in, read from a robot's name: its depth, the mass at its tip, the offset of its base.
+//! The axis along which a family of robots varies, from a robot's name: its depth, the mass at its tip, the offset of its base.
 
 use serde::Serialize;
 
-/// What grows along a plot of digits.
+/// The horizontal axis of an accuracy plot.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Axis {
     /// Joints from the base to the farthest leaf.
     Depth,
-    /// The tip's mass over what it usually is.
+    /// The tip's mass over its usual mass.
     Tip,
     /// Distance of the base from the world's origin.
     Offset,
 }
 
-/// Suffixes of names that carry a number.
+/// Suffixes of names, with a number.
 const SUFFIXES: [(&str, Axis); 3] = [("-tip", Axis::Tip), ("-hand", Axis::Tip), ("-offset", Axis::Offset)];
 
 impl Axis {
@@ -39,7 +39,7 @@ impl Axis {
         }
     }
 
-    /// From where on errors can grow: a tip lighter than usual costs nothing, and a line through both sides would be none.
+    /// The place from which errors can grow. A tip lighter than usual costs no digits, and a fit through both sides would be wrong.
     pub const fn fit_from(self) -> f64 {
         match self {
             Self::Tip => 1.0,
@@ -48,7 +48,7 @@ impl Axis {
     }
 }
 
-/// Where a robot stands: the axis, the family that varies along it, and its place. `None` for a robot that no family of this kind holds.
+/// The place of a robot: the axis, the family that varies along it, and its coordinate. `None` for a robot without such a family.
 ///
 /// `rand3d-20-tip1e6` is in the family `rand3d-20` at a tip of 10⁶, `planar-small-50` in `planar-small` at its depth, provided that 50 is its
 /// depth or its number of degrees of freedom.

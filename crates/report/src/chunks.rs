@@ -1,4 +1,4 @@
-//! Data for the page as scripts: a page under `file://` may run a script beside it, but not read a file.
+//! Data of the page as scripts: a page under `file://` may run a script beside it, but not read a file.
 
 use std::collections::BTreeMap;
 
@@ -37,7 +37,7 @@ pub fn script(name: &str, data: &impl Serialize) -> Result<Vec<u8>, ReportError>
     Ok(text.into_bytes())
 }
 
-/// Whether a row belongs into the list of those that did not pass.
+/// Whether a row belongs to the list of those that did not pass.
 pub fn is_unpassed(row: &Row) -> bool {
     !matches!(row.verdict, Verdict::Pass | Verdict::Info)
 }
@@ -45,7 +45,7 @@ pub fn is_unpassed(row: &Row) -> bool {
 /// All rows: a chunk per model, one per study for rows without a model, and one with every row that did not pass.
 pub fn rows(overview: &Overview, records: &[Row]) -> Result<Vec<NamedFile>, ReportError> {
     let mut chunks: BTreeMap<String, Vec<&Row>> = BTreeMap::new();
-    // A model without rows has a chunk as well: the click on it must find that there are none.
+    // A model without rows has a chunk too: a click on it must show that there are none.
     for model in 0..overview.models.len() {
         chunks.insert(format!("model-{model}"), Vec::new());
     }
@@ -56,7 +56,7 @@ pub fn rows(overview: &Overview, records: &[Row]) -> Result<Vec<NamedFile>, Repo
     chunks.iter().map(|(name, rows)| Ok((format!("data/{name}.js"), script(name, &Table::of(rows)?)?))).collect()
 }
 
-/// Rows without the names of their columns in each.
+/// Rows as arrays: the names of the columns are given once.
 #[derive(Serialize)]
 struct Table {
     columns: Vec<&'static str>,

@@ -1,4 +1,4 @@
-//! Section: how the condition number of M grows with a chain's length, and how little it says about what is lost.
+//! Section: the growth of the condition number of M with a chain's length, and how little it says about lost digits.
 
 use std::collections::BTreeMap;
 
@@ -36,7 +36,7 @@ pub struct Point<'a> {
     pub raw: Option<f64>,
     /// κ(D^-½ M D^-½).
     pub scaled: Option<f64>,
-    /// The structured floor of forward dynamics.
+    /// The conditioning bound of forward dynamics.
     pub floor: Option<f64>,
     /// Local exponents of both, with their verdicts.
     #[serde(skip)]
@@ -46,7 +46,7 @@ pub struct Point<'a> {
     reason: &'a str,
 }
 
-/// Reads a run's rows.
+/// Collects a run's rows.
 pub fn families<'a>(overview: &Overview<'a>, records: &'a [Row]) -> Vec<Family<'a>> {
     let mut found: BTreeMap<&str, BTreeMap<(u64, usize), Point>> = BTreeMap::new();
     for row in records.iter().filter(|row| row.study == CONDITIONING) {
@@ -73,7 +73,7 @@ pub fn families<'a>(overview: &Overview<'a>, records: &'a [Row]) -> Vec<Family<'
     found.into_iter().map(family).collect()
 }
 
-/// Writes the section; nothing where the run holds no condition numbers.
+/// Writes the section; nothing if the run has no condition numbers.
 pub fn section(overview: &Overview, families: &[Family]) -> Markup {
     html! {
         @if !families.is_empty() {

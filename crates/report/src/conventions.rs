@@ -1,4 +1,4 @@
-//! Section: where the engines' conventions differ from ours, and what holds each statement.
+//! Section: the engines' conventions that differ from ours, and the test of each.
 
 use featherbench_results::{Convention, RunInfo};
 use maud::{Markup, html};

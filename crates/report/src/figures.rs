@@ -1,4 +1,4 @@
-//! The data of the plots: errors against depth, times against size, and what the other sections plot.
+//! The data of the plots: errors against depth, times against size, and those of the other sections.
 
 use std::collections::BTreeMap;
 
@@ -15,15 +15,15 @@ use crate::speed::Speed;
 use crate::steps::{self, StepLine};
 use crate::tradeoff::{Tradeoff, tradeoffs};
 
-/// The metrics that measure an error even where nothing gates it.
+/// The metrics that are errors even without a gate.
 pub const ERROR_METRICS: [&str; 3] = ["scaled", "forward", "backward"];
 
-/// Everything that is plotted.
+/// The data of all plots.
 #[derive(Debug, Serialize)]
 pub struct Figures<'a> {
     /// One plot per quantity and measure.
     pub errors: Vec<ErrorPlot<'a>>,
-    /// One line per algorithm, family and case.
+    /// One line per algorithm, family and cache regime.
     pub times: Vec<TimeLine<'a>>,
     /// Errors against the truth.
     pub accuracy: Accuracy<'a>,
@@ -99,11 +99,11 @@ pub struct TimePoint {
     pub joints: u64,
     /// Nanoseconds per call.
     pub ns: f64,
-    /// Its first decile, where the run has it.
+    /// Its first decile, if the run has it.
     pub p10: Option<f64>,
     /// Its last decile.
     pub p90: Option<f64>,
-    /// Lower end of the interval of the median, where the run has it.
+    /// Lower end of the interval of the median, if the run has it.
     pub low: Option<f64>,
     /// Its upper end.
     pub high: Option<f64>,
@@ -164,7 +164,7 @@ fn errors<'a>(overview: &Overview<'a>, records: &'a [Row]) -> Vec<ErrorPlot<'a>>
     plots
 }
 
-/// What a time's parameters say of the spread of its blocks.
+/// The deciles of a time's blocks, from its parameters.
 #[derive(Default, Deserialize)]
 struct Deciles {
     p10: Option<f64>,
@@ -186,7 +186,7 @@ fn times<'a>(overview: &Overview<'a>, records: &'a [Row]) -> Vec<TimeLine<'a>> {
         .into_iter()
         .filter_map(|([engine, algorithm, method, scalar, family, cache], mut points)| {
             points.sort_by_key(|point| (point.size, point.model));
-            // Invalid times too: they are off by some percent, and a fit spans decades.
+            // Invalid times too: they are wrong by some percent, and a fit spans decades.
             let per_call = power_law(points.iter().map(|point| (point.size as f64, point.ns)));
             let per_joint = power_law(points.iter().map(|point| (point.size as f64, point.ns / point.joints as f64)));
             let engine = overview.engine(engine)?;

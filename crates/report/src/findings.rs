@@ -1,4 +1,4 @@
-//! What the rows say, in sentences: who agrees with whom and on what, who does not, and whether the run as a whole is good.
+//! Findings, in sentences: which engines agree on what, which do not, and whether the run passed.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -21,25 +21,25 @@ pub enum Status {
     Empty,
 }
 
-/// Engines that keep all their gates against a reference, on the same quantities.
+/// Engines that pass all their gates against a reference, on the same quantities.
 pub struct Agreement<'a> {
-    /// Who.
+    /// The engines.
     pub engines: Vec<&'a str>,
-    /// With whom.
+    /// The reference.
     pub reference: &'a str,
-    /// On what, and the largest error there.
+    /// The quantities, and the largest error of each.
     pub quantities: Vec<(&'a str, f64)>,
-    /// On how many models: the fewest and the most of any quantity.
+    /// The number of models: the fewest and the most of any quantity.
     pub models: (usize, usize),
 }
 
-/// An engine that broke gates on a quantity.
+/// An engine that failed gates on a quantity.
 pub struct Disagreement<'a> {
-    /// Who.
+    /// The engine.
     pub engine: &'a str,
-    /// Compared with whom; empty where no comparison came about.
+    /// The reference; empty if nothing was compared.
     pub reference: &'a str,
-    /// On what.
+    /// The quantity.
     pub quantity: &'a str,
     /// All its judged rows there.
     pub tally: Tally,
@@ -47,7 +47,7 @@ pub struct Disagreement<'a> {
     pub worst: &'a Row,
 }
 
-/// Everything that the head of the page says.
+/// The contents of the head of the page.
 pub struct Findings<'a> {
     /// The run as a whole.
     pub status: Status,
@@ -55,18 +55,18 @@ pub struct Findings<'a> {
     pub tally: Tally,
     /// Expectations that are not met.
     pub unmet: usize,
-    /// Who keeps their gates.
+    /// The engines that pass their gates.
     pub agreements: Vec<Agreement<'a>>,
-    /// Who breaks them, worst first.
+    /// The engines that fail gates, worst first.
     pub disagreements: Vec<Disagreement<'a>>,
     /// The passing row that is closest to its gate.
     pub closest: Option<&'a Row>,
-    /// What the answers were compared with.
+    /// The references of the answers.
     pub references: BTreeSet<&'a str>,
 }
 
 impl<'a> Findings<'a> {
-    /// Reads the rows.
+    /// Collects a run's rows.
     pub fn of(run: &RunInfo, overview: &Overview<'a>, records: &'a [Row]) -> Self {
         let tally = Tally::of(records.iter().map(|row| row.verdict));
         let unmet = run
@@ -177,7 +177,7 @@ impl Disagreement<'_> {
     }
 }
 
-/// What one engine did on one quantity against one reference.
+/// The rows of one engine on one quantity against one reference.
 struct Account<'a> {
     tally: Tally,
     models: BTreeSet<&'a str>,
@@ -196,14 +196,14 @@ fn agreements<'a>(overview: &Overview<'a>, records: &'a [Row]) -> Vec<Agreement<
         account.tally.add(row.verdict);
         if row.verdict == Verdict::Pass {
             account.models.insert(&row.robot);
-            // An error over its floor is a ratio and no error: it is judged, and not told in this sentence.
+            // An error over its conditioning bound is a ratio, not an error: it is judged, but not part of this sentence.
             if row.metric != "error_over_floor" {
                 account.largest = larger(account.largest, row.value.unwrap_or_default().abs());
             }
         }
     }
 
-    // Per reference and quantity, the engines that kept every gate; then quantities with the same engines share a sentence.
+    // Per reference and quantity, the engines that passed every gate; quantities with the same engines share a sentence.
     type Kept<'a> = (Vec<usize>, f64, Vec<usize>);
     let mut kept: BTreeMap<(&str, (usize, &str)), Kept> = BTreeMap::new();
     for ((reference, quantity, engine), account) in &accounts {
@@ -234,7 +234,7 @@ fn agreements<'a>(overview: &Overview<'a>, records: &'a [Row]) -> Vec<Agreement<
 
 fn disagreements(records: &[Row]) -> Vec<Disagreement<'_>> {
     let mut found: BTreeMap<(&str, &str, &str), Disagreement> = BTreeMap::new();
-    // What the truth says is told apart from what engines say of each other.
+    // Comparisons with the truth have their own sentences, apart from comparisons between engines.
     let told_here = |row: &&Row| row.study != ACCURACY && !matches!(row.verdict, Verdict::Info | Verdict::Skip);
     for row in records.iter().filter(told_here) {
         let group = found.entry((&row.engine, &row.reference, &row.quantity)).or_insert_with(|| Disagreement {

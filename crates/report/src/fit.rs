@@ -7,7 +7,7 @@ use serde::Serialize;
 pub struct Fit {
     /// The exponent p.
     pub slope: f64,
-    /// Its standard error, from the relocate about the line.
+    /// Its standard error, from the residuals about the line.
     pub error: f64,
     /// log₁₀ c.
     pub intercept: f64,
@@ -15,7 +15,7 @@ pub struct Fit {
     pub points: usize,
 }
 
-/// Fits at least three points of at least two sizes; points that have no logarithm are left out.
+/// Fits at least three points of at least two sizes; points without a logarithm are left out.
 pub fn power_law(points: impl Iterator<Item = (f64, f64)>) -> Option<Fit> {
     let logs: Vec<(f64, f64)> = points.filter(|&(x, y)| x > 0.0 && y > 0.0).map(|(x, y)| (x.log10(), y.log10())).collect();
     let count = logs.len();

@@ -1,4 +1,4 @@
-//! Section: how each engine reads the robots' own files, as a matrix of robots and engines, and how often for which cause they differ.
+//! Section: the engines' imports of the robots' own files, as a matrix of robots and engines, and the number of differences by cause.
 
 use std::collections::BTreeMap;
 
@@ -13,34 +13,34 @@ use crate::overview::Overview;
 /// The study whose rows the section shows.
 const READING: &str = "import";
 
-/// What became of one robot in one engine.
+/// The result of one robot in one engine.
 #[derive(Default)]
 struct Cell<'a> {
-    /// The row that counts the differences, or says why there is no reading.
+    /// The row that counts the differences, or says why there is no import.
     read: Option<&'a Row>,
-    /// The row that counts what the differences do not explain.
+    /// The row that counts the parts that the differences do not explain.
     unexplained: Option<&'a Row>,
-    /// The largest error of inverse dynamics and mass matrix as read, against the reference reading.
+    /// The largest error of inverse dynamics and mass matrix of the imported robot, against the reference import.
     error: Option<f64>,
 }
 
-/// What rounding may leave where a run's rows do not say.
+/// The effect of rounding, if a run's rows do not give it.
 const SHALLOW: f64 = 1e-12;
 
 impl Cell<'_> {
-    /// What rounding may leave of M and inverse dynamics of this robot: the study says so beside its replay, as it grows with the depth.
+    /// The effect of rounding on M and inverse dynamics of this robot. The study gives it beside its replay, as it grows with the depth.
     fn bound(&self) -> f64 {
         let said = self.unexplained.and_then(|row| serde_json::from_str::<Value>(&row.params).ok()?["gate"].as_f64());
         said.unwrap_or(SHALLOW)
     }
 
-    /// Whether the answers as read are those of the reference. What is not a number is not.
+    /// Whether the answers about the imported robot are those of the reference. A NaN is not.
     fn agrees(&self) -> Option<bool> {
         self.error.map(|error| error <= self.bound())
     }
 }
 
-/// Everything that the section shows.
+/// The data of the section.
 pub struct Imports<'a> {
     engines: Vec<usize>,
     models: Vec<usize>,
@@ -50,7 +50,7 @@ pub struct Imports<'a> {
 }
 
 impl<'a> Imports<'a> {
-    /// The readings among the records.
+    /// Collects the rows of imports.
     pub fn of(overview: &Overview, records: &'a [Row]) -> Self {
         let mut readings = Self { engines: Vec::new(), models: Vec::new(), cells: BTreeMap::new(), causes: BTreeMap::new() };
         for row in records.iter().filter(|row| row.study == READING) {
@@ -78,13 +78,13 @@ impl<'a> Imports<'a> {
         readings
     }
 
-    /// Whether the run asked.
+    /// Whether the run had no imports.
     pub fn is_empty(&self) -> bool {
         self.models.is_empty()
     }
 }
 
-/// Writes the section, where the run asked.
+/// Writes the section, if the run had imports.
 pub fn section(overview: &Overview, readings: &Imports) -> Markup {
     if readings.is_empty() {
         return html! {};
@@ -189,7 +189,7 @@ fn entry(overview: &Overview, model: usize, engine: usize, cell: &Cell) -> Marku
     }
 }
 
-/// Whether the differences do not explain the engine's answers, or that could not be found out.
+/// Whether the differences do not explain the engine's answers, or that is not known.
 fn unexplained(cell: &Cell) -> bool {
     cell.unexplained.is_some_and(|row| row.verdict == Verdict::Error || row.value.is_some_and(|value| value > 0.0))
 }

@@ -1,7 +1,7 @@
-//! Section: joint type × engine × quantity: which engine has the joint, and who agrees on what.
+//! Section: joint type × engine × quantity: which engine has the joint, and which engines agree on what.
 //!
-//! The robots are those called `joints-TYPE-BASE…`, each of which shows one type of joint. A cell folds their bases, shapes, states and the
-//! engine's methods into the worst row, so that the method which is named is the one that decides.
+//! The robots are those named `joints-TYPE-BASE…`; each of them has one type of joint. A cell combines their bases, shapes and states, and
+//! the engine's methods, into the worst row. So the named method is the one that decides.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -15,15 +15,15 @@ use crate::numbers::{decades, larger, listed, short};
 use crate::overview::{AGREEMENT, Overview, PAIRWISE, severity};
 use crate::tally::Tally;
 
-/// What the names of these robots begin with.
+/// The prefix of these robots' names.
 const PREFIX: &str = "joints-";
-/// What the words for a row with armature end with.
+/// The suffix of a row with armature.
 const WITH_ARMATURE: &str = " with armature";
 /// Joint types in the order of the page; others follow in alphabetical order.
 const TYPES: [&str; 10] =
     ["revolute", "prismatic", "helical", "spherical", "free", "planar", "universal", "translation", "cylindrical", "euler_zyx"];
 
-/// The table, and what the page's script says of its cells.
+/// The table, and the data of its cells for the page's script.
 #[derive(Debug, Default, Serialize)]
 pub struct JointMatrix<'a> {
     /// One row per joint type, and one more for the type with armature.
@@ -34,7 +34,7 @@ pub struct JointMatrix<'a> {
     pub cells: Vec<Cell<'a>>,
 }
 
-/// What a robot shows.
+/// The joint of a robot.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
 pub struct Shown<'a> {
     #[serde(skip)]
@@ -45,17 +45,17 @@ pub struct Shown<'a> {
     pub armature: bool,
 }
 
-/// What became of a joint type in an engine's quantity.
+/// The result of a joint type in an engine's quantity.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum State {
     /// Every answer is inside its gate.
     Agrees,
-    /// One is outside, by known cause.
+    /// One is outside, for a known cause.
     Deviates,
     /// One is outside.
     Fails,
-    /// One did not come that was due.
+    /// One is missing.
     Error,
     /// The engine offers none.
     Unsupported,
@@ -72,7 +72,7 @@ pub struct Cell<'a> {
     pub rows: String,
     /// The robots that answered.
     pub robots: usize,
-    /// The robots for which the engine offers nothing.
+    /// The robots that the engine does not support.
     pub lacking: Vec<&'a str>,
     /// The model, metric, case, method and reason of the row that decides.
     pub worst: [&'a str; 5],
@@ -91,13 +91,13 @@ struct Fold<'a> {
 }
 
 impl<'a> JointMatrix<'a> {
-    /// Folds a run's rows; empty when it has no such robots.
+    /// Collects a run's rows; empty if it has no such robots.
     pub fn of(overview: &Overview, records: &'a [Row]) -> Self {
         let mut folds: BTreeMap<(Shown, usize, usize), Fold> = BTreeMap::new();
         for row in records.iter().filter(|row| row.study == AGREEMENT && row.metric != PAIRWISE && row.verdict != Verdict::Info) {
             let quantity = overview.quantities.iter().position(|&name| name == row.quantity);
             let (Some(shown), Some(engine), Some(quantity)) = (Shown::of(row), overview.engine(&row.engine), quantity) else { continue };
-            // An engine that is compared with itself says nothing here.
+            // An engine that is compared with itself is left out.
             if row.reference.split(' ').next() != Some(&row.engine) {
                 folds.entry((shown, engine, quantity)).or_default().add(row);
             }
@@ -117,7 +117,7 @@ impl<'a> JointMatrix<'a> {
 }
 
 impl<'a> Shown<'a> {
-    /// What the robot of a row shows: `joints-TYPE-BASE`, then perhaps `-single` and `-armature`; none where that is no single type.
+    /// The joint of a row's robot: `joints-TYPE-BASE`, then perhaps `-single` and `-armature`; `None` if that is not a single type.
     fn of(row: &'a Row) -> Option<Self> {
         let mut parts = row.robot.strip_prefix(PREFIX)?.split('-');
         let kind = parts.next()?;
@@ -165,7 +165,7 @@ impl<'a> Fold<'a> {
     }
 }
 
-/// Writes the section; nothing where the run has no such robots.
+/// Writes the section; nothing if the run has no such robots.
 pub fn section(overview: &Overview, matrix: &JointMatrix) -> Markup {
     if matrix.rows.is_empty() {
         return html! {};
@@ -189,7 +189,7 @@ fn engines(matrix: &JointMatrix) -> BTreeSet<usize> {
     matrix.columns.iter().map(|&(engine, _)| engine).collect()
 }
 
-/// What an engine has, and where it does not agree.
+/// The joints of an engine, and where it does not agree.
 fn sentence(overview: &Overview, matrix: &JointMatrix, engine: usize) -> Markup {
     let cells: Vec<&Cell> = matrix.cells.iter().filter(|cell| cell.at[1] == engine).collect();
     let name = |row: usize| matrix.rows[row].words();
@@ -197,7 +197,7 @@ fn sentence(overview: &Overview, matrix: &JointMatrix, engine: usize) -> Markup 
         let rows: BTreeSet<usize> = cells.iter().filter(|cell| lack(cell)).map(|cell| cell.at[0]).collect();
         rows.into_iter().map(name).collect::<Vec<_>>()
     };
-    // Each quantity in that state with its largest value, where there is one.
+    // Each quantity in that state with its largest value, if it has one.
     let quantities_where = |state: State| {
         let mut largest: BTreeMap<usize, Option<f64>> = BTreeMap::new();
         for cell in cells.iter().filter(|cell| cell.state == state) {
@@ -210,7 +210,7 @@ fn sentence(overview: &Overview, matrix: &JointMatrix, engine: usize) -> Markup 
         };
         largest.into_iter().map(words).collect::<Vec<_>>()
     };
-    // A row of which the engine answers one quantity and refuses another is offered in part, not lacking.
+    // If the engine answers one quantity of a row and does not support another, the row is offered in part, not lacking.
     let answered: BTreeSet<usize> = cells.iter().filter(|cell| cell.state != State::Unsupported).map(|cell| cell.at[0]).collect();
     let mut lacking = rows_where(&|cell| !answered.contains(&cell.at[0]));
     // Without the joint there is no armature on it either.

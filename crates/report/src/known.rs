@@ -12,7 +12,7 @@ use crate::numbers::short;
 use crate::overview::REPRODUCTIONS;
 use crate::page::opener;
 
-/// Both rows of one reproduction, or the one that tells why there is no value.
+/// Both rows of one reproduction, or the one that says why there is no value.
 struct Known<'a> {
     smallest: Option<&'a Row>,
     largest: Option<&'a Row>,
@@ -20,7 +20,7 @@ struct Known<'a> {
     params: Value,
 }
 
-/// Writes the section; nothing where the run reproduces none.
+/// Writes the section; nothing if the run has no reproductions.
 pub fn section(records: &[Row]) -> Markup {
     let known = known(records);
     html! {

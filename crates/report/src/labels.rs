@@ -1,10 +1,10 @@
-//! Names in files and what they are called on the page.
+//! Names in files, and their text on the page.
 
 use featherbench_results::Verdict;
 
-/// A name with the words for it.
+/// A name with its text.
 pub struct Label {
-    /// The name in the records.
+    /// The name in the rows.
     pub name: &'static str,
     /// A column's heading.
     pub title: &'static str,
@@ -81,7 +81,7 @@ pub const QUANTITIES: [Label; 20] = [
     label("stored_entries", "stored entries", ""),
 ];
 
-/// What a quantity is called; a row without one is about the whole model.
+/// The text of a quantity; a row without one is about the whole model.
 pub fn quantity(name: &str) -> &str {
     if name.is_empty() {
         return "whole model";
@@ -89,12 +89,12 @@ pub fn quantity(name: &str) -> &str {
     QUANTITIES.iter().find(|label| label.name == name).map_or(name, |label| label.title)
 }
 
-/// Where a quantity stands among the others.
+/// The place of a quantity among the others.
 pub fn quantity_rank(name: &str) -> (usize, &str) {
     (QUANTITIES.iter().position(|label| label.name == name).unwrap_or(QUANTITIES.len()), name)
 }
 
-/// What a quantity under a measure is called: `forward dynamics, backward error`.
+/// The text of a quantity under a measure: `forward dynamics, backward error`.
 pub fn error(quantity_name: &str, metric: &str) -> String {
     let title = quantity(quantity_name);
     match metric {
@@ -104,7 +104,7 @@ pub fn error(quantity_name: &str, metric: &str) -> String {
     }
 }
 
-/// The cause of a difference between two readings, in a phrase; a cause that is unknown here is its own word.
+/// The cause of a difference between two import results, as a phrase; an unknown cause is its own phrase.
 pub fn cause(name: &str) -> &str {
     match name {
         "number" => "another number",

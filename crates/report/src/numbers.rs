@@ -1,4 +1,4 @@
-//! Numbers as people read them.
+//! Numbers for readers.
 
 /// Two significant digits, in scientific form where it is shorter: `3.2e-14`, `0.25`, `1200`.
 pub fn short(value: f64) -> String {
@@ -15,7 +15,7 @@ pub fn short(value: f64) -> String {
     }
 }
 
-/// Decades with a sign and one digit, rounded away from comfort: 0.99 decades are `+0.9`, not `+1.0`.
+/// Decades with a sign and one digit, rounded down: 0.99 decades are `+0.9`, not `+1.0`.
 pub fn decades(margin: f64) -> String {
     let tenths = (margin * 10.0).floor() / 10.0;
     format!("{}{:.1}", if tenths < 0.0 { "−" } else { "+" }, tenths.abs())
@@ -26,7 +26,7 @@ pub fn count(number: usize, noun: &str) -> String {
     format!("{} {noun}{}", grouped(number), if number == 1 { "" } else { "s" })
 }
 
-/// Thousands apart by narrow spaces.
+/// Groups of three digits with narrow spaces.
 pub fn grouped(number: usize) -> String {
     let digits = number.to_string();
     let mut text = String::with_capacity(digits.len() * 2);
@@ -39,7 +39,7 @@ pub fn grouped(number: usize) -> String {
     text
 }
 
-/// Names as a sentence has them: `a`, `a and b`, `a, b and c`.
+/// Names in a sentence: `a`, `a and b`, `a, b and c`.
 pub fn listed(names: &[String]) -> String {
     match names {
         [] => String::new(),
@@ -48,7 +48,7 @@ pub fn listed(names: &[String]) -> String {
     }
 }
 
-/// The larger of two numbers; NaN when either is, so that no fold can lose one.
+/// The larger of two numbers; NaN when either is, so that a fold keeps every NaN.
 pub fn larger(a: f64, b: f64) -> f64 {
     if a.is_nan() || b.is_nan() { f64::NAN } else { a.max(b) }
 }

@@ -1,4 +1,4 @@
-//! What the run consists of, and its rows grouped by model × engine × quantity.
+//! The contents of the run, and its rows grouped by model × engine × quantity.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -20,12 +20,12 @@ pub const CONDITIONING: &str = "conditioning";
 pub const REPRODUCTIONS: &str = "reproductions";
 /// The study of small steps.
 pub const STEPS: &str = "steps";
-/// The engine of rows that speak of all engines together.
+/// The engine of rows about all engines together.
 pub const EVERYONE: &str = "all";
 /// The metric of rows that compare two engines with each other.
 pub const PAIRWISE: &str = "pairwise";
 
-/// A model as the page knows it.
+/// A model on the page.
 #[derive(Clone, Debug, Serialize)]
 pub struct Model<'a> {
     /// Its name.
@@ -45,14 +45,14 @@ pub struct Model<'a> {
 pub struct Cell<'a> {
     /// Their verdicts.
     pub tally: Tally,
-    /// The row that decides: of the gravest verdict, the one with the least margin.
+    /// The row that decides: of the worst verdict, the one with the smallest margin.
     pub worst: &'a Row,
 }
 
 /// The run's vocabulary, each list in the order of the page, and its heatmap.
 #[derive(Debug)]
 pub struct Overview<'a> {
-    /// Names of engines that answered or should have.
+    /// Names of the engines, also of those that failed to answer.
     pub engines: Vec<&'a str>,
     /// Models, families together.
     pub models: Vec<Model<'a>>,
@@ -93,7 +93,7 @@ impl<'a> Overview<'a> {
         }
         let mut columns: BTreeSet<(usize, usize)> = cells.keys().map(|&(_, engine, quantity)| (engine, quantity)).collect();
 
-        // A row without a quantity speaks for the whole model: it fills what would be gaps. An engine that has no other rows has one column.
+        // A row without a quantity is about the whole model: it fills the gaps. An engine without other rows has one column.
         for row in judged.iter().filter(|row| row.quantity.is_empty()) {
             let (Some(&model), Some(engine)) = (model_index.get(row.robot.as_str()), engine_index(&row.engine)) else { continue };
             if !columns.iter().any(|&(other, _)| other == engine) {
@@ -121,7 +121,7 @@ impl<'a> Overview<'a> {
         self.engines.iter().position(|&engine| engine == name)
     }
 
-    /// The name of the chunk in which a row lies: its model's, or its study's where it has no model.
+    /// The name of the chunk with a row: its model's, or its study's if it has no model.
     pub fn chunk_of(&self, row: &Row) -> String {
         match self.model(&row.robot) {
             Some(model) => format!("model-{model}"),
@@ -129,7 +129,7 @@ impl<'a> Overview<'a> {
         }
     }
 
-    /// What the page's script needs to know beforehand.
+    /// The data that the page's script needs first.
     pub fn data(&self) -> OverviewData<'_> {
         let cells = self.cells.iter().map(|(&(model, engine, quantity), cell)| {
             let row = cell.worst;
@@ -153,7 +153,7 @@ impl<'a> Overview<'a> {
     }
 }
 
-/// The script's view of the run.
+/// The data of the run for the script.
 #[derive(Serialize)]
 pub struct OverviewData<'a> {
     engines: &'a [&'a str],
@@ -163,7 +163,7 @@ pub struct OverviewData<'a> {
     cells: Vec<CellData<'a>>,
 }
 
-/// What the script says of a cell when it is pointed at.
+/// The data of a cell for the script.
 #[derive(Serialize)]
 struct CellData<'a> {
     at: [usize; 3],
@@ -188,19 +188,19 @@ impl<'a> Cell<'a> {
     }
 }
 
-/// Orders rows from the worst on: by verdict, then by margin; a failure without a margin is as bad as can be.
+/// Orders rows from the worst: by verdict, then by margin. A failure without a margin is the worst.
 pub fn severity(row: &Row) -> (usize, i64) {
     let unknown = if matches!(row.verdict, Verdict::Fail | Verdict::Error) { i64::MIN } else { i64::MAX };
-    // Margins are within ±16: millionths of decades order them as well as the numbers themselves would.
+    // Margins are within ±16: millionths of decades order them like the numbers themselves.
     (gravity(row.verdict), row.margin.map_or(unknown, |margin| (margin * 1e6) as i64))
 }
 
-/// Whether a row is about one engine's answer for one model, judged or excused.
+/// Whether a row is about one engine's answer for one model, with a verdict or a known deviation.
 fn in_heatmap(row: &Row) -> bool {
     row.study == AGREEMENT && row.metric != PAIRWISE && !row.robot.is_empty()
 }
 
-/// The names that were announced, then the others in alphabetical order.
+/// The announced names, then the others in alphabetical order.
 fn in_order<'a>(announced: impl Iterator<Item = &'a str>, met: impl Iterator<Item = &'a str>) -> Vec<&'a str> {
     let mut names: Vec<&str> = Vec::new();
     for name in announced {
@@ -214,11 +214,11 @@ fn in_order<'a>(announced: impl Iterator<Item = &'a str>, met: impl Iterator<Ite
     names
 }
 
-/// Every model that was announced or met, families together, otherwise in the order of the announcement.
+/// Every model that is announced or has rows: families together, otherwise in the order of the announcement.
 fn models<'a>(run: &'a RunInfo, records: &'a [Row]) -> Vec<Model<'a>> {
     let mut first_rows: BTreeMap<&str, &Row> = BTreeMap::new();
     for row in records.iter().filter(|row| !row.robot.is_empty()) {
-        // The study of agreement knows the family; a timing row of the same model may call it otherwise.
+        // The agreement study gives the family; a timing row of the same model may have another.
         let entry = first_rows.entry(&row.robot).or_insert(row);
         if entry.study != AGREEMENT && row.study == AGREEMENT {
             *entry = row;

@@ -48,7 +48,7 @@ pub fn render(run: &RunInfo, records: &[Row], overview: &Overview, figures: &Fig
                 meta name="color-scheme" content="light dark";
                 title { "featherbench: " (run.suite) " " (run.run) }
                 link rel="stylesheet" href="style.css";
-                // The first is small, defines what the data scripts call, and sets the theme before anything is drawn.
+                // The first is small, defines the function that the data scripts call, and sets the theme before anything is drawn.
                 script src="app.js" {}
                 script defer src="data/overview.js" {}
                 script defer src="data/figures.js" {}
@@ -101,7 +101,7 @@ pub fn opener(chunk: &str, filters: &[(&str, &str)], text: &str) -> Markup {
     }
 }
 
-/// The sections that this run has: some appear with their rows alone.
+/// The sections of this run: some need rows of their own.
 fn sections(overview: &Overview, figures: &Figures, readings: &Imports) -> impl Iterator<Item = (&'static str, &'static str)> {
     let absent = |anchor| match anchor {
         "import" => readings.is_empty(),
@@ -141,7 +141,7 @@ fn header(run: &RunInfo, overview: &Overview, figures: &Figures, readings: &Impo
     }
 }
 
-/// A feather whose barbs are the bars of a bench: three lines on a quill.
+/// The logo: a feather of three lines on a quill, like the bars of a chart.
 fn logo() -> Markup {
     html! {
         svg viewBox="0 0 24 24" width="24" height="24" aria-hidden="true" {
@@ -151,7 +151,7 @@ fn logo() -> Markup {
     }
 }
 
-/// Where rows appear when something is clicked; the script fills it.
+/// The place for rows after a click; the script fills it.
 fn rows_dialog() -> Markup {
     html! {
         dialog #rows aria-labelledby="rows-title" {

@@ -10,7 +10,7 @@ use crate::numbers::short;
 use crate::overview::{Overview, PAIRWISE};
 use crate::page::opener;
 
-/// The largest difference of two engines on a quantity, and the row that holds it.
+/// The largest difference of two engines on a quantity, and its row.
 type Largest<'a> = BTreeMap<(usize, usize), (f64, &'a Row)>;
 
 /// Writes the section.
@@ -33,7 +33,7 @@ pub fn section(overview: &Overview, records: &[Row]) -> Markup {
     }
 }
 
-/// The rows that compare two engines in the quantity's own measure; a backward error measures something else.
+/// The rows that compare two engines in the quantity's own measure; a backward error is another measure.
 fn matrices<'a>(overview: &Overview, records: &'a [Row]) -> Vec<(&'a str, Largest<'a>)> {
     let mut found: BTreeMap<(usize, &str), Largest> = BTreeMap::new();
     for row in records.iter().filter(|row| [PAIRWISE, "scaled", "forward"].contains(&row.metric.as_str())) {
@@ -61,7 +61,7 @@ fn matrix(overview: &Overview, quantity: &str, largest: &Largest) -> Markup {
             tbody {
                 @for (position, &one) in engines.iter().enumerate() {
                     tr {
-                        // A lower triangle: each row ends with its own name, which heads the column below.
+                        // A lower triangle: each row ends with its own name, which is the head of the column below.
                         @for &other in &engines[..position] {
                             @match largest.get(&(one, other)) {
                                 Some((value, row)) => td class=(step(*value)) { (cell(overview, *value, row)) },
@@ -84,7 +84,7 @@ fn cell(overview: &Overview, value: f64, row: &Row) -> Markup {
     )
 }
 
-/// Colour steps by decades of error, from rounding to plainly different.
+/// Colour steps by decades of error, from rounding to large differences.
 fn step(value: f64) -> &'static str {
     match value {
         v if v <= 1e-15 => "d0",

@@ -1,4 +1,4 @@
-//! Sections with plots: error against depth, time against size. The script draws them; here are their frames, choices and tables.
+//! Sections with plots: error against depth, time against size. The script draws them; their frames, choices and tables are made here.
 
 use std::collections::BTreeSet;
 
@@ -12,7 +12,7 @@ use crate::overview::Overview;
 
 /// Error against depth.
 pub fn depth(figures: &Figures) -> Markup {
-    // Forward dynamics loses digits first; where a run has it, the plot opens on it.
+    // Forward dynamics loses digits first; if a run has it, it is the first plot shown.
     let opening = figures.errors.iter().position(|plot| plot.quantity == "fd").unwrap_or(0);
     html! {
         section #depth {
@@ -41,7 +41,7 @@ pub fn depth(figures: &Figures) -> Markup {
 /// Time against size.
 pub fn time(overview: &Overview, figures: &Figures) -> Markup {
     let families: BTreeSet<&str> = figures.times.iter().map(|line| line.family).collect();
-    // All families at once are a thicket: the plot opens on the one with the most to show.
+    // All families at once are hard to read: the plot first shows the one with the most points.
     let points = |family: &&&str| figures.times.iter().filter(|line| line.family == **family).map(|line| line.points.len()).sum::<usize>();
     let opening = families.iter().max_by_key(points).copied();
     let cases: BTreeSet<&str> = figures.times.iter().map(|line| line.cache).collect();
@@ -58,7 +58,7 @@ pub fn time(overview: &Overview, figures: &Figures) -> Markup {
                         option value="joint" { "ns per joint" }
                     } }
                     label { "Inputs " select #time-case {
-                        // The honest one first: every call reads another state.
+                        // `stream` first, as it is more realistic: every call reads another state.
                         @for case in cases.iter().rev() { option value=(case) { (case_words(case)) } }
                     } }
                     label { "Family " select #time-family {

@@ -1,4 +1,4 @@
-//! Section: with what, on what and on whom the run was made.
+//! Section: program, machine, engines and robots of the run.
 
 use std::collections::BTreeMap;
 
@@ -46,7 +46,7 @@ fn engines(run: &RunInfo) -> Markup {
     }
 }
 
-/// A list of facts; those that could not be found out say so.
+/// A list of facts; those that are not known say so.
 fn facts(title: &str, facts: &[(&str, String)]) -> Markup {
     html! {
         div {

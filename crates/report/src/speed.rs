@@ -1,4 +1,4 @@
-//! What the paired experiments say: ratios with their intervals, controls, the machine's limit, and what does not count.
+//! The results of the paired experiments: ratios with their intervals, A/A ratios, the machine's limit, and times that do not count.
 
 use std::collections::BTreeMap;
 
@@ -8,28 +8,28 @@ use serde::Serialize;
 use crate::labels;
 use crate::overview::{Overview, TIMING};
 
-/// The quantity of the rows on the machine.
+/// The quantity of the rows about the machine.
 const MACHINE: &str = "machine";
-/// Quantities whose best algorithm has an exact count of operations per revolute joint: multiply-adds, or single multiplications and
-/// additions, each of which fills the place of one.
+/// Quantities whose best algorithm has an exact count of operations per revolute joint. They are multiply-adds, or single multiplications
+/// and additions, each of which takes the place of one.
 pub const OPERATIONS: [(&str, &str, f64); 2] = [("id", "RNEA", 142.0), ("fd", "ABA", 396.0)];
 
-/// Everything that the section on speed shows.
+/// The data of the section on speed.
 #[derive(Debug, Serialize)]
 pub struct Speed<'a> {
-    /// Everyone but the reference, on every robot.
+    /// All candidates but the reference, on every robot.
     pub ratios: Vec<Ratio<'a>>,
-    /// The second copies of the reference.
+    /// The A/A replicates of the reference.
     pub controls: Vec<Ratio<'a>>,
     /// Quantities with ratios, as name and words.
     pub quantities: Vec<[&'a str; 2]>,
-    /// Times against the least that the machine could need.
+    /// Times, and the least time that the machine could need.
     #[serde(skip)]
     pub limits: Vec<Limit<'a>>,
-    /// Why no time is set beside the limit: the peak was measured too low. [`Speed::limits`] is empty then.
+    /// Why no time is compared with the limit: the peak was measured too low. [`Speed::limits`] is empty then.
     #[serde(skip)]
     pub no_limits: Option<String>,
-    /// What the machine does at best.
+    /// The peak performance of the machine.
     #[serde(skip)]
     pub machine: Option<Machine>,
     /// Why times do not count, and how many rows for each reason.
@@ -50,21 +50,21 @@ pub struct Ratio<'a> {
     pub quantity: &'a str,
     /// `stream` or `hot`.
     pub cache: &'a str,
-    /// With whom it is compared.
+    /// The reference.
     pub reference: &'a str,
-    /// Times that of the reference.
+    /// The time over that of the reference.
     pub value: f64,
     /// Lower end of the interval.
     pub low: f64,
     /// Upper end.
     pub high: f64,
-    /// Whether it does not count.
+    /// Whether it counts.
     pub valid: bool,
     /// Whether it is an estimate.
     pub estimated: bool,
 }
 
-/// A time per joint beside the machine's limit.
+/// A time per joint, and the machine's limit.
 #[derive(Clone, Debug)]
 pub struct Limit<'a> {
     /// Index of the robot.
@@ -81,7 +81,7 @@ pub struct Limit<'a> {
     pub estimated: bool,
     /// Nanoseconds per joint.
     pub per_joint: f64,
-    /// The least that the operations of a revolute joint take, one state at a time.
+    /// The least time for the operations of a revolute joint, one state at a time.
     pub least: f64,
 }
 
@@ -98,7 +98,7 @@ pub struct Machine {
     pub empty: Option<f64>,
 }
 
-/// What the ratios of one method on one quantity come to over the robots.
+/// The ratios of one method on one quantity over the robots.
 #[derive(Clone, Debug)]
 pub struct Summary<'a> {
     /// One of its ratios, for names.
@@ -107,7 +107,7 @@ pub struct Summary<'a> {
     pub count: usize,
     /// Geometric mean.
     pub mean: f64,
-    /// The least, and the robot where it is.
+    /// The smallest, and its robot.
     pub least: (f64, usize),
     /// The largest.
     pub largest: (f64, usize),
@@ -144,7 +144,7 @@ impl<'a> Speed<'a> {
         self.ratios.is_empty() && self.controls.is_empty() && self.machine.is_none()
     }
 
-    /// Geometric mean, least and largest of each method on each quantity; only what counts.
+    /// Geometric mean, smallest and largest of each method on each quantity, over the valid ratios.
     pub fn summaries(&self) -> Vec<Summary<'_>> {
         let mut groups: BTreeMap<_, Vec<&Ratio>> = BTreeMap::new();
         for ratio in self.ratios.iter().filter(|ratio| ratio.valid && ratio.value > 0.0) {
@@ -156,7 +156,7 @@ impl<'a> Speed<'a> {
 }
 
 impl<'a> Summary<'a> {
-    /// `None` of no ratios.
+    /// `None` without ratios.
     fn of(mut ratios: Vec<&'a Ratio<'a>>) -> Option<Self> {
         ratios.sort_by(|a, b| a.value.total_cmp(&b.value));
         let (least, largest) = (*ratios.first()?, *ratios.last()?);
@@ -204,13 +204,13 @@ fn limits<'a>(overview: &Overview<'a>, timing: &[&'a Row], machine: Machine) -> 
     counted.filter_map(limit).collect()
 }
 
-/// Why the peak does not count by its own row.
+/// Why the peak is not valid by its own row.
 fn invalid_peak(timing: &[&Row]) -> Option<String> {
     let peak = timing.iter().find(|row| row.quantity == MACHINE && row.metric == "fma_per_ns")?;
     (!peak.valid).then(|| peak.reason.clone())
 }
 
-/// What is faster than its limit shows that the limit is none. (An estimate may be.)
+/// A time below its limit shows that the limit is wrong. (An estimate may be below it.)
 fn below(overview: &Overview, limits: &[Limit]) -> Option<String> {
     let below: Vec<&Limit> = limits.iter().filter(|limit| !limit.estimated && limit.per_joint < limit.least).collect();
     let least = below.iter().min_by(|a, b| (a.per_joint / a.least).total_cmp(&(b.per_joint / b.least)))?;

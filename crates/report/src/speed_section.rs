@@ -1,4 +1,4 @@
-//! Section: who is how fast beside whom, how far from what the machine can do, and whether the machine was quiet.
+//! Section: the speed of the engines compared with each other and with the machine's peak, and whether the machine was quiet.
 
 use featherbench_results::RunInfo;
 use maud::{Markup, html};
@@ -8,7 +8,7 @@ use crate::numbers::{count, short};
 use crate::overview::Overview;
 use crate::speed::{OPERATIONS, Speed};
 
-/// What a time of each quantity begins with, and what stands inside the clock.
+/// The input of each quantity's time, and the work inside the clock.
 const INCLUDED: [(&str, &str, &str); 7] = [
     ("id", "q, q̇, q̈", "kinematics with sines and cosines, the recursion to τ; rotors' inertia, gravity"),
     ("bias", "q, q̇", "as inverse dynamics with q̈ = 0"),
@@ -23,10 +23,10 @@ const INCLUDED: [(&str, &str, &str); 7] = [
     ("body_jacobian", "q", "kinematics, and the columns of one body's Jacobian in world axes"),
 ];
 
-/// Reasons why times do not count, as many as the page lists.
+/// The number of reasons, why times do not count, that the page lists.
 const REASONS: usize = 12;
 
-/// Writes the section; nothing where there were no paired experiments.
+/// Writes the section; nothing if there were no paired experiments.
 pub fn section(run: &RunInfo, overview: &Overview, speed: &Speed) -> Markup {
     html! {
         @if !speed.is_empty() {
@@ -58,7 +58,7 @@ pub fn section(run: &RunInfo, overview: &Overview, speed: &Speed) -> Markup {
     }
 }
 
-/// Peers that were to be timed and are not here.
+/// Native oracles that should have been timed and are missing.
 fn missing(run: &RunInfo) -> Markup {
     let missing: Vec<_> = run.engines.iter().filter(|engine| engine.status != "ok").collect();
     html! {
@@ -68,7 +68,7 @@ fn missing(run: &RunInfo) -> Markup {
     }
 }
 
-/// What ≈ means, where something is estimated.
+/// The meaning of ≈, if something is estimated.
 fn estimates(overview: &Overview, speed: &Speed) -> Markup {
     let mut engines: Vec<&str> = speed.ratios.iter().filter(|ratio| ratio.estimated).map(|ratio| overview.engines[ratio.engine]).collect();
     engines.sort_unstable();
@@ -276,7 +276,7 @@ fn included(speed: &Speed) -> Markup {
     }
 }
 
-/// A ratio with the digits that its interval may carry.
+/// A ratio with the digits that its interval allows.
 fn times(ratio: f64) -> String {
     if ratio >= 100.0 {
         format!("{ratio:.0}")

@@ -1,4 +1,4 @@
-//! Section: the limit of small steps: how the acceleration of a step approaches the true one, and what steps do to energy.
+//! Section: the limit of small steps: how the acceleration of a step approaches the true one, and how steps change the energy.
 
 use std::collections::BTreeMap;
 
@@ -11,14 +11,14 @@ use crate::numbers::short;
 use crate::overview::{Overview, STEPS};
 use crate::page::opener;
 
-/// Errors of one engine's way to step on one robot.
+/// Errors of one engine's method to step on one robot.
 #[derive(Debug, Serialize)]
 pub struct StepLine<'a> {
     /// Index of the model.
     pub model: usize,
     /// Index of the engine.
     pub engine: usize,
-    /// Its way to step.
+    /// Its method to step.
     pub method: &'a str,
     /// The kind of state.
     pub case: &'a str,
@@ -26,14 +26,14 @@ pub struct StepLine<'a> {
     pub energy: bool,
     /// Step in seconds and error, the longest step first.
     pub points: Vec<(f64, f64)>,
-    /// The fitted order, where the run has it.
+    /// The fitted order, if the run has it.
     pub order: Option<f64>,
-    /// What the order was judged.
+    /// The verdict on the order.
     #[serde(skip)]
     verdict: Option<Verdict>,
 }
 
-/// Reads a run's rows.
+/// Collects a run's rows.
 pub fn lines<'a>(overview: &Overview<'a>, records: &'a [Row]) -> Vec<StepLine<'a>> {
     let mut found: BTreeMap<(usize, usize, bool, &str, bool, &str), StepLine> = BTreeMap::new();
     for row in records.iter().filter(|row| row.study == STEPS) {
@@ -69,11 +69,11 @@ fn step(params: &str) -> Option<f64> {
     serde_json::from_str::<serde_json::Value>(params).ok()?.get("dt")?.as_f64()
 }
 
-/// Writes the section; nothing where the run holds no steps.
+/// Writes the section; nothing if the run has no steps.
 pub fn section(overview: &Overview, lines: &[StepLine]) -> Markup {
     let mut models: Vec<usize> = lines.iter().map(|line| line.model).collect();
     models.dedup();
-    // The robot with the most lines, and of these the largest: there is most to see.
+    // The robot with the most lines, and of these the largest: it shows the most.
     let opening = models.iter().max_by_key(|&&model| (lines.iter().filter(|line| line.model == model).count(), overview.models[model].nv));
     html! {
         @if !lines.is_empty() {

@@ -1,4 +1,4 @@
-//! The run in a few lines for a terminal: passed or failed, what weighs most, how fast.
+//! The run in a few lines for a terminal: passed or failed, the worst findings, the speed.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -10,14 +10,14 @@ use crate::numbers::{larger, short, smaller};
 use crate::overview::{Overview, TIMING};
 use crate::speed::Speed;
 
-/// Findings that are told.
+/// The number of findings.
 const TOLD: usize = 3;
 /// Our kernels' name in rows.
 const OWN: &str = "featherbench";
-/// Quantities whose times are told.
+/// Quantities with a line about their times.
 const TIMED: [&str; 3] = ["id", "fd", "mass_matrix_sparse"];
 
-/// What a user should know at the end of a run, a line each: the verdict, the three findings that weigh most, and the speed where it was measured.
+/// The lines at the end of a run: the verdict, the three worst findings, and the speed if it was measured.
 ///
 /// A finding is the worst row of an engine on a quantity: failures first, then known deviations, each by its decades beyond the bound.
 ///
@@ -66,7 +66,7 @@ fn sentence(row: &Row) -> String {
     format!("{who}: {size} ({}); {known}{}", place.join(", "), row.reason)
 }
 
-/// Times of our kernels per body, and of the fastest other engine over ours; nothing where no time counts.
+/// Times of our kernels per body, and of the fastest other engine over ours; nothing if no time counts.
 fn speed(overview: &Overview, records: &[Row]) -> Option<String> {
     let timed = |row: &&Row| row.study == TIMING && row.metric == "ns_per_call" && row.cache == "stream" && row.engine == OWN;
     // The fastest method of each robot.

@@ -2,14 +2,14 @@
 
 use featherbench_results::Verdict;
 
-/// How many rows have which verdict.
+/// The number of rows with each verdict.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Tally([usize; 6]);
 
-/// From the worst to the harmless: a group of rows is called by the first that it holds.
+/// From the worst to the harmless: a group of rows has the first verdict that occurs in it.
 pub const BY_GRAVITY: [Verdict; 6] = [Verdict::Fail, Verdict::Error, Verdict::Deviation, Verdict::Pass, Verdict::Skip, Verdict::Info];
 
-/// Where a verdict stands in [`BY_GRAVITY`].
+/// The position of a verdict in [`BY_GRAVITY`].
 pub fn gravity(verdict: Verdict) -> usize {
     BY_GRAVITY.iter().position(|&other| other == verdict).unwrap_or(BY_GRAVITY.len() - 1)
 }
@@ -27,7 +27,7 @@ impl Tally {
         self.0[gravity(verdict)] += 1;
     }
 
-    /// How many have this verdict.
+    /// The number of rows with this verdict.
     pub fn get(&self, verdict: Verdict) -> usize {
         self.0[gravity(verdict)]
     }
@@ -37,7 +37,7 @@ impl Tally {
         self.0.iter().sum()
     }
 
-    /// How many were due and not kept: failures and errors.
+    /// The number of failures and errors.
     pub fn broken(&self) -> usize {
         self.get(Verdict::Fail) + self.get(Verdict::Error)
     }
@@ -47,7 +47,7 @@ impl Tally {
         BY_GRAVITY.into_iter().find(|&verdict| self.get(verdict) > 0).unwrap_or(Verdict::Info)
     }
 
-    /// `12 passed, 1 failed`, leaving out what there is none of.
+    /// `12 passed, 1 failed`, without verdicts that do not occur.
     pub fn words(&self) -> String {
         let parts: Vec<String> = BY_GRAVITY
             .into_iter()

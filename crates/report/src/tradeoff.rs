@@ -1,4 +1,4 @@
-//! Section: time against true error of forward dynamics: what a digit costs.
+//! Section: time against true error of forward dynamics: the cost of a digit.
 
 use std::collections::BTreeMap;
 
@@ -11,7 +11,7 @@ use crate::figures::TimeLine;
 use crate::numbers::short;
 use crate::overview::Overview;
 
-/// The quantity whose time and error meet.
+/// The quantity whose time and error are compared.
 const QUANTITY: &str = "fd";
 /// The inputs of the times: another state at each call.
 const INPUTS: &str = "stream";
@@ -29,7 +29,7 @@ pub struct Tradeoff<'a> {
     pub scalar: &'a str,
     /// Nanoseconds per call.
     pub ns: f64,
-    /// First decile, where the run has it.
+    /// First decile, if the run has it.
     pub p10: Option<f64>,
     /// Last decile.
     pub p90: Option<f64>,
@@ -56,7 +56,7 @@ pub fn tradeoffs<'a>(digits: &Accuracy<'a>, times: &[TimeLine<'a>]) -> Vec<Trade
     for line in times.iter().filter(|line| line.algorithm == QUANTITY && line.cache == INPUTS) {
         let TimeLine { engine, method, scalar, .. } = *line;
         let Some(&answer) = answers.get(&(engine, method, scalar)) else { continue };
-        // An invalid time is off by some percent; here decades matter.
+        // An invalid time is wrong by some percent; here decades matter.
         for point in &line.points {
             let Some(cell) = digits.cell(point.model, answer) else { continue };
             let Some(error) = cell.median else { continue };
@@ -65,7 +65,7 @@ pub fn tradeoffs<'a>(digits: &Accuracy<'a>, times: &[TimeLine<'a>]) -> Vec<Trade
         }
     }
     found.sort_by(|a, b| a.model.cmp(&b.model).then(a.ns.total_cmp(&b.ns)).then(a.error.total_cmp(&b.error)));
-    // By time, a point is on the front when it is more accurate than everything faster.
+    // In order of time, a point is on the front if it is more accurate than every faster one.
     let mut least = (usize::MAX, f64::INFINITY);
     for point in &mut found {
         if point.model != least.0 {
@@ -77,7 +77,7 @@ pub fn tradeoffs<'a>(digits: &Accuracy<'a>, times: &[TimeLine<'a>]) -> Vec<Trade
     found
 }
 
-/// Writes the section; nothing where no method has both.
+/// Writes the section; nothing if no method has both.
 pub fn section(overview: &Overview, points: &[Tradeoff]) -> Markup {
     let mut models: Vec<(usize, usize)> = Vec::new();
     for point in points {

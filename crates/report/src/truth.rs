@@ -1,4 +1,4 @@
-//! Against the truth, in sentences: which engine and method keeps its gates, which does not, and where.
+//! Comparison with the truth, in sentences: which engine and method passes its gates, which does not, and where.
 
 use std::collections::BTreeMap;
 
@@ -11,15 +11,15 @@ use crate::numbers::{count, decades, larger, listed, short};
 use crate::overview::{Overview, severity};
 use crate::page::opener;
 
-/// Sentences of one kind that are told in the head of the page.
+/// Number of sentences of one kind in the head of the page.
 const TOLD: usize = 6;
-/// Models that a sentence names.
+/// Number of models that a sentence names.
 const NAMED: usize = 4;
 
 /// One engine's method on one quantity: the row that decides for each of its models.
 type Account<'a> = BTreeMap<usize, &'a Row>;
 
-/// Who keeps every gate on a quantity.
+/// The answers that pass every gate on a quantity.
 struct Kept<'a> {
     quantity: &'a str,
     answers: Vec<String>,
@@ -28,7 +28,7 @@ struct Kept<'a> {
     largest: f64,
 }
 
-/// Methods of one engine that miss gates on the same models.
+/// Methods of one engine that fail gates on the same models.
 struct Missed<'a> {
     engine: &'a str,
     methods: Vec<&'a str>,
@@ -38,17 +38,17 @@ struct Missed<'a> {
     worst: &'a Row,
 }
 
-/// What the truth says of the engines.
+/// The engines' results against the truth.
 pub struct Truth<'a> {
     kept: Vec<Kept<'a>>,
     failed: Vec<Missed<'a>>,
     known: Vec<Missed<'a>>,
-    /// The largest median error of forward dynamics on any model, per method, least first.
+    /// The largest median error of forward dynamics on any model, per method, smallest first.
     medians: Vec<(String, f64)>,
 }
 
 impl<'a> Truth<'a> {
-    /// Reads the rows.
+    /// Collects a run's rows.
     pub fn of(overview: &Overview<'a>, digits: &Accuracy<'a>, records: &'a [Row]) -> Self {
         let mut accounts: BTreeMap<((usize, &str), usize, &str), Account> = BTreeMap::new();
         for row in records.iter().filter(|row| is_judged(row)) {
@@ -83,7 +83,7 @@ impl<'a> Truth<'a> {
             groups
         };
         let failed = missed(|row| matches!(row.verdict, Verdict::Fail | Verdict::Error));
-        // A known error (a singular M) is no answer that the truth could be held against.
+        // A known error (a singular M) is not an answer that could be compared with the truth.
         let known = missed(|row| row.verdict == Verdict::Deviation && row.value.is_some());
         let kept = kept(overview, &accounts);
         Self { kept, failed, known, medians: medians(overview, digits) }
@@ -109,7 +109,7 @@ fn kept<'a>(overview: &Overview<'a>, accounts: &BTreeMap<((usize, &'a str), usiz
             let good: Vec<String> =
                 methods.iter().filter(|(_, account)| keeps(account)).map(|((_, _, method), _)| (*method).into()).collect();
             let name = overview.engines[engine];
-            // An engine all of whose methods keep their gates needs no methods.
+            // If all methods of an engine pass their gates, the sentence does not name them.
             match good.len() {
                 0 => {}
                 all if all == methods.len() => answers.push(name.to_owned()),
@@ -117,7 +117,7 @@ fn kept<'a>(overview: &Overview<'a>, accounts: &BTreeMap<((usize, &'a str), usiz
             }
         }
         let rows = of_quantity.iter().filter(|(_, account)| keeps(account)).flat_map(|(_, account)| account.values());
-        // An error over its floor is a ratio and no error.
+        // An error over its conditioning bound is a ratio, not an error.
         let largest = rows.filter(|row| row.metric != "error_over_floor").filter_map(|row| row.value).fold(0.0, larger);
         let models = || of_quantity.iter().filter(|(_, account)| keeps(account)).map(|(_, account)| account.len());
         let models = models().min().zip(models().max());
@@ -178,7 +178,7 @@ fn missed(overview: &Overview, found: &[Missed], class: &str, verb: [&str; 2]) -
     }
 }
 
-/// The warning that the reference itself may be wrong; nothing where no row says so.
+/// The warning that the reference itself may be wrong; nothing if no row says so.
 pub fn warning(overview: &Overview, digits: &Accuracy) -> Markup {
     html! {
         @if !digits.walls.is_empty() {
@@ -196,7 +196,7 @@ pub fn warning(overview: &Overview, digits: &Accuracy) -> Markup {
     }
 }
 
-/// The part of the page's head that says who is right.
+/// The part of the page's head that says which engine is right.
 pub fn markup(overview: &Overview, digits: &Accuracy, truth: &Truth) -> Markup {
     html! {
         @if !digits.answers.is_empty() {

@@ -12,9 +12,9 @@ use crate::overview::severity;
 use crate::page::opener;
 use crate::tally::gravity;
 
-/// Groups that the page itself lists; what is beyond is found through the button that opens all rows.
+/// Number of groups that the page itself lists; the button that opens all rows shows the others.
 const LISTED: usize = 600;
-/// Models, and quantities, that a group names.
+/// Number of models, and of quantities, that a group names.
 const NAMED: usize = 6;
 
 /// Rows that did not pass for one reason.
@@ -59,7 +59,7 @@ pub fn section(records: &[Row]) -> Markup {
 fn row(group: &Group) -> Markup {
     let worst = group.worst;
     let mut filters = vec![("verdict", worst.verdict.as_str()), ("study", &worst.study), ("engine", &worst.engine)];
-    // As the groups are made: rows with a number by their quantity and measure, others by their reason.
+    // As for the groups: rows with a number by their quantity and measure, others by their reason.
     match worst.value {
         Some(_) => filters.extend([("quantity", worst.quantity.as_str()), ("metric", &worst.metric)]),
         None => filters.push(("reason", &worst.reason)),
@@ -77,7 +77,7 @@ fn row(group: &Group) -> Markup {
     }
 }
 
-/// The first names of a list, and how many there are if not all are shown.
+/// The first names of a list, and their number if not all are shown.
 fn some(names: &[String]) -> Markup {
     html! {
         (names.iter().take(NAMED).cloned().collect::<Vec<_>>().join(", "))
@@ -85,8 +85,8 @@ fn some(names: &[String]) -> Markup {
     }
 }
 
-/// Failures of one engine, quantity and metric are one group: their reasons differ in the numbers alone, and the worst speaks for them.
-/// Of deviations, the cause before the parenthesis tells groups apart; of rows without a value, the reason alone.
+/// Failures of one engine, quantity and metric are one group: only the numbers in their reasons differ, and the worst is shown.
+/// Deviations are grouped by the cause before the parenthesis, rows without a value by their reason.
 fn groups(records: &[Row]) -> Vec<Group<'_>> {
     let mut groups: BTreeMap<_, Group> = BTreeMap::new();
     for row in records.iter().filter(|row| is_unpassed(row)) {

@@ -1,4 +1,4 @@
-//! Section: is the run good, and if not, where.
+//! Section: whether the run passed, and if not, where it failed.
 
 use featherbench_results::{Row, RunInfo, Verdict};
 use maud::{Markup, html};
@@ -10,10 +10,10 @@ use crate::page::opener;
 use crate::tally::{BY_GRAVITY, Tally};
 use crate::{chunks, labels};
 
-/// Disagreements that are told in the head of the page; the others stand in the list of what did not pass.
+/// Number of disagreements in the head of the page; the others are in the list of rows that did not pass.
 const TOLD: usize = 8;
 
-/// Writes the section; `truth` is what the truth says of the engines.
+/// Writes the section; `truth` has the engines' results against the truth.
 pub fn section(run: &RunInfo, overview: &Overview, records: &[Row], findings: &Findings, truth: Markup) -> Markup {
     let (class, word) = match findings.status {
         Status::Passed => ("good", "Passed"),

@@ -1,4 +1,4 @@
-//! The tests of the report as one program: they share what is compiled for them.
+//! The tests of the report as one program: so shared modules are compiled once.
 
 mod imports;
 mod joints;

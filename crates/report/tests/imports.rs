@@ -1,4 +1,4 @@
-//! The section on how engines read robots' files: what the rows say stands there, and runs without such rows have no section.
+//! The section on the engines' imports of robots' files: it shows the rows, and runs without such rows do not have it.
 
 use featherbench_results::{Relation, Row, RunInfo, Verdict};
 use written::Written;
@@ -6,7 +6,7 @@ use written::Written;
 use crate::support;
 use crate::written;
 
-/// Rows of two robots: one is read alike, differs and is refused; the other is unexplained.
+/// Rows of two robots. Imports of the first are equal, different and refused; that of the second is unexplained.
 fn rows(run: &RunInfo) -> Vec<Row> {
     let row = |model: &str, engine: &str, quantity: &str, metric: &str, params: &str| Row {
         run: run.run.clone(),
@@ -31,7 +31,7 @@ fn rows(run: &RunInfo) -> Vec<Row> {
         row("one", "mujoco", "inertia", "difference", edited).informed(0.5),
         row("one", "mujoco", "id", "as_read", "{}").informed(0.25),
         row("one", "drake", "import", "differences", "{}").without_value(Verdict::Error, "no <such> joint"),
-        // A long chain, whose rounding the study bounds by its depth.
+        // A long chain; the study's bound for rounding depends on its depth.
         row("two", "pinocchio", "import", "differences", "{}").informed(0.0),
         row("two", "pinocchio", "id", "as_read", "{}").informed(7.8e-12),
         row("two", "pinocchio", "import", "unexplained", r#"{"gate":1e-11}"#).gated(0.0, Relation::Le, 0.0),

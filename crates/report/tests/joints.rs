@@ -1,4 +1,4 @@
-//! The joint matrix: what a run's rows of `joints-*` robots become, and that it appears with them alone.
+//! The joint matrix: the cells from a run's rows of `joints-*` robots, and that it appears only with such rows.
 
 use featherbench_results::{Relation, Row, RunInfo, Verdict};
 use serde_json::Value;
@@ -37,7 +37,7 @@ fn rows() -> Vec<Row> {
         judged(row("mujoco", "joints-free-fixed-single", "free", "id", "inverse"), 1e-15),
         judged(row("mujoco", "joints-planar-free", "planar", "id", "inverse"), 1e-11),
         row("mujoco", "joints-revolute-free", "revolute", "id", "inverse").without_value(Verdict::Error, "signal 11"),
-        // None of these shows one joint of another engine's answer.
+        // None of these rows is another engine's answer about one joint.
         judged(row("featherbench", "joints-planar-free", "planar", "id", "rnea"), 1e-16),
         judged(row("mujoco", "joints-common-free", "planar", "id", "inverse"), 1e-16),
         judged(row("mujoco", "humanoid", "revolute", "id", "inverse"), 1e-16),
@@ -56,7 +56,7 @@ fn cell(matrix: &Value, engine: usize, kind: &str, armature: bool) -> Option<(St
     Some((text(&cell["state"]), text(&cell["worst"][0]), text(&cell["worst"][3]), cell["robots"].as_u64()?, lacking))
 }
 
-/// What is said of an engine.
+/// The sentence about an engine.
 fn sentence<'a>(section: &'a str, engine: &str) -> &'a str {
     let start = section.find(&format!("<b>{engine}</b>")).unwrap();
     &section[start..start + section[start..].find("</li>").unwrap()]
@@ -86,7 +86,7 @@ fn cells_tell_agreement_deviation_and_what_is_not_offered() {
     assert_eq!(cell(matrix, featherbench, "planar", false), None);
     assert_eq!(matrix["cells"].as_array().unwrap().len(), 8);
 
-    // A click opens the rows of the robot that decided: there is a chunk for each.
+    // A click opens the rows of the robot that decided: each has a chunk.
     let (overview, chunks) = (written.data("overview"), written.chunk_names());
     for cell in matrix["cells"].as_array().unwrap() {
         let model = overview["models"].as_array().unwrap().iter().position(|model| model["name"] == cell["worst"][0]);

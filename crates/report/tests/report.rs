@@ -1,4 +1,4 @@
-//! The report's structure: what must be on the page, that nothing in it can become markup or reach the network, that its data parse.
+//! The report's structure: the page has what it must have, nothing in it can become markup or use the network, and its data can be parsed.
 
 use std::collections::BTreeMap;
 use std::fs;
@@ -135,7 +135,7 @@ fn estimates_are_marked() {
     ];
     let written = Written::of(&RunInfo::default(), &rows);
     let section = written.section("speed");
-    // In the table of robots and in that of means; an invalid one is not averaged.
+    // In the table of robots and in that of means; an invalid one is not in the mean.
     for (ratio, times) in [("≈\u{202f}3.250", 6), ("≈\u{202f}4.250", 3), ("≈\u{202f}1.250", 0), ("1.250", 6)] {
         assert_eq!(section.matches(ratio).count(), times, "{ratio}: {section}");
     }
@@ -182,7 +182,7 @@ fn ratios_have_intervals_a_mean_and_a_least() {
     rows.push(timing("featherbench", "a", "control", 1.001, 0.003));
     let written = Written::of(&RunInfo::default(), &rows);
     let section = written.section("speed");
-    // √(2·8) over the two that count, the least on a; the invalid one is listed and not averaged.
+    // √(2·8) over the two valid ones, the smallest on a; the invalid one is listed and not in the mean.
     assert!(section.contains("4.000") && section.contains("<td class=\"number\">2.000</td><td>a</td>"), "{section}");
     assert!(section.contains("1.800") && section.contains("2.200") && section.contains("0.500"));
     assert!(section.contains("1 of 1 such A/A control</b>") && section.contains("noise") && section.contains("(1 row)"));
@@ -198,7 +198,7 @@ fn ratios_have_intervals_a_mean_and_a_least() {
     assert!(!none.index.contains("<section id=\"speed\"") && !none.index.contains("href=\"#speed\""));
 }
 
-/// No kernel is faster than the machine: a time below its limit, or a peak that does not count, and no time stands beside a limit.
+/// No kernel is faster than the machine. If a time is below its limit, or the peak is not valid, no limit is shown.
 #[test]
 fn a_limit_that_is_none_is_not_shown() {
     let row = |quantity: &str, metric: &str, value: f64| {
@@ -229,7 +229,7 @@ fn a_limit_that_is_none_is_not_shown() {
         !fast.contains(table) && fast.contains("1 of 2 times are below their limits (featherbench rnea on b takes 0.90 times its limit)"),
         "{fast}"
     );
-    // What was measured when the compiler took the vectors apart.
+    // Measured when the compiler did not use vectors.
     let slow = section("", 0.325, [280.0, 140.0]);
     assert!(
         !slow.contains(table) && slow.contains("2 of 2 times are below their limits (featherbench rnea on b takes 0.05 times its limit)"),
@@ -299,7 +299,7 @@ fn nothing_reaches_the_network() {
             assert!(!text.contains(word), "{name} contains {word}");
         }
     }
-    // One script draws everything: there is no other beside the data, and it is short.
+    // One script draws everything. No other script is beside the data, and it is short.
     let entries = fs::read_dir(written.folder.path()).unwrap().map(|entry| entry.unwrap().file_name().into_string().unwrap());
     assert_eq!(entries.filter(|name| name.ends_with(".js")).collect::<Vec<_>>(), ["app.js"]);
     let script = written.text("app.js");

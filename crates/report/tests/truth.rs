@@ -1,4 +1,4 @@
-//! The sections of the studies that know the truth: they appear with their rows, say what those say, and leave the other sections alone.
+//! The sections of the studies with the truth: they appear only with their rows, show these, and do not change the other sections.
 
 use featherbench_results::{Relation, Row, RunInfo, Verdict};
 use serde_json::Value;
@@ -20,7 +20,7 @@ fn has(written: &Written, section: &str) -> bool {
     section_is_there
 }
 
-/// The curve of a answer along an axis of a family.
+/// The curve of an answer along an axis of a family.
 fn curve<'a>(figures: &'a Value, overview: &Value, axis: &str, family: &str, answer: [&str; 3]) -> &'a Value {
     let digits = &figures["accuracy"];
     let is_answer = |about: &Value| {
@@ -72,13 +72,13 @@ fn growth_is_what_the_methods_were_made_with() {
     close(slope("offset", "rand3d-20", ["featherbench", "aba", "fd"]), 0.0);
     close(slope("offset", "rand3d-20", ["mujoco", "forward", "fd"]), 1.0);
     close(slope("depth", "chain_2d", ["featherbench", "ltdl", "fd"]), 4.0);
-    // Lighter tips cost nothing and are left out of the fit, but not out of the plot; the robot itself stands at one.
+    // Lighter tips cost no digits. They are in the plot and not in the fit; the robot itself is at one.
     let tips = curve(&figures, &overview, "tip", "rand3d-20", ["featherbench", "aba", "fd"]);
     close(tips["fit"]["slope"].as_f64().unwrap(), 1.0);
     assert_eq!(tips["span"], serde_json::json!([1.0, 1e6]));
     let places: Vec<f64> = tips["points"].as_array().unwrap().iter().map(|point| point[0].as_f64().unwrap()).collect();
     assert_eq!(places, [1e-3, 1.0, 1e3, 1e6]);
-    // A line goes through entries of M, or through products, but not from one to the other.
+    // A line connects entries of M, or products, but not both.
     let matrix = curve(&figures, &overview, "depth", "chain_2d", ["featherbench", "crba", "mass_matrix"]);
     assert_eq!((matrix["points"].as_array().unwrap().len(), &matrix["fit"]["points"]), (6, &5.into()));
     assert!(written.section("accuracy").contains("<td class=\"number\">1.9") || written.section("accuracy").contains("2.00 ±"));
@@ -93,14 +93,14 @@ fn the_table_holds_every_median_once() {
     let cells: std::collections::BTreeSet<_> =
         records.iter().filter(answers).map(|row| (&row.robot, &row.engine, &row.method, &row.quantity)).collect();
     assert_eq!(written.data("figures")["accuracy"]["cells"].as_array().unwrap().len(), cells.len());
-    // Every cell leads to a chunk that is there.
+    // Every cell leads to an existing chunk.
     let chunks = written.chunk_names();
     let data = written.data("figures");
     let models = data["accuracy"]["cells"].as_array().unwrap().iter().map(|cell| &cell["model"]);
     assert!(models.map(|model| format!("model-{model}")).all(|name| chunks.contains(&name)));
     let heads = table.matches("<tr data-m").count();
     assert_eq!(table.matches("<button").count(), cells.len() + heads);
-    // Pinocchio's world frame at 10⁶ m has lost all it can; an exact answer is zero; a gate that is missed has its sign.
+    // Pinocchio's world frame at 10⁶ m has lost all digits that it can; an exact answer is zero; a missed gate has its sign.
     assert!(table.contains("<button class=\"d5\" type=\"button\" tabindex=\"-1\"><i>✕</i>1.00e-2</button>"), "{table}");
     assert!(table.contains("tabindex=\"-1\">0</button>"));
     assert!(table.contains("class=\"error\" type=\"button\" tabindex=\"-1\">!</button>"));
@@ -144,7 +144,7 @@ fn a_deviation_is_neither_kept_nor_failed() {
     let rows = [
         row("forward", "a").gated(1e-15, Relation::Le, 1e-14),
         row("forward", "b").gated(1e-12, Relation::Le, 1e-14).deviating("far base"),
-        // What it cannot be asked is no answer, right or wrong.
+        // A question that is not supported is no answer, right or wrong.
         row("other", "a").gated(1e-15, Relation::Le, 1e-14),
         row("other", "b").without_value(featherbench_results::Verdict::Skip, "no such joint"),
     ];
@@ -164,7 +164,7 @@ fn work_against_precision_has_its_front() {
         let of = |point: &&Value| overview["models"][point["model"].as_u64().unwrap() as usize]["name"] == name;
         points.iter().filter(of).map(|point| (point["method"].as_str().unwrap(), point["front"].as_bool().unwrap())).collect()
     };
-    // On two joints the factorization is faster and less accurate: both stand; on a hundred it is beaten in both.
+    // On two joints the factorization is faster and less accurate: both are on the front. On a hundred it is slower and less accurate.
     assert_eq!(of_model("chain_2d_2"), [("ltdl", true), ("aba", true)]);
     assert_eq!(of_model("chain_2d_100"), [("aba", true), ("ltdl", false)]);
     assert!(points.iter().all(|point| overview["engines"][point["engine"].as_u64().unwrap() as usize] == "featherbench"));

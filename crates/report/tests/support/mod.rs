@@ -1,4 +1,4 @@
-//! A run that never took place, of the size and with the blemishes of a real one.
+//! A made-up run, with the size and the problems of a real one.
 
 use std::collections::BTreeMap;
 
@@ -9,7 +9,7 @@ use featherbench_results::{
 
 mod truth;
 
-/// A model's name that tries to become markup.
+/// A model's name that contains markup.
 pub const HOSTILE: &str = "robot \"</script><script>alert('x')</script>&amp;<b>";
 
 /// Families, the models' names in each, and their joints.
@@ -183,7 +183,7 @@ pub fn run_info() -> RunInfo {
     }
 }
 
-/// What the machine of the times can do.
+/// The rows of the machine.
 fn machine(run: &RunInfo, rows: &mut Vec<Row>) {
     let row = Row {
         run: run.run.clone(),
@@ -198,7 +198,7 @@ fn machine(run: &RunInfo, rows: &mut Vec<Row>) {
     }
 }
 
-/// About 12 000 rows of agreement, pairs, times, structure, digits and conditioning.
+/// About 12 000 rows of agreement, pairs, times, operations, accuracy and conditioning.
 pub fn records(run: &RunInfo) -> Vec<Row> {
     let mut random = Random(1);
     let mut rows = Vec::new();
@@ -273,7 +273,7 @@ fn errors(row: &Row, model: &ModelInfo, random: &mut Random) -> Vec<Row> {
     let fast = if row.states == "fast" { 3.0 } else { 1.0 };
     if row.quantity != "fd" {
         let value = if row.states == "zero" && row.quantity.ends_with("energy") { 0.0 } else { 2.2e-16 * depth.sqrt() * spread * fast };
-        // Gates of different comfort, so that the heatmap has something to show.
+        // Gates of different width, so that the heatmap has different colours.
         let comfort = 10.0_f64.powi(QUANTITIES.iter().position(|&quantity| quantity == row.quantity).map_or(0, |index| index as i32 % 5));
         return vec![Row { metric: "scaled".into(), ..row.clone() }.gated(value, Relation::Le, 1e-14 * comfort * depth.sqrt())];
     }

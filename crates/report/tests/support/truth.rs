@@ -1,4 +1,4 @@
-//! The studies that know the truth: digits of methods that lose them as real ones do, and condition numbers of straight chains.
+//! The studies with the truth: accuracy of methods with realistic losses, and condition numbers of straight chains.
 
 use featherbench_results::{ModelInfo, ModelOrigin, Relation, Row, RunInfo, Verdict};
 

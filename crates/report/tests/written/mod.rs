@@ -1,4 +1,4 @@
-//! A report on disk, and how tests look into it.
+//! A report on disk, and access to it for tests.
 
 use std::fs;
 
@@ -29,7 +29,7 @@ impl Written {
         fs::read_to_string(self.folder.path().join(name)).unwrap()
     }
 
-    /// A data script's JSON, with its call taken off.
+    /// A data script's JSON, without the call around it.
     pub fn data(&self, name: &str) -> serde_json::Value {
         let text = self.text(&format!("data/{name}.js"));
         let json = text.strip_prefix(&format!("featherbench.chunk(\"{name}\",")).and_then(|rest| rest.strip_suffix(");\n"));
