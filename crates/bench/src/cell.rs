@@ -35,7 +35,7 @@ impl Cell {
         hash::of(featherbench_results::canonical_json(&content).as_bytes())[..16].to_owned()
     }
 
-    /// The cell as a path of words: `--only` matches it, and progress shows it.
+    /// The cell as a path of words: `--filter` matches it, and progress shows it.
     pub fn path(&self) -> String {
         format!("{}/{}/{}/{}/{}", self.study, self.robot, self.engine, self.quantity, self.method)
     }

@@ -2,6 +2,39 @@
 //!
 //! A [`Study`] asks [`Engine`]s about [`Robot`]s. It plans [`Cell`]s. Each is evaluated once, and its [`Outcome`] is kept in an
 //! [`OutcomeStore`]. A pure comparison turns outcomes into rows, judged by [`Gates`]. The error measures are in [`measure`].
+//!
+//! # The walk of a state
+//! ```text
+//! seed, name of the robot      StateBatch::agreement          model      counter-based: the same bits everywhere
+//!   → q, v, a, τ, wrenches     Robot::states                  bench      neutral coordinates
+//!   → numbers of the engine    Engine::prepare                engines    one named conversion per engine, tested against it
+//!   → values                   Evaluation::run, read          engines    one size of Quantity per state
+//!   → Outcome                  OutcomeStore::insert           bench      kept at once: a killed run resumes
+//!   → error, unit-free         measure::scaled_error          bench      over the magnitudes of the terms
+//!   → Row                      Study::compare, Gates::judge   studies    the worst state of each kind
+//!   → rows.csv, a page         write_run, render              results, report
+//! ```
+//!
+//! # The walk of a robot file
+//! ```text
+//! robot.urdf, .xml, .json      formats                        one parser each; errors name line and column
+//!   → Description              plain numbers as written       model
+//!   → canonical Description    Description::canonical         depth-first, fixed joints merged, axes normalised once
+//!   → content hash             canonical JSON                 bench      every cell of the robot carries it
+//!   → Model                    Model::build                   model      topology apart from parameters
+//!   → Robot                    with its states                bench
+//!   ↘ RobotFile                Engine::read                   engines    the engine's own parser; what it then holds is an Import
+//!     → differences            studies::import                studies    by body and field, with a cause that predicts the numbers
+//! ```
+//!
+//! # The walk of a timing sample
+//! ```text
+//! one block of calls           Evaluation::clock              engines    clock readings around the loop, in the process that runs it
+//!   → ns per call              Samples                        studies    candidate × round; also in timing.jsonl
+//!   → median and ratio         Estimate                       studies    with bootstrap intervals
+//!   → one Row                  value, ci_low, ci_high, valid  results    valid = false where the A/A replicate is not 1
+//!   → a mark with its interval figures                        report
+//! ```
 
 mod cell;
 pub mod conventions;

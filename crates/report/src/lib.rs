@@ -1,11 +1,11 @@
-//! A run's records as a folder that opens in a browser: [`write()`] is a pure function of its arguments and reads no clock.
+//! A run's rows as a folder that opens in a browser: [`write()`] is a pure function of its arguments and reads no clock.
 //!
-//! The folder needs no network and no server: `index.html` carries every table that is worth printing, `data/*.js` carries the rows, which
-//! are read by adding a script element when a cell is clicked (a page under `file://` may not fetch), and `app.js` draws the plots as
-//! SVG. Every number on the page is made from records, and every cell and point leads back to its rows.
+//! The folder needs no network and no server. `index.html` has every table that is worth printing. `data/*.js` has the rows: the page adds
+//! a script element to read them when a cell is clicked, as a page under `file://` may not fetch. `app.js` draws the plots as SVG.
+//! Every number on the page is made from rows, and every cell and point leads back to its rows.
 //!
-//! Stages: records are grouped ([`overview`], [`figures`], [`accuracy`]), turned into HTML (one module per section) and into chunks ([`chunks`]), and
-//! everything is written with `index.html` last.
+//! Stages: rows are grouped ([`overview`], [`figures`], [`accuracy`]), turned into HTML (one module per section) and into chunks
+//! ([`chunks`]). Then everything is written, with `index.html` last.
 
 mod accuracy;
 mod accuracy_section;
