@@ -128,3 +128,28 @@ fn property_tests_draw_the_same_cases_in_every_run() {
     }
     assert!(blocks >= 16, "{blocks} blocks of property tests");
 }
+
+/// Each file of tests belongs to a test program: cargo does not look for them, because those of a crate are one program.
+#[test]
+fn no_test_file_is_left_out() {
+    let (mut files, mut programs) = (0, 0);
+    for entry in std::fs::read_dir("..").unwrap() {
+        let folder = entry.unwrap().path();
+        let text = |name: &str| std::fs::read_to_string(folder.join(name)).unwrap();
+        let (manifest, modules) = (text("Cargo.toml"), text("tests/all.rs"));
+        assert!(manifest.contains("name = \"all\""), "{}: the program of the tests is not named", folder.display());
+        for entry in std::fs::read_dir(folder.join("tests")).unwrap() {
+            let path = entry.unwrap().path();
+            let name = path.file_stem().unwrap().to_str().unwrap();
+            if path.extension().is_none_or(|extension| extension != "rs") || name == "all" {
+                continue;
+            }
+            let module = modules.lines().any(|line| line == format!("mod {name};"));
+            let program = manifest.lines().any(|line| line == format!("name = \"{name}\""));
+            assert!(module != program, "{}: name it in tests/all.rs or as a [[test]] of Cargo.toml", path.display());
+            files += 1;
+        }
+        programs += 1;
+    }
+    assert!(programs >= 11 && files >= 50, "{programs} programs, {files} files");
+}
