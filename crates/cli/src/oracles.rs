@@ -104,7 +104,7 @@ fn step(bar: &ProgressBar, program: &str, arguments: &[OsString]) -> Result<(), 
     Err(missing(format!("`{program} {}` failed ({status}): {last}", shown.join(" "))))
 }
 
-/// Progress of something long; where nobody watches, `announced` is said once.
+/// Progress of something long; without a terminal, `announced` is printed once.
 pub fn spinner(announced: &str) -> ProgressBar {
     if !std::io::stderr().is_terminal() {
         eprintln!("{announced}");

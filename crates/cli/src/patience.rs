@@ -8,7 +8,7 @@ use std::ops::Range;
 use std::path::PathBuf;
 use std::sync::{Mutex, PoisonError};
 
-/// How the refusal of a process begins that did not answer in time.
+/// The first words of the error of a process that did not answer in time.
 const LATE: &str = "no answer within ";
 
 /// An engine, and the robots that it was too slow for.

@@ -35,7 +35,8 @@ pub fn of(robot: &Robot, remarks: &[String], engines: &[Box<dyn Engine>], record
     text
 }
 
-/// Who refuses the file as it is written, and what was repaired to go on: first of all, as whoever reads it faithfully is not to blame.
+/// The engines that reject the file as it is written, and what was repaired to go on. It is told first: an engine that imports the file as
+/// written is not the one at fault.
 fn unread(robot: &Robot, engines: &[Box<dyn Engine>], records: &[Row]) -> String {
     let repairs = ["balanceinertia", "bounds", "geometry_dropped"];
     let mut text = String::new();

@@ -19,13 +19,13 @@ const HARMLESS: [(&str, &str, &str); 19] = [
     ("crates/reference/tests/support/golden.rs", "scale.max(", "the multi-precision numbers know no NaN"),
     ("crates/reference/tests/support/mod.rs", "largest.max(", "the multi-precision numbers know no NaN"),
     ("crates/report/src/tradeoff.rs", "least.1.min(", "a row's value is finite"),
-    ("crates/studies/src/accuracy.rs", "least.min(*error)", "an engine's best method is not one whose error is no number"),
-    ("crates/studies/src/accuracy.rs", "fold(f64::INFINITY, f64::min)", "an engine's best method is not one whose error is no number"),
-    ("crates/studies/src/repeatability.rs", "largest.max(distance)", "distances in ulps, which are integers"),
-    ("crates/studies/src/reproductions.rs", "fold(f64::min)", "the closure that calls it keeps what is no number"),
+    ("crates/studies/src/accuracy/mod.rs", "least.min(*error)", "an engine's best method is not one whose error is no number"),
+    ("crates/studies/src/accuracy/mod.rs", "fold(f64::INFINITY, f64::min)", "an engine's best method is not one whose error is no number"),
+    ("crates/studies/src/repeatability/mod.rs", "largest.max(distance)", "distances in ulps, which are integers"),
+    ("crates/studies/src/reproductions/mod.rs", "fold(f64::min)", "the closure that calls it keeps what is no number"),
     ("crates/studies/src/timing/machine.rs", "least.min(", "durations"),
     ("crates/studies/src/timing/protocol.rs", "least.min(", "durations"),
-    ("crates/studies/src/reproductions.rs", "fold(f64::max)", "the closure that calls it keeps what is no number"),
+    ("crates/studies/src/reproductions/mod.rs", "fold(f64::max)", "the closure that calls it keeps what is no number"),
 ];
 
 /// Every Rust source of the workspace.

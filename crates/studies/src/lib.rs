@@ -15,7 +15,6 @@ mod agreement;
 mod conditioning;
 pub mod import;
 mod operations;
-mod over_best;
 mod repeatability;
 mod reproductions;
 mod steps;

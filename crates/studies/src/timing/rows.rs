@@ -9,7 +9,7 @@ use featherbench_bench::measure::worst;
 use featherbench_bench::{Cell, Finished, Gates, NoAnswer, Outcome, Robot};
 use featherbench_model::Random;
 use featherbench_results::{Kind, Relation, Row, Verdict, canonical_json};
-use serde_json::json;
+use serde_json::{Value, json};
 
 /// An experiment whose A/A ratio is bad is not valid. If more than one in this number of a robot's A/A ratios is bad, none of its times is.
 const BAD_CONTROLS: usize = 4;
@@ -145,9 +145,7 @@ impl<'a> Experiment<'a> {
             Ok(_) => outcome_samples(cell, outcome).ok_or_else(|| "the outcome holds no samples".to_owned()),
         };
         let cache = cell.params["cache"].as_str().unwrap_or_default().to_owned();
-        // The candidates have rows of their own: a parameter with all of them would be in each row.
-        let params = json!({"states": cell.params["states"], "seconds": cell.params["seconds"]});
-        let blank = Row { kind: Kind::Measured, cache, params: canonical_json(&params), ..row(cell, robot) };
+        let blank = Row { kind: Kind::Measured, cache, params: canonical_json(&params(cell)), ..row(cell, robot) };
         let mut experiment = Self { cell, blank, candidates, samples, control: Err("the experiment has no A/A control") };
         if let (Some(which), Ok(samples)) = (experiment.candidates.iter().position(|candidate| candidate.control), &experiment.samples) {
             let ratio = Estimate::ratio(samples.of(which), samples.of(0), CONTROL_LEVEL, &mut experiment.random("control"));
@@ -217,8 +215,7 @@ impl<'a> Experiment<'a> {
             let time = Estimate::median(ns, LEVEL, &mut self.random(&name));
             let complaint = complaint.or(noise).or(own_noise.as_deref());
             let blank = Row { estimated: candidate.estimate, ..blank };
-            let timed =
-                Row { metric: "ns_per_call".into(), unit: "ns".into(), params: with_deciles(&self.blank.params, ns), ..blank.clone() };
+            let timed = Row { metric: "ns_per_call".into(), unit: "ns".into(), params: with_deciles(self.cell, ns), ..blank.clone() };
             rows.push(judged(estimated(timed, &time), complaint));
             if which > 0 {
                 let ratio = Estimate::ratio(ns, samples.of(0), LEVEL, &mut self.random(&format!("{name} ratio")));
@@ -241,12 +238,16 @@ fn estimated(blank: Row, estimate: &Estimate) -> Row {
     blank.measured(estimate.value, estimate.low, estimate.high)
 }
 
-/// The parameters of a time, with the first and the last decile of its blocks.
-fn with_deciles(params: &str, ns: &[f64]) -> String {
+/// The parameters of an experiment's rows. The candidates are in rows of their own: a list of them here would be in each.
+fn params(cell: &Cell) -> Value {
+    json!({"states": cell.params["states"], "seconds": cell.params["seconds"]})
+}
+
+/// The same of a time, with the first and the last decile of its blocks.
+fn with_deciles(cell: &Cell, ns: &[f64]) -> String {
     let mut sorted = ns.to_vec();
     sorted.sort_unstable_by(f64::total_cmp);
-    let mut params: serde_json::Value = serde_json::from_str(params).unwrap_or_else(|_| json!({}));
-    params["p10"] = json!(quantile(&sorted, 0.1));
-    params["p90"] = json!(quantile(&sorted, 0.9));
+    let mut params = params(cell);
+    (params["p10"], params["p90"]) = (json!(quantile(&sorted, 0.1)), json!(quantile(&sorted, 0.9)));
     canonical_json(&params)
 }

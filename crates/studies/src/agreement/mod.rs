@@ -3,13 +3,15 @@
 //! The reference is our f64, and each row says so; the accuracy study compares with the truth instead. Rows with another engine as
 //! `reference` compare engines with each other. So a reader can see which engine differs from all others.
 
-use crate::over_best::over_best;
+mod over_best;
+
 use crate::row;
 use featherbench_bench::measure::{ForwardScale, Magnitudes, scaled_error, worst};
 use featherbench_bench::{Cell, Context, DENSE_LIMIT, Engine, Finished, NoAnswer, Outcome, Quantity, Robot, Study};
 use featherbench_dynamics::Rnea;
 use featherbench_model::{Case, Model};
 use featherbench_results::{Row, Verdict};
+use over_best::over_best;
 use serde_json::json;
 
 /// The engine that all others are compared with.
