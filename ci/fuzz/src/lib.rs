@@ -4,7 +4,7 @@
 //! compiles this file and gives them some thousand mutations of the seeds in every test run.
 
 use featherbench_bench::frame::Frame;
-use featherbench_bench::{Gates, Identity, NoAnswer, Outcome, Quantity, Robot, Suite};
+use featherbench_bench::{Counts, Gates, Identity, NoAnswer, NoSettings, Outcome, Quantity, Robot, RobotEntry, Suite};
 use featherbench_engines::{EngineRecording, Recording};
 use featherbench_formats::urdf::{Base, Options};
 use featherbench_formats::{OnLoss, mjcf, neutral, urdf};
@@ -147,7 +147,13 @@ pub fn family(bytes: &[u8]) {
 /// A suite file.
 pub fn suite(bytes: &[u8]) {
     if let Ok(suite) = Suite::parse(text(bytes), file()) {
-        assert!(suite.robot.iter().all(|entry| entry.model.is_some() || entry.generate.is_some() || entry.urdf.is_some()));
+        let sources = |entry: &RobotEntry| [&entry.model, &entry.generate, &entry.urdf, &entry.mjcf].into_iter().flatten().count();
+        assert!(suite.robots.iter().all(|entry| sources(entry) == 1));
+        let tables = suite.studies.iter().map(|study| suite.settings::<NoSettings>(study));
+        assert!(tables.filter_map(Result::ok).all(|table| table.is_some()), "each table is found");
+    }
+    if let Ok(counts) = Counts::parse(text(bytes), file()) {
+        assert_eq!(Counts::parse(&counts.to_csv(), file()).unwrap(), counts);
     }
 }
 

@@ -1,7 +1,7 @@
 //! The cell: the unit of work.
 
+use crate::NoAnswer;
 use crate::hash;
-use crate::{Import, NoAnswer};
 use serde_json::{Value, json};
 
 /// One evaluation: an engine, its method, a quantity, a robot.
@@ -46,8 +46,8 @@ impl Cell {
 pub enum Outcome {
     /// The values, state after state.
     Values(Vec<f64>),
-    /// The result of an engine's import of a file: the answer to cells of the import study alone.
-    Import(Box<Import>),
+    /// A text that the cell's study can read.
+    Text(String),
     /// No values, and why.
     NoAnswer(NoAnswer),
 }
@@ -57,18 +57,18 @@ impl Outcome {
     pub fn values(&self) -> Option<&[f64]> {
         match self {
             Self::Values(values) => Some(values),
-            Self::Import(_) | Self::NoAnswer(_) => None,
+            Self::Text(_) | Self::NoAnswer(_) => None,
         }
     }
 }
 
 impl Outcome {
-    /// The values, or why there are none; an import result has none.
+    /// The values, or why there are none; a text has none.
     pub fn answer(&self) -> Result<&[f64], NoAnswer> {
         match self {
             Self::Values(values) => Ok(values),
             Self::NoAnswer(refusal) => Err(refusal.clone()),
-            Self::Import(_) => Err(NoAnswer::Failed("the outcome is a robot that was read, and numbers are due".into())),
+            Self::Text(_) => Err(NoAnswer::Failed("the outcome is a text, and numbers are due".into())),
         }
     }
 }

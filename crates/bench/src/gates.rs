@@ -253,8 +253,7 @@ impl Gates {
     /// The conditions that a set of rows must meet: one expectation each, passing or not.
     ///
     /// - No row fails, and every skip and error is explained.
-    /// - If the run is `complete`, the suite's counts of rows are met exactly.
-    /// - A thorough suite then also shows every known deviation in its known size, everything that is not offered, and sharp bounds.
+    /// - If the run is `complete`, it has rows. A thorough suite then also shows every known deviation in its known size, everything that is not offered, and sharp bounds.
     pub fn conditions(&self, suite: &Suite, records: &[Row], complete: bool) -> Vec<Expectation> {
         let count = |of_these: &dyn Fn(&Row) -> bool| records.iter().filter(|row| of_these(row)).count() as u64;
         let unknown = |row: &Row| {
@@ -275,20 +274,13 @@ impl Gates {
             conditions.extend(self.sharp.iter().flat_map(|sharp| sharp.conditions(suite, records)));
             conditions.extend(self.means.iter().flat_map(|mean| mean.conditions(records)));
         }
-        for (engine, quantities) in &suite.expect {
-            for (quantity, &expected) in quantities {
-                let of_these = |row: &&Row| row.engine == *engine && row.quantity == *quantity && accounted(row);
-                let found = records.iter().filter(of_these).count() as u64;
-                conditions.push(condition(format!("rows of {engine} on {quantity} that pass or deviate as known"), expected, found));
-            }
-        }
         conditions
     }
 
     /// One condition per known deviation of the suite's engines and robots: it still occurs. If its size is measured, there is one more: it
     /// has the known size on every robot. And there is one condition per thing that is not offered.
     fn still_seen(&self, suite: &Suite, records: &[Row]) -> Vec<Expectation> {
-        let asked = |engine: &String| suite.agreement.as_ref().is_some_and(|agreement| agreement.engines.contains(engine));
+        let asked = |engine: &String| suite.engines().contains(engine);
         let mut conditions = Vec::new();
         for known in self.deviations.iter().filter(|known| asked(&known.engine)) {
             if records.iter().any(|row| known.concerns(row)) {
@@ -333,12 +325,6 @@ impl Gates {
     }
 }
 
-/// Whether a row counts for a suite's `[expect]`: it passes, or has a value with a known deviation. (Near a gate, the rounding of another
-/// processor may turn one into the other. The row must exist in any case.)
-pub fn accounted(row: &Row) -> bool {
-    row.verdict == Verdict::Pass || row.verdict == Verdict::Deviation && row.value.is_some()
-}
-
 pub(crate) fn condition(what: String, expected: u64, found: u64) -> Expectation {
     let met = expected == found;
     let reason = if met { String::new() } else { format!("expected {expected}, found {found}") };
@@ -353,8 +339,7 @@ impl Sharpness {
     /// An external engine need not have every kind.
     fn conditions(&self, suite: &Suite, records: &[Row]) -> Vec<Expectation> {
         let mut sharpest: BTreeMap<(&str, &str), Bounds> = BTreeMap::new();
-        let named = |engine: &String| suite.agreement.as_ref().is_some_and(|agreement| agreement.engines.contains(engine));
-        let own = records.iter().filter(|row| row.engine == "featherbench" || named(&row.engine));
+        let own = records.iter().filter(|row| row.engine == crate::OWN || suite.engines().contains(&row.engine));
         for row in own.filter(|row| row.study == self.study && row.quantity == self.quantity && row.metric == self.metric) {
             let (Some(bound), Ok(params)) = (row.bound, serde_json::from_str::<Value>(&row.params)) else { continue };
             let of_method = sharpest.entry((&row.engine, &row.method)).or_default();

@@ -1,7 +1,9 @@
 //! A robot's file, and the result of its import by an engine's own parser.
 
 use crate::{HarnessError, hash};
+use featherbench_formats::neutral;
 use featherbench_model::Description;
+use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};
 
 /// A robot as its author wrote it: the file that every engine imports itself.
@@ -78,7 +80,8 @@ pub struct Import {
 }
 
 /// An edit by a parser, or an element that it did not import.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct ImportNote {
     /// A word of `oracles/PROTOCOL.md`, such as `mass_edited`.
     pub cause: String,
@@ -88,6 +91,42 @@ pub struct ImportNote {
     pub text: String,
     /// The numbers that `oracles/PROTOCOL.md` defines for the cause; empty if the engine gives none.
     pub numbers: Vec<f64>,
+}
+
+/// An import as it is written.
+#[derive(Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Written {
+    notes: Vec<ImportNote>,
+    /// The text of the description.
+    description: String,
+    /// That of the robot with the file's own inertias.
+    written: Option<String>,
+    keyframes: Vec<Vec<f64>>,
+}
+
+impl Import {
+    /// The import as JSON.
+    ///
+    /// # Errors
+    /// A sentence, when its description is no robot.
+    pub fn to_text(&self) -> Result<String, String> {
+        let text = |description: &Description| neutral::to_string(description).map_err(|error| error.to_string());
+        let written = self.written.as_ref().map(text).transpose()?;
+        let (description, notes, keyframes) = (text(&self.description)?, self.notes.clone(), self.keyframes.clone());
+        serde_json::to_string(&Written { notes, description, written, keyframes }).map_err(|error| error.to_string())
+    }
+
+    /// The import of a text by [`Import::to_text`].
+    ///
+    /// # Errors
+    /// A sentence, when the text is no import.
+    pub fn from_text(text: &str) -> Result<Self, String> {
+        let Written { notes, description, written, keyframes } = serde_json::from_str(text).map_err(|error| error.to_string())?;
+        let parse = |text: &str| neutral::parse(text, "an import").map_err(|error| error.to_string());
+        let written = written.as_deref().map(parse).transpose()?;
+        Ok(Self { description: parse(&description)?, notes, keyframes, written })
+    }
 }
 
 impl RobotFile {

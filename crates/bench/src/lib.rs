@@ -38,6 +38,7 @@
 
 mod cell;
 pub mod conventions;
+mod counts;
 mod deviation;
 mod engine;
 mod error;
@@ -60,11 +61,12 @@ mod suite;
 pub mod truth;
 
 pub use cell::{Cell, Outcome};
+pub use counts::{COUNTS_NAME, Count, Counts};
 pub use deviation::{Deviation, NotOffered, Reproduction, SEEDS, SLACK};
 pub use engine::{Engine, Evaluation, Identity, NoAnswer};
 pub use error::HarnessError;
 pub use featherbench_formats::frame;
-pub use gates::{Factor, Gate, Gates, Sharpness, accounted};
+pub use gates::{Factor, Gate, Gates, Sharpness};
 pub use import::{FileBase, FileFormat, FileInertial, FileLink, Import, ImportNote, RobotFile, WATER};
 pub use means::{Known, Mean};
 pub use quantity::{DENSE_LIMIT, Quantity};
@@ -74,4 +76,7 @@ pub use robot::{Robot, Route};
 pub use stepper::Stepper;
 pub use store::{Lost, OUTCOMES_NAME, OutcomeStore};
 pub use study::{Context, Finished, Study};
-pub use suite::{AgreementEntry, RobotEntry, Suite, TimingEntry};
+pub use suite::{NoSettings, RobotEntry, Suite};
+
+/// Our engine's name.
+pub const OWN: &str = "featherbench";

@@ -1,7 +1,7 @@
 //! The origin of a run: source, program, machine.
 
-use crate::hash;
-use featherbench_results::{GitInfo, Host, RunInfo};
+use crate::{Robot, hash};
+use featherbench_results::{GitInfo, Host, ModelInfo, RunInfo};
 use std::collections::BTreeMap;
 use std::path::Path;
 use std::process::Command;
@@ -21,6 +21,26 @@ pub fn collect(root: &Path) -> RunInfo {
         host: host(),
         ..RunInfo::default()
     }
+}
+
+/// The facts about the robots of a run.
+pub fn robots(robots: &[Robot]) -> Vec<ModelInfo> {
+    let of = |robot: &Robot| {
+        let provenance = robot.description.provenance.clone().unwrap_or_default();
+        ModelInfo {
+            name: robot.name.clone(),
+            hash: robot.hash.clone(),
+            origin: robot.origin,
+            licence: provenance.licence,
+            source: provenance.source,
+            nq: robot.states.nq as u64,
+            nv: robot.states.nv as u64,
+            bodies: robot.states.bodies as u64,
+            depth: robot.depth as u64,
+            notes: robot.model.warnings.iter().map(ToString::to_string).collect(),
+        }
+    };
+    robots.iter().map(of).collect()
 }
 
 /// The key in the build of an external engine with the content hash of its program. (Its version is only what the program says.)

@@ -1,8 +1,7 @@
 //! The outcomes of a run on disk; a run resumes from them.
 
 use crate::frame::{Block, Frame, FrameError};
-use crate::{Cell, HarnessError, Import, ImportNote, NoAnswer, Outcome};
-use featherbench_formats::neutral;
+use crate::{Cell, HarnessError, NoAnswer, Outcome};
 use serde_json::{Value, json};
 use std::collections::HashMap;
 use std::fs::{File, OpenOptions};
@@ -10,7 +9,7 @@ use std::io::{BufReader, Read, Seek};
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, PoisonError};
 
-/// Every finished cell's outcome, in memory and appended to `outcomes.frames` when it is known.
+/// Every finished cell's outcome, in memory and appended to `outcomes.bin` when it is known.
 ///
 /// Each frame has a checksum of all its contents. A run that is killed leaves at most one incomplete frame at the end. No frame after an
 /// incomplete or damaged one can be trusted: opening the store cuts off that frame and the rest of the file, and [`Self::lost`] reports it.
@@ -48,7 +47,7 @@ struct Inner {
 }
 
 /// Name of the file in a run's folder.
-pub const OUTCOMES_NAME: &str = "outcomes.frames";
+pub const OUTCOMES_NAME: &str = "outcomes.bin";
 
 impl OutcomeStore {
     /// Opens the store of a run's folder: reads the frames, and cuts off those that cannot be used.
@@ -145,16 +144,13 @@ fn read<S: Read + Seek>(mut source: S, path: &Path) -> Result<(S, Whole), Harnes
 fn to_frame(id: &str, cell: &Cell, outcome: &Outcome) -> Frame {
     let (status, reason, blocks) = match outcome {
         Outcome::Values(values) => ("ok", "", vec![Block::new("value", &[values.len()], values)]),
-        Outcome::Import(reading) => {
-            let shape = [reading.keyframes.len(), reading.description.nq()];
-            ("read", "", vec![Block::new("keyframes", &shape, &reading.keyframes.concat())])
-        }
+        Outcome::Text(_) => ("text", "", Vec::new()),
         Outcome::NoAnswer(NoAnswer::NotOffered(reason)) => ("unsupported", reason.as_str(), Vec::new()),
         Outcome::NoAnswer(NoAnswer::Failed(reason)) => ("error", reason.as_str(), Vec::new()),
     };
     let mut header = json!({"cell": id, "path": cell.path(), "status": status, "reason": reason});
-    if let Outcome::Import(reading) = outcome {
-        header["import"] = written(reading);
+    if let Outcome::Text(text) = outcome {
+        header["text"] = text.as_str().into();
     }
     let mut frame = Frame::new(header, blocks);
     frame.header.insert(CHECKSUM.into(), featherbench_results::checksum(&frame.to_bytes()).into());
@@ -163,30 +159,6 @@ fn to_frame(id: &str, cell: &Cell, outcome: &Outcome) -> Frame {
 
 /// The key of a frame's checksum, which is that of its bytes without this key.
 const CHECKSUM: &str = "blake3";
-
-/// An import result as JSON: the description's text, and the notes.
-fn written(reading: &Import) -> Value {
-    let note = |note: &ImportNote| json!({"cause": note.cause, "about": note.about, "text": note.text, "numbers": note.numbers});
-    // A description that is not a robot has no text, and reads back as a damaged frame: its cell is evaluated again.
-    let model = neutral::to_string(&reading.description).unwrap_or_default();
-    let written = reading.written.as_ref().map(|written| neutral::to_string(written).unwrap_or_default());
-    json!({"model": model, "written": written, "notes": reading.notes.iter().map(note).collect::<Vec<_>>()})
-}
-
-fn reading(value: &Value, keyframes: &Block) -> Option<Import> {
-    let text = |value: &Value| value.as_str().map(str::to_owned);
-    let note = |note: &Value| {
-        let numbers = note["numbers"].as_array()?.iter().map(Value::as_f64).collect::<Option<_>>()?;
-        Some(ImportNote { cause: text(&note["cause"])?, about: text(&note["about"]), text: text(&note["text"])?, numbers })
-    };
-    let description = neutral::parse(value["model"].as_str()?, OUTCOMES_NAME).ok()?;
-    let keyframes = keyframes.data.chunks_exact(description.nq().max(1)).map(<[f64]>::to_vec).collect();
-    let written = match value["written"].as_str() {
-        Some(text) => Some(neutral::parse(text, OUTCOMES_NAME).ok()?),
-        None => None,
-    };
-    Some(Import { description, notes: value["notes"].as_array()?.iter().map(note).collect::<Option<_>>()?, keyframes, written })
-}
 
 /// The cell and its outcome, or what is wrong with the frame.
 fn from_frame(mut frame: Frame) -> Result<(String, Outcome), String> {
@@ -198,11 +170,7 @@ fn from_frame(mut frame: Frame) -> Result<(String, Outcome), String> {
     let reason = frame.text("reason").to_owned();
     let outcome = match frame.text("status") {
         "ok" => frame.blocks.pop().map(|block| Outcome::Values(block.data)),
-        "read" => {
-            let keyframes = frame.block("keyframes");
-            let reading = frame.header.get("import").zip(keyframes).and_then(|(value, keyframes)| reading(value, keyframes));
-            reading.map(|reading| Outcome::Import(Box::new(reading)))
-        }
+        "text" => frame.header.get("text").and_then(Value::as_str).map(|text| Outcome::Text(text.to_owned())),
         "unsupported" => Some(Outcome::NoAnswer(NoAnswer::NotOffered(reason))),
         "error" => Some(Outcome::NoAnswer(NoAnswer::Failed(reason))),
         _ => None,
@@ -216,7 +184,6 @@ fn from_frame(mut frame: Frame) -> Result<(String, Outcome), String> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use featherbench_model::generate::Family;
 
     fn cell(method: &str) -> Cell {
         let text = |s: &str| s.to_owned();
@@ -258,14 +225,10 @@ mod tests {
     }
     /// Outcomes of every kind.
     fn outcomes() -> Vec<(Cell, Outcome)> {
-        let description = Family::parse("chain:n=1").unwrap().generate().unwrap();
-        let text = "not \"this\"".into();
-        let note = ImportNote { cause: "warning".into(), about: Some("link".into()), text, numbers: vec![0.1, -2.0] };
-        let written = Some(description.clone());
         vec![
             (cell("a"), Outcome::Values(vec![0.1, f64::NAN, -0.0])),
             (cell("b"), Outcome::NoAnswer(NoAnswer::Failed("it \"broke\"".into()))),
-            (cell("c"), Outcome::Import(Box::new(Import { description, notes: vec![note], keyframes: vec![vec![0.5]], written }))),
+            (cell("c"), Outcome::Text("not \"this\"\n".repeat(40))),
             (cell("d"), Outcome::NoAnswer(NoAnswer::NotOffered("no such joint".into()))),
             (cell("e"), Outcome::Values(vec![1.5])),
         ]

@@ -44,6 +44,16 @@ pub trait Study: Sync {
         false
     }
 
+    /// Whether it measures times, which a run may leave out.
+    fn measures_time(&self) -> bool {
+        false
+    }
+
+    /// The engines beside the suite's that it asks if they are installed.
+    fn engines(&self) -> &[String] {
+        &[]
+    }
+
     /// The cells, in the order of the report.
     fn plan(&self, context: &Context) -> Vec<Cell>;
 

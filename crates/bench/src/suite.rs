@@ -1,51 +1,55 @@
 //! Suites: the contents of a run.
+//!
+//! A suite file has its own keys, and one table for each study that it asks for. The study reads its table itself, by [`Suite::settings`].
 
 use crate::{FileBase, HarnessError};
 use serde::Deserialize;
-use std::collections::BTreeMap;
-use std::path::Path;
+use serde::de::DeserializeOwned;
+use std::path::{Path, PathBuf};
+use toml::de::{DeTable, DeValue, ValueDeserializer};
 
-/// A suite file, `datasets/suites/NAME.toml`. Unknown keys are errors.
-#[derive(Clone, Debug, Default, PartialEq, Deserialize)]
-#[serde(deny_unknown_fields)]
+/// A suite file, `datasets/suites/NAME.toml`. Unknown keys are errors; a table of an unknown name is one when the studies are made.
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Suite {
     /// The purpose of the suite, one sentence.
     pub about: String,
     /// Seed of every state.
     pub seed: u64,
-    /// The robots.
-    #[serde(default)]
-    pub robot: Vec<RobotEntry>,
-    /// The agreement study.
-    pub agreement: Option<AgreementEntry>,
-    /// The operations study.
-    #[serde(default)]
-    pub operations: bool,
-    /// Whether the accuracy study is made.
-    #[serde(default)]
-    pub accuracy: bool,
-    /// Whether the import study is made. It needs live engines, and robots that come from a file.
-    #[serde(default)]
-    pub import: bool,
-    /// Whether the conditioning study is made.
-    #[serde(default)]
-    pub conditioning: bool,
-    /// Whether known deviations are reproduced.
-    #[serde(default)]
-    pub reproductions: bool,
-    /// Whether the study of small steps is made. It needs engines that integrate.
-    #[serde(default)]
-    pub steps: bool,
-    /// The timing study.
-    pub timing: Option<TimingEntry>,
+    /// States of each robot that does not say otherwise.
+    pub states: usize,
+    /// The engines beside ours; `None` if the suite asks no engine for answers.
+    pub engines: Option<Vec<String>>,
     /// Whether the suite can show every known deviation of its robots, and a sharp bound for each method, joint and base. A complete run
     /// must then show them.
-    #[serde(default)]
     pub thorough: bool,
-    /// Rows that a complete run must have, passing or with a known deviation: engine → quantity → count.
-    #[serde(default)]
-    pub expect: BTreeMap<String, BTreeMap<String, u64>>,
+    /// The robots.
+    pub robots: Vec<RobotEntry>,
+    /// The names of its tables, each that of a study.
+    pub studies: Vec<String>,
+    text: String,
+    path: PathBuf,
 }
+
+/// The keys of a suite file that belong to no study.
+#[derive(Deserialize)]
+struct Keys {
+    about: String,
+    seed: u64,
+    states: Option<usize>,
+    engines: Option<Vec<String>>,
+    #[serde(default)]
+    thorough: bool,
+    #[serde(default)]
+    robot: Vec<RobotEntry>,
+}
+
+/// Their names.
+const KEYS: [&str; 6] = ["about", "seed", "states", "engines", "thorough", "robot"];
+
+/// The table of a study without settings.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct NoSettings {}
 
 /// A robot of a suite: a committed model, a generator's text, or a file of the robots' package, which only live runs have.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
@@ -66,7 +70,7 @@ pub struct RobotEntry {
     pub bases: Option<Vec<String>>,
     /// The family in rows.
     pub family: String,
-    /// The number of agreement states, if it is not the suite's.
+    /// The number of states, if it is not the suite's.
     pub states: Option<usize>,
     /// If given, all states are random, with the angles of revolute joints in (−reach, reach).
     pub reach: Option<f64>,
@@ -78,29 +82,6 @@ pub struct RobotEntry {
     pub studies: Option<Vec<String>>,
 }
 
-/// Settings of the agreement study.
-#[derive(Clone, Debug, PartialEq, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct AgreementEntry {
-    /// States per robot.
-    pub states: usize,
-    /// The engines beside ours.
-    pub engines: Vec<String>,
-}
-
-/// Settings of the timing study.
-#[derive(Clone, Debug, PartialEq, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct TimingEntry {
-    /// Distinct states in the stream.
-    pub states: usize,
-    /// Seconds for each candidate, on each quantity of each robot in each cache regime.
-    pub seconds: f64,
-    /// Native oracles, and oracles whose clock estimates, that are timed beside our own kernels if they are installed.
-    #[serde(default)]
-    pub peers: Vec<String>,
-}
-
 impl RobotEntry {
     /// The bases of a file's robot, and whether each needs a name of its own.
     pub fn bases(&self) -> Vec<(FileBase, bool)> {
@@ -108,6 +89,17 @@ impl RobotEntry {
             None => vec![(if self.floating { FileBase::Free } else { FileBase::Fixed }, false)],
             Some(bases) => bases.iter().filter_map(|base| FileBase::parse(base)).map(|base| (base, base == FileBase::Free)).collect(),
         }
+    }
+
+    /// What is wrong with it beyond its keys.
+    fn complaint(&self) -> Option<String> {
+        if [&self.model, &self.generate, &self.urdf, &self.mjcf].into_iter().flatten().count() != 1 {
+            return Some(format!("a [[robot]] of family '{}' must have exactly one of model, generate, urdf and mjcf", self.family));
+        }
+        let of_file = self.urdf.is_some() || self.mjcf.is_some();
+        let known = |bases: &Vec<String>| of_file && !self.floating && bases.iter().all(|base| FileBase::parse(base).is_some());
+        let bases = "bases is a list of fixed and free, for urdf and mjcf, without floating";
+        (!self.bases.as_ref().is_none_or(known)).then(|| format!("a [[robot]] of family '{}': {bases}", self.family))
     }
 }
 
@@ -126,24 +118,67 @@ impl Suite {
     /// # Errors
     /// [`HarnessError`], naming file, line and key.
     pub fn parse(text: &str, path: &Path) -> Result<Self, HarnessError> {
-        let suite: Self =
-            toml::from_str(text).map_err(|error| HarnessError::Config { path: path.to_owned(), message: error.to_string() })?;
-        for entry in &suite.robot {
-            let sources = [&entry.model, &entry.generate, &entry.urdf, &entry.mjcf];
-            if sources.into_iter().flatten().count() != 1 {
-                let message = format!("a [[robot]] of family '{}' must have exactly one of model, generate, urdf and mjcf", entry.family);
-                return Err(HarnessError::Config { path: path.to_owned(), message });
+        let wrong = |message: String| HarnessError::Config { path: path.to_owned(), message };
+        let Keys { about, seed, states, engines, thorough, robot: robots } =
+            toml::from_str(text).map_err(|error| wrong(error.to_string()))?;
+        let mut studies = Vec::new();
+        for (key, value) in document(text, path)?.iter().filter(|(key, _)| !KEYS.contains(&key.get_ref().as_ref())) {
+            let name: &str = key.get_ref().as_ref();
+            if !value.get_ref().is_table() {
+                let line = text[..key.span().start].matches('\n').count() + 1;
+                return Err(wrong(format!(
+                    "line {line}: unknown key '{name}'; a suite has {}, and a table for each study",
+                    KEYS.join(", ")
+                )));
             }
-            let of_file = entry.urdf.is_some() || entry.mjcf.is_some();
-            let known = |bases: &Vec<String>| of_file && !entry.floating && bases.iter().all(|base| FileBase::parse(base).is_some());
-            if !entry.bases.as_ref().is_none_or(known) {
-                let message = format!(
-                    "a [[robot]] of family '{}': bases is a list of fixed and free, for urdf and mjcf, without floating",
-                    entry.family
-                );
-                return Err(HarnessError::Config { path: path.to_owned(), message });
-            }
+            studies.push(name.to_owned());
         }
-        Ok(suite)
+        if let Some(complaint) = robots.iter().find_map(RobotEntry::complaint) {
+            return Err(wrong(complaint));
+        }
+        let states = states.unwrap_or(1);
+        Ok(Self { about, seed, states, engines, thorough, robots, studies, text: text.into(), path: path.into() })
     }
+
+    /// The engines beside ours.
+    pub fn engines(&self) -> &[String] {
+        self.engines.as_deref().unwrap_or_default()
+    }
+
+    /// The table of a study, if the suite has it.
+    ///
+    /// # Errors
+    /// [`HarnessError`], naming file, line and key.
+    pub fn settings<T: DeserializeOwned>(&self, study: &str) -> Result<Option<T>, HarnessError> {
+        let table = document(&self.text, &self.path)?.into_iter().find(|(key, _)| key.get_ref() == study);
+        let read = |value: toml::Spanned<DeValue<'_>>| {
+            T::deserialize(ValueDeserializer::from(value)).map_err(|mut error| {
+                error.set_input(Some(&self.text));
+                self.wrong(format!("[{study}]: {error}"))
+            })
+        };
+        table.map(|(_, value)| read(value)).transpose()
+    }
+
+    /// Checks that each of its tables, and each study that a robot names, is one of these studies.
+    ///
+    /// # Errors
+    /// [`HarnessError`], with the names that there are.
+    pub fn check_studies(&self, known: &[&str]) -> Result<(), HarnessError> {
+        let of_robots = self.robots.iter().flat_map(|robot| robot.studies.iter().flatten());
+        match self.studies.iter().chain(of_robots).find(|name| !known.contains(&name.as_str())) {
+            Some(name) => Err(self.wrong(format!("there is no study '{name}'; there are {}", known.join(", ")))),
+            None => Ok(()),
+        }
+    }
+
+    fn wrong(&self, message: String) -> HarnessError {
+        HarnessError::Config { path: self.path.clone(), message }
+    }
+}
+
+/// The tables and keys of a suite's text, in their order.
+fn document<'a>(text: &'a str, path: &Path) -> Result<DeTable<'a>, HarnessError> {
+    let wrong = |error: toml::de::Error| HarnessError::Config { path: path.to_owned(), message: error.to_string() };
+    Ok(DeTable::parse(text).map_err(wrong)?.into_inner())
 }

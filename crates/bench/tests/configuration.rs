@@ -1,7 +1,8 @@
 //! Files that users write: an error in `gates.toml`, `deviations.toml` or a suite names the file and the key. Every unknown key is an
 //! error.
 
-use featherbench_bench::{Gates, HarnessError, Ranges, Suite};
+use featherbench_bench::{Counts, Gates, HarnessError, NoSettings, Ranges, Suite};
+use std::collections::BTreeMap;
 use std::path::Path;
 
 const GATE: &str = "[[gate]]\nstudy = \"agreement\"\nquantities = [\"id\"]\nmetric = \"scaled\"\nbound = 1e-14\nreason = \"rounding\"\n";
@@ -91,16 +92,15 @@ fn suites_name_what_is_wrong() {
         Suite::read(&path)
     };
     let (suite, hash) = read(SUITE).unwrap();
-    assert_eq!((suite.about.as_str(), suite.robot.len(), suite.agreement), ("a suite", 1, None));
+    assert_eq!((suite.about.as_str(), suite.robots.len(), suite.engines), ("a suite", 1, None));
     assert_ne!(read(&format!("{SUITE}\n")).unwrap().1, hash, "every byte of a suite counts");
     let cases = [
         (format!("speed = 3\n{SUITE}"), "speed"),
         (format!("{SUITE}floats = true\n"), "floats"),
-        (format!("{SUITE}[agreement]\nstates = 3\n"), "engines"),
-        (format!("{SUITE}[agreement]\nstates = 3\nengines = []\nthreads = 2\n"), "threads"),
-        (format!("{SUITE}[timing]\nstates = 3\n"), "seconds"),
-        (format!("{SUITE}[expect]\nfeatherbench = 3\n"), "featherbench"),
-        (format!("{SUITE}[expect.featherbench]\nid = -3\n"), "id"),
+        (format!("states = -3\n{SUITE}"), "states"),
+        (format!("engines = \"drake\"\n{SUITE}"), "engines"),
+        (format!("engines = []\nengines = []\n{SUITE}"), "engines"),
+        (format!("seeds = 2\n{SUITE}"), "line 1: unknown key 'seeds'"),
         (format!("{SUITE}model = \"g1\"\n"), "humanoid"),
         (SUITE.replace("generate = \"humanoid\"\n", ""), "exactly one"),
         (SUITE.replace("seed = 1\n", ""), "seed"),
@@ -108,6 +108,42 @@ fn suites_name_what_is_wrong() {
     ];
     for (text, word) in cases {
         names(read(&text), &path, &[word]);
+    }
+}
+
+/// The tables of a suite belong to studies, which read them.
+#[test]
+fn tables_name_what_is_wrong() {
+    let path = Path::new("suite.toml");
+    let suite = |more: &str| Suite::parse(&format!("{SUITE}{more}"), path).unwrap();
+    let none = |more: &str| suite(more).settings::<NoSettings>("toy");
+    assert_eq!((none("").unwrap(), none("[toy]\n").unwrap()), (None, Some(NoSettings {})));
+    assert_eq!(suite("[toy]\n[other]\nx = 1\n").studies, ["toy", "other"]);
+    names(none("[toy]\nsize = 2\n"), path, &["[toy]", "line 7", "size"]);
+    let sizes = |more: &str| suite(more).settings::<BTreeMap<String, u32>>("toy");
+    assert_eq!(sizes("[toy]\nsize = 2\n").unwrap().unwrap()["size"], 2);
+    names(sizes("[other]\n[toy]\nsize = -2\n"), path, &["[toy]", "line 8", "size"]);
+    assert!(suite("[toy]\n").check_studies(&["toy"]).is_ok());
+    names(suite("[toy]\n").check_studies(&["plot", "rows"]), path, &["no study 'toy'", "plot, rows"]);
+    names(suite("studies = [\"toy\"]\n").check_studies(&["rows"]), path, &["no study 'toy'"]);
+}
+
+#[test]
+fn counts_name_what_is_wrong() {
+    const HEAD: &str = "suite,study,engine,quantity,cells,rows\n";
+    let path = Path::new("counts.csv");
+    assert_eq!(Counts::parse(HEAD, path).unwrap(), Counts::default());
+    let line = "default,agreement,drake,id,3,40\n";
+    assert_eq!(Counts::parse(&format!("{HEAD}{line}"), path).unwrap().to_csv(), format!("{HEAD}{line}"));
+    for (text, word) in [
+        (String::new(), "line 1"),
+        (line.into(), "line 1"),
+        (format!("{HEAD}{line}{line}"), "line 3"),
+        (format!("{HEAD}default,agreement,drake,id,3\n"), "5 columns"),
+        (format!("{HEAD}{}", line.replace(",3,", ",-3,")), "cells '-3'"),
+        (format!("{HEAD}{}", line.replace(",40", ",many")), "rows 'many'"),
+    ] {
+        names(Counts::parse(&text, path), path, &[word]);
     }
 }
 

@@ -1,7 +1,7 @@
 //! Gates and known deviations on rows made by hand: each condition in both directions.
 
-use featherbench_bench::{Gates, Range, RangeKey, Ranges, RangesMeter, SLACK, Suite, accounted};
-use featherbench_results::{Expectation, Relation, Row, Verdict};
+use featherbench_bench::{Counts, Gates, Range, RangeKey, Ranges, RangesMeter, SLACK, Suite};
+use featherbench_results::{Expectation, Kind, Relation, Row, RunInfo, Verdict};
 use std::path::Path;
 
 const GATES: &str = r#"
@@ -102,10 +102,17 @@ fn with(row: &Row, range: Range) -> Gates {
     plain().with_ranges([(RangeKey::of(row), range)].into_iter().collect(), Path::new("here")).unwrap()
 }
 
-/// The suite that asks the crane, with further lines.
-fn suite(more: &str) -> Suite {
-    let text = format!("about = \"a\"\nseed = 1\nthorough = true\n[agreement]\nstates = 1\nengines = [\"crane\"]\n{more}");
+/// The suite that asks the crane.
+fn suite() -> Suite {
+    let text = format!("about = \"a\"\nseed = 1\nthorough = true\nengines = [\"crane\"]\n[agreement]\n");
     Suite::parse(&text, Path::new("suite.toml")).unwrap()
+}
+
+/// The same suite, which need not show every deviation.
+fn lenient() -> Suite {
+    let mut suite = suite();
+    suite.thorough = false;
+    suite
 }
 
 fn unmet(conditions: &[Expectation]) -> Vec<&str> {
@@ -113,7 +120,7 @@ fn unmet(conditions: &[Expectation]) -> Vec<&str> {
 }
 
 fn red(gates: &Gates, records: &[Row]) -> Vec<String> {
-    unmet(&gates.conditions(&suite(""), records, true)).into_iter().map(str::to_owned).collect()
+    unmet(&gates.conditions(&suite(), records, true)).into_iter().map(str::to_owned).collect()
 }
 
 #[test]
@@ -198,7 +205,6 @@ fn errors_and_what_is_not_offered_are_told_apart() {
     let lacking = || Row { quantity: "com".into(), states: "zero".into(), ..on("hoist-9") };
     let skip = without(lacking(), Verdict::Skip);
     assert_eq!((skip.verdict, skip.reason.as_str()), (Verdict::Skip, "no mass is known (it says so)"), "it is no deviation");
-    assert!(!accounted(&skip));
     assert_eq!(without(lacking(), Verdict::Error).verdict, Verdict::Error);
     let known = |row: Row| !red(&gates, &[without(row, Verdict::Skip)]).iter().any(|what| what.starts_with("rows that an engine"));
     assert!(known(lacking()));
@@ -219,12 +225,7 @@ fn a_row_that_is_no_pass_is_red_in_any_run() {
     let gates = plain();
     let pass = row().gated(1e-15, Relation::Le, 1e-14);
     for complete in [true, false] {
-        let unmet = |rows: &[Row]| {
-            unmet(&gates.conditions(&Suite { thorough: false, ..suite("") }, rows, complete))
-                .into_iter()
-                .map(str::to_owned)
-                .collect::<Vec<_>>()
-        };
+        let unmet = |rows: &[Row]| unmet(&gates.conditions(&lenient(), rows, complete)).into_iter().map(str::to_owned).collect::<Vec<_>>();
         assert_eq!(unmet(std::slice::from_ref(&pass)), [""; 0]);
         let of = |verdict| Row { verdict, ..pass.clone() };
         assert_eq!(unmet(&[pass.clone(), of(Verdict::Fail)]), ["rows outside their bound"]);
@@ -234,27 +235,51 @@ fn a_row_that_is_no_pass_is_red_in_any_run() {
         assert_eq!(unmet(&[]).len(), usize::from(complete), "rows at all");
     }
     let two = [Row { verdict: Verdict::Fail, ..pass.clone() }, Row { verdict: Verdict::Fail, ..pass }];
-    assert_eq!(gates.conditions(&suite(""), &two, false)[0].found, 2);
+    assert_eq!(gates.conditions(&suite(), &two, false)[0].found, 2);
 }
 
 #[test]
 fn a_suite_counts_its_rows() {
-    let gates = Gates::parse(GATES, "", Path::new("here")).unwrap();
-    let suite = suite("[expect.crane]\nid = 2\n");
+    let info = |studies: &[&str]| RunInfo {
+        suite: "yard".into(),
+        studies: studies.iter().map(|&study| study.into()).collect(),
+        ..RunInfo::default()
+    };
+    let engines = ["crane".to_owned()];
     let pass = row().gated(1e-15, Relation::Le, 1e-14);
     let deviating = row().gated(1e-13, Relation::Le, 1e-14).deviating("known");
     let lost = row().without_value(Verdict::Error, "lost").deviating("known");
-    assert_eq!([&pass, &deviating, &lost].map(accounted), [true, true, false]);
-    let is_met = |rows: &[Row]| unmet(&gates.conditions(&suite, rows, true)).is_empty();
+    let counts = |cells: u64, rows: u64| {
+        let text = format!("suite,study,engine,quantity,cells,rows\nyard,agreement,crane,id,{cells},{rows}\n");
+        Counts::parse(&text, Path::new("counts.csv")).unwrap()
+    };
+    let skipped = row().without_value(Verdict::Skip, "not offered");
+    for (rows, due) in [(&pass, 1), (&deviating, 1), (&lost, 0), (&skipped, 0)] {
+        assert_eq!(Counts::of("yard", &engines, std::slice::from_ref(rows)), counts(1, due));
+    }
+    let is_met = |rows: &[Row]| unmet(&counts(1, 2).conditions(&info(&["agreement"]), &engines, rows)).is_empty();
     assert!(is_met(&[pass.clone(), deviating.clone()]));
     assert!(!is_met(std::slice::from_ref(&pass)) && !is_met(&[pass.clone(), pass.clone(), pass.clone()]));
     assert!(!is_met(&[pass.clone(), lost]));
     assert!(!is_met(&[pass.clone(), Row { quantity: "bias".into(), ..pass.clone() }]));
     assert!(!is_met(&[pass.clone(), Row { engine: "winch".into(), ..pass.clone() }]));
-    assert!(
-        gates.conditions(&suite, &[pass], false).iter().all(|condition| !condition.what.starts_with("rows of crane")),
-        "of a part nothing is expected"
-    );
+    let cells = ["1", "2"].map(|cell| Row { cell: cell.into(), ..pass.clone() });
+    assert!(!is_met(&cells), "as many rows, and one cell more");
+    // Rows of engines that nobody named, times, studies that were left out, and other suites have no condition.
+    assert!(is_met(&[pass.clone(), pass.clone(), Row { engine: "winch".into(), ..pass.clone() }]));
+    assert!(is_met(&[pass.clone(), pass.clone(), Row { kind: Kind::Measured, ..pass.clone() }]));
+    assert!(counts(1, 2).conditions(&info(&["timing"]), &engines, &[]).is_empty());
+    let other = RunInfo { suite: "dock".into(), ..info(&["agreement"]) };
+    assert!(counts(1, 2).conditions(&other, &engines, std::slice::from_ref(&pass)).is_empty());
+    // What the file does not name is too much.
+    let more = [pass.clone(), pass.clone(), Row { engine: "featherbench".into(), ..pass.clone() }];
+    let conditions = counts(1, 2).conditions(&info(&["agreement"]), &engines, &more);
+    assert_eq!(unmet(&conditions), ["cells and rows of featherbench in the study agreement as counts.csv has them"]);
+    assert!(conditions.iter().any(|condition| condition.reason == "id: 1 cells and 1 rows, not 0 and 0"), "{conditions:?}");
+    // A suite's counts are written in the place of those it had.
+    let written = counts(1, 2).with("yard", Counts::of("yard", &engines, std::slice::from_ref(&pass)));
+    assert_eq!(written, counts(1, 1));
+    assert_eq!(Counts::parse(&counts(1, 2).with("dock", Counts::default()).to_csv(), Path::new("counts.csv")).unwrap(), counts(1, 2));
 }
 
 #[test]
@@ -278,10 +303,11 @@ fn a_deviation_must_be_seen_where_its_robots_are() {
         assert_eq!(red(&gates, &[gates.judge(elsewhere, 1e-15, 1.0)]), [""; 0]);
     }
     let records = [gates.judge(row(), 1e-15, 1.0)];
-    let external = Suite { agreement: None, ..suite("") };
+    let mut external = suite();
+    external.engines = None;
     assert!(unmet(&gates.conditions(&external, &records, true)).is_empty());
-    assert!(unmet(&gates.conditions(&Suite { thorough: false, ..suite("") }, &records, true)).is_empty());
-    assert!(unmet(&gates.conditions(&suite(""), &records, false)).is_empty());
+    assert!(unmet(&gates.conditions(&lenient(), &records, true)).is_empty());
+    assert!(unmet(&gates.conditions(&suite(), &records, false)).is_empty());
 
     let error = || on("derrick").without_value(Verdict::Error, "it says so");
     assert_eq!(red(&gates, &[gates.explain(error())]), [""; 0]);
@@ -306,7 +332,7 @@ fn a_deviation_must_be_as_large_as_known() {
     assert_eq!(judged(&always, &[3.9e-14]), [small]);
     assert_eq!(judged(&always, &[1.5e-14, 7e-14, 2e-14]), [""; 0], "the worst row counts");
     let rows = [always.judge(row(), 3.9e-14, 1.0)];
-    let conditions = always.conditions(&suite(""), &rows, true);
+    let conditions = always.conditions(&suite(), &rows, true);
     let told = &conditions.iter().find(|condition| condition.what == small).unwrap().reason;
     assert!(told.contains("gantry rnea id (3.9e-14, known from 8e-14)"), "{told}");
     let sometimes = with(&row(), range(8e-14, 9e-14, 19, 20));
@@ -328,7 +354,7 @@ fn a_computed_bound_must_be_sharp_somewhere() {
     };
     let blunt = |rows: &[Row]| -> Vec<(String, u64)> {
         let of_bounds = |condition: &Expectation| condition.what.starts_with("kinds of joint and base");
-        gates.conditions(&suite(""), rows, true).into_iter().filter(of_bounds).map(|condition| (condition.what, condition.found)).collect()
+        gates.conditions(&suite(), rows, true).into_iter().filter(of_bounds).map(|condition| (condition.what, condition.found)).collect()
     };
     let found = |rows: &[Row]| blunt(rows).into_iter().map(|(_, found)| found).collect::<Vec<_>>();
     assert_eq!(found(&[bounded("crane", "aba", "\"revolute\"", "fixed", 1e-12)]), [0]);

@@ -4,7 +4,7 @@
 use featherbench_bench::frame::Frame;
 use featherbench_bench::run::{Progress, Silent, compare, evaluate, plan};
 use featherbench_bench::{
-    Cell, Context, Finished, Gates, HarnessError, Import, ImportNote, NoAnswer, OUTCOMES_NAME, Outcome, OutcomeStore, Robot, Study,
+    Cell, Context, Finished, Gates, HarnessError, Lost, NoAnswer, OUTCOMES_NAME, Outcome, OutcomeStore, Robot, Study,
 };
 use featherbench_model::Random;
 use featherbench_model::generate::Family;
@@ -75,12 +75,7 @@ impl Study for Counting {
         match method % 6 {
             4 => Outcome::NoAnswer(NoAnswer::NotOffered("not \"this\", or\nthat".into())),
             5 => Outcome::NoAnswer(NoAnswer::Failed("it broke".into())),
-            3 => {
-                let description = Family::parse("chain:n=2").unwrap().generate().unwrap();
-                let note = ImportNote { cause: "warning".into(), about: None, text: "not \"this\"".into(), numbers: vec![0.1, -2.0] };
-                let written = Some(description.clone());
-                Outcome::Import(Box::new(Import { description, notes: vec![note], keyframes: vec![vec![0.1, -0.2]], written }))
-            }
+            3 => Outcome::Text(format!("{{\"cell\": \"{}\"}}\n", cell.id())),
             _ => {
                 let mut random = Random::named(context.seed, &cell.id());
                 Outcome::Values((0..1 + 40 * method).map(|_| random.uniform(-1.0, 1.0)).collect())
@@ -93,7 +88,7 @@ impl Study for Counting {
             let blank = Row { cell: cell.id(), robot: robot.name.clone(), method: cell.method.clone(), ..Row::default() };
             match outcome {
                 Outcome::Values(values) => blank.informed(values.iter().sum()),
-                Outcome::Import(reading) => blank.informed((reading.description.bodies.len() + reading.notes.len()) as f64),
+                Outcome::Text(text) => blank.informed(text.len() as f64),
                 Outcome::NoAnswer(NoAnswer::NotOffered(reason)) => blank.without_value(Verdict::Skip, reason.as_str()),
                 Outcome::NoAnswer(NoAnswer::Failed(reason)) => blank.without_value(Verdict::Error, reason.as_str()),
             }
@@ -254,6 +249,7 @@ fn a_process_that_dies_loses_only_what_it_was_doing() {
 struct Fainting(&'static str);
 
 impl Progress for Fainting {
+    fn lost(&self, _: &Lost) {}
     fn begin(&self, _: &str, _: usize) {}
     fn cell(&self, cell: &Cell) {
         assert!(cell.path() != self.0, "a panic outside of any cell");

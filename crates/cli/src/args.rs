@@ -158,14 +158,15 @@ pub struct GateArgs {
     #[arg(requires = "ranges", value_name = "FOLDER")]
     pub others: Vec<PathBuf>,
     /// Measure how large each known deviation is on each robot, over runs of one suite with different seeds.
-    #[arg(long, conflicts_with = "counts")]
+    #[arg(long, group = "measured")]
     pub ranges: bool,
-    /// With --ranges: write what was measured into ci/deviations/SUITE.csv, in the place of what stands there.
-    #[arg(long, requires = "ranges")]
-    pub write: bool,
-    /// Print the counts of rows that pass or deviate as known, in the form of a suite's `expect` tables.
-    #[arg(long)]
+    /// Count the cells and the rows that pass or deviate as known, by study, engine and quantity.
+    #[arg(long, group = "measured")]
     pub counts: bool,
+    /// With --ranges or --counts: write what was measured into ci/deviations/SUITE.csv or datasets/suites/counts.csv, in the place of what
+    /// stands there about the suite.
+    #[arg(long, requires = "measured")]
+    pub write: bool,
 }
 
 #[derive(Debug, Clone, Args)]

@@ -1,19 +1,26 @@
 //! `featherbench compare`: do the engines read a robot's file alike, and if not, where and why?
 
-use crate::args::{CompareArgs, RunArgs};
+use crate::args::CompareArgs;
+use crate::engines::{self, Asked};
 use crate::fail::Fail;
 use crate::oracles::ENGINES;
 use crate::patience::Patient;
-use crate::robots::{self, Loaded};
+use crate::progress::Bar;
+use crate::robots;
 use crate::root::Root;
-use crate::{engines, outcome, report, robot_file, run, table};
+use crate::run::About;
+use crate::{outcome, report, robot_file, run, table};
 use ::featherbench_results::{ModelOrigin, Verdict};
-use featherbench_bench::{AgreementEntry, Cell, Context, Engine, FileFormat, Gates, Robot, RobotFile, Suite, hash};
+use featherbench_bench::run::{Opening, Run};
+use featherbench_bench::{Cell, Context, Engine, FileFormat, Gates, OWN, Robot, RobotFile, hash, provenance};
+use featherbench_engines::Limits;
 use featherbench_studies::{Agreement, Import};
-use std::time::{Instant, SystemTime};
+use std::time::{Duration, Instant, SystemTime};
 
 /// States per robot, besides the keyframes of its file: one of each case.
 const STATES: usize = featherbench_model::StateBatch::HEAD;
+/// The name in the place of a suite's.
+const NAME: &str = "compare";
 /// Seed of the states.
 const SEED: u64 = 1;
 /// A robot with more degrees of freedom is asked on the neutral route for what the comparison shows, and for nothing else.
@@ -35,16 +42,17 @@ pub fn compare(root: &Root, args: &CompareArgs) -> Result<(), Fail> {
         return Err(ended(bad));
     }
     let gates = Gates::read(&root.gates())?;
-    let mut loaded = Loaded { name: "compare".into(), suite: suite(engines), hash: hashes(&files), robots: Vec::new() };
-    eprintln!("starting {} …", loaded.suite.agreement.iter().flat_map(|entry| entry.engines.clone()).collect::<Vec<_>>().join(", "));
-    let live = RunArgs { live: true, timeout: args.timeout, ..RunArgs::default_suite() };
-    let mut opened = engines::open(root, &live, &loaded)?;
-    if let Some(missing) = opened.missing(&loaded).first() {
+    let hash = hashes(&files);
+    let mut robots: Vec<Robot> = Vec::new();
+    eprintln!("starting {} …", engines.join(", "));
+    let limits = Limits { answer: Duration::from_secs(args.timeout), ..Limits::default() };
+    let mut opened = engines::open(root, &Asked::live(root, &engines, limits))?;
+    if let Some(missing) = opened.missing(&engines).first() {
         let message = format!("{} does not answer: {}", missing.name, missing.reason);
         return Err(Fail::Missing { message, advice: "look at `featherbench oracles status`, or leave it out with --engines".into() });
     }
     let patient = |engine: Box<dyn Engine>| -> Box<dyn Engine> {
-        if engine.identity().name == "featherbench" { engine } else { Box::new(Patient::new(engine)) }
+        if engine.identity().name == OWN { engine } else { Box::new(Patient::new(engine)) }
     };
     opened.engines = opened.engines.into_iter().map(patient).collect();
     let mut remarks: Vec<(String, Vec<String>)> = Vec::new();
@@ -55,36 +63,37 @@ pub fn compare(root: &Root, args: &CompareArgs) -> Result<(), Fail> {
         };
         let Some(Source::Read { robot, remarks: about }) = kept(read, &mut bad) else { continue };
         let robot = *robot;
-        let twice = loaded.robots.iter().filter(|known| known.name == robot.name || known.name.starts_with(&format!("{} (", robot.name)));
+        let twice = robots.iter().filter(|known| known.name == robot.name || known.name.starts_with(&format!("{} (", robot.name)));
         let count = twice.count();
         let name = if count == 0 { robot.name.clone() } else { format!("{} ({})", robot.name, count + 1) };
         remarks.push((name.clone(), about));
-        loaded.robots.push(Robot { name, ..robot });
+        robots.push(Robot { name, ..robot });
     }
-    if loaded.robots.is_empty() {
+    if robots.is_empty() {
         return Err(ended(bad));
     }
 
     let started = SystemTime::now();
-    let (folder, id) = run::folder(root, args.out.as_deref(), false, &loaded.name, started)?;
-    let mut info = run::describe(root, true, &loaded, &opened)?;
-    info.run = id;
+    let folder = args.out.clone().unwrap_or_else(|| run::folder(root, NAME, started));
+    let about = About { suite: NAME, hash: &hash, seed: SEED, live: true, robots: &robots };
+    let info = run::describe(root, provenance::collect(root.path()), &about, &opened, started)?;
     run::tell_notes(&info);
-    info.started = humantime::format_rfc3339_seconds(started).to_string();
-    info.seconds.insert("setup".into(), start.elapsed().as_secs_f64());
-    let context = Context { robots: &loaded.robots, engines: &opened.engines, gates: &gates, seed: SEED };
+    let mut run = Run::open(&folder, Opening::New, info)?;
+    run.info.seconds.insert("setup".into(), start.elapsed().as_secs_f64());
+    let context = Context { robots: &robots, engines: &opened.engines, gates: &gates, seed: SEED };
     let shown = ["readback", "id", "bias", "mass_matrix_probe"];
     let keep = |cell: &Cell| {
-        let large = loaded.robots.iter().any(|robot| robot.name == cell.robot && robot.states.nv > LARGE);
+        let large = robots.iter().any(|robot| robot.name == cell.robot && robot.states.nv > LARGE);
         cell.study != "agreement" || !large || shown.contains(&cell.quantity.as_str())
     };
-    let records = run::conduct(&[Box::new(Import), Box::new(Agreement)], &context, &folder, &keep, &mut info)?;
+    let records = run.conduct(&[Box::new(Import), Box::new(Agreement)], &context, &keep, &Bar::new())?;
     let conditions = |robot| outcome::conditions(robot, &opened.engines, &records, args.strict);
-    info.expected = loaded.robots.iter().flat_map(conditions).collect();
-    info.seconds.insert("total".into(), start.elapsed().as_secs_f64());
-    ::featherbench_results::write_run(&folder, &info, &records)?;
-    let page = report::render(&folder, &info, &records)?;
-    for (robot, (_, remarks)) in loaded.robots.iter().zip(&remarks) {
+    run.info.expected = robots.iter().flat_map(conditions).collect();
+    run.info.seconds.insert("total".into(), start.elapsed().as_secs_f64());
+    run.write(&records)?;
+    let page = report::render(&folder, &run.info, &records)?;
+    let info = &run.info;
+    for (robot, (_, remarks)) in robots.iter().zip(&remarks) {
         print!("{}", table::of(robot, remarks, &opened.engines, &records));
     }
     println!("report: {}", page.display());
@@ -145,17 +154,6 @@ fn engines(args: &CompareArgs) -> Result<Vec<String>, Fail> {
     match engines.iter().find(|name| !ENGINES.contains(&name.as_str())) {
         Some(unknown) => Err(Fail::input(format!("--engines: there is no '{unknown}'; choose from {}", ENGINES.join(", ")))),
         None => Ok(engines),
-    }
-}
-
-/// The suite that a comparison is.
-fn suite(engines: Vec<String>) -> Suite {
-    Suite {
-        about: "robots' files through each engine's parser".into(),
-        seed: SEED,
-        agreement: Some(AgreementEntry { states: STATES, engines }),
-        import: true,
-        ..Suite::default()
     }
 }
 

@@ -1,7 +1,7 @@
 //! Who is asked: our own kernels, and the engines of the suite, live or recorded.
 
 use crate::args::RunArgs;
-use crate::external;
+use crate::external::{self, External};
 use crate::fail::Fail;
 use crate::native;
 use crate::oracles;
@@ -9,8 +9,9 @@ use crate::rapier;
 use crate::robots::Loaded;
 use crate::root::Root;
 use ::featherbench_results::{EngineInfo, EngineSource};
-use featherbench_bench::{Engine, Robot};
+use featherbench_bench::{Engine, OWN, Robot, Study};
 use featherbench_engines::{Featherbench, Limits, Recorded, read_recordings};
+use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::Duration;
 
@@ -20,30 +21,66 @@ pub struct Opened {
     pub infos: Vec<EngineInfo>,
 }
 
-/// Opens the engines that a run asks.
-pub fn open(root: &Root, args: &RunArgs, loaded: &Loaded) -> Result<Opened, Fail> {
-    let mut opened = Opened { engines: Vec::new(), infos: Vec::new() };
-    opened.add(Ok(Box::new(Featherbench::new())), "featherbench", EngineSource::Own);
-    let engines: &[String] = loaded.suite.agreement.as_ref().map_or(&[], |agreement| &agreement.engines);
-    let taken: Vec<&str> = ["featherbench"].into_iter().chain(engines.iter().map(String::as_str)).collect();
-    external::check_names(&args.externals, &taken)?;
-    let limits = limits(args);
-    if let Some(timing) = loaded.suite.timing.as_ref().filter(|_| !args.no_timing) {
-        // One that is asked for agreement too is the same engine: see below.
-        for name in timing.peers.iter().filter(|name| !engines.contains(name)) {
-            let peer = match oracles::ESTIMATING.contains(&name.as_str()) {
-                true => oracles::start_timed(root, name, limits),
-                false => native::start(root, name, limits, None),
-            };
-            opened.add(peer.map(|peer| Box::new(peer) as Box<dyn Engine>), name, EngineSource::Live);
+/// What a run asks of engines.
+pub struct Asked<'a> {
+    /// Engines beside ours that must answer.
+    pub engines: &'a [String],
+    /// Engines that are timed if they are installed.
+    pub timed: Vec<String>,
+    /// Engines that a user brings along.
+    pub externals: &'a [External],
+    /// Whether the engines themselves are asked.
+    pub live: bool,
+    /// The folder of recorded answers.
+    pub recorded: PathBuf,
+    /// The robots that recorded answers are about.
+    pub robots: Vec<&'a Robot>,
+    /// The limits of each engine's process.
+    pub limits: Limits,
+}
+
+impl<'a> Asked<'a> {
+    /// The engines of a suite and its studies.
+    pub fn by_suite(root: &Root, args: &'a RunArgs, loaded: &'a Loaded, studies: &[Box<dyn Study>]) -> Self {
+        let answers = |robot: &&Robot| studies.iter().any(|study| !study.measures_time() && robot.takes(study.name()));
+        Self {
+            engines: loaded.suite.engines(),
+            timed: studies.iter().flat_map(|study| study.engines()).cloned().collect(),
+            externals: &args.externals,
+            live: args.live,
+            recorded: args.recorded.clone().unwrap_or_else(|| root.recorded()),
+            robots: loaded.robots.iter().filter(answers).collect(),
+            limits: limits(args),
         }
+    }
+
+    /// Engines that are asked themselves, and must answer.
+    pub fn live(root: &Root, engines: &'a [String], limits: Limits) -> Self {
+        Self { engines, timed: Vec::new(), externals: &[], live: true, recorded: root.recorded(), robots: Vec::new(), limits }
+    }
+}
+
+/// Opens the engines that a run asks.
+pub fn open(root: &Root, asked: &Asked) -> Result<Opened, Fail> {
+    let Asked { engines, limits, .. } = *asked;
+    let mut opened = Opened { engines: Vec::new(), infos: Vec::new() };
+    opened.add(Ok(Box::new(Featherbench::new())), OWN, EngineSource::Own);
+    let taken: Vec<&str> = [OWN].into_iter().chain(engines.iter().map(String::as_str)).collect();
+    external::check_names(asked.externals, &taken)?;
+    // One that is asked for answers too is the same engine: see below.
+    for name in asked.timed.iter().filter(|name| !engines.contains(name)) {
+        let engine = match oracles::ESTIMATING.contains(&name.as_str()) {
+            true => oracles::start_timed(root, name, limits),
+            false => native::start(root, name, limits, None),
+        };
+        opened.add(engine.map(|engine| Box::new(engine) as Box<dyn Engine>), name, EngineSource::Live);
     }
     // Rapier is not recorded: a run that asks for it builds it and asks it itself.
     let (unrecorded, others): (Vec<&String>, Vec<&String>) = engines.iter().partition(|engine| *engine == rapier::NAME);
     for engine in unrecorded {
         opened.add(Ok(Box::new(rapier::start(root, limits)?)), engine, EngineSource::Live);
     }
-    if args.live && !others.is_empty() {
+    if asked.live && !others.is_empty() {
         let python = oracles::install(root)?;
         // Together: an engine's start is its libraries being read from disk.
         let started: Vec<_> = std::thread::scope(|scope| {
@@ -59,15 +96,13 @@ pub fn open(root: &Root, args: &RunArgs, loaded: &Loaded) -> Result<Opened, Fail
             opened.add(oracle.map(|oracle| Box::new(oracle) as Box<dyn Engine>), engine, EngineSource::Live);
         }
     } else if !others.is_empty() {
-        let folder = args.recorded.clone().unwrap_or_else(|| root.recorded());
-        let asked: Vec<&Robot> = loaded.robots.iter().filter(|robot| robot.takes("agreement") || robot.takes("operations")).collect();
-        let recordings = Arc::new(read_recordings(&folder, &asked));
+        let recordings = Arc::new(read_recordings(&asked.recorded, &asked.robots));
         for engine in others {
             let recorded = Recorded::new(&recordings, engine).map(|recorded| Box::new(recorded) as Box<dyn Engine>);
             opened.add(recorded, engine, EngineSource::Recorded);
         }
     }
-    for external in &args.externals {
+    for external in asked.externals {
         opened.add(Ok(Box::new(external.start(root, limits)?)), &external.name, EngineSource::Live);
     }
     Ok(opened)
@@ -105,9 +140,8 @@ impl Opened {
         self.engines.extend(engine);
     }
 
-    /// The engines that should be there and are not. A peer of the timing study may be missing: the report says so.
-    pub fn missing(&self, loaded: &Loaded) -> Vec<&EngineInfo> {
-        let due = |engine: &EngineInfo| loaded.suite.agreement.as_ref().is_some_and(|agreement| agreement.engines.contains(&engine.name));
-        self.infos.iter().filter(|engine| engine.status != "ok" && due(engine)).collect()
+    /// Those of these engines that are not there.
+    pub fn missing(&self, engines: &[String]) -> Vec<&EngineInfo> {
+        self.infos.iter().filter(|engine| engine.status != "ok" && engines.contains(&engine.name)).collect()
     }
 }

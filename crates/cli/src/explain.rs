@@ -32,10 +32,9 @@ pub fn explain(args: &ExplainArgs) -> Result<(), Fail> {
                 let head: Vec<String> = values.iter().take(6).map(|value| format!("{value:?}")).collect();
                 println!("answer    {} numbers: {}{}", values.len(), head.join(", "), if values.len() > 6 { ", …" } else { "" });
             }
-            Some(Outcome::Import(reading)) => {
-                let description = &reading.description;
-                println!("answer    a robot of {} bodies and {} dofs", description.bodies.len(), description.nv());
-                reading.notes.iter().for_each(|note| println!("note      {}: {}", note.cause, note.text));
+            Some(Outcome::Text(text)) => {
+                let head: String = text.chars().take(400).collect();
+                println!("answer    a text of {} characters: {head}{}", text.len(), if head.len() < text.len() { " …" } else { "" });
             }
             Some(Outcome::NoAnswer(NoAnswer::NotOffered(reason))) => println!("answer    not offered: {reason}"),
             Some(Outcome::NoAnswer(NoAnswer::Failed(reason))) => println!("answer    failed: {reason}"),

@@ -3,14 +3,14 @@
 use crate::args::ListArgs;
 use crate::fail::Fail;
 use crate::native::PEERS;
-use crate::oracles::{ENGINES, ESTIMATING};
+use crate::oracles::{self, ENGINES, ESTIMATING};
 use crate::rapier;
 use crate::robots;
 use crate::root::Root;
-use featherbench_bench::{Context, Engine, Gates, Study};
-use featherbench_engines::Featherbench;
+use featherbench_bench::{Context, Engine, Gates};
+use featherbench_engines::{Featherbench, Limits};
 use featherbench_model::generate::Family;
-use featherbench_studies::{Accuracy, Agreement, Conditioning, Import, OperationCounts, Timing};
+use featherbench_studies::{Kernels, Setup};
 use std::io::Write;
 
 /// Prints what there is to run.
@@ -29,8 +29,8 @@ fn text(root: &Root, args: &ListArgs) -> Result<String, Fail> {
         let engines: Vec<Box<dyn Engine>> = vec![Box::new(Featherbench::new())];
         let gates = Gates::read(&root.gates())?;
         let context = Context { robots: &loaded.robots, engines: &engines, gates: &gates, seed: loaded.suite.seed };
-        let timing = Timing { states: 1, seconds: 0.0, kernels: featherbench_engines::timed, peers: Vec::new() };
-        let studies: [&dyn Study; 6] = [&Agreement, &Import, &Accuracy, &Conditioning, &OperationCounts, &timing];
+        let (kernels, reproduce) = (featherbench_engines::timed as Kernels, oracles::reproducer(root, Limits::default()));
+        let studies = featherbench_studies::of_suite(&Setup { suite: &loaded.suite, live: true, program: "", kernels, reproduce })?;
         let cells = studies.iter().flat_map(|study| study.plan(&context));
         return Ok(cells.map(|cell| format!("{}  {}\n", cell.id(), cell.path())).collect());
     }
@@ -50,7 +50,7 @@ fn text(root: &Root, args: &ListArgs) -> Result<String, Fail> {
     }
     let peers = [&PEERS[..], &ESTIMATING].concat().join(", ");
     text += &format!("\nengines:  featherbench, {}, {}\npeers:    {peers}\n", ENGINES.join(", "), rapier::NAME);
-    text += "studies:  agreement, import, accuracy, conditioning, operations, reproductions, steps, repeatability, timing\n";
+    text += &format!("studies:  {}\n", featherbench_studies::names().join(", "));
     text += "\nfamilies of generated robots, with their parameters:\n";
     for name in Family::NAMES {
         let family = Family::parse(name).map_err(|error| Fail::input(error.to_string()))?;

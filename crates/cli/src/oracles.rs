@@ -12,6 +12,7 @@ use std::ffi::OsString;
 use std::io::{BufRead, BufReader, IsTerminal};
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
+use std::sync::Arc;
 use std::time::Duration;
 
 /// Engines that come with the project, in the order of reports.
@@ -143,7 +144,7 @@ pub fn start(root: &Root, python: &Path, engine: &str, limits: Limits) -> Result
 pub fn reproducer(root: &Root, limits: Limits) -> featherbench_studies::Reproduce {
     let missing = || "the reference engines are not installed; run `featherbench oracles install`".to_owned();
     let command = python(root).ok_or_else(missing).and_then(|python| package::command(root, &python, "reproduce"));
-    Box::new(move |name, seeds| match &command {
+    Arc::new(move |name, seeds| match &command {
         Ok(command) => featherbench_engines::reproduce(command, limits, name, seeds),
         Err(reason) => Err(NoAnswer::Failed(reason.clone())),
     })

@@ -1,7 +1,7 @@
 //! Progress on standard error: a bar on a terminal, a line per phase elsewhere.
 
 use featherbench_bench::run::Progress;
-use featherbench_bench::{Cell, Outcome};
+use featherbench_bench::{Cell, Lost, Outcome};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use std::io::IsTerminal;
 use std::sync::{Mutex, PoisonError};
@@ -23,6 +23,10 @@ impl Bar {
 }
 
 impl Progress for Bar {
+    fn lost(&self, lost: &Lost) {
+        eprintln!("{lost}: its cells are evaluated again");
+    }
+
     fn begin(&self, phase: &str, count: usize) {
         if !self.terminal {
             eprintln!("{phase}: {count} cells");

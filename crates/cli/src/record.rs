@@ -1,7 +1,7 @@
 //! `featherbench record`: asks the engines and keeps, or checks, their answers.
 
-use crate::args::{RecordArgs, RunArgs};
-use crate::engines;
+use crate::args::RecordArgs;
+use crate::engines::{self, Asked};
 use crate::fail::Fail;
 use crate::progress::Bar;
 use crate::robots;
@@ -9,8 +9,8 @@ use crate::root::Root;
 use ::featherbench_results::Verdict;
 use featherbench_bench::measure::{ForwardScale, scaled_error, worst};
 use featherbench_bench::run::Progress;
-use featherbench_bench::{Cell, Context, Gates, Outcome, OutcomeStore, Quantity, Robot, Study};
-use featherbench_engines::{EngineRecording, Recording, recording_name};
+use featherbench_bench::{Cell, Context, Gates, OWN, Outcome, OutcomeStore, Quantity, Robot, Study};
+use featherbench_engines::{EngineRecording, Limits, Recording, recording_name};
 use featherbench_studies::{Agreement, OperationCounts, Repeatability};
 use std::path::Path;
 
@@ -20,11 +20,11 @@ const STALE: f64 = 8.0 * f64::EPSILON;
 
 /// Records, or checks the recordings of, a suite.
 pub fn record(root: &Root, args: &RecordArgs) -> Result<(), Fail> {
-    let run = RunArgs { suite: args.suite.clone(), live: true, ..RunArgs::default_suite() };
     let loaded = robots::load(root, &args.suite, false, None)?;
     let gates = Gates::read(&root.gates())?;
-    let opened = engines::open(root, &run, &loaded)?;
-    if let Some(missing) = opened.missing(&loaded).first() {
+    let engines = loaded.suite.engines();
+    let opened = engines::open(root, &Asked::live(root, engines, Limits::default()))?;
+    if let Some(missing) = opened.missing(engines).first() {
         let message = format!("{} does not answer: {}", missing.name, missing.reason);
         return Err(Fail::Missing { message, advice: "look at `featherbench oracles status`".into() });
     }
@@ -35,7 +35,7 @@ pub fn record(root: &Root, args: &RecordArgs) -> Result<(), Fail> {
     let store = OutcomeStore::open(&scratch)?;
     let bar = Bar::new();
     let mut finished = Vec::new();
-    let foreign = |cell: &Cell| cell.engine != "featherbench";
+    let foreign = |cell: &Cell| cell.engine != OWN;
     let studies: [&dyn Study; 2] = [&Agreement, &OperationCounts];
     for study in studies {
         let cells = featherbench_bench::run::plan(study, &context, &foreign);
@@ -142,7 +142,7 @@ fn check(path: &Path, now: &Recording, robot: &Robot) -> Vec<String> {
 fn brief(outcome: &Outcome) -> String {
     match outcome {
         Outcome::Values(values) => format!("{} numbers", values.len()),
-        Outcome::Import(reading) => format!("a robot of {} bodies", reading.description.bodies.len()),
+        Outcome::Text(text) => format!("a text of {} characters", text.chars().count()),
         Outcome::NoAnswer(no_answer) => format!("'{no_answer}'"),
     }
 }

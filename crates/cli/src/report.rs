@@ -5,8 +5,7 @@ use crate::fail::Fail;
 use crate::ranges;
 use crate::root::Root;
 use ::featherbench_results::{Row, RunInfo, Verdict};
-use featherbench_bench::{Gates, Suite, accounted, provenance};
-use std::collections::BTreeMap;
+use featherbench_bench::{Counts, Gates, Suite, provenance};
 use std::path::{Path, PathBuf};
 
 /// Writes the report of a finished run again.
@@ -26,36 +25,34 @@ pub fn render(folder: &Path, info: &RunInfo, records: &[Row]) -> Result<PathBuf,
 /// Judges a finished run again, by today's gates of its suite.
 pub fn gate(root: &Root, args: &GateArgs) -> Result<(), Fail> {
     let (mut info, records) = ::featherbench_results::read_run(&args.folder)?;
-    if args.counts {
-        print_counts(&records);
-        return Ok(());
-    }
     if args.ranges {
         return ranges::measure(root, args, &info, &records);
     }
     let (suite, _) = Suite::read(&root.suites().join(format!("{}.toml", info.suite)))?;
+    if args.counts {
+        return count(root, &suite, &info, &records, args.write);
+    }
     let externals = info.engines.iter().filter(|engine| engine.build.contains_key(provenance::PROGRAM)).map(|engine| engine.name.as_str());
     let gates = Gates::read(&root.gates())?.with_external(&externals.collect::<Vec<_>>());
     let missing: Vec<_> = info.expected.iter().filter(|condition| condition.what.starts_with("engine ")).cloned().collect();
     info.expected = gates.conditions(&suite, &records, true);
+    info.expected.extend(Counts::read(&root.counts())?.conditions(&info, suite.engines(), &records));
     info.expected.extend(missing);
     conclude(&info, &records, &args.folder.join("index.html"))
 }
 
-/// Prints the rows that count per engine and quantity as a suite's `expect` tables.
-fn print_counts(records: &[Row]) {
-    let mut counts: BTreeMap<(&str, &str), u64> = BTreeMap::new();
-    for row in records.iter().filter(|row| accounted(row)) {
-        *counts.entry((&row.engine, &row.quantity)).or_default() += 1;
+/// Prints the counts of a run, or writes them in the place of those of its suite.
+fn count(root: &Root, suite: &Suite, info: &RunInfo, rows: &[Row], write: bool) -> Result<(), Fail> {
+    let counts = Counts::of(&info.suite, suite.engines(), rows);
+    if !write {
+        print!("{}", counts.to_csv());
+        return Ok(());
     }
-    let mut engine = "";
-    for ((name, quantity), count) in counts {
-        if name != engine {
-            println!("{}[expect.{name}]", if engine.is_empty() { "" } else { "\n" });
-            engine = name;
-        }
-        println!("{quantity} = {count}");
-    }
+    let path = root.counts();
+    let all = Counts::read(&path)?.with(&info.suite, counts);
+    ::featherbench_results::atomic_write(&path, all.to_csv().as_bytes())?;
+    println!("written: {}", path.display());
+    Ok(())
 }
 
 /// Prints the verdict, and the report's page last.

@@ -26,10 +26,10 @@ pub fn load(root: &Root, suite: &str, live: bool, seed: Option<u64>) -> Result<L
     let path = if suite.ends_with(".toml") { PathBuf::from(suite) } else { root.suites().join(format!("{suite}.toml")) };
     let (mut parsed, hash) = Suite::read(&path)?;
     parsed.seed = seed.unwrap_or(parsed.seed);
-    let states = parsed.agreement.as_ref().map_or(1, |agreement| agreement.states);
+    let states = parsed.states;
     let mut files = Files { root, live, compiler: None };
-    let mut robots: Vec<Robot> = Vec::with_capacity(parsed.robot.len());
-    for entry in &parsed.robot {
+    let mut robots: Vec<Robot> = Vec::with_capacity(parsed.robots.len());
+    for entry in &parsed.robots {
         for (base, named) in entry.bases() {
             let Described { description, warnings, origin, file, keyframes } = files.describe(entry, base)?;
             let bad = |error: &dyn std::error::Error| Fail::input(format!("{}: robot '{}': {error}", path.display(), description.name));

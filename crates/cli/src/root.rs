@@ -41,6 +41,11 @@ impl Root {
         self.0.join("ci")
     }
 
+    /// How many cells and rows a complete run of each suite has.
+    pub fn counts(&self) -> PathBuf {
+        self.suites().join(featherbench_bench::COUNTS_NAME)
+    }
+
     /// How large the known deviations are on each robot.
     pub fn ranges(&self) -> PathBuf {
         self.gates().join("deviations")

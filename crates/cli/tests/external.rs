@@ -160,7 +160,7 @@ fn a_run_is_not_continued_with_another_program_of_an_external_engine() {
     };
     let engine = ["--engine", "mine=sh 'shy oracle.sh'"];
     let with = |more: &[&'static str]| [&engine[..], more].concat();
-    let asked = || std::fs::read(sandbox.path("out/outcomes.frames")).unwrap();
+    let asked = || std::fs::read(sandbox.path("out/outcomes.bin")).unwrap();
     run(&with(&[])).expect(0, &["6 skip"]);
     let first = asked();
     run(&with(&["--resume"])).expect(0, &["6 skip"]);

@@ -20,7 +20,7 @@ fn exact_rows(folder: &Path) -> Vec<String> {
 
 /// The cells in the outcome file, in the order in which they were finished.
 fn finished(folder: &Path) -> Vec<String> {
-    let Ok(file) = std::fs::File::open(folder.join("outcomes.frames")) else { return Vec::new() };
+    let Ok(file) = std::fs::File::open(folder.join("outcomes.bin")) else { return Vec::new() };
     let mut reader = BufReader::new(file);
     let next = || Frame::read(&mut reader).ok().flatten();
     std::iter::from_fn(next).map(|frame| frame.text("cell").to_owned()).collect()

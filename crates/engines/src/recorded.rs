@@ -82,7 +82,7 @@ impl Recording {
                 match outcome {
                     Outcome::NoAnswer(NoAnswer::NotOffered(reason)) => writer.part(header("unsupported", reason), &[]),
                     Outcome::NoAnswer(NoAnswer::Failed(reason)) => writer.part(header("error", reason), &[]),
-                    Outcome::Import(_) => writer.part(header("unsupported", "what an engine reads from a file is not recorded"), &[]),
+                    Outcome::Text(_) => writer.part(header("unsupported", "texts are not recorded"), &[]),
                     Outcome::Values(values) => {
                         let base = bases.get(quantity).filter(|base| base.len() == values.len());
                         let mut header = header("ok", "");
@@ -340,7 +340,7 @@ impl Engine for Recorded {
         match outcomes.into_iter().find(|(q, m, _)| *q == quantity && m == method) {
             Some((_, _, Outcome::Values(values))) => Ok(Box::new(Played { values, size: quantity.size(robot), range: 0..0 })),
             Some((_, _, Outcome::NoAnswer(refusal))) => Err(refusal.clone()),
-            Some((_, _, Outcome::Import(_))) | None => Err(NoAnswer::Failed(format!("{} by {method} was not recorded", quantity.name()))),
+            Some((_, _, Outcome::Text(_))) | None => Err(NoAnswer::Failed(format!("{} by {method} was not recorded", quantity.name()))),
         }
     }
 }

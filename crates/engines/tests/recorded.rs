@@ -71,7 +71,7 @@ type Bits = (Quantity, String, Result<Vec<u64>, NoAnswer>);
 /// The contents of a recording.
 fn bits(recording: &Recording) -> Vec<(Identity, Vec<Bits>)> {
     let outcome = |outcome: &Outcome| match outcome {
-        Outcome::Import(_) => panic!("readings are not recorded"),
+        Outcome::Text(_) => panic!("texts are not recorded"),
         Outcome::Values(values) => Ok(values.iter().map(|x| x.to_bits()).collect()),
         Outcome::NoAnswer(refusal) => Err(refusal.clone()),
     };

@@ -52,9 +52,11 @@ pub struct RunInfo {
     pub engines: Vec<EngineInfo>,
     /// The robots.
     pub models: Vec<ModelInfo>,
+    /// The studies that were conducted, in their order.
+    pub studies: Vec<String>,
     /// Wall time of each phase, in seconds.
     pub seconds: BTreeMap<String, f64>,
-    /// The number of passing rows that the suite expects, and the number found.
+    /// The conditions of the run, each with the number that is expected and the number that was found.
     pub expected: Vec<Expectation>,
     /// The conventions of the engines, compared with ours.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]

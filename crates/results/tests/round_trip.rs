@@ -253,6 +253,7 @@ fn run_info() -> RunInfo {
             status: "ok".into(),
             reason: "".into(),
         }],
+        studies: vec!["agreement".into()],
         models: vec![ModelInfo {
             name: "chain".into(),
             hash: "22".into(),

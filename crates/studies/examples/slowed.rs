@@ -9,7 +9,7 @@ use featherbench_engines::Featherbench;
 use featherbench_model::StateBatch;
 use featherbench_model::generate::Family;
 use featherbench_results::{ModelOrigin, Row};
-use featherbench_studies::Timing;
+use featherbench_studies::{Timing, TimingSettings};
 use std::ops::Range;
 use std::process::ExitCode;
 use std::time::{Duration, Instant};
@@ -95,7 +95,7 @@ fn main() -> Result<ExitCode, Box<dyn std::error::Error>> {
     }
     let gates = Gates::default();
     let context = Context { robots: &robots, engines: &engines, gates: &gates, seed: 1 };
-    let study = Timing { states: 1000, seconds, kernels, peers: peers.clone() };
+    let study = Timing { settings: TimingSettings { states: 1000, seconds, engines: peers.clone() }, kernels };
     let folder = tempfile::tempdir()?;
     let store = OutcomeStore::open(folder.path())?;
     let finished = evaluate(&study, &context, plan(&study, &context, &|_| true), &store, &Silent)?;

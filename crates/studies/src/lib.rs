@@ -28,10 +28,54 @@ pub use operations::OperationCounts;
 pub use repeatability::Repeatability;
 pub use reproductions::{Reproduce, Reproductions};
 pub use steps::Steps;
-pub use timing::Timing;
+pub use timing::{Kernels, Settings as TimingSettings, Timing};
 
-use featherbench_bench::{Cell, Context, Engine, NoAnswer, Outcome, Quantity, Robot};
+use featherbench_bench::{Cell, Context, Engine, HarnessError, NoAnswer, Outcome, Quantity, Robot, Study, Suite};
 use featherbench_results::Row;
+
+/// A study of the house: its name, and how it is made from a suite.
+type Entry = (&'static str, fn(&Setup) -> Result<Option<Box<dyn Study>>, HarnessError>);
+
+/// Every study, in the order of the report. Those that run alone come after all others; timing is the last, as it needs a quiet machine.
+const STUDIES: [Entry; 9] = [
+    ("agreement", agreement::of_suite),
+    ("import", import::of_suite),
+    ("accuracy", accuracy::of_suite),
+    ("conditioning", conditioning::of_suite),
+    ("steps", steps::of_suite),
+    ("operations", operations::of_suite),
+    ("reproductions", reproductions::of_suite),
+    ("repeatability", repeatability::of_suite),
+    ("timing", timing::of_suite),
+];
+
+/// What studies are made from.
+pub struct Setup<'a> {
+    /// The suite, whose tables are the studies' settings.
+    pub suite: &'a Suite,
+    /// Whether the engines themselves are asked.
+    pub live: bool,
+    /// The hash of this program.
+    pub program: &'a str,
+    /// Our kernels that are timed.
+    pub kernels: Kernels,
+    /// Evaluates reproductions of known deviations.
+    pub reproduce: Reproduce,
+}
+
+/// The names of all studies.
+pub fn names() -> Vec<&'static str> {
+    STUDIES.iter().map(|(name, _)| *name).collect()
+}
+
+/// The studies of a suite.
+///
+/// # Errors
+/// [`HarnessError`], naming file, line and key, when a table of the suite has an error or belongs to no study.
+pub fn of_suite(setup: &Setup) -> Result<Vec<Box<dyn Study>>, HarnessError> {
+    setup.suite.check_studies(&names())?;
+    STUDIES.iter().filter_map(|(_, make)| make(setup).transpose()).collect()
+}
 
 /// A row with the fields of its cell and robot; the study adds case, metric and value.
 fn row(cell: &Cell, robot: &Robot) -> Row {

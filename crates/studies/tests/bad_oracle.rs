@@ -59,7 +59,7 @@ fn goes_on(fault: &str, step: u64, reason: &str) {
         assert!(row.reason.contains(reason), "{}", row.reason);
     }
     let all: Vec<Row> = rest.into_iter().chain(errors).collect();
-    assert_eq!(red(&gates.conditions(&suite(&all), &all, true)), ["rows without a value that was due"]);
+    assert_eq!(red(&suite(&all).conditions(&gates, &all, true)), ["rows without a value that was due"]);
 }
 
 #[test]

@@ -125,7 +125,7 @@ fn convicts(spec: &str) {
     let gates = gates("");
     let honest = beside_native(&robot, &gates, Double::of(&robot));
     let suite = suite(&honest);
-    let is_red = |records: &[Row]| !red(&gates.conditions(&suite, records, true)).is_empty();
+    let is_red = |records: &[Row]| !red(&suite.conditions(&gates, records, true)).is_empty();
     for row in honest.iter().filter(|row| row.relation.is_some() || row.verdict != Verdict::Info) {
         assert_eq!(row.verdict, Verdict::Pass, "{} of {}: {}", row.quantity, row.engine, row.reason);
     }

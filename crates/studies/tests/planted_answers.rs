@@ -43,23 +43,22 @@ impl Default {
     fn open() -> Self {
         let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
         let (suite, _) = Suite::read(&root.join("datasets/suites/default.toml")).unwrap();
-        let agreement = suite.agreement.clone().unwrap();
         let robot = |entry: &featherbench_bench::RobotEntry| {
             let description = match &entry.model {
                 Some(name) => featherbench_formats::neutral::read(root.join(format!("datasets/models/{name}.json"))).unwrap(),
                 None => Family::parse(entry.generate.as_ref().unwrap()).unwrap().generate().unwrap(),
             };
-            let states = entry.states.unwrap_or(agreement.states);
+            let states = entry.states.unwrap_or(suite.states);
             let mut robot = Robot::new(&description, &entry.family, ModelOrigin::Generated, states, suite.seed).unwrap();
             robot.studies.clone_from(&entry.studies);
             robot
         };
-        let mut robots: Vec<Robot> = suite.robot.iter().map(robot).collect();
+        let mut robots: Vec<Robot> = suite.robots.iter().map(robot).collect();
         robots.retain(|robot| robot.takes("agreement"));
         let asked: Vec<&Robot> = robots.iter().collect();
         let recordings = Arc::new(read_recordings(&recorded(&root), &asked));
         let mut engines: Vec<Box<dyn Engine>> = vec![Box::new(Featherbench::new())];
-        for engine in &agreement.engines {
+        for engine in suite.engines() {
             engines.push(Box::new(Recorded::new(&recordings, engine).unwrap()));
         }
         Self { suite, gates: Gates::read(&gates_folder()).unwrap(), robots, engines }

@@ -6,6 +6,7 @@ use featherbench_bench::run::{Silent, compare, evaluate, plan};
 use featherbench_bench::{Context, Engine, Gates, NoAnswer, OutcomeStore};
 use featherbench_results::{Row, Verdict};
 use featherbench_studies::Reproductions;
+use std::sync::Arc;
 use support::Double;
 
 const KNOWN: &str = r#"
@@ -24,7 +25,7 @@ fn rows(known: &Gates, values: impl Fn() -> Result<Vec<f64>, NoAnswer> + Send + 
     let engines: Vec<Box<dyn Engine>> = vec![Box::new(Double::of(&support::robot("chain:n=2")))];
     let context = Context { robots: &[], engines: &engines, gates: known, seed: 1 };
     let study = Reproductions {
-        reproduce: Box::new(move |name, seeds| {
+        reproduce: Arc::new(move |name, seeds| {
             assert_eq!((name, seeds), ("loss", 20));
             values()
         }),

@@ -4,15 +4,19 @@ use featherbench_bench::run::{Silent, compare, evaluate, plan};
 use featherbench_bench::{Cell, Context, Engine, Outcome, OutcomeStore, Quantity, Robot, Study};
 use featherbench_engines::Featherbench;
 use featherbench_results::{Kind, Row, Verdict};
-use featherbench_studies::Timing;
+use featherbench_studies::{Timing, TimingSettings};
 use support::{Double, gates, robot, whole};
 
 use crate::support;
 
+fn settings(engines: &[&str]) -> TimingSettings {
+    TimingSettings { states: 20, seconds: 0.0, engines: engines.iter().map(|&name| name.into()).collect() }
+}
+
 fn study() -> Timing {
     let kernels =
         |_: &Robot| vec![(Quantity::InverseDynamics, "rnea"), (Quantity::ForwardDynamics, "aba"), (Quantity::ForwardDynamics, "ltdl")];
-    Timing { states: 20, seconds: 0.0, kernels, peers: vec!["double".into(), "absent".into()] }
+    Timing { settings: settings(&["double", "absent"]), kernels }
 }
 
 /// The rows of a robot timed with a double.
@@ -126,7 +130,7 @@ fn a_reference_that_refuses_from_the_start_is_one_row_with_its_reason() {
     let last = description.bodies.last_mut().unwrap();
     (last.mass, last.inertia) = (0.0, [0.0; 6]);
     let robot = Robot::new(&description, "test", featherbench_results::ModelOrigin::Generated, 20, 1).unwrap();
-    let study = Timing { kernels: |_| vec![(Quantity::Factorization, "ltdl")], peers: vec![], ..study() };
+    let study = Timing { kernels: |_| vec![(Quantity::Factorization, "ltdl")], settings: settings(&[]) };
     let rows = whole(&study, &robot, &gates(""), &[Box::new(Featherbench::new()) as Box<dyn Engine>]);
     let rows: Vec<_> = rows.iter().filter(|row| row.quantity == "factorization").collect();
     assert_eq!(rows.len(), 1, "{rows:?}");

@@ -9,16 +9,21 @@
 //! When the best answers of several engines all have the same error, the accuracy of the reference may be the limit. A row per robot gives
 //! the number of engines that are limited by the reference (`limited_by_the_reference`).
 
-use crate::row;
+use crate::{Setup, row};
 use featherbench_bench::measure::{ForwardScale, scaled_error};
 use featherbench_bench::truth::{Truth, TruthModel, conditioning_bound};
-use featherbench_bench::{Cell, Context, DENSE_LIMIT, Finished, NoAnswer, Outcome, Quantity, Robot, Study};
+use featherbench_bench::{Cell, Context, DENSE_LIMIT, Finished, HarnessError, NoAnswer, NoSettings, Outcome, Quantity, Robot, Study};
 use featherbench_dynamics::TreeSparse;
 use featherbench_results::{Row, Verdict};
 use serde_json::json;
 
 /// The accuracy study.
 pub struct Accuracy;
+
+/// The study, if the suite asks for it.
+pub(crate) fn of_suite(setup: &Setup) -> Result<Option<Box<dyn Study>>, HarnessError> {
+    Ok(setup.suite.settings::<NoSettings>("accuracy")?.map(|_| Box::new(Accuracy) as _))
+}
 
 /// The quantities that are compared with the truth.
 const QUANTITIES: [Quantity; 5] = [
@@ -92,7 +97,7 @@ impl Study for Accuracy {
                 let (verdict, reason) = match outcome {
                     Outcome::NoAnswer(NoAnswer::NotOffered(reason)) => (Verdict::Skip, reason.clone()),
                     Outcome::NoAnswer(NoAnswer::Failed(reason)) => (Verdict::Error, reason.clone()),
-                    Outcome::Values(_) | Outcome::Import(_) => (Verdict::Error, format!("there is no quantity {}", cell.quantity)),
+                    Outcome::Values(_) | Outcome::Text(_) => (Verdict::Error, format!("there is no quantity {}", cell.quantity)),
                 };
                 rows.push(context.gates.explain(blank.without_value(verdict, reason)));
                 continue;

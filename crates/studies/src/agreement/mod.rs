@@ -5,9 +5,11 @@
 
 mod over_best;
 
-use crate::row;
+use crate::{Setup, row};
 use featherbench_bench::measure::{ForwardScale, Magnitudes, scaled_error, worst};
-use featherbench_bench::{Cell, Context, DENSE_LIMIT, Engine, Finished, NoAnswer, Outcome, Quantity, Robot, Study};
+use featherbench_bench::{
+    Cell, Context, DENSE_LIMIT, Engine, Finished, HarnessError, NoAnswer, NoSettings, Outcome, Quantity, Robot, Study,
+};
 use featherbench_dynamics::Rnea;
 use featherbench_model::{Case, Model};
 use featherbench_results::{Row, Verdict};
@@ -38,6 +40,11 @@ pub(crate) const QUANTITIES: [Quantity; 15] = [
 
 /// The agreement study.
 pub struct Agreement;
+
+/// The study, if the suite asks for it.
+pub(crate) fn of_suite(setup: &Setup) -> Result<Option<Box<dyn Study>>, HarnessError> {
+    Ok(setup.suite.settings::<NoSettings>("agreement")?.map(|_| Box::new(Agreement) as _))
+}
 
 impl Study for Agreement {
     fn name(&self) -> &'static str {
@@ -133,7 +140,7 @@ impl Comparison<'_> {
         let Some(quantity) = Quantity::parse(&cell.quantity) else { return Vec::new() };
         let values = match outcome {
             Outcome::Values(values) => values,
-            Outcome::Import(_) => return Vec::new(),
+            Outcome::Text(_) => return Vec::new(),
             Outcome::NoAnswer(no_answer) => {
                 let verdict = if matches!(no_answer, NoAnswer::NotOffered(_)) { Verdict::Skip } else { Verdict::Error };
                 let row = Row { reference: REFERENCE.into(), ..row(cell, self.robot) };

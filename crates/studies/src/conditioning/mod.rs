@@ -4,9 +4,9 @@
 //! `log₂(κ(n)/κ(n/2))`, against the robot of the same family with half the dofs, if the suite has it. For the straight chain κ grows as n⁴
 //! (Featherstone 2004). The conditioning bound of forward dynamics is beside it, and does not grow.
 
-use crate::row;
+use crate::{Setup, row};
 use featherbench_bench::truth::conditioning_bound;
-use featherbench_bench::{Cell, Context, Finished, NoAnswer, Outcome, Quantity, Robot, Study};
+use featherbench_bench::{Cell, Context, Finished, HarnessError, NoAnswer, NoSettings, Outcome, Quantity, Robot, Study};
 use featherbench_dynamics::mass_matrix;
 use featherbench_results::{Row, Verdict};
 use nalgebra::DMatrix;
@@ -14,6 +14,11 @@ use serde_json::json;
 
 /// The conditioning study.
 pub struct Conditioning;
+
+/// The study, if the suite asks for it.
+pub(crate) fn of_suite(setup: &Setup) -> Result<Option<Box<dyn Study>>, HarnessError> {
+    Ok(setup.suite.settings::<NoSettings>("conditioning")?.map(|_| Box::new(Conditioning) as _))
+}
 
 /// Eigenvalues of larger matrices take minutes.
 const MOST_DOFS: usize = 600;

@@ -26,12 +26,20 @@ pub use difference::{Cause, Class, Difference, Field, Weight};
 pub use replay::Effect;
 pub use subtree::{SubTree, bound};
 
-use featherbench_bench::{Cell, Context, Engine, FileFormat, Finished, Import as Read, NoAnswer, Outcome, Quantity, Robot, Study};
+use crate::Setup;
+use featherbench_bench::{
+    Cell, Context, Engine, FileFormat, Finished, HarnessError, Import as Read, NoAnswer, NoSettings, Outcome, Quantity, Robot, Study,
+};
 use featherbench_results::Row;
 use serde_json::{Value, json};
 
 /// The import study.
 pub struct Import;
+
+/// The study, if the suite asks for it and the engines themselves are asked: what they read from files is not recorded.
+pub(crate) fn of_suite(setup: &Setup) -> Result<Option<Box<dyn Study>>, HarnessError> {
+    Ok(setup.suite.settings::<NoSettings>("import")?.filter(|_| setup.live).map(|_| Box::new(Import) as _))
+}
 
 /// The cells of an engine: its import, and its answers afterwards.
 const READING: &str = "import";
@@ -81,7 +89,7 @@ impl Study for Import {
         let Some(file) = &robot.file else { return lost("file") };
         match (engine.read(file), Quantity::parse(&cell.quantity)) {
             (Err(no_answer), _) => Outcome::NoAnswer(no_answer),
-            (Ok(reading), None) => Outcome::Import(Box::new(reading)),
+            (Ok(reading), None) => reading.to_text().map_or_else(|reason| Outcome::NoAnswer(NoAnswer::Failed(reason)), Outcome::Text),
             (Ok(reading), Some(quantity)) => computed(robot, &reading, engine, quantity, &cell.method).into(),
         }
     }

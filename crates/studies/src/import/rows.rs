@@ -11,18 +11,28 @@ use serde_json::{Value, json};
 
 /// The rows of a robot, engine by engine.
 pub(super) fn rows(context: &Context, robot: &Robot, finished: &[Finished]) -> Vec<Row> {
+    let imports: Vec<(&Cell, Result<Import, NoAnswer>)> =
+        finished.iter().filter(|(cell, _)| cell.quantity == READING).map(|(cell, outcome)| (cell, imported(outcome))).collect();
     let mut rows = Vec::new();
-    for (cell, outcome) in finished.iter().filter(|(cell, _)| cell.quantity == READING) {
+    for (cell, import) in &imports {
         let of_engine: Vec<&Finished> =
             finished.iter().filter(|(other, _)| other.engine == cell.engine && other.quantity != READING).collect();
-        let engine = OfEngine { context, robot, cell, of_engine, compiler: compiler(robot, finished) };
-        match outcome {
-            Outcome::Import(reading) => rows.extend(engine.read(reading)),
-            Outcome::NoAnswer(no_answer) => rows.push(engine.refused(cell, no_answer)),
-            Outcome::Values(_) => {}
+        let engine = OfEngine { context, robot, cell, of_engine, compiler: compiler(robot, &imports) };
+        match import {
+            Ok(import) => rows.extend(engine.read(import)),
+            Err(no_answer) => rows.push(engine.refused(cell, no_answer)),
         }
     }
     rows
+}
+
+/// The import that an outcome holds.
+fn imported(outcome: &Outcome) -> Result<Import, NoAnswer> {
+    match outcome {
+        Outcome::Text(text) => Import::from_text(text).map_err(NoAnswer::Failed),
+        Outcome::NoAnswer(no_answer) => Err(no_answer.clone()),
+        Outcome::Values(_) => Err(NoAnswer::Failed("the outcome is numbers, and a robot is due".into())),
+    }
 }
 
 /// The number of mass-matrix entries computed for the effects of single differences: some ten seconds. A robot of a hundred dofs and six
@@ -32,12 +42,10 @@ const WORK: usize = 4_000_000_000;
 const LEAST_ALONE: usize = 8;
 
 /// The notes of MuJoCo's compiler, whose import is the reference of an MJCF.
-fn compiler<'a>(robot: &Robot, finished: &'a [Finished]) -> Option<&'a [ImportNote]> {
+fn compiler<'a>(robot: &Robot, imports: &'a [(&Cell, Result<Import, NoAnswer>)]) -> Option<&'a [ImportNote]> {
     robot.file.as_ref().filter(|file| file.format == FileFormat::Mjcf)?;
-    finished.iter().find_map(|(cell, outcome)| match outcome {
-        Outcome::Import(reading) if cell.engine == reference(FileFormat::Mjcf) => Some(reading.notes.as_slice()),
-        _ => None,
-    })
+    let (_, import) = imports.iter().find(|(cell, _)| cell.engine == reference(FileFormat::Mjcf))?;
+    import.as_ref().ok().map(|import| import.notes.as_slice())
 }
 
 struct OfEngine<'a> {
@@ -196,7 +204,7 @@ fn values(outcome: &Outcome) -> Result<&[f64], &NoAnswer> {
     match outcome {
         Outcome::Values(values) => Ok(values),
         Outcome::NoAnswer(no_answer) => Err(no_answer),
-        Outcome::Import(_) => Ok(&[]),
+        Outcome::Text(_) => Ok(&[]),
     }
 }
 

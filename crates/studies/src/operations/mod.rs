@@ -8,8 +8,8 @@
 //! The depths are computed here from the description, without the topology of the kernels. The operations are counted by running the
 //! kernels on a scalar that counts.
 
-use crate::row;
-use featherbench_bench::{Cell, Context, Finished, NoAnswer, Outcome, Quantity, Robot, Study};
+use crate::{Setup, row};
+use featherbench_bench::{Cell, Context, Finished, HarnessError, NoAnswer, NoSettings, Outcome, Quantity, Robot, Study};
 use featherbench_dynamics::{Crba, Ltdl, TreeSparse};
 use featherbench_results::{Relation, Row, Verdict};
 use featherbench_spatial::{Counted, Operations};
@@ -17,6 +17,11 @@ use serde_json::json;
 
 /// The operations study.
 pub struct OperationCounts;
+
+/// The study, if the suite asks for it.
+pub(crate) fn of_suite(setup: &Setup) -> Result<Option<Box<dyn Study>>, HarnessError> {
+    Ok(setup.suite.settings::<NoSettings>("operations")?.map(|_| Box::new(OperationCounts) as _))
+}
 
 /// A scalar that counts is a hundred times slower; larger robots are counted in the tests of `dynamics`.
 const MOST_DOFS: usize = 1100;
@@ -81,7 +86,7 @@ impl Study for OperationCounts {
         let mut rows = Vec::new();
         for (cell, outcome) in finished {
             match outcome {
-                Outcome::Import(_) => {}
+                Outcome::Text(_) => {}
                 Outcome::Values(values) => {
                     for ((&value, &expected), (metric, _)) in values.iter().zip(&expected).zip(COUNTS) {
                         let row = Row { metric: metric.into(), unit: "1".into(), reference: "theory".into(), ..row(cell, robot) };

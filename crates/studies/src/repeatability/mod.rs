@@ -7,8 +7,8 @@
 //! Recorded answers cannot be asked twice: their engine is asked when it is recorded.
 
 use crate::agreement::{self, QUANTITIES};
-use crate::{asked, row};
-use featherbench_bench::{Cell, Context, Engine, Finished, NoAnswer, Outcome, Quantity, Robot, Study, hash};
+use crate::{Setup, asked, row};
+use featherbench_bench::{Cell, Context, Engine, Finished, HarnessError, NoAnswer, NoSettings, Outcome, Quantity, Robot, Study, hash};
 use featherbench_model::Random;
 use featherbench_results::{EngineSource, Relation, Row, Verdict};
 use serde_json::json;
@@ -18,6 +18,12 @@ pub struct Repeatability {
     /// The draw depends on the seed, the engine, the quantity and this: the hash of the program. So another build asks about other cells,
     /// and a resumed run about the same.
     pub key: String,
+}
+
+/// The study, if the suite asks engines for answers: no answer counts without it, so it needs no table.
+pub(crate) fn of_suite(setup: &Setup) -> Result<Option<Box<dyn Study>>, HarnessError> {
+    let named = setup.suite.settings::<NoSettings>("repeatability")?.is_some();
+    Ok((named || setup.suite.engines.is_some()).then(|| Box::new(Repeatability { key: setup.program.to_owned() }) as _))
 }
 
 /// The number of failures after which no further robot is tried; the agreement study has rows for them.
@@ -184,7 +190,7 @@ impl Repeatability {
         let values = match outcome {
             Outcome::NoAnswer(NoAnswer::NotOffered(_)) => return None,
             Outcome::NoAnswer(NoAnswer::Failed(reason)) => return lost(reason),
-            Outcome::Import(_) => return lost("the outcome is a robot that was read"),
+            Outcome::Text(_) => return lost("the outcome is a text"),
             Outcome::Values(values) => values,
         };
         let engine = context.engine(&cell.engine)?;

@@ -4,17 +4,25 @@
 //! each: the smallest value over the seeds must not be below the range, and the largest must not be above it, each by more than [`SLACK`].
 //! So a deviation that its engine has corrected fails the gate, and so does one that has grown. Then the list must be corrected.
 
-use featherbench_bench::{Cell, Context, Finished, NoAnswer, Outcome, Reproduction, Robot, SEEDS, SLACK, Study};
+use crate::Setup;
+use featherbench_bench::{Cell, Context, Finished, HarnessError, NoAnswer, NoSettings, Outcome, Reproduction, Robot, SEEDS, SLACK, Study};
 use featherbench_results::{Relation, Row, Verdict};
 use serde_json::json;
+use std::sync::Arc;
 
 /// Evaluates the reproduction of a name at the seeds from zero up to a number.
-pub type Reproduce = Box<dyn Fn(&str, u64) -> Result<Vec<f64>, NoAnswer> + Send + Sync>;
+pub type Reproduce = Arc<dyn Fn(&str, u64) -> Result<Vec<f64>, NoAnswer> + Send + Sync>;
 
 /// The study of known deviations.
 pub struct Reproductions {
     /// Evaluates a reproduction.
     pub reproduce: Reproduce,
+}
+
+/// The study, if the suite asks for it.
+pub(crate) fn of_suite(setup: &Setup) -> Result<Option<Box<dyn Study>>, HarnessError> {
+    let settings = setup.suite.settings::<NoSettings>("reproductions")?;
+    Ok(settings.map(|_| Box::new(Reproductions { reproduce: Arc::clone(&setup.reproduce) }) as _))
 }
 
 impl Study for Reproductions {

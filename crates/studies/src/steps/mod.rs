@@ -13,9 +13,9 @@
 //! *explicit*, and begins with the true acceleration: its error is rounding. A shorter, *implicit* step has an error of first order. A row
 //! names the regime of its step, and an order is fitted over implicit steps alone.
 
-use crate::row;
+use crate::{Setup, row};
 use featherbench_bench::measure::{ForwardScale, scaled_error, worst};
-use featherbench_bench::{Cell, Context, Finished, NoAnswer, Outcome, Quantity, Robot, Stepper, Study};
+use featherbench_bench::{Cell, Context, Finished, HarnessError, NoAnswer, NoSettings, Outcome, Quantity, Robot, Stepper, Study};
 use featherbench_dynamics::{energy, forward_dynamics};
 use featherbench_model::Case;
 use featherbench_results::{Row, Verdict};
@@ -37,6 +37,11 @@ const CASES: [Case; 2] = [Case::Random, Case::Fast];
 
 /// The study of small steps.
 pub struct Steps;
+
+/// The study, if the suite asks for it.
+pub(crate) fn of_suite(setup: &Setup) -> Result<Option<Box<dyn Study>>, HarnessError> {
+    Ok(setup.suite.settings::<NoSettings>("steps")?.map(|_| Box::new(Steps) as _))
+}
 
 impl Study for Steps {
     fn name(&self) -> &'static str {

@@ -22,25 +22,46 @@ mod rows;
 mod samples;
 mod statistics;
 
-use featherbench_bench::{Cell, Context, Engine, Finished, NoAnswer, Outcome, Quantity, Robot, Study};
+use crate::Setup;
+use featherbench_bench::{Cell, Context, Engine, Finished, HarnessError, NoAnswer, Outcome, Quantity, Robot, Study};
 use featherbench_model::{Random, StateBatch};
 use featherbench_results::Row;
 use machine::{Machine, Pinned};
 use protocol::{Budget, Ready};
 use samples::Candidate;
+use serde::Deserialize;
 use serde_json::{Value, json};
 use std::time::Instant;
 
 /// The timing study.
 pub struct Timing {
+    /// The table of the suite.
+    pub settings: Settings,
+    /// Our own kernels to time on a robot; the first of a quantity is the reference.
+    pub kernels: Kernels,
+}
+
+/// The table `[timing]` of a suite.
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Settings {
     /// Distinct states in the stream.
     pub states: usize,
     /// Seconds for each candidate in each experiment.
     pub seconds: f64,
-    /// Our own kernels to time on a robot, as (quantity, method); the first of a quantity is the reference.
-    pub kernels: fn(&Robot) -> Vec<(Quantity, &'static str)>,
-    /// Names of the engines that are timed beside ours, by all their methods for the quantities of the kernels.
-    pub peers: Vec<String>,
+    /// The engines that are timed beside ours if they are installed, by all their methods for the quantities of our kernels: native
+    /// oracles, and oracles whose clock estimates.
+    #[serde(default)]
+    pub engines: Vec<String>,
+}
+
+/// The kernels that are timed on a robot, as (quantity, method).
+pub type Kernels = fn(&Robot) -> Vec<(Quantity, &'static str)>;
+
+/// The study, if the suite asks for it.
+pub(crate) fn of_suite(setup: &Setup) -> Result<Option<Box<dyn Study>>, HarnessError> {
+    let settings = setup.suite.settings::<Settings>("timing")?;
+    Ok(settings.map(|settings| Box::new(Timing { settings, kernels: setup.kernels }) as _))
 }
 
 /// Name of the side file with the raw samples in a run's folder.
@@ -77,6 +98,14 @@ impl Study for Timing {
         true
     }
 
+    fn measures_time(&self) -> bool {
+        true
+    }
+
+    fn engines(&self) -> &[String] {
+        &self.settings.engines
+    }
+
     fn is_common(&self, cell: &Cell) -> bool {
         cell.params["what"] == MACHINE
     }
@@ -103,8 +132,7 @@ impl Study for Timing {
                 let listed: Vec<Value> = timed.map(Candidate::to_params).collect();
                 for regime in REGIMES {
                     let states = if regime == "hot" { 1 } else { states };
-                    let params =
-                        json!({"what": EXPERIMENT, "cache": regime, "states": states, "seconds": self.seconds, "candidates": listed});
+                    let params = json!({"what": EXPERIMENT, "cache": regime, "states": states, "seconds": self.settings.seconds, "candidates": listed});
                     cells.push(self.cell(robot, featherbench, quantity, &usual.method, params));
                 }
             }
@@ -145,7 +173,7 @@ impl Study for Timing {
             let mut random = Random::named(context.seed, &cell.id());
             let start = Instant::now();
             let clock = || start.elapsed();
-            Ok(protocol::experiment(&prepare, candidates.len(), count, Budget::of(self.seconds), &clock, &mut random).to_values())
+            Ok(protocol::experiment(&prepare, candidates.len(), count, Budget::of(self.settings.seconds), &clock, &mut random).to_values())
         };
         answer().into()
     }
@@ -193,8 +221,8 @@ impl Timing {
             }
         }
         for (quantity, candidates) in &mut experiments {
-            for peer in self.peers.iter().filter_map(|name| context.engine(name)) {
-                candidates.extend(peer.timed(*quantity).iter().map(|method| candidate(peer, method, false)));
+            for engine in self.settings.engines.iter().filter_map(|name| context.engine(name)) {
+                candidates.extend(engine.timed(*quantity).iter().map(|method| candidate(engine, method, false)));
             }
         }
         experiments
@@ -209,6 +237,6 @@ impl Timing {
             Quantity::ForwardDynamics => robot.model.topology.stored() / 10,
             _ => 1,
         };
-        self.states.min(1 + MOST_NUMBERS / numbers.max(1)).min(1 + MOST_ENTRIES / entries.max(1))
+        self.settings.states.min(1 + MOST_NUMBERS / numbers.max(1)).min(1 + MOST_ENTRIES / entries.max(1))
     }
 }

@@ -1,14 +1,15 @@
 //! What the tests of the studies share: an engine with planted errors, and a whole agreement run in memory.
 
 use featherbench_bench::run::{Silent, compare, evaluate, plan};
-use featherbench_bench::{Context, Engine, Evaluation, Gates, Identity, NoAnswer, OutcomeStore, Quantity, Robot, Study, Suite, accounted};
+use featherbench_bench::{Context, Counts, Engine, Evaluation, Gates, Identity, NoAnswer, OutcomeStore, Quantity, Robot, Study, Suite};
 use featherbench_engines::Featherbench;
 use featherbench_model::generate::Family;
 use featherbench_model::{Description, Model, StateBatch};
-use featherbench_results::{EngineSource, Expectation, ModelOrigin, Row, Verdict};
+use featherbench_results::{EngineSource, Expectation, ModelOrigin, Row, RunInfo, Verdict};
 use featherbench_studies::Agreement;
 use std::collections::BTreeMap;
 use std::ops::Range;
+use std::path::Path;
 use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
@@ -222,21 +223,32 @@ pub fn beside_native(robot: &Robot, gates: &Gates, double: Double) -> Vec<Row> {
     agreement(robot, gates, &[Box::new(Featherbench::new()), Box::new(double)])
 }
 
-/// A suite that asks the double beside our own kernels. It expects the number of given rows that pass or have a known deviation.
-pub fn suite(expected: &[Row]) -> Suite {
-    let mut expect: BTreeMap<(&str, &str), usize> = BTreeMap::new();
-    for row in expected.iter().filter(|row| accounted(row)) {
-        *expect.entry((&row.engine, &row.quantity)).or_default() += 1;
+/// A suite that asks the double beside our own kernels, with the counts of given rows.
+pub struct Expected {
+    /// The suite.
+    pub suite: Suite,
+    counts: Counts,
+}
+
+impl Expected {
+    /// The conditions of a run of it with these rows.
+    pub fn conditions(&self, gates: &Gates, rows: &[Row], complete: bool) -> Vec<Expectation> {
+        let mut conditions = gates.conditions(&self.suite, rows, complete);
+        if complete {
+            let info = RunInfo { suite: "one".into(), studies: vec!["agreement".into()], ..RunInfo::default() };
+            conditions.extend(self.counts.conditions(&info, self.suite.engines(), rows));
+        }
+        conditions
     }
-    let mut text = format!("about = \"one robot\"\nseed = {SEED}\nthorough = true\nrobot = []\n");
-    text += &format!("[agreement]\nstates = {STATES}\nengines = [\"double\"]\n[expect]\n");
-    for ((engine, quantity), count) in expect {
-        text += &format!("{engine}.{quantity} = {count}\n");
-    }
-    let folder = tempfile::tempdir().unwrap();
-    let path = folder.path().join("suite.toml");
-    std::fs::write(&path, text).unwrap();
-    Suite::read(&path).unwrap().0
+}
+
+/// A suite that asks the double beside our own kernels. It expects as many cells and rows as the given rows have.
+pub fn suite(expected: &[Row]) -> Expected {
+    let text = format!(
+        "about = \"one robot\"\nseed = {SEED}\nthorough = true\nrobot = []\nstates = {STATES}\nengines = [\"double\"]\n[agreement]\n"
+    );
+    let suite = Suite::parse(&text, Path::new("suite.toml")).unwrap();
+    Expected { counts: Counts::of("one", suite.engines(), expected), suite }
 }
 
 /// The beginning of the conditions on the sharpness of computed bounds.
