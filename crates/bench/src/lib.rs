@@ -5,7 +5,7 @@
 //!
 //! # The walk of a state
 //! ```text
-//! seed, name of the robot      StateBatch::agreement          model      counter-based: the same bits everywhere
+//! seed, name of the robot      StateBatch::agreement          robots     counter-based: the same bits everywhere
 //!   → q, v, a, τ, wrenches     Robot::states                  bench      neutral coordinates
 //!   → numbers of the engine    Engine::prepare                engines    one named conversion per engine, tested against it
 //!   → values                   Evaluation::run, read          engines    one size of Quantity per state

@@ -12,7 +12,8 @@
 //! | crate | purpose | add here |
 //! |---|---|---|
 //! | `featherbench_spatial` | 6-D spatial algebra over any scalar, and the scalars | a scalar |
-//! | `featherbench_model` | what a robot is: joints, topology, parameters; generated robots and random states | a joint, a family of robots |
+//! | `featherbench_model` | what a robot is: joints, topology, parameters, configuration space | a joint |
+//! | `featherbench_robots` | generated robots, random states, the random generator | a family of robots |
 //! | `featherbench_formats` | how a robot is written: neutral JSON, URDF, MJCF | a format |
 //! | `featherbench_dynamics` | what a robot does: one file per algorithm | an algorithm |
 //! | `featherbench_reference` | slow truth that shares no text with `dynamics` | a witness |

@@ -100,7 +100,9 @@ fn merged(on_parent: &Transform<DoubleDouble>, placement: &Transform<DoubleDoubl
 
 impl JointDescription {
     /// Makes a unit vector of the axis and a rotation of the placement's matrix, each rounded once.
-    pub(crate) fn normalise(&mut self) {
+    ///
+    /// Numbers that validation refuses (an axis of length zero, a matrix far from a rotation) give no meaningful result.
+    pub fn normalise(&mut self) {
         if let Some(axis) = self.kind.axis_mut() {
             *axis = unit(*axis).rounded;
         }

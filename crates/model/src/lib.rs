@@ -1,4 +1,4 @@
-//! What a robot is: its description, its compiled model, its states, and generators of robots.
+//! What a robot is: its description and its compiled model.
 //!
 //! A [`Description`] is what users write: named bodies and joints of every kind, as plain numbers. [`Model::build`] compiles it:
 //! - fixed joints are merged;
@@ -11,19 +11,14 @@
 
 mod canonical;
 mod description;
-pub mod generate;
 mod joint;
 mod model;
 mod orthonormal;
-mod random;
-mod state;
 mod topology;
 mod validate;
 
 pub use description::{BodyDescription, Description, Frame, JointDescription, JointType, Placement, Provenance};
 pub use joint::JointKind;
 pub use model::Model;
-pub use random::Random;
-pub use state::{BadState, Case, StateBatch};
 pub use topology::{Joint, Topology};
 pub use validate::{Malformed, Warning};

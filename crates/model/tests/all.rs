@@ -1,7 +1,6 @@
 //! The tests of models as one program: they share what is compiled for them.
 
 mod anything;
+mod arbitrary;
 mod descriptions;
-mod generators;
 mod normalisation;
-mod states;

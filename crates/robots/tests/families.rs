@@ -1,7 +1,7 @@
 //! Generated robots: counts against closed forms, canonical, repeatable, physical.
 
-use featherbench_model::generate::{BadFamily, Base, Family, Joints, Kind, Shape};
 use featherbench_model::{Description, JointType, Model};
+use featherbench_robots::{BadFamily, Base, Family, Joints, Kind, Shape};
 
 fn generate(spec: &str) -> Description {
     Family::parse(spec).and_then(|family| family.generate()).unwrap_or_else(|error| panic!("{spec}: {error}"))

@@ -1,7 +1,7 @@
 //! A quadruped designed for this project, about 24 kg: a free trunk with six dofs and four legs of three.
 
 use super::parts::{GRAVITY, Part, X, Y, free_box, limb};
-use crate::Description;
+use featherbench_model::Description;
 
 /// The 18-dof quadruped; x forward, y left, z up.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]

@@ -3,7 +3,8 @@
 use super::parameters::{Parameters, words};
 use super::parts::{ARMATURE, COMMON, MOVABLE, random_body, random_kind};
 use super::{BadFamily, Base};
-use crate::{BodyDescription, Description, JointType, Random};
+use crate::Random;
+use featherbench_model::{BodyDescription, Description, JointType};
 use std::fmt;
 
 /// The joint that a [`Joints`] robot shows.

@@ -1,6 +1,7 @@
 //! States: configurations, velocities, accelerations, forces and wrenches, many at a time.
 
-use crate::{Joint, JointKind, Model, Random};
+use crate::Random;
+use featherbench_model::{Joint, JointKind, Model};
 use thiserror::Error;
 
 /// The kind of a state.

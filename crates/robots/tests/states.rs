@@ -1,7 +1,10 @@
 //! Batches of states: every case present, reproducible, within its ranges.
 
-use featherbench_model::generate::Family;
-use featherbench_model::{BadState, Case, Model, StateBatch};
+use crate::arbitrary::any_description;
+use featherbench_model::Model;
+use featherbench_robots::{BadState, Case, Family, StateBatch};
+use proptest::prelude::*;
+use proptest::test_runner::RngSeed;
 
 fn model(spec: &str) -> Model<f64> {
     let robot = Family::parse(spec).and_then(|family| family.generate()).unwrap_or_else(|error| panic!("{spec}: {error}"));
@@ -111,4 +114,17 @@ fn batches_that_do_not_belong_to_a_model_are_refused() {
     long.q[3..7].iter_mut().for_each(|x| *x *= 2.0);
     let refusal = long.check(&model).unwrap_err();
     assert!(matches!(refusal, BadState::NonUnitQuaternion { state: 0, index: 3, .. }), "{refusal}");
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 4096, failure_persistence: None, rng_seed: RngSeed::Fixed(1), ..ProptestConfig::default() })]
+
+    /// Whatever is compiled has states: their numbers are finite.
+    #[test]
+    fn every_model_has_finite_states(robot in any_description()) {
+        if let Ok(model) = Model::<f64>::build(&robot) {
+            let states = StateBatch::agreement(&model, 10, 1);
+            prop_assert!(states.q.iter().chain(&states.v).all(|x| x.is_finite()));
+        }
+    }
 }

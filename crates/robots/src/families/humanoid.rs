@@ -4,7 +4,7 @@
 use super::BadFamily;
 use super::parameters::{Parameters, require};
 use super::parts::{GRAVITY, Part, X, Y, Z, free_box, limb};
-use crate::Description;
+use featherbench_model::Description;
 use std::fmt;
 
 /// The 36-dof humanoid; x forward, y left, z up.

@@ -3,7 +3,7 @@
 use super::parameters::{MOST_LINKS, Parameters, require, words};
 use super::parts::{DYADIC_GRAVITY, LINK, X, Y, Z, dyadic_link};
 use super::{BadFamily, Base};
-use crate::{Description, JointType};
+use featherbench_model::{Description, JointType};
 use std::fmt;
 
 /// The axes of a chain. (A *straight* chain is a state, q = 0, of either.)

@@ -3,7 +3,8 @@
 use super::parameters::{MOST_LINKS, Parameters, require, words};
 use super::parts::{COMMON, MOVABLE, random_body, random_kind};
 use super::{BadFamily, Base};
-use crate::{Description, JointType, Random};
+use crate::Random;
+use featherbench_model::{Description, JointType};
 use std::fmt;
 
 /// Which joints a random tree has.

@@ -3,7 +3,7 @@
 use super::BadFamily;
 use super::parameters::{MOST_LINKS, Parameters, require};
 use super::parts::{DYADIC_GRAVITY, X, Y, Z, dyadic_link};
-use crate::{Description, JointType};
+use featherbench_model::{Description, JointType};
 use std::fmt;
 
 /// `n` revolute dyadic links on the world, side by side along y, axes x, y, z cycling.

@@ -3,7 +3,7 @@
 use super::BadFamily;
 use super::parameters::{Parameters, require};
 use super::parts::{DYADIC_GRAVITY, LINK, X, Y, Z, dyadic_link};
-use crate::{Description, JointType};
+use featherbench_model::{Description, JointType};
 use std::fmt;
 
 /// A balanced binary tree of `2^depth − 1` revolute links, axes x, y, z cycling with the level.

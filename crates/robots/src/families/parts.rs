@@ -1,6 +1,7 @@
 //! The parts of the families: links, boxes, random bodies.
 
-use crate::{BodyDescription, JointDescription, JointType, Placement, Random};
+use crate::Random;
+use featherbench_model::{BodyDescription, JointDescription, JointType, Placement};
 
 pub(super) const X: [f64; 3] = [1.0, 0.0, 0.0];
 pub(super) const Y: [f64; 3] = [0.0, 1.0, 0.0];

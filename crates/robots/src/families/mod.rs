@@ -7,10 +7,10 @@
 //! A text names a [`Family`]: `family` or `family:key=value,key=value`. Suites and the command line use such texts:
 //!
 //! ```
-//! use featherbench_model::generate::Family;
+//! use featherbench_robots::Family;
 //! let family = Family::parse("chain:n=20,layout=spatial")?;
 //! assert_eq!(family.generate()?.nv(), 20);
-//! # Ok::<(), featherbench_model::generate::BadFamily>(())
+//! # Ok::<(), featherbench_robots::BadFamily>(())
 //! ```
 
 mod binary_tree;
@@ -33,7 +33,7 @@ pub use quadruped::Quadruped;
 pub use star::Star;
 pub use tree::{Mix, Tree};
 
-use crate::Description;
+use featherbench_model::Description;
 use parameters::{Parameters, words};
 use std::fmt;
 use thiserror::Error;

@@ -1,7 +1,7 @@
 //! A floating hand designed for this project, about 1.1 kg: a free palm with six dofs, a thumb and four fingers of four.
 
 use super::parts::{GRAVITY, Part, X, Y, Z, free_box, limb};
-use crate::Description;
+use featherbench_model::Description;
 
 /// The 26-dof hand; z along the fingers, x out of the palm, y towards the thumb.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
