@@ -8,8 +8,8 @@ use featherbench_bench::{Counts, Gates, Identity, NoAnswer, NoSettings, Outcome,
 use featherbench_engines::{EngineRecording, Recording};
 use featherbench_formats::urdf::{Base, Options};
 use featherbench_formats::{OnLoss, mjcf, neutral, urdf};
-use featherbench_model::generate::{Chain, Family};
 use featherbench_results::{EngineSource, ModelOrigin, Relation, Row, RunInfo, Verdict};
+use featherbench_robots::{Chain, Family};
 use std::collections::BTreeMap;
 use std::path::Path;
 use std::sync::LazyLock;

@@ -1,8 +1,8 @@
 //! The trait [`Engine`]: anything that answers.
 
 use crate::{Import, Quantity, Robot, RobotFile, Stepper};
-use featherbench_model::StateBatch;
 use featherbench_results::EngineSource;
+use featherbench_robots::StateBatch;
 use std::collections::BTreeMap;
 use std::ops::Range;
 use std::time::{Duration, Instant};
@@ -39,7 +39,8 @@ pub enum NoAnswer {
 /// ```
 /// use featherbench_bench::measure::{Magnitudes, scaled_error};
 /// use featherbench_bench::{Identity, Evaluation, Robot, Quantity, NoAnswer, Engine};
-/// use featherbench_model::{JointType, StateBatch, generate::Family};
+/// use featherbench_model::JointType;
+/// use featherbench_robots::{Family, StateBatch};
 /// use featherbench_results::{EngineSource, ModelOrigin};
 /// use featherbench_spatial::{Mat3, Sym3, Vec3};
 ///

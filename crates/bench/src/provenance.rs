@@ -67,7 +67,7 @@ pub fn fingerprint(info: &RunInfo) -> BTreeMap<String, String> {
 
 /// A hash of the bits of sines and cosines from the mathematics library at fixed arguments.
 fn libm() -> String {
-    let mut random = featherbench_model::Random::named(0, "libm");
+    let mut random = featherbench_robots::Random::named(0, "libm");
     let bits = (0..1000).flat_map(|_| {
         let (s, c) = random.uniform(-10.0, 10.0).sin_cos();
         [s.to_bits(), c.to_bits()]

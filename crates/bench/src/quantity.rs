@@ -140,7 +140,7 @@ impl Quantity {
         match self {
             Self::Readback | Self::StoredEntries => count.min(1),
             Self::InverseDynamicsWrench | Self::BodyPlacement | Self::BodyVelocity | Self::BodyAcceleration | Self::BodyJacobian => {
-                count.min(featherbench_model::StateBatch::HEAD)
+                count.min(featherbench_robots::StateBatch::HEAD)
             }
             _ => count,
         }

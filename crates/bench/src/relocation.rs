@@ -1,6 +1,6 @@
 //! Changes the heap, so that later allocations get other addresses (memory layout randomization).
 
-use featherbench_model::Random;
+use featherbench_robots::Random;
 use std::hint::black_box;
 
 /// The blocks: how many are allocated, of which about half remain, and the smallest and largest size in bytes.

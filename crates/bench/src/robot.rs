@@ -2,8 +2,9 @@
 
 use crate::measure::Magnitudes;
 use crate::{Import, RobotFile};
-use featherbench_model::{BadState, Description, Malformed, Model, StateBatch, Warning};
+use featherbench_model::{Description, Malformed, Model, Warning};
 use featherbench_results::ModelOrigin;
+use featherbench_robots::{BadState, StateBatch};
 
 /// The most configurations of a file that become states; a recorded motion may have thousands.
 const KEYFRAMES: usize = 16;
@@ -134,7 +135,7 @@ impl Robot {
 
     /// Four fixed vectors for [`Quantity::MassMatrixProbe`](crate::Quantity::MassMatrixProbe), row after row, uniform in (−1, 1).
     pub fn probe(&self) -> Vec<f64> {
-        let mut random = featherbench_model::Random::named(0, "mass matrix probe");
+        let mut random = featherbench_robots::Random::named(0, "mass matrix probe");
         (0..4 * self.model.topology.nv()).map(|_| random.uniform(-1.0, 1.0)).collect()
     }
 

@@ -1,7 +1,7 @@
 //! The trait [`Stepper`]: an engine that integrates, and one step of a given length. Oracles offer it by the operations `step` and `fall`.
 
 use crate::{NoAnswer, Robot};
-use featherbench_model::StateBatch;
+use featherbench_robots::StateBatch;
 
 /// An engine whose acceleration is that of a step, and so depends on the step's length.
 pub trait Stepper {

@@ -7,9 +7,9 @@
 use featherbench_bench::measure::{ForwardScale, Magnitudes, ratio, scaled_error, worst};
 use featherbench_bench::{Quantity, Robot};
 use featherbench_dynamics::{Ltdl, Rnea, TreeSparse, bias_force, forward_dynamics, forward_kinematics, inverse_dynamics, mass_matrix};
-use featherbench_model::generate::Family;
-use featherbench_model::{Description, JointKind, JointType, Model, Random};
+use featherbench_model::{Description, JointKind, JointType, Model};
 use featherbench_results::ModelOrigin;
+use featherbench_robots::{Family, Random};
 use proptest::prelude::*;
 use proptest::test_runner::{RngSeed, TestRunner};
 use std::cell::Cell;

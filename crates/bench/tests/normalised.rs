@@ -4,10 +4,10 @@
 use featherbench_bench::measure::{Magnitudes, scaled_error};
 use featherbench_bench::{Quantity, Robot};
 use featherbench_dynamics::{Crba, Jacobian, Kinematics, Rnea, TreeSparse};
-use featherbench_model::generate::Family;
-use featherbench_model::{Description, JointType, Model, Random};
+use featherbench_model::{Description, JointType, Model};
 use featherbench_reference::{Mp, Precision, Robot as Witness};
 use featherbench_results::ModelOrigin;
+use featherbench_robots::{Family, Random};
 use featherbench_spatial::{DoubleDouble, Lift};
 use std::path::Path;
 

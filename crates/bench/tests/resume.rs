@@ -6,9 +6,8 @@ use featherbench_bench::run::{Progress, Silent, compare, evaluate, plan};
 use featherbench_bench::{
     Cell, Context, Finished, Gates, HarnessError, Lost, NoAnswer, OUTCOMES_NAME, Outcome, OutcomeStore, Robot, Study,
 };
-use featherbench_model::Random;
-use featherbench_model::generate::Family;
 use featherbench_results::{ModelOrigin, Row, Verdict};
+use featherbench_robots::{Family, Random};
 use rayon::ThreadPoolBuilder;
 use std::collections::{BTreeMap, BTreeSet};
 use std::panic::{AssertUnwindSafe, catch_unwind};

@@ -3,10 +3,9 @@
 use featherbench_bench::measure::worst;
 use featherbench_bench::truth::{TruthModel, conditioning_bound};
 use featherbench_bench::{Robot, hash};
-use featherbench_model::generate::Family;
-use featherbench_model::{Random, StateBatch};
 use featherbench_reference::{Precision, Robot as Witness, nearest_doubles};
 use featherbench_results::ModelOrigin;
+use featherbench_robots::{Family, Random, StateBatch};
 
 fn robot(spec: &str, states: usize) -> Robot {
     let family = Family::parse(spec).unwrap();

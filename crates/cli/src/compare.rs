@@ -18,7 +18,7 @@ use featherbench_studies::{Agreement, Import};
 use std::time::{Duration, Instant, SystemTime};
 
 /// States per robot, besides the keyframes of its file: one of each case.
-const STATES: usize = featherbench_model::StateBatch::HEAD;
+const STATES: usize = featherbench_robots::StateBatch::HEAD;
 /// The name in the place of a suite's.
 const NAME: &str = "compare";
 /// Seed of the states.

@@ -8,7 +8,7 @@ use featherbench_bench::FileFormat;
 use featherbench_formats::OnLoss;
 use featherbench_formats::urdf::{Base, Options};
 use featherbench_model::Description;
-use featherbench_model::generate::Family;
+use featherbench_robots::Family;
 use std::path::Path;
 
 /// Generates or imports a robot and writes it.

@@ -9,7 +9,7 @@ use crate::robots;
 use crate::root::Root;
 use featherbench_bench::{Context, Engine, Gates};
 use featherbench_engines::{Featherbench, Limits};
-use featherbench_model::generate::Family;
+use featherbench_robots::Family;
 use featherbench_studies::{Kernels, Setup};
 use std::io::Write;
 

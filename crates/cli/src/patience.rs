@@ -2,7 +2,7 @@
 //! other engines go on.
 
 use featherbench_bench::{Engine, Evaluation, FileFormat, Identity, Import, NoAnswer, Quantity, Robot, RobotFile};
-use featherbench_model::StateBatch;
+use featherbench_robots::StateBatch;
 use std::collections::BTreeMap;
 use std::ops::Range;
 use std::path::PathBuf;

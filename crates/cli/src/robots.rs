@@ -9,8 +9,8 @@ use featherbench_bench::{
 };
 use featherbench_engines::{Limits, Oracle};
 use featherbench_formats::urdf::{Base, Inertial, LinkInFile, Note, Options};
-use featherbench_model::generate::Family;
-use featherbench_model::{Description, StateBatch, Warning};
+use featherbench_model::{Description, Warning};
+use featherbench_robots::{Family, StateBatch};
 use std::path::{Path, PathBuf};
 
 /// A suite with its file's hash and its robots.

@@ -3,7 +3,7 @@
 use crate::support;
 
 use featherbench_formats::neutral;
-use featherbench_model::generate::Family;
+use featherbench_robots::Family;
 use std::path::Path;
 use support::project;
 

@@ -7,7 +7,7 @@
 #[allow(dead_code, reason = "the fuzzer's own entry points")]
 mod fuzz;
 
-use featherbench_model::Random;
+use featherbench_robots::Random;
 use std::path::Path;
 
 /// Inputs for each target.
@@ -80,6 +80,6 @@ fn seeds_are_good() {
     featherbench_results::RunInfo::parse(std::str::from_utf8(&fuzz::run_info_seed()).unwrap(), Path::new("run"))
         .unwrap_or_else(|error| panic!("{error}"));
     for k in 0..8 {
-        assert!(featherbench_model::generate::Family::parse(&read(&format!("family/{k}"))).is_ok(), "family {k}");
+        assert!(featherbench_robots::Family::parse(&read(&format!("family/{k}"))).is_ok(), "family {k}");
     }
 }

@@ -35,7 +35,7 @@ fn a_killed_run_resumes_to_the_same_bytes_and_repeats_nothing() {
     let cells = finished(&sandbox.path("whole")).len();
     assert!(expected.len() > 500 && cells > 100, "{} rows of {cells} cells", expected.len());
 
-    let mut random = featherbench_model::Random::new(u64::from(std::process::id()), 0);
+    let mut random = featherbench_robots::Random::new(u64::from(std::process::id()), 0);
     let mut interrupted = 0;
     for attempt in 0..6 {
         let name = format!("killed-{attempt}");

@@ -7,7 +7,8 @@ use crate::common;
 
 use common::{ROBOTS, build, dyadic_chain, larger, largest, lifted, within};
 use featherbench_dynamics::{bias_force, forward_dynamics, forward_kinematics, inverse_dynamics, jacobian, mass_matrix};
-use featherbench_model::{Model, StateBatch};
+use featherbench_model::Model;
+use featherbench_robots::StateBatch;
 use featherbench_spatial::{DoubleDouble, Lift, Real};
 
 const PLANAR: [[f64; 3]; 1] = [[0.0, 1.0, 0.0]];

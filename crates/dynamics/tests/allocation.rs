@@ -6,7 +6,7 @@ mod common;
 
 use common::{ROBOTS, build, wrenches};
 use featherbench_dynamics::{Aba, Bias, CenterOfMass, Crba, Energy, Jacobian, Kinematics, Ltdl, Momentum, Refined, Rnea, TreeSparse};
-use featherbench_model::StateBatch;
+use featherbench_robots::StateBatch;
 use featherbench_spatial::{Compensated, DoubleDouble};
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::Cell;

@@ -7,7 +7,8 @@ use featherbench_dynamics::{
     Rnea, bias_force, center_of_mass, centroidal_momentum, energy, forward_dynamics, forward_kinematics, inverse_dynamics, jacobian,
     mass_matrix,
 };
-use featherbench_model::{Model, StateBatch};
+use featherbench_model::Model;
+use featherbench_robots::StateBatch;
 use featherbench_spatial::{Dual, Force, Motion, Vec3};
 
 fn each_state(mut check: impl FnMut(&str, &Model<f64>, &[f64], &[f64], &[f64], &[f64])) {

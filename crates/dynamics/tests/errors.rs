@@ -7,7 +7,8 @@ use featherbench_dynamics::{
     Aba, Bias, CenterOfMass, Crba, DimensionError, Energy, Error, Jacobian, Kinematics, Ltdl, Momentum, NotPositiveDefinite, Refined, Rnea,
     TreeSparse, forward_dynamics, inverse_dynamics, mass_matrix,
 };
-use featherbench_model::{BodyDescription, Case, Description, JointDescription, JointKind, JointType, Model, StateBatch};
+use featherbench_model::{BodyDescription, Description, JointDescription, JointKind, JointType, Model};
+use featherbench_robots::{Case, StateBatch};
 use featherbench_spatial::{Compensated, Force, RigidBodyInertia, Sym3, Vec3};
 
 /// What an error names, and what it counted.

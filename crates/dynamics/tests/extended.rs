@@ -4,7 +4,7 @@ use crate::common;
 
 use common::{ROBOTS, build, lifted, within};
 use featherbench_dynamics::inverse_dynamics;
-use featherbench_model::StateBatch;
+use featherbench_robots::StateBatch;
 use featherbench_spatial::{Compensated, DoubleDouble, Dual, Lift, Real};
 
 fn dd(x: f64) -> DoubleDouble {

@@ -7,7 +7,8 @@ use featherbench_dynamics::{
     Aba, Bias, Crba, Energy, Jacobian, Kinematics, Ltdl, Momentum, Rnea, TreeSparse, bias_force, center_of_mass, centroidal_momentum,
     energy, forward_dynamics, forward_kinematics, inverse_dynamics, jacobian, mass_matrix,
 };
-use featherbench_model::{Model, StateBatch};
+use featherbench_model::Model;
+use featherbench_robots::StateBatch;
 use featherbench_spatial::{Force, Motion, Vec3};
 
 /// Each robot with ten states: zero, straight, fast, and random ones.

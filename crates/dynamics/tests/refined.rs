@@ -10,8 +10,8 @@ use common::{ROBOTS, build, distance, larger, largest, lifted, within, wrenches}
 use featherbench_dynamics::{
     Aba, Crba, Error, Ltdl, NotPositiveDefinite, Refined, Rnea, forward_dynamics, mass_matrix, refined_forward_dynamics,
 };
-use featherbench_model::generate::Family;
-use featherbench_model::{Description, Model, StateBatch};
+use featherbench_model::{Description, Model};
+use featherbench_robots::{Family, StateBatch};
 use featherbench_spatial::{Compensated, DoubleDouble, Force, Lift, Real};
 use std::f64::consts::PI;
 

@@ -4,7 +4,8 @@ use crate::common;
 
 use common::{dyadic_chain, lifted, topology, within};
 use featherbench_dynamics::{Aba, Bias, Ltdl, NotPositiveDefinite, Rnea, TreeSparse, mass_matrix};
-use featherbench_model::{JointKind, Model, Random, StateBatch, Topology};
+use featherbench_model::{JointKind, Model, Topology};
+use featherbench_robots::{Random, StateBatch};
 use featherbench_spatial::{Counted, Operations, Real};
 use nalgebra::DMatrix;
 

@@ -4,9 +4,8 @@
 
 use featherbench_bench::{Engine, Evaluation, Robot};
 use featherbench_engines::{Featherbench, timed};
-use featherbench_model::StateBatch;
-use featherbench_model::generate::Family;
 use featherbench_results::ModelOrigin;
+use featherbench_robots::{Family, StateBatch};
 use std::hint::black_box;
 
 /// One robot of each shape: an arm, a long chain, a tree of short branches, a floating base.

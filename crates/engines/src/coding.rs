@@ -92,7 +92,7 @@ fn distance(value: f64, base: f64) -> i64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use featherbench_model::Random;
+    use featherbench_robots::Random;
 
     #[test]
     fn every_bit_comes_back() {

@@ -7,7 +7,8 @@ use featherbench_bench::{DENSE_LIMIT, NoAnswer, Quantity, Robot, layout};
 use featherbench_dynamics::{
     Aba, Bias, CenterOfMass, Crba, Energy, Error, Jacobian, Kinematics, Ltdl, Momentum, Refined, Rnea, TreeSparse,
 };
-use featherbench_model::{Model, StateBatch};
+use featherbench_model::Model;
+use featherbench_robots::StateBatch;
 use featherbench_spatial::{DoubleDouble, Force};
 
 /// An algorithm over a batch of states.

@@ -3,8 +3,8 @@
 pub use crate::kernel::timed;
 use crate::kernel::{Kernel, kernel, methods};
 use featherbench_bench::{Engine, Evaluation, Identity, NoAnswer, Quantity, Robot};
-use featherbench_model::StateBatch;
 use featherbench_results::EngineSource;
+use featherbench_robots::StateBatch;
 use std::collections::BTreeMap;
 use std::hint::black_box;
 use std::ops::Range;

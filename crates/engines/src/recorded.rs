@@ -11,8 +11,9 @@
 
 use crate::coding::{delta, from_delta, from_plain, plain};
 use featherbench_bench::{Engine, Evaluation, Identity, NoAnswer, Outcome, Quantity, Robot};
-use featherbench_model::{StateBatch, Topology};
+use featherbench_model::Topology;
 use featherbench_results::EngineSource;
+use featherbench_robots::StateBatch;
 use serde_json::{Value, json};
 use std::collections::{BTreeMap, HashMap};
 use std::ops::Range;

@@ -2,7 +2,7 @@
 
 use featherbench_bench::Robot;
 use featherbench_bench::frame::Block;
-use featherbench_model::StateBatch;
+use featherbench_robots::StateBatch;
 use serde_json::{Value, json};
 
 /// The description of a robot in the form of the protocol.

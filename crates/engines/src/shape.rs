@@ -37,8 +37,8 @@ pub(crate) fn block<'a>(answer: &'a Frame, name: &str, due: &[usize]) -> Result<
 #[cfg(test)]
 mod tests {
     use super::*;
-    use featherbench_model::generate::Family;
     use featherbench_results::ModelOrigin;
+    use featherbench_robots::Family;
 
     /// A robot for which nv, bodies and stored are all different, and none is a number of the tables.
     fn robot() -> Robot {

@@ -6,8 +6,8 @@ use featherbench_engines::{
     EngineRecording, Featherbench, Recorded, Recording, RecordingError, Recordings, read_recordings, recording_name,
 };
 use featherbench_model::Description;
-use featherbench_model::generate::Family;
 use featherbench_results::{EngineSource, ModelOrigin};
+use featherbench_robots::Family;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 

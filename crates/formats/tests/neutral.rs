@@ -1,8 +1,8 @@
 //! The neutral file: exact round trips, and errors that name the place.
 
 use featherbench_formats::neutral::{self, NeutralProblem};
-use featherbench_model::generate::{Base, Family, Joints, Kind, Mix, Tree};
 use featherbench_model::{BodyDescription, Description, Frame, JointDescription, JointType, Malformed, Placement, Provenance};
+use featherbench_robots::{Base, Family, Joints, Kind, Mix, Tree};
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
 

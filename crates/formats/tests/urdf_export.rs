@@ -4,8 +4,8 @@ use crate::robots;
 
 use featherbench_formats::urdf::{self, Options};
 use featherbench_formats::{ExportError, Loss, OnLoss, Reason, neutral};
-use featherbench_model::generate::Family;
 use featherbench_model::{BodyDescription, Description, Frame, JointDescription, JointType, Placement};
+use featherbench_robots::Family;
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
 use std::path::Path;

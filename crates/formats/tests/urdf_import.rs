@@ -1,8 +1,8 @@
 //! URDF: what a good file becomes.
 
 use featherbench_formats::urdf::{self, Base, Options};
-use featherbench_model::generate::{Chain, Family, Layout};
 use featherbench_model::{Description, JointType, Model, Placement, Warning};
+use featherbench_robots::{Chain, Family, Layout};
 use featherbench_spatial::{Mat3, Sym3, Transform, Vec3};
 use std::fmt::Write;
 

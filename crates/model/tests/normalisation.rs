@@ -2,7 +2,7 @@
 
 use featherbench_model::{BodyDescription, Description, JointDescription, JointType, Model, Placement, Warning};
 use featherbench_spatial::{DoubleDouble, Mat3, Quaternion, Real, Transform, Vec3};
-use proptest::prelude::RngCore;
+use proptest::prelude::Rng;
 use proptest::test_runner::{RngAlgorithm, TestRng};
 
 /// Random numbers of a seed. The generator of `featherbench_robots` is not for models to use: that crate depends on this one.

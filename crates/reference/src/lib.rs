@@ -10,7 +10,7 @@
 //!
 //! ```
 //! use featherbench_reference::{Precision, Robot, nearest_doubles};
-//! use featherbench_model::generate::Family;
+//! use featherbench_robots::Family;
 //!
 //! let description = Family::parse("chain:n=3,layout=spatial")?.generate()?;
 //! let robot = Robot::new(&description, Precision::STANDARD)?;

@@ -4,9 +4,9 @@
 
 use crate::support;
 
-use featherbench_model::Random;
 use featherbench_reference::{Precision, nearest_doubles};
 use featherbench_results::{CHECKSUMS_NAME, Checksums};
+use featherbench_robots::Random;
 use serde_json::Value;
 use support::CASES;
 use support::golden::{Answers, COLUMNS, DIGITS, SEED, folder, hash_of_doubles, hash_of_python, hash_of_rust, hash_of_state};

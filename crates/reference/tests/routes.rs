@@ -2,8 +2,9 @@
 
 use crate::support;
 
-use featherbench_model::{Description, JointType, Model, StateBatch};
+use featherbench_model::{Description, JointType, Model};
 use featherbench_reference::{Error, Factors, Mp, Precision, Robot, lagrange, maximal};
+use featherbench_robots::StateBatch;
 use support::{CASES, Case, Draw, close, describe, distance};
 
 /// How closely the methods must agree. At 448 bits they agree to about 1e-130 times the condition number of the problem.

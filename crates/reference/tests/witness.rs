@@ -4,8 +4,9 @@
 
 use crate::support;
 
-use featherbench_model::{Model, StateBatch};
+use featherbench_model::Model;
 use featherbench_reference::{Precision, Robot, nearest_doubles};
+use featherbench_robots::StateBatch;
 use std::io::Write;
 use support::oracle::{Oracle, python};
 use support::{State, describe};

@@ -6,9 +6,8 @@
 use featherbench_bench::run::{Silent, compare, evaluate, plan};
 use featherbench_bench::{Context, Engine, Evaluation, Gates, Identity, NoAnswer, OutcomeStore, Quantity, Robot};
 use featherbench_engines::Featherbench;
-use featherbench_model::StateBatch;
-use featherbench_model::generate::Family;
 use featherbench_results::{ModelOrigin, Row};
+use featherbench_robots::{Family, StateBatch};
 use featherbench_studies::{Timing, TimingSettings};
 use std::ops::Range;
 use std::process::ExitCode;

@@ -2,7 +2,8 @@
 //! their size. The same notes beside other numbers name nothing.
 
 use featherbench_bench::{FileInertial, FileLink, ImportNote};
-use featherbench_model::{BodyDescription, Description, Frame, JointDescription, JointType, Placement, Random};
+use featherbench_model::{BodyDescription, Description, Frame, JointDescription, JointType, Placement};
+use featherbench_robots::Random;
 use featherbench_spatial::{Mat3, RigidBodyInertia, Sym3, Transform, Vec3};
 use featherbench_studies::import::{Cause, Comparison, Difference, Field, bound};
 

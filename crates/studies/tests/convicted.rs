@@ -8,8 +8,9 @@ use crate::support;
 
 use featherbench_bench::{Engine, Gates, Quantity, Range, RangeKey, Ranges, RangesMeter, Robot};
 use featherbench_engines::Featherbench;
-use featherbench_model::{Description, JointType, Model, StateBatch};
+use featherbench_model::{Description, JointType, Model};
 use featherbench_results::{Expectation, Row, Verdict};
+use featherbench_robots::StateBatch;
 use std::collections::BTreeSet;
 use support::{Answer, Double, OVER_BEST, SHARPNESS, Twist, agreement, beside_native, doubles, gates, red, robot as robot_of, suite};
 

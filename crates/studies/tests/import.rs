@@ -7,8 +7,9 @@ use featherbench_bench::{
     Engine, Evaluation, FileBase, FileFormat, Identity, Import as Read, ImportNote, NoAnswer, Quantity, Robot, RobotFile,
 };
 use featherbench_engines::Featherbench;
-use featherbench_model::{Description, Model, StateBatch};
+use featherbench_model::{Description, Model};
 use featherbench_results::{EngineSource, Row, Verdict};
+use featherbench_robots::StateBatch;
 use featherbench_studies::Import;
 use serde_json::Value;
 use std::collections::BTreeMap;

@@ -3,7 +3,8 @@
 //! Four hundred differences, drawn by seed over ten committed robots, as an engine's parser might cause them.
 
 use featherbench_formats::neutral;
-use featherbench_model::{BodyDescription, Description, JointType, Placement, Random};
+use featherbench_model::{BodyDescription, Description, JointType, Placement};
+use featherbench_robots::Random;
 use featherbench_spatial::{Mat3, Sym3, Transform, Vec3};
 use featherbench_studies::import::{Cause, Comparison, Difference, Field, Weight};
 use std::path::Path;

@@ -2,8 +2,8 @@
 
 use featherbench_bench::{Engine, Evaluation, Identity, NoAnswer, Quantity, Robot, Stepper};
 use featherbench_dynamics::{energy, forward_dynamics};
-use featherbench_model::StateBatch;
 use featherbench_results::{EngineSource, Row, Verdict};
+use featherbench_robots::StateBatch;
 use featherbench_studies::Steps;
 use serde_json::Value;
 use std::collections::BTreeMap;

@@ -142,7 +142,7 @@ impl<'a> ForwardScale<'a> {
             let eigenvalues = scaled.symmetric_eigenvalues();
             return (eigenvalues.min(), eigenvalues.max());
         }
-        let mut random = featherbench_model::Random::named(0, "eigenvalues");
+        let mut random = featherbench_robots::Random::named(0, "eigenvalues");
         let start: Vec<f64> = (0..n).map(|_| random.uniform(-1.0, 1.0)).collect();
         let inverse = iterate(&start, |x| {
             let mut y: Vec<f64> = x.iter().zip(&root).map(|(x, r)| x * r).collect();

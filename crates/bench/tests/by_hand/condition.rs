@@ -2,8 +2,8 @@
 
 use featherbench_bench::Robot;
 use featherbench_bench::measure::ForwardScale;
-use featherbench_model::generate::Family;
 use featherbench_results::ModelOrigin;
+use featherbench_robots::Family;
 use nalgebra::DMatrix;
 
 /// The smallest and the largest eigenvalue of D^-½ M D^-½: as the product iterates or computes them, and the true ones.

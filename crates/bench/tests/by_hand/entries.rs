@@ -4,8 +4,8 @@ use super::close;
 use super::robots::{free_and_spherical, two_screws, two_slides};
 use featherbench_bench::measure::{Magnitudes, scaled_error};
 use featherbench_bench::{Quantity, Robot};
-use featherbench_model::generate::Family;
 use featherbench_results::ModelOrigin;
+use featherbench_robots::Family;
 
 /// The magnitude against which each entry of a quantity is measured.
 struct Expected {

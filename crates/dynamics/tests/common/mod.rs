@@ -2,7 +2,8 @@
 
 #![allow(dead_code, unused_imports, reason = "two test programs compile this module, each uses a part of it")]
 
-use featherbench_model::{BodyDescription, Description, JointDescription, JointKind, JointType, Model, Placement, Random, Topology};
+use featherbench_model::{BodyDescription, Description, JointDescription, JointKind, JointType, Model, Placement, Topology};
+use featherbench_robots::Random;
 use featherbench_spatial::{Dual, Force, Lift, Motion, Quaternion, Real, Sym3, Vec3};
 
 mod tolerance;

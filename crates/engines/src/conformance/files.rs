@@ -11,9 +11,9 @@ use super::{Standing, robots};
 use featherbench_bench::frame::Frame;
 use featherbench_bench::{FileBase, FileFormat, Import, Quantity, Robot};
 use featherbench_formats::{OnLoss, mjcf, urdf};
-use featherbench_model::generate::Family;
 use featherbench_model::{BodyDescription, Description, JointType, Placement};
 use featherbench_results::ModelOrigin;
+use featherbench_robots::Family;
 use serde_json::{Value, json};
 use std::path::Path;
 

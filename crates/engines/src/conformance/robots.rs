@@ -1,9 +1,9 @@
 //! The small robots of the conformance test: every kind of joint alone, in branched trees, on a fixed and on a free base.
 
 use featherbench_bench::Robot;
-use featherbench_model::generate::Family;
 use featherbench_model::{Description, JointType};
 use featherbench_results::ModelOrigin;
+use featherbench_robots::Family;
 
 /// What it tests, the generator's text, and how many of its bodies are kept.
 const ROBOTS: [(&str, &str, usize); 25] = [

@@ -5,7 +5,7 @@ use super::turn::Turn;
 use crate::Featherbench;
 use featherbench_bench::measure::{ForwardScale, Magnitudes, scaled_error, worst};
 use featherbench_bench::{Engine, Quantity, Robot};
-use featherbench_model::StateBatch;
+use featherbench_robots::StateBatch;
 
 /// The tolerance. Conformance tests the meaning of numbers; the agreement study tests their digits. Mistaken conventions give errors of
 /// 1e-3 and more, rounding gives 1e-15, and an inaccurate but right algorithm something between.

@@ -2,7 +2,7 @@
 
 use super::{Oracle, shaped};
 use featherbench_bench::{NoAnswer, Robot, Stepper};
-use featherbench_model::StateBatch;
+use featherbench_robots::StateBatch;
 use serde::Deserialize;
 use serde_json::{Value, json};
 

@@ -5,8 +5,8 @@ use featherbench_bench::{Engine, NoAnswer, Quantity, Robot};
 use featherbench_engines::Featherbench;
 use featherbench_engines::conformance::Line;
 use featherbench_formats::urdf::{self, Base, Options};
-use featherbench_model::StateBatch;
 use featherbench_results::ModelOrigin;
+use featherbench_robots::StateBatch;
 use serde_json::{Value, json};
 
 /// The changes of requests before the right oracle gets them, and of its answers before they are sent.
@@ -104,7 +104,7 @@ impl Kernels {
                     block.map(|block| block.data.clone()).ok_or_else(|| failed(format!("block {name} is missing or has another length")))
                 };
                 let batch = StateBatch {
-                    cases: vec![featherbench_model::Case::Random; count],
+                    cases: vec![featherbench_robots::Case::Random; count],
                     q: take("q", empty.nq)?,
                     v: take("v", empty.nv)?,
                     a: take("a", empty.nv)?,

@@ -2,7 +2,7 @@
 
 use super::script::{PATIENT, READING, Script, Trial, robot};
 use featherbench_bench::{Engine, FileBase, FileFormat, Import, NoAnswer, RobotFile};
-use featherbench_model::StateBatch;
+use featherbench_robots::StateBatch;
 
 impl Trial {
     fn file(&self) -> RobotFile {

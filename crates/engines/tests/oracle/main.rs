@@ -10,7 +10,7 @@ mod steps;
 
 use featherbench_bench::{Engine, NoAnswer, Quantity};
 use featherbench_engines::{Limits, Oracle};
-use featherbench_model::StateBatch;
+use featherbench_robots::StateBatch;
 use script::{HELLO, PATIENT, READBACK, Script, TWO, Trial, lives, robot, stillborn};
 use std::time::Duration;
 

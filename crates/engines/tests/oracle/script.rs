@@ -2,8 +2,8 @@
 
 use featherbench_bench::{Engine, NoAnswer, Quantity, Robot};
 use featherbench_engines::{Clock, Limits, Oracle, SystemClock};
-use featherbench_model::generate::Family;
 use featherbench_results::ModelOrigin;
+use featherbench_robots::Family;
 use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 use std::process::Command;

@@ -8,9 +8,9 @@ pub mod oracle;
 #[path = "../../../dynamics/tests/common/tolerance.rs"]
 mod tolerance;
 
-use featherbench_model::generate::Family;
-use featherbench_model::{Description, Model, Random, StateBatch};
+use featherbench_model::{Description, Model};
 use featherbench_reference::Mp;
+use featherbench_robots::{Family, Random, StateBatch};
 use std::path::PathBuf;
 
 /// How the states of a case are drawn.

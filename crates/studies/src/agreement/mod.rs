@@ -11,8 +11,9 @@ use featherbench_bench::{
     Cell, Context, DENSE_LIMIT, Engine, Finished, HarnessError, NoAnswer, NoSettings, Outcome, Quantity, Robot, Study,
 };
 use featherbench_dynamics::Rnea;
-use featherbench_model::{Case, Model};
+use featherbench_model::Model;
 use featherbench_results::{Row, Verdict};
+use featherbench_robots::Case;
 use over_best::over_best;
 use serde_json::json;
 

@@ -4,8 +4,9 @@ use super::comparison::shared_coordinates;
 use featherbench_bench::Robot;
 use featherbench_bench::measure::{Magnitudes, ratio, worst};
 use featherbench_dynamics::{Crba, Rnea, TreeSparse};
-use featherbench_model::{Description, JointKind, Malformed, Model, StateBatch};
+use featherbench_model::{Description, JointKind, Malformed, Model};
 use featherbench_results::ModelOrigin;
+use featherbench_robots::StateBatch;
 
 /// Inverse dynamics and mass matrix, state after state.
 #[derive(Clone, Debug, PartialEq)]

@@ -9,8 +9,8 @@
 use crate::agreement::{self, QUANTITIES};
 use crate::{Setup, asked, row};
 use featherbench_bench::{Cell, Context, Engine, Finished, HarnessError, NoAnswer, NoSettings, Outcome, Quantity, Robot, Study, hash};
-use featherbench_model::Random;
 use featherbench_results::{EngineSource, Relation, Row, Verdict};
+use featherbench_robots::Random;
 use serde_json::json;
 
 /// The repeatability study.

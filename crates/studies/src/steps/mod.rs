@@ -17,8 +17,8 @@ use crate::{Setup, row};
 use featherbench_bench::measure::{ForwardScale, scaled_error, worst};
 use featherbench_bench::{Cell, Context, Finished, HarnessError, NoAnswer, NoSettings, Outcome, Quantity, Robot, Stepper, Study};
 use featherbench_dynamics::{energy, forward_dynamics};
-use featherbench_model::Case;
 use featherbench_results::{Row, Verdict};
+use featherbench_robots::Case;
 use serde_json::json;
 use std::ops::RangeInclusive;
 

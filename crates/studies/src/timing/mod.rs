@@ -24,8 +24,8 @@ mod statistics;
 
 use crate::Setup;
 use featherbench_bench::{Cell, Context, Engine, Finished, HarnessError, NoAnswer, Outcome, Quantity, Robot, Study};
-use featherbench_model::{Random, StateBatch};
 use featherbench_results::Row;
+use featherbench_robots::{Random, StateBatch};
 use machine::{Machine, Pinned};
 use protocol::{Budget, Ready};
 use samples::Candidate;

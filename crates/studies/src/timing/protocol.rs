@@ -11,7 +11,7 @@
 
 use super::samples::Samples;
 use featherbench_bench::{Evaluation, NoAnswer, Relocation};
-use featherbench_model::Random;
+use featherbench_robots::Random;
 use std::collections::VecDeque;
 use std::time::Duration;
 

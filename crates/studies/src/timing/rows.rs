@@ -7,8 +7,8 @@ use super::{CHECK, EXPERIMENT, MACHINE, OVERHEAD, REFERENCE, check};
 use crate::{quantile, row};
 use featherbench_bench::measure::worst;
 use featherbench_bench::{Cell, Finished, Gates, NoAnswer, Outcome, Robot};
-use featherbench_model::Random;
 use featherbench_results::{Kind, Relation, Row, Verdict, canonical_json};
+use featherbench_robots::Random;
 use serde_json::{Value, json};
 
 /// An experiment whose A/A ratio is bad is not valid. If more than one in this number of a robot's A/A ratios is bad, none of its times is.

@@ -10,7 +10,7 @@
 
 use super::protocol::EPOCHS;
 use crate::quantile;
-use featherbench_model::Random;
+use featherbench_robots::Random;
 
 /// Fraction of the bootstrap's medians inside an interval that is reported.
 pub(super) const LEVEL: f64 = 0.95;

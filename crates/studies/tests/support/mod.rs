@@ -3,9 +3,9 @@
 use featherbench_bench::run::{Silent, compare, evaluate, plan};
 use featherbench_bench::{Context, Counts, Engine, Evaluation, Gates, Identity, NoAnswer, OutcomeStore, Quantity, Robot, Study, Suite};
 use featherbench_engines::Featherbench;
-use featherbench_model::generate::Family;
-use featherbench_model::{Description, Model, StateBatch};
+use featherbench_model::{Description, Model};
 use featherbench_results::{EngineSource, Expectation, ModelOrigin, Row, RunInfo, Verdict};
+use featherbench_robots::{Family, StateBatch};
 use featherbench_studies::Agreement;
 use std::collections::BTreeMap;
 use std::ops::Range;
