@@ -8,6 +8,7 @@ mod over_best;
 mod planted;
 mod planted_answers;
 mod planted_readings;
+mod registry;
 mod repeatability;
 mod reproductions;
 mod steps;
