@@ -65,7 +65,6 @@ pub use counts::{COUNTS_NAME, Count, Counts};
 pub use deviation::{Deviation, NotOffered, Reproduction, SEEDS, SLACK};
 pub use engine::{Engine, Evaluation, Identity, NoAnswer};
 pub use error::HarnessError;
-pub use featherbench_formats::frame;
 pub use gates::{Factor, Gate, Gates, Sharpness};
 pub use import::{FileBase, FileFormat, FileInertial, FileLink, Import, ImportNote, RobotFile, WATER};
 pub use means::{Known, Mean};

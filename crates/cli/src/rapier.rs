@@ -17,7 +17,7 @@ pub const NAME: &str = "rapier";
 /// Its package, and so its program.
 const PACKAGE: &str = "featherbench-rapier";
 /// The project's crates that it is compiled with: a test holds them to its lock file.
-const CRATES: [&str; 3] = ["formats", "model", "spatial"];
+const CRATES: [&str; 4] = ["formats", "model", "protocol", "spatial"];
 /// How it is compiled, beside its own manifest: what the crates' manifests inherit, and the compiler's flags.
 const SETTINGS: [&str; 2] = ["Cargo.toml", ".cargo/config.toml"];
 /// What is said where it is not built.

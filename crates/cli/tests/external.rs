@@ -181,7 +181,7 @@ fn the_conformance_test_ends_with_the_right_code() {
     let mute = sandbox.run(&["oracles", "check", "sh", "-c", "echo 'no licence' >&2; exit 3"]);
     mute.expect(1, &["it answers hello", "no licence", "does not conform"]);
     let chatty = sandbox.run(&["oracles", "check", "sh", "-c", "echo 'Welcome to Engine 3.1!'; cat > /dev/null"]);
-    chatty.expect(1, &["not in the protocol", "standard output carries frames only"]);
+    chatty.expect(1, &["not in the protocol", "standard output carries messages only"]);
     let deaf = sandbox.run(&["oracles", "check", "--timeout", "1", "sleep", "1000"]);
     deaf.expect(1, &["no answer within 1 s", "flush"]);
     let shy = sandbox.run(&["oracles", "check", "sh", "shy oracle.sh"]);

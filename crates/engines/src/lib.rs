@@ -8,21 +8,19 @@
 //! To add an engine, write such a program, in Rust too (`oracles/rapier`), or implement [`Engine`](featherbench_bench::Engine) in a new
 //! file here.
 
-mod clock;
 mod coding;
 pub mod conformance;
 mod kernel;
 mod oracle;
 mod own;
 pub mod peer;
-mod process;
 mod recorded;
 mod reproducer;
 mod request;
 mod shape;
 
-pub use clock::{Clock, SystemClock};
-pub use oracle::{Limits, Oracle};
+pub use featherbench_protocol::{Clock, Limits, SystemClock};
+pub use oracle::Oracle;
 pub use own::{Featherbench, timed};
 pub use recorded::{EngineRecording, Recorded, Recording, RecordingError, Recordings, read_recordings, recording_name};
 pub use reproducer::reproduce;

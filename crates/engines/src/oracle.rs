@@ -2,14 +2,11 @@
 
 pub(crate) mod steps;
 
-use crate::clock::{Clock, SystemClock};
-pub use crate::process::Limits;
-use crate::process::Process;
 use crate::{request, shape};
-use featherbench_bench::frame::{Block, Frame};
 use featherbench_bench::provenance::{PROGRAM, SOURCES};
 use featherbench_bench::{Engine, Evaluation, Identity, Import, ImportNote, NoAnswer, Quantity, Robot, RobotFile, Route, Stepper};
 use featherbench_model::{BodyDescription, Description};
+use featherbench_protocol::{Block, Clock, Limits, Message, Process, SystemClock, VERSION};
 use featherbench_results::EngineSource;
 use featherbench_robots::StateBatch;
 use serde_json::{Value, json};
@@ -19,9 +16,6 @@ use std::ops::Range;
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Duration;
 use steps::Steps;
-
-/// The version of the protocol that we use.
-pub(crate) const PROTOCOL: u64 = 1;
 
 /// An engine that runs in its own process.
 pub struct Oracle {
@@ -79,8 +73,8 @@ impl Oracle {
         let mut process = Process::start_by(&command, limits, Arc::clone(&clock))?;
         let hello = checked(process.ask(&Frame::new(json!({"op": "hello"}), Vec::new()))?).map_err(|refusal| refusal.to_string())?;
         let protocol = hello.header.get("protocol").and_then(Value::as_u64);
-        if protocol != Some(PROTOCOL) {
-            return Err(format!("the oracle speaks protocol {protocol:?}, this program {PROTOCOL}"));
+        if protocol != Some(VERSION) {
+            return Err(format!("the oracle speaks protocol {protocol:?}, this program {VERSION}"));
         }
         let build = hello.header.get("build").cloned().unwrap_or_else(|| json!({}));
         let methods = hello.header.get("methods").cloned().unwrap_or_else(|| json!({}));

@@ -1,9 +1,8 @@
 //! Reproductions of known deviations: modules of `oracles/featherbench_oracles/ENGINE/reproductions`, each run in a process of its own.
 
-use crate::oracle::{Limits, checked, shaped};
-use crate::process::Process;
+use crate::oracle::{checked, shaped};
 use featherbench_bench::NoAnswer;
-use featherbench_bench::frame::Frame;
+use featherbench_protocol::{Limits, Message, Process};
 use serde_json::json;
 use std::ffi::OsString;
 

@@ -1,12 +1,9 @@
-//! File formats of robots: the neutral description file ([`neutral`]), URDF ([`urdf`]) and, to write only, MJCF ([`mjcf`]);
-//! and of numbers about them ([`frame`]).
+//! File formats of robots: the neutral description file ([`neutral`]), URDF ([`urdf`]) and, to write only, MJCF ([`mjcf`]).
 //!
 //! Reading never panics, and repairs nothing without a note. An error is typed and names file, line and field. What was left out is a note.
 //! Sizes are limited; nothing recurses on the input.
-//! note. Sizes are limited, nothing recurses on the input.
 
 mod export;
-pub mod frame;
 pub mod mjcf;
 pub mod neutral;
 mod text;

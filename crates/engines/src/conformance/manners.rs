@@ -6,12 +6,10 @@ use super::{Standing, robots};
 use crate::oracle::steps::Steps;
 use crate::request::{description, states};
 use featherbench_bench::Quantity;
-use featherbench_bench::frame::{Block, Frame};
+use featherbench_protocol::{Block, Message, VERSION};
 use serde_json::{Value, json};
 use std::collections::BTreeMap;
 
-/// The version of the protocol that is tested.
-const PROTOCOL: u64 = crate::oracle::PROTOCOL;
 /// Quantities by method.
 pub(super) type Methods = BTreeMap<String, Vec<String>>;
 
@@ -20,8 +18,8 @@ pub(super) fn hello(talk: &mut Talk) -> Option<Steps> {
     let answer = talk.expect("it answers hello", json!({"op": "hello"}), Vec::new(), &["ok"])?;
     let mut wrong = Vec::new();
     let header = &answer.header;
-    if header.get("protocol").and_then(Value::as_u64) != Some(PROTOCOL) {
-        wrong.push(format!("`protocol` is {}, not {PROTOCOL}", header.get("protocol").unwrap_or(&Value::Null)));
+    if header.get("protocol").and_then(Value::as_u64) != Some(VERSION) {
+        wrong.push(format!("`protocol` is {}, not {VERSION}", header.get("protocol").unwrap_or(&Value::Null)));
     }
     for key in ["engine", "version"] {
         if answer.text(key).is_empty() {

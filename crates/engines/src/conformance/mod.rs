@@ -18,8 +18,8 @@ mod values;
 
 pub use talk::Line;
 
-use crate::process::{Limits, Process};
 use answers::Answers;
+use featherbench_protocol::{Limits, Process};
 use std::collections::BTreeMap;
 use std::ffi::OsString;
 use talk::Talk;

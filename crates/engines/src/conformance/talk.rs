@@ -1,10 +1,9 @@
 //! The messages to an oracle and its answers, and the findings about them.
 
 use super::{Conformance, Finding, Standing};
-use crate::process::Process;
 use crate::request;
 use featherbench_bench::Robot;
-use featherbench_bench::frame::{Block, Frame};
+use featherbench_protocol::{Block, Message, Process};
 use serde_json::{Value, json};
 
 /// A line to an oracle: a process, or what a test uses instead.
@@ -115,7 +114,7 @@ fn advice(reason: &str) -> &'static [&'static str] {
         &["standard output carries frames only: print everything else to standard error"]
     } else if reason.contains("no answer within") {
         &["answer every request at once and flush; read the blocks that its header announces, and no more"]
-    } else if reason.contains("died") {
+    } else if reason.contains("the oracle exited") {
         &["an oracle never ends because of a request: errors are answers"]
     } else {
         &[]

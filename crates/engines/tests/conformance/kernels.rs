@@ -193,7 +193,7 @@ impl Line for Kernels {
             Err(NoAnswer::Failed(reason)) => Frame::new(json!({"status": "error", "reason": reason}), Vec::new()),
         };
         (plant.answer)(&mut answer, request, self);
-        if answer.text("status") == "dead" { Err("the oracle died".into()) } else { Ok(answer) }
+        if answer.text("status") == "dead" { Err("the oracle exited".into()) } else { Ok(answer) }
     }
 
     fn close(self: Box<Self>) -> Result<(), String> {

@@ -378,7 +378,7 @@ fn ids_and_deaths() {
         }
     };
     let found = wrong(Plant { answer: dies, ..HONEST });
-    assert!(found.len() == 1 && found[0].contains("numbers that are none get an answer") && found[0].contains("died"), "{found:#?}");
+    assert!(found.len() == 1 && found[0].contains("numbers that are none get an answer") && found[0].contains("exited"), "{found:#?}");
 }
 
 /// The numbers of joints with several degrees of freedom in another order, in requests and answers.

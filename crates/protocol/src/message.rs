@@ -1,6 +1,6 @@
-//! Frames: a line of JSON, followed by the blocks of doubles that it announces.
+//! Messages: a line of JSON, followed by the blocks of doubles that it announces.
 //!
-//! Messages to oracles are frames. Recorded answers and the outcomes of a run are files of frames. `oracles/PROTOCOL.md` defines them.
+//! `oracles/PROTOCOL.md` defines them. The outcomes of a run are a file of such messages.
 
 use serde_json::{Map, Value, json};
 use std::io::{self, BufRead, Read, Write};
@@ -19,24 +19,24 @@ pub struct Block {
 
 /// A JSON object with blocks after it.
 #[derive(Clone, Debug, PartialEq, Default)]
-pub struct Frame {
+pub struct Message {
     /// The object, without its `blocks`.
     pub header: Map<String, Value>,
     /// The blocks, in order.
     pub blocks: Vec<Block>,
 }
 
-/// Why a frame could not be read.
+/// Why a message could not be read.
 #[derive(Debug, Error)]
-pub enum FrameError {
+pub enum MessageError {
     /// The stream failed.
     #[error("{0}")]
     Io(#[from] io::Error),
-    /// The stream ended inside a frame.
-    #[error("the stream ends in the middle of a frame")]
+    /// The stream ended inside a message.
+    #[error("the stream ends in the middle of a message")]
     Truncated,
     /// The header is not what the protocol says.
-    #[error("bad frame header: {0}")]
+    #[error("bad message header: {0}")]
     Header(String),
 }
 
@@ -51,8 +51,8 @@ impl Block {
     }
 }
 
-impl Frame {
-    /// A frame whose header is the given object.
+impl Message {
+    /// A message whose header is the given object.
     pub fn new(header: Value, blocks: Vec<Block>) -> Self {
         let header = if let Value::Object(header) = header { header } else { Map::new() };
         Self { header, blocks }
@@ -68,7 +68,7 @@ impl Frame {
         self.blocks.iter().find(|block| block.name == name)
     }
 
-    /// The frame as bytes.
+    /// The message as bytes.
     pub fn to_bytes(&self) -> Vec<u8> {
         let mut header = self.header.clone();
         if !self.blocks.is_empty() {
@@ -83,7 +83,7 @@ impl Frame {
         bytes
     }
 
-    /// Writes the frame.
+    /// Writes the message.
     ///
     /// # Errors
     /// When the stream does.
@@ -92,31 +92,32 @@ impl Frame {
         stream.flush()
     }
 
-    /// Reads one frame; `None` at the end of the stream.
+    /// Reads one message; `None` at the end of the stream.
     ///
-    /// [`FrameError`]. Memory is allocated only for data that arrives, whatever a wrong header announces.
-    pub fn read(stream: &mut impl BufRead) -> Result<Option<Self>, FrameError> {
+    /// # Errors
+    /// [`MessageError`]. Memory is allocated only for data that arrives, whatever a wrong header announces.
+    pub fn read(stream: &mut impl BufRead) -> Result<Option<Self>, MessageError> {
         let mut line = Vec::new();
         stream.by_ref().take(HEADER_LIMIT).read_until(b'\n', &mut line)?;
         if line.is_empty() {
             return Ok(None);
         }
         if line.pop() != Some(b'\n') {
-            return Err(FrameError::Truncated);
+            return Err(MessageError::Truncated);
         }
-        let mut header: Map<String, Value> = serde_json::from_slice(&line).map_err(|error| FrameError::Header(error.to_string()))?;
+        let mut header: Map<String, Value> = serde_json::from_slice(&line).map_err(|error| MessageError::Header(error.to_string()))?;
         let mut blocks = Vec::new();
         let mut total = 0_usize;
         for announced in header.remove("blocks").as_ref().and_then(Value::as_array).into_iter().flatten() {
             let (name, shape, length) = announced_block(announced)?;
             total = total.saturating_add(length);
             if total > BLOCK_LIMIT {
-                return Err(FrameError::Header(format!("block '{name}' is too long")));
+                return Err(MessageError::Header(format!("block '{name}' is too long")));
             }
             let mut bytes = Vec::new();
             stream.by_ref().take(8 * length as u64).read_to_end(&mut bytes)?;
             if bytes.len() != 8 * length {
-                return Err(FrameError::Truncated);
+                return Err(MessageError::Truncated);
             }
             let data = bytes.chunks_exact(8).map(|b| f64::from_le_bytes([b[0], b[1], b[2], b[3], b[4], b[5], b[6], b[7]])).collect();
             blocks.push(Block { name, shape, data });
@@ -125,8 +126,8 @@ impl Frame {
     }
 }
 
-fn announced_block(announced: &Value) -> Result<(String, Vec<usize>, usize), FrameError> {
-    let complaint = || FrameError::Header(format!("a block must be {{name, shape}}, not {announced}"));
+fn announced_block(announced: &Value) -> Result<(String, Vec<usize>, usize), MessageError> {
+    let complaint = || MessageError::Header(format!("a block must be {{name, shape}}, not {announced}"));
     let name = announced["name"].as_str().ok_or_else(complaint)?.to_owned();
     let extents = announced["shape"].as_array().ok_or_else(complaint)?;
     let shape: Vec<usize> =
@@ -144,14 +145,14 @@ mod tests {
     #[test]
     fn round_trip_keeps_every_bit() {
         let data = [0.1, -0.0, f64::MIN_POSITIVE / 3.0, f64::NAN, f64::INFINITY, 1e308];
-        let frame = Frame::new(json!({"op": "x", "π": 0.1}), vec![Block::new("a", &[2, 3], &data), Block::new("b", &[0], &[])]);
-        let bytes = frame.to_bytes();
-        let read = Frame::read(&mut bytes.as_slice()).unwrap().unwrap();
-        assert_eq!(read.header, frame.header);
-        let bits = |frame: &Frame| frame.blocks.iter().flat_map(|b| b.data.iter().map(|x| x.to_bits())).collect::<Vec<_>>();
-        assert_eq!(bits(&read), bits(&frame));
+        let message = Message::new(json!({"op": "x", "π": 0.1}), vec![Block::new("a", &[2, 3], &data), Block::new("b", &[0], &[])]);
+        let bytes = message.to_bytes();
+        let read = Message::read(&mut bytes.as_slice()).unwrap().unwrap();
+        assert_eq!(read.header, message.header);
+        let bits = |message: &Message| message.blocks.iter().flat_map(|b| b.data.iter().map(|x| x.to_bits())).collect::<Vec<_>>();
+        assert_eq!(bits(&read), bits(&message));
         for cut in 1..bytes.len() {
-            assert!(matches!(Frame::read(&mut &bytes[..cut]), Err(FrameError::Truncated)), "cut at {cut}");
+            assert!(matches!(Message::read(&mut &bytes[..cut]), Err(MessageError::Truncated)), "cut at {cut}");
         }
     }
 
@@ -159,10 +160,10 @@ mod tests {
     fn a_lying_header_is_refused_before_it_costs_memory() {
         for shape in ["[1e30]", "[-1]", "[18446744073709551615,8]", "[999999999999]", "\"x\""] {
             let line = format!("{{\"blocks\":[{{\"name\":\"a\",\"shape\":{shape}}}]}}\n");
-            assert!(matches!(Frame::read(&mut line.as_bytes()), Err(FrameError::Header(_))), "{shape}");
+            assert!(matches!(Message::read(&mut line.as_bytes()), Err(MessageError::Header(_))), "{shape}");
         }
         let short = b"{\"blocks\":[{\"name\":\"a\",\"shape\":[100000000]}]}\n12345678";
-        assert!(matches!(Frame::read(&mut short.as_slice()), Err(FrameError::Truncated)));
+        assert!(matches!(Message::read(&mut short.as_slice()), Err(MessageError::Truncated)));
     }
 
     proptest! {
@@ -170,7 +171,7 @@ mod tests {
 
         #[test]
         fn reading_anything_never_panics(bytes in prop::collection::vec(any::<u8>(), 0..200)) {
-            let _ = Frame::read(&mut bytes.as_slice());
+            let _ = Message::read(&mut bytes.as_slice());
         }
     }
 }

@@ -1,7 +1,7 @@
-//! A child process that exchanges frames, with limits of time and memory.
+//! A child process that exchanges messages, with limits of time and memory.
 
 use crate::clock::{Clock, SystemClock, wait};
-use featherbench_bench::frame::{Frame, FrameError};
+use crate::message::{Message, MessageError};
 use std::collections::VecDeque;
 use std::ffi::OsString;
 use std::io::{BufRead, BufReader, Read, Write};
@@ -40,14 +40,14 @@ const LEAVE: Duration = Duration::from_secs(10);
 const LOOK: Duration = Duration::from_millis(5);
 
 /// A running oracle. Dropping it ends the process.
-pub(crate) struct Process {
+pub struct Process {
     child: Child,
     /// To the thread that writes: so a process that does not read cannot block us.
     requests: Option<Sender<Vec<u8>>>,
-    answers: Receiver<Result<Option<Frame>, FrameError>>,
-    last_words: Arc<Mutex<VecDeque<String>>>,
+    answers: Receiver<Result<Option<Message>, MessageError>>,
+    last_lines: Arc<Mutex<VecDeque<String>>>,
     /// Closes when standard error closes.
-    silence: Receiver<()>,
+    errors_closed: Receiver<()>,
     limits: Limits,
     /// The clock that decides whether an answer is late.
     clock: Arc<dyn Clock>,
@@ -57,13 +57,19 @@ pub(crate) struct Process {
 }
 
 impl Process {
-    /// Starts a program.
-    pub(crate) fn start(command: &[OsString], limits: Limits) -> Result<Self, String> {
+    /// Starts a program: its path or name, and its arguments.
+    ///
+    /// # Errors
+    /// A sentence, when it does not start.
+    pub fn start(command: &[OsString], limits: Limits) -> Result<Self, String> {
         Self::start_by(command, limits, Arc::new(SystemClock::default()))
     }
 
     /// Starts a program; its limits are measured by this clock.
-    pub(crate) fn start_by(command: &[OsString], limits: Limits, clock: Arc<dyn Clock>) -> Result<Self, String> {
+    ///
+    /// # Errors
+    /// As of [`Process::start`].
+    pub fn start_by(command: &[OsString], limits: Limits, clock: Arc<dyn Clock>) -> Result<Self, String> {
         let (program, arguments) = command.split_first().ok_or("no program is named")?;
         // The shell sets the limit of address space and then executes the program.
         let mut child = Command::new("sh")
@@ -88,20 +94,24 @@ impl Process {
         thread::spawn(move || due.into_iter().try_for_each(|bytes| input.write_all(&bytes).and_then(|()| input.flush())));
         let (sender, answers) = sync_channel(1);
         thread::spawn(move || forward_answers(BufReader::new(output), &sender));
-        let last_words = Arc::new(Mutex::new(VecDeque::new()));
-        let kept = Arc::clone(&last_words);
-        let (talking, silence) = channel();
+        let last_lines = Arc::new(Mutex::new(VecDeque::new()));
+        let kept = Arc::clone(&last_lines);
+        let (open, closed) = channel();
         thread::spawn(move || {
-            keep_last_words(BufReader::new(errors), &kept);
-            drop(talking);
+            keep_last_lines(BufReader::new(errors), &kept);
+            drop(open);
         });
-        Ok(Self { child, requests: Some(requests), answers, last_words, silence, limits, clock, alive: true, asked: 0 })
+        Ok(Self { child, requests: Some(requests), answers, last_lines, errors_closed: closed, limits, clock, alive: true, asked: 0 })
     }
 
     /// Sends a request and waits for its answer.
     ///
     /// After an error the process is ended: a late answer must never be taken for the answer to a later question.
-    pub(crate) fn ask(&mut self, request: &Frame) -> Result<Frame, String> {
+    ///
+    /// # Errors
+    /// A sentence, when no answer comes in time, or one that is not in the protocol. If the process has exited, it says how, with the last
+    /// lines of its standard error.
+    pub fn ask(&mut self, request: &Message) -> Result<Message, String> {
         let result = self.try_ask(request);
         if result.is_err() {
             self.end();
@@ -109,7 +119,7 @@ impl Process {
         result
     }
 
-    fn try_ask(&mut self, request: &Frame) -> Result<Frame, String> {
+    fn try_ask(&mut self, request: &Message) -> Result<Message, String> {
         self.asked += 1;
         let mut request = request.clone();
         let id = request.header.entry("id").or_insert_with(|| self.asked.into()).clone();
@@ -125,11 +135,11 @@ impl Process {
             }
         };
         match answer {
-            Ok(Ok(Some(frame))) => match frame.header.get("id") {
+            Ok(Ok(Some(message))) => match message.header.get("id") {
                 Some(answered) if *answered != id => Err(format!("the oracle's answer is to request {answered}, not to {id}")),
-                _ => Ok(frame),
+                _ => Ok(message),
             },
-            Ok(Ok(None)) | Ok(Err(FrameError::Truncated)) | Err(RecvTimeoutError::Disconnected) => Err(self.obituary()),
+            Ok(Ok(None)) | Ok(Err(MessageError::Truncated)) | Err(RecvTimeoutError::Disconnected) => Err(self.exit_reason()),
             Ok(Err(error)) => Err(format!("the oracle's answer is not in the protocol: {error}")),
             Err(RecvTimeoutError::Timeout) => Err(format!("no answer within {} s", self.limits.answer.as_secs_f64())),
         }
@@ -139,7 +149,7 @@ impl Process {
     ///
     /// # Errors
     /// The reason, if it does not exit in time, exits with an error or sends something more.
-    pub(crate) fn close(mut self) -> Result<(), String> {
+    pub fn close(mut self) -> Result<(), String> {
         self.requests = None;
         match wait(&*self.clock, &self.answers, LEAVE) {
             Ok(Ok(None)) | Err(RecvTimeoutError::Disconnected) => {}
@@ -154,21 +164,21 @@ impl Process {
     }
 
     /// Whether the process may be asked again.
-    pub(crate) fn alive(&self) -> bool {
+    pub fn alive(&self) -> bool {
         self.alive
     }
 
-    fn obituary(&mut self) -> String {
+    fn exit_reason(&mut self) -> String {
         self.requests = None;
         let status = self.status();
         // Standard error closes when the process exits, unless a child of it keeps it open.
-        let _ = wait(&*self.clock, &self.silence, GRACE);
-        let words = self.last_words.lock().unwrap_or_else(PoisonError::into_inner);
-        let words: Vec<&str> = words.iter().map(String::as_str).collect();
+        let _ = wait(&*self.clock, &self.errors_closed, GRACE);
+        let lines = self.last_lines.lock().unwrap_or_else(PoisonError::into_inner);
+        let lines: Vec<&str> = lines.iter().map(String::as_str).collect();
         let limit = self.limits.memory >> 20;
         format!(
-            "the oracle died ({status}; memory limit {limit} MiB): {}",
-            if words.is_empty() { "no message".into() } else { words.join(" | ") }
+            "the oracle exited ({status}; memory limit {limit} MiB): {}",
+            if lines.is_empty() { "no message".into() } else { lines.join(" | ") }
         )
     }
 
@@ -203,17 +213,17 @@ impl Drop for Process {
     }
 }
 
-fn forward_answers(mut output: impl BufRead, answers: &SyncSender<Result<Option<Frame>, FrameError>>) {
+fn forward_answers(mut output: impl BufRead, answers: &SyncSender<Result<Option<Message>, MessageError>>) {
     loop {
-        let frame = Frame::read(&mut output);
-        let last = !matches!(frame, Ok(Some(_)));
-        if answers.send(frame).is_err() || last {
+        let message = Message::read(&mut output);
+        let last = !matches!(message, Ok(Some(_)));
+        if answers.send(message).is_err() || last {
             return;
         }
     }
 }
 
-fn keep_last_words(mut errors: impl BufRead, kept: &Mutex<VecDeque<String>>) {
+fn keep_last_lines(mut errors: impl BufRead, kept: &Mutex<VecDeque<String>>) {
     let mut line = Vec::new();
     // A line without an end must not fill the memory: it is kept in pieces.
     while errors.by_ref().take(500).read_until(b'\n', &mut line).is_ok_and(|length| length > 0) {
