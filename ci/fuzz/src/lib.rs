@@ -3,11 +3,11 @@
 //! A robot that is read must be written and read again alike. `ci/fuzz/run` gives the targets to libFuzzer. `crates/cli/tests/parsers.rs`
 //! compiles this file and gives them some thousand mutations of the seeds in every test run.
 
-use featherbench_bench::frame::Frame;
 use featherbench_bench::{Counts, Gates, Identity, NoAnswer, NoSettings, Outcome, Quantity, Robot, RobotEntry, Suite};
 use featherbench_engines::{EngineRecording, Recording};
 use featherbench_formats::urdf::{Base, Options};
 use featherbench_formats::{OnLoss, mjcf, neutral, urdf};
+use featherbench_protocol::Message;
 use featherbench_results::{EngineSource, ModelOrigin, Relation, Row, RunInfo, Verdict};
 use featherbench_robots::{Chain, Family};
 use std::collections::BTreeMap;
@@ -21,7 +21,7 @@ pub type Target = fn(&[u8]);
 pub const TARGETS: [(&str, Target); 9] = [
     ("urdf", urdf_file),
     ("neutral", neutral_file),
-    ("frame", frame),
+    ("message", message),
     ("recording", recording),
     ("family", family),
     ("suite", suite),
@@ -62,12 +62,12 @@ pub fn neutral_file(bytes: &[u8]) {
     let _ = (urdf::to_string(&robot, OnLoss::LeaveOut), mjcf::to_string(&robot, OnLoss::LeaveOut), neutral::to_line(&robot));
 }
 
-/// Frames of the oracle protocol, one after the other.
-pub fn frame(mut bytes: &[u8]) {
-    while let Ok(Some(frame)) = Frame::read(&mut bytes) {
-        let written = frame.to_bytes();
-        let again = Frame::read(&mut written.as_slice());
-        assert_eq!(again.ok().flatten().map(|frame| frame.to_bytes()), Some(written));
+/// Messages of the oracle protocol, one after the other.
+pub fn message(mut bytes: &[u8]) {
+    while let Ok(Some(message)) = Message::read(&mut bytes) {
+        let written = message.to_bytes();
+        let again = Message::read(&mut written.as_slice());
+        assert_eq!(again.ok().flatten().map(|message| message.to_bytes()), Some(written));
     }
 }
 

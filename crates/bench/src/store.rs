@@ -1,6 +1,6 @@
 //! The outcomes of a run on disk; a run resumes from them.
 
-use crate::frame::{Block, Frame, FrameError};
+use featherbench_protocol::{Block, Message, MessageError};
 use crate::{Cell, HarnessError, NoAnswer, Outcome};
 use serde_json::{Value, json};
 use std::collections::HashMap;
@@ -126,14 +126,14 @@ fn read<S: Read + Seek>(mut source: S, path: &Path) -> Result<(S, Whole), Harnes
     let (mut outcomes, mut good, mut frames) = (HashMap::new(), 0, 0);
     let what = loop {
         frames += 1;
-        match Frame::read(&mut reader) {
+        match Message::read(&mut reader) {
             Ok(None) => break None,
             Ok(Some(frame)) => match from_frame(frame) {
                 Ok((id, outcome)) => drop(outcomes.insert(id, outcome)),
                 Err(what) => break Some(what),
             },
-            Err(FrameError::Io(source)) => return Err(io(source)),
-            Err(error @ (FrameError::Truncated | FrameError::Header(_))) => break Some(error.to_string()),
+            Err(MessageError::Io(source)) => return Err(io(source)),
+            Err(error @ (MessageError::Truncated | MessageError::Header(_))) => break Some(error.to_string()),
         }
         good = reader.stream_position().map_err(io)?;
     };
@@ -141,7 +141,7 @@ fn read<S: Read + Seek>(mut source: S, path: &Path) -> Result<(S, Whole), Harnes
     Ok((reader.into_inner(), Whole { outcomes, good, lost }))
 }
 
-fn to_frame(id: &str, cell: &Cell, outcome: &Outcome) -> Frame {
+fn to_frame(id: &str, cell: &Cell, outcome: &Outcome) -> Message {
     let (status, reason, blocks) = match outcome {
         Outcome::Values(values) => ("ok", "", vec![Block::new("value", &[values.len()], values)]),
         Outcome::Text(_) => ("text", "", Vec::new()),
@@ -152,7 +152,7 @@ fn to_frame(id: &str, cell: &Cell, outcome: &Outcome) -> Frame {
     if let Outcome::Text(text) = outcome {
         header["text"] = text.as_str().into();
     }
-    let mut frame = Frame::new(header, blocks);
+    let mut frame = Message::new(header, blocks);
     frame.header.insert(CHECKSUM.into(), featherbench_results::checksum(&frame.to_bytes()).into());
     frame
 }
@@ -161,7 +161,7 @@ fn to_frame(id: &str, cell: &Cell, outcome: &Outcome) -> Frame {
 const CHECKSUM: &str = "blake3";
 
 /// The cell and its outcome, or what is wrong with the frame.
-fn from_frame(mut frame: Frame) -> Result<(String, Outcome), String> {
+fn from_frame(mut frame: Message) -> Result<(String, Outcome), String> {
     let Some(Value::String(due)) = frame.header.remove(CHECKSUM) else { return Err("it has no checksum".into()) };
     if featherbench_results::checksum(&frame.to_bytes()) != due {
         return Err("its checksum is another one: it is damaged".into());

@@ -1,11 +1,11 @@
 //! A run may be killed at any moment and byte. The resumed run repeats nothing that is finished, and ends in the same bytes as a run that
 //! was not killed. Tested by truncating its file of outcomes, by ending a real process, by a panic, and on any number of threads.
 
-use featherbench_bench::frame::Frame;
 use featherbench_bench::run::{Progress, Silent, compare, evaluate, plan};
 use featherbench_bench::{
     Cell, Context, Finished, Gates, HarnessError, Lost, NoAnswer, OUTCOMES_NAME, Outcome, OutcomeStore, Robot, Study,
 };
+use featherbench_protocol::Message;
 use featherbench_results::{ModelOrigin, Row, Verdict};
 use featherbench_robots::{Family, Random};
 use rayon::ThreadPoolBuilder;
@@ -116,7 +116,7 @@ fn run_in(folder: &Path, study: &Counting, progress: &dyn Progress) -> Result<Ve
 
 /// The ids in a file of outcomes, up to the first incomplete frame.
 fn whole_frames(mut bytes: &[u8]) -> BTreeSet<String> {
-    std::iter::from_fn(|| Frame::read(&mut bytes).ok().flatten()).map(|frame| frame.text("cell").to_owned()).collect()
+    std::iter::from_fn(|| Message::read(&mut bytes).ok().flatten()).map(|frame| frame.text("cell").to_owned()).collect()
 }
 
 /// A finished run: its bytes on disk, its rows and the cells' ids.

@@ -2,7 +2,7 @@
 
 use crate::support;
 
-use featherbench_bench::frame::Frame;
+use featherbench_protocol::Message;
 use std::collections::HashSet;
 use std::io::BufReader;
 use std::path::Path;
@@ -22,7 +22,7 @@ fn exact_rows(folder: &Path) -> Vec<String> {
 fn finished(folder: &Path) -> Vec<String> {
     let Ok(file) = std::fs::File::open(folder.join("outcomes.bin")) else { return Vec::new() };
     let mut reader = BufReader::new(file);
-    let next = || Frame::read(&mut reader).ok().flatten();
+    let next = || Message::read(&mut reader).ok().flatten();
     std::iter::from_fn(next).map(|frame| frame.text("cell").to_owned()).collect()
 }
 

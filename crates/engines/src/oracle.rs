@@ -71,7 +71,7 @@ impl Oracle {
     /// As of [`Oracle::start`].
     pub fn start_by(command: Vec<OsString>, limits: Limits, clock: Arc<dyn Clock>) -> Result<Self, String> {
         let mut process = Process::start_by(&command, limits, Arc::clone(&clock))?;
-        let hello = checked(process.ask(&Frame::new(json!({"op": "hello"}), Vec::new()))?).map_err(|refusal| refusal.to_string())?;
+        let hello = checked(process.ask(&Message::new(json!({"op": "hello"}), Vec::new()))?).map_err(|refusal| refusal.to_string())?;
         let protocol = hello.header.get("protocol").and_then(Value::as_u64);
         if protocol != Some(VERSION) {
             return Err(format!("the oracle speaks protocol {protocol:?}, this program {VERSION}"));
@@ -208,8 +208,8 @@ impl Oracle {
 }
 
 impl Session {
-    fn ask(&mut self, header: Value, blocks: Vec<Block>) -> Result<Frame, NoAnswer> {
-        checked(self.process.ask(&Frame::new(header, blocks)).map_err(NoAnswer::Failed)?)
+    fn ask(&mut self, header: Value, blocks: Vec<Block>) -> Result<Message, NoAnswer> {
+        checked(self.process.ask(&Message::new(header, blocks)).map_err(NoAnswer::Failed)?)
     }
 
     /// Lets the engine build the robot, unless it has done so already, and reads it back.
@@ -362,7 +362,7 @@ impl Drop for Asked<'_> {
 ///
 /// # Errors
 /// A sentence, when its bodies are not in an order in which states and answers can be given.
-pub(crate) fn reading(answer: &Frame) -> Result<Import, String> {
+pub(crate) fn reading(answer: &Message) -> Result<Import, String> {
     let model = answer.header.get("model").ok_or("there is no model")?;
     let parse = |model: &Value| featherbench_formats::neutral::parse(&model.to_string(), "the model").map_err(|error| error.to_string());
     let description = parse(model)?;
@@ -400,7 +400,7 @@ fn same_tree(a: &Description, b: &Description) -> bool {
 }
 
 /// The configurations that the file names, if any.
-fn keyframes(answer: &Frame, nq: usize) -> Result<Vec<Vec<f64>>, String> {
+fn keyframes(answer: &Message, nq: usize) -> Result<Vec<Vec<f64>>, String> {
     let Some(block) = answer.block("keyframes") else { return Ok(Vec::new()) };
     if nq == 0 || block.shape.get(1..) != Some(&[nq]) {
         return Err(format!("block 'keyframes' has the shape {:?}, rows of {nq} numbers are due", block.shape));
@@ -424,7 +424,7 @@ fn note(note: &Value) -> ImportNote {
 }
 
 /// The answer if its status is `ok`, else the error of its status.
-pub(crate) fn checked(answer: Frame) -> Result<Frame, NoAnswer> {
+pub(crate) fn checked(answer: Message) -> Result<Message, NoAnswer> {
     let reason = || match answer.text("reason") {
         "" => "the oracle gives no reason".to_owned(),
         reason => reason.to_owned(),
@@ -438,6 +438,6 @@ pub(crate) fn checked(answer: Frame) -> Result<Frame, NoAnswer> {
 }
 
 /// The numbers of a block that must have this shape.
-pub(crate) fn shaped(answer: &Frame, name: &str, due: &[usize]) -> Result<Vec<f64>, NoAnswer> {
+pub(crate) fn shaped(answer: &Message, name: &str, due: &[usize]) -> Result<Vec<f64>, NoAnswer> {
     shape::block(answer, name, due).map(<[f64]>::to_vec).map_err(NoAnswer::Failed)
 }

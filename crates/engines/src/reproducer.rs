@@ -12,7 +12,7 @@ use std::ffi::OsString;
 /// [`NoAnswer::Failed`] when the process or the reproduction fails, or the number of values is wrong.
 pub fn reproduce(command: &[OsString], limits: Limits, name: &str, seeds: u64) -> Result<Vec<f64>, NoAnswer> {
     let mut process = Process::start(command, limits).map_err(NoAnswer::Failed)?;
-    let request = Frame::new(json!({"op": "reproduce", "name": name, "seeds": seeds}), Vec::new());
+    let request = Message::new(json!({"op": "reproduce", "name": name, "seeds": seeds}), Vec::new());
     let answer = checked(process.ask(&request).map_err(NoAnswer::Failed)?)?;
     shaped(&answer, "value", &[seeds as usize])
 }

@@ -1,7 +1,7 @@
 //! Requests of the oracle protocol that more than one place sends.
 
 use featherbench_bench::Robot;
-use featherbench_bench::frame::Block;
+use featherbench_protocol::Block;
 use featherbench_robots::StateBatch;
 use serde_json::{Value, json};
 

@@ -1,7 +1,7 @@
 //! The shapes of blocks, as in the tables of `oracles/PROTOCOL.md`. Runs, the conformance test and native oracles all use them.
 
-use featherbench_bench::frame::Frame;
 use featherbench_bench::{Quantity, Robot};
+use featherbench_protocol::Message;
 
 /// The shape of an answer about this number of states: `[count, …]`.
 pub(crate) fn of_value(quantity: Quantity, robot: &Robot, count: usize) -> Vec<usize> {
@@ -26,7 +26,7 @@ pub(crate) fn of_readback(robot: &Robot) -> Vec<usize> {
 ///
 /// # Errors
 /// A sentence that names the block, its shape and the expected one.
-pub(crate) fn block<'a>(answer: &'a Frame, name: &str, due: &[usize]) -> Result<&'a [f64], String> {
+pub(crate) fn block<'a>(answer: &'a Message, name: &str, due: &[usize]) -> Result<&'a [f64], String> {
     let block = answer.block(name).ok_or_else(|| format!("the answer has no block '{name}'"))?;
     if block.shape != due {
         return Err(format!("block '{name}' has the shape {:?}; {due:?} is due", block.shape));
@@ -104,7 +104,7 @@ mod tests {
 
     #[test]
     fn a_block_of_another_shape_is_named_with_the_one_that_is_due() {
-        let answer = Frame::new(serde_json::json!({}), vec![featherbench_bench::frame::Block::new("value", &[2, 3], &[0.0; 6])]);
+        let answer = Message::new(serde_json::json!({}), vec![featherbench_protocol::Block::new("value", &[2, 3], &[0.0; 6])]);
         assert_eq!(block(&answer, "value", &[2, 3]).unwrap().len(), 6);
         for due in [&[3, 2][..], &[6], &[2, 3, 1]] {
             assert!(block(&answer, "value", due).unwrap_err().contains("[2, 3]"));

@@ -6,7 +6,7 @@ mod robot;
 mod session;
 mod world;
 
-use featherbench_formats::frame::Frame;
+use featherbench_protocol::Message;
 use refusal::{Refusal, failed};
 use serde_json::json;
 use session::Session;
@@ -25,11 +25,11 @@ fn main() -> ExitCode {
     }
 }
 
-/// Answers requests until the input ends, or is not a frame: after a frame that cannot be read, the beginning of the next is unknown.
+/// Answers requests until the input ends, or is not a message: after a message that cannot be read, the beginning of the next is unknown.
 fn converse(input: &mut impl BufRead, output: &mut impl Write) -> Result<(), String> {
     let mut session = Session::default();
     loop {
-        let request = match Frame::read(input) {
+        let request = match Message::read(input) {
             Ok(Some(request)) => request,
             Ok(None) => return Ok(()),
             Err(error) => {
@@ -48,15 +48,15 @@ fn converse(input: &mut impl BufRead, output: &mut impl Write) -> Result<(), Str
 }
 
 /// An answer with its status.
-fn answered(result: Result<Frame, Refusal>) -> Frame {
+fn answered(result: Result<Message, Refusal>) -> Message {
     match result {
-        Ok(mut frame) => {
-            frame.header.insert("status".into(), "ok".into());
-            frame
+        Ok(mut message) => {
+            message.header.insert("status".into(), "ok".into());
+            message
         }
         Err(refusal) => {
             let (status, reason) = refusal.told();
-            Frame::new(json!({"status": status, "reason": reason}), Vec::new())
+            Message::new(json!({"status": status, "reason": reason}), Vec::new())
         }
     }
 }

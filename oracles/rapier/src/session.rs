@@ -2,8 +2,8 @@
 
 use crate::refusal::{Refusal, failed};
 use crate::robot::{GUARD, QUANTITIES, Robot, STEPS, State};
-use featherbench_formats::frame::{Block, Frame};
 use featherbench_formats::neutral;
+use featherbench_protocol::{Block, Message};
 use serde_json::{Map, Value, json};
 use std::ops::Range;
 
@@ -25,7 +25,7 @@ struct States {
 
 impl Session {
     /// The answer to a request.
-    pub fn answer(&mut self, request: &Frame) -> Result<Frame, Refusal> {
+    pub fn answer(&mut self, request: &Message) -> Result<Message, Refusal> {
         match request.text("op") {
             "hello" => Ok(hello()),
             "prepare" => self.prepare(request),
@@ -38,17 +38,17 @@ impl Session {
         }
     }
 
-    fn prepare(&mut self, request: &Frame) -> Result<Frame, Refusal> {
+    fn prepare(&mut self, request: &Message) -> Result<Message, Refusal> {
         (self.robot, self.states) = (None, None);
         let model = request.header.get("model").ok_or_else(|| failed("there is no model"))?;
         let robot = Robot::new(neutral::parse(&model.to_string(), "the model").map_err(failed)?)?;
         let readback = Block::new("readback", &[robot.description().bodies.len(), 22], &robot.readback()?);
         let header = json!({"nq": robot.description().nq(), "nv": robot.description().nv()});
         self.robot = Some(robot);
-        Ok(Frame::new(header, vec![readback]))
+        Ok(Message::new(header, vec![readback]))
     }
 
-    fn take_states(&mut self, request: &Frame) -> Result<Frame, Refusal> {
+    fn take_states(&mut self, request: &Message) -> Result<Message, Refusal> {
         self.states = None;
         let robot = self.robot.as_ref().ok_or_else(|| failed("there is no robot"))?.description();
         let (count, nq, nv) = (natural(request, "count")?, robot.nq(), robot.nv());
@@ -58,10 +58,10 @@ impl Session {
         };
         let (q, v, tau) = (take("q", [count, nq])?, take("v", [count, nv])?, take("tau", [count, nv])?);
         self.states = Some(States { count, q, v, tau, probe: take("probe", [4, nv])? });
-        Ok(Frame::default())
+        Ok(Message::default())
     }
 
-    fn evaluate(&self, request: &Frame) -> Result<Frame, Refusal> {
+    fn evaluate(&self, request: &Message) -> Result<Message, Refusal> {
         let (quantity, method) = (request.text("quantity"), request.text("method"));
         if !QUANTITIES.contains(&(quantity, method)) {
             return Err(Refusal::Unsupported(format!("rapier does not answer {quantity} by '{method}'")));
@@ -84,20 +84,20 @@ impl Session {
         states.answer(range, shape, |state| robot.value(quantity, state, body))
     }
 
-    fn step(&self, request: &Frame) -> Result<Frame, Refusal> {
+    fn step(&self, request: &Message) -> Result<Message, Refusal> {
         let (settings, dt) = steps(request)?;
         let (robot, states, range) = self.asked(request)?;
         states.answer(range, &[robot.description().nv()], |state| robot.step(state, settings, dt))
     }
 
-    fn fall(&self, request: &Frame) -> Result<Frame, Refusal> {
+    fn fall(&self, request: &Message) -> Result<Message, Refusal> {
         let ((settings, dt), count) = (steps(request)?, natural(request, "steps")?);
         let (robot, states, range) = self.asked(request)?;
         states.answer(range, &[count], |state| robot.fall(state, settings, dt, count))
     }
 
     /// The robot, the states, and which of them a request is about.
-    fn asked(&self, request: &Frame) -> Result<(&Robot, &States, Range<usize>), Refusal> {
+    fn asked(&self, request: &Message) -> Result<(&Robot, &States, Range<usize>), Refusal> {
         let robot = self.robot.as_ref().ok_or_else(|| failed("there is no robot"))?;
         let states = self.states.as_ref().ok_or_else(|| failed("there are no states"))?;
         let (first, count) = (natural(request, "first")?, natural(request, "count")?);
@@ -109,22 +109,22 @@ impl Session {
 
 impl States {
     /// The block `value` with the results at each state of a range.
-    fn answer(&self, range: Range<usize>, shape: &[usize], value: impl Fn(State) -> Result<Vec<f64>, Refusal>) -> Result<Frame, Refusal> {
+    fn answer(&self, range: Range<usize>, shape: &[usize], value: impl Fn(State) -> Result<Vec<f64>, Refusal>) -> Result<Message, Refusal> {
         let (nq, nv) = (self.q.len() / self.count.max(1), self.probe.len() / 4);
         let (shape, mut values) = ([&[range.len()], shape].concat(), Vec::new());
         for k in range {
             let (q, v) = (k * nq..(k + 1) * nq, k * nv..(k + 1) * nv);
             values.extend(value(State { q: &self.q[q], v: &self.v[v.clone()], tau: &self.tau[v], probe: &self.probe })?);
         }
-        Ok(Frame::new(json!({}), vec![Block::new("value", &shape, &values)]))
+        Ok(Message::new(json!({}), vec![Block::new("value", &shape, &values)]))
     }
 }
 
 /// The answer to `hello`.
-fn hello() -> Frame {
+fn hello() -> Message {
     let methods: Map<String, Value> = QUANTITIES.iter().map(|&(quantity, method)| (quantity.to_owned(), json!([method]))).collect();
     let steps = STEPS.map(|(method, _)| method);
-    Frame::new(
+    Message::new(
         json!({
             "protocol": 1,
             "engine": "rapier",
@@ -138,13 +138,13 @@ fn hello() -> Frame {
 }
 
 /// A whole number of a request.
-fn natural(request: &Frame, key: &str) -> Result<usize, Refusal> {
+fn natural(request: &Message, key: &str) -> Result<usize, Refusal> {
     let number = request.header.get(key).and_then(Value::as_u64).and_then(|number| usize::try_from(number).ok());
     number.ok_or_else(|| failed(format!("'{key}' must be a whole number")))
 }
 
 /// The way to step that a request names, and its length.
-fn steps(request: &Frame) -> Result<(crate::world::Settings, f64), Refusal> {
+fn steps(request: &Message) -> Result<(crate::world::Settings, f64), Refusal> {
     let method = request.text("method");
     let found = STEPS.iter().find(|(name, _)| *name == method);
     let (_, settings) = found.ok_or_else(|| Refusal::Unsupported(format!("rapier has no steps by '{method}'")))?;

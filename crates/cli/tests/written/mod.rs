@@ -2,16 +2,16 @@
 
 use crate::Outcome;
 use crate::support::project;
-use featherbench_bench::frame::{Block, Frame};
 use featherbench_bench::measure::worst;
 use featherbench_formats::{ExportError, OnLoss, mjcf, neutral, urdf};
 use featherbench_model::{Description, JointType};
+use featherbench_protocol::{Block, Message};
 use serde_json::{Value, json};
 use std::io::BufReader;
 use std::path::Path;
 use std::process::{Child, ChildStdout, Command, Stdio};
 
-/// An oracle to which the test writes frames itself.
+/// An oracle to which the test writes messages itself.
 struct Oracle {
     process: Child,
     output: BufReader<ChildStdout>,
@@ -28,9 +28,9 @@ impl Oracle {
     }
 
     /// The answer, or the reason why there is none.
-    fn ask(&mut self, question: Value, blocks: Vec<Block>) -> Result<Frame, String> {
-        Frame::new(question, blocks).write(self.process.stdin.as_mut().unwrap()).unwrap();
-        let answer = Frame::read(&mut self.output).unwrap().expect("an answer");
+    fn ask(&mut self, question: Value, blocks: Vec<Block>) -> Result<Message, String> {
+        Message::new(question, blocks).write(self.process.stdin.as_mut().unwrap()).unwrap();
+        let answer = Message::read(&mut self.output).unwrap().expect("an answer");
         if answer.text("status") == "ok" { Ok(answer) } else { Err(answer.text("reason").to_owned()) }
     }
 

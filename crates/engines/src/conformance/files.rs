@@ -8,10 +8,10 @@ use super::manners::Methods;
 use super::talk::Talk;
 use super::values::Scene;
 use super::{Standing, robots};
-use featherbench_bench::frame::Frame;
 use featherbench_bench::{FileBase, FileFormat, Import, Quantity, Robot};
 use featherbench_formats::{OnLoss, mjcf, urdf};
 use featherbench_model::{BodyDescription, Description, JointType, Placement};
+use featherbench_protocol::Message;
 use featherbench_results::ModelOrigin;
 use featherbench_robots::Family;
 use serde_json::{Value, json};
@@ -173,7 +173,7 @@ fn request(path: &Path, format: FileFormat, base: FileBase) -> Value {
 }
 
 /// The answer, if it imports the file.
-fn ask(talk: &mut Talk, file: &Written, path: &Path) -> Option<Frame> {
+fn ask(talk: &mut Talk, file: &Written, path: &Path) -> Option<Message> {
     // Its answer to an unknown op. If the answer to `read` has the same words, it does not know `read`.
     let unknown = talk.ask(json!({"op": "dance"}), Vec::new()).map(|answer| answer.text("reason").replace("dance", "read"));
     let what = what(file);
@@ -195,7 +195,7 @@ fn ask(talk: &mut Talk, file: &Written, path: &Path) -> Option<Frame> {
 }
 
 /// Its notes: they must be texts with known causes.
-fn notes(talk: &mut Talk, answer: &Frame) {
+fn notes(talk: &mut Talk, answer: &Message) {
     let wrong = match answer.header.get("notes").and_then(Value::as_array) {
         None => Some("`notes` is no list".to_owned()),
         Some(notes) => notes.iter().find_map(|note| {

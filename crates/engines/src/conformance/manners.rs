@@ -159,13 +159,13 @@ pub(super) fn end(talk: &mut Talk) {
     match talk.ask(json!({"op": "hello"}), Vec::new()).and_then(|_| talk.close()) {
         Ok(()) => talk.note(Standing::Right, "it ends when its input ends, and has said nothing more", "", &[]),
         Err(reason) => {
-            let advice = ["leave the loop when a line is empty; exit with 0; answer each request by one frame and no more"];
+            let advice = ["leave the loop when a line is empty; exit with 0; answer each request by one message and no more"];
             talk.note(Standing::Wrong, "it ends when its input ends, and has said nothing more", &reason, &advice);
         }
     }
 }
 
-fn value(answer: Frame) -> Option<Vec<f64>> {
+fn value(answer: Message) -> Option<Vec<f64>> {
     answer.block("value").map(|block| block.data.clone())
 }
 

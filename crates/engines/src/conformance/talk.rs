@@ -11,8 +11,8 @@ pub trait Line {
     /// Sends a request and waits for its answer.
     ///
     /// # Errors
-    /// A sentence, when there is no answer, or it is not a frame. The line cannot be used after that.
-    fn ask(&mut self, request: &Frame) -> Result<Frame, String>;
+    /// A sentence, when there is no answer, or it is not a message. The line cannot be used after that.
+    fn ask(&mut self, request: &Message) -> Result<Message, String>;
 
     /// Ends the oracle's input and waits for its end.
     ///
@@ -22,7 +22,7 @@ pub trait Line {
 }
 
 impl Line for Process {
-    fn ask(&mut self, request: &Frame) -> Result<Frame, String> {
+    fn ask(&mut self, request: &Message) -> Result<Message, String> {
         Self::ask(self, request)
     }
 
@@ -46,7 +46,7 @@ impl<'a> Talk<'a> {
     }
 
     /// Asks. It is an error if there is no answer, or one without a known status or without a reason.
-    pub(super) fn ask(&mut self, header: Value, blocks: Vec<Block>) -> Result<Frame, String> {
+    pub(super) fn ask(&mut self, header: Value, blocks: Vec<Block>) -> Result<Message, String> {
         let mut line = match self.line.take() {
             Some(line) => line,
             None => {
@@ -54,7 +54,7 @@ impl<'a> Talk<'a> {
                 (self.start)()?
             }
         };
-        let answer = line.ask(&Frame::new(header, blocks))?;
+        let answer = line.ask(&Message::new(header, blocks))?;
         self.line = Some(line);
         match answer.text("status") {
             "ok" => Ok(answer),
@@ -65,7 +65,7 @@ impl<'a> Talk<'a> {
     }
 
     /// Asks, and notes whether the answer has one of the statuses. Returns the answer if it has.
-    pub(super) fn expect(&mut self, what: &str, header: Value, blocks: Vec<Block>, allowed: &[&str]) -> Option<Frame> {
+    pub(super) fn expect(&mut self, what: &str, header: Value, blocks: Vec<Block>, allowed: &[&str]) -> Option<Message> {
         match self.ask(header, blocks) {
             Ok(answer) if allowed.contains(&answer.text("status")) => {
                 self.note(Standing::Right, what, "", &[]);
@@ -95,7 +95,7 @@ impl<'a> Talk<'a> {
     }
 
     /// Lets the oracle build a robot.
-    pub(super) fn prepare(&mut self, robot: &Robot) -> Result<Frame, String> {
+    pub(super) fn prepare(&mut self, robot: &Robot) -> Result<Message, String> {
         self.ask(json!({"op": "prepare", "model": request::description(robot)?}), Vec::new())
     }
 
@@ -111,7 +111,7 @@ impl<'a> Talk<'a> {
 /// What to do about a line with an error.
 fn advice(reason: &str) -> &'static [&'static str] {
     if reason.contains("not in the protocol") {
-        &["standard output carries frames only: print everything else to standard error"]
+        &["standard output carries messages only: print everything else to standard error"]
     } else if reason.contains("no answer within") {
         &["answer every request at once and flush; read the blocks that its header announces, and no more"]
     } else if reason.contains("the oracle exited") {

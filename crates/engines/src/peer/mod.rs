@@ -7,8 +7,8 @@
 mod library;
 
 use crate::shape;
-use featherbench_bench::frame::{Block, Frame};
 use featherbench_bench::{NoAnswer, Quantity, Relocation, Robot};
+use featherbench_protocol::{Block, Message};
 use featherbench_results::ModelOrigin;
 use featherbench_robots::Random;
 use library::{Built, Library};
@@ -40,14 +40,14 @@ pub fn serve(path: &Path, core: Option<usize>) -> Result<(), String> {
     let library = Library::open(&path.canonicalize().map_err(|error| format!("{}: {error}", path.display()))?)?;
     let mut session = Session { library: &library, robot: None, states: None, built: None };
     let mut requests = BufReader::new(stdin());
-    while let Some(request) = Frame::read(&mut requests).map_err(|error| error.to_string())? {
+    while let Some(request) = Message::read(&mut requests).map_err(|error| error.to_string())? {
         let answer = match session.answer(&request) {
             Ok((mut header, blocks)) => {
                 header.insert("status".into(), "ok".into());
-                Frame { header, blocks }
+                Message { header, blocks }
             }
-            Err(NoAnswer::NotOffered(reason)) => Frame::new(json!({"status": "unsupported", "reason": reason}), Vec::new()),
-            Err(NoAnswer::Failed(reason)) => Frame::new(json!({"status": "error", "reason": reason}), Vec::new()),
+            Err(NoAnswer::NotOffered(reason)) => Message::new(json!({"status": "unsupported", "reason": reason}), Vec::new()),
+            Err(NoAnswer::Failed(reason)) => Message::new(json!({"status": "error", "reason": reason}), Vec::new()),
         };
         answer.write(&mut answers).and_then(|()| answers.flush()).map_err(|error| format!("standard output: {error}"))?;
     }
@@ -77,7 +77,7 @@ struct Session<'a> {
 type Answer = Result<(Map<String, Value>, Vec<Block>), NoAnswer>;
 
 fn ok(header: Value, blocks: Vec<Block>) -> Answer {
-    Ok((Frame::new(header, Vec::new()).header, blocks))
+    Ok((Message::new(header, Vec::new()).header, blocks))
 }
 
 fn failed(what: impl Into<String>) -> NoAnswer {
@@ -85,7 +85,7 @@ fn failed(what: impl Into<String>) -> NoAnswer {
 }
 
 impl<'a> Session<'a> {
-    fn answer(&mut self, request: &Frame) -> Answer {
+    fn answer(&mut self, request: &Message) -> Answer {
         match request.text("op") {
             "hello" => self.hello(),
             "prepare" => self.prepare(request),
@@ -112,7 +112,7 @@ impl<'a> Session<'a> {
         )
     }
 
-    fn prepare(&mut self, request: &Frame) -> Answer {
+    fn prepare(&mut self, request: &Message) -> Answer {
         (self.built, self.states, self.robot) = (None, None, None);
         let model = request.header.get("model").ok_or_else(|| failed("no model came"))?;
         let description = featherbench_formats::neutral::parse(&model.to_string(), "model").map_err(|error| failed(error.to_string()))?;
@@ -125,7 +125,7 @@ impl<'a> Session<'a> {
         ok(sizes, vec![readback])
     }
 
-    fn states(&mut self, request: &Frame) -> Answer {
+    fn states(&mut self, request: &Message) -> Answer {
         self.states = None;
         let count = number(request, "count")?;
         let built = self.built.as_mut().ok_or_else(|| failed("no model was prepared"))?;
@@ -137,7 +137,7 @@ impl<'a> Session<'a> {
     }
 
     /// Builds robot, states and the input of the last method again, at other addresses (memory layout randomization).
-    fn relocate(&mut self, request: &Frame) -> Answer {
+    fn relocate(&mut self, request: &Message) -> Answer {
         let (Some(robot), Some(built)) = (&self.robot, self.built.take()) else { return Err(failed("no model was prepared")) };
         let ready = built.is_ready();
         // Dropped before the new one is built: two of them may not fit the memory.
@@ -155,7 +155,7 @@ impl<'a> Session<'a> {
     }
 
     /// The robot with the asked method ready, the range, and the shape of the answer.
-    fn asked(&mut self, request: &Frame) -> Result<(&mut Built<'a>, usize, usize, Vec<usize>), NoAnswer> {
+    fn asked(&mut self, request: &Message) -> Result<(&mut Built<'a>, usize, usize, Vec<usize>), NoAnswer> {
         let (quantity, method) = (request.text("quantity"), request.text("method"));
         let named = |(of, name): &(String, String)| of == quantity && name == method;
         let index = self.library.methods.iter().position(named);
@@ -171,7 +171,7 @@ impl<'a> Session<'a> {
         Ok((built, first, count, shape::of_value(quantity, robot, count)))
     }
 
-    fn evaluate(&mut self, request: &Frame) -> Answer {
+    fn evaluate(&mut self, request: &Message) -> Answer {
         let (built, first, count, shape) = self.asked(request)?;
         if first.checked_add(count).is_none_or(|end| end > built.count()) {
             return Err(failed(format!("{count} states from {first} on do not exist")));
@@ -186,7 +186,7 @@ impl<'a> Session<'a> {
         ok(json!({}), vec![Block::new("value", &shape, &values)])
     }
 
-    fn clock(&mut self, request: &Frame) -> Answer {
+    fn clock(&mut self, request: &Message) -> Answer {
         let (built, first, count, _) = self.asked(request)?;
         let start = Instant::now();
         built.run(first, count)?;
@@ -195,7 +195,7 @@ impl<'a> Session<'a> {
     }
 }
 
-fn number(request: &Frame, key: &str) -> Result<usize, NoAnswer> {
+fn number(request: &Message, key: &str) -> Result<usize, NoAnswer> {
     let number = request.header.get(key).and_then(Value::as_u64).and_then(|number| usize::try_from(number).ok());
     number.ok_or_else(|| failed(format!("{key} must be a number")))
 }

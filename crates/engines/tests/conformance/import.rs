@@ -2,8 +2,8 @@
 
 use super::kernels::{HONEST, Kernels, Plant};
 use super::{test, wrong};
-use featherbench_bench::frame::Frame;
 use featherbench_engines::conformance::Standing;
+use featherbench_protocol::Message;
 use serde_json::{Value, json};
 
 /// The lacking findings, as text.
@@ -14,33 +14,33 @@ fn lacking(plant: Plant) -> Vec<String> {
 }
 
 /// Whether it is an answer to `read` that reports a robot.
-fn tells(answer: &Frame, request: &Frame) -> bool {
+fn tells(answer: &Message, request: &Message) -> bool {
     request.text("op") == "read" && answer.text("status") == "ok"
 }
 
-fn bodies(answer: &mut Frame) -> &mut Vec<Value> {
+fn bodies(answer: &mut Message) -> &mut Vec<Value> {
     answer.header.get_mut("model").and_then(|model| model["bodies"].as_array_mut()).expect("a robot")
 }
 
 #[test]
 fn what_is_not_read_is_lacking() {
-    let unknown = |answer: &mut Frame, request: &Frame, _: &Kernels| {
+    let unknown = |answer: &mut Message, request: &Message, _: &Kernels| {
         if request.text("op") == "read" {
-            *answer = Frame::new(json!({"status": "error", "reason": "there is no op 'read'"}), Vec::new());
+            *answer = Message::new(json!({"status": "error", "reason": "there is no op 'read'"}), Vec::new());
         }
     };
     let found = lacking(Plant { answer: unknown, ..HONEST });
     assert!(found.iter().any(|line| line == "the op `read`: there is no op 'read'"), "{found:#?}");
-    let blind = |answer: &mut Frame, request: &Frame, _: &Kernels| {
+    let blind = |answer: &mut Message, request: &Message, _: &Kernels| {
         if request.text("op") == "read" {
-            *answer = Frame::new(json!({"status": "unsupported", "reason": "no parser"}), Vec::new());
+            *answer = Message::new(json!({"status": "unsupported", "reason": "no parser"}), Vec::new());
         }
     };
     let found = lacking(Plant { answer: blind, ..HONEST });
     assert!(found.iter().any(|line| line == "it reads a URDF on a fixed base: no parser"), "{found:#?}");
-    let fails = |answer: &mut Frame, request: &Frame, _: &Kernels| {
+    let fails = |answer: &mut Message, request: &Message, _: &Kernels| {
         if tells(answer, request) {
-            *answer = Frame::new(json!({"status": "error", "reason": "ParserError: 7"}), Vec::new());
+            *answer = Message::new(json!({"status": "error", "reason": "ParserError: 7"}), Vec::new());
         }
     };
     let found = wrong(Plant { answer: fails, ..HONEST });
@@ -50,13 +50,13 @@ fn what_is_not_read_is_lacking() {
 /// An edit by the parser is not a fault, if the answers are those of the reported robot.
 #[test]
 fn an_edit_is_told_and_no_fault() {
-    let mirrored = |answer: &mut Frame, request: &Frame, _: &Kernels| {
+    let mirrored = |answer: &mut Message, request: &Message, _: &Kernels| {
         if tells(answer, request) {
             bodies(answer).iter_mut().for_each(|body| body["joint"]["damping"] = json!([]));
         }
     };
     assert!(lacking(Plant { answer: mirrored, ..HONEST }).len() == 3, "damping is not compared");
-    let lighter = |answer: &mut Frame, request: &Frame, _: &Kernels| {
+    let lighter = |answer: &mut Message, request: &Message, _: &Kernels| {
         if tells(answer, request) {
             bodies(answer)[1]["mass"] = json!(0.25);
         }
@@ -73,7 +73,7 @@ fn an_edit_is_told_and_no_fault() {
 /// Mistakes in an import result: the planted mistake, and words of the finding that names it.
 #[test]
 fn mistakes_of_a_reading_are_named() {
-    type Change = fn(&mut Frame, &Frame, &Kernels);
+    type Change = fn(&mut Message, &Message, &Kernels);
     let planted: [(&str, Change); 8] = [
         ("there is no model", |answer, request, _| {
             if tells(answer, request) {
@@ -105,7 +105,8 @@ fn mistakes_of_a_reading_are_named() {
         }),
         ("the base is not free", |answer, request, kernels| {
             if tells(answer, request) && request.text("base") == "free" {
-                let fixed = Frame::new(json!({"op": "read", "file": request.text("file"), "format": "urdf", "base": "fixed"}), Vec::new());
+                let fixed =
+                    Message::new(json!({"op": "read", "file": request.text("file"), "format": "urdf", "base": "fixed"}), Vec::new());
                 *answer = featherbench_engines::conformance::Line::ask(&mut Kernels::new(HONEST), &fixed).unwrap();
                 assert!(kernels.robot.is_some());
             }
@@ -130,7 +131,7 @@ fn mistakes_of_a_reading_are_named() {
 /// The reported bodies have the second of two branches first; the states are taken in the file's order.
 #[test]
 fn states_in_another_order_than_the_bodies_told() {
-    let branches = |answer: &mut Frame, request: &Frame, _: &Kernels| {
+    let branches = |answer: &mut Message, request: &Message, _: &Kernels| {
         if tells(answer, request) && bodies(answer).len() == 6 {
             let bodies = bodies(answer);
             bodies[2..].rotate_left(2);

@@ -1,10 +1,10 @@
 //! Our own kernels as an oracle in this process.
 
-use featherbench_bench::frame::{Block, Frame};
 use featherbench_bench::{Engine, NoAnswer, Quantity, Robot};
 use featherbench_engines::Featherbench;
 use featherbench_engines::conformance::Line;
 use featherbench_formats::urdf::{self, Base, Options};
+use featherbench_protocol::{Block, Message};
 use featherbench_results::ModelOrigin;
 use featherbench_robots::StateBatch;
 use serde_json::{Value, json};
@@ -12,8 +12,8 @@ use serde_json::{Value, json};
 /// The changes of requests before the right oracle gets them, and of its answers before they are sent.
 #[derive(Clone, Copy)]
 pub struct Plant {
-    pub request: fn(&mut Frame, &Kernels),
-    pub answer: fn(&mut Frame, &Frame, &Kernels),
+    pub request: fn(&mut Message, &Kernels),
+    pub answer: fn(&mut Message, &Message, &Kernels),
 }
 
 /// No changes.
@@ -24,7 +24,7 @@ pub struct Kernels {
     plant: Plant,
     pub robot: Option<Robot>,
     /// The states as they were received.
-    states: Option<(Frame, StateBatch)>,
+    states: Option<(Message, StateBatch)>,
     /// Whether the robot was imported from a file.
     as_read: bool,
     /// Evaluations so far.
@@ -63,13 +63,13 @@ impl Kernels {
         Self { plant, robot: None, states: None, as_read: false, evaluated: 0 }
     }
 
-    fn answer(&mut self, request: &Frame) -> Result<Frame, NoAnswer> {
+    fn answer(&mut self, request: &Message) -> Result<Message, NoAnswer> {
         let number =
             |key: &str| request.header.get(key).and_then(Value::as_u64).map(|n| n as usize).ok_or_else(|| failed("a number is missing"));
         match request.text("op") {
             "hello" => {
                 let methods: serde_json::Map<String, Value> = OFFERED.iter().map(|q| (q.name().into(), json!(["kernel"]))).collect();
-                Ok(Frame::new(json!({"protocol": 1, "engine": "kernels", "version": "1", "build": {}, "methods": methods}), Vec::new()))
+                Ok(Message::new(json!({"protocol": 1, "engine": "kernels", "version": "1", "build": {}, "methods": methods}), Vec::new()))
             }
             "prepare" => {
                 (self.robot, self.states, self.as_read) = (None, None, false);
@@ -79,7 +79,7 @@ impl Kernels {
                 let readback = Block::new("readback", &[robot.description.bodies.len(), 22], &robot.readback());
                 let header = json!({"nq": robot.description.nq(), "nv": robot.states.nv});
                 self.robot = Some(robot);
-                Ok(Frame::new(header, vec![readback]))
+                Ok(Message::new(header, vec![readback]))
             }
             "read" => {
                 (self.robot, self.states, self.as_read) = (None, None, true);
@@ -93,7 +93,7 @@ impl Kernels {
                     serde_json::from_str(&featherbench_formats::neutral::to_string(&description).map_err(failed)?).map_err(failed)?;
                 let header = json!({"nq": description.nq(), "nv": description.nv(), "model": model, "notes": []});
                 self.robot = Some(robot);
-                Ok(Frame::new(header, Vec::new()))
+                Ok(Message::new(header, Vec::new()))
             }
             "states" => {
                 self.states = None;
@@ -113,7 +113,7 @@ impl Kernels {
                     ..empty.clone()
                 };
                 self.states = Some((request.clone(), batch));
-                Ok(Frame::default())
+                Ok(Message::default())
             }
             "evaluate" => {
                 let quantity = Quantity::parse(request.text("quantity")).filter(|quantity| OFFERED.contains(quantity));
@@ -140,7 +140,7 @@ impl Kernels {
                     Quantity::BodyVelocity | Quantity::BodyAcceleration => vec![count, bodies, 6],
                     _ => vec![count, quantity.size(robot)],
                 };
-                Ok(Frame::new(json!({}), vec![Block::new("value", &shape, prepared.read())]))
+                Ok(Message::new(json!({}), vec![Block::new("value", &shape, prepared.read())]))
             }
             op @ ("step" | "fall") => self.step(op, request),
             other => Err(failed(format!("there is no op '{other}'"))),
@@ -150,7 +150,7 @@ impl Kernels {
 
 impl Kernels {
     /// An integrator without error: steps begin with the acceleration of forward dynamics, and a fall keeps its energy.
-    fn step(&self, op: &str, request: &Frame) -> Result<Frame, NoAnswer> {
+    fn step(&self, op: &str, request: &Message) -> Result<Message, NoAnswer> {
         let number = |key: &str| request.header.get(key).and_then(Value::as_u64).map(|n| n as usize).unwrap_or_default();
         if request.text("method") != "exact" {
             return Err(NoAnswer::NotOffered("there is no such way to step".into()));
@@ -175,22 +175,22 @@ impl Kernels {
             let steps = number("steps");
             (steps, kinetic.iter().zip(potential).flat_map(|(k, p)| vec![k + p; steps]).collect())
         };
-        Ok(Frame::new(json!({}), vec![Block::new("value", &[count, each], &value)]))
+        Ok(Message::new(json!({}), vec![Block::new("value", &[count, each], &value)]))
     }
 }
 
 impl Line for Kernels {
-    fn ask(&mut self, request: &Frame) -> Result<Frame, String> {
+    fn ask(&mut self, request: &Message) -> Result<Message, String> {
         let plant = self.plant;
         let mut heard = request.clone();
         (plant.request)(&mut heard, self);
         let mut answer = match self.answer(&heard) {
-            Ok(mut frame) => {
-                frame.header.insert("status".into(), "ok".into());
-                frame
+            Ok(mut message) => {
+                message.header.insert("status".into(), "ok".into());
+                message
             }
-            Err(NoAnswer::NotOffered(reason)) => Frame::new(json!({"status": "unsupported", "reason": reason}), Vec::new()),
-            Err(NoAnswer::Failed(reason)) => Frame::new(json!({"status": "error", "reason": reason}), Vec::new()),
+            Err(NoAnswer::NotOffered(reason)) => Message::new(json!({"status": "unsupported", "reason": reason}), Vec::new()),
+            Err(NoAnswer::Failed(reason)) => Message::new(json!({"status": "error", "reason": reason}), Vec::new()),
         };
         (plant.answer)(&mut answer, request, self);
         if answer.text("status") == "dead" { Err("the oracle exited".into()) } else { Ok(answer) }

@@ -6,9 +6,9 @@ mod kernels;
 mod steps;
 
 use featherbench_bench::Robot;
-use featherbench_bench::frame::Frame;
 use featherbench_engines::conformance::{Conformance, Line, Standing, check};
 use featherbench_model::JointType;
+use featherbench_protocol::Message;
 use kernels::{HONEST, Kernels, OFFERED, Plant};
 use serde_json::{Value, json};
 
@@ -52,25 +52,25 @@ fn an_honest_oracle_conforms() {
 }
 
 /// Changes a block of the request `states`, state after state; the change may use the robot.
-fn each_state(frame: &mut Frame, kernels: &Kernels, name: &str, change: impl Fn(&mut [f64], &[f64], &Robot)) {
-    let Some(robot) = kernels.robot.as_ref().filter(|_| frame.text("op") == "states") else { return };
-    let q = frame.block("q").map(|block| block.data.clone()).unwrap_or_default();
+fn each_state(message: &mut Message, kernels: &Kernels, name: &str, change: impl Fn(&mut [f64], &[f64], &Robot)) {
+    let Some(robot) = kernels.robot.as_ref().filter(|_| message.text("op") == "states") else { return };
+    let q = message.block("q").map(|block| block.data.clone()).unwrap_or_default();
     let count = q.len() / robot.states.nq;
-    for block in frame.blocks.iter_mut().filter(|block| block.name == name && !block.data.is_empty()) {
+    for block in message.blocks.iter_mut().filter(|block| block.name == name && !block.data.is_empty()) {
         let size = block.data.len() / count;
         block.data.chunks_exact_mut(size).zip(q.chunks_exact(robot.states.nq)).for_each(|(part, q)| change(part, q, robot));
     }
 }
 
 /// Changes the description of the request `prepare`.
-fn each_body(frame: &mut Frame, change: impl Fn(&mut Value)) {
-    if let Some(bodies) = frame.header.get_mut("model").and_then(|model| model.get_mut("bodies")).and_then(Value::as_array_mut) {
+fn each_body(message: &mut Message, change: impl Fn(&mut Value)) {
+    if let Some(bodies) = message.header.get_mut("model").and_then(|model| model.get_mut("bodies")).and_then(Value::as_array_mut) {
         bodies.iter_mut().filter(|body| body["joint"].is_object()).for_each(change);
     }
 }
 
 /// Puts the given mass, centre and inertia into the read-back. So only the dynamics show the mistake.
-fn given_back(answer: &mut Frame, request: &Frame) {
+fn given_back(answer: &mut Message, request: &Message) {
     let (Some(block), Some(bodies)) =
         (answer.blocks.iter_mut().find(|b| b.name == "readback"), request.header.get("model").and_then(|model| model["bodies"].as_array()))
     else {
@@ -87,8 +87,8 @@ const DYNAMICS: [&str; 4] = ["bias", "fd", "id", "id_wrench"];
 
 #[test]
 fn quaternions_in_another_order() {
-    let request = |frame: &mut Frame, kernels: &Kernels| {
-        each_state(frame, kernels, "q", |q, _, robot| {
+    let request = |message: &mut Message, kernels: &Kernels| {
+        each_state(message, kernels, "q", |q, _, robot| {
             let mut at = 0;
             for body in &robot.description.bodies {
                 let kind = body.joint.kind;
@@ -110,9 +110,9 @@ fn quaternions_in_another_order() {
 
 #[test]
 fn a_free_velocity_in_another_order() {
-    let swap = |frame: &mut Frame, kernels: &Kernels| {
+    let swap = |message: &mut Message, kernels: &Kernels| {
         for name in ["v", "a", "tau"] {
-            each_state(frame, kernels, name, |x, _, robot| {
+            each_state(message, kernels, name, |x, _, robot| {
                 if robot.base() == "free" {
                     x[..6].rotate_left(3);
                 }
@@ -120,7 +120,7 @@ fn a_free_velocity_in_another_order() {
         }
     };
     // The engine's own order is in its answers too.
-    let answer = |answer: &mut Frame, request: &Frame, kernels: &Kernels| {
+    let answer = |answer: &mut Message, request: &Message, kernels: &Kernels| {
         let Some(robot) = kernels.robot.as_ref().filter(|robot| robot.base() == "free") else { return };
         let nv = robot.states.nv;
         let Some(block) = answer.blocks.iter_mut().find(|block| block.name == "value") else { return };
@@ -152,9 +152,9 @@ fn a_free_velocity_in_world_axes() {
         let p = robot.description.bodies[0].joint.placement.rotation;
         std::array::from_fn(|i| std::array::from_fn(|j| (0..3).map(|k| p[3 * i + k] * r[k][j]).sum()))
     }
-    let request = |frame: &mut Frame, kernels: &Kernels| {
+    let request = |message: &mut Message, kernels: &Kernels| {
         // v alone, and so nothing but the kinematics of velocities.
-        each_state(frame, kernels, "v", |v, q, robot| {
+        each_state(message, kernels, "v", |v, q, robot| {
             if robot.base() == "free" {
                 let r = turn(robot, q);
                 let linear: [f64; 3] = std::array::from_fn(|j| (0..3).map(|i| r[i][j] * v[i]).sum());
@@ -171,19 +171,19 @@ fn a_free_velocity_in_world_axes() {
 
 #[test]
 fn what_is_left_out_of_the_description() {
-    let armature = |frame: &mut Frame, _: &Kernels| {
-        each_body(frame, |body| body["joint"]["armature"].as_array_mut().into_iter().flatten().for_each(|x| *x = json!(0.0)));
+    let armature = |message: &mut Message, _: &Kernels| {
+        each_body(message, |body| body["joint"]["armature"].as_array_mut().into_iter().flatten().for_each(|x| *x = json!(0.0)));
     };
     // The bias force has no armature.
     named(Plant { request: armature, ..HONEST }, &["fd", "id", "id_wrench", "kinetic_energy", "mass_matrix"], "armature is left out");
-    let upside_down = |frame: &mut Frame, _: &Kernels| {
-        let gravity = frame.header.get_mut("model").and_then(|model| model.get_mut("gravity")).and_then(Value::as_array_mut);
+    let upside_down = |message: &mut Message, _: &Kernels| {
+        let gravity = message.header.get_mut("model").and_then(|model| model.get_mut("gravity")).and_then(Value::as_array_mut);
         gravity.into_iter().flatten().for_each(|x| *x = json!(-x.as_f64().unwrap_or(0.0)));
     };
     let affected: Vec<&str> = DYNAMICS.iter().chain(&["potential_energy"]).copied().collect();
     named(Plant { request: upside_down, ..HONEST }, &affected, "gravity has the wrong sign");
-    let pitch = |frame: &mut Frame, _: &Kernels| {
-        each_body(frame, |body| {
+    let pitch = |message: &mut Message, _: &Kernels| {
+        each_body(message, |body| {
             if let Some(pitch) = body["joint"]["pitch"].as_f64() {
                 body["joint"]["pitch"] = json!(pitch / std::f64::consts::TAU);
             }
@@ -191,8 +191,8 @@ fn what_is_left_out_of_the_description() {
     };
     let found = wrong(Plant { request: pitch, ..HONEST });
     assert!(found.len() > 10 && found.iter().all(|line| line.contains("pitch of a helical joint is taken per revolution")), "{found:#?}");
-    let transposed = |frame: &mut Frame, _: &Kernels| {
-        each_body(frame, |body| {
+    let transposed = |message: &mut Message, _: &Kernels| {
+        each_body(message, |body| {
             if let Some(r) = body["joint"]["placement"]["rotation"].as_array().cloned().filter(|r| r.len() == 9) {
                 body["joint"]["placement"]["rotation"] = (0..9).map(|k| r[3 * (k % 3) + k / 3].clone()).collect();
             }
@@ -207,9 +207,9 @@ fn what_is_left_out_of_the_description() {
 /// Two mistakes at once are both named.
 #[test]
 fn two_mistakes() {
-    let request = |frame: &mut Frame, _: &Kernels| {
-        each_body(frame, |body| body["joint"]["armature"].as_array_mut().into_iter().flatten().for_each(|x| *x = json!(0.0)));
-        let gravity = frame.header.get_mut("model").and_then(|model| model.get_mut("gravity")).and_then(Value::as_array_mut);
+    let request = |message: &mut Message, _: &Kernels| {
+        each_body(message, |body| body["joint"]["armature"].as_array_mut().into_iter().flatten().for_each(|x| *x = json!(0.0)));
+        let gravity = message.header.get_mut("model").and_then(|model| model.get_mut("gravity")).and_then(Value::as_array_mut);
         gravity.into_iter().flatten().for_each(|x| *x = json!(0.0));
     };
     let found = wrong(Plant { request, ..HONEST });
@@ -221,7 +221,7 @@ fn two_mistakes() {
 
 #[test]
 fn half_a_matrix_and_numbers_that_are_none() {
-    let upper = |answer: &mut Frame, request: &Frame, kernels: &Kernels| {
+    let upper = |answer: &mut Message, request: &Message, kernels: &Kernels| {
         if let (Some(robot), "mass_matrix") = (&kernels.robot, request.text("quantity")) {
             let n = robot.states.nv;
             for block in &mut answer.blocks {
@@ -230,13 +230,13 @@ fn half_a_matrix_and_numbers_that_are_none() {
         }
     };
     named(Plant { answer: upper, ..HONEST }, &["mass_matrix"], "only the upper triangle");
-    let none = |answer: &mut Frame, request: &Frame, _: &Kernels| {
+    let none = |answer: &mut Message, request: &Message, _: &Kernels| {
         if request.text("quantity") == "com" {
             answer.blocks.iter_mut().for_each(|block| block.data.fill(f64::NAN));
         }
     };
     named(Plant { answer: none, ..HONEST }, &["com"], "NaN");
-    let odd = |answer: &mut Frame, request: &Frame, _: &Kernels| {
+    let odd = |answer: &mut Message, request: &Message, _: &Kernels| {
         if request.text("quantity") == "com" {
             answer.blocks.iter_mut().flat_map(|block| &mut block.data).for_each(|x| *x *= 1.0 + 1e-6);
         }
@@ -358,21 +358,21 @@ fn bad_manners() {
     }
 }
 
-fn ok() -> Frame {
-    Frame::new(json!({"status": "ok"}), Vec::new())
+fn ok() -> Message {
+    Message::new(json!({"status": "ok"}), Vec::new())
 }
 
 #[test]
 fn ids_and_deaths() {
-    let echo = |answer: &mut Frame, request: &Frame, _: &Kernels| {
+    let echo = |answer: &mut Message, request: &Message, _: &Kernels| {
         if let Some(id) = request.header.get("id") {
             answer.header.insert("id".into(), id.clone());
         }
     };
     assert!(test(Plant { answer: echo, ..HONEST }).of(Standing::Lacks).all(|finding| finding.what != "the ids of requests"));
-    let wrong_id = |answer: &mut Frame, _: &Frame, _: &Kernels| drop(answer.header.insert("id".into(), json!(7)));
+    let wrong_id = |answer: &mut Message, _: &Message, _: &Kernels| drop(answer.header.insert("id".into(), json!(7)));
     assert!(wrong(Plant { answer: wrong_id, ..HONEST }).iter().any(|line| line.contains("41 was sent, 7 came back")));
-    let dies = |answer: &mut Frame, request: &Frame, _: &Kernels| {
+    let dies = |answer: &mut Message, request: &Message, _: &Kernels| {
         if request.blocks.iter().any(|block| block.data.iter().any(|x| x.is_nan())) {
             answer.header["status"] = json!("dead");
         }
@@ -384,11 +384,11 @@ fn ids_and_deaths() {
 /// The numbers of joints with several degrees of freedom in another order, in requests and answers.
 #[test]
 fn coordinates_in_another_order() {
-    fn reversed(frame: &mut Frame, kernels: &Kernels, kind: &str) {
+    fn reversed(message: &mut Message, kernels: &Kernels, kind: &str) {
         for (name, size) in
             [("q", JointType::nq as fn(JointType) -> usize), ("v", JointType::nv), ("a", JointType::nv), ("tau", JointType::nv)]
         {
-            each_state(frame, kernels, name, |x, _, robot| {
+            each_state(message, kernels, name, |x, _, robot| {
                 let mut at = 0;
                 for joint in robot.description.bodies.iter().map(|body| body.joint.kind) {
                     if joint.name() == kind {
@@ -399,10 +399,10 @@ fn coordinates_in_another_order() {
             });
         }
     }
-    let distance_first = |frame: &mut Frame, kernels: &Kernels| reversed(frame, kernels, "cylindrical");
-    let x_first = |frame: &mut Frame, kernels: &Kernels| reversed(frame, kernels, "euler_zyx");
+    let distance_first = |message: &mut Message, kernels: &Kernels| reversed(message, kernels, "cylindrical");
+    let x_first = |message: &mut Message, kernels: &Kernels| reversed(message, kernels, "euler_zyx");
     // Answers without dofs suffice to show it: the others would have to be put back in order.
-    for (request, words) in [(distance_first as fn(&mut Frame, &Kernels), "[distance, angle]"), (x_first, "about x, y and z")] {
+    for (request, words) in [(distance_first as fn(&mut Message, &Kernels), "[distance, angle]"), (x_first, "about x, y and z")] {
         let found = wrong(Plant { request, ..HONEST });
         for quantity in ["body_placement", "body_velocity", "kinetic_energy", "momentum"] {
             let about = found.iter().find(|line| line.starts_with(quantity)).unwrap_or_else(|| panic!("{quantity}: {found:#?}"));

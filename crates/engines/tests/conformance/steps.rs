@@ -2,19 +2,19 @@
 
 use super::kernels::{HONEST, Kernels, Plant};
 use super::{test, wrong};
-use featherbench_bench::frame::Frame;
 use featherbench_engines::conformance::Standing;
+use featherbench_protocol::Message;
 use serde_json::{Value, json};
 
 /// Makes `hello` say this about steps.
-fn told(answer: &mut Frame, request: &Frame, steps: Value) {
+fn told(answer: &mut Message, request: &Message, steps: Value) {
     if request.text("op") == "hello" {
         answer.header.insert("steps".into(), steps);
     }
 }
 
 /// Makes it offer the integrator without error.
-fn offered(answer: &mut Frame, request: &Frame, _: &Kernels) {
+fn offered(answer: &mut Message, request: &Message, _: &Kernels) {
     told(answer, request, json!({"methods": ["exact"]}));
 }
 
@@ -22,7 +22,7 @@ fn offered(answer: &mut Frame, request: &Frame, _: &Kernels) {
 const STEPPING: Plant = Plant { answer: offered, ..HONEST };
 
 /// Changes the numbers that answer one op, state after state.
-fn change(answer: &mut Frame, request: &Frame, op: &str, to: impl Fn(&mut f64)) {
+fn change(answer: &mut Message, request: &Message, op: &str, to: impl Fn(&mut f64)) {
     let value = answer.blocks.iter_mut().filter(|block| request.text("op") == op && block.name == "value");
     value.for_each(|block| block.data.iter_mut().for_each(&to));
 }
@@ -50,13 +50,13 @@ fn honest_steps_are_right() {
 
 #[test]
 fn another_acceleration_is_found() {
-    let answer = |answer: &mut Frame, request: &Frame, kernels: &Kernels| {
+    let answer = |answer: &mut Message, request: &Message, kernels: &Kernels| {
         offered(answer, request, kernels);
         change(answer, request, "step", |a| *a *= 1.001);
     };
     let found = wrong(Plant { answer, ..HONEST });
     assert!(found.len() == 1 && found[0].starts_with("step by exact: 25 of 25 robots are off"), "{found:?}");
-    let answer = |answer: &mut Frame, request: &Frame, kernels: &Kernels| {
+    let answer = |answer: &mut Message, request: &Message, kernels: &Kernels| {
         offered(answer, request, kernels);
         change(answer, request, "step", |a| *a = f64::NAN);
     };
@@ -66,7 +66,7 @@ fn another_acceleration_is_found() {
 
 #[test]
 fn another_energy_is_found() {
-    let answer = |answer: &mut Frame, request: &Frame, kernels: &Kernels| {
+    let answer = |answer: &mut Message, request: &Message, kernels: &Kernels| {
         offered(answer, request, kernels);
         change(answer, request, "fall", |e| *e = -*e);
     };
@@ -76,7 +76,7 @@ fn another_energy_is_found() {
 
 #[test]
 fn other_shapes_and_lengths_are_found() {
-    let answer = |answer: &mut Frame, request: &Frame, kernels: &Kernels| {
+    let answer = |answer: &mut Message, request: &Message, kernels: &Kernels| {
         offered(answer, request, kernels);
         if request.text("op") == "fall"
             && let Some(block) = answer.blocks.first_mut()
@@ -86,9 +86,9 @@ fn other_shapes_and_lengths_are_found() {
     };
     let found = wrong(Plant { answer, ..HONEST });
     assert!(!found.is_empty() && found.iter().all(|line| line.starts_with("fall by exact") && line.contains("is due")), "{found:?}");
-    let request = |frame: &mut Frame, _: &Kernels| {
-        if frame.header.get("dt").and_then(Value::as_f64) == Some(0.0) {
-            frame.header.insert("dt".into(), json!(1.0));
+    let request = |message: &mut Message, _: &Kernels| {
+        if message.header.get("dt").and_then(Value::as_f64) == Some(0.0) {
+            message.header.insert("dt".into(), json!(1.0));
         }
     };
     let found = wrong(Plant { request, ..STEPPING });
@@ -97,7 +97,7 @@ fn other_shapes_and_lengths_are_found() {
 
 #[test]
 fn steps_that_are_none_are_found() {
-    let answer = |answer: &mut Frame, request: &Frame, _: &Kernels| told(answer, request, json!({"methods": []}));
+    let answer = |answer: &mut Message, request: &Message, _: &Kernels| told(answer, request, json!({"methods": []}));
     let found = wrong(Plant { answer, ..HONEST });
     assert!(found.len() == 1 && found[0].contains("no method"), "{found:?}");
 }
