@@ -8,9 +8,11 @@
 //! The functions of one body and the book's symbols:
 //!
 //! - `set_moving` (pass 1, outward): ω, c, Iᴬ = I, pᴬ = v ×* I v.
-//! - `release` (pass 2, inward): U = Iᴬ S, D = Sᵀ U + armature, u = τ − Sᵀ pᴬ. It adds X* Iᵃ X⁻¹ and X* pᵃ to the parent.
-//! - `accelerate` (pass 3, outward): a' = X a_p + c, q̈ = D⁻¹ (u − Uᵀ a'), a = a' + S q̈.
-//! - `transmit` (pass 2 of [`Aba::respond`]): u and pᵃ = pᴬ + U D⁻¹ u, with U and D of the last run.
+//! - `apparent_inertia` (pass 2, inward): U = Iᴬ S, D = Sᵀ U + armature, u = τ − Sᵀ pᴬ. It adds X* Iᵃ X⁻¹ and X* pᵃ to the parent.
+//! - `joint_acceleration` (pass 3, outward): a' = X a_p + c, q̈ = D⁻¹ (u − Uᵀ a'), a = a' + S q̈.
+//! - `apparent_bias_force` (pass 2 of [`Aba::solve`]): u and pᵃ = pᴬ + U D⁻¹ u, with U and D of the last run.
+//!
+//! In the code U is `upper_u`, because `u` is the book's u.
 
 use crate::error::{Pivot, expect};
 use crate::step::{add_joint, by_kind, cross_joint, expect_bodies, expect_wrenches, newton_euler, parent_link};
@@ -37,10 +39,10 @@ struct Link<T> {
     inertia: ArticulatedInertia<T>,
     /// Bias force pᴬ.
     p: Force<T>,
-    /// Of a one-dof joint: `u` = U/D (the local `u` of `release` is U itself), `d_inverse` = 1/D, `rate` = u/D.
-    u: Force<T>,
+    /// Of a one-dof joint: U D⁻¹, D⁻¹ and D⁻¹ u.
+    u_d_inverse: Force<T>,
     d_inverse: T,
-    rate: T,
+    d_inverse_u: T,
     /// Classical acceleration a.
     a: Motion<T>,
 }
@@ -54,9 +56,9 @@ impl<T: Real> Aba<T> {
             c: Motion::zero(),
             inertia: ArticulatedInertia::zero(),
             p: Force::zero(),
-            u: Force::zero(),
+            u_d_inverse: Force::zero(),
             d_inverse: T::zero(),
-            rate: T::zero(),
+            d_inverse_u: T::zero(),
             a: Motion::zero(),
         };
         Self { links: vec![rest; topology.bodies() + 1] }
@@ -99,28 +101,28 @@ impl<T: Real> Aba<T> {
         for (i, joint) in joints.iter().enumerate().rev() {
             let (before, rest) = self.links.split_at_mut(i + 1);
             let parent = joint.parent.map(|parent| &mut before[parent + 1]);
-            by_kind!(joint.kind, release, model, i, tau, &mut rest[0], parent, &mut smallest);
+            by_kind!(joint.kind, apparent_inertia, model, i, tau, &mut rest[0], parent, &mut smallest);
         }
 
         // outward: a' = X a_p + c,  q̈ = D⁻¹ (u − Uᵀ a'),  a_i = a' + S q̈
         for (i, joint) in joints.iter().enumerate() {
             let (before, rest) = self.links.split_at_mut(i + 1);
             let (parent, link) = (&before[parent_link(joint)], &mut rest[0]);
-            by_kind!(joint.kind, accelerate, model, i, parent.a, tau, a, link, &mut smallest);
+            by_kind!(joint.kind, joint_acceleration, model, i, parent.a, tau, a, link, &mut smallest);
         }
         Ok(smallest.check()?)
     }
 
-    /// The response `x = M⁻¹ f` to joint forces alone: v = 0 and no gravity, at the configuration of the last successful run with this
+    /// The solution `x` of `M x = f`: the accelerations by joint forces alone, with v = 0 and no gravity, at the configuration of the last successful run with this
     /// model.
     /// It uses the articulated inertias of that run again, and so takes a third of its time.
     ///
     /// # Errors
     /// [`DimensionError`] when an argument or the workspace does not fit the model.
-    pub fn respond<P: Real + Lift<T>>(&mut self, model: &Model<P>, f: &[T], x: &mut [T]) -> Result<(), DimensionError> {
+    pub fn solve<P: Real + Lift<T>>(&mut self, model: &Model<P>, f: &[T], x: &mut [T]) -> Result<(), DimensionError> {
         expect_bodies(model, self.links.len() - 1)?;
         expect("joint forces f", model.topology.nv(), f.len())?;
-        expect("response x", model.topology.nv(), x.len())?;
+        expect("solution x", model.topology.nv(), x.len())?;
         let joints = model.topology.joints();
         for link in &mut self.links {
             (link.p, link.a, link.c) = (Force::zero(), Motion::zero(), Motion::zero());
@@ -130,7 +132,7 @@ impl<T: Real> Aba<T> {
         for (i, joint) in joints.iter().enumerate().rev() {
             let (before, rest) = self.links.split_at_mut(i + 1);
             let parent = joint.parent.map(|parent| &mut before[parent + 1]);
-            by_kind!(joint.kind, transmit, model, i, f, &mut rest[0], parent);
+            by_kind!(joint.kind, apparent_bias_force, model, i, f, &mut rest[0], parent);
         }
 
         // outward: as in a run, with v = 0
@@ -138,7 +140,7 @@ impl<T: Real> Aba<T> {
         for (i, joint) in joints.iter().enumerate() {
             let (before, rest) = self.links.split_at_mut(i + 1);
             let (parent, link) = (&before[parent_link(joint)], &mut rest[0]);
-            by_kind!(joint.kind, accelerate, model, i, parent.a, f, x, link, &mut smallest);
+            by_kind!(joint.kind, joint_acceleration, model, i, parent.a, f, x, link, &mut smallest);
         }
         Ok(())
     }
@@ -179,9 +181,9 @@ fn set_moving<T: Real, P: Real + Lift<T>>(kind: JointKind, model: &Model<P>, i: 
 
 /// Pass 2 for one body: the apparent inertia Iᵃ (`apparent`) and force pᵃ (`force`) that its parent feels across the free joint.
 ///
-/// In the arm of one-dof joints `u` is the book's U, `d` is D, and `push` is Sᵀ pᴬ. `smallest` takes note of the pivots D.
+/// `smallest` takes note of the pivots D.
 #[inline(always)]
-fn release<T: Real, P: Real + Lift<T>>(
+fn apparent_inertia<T: Real, P: Real + Lift<T>>(
     kind: JointKind,
     model: &Model<P>,
     i: usize,
@@ -196,35 +198,35 @@ fn release<T: Real, P: Real + Lift<T>>(
         JointKind::Revolute | JointKind::Prismatic | JointKind::Helical => {
             let subspace = model.subspaces[i].lift();
             // U = Iᴬ S,  D = Sᵀ U + armature,  u = τ − Sᵀ pᴬ
-            let (u, d, push) = match kind {
+            let (upper_u, d, s_p) = match kind {
                 JointKind::Revolute => {
-                    let u = Force::new(inertia.rotational * subspace.ang, inertia.coupling.transpose_mul(subspace.ang));
-                    (u, subspace.ang.dot(u.ang), subspace.ang.dot(p.ang))
+                    let upper_u = Force::new(inertia.rotational * subspace.ang, inertia.coupling.transpose_mul(subspace.ang));
+                    (upper_u, subspace.ang.dot(upper_u.ang), subspace.ang.dot(p.ang))
                 }
                 JointKind::Prismatic => {
-                    let u = Force::new(inertia.coupling * subspace.lin, inertia.translational * subspace.lin);
-                    (u, subspace.lin.dot(u.lin), subspace.lin.dot(p.lin))
+                    let upper_u = Force::new(inertia.coupling * subspace.lin, inertia.translational * subspace.lin);
+                    (upper_u, subspace.lin.dot(upper_u.lin), subspace.lin.dot(p.lin))
                 }
                 _ => {
-                    let u = inertia.mul(subspace);
-                    (u, subspace.dot(u), subspace.dot(p))
+                    let upper_u = inertia.mul(subspace);
+                    (upper_u, subspace.dot(upper_u), subspace.dot(p))
                 }
             };
             let d = d + model.armature[dof].lift();
             smallest.note(dof, d.min_lane());
             let d_inverse = T::one() / d;
-            (link.u, link.d_inverse) = (u * d_inverse, d_inverse);
-            link.rate = (tau[dof] - push) * d_inverse;
+            (link.u_d_inverse, link.d_inverse) = (upper_u * d_inverse, d_inverse);
+            link.d_inverse_u = (tau[dof] - s_p) * d_inverse;
             // Iᵃ = Iᴬ − U D⁻¹ Uᵀ,  pᵃ = pᴬ + Iᵃ c + U D⁻¹ u
-            let apparent = inertia.subtract_rank_one(d_inverse, u);
-            (Some(apparent), u.scale_add(link.rate, p + apparent.mul(link.c)))
+            let apparent = inertia.subtract_rank_one(d_inverse, upper_u);
+            (Some(apparent), upper_u.scale_add(link.d_inverse_u, p + apparent.mul(link.c)))
         }
         JointKind::Spherical => {
             // S = [1; 0]: U = [I; Hᵀ],  D = I + R, R the diagonal armature. The formulas form no difference of nearly equal numbers:
             // Iᵃ = R − R D⁻¹ R,  Hᵃ = R D⁻¹ H,  Mᵃ = M − Hᵀ D⁻¹ H
             let armature = spherical_armature(model, dof);
             let d = (inertia.rotational + diagonal(armature)).factor();
-            note_three(smallest, dof, &d);
+            note_pivots(smallest, dof, &d);
             let (w, translational) = schur(inertia.translational, inertia.coupling.transpose(), &d);
             let carried = w.transpose();
             let scale_rows = |m: Mat3<T>| Mat3::from_rows(m.x * armature.x, m.y * armature.y, m.z * armature.z);
@@ -235,8 +237,8 @@ fn release<T: Real, P: Real + Lift<T>>(
                 coupling: scale_rows(carried),
                 translational,
             };
-            let rate = d.solve(three(&tau[dof..]) - p.ang);
-            (Some(apparent), p + apparent.mul(link.c) + inertia.mul(Motion::new(rate, Vec3::zero())))
+            let d_inverse_u = d.solve(vec3(&tau[dof..]) - p.ang);
+            (Some(apparent), p + apparent.mul(link.c) + inertia.mul(Motion::new(d_inverse_u, Vec3::zero())))
         }
         // S = 1 and no armature: Iᵃ = 0,  pᵃ = τ
         JointKind::Free => (None, free_force(&tau[dof..])),
@@ -249,11 +251,9 @@ fn release<T: Real, P: Real + Lift<T>>(
     }
 }
 
-/// Pass 2 of [`Aba::respond`] for one body, whose Iᴬ, U and D are known: adds X* pᵃ, pᵃ = pᴬ + U D⁻¹ u, to the parent's pᴬ.
-///
-/// Here `push` is the book's u = f − Sᵀ pᴬ.
+/// Pass 2 of [`Aba::solve`] for one body, whose Iᴬ, U and D are known: adds X* pᵃ, pᵃ = pᴬ + U D⁻¹ u, to the parent's pᴬ.
 #[inline(always)]
-fn transmit<T: Real, P: Real + Lift<T>>(
+fn apparent_bias_force<T: Real, P: Real + Lift<T>>(
     kind: JointKind,
     model: &Model<P>,
     i: usize,
@@ -265,19 +265,20 @@ fn transmit<T: Real, P: Real + Lift<T>>(
     let (subspace, p) = (model.subspaces[i].lift(), link.p);
     let force = match kind {
         JointKind::Revolute | JointKind::Prismatic | JointKind::Helical => {
-            let push = f[dof]
+            // u = f − Sᵀ pᴬ
+            let u = f[dof]
                 - match kind {
                     JointKind::Revolute => subspace.ang.dot(p.ang),
                     JointKind::Prismatic => subspace.lin.dot(p.lin),
                     _ => subspace.dot(p),
                 };
-            link.rate = push * link.d_inverse;
-            link.u.scale_add(push, p)
+            link.d_inverse_u = u * link.d_inverse;
+            link.u_d_inverse.scale_add(u, p)
         }
         JointKind::Spherical => {
             let d = (link.inertia.rotational + diagonal(spherical_armature(model, dof))).factor();
-            let rate = d.solve(three(&f[dof..]) - p.ang);
-            p + link.inertia.mul(Motion::new(rate, Vec3::zero()))
+            let d_inverse_u = d.solve(vec3(&f[dof..]) - p.ang);
+            p + link.inertia.mul(Motion::new(d_inverse_u, Vec3::zero()))
         }
         JointKind::Free => free_force(&f[dof..]),
     };
@@ -287,11 +288,9 @@ fn transmit<T: Real, P: Real + Lift<T>>(
 }
 
 /// Pass 3 for one body: q̈ = D⁻¹ (u − Uᵀ a') and a = a' + S q̈, where `carried` is a' = X a_p + c.
-///
-/// `push` is u − Uᵀ a' of a spherical joint, and τ − pᴬ of a free joint.
 #[inline(always)]
 #[expect(clippy::too_many_arguments, reason = "one body's step reads the model and the inputs, and writes the outputs")]
-fn accelerate<T: Real, P: Real + Lift<T>>(
+fn joint_acceleration<T: Real, P: Real + Lift<T>>(
     kind: JointKind,
     model: &Model<P>,
     i: usize,
@@ -306,17 +305,17 @@ fn accelerate<T: Real, P: Real + Lift<T>>(
     match kind {
         JointKind::Revolute | JointKind::Prismatic | JointKind::Helical => {
             // the angular part is known first: two short sums are faster than one long sum
-            a[dof] = link.rate - link.u.ang.dot(carried.ang) - link.u.lin.dot(carried.lin);
+            a[dof] = link.d_inverse_u - link.u_d_inverse.ang.dot(carried.ang) - link.u_d_inverse.lin.dot(carried.lin);
         }
         JointKind::Spherical => {
             let d = (link.inertia.rotational + diagonal(spherical_armature(model, dof))).factor();
-            let push = three(&tau[dof..]) - link.p.ang - link.inertia.mul(carried).ang;
-            a[dof..dof + 3].copy_from_slice(&d.solve(push).to_array());
+            let u = vec3(&tau[dof..]) - link.p.ang;
+            a[dof..dof + 3].copy_from_slice(&d.solve(u - link.inertia.mul(carried).ang).to_array());
         }
         JointKind::Free => {
-            // Iᴬ (a' + S q̈) + pᴬ = S τ
-            let push = free_force(&tau[dof..]) - link.p;
-            let whole = solve(&link.inertia, push, dof, smallest);
+            // Iᴬ (a' + S q̈) + pᴬ = S τ,  S = 1:  u = τ − pᴬ
+            let u = free_force(&tau[dof..]) - link.p;
+            let whole = solve(&link.inertia, u, dof, smallest);
             let across = whole - carried;
             a[dof..dof + 3].copy_from_slice(&across.lin.to_array());
             a[dof + 3..dof + 6].copy_from_slice(&across.ang.to_array());
@@ -336,17 +335,17 @@ fn schur<T: Real>(a: Sym3<T>, b: Mat3<T>, d: &Ldl3<T>) -> (Mat3<T>, Sym3<T>) {
 #[inline(always)]
 fn solve<T: Real>(inertia: &ArticulatedInertia<T>, f: Force<T>, dof: usize, smallest: &mut Pivot) -> Motion<T> {
     let translation = inertia.translational.factor();
-    note_three(smallest, dof, &translation);
+    note_pivots(smallest, dof, &translation);
     let (w, rotational) = schur(inertia.rotational, inertia.coupling, &translation);
     let rotation = rotational.factor();
-    note_three(smallest, dof + 3, &rotation);
+    note_pivots(smallest, dof + 3, &rotation);
     let ang = rotation.solve(f.ang - w * f.lin);
     Motion::new(ang, translation.solve(f.lin) - w.transpose_mul(ang))
 }
 
 /// Takes note of the three pivots of a 3×3 block whose first dof is `dof`.
 #[inline(always)]
-fn note_three<T: Real>(smallest: &mut Pivot, dof: usize, factors: &Ldl3<T>) {
+fn note_pivots<T: Real>(smallest: &mut Pivot, dof: usize, factors: &Ldl3<T>) {
     for (k, pivot) in factors.pivots.to_array().into_iter().enumerate() {
         smallest.note(dof + k, pivot.min_lane());
     }
@@ -361,20 +360,20 @@ fn diagonal<T: Real>(d: Vec3<T>) -> Sym3<T> {
 
 /// The vector of the first three values.
 #[inline(always)]
-fn three<T: Real>(values: &[T]) -> Vec3<T> {
+fn vec3<T: Real>(values: &[T]) -> Vec3<T> {
     Vec3::new(values[0], values[1], values[2])
 }
 
 /// The three armatures of the spherical joint whose first dof is `dof`: the diagonal of R.
 #[inline(always)]
 fn spherical_armature<T: Real, P: Real + Lift<T>>(model: &Model<P>, dof: usize) -> Vec3<T> {
-    three(&model.armature[dof..]).lift()
+    vec3(&model.armature[dof..]).lift()
 }
 
 /// The joint force of a free joint, in the order [force; moment].
 #[inline(always)]
 fn free_force<T: Real>(tau: &[T]) -> Force<T> {
-    Force::new(three(&tau[3..]), three(tau))
+    Force::new(vec3(&tau[3..]), vec3(tau))
 }
 
 /// Forward dynamics that makes its own workspace, without external wrenches; it allocates.

@@ -4,7 +4,7 @@
 //!
 //! 1. a ← ABA(τ) in `f64`; its articulated inertias stay for step 3;
 //! 2. r ← τ − ID(a) in `R`: with 32 digits this keeps what cancels;
-//! 3. δ ← M⁻¹ r by [`Aba::respond`] in `f64`, and a ← a + δ in `R`;
+//! 3. δ ← M⁻¹ r by [`Aba::solve`] in `f64`, and a ← a + δ in `R`;
 //! 4. each further step: r ← r − M δ in `f64`, and step 3 again.
 //!
 //! **What it gives and costs**: the largest relative error in the 2-norm, and the time in calls of [`Aba::run`].
@@ -113,7 +113,7 @@ where
                 // r −= M δ
                 self.product.subtract(model, &self.aba, &self.correction, &mut self.residual);
             }
-            self.aba.respond(model, &self.residual, &mut self.correction)?;
+            self.aba.solve(model, &self.residual, &mut self.correction)?;
             for (a, correction) in self.a.iter_mut().zip(&self.correction) {
                 *a += correction.lift();
             }

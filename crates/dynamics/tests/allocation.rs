@@ -65,7 +65,7 @@ fn no_algorithm_allocates_in_a_call() {
             rnea.run(&model, q, v, a, Some(&f), &mut out).unwrap();
             bias.run(&model, q, v, Some(&f), &mut out).unwrap();
             aba.run(&model, q, v, tau, Some(&f), &mut out).unwrap();
-            aba.respond(&model, tau, &mut out).unwrap();
+            aba.solve(&model, tau, &mut out).unwrap();
             refined.run(&model, q, v, tau, Some(&f), &mut out).unwrap();
             extended.run(&model, q, v, tau, None, &mut out).unwrap();
             assert!(refined.accelerations().len() + refined.correction().len() == 2 * t.nv());

@@ -183,7 +183,7 @@ fn articulated_inertia_of_a_box_with_a_free_cylinder() {
         let cylinder = body(Some(0), cylinder_mass, [0.0; 3], cylinder_inertia, kind, [0.0; 3]);
         build([0.0; 3], vec![body(None, box_mass, [0.0; 3], box_inertia, JointType::Free, [0.0; 3]), cylinder])
     };
-    let push = |model: &Model<f64>, k: usize| {
+    let apparent_mass = |model: &Model<f64>, k: usize| {
         let mut tau = [0.0; 7];
         tau[k] = 1.0;
         1.0 / forward_dynamics(model, &at_rest.0, &at_rest.1, &tau).unwrap()[k]
@@ -193,13 +193,13 @@ fn articulated_inertia_of_a_box_with_a_free_cylinder() {
     let both = box_mass + cylinder_mass;
     let turned: Vec<f64> = (0..3).map(|k| [0.5, 0.6, 0.7][k] + [0.03, 0.02, 0.03][k]).collect();
     let expected = [both, box_mass, both, turned[0], turned[1], turned[2]];
-    let felt: Vec<f64> = (0..6).map(|k| push(&sliding, k)).collect();
-    within("box with a sliding cylinder", common::distance(&felt, &expected), FEW_ROUNDINGS);
+    let found: Vec<f64> = (0..6).map(|k| apparent_mass(&sliding, k)).collect();
+    within("box with a sliding cylinder", common::distance(&found, &expected), FEW_ROUNDINGS);
 
     let spinning = pair(JointType::Revolute { axis: y });
     let expected = [both, both, both, turned[0], 0.6, turned[2]];
-    let felt: Vec<f64> = (0..6).map(|k| push(&spinning, k)).collect();
-    within("box with a spinning cylinder", common::distance(&felt, &expected), FEW_ROUNDINGS);
+    let found: Vec<f64> = (0..6).map(|k| apparent_mass(&spinning, k)).collect();
+    within("box with a spinning cylinder", common::distance(&found, &expected), FEW_ROUNDINGS);
 }
 
 #[test]

@@ -35,7 +35,7 @@ fn truth<P: Real + Lift<DoubleDouble>>(model: &Model<P>, q: &[f64], v: &[f64], t
     for _ in 0..2 {
         rnea.run(model, &q, &v, &a, wrenches, &mut taken).unwrap();
         let residual: Extended = tau.iter().zip(&taken).map(|(tau, taken)| *tau - *taken).collect();
-        aba.respond(model, &residual, &mut correction).unwrap();
+        aba.solve(model, &residual, &mut correction).unwrap();
         a.iter_mut().zip(&correction).for_each(|(a, correction)| *a += *correction);
     }
     a
@@ -150,7 +150,7 @@ fn every_kind_of_joint_with_wrenches_and_armature() {
 }
 
 #[test]
-fn responses_are_those_of_the_mass_matrix() {
+fn solutions_are_those_of_the_mass_matrix() {
     for (name, recipe) in &ROBOTS {
         let model = build(recipe);
         let t = &model.topology;
@@ -161,9 +161,9 @@ fn responses_are_those_of_the_mass_matrix() {
             aba.run(&model, states.q(k), states.v(k), states.tau(k), None, &mut a).unwrap();
             crba.run(&model, states.q(k), ltdl.matrix_mut()).unwrap();
             ltdl.factor().unwrap();
-            // Twice on one workspace: a response leaves the inertias as they are.
+            // Twice on one workspace: a solution leaves the inertias as they are.
             for f in [states.a(k), states.v(k)] {
-                aba.respond(&model, f, &mut x).unwrap();
+                aba.solve(&model, f, &mut x).unwrap();
                 y.copy_from_slice(f);
                 ltdl.solve(&mut y).unwrap();
                 // The factorization loses up to a hundred units in the last place to the condition numbers of these robots.
@@ -221,10 +221,10 @@ fn steps_converge_and_say_how_far_they_moved() {
             *worst = larger(*worst, error(workspace.accelerations(), &truth));
         }
     }
-    let [plain, one, two, three] = errors;
+    let [plain, first, second, third] = errors;
     assert!(plain > 1e-8, "the plain algorithm loses more than half of the digits: {plain:e}");
     // Seen: 3e-6, 5e-11, 7e-16, 3e-20. Each step adds about as many digits as the start had.
-    assert!(one < 1e-4 * plain && two < 1e-4 * one && three < 1e-3 * two, "{errors:?}");
+    assert!(first < 1e-4 * plain && second < 1e-4 * first && third < 1e-3 * second, "{errors:?}");
 }
 
 #[test]
@@ -261,9 +261,9 @@ fn bad_input_is_answered() {
     let mut foreign = Refined::<Compensated>::new(&other.topology, 1);
     assert!(refusal(foreign.run(&model, &q, &x, &x, None, &mut a)).0.ends_with("of the workspace"));
     let mut aba = Aba::<f64>::new(t);
-    assert_eq!(refusal(aba.respond(&model, &short, &mut a).map_err(Error::from)), ("joint forces f", nv, nv - 1));
-    assert_eq!(refusal(aba.respond(&model, &x, &mut short_a).map_err(Error::from)), ("response x", nv, nv - 1));
-    assert!(refusal(aba.respond(&other, &x, &mut a).map_err(Error::from)).0.ends_with("of the workspace"));
+    assert_eq!(refusal(aba.solve(&model, &short, &mut a).map_err(Error::from)), ("joint forces f", nv, nv - 1));
+    assert_eq!(refusal(aba.solve(&model, &x, &mut short_a).map_err(Error::from)), ("solution x", nv, nv - 1));
+    assert!(refusal(aba.solve(&other, &x, &mut a).map_err(Error::from)).0.ends_with("of the workspace"));
 }
 
 #[test]
