@@ -1,8 +1,8 @@
 //! The oracle's answers about robots: shapes, repetition, ranges, and values compared with featherbench's.
 
-use super::manners::Methods;
-use super::mistakes::{MISTAKES, Mistake};
-use super::talk::Talk;
+use super::exchange::Exchange;
+use super::hypotheses::{HYPOTHESES, Hypothesis};
+use super::protocol::Methods;
 use super::values::{Scene, same_bits};
 use super::{Standing, robots};
 use crate::request::states;
@@ -21,23 +21,23 @@ pub(super) struct Answers {
 }
 
 /// Asks for every quantity of a robot; returns whether the oracle then has robot and states.
-pub(super) fn ask(talk: &mut Talk, index: usize, scene: &Scene, offered: &Methods, answers: &mut Answers) -> bool {
+pub(super) fn ask(exchange: &mut Exchange, index: usize, scene: &Scene, offered: &Methods, answers: &mut Answers) -> bool {
     let robot = &scene.robot;
-    let built = match talk.prepare(robot) {
+    let built = match exchange.prepare(robot) {
         Ok(built) => built,
         Err(reason) => {
-            talk.note(Standing::Wrong, scene.shows, &reason, &[]);
+            exchange.note(Standing::Wrong, scene.shows, &reason, &[]);
             return false;
         }
     };
     match built.text("status") {
         "unsupported" => {
-            talk.note(Standing::Lacks, scene.shows, built.text("reason"), &[]);
+            exchange.note(Standing::Lacks, scene.shows, built.text("reason"), &[]);
             return false;
         }
         "error" => {
             let advice = ["a robot that the engine does not have is `unsupported`; `error` is for what should have worked"];
-            talk.note(Standing::Wrong, scene.shows, built.text("reason"), &advice);
+            exchange.note(Standing::Wrong, scene.shows, built.text("reason"), &advice);
             return false;
         }
         _ => {}
@@ -45,25 +45,25 @@ pub(super) fn ask(talk: &mut Talk, index: usize, scene: &Scene, offered: &Method
     for (key, due) in [("nq", robot.description.nq()), ("nv", robot.states.nv)] {
         let found = built.header.get(key).unwrap_or(&Value::Null);
         if found.as_u64() != Some(due as u64) {
-            talk.note(Standing::Wrong, "prepare tells nq and nv", &format!("{key} of {} is {found}, {due} is due", scene.shows), &[]);
+            exchange.note(Standing::Wrong, "prepare tells nq and nv", &format!("{key} of {} is {found}, {due} is due", scene.shows), &[]);
         }
     }
     match shape::block(&built, "readback", &shape::of_readback(robot)) {
-        Ok(numbers) => readback(talk, scene, numbers),
-        Err(found) => talk.note(Standing::Wrong, "prepare reads the robot back", &format!("{}: {found}", scene.shows), &[]),
+        Ok(numbers) => readback(exchange, scene, numbers),
+        Err(found) => exchange.note(Standing::Wrong, "prepare reads the robot back", &format!("{}: {found}", scene.shows), &[]),
     }
-    evaluate_all(talk, index, scene, offered, answers)
+    evaluate_all(exchange, index, scene, offered, answers)
 }
 
 /// Asks for every quantity by every method of the robot that it has built; returns whether it took the states.
-pub(super) fn evaluate_all(talk: &mut Talk, index: usize, scene: &Scene, offered: &Methods, answers: &mut Answers) -> bool {
+pub(super) fn evaluate_all(exchange: &mut Exchange, index: usize, scene: &Scene, offered: &Methods, answers: &mut Answers) -> bool {
     let (header, blocks) = states(&scene.robot, &scene.robot.states);
-    if talk.expect("states are taken", header, blocks, &["ok"]).is_none() {
+    if exchange.expect("states are taken", header, blocks, &["ok"]).is_none() {
         return false;
     }
     for (quantity, method) in offered.iter().flat_map(|(quantity, methods)| methods.iter().map(move |method| (quantity, method))) {
         let Some(asked) = Quantity::parse(quantity) else { continue };
-        if let Some(value) = evaluations(talk, scene, asked, method) {
+        if let Some(value) = evaluations(exchange, scene, asked, method) {
             answers.given.entry((quantity.clone(), method.clone())).or_default().push((index, value));
         }
     }
@@ -71,41 +71,43 @@ pub(super) fn evaluate_all(talk: &mut Talk, index: usize, scene: &Scene, offered
 }
 
 /// One quantity by one method, asked for in several ways.
-fn evaluations(talk: &mut Talk, scene: &Scene, quantity: Quantity, method: &str) -> Option<Vec<f64>> {
+fn evaluations(exchange: &mut Exchange, scene: &Scene, quantity: Quantity, method: &str) -> Option<Vec<f64>> {
     let named = format!("{} by {method}", quantity.name());
-    repeated(talk, &named, quantity.size(&scene.robot), |talk, first, count| evaluate(talk, scene, quantity, method, first, count))
+    repeated(exchange, &named, quantity.size(&scene.robot), |exchange, first, count| {
+        evaluate(exchange, scene, quantity, method, first, count)
+    })
 }
 
 /// Answers of this number of values per state: for the whole batch, for it again, and for parts of it.
 pub(super) fn repeated(
-    talk: &mut Talk,
+    exchange: &mut Exchange,
     named: &str,
     size: usize,
-    mut ask: impl FnMut(&mut Talk, usize, usize) -> Option<Vec<f64>>,
+    mut ask: impl FnMut(&mut Exchange, usize, usize) -> Option<Vec<f64>>,
 ) -> Option<Vec<f64>> {
-    let whole = ask(talk, 0, robots::STATES)?;
+    let whole = ask(exchange, 0, robots::STATES)?;
     for (first, count, what) in
         [(0, robots::STATES, "asked twice"), (1, 3, "for a range of states"), (robots::STATES - 1, 1, "for one state")]
     {
-        let part = ask(talk, first, count)?;
+        let part = ask(exchange, first, count)?;
         let same = same_bits(&part, &whole[first * size..(first + count) * size]);
         let standing = if same { Standing::Right } else { Standing::Wrong };
         let found = if same { String::new() } else { format!("{named} has other bits") };
-        talk.note(standing, &format!("an answer is the same to the bit {what}"), &found, &[]);
+        exchange.note(standing, &format!("an answer is the same to the bit {what}"), &found, &[]);
     }
     Some(whole)
 }
 
-fn evaluate(talk: &mut Talk, scene: &Scene, quantity: Quantity, method: &str, first: usize, count: usize) -> Option<Vec<f64>> {
+fn evaluate(exchange: &mut Exchange, scene: &Scene, quantity: Quantity, method: &str, first: usize, count: usize) -> Option<Vec<f64>> {
     let (robot, named) = (&scene.robot, format!("{} by {method}", quantity.name()));
     let body = robot.deepest_body();
     let header = json!({"op": "evaluate", "quantity": quantity.name(), "method": method, "first": first, "count": count, "body": body});
-    numbers(talk, scene, &named, header, &shape::of_value(quantity, robot, count))
+    numbers(exchange, scene, &named, header, &shape::of_value(quantity, robot, count))
 }
 
 /// The numbers of the block `value` that answers a question. If there is no answer, the reason is noted.
-pub(super) fn numbers(talk: &mut Talk, scene: &Scene, named: &str, question: Value, due: &[usize]) -> Option<Vec<f64>> {
-    let (standing, found) = match talk.ask(question, Vec::new()) {
+pub(super) fn numbers(exchange: &mut Exchange, scene: &Scene, named: &str, question: Value, due: &[usize]) -> Option<Vec<f64>> {
+    let (standing, found) = match exchange.ask(question, Vec::new()) {
         Err(reason) => (Standing::Wrong, reason),
         Ok(answer) => match answer.text("status") {
             "ok" => match shape::block(&answer, "value", due) {
@@ -116,17 +118,17 @@ pub(super) fn numbers(talk: &mut Talk, scene: &Scene, named: &str, question: Val
             _ => (Standing::Wrong, answer.text("reason").to_owned()),
         },
     };
-    talk.note(standing, named, &format!("{}: {found}", scene.shows), &[]);
+    exchange.note(standing, named, &format!("{}: {found}", scene.shows), &[]);
     None
 }
 
 /// Names the first field whose read-back differs from the description.
-fn readback(talk: &mut Talk, scene: &Scene, found: &[f64]) {
+fn readback(exchange: &mut Exchange, scene: &Scene, found: &[f64]) {
     const FIELDS: [(&str, usize, usize); 5] =
         [("mass", 0, 1), ("com", 1, 4), ("inertia", 4, 10), ("the placement's rotation", 10, 19), ("the placement's translation", 19, 22)];
     let given = scene.robot.readback();
     if scene.error(Quantity::Readback, &given, found) <= Scene::tolerance(Quantity::Readback) {
-        return talk.note(Standing::Right, "prepare reads the robot back", "", &[]);
+        return exchange.note(Standing::Right, "prepare reads the robot back", "", &[]);
     }
     let rows = given.chunks_exact(22).zip(found.chunks_exact(22)).zip(&scene.robot.description.bodies);
     let wrong = rows.flat_map(|((given, found), body)| FIELDS.iter().map(move |field| (given, found, body, field)));
@@ -140,12 +142,12 @@ fn readback(talk: &mut Talk, scene: &Scene, found: &[f64]) {
         },
     );
     let advice = ["read back what the *engine* holds: mass, com, inertia about the com (xx, xy, xz, yy, yz, zz), rotation, translation"];
-    talk.note(Standing::Wrong, "prepare reads the robot back", &found, &advice);
+    exchange.note(Standing::Wrong, "prepare reads the robot back", &found, &advice);
 }
 
 impl Answers {
     /// Compares with featherbench, and looks for the mistake that explains a difference; `route` is added to what is noted.
-    pub(super) fn judge(&self, talk: &mut Talk, scenes: &[Scene], route: &str) {
+    pub(super) fn judge(&self, exchange: &mut Exchange, scenes: &[Scene], route: &str) {
         for ((quantity, method), given) in &self.given {
             let Some(quantity) = Quantity::parse(quantity) else { continue };
             let compared: Vec<Compared> =
@@ -154,7 +156,7 @@ impl Answers {
             let named = format!("{} by {method}{route}", quantity.name());
             let worst = compared.iter().map(|answer| answer.error).fold(0.0, featherbench_bench::measure::worst);
             if wrong.is_empty() {
-                talk.note(Standing::Right, &named, &format!("{} robots, largest error {worst:.1e}", compared.len()), &[]);
+                exchange.note(Standing::Right, &named, &format!("{} robots, largest error {worst:.1e}", compared.len()), &[]);
                 continue;
             }
             let first = wrong[0];
@@ -168,7 +170,7 @@ impl Answers {
             );
             let advice = advice(&compared, quantity);
             let lines: Vec<&str> = advice.iter().map(String::as_str).collect();
-            talk.note(Standing::Wrong, &named, &found, &lines);
+            exchange.note(Standing::Wrong, &named, &found, &lines);
         }
     }
 }
@@ -192,8 +194,8 @@ impl<'a> Compared<'a> {
     }
 
     /// Whether the answer is that of an oracle with these mistakes.
-    fn explained(&self, mistakes: &[&Mistake]) -> bool {
-        let supposed = self.scene.supposed(mistakes, self.quantity);
+    fn explained(&self, hypotheses: &[&Hypothesis]) -> bool {
+        let supposed = self.scene.supposed(hypotheses, self.quantity);
         supposed.is_some_and(|supposed| self.scene.error(self.quantity, &supposed, self.value) <= Scene::tolerance(self.quantity))
     }
 }
@@ -203,18 +205,18 @@ fn advice(compared: &[Compared], quantity: Quantity) -> Vec<String> {
     if compared.iter().any(|answer| answer.value.iter().any(|x| !x.is_finite())) {
         return vec!["some of its numbers are none (NaN or infinite) at states where featherbench's are finite".into()];
     }
-    let told = |mistakes: &[&Mistake]| mistakes.iter().map(|m| format!("{}: {}", m.seems, m.advice)).collect::<Vec<_>>();
-    let all = |mistakes: &[&Mistake]| compared.iter().all(|answer| answer.explained(mistakes));
-    let mut single: Vec<(usize, &Mistake)> = Vec::new();
-    for mistake in &MISTAKES {
-        if all(&[mistake]) {
-            return told(&[mistake]);
+    let told = |hypotheses: &[&Hypothesis]| hypotheses.iter().map(|m| format!("{}: {}", m.seems, m.advice)).collect::<Vec<_>>();
+    let all = |hypotheses: &[&Hypothesis]| compared.iter().all(|answer| answer.explained(hypotheses));
+    let mut single: Vec<(usize, &Hypothesis)> = Vec::new();
+    for hypothesis in &HYPOTHESES {
+        if all(&[hypothesis]) {
+            return told(&[hypothesis]);
         }
         let wrong = compared.iter().filter(|answer| !answer.right());
-        single.push((wrong.filter(|answer| answer.explained(&[mistake])).count(), mistake));
+        single.push((wrong.filter(|answer| answer.explained(&[hypothesis])).count(), hypothesis));
     }
-    for one in &MISTAKES {
-        for other in MISTAKES.iter().filter(|other| other.seems != one.seems) {
+    for one in &HYPOTHESES {
+        for other in HYPOTHESES.iter().filter(|other| other.seems != one.seems) {
             if all(&[one, other]) {
                 return told(&[one, other]);
             }
@@ -222,20 +224,20 @@ fn advice(compared: &[Compared], quantity: Quantity) -> Vec<String> {
     }
     let wrong = compared.iter().filter(|answer| !answer.right()).count();
     match single.into_iter().max_by_key(|(count, _)| *count) {
-        Some((count, mistake)) if count > 0 => {
-            vec![format!("of {count} of these {wrong}, {}: {}", mistake.seems, mistake.advice), "the rest has another cause".into()]
+        Some((count, hypothesis)) if count > 0 => {
+            vec![format!("of {count} of these {wrong}, {}: {}", hypothesis.seems, hypothesis.advice), "the rest has another cause".into()]
         }
         _ => vec![format!("no usual mistake explains it: compare {} of one joint with a calculation by hand", quantity.name())],
     }
 }
 
 /// Notes the quantities that the oracle does not offer.
-pub(super) fn lacking(talk: &mut Talk, offered: &Methods) {
+pub(super) fn lacking(exchange: &mut Exchange, offered: &Methods) {
     let ours = |quantity: &Quantity| matches!(quantity, Quantity::Readback | Quantity::ForwardDynamicsSingle | Quantity::MassMatrixSparse);
     let inner = |quantity: &Quantity| matches!(quantity, Quantity::Factorization | Quantity::Solve);
     let asked = Quantity::ALL.into_iter().filter(|quantity| !ours(quantity) && !inner(quantity));
     let missing: Vec<&str> = asked.map(Quantity::name).filter(|name| !offered.contains_key(*name)).collect();
     if !missing.is_empty() {
-        talk.note(Standing::Lacks, "quantities", &missing.join(", "), &[]);
+        exchange.note(Standing::Lacks, "quantities", &missing.join(", "), &[]);
     }
 }

@@ -6,12 +6,12 @@ use featherbench_bench::Robot;
 use featherbench_protocol::{Block, Message, Process};
 use serde_json::{Value, json};
 
-/// A line to an oracle: a process, or what a test uses instead.
-pub trait Line {
+/// A connection to an oracle: a process, or what a test uses instead.
+pub trait Connection {
     /// Sends a request and waits for its answer.
     ///
     /// # Errors
-    /// A sentence, when there is no answer, or it is not a message. The line cannot be used after that.
+    /// A sentence, when there is no answer, or it is not a message. The connection cannot be used after that.
     fn ask(&mut self, request: &Message) -> Result<Message, String>;
 
     /// Ends the oracle's input and waits for its end.
@@ -21,7 +21,7 @@ pub trait Line {
     fn close(self: Box<Self>) -> Result<(), String>;
 }
 
-impl Line for Process {
+impl Connection for Process {
     fn ask(&mut self, request: &Message) -> Result<Message, String> {
         Self::ask(self, request)
     }
@@ -31,31 +31,31 @@ impl Line for Process {
     }
 }
 
-/// The messages to an oracle. After an error the next question opens another line.
-pub(super) struct Talk<'a> {
-    start: &'a dyn Fn() -> Result<Box<dyn Line>, String>,
-    line: Option<Box<dyn Line>>,
-    /// Lines that were opened so far. An oracle at a new line knows nothing of earlier messages.
+/// The messages to an oracle. After an error the next question opens another connection.
+pub(super) struct Exchange<'a> {
+    start: &'a dyn Fn() -> Result<Box<dyn Connection>, String>,
+    connection: Option<Box<dyn Connection>>,
+    /// Connections that were opened so far. An oracle at a new connection knows nothing of earlier messages.
     pub(super) opened: usize,
     pub(super) conformance: Conformance,
 }
 
-impl<'a> Talk<'a> {
-    pub(super) fn new(start: &'a dyn Fn() -> Result<Box<dyn Line>, String>) -> Self {
-        Self { start, line: None, opened: 0, conformance: Conformance::default() }
+impl<'a> Exchange<'a> {
+    pub(super) fn new(start: &'a dyn Fn() -> Result<Box<dyn Connection>, String>) -> Self {
+        Self { start, connection: None, opened: 0, conformance: Conformance::default() }
     }
 
     /// Asks. It is an error if there is no answer, or one without a known status or without a reason.
     pub(super) fn ask(&mut self, header: Value, blocks: Vec<Block>) -> Result<Message, String> {
-        let mut line = match self.line.take() {
-            Some(line) => line,
+        let mut connection = match self.connection.take() {
+            Some(connection) => connection,
             None => {
                 self.opened += 1;
                 (self.start)()?
             }
         };
-        let answer = line.ask(&Message::new(header, blocks))?;
-        self.line = Some(line);
+        let answer = connection.ask(&Message::new(header, blocks))?;
+        self.connection = Some(connection);
         match answer.text("status") {
             "ok" => Ok(answer),
             "unsupported" | "error" if !answer.text("reason").trim().is_empty() => Ok(answer),
@@ -101,14 +101,14 @@ impl<'a> Talk<'a> {
 
     /// Ends the oracle's input.
     pub(super) fn close(&mut self) -> Result<(), String> {
-        match self.line.take() {
-            Some(line) => line.close(),
+        match self.connection.take() {
+            Some(connection) => connection.close(),
             None => (self.start)()?.close(),
         }
     }
 }
 
-/// What to do about a line with an error.
+/// What to do about a connection with an error.
 fn advice(reason: &str) -> &'static [&'static str] {
     if reason.contains("not in the protocol") {
         &["standard output carries messages only: print everything else to standard error"]

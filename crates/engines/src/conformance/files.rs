@@ -4,8 +4,8 @@
 //! What is tested: the answers are those of the robot that the oracle reports, in the order in which it reports it.
 
 use super::answers::{self, Answers};
-use super::manners::Methods;
-use super::talk::Talk;
+use super::exchange::Exchange;
+use super::protocol::Methods;
 use super::values::Scene;
 use super::{Standing, robots};
 use featherbench_bench::{FileBase, FileFormat, Import, Quantity, Robot};
@@ -126,7 +126,7 @@ fn files() -> Result<[Written; 3], String> {
 ///
 /// # Errors
 /// A sentence, when the files cannot be written.
-pub(super) fn read(talk: &mut Talk, offered: &Methods) -> Result<(), String> {
+pub(super) fn read(exchange: &mut Exchange, offered: &Methods) -> Result<(), String> {
     let folder = tempfile::tempdir().map_err(|error| format!("the files to be read cannot be written: {error}"))?;
     let offered: Methods = offered.clone().into_iter().filter(|(name, _)| Quantity::parse(name).is_some()).collect();
     let as_read = |name: &str| Quantity::parse(name).is_some_and(|quantity| AS_READ.contains(&quantity));
@@ -135,31 +135,31 @@ pub(super) fn read(talk: &mut Talk, offered: &Methods) -> Result<(), String> {
     for file in files()? {
         let path = folder.path().join(file.name);
         std::fs::write(&path, &file.text).map_err(|error| format!("{}: {error}", path.display()))?;
-        let Some(answer) = ask(talk, &file, &path) else { continue };
+        let Some(answer) = ask(exchange, &file, &path) else { continue };
         format = format.or(Some(file.format));
         let reading = match crate::oracle::reading(&answer) {
             Ok(reading) => reading,
             Err(reason) => {
                 let advice =
                     ["`model` is what the engine holds: bodies depth-first in its own order, fixed links merged; nq and nv are its sums"];
-                talk.note(Standing::Wrong, &what(&file), &reason, &advice);
+                exchange.note(Standing::Wrong, &what(&file), &reason, &advice);
                 continue;
             }
         };
-        notes(talk, &answer);
-        compare(talk, &file, &reading);
+        notes(exchange, &answer);
+        compare(exchange, &file, &reading);
         let robot = Robot::new(&reading.description, "conformance", ModelOrigin::Generated, robots::STATES, robots::SEED);
         let scene = Scene::new(file.shows, robot.map_err(|error| error.to_string())?);
-        answers::evaluate_all(talk, scenes.len(), &scene, &due, &mut answers);
+        answers::evaluate_all(exchange, scenes.len(), &scene, &due, &mut answers);
         if let Some((quantity, methods)) = beside.iter().next() {
             let header = json!({"op": "evaluate", "quantity": quantity, "method": methods[0], "first": 0, "count": 1, "body": 0});
-            talk.expect("quantities of bodies are unsupported of a robot as read", header, Vec::new(), &["unsupported"]);
+            exchange.expect("quantities of bodies are unsupported of a robot as read", header, Vec::new(), &["unsupported"]);
         }
         scenes.push(scene);
     }
-    answers.judge(talk, &scenes, ", as read");
+    answers.judge(exchange, &scenes, ", as read");
     if let Some(format) = format {
-        refusals(talk, format, folder.path())?;
+        refusals(exchange, format, folder.path())?;
     }
     Ok(())
 }
@@ -173,21 +173,21 @@ fn request(path: &Path, format: FileFormat, base: FileBase) -> Value {
 }
 
 /// The answer, if it imports the file.
-fn ask(talk: &mut Talk, file: &Written, path: &Path) -> Option<Message> {
+fn ask(exchange: &mut Exchange, file: &Written, path: &Path) -> Option<Message> {
     // Its answer to an unknown op. If the answer to `read` has the same words, it does not know `read`.
-    let unknown = talk.ask(json!({"op": "dance"}), Vec::new()).map(|answer| answer.text("reason").replace("dance", "read"));
+    let unknown = exchange.ask(json!({"op": "dance"}), Vec::new()).map(|answer| answer.text("reason").replace("dance", "read"));
     let what = what(file);
-    match talk.ask(request(path, file.format, file.base), Vec::new()) {
-        Err(reason) => talk.note(Standing::Wrong, &what, &reason, &["a file that it does not read is `unsupported`"]),
+    match exchange.ask(request(path, file.format, file.base), Vec::new()) {
+        Err(reason) => exchange.note(Standing::Wrong, &what, &reason, &["a file that it does not read is `unsupported`"]),
         Ok(answer) => match answer.text("status") {
             "ok" => return Some(answer),
-            "unsupported" => talk.note(Standing::Lacks, &what, answer.text("reason"), &[]),
+            "unsupported" => exchange.note(Standing::Lacks, &what, answer.text("reason"), &[]),
             _ if unknown.is_ok_and(|unknown| unknown == answer.text("reason")) => {
-                talk.note(Standing::Lacks, "the op `read`", answer.text("reason"), &[]);
+                exchange.note(Standing::Lacks, "the op `read`", answer.text("reason"), &[]);
             }
             _ => {
                 let advice = ["a file that the engine has no parser for is `unsupported`; `error` is for what should have worked"];
-                talk.note(Standing::Wrong, &what, answer.text("reason"), &advice);
+                exchange.note(Standing::Wrong, &what, answer.text("reason"), &advice);
             }
         },
     }
@@ -195,7 +195,7 @@ fn ask(talk: &mut Talk, file: &Written, path: &Path) -> Option<Message> {
 }
 
 /// Its notes: they must be texts with known causes.
-fn notes(talk: &mut Talk, answer: &Message) {
+fn notes(exchange: &mut Exchange, answer: &Message) {
     let wrong = match answer.header.get("notes").and_then(Value::as_array) {
         None => Some("`notes` is no list".to_owned()),
         Some(notes) => notes.iter().find_map(|note| {
@@ -209,18 +209,18 @@ fn notes(talk: &mut Talk, answer: &Message) {
         }),
     };
     let standing = if wrong.is_none() { Standing::Right } else { Standing::Wrong };
-    talk.note(standing, "the notes of a reading have causes of the table", &wrong.unwrap_or_default(), &[]);
+    exchange.note(standing, "the notes of a reading have causes of the table", &wrong.unwrap_or_default(), &[]);
 }
 
 /// Compares the robot that it reports with the file's.
-fn compare(talk: &mut Talk, file: &Written, reading: &Import) {
+fn compare(exchange: &mut Exchange, file: &Written, reading: &Import) {
     let (what, told) = (what(file), &reading.description);
     let noted = |cause: &str| reading.notes.iter().any(|note| note.cause == cause);
     let floats = |robot: &Description| robot.bodies.first().is_some_and(|body| body.joint.kind == JointType::Free);
     if floats(&file.robot) && !floats(told) && !noted("root_welded") {
         let advice =
             ["with `base` free a URDF's root gets a free joint; where the engine fixes it all the same, a note `root_welded` says so"];
-        return talk.note(Standing::Wrong, &what, "the base is not free", &advice);
+        return exchange.note(Standing::Wrong, &what, "the base is not free", &advice);
     }
     let known =
         |name: &str| links(&file.robot).any(|link| link == name || name.strip_prefix(link).is_some_and(|rest| rest.starts_with('/')));
@@ -231,7 +231,7 @@ fn compare(talk: &mut Talk, file: &Written, reading: &Import) {
     });
     if let Some(name) = stranger {
         let found = format!("there is no '{name}' in the file");
-        return talk.note(Standing::Wrong, &what, &found, &["bodies and joints have the file's names"]);
+        return exchange.note(Standing::Wrong, &what, &found, &["bodies and joints have the file's names"]);
     }
     let missing = links(&file.robot).filter(|&link| !links(told).any(|name| name == link)).map(|link| format!("link {link} is missing"));
     let edits = file.robot.bodies.iter().filter_map(|body| {
@@ -243,8 +243,8 @@ fn compare(talk: &mut Talk, file: &Written, reading: &Import) {
     });
     let differences: Vec<String> = missing.chain(edits).collect();
     match differences.is_empty() {
-        true => talk.note(Standing::Right, &what, "", &[]),
-        false => talk.note(Standing::Lacks, &format!("{} as it stands", file.shows), &differences.join("; "), &[]),
+        true => exchange.note(Standing::Right, &what, "", &[]),
+        false => exchange.note(Standing::Lacks, &format!("{} as it stands", file.shows), &differences.join("; "), &[]),
     }
 }
 
@@ -276,7 +276,7 @@ fn difference(one: &BodyDescription, other: &BodyDescription) -> Option<&'static
 }
 
 /// Files that are invalid, and whether the oracle works afterwards.
-fn refusals(talk: &mut Talk, format: FileFormat, folder: &Path) -> Result<(), String> {
+fn refusals(exchange: &mut Exchange, format: FileFormat, folder: &Path) -> Result<(), String> {
     let root = if format == FileFormat::Urdf { "robot" } else { "mujoco" };
     let broken = format!("<{root} name=\"broken\"><unclosed></{root}>");
     let nested = format!("<{root} name=\"nested\">{}{}</{root}>", "<a>".repeat(NESTED), "</a>".repeat(NESTED));
@@ -289,10 +289,10 @@ fn refusals(talk: &mut Talk, format: FileFormat, folder: &Path) -> Result<(), St
         if let Some(text) = text {
             std::fs::write(&path, text).map_err(|error| format!("{}: {error}", path.display()))?;
         }
-        talk.expect(&format!("{what} is an error"), request(&path, format, FileBase::Fixed), Vec::new(), &["error"]);
+        exchange.expect(&format!("{what} is an error"), request(&path, format, FileBase::Fixed), Vec::new(), &["error"]);
     }
     let robot = robots::all()?.swap_remove(0).1;
     let (header, blocks) = crate::request::states(&robot, &robot.states);
-    talk.expect("a file that was refused leaves no robot", header, blocks, &["error"]);
+    exchange.expect("a file that was refused leaves no robot", header, blocks, &["error"]);
     Ok(())
 }

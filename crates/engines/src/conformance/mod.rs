@@ -6,23 +6,23 @@
 //! named. An oracle that imports files is asked about the imported robot in the same way, and one that integrates about its steps.
 
 mod answers;
+mod exchange;
 mod files;
-mod manners;
-mod mistakes;
+mod hypotheses;
 mod orders;
+mod protocol;
 mod robots;
 mod steps;
-mod talk;
-mod turn;
 mod values;
+mod velocity_map;
 
-pub use talk::Line;
+pub use exchange::Connection;
 
 use answers::Answers;
+use exchange::Exchange;
 use featherbench_protocol::{Limits, Process};
 use std::collections::BTreeMap;
 use std::ffi::OsString;
-use talk::Talk;
 use values::Scene;
 
 /// The result of a finding.
@@ -79,40 +79,40 @@ impl Conformance {
 /// # Errors
 /// A sentence, when our own robots or files cannot be made. Whatever the program does is a finding.
 pub fn check_program(command: &[OsString], limits: Limits, watch: &dyn Fn(&str)) -> Result<Conformance, String> {
-    let start = || Process::start(command, limits).map(|process| Box::new(process) as Box<dyn Line>);
+    let start = || Process::start(command, limits).map(|process| Box::new(process) as Box<dyn Connection>);
     check(&start, watch)
 }
 
-/// Tests the oracle at the lines that `start` opens.
+/// Tests the oracle at the connections that `start` opens.
 ///
 /// # Errors
 /// A sentence, when our own robots or files cannot be made.
-pub fn check(start: &dyn Fn() -> Result<Box<dyn Line>, String>, watch: &dyn Fn(&str)) -> Result<Conformance, String> {
+pub fn check(start: &dyn Fn() -> Result<Box<dyn Connection>, String>, watch: &dyn Fn(&str)) -> Result<Conformance, String> {
     let scenes: Vec<Scene> = robots::all()?.into_iter().map(|(shows, robot)| Scene::new(shows, robot)).collect();
-    let mut talk = Talk::new(start);
+    let mut exchange = Exchange::new(start);
     watch("hello");
-    let Some(steps) = manners::hello(&mut talk) else { return Ok(talk.conformance) };
+    let Some(steps) = protocol::hello(&mut exchange) else { return Ok(exchange.conformance) };
     watch("what has no answer");
-    manners::before_prepare(&mut talk);
-    let offered = talk.conformance.methods.clone();
-    let built = manners::first_built(&mut talk, &scenes);
+    protocol::before_prepare(&mut exchange);
+    let offered = exchange.conformance.methods.clone();
+    let built = protocol::first_built(&mut exchange, &scenes);
     if let Some(scene) = built {
-        manners::with_robot(&mut talk, scene, &offered);
+        protocol::with_robot(&mut exchange, scene, &offered);
     }
     let (mut answers, mut stepped) = (Answers::default(), steps::Found::default());
     for (index, scene) in scenes.iter().enumerate() {
         watch(scene.shows);
-        if answers::ask(&mut talk, index, scene, &offered, &mut answers) {
-            steps::ask(&mut talk, scene, &steps, &mut stepped);
+        if answers::ask(&mut exchange, index, scene, &offered, &mut answers) {
+            steps::ask(&mut exchange, scene, &steps, &mut stepped);
         }
     }
-    watch("mistakes");
-    answers.judge(&mut talk, &scenes, "");
-    steps::judge(&mut talk, &steps, &stepped);
-    answers::lacking(&mut talk, &offered);
+    watch("conventions");
+    answers.judge(&mut exchange, &scenes, "");
+    steps::judge(&mut exchange, &steps, &stepped);
+    answers::lacking(&mut exchange, &offered);
     watch("files");
-    files::read(&mut talk, &offered)?;
+    files::read(&mut exchange, &offered)?;
     watch("the end");
-    manners::end(&mut talk);
-    Ok(talk.conformance)
+    protocol::end(&mut exchange);
+    Ok(exchange.conformance)
 }

@@ -2,7 +2,7 @@
 //! acceleration, and a short fall must keep its energy.
 
 use super::answers::{numbers, repeated};
-use super::talk::Talk;
+use super::exchange::Exchange;
 use super::values::Scene;
 use super::{Standing, robots};
 use crate::oracle::steps::Steps;
@@ -27,12 +27,12 @@ pub(super) struct Found {
 }
 
 /// Asks for steps of the robot from the states that the oracle has.
-pub(super) fn ask(talk: &mut Talk, scene: &Scene, steps: &Steps, found: &mut Found) {
+pub(super) fn ask(exchange: &mut Exchange, scene: &Scene, steps: &Steps, found: &mut Found) {
     let Some(plain) = steps.methods.first() else { return };
-    refusals(talk, plain);
+    refusals(exchange, plain);
     for method in &steps.methods {
-        let accelerations = answers(talk, scene, question("step", method, SHORT), scene.robot.states.nv);
-        let energies = answers(talk, scene, question("fall", method, FALL.0), FALL.1);
+        let accelerations = answers(exchange, scene, question("step", method, SHORT), scene.robot.states.nv);
+        let energies = answers(exchange, scene, question("fall", method, FALL.0), FALL.1);
         if method != plain {
             continue;
         }
@@ -43,7 +43,7 @@ pub(super) fn ask(talk: &mut Talk, scene: &Scene, steps: &Steps, found: &mut Fou
 }
 
 /// Notes the findings about all robots.
-pub(super) fn judge(talk: &mut Talk, steps: &Steps, found: &Found) {
+pub(super) fn judge(exchange: &mut Exchange, steps: &Steps, found: &Found) {
     let Some(plain) = steps.methods.first() else { return };
     let accelerations = [
         "a short step begins with the acceleration of forward dynamics: in neutral coordinates, under gravity and the state's tau",
@@ -60,11 +60,11 @@ pub(super) fn judge(talk: &mut Talk, steps: &Steps, found: &Found) {
         let wrong: Vec<_> = errors.iter().filter(|(_, error)| !matches!(error.partial_cmp(&tolerance), Some(o) if o.is_le())).collect();
         match wrong.first() {
             None if errors.is_empty() => {}
-            None => talk.note(Standing::Right, &named, &format!("{} robots, largest error {largest:.1e}", errors.len()), &[]),
+            None => exchange.note(Standing::Right, &named, &format!("{} robots, largest error {largest:.1e}", errors.len()), &[]),
             Some((shows, error)) => {
                 let (some, all) = (wrong.len(), errors.len());
                 let reason = format!("{some} of {all} robots are off, the first being {shows} by {error:.1e} (at most {tolerance:.0e})");
-                talk.note(Standing::Wrong, &named, &reason, &advice);
+                exchange.note(Standing::Wrong, &named, &reason, &advice);
             }
         }
     }
@@ -76,27 +76,27 @@ fn question(op: &str, method: &str, dt: f64) -> Value {
 }
 
 /// Requests for steps that have no answer.
-fn refusals(talk: &mut Talk, method: &str) {
+fn refusals(exchange: &mut Exchange, method: &str) {
     for op in ["step", "fall"] {
         let nothing = question(op, "no such way", SHORT);
-        talk.expect(&format!("a {op} by a way that it does not have is unsupported"), nothing, Vec::new(), &["unsupported"]);
+        exchange.expect(&format!("a {op} by a way that it does not have is unsupported"), nothing, Vec::new(), &["unsupported"]);
     }
     // The oracle may report first what the robot does not have.
     let refused = ["error", "unsupported"];
     for op in ["step", "fall"] {
-        talk.expect(&format!("a {op} of no length is refused"), question(op, method, 0.0), Vec::new(), &refused);
+        exchange.expect(&format!("a {op} of no length is refused"), question(op, method, 0.0), Vec::new(), &refused);
         let mut beyond = question(op, method, SHORT);
         beyond["first"] = robots::STATES.into();
-        talk.expect(&format!("a {op} from a state that was not sent is refused"), beyond, Vec::new(), &refused);
+        exchange.expect(&format!("a {op} from a state that was not sent is refused"), beyond, Vec::new(), &refused);
     }
 }
 
 /// The answers at every state, each with this number of values, asked for in several ways.
-fn answers(talk: &mut Talk, scene: &Scene, question: Value, size: usize) -> Option<Vec<f64>> {
+fn answers(exchange: &mut Exchange, scene: &Scene, question: Value, size: usize) -> Option<Vec<f64>> {
     let named = format!("{} by {}", question["op"].as_str()?, question["method"].as_str()?);
-    repeated(talk, &named, size, |talk, first, count| {
+    repeated(exchange, &named, size, |exchange, first, count| {
         let mut header = question.clone();
         (header["first"], header["count"]) = (first.into(), count.into());
-        numbers(talk, scene, &named, header, &[count, size])
+        numbers(exchange, scene, &named, header, &[count, size])
     })
 }

@@ -1,7 +1,7 @@
 //! The answers of a right oracle, and of one with some mistakes.
 
-use super::mistakes::{Mistake, State};
-use super::turn::Turn;
+use super::hypotheses::{Hypothesis, State};
+use super::velocity_map::VelocityMap;
 use crate::Featherbench;
 use featherbench_bench::measure::{ForwardScale, Magnitudes, scaled_error, worst};
 use featherbench_bench::{Engine, Quantity, Robot};
@@ -56,9 +56,9 @@ impl Scene {
 
     /// The answer of an oracle that is right but for these mistakes. `None` if the robot cannot be built with them, or if they do not
     /// affect the quantity.
-    pub(super) fn supposed(&self, mistakes: &[&Mistake], quantity: Quantity) -> Option<Vec<f64>> {
+    pub(super) fn supposed(&self, hypotheses: &[&Hypothesis], quantity: Quantity) -> Option<Vec<f64>> {
         let mut misread = self.robot.description.clone();
-        mistakes.iter().for_each(|mistake| (mistake.robot)(&mut misread));
+        hypotheses.iter().for_each(|hypothesis| (hypothesis.robot)(&mut misread));
         let Robot { origin, family, states, .. } = &self.robot;
         let robot = Robot::new(&misread, family, *origin, 1, 0).ok()?;
         let (mut batch, mut seen) = (StateBatch { cases: states.cases.clone(), ..self.empty() }, Vec::new());
@@ -74,7 +74,7 @@ impl Scene {
                 placement: part(&placement, states.count(), k),
                 ..State::default()
             };
-            seen.push(mistakes.iter().map(|mistake| self.misread(mistake, &mut state)).collect::<Vec<_>>());
+            seen.push(hypotheses.iter().map(|hypothesis| self.misread(hypothesis, &mut state)).collect::<Vec<_>>());
             batch.q.extend(state.q);
             batch.v.extend(state.v);
             batch.a.extend(state.a);
@@ -89,30 +89,30 @@ impl Scene {
         let (placement, velocity, com, momentum) = (placement?, velocity?, com?, momentum?);
         let (size, count) = (quantity.size(&robot), states.count());
         for (k, (value, seen)) in value.chunks_exact_mut(size).zip(seen).enumerate() {
-            for (mistake, (mut state, turn)) in mistakes.iter().zip(seen).rev() {
-                if let Some(turn) = turn {
-                    returned(&turn, quantity, value);
+            for (hypothesis, (mut state, map)) in hypotheses.iter().zip(seen).rev() {
+                if let Some(map) = map {
+                    returned(&map, quantity, value);
                 }
                 state.placement = part(&placement, count, k);
                 state.velocity = part(&velocity, count, k);
                 state.com = part(&com, count, k);
                 state.momentum = part(&momentum, count, k);
-                (mistake.answer)(&self.robot, quantity, &state, value);
+                (hypothesis.answer)(&self.robot, quantity, &state, value);
             }
         }
         Some(value)
     }
 
     /// Interprets a state by a mistake; returns the state before, and the change of velocities.
-    fn misread(&self, mistake: &Mistake, state: &mut State) -> (State, Option<Turn>) {
+    fn misread(&self, hypothesis: &Hypothesis, state: &mut State) -> (State, Option<VelocityMap>) {
         let given = state.clone();
-        (mistake.state)(&self.robot.description, state);
-        let turn = mistake.turn.map(|turn| turn(&self.robot.description, state));
-        if let Some(turn) = &turn {
-            let rest: Vec<f64> = state.a.iter().zip(&turn.b).map(|(a, b)| a - b).collect();
-            (state.v, state.a, state.tau) = (turn.back(&state.v), turn.back(&rest), turn.back(&state.tau));
+        (hypothesis.state)(&self.robot.description, state);
+        let map = hypothesis.velocities.map(|velocities| velocities(&self.robot.description, state));
+        if let Some(map) = &map {
+            let rest: Vec<f64> = state.a.iter().zip(&map.b).map(|(a, b)| a - b).collect();
+            (state.v, state.a, state.tau) = (map.back(&state.v), map.back(&rest), map.back(&state.tau));
         }
-        (given, turn)
+        (given, map)
     }
 
     fn empty(&self) -> StateBatch {
@@ -122,34 +122,34 @@ impl Scene {
 }
 
 /// The answer in the velocities that the oracle took for ours.
-fn returned(turn: &Turn, quantity: Quantity, value: &mut [f64]) {
-    let n = turn.b.len();
+fn returned(map: &VelocityMap, quantity: Quantity, value: &mut [f64]) {
+    let n = map.b.len();
     match quantity {
         Quantity::InverseDynamics | Quantity::InverseDynamicsWrench | Quantity::Bias => {
-            let turned = turn.forth(value);
-            value.copy_from_slice(&turned);
+            let mapped = map.forth(value);
+            value.copy_from_slice(&mapped);
         }
         Quantity::ForwardDynamics => {
-            let turned = turn.forth(value);
-            value.iter_mut().zip(turned.iter().zip(&turn.b)).for_each(|(x, (a, b))| *x = a + b);
+            let mapped = map.forth(value);
+            value.iter_mut().zip(mapped.iter().zip(&map.b)).for_each(|(x, (a, b))| *x = a + b);
         }
         // J T', row by row.
-        Quantity::BodyJacobian => rows(turn, value, n),
+        Quantity::BodyJacobian => rows(map, value, n),
         // T M T' = T (T M)' for a symmetric M.
         Quantity::MassMatrix => {
-            rows(turn, value, n);
+            rows(map, value, n);
             let columns: Vec<f64> = (0..n * n).map(|at| value[n * (at % n) + at / n]).collect();
             value.copy_from_slice(&columns);
-            rows(turn, value, n);
+            rows(map, value, n);
         }
         _ => {}
     }
 }
 
-fn rows(turn: &Turn, value: &mut [f64], n: usize) {
+fn rows(map: &VelocityMap, value: &mut [f64], n: usize) {
     for row in value.chunks_exact_mut(n) {
-        let turned = turn.forth(row);
-        row.copy_from_slice(&turned);
+        let mapped = map.forth(row);
+        row.copy_from_slice(&mapped);
     }
 }
 

@@ -1,10 +1,10 @@
 //! Velocities in other coordinates than ours.
 
-use super::mistakes::State;
+use super::hypotheses::State;
 use featherbench_model::{BodyDescription, Description, JointType};
 
 /// v_e = T v and a_e = T a + b, with an orthogonal T, instead of v and a.
-pub(super) struct Turn {
+pub(super) struct VelocityMap {
     /// T, row-major.
     t: Vec<f64>,
     /// b.
@@ -43,8 +43,8 @@ pub(super) struct Rotations {
 }
 
 /// T of every free joint; where `carried`, b = T [ω × v; 0] (in T's order), with v and ω in body axes.
-pub(super) fn of_free(robot: &Description, state: &State, block: impl Fn(&Rotations) -> (Six, bool)) -> Turn {
-    let mut turn = Turn::identity(state.v.len());
+pub(super) fn of_free(robot: &Description, state: &State, block: impl Fn(&Rotations) -> (Six, bool)) -> VelocityMap {
+    let mut map = VelocityMap::identity(state.v.len());
     for (q, at, body) in places(robot) {
         if body.joint.kind == JointType::Free {
             let joint = rotation(&state.q[q + 3..q + 7]);
@@ -54,41 +54,41 @@ pub(super) fn of_free(robot: &Description, state: &State, block: impl Fn(&Rotati
             let neutral: Vec<f64> = (0..6).map(|j| (0..6).map(|i| t[i][j] * given[i]).sum()).collect();
             let omega_v = cross(&neutral[3..], &neutral[..3]);
             for (i, row) in t.iter().enumerate() {
-                row.iter().enumerate().for_each(|(j, &entry)| *turn.entry(at + i, at + j) = entry);
-                turn.b[at + i] = if carried { row.iter().zip(omega_v).map(|(entry, x)| entry * x).sum() } else { 0.0 };
+                row.iter().enumerate().for_each(|(j, &entry)| *map.entry(at + i, at + j) = entry);
+                map.b[at + i] = if carried { row.iter().zip(omega_v).map(|(entry, x)| entry * x).sum() } else { 0.0 };
             }
         }
     }
-    turn
+    map
 }
 
-pub(super) fn of_spherical(robot: &Description, state: &State) -> Turn {
-    let mut turn = Turn::identity(state.v.len());
+pub(super) fn of_spherical(robot: &Description, state: &State) -> VelocityMap {
+    let mut map = VelocityMap::identity(state.v.len());
     for (q, at, _) in places(robot).into_iter().filter(|(.., body)| body.joint.kind == JointType::Spherical) {
         let r = rotation(&state.q[q..q + 4]);
-        (0..9).for_each(|k| *turn.entry(at + k / 3, at + k % 3) = r[k]);
+        (0..9).for_each(|k| *map.entry(at + k / 3, at + k % 3) = r[k]);
     }
-    turn
+    map
 }
 
-pub(super) fn of_planar(robot: &Description, state: &State) -> Turn {
-    let mut turn = Turn::identity(state.v.len());
+pub(super) fn of_planar(robot: &Description, state: &State) -> VelocityMap {
+    let mut map = VelocityMap::identity(state.v.len());
     for (q, at, _) in places(robot).into_iter().filter(|(.., body)| body.joint.kind == JointType::Planar) {
         let (sin, cos) = state.q[q + 2].sin_cos();
-        (*turn.entry(at, at), *turn.entry(at, at + 1)) = (cos, sin);
-        (*turn.entry(at + 1, at), *turn.entry(at + 1, at + 1)) = (-sin, cos);
+        (*map.entry(at, at), *map.entry(at, at + 1)) = (cos, sin);
+        (*map.entry(at + 1, at), *map.entry(at + 1, at + 1)) = (-sin, cos);
         let [x, y, rate] = [state.v[at], state.v[at + 1], state.v[at + 2]];
-        (turn.b[at], turn.b[at + 1]) = (rate * y, -rate * x);
+        (map.b[at], map.b[at + 1]) = (rate * y, -rate * x);
     }
-    turn
+    map
 }
 
 /// v_e has our numbers in another order. T is the permutation by `ours`, the place in our order of each number of v_e.
-pub(super) fn of_order(ours: &[usize]) -> Turn {
+pub(super) fn of_order(ours: &[usize]) -> VelocityMap {
     let n = ours.len();
-    let mut turn = Turn { t: vec![0.0; n * n], b: vec![0.0; n] };
-    ours.iter().enumerate().for_each(|(row, &column)| *turn.entry(row, column) = 1.0);
-    turn
+    let mut map = VelocityMap { t: vec![0.0; n * n], b: vec![0.0; n] };
+    ours.iter().enumerate().for_each(|(row, &column)| *map.entry(row, column) = 1.0);
+    map
 }
 
 /// Puts numbers of another order into ours.
@@ -97,7 +97,7 @@ pub(super) fn put_back(ours: &[usize], numbers: &mut [f64]) {
     ours.iter().zip(given).for_each(|(&place, number)| numbers[place] = number);
 }
 
-impl Turn {
+impl VelocityMap {
     fn identity(n: usize) -> Self {
         let t = (0..n * n).map(|at| if at / n == at % n { 1.0 } else { 0.0 }).collect();
         Self { t, b: vec![0.0; n] }
@@ -143,14 +143,14 @@ pub(super) fn transposed(r: &[f64; 9]) -> [f64; 9] {
 
 /// R of the unit quaternion (x, y, z, w), row-major.
 fn rotation(quaternion: &[f64]) -> [f64; 9] {
-    let turn = featherbench_spatial::Quaternion::from_array([quaternion[0], quaternion[1], quaternion[2], quaternion[3]]).to_rotation();
-    turn.to_array()
+    let map = featherbench_spatial::Quaternion::from_array([quaternion[0], quaternion[1], quaternion[2], quaternion[3]]).to_rotation();
+    map.to_array()
 }
 
 /// R' x in place, R being the first nine numbers, row-major.
-pub(super) fn turned_back(r: &[f64], x: &mut [f64]) {
-    let turned: [f64; 3] = std::array::from_fn(|column| (0..3).map(|row| r[3 * row + column] * x[row]).sum());
-    x.copy_from_slice(&turned);
+pub(super) fn rotated_back(r: &[f64], x: &mut [f64]) {
+    let rotated: [f64; 3] = std::array::from_fn(|column| (0..3).map(|row| r[3 * row + column] * x[row]).sum());
+    x.copy_from_slice(&rotated);
 }
 
 pub(super) fn cross(a: &[f64], b: &[f64]) -> [f64; 3] {

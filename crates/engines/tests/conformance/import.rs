@@ -107,7 +107,7 @@ fn mistakes_of_a_reading_are_named() {
             if tells(answer, request) && request.text("base") == "free" {
                 let fixed =
                     Message::new(json!({"op": "read", "file": request.text("file"), "format": "urdf", "base": "fixed"}), Vec::new());
-                *answer = featherbench_engines::conformance::Line::ask(&mut Kernels::new(HONEST), &fixed).unwrap();
+                *answer = featherbench_engines::conformance::Connection::ask(&mut Kernels::new(HONEST), &fixed).unwrap();
                 assert!(kernels.robot.is_some());
             }
         }),

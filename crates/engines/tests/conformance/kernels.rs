@@ -2,7 +2,7 @@
 
 use featherbench_bench::{Engine, NoAnswer, Quantity, Robot};
 use featherbench_engines::Featherbench;
-use featherbench_engines::conformance::Line;
+use featherbench_engines::conformance::Connection;
 use featherbench_formats::urdf::{self, Base, Options};
 use featherbench_protocol::{Block, Message};
 use featherbench_results::ModelOrigin;
@@ -179,7 +179,7 @@ impl Kernels {
     }
 }
 
-impl Line for Kernels {
+impl Connection for Kernels {
     fn ask(&mut self, request: &Message) -> Result<Message, String> {
         let plant = self.plant;
         let mut heard = request.clone();

@@ -6,14 +6,14 @@ mod kernels;
 mod steps;
 
 use featherbench_bench::Robot;
-use featherbench_engines::conformance::{Conformance, Line, Standing, check};
+use featherbench_engines::conformance::{Conformance, Connection, Standing, check};
 use featherbench_model::JointType;
 use featherbench_protocol::Message;
 use kernels::{HONEST, Kernels, OFFERED, Plant};
 use serde_json::{Value, json};
 
 fn test(plant: Plant) -> Conformance {
-    let start = || Ok(Box::new(Kernels::new(plant)) as Box<dyn Line>);
+    let start = || Ok(Box::new(Kernels::new(plant)) as Box<dyn Connection>);
     check(&start, &|_| ()).unwrap()
 }
 
