@@ -1,4 +1,4 @@
-"""The protocol (PROTOCOL.md) without frames: quantities with their shapes, questions, and the interface of an engine."""
+"""The protocol (PROTOCOL.md) without its messages: quantities with their shapes, questions, and the interface of an engine."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from typing import Any, Protocol
 import numpy as np
 
 from featherbench_oracles.algebra import Array
-from featherbench_oracles.frames import Header
+from featherbench_oracles.messages import Header
 from featherbench_oracles.robot import Description
 
 PROTOCOL = 1

@@ -23,7 +23,7 @@ from xml.etree import ElementTree
 import numpy as np
 
 from featherbench_oracles.algebra import Array, skew
-from featherbench_oracles.frames import Header
+from featherbench_oracles.messages import Header
 from featherbench_oracles.protocol import Unsupported
 from featherbench_oracles.robot import JOINT_SIZES, WITH_AXIS
 

@@ -1,4 +1,4 @@
-"""Evaluates a reproduction of a known deviation over seeds, through the frames of PROTOCOL.md.
+"""Evaluates a reproduction of a known deviation over seeds, by messages of PROTOCOL.md.
 
 The answer to the request `{"op":"reproduce","name":NAME,"seeds":n}` is a block `value` of shape (n,): the deviation for the seeds 0..n-1.
 NAME is `ENGINE_SHORT` for the module `featherbench_oracles.ENGINE.reproductions.SHORT`.
@@ -14,7 +14,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from featherbench_oracles.frames import read_frame, write_frame
+from featherbench_oracles.messages import read_message, write_message
 
 
 def reproduction(name: str) -> Callable[[int], float]:
@@ -39,15 +39,15 @@ def main() -> None:
     """Answer until standard input ends. What an engine prints goes to standard error."""
     answers = os.fdopen(os.dup(1), "wb")
     os.dup2(2, 1)
-    while (request := read_frame(sys.stdin.buffer)) is not None:
+    while (request := read_message(sys.stdin.buffer)) is not None:
         header, _ = request
         try:
             deviation = reproduction(header["name"])
             values = np.array([deviation(seed) for seed in range(header["seeds"])])
-            write_frame(answers, {"status": "ok"}, {"value": values})
+            write_message(answers, {"status": "ok"}, {"value": values})
         except Exception as reason:  # a reproduction's failure is an answer
             traceback.print_exc()
-            write_frame(answers, {"status": "error", "reason": f"{type(reason).__name__}: {' '.join(str(reason).split())}"})
+            write_message(answers, {"status": "error", "reason": f"{type(reason).__name__}: {' '.join(str(reason).split())}"})
 
 
 if __name__ == "__main__":

@@ -17,7 +17,7 @@ import numpy as np
 
 from featherbench_oracles.clock import Calls, Stream
 from featherbench_oracles.examination import examined
-from featherbench_oracles.frames import Answer, Blocks, Header, read_frame, write_frame
+from featherbench_oracles.messages import Answer, Blocks, Header, read_message, write_message
 from featherbench_oracles.protocol import AS_READ, PROTOCOL, SHAPES, Engine, Question, Reading, Unsupported
 from featherbench_oracles.robot import Description
 
@@ -197,19 +197,19 @@ def serve(engine: Engine) -> None:
     while running:
         echo: Header = {}
         try:
-            request = read_frame(sys.stdin.buffer)
+            request = read_message(sys.stdin.buffer)
             running = request is not None
             if request is not None:
                 echo = {key: request[0][key] for key in ("id",) if key in request[0]}
                 header, blocks = session.answer(*request)
-                write_frame(answers, {"status": "ok", **echo, **header}, blocks)
+                write_message(answers, {"status": "ok", **echo, **header}, blocks)
         except Unsupported as reason:
-            write_frame(answers, {"status": "unsupported", **echo, "reason": _sentence(reason)})
+            write_message(answers, {"status": "unsupported", **echo, "reason": _sentence(reason)})
         except BrokenPipeError:
             running = False
         except Exception as reason:  # an engine's failure is an answer
             traceback.print_exc()
-            write_frame(answers, {"status": "error", **echo, "reason": _sentence(reason)})
+            write_message(answers, {"status": "error", **echo, "reason": _sentence(reason)})
 
 
 def _sentence(reason: Exception) -> str:

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 from featherbench_oracles.algebra import Array
-from featherbench_oracles.frames import Blocks
+from featherbench_oracles.messages import Blocks
 from featherbench_oracles.protocol import SHAPES
 from featherbench_oracles.robot import Description
 from featherbench_oracles.testing.draws import derivative

@@ -9,7 +9,7 @@ from featherbench_oracles import ENGINES
 from featherbench_oracles.algebra import Array
 from featherbench_oracles.change import Change
 from featherbench_oracles.clock import Calls, Stream
-from featherbench_oracles.frames import Header
+from featherbench_oracles.messages import Header
 from featherbench_oracles.protocol import Question
 from featherbench_oracles.robot import Description
 from featherbench_oracles.testing.client import Oracle

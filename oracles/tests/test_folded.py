@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from featherbench_oracles.algebra import Array
-from featherbench_oracles.frames import Header
+from featherbench_oracles.messages import Header
 from featherbench_oracles.robot import Description
 from featherbench_oracles.testing.client import Oracle
 from featherbench_oracles.testing.draws import COUNT, random_robot, random_states

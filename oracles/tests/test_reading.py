@@ -17,7 +17,7 @@ from numpy.typing import ArrayLike
 
 from featherbench_oracles import ENGINES
 from featherbench_oracles.algebra import Array
-from featherbench_oracles.frames import Header
+from featherbench_oracles.messages import Header
 from featherbench_oracles.reading import overheard, turned
 from featherbench_oracles.robot import Description
 from featherbench_oracles.testing.client import Oracle

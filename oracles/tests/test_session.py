@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from featherbench_oracles import ENGINES
-from featherbench_oracles.frames import Answer, Header
+from featherbench_oracles.messages import Answer, Header
 from featherbench_oracles.robot import Description
 from featherbench_oracles.testing.client import Oracle
 from featherbench_oracles.testing.draws import COUNT, random_robot, random_states, without_armature
@@ -64,7 +64,7 @@ def test_what_an_engine_lacks_is_unsupported(oracles: Oracles, engine: str, mode
 def test_garbage_is_an_error(oracles: Oracles, engine: str) -> None:
     """A line that is not JSON is an error, and the oracle continues."""
     oracle = oracles[engine]
-    oracle.requests.write(b"this is no frame\n")
+    oracle.requests.write(b"this is no message\n")
     oracle.requests.flush()
     assert status_of(oracle.answer()) == "error"
     assert status_of(oracle.ask(PREPARE)) == "ok"

@@ -18,6 +18,7 @@
 //! | `featherbench_dynamics` | what a robot does: one file per algorithm | an algorithm |
 //! | `featherbench_reference` | slow truth that shares no text with `dynamics` | a witness |
 //! | `featherbench_results` | the row: its columns, files, differences of runs | a column |
+//! | `featherbench_protocol` | messages to an oracle, and its process | – |
 //! | `featherbench_bench` | suite, cell, run, store, measures, gates; the traits `Engine` and `Study` | a measure of an error |
 //! | `featherbench_engines` | the engines: ours, an oracle process, recorded answers; the conformance test | a way to reach an engine |
 //! | `featherbench_studies` | one file or folder per study | a study |

@@ -18,7 +18,7 @@ from dartpy import common, dynamics, utils
 from dartpy.math import Isometry3
 
 from featherbench_oracles.algebra import Array
-from featherbench_oracles.frames import Header
+from featherbench_oracles.messages import Header
 from featherbench_oracles.protocol import Reading, Unsupported
 from featherbench_oracles.reading import HeldJoint, Link, Place, describe, elements, errors, inertial, mentioned, note, overheard
 from featherbench_oracles.robot import Description

@@ -20,7 +20,7 @@ from pydrake.multibody.parsing import Parser
 from pydrake.multibody.plant import MultibodyPlant
 
 from featherbench_oracles.algebra import Array, skew, symmetric
-from featherbench_oracles.frames import Header
+from featherbench_oracles.messages import Header
 from featherbench_oracles.protocol import Reading
 from featherbench_oracles.reading import HeldJoint, Link, Place, describe, elements, inertial, mentioned, note, overheard
 from featherbench_oracles.robot import Description

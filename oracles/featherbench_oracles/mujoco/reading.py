@@ -22,7 +22,7 @@ import mujoco as mj
 import numpy as np
 
 from featherbench_oracles.algebra import Array
-from featherbench_oracles.frames import Header
+from featherbench_oracles.messages import Header
 from featherbench_oracles.protocol import Reading
 from featherbench_oracles.reading import HeldJoint, Link, Place, describe, inertial, listed, note, overheard, turned, without_free_armature
 from featherbench_oracles.robot import Description

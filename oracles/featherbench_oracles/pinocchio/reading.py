@@ -15,7 +15,7 @@ import numpy as np
 import pinocchio as pin
 
 from featherbench_oracles.algebra import Array
-from featherbench_oracles.frames import Header
+from featherbench_oracles.messages import Header
 from featherbench_oracles.protocol import Reading, Unsupported
 from featherbench_oracles.reading import HeldJoint, Link, Place, describe, elements, mentioned, note, overheard, without_free_armature
 from featherbench_oracles.robot import Description

@@ -9,7 +9,7 @@ from subprocess import DEVNULL, PIPE, Popen
 from typing import BinaryIO, cast
 
 from featherbench_oracles.algebra import Array
-from featherbench_oracles.frames import Answer, Blocks, Header, read_frame, write_frame
+from featherbench_oracles.messages import Answer, Blocks, Header, read_message, write_message
 
 HOME = Path(__file__).resolve().parents[2]  # the folder in which the package lies
 Methods = dict[str, list[str]]
@@ -51,12 +51,12 @@ class Oracle:
         tuple of dict and dict
             The answer's header and blocks.
         """
-        write_frame(self.requests, header, blocks)
+        write_message(self.requests, header, blocks)
         return self.answer()
 
     def answer(self) -> Answer:
         """Read the next answer; its status is `ended` if there is none."""
-        return read_frame(self.answers) or ({"status": "ended", "reason": "the oracle ended"}, {})
+        return read_message(self.answers) or ({"status": "ended", "reason": "the oracle ended"}, {})
 
     def must(self, header: Header, blocks: Blocks | None = None) -> Answer:
         """Send a request that has to succeed.

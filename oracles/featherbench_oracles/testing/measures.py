@@ -18,7 +18,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from featherbench_oracles.algebra import Array
-from featherbench_oracles.frames import Blocks
+from featherbench_oracles.messages import Blocks
 from featherbench_oracles.robot import Description
 
 

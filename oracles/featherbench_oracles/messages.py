@@ -1,4 +1,4 @@
-"""Frames of the protocol: one line of JSON, and then the blocks of doubles that it announces."""
+"""Messages of the protocol: one line of JSON, and then the blocks of doubles that it announces."""
 
 from __future__ import annotations
 
@@ -15,13 +15,13 @@ Header = dict[str, Any]
 Answer = tuple[Header, Blocks]
 
 
-def read_frame(stream: BinaryIO) -> Answer | None:
-    """Read the next frame.
+def read_message(stream: BinaryIO) -> Answer | None:
+    """Read the next message.
 
     Parameters
     ----------
     stream : BinaryIO
-        A stream at the beginning of a frame.
+        A stream at the beginning of a message.
 
     Returns
     -------
@@ -40,7 +40,7 @@ def read_frame(stream: BinaryIO) -> Answer | None:
         return None
     header = json.loads(line)
     if not isinstance(header, dict):
-        raise ValueError("a frame's header is not a JSON object")
+        raise ValueError("a message's header is not a JSON object")
     blocks: Blocks = {}
     for block in header.get("blocks", []):
         shape = tuple(block["shape"])
@@ -54,8 +54,8 @@ def read_frame(stream: BinaryIO) -> Answer | None:
     return header, blocks
 
 
-def write_frame(stream: BinaryIO, header: Header, blocks: Blocks | None = None) -> None:
-    """Write a frame, and flush the stream.
+def write_message(stream: BinaryIO, header: Header, blocks: Blocks | None = None) -> None:
+    """Write a message, and flush the stream.
 
     Parameters
     ----------
@@ -66,10 +66,10 @@ def write_frame(stream: BinaryIO, header: Header, blocks: Blocks | None = None) 
     blocks : dict of str to ndarray, optional
         The blocks by name, of any shape.
     """
-    frame = dict(header)
+    announced = dict(header)
     if blocks:
-        frame["blocks"] = [{"name": name, "shape": list(block.shape)} for name, block in blocks.items()]
-    stream.write(json.dumps(frame).encode() + b"\n")
+        announced["blocks"] = [{"name": name, "shape": list(block.shape)} for name, block in blocks.items()]
+    stream.write(json.dumps(announced).encode() + b"\n")
     for block in (blocks or {}).values():
         stream.write(np.ascontiguousarray(block, "<f8").tobytes())
     stream.flush()
