@@ -22,7 +22,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from featherbench_oracles.clock import Stream
-from featherbench_oracles.protocol import Question
+from featherbench_oracles.protocol import State
 from featherbench_oracles.robot import JOINT_SIZES, Description
 from featherbench_oracles.testing.draws import random_states
 
@@ -80,7 +80,7 @@ def held_against(engine: Any, library: ctypes.CDLL, name: str, quantity: str) ->
     robot, nothing = engine.prepare(description), engine.prepare(Description("nothing", np.array([0, 0, -9.81]), (), 0, 0))
     drawn = random_states(np.random.default_rng(1), description)
     rows = [[drawn[key][k] for key in ("q", "v", "a", "tau", "wrench")] for k in range(STATES)]
-    asks = [Question(q, v, a, tau, wrench, drawn["probe"], 0) for q, v, a, tau, wrench in rows]
+    asks = [State(q, v, a, tau, wrench, drawn["probe"], 0) for q, v, a, tau, wrench in rows]
     method = engine.quantities[quantity][QUANTITIES[quantity]]
     stream = Stream(method, robot, nothing, asks)
     changes = [robot.change(ask) for ask in asks]

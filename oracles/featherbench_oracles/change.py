@@ -7,7 +7,7 @@ The module `coordinates` of each engine begins with the table of its q_e, T and 
     function              parameter  shape   unit                     result
     to_engine_q           robot                                       q_e of shape (nq of the engine,), by the table
                           q          (nq,)   m, rad or quaternions
-    change_of_velocities  robot                                       the `Change` at that state: T and b of the table
+    change_of_velocities  robot                                       the `CoordinateChange` at that state: T and b of the table
                           q          (nq,)   m, rad or quaternions
                           v          (nv,)   m/s or rad/s
 
@@ -22,7 +22,7 @@ from featherbench_oracles.algebra import Array
 
 
 @dataclass(frozen=True)
-class Change:
+class CoordinateChange:
     """The change from neutral to engine (e) coordinates at one state.
 
     ::

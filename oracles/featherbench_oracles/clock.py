@@ -17,8 +17,8 @@ from typing import Any, Protocol
 import numpy as np
 
 from featherbench_oracles.algebra import Array
-from featherbench_oracles.change import Change
-from featherbench_oracles.protocol import Question
+from featherbench_oracles.change import CoordinateChange
+from featherbench_oracles.protocol import State
 
 SAMPLE = 64  # calls that measure the overhead: at most these; else those of the loop plus two, so that one interruption is no median
 WARM = 5  # calls before each loop that are not timed, at most: after a pause the first call takes several times as long
@@ -26,7 +26,7 @@ WARM_NS = 200_000  # no further such call after this time
 TRIALS = 3  # measurements before the answer is that there is no estimate: an interruption may make the overhead too long
 NOTHING = -1  # the body in a question to a robot without bodies: the world
 
-# word of `Calls.given` -> how the argument is made from a state
+# word of `TimedCalls.given` -> how the argument is made from a state
 ARGUMENTS: dict[str, Callable[[Any, Any, Any], Any]] = {
     "q": lambda robot, _, ask: robot.positions(ask.q),
     "v": lambda _, change, ask: change.to_engine_v(ask.v),
@@ -40,17 +40,17 @@ ARGUMENTS: dict[str, Callable[[Any, Any, Any], Any]] = {
 class Timed(Protocol):
     """The interface of a robot whose calls can be timed."""
 
-    def change(self, ask: Question) -> Change:
+    def change(self, ask: State) -> CoordinateChange:
         """Find T and b at a state.
 
         Parameters
         ----------
-        ask : Question
+        ask : State
             The state.
 
         Returns
         -------
-        Change
+        CoordinateChange
             The change from neutral to engine coordinates there.
         """
 
@@ -70,7 +70,7 @@ class Timed(Protocol):
 
 
 @dataclass(frozen=True)
-class Calls:
+class TimedCalls:
     """A method whose engine calls can be timed alone.
 
     The calls take and return numbers in the engine's coordinates (e):
@@ -100,18 +100,18 @@ class Calls:
 
     given: str
     calls: Callable[..., Any]
-    answer: Callable[[Change, Any], Any] = lambda _, result: result
+    answer: Callable[[CoordinateChange, Any], Any] = lambda _, result: result
 
-    def arguments(self, robot: Timed, ask: Question, change: Change) -> tuple[Any, ...]:
+    def arguments(self, robot: Timed, ask: State, change: CoordinateChange) -> tuple[Any, ...]:
         """Compute the arguments of the calls at a state, in the engine's coordinates.
 
         Parameters
         ----------
         robot : Timed
             The robot.
-        ask : Question
+        ask : State
             The state.
-        change : Change
+        change : CoordinateChange
             The change of coordinates there.
 
         Returns
@@ -121,14 +121,14 @@ class Calls:
         """
         return tuple(ARGUMENTS[name](robot, change, ask) for name in self.given.split())
 
-    def __call__(self, robot: Timed, ask: Question) -> Any:
+    def __call__(self, robot: Timed, ask: State) -> Any:
         """Answer at a state.
 
         Parameters
         ----------
         robot : Timed
             The robot.
-        ask : Question
+        ask : State
             The state.
 
         Returns
@@ -145,18 +145,18 @@ class Stream:
 
     Parameters
     ----------
-    method : Calls
+    method : TimedCalls
         The method.
     robot, nothing : Timed
         The robot, and one without bodies, which measures the overhead of calling.
-    asks : list of Question
+    asks : list of State
         The states.
     clock : callable
         The time in nanoseconds.
     """
 
     def __init__(
-        self, method: Calls, robot: Timed, nothing: Timed, asks: list[Question], clock: Callable[[], int] = perf_counter_ns
+        self, method: TimedCalls, robot: Timed, nothing: Timed, asks: list[State], clock: Callable[[], int] = perf_counter_ns
     ) -> None:
         self.clock = clock
         self.call = method.calls.__get__(robot)

@@ -21,7 +21,7 @@ class Unsupported(Exception):  # noqa: N818 (no error: it is the protocol's answ
 
 
 @dataclass(frozen=True)
-class Question:
+class State:
     """One state in neutral coordinates, and a body, for a quantity of one body.
 
     Attributes
@@ -90,7 +90,7 @@ class Robot(Protocol):
         """
 
 
-Quantities = Mapping[str, Mapping[str, Callable[[Any, Question], Any]]]
+Quantities = Mapping[str, Mapping[str, Callable[[Any, State], Any]]]
 
 
 class Engine(Protocol):

@@ -15,10 +15,10 @@ from typing import Any
 
 import numpy as np
 
-from featherbench_oracles.clock import Calls, Stream
+from featherbench_oracles.clock import Stream, TimedCalls
 from featherbench_oracles.examination import examined
 from featherbench_oracles.messages import Answer, Blocks, Header, read_message, write_message
-from featherbench_oracles.protocol import AS_READ, PROTOCOL, SHAPES, Engine, Question, Reading, Unsupported
+from featherbench_oracles.protocol import AS_READ, PROTOCOL, SHAPES, Engine, Reading, State, Unsupported
 from featherbench_oracles.robot import Description
 
 
@@ -79,7 +79,7 @@ class Session:
         engine = self.engine
         methods = {quantity: list(by_method) for quantity, by_method in engine.quantities.items()}
         hello = {"protocol": PROTOCOL, "engine": engine.name, "version": engine.version, "build": engine.build, "methods": methods}
-        timed = {name: [m for m, f in by_method.items() if isinstance(f, Calls)] for name, by_method in engine.quantities.items()}
+        timed = {name: [m for m, f in by_method.items() if isinstance(f, TimedCalls)] for name, by_method in engine.quantities.items()}
         estimated = {name: listed for name, listed in timed.items() if listed}
         return ({**hello, "clock": "estimate", "timed": estimated} if estimated else hello), {}
 
@@ -136,7 +136,7 @@ class Session:
         shape = tuple(sizes[n] if isinstance(n, str) else n for n in SHAPES[quantity])
         value = np.empty((count, *shape))
         for k in range(count):
-            answer = function(self.robot, _question(states, first + k, body))
+            answer = function(self.robot, _state(states, first + k, body))
             value[k] = np.reshape(answer[entries] if entries else answer, shape)
         return {}, {"value": value}
 
@@ -144,7 +144,7 @@ class Session:
         """Time a method's own calls over a stream of the states: `nanoseconds` and `overhead` of the whole stream."""
         function, _, states, body = self._asked(header)
         first, count, asked = header["first"], header["count"], (header["quantity"], header["method"], body)
-        if not isinstance(function, Calls):
+        if not isinstance(function, TimedCalls):
             raise Unsupported(
                 f"{self.engine.name} does not time {header['quantity']} by {header['method']}: it is more than calls of the engine"
             )
@@ -152,8 +152,8 @@ class Session:
             raise ValueError(f"there are no {count} states from {first} on")
         if self.stream is None or self.stream[0] != asked:
             self.nothing = self.nothing or self.engine.prepare(Description("nothing", np.array([0, 0, -9.81]), (), 0, 0))
-            questions = [_question(states, k, body) for k in range(len(states["q"]))]
-            self.stream = asked, Stream(function, self.robot, self.nothing, questions)
+            asks = [_state(states, k, body) for k in range(len(states["q"]))]
+            self.stream = asked, Stream(function, self.robot, self.nothing, asks)
         nanoseconds, overhead = self.stream[1].time(first, count)
         return {"nanoseconds": nanoseconds, "overhead": overhead}, {}
 
@@ -161,7 +161,7 @@ class Session:
         """Forget the robot and its states."""
         self.description = self.robot = self.states = self.stream = None
 
-    def _asked(self, header: Header) -> tuple[Callable[[Any, Question], Any], Description, Blocks, int]:
+    def _asked(self, header: Header) -> tuple[Callable[[Any, State], Any], Description, Blocks, int]:
         """Find the method, the robot, its states and the body of a request, if all are there."""
         quantity, method = header["quantity"], header["method"]
         if method not in self.engine.quantities.get(quantity, {}):
@@ -176,10 +176,10 @@ class Session:
         return self.engine.quantities[quantity][method], self.description, self.states, body
 
 
-def _question(states: Blocks, k: int, body: int) -> Question:
-    """Make the question about state k."""
+def _state(states: Blocks, k: int, body: int) -> State:
+    """Take state k from the blocks."""
     row = {name: states[name][k] for name in ("q", "v", "a", "tau", "wrench")}
-    return Question(**row, probe=states["probe"], body=body)
+    return State(**row, probe=states["probe"], body=body)
 
 
 def serve(engine: Engine) -> None:

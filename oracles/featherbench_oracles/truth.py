@@ -32,7 +32,7 @@ import mpmath
 from mpmath import mp, mpf
 
 from featherbench_oracles.algebra import Array
-from featherbench_oracles.protocol import Quantities, Question, readback_row
+from featherbench_oracles.protocol import Quantities, State, readback_row
 from featherbench_oracles.robot import Body, Description
 from featherbench_oracles.session import serve
 
@@ -523,22 +523,22 @@ class Truth:
         with mp.workprec(53):
             return [float(+value) for value in values]
 
-    def id(self, ask: Question) -> list[float]:
+    def id(self, ask: State) -> list[float]:
         """Answer `id`: nv forces, N or N m."""
         with mp.workprec(self.bits):
             return self.nearest(self.inverse(exact(ask.q), exact(ask.v), exact(ask.a)))
 
-    def bias(self, ask: Question) -> list[float]:
+    def bias(self, ask: State) -> list[float]:
         """Answer `bias`: nv forces, N or N m."""
         with mp.workprec(self.bits):
             return self.nearest(self.inverse(exact(ask.q), exact(ask.v), [ZERO] * self.description.nv))
 
-    def mass_matrix(self, ask: Question) -> list[float]:
+    def mass_matrix(self, ask: State) -> list[float]:
         """Answer `mass_matrix`: nv rows of nv entries, one after the other, kg, kg m or kg m²."""
         with mp.workprec(self.bits):
             return self.nearest([entry for row in self.mass(exact(ask.q)) for entry in row])
 
-    def mass_matrix_probe(self, ask: Question) -> list[float]:
+    def mass_matrix_probe(self, ask: State) -> list[float]:
         """Answer `mass_matrix_probe`: M x for the four rows x of `probe`, the diagonal, the last row, one after the other."""
         with mp.workprec(self.bits):
             mass = self.mass(exact(ask.q))
@@ -546,7 +546,7 @@ class Truth:
             rows += [[row[i] for i, row in enumerate(mass)], mass[-1]]
             return [entry for row in rows for entry in self.nearest(row)]
 
-    def fd(self, ask: Question) -> list[float]:
+    def fd(self, ask: State) -> list[float]:
         """Answer `fd`: nv accelerations, m/s² or rad/s²."""
         with mp.workprec(self.bits):
             return self.nearest(self.forward(exact(ask.q), exact(ask.v), exact(ask.tau)))

@@ -7,10 +7,10 @@ import pytest
 
 from featherbench_oracles import ENGINES
 from featherbench_oracles.algebra import Array
-from featherbench_oracles.change import Change
-from featherbench_oracles.clock import Calls, Stream
+from featherbench_oracles.change import CoordinateChange
+from featherbench_oracles.clock import Stream, TimedCalls
 from featherbench_oracles.messages import Header
-from featherbench_oracles.protocol import Question
+from featherbench_oracles.protocol import State
 from featherbench_oracles.robot import Description
 from featherbench_oracles.testing.client import Oracle
 from featherbench_oracles.testing.draws import COUNT, random_robot, random_states, without_armature
@@ -64,9 +64,9 @@ class Waiting:
     def __init__(self, ticks: Ticks, nanoseconds: int) -> None:
         self.ticks, self.nanoseconds = ticks, nanoseconds
 
-    def change(self, ask: Question) -> Change:
+    def change(self, ask: State) -> CoordinateChange:
         """Change nothing."""
-        return Change((), np.zeros(len(ask.v)))
+        return CoordinateChange((), np.zeros(len(ask.v)))
 
     def positions(self, q: Array) -> Array:
         """Leave them as they are."""
@@ -78,8 +78,8 @@ class Waiting:
 
 
 ONE = np.zeros(1)
-ASK = Question(ONE, ONE, ONE, ONE, ONE, ONE, body=0)
-WAIT = Calls("q v", Waiting.wait)
+ASK = State(ONE, ONE, ONE, ONE, ONE, ONE, body=0)
+WAIT = TimedCalls("q v", Waiting.wait)
 
 
 def test_overhead_is_subtracted() -> None:

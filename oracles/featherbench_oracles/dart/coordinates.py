@@ -21,7 +21,7 @@ import numpy as np
 from dartpy import dynamics
 
 from featherbench_oracles.algebra import Array, rotation
-from featherbench_oracles.change import Change
+from featherbench_oracles.change import CoordinateChange
 from featherbench_oracles.robot import Description, Joint
 
 AXES = np.array([[0.0, 0.0, 1.0], [0.0, -1.0, 0.0], [1.0, 0.0, 0.0]])  # takes DART's x, y, z to our z, -y, x
@@ -61,7 +61,7 @@ def log(quaternion: Array) -> Array:
     return 2 * atan2(sine, w) / sine * u if sine > 0 else np.zeros(3)
 
 
-def change_of_velocities(robot: Description, made: Sequence[dynamics.Joint], q: Array, v: Array) -> Change:
+def change_of_velocities(robot: Description, made: Sequence[dynamics.Joint], q: Array, v: Array) -> CoordinateChange:
     """Find T and b of the table; `made` are DART's joints of the robot."""
     blocks, bias = [], np.zeros(robot.nv)
     for joint, mine in zip((body.joint for body in robot.bodies), made, strict=True):
@@ -72,4 +72,4 @@ def change_of_velocities(robot: Description, made: Sequence[dynamics.Joint], q: 
             linear, angular = v[joint.v][:3], v[joint.v][3:]
             blocks.append((joint.v, np.block([[zero, r], [r, zero]])))
             bias[joint.v] = np.append(np.zeros(3), r @ np.cross(angular, linear))
-    return Change(tuple(blocks), bias)
+    return CoordinateChange(tuple(blocks), bias)

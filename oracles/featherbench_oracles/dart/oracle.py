@@ -9,12 +9,12 @@ import numpy as np
 from dartpy import dynamics
 
 from featherbench_oracles.algebra import Array
-from featherbench_oracles.change import Change
-from featherbench_oracles.clock import Calls
+from featherbench_oracles.change import CoordinateChange
+from featherbench_oracles.clock import TimedCalls
 from featherbench_oracles.dart import reading
 from featherbench_oracles.dart.building import build
 from featherbench_oracles.dart.coordinates import AXES, change_of_velocities, to_engine_q
-from featherbench_oracles.protocol import Quantities, Question, Reading, mass_matrix_probe, readback_row
+from featherbench_oracles.protocol import Quantities, Reading, State, mass_matrix_probe, readback_row
 from featherbench_oracles.robot import Description
 
 
@@ -56,11 +56,11 @@ class DartRobot:
         """Convert positions to DART's, of shape (nv,)."""
         return to_engine_q(self.robot, q)
 
-    def change(self, ask: Question) -> Change:
+    def change(self, ask: State) -> CoordinateChange:
         """Find T and b from DART's own joints."""
         return change_of_velocities(self.robot, self.joints, ask.q, ask.v)
 
-    def _update(self, ask: Question) -> Change:
+    def _update(self, ask: State) -> CoordinateChange:
         """Set q and v."""
         change = self.change(ask)
         self._set(self.positions(ask.q), change.to_engine_v(ask.v))
@@ -71,7 +71,7 @@ class DartRobot:
         self.skeleton.setPositions(q)
         self.skeleton.setVelocities(v)
 
-    # ---- calls that can be timed, in DART's coordinates (`clock.Calls`)
+    # ---- calls that can be timed, in DART's coordinates (`clock.TimedCalls`)
 
     def inverse_dynamics(self, q: Array, v: Array, a: Array) -> Array:
         """Compute tau_e by computeInverseDynamics."""
@@ -104,7 +104,7 @@ class DartRobot:
 
     # ---- dynamics
 
-    def inverse_wrench(self, ask: Question) -> Array:
+    def inverse_wrench(self, ask: State) -> Array:
         """Answer `id_wrench` by computeInverseDynamics with a force on every body, in its axes at its origin."""
         change = self._update(ask)
         for node, wrench in zip(self.bodies, ask.wrench, strict=True):
@@ -115,18 +115,18 @@ class DartRobot:
         self.skeleton.clearExternalForces()
         return change.to_neutral_tau(self.skeleton.getForces())
 
-    def bias_forces(self, ask: Question) -> Array:
+    def bias_forces(self, ask: State) -> Array:
         """Answer `bias` by h = T' (Coriolis and gravity forces + M_e b)."""
         change = self._update(ask)
         bias = self.skeleton.getCoriolisAndGravityForces()
         return change.to_neutral_tau(bias + self.skeleton.getMassMatrix() @ change.b if change.b.any() else bias)
 
-    def probe(self, ask: Question) -> Array:
+    def probe(self, ask: State) -> Array:
         """Answer `mass_matrix_probe` by the M of `mass_matrix`."""
         mass = self.change(ask).to_neutral_mass(self.mass_matrix(self.positions(ask.q)))
         return mass_matrix_probe(mass.__matmul__, np.diag(mass), ask.probe)
 
-    def inverse_mass_matrix(self, ask: Question) -> Array:
+    def inverse_mass_matrix(self, ask: State) -> Array:
         """Answer `fd` by a = M^-1 (tau - h), where the articulated body algorithm gives M^-1 column by column."""
         change = self._update(ask)
         force = change.to_engine_tau(ask.tau) - self.skeleton.getCoriolisAndGravityForces()
@@ -134,12 +134,12 @@ class DartRobot:
 
     # ---- energies, momentum, kinematics
 
-    def potential_energy(self, ask: Question) -> float:
+    def potential_energy(self, ask: State) -> float:
         """Answer `potential_energy` by computePotentialEnergy."""
         self._update(ask)
         return self.skeleton.computePotentialEnergy()
 
-    def momentum(self, ask: Question) -> Array:
+    def momentum(self, ask: State) -> Array:
         """Answer `momentum` by a sum over the bodies. DART gives each in the body's axes, about a point in them."""
         self._update(ask)
         center, total = self.skeleton.getCOM(), np.zeros(6)
@@ -148,24 +148,24 @@ class DartRobot:
             total += np.append(r @ node.getAngularMomentum(r.T @ (center - p)), r @ node.getLinearMomentum())
         return total
 
-    def placement(self, ask: Question) -> list[Array]:
+    def placement(self, ask: State) -> list[Array]:
         """Answer `body_placement` by getWorldTransform."""
         self._update(ask)
         poses = [node.getWorldTransform() for node in self.bodies]
         return [np.append(pose.rotation().ravel(), pose.translation()) for pose in poses]
 
-    def velocity(self, ask: Question) -> list[Array]:
+    def velocity(self, ask: State) -> list[Array]:
         """Answer `body_velocity` by getAngularVelocity and getLinearVelocity."""
         self._update(ask)
         return [np.append(node.getAngularVelocity(), node.getLinearVelocity()) for node in self.bodies]
 
-    def acceleration(self, ask: Question) -> list[Array]:
+    def acceleration(self, ask: State) -> list[Array]:
         """Answer `body_acceleration` by getAngularAcceleration and getLinearAcceleration, which is classical."""
         change = self._update(ask)
         self.skeleton.setAccelerations(change.to_engine_a(ask.a))
         return [np.append(node.getAngularAcceleration(), node.getLinearAcceleration()) for node in self.bodies]
 
-    def jacobian(self, ask: Question) -> Array:
+    def jacobian(self, ask: State) -> Array:
         """Answer `body_jacobian` by getWorldJacobian."""
         change = self._update(ask)
         return change.to_neutral_jacobian(self.skeleton.getWorldJacobian(self.bodies[ask.body]))
@@ -178,19 +178,22 @@ class Dart:
     version = importlib.metadata.version("dartpy")
     build = {"language": "C++ (Python package dartpy)"}
     quantities: Quantities = {
-        "id": {"inverse_dynamics": Calls("q v a", DartRobot.inverse_dynamics, Change.to_neutral_tau)},
+        "id": {"inverse_dynamics": TimedCalls("q v a", DartRobot.inverse_dynamics, CoordinateChange.to_neutral_tau)},
         "id_wrench": {"inverse_dynamics": DartRobot.inverse_wrench},
         "bias": {
             "coriolis_and_gravity": DartRobot.bias_forces,
-            "inverse_dynamics": Calls("q v b", DartRobot.inverse_dynamics, Change.to_neutral_tau),
+            "inverse_dynamics": TimedCalls("q v b", DartRobot.inverse_dynamics, CoordinateChange.to_neutral_tau),
         },
-        "mass_matrix": {"mass_matrix": Calls("q", DartRobot.mass_matrix, Change.to_neutral_mass)},
-        "mass_matrix_sparse": {"mass_matrix": Calls("q", DartRobot.mass_matrix, Change.to_neutral_mass)},
+        "mass_matrix": {"mass_matrix": TimedCalls("q", DartRobot.mass_matrix, CoordinateChange.to_neutral_mass)},
+        "mass_matrix_sparse": {"mass_matrix": TimedCalls("q", DartRobot.mass_matrix, CoordinateChange.to_neutral_mass)},
         "mass_matrix_probe": {"mass_matrix": DartRobot.probe},
-        "fd": {"aba": Calls("q v tau", DartRobot.aba, Change.to_neutral_a), "inverse_mass_matrix": DartRobot.inverse_mass_matrix},
-        "kinetic_energy": {"kinetic_energy": Calls("q v", DartRobot.kinetic_energy)},
+        "fd": {
+            "aba": TimedCalls("q v tau", DartRobot.aba, CoordinateChange.to_neutral_a),
+            "inverse_mass_matrix": DartRobot.inverse_mass_matrix,
+        },
+        "kinetic_energy": {"kinetic_energy": TimedCalls("q v", DartRobot.kinetic_energy)},
         "potential_energy": {"potential_energy": DartRobot.potential_energy},
-        "com": {"center_of_mass": Calls("q", DartRobot.com)},
+        "com": {"center_of_mass": TimedCalls("q", DartRobot.com)},
         "momentum": {"body_momenta": DartRobot.momentum},
         "body_placement": {"world_transforms": DartRobot.placement},
         "body_velocity": {"world_velocities": DartRobot.velocity},

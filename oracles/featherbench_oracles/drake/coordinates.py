@@ -15,7 +15,7 @@ from pydrake.common.eigen_geometry import Quaternion
 from pydrake.math import RollPitchYaw
 
 from featherbench_oracles.algebra import Array, rotation
-from featherbench_oracles.change import Change
+from featherbench_oracles.change import CoordinateChange
 from featherbench_oracles.robot import Description, Joint
 
 
@@ -32,7 +32,7 @@ def _joint_q(joint: Joint, q: Array) -> Array:
     return q
 
 
-def change_of_velocities(robot: Description, q: Array, v: Array) -> Change:
+def change_of_velocities(robot: Description, q: Array, v: Array) -> CoordinateChange:
     """Find T and b of the table, by the interface in `change`."""
     blocks, bias = [], np.zeros(robot.nv)
     for joint in (body.joint for body in robot.bodies):
@@ -43,4 +43,4 @@ def change_of_velocities(robot: Description, q: Array, v: Array) -> Change:
             linear, angular = v[joint.v][:3], v[joint.v][3:]
             blocks.append((joint.v, np.block([[zero, r], [r, zero]])))
             bias[joint.v] = np.append(np.zeros(3), r @ np.cross(angular, linear))
-    return Change(tuple(blocks), bias)
+    return CoordinateChange(tuple(blocks), bias)

@@ -11,12 +11,12 @@ from pydrake.multibody.math import SpatialForce
 from pydrake.multibody.plant import MultibodyPlant
 
 from featherbench_oracles.algebra import Array, skew
-from featherbench_oracles.change import Change
-from featherbench_oracles.clock import NOTHING, Calls
+from featherbench_oracles.change import CoordinateChange
+from featherbench_oracles.clock import NOTHING, TimedCalls
 from featherbench_oracles.drake import reading
 from featherbench_oracles.drake.building import build
 from featherbench_oracles.drake.coordinates import change_of_velocities, to_engine_q
-from featherbench_oracles.protocol import Quantities, Question, Reading, mass_matrix_probe, readback_row
+from featherbench_oracles.protocol import Quantities, Reading, State, mass_matrix_probe, readback_row
 from featherbench_oracles.robot import Description
 
 
@@ -62,13 +62,13 @@ class DrakeRobot:
         """Convert positions to Drake's."""
         return to_engine_q(self.robot, q)
 
-    def change(self, ask: Question) -> Change:
+    def change(self, ask: State) -> CoordinateChange:
         """Find T and b at a state. A number that is not finite is a ValueError: Drake would end the process."""
         if not np.isfinite([*ask.q, *ask.v, *ask.a, *ask.tau]).all():
             raise ValueError("Drake ends the process at numbers that are not finite")
         return change_of_velocities(self.robot, ask.q, ask.v)
 
-    def _update(self, ask: Question) -> Change:
+    def _update(self, ask: State) -> CoordinateChange:
         """Set q and v."""
         change = self.change(ask)
         self._set(self.positions(ask.q), change.to_engine_v(ask.v))
@@ -79,7 +79,7 @@ class DrakeRobot:
         self.plant.SetPositions(self.context, q)
         self.plant.SetVelocities(self.context, v)
 
-    # ---- calls that can be timed, in Drake's coordinates (`clock.Calls`)
+    # ---- calls that can be timed, in Drake's coordinates (`clock.TimedCalls`)
 
     def inverse_dynamics(self, q: Array, v: Array, a: Array) -> Array:
         """Compute tau_e by CalcInverseDynamics under gravity."""
@@ -112,7 +112,7 @@ class DrakeRobot:
 
     # ---- dynamics
 
-    def inverse_wrench(self, ask: Question) -> Array:
+    def inverse_wrench(self, ask: State) -> Array:
         """Answer `id_wrench` by CalcInverseDynamics under gravity and a force on every body, in body axes at its origin."""
         change = self._update(ask)
         self.plant.CalcForceElementsContribution(self.context, self.forces)
@@ -121,7 +121,7 @@ class DrakeRobot:
             body.AddInForce(self.context, np.zeros(3), force, body.body_frame(), self.forces)
         return change.to_neutral_tau(self.plant.CalcInverseDynamics(self.context, change.to_engine_a(ask.a), self.forces))
 
-    def bias_term(self, ask: Question) -> Array:
+    def bias_term(self, ask: State) -> Array:
         """Answer `bias` by h = T' (C v - tau_gravity + M_e b)."""
         change = self._update(ask)
         bias = self.plant.CalcBiasTerm(self.context) - self.plant.CalcGravityGeneralizedForces(self.context)
@@ -129,46 +129,46 @@ class DrakeRobot:
             bias += self.plant.CalcMassMatrix(self.context) @ change.b
         return change.to_neutral_tau(bias)
 
-    def mass_by_inverse_dynamics(self, ask: Question) -> Array:
+    def mass_by_inverse_dynamics(self, ask: State) -> Array:
         """Answer `mass_matrix` by CalcMassMatrixViaInverseDynamics, column by column."""
         change = self._update(ask)
         return change.to_neutral_mass(self.plant.CalcMassMatrixViaInverseDynamics(self.context))
 
-    def probe(self, ask: Question) -> Array:
+    def probe(self, ask: State) -> Array:
         """Answer `mass_matrix_probe` by the M of `crba`."""
         mass = self.change(ask).to_neutral_mass(self.crba(self.positions(ask.q)))
         return mass_matrix_probe(mass.__matmul__, np.diag(mass), ask.probe)
 
     # ---- energies, momentum, kinematics
 
-    def potential_energy(self, ask: Question) -> float:
+    def potential_energy(self, ask: State) -> float:
         """Answer `potential_energy` by CalcPotentialEnergy."""
         self._update(ask)
         return self.plant.CalcPotentialEnergy(self.context)
 
-    def com(self, ask: Question) -> Array:
+    def com(self, ask: State) -> Array:
         """Answer `com` by CalcCenterOfMassPositionInWorld."""
         self._update(ask)
         return self.plant.CalcCenterOfMassPositionInWorld(self.context)
 
-    def momentum(self, ask: Question) -> Array:
+    def momentum(self, ask: State) -> Array:
         """Answer `momentum` by CalcSpatialMomentumInWorldAboutPoint."""
         momentum = self.plant.CalcSpatialMomentumInWorldAboutPoint(self.context, self.com(ask))
         return np.append(momentum.rotational(), momentum.translational())
 
-    def placement(self, ask: Question) -> list[Array]:
+    def placement(self, ask: State) -> list[Array]:
         """Answer `body_placement` by EvalPoseInWorld."""
         self._update(ask)
         poses = [body.EvalPoseInWorld(self.context) for body in self.bodies]
         return [np.append(pose.rotation().matrix().ravel(), pose.translation()) for pose in poses]
 
-    def velocity(self, ask: Question) -> list[Array]:
+    def velocity(self, ask: State) -> list[Array]:
         """Answer `body_velocity` by EvalSpatialVelocityInWorld."""
         self._update(ask)
         velocities = [body.EvalSpatialVelocityInWorld(self.context) for body in self.bodies]
         return [np.append(v.rotational(), v.translational()) for v in velocities]
 
-    def acceleration(self, ask: Question) -> list[Array]:
+    def acceleration(self, ask: State) -> list[Array]:
         """Answer `body_acceleration`: Drake's spatial acceleration is the classical one of the body's origin."""
         change = self._update(ask)
         by_index = self.plant.CalcSpatialAccelerationsFromVdot(self.context, change.to_engine_a(ask.a))
@@ -183,27 +183,27 @@ class Drake:
     version = importlib.metadata.version("drake")
     build = {"language": "C++ (Python package drake)"}
     quantities: Quantities = {
-        "id": {"inverse_dynamics": Calls("q v a", DrakeRobot.inverse_dynamics, Change.to_neutral_tau)},
+        "id": {"inverse_dynamics": TimedCalls("q v a", DrakeRobot.inverse_dynamics, CoordinateChange.to_neutral_tau)},
         "id_wrench": {"inverse_dynamics": DrakeRobot.inverse_wrench},
         "bias": {
             "bias_term": DrakeRobot.bias_term,
-            "inverse_dynamics": Calls("q v b", DrakeRobot.inverse_dynamics, Change.to_neutral_tau),
+            "inverse_dynamics": TimedCalls("q v b", DrakeRobot.inverse_dynamics, CoordinateChange.to_neutral_tau),
         },
         "mass_matrix": {
-            "crba": Calls("q", DrakeRobot.crba, Change.to_neutral_mass),
+            "crba": TimedCalls("q", DrakeRobot.crba, CoordinateChange.to_neutral_mass),
             "inverse_dynamics": DrakeRobot.mass_by_inverse_dynamics,
         },
-        "mass_matrix_sparse": {"crba": Calls("q", DrakeRobot.crba, Change.to_neutral_mass)},
+        "mass_matrix_sparse": {"crba": TimedCalls("q", DrakeRobot.crba, CoordinateChange.to_neutral_mass)},
         "mass_matrix_probe": {"crba": DrakeRobot.probe},
-        "fd": {"aba": Calls("q v tau", DrakeRobot.aba, Change.to_neutral_a)},
-        "kinetic_energy": {"kinetic_energy": Calls("q v", DrakeRobot.kinetic_energy)},
+        "fd": {"aba": TimedCalls("q v tau", DrakeRobot.aba, CoordinateChange.to_neutral_a)},
+        "kinetic_energy": {"kinetic_energy": TimedCalls("q v", DrakeRobot.kinetic_energy)},
         "potential_energy": {"potential_energy": DrakeRobot.potential_energy},
         "com": {"center_of_mass": DrakeRobot.com},
         "momentum": {"spatial_momentum": DrakeRobot.momentum},
         "body_placement": {"body_poses": DrakeRobot.placement},
         "body_velocity": {"body_velocities": DrakeRobot.velocity},
         "body_acceleration": {"spatial_accelerations": DrakeRobot.acceleration},
-        "body_jacobian": {"jacobian_spatial_velocity": Calls("q body", DrakeRobot.jacobian, Change.to_neutral_jacobian)},
+        "body_jacobian": {"jacobian_spatial_velocity": TimedCalls("q body", DrakeRobot.jacobian, CoordinateChange.to_neutral_jacobian)},
     }
 
     def prepare(self, description: Description) -> DrakeRobot:

@@ -16,7 +16,7 @@ import mujoco as mj
 import numpy as np
 
 from featherbench_oracles.algebra import Array, rotation
-from featherbench_oracles.change import Change
+from featherbench_oracles.change import CoordinateChange
 from featherbench_oracles.robot import Body, Description
 
 
@@ -36,7 +36,7 @@ def _joint_q(body: Body, q: Array) -> Array:
     return q
 
 
-def change_of_velocities(robot: Description, q: Array, v: Array) -> Change:
+def change_of_velocities(robot: Description, q: Array, v: Array) -> CoordinateChange:
     """Find T and b of the table, by the interface in `change`."""
     blocks, bias = [], np.zeros(robot.nv)
     for joint in (body.joint for body in robot.bodies):
@@ -45,7 +45,7 @@ def change_of_velocities(robot: Description, q: Array, v: Array) -> Change:
             r = joint.rotation @ rotation(q[joint.q][3:])
             blocks.append((linear, r))
             bias[linear] = r @ np.cross(v[joint.v][3:], v[linear])
-    return Change(tuple(blocks), bias)
+    return CoordinateChange(tuple(blocks), bias)
 
 
 def wxyz(matrix: Array) -> Array:

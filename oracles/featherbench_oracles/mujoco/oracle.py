@@ -8,11 +8,11 @@ import mujoco as mj
 import numpy as np
 
 from featherbench_oracles.algebra import Array
-from featherbench_oracles.change import Change
+from featherbench_oracles.change import CoordinateChange
 from featherbench_oracles.mujoco import reading
 from featherbench_oracles.mujoco.building import build, chains, motions
 from featherbench_oracles.mujoco.coordinates import change_of_velocities, from_wxyz, to_engine_q
-from featherbench_oracles.protocol import Quantities, Question, Reading, Unsupported, mass_matrix_probe, readback_row
+from featherbench_oracles.protocol import Quantities, Reading, State, Unsupported, mass_matrix_probe, readback_row
 from featherbench_oracles.robot import Description
 
 
@@ -52,7 +52,7 @@ class MujocoRobot:
             rows.append(readback_row(m.body_mass[i], m.body_ipos[i], inertia, turn, place))
         return rows
 
-    def _update(self, ask: Question) -> Change:
+    def _update(self, ask: State) -> CoordinateChange:
         """Set q and v, and compute what depends on them."""
         change = change_of_velocities(self.robot, ask.q, ask.v)
         self.data.qpos = to_engine_q(self.robot, ask.q)
@@ -69,12 +69,12 @@ class MujocoRobot:
         mj.mj_inverse(self.model, self.data)
         return self.data.qfrc_inverse.copy()
 
-    def inverse(self, ask: Question) -> Array:
+    def inverse(self, ask: State) -> Array:
         """Answer `id` by mj_inverse, armature included."""
         change = self._update(ask)
         return change.to_neutral_tau(self._inverse(change.to_engine_a(ask.a)))
 
-    def rne(self, ask: Question) -> Array:
+    def rne(self, ask: State) -> Array:
         """Answer `id` by mj_rne + armature a_e."""
         change = self._update(ask)
         self.data.qacc = change.to_engine_a(ask.a)
@@ -82,7 +82,7 @@ class MujocoRobot:
         mj.mj_rne(self.model, self.data, 1, tau)
         return change.to_neutral_tau(tau + self.model.dof_armature * self.data.qacc)
 
-    def inverse_wrench(self, ask: Question) -> Array:
+    def inverse_wrench(self, ask: State) -> Array:
         """Answer `id_wrench` by mj_inverse - Σ J' f, because mj_inverse ignores applied forces."""
         self._all_held("wrench")
         change = self._update(ask)
@@ -93,12 +93,12 @@ class MujocoRobot:
             mj.mj_applyFT(self.model, self.data, r @ wrench[3:], r @ wrench[:3], self.data.xpos[i], i, applied)
         return change.to_neutral_tau(tau - applied)
 
-    def qfrc_bias(self, ask: Question) -> Array:
+    def qfrc_bias(self, ask: State) -> Array:
         """Answer `bias` by h = T' (qfrc_bias + M_e b)."""
         change = self._update(ask)
         return change.to_neutral_tau(self.data.qfrc_bias + self._product(change.b))
 
-    def bias_inverse(self, ask: Question) -> Array:
+    def bias_inverse(self, ask: State) -> Array:
         """Answer `bias` by mj_inverse at a = 0."""
         change = self._update(ask)
         return change.to_neutral_tau(self._inverse(change.b))
@@ -109,14 +109,14 @@ class MujocoRobot:
         mj.mj_mulM(self.model, self.data, y, x)
         return y
 
-    def crb(self, ask: Question) -> Array:
+    def crb(self, ask: State) -> Array:
         """Answer `mass_matrix` by mj_fullM, after the composite rigid body algorithm."""
         change = self._update(ask)
         mass = np.empty((self.model.nv, self.model.nv))
         mj.mj_fullM(self.model, self.data, mass)
         return change.to_neutral_mass(mass)
 
-    def probe(self, ask: Question) -> Array:
+    def probe(self, ask: State) -> Array:
         """Answer `mass_matrix_probe` by mj_mulM.
 
         The diagonal is the last entry of each row of the sparse M. Where T is not identity, it is e_i' M e_i.
@@ -134,49 +134,49 @@ class MujocoRobot:
                 diagonal[i] = product(unit)[i]
         return mass_matrix_probe(product, diagonal, ask.probe)
 
-    def forward(self, ask: Question) -> Array:
+    def forward(self, ask: State) -> Array:
         """Answer `fd` by mj_forward: a = M^-1 (tau - h) with the sparse factors L' D L of M."""
         change = self._update(ask)
         self.data.qfrc_applied = change.to_engine_tau(ask.tau)
         mj.mj_forward(self.model, self.data)
         return change.to_neutral_a(self.data.qacc.copy())
 
-    def stored(self, _ask: Question) -> float:
+    def stored(self, _ask: State) -> float:
         """Answer `stored_entries` by nM: one number for each dof and ancestor."""
         return self.model.nM
 
     # ---- energies, momentum, kinematics
 
-    def kinetic_energy(self, ask: Question) -> float:
+    def kinetic_energy(self, ask: State) -> float:
         """Answer `kinetic_energy` by mj_energyVel."""
         self._update(ask)
         mj.mj_energyVel(self.model, self.data)
         return self.data.energy[1]
 
-    def potential_energy(self, ask: Question) -> float:
+    def potential_energy(self, ask: State) -> float:
         """Answer `potential_energy` by mj_energyPos."""
         self._update(ask)
         mj.mj_energyPos(self.model, self.data)
         return self.data.energy[0]
 
-    def com(self, ask: Question) -> Array:
+    def com(self, ask: State) -> Array:
         """Answer `com` by subtree_com."""
         self._update(ask)
         return self.data.subtree_com[0]
 
-    def momentum(self, ask: Question) -> Array:
+    def momentum(self, ask: State) -> Array:
         """Answer `momentum` by mj_subtreeVel; the linear part is the total mass times the velocity of the centre of mass."""
         self._update(ask)
         mj.mj_subtreeVel(self.model, self.data)
         return np.append(self.data.subtree_angmom[0], self.model.body_subtreemass[0] * self.data.subtree_linvel[0])
 
-    def placement(self, ask: Question) -> Array:
+    def placement(self, ask: State) -> Array:
         """Answer `body_placement` by the xmat and xpos of mj_fwdPosition."""
         self._all_held("placement")
         self._update(ask)
         return np.hstack([self.data.xmat[1:], self.data.xpos[1:]])
 
-    def velocity(self, ask: Question) -> Array:
+    def velocity(self, ask: State) -> Array:
         """Answer `body_velocity` by mj_objectVelocity."""
         self._all_held("velocity")
         self._update(ask)
@@ -185,7 +185,7 @@ class MujocoRobot:
             mj.mj_objectVelocity(self.model, self.data, mj.mjtObj.mjOBJ_XBODY, i, row, 0)
         return velocities[1:]
 
-    def acceleration(self, ask: Question) -> Array:
+    def acceleration(self, ask: State) -> Array:
         """Answer `body_acceleration` by mj_objectAcceleration + g: MuJoCo's contains -g."""
         self._all_held("acceleration")
         change = self._update(ask)
@@ -196,7 +196,7 @@ class MujocoRobot:
             mj.mj_objectAcceleration(self.model, self.data, mj.mjtObj.mjOBJ_XBODY, i, row, 0)
         return accelerations[1:] + np.append(np.zeros(3), self.model.opt.gravity)
 
-    def jacobian(self, ask: Question) -> Array:
+    def jacobian(self, ask: State) -> Array:
         """Answer `body_jacobian` by mj_jacBody."""
         if ask.body not in self.held:
             self._all_held("Jacobian")

@@ -13,7 +13,7 @@ import numpy as np
 import pinocchio as pin
 
 from featherbench_oracles.algebra import Array
-from featherbench_oracles.change import Change
+from featherbench_oracles.change import CoordinateChange
 from featherbench_oracles.robot import Description
 
 
@@ -26,7 +26,7 @@ def _planar_q(x: float, y: float, theta: float) -> Array:
     return np.array([x, y, np.cos(theta), np.sin(theta)])
 
 
-def change_of_velocities(robot: Description, q: Array, v: Array) -> Change:
+def change_of_velocities(robot: Description, q: Array, v: Array) -> CoordinateChange:
     """Find T and b of the table, by the interface in `change`."""
     blocks, bias = [], np.zeros(robot.nv)
     for joint in (body.joint for body in robot.bodies):
@@ -37,7 +37,7 @@ def change_of_velocities(robot: Description, q: Array, v: Array) -> Change:
             vx, vy, _ = t @ v[joint.v]
             blocks.append((joint.v, t))
             bias[joint.v] = rate * vy, -rate * vx, 0
-    return Change(tuple(blocks), bias)
+    return CoordinateChange(tuple(blocks), bias)
 
 
 def to_angular_first(motion: pin.Motion | pin.Force) -> Array:

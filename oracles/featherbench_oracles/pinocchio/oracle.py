@@ -10,11 +10,11 @@ import numpy as np
 import pinocchio as pin
 
 from featherbench_oracles.algebra import Array
-from featherbench_oracles.change import Change
+from featherbench_oracles.change import CoordinateChange
 from featherbench_oracles.pinocchio import reading
 from featherbench_oracles.pinocchio.building import build
 from featherbench_oracles.pinocchio.coordinates import change_of_velocities, to_angular_first, to_engine_q
-from featherbench_oracles.protocol import Quantities, Question, Reading, mass_matrix_probe, readback_row
+from featherbench_oracles.protocol import Quantities, Reading, State, mass_matrix_probe, readback_row
 from featherbench_oracles.robot import Description
 
 
@@ -44,7 +44,7 @@ class PinocchioRobot:
 
     # ---- dynamics
 
-    def _state(self, ask: Question) -> tuple[Array, Array, Change]:
+    def _state(self, ask: State) -> tuple[Array, Array, CoordinateChange]:
         """Find q_e, v_e and the change of coordinates."""
         change = change_of_velocities(self.robot, ask.q, ask.v)
         return self._engine_q(ask.q), change.to_engine_v(ask.v), change
@@ -56,23 +56,23 @@ class PinocchioRobot:
         q_e[self.turning] = np.cos(angles)
         return np.insert(q_e, [k + 1 for k in self.turning], np.sin(angles))
 
-    def rnea(self, ask: Question) -> Array:
+    def rnea(self, ask: State) -> Array:
         """Answer `id` by tau = RNEA(q, v, a)."""
         q, v, change = self._state(ask)
         return change.to_neutral_tau(pin.rnea(self.model, self.data, q, v, change.to_engine_a(ask.a)))
 
-    def rnea_wrench(self, ask: Question) -> Array:
+    def rnea_wrench(self, ask: State) -> Array:
         """Answer `id_wrench` by RNEA with forces on the bodies, in body axes about the body's origin like ours."""
         q, v, change = self._state(ask)
         forces = pin.StdVec_Force([pin.Force.Zero(), *(pin.Force(w[3:], w[:3]) for w in ask.wrench)])
         return change.to_neutral_tau(pin.rnea(self.model, self.data, q, v, change.to_engine_a(ask.a), forces))
 
-    def bias_rnea(self, ask: Question) -> Array:
+    def bias_rnea(self, ask: State) -> Array:
         """Answer `bias` by h = RNEA(q, v, a = 0)."""
         q, v, change = self._state(ask)
         return change.to_neutral_tau(pin.rnea(self.model, self.data, q, v, change.b))
 
-    def nonlinear_effects(self, ask: Question) -> Array:
+    def nonlinear_effects(self, ask: State) -> Array:
         """Answer `bias` by h = T' (h_e + M_e b)."""
         q, v, change = self._state(ask)
         bias = pin.nonLinearEffects(self.model, self.data, q, v).copy()
@@ -85,39 +85,39 @@ class PinocchioRobot:
         upper = np.triu(pin.crba(self.model, self.data, q, convention))
         return upper + np.triu(upper, 1).T
 
-    def crba_local(self, ask: Question) -> Array:
+    def crba_local(self, ask: State) -> Array:
         """Answer `mass_matrix` by the composite rigid body algorithm in body frames."""
         q, _, change = self._state(ask)
         return change.to_neutral_mass(self._mass_e(q, pin.Convention.LOCAL))
 
-    def crba_world(self, ask: Question) -> Array:
+    def crba_world(self, ask: State) -> Array:
         """Answer `mass_matrix` by the composite rigid body algorithm in the world frame."""
         q, _, change = self._state(ask)
         return change.to_neutral_mass(self._mass_e(q, pin.Convention.WORLD))
 
-    def probe_local(self, ask: Question) -> Array:
+    def probe_local(self, ask: State) -> Array:
         """Answer `mass_matrix_probe` by the M of `crba_local`."""
         mass = self.crba_local(ask)
         return mass_matrix_probe(mass.__matmul__, np.diag(mass), ask.probe)
 
-    def probe_world(self, ask: Question) -> Array:
+    def probe_world(self, ask: State) -> Array:
         """Answer `mass_matrix_probe` by the M of `crba_world`."""
         mass = self.crba_world(ask)
         return mass_matrix_probe(mass.__matmul__, np.diag(mass), ask.probe)
 
-    def _aba(self, ask: Question, convention: pin.Convention) -> Array:
+    def _aba(self, ask: State, convention: pin.Convention) -> Array:
         q, v, change = self._state(ask)
         return change.to_neutral_a(pin.aba(self.model, self.data, q, v, change.to_engine_tau(ask.tau), convention))
 
-    def aba_local(self, ask: Question) -> Array:
+    def aba_local(self, ask: State) -> Array:
         """Answer `fd` by the articulated body algorithm in body frames."""
         return self._aba(ask, pin.Convention.LOCAL)
 
-    def aba_world(self, ask: Question) -> Array:
+    def aba_world(self, ask: State) -> Array:
         """Answer `fd` by the articulated body algorithm in the world frame."""
         return self._aba(ask, pin.Convention.WORLD)
 
-    def crba_cholesky(self, ask: Question) -> Array:
+    def crba_cholesky(self, ask: State) -> Array:
         """Answer `fd` by a = M^-1 (tau - h) with Pinocchio's tree-sparse factors U D U' of its M."""
         q, v, change = self._state(ask)
         rest = change.to_engine_tau(ask.tau) - pin.nonLinearEffects(self.model, self.data, q, v)
@@ -125,7 +125,7 @@ class PinocchioRobot:
         pin.cholesky.decompose(self.model, self.data)
         return change.to_neutral_a(pin.cholesky.solve(self.model, self.data, rest))
 
-    def minverse(self, ask: Question) -> Array:
+    def minverse(self, ask: State) -> Array:
         """Answer `fd` by a = M^-1 (tau - h) with computeMinverse, which promises the upper triangle only."""
         q, v, change = self._state(ask)
         rest = change.to_engine_tau(ask.tau) - pin.nonLinearEffects(self.model, self.data, q, v)
@@ -134,7 +134,7 @@ class PinocchioRobot:
 
     # ---- energies, momentum, kinematics
 
-    def kinetic_energy(self, ask: Question) -> float:
+    def kinetic_energy(self, ask: State) -> float:
         """Answer `kinetic_energy` by computeKineticEnergy.
 
         Pinocchio 4.1.0 leaves out the armature of RevoluteUnaligned and HelicalUnaligned joints here.
@@ -142,44 +142,44 @@ class PinocchioRobot:
         q, v, _ = self._state(ask)
         return pin.computeKineticEnergy(self.model, self.data, q, v)
 
-    def kinetic_energy_crba(self, ask: Question) -> float:
+    def kinetic_energy_crba(self, ask: State) -> float:
         """Answer `kinetic_energy` by ½ v' M v with the M of `crba_local`."""
         q, v, _ = self._state(ask)
         return float(v @ self._mass_e(q, pin.Convention.LOCAL) @ v / 2)
 
-    def potential_energy(self, ask: Question) -> float:
+    def potential_energy(self, ask: State) -> float:
         """Answer `potential_energy` by computePotentialEnergy."""
         return pin.computePotentialEnergy(self.model, self.data, to_engine_q(self.robot, ask.q))
 
-    def com(self, ask: Question) -> Array:
+    def com(self, ask: State) -> Array:
         """Answer `com` by centerOfMass."""
         return pin.centerOfMass(self.model, self.data, to_engine_q(self.robot, ask.q))
 
-    def momentum(self, ask: Question) -> Array:
+    def momentum(self, ask: State) -> Array:
         """Answer `momentum` by computeCentroidalMomentum."""
         q, v, _ = self._state(ask)
         return to_angular_first(pin.computeCentroidalMomentum(self.model, self.data, q, v))
 
-    def placement(self, ask: Question) -> list[Array]:
+    def placement(self, ask: State) -> list[Array]:
         """Answer `body_placement` by forwardKinematics."""
         pin.forwardKinematics(self.model, self.data, to_engine_q(self.robot, ask.q))
         return [np.append(m.rotation.ravel(), m.translation) for m in list(self.data.oMi)[1:]]
 
-    def velocity(self, ask: Question) -> list[Array]:
+    def velocity(self, ask: State) -> list[Array]:
         """Answer `body_velocity` by getVelocity in the frame LOCAL_WORLD_ALIGNED."""
         q, v, _ = self._state(ask)
         pin.forwardKinematics(self.model, self.data, q, v)
         frame, joints = pin.LOCAL_WORLD_ALIGNED, range(1, self.model.njoints)
         return [to_angular_first(pin.getVelocity(self.model, self.data, i, frame)) for i in joints]
 
-    def acceleration(self, ask: Question) -> list[Array]:
+    def acceleration(self, ask: State) -> list[Array]:
         """Answer `body_acceleration` by getClassicalAcceleration in the frame LOCAL_WORLD_ALIGNED."""
         q, v, change = self._state(ask)
         pin.forwardKinematics(self.model, self.data, q, v, change.to_engine_a(ask.a))
         frame, joints = pin.LOCAL_WORLD_ALIGNED, range(1, self.model.njoints)
         return [to_angular_first(pin.getClassicalAcceleration(self.model, self.data, i, frame)) for i in joints]
 
-    def jacobian(self, ask: Question) -> Array:
+    def jacobian(self, ask: State) -> Array:
         """Answer `body_jacobian` by getJointJacobian in the frame LOCAL_WORLD_ALIGNED."""
         q, _, change = self._state(ask)
         pin.computeJointJacobians(self.model, self.data, q)
