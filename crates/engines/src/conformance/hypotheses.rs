@@ -1,9 +1,10 @@
 //! Common mistakes of convention, as hypotheses: the answers of an oracle that makes this mistake and is right otherwise.
 
-use super::orders;
-use super::velocity_map::{
-    ONE, SWAP, VelocityMap, blocks, cross, of_free, of_order, of_planar, of_spherical, places, product, put_back, rotated_back, transposed,
+use super::coordinate_change::{
+    CoordinateChange, ONE, SWAP, blocks, cross, of_free, of_order, of_planar, of_spherical, places, product, put_back, rotated_back,
+    transposed,
 };
+use super::orders;
 use featherbench_bench::{Quantity, Robot};
 use featherbench_model::{Description, JointType};
 use std::f64::consts::TAU;
@@ -34,7 +35,7 @@ pub(super) struct Hypothesis {
     pub(super) advice: &'static str,
     pub(super) robot: fn(&mut Description),
     pub(super) state: fn(&Description, &mut State),
-    pub(super) velocities: Option<fn(&Description, &State) -> VelocityMap>,
+    pub(super) velocities: Option<fn(&Description, &State) -> CoordinateChange>,
     pub(super) answer: fn(&Robot, Quantity, &State, &mut [f64]),
 }
 

@@ -6,6 +6,7 @@
 //! named. An oracle that imports files is asked about the imported robot in the same way, and one that integrates about its steps.
 
 mod answers;
+mod coordinate_change;
 mod exchange;
 mod files;
 mod hypotheses;
@@ -14,7 +15,6 @@ mod protocol;
 mod robots;
 mod steps;
 mod values;
-mod velocity_map;
 
 pub use exchange::Connection;
 

@@ -1,6 +1,6 @@
 //! Common wrong orders of the numbers in q and v: for each number, its place in our order.
 
-use super::velocity_map::places;
+use super::coordinate_change::places;
 use featherbench_model::{Description, JointType};
 
 /// The places of q and of v.

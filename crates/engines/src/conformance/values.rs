@@ -1,7 +1,7 @@
 //! The answers of a right oracle, and of one with some mistakes.
 
+use super::coordinate_change::CoordinateChange;
 use super::hypotheses::{Hypothesis, State};
-use super::velocity_map::VelocityMap;
 use crate::Featherbench;
 use featherbench_bench::measure::{ForwardScale, Magnitudes, scaled_error, worst};
 use featherbench_bench::{Engine, Quantity, Robot};
@@ -89,9 +89,9 @@ impl Scene {
         let (placement, velocity, com, momentum) = (placement?, velocity?, com?, momentum?);
         let (size, count) = (quantity.size(&robot), states.count());
         for (k, (value, seen)) in value.chunks_exact_mut(size).zip(seen).enumerate() {
-            for (hypothesis, (mut state, map)) in hypotheses.iter().zip(seen).rev() {
-                if let Some(map) = map {
-                    returned(&map, quantity, value);
+            for (hypothesis, (mut state, change)) in hypotheses.iter().zip(seen).rev() {
+                if let Some(change) = change {
+                    returned(&change, quantity, value);
                 }
                 state.placement = part(&placement, count, k);
                 state.velocity = part(&velocity, count, k);
@@ -104,15 +104,15 @@ impl Scene {
     }
 
     /// Interprets a state by a mistake; returns the state before, and the change of velocities.
-    fn misread(&self, hypothesis: &Hypothesis, state: &mut State) -> (State, Option<VelocityMap>) {
+    fn misread(&self, hypothesis: &Hypothesis, state: &mut State) -> (State, Option<CoordinateChange>) {
         let given = state.clone();
         (hypothesis.state)(&self.robot.description, state);
-        let map = hypothesis.velocities.map(|velocities| velocities(&self.robot.description, state));
-        if let Some(map) = &map {
-            let rest: Vec<f64> = state.a.iter().zip(&map.b).map(|(a, b)| a - b).collect();
-            (state.v, state.a, state.tau) = (map.back(&state.v), map.back(&rest), map.back(&state.tau));
+        let change = hypothesis.velocities.map(|velocities| velocities(&self.robot.description, state));
+        if let Some(change) = &change {
+            let rest: Vec<f64> = state.a.iter().zip(&change.b).map(|(a, b)| a - b).collect();
+            (state.v, state.a, state.tau) = (change.back(&state.v), change.back(&rest), change.back(&state.tau));
         }
-        (given, map)
+        (given, change)
     }
 
     fn empty(&self) -> StateBatch {
@@ -122,34 +122,34 @@ impl Scene {
 }
 
 /// The answer in the velocities that the oracle took for ours.
-fn returned(map: &VelocityMap, quantity: Quantity, value: &mut [f64]) {
-    let n = map.b.len();
+fn returned(change: &CoordinateChange, quantity: Quantity, value: &mut [f64]) {
+    let n = change.b.len();
     match quantity {
         Quantity::InverseDynamics | Quantity::InverseDynamicsWrench | Quantity::Bias => {
-            let mapped = map.forth(value);
-            value.copy_from_slice(&mapped);
+            let changed = change.forth(value);
+            value.copy_from_slice(&changed);
         }
         Quantity::ForwardDynamics => {
-            let mapped = map.forth(value);
-            value.iter_mut().zip(mapped.iter().zip(&map.b)).for_each(|(x, (a, b))| *x = a + b);
+            let changed = change.forth(value);
+            value.iter_mut().zip(changed.iter().zip(&change.b)).for_each(|(x, (a, b))| *x = a + b);
         }
         // J T', row by row.
-        Quantity::BodyJacobian => rows(map, value, n),
+        Quantity::BodyJacobian => rows(change, value, n),
         // T M T' = T (T M)' for a symmetric M.
         Quantity::MassMatrix => {
-            rows(map, value, n);
+            rows(change, value, n);
             let columns: Vec<f64> = (0..n * n).map(|at| value[n * (at % n) + at / n]).collect();
             value.copy_from_slice(&columns);
-            rows(map, value, n);
+            rows(change, value, n);
         }
         _ => {}
     }
 }
 
-fn rows(map: &VelocityMap, value: &mut [f64], n: usize) {
+fn rows(change: &CoordinateChange, value: &mut [f64], n: usize) {
     for row in value.chunks_exact_mut(n) {
-        let mapped = map.forth(row);
-        row.copy_from_slice(&mapped);
+        let changed = change.forth(row);
+        row.copy_from_slice(&changed);
     }
 }
 

@@ -4,7 +4,7 @@ use super::hypotheses::State;
 use featherbench_model::{BodyDescription, Description, JointType};
 
 /// v_e = T v and a_e = T a + b, with an orthogonal T, instead of v and a.
-pub(super) struct VelocityMap {
+pub(super) struct CoordinateChange {
     /// T, row-major.
     t: Vec<f64>,
     /// b.
@@ -43,8 +43,8 @@ pub(super) struct Rotations {
 }
 
 /// T of every free joint; where `carried`, b = T [ω × v; 0] (in T's order), with v and ω in body axes.
-pub(super) fn of_free(robot: &Description, state: &State, block: impl Fn(&Rotations) -> (Six, bool)) -> VelocityMap {
-    let mut map = VelocityMap::identity(state.v.len());
+pub(super) fn of_free(robot: &Description, state: &State, block: impl Fn(&Rotations) -> (Six, bool)) -> CoordinateChange {
+    let mut change = CoordinateChange::identity(state.v.len());
     for (q, at, body) in places(robot) {
         if body.joint.kind == JointType::Free {
             let joint = rotation(&state.q[q + 3..q + 7]);
@@ -54,41 +54,41 @@ pub(super) fn of_free(robot: &Description, state: &State, block: impl Fn(&Rotati
             let neutral: Vec<f64> = (0..6).map(|j| (0..6).map(|i| t[i][j] * given[i]).sum()).collect();
             let omega_v = cross(&neutral[3..], &neutral[..3]);
             for (i, row) in t.iter().enumerate() {
-                row.iter().enumerate().for_each(|(j, &entry)| *map.entry(at + i, at + j) = entry);
-                map.b[at + i] = if carried { row.iter().zip(omega_v).map(|(entry, x)| entry * x).sum() } else { 0.0 };
+                row.iter().enumerate().for_each(|(j, &entry)| *change.entry(at + i, at + j) = entry);
+                change.b[at + i] = if carried { row.iter().zip(omega_v).map(|(entry, x)| entry * x).sum() } else { 0.0 };
             }
         }
     }
-    map
+    change
 }
 
-pub(super) fn of_spherical(robot: &Description, state: &State) -> VelocityMap {
-    let mut map = VelocityMap::identity(state.v.len());
+pub(super) fn of_spherical(robot: &Description, state: &State) -> CoordinateChange {
+    let mut change = CoordinateChange::identity(state.v.len());
     for (q, at, _) in places(robot).into_iter().filter(|(.., body)| body.joint.kind == JointType::Spherical) {
         let r = rotation(&state.q[q..q + 4]);
-        (0..9).for_each(|k| *map.entry(at + k / 3, at + k % 3) = r[k]);
+        (0..9).for_each(|k| *change.entry(at + k / 3, at + k % 3) = r[k]);
     }
-    map
+    change
 }
 
-pub(super) fn of_planar(robot: &Description, state: &State) -> VelocityMap {
-    let mut map = VelocityMap::identity(state.v.len());
+pub(super) fn of_planar(robot: &Description, state: &State) -> CoordinateChange {
+    let mut change = CoordinateChange::identity(state.v.len());
     for (q, at, _) in places(robot).into_iter().filter(|(.., body)| body.joint.kind == JointType::Planar) {
         let (sin, cos) = state.q[q + 2].sin_cos();
-        (*map.entry(at, at), *map.entry(at, at + 1)) = (cos, sin);
-        (*map.entry(at + 1, at), *map.entry(at + 1, at + 1)) = (-sin, cos);
+        (*change.entry(at, at), *change.entry(at, at + 1)) = (cos, sin);
+        (*change.entry(at + 1, at), *change.entry(at + 1, at + 1)) = (-sin, cos);
         let [x, y, rate] = [state.v[at], state.v[at + 1], state.v[at + 2]];
-        (map.b[at], map.b[at + 1]) = (rate * y, -rate * x);
+        (change.b[at], change.b[at + 1]) = (rate * y, -rate * x);
     }
-    map
+    change
 }
 
 /// v_e has our numbers in another order. T is the permutation by `ours`, the place in our order of each number of v_e.
-pub(super) fn of_order(ours: &[usize]) -> VelocityMap {
+pub(super) fn of_order(ours: &[usize]) -> CoordinateChange {
     let n = ours.len();
-    let mut map = VelocityMap { t: vec![0.0; n * n], b: vec![0.0; n] };
-    ours.iter().enumerate().for_each(|(row, &column)| *map.entry(row, column) = 1.0);
-    map
+    let mut change = CoordinateChange { t: vec![0.0; n * n], b: vec![0.0; n] };
+    ours.iter().enumerate().for_each(|(row, &column)| *change.entry(row, column) = 1.0);
+    change
 }
 
 /// Puts numbers of another order into ours.
@@ -97,7 +97,7 @@ pub(super) fn put_back(ours: &[usize], numbers: &mut [f64]) {
     ours.iter().zip(given).for_each(|(&place, number)| numbers[place] = number);
 }
 
-impl VelocityMap {
+impl CoordinateChange {
     fn identity(n: usize) -> Self {
         let t = (0..n * n).map(|at| if at / n == at % n { 1.0 } else { 0.0 }).collect();
         Self { t, b: vec![0.0; n] }
@@ -143,8 +143,8 @@ pub(super) fn transposed(r: &[f64; 9]) -> [f64; 9] {
 
 /// R of the unit quaternion (x, y, z, w), row-major.
 fn rotation(quaternion: &[f64]) -> [f64; 9] {
-    let map = featherbench_spatial::Quaternion::from_array([quaternion[0], quaternion[1], quaternion[2], quaternion[3]]).to_rotation();
-    map.to_array()
+    let change = featherbench_spatial::Quaternion::from_array([quaternion[0], quaternion[1], quaternion[2], quaternion[3]]).to_rotation();
+    change.to_array()
 }
 
 /// R' x in place, R being the first nine numbers, row-major.
