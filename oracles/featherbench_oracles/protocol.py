@@ -1,4 +1,4 @@
-"""The protocol (PROTOCOL.md) without its messages: quantities with their shapes, questions, and the interface of an engine."""
+"""The protocol (PROTOCOL.md) without its messages: quantities with their shapes, states, and the interface of an engine."""
 
 from __future__ import annotations
 

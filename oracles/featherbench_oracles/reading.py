@@ -1,4 +1,4 @@
-"""The import: what an engine holds after its own parser has read a file, as a description (PROTOCOL.md, "read").
+"""The import: what an engine holds after its own parser has read a file, as a description (PROTOCOL.md, "import").
 
 This module depends on no engine. An engine gives its links, each with the joints between it and its parent. `describe` makes a description:
 
@@ -139,7 +139,7 @@ class Link:
 
 
 def note(cause: str, about: str | None, text: str, numbers: Sequence[float] = ()) -> Header:
-    """Make a note of the answer to `read`.
+    """Make a note of the answer to `import`.
 
     Parameters
     ----------

@@ -65,7 +65,7 @@ class Session:
         operations = {
             "hello": self.hello,
             "prepare": self.prepare,
-            "read": self.read,
+            "import": self.import_file,
             "states": self.set_states,
             "evaluate": self.evaluate,
             "clock": self.clock,
@@ -93,7 +93,7 @@ class Session:
         self.description, self.robot = description, robot
         return {"nq": description.nq, "nv": description.nv}, {"readback": readback}
 
-    def read(self, header: Header, _blocks: Blocks) -> Answer:
+    def import_file(self, header: Header, _blocks: Blocks) -> Answer:
         """Read a file by the engine's own parser, and tell what the engine then holds: block `keyframes` of shape (keyframes, nq)."""
         self._forget()
         self.as_read = True

@@ -37,7 +37,7 @@ THREE_ENGINES = ("pinocchio", "mujoco", "drake")  # DART's other edits: test_dar
 
 @dataclass
 class Read:
-    """An engine's answer to `read`."""
+    """An engine's answer to `import`."""
 
     header: Header
     keyframes: Array | None
@@ -86,7 +86,7 @@ class Readers:
     def read(self, engine: str, name: str, text: str, base: str = "fixed", replay: bool = True) -> Read:
         """Have the engine read a file, which must succeed, and compare the robot with the description that it told."""
         path, oracle = self.file(name, text), self.oracles[engine]
-        header = {"op": "read", "file": str(path), "format": "mjcf" if name.endswith(".xml") else "urdf", "base": base}
+        header = {"op": "import", "file": str(path), "format": "mjcf" if name.endswith(".xml") else "urdf", "base": base}
         answer, blocks = oracle.must(header)
         if replay:
             self._replay(oracle, answer)
@@ -284,7 +284,7 @@ def test_floating_joint_below_another(readers: Readers, engine: str) -> None:
 def test_revolute_joint_without_limits(readers: Readers, engine: str) -> None:
     """An engine that rejects a revolute joint without limits names the joint and the reason, without a path of its own sources."""
     path = readers.file("limitless.urdf", re.sub("<limit[^>]*>", "", files.WORLD.replace("continuous", "revolute")))
-    answer, _ = readers.oracles[engine].ask({"op": "read", "file": str(path), "format": "urdf", "base": "fixed"})
+    answer, _ = readers.oracles[engine].ask({"op": "import", "file": str(path), "format": "urdf", "base": "fixed"})
     refuses = engine in ("pinocchio", "dart")
     assert answer["status"] == ("error" if refuses else "ok")
     if refuses:
@@ -519,7 +519,7 @@ def test_dart_does_not_offer_two_robots(readers: Readers) -> None:
     capsule = '<geom type="capsule" size=".1" fromto="0 0 0 0 0 1"/>'
     two = "".join(f'<body name="{name}"><joint name="{name}" axis="0 1 0"/>{capsule}</body>' for name in "ab")
     path = readers.file("two.xml", f"<mujoco><worldbody>{two}</worldbody></mujoco>")
-    answer = readers.oracles["dart"].ask({"op": "read", "format": "mjcf", "base": "fixed", "file": str(path)})
+    answer = readers.oracles["dart"].ask({"op": "import", "format": "mjcf", "base": "fixed", "file": str(path)})
     assert status_of(answer) == "unsupported"
 
 
@@ -546,10 +546,10 @@ def test_bad_file_is_an_error(readers: Readers, engine: str, bad: str) -> None:
     """A file that no engine can read is an error, and the oracle continues."""
     (name, text), oracle = BAD[bad], readers.oracles[engine]
     path = readers.folder / name if text is None else readers.file(name, text)
-    request = {"op": "read", "base": "fixed", "file": str(path), "format": FORMATS[name.rpartition(".")[2]]}
+    request = {"op": "import", "base": "fixed", "file": str(path), "format": FORMATS[name.rpartition(".")[2]]}
     assert status_of(oracle.ask(request)) == "error"
     good = readers.file("world.urdf", files.WORLD)
-    oracle.must({"op": "read", "base": "fixed", "file": str(good), "format": "urdf"})
+    oracle.must({"op": "import", "base": "fixed", "file": str(good), "format": "urdf"})
 
 
 @of_every_engine
@@ -557,7 +557,7 @@ def test_no_single_bodies_of_a_file(readers: Readers, engine: str) -> None:
     """Quantities of single bodies of an imported robot are unsupported: its bodies need not be those of the description."""
     oracle = readers.oracles[engine]
     path = readers.file("world.urdf", files.WORLD)
-    told = oracle.must({"op": "read", "base": "fixed", "file": str(path), "format": "urdf"})[0]
+    told = oracle.must({"op": "import", "base": "fixed", "file": str(path), "format": "urdf"})[0]
     states = random_states(np.random.default_rng(0), Description.read(told["model"]))
     oracle.must({"op": "states", "count": COUNT}, states)
     method = oracle.methods()["body_placement"][0]

@@ -258,7 +258,7 @@ impl Session {
         self.reading = None;
         self.readback.clear();
         let path = file.path.to_str().ok_or_else(|| NoAnswer::Failed("the file's path is not UTF-8; rename it".into()))?;
-        let header = json!({"op": "read", "file": path, "format": file.format.name(), "base": file.base.name()});
+        let header = json!({"op": "import", "file": path, "format": file.format.name(), "base": file.base.name()});
         let answer = self.ask(header, Vec::new())?;
         let reading = reading(&answer).map_err(|message| NoAnswer::Failed(format!("the engine's reading: {message}")))?;
         self.reading = Some((file.clone(), reading.clone()));
@@ -358,7 +358,7 @@ impl Drop for Asked<'_> {
     }
 }
 
-/// The result in an answer to `read`.
+/// The result in an answer to `import`.
 ///
 /// # Errors
 /// A sentence, when its bodies are not in an order in which states and answers can be given.

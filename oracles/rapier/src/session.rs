@@ -33,7 +33,7 @@ impl Session {
             "evaluate" => self.evaluate(request),
             "step" => self.step(request),
             "fall" => self.fall(request),
-            "read" => Err(Refusal::Unsupported("rapier reads no files here".into())),
+            "import" => Err(Refusal::Unsupported("rapier imports no files here".into())),
             other => Err(failed(format!("there is no op '{other}'"))),
         }
     }

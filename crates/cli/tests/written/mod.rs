@@ -36,7 +36,7 @@ impl Oracle {
 
     /// The import result of a file.
     fn read(&mut self, path: &Path, format: &str) -> Result<Description, String> {
-        let answer = self.ask(json!({"op": "read", "file": path, "format": format, "base": "fixed"}), Vec::new())?;
+        let answer = self.ask(json!({"op": "import", "file": path, "format": format, "base": "fixed"}), Vec::new())?;
         let read = neutral::parse(&answer.header["model"].to_string(), "as read").unwrap_or_else(|error| panic!("{error}"));
         Ok(read.canonical().unwrap_or_else(|error| panic!("{error}")))
     }

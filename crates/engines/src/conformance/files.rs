@@ -1,4 +1,4 @@
-//! The op `read`: the oracle imports files that we wrote. Its import result is tested, and its answers about the robot that it then has.
+//! The op `import`: the oracle imports files that we wrote. Its import result is tested, and its answers about the robot that it then has.
 //!
 //! A parser may edit a robot. So a robot that differs from the file is not a fault here (`featherbench compare` says where engines differ).
 //! What is tested: the answers are those of the robot that the oracle reports, in the order in which it reports it.
@@ -169,13 +169,13 @@ fn what(file: &Written) -> String {
 }
 
 fn request(path: &Path, format: FileFormat, base: FileBase) -> Value {
-    json!({"op": "read", "file": path.to_string_lossy(), "format": format.name(), "base": base.name()})
+    json!({"op": "import", "file": path.to_string_lossy(), "format": format.name(), "base": base.name()})
 }
 
 /// The answer, if it imports the file.
 fn ask(exchange: &mut Exchange, file: &Written, path: &Path) -> Option<Message> {
-    // Its answer to an unknown op. If the answer to `read` has the same words, it does not know `read`.
-    let unknown = exchange.ask(json!({"op": "dance"}), Vec::new()).map(|answer| answer.text("reason").replace("dance", "read"));
+    // Its answer to an unknown op. If the answer to `import` has the same words, it does not know `import`.
+    let unknown = exchange.ask(json!({"op": "dance"}), Vec::new()).map(|answer| answer.text("reason").replace("dance", "import"));
     let what = what(file);
     match exchange.ask(request(path, file.format, file.base), Vec::new()) {
         Err(reason) => exchange.note(Standing::Wrong, &what, &reason, &["a file that it does not read is `unsupported`"]),
@@ -183,7 +183,7 @@ fn ask(exchange: &mut Exchange, file: &Written, path: &Path) -> Option<Message> 
             "ok" => return Some(answer),
             "unsupported" => exchange.note(Standing::Lacks, &what, answer.text("reason"), &[]),
             _ if unknown.is_ok_and(|unknown| unknown == answer.text("reason")) => {
-                exchange.note(Standing::Lacks, "the op `read`", answer.text("reason"), &[]);
+                exchange.note(Standing::Lacks, "the op `import`", answer.text("reason"), &[]);
             }
             _ => {
                 let advice = ["a file that the engine has no parser for is `unsupported`; `error` is for what should have worked"];

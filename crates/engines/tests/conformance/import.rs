@@ -1,4 +1,4 @@
-//! The op `read`: an oracle without it lacks it, and mistakes in an import result are named.
+//! The op `import`: an oracle without it lacks it, and mistakes in an import result are named.
 
 use super::kernels::{HONEST, Kernels, Plant};
 use super::{test, wrong};
@@ -13,9 +13,9 @@ fn lacking(plant: Plant) -> Vec<String> {
     conformance.of(Standing::Lacks).map(|finding| format!("{}: {}", finding.what, finding.found)).collect()
 }
 
-/// Whether it is an answer to `read` that reports a robot.
+/// Whether it is an answer to `import` that reports a robot.
 fn tells(answer: &Message, request: &Message) -> bool {
-    request.text("op") == "read" && answer.text("status") == "ok"
+    request.text("op") == "import" && answer.text("status") == "ok"
 }
 
 fn bodies(answer: &mut Message) -> &mut Vec<Value> {
@@ -25,14 +25,14 @@ fn bodies(answer: &mut Message) -> &mut Vec<Value> {
 #[test]
 fn what_is_not_read_is_lacking() {
     let unknown = |answer: &mut Message, request: &Message, _: &Kernels| {
-        if request.text("op") == "read" {
-            *answer = Message::new(json!({"status": "error", "reason": "there is no op 'read'"}), Vec::new());
+        if request.text("op") == "import" {
+            *answer = Message::new(json!({"status": "error", "reason": "there is no op 'import'"}), Vec::new());
         }
     };
     let found = lacking(Plant { answer: unknown, ..HONEST });
-    assert!(found.iter().any(|line| line == "the op `read`: there is no op 'read'"), "{found:#?}");
+    assert!(found.iter().any(|line| line == "the op `import`: there is no op 'import'"), "{found:#?}");
     let blind = |answer: &mut Message, request: &Message, _: &Kernels| {
-        if request.text("op") == "read" {
+        if request.text("op") == "import" {
             *answer = Message::new(json!({"status": "unsupported", "reason": "no parser"}), Vec::new());
         }
     };
@@ -106,7 +106,7 @@ fn mistakes_of_a_reading_are_named() {
         ("the base is not free", |answer, request, kernels| {
             if tells(answer, request) && request.text("base") == "free" {
                 let fixed =
-                    Message::new(json!({"op": "read", "file": request.text("file"), "format": "urdf", "base": "fixed"}), Vec::new());
+                    Message::new(json!({"op": "import", "file": request.text("file"), "format": "urdf", "base": "fixed"}), Vec::new());
                 *answer = featherbench_engines::conformance::Connection::ask(&mut Kernels::new(HONEST), &fixed).unwrap();
                 assert!(kernels.robot.is_some());
             }
@@ -117,7 +117,7 @@ fn mistakes_of_a_reading_are_named() {
             }
         }),
         ("a file that is not there is an error: answered 'ok'", |answer, request, _| {
-            if request.text("op") == "read" && answer.text("status") == "error" {
+            if request.text("op") == "import" && answer.text("status") == "error" {
                 *answer = super::ok();
             }
         }),

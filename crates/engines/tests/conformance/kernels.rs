@@ -81,7 +81,7 @@ impl Kernels {
                 self.robot = Some(robot);
                 Ok(Message::new(header, vec![readback]))
             }
-            "read" => {
+            "import" => {
                 (self.robot, self.states, self.as_read) = (None, None, true);
                 if request.text("format") != "urdf" {
                     return Err(NoAnswer::NotOffered("the kernels read URDF alone".into()));

@@ -63,7 +63,7 @@ impl Script {
                 case "$line" in
                     *'"op":"hello"'*) {hello};;
                     *'"op":"prepare"'*) {prepare};;
-                    *'"op":"read"'*) echo "$line" >> "$1/read"; {read};;
+                    *'"op":"import"'*) echo "$line" >> "$1/read"; {read};;
                     *'"op":"states"'*) head -c {states} > "$1/states"; echo '{{"status":"ok"}}';;
                     *) {evaluate};;
                 esac
