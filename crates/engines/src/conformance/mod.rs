@@ -1,7 +1,8 @@
 //! A conformance test of any oracle: does it keep the protocol of `oracles/PROTOCOL.md`, and do its answers have the right meaning?
 //!
 //! It asks about small robots with every kind of joint. Something that the oracle does not offer is lacking, which is not a fault.
-//! Answers are compared with those of our own kernels, in the measures of [`featherbench_bench::measure`].
+//! Answers are compared with those of our own kernels, in the measures of [`featherbench_bench::measure`]. So this test is beside
+//! the engines and not in `featherbench_protocol`, which knows no quantity.
 //! Where they differ, common mistakes of convention are tried as hypotheses, one by one and in pairs. The one that explains every answer is
 //! named. An oracle that imports files is asked about the imported robot in the same way, and one that integrates about its steps.
 
