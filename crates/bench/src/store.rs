@@ -1,7 +1,7 @@
 //! The outcomes of a run on disk; a run resumes from them.
 
-use featherbench_protocol::{Block, Message, MessageError};
 use crate::{Cell, HarnessError, NoAnswer, Outcome};
+use featherbench_protocol::{Block, Message, MessageError};
 use serde_json::{Value, json};
 use std::collections::HashMap;
 use std::fs::{File, OpenOptions};
