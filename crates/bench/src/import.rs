@@ -49,7 +49,8 @@ pub struct FileInertial {
 }
 
 /// The format of a robot's file.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Deserialize)]
+#[serde(rename_all = "snake_case")]
 pub enum FileFormat {
     /// The Unified Robot Description Format.
     Urdf,

@@ -39,6 +39,7 @@
 mod cell;
 pub mod conventions;
 mod counts;
+mod described;
 mod deviation;
 mod engine;
 mod error;
@@ -62,6 +63,7 @@ pub mod truth;
 
 pub use cell::{Cell, Outcome};
 pub use counts::{COUNTS_NAME, Count, Counts};
+pub use described::{ClockKind, DescribedEngine, Engines, Library, Package, Start};
 pub use deviation::{Deviation, NotOffered, Reproduction, SEEDS, SLACK};
 pub use engine::{Engine, Evaluation, Identity, NoAnswer};
 pub use error::HarnessError;

@@ -1,7 +1,7 @@
 //! Files that users write: an error in `gates.toml`, `deviations.toml` or a suite names the file and the key. Every unknown key is an
 //! error.
 
-use featherbench_bench::{Counts, Gates, HarnessError, NoSettings, Ranges, Suite};
+use featherbench_bench::{Counts, Engines, FileFormat, Gates, HarnessError, NoSettings, Ranges, Suite};
 use std::collections::BTreeMap;
 use std::path::Path;
 
@@ -231,4 +231,79 @@ fn ranges_name_what_is_wrong() {
     }
     let error = || gates(GATE, &DEVIATION.replace("\"fail\"", "\"error\"")).0.unwrap();
     assert!(error().with_ranges(sizes(LINE), here).is_err(), "an error has no size");
+}
+
+const PYTHON: &str = r#"
+[zed]
+title = "Zed"
+package = { name = "zed-py", version = "1.2", licence = "MIT", home = "https://example.org" }
+start = { kind = "python", module = "zed" }
+reads = ["mjcf"]
+compiles = "mjcf"
+recorded = true
+clock = "estimates"
+"#;
+const COMPILED: &str = r#"
+[built]
+title = "Built"
+package = { name = "built", version = "3", licence = "MIT", home = "https://example.org" }
+start = { kind = "cargo", folder = "built", program = "built-oracle" }
+[a-native]
+title = "Zed, in C"
+of = "zed"
+start = { kind = "native", folder = "zed", language = "C", compilers = ["cc"], packages = ["zed"] }
+clock = "measures"
+"#;
+
+#[test]
+fn engines_are_described_in_the_order_of_their_file() {
+    let engines = Engines::parse(&format!("{PYTHON}{COMPILED}"), Path::new("engines.toml")).unwrap();
+    assert_eq!(engines.names(|_| true), ["zed", "built", "a-native"]);
+    assert_eq!(engines.names(|engine| engine.clock.is_some()), ["zed", "a-native"]);
+    assert_eq!(engines.pins(), ["zed-py==1.2"], "cargo has its own lock file");
+    assert_eq!(engines.compiler(FileFormat::Mjcf).unwrap().name, "zed");
+    assert!(engines.compiler(FileFormat::Urdf).is_none());
+    let native = engines.get("a-native").unwrap();
+    assert_eq!(engines.package(native).unwrap().version, "1.2");
+    let unknown = engines.get("zad").unwrap_err();
+    assert!(unknown.contains("'zad'") && unknown.contains("zed, built, a-native"), "{unknown}");
+}
+
+#[test]
+fn engines_name_what_is_wrong() {
+    let both = || format!("{PYTHON}{COMPILED}");
+    let cases = [
+        (format!("{PYTHON}colour = 1\n"), "colour"),
+        (both().replace("kind = \"python\", module", "kind = \"python\", modul"), "modul"),
+        (both().replace("kind = \"python\"", "kind = \"java\""), "java"),
+        (both().replace("packages = [\"zed\"]", "packages = [\"zed\"], flags = 1"), "flags"),
+        (both().replace("compilers = [\"cc\"], ", ""), "compilers"),
+        (both().replace("[\"cc\"]", "[]"), "[a-native]: start: compilers"),
+        (both().replace("language = \"C\"", "language = \"Pascal\""), "Pascal"),
+        (both().replace("version = \"1.2\", ", ""), "version"),
+        (both().replace("title = \"Zed\"\n", ""), "title"),
+        (both().replace("clock = \"measures\"", "clock = \"guesses\""), "guesses"),
+        (both().replace("reads = [\"mjcf\"]", "reads = [\"sdf\"]"), "sdf"),
+        (both().replace("reads = [\"mjcf\"]\n", ""), "[zed]: compiles"),
+        (format!("{PYTHON}{}", PYTHON.replace("[zed]", "[zod]")), "[zod]: compiles"),
+        (both().replace("of = \"zed\"", "of = \"built\""), "[a-native]: of: there is no 'built'"),
+        (both().replace("of = \"zed\"\n", ""), "[a-native]: give `of`"),
+        (format!("{PYTHON}of = \"zed\"\n"), "[zed]: give `of`"),
+        (PYTHON.replace("[zed]", "[featherbench]"), "[featherbench]"),
+        (format!("{PYTHON}[zed]\n"), "line 10"),
+    ];
+    for (text, word) in cases {
+        let path = Path::new("oracles/engines.toml");
+        names(Engines::parse(&text, path), path, &[word]);
+    }
+}
+
+#[test]
+fn the_engines_of_the_project_are_described() {
+    let oracles = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../oracles");
+    let engines = Engines::read(&oracles.join("engines.toml")).unwrap();
+    let names = engines.names(|_| true);
+    let all = ["pinocchio", "mujoco", "drake", "dart", "rapier", "pinocchio-clang", "pinocchio-gcc", "mujoco-native"];
+    assert_eq!(names, all);
+    assert_eq!(engines.compiler(FileFormat::Mjcf).unwrap().name, "mujoco");
 }
