@@ -3,5 +3,3 @@
 `python -m featherbench_oracles.ENGINE` starts the oracle of `pinocchio`, `mujoco`, `drake` or `dart`, or the witness `truth`. It speaks the
 protocol of PROTOCOL.md on its standard input and output. An engine of your own needs `protocol` and `session`.
 """
-
-ENGINES = ("pinocchio", "mujoco", "drake", "dart")

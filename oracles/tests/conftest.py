@@ -4,20 +4,24 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterator
-from importlib.util import find_spec
+from importlib import metadata
 
 import pytest
 
 from featherbench_oracles.testing.client import Oracle
+from featherbench_oracles.testing.described import PACKAGES
 
-# engine -> the package that has to be installed
-PACKAGES = {"pinocchio": "pinocchio", "mujoco": "mujoco", "drake": "pydrake", "dart": "dartpy", "truth": "mpmath"}
+WITNESS = {"truth": "mpmath"}  # the witness of truth, and the package that it needs
 REQUIRE_ALL = "FEATHERBENCH_REQUIRE_ALL"
 
 
 def require(engine: str) -> None:
     """Skip the test where the engine is not installed; fail it where FEATHERBENCH_REQUIRE_ALL is set."""
-    if find_spec(PACKAGES[engine]) is not None:
+    try:
+        metadata.version(WITNESS.get(engine) or PACKAGES[engine].name)
+    except metadata.PackageNotFoundError:
+        pass
+    else:
         return
     reason = f"{engine} is not installed (`featherbench oracles install`)"
     if os.environ.get(REQUIRE_ALL) is not None:

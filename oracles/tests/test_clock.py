@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from featherbench_oracles import ENGINES
+from featherbench_oracles.testing.described import ENGINES
 from featherbench_oracles.algebra import Array
 from featherbench_oracles.change import CoordinateChange
 from featherbench_oracles.clock import Stream, TimedCalls

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from featherbench_oracles import ENGINES
+from featherbench_oracles.testing.described import ENGINES
 from featherbench_oracles.algebra import rotation, skew
 from featherbench_oracles.closed_forms import placement
 from featherbench_oracles.messages import Blocks, Header

@@ -15,7 +15,7 @@ import numpy as np
 import pytest
 from numpy.typing import ArrayLike
 
-from featherbench_oracles import ENGINES
+from featherbench_oracles.testing.described import ENGINES
 from featherbench_oracles.algebra import Array
 from featherbench_oracles.messages import Header
 from featherbench_oracles.reading import overheard, turned

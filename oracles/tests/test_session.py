@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from featherbench_oracles import ENGINES
 from featherbench_oracles.messages import Answer, Header
+from featherbench_oracles.testing.described import ENGINES, PACKAGES
 from featherbench_oracles.robot import Description
 from featherbench_oracles.testing.client import Oracle
 from featherbench_oracles.testing.draws import COUNT, random_robot, random_states, without_armature
@@ -50,6 +50,12 @@ def status_of(answer: Answer) -> str:
     status: str = answer[0]["status"]
     assert status == "ok" or len(answer[0]["reason"].splitlines()[0]) > 5
     return status
+
+
+@pytest.mark.parametrize("engine", ENGINES)
+def test_an_engine_has_the_version_of_its_description(oracles: Oracles, engine: str) -> None:
+    """The version that is pinned in engines.toml is the one that answers."""
+    assert oracles[engine].ask({"op": "hello"})[0]["version"] == PACKAGES[engine].version
 
 
 @pytest.mark.parametrize("model", MODELS)

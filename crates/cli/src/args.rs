@@ -296,7 +296,7 @@ pub struct OraclesArgs {
 
 #[derive(Debug, Clone, Subcommand)]
 pub enum OraclesAction {
-    /// Install the reference engines below target/ (about 1.4 GB); does nothing when they are there.
+    /// Install the reference engines below target/ (about 1.6 GB); does nothing when they are there.
     Install(InstallArgs),
     /// Say which engines answer, and with which version.
     Status,
@@ -322,13 +322,16 @@ pub struct CheckArgs {
 }
 
 #[derive(Debug, Clone, Args)]
+#[command(
+    after_help = "Engines in Python share one environment: one of them installs all. An engine that cargo builds (rapier; a minute or two, once) is built alone; a suite that asks for it builds it as well.\n\nExamples:\n  featherbench oracles install\n  featherbench oracles install rapier\n  featherbench oracles install --native"
+)]
 pub struct InstallArgs {
-    /// Also build the native peers that timing takes, with clang and g++ where they are found (some minutes, once).
+    /// Engines of oracles/engines.toml; by default those in Python.
+    #[arg(value_name = "ENGINE")]
+    pub engines: Vec<String>,
+    /// Also build all native oracles, which timing takes, with clang and g++ where they are found (some minutes, once).
     #[arg(long)]
     pub native: bool,
-    /// Build rapier with cargo (a minute or two, once); the other engines only with --native. A suite that asks for rapier builds it as well.
-    #[arg(long)]
-    pub rapier: bool,
 }
 
 #[derive(Debug, Clone, Args)]

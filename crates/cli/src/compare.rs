@@ -3,7 +3,7 @@
 use crate::args::CompareArgs;
 use crate::engines::{self, Asked};
 use crate::fail::Fail;
-use crate::oracles::ENGINES;
+use crate::oracles;
 use crate::patience::Patient;
 use crate::progress::Bar;
 use crate::robots;
@@ -12,7 +12,7 @@ use crate::run::About;
 use crate::{outcome, report, robot_file, run, table};
 use ::featherbench_results::{ModelOrigin, Verdict};
 use featherbench_bench::run::{Opening, Run};
-use featherbench_bench::{Cell, Context, Engine, FileFormat, Gates, OWN, Robot, RobotFile, hash, provenance};
+use featherbench_bench::{Cell, Context, Engine, Engines, FileFormat, Gates, OWN, Robot, RobotFile, hash, provenance};
 use featherbench_engines::Limits;
 use featherbench_studies::{Agreement, Import};
 use std::time::{Duration, Instant, SystemTime};
@@ -29,14 +29,16 @@ const LARGE: usize = 500;
 /// Compares robots by both routes and reports.
 pub fn compare(root: &Root, args: &CompareArgs) -> Result<(), Fail> {
     let start = Instant::now();
-    let engines = engines(args)?;
+    let described = oracles::described(root)?;
+    let engines = engines(args, &described)?;
+    let compiler = described.compiler(FileFormat::Mjcf).map_or("", |engine| engine.name.as_str());
     // Bad files are told before anything is installed or started, and the others are compared.
     let mut bad: Vec<Fail> = Vec::new();
     let opened: Vec<RobotFile> = args.files.iter().filter_map(|file| kept(robot_file::open(file, args.floating), &mut bad)).collect();
     // Our own reading of a URDF needs no engine.
     let read = opened
         .into_iter()
-        .map(|file| if file.format == FileFormat::Urdf { read_file(file, &[]).map(Some) } else { Ok(Some(Source::Unread(file))) });
+        .map(|file| if file.format == FileFormat::Urdf { read_file(file, None).map(Some) } else { Ok(Some(Source::Unread(file))) });
     let files: Vec<Source> = read.filter_map(|robot| kept(robot, &mut bad).flatten()).collect();
     if files.is_empty() {
         return Err(ended(bad));
@@ -58,7 +60,9 @@ pub fn compare(root: &Root, args: &CompareArgs) -> Result<(), Fail> {
     let mut remarks: Vec<(String, Vec<String>)> = Vec::new();
     for file in files {
         let read = match file {
-            Source::Unread(file) => read_file(file, &opened.engines),
+            Source::Unread(file) => {
+                read_file(file, opened.engines.iter().find(|engine| engine.identity().name == compiler).map(AsRef::as_ref))
+            }
             read => Ok(read),
         };
         let Some(Source::Read { robot, remarks: about }) = kept(read, &mut bad) else { continue };
@@ -148,11 +152,13 @@ impl Source {
     }
 }
 
-fn engines(args: &CompareArgs) -> Result<Vec<String>, Fail> {
-    let all = || ENGINES.map(str::to_owned).to_vec();
+/// The engines that are asked: those that read files.
+fn engines(args: &CompareArgs, described: &Engines) -> Result<Vec<String>, Fail> {
+    let readers = described.names(|engine| !engine.reads.is_empty());
+    let all = || readers.iter().map(|&name| name.to_owned()).collect();
     let engines = args.engines.clone().unwrap_or_else(all);
-    match engines.iter().find(|name| !ENGINES.contains(&name.as_str())) {
-        Some(unknown) => Err(Fail::input(format!("--engines: there is no '{unknown}'; choose from {}", ENGINES.join(", ")))),
+    match engines.iter().find(|name| !readers.contains(&name.as_str())) {
+        Some(unknown) => Err(Fail::input(format!("--engines: there is no '{unknown}'; choose from {}", readers.join(", ")))),
         None => Ok(engines),
     }
 }
@@ -161,8 +167,8 @@ fn hashes(files: &[Source]) -> String {
     hash::of_parts(&files.iter().map(|file| file.hash().as_bytes()).collect::<Vec<_>>())
 }
 
-/// The reference reading of a file, at its states.
-fn read_file(mut file: RobotFile, engines: &[Box<dyn Engine>]) -> Result<Source, Fail> {
+/// The reference reading of a file, at its states; an MJCF file needs its compiler.
+fn read_file(mut file: RobotFile, compiler: Option<&dyn Engine>) -> Result<Source, Fail> {
     let (description, warnings, keyframes, remarks) = match file.format {
         FileFormat::Urdf => {
             let (description, notes) = robots::read_urdf(&file)?;
@@ -171,10 +177,9 @@ fn read_file(mut file: RobotFile, engines: &[Box<dyn Engine>]) -> Result<Source,
             (description, robots::normalised(notes), Vec::new(), remarks)
         }
         FileFormat::Mjcf => {
-            let compiler = engines.iter().find(|engine| engine.identity().name == "mujoco");
             let message =
                 || format!("{}: MuJoCo's compiler is the reference of MJCF files; do not leave it out of --engines", file.path.display());
-            let reading = robots::read_mjcf(&file, compiler.ok_or_else(|| Fail::input(message()))?.as_ref())?;
+            let reading = robots::read_mjcf(&file, compiler.ok_or_else(|| Fail::input(message()))?)?;
             let remarks = reading.notes.iter().filter(|note| note.cause == "free_armature");
             let remarks = remarks.map(|note| format!("joint '{}': {}", note.about.as_deref().unwrap_or_default(), note.text)).collect();
             (reading.description, Vec::new(), reading.keyframes, remarks)

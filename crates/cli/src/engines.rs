@@ -3,13 +3,11 @@
 use crate::args::RunArgs;
 use crate::external::{self, External};
 use crate::fail::Fail;
-use crate::native;
 use crate::oracles;
-use crate::rapier;
 use crate::robots::Loaded;
 use crate::root::Root;
 use ::featherbench_results::{EngineInfo, EngineSource};
-use featherbench_bench::{Engine, OWN, Robot, Study};
+use featherbench_bench::{DescribedEngine, Engine, OWN, Robot, Start, Study};
 use featherbench_engines::{Featherbench, Limits, Recorded, read_recordings};
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -62,50 +60,57 @@ impl<'a> Asked<'a> {
 
 /// Opens the engines that a run asks.
 pub fn open(root: &Root, asked: &Asked) -> Result<Opened, Fail> {
-    let Asked { engines, limits, .. } = *asked;
+    let limits = asked.limits;
     let mut opened = Opened { engines: Vec::new(), infos: Vec::new() };
     opened.add(Ok(Box::new(Featherbench::new())), OWN, EngineSource::Own);
-    let taken: Vec<&str> = [OWN].into_iter().chain(engines.iter().map(String::as_str)).collect();
+    let described = oracles::described(root)?;
+    let find = |name: &String| described.get(name).map_err(Fail::input);
+    let due: Vec<&DescribedEngine> = asked.engines.iter().map(find).collect::<Result<_, _>>()?;
+    let timed: Vec<&DescribedEngine> = asked.timed.iter().map(find).collect::<Result<_, _>>()?;
+    let taken: Vec<&str> = [OWN].into_iter().chain(described.names(|_| true)).collect();
     external::check_names(asked.externals, &taken)?;
     // One that is asked for answers too is the same engine: see below.
-    for name in asked.timed.iter().filter(|name| !engines.contains(name)) {
-        let engine = match oracles::ESTIMATING.contains(&name.as_str()) {
-            true => oracles::start_timed(root, name, limits),
-            false => native::start(root, name, limits, None),
-        };
-        opened.add(engine.map(|engine| Box::new(engine) as Box<dyn Engine>), name, EngineSource::Live);
+    for engine in timed.into_iter().filter(|engine| !due.contains(engine)) {
+        opened.add(started(root, engine, limits), &engine.name, EngineSource::Live);
     }
-    // Rapier is not recorded: a run that asks for it builds it and asks it itself.
-    let (unrecorded, others): (Vec<&String>, Vec<&String>) = engines.iter().partition(|engine| *engine == rapier::NAME);
-    for engine in unrecorded {
-        opened.add(Ok(Box::new(rapier::start(root, limits)?)), engine, EngineSource::Live);
+    let (live, recorded): (Vec<&DescribedEngine>, Vec<_>) = due.into_iter().partition(|engine| asked.live || !engine.recorded);
+    let (compiled, installed): (Vec<_>, Vec<_>) = live.into_iter().partition(|engine| matches!(engine.start, Start::Cargo { .. }));
+    // What cannot be built is told before anything else is started.
+    for engine in compiled {
+        opened.add(Ok(Box::new(oracles::start(root, engine, limits)?)), &engine.name, EngineSource::Live);
     }
-    if asked.live && !others.is_empty() {
-        let python = oracles::install(root)?;
+    if !installed.is_empty() {
+        oracles::install(root)?;
         // Together: an engine's start is its libraries being read from disk.
-        let started: Vec<_> = std::thread::scope(|scope| {
-            let start = |engine: &str| match native::PEERS.contains(&engine) {
-                true => native::start(root, engine, limits, None),
-                false => oracles::start(root, &python, engine, limits),
-            };
-            let starting: Vec<_> = others.iter().map(|engine| scope.spawn(move || start(engine))).collect();
+        let answers: Vec<_> = std::thread::scope(|scope| {
+            let starting: Vec<_> = installed.iter().map(|engine| scope.spawn(move || started(root, engine, limits))).collect();
             let lost = |_| Err("the engine's start broke off".into());
             starting.into_iter().map(|thread| thread.join().unwrap_or_else(lost)).collect()
         });
-        for (engine, oracle) in others.into_iter().zip(started) {
-            opened.add(oracle.map(|oracle| Box::new(oracle) as Box<dyn Engine>), engine, EngineSource::Live);
+        for (engine, answer) in installed.iter().zip(answers) {
+            opened.add(answer, &engine.name, EngineSource::Live);
         }
-    } else if !others.is_empty() {
+    }
+    if !recorded.is_empty() {
         let recordings = Arc::new(read_recordings(&asked.recorded, &asked.robots));
-        for engine in others {
-            let recorded = Recorded::new(&recordings, engine).map(|recorded| Box::new(recorded) as Box<dyn Engine>);
-            opened.add(recorded, engine, EngineSource::Recorded);
+        for engine in recorded {
+            let answers = Recorded::new(&recordings, &engine.name).map(|recorded| Box::new(recorded) as Box<dyn Engine>);
+            opened.add(answers, &engine.name, EngineSource::Recorded);
         }
     }
     for external in asked.externals {
         opened.add(Ok(Box::new(external.start(root, limits)?)), &external.name, EngineSource::Live);
     }
     Ok(opened)
+}
+
+/// An engine's oracle, or the reason why there is none.
+fn started(root: &Root, engine: &DescribedEngine, limits: Limits) -> Result<Box<dyn Engine>, String> {
+    match oracles::start(root, engine, limits) {
+        Ok(oracle) => Ok(Box::new(oracle)),
+        Err(Fail::Missing { message, .. }) => Err(message),
+        Err(fail) => Err(fail.to_string()),
+    }
 }
 
 /// The limits that a run's arguments set for each engine's process.

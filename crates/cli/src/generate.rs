@@ -51,11 +51,11 @@ fn compiled(root: &Root, path: &Path, floating: bool) -> Result<Description, Fai
     if floating {
         return Err(Fail::input("--floating: an MJCF says itself what floats; give its root body a <freejoint/>".into()));
     }
-    let python = oracles::python(root).ok_or_else(|| Fail::Missing {
+    oracles::python(root).ok_or_else(|| Fail::Missing {
         message: format!("{}: MuJoCo's compiler reads MJCF files, and it is not installed", path.display()),
         advice: "install the reference engines by `featherbench oracles install`".into(),
     })?;
-    let reading = robots::read_mjcf(&file, &robots::compiler(root, &python)?)?;
+    let reading = robots::read_mjcf(&file, &robots::compiler(root)?)?;
     for note in &reading.notes {
         let about = note.about.as_ref().map_or_else(String::new, |about| format!("{about}: "));
         eprintln!("note: {}: {about}{}", path.display(), note.text);

@@ -2,9 +2,7 @@
 
 use crate::args::ListArgs;
 use crate::fail::Fail;
-use crate::native::PEERS;
-use crate::oracles::{self, ENGINES, ESTIMATING};
-use crate::rapier;
+use crate::oracles;
 use crate::robots;
 use crate::root::Root;
 use featherbench_bench::{Context, Engine, Gates};
@@ -48,8 +46,9 @@ fn text(root: &Root, args: &ListArgs) -> Result<String, Fail> {
             robot.depth
         );
     }
-    let peers = [&PEERS[..], &ESTIMATING].concat().join(", ");
-    text += &format!("\nengines:  featherbench, {}, {}\npeers:    {peers}\n", ENGINES.join(", "), rapier::NAME);
+    let described = oracles::described(root)?;
+    text += &format!("\nengines:  featherbench, {}\n", described.names(|engine| !engine.is_native()).join(", "));
+    text += &format!("timed:    featherbench, {}\n", described.names(|engine| engine.clock.is_some()).join(", "));
     text += &format!("studies:  {}\n", featherbench_studies::names().join(", "));
     text += "\nfamilies of generated robots, with their parameters:\n";
     for name in Family::NAMES {

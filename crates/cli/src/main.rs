@@ -32,6 +32,7 @@
 mod args;
 mod check;
 mod compare;
+mod compiled;
 mod diff;
 mod engines;
 mod explain;
@@ -49,7 +50,6 @@ mod package;
 mod patience;
 mod progress;
 mod ranges;
-mod rapier;
 mod record;
 mod report;
 mod robot_file;
@@ -91,17 +91,7 @@ fn dispatch(cli: Cli) -> Result<(), Fail> {
         Command::Record(args) => record::record(&root()?, &args),
         Command::Gen(args) => generate::generate(&root()?, &args),
         Command::Oracles(args) => match args.action {
-            OraclesAction::Install(args) => {
-                let root = root()?;
-                if args.rapier {
-                    let program = rapier::install(&root)?;
-                    eprintln!("rapier is built: {}", program.display());
-                }
-                if args.native || !args.rapier {
-                    oracles::install(&root)?;
-                }
-                if args.native { native::install(&root) } else { Ok(()) }
-            }
+            OraclesAction::Install(args) => oracles::install_named(&root()?, &args),
             OraclesAction::Status => oracles::status(&root()?),
             OraclesAction::Check(args) => check::check(root().ok().as_ref(), &args),
         },

@@ -1,4 +1,4 @@
-//! The native peers: engines as libraries that CMake builds, once, from `oracles/native` and the installed packages.
+//! The native oracles: engines as libraries that CMake builds, once, from `oracles/native` and the installed packages.
 //!
 //! A library is kept in the user's cache folder under a hash of everything that it is made of: sources, the files that tell CMake how to
 //! compile them, the compiler's and the packages' versions, and the processor, for which it is compiled.
@@ -6,127 +6,115 @@
 use crate::fail::Fail;
 use crate::oracles::{self, spinner};
 use crate::root::Root;
-use featherbench_bench::{Engine, Identity, hash};
+use featherbench_bench::{DescribedEngine, Engine, Engines, Identity, Library, Start, hash};
 use featherbench_engines::{Limits, Oracle, peer};
 use std::io::{BufRead, BufReader};
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 use std::time::Instant;
 
-/// The peers, in the order of reports: Pinocchio by each compiler, because the compiler decides how fast it is.
-pub const PEERS: [&str; 3] = ["pinocchio-clang", "pinocchio-gcc", "mujoco-native"];
-
 /// The oldest CMake that `oracles/native/CMakeLists.txt` takes.
 const CMAKE: (u32, u32) = (3, 22);
 
 /// Everything that goes into a library.
-struct Recipe {
-    name: &'static str,
+struct Recipe<'a> {
+    name: &'a str,
     /// CMake's settings: `-DNAME=VALUE`.
     settings: Vec<String>,
     /// Where the library is, once it is made.
     library: PathBuf,
 }
 
-/// The library of a peer.
+/// The library of a native oracle.
 ///
 /// # Errors
 /// Why there is none: what is missing, or that it has not been built.
-pub fn library(root: &Root, name: &str) -> Result<PathBuf, String> {
-    let recipe = Recipe::new(root, name)?;
-    let missing = || format!("{name} is not built: run `featherbench oracles install --native`");
+fn built(root: &Root, engine: &DescribedEngine, library: &Library) -> Result<PathBuf, String> {
+    let recipe = Recipe::new(root, engine, library)?;
+    let missing = || format!("{} is not built: run `featherbench oracles install --native`", engine.name);
     if recipe.library.is_file() { Ok(recipe.library) } else { Err(missing()) }
 }
 
-/// Starts a peer in a child process of this program; with a core, it is pinned there.
+/// Starts a native oracle in a child process of this program.
 ///
 /// # Errors
 /// A sentence, when it is not built or does not answer.
-pub fn start(root: &Root, name: &str, limits: Limits, core: Option<usize>) -> Result<Oracle, String> {
+pub fn start(root: &Root, engine: &DescribedEngine, library: &Library, limits: Limits) -> Result<Oracle, String> {
     let program = std::env::current_exe().map_err(|error| format!("this program does not know where it is: {error}"))?;
-    Oracle::start(peer::command(&program, &library(root, name)?, core), limits)
+    Oracle::start(peer::command(&program, &built(root, engine, library)?, None), limits)
 }
 
-/// Builds the peers that can be built here and are not yet.
-pub fn install(root: &Root) -> Result<(), Fail> {
-    let missing = |message: String| Fail::Missing {
-        message,
-        advice:
-            "native peers need clang++ or g++ (Debian: apt-get install clang), and from the package index Eigen's headers, CMake and Ninja \
-                 (or Debian's cmake and ninja-build)"
-                .into(),
+/// Builds those of the named native oracles that can be built here and are not yet.
+pub fn install(root: &Root, engines: &Engines, named: &[&DescribedEngine]) -> Result<(), Fail> {
+    let missing = |engine: &DescribedEngine, message: String| {
+        let version = engines.package(engine).map_or("", |package| package.version.as_str());
+        let advice = format!("{} {version} needs {}", engine.name, engine.needs.join(", "));
+        Fail::Missing { message, advice }
     };
     if let Err(reason) = install_tools(root) {
         // What is left out for want of them says so below.
         eprintln!("{reason}");
     }
+    let mut left_out = None;
     let mut built = 0;
-    for name in PEERS {
-        match Recipe::new(root, name) {
-            Ok(recipe) if recipe.library.is_file() => eprintln!("{name} is built: {}", recipe.library.display()),
-            Ok(recipe) => recipe.make(root).map_err(missing)?,
-            // With one compiler there is one Pinocchio.
+    for engine in named {
+        let Start::Native(library) = &engine.start else { continue };
+        match Recipe::new(root, engine, library) {
+            Ok(recipe) if recipe.library.is_file() => eprintln!("{} is built: {}", engine.name, recipe.library.display()),
+            Ok(recipe) => recipe.make(root).map_err(|reason| missing(engine, reason))?,
+            // With one compiler there is one of the engines that are built by two.
             Err(reason) => {
-                eprintln!("{name} is left out: {reason}");
+                eprintln!("{} is left out: {reason}", engine.name);
+                left_out = left_out.or_else(|| Some(missing(engine, "no native oracle can be built here".into())));
                 continue;
             }
         }
         built += 1;
     }
-    if built == 0 { Err(missing("no native peer can be built here".into())) } else { Ok(()) }
-}
-
-/// Prints which peers answer, and where they are.
-pub fn status(root: &Root) {
-    for name in PEERS {
-        let peer = start(root, name, Limits::default(), None);
-        match peer.and_then(|peer| Ok((peer, library(root, name)?))) {
-            Ok((peer, library)) => {
-                let Identity { version, build, .. } = peer.identity();
-                println!("{name:<16} {version:<8} {}  {}", build.get("compiler").map_or("", String::as_str), library.display());
-            }
-            Err(reason) => println!("{name:<16} {reason}"),
-        }
+    match left_out {
+        Some(fail) if built == 0 => Err(fail),
+        _ => Ok(()),
     }
 }
 
-impl Recipe {
-    fn new(root: &Root, name: &str) -> Result<Self, String> {
-        let known = || PEERS.into_iter().find(|known| *known == name);
-        let name = known().ok_or_else(|| format!("there is no native peer {name}; there are {}", PEERS.join(", ")))?;
+/// Its version, its compiler and where it is, if it answers.
+///
+/// # Errors
+/// A sentence that says why it does not.
+pub fn status(root: &Root, engine: &DescribedEngine, library: &Library) -> Result<String, String> {
+    let oracle = start(root, engine, library, Limits::default())?;
+    let Identity { version, build, .. } = oracle.identity();
+    let compiler = build.get("compiler").map_or("", String::as_str);
+    Ok(format!("{version:<8} {compiler}  {}", built(root, engine, library)?.display()))
+}
+
+impl<'a> Recipe<'a> {
+    fn new(root: &Root, engine: &'a DescribedEngine, library: &Library) -> Result<Self, String> {
+        let Library { folder, language, compilers, .. } = library;
         let (native, packages) = (root.oracles().join("native"), packages(root)?);
-        let (engine, language, compilers): (_, _, &[&str]) = match name {
-            "pinocchio-clang" => ("pinocchio", "CXX", &["clang++"]),
-            "pinocchio-gcc" => ("pinocchio", "CXX", &["g++"]),
-            _ => ("mujoco", "C", &["clang", "gcc", "cc"]),
-        };
         let found = compilers.iter().find_map(|name| Some((name, compiler(name)?)));
         let (compiler, version) = found.ok_or_else(|| format!("there is no {}", compilers.join(" or ")))?;
+        let versions = library.packages.iter().map(|package| version_of(&packages, package)).collect::<Result<Vec<_>, _>>()?;
         // Where headers stand is no part of the hash; where a library is linked from is.
-        let (versions, linked) = match engine {
-            "mujoco" => (version_of(&packages, "mujoco")?, Some(packages.join("mujoco"))),
-            _ => {
-                let eigen = version_of(&packages, "cmeel_eigen")?;
-                (format!("{}, {}", version_of(&packages, "libpinocchio")?, eigen.trim_start_matches("cmeel_")), None)
-            }
-        };
+        let linked = library.linked.as_ref().map(|folder| packages.join(folder));
         let mut settings = vec![
-            format!("-DPEER_ENGINE={engine}"),
+            format!("-DPEER_ENGINE={folder}"),
             format!("-DPEER_COMPILER={version}"),
-            format!("-DPEER_VERSIONS={versions}"),
-            format!("-DCMAKE_{language}_COMPILER={compiler}"),
+            format!("-DPEER_VERSIONS={}", versions.join(", ")),
+            format!("-DCMAKE_{}_COMPILER={compiler}", language.cmake()),
         ];
         let mut parts = vec![format!("{settings:?}\n{:?}\n{linked:?}", processor()).into_bytes()];
         settings.push(format!("-DPEER_PACKAGES={}", packages.display()));
-        let folder = std::fs::read_dir(native.join(engine)).map_err(|error| format!("{}: {error}", native.join(engine).display()))?;
-        let mut files: Vec<PathBuf> = folder.flatten().map(|entry| entry.path()).collect();
+        let sources = native.join(folder);
+        let entries = std::fs::read_dir(&sources).map_err(|error| format!("{}: {error}", sources.display()))?;
+        let mut files: Vec<PathBuf> = entries.flatten().map(|entry| entry.path()).collect();
         files.sort();
         for file in ["CMakeLists.txt", "coordinates.h", "peer.h"].map(|name| native.join(name)).iter().chain(&files) {
             parts.push(std::fs::read(file).map_err(|error| format!("{}: {error}", file.display()))?);
         }
         let parts: Vec<&[u8]> = parts.iter().map(Vec::as_slice).collect();
-        let library = cache()?.join(format!("{name}-{}.so", &hash::of_parts(&parts)[..16]));
-        Ok(Self { name, settings, library })
+        let library = cache()?.join(format!("{}-{}.so", engine.name, &hash::of_parts(&parts)[..16]));
+        Ok(Self { name: &engine.name, settings, library })
     }
 
     /// Builds in a folder of its own, then moves the library to its place.
@@ -268,7 +256,8 @@ fn find(folder: &Path, beginning: &str) -> Result<PathBuf, String> {
 fn version_of(packages: &Path, name: &str) -> Result<String, String> {
     let entry = find(packages, &format!("{name}-")).map_err(|reason| format!("{reason}: run `featherbench oracles install --native`"))?;
     let entry = entry.file_name().unwrap_or_default().to_string_lossy().into_owned();
-    Ok(entry.trim_end_matches(".dist-info").replace('-', " "))
+    // The wheels of C++ libraries are named after the layout that they share.
+    Ok(entry.trim_end_matches(".dist-info").trim_start_matches("cmeel_").replace('-', " "))
 }
 
 /// Where peers are kept.

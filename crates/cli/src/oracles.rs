@@ -1,11 +1,12 @@
 //! Installing the reference engines, and looking at them.
 
+use crate::args::InstallArgs;
+use crate::compiled::Compiled;
 use crate::fail::Fail;
 use crate::native;
 use crate::package;
-use crate::rapier;
 use crate::root::Root;
-use featherbench_bench::{Engine, NoAnswer};
+use featherbench_bench::{DescribedEngine, Engine, Engines, NoAnswer, Start};
 use featherbench_engines::{Limits, Oracle};
 use indicatif::{ProgressBar, ProgressStyle};
 use std::ffi::OsString;
@@ -15,10 +16,17 @@ use std::process::{Command, Stdio};
 use std::sync::Arc;
 use std::time::Duration;
 
-/// Engines that come with the project, in the order of reports.
-pub const ENGINES: [&str; 4] = ["pinocchio", "mujoco", "drake", "dart"];
-/// Those of them that estimate what their engine's own calls take, so that timing can name them as peers.
-pub const ESTIMATING: [&str; 2] = ["drake", "dart"];
+/// What the oracles share.
+const SHARED: &str = "requirements.txt";
+/// The packages of robots.
+const ROBOTS: &str = "packages.txt";
+/// What is said where the environment is missing.
+const MISSING: &str = "the reference engines are not installed: run `featherbench oracles install`";
+
+/// The engines that `oracles/engines.toml` describes.
+pub fn described(root: &Root) -> Result<Engines, Fail> {
+    Ok(Engines::read(&root.described())?)
+}
 
 /// The environment's Python, or `None` when the engines are not installed in these versions.
 pub fn python(root: &Root) -> Option<PathBuf> {
@@ -26,6 +34,27 @@ pub fn python(root: &Root) -> Option<PathBuf> {
     let wanted = stamp(root).ok()?;
     let there = std::fs::read_to_string(root.engines().join("installed")).ok()?;
     (there == wanted && python.exists()).then_some(python)
+}
+
+/// Installs what is named: engines of this Python environment by all of it, the others one by one. Without a name, the environment.
+pub fn install_named(root: &Root, args: &InstallArgs) -> Result<(), Fail> {
+    let engines = described(root)?;
+    let named = |name: &String| engines.get(name).map_err(Fail::input);
+    let mut named: Vec<&DescribedEngine> = args.engines.iter().map(named).collect::<Result<_, _>>()?;
+    if args.native {
+        named.extend(engines.iter().filter(|engine| engine.is_native()));
+    }
+    for engine in &named {
+        if let Start::Cargo { folder, program } = &engine.start {
+            let program = Compiled::new(root, engine, folder, program).install()?;
+            eprintln!("{} is built: {}", engine.name, program.display());
+        }
+    }
+    let (native, others): (Vec<&DescribedEngine>, Vec<_>) = named.into_iter().partition(|engine| engine.is_native());
+    if !native.is_empty() || others.is_empty() || others.iter().any(|engine| engine.is_python()) {
+        install(root)?;
+    }
+    if native.is_empty() { Ok(()) } else { native::install(root, &engines, &native) }
 }
 
 /// Makes the environment unless it is there; what was downloaded before a break is used again.
@@ -37,10 +66,12 @@ pub fn install(root: &Root) -> Result<PathBuf, Fail> {
     let folder = root.engines();
     let environment = folder.join("venv");
     std::fs::create_dir_all(&folder).map_err(|error| Fail::input(format!("{}: {error}", folder.display())))?;
-    let requirements = root.oracles().join("requirements.txt");
-    let packages = root.oracles().join("packages.txt");
+    let requirements = root.oracles().join(SHARED);
+    let packages = root.oracles().join(ROBOTS);
+    let pins = described(root)?.pins().into_iter().map(OsString::from);
+    let engines: Vec<OsString> = pins.chain(["-r".into(), requirements.into_os_string()]).collect();
     let python = environment.join("bin/python");
-    let bar = spinner("installing the reference engines (about 1.4 GB) …");
+    let bar = spinner("installing the reference engines (about 1.6 GB) …");
     let text = |path: &Path| path.as_os_str().to_owned();
     let uv = Command::new("uv").arg("--version").output().is_ok_and(|output| output.status.success());
     if uv {
@@ -48,7 +79,6 @@ pub fn install(root: &Root) -> Result<PathBuf, Fail> {
             step(&bar, "uv", &["venv".into(), "--python".into(), "3.11".into(), text(&environment)])?;
         }
         let install = ["pip".into(), "install".into(), "--python".into(), text(&python)];
-        let engines = ["-r".into(), text(&requirements)];
         let files = ["--no-deps".into(), "--target".into(), text(&root.packages()), "-r".into(), text(&packages)];
         step(&bar, "uv", &[&install[..], &engines].concat())?;
         step(&bar, "uv", &[&install[..], &files].concat())?;
@@ -57,7 +87,6 @@ pub fn install(root: &Root) -> Result<PathBuf, Fail> {
             step(&bar, "python3", &["-m".into(), "venv".into(), text(&environment)])?;
         }
         let install = ["-m", "pip", "install", "--progress-bar", "off"].map(OsString::from);
-        let engines = ["-r".into(), text(&requirements)];
         // Into a folder of their own, emptied first: pip does not replace what stands there.
         let _ = std::fs::remove_dir_all(root.packages());
         let files = ["--no-deps".into(), "--target".into(), text(&root.packages()), "-r".into(), text(&packages)];
@@ -119,31 +148,43 @@ pub fn spinner(announced: &str) -> ProgressBar {
     bar
 }
 
-/// What an installation is known by: the hash of what it was asked for.
+/// What an installation is known by: the hash of what it was asked for, in any order and whatever the comments.
 fn stamp(root: &Root) -> Result<String, Fail> {
-    let mut asked = Vec::new();
-    for name in ["requirements.txt", "packages.txt"] {
-        let path = root.oracles().join(name);
-        asked.extend(std::fs::read(&path).map_err(|error| Fail::input(format!("{}: {error}", path.display())))?);
+    let mut environment = described(root)?.pins();
+    environment.extend(pins(&root.oracles().join(SHARED))?);
+    let mut robots = pins(&root.oracles().join(ROBOTS))?;
+    let asked = [&mut environment, &mut robots].map(|asked| {
+        asked.sort();
+        asked.dedup();
+        asked.join("\n")
+    });
+    Ok(featherbench_bench::hash::of_parts(&asked.each_ref().map(|asked| asked.as_bytes())))
+}
+
+/// The lines of a requirements file that ask for something.
+fn pins(path: &Path) -> Result<Vec<String>, Fail> {
+    let text = std::fs::read_to_string(path).map_err(|error| Fail::input(format!("{}: {error}", path.display())))?;
+    let lines = text.lines().map(|line| line.split(" #").next().unwrap_or_default().trim());
+    Ok(lines.filter(|line| !line.is_empty() && !line.starts_with('#')).map(str::to_owned).collect())
+}
+
+/// Starts an engine's oracle, in the way that its description says. An engine that cargo builds is built if need be; the others must be
+/// installed.
+pub fn start(root: &Root, engine: &DescribedEngine, limits: Limits) -> Result<Oracle, Fail> {
+    let missing = |message| Fail::Missing { message, advice: "look at `featherbench oracles status`".into() };
+    match &engine.start {
+        Start::Python { module } => {
+            let command = python(root).ok_or_else(|| MISSING.to_owned()).and_then(|python| package::command(root, &python, module));
+            command.and_then(|command| Oracle::start(command, limits)).map_err(missing)
+        }
+        Start::Cargo { folder, program } => Compiled::new(root, engine, folder, program).start(limits),
+        Start::Native(library) => native::start(root, engine, library, limits).map_err(missing),
     }
-    Ok(featherbench_bench::hash::of(&asked))
-}
-
-/// Starts the oracle of an engine that is to be timed, where the engines are installed.
-pub fn start_timed(root: &Root, engine: &str, limits: Limits) -> Result<Oracle, String> {
-    let missing = "the reference engines are not installed: run `featherbench oracles install`";
-    start(root, &python(root).ok_or(missing)?, engine, limits)
-}
-
-/// Starts an engine's oracle.
-pub fn start(root: &Root, python: &Path, engine: &str, limits: Limits) -> Result<Oracle, String> {
-    Oracle::start(package::command(root, python, engine)?, limits)
 }
 
 /// Evaluates reproductions of known deviations in the engines' environment.
 pub fn reproducer(root: &Root, limits: Limits) -> featherbench_studies::Reproduce {
-    let missing = || "the reference engines are not installed; run `featherbench oracles install`".to_owned();
-    let command = python(root).ok_or_else(missing).and_then(|python| package::command(root, &python, "reproduce"));
+    let command = python(root).ok_or_else(|| MISSING.to_owned()).and_then(|python| package::command(root, &python, "reproduce"));
     Arc::new(move |name, seeds| match &command {
         Ok(command) => featherbench_engines::reproduce(command, limits, name, seeds),
         Err(reason) => Err(NoAnswer::Failed(reason.clone())),
@@ -152,21 +193,27 @@ pub fn reproducer(root: &Root, limits: Limits) -> featherbench_studies::Reproduc
 
 /// Prints what answers.
 pub fn status(root: &Root) -> Result<(), Fail> {
-    native::status(root);
-    rapier::status(root);
-    let Some(python) = python(root) else {
-        let message = "the reference engines are not installed (or in other versions than oracles/requirements.txt asks)".into();
-        return Err(Fail::Missing { message, advice: "run `featherbench oracles install`".into() });
-    };
+    let engines = described(root)?;
+    let installed = python(root).is_some();
     let mut broken = Vec::new();
-    for engine in ENGINES {
-        match start(root, &python, engine, Limits::default()) {
-            Ok(oracle) => println!("{engine:<10} {}", oracle.identity().version),
-            Err(reason) => {
-                println!("{engine:<10} does not answer: {reason}");
-                broken.push(engine);
-            }
-        }
+    for engine in engines.iter() {
+        let told = match &engine.start {
+            Start::Python { .. } => match start(root, engine, Limits::default()) {
+                Ok(oracle) => oracle.identity().version.clone(),
+                Err(_) if !installed => "is not installed: run `featherbench oracles install`".into(),
+                Err(fail) => {
+                    broken.push(engine.name.as_str());
+                    format!("does not answer: {fail}")
+                }
+            },
+            Start::Cargo { folder, program } => Compiled::new(root, engine, folder, program).status().unwrap_or_else(|reason| reason),
+            Start::Native(library) => native::status(root, engine, library).unwrap_or_else(|reason| reason),
+        };
+        println!("{:<16} {told}", engine.name);
+    }
+    if !installed {
+        let message = "the reference engines are not installed (or not in the versions of oracles/engines.toml)".into();
+        return Err(Fail::Missing { message, advice: "run `featherbench oracles install`".into() });
     }
     if broken.is_empty() {
         return Ok(());

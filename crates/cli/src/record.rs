@@ -3,13 +3,14 @@
 use crate::args::RecordArgs;
 use crate::engines::{self, Asked};
 use crate::fail::Fail;
+use crate::oracles;
 use crate::progress::Bar;
 use crate::robots;
 use crate::root::Root;
 use ::featherbench_results::Verdict;
 use featherbench_bench::measure::{ForwardScale, scaled_error, worst};
 use featherbench_bench::run::Progress;
-use featherbench_bench::{Cell, Context, Gates, OWN, Outcome, OutcomeStore, Quantity, Robot, Study};
+use featherbench_bench::{Cell, Context, Gates, Outcome, OutcomeStore, Quantity, Robot, Study};
 use featherbench_engines::{EngineRecording, Limits, Recording, recording_name};
 use featherbench_studies::{Agreement, OperationCounts, Repeatability};
 use std::path::Path;
@@ -35,10 +36,12 @@ pub fn record(root: &Root, args: &RecordArgs) -> Result<(), Fail> {
     let store = OutcomeStore::open(&scratch)?;
     let bar = Bar::new();
     let mut finished = Vec::new();
-    let foreign = |cell: &Cell| cell.engine != OWN;
+    let described = oracles::described(root)?;
+    let recorded = described.names(|engine| engine.recorded);
+    let recorded = |cell: &Cell| recorded.contains(&cell.engine.as_str());
     let studies: [&dyn Study; 2] = [&Agreement, &OperationCounts];
     for study in studies {
-        let cells = featherbench_bench::run::plan(study, &context, &foreign);
+        let cells = featherbench_bench::run::plan(study, &context, &recorded);
         finished.extend(featherbench_bench::run::evaluate(study, &context, cells, &store, &bar as &dyn Progress)?);
     }
     // What is recorded is never asked again in a run: an engine whose answers vary is found here.
@@ -46,7 +49,7 @@ pub fn record(root: &Root, args: &RecordArgs) -> Result<(), Fail> {
     let again = featherbench_bench::run::evaluate(
         &repeatability,
         &context,
-        featherbench_bench::run::plan(&repeatability, &context, &foreign),
+        featherbench_bench::run::plan(&repeatability, &context, &recorded),
         &store,
         &bar as &dyn Progress,
     )?;

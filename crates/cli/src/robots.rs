@@ -123,17 +123,21 @@ impl Files<'_> {
     /// MuJoCo, started when the first MJCF file is read.
     fn compiler(&mut self) -> Result<&Oracle, Fail> {
         if self.compiler.is_none() {
-            let python = oracles::python(self.root).map_or_else(|| oracles::install(self.root), Ok)?;
-            self.compiler = Some(compiler(self.root, &python)?);
+            if oracles::python(self.root).is_none() {
+                oracles::install(self.root)?;
+            }
+            self.compiler = Some(compiler(self.root)?);
         }
         self.compiler.as_ref().ok_or_else(|| Fail::input("MuJoCo was not started".into()))
     }
 }
 
 /// MuJoCo, whose compiler is the reference of MJCF files.
-pub fn compiler(root: &Root, python: &Path) -> Result<Oracle, Fail> {
-    let missing = |message| Fail::Missing { message, advice: "look at `featherbench oracles status`".into() };
-    oracles::start(root, python, "mujoco", Limits::default()).map_err(missing)
+pub fn compiler(root: &Root) -> Result<Oracle, Fail> {
+    let described = oracles::described(root)?;
+    let engine = described.compiler(FileFormat::Mjcf);
+    let engine = engine.ok_or_else(|| Fail::input("oracles/engines.toml: no engine has compiles = \"mjcf\"".into()))?;
+    oracles::start(root, engine, Limits::default())
 }
 
 /// The reference reading of a URDF file: ours. As engines read such files by default: mimics move on their own, and a body without mass is

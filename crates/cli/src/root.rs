@@ -69,9 +69,14 @@ impl Root {
         self.0.join("target/oracles")
     }
 
-    /// Where rapier is built.
-    pub fn rapier(&self) -> PathBuf {
-        self.engines().join("rapier")
+    /// The description of the engines.
+    pub fn described(&self) -> PathBuf {
+        self.oracles().join("engines.toml")
+    }
+
+    /// Where the engine of a Cargo workspace in `oracles/` is built.
+    pub fn built(&self, folder: &str) -> PathBuf {
+        self.engines().join(folder)
     }
 
     /// Where the packages of MJCF robots are unpacked.

@@ -4,6 +4,8 @@
 //! native oracles are required at night only, with `FEATHERBENCH_NIGHTLY` set.
 //! The tests do not use libtest: its captured output would hide the skips.
 
+#[path = "outside/added.rs"]
+mod added;
 #[path = "outside/compared.rs"]
 mod compared;
 #[path = "outside/compiled.rs"]
@@ -40,6 +42,7 @@ fn main() -> ExitCode {
     let tests: &[(&str, Test)] = &[
         ("a number that one engine's file has alone is named", one_file_is_another),
         ("a missing wheel is exit code three and can be tried again", missing_wheel),
+        ("an engine is added by a folder and a table", added::by_folder_and_table),
         ("the oracles pass their own tests", oracles_by_themselves),
         ("the engines keep the conventions of the ledger", conventions),
         ("the project's own oracles conform", own_oracles),

@@ -35,7 +35,7 @@ fn sources() -> Sandbox {
 }
 
 fn program() -> Result<PathBuf, Outcome> {
-    PROGRAM.clone().ok_or_else(|| Outcome::Skipped("rapier is not built (`featherbench oracles install --rapier`)".into()))
+    PROGRAM.clone().ok_or_else(|| Outcome::Skipped("rapier is not built (`featherbench oracles install rapier`)".into()))
 }
 
 /// A test that asks rapier.
@@ -84,8 +84,8 @@ pub fn not_to_be_built() -> Outcome {
     let sandbox = sources();
     let empty = sandbox.path("nothing");
     std::fs::create_dir(&empty).unwrap();
-    let advice = ["rapier cannot be built", "oracles install --rapier"];
-    for arguments in [&["run", "--suite", "engines", "--out", "out"][..], &["oracles", "install", "--rapier"]] {
+    let advice = ["rapier cannot be built", "oracles install rapier"];
+    for arguments in [&["run", "--suite", "engines", "--out", "out"][..], &["oracles", "install", "rapier"]] {
         let without_cargo = Ended::new(sandbox.command(arguments).env("PATH", &empty).output().unwrap());
         without_cargo.expect(3, &[&advice[..], &["cargo cannot be started"]].concat());
         let offline = sandbox.command(arguments).env("CARGO_HOME", &empty).env("CARGO_NET_OFFLINE", "true").output().unwrap();
@@ -93,7 +93,7 @@ pub fn not_to_be_built() -> Outcome {
     }
     assert!(!sandbox.path("out").exists(), "no folder is made for a run that cannot be");
     let status = sandbox.run(&["oracles", "status"]).output;
-    assert!(status.contains("rapier           is not built: run `featherbench oracles install --rapier`"), "{status}");
+    assert!(status.contains("rapier           is not built: run `featherbench oracles install rapier`"), "{status}");
     Outcome::Passed
 }
 
