@@ -5,7 +5,7 @@
  * h = -m (ẑ × R c)·g with R the rotation about ẑ by q. There is no velocity in h.
  */
 #include "coordinates.h"
-#include "peer.h"
+#include "oracle.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -178,8 +178,8 @@ static int read_value(struct fb_handle *h, size_t method, double *value, char *r
   return FB_OK;
 }
 
-const struct fb_peer *featherbench_peer(void) {
-  static const struct fb_peer peer = {FEATHERBENCH_PEER_VERSION, FB_ENGINE, "1", "language=C\n" FB_BUILD, names,     sizeof names / sizeof *names, create,
+const struct fb_oracle *featherbench_oracle(void) {
+  static const struct fb_oracle table = {FEATHERBENCH_ORACLE_VERSION, FB_ENGINE, "1", "language=C\n" FB_BUILD, names,     sizeof names / sizeof *names, create,
                                       destroy,                   states,    ready, run,                   read_value};
-  return &peer;
+  return &table;
 }

@@ -53,7 +53,7 @@ pub enum Command {
     Oracles(OraclesArgs),
     /// Serve a native library by the oracle protocol: what a run starts as a child process.
     #[command(hide = true)]
-    Peer(PeerArgs),
+    Serve(ServeArgs),
 }
 
 #[derive(Debug, Clone, Args)]
@@ -335,8 +335,8 @@ pub struct InstallArgs {
 }
 
 #[derive(Debug, Clone, Args)]
-pub struct PeerArgs {
-    /// The library: one that exports what oracles/native/peer.h says.
+pub struct ServeArgs {
+    /// The library: one that exports what oracles/native/oracle.h says.
     pub library: PathBuf,
     /// Stay on this core.
     #[arg(long)]

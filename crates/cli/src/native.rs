@@ -7,7 +7,7 @@ use crate::fail::Fail;
 use crate::oracles::{self, spinner};
 use crate::root::Root;
 use featherbench_bench::{DescribedEngine, Engine, Engines, Identity, Library, Start, hash};
-use featherbench_engines::{Limits, Oracle, peer};
+use featherbench_engines::{Limits, Oracle, native};
 use std::io::{BufRead, BufReader};
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
@@ -41,7 +41,7 @@ fn built(root: &Root, engine: &DescribedEngine, library: &Library) -> Result<Pat
 /// A sentence, when it is not built or does not answer.
 pub fn start(root: &Root, engine: &DescribedEngine, library: &Library, limits: Limits) -> Result<Oracle, String> {
     let program = std::env::current_exe().map_err(|error| format!("this program does not know where it is: {error}"))?;
-    Oracle::start(peer::command(&program, &built(root, engine, library)?, None), limits)
+    Oracle::start(native::command(&program, &built(root, engine, library)?, None), limits)
 }
 
 /// Builds those of the named native oracles that can be built here and are not yet.
@@ -98,18 +98,18 @@ impl<'a> Recipe<'a> {
         // Where headers stand is no part of the hash; where a library is linked from is.
         let linked = library.linked.as_ref().map(|folder| packages.join(folder));
         let mut settings = vec![
-            format!("-DPEER_ENGINE={folder}"),
-            format!("-DPEER_COMPILER={version}"),
-            format!("-DPEER_VERSIONS={}", versions.join(", ")),
+            format!("-DORACLE_ENGINE={folder}"),
+            format!("-DORACLE_COMPILER={version}"),
+            format!("-DORACLE_VERSIONS={}", versions.join(", ")),
             format!("-DCMAKE_{}_COMPILER={compiler}", language.cmake()),
         ];
         let mut parts = vec![format!("{settings:?}\n{:?}\n{linked:?}", processor()).into_bytes()];
-        settings.push(format!("-DPEER_PACKAGES={}", packages.display()));
+        settings.push(format!("-DORACLE_PACKAGES={}", packages.display()));
         let sources = native.join(folder);
         let entries = std::fs::read_dir(&sources).map_err(|error| format!("{}: {error}", sources.display()))?;
         let mut files: Vec<PathBuf> = entries.flatten().map(|entry| entry.path()).collect();
         files.sort();
-        for file in ["CMakeLists.txt", "coordinates.h", "peer.h"].map(|name| native.join(name)).iter().chain(&files) {
+        for file in ["CMakeLists.txt", "coordinates.h", "oracle.h"].map(|name| native.join(name)).iter().chain(&files) {
             parts.push(std::fs::read(file).map_err(|error| format!("{}: {error}", file.display()))?);
         }
         let parts: Vec<&[u8]> = parts.iter().map(Vec::as_slice).collect();
@@ -260,13 +260,13 @@ fn version_of(packages: &Path, name: &str) -> Result<String, String> {
     Ok(entry.trim_end_matches(".dist-info").trim_start_matches("cmeel_").replace('-', " "))
 }
 
-/// Where peers are kept.
+/// Where the libraries are kept.
 fn cache() -> Result<PathBuf, String> {
     // A relative folder would be another one wherever the program is started.
     let named = |variable: &str| std::env::var_os(variable).map(PathBuf::from).filter(|path| path.is_absolute());
     let from_home = || named("HOME").map(|home| home.join(".cache"));
     let folder = named("XDG_CACHE_HOME").or_else(from_home).ok_or("neither XDG_CACHE_HOME nor HOME says where the cache folder is")?;
-    Ok(folder.join("featherbench/peers"))
+    Ok(folder.join("featherbench/native"))
 }
 
 #[cfg(test)]

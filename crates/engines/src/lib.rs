@@ -2,7 +2,7 @@
 //!
 //! - [`Featherbench`] runs the kernels of this workspace.
 //! - [`Oracle`] asks a program that follows the protocol of `oracles/PROTOCOL.md`.
-//! - [`peer`] serves an engine's native library by the same protocol.
+//! - [`native`] serves an engine's native library by the same protocol.
 //! - [`Recorded`] repeats the recorded answers of an oracle.
 //!
 //! To add an engine, write such a program, in Rust too (`oracles/rapier`), or implement [`Engine`](featherbench_bench::Engine) in a new
@@ -11,9 +11,9 @@
 mod coding;
 pub mod conformance;
 mod kernel;
+pub mod native;
 mod oracle;
 mod own;
-pub mod peer;
 mod recorded;
 mod reproducer;
 mod request;

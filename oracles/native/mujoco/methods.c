@@ -252,8 +252,8 @@ static int read_value(struct fb_handle *h, size_t method, double *value, char *r
   return FB_OK;
 }
 
-const struct fb_peer *featherbench_peer(void) {
-  static struct fb_peer peer = {FEATHERBENCH_PEER_VERSION,
+const struct fb_oracle *featherbench_oracle(void) {
+  static struct fb_oracle table = {FEATHERBENCH_ORACLE_VERSION,
                                 FB_ENGINE,
                                 NULL,
                                 "language=C (libmujoco of the Python package mujoco, as it is shipped)\n" FB_BUILD,
@@ -265,6 +265,6 @@ const struct fb_peer *featherbench_peer(void) {
                                 ready,
                                 run,
                                 read_value};
-  peer.engine_version = mj_versionString();
-  return &peer;
+  table.engine_version = mj_versionString();
+  return &table;
 }

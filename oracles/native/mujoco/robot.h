@@ -3,7 +3,7 @@
 #define FEATHERBENCH_MUJOCO_ROBOT_H
 
 #include "../coordinates.h"
-#include "../peer.h"
+#include "../oracle.h"
 
 #include <mujoco/mujoco.h>
 
@@ -29,7 +29,7 @@ struct fb_handle {
   size_t last;      /* the state that was evaluated last */
 };
 
-/* Functions of the table in peer.h. */
+/* Functions of the table in oracle.h. */
 int mujoco_create(const struct fb_robot *robot, struct fb_handle **handle, double *readback, char *reason);
 void mujoco_destroy(struct fb_handle *handle);
 int mujoco_states(struct fb_handle *handle, const struct fb_states *states, char *reason);

@@ -208,7 +208,7 @@ int read(fb_handle *handle, size_t method, double *value, char *reason) {
 
 } // namespace
 
-const fb_peer *featherbench_peer() {
+const fb_oracle *featherbench_oracle() {
   static const std::vector<fb_method> names = [] {
     std::vector<fb_method> names;
     for (const Method &method : methods()) names.push_back({method.quantity, method.name});
@@ -218,7 +218,7 @@ const fb_peer *featherbench_peer() {
                                    Eigen::SimdInstructionSetsInUse() + "\neigen=" + std::to_string(EIGEN_WORLD_VERSION) + "." +
                                    std::to_string(EIGEN_MAJOR_VERSION) + "." + std::to_string(EIGEN_MINOR_VERSION) +
                                    "\nboost=" BOOST_LIB_VERSION;
-  static const fb_peer peer = {FEATHERBENCH_PEER_VERSION, FB_ENGINE, PINOCCHIO_VERSION, build.c_str(), names.data(), names.size(),
+  static const fb_oracle table = {FEATHERBENCH_ORACLE_VERSION, FB_ENGINE, PINOCCHIO_VERSION, build.c_str(), names.data(), names.size(),
                                create, destroy, set_states, ready, run, read};
-  return &peer;
+  return &table;
 }

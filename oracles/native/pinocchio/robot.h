@@ -5,7 +5,7 @@
 #pragma once
 
 #include "../coordinates.h"
-#include "../peer.h"
+#include "../oracle.h"
 
 #include <pinocchio/multibody.hpp>
 

@@ -4,7 +4,7 @@ use super::{Outcome, exists};
 use crate::support::{Sandbox, project};
 use featherbench_bench::measure::{ForwardScale, ratio, scaled_error, worst};
 use featherbench_bench::{DENSE_LIMIT, Engine, NoAnswer, Quantity, Robot};
-use featherbench_engines::{Clock, Featherbench, Limits, Oracle, peer};
+use featherbench_engines::{Clock, Featherbench, Limits, Oracle, native};
 use featherbench_results::ModelOrigin;
 use featherbench_robots::Family;
 use std::path::{Path, PathBuf};
@@ -62,7 +62,7 @@ fn robot(spec: &str, states: usize) -> Robot {
 }
 
 fn start(library: &Path, limits: Limits, core: Option<usize>) -> Result<Oracle, String> {
-    Oracle::start(peer::command(Path::new(env!("CARGO_BIN_EXE_featherbench")), library, core), limits)
+    Oracle::start(native::command(Path::new(env!("CARGO_BIN_EXE_featherbench")), library, core), limits)
 }
 
 fn ask(engine: &dyn Engine, robot: &Robot, quantity: Quantity, method: &str) -> Result<Vec<f64>, NoAnswer> {
@@ -157,19 +157,19 @@ pub fn pendulum_answers() -> Outcome {
         Ok(library) => library,
         Err(skipped) => return skipped,
     };
-    let peer = start(&library, PATIENT, None).unwrap();
-    assert_eq!((peer.identity().name.as_str(), peer.identity().build["language"].as_str()), ("pendulum", "C"));
+    let oracle = start(&library, PATIENT, None).unwrap();
+    assert_eq!((oracle.identity().name.as_str(), oracle.identity().build["language"].as_str()), ("pendulum", "C"));
     for spec in ["chain:n=1,layout=spatial", "chain:n=1,layout=planar", "tree:n=1,armature=true"] {
-        let found = compare(&peer, &robot(spec, 20), &["abort", "segfault", "hang", "glutton"]);
+        let found = compare(&oracle, &robot(spec, 20), &["abort", "segfault", "hang", "glutton"]);
         assert_eq!(found.len(), 1 + 6 + 3, "what it read back, six honest methods, three odd ones: {found:?}");
         for Found { method, share, .. } in &found {
             let share = share.clone().unwrap();
             assert!(if method == "wrong" { share > 10.0 } else { share <= 1.0 }, "{spec} {method}: {share}");
         }
     }
-    let two = ask(&peer, &robot("chain:n=2", 1), Quantity::InverseDynamics, "pendulum");
+    let two = ask(&oracle, &robot("chain:n=2", 1), Quantity::InverseDynamics, "pendulum");
     assert!(matches!(&two, Err(NoAnswer::NotOffered(reason)) if reason.contains("2 bodies")), "{two:?}");
-    let unknown = ask(&peer, &robot("chain:n=1", 1), Quantity::Momentum, "pendulum");
+    let unknown = ask(&oracle, &robot("chain:n=1", 1), Quantity::Momentum, "pendulum");
     assert!(matches!(&unknown, Err(NoAnswer::NotOffered(reason)) if reason.contains("offers no method")), "{unknown:?}");
     Outcome::Passed
 }
@@ -184,9 +184,9 @@ pub fn pendulum_is_clocked() -> Outcome {
     // On a core of its own choice; on a core that does not exist it does not start.
     let reason = start(&library, PATIENT, Some(1 << 20)).err().unwrap();
     assert!(reason.contains("core 1048576"), "{reason}");
-    let peer = start(&library, PATIENT, Some(0)).unwrap();
+    let oracle = start(&library, PATIENT, Some(0)).unwrap();
     let robot = robot("chain:n=1", 5);
-    let ready = |method| peer.prepare(&robot, Quantity::InverseDynamics, method, &robot.states).unwrap();
+    let ready = |method| oracle.prepare(&robot, Quantity::InverseDynamics, method, &robot.states).unwrap();
     let mut slow = ready("slow");
     // Each call sleeps for a millisecond or longer. Its time is less than that of the whole question, whatever else the machine does.
     // States beyond the batch begin again.
@@ -226,8 +226,8 @@ pub fn pendulum_dies_alone() -> Outcome {
     };
     let robot = robot("chain:n=1", 3);
     let clock = Arc::new(Stopped::default());
-    let command = peer::command(Path::new(env!("CARGO_BIN_EXE_featherbench")), &library, None);
-    let peer = Oracle::start_by(command, Limits { memory: 512 << 20, ..PATIENT }, Arc::clone(&clock) as Arc<dyn Clock>).unwrap();
+    let command = native::command(Path::new(env!("CARGO_BIN_EXE_featherbench")), &library, None);
+    let oracle = Oracle::start_by(command, Limits { memory: 512 << 20, ..PATIENT }, Arc::clone(&clock) as Arc<dyn Clock>).unwrap();
     let faults: [(&str, &[&str]); 4] = [
         ("abort", &["signal: 6", "the pendulum broke off"]),
         ("segfault", &["signal: 11"]),
@@ -236,14 +236,14 @@ pub fn pendulum_dies_alone() -> Outcome {
     ];
     for (method, words) in faults {
         for clocked in [false, true] {
-            let mut prepared = peer.prepare(&robot, Quantity::InverseDynamics, method, &robot.states).unwrap();
+            let mut prepared = oracle.prepare(&robot, Quantity::InverseDynamics, method, &robot.states).unwrap();
             clock.going.store(method == "hang", Ordering::SeqCst);
             let end = if clocked { prepared.clock(0..3).map(|_| ()) } else { prepared.run(0..3) };
             clock.going.store(false, Ordering::SeqCst);
             let Err(NoAnswer::Failed(reason)) = end else { panic!("{method} lived: {end:?}") };
             assert!(words.iter().all(|word| reason.contains(word)), "{method}: {reason}");
         }
-        assert!(ask(&peer, &robot, Quantity::InverseDynamics, "pendulum").is_ok(), "after {method}");
+        assert!(ask(&oracle, &robot, Quantity::InverseDynamics, "pendulum").is_ok(), "after {method}");
     }
     let reason = start(Path::new("/nowhere/at/all.so"), PATIENT, None).err().unwrap();
     assert!(reason.contains("/nowhere/at/all.so"), "{reason}");
@@ -262,23 +262,23 @@ fn built() -> Vec<(String, PathBuf)> {
 
 /// The known ratio of an engine's error to what rounding may cause (ci/deviations.toml). It is twice the largest ratio over twenty seeds of
 /// states. MuJoCo uses inertias and axes about the robot's centre of mass; computeMinverse works in world axes.
-fn slack(peer: &str, quantity: Quantity, robot: &str) -> f64 {
+fn slack(oracle: &str, quantity: Quantity, robot: &str) -> f64 {
     let largest = match quantity {
-        Quantity::MassMatrix | Quantity::MassMatrixSparse | Quantity::Factorization if peer == "mujoco-native" => match robot {
+        Quantity::MassMatrix | Quantity::MassMatrixSparse | Quantity::Factorization if oracle == "mujoco-native" => match robot {
             "chain-spatial-100" => 16.5,
             "panda" => 1.51,
             _ => 6.1,
         },
-        Quantity::MassMatrixInverse if peer.starts_with("pinocchio") && robot.starts_with("tree-common-16") => 9.03,
+        Quantity::MassMatrixInverse if oracle.starts_with("pinocchio") && robot.starts_with("tree-common-16") => 9.03,
         _ => 0.5,
     };
     2.0 * largest
 }
 
-pub fn peers_agree() -> Outcome {
+pub fn oracles_agree() -> Outcome {
     let built = built();
     if built.is_empty() {
-        return Outcome::Nightly("no native peer is built (`featherbench oracles install --native`)".into());
+        return Outcome::Nightly("no native oracle is built (`featherbench oracles install --native`)".into());
     }
     let robots =
         ["chain-spatial-10", "chain:n=36,layout=spatial", "chain-spatial-100", "humanoid", "panda", "tree-common-16-spread0.3-seed3"];
@@ -306,13 +306,13 @@ pub fn peers_agree() -> Outcome {
 pub fn big_robots_are_refused_or_answered() -> Outcome {
     let built = built();
     if built.is_empty() {
-        return Outcome::Nightly("no native peer is built (`featherbench oracles install --native`)".into());
+        return Outcome::Nightly("no native oracle is built (`featherbench oracles install --native`)".into());
     }
     let robot = robot("chain:n=1000,layout=spatial", 2);
     for (name, library) in &built {
-        let peer = start(library, PATIENT, None).unwrap();
-        let method = peer.methods(Quantity::InverseDynamics).remove(0);
-        match ask(&peer, &robot, Quantity::InverseDynamics, &method) {
+        let oracle = start(library, PATIENT, None).unwrap();
+        let method = oracle.methods(Quantity::InverseDynamics).remove(0);
+        match ask(&oracle, &robot, Quantity::InverseDynamics, &method) {
             Ok(values) => assert!(name.starts_with("mujoco") && values.iter().all(|x| x.is_finite()), "{name}"),
             Err(NoAnswer::NotOffered(reason)) => assert!(name.starts_with("pinocchio") && reason.contains("nv³"), "{name}: {reason}"),
             Err(refusal) => panic!("{name}: {refusal}"),

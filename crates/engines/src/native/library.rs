@@ -1,4 +1,4 @@
-//! The library of a native oracle, behind the C interface of `oracles/native/peer.h`: the only unsafe code of this crate.
+//! The library of a native oracle, behind the C interface of `oracles/native/oracle.h`: the only unsafe code of this crate.
 //!
 //! The layouts below repeat that header. What a library does inside its functions cannot be checked from here. So it is loaded in a child
 //! process only. Everything that can be checked is checked: the version of the interface, missing functions, indices, and lengths.
@@ -10,7 +10,7 @@ use std::ffi::{CStr, c_char, c_int};
 use std::path::Path;
 use std::ptr::{self, NonNull};
 
-/// `FEATHERBENCH_PEER_VERSION`.
+/// `FEATHERBENCH_ORACLE_VERSION`.
 const VERSION: u32 = 1;
 /// `FB_REASON`.
 const REASON: usize = 512;
@@ -74,9 +74,9 @@ type Ready = unsafe extern "C" fn(*mut Handle, usize, usize, *mut c_char) -> c_i
 type Run = unsafe extern "C" fn(*mut Handle, usize, usize, usize, *mut c_char) -> c_int;
 type Read = unsafe extern "C" fn(*mut Handle, usize, *mut f64, *mut c_char) -> c_int;
 
-/// `struct fb_peer`. Functions are optional here: a null pointer must never become a function.
+/// `struct fb_oracle`. Functions are optional here: a null pointer must never become a function.
 #[repr(C)]
-struct Peer {
+struct Table {
     version: u32,
     engine: *const c_char,
     engine_version: *const c_char,
@@ -121,13 +121,13 @@ impl Library {
         // SAFETY: loading runs the library's initialisers. They are trusted like the code that is timed, and run in this child process.
         let library = unsafe { libloading::Library::new(path) }.map_err(|error| complaint(&error.to_string()))?;
         // SAFETY: the header declares this symbol as a function of this type, and nothing else is exported under the name.
-        let entry = unsafe { library.get::<unsafe extern "C" fn() -> *const Peer>(b"featherbench_peer") };
-        let entry = entry.map_err(|_| complaint("it exports no featherbench_peer: it is not a peer"))?;
+        let entry = unsafe { library.get::<unsafe extern "C" fn() -> *const Table>(b"featherbench_oracle") };
+        let entry = entry.map_err(|_| complaint("it exports no featherbench_oracle: it is not a native oracle"))?;
         // SAFETY: the function takes nothing, and returns null or a table that is valid as long as the library is loaded.
-        let peer = unsafe { entry().as_ref() }.ok_or_else(|| complaint("it has no table"))?;
+        let table = unsafe { entry().as_ref() }.ok_or_else(|| complaint("it has no table"))?;
         // The version is the first field in every version of the table, so reading it is sound whatever follows.
-        if peer.version != VERSION {
-            return Err(complaint(&format!("it has version {} of the peer interface, this program {VERSION}", peer.version)));
+        if table.version != VERSION {
+            return Err(complaint(&format!("it has version {} of the interface, this program {VERSION}", table.version)));
         }
         let text = |words: *const c_char| -> Result<String, String> {
             if words.is_null() {
@@ -136,25 +136,25 @@ impl Library {
             // SAFETY: not null, and by the header a text that ends with a zero and is valid as long as the library is loaded.
             Ok(unsafe { CStr::from_ptr(words) }.to_string_lossy().into_owned())
         };
-        let listed = if peer.methods.is_null() {
+        let listed = if table.methods.is_null() {
             &[]
         } else {
             // SAFETY: not null, and by the header an array of that many methods, valid as long as the library is loaded.
-            unsafe { std::slice::from_raw_parts(peer.methods, peer.method_count) }
+            unsafe { std::slice::from_raw_parts(table.methods, table.method_count) }
         };
         let methods = listed.iter().map(|method| Ok((text(method.quantity)?, text(method.name)?))).collect::<Result<_, String>>()?;
         let missing = || complaint("a function of its table is missing");
         Ok(Self {
-            engine: text(peer.engine)?,
-            version: text(peer.engine_version)?,
-            build: text(peer.build)?,
+            engine: text(table.engine)?,
+            version: text(table.engine_version)?,
+            build: text(table.build)?,
             methods,
-            create: peer.create.ok_or_else(missing)?,
-            destroy: peer.destroy.ok_or_else(missing)?,
-            states: peer.states.ok_or_else(missing)?,
-            ready: peer.ready.ok_or_else(missing)?,
-            run: peer.run.ok_or_else(missing)?,
-            read: peer.read.ok_or_else(missing)?,
+            create: table.create.ok_or_else(missing)?,
+            destroy: table.destroy.ok_or_else(missing)?,
+            states: table.states.ok_or_else(missing)?,
+            ready: table.ready.ok_or_else(missing)?,
+            run: table.run.ok_or_else(missing)?,
+            read: table.read.ok_or_else(missing)?,
             _library: library,
         })
     }
@@ -180,12 +180,12 @@ impl Library {
         let mut handle = ptr::null_mut();
         // SAFETY: the robot's arrays have the announced lengths and outlive the call; `readback` has 22 numbers per body.
         checked(|reason| unsafe { (self.create)(&data, &mut handle, readback.as_mut_ptr(), reason) })?;
-        let handle = NonNull::new(handle).ok_or_else(|| NoAnswer::Failed("the peer made nothing and did not say why".into()))?;
+        let handle = NonNull::new(handle).ok_or_else(|| NoAnswer::Failed("the library made nothing and did not say why".into()))?;
         Ok((Built { library: self, handle, nq: data.nq, nv: data.nv, count: 0, ready: None }, readback))
     }
 }
 
-/// A body as `peer.h` has it. A joint without a number there is an error that names it.
+/// A body as `oracle.h` has it. A joint without a number there is an error that names it.
 fn body(body: &featherbench_model::BodyDescription) -> Result<Body, NoAnswer> {
     let (joint, axis, pitch) = match body.joint.kind {
         JointType::Revolute { axis } => (0, axis, 0.0),
@@ -196,7 +196,7 @@ fn body(body: &featherbench_model::BodyDescription) -> Result<Body, NoAnswer> {
         JointType::Planar => (5, [0.0; 3], 0.0),
         JointType::Universal => (6, [0.0; 3], 0.0),
         JointType::Fixed | JointType::Translation | JointType::Cylindrical { .. } | JointType::EulerZyx => {
-            let reason = format!("native peers take no {} joint ({})", body.joint.kind.name(), body.joint.name);
+            let reason = format!("native oracles take no {} joint ({})", body.joint.kind.name(), body.joint.name);
             return Err(NoAnswer::NotOffered(reason));
         }
     };
@@ -306,7 +306,7 @@ fn checked(call: impl FnOnce(*mut c_char) -> c_int) -> Result<(), NoAnswer> {
     let status = call(reason.as_mut_ptr().cast());
     let words = || match CStr::from_bytes_until_nul(&reason) {
         Ok(words) if !words.is_empty() => words.to_string_lossy().into_owned(),
-        _ => "the peer gives no reason".to_owned(),
+        _ => "the library gives no reason".to_owned(),
     };
     match status {
         OK => Ok(()),

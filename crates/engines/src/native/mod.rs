@@ -1,7 +1,7 @@
 //! Native oracles: an engine as a library, in a child process that follows the oracle protocol. It reads the clock next to the engine's
 //! loop.
 //!
-//! [`command`] gives the command for [`Oracle::start`](crate::Oracle::start): this same program as `featherbench peer LIBRARY`, which calls
+//! [`command`] gives the command for [`Oracle::start`](crate::Oracle::start): this same program as `featherbench serve LIBRARY`, which calls
 //! [`serve`].
 
 mod library;
@@ -22,7 +22,7 @@ use std::time::Instant;
 /// The command line of a child process that serves a library; with a core, it is pinned there.
 pub fn command(program: &Path, library: &Path, core: Option<usize>) -> Vec<OsString> {
     let pinned = core.map(|core| ["--core".into(), core.to_string().into()]);
-    [program.into(), "peer".into(), library.into()].into_iter().chain(pinned.into_iter().flatten()).collect()
+    [program.into(), "serve".into(), library.into()].into_iter().chain(pinned.into_iter().flatten()).collect()
 }
 
 /// Answers requests about a library on standard input and output until the input ends. Output of the library goes to standard error.

@@ -1,13 +1,13 @@
-/* A native oracle (here: a peer): an engine as a library behind one C interface, so that its loops can be timed beside ours.
+/* A native oracle: an engine as a library behind one C interface, so that its loops can be timed beside ours.
  *
- * A library exports one function, `featherbench_peer`, which answers a table of functions. The program loads it in a child process
- * (`featherbench peer LIBRARY`), where it may crash or take too much memory without effect on the run. README.md says how to add one.
+ * A library exports one function, `featherbench_oracle`, which answers a table of functions. The program loads it in a child process
+ * (`featherbench serve LIBRARY`), where it may crash or take too much memory without effect on the run. README.md says how to add one.
  *
  * Coordinates: robots, states and values are in the neutral coordinates of CONVENTIONS.md. Quantities, methods and the shapes of values are
- * those of oracles/PROTOCOL.md. A peer converts states in `states` and values in `read`. Only `run` is timed.
+ * those of oracles/PROTOCOL.md. A native oracle converts states in `states` and values in `read`. Only `run` is timed.
  */
-#ifndef FEATHERBENCH_PEER_H
-#define FEATHERBENCH_PEER_H
+#ifndef FEATHERBENCH_ORACLE_H
+#define FEATHERBENCH_ORACLE_H
 
 #include <stddef.h>
 #include <stdint.h>
@@ -17,7 +17,7 @@ extern "C" {
 #endif
 
 /* The version of this interface. A library of another version is not loaded. */
-#define FEATHERBENCH_PEER_VERSION 1
+#define FEATHERBENCH_ORACLE_VERSION 1
 
 /* Room for a reason, its terminating zero included. */
 #define FB_REASON 512
@@ -65,8 +65,8 @@ struct fb_method {
 struct fb_handle;
 
 /* The table of a library. Everything that a caller passes belongs to the caller, and is valid during the call only. */
-struct fb_peer {
-  uint32_t version; /* FEATHERBENCH_PEER_VERSION */
+struct fb_oracle {
+  uint32_t version; /* FEATHERBENCH_ORACLE_VERSION */
   const char *engine;
   const char *engine_version;
   const char *build; /* lines of `key=value`: compiler, flags, versions of libraries */
@@ -96,7 +96,7 @@ struct fb_peer {
 #ifdef __GNUC__
 __attribute__((visibility("default")))
 #endif
-const struct fb_peer *featherbench_peer(void);
+const struct fb_oracle *featherbench_oracle(void);
 
 #ifdef __cplusplus
 }
