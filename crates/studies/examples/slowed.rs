@@ -85,7 +85,7 @@ fn kernels(_: &Robot) -> Vec<(Quantity, &'static str)> {
 fn main() -> Result<ExitCode, Box<dyn std::error::Error>> {
     let seconds = std::env::args().nth(1).map_or(Ok(0.3), |text| text.parse())?;
     let doubles = [0.0, 0.005, 0.05].map(Slowed::by);
-    let peers: Vec<String> = doubles.iter().map(|double| double.identity.name.clone()).collect();
+    let names: Vec<String> = doubles.iter().map(|double| double.identity.name.clone()).collect();
     let mut engines: Vec<Box<dyn Engine>> = vec![Box::new(Featherbench::new())];
     engines.extend(doubles.map(|double| Box::new(double) as Box<dyn Engine>));
     let mut robots = Vec::new();
@@ -94,7 +94,7 @@ fn main() -> Result<ExitCode, Box<dyn std::error::Error>> {
     }
     let gates = Gates::default();
     let context = Context { robots: &robots, engines: &engines, gates: &gates, seed: 1 };
-    let study = Timing { settings: TimingSettings { states: 1000, seconds, engines: peers.clone() }, kernels };
+    let study = Timing { settings: TimingSettings { states: 1000, seconds, engines: names.clone() }, kernels };
     let folder = tempfile::tempdir()?;
     let store = OutcomeStore::open(folder.path())?;
     let finished = evaluate(&study, &context, plan(&study, &context, &|_| true), &store, &Silent)?;
@@ -113,12 +113,12 @@ fn main() -> Result<ExitCode, Box<dyn std::error::Error>> {
         let quiet = control.valid && control.value.is_some();
         let said = if quiet { "quiet" } else { "NOISY" };
         print!("{:<16} {:<19} {:<6} A/A {value:.4} [{low:.4}, {high:.4}] {said}", control.robot, control.quantity, control.cache);
-        for (peer, due) in peers.iter().zip([0.0, 0.0, 1.0]) {
-            let [ratio, low, high] = numbers(&find(control, peer, "ratio"));
-            let right = find(control, peer, "finding").value == Some(due);
+        for (name, due) in names.iter().zip([0.0, 0.0, 1.0]) {
+            let [ratio, low, high] = numbers(&find(control, name, "ratio"));
+            let right = find(control, name, "finding").value == Some(due);
             judged += usize::from(quiet);
             wrong += usize::from(quiet && !right);
-            print!("  {peer}: {ratio:.4} [{low:.4}, {high:.4}]{}", if right { "" } else { " WRONG" });
+            print!("  {name}: {ratio:.4} [{low:.4}, {high:.4}]{}", if right { "" } else { " WRONG" });
         }
         println!();
     }
