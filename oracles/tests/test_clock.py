@@ -5,7 +5,6 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from featherbench_oracles.testing.described import ENGINES
 from featherbench_oracles.algebra import Array
 from featherbench_oracles.change import CoordinateChange
 from featherbench_oracles.clock import Stream, TimedCalls
@@ -13,6 +12,7 @@ from featherbench_oracles.messages import Header
 from featherbench_oracles.protocol import State
 from featherbench_oracles.robot import Description
 from featherbench_oracles.testing.client import Oracle
+from featherbench_oracles.testing.described import ENGINES
 from featherbench_oracles.testing.draws import COUNT, random_robot, random_states, without_armature
 
 from .conftest import Oracles

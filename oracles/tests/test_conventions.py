@@ -11,9 +11,9 @@ from importlib import import_module
 
 import pytest
 
-from featherbench_oracles.testing.described import ENGINES
 from featherbench_oracles.conventions import Claim, Convention, claim
 from featherbench_oracles.testing.client import HOME
+from featherbench_oracles.testing.described import ENGINES
 
 from .conftest import require
 

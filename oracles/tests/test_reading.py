@@ -15,12 +15,12 @@ import numpy as np
 import pytest
 from numpy.typing import ArrayLike
 
-from featherbench_oracles.testing.described import ENGINES
 from featherbench_oracles.algebra import Array
 from featherbench_oracles.messages import Header
 from featherbench_oracles.reading import overheard, turned
 from featherbench_oracles.robot import Description
 from featherbench_oracles.testing.client import Oracle
+from featherbench_oracles.testing.described import ENGINES
 from featherbench_oracles.testing.draws import COUNT, random_states
 from featherbench_oracles.testing.measures import EXACT, ratio, within
 

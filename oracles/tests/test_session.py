@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 from featherbench_oracles.messages import Answer, Header
-from featherbench_oracles.testing.described import ENGINES, PACKAGES
 from featherbench_oracles.robot import Description
 from featherbench_oracles.testing.client import Oracle
+from featherbench_oracles.testing.described import ENGINES, PACKAGES
 from featherbench_oracles.testing.draws import COUNT, random_robot, random_states, without_armature
 from featherbench_oracles.testing.measures import tolerance_scale
 

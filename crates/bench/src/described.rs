@@ -176,10 +176,10 @@ impl Engines {
                 }
                 _ => return wrong("give `of` for a start of the kind native, and `package` for any other".into()),
             }
-            if let Start::Native(library) = &engine.start {
-                if library.compilers.is_empty() || library.packages.is_empty() {
-                    return wrong("start: compilers and packages must not be empty".into());
-                }
+            if let Start::Native(library) = &engine.start
+                && (library.compilers.is_empty() || library.packages.is_empty())
+            {
+                return wrong("start: compilers and packages must not be empty".into());
             }
             if let Some(format) = engine.compiles {
                 if !engine.is_python() || !engine.reads.contains(&format) || compiled.contains(&format) {
