@@ -1,0 +1,164 @@
+"""Checks of the tables whose cells open rows: the heatmap, the joint matrix and the accuracies."""
+
+from __future__ import annotations
+
+from browser.client import ARROW_DOWN, ARROW_RIGHT, ENTER, ESCAPE, Browser
+from browser.page import CLOSED, DRAWN, FOCUS, ROWS, Checks, Shot
+
+
+def heatmap(page: Browser, shot: Shot) -> Checks:
+    """Check the heatmap of margins, and the rows that a cell opens."""
+    page.click("#heat td button")
+    rows = page.until(ROWS)
+    count = page.run("return document.querySelector('#rows-count').textContent")
+    yield "a click on a cell shows its rows", rows > 0, count
+    seen = page.run("""
+        const heads = [...document.querySelectorAll('#rows-table th')].map(head => head.textContent);
+        const column = heads.indexOf('engine');
+        const engines = [...document.querySelectorAll('#rows-table tbody tr')].map(row => row.cells[column].textContent);
+        return [[...new Set(engines)], document.querySelector('#heat th.engine').textContent]""")
+    yield "they are that engine's rows alone", seen[0] == [seen[1]], seen
+    shot("rows")
+    first = page.run("return document.querySelector('#rows-table tbody').textContent")
+    head = "[...document.querySelectorAll('#rows-table th button')].find(button => button.textContent === 'value')"
+    if page.run(f"return {head} !== undefined"):
+        page.run(f"{head}.click()")
+        low = page.run("return document.querySelector('#rows-table tbody').textContent")
+        page.run(f"{head}.click()")
+        high = page.run("return document.querySelector('#rows-table tbody').textContent")
+        yield "rows sort both ways", rows < 2 or low != high, [first[:60], low[:60], high[:60]]
+    here = page.run("return location.href")
+    page.press(ESCAPE)
+    yield "Escape closes the rows", page.until(CLOSED), ""
+    page.open("about:blank")
+    page.open(here)
+    yield "the address of open rows opens them again", page.until(ROWS) == rows, here[-80:]
+    page.press(ESCAPE)
+
+    page.run("document.querySelector('#heat td button').focus()")
+    start = page.run(FOCUS)
+    page.press(ARROW_RIGHT)
+    page.press(ARROW_DOWN)
+    end = page.run(FOCUS)
+    yield "arrow keys walk the heatmap", start and end and end[0] > start[0] and end[1] > start[1], [start, end]
+    tip = page.run("const tip = document.querySelector('#tip'); return tip.hidden ? '' : tip.textContent")
+    yield "the focused cell is explained", len(tip) > 10, tip
+    shot("tip")
+    page.press(ENTER)
+    yield "Enter opens the focused cell", page.until(ROWS) > 0, ""
+    page.press(ESCAPE)
+
+    engine = page.run("return document.querySelector('#heat-engine').options[1].value")
+    page.choose("#heat-engine", engine)
+    shown = page.run("return [...document.querySelectorAll('#heat th.engine')].filter(head => !head.hidden).length")
+    yield "one engine can be chosen", shown == 1, shown
+    shot("engine")
+    page.choose("#heat-engine", "")
+    page.run(
+        "const box = document.querySelector('#heat-filter'); box.value = 'no model has this name'; box.dispatchEvent(new Event('input'))"
+    )
+    shown = page.run("return [...document.querySelectorAll('#heat tr[data-m]')].filter(row => !row.hidden).length")
+    yield "the filter hides models", shown == 0, shown
+    page.run("const box = document.querySelector('#heat-filter'); box.value = ''; box.dispatchEvent(new Event('input'))")
+
+
+def joints(page: Browser, shot: Shot) -> Checks:
+    """Check the joint matrix."""
+    page.run("document.getElementById('joints').scrollIntoView({behavior: 'instant'})")
+    shot("joints")
+    drawn = page.run("return document.querySelectorAll('#joints-table td button').length")
+    told = page.run("return featherbench.chunks.get('figures').joints.cells.length")
+    yield "the joint matrix shows every cell", drawn == told > 0, [drawn, told]
+    kinds = {"unsupported": "skip", "deviates": "deviation", "agrees": "p"}
+    for state, style in kinds.items():
+        tip = page.run(
+            """
+            const button = document.querySelector(`#joints-table td button[class^='${arguments[0]}']`);
+            if (!button) return null;
+            button.focus();
+            return document.querySelector('#tip').textContent""",
+            style,
+        )
+        words = {"unsupported": "not offered", "deviates": "deviates by known cause", "agrees": "method"}[state]
+        yield f"a cell of the joint matrix that {state} says so", tip is None or words in tip, tip
+    shot("joints-tip")
+    page.click("#joints-table td button")
+    rows = page.until(ROWS)
+    seen = page.run("""
+        const heads = [...document.querySelectorAll('#rows-table th')].map(head => head.textContent);
+        const table = [...document.querySelectorAll('#rows-table tbody tr')];
+        return ['engine', 'quantity', 'robot'].map(name => [...new Set(table.map(row => row.cells[heads.indexOf(name)].textContent))])""")
+    yield (
+        "a click on a cell of the joint matrix shows its rows alone",
+        rows > 0 and all(len(part) == 1 for part in seen) and seen[2][0].startswith("joints-"),
+        seen,
+    )
+    page.press(ESCAPE)
+    page.run("document.querySelector('#joints-table td button').focus()")
+    start = page.run(FOCUS)
+    page.press(ARROW_RIGHT)
+    page.press(ARROW_DOWN)
+    end = page.run(FOCUS)
+    yield "arrow keys walk the joint matrix", start and end and end != start, [start, end]
+
+
+def accuracy(page: Browser, shot: Shot) -> Checks:
+    """Check the digits section."""
+    shown = "[...document.querySelectorAll('#accuracy-table td button')].find(button => !button.closest('[hidden]'))"
+    yield (
+        "a cell of the accuracies says its quartiles",
+        "quartiles"
+        in page.run("""
+        const button = [...document.querySelectorAll('#accuracy-table td button[class^=d]')].find(button => !button.closest('[hidden]'));
+        button.focus();
+        return document.querySelector('#tip').textContent"""),
+        "",
+    )
+    shot("accuracy-cell")
+    page.run(f"{shown}.id = 'clicked'")
+    page.click("#clicked")
+    rows = page.until(ROWS)
+    seen = page.run("""
+        const heads = [...document.querySelectorAll('#rows-table th')].map(head => head.textContent);
+        const table = [...document.querySelectorAll('#rows-table tbody tr')];
+        const values = name => [...new Set(table.map(row => row.cells[heads.indexOf(name)].textContent))];
+        return [values('engine'), values('method'), values('quantity'), document.querySelector('#rows-filters [name=study]').value]""")
+    yield (
+        "a click on a cell of the digits shows its method's rows alone",
+        rows > 0 and [len(part) for part in seen[:3]] == [1, 1, 1] and seen[3] == "accuracy",
+        seen,
+    )
+    page.press(ESCAPE)
+
+    page.run(f"{shown}.focus()")
+    start = page.run(FOCUS)
+    page.press(ARROW_RIGHT)
+    page.press(ARROW_DOWN)
+    end = page.run(FOCUS)
+    yield "arrow keys walk the digits", start and end and end != start, [start, end]
+
+    for quantity in page.run("return [...document.querySelector('#accuracy-quantity').options].map(option => option.value)")[::-1]:
+        page.choose("#accuracy-quantity", quantity)
+        heads = page.run("return [...document.querySelectorAll('#accuracy-table th.engine')].filter(head => !head.hidden).length")
+        plotted = page.run("return !document.getElementById('accuracy-plot')") or page.until(DRAWN, "accuracy-plot") > 0
+        yield f"the digits of {quantity} can be chosen", heads == 1 and plotted, heads
+    if page.run("return document.querySelector('#accuracy-axis') !== null"):
+        title = "return document.querySelector('#accuracy-plot .xtitle').textContent"
+        titles: set[str] = set()
+        axes = page.run("return [...document.querySelector('#accuracy-axis').options].map(option => option.value)")
+        for axis in axes[::-1]:
+            page.choose("#accuracy-axis", axis)
+            now = page.until(f"const now = (() => {{ {title} }})(); return !arguments[0].includes(now) && now", sorted(titles))
+            family = page.run("return document.querySelector('#accuracy-family').value")
+            yield (
+                f"the digits can be plotted against {axis}",
+                bool(now) and page.until(DRAWN, "accuracy-plot") > 0 and family != "",
+                [now, family],
+            )
+            titles.add(now)
+            page.run("document.getElementById('accuracy-plot').scrollIntoView({block: 'center', behavior: 'instant'})")
+            shot(f"accuracy-{axis}")
+    page.run("const box = document.querySelector('#accuracy-filter'); box.value = 'no such robot'; box.dispatchEvent(new Event('input'))")
+    left = page.run("return [...document.querySelectorAll('#accuracy-table tr[data-m]')].filter(row => !row.hidden).length")
+    yield "the filter hides robots of the table of accuracy", left == 0, left
+    page.run("const box = document.querySelector('#accuracy-filter'); box.value = ''; box.dispatchEvent(new Event('input'))")

@@ -1,0 +1,197 @@
+"""Checks of the page as a whole, section by section, in the order of a reader."""
+
+from __future__ import annotations
+
+import json
+import pathlib
+
+from browser.cells import accuracy, heatmap, joints
+from browser.client import ESCAPE, Browser
+from browser.page import DRAWN, ROWS, Checks, Shot, has
+from browser.plots import drawn, plots
+
+BACKGROUND = "return getComputedStyle(document.body).backgroundColor"
+# Every section in its order. Those that are not in ALWAYS appear only if they have rows.
+SECTIONS = [
+    "verdict",
+    "agreement",
+    "import",
+    "joints",
+    "accuracy",
+    "depth",
+    "time",
+    "speed",
+    "tradeoff",
+    "conditioning",
+    "steps",
+    "pairs",
+    "conventions",
+    "known",
+    "provenance",
+    "method",
+    "unpassed",
+]
+ALWAYS = set(SECTIONS) - {"import", "joints", "accuracy", "speed", "tradeoff", "conditioning", "steps", "known"}
+
+
+def checks(page: Browser, address: str, shots: pathlib.Path | None) -> Checks:
+    """Yield (what, whether it is so, what was seen)."""
+
+    def shot(name: str) -> None:
+        if shots:
+            page.shot(shots / f"{name}.png")
+
+    page.open(address)
+    sections = page.run("return [...document.querySelectorAll('main > section')].map(section => section.id)")
+    yield "the page has its sections", sections == [name for name in SECTIONS if name in ALWAYS or name in sections], sections
+    led = page.run("return [...document.querySelectorAll('nav a')].map(link => link.hash.slice(1))")
+    yield "the navigation leads to all of them", led == sections, led
+    width = page.run("return [document.documentElement.scrollWidth, innerWidth]")
+    yield "the page is no wider than its window", width[0] <= width[1], width
+    shot("top")
+
+    yield from plots(page, shot)
+    yield from conventions(page, shot)
+    if has(page, "#heat td button"):
+        yield from heatmap(page, shot)
+    if has(page, "#joints-table td button"):
+        yield from joints(page, shot)
+    if has(page, "#accuracy-table td button"):
+        yield from accuracy(page, shot)
+    if has(page, "#depth-quantity"):
+        yield from depth(page)
+    if has(page, "#time-unit"):
+        page.choose("#time-unit", "joint")
+        title = page.until("return document.querySelector('#time-plot .ytitle').textContent.includes('joint')")
+        yield "time per joint can be plotted", title, ""
+    if has(page, "#speed-plot"):
+        yield from speed(page, shot)
+    if has(page, "#unpassed [data-chunk]"):
+        page.click("#unpassed [data-chunk]")
+        yield "what did not pass can be opened", page.until(ROWS) > 0, ""
+        page.press(ESCAPE)
+    yield from theme(page, address, shot, sections if shots else [])
+    yield from narrow(page, shot)
+    yield from silence(page)
+
+
+def conventions(page: Browser, shot: Shot) -> Checks:
+    """Check the list of conventions."""
+    listed = page.run("return document.querySelectorAll('#conventions tbody tr').length")
+    yield "conventions are listed", listed > 0, listed
+    page.run("document.getElementById('conventions').scrollIntoView({block: 'start', behavior: 'instant'})")
+    shot("conventions")
+
+
+def depth(page: Browser) -> Checks:
+    """Check the plot of errors against depth."""
+    title = "return document.querySelector('#depth-plot .ytitle').textContent"
+    before = page.run(title)
+    others = page.run(
+        "const list = document.querySelector('#depth-quantity');"
+        " return [...list.options].filter(option => option.value !== list.value).map(option => option.value)"
+    )
+    if others:
+        page.choose("#depth-quantity", others[0])
+        after = page.until(f"const now = (() => {{ {title} }})(); return now !== arguments[0] && now", before)
+        yield "another quantity can be plotted", bool(after) and page.until(DRAWN, "depth-plot") > 0, [before, after]
+    marks = """
+        const mark = document.querySelector('#depth-plot .marks .mark');
+        if (!mark) return null;
+        mark.scrollIntoView({block: 'center', behavior: 'instant'});
+        const box = mark.getBoundingClientRect();
+        return [box.x + box.width / 2, box.y + box.height / 2]"""
+    place = page.run(marks)
+    if place:
+        move = {"type": "pointerMove", "duration": 50, "x": round(place[0]), "y": round(place[1])}
+        pointer = [move, {"type": "pause", "duration": 300}, {"type": "pointerDown", "button": 0}, {"type": "pointerUp", "button": 0}]
+        page.post("/actions", actions=[{"type": "pointer", "id": "mouse", "actions": pointer}])
+        yield "a click on a mark shows its rows", page.until(ROWS) > 0, place
+        page.press(ESCAPE)
+
+
+def speed(page: Browser, shot: Shot) -> Checks:
+    """Check the section on speed."""
+    title = "return document.querySelector('#speed-plot .ytitle').textContent"
+    for quantity in page.run("return [...document.querySelector('#speed-quantity').options].map(option => option.value)")[::-1]:
+        words = page.run("return document.querySelector('#speed-quantity').options[arguments[0]].textContent", int(quantity))
+        for case in ["hot", "stream"]:
+            page.choose("#speed-case", case)
+            page.choose("#speed-quantity", quantity)
+            seen = page.until(f"const now = (() => {{ {title} }})(); return now.startsWith(arguments[0]) && now", words)
+            ends = page.until("return document.querySelectorAll('#speed-plot .bar').length")
+            yield (
+                f"ratios of {words}, {case}, are plotted with intervals",
+                bool(seen) and page.until(DRAWN, "speed-plot") > 0 and ends > 0,
+                [seen, ends],
+            )
+    rows = page.run("""
+        const number = cell => parseFloat(cell.textContent.replace(/^[^0-9]+/, ''));
+        const rows = [...document.querySelectorAll('#speed-summary tbody tr')];
+        const means = rows.map(row => [...row.querySelectorAll('td.number')].map(number));
+        return means.map(([robots, mean, least, largest]) => least <= mean && mean <= largest && robots > 0)""")
+    # On a machine that is not quiet, all ratios may be invalid. The page then says so, and why.
+    none = page.run("return !!document.querySelector('#speed-none-valid') && document.querySelectorAll('#speed-invalid li').length > 0")
+    yield (
+        "every geometric mean lies between its least and its largest, or no ratio counts and the page says why",
+        bool(rows) != none and all(rows),
+        [rows, none],
+    )
+    page.run("document.querySelectorAll('#speed details').forEach(part => { part.open = true; })")
+    for table in ["speed-controls"] if none else ["speed-summary", "speed-controls"]:
+        found = page.run("return document.querySelectorAll(`#${arguments[0]} tbody tr`).length", table)
+        yield f"{table} has rows", found > 0, found
+        page.run("document.getElementById(arguments[0]).scrollIntoView({block: 'center', behavior: 'instant'})", table)
+        shot(table)
+    page.run("document.querySelectorAll('#speed details').forEach(part => { part.open = false; })")
+
+
+def theme(page: Browser, address: str, shot: Shot, pictured: list[str]) -> Checks:
+    """Check the change of theme; of each section that is pictured, a picture is taken."""
+    before = page.run(BACKGROUND)
+    ink = "const title = document.querySelector('.ytitle'); return title && title.getAttribute('fill')"
+    plot_before = page.run(ink)
+    page.run("scrollTo({top: 0, behavior: 'instant'})")
+    page.click("#theme")
+    after = page.run(BACKGROUND)
+    yield "the theme changes", before != after, [before, after]
+    if plot_before:
+        yield (
+            "the plots change with it",
+            page.until(f"const now = (() => {{ {ink} }})(); return now !== arguments[0] && now", plot_before),
+            plot_before,
+        )
+    shot("theme")
+    for place in pictured:
+        page.run("document.getElementById(arguments[0]).scrollIntoView({behavior: 'instant'})", place)
+        shot(f"theme-{place}")
+    page.open("about:blank")
+    page.open(address)
+    yield "and is remembered", page.run(BACKGROUND) == after, ""
+
+
+def narrow(page: Browser, shot: Shot) -> Checks:
+    """Check the page in a narrow window."""
+    page.post("/window/rect", width=500, height=900)
+    fits = page.until("return innerWidth < 600 && document.documentElement.scrollWidth <= innerWidth")
+    yield "a narrow window does not scroll sideways", fits, page.run("return [document.documentElement.scrollWidth, innerWidth]")
+    shot("narrow")
+    if boxes := drawn(page):
+        sizes = """
+            const drawings = arguments[0].map(id => document.querySelector(`#${id} svg[role=img]`));
+            return drawings.map(svg => [svg.viewBox.baseVal.width, svg.clientWidth])"""
+        fitted = f"return (() => {{ {sizes} }})().every(([drawn, wide]) => drawn === wide && wide < 500)"
+        yield "the plots are drawn again for a narrow window", page.until(fitted, boxes), page.run(sizes, boxes)
+
+
+def silence(page: Browser) -> Checks:
+    """Check that the page reported no error and asked nothing of a network."""
+    errors = [entry["message"] for entry in page.log("browser") if entry["level"] in ("SEVERE", "WARNING")]
+    yield "the console is silent", not errors, errors[:3]
+    asked: set[str] = set()
+    for entry in page.log("performance"):
+        message = json.loads(entry["message"])["message"]
+        if message["method"] == "Network.requestWillBeSent":
+            asked.add(message["params"]["request"]["url"])
+    outside = [url for url in asked if url.startswith(("http:", "https:", "ws:", "wss:"))]
+    yield "nothing is asked of the network", bool(asked) and not outside, outside[:3]
