@@ -3,6 +3,7 @@
 mod bad_input;
 mod conventions;
 mod datasets;
+mod described;
 mod direction;
 mod elsewhere;
 mod explain;
