@@ -5,11 +5,14 @@ from __future__ import annotations
 import os
 from collections.abc import Iterator
 from importlib import metadata
+from pathlib import Path
 
 import pytest
 
 from featherbench_oracles.testing.client import Oracle
 from featherbench_oracles.testing.described import PACKAGES
+
+from .readers import Readers
 
 WITNESS = {"truth": "mpmath"}  # the witness of truth, and the package that it needs
 REQUIRE_ALL = "FEATHERBENCH_REQUIRE_ALL"
@@ -56,3 +59,9 @@ def oracles() -> Iterator[Oracles]:
     running = Oracles()
     yield running
     running.end()
+
+
+@pytest.fixture
+def readers(oracles: Oracles, tmp_path: Path) -> Readers:
+    """Provide the oracles, and a folder for files."""
+    return Readers(oracles, tmp_path)
