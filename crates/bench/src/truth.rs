@@ -1,7 +1,7 @@
 //! The truth: answers in double-double arithmetic from the description's own numbers. And the conditioning bound.
 //!
 //! The kernels are ours, the arithmetic has 32 digits. Its rounding errors are 1e-32 times the conditioning, far below the digits of f64.
-//! The kernels themselves are confirmed by the crate `reference` and `oracles/featherbench_oracles/truth.py`. These share no text with
+//! The kernels themselves are confirmed by the crate `reference` and `oracles/featherbench_oracles/truth/`. These share no text with
 //! them, and agree with them where that was recorded.
 
 use crate::{Quantity, Robot, layout};

@@ -6,7 +6,7 @@
 //! - [`lagrange`]: the Lagrangian of positions alone, differentiated by nested dual numbers;
 //! - [`closed`]: closed forms of pendulums and tops.
 //!
-//! A fifth, in Python with 4×4 matrices, is `oracles/featherbench_oracles/truth.py`.
+//! A fifth, in Python with 4×4 matrices, is `oracles/featherbench_oracles/truth/`.
 //!
 //! ```
 //! use featherbench_reference::{Precision, Robot, nearest_doubles};

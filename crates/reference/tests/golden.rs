@@ -37,7 +37,7 @@ fn rows(name: &str) -> Vec<Vec<String>> {
 fn golden_data_are_those_of_the_witnesses() {
     let index = index();
     assert_eq!(index["rust"], hash_of_rust(), "crates/reference/src has changed since the golden data were made: {AGAIN}");
-    assert_eq!(index["python"], hash_of_python(), "featherbench_oracles/truth.py has changed since the golden data were made: {AGAIN}");
+    assert_eq!(index["python"], hash_of_python(), "featherbench_oracles/truth has changed since the golden data were made: {AGAIN}");
     assert_eq!((&index["seed"], &index["digits"]), (&SEED.into(), &DIGITS.into()), "{AGAIN}");
     let cases = index["cases"].as_array().unwrap();
     assert_eq!(cases.len(), CASES.len(), "{AGAIN}");

@@ -93,7 +93,12 @@ pub fn hash_of_rust() -> String {
 /// The hash of the Python witness.
 pub fn hash_of_python() -> String {
     let root = project().join("oracles/featherbench_oracles");
-    hash_of_files(&root, &[root.join("truth.py")])
+    let mut files = Vec::new();
+    collect(&root.join("truth"), &mut files);
+    // Python leaves compiled files beside its sources.
+    files.retain(|file| file.extension().is_some_and(|ending| ending == "py"));
+    files.sort();
+    hash_of_files(&root, &files)
 }
 
 fn collect(folder: &Path, files: &mut Vec<PathBuf>) {
