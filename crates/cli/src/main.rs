@@ -21,8 +21,8 @@
 //! | `featherbench_protocol` | messages to an oracle, and its process | – |
 //! | `featherbench_bench` | suite, cell, run, store, measures, gates; the traits `Engine` and `Study` | a measure of an error |
 //! | `featherbench_engines` | the engines: ours, an oracle process, recorded answers; the conformance test | a way to reach an engine |
-//! | `featherbench_studies` | one file or folder per study | a study |
-//! | `featherbench_report` | the report of a run | a section, a plot |
+//! | `featherbench_studies` | one folder per study, with its sections of the report | a study, a section, a plot |
+//! | `featherbench_report` | the frame of the report, and what sections are built of; it knows no study | a building block of pages |
 //! | `oracles/` | the programs of the reference engines, in Python, C++ and Rust | an engine |
 //! | `datasets/` | robots, suites, recorded answers, golden data | a robot, a suite |
 //! | `ci/` | gates, known deviations with their ranges, scripts | a gate, a deviation |

@@ -18,7 +18,8 @@ pub fn write(folder: &Path) -> Result<(), Fail> {
 
 /// Renders the report into the run's folder and returns its page.
 pub fn render(folder: &Path, info: &RunInfo, records: &[Row]) -> Result<PathBuf, Fail> {
-    let paths = featherbench_report::write(info, records, folder).map_err(|error| Fail::input(error.to_string()))?;
+    let paths = featherbench_report::write(info, records, &featherbench_studies::sections(info, records), folder)
+        .map_err(|error| Fail::input(error.to_string()))?;
     Ok(paths.index)
 }
 
@@ -77,7 +78,8 @@ pub fn conclude(info: &RunInfo, records: &[Row], page: &Path) -> Result<(), Fail
     for condition in &broken {
         println!("  gate: {}: {}", condition.what, condition.reason);
     }
-    featherbench_report::summary(info, records).iter().for_each(|line| println!("{line}"));
+    let sections = featherbench_studies::sections(info, records);
+    featherbench_report::summary(info, records, &sections).iter().for_each(|line| println!("{line}"));
     println!("report: {}", page.display());
     if broken.is_empty() {
         return Ok(());

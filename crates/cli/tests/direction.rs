@@ -17,7 +17,7 @@ const ALLOWED: [(&str, &[&str]); 13] = [
     ("protocol", &["spatial", "model"]),
     ("bench", &["spatial", "model", "robots", "formats", "dynamics", "results", "protocol"]),
     ("engines", &["spatial", "model", "robots", "formats", "dynamics", "results", "protocol", "bench"]),
-    ("studies", &["spatial", "model", "robots", "dynamics", "results", "bench"]),
+    ("studies", &["spatial", "model", "robots", "dynamics", "results", "report", "bench"]),
     ("cli", &["spatial", "model", "robots", "formats", "dynamics", "results", "report", "bench", "engines", "studies"]),
 ];
 

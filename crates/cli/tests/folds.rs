@@ -18,7 +18,7 @@ const HARMLESS: [(&str, &str, &str); 19] = [
     ("crates/reference/tests/closed.rs", "gap.max(", "the multi-precision numbers know no NaN"),
     ("crates/reference/tests/support/golden.rs", "scale.max(", "the multi-precision numbers know no NaN"),
     ("crates/reference/tests/support/mod.rs", "largest.max(", "the multi-precision numbers know no NaN"),
-    ("crates/report/src/tradeoff.rs", "least.1.min(", "a row's value is finite"),
+    ("crates/studies/src/timing/section/tradeoff.rs", "least.1.min(", "a row's value is finite"),
     ("crates/studies/src/accuracy/mod.rs", "least.min(*error)", "an engine's best method is not one whose error is no number"),
     ("crates/studies/src/accuracy/mod.rs", "fold(f64::INFINITY, f64::min)", "an engine's best method is not one whose error is no number"),
     ("crates/studies/src/repeatability/mod.rs", "largest.max(distance)", "distances in ulps, which are integers"),

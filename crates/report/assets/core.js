@@ -56,7 +56,7 @@ const featherbench = (() => {
   const byId = (id) => document.getElementById(id);
 
   // A robot in a line.
-  const describe = (model) => `${model.family}, ${model.nv ?? "?"} degrees of freedom, ${model.bodies ?? "?"} bodies, depth ${model.depth ?? "?"}`;
+  const describe = (robot) => `${robot.family}, ${robot.nv ?? "?"} degrees of freedom, ${robot.bodies ?? "?"} bodies, depth ${robot.depth ?? "?"}`;
 
   // Runs a task when the page and its data are complete; each on its own, so that one that fails leaves the others.
   const ready = (task) => document.addEventListener("DOMContentLoaded", task);

@@ -92,7 +92,7 @@
         const first = [...table.querySelectorAll("td button")].find((button) => !button.closest("[hidden]"));
         if (first) focusable(first);
       }
-      return count === rows.length ? `${count} models` : `${count} of ${rows.length} models`;
+      return count === rows.length ? `${count} robots` : `${count} of ${rows.length} robots`;
     }
     return { filter };
   };

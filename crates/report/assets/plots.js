@@ -20,7 +20,7 @@ featherbench.plots = (() => {
   }
 
   function draw(id, series, shape) {
-    chart(byId(id), series, shape, (target) => featherbench.open(`model-${target.model}`, target.filters, chunks.get("overview").models[target.model].name));
+    chart(byId(id), series, shape, (target) => featherbench.open(`robot-${target.robot}`, target.filters, chunks.get("overview").robots[target.robot].name));
   }
 
   // The broad line of a power law from one end to another.

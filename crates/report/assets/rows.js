@@ -117,7 +117,7 @@
     if (!location.hash.startsWith("#rows=")) return;
     try {
       const [name, filters, title] = JSON.parse(decodeURIComponent(location.hash.slice(6)));
-      if (/^(unpassed|(model|study)-[0-9]+)$/.test(name)) open(name, filters, title);
+      if (/^(unpassed|(robot|study)-[0-9]+)$/.test(name)) open(name, filters, title);
     } catch { /* an address that someone cut: the page is still good */ }
   }
 

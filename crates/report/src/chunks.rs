@@ -5,8 +5,9 @@ use std::collections::BTreeMap;
 use featherbench_results::{COLUMNS, Row, Verdict};
 use serde::Serialize;
 
-use crate::ReportError;
-use crate::overview::Overview;
+use crate::error::ReportError;
+use crate::overview::{Overview, robot_chunk};
+use crate::section::Section;
 
 /// The chunk with every row that did not pass.
 pub const UNPASSED: &str = "unpassed";
@@ -14,11 +15,28 @@ pub const UNPASSED: &str = "unpassed";
 /// A file's name in the report's folder, and its bytes.
 type NamedFile = (String, Vec<u8>);
 
+/// The words of the run.
+pub fn overview(overview: &Overview) -> Result<Vec<u8>, ReportError> {
+    Ok(script("overview", &serde_json::to_string(overview)?))
+}
+
+/// The data of all sections, by their anchors.
+pub fn figures(sections: &[Section]) -> Result<Vec<u8>, ReportError> {
+    let mut parts = Vec::new();
+    for section in sections {
+        match &section.data {
+            None => {}
+            Some(Ok(json)) => parts.push(format!("{}:{json}", serde_json::to_string(section.anchor)?)),
+            Some(Err(error)) => return Err(<serde_json::Error as serde::ser::Error>::custom(format!("{}: {error}", section.anchor)).into()),
+        }
+    }
+    Ok(script("figures", &format!("{{{}}}", parts.join(","))))
+}
+
 /// One call, `featherbench.chunk("name",{…});`, whose second argument is plain JSON.
 ///
-/// Characters that could end a script element or a line are written as escapes, so that no name of a model can become markup.
-pub fn script(name: &str, data: &impl Serialize) -> Result<Vec<u8>, ReportError> {
-    let json = serde_json::to_string(data)?;
+/// Characters that could end a script element or a line are written as escapes, so that no name of a robot can become markup.
+fn script(name: &str, json: &str) -> Vec<u8> {
     let mut text = String::with_capacity(json.len() + 64);
     text.push_str("featherbench.chunk(\"");
     text.push_str(name);
@@ -34,7 +52,7 @@ pub fn script(name: &str, data: &impl Serialize) -> Result<Vec<u8>, ReportError>
         }
     }
     text.push_str(");\n");
-    Ok(text.into_bytes())
+    text.into_bytes()
 }
 
 /// Whether a row belongs to the list of those that did not pass.
@@ -42,18 +60,18 @@ pub fn is_unpassed(row: &Row) -> bool {
     !matches!(row.verdict, Verdict::Pass | Verdict::Info)
 }
 
-/// All rows: a chunk per model, one per study for rows without a model, and one with every row that did not pass.
-pub fn rows(overview: &Overview, records: &[Row]) -> Result<Vec<NamedFile>, ReportError> {
+/// All rows: a chunk per robot, one per study for rows without a robot, and one with every row that did not pass.
+pub fn rows(overview: &Overview, rows: &[Row]) -> Result<Vec<NamedFile>, ReportError> {
     let mut chunks: BTreeMap<String, Vec<&Row>> = BTreeMap::new();
-    // A model without rows has a chunk too: a click on it must show that there are none.
-    for model in 0..overview.models.len() {
-        chunks.insert(format!("model-{model}"), Vec::new());
+    // A robot without rows has a chunk too: a click on it must show that there are none.
+    for robot in 0..overview.robots.len() {
+        chunks.insert(robot_chunk(robot), Vec::new());
     }
-    chunks.insert(UNPASSED.to_owned(), records.iter().filter(|row| is_unpassed(row)).collect());
-    for row in records {
+    chunks.insert(UNPASSED.to_owned(), rows.iter().filter(|row| is_unpassed(row)).collect());
+    for row in rows {
         chunks.entry(overview.chunk_of(row)).or_default().push(row);
     }
-    chunks.iter().map(|(name, rows)| Ok((format!("data/{name}.js"), script(name, &Table::of(rows)?)?))).collect()
+    chunks.iter().map(|(name, rows)| Ok((format!("data/{name}.js"), script(name, &serde_json::to_string(&Table::of(rows)?)?)))).collect()
 }
 
 /// Rows as arrays: the names of the columns are given once.
@@ -64,13 +82,13 @@ struct Table {
 }
 
 impl Table {
-    fn of(records: &[&Row]) -> Result<Self, ReportError> {
+    fn of(rows: &[&Row]) -> Result<Self, ReportError> {
         let columns: Vec<&str> = COLUMNS.iter().map(|column| column.name).collect();
-        let row = |record: &&Row| -> Result<Vec<serde_json::Value>, ReportError> {
-            let mut fields = serde_json::to_value(record)?;
+        let row = |row: &&Row| -> Result<Vec<serde_json::Value>, ReportError> {
+            let mut fields = serde_json::to_value(row)?;
             Ok(columns.iter().map(|&name| fields[name].take()).collect())
         };
-        let rows = records.iter().map(row).collect::<Result<_, _>>()?;
+        let rows = rows.iter().map(row).collect::<Result<_, _>>()?;
         Ok(Self { columns, rows })
     }
 }

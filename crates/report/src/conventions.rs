@@ -3,8 +3,14 @@
 use featherbench_results::{Convention, RunInfo};
 use maud::{Markup, html};
 
+use crate::section::Section;
+
 /// Writes the section.
-pub fn section(run: &RunInfo) -> Markup {
+pub fn section(run: &RunInfo) -> Section {
+    Section::new("conventions", "Conventions", body(run))
+}
+
+fn body(run: &RunInfo) -> Markup {
     let mut engines: Vec<(&str, Vec<&Convention>)> = Vec::new();
     for row in &run.conventions {
         match engines.iter_mut().find(|(engine, _)| *engine == row.engine) {

@@ -1,14 +1,13 @@
-//! Findings, in sentences: which engines agree on what, which do not, and whether the run passed.
+//! Findings, in sentences: whether the run passed, and which engines fail on what.
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeMap;
 
 use featherbench_results::{Row, RunInfo, Verdict};
 
-use crate::figures::is_error_measure;
 use crate::labels;
-use crate::numbers::{count, larger, listed, short};
-use crate::overview::{ACCURACY, Overview, severity};
-use crate::tally::Tally;
+use crate::numbers::{count, grouped, listed, short};
+use crate::section::Section;
+use crate::tally::{Tally, severity};
 
 /// The state of a run in one word.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -21,20 +20,8 @@ pub enum Status {
     Empty,
 }
 
-/// Engines that pass all their gates against a reference, on the same quantities.
-pub struct Agreement<'a> {
-    /// The engines.
-    pub engines: Vec<&'a str>,
-    /// The reference.
-    pub reference: &'a str,
-    /// The quantities, and the largest error of each.
-    pub quantities: Vec<(&'a str, f64)>,
-    /// The number of models: the fewest and the most of any quantity.
-    pub models: (usize, usize),
-}
-
 /// An engine that failed gates on a quantity.
-pub struct Disagreement<'a> {
+pub struct Failure<'a> {
     /// The engine.
     pub engine: &'a str,
     /// The reference; empty if nothing was compared.
@@ -55,20 +42,16 @@ pub struct Findings<'a> {
     pub tally: Tally,
     /// Expectations that are not met.
     pub unmet: usize,
-    /// The engines that pass their gates.
-    pub agreements: Vec<Agreement<'a>>,
     /// The engines that fail gates, worst first.
-    pub disagreements: Vec<Disagreement<'a>>,
+    pub failures: Vec<Failure<'a>>,
     /// The passing row that is closest to its gate.
     pub closest: Option<&'a Row>,
-    /// The references of the answers.
-    pub references: BTreeSet<&'a str>,
 }
 
 impl<'a> Findings<'a> {
-    /// Collects a run's rows.
-    pub fn of(run: &RunInfo, overview: &Overview<'a>, records: &'a [Row]) -> Self {
-        let tally = Tally::of(records.iter().map(|row| row.verdict));
+    /// Collects a run's rows. Failures about which a section tells itself are not collected again.
+    pub fn of(run: &RunInfo, rows: &'a [Row], sections: &[Section]) -> Self {
+        let tally = Tally::of(rows.iter().map(|row| row.verdict));
         let unmet = run
             .expected
             .iter()
@@ -82,21 +65,8 @@ impl<'a> Findings<'a> {
         } else {
             Status::Passed
         };
-        let passing = records.iter().filter(|row| row.verdict == Verdict::Pass && row.margin.is_some());
-        Self {
-            status,
-            tally,
-            unmet,
-            agreements: agreements(overview, records),
-            disagreements: disagreements(records),
-            closest: passing.min_by_key(|row| severity(row)),
-            references: records
-                .iter()
-                .filter(|row| is_error_measure(row))
-                .map(|row| row.reference.as_str())
-                .filter(|name| !name.is_empty())
-                .collect(),
-        }
+        let passing = rows.iter().filter(|row| row.verdict == Verdict::Pass && row.margin.is_some());
+        Self { status, tally, unmet, failures: failures(rows, sections), closest: passing.min_by_key(|row| severity(row)) }
     }
 
     /// The first line of the page.
@@ -115,11 +85,11 @@ impl<'a> Findings<'a> {
                 let mut parts = Vec::new();
                 match self.tally.get(Verdict::Fail) {
                     0 => {}
-                    failed => parts.push(format!("{} of {} outside their gates", count(failed, "row"), crate::numbers::grouped(judged))),
+                    failed => parts.push(format!("{} of {} outside their gates", count(failed, "row"), grouped(judged))),
                 }
                 match self.tally.get(Verdict::Error) {
                     0 => {}
-                    errors => parts.push(format!("{} without an answer", crate::numbers::grouped(errors))),
+                    errors => parts.push(format!("{} without an answer", grouped(errors))),
                 }
                 match self.unmet {
                     0 => {}
@@ -131,24 +101,7 @@ impl<'a> Findings<'a> {
     }
 }
 
-impl Agreement<'_> {
-    /// `drake and mujoco agree with featherbench on`, the start of a sentence.
-    pub fn who(&self) -> String {
-        let names: Vec<String> = self.engines.iter().map(|&name| name.to_owned()).collect();
-        let verb = if names.len() == 1 { "agrees" } else { "agree" };
-        format!("{} {verb} with {} on", listed(&names), self.reference)
-    }
-
-    /// `over 31 models`, its end.
-    pub fn extent(&self) -> String {
-        match self.models {
-            (fewest, most) if fewest == most => format!("over {}", count(most, "model")),
-            (fewest, most) => format!("over {fewest} to {}", count(most, "model")),
-        }
-    }
-}
-
-impl Disagreement<'_> {
+impl Failure<'_> {
     /// `3 of 124 rows of forward dynamics fail against featherbench`.
     pub fn sentence(&self) -> String {
         let quantity = labels::quantity(self.quantity);
@@ -177,67 +130,13 @@ impl Disagreement<'_> {
     }
 }
 
-/// The rows of one engine on one quantity against one reference.
-struct Account<'a> {
-    tally: Tally,
-    models: BTreeSet<&'a str>,
-    largest: f64,
-}
-
-fn agreements<'a>(overview: &Overview<'a>, records: &'a [Row]) -> Vec<Agreement<'a>> {
-    let mut accounts: BTreeMap<(&str, (usize, &str), usize), Account> = BTreeMap::new();
-    for row in records.iter().filter(|row| is_error_measure(row) && !row.reference.is_empty() && row.reference != row.engine) {
-        let Some(engine) = overview.engine(&row.engine) else { continue };
-        let account = accounts.entry((&row.reference, labels::quantity_rank(&row.quantity), engine)).or_insert_with(|| Account {
-            tally: Tally::default(),
-            models: BTreeSet::new(),
-            largest: 0.0,
-        });
-        account.tally.add(row.verdict);
-        if row.verdict == Verdict::Pass {
-            account.models.insert(&row.robot);
-            // An error over its conditioning bound is a ratio, not an error: it is judged, but not part of this sentence.
-            if row.metric != "error_over_floor" {
-                account.largest = larger(account.largest, row.value.unwrap_or_default().abs());
-            }
-        }
-    }
-
-    // Per reference and quantity, the engines that passed every gate; quantities with the same engines share a sentence.
-    type Kept<'a> = (Vec<usize>, f64, Vec<usize>);
-    let mut kept: BTreeMap<(&str, (usize, &str)), Kept> = BTreeMap::new();
-    for ((reference, quantity, engine), account) in &accounts {
-        if account.tally.verdict() == Verdict::Pass {
-            let entry = kept.entry((reference, *quantity)).or_default();
-            entry.0.push(*engine);
-            entry.1 = larger(entry.1, account.largest);
-            entry.2.push(account.models.len());
-        }
-    }
-    let mut sentences: BTreeMap<(&str, Vec<usize>), Agreement> = BTreeMap::new();
-    for ((reference, (_, quantity)), (engines, largest, models)) in kept {
-        let fewest = models.iter().copied().min().unwrap_or_default();
-        let most = models.iter().copied().max().unwrap_or_default();
-        let sentence = sentences.entry((reference, engines.clone())).or_insert_with(|| Agreement {
-            engines: engines.iter().map(|&engine| overview.engines[engine]).collect(),
-            reference,
-            quantities: Vec::new(),
-            models: (fewest, most),
-        });
-        sentence.quantities.push((quantity, largest));
-        sentence.models = (sentence.models.0.min(fewest), sentence.models.1.max(most));
-    }
-    let mut sentences: Vec<Agreement> = sentences.into_values().collect();
-    sentences.sort_by_key(|sentence| std::cmp::Reverse((sentence.engines.len(), sentence.quantities.len())));
-    sentences
-}
-
-fn disagreements(records: &[Row]) -> Vec<Disagreement<'_>> {
-    let mut found: BTreeMap<(&str, &str, &str), Disagreement> = BTreeMap::new();
-    // Comparisons with the truth have their own sentences, apart from comparisons between engines.
-    let told_here = |row: &&Row| row.study != ACCURACY && !matches!(row.verdict, Verdict::Info | Verdict::Skip);
-    for row in records.iter().filter(told_here) {
-        let group = found.entry((&row.engine, &row.reference, &row.quantity)).or_insert_with(|| Disagreement {
+fn failures<'a>(rows: &'a [Row], sections: &[Section]) -> Vec<Failure<'a>> {
+    let mut found: BTreeMap<(&str, &str, &str), Failure> = BTreeMap::new();
+    let told: Vec<&str> =
+        sections.iter().filter_map(|section| section.finding.as_ref()).flat_map(|finding| finding.told).copied().collect();
+    let told_here = |row: &&Row| !told.contains(&row.study.as_str()) && !matches!(row.verdict, Verdict::Info | Verdict::Skip);
+    for row in rows.iter().filter(told_here) {
+        let group = found.entry((&row.engine, &row.reference, &row.quantity)).or_insert_with(|| Failure {
             engine: &row.engine,
             reference: &row.reference,
             quantity: &row.quantity,
@@ -249,7 +148,7 @@ fn disagreements(records: &[Row]) -> Vec<Disagreement<'_>> {
             group.worst = row;
         }
     }
-    let mut broken: Vec<Disagreement> = found.into_values().filter(|group| group.tally.broken() > 0).collect();
+    let mut broken: Vec<Failure> = found.into_values().filter(|group| group.tally.broken() > 0).collect();
     broken.sort_by_key(|group| severity(group.worst));
     broken
 }

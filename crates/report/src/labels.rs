@@ -104,42 +104,6 @@ pub fn error(quantity_name: &str, metric: &str) -> String {
     }
 }
 
-/// The cause of a difference between two import results, as a phrase; an unknown cause is its own phrase.
-pub fn cause(name: &str) -> &str {
-    match name {
-        "number" => "another number",
-        "inertial_rotation_lost" => "the rotation of the inertial frame was lost",
-        "inertial_rotation_applied" => "a rotation of the inertial frame was applied",
-        "inertia_turned" => "the same principal moments about other axes",
-        "flipped" => "the axis points the other way",
-        "unit" => "another unit: a factor of a thousand or its square",
-        "degrees" => "degrees for radians",
-        "order" => "another order of the joints",
-        "merged" => "fixed to its parent, mass included",
-        "dropped" => "dropped, mass included",
-        "added" => "a body that the reference does not have",
-        "default_inertia" => "the engine's own inertia of a link that has none in the file: 1 kg and 1 kg·m²",
-        "com_sign" => "the sign of the centre of mass",
-        "off_diagonals" => "products of inertia left out",
-        "about_origin" => "inertia about the link's origin, or about the centre of mass, taken for the other",
-        "transposed" => "the transpose of the rotation",
-        "planar_axis" => "the axis of a planar joint ignored",
-        "euler_sequence" => "Euler angles in the default sequence, not in the file's",
-        "bounds" => "raised to the least mass or inertia that the engine takes",
-        "balanced" => "impossible principal moments were made equal",
-        "unphysical" => "an inertia that no body can have was replaced",
-        "massless_link" => "the inertia of a fixed link without mass was left out",
-        "total_mass" => "all masses have one factor: the total mass was set, or not",
-        "between_joints" => "the pose of a link with several joints stands at another of them",
-        "other_root" => "the floating base has the frame of another link of the root",
-        "geometry" => "computed from the shape of the body at 1000 kg/m³",
-        "edited" => "replaced by the parser, as it says itself",
-        "mimic" => "the joint follows another one",
-        "unsupported" => "not read",
-        other => other,
-    }
-}
-
 /// A verdict's sign: it never depends on colour alone.
 pub const fn glyph(verdict: Verdict) -> &'static str {
     match verdict {

@@ -3,13 +3,16 @@
 use featherbench_results::RunInfo;
 use maud::{Markup, html};
 
-use crate::figures::Figures;
 use crate::labels::QUANTITIES;
-use crate::overview::Overview;
+use crate::section::Section;
 
-/// Writes the section.
-pub fn section(run: &RunInfo, overview: &Overview, figures: &Figures) -> Markup {
-    let quantities = [overview.quantities.as_slice(), &figures.accuracy.quantities()].concat();
+/// Writes the section, with the quantities and terms of the sections of studies.
+pub fn section(run: &RunInfo, sections: &[Section]) -> Section {
+    Section::new("method", "Method", body(run, sections))
+}
+
+fn body(run: &RunInfo, sections: &[Section]) -> Markup {
+    let quantities: Vec<&str> = sections.iter().flat_map(|section| &section.quantities).map(String::as_str).collect();
     html! {
         section #method {
             h2 { "How it was measured" }
@@ -32,7 +35,6 @@ pub fn section(run: &RunInfo, overview: &Overview, figures: &Figures) -> Markup 
                     p.note {
                         "Every error is divided by a size that belongs to it, entry by entry; sums of magnitudes replace every vector of a recursion by its length and every sum by the sum of lengths. "
                         "Zero over zero is zero, anything else over zero infinite. Norms over mixed units, which hide a wrong entry behind large right ones, judge nothing between engines."
-                        @if !figures.accuracy.answers.is_empty() { " Accuracy of forward dynamics are in the 2-norm for the comparison with published tables." }
                     }
                 }
                 div {
@@ -46,17 +48,9 @@ pub fn section(run: &RunInfo, overview: &Overview, figures: &Figures) -> Markup 
                         dd { "random: drawn from the seed; zero: no velocity, acceleration and force; straight: the neutral configuration at random rates; fast: rates a thousand times larger; limit: at the joints' limits, where the robot has any." }
                         dt { "Terms" }
                         dd { "M, inverse and forward dynamics contain the rotors' inertia; inverse and forward dynamics and the bias force contain gravity; damping and dry friction are left out for every engine." }
-                        @if !figures.accuracy.answers.is_empty() {
-                            dt { "Truth" }
-                            dd { "The reference of the digits is the answer in double-double arithmetic, 32 digits, from the description's own numbers. A gate on forward dynamics there is on ‖Δq̈‖_M / ‖q̈‖_M, against what a backward error of its size amounts to at that state." }
-                            dt { "Accuracy lost" }
-                            dd { "log₁₀(error/2⁻⁵²), none below. Medians and quartiles are over the states." }
-                            dt { "Structured floor" }
-                            dd { "How far the true q̈ moves, in the 2-norm and relative to itself, when q, q̇, τ and every mass, length and inertia moves by half a unit in its last place and all of it adds up: a worst case. Roundings of random sign leave about a tenth of it, so an error may lie below the floor." }
-                        }
-                        @if !figures.times.is_empty() {
-                            dt { "Times" }
-                            dd { "One thread, pinned to one core where the system allows it, after all accuracy work is done. stream reads another state at each call, hot the same one again. Inside the clock is everything from q, q̇, q̈ or τ to the result: sines and cosines, gravity, rotors' inertia; only factorization and solve start from a mass matrix or factors made before. Everyone who is timed has one block per round, in random order, beside a second copy of ours; a value is the median over the rounds, its bars the 95 % interval of a bootstrap that draws whole epochs, each with a memory layout of its own." }
+                        @for (term, definition) in sections.iter().flat_map(|section| section.terms) {
+                            dt { (term) }
+                            dd { (definition) }
                         }
                         dt { "Recorded and live" }
                         dd {

@@ -15,6 +15,11 @@ pub fn short(value: f64) -> String {
     }
 }
 
+/// Three digits, always in scientific form, so that columns of them are easy to compare: `3.21e-14`.
+pub fn scientific(value: f64) -> String {
+    if value == 0.0 { "0".into() } else { format!("{value:.2e}") }
+}
+
 /// Decades with a sign and one digit, rounded down: 0.99 decades are `+0.9`, not `+1.0`.
 pub fn decades(margin: f64) -> String {
     let tenths = (margin * 10.0).floor() / 10.0;

@@ -3,42 +3,18 @@
 use featherbench_results::{CSV_NAME, RUN_NAME, Row, RunInfo, SCHEMA_NAME};
 use maud::{DOCTYPE, Markup, html};
 
-use crate::figures::Figures;
-use crate::findings::Findings;
-use crate::imports::Imports;
-use crate::overview::{Overview, REPRODUCTIONS};
-use crate::truth::Truth;
-use crate::{
-    accuracy_section, conditioning, conventions, heatmap, imports, joint_matrix, known, method, pairwise, plots, provenance, speed_section,
-    steps, tradeoff, truth, unpassed, verdict,
-};
-
-/// The sections: anchor, entry in the navigation.
-const SECTIONS: &[(&str, &str)] = &[
-    ("verdict", "Verdict"),
-    ("agreement", "Agreement"),
-    ("import", "Imports"),
-    ("joints", "Joints"),
-    ("accuracy", "Accuracy"),
-    ("depth", "Error"),
-    ("time", "Time"),
-    ("speed", "Speed"),
-    ("tradeoff", "Work–precision"),
-    ("conditioning", "Conditioning"),
-    ("steps", "Steps"),
-    ("pairs", "Pairs"),
-    ("conventions", "Conventions"),
-    ("known", "Known deviations"),
-    ("provenance", "Provenance"),
-    ("method", "Method"),
-    ("unpassed", "Not passed"),
-];
+use crate::overview::Overview;
+use crate::section::Section;
+use crate::{conventions, method, provenance, unpassed, verdict};
 
 /// The whole page as text.
-pub fn render(run: &RunInfo, records: &[Row], overview: &Overview, figures: &Figures) -> String {
-    let findings = Findings::of(run, overview, records);
-    let truth = Truth::of(overview, &figures.accuracy, records);
-    let readings = Imports::of(overview, records);
+pub fn render(run: &RunInfo, rows: &[Row], overview: &Overview, sections: &[Section]) -> String {
+    // The frame's own sections stand around those of the studies.
+    let (first, conventions) = (verdict::section(run, overview, rows, sections), conventions::section(run));
+    let last = [provenance::section(run, overview), method::section(run, sections), unpassed::section(rows)];
+    let of_studies = |appendix: bool| sections.iter().filter(move |section| section.appendix == appendix);
+    let all: Vec<&Section> =
+        [&first].into_iter().chain(of_studies(false)).chain([&conventions]).chain(of_studies(true)).chain(&last).collect();
     let page = html! {
         (DOCTYPE)
         html lang="en" {
@@ -55,25 +31,9 @@ pub fn render(run: &RunInfo, records: &[Row], overview: &Overview, figures: &Fig
             }
             body {
                 a.to-content href="#verdict" { "Skip to the verdict" }
-                (header(run, overview, figures, &readings))
+                (header(run, &all))
                 main {
-                    (verdict::section(run, overview, records, &findings, truth::markup(overview, &figures.accuracy, &truth)))
-                    (heatmap::section(overview, &findings))
-                    (imports::section(overview, &readings))
-                    (joint_matrix::section(overview, &figures.joints))
-                    (accuracy_section::section(overview, &figures.accuracy))
-                    (plots::depth(figures))
-                    (plots::time(overview, figures))
-                    (speed_section::section(run, overview, &figures.speed))
-                    (tradeoff::section(overview, &figures.tradeoffs))
-                    (conditioning::section(overview, &figures.conditions))
-                    (steps::section(overview, &figures.steps))
-                    (pairwise::section(overview, records))
-                    (conventions::section(run))
-                    (known::section(records))
-                    (provenance::section(run, overview))
-                    (method::section(run, overview, figures))
-                    (unpassed::section(records))
+                    @for section in &all { (section.body) }
                 }
                 footer {
                     p {
@@ -92,32 +52,7 @@ pub fn render(run: &RunInfo, records: &[Row], overview: &Overview, figures: &Fig
     page.into_string()
 }
 
-/// A button that opens rows: those of a chunk whose columns have the given values.
-pub fn opener(chunk: &str, filters: &[(&str, &str)], text: &str) -> Markup {
-    let filters: serde_json::Map<String, serde_json::Value> =
-        filters.iter().filter(|(_, value)| !value.is_empty()).map(|&(column, value)| (column.to_owned(), value.into())).collect();
-    html! {
-        button.open type="button" data-chunk=(chunk) data-filter=(serde_json::Value::from(filters)) { (text) }
-    }
-}
-
-/// The sections of this run: some need rows of their own.
-fn sections(overview: &Overview, figures: &Figures, readings: &Imports) -> impl Iterator<Item = (&'static str, &'static str)> {
-    let absent = |anchor| match anchor {
-        "import" => readings.is_empty(),
-        "joints" => figures.joints.rows.is_empty(),
-        "accuracy" => figures.accuracy.answers.is_empty(),
-        "speed" => figures.speed.is_empty(),
-        "tradeoff" => figures.tradeoffs.is_empty(),
-        "conditioning" => figures.conditions.is_empty(),
-        "known" => !overview.studies.contains(&REPRODUCTIONS),
-        "steps" => figures.steps.is_empty(),
-        _ => false,
-    };
-    SECTIONS.iter().copied().filter(move |&(anchor, _)| !absent(anchor))
-}
-
-fn header(run: &RunInfo, overview: &Overview, figures: &Figures, readings: &Imports) -> Markup {
+fn header(run: &RunInfo, sections: &[&Section]) -> Markup {
     html! {
         header {
             div.bar {
@@ -126,7 +61,7 @@ fn header(run: &RunInfo, overview: &Overview, figures: &Figures, readings: &Impo
                     span { "featherbench" }
                 }
                 nav aria-label="Sections" {
-                    @for (anchor, name) in sections(overview, figures, readings) { a href={ "#" (anchor) } { (name) } }
+                    @for section in sections { a href={ "#" (section.anchor) } { (section.name) } }
                 }
                 button #theme type="button" aria-label="Switch between light and dark" title="Light or dark" { "◐" }
             }

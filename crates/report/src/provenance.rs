@@ -5,18 +5,23 @@ use std::collections::BTreeMap;
 use featherbench_results::{ModelInfo, RunInfo};
 use maud::{Markup, html};
 
+use crate::blocks::opener;
 use crate::numbers::short;
-use crate::overview::Overview;
-use crate::page::opener;
+use crate::overview::{Overview, robot_chunk};
+use crate::section::Section;
 
 /// Writes the section.
-pub fn section(run: &RunInfo, overview: &Overview) -> Markup {
+pub fn section(run: &RunInfo, overview: &Overview) -> Section {
+    Section::new("provenance", "Provenance", body(run, overview))
+}
+
+fn body(run: &RunInfo, overview: &Overview) -> Markup {
     html! {
         section #provenance {
             h2 { "Engines, machine and models" }
             (engines(run))
             div.columns { (build(run)) (machine(run)) }
-            (models(run, overview))
+            (robots(run, overview))
         }
     }
 }
@@ -87,7 +92,7 @@ fn machine(run: &RunInfo) -> Markup {
         &[
             ("processor", host.cpu.clone()),
             ("logical cores", host.cores.to_string()),
-            ("timing pinned to", host.affinity.clone()),
+            ("pinned to", host.affinity.clone()),
             ("governor", host.governor.clone()),
             ("load at start", host.load.map(|load| format!("{load:.2}")).unwrap_or_default()),
             ("memory", host.memory.map(|bytes| format!("{:.1} GiB", bytes as f64 / f64::from(1 << 30))).unwrap_or_default()),
@@ -97,8 +102,8 @@ fn machine(run: &RunInfo) -> Markup {
     )
 }
 
-fn models(run: &RunInfo, overview: &Overview) -> Markup {
-    let announced: BTreeMap<&str, &ModelInfo> = run.models.iter().map(|model| (model.name.as_str(), model)).collect();
+fn robots(run: &RunInfo, overview: &Overview) -> Markup {
+    let announced: BTreeMap<&str, &ModelInfo> = run.models.iter().map(|robot| (robot.name.as_str(), robot)).collect();
     let size = |value: Option<u64>| value.map(|value| value.to_string()).unwrap_or_default();
     html! {
         h3 { "Models" }
@@ -112,15 +117,15 @@ fn models(run: &RunInfo, overview: &Overview) -> Markup {
                     }
                 }
                 tbody {
-                    @for (index, model) in overview.models.iter().enumerate() {
-                        @let info = announced.get(model.name);
+                    @for (index, robot) in overview.robots.iter().enumerate() {
+                        @let info = announced.get(robot.name);
                         tr {
-                            th scope="row" { (opener(&format!("model-{index}"), &[], model.name)) }
-                            td { (model.family) }
+                            th scope="row" { (opener(&robot_chunk(index), &[], robot.name)) }
+                            td { (robot.family) }
                             td { @if let Some(info) = info { (info.origin) } }
-                            td.number { (size(model.nv)) }
-                            td.number { (size(model.bodies)) }
-                            td.number { (size(model.depth)) }
+                            td.number { (size(robot.nv)) }
+                            td.number { (size(robot.bodies)) }
+                            td.number { (size(robot.depth)) }
                             td { @if let Some(info) = info { (info.licence) } }
                             td { @if let Some(info) = info { (info.source) } }
                             td { @if let Some(info) = info { code title=(info.hash) { (info.hash.chars().take(12).collect::<String>()) } } }
@@ -129,9 +134,9 @@ fn models(run: &RunInfo, overview: &Overview) -> Markup {
                 }
             }
         }
-        @if run.models.iter().any(|model| !model.notes.is_empty()) {
+        @if run.models.iter().any(|robot| !robot.notes.is_empty()) {
             h3 { "Notes on models" }
-            ul #model-notes { @for model in &run.models { @for note in &model.notes { li { b { (model.name) } ": " (note) } } } }
+            ul #model-notes { @for robot in &run.models { @for note in &robot.notes { li { b { (robot.name) } ": " (note) } } } }
         }
     }
 }

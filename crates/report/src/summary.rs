@@ -1,23 +1,19 @@
-//! The run in a few lines for a terminal: passed or failed, the worst findings, the speed.
+//! The run in a few lines for a terminal: passed or failed, the worst findings, and what the sections add.
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeSet;
 
 use featherbench_results::{Row, RunInfo, Verdict};
 
 use crate::findings::{Findings, Status};
 use crate::labels;
-use crate::numbers::{larger, short, smaller};
-use crate::overview::{Overview, TIMING};
-use crate::speed::Speed;
+use crate::numbers::short;
+use crate::section::Section;
+use crate::tally::severity;
 
 /// The number of findings.
 const TOLD: usize = 3;
-/// Our kernels' name in rows.
-const OWN: &str = "featherbench";
-/// Quantities with a line about their times.
-const TIMED: [&str; 3] = ["id", "fd", "mass_matrix_sparse"];
 
-/// The lines at the end of a run: the verdict, the three worst findings, and the speed if it was measured.
+/// The lines at the end of a run: the verdict, the three worst findings, and the lines of the sections.
 ///
 /// A finding is the worst row of an engine on a quantity: failures first, then known deviations, each by its decades beyond the bound.
 ///
@@ -26,27 +22,26 @@ const TIMED: [&str; 3] = ["id", "fd", "mass_matrix_sparse"];
 /// use featherbench_results::{Row, RunInfo, Verdict};
 ///
 /// let row = Row { verdict: Verdict::Pass, value: Some(1e-16), bound: Some(1e-14), ..Row::default() };
-/// assert_eq!(summary(&RunInfo::default(), &[row]), ["passed: The one judged row is inside its gate"]);
+/// assert_eq!(summary(&RunInfo::default(), &[row], &[]), ["passed: The one judged row is inside its gate"]);
 /// ```
-pub fn summary(run: &RunInfo, records: &[Row]) -> Vec<String> {
-    let overview = Overview::of(run, records);
-    let findings = Findings::of(run, &overview, records);
+pub fn summary(run: &RunInfo, rows: &[Row], sections: &[Section]) -> Vec<String> {
+    let findings = Findings::of(run, rows, sections);
     let verdict = match findings.status {
         Status::Passed => "passed",
         Status::Failed => "FAILED",
         Status::Empty => "nothing judged",
     };
     let mut lines = vec![format!("{verdict}: {}", findings.headline())];
-    lines.extend(worst(records).into_iter().enumerate().map(|(index, row)| format!("  {}. {}", index + 1, sentence(row))));
-    lines.extend(speed(&overview, records));
+    lines.extend(worst(rows).into_iter().enumerate().map(|(index, row)| format!("  {}. {}", index + 1, sentence(row))));
+    lines.extend(sections.iter().flat_map(|section| section.lines.iter().cloned()));
     lines
 }
 
 /// The worst rows, one of each engine and quantity.
-fn worst(records: &[Row]) -> Vec<&Row> {
+fn worst(all: &[Row]) -> Vec<&Row> {
     let counts = |row: &&Row| matches!(row.verdict, Verdict::Fail | Verdict::Error | Verdict::Deviation);
-    let mut rows: Vec<&Row> = records.iter().filter(counts).collect();
-    rows.sort_by_key(|row| crate::overview::severity(row));
+    let mut rows: Vec<&Row> = all.iter().filter(counts).collect();
+    rows.sort_by_key(|row| severity(row));
     let mut told = BTreeSet::new();
     rows.retain(|row| told.insert((&row.engine, &row.quantity)));
     rows.truncate(TOLD);
@@ -66,41 +61,6 @@ fn sentence(row: &Row) -> String {
     format!("{who}: {size} ({}); {known}{}", place.join(", "), row.reason)
 }
 
-/// Times of our kernels per body, and of the fastest other engine over ours; nothing if no time counts.
-fn speed(overview: &Overview, records: &[Row]) -> Option<String> {
-    let timed = |row: &&Row| row.study == TIMING && row.metric == "ns_per_call" && row.cache == "stream" && row.engine == OWN;
-    // The fastest method of each robot.
-    let mut fastest: BTreeMap<(&str, &str), f64> = BTreeMap::new();
-    for row in records.iter().filter(timed).filter(|row| row.valid) {
-        if let Some((ns, bodies)) = row.value.zip(row.bodies.filter(|&bodies| bodies > 0)) {
-            let each = fastest.entry((&row.quantity, &row.robot)).or_insert(f64::INFINITY);
-            *each = smaller(*each, ns / bodies as f64);
-        }
-    }
-    let range = |name: &str| {
-        let mut times = fastest.iter().filter(|((quantity, _), _)| *quantity == name).map(|(_, ns)| *ns);
-        let first = times.next()?;
-        Some(times.fold((first, first), |(least, most), ns| (smaller(least, ns), larger(most, ns))))
-    };
-    let times = TIMED.iter().filter_map(|name| range(name).map(|(least, most)| (name, short(least), short(most))));
-    let span = |least: String, most: String| if least == most { least } else { format!("{least} to {most}") };
-    let times: Vec<String> = times.map(|(name, least, most)| format!("{} {} ns", labels::quantity(name), span(least, most))).collect();
-    if times.is_empty() {
-        return None;
-    }
-    let speed = Speed::of(overview, records);
-    let summaries = speed.summaries();
-    let others = TIMED.iter().filter_map(|name| {
-        let others = summaries.iter().filter(|summary| overview.engines[summary.of.engine] != OWN);
-        let timed = others.filter(|summary| summary.of.quantity == *name && summary.of.cache == "stream" && !summary.of.estimated);
-        let fastest = timed.min_by(|a, b| a.mean.total_cmp(&b.mean))?;
-        Some(format!("{} {} ({})", labels::quantity(name), short(fastest.mean), overview.engines[fastest.of.engine]))
-    });
-    let others: Vec<String> = others.collect();
-    let beside = if others.is_empty() { String::new() } else { format!("; the fastest other engine over ours: {}", others.join(", ")) };
-    Some(format!("speed, per body of a robot: {}{beside}", times.join(", ")))
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -108,7 +68,7 @@ mod tests {
     fn row(engine: &str, quantity: &str, verdict: Verdict, value: f64) -> Row {
         let (engine, quantity) = (engine.to_owned(), quantity.to_owned());
         let (model, case, method, metric) = ("panda".into(), "fast".into(), "aba".into(), "scaled".into());
-        let (study, reference, reason) = ("agreement".into(), "featherbench".into(), "far (too) from it (1 is not at most 2)".into());
+        let (study, reference, reason) = ("of engines".into(), "featherbench".into(), "far (too) from it (1 is not at most 2)".into());
         let (value, bound, margin) = (Some(value), Some(1e-14), Some((1e-14 / value).log10()));
         Row {
             engine,
@@ -128,12 +88,6 @@ mod tests {
         }
     }
 
-    fn time(robot: &str, method: &str, ns: f64) -> Row {
-        let (study, metric, cache, engine) = (TIMING.into(), "ns_per_call".into(), "stream".into(), OWN.into());
-        let (robot, method, quantity) = (robot.into(), method.into(), "fd".into());
-        Row { study, metric, cache, engine, robot, method, quantity, bodies: Some(10), ..Row::default() }.informed(ns)
-    }
-
     #[test]
     fn failures_come_before_deviations_and_each_engine_and_quantity_once() {
         let rows = [
@@ -144,8 +98,9 @@ mod tests {
             row("drake", "bias", Verdict::Fail, 2e-14),
             row("mujoco", "bias", Verdict::Deviation, 1e-13),
         ];
-        let lines = summary(&RunInfo::default(), &rows);
-        assert_eq!(lines.len(), 4, "{lines:?}");
+        let section = Section { lines: vec!["and more".into()], ..Section::new("more", "More", maud::html! {}) };
+        let lines = summary(&RunInfo::default(), &rows, &[section]);
+        assert_eq!(lines.len(), 5, "{lines:?}");
         assert!(lines[0].starts_with("FAILED: 1 row of 6 outside their gates"), "{lines:?}");
         assert_eq!(
             lines[1],
@@ -156,18 +111,6 @@ mod tests {
             "  2. dart, forward dynamics: 0.0010 where 1e-14 is allowed (panda, fast, aba); known: far (too) from it (1 is not at most 2)"
         );
         assert!(lines[3].starts_with("  3. mujoco, "), "{lines:?}");
-    }
-
-    #[test]
-    fn a_time_is_that_of_the_fastest_method_and_invalid_ones_do_not_count() {
-        let rows = [
-            time("a", "aba", 500.0),
-            time("a", "refined", 9000.0),
-            time("b", "aba", 800.0),
-            time("c", "aba", 1.0).invalid("the machine was not quiet"),
-        ];
-        let lines = summary(&RunInfo::default(), &rows);
-        assert_eq!(lines[1..], ["speed, per body of a robot: forward dynamics 50 to 80 ns"]);
-        assert_eq!(summary(&RunInfo::default(), &rows[3..]).len(), 1, "no time that counts, no line");
+        assert_eq!(lines[4], "and more");
     }
 }

@@ -1,6 +1,8 @@
-//! Counting verdicts.
+//! Verdicts: how many rows have which, and which row is worst.
 
-use featherbench_results::Verdict;
+use featherbench_results::{Row, Verdict};
+
+use crate::labels;
 
 /// The number of rows with each verdict.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -12,6 +14,13 @@ pub const BY_GRAVITY: [Verdict; 6] = [Verdict::Fail, Verdict::Error, Verdict::De
 /// The position of a verdict in [`BY_GRAVITY`].
 pub fn gravity(verdict: Verdict) -> usize {
     BY_GRAVITY.iter().position(|&other| other == verdict).unwrap_or(BY_GRAVITY.len() - 1)
+}
+
+/// Orders rows from the worst: by verdict, then by margin. A failure without a margin is the worst.
+pub fn severity(row: &Row) -> (usize, i64) {
+    let unknown = if matches!(row.verdict, Verdict::Fail | Verdict::Error) { i64::MIN } else { i64::MAX };
+    // Margins are within ±16: millionths of decades order them like the numbers themselves.
+    (gravity(row.verdict), row.margin.map_or(unknown, |margin| (margin * 1e6) as i64))
 }
 
 impl Tally {
@@ -52,7 +61,7 @@ impl Tally {
         let parts: Vec<String> = BY_GRAVITY
             .into_iter()
             .filter(|&verdict| self.get(verdict) > 0)
-            .map(|verdict| format!("{} {}", self.get(verdict), crate::labels::verdict(verdict)))
+            .map(|verdict| format!("{} {}", self.get(verdict), labels::verdict(verdict)))
             .collect();
         parts.join(", ")
     }

@@ -5,29 +5,33 @@ use std::collections::BTreeMap;
 use featherbench_results::{Row, Verdict};
 use maud::{Markup, html};
 
+use crate::blocks::opener;
 use crate::chunks::{UNPASSED, is_unpassed};
 use crate::labels;
 use crate::numbers::{count, decades};
-use crate::overview::severity;
-use crate::page::opener;
-use crate::tally::gravity;
+use crate::section::Section;
+use crate::tally::{gravity, severity};
 
 /// Number of groups that the page itself lists; the button that opens all rows shows the others.
 const LISTED: usize = 600;
-/// Number of models, and of quantities, that a group names.
+/// Number of robots, and of quantities, that a group names.
 const NAMED: usize = 6;
 
 /// Rows that did not pass for one reason.
 struct Group<'a> {
     rows: usize,
     quantities: Vec<String>,
-    models: Vec<String>,
+    robots: Vec<String>,
     worst: &'a Row,
 }
 
 /// Writes the section.
-pub fn section(records: &[Row]) -> Markup {
-    let groups = groups(records);
+pub fn section(rows: &[Row]) -> Section {
+    Section::new("unpassed", "Not passed", body(rows))
+}
+
+fn body(rows: &[Row]) -> Markup {
+    let groups = groups(rows);
     let total: usize = groups.iter().map(|group| group.rows).sum();
     html! {
         section #unpassed {
@@ -45,7 +49,7 @@ pub fn section(records: &[Row]) -> Markup {
                         thead {
                             tr {
                                 th scope="col" { "verdict" } th.number scope="col" { "rows" } th scope="col" { "engine" } th scope="col" { "quantity" }
-                                th scope="col" { "models" } th.number scope="col" { "worst margin" } th scope="col" { "reason" }
+                                th scope="col" { "robots" } th.number scope="col" { "worst margin" } th scope="col" { "reason" }
                             }
                         }
                         tbody { @for group in groups.iter().take(LISTED) { (row(group)) } }
@@ -70,7 +74,7 @@ fn row(group: &Group) -> Markup {
             td.number { (opener(UNPASSED, &filters, &group.rows.to_string())) }
             td { (worst.engine) }
             td { (some(&group.quantities)) }
-            td { (some(&group.models)) }
+            td { (some(&group.robots)) }
             td.number { @if let Some(margin) = worst.margin { (decades(margin)) } }
             td.reason { (worst.reason) }
         }
@@ -87,9 +91,9 @@ fn some(names: &[String]) -> Markup {
 
 /// Failures of one engine, quantity and metric are one group: only the numbers in their reasons differ, and the worst is shown.
 /// Deviations are grouped by the cause before the parenthesis, rows without a value by their reason.
-fn groups(records: &[Row]) -> Vec<Group<'_>> {
+fn groups(rows: &[Row]) -> Vec<Group<'_>> {
     let mut groups: BTreeMap<_, Group> = BTreeMap::new();
-    for row in records.iter().filter(|row| is_unpassed(row)) {
+    for row in rows.iter().filter(|row| is_unpassed(row)) {
         let reason = match row.verdict {
             Verdict::Fail if row.value.is_some() => "",
             Verdict::Deviation => row.reason.split_once(" (").map_or(row.reason.as_str(), |(cause, _)| cause),
@@ -99,7 +103,7 @@ fn groups(records: &[Row]) -> Vec<Group<'_>> {
         let group = groups.entry((gravity(row.verdict), &row.study, &row.engine, measured, reason)).or_insert_with(|| Group {
             rows: 0,
             quantities: Vec::new(),
-            models: Vec::new(),
+            robots: Vec::new(),
             worst: row,
         });
         group.rows += 1;
@@ -107,8 +111,8 @@ fn groups(records: &[Row]) -> Vec<Group<'_>> {
         if !group.quantities.contains(&quantity) {
             group.quantities.push(quantity);
         }
-        if !row.robot.is_empty() && !group.models.contains(&row.robot) {
-            group.models.push(row.robot.clone());
+        if !row.robot.is_empty() && !group.robots.contains(&row.robot) {
+            group.robots.push(row.robot.clone());
         }
         if severity(row) < severity(group.worst) {
             group.worst = row;

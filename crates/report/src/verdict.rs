@@ -3,18 +3,27 @@
 use featherbench_results::{Row, RunInfo, Verdict};
 use maud::{Markup, html};
 
+use crate::blocks::opener;
+use crate::chunks::UNPASSED;
 use crate::findings::{Findings, Status};
-use crate::numbers::{count, decades, grouped, short};
+use crate::labels;
+use crate::numbers::{count, decades, grouped};
 use crate::overview::Overview;
-use crate::page::opener;
+use crate::section::Section;
 use crate::tally::{BY_GRAVITY, Tally};
-use crate::{chunks, labels};
 
-/// Number of disagreements in the head of the page; the others are in the list of rows that did not pass.
+/// Number of failures in the head of the page; the others are in the list of rows that did not pass.
 const TOLD: usize = 8;
 
-/// Writes the section; `truth` has the engines' results against the truth.
-pub fn section(run: &RunInfo, overview: &Overview, records: &[Row], findings: &Findings, truth: Markup) -> Markup {
+/// Writes the section, with what the sections of studies add to it.
+pub fn section(run: &RunInfo, overview: &Overview, rows: &[Row], sections: &[Section]) -> Section {
+    Section::new("verdict", "Verdict", body(run, overview, rows, sections))
+}
+
+fn body(run: &RunInfo, overview: &Overview, rows: &[Row], sections: &[Section]) -> Markup {
+    let findings = &Findings::of(run, rows, sections);
+    let mut added: Vec<_> = sections.iter().filter_map(|section| section.finding.as_ref()).collect();
+    added.sort_by_key(|finding| finding.rank);
     let (class, word) = match findings.status {
         Status::Passed => ("good", "Passed"),
         Status::Failed => ("bad", "Failed"),
@@ -27,14 +36,13 @@ pub fn section(run: &RunInfo, overview: &Overview, records: &[Row], findings: &F
             (tiles(findings))
             div.columns {
                 div {
-                    (truth)
-                    (agreement(findings))
-                    (disagreement(overview, findings))
+                    @for finding in added { (finding.body) }
+                    (failures(overview, findings))
                     (closest(overview, findings))
                 }
                 div {
-                    (by_engine(overview, records))
-                    @if overview.studies.len() > 1 { (by_study(overview, records)) }
+                    (by_engine(overview, rows))
+                    @if overview.studies.len() > 1 { (by_study(overview, rows)) }
                 }
             }
             (expectations(run))
@@ -51,7 +59,7 @@ fn tiles(findings: &Findings) -> Markup {
                 li class={ "tile " (verdict) @if number == 0 { " none" } } {
                     @let figure = html! { b { (grouped(number)) } span { i aria-hidden="true" { (labels::glyph(verdict)) } " " (labels::verdict(verdict)) } };
                     @if number > 0 && !matches!(verdict, Verdict::Pass | Verdict::Info) {
-                        button type="button" data-chunk=(chunks::UNPASSED) data-filter={ "{\"verdict\":\"" (verdict) "\"}" } { (figure) }
+                        button type="button" data-chunk=(UNPASSED) data-filter={ "{\"verdict\":\"" (verdict) "\"}" } { (figure) }
                     } @else {
                         div { (figure) }
                     }
@@ -61,39 +69,12 @@ fn tiles(findings: &Findings) -> Markup {
     }
 }
 
-fn agreement(findings: &Findings) -> Markup {
+fn failures(overview: &Overview, findings: &Findings) -> Markup {
     html! {
-        @if !findings.agreements.is_empty() {
-            h3 { "Who agrees" }
-            ul.findings {
-                @for found in &findings.agreements {
-                    li.pass {
-                        b { (found.who()) } " "
-                        @for (index, (quantity, largest)) in found.quantities.iter().enumerate() {
-                            @if index > 0 { ", " }
-                            span.nowrap { (labels::quantity(quantity)) " " span.number { "(" (short(*largest)) ")" } }
-                        }
-                        " " (found.extent()) "."
-                    }
-                }
-            }
-            p.note { "In parentheses the largest error, in each quantity's own measure." }
-        }
-        @if findings.references.contains("featherbench") {
-            p.note {
-                "The reference here is our own f64 code, and not the truth: agreement shows that independent programs compute the same, "
-                "disagreement does not show who is wrong. See " a href="#pairs" { "every engine against every other" } "."
-            }
-        }
-    }
-}
-
-fn disagreement(overview: &Overview, findings: &Findings) -> Markup {
-    html! {
-        @if !findings.disagreements.is_empty() {
+        @if !findings.failures.is_empty() {
             h3 { "Who does not" }
             ul.findings {
-                @for found in findings.disagreements.iter().take(TOLD) {
+                @for found in findings.failures.iter().take(TOLD) {
                     li.fail {
                         b { (found.engine) } ", " (found.sentence()) ". Worst: "
                         (opener(
@@ -105,8 +86,8 @@ fn disagreement(overview: &Overview, findings: &Findings) -> Markup {
                     }
                 }
             }
-            @if findings.disagreements.len() > TOLD {
-                p.note { (count(findings.disagreements.len() - TOLD, "more disagreement")) " in " a href="#unpassed" { "the list of what did not pass" } "." }
+            @if findings.failures.len() > TOLD {
+                p.note { (count(findings.failures.len() - TOLD, "more disagreement")) " in " a href="#unpassed" { "the list of what did not pass" } "." }
             }
         }
     }
@@ -141,18 +122,18 @@ fn tally_heads() -> Markup {
     }
 }
 
-fn by_engine(overview: &Overview, records: &[Row]) -> Markup {
+fn by_engine(overview: &Overview, rows: &[Row]) -> Markup {
     html! {
         h3 { "By engine" }
         div.scroll { table.compact {
             thead { tr { th scope="col" { "engine" } (tally_heads()) th.number scope="col" { "worst margin" } } }
             tbody {
                 @for &engine in &overview.engines {
-                    @let rows = || records.iter().filter(|row| row.engine == engine);
-                    @let worst = rows().filter_map(|row| row.margin).min_by(f64::total_cmp);
+                    @let own = || rows.iter().filter(|row| row.engine == engine);
+                    @let worst = own().filter_map(|row| row.margin).min_by(f64::total_cmp);
                     tr {
                         th scope="row" { (engine) }
-                        (tally_cells(&Tally::of(rows().map(|row| row.verdict))))
+                        (tally_cells(&Tally::of(own().map(|row| row.verdict))))
                         td.number { @if let Some(margin) = worst { (decades(margin)) } }
                     }
                 }
@@ -162,14 +143,14 @@ fn by_engine(overview: &Overview, records: &[Row]) -> Markup {
     }
 }
 
-fn by_study(overview: &Overview, records: &[Row]) -> Markup {
+fn by_study(overview: &Overview, rows: &[Row]) -> Markup {
     html! {
         h3 { "By study" }
         div.scroll { table.compact {
             thead { tr { th scope="col" { "study" } (tally_heads()) th.number scope="col" { "rows" } } }
             tbody {
                 @for &study in &overview.studies {
-                    @let tally = Tally::of(records.iter().filter(|row| row.study == study).map(|row| row.verdict));
+                    @let tally = Tally::of(rows.iter().filter(|row| row.study == study).map(|row| row.verdict));
                     tr { th scope="row" { (study) } (tally_cells(&tally)) td.number { (grouped(tally.total())) } }
                 }
             }

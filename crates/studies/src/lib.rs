@@ -17,6 +17,7 @@ pub mod import;
 mod operations;
 mod repeatability;
 mod reproductions;
+mod sections;
 mod steps;
 mod timing;
 
@@ -27,6 +28,7 @@ pub use import::Import;
 pub use operations::OperationCounts;
 pub use repeatability::Repeatability;
 pub use reproductions::{Reproduce, Reproductions};
+pub use sections::sections;
 pub use steps::Steps;
 pub use timing::{Kernels, Settings as TimingSettings, Timing};
 

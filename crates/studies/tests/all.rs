@@ -11,6 +11,7 @@ mod planted_readings;
 mod registry;
 mod repeatability;
 mod reproductions;
+mod sections;
 mod steps;
 mod support;
 mod timing;

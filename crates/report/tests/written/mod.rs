@@ -2,6 +2,7 @@
 
 use std::fs;
 
+use featherbench_report::Section;
 use featherbench_results::{Row, RunInfo};
 use tempfile::TempDir;
 
@@ -15,9 +16,9 @@ pub struct Written {
 
 impl Written {
     /// Writes a report.
-    pub fn of(run: &RunInfo, records: &[Row]) -> Self {
+    pub fn of(run: &RunInfo, rows: &[Row], sections: &[Section]) -> Self {
         let folder = tempfile::tempdir().unwrap();
-        let paths = featherbench_report::write(run, records, folder.path()).unwrap();
+        let paths = featherbench_report::write(run, rows, sections, folder.path()).unwrap();
         assert_eq!(paths.index, folder.path().join("index.html"));
         assert!(paths.files.iter().all(|path| path.is_file()));
         let index = fs::read_to_string(paths.index).unwrap();

@@ -9,6 +9,8 @@
 //! When the best answers of several engines all have the same error, the accuracy of the reference may be the limit. A row per robot gives
 //! the number of engines that are limited by the reference (`limited_by_the_reference`).
 
+pub(crate) mod section;
+
 use crate::{Setup, row};
 use featherbench_bench::measure::{ForwardScale, scaled_error};
 use featherbench_bench::truth::{Truth, TruthModel, conditioning_bound};

@@ -4,6 +4,7 @@
 //! `reference` compare engines with each other. So a reader can see which engine differs from all others.
 
 mod over_best;
+pub(crate) mod section;
 
 use crate::{Setup, row};
 use featherbench_bench::measure::{ForwardScale, Magnitudes, scaled_error, worst};

@@ -4,6 +4,8 @@
 //! `log₂(κ(n)/κ(n/2))`, against the robot of the same family with half the dofs, if the suite has it. For the straight chain κ grows as n⁴
 //! (Featherstone 2004). The conditioning bound of forward dynamics is beside it, and does not grow.
 
+pub(crate) mod section;
+
 use crate::{Setup, row};
 use featherbench_bench::truth::conditioning_bound;
 use featherbench_bench::{Cell, Context, Finished, HarnessError, NoAnswer, NoSettings, Outcome, Quantity, Robot, Study};

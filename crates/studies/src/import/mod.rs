@@ -19,6 +19,7 @@ mod fields;
 mod pairs;
 mod replay;
 mod rows;
+pub(crate) mod section;
 mod subtree;
 
 pub use comparison::{Comparison, Finding};

@@ -4,6 +4,8 @@
 //! each: the smallest value over the seeds must not be below the range, and the largest must not be above it, each by more than [`SLACK`].
 //! So a deviation that its engine has corrected fails the gate, and so does one that has grown. Then the list must be corrected.
 
+pub(crate) mod section;
+
 use crate::Setup;
 use featherbench_bench::{Cell, Context, Finished, HarnessError, NoAnswer, NoSettings, Outcome, Reproduction, Robot, SEEDS, SLACK, Study};
 use featherbench_results::{Relation, Row, Verdict};

@@ -13,6 +13,8 @@
 //! *explicit*, and begins with the true acceleration: its error is rounding. A shorter, *implicit* step has an error of first order. A row
 //! names the regime of its step, and an order is fitted over implicit steps alone.
 
+pub(crate) mod section;
+
 use crate::{Setup, row};
 use featherbench_bench::measure::{ForwardScale, scaled_error, worst};
 use featherbench_bench::{Cell, Context, Finished, HarnessError, NoAnswer, NoSettings, Outcome, Quantity, Robot, Stepper, Study};

@@ -20,6 +20,7 @@ mod overhead;
 mod protocol;
 mod rows;
 mod samples;
+pub(crate) mod section;
 mod statistics;
 
 use crate::Setup;

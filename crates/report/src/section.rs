@@ -1,0 +1,74 @@
+//! A section of the page: what a study hands to the report.
+
+use maud::Markup;
+use serde::Serialize;
+
+/// A section of the page, with everything that it adds to other places.
+///
+/// ```
+/// use featherbench_report::Section;
+///
+/// let body = maud::html! { section #mine { h2 { "My question" } } };
+/// let section = Section { lines: vec!["mine: answered".into()], ..Section::new("mine", "Mine", body) };
+/// assert!(!section.appendix && section.script.is_empty());
+/// ```
+#[derive(Debug)]
+pub struct Section {
+    /// The `id` of its element, by which the navigation finds it.
+    pub anchor: &'static str,
+    /// Its entry in the navigation.
+    pub name: &'static str,
+    /// Its element `section`, with the anchor as `id`.
+    pub body: Markup,
+    /// Its data, which its script finds as `featherbench.chunks.get("figures")[anchor]`; see [`Section::with_data`].
+    pub data: Option<Result<String, serde_json::Error>>,
+    /// Its script. It runs after the report's own ones, which offer tables, plots and drill-down.
+    pub script: &'static str,
+    /// Its style, if it needs more than the report's own.
+    pub style: &'static str,
+    /// What it adds to the verdict.
+    pub finding: Option<Finding>,
+    /// Quantities of whose errors it tells: the section on the method defines their measures.
+    pub quantities: Vec<String>,
+    /// Terms and their definitions, for the section on the method.
+    pub terms: &'static [(&'static str, &'static str)],
+    /// What it adds to the lines at the end of a run.
+    pub lines: Vec<String>,
+    /// Whether it stands with the facts about the run, behind the conventions, and not with the results.
+    pub appendix: bool,
+}
+
+/// What a section adds to the verdict.
+#[derive(Debug)]
+pub struct Finding {
+    /// Its place: a smaller rank stands first, equal ranks stand in the order of the sections.
+    pub rank: u8,
+    /// The text, with its heading.
+    pub body: Markup,
+    /// Studies about whose failures the text tells: the verdict does not list these failures again.
+    pub told: &'static [&'static str],
+}
+
+impl Section {
+    /// A section that adds nothing elsewhere.
+    pub fn new(anchor: &'static str, name: &'static str, body: Markup) -> Self {
+        Self {
+            anchor,
+            name,
+            body,
+            data: None,
+            script: "",
+            style: "",
+            finding: None,
+            quantities: Vec::new(),
+            terms: &[],
+            lines: Vec::new(),
+            appendix: false,
+        }
+    }
+
+    /// The section with data for its script. If the data cannot be written as JSON, writing the report fails with that error.
+    pub fn with_data(self, data: &impl Serialize) -> Self {
+        Self { data: Some(serde_json::to_string(data)), ..self }
+    }
+}

@@ -1,0 +1,147 @@
+//! The frame of the page: it takes sections from others, and tells by itself whether a run passed.
+
+use std::fs;
+use std::path::Path;
+
+use featherbench_report::{Finding, Section};
+use featherbench_results::{Convention, Relation, Row, RunInfo};
+use maud::html;
+
+use crate::written::Written;
+
+/// A section with an anchor and a text.
+fn section(anchor: &'static str) -> Section {
+    Section::new(anchor, anchor, html! { section #(anchor) { h2 { "What is " (anchor) "?" } } })
+}
+
+/// A row of a study whose error is twice its bound.
+fn failing(study: &str) -> Row {
+    Row { study: study.into(), engine: "drake".into(), robot: "arm".into(), quantity: "id".into(), ..Row::default() }.gated(
+        2.0,
+        Relation::Le,
+        1.0,
+    )
+}
+
+#[test]
+fn sections_stand_in_the_order_in_which_they_are_given() {
+    let late = Section { appendix: true, ..section("late") };
+    let written = Written::of(&RunInfo::default(), &[], &[section("zebra"), late, section("aardvark")]);
+    let order = ["verdict", "zebra", "aardvark", "conventions", "late", "provenance", "method", "unpassed"];
+    for form in ["<section id=\"NAME\"", "href=\"#NAME\">"] {
+        let places: Vec<usize> = order.iter().map(|name| written.index.rfind(&form.replace("NAME", name)).unwrap()).collect();
+        assert!(places.is_sorted(), "{form}: {places:?}");
+    }
+    assert_eq!(written.index.matches("<section").count(), order.len());
+}
+
+#[test]
+fn a_section_brings_its_data_script_and_style() {
+    let one =
+        Section { script: "// script one\n", style: ".one { color: red; }\n", ..section("one").with_data(&[Some("</script>"), None]) };
+    let written = Written::of(&RunInfo::default(), &[], &[one, section("two")]);
+    assert_eq!(written.data("figures"), serde_json::json!({"one": ["</script>", null]}));
+    assert!(!written.text("data/figures.js").contains("</script>"));
+    assert!(written.text("app.js").ends_with("// script one\n") && written.text("app.js").contains("featherbench.chart = "));
+    assert!(written.text("style.css").ends_with(".one { color: red; }\n") && written.text("style.css").contains(".tiles"));
+}
+
+#[test]
+fn data_that_are_no_json_are_an_error_with_the_name_of_the_section() {
+    let damaged = section("mine").with_data(&std::collections::BTreeMap::from([((1, 2), 3)]));
+    let error = featherbench_report::write(&RunInfo::default(), &[], &[damaged], tempfile::tempdir().unwrap().path()).unwrap_err();
+    assert!(error.to_string().contains("mine: "), "{error}");
+}
+
+#[test]
+fn the_method_explains_the_terms_and_measures_of_sections() {
+    let one = Section { terms: &[("Widget", "a thing")], quantities: vec!["com".into()], ..section("one") };
+    let page = |sections: &[Section]| Written::of(&RunInfo::default(), &[], sections).section("method").to_owned();
+    let (with, without) = (page(&[one]), page(&[]));
+    for words in ["<dt>Widget</dt><dd>a thing</dd>", "<dt>centre of mass</dt>"] {
+        assert!(with.contains(words) && !without.contains(words), "{words}: {with}");
+    }
+}
+
+#[test]
+fn findings_stand_by_rank_and_failures_are_told_once() {
+    let finding = |rank, words: &'static str, told| Some(Finding { rank, body: html! { p { (words) } }, told });
+    let rows = [failing("one"), failing("two")];
+    let verdict = |told: &'static [&'static str]| {
+        let sections = [
+            Section { finding: finding(2, "the last", &[]), ..section("a") },
+            Section { finding: finding(1, "the first", told), ..section("b") },
+        ];
+        Written::of(&RunInfo::default(), &rows, &sections).section("verdict").to_owned()
+    };
+    let all = verdict(&[]);
+    assert!(all.find("the first").unwrap() < all.find("the last").unwrap());
+    assert!(all.contains("Who does not") && all.contains("fails 2 of 2 rows"), "{all}");
+    assert!(verdict(&["two"]).contains("fails 1 of 1 row"));
+    assert!(!verdict(&["one", "two"]).contains("Who does not"));
+}
+
+#[test]
+fn a_robot_has_the_family_of_most_of_its_rows() {
+    let row = |robot: &str, family: &str| Row { robot: robot.into(), family: family.into(), nv: Some(3), ..Row::default() };
+    let rows = [row("a", "few"), row("b", "one"), row("a", "many"), row("b", "other"), row("a", "many")];
+    let run = RunInfo::default();
+    let overview = featherbench_report::Overview::of(&run, &rows);
+    let found: Vec<_> = overview.robots.iter().map(|robot| (robot.name, robot.family, robot.nv)).collect();
+    assert_eq!(found, [("a", "many", Some(3)), ("b", "one", Some(3))]);
+    assert_eq!((overview.robot("b"), overview.robot("c")), (Some(1), None));
+}
+
+#[test]
+fn a_row_lies_in_the_chunk_of_its_robot_or_of_its_study() {
+    let rows = [failing("one"), Row { robot: String::new(), ..failing("two") }];
+    let written = Written::of(&RunInfo::default(), &rows, &[]);
+    let mut names = written.chunk_names();
+    names.sort();
+    assert_eq!(names, ["figures", "overview", "robot-0", "study-1", "unpassed"]);
+    let count = |name: &str| written.data(name)["rows"].as_array().unwrap().len();
+    assert_eq!(["robot-0", "study-1", "unpassed"].map(count), [1, 1, 2]);
+}
+
+#[test]
+fn an_empty_run_says_so() {
+    let written = Written::of(&RunInfo::default(), &[], &[]);
+    assert!(written.section("verdict").contains("Nothing was judged"));
+    assert!(written.section("unpassed").contains("Every judged row passed"));
+    assert_eq!(written.data("figures"), serde_json::json!({}));
+}
+
+#[test]
+fn a_folder_that_cannot_be_written_is_named() {
+    let folder = tempfile::tempdir().unwrap();
+    let blocked = folder.path().join("blocked");
+    fs::write(&blocked, "").unwrap();
+    let error = featherbench_report::write(&RunInfo::default(), &[], &[], &blocked).unwrap_err().to_string();
+    assert!(error.contains(Path::new("blocked").to_str().unwrap()), "{error}");
+}
+
+#[test]
+fn conventions_are_listed_by_engine_with_their_tests() {
+    let convention = |engine: &str, topic: &str| Convention {
+        engine: engine.into(),
+        topic: topic.into(),
+        theirs: format!("{topic} as {engine} has it"),
+        ours: "as we have it".into(),
+        conversion: "`file.py: function`, twice".into(),
+        test: format!("test_{engine}"),
+    };
+    let conventions = [("mujoco", "free v"), ("drake", "screw <pitch>")].map(|(engine, topic)| convention(engine, topic)).into();
+    let run = RunInfo { conventions, ..RunInfo::default() };
+    let written = Written::of(&run, &[], &[]);
+    let section = written.section("conventions");
+    for row in &run.conventions {
+        for text in [&row.engine, &row.ours, &row.test] {
+            assert!(section.contains(text.as_str()), "{text} is not in the section");
+        }
+    }
+    assert!(section.contains("<code>file.py: function</code>, twice"), "backticks mark code");
+    assert!(section.contains("screw &lt;pitch&gt;") && !section.contains("screw <pitch>"), "text cannot become markup");
+    assert_eq!(section.matches("<h3>").count(), 2, "one table for each engine");
+    let nothing = Written::of(&RunInfo::default(), &[], &[]);
+    assert!(nothing.section("conventions").contains("names no conventions"));
+}

@@ -1,0 +1,247 @@
+//! The report's structure: the page has what it must have, nothing in it can become markup or use the network, and its data can be parsed.
+
+use std::collections::BTreeMap;
+use std::fs;
+
+use featherbench_results::{Relation, Row, RunInfo, Verdict};
+
+use super::written::Written;
+use super::{made_up, report};
+
+fn demo() -> (RunInfo, Vec<Row>, Written) {
+    let run = made_up::run_info();
+    let records = made_up::rows(&run);
+    let written = report(&run, &records);
+    (run, records, written)
+}
+
+#[test]
+fn the_page_has_its_sections_and_stays_small() {
+    let (_, records, written) = demo();
+    assert!(records.len() > 10_000);
+    let order = [
+        "verdict",
+        "agreement",
+        "accuracy",
+        "depth",
+        "time",
+        "speed",
+        "tradeoff",
+        "conditioning",
+        "pairs",
+        "conventions",
+        "provenance",
+        "method",
+        "unpassed",
+    ];
+    let places: Vec<usize> = order.iter().map(|id| written.index.find(&format!("<section id=\"{id}\"")).unwrap()).collect();
+    assert!(places.is_sorted(), "{places:?}");
+    for id in order {
+        assert!(written.index.contains(&format!("href=\"#{id}\"")), "the navigation lacks {id}");
+    }
+    assert!(written.index.len() < 1_000_000, "{} bytes", written.index.len());
+    assert!(written.index.starts_with("<!DOCTYPE html><html lang=\"en\">"));
+    for link in ["rows.csv", "run.json", "schema.json"] {
+        assert!(written.index.contains(&format!("href=\"{link}\"")), "{link} is not linked");
+    }
+}
+
+#[test]
+fn counts_on_the_page_are_those_of_the_records() {
+    let (run, records, written) = demo();
+    let count = |verdict| records.iter().filter(|row| row.verdict == verdict).count();
+    let grouped = |number: usize| match number {
+        0..1000 => number.to_string(),
+        _ => format!("{}\u{202f}{:03}", number / 1000, number % 1000),
+    };
+    let verdict = written.section("verdict");
+    for &word in Verdict::ALL {
+        let tile = verdict.split(&format!("class=\"tile {word}")).nth(1).unwrap_or_else(|| panic!("no tile for {word}"));
+        assert!(tile[..200].contains(&format!("<b>{}</b>", grouped(count(word)))), "{word}: {}", &tile[..200]);
+    }
+    assert!(verdict.contains("class=\"verdict bad\""));
+    for condition in &run.expected {
+        assert!(verdict.contains(&condition.what));
+    }
+    let cells = records.iter().filter(|row| row.study == "agreement" && row.metric != "pairwise");
+    let cells: std::collections::BTreeSet<_> = cells.map(|row| (&row.robot, &row.engine, &row.quantity)).collect();
+    assert_eq!(written.data("figures")["agreement"]["cells"].as_array().unwrap().len(), cells.len());
+    assert_eq!(
+        written.section("agreement").matches("<td").count()
+            - written.section("agreement").matches("<td></td>").count()
+            - written.section("agreement").matches("<td class=\"first\"></td>").count(),
+        cells.len()
+    );
+}
+
+#[test]
+fn every_row_lies_in_one_chunk_and_chunks_parse() {
+    let (_, records, written) = demo();
+    let mut by_chunk = BTreeMap::new();
+    for name in written.chunk_names().into_iter().filter(|name| name != "overview" && name != "figures") {
+        let data = written.data(&name);
+        let columns: Vec<&str> = data["columns"].as_array().unwrap().iter().map(|column| column.as_str().unwrap()).collect();
+        assert_eq!(columns, featherbench_results::COLUMNS.map(|column| column.name));
+        let rows: Vec<Row> = data["rows"]
+            .as_array()
+            .unwrap()
+            .iter()
+            .map(|row| {
+                let fields: serde_json::Map<_, _> =
+                    columns.iter().map(|&name| name.to_owned()).zip(row.as_array().unwrap().clone()).collect();
+                serde_json::from_value(fields.into()).unwrap()
+            })
+            .collect();
+        by_chunk.insert(name, rows);
+    }
+    let unpassed = by_chunk.remove("unpassed").unwrap();
+    let expected: Vec<&Row> = records.iter().filter(|row| !matches!(row.verdict, Verdict::Pass | Verdict::Info)).collect();
+    assert_eq!(unpassed.iter().collect::<Vec<_>>(), expected);
+    assert_eq!(by_chunk.values().map(Vec::len).sum::<usize>(), records.len());
+    for (name, rows) in by_chunk.iter().filter(|(name, _)| name.starts_with("robot-")) {
+        assert!(rows.iter().all(|row| row.robot == rows[0].robot), "{name} mixes models");
+    }
+    let figures = written.data("figures");
+    assert!(figures["depth"].as_array().unwrap().iter().any(|plot| plot["quantity"] == "fd" && plot["metric"] == "backward"));
+    assert!(figures["time"].as_array().unwrap().iter().all(|line| line["points"][0]["p90"].is_f64()));
+}
+
+#[test]
+fn names_stay_text() {
+    let (_, _, written) = demo();
+    assert!(written.index.contains("robot &quot;&lt;/script&gt;&lt;script&gt;"));
+    assert!(!written.index.contains("<script>alert"));
+    // The page's own scripts are the only ones, and none is inline.
+    assert_eq!(written.index.matches("<script").count(), 3);
+    assert_eq!(written.index.matches("</script>").count(), 3);
+    for name in written.chunk_names() {
+        let text = written.text(&format!("data/{name}.js"));
+        assert!(!text.contains(['<', '>', '\u{2028}', '\u{2029}']), "{name}");
+        assert_eq!(text.matches('\n').count(), 1, "{name}");
+    }
+    let models = written.data("overview")["robots"].clone();
+    assert!(models.as_array().unwrap().iter().any(|model| model["name"] == made_up::HOSTILE));
+}
+
+#[test]
+fn every_text_of_a_run_is_escaped() {
+    let evil = "</script><img src=x onerror=alert(1)>\u{2028}\"'&";
+    let mut run = made_up::run_info();
+    run.suite = evil.into();
+    run.command = evil.into();
+    run.host.cpu = evil.into();
+    run.expected[0].what = evil.into();
+    run.engines[1].reason = evil.into();
+    run.engines[1].build.insert(evil.into(), evil.into());
+    run.models[0].licence = evil.into();
+    let row = || Row {
+        robot: "m".into(),
+        study: evil.into(),
+        engine: evil.into(),
+        quantity: evil.into(),
+        metric: evil.into(),
+        family: evil.into(),
+        ..Row::default()
+    };
+    let rows = [
+        row().without_value(Verdict::Error, evil),
+        Row { study: "agreement".into(), reference: evil.into(), ..row() }.gated(2.0, Relation::Le, 1.0),
+        Row { study: "timing".into(), metric: "ns_per_call".into(), states: evil.into(), nv: Some(3), ..row() }.informed(3.0),
+    ];
+    let written = report(&run, &rows);
+    assert!(!written.index.contains("<img"));
+    assert!(written.index.contains("&lt;img"));
+    for name in written.chunk_names() {
+        assert!(!written.text(&format!("data/{name}.js")).contains('<'));
+        written.data(&name);
+    }
+}
+
+#[test]
+fn nothing_reaches_the_network() {
+    let (_, _, written) = demo();
+    for name in ["index.html", "style.css", "app.js"] {
+        let text = written.text(name);
+        for word in ["http://", "https://", "//cdn", "fetch(", "XMLHttpRequest", "@import", "WebSocket", "sendBeacon"] {
+            assert!(!text.contains(word), "{name} contains {word}");
+        }
+    }
+    // One script draws everything. No other script is beside the data, and it is short.
+    let entries = fs::read_dir(written.folder.path()).unwrap().map(|entry| entry.unwrap().file_name().into_string().unwrap());
+    assert_eq!(entries.filter(|name| name.ends_with(".js")).collect::<Vec<_>>(), ["app.js"]);
+    let script = written.text("app.js");
+    assert!(script.contains("featherbench.chart = ") && script.len() < 150_000, "{} bytes", script.len());
+}
+
+#[test]
+fn a_report_is_a_pure_function() {
+    let run = made_up::run_info();
+    let records: Vec<Row> = made_up::rows(&run).into_iter().step_by(7).collect();
+    let (one, other) = (report(&run, &records), report(&run, &records));
+    let names = one.chunk_names().into_iter().map(|name| format!("data/{name}.js")).chain(["index.html".into()]);
+    for name in names {
+        assert_eq!(one.text(&name), other.text(&name), "{name}");
+    }
+}
+
+#[test]
+fn an_empty_run_says_so() {
+    let written = report(&RunInfo::default(), &[]);
+    assert!(written.section("verdict").contains("Nothing was judged"));
+    for (id, words) in [
+        ("agreement", "no rows of agreement"),
+        ("depth", "no errors"),
+        ("time", "no times"),
+        ("pairs", "no rows that compare"),
+        ("unpassed", "Every judged row passed"),
+    ] {
+        assert!(written.section(id).contains(words), "{id}");
+    }
+}
+
+#[test]
+fn sentences_tell_who_agrees_and_who_does_not() {
+    let row = |engine: &str, model: &str, quantity: &str, value| {
+        Row {
+            study: "agreement".into(),
+            engine: engine.into(),
+            robot: model.into(),
+            quantity: quantity.into(),
+            metric: "scaled".into(),
+            reference: "featherbench".into(),
+            ..Row::default()
+        }
+        .gated(value, Relation::Le, 1e-14)
+    };
+    let rows = [
+        row("drake", "a", "mass_matrix", 1e-15),
+        row("mujoco", "a", "mass_matrix", 2e-15),
+        row("drake", "b", "mass_matrix", 0.0),
+        row("mujoco", "b", "mass_matrix", 0.0),
+        row("drake", "a", "id", 1e-16),
+        row("mujoco", "a", "id", 1e-11),
+    ];
+    let engines = RunInfo { engines: made_up::run_info().engines, ..RunInfo::default() };
+    let written = report(&engines, &rows);
+    let verdict = written.section("verdict");
+    assert!(verdict.contains("1 row of 6 outside their gates"), "{verdict}");
+    assert!(
+        verdict.contains("mujoco and drake agree with featherbench on") && verdict.contains("(2e-15)") && verdict.contains("over 2 robots")
+    );
+    assert!(verdict.contains("drake agrees with featherbench on") && verdict.contains("over 1 robot."));
+    assert!(verdict.contains("inverse dynamics: fails 1 of 1 row against featherbench") && verdict.contains("(−3.0 decades)"));
+    assert!(written.section("pairs").contains("1e-11"));
+    assert!(written.section("unpassed").contains("1e-11 is not at most 1e-14"));
+
+    let good = report(&RunInfo::default(), &rows[..5]);
+    assert!(good.section("verdict").contains("All 5 judged rows are inside their gates"));
+    let expected = featherbench_results::Expectation {
+        what: "id".into(),
+        expected: 2,
+        found: 1,
+        verdict: Verdict::Fail,
+        reason: "one is missing".into(),
+    };
+    let short = report(&RunInfo { expected: vec![expected], ..RunInfo::default() }, &rows[..5]);
+    assert!(short.section("verdict").contains("verdict bad") && short.section("verdict").contains("1 expectation not met"));
+}

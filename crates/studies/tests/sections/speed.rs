@@ -1,0 +1,136 @@
+//! The section on speed: intervals, means, estimates, and the machine's limit.
+
+use featherbench_results::{Row, RunInfo};
+
+use super::report;
+
+#[test]
+fn estimates_are_marked() {
+    let row = |engine: &str, metric: &str, value: f64, estimated: bool, valid: bool| {
+        let row = Row {
+            study: "timing".into(),
+            engine: engine.into(),
+            robot: "arm".into(),
+            method: "rnea".into(),
+            quantity: "id".into(),
+            cache: "stream".into(),
+            metric: metric.into(),
+            nv: Some(7),
+            estimated,
+            ..Row::default()
+        }
+        .informed(value);
+        if valid { row } else { row.invalid("noise") }
+    };
+    let rows = [
+        row("drake", "ratio", 3.25, true, true),
+        row("drake", "ns_per_call", 6500.0, true, true),
+        row("dart", "ratio", 4.25, true, false),
+        row("pinocchio", "ratio", 1.25, false, true),
+        row("pinocchio", "ns_per_call", 2500.0, false, false),
+    ];
+    let written = report(&RunInfo::default(), &rows);
+    let section = written.section("speed");
+    // In the table of robots and in that of means; an invalid one is not in the mean.
+    for (ratio, times) in [("≈\u{202f}3.250", 6), ("≈\u{202f}4.250", 3), ("≈\u{202f}1.250", 0), ("1.250", 6)] {
+        assert_eq!(section.matches(ratio).count(), times, "{ratio}: {section}");
+    }
+    let note = section.split("id=\"speed-estimates\"").nth(1).unwrap();
+    assert!(note[..200].contains("dart and drake are called through Python") && !note[..200].contains("pinocchio"), "{note}");
+    let flags = |values: &serde_json::Value| -> Vec<bool> {
+        values.as_array().unwrap().iter().map(|value| value["estimated"].as_bool().unwrap()).collect()
+    };
+    let figures = written.data("figures");
+    assert_eq!(flags(&figures["speed"]["ratios"]), [true, true, false]);
+    let points: Vec<bool> = figures["time"].as_array().unwrap().iter().flat_map(|line| flags(&line["points"])).collect();
+    assert_eq!(points.iter().filter(|&&estimate| estimate).count(), 1, "{points:?}");
+}
+
+#[test]
+fn ratios_have_intervals_a_mean_and_a_least() {
+    let timing = |engine: &str, model: &str, metric: &str, value: f64, spread: f64| {
+        let row = Row {
+            study: "timing".into(),
+            engine: engine.into(),
+            robot: model.into(),
+            method: "rnea".into(),
+            quantity: "id".into(),
+            cache: "stream".into(),
+            metric: metric.into(),
+            reference: "featherbench rnea".into(),
+            bodies: Some(7),
+            nv: Some(7),
+            ..Row::default()
+        };
+        row.measured(value, (1.0 - spread) * value, (1.0 + spread) * value)
+    };
+    let machine = |metric: &str, value: f64| Row {
+        quantity: "machine".into(),
+        robot: String::new(),
+        ..timing("featherbench", "", metric, value, 0.0)
+    };
+    let mut rows =
+        vec![machine("fma_per_ns", 56.8), machine("fma_per_ns_per_lane", 7.1), timing("featherbench", "a", "ns_per_call", 280.0, 0.0)];
+    for (model, ratio) in [("a", 2.0), ("b", 8.0)] {
+        rows.push(timing("pinocchio", model, "ratio", ratio, 0.1));
+    }
+    rows.push(timing("pinocchio", "c", "ratio", 0.5, 0.1).invalid("noise"));
+    rows.push(timing("featherbench", "a", "control", 1.001, 0.003));
+    let written = report(&RunInfo::default(), &rows);
+    let section = written.section("speed");
+    // √(2·8) over the two valid ones, the smallest on a; the invalid one is listed and not in the mean.
+    assert!(section.contains("4.000") && section.contains("<td class=\"number\">2.000</td><td>a</td>"), "{section}");
+    assert!(section.contains("1.800") && section.contains("2.200") && section.contains("0.500"));
+    assert!(section.contains("1 of 1 such A/A control</b>") && section.contains("noise") && section.contains("(1 row)"));
+    // 142 operations at 7.1 per nanosecond are 20 ns; 280 ns for seven joints are twice as much.
+    assert!(section.contains("<td class=\"number\">40</td><td class=\"number\">20</td><td class=\"number\">2.000</td>"), "{section}");
+    assert!(section.contains("timing.jsonl"));
+    let speed = &written.data("figures")["speed"];
+    assert_eq!(speed["ratios"].as_array().unwrap().len(), 3);
+    assert_eq!((&speed["ratios"][2]["valid"], &speed["ratios"][0]["low"]), (&false.into(), &1.8.into()));
+
+    assert!(!section.contains('≈') && !section.contains("id=\"speed-estimates\""), "nothing is estimated");
+    let none = report(&RunInfo::default(), &rows[2..3]);
+    assert!(!none.index.contains("<section id=\"speed\"") && !none.index.contains("href=\"#speed\""));
+}
+
+/// No kernel is faster than the machine. If a time is below its limit, or the peak is not valid, no limit is shown.
+#[test]
+fn a_limit_that_is_none_is_not_shown() {
+    let row = |quantity: &str, metric: &str, value: f64| {
+        let row = Row {
+            study: "timing".into(),
+            engine: "featherbench".into(),
+            quantity: quantity.into(),
+            metric: metric.into(),
+            ..Row::default()
+        };
+        row.informed(value)
+    };
+    let time = |model: &str, ns: f64| {
+        let row = row("id", "ns_per_call", ns);
+        Row { robot: model.into(), method: "rnea".into(), cache: "stream".into(), bodies: Some(7), nv: Some(7), ..row }
+    };
+    let section = |peak: &str, lane: f64, ns: [f64; 2]| {
+        let machine = |metric, value| Row { valid: peak.is_empty(), reason: peak.into(), ..row("machine", metric, value) };
+        let rows = [machine("fma_per_ns", 8.0 * lane), machine("fma_per_ns_per_lane", lane), time("a", ns[0]), time("b", ns[1])];
+        report(&RunInfo::default(), &rows).section("speed").to_owned()
+    };
+    let (table, none) = ("times the limit", "id=\"speed-no-limits\"");
+    // 142 operations for each of seven joints at 7.1 per nanosecond: 140 ns.
+    let good = section("", 7.1, [280.0, 140.0]);
+    assert!(good.contains(table) && !good.contains(none), "{good}");
+    let fast = section("", 7.1, [280.0, 126.0]);
+    assert!(
+        !fast.contains(table) && fast.contains("1 of 2 times are below their limits (featherbench rnea on b takes 0.90 times its limit)"),
+        "{fast}"
+    );
+    // Measured when the compiler did not use vectors.
+    let slow = section("", 0.325, [280.0, 140.0]);
+    assert!(
+        !slow.contains(table) && slow.contains("2 of 2 times are below their limits (featherbench rnea on b takes 0.05 times its limit)"),
+        "{slow}"
+    );
+    let told = section("vectors make too little", 7.1, [280.0, 140.0]);
+    assert!(!told.contains(table) && told.contains("The peak does not count: vectors make too little."), "{told}");
+}
