@@ -1,8 +1,9 @@
 //! Section: the engines' conventions that differ from ours, and the test of each.
 
-use featherbench_results::{Convention, RunInfo};
+use featherbench_results::{Convention, EngineSource, RunInfo};
 use maud::{Markup, html};
 
+use crate::numbers::listed;
 use crate::section::Section;
 
 /// Writes the section.
@@ -18,6 +19,9 @@ fn body(run: &RunInfo) -> Markup {
             None => engines.push((&row.engine, vec![row])),
         }
     }
+    // Our own engine's conventions are those of everyone.
+    let others = run.engines.iter().filter(|engine| engine.source != EngineSource::Own && engine.status == "ok").map(|engine| &engine.name);
+    let unlisted: Vec<String> = others.filter(|&name| run.conventions.iter().all(|row| row.engine != *name)).cloned().collect();
     html! {
         section #conventions {
             h2 { "Conventions" }
@@ -25,7 +29,12 @@ fn body(run: &RunInfo) -> Markup {
                 "Each engine is asked in its own coordinates, and its answers are brought into ours by the functions named here. "
                 "Behind each row stands a test that asks the engine itself, and fails if the convention were otherwise."
             }
-            @if engines.is_empty() { p.empty { "The run names no conventions." } }
+            @if engines.is_empty() && unlisted.is_empty() { p.empty { "The run names no conventions." } }
+            @if !unlisted.is_empty() {
+                p.note #conventions-unlisted {
+                    b { (listed(&unlisted)) } ": no row here. How such an engine's answers are converted is tested by the answers alone, not by a test of each convention."
+                }
+            }
             @for (engine, rows) in engines {
                 h3 { (engine) }
                 div.scroll {

@@ -81,10 +81,10 @@ pub const QUANTITIES: [Label; 20] = [
     label("stored_entries", "stored entries", ""),
 ];
 
-/// The text of a quantity; a row without one is about the whole model.
+/// The text of a quantity; a row without one is about the whole robot.
 pub fn quantity(name: &str) -> &str {
     if name.is_empty() {
-        return "whole model";
+        return "whole robot";
     }
     QUANTITIES.iter().find(|label| label.name == name).map_or(name, |label| label.title)
 }

@@ -18,7 +18,7 @@ pub fn section(run: &RunInfo, overview: &Overview) -> Section {
 fn body(run: &RunInfo, overview: &Overview) -> Markup {
     html! {
         section #provenance {
-            h2 { "Engines, machine and models" }
+            h2 { "Engines, machine and robots" }
             (engines(run))
             div.columns { (build(run)) (machine(run)) }
             (robots(run, overview))
@@ -106,12 +106,12 @@ fn robots(run: &RunInfo, overview: &Overview) -> Markup {
     let announced: BTreeMap<&str, &ModelInfo> = run.models.iter().map(|robot| (robot.name.as_str(), robot)).collect();
     let size = |value: Option<u64>| value.map(|value| value.to_string()).unwrap_or_default();
     html! {
-        h3 { "Models" }
+        h3 { "Robots" }
         div.scroll.tall {
             table.compact.sortable {
                 thead {
                     tr {
-                        th scope="col" { "model" } th scope="col" { "family" } th scope="col" { "origin" }
+                        th scope="col" { "robot" } th scope="col" { "family" } th scope="col" { "origin" }
                         th.number scope="col" { "nv" } th.number scope="col" { "bodies" } th.number scope="col" { "depth" }
                         th scope="col" { "licence" } th scope="col" { "source" } th scope="col" { "hash" }
                     }
@@ -135,8 +135,8 @@ fn robots(run: &RunInfo, overview: &Overview) -> Markup {
             }
         }
         @if run.models.iter().any(|robot| !robot.notes.is_empty()) {
-            h3 { "Notes on models" }
-            ul #model-notes { @for robot in &run.models { @for note in &robot.notes { li { b { (robot.name) } ": " (note) } } } }
+            h3 { "Notes on robots" }
+            ul #robot-notes { @for robot in &run.models { @for note in &robot.notes { li { b { (robot.name) } ": " (note) } } } }
         }
     }
 }

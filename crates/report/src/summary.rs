@@ -67,25 +67,10 @@ mod tests {
 
     fn row(engine: &str, quantity: &str, verdict: Verdict, value: f64) -> Row {
         let (engine, quantity) = (engine.to_owned(), quantity.to_owned());
-        let (model, case, method, metric) = ("panda".into(), "fast".into(), "aba".into(), "scaled".into());
+        let (robot, states, method, metric) = ("panda".into(), "fast".into(), "aba".into(), "scaled".into());
         let (study, reference, reason) = ("of engines".into(), "featherbench".into(), "far (too) from it (1 is not at most 2)".into());
         let (value, bound, margin) = (Some(value), Some(1e-14), Some((1e-14 / value).log10()));
-        Row {
-            engine,
-            quantity,
-            robot: model,
-            states: case,
-            method,
-            metric,
-            study,
-            reference,
-            reason,
-            verdict,
-            value,
-            bound,
-            margin,
-            ..Row::default()
-        }
+        Row { engine, quantity, robot, states, method, metric, study, reference, reason, verdict, value, bound, margin, ..Row::default() }
     }
 
     #[test]

@@ -4,7 +4,7 @@ use std::fs;
 use std::path::Path;
 
 use featherbench_report::{Finding, Section};
-use featherbench_results::{Convention, Relation, Row, RunInfo};
+use featherbench_results::{Convention, EngineInfo, EngineSource, Relation, Row, RunInfo};
 use maud::html;
 
 use crate::written::Written;
@@ -131,7 +131,17 @@ fn conventions_are_listed_by_engine_with_their_tests() {
         test: format!("test_{engine}"),
     };
     let conventions = [("mujoco", "free v"), ("drake", "screw <pitch>")].map(|(engine, topic)| convention(engine, topic)).into();
-    let run = RunInfo { conventions, ..RunInfo::default() };
+    let engine = |name: &str, source| EngineInfo {
+        name: name.into(),
+        version: String::new(),
+        source,
+        build: [].into(),
+        status: "ok".into(),
+        reason: String::new(),
+    };
+    let engines =
+        vec![engine("featherbench", EngineSource::Own), engine("drake", EngineSource::Live), engine("rapier", EngineSource::Live)];
+    let run = RunInfo { conventions, engines, ..RunInfo::default() };
     let written = Written::of(&run, &[], &[]);
     let section = written.section("conventions");
     for row in &run.conventions {
@@ -142,6 +152,7 @@ fn conventions_are_listed_by_engine_with_their_tests() {
     assert!(section.contains("<code>file.py: function</code>, twice"), "backticks mark code");
     assert!(section.contains("screw &lt;pitch&gt;") && !section.contains("screw <pitch>"), "text cannot become markup");
     assert_eq!(section.matches("<h3>").count(), 2, "one table for each engine");
+    assert!(section.contains("<b>rapier</b>: no row here."), "an engine without rows is named, our own is not");
     let nothing = Written::of(&RunInfo::default(), &[], &[]);
     assert!(nothing.section("conventions").contains("names no conventions"));
 }

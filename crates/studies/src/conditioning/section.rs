@@ -100,7 +100,7 @@ fn body(overview: &Overview, families: &[Family]) -> Markup {
                     thead {
                         tr {
                             th scope="col" { "robot" } th scope="col" { "family" } th.number scope="col" { "n" } th.number scope="col" { "κ(M)" } th.number scope="col" { "local exponent" }
-                            th.number scope="col" { "κ scaled" } th.number scope="col" { "local exponent" } th.number scope="col" { "floor" } th.number scope="col" { "κ·2⁻⁵³ / floor" }
+                            th.number scope="col" { "κ scaled" } th.number scope="col" { "local exponent" } th.number scope="col" { "bound" } th.number scope="col" { "κ·2⁻⁵³ / bound" }
                         }
                     }
                     tbody { @for family in families { @for point in &family.points { (row(overview, family, point)) } } }

@@ -93,10 +93,10 @@ fn body(overview: &Overview, imports: &Imports) -> Markup {
             h2 { "How engines read it" }
             p.lead {
                 "Every engine's own parser reads the robot's file, and what it then holds is compared body by body with the reference: "
-                "our reading of URDF, that of MuJoCo's compiler of MJCF. That is another question than whether engines compute alike from "
+                "our import of URDF, that of MuJoCo's compiler of MJCF. That is another question than whether engines compute alike from "
                 "one model. A number counts the differences that a simulation feels; click it to see them with their causes."
             }
-            (summary(overview, imports))
+            div.scroll { (summary(overview, imports)) }
             div.scroll.tall { (matrix(overview, imports)) }
             p.note {
                 span.key.d0 { "✓" } " alike, "

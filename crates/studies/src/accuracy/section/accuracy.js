@@ -36,7 +36,7 @@ featherbench.ready(() => {
       const lost = Math.log10(cell.median / ULP);
       found.push(lost < 0.05 ? "no digit lost" : `${lost.toFixed(1)} digits lost`);
     }
-    if (cell.floor !== null && cell.median > 0) found.push(`floor ${short(cell.floor)}: the median is ${short(Number((cell.median / cell.floor).toPrecision(2)))} of it`);
+    if (cell.floor !== null && cell.median > 0) found.push(`conditioning bound ${short(cell.floor)}: the median is ${short(Number((cell.median / cell.floor).toPrecision(2)))} of it`);
     if (cell.verdict !== null) found.push(`${featherbench.glyphs[cell.verdict]} ${cell.verdict}${cell.margin === null ? "" : `, ${decades(cell.margin)} decades`}`);
     return found;
   }
@@ -81,7 +81,7 @@ featherbench.ready(() => {
     if (floors.size > 0) {
       series.push({
         name: "conditioning bound", ink: variable("--ink"), line: { width: 1.5, dash: "dash" }, mark: { symbol: "tick", size: 10 },
-        points: [...floors].sort(([a], [b]) => a - b).map(([x, floor]) => ({ x, y: floor, tip: [`floor ${short(floor)}`] })),
+        points: [...floors].sort(([a], [b]) => a - b).map(([x, floor]) => ({ x, y: floor, tip: [`conditioning bound ${short(floor)}`] })),
       });
     }
     series.push({ name: "2⁻⁵²", ink: variable("--soft"), guide: ULP, line: { width: 1.2, dash: "dot" } });
@@ -95,7 +95,7 @@ featherbench.ready(() => {
 
   // --- The table.
 
-  // As the page made them: a quantity's answers, then its floor where it has one.
+  // As the page made them: a quantity's answers, then its conditioning bound where it has one.
   const columns = quantities.flatMap((quantity) => {
     const answers = accuracy.answers.map((answer, index) => ({ answer: index, quantity })).filter(({ answer }) => accuracy.answers[answer].quantity === quantity);
     const floored = accuracy.cells.some((cell) => cell.floor !== null && accuracy.answers[cell.answer].quantity === quantity);

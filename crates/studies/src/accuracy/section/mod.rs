@@ -1,4 +1,4 @@
-//! Section: digits lost per engine and method, as a plot along one axis and as a table of medians.
+//! The section of this study: errors against the truth per engine and method, as a plot along one axis and as a table of medians.
 
 mod axes;
 mod data;
@@ -183,7 +183,7 @@ fn table(overview: &Overview, accuracy: &Accuracy) -> Markup {
                         th.method.first[first(position)] scope="col" data-q=(group) {
                             @if let Some(answer) = answer.map(|answer| &accuracy.answers[answer]) {
                                 (overview.engines[answer.engine]) small { (answer.method) @if answer.scalar != "f64" { " " (answer.scalar) } }
-                            } @else { "floor" small { "structured" } }
+                            } @else { "bound" small { "conditioning" } }
                         }
                     }
                 }

@@ -171,7 +171,7 @@ fn missed(overview: &Overview, found: &[Missed], class: &str, verb: [&str; 2]) -
             }
         }
         @if found.len() > TOLD {
-            li class=(class) { (found.len() - TOLD) " more: see " a href="#accuracy" { "the digits" } "." }
+            li class=(class) { (found.len() - TOLD) " more: see " a href="#accuracy" { "accuracy" } "." }
         }
     }
 }
@@ -185,7 +185,7 @@ pub fn warning(overview: &Overview, accuracy: &Accuracy) -> Markup {
                 @for (index, row) in accuracy.limited.iter().take(NAMED).enumerate() {
                     @if index > 0 { "; " }
                     "at " (opener(&overview.chunk_of(row), &[("study", &row.study), ("metric", &row.metric)], &row.robot))
-                    " " (count(row.value.unwrap_or_default() as usize, "engine")) " stop at the same error, well above the floor"
+                    " " (count(row.value.unwrap_or_default() as usize, "engine")) " stop at the same error, well above the conditioning bound"
                 }
                 @if accuracy.limited.len() > NAMED { "; and so at " (count(accuracy.limited.len() - NAMED, "more robot")) }
                 ". Errors that come of rounding differ from engine to engine; several at one place are no coincidence."

@@ -31,7 +31,7 @@ pub struct ErrorTrace<'a> {
     points: Vec<ErrorPoint<'a>>,
 }
 
-/// One row's error: its robot's index, its case, value, bound and floor.
+/// One row's error: its robot's index, its states, value, bound and conditioning bound.
 #[derive(Debug, Serialize)]
 struct ErrorPoint<'a>(usize, &'a str, f64, Option<f64>, Option<f64>);
 
