@@ -67,14 +67,14 @@ fn engines_that_stop_at_one_error_make_the_reference_the_suspect() {
         let heavier = Double::altered(&robot, |description| description.bodies[4].mass *= 1.0 + 1e-9);
         Box::new(heavier.named(name)) as Box<dyn Engine>
     };
-    let walls = |engines: &[Box<dyn Engine>]| -> Vec<f64> {
+    let limited = |engines: &[Box<dyn Engine>]| -> Vec<f64> {
         let records = whole(&Accuracy, &robot, &gates(""), engines);
         records.iter().filter(|row| row.metric == "limited_by_the_reference").filter_map(|row| row.value).collect()
     };
-    assert_eq!(walls(&[other("a"), other("b"), other("c")]), [3.0]);
+    assert_eq!(limited(&[other("a"), other("b"), other("c")]), [3.0]);
     assert_eq!(
-        walls(&[Box::new(Featherbench::new()), other("a"), other("b"), other("c")]),
+        limited(&[Box::new(Featherbench::new()), other("a"), other("b"), other("c")]),
         [0.0; 0],
-        "one that is nearer shows that there is no wall"
+        "one that is nearer shows that the reference does not limit"
     );
 }

@@ -92,7 +92,7 @@ impl Study for Accuracy {
         let floors: Vec<f64> = (0..floors).map(|k| conditioning_bound(robot, k).unwrap_or(f64::NAN)).collect();
         let floor = median(&mut floors.iter().copied().filter(|floor| floor.is_finite()).collect::<Vec<_>>());
 
-        let (mut rows, mut walls) = (Vec::new(), Vec::new());
+        let (mut rows, mut medians) = (Vec::new(), Vec::new());
         for (cell, outcome) in finished {
             let blank = Row { reference: TRUTH.into(), unit: "1".into(), states: "all".into(), ..row(cell, robot) };
             let (Outcome::Values(values), Some(quantity)) = (outcome, Quantity::parse(&cell.quantity)) else {
@@ -128,7 +128,7 @@ impl Study for Accuracy {
                 }
                 rows.extend(quartiles(context, &blank, &mut plain));
                 if quantity == Quantity::ForwardDynamics {
-                    walls.extend(median(&mut plain).map(|error| (cell.engine.clone(), error)));
+                    medians.extend(median(&mut plain).map(|error| (cell.engine.clone(), error)));
                 }
             } else {
                 let size = quantity.size(robot);
@@ -141,7 +141,7 @@ impl Study for Accuracy {
                 rows.extend(quartiles(context, &blank, &mut errors));
             }
         }
-        if let (Some((cell, _)), Some(standing)) = (finished.first(), at_the_wall(&walls, floor)) {
+        if let (Some((cell, _)), Some(standing)) = (finished.first(), limited_by_the_reference(&medians, floor)) {
             let row = Row { engine: "all".into(), engine_version: String::new(), method: String::new(), ..row(cell, robot) };
             let row = Row {
                 quantity: "fd".into(),
@@ -239,7 +239,7 @@ fn median(values: &mut [f64]) -> Option<f64> {
 /// The number of engines whose smallest error e is within a factor of two of the smallest of all, e ≤ 2·e_min. `None` unless there are at
 /// least three, and e_min > 64·max(ε, conditioning bound). Several engines at one error are no coincidence: then the reference is the
 /// suspect.
-fn at_the_wall(errors: &[(String, f64)], floor: Option<f64>) -> Option<usize> {
+fn limited_by_the_reference(errors: &[(String, f64)], floor: Option<f64>) -> Option<usize> {
     let mut best: Vec<(&str, f64)> = Vec::new();
     for (engine, error) in errors {
         match best.iter_mut().find(|(known, _)| known == engine) {
@@ -258,12 +258,16 @@ mod tests {
     use super::*;
 
     #[test]
-    fn curves_that_go_flat_together_make_a_wall() {
+    fn curves_that_go_flat_together_are_limited_by_the_reference() {
         let errors =
             |values: [f64; 3]| ["a", "b", "c"].into_iter().zip(values).map(|(name, error)| (name.to_owned(), error)).collect::<Vec<_>>();
-        assert_eq!(at_the_wall(&errors([1.0e-11, 1.1e-11, 1.5e-11]), Some(2e-16)), Some(3), "three engines at the error of the reference");
-        assert_eq!(at_the_wall(&errors([1e-15, 1e-12, 1e-9]), Some(2e-16)), None, "each where its algorithm puts it");
-        assert_eq!(at_the_wall(&errors([3e-16, 3e-16, 3e-16]), Some(2e-16)), None, "all at the floor: nothing is wrong");
+        assert_eq!(
+            limited_by_the_reference(&errors([1.0e-11, 1.1e-11, 1.5e-11]), Some(2e-16)),
+            Some(3),
+            "three engines at the error of the reference"
+        );
+        assert_eq!(limited_by_the_reference(&errors([1e-15, 1e-12, 1e-9]), Some(2e-16)), None, "each where its algorithm puts it");
+        assert_eq!(limited_by_the_reference(&errors([3e-16, 3e-16, 3e-16]), Some(2e-16)), None, "all at the floor: nothing is wrong");
     }
 
     /// On x86 the NaN of 0/0 and ∞ − ∞ is negative, and below all numbers in the total order.
