@@ -67,6 +67,10 @@ pub fn open(root: &Root, asked: &Asked) -> Result<Opened, Fail> {
     let find = |name: &String| described.get(name).map_err(Fail::input);
     let due: Vec<&DescribedEngine> = asked.engines.iter().map(find).collect::<Result<_, _>>()?;
     let timed: Vec<&DescribedEngine> = asked.timed.iter().map(find).collect::<Result<_, _>>()?;
+    if let Some(engine) = timed.iter().find(|engine| engine.clock.is_none()) {
+        let can = described.names(|engine| engine.clock.is_some()).join(", ");
+        return Err(Fail::input(format!("{} cannot be timed; oracles/engines.toml has a clock for {can}", engine.name)));
+    }
     let taken: Vec<&str> = [OWN].into_iter().chain(described.names(|_| true)).collect();
     external::check_names(asked.externals, &taken)?;
     // One that is asked for answers too is the same engine: see below.

@@ -71,7 +71,13 @@ fn formats_refuse_what_they_cannot_hold() {
 fn broken_suites_are_refused_by_file_and_key() {
     let sandbox = Sandbox::new();
     let good = std::fs::read_to_string(project().join("datasets/suites/smoke.toml")).unwrap();
-    let cases: [(&str, String, &[&str]); 6] = [
+    let cases: [(&str, String, &[&str]); 8] = [
+        ("unknown engine", good.replace("\"mujoco\"", "\"mujoko\""), &["there is no engine 'mujoko'", "pinocchio, mujoco, drake"]),
+        (
+            "engine without a clock",
+            good.replace("[timing]", "[timing]\nengines = [\"mujoco\"]"),
+            &["mujoco cannot be timed", "drake, dart"],
+        ),
         ("unknown key", good.replace("operations = true", "operashuns = true"), &["operashuns", "line"]),
         ("unknown model", good.replace("\"panda\"", "\"pander\""), &["pander.json"]),
         (

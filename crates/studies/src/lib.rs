@@ -1,4 +1,4 @@
-//! Studies: the questions of featherbench, one file or folder each.
+//! Studies: the questions of featherbench, one folder each.
 //!
 //! - [`Agreement`]: do the engines agree on the same model, and how large is our error compared with the best engine's?
 //! - [`Accuracy`]: how far is each from the truth, and which engine is right?
@@ -17,7 +17,6 @@ pub mod import;
 mod operations;
 mod repeatability;
 mod reproductions;
-mod sections;
 mod steps;
 mod timing;
 
@@ -28,28 +27,40 @@ pub use import::Import;
 pub use operations::OperationCounts;
 pub use repeatability::Repeatability;
 pub use reproductions::{Reproduce, Reproductions};
-pub use sections::sections;
 pub use steps::Steps;
 pub use timing::{Kernels, Settings as TimingSettings, Timing};
 
 use featherbench_bench::{Cell, Context, Engine, HarnessError, NoAnswer, Outcome, Quantity, Robot, Study, Suite};
-use featherbench_results::Row;
+use featherbench_report::{Overview, Section};
+use featherbench_results::{Row, RunInfo};
 
-/// A study of the house: its name, and how it is made from a suite.
-type Entry = (&'static str, fn(&Setup) -> Result<Option<Box<dyn Study>>, HarnessError>);
+/// A study of the house.
+struct Entry {
+    name: &'static str,
+    /// How it is made from a suite.
+    make: fn(&Setup) -> Result<Option<Box<dyn Study>>, HarnessError>,
+    /// Its sections of the report of a run.
+    sections: fn(&RunInfo, &[Row], &Overview) -> Vec<Section>,
+}
 
-/// Every study, in the order of the report. Those that run alone come after all others; timing is the last, as it needs a quiet machine.
+/// Every study, in the order of a run and of its report. Those that run alone come after all others; timing is the last, as it needs a quiet
+/// machine.
 const STUDIES: [Entry; 9] = [
-    ("agreement", agreement::of_suite),
-    ("import", import::of_suite),
-    ("accuracy", accuracy::of_suite),
-    ("conditioning", conditioning::of_suite),
-    ("steps", steps::of_suite),
-    ("operations", operations::of_suite),
-    ("reproductions", reproductions::of_suite),
-    ("repeatability", repeatability::of_suite),
-    ("timing", timing::of_suite),
+    Entry { name: "agreement", make: agreement::of_suite, sections: agreement::section::sections },
+    Entry { name: "import", make: import::of_suite, sections: import::section::sections },
+    Entry { name: "accuracy", make: accuracy::of_suite, sections: accuracy::section::sections },
+    Entry { name: "conditioning", make: conditioning::of_suite, sections: conditioning::section::sections },
+    Entry { name: "steps", make: steps::of_suite, sections: steps::section::sections },
+    Entry { name: "operations", make: operations::of_suite, sections: no_section },
+    Entry { name: "reproductions", make: reproductions::of_suite, sections: reproductions::section::sections },
+    Entry { name: "repeatability", make: repeatability::of_suite, sections: no_section },
+    Entry { name: "timing", make: timing::of_suite, sections: timing::section::sections },
 ];
+
+/// The rows of some studies are in the verdict and in the tables of rows alone.
+fn no_section(_: &RunInfo, _: &[Row], _: &Overview) -> Vec<Section> {
+    Vec::new()
+}
 
 /// What studies are made from.
 pub struct Setup<'a> {
@@ -67,7 +78,7 @@ pub struct Setup<'a> {
 
 /// The names of all studies.
 pub fn names() -> Vec<&'static str> {
-    STUDIES.iter().map(|(name, _)| *name).collect()
+    STUDIES.iter().map(|study| study.name).collect()
 }
 
 /// The studies of a suite.
@@ -76,7 +87,13 @@ pub fn names() -> Vec<&'static str> {
 /// [`HarnessError`], naming file, line and key, when a table of the suite has an error or belongs to no study.
 pub fn of_suite(setup: &Setup) -> Result<Vec<Box<dyn Study>>, HarnessError> {
     setup.suite.check_studies(&names())?;
-    STUDIES.iter().filter_map(|(_, make)| make(setup).transpose()).collect()
+    STUDIES.iter().filter_map(|study| (study.make)(setup).transpose()).collect()
+}
+
+/// The sections of the report of a run, study by study: of each that has rows, and of those that say that they have none.
+pub fn sections(run: &RunInfo, rows: &[Row]) -> Vec<Section> {
+    let overview = Overview::of(run, rows);
+    STUDIES.iter().flat_map(|study| (study.sections)(run, rows, &overview)).collect()
 }
 
 /// A row with the fields of its cell and robot; the study adds case, metric and value.
