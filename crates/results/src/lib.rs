@@ -21,6 +21,7 @@ mod error;
 mod file;
 mod names;
 mod params;
+mod properties;
 mod row;
 mod run_info;
 
@@ -33,5 +34,6 @@ pub use file::{
 };
 pub use names::{Kind, Relation, Verdict};
 pub use params::canonical_json;
+pub use properties::{Base, Feature, Properties};
 pub use row::{MARGIN_LIMIT, Row};
 pub use run_info::{Convention, EngineInfo, EngineSource, Expectation, GitInfo, Host, ModelInfo, ModelOrigin, RUN_FORMAT, RunInfo};

@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::file::{atomic_write, read_text};
 use crate::names::words;
-use crate::{ResultsError, Verdict};
+use crate::{Properties, ResultsError, Verdict};
 
 /// Format of `run.json` and `schema.json` that this version writes and reads.
 pub const RUN_FORMAT: u32 = 1;
@@ -158,6 +158,9 @@ pub struct ModelInfo {
     /// Its warnings: numbers that were normalised, bodies without mass.
     #[serde(default)]
     pub notes: Vec<String>,
+    /// The properties that known deviations are told by; a run of an older version has none.
+    #[serde(default)]
+    pub properties: Option<Properties>,
 }
 
 /// A convention of an engine, and ours.
@@ -192,6 +195,13 @@ pub struct Expectation {
     pub verdict: Verdict,
     /// Why it does not pass.
     pub reason: String,
+}
+
+impl ModelInfo {
+    /// Its name and its properties, if the run has them.
+    pub fn known_properties(&self) -> Option<(String, Properties)> {
+        Some((self.name.clone(), self.properties.clone()?))
+    }
 }
 
 impl RunInfo {

@@ -5,9 +5,9 @@ use std::fs;
 use std::path::Path;
 
 use featherbench_results::{
-    COLUMNS, CSV_NAME, Checksums, ColumnType, Convention, EngineInfo, EngineSource, Expectation, GitInfo, Host, Kind, ModelInfo,
-    ModelOrigin, RUN_FORMAT, RUN_NAME, Relation, ResultsError, Row, RunInfo, SCHEMA_NAME, Verdict, atomic_write, canonical_json, read_csv,
-    read_run, schema_json, to_csv, write_csv, write_run,
+    Base, COLUMNS, CSV_NAME, Checksums, ColumnType, Convention, EngineInfo, EngineSource, Expectation, Feature, GitInfo, Host, Kind,
+    ModelInfo, ModelOrigin, Properties, RUN_FORMAT, RUN_NAME, Relation, ResultsError, Row, RunInfo, SCHEMA_NAME, Verdict, atomic_write,
+    canonical_json, read_csv, read_run, schema_json, to_csv, write_csv, write_run,
 };
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
@@ -255,6 +255,15 @@ fn run_info() -> RunInfo {
         }],
         studies: vec!["agreement".into()],
         models: vec![ModelInfo {
+            properties: Some(Properties {
+                joints: vec!["revolute".into()],
+                armature: vec!["revolute".into()],
+                base: Base::Fixed,
+                dofs: 7,
+                offset: 0.0,
+                mass_ratio: 3.5,
+                features: vec![Feature::Balanced, Feature::HeightField],
+            }),
             name: "chain".into(),
             hash: "22".into(),
             origin: ModelOrigin::Generated,

@@ -69,6 +69,7 @@ fn models() -> Vec<ModelInfo> {
         let source = if origin == ModelOrigin::Robot { "example-robot-data 4.3".into() } else { format!("gen {family} --joints {joints}") };
         let hash = format!("{:064x}", joints * 7919 + name.len() as u64);
         ModelInfo {
+            properties: None,
             name,
             hash,
             origin,

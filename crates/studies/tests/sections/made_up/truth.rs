@@ -36,6 +36,7 @@ const SUBJECTS: [(&str, &str, &str); 10] = [
 /// The robots.
 pub fn models() -> Vec<ModelInfo> {
     let model = |(name, _, joints): (&str, &str, u64)| ModelInfo {
+        properties: None,
         name: name.into(),
         hash: format!("{:064x}", joints * 104_729 + name.len() as u64),
         origin: ModelOrigin::Generated,
