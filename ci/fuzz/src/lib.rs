@@ -3,7 +3,9 @@
 //! A robot that is read must be written and read again alike. `ci/fuzz/run` gives the targets to libFuzzer. `crates/cli/tests/parsers.rs`
 //! compiles this file and gives them some thousand mutations of the seeds in every test run.
 
-use featherbench_bench::{Counts, Gates, Identity, NoAnswer, NoSettings, Outcome, Quantity, Robot, RobotEntry, Suite};
+use featherbench_bench::{
+    Counts, DeviationFile, Engines, Gates, Identity, NoAnswer, NoSettings, Outcome, Quantity, Robot, RobotEntry, Suite,
+};
 use featherbench_engines::{EngineRecording, Recording};
 use featherbench_formats::urdf::{Base, Options};
 use featherbench_formats::{OnLoss, mjcf, neutral, urdf};
@@ -157,10 +159,18 @@ pub fn suite(bytes: &[u8]) {
     }
 }
 
-/// Gates and deviations, separated by a line of hyphens.
+/// Gates, deviations of an engine and a description of engines, separated by lines of hyphens.
 pub fn gates(bytes: &[u8]) {
-    let (gates, deviations) = text(bytes).split_once("\n---\n").unwrap_or((text(bytes), ""));
-    if let Ok(gates) = Gates::parse(gates, deviations, file()) {
+    let mut parts = text(bytes).split("\n---\n");
+    let mut part = || parts.next().unwrap_or_default();
+    let (gates, deviations, engines) = (part(), part(), part());
+    if let Ok(mut gates) = Gates::parse(gates, file()) {
+        if let Ok(deviations) = DeviationFile::parse(deviations, file()) {
+            gates = gates.with_deviations(deviations);
+        }
+        if let Ok(engines) = Engines::parse(engines, file()) {
+            gates = gates.with_lacks(engines.lacks());
+        }
         let row = gates.judge(Row { study: "agreement".into(), ..Row::default() }, 1e-15, 1.0);
         assert!(row.verdict != Verdict::Pass || row.bound.is_some());
     }

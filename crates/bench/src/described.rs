@@ -1,16 +1,13 @@
 //! The reference engines, as `oracles/engines.toml` describes them: package, version, licence, and how each is started.
 
-use crate::{FileFormat, HarnessError};
+use crate::{FileFormat, HarnessError, Lack};
 use serde::Deserialize;
 use std::collections::BTreeMap;
 use std::path::Path;
 use toml::Spanned;
 
-/// The engine of our own kernels, which needs no description.
-const OURS: &str = "featherbench";
-
 /// The engines of `oracles/engines.toml`, in the order of the file, which is the order of reports.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Engines(Vec<DescribedEngine>);
 
 /// One engine. Unknown keys are errors.
@@ -41,6 +38,9 @@ pub struct DescribedEngine {
     pub recorded: bool,
     /// How its own calls are timed. An engine without it is not timed.
     pub clock: Option<ClockKind>,
+    /// What it does not offer.
+    #[serde(default)]
+    pub lacks: Vec<Lack>,
 }
 
 /// A package of an index: PyPI, or crates.io for an engine that cargo builds.
@@ -164,7 +164,7 @@ impl Engines {
         let mut compiled: Vec<FileFormat> = Vec::new();
         for engine in &self.0 {
             let wrong = |message: String| Err(format!("[{}]: {message}", engine.name));
-            if engine.name == OURS {
+            if engine.name == crate::OWN {
                 return wrong("this is the name of our own kernels".into());
             }
             match (&engine.package, &engine.of) {
@@ -180,6 +180,9 @@ impl Engines {
                 && (library.compilers.is_empty() || library.packages.is_empty())
             {
                 return wrong("start: compilers and packages must not be empty".into());
+            }
+            for lack in &engine.lacks {
+                lack.check().or_else(wrong)?;
             }
             if let Some(format) = engine.compiles {
                 if !engine.is_python() || !engine.reads.contains(&format) || compiled.contains(&format) {
@@ -214,6 +217,15 @@ impl Engines {
     pub fn package<'a>(&'a self, engine: &'a DescribedEngine) -> Option<&'a Package> {
         let of = || self.0.iter().find(|other| engine.of.as_ref() == Some(&other.name)).and_then(|other| other.package.as_ref());
         engine.package.as_ref().or_else(of)
+    }
+
+    /// What the engines do not offer, each with the engine's name and version.
+    pub fn lacks(&self) -> Vec<Lack> {
+        let of_engine = |engine: &DescribedEngine| -> Vec<Lack> {
+            let version = self.package(engine).map_or("", |package| package.version.as_str());
+            engine.lacks.iter().map(|lack| lack.clone().of(&engine.name, version)).collect()
+        };
+        self.0.iter().flat_map(of_engine).collect()
     }
 
     /// What the engines' Python environment must hold for them, as `NAME==VERSION`.

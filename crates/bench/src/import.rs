@@ -3,6 +3,8 @@
 use crate::{HarnessError, hash};
 use featherbench_formats::neutral;
 use featherbench_model::Description;
+use featherbench_results::Feature;
+use nalgebra::Matrix3;
 use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};
 
@@ -19,6 +21,8 @@ pub struct RobotFile {
     pub hash: String,
     /// The links of the file, if our own parser has read it.
     pub links: Vec<FileLink>,
+    /// What the file holds that engines' parsers are known to refuse or to read otherwise.
+    pub features: Vec<Feature>,
 }
 
 /// A link as its file has it, in its own frame and not yet merged with others.
@@ -138,8 +142,46 @@ impl RobotFile {
     pub fn open(path: &Path, format: FileFormat, base: FileBase) -> Result<Self, HarnessError> {
         let io = |source| HarnessError::io(path, source);
         let bytes = std::fs::read(path).map_err(io)?;
-        Ok(Self { path: std::path::absolute(path).map_err(io)?, format, base, hash: hash::of(&bytes), links: Vec::new() })
+        let features = match format {
+            FileFormat::Urdf => features_of_urdf(&String::from_utf8_lossy(&bytes)),
+            FileFormat::Mjcf => features_of_mjcf(path),
+        };
+        Ok(Self { path: std::path::absolute(path).map_err(io)?, format, base, hash: hash::of(&bytes), links: Vec::new(), features })
     }
+}
+
+fn features_of_urdf(text: &str) -> Vec<Feature> {
+    let mimics = featherbench_formats::urdf::mimics(text);
+    let links = featherbench_formats::urdf::links(text, WATER);
+    let mut inertias = links.iter().filter_map(|link| link.inertial).map(|inertial| inertial.inertia);
+    let found = [
+        (Feature::NegativeMoment, inertias.any(has_negative_moment)),
+        (Feature::FixedMimic, mimics.iter().any(|mimic| mimic.is_fixed)),
+        (Feature::UnknownMimic, mimics.iter().any(|mimic| !mimic.is_known)),
+    ];
+    found.into_iter().filter_map(|(feature, found)| found.then_some(feature)).collect()
+}
+
+fn features_of_mjcf(path: &Path) -> Vec<Feature> {
+    let contents = featherbench_formats::mjcf::contents(path);
+    let found = [
+        (Feature::Unnamed, !contents.named),
+        (Feature::WorldSite, contents.world_site),
+        (Feature::HeightField, contents.height_field),
+        (Feature::MeshWithoutInertial, contents.mesh_without_inertial),
+        (Feature::MeshFormat, contents.mesh_formats.iter().any(|ending| !MESH_FORMATS.contains(&ending.as_str()))),
+    ];
+    found.into_iter().filter_map(|(feature, found)| found.then_some(feature)).collect()
+}
+
+/// The endings of OBJ, glTF, VTK and SDF files.
+const MESH_FORMATS: [&str; 5] = ["obj", "gltf", "glb", "vtk", "sdf"];
+
+/// Whether an inertia (ixx, ixy, ixz, iyy, iyz, izz) has a principal moment below zero by more than the rounding of six digits.
+fn has_negative_moment([xx, xy, xz, yy, yz, zz]: [f64; 6]) -> bool {
+    let trace = xx + yy + zz;
+    let moments = Matrix3::new(xx, xy, xz, xy, yy, yz, xz, yz, zz).symmetric_eigenvalues();
+    trace > 0.0 && moments.min() < -1e-6 * trace
 }
 
 impl FileFormat {

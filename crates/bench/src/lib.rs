@@ -37,6 +37,7 @@
 //! ```
 
 mod cell;
+mod class;
 pub mod conventions;
 mod counts;
 mod described;
@@ -46,9 +47,12 @@ mod error;
 mod gates;
 pub mod hash;
 mod import;
+mod known;
+mod lack;
 pub mod layout;
 mod means;
 pub mod measure;
+mod properties;
 pub mod provenance;
 mod quantity;
 mod ranges;
@@ -62,13 +66,15 @@ mod suite;
 pub mod truth;
 
 pub use cell::{Cell, Outcome};
+pub use class::RobotClass;
 pub use counts::{COUNTS_NAME, Count, Counts};
 pub use described::{ClockKind, DescribedEngine, Engines, Library, Package, Start};
-pub use deviation::{Deviation, NotOffered, Reproduction, SEEDS, SLACK};
+pub use deviation::{Deviation, DeviationFile, Reproduction, SEEDS, SLACK};
 pub use engine::{Engine, Evaluation, Identity, NoAnswer};
 pub use error::HarnessError;
 pub use gates::{Factor, Gate, Gates, Sharpness};
 pub use import::{FileBase, FileFormat, FileInertial, FileLink, Import, ImportNote, RobotFile, WATER};
+pub use lack::Lack;
 pub use means::{Known, Mean};
 pub use quantity::{DENSE_LIMIT, Quantity};
 pub use ranges::{Range, RangeKey, Ranges, RangesMeter};

@@ -37,6 +37,7 @@ pub fn robots(robots: &[Robot]) -> Vec<ModelInfo> {
             nv: robot.states.nv as u64,
             bodies: robot.states.bodies as u64,
             depth: robot.depth as u64,
+            properties: Some(robot.properties()),
             notes: robot.model.warnings.iter().map(ToString::to_string).collect(),
         }
     };

@@ -1,19 +1,20 @@
 //! The sizes of the known deviations for each robot: data files that `featherbench gate --ranges … --write` writes.
 //!
 //! A file is sorted CSV, with one row per engine, version, method, quantity, robot and metric.
+//! - `deviation`: the id of the deviation in `ci/deviations/ENGINE.toml` that has this size.
 //! - `low` and `high`: the smallest and the largest of the worst values of runs with different seeds.
 //! - `outside`: the number of those runs in which a row was outside its bound.
 //! - `seeds`: the number of runs.
 
 use crate::measure::worst;
-use crate::{Deviation, HarnessError, SLACK};
+use crate::{Gates, HarnessError, SLACK};
 use featherbench_results::{Row, Verdict};
 use std::collections::BTreeMap;
-use std::fmt::Write as _;
-use std::path::Path;
+use std::fmt::{self, Write as _};
+use std::path::{Path, PathBuf};
 
 /// The columns of a file, in order.
-const COLUMNS: [&str; 10] = ["engine", "version", "method", "quantity", "robot", "metric", "low", "high", "outside", "seeds"];
+const COLUMNS: [&str; 11] = ["engine", "version", "method", "quantity", "robot", "metric", "deviation", "low", "high", "outside", "seeds"];
 
 /// The key of a range.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -33,8 +34,10 @@ pub struct RangeKey {
 }
 
 /// The size of a known deviation on one robot.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Range {
+    /// The id of the deviation.
+    pub deviation: String,
     /// Smallest of the runs' worst values.
     pub low: f64,
     /// Largest of the runs' worst values.
@@ -62,8 +65,19 @@ impl RangeKey {
         }
     }
 
+    /// Whether two keys differ in the version at most.
+    fn is_alike(&self, other: &Self) -> bool {
+        *self == Self { version: self.version.clone(), ..other.clone() }
+    }
+
     fn words(&self) -> [&str; 6] {
         [&self.engine, &self.version, &self.method, &self.quantity, &self.robot, &self.metric]
+    }
+}
+
+impl fmt::Display for RangeKey {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.words().join(" "))
     }
 }
 
@@ -78,9 +92,10 @@ impl Range {
         self.outside == self.seeds && value < self.low / SLACK
     }
 
-    /// The range of both.
-    fn joined(self, other: Self) -> Self {
+    /// The range of both, which are ranges of one deviation.
+    fn joined(self, other: &Self) -> Self {
         Self {
+            deviation: self.deviation,
             low: self.low.min(other.low),
             high: worst(self.high, other.high),
             outside: self.outside + other.outside,
@@ -100,16 +115,18 @@ impl Ranges {
         if !folder.is_dir() {
             return Ok(all);
         }
-        let io = |source| HarnessError::io(folder, source);
-        let entries = std::fs::read_dir(folder).map_err(io)?.map(|entry| entry.map(|entry| entry.path()).map_err(io));
-        let mut paths = entries.collect::<Result<Vec<_>, HarnessError>>()?;
-        paths.retain(|path| path.extension().is_some_and(|ending| ending == "csv"));
-        paths.sort();
-        for path in paths {
+        for path in files(folder, "csv")? {
             let text = std::fs::read_to_string(&path).map_err(|source| HarnessError::io(&path, source))?;
             for (key, range) in Self::parse(&text, &path)?.0 {
-                let known = all.0.get(&key).copied();
-                all.0.insert(key, known.map_or(range, |known| known.joined(range)));
+                let both = match all.0.remove(&key) {
+                    None => range,
+                    Some(known) if known.deviation == range.deviation => known.joined(&range),
+                    Some(known) => {
+                        let message = format!("{key}: this is a size of '{}', in another file of '{}'", range.deviation, known.deviation);
+                        return Err(HarnessError::Config { path, message });
+                    }
+                };
+                all.0.insert(key, both);
             }
         }
         Ok(all)
@@ -129,7 +146,7 @@ impl Ranges {
         let mut all = BTreeMap::new();
         for (number, line) in lines {
             let words: Vec<&str> = line.split(',').collect();
-            let &[engine, version, method, quantity, robot, metric, low, high, outside, seeds] = words.as_slice() else {
+            let &[engine, version, method, quantity, robot, metric, deviation, low, high, outside, seeds] = words.as_slice() else {
                 return Err(bad(number, format!("{} columns, not {}", words.len(), COLUMNS.len())));
             };
             let float = |name: &str, word: &str| {
@@ -139,6 +156,7 @@ impl Ranges {
             let count =
                 |name: &str, word: &str| word.parse::<u64>().map_err(|_| bad(number, format!("{name}: '{word}' is no number of runs")));
             let range = Range {
+                deviation: deviation.to_owned(),
                 low: float("low", low)?,
                 high: float("high", high)?,
                 outside: count("outside", outside)?,
@@ -162,9 +180,9 @@ impl Ranges {
     pub fn to_csv(&self) -> String {
         let mut text = COLUMNS.join(",") + "\n";
         for (key, range) in &self.0 {
-            let Range { low, high, outside, seeds } = range;
+            let Range { deviation, low, high, outside, seeds } = range;
             // Writing to a string cannot fail.
-            let _ = writeln!(text, "{},{low:e},{high:e},{outside},{seeds}", key.words().join(","));
+            let _ = writeln!(text, "{},{deviation},{low:e},{high:e},{outside},{seeds}", key.words().join(","));
         }
         text
     }
@@ -185,15 +203,25 @@ impl Ranges {
     }
 }
 
+/// The files of a folder with an extension, sorted.
+pub(crate) fn files(folder: &Path, extension: &str) -> Result<Vec<PathBuf>, HarnessError> {
+    let io = |source| HarnessError::io(folder, source);
+    let entries = std::fs::read_dir(folder).map_err(io)?.map(|entry| entry.map(|entry| entry.path()).map_err(io));
+    let mut paths = entries.collect::<Result<Vec<_>, HarnessError>>()?;
+    paths.retain(|path| path.extension().is_some_and(|ending| ending == extension));
+    paths.sort();
+    Ok(paths)
+}
+
 impl FromIterator<(RangeKey, Range)> for Ranges {
     fn from_iter<T: IntoIterator<Item = (RangeKey, Range)>>(ranges: T) -> Self {
         Self(ranges.into_iter().collect())
     }
 }
 
-/// Ranges while runs are added.
+/// Ranges while runs are added: the worst values of each run, for each deviation that may be their cause.
 #[derive(Clone, Debug, Default)]
-pub struct RangesMeter(BTreeMap<RangeKey, Vec<Worst>>);
+pub struct RangesMeter(BTreeMap<RangeKey, BTreeMap<String, Vec<Worst>>>);
 
 /// The worst value of one run.
 #[derive(Clone, Copy, Debug)]
@@ -203,40 +231,66 @@ struct Worst {
 }
 
 impl RangesMeter {
-    /// Adds the rows of one run. Rows of a deviation with the verdict `fail` count with their value, whether they miss their bound in this
-    /// run or not.
-    pub fn add(&mut self, deviations: &[Deviation], records: &[Row]) {
-        let mut run: BTreeMap<RangeKey, Worst> = BTreeMap::new();
+    /// Adds the rows of one run, with the gates that know its robots. Rows of a deviation with the verdict `fail` count with their value,
+    /// whether they miss their bound in this run or not.
+    pub fn add(&mut self, gates: &Gates, records: &[Row]) {
+        let mut run: BTreeMap<(RangeKey, String), Worst> = BTreeMap::new();
         for row in records.iter().filter(|row| row.bound.is_some()) {
-            let Some(value) = row.value.filter(|_| deviations.iter().any(|known| known.is_measured() && known.is_about(row))) else {
-                continue;
-            };
+            let Some(value) = row.value else { continue };
             let outside = matches!(row.verdict, Verdict::Fail | Verdict::Deviation);
-            let known = run.entry(RangeKey::of(row)).or_insert(Worst { value, outside });
-            *known = Worst { value: worst(known.value, value), outside: known.outside || outside };
+            for known in gates.measured(row) {
+                let found = run.entry((RangeKey::of(row), known.id.clone())).or_insert(Worst { value, outside });
+                *found = Worst { value: worst(found.value, value), outside: found.outside || outside };
+            }
         }
-        for (key, found) in run {
-            self.0.entry(key).or_default().push(found);
+        for ((key, id), found) in run {
+            self.0.entry(key).or_default().entry(id).or_default().push(found);
         }
     }
 
-    /// The ranges of the keys that were outside their bound in one of the runs.
-    pub fn ranges(&self) -> Ranges {
-        let range = |runs: &Vec<Worst>| Range {
-            low: -runs.iter().map(|run| -run.value).fold(f64::NEG_INFINITY, worst),
-            high: runs.iter().map(|run| run.value).fold(0.0, worst),
-            outside: runs.iter().filter(|run| run.outside).count() as u64,
-            seeds: runs.len() as u64,
-        };
-        let known = self.0.iter().map(|(key, runs)| (key.clone(), range(runs))).filter(|(_, range)| range.outside > 0);
-        Ranges(known.collect())
+    /// The ranges of the keys that were outside their bound in one of the runs. If several deviations may be the cause, `known` says which
+    /// one it is: the ranges so far, of any version.
+    ///
+    /// # Errors
+    /// A sentence that names the key and the deviations, if nothing says which one it is.
+    pub fn ranges(&self, known: &Ranges) -> Result<Ranges, String> {
+        let mut ranges = BTreeMap::new();
+        for (key, causes) in &self.0 {
+            let outside: Vec<(&String, &Vec<Worst>)> = causes.iter().filter(|(_, runs)| runs.iter().any(|run| run.outside)).collect();
+            let known = || known.iter().find(|(other, _)| other.is_alike(key)).map(|(_, range)| range.deviation.as_str());
+            let (id, runs) = match outside.as_slice() {
+                [] => continue,
+                [one] => *one,
+                several => {
+                    let known = known();
+                    *several.iter().find(|(id, _)| Some(id.as_str()) == known).ok_or_else(|| {
+                        let ids: Vec<&str> = several.iter().map(|(id, _)| id.as_str()).collect();
+                        format!(
+                            "{key}: the deviations {} may be its cause; add a row of the right one to ci/deviations/SUITE.csv, with any size, \
+                             and measure again",
+                            ids.join(", ")
+                        )
+                    })?
+                }
+            };
+            let range = Range {
+                deviation: id.clone(),
+                low: -runs.iter().map(|run| -run.value).fold(f64::NEG_INFINITY, worst),
+                high: runs.iter().map(|run| run.value).fold(0.0, worst),
+                outside: runs.iter().filter(|run| run.outside).count() as u64,
+                seeds: runs.len() as u64,
+            };
+            ranges.insert(key.clone(), range);
+        }
+        Ok(Ranges(ranges))
     }
 
-    /// How far the extreme run of each key is from the others, as sorted factors: largest / second largest. And second smallest / smallest,
+    /// How far the extreme run of each range is from the others, as sorted factors: largest / second largest. And second smallest / smallest,
     /// if every run was outside its bound. [`SLACK`] is chosen from them.
-    pub fn leaps(&self) -> (Vec<f64>, Vec<f64>) {
+    pub fn leaps(&self, ranges: &Ranges) -> (Vec<f64>, Vec<f64>) {
         let (mut up, mut down) = (Vec::new(), Vec::new());
-        for runs in self.0.values().filter(|runs| runs.len() > 1 && runs.iter().any(|run| run.outside)) {
+        let measured = ranges.0.iter().filter_map(|(key, range)| self.0.get(key)?.get(&range.deviation));
+        for runs in measured.filter(|runs| runs.len() > 1) {
             let mut values: Vec<f64> = runs.iter().map(|run| run.value).collect();
             values.sort_unstable_by(f64::total_cmp);
             let last = values.len() - 1;

@@ -24,7 +24,7 @@ pub struct Suite {
     pub thorough: bool,
     /// The robots.
     pub robots: Vec<RobotEntry>,
-    /// The names of its tables, each that of a study.
+    /// The names of its tables in alphabetical order, each that of a study.
     pub studies: Vec<String>,
     text: String,
     path: PathBuf,
@@ -177,7 +177,7 @@ impl Suite {
     }
 }
 
-/// The tables and keys of a suite's text, in their order.
+/// The tables and keys of a suite's text, in alphabetical order.
 fn document<'a>(text: &'a str, path: &Path) -> Result<DeTable<'a>, HarnessError> {
     let wrong = |error: toml::de::Error| HarnessError::Config { path: path.to_owned(), message: error.to_string() };
     Ok(DeTable::parse(text).map_err(wrong)?.into_inner())

@@ -2,10 +2,12 @@
 
 #[path = "by_hand/main.rs"]
 mod by_hand;
+mod classes;
 mod configuration;
 mod external;
 mod gates;
 mod measures;
 mod normalised;
+mod properties;
 mod resume;
 mod truth;

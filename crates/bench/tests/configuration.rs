@@ -1,13 +1,14 @@
-//! Files that users write: an error in `gates.toml`, `deviations.toml` or a suite names the file and the key. Every unknown key is an
-//! error.
+//! Files that users write: an error in `gates.toml`, a file of `deviations/`, `engines.toml` or a suite names the file and the key or entry.
+//! Every unknown key is an error.
 
 use featherbench_bench::{Counts, Engines, FileFormat, Gates, HarnessError, NoSettings, Ranges, Suite};
 use std::collections::BTreeMap;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 const GATE: &str = "[[gate]]\nstudy = \"agreement\"\nquantities = [\"id\"]\nmetric = \"scaled\"\nbound = 1e-14\nreason = \"rounding\"\n";
-const DEVIATION: &str = "[[deviation]]\nengine = \"e\"\nversion = \"1\"\nrobots = [\"m\"]\nverdict = \"fail\"\nreason = \"known\"\n";
-const NOT_OFFERED: &str = "[[not_offered]]\nengine = \"e\"\nversion = \"1\"\nrobots = [\"m\"]\nreason = \"none\"\n";
+const DEVIATION: &str =
+    "version = \"1\"\n[[deviation]]\nid = \"k\"\nverdict = \"fail\"\nreason = \"known\"\nreproduction = \"not reproduced\"\n";
+const ENGINE: &str = "[e]\ntitle = \"T\"\npackage = { name = \"p\", version = \"1\", licence = \"MIT\", home = \"https://example.org\" }\nstart = { kind = \"python\", module = \"m\" }\n[[e.lacks]]\nrobots = [\"m\"]\nreason = \"none\"\n";
 const SUITE: &str = "about = \"a suite\"\nseed = 1\n[[robot]]\ngenerate = \"humanoid\"\nfamily = \"humanoid\"\n";
 
 /// Asserts that an error names its file and contains these words.
@@ -24,15 +25,21 @@ fn names<T: std::fmt::Debug>(result: Result<T, HarnessError>, file: &Path, words
 fn gates(gates: &str, deviations: &str) -> (Result<Gates, HarnessError>, tempfile::TempDir) {
     let folder = tempfile::tempdir().unwrap();
     std::fs::write(folder.path().join("gates.toml"), gates).unwrap();
-    std::fs::write(folder.path().join("deviations.toml"), deviations).unwrap();
-    (Gates::read(folder.path()), folder)
+    let path = file_of(&folder);
+    std::fs::create_dir(path.parent().unwrap()).unwrap();
+    std::fs::write(path, deviations).unwrap();
+    (Gates::read(folder.path(), &Engines::default()), folder)
+}
+
+/// The file of the known deviations of the engine `e`.
+fn file_of(folder: &tempfile::TempDir) -> PathBuf {
+    folder.path().join("deviations/e.toml")
 }
 
 #[test]
 fn gates_name_what_is_wrong() {
     assert!(gates(GATE, DEVIATION).0.is_ok());
-    assert!(gates(GATE, "").0.is_ok(), "nothing need deviate");
-    assert!(gates(GATE, &format!("{DEVIATION}{NOT_OFFERED}")).0.is_ok());
+    assert!(gates(GATE, "version = \"1\"\n").0.is_ok(), "nothing need deviate");
     let cases = [
         (format!("{GATE}max_dept = 20\n"), "max_dept"),
         (GATE.replace("bound = 1e-14\n", ""), "bound"),
@@ -46,7 +53,7 @@ fn gates_name_what_is_wrong() {
         (String::new(), "gate"),
     ];
     for (text, word) in cases {
-        let (result, folder) = gates(&text, "");
+        let (result, folder) = gates(&text, DEVIATION);
         names(result, &folder.path().join("gates.toml"), &[word]);
     }
 }
@@ -54,31 +61,73 @@ fn gates_name_what_is_wrong() {
 #[test]
 fn deviations_name_what_is_wrong() {
     let cases = [
-        (format!("{DEVIATION}upto = 1e-9\n"), "upto"),
+        (format!("{DEVIATION}upto = 1e-9\n"), "'k': unknown key 'upto'"),
         (DEVIATION.replace("version = \"1\"\n", ""), "version"),
-        (DEVIATION.replace("robots = [\"m\"]\n", ""), "robots"),
+        (DEVIATION.replace("id = \"k\"\n", ""), "id"),
+        (DEVIATION.replace("\"k\"", "\"k, l\""), "id"),
+        (DEVIATION.replace("\"k\"", "\"\""), "id"),
+        (format!("{DEVIATION}{}", DEVIATION.replace("version = \"1\"\n", "")), "same id"),
+        (DEVIATION.replace("reproduction = \"not reproduced\"\n", ""), "reproduction"),
+        (DEVIATION.replace("not reproduced", "no"), "'k': there is no [[reproduction]] named 'no'"),
+        (format!("{DEVIATION}joint = [\"hinge\"]\n"), "'hinge'"),
+        (format!("{DEVIATION}armature = [\"hinge\"]\n"), "'hinge'"),
+        (format!("{DEVIATION}armature = \"hinge\"\n"), "kinds of joints"),
+        (format!("{DEVIATION}base = \"loose\"\n"), "loose"),
+        (format!("{DEVIATION}feature = [\"round\"]\n"), "round"),
+        (format!("{DEVIATION}dofs_above = \"many\"\n"), "many"),
+        (twice("base = \"free\"", "base = \"free\"\nquantities = [\"id\"]"), "'l': it is about rows that 'k' is about"),
         (DEVIATION.replace("reason = \"known\"\n", ""), "reason"),
         (DEVIATION.replace("\"fail\"", "\"pass\""), "pass"),
         (DEVIATION.replace("\"fail\"", "\"Fail\""), "Fail"),
-        (DEVIATION.replace("\"fail\"", "\"skip\""), "[[not_offered]]"),
+        (DEVIATION.replace("\"fail\"", "\"skip\""), "[[e.lacks]]"),
         (format!("{DEVIATION}range = [1e-14, 1e-13]\n"), "range"),
-        (NOT_OFFERED.replace("reason", "cause"), "cause"),
-        (format!("{NOT_OFFERED}verdict = \"skip\"\n"), "verdict"),
-        (DEVIATION.replace("[\"m\"]", "\"m\""), "robots"),
+        (format!("{DEVIATION}robots = \"m\"\n"), "sequence"),
         (DEVIATION.replace("[[deviation]]", "[[deviations]]"), "deviations"),
     ];
     for (text, word) in cases {
         let (result, folder) = gates(GATE, &text);
-        names(result, &folder.path().join("deviations.toml"), &[word]);
+        names(result, &file_of(&folder), &[word]);
+    }
+    assert!(gates(GATE, &twice("base = \"free\"", "base = \"fixed\"")).0.is_ok());
+}
+
+/// The table of a native oracle of the engine, and the beginning of the next.
+const NATIVE: &str = "[n]\ntitle = \"T\"\nof = \"e\"\nstart = { kind = \"native\", folder = \"f\", language = \"C\", compilers = [\"cc\"], packages = [\"p\"] }\n[[n";
+
+/// Two deviations that are errors, with further keys of each.
+fn twice(first: &str, second: &str) -> String {
+    let error = DEVIATION.replace("fail", "error");
+    let other = error.replace("version = \"1\"\n", "").replace("\"k\"", "\"l\"");
+    format!("{error}{first}\n{other}{second}\n")
+}
+
+#[test]
+fn lacks_name_what_is_wrong() {
+    let path = Path::new("engines.toml");
+    let engines = Engines::parse(ENGINE, path).unwrap();
+    let lacks = engines.lacks();
+    assert_eq!((lacks[0].engine.as_str(), lacks[0].version.as_str()), ("e", "1"));
+    let native = Engines::parse(&ENGINE.replace("e.lacks", "n.lacks").replace("[[n", NATIVE), path).unwrap();
+    assert_eq!((native.lacks()[0].engine.as_str(), native.lacks()[0].version.as_str()), ("n", "1"));
+    let cases = [
+        (ENGINE.replace("reason", "cause"), "reason"),
+        (format!("{ENGINE}verdict = \"skip\"\n"), "unknown key 'verdict'"),
+        (format!("{ENGINE}joint = [\"hinge\"]\n"), "'hinge'"),
+        (ENGINE.replace("lacks", "lack"), "lack"),
+        (ENGINE.replace("version", "release"), "release"),
+    ];
+    for (text, word) in cases {
+        names(Engines::parse(&text, path), path, &[word]);
     }
 }
 
 #[test]
 fn missing_files_are_named() {
     let folder = tempfile::tempdir().unwrap();
-    names(Gates::read(folder.path()), &folder.path().join("gates.toml"), &[]);
+    let none = Engines::default();
+    names(Gates::read(folder.path(), &none), &folder.path().join("gates.toml"), &[]);
     std::fs::write(folder.path().join("gates.toml"), GATE).unwrap();
-    names(Gates::read(folder.path()), &folder.path().join("deviations.toml"), &[]);
+    names(Gates::read(folder.path(), &none), &folder.path().join("deviations"), &[]);
     let path = folder.path().join("none.toml");
     names(Suite::read(&path), &path, &[]);
 }
@@ -118,7 +167,7 @@ fn tables_name_what_is_wrong() {
     let suite = |more: &str| Suite::parse(&format!("{SUITE}{more}"), path).unwrap();
     let none = |more: &str| suite(more).settings::<NoSettings>("toy");
     assert_eq!((none("").unwrap(), none("[toy]\n").unwrap()), (None, Some(NoSettings {})));
-    assert_eq!(suite("[toy]\n[other]\nx = 1\n").studies, ["toy", "other"]);
+    assert_eq!(suite("[toy]\n[other]\nx = 1\n").studies, ["other", "toy"]);
     names(none("[toy]\nsize = 2\n"), path, &["[toy]", "line 7", "size"]);
     let sizes = |more: &str| suite(more).settings::<BTreeMap<String, u32>>("toy");
     assert_eq!(sizes("[toy]\nsize = 2\n").unwrap().unwrap()["size"], 2);
@@ -151,11 +200,15 @@ fn counts_name_what_is_wrong() {
 #[test]
 fn our_own_files_are_right() {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
-    let gates = Gates::read(&root.join("ci")).unwrap();
+    let engines = Engines::read(&root.join("oracles/engines.toml")).unwrap();
+    let gates = Gates::read(&root.join("ci"), &engines).unwrap();
     for known in gates.deviations().iter().filter(|known| known.is_measured()) {
-        let sizes = gates.ranges().iter().filter(|(key, _)| known.has(key)).count();
-        assert!(sizes > 0, "a deviation without a size excuses nothing: {} {:?}", known.engine, known.robots);
+        let sizes = gates.ranges().iter().filter(|(key, range)| known.has(key) && range.deviation == known.id).count();
+        assert!(sizes > 0, "a deviation without a size excuses nothing: {} {}", known.engine, known.id);
     }
+    let classes = gates.deviations().iter().map(|known| &known.class).chain(gates.lacks().iter().map(|lack| &lack.class));
+    let names: Vec<&String> = classes.flat_map(|class| class.names()).collect();
+    assert!(names.len() <= 22, "robots are told by their properties; a name needs a reason: {names:?}");
     let suites: Vec<_> = std::fs::read_dir(root.join("datasets/suites")).unwrap().map(|entry| entry.unwrap().path()).collect();
     let suites: Vec<_> = suites.iter().filter(|path| path.extension().is_some_and(|ending| ending == "toml")).collect();
     assert!(suites.len() >= 5, "{} suites", suites.len());
@@ -166,28 +219,33 @@ fn our_own_files_are_right() {
 
 #[test]
 fn reproductions_name_what_is_wrong() {
-    let known = "[[reproduction]]\nname = \"loss\"\nengine = \"e\"\nversion = \"1\"\ncondition = \"always\"\nmeasure = \"a share\"\nrange = [0.1, 0.4]\nupstream = \"none found\"\n";
-    assert_eq!(gates(GATE, known).0.unwrap().reproductions().len(), 1);
-    assert!(gates(GATE, &format!("{DEVIATION}reproduction = \"loss\"\n{known}")).0.is_ok());
+    let known = "[[reproduction]]\nname = \"e_loss\"\ncondition = \"always\"\nmeasure = \"a share\"\nrange = [0.1, 0.4]\nupstream = \"none found\"\n";
+    let shown = |name: &str| DEVIATION.replace("not reproduced", name);
+    let alone = format!("version = \"1\"\n{known}");
+    let read = gates(GATE, &alone).0.unwrap();
+    assert_eq!(read.reproductions().len(), 1);
+    assert_eq!((read.reproductions()[0].engine.as_str(), read.reproductions()[0].version.as_str()), ("e", "1"));
+    assert!(gates(GATE, &format!("{}{known}", shown("e_loss"))).0.is_ok());
     let cases = [
-        (known.replace("[0.1, 0.4]", "[0.4, 0.1]"), "range"),
-        (known.replace("[0.1, 0.4]", "[0.0, 0.1]"), "range"),
-        (known.replace("[0.1, 0.4]", "[0.1]"), "range"),
-        (known.replace("upstream = \"none found\"\n", ""), "upstream"),
-        (format!("{known}seeds = 20\n"), "seeds"),
-        (format!("{DEVIATION}reproduction = \"gain\"\n{known}"), "gain"),
+        (alone.replace("[0.1, 0.4]", "[0.4, 0.1]"), "'e_loss': range"),
+        (alone.replace("[0.1, 0.4]", "[0.0, 0.1]"), "'e_loss': range"),
+        (alone.replace("[0.1, 0.4]", "[0.1]"), "range"),
+        (alone.replace("upstream = \"none found\"\n", ""), "upstream"),
+        (format!("{alone}seeds = 20\n"), "seeds"),
+        (alone.replace("e_loss", "f_loss"), "e_"),
+        (format!("{}{known}", shown("e_gain")), "e_gain"),
     ];
     for (text, word) in cases {
         let (result, folder) = gates(GATE, &text);
-        names(result, &folder.path().join("deviations.toml"), &[word]);
+        names(result, &file_of(&folder), &[word]);
     }
 }
 
 /// The files that `gate --ranges … --write` writes are data of a gate: each line is checked.
 #[test]
 fn ranges_name_what_is_wrong() {
-    const HEAD: &str = "engine,version,method,quantity,robot,metric,low,high,outside,seeds\n";
-    const LINE: &str = "e,1,rnea,id,m,scaled,1e-14,2e-14,20,20\n";
+    const HEAD: &str = "engine,version,method,quantity,robot,metric,deviation,low,high,outside,seeds\n";
+    const LINE: &str = "e,1,rnea,id,m,scaled,k,1e-14,2e-14,20,20\n";
     let path = Path::new("default.csv");
     let parse = |text: &str| Ranges::parse(text, path);
     assert_eq!(parse(&format!("{HEAD}{LINE}")).unwrap().iter().count(), 1);
@@ -196,7 +254,7 @@ fn ranges_name_what_is_wrong() {
         (String::new(), "line 1"),
         (HEAD.replace("low,high", "high,low") + LINE, "line 1"),
         (format!("{HEAD}{LINE}{LINE}"), "line 3"),
-        (format!("{HEAD}{}", LINE.replace(",20,20", ",20")), "9 columns"),
+        (format!("{HEAD}{}", LINE.replace(",20,20", ",20")), "10 columns"),
         (format!("{HEAD}{}", LINE.replace("1e-14,", "small,")), "low"),
         (format!("{HEAD}{}", LINE.replace("2e-14", "NaN")), "high"),
         (format!("{HEAD}{}", LINE.replace("2e-14", "inf")), "high"),
@@ -216,17 +274,13 @@ fn ranges_name_what_is_wrong() {
     let here = Path::new("ci");
     let sizes = |line: &str| parse(&format!("{HEAD}{line}")).unwrap();
     assert!(known().with_ranges(sizes(LINE), here).is_ok());
-    for (old, new) in [("e,1", "f,1"), ("e,1", "e,2"), (",m,", ",other,")] {
-        names(
-            known().with_ranges(sizes(&LINE.replace(old, new)), here),
-            &here.join("deviations"),
-            &["deviations.toml names no such deviation"],
-        );
+    for (old, new) in [("e,1", "f,1"), ("e,1", "e,2"), (",k,", ",other,")] {
+        names(known().with_ranges(sizes(&LINE.replace(old, new)), here), &here.join("deviations"), &[".toml names no such deviation"]);
     }
     let narrow = format!("{DEVIATION}method = \"crba\"\nquantities = [\"mass_matrix\"]\n");
     let narrow = || gates(GATE, &narrow).0.unwrap();
-    assert!(narrow().with_ranges(sizes("e,1,crba,mass_matrix,m,scaled,1e-14,2e-14,20,20\n"), here).is_ok());
-    for line in ["e,1,rnea,mass_matrix,m,scaled,1e-14,2e-14,20,20\n", "e,1,crba,id,m,scaled,1e-14,2e-14,20,20\n"] {
+    assert!(narrow().with_ranges(sizes("e,1,crba,mass_matrix,m,scaled,k,1e-14,2e-14,20,20\n"), here).is_ok());
+    for line in ["e,1,rnea,mass_matrix,m,scaled,k,1e-14,2e-14,20,20\n", "e,1,crba,id,m,scaled,k,1e-14,2e-14,20,20\n"] {
         assert!(narrow().with_ranges(sizes(line), here).is_err(), "{line}");
     }
     let error = || gates(GATE, &DEVIATION.replace("\"fail\"", "\"error\"")).0.unwrap();

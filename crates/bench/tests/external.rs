@@ -18,7 +18,7 @@ fn red(gates: &Gates, records: &[Row]) -> Vec<String> {
 fn only_an_external_engine_may_leave_out_what_it_does_not_have() {
     let skip = |engine: &str| row(engine).without_value(Verdict::Skip, "no such joint");
     let (plain, with_external) = (Gates::default(), Gates::default().with_external(&["mine"]));
-    let unexplained = "rows that an engine does not offer and ci/deviations.toml does not name";
+    let unexplained = "rows that an engine does not offer and oracles/engines.toml does not name";
     assert_eq!(red(&plain, &[skip("mine")]), [unexplained]);
     assert!(red(&with_external, &[skip("mine")]).is_empty());
     for engine in ["pinocchio", "featherbench", "mine2", ""] {

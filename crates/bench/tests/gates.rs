@@ -1,6 +1,6 @@
 //! Gates and known deviations on rows made by hand: each condition in both directions.
 
-use featherbench_bench::{Counts, Gates, Range, RangeKey, Ranges, RangesMeter, SLACK, Suite};
+use featherbench_bench::{Counts, DeviationFile, Engines, Gates, Range, RangeKey, Ranges, RangesMeter, SLACK, Suite};
 use featherbench_results::{Expectation, Kind, Relation, Row, RunInfo, Verdict};
 use std::path::Path;
 
@@ -43,26 +43,33 @@ times = "depth_and_amplification"
 reason = "per level and growth"
 "#;
 
-/// A failure of one engine, version, method, quantity and case; an error; and something that is not offered.
+/// A failure of one engine, version, method, quantity and case, and an error.
 const DEVIATIONS: &str = r#"
-[[deviation]]
-engine = "crane"
 version = "2"
+[[deviation]]
+id = "cables"
 method = "rnea"
 quantities = ["id"]
 robots = ["gantry", "hoist-*"]
 states = ["fast"]
 verdict = "fail"
 reason = "cables stretch"
+reproduction = "not reproduced"
 [[deviation]]
-engine = "crane"
-version = "2"
+id = "foot"
 robots = ["derrick"]
 verdict = "error"
 reason = "it has no foot"
-[[not_offered]]
-engine = "crane"
-version = "2"
+reproduction = "not reproduced"
+"#;
+
+/// Something that the engine does not offer.
+const ENGINES: &str = r#"
+[crane]
+title = "T"
+package = { name = "crane", version = "2", licence = "MIT", home = "https://example.org" }
+start = { kind = "python", module = "m" }
+[[crane.lacks]]
 quantities = ["com"]
 robots = ["hoist-*"]
 states = ["zero"]
@@ -70,7 +77,18 @@ reason = "no mass is known"
 "#;
 
 fn plain() -> Gates {
-    Gates::parse(GATES, DEVIATIONS, Path::new("here")).unwrap()
+    let engines = Engines::parse(ENGINES, Path::new("engines.toml")).unwrap();
+    gates().with_deviations(crane(DEVIATIONS)).with_lacks(engines.lacks())
+}
+
+/// The thresholds alone.
+fn gates() -> Gates {
+    Gates::parse(GATES, Path::new("gates.toml")).unwrap()
+}
+
+/// The known deviations of the engine in question.
+fn crane(text: &str) -> DeviationFile {
+    DeviationFile::parse(text, Path::new("deviations/crane.toml")).unwrap()
 }
 
 /// A row of the engine in question.
@@ -94,7 +112,7 @@ fn on(model: &str) -> Row {
 }
 
 fn range(low: f64, high: f64, outside: u64, seeds: u64) -> Range {
-    Range { low, high, outside, seeds }
+    Range { deviation: "cables".into(), low, high, outside, seeds }
 }
 
 /// The gates with one range of a row's key.
@@ -159,6 +177,9 @@ fn a_deviation_excuses_its_own_rows_up_to_its_range() {
     let known = judged(row(), 2e-14);
     assert_eq!((known.verdict, known.value), (Verdict::Deviation, Some(2e-14)));
     assert_eq!(known.reason, "cables stretch (2e-14 is not at most 1e-14)");
+    assert_eq!(known.params, "{\"deviation\":\"cables\"}", "no program reads the reason");
+    let with_more = judged(Row { params: "{\"base\":\"free\"}".into(), ..row() }, 2e-14);
+    assert_eq!(with_more.params, "{\"base\":\"free\",\"deviation\":\"cables\"}");
     assert_eq!(judged(row(), SLACK * 3e-14).verdict, Verdict::Deviation, "as far as a twenty-first draw may go");
     let beyond = judged(row(), SLACK * 3.001e-14);
     assert_eq!(beyond.verdict, Verdict::Fail);
@@ -230,7 +251,10 @@ fn a_row_that_is_no_pass_is_red_in_any_run() {
         let of = |verdict| Row { verdict, ..pass.clone() };
         assert_eq!(unmet(&[pass.clone(), of(Verdict::Fail)]), ["rows outside their bound"]);
         assert_eq!(unmet(&[pass.clone(), of(Verdict::Error)]), ["rows without a value that was due"]);
-        assert_eq!(unmet(&[pass.clone(), of(Verdict::Skip)]), ["rows that an engine does not offer and ci/deviations.toml does not name"]);
+        assert_eq!(
+            unmet(&[pass.clone(), of(Verdict::Skip)]),
+            ["rows that an engine does not offer and oracles/engines.toml does not name"]
+        );
         assert_eq!(unmet(&[pass.clone(), of(Verdict::Info), of(Verdict::Deviation)]), [""; 0]);
         assert_eq!(unmet(&[]).len(), usize::from(complete), "rows at all");
     }
@@ -287,15 +311,15 @@ fn a_deviation_must_be_seen_where_its_robots_are() {
     let gates = with(&row(), range(2e-14, 3e-14, 20, 20));
     let seen = gates.judge(row(), 2.5e-14, 1.0);
     assert_eq!(red(&gates, std::slice::from_ref(&seen)), [""; 0]);
-    let gone = "known deviation of crane still seen: cables stretch";
-    let small = "robots on which a known deviation of crane is smaller than known: cables stretch";
+    let gone = "known deviation of crane, 'cables', still seen: cables stretch";
+    let small = "robots on which a known deviation of crane, 'cables', is smaller than known: cables stretch";
     assert_eq!(red(&gates, &[gates.judge(row(), 1e-15, 1.0)]), [gone, small]);
     // Rows of another version or method are expected as well, and show nothing.
     for other in [Row { engine_version: "3".into(), ..row() }, Row { method: "aba".into(), ..row() }] {
         assert_eq!(red(&gates, &[gates.judge(other, 1e-15, 1.0)]), [gone]);
     }
     // A row with another cause does not count.
-    let other = Row { reason: "winds".into(), ..seen.clone() };
+    let other = Row { params: "{\"deviation\":\"winds\"}".into(), ..seen.clone() };
     assert_eq!(red(&gates, &[other]), [gone]);
     assert_eq!(red(&gates, &[Row { verdict: Verdict::Info, ..seen.clone() }]), [gone]);
     // Nothing is expected if none of its robots, quantities or cases is asked, or if the engine is external.
@@ -312,7 +336,7 @@ fn a_deviation_must_be_seen_where_its_robots_are() {
     let error = || on("derrick").without_value(Verdict::Error, "it says so");
     assert_eq!(red(&gates, &[gates.explain(error())]), [""; 0]);
     let answered = on("derrick").gated(1e-15, Relation::Le, 1e-14);
-    assert_eq!(red(&gates, &[answered]), ["known deviation of crane still seen: it has no foot"]);
+    assert_eq!(red(&gates, &[answered]), ["known deviation of crane, 'foot', still seen: it has no foot"]);
 
     let lacking = || Row { quantity: "com".into(), states: "zero".into(), ..on("hoist-9") };
     assert_eq!(red(&gates, &[gates.explain(lacking().without_value(Verdict::Skip, "it says so"))]), [""; 0]);
@@ -322,7 +346,7 @@ fn a_deviation_must_be_seen_where_its_robots_are() {
 /// The worst of a robot's rows has the known size, or the list must be corrected. If not every seed showed it, no value is too small.
 #[test]
 fn a_deviation_must_be_as_large_as_known() {
-    let small = "robots on which a known deviation of crane is smaller than known: cables stretch";
+    let small = "robots on which a known deviation of crane, 'cables', is smaller than known: cables stretch";
     let judged = |gates: &Gates, values: &[f64]| -> Vec<String> {
         let rows: Vec<Row> = values.iter().map(|&value| gates.judge(row(), value, 1.0)).collect();
         red(gates, &rows)
@@ -343,7 +367,7 @@ fn a_deviation_must_be_as_large_as_known() {
 
 #[test]
 fn a_computed_bound_must_be_sharp_somewhere() {
-    let gates = Gates::parse(GATES, "", Path::new("here")).unwrap();
+    let gates = gates();
     let bounded = |engine: &str, method: &str, joints: &str, base: &str, bound: f64| Row {
         engine: engine.into(),
         method: method.into(),
@@ -388,30 +412,27 @@ fn ranges_are_measured_over_runs() {
         values.iter().map(|&(model, case, value)| gates.judge(Row { states: case.into(), ..on(model) }, value, 1.0)).collect()
     };
     let mut meter = RangesMeter::default();
-    meter.add(
-        gates.deviations(),
-        &run(&[("gantry", "fast", 2e-14), ("gantry", "fast", 4e-14), ("gantry", "zero", 1e-9), ("hoist-1", "fast", 5e-15)]),
-    );
-    meter.add(gates.deviations(), &run(&[("gantry", "fast", 1.5e-14), ("hoist-1", "fast", 3e-14), ("hoist-2", "fast", 1e-15)]));
-    meter.add(gates.deviations(), &run(&[("gantry", "fast", 8e-14), ("pulley", "fast", 1e-9)]));
-    let ranges = meter.ranges();
+    meter.add(&gates, &run(&[("gantry", "fast", 2e-14), ("gantry", "fast", 4e-14), ("gantry", "zero", 1e-9), ("hoist-1", "fast", 5e-15)]));
+    meter.add(&gates, &run(&[("gantry", "fast", 1.5e-14), ("hoist-1", "fast", 3e-14), ("hoist-2", "fast", 1e-15)]));
+    meter.add(&gates, &run(&[("gantry", "fast", 8e-14), ("pulley", "fast", 1e-9)]));
+    let ranges = meter.ranges(&Ranges::default()).unwrap();
     let expected: Ranges = [(RangeKey::of(&row()), range(1.5e-14, 8e-14, 3, 3)), (RangeKey::of(&on("hoist-1")), range(5e-15, 3e-14, 1, 2))]
         .into_iter()
         .collect();
     assert_eq!(ranges, expected, "the worst of each run; another case, a robot always inside, and one without a cause do not count");
-    let (up, down) = meter.leaps();
+    let (up, down) = meter.leaps(&ranges);
     assert_eq!((up.len(), down.len()), (2, 1));
     assert!((up[0] - 2.0).abs() < 1e-12 && (up[1] - 6.0).abs() < 1e-12 && (down[0] - 4.0 / 1.5).abs() < 1e-12, "{up:?} {down:?}");
     // Failures that are excused already are the same failures.
     let gates = plain().with_ranges(ranges.clone(), Path::new("here")).unwrap();
     let mut again = RangesMeter::default();
-    again.add(gates.deviations(), &[gates.judge(row(), 4e-14, 1.0)]);
-    assert_eq!(again.ranges().get(&row()), Some(&range(4e-14, 4e-14, 1, 1)));
+    again.add(&gates, &[gates.judge(row(), 4e-14, 1.0)]);
+    assert_eq!(again.ranges(&ranges).unwrap().get(&row()), Some(&range(4e-14, 4e-14, 1, 1)));
     assert_eq!(ranges.get(&on("hoist-2")), None);
     // And the text gives the same ranges.
     let text = ranges.to_csv();
     assert_eq!(Ranges::parse(&text, Path::new("ranges.csv")).unwrap(), ranges);
-    assert!(text.contains("crane,2,rnea,id,gantry,scaled,1.5e-14,8e-14,3,3\n"), "{text}");
+    assert!(text.contains("crane,2,rnea,id,gantry,scaled,cables,1.5e-14,8e-14,3,3\n"), "{text}");
 }
 
 /// A robot of two suites has the range of both.
@@ -427,4 +448,8 @@ fn ranges_of_several_files_span_both() {
     write("b.csv", range(1e-14, 2e-14, 4, 10));
     std::fs::write(folder.path().join("README.md"), "no ranges").unwrap();
     assert_eq!(Ranges::read(folder.path()).unwrap().get(&row()), Some(&range(1e-14, 3e-14, 24, 30)));
+    // But not of two deviations.
+    write("b.csv", Range { deviation: "winds".into(), ..range(1e-14, 2e-14, 4, 10) });
+    let error = Ranges::read(folder.path()).unwrap_err().to_string();
+    assert!(["b.csv", "gantry", "'winds'", "'cables'"].iter().all(|word| error.contains(word)), "{error}");
 }

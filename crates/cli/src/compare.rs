@@ -12,7 +12,7 @@ use crate::run::About;
 use crate::{outcome, report, robot_file, run, table};
 use ::featherbench_results::{ModelOrigin, Verdict};
 use featherbench_bench::run::{Opening, Run};
-use featherbench_bench::{Cell, Context, Engine, Engines, FileFormat, Gates, OWN, Robot, RobotFile, hash, provenance};
+use featherbench_bench::{Cell, Context, Engine, Engines, FileFormat, OWN, Robot, RobotFile, hash, provenance};
 use featherbench_engines::Limits;
 use featherbench_studies::{Agreement, Import};
 use std::time::{Duration, Instant, SystemTime};
@@ -43,7 +43,7 @@ pub fn compare(root: &Root, args: &CompareArgs) -> Result<(), Fail> {
     if files.is_empty() {
         return Err(ended(bad));
     }
-    let gates = Gates::read(&root.gates())?;
+    let gates = root.read_gates()?;
     let hash = hashes(&files);
     let mut robots: Vec<Robot> = Vec::new();
     eprintln!("starting {} …", engines.join(", "));

@@ -5,7 +5,7 @@ use crate::fail::Fail;
 use crate::oracles;
 use crate::robots;
 use crate::root::Root;
-use featherbench_bench::{Context, Engine, Gates};
+use featherbench_bench::{Context, Engine};
 use featherbench_engines::{Featherbench, Limits};
 use featherbench_robots::Family;
 use featherbench_studies::{Kernels, Setup};
@@ -25,7 +25,7 @@ fn text(root: &Root, args: &ListArgs) -> Result<String, Fail> {
     let loaded = robots::load(root, &args.suite, false, None)?;
     if args.cells {
         let engines: Vec<Box<dyn Engine>> = vec![Box::new(Featherbench::new())];
-        let gates = Gates::read(&root.gates())?;
+        let gates = root.read_gates()?;
         let context = Context { robots: &loaded.robots, engines: &engines, gates: &gates, seed: loaded.suite.seed };
         let (kernels, reproduce) = (featherbench_engines::timed as Kernels, oracles::reproducer(root, Limits::default()));
         let studies = featherbench_studies::of_suite(&Setup { suite: &loaded.suite, live: true, program: "", kernels, reproduce })?;

@@ -132,7 +132,14 @@ mod tests {
     }
 
     fn file(name: &str) -> RobotFile {
-        RobotFile { path: name.into(), format: FileFormat::Urdf, base: FileBase::Fixed, hash: "0".into(), links: Vec::new() }
+        RobotFile {
+            path: name.into(),
+            format: FileFormat::Urdf,
+            base: FileBase::Fixed,
+            hash: "0".into(),
+            links: Vec::new(),
+            features: Vec::new(),
+        }
     }
 
     fn patient(reason: &'static str) -> (Patient, std::sync::Arc<AtomicUsize>) {

@@ -2,27 +2,29 @@
 
 use crate::args::GateArgs;
 use crate::fail::Fail;
+use crate::report::properties;
 use crate::root::Root;
 use ::featherbench_results::{Row, RunInfo};
-use featherbench_bench::{Deviation, Gates, Ranges, RangesMeter, SEEDS, SLACK};
+use featherbench_bench::{Deviation, Engines, Gates, Ranges, RangesMeter, SEEDS, SLACK};
 use std::path::Path;
 
 /// Measures the ranges over the runs that the arguments name, the first of which is read already, prints them by cause, and writes them where
 /// that is asked.
 pub fn measure(root: &Root, args: &GateArgs, info: &RunInfo, first: &[Row]) -> Result<(), Fail> {
-    let gates = Gates::read_without_ranges(&root.gates())?;
+    let gates = Gates::read_without_ranges(&root.gates(), &Engines::read(&root.described())?)?;
+    let of_run = |folder: &Path, info: &RunInfo| Ok::<_, Fail>(gates.clone().with_robots(properties(folder, info)?)?);
     let mut meter = RangesMeter::default();
     let mut seeds = vec![info.seed];
-    meter.add(gates.deviations(), first);
+    meter.add(&of_run(&args.folder, info)?, first);
     for folder in &args.others {
         let (other, records) = ::featherbench_results::read_run(folder)?;
         check(folder, info, &other, &seeds)?;
         seeds.push(other.seed);
-        meter.add(gates.deviations(), &records);
+        meter.add(&of_run(folder, &other)?, &records);
     }
-    let ranges = meter.ranges();
+    let ranges = meter.ranges(&Ranges::read(&root.ranges())?).map_err(Fail::input)?;
     print(gates.deviations(), &ranges, seeds.len());
-    let (up, down) = meter.leaps();
+    let (up, down) = meter.leaps(&ranges);
     for (what, factors) in [("above the largest", up), ("below the smallest", down)] {
         if let (Some(median), Some(worst)) = (factors.get(factors.len() / 2), factors.last()) {
             let beyond = factors.iter().filter(|&&factor| factor > SLACK).count();
@@ -68,7 +70,7 @@ fn check(folder: &Path, first: &RunInfo, other: &RunInfo, seeds: &[u64]) -> Resu
 /// Prints each cause with the number of its robots and the span of their ranges.
 fn print(deviations: &[Deviation], ranges: &Ranges, runs: usize) {
     for deviation in deviations.iter().filter(|deviation| deviation.is_measured()) {
-        let of_it: Vec<_> = ranges.iter().filter(|(key, _)| deviation.has(key)).collect();
+        let of_it: Vec<_> = ranges.iter().filter(|(key, range)| deviation.has(key) && range.deviation == deviation.id).collect();
         let low = -of_it.iter().map(|(_, range)| -range.low).fold(f64::NEG_INFINITY, featherbench_bench::measure::worst);
         let high = of_it.iter().map(|(_, range)| range.high).fold(0.0, featherbench_bench::measure::worst);
         let always = of_it.iter().filter(|(_, range)| range.outside == range.seeds).count();
@@ -76,6 +78,6 @@ fn print(deviations: &[Deviation], ranges: &Ranges, runs: usize) {
             0 => "not seen".into(),
             count => format!("{count} ranges from {low:.1e} to {high:.1e}, {always} seen in all of {runs} runs"),
         };
-        println!("{span}: {} {}", deviation.engine, deviation.reason);
+        println!("{span}: {} {}: {}", deviation.engine, deviation.id, deviation.reason);
     }
 }

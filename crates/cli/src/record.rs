@@ -10,7 +10,7 @@ use crate::root::Root;
 use ::featherbench_results::Verdict;
 use featherbench_bench::measure::{ForwardScale, scaled_error, worst};
 use featherbench_bench::run::Progress;
-use featherbench_bench::{Cell, Context, Gates, Outcome, OutcomeStore, Quantity, Robot, Study};
+use featherbench_bench::{Cell, Context, Outcome, OutcomeStore, Quantity, Robot, Study};
 use featherbench_engines::{EngineRecording, Limits, Recording, recording_name};
 use featherbench_studies::{Agreement, OperationCounts, Repeatability};
 use std::path::Path;
@@ -22,7 +22,7 @@ const STALE: f64 = 8.0 * f64::EPSILON;
 /// Records, or checks the recordings of, a suite.
 pub fn record(root: &Root, args: &RecordArgs) -> Result<(), Fail> {
     let loaded = robots::load(root, &args.suite, false, None)?;
-    let gates = Gates::read(&root.gates())?;
+    let gates = root.read_gates()?;
     let engines = loaded.suite.engines();
     let opened = engines::open(root, &Asked::live(root, engines, Limits::default()))?;
     if let Some(missing) = opened.missing(engines).first() {

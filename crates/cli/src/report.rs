@@ -4,8 +4,8 @@ use crate::args::GateArgs;
 use crate::fail::Fail;
 use crate::ranges;
 use crate::root::Root;
-use ::featherbench_results::{Row, RunInfo, Verdict};
-use featherbench_bench::{Counts, Gates, Suite, provenance};
+use ::featherbench_results::{ModelInfo, Properties, Row, RunInfo, Verdict};
+use featherbench_bench::{Counts, Suite, provenance};
 use std::path::{Path, PathBuf};
 
 /// Writes the report of a finished run again.
@@ -34,12 +34,19 @@ pub fn gate(root: &Root, args: &GateArgs) -> Result<(), Fail> {
         return count(root, &suite, &info, &records, args.write);
     }
     let externals = info.engines.iter().filter(|engine| engine.build.contains_key(provenance::PROGRAM)).map(|engine| engine.name.as_str());
-    let gates = Gates::read(&root.gates())?.with_external(&externals.collect::<Vec<_>>());
+    let gates = root.read_gates()?.with_external(&externals.collect::<Vec<_>>()).with_robots(properties(&args.folder, &info)?)?;
     let missing: Vec<_> = info.expected.iter().filter(|condition| condition.what.starts_with("engine ")).cloned().collect();
     info.expected = gates.conditions(&suite, &records, true);
     info.expected.extend(Counts::read(&root.counts())?.conditions(&info, suite.engines(), &records));
     info.expected.extend(missing);
     conclude(&info, &records, &args.folder.join("index.html"))
+}
+
+/// The properties of a run's robots, which known deviations are told by.
+pub fn properties(folder: &Path, info: &RunInfo) -> Result<Vec<(String, Properties)>, Fail> {
+    let message =
+        || format!("{}: run.json has no properties of its robots: another version wrote it; run the suite again", folder.display());
+    info.models.iter().map(ModelInfo::known_properties).collect::<Option<_>>().ok_or_else(|| Fail::input(message()))
 }
 
 /// Prints the counts of a run, or writes them in the place of those of its suite.

@@ -1,6 +1,7 @@
 //! Where the project's data stands.
 
 use crate::fail::Fail;
+use featherbench_bench::{Engines, Gates, HarnessError};
 use std::path::{Path, PathBuf};
 
 /// The environment's name for the project's folder.
@@ -64,14 +65,19 @@ impl Root {
         self.oracles().join("conventions.toml")
     }
 
+    /// What the reference engines are, and what they do not offer.
+    pub fn described(&self) -> PathBuf {
+        self.oracles().join("engines.toml")
+    }
+
+    /// Every threshold, known deviation and lack of an engine.
+    pub fn read_gates(&self) -> Result<Gates, HarnessError> {
+        Gates::read(&self.gates(), &Engines::read(&self.described())?)
+    }
+
     /// Where the engines are installed.
     pub fn engines(&self) -> PathBuf {
         self.0.join("target/oracles")
-    }
-
-    /// The description of the engines.
-    pub fn described(&self) -> PathBuf {
-        self.oracles().join("engines.toml")
     }
 
     /// Where the engine of a Cargo workspace in `oracles/` is built.

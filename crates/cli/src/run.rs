@@ -14,7 +14,7 @@ use crate::root::Root;
 use crate::shell::quoted;
 use ::featherbench_results::{Expectation, RunInfo, Verdict};
 use featherbench_bench::run::{Opening, Run};
-use featherbench_bench::{Cell, Context, Counts, Gates, Robot, Study, provenance};
+use featherbench_bench::{Cell, Context, Counts, Robot, Study, provenance};
 use featherbench_studies::Setup;
 use regex_lite::Regex;
 use std::path::PathBuf;
@@ -30,7 +30,8 @@ pub fn run(root: &Root, args: &RunArgs) -> Result<(), Fail> {
     let program = provenance::collect(root.path());
     let studies = studies(root, &loaded, args, &program.binary_hash)?;
     let externals: Vec<&str> = args.externals.iter().map(|external: &External| external.name.as_str()).collect();
-    let gates = Gates::read(&root.gates())?.with_external(&externals);
+    let gates = root.read_gates()?.with_external(&externals);
+    let gates = gates.with_robots(loaded.robots.iter().map(|robot| (robot.name.clone(), robot.properties())))?;
     let counts = Counts::read(&root.counts())?;
     let opened = engines::open(root, &Asked::by_suite(root, args, &loaded, &studies))?;
     let context = Context { robots: &loaded.robots, engines: &opened.engines, gates: &gates, seed: suite.seed };

@@ -69,8 +69,10 @@ fn seeds_are_good() {
     }
     featherbench_bench::Suite::parse(&read("suite/small.toml"), Path::new("small.toml")).unwrap_or_else(|error| panic!("{error}"));
     let text = read("gates/small.toml");
-    let (gates, deviations) = text.split_once("\n---\n").unwrap();
-    featherbench_bench::Gates::parse(gates, deviations, Path::new("small")).unwrap_or_else(|error| panic!("{error}"));
+    let [gates, deviations, engines] = text.split("\n---\n").collect::<Vec<_>>().try_into().unwrap();
+    featherbench_bench::Gates::parse(gates, Path::new("small")).unwrap_or_else(|error| panic!("{error}"));
+    featherbench_bench::DeviationFile::parse(deviations, Path::new("small")).unwrap_or_else(|error| panic!("{error}"));
+    featherbench_bench::Engines::parse(engines, Path::new("small")).unwrap_or_else(|error| panic!("{error}"));
     assert!(featherbench_engines::Recording::from_bytes(&fuzz::recording_seed(), &fuzz::recorded_robot()).is_ok());
     for seed in [fuzz::records_seed(), fuzz::run_info_seed()] {
         assert!(std::str::from_utf8(&seed).is_ok_and(|text| !text.is_empty()));

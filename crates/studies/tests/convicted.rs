@@ -6,12 +6,13 @@
 
 use crate::support;
 
-use featherbench_bench::{Engine, Gates, Quantity, Range, RangeKey, Ranges, RangesMeter, Robot};
+use featherbench_bench::{Engine, Engines, Gates, Quantity, Range, RangeKey, Ranges, RangesMeter, Robot};
 use featherbench_engines::Featherbench;
 use featherbench_model::{Description, JointType, Model};
 use featherbench_results::{Expectation, Row, Verdict};
 use featherbench_robots::StateBatch;
 use std::collections::BTreeSet;
+use std::path::Path;
 use support::{Answer, Double, OVER_BEST, SHARPNESS, Twist, agreement, beside_native, doubles, gates, red, robot as robot_of, suite};
 
 /// A robot with every kind of joint on a free base.
@@ -365,14 +366,14 @@ fn blind_bounds_are_red() {
 }
 
 /// One known deviation of this version of an engine on robots with a name like this, with this verdict and further keys.
-fn deviation(engine: &str, verdict: &str, more: &str) -> String {
-    let names = "robots = [\"joints-*\"]\nreason = \"a known cause\"";
-    format!("[[deviation]]\nengine = \"{engine}\"\nversion = \"1\"\n{names}\nverdict = \"{verdict}\"\n{more}\n")
+fn deviation(id: &str, verdict: &str, more: &str) -> String {
+    let names = "robots = [\"joints-*\"]\nreason = \"a known cause\"\nreproduction = \"not reproduced\"";
+    format!("[[deviation]]\nid = \"{id}\"\n{names}\nverdict = \"{verdict}\"\n{more}\n")
 }
 
 /// The gates with one known deviation of the double.
 fn excusing(verdict: &str, more: &str) -> Gates {
-    gates(&deviation("double", verdict, more))
+    gates(&deviation("known", verdict, more))
 }
 
 /// The double's deviations, failures and skips, and whether a suite that expects the explained ones passes.
@@ -390,9 +391,9 @@ fn a_skip_is_red_unless_it_is_known_that_it_is_not_offered() {
     assert_eq!((deviations, green), (0, false));
     assert!(skips > EVERYTHING.len(), "the forward dynamics has two methods: {skips}");
     let not_offered = |more: &str| {
-        let text =
-            format!("[[not_offered]]\nengine = \"double\"\nversion = \"1\"\nrobots = [\"joints-*\"]\nreason = \"a known cause\"\n{more}");
-        gates(&text)
+        let engine = "[double]\ntitle = \"T\"\npackage = { name = \"double\", version = \"1\", licence = \"MIT\", home = \"https://example.org\" }\nstart = { kind = \"python\", module = \"m\" }\n";
+        let text = format!("{engine}[[double.lacks]]\nrobots = [\"joints-*\"]\nreason = \"a known cause\"\n{more}");
+        gates("").with_lacks(Engines::parse(&text, Path::new("engines.toml")).unwrap().lacks())
     };
     let (deviations, _, left, green) = trial(&not_offered(""), &robot, Double::refusing(&robot));
     assert_eq!((deviations, left, green), (0, skips, true), "what is not offered is no deviation, and no longer red");
@@ -408,7 +409,7 @@ fn a_deviation_that_is_no_longer_seen_is_red() {
     let gates = excusing("fail", "");
     let records = beside_native(&robot, &gates, Double::of(&robot));
     let conditions = suite(&records).conditions(&gates, &records, true);
-    assert_eq!(red(&conditions), ["known deviation of double still seen: a known cause"]);
+    assert_eq!(red(&conditions), ["known deviation of double, 'known', still seen: a known cause"]);
     // A part of a run has no such conditions.
     assert!(red(&suite(&records).conditions(&gates, &records, false)).is_empty());
 }
@@ -422,23 +423,28 @@ fn a_deviation_is_seen_in_its_own_rows() {
             answer.values[7] *= -1.0
         }
     };
-    let other = deviation("double", "fail", "quantities = [\"id\"]");
-    let gates = gates(&(deviation("double", "fail", "quantities = [\"bias\"]") + &other + &deviation("featherbench", "fail", "")));
+    let other = deviation("other", "fail", "quantities = [\"id\"]");
+    let gates = gates(&(deviation("known", "fail", "quantities = [\"bias\"]") + &other));
+    let gates = gates.with_deviations(support::of_engine("featherbench", &deviation("known", "fail", "")));
     let gates = measured(gates, &robot, Double::twisting(&robot, wrong), 1.0);
     let records = beside_native(&robot, &gates, Double::twisting(&robot, wrong));
     let mut suite = suite(&records);
     suite.suite.engines.as_mut().unwrap().push("featherbench".into());
     let conditions = suite.conditions(&gates, &records, true);
-    let unseen = ["known deviation of double still seen: a known cause", "known deviation of featherbench still seen: a known cause"];
+    let unseen = [
+        "known deviation of double, 'other', still seen: a known cause",
+        "known deviation of featherbench, 'known', still seen: a known cause",
+    ];
     assert_eq!(red(&conditions), unseen);
 }
 
 /// The same gates with the double's ranges in the size that it shows, times a factor.
 fn measured(gates: Gates, robot: &Robot, double: Double, factor: f64) -> Gates {
     let mut meter = RangesMeter::default();
-    meter.add(gates.deviations(), &beside_native(robot, &gates, double));
-    let scale = |(key, range): (&RangeKey, &Range)| (key.clone(), Range { low: range.low * factor, high: range.high * factor, ..*range });
-    let ranges: Ranges = meter.ranges().iter().map(scale).collect();
+    meter.add(&gates, &beside_native(robot, &gates, double));
+    let scale =
+        |(key, range): (&RangeKey, &Range)| (key.clone(), Range { low: range.low * factor, high: range.high * factor, ..range.clone() });
+    let ranges: Ranges = meter.ranges(&Ranges::default()).unwrap().iter().map(scale).collect();
     assert!(ranges.iter().count() > 0);
     gates.with_ranges(ranges, &support::gates_folder()).unwrap()
 }

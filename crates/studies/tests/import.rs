@@ -69,8 +69,14 @@ impl Engine for Parser {
 
 /// A robot with a file.
 fn filed(spec: &str) -> Robot {
-    let file =
-        RobotFile { path: "robot.urdf".into(), format: FileFormat::Urdf, base: FileBase::Fixed, hash: "0".into(), links: Vec::new() };
+    let file = RobotFile {
+        path: "robot.urdf".into(),
+        format: FileFormat::Urdf,
+        base: FileBase::Fixed,
+        hash: "0".into(),
+        links: Vec::new(),
+        features: Vec::new(),
+    };
     robot(spec).from_file(file)
 }
 

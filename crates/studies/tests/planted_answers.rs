@@ -61,7 +61,9 @@ impl Default {
         for engine in suite.engines() {
             engines.push(Box::new(Recorded::new(&recordings, engine).unwrap()));
         }
-        Self { suite, gates: Gates::read(&gates_folder()).unwrap(), robots, engines }
+        let gates = Gates::read(&gates_folder(), &support::engines()).unwrap();
+        let gates = gates.with_robots(robots.iter().map(|robot| (robot.name.clone(), robot.properties()))).unwrap();
+        Self { suite, gates, robots, engines }
     }
 }
 

@@ -3,17 +3,16 @@
 use crate::support;
 
 use featherbench_bench::run::{Silent, compare, evaluate, plan};
-use featherbench_bench::{Context, Engine, Gates, NoAnswer, OutcomeStore};
+use featherbench_bench::{Context, DeviationFile, Engine, Gates, NoAnswer, OutcomeStore};
 use featherbench_results::{Row, Verdict};
 use featherbench_studies::Reproductions;
+use std::path::Path;
 use std::sync::Arc;
 use support::Double;
 
 const KNOWN: &str = r#"
 [[reproduction]]
-name = "loss"
-engine = "double"
-version = "1"
+name = "double_loss"
 condition = "always"
 measure = "a share"
 range = [0.1, 0.4]
@@ -26,7 +25,7 @@ fn rows(known: &Gates, values: impl Fn() -> Result<Vec<f64>, NoAnswer> + Send + 
     let context = Context { robots: &[], engines: &engines, gates: known, seed: 1 };
     let study = Reproductions {
         reproduce: Arc::new(move |name, seeds| {
-            assert_eq!((name, seeds), ("loss", 20));
+            assert_eq!((name, seeds), ("double_loss", 20));
             values()
         }),
     };
@@ -60,7 +59,9 @@ fn what_cannot_be_evaluated_is_an_error_with_its_reason() {
     let failed = rows(&support::gates(KNOWN), || Err(NoAnswer::Failed("ImportError: no engine".into())));
     assert_eq!(failed.len(), 1);
     assert_eq!((failed[0].verdict, failed[0].reason.as_str()), (Verdict::Error, "ImportError: no engine"));
-    let other = rows(&support::gates(&KNOWN.replace("version = \"1\"", "version = \"0.9\"")), || Ok(vec![0.2]));
+    let file = DeviationFile::parse(&format!("version = \"0.9\"\n{KNOWN}"), Path::new("double.toml")).unwrap();
+    let older = Gates::default().with_deviations(file);
+    let other = rows(&older, || Ok(vec![0.2]));
     assert_eq!(other[0].verdict, Verdict::Error);
     assert!(other[0].reason.contains("double 0.9, here is 1"), "{}", other[0].reason);
 }

@@ -6,7 +6,14 @@ use featherbench_robots::StateBatch;
 
 impl Trial {
     fn file(&self) -> RobotFile {
-        RobotFile { path: "/robots/p.urdf".into(), format: FileFormat::Urdf, base: FileBase::Free, hash: "0".into(), links: Vec::new() }
+        RobotFile {
+            path: "/robots/p.urdf".into(),
+            format: FileFormat::Urdf,
+            base: FileBase::Free,
+            hash: "0".into(),
+            links: Vec::new(),
+            features: Vec::new(),
+        }
     }
 
     fn read(&self) -> Result<Import, NoAnswer> {

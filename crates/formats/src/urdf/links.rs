@@ -45,6 +45,27 @@ pub fn links(text: &str, density: f64) -> Vec<LinkInFile> {
     read().unwrap_or_default()
 }
 
+/// A `<mimic>` of a file.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Mimic {
+    /// The joint that has it is fixed.
+    pub is_fixed: bool,
+    /// The joint that it names is in the file.
+    pub is_known: bool,
+}
+
+/// The mimics of a URDF text in the order of the file. A text that is not URDF has none.
+pub fn mimics(text: &str) -> Vec<Mimic> {
+    let Ok(document) = super::xml::parse(text::check(text, super::LIMIT).unwrap_or_default()) else { return Vec::new() };
+    let joints: Vec<Node> = document.root_element().children().filter(|node| node.has_tag_name("joint")).collect();
+    let known = |name: Option<&str>| name.is_some() && joints.iter().any(|joint| joint.attribute("name") == name);
+    let of_joint = |joint: &Node| {
+        let mimic = joint.children().find(|node| node.has_tag_name("mimic"))?;
+        Some(Mimic { is_fixed: joint.attribute("type") == Some("fixed"), is_known: known(mimic.attribute("joint")) })
+    };
+    joints.iter().filter_map(of_joint).collect()
+}
+
 fn link(element: Element, density: f64) -> Result<LinkInFile, At> {
     let name = element.attribute("name")?;
     let inertial = element.optional("inertial")?.map(|inertial| -> Result<Inertial, At> {

@@ -31,7 +31,7 @@ mod write;
 mod xml;
 
 pub use error::{UrdfError, UrdfProblem};
-pub use links::{Inertial, LinkInFile, links};
+pub use links::{Inertial, LinkInFile, Mimic, links, mimics};
 pub use write::{to_string, write};
 
 use crate::{Place, text};

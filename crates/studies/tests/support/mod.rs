@@ -1,7 +1,9 @@
 //! What the tests of the studies share: an engine with planted errors, and a whole agreement run in memory.
 
 use featherbench_bench::run::{Silent, compare, evaluate, plan};
-use featherbench_bench::{Context, Counts, Engine, Evaluation, Gates, Identity, NoAnswer, OutcomeStore, Quantity, Robot, Study, Suite};
+use featherbench_bench::{
+    Context, Counts, DeviationFile, Engine, Engines, Evaluation, Gates, Identity, NoAnswer, OutcomeStore, Quantity, Robot, Study, Suite,
+};
 use featherbench_engines::Featherbench;
 use featherbench_model::{Description, Model};
 use featherbench_results::{EngineSource, Expectation, ModelOrigin, Row, RunInfo, Verdict};
@@ -29,12 +31,22 @@ pub fn gates_folder() -> PathBuf {
     PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../../ci")
 }
 
-/// The repository's own gates, with these known deviations or with none.
+/// The description of the engines.
+pub fn engines() -> Engines {
+    Engines::read(&gates_folder().join("../oracles/engines.toml")).unwrap()
+}
+
+/// The repository's own gates, with these known deviations of the double or with none.
 pub fn gates(deviations: &str) -> Gates {
-    let folder = tempfile::tempdir().unwrap();
-    std::fs::copy(gates_folder().join("gates.toml"), folder.path().join("gates.toml")).unwrap();
-    std::fs::write(folder.path().join("deviations.toml"), deviations).unwrap();
-    Gates::read(folder.path()).unwrap()
+    let path = gates_folder().join("gates.toml");
+    let gates = Gates::parse(&std::fs::read_to_string(&path).unwrap(), &path).unwrap();
+    gates.with_deviations(of_engine("double", deviations))
+}
+
+/// Known deviations of version 1 of an engine.
+pub fn of_engine(engine: &str, deviations: &str) -> DeviationFile {
+    let file = PathBuf::from(format!("{engine}.toml"));
+    DeviationFile::parse(&format!("version = \"1\"\n{deviations}"), &file).unwrap()
 }
 
 /// A question and an answer for one state, to be changed.
