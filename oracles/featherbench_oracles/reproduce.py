@@ -23,7 +23,7 @@ def reproduction(name: str) -> Callable[[int], float]:
     Parameters
     ----------
     name : str
-        The name that ci/deviations.toml gives it, as in `drake_zero_mass`.
+        The name that ci/deviations/ENGINE.toml gives it, as in `drake_zero_mass`.
 
     Returns
     -------

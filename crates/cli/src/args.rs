@@ -164,7 +164,8 @@ pub struct GateArgs {
     #[arg(long, group = "measured")]
     pub counts: bool,
     /// With --ranges or --counts: write what was measured into ci/deviations/SUITE.csv or datasets/suites/counts.csv, in the place of what
-    /// stands there about the suite.
+    /// stands there about the suite. Each range keeps the deviation that the file names; a new one takes the only deviation of
+    /// ci/deviations/ENGINE.toml that matches.
     #[arg(long, requires = "measured")]
     pub write: bool,
 }

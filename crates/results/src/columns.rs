@@ -92,7 +92,10 @@ pub const COLUMNS: [Column; 33] = [
     flag("valid", "whether the value counts: false for a measurement that its control or a check rejects"),
     flag("estimated", "whether the value is an estimate: the cost of calling the engine was measured with it and subtracted"),
     text("reason", "why the verdict is not pass, or the value not valid; for people; empty otherwise"),
-    text("params", "what a study adds, as canonical JSON: keys sorted, no spaces"),
+    text(
+        "params",
+        "what a study adds, as canonical JSON: keys sorted, no spaces; `deviation` is the id of the known deviation that explains the row",
+    ),
 ];
 
 /// The text of `schema.json`: format, and every column with type, unit, words and meaning.

@@ -260,7 +260,7 @@ fn built() -> Vec<(String, PathBuf)> {
     text.lines().filter(|line| line.ends_with(".so")).filter_map(library).collect()
 }
 
-/// The known ratio of an engine's error to what rounding may cause (ci/deviations.toml). It is twice the largest ratio over twenty seeds of
+/// The known ratio of an engine's error to what rounding may cause (ci/deviations). It is twice the largest ratio over twenty seeds of
 /// states. MuJoCo uses inertias and axes about the robot's centre of mass; computeMinverse works in world axes.
 fn slack(oracle: &str, quantity: Quantity, robot: &str) -> f64 {
     let largest = match quantity {

@@ -1,7 +1,7 @@
 //! Reproductions: do the engines' known deviations still exist, and in their known size?
 //!
-//! `ci/deviations.toml` names each reproduction with the engine's version and the range of its value over twenty seeds. There are two rows
-//! each: the smallest value over the seeds must not be below the range, and the largest must not be above it, each by more than [`SLACK`].
+//! `ci/deviations/ENGINE.toml` names each reproduction with the engine's version and the range of its value over twenty seeds. There are
+//! two rows each: the smallest value over the seeds must not be below the range, and the largest must not be above it, each by more than [`SLACK`].
 //! So a deviation that its engine has corrected fails the gate, and so does one that has grown. Then the list must be corrected.
 
 pub(crate) mod section;
