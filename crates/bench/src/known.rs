@@ -89,14 +89,16 @@ impl Known {
 
     fn explain_failure(&self, row: Row) -> Row {
         let Some(range) = self.ranges.get(&row) else {
-            let causes: Vec<String> = self.measured(&row).map(|known| format!("'{}': {}", known.id, known.reason)).collect();
+            let causes: Vec<&str> = self.measured(&row).map(|known| known.id.as_str()).collect();
             if causes.is_empty() {
                 return row;
             }
             let reason = format!(
-                "{}; the cause may be known, but no range was measured on this robot (`featherbench gate --ranges … --write`): {}",
+                "{}; the cause may be known ({} in ci/deviations/{}.toml), but no range was measured on this robot (`featherbench gate --ranges … \
+                 --write`)",
                 row.reason,
-                causes.join("; ")
+                causes.join(", "),
+                row.engine
             );
             return Row { reason, ..row };
         };

@@ -143,7 +143,7 @@ fn a_range_says_which_deviation_it_is() {
     }
     let row = with_robot(gates(&known)).explain(failure());
     assert_eq!(row.verdict, Verdict::Fail);
-    assert!(row.reason.contains("'one': because; 'two': for another cause"), "{}", row.reason);
+    assert!(row.reason.contains("(one, two in ci/deviations/crane.toml)"), "{}", row.reason);
     assert!(gates(&known).with_ranges(sizes("three"), Path::new("ci")).is_err());
 }
 
