@@ -1,7 +1,7 @@
 //! The origin of a run: source, program, machine.
 
 use crate::{Robot, hash};
-use featherbench_results::{GitInfo, Host, ModelInfo, RunInfo};
+use featherbench_results::{GitInfo, Host, RobotInfo, RunInfo};
 use std::collections::BTreeMap;
 use std::path::Path;
 use std::process::Command;
@@ -24,10 +24,10 @@ pub fn collect(root: &Path) -> RunInfo {
 }
 
 /// The facts about the robots of a run.
-pub fn robots(robots: &[Robot]) -> Vec<ModelInfo> {
+pub fn robots(robots: &[Robot]) -> Vec<RobotInfo> {
     let of = |robot: &Robot| {
         let provenance = robot.description.provenance.clone().unwrap_or_default();
-        ModelInfo {
+        RobotInfo {
             name: robot.name.clone(),
             hash: robot.hash.clone(),
             origin: robot.origin,

@@ -4,7 +4,7 @@ use crate::args::GateArgs;
 use crate::fail::Fail;
 use crate::ranges;
 use crate::root::Root;
-use ::featherbench_results::{ModelInfo, Properties, Row, RunInfo, Verdict};
+use ::featherbench_results::{Properties, RobotInfo, Row, RunInfo, Verdict};
 use featherbench_bench::{Counts, Suite, provenance};
 use std::path::{Path, PathBuf};
 
@@ -46,7 +46,7 @@ pub fn gate(root: &Root, args: &GateArgs) -> Result<(), Fail> {
 pub fn properties(folder: &Path, info: &RunInfo) -> Result<Vec<(String, Properties)>, Fail> {
     let message =
         || format!("{}: run.json has no properties of its robots: another version wrote it; run the suite again", folder.display());
-    info.models.iter().map(ModelInfo::known_properties).collect::<Option<_>>().ok_or_else(|| Fail::input(message()))
+    info.robots.iter().map(RobotInfo::known_properties).collect::<Option<_>>().ok_or_else(|| Fail::input(message()))
 }
 
 /// Prints the counts of a run, or writes them in the place of those of its suite.

@@ -92,8 +92,8 @@ pub fn folder(root: &Root, suite: &str, started: SystemTime) -> PathBuf {
 
 /// Tells what is unusual about the robots.
 pub fn tell_notes(info: &RunInfo) {
-    for model in &info.models {
-        model.notes.iter().for_each(|note| eprintln!("note: {}: {note}", model.name));
+    for robot in &info.robots {
+        robot.notes.iter().for_each(|note| eprintln!("note: {}: {note}", robot.name));
     }
 }
 
@@ -122,7 +122,7 @@ pub fn describe(root: &Root, program: RunInfo, about: &About, opened: &Opened, s
         seed: about.seed,
         live: about.live,
         engines: opened.infos.clone(),
-        models: provenance::robots(about.robots),
+        robots: provenance::robots(about.robots),
         conventions,
         ..program
     })

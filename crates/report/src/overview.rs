@@ -116,14 +116,14 @@ fn typical_rows(rows: &[Row]) -> BTreeMap<&str, &Row> {
 /// Every robot that is announced or has rows: families together, otherwise in the order of the announcement.
 fn robots<'a>(run: &'a RunInfo, rows: &'a [Row]) -> Vec<Robot<'a>> {
     let typical = typical_rows(rows);
-    let names = in_order(run.models.iter().map(|robot| robot.name.as_str()), typical.keys().copied());
-    let announced: BTreeMap<&str, _> = run.models.iter().map(|robot| (robot.name.as_str(), robot)).collect();
+    let names = in_order(run.robots.iter().map(|robot| robot.name.as_str()), typical.keys().copied());
+    let announced: BTreeMap<&str, _> = run.robots.iter().map(|robot| (robot.name.as_str(), robot)).collect();
     let mut robots: Vec<Robot> = names
         .into_iter()
         .map(|name| {
             let row = typical.get(name);
             let info = announced.get(name);
-            let size = |of_info: fn(&featherbench_results::ModelInfo) -> u64, of_row: fn(&Row) -> Option<u64>| {
+            let size = |of_info: fn(&featherbench_results::RobotInfo) -> u64, of_row: fn(&Row) -> Option<u64>| {
                 info.map(|info| of_info(info)).or_else(|| row.and_then(|row| of_row(row)))
             };
             Robot {

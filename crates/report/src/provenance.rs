@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use featherbench_results::{ModelInfo, RunInfo};
+use featherbench_results::{RobotInfo, RunInfo};
 use maud::{Markup, html};
 
 use crate::blocks::opener;
@@ -103,7 +103,7 @@ fn machine(run: &RunInfo) -> Markup {
 }
 
 fn robots(run: &RunInfo, overview: &Overview) -> Markup {
-    let announced: BTreeMap<&str, &ModelInfo> = run.models.iter().map(|robot| (robot.name.as_str(), robot)).collect();
+    let announced: BTreeMap<&str, &RobotInfo> = run.robots.iter().map(|robot| (robot.name.as_str(), robot)).collect();
     let size = |value: Option<u64>| value.map(|value| value.to_string()).unwrap_or_default();
     html! {
         h3 { "Robots" }
@@ -134,9 +134,9 @@ fn robots(run: &RunInfo, overview: &Overview) -> Markup {
                 }
             }
         }
-        @if run.models.iter().any(|robot| !robot.notes.is_empty()) {
+        @if run.robots.iter().any(|robot| !robot.notes.is_empty()) {
             h3 { "Notes on robots" }
-            ul #robot-notes { @for robot in &run.models { @for note in &robot.notes { li { b { (robot.name) } ": " (note) } } } }
+            ul #robot-notes { @for robot in &run.robots { @for note in &robot.notes { li { b { (robot.name) } ": " (note) } } } }
         }
     }
 }

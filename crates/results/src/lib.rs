@@ -36,4 +36,4 @@ pub use names::{Kind, Relation, Verdict};
 pub use params::canonical_json;
 pub use properties::{Base, Feature, Properties};
 pub use row::{MARGIN_LIMIT, Row};
-pub use run_info::{Convention, EngineInfo, EngineSource, Expectation, GitInfo, Host, ModelInfo, ModelOrigin, RUN_FORMAT, RunInfo};
+pub use run_info::{Convention, EngineInfo, EngineSource, Expectation, GitInfo, Host, ModelOrigin, RUN_FORMAT, RobotInfo, RunInfo};

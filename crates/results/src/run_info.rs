@@ -10,7 +10,7 @@ use crate::names::words;
 use crate::{Properties, ResultsError, Verdict};
 
 /// Format of `run.json` and `schema.json` that this version writes and reads.
-pub const RUN_FORMAT: u32 = 1;
+pub const RUN_FORMAT: u32 = 2;
 
 /// Provenance of a run. Text that is not known is empty.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -51,7 +51,7 @@ pub struct RunInfo {
     /// The engines.
     pub engines: Vec<EngineInfo>,
     /// The robots.
-    pub models: Vec<ModelInfo>,
+    pub robots: Vec<RobotInfo>,
     /// The studies that were conducted, in their order.
     pub studies: Vec<String>,
     /// Wall time of each phase, in seconds.
@@ -136,7 +136,7 @@ words! {
 /// One model of a run.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct ModelInfo {
+pub struct RobotInfo {
     /// Name, as in the rows.
     pub name: String,
     /// Content hash of its description.
@@ -197,7 +197,7 @@ pub struct Expectation {
     pub reason: String,
 }
 
-impl ModelInfo {
+impl RobotInfo {
     /// Its name and its properties, if the run has them.
     pub fn known_properties(&self) -> Option<(String, Properties)> {
         Some((self.name.clone(), self.properties.clone()?))

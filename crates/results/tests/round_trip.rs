@@ -6,7 +6,7 @@ use std::path::Path;
 
 use featherbench_results::{
     Base, COLUMNS, CSV_NAME, Checksums, ColumnType, Convention, EngineInfo, EngineSource, Expectation, Feature, GitInfo, Host, Kind,
-    ModelInfo, ModelOrigin, Properties, RUN_FORMAT, RUN_NAME, Relation, ResultsError, Row, RunInfo, SCHEMA_NAME, Verdict, atomic_write,
+    ModelOrigin, Properties, RUN_FORMAT, RUN_NAME, Relation, ResultsError, RobotInfo, Row, RunInfo, SCHEMA_NAME, Verdict, atomic_write,
     canonical_json, read_csv, read_run, schema_json, to_csv, write_csv, write_run,
 };
 use proptest::prelude::*;
@@ -254,7 +254,7 @@ fn run_info() -> RunInfo {
             reason: "".into(),
         }],
         studies: vec!["agreement".into()],
-        models: vec![ModelInfo {
+        robots: vec![RobotInfo {
             properties: Some(Properties {
                 joints: vec!["revolute".into()],
                 armature: vec!["revolute".into()],

@@ -133,7 +133,7 @@ fn every_text_of_a_run_is_escaped() {
     run.expected[0].what = evil.into();
     run.engines[1].reason = evil.into();
     run.engines[1].build.insert(evil.into(), evil.into());
-    run.models[0].licence = evil.into();
+    run.robots[0].licence = evil.into();
     let row = || Row {
         robot: "m".into(),
         study: evil.into(),

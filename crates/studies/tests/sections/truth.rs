@@ -189,7 +189,7 @@ fn steps_become_lines_and_orders() {
     let run = made_up::run_info();
     let blank = Row {
         study: "steps".into(),
-        robot: run.models[0].name.clone(),
+        robot: run.robots[0].name.clone(),
         engine: run.engines[0].name.clone(),
         quantity: "fd".into(),
         method: "step".into(),

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use featherbench_results::{
-    Convention, EngineInfo, EngineSource, Expectation, GitInfo, Host, Kind, ModelInfo, ModelOrigin, Relation, Row, RunInfo, Verdict,
+    Convention, EngineInfo, EngineSource, Expectation, GitInfo, Host, Kind, ModelOrigin, Relation, RobotInfo, Row, RunInfo, Verdict,
     canonical_json,
 };
 
@@ -58,7 +58,7 @@ impl Random {
     }
 }
 
-fn models() -> Vec<ModelInfo> {
+fn models() -> Vec<RobotInfo> {
     let model = |name: String, joints: u64, family: &str, origin: ModelOrigin| {
         let depth = match family {
             "tree" => u64::from(joints.ilog2()) + 1,
@@ -68,7 +68,7 @@ fn models() -> Vec<ModelInfo> {
         };
         let source = if origin == ModelOrigin::Robot { "example-robot-data 4.3".into() } else { format!("gen {family} --joints {joints}") };
         let hash = format!("{:064x}", joints * 7919 + name.len() as u64);
-        ModelInfo {
+        RobotInfo {
             properties: None,
             name,
             hash,
@@ -86,16 +86,16 @@ fn models() -> Vec<ModelInfo> {
         sizes.iter().map(move |&joints| model(format!("{stem}_{joints}"), joints, family, ModelOrigin::Generated))
     });
     let robots = ROBOTS.iter().map(|&(name, joints)| model(name.into(), joints, "robot", ModelOrigin::Robot));
-    let mut models: Vec<ModelInfo> = generated.chain(robots).collect();
+    let mut models: Vec<RobotInfo> = generated.chain(robots).collect();
     models.extend(truth::models());
     models
 }
 
-fn family(model: &ModelInfo) -> &'static str {
+fn family(model: &RobotInfo) -> &'static str {
     FAMILIES.iter().find(|(_, stem, _)| model.name.starts_with(stem)).map_or("robot", |(family, ..)| family)
 }
 
-fn base(run: &RunInfo, model: &ModelInfo) -> Row {
+fn base(run: &RunInfo, model: &RobotInfo) -> Row {
     Row {
         run: run.run.clone(),
         cell: model.hash[..16].into(),
@@ -162,7 +162,7 @@ pub fn run_info() -> RunInfo {
             engine("dart", "", EngineSource::Recorded, "missing", "no recording for this suite"),
         ],
         conventions: [("mujoco", "free v"), ("drake", "screw <pitch>")].map(|(engine, topic)| convention(engine, topic)).into(),
-        models: models(),
+        robots: models(),
         seconds: BTreeMap::from([("accuracy".into(), 11.4), ("timing".into(), 30.25)]),
         expected: vec![
             Expectation {
@@ -203,7 +203,7 @@ fn machine(run: &RunInfo, rows: &mut Vec<Row>) {
 pub fn rows(run: &RunInfo) -> Vec<Row> {
     let mut random = Random(1);
     let mut rows = Vec::new();
-    for model in run.models.iter().filter(|model| !truth::is_own(model)) {
+    for model in run.robots.iter().filter(|model| !truth::is_own(model)) {
         agreement(run, model, &mut random, &mut rows);
         times(run, model, &mut random, &mut rows);
         let structure = Row {
@@ -220,7 +220,7 @@ pub fn rows(run: &RunInfo) -> Vec<Row> {
     rows
 }
 
-fn agreement(run: &RunInfo, model: &ModelInfo, random: &mut Random, rows: &mut Vec<Row>) {
+fn agreement(run: &RunInfo, model: &RobotInfo, random: &mut Random, rows: &mut Vec<Row>) {
     for (engine, methods) in METHODS {
         let version = run.engines.iter().find(|info| info.name == engine).map(|info| info.version.clone()).unwrap_or_default();
         let of_engine = Row {
@@ -268,7 +268,7 @@ fn agreement(run: &RunInfo, model: &ModelInfo, random: &mut Random, rows: &mut V
 }
 
 /// A row's errors: for forward dynamics a forward and a backward one.
-fn errors(row: &Row, model: &ModelInfo, random: &mut Random) -> Vec<Row> {
+fn errors(row: &Row, model: &RobotInfo, random: &mut Random) -> Vec<Row> {
     let depth = model.depth as f64;
     let spread = 10.0_f64.powf(1.5 * random.unit() - 1.0);
     let fast = if row.states == "fast" { 3.0 } else { 1.0 };
@@ -295,7 +295,7 @@ fn errors(row: &Row, model: &ModelInfo, random: &mut Random) -> Vec<Row> {
     vec![forward, backward, kappa]
 }
 
-fn times(run: &RunInfo, model: &ModelInfo, random: &mut Random, rows: &mut Vec<Row>) {
+fn times(run: &RunInfo, model: &RobotInfo, random: &mut Random, rows: &mut Vec<Row>) {
     const ALGORITHMS: [(&str, &str, f64, f64); 7] = [
         ("id", "rnea", 22.0, 1.0),
         ("fd", "aba", 55.0, 1.0),

@@ -1,6 +1,6 @@
 //! The studies with the truth: accuracy of methods with realistic losses, and condition numbers of straight chains.
 
-use featherbench_results::{ModelInfo, ModelOrigin, Relation, Row, RunInfo, Verdict};
+use featherbench_results::{ModelOrigin, Relation, RobotInfo, Row, RunInfo, Verdict};
 
 use super::{HOSTILE, Random, base};
 
@@ -34,8 +34,8 @@ const SUBJECTS: [(&str, &str, &str); 10] = [
 ];
 
 /// The robots.
-pub fn models() -> Vec<ModelInfo> {
-    let model = |(name, _, joints): (&str, &str, u64)| ModelInfo {
+pub fn models() -> Vec<RobotInfo> {
+    let model = |(name, _, joints): (&str, &str, u64)| RobotInfo {
         properties: None,
         name: name.into(),
         hash: format!("{:064x}", joints * 104_729 + name.len() as u64),
@@ -52,13 +52,13 @@ pub fn models() -> Vec<ModelInfo> {
 }
 
 /// Whether a robot is of these studies alone.
-pub fn is_own(model: &ModelInfo) -> bool {
+pub fn is_own(model: &RobotInfo) -> bool {
     OWN.iter().any(|(name, ..)| *name == model.name)
 }
 
 /// Appends the rows.
 pub fn rows(run: &RunInfo, random: &mut Random, rows: &mut Vec<Row>) {
-    for model in &run.models {
+    for model in &run.robots {
         let family = OWN.iter().find(|(name, ..)| *name == model.name).map_or_else(|| super::family(model), |(_, family, _)| family);
         let row = Row { family: family.into(), ..base(run, model) };
         if model.name.starts_with("straight") {
@@ -74,7 +74,7 @@ fn number_after(name: &str, suffix: &str) -> Option<f64> {
 }
 
 /// The median error of a method: a little for rounding, more for depth, offset and a heavy tip.
-fn median(method: &str, model: &ModelInfo) -> f64 {
+fn median(method: &str, model: &RobotInfo) -> f64 {
     let n = model.nv as f64;
     let offset = number_after(&model.name, "-offset").unwrap_or(0.0);
     let tip = number_after(&model.name, "-tip").unwrap_or(1.0).max(1.0);
@@ -88,7 +88,7 @@ fn median(method: &str, model: &ModelInfo) -> f64 {
         }
 }
 
-fn digits(row: &Row, model: &ModelInfo, random: &mut Random, rows: &mut Vec<Row>) {
+fn digits(row: &Row, model: &RobotInfo, random: &mut Random, rows: &mut Vec<Row>) {
     for (engine, method, quantity) in SUBJECTS {
         let quantity = if quantity == "mass_matrix" && model.nv > 64 { "mass_matrix_probe" } else { quantity };
         let row = Row {
