@@ -11,8 +11,8 @@ use std::sync::{Mutex, PoisonError};
 
 /// Every finished cell's outcome, in memory and appended to `outcomes.bin` when it is known.
 ///
-/// Each frame has a checksum of all its contents. A run that is killed leaves at most one incomplete frame at the end. No frame after an
-/// incomplete or damaged one can be trusted: opening the store cuts off that frame and the rest of the file, and [`Self::lost`] reports it.
+/// Each entry has a checksum of all its contents. A run that is killed leaves at most one incomplete entry at the end. No entry after an
+/// incomplete or damaged one can be trusted: opening the store cuts off that entry and the rest of the file, and [`Self::lost`] reports it.
 #[derive(Debug)]
 pub struct OutcomeStore {
     path: PathBuf,
@@ -25,18 +25,18 @@ pub struct OutcomeStore {
 pub struct Lost {
     /// The file.
     pub path: PathBuf,
-    /// The first frame that could not be used, counted from one.
-    pub frame: u64,
+    /// The first entry that could not be used, counted from one.
+    pub entry: u64,
     /// What is wrong with it.
     pub what: String,
-    /// The bytes from the beginning of that frame to the end of the file.
+    /// The bytes from the beginning of that entry to the end of the file.
     pub bytes: u64,
 }
 
 impl std::fmt::Display for Lost {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        let Self { path, frame, what, bytes } = self;
-        write!(f, "{}: frame {frame}: {what}; it and what stands behind it ({bytes} bytes) are not used", path.display())
+        let Self { path, entry, what, bytes } = self;
+        write!(f, "{}: entry {entry}: {what}; it and what stands behind it ({bytes} bytes) are not used", path.display())
     }
 }
 
@@ -50,7 +50,7 @@ struct Inner {
 pub const OUTCOMES_NAME: &str = "outcomes.bin";
 
 impl OutcomeStore {
-    /// Opens the store of a run's folder: reads the frames, and cuts off those that cannot be used.
+    /// Opens the store of a run's folder: reads the entries, and cuts off those that cannot be used.
     ///
     /// # Errors
     /// When the file cannot be read or written.
@@ -96,9 +96,9 @@ impl OutcomeStore {
     /// When it cannot be written to disk.
     pub fn insert(&self, cell: &Cell, outcome: Outcome) -> Result<(), HarnessError> {
         let id = cell.id();
-        let frame = to_frame(&id, cell, &outcome);
+        let entry = to_message(&id, cell, &outcome);
         let mut inner = self.lock();
-        frame.write(&mut inner.file).map_err(|source| HarnessError::io(&self.path, source))?;
+        entry.write(&mut inner.file).map_err(|source| HarnessError::io(&self.path, source))?;
         inner.outcomes.insert(id, outcome);
         Ok(())
     }
@@ -117,18 +117,18 @@ struct Whole {
     lost: Option<Lost>,
 }
 
-/// Reads frame after frame up to the first that is incomplete or damaged.
+/// Reads entry after entry up to the first that is incomplete or damaged.
 fn read<S: Read + Seek>(mut source: S, path: &Path) -> Result<(S, Whole), HarnessError> {
     let io = |source| HarnessError::io(path, source);
     let length = source.seek(std::io::SeekFrom::End(0)).map_err(io)?;
     source.rewind().map_err(io)?;
     let mut reader = BufReader::new(source);
-    let (mut outcomes, mut good, mut frames) = (HashMap::new(), 0, 0);
+    let (mut outcomes, mut good, mut entries) = (HashMap::new(), 0, 0);
     let what = loop {
-        frames += 1;
+        entries += 1;
         match Message::read(&mut reader) {
             Ok(None) => break None,
-            Ok(Some(frame)) => match from_frame(frame) {
+            Ok(Some(entry)) => match from_message(entry) {
                 Ok((id, outcome)) => drop(outcomes.insert(id, outcome)),
                 Err(what) => break Some(what),
             },
@@ -137,11 +137,11 @@ fn read<S: Read + Seek>(mut source: S, path: &Path) -> Result<(S, Whole), Harnes
         }
         good = reader.stream_position().map_err(io)?;
     };
-    let lost = what.map(|what| Lost { path: path.to_owned(), frame: frames, what, bytes: length.saturating_sub(good) });
+    let lost = what.map(|what| Lost { path: path.to_owned(), entry: entries, what, bytes: length.saturating_sub(good) });
     Ok((reader.into_inner(), Whole { outcomes, good, lost }))
 }
 
-fn to_frame(id: &str, cell: &Cell, outcome: &Outcome) -> Message {
+fn to_message(id: &str, cell: &Cell, outcome: &Outcome) -> Message {
     let (status, reason, blocks) = match outcome {
         Outcome::Values(values) => ("ok", "", vec![Block::new("value", &[values.len()], values)]),
         Outcome::Text(_) => ("text", "", Vec::new()),
@@ -152,25 +152,25 @@ fn to_frame(id: &str, cell: &Cell, outcome: &Outcome) -> Message {
     if let Outcome::Text(text) = outcome {
         header["text"] = text.as_str().into();
     }
-    let mut frame = Message::new(header, blocks);
-    frame.header.insert(CHECKSUM.into(), featherbench_results::checksum(&frame.to_bytes()).into());
-    frame
+    let mut entry = Message::new(header, blocks);
+    entry.header.insert(CHECKSUM.into(), featherbench_results::checksum(&entry.to_bytes()).into());
+    entry
 }
 
-/// The key of a frame's checksum, which is that of its bytes without this key.
+/// The key of an entry's checksum, which is that of its bytes without this key.
 const CHECKSUM: &str = "blake3";
 
-/// The cell and its outcome, or what is wrong with the frame.
-fn from_frame(mut frame: Message) -> Result<(String, Outcome), String> {
-    let Some(Value::String(due)) = frame.header.remove(CHECKSUM) else { return Err("it has no checksum".into()) };
-    if featherbench_results::checksum(&frame.to_bytes()) != due {
+/// The cell and its outcome, or what is wrong with the entry.
+fn from_message(mut entry: Message) -> Result<(String, Outcome), String> {
+    let Some(Value::String(due)) = entry.header.remove(CHECKSUM) else { return Err("it has no checksum".into()) };
+    if featherbench_results::checksum(&entry.to_bytes()) != due {
         return Err("its checksum is another one: it is damaged".into());
     }
-    let id = frame.text("cell").to_owned();
-    let reason = frame.text("reason").to_owned();
-    let outcome = match frame.text("status") {
-        "ok" => frame.blocks.pop().map(|block| Outcome::Values(block.data)),
-        "text" => frame.header.get("text").and_then(Value::as_str).map(|text| Outcome::Text(text.to_owned())),
+    let id = entry.text("cell").to_owned();
+    let reason = entry.text("reason").to_owned();
+    let outcome = match entry.text("status") {
+        "ok" => entry.blocks.pop().map(|block| Outcome::Values(block.data)),
+        "text" => entry.header.get("text").and_then(Value::as_str).map(|text| Outcome::Text(text.to_owned())),
         "unsupported" => Some(Outcome::NoAnswer(NoAnswer::NotOffered(reason))),
         "error" => Some(Outcome::NoAnswer(NoAnswer::Failed(reason))),
         _ => None,
@@ -201,7 +201,7 @@ mod tests {
     }
 
     #[test]
-    fn reopening_keeps_whole_frames_and_cuts_the_rest() {
+    fn reopening_keeps_whole_entries_and_cuts_the_rest() {
         let folder = tempfile::tempdir().unwrap();
         let store = OutcomeStore::open(folder.path()).unwrap();
         let values = Outcome::Values(vec![0.1, f64::MIN_POSITIVE, -3.0]);
@@ -263,7 +263,7 @@ mod tests {
                 assert_eq!(found.len() < written.len(), lost.is_some(), "bit {bit} of byte {at}");
                 if let Some(lost) = lost {
                     let message = lost.to_string();
-                    assert!(message.contains(OUTCOMES_NAME) && message.contains(&format!("frame {}:", found.len() + 1)), "{message}");
+                    assert!(message.contains(OUTCOMES_NAME) && message.contains(&format!("entry {}:", found.len() + 1)), "{message}");
                     discarded += 1;
                 }
             }

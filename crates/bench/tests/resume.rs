@@ -114,9 +114,9 @@ fn run_in(folder: &Path, study: &Counting, progress: &dyn Progress) -> Result<Ve
     Ok(featherbench_results::to_csv(&compare(study, &context, finished), folder).unwrap())
 }
 
-/// The ids in a file of outcomes, up to the first incomplete frame.
-fn whole_frames(mut bytes: &[u8]) -> BTreeSet<String> {
-    std::iter::from_fn(|| Message::read(&mut bytes).ok().flatten()).map(|frame| frame.text("cell").to_owned()).collect()
+/// The ids in a file of outcomes, up to the first incomplete entry.
+fn whole_entries(mut bytes: &[u8]) -> BTreeSet<String> {
+    std::iter::from_fn(|| Message::read(&mut bytes).ok().flatten()).map(|entry| entry.text("cell").to_owned()).collect()
 }
 
 /// A finished run: its bytes on disk, its rows and the cells' ids.
@@ -133,7 +133,7 @@ fn whole() -> (Vec<u8>, Vec<u8>, BTreeSet<String>) {
 #[test]
 fn a_killed_run_repeats_nothing_that_is_finished() {
     let (bytes, csv, ids) = whole();
-    assert_eq!(whole_frames(&bytes), ids);
+    assert_eq!(whole_entries(&bytes), ids);
     let mut random = Random::named(1, "cuts");
     let cuts = [0, 1, bytes.len() - 1, bytes.len()].into_iter().chain((0..60).map(|_| random.below(bytes.len())));
     for cut in cuts {
@@ -141,7 +141,7 @@ fn a_killed_run_repeats_nothing_that_is_finished() {
         std::fs::write(folder.path().join(OUTCOMES_NAME), &bytes[..cut]).unwrap();
         let study = Counting::default();
         assert_eq!(run_in(folder.path(), &study, &Silent).unwrap(), csv, "cut at {cut}");
-        let missing: BTreeMap<String, usize> = ids.difference(&whole_frames(&bytes[..cut])).map(|id| (id.clone(), 1)).collect();
+        let missing: BTreeMap<String, usize> = ids.difference(&whole_entries(&bytes[..cut])).map(|id| (id.clone(), 1)).collect();
         assert_eq!(study.counts(), missing, "cut at {cut}");
         let again = Counting::default();
         assert_eq!(run_in(folder.path(), &again, &Silent).unwrap(), csv);
@@ -159,12 +159,12 @@ fn many_kills_are_as_good_as_none() {
     for _ in 0..20 {
         assert_eq!(run_in(folder.path(), &Counting::default(), &Silent).unwrap(), csv);
         let bytes = std::fs::read(&path).unwrap();
-        assert_eq!(whole_frames(&bytes), ids);
+        assert_eq!(whole_entries(&bytes), ids);
         std::fs::write(&path, &bytes[..random.below(bytes.len() + 1)]).unwrap();
     }
 }
 
-/// Damage in the middle: no frame after it is trusted, and nothing of it gets into the rows.
+/// Damage in the middle: no entry after it is trusted, and nothing of it gets into the rows.
 #[test]
 fn a_damaged_file_is_used_as_far_as_it_is_whole() {
     let (bytes, csv, _) = whole();
@@ -179,12 +179,12 @@ fn a_damaged_file_is_used_as_far_as_it_is_whole() {
             std::fs::write(folder.path().join(OUTCOMES_NAME), damaged).unwrap();
             let study = Counting::default();
             assert_eq!(run_in(folder.path(), &study, &Silent).unwrap(), csv, "{junk:?} at {line}");
-            assert_eq!(study.counts().len(), 4 * METHODS - whole_frames(&bytes[..line]).len());
+            assert_eq!(study.counts().len(), 4 * METHODS - whole_entries(&bytes[..line]).len());
         }
     }
 }
 
-/// One flipped bit anywhere: the rows of the resumed run are those of the complete one, and a lost frame is reported.
+/// One flipped bit anywhere: the rows of the resumed run are those of the complete one, and a lost entry is reported.
 #[test]
 fn a_flipped_bit_never_makes_other_rows() {
     let (bytes, csv, ids) = whole();
@@ -198,7 +198,7 @@ fn a_flipped_bit_never_makes_other_rows() {
         std::fs::write(folder.path().join(OUTCOMES_NAME), &flipped).unwrap();
         let (found, lost) = OutcomeStore::look(folder.path()).unwrap();
         let lost = lost.unwrap_or_else(|| panic!("nothing was noticed at {at}")).to_string();
-        assert!(lost.contains(OUTCOMES_NAME) && lost.contains(&format!("frame {}:", found.len() + 1)), "{lost}");
+        assert!(lost.contains(OUTCOMES_NAME) && lost.contains(&format!("entry {}:", found.len() + 1)), "{lost}");
         let study = Counting::default();
         assert_eq!(run_in(folder.path(), &study, &Silent).unwrap(), csv, "at {at}");
         assert_eq!(study.counts().len(), ids.len() - found.len(), "at {at}");
@@ -232,7 +232,7 @@ fn a_process_that_dies_loses_only_what_it_was_doing() {
             .env(MOMENT, moment.to_string());
         let output = child.output().unwrap();
         assert_eq!(output.status.code(), Some(70), "{output:?}");
-        let done = whole_frames(&std::fs::read(folder.path().join(OUTCOMES_NAME)).unwrap());
+        let done = whole_entries(&std::fs::read(folder.path().join(OUTCOMES_NAME)).unwrap());
         assert!(done.is_subset(&ids));
         // All cells that it began, except one per thread, are on disk. Those that other threads finish during the exit may be.
         let threads = rayon::current_num_threads();

@@ -311,7 +311,7 @@ fn a_run_that_was_altered_is_refused() {
         Checksums::of(folder.path(), &[CSV_NAME, RUN_NAME, SCHEMA_NAME]).unwrap().write().unwrap();
         read_run(folder.path()).expect_err("altered").to_string()
     };
-    assert!(read("\"format\": 1", "\"format\": 2").contains("format 2, this program reads format 1"));
+    assert!(read("\"format\": 2", "\"format\": 3").contains("format 3, this program reads format 2"));
     assert!(read("\"seed\"", "\"sead\"").contains("unknown field `sead`"));
     assert!(read("\"rows\": 1", "\"rows\": 3").contains("holds 1 rows, but its run wrote 3"));
 }
