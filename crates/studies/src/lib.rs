@@ -14,7 +14,6 @@ mod accuracy;
 mod agreement;
 mod conditioning;
 pub mod import;
-mod mass;
 mod operations;
 mod repeatability;
 mod reproductions;
@@ -52,7 +51,6 @@ const STUDIES: &[Entry] = &[
     Entry { name: "accuracy", make: accuracy::of_suite, sections: accuracy::section::sections },
     Entry { name: "conditioning", make: conditioning::of_suite, sections: conditioning::section::sections },
     Entry { name: "steps", make: steps::of_suite, sections: steps::section::sections },
-    Entry { name: "mass", make: mass::of_suite, sections: mass::section::sections },
     Entry { name: "operations", make: operations::of_suite, sections: no_section },
     Entry { name: "reproductions", make: reproductions::of_suite, sections: reproductions::section::sections },
     Entry { name: "repeatability", make: repeatability::of_suite, sections: no_section },
