@@ -1,5 +1,8 @@
 //! The sizes of the known deviations for each robot: data files that `featherbench gate --ranges … --write` writes.
 //!
+//! `SUITE.csv` has twenty seeds on one processor. `SUITE-PROCESSOR.csv` has runs on another: other vector units round otherwise, and where an
+//! answer loses most of its digits the sizes differ by more than two. A range spans all files that have it.
+//!
 //! A file is sorted CSV, with one row per engine, version, method, quantity, robot and metric.
 //! - `deviation`: the id of the deviation in `ci/deviations/ENGINE.toml` that has this size.
 //! - `low` and `high`: the smallest and the largest of the worst values of runs with different seeds.

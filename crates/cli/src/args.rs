@@ -141,6 +141,12 @@ pub struct CompareArgs {
     pub out: Option<PathBuf>,
 }
 
+/// A word that can stand in the name of a file.
+fn file_name(text: &str) -> Result<String, String> {
+    let plain = !text.is_empty() && text.chars().all(|c| c.is_ascii_lowercase() || c.is_ascii_digit());
+    if plain { Ok(text.to_owned()) } else { Err("use small letters and digits".into()) }
+}
+
 #[derive(Debug, Clone, Args)]
 pub struct FolderArgs {
     /// A run's folder.
@@ -168,6 +174,10 @@ pub struct GateArgs {
     /// ci/deviations/ENGINE.toml that matches.
     #[arg(long, requires = "measured")]
     pub write: bool,
+    /// With --ranges --write: the runs are of another processor, which rounds otherwise. Write ci/deviations/SUITE-NAME.csv beside SUITE.csv: a
+    /// range spans both.
+    #[arg(long, requires_all = ["write", "ranges"], value_name = "NAME", value_parser = file_name)]
+    pub processor: Option<String>,
 }
 
 #[derive(Debug, Clone, Args)]

@@ -38,7 +38,8 @@ pub fn measure(root: &Root, args: &GateArgs, info: &RunInfo, first: &[Row]) -> R
         return Ok(());
     }
     gates.with_ranges(ranges.clone(), &root.gates())?;
-    let path = root.ranges().join(format!("{}.csv", info.suite));
+    let name = args.processor.as_ref().map_or_else(|| info.suite.clone(), |processor| format!("{}-{processor}", info.suite));
+    let path = root.ranges().join(format!("{name}.csv"));
     ::featherbench_results::atomic_write(&path, ranges.to_csv().as_bytes())?;
     println!("written: {}", path.display());
     if (seeds.len() as u64) < SEEDS {

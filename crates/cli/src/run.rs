@@ -90,10 +90,16 @@ pub fn folder(root: &Root, suite: &str, started: SystemTime) -> PathBuf {
     root.reports().join(format!("{suite}-{}", stamp.replace('T', "-")))
 }
 
+/// Notes that are told before a run; the report has all.
+const TOLD: usize = 5;
+
 /// Tells what is unusual about the robots.
 pub fn tell_notes(info: &RunInfo) {
-    for robot in &info.robots {
-        robot.notes.iter().for_each(|note| eprintln!("note: {}: {note}", robot.name));
+    let notes = || info.robots.iter().flat_map(|robot| robot.notes.iter().map(move |note| (&robot.name, note)));
+    notes().take(TOLD).for_each(|(name, note)| eprintln!("note: {name}: {note}"));
+    let more = notes().count().saturating_sub(TOLD);
+    if more > 0 {
+        eprintln!("note: {more} more notes on robots are in the report");
     }
 }
 
