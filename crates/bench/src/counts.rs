@@ -1,4 +1,4 @@
-//! The lock file of the suites, `datasets/suites/counts.csv`: how many cells and rows a complete run of each suite has.
+//! The lock file of the suites, `ci/counts.csv`: how many cells and rows a complete run of each suite has.
 //!
 //! `featherbench gate RUN --counts --write` writes it. A complete run that has others fails: a study that asks less than it did is noticed.
 
@@ -7,7 +7,7 @@ use featherbench_results::{Expectation, Kind, Row, RunInfo, Verdict};
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
-/// Name of the file in the folder of suites.
+/// Name of the file in the folder of gates.
 pub const COUNTS_NAME: &str = "counts.csv";
 /// The first line of the file.
 const HEAD: &str = "suite,study,engine,quantity,cells,rows";
@@ -85,8 +85,9 @@ impl Counts {
         [format!("{HEAD}\n")].into_iter().chain(lines).collect()
     }
 
-    /// One condition for each study and engine of a complete run: it has the cells and rows that the file names for its suite. A suite
-    /// that the file does not name has no condition, and neither has a study that the run left out.
+    /// One condition for each study and engine that the file names for the suite: a complete run has these cells and rows. A study that the
+    /// run left out has no condition. Neither has an engine that is not named: an external one, or one that answers live where the counts are
+    /// those of recorded answers.
     pub fn conditions(&self, run: &RunInfo, engines: &[String], rows: &[Row]) -> Vec<Expectation> {
         let due: BTreeMap<_, _> = self.0.iter().filter(|([suite, ..], _)| *suite == run.suite).collect();
         if due.is_empty() {
@@ -94,13 +95,8 @@ impl Counts {
         }
         let found = Self::of(&run.suite, engines, rows);
         let conducted = |study: &String| run.studies.contains(study);
-        let pairs: BTreeSet<(&String, &String)> = due
-            .keys()
-            .copied()
-            .chain(found.0.keys())
-            .map(|[_, study, engine, _]| (study, engine))
-            .filter(|(study, _)| conducted(study))
-            .collect();
+        let pairs: BTreeSet<(&String, &String)> =
+            due.keys().map(|[_, study, engine, _]| (study, engine)).filter(|(study, _)| conducted(study)).collect();
         let of = |(study, engine): (&String, &String)| {
             let here = |key: &&[String; 4]| (&key[1], &key[2]) == (study, engine);
             let keys: BTreeSet<&[String; 4]> = due.keys().copied().chain(found.0.keys()).filter(here).collect();

@@ -1,6 +1,6 @@
 //! The properties of a robot, computed from its description, its states and its file. Known deviations are told by them.
 
-use crate::measure::Magnitudes;
+use crate::measure::{Magnitudes, worst};
 use crate::{FileFormat, Robot};
 use featherbench_dynamics::{Bias, Crba, TreeSparse};
 use featherbench_model::{BodyDescription, JointKind, JointType, Warning};
@@ -26,7 +26,8 @@ impl Robot {
         armature.sort_unstable();
         armature.dedup();
         let masses = || bodies.iter().map(|body| body.mass).filter(|&mass| mass > 0.0);
-        let mass_ratio = masses().fold(0.0, f64::max) / masses().fold(f64::INFINITY, f64::min);
+        let (largest, least) = (masses().reduce(worst), masses().map(|mass| -mass).reduce(worst).map(|mass| -mass));
+        let mass_ratio = largest.zip(least).map_or(0.0, |(largest, least)| largest / least);
         let [x, y, z] = bodies.first().map_or([0.0; 3], |body| body.joint.placement.translation);
         Properties {
             joints: self.joint_kinds().into_iter().map(str::to_owned).collect(),

@@ -169,7 +169,7 @@ pub struct GateArgs {
     /// Count the cells and the rows that pass or deviate as known, by study, engine and quantity.
     #[arg(long, group = "measured")]
     pub counts: bool,
-    /// With --ranges or --counts: write what was measured into ci/deviations/SUITE.csv or datasets/suites/counts.csv, in the place of what
+    /// With --ranges or --counts: write what was measured into ci/deviations/SUITE.csv or ci/counts.csv, in the place of what
     /// stands there about the suite. Each range keeps the deviation that the file names; a new one takes the only deviation of
     /// ci/deviations/ENGINE.toml that matches.
     #[arg(long, requires = "measured")]

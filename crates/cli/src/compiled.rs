@@ -175,7 +175,7 @@ mod tests {
 
     #[test]
     fn all_of_the_project_that_it_is_made_of_is_hashed() {
-        assert_eq!(crates(&project(), "rapier").unwrap(), ["formats", "model", "spatial"]);
+        assert_eq!(crates(&project(), "rapier").unwrap(), ["formats", "model", "protocol", "spatial"]);
         assert!(crates(&project(), "no-such-engine").unwrap_err().contains("no-such-engine"));
     }
 

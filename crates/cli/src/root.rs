@@ -44,7 +44,7 @@ impl Root {
 
     /// How many cells and rows a complete run of each suite has.
     pub fn counts(&self) -> PathBuf {
-        self.suites().join(featherbench_bench::COUNTS_NAME)
+        self.gates().join(featherbench_bench::COUNTS_NAME)
     }
 
     /// How large the known deviations are on each robot.

@@ -71,14 +71,15 @@ fn formats_refuse_what_they_cannot_hold() {
 fn broken_suites_are_refused_by_file_and_key() {
     let sandbox = Sandbox::new();
     let good = std::fs::read_to_string(project().join("datasets/suites/smoke.toml")).unwrap();
-    let cases: [(&str, String, &[&str]); 8] = [
+    let cases: [(&str, String, &[&str]); 9] = [
+        ("unknown study", good.replace("[operations]", "[operashuns]"), &["no study 'operashuns'", "operations"]),
         ("unknown engine", good.replace("\"mujoco\"", "\"mujoko\""), &["there is no engine 'mujoko'", "pinocchio, mujoco, drake"]),
         (
             "engine without a clock",
             good.replace("[timing]", "[timing]\nengines = [\"mujoco\"]"),
             &["mujoco cannot be timed", "drake, dart"],
         ),
-        ("unknown key", good.replace("operations = true", "operashuns = true"), &["operashuns", "line"]),
+        ("unknown key", good.replace("states = 20", "stades = 20"), &["stades", "line 4"]),
         ("unknown model", good.replace("\"panda\"", "\"pander\""), &["pander.json"]),
         (
             "two sources",

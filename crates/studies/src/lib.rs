@@ -34,11 +34,14 @@ use featherbench_bench::{Cell, Context, Engine, HarnessError, NoAnswer, Outcome,
 use featherbench_report::{Overview, Section};
 use featherbench_results::{Row, RunInfo};
 
+/// The study that a suite asks for, if it does; an error names file, line and key.
+type Made = Result<Option<Box<dyn Study>>, HarnessError>;
+
 /// A study of the house.
 struct Entry {
     name: &'static str,
     /// How it is made from a suite.
-    make: fn(&Setup) -> Result<Option<Box<dyn Study>>, HarnessError>,
+    make: fn(&Setup) -> Made,
     /// Its sections of the report of a run.
     sections: fn(&RunInfo, &[Row], &Overview) -> Vec<Section>,
 }

@@ -331,7 +331,8 @@ fn a_missing_engine_does_not_pass_unnoticed() {
     let alone = agreement(&robot, &gates, &[Box::new(featherbench_engines::Featherbench::new())]);
     assert!(alone.iter().all(|row| matches!(row.verdict, Verdict::Pass | Verdict::Info)), "nothing is wrong with what is there");
     let conditions = expected.conditions(&gates, &alone, true);
-    assert_eq!(red(&conditions).len(), 1, "{conditions:?}");
+    let unmet = red(&conditions);
+    assert!(unmet.iter().all(|what| what.starts_with("cells and rows of ")), "{unmet:?}");
     let mut due: BTreeSet<&str> = EVERYTHING.into_iter().collect();
     assert!(due.insert("readback"), "the read-back is demanded as well");
     assert_eq!(miscounted(&conditions, "double"), due);

@@ -11,10 +11,10 @@
 
 pub(crate) mod section;
 
-use crate::{Setup, row};
+use crate::{Made, Setup, row};
 use featherbench_bench::measure::{ForwardScale, scaled_error};
 use featherbench_bench::truth::{Truth, TruthModel, conditioning_bound};
-use featherbench_bench::{Cell, Context, DENSE_LIMIT, Finished, HarnessError, NoAnswer, NoSettings, Outcome, Quantity, Robot, Study};
+use featherbench_bench::{Cell, Context, DENSE_LIMIT, Finished, NoAnswer, NoSettings, Outcome, Quantity, Robot, Study};
 use featherbench_dynamics::TreeSparse;
 use featherbench_results::{Row, Verdict};
 use serde_json::json;
@@ -23,7 +23,7 @@ use serde_json::json;
 pub struct Accuracy;
 
 /// The study, if the suite asks for it.
-pub(crate) fn of_suite(setup: &Setup) -> Result<Option<Box<dyn Study>>, HarnessError> {
+pub(crate) fn of_suite(setup: &Setup) -> Made {
     Ok(setup.suite.settings::<NoSettings>("accuracy")?.map(|_| Box::new(Accuracy) as _))
 }
 

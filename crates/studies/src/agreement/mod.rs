@@ -6,11 +6,9 @@
 mod over_best;
 pub(crate) mod section;
 
-use crate::{Setup, row};
+use crate::{Made, Setup, row};
 use featherbench_bench::measure::{ForwardScale, Magnitudes, scaled_error, worst};
-use featherbench_bench::{
-    Cell, Context, DENSE_LIMIT, Engine, Finished, HarnessError, NoAnswer, NoSettings, Outcome, Quantity, Robot, Study,
-};
+use featherbench_bench::{Cell, Context, DENSE_LIMIT, Engine, Finished, NoAnswer, NoSettings, Outcome, Quantity, Robot, Study};
 use featherbench_dynamics::Rnea;
 use featherbench_model::Model;
 use featherbench_results::{Row, Verdict};
@@ -44,7 +42,7 @@ pub(crate) const QUANTITIES: [Quantity; 15] = [
 pub struct Agreement;
 
 /// The study, if the suite asks for it.
-pub(crate) fn of_suite(setup: &Setup) -> Result<Option<Box<dyn Study>>, HarnessError> {
+pub(crate) fn of_suite(setup: &Setup) -> Made {
     Ok(setup.suite.settings::<NoSettings>("agreement")?.map(|_| Box::new(Agreement) as _))
 }
 

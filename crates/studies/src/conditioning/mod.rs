@@ -6,9 +6,9 @@
 
 pub(crate) mod section;
 
-use crate::{Setup, row};
+use crate::{Made, Setup, row};
 use featherbench_bench::truth::conditioning_bound;
-use featherbench_bench::{Cell, Context, Finished, HarnessError, NoAnswer, NoSettings, Outcome, Quantity, Robot, Study};
+use featherbench_bench::{Cell, Context, Finished, NoAnswer, NoSettings, Outcome, Quantity, Robot, Study};
 use featherbench_dynamics::mass_matrix;
 use featherbench_results::{Row, Verdict};
 use nalgebra::DMatrix;
@@ -18,7 +18,7 @@ use serde_json::json;
 pub struct Conditioning;
 
 /// The study, if the suite asks for it.
-pub(crate) fn of_suite(setup: &Setup) -> Result<Option<Box<dyn Study>>, HarnessError> {
+pub(crate) fn of_suite(setup: &Setup) -> Made {
     Ok(setup.suite.settings::<NoSettings>("conditioning")?.map(|_| Box::new(Conditioning) as _))
 }
 

@@ -27,9 +27,9 @@ pub use difference::{Cause, Class, Difference, Field, Weight};
 pub use replay::Effect;
 pub use subtree::{SubTree, bound};
 
-use crate::Setup;
+use crate::{Made, Setup};
 use featherbench_bench::{
-    Cell, Context, Engine, FileFormat, Finished, HarnessError, Import as Read, NoAnswer, NoSettings, Outcome, Quantity, Robot, Study,
+    Cell, Context, Engine, FileFormat, Finished, Import as Read, NoAnswer, NoSettings, Outcome, Quantity, Robot, Study,
 };
 use featherbench_results::Row;
 use serde_json::{Value, json};
@@ -38,7 +38,7 @@ use serde_json::{Value, json};
 pub struct Import;
 
 /// The study, if the suite asks for it and the engines themselves are asked: what they read from files is not recorded.
-pub(crate) fn of_suite(setup: &Setup) -> Result<Option<Box<dyn Study>>, HarnessError> {
+pub(crate) fn of_suite(setup: &Setup) -> Made {
     Ok(setup.suite.settings::<NoSettings>("import")?.filter(|_| setup.live).map(|_| Box::new(Import) as _))
 }
 

@@ -8,8 +8,8 @@
 //! The depths are computed here from the description, without the topology of the kernels. The operations are counted by running the
 //! kernels on a scalar that counts.
 
-use crate::{Setup, row};
-use featherbench_bench::{Cell, Context, Finished, HarnessError, NoAnswer, NoSettings, Outcome, Quantity, Robot, Study};
+use crate::{Made, Setup, row};
+use featherbench_bench::{Cell, Context, Finished, NoAnswer, NoSettings, Outcome, Quantity, Robot, Study};
 use featherbench_dynamics::{Crba, Ltdl, TreeSparse};
 use featherbench_results::{Relation, Row, Verdict};
 use featherbench_spatial::{Counted, Operations};
@@ -19,7 +19,7 @@ use serde_json::json;
 pub struct OperationCounts;
 
 /// The study, if the suite asks for it.
-pub(crate) fn of_suite(setup: &Setup) -> Result<Option<Box<dyn Study>>, HarnessError> {
+pub(crate) fn of_suite(setup: &Setup) -> Made {
     Ok(setup.suite.settings::<NoSettings>("operations")?.map(|_| Box::new(OperationCounts) as _))
 }
 

@@ -7,8 +7,8 @@
 //! Recorded answers cannot be asked twice: their engine is asked when it is recorded.
 
 use crate::agreement::{self, QUANTITIES};
-use crate::{Setup, asked, row};
-use featherbench_bench::{Cell, Context, Engine, Finished, HarnessError, NoAnswer, NoSettings, Outcome, Quantity, Robot, Study, hash};
+use crate::{Made, Setup, asked, row};
+use featherbench_bench::{Cell, Context, Engine, Finished, NoAnswer, NoSettings, Outcome, Quantity, Robot, Study, hash};
 use featherbench_results::{EngineSource, Relation, Row, Verdict};
 use featherbench_robots::Random;
 use serde_json::json;
@@ -21,7 +21,7 @@ pub struct Repeatability {
 }
 
 /// The study, if the suite asks engines for answers: no answer counts without it, so it needs no table.
-pub(crate) fn of_suite(setup: &Setup) -> Result<Option<Box<dyn Study>>, HarnessError> {
+pub(crate) fn of_suite(setup: &Setup) -> Made {
     let named = setup.suite.settings::<NoSettings>("repeatability")?.is_some();
     Ok((named || setup.suite.engines.is_some()).then(|| Box::new(Repeatability { key: setup.program.to_owned() }) as _))
 }

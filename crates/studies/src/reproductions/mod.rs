@@ -6,8 +6,8 @@
 
 pub(crate) mod section;
 
-use crate::Setup;
-use featherbench_bench::{Cell, Context, Finished, HarnessError, NoAnswer, NoSettings, Outcome, Reproduction, Robot, SEEDS, SLACK, Study};
+use crate::{Made, Setup};
+use featherbench_bench::{Cell, Context, Finished, NoAnswer, NoSettings, Outcome, Reproduction, Robot, SEEDS, SLACK, Study};
 use featherbench_results::{Relation, Row, Verdict};
 use serde_json::json;
 use std::sync::Arc;
@@ -22,7 +22,7 @@ pub struct Reproductions {
 }
 
 /// The study, if the suite asks for it.
-pub(crate) fn of_suite(setup: &Setup) -> Result<Option<Box<dyn Study>>, HarnessError> {
+pub(crate) fn of_suite(setup: &Setup) -> Made {
     let settings = setup.suite.settings::<NoSettings>("reproductions")?;
     Ok(settings.map(|_| Box::new(Reproductions { reproduce: Arc::clone(&setup.reproduce) }) as _))
 }

@@ -15,9 +15,9 @@
 
 pub(crate) mod section;
 
-use crate::{Setup, row};
+use crate::{Made, Setup, row};
 use featherbench_bench::measure::{ForwardScale, scaled_error, worst};
-use featherbench_bench::{Cell, Context, Finished, HarnessError, NoAnswer, NoSettings, Outcome, Quantity, Robot, Stepper, Study};
+use featherbench_bench::{Cell, Context, Finished, NoAnswer, NoSettings, Outcome, Quantity, Robot, Stepper, Study};
 use featherbench_dynamics::{energy, forward_dynamics};
 use featherbench_results::{Row, Verdict};
 use featherbench_robots::Case;
@@ -41,7 +41,7 @@ const CASES: [Case; 2] = [Case::Random, Case::Fast];
 pub struct Steps;
 
 /// The study, if the suite asks for it.
-pub(crate) fn of_suite(setup: &Setup) -> Result<Option<Box<dyn Study>>, HarnessError> {
+pub(crate) fn of_suite(setup: &Setup) -> Made {
     Ok(setup.suite.settings::<NoSettings>("steps")?.map(|_| Box::new(Steps) as _))
 }
 

@@ -23,8 +23,8 @@ mod samples;
 pub(crate) mod section;
 mod statistics;
 
-use crate::Setup;
-use featherbench_bench::{Cell, Context, Engine, Finished, HarnessError, NoAnswer, Outcome, Quantity, Robot, Study};
+use crate::{Made, Setup};
+use featherbench_bench::{Cell, Context, Engine, Finished, NoAnswer, Outcome, Quantity, Robot, Study};
 use featherbench_results::Row;
 use featherbench_robots::{Random, StateBatch};
 use machine::{Machine, Pinned};
@@ -60,7 +60,7 @@ pub struct Settings {
 pub type Kernels = fn(&Robot) -> Vec<(Quantity, &'static str)>;
 
 /// The study, if the suite asks for it.
-pub(crate) fn of_suite(setup: &Setup) -> Result<Option<Box<dyn Study>>, HarnessError> {
+pub(crate) fn of_suite(setup: &Setup) -> Made {
     let settings = setup.suite.settings::<Settings>("timing")?;
     Ok(settings.map(|settings| Box::new(Timing { settings, kernels: setup.kernels }) as _))
 }
