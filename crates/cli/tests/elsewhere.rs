@@ -30,7 +30,7 @@ fn a_project_that_is_named_is_the_one_that_is_used() {
     std::fs::remove_file(copy.path("datasets")).unwrap();
     std::fs::create_dir_all(copy.path("datasets/suites")).unwrap();
     std::os::unix::fs::symlink(project().join("datasets/models"), copy.path("datasets/models")).unwrap();
-    let suite = "about = \"one\"\nseed = 1\noperations = true\n[[robot]]\nmodel = \"chain-planar-2\"\nfamily = \"chain\"\n";
+    let suite = "about = \"one\"\nseed = 1\n[operations]\n[[robot]]\nmodel = \"chain-planar-2\"\nfamily = \"chain\"\n";
     copy.write("datasets/suites/own.toml", suite);
     let before = entries(project().join("reports"));
     run(here.path(), Some(copy.folder.path()), &["run", "--suite", "own"]).expect(0, &["report:"]);
