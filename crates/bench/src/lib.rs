@@ -12,7 +12,7 @@
 //!   → Outcome                  OutcomeStore::insert           bench      kept at once: a killed run resumes
 //!   → error, unit-free         measure::scaled_error          bench      over the magnitudes of the terms
 //!   → Row                      Study::compare, Gates::judge   studies    the worst state of each kind
-//!   → rows.csv, a page         write_run, render              results, report
+//!   → rows.csv, a page         Run::write, Section            results, studies, report
 //! ```
 //!
 //! # The walk of a robot file
@@ -33,7 +33,7 @@
 //!   → ns per call              Samples                        studies    candidate × round; also in timing.jsonl
 //!   → median and ratio         Estimate                       studies    with bootstrap intervals
 //!   → one Row                  value, ci_low, ci_high, valid  results    valid = false where the A/A replicate is not 1
-//!   → a mark with its interval figures                        report
+//!   → a mark with its interval Section                        studies    the section of the timing study; report draws the frame
 //! ```
 
 mod cell;

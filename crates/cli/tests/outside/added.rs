@@ -36,8 +36,8 @@ pub fn by_folder_and_table() -> Outcome {
     sandbox.run(&["oracles", "status"]).expect(0, &["chain            1", "mujoco"]);
     sandbox.run(&["list", "--suite", "smoke"]).expect(0, &["rapier, chain"]);
     sandbox.run(&["run", "--suite", "smoke", "--engine", "chain=sh", "--out", "out"]).expect(2, &["the name 'chain' is taken"]);
-    let suite = "about = \"one engine\"\nseed = 1\n[[robot]]\nmodel = \"chain-planar-2\"\nfamily = \"chain\"\n\
-                 [agreement]\nstates = 4\nengines = [\"chain\"]\n";
+    let suite = "about = \"one engine\"\nseed = 1\nstates = 4\nengines = [\"chain\"]\n[[robot]]\nmodel = \"chain-planar-2\"\nfamily = \"chain\"\n\
+                 [agreement]\n";
     sandbox.write("one.toml", suite);
     sandbox.run(&["run", "--suite", "one.toml", "--filter", "agreement/", "--out", "out"]).expect(0, &["report:"]);
     let rows = std::fs::read_to_string(sandbox.path("out/rows.csv")).unwrap();
