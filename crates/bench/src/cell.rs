@@ -1,7 +1,6 @@
 //! The cell: the unit of work.
 
-use crate::NoAnswer;
-use crate::hash;
+use crate::{Identity, NoAnswer, Robot, hash};
 use serde_json::{Value, json};
 
 /// One evaluation: an engine, its method, a quantity, a robot.
@@ -28,6 +27,21 @@ pub struct Cell {
 }
 
 impl Cell {
+    /// The cell in which an engine computes a quantity of a robot in `f64`.
+    pub fn new(study: &str, robot: &Robot, engine: &Identity, quantity: &str, method: impl Into<String>, params: Value) -> Self {
+        Self {
+            study: study.into(),
+            robot: robot.name.clone(),
+            robot_hash: robot.hash.clone(),
+            params,
+            engine: engine.name.clone(),
+            version: engine.version.clone(),
+            method: method.into(),
+            quantity: quantity.into(),
+            scalar: "f64".into(),
+        }
+    }
+
     /// The cell's id: a hash of everything in it.
     pub fn id(&self) -> String {
         let Self { study, robot, robot_hash, params, engine, version, method, quantity, scalar } = self;

@@ -34,7 +34,8 @@ pub fn explain(args: &ExplainArgs) -> Result<(), Fail> {
             }
             Some(Outcome::Text(text)) => {
                 let head: String = text.chars().take(400).collect();
-                println!("answer    a text of {} characters: {head}{}", text.len(), if head.len() < text.len() { " …" } else { "" });
+                let more = if head.len() < text.len() { " …" } else { "" };
+                println!("answer    a text of {} characters: {head}{more}", text.chars().count());
             }
             Some(Outcome::NoAnswer(NoAnswer::NotOffered(reason))) => println!("answer    not offered: {reason}"),
             Some(Outcome::NoAnswer(NoAnswer::Failed(reason))) => println!("answer    failed: {reason}"),

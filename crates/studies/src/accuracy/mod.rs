@@ -51,6 +51,7 @@ impl Study for Accuracy {
         let mut cells = Vec::new();
         for robot in context.robots.iter().filter(|robot| robot.takes(self.name())) {
             let big = robot.states.nv > DENSE_LIMIT;
+            let params = json!({"base": robot.base(), "states": robot.states.count()});
             for engine in context.engines {
                 let identity = engine.identity();
                 for quantity in QUANTITIES {
@@ -59,15 +60,8 @@ impl Study for Accuracy {
                         continue;
                     }
                     cells.extend(engine.methods(quantity).into_iter().map(|method| Cell {
-                        study: self.name().into(),
-                        robot: robot.name.clone(),
-                        robot_hash: robot.hash.clone(),
-                        params: json!({"base": robot.base(), "states": robot.states.count()}),
-                        engine: identity.name.clone(),
-                        version: identity.version.clone(),
-                        method,
-                        quantity: quantity.name().into(),
                         scalar: if quantity == Quantity::ForwardDynamicsSingle { "f32" } else { "f64" }.into(),
+                        ..Cell::new(self.name(), robot, identity, quantity.name(), method, params.clone())
                     }));
                 }
             }

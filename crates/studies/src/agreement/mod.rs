@@ -94,18 +94,8 @@ pub(crate) fn asked(robot: &Robot, quantity: Quantity) -> bool {
 }
 
 fn cell(robot: &Robot, engine: &dyn Engine, quantity: Quantity, method: String) -> Cell {
-    let identity = engine.identity();
-    Cell {
-        study: "agreement".into(),
-        robot: robot.name.clone(),
-        robot_hash: robot.hash.clone(),
-        params: json!({"base": robot.base(), "joints": robot.joint_kinds(), "states": quantity.states(robot.states.count())}),
-        engine: identity.name.clone(),
-        version: identity.version.clone(),
-        method,
-        quantity: quantity.name().into(),
-        scalar: "f64".into(),
-    }
+    let params = json!({"base": robot.base(), "joints": robot.joint_kinds(), "states": quantity.states(robot.states.count())});
+    Cell::new("agreement", robot, engine.identity(), quantity.name(), method, params)
 }
 
 struct Comparison<'a> {

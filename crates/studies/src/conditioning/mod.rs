@@ -33,16 +33,9 @@ impl Study for Conditioning {
     fn plan(&self, context: &Context) -> Vec<Cell> {
         let Some(featherbench) = context.engine("featherbench") else { return Vec::new() };
         let robots = context.robots.iter().filter(|robot| robot.takes(self.name()) && robot.states.nv <= MOST_DOFS);
-        let cell = |robot: &Robot| Cell {
-            study: self.name().into(),
-            robot: robot.name.clone(),
-            robot_hash: robot.hash.clone(),
-            params: json!({"configuration": "straight"}),
-            engine: featherbench.identity().name.clone(),
-            version: featherbench.identity().version.clone(),
-            method: "eigenvalues".into(),
-            quantity: Quantity::MassMatrix.name().into(),
-            scalar: "f64".into(),
+        let cell = |robot: &Robot| {
+            let params = json!({"configuration": "straight"});
+            Cell::new(self.name(), robot, featherbench.identity(), Quantity::MassMatrix.name(), "eigenvalues", params)
         };
         robots.map(cell).collect()
     }

@@ -63,17 +63,8 @@ impl Study for Import {
             let Some(params) = params(robot) else { continue };
             // Our own import is the robot itself.
             for engine in context.engines.iter().filter(|engine| engine.identity().name != "featherbench") {
-                let cell = |quantity: &str, method: String| Cell {
-                    study: self.name().into(),
-                    robot: robot.name.clone(),
-                    robot_hash: robot.hash.clone(),
-                    params: params.clone(),
-                    engine: engine.identity().name.clone(),
-                    version: engine.identity().version.clone(),
-                    method,
-                    quantity: quantity.into(),
-                    scalar: "f64".into(),
-                };
+                let cell =
+                    |quantity: &str, method: String| Cell::new(self.name(), robot, engine.identity(), quantity, method, params.clone());
                 cells.push(cell(READING, PARSER.into()));
                 let usual = |quantity: Quantity| Some((quantity.name(), engine.methods(quantity).into_iter().next()?));
                 let computed = COMPUTED.into_iter().filter(|_| robot.states.nv <= LARGEST);

@@ -51,17 +51,7 @@ impl Study for OperationCounts {
                     Some(method) => method,
                     None => continue,
                 };
-                cells.push(Cell {
-                    study: self.name().into(),
-                    robot: robot.name.clone(),
-                    robot_hash: robot.hash.clone(),
-                    params: json!({}),
-                    engine: identity.name.clone(),
-                    version: identity.version.clone(),
-                    method,
-                    quantity: Quantity::StoredEntries.name().into(),
-                    scalar: "f64".into(),
-                });
+                cells.push(Cell::new(self.name(), robot, identity, Quantity::StoredEntries.name(), method, json!({})));
             }
         }
         cells

@@ -58,17 +58,7 @@ impl Study for Steps {
                 let identity = engine.identity();
                 for method in stepper.step_methods() {
                     for quantity in [Quantity::ForwardDynamics, Quantity::KineticEnergy] {
-                        cells.push(Cell {
-                            study: self.name().into(),
-                            robot: robot.name.clone(),
-                            robot_hash: robot.hash.clone(),
-                            params: json!({}),
-                            engine: identity.name.clone(),
-                            version: identity.version.clone(),
-                            method: method.clone(),
-                            quantity: quantity.name().into(),
-                            scalar: "f64".into(),
-                        });
+                        cells.push(Cell::new(self.name(), robot, identity, quantity.name(), method.as_str(), json!({})));
                     }
                 }
             }

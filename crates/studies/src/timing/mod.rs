@@ -191,17 +191,7 @@ impl Study for Timing {
 
 impl Timing {
     fn cell(&self, robot: &Robot, engine: &dyn Engine, quantity: Quantity, method: &str, params: Value) -> Cell {
-        Cell {
-            study: self.name().into(),
-            robot: robot.name.clone(),
-            robot_hash: robot.hash.clone(),
-            params,
-            engine: engine.identity().name.clone(),
-            version: engine.identity().version.clone(),
-            method: method.into(),
-            quantity: quantity.name().into(),
-            scalar: "f64".into(),
-        }
+        Cell::new(self.name(), robot, engine.identity(), quantity.name(), method, params)
     }
 
     /// The quantities with their candidates: our usual method, its A/A replicate, our other methods, the other engines.
