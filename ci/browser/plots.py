@@ -40,6 +40,8 @@ LONELY = """
     const rooms = marks.map(room);
     const edge = svg.getBoundingClientRect();
     return {mark: marks[rooms.indexOf(Math.max(...rooms))], edge: [edge.left, edge.top, edge.right, edge.bottom]}"""
+# Seconds after which a browser is taken to save nothing, on a machine however busy.
+PATIENCE = 120
 # The lines that explain a mark.
 EXPLAINED = """
     const tip = document.querySelector(`#${arguments[0]} .chart-tip`);
@@ -64,10 +66,11 @@ def plots(page: Browser, shot: Shot) -> Checks:
     if boxes:
         page.click(f"#{boxes[0]} .chart-save")
         file = page.downloads / f"featherbench-{boxes[0]}.svg"
-        end = time.monotonic() + 20
-        while not file.is_file() and time.monotonic() < end:
+        # The browser makes an empty file of this name before it writes the figure.
+        text, end = "", time.monotonic() + PATIENCE
+        while not text.endswith("</svg>") and time.monotonic() < end:
             time.sleep(0.05)
-        text = file.read_text() if file.is_file() else ""
+            text = file.read_text() if file.is_file() else ""
         yield "a figure is saved as a file", text.startswith("<svg xmlns=") and text.endswith("</svg>"), text[:200]
     yield from axes(page)
     yield from awkward(page)
