@@ -5,6 +5,7 @@ mod counted;
 mod double_double;
 mod dual;
 mod error_free;
+mod lanes;
 mod trigonometry;
 
 pub use compensated::Compensated;
