@@ -222,21 +222,7 @@ fn apparent_inertia<T: Real, P: Real + Lift<T>>(
             (Some(apparent), upper_u.scale_add(link.d_inverse_u, p + apparent.mul(link.c)))
         }
         JointKind::Spherical => {
-            // S = [1; 0]: U = [I; Hᵀ],  D = I + R, R the diagonal armature. The formulas form no difference of nearly equal numbers:
-            // Iᵃ = R − R D⁻¹ R,  Hᵃ = R D⁻¹ H,  Mᵃ = M − Hᵀ D⁻¹ H
-            let armature = spherical_armature(model, dof);
-            let d = (inertia.rotational + diagonal(armature)).factor();
-            note_pivots(smallest, dof, &d);
-            let (w, translational) = schur(inertia.translational, inertia.coupling.transpose(), &d);
-            let carried = w.transpose();
-            let scale_rows = |m: Mat3<T>| Mat3::from_rows(m.x * armature.x, m.y * armature.y, m.z * armature.z);
-            let r = diagonal(armature).to_mat3();
-            let inverse = Mat3::from_rows(d.solve(r.x), d.solve(r.y), d.solve(r.z)).transpose();
-            let apparent = ArticulatedInertia {
-                rotational: diagonal(armature) - Sym3::from_upper(scale_rows(inverse)),
-                coupling: scale_rows(carried),
-                translational,
-            };
+            let (apparent, d) = eliminate_spherical(&inertia, spherical_armature(model, dof), dof, smallest);
             let d_inverse_u = d.solve(vec3(&tau[dof..]) - p.ang);
             (Some(apparent), p + apparent.mul(link.c) + inertia.mul(Motion::new(d_inverse_u, Vec3::zero())))
         }
@@ -324,6 +310,28 @@ fn joint_acceleration<T: Real, P: Real + Lift<T>>(
     link.a = add_joint(kind, carried, kind.motion(&model.subspaces[i], &a[dof..]));
 }
 
+/// The apparent inertia of a body behind a free spherical joint with diagonal armature R, and the factors of D.
+///
+/// S = [1; 0]: U = [I; Hᵀ],  D = I + R. The formulas form no difference of nearly equal numbers:
+/// Iᵃ = R − R D⁻¹ R,  Hᵃ = R D⁻¹ H,  Mᵃ = M − Hᵀ D⁻¹ H
+#[inline(always)]
+pub(crate) fn eliminate_spherical<T: Real>(
+    inertia: &ArticulatedInertia<T>,
+    armature: Vec3<T>,
+    dof: usize,
+    smallest: &mut Pivot,
+) -> (ArticulatedInertia<T>, Ldl3<T>) {
+    let d = (inertia.rotational + diagonal(armature)).factor();
+    note_pivots(smallest, dof, &d);
+    let (w, translational) = schur(inertia.translational, inertia.coupling.transpose(), &d);
+    let carried = w.transpose();
+    let scale_rows = |m: Mat3<T>| Mat3::from_rows(m.x * armature.x, m.y * armature.y, m.z * armature.z);
+    let r = diagonal(armature).to_mat3();
+    let inverse = Mat3::from_rows(d.solve(r.x), d.solve(r.y), d.solve(r.z)).transpose();
+    let rotational = diagonal(armature) - Sym3::from_upper(scale_rows(inverse));
+    (ArticulatedInertia { rotational, coupling: scale_rows(carried), translational }, d)
+}
+
 /// `(B D⁻¹, A − B D⁻¹ Bᵀ)`; D is given by its factors.
 #[inline(always)]
 fn schur<T: Real>(a: Sym3<T>, b: Mat3<T>, d: &Ldl3<T>) -> (Mat3<T>, Sym3<T>) {
@@ -333,7 +341,7 @@ fn schur<T: Real>(a: Sym3<T>, b: Mat3<T>, d: &Ldl3<T>) -> (Mat3<T>, Sym3<T>) {
 
 /// `Iᴬ⁻¹ f` by a blocked LDLᵀ, translation first, as the dofs of a free joint are ordered.
 #[inline(always)]
-fn solve<T: Real>(inertia: &ArticulatedInertia<T>, f: Force<T>, dof: usize, smallest: &mut Pivot) -> Motion<T> {
+pub(crate) fn solve<T: Real>(inertia: &ArticulatedInertia<T>, f: Force<T>, dof: usize, smallest: &mut Pivot) -> Motion<T> {
     let translation = inertia.translational.factor();
     note_pivots(smallest, dof, &translation);
     let (w, rotational) = schur(inertia.rotational, inertia.coupling, &translation);
@@ -360,7 +368,7 @@ fn diagonal<T: Real>(d: Vec3<T>) -> Sym3<T> {
 
 /// The vector of the first three values.
 #[inline(always)]
-fn vec3<T: Real>(values: &[T]) -> Vec3<T> {
+pub(crate) fn vec3<T: Real>(values: &[T]) -> Vec3<T> {
     Vec3::new(values[0], values[1], values[2])
 }
 
@@ -372,7 +380,7 @@ fn spherical_armature<T: Real, P: Real + Lift<T>>(model: &Model<P>, dof: usize) 
 
 /// The joint force of a free joint, in the order [force; moment].
 #[inline(always)]
-fn free_force<T: Real>(tau: &[T]) -> Force<T> {
+pub(crate) fn free_force<T: Real>(tau: &[T]) -> Force<T> {
     Force::new(vec3(&tau[3..]), vec3(tau))
 }
 

@@ -7,5 +7,6 @@ mod derivatives;
 mod errors;
 mod extended;
 mod identities;
+mod packed;
 mod refined;
 mod structure;

@@ -5,7 +5,8 @@
 
 use featherbench_bench::{DENSE_LIMIT, NoAnswer, Quantity, Robot, layout};
 use featherbench_dynamics::{
-    Aba, Bias, CenterOfMass, Crba, Energy, Error, Jacobian, Kinematics, Ltdl, Momentum, Refined, Rnea, TreeSparse,
+    Aba, Bias, CenterOfMass, Crba, Energy, Error, Jacobian, Kinematics, Ltdl, Momentum, PackedAba, PackedCrba, PackedModel, PackedRnea,
+    Refined, TreeSparse,
 };
 use featherbench_model::Model;
 use featherbench_robots::StateBatch;
@@ -63,8 +64,8 @@ fn written<'a>(size: usize, mut evaluate: impl FnMut(usize, &mut [f64]) -> Resul
 pub(crate) fn methods(quantity: Quantity) -> &'static [&'static str] {
     match quantity {
         Quantity::InverseDynamics | Quantity::InverseDynamicsWrench | Quantity::Bias => &["rnea"],
-        Quantity::MassMatrix | Quantity::MassMatrixProbe | Quantity::MassMatrixSparse => &["crba"],
-        Quantity::ForwardDynamics => &["aba", "ltdl", "refined_1", "refined_2"],
+        Quantity::MassMatrix | Quantity::MassMatrixProbe | Quantity::MassMatrixSparse => &["crba", "crba_packed"],
+        Quantity::ForwardDynamics => &["aba", "aba_packed", "ltdl", "refined_1", "refined_2"],
         Quantity::ForwardDynamicsSingle => &["aba", "ltdl"],
         Quantity::KineticEnergy | Quantity::PotentialEnergy | Quantity::CenterOfMass | Quantity::Momentum => &["kinematics"],
         Quantity::BodyPlacement | Quantity::BodyVelocity | Quantity::BodyAcceleration | Quantity::BodyJacobian => &["kinematics"],
@@ -85,9 +86,10 @@ pub(crate) fn kernel<'a>(robot: &'a Robot, quantity: Quantity, method: &str, sta
         Quantity::InverseDynamics => inverse_dynamics(model, states),
         Quantity::InverseDynamicsWrench => inverse_dynamics_wrench(model, states),
         Quantity::Bias => bias(model, states),
-        Quantity::MassMatrix => mass_matrix(model, states),
-        Quantity::MassMatrixProbe => mass_matrix_probe(model, states, robot.probe()),
-        Quantity::MassMatrixSparse => mass_matrix_sparse(model, states),
+        Quantity::MassMatrix => mass_matrix(model, states, method),
+        Quantity::MassMatrixProbe => mass_matrix_probe(model, states, method, robot.probe()),
+        Quantity::MassMatrixSparse => mass_matrix_sparse(model, states, method),
+        Quantity::ForwardDynamics if method == "aba_packed" => packed_forward_dynamics(model, states),
         Quantity::ForwardDynamics if method == "ltdl" => forward_dynamics_by_factorization(model, states),
         Quantity::ForwardDynamics if method == "refined_1" => refined_forward_dynamics(robot, states, 1)?,
         Quantity::ForwardDynamics if method == "refined_2" => refined_forward_dynamics(robot, states, 2)?,
@@ -112,9 +114,11 @@ pub fn timed(robot: &Robot) -> Vec<(Quantity, &'static str)> {
         (Quantity::InverseDynamics, "rnea"),
         (Quantity::Bias, "rnea"),
         (Quantity::MassMatrixSparse, "crba"),
+        (Quantity::MassMatrixSparse, "crba_packed"),
         (Quantity::Factorization, "ltdl"),
         (Quantity::Solve, "ltdl"),
         (Quantity::ForwardDynamics, "aba"),
+        (Quantity::ForwardDynamics, "aba_packed"),
         (Quantity::ForwardDynamics, "ltdl"),
         (Quantity::ForwardDynamics, "refined_1"),
         (Quantity::ForwardDynamics, "refined_2"),
@@ -129,27 +133,46 @@ pub fn timed(robot: &Robot) -> Vec<(Quantity, &'static str)> {
 }
 
 fn inverse_dynamics<'a>(model: &'a Model<f64>, states: &'a StateBatch) -> Kernel<'a> {
-    let mut rnea = Rnea::new(&model.topology);
-    written(model.topology.nv(), move |k, tau| Ok(rnea.run(model, states.q(k), states.v(k), states.a(k), None, tau)?))
+    let packed = PackedModel::new(model);
+    let mut rnea = PackedRnea::new(&packed);
+    written(model.topology.nv(), move |k, tau| Ok(rnea.run(&packed, states.q(k), states.v(k), states.a(k), None, tau)?))
 }
 
 fn inverse_dynamics_wrench<'a>(model: &'a Model<f64>, states: &'a StateBatch) -> Kernel<'a> {
-    let mut rnea = Rnea::new(&model.topology);
+    let packed = PackedModel::new(model);
+    let mut rnea = PackedRnea::new(&packed);
     let mut wrenches = vec![Force::zero(); model.topology.bodies()];
     written(model.topology.nv(), move |k, tau| {
         for (&body, w) in model.described.iter().zip(states.wrench(k).chunks_exact(6)) {
             wrenches[body] = Force::from_array([w[0], w[1], w[2], w[3], w[4], w[5]]);
         }
-        Ok(rnea.run(model, states.q(k), states.v(k), states.a(k), Some(&wrenches), tau)?)
+        Ok(rnea.run(&packed, states.q(k), states.v(k), states.a(k), Some(&wrenches), tau)?)
     })
 }
 
 fn bias<'a>(model: &'a Model<f64>, states: &'a StateBatch) -> Kernel<'a> {
-    let mut bias = Bias::new(&model.topology);
-    written(model.topology.nv(), move |k, h| Ok(bias.run(model, states.q(k), states.v(k), None, h)?))
+    let packed = PackedModel::new(model);
+    let mut rnea = PackedRnea::new(&packed);
+    written(model.topology.nv(), move |k, h| Ok(rnea.bias(&packed, states.q(k), states.v(k), None, h)?))
 }
 
-fn mass_matrix<'a>(model: &'a Model<f64>, states: &'a StateBatch) -> Kernel<'a> {
+/// The mass matrix of state k into a tree-sparse matrix, by `crba` or `crba_packed`.
+fn crba<'a>(
+    model: &'a Model<f64>,
+    states: &'a StateBatch,
+    method: &str,
+) -> Box<dyn FnMut(&mut TreeSparse<f64>, usize) -> Result<(), Error> + Send + 'a> {
+    if method == "crba_packed" {
+        let packed = PackedModel::new(model);
+        let mut crba = PackedCrba::new(&packed);
+        Box::new(move |matrix, k| Ok(crba.run(&packed, states.q(k), matrix)?))
+    } else {
+        let mut crba = Crba::new(&model.topology);
+        Box::new(move |matrix, k| Ok(crba.run(model, states.q(k), matrix)?))
+    }
+}
+
+fn mass_matrix<'a>(model: &'a Model<f64>, states: &'a StateBatch, method: &str) -> Kernel<'a> {
     let read = |matrix: &TreeSparse<f64>, dense: &mut [f64]| {
         let n = model.topology.nv();
         dense.fill(0.0);
@@ -160,22 +183,20 @@ fn mass_matrix<'a>(model: &'a Model<f64>, states: &'a StateBatch) -> Kernel<'a> 
             }
         }
     };
-    let mut crba = Crba::new(&model.topology);
-    kept(TreeSparse::new(&model.topology), move |matrix, k| Ok(crba.run(model, states.q(k), matrix)?), read)
+    kept(TreeSparse::new(&model.topology), crba(model, states, method), read)
 }
 
-fn mass_matrix_probe<'a>(model: &'a Model<f64>, states: &'a StateBatch, probe: Vec<f64>) -> Kernel<'a> {
-    let (mut crba, mut matrix) = (Crba::new(&model.topology), TreeSparse::new(&model.topology));
+fn mass_matrix_probe<'a>(model: &'a Model<f64>, states: &'a StateBatch, method: &str, probe: Vec<f64>) -> Kernel<'a> {
+    let (mut crba, mut matrix) = (crba(model, states, method), TreeSparse::new(&model.topology));
     written(6 * model.topology.nv(), move |k, out| {
-        crba.run(model, states.q(k), &mut matrix)?;
+        crba(&mut matrix, k)?;
         Ok(layout::probe(&matrix, &probe, out)?)
     })
 }
 
-fn mass_matrix_sparse<'a>(model: &'a Model<f64>, states: &'a StateBatch) -> Kernel<'a> {
-    let mut crba = Crba::new(&model.topology);
+fn mass_matrix_sparse<'a>(model: &'a Model<f64>, states: &'a StateBatch, method: &str) -> Kernel<'a> {
     let read = |matrix: &TreeSparse<f64>, out: &mut [f64]| out.copy_from_slice(matrix.values());
-    kept(TreeSparse::new(&model.topology), move |matrix, k| Ok(crba.run(model, states.q(k), matrix)?), read)
+    kept(TreeSparse::new(&model.topology), crba(model, states, method), read)
 }
 
 fn forward_dynamics<'a>(model: &'a Model<f64>, states: &'a StateBatch) -> Kernel<'a> {
@@ -183,12 +204,20 @@ fn forward_dynamics<'a>(model: &'a Model<f64>, states: &'a StateBatch) -> Kernel
     written(model.topology.nv(), move |k, a| aba.run(model, states.q(k), states.v(k), states.tau(k), None, a))
 }
 
+/// Several joints at a time, in the axes of the base.
+fn packed_forward_dynamics<'a>(model: &'a Model<f64>, states: &'a StateBatch) -> Kernel<'a> {
+    let packed = PackedModel::new(model);
+    let mut aba = PackedAba::new(&packed);
+    written(model.topology.nv(), move |k, a| aba.run(&packed, states.q(k), states.v(k), states.tau(k), None, a))
+}
+
 fn forward_dynamics_by_factorization<'a>(model: &'a Model<f64>, states: &'a StateBatch) -> Kernel<'a> {
-    let (mut crba, mut bias, mut ltdl) = (Crba::new(&model.topology), Bias::new(&model.topology), Ltdl::new(&model.topology));
+    let packed = PackedModel::new(model);
+    let (mut crba, mut rnea, mut ltdl) = (Crba::new(&model.topology), PackedRnea::new(&packed), Ltdl::new(&model.topology));
     written(model.topology.nv(), move |k, a| {
         crba.run(model, states.q(k), ltdl.matrix_mut())?;
         ltdl.factor()?;
-        bias.run(model, states.q(k), states.v(k), None, a)?;
+        rnea.bias(&packed, states.q(k), states.v(k), None, a)?;
         for (a, tau) in a.iter_mut().zip(states.tau(k)) {
             *a = tau - *a;
         }

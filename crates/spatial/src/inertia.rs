@@ -49,16 +49,7 @@ impl<T: Real> RigidBodyInertia<T> {
         let moved = r.scale_add(self.mass, h);
         // Ī' = R Ī Rᵀ − r×h× − (h + m r)×r×
         let (a, b) = (h, moved);
-        let minus = |u: Vec3<T>, w: Vec3<T>| Sym3 {
-            // upper triangle of −u× w× = (u·w) 1 − w uᵀ
-            xx: u.y.mul_add(w.y, u.z * w.z),
-            xy: -(w.x * u.y),
-            xz: -(w.x * u.z),
-            yy: u.x.mul_add(w.x, u.z * w.z),
-            yz: -(w.y * u.z),
-            zz: u.x.mul_add(w.x, u.y * w.y),
-        };
-        let rotational = self.rotational.rotate(x.rotation) + minus(a, r) + minus(r, b);
+        let rotational = self.rotational.rotate(x.rotation) + Sym3::minus_cross_cross(a, r) + Sym3::minus_cross_cross(r, b);
         Self { mass: self.mass, first_moment: moved, rotational }
     }
 
@@ -143,19 +134,32 @@ impl<T: Real> ArticulatedInertia<T> {
     /// The same inertia at the parent's origin in parent coordinates, `X* Iᴬ X⁻¹`.
     #[inline(always)]
     pub fn to_parent(&self, x: &Transform<T>) -> Self {
-        let (r, p) = (x.rotation, x.translation);
-        // M' = R M Rᵀ,  H' = A + p× M' with A = R H Rᵀ; column i of p× M' is p × (row i of M')
-        let m = self.translational.rotate(r);
-        let at = r * (r * self.coupling).transpose();
-        let a = at.transpose();
+        self.rotate(x.rotation).translate(x.translation)
+    }
+
+    /// The same inertia at the same origin, in the axes to which `r` transforms.
+    #[inline(always)]
+    pub fn rotate(&self, r: Mat3<T>) -> Self {
+        Self {
+            rotational: self.rotational.rotate(r),
+            coupling: (r * (r * self.coupling).transpose()).transpose(),
+            translational: self.translational.rotate(r),
+        }
+    }
+
+    /// The same inertia in the same axes, at an origin from which its own is displaced by `p`.
+    #[inline(always)]
+    pub fn translate(&self, p: Vec3<T>) -> Self {
+        // M' = M,  H' = H + p× M; column i of p× M is p × (row i of M)
+        let (i, a, m) = (self.rotational, self.coupling, self.translational);
+        let at = a.transpose();
         let h = Mat3::from_rows(
             p.cross_add(Vec3::new(m.xx, m.xy, m.xz), at.x),
             p.cross_add(Vec3::new(m.xy, m.yy, m.yz), at.y),
             p.cross_add(Vec3::new(m.xz, m.yz, m.zz), at.z),
         )
         .transpose();
-        // I' = R I Rᵀ − A p× + p× H'ᵀ; row i of −A p× is p × (row i of A), column i of p× H'ᵀ is p × (row i of H')
-        let i = self.rotational.rotate(r);
+        // I' = I − H p× + p× H'ᵀ; row i of −H p× is p × (row i of H), column i of p× H'ᵀ is p × (row i of H')
         let cross_x = |v: Vec3<T>, addend: T| p.y.mul_add(v.z, (-p.z).mul_add(v.y, addend));
         let cross_y = |v: Vec3<T>, addend: T| p.z.mul_add(v.x, (-p.x).mul_add(v.z, addend));
         let cross_z = |v: Vec3<T>, addend: T| p.x.mul_add(v.y, (-p.y).mul_add(v.x, addend));

@@ -310,6 +310,19 @@ impl<T: Real> Sym3<T> {
         }
     }
 
+    /// The upper triangle of `−u× w× = (u·w) 1 − w uᵀ`.
+    #[inline(always)]
+    pub fn minus_cross_cross(u: Vec3<T>, w: Vec3<T>) -> Self {
+        Self {
+            xx: u.y.mul_add(w.y, u.z * w.z),
+            xy: -(w.x * u.y),
+            xz: -(w.x * u.z),
+            yy: u.x.mul_add(w.x, u.z * w.z),
+            yz: -(w.y * u.z),
+            zz: u.x.mul_add(w.x, u.y * w.y),
+        }
+    }
+
     /// `w·u uᵀ`.
     #[inline(always)]
     pub fn rank_one(weight: T, u: Vec3<T>) -> Self {

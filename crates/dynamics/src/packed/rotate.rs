@@ -1,0 +1,66 @@
+//! Rotations of the lanes of a register.
+//!
+//! Each is one instruction. Written as loops over lanes, they become unaligned loads of a value that was just stored. Such a load waits
+//! for the store, which made inverse dynamics a third slower.
+
+use super::lanes::{LANES, Pack};
+
+/// Lane k of the result is lane k − STRIDE of x; the lanes form a ring.
+#[inline(always)]
+pub(super) fn rotate_up<const STRIDE: usize>(x: Pack) -> Pack {
+    match STRIDE {
+        1 => ring::<{ LANES as i32 - 1 }>(x),
+        2 => ring::<{ LANES as i32 - 2 }>(x),
+        _ => ring::<{ LANES as i32 / 2 }>(x),
+    }
+}
+
+/// Lane k of the result is lane k + STRIDE of x; the lanes form a ring.
+#[inline(always)]
+pub(super) fn rotate_down<const STRIDE: usize>(x: Pack) -> Pack {
+    match STRIDE {
+        1 => ring::<1>(x),
+        2 => ring::<2>(x),
+        _ => ring::<{ LANES as i32 / 2 }>(x),
+    }
+}
+
+/// Lane k of the result is lane k + SHIFT of x.
+#[inline(always)]
+#[cfg(all(target_arch = "x86_64", target_feature = "avx512f"))]
+#[expect(unsafe_code, reason = "an instruction of the processor")]
+fn ring<const SHIFT: i32>(x: Pack) -> Pack {
+    use core::arch::x86_64::{__m512i, _mm512_alignr_epi64};
+    // SAFETY: this function is compiled only for processors with AVX-512F, which has the instruction. A `Pack` and a `__m512i` both have 64
+    // bytes and no invalid values.
+    unsafe {
+        let x: __m512i = core::mem::transmute(x);
+        core::mem::transmute(_mm512_alignr_epi64::<SHIFT>(x, x))
+    }
+}
+
+/// Lane k of the result is lane k + SHIFT of x.
+#[inline(always)]
+#[cfg(all(target_arch = "x86_64", target_feature = "avx2", not(target_feature = "avx512f")))]
+#[expect(unsafe_code, reason = "an instruction of the processor")]
+fn ring<const SHIFT: i32>(x: Pack) -> Pack {
+    use core::arch::x86_64::{__m256d, _mm256_permute4x64_pd};
+    // SAFETY: this function is compiled only for processors with AVX2, which has the instruction. A `Pack` and a `__m256d` both have 32
+    // bytes and no invalid values.
+    unsafe {
+        let x: __m256d = core::mem::transmute(x);
+        core::mem::transmute(match SHIFT {
+            1 => _mm256_permute4x64_pd::<0b00_11_10_01>(x),
+            2 => _mm256_permute4x64_pd::<0b01_00_11_10>(x),
+            _ => _mm256_permute4x64_pd::<0b10_01_00_11>(x),
+        })
+    }
+}
+
+/// Lane k of the result is lane k + SHIFT of x.
+#[inline(always)]
+#[cfg(not(all(target_arch = "x86_64", target_feature = "avx2")))]
+fn ring<const SHIFT: i32>(x: Pack) -> Pack {
+    let x = x.to_array();
+    super::lanes::from_lanes(|k| x[(k + SHIFT as usize) % LANES])
+}
