@@ -27,6 +27,7 @@
 //! ```
 
 mod aba;
+mod batch;
 mod bias;
 mod center_of_mass;
 mod crba;
@@ -43,6 +44,7 @@ mod step;
 mod tree_sparse;
 
 pub use aba::{Aba, forward_dynamics};
+pub use batch::{Batch, BatchError, Cause, Element, Failure, Number, to_lanes, to_rows};
 pub use bias::{Bias, bias_force};
 pub use center_of_mass::{CenterOfMass, MassCenter, center_of_mass};
 pub use crba::{Crba, mass_matrix};

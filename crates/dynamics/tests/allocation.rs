@@ -5,7 +5,9 @@
 mod common;
 
 use common::{ROBOTS, build, wrenches};
-use featherbench_dynamics::{Aba, Bias, CenterOfMass, Crba, Energy, Jacobian, Kinematics, Ltdl, Momentum, Refined, Rnea, TreeSparse};
+use featherbench_dynamics::{
+    Aba, Batch, Bias, CenterOfMass, Crba, Energy, Jacobian, Kinematics, Ltdl, Momentum, Refined, Rnea, TreeSparse, to_lanes,
+};
 use featherbench_robots::StateBatch;
 use featherbench_spatial::{Compensated, DoubleDouble};
 use std::alloc::{GlobalAlloc, Layout, System};
@@ -85,5 +87,30 @@ fn no_algorithm_allocates_in_a_call() {
         assert_eq!(ALLOCATIONS.get() - before, 0, "{name}");
         drop(vec![0_u8; 10]);
         assert!(ALLOCATIONS.get() > before, "the counter counts");
+    }
+}
+
+/// On one core a batch without failures allocates nothing, in row order and in lane order.
+#[test]
+fn no_batch_allocates_in_a_call() {
+    for (name, recipe) in &ROBOTS {
+        let model = build(recipe);
+        let t = &model.topology;
+        let states = StateBatch::random(&model, 21, 1);
+        let (q, v, a, tau) = (&states.q, &states.v, &states.a, &states.tau);
+        let (mut out, mut matrices) = (vec![0.0; v.len()], vec![0.0; 21 * t.stored()]);
+        let lanes = |rows: &[f64], each| to_lanes(rows, each).unwrap();
+        let (q_lanes, v_lanes, mut out_lanes) = (lanes(q, t.nq()), lanes(v, t.nv()), lanes(v, t.nv()));
+        let mut batch = Batch::<f64>::new(&model);
+
+        let before = ALLOCATIONS.get();
+        batch.inverse_dynamics(q, v, a, &mut out).unwrap();
+        batch.bias_force(q, v, &mut out).unwrap();
+        batch.forward_dynamics(q, v, tau, &mut out).unwrap();
+        batch.mass_matrix(q, &mut matrices).unwrap();
+        batch.factors(q, &mut matrices).unwrap();
+        batch.solve(q, tau, &mut out).unwrap();
+        batch.forward_dynamics(&q_lanes, &v_lanes, &v_lanes, &mut out_lanes).unwrap();
+        assert_eq!(ALLOCATIONS.get() - before, 0, "{name}");
     }
 }

@@ -3,3 +3,4 @@
 mod algebra;
 #[path = "double_double/main.rs"]
 mod double_double;
+mod lanes;

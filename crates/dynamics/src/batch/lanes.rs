@@ -1,0 +1,152 @@
+//! Numbers, registers of them, and the two orders of an array.
+
+use crate::DimensionError;
+use crate::error::expect;
+use featherbench_spatial::Real;
+
+/// A number of a batch, `f64` or `f32`, and the register that holds one of each state of a group.
+///
+/// The register is chosen when the crate is compiled: 64 bytes with AVX-512, otherwise 32.
+pub trait Number: Real + Element<Self> {
+    /// The register.
+    type Lanes: Real + Element<Self>;
+
+    /// How many numbers a register holds.
+    const LANES: usize;
+
+    /// The register with these numbers, lane after lane.
+    fn pack(number: impl FnMut(usize) -> Self) -> Self::Lanes;
+
+    /// The numbers of a register.
+    fn lanes(register: &Self::Lanes) -> &[Self];
+
+    /// The numbers of a register, to be written.
+    fn lanes_mut(register: &mut Self::Lanes) -> &mut [Self];
+}
+
+/// An element of the arrays of a batch of `S`: a number (row order) or a register (lane order). See the [`Batch`](crate::Batch).
+pub trait Element<S: Number>: Copy + Send + Sync {
+    /// How many states an element belongs to: 1, or [`Number::LANES`].
+    const STATES: usize;
+
+    /// The vectors of one group, of `each` entries. The array has those of all groups. A number's are copied to `buffer`, and the last state
+    /// fills lanes without a state.
+    fn load<'a>(array: &'a [Self], each: usize, group: usize, buffer: &'a mut [S::Lanes]) -> &'a [S::Lanes];
+
+    /// Writes the results of one group to its part of an array.
+    fn store(results: &[S::Lanes], part: &mut [Self]);
+
+    /// Writes NaN over the results of the state in a lane, in its group's part of an array; a vector has `each` entries.
+    fn erase(part: &mut [Self], each: usize, lane: usize);
+}
+
+macro_rules! number {
+    ($scalar:ident, $lanes:path, $count:expr) => {
+        impl Number for $scalar {
+            type Lanes = $lanes;
+
+            const LANES: usize = $count;
+
+            #[inline(always)]
+            fn pack(number: impl FnMut(usize) -> Self) -> $lanes {
+                <$lanes>::new(std::array::from_fn(number))
+            }
+
+            #[inline(always)]
+            fn lanes(register: &$lanes) -> &[Self] {
+                register.as_array()
+            }
+
+            #[inline(always)]
+            fn lanes_mut(register: &mut $lanes) -> &mut [Self] {
+                register.as_mut_array()
+            }
+        }
+
+        impl Element<$scalar> for $lanes {
+            const STATES: usize = $count;
+
+            #[inline(always)]
+            fn load<'a>(array: &'a [Self], each: usize, group: usize, _: &'a mut [$lanes]) -> &'a [$lanes] {
+                &array[group * each..][..each]
+            }
+
+            #[inline(always)]
+            fn store(results: &[$lanes], part: &mut [Self]) {
+                part.copy_from_slice(results);
+            }
+
+            fn erase(part: &mut [Self], _: usize, lane: usize) {
+                for register in part {
+                    register.as_mut_array()[lane] = $scalar::NAN;
+                }
+            }
+        }
+
+        impl Element<$scalar> for $scalar {
+            const STATES: usize = 1;
+
+            #[inline(always)]
+            fn load<'a>(array: &'a [Self], each: usize, group: usize, buffer: &'a mut [$lanes]) -> &'a [$lanes] {
+                let rows = &array[group * each * $count..];
+                let rows = &rows[..rows.len().min(each * $count)];
+                let last = (rows.len() / each.max(1)).saturating_sub(1);
+                let rows: [&[$scalar]; $count] = std::array::from_fn(|lane| &rows[lane.min(last) * each..][..buffer.len()]);
+                for (entry, register) in buffer.iter_mut().enumerate() {
+                    *register = <$lanes>::new(std::array::from_fn(|lane| rows[lane][entry]));
+                }
+                buffer
+            }
+
+            #[inline(always)]
+            fn store(results: &[$lanes], part: &mut [Self]) {
+                for (lane, row) in part.chunks_exact_mut(results.len().max(1)).enumerate() {
+                    for (number, register) in row.iter_mut().zip(results) {
+                        *number = register.as_array()[lane];
+                    }
+                }
+            }
+
+            fn erase(part: &mut [Self], each: usize, lane: usize) {
+                part[lane * each..][..each].fill($scalar::NAN);
+            }
+        }
+    };
+}
+
+#[cfg(target_feature = "avx512f")]
+number!(f64, wide::f64x8, 8);
+#[cfg(target_feature = "avx512f")]
+number!(f32, wide::f32x16, 16);
+#[cfg(not(target_feature = "avx512f"))]
+number!(f64, wide::f64x4, 4);
+#[cfg(not(target_feature = "avx512f"))]
+number!(f32, wide::f32x8, 8);
+
+/// An array in lane order, from one in row order whose vectors have `each` entries. The last group is filled with copies of its last state.
+///
+/// # Errors
+/// [`DimensionError`] when the rows are not whole vectors.
+pub fn to_lanes<S: Number>(rows: &[S], each: usize) -> Result<Vec<S::Lanes>, DimensionError> {
+    let states = rows.len() / each.max(1);
+    expect("numbers in row order", states * each, rows.len())?;
+    let mut lanes = vec![S::Lanes::zero(); states.div_ceil(S::LANES) * each];
+    for (group, part) in lanes.chunks_exact_mut(each.max(1)).enumerate() {
+        S::load(rows, each, group, part);
+    }
+    Ok(lanes)
+}
+
+/// An array in row order with the vectors of so many states, from one in lane order. A vector has `each` entries.
+///
+/// # Errors
+/// [`DimensionError`] when there are not as many groups as these states fill.
+pub fn to_rows<S: Number>(lanes: &[S::Lanes], each: usize, states: usize) -> Result<Vec<S>, DimensionError> {
+    expect("registers in lane order", states.div_ceil(S::LANES) * each, lanes.len())?;
+    let mut rows = vec![S::zero(); states * each];
+    let parts = rows.chunks_mut((each * S::LANES).max(1));
+    for (results, part) in lanes.chunks_exact(each.max(1)).zip(parts) {
+        S::store(results, part);
+    }
+    Ok(rows)
+}

@@ -1,0 +1,162 @@
+//! Many states of one robot at once: one state per lane of a register, and groups of states over the cores.
+//!
+//! The kernels are those of this crate, with a register of numbers ([`Number::Lanes`]) as their scalar. So the operations on each state are
+//! those of a single state. Only sine and cosine come from another library: results differ by a few roundings.
+//! Frames, units and signs are those of the kernels. There are no external wrenches.
+//!
+//! An array holds one vector per state, in one of two orders. The type of its elements says which ([`Element`]):
+//!
+//! - *row order*, `&[f64]`: state after state. Its length is the number of states times the length of a vector.
+//! - *lane order*, `&[wide::f64x8]` for example: group after group, one register per entry of the vector. Lane l of group g is state
+//!   g·[`Number::LANES`] + l. Nothing is copied, so this is the faster one. [`to_lanes`] and [`to_rows`] change the order.
+//!
+//! In row order lanes without a state compute a copy of the last state, and their results are dropped. In lane order every lane is a state:
+//! [`to_lanes`] fills the last group with copies, which a list of failures may name too.
+//!
+//! Cost: that of the kernel for each group of [`Number::LANES`] states.
+
+mod error;
+mod kernels;
+mod lanes;
+mod run;
+mod samples;
+
+pub use error::{BatchError, Cause, Failure};
+pub use lanes::{Element, Number, to_lanes, to_rows};
+
+use crate::DimensionError;
+use featherbench_model::Model;
+use featherbench_spatial::Lift;
+use kernels::{BiasForce, Factors, ForwardDynamics, InverseDynamics, MassMatrix, Solution};
+use run::{Array, Worker};
+use samples::Models;
+
+/// Computes with many states of one robot, on one core or on all.
+///
+/// A state that fails is reported by its index, and NaN stands in place of its results. The other states' results are those that they have
+/// without it, to the bit. The results do not depend on the number of cores.
+///
+/// On one core a call allocates only to report failures.
+///
+/// ```
+/// use featherbench_dynamics::{Batch, BatchError};
+/// use featherbench_model::{BodyDescription, Description, JointDescription, JointType, Model};
+///
+/// let joint = JointDescription { kind: JointType::Revolute { axis: [0.0, 1.0, 0.0] }, ..JointDescription::default() };
+/// let bob = BodyDescription { name: "bob".into(), parent: None, mass: 1.0, com: [0.0, 0.0, -0.5], inertia: [0.0; 6], joint };
+/// let pendulum = Description { gravity: [0.0, 0.0, -10.0], bodies: vec![bob], ..Description::default() };
+/// let model: Model<f64> = Model::build(&pendulum)?;
+///
+/// // The torques that hold a pendulum of one kilogramme and half a metre, at a hundred angles.
+/// let q: Vec<f64> = (0..100).map(f64::from).collect();
+/// let (rest, mut tau) = (vec![0.0; 100], vec![0.0; 100]);
+/// let mut batch = Batch::<f64>::new(&model).on_all_cores();
+/// batch.inverse_dynamics(&q, &rest, &rest, &mut tau)?;
+/// assert!(q.iter().zip(&tau).all(|(q, tau)| (tau - 5.0 * q.sin()).abs() < 1e-14));
+///
+/// // One bad state does no harm to others.
+/// let mut v = rest.clone();
+/// v[17] = f64::NAN;
+/// let Err(BatchError::Failed { failures, .. }) = batch.forward_dynamics(&q, &v, &tau, &mut vec![0.0; 100]) else { panic!() };
+/// assert_eq!((failures.len(), failures[0].state), (1, 17));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Clone, Debug)]
+pub struct Batch<'m, S: Number = f64> {
+    models: Models<'m, S>,
+    /// One per core.
+    workers: Vec<Worker<S>>,
+}
+
+impl<'m, S: Number + Lift<S::Lanes>> Batch<'m, S> {
+    /// States of one model, on one core. The precision `S` is that of the model: [`Model::lift`] makes a `Model<f32>`.
+    pub fn new(model: &'m Model<S>) -> Self {
+        Self { workers: vec![Worker::new(&model.topology)], models: Models::One(model) }
+    }
+
+    /// States of which each has a model of its own: state k is one of `samples[k]`. All have one topology. On one core.
+    ///
+    /// # Errors
+    /// [`DimensionError`] when there is no sample, or the samples have not one topology.
+    pub fn of_samples(samples: &'m [Model<S>]) -> Result<Self, DimensionError> {
+        let (models, topology) = Models::of_samples(samples)?;
+        Ok(Self { workers: vec![Worker::new(topology)], models })
+    }
+
+    /// The same on all cores: with as many threads as the current pool of `rayon` has now. Calls then allocate a little.
+    #[must_use]
+    pub fn on_all_cores(mut self) -> Self {
+        let worker = self.workers[0].clone();
+        self.workers.resize(rayon::current_num_threads().max(1), worker);
+        self
+    }
+
+    /// Joint forces `tau` of configurations `q`, velocities `v` and accelerations `a`: [`Rnea`](crate::Rnea) for each state.
+    ///
+    /// # Errors
+    /// [`BatchError`] when an array has the wrong length or a state fails.
+    pub fn inverse_dynamics<E: Element<S>>(&mut self, q: &[E], v: &[E], a: &[E], tau: &mut [E]) -> Result<(), BatchError> {
+        let nv = self.nv();
+        let inputs = [self.q(q), Array::new("velocities v", v, nv), Array::new("accelerations a", a, nv)];
+        self.run::<InverseDynamics, E, 3>(inputs, Array::new("joint forces tau", tau, nv))
+    }
+
+    /// Bias forces `h` of configurations `q` and velocities `v`: [`Bias`](crate::Bias) for each state.
+    ///
+    /// # Errors
+    /// [`BatchError`] when an array has the wrong length or a state fails.
+    pub fn bias_force<E: Element<S>>(&mut self, q: &[E], v: &[E], h: &mut [E]) -> Result<(), BatchError> {
+        let nv = self.nv();
+        self.run::<BiasForce, E, 2>([self.q(q), Array::new("velocities v", v, nv)], Array::new("bias forces h", h, nv))
+    }
+
+    /// Accelerations `a` at configurations `q`, velocities `v` and joint forces `tau`: [`Aba`](crate::Aba) for each state.
+    ///
+    /// # Errors
+    /// [`BatchError`] when an array has the wrong length or a state fails.
+    pub fn forward_dynamics<E: Element<S>>(&mut self, q: &[E], v: &[E], tau: &[E], a: &mut [E]) -> Result<(), BatchError> {
+        let nv = self.nv();
+        let inputs = [self.q(q), Array::new("velocities v", v, nv), Array::new("joint forces tau", tau, nv)];
+        self.run::<ForwardDynamics, E, 3>(inputs, Array::new("accelerations a", a, nv))
+    }
+
+    /// Joint-space inertia matrices of configurations `q`: [`Crba`](crate::Crba) for each state.
+    ///
+    /// A matrix has [`Topology::stored`](featherbench_model::Topology::stored) numbers, in the order of
+    /// [`TreeSparse::values`](crate::TreeSparse::values).
+    ///
+    /// # Errors
+    /// [`BatchError`] when an array has the wrong length or a state fails.
+    pub fn mass_matrix<E: Element<S>>(&mut self, q: &[E], matrices: &mut [E]) -> Result<(), BatchError> {
+        let stored = self.models.topology().stored();
+        self.run::<MassMatrix, E, 1>([self.q(q)], Array::new("matrices", matrices, stored))
+    }
+
+    /// Factors LᵀDL of the joint-space inertia matrices of configurations `q`: [`Crba`](crate::Crba) and [`Ltdl`](crate::Ltdl) for each state.
+    ///
+    /// They have the shape of the matrices: L below the diagonal, D on it.
+    ///
+    /// # Errors
+    /// [`BatchError`] when an array has the wrong length or a state fails.
+    pub fn factors<E: Element<S>>(&mut self, q: &[E], factors: &mut [E]) -> Result<(), BatchError> {
+        let stored = self.models.topology().stored();
+        self.run::<Factors, E, 1>([self.q(q)], Array::new("factors", factors, stored))
+    }
+
+    /// Solutions `x` of `M(q) x = b` by these factors, for configurations `q` and right-hand sides `b`.
+    ///
+    /// # Errors
+    /// [`BatchError`] when an array has the wrong length or a state fails.
+    pub fn solve<E: Element<S>>(&mut self, q: &[E], b: &[E], x: &mut [E]) -> Result<(), BatchError> {
+        let nv = self.nv();
+        self.run::<Solution, E, 2>([self.q(q), Array::new("right-hand sides b", b, nv)], Array::new("solutions x", x, nv))
+    }
+
+    fn nv(&self) -> usize {
+        self.models.topology().nv()
+    }
+
+    fn q<'a, E>(&self, q: &'a [E]) -> Array<&'a [E]> {
+        Array::new("configurations q", q, self.models.topology().nq())
+    }
+}

@@ -1,0 +1,187 @@
+//! The way through a batch: groups of states are taken in turn by the workers, and a group in which a lane fails is examined.
+
+use super::kernels::{Kernel, Workspace};
+use super::samples::Models;
+use super::{Batch, BatchError, Cause, Element, Failure, Number};
+use crate::error::expect;
+use crate::{DimensionError, Error};
+use featherbench_model::Topology;
+use featherbench_spatial::{Lift, Real};
+use rayon::iter::{IntoParallelRefMutIterator, ParallelIterator};
+use std::sync::{Mutex, PoisonError};
+
+/// The most groups that a worker takes at a time: taking costs some ten nanoseconds, a group some thousand and more.
+const GROUPS: usize = 32;
+
+/// Workers take a part of the states at least so often, so that none waits long for the last.
+const PARTS_PER_WORKER: usize = 8;
+
+/// What one core needs.
+#[derive(Clone, Debug)]
+pub(super) struct Worker<S: Number> {
+    workspace: Workspace<S::Lanes>,
+    /// The inputs of one group, if they have to be brought into lanes.
+    inputs: Vec<S::Lanes>,
+}
+
+impl<S: Number> Worker<S> {
+    pub(super) fn new(topology: &Topology) -> Self {
+        let inputs = vec![S::Lanes::zero(); topology.nq() + 2 * topology.nv()];
+        Self { workspace: Workspace::new(topology), inputs }
+    }
+}
+
+/// An array of vectors of `each` entries, with its name.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Array<A> {
+    name: &'static str,
+    numbers: A,
+    each: usize,
+}
+
+impl<A> Array<A> {
+    pub(super) fn new(name: &'static str, numbers: A, each: usize) -> Self {
+        Self { name, numbers, each }
+    }
+}
+
+impl<S: Number + Lift<S::Lanes>> Batch<'_, S> {
+    /// Runs a kernel on every state.
+    pub(super) fn run<K: Kernel<N>, E: Element<S>, const N: usize>(
+        &mut self,
+        inputs: [Array<&[E]>; N],
+        output: Array<&mut [E]>,
+    ) -> Result<(), BatchError> {
+        let Self { models, workers } = self;
+        let states = count(models, &inputs, &output)?;
+
+        let group_len = (output.each * S::LANES / E::STATES).max(1);
+        let groups = states.div_ceil(S::LANES);
+        let part = groups.div_ceil(PARTS_PER_WORKER * workers.len()).clamp(1, GROUPS);
+        let parts = Mutex::new(output.numbers.chunks_mut(part * group_len).enumerate());
+        let job = Job { models, inputs, output: (output.name, output.each), states };
+        let work = |worker: &mut Worker<S>| -> Result<Vec<Failure>, DimensionError> {
+            let mut failures = Vec::new();
+            loop {
+                let next = parts.lock().unwrap_or_else(PoisonError::into_inner).next();
+                let Some((index, results)) = next else { return Ok(failures) };
+                for (k, results) in results.chunks_mut(group_len).enumerate() {
+                    job.run_group::<K>(worker, index * part + k, results, &mut failures)?;
+                }
+            }
+        };
+
+        let mut failures = match &mut workers[..] {
+            [worker] => work(worker)?,
+            workers => {
+                let join = |mut a: Vec<Failure>, mut b| {
+                    a.append(&mut b);
+                    Ok(a)
+                };
+                workers.par_iter_mut().map(work).try_reduce(Vec::new, join)?
+            }
+        };
+        failures.sort_unstable_by_key(|failure| failure.state);
+        if failures.is_empty() { Ok(()) } else { Err(BatchError::Failed { failures, states }) }
+    }
+}
+
+/// The number of states. Each array has one vector for each.
+fn count<S: Number + Lift<S::Lanes>, E: Element<S>, const N: usize>(
+    models: &Models<'_, S>,
+    inputs: &[Array<&[E]>; N],
+    output: &Array<&mut [E]>,
+) -> Result<usize, DimensionError> {
+    let q = &inputs[0];
+    let vectors = match models.count() {
+        Some(samples) => samples.div_ceil(E::STATES),
+        None => q.numbers.len().div_ceil(q.each.max(1)),
+    };
+    for array in inputs {
+        expect(array.name, vectors * array.each, array.numbers.len())?;
+    }
+    expect(output.name, vectors * output.each, output.numbers.len())?;
+    Ok(models.count().unwrap_or(vectors * E::STATES))
+}
+
+/// A run of a kernel on many states.
+struct Job<'a, S: Number, E, const N: usize> {
+    models: &'a Models<'a, S>,
+    inputs: [Array<&'a [E]>; N],
+    /// The name of the output, and the entries of its vectors.
+    output: (&'static str, usize),
+    states: usize,
+}
+
+impl<S: Number + Lift<S::Lanes>, E: Element<S>, const N: usize> Job<'_, S, E, N> {
+    /// Runs the kernel on one group.
+    fn run_group<K: Kernel<N>>(
+        &self,
+        worker: &mut Worker<S>,
+        group: usize,
+        results: &mut [E],
+        failures: &mut Vec<Failure>,
+    ) -> Result<(), DimensionError> {
+        let Worker { workspace, inputs } = worker;
+        let mut rest = &mut inputs[..];
+        let inputs = self.inputs.map(|array| {
+            let (buffer, others) = std::mem::take(&mut rest).split_at_mut(array.each);
+            rest = others;
+            E::load(array.numbers, array.each, group, buffer)
+        });
+        let (found, done) = self.models.run::<K, N>(group, workspace, inputs);
+        if let Err(Error::Dimension(error)) = done {
+            return Err(error);
+        }
+        E::store(found, results);
+        if done.is_err() || !inputs.iter().all(|input| are_finite(input)) || !are_finite(found) {
+            self.examine::<K>(workspace, group, inputs, results, failures);
+        }
+        Ok(())
+    }
+
+    /// Finds the states of a group that fail, each alone: as copies of itself in all lanes, so that its operations are the same.
+    #[cold]
+    #[inline(never)]
+    fn examine<K: Kernel<N>>(
+        &self,
+        workspace: &mut Workspace<S::Lanes>,
+        group: usize,
+        inputs: [&[S::Lanes]; N],
+        results: &mut [E],
+        failures: &mut Vec<Failure>,
+    ) {
+        let first = group * S::LANES;
+        for state in first..(first + S::LANES).min(self.states) {
+            let lane = state - first;
+            let copies = inputs.map(|input| input.iter().map(|x| S::pack(|_| S::lanes(x)[lane])).collect::<Vec<_>>());
+            let (found, done) = self.models.run_copies::<K, N>(state, workspace, copies.each_ref().map(|input| &input[..]));
+            let mut given = self.inputs.iter().zip(&copies);
+            let bad_input = given.find_map(|(array, input)| {
+                let (entry, value) = not_finite(input)?;
+                Some(Cause::Input { array: array.name, entry, value })
+            });
+            let bad_pivot = match done {
+                Err(Error::NotPositiveDefinite(pivot)) => Some(Cause::from(pivot)),
+                _ => None,
+            };
+            let bad_result = || not_finite(found).map(|(entry, value)| Cause::Result { array: self.output.0, entry, value });
+            if let Some(cause) = bad_input.or(bad_pivot).or_else(bad_result) {
+                failures.push(Failure { state, cause });
+                E::erase(results, self.output.1, lane);
+            }
+        }
+    }
+}
+
+/// Whether all numbers in all lanes are finite: zero times a number is zero then, and NaN otherwise.
+#[inline(always)]
+fn are_finite<T: Real>(registers: &[T]) -> bool {
+    let zero = T::zero();
+    !registers.iter().fold(zero, |sum, x| x.mul_add(zero, sum)).min_lane().is_nan()
+}
+
+/// The first entry that is not finite, in registers with the same number in all lanes.
+fn not_finite<T: Real>(registers: &[T]) -> Option<(usize, f64)> {
+    registers.iter().map(|x| x.min_lane()).enumerate().find(|(_, value)| !value.is_finite())
+}

@@ -1,0 +1,360 @@
+//! Batches against single states: every robot, both orders, both precisions, one core and all; and states that fail.
+
+use crate::common;
+
+use common::{ROBOTS, Recipe, build, dyadic_chain, robot, within};
+use featherbench_dynamics::{
+    Aba, Batch, BatchError, Bias, Cause, Crba, DimensionError, Failure, Ltdl, NotPositiveDefinite, Number, Rnea, forward_dynamics,
+    to_lanes, to_rows,
+};
+use featherbench_model::{JointKind, Model};
+use featherbench_robots::StateBatch;
+use featherbench_spatial::{Lift, RigidBodyInertia};
+
+/// States in a batch: fewer than a group, one group, one more, and several.
+const COUNTS: [usize; 6] = [0, 1, 7, 8, 9, 17];
+
+/// The roundings in which lanes may differ from single states; [`lanes_are_as_single_states`] says why.
+const ROUNDINGS: f64 = 120.0;
+
+/// What every quantity is computed from, in row order. The right-hand sides of solutions are τ.
+struct States<S> {
+    q: Vec<S>,
+    v: Vec<S>,
+    a: Vec<S>,
+    tau: Vec<S>,
+}
+
+impl<S: Number> States<S> {
+    fn random(model: &Model<f64>, count: usize) -> Self {
+        let states = StateBatch::random(model, count, 3);
+        let single = |numbers: &[f64]| numbers.iter().map(|&x| S::from_f64(x)).collect();
+        Self { q: single(&states.q), v: single(&states.v), a: single(&states.a), tau: single(&states.tau) }
+    }
+}
+
+/// Each quantity's name, numbers per state and results, in row order.
+type Answers<S> = Vec<(&'static str, usize, Vec<S>)>;
+
+/// Each quantity's name, what the call returned, and the results in row order.
+type Outcome<S> = Vec<(&'static str, Result<(), BatchError>, Vec<S>)>;
+
+/// A call of a batch, which writes to this array.
+type Call<'a, E> = dyn FnMut(&mut [E]) -> Result<(), BatchError> + 'a;
+
+fn in_rows<S: Number + Lift<S::Lanes>>(batch: &mut Batch<'_, S>, model: &Model<S>, states: &States<S>) -> Outcome<S> {
+    let States { q, v, a, tau } = states;
+    let t = &model.topology;
+    let (vectors, matrices) = (vec![S::zero(); v.len()], vec![S::zero(); v.len() / t.nv() * t.stored()]);
+    let with = |mut out: Vec<S>, name, run: &mut Call<S>| {
+        let done = run(&mut out);
+        (name, done, out)
+    };
+    vec![
+        with(vectors.clone(), "inverse dynamics", &mut |out| batch.inverse_dynamics(q, v, a, out)),
+        with(vectors.clone(), "bias force", &mut |out| batch.bias_force(q, v, out)),
+        with(vectors.clone(), "forward dynamics", &mut |out| batch.forward_dynamics(q, v, tau, out)),
+        with(matrices.clone(), "mass matrix", &mut |out| batch.mass_matrix(q, out)),
+        with(matrices.clone(), "factors", &mut |out| batch.factors(q, out)),
+        with(vectors.clone(), "solution", &mut |out| batch.solve(q, tau, out)),
+    ]
+}
+
+/// The same through arrays in lane order.
+fn in_lanes<S: Number + Lift<S::Lanes>>(batch: &mut Batch<'_, S>, model: &Model<S>, states: &States<S>) -> Outcome<S> {
+    let t = &model.topology;
+    let count = states.v.len() / t.nv();
+    let lanes = |rows: &[S], each| to_lanes(rows, each).unwrap();
+    let (q, v) = (lanes(&states.q, t.nq()), lanes(&states.v, t.nv()));
+    let (a, tau) = (lanes(&states.a, t.nv()), lanes(&states.tau, t.nv()));
+    let groups = count.div_ceil(S::LANES);
+    let with = |each, name, run: &mut Call<S::Lanes>| {
+        let mut out = lanes(&vec![S::zero(); groups * S::LANES * each], each);
+        let done = run(&mut out);
+        (name, done, to_rows(&out, each, count).unwrap())
+    };
+    vec![
+        with(t.nv(), "inverse dynamics", &mut |out| batch.inverse_dynamics(&q, &v, &a, out)),
+        with(t.nv(), "bias force", &mut |out| batch.bias_force(&q, &v, out)),
+        with(t.nv(), "forward dynamics", &mut |out| batch.forward_dynamics(&q, &v, &tau, out)),
+        with(t.stored(), "mass matrix", &mut |out| batch.mass_matrix(&q, out)),
+        with(t.stored(), "factors", &mut |out| batch.factors(&q, out)),
+        with(t.nv(), "solution", &mut |out| batch.solve(&q, &tau, out)),
+    ]
+}
+
+/// The kernels state by state; state k has model `model(k)`.
+fn one_by_one<'m, S: Number>(model: impl Fn(usize) -> &'m Model<S>, states: &States<S>) -> Answers<S> {
+    let t = &model(0).topology;
+    let (nq, nv) = (t.nq(), t.nv());
+    let mut answers: Answers<S> = ["inverse dynamics", "bias force", "forward dynamics", "mass matrix", "factors", "solution"]
+        .into_iter()
+        .map(|name| (name, if matches!(name, "mass matrix" | "factors") { t.stored() } else { nv }, Vec::new()))
+        .collect();
+    let mut out = vec![S::zero(); nv];
+    for k in 0..states.v.len() / nv {
+        let part = |array: &'_ [S], each| array[k * each..][..each].to_vec();
+        let (q, v, a, tau) = (part(&states.q, nq), part(&states.v, nv), part(&states.a, nv), part(&states.tau, nv));
+        Rnea::new(t).run(model(k), &q, &v, &a, None, &mut out).unwrap();
+        answers[0].2.extend(&out);
+        Bias::new(t).run(model(k), &q, &v, None, &mut out).unwrap();
+        answers[1].2.extend(&out);
+        Aba::new(t).run(model(k), &q, &v, &tau, None, &mut out).unwrap();
+        answers[2].2.extend(&out);
+        let mut ltdl = Ltdl::new(t);
+        Crba::new(t).run(model(k), &q, ltdl.matrix_mut()).unwrap();
+        answers[3].2.extend(ltdl.factors().values());
+        ltdl.factor().unwrap();
+        answers[4].2.extend(ltdl.factors().values());
+        out.copy_from_slice(&tau);
+        ltdl.solve(&mut out).unwrap();
+        answers[5].2.extend(&out);
+    }
+    answers
+}
+
+/// The largest difference of two lists, relative to the largest number of the state.
+fn relative<S: Number>(each: usize, found: &[S], truth: &[S]) -> f64 {
+    assert_eq!(found.len(), truth.len());
+    let mut worst = 0.0;
+    for (found, truth) in found.chunks(each).zip(truth.chunks(each)) {
+        let wide = |x: &[S]| -> Vec<f64> { x.iter().map(|x| x.min_lane()).collect() };
+        worst = common::larger(worst, common::distance(&wide(found), &wide(truth)) / common::largest(&wide(truth)));
+    }
+    worst
+}
+
+/// The bits of results, and which calls succeeded.
+fn bits<S: Number>(outcome: &Outcome<S>) -> Vec<(bool, Vec<u64>)> {
+    outcome.iter().map(|(_, done, out)| (done.is_ok(), out.iter().map(|x| x.min_lane().to_bits()).collect())).collect()
+}
+
+fn lanes_are_as_single_states<S: Number + Lift<S::Lanes>>(precision: f64)
+where
+    f64: Lift<S>,
+{
+    for (name, recipe) in &ROBOTS {
+        let wide = build(recipe);
+        let model: Model<S> = wide.lift();
+        let turns = model.topology.joints().iter().any(|joint| matches!(joint.kind, JointKind::Revolute | JointKind::Helical));
+        let (mut batch, mut parallel) = (Batch::<S>::new(&model), Batch::<S>::new(&model).on_all_cores());
+        for count in COUNTS {
+            let states = States::random(&wide, count);
+            let outcome = in_rows(&mut batch, &model, &states);
+            assert_eq!(bits(&outcome), bits(&in_lanes(&mut batch, &model, &states)), "{name}, {count}: the order of the arrays");
+            assert_eq!(bits(&outcome), bits(&in_rows(&mut parallel, &model, &states)), "{name}, {count}: the cores");
+            assert_eq!(bits(&outcome), bits(&in_lanes(&mut parallel, &model, &states)), "{name}, {count}: cores and order");
+            for ((quantity, done, found), (_, each, truth)) in outcome.iter().zip(one_by_one(|_| &model, &states)) {
+                assert_eq!(done, &Ok(()), "{name}, {quantity}, {count}");
+                let what = format!("{name}, {quantity}, {count} states");
+                // Without a sine or cosine the operations are the same. The sines and cosines of the two libraries differ by at most 3
+                // units in the last place: six roundings for each joint. There are 20 joints at most. Rarely do all add up: the worst of
+                // these robots is half of that.
+                within(&what, relative(each, found, &truth), if turns { ROUNDINGS * precision } else { 0.0 });
+            }
+        }
+    }
+}
+
+#[test]
+fn doubles_are_as_single_states() {
+    lanes_are_as_single_states::<f64>(f64::EPSILON / 2.0);
+}
+
+#[test]
+fn singles_are_as_single_states() {
+    lanes_are_as_single_states::<f32>(f64::from(f32::EPSILON) / 2.0);
+}
+
+/// Angles beyond those that the lanes' own sine takes do not change the neighbours.
+#[test]
+fn states_do_not_depend_on_their_neighbours() {
+    for (name, recipe) in &ROBOTS {
+        let model = build(recipe);
+        let nq = model.topology.nq();
+        let mut states = States::random(&model, 11);
+        let mut batch = Batch::<f64>::new(&model);
+        let alone = in_rows(&mut batch, &model, &states);
+        for x in &mut states.q[5 * nq..6 * nq] {
+            *x *= 1e6;
+        }
+        for ((quantity, done, found), (.., before)) in in_rows(&mut batch, &model, &states).iter().zip(&alone) {
+            assert_eq!(done, &Ok(()), "{name}, {quantity}");
+            let each = found.len() / 11;
+            let others = |out: &[f64]| [&out[..5 * each], &out[6 * each..]].concat();
+            assert_eq!(others(found), others(before), "{name}, {quantity}");
+        }
+    }
+}
+
+/// NaN and infinity in any input of any lane are reported, and no other state's results change by a bit.
+#[test]
+fn a_state_with_a_bad_number_is_reported_and_harms_no_other() {
+    let model = build(&ROBOTS[7].1);
+    let (count, nq, nv) = (19, model.topology.nq(), model.topology.nv());
+    let clean = States::random(&model, count);
+    for (bad, value) in [(0, f64::NAN), (6, f64::INFINITY), (8, f64::NEG_INFINITY), (18, f64::NAN)] {
+        for (array, each, entry) in [("configurations q", nq, 0), ("configurations q", nq, nq - 1), ("velocities v", nv, 3)] {
+            let mut states = States { q: clean.q.clone(), v: clean.v.clone(), a: clean.a.clone(), tau: clean.tau.clone() };
+            let numbers = if array == "velocities v" { &mut states.v } else { &mut states.q };
+            numbers[bad * each + entry] = value;
+            for parallel in [false, true] {
+                let new = || if parallel { Batch::<f64>::new(&model).on_all_cores() } else { Batch::new(&model) };
+                let before = in_rows(&mut new(), &model, &clean);
+                for after in [in_rows(&mut new(), &model, &states), in_lanes(&mut new(), &model, &states)] {
+                    for ((quantity, done, found), (.., before)) in after.iter().zip(&before) {
+                        if array == "velocities v" && matches!(*quantity, "mass matrix" | "factors" | "solution") {
+                            assert_eq!((done, found), (&Ok(()), before), "{quantity} does not depend on v");
+                            continue;
+                        }
+                        let Err(BatchError::Failed { failures, .. }) = done else { panic!("{quantity}, state {bad}: {done:?}") };
+                        // In lane order the copies that fill the last group are states too.
+                        let failures: Vec<Failure> = failures.iter().copied().filter(|failure| failure.state < count).collect();
+                        let [Failure { state, cause: Cause::Input { array: named, entry: at, value: reported } }] = failures[..] else {
+                            panic!("{quantity}: {failures:?}")
+                        };
+                        assert_eq!((state, named, at, reported.to_bits()), (bad, array, entry, value.to_bits()), "{quantity}");
+                        let each = found.len() / count;
+                        for (k, (found, before)) in found.chunks(each).zip(before.chunks(each)).enumerate() {
+                            let good = if k == bad { found.iter().all(|x| x.is_nan()) } else { found == before };
+                            assert!(good, "{quantity}, state {k} beside the bad state {bad}");
+                        }
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// A chain of three whose first pivot is positive at some states only: its first body has a negative moment of inertia.
+#[test]
+fn states_with_a_bad_pivot_are_those_of_the_single_states() {
+    let mut model = dyadic_chain(&[[0.0, 0.0, 1.0]], 3);
+    model.inertias[0].rotational.zz = -0.15;
+    let count = 50;
+    let states = States::<f64>::random(&model, count);
+    let mut a = vec![0.0; 3 * count];
+    let done = Batch::<f64>::new(&model).forward_dynamics(&states.q, &states.v, &states.tau, &mut a);
+    let Err(BatchError::Failed { failures, states: total }) = &done else { panic!("{done:?}") };
+    assert_eq!(total, &count);
+    let mut failures = failures.iter();
+    let (mut good, mut bad) = (0, 0);
+    for k in 0..count {
+        let part = |array: &[f64]| array[3 * k..][..3].to_vec();
+        match forward_dynamics(&model, &part(&states.q), &part(&states.v), &part(&states.tau)) {
+            Ok(truth) => {
+                good += 1;
+                // A pivot is a difference of numbers around 0.1 and may be a hundredth of them: six roundings for each of three joints,
+                // ten times larger than in a, which it divides.
+                within("acceleration beside bad states", relative(3, &part(&a), &truth), 180.0 * f64::EPSILON / 2.0);
+            }
+            Err(error) => {
+                bad += 1;
+                let Some(Failure { state, cause: Cause::NotPositiveDefinite(pivot) }) = failures.next() else {
+                    panic!("state {k}: {error}")
+                };
+                let featherbench_dynamics::Error::NotPositiveDefinite(expected) = error else { panic!("{error}") };
+                assert_eq!((*state, pivot.dof), (k, expected.dof));
+                // six roundings for each of three joints, of numbers below one
+                within("pivot", (pivot.pivot - expected.pivot).abs(), 18.0 * f64::EPSILON / 2.0);
+                assert!(part(&a).iter().all(|a| a.is_nan()));
+            }
+        }
+    }
+    assert!(good > 5 && bad > 5 && failures.next().is_none(), "{good} good, {bad} bad");
+    let text = done.unwrap_err().to_string();
+    assert!(text.contains(&format!("{bad} of 50 states failed")) && text.contains("not positive definite"), "{text}");
+
+    // The factorization finds the same states.
+    let factored = Batch::<f64>::new(&model).solve(&states.q, &states.tau, &mut a);
+    assert!(matches!(factored, Err(BatchError::Failed { failures, .. }) if failures.len() == bad));
+}
+
+#[test]
+fn results_that_overflow_are_reported() {
+    let model = build(&ROBOTS[0].1);
+    let mut states = States::<f64>::random(&model, 9);
+    let (nv, mut tau) = (model.topology.nv(), vec![0.0; states.v.len()]);
+    states.v[8 * nv + 2] = 1e200;
+    let Err(BatchError::Failed { failures, states: 9 }) = Batch::<f64>::new(&model).bias_force(&states.q, &states.v, &mut tau) else {
+        panic!()
+    };
+    assert!(matches!(failures[..], [Failure { state: 8, cause: Cause::Result { array: "bias forces h", .. } }]), "{failures:?}");
+}
+
+#[test]
+fn each_sample_of_the_parameters_has_its_state() {
+    for (name, recipe) in &ROBOTS {
+        let samples: Vec<Model<f64>> = (0..11).map(|seed| sample(recipe, seed)).collect();
+        let states = States::random(&samples[0], samples.len());
+        let mut batch = Batch::of_samples(&samples).unwrap();
+        let outcome = in_rows(&mut batch, &samples[0], &states);
+        assert_eq!(bits(&outcome), bits(&in_lanes(&mut batch.clone().on_all_cores(), &samples[0], &states)), "{name}");
+        for ((quantity, done, found), (_, each, truth)) in outcome.iter().zip(one_by_one(|k| &samples[k], &states)) {
+            assert_eq!(done, &Ok(()), "{name}, {quantity}");
+            within(&format!("{name}, {quantity}, samples"), relative(each, found, &truth), ROUNDINGS * f64::EPSILON / 2.0);
+        }
+    }
+}
+
+fn sample(recipe: &Recipe, seed: u64) -> Model<f64> {
+    Model::build(&robot(recipe, 11 + seed)).unwrap()
+}
+
+#[test]
+fn a_sample_without_inertia_fails_alone() {
+    let mut samples: Vec<Model<f64>> = (0..12).map(|seed| sample(&ROBOTS[0].1, seed)).collect();
+    let states = States::random(&samples[0], 12);
+    let (mut good, mut a) = (vec![0.0; states.v.len()], vec![0.0; states.v.len()]);
+    Batch::of_samples(&samples).unwrap().forward_dynamics(&states.q, &states.v, &states.tau, &mut good).unwrap();
+    let last = samples[9].inertias.len() - 1;
+    samples[9].inertias[last] = RigidBodyInertia::zero();
+    let done = Batch::of_samples(&samples).unwrap().forward_dynamics(&states.q, &states.v, &states.tau, &mut a);
+    let cause = Cause::NotPositiveDefinite(NotPositiveDefinite { dof: last, pivot: 0.0 });
+    assert_eq!(done, Err(BatchError::Failed { failures: vec![Failure { state: 9, cause }], states: 12 }));
+    let nv = samples[0].topology.nv();
+    assert!(a.chunks(nv).zip(good.chunks(nv)).enumerate().all(|(k, (a, good))| k == 9 || a == good));
+}
+
+#[test]
+fn arrays_of_the_wrong_length_are_named() {
+    let model = build(&ROBOTS[7].1);
+    let t = &model.topology;
+    let (nq, nv) = (t.nq(), t.nv());
+    let count = 10;
+    let states = States::<f64>::random(&model, count);
+    let (q, v) = (&states.q[..], &states.v[..]);
+    let (few, mut short, mut out) = (&v[1..], vec![0.0; count * nv - 1], vec![0.0; count * nv]);
+    let mut batch = Batch::<f64>::new(&model);
+    let refusal = |done| match done {
+        Err(BatchError::Dimension(DimensionError { what, expected, found })) => (what, expected, found),
+        other => panic!("{other:?}"),
+    };
+    let (all, less) = (count * nv, count * nv - 1);
+    assert_eq!(refusal(batch.inverse_dynamics(&q[1..], v, v, &mut out)), ("configurations q", count * nq, count * nq - 1));
+    assert_eq!(refusal(batch.inverse_dynamics(q, few, v, &mut out)), ("velocities v", all, less));
+    assert_eq!(refusal(batch.inverse_dynamics(q, v, few, &mut out)), ("accelerations a", all, less));
+    assert_eq!(refusal(batch.inverse_dynamics(q, v, v, &mut short)), ("joint forces tau", all, less));
+    assert_eq!(refusal(batch.bias_force(q, v, &mut short)), ("bias forces h", all, less));
+    assert_eq!(refusal(batch.forward_dynamics(q, v, few, &mut out)), ("joint forces tau", all, less));
+    assert_eq!(refusal(batch.forward_dynamics(q, v, v, &mut short)), ("accelerations a", all, less));
+    assert_eq!(refusal(batch.mass_matrix(q, &mut short)), ("matrices", count * t.stored(), less));
+    assert_eq!(refusal(batch.factors(q, &mut short)), ("factors", count * t.stored(), less));
+    assert_eq!(refusal(batch.solve(q, few, &mut out)), ("right-hand sides b", all, less));
+    assert_eq!(refusal(batch.solve(q, v, &mut short)), ("solutions x", all, less));
+    let text = batch.solve(q, v, &mut short).unwrap_err().to_string();
+    assert!(text.contains("solutions x: expected") && text.contains("one vector per state"), "{text}");
+
+    assert!(to_lanes(&q[1..], nq).is_err() && to_rows::<f64>(&to_lanes(q, nq).unwrap(), nq, count + 2 * f64::LANES).is_err());
+
+    // a broken model, and samples that do not fit
+    let mut broken = model.clone();
+    broken.armature.pop();
+    assert_eq!(refusal(Batch::<f64>::new(&broken).bias_force(q, v, &mut out)), ("armature of the model", nv, nv - 1));
+    let samples = [model.clone(), build(&ROBOTS[6].1)];
+    assert_eq!(Batch::<f64>::of_samples(&[]).unwrap_err().what, "samples of the model");
+    assert_eq!(Batch::of_samples(&samples).unwrap_err().what, "bodies of the workspace");
+    let samples = vec![model.clone(); count + 1];
+    let done = Batch::of_samples(&samples).unwrap().bias_force(q, v, &mut out);
+    assert_eq!(refusal(done), ("configurations q", (count + 1) * nq, count * nq));
+}
