@@ -16,10 +16,15 @@ use std::ops::Range;
 /// The most dofs in one block: four rows and what they change leave free registers.
 pub(crate) const BLOCK: usize = 4;
 
+/// Zeros behind the stored numbers: a register loaded from any of them stays inside.
+pub(crate) const PADDING: usize = 8;
+
 /// A tree-sparse symmetric matrix (or the factors of one, see [`Ltdl`](crate::Ltdl)).
 #[derive(Clone, Debug, PartialEq)]
 pub struct TreeSparse<T> {
+    /// The stored numbers and [`PADDING`].
     values: Vec<T>,
+    stored: usize,
     rows: Vec<Row>,
 }
 
@@ -50,7 +55,7 @@ impl<T: Real> TreeSparse<T> {
                 rows[parent].end = rows[parent].end.max(rows[dof].end);
             }
         }
-        Self { values: vec![T::zero(); topology.stored()], rows }
+        Self { values: vec![T::zero(); topology.stored() + PADDING], stored: topology.stored(), rows }
     }
 
     /// The matrix with these entries. `entry(i, j)` is called for each stored entry; dof `j` supports dof `i`.
@@ -71,21 +76,24 @@ impl<T: Real> TreeSparse<T> {
 
     /// The stored numbers, row after row.
     pub fn values(&self) -> &[T] {
-        &self.values
+        &self.values[..self.stored]
     }
 
     /// The stored numbers, to be written.
     pub fn values_mut(&mut self) -> &mut [T] {
-        &mut self.values
+        &mut self.values[..self.stored]
     }
 
     /// Exchanges the stored numbers with others of the same count: matrices of one topology in turn, without a copy.
+    /// It allocates if the vector has no capacity for eight numbers more; a vector that comes from an exchange has it.
     ///
     /// # Errors
     /// [`DimensionError`] when the counts differ; nothing is exchanged then.
     pub fn exchange(&mut self, values: &mut Vec<T>) -> Result<(), DimensionError> {
-        expect("stored numbers of the tree-sparse matrix", self.values.len(), values.len())?;
+        expect("stored numbers of the tree-sparse matrix", self.stored, values.len())?;
+        values.resize(self.stored + PADDING, T::zero());
         std::mem::swap(&mut self.values, values);
+        values.truncate(self.stored);
         Ok(())
     }
 
@@ -175,7 +183,7 @@ impl<T: Real> TreeSparse<T> {
     /// The range of row `dof` in the flat array.
     #[inline(always)]
     pub(crate) fn row(&self, dof: usize) -> Range<usize> {
-        self.rows[dof].start..self.rows.get(dof + 1).map_or(self.values.len(), |next| next.start)
+        self.rows[dof].start..self.rows.get(dof + 1).map_or(self.stored, |next| next.start)
     }
 
     /// The dofs that `dof` supports, itself first.
@@ -184,10 +192,21 @@ impl<T: Real> TreeSparse<T> {
         dof..self.rows[dof].end
     }
 
-    /// The rows and the flat array.
+    /// The rows and the flat array with its padding.
     #[inline(always)]
     pub(crate) fn parts_mut(&mut self) -> (&[Row], &mut [T]) {
         (&self.rows, &mut self.values)
+    }
+
+    /// The rows and the flat array with its padding.
+    #[inline(always)]
+    pub(crate) fn parts(&self) -> (&[Row], &[T]) {
+        (&self.rows, &self.values)
+    }
+
+    /// Whether the parent of `dof` is the dof before it.
+    pub(crate) fn continues(&self, dof: usize) -> bool {
+        self.rows[dof].run < dof
     }
 
     /// How many dofs just before `end` are in one run, [`BLOCK`] at most.

@@ -8,6 +8,7 @@ mod derivatives;
 mod errors;
 mod extended;
 mod identities;
+mod ltdl;
 mod packed;
 mod refined;
 mod structure;

@@ -59,7 +59,7 @@ fn no_algorithm_allocates_in_a_call() {
         let (mut kinematics, mut energy, mut momentum) = (Kinematics::new(t), Energy::new(t), Momentum::new(t));
         let (mut center, mut jacobian) = (CenterOfMass::new(t), Jacobian::new(t));
         let (mut refined, mut extended) = (Refined::<Compensated>::new(t, 2), Refined::<DoubleDouble>::new(t, 1));
-        let (mut matrix, mut ltdl) = (TreeSparse::new(t), Ltdl::new(t));
+        let (mut matrix, mut ltdl, mut inverse) = (TreeSparse::new(t), Ltdl::new(t), vec![0.0; t.nv() * t.nv()]);
 
         let before = ALLOCATIONS.get();
         for k in 0..states.count() {
@@ -74,6 +74,7 @@ fn no_algorithm_allocates_in_a_call() {
             crba.run(&model, q, &mut matrix).unwrap();
             ltdl.run(&matrix).unwrap();
             ltdl.solve(&mut out).unwrap();
+            ltdl.inverse(&mut inverse).unwrap();
             crba.run(&model, q, ltdl.matrix_mut()).unwrap();
             ltdl.factor().unwrap();
             matrix.mul(v, &mut out).unwrap();

@@ -66,7 +66,9 @@ fn each_argument_of_the_wrong_length_is_named() {
     let matrix = mass_matrix(&model, &q).unwrap();
     assert_eq!(refusal(matrix.mul(&short, &mut out)), ("vector x", nv, nv - 1));
     assert_eq!(refusal(matrix.mul(&x, &mut short_out)), ("vector y", nv, nv - 1));
-    assert_eq!(refusal(matrix.into_ltdl().unwrap().solve(&mut short_out)), ("right-hand side x", nv, nv - 1));
+    let factors = matrix.into_ltdl().unwrap();
+    assert_eq!(refusal(factors.solve(&mut short_out)), ("right-hand side x", nv, nv - 1));
+    assert_eq!(refusal(factors.inverse(&mut short_out)), ("inverse of the mass matrix", nv * nv, nv - 1));
     assert!(inverse_dynamics(&model, &q, &x, &short).unwrap_err().to_string().contains("acceleration a: expected"));
 }
 

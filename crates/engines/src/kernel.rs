@@ -294,19 +294,13 @@ fn solve<'a>(model: &'a Model<f64>, states: &'a StateBatch) -> Result<Kernel<'a>
     }))
 }
 
-/// Factors, then one solution for each column.
+/// Factors, then the inverse from them.
 fn mass_matrix_inverse<'a>(model: &'a Model<f64>, states: &'a StateBatch) -> Kernel<'a> {
     let (mut crba, mut ltdl) = (Crba::new(&model.topology), Ltdl::new(&model.topology));
     written(model.topology.nv() * model.topology.nv(), move |k, inverse| {
         crba.run(model, states.q(k), ltdl.matrix_mut())?;
         ltdl.factor()?;
-        // M⁻¹ is symmetric: its columns are its rows.
-        for (i, column) in inverse.chunks_exact_mut(model.topology.nv()).enumerate() {
-            column.fill(0.0);
-            column[i] = 1.0;
-            ltdl.solve(column)?;
-        }
-        Ok(())
+        Ok(ltdl.inverse(inverse)?)
     })
 }
 

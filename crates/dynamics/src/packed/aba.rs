@@ -6,7 +6,7 @@
 //!    the velocity products c of its segment add up to, when the segment's parent does not accelerate. So a segment needs c no more, and
 //!    the reference of its parent enters where a segment begins. Gravity does not enter: it would cancel in a robot that falls.
 //! 2. Pass 2, inward, joint by joint: U = Iᴬ S, D = Sᵀ U + armature, u = τ − Sᵀ pᴬ. The parent takes Iᴬ − U D⁻¹ Uᵀ and pᴬ + U D⁻¹ u at its
-//!    own origin. Nothing is rotated. Iᴬ and U are translated first: so they do not wait for the division.
+//!    own origin. Nothing is rotated.
 //! 3. Pass 3, outward: q̈ = D⁻¹ (u − Uᵀ a'), where a' is the parent's acceleration less the reference. It starts from −g.
 //!
 //! With one reference along the whole path, and gravity in it, pass 1 would be that of inverse dynamics. But long chains and falling robots

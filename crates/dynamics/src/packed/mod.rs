@@ -1,14 +1,37 @@
 //! The dynamics of one state, several joints at a time.
 //!
-//! The recursions of [`Rnea`](crate::Rnea) and [`Aba`](crate::Aba) turn every vector from one body's axes to the next. Each turn waits for
-//! the one before, and fills one lane of a register. Here every vector is expressed in the axes of the base instead, and refers to the
-//! origin of its own joint. Then only the orientation `R_i = R_p L_i` is a recursion. Velocities, accelerations, forces and composite
-//! inertias are sums along paths of the tree, and everything else is done for a register of joints at once.
+//! The recursions of [`Rnea`](crate::Rnea), [`Aba`](crate::Aba) and [`Crba`](crate::Crba) turn every vector from one body's axes to the
+//! next. Each turn waits for the one before, and fills one lane of a register. Here every vector is expressed in the axes of the base
+//! instead, and refers to the origin of its own joint. Then only the orientation `R_i = R_p L_i` is a recursion. Velocities, accelerations,
+//! forces and composite inertias are sums along paths of the tree, and everything else is done for a register of joints at once.
 //!
 //! - A [`PackedModel`] holds the parameters of consecutive joints in the lanes of registers: eight with AVX-512, otherwise four.
 //! - No position of the world appears: displacements are from the parent's origin. So a far base costs no digits. The axes are those of
 //!   the world; in a tree whose root is a free joint they are those of its root body.
 //! - The formulas of a body are those of the other text, `step.rs`, with registers as scalars.
+//!
+//! **Accuracy**, against the truth, as a multiple of the best engine's error (67 robots of the suite `default`, geometric mean and largest):
+//!
+//! | | link by link | packed |
+//! |---|---|---|
+//! | inverse dynamics | 0.96, 2.0 | 0.82, 1.8 |
+//! | mass matrix | below 1.5, below 3 | 1.15, 4.2 |
+//!
+//! Forward dynamics has 0.58 of the floor of its conditioning link by link, and 0.74 packed; the largest are 2.3 and 7.7. So inverse
+//! dynamics is the usual method of the studies in this text, and the other two are second methods, fast and slightly less accurate.
+//! The loss is with bodies that are thin about their axis: in body axes that axis is exact, and in the base's axes an inertia is rounded
+//! alike in all directions.
+//!
+//! **Speed.** `run --suite timing` compares with other engines. Per joint of a chain of 36, AVX-512: about 430 instructions forward and 100
+//! back for inverse dynamics. A third of the time is the recursion of R. Forward dynamics waits for pass 2: one division and about 45
+//! dependent operations per joint.
+//!
+//! **Tried:**
+//! - One reference acceleration for pass 1 of ABA along the whole path, with gravity in it: up to a hundred times the error in robots that
+//!   fall, and 28 times on a chain of 100 that hangs. A reference per segment, without gravity, costs nothing measurable.
+//! - Orientations without the step that makes them straight again: twice the error of M.
+//! - Iᴬ and U translated before the division is done (rank one last): the time was equal within noise, and chains lost a little.
+//! - Rotations of lanes as loops: see `rotate.rs`. Gathers of columns: slower than transposing four joints at a time.
 //!
 //! Source: the book, section 5.3 and tables 6.2 and 7.1. Sums along paths: Hillis and Steele, *Data parallel algorithms* (1986).
 
