@@ -156,12 +156,11 @@ fn bias<'a>(model: &'a Model<f64>, states: &'a StateBatch) -> Kernel<'a> {
     written(model.topology.nv(), move |k, h| Ok(rnea.bias(&packed, states.q(k), states.v(k), None, h)?))
 }
 
-/// The mass matrix of state k into a tree-sparse matrix, by `crba` or `crba_packed`.
-fn crba<'a>(
-    model: &'a Model<f64>,
-    states: &'a StateBatch,
-    method: &str,
-) -> Box<dyn FnMut(&mut TreeSparse<f64>, usize) -> Result<(), Error> + Send + 'a> {
+/// What writes the mass matrix of state k into a tree-sparse matrix.
+type Fill<'a> = Box<dyn FnMut(&mut TreeSparse<f64>, usize) -> Result<(), Error> + Send + 'a>;
+
+/// The mass matrices of a batch by `crba` or `crba_packed`.
+fn crba<'a>(model: &'a Model<f64>, states: &'a StateBatch, method: &str) -> Fill<'a> {
     if method == "crba_packed" {
         let packed = PackedModel::new(model);
         let mut crba = PackedCrba::new(&packed);

@@ -40,7 +40,7 @@ fn of<'a>(rows: &'a [Row], engine: &str, quantity: &str, metric: &str) -> Vec<&'
 #[test]
 fn everyone_has_times_ratios_and_intervals_beside_a_control() {
     let rows = rows(Double::of(&robot4()));
-    for (quantity, methods) in [("id", 1), ("fd", 4)] {
+    for (quantity, methods) in [("id", 1), ("fd", 5)] {
         for (engine, timed) in [("featherbench", if quantity == "fd" { 2 } else { 1 }), ("double", methods)] {
             let found = of(&rows, engine, quantity, "ns_per_call");
             assert_eq!(found.len(), 2 * timed, "{engine} {quantity}: stream and hot");
@@ -89,7 +89,7 @@ fn a_wrong_answer_at_one_state_costs_its_times_and_no_others() {
 fn one_that_refuses_is_a_row_with_its_reason_and_no_time() {
     let rows = rows(Double::refusing(&robot4()));
     let refused: Vec<_> = rows.iter().filter(|row| row.engine == "double").collect();
-    assert_eq!(refused.len(), 5, "one for each method");
+    assert_eq!(refused.len(), 6, "one for each method");
     assert!(refused.iter().all(|row| row.verdict == Verdict::Skip && row.reason == "it supports nothing" && row.value.is_none()));
     assert_eq!(of(&rows, "featherbench", "fd", "ns_per_call").len(), 4);
 }
@@ -103,7 +103,7 @@ fn forward_dynamics_is_checked_backwards() {
     };
     assert!(altered(1.0).iter().all(|&(error, verdict)| error < 1e-14 && verdict == Verdict::Pass));
     let wrong = altered(1.0 + 1e-8);
-    assert!(wrong.iter().filter(|(_, verdict)| *verdict == Verdict::Fail).count() == 4, "{wrong:?}");
+    assert!(wrong.iter().filter(|(_, verdict)| *verdict == Verdict::Fail).count() == 5, "{wrong:?}");
 }
 
 #[test]

@@ -140,7 +140,7 @@ impl PackedAba {
             {
                 // the parent's reference: Iᵃ a'_p + pᵃ
                 let reference = motions.links[parent / LANES].acceleration.lane(parent % LANES);
-                up.p = up.p + up.inertia.mul(reference);
+                up.p += up.inertia.mul(reference);
             }
             below = nothing;
             match joint.parent {

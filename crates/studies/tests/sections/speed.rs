@@ -82,8 +82,8 @@ fn ratios_have_intervals_a_mean_and_a_least() {
     assert!(section.contains("4.000") && section.contains("<td class=\"number\">2.000</td><td>a</td>"), "{section}");
     assert!(section.contains("1.800") && section.contains("2.200") && section.contains("0.500"));
     assert!(section.contains("1 of 1 such A/A control</b>") && section.contains("noise") && section.contains("(1 row)"));
-    // 142 operations at 7.1 per nanosecond are 20 ns; 280 ns for seven joints are twice as much.
-    assert!(section.contains("<td class=\"number\">40</td><td class=\"number\">20</td><td class=\"number\">2.000</td>"), "{section}");
+    // 142 operations at 57 per nanosecond are 2.5 ns; 280 ns for seven joints are sixteen times as much.
+    assert!(section.contains("<td class=\"number\">40</td><td class=\"number\">2.5</td><td class=\"number\">16.0</td>"), "{section}");
     assert!(section.contains("timing.jsonl"));
     let speed = &written.data("figures")["speed"];
     assert_eq!(speed["ratios"].as_array().unwrap().len(), 3);
@@ -117,20 +117,20 @@ fn a_limit_that_is_none_is_not_shown() {
         report(&RunInfo::default(), &rows).section("speed").to_owned()
     };
     let (table, none) = ("times the limit", "id=\"speed-no-limits\"");
-    // 142 operations for each of seven joints at 7.1 per nanosecond: 140 ns.
-    let good = section("", 7.1, [280.0, 140.0]);
+    // 142 operations for each of seven joints at 56.8 per nanosecond: 17.5 ns.
+    let good = section("", 7.1, [35.0, 17.51]);
     assert!(good.contains(table) && !good.contains(none), "{good}");
-    let fast = section("", 7.1, [280.0, 126.0]);
+    let fast = section("", 7.1, [35.0, 15.75]);
     assert!(
         !fast.contains(table) && fast.contains("1 of 2 times are below their limits (featherbench rnea on b takes 0.90 times its limit)"),
         "{fast}"
     );
     // Measured when the compiler did not use vectors.
-    let slow = section("", 0.325, [280.0, 140.0]);
+    let slow = section("", 0.325, [35.0, 17.5]);
     assert!(
         !slow.contains(table) && slow.contains("2 of 2 times are below their limits (featherbench rnea on b takes 0.05 times its limit)"),
         "{slow}"
     );
-    let told = section("vectors make too little", 7.1, [280.0, 140.0]);
+    let told = section("vectors make too little", 7.1, [35.0, 17.51]);
     assert!(!told.contains(table) && told.contains("The peak does not count: vectors make too little."), "{told}");
 }

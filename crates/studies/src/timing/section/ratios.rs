@@ -197,7 +197,7 @@ fn limits<'a>(overview: &Overview<'a>, timing: &[&'a Row], machine: Machine) -> 
             cache: &row.cache,
             estimated: row.estimated,
             per_joint: ns / joints as f64,
-            least: operations / machine.lane,
+            least: operations / machine.vector,
         })
     };
     let counted = timing.iter().filter(|row| row.metric == "ns_per_call" && row.valid);

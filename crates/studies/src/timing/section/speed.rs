@@ -161,7 +161,7 @@ fn limits(overview: &Overview, speed: &Speed) -> Markup {
             p.note {
                 "This core makes " (short(machine.vector)) " multiply-adds of doubles per nanosecond in full vectors, " (short(machine.lane)) " in each lane. "
                 @for (index, (_, algorithm, operations)) in OPERATIONS.iter().enumerate() {
-                    @if index > 0 { "; " } (algorithm) " needs " (operations) " operations per revolute joint: " (short(operations / machine.lane)) " ns for one state"
+                    @if index > 0 { "; " } (algorithm) " needs " (operations) " operations per revolute joint: " (short(operations / machine.vector)) " ns in full vectors, " (short(operations / machine.lane)) " ns in one lane"
                 }
                 ". Other joints need other numbers, sines and cosines come on top."
                 @if let (Some(clock), Some(empty)) = (machine.clock, machine.empty) { " The clock's step is " (short(clock)) " ns, a call that computes nothing takes " (short(empty)) " ns." }
