@@ -6,7 +6,8 @@ mod common;
 
 use common::{ROBOTS, build, wrenches};
 use featherbench_dynamics::{
-    Aba, Batch, Bias, CenterOfMass, Crba, Energy, Jacobian, Kinematics, Ltdl, Momentum, Refined, Rnea, TreeSparse, to_lanes,
+    Aba, Batch, Bias, CenterOfMass, Crba, Energy, Jacobian, Kinematics, Ltdl, Momentum, PackedAba, PackedCrba, PackedModel, PackedRnea,
+    Refined, Rnea, TreeSparse, to_lanes,
 };
 use featherbench_robots::StateBatch;
 use featherbench_spatial::{Compensated, DoubleDouble};
@@ -60,11 +61,18 @@ fn no_algorithm_allocates_in_a_call() {
         let (mut center, mut jacobian) = (CenterOfMass::new(t), Jacobian::new(t));
         let (mut refined, mut extended) = (Refined::<Compensated>::new(t, 2), Refined::<DoubleDouble>::new(t, 1));
         let (mut matrix, mut ltdl, mut inverse) = (TreeSparse::new(t), Ltdl::new(t), vec![0.0; t.nv() * t.nv()]);
+        let packed = PackedModel::new(&model);
+        let (mut packed_rnea, mut packed_aba, mut packed_crba) =
+            (PackedRnea::new(&packed), PackedAba::new(&packed), PackedCrba::new(&packed));
 
         let before = ALLOCATIONS.get();
         for k in 0..states.count() {
             let (q, v, a, tau) = (states.q(k), states.v(k), states.a(k), states.tau(k));
             rnea.run(&model, q, v, a, Some(&f), &mut out).unwrap();
+            packed_rnea.run(&packed, q, v, a, Some(&f), &mut out).unwrap();
+            packed_rnea.bias(&packed, q, v, Some(&f), &mut out).unwrap();
+            packed_aba.run(&packed, q, v, tau, Some(&f), &mut out).unwrap();
+            packed_crba.run(&packed, q, &mut matrix).unwrap();
             bias.run(&model, q, v, Some(&f), &mut out).unwrap();
             aba.run(&model, q, v, tau, Some(&f), &mut out).unwrap();
             aba.solve(&model, tau, &mut out).unwrap();

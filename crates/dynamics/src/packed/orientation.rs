@@ -19,7 +19,7 @@ pub(super) struct Orientations {
     pub frames: Vec<Frame>,
     /// Columns of R per body; the fourth number is 0.
     columns: Vec<[f64x4; 3]>,
-    /// Acceleration −g of the base, in the axes of its tree, per segment that begins at the root.
+    /// Acceleration −g of the base, in the axes of its tree, per segment that begins at the root. A run sets it.
     pub bases: Vec<Vec3<f64>>,
 }
 
@@ -41,7 +41,7 @@ impl Orientations {
         Self {
             frames: vec![frame; model.blocks.len()],
             columns: vec![column; model.blocks.len() * LANES],
-            bases: vec![-model.gravity; model.segments.len()],
+            bases: vec![Vec3::zero(); model.segments.len()],
         }
     }
 

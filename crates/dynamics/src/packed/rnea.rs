@@ -123,6 +123,7 @@ impl Motions {
         if let Some(wrenches) = wrenches {
             expect("external wrenches", model.topology.bodies(), wrenches.len())?;
         }
+        self.orientations.bases.fill(-model.gravity);
         for b in 0..model.blocks.len() {
             self.run_block::<WHOLE>(model, b, q, v, a);
             if let Some(wrenches) = wrenches {
