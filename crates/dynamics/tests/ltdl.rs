@@ -3,7 +3,7 @@
 
 use crate::common;
 
-use common::{ROBOTS, build, distance, dyadic_chain, largest, lifted, topology, within};
+use common::{ROBOTS, build, distance, dyadic_chain, larger, largest, lifted, topology, within};
 use featherbench_dynamics::{Ltdl, NotPositiveDefinite, TreeSparse, mass_matrix};
 use featherbench_model::{JointKind, Model, Topology};
 use featherbench_robots::{Family, Random, StateBatch};
@@ -243,9 +243,9 @@ fn the_inverse_is_as_good_as_solutions() {
                     let scale = (truth[i * n + i].to_f64() * truth[j * n + j].to_f64()).sqrt();
                     let off = |value: f64| (DoubleDouble::from_f64(value) - truth[i * n + j]).to_f64().abs() / scale;
                     assert!(off(inverse[i * n + j]).is_finite() && off(column[j]).is_finite(), "{name}");
-                    of_inverse = of_inverse.max(off(inverse[i * n + j]));
-                    of_plain = of_plain.max(off(divided[i * n + j].0));
-                    of_solutions = of_solutions.max(off(column[j]));
+                    of_inverse = larger(of_inverse, off(inverse[i * n + j]));
+                    of_plain = larger(of_plain, off(divided[i * n + j].0));
+                    of_solutions = larger(of_solutions, off(column[j]));
                 }
             }
         }

@@ -2,7 +2,7 @@
 //!
 //! A group is an operation. An id is a text and a robot: `f64` runs in registers, `plain` is the book's text on a scalar that is an `f64` in
 //! all but its type. Each call takes another of eight matrices, or of their factors. A factorization includes copying its matrix.
-//! `cargo bench -p featherbench-dynamics --bench ltdl -- --test` calls each once, as a test.
+//! `cargo bench -p featherbench-dynamics --bench factors -- --test` calls each once, as a test.
 
 #[path = "plain.rs"]
 mod plain;
