@@ -299,15 +299,7 @@ impl<T: Real> Sym3<T> {
     /// `m (|c|²·1 − c cᵀ)`: the inertia of a point mass at `c`.
     #[inline(always)]
     pub fn point_mass(mass: T, c: Vec3<T>) -> Self {
-        let mc = c * mass;
-        Self {
-            xx: mc.y.mul_add(c.y, mc.z * c.z),
-            xy: -(mc.x * c.y),
-            xz: -(mc.x * c.z),
-            yy: mc.x.mul_add(c.x, mc.z * c.z),
-            yz: -(mc.y * c.z),
-            zz: mc.x.mul_add(c.x, mc.y * c.y),
-        }
+        Self::minus_cross_cross(c, c * mass)
     }
 
     /// The upper triangle of `−u× w× = (u·w) 1 − w uᵀ`.

@@ -140,7 +140,7 @@ pub fn to_lanes<S: Number>(rows: &[S], each: usize) -> Result<Vec<S::Lanes>, Dim
 /// An array in row order with the vectors of so many states, from one in lane order. A vector has `each` entries.
 ///
 /// # Errors
-/// [`DimensionError`] when there are not as many groups as these states fill.
+/// [`DimensionError`] when the number of groups is not the number of states over [`Number::LANES`], rounded up.
 pub fn to_rows<S: Number>(lanes: &[S::Lanes], each: usize, states: usize) -> Result<Vec<S>, DimensionError> {
     expect("registers in lane order", states.div_ceil(S::LANES) * each, lanes.len())?;
     let mut rows = vec![S::zero(); states * each];

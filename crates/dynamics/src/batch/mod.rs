@@ -83,7 +83,7 @@ impl<'m, S: Number + Lift<S::Lanes>> Batch<'m, S> {
         Ok(Self { workers: vec![Worker::new(topology)], models })
     }
 
-    /// The same on all cores: with as many threads as the current pool of `rayon` has now. Calls then allocate a little.
+    /// The same on all cores: with the threads that the current pool of `rayon` has now. Calls then allocate a little.
     #[must_use]
     pub fn on_all_cores(mut self) -> Self {
         let worker = self.workers[0].clone();

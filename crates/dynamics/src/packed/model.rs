@@ -90,7 +90,7 @@ pub(super) struct Segment {
     pub parent: Source,
     /// Whether it has one-dof joints only. A wide joint is a segment by itself.
     pub plain: bool,
-    /// Whether as many dofs are above its first joint as lanes are before it.
+    /// Whether the number of dofs above its first joint is at least the number of lanes before it.
     pub roomy: bool,
     /// 1 in its lanes; 1 in its first lane.
     pub all: Pack,

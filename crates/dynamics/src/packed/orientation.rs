@@ -72,7 +72,7 @@ impl Orientations {
         }
 
         // from columns per joint to a register per component
-        let own: &[[f64x4; 3]; LANES] = columns[b * LANES..][..LANES].try_into().expect("a block has as many columns as lanes");
+        let own: &[[f64x4; 3]; LANES] = columns[b * LANES..][..LANES].try_into().expect("a block has LANES columns");
         let vector = |column: usize| transposed(own, column);
         let rotation = straightened([vector(0), vector(1), vector(2)]);
         let subspace = Motion::new(rotation * block.subspace.ang, if block.slides { rotation * block.subspace.lin } else { Vec3::zero() });
