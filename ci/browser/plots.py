@@ -40,6 +40,18 @@ LONELY = """
     const rooms = marks.map(room);
     const edge = svg.getBoundingClientRect();
     return {mark: marks[rooms.indexOf(Math.max(...rooms))], edge: [edge.left, edge.top, edge.right, edge.bottom]}"""
+# A figure as its reader saves it.
+SAVED = """
+    const text = featherbench.chart.figure(document.getElementById(arguments[0]));
+    const file = new DOMParser().parseFromString(text, 'image/svg+xml');
+    const named = [...document.querySelectorAll(`#${arguments[0]} .chart-names span`)].map(span => span.textContent);
+    return {
+      root: file.documentElement.tagName,
+      marks: file.querySelectorAll('.mark').length,
+      paper: file.querySelector('rect').getAttribute('fill'),
+      names: named.every(name => [...file.querySelectorAll('text')].some(text => text.textContent.startsWith(name))),
+      borrowed: text.includes('var(') || text.includes('currentColor'),
+    }"""
 # Seconds after which a browser is taken to save nothing, on a machine however busy.
 PATIENCE = 120
 # The lines that explain a mark.
@@ -158,20 +170,7 @@ def chart(page: Browser, box: str, shot: Shot) -> Checks:
         x, y = place["mark"]
         left, top, right, bottom = place["edge"]
 
-    saved = page.run(
-        """
-        const text = featherbench.chart.figure(document.getElementById(arguments[0]));
-        const file = new DOMParser().parseFromString(text, 'image/svg+xml');
-        const named = [...document.querySelectorAll(`#${arguments[0]} .chart-names span`)].map(span => span.textContent);
-        return {
-          root: file.documentElement.tagName,
-          marks: file.querySelectorAll('.mark').length,
-          paper: file.querySelector('rect').getAttribute('fill'),
-          names: named.every(name => [...file.querySelectorAll('text')].some(text => text.textContent.startsWith(name))),
-          borrowed: text.includes('var(') || text.includes('currentColor'),
-        }""",
-        box,
-    )
+    saved = page.run(SAVED, box)
     whole = saved["root"] == "svg" and saved["marks"] == first["points"] and saved["names"]
     yield f"{box} as a file has its marks, names and colours", whole and saved["paper"].startswith("#") and not saved["borrowed"], saved
 

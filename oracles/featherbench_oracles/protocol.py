@@ -28,14 +28,19 @@ class State:
     ----------
     q : ndarray, shape (nq,)
         Positions, m, rad or quaternions.
+
     v, a : ndarray, shape (nv,)
         Velocities, m/s or rad/s; accelerations, m/s² or rad/s².
+
     tau : ndarray, shape (nv,)
         Forces of the joints, N or N m.
+
     wrench : ndarray, shape (bodies, 6)
         For each body [moment; force] in body axes at the body's origin, N m and N.
+
     probe : ndarray, shape (4, nv)
         The vectors that M is multiplied by.
+
     body : int
         The index of the body.
     """
@@ -57,14 +62,19 @@ class Reading:
     ----------
     model : dict
         The description in its JSON form.
+
     description : Description
         The same description.
+
     notes : list of dict
         What the parser did, and to which link or joint (`reading.note`).
+
     robot : Any
         The engine's robot, in the description's coordinates.
+
     keyframes : dict of str to ndarray, shape (nq,)
         The file's keyframes by name.
+
     written : dict, optional
         The description with the file's own inertias, if the engine rejects those and holds repaired ones.
     """

@@ -35,18 +35,25 @@ class Joint:
     ----------
     name : str
         The joint's name.
+
     type : str
         One of the keys of `JOINT_SIZES`.
+
     axis : ndarray, shape (3,)
         A unit vector in the joint's frame; zero for types without an axis.
+
     pitch : float
         Metres per radian; 0 unless the joint is helical.
+
     rotation : ndarray, shape (3, 3)
         From the joint's axes to the parent's.
+
     translation : ndarray, shape (3,)
         The joint's origin in the parent's frame, m.
+
     armature : ndarray, shape (nv of the joint,)
         Added to the diagonal of M, kg or kg m².
+
     q, v : slice
         The joint's ranges in the neutral coordinates.
     """
@@ -70,14 +77,19 @@ class Body:
     ----------
     name : str
         The body's name.
+
     mass : float
         In kg.
+
     com : ndarray, shape (3,)
         The centre of mass in body axes, m.
+
     inertia : ndarray, shape (3, 3)
         About the centre of mass, in body axes, kg m².
+
     parent : int
         The index of the parent body; -1 is the world.
+
     joint : Joint
         The joint that carries the body.
     """

@@ -61,9 +61,9 @@ impl External {
         Ok(oracle.named(&self.name).with_program(&program))
     }
 
-    /// The content hash of the command: of the program's file, of files that its arguments name (a script is the argument of its
-    /// interpreter, and a module of `python -m` is its package), and of the other arguments as they are. What these files load in their turn
-    /// is not in it.
+    /// The content hash of the command. It covers the program's file, the files that its arguments name, and the other arguments as they
+    /// are. A script is the argument of its interpreter; a module of `python -m` is its package. What these files load in their turn is not
+    /// in it.
     fn program(&self, root: &Root) -> Result<String, Fail> {
         let read = |path: &Path| std::fs::read(path).map_err(|source| Fail::from(HarnessError::io(path, source)));
         let mut parts = vec![read(&find(&self.command)?)?];

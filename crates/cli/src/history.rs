@@ -12,8 +12,8 @@ const HEADER: &str = "date,revision,kernel,model,ns,ns_low,ns_high,instructions"
 /// A history is cut to this many bytes, the oldest nights first: the data of this repository are small.
 const LIMIT: usize = 24_000;
 
-/// Appends a run's times of our kernels on one robot to the history of its machine: in the folder that is named, or in `reports/history` of
-/// the project, which only then must be found.
+/// Appends a run's times of our kernels on one robot to the history of its machine. It is in the folder that is named, or else in
+/// `reports/history` of the project. Only then the project must be found.
 pub fn append(root: &dyn Fn() -> Result<Root, Fail>, args: &HistoryArgs) -> Result<(), Fail> {
     let (run, records) = read_run(&args.folder)?;
     let instructions = args.instructions.as_deref().map(read_instructions).transpose()?.unwrap_or_default();

@@ -1,7 +1,7 @@
 //! The native oracles: engines as libraries that CMake builds, once, from `oracles/native` and the installed packages.
 //!
-//! A library is kept in the user's cache folder under a hash of everything that it is made of: sources, the files that tell CMake how to
-//! compile them, the compiler's and the packages' versions, and the processor, for which it is compiled.
+//! A library is kept in the user's cache folder under a hash of everything that it is made of. These are the sources, the files that tell
+//! CMake how to compile them, the versions of the compiler and of the packages, and the processor.
 
 use crate::fail::Fail;
 use crate::oracles::{self, spinner};

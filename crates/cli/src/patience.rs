@@ -1,5 +1,5 @@
-//! An engine that is asked about a robot no more once it has not answered in time: what did not come within the limit is a stated outcome, and the
-//! other engines go on.
+//! An engine that is asked about a robot no more once it has not answered in time. What did not come within the limit is a stated outcome,
+//! and the other engines go on.
 
 use featherbench_bench::{Engine, Evaluation, FileFormat, Identity, Import, NoAnswer, Quantity, Robot, RobotFile};
 use featherbench_robots::StateBatch;

@@ -19,8 +19,11 @@
 //! - D_k − H²/D in place of D_k − L H on the way from pivot to pivot: 4 % less, but H² leaves the range of numbers.
 //! - Registers that end with the block's own columns: nothing.
 //!
-//! What paid most: no function call for the last, incomplete register (the matrix has padding), no load that overlaps a narrower store
-//! shortly after it, and masks only on registers that are incomplete.
+//! What paid most:
+//!
+//! - No function call for the last, incomplete register: the matrix has padding.
+//! - No load that overlaps a narrower store shortly after it.
+//! - Masks only on registers that are incomplete.
 
 use super::blocks::{Block, Plan, by_size, down, starts, up};
 use super::registers::{LANES, load, store, subtract};

@@ -1,7 +1,7 @@
 //! A register of joints, and sums along paths of the tree over its lanes.
 //!
 //! A *block* is a register's worth of consecutive joints. A *segment* is a run of joints in a block, each the parent of the next. Inside
-//! all segments of a block at once, a sum over the path takes log₂(lanes) additions: after the step of stride s each lane holds the sum of
+//! all segments of a block at once, a sum over the path takes log₂(lanes) additions. After the step of stride s each lane holds the sum of
 //! its 2s nearest ancestors in its segment. Then each segment takes the sum up to its parent.
 
 use super::model::{Block, PackedModel, Source};

@@ -19,8 +19,8 @@
 //!
 //! Forward dynamics has 0.58 of the floor of its conditioning link by link, and 0.74 packed; the largest are 2.3 and 7.7. So inverse
 //! dynamics is the usual method of the studies in this text, and the other two are second methods, fast and slightly less accurate.
-//! The loss is with bodies that are thin about their axis: in body axes that axis is exact, and in the base's axes an inertia is rounded
-//! alike in all directions.
+//! The loss is with bodies that are thin about their axis. In body axes that axis is exact. In the base's axes an inertia is rounded alike
+//! in all directions.
 //!
 //! **Speed.** Time link by link over time packed, AVX-512, random states, one run on a busy machine:
 //!
@@ -33,8 +33,8 @@
 //! bound by pass 2, which goes joint by joint.
 //!
 //! **Tried:**
-//! - One reference acceleration for pass 1 of ABA along the whole path, with gravity in it: up to a hundred times the error in robots that
-//!   fall, and 28 times on a chain of 100 that hangs. Without gravity two of 67 robots were beyond the gate. A reference per segment is
+//! - One reference acceleration for pass 1 of ABA along the whole path, with gravity in it. The error grew up to a hundred times in robots
+//!   that fall, and 28 times on a chain of 100 that hangs. Without gravity two of 67 robots were beyond the gate. A reference per segment is
 //!   meant for fast robots; on these robots it changed little.
 //! - Orientations without the step that makes them straight again: 1.6 times the error of M in the mean.
 //! - Iᴬ and U translated before the division is done (rank one last): chain-spatial-12-free lost digits.

@@ -254,7 +254,7 @@ impl Expected {
     }
 }
 
-/// A suite that asks the double beside our own kernels. It expects as many cells and rows as the given rows have.
+/// A suite that asks the double beside our own kernels. It expects the cells and rows of the given rows.
 pub fn suite(expected: &[Row]) -> Expected {
     let text = format!(
         "about = \"one robot\"\nseed = {SEED}\nthorough = true\nrobot = []\nstates = {STATES}\nengines = [\"double\"]\n[agreement]\n"
