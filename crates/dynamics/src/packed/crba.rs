@@ -75,9 +75,7 @@ impl PackedCrba {
         expect("configuration q", model.topology.nq(), q.len())?;
         matrix.expect_topology(&model.topology)?;
 
-        for b in 0..model.blocks.len() {
-            self.orientations.turn(model, b, q);
-        }
+        self.orientations.turn(model, q);
         for b in (0..model.blocks.len()).rev() {
             self.compose(model, b);
         }

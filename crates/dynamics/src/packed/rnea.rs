@@ -90,9 +90,11 @@ pub(super) struct Motions {
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Link {
     omega: Vec3<Pack>,
+    /// ω and ω̇ of each body's parent.
+    above: [Vec3<Pack>; 2],
     /// Classical acceleration [ω̇; p̈].
     pub acceleration: Motion<Pack>,
-    /// The inertia of each body in the axes of the base, at its own origin.
+    /// The inertia of each body in the axes of the base, at its own origin; of a run without `WHOLE`.
     pub inertia: RigidBodyInertia<Pack>,
     /// The force that a body needs for its acceleration, less external wrenches.
     pub force: Force<Pack>,
@@ -101,7 +103,7 @@ pub(super) struct Link {
 impl Motions {
     pub fn new(model: &PackedModel) -> Self {
         let (still, massless) = (Motion::zero(), RigidBodyInertia::zero());
-        let link = Link { omega: Vec3::zero(), acceleration: still, inertia: massless, force: Force::zero() };
+        let link = Link { omega: Vec3::zero(), above: [Vec3::zero(); 2], acceleration: still, inertia: massless, force: Force::zero() };
         Self { orientations: Orientations::new(model), links: vec![link; model.blocks.len()] }
     }
 
@@ -124,11 +126,16 @@ impl Motions {
             expect("external wrenches", model.topology.bodies(), wrenches.len())?;
         }
         self.orientations.bases.fill(-model.gravity);
+        self.orientations.turn(model, q);
         for b in 0..model.blocks.len() {
-            self.run_block::<WHOLE>(model, b, q, v, a);
-            if let Some(wrenches) = wrenches {
-                let (block, rotation) = (&model.blocks[b], &self.orientations.frames[b].rotation);
-                let force = &mut self.links[b].force;
+            self.swing::<WHOLE>(model, b, v, a);
+        }
+        for b in 0..model.blocks.len() {
+            self.push::<WHOLE>(model, b, v, a);
+        }
+        if let Some(wrenches) = wrenches {
+            for (b, block) in model.blocks.iter().enumerate() {
+                let (rotation, force) = (&self.orientations.frames[b].rotation, &mut self.links[b].force);
                 for (k, wrench) in wrenches[block.first..block.first + block.count].iter().enumerate() {
                     let r = rotation.lane(k);
                     force.ang.set_lane(k, force.ang.lane(k) - r * wrench.ang);
@@ -139,36 +146,44 @@ impl Motions {
         Ok(())
     }
 
+    /// Step 1 for a block.
     #[inline(always)]
-    fn run_block<const WHOLE: bool>(&mut self, model: &PackedModel, b: usize, q: &[f64], v: &[f64], a: Option<&[f64]>) {
-        let block = &model.blocks[b];
-        let frame = self.orientations.turn(model, b, q);
-        let (links, bases) = (&mut self.links, &self.orientations.bases);
-        let d = frame.displacement;
+    fn swing<const WHOLE: bool>(&mut self, model: &PackedModel, b: usize, v: &[f64], a: Option<&[f64]>) {
+        let (block, frame, links) = (&model.blocks[b], &self.orientations.frames[b], &mut self.links);
 
         // ω = Σ R S q̇
-        let rate = across(model, block, &frame, v);
+        let rate = across(model, block, frame, v);
         let before = |block: usize, lane: usize| links[block].omega.lane(lane);
         let (omega, omega_above) = sum_from_root(model, block, rate.ang, before, |_| Vec3::zero());
 
         // ω̇ = Σ (R S q̈ + ω_p × R S q̇)
         let mut swung = omega_above.cross(rate.ang);
-        let rate_of_rate = a.map(|a| across(model, block, &frame, a));
-        if let Some(rate) = rate_of_rate {
-            swung += rate.ang;
+        if let Some(a) = a {
+            swung += across(model, block, frame, a).ang;
         }
         let before = |block: usize, lane: usize| links[block].acceleration.ang.lane(lane);
         let (alpha, alpha_above) = match WHOLE {
             true => sum_from_root(model, block, swung, before, |_| Vec3::zero()),
             false => sum_in_segments(block, swung),
         };
+        let link = &mut links[b];
+        (link.omega, link.acceleration.ang) = (omega, alpha);
+        link.above = [omega_above, alpha_above];
+    }
+
+    /// Steps 2 and 3 for a block.
+    #[inline(always)]
+    fn push<const WHOLE: bool>(&mut self, model: &PackedModel, b: usize, v: &[f64], a: Option<&[f64]>) {
+        let (block, frame) = (&model.blocks[b], &self.orientations.frames[b]);
+        let (links, bases) = (&mut self.links, &self.orientations.bases);
+        let (d, omega, [omega_above, alpha_above]) = (frame.displacement, links[b].omega, links[b].above);
 
         // p̈ = −g + Σ (ω̇_p × d + ω_p × (ω_p × d)  +  (ω_p + ω) × v_J + v̇_J)
         let mut moved = omega_above.cross_add(omega_above.cross(d), alpha_above.cross(d));
         if block.slides {
-            moved = (omega_above + omega).cross_add(rate.lin, moved);
-            if let Some(rate) = rate_of_rate {
-                moved += rate.lin;
+            moved = (omega_above + omega).cross_add(across(model, block, frame, v).lin, moved);
+            if let Some(a) = a {
+                moved += across(model, block, frame, a).lin;
             }
         }
         let before = |block: usize, lane: usize| links[block].acceleration.lin.lane(lane);
@@ -177,10 +192,13 @@ impl Motions {
             false => sum_in_segments(block, moved),
         };
 
-        let acceleration = Motion::new(alpha, lin);
-        let inertia = turned_inertia(block, &frame);
-        let force = newton_euler(&inertia, omega, Some(acceleration));
-        links[b] = Link { omega, acceleration, inertia, force };
+        let link = &mut links[b];
+        link.acceleration.lin = lin;
+        let inertia = turned_inertia(block, frame);
+        link.force = newton_euler(&inertia, omega, Some(link.acceleration));
+        if !WHOLE {
+            link.inertia = inertia;
+        }
     }
 }
 
