@@ -87,7 +87,7 @@ impl Units {
         for q in states.q.chunks_exact_mut(states.nq) {
             for joint in other.model.topology.joints() {
                 match joint.kind {
-                    JointKind::Prismatic => q[joint.q] *= length,
+                    JointKind::Prismatic(_) => q[joint.q] *= length,
                     JointKind::Free => q[joint.q..joint.q + 3].iter_mut().for_each(|x| *x *= length),
                     _ => (),
                 }

@@ -4,7 +4,7 @@
 use featherbench_bench::measure::{Magnitudes, scaled_error};
 use featherbench_bench::{Quantity, Robot};
 use featherbench_dynamics::{Crba, Jacobian, Kinematics, Rnea, TreeSparse};
-use featherbench_model::{Description, JointType, Model};
+use featherbench_model::{Description, JointType, Label, Model};
 use featherbench_reference::{Mp, Precision, Robot as Witness};
 use featherbench_results::ModelOrigin;
 use featherbench_robots::{Family, Random};
@@ -153,9 +153,13 @@ fn everybody_gets_the_canonical_numbers() {
         // The message to an oracle is made from this description, made canonical once more.
         let line = featherbench_formats::neutral::to_line(&robot.description).unwrap();
         let sent = featherbench_formats::neutral::parse(&line, "the line").unwrap();
-        for ((body, sent), turned) in robot.description.bodies.iter().zip(&sent.bodies).zip(&robot.model.placements) {
+        let model = &robot.model;
+        for (i, (body, sent)) in robot.description.bodies.iter().zip(&sent.bodies).enumerate() {
             assert_eq!((body.joint.kind, body.joint.placement), (sent.joint.kind, sent.joint.placement), "off by {off:e}");
-            assert_eq!(turned.rotation.to_array(), body.joint.placement.rotation);
+            let parent = body.parent.map_or(Label::Z, |parent| model.labels[parent]);
+            let turned = model.labels[i].rotation_to_described(model.placements[i].rotation);
+            let turned = parent.rotation_to_described(turned.transpose()).transpose();
+            assert_eq!(turned.to_array(), body.joint.placement.rotation);
         }
         if off > f64::EPSILON {
             assert!(!robot.model.warnings.is_empty(), "off by {off:e}: nothing is told");

@@ -17,7 +17,7 @@
 use crate::error::{Pivot, expect};
 use crate::step::{add_joint, by_kind, cross_joint, expect_bodies, expect_wrenches, newton_euler, parent_link};
 use crate::{DimensionError, Error};
-use featherbench_model::{JointKind, Model, Topology};
+use featherbench_model::{Axis, JointKind, Model, Topology};
 use featherbench_spatial::{ArticulatedInertia, Force, Ldl3, Lift, Mat3, Motion, Real, Sym3, Transform, Vec3};
 
 /// The workspace of the articulated-body algorithm.
@@ -93,7 +93,7 @@ impl<T: Real> Aba<T> {
             let (parent, link) = (&before[parent_link(joint)], &mut rest[0]);
             by_kind!(joint.kind, set_moving, model, i, parent.omega, v, link);
             if let Some(wrenches) = wrenches {
-                link.p -= wrenches[i];
+                link.p -= model.labels[i].force_to_compiled(wrenches[i]);
             }
         }
 
@@ -195,15 +195,23 @@ fn apparent_inertia<T: Real, P: Real + Lift<T>>(
     let dof = model.topology.joints()[i].v;
     let (inertia, p) = (link.inertia, link.p);
     let (apparent, force) = match kind {
-        JointKind::Revolute | JointKind::Prismatic | JointKind::Helical => {
+        JointKind::Revolute(_) | JointKind::Prismatic(_) | JointKind::Helical => {
             let subspace = model.subspaces[i].lift();
             // U = Iᴬ S,  D = Sᵀ U + armature,  u = τ − Sᵀ pᴬ
             let (upper_u, d, s_p) = match kind {
-                JointKind::Revolute => {
+                JointKind::Revolute(Axis::Z) => {
+                    let i = inertia.rotational;
+                    (Force::new(Vec3::new(i.xz, i.yz, i.zz), inertia.coupling.z), i.zz, p.ang.z)
+                }
+                JointKind::Prismatic(Axis::Z) => {
+                    let m = inertia.translational;
+                    (Force::new(inertia.coupling.column_z(), Vec3::new(m.xz, m.yz, m.zz)), m.zz, p.lin.z)
+                }
+                JointKind::Revolute(Axis::Skew) => {
                     let upper_u = Force::new(inertia.rotational * subspace.ang, inertia.coupling.transpose_mul(subspace.ang));
                     (upper_u, subspace.ang.dot(upper_u.ang), subspace.ang.dot(p.ang))
                 }
-                JointKind::Prismatic => {
+                JointKind::Prismatic(Axis::Skew) => {
                     let upper_u = Force::new(inertia.coupling * subspace.lin, inertia.translational * subspace.lin);
                     (upper_u, subspace.lin.dot(upper_u.lin), subspace.lin.dot(p.lin))
                 }
@@ -215,11 +223,12 @@ fn apparent_inertia<T: Real, P: Real + Lift<T>>(
             let d = d + model.armature[dof].lift();
             smallest.note(dof, d.min_lane());
             let d_inverse = T::one() / d;
-            (link.u_d_inverse, link.d_inverse) = (upper_u * d_inverse, d_inverse);
+            let scaled = upper_u * d_inverse;
+            (link.u_d_inverse, link.d_inverse) = (scaled, d_inverse);
             link.d_inverse_u = (tau[dof] - s_p) * d_inverse;
             // Iᵃ = Iᴬ − U D⁻¹ Uᵀ,  pᵃ = pᴬ + Iᵃ c + U D⁻¹ u
-            let apparent = inertia.subtract_rank_one(d_inverse, upper_u);
-            (Some(apparent), upper_u.scale_add(link.d_inverse_u, p + apparent.mul(link.c)))
+            let apparent = inertia.subtract_rank_one(scaled, upper_u);
+            (Some(apparent), upper_u.scale_add(link.d_inverse_u, p + carry_velocity_product(kind, &apparent, link.c)))
         }
         JointKind::Spherical => {
             let (apparent, d) = eliminate_spherical(&inertia, spherical_armature(model, dof), dof, smallest);
@@ -237,6 +246,22 @@ fn apparent_inertia<T: Real, P: Real + Lift<T>>(
     }
 }
 
+/// `Iᵃ c` for the velocity product c of a one-dof joint. Its angular part `ω_p × ω_J` is zero along the axis, and of a joint that does not
+/// turn it is zero.
+#[inline(always)]
+fn carry_velocity_product<T: Real>(kind: JointKind, apparent: &ArticulatedInertia<T>, c: Motion<T>) -> Force<T> {
+    let ArticulatedInertia { rotational: i, coupling: h, translational: m } = apparent;
+    match kind {
+        JointKind::Revolute(Axis::Z) => {
+            let (x, y) = (c.ang.x, c.ang.y);
+            let turned = Vec3::new(i.xx.mul_add(x, i.xy * y), i.xy.mul_add(x, i.yy * y), i.xz.mul_add(x, i.yz * y));
+            Force::new(h.mul_vec_add(c.lin, turned), h.x.scale_add(x, h.y.scale_add(y, *m * c.lin)))
+        }
+        JointKind::Prismatic(_) => Force::new(*h * c.lin, *m * c.lin),
+        _ => apparent.mul(c),
+    }
+}
+
 /// Pass 2 of [`Aba::solve`] for one body, whose Iᴬ, U and D are known: adds X* pᵃ, pᵃ = pᴬ + U D⁻¹ u, to the parent's pᴬ.
 #[inline(always)]
 fn apparent_bias_force<T: Real, P: Real + Lift<T>>(
@@ -250,12 +275,14 @@ fn apparent_bias_force<T: Real, P: Real + Lift<T>>(
     let dof = model.topology.joints()[i].v;
     let (subspace, p) = (model.subspaces[i].lift(), link.p);
     let force = match kind {
-        JointKind::Revolute | JointKind::Prismatic | JointKind::Helical => {
+        JointKind::Revolute(_) | JointKind::Prismatic(_) | JointKind::Helical => {
             // u = f − Sᵀ pᴬ
             let u = f[dof]
                 - match kind {
-                    JointKind::Revolute => subspace.ang.dot(p.ang),
-                    JointKind::Prismatic => subspace.lin.dot(p.lin),
+                    JointKind::Revolute(Axis::Z) => p.ang.z,
+                    JointKind::Prismatic(Axis::Z) => p.lin.z,
+                    JointKind::Revolute(Axis::Skew) => subspace.ang.dot(p.ang),
+                    JointKind::Prismatic(Axis::Skew) => subspace.lin.dot(p.lin),
                     _ => subspace.dot(p),
                 };
             link.d_inverse_u = u * link.d_inverse;
@@ -289,7 +316,7 @@ fn joint_acceleration<T: Real, P: Real + Lift<T>>(
     let dof = model.topology.joints()[i].v;
     let carried = link.x.inverse_motion(parent_acceleration) + link.c;
     match kind {
-        JointKind::Revolute | JointKind::Prismatic | JointKind::Helical => {
+        JointKind::Revolute(_) | JointKind::Prismatic(_) | JointKind::Helical => {
             // the angular part is known first: two short sums are faster than one long sum
             a[dof] = link.d_inverse_u - link.u_d_inverse.ang.dot(carried.ang) - link.u_d_inverse.lin.dot(carried.lin);
         }

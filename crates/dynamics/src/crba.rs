@@ -9,7 +9,7 @@
 use crate::error::expect;
 use crate::step::{by_kind, expect_bodies};
 use crate::{DimensionError, TreeSparse};
-use featherbench_model::{JointKind, Model, Topology};
+use featherbench_model::{Axis, JointKind, Model, Topology};
 use featherbench_spatial::{Force, Lift, Motion, Real, RigidBodyInertia, Transform, Vec3};
 use std::ops::Range;
 
@@ -52,7 +52,7 @@ impl<T: Real> Crba<T> {
             let (kind, subspace, x) = (joint.kind, &model.subspaces[i], &placements[i]);
             // F_k = Iᶜ_i S_k for the joint's own dofs
             for k in 0..kind.nv() {
-                forces.set(joint.v + k, composites[i].mul(kind.column(subspace, k)));
+                forces.set(joint.v + k, column_force(kind, &composites[i], subspace, k));
             }
             // M_kj = S_jᵀ F_k for every dof k that the joint's dof j supports
             for column in 0..kind.nv() {
@@ -70,6 +70,18 @@ impl<T: Real> Crba<T> {
             matrix.add_to_diagonal(k, armature.lift());
         }
         Ok(())
+    }
+}
+
+/// `Iᶜ S_k`: the force that moves a composite body along column `k` of its joint's motion subspace.
+#[inline(always)]
+fn column_force<T: Real, P: Real + Lift<T>>(kind: JointKind, composite: &RigidBodyInertia<T>, subspace: &Motion<P>, k: usize) -> Force<T> {
+    let RigidBodyInertia { mass, first_moment: h, rotational: i } = *composite;
+    let zero = T::zero();
+    match kind {
+        JointKind::Revolute(Axis::Z) => Force::new(Vec3::new(i.xz, i.yz, i.zz), Vec3::new(-h.y, h.x, zero)),
+        JointKind::Prismatic(Axis::Z) => Force::new(Vec3::new(h.y, -h.x, zero), Vec3::new(zero, zero, mass)),
+        _ => composite.mul(kind.column(subspace, k)),
     }
 }
 
@@ -143,8 +155,10 @@ fn project<T: Real, P: Real + Lift<T>>(
     for (row, (((nx, ny), nz), ((fx, fy), fz))) in rows[supported].iter().zip(ang.zip(lin)) {
         let f = Force::new(Vec3::new(*nx, *ny, *nz), Vec3::new(*fx, *fy, *fz));
         values[row.start + position] = match kind {
-            JointKind::Revolute => subspace.ang.lift().dot(f.ang),
-            JointKind::Prismatic => subspace.lin.lift().dot(f.lin),
+            JointKind::Revolute(Axis::Z) => f.ang.z,
+            JointKind::Prismatic(Axis::Z) => f.lin.z,
+            JointKind::Revolute(Axis::Skew) => subspace.ang.lift().dot(f.ang),
+            JointKind::Prismatic(Axis::Skew) => subspace.lin.lift().dot(f.lin),
             JointKind::Helical => subspace.lift().dot(f),
             JointKind::Spherical => f.ang.to_array()[column],
             JointKind::Free if column < 3 => f.lin.to_array()[column],

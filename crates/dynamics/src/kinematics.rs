@@ -9,8 +9,8 @@
 
 use crate::DimensionError;
 use crate::error::expect;
-use crate::step::{add_joint, expect_bodies, parent_link, slides, turns};
-use featherbench_model::{JointKind, Model, Topology};
+use crate::step::{add_joint, by_kind, expect_bodies, parent_link, slides, turns};
+use featherbench_model::{Axis, JointKind, Label, Model, Topology};
 use featherbench_spatial::{Lift, Mat3, Motion, Real, Transform, Vec3};
 
 /// The workspace of forward kinematics, and its results.
@@ -23,7 +23,7 @@ pub struct Kinematics<T> {
 /// Placement, velocity and acceleration of a body, in world axes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BodyMotion<T> {
-    /// Placement of the body's frame in the world.
+    /// Placement of the described body's frame in the world.
     pub placement: Transform<T>,
     /// Velocity [ω; ṗ] of the body's origin.
     pub velocity: Motion<T>,
@@ -34,6 +34,8 @@ pub struct BodyMotion<T> {
 /// A body's kinematics.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Link<T> {
+    /// How its described axes are called.
+    label: Label,
     /// Placement in the parent.
     pub(crate) x: Transform<T>,
     /// The displacement from the parent's origin, in world axes.
@@ -51,7 +53,8 @@ impl<T: Real> Kinematics<T> {
     /// A workspace for models of this topology.
     pub fn new(topology: &Topology) -> Self {
         let (place, still) = (Transform::identity(), Motion::zero());
-        let rest = Link { x: place, step: Vec3::zero(), world: place, v: still, velocity: still, acceleration: still };
+        let label = Label::Z;
+        let rest = Link { label, x: place, step: Vec3::zero(), world: place, v: still, velocity: still, acceleration: still };
         Self { links: vec![rest; topology.bodies() + 1] }
     }
 
@@ -64,23 +67,9 @@ impl<T: Real> Kinematics<T> {
         expect("acceleration a", model.topology.nv(), a.len())?;
         self.place(model, q)?;
         for (i, joint) in model.topology.joints().iter().enumerate() {
-            let parent = self.links[parent_link(joint)];
-            let (kind, subspace, link) = (joint.kind, &model.subspaces[i], &mut self.links[i + 1]);
-            let (r, turned) = (link.step, |m: Motion<T>| rotated(kind, &link.world.rotation, m));
-            let (rate, rate_of_rate) = (turned(kind.motion(subspace, &v[joint.v..])), turned(kind.motion(subspace, &a[joint.v..])));
-            // v = [ω_p; ṗ_p + ω_p × r] + J q̇
-            let (omega, alpha) = (parent.velocity.ang, parent.acceleration.ang);
-            let swing = omega.cross(r);
-            link.velocity = add_joint(kind, Motion::new(omega, parent.velocity.lin + swing), rate);
-            // a = [ω̇_p; p̈_p + ω̇_p × r + ω_p × (ω_p × r)] + [ω_p × ω_J; (ω_p + ω) × v_J] + J q̈
-            let mut carried = Motion::new(alpha, parent.acceleration.lin + omega.cross_add(swing, alpha.cross(r)));
-            if turns(kind) {
-                carried.ang += omega.cross(rate.ang);
-            }
-            if slides(kind) {
-                carried.lin += (omega + link.velocity.ang).cross(rate.lin);
-            }
-            link.acceleration = add_joint(kind, carried, rate_of_rate);
+            let (before, rest) = self.links.split_at_mut(i + 1);
+            let (parent, link) = (&before[parent_link(joint)], &mut rest[0]);
+            by_kind!(joint.kind, move_body, model, i, parent, v, a, link);
         }
         Ok(())
     }
@@ -110,7 +99,7 @@ impl<T: Real> Kinematics<T> {
             let step = parent.rotation * x.translation;
             let world = Transform::new(parent.rotation * x.rotation, parent.translation + step);
             let link = &mut self.links[i + 1];
-            (link.x, link.step, link.world) = (x, step, world);
+            (link.label, link.x, link.step, link.world) = (model.labels[i], x, step, world);
         }
         Ok(())
     }
@@ -128,14 +117,50 @@ impl<T: Real> Kinematics<T> {
 
 impl<T: Real> Link<T> {
     fn in_world(&self) -> BodyMotion<T> {
-        BodyMotion { placement: self.world, velocity: self.velocity, acceleration: self.acceleration }
+        let rotation = self.label.rotation_to_described(self.world.rotation);
+        BodyMotion { placement: Transform::new(rotation, self.world.translation), velocity: self.velocity, acceleration: self.acceleration }
     }
+}
+
+/// Velocity and acceleration of one body, once it is placed.
+#[inline(always)]
+fn move_body<T: Real, P: Real + Lift<T>>(
+    kind: JointKind,
+    model: &Model<P>,
+    i: usize,
+    parent: &Link<T>,
+    v: &[T],
+    a: &[T],
+    link: &mut Link<T>,
+) {
+    let (dof, subspace, r) = (model.topology.joints()[i].v, &model.subspaces[i], link.step);
+    let turned = |m: Motion<T>| rotated(kind, &link.world.rotation, m);
+    let (rate, rate_of_rate) = (turned(kind.motion(subspace, &v[dof..])), turned(kind.motion(subspace, &a[dof..])));
+    // v = [ω_p; ṗ_p + ω_p × r] + J q̇
+    let (omega, alpha) = (parent.velocity.ang, parent.acceleration.ang);
+    let swing = omega.cross(r);
+    let mut velocity = Motion::new(omega, parent.velocity.lin + swing);
+    // a = [ω̇_p; p̈_p + ω̇_p × r + ω_p × (ω_p × r)] + [ω_p × ω_J; (ω_p + ω) × v_J] + J q̈
+    let mut acceleration = Motion::new(alpha, parent.acceleration.lin + omega.cross_add(swing, alpha.cross(r)));
+    if turns(kind) {
+        velocity.ang += rate.ang;
+        acceleration.ang = acceleration.ang + omega.cross(rate.ang) + rate_of_rate.ang;
+    }
+    if slides(kind) {
+        velocity.lin += rate.lin;
+        acceleration.lin = acceleration.lin + (omega + velocity.ang).cross(rate.lin) + rate_of_rate.lin;
+    }
+    (link.velocity, link.acceleration) = (velocity, acceleration);
 }
 
 /// A motion across a joint of this kind, turned by `r`.
 #[inline(always)]
 fn rotated<T: Real>(kind: JointKind, r: &Mat3<T>, m: Motion<T>) -> Motion<T> {
-    Motion::new(if turns(kind) { *r * m.ang } else { m.ang }, if slides(kind) { *r * m.lin } else { m.lin })
+    match kind {
+        JointKind::Revolute(Axis::Z) => Motion::new(r.column_z() * m.ang.z, m.lin),
+        JointKind::Prismatic(Axis::Z) => Motion::new(m.ang, r.column_z() * m.lin.z),
+        _ => Motion::new(if turns(kind) { *r * m.ang } else { m.ang }, if slides(kind) { *r * m.lin } else { m.lin }),
+    }
 }
 
 /// Forward kinematics in a workspace of the call; it allocates.

@@ -84,7 +84,7 @@ impl<T: Real> Rnea<T> {
             let (parent, link) = (&before[parent_link(joint)], &mut rest[0]);
             by_kind!(joint.kind, outward::<T, P, ACCELERATED>, model, i, parent, v, a, link);
             if let Some(wrenches) = wrenches {
-                link.f -= wrenches[i];
+                link.f -= model.labels[i].force_to_compiled(wrenches[i]);
             }
         }
 

@@ -9,22 +9,33 @@
 
 use crate::DimensionError;
 use crate::error::expect;
-use featherbench_model::{Joint, JointKind, Model};
+use featherbench_model::{Axis, Joint, JointKind, Model};
 use featherbench_spatial::{Force, Motion, Real, RigidBodyInertia, Transform, Vec3};
 
 /// Calls `step(kind, …)` from one arm per kind, so that each inlined copy is compiled with its kind known.
 macro_rules! by_kind {
-    ($kind:expr, $step:expr, $($argument:expr),+ $(,)?) => {
+    ($kind:expr, $step:expr, $($argument:expr),+ $(,)?) => {{
+        use featherbench_model::Axis::{Skew, Z};
+        use featherbench_model::JointKind::{Free, Helical, Prismatic, Revolute, Spherical};
         match $kind {
-            JointKind::Revolute => $step(JointKind::Revolute, $($argument),+),
-            JointKind::Prismatic => $step(JointKind::Prismatic, $($argument),+),
-            JointKind::Helical => $step(JointKind::Helical, $($argument),+),
-            JointKind::Spherical => $step(JointKind::Spherical, $($argument),+),
-            JointKind::Free => $step(JointKind::Free, $($argument),+),
+            Revolute(Z) => $crate::step::arm(|| $step(Revolute(Z), $($argument),+)),
+            Revolute(Skew) => $crate::step::arm(|| $step(Revolute(Skew), $($argument),+)),
+            Prismatic(Z) => $crate::step::arm(|| $step(Prismatic(Z), $($argument),+)),
+            Prismatic(Skew) => $crate::step::arm(|| $step(Prismatic(Skew), $($argument),+)),
+            Helical => $crate::step::arm(|| $step(Helical, $($argument),+)),
+            Spherical => $crate::step::arm(|| $step(Spherical, $($argument),+)),
+            Free => $crate::step::arm(|| $step(Free, $($argument),+)),
         }
-    };
+    }};
 }
 pub(crate) use by_kind;
+
+/// Runs an arm of `by_kind` in a stack frame of its own. Without optimization, one frame with the variables of all arms would fill the stack
+/// of a thread. With optimization this is the arm itself.
+#[inline(always)]
+pub(crate) fn arm<R>(step: impl FnOnce() -> R) -> R {
+    step()
+}
 
 /// Where the parent's link stands in a workspace whose first link is the world.
 #[inline(always)]
@@ -35,19 +46,50 @@ pub(crate) fn parent_link(joint: &Joint) -> usize {
 /// Whether a joint of this kind turns its body.
 #[inline(always)]
 pub(crate) fn turns(kind: JointKind) -> bool {
-    kind != JointKind::Prismatic
+    !matches!(kind, JointKind::Prismatic(_))
 }
 
 /// Whether a joint of this kind moves its body's origin in the parent.
 #[inline(always)]
 pub(crate) fn slides(kind: JointKind) -> bool {
-    !matches!(kind, JointKind::Revolute | JointKind::Spherical)
+    !matches!(kind, JointKind::Revolute(_) | JointKind::Spherical)
+}
+
+/// Whether a joint of this kind moves its body about or along z of the body.
+#[inline(always)]
+fn is_along_z(kind: JointKind) -> bool {
+    matches!(kind, JointKind::Revolute(Axis::Z) | JointKind::Prismatic(Axis::Z))
+}
+
+/// `v + across`, where `across` is a part of the motion across a joint of this kind.
+#[inline(always)]
+fn add<T: Real>(kind: JointKind, v: Vec3<T>, across: Vec3<T>) -> Vec3<T> {
+    if is_along_z(kind) { Vec3::new(v.x, v.y, v.z + across.z) } else { v + across }
+}
+
+/// `v × across`, where `across` is a part of the motion across a joint of this kind.
+#[inline(always)]
+fn cross<T: Real>(kind: JointKind, v: Vec3<T>, across: Vec3<T>) -> Vec3<T> {
+    if is_along_z(kind) { Vec3::new(v.y * across.z, -(v.x * across.z), T::zero()) } else { v.cross(across) }
+}
+
+/// `v × across + addend`, where `across` is a part of the motion across a joint of this kind.
+#[inline(always)]
+fn cross_add<T: Real>(kind: JointKind, v: Vec3<T>, across: Vec3<T>, addend: Vec3<T>) -> Vec3<T> {
+    if is_along_z(kind) {
+        Vec3::new(v.y.mul_add(across.z, addend.x), (-v.x).mul_add(across.z, addend.y), addend.z)
+    } else {
+        v.cross_add(across, addend)
+    }
 }
 
 /// `m + joint`, where `joint` is a motion across a joint of this kind.
 #[inline(always)]
 pub(crate) fn add_joint<T: Real>(kind: JointKind, m: Motion<T>, joint: Motion<T>) -> Motion<T> {
-    Motion::new(if turns(kind) { m.ang + joint.ang } else { m.ang }, if slides(kind) { m.lin + joint.lin } else { m.lin })
+    Motion::new(
+        if turns(kind) { add(kind, m.ang, joint.ang) } else { m.ang },
+        if slides(kind) { add(kind, m.lin, joint.lin) } else { m.lin },
+    )
 }
 
 /// The body's angular velocity, and its acceleration while the joint's own rates of change are zero: `X a_p + c`.
@@ -64,7 +106,7 @@ pub(crate) fn cross_joint<T: Real>(
 ) -> (Vec3<T>, Motion<T>) {
     let (r, p) = (&x.rotation, x.translation);
     let carried = r.transpose_mul(parent_omega);
-    let omega = if turns(kind) { carried + joint.ang } else { carried };
+    let omega = if turns(kind) { add(kind, carried, joint.ang) } else { carried };
 
     // ṗ_p + ω̇_p × r + ω_p × (ω_p × r), still in parent axes
     let swing = parent_omega.cross(p);
@@ -74,12 +116,12 @@ pub(crate) fn cross_joint<T: Real>(
         None => parent_omega.cross(swing),
     };
     let lin = r.transpose_mul(lin);
-    let lin = if slides(kind) { (carried + omega).cross_add(joint.lin, lin) } else { lin };
+    let lin = if slides(kind) { cross_add(kind, carried + omega, joint.lin, lin) } else { lin };
 
     let ang = match parent_acceleration {
-        Some(a) if turns(kind) => carried.cross_add(joint.ang, r.transpose_mul(a.ang)),
+        Some(a) if turns(kind) => cross_add(kind, carried, joint.ang, r.transpose_mul(a.ang)),
         Some(a) => r.transpose_mul(a.ang),
-        None if turns(kind) => carried.cross(joint.ang),
+        None if turns(kind) => cross(kind, carried, joint.ang),
         None => Vec3::zero(),
     };
     (omega, Motion::new(ang, lin))
@@ -105,6 +147,7 @@ pub(crate) fn newton_euler<T: Real>(inertia: &RigidBodyInertia<T>, omega: Vec3<T
 pub(crate) fn expect_bodies<P>(model: &Model<P>, workspace: usize) -> Result<(), DimensionError> {
     let bodies = model.topology.bodies();
     expect("bodies of the workspace", bodies, workspace)?;
+    expect("labels of the model", bodies, model.labels.len())?;
     expect("placements of the model", bodies, model.placements.len())?;
     expect("subspaces of the model", bodies, model.subspaces.len())?;
     expect("inertias of the model", bodies, model.inertias.len())?;

@@ -1,6 +1,7 @@
 //! The tests of kernels as one program: they share what is compiled for them.
 
 mod accuracy;
+mod aligned;
 mod batch;
 mod closed_forms;
 mod common;

@@ -136,7 +136,7 @@ where
     for (name, recipe) in &ROBOTS {
         let wide = build(recipe);
         let model: Model<S> = wide.lift();
-        let turns = model.topology.joints().iter().any(|joint| matches!(joint.kind, JointKind::Revolute | JointKind::Helical));
+        let turns = model.topology.joints().iter().any(|joint| matches!(joint.kind, JointKind::Revolute(_) | JointKind::Helical));
         let (mut batch, mut parallel) = (Batch::<S>::new(&model), Batch::<S>::new(&model).on_all_cores());
         for count in COUNTS {
             let states = States::random(&wide, count);

@@ -7,7 +7,7 @@ use featherbench_dynamics::{
     Aba, Bias, CenterOfMass, Crba, DimensionError, Energy, Error, Jacobian, Kinematics, Ltdl, Momentum, NotPositiveDefinite, Refined, Rnea,
     TreeSparse, forward_dynamics, inverse_dynamics, mass_matrix,
 };
-use featherbench_model::{BodyDescription, Description, JointDescription, JointKind, JointType, Model};
+use featherbench_model::{Axis, BodyDescription, Description, JointDescription, JointKind, JointType, Model};
 use featherbench_robots::{Case, StateBatch};
 use featherbench_spatial::{Compensated, Force, RigidBodyInertia, Sym3, Vec3};
 
@@ -90,7 +90,7 @@ fn workspaces_of_another_topology_are_refused() {
 
     // A matrix of the same size and another shape: a star instead of a chain.
     let chain = dyadic_chain(&[[0.0, 1.0, 0.0]], 4);
-    let star = common::topology(&[(-1, featherbench_model::JointKind::Revolute); 4]);
+    let star = common::topology(&[(-1, JointKind::Revolute(Axis::Z)); 4]);
     let parents = "dofs of the tree-sparse matrix with the model's parent dof";
     assert_eq!(refusal(Crba::new(&chain.topology).run(&chain, &[0.0; 4], &mut TreeSparse::new(&star))), (parents, 4, 1));
     let place = "dofs of the tree-sparse matrix with the same place in the tree";
@@ -102,7 +102,7 @@ fn workspaces_of_another_topology_are_refused() {
 #[test]
 fn workspaces_and_matrices_that_fit_in_part_are_refused() {
     use JointKind::{Revolute, Spherical};
-    let star = |dofs: usize| common::topology(&vec![(-1, Revolute); dofs]);
+    let star = |dofs: usize| common::topology(&vec![(-1, Revolute(Axis::Z)); dofs]);
     let model = balls(&[JointType::Spherical, REVOLUTE]);
     let t = &model.topology;
     let q = [0.0, 0.0, 0.0, 1.0, 0.0];
@@ -148,7 +148,8 @@ fn balls(kinds: &[JointType]) -> Model<f64> {
 
 #[test]
 fn matrices_exchange_their_numbers_with_as_many() {
-    let topology = common::topology(&[(-1, JointKind::Revolute), (0, JointKind::Revolute), (0, JointKind::Revolute)]);
+    let topology =
+        common::topology(&[(-1, JointKind::Revolute(Axis::Z)), (0, JointKind::Revolute(Axis::Z)), (0, JointKind::Revolute(Axis::Z))]);
     let mut matrix = TreeSparse::from_fn(&topology, |i, j| (10 * i + j) as f64);
     let (own, mut others) = (matrix.values().to_vec(), vec![1.0, 2.0, 3.0, 4.0, 5.0]);
     assert_eq!(own, [0.0, 10.0, 11.0, 20.0, 22.0]);
@@ -165,7 +166,8 @@ fn matrices_exchange_their_numbers_with_as_many() {
 fn a_model_with_a_missing_part_is_refused() {
     let whole = dyadic_chain(&[[0.0, 1.0, 0.0]], 3);
     type Remove = fn(&mut Model<f64>);
-    let parts: [(&str, Remove); 4] = [
+    let parts: [(&str, Remove); 5] = [
+        ("labels of the model", |model| model.labels.truncate(2)),
         ("placements of the model", |model| model.placements.truncate(2)),
         ("subspaces of the model", |model| model.subspaces.truncate(2)),
         ("inertias of the model", |model| model.inertias.truncate(2)),

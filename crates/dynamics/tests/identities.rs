@@ -9,7 +9,7 @@ use featherbench_dynamics::{
 };
 use featherbench_model::Model;
 use featherbench_robots::StateBatch;
-use featherbench_spatial::{Force, Motion, Vec3};
+use featherbench_spatial::{Force, Motion, Transform, Vec3};
 
 /// Each robot with ten states: zero, straight, fast, and random ones.
 fn each_state(mut check: impl FnMut(&str, &Model<f64>, &[f64], &[f64], &[f64], &[f64])) {
@@ -151,8 +151,8 @@ fn momentum_and_center_of_mass_are_sums_over_bodies() {
         let result = centroidal_momentum(model, q, v).unwrap();
         let (mut mass, mut moment) = (0.0, Vec3::zero());
         let mut sum = Force::zero();
-        for (inertia, body) in model.inertias.iter().zip(kinematics.iter()) {
-            let (rotation, position) = (body.placement.rotation, body.placement.translation);
+        for ((inertia, label), body) in model.inertias.iter().zip(&model.labels).zip(kinematics.iter()) {
+            let (rotation, position) = (label.rotation_to_compiled(body.placement.rotation), body.placement.translation);
             mass += inertia.mass;
             moment += rotation * inertia.first_moment + position * inertia.mass;
             // momentum of the body about its origin, in world axes, then about the common centre
@@ -185,8 +185,11 @@ fn floating_base_block_is_the_composite_inertia() {
         let composite = model
             .inertias
             .iter()
-            .zip(kinematics.iter())
-            .map(|(inertia, body)| inertia.to_parent(&base.compose(&body.placement)))
+            .zip(kinematics.iter().zip(&model.labels))
+            .map(|(inertia, (body, label))| {
+                (inertia, Transform { rotation: label.rotation_to_compiled(body.placement.rotation), ..body.placement })
+            })
+            .map(|(inertia, placement)| inertia.to_parent(&base.compose(&placement)))
             .fold(featherbench_spatial::RigidBodyInertia::zero(), |sum, moved| sum + moved);
         for j in 0..6 {
             let mut unit = [0.0; 6];

@@ -5,14 +5,14 @@ use crate::common;
 
 use common::{ROBOTS, build, distance, dyadic_chain, larger, largest, lifted, topology, within};
 use featherbench_dynamics::{Ltdl, NotPositiveDefinite, TreeSparse, mass_matrix};
-use featherbench_model::{JointKind, Model, Topology};
+use featherbench_model::{Axis, JointKind, Model, Topology};
 use featherbench_robots::{Family, Random, StateBatch};
 use featherbench_spatial::{Counted, DoubleDouble, Real};
 use wide::f64x4;
 
 /// A topology of one-dof joints with these parents.
 fn tree(parents: impl IntoIterator<Item = i64>) -> Topology {
-    topology(&parents.into_iter().map(|parent| (parent, JointKind::Revolute)).collect::<Vec<_>>())
+    topology(&parents.into_iter().map(|parent| (parent, JointKind::Revolute(Axis::Z))).collect::<Vec<_>>())
 }
 
 /// A random tree: each body begins a branch with this probability.

@@ -4,21 +4,23 @@ use crate::common;
 
 use common::{dyadic_chain, lifted, topology, within};
 use featherbench_dynamics::{Aba, Bias, Ltdl, NotPositiveDefinite, Rnea, TreeSparse, mass_matrix};
-use featherbench_model::{JointKind, Model, Topology};
+use featherbench_model::{Axis, JointKind, Model, Topology};
 use featherbench_robots::{Random, StateBatch};
 use featherbench_spatial::{Counted, Operations, Real};
 use nalgebra::DMatrix;
 
-use JointKind::{Free, Revolute};
+use JointKind::Free;
+
+const REVOLUTE: JointKind = JointKind::Revolute(Axis::Z);
 
 fn chain(n: i64) -> Vec<(i64, JointKind)> {
-    (0..n).map(|i| (i - 1, Revolute)).collect()
+    (0..n).map(|i| (i - 1, REVOLUTE)).collect()
 }
 
 /// Adds `n` revolute bodies in a chain below `parent`; returns the last.
 fn limb(tree: &mut Vec<(i64, JointKind)>, parent: i64, n: usize) -> i64 {
     (0..n).fold(parent, |parent, _| {
-        tree.push((parent, Revolute));
+        tree.push((parent, REVOLUTE));
         tree.len() as i64 - 1
     })
 }
@@ -62,7 +64,7 @@ fn table() -> Vec<(&'static str, Topology, [u64; 4])> {
         ("humanoid", tree(humanoid()), [36, 351, 315, 1787]),
         ("quadruped", tree(base_with_limbs(4, 3)), [18, 117, 99, 375]),
         ("hand", tree(base_with_limbs(5, 4)), [26, 191, 165, 685]),
-        ("star 30", tree((0..30).map(|_| (-1, Revolute)).collect()), [30, 30, 0, 0]),
+        ("star 30", tree((0..30).map(|_| (-1, REVOLUTE)).collect()), [30, 30, 0, 0]),
         ("binary 6", tree(binary(6)), [63, 321, 258, 702]),
         ("binary 8", tree(binary(8)), [255, 1793, 1538, 5630]),
         ("binary 10", tree(binary(10)), [1023, 9217, 8194, 37886]),
@@ -190,8 +192,8 @@ fn a_matrix_that_is_not_positive_definite_is_refused() {
     }
 }
 
-fn counts(n: usize, work: impl Fn(&Model<f64>, &StateBatch)) -> Operations {
-    let model = dyadic_chain(&[[0.0, 1.0, 0.0], [0.6, 0.0, 0.8]], n);
+fn counts(axes: &[[f64; 3]], n: usize, work: impl Fn(&Model<f64>, &StateBatch)) -> Operations {
+    let model = dyadic_chain(axes, n);
     let states = StateBatch::random(&model, 1, 3);
     Counted::count(|| work(&model, &states))
 }
@@ -218,9 +220,17 @@ fn aba(model: &Model<f64>, states: &StateBatch) {
 #[test]
 fn recursions_are_linear_in_the_number_of_bodies() {
     type Work = fn(&Model<f64>, &StateBatch);
-    for (name, work, per_body) in [("RNEA", rnea as Work, RNEA_PER_BODY), ("bias", bias, BIAS_PER_BODY), ("ABA", aba, ABA_PER_BODY)] {
+    let (aligned, skew) = (&[[0.0, 1.0, 0.0], [-1.0, 0.0, 0.0]][..], &[[0.6, 0.0, 0.8], [0.0, 0.6, 0.8]][..]);
+    for (name, axes, work, per_body) in [
+        ("RNEA, aligned axes", aligned, rnea as Work, RNEA_PER_BODY[0]),
+        ("RNEA, skew axes", skew, rnea, RNEA_PER_BODY[1]),
+        ("bias, aligned axes", aligned, bias, BIAS_PER_BODY[0]),
+        ("bias, skew axes", skew, bias, BIAS_PER_BODY[1]),
+        ("ABA, aligned axes", aligned, aba, ABA_PER_BODY[0]),
+        ("ABA, skew axes", skew, aba, ABA_PER_BODY[1]),
+    ] {
         let fields = |n| {
-            let c = counts(n, work);
+            let c = counts(axes, n, work);
             [c.additions, c.multiplications, c.fused, c.divisions, c.roots, c.sin_cos].map(|count| count as i64)
         };
         let (ten, hundred, thousand) = (fields(10), fields(100), fields(1000));
@@ -236,9 +246,10 @@ fn recursions_are_linear_in_the_number_of_bodies() {
     }
 }
 
-const RNEA_PER_BODY: [i64; 6] = [18, 58, 126, 0, 0, 1];
-const BIAS_PER_BODY: [i64; 6] = [15, 55, 125, 0, 0, 1];
-const ABA_PER_BODY: [i64; 6] = [55, 146, 314, 1, 0, 1];
+/// Additions, multiplications, multiply-adds, divisions, roots and sine-cosine pairs: of a body with an aligned axis, and with a skew one.
+const RNEA_PER_BODY: [[i64; 6]; 2] = [[11, 39, 96, 0, 0, 1], [18, 58, 126, 0, 0, 1]];
+const BIAS_PER_BODY: [[i64; 6]; 2] = [[10, 39, 95, 0, 0, 1], [15, 55, 125, 0, 0, 1]];
+const ABA_PER_BODY: [[i64; 6]; 2] = [[45, 107, 268, 1, 0, 1], [55, 137, 314, 1, 0, 1]];
 
 /// Entries that the mass matrix does not store are exactly zero in fact: no dof outside the path to the root feels the other.
 #[test]

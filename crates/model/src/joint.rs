@@ -2,13 +2,22 @@
 
 use featherbench_spatial::{Force, Lift, Motion, Quaternion, Real, Transform, Vec3};
 
+/// Where the axis of a screw joint points, as far as a kernel can know when it is compiled.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Axis {
+    /// Exactly along z of the body.
+    Z,
+    /// Anywhere: as the motion subspace says.
+    Skew,
+}
+
 /// A primitive joint. The first three are one-dof screws with a constant motion subspace `S`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum JointKind {
     /// Rotation about the unit vector `S.ang`.
-    Revolute,
+    Revolute(Axis),
     /// Translation along the unit vector `S.lin`.
-    Prismatic,
+    Prismatic(Axis),
     /// Rotation about the unit vector `S.ang` with translation `S.lin` per radian along it.
     Helical,
     /// Rotation about a point: quaternion (x, y, z, w); velocity in body axes.
@@ -22,7 +31,7 @@ impl JointKind {
     #[inline(always)]
     pub fn nq(self) -> usize {
         match self {
-            Self::Revolute | Self::Prismatic | Self::Helical => 1,
+            Self::Revolute(_) | Self::Prismatic(_) | Self::Helical => 1,
             Self::Spherical => 4,
             Self::Free => 7,
         }
@@ -32,9 +41,19 @@ impl JointKind {
     #[inline(always)]
     pub fn nv(self) -> usize {
         match self {
-            Self::Revolute | Self::Prismatic | Self::Helical => 1,
+            Self::Revolute(_) | Self::Prismatic(_) | Self::Helical => 1,
             Self::Spherical => 3,
             Self::Free => 6,
+        }
+    }
+
+    /// The same kind with another axis, for the kinds that have one.
+    #[inline(always)]
+    pub fn with_axis(self, axis: Axis) -> Self {
+        match self {
+            Self::Revolute(_) => Self::Revolute(axis),
+            Self::Prismatic(_) => Self::Prismatic(axis),
+            Self::Helical | Self::Spherical | Self::Free => self,
         }
     }
 
@@ -43,11 +62,16 @@ impl JointKind {
     pub fn transform<T: Real, P: Lift<T> + Real>(self, placement: &Transform<P>, subspace: &Motion<P>, q: &[T]) -> Transform<T> {
         let fixed = placement.lift();
         match self {
-            Self::Revolute => {
+            Self::Revolute(Axis::Z) => {
+                let (sin, cos) = q[0].sin_cos();
+                Transform::new(fixed.rotation.turn_about_z(sin, cos), fixed.translation)
+            }
+            Self::Prismatic(Axis::Z) => Transform::new(fixed.rotation, fixed.rotation.column_z().scale_add(q[0], fixed.translation)),
+            Self::Revolute(Axis::Skew) => {
                 let (sin, cos) = q[0].sin_cos();
                 Transform::new(fixed.rotation * Transform::axis_rotation(subspace.ang.lift(), sin, cos), fixed.translation)
             }
-            Self::Prismatic => Transform::new(fixed.rotation, fixed.point(subspace.lin.lift() * q[0])),
+            Self::Prismatic(Axis::Skew) => Transform::new(fixed.rotation, fixed.point(subspace.lin.lift() * q[0])),
             Self::Helical => {
                 let (sin, cos) = q[0].sin_cos();
                 let rotation = fixed.rotation * Transform::axis_rotation(subspace.ang.lift(), sin, cos);
@@ -68,8 +92,10 @@ impl JointKind {
     #[inline(always)]
     pub fn motion<T: Real, P: Lift<T> + Real>(self, subspace: &Motion<P>, v: &[T]) -> Motion<T> {
         match self {
-            Self::Revolute => Motion::new(subspace.ang.lift() * v[0], Vec3::zero()),
-            Self::Prismatic => Motion::new(Vec3::zero(), subspace.lin.lift() * v[0]),
+            Self::Revolute(Axis::Z) => Motion::new(along_z(v[0]), Vec3::zero()),
+            Self::Prismatic(Axis::Z) => Motion::new(Vec3::zero(), along_z(v[0])),
+            Self::Revolute(Axis::Skew) => Motion::new(subspace.ang.lift() * v[0], Vec3::zero()),
+            Self::Prismatic(Axis::Skew) => Motion::new(Vec3::zero(), subspace.lin.lift() * v[0]),
             Self::Helical => subspace.lift() * v[0],
             Self::Spherical => Motion::new(Vec3::new(v[0], v[1], v[2]), Vec3::zero()),
             Self::Free => Motion::new(Vec3::new(v[3], v[4], v[5]), Vec3::new(v[0], v[1], v[2])),
@@ -80,8 +106,10 @@ impl JointKind {
     #[inline(always)]
     pub fn project<T: Real, P: Lift<T> + Real>(self, subspace: &Motion<P>, f: Force<T>, tau: &mut [T]) {
         match self {
-            Self::Revolute => tau[0] = subspace.ang.lift().dot(f.ang),
-            Self::Prismatic => tau[0] = subspace.lin.lift().dot(f.lin),
+            Self::Revolute(Axis::Z) => tau[0] = f.ang.z,
+            Self::Prismatic(Axis::Z) => tau[0] = f.lin.z,
+            Self::Revolute(Axis::Skew) => tau[0] = subspace.ang.lift().dot(f.ang),
+            Self::Prismatic(Axis::Skew) => tau[0] = subspace.lin.lift().dot(f.lin),
             Self::Helical => tau[0] = subspace.lift().dot(f),
             Self::Spherical => tau[..3].copy_from_slice(&f.ang.to_array()),
             Self::Free => {
@@ -95,7 +123,7 @@ impl JointKind {
     #[inline(always)]
     pub fn column<T: Real, P: Lift<T> + Real>(self, subspace: &Motion<P>, k: usize) -> Motion<T> {
         match self {
-            Self::Revolute | Self::Prismatic | Self::Helical => subspace.lift(),
+            Self::Revolute(_) | Self::Prismatic(_) | Self::Helical => subspace.lift(),
             Self::Spherical | Self::Free => {
                 let mut unit = [T::zero(); 6];
                 unit[k] = T::one();
@@ -103,4 +131,10 @@ impl JointKind {
             }
         }
     }
+}
+
+/// The vector (0, 0, length).
+#[inline(always)]
+fn along_z<T: Real>(length: T) -> Vec3<T> {
+    Vec3::new(T::zero(), T::zero(), length)
 }

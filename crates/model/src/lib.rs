@@ -12,13 +12,15 @@
 mod canonical;
 mod description;
 mod joint;
+mod label;
 mod model;
 mod orthonormal;
 mod topology;
 mod validate;
 
 pub use description::{BodyDescription, Description, Frame, JointDescription, JointType, Placement, Provenance};
-pub use joint::JointKind;
+pub use joint::{Axis, JointKind};
+pub use label::Label;
 pub use model::Model;
 pub use topology::{Joint, Topology};
 pub use validate::{Malformed, Warning};

@@ -1,20 +1,27 @@
 //! The compiled model: a topology with its parameters.
 
 use crate::orthonormal::{rotation, unit};
-use crate::{Description, JointKind, JointType, Malformed, Topology, Warning};
+use crate::{Axis, Description, JointKind, JointType, Label, Malformed, Topology, Warning};
 use featherbench_spatial::{Lift, Mat3, Motion, Real, RigidBodyInertia, Sym3, Transform, Vec3};
 use std::array::from_fn;
 
 /// A robot as the kernels use it: primitive joints in depth-first order, parameters over the scalar `P`.
+///
+/// The axes of a body are labelled so that its joint turns about, or slides along, z, if the described axis is a coordinate axis or the
+/// opposite of one ([`Axis::Z`]). Helical, spherical and free joints keep the described axes. Placements, subspaces and inertias are in these *compiled* axes. What users give and get in body axes is in
+/// the described ones, and `labels` leads from one to the other.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Model<P> {
     /// The tree.
     pub topology: Topology,
-    /// Joint frame in the parent's frame, per body.
+    /// How the described axes of each body are called in the compiled model.
+    pub labels: Vec<Label>,
+    /// Joint frame in the parent's frame, in compiled axes of both, per body.
     pub placements: Vec<Transform<P>>,
-    /// Constant motion subspace of each screw joint in body coordinates (unused for spherical and free joints), per body.
+    /// Constant motion subspace of each screw joint in compiled body axes (unused for spherical and free joints), per body. Of a joint with
+    /// [`Axis::Z`] the kernels do not read it.
     pub subspaces: Vec<Motion<P>>,
-    /// Rigid-body inertia at the body's origin, per body.
+    /// Rigid-body inertia at the body's origin in compiled body axes, per body.
     pub inertias: Vec<RigidBodyInertia<P>>,
     /// Armature per dof.
     pub armature: Vec<P>,
@@ -47,6 +54,7 @@ impl<P: Real> Model<P> {
         let mut tree = Vec::new();
         let mut model = Self {
             topology: Topology::new(&[]).ok_or(Malformed::Empty)?,
+            labels: Vec::new(),
             placements: Vec::new(),
             subspaces: Vec::new(),
             inertias: Vec::new(),
@@ -65,16 +73,18 @@ impl<P: Real> Model<P> {
             let turned = rotation(joint.placement.rotation);
             let turned = from_fn(|k| P::from_exact(turned.rounded[k], turned.exact[k]));
             let mut placement = Transform::new(Mat3::from_array(turned), vec3(joint.placement.translation));
-            for (k, &(kind, subspace)) in primitives.iter().enumerate() {
+            for (k, &Primitive { kind, label, subspace }) in primitives.iter().enumerate() {
                 let last = k + 1 == primitives.len();
+                let parent_label = parent.map_or(Label::Z, |parent| model.labels[parent]);
                 tree.push((parent, kind));
                 parent = Some(tree.len() - 1);
-                model.placements.push(placement);
+                model.labels.push(label);
+                model.placements.push(label.placement_to_compiled(parent_label, placement));
                 placement = Transform::identity();
                 model.subspaces.push(subspace);
                 let about_com = Sym3::from_array(body.inertia.map(P::from_f64));
                 let inertia = RigidBodyInertia::from_com(P::from_f64(body.mass), vec3(body.com), about_com);
-                model.inertias.push(if last { inertia } else { RigidBodyInertia::zero() });
+                model.inertias.push(if last { label.inertia_to_compiled(inertia) } else { RigidBodyInertia::zero() });
             }
             model.described.push(tree.len() - 1);
             let nv = joint.kind.nv();
@@ -98,6 +108,7 @@ impl<P: Real> Model<P> {
     {
         Model {
             topology: self.topology.clone(),
+            labels: self.labels.clone(),
             placements: self.placements.iter().map(|x| x.lift()).collect(),
             subspaces: self.subspaces.iter().map(|s| s.lift()).collect(),
             inertias: self.inertias.iter().map(|i| i.lift()).collect(),
@@ -111,7 +122,7 @@ impl<P: Real> Model<P> {
         }
     }
 
-    /// The placement of body `i` in its parent at configuration `q` (the whole vector).
+    /// The placement of body `i` in its parent at configuration `q` (the whole vector), in compiled axes of both.
     #[inline(always)]
     pub fn joint_transform<T: Real>(&self, i: usize, q: &[T]) -> Transform<T>
     where
@@ -130,14 +141,33 @@ fn per_dof(values: &[f64], count: usize, absent: f64) -> impl Iterator<Item = f6
     (0..count).map(move |k| values.get(k).copied().unwrap_or(absent))
 }
 
-/// The primitive joints of a described joint, from the parent outwards, each with its motion subspace.
-fn compile<P: Real>(kind: JointType) -> Vec<(JointKind, Motion<P>)> {
+/// A primitive joint, with the labels of its body's axes and its motion subspace in the compiled ones.
+struct Primitive<P> {
+    kind: JointKind,
+    label: Label,
+    subspace: Motion<P>,
+}
+
+/// The primitive joints of a described joint, from the parent outwards.
+fn compile<P: Real>(kind: JointType) -> Vec<Primitive<P>> {
     let direction = |axis: [f64; 3]| {
         let axis = unit(axis);
         Vec3::from_array(from_fn(|k| P::from_exact(axis.rounded[k], axis.exact[k])))
     };
-    let turn = |axis: [f64; 3]| (JointKind::Revolute, Motion::new(direction(axis), Vec3::zero()));
-    let slide = |axis: [f64; 3]| (JointKind::Prismatic, Motion::new(Vec3::zero(), direction(axis)));
+    // Where the axis points, the label, and the unit vector of the axis in the axes so labelled.
+    let labelled = |axis: [f64; 3]| match Label::of_axis(unit(axis).rounded) {
+        Some(label) => (Axis::Z, label, label.to_compiled(direction(axis))),
+        None => (Axis::Skew, Label::Z, direction(axis)),
+    };
+    let turn = |axis: [f64; 3]| {
+        let (axis, label, direction) = labelled(axis);
+        Primitive { kind: JointKind::Revolute(axis), label, subspace: Motion::new(direction, Vec3::zero()) }
+    };
+    let slide = |axis: [f64; 3]| {
+        let (axis, label, direction) = labelled(axis);
+        Primitive { kind: JointKind::Prismatic(axis), label, subspace: Motion::new(Vec3::zero(), direction) }
+    };
+    let as_described = |kind: JointKind, subspace: Motion<P>| Primitive { kind, label: Label::Z, subspace };
     let (x, y, z) = ([1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]);
     match kind {
         JointType::Fixed => Vec::new(),
@@ -145,10 +175,10 @@ fn compile<P: Real>(kind: JointType) -> Vec<(JointKind, Motion<P>)> {
         JointType::Prismatic { axis } => vec![slide(axis)],
         JointType::Helical { axis, pitch } => {
             let axis = direction(axis);
-            vec![(JointKind::Helical, Motion::new(axis, axis * P::from_f64(pitch)))]
+            vec![as_described(JointKind::Helical, Motion::new(axis, axis * P::from_f64(pitch)))]
         }
-        JointType::Spherical => vec![(JointKind::Spherical, Motion::zero())],
-        JointType::Free => vec![(JointKind::Free, Motion::zero())],
+        JointType::Spherical => vec![as_described(JointKind::Spherical, Motion::zero())],
+        JointType::Free => vec![as_described(JointKind::Free, Motion::zero())],
         JointType::Planar => vec![slide(x), slide(y), turn(z)],
         JointType::Universal => vec![turn(x), turn(y)],
         JointType::Translation => vec![slide(x), slide(y), slide(z)],

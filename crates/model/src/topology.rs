@@ -1,6 +1,6 @@
 //! The tree: parents, joint kinds and indices, without a scalar.
 
-use crate::JointKind;
+use crate::{Axis, JointKind};
 
 /// A joint of the compiled tree and its body.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -64,6 +64,15 @@ impl Topology {
         }
         row_start.push(row_dofs.len());
         Some(Self { joints, nq, nv, dof_parent, row_start, row_dofs })
+    }
+
+    /// The same tree with the axes of these joints taken as skew ones.
+    pub fn with_skew_axes(&self, skew: impl Fn(usize) -> bool) -> Self {
+        let mut changed = self.clone();
+        for (_, joint) in changed.joints.iter_mut().enumerate().filter(|(i, _)| skew(*i)) {
+            joint.kind = joint.kind.with_axis(Axis::Skew);
+        }
+        changed
     }
 
     /// The joints, depth-first.

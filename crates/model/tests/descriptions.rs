@@ -1,7 +1,7 @@
 //! Descriptions: what is an error, what is a warning, and what the canonical form does.
 
-use featherbench_model::{BodyDescription, Description, Frame, JointDescription, JointType, Malformed, Model, Placement, Warning};
-use featherbench_spatial::{Quaternion, RigidBodyInertia, Sym3, Transform, Vec3};
+use featherbench_model::{BodyDescription, Description, Frame, JointDescription, JointType, Label, Malformed, Model, Placement, Warning};
+use featherbench_spatial::{Mat3, Quaternion, RigidBodyInertia, Sym3, Transform, Vec3};
 
 const REVOLUTE: JointType = JointType::Revolute { axis: [0.0, 0.0, 1.0] };
 
@@ -244,7 +244,11 @@ fn composed_joints_become_primitives_with_massless_bodies_between() {
     assert_eq!([9, 11].map(|first| model.topology.joints()[first].parent), [Some(8); 2]);
     let masses: Vec<f64> = model.inertias.iter().map(|inertia| inertia.mass).collect();
     assert_eq!(masses, [0.0, 0.0, 2.0, 0.0, 2.0, 2.0, 0.0, 0.0, 2.0, 0.0, 2.0, 0.0, 0.0, 2.0]);
-    assert_eq!(model.placements[1], Transform::identity());
+    assert_eq!(model.labels[..3], [Label::X, Label::Y, Label::Z]);
+    assert_eq!(model.labels[0].rotation_to_described(model.placements[0].rotation), Mat3::identity());
+    // The described axes of the second body are those of the first, which the compiled model calls z, x, y.
+    let rotation = model.labels[1].rotation_to_described(model.placements[1].rotation);
+    assert_eq!(Label::X.rotation_to_described(rotation.transpose()), Mat3::identity());
     assert_eq!(model.warnings, []);
 }
 
@@ -253,7 +257,9 @@ fn composed_joints_become_primitives_with_massless_bodies_between() {
 fn composed_joints_move_their_body_as_they_say() {
     let at = |kind: JointType, q: &[f64]| {
         let model = Model::<f64>::build(&robot(vec![body("only", None, kind)])).expect("a tree");
-        (0..model.topology.bodies()).fold(Transform::identity(), |pose: Transform<f64>, i| pose.compose(&model.joint_transform(i, q)))
+        let bodies = 0..model.topology.bodies();
+        let pose = bodies.fold(Transform::identity(), |pose: Transform<f64>, i| pose.compose(&model.joint_transform(i, q)));
+        Transform::new(model.labels.last().expect("a body").rotation_to_described(pose.rotation), pose.translation)
     };
     let quarter = std::f64::consts::FRAC_PI_2;
     // The sine and cosine of a quarter turn are good to 1e-16.

@@ -199,8 +199,8 @@ impl StateBatch {
         for joint in model.topology.joints() {
             // The coordinates before a quaternion, if there is one. A quaternion is not rounded: it would lose its unit length.
             let (numbers, factor) = match joint.kind {
-                JointKind::Revolute => (1, reach / std::f64::consts::PI),
-                JointKind::Prismatic | JointKind::Helical => (1, 1.0),
+                JointKind::Revolute(_) => (1, reach / std::f64::consts::PI),
+                JointKind::Prismatic(_) | JointKind::Helical => (1, 1.0),
                 JointKind::Spherical => (0, 1.0),
                 JointKind::Free => (3, 1.0),
             };
@@ -269,7 +269,7 @@ fn quaternion_of(joint: &Joint) -> Option<usize> {
     match joint.kind {
         JointKind::Spherical => Some(joint.q),
         JointKind::Free => Some(joint.q + 3),
-        JointKind::Revolute | JointKind::Prismatic | JointKind::Helical => None,
+        JointKind::Revolute(_) | JointKind::Prismatic(_) | JointKind::Helical => None,
     }
 }
 
@@ -278,8 +278,8 @@ fn draw_configuration(model: &Model<f64>, case: Case, random: &mut Random, q: &m
     for joint in model.topology.joints() {
         let quaternion = random.direction::<4>();
         match joint.kind {
-            JointKind::Revolute | JointKind::Prismatic | JointKind::Helical => {
-                let reach = if joint.kind == JointKind::Revolute { std::f64::consts::PI } else { 1.0 };
+            JointKind::Revolute(_) | JointKind::Prismatic(_) | JointKind::Helical => {
+                let reach = if matches!(joint.kind, JointKind::Revolute(_)) { std::f64::consts::PI } else { 1.0 };
                 let drawn = random.uniform(-reach, reach);
                 let upper_end = random.bits32() & 1 == 1;
                 let (lower, upper) = model.limits[joint.q];

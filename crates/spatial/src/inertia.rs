@@ -115,20 +115,16 @@ impl<T: Real> ArticulatedInertia<T> {
         )
     }
 
-    /// `Iᴬ − weight·U Uᵀ`: the apparent inertia when the motion along S is free, with `U = Iᴬ S` and `weight = 1/D`.
+    /// `Iᴬ − w U Uᵀ`: the apparent inertia when the motion along S is free. `U = Iᴬ S`, w = 1/D, and `scaled` is w U.
     #[inline(always)]
-    pub fn subtract_rank_one(&self, weight: T, u: Force<T>) -> Self {
-        let scaled = u.ang * -weight;
+    pub fn subtract_rank_one(&self, scaled: Force<T>, u: Force<T>) -> Self {
+        let (ang, lin) = (-scaled.ang, -scaled.lin);
         let coupling = Mat3::from_rows(
-            u.lin.scale_add(scaled.x, self.coupling.x),
-            u.lin.scale_add(scaled.y, self.coupling.y),
-            u.lin.scale_add(scaled.z, self.coupling.z),
+            u.lin.scale_add(ang.x, self.coupling.x),
+            u.lin.scale_add(ang.y, self.coupling.y),
+            u.lin.scale_add(ang.z, self.coupling.z),
         );
-        Self {
-            rotational: self.rotational.add_rank_one(-weight, u.ang),
-            coupling,
-            translational: self.translational.add_rank_one(-weight, u.lin),
-        }
+        Self { rotational: self.rotational.add_outer(ang, u.ang), coupling, translational: self.translational.add_outer(lin, u.lin) }
     }
 
     /// The same inertia at the parent's origin in parent coordinates, `X* Iᴬ X⁻¹`.

@@ -191,6 +191,19 @@ impl<T: Real> Mat3<T> {
         Self::from_rows(Vec3::new(x.x, y.x, z.x), Vec3::new(x.y, y.y, z.y), Vec3::new(x.z, y.z, z.z))
     }
 
+    /// The third column, `M e_z`.
+    #[inline(always)]
+    pub fn column_z(self) -> Vec3<T> {
+        Vec3::new(self.x.z, self.y.z, self.z.z)
+    }
+
+    /// `M R`, R the rotation about z by the angle with this sine and cosine. The third column stays.
+    #[inline(always)]
+    pub fn turn_about_z(self, sin: T, cos: T) -> Self {
+        let row = |r: Vec3<T>| Vec3::new(r.x.mul_add(cos, r.y * sin), r.y.mul_add(cos, -(r.x * sin)), r.z);
+        Self::from_rows(row(self.x), row(self.y), row(self.z))
+    }
+
     /// `Mᵀ v`.
     #[inline(always)]
     pub fn transpose_mul(self, v: Vec3<T>) -> Vec3<T> {
@@ -322,10 +335,9 @@ impl<T: Real> Sym3<T> {
         Self { xx: wu.x * u.x, xy: wu.x * u.y, xz: wu.x * u.z, yy: wu.y * u.y, yz: wu.y * u.z, zz: wu.z * u.z }
     }
 
-    /// `self + w·u uᵀ`.
+    /// `self + (w u) uᵀ`, where `wu` is w u.
     #[inline(always)]
-    pub fn add_rank_one(self, weight: T, u: Vec3<T>) -> Self {
-        let wu = u * weight;
+    pub fn add_outer(self, wu: Vec3<T>, u: Vec3<T>) -> Self {
         Self {
             xx: wu.x.mul_add(u.x, self.xx),
             xy: wu.x.mul_add(u.y, self.xy),

@@ -125,7 +125,7 @@ proptest! {
         let u = a.mul(s);
         let d = s.dot(u);
         prop_assume!(d > 0.1);
-        let rest = a.subtract_rank_one(1.0 / d, u);
+        let rest = a.subtract_rank_one(u * (1.0 / d), u);
         let scale = u.to_array().iter().map(|x| x.abs()).fold(1.0, |most, x| if x > most || x.is_nan() { x } else { most });
         prop_assert!(rest.mul(s).to_array().iter().all(|f| f.abs() <= 100.0 * TOLERANCE * scale), "Iᵃ S = 0");
         let general: ArticulatedInertia<f64> = rest.to_parent(&x);

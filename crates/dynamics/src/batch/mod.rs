@@ -79,8 +79,8 @@ impl<'m, S: Number + Lift<S::Lanes>> Batch<'m, S> {
     /// # Errors
     /// [`DimensionError`] when there is no sample, or the samples have not one topology.
     pub fn of_samples(samples: &'m [Model<S>]) -> Result<Self, DimensionError> {
-        let (models, topology) = Models::of_samples(samples)?;
-        Ok(Self { workers: vec![Worker::new(topology)], models })
+        let models = Models::of_samples(samples)?;
+        Ok(Self { workers: vec![Worker::new(models.topology())], models })
     }
 
     /// The same on all cores: with the threads that the current pool of `rayon` has now. Calls then allocate a little.

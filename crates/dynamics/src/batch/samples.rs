@@ -5,7 +5,7 @@ use super::kernels::{Kernel, Workspace};
 use crate::error::expect;
 use crate::step::expect_bodies;
 use crate::{DimensionError, Error};
-use featherbench_model::{Model, Topology};
+use featherbench_model::{Axis, Model, Topology};
 use featherbench_spatial::{Lift, Mat3, Motion, RigidBodyInertia, Sym3, Transform, Vec3};
 use std::array::from_fn;
 
@@ -17,8 +17,8 @@ pub(super) enum Models<'m, S: Number> {
 }
 
 impl<'m, S: Number + Lift<S::Lanes>> Models<'m, S> {
-    /// One model for each state, and the topology of all.
-    pub(super) fn of_samples(samples: &'m [Model<S>]) -> Result<(Self, &'m Topology), DimensionError> {
+    /// One model for each state. An axis is along z in all samples, or is taken as a skew one in all.
+    pub(super) fn of_samples(samples: &'m [Model<S>]) -> Result<Self, DimensionError> {
         let Some(first) = samples.first() else {
             return Err(DimensionError { what: "samples of the model", expected: 1, found: 0 });
         };
@@ -26,16 +26,19 @@ impl<'m, S: Number + Lift<S::Lanes>> Models<'m, S> {
         for sample in samples {
             expect_bodies(sample, bodies)?;
             let joints = sample.topology.joints().iter().zip(first.topology.joints());
-            expect("joints of a sample that are as in the first sample", bodies, joints.filter(|(a, b)| a == b).count())?;
+            let same = joints.filter(|(a, b)| a.parent == b.parent && a.kind.with_axis(Axis::Skew) == b.kind.with_axis(Axis::Skew));
+            expect("joints of a sample that are as in the first sample", bodies, same.count())?;
         }
-        let packed = samples.chunks(S::LANES).map(|group| pack(|lane| &group[lane.min(group.len() - 1)])).collect();
-        Ok((Self::Each(samples, packed), &first.topology))
+        let kind = |i: usize, sample: &Model<S>| sample.topology.joints()[i].kind;
+        let topology = first.topology.with_skew_axes(|i| samples.iter().any(|sample| kind(i, sample) != kind(i, first)));
+        let packed = samples.chunks(S::LANES).map(|group| pack(&topology, |lane| &group[lane.min(group.len() - 1)])).collect();
+        Ok(Self::Each(samples, packed))
     }
 
     pub(super) fn topology(&self) -> &Topology {
         match self {
             Self::One(model) => &model.topology,
-            Self::Each(samples, _) => &samples[0].topology,
+            Self::Each(_, packed) => &packed[0].topology,
         }
     }
 
@@ -70,14 +73,15 @@ impl<'m, S: Number + Lift<S::Lanes>> Models<'m, S> {
     ) -> (&'w [S::Lanes], Result<(), Error>) {
         match self {
             Self::One(model) => K::run(workspace, model, inputs),
-            Self::Each(samples, _) => K::run(workspace, &pack(|_| &samples[state]), inputs),
+            Self::Each(samples, packed) => K::run(workspace, &pack(&packed[0].topology, |_| &samples[state]), inputs),
         }
     }
 }
 
-/// One model of which each lane is a model of the same topology.
-fn pack<'a, S: Number + Lift<S::Lanes>>(sample: impl Fn(usize) -> &'a Model<S>) -> Model<S::Lanes> {
+/// One model of which each lane is a model of this topology.
+fn pack<'a, S: Number + Lift<S::Lanes>>(topology: &Topology, sample: impl Fn(usize) -> &'a Model<S>) -> Model<S::Lanes> {
     let mut packed: Model<S::Lanes> = sample(0).lift();
+    packed.topology = topology.clone();
     for (i, (x, subspace)) in packed.placements.iter_mut().zip(&mut packed.subspaces).enumerate() {
         *x = Transform {
             rotation: Mat3::from_array(together(|lane| sample(lane).placements[i].rotation.to_array())),

@@ -176,7 +176,7 @@ impl PackedAba {
                     a[joint.v] = rate;
                     let subspace = frame.subspace.lane(k);
                     match joint.kind {
-                        JointKind::Revolute => Motion::new(subspace.ang.scale_add(rate, carried.ang), carried.lin),
+                        JointKind::Revolute(_) => Motion::new(subspace.ang.scale_add(rate, carried.ang), carried.lin),
                         _ => subspace.scale_add(rate, carried),
                     }
                 }
@@ -230,7 +230,7 @@ fn eliminate_screw(
 ) -> (Passed, Eliminated) {
     let Passed { inertia, p } = whole;
     // U = Iᴬ S,  D = Sᵀ U + armature,  u = τ − Sᵀ pᴬ; of the body alone I S and Sᵀ I S are known
-    let (along, d, s_p) = if kind == JointKind::Revolute {
+    let (along, d, s_p) = if matches!(kind, JointKind::Revolute(_)) {
         let along = Force::new(below.rotational * subspace.ang, below.coupling.transpose_mul(subspace.ang));
         (along, subspace.ang.dot(along.ang), subspace.ang.dot(p.ang))
     } else {
@@ -242,7 +242,7 @@ fn eliminate_screw(
     let d_inverse = 1.0 / d;
     let d_inverse_u = (tau - s_p) * d_inverse;
     // at the parent's origin
-    let inertia = inertia.subtract_rank_one(d_inverse, upper_u).translate(displacement);
+    let inertia = inertia.subtract_rank_one(upper_u * d_inverse, upper_u).translate(displacement);
     let up = Passed { inertia, p: translated(upper_u.scale_add(d_inverse_u, *p), displacement) };
     let upper_u = translated(upper_u, displacement);
     (up, Eliminated::Screw { u_d_inverse: upper_u * d_inverse, d_inverse_u })

@@ -1,7 +1,7 @@
 //! The parameters of a model, several joints to a register.
 
 use super::lanes::{LANES, Pack, STEPS, from_lanes};
-use featherbench_model::{JointKind, Model, Topology};
+use featherbench_model::{JointKind, Label, Model, Topology};
 use featherbench_spatial::{Force, Motion, Quaternion, RigidBodyInertia, Sym3, Transform, Vec3};
 use std::ops::Range;
 
@@ -27,6 +27,8 @@ use std::ops::Range;
 #[derive(Clone, Debug)]
 pub struct PackedModel {
     pub(super) topology: Topology,
+    /// How the described axes of each body are called.
+    pub(super) labels: Vec<Label>,
     pub(super) gravity: Vec3<f64>,
     pub(super) armature: Vec<f64>,
     pub(super) blocks: Vec<Block>,
@@ -149,6 +151,7 @@ impl PackedModel {
         }
         let mut packed = Self {
             topology: model.topology.clone(),
+            labels: model.labels.clone(),
             gravity: model.gravity,
             armature: model.armature.clone(),
             blocks: Vec::new(),
@@ -201,12 +204,12 @@ impl PackedModel {
             let turn = Quaternion::<f64>::from_rotation(&placement.rotation);
             self.wide.push(Wide { lane, kind: joint.kind, placement, turn, base });
         }
-        let slides = joints.iter().any(|joint| !matches!(joint.kind, JointKind::Revolute | JointKind::Spherical));
+        let slides = joints.iter().any(|joint| !matches!(joint.kind, JointKind::Revolute(_) | JointKind::Spherical));
         let place = |of: fn(&featherbench_model::Joint) -> usize| std::array::from_fn(|k| joints.get(k).map_or(0, of));
         self.blocks.push(Block {
             turn: std::array::from_fn(|part| Quaternion { v: vector(&|i| turn(model, i)[part].v), w: each(&|i| turn(model, i)[part].w) }),
             idle: mask(count..LANES),
-            half: from_lanes(|k| if screw(k) && joints[k].kind != JointKind::Prismatic { 0.5 } else { 0.0 }),
+            half: from_lanes(|k| if screw(k) && !matches!(joints[k].kind, JointKind::Prismatic(_)) { 0.5 } else { 0.0 }),
             mount: std::array::from_fn(|part| vector(&|i| mount(model, i)[part])),
             subspace: Motion::new(vector(&|i| subspace(i).ang), vector(&|i| subspace(i).lin)),
             inertia: RigidBodyInertia {
@@ -301,7 +304,7 @@ fn mask(lanes: Range<usize>) -> Pack {
 
 /// Whether a joint is a one-dof screw.
 pub(super) fn is_screw(kind: JointKind) -> bool {
-    matches!(kind, JointKind::Revolute | JointKind::Prismatic | JointKind::Helical)
+    matches!(kind, JointKind::Revolute(_) | JointKind::Prismatic(_) | JointKind::Helical)
 }
 
 /// The parts of `l = p (cos (q/2) + sin (q/2) u)`, the orientation of a body that turns about u; p is that of its placement.
@@ -309,8 +312,8 @@ fn turn(model: &Model<f64>, i: usize) -> [Quaternion<f64>; 2] {
     let placed = Quaternion::<f64>::from_rotation(&model.placements[i].rotation);
     let nothing = Quaternion { v: Vec3::zero(), w: 0.0 };
     match model.topology.joints()[i].kind {
-        JointKind::Revolute | JointKind::Helical => [placed, placed * Quaternion { v: model.subspaces[i].ang, w: 0.0 }],
-        JointKind::Prismatic => [placed, nothing],
+        JointKind::Revolute(_) | JointKind::Helical => [placed, placed * Quaternion { v: model.subspaces[i].ang, w: 0.0 }],
+        JointKind::Prismatic(_) => [placed, nothing],
         JointKind::Spherical | JointKind::Free => [nothing; 2],
     }
 }
@@ -319,11 +322,11 @@ fn turn(model: &Model<f64>, i: usize) -> [Quaternion<f64>; 2] {
 fn mount(model: &Model<f64>, i: usize) -> [Vec3<f64>; 3] {
     let (u, t) = (model.subspaces[i].ang, model.placements[i].rotation.transpose_mul(model.placements[i].translation));
     match model.topology.joints()[i].kind {
-        JointKind::Revolute | JointKind::Helical => {
+        JointKind::Revolute(_) | JointKind::Helical => {
             let along = Sym3::rank_one(1.0, u);
             [along * t, t.cross(u), (Sym3::scalar(1.0) - along) * t]
         }
-        JointKind::Prismatic => [t, Vec3::zero(), Vec3::zero()],
+        JointKind::Prismatic(_) => [t, Vec3::zero(), Vec3::zero()],
         JointKind::Spherical | JointKind::Free => [Vec3::zero(); 3],
     }
 }

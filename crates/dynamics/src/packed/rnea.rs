@@ -138,6 +138,7 @@ impl Motions {
                 let (rotation, force) = (&self.orientations.frames[b].rotation, &mut self.links[b].force);
                 for (k, wrench) in wrenches[block.first..block.first + block.count].iter().enumerate() {
                     let r = rotation.lane(k);
+                    let wrench = model.labels[block.first + k].force_to_compiled(*wrench);
                     force.ang.set_lane(k, force.ang.lane(k) - r * wrench.ang);
                     force.lin.set_lane(k, force.lin.lane(k) - r * wrench.lin);
                 }

@@ -176,7 +176,7 @@ pub fn flow(model: &Model<f64>, q: &[f64], v: &[f64]) -> Vec<Dual<f64>> {
     for joint in model.topology.joints() {
         let (q, v) = (&q[joint.q..], &v[joint.v..]);
         match joint.kind {
-            JointKind::Revolute | JointKind::Prismatic | JointKind::Helical => moving.push(Dual::new(q[0], v[0])),
+            JointKind::Revolute(_) | JointKind::Prismatic(_) | JointKind::Helical => moving.push(Dual::new(q[0], v[0])),
             JointKind::Spherical => moving.extend(turn(q, v)),
             JointKind::Free => {
                 let rotation = Quaternion::from_array([q[3], q[4], q[5], q[6]]).to_rotation();

@@ -69,7 +69,7 @@ fn neutral(model: &Model<f64>) -> Vec<f64> {
     let of_joint = |kind: JointKind| match kind {
         JointKind::Spherical => vec![0.0, 0.0, 0.0, 1.0],
         JointKind::Free => vec![0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0],
-        JointKind::Revolute | JointKind::Prismatic | JointKind::Helical => vec![0.0],
+        JointKind::Revolute(_) | JointKind::Prismatic(_) | JointKind::Helical => vec![0.0],
     };
     model.topology.joints().iter().flat_map(|joint| of_joint(joint.kind)).collect()
 }
