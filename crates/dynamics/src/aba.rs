@@ -81,17 +81,13 @@ impl<T: Real> Aba<T> {
         let joints = model.topology.joints();
         let mut smallest = Pivot::none();
 
-        // X_i: placement of each body in its parent
-        for (i, link) in self.links.iter_mut().skip(1).enumerate() {
-            link.x = model.joint_transform(i, q);
-        }
         self.links[0].a.lin = -model.gravity.lift();
 
         // outward: v_i = X v_p + S q̇,  c_i,  Iᴬ = I,  pᴬ = v_i ×* I v_i − f_ext
         for (i, joint) in joints.iter().enumerate() {
             let (before, rest) = self.links.split_at_mut(i + 1);
             let (parent, link) = (&before[parent_link(joint)], &mut rest[0]);
-            by_kind!(joint.kind, set_moving, model, i, parent.omega, v, link);
+            by_kind!(joint.kind, set_moving, model, i, parent.omega, q, v, link);
             if let Some(wrenches) = wrenches {
                 link.p -= model.labels[i].force_to_compiled(wrenches[i]);
             }
@@ -171,8 +167,18 @@ impl<T: Real> Aba<T> {
 
 /// Pass 1 for one body: ω, c, Iᴬ = I and pᴬ = v ×* I v.
 #[inline(always)]
-fn set_moving<T: Real, P: Real + Lift<T>>(kind: JointKind, model: &Model<P>, i: usize, parent_omega: Vec3<T>, v: &[T], link: &mut Link<T>) {
-    let joint_velocity = kind.motion(&model.subspaces[i], &v[model.topology.joints()[i].v..]);
+fn set_moving<T: Real, P: Real + Lift<T>>(
+    kind: JointKind,
+    model: &Model<P>,
+    i: usize,
+    parent_omega: Vec3<T>,
+    q: &[T],
+    v: &[T],
+    link: &mut Link<T>,
+) {
+    let (joint, subspace) = (&model.topology.joints()[i], &model.subspaces[i]);
+    link.x = kind.transform(&model.placements[i], subspace, &q[joint.q..]);
+    let joint_velocity = kind.motion(subspace, &v[joint.v..]);
     (link.omega, link.c) = cross_joint(kind, &link.x, parent_omega, None, joint_velocity);
     let inertia = model.inertias[i].lift();
     link.inertia = inertia.to_articulated();

@@ -73,27 +73,31 @@ impl<T: Real> Rnea<T> {
         let joints = model.topology.joints();
 
         // X_i: placement of each body in its parent
-        for (i, link) in self.links.iter_mut().skip(1).enumerate() {
-            link.x = model.joint_transform(i, q);
-        }
         self.links[0].a.lin = -model.gravity.lift();
 
         // outward: v_i = X v_p + S q̇,  a_i = X a_p + S q̈ + c,  f_i = I a_i + v_i ×* I v_i − f_ext
         for (i, joint) in joints.iter().enumerate() {
             let (before, rest) = self.links.split_at_mut(i + 1);
             let (parent, link) = (&before[parent_link(joint)], &mut rest[0]);
-            by_kind!(joint.kind, outward::<T, P, ACCELERATED>, model, i, parent, v, a, link);
+            by_kind!(joint.kind, outward::<T, P, ACCELERATED>, model, i, parent, q, v, a, link);
             if let Some(wrenches) = wrenches {
                 link.f -= model.labels[i].force_to_compiled(wrenches[i]);
             }
         }
 
         // inward: τ_i = Sᵀ f_i,  f_p += X* f_i
+        let mut passed = None;
         for (i, joint) in joints.iter().enumerate().rev() {
-            let Link { x, f, .. } = self.links[i + 1];
+            let Link { x, f, .. } = &self.links[i + 1];
+            let f = passed.take().map_or(*f, |passed| *f + passed);
             joint.kind.project(&model.subspaces[i], f, &mut tau[joint.v..]);
             if let Some(parent) = joint.parent {
-                self.links[parent + 1].f += x.force(f);
+                let moved = x.force(f);
+                if parent + 1 == i {
+                    passed = Some(moved);
+                } else {
+                    self.links[parent + 1].f += moved;
+                }
             }
         }
         if ACCELERATED {
@@ -113,11 +117,13 @@ fn outward<T: Real, P: Real + Lift<T>, const ACCELERATED: bool>(
     model: &Model<P>,
     i: usize,
     parent: &Link<T>,
+    q: &[T],
     v: &[T],
     a: &[T],
     link: &mut Link<T>,
 ) {
     let (dof, subspace) = (model.topology.joints()[i].v, &model.subspaces[i]);
+    link.x = kind.transform(&model.placements[i], subspace, &q[model.topology.joints()[i].q..]);
     let joint_velocity = kind.motion(subspace, &v[dof..]);
     (link.omega, link.a) = cross_joint(kind, &link.x, parent.omega, Some(parent.a), joint_velocity);
     if ACCELERATED {
