@@ -1,7 +1,8 @@
 //! Forward dynamics by the articulated-body algorithm: the accelerations that joint forces cause, `v̇ = M⁻¹ (τ − h + Σ Jᵀf)`.
 //!
 //! Source: the book, table 7.1, with classical accelerations (see `step.rs`). Armature is added to the diagonal of D.
-//! Frames: each body's quantities are in its own axes, at its own origin. So are external wrenches [moment; force], one per compiled body.
+//! Frames: each body's quantities are in its own axes, as compiled, at its own origin. External wrenches [moment; force], one per compiled
+//! body, are in the described axes ([`Model::labels`]).
 //! Gravity enters as an acceleration −g of the base. Shapes: q has `nq` numbers; v, τ and v̇ have `nv`. Units: SI, angles in radians.
 //! Cost: O(n), with one division per one-dof joint. A call does not allocate.
 //!

@@ -42,7 +42,7 @@ pub(crate) struct Link<T> {
     step: Vec3<T>,
     /// Placement in the world.
     pub(crate) world: Transform<T>,
-    /// Velocity of the origin in body axes.
+    /// Velocity of the origin in compiled body axes.
     pub(crate) v: Motion<T>,
     /// Velocity and classical acceleration of the origin in world axes.
     velocity: Motion<T>,

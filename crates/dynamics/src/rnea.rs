@@ -2,7 +2,8 @@
 //!
 //! Source: the book, table 5.1, in the three-dimensional form of Luh, Walker & Paul (1980), which needs no linear velocity.
 //! Accelerations are classical (see `step.rs`). So `v ×* I v` stands for [ω × Ī ω; ω × (ω × h)] in the comments below.
-//! Frames: each body's quantities are in its own axes, at its own origin. So are external wrenches [moment; force], one per compiled body.
+//! Frames: each body's quantities are in its own axes, as compiled, at its own origin. External wrenches [moment; force], one per compiled
+//! body, are in the described axes ([`Model::labels`]).
 //! Gravity enters as an acceleration −g of the base. Armature adds `armature_k · v̇_k`.
 //! Shapes: q has `nq` numbers; v, a and τ have `nv`. Units: SI, angles in radians. Cost: O(n). A call does not allocate.
 

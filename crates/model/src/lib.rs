@@ -3,7 +3,8 @@
 //! A [`Description`] is what users write: named bodies and joints of every kind, as plain numbers. [`Model::build`] compiles it:
 //! - fixed joints are merged;
 //! - bodies are put in depth-first order;
-//! - composed joints (planar, universal, …) become chains of the primitive joints of [`JointKind`], with massless bodies between.
+//! - composed joints (planar, universal, …) become chains of the primitive joints of [`JointKind`], with massless bodies between;
+//! - a body whose joint turns about, or slides along, a coordinate axis gets axes in which that is z ([`Label`]).
 //!
 //! So no kernel meets a configuration-dependent motion subspace.
 //!

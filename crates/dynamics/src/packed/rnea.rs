@@ -7,7 +7,7 @@
 //! 3. the force f_i and moment n_i that a body needs, from `step.rs`;
 //! 4. F_i = Σ f over the supported bodies, N_i = n_i + Σ (N_c + d_c × F_c) over the children, τ_i = (R_i S_i)ᵀ [N_i; F_i].
 //!
-//! Frames: external wrenches [moment; force] are in each body's own axes, at its own origin, one per compiled body.
+//! Frames: external wrenches [moment; force] are in each body's described axes, at its own origin, one per compiled body.
 //! Gravity enters as an acceleration −g of the base. Armature adds `armature_k · v̇_k`.
 //! Shapes: q has `nq` numbers; v, a and τ have `nv`. Units: SI, angles in radians. Cost: O(n). A call does not allocate.
 
