@@ -8,7 +8,7 @@
 //!
 //! The functions of one body and the book's symbols:
 //!
-//! - `set_moving` (pass 1, outward): ω, c, Iᴬ = I, pᴬ = v ×* I v.
+//! - `set_moving` (pass 1, outward): X, ω, c, Iᴬ = I, pᴬ = v ×* I v.
 //! - `apparent_inertia` (pass 2, inward): U = Iᴬ S, D = Sᵀ U + armature, u = τ − Sᵀ pᴬ. It adds X* Iᵃ X⁻¹ and X* pᵃ to the parent.
 //! - `joint_acceleration` (pass 3, outward): a' = X a_p + c, q̈ = D⁻¹ (u − Uᵀ a'), a = a' + S q̈.
 //! - `apparent_bias_force` (pass 2 of [`Aba::solve`]): u and pᵃ = pᴬ + U D⁻¹ u, with U and D of the last run.
@@ -166,7 +166,7 @@ impl<T: Real> Aba<T> {
     }
 }
 
-/// Pass 1 for one body: ω, c, Iᴬ = I and pᴬ = v ×* I v.
+/// Pass 1 for one body: X, ω, c, Iᴬ = I and pᴬ = v ×* I v.
 #[inline(always)]
 fn set_moving<T: Real, P: Real + Lift<T>>(
     kind: JointKind,

@@ -111,8 +111,9 @@ impl<T: Real> Rnea<T> {
     }
 }
 
-/// The outward step of one body: ω, a and f.
+/// The outward step of one body: its placement, ω, a and f.
 #[inline(always)]
+#[expect(clippy::too_many_arguments, reason = "one body's step reads the model and the inputs, and writes its link")]
 fn outward<T: Real, P: Real + Lift<T>, const ACCELERATED: bool>(
     kind: JointKind,
     model: &Model<P>,
