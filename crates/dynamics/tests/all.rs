@@ -11,5 +11,6 @@ mod extended;
 mod identities;
 mod ltdl;
 mod packed;
+mod packed_kinematics;
 mod refined;
 mod structure;

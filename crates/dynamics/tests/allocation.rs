@@ -6,8 +6,8 @@ mod common;
 
 use common::{ROBOTS, build, wrenches};
 use featherbench_dynamics::{
-    Aba, Batch, Bias, CenterOfMass, Crba, Energy, Jacobian, Kinematics, Ltdl, Momentum, PackedAba, PackedCrba, PackedModel, PackedRnea,
-    Refined, Rnea, TreeSparse, to_lanes,
+    Aba, Batch, Bias, CenterOfMass, Crba, Energy, Jacobian, Kinematics, Ltdl, Momentum, PackedAba, PackedCenterOfMass, PackedCrba,
+    PackedEnergy, PackedJacobian, PackedKinematics, PackedModel, PackedMomentum, PackedRnea, Refined, Rnea, TreeSparse, to_lanes,
 };
 use featherbench_robots::StateBatch;
 use featherbench_spatial::{Compensated, DoubleDouble};
@@ -64,6 +64,9 @@ fn no_algorithm_allocates_in_a_call() {
         let packed = PackedModel::new(&model);
         let (mut packed_rnea, mut packed_aba, mut packed_crba) =
             (PackedRnea::new(&packed), PackedAba::new(&packed), PackedCrba::new(&packed));
+        let (mut packed_kinematics, mut packed_center) = (PackedKinematics::new(&packed), PackedCenterOfMass::new(&packed));
+        let (mut packed_momentum, mut packed_energy) = (PackedMomentum::new(&packed), PackedEnergy::new(&packed));
+        let mut packed_jacobian = PackedJacobian::new(&packed);
 
         let before = ALLOCATIONS.get();
         for k in 0..states.count() {
@@ -88,6 +91,12 @@ fn no_algorithm_allocates_in_a_call() {
             matrix.mul(v, &mut out).unwrap();
             kinematics.run(&model, q, v, a).unwrap();
             assert!(kinematics.iter().all(|body| body.velocity.ang.x.is_finite()));
+            packed_kinematics.run(&packed, q, v, a).unwrap();
+            assert!(packed_kinematics.iter().all(|body| body.velocity.ang.x.is_finite()));
+            packed_center.run(&packed, q).unwrap();
+            packed_momentum.run(&packed, q, v).unwrap();
+            packed_energy.run(&packed, q, v).unwrap();
+            packed_jacobian.run(&packed, q, t.bodies() - 1).unwrap();
             energy.run(&model, q, v).unwrap();
             momentum.run(&model, q, v).unwrap();
             center.run(&model, q).unwrap();

@@ -11,7 +11,7 @@ use featherbench_robots::{Family, StateBatch};
 use featherbench_spatial::{Force, RigidBodyInertia, Vec3};
 
 /// Recipes of every kind of joint; trees whose segments are short, long, and cross the ends of registers.
-fn robots() -> Vec<(String, Model<f64>)> {
+pub fn robots() -> Vec<(String, Model<f64>)> {
     let families =
         ["chain:n=1", "chain:n=9,layout=spatial", "chain:n=36,layout=spatial", "binary_tree", "star", "humanoid", "quadruped", "hand"];
     let generated = families.iter().filter_map(|spec| {

@@ -67,6 +67,31 @@ impl Lanes for Pack {
     }
 }
 
+impl<A: Lanes, B: Lanes> Lanes for (A, B) {
+    type Single = (A::Single, B::Single);
+    #[inline(always)]
+    fn map(self, f: impl Fn(Pack) -> Pack) -> Self {
+        (self.0.map(&f), self.1.map(&f))
+    }
+    #[inline(always)]
+    fn zip(self, other: Self, f: impl Fn(Pack, Pack) -> Pack) -> Self {
+        (self.0.zip(other.0, &f), self.1.zip(other.1, &f))
+    }
+    #[inline(always)]
+    fn lane(&self, k: usize) -> Self::Single {
+        (self.0.lane(k), self.1.lane(k))
+    }
+    #[inline(always)]
+    fn set_lane(&mut self, k: usize, value: Self::Single) {
+        self.0.set_lane(k, value.0);
+        self.1.set_lane(k, value.1);
+    }
+    #[inline(always)]
+    fn splat(value: Self::Single) -> Self {
+        (A::splat(value.0), B::splat(value.1))
+    }
+}
+
 /// Implements [`Lanes`] field by field.
 macro_rules! lanes_of {
     ($type:ident { $($field:ident: $inner:ty),+ }) => {
@@ -108,6 +133,12 @@ lanes_of!(Sym3 { xx: Pack, xy: Pack, xz: Pack, yy: Pack, yz: Pack, zz: Pack });
 #[inline(always)]
 fn masked_add<V: Lanes>(mask: Pack, x: V, y: V) -> V {
     x.zip(y, |x, y| x.mul_add(mask, y))
+}
+
+/// The sum over the lanes.
+#[inline(always)]
+pub(super) fn horizontal(v: Vec3<Pack>) -> Vec3<f64> {
+    Vec3::new(v.x.reduce_add(), v.y.reduce_add(), v.z.reduce_add())
 }
 
 /// The numbers of a block's one-dof joints from a vector with one number per dof or coordinate; 0 in the other lanes.

@@ -44,14 +44,25 @@
 //! Source: the book, section 5.3 and tables 6.2 and 7.1. Sums along paths: Hillis and Steele, *Data parallel algorithms* (1986).
 
 mod aba;
+mod center_of_mass;
 mod crba;
+mod energy;
+mod jacobian;
+mod kinematics;
 mod lanes;
 mod model;
+mod momentum;
 mod orientation;
 mod rnea;
 mod rotate;
+mod trees;
 
 pub use aba::PackedAba;
+pub use center_of_mass::PackedCenterOfMass;
 pub use crba::PackedCrba;
+pub use energy::PackedEnergy;
+pub use jacobian::PackedJacobian;
+pub use kinematics::PackedKinematics;
 pub use model::PackedModel;
+pub use momentum::PackedMomentum;
 pub use rnea::PackedRnea;

@@ -1,6 +1,7 @@
 //! The parameters of a model, several joints to a register.
 
 use super::lanes::{LANES, Pack, STEPS, from_lanes};
+use super::trees::Trees;
 use featherbench_model::{JointKind, Label, Model, Topology};
 use featherbench_spatial::{Force, Motion, Quaternion, RigidBodyInertia, Sym3, Transform, Vec3};
 use std::ops::Range;
@@ -35,6 +36,7 @@ pub struct PackedModel {
     pub(super) segments: Vec<Segment>,
     pub(super) children: Vec<Child>,
     pub(super) wide: Vec<Wide>,
+    pub(super) trees: Trees,
     /// Whether a body has a child other than the next body.
     pub(super) forks: Vec<bool>,
 }
@@ -158,6 +160,7 @@ impl PackedModel {
             segments: Vec::new(),
             children: Vec::new(),
             wide: Vec::new(),
+            trees: Trees::new(model),
             forks: vec![false; bodies],
         };
         for (i, joint) in model.topology.joints().iter().enumerate() {
