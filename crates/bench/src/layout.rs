@@ -3,7 +3,7 @@
 //! The same text serves our kernels in `f64` and the truth in double-double.
 
 use crate::Quantity;
-use featherbench_dynamics::{BodyMotion, DimensionError, Kinematics, TreeSparse};
+use featherbench_dynamics::{BodyMotion, DimensionError, TreeSparse};
 use featherbench_spatial::{Motion, Real};
 
 /// The whole matrix, row after row.
@@ -30,11 +30,13 @@ pub fn probe<T: Real>(matrix: &TreeSparse<T>, vectors: &[T], out: &mut [T]) -> R
     Ok(())
 }
 
-/// Placement, velocity or acceleration of each described body, as the quantity says; `described` gives the index of the compiled body.
-pub fn bodies<T: Real>(quantity: Quantity, kinematics: &Kinematics<T>, described: &[usize], out: &mut [T]) {
+/// Placement, velocity or acceleration of each described body, as the quantity says.
+///
+/// `motion` gives the motion of a compiled body, and `described` the compiled bodies' indices.
+pub fn bodies<T: Real>(quantity: Quantity, motion: impl Fn(usize) -> Option<BodyMotion<T>>, described: &[usize], out: &mut [T]) {
     let size = if quantity == Quantity::BodyPlacement { 12 } else { 6 };
     for (out, &body) in out.chunks_exact_mut(size).zip(described) {
-        let Some(BodyMotion { placement, velocity, acceleration }) = kinematics.body(body) else { continue };
+        let Some(BodyMotion { placement, velocity, acceleration }) = motion(body) else { continue };
         match quantity {
             Quantity::BodyPlacement => {
                 out[..9].copy_from_slice(&placement.rotation.to_array());

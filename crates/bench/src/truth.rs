@@ -64,7 +64,7 @@ impl TruthModel {
             Quantity::BodyPlacement | Quantity::BodyVelocity | Quantity::BodyAcceleration => {
                 let mut kinematics = Kinematics::new(topology);
                 kinematics.run(model, &q, &v, &a).ok()?;
-                layout::bodies(quantity, &kinematics, &model.described, &mut out);
+                layout::bodies(quantity, |body| kinematics.body(body), &model.described, &mut out);
             }
             Quantity::BodyJacobian => {
                 let body = model.described[robot.deepest_body()];

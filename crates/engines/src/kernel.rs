@@ -5,8 +5,8 @@
 
 use featherbench_bench::{DENSE_LIMIT, NoAnswer, Quantity, Robot, layout};
 use featherbench_dynamics::{
-    Aba, Bias, CenterOfMass, Crba, Energy, Error, Jacobian, Kinematics, Ltdl, Momentum, PackedAba, PackedCrba, PackedModel, PackedRnea,
-    Refined, TreeSparse,
+    Aba, Bias, Crba, Error, Ltdl, PackedAba, PackedCenterOfMass, PackedCrba, PackedEnergy, PackedJacobian, PackedKinematics, PackedModel,
+    PackedMomentum, PackedRnea, Refined, TreeSparse,
 };
 use featherbench_model::Model;
 use featherbench_robots::StateBatch;
@@ -304,40 +304,49 @@ fn mass_matrix_inverse<'a>(model: &'a Model<f64>, states: &'a StateBatch) -> Ker
 }
 
 fn energy<'a>(model: &'a Model<f64>, states: &'a StateBatch, quantity: Quantity) -> Kernel<'a> {
-    let mut energy = Energy::new(&model.topology);
+    let packed = PackedModel::new(model);
+    let mut energy = PackedEnergy::new(&packed);
     written(1, move |k, out| {
-        let energies = energy.run(model, states.q(k), states.v(k))?;
+        let energies = energy.run(&packed, states.q(k), states.v(k))?;
         out[0] = if quantity == Quantity::KineticEnergy { energies.kinetic } else { energies.potential };
         Ok(())
     })
 }
 
 fn center_of_mass<'a>(model: &'a Model<f64>, states: &'a StateBatch) -> Kernel<'a> {
-    let mut center = CenterOfMass::new(&model.topology);
+    let packed = PackedModel::new(model);
+    let mut center = PackedCenterOfMass::new(&packed);
     written(3, move |k, out| {
-        out.copy_from_slice(&center.run(model, states.q(k))?.position.to_array());
+        out.copy_from_slice(&center.run(&packed, states.q(k))?.position.to_array());
         Ok(())
     })
 }
 
 fn momentum<'a>(model: &'a Model<f64>, states: &'a StateBatch) -> Kernel<'a> {
-    let mut momentum = Momentum::new(&model.topology);
+    let packed = PackedModel::new(model);
+    let mut momentum = PackedMomentum::new(&packed);
     written(6, move |k, out| {
-        out.copy_from_slice(&momentum.run(model, states.q(k), states.v(k))?.momentum.to_array());
+        out.copy_from_slice(&momentum.run(&packed, states.q(k), states.v(k))?.momentum.to_array());
         Ok(())
     })
 }
 
 fn kinematics<'a>(model: &'a Model<f64>, states: &'a StateBatch, quantity: Quantity) -> Kernel<'a> {
-    let evaluate = |kinematics: &mut Kinematics<f64>, k| Ok(kinematics.run(model, states.q(k), states.v(k), states.a(k))?);
-    let read = move |kinematics: &Kinematics<f64>, out: &mut [f64]| layout::bodies(quantity, kinematics, &model.described, out);
-    kept(Kinematics::new(&model.topology), evaluate, read)
+    let packed = PackedModel::new(model);
+    let work = PackedKinematics::new(&packed);
+    let evaluate = move |kinematics: &mut PackedKinematics, k| Ok(kinematics.run(&packed, states.q(k), states.v(k), states.a(k))?);
+    let read = move |kinematics: &PackedKinematics, out: &mut [f64]| {
+        layout::bodies(quantity, |body| kinematics.body(body), &model.described, out);
+    };
+    kept(work, evaluate, read)
 }
 
 fn jacobian<'a>(model: &'a Model<f64>, states: &'a StateBatch, body: usize) -> Kernel<'a> {
-    let evaluate = move |jacobian: &mut Jacobian<f64>, k| Ok(jacobian.run(model, states.q(k), body).map(|_| ())?);
-    let read = |jacobian: &Jacobian<f64>, out: &mut [f64]| layout::jacobian(jacobian.columns(), out);
-    kept(Jacobian::new(&model.topology), evaluate, read)
+    let packed = PackedModel::new(model);
+    let work = PackedJacobian::new(&packed);
+    let evaluate = move |jacobian: &mut PackedJacobian, k| Ok(jacobian.run(&packed, states.q(k), body).map(|_| ())?);
+    let read = |jacobian: &PackedJacobian, out: &mut [f64]| layout::jacobian(jacobian.columns(), out);
+    kept(work, evaluate, read)
 }
 
 fn constant<'a>(values: Vec<f64>) -> Kernel<'a> {

@@ -1,146 +1,121 @@
 //! The Jacobian of a body, several joints at a time: its velocity is `J v`.
 //!
 //! Source: the book, body Jacobians, as in [`Jacobian`](crate::Jacobian). The column of joint j on the path is `[S_ω; S_p + S_ω × d]`, with S
-//! in the axes of the base and d the displacement from the joint's origin to the body's. The sums d begin at the body. So each has the error
-//! of its own length, and the robot's distance from the world's origin does not enter. Then the base's axes are turned to the world's.
-//! Blocks off the path need no work.
+//! in world axes and d the displacement from the joint's origin to the body's. The sums d begin at the body. So each has the error of its
+//! own length, and the robot's distance from the world's origin does not enter. Bodies off the path need no work.
 //!
-//! Frame: world axes [ang; lin] at the origin of the body's frame. Shapes: q has `nq` numbers; J has six rows of `nv` numbers, row after row.
+//! Frame: world axes [ang; lin] at the origin of the body's frame. Shapes: q has `nq` numbers; J has `nv` columns of six.
 //! Units: SI. Cost: O(n). A call does not allocate.
 
-use super::lanes::{LANES, Lanes, Pack, STEPS, from_lanes};
-use super::model::{Block, PackedModel, Source};
-use super::orientation::{Frame, Orientations};
-use super::rotate::rotate_down;
+use super::bodies::{Bodies, Body, TURNED, across_joints};
+use super::lanes::{LANES, Lanes};
+use super::model::{PackedModel, Source};
+use super::xyz::{Xyz, cross, times, vector};
 use crate::DimensionError;
 use crate::error::expect;
-use featherbench_spatial::{Mat3, Motion, Real, Vec3};
-use std::ops::Range;
+use featherbench_spatial::Motion;
 
 /// The Jacobian of a body over packed joints, and its workspace.
 #[derive(Clone, Debug)]
 pub struct PackedJacobian {
-    orientations: Orientations,
-    /// From the body to the root.
-    path: Vec<Part>,
-    rows: Vec<f64>,
-    bodies: usize,
+    bodies: Bodies,
+    /// Block, segment and last joint of each part of the path, from the body to the root.
+    parts: Vec<[usize; 3]>,
+    /// From the root to the body.
+    path: Vec<Link>,
+    columns: Vec<Motion<f64>>,
 }
 
-/// The joints of a segment that are on the path.
-#[derive(Clone, Debug)]
-struct Part {
-    block: usize,
-    lanes: Range<usize>,
-    /// Whether they are one-dof joints.
-    plain: bool,
+/// A body on the path, in world axes.
+#[derive(Clone, Copy, Debug)]
+struct Link {
+    body: usize,
+    rotation: [Xyz; 3],
+    /// The displacement from the parent's origin.
+    step: Xyz,
 }
 
 impl PackedJacobian {
     /// A workspace for the Jacobian of a body of this model.
     pub fn new(model: &PackedModel) -> Self {
         Self {
-            orientations: Orientations::new(model),
-            path: Vec::with_capacity(model.segments.len()),
-            rows: vec![0.0; 6 * model.topology.nv()],
-            bodies: model.topology.bodies(),
+            bodies: Bodies::new(model),
+            parts: Vec::with_capacity(model.segments.len()),
+            path: Vec::with_capacity(model.topology.bodies()),
+            columns: vec![Motion::zero(); model.topology.nv()],
         }
     }
 
-    /// The Jacobian of compiled body `body` at configuration `q`: six rows of `nv` numbers.
+    /// The Jacobian of compiled body `body` at configuration `q`: one column per dof.
     ///
     /// # Errors
     /// [`DimensionError`] when `q` or the workspace does not fit the model, or when there is no such body.
-    pub fn run(&mut self, model: &PackedModel, q: &[f64], body: usize) -> Result<&[f64], DimensionError> {
-        expect("bodies of the workspace", model.topology.bodies(), self.bodies)?;
-        expect("segments of the workspace", model.segments.len(), self.orientations.bases.len())?;
-        expect("rows of the workspace", 6 * model.topology.nv(), self.rows.len())?;
-        expect("configuration q", model.topology.nq(), q.len())?;
-        if body >= self.bodies {
-            return Err(DimensionError { what: "bodies, for the one that was named", expected: body + 1, found: self.bodies });
+    pub fn run(&mut self, model: &PackedModel, q: &[f64], body: usize) -> Result<&[Motion<f64>], DimensionError> {
+        self.bodies.begin(model, q)?;
+        expect("columns of the workspace", model.topology.nv(), self.columns.len())?;
+        if body >= model.topology.bodies() {
+            let found = model.topology.bodies();
+            return Err(DimensionError { what: "bodies, for the one that was named", expected: body + 1, found });
         }
-        self.find_path(model, body);
-        self.rows.fill(0.0);
-        let mut turned = None;
-        for Part { block, .. } in self.path.iter().rev() {
-            if turned != Some(*block) {
-                self.orientations.turn(model, *block, q);
-                turned = Some(*block);
-            }
-        }
-        let world = model.trees.roots[model.trees.of_body[body]].pose(q).rotation;
-        // the displacement from the last joint's origin to the body's
-        let mut way = Vec3::zero();
-        for Part { block, lanes, plain } in &self.path {
-            let (frame, block) = (&self.orientations.frames[*block], &model.blocks[*block]);
-            if *plain {
-                way = fill_columns(block, frame, lanes.clone(), way, &world, &mut self.rows);
+        self.find_parts(model, body);
+        self.follow(model, q);
+        self.columns.fill(Motion::zero());
+        // the displacement from the joint's origin to the body's
+        let mut way = Xyz::splat(0.0);
+        for Link { body, rotation, step } in self.path.iter().rev() {
+            let (block, k) = (&model.blocks[body / LANES], body % LANES);
+            if block.is_screw[k] {
+                let ang = times(*rotation, block.subspace.ang.lane(k));
+                let turned = cross(ang, way);
+                let lin = if block.slides { turned + times(*rotation, block.subspace.lin.lane(k)) } else { turned };
+                self.columns[block.v[k]] = Motion::new(vector(ang), vector(lin));
             } else {
-                let v = block.v[lanes.start];
-                let kind = model.topology.joints()[block.first + lanes.start].kind;
-                let r = frame.rotation.lane(lanes.start);
-                for k in 0..kind.nv() {
+                let kind = model.topology.joints()[*body].kind;
+                for (column, k) in self.columns[block.v[k]..].iter_mut().zip(0..kind.nv()) {
                     let local: Motion<f64> = kind.column(&Motion::<f64>::zero(), k);
-                    let ang = r * local.ang;
-                    let lin = ang.cross_add(way, r * local.lin);
-                    let column = Motion::new(world * ang, world * lin).to_array();
-                    for (row, entry) in self.rows.chunks_exact_mut(model.topology.nv()).zip(column) {
-                        row[v + k] = entry;
-                    }
+                    let ang = times(*rotation, local.ang);
+                    *column = Motion::new(vector(ang), vector(cross(ang, way) + times(*rotation, local.lin)));
                 }
-                way += frame.displacement.lane(lanes.start);
             }
+            way += *step;
         }
-        Ok(&self.rows)
+        Ok(&self.columns)
     }
 
-    /// The Jacobian of the last run; zero before the first.
-    pub fn rows(&self) -> &[f64] {
-        &self.rows
+    /// The columns of the last run; zero before the first.
+    pub fn columns(&self) -> &[Motion<f64>] {
+        &self.columns
     }
 
     #[inline(always)]
-    fn find_path(&mut self, model: &PackedModel, body: usize) {
-        self.path.clear();
+    fn find_parts(&mut self, model: &PackedModel, body: usize) {
+        self.parts.clear();
         let (mut block, mut lane) = (body / LANES, body % LANES);
         loop {
-            let segment = &model.segments[model.blocks[block].segment[lane]];
-            self.path.push(Part { block, lanes: segment.first..lane + 1, plain: segment.plain });
-            (block, lane) = match segment.parent {
+            let segment = model.blocks[block].segment[lane];
+            self.parts.push([block, segment, lane]);
+            (block, lane) = match model.segments[segment].parent {
                 Source::Root => break,
                 Source::Before { block, lane } => (block, lane),
                 Source::Within { lane } => (block, lane),
             };
         }
     }
-}
 
-/// Writes the columns of one-dof joints, and adds their displacements to the way from the last of them to the body.
-#[inline(always)]
-fn fill_columns(block: &Block, frame: &Frame, lanes: Range<usize>, way: Vec3<f64>, world: &Mat3<f64>, rows: &mut [f64]) -> Vec3<f64> {
-    // Σ d_j over the joints below in these lanes: other lanes may hold what was left by a run before
-    let index = from_lanes(|k| k as f64);
-    let above_last = index.simd_ge(Pack::splat(lanes.start as f64)) & index.simd_lt(Pack::splat((lanes.end - 1) as f64));
-    let mut below = frame.displacement.map(|d| above_last.select(rotate_down::<1>(d), Pack::zero()));
-    below = below.map(rotate_down::<1>).scale_add(block.descendant[0], below);
-    below = below.map(rotate_down::<2>).scale_add(block.descendant[1], below);
-    if LANES > 4 {
-        below = below.map(rotate_down::<{ LANES / 2 }>).scale_add(block.descendant[STEPS - 1], below);
-    }
-
-    // [S_ω; S_p + S_ω × d]
-    let axis = frame.subspace.ang;
-    let lin = axis.cross(Vec3::splat(way) + below);
-    let lin = if block.slides { lin + frame.subspace.lin } else { lin };
-    let world = Mat3::splat(*world);
-    let columns = Motion::new(world * axis, world * lin).to_array();
-    let nv = rows.len() / 6;
-    for (row, column) in rows.chunks_exact_mut(nv).zip(columns) {
-        let column = column.to_array();
-        match row[block.v[lanes.start]..].first_chunk_mut() {
-            Some(whole) if lanes.len() == LANES => *whole = column,
-            _ => row[block.v[lanes.start]..][..lanes.len()].copy_from_slice(&column[lanes.clone()]),
+    /// Turns the bodies on the path, from the root.
+    #[inline(always)]
+    fn follow(&mut self, model: &PackedModel, q: &[f64]) {
+        let Self { bodies, parts, path, .. } = self;
+        path.clear();
+        let mut parts = parts.iter().rev().peekable();
+        while let Some([b, ..]) = parts.peek() {
+            let (b, local) = (*b, across_joints::<TURNED>(model, *b, [q, &[], &[]]));
+            while let Some([_, segment, last]) = parts.next_if(|part| part[0] == b) {
+                let mut visit = |k, body: &Body, step| {
+                    path.push(Link { body: b * LANES + k, rotation: body.rotation, step });
+                };
+                bodies.run_segment::<TURNED>(model, (b, &model.segments[*segment], last + 1), &local, [&[], &[]], &mut visit);
+            }
         }
     }
-    way + below.lane(lanes.start) + frame.displacement.lane(lanes.start)
 }

@@ -44,6 +44,7 @@
 //! Source: the book, section 5.3 and tables 6.2 and 7.1. Sums along paths: Hillis and Steele, *Data parallel algorithms* (1986).
 
 mod aba;
+mod bodies;
 mod center_of_mass;
 mod crba;
 mod energy;
@@ -55,7 +56,7 @@ mod momentum;
 mod orientation;
 mod rnea;
 mod rotate;
-mod trees;
+mod xyz;
 
 pub use aba::PackedAba;
 pub use center_of_mass::PackedCenterOfMass;

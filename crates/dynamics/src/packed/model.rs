@@ -1,5 +1,6 @@
 //! The parameters of a model, several joints to a register.
 
+use super::bodies::Trees;
 use super::lanes::{LANES, Pack, STEPS, from_lanes};
 use super::trees::Trees;
 use featherbench_model::{JointKind, Label, Model, Topology};

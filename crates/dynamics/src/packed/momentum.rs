@@ -1,11 +1,12 @@
-//! Centroidal momentum, several joints at a time: angular momentum about the centre of mass, and linear momentum, without armature.
+//! Centroidal momentum over packed joints: angular momentum about the centre of mass, and linear momentum, without armature.
 //!
 //! Source: Orin, Goswami & Lee (2013), as in [`Momentum`](crate::Momentum). In world axes, with p_i from the first root body's origin o:
 //! `f = Σ (m ṗ_i + ω_i × h_i)`, `n = Σ (Ī_i ω_i + h_i × ṗ_i + p_i × f_i)`, and about the centre of mass `n − (c − o) × f`. The rotational
-//! inertia Ī multiplies ω in body axes. Frame: world axes, at the centre of mass. Shapes: q has `nq` numbers, v has `nv`. Units: kg·m²/s and
-//! kg·m/s. Cost: O(n). A call does not allocate.
+//! inertia Ī multiplies ω in body axes. The terms are computed for a register of bodies at once, and summed at the end.
+//! Frame: world axes, at the centre of mass. Shapes: q has `nq` numbers, v has `nv`. Units: kg·m²/s and kg·m/s. Cost: O(n). A call does not
+//! allocate.
 
-use super::kinematics::{MOVING, PackedKinematics};
+use super::bodies::{Bodies, MOVING};
 use super::lanes::horizontal;
 use super::model::PackedModel;
 use crate::error::expect;
@@ -15,13 +16,13 @@ use featherbench_spatial::{Force, Vec3};
 /// The workspace of centroidal momentum over packed joints.
 #[derive(Clone, Debug)]
 pub struct PackedMomentum {
-    kinematics: PackedKinematics,
+    bodies: Bodies,
 }
 
 impl PackedMomentum {
     /// A workspace for this model.
     pub fn new(model: &PackedModel) -> Self {
-        Self { kinematics: PackedKinematics::new(model) }
+        Self { bodies: Bodies::new(model) }
     }
 
     /// Centroidal momentum at configuration `q` and velocity `v`.
@@ -30,22 +31,23 @@ impl PackedMomentum {
     /// [`DimensionError`] when an argument or the workspace does not fit the model.
     pub fn run(&mut self, model: &PackedModel, q: &[f64], v: &[f64]) -> Result<CentroidalMomentum<f64>, DimensionError> {
         expect("velocity v", model.topology.nv(), v.len())?;
-        self.kinematics.begin(model, q)?;
+        self.bodies.begin(model, q)?;
         let (mut moment, mut sum) = (Vec3::zero(), Force::zero());
-        for b in 0..model.blocks.len() {
-            let (frame, link) = self.kinematics.step::<MOVING>(model, b, q, v, &[]);
-            let (inertia, r, velocity) = (&model.blocks[b].inertia, frame.rotation, link.velocity);
-            let p = self.kinematics.poses.from_first(&model.trees, b, link.from_root);
+        for (b, block) in model.blocks.iter().enumerate() {
+            self.bodies.step::<MOVING>(model, b, [q, v, &[]], |_, _, _| ());
+            let (inertia, r) = (&block.inertia, self.bodies.rotation(b));
+            let (omega, velocity) = (self.bodies.packed(b, |body| body.omega), self.bodies.packed(b, |body| body.velocity));
+            let p = self.bodies.from_first(model, b);
             let h = r * inertia.first_moment;
-            let spin = r * (inertia.rotational * r.transpose_mul(velocity.ang));
-            let f = velocity.ang.cross_add(h, velocity.lin * inertia.mass);
+            let spin = r * (inertia.rotational * r.transpose_mul(omega));
+            let f = omega.cross_add(h, velocity * inertia.mass);
             moment += p.scale_add(inertia.mass, h);
             sum.lin += f;
-            sum.ang += p.cross_add(f, h.cross_add(velocity.lin, spin));
+            sum.ang += p.cross_add(f, h.cross_add(velocity, spin));
         }
-        let (total, lin) = (horizontal(sum.ang), horizontal(sum.lin));
+        let (ang, lin) = (horizontal(sum.ang), horizontal(sum.lin));
         let (offset, mass) = (model.trees.center(horizontal(moment)), model.trees.mass);
-        let center = MassCenter { mass, position: self.kinematics.poses.first() + offset };
-        Ok(CentroidalMomentum { center, momentum: Force::new(total - offset.cross(lin), lin) })
+        let center = MassCenter { mass, position: self.bodies.first_origin() + offset };
+        Ok(CentroidalMomentum { center, momentum: Force::new(ang - offset.cross(lin), lin) })
     }
 }
