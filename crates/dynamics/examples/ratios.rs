@@ -32,6 +32,17 @@ fn best<'a>(pairs: &mut [(&str, Box<dyn FnMut(usize) + 'a>, Box<dyn FnMut(usize)
 }
 
 fn main() {
+    if std::env::args().nth(1).is_some() {
+        let description = Family::parse("humanoid").unwrap().generate().unwrap();
+        let model: Model<f64> = Model::build(&description).unwrap();
+        let p = PackedModel::new(&model);
+        let s = StateBatch::random(&model, 256, 3);
+        let mut j = PackedJacobian::new(&p);
+        for i in 0..20_000_000 {
+            black_box(j.run(&p, s.q(i % 256), model.topology.bodies() - 1).unwrap());
+        }
+        return;
+    }
     for spec in ["chain:n=36,layout=spatial", "humanoid", "chain:n=7,layout=spatial"] {
         let description = Family::parse(spec).unwrap().generate().unwrap();
         let model: Model<f64> = Model::build(&description).unwrap();

@@ -3,8 +3,7 @@
 //! Each algorithm has a workspace, made from a [`Topology`](featherbench_model::Topology). The workspace's `run` does not allocate. A
 //! function beside it makes a workspace for one call.
 //!
-//! [`PackedRnea`], [`PackedAba`] and [`PackedCrba`] compute one state in `f64`, several joints at a time. [`Batch`] computes many states at
-//! once. The other algorithms are generic over two scalars: that of the state and that of the parameters. The same text runs on `f64`, `f32`, dual
+//! What begins with `Packed` computes one state in `f64`, several joints at a time. [`Batch`] computes many states at once. The other algorithms are generic over two scalars: that of the state and that of the parameters. The same text runs on `f64`, `f32`, dual
 //! numbers, and counting and extended-precision scalars. "The book" is R. Featherstone, *Rigid Body Dynamics Algorithms* (2008).
 //!
 //! ```

@@ -14,7 +14,7 @@
 //! Cost per joint: R has 9 multiply-adds, positions 4, velocities 6, accelerations 12.
 
 use super::lanes::{LANES, Lanes, Pack, from_lanes, load};
-use super::model::{PackedModel, Segment, Source, is_screw};
+use super::model::{PackedModel, Segment, is_screw};
 use super::xyz::{Xyz, cross, times, transposed, two_crosses, xyz};
 use crate::DimensionError;
 use crate::error::expect;
@@ -48,9 +48,10 @@ pub(super) struct Root {
     body: usize,
 }
 
-/// The trees of a model.
+/// What the kinematics need of a model.
 #[derive(Clone, Debug)]
 pub(super) struct Trees {
+    /// Per block.
     pub steps: Vec<Steps>,
     pub roots: Vec<Root>,
     /// The tree of each body.
@@ -242,14 +243,14 @@ impl Bodies {
         from_first
     }
 
-    /// Block `b`, the blocks before it done. `visit(lane, body, d)` sees each body once it is done.
+    /// Block `b`, the blocks before it done. `visit(lane, parent, body, d)` sees each body once it is done.
     #[inline(always)]
     pub fn step<const ORDER: usize>(
         &mut self,
         model: &PackedModel,
         b: usize,
         [q, v, a]: [&[f64]; 3],
-        mut visit: impl FnMut(usize, &Body, Xyz),
+        mut visit: impl FnMut(usize, &Body, &Body, Xyz),
     ) {
         let block = &model.blocks[b];
         let local = across_joints::<ORDER>(model, b, [q, v, a]);
@@ -266,7 +267,7 @@ impl Bodies {
         place: (usize, &Segment, usize),
         local: &Local,
         rates: [&[f64]; 2],
-        visit: &mut impl FnMut(usize, &Body, Xyz),
+        visit: &mut impl FnMut(usize, &Body, &Body, Xyz),
     ) {
         match place.1.plain {
             true => self.run_lanes::<ORDER, true>(model, place, local, rates, visit),
@@ -281,15 +282,25 @@ impl Bodies {
         (b, segment, end): (usize, &Segment, usize),
         local: &Local,
         [v, a]: [&[f64]; 2],
-        visit: &mut impl FnMut(usize, &Body, Xyz),
+        visit: &mut impl FnMut(usize, &Body, &Body, Xyz),
     ) {
         let (block, steps) = (&model.blocks[b], &model.trees.steps[b]);
         let bodies = &mut self.bodies[..];
-        let mut body = match segment.parent {
-            Source::Root => Body::world(),
-            Source::Before { block, lane } => bodies[block * LANES + lane],
-            Source::Within { lane } => bodies[b * LANES + lane],
-        };
+        // field by field: a whole copy would go through memory
+        let mut body = Body::world();
+        if let Some(parent) = segment.parent.body(b) {
+            let parent = &bodies[parent];
+            body.rotation = parent.rotation;
+            if ORDER >= PLACED {
+                body.from_root = parent.from_root;
+            }
+            if ORDER >= MOVING {
+                (body.omega, body.velocity) = (parent.omega, parent.velocity);
+            }
+            if ORDER >= ACCELERATED {
+                (body.alpha, body.acceleration) = (parent.alpha, parent.acceleration);
+            }
+        }
         let origin = xyz(self.origins[model.trees.of_body[block.first + segment.first]]);
         let own: &mut [Body; LANES] = (&mut bodies[b * LANES..][..LANES]).try_into().expect("a block has LANES bodies");
         for k in segment.first..end.min(LANES) {
@@ -307,37 +318,33 @@ impl Bodies {
                 (own[k].from_root, own[k].position) = (body.from_root, body.position);
             }
             if ORDER >= MOVING {
-                let subspace = if PLAIN {
+                // S q̇ and S q̈
+                let [rate, rate_of_rate] = if PLAIN {
                     let lin = if steps.slides[k] { times(parent.rotation, steps.slide.lane(k)) } else { Xyz::splat(0.0) };
-                    [times(parent.rotation, steps.axis.lane(k)), lin]
+                    let subspace = [times(parent.rotation, steps.axis.lane(k)), lin];
+                    [local.v[k], local.a[k]].map(|rate| subspace.map(|part| part * Xyz::splat(rate)))
                 } else {
-                    [Xyz::splat(0.0); 2]
+                    let kind = model.topology.joints()[block.first + k].kind;
+                    let rate_of_rate = if ORDER >= ACCELERATED { &a[block.v[k]..] } else { &[0.0; 6] };
+                    [across(kind, &body.rotation, &v[block.v[k]..]), across(kind, &body.rotation, rate_of_rate)]
                 };
-                let kind = model.topology.joints()[block.first + k].kind;
-                let turning =
-                    if PLAIN { subspace.map(|part| part * Xyz::splat(local.v[k])) } else { across(kind, &body.rotation, &v[block.v[k]..]) };
                 let swing = cross(parent.omega, d);
-                body.omega = parent.omega + turning[0];
+                body.omega = parent.omega + rate[0];
                 body.velocity = parent.velocity + swing;
                 if ORDER >= ACCELERATED {
-                    let turning_faster = if PLAIN {
-                        subspace.map(|part| part * Xyz::splat(local.a[k]))
-                    } else {
-                        across(kind, &body.rotation, &a[block.v[k]..])
-                    };
-                    body.alpha = parent.alpha + (turning_faster[0] + cross(parent.omega, turning[0]));
+                    body.alpha = parent.alpha + (rate_of_rate[0] + cross(parent.omega, rate[0]));
                     body.acceleration = parent.acceleration + two_crosses([parent.alpha, d], [parent.omega, swing]);
                     if steps.slides[k] {
-                        body.acceleration += cross(parent.omega + body.omega, turning[1]) + turning_faster[1];
+                        body.acceleration += cross(parent.omega + body.omega, rate[1]) + rate_of_rate[1];
                     }
                     (own[k].alpha, own[k].acceleration) = (body.alpha, body.acceleration);
                 }
                 if steps.slides[k] {
-                    body.velocity += turning[1];
+                    body.velocity += rate[1];
                 }
                 (own[k].omega, own[k].velocity) = (body.omega, body.velocity);
             }
-            visit(k, &body, d);
+            visit(k, &parent, &body, d);
         }
     }
 }

@@ -5,10 +5,10 @@
 //! paths, and the robot's distance from the world's origin does not enter.
 //! Frame: world axes and origin. Shapes: q has `nq` numbers. Units: kg, m. Cost: O(n). A call does not allocate.
 
-use super::bodies::{Bodies, TURNED};
+use super::bodies::{Bodies, Body, TURNED};
 use super::lanes::Lanes;
-use super::model::PackedModel;
-use super::xyz::{Xyz, times_add, vector};
+use super::model::{Block, PackedModel};
+use super::xyz::{Xyz, times, vector};
 use crate::{DimensionError, MassCenter};
 
 /// The workspace of the centre of mass over packed joints.
@@ -31,12 +31,38 @@ impl PackedCenterOfMass {
         self.bodies.begin(model, q)?;
         let mut moment = Xyz::splat(0.0);
         for (b, block) in model.blocks.iter().enumerate() {
-            self.bodies.step::<TURNED>(model, b, [q, &[], &[]], |k, body, d| {
-                let own = times_add(body.rotation, block.inertia.first_moment.lane(k), moment);
-                moment = d.mul_add(Xyz::splat(block.supported.lane(k)), own);
-            });
+            let mut first_moment = FirstMoment::zero();
+            self.bodies.step::<TURNED>(model, b, [q, &[], &[]], |k, _, body, d| first_moment.add(block, k, body, d));
+            moment += first_moment.total();
         }
         let offset = model.trees.center(self.bodies.about_first(model, vector(moment)));
         Ok(MassCenter { mass: model.trees.mass, position: self.bodies.first_origin() + offset })
+    }
+}
+
+/// The first moment of mass of a block, about the root bodies' origins.
+pub(super) struct FirstMoment {
+    /// Σ R h.
+    own: Xyz,
+    /// Σ m d.
+    moved: Xyz,
+}
+
+impl FirstMoment {
+    #[inline(always)]
+    pub(super) fn zero() -> Self {
+        Self { own: Xyz::splat(0.0), moved: Xyz::splat(0.0) }
+    }
+
+    /// Adds the body in lane k and what it supports.
+    #[inline(always)]
+    pub(super) fn add(&mut self, block: &Block, k: usize, body: &Body, d: Xyz) {
+        self.own += times(body.rotation, block.inertia.first_moment.lane(k));
+        self.moved = d.mul_add(Xyz::splat(block.supported.lane(k)), self.moved);
+    }
+
+    #[inline(always)]
+    pub(super) fn total(self) -> Xyz {
+        self.own + self.moved
     }
 }

@@ -9,30 +9,31 @@
 
 use super::bodies::{Bodies, Body, TURNED, across_joints};
 use super::lanes::{LANES, Lanes};
-use super::model::{PackedModel, Source};
+use super::model::PackedModel;
 use super::xyz::{Xyz, cross, times, vector};
 use crate::DimensionError;
 use crate::error::expect;
-use featherbench_spatial::Motion;
+use featherbench_model::JointKind;
+use featherbench_spatial::{Motion, Vec3};
+use std::ops::Range;
 
 /// The Jacobian of a body over packed joints, and its workspace.
 #[derive(Clone, Debug)]
 pub struct PackedJacobian {
     bodies: Bodies,
-    /// Block, segment and last joint of each part of the path, from the body to the root.
-    parts: Vec<[usize; 3]>,
-    /// From the root to the body.
-    path: Vec<Link>,
+    /// The displacement from the parent's origin of each body on the path, in world axes.
+    steps: Vec<Xyz>,
+    /// From the body to the root.
+    parts: Vec<Part>,
     columns: Vec<Motion<f64>>,
 }
 
-/// A body on the path, in world axes.
-#[derive(Clone, Copy, Debug)]
-struct Link {
-    body: usize,
-    rotation: [Xyz; 3],
-    /// The displacement from the parent's origin.
-    step: Xyz,
+/// The joints of a segment that are on the path.
+#[derive(Clone, Debug)]
+struct Part {
+    block: usize,
+    segment: usize,
+    lanes: Range<usize>,
 }
 
 impl PackedJacobian {
@@ -40,8 +41,8 @@ impl PackedJacobian {
     pub fn new(model: &PackedModel) -> Self {
         Self {
             bodies: Bodies::new(model),
+            steps: vec![Xyz::splat(0.0); model.blocks.len() * LANES],
             parts: Vec::with_capacity(model.segments.len()),
-            path: Vec::with_capacity(model.topology.bodies()),
             columns: vec![Motion::zero(); model.topology.nv()],
         }
     }
@@ -62,22 +63,28 @@ impl PackedJacobian {
         self.columns.fill(Motion::zero());
         // the displacement from the joint's origin to the body's
         let mut way = Xyz::splat(0.0);
-        for Link { body, rotation, step } in self.path.iter().rev() {
-            let (block, k) = (&model.blocks[body / LANES], body % LANES);
-            if block.is_screw[k] {
-                let ang = times(*rotation, block.subspace.ang.lane(k));
-                let turned = cross(ang, way);
-                let lin = if block.slides { turned + times(*rotation, block.subspace.lin.lane(k)) } else { turned };
-                self.columns[block.v[k]] = Motion::new(vector(ang), vector(lin));
-            } else {
-                let kind = model.topology.joints()[*body].kind;
-                for (column, k) in self.columns[block.v[k]..].iter_mut().zip(0..kind.nv()) {
-                    let local: Motion<f64> = kind.column(&Motion::<f64>::zero(), k);
-                    let ang = times(*rotation, local.ang);
-                    *column = Motion::new(vector(ang), vector(cross(ang, way) + times(*rotation, local.lin)));
+        for part in &self.parts {
+            let (block, from) = (&model.blocks[part.block], part.block * LANES);
+            for k in part.lanes.clone().rev() {
+                let rotation = self.bodies.bodies[from + k].rotation;
+                if block.is_screw[k] {
+                    let ang = times(rotation, block.subspace.ang.lane(k));
+                    let turned = cross(ang, way);
+                    let lin = if block.slides { turned + times(rotation, block.subspace.lin.lane(k)) } else { turned };
+                    self.columns[block.v[k]] = Motion::new(vector(ang), vector(lin));
+                } else {
+                    // S is made of unit vectors: those of the free joint's translation come first
+                    let columns = &mut self.columns[block.v[k]..];
+                    let turns = if model.topology.joints()[from + k].kind == JointKind::Free { 3 } else { 0 };
+                    for (dof, axis) in rotation.into_iter().enumerate() {
+                        if turns > 0 {
+                            columns[dof] = Motion::new(Vec3::zero(), vector(axis));
+                        }
+                        columns[turns + dof] = Motion::new(vector(axis), vector(cross(axis, way)));
+                    }
                 }
+                way += self.steps[from + k];
             }
-            way += *step;
         }
         Ok(&self.columns)
     }
@@ -90,31 +97,25 @@ impl PackedJacobian {
     #[inline(always)]
     fn find_parts(&mut self, model: &PackedModel, body: usize) {
         self.parts.clear();
-        let (mut block, mut lane) = (body / LANES, body % LANES);
-        loop {
+        let mut next = Some(body);
+        while let Some(body) = next {
+            let (block, lane) = (body / LANES, body % LANES);
             let segment = model.blocks[block].segment[lane];
-            self.parts.push([block, segment, lane]);
-            (block, lane) = match model.segments[segment].parent {
-                Source::Root => break,
-                Source::Before { block, lane } => (block, lane),
-                Source::Within { lane } => (block, lane),
-            };
+            self.parts.push(Part { block, segment, lanes: model.segments[segment].first..lane + 1 });
+            next = model.segments[segment].parent.body(block);
         }
     }
 
     /// Turns the bodies on the path, from the root.
     #[inline(always)]
     fn follow(&mut self, model: &PackedModel, q: &[f64]) {
-        let Self { bodies, parts, path, .. } = self;
-        path.clear();
+        let Self { bodies, parts, steps, .. } = self;
         let mut parts = parts.iter().rev().peekable();
-        while let Some([b, ..]) = parts.peek() {
-            let (b, local) = (*b, across_joints::<TURNED>(model, *b, [q, &[], &[]]));
-            while let Some([_, segment, last]) = parts.next_if(|part| part[0] == b) {
-                let mut visit = |k, body: &Body, step| {
-                    path.push(Link { body: b * LANES + k, rotation: body.rotation, step });
-                };
-                bodies.run_segment::<TURNED>(model, (b, &model.segments[*segment], last + 1), &local, [&[], &[]], &mut visit);
+        while let Some(b) = parts.peek().map(|part| part.block) {
+            let (local, steps) = (across_joints::<TURNED>(model, b, [q, &[], &[]]), &mut steps[b * LANES..][..LANES]);
+            while let Some(Part { segment, lanes, .. }) = parts.next_if(|part| part.block == b) {
+                let place = (b, &model.segments[*segment], lanes.end);
+                bodies.run_segment::<TURNED>(model, place, &local, [&[], &[]], &mut |k, _: &Body, _: &Body, d| steps[k] = d);
             }
         }
     }

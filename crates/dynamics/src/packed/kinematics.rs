@@ -105,7 +105,7 @@ impl PackedKinematics {
         self.bodies.begin(model, numbers[0])?;
         expect("bodies of the workspace", model.topology.bodies(), self.count)?;
         for b in 0..model.blocks.len() {
-            self.bodies.step::<ORDER>(model, b, numbers, |_, _, _| ());
+            self.bodies.step::<ORDER>(model, b, numbers, |_, _, _, _| ());
         }
         self.order = ORDER;
         Ok(())

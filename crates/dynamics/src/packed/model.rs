@@ -120,6 +120,18 @@ pub(super) enum Source {
     },
 }
 
+impl Source {
+    /// Where the parent stands among the lanes of all blocks, for a segment of block `b`.
+    #[inline(always)]
+    pub fn body(self, b: usize) -> Option<usize> {
+        match self {
+            Self::Root => None,
+            Self::Before { block, lane } => Some(block * LANES + lane),
+            Self::Within { lane } => Some(b * LANES + lane),
+        }
+    }
+}
+
 /// A segment that hangs from a joint of a block.
 #[derive(Clone, Debug)]
 pub(super) struct Child {

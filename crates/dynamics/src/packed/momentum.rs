@@ -34,7 +34,7 @@ impl PackedMomentum {
         self.bodies.begin(model, q)?;
         let (mut moment, mut sum) = (Vec3::zero(), Force::zero());
         for (b, block) in model.blocks.iter().enumerate() {
-            self.bodies.step::<MOVING>(model, b, [q, v, &[]], |_, _, _| ());
+            self.bodies.step::<MOVING>(model, b, [q, v, &[]], |_, _, _, _| ());
             let (inertia, r) = (&block.inertia, self.bodies.rotation(b));
             let (omega, velocity) = (self.bodies.packed(b, |body| body.omega), self.bodies.packed(b, |body| body.velocity));
             let p = self.bodies.from_first(model, b);

@@ -20,12 +20,6 @@ pub(super) fn vector(v: Xyz) -> Vec3<f64> {
     Vec3::new(x, y, z)
 }
 
-/// `M v + addend`, M by columns.
-#[inline(always)]
-pub(super) fn times_add([x, y, z]: [Xyz; 3], v: Vec3<f64>, addend: Xyz) -> Xyz {
-    x.mul_add(Xyz::splat(v.x), y.mul_add(Xyz::splat(v.y), z.mul_add(Xyz::splat(v.z), addend)))
-}
-
 /// `M v`, M by columns.
 #[inline(always)]
 pub(super) fn times([x, y, z]: [Xyz; 3], v: Vec3<f64>) -> Xyz {
