@@ -105,13 +105,13 @@ fn sums_over_bodies_are_those_of_the_other_text() {
 
             let (found, expected) = (energy.run(&packed, q, v).unwrap(), Energy::new(&model.topology).run(&model, q, v).unwrap());
             within(&format!("{name}: T"), (found.kinetic - expected.kinetic).abs() / expected.kinetic, 1e-14);
-            let scale = model.gravity.norm() * packed_mass(&model) * reach;
+            let scale = model.gravity.norm() * mass_of(&model) * reach;
             within(&format!("{name}: V"), (found.potential - expected.potential).abs() / scale, 1e-14);
         }
     }
 }
 
-fn packed_mass(model: &Model<f64>) -> f64 {
+fn mass_of(model: &Model<f64>) -> f64 {
     model.inertias.iter().map(|inertia| inertia.mass).sum()
 }
 
@@ -288,4 +288,11 @@ fn each_wrong_length_is_named() {
     assert_eq!(named(PackedMomentum::new(&other).run(&model, &q, &x)), "blocks of the workspace");
     assert_eq!(named(PackedEnergy::new(&other).run(&model, &q, &x)), "blocks of the workspace");
     assert_eq!(named(PackedJacobian::new(&other).run(&model, &q, 0)), "blocks of the workspace");
+    // one body less in the same number of blocks; one tree where there are two
+    let [two, three] = [2, 3].map(|bodies| PackedModel::new(&dyadic_chain(&[[0.0, 1.0, 0.0]], bodies)));
+    assert_eq!(named(PackedMomentum::new(&three).run(&two, &[0.0; 2], &[0.0; 2])), "bodies of the workspace");
+    let mut pair = robot(&ROBOTS[0].1, 5);
+    pair.bodies[4].parent = None;
+    let [pair, one] = [pair, robot(&ROBOTS[0].1, 5)].map(|description| PackedModel::new(&Model::build(&description).unwrap()));
+    assert_eq!(named(PackedEnergy::new(&one).run(&pair, &[0.0; 8], &[0.0; 8])), "trees of the workspace");
 }

@@ -36,8 +36,6 @@ use featherbench_spatial::{Mat3, Motion, Transform};
 #[derive(Clone, Debug)]
 pub struct PackedKinematics {
     bodies: Bodies,
-    /// Bodies of the model.
-    count: usize,
     /// What the last run computed.
     order: usize,
 }
@@ -45,7 +43,7 @@ pub struct PackedKinematics {
 impl PackedKinematics {
     /// A workspace for this model.
     pub fn new(model: &PackedModel) -> Self {
-        Self { bodies: Bodies::new(model), count: model.topology.bodies(), order: PLACED }
+        Self { bodies: Bodies::new(model), order: PLACED }
     }
 
     /// Moves every body to configuration `q`, velocity `v` and acceleration `a`.
@@ -85,25 +83,24 @@ impl PackedKinematics {
 
     /// Results for every compiled body; none if the last run did not compute accelerations.
     pub fn iter(&self) -> impl Iterator<Item = BodyMotion<f64>> {
-        (0..self.count).filter_map(|body| self.body(body))
+        (0..self.bodies.count).filter_map(|body| self.body(body))
     }
 
     /// Placement of a compiled body, or `None` if there is no such body.
     pub fn placement(&self, body: usize) -> Option<Transform<f64>> {
-        let own = self.bodies.bodies[..self.count].get(body)?;
+        let own = self.bodies.bodies[..self.bodies.count].get(body)?;
         let [x, y, z] = own.rotation.map(vector);
         Some(Transform::new(Mat3::from_rows(x, y, z).transpose(), vector(own.position)))
     }
 
     /// Velocity [ω; ṗ] of a compiled body's origin; `None` if there is no such body, or if the last run did not compute velocities.
     pub fn velocity(&self, body: usize) -> Option<Motion<f64>> {
-        let own = self.bodies.bodies[..self.count].get(body)?;
+        let own = self.bodies.bodies[..self.bodies.count].get(body)?;
         (self.order >= MOVING).then(|| Motion::new(vector(own.omega), vector(own.velocity)))
     }
 
     fn walk<const ORDER: usize>(&mut self, model: &PackedModel, numbers: [&[f64]; 3]) -> Result<(), DimensionError> {
         self.bodies.begin(model, numbers[0])?;
-        expect("bodies of the workspace", model.topology.bodies(), self.count)?;
         for b in 0..model.blocks.len() {
             self.bodies.step::<ORDER>(model, b, numbers, |_, _, _, _| ());
         }

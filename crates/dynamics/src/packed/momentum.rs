@@ -37,7 +37,7 @@ impl PackedMomentum {
             self.bodies.step::<MOVING>(model, b, [q, v, &[]], |_, _, _, _| ());
             let (inertia, r) = (&block.inertia, self.bodies.rotation(b));
             let (omega, velocity) = (self.bodies.packed(b, |body| body.omega), self.bodies.packed(b, |body| body.velocity));
-            let p = self.bodies.from_first(model, b);
+            let p = self.bodies.seen_from_first(model, b);
             let h = r * inertia.first_moment;
             let spin = r * (inertia.rotational * r.transpose_mul(omega));
             let f = omega.cross_add(h, velocity * inertia.mass);
