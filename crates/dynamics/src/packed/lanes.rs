@@ -67,31 +67,6 @@ impl Lanes for Pack {
     }
 }
 
-impl<A: Lanes, B: Lanes> Lanes for (A, B) {
-    type Single = (A::Single, B::Single);
-    #[inline(always)]
-    fn map(self, f: impl Fn(Pack) -> Pack) -> Self {
-        (self.0.map(&f), self.1.map(&f))
-    }
-    #[inline(always)]
-    fn zip(self, other: Self, f: impl Fn(Pack, Pack) -> Pack) -> Self {
-        (self.0.zip(other.0, &f), self.1.zip(other.1, &f))
-    }
-    #[inline(always)]
-    fn lane(&self, k: usize) -> Self::Single {
-        (self.0.lane(k), self.1.lane(k))
-    }
-    #[inline(always)]
-    fn set_lane(&mut self, k: usize, value: Self::Single) {
-        self.0.set_lane(k, value.0);
-        self.1.set_lane(k, value.1);
-    }
-    #[inline(always)]
-    fn splat(value: Self::Single) -> Self {
-        (A::splat(value.0), B::splat(value.1))
-    }
-}
-
 /// Implements [`Lanes`] field by field.
 macro_rules! lanes_of {
     ($type:ident { $($field:ident: $inner:ty),+ }) => {

@@ -48,7 +48,7 @@ fn cycled(v: Xyz) -> Xyz {
 
 /// The vectors of a block's bodies, a register per component.
 ///
-/// Each register below holds what its name says of four bodies, or of four and of the next four.
+/// With eight lanes each register holds four bodies in its lower half and the next four in its upper half. The halves go the same way.
 #[inline(always)]
 pub(super) fn transposed(of: impl Fn(usize) -> Xyz) -> Vec3<Pack> {
     let body = |k: usize| {
