@@ -32,10 +32,10 @@
 //! | velocities | 1.04, 1.6 | 1.01, 1.6 |
 //! | accelerations | 1.09, 2.0 | 1.08, 2.0 |
 //! | Jacobian | 1.02, 2.0 | 1.03, 1.8 |
-//! | centre of mass | 1.02, 2.0 | 1.06, 2.0 |
+//! | centre of mass | 1.02, 2.0 | 1.07, 2.0 |
 //! | momentum | 1.03, 2.9 | 1.01, 1.6 |
 //! | kinetic energy | 1.09, 2.0 | 1.06, 2.6 |
-//! | potential energy | 1.05, 2.4 | 1.00, 3.0 |
+//! | potential energy | 1.05, 2.4 | 0.99, 3.0 |
 //!
 //! These are the usual methods of the studies in this text.
 //!
