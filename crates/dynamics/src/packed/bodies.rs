@@ -109,12 +109,12 @@ impl Steps {
 fn turn(model: &Model<f64>, i: usize) -> [Mat3<f64>; 3] {
     let (r, u) = (model.placements[i].rotation, model.subspaces[i].ang);
     match model.topology.joints()[i].kind {
-        JointKind::Revolute | JointKind::Helical => {
+        JointKind::Revolute(_) | JointKind::Helical => {
             let along = Sym3::rank_one(1.0, u);
             let across = Sym3::scalar(1.0) - along;
             [r * along.to_mat3(), r * Mat3::skew(u), r * across.to_mat3()]
         }
-        JointKind::Prismatic => [r, Mat3::zero(), Mat3::zero()],
+        JointKind::Prismatic(_) => [r, Mat3::zero(), Mat3::zero()],
         JointKind::Spherical | JointKind::Free => [Mat3::zero(); 3],
     }
 }
@@ -126,8 +126,8 @@ impl Root {
         let q = &q[self.q..];
         match self.kind {
             JointKind::Free => self.placement.point(Vec3::new(q[0], q[1], q[2])),
-            JointKind::Prismatic | JointKind::Helical => self.placement.point(self.slide * q[0]),
-            JointKind::Revolute | JointKind::Spherical => self.placement.translation,
+            JointKind::Prismatic(_) | JointKind::Helical => self.placement.point(self.slide * q[0]),
+            JointKind::Revolute(_) | JointKind::Spherical => self.placement.translation,
         }
     }
 }

@@ -10,6 +10,7 @@ use super::model::PackedModel;
 use super::xyz::vector;
 use crate::error::expect;
 use crate::{BodyMotion, DimensionError};
+use featherbench_model::Label;
 use featherbench_spatial::{Mat3, Motion, Transform};
 
 /// The workspace of forward kinematics over packed joints, and its results.
@@ -36,6 +37,8 @@ use featherbench_spatial::{Mat3, Motion, Transform};
 #[derive(Clone, Debug)]
 pub struct PackedKinematics {
     bodies: Bodies,
+    /// How the described axes of each body are called.
+    labels: Vec<Label>,
     /// What the last run computed.
     order: usize,
 }
@@ -43,7 +46,7 @@ pub struct PackedKinematics {
 impl PackedKinematics {
     /// A workspace for this model.
     pub fn new(model: &PackedModel) -> Self {
-        Self { bodies: Bodies::new(model), order: PLACED }
+        Self { bodies: Bodies::new(model), labels: model.labels.clone(), order: PLACED }
     }
 
     /// Moves every body to configuration `q`, velocity `v` and acceleration `a`.
@@ -90,7 +93,8 @@ impl PackedKinematics {
     pub fn placement(&self, body: usize) -> Option<Transform<f64>> {
         let own = self.bodies.bodies[..self.bodies.count].get(body)?;
         let [x, y, z] = own.rotation.map(vector);
-        Some(Transform::new(Mat3::from_rows(x, y, z).transpose(), vector(own.position)))
+        let rotation = self.labels[body].rotation_to_described(Mat3::from_rows(x, y, z).transpose());
+        Some(Transform::new(rotation, vector(own.position)))
     }
 
     /// Velocity [ω; ṗ] of a compiled body's origin; `None` if there is no such body, or if the last run did not compute velocities.
@@ -101,6 +105,8 @@ impl PackedKinematics {
 
     fn walk<const ORDER: usize>(&mut self, model: &PackedModel, numbers: [&[f64]; 3]) -> Result<(), DimensionError> {
         self.bodies.begin(model, numbers[0])?;
+        expect("labels of the workspace", model.labels.len(), self.labels.len())?;
+        self.labels.copy_from_slice(&model.labels);
         for b in 0..model.blocks.len() {
             self.bodies.step::<ORDER>(model, b, numbers, |_, _, _, _| ());
         }

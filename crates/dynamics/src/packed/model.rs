@@ -2,7 +2,6 @@
 
 use super::bodies::Trees;
 use super::lanes::{LANES, Pack, STEPS, from_lanes};
-use super::trees::Trees;
 use featherbench_model::{JointKind, Label, Model, Topology};
 use featherbench_spatial::{Force, Motion, Quaternion, RigidBodyInertia, Sym3, Transform, Vec3};
 use std::ops::Range;
