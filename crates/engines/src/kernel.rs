@@ -5,7 +5,7 @@
 
 use featherbench_bench::{DENSE_LIMIT, NoAnswer, Quantity, Robot, layout};
 use featherbench_dynamics::{
-    Aba, Bias, Crba, Error, Ltdl, PackedAba, PackedCenterOfMass, PackedCrba, PackedEnergy, PackedJacobian, PackedKinematics, PackedModel,
+    Aba, Bias, Crba, Energy, Error, Ltdl, PackedAba, PackedCenterOfMass, PackedCrba, PackedJacobian, PackedKinematics, PackedModel,
     PackedMomentum, PackedRnea, Refined, TreeSparse,
 };
 use featherbench_model::Model;
@@ -304,10 +304,9 @@ fn mass_matrix_inverse<'a>(model: &'a Model<f64>, states: &'a StateBatch) -> Ker
 }
 
 fn energy<'a>(model: &'a Model<f64>, states: &'a StateBatch, quantity: Quantity) -> Kernel<'a> {
-    let packed = PackedModel::new(model);
-    let mut energy = PackedEnergy::new(&packed);
+    let mut energy = Energy::new(&model.topology);
     written(1, move |k, out| {
-        let energies = energy.run(&packed, states.q(k), states.v(k))?;
+        let energies = energy.run(model, states.q(k), states.v(k))?;
         out[0] = if quantity == Quantity::KineticEnergy { energies.kinetic } else { energies.potential };
         Ok(())
     })

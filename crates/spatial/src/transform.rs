@@ -1,7 +1,6 @@
 //! Placements of frames, which are spatial transforms.
 
-use crate::{DoubleDouble, Force, Lift, Mat3, Motion, Real, Vec3};
-use std::ops::Mul;
+use crate::{Force, Lift, Mat3, Motion, Real, Vec3};
 
 /// A quaternion (x, y, z, w), w the scalar part; it turns child axes to parent axes.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -34,51 +33,11 @@ impl<T: Real> Quaternion<T> {
         Mat3::from_array([one - (yy + zz), xy - wz, xz + wy, xy + wz, one - (xx + zz), yz - wx, xz - wy, yz + wx, one - (xx + yy)])
     }
 
-    /// The unit quaternion of the same rotation.
-    #[inline(always)]
-    pub fn normalized(self) -> Self {
-        let Self { v, w } = self;
-        let scale = T::one() / w.mul_add(w, v.dot(v)).sqrt();
-        Self { v: v * scale, w: w * scale }
-    }
-
-    /// The unit quaternion of a rotation matrix, its numbers the nearest doubles: the largest of the four comes from the trace, the others
-    /// from sums and differences of entries across the diagonal.
-    pub fn from_rotation(r: &Mat3<f64>) -> Quaternion<f64> {
-        let exact = DoubleDouble::from_f64;
-        // 4 q qᵀ in the order x, y, z, w
-        let (one, trace) = (DoubleDouble::one(), exact(r.x.x) + exact(r.y.y) + exact(r.z.z));
-        let square = |entry: f64| one + exact(entry) + exact(entry) - trace;
-        let (sum, difference) = (|a: f64, b: f64| DoubleDouble::from_sum(a, b), |a: f64, b: f64| DoubleDouble::from_sum(a, -b));
-        let [xy, xz, yz] = [sum(r.x.y, r.y.x), sum(r.x.z, r.z.x), sum(r.y.z, r.z.y)];
-        let [wx, wy, wz] = [difference(r.z.y, r.y.z), difference(r.x.z, r.z.x), difference(r.y.x, r.x.y)];
-        let rows = [[square(r.x.x), xy, xz, wx], [xy, square(r.y.y), yz, wy], [xz, yz, square(r.z.z), wz], [wx, wy, wz, one + trace]];
-        // each row is q times four times one of its numbers: the row of the largest number is known best
-        let mut best = 0;
-        for k in 1..4 {
-            if rows[k][k].to_f64() > rows[best][best].to_f64() {
-                best = k;
-            }
-        }
-        let row = rows[best];
-        let length = row.iter().fold(DoubleDouble::zero(), |sum, &entry| entry.mul_add(entry, sum)).sqrt();
-        Quaternion::from_array(row.map(|entry| (entry / length).to_f64()))
-    }
-
     /// Its rate of change at angular velocity `omega` in body axes: `q̇ = ½ q ⊗ (ω, 0)`.
     #[inline(always)]
     pub fn derivative(self, omega: Vec3<T>) -> Self {
         let half = omega * T::from_f64(0.5);
         Self { v: self.v.cross_add(half, half * self.w), w: -self.v.dot(half) }
-    }
-}
-
-/// One turn after another: `(p q).to_rotation()` is `p.to_rotation() * q.to_rotation()`.
-impl<T: Real> Mul for Quaternion<T> {
-    type Output = Self;
-    #[inline(always)]
-    fn mul(self, q: Self) -> Self {
-        Self { v: self.v.cross_add(q.v, q.v.scale_add(self.w, self.v * q.w)), w: self.w * q.w - self.v.dot(q.v) }
     }
 }
 

@@ -17,12 +17,12 @@
 //! of 36 with AVX-512 that is 5.5, 6.6 and 8.0 ns per joint for positions, velocities too, and accelerations too.
 
 use super::lanes::{LANES, Lanes, Pack, from_lanes, load};
-use super::model::{PackedModel, Segment, is_screw};
+use super::model::{PackedModel, Segment, is_screw, turn};
 use super::xyz::{Xyz, cross, times, transposed, two_crosses, xyz};
 use crate::DimensionError;
 use crate::error::expect;
 use featherbench_model::{JointKind, Model};
-use featherbench_spatial::{Mat3, Motion, Sym3, Transform, Vec3};
+use featherbench_spatial::{Mat3, Motion, Transform, Vec3};
 
 /// What the kinematics need of a block's joints.
 #[derive(Clone, Debug)]
@@ -102,20 +102,6 @@ impl Steps {
             slide: vector(&slide),
             slides: std::array::from_fn(|k| joints.get(k).is_some_and(|joint| crate::step::slides(joint.kind))),
         }
-    }
-}
-
-/// The parts of L for one joint; zero for a wide joint. About an axis of the frame each product is exact.
-fn turn(model: &Model<f64>, i: usize) -> [Mat3<f64>; 3] {
-    let (r, u) = (model.placements[i].rotation, model.subspaces[i].ang);
-    match model.topology.joints()[i].kind {
-        JointKind::Revolute(_) | JointKind::Helical => {
-            let along = Sym3::rank_one(1.0, u);
-            let across = Sym3::scalar(1.0) - along;
-            [r * along.to_mat3(), r * Mat3::skew(u), r * across.to_mat3()]
-        }
-        JointKind::Prismatic(_) => [r, Mat3::zero(), Mat3::zero()],
-        JointKind::Spherical | JointKind::Free => [Mat3::zero(); 3],
     }
 }
 

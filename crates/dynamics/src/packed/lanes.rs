@@ -6,7 +6,7 @@
 
 use super::model::{Block, PackedModel, Source};
 use super::rotate::{rotate_down, rotate_up};
-use featherbench_spatial::{Force, Mat3, Motion, Quaternion, Real, RigidBodyInertia, Sym3, Vec3};
+use featherbench_spatial::{Force, Mat3, Motion, Real, RigidBodyInertia, Sym3, Vec3};
 
 /// One number of each joint of a block.
 #[cfg(target_feature = "avx512f")]
@@ -97,7 +97,6 @@ macro_rules! lanes_of {
 }
 
 lanes_of!(Vec3 { x: Pack, y: Pack, z: Pack });
-lanes_of!(Quaternion { v: Vec3<Pack>, w: Pack });
 lanes_of!(Mat3 { x: Vec3<Pack>, y: Vec3<Pack>, z: Vec3<Pack> });
 lanes_of!(Motion { ang: Vec3<Pack>, lin: Vec3<Pack> });
 lanes_of!(Force { ang: Vec3<Pack>, lin: Vec3<Pack> });

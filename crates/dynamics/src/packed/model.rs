@@ -3,7 +3,7 @@
 use super::bodies::Trees;
 use super::lanes::{LANES, Pack, STEPS, from_lanes};
 use featherbench_model::{JointKind, Label, Model, Topology};
-use featherbench_spatial::{Force, Motion, Quaternion, RigidBodyInertia, Sym3, Transform, Vec3};
+use featherbench_spatial::{Force, Mat3, Motion, RigidBodyInertia, Sym3, Transform, Vec3};
 use std::ops::Range;
 
 /// A model for the packed kernels: its parameters in registers, and where sums go from block to block.
@@ -44,14 +44,11 @@ pub struct PackedModel {
 /// The parameters of consecutive joints, one to a lane. Lanes without a joint hold zeros.
 #[derive(Clone, Debug)]
 pub(super) struct Block {
-    /// `l = cos (q/2) · turn[0] + sin (q/2) · turn[1]`: the orientation of each body in its parent. See `orientation.rs`.
-    pub turn: [Quaternion<Pack>; 2],
-    /// 1 in the lanes without a joint. There the orientation is that of the base.
-    pub idle: Pack,
-    /// 1/2 in the lanes of joints that turn.
-    pub half: Pack,
-    /// `mount[0] + sin q · mount[1] + cos q · mount[2]`: the displacement from the parent's origin, in the body's axes.
-    pub mount: [Vec3<Pack>; 3],
+    /// `L = turn[0] + sin q · turn[1] + cos q · turn[2]`: the orientation of each body in its parent. See `orientation.rs`.
+    pub turn: [Mat3<Pack>; 3],
+    /// The displacement from the parent's origin, in the parent's axes, at q = 0, and its change with q.
+    pub mount: Vec3<Pack>,
+    pub slide: Vec3<Pack>,
     /// Motion subspace of the one-dof joints, in body axes.
     pub subspace: Motion<Pack>,
     pub inertia: RigidBodyInertia<Pack>,
@@ -147,8 +144,6 @@ pub(super) struct Wide {
     pub lane: usize,
     pub kind: JointKind,
     pub placement: Transform<f64>,
-    /// The orientation of the placement.
-    pub turn: Quaternion<f64>,
     /// The segment that it begins, if it is a free joint at the root: the base of its tree.
     pub base: Option<usize>,
 }
@@ -198,6 +193,7 @@ impl PackedModel {
         // One number per joint; zero where there is no joint.
         let each = |f: &dyn Fn(usize) -> f64| from_lanes(|k| if k < count { f(first + k) } else { 0.0 });
         let vector = |f: &dyn Fn(usize) -> Vec3<f64>| Vec3::new(each(&|i| f(i).x), each(&|i| f(i).y), each(&|i| f(i).z));
+        let matrix = |f: &dyn Fn(usize) -> Mat3<f64>| Mat3::from_rows(vector(&|i| f(i).x), vector(&|i| f(i).y), vector(&|i| f(i).z));
         let subspace = |i: usize| if is_screw(model.topology.joints()[i].kind) { model.subspaces[i] } else { Motion::zero() };
         let own = |i: usize| model.inertias[i].mul(subspace(i));
         let rotational = |f: fn(&Sym3<f64>) -> f64| each(&|i| f(&model.inertias[i].rotational));
@@ -215,17 +211,14 @@ impl PackedModel {
         for (lane, joint) in joints.iter().enumerate().filter(|(_, joint)| !is_screw(joint.kind)) {
             let begun = segments.clone().find(|s| self.segments[*s].first == lane);
             let base = begun.filter(|_| joint.kind == JointKind::Free && joint.parent.is_none());
-            let placement = model.placements[first + lane];
-            let turn = Quaternion::<f64>::from_rotation(&placement.rotation);
-            self.wide.push(Wide { lane, kind: joint.kind, placement, turn, base });
+            self.wide.push(Wide { lane, kind: joint.kind, placement: model.placements[first + lane], base });
         }
         let slides = joints.iter().any(|joint| !matches!(joint.kind, JointKind::Revolute(_) | JointKind::Spherical));
         let place = |of: fn(&featherbench_model::Joint) -> usize| std::array::from_fn(|k| joints.get(k).map_or(0, of));
         self.blocks.push(Block {
-            turn: std::array::from_fn(|part| Quaternion { v: vector(&|i| turn(model, i)[part].v), w: each(&|i| turn(model, i)[part].w) }),
-            idle: mask(count..LANES),
-            half: from_lanes(|k| if screw(k) && !matches!(joints[k].kind, JointKind::Prismatic(_)) { 0.5 } else { 0.0 }),
-            mount: std::array::from_fn(|part| vector(&|i| mount(model, i)[part])),
+            turn: std::array::from_fn(|part| matrix(&|i| turn(model, i)[part])),
+            mount: vector(&|i| model.placements[i].translation),
+            slide: vector(&|i| model.placements[i].rotation * subspace(i).lin),
             subspace: Motion::new(vector(&|i| subspace(i).ang), vector(&|i| subspace(i).lin)),
             inertia: RigidBodyInertia {
                 mass: each(&|i| model.inertias[i].mass),
@@ -322,26 +315,18 @@ pub(super) fn is_screw(kind: JointKind) -> bool {
     matches!(kind, JointKind::Revolute(_) | JointKind::Prismatic(_) | JointKind::Helical)
 }
 
-/// The parts of `l = p (cos (q/2) + sin (q/2) u)`, the orientation of a body that turns about u; p is that of its placement.
-fn turn(model: &Model<f64>, i: usize) -> [Quaternion<f64>; 2] {
-    let placed = Quaternion::<f64>::from_rotation(&model.placements[i].rotation);
-    let nothing = Quaternion { v: Vec3::zero(), w: 0.0 };
-    match model.topology.joints()[i].kind {
-        JointKind::Revolute(_) | JointKind::Helical => [placed, placed * Quaternion { v: model.subspaces[i].ang, w: 0.0 }],
-        JointKind::Prismatic(_) => [placed, nothing],
-        JointKind::Spherical | JointKind::Free => [nothing; 2],
-    }
-}
-
-/// The parts of `Lᵀ t = u uᵀ t − sin q · u × t + cos q · (1 − u uᵀ) t`, t the placement's translation in the joint's axes.
-fn mount(model: &Model<f64>, i: usize) -> [Vec3<f64>; 3] {
-    let (u, t) = (model.subspaces[i].ang, model.placements[i].rotation.transpose_mul(model.placements[i].translation));
+/// The parts of `L = R (u uᵀ + sin q · u× + cos q · (1 − u uᵀ))`, the orientation of a body that turns about u; `R` alone if it does not.
+///
+/// About an axis of the frame each product is exact.
+pub(super) fn turn(model: &Model<f64>, i: usize) -> [Mat3<f64>; 3] {
+    let (r, u) = (model.placements[i].rotation, model.subspaces[i].ang);
     match model.topology.joints()[i].kind {
         JointKind::Revolute(_) | JointKind::Helical => {
             let along = Sym3::rank_one(1.0, u);
-            [along * t, t.cross(u), (Sym3::scalar(1.0) - along) * t]
+            let across = Sym3::scalar(1.0) - along;
+            [r * along.to_mat3(), r * Mat3::skew(u), r * across.to_mat3()]
         }
-        JointKind::Prismatic(_) => [t, Vec3::zero(), Vec3::zero()],
-        JointKind::Spherical | JointKind::Free => [Vec3::zero(); 3],
+        JointKind::Prismatic(_) => [r, Mat3::zero(), Mat3::zero()],
+        JointKind::Spherical | JointKind::Free => [Mat3::zero(); 3],
     }
 }

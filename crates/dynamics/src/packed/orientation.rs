@@ -1,29 +1,24 @@
-//! The orientation of every body in the axes of its base, `R_i = R_p L_i`, with `d_i = R_p t_i` and the motion subspaces `R_i S_i`.
+//! The orientation of every body in the axes of its base: `R_i = R_p L_i`, `d_i = R_p t_i`, and the motion subspaces `R_i S_i`.
 //!
-//! Orientations are kept as quaternions. About its axis u a joint turns by `l = p (cos q/2 + sin q/2 · u)`, where p is that of its
-//! placement: p and p u are parameters of the model. So l is formed for a register of joints at once, whatever their axes. The product over
-//! the path takes log₂(lanes) steps, like the sums in `lanes.rs`; then each segment takes the orientation of its parent. The body of a free
-//! joint at the root is its tree's base: there R = 1 and d = 0.
+//! About its axis u a joint turns by `L = R₀ (u uᵀ + sin q · u× + cos q · (1 − u uᵀ))`. The three matrices are parameters of the model. So
+//! L is formed for a register of joints at once, whatever their axes. `R_i = R_p L_i` goes from joint to joint, the columns of R in three
+//! registers. The body of a free joint at the root is its tree's base: there R = 1 and d = 0.
 //!
-//! Rounding changes the length of a quaternion by 2⁻⁵³ per step. R does not depend on the length, and is orthogonal up to its own rounding.
-//!
-//! Cost per register of joints: sine and cosine, about 190 other instructions, and 30 more for each segment. With matrices in place of
-//! quaternions it would be twice as many.
+//! Cost per joint: about 110 multiply-adds over a register of joints, and 9 multiply-adds of registers of three. The recursion waits for
+//! three dependent multiply-adds per joint.
 
-use super::lanes::{LANES, Lanes, Pack, STEPS, load};
+use super::lanes::{LANES, Lanes, Pack, from_lanes, load};
 use super::model::{Block, PackedModel, Source, Wide};
-use super::rotate::rotate_up;
 use featherbench_model::JointKind;
-use featherbench_spatial::{Force, Mat3, Motion, Quaternion, Real, Vec3};
+use featherbench_spatial::{Force, Mat3, Motion, Real, Transform, Vec3};
+use wide::f64x4;
 
 /// The orientations of one configuration.
 #[derive(Clone, Debug)]
 pub(super) struct Orientations {
     pub frames: Vec<Frame>,
-    /// Orientation of each body, per block: relative to the segment's parent, then to the base.
-    turns: Vec<Quaternion<Pack>>,
-    /// Orientation of the body that a segment hangs from.
-    parents: Vec<Quaternion<f64>>,
+    /// Columns of R per body; the fourth number is 0.
+    columns: Vec<[f64x4; 3]>,
     /// Acceleration −g of the base, in the axes of its tree, per segment that begins at the root. A run sets it.
     pub bases: Vec<Vec3<f64>>,
 }
@@ -41,113 +36,88 @@ pub(super) struct Frame {
 
 impl Orientations {
     pub fn new(model: &PackedModel) -> Self {
-        let (zero, upright) = (Vec3::zero(), Quaternion { v: Vec3::zero(), w: 1.0 });
+        let (zero, column) = (Vec3::zero(), [f64x4::from_f64(0.0); 3]);
         let frame = Frame { rotation: Mat3::zero(), displacement: zero, subspace: Motion::zero() };
         Self {
             frames: vec![frame; model.blocks.len()],
-            turns: vec![Quaternion::splat(upright); model.blocks.len()],
-            parents: vec![upright; model.segments.len()],
+            columns: vec![column; model.blocks.len() * LANES],
             bases: vec![Vec3::zero(); model.segments.len()],
         }
     }
 
-    /// Turns every body. The steps that need no other block come first, so that the processor works on several blocks at once.
+    /// Turns every body. The steps that need no other block are loops of their own, so that the processor works on several blocks at once.
     #[inline(always)]
     pub fn turn(&mut self, model: &PackedModel, q: &[f64]) {
         for (b, block) in model.blocks.iter().enumerate() {
             let (local, displacement) = self.across_joints(model, block, q);
-            self.turns[b] = along_segments(block, local);
-            self.frames[b].displacement = displacement;
-        }
-        for (b, block) in model.blocks.iter().enumerate() {
-            let turn = self.along_path(model, b);
-            self.turns[b] = turn;
-            let rotation = turn.to_rotation();
-            let sliding = if block.slides { rotation * block.subspace.lin } else { Vec3::zero() };
             let frame = &mut self.frames[b];
+            // d = R_p t = R_i (Lᵀ t): the displacement is as straight as the body's own axes
+            (frame.rotation, frame.displacement) = (local, local.transpose_mul(displacement));
+        }
+        for b in 0..model.blocks.len() {
+            self.along_path(model, b);
+        }
+        for ((block, frame), columns) in model.blocks.iter().zip(&mut self.frames).zip(self.columns.as_chunks::<LANES>().0) {
+            // from columns per joint to a register per component
+            let vector = |column: usize| transposed(columns, column);
+            let rotation = straightened([vector(0), vector(1), vector(2)]);
+            let sliding = if block.slides { rotation * block.subspace.lin } else { Vec3::zero() };
             frame.displacement = rotation * frame.displacement;
             (frame.rotation, frame.subspace) = (rotation, Motion::new(rotation * block.subspace.ang, sliding));
         }
     }
 
-    /// l and Lᵀ t: orientation in the parent, and displacement from the parent's origin in the body's axes.
+    /// `R_i = R_p L_i` for block `b`, whose frame holds L.
     #[inline(always)]
-    fn across_joints(&mut self, model: &PackedModel, block: &Block, q: &[f64]) -> (Quaternion<Pack>, Vec3<Pack>) {
-        let position = load(block, &block.q, q);
-        let (sin, cos) = (position * block.half).sin_cos();
-        let mut local = block.turn[0].zip(block.turn[1], |by_cos, by_sin| by_sin.mul_add(sin, by_cos * cos));
-        local.w += block.idle;
-        // of the whole angle: sin q = 2 sin q/2 cos q/2,  cos q = 1 − 2 sin² q/2
-        let twice = sin + sin;
-        let (sin, cos) = (twice * cos, twice.mul_add(-sin, Pack::from_f64(1.0)));
-        let [fixed, by_sin, by_cos] = block.mount;
-        let mut displacement = by_sin.scale_add(sin, by_cos.scale_add(cos, fixed));
-        if block.slides {
-            displacement = block.subspace.lin.scale_add(position, displacement);
+    fn along_path(&mut self, model: &PackedModel, b: usize) {
+        let (block, l, columns) = (&model.blocks[b], &self.frames[b].rotation, &mut self.columns[..]);
+        for segment in &model.segments[block.segments.clone()] {
+            let [mut x, mut y, mut z] = match segment.parent {
+                Source::Root => identity(),
+                Source::Before { block, lane } => columns[block * LANES + lane],
+                Source::Within { lane } => columns[b * LANES + lane],
+            };
+            for k in segment.first..segment.end {
+                let combine = |a: f64, b: f64, c: f64| f64x4::splat(a).mul_add(x, f64x4::splat(b).mul_add(y, f64x4::splat(c) * z));
+                let turned = [
+                    combine(l.x.x.lane(k), l.y.x.lane(k), l.z.x.lane(k)),
+                    combine(l.x.y.lane(k), l.y.y.lane(k), l.z.y.lane(k)),
+                    combine(l.x.z.lane(k), l.y.z.lane(k), l.z.z.lane(k)),
+                ];
+                [x, y, z] = turned;
+                columns[b * LANES + k] = turned;
+            }
         }
+    }
+
+    /// L and t: orientation and position in the parent, in the parent's axes.
+    #[inline(always)]
+    fn across_joints(&mut self, model: &PackedModel, block: &Block, q: &[f64]) -> (Mat3<Pack>, Vec3<Pack>) {
+        let angle = load(block, &block.q, q);
+        let (sin, cos) = angle.sin_cos();
+        let [fixed, by_sin, by_cos] = &block.turn;
+        let partly = by_cos.zip(*fixed, |by_cos, fixed| by_cos.mul_add(cos, fixed));
+        let mut local = by_sin.zip(partly, |by_sin, partly| by_sin.mul_add(sin, partly));
+        let mut displacement = if block.slides { block.slide.scale_add(angle, block.mount) } else { block.mount };
         for wide in &model.wide[block.wide.clone()] {
-            let (turn, mount) = self.across_wide(model, wide, &q[block.q[wide.lane]..]);
-            local.set_lane(wide.lane, turn);
-            displacement.set_lane(wide.lane, mount);
+            let x = self.across_wide(model, wide, &q[block.q[wide.lane]..]);
+            local.set_lane(wide.lane, x.rotation);
+            displacement.set_lane(wide.lane, x.translation);
         }
         (local, displacement)
     }
 
-    /// l and Lᵀ t of a wide joint. Of a base they are 1 and 0, and the acceleration of its tree's base is turned.
-    fn across_wide(&mut self, model: &PackedModel, wide: &Wide, q: &[f64]) -> (Quaternion<f64>, Vec3<f64>) {
+    /// The placement of a wide joint's body in its parent; of a base, the identity, and the acceleration of its tree's base is turned.
+    fn across_wide(&mut self, model: &PackedModel, wide: &Wide, q: &[f64]) -> Transform<f64> {
         let x = wide.kind.transform(&wide.placement, &Motion::zero(), q);
         match wide.base {
             Some(segment) => {
                 self.bases[segment] = x.rotation.transpose_mul(-model.gravity);
-                (Quaternion { v: Vec3::zero(), w: 1.0 }, Vec3::zero())
+                Transform::identity()
             }
-            None => {
-                // the last four coordinates of either kind
-                let last = wide.kind.nq() - 4;
-                let across = Quaternion::from_array([q[last], q[last + 1], q[last + 2], q[last + 3]]);
-                (wide.turn * across.normalized(), x.rotation.transpose_mul(x.translation))
-            }
+            None => x,
         }
     }
-
-    /// The orientations in the base, from those relative to the segments' parents.
-    #[inline(always)]
-    fn along_path(&mut self, model: &PackedModel, b: usize) -> Quaternion<Pack> {
-        let (block, within) = (&model.blocks[b], self.turns[b]);
-        if block.segments.len() == 1 && model.segments[block.segments.start].parent == Source::Root {
-            return within;
-        }
-        let mut parents = Quaternion { v: Vec3::zero(), w: block.idle };
-        for s in block.segments.clone() {
-            let segment = &model.segments[s];
-            let parent = match segment.parent {
-                Source::Root => Quaternion { v: Vec3::zero(), w: 1.0 },
-                Source::Before { block, lane } => self.turns[block].lane(lane),
-                Source::Within { lane } => self.parents[block.segment[lane]] * within.lane(lane),
-            };
-            self.parents[s] = parent;
-            parents = Quaternion::splat(parent).zip(parents, |parent, parents| parent.mul_add(segment.all, parents));
-        }
-        parents * within
-    }
-}
-
-/// The product of l over each joint's segment, up to the joint.
-#[inline(always)]
-fn along_segments(block: &Block, local: Quaternion<Pack>) -> Quaternion<Pack> {
-    let mut product = after(block.ancestor[0], local.map(rotate_up::<1>), local);
-    product = after(block.ancestor[1], product.map(rotate_up::<2>), product);
-    if LANES > 4 {
-        product = after(block.ancestor[STEPS - 1], product.map(rotate_up::<{ LANES / 2 }>), product);
-    }
-    product
-}
-
-/// `above · turn` in the lanes where `mask` is 1, and `turn` where it is 0.
-#[inline(always)]
-fn after(mask: Pack, above: Quaternion<Pack>, turn: Quaternion<Pack>) -> Quaternion<Pack> {
-    let above = Quaternion { v: above.v * mask, w: above.w.mul_add(mask, Pack::from_f64(1.0) - mask) };
-    above * turn
 }
 
 /// I S of each body alone, in the axes of the base.
@@ -174,4 +144,30 @@ pub(super) fn across(model: &PackedModel, block: &Block, frame: &Frame, v: &[f64
         }
     }
     motion
+}
+
+/// The rotation nearest to a matrix with these columns, which is one but for rounding: `R + R (1 − RᵀR)/2`.
+///
+/// Rounding makes R longer or shorter by 2⁻⁵³ per joint. Without this step a body's inertia would carry the sum over its path.
+#[inline(always)]
+fn straightened([x, y, z]: [Vec3<Pack>; 3]) -> Mat3<Pack> {
+    let (half, minus_one) = (Pack::from_f64(-0.5), Pack::from_f64(-1.0));
+    let product = |a: Vec3<Pack>, b: Vec3<Pack>, start: Pack| a.x.mul_add(b.x, a.y.mul_add(b.y, a.z.mul_add(b.z, start))) * half;
+    let [xx, yy, zz] = [product(x, x, minus_one), product(y, y, minus_one), product(z, z, minus_one)];
+    let [xy, yz, zx] = [product(x, y, Pack::zero()), product(y, z, Pack::zero()), product(z, x, Pack::zero())];
+    let column = |own: Vec3<Pack>, ex: Pack, ey: Pack, ez: Pack| x.scale_add(ex, y.scale_add(ey, z.scale_add(ez, own)));
+    Mat3::from_rows(column(x, xx, xy, zx), column(y, xy, yy, yz), column(z, zx, yz, zz)).transpose()
+}
+
+/// One of the columns of every joint, a register per component.
+#[inline(always)]
+fn transposed(columns: &[[f64x4; 3]; LANES], column: usize) -> Vec3<Pack> {
+    let quarter = |first: usize| f64x4::transpose(std::array::from_fn(|k| columns[first + k][column])).map(|row| row.to_array());
+    let quarters: [[[f64; 4]; 4]; LANES / 4] = std::array::from_fn(|part| quarter(4 * part));
+    let component = |row: usize| from_lanes(|k| quarters[k / 4][row][k % 4]);
+    Vec3::new(component(0), component(1), component(2))
+}
+
+fn identity() -> [f64x4; 3] {
+    [f64x4::new([1.0, 0.0, 0.0, 0.0]), f64x4::new([0.0, 1.0, 0.0, 0.0]), f64x4::new([0.0, 0.0, 1.0, 0.0])]
 }
