@@ -89,7 +89,7 @@ impl PackedKinematics {
         (0..self.bodies.count).filter_map(|body| self.body(body))
     }
 
-    /// Placement of a compiled body, or `None` if there is no such body.
+    /// Placement of a compiled body, with its described axes, or `None` if there is no such body.
     pub fn placement(&self, body: usize) -> Option<Transform<f64>> {
         let own = self.bodies.bodies[..self.bodies.count].get(body)?;
         let [x, y, z] = own.rotation.map(vector);
