@@ -37,7 +37,7 @@
 //! | kinetic energy | 1.09, 2.0 | 1.06, 2.6 |
 //! | potential energy | 1.05, 2.4 | 0.99, 3.0 |
 //!
-//! These are the usual methods of the studies in this text, but for energies: on six robots the packed kinetic energy had more than twice
+//! These are the usual methods of the studies in this text, but for energies. On six robots the packed kinetic energy had more than twice
 //! the best engine's error, so energies go link by link there. The left columns of all tables are of link by link before joints along
 //! coordinate axes had a text of their own.
 //!
