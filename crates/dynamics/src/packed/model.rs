@@ -318,7 +318,7 @@ pub(super) fn is_screw(kind: JointKind) -> bool {
 /// The parts of `L = R (u uᵀ + sin q · u× + cos q · (1 − u uᵀ))`, the orientation of a body that turns about u; `R` alone if it does not.
 ///
 /// About an axis of the frame each product is exact.
-pub(super) fn turn(model: &Model<f64>, i: usize) -> [Mat3<f64>; 3] {
+fn turn(model: &Model<f64>, i: usize) -> [Mat3<f64>; 3] {
     let (r, u) = (model.placements[i].rotation, model.subspaces[i].ang);
     match model.topology.joints()[i].kind {
         JointKind::Revolute(_) | JointKind::Helical => {
