@@ -73,6 +73,11 @@ impl Real for Plain {
     }
 
     #[inline(always)]
+    fn reciprocal_or_zero(self) -> Self {
+        Self(self.0.reciprocal_or_zero())
+    }
+
+    #[inline(always)]
     fn min_lane(self) -> f64 {
         self.0
     }

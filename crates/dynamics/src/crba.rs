@@ -2,7 +2,9 @@
 //!
 //! Source: the book, table 6.2. The book carries one force `F_k = Iᶜ S_k` at a time from its joint to the root. Here the forces of all dofs
 //! that a body supports are carried together, component by component. They are consecutive dofs, so the loops are contiguous.
-//! Frames: the inertias Iᶜ and forces F are in the axes of the body that the loop has reached, at its origin.
+//! A composite inertia Iᶜ is carried about its own centre of mass, and not at its joint as in the book. Of a curled chain the inertia at the
+//! joint is large, while the joint's own axis may feel little of it: M_kk would have the rounding errors of the large numbers.
+//! Frames: the inertias Iᶜ and forces F are in the axes of the body that the loop has reached; F is at its origin.
 //! Armature is added to the diagonal. Shapes: q has `nq` numbers; M is `nv`×`nv`. Units: SI, angles in radians.
 //! Cost: O(n + Σ d_k), d_k the depth of dof k. A call does not allocate.
 
@@ -10,14 +12,14 @@ use crate::error::expect;
 use crate::step::{by_kind, expect_bodies};
 use crate::{DimensionError, TreeSparse};
 use featherbench_model::{Axis, JointKind, Model, Topology};
-use featherbench_spatial::{Force, Lift, Motion, Real, RigidBodyInertia, Transform, Vec3};
+use featherbench_spatial::{CentralInertia, Force, Lift, Motion, Real, Transform, Vec3};
 use std::ops::Range;
 
 /// The workspace of the composite-rigid-body algorithm.
 #[derive(Clone, Debug)]
 pub struct Crba<T> {
     /// Composite inertia Iᶜ: the body with everything that it supports.
-    composites: Vec<RigidBodyInertia<T>>,
+    composites: Vec<CentralInertia<T>>,
     /// Placement of each body in its parent.
     placements: Vec<Transform<T>>,
     forces: Forces<T>,
@@ -27,7 +29,7 @@ impl<T: Real> Crba<T> {
     /// A workspace for models of this topology.
     pub fn new(topology: &Topology) -> Self {
         Self {
-            composites: vec![RigidBodyInertia::zero(); topology.bodies()],
+            composites: vec![CentralInertia::zero(); topology.bodies()],
             placements: vec![Transform::identity(); topology.bodies()],
             forces: Forces::new(topology.nv()),
         }
@@ -45,7 +47,7 @@ impl<T: Real> Crba<T> {
         matrix.expect_topology(&model.topology)?;
 
         for (i, (composite, x)) in composites.iter_mut().zip(placements.iter_mut()).enumerate() {
-            *composite = model.inertias[i].lift();
+            *composite = model.inertias[i].lift::<T>().central();
             *x = model.joint_transform(i, q);
         }
         for (i, joint) in model.topology.joints().iter().enumerate().rev() {
@@ -75,12 +77,16 @@ impl<T: Real> Crba<T> {
 
 /// `Iᶜ S_k`: the force that moves a composite body along column `k` of its joint's motion subspace.
 #[inline(always)]
-fn column_force<T: Real, P: Real + Lift<T>>(kind: JointKind, composite: &RigidBodyInertia<T>, subspace: &Motion<P>, k: usize) -> Force<T> {
-    let RigidBodyInertia { mass, first_moment: h, rotational: i } = *composite;
+fn column_force<T: Real, P: Real + Lift<T>>(kind: JointKind, composite: &CentralInertia<T>, subspace: &Motion<P>, k: usize) -> Force<T> {
+    let CentralInertia { mass, com: c, rotational: i } = *composite;
     let zero = T::zero();
     match kind {
-        JointKind::Revolute(Axis::Z) => Force::new(Vec3::new(i.xz, i.yz, i.zz), Vec3::new(-h.y, h.x, zero)),
-        JointKind::Prismatic(Axis::Z) => Force::new(Vec3::new(h.y, -h.x, zero), Vec3::new(zero, zero, mass)),
+        JointKind::Revolute(Axis::Z) => {
+            let f = Vec3::new(-(mass * c.y), mass * c.x, zero);
+            let n = Vec3::new((-c.z).mul_add(f.y, i.xz), c.z.mul_add(f.x, i.yz), c.x.mul_add(f.y, (-c.y).mul_add(f.x, i.zz)));
+            Force::new(n, f)
+        }
+        JointKind::Prismatic(Axis::Z) => Force::new(Vec3::new(mass * c.y, -(mass * c.x), zero), Vec3::new(zero, zero, mass)),
         _ => composite.mul(kind.column(subspace, k)),
     }
 }

@@ -53,6 +53,13 @@ impl<T: Real> RigidBodyInertia<T> {
         Self { mass: self.mass, first_moment: moved, rotational }
     }
 
+    /// About the centre of mass, which of a body without mass is the origin.
+    #[inline(always)]
+    pub fn central(&self) -> CentralInertia<T> {
+        let com = self.first_moment * self.mass.reciprocal_or_zero();
+        CentralInertia { mass: self.mass, com, rotational: self.rotational - Sym3::minus_cross_cross(com, self.first_moment) }
+    }
+
     /// As an articulated-body inertia.
     #[inline(always)]
     pub fn to_articulated(&self) -> ArticulatedInertia<T> {
@@ -66,6 +73,55 @@ impl<T: Real> RigidBodyInertia<T> {
         T: Lift<S>,
     {
         RigidBodyInertia { mass: self.mass.lift(), first_moment: self.first_moment.lift(), rotational: self.rotational.lift() }
+    }
+}
+
+/// The inertia of a rigid body about its centre of mass, in the axes of a frame.
+///
+/// It keeps digits that an inertia at the origin loses: far from the origin, that is m·c² and a little, and the little may be all that an
+/// axis through the centre of mass feels.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct CentralInertia<T> {
+    /// Mass, kg.
+    pub mass: T,
+    /// Centre of mass, m.
+    pub com: Vec3<T>,
+    /// Rotational inertia about the centre of mass, kg·m².
+    pub rotational: Sym3<T>,
+}
+
+impl<T: Real> CentralInertia<T> {
+    /// A body of no mass.
+    #[inline(always)]
+    pub fn zero() -> Self {
+        Self { mass: T::zero(), com: Vec3::zero(), rotational: Sym3::zero() }
+    }
+
+    /// `I v`: the momentum of a velocity at the frame's origin.
+    #[inline(always)]
+    pub fn mul(&self, v: Motion<T>) -> Force<T> {
+        // f = m (v + ω × c),  n = I ω + c × f
+        let f = v.ang.cross_add(self.com, v.lin) * self.mass;
+        Force::new(self.com.cross_add(f, self.rotational * v.ang), f)
+    }
+
+    /// The same inertia in the parent's coordinates.
+    #[inline(always)]
+    pub fn to_parent(&self, x: &Transform<T>) -> Self {
+        Self { mass: self.mass, com: x.point(self.com), rotational: self.rotational.rotate(x.rotation) }
+    }
+}
+
+impl<T: Real> AddAssign for CentralInertia<T> {
+    /// Joins the bodies. Of two bodies without mass the first keeps its centre.
+    #[inline(always)]
+    fn add_assign(&mut self, other: Self) {
+        let mass = self.mass + other.mass;
+        let share = other.mass * mass.reciprocal_or_zero();
+        let apart = other.com - self.com;
+        self.rotational = self.rotational + other.rotational + Sym3::point_mass(share * self.mass, apart);
+        self.com = apart.scale_add(share, self.com);
+        self.mass = mass;
     }
 }
 

@@ -12,7 +12,7 @@ mod scalar;
 mod transform;
 mod vector;
 
-pub use inertia::{ArticulatedInertia, RigidBodyInertia};
+pub use inertia::{ArticulatedInertia, CentralInertia, RigidBodyInertia};
 pub use linear::{Ldl3, Mat3, Sym3, Vec3};
 pub use scalar::{Compensated, Counted, DoubleDouble, Dual, Lift, Operations, Real};
 pub use transform::{Quaternion, Transform};

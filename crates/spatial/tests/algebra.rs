@@ -1,6 +1,6 @@
 //! The identities of spatial algebra, on random vectors and placements.
 
-use featherbench_spatial::{ArticulatedInertia, Force, Mat3, Motion, Quaternion, RigidBodyInertia, Sym3, Transform, Vec3};
+use featherbench_spatial::{ArticulatedInertia, CentralInertia, Force, Mat3, Motion, Quaternion, RigidBodyInertia, Sym3, Transform, Vec3};
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
 
@@ -117,6 +117,23 @@ proptest! {
         prop_assert!(close(&articulated.mul(m).to_array(), &i.mul(m).to_array()));
         let moved = articulated.to_parent(&x).mul(m);
         prop_assert!(moved.to_array().iter().zip(around.to_array()).all(|(a, b)| (a - b).abs() <= 50.0 * TOLERANCE));
+    }
+
+    #[test]
+    fn an_inertia_about_the_centre_of_mass_is_the_same_inertia(x in placement(), i in inertia(), j in inertia(), m in motion()) {
+        let near = |a: Force<f64>, b: Force<f64>| a.to_array().iter().zip(b.to_array()).all(|(a, b)| (a - b).abs() <= 50.0 * TOLERANCE);
+        prop_assert!(near(i.central().mul(m), i.mul(m)), "products of four numbers around two");
+        prop_assert!(near(i.central().to_parent(&x).mul(m), i.to_parent(&x).mul(m)));
+        let mut both = i.central();
+        both += j.central();
+        prop_assert!(near(both.mul(m), (i + j).mul(m)));
+        // A body without mass changes nothing, on either side.
+        let mut same = both;
+        same += CentralInertia::zero().to_parent(&x);
+        prop_assert_eq!(same, both);
+        let mut first = RigidBodyInertia::zero().central();
+        first += both;
+        prop_assert!(near(first.mul(m), both.mul(m)));
     }
 
     #[test]

@@ -82,6 +82,11 @@ impl Real for Compensated {
     }
 
     #[inline(always)]
+    fn reciprocal_or_zero(self) -> Self {
+        self.to_double_double().reciprocal_or_zero().into()
+    }
+
+    #[inline(always)]
     fn min_lane(self) -> f64 {
         self.value + self.error
     }

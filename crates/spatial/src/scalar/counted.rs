@@ -80,6 +80,11 @@ impl Real for Counted {
         (Self(s), Self(c))
     }
 
+    fn reciprocal_or_zero(self) -> Self {
+        Self::tally(|count| &mut count.divisions);
+        Self(self.0.reciprocal_or_zero())
+    }
+
     fn min_lane(self) -> f64 {
         self.0
     }

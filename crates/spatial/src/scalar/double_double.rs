@@ -138,6 +138,11 @@ impl Real for DoubleDouble {
     }
 
     #[inline(always)]
+    fn reciprocal_or_zero(self) -> Self {
+        if self.hi == 0.0 { Self::zero() } else { Self::one() / self }
+    }
+
+    #[inline(always)]
     fn min_lane(self) -> f64 {
         self.hi
     }

@@ -60,6 +60,12 @@ impl<T: Real> Real for Dual<T> {
     }
 
     #[inline(always)]
+    fn reciprocal_or_zero(self) -> Self {
+        let reciprocal = self.value.reciprocal_or_zero();
+        Self::new(reciprocal, -(reciprocal * reciprocal * self.derivative))
+    }
+
+    #[inline(always)]
     fn min_lane(self) -> f64 {
         self.value.min_lane()
     }

@@ -51,6 +51,12 @@ macro_rules! real_for_lanes {
             }
 
             #[inline(always)]
+            fn reciprocal_or_zero(self) -> Self {
+                let (zero, one) = (Self::splat(0.0), Self::splat(1.0));
+                self.simd_eq(zero).select(zero, one / self)
+            }
+
+            #[inline(always)]
             fn min_lane(self) -> f64 {
                 if !self.simd_eq(self).all() {
                     return f64::NAN;

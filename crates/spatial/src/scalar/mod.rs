@@ -19,7 +19,8 @@ use std::ops::{Add, AddAssign, Div, Mul, MulAssign, Neg, Sub, SubAssign};
 /// A scalar of the dynamics kernels: a ring with division, a fused multiply-add, square root, sine and cosine.
 ///
 /// Nothing here compares. So kernels are branch-free in the scalar, and the same text runs on `f64`, `f32`, SIMD lanes, dual numbers and
-/// extended precision. The one exception is `min_lane`: a factorization keeps its smallest pivot through it.
+/// extended precision. There are two exceptions. A factorization keeps its smallest pivot through `min_lane`. A body without mass has no
+/// centre of mass, and `reciprocal_or_zero` gives it one.
 pub trait Real:
     Copy
     + Debug
@@ -52,6 +53,9 @@ pub trait Real:
 
     /// Sine and cosine of an angle in radians.
     fn sin_cos(self) -> (Self, Self);
+
+    /// 1/x, and zero where x is zero; in lanes, lane by lane.
+    fn reciprocal_or_zero(self) -> Self;
 
     /// The smallest real value that this scalar holds (itself, or its smallest lane); NaN if any lane is NaN.
     fn min_lane(self) -> f64;
@@ -113,6 +117,11 @@ macro_rules! real_for_float {
             #[inline(always)]
             fn sin_cos(self) -> (Self, Self) {
                 $float::sin_cos(self)
+            }
+
+            #[inline(always)]
+            fn reciprocal_or_zero(self) -> Self {
+                if self == 0.0 { 0.0 } else { 1.0 / self }
             }
 
             #[inline(always)]
