@@ -17,8 +17,8 @@
 
 use super::lanes::{LANES, Lanes};
 use super::model::{PackedModel, is_screw};
+use super::motions::Motions;
 use super::orientation::own_force;
-use super::rnea::Motions;
 use crate::aba::{eliminate_spherical, free_force, solve, vec3};
 use crate::error::{Pivot, expect};
 use crate::{DimensionError, Error};
@@ -76,7 +76,7 @@ impl PackedAba {
         a: &mut [f64],
     ) -> Result<(), Error> {
         self.expect_shapes(model, tau, a)?;
-        self.motions.run::<false>(model, q, v, None, wrenches)?;
+        self.motions.run(model, q, v, wrenches)?;
         let mut smallest = Pivot::none();
         self.inward(model, tau, &mut smallest);
         self.outward(model, a);

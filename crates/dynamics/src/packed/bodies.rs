@@ -18,7 +18,7 @@
 
 use super::lanes::{LANES, Lanes, Pack, from_lanes, load};
 use super::model::{PackedModel, Segment, is_screw};
-use super::xyz::{Xyz, cross, times, transposed, two_crosses, xyz};
+use super::xyz::{Xyz, cross, times, transposed, two_crosses, vector, xyz};
 use crate::DimensionError;
 use crate::error::expect;
 use featherbench_model::{JointKind, Model};
@@ -114,11 +114,25 @@ impl Root {
     }
 }
 
-// What is computed of each body: orientations, positions too, velocities too, accelerations too.
+// What a walk computes of each body beside its orientation: a sum of these. Accelerations need angular velocities.
+pub(super) const POSITIONS: usize = 1;
+pub(super) const ANGULAR_VELOCITIES: usize = 2;
+pub(super) const VELOCITIES: usize = 4;
+pub(super) const ACCELERATIONS: usize = 8;
+
+/// Orientations alone.
 pub(super) const TURNED: usize = 0;
-pub(super) const PLACED: usize = 1;
-pub(super) const MOVING: usize = 2;
-pub(super) const ACCELERATED: usize = 3;
+/// Placements.
+pub(super) const PLACED: usize = POSITIONS;
+/// Placements and velocities.
+pub(super) const MOVING: usize = PLACED + ANGULAR_VELOCITIES + VELOCITIES;
+/// Placements, velocities and accelerations.
+pub(super) const ACCELERATED: usize = MOVING + ACCELERATIONS;
+
+/// Whether `order` has this part.
+pub(super) const fn has(order: usize, part: usize) -> bool {
+    order & part != 0
+}
 
 /// The kinematics of a body, in world axes.
 #[derive(Clone, Copy, Debug)]
@@ -140,6 +154,8 @@ pub(super) struct Body {
 pub(super) struct Bodies {
     /// As many as there are lanes. Those without a joint stay zero.
     pub bodies: Vec<Body>,
+    /// Per block; `across_joints` sets them.
+    locals: Vec<Local>,
     /// Bodies of the model.
     pub count: usize,
     /// The root body's origin of each tree.
@@ -147,7 +163,8 @@ pub(super) struct Bodies {
 }
 
 /// What a configuration and its rates are across the joints of a block.
-pub(super) struct Local {
+#[derive(Clone, Copy, Debug)]
+struct Local {
     /// L and t: orientation and position of each body in its parent.
     rotation: Mat3<Pack>,
     displacement: Vec3<Pack>,
@@ -168,9 +185,11 @@ impl Body {
 impl Bodies {
     /// A workspace for this model.
     pub fn new(model: &PackedModel) -> Self {
+        let local = Local { rotation: Mat3::zero(), displacement: Vec3::zero(), v: [0.0; LANES], a: [0.0; LANES] };
         let nothing = Body { rotation: [Xyz::splat(0.0); 3], ..Body::world() };
         Self {
             bodies: vec![nothing; model.blocks.len() * LANES],
+            locals: vec![local; model.blocks.len()],
             count: model.topology.bodies(),
             origins: vec![Vec3::zero(); model.trees.roots.len()],
         }
@@ -208,6 +227,13 @@ impl Bodies {
         })
     }
 
+    /// The orientation of a body.
+    #[inline(always)]
+    pub fn orientation(&self, body: usize) -> Mat3<f64> {
+        let [x, y, z] = self.bodies[body].rotation.map(vector);
+        Mat3::from_rows(x, y, z).transpose()
+    }
+
     /// The orientations of a block's bodies, a register per component.
     #[inline(always)]
     pub fn rotation(&self, b: usize) -> Mat3<Pack> {
@@ -235,6 +261,36 @@ impl Bodies {
         seen
     }
 
+    /// What a configuration and its rates are across the joints of block `b`.
+    #[inline(always)]
+    pub fn across_joints<const ORDER: usize>(&mut self, model: &PackedModel, b: usize, [q, v, a]: [&[f64]; 3]) {
+        let (block, steps, local) = (&model.blocks[b], &model.trees.steps[b], &mut self.locals[b]);
+        let angle = load(block, &block.q, q);
+        let (sin, cos) = angle.sin_cos();
+        let [fixed, by_sin, by_cos] = &block.turn;
+        let partly = by_cos.zip(*fixed, |by_cos, fixed| by_cos.mul_add(cos, fixed));
+        local.rotation = by_sin.zip(partly, |by_sin, partly| by_sin.mul_add(sin, partly));
+        local.displacement = if block.slides { steps.travel.scale_add(angle, steps.mount) } else { steps.mount };
+        if has(ORDER, ANGULAR_VELOCITIES) {
+            local.v = load(block, &block.v, v).to_array();
+        }
+        if has(ORDER, ACCELERATIONS) {
+            local.a = load(block, &block.v, a).to_array();
+        }
+        for wide in &model.wide[block.wide.clone()] {
+            let (q, placement, still) = (&q[block.q[wide.lane]..], &wide.placement, Motion::<f64>::zero());
+            // one arm per kind: each is compiled with its kind known
+            let x = match wide.kind {
+                JointKind::Free => JointKind::Free.transform(placement, &still, q),
+                _ => JointKind::Spherical.transform(placement, &still, q),
+            };
+            local.rotation.set_lane(wide.lane, x.rotation);
+            if model.topology.joints()[block.first + wide.lane].parent.is_some() {
+                local.displacement.set_lane(wide.lane, x.translation);
+            }
+        }
+    }
+
     /// Block `b`, the blocks before it done. `visit(lane, parent, body, d)` sees each body once it is done.
     #[inline(always)]
     pub fn step<const ORDER: usize>(
@@ -245,9 +301,9 @@ impl Bodies {
         mut visit: impl FnMut(usize, &Body, &Body, Xyz),
     ) {
         let block = &model.blocks[b];
-        let local = across_joints::<ORDER>(model, b, [q, v, a]);
+        self.across_joints::<ORDER>(model, b, [q, v, a]);
         for segment in &model.segments[block.segments.clone()] {
-            self.run_segment::<ORDER>(model, (b, segment, segment.end), &local, [v, a], &mut visit);
+            self.run_segment::<ORDER>(model, (b, segment, segment.end), [v, a], &mut visit);
         }
     }
 
@@ -257,13 +313,12 @@ impl Bodies {
         &mut self,
         model: &PackedModel,
         place: (usize, &Segment, usize),
-        local: &Local,
         rates: [&[f64]; 2],
         visit: &mut impl FnMut(usize, &Body, &Body, Xyz),
     ) {
         match place.1.plain {
-            true => self.run_lanes::<ORDER, true>(model, place, local, rates, visit),
-            false => self.run_lanes::<ORDER, false>(model, place, local, rates, visit),
+            true => self.run_lanes::<ORDER, true>(model, place, rates, visit),
+            false => self.run_lanes::<ORDER, false>(model, place, rates, visit),
         }
     }
 
@@ -272,24 +327,26 @@ impl Bodies {
         &mut self,
         model: &PackedModel,
         (b, segment, end): (usize, &Segment, usize),
-        local: &Local,
         [v, a]: [&[f64]; 2],
         visit: &mut impl FnMut(usize, &Body, &Body, Xyz),
     ) {
-        let (block, steps) = (&model.blocks[b], &model.trees.steps[b]);
+        let (block, steps, local) = (&model.blocks[b], &model.trees.steps[b], &self.locals[b]);
         let bodies = &mut self.bodies[..];
         // field by field: a whole copy would go through memory
         let mut body = Body::world();
         if let Some(parent) = segment.parent.body(b) {
             let parent = &bodies[parent];
             body.rotation = parent.rotation;
-            if ORDER >= PLACED {
+            if has(ORDER, POSITIONS) {
                 body.from_root = parent.from_root;
             }
-            if ORDER >= MOVING {
-                (body.omega, body.velocity) = (parent.omega, parent.velocity);
+            if has(ORDER, ANGULAR_VELOCITIES) {
+                body.omega = parent.omega;
             }
-            if ORDER >= ACCELERATED {
+            if has(ORDER, VELOCITIES) {
+                body.velocity = parent.velocity;
+            }
+            if has(ORDER, ACCELERATIONS) {
                 (body.alpha, body.acceleration) = (parent.alpha, parent.acceleration);
             }
         }
@@ -304,12 +361,12 @@ impl Bodies {
             ];
             own[k].rotation = body.rotation;
             let d = times(parent.rotation, local.displacement.lane(k));
-            if ORDER >= PLACED {
+            if has(ORDER, POSITIONS) {
                 body.from_root = parent.from_root + d;
                 body.position = origin + body.from_root;
                 (own[k].from_root, own[k].position) = (body.from_root, body.position);
             }
-            if ORDER >= MOVING {
+            if has(ORDER, ANGULAR_VELOCITIES) {
                 // S q̇ and S q̈
                 let [rate, rate_of_rate] = if PLAIN {
                     let lin = if steps.slides[k] { times(parent.rotation, steps.slide.lane(k)) } else { Xyz::splat(0.0) };
@@ -317,13 +374,20 @@ impl Bodies {
                     [local.v[k], local.a[k]].map(|rate| subspace.map(|part| part * Xyz::splat(rate)))
                 } else {
                     let kind = model.topology.joints()[block.first + k].kind;
-                    let rate_of_rate = if ORDER >= ACCELERATED { &a[block.v[k]..] } else { &[0.0; 6] };
+                    let rate_of_rate = if has(ORDER, ACCELERATIONS) { &a[block.v[k]..] } else { &[0.0; 6] };
                     [across(kind, &body.rotation, &v[block.v[k]..]), across(kind, &body.rotation, rate_of_rate)]
                 };
                 let swing = cross(parent.omega, d);
                 body.omega = parent.omega + rate[0];
-                body.velocity = parent.velocity + swing;
-                if ORDER >= ACCELERATED {
+                own[k].omega = body.omega;
+                if has(ORDER, VELOCITIES) {
+                    body.velocity = parent.velocity + swing;
+                    if steps.slides[k] {
+                        body.velocity += rate[1];
+                    }
+                    own[k].velocity = body.velocity;
+                }
+                if has(ORDER, ACCELERATIONS) {
                     body.alpha = parent.alpha + (rate_of_rate[0] + cross(parent.omega, rate[0]));
                     body.acceleration = parent.acceleration + two_crosses([parent.alpha, d], [parent.omega, swing]);
                     if steps.slides[k] {
@@ -331,10 +395,6 @@ impl Bodies {
                     }
                     (own[k].alpha, own[k].acceleration) = (body.alpha, body.acceleration);
                 }
-                if steps.slides[k] {
-                    body.velocity += rate[1];
-                }
-                (own[k].omega, own[k].velocity) = (body.omega, body.velocity);
             }
             visit(k, &parent, &body, d);
         }
@@ -351,33 +411,4 @@ fn across(kind: JointKind, rotation: &[Xyz; 3], rates: &[f64]) -> [Xyz; 2] {
         _ => JointKind::Spherical.motion(&still, rates),
     };
     [times(*rotation, local.ang), times(*rotation, local.lin)]
-}
-
-/// What a configuration and its rates are across the joints of block `b`.
-#[inline(always)]
-pub(super) fn across_joints<const ORDER: usize>(model: &PackedModel, b: usize, [q, v, a]: [&[f64]; 3]) -> Local {
-    let (block, steps) = (&model.blocks[b], &model.trees.steps[b]);
-    let angle = load(block, &block.q, q);
-    let (sin, cos) = angle.sin_cos();
-    let [fixed, by_sin, by_cos] = &block.turn;
-    let partly = by_cos.zip(*fixed, |by_cos, fixed| by_cos.mul_add(cos, fixed));
-    let mut local = Local {
-        rotation: by_sin.zip(partly, |by_sin, partly| by_sin.mul_add(sin, partly)),
-        displacement: if block.slides { steps.travel.scale_add(angle, steps.mount) } else { steps.mount },
-        v: if ORDER >= MOVING { load(block, &block.v, v).to_array() } else { [0.0; LANES] },
-        a: if ORDER >= ACCELERATED { load(block, &block.v, a).to_array() } else { [0.0; LANES] },
-    };
-    for wide in &model.wide[block.wide.clone()] {
-        let (q, placement, still) = (&q[block.q[wide.lane]..], &wide.placement, Motion::<f64>::zero());
-        // one arm per kind: each is compiled with its kind known
-        let x = match wide.kind {
-            JointKind::Free => JointKind::Free.transform(placement, &still, q),
-            _ => JointKind::Spherical.transform(placement, &still, q),
-        };
-        local.rotation.set_lane(wide.lane, x.rotation);
-        if model.topology.joints()[block.first + wide.lane].parent.is_some() {
-            local.displacement.set_lane(wide.lane, x.translation);
-        }
-    }
-    local
 }

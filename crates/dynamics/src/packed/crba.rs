@@ -14,8 +14,8 @@
 
 use super::lanes::{LANES, Lanes, Pack, sum_from_leaves, sum_in_segments};
 use super::model::{PackedModel, Source};
+use super::motions::{turned, turned_inertia};
 use super::orientation::{Orientations, own_force};
-use super::rnea::{turned, turned_inertia};
 use crate::error::expect;
 use crate::{DimensionError, TreeSparse};
 use featherbench_model::JointKind;

@@ -7,7 +7,7 @@
 //! Frame: world axes [ang; lin] at the origin of the body's frame. Shapes: q has `nq` numbers; J has `nv` columns of six.
 //! Units: SI. Cost: O(n). A call does not allocate.
 
-use super::bodies::{Bodies, Body, TURNED, across_joints};
+use super::bodies::{Bodies, Body, TURNED};
 use super::lanes::{LANES, Lanes};
 use super::model::PackedModel;
 use super::xyz::{Xyz, cross, times, vector};
@@ -112,10 +112,11 @@ impl PackedJacobian {
         let Self { bodies, parts, steps, .. } = self;
         let mut parts = parts.iter().rev().peekable();
         while let Some(b) = parts.peek().map(|part| part.block) {
-            let (local, steps) = (across_joints::<TURNED>(model, b, [q, &[], &[]]), &mut steps[b * LANES..][..LANES]);
+            bodies.across_joints::<TURNED>(model, b, [q, &[], &[]]);
+            let steps = &mut steps[b * LANES..][..LANES];
             while let Some(Part { segment, lanes, .. }) = parts.next_if(|part| part.block == b) {
                 let place = (b, &model.segments[*segment], lanes.end);
-                bodies.run_segment::<TURNED>(model, place, &local, [&[], &[]], &mut |k, _: &Body, _: &Body, d| steps[k] = d);
+                bodies.run_segment::<TURNED>(model, place, [&[], &[]], &mut |k, _: &Body, _: &Body, d| steps[k] = d);
             }
         }
     }

@@ -5,7 +5,7 @@
 //! Gravity does not enter. Shapes: q has `nq` numbers; v and a have `nv`. Units: SI, angles in radians. Cost: O(n). A call does not
 //! allocate.
 
-use super::bodies::{ACCELERATED, Bodies, MOVING, PLACED};
+use super::bodies::{ACCELERATED, ACCELERATIONS, Bodies, MOVING, PLACED, VELOCITIES, has};
 use super::model::PackedModel;
 use super::xyz::vector;
 use crate::error::expect;
@@ -81,7 +81,7 @@ impl PackedKinematics {
         let (placement, velocity) = (self.placement(body)?, self.velocity(body)?);
         let own = &self.bodies.bodies[body];
         let acceleration = Motion::new(vector(own.alpha), vector(own.acceleration));
-        (self.order >= ACCELERATED).then_some(BodyMotion { placement, velocity, acceleration })
+        has(self.order, ACCELERATIONS).then_some(BodyMotion { placement, velocity, acceleration })
     }
 
     /// Results for every compiled body; none if the last run did not compute accelerations.
@@ -100,7 +100,7 @@ impl PackedKinematics {
     /// Velocity [ω; ṗ] of a compiled body's origin; `None` if there is no such body, or if the last run did not compute velocities.
     pub fn velocity(&self, body: usize) -> Option<Motion<f64>> {
         let own = self.bodies.bodies[..self.bodies.count].get(body)?;
-        (self.order >= MOVING).then(|| Motion::new(vector(own.omega), vector(own.velocity)))
+        has(self.order, VELOCITIES).then(|| Motion::new(vector(own.omega), vector(own.velocity)))
     }
 
     fn walk<const ORDER: usize>(&mut self, model: &PackedModel, numbers: [&[f64]; 3]) -> Result<(), DimensionError> {

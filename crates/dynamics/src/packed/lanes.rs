@@ -166,21 +166,19 @@ fn sum_of_segments<V: Lanes>(block: &Block, x: V) -> V {
 
 /// `(x_i + Σ over the ancestors, Σ over the ancestors alone)`.
 ///
-/// `before(block, lane)` is the first result of a joint of an earlier block, and `root(segment)` is what a segment at the root starts from.
+/// `before(block, lane)` is the first result of a joint of an earlier block.
 #[inline(always)]
-pub(super) fn sum_from_root<V: Lanes>(
+pub(super) fn sum_from_root(
     model: &PackedModel,
     block: &Block,
-    x: V,
-    before: impl Fn(usize, usize) -> V::Single,
-    root: impl Fn(usize) -> V::Single,
-) -> (V, V) {
+    x: Vec3<Pack>,
+    before: impl Fn(usize, usize) -> Vec3<f64>,
+) -> (Vec3<Pack>, Vec3<Pack>) {
     let mut sum = sum_of_segments(block, x);
-    let mut start = x.map(|_| Pack::zero());
-    for s in block.segments.clone() {
-        let segment = &model.segments[s];
-        let carried = V::splat(match segment.parent {
-            Source::Root => root(s),
+    let mut start = Vec3::<Pack>::zero();
+    for segment in &model.segments[block.segments.clone()] {
+        let carried = Vec3::<Pack>::splat(match segment.parent {
+            Source::Root => continue,
             Source::Before { block, lane } => before(block, lane),
             Source::Within { lane } => sum.lane(lane),
         });

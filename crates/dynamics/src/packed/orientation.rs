@@ -60,7 +60,7 @@ impl Orientations {
         for ((block, frame), columns) in model.blocks.iter().zip(&mut self.frames).zip(self.columns.as_chunks::<LANES>().0) {
             // from columns per joint to a register per component
             let vector = |column: usize| transposed(columns, column);
-            let rotation = straightened([vector(0), vector(1), vector(2)]);
+            let rotation = straightened(Mat3::from_rows(vector(0), vector(1), vector(2)).transpose());
             let sliding = if block.slides { rotation * block.subspace.lin } else { Vec3::zero() };
             frame.displacement = rotation * frame.displacement;
             (frame.rotation, frame.subspace) = (rotation, Motion::new(rotation * block.subspace.ang, sliding));
@@ -146,11 +146,12 @@ pub(super) fn across(model: &PackedModel, block: &Block, frame: &Frame, v: &[f64
     motion
 }
 
-/// The rotation nearest to a matrix with these columns, which is one but for rounding: `R + R (1 − RᵀR)/2`.
+/// The rotation nearest to a matrix that is one but for rounding: `R + R (1 − RᵀR)/2`.
 ///
 /// Rounding makes R longer or shorter by 2⁻⁵³ per joint. Without this step a body's inertia would carry the sum over its path.
 #[inline(always)]
-fn straightened([x, y, z]: [Vec3<Pack>; 3]) -> Mat3<Pack> {
+pub(super) fn straightened(rotation: Mat3<Pack>) -> Mat3<Pack> {
+    let Mat3 { x, y, z } = rotation.transpose();
     let (half, minus_one) = (Pack::from_f64(-0.5), Pack::from_f64(-1.0));
     let product = |a: Vec3<Pack>, b: Vec3<Pack>, start: Pack| a.x.mul_add(b.x, a.y.mul_add(b.y, a.z.mul_add(b.z, start))) * half;
     let [xx, yy, zz] = [product(x, x, minus_one), product(y, y, minus_one), product(z, z, minus_one)];
