@@ -2,6 +2,7 @@
 
 mod accuracy;
 mod aligned;
+mod allocation;
 mod batch;
 mod closed_forms;
 mod common;

@@ -2,7 +2,7 @@
 
 #![allow(unsafe_code, reason = "a counting allocator has to implement the unsafe trait GlobalAlloc")]
 
-mod common;
+use crate::common;
 
 use common::{ROBOTS, build, wrenches};
 use featherbench_dynamics::{

@@ -1,6 +1,6 @@
 //! The accuracy table: errors of forward and inverse dynamics and of M against the truth, medians and quartiles over twenty draws.
 //!
-//!     cargo run --release -p featherbench-reference --example accuracy [-- CASE…]
+//!     cargo run --release -p featherbench-reference --features examples --example accuracy [-- CASE…]
 //!
 //! Asks our kernels, and Pinocchio, MuJoCo and Drake where they are installed. Errors are relative 2-norms; of M also the worst entry, over
 //! √(M_ii M_jj). The extra cases move the base away from the origin.

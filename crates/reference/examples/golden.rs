@@ -1,7 +1,7 @@
 //! Makes the golden data of `datasets/truth` from both witnesses, or prints the question of one case.
 //!
-//!     cargo run --release -p featherbench-reference --example golden -- make [PYTHON]
-//!     cargo run --release -p featherbench-reference --example golden -- show planar_small_10
+//!     cargo run --release -p featherbench-reference --features examples --example golden -- make [PYTHON]
+//!     cargo run --release -p featherbench-reference --features examples --example golden -- show planar_small_10
 //!
 //! PYTHON is an interpreter with mpmath and numpy; the default is the one that `featherbench oracles install` makes.
 

@@ -12,7 +12,7 @@ use support::CASES;
 use support::golden::{Answers, COLUMNS, DIGITS, SEED, folder, hash_of_doubles, hash_of_python, hash_of_rust, hash_of_state};
 
 /// What to do when the golden data are older than the witnesses.
-const AGAIN: &str = "run `cargo run --release -p featherbench-reference --example golden -- make` (it needs Python with mpmath and numpy: \
+const AGAIN: &str = "run `cargo run --release -p featherbench-reference --features examples --example golden -- make` (it needs Python with mpmath and numpy: \
                      `featherbench oracles install`) and commit datasets/truth";
 
 /// A golden file, which must have its checksum.

@@ -16,25 +16,25 @@ pub struct RigidBodyInertia<T> {
 
 impl<T: Real> RigidBodyInertia<T> {
     /// A body of no mass.
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     pub fn zero() -> Self {
         Self { mass: T::zero(), first_moment: Vec3::zero(), rotational: Sym3::zero() }
     }
 
     /// From mass, centre of mass and rotational inertia about the centre of mass.
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     pub fn from_com(mass: T, com: Vec3<T>, about_com: Sym3<T>) -> Self {
         Self { mass, first_moment: com * mass, rotational: about_com + Sym3::point_mass(mass, com) }
     }
 
     /// The centre of mass; not finite when the mass is zero.
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     pub fn com(&self) -> Vec3<T> {
         Vec3::new(self.first_moment.x / self.mass, self.first_moment.y / self.mass, self.first_moment.z / self.mass)
     }
 
     /// `I v`: the momentum of a velocity, the force of an acceleration.
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     pub fn mul(&self, v: Motion<T>) -> Force<T> {
         let h = self.first_moment;
         // n = Ī ω + h × v,  f = m v − h × ω
@@ -42,7 +42,7 @@ impl<T: Real> RigidBodyInertia<T> {
     }
 
     /// The same inertia at the parent's origin in parent coordinates, `X* I X⁻¹`.
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     pub fn to_parent(&self, x: &Transform<T>) -> Self {
         let r = x.translation;
         let h = x.rotation * self.first_moment;
@@ -54,20 +54,20 @@ impl<T: Real> RigidBodyInertia<T> {
     }
 
     /// About the centre of mass, which of a body without mass is the origin.
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     pub fn central(&self) -> CentralInertia<T> {
         let com = self.first_moment * self.mass.reciprocal_or_zero();
         CentralInertia { mass: self.mass, com, rotational: self.rotational - Sym3::minus_cross_cross(com, self.first_moment) }
     }
 
     /// As an articulated-body inertia.
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     pub fn to_articulated(&self) -> ArticulatedInertia<T> {
         ArticulatedInertia { rotational: self.rotational, coupling: Mat3::skew(self.first_moment), translational: Sym3::scalar(self.mass) }
     }
 
     /// The parameter inertia in another scalar.
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     pub fn lift<S>(self) -> RigidBodyInertia<S>
     where
         T: Lift<S>,
@@ -92,13 +92,13 @@ pub struct CentralInertia<T> {
 
 impl<T: Real> CentralInertia<T> {
     /// A body of no mass.
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     pub fn zero() -> Self {
         Self { mass: T::zero(), com: Vec3::zero(), rotational: Sym3::zero() }
     }
 
     /// `I v`: the momentum of a velocity at the frame's origin.
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     pub fn mul(&self, v: Motion<T>) -> Force<T> {
         // f = m (v + ω × c),  n = I ω + c × f
         let f = v.ang.cross_add(self.com, v.lin) * self.mass;
@@ -106,7 +106,7 @@ impl<T: Real> CentralInertia<T> {
     }
 
     /// The same inertia in the parent's coordinates.
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     pub fn to_parent(&self, x: &Transform<T>) -> Self {
         Self { mass: self.mass, com: x.point(self.com), rotational: self.rotational.rotate(x.rotation) }
     }
@@ -114,7 +114,7 @@ impl<T: Real> CentralInertia<T> {
 
 impl<T: Real> AddAssign for CentralInertia<T> {
     /// Joins the bodies. Of two bodies without mass the first keeps its centre.
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn add_assign(&mut self, other: Self) {
         let mass = self.mass + other.mass;
         let share = other.mass * mass.reciprocal_or_zero();
@@ -127,7 +127,7 @@ impl<T: Real> AddAssign for CentralInertia<T> {
 
 impl<T: Real> Add for RigidBodyInertia<T> {
     type Output = Self;
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn add(self, other: Self) -> Self {
         Self {
             mass: self.mass + other.mass,
@@ -138,7 +138,7 @@ impl<T: Real> Add for RigidBodyInertia<T> {
 }
 
 impl<T: Real> AddAssign for RigidBodyInertia<T> {
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn add_assign(&mut self, other: Self) {
         *self = *self + other;
     }
@@ -157,13 +157,13 @@ pub struct ArticulatedInertia<T> {
 
 impl<T: Real> ArticulatedInertia<T> {
     /// The zero inertia.
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     pub fn zero() -> Self {
         Self { rotational: Sym3::zero(), coupling: Mat3::zero(), translational: Sym3::zero() }
     }
 
     /// `Iᴬ m`.
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     pub fn mul(&self, m: Motion<T>) -> Force<T> {
         Force::new(
             self.coupling.mul_vec_add(m.lin, self.rotational * m.ang),
@@ -172,7 +172,7 @@ impl<T: Real> ArticulatedInertia<T> {
     }
 
     /// `Iᴬ − w U Uᵀ`: the apparent inertia when the motion along S is free. `U = Iᴬ S`, w = 1/D, and `scaled` is w U.
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     pub fn subtract_rank_one(&self, scaled: Force<T>, u: Force<T>) -> Self {
         let (ang, lin) = (-scaled.ang, -scaled.lin);
         let coupling = Mat3::from_rows(
@@ -184,13 +184,13 @@ impl<T: Real> ArticulatedInertia<T> {
     }
 
     /// The same inertia at the parent's origin in parent coordinates, `X* Iᴬ X⁻¹`.
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     pub fn to_parent(&self, x: &Transform<T>) -> Self {
         self.rotate(x.rotation).translate(x.translation)
     }
 
     /// The same inertia at the same origin, in the axes to which `r` transforms.
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     pub fn rotate(&self, r: Mat3<T>) -> Self {
         Self {
             rotational: self.rotational.rotate(r),
@@ -200,7 +200,7 @@ impl<T: Real> ArticulatedInertia<T> {
     }
 
     /// The same inertia in the same axes, at an origin from which its own is displaced by `p`.
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     pub fn translate(&self, p: Vec3<T>) -> Self {
         // M' = M,  H' = H + p× M; column i of p× M is p × (row i of M)
         let (i, a, m) = (self.rotational, self.coupling, self.translational);
@@ -229,7 +229,7 @@ impl<T: Real> ArticulatedInertia<T> {
 
 impl<T: Real> Add for ArticulatedInertia<T> {
     type Output = Self;
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn add(self, other: Self) -> Self {
         Self {
             rotational: self.rotational + other.rotational,
@@ -240,7 +240,7 @@ impl<T: Real> Add for ArticulatedInertia<T> {
 }
 
 impl<T: Real> AddAssign for ArticulatedInertia<T> {
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn add_assign(&mut self, other: Self) {
         *self = *self + other;
     }

@@ -16,37 +16,37 @@ pub struct Vec3<T> {
 
 impl<T: Real> Vec3<T> {
     /// The vector (x, y, z).
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     pub fn new(x: T, y: T, z: T) -> Self {
         Self { x, y, z }
     }
 
     /// The zero vector.
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     pub fn zero() -> Self {
         Self::new(T::zero(), T::zero(), T::zero())
     }
 
     /// The vector with these components.
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     pub fn from_array([x, y, z]: [T; 3]) -> Self {
         Self::new(x, y, z)
     }
 
     /// Its components.
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     pub fn to_array(self) -> [T; 3] {
         [self.x, self.y, self.z]
     }
 
     /// Inner product.
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     pub fn dot(self, other: Self) -> T {
         self.x.mul_add(other.x, self.y.mul_add(other.y, self.z * other.z))
     }
 
     /// Vector product.
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     pub fn cross(self, other: Self) -> Self {
         Self::new(
             self.y.mul_add(other.z, -(self.z * other.y)),
@@ -56,13 +56,13 @@ impl<T: Real> Vec3<T> {
     }
 
     /// `self·factor + addend`.
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     pub fn scale_add(self, factor: T, addend: Self) -> Self {
         Self::new(self.x.mul_add(factor, addend.x), self.y.mul_add(factor, addend.y), self.z.mul_add(factor, addend.z))
     }
 
     /// `self × other + addend`.
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     pub fn cross_add(self, other: Self, addend: Self) -> Self {
         Self::new(
             self.y.mul_add(other.z, (-self.z).mul_add(other.y, addend.x)),
@@ -72,13 +72,13 @@ impl<T: Real> Vec3<T> {
     }
 
     /// Euclidean length.
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     pub fn norm(self) -> T {
         self.dot(self).sqrt()
     }
 
     /// The parameter vector in another scalar.
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     pub fn lift<S>(self) -> Vec3<S>
     where
         T: Lift<S>,
@@ -89,7 +89,7 @@ impl<T: Real> Vec3<T> {
 
 impl<T: Real> Add for Vec3<T> {
     type Output = Self;
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn add(self, other: Self) -> Self {
         Self::new(self.x + other.x, self.y + other.y, self.z + other.z)
     }
@@ -97,7 +97,7 @@ impl<T: Real> Add for Vec3<T> {
 
 impl<T: Real> Sub for Vec3<T> {
     type Output = Self;
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn sub(self, other: Self) -> Self {
         Self::new(self.x - other.x, self.y - other.y, self.z - other.z)
     }
@@ -105,7 +105,7 @@ impl<T: Real> Sub for Vec3<T> {
 
 impl<T: Real> Neg for Vec3<T> {
     type Output = Self;
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn neg(self) -> Self {
         Self::new(-self.x, -self.y, -self.z)
     }
@@ -113,21 +113,21 @@ impl<T: Real> Neg for Vec3<T> {
 
 impl<T: Real> Mul<T> for Vec3<T> {
     type Output = Self;
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn mul(self, factor: T) -> Self {
         Self::new(self.x * factor, self.y * factor, self.z * factor)
     }
 }
 
 impl<T: Real> AddAssign for Vec3<T> {
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn add_assign(&mut self, other: Self) {
         *self = *self + other;
     }
 }
 
 impl<T: Real> SubAssign for Vec3<T> {
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn sub_assign(&mut self, other: Self) {
         *self = *self - other;
     }
@@ -146,79 +146,79 @@ pub struct Mat3<T> {
 
 impl<T: Real> Mat3<T> {
     /// The matrix with these rows.
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     pub fn from_rows(x: Vec3<T>, y: Vec3<T>, z: Vec3<T>) -> Self {
         Self { x, y, z }
     }
 
     /// The matrix of nine numbers in row-major order.
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     pub fn from_array(m: [T; 9]) -> Self {
         Self::from_rows(Vec3::new(m[0], m[1], m[2]), Vec3::new(m[3], m[4], m[5]), Vec3::new(m[6], m[7], m[8]))
     }
 
     /// Its nine numbers in row-major order.
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     pub fn to_array(self) -> [T; 9] {
         let Self { x, y, z } = self;
         [x.x, x.y, x.z, y.x, y.y, y.z, z.x, z.y, z.z]
     }
 
     /// The identity.
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     pub fn identity() -> Self {
         let (zero, one) = (T::zero(), T::one());
         Self::from_array([one, zero, zero, zero, one, zero, zero, zero, one])
     }
 
     /// The zero matrix.
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     pub fn zero() -> Self {
         Self::from_rows(Vec3::zero(), Vec3::zero(), Vec3::zero())
     }
 
     /// The matrix `v×` with `(v×) u = v × u`.
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     pub fn skew(v: Vec3<T>) -> Self {
         let zero = T::zero();
         Self::from_array([zero, -v.z, v.y, v.z, zero, -v.x, -v.y, v.x, zero])
     }
 
     /// The transpose.
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     pub fn transpose(self) -> Self {
         let Self { x, y, z } = self;
         Self::from_rows(Vec3::new(x.x, y.x, z.x), Vec3::new(x.y, y.y, z.y), Vec3::new(x.z, y.z, z.z))
     }
 
     /// The third column, `M e_z`.
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     pub fn column_z(self) -> Vec3<T> {
         Vec3::new(self.x.z, self.y.z, self.z.z)
     }
 
     /// `M R`, R the rotation about z by the angle with this sine and cosine. The third column stays.
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     pub fn turn_about_z(self, sin: T, cos: T) -> Self {
         let row = |r: Vec3<T>| Vec3::new(r.x.mul_add(cos, r.y * sin), r.y.mul_add(cos, -(r.x * sin)), r.z);
         Self::from_rows(row(self.x), row(self.y), row(self.z))
     }
 
     /// `Mᵀ v`.
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     pub fn transpose_mul(self, v: Vec3<T>) -> Vec3<T> {
         self.x.scale_add(v.x, self.y.scale_add(v.y, self.z * v.z))
     }
 
     /// `M v + addend`.
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     pub fn mul_vec_add(self, v: Vec3<T>, addend: Vec3<T>) -> Vec3<T> {
         let row = |r: Vec3<T>, a: T| r.x.mul_add(v.x, r.y.mul_add(v.y, r.z.mul_add(v.z, a)));
         Vec3::new(row(self.x, addend.x), row(self.y, addend.y), row(self.z, addend.z))
     }
 
     /// The parameter matrix in another scalar.
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     pub fn lift<S>(self) -> Mat3<S>
     where
         T: Lift<S>,
@@ -229,7 +229,7 @@ impl<T: Real> Mat3<T> {
 
 impl<T: Real> Mul<Vec3<T>> for Mat3<T> {
     type Output = Vec3<T>;
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn mul(self, v: Vec3<T>) -> Vec3<T> {
         Vec3::new(self.x.dot(v), self.y.dot(v), self.z.dot(v))
     }
@@ -237,7 +237,7 @@ impl<T: Real> Mul<Vec3<T>> for Mat3<T> {
 
 impl<T: Real> Mul for Mat3<T> {
     type Output = Self;
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn mul(self, other: Self) -> Self {
         let row = |r: Vec3<T>| other.transpose_mul(r);
         Self::from_rows(row(self.x), row(self.y), row(self.z))
@@ -246,7 +246,7 @@ impl<T: Real> Mul for Mat3<T> {
 
 impl<T: Real> Add for Mat3<T> {
     type Output = Self;
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn add(self, other: Self) -> Self {
         Self::from_rows(self.x + other.x, self.y + other.y, self.z + other.z)
     }
@@ -254,7 +254,7 @@ impl<T: Real> Add for Mat3<T> {
 
 impl<T: Real> Sub for Mat3<T> {
     type Output = Self;
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn sub(self, other: Self) -> Self {
         Self::from_rows(self.x - other.x, self.y - other.y, self.z - other.z)
     }
@@ -279,44 +279,44 @@ pub struct Sym3<T> {
 
 impl<T: Real> Sym3<T> {
     /// The matrix of (xx, xy, xz, yy, yz, zz).
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     pub fn from_array([xx, xy, xz, yy, yz, zz]: [T; 6]) -> Self {
         Self { xx, xy, xz, yy, yz, zz }
     }
 
     /// Its numbers (xx, xy, xz, yy, yz, zz).
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     pub fn to_array(self) -> [T; 6] {
         [self.xx, self.xy, self.xz, self.yy, self.yz, self.zz]
     }
 
     /// The zero matrix.
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     pub fn zero() -> Self {
         Self::scalar(T::zero())
     }
 
     /// `value·1`.
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     pub fn scalar(value: T) -> Self {
         let zero = T::zero();
         Self { xx: value, xy: zero, xz: zero, yy: value, yz: zero, zz: value }
     }
 
     /// The upper triangle of a matrix known to be symmetric.
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     pub fn from_upper(m: Mat3<T>) -> Self {
         Self { xx: m.x.x, xy: m.x.y, xz: m.x.z, yy: m.y.y, yz: m.y.z, zz: m.z.z }
     }
 
     /// `m (|c|²·1 − c cᵀ)`: the inertia of a point mass at `c`.
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     pub fn point_mass(mass: T, c: Vec3<T>) -> Self {
         Self::minus_cross_cross(c, c * mass)
     }
 
     /// The upper triangle of `−u× w× = (u·w) 1 − w uᵀ`.
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     pub fn minus_cross_cross(u: Vec3<T>, w: Vec3<T>) -> Self {
         Self {
             xx: u.y.mul_add(w.y, u.z * w.z),
@@ -329,14 +329,14 @@ impl<T: Real> Sym3<T> {
     }
 
     /// `w·u uᵀ`.
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     pub fn rank_one(weight: T, u: Vec3<T>) -> Self {
         let wu = u * weight;
         Self { xx: wu.x * u.x, xy: wu.x * u.y, xz: wu.x * u.z, yy: wu.y * u.y, yz: wu.y * u.z, zz: wu.z * u.z }
     }
 
     /// `self + (w u) uᵀ`, where `wu` is w u.
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     pub fn add_outer(self, wu: Vec3<T>, u: Vec3<T>) -> Self {
         Self {
             xx: wu.x.mul_add(u.x, self.xx),
@@ -349,13 +349,13 @@ impl<T: Real> Sym3<T> {
     }
 
     /// The full matrix.
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     pub fn to_mat3(self) -> Mat3<T> {
         Mat3::from_array([self.xx, self.xy, self.xz, self.xy, self.yy, self.yz, self.xz, self.yz, self.zz])
     }
 
     /// `R S Rᵀ`: the same tensor, in the axes to which `R` transforms.
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     pub fn rotate(self, r: Mat3<T>) -> Self {
         // Rows of R S, then only the upper triangle of (R S) Rᵀ.
         let Mat3 { x, y, z } = r * self.to_mat3();
@@ -363,7 +363,7 @@ impl<T: Real> Sym3<T> {
     }
 
     /// The factors of `S = L D Lᵀ`, without pivoting; the pivots are not checked.
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     pub fn factor(self) -> Ldl3<T> {
         let d1 = self.xx;
         let (l21, l31) = (self.xy / d1, self.xz / d1);
@@ -375,7 +375,7 @@ impl<T: Real> Sym3<T> {
     }
 
     /// The parameter matrix in another scalar.
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     pub fn lift<S>(self) -> Sym3<S>
     where
         T: Lift<S>,
@@ -386,7 +386,7 @@ impl<T: Real> Sym3<T> {
 
 impl<T: Real> Mul<Vec3<T>> for Sym3<T> {
     type Output = Vec3<T>;
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn mul(self, v: Vec3<T>) -> Vec3<T> {
         Vec3::new(
             self.xx.mul_add(v.x, self.xy.mul_add(v.y, self.xz * v.z)),
@@ -398,7 +398,7 @@ impl<T: Real> Mul<Vec3<T>> for Sym3<T> {
 
 impl<T: Real> Add for Sym3<T> {
     type Output = Self;
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn add(self, o: Self) -> Self {
         Self { xx: self.xx + o.xx, xy: self.xy + o.xy, xz: self.xz + o.xz, yy: self.yy + o.yy, yz: self.yz + o.yz, zz: self.zz + o.zz }
     }
@@ -406,7 +406,7 @@ impl<T: Real> Add for Sym3<T> {
 
 impl<T: Real> Sub for Sym3<T> {
     type Output = Self;
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn sub(self, o: Self) -> Self {
         Self { xx: self.xx - o.xx, xy: self.xy - o.xy, xz: self.xz - o.xz, yy: self.yy - o.yy, yz: self.yz - o.yz, zz: self.zz - o.zz }
     }
@@ -424,7 +424,7 @@ pub struct Ldl3<T> {
 
 impl<T: Real> Ldl3<T> {
     /// `S⁻¹ b`.
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     pub fn solve(&self, b: Vec3<T>) -> Vec3<T> {
         let y2 = (-self.l21).mul_add(b.x, b.y);
         let y3 = (-self.l32).mul_add(y2, (-self.l31).mul_add(b.x, b.z));

@@ -13,14 +13,14 @@ pub struct Quaternion<T> {
 
 impl<T: Real> Quaternion<T> {
     /// The quaternion x·i + y·j + z·k + w.
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     pub fn from_array([x, y, z, w]: [T; 4]) -> Self {
         Self { v: Vec3::new(x, y, z), w }
     }
 
     /// The rotation matrix. It is orthonormal up to rounding, also when the quaternion's length is not exactly one:
     /// `R = 1 + 2/|q|² (w·v× + v×v×)`.
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     pub fn to_rotation(self) -> Mat3<T> {
         let Self { v, w } = self;
         let two = T::from_f64(2.0);
@@ -34,7 +34,7 @@ impl<T: Real> Quaternion<T> {
     }
 
     /// Its rate of change at angular velocity `omega` in body axes: `q̇ = ½ q ⊗ (ω, 0)`.
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     pub fn derivative(self, omega: Vec3<T>) -> Self {
         let half = omega * T::from_f64(0.5);
         Self { v: self.v.cross_add(half, half * self.w), w: -self.v.dot(half) }
@@ -53,13 +53,13 @@ pub struct Transform<T> {
 
 impl<T: Real> Transform<T> {
     /// The placement with this rotation and translation.
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     pub fn new(rotation: Mat3<T>, translation: Vec3<T>) -> Self {
         Self { rotation, translation }
     }
 
     /// The identity.
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     pub fn identity() -> Self {
         Self::new(Mat3::identity(), Vec3::zero())
     }
@@ -69,7 +69,7 @@ impl<T: Real> Transform<T> {
     ///
     /// The rotation about an axis of the frame is exact: its entries are 1, c and s, as given. To that end the rounding error of
     /// `versine = 1 − c`, which is exactly `rest = (1 − versine) − c`, is added on the diagonal.
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     pub fn axis_rotation(u: Vec3<T>, sin: T, cos: T) -> Mat3<T> {
         let versine = T::one() - cos;
         let rest = (T::one() - versine) - cos;
@@ -90,53 +90,53 @@ impl<T: Real> Transform<T> {
     }
 
     /// `self ∘ child`: the placement of the child's child in this frame's parent.
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     pub fn compose(&self, child: &Self) -> Self {
         Self::new(self.rotation * child.rotation, self.point(child.translation))
     }
 
     /// The placement of the parent in the child.
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     pub fn inverse(&self) -> Self {
         Self::new(self.rotation.transpose(), -self.rotation.transpose_mul(self.translation))
     }
 
     /// A point in child coordinates, in parent coordinates.
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     pub fn point(&self, p: Vec3<T>) -> Vec3<T> {
         self.rotation.mul_vec_add(p, self.translation)
     }
 
     /// A motion in child coordinates, in parent coordinates at the parent's origin.
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     pub fn motion(&self, m: Motion<T>) -> Motion<T> {
         let ang = self.rotation * m.ang;
         Motion::new(ang, self.translation.cross_add(ang, self.rotation * m.lin))
     }
 
     /// A motion in parent coordinates, in child coordinates at the child's origin.
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     pub fn inverse_motion(&self, m: Motion<T>) -> Motion<T> {
         let lin = m.ang.cross_add(self.translation, m.lin);
         Motion::new(self.rotation.transpose_mul(m.ang), self.rotation.transpose_mul(lin))
     }
 
     /// A force in child coordinates, in parent coordinates at the parent's origin.
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     pub fn force(&self, f: Force<T>) -> Force<T> {
         let lin = self.rotation * f.lin;
         Force::new(self.translation.cross_add(lin, self.rotation * f.ang), lin)
     }
 
     /// A force in parent coordinates, in child coordinates at the child's origin.
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     pub fn inverse_force(&self, f: Force<T>) -> Force<T> {
         let ang = f.lin.cross_add(self.translation, f.ang);
         Force::new(self.rotation.transpose_mul(ang), self.rotation.transpose_mul(f.lin))
     }
 
     /// The parameter placement in another scalar.
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     pub fn lift<S>(self) -> Transform<S>
     where
         T: Lift<S>,

@@ -32,12 +32,12 @@ pub struct Compensated {
 
 impl Compensated {
     /// The same number with parts that do not overlap.
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     pub fn to_double_double(self) -> DoubleDouble {
         DoubleDouble::from_sum(self.value, self.error)
     }
 
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn renormalized(self) -> Self {
         let (value, error) = two_sum(self.value, self.error);
         Self { value, error }
@@ -45,24 +45,24 @@ impl Compensated {
 }
 
 impl From<DoubleDouble> for Compensated {
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn from(number: DoubleDouble) -> Self {
         Self { value: number.to_f64(), error: number.rest() }
     }
 }
 
 impl Real for Compensated {
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn from_f64(value: f64) -> Self {
         Self { value, error: 0.0 }
     }
 
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn from_exact(_rounded: f64, exact: DoubleDouble) -> Self {
         exact.into()
     }
 
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn mul_add(self, factor: Self, addend: Self) -> Self {
         let (product, product_error) = two_product(self.value, factor.value);
         let (value, sum_error) = two_sum(product, addend.value);
@@ -70,37 +70,37 @@ impl Real for Compensated {
         Self { value, error: Real::mul_add(self.error, factor.value, Real::mul_add(self.value, factor.error, errors)) }
     }
 
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn sqrt(self) -> Self {
         self.to_double_double().sqrt().into()
     }
 
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn sin_cos(self) -> (Self, Self) {
         let (sin, cos) = self.to_double_double().sin_cos();
         (sin.into(), cos.into())
     }
 
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn reciprocal_or_zero(self) -> Self {
         self.to_double_double().reciprocal_or_zero().into()
     }
 
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn min_lane(self) -> f64 {
         self.value + self.error
     }
 }
 
 impl Lift<Compensated> for f64 {
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn lift(self) -> Compensated {
         Compensated::from_f64(self)
     }
 }
 
 impl Lift<Compensated> for DoubleDouble {
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn lift(self) -> Compensated {
         self.into()
     }
@@ -108,7 +108,7 @@ impl Lift<Compensated> for DoubleDouble {
 
 /// Rounds.
 impl Lift<f64> for Compensated {
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn lift(self) -> f64 {
         self.value + self.error
     }
@@ -116,7 +116,7 @@ impl Lift<f64> for Compensated {
 
 impl Add for Compensated {
     type Output = Self;
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn add(self, other: Self) -> Self {
         let (value, error) = two_sum(self.value, other.value);
         Self { value, error: error + (self.error + other.error) }
@@ -125,7 +125,7 @@ impl Add for Compensated {
 
 impl Sub for Compensated {
     type Output = Self;
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn sub(self, other: Self) -> Self {
         self + -other
     }
@@ -133,7 +133,7 @@ impl Sub for Compensated {
 
 impl Mul for Compensated {
     type Output = Self;
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn mul(self, other: Self) -> Self {
         let (value, error) = two_product(self.value, other.value);
         Self { value, error: Real::mul_add(self.error, other.value, Real::mul_add(self.value, other.error, error)) }
@@ -142,7 +142,7 @@ impl Mul for Compensated {
 
 impl Div for Compensated {
     type Output = Self;
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn div(self, other: Self) -> Self {
         let other = other.renormalized();
         let value = self.value / other.value;
@@ -155,28 +155,28 @@ impl Div for Compensated {
 
 impl Neg for Compensated {
     type Output = Self;
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn neg(self) -> Self {
         Self { value: -self.value, error: -self.error }
     }
 }
 
 impl AddAssign for Compensated {
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn add_assign(&mut self, other: Self) {
         *self = *self + other;
     }
 }
 
 impl SubAssign for Compensated {
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn sub_assign(&mut self, other: Self) {
         *self = *self - other;
     }
 }
 
 impl MulAssign for Compensated {
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn mul_assign(&mut self, other: Self) {
         *self = *self * other;
     }

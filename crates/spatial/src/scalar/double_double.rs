@@ -36,59 +36,59 @@ pub struct DoubleDouble {
 
 impl DoubleDouble {
     /// `a + b`, exactly.
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     pub fn from_sum(a: f64, b: f64) -> Self {
         let (hi, lo) = two_sum(a, b);
         Self { hi, lo }
     }
 
     /// `a · b`, exactly.
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     pub fn from_product(a: f64, b: f64) -> Self {
         let (hi, lo) = two_product(a, b);
         Self { hi, lo }
     }
 
     /// The two parts as they are: `hi` must be the `f64` nearest to `hi + lo`.
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     pub(crate) const fn from_parts(hi: f64, lo: f64) -> Self {
         Self { hi, lo }
     }
 
     /// `hi + lo`, exactly, where |hi| ≥ |lo|.
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     pub(crate) fn renormalized(hi: f64, lo: f64) -> Self {
         let (hi, lo) = fast_two_sum(hi, lo);
         Self { hi, lo }
     }
 
     /// The `f64` nearest to this number.
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     pub fn to_f64(self) -> f64 {
         self.hi
     }
 
     /// The rest of this number after [`DoubleDouble::to_f64`]: at most half a unit in the last place of that.
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     pub fn rest(self) -> f64 {
         self.lo
     }
 
     /// The magnitude.
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     pub fn abs(self) -> Self {
         if self.hi.is_sign_negative() { -self } else { self }
     }
 
     /// `self · factor` for a plain factor: relative error at most 3u².
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     pub(crate) fn scale(self, factor: f64) -> Self {
         let (product, error) = two_product(self.hi, factor);
         Self::renormalized(product, Real::mul_add(self.lo, factor, error))
     }
 
     /// The product with its parts not yet renormalized: the lower one is at most 4u of the upper one.
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn raw_product(self, other: Self) -> (f64, f64) {
         let (product, error) = two_product(self.hi, other.hi);
         let cross = Real::mul_add(self.lo, other.hi, Real::mul_add(self.hi, other.lo, self.lo * other.lo));
@@ -96,7 +96,7 @@ impl DoubleDouble {
     }
 
     /// `a + b`, where `a` need not be renormalized.
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn sum((a_hi, a_lo): (f64, f64), b: Self) -> Self {
         let ((high, high_error), (low, low_error)) = (two_sum(a_hi, b.hi), two_sum(a_lo, b.lo));
         // `high` is a multiple of the last place of what is added to it, also after cancellation.
@@ -106,22 +106,22 @@ impl DoubleDouble {
 }
 
 impl Real for DoubleDouble {
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn from_f64(value: f64) -> Self {
         Self { hi: value, lo: 0.0 }
     }
 
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn from_exact(_rounded: f64, exact: DoubleDouble) -> Self {
         exact
     }
 
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn mul_add(self, factor: Self, addend: Self) -> Self {
         Self::sum(self.raw_product(factor), addend)
     }
 
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn sqrt(self) -> Self {
         let root = self.hi.sqrt();
         if root == 0.0 {
@@ -137,19 +137,19 @@ impl Real for DoubleDouble {
         trigonometry::sin_cos(self)
     }
 
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn reciprocal_or_zero(self) -> Self {
         if self.hi == 0.0 { Self::zero() } else { Self::one() / self }
     }
 
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn min_lane(self) -> f64 {
         self.hi
     }
 }
 
 impl Lift<DoubleDouble> for f64 {
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn lift(self) -> DoubleDouble {
         DoubleDouble::from_f64(self)
     }
@@ -157,14 +157,14 @@ impl Lift<DoubleDouble> for f64 {
 
 /// Rounds: a model that was built in double-double gives its parameters to `f64` kernels.
 impl Lift<f64> for DoubleDouble {
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn lift(self) -> f64 {
         self.to_f64()
     }
 }
 
 impl From<f64> for DoubleDouble {
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn from(value: f64) -> Self {
         Self::from_f64(value)
     }
@@ -172,7 +172,7 @@ impl From<f64> for DoubleDouble {
 
 impl Add for DoubleDouble {
     type Output = Self;
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn add(self, other: Self) -> Self {
         Self::sum((self.hi, self.lo), other)
     }
@@ -180,7 +180,7 @@ impl Add for DoubleDouble {
 
 impl Sub for DoubleDouble {
     type Output = Self;
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn sub(self, other: Self) -> Self {
         self + -other
     }
@@ -188,7 +188,7 @@ impl Sub for DoubleDouble {
 
 impl Mul for DoubleDouble {
     type Output = Self;
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn mul(self, other: Self) -> Self {
         let (hi, lo) = self.raw_product(other);
         Self::renormalized(hi, lo)
@@ -197,7 +197,7 @@ impl Mul for DoubleDouble {
 
 impl Div for DoubleDouble {
     type Output = Self;
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn div(self, other: Self) -> Self {
         let quotient = self.hi / other.hi;
         let product = other.scale(quotient);
@@ -208,28 +208,28 @@ impl Div for DoubleDouble {
 
 impl Neg for DoubleDouble {
     type Output = Self;
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn neg(self) -> Self {
         Self { hi: -self.hi, lo: -self.lo }
     }
 }
 
 impl AddAssign for DoubleDouble {
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn add_assign(&mut self, other: Self) {
         *self = *self + other;
     }
 }
 
 impl SubAssign for DoubleDouble {
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn sub_assign(&mut self, other: Self) {
         *self = *self - other;
     }
 }
 
 impl MulAssign for DoubleDouble {
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn mul_assign(&mut self, other: Self) {
         *self = *self * other;
     }

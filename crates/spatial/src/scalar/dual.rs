@@ -16,30 +16,30 @@ pub struct Dual<T> {
 
 impl<T: Real> Dual<T> {
     /// A number that moves with the given rate.
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     pub fn new(value: T, derivative: T) -> Self {
         Self { value, derivative }
     }
 
     /// A constant: its derivative is zero.
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     pub fn constant(value: T) -> Self {
         Self::new(value, T::zero())
     }
 }
 
 impl<T: Real> Real for Dual<T> {
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn from_f64(value: f64) -> Self {
         Self::constant(T::from_f64(value))
     }
 
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn from_exact(rounded: f64, exact: DoubleDouble) -> Self {
         Self::constant(T::from_exact(rounded, exact))
     }
 
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn mul_add(self, factor: Self, addend: Self) -> Self {
         Self {
             value: self.value.mul_add(factor.value, addend.value),
@@ -47,32 +47,32 @@ impl<T: Real> Real for Dual<T> {
         }
     }
 
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn sqrt(self) -> Self {
         let root = self.value.sqrt();
         Self::new(root, self.derivative / (root + root))
     }
 
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn sin_cos(self) -> (Self, Self) {
         let (s, c) = self.value.sin_cos();
         (Self::new(s, c * self.derivative), Self::new(c, -(s * self.derivative)))
     }
 
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn reciprocal_or_zero(self) -> Self {
         let reciprocal = self.value.reciprocal_or_zero();
         Self::new(reciprocal, -(reciprocal * reciprocal * self.derivative))
     }
 
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn min_lane(self) -> f64 {
         self.value.min_lane()
     }
 }
 
 impl<T: Real> Lift<Dual<T>> for f64 {
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn lift(self) -> Dual<T> {
         Dual::from_f64(self)
     }
@@ -80,7 +80,7 @@ impl<T: Real> Lift<Dual<T>> for f64 {
 
 impl<T: Real> Add for Dual<T> {
     type Output = Self;
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn add(self, other: Self) -> Self {
         Self::new(self.value + other.value, self.derivative + other.derivative)
     }
@@ -88,7 +88,7 @@ impl<T: Real> Add for Dual<T> {
 
 impl<T: Real> Sub for Dual<T> {
     type Output = Self;
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn sub(self, other: Self) -> Self {
         Self::new(self.value - other.value, self.derivative - other.derivative)
     }
@@ -96,7 +96,7 @@ impl<T: Real> Sub for Dual<T> {
 
 impl<T: Real> Mul for Dual<T> {
     type Output = Self;
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn mul(self, other: Self) -> Self {
         Self::new(self.value * other.value, self.value.mul_add(other.derivative, self.derivative * other.value))
     }
@@ -104,7 +104,7 @@ impl<T: Real> Mul for Dual<T> {
 
 impl<T: Real> Div for Dual<T> {
     type Output = Self;
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn div(self, other: Self) -> Self {
         let quotient = self.value / other.value;
         Self::new(quotient, (-quotient).mul_add(other.derivative, self.derivative) / other.value)
@@ -113,28 +113,28 @@ impl<T: Real> Div for Dual<T> {
 
 impl<T: Real> Neg for Dual<T> {
     type Output = Self;
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn neg(self) -> Self {
         Self::new(-self.value, -self.derivative)
     }
 }
 
 impl<T: Real> AddAssign for Dual<T> {
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn add_assign(&mut self, other: Self) {
         *self = *self + other;
     }
 }
 
 impl<T: Real> SubAssign for Dual<T> {
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn sub_assign(&mut self, other: Self) {
         *self = *self - other;
     }
 }
 
 impl<T: Real> MulAssign for Dual<T> {
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn mul_assign(&mut self, other: Self) {
         *self = *self * other;
     }
