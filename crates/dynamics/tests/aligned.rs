@@ -29,19 +29,23 @@ const RECIPE: Recipe = Recipe {
     armature: true,
 };
 
+/// The axis of a joint, if its kind has one to choose.
+fn axis_mut(kind: &mut JointType) -> Option<&mut [f64; 3]> {
+    match kind {
+        JointType::Revolute { axis }
+        | JointType::Prismatic { axis }
+        | JointType::Cylindrical { axis }
+        | JointType::Helical { axis, .. } => Some(axis),
+        _ => None,
+    }
+}
+
 /// A robot all of whose axes are coordinate axes of their bodies.
 fn aligned() -> Description {
     let mut description = robot(&RECIPE, 5);
     for (i, body) in description.bodies.iter_mut().enumerate() {
-        let along = AXES[i % AXES.len()].0;
-        match &mut body.joint.kind {
-            JointType::Revolute { axis }
-            | JointType::Prismatic { axis }
-            | JointType::Cylindrical { axis }
-            | JointType::Helical { axis, .. } => {
-                *axis = along;
-            }
-            _ => {}
+        if let Some(axis) = axis_mut(&mut body.joint.kind) {
+            *axis = AXES[i % AXES.len()].0;
         }
     }
     description
@@ -57,14 +61,8 @@ fn turned(description: &Description, rotations: &[Mat3<f64>]) -> Description {
         placement.rotation = (parent.transpose() * Mat3::from_array(placement.rotation) * g).to_array();
         placement.translation = parent.transpose_mul(Vec3::from_array(placement.translation)).to_array();
         (body.com, body.inertia) = (into(body.com), Sym3::from_array(body.inertia).rotate(g.transpose()).to_array());
-        match &mut body.joint.kind {
-            JointType::Revolute { axis }
-            | JointType::Prismatic { axis }
-            | JointType::Cylindrical { axis }
-            | JointType::Helical { axis, .. } => {
-                *axis = into(*axis);
-            }
-            _ => {}
+        if let Some(axis) = axis_mut(&mut body.joint.kind) {
+            *axis = into(*axis);
         }
     }
     turned
