@@ -44,8 +44,8 @@ fn batches(criterion: &mut Criterion) {
                     group.bench_function($way, |bencher| {
                         bencher.iter(|| {
                             match quantity {
-                                "inverse_dynamics" => batch.inverse_dynamics($q, $v, $a, &mut out),
-                                "forward_dynamics" => batch.forward_dynamics($q, $v, $tau, &mut out),
+                                "inverse_dynamics" => batch.inverse_dynamics($q, $v, $a, None, &mut out),
+                                "forward_dynamics" => batch.forward_dynamics($q, $v, $tau, None, &mut out),
                                 "mass_matrix" => batch.mass_matrix($q, &mut out),
                                 _ => batch.solve($q, $tau, &mut out),
                             }

@@ -5,8 +5,8 @@ use crate::common;
 
 use common::{Kind, Recipe, build, distance, gap, largest, robot, within, wrenches};
 use featherbench_dynamics::{
-    Aba, Bias, Kinematics, PackedAba, PackedCrba, PackedModel, PackedRnea, Refined, Rnea, TreeSparse, centroidal_momentum, energy,
-    jacobian, mass_matrix,
+    Aba, BatchError, Bias, Kinematics, PackedAba, PackedCrba, PackedModel, PackedRnea, Refined, Rnea, TreeSparse, centroidal_momentum,
+    energy, jacobian, mass_matrix,
 };
 use featherbench_model::{Axis, Description, JointKind, JointType, Label, Model};
 use featherbench_robots::{Random, StateBatch};
@@ -41,7 +41,7 @@ fn axis_mut(kind: &mut JointType) -> Option<&mut [f64; 3]> {
 }
 
 /// A robot all of whose axes are coordinate axes of their bodies.
-fn aligned() -> Description {
+pub fn aligned() -> Description {
     let mut description = robot(&RECIPE, 5);
     for (i, body) in description.bodies.iter_mut().enumerate() {
         if let Some(axis) = axis_mut(&mut body.joint.kind) {
@@ -228,12 +228,24 @@ fn samples_may_have_the_axis_of_a_joint_here_along_z_and_there_not() {
     let nv = samples[0].topology.nv();
     let mut found = vec![0.0; samples.len() * nv];
     let mut batch = featherbench_dynamics::Batch::of_samples(&samples).unwrap();
-    batch.forward_dynamics(&states.q, &states.v, &states.tau, &mut found).unwrap();
-    for (k, (model, found)) in samples.iter().zip(found.chunks(nv)).enumerate() {
-        let mut a = vec![0.0; nv];
-        Aba::new(&model.topology).run(model, states.q(k), states.v(k), states.tau(k), None, &mut a).unwrap();
-        within("samples", distance(&a, found) / largest(&a), 1e-12);
+    // The body of that joint has other compiled axes here and there, and its wrench is given in the described ones.
+    let f: Vec<Vec<Force<f64>>> = (0..samples.len() as u64).map(|seed| wrenches(&samples[0], seed)).collect();
+    let numbers: Vec<f64> = f.iter().flatten().flat_map(|f| f.to_array()).collect();
+    for external in [false, true] {
+        batch.forward_dynamics(&states.q, &states.v, &states.tau, external.then_some(&numbers[..]), &mut found).unwrap();
+        for (k, (model, found)) in samples.iter().zip(found.chunks(nv)).enumerate() {
+            let (mut a, f) = (vec![0.0; nv], external.then_some(&f[k][..]));
+            Aba::new(&model.topology).run(model, states.q(k), states.v(k), states.tau(k), f, &mut a).unwrap();
+            within("samples", distance(&a, found) / largest(&a), 1e-12);
+        }
     }
+    // One bad wrench is found although its group is mixed.
+    let mut bad = numbers.clone();
+    bad[4 * 6 * samples[0].topology.bodies() + 2] = f64::NAN;
+    let done = batch.forward_dynamics(&states.q, &states.v, &states.tau, Some(&bad), &mut found);
+    assert!(matches!(&done, Err(BatchError::Failed { failures, .. }) if failures.len() == 1 && failures[0].state == 4), "{done:?}");
+    let others = found.iter().enumerate().filter(|(place, _)| place / nv != 4);
+    assert!(others.clone().count() == 10 * nv && others.clone().all(|(_, a)| a.is_finite()));
     // Robots of another tree are refused still.
     let other = build(&Recipe { bodies: 29, ..RECIPE });
     assert!(featherbench_dynamics::Batch::of_samples(&[samples[0].clone(), other]).is_err());

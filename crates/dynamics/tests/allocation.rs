@@ -119,16 +119,18 @@ fn no_batch_allocates_in_a_call() {
         let (mut out, mut matrices) = (vec![0.0; v.len()], vec![0.0; 21 * t.stored()]);
         let lanes = |rows: &[f64], each| to_lanes(rows, each).unwrap();
         let (q_lanes, v_lanes, mut out_lanes) = (lanes(q, t.nq()), lanes(v, t.nv()), lanes(v, t.nv()));
+        let forces: Vec<f64> = (0..21).flat_map(|_| wrenches(&model, 1)).flat_map(|f| f.to_array()).collect();
+        let (force_lanes, forces) = (lanes(&forces, 6 * t.bodies()), Some(&forces[..]));
         let mut batch = Batch::<f64>::new(&model);
 
         let before = ALLOCATIONS.get();
-        batch.inverse_dynamics(q, v, a, &mut out).unwrap();
-        batch.bias_force(q, v, &mut out).unwrap();
-        batch.forward_dynamics(q, v, tau, &mut out).unwrap();
+        batch.inverse_dynamics(q, v, a, forces, &mut out).unwrap();
+        batch.bias_force(q, v, forces, &mut out).unwrap();
+        batch.forward_dynamics(q, v, tau, forces, &mut out).unwrap();
         batch.mass_matrix(q, &mut matrices).unwrap();
         batch.factors(q, &mut matrices).unwrap();
         batch.solve(q, tau, &mut out).unwrap();
-        batch.forward_dynamics(&q_lanes, &v_lanes, &v_lanes, &mut out_lanes).unwrap();
+        batch.forward_dynamics(&q_lanes, &v_lanes, &v_lanes, Some(&force_lanes), &mut out_lanes).unwrap();
         assert_eq!(ALLOCATIONS.get() - before, 0, "{name}");
     }
 }

@@ -9,7 +9,7 @@ use featherbench_dynamics::{
 };
 use featherbench_model::{JointKind, Model};
 use featherbench_robots::StateBatch;
-use featherbench_spatial::{Lift, RigidBodyInertia};
+use featherbench_spatial::{Force, Lift, RigidBodyInertia};
 
 /// States in a batch: fewer than a group, one group, one more, and several.
 const COUNTS: [usize; 6] = [0, 1, 7, 8, 9, 17];
@@ -17,19 +17,37 @@ const COUNTS: [usize; 6] = [0, 1, 7, 8, 9, 17];
 /// The roundings in which lanes may differ from single states; [`lanes_are_as_single_states`] says why.
 const ROUNDINGS: f64 = 120.0;
 
+/// What a batch computes, in the order of the lists below.
+const QUANTITIES: [&str; 9] = [
+    "inverse dynamics",
+    "inverse dynamics, wrenches",
+    "bias force",
+    "bias force, wrenches",
+    "forward dynamics",
+    "forward dynamics, wrenches",
+    "mass matrix",
+    "factors",
+    "solution",
+];
+
 /// What every quantity is computed from, in row order. The right-hand sides of solutions are τ.
+#[derive(Clone)]
 struct States<S> {
     q: Vec<S>,
     v: Vec<S>,
     a: Vec<S>,
     tau: Vec<S>,
+    /// External wrenches, six numbers per body.
+    wrenches: Vec<S>,
 }
 
 impl<S: Number> States<S> {
     fn random(model: &Model<f64>, count: usize) -> Self {
         let states = StateBatch::random(model, count, 3);
-        let single = |numbers: &[f64]| numbers.iter().map(|&x| S::from_f64(x)).collect();
-        Self { q: single(&states.q), v: single(&states.v), a: single(&states.a), tau: single(&states.tau) }
+        let single = |numbers: &[f64]| -> Vec<S> { numbers.iter().map(|&x| S::from_f64(x)).collect() };
+        let wrenches: Vec<f64> = (0..count as u64).flat_map(|seed| common::wrenches(model, seed)).flat_map(|f| f.to_array()).collect();
+        let [q, v, a, tau, wrenches] = [&states.q, &states.v, &states.a, &states.tau, &wrenches].map(|numbers| single(numbers));
+        Self { q, v, a, tau, wrenches }
     }
 }
 
@@ -43,7 +61,8 @@ type Outcome<S> = Vec<(&'static str, Result<(), BatchError>, Vec<S>)>;
 type Call<'a, E> = dyn FnMut(&mut [E]) -> Result<(), BatchError> + 'a;
 
 fn in_rows<S: Number + Lift<S::Lanes>>(batch: &mut Batch<'_, S>, model: &Model<S>, states: &States<S>) -> Outcome<S> {
-    let States { q, v, a, tau } = states;
+    let States { q, v, a, tau, wrenches } = states;
+    let f = Some(&wrenches[..]);
     let t = &model.topology;
     let (vectors, matrices) = (vec![S::zero(); v.len()], vec![S::zero(); v.len() / t.nv() * t.stored()]);
     let with = |mut out: Vec<S>, name, run: &mut Call<S>| {
@@ -51,9 +70,12 @@ fn in_rows<S: Number + Lift<S::Lanes>>(batch: &mut Batch<'_, S>, model: &Model<S
         (name, done, out)
     };
     vec![
-        with(vectors.clone(), "inverse dynamics", &mut |out| batch.inverse_dynamics(q, v, a, out)),
-        with(vectors.clone(), "bias force", &mut |out| batch.bias_force(q, v, out)),
-        with(vectors.clone(), "forward dynamics", &mut |out| batch.forward_dynamics(q, v, tau, out)),
+        with(vectors.clone(), "inverse dynamics", &mut |out| batch.inverse_dynamics(q, v, a, None, out)),
+        with(vectors.clone(), "inverse dynamics, wrenches", &mut |out| batch.inverse_dynamics(q, v, a, f, out)),
+        with(vectors.clone(), "bias force", &mut |out| batch.bias_force(q, v, None, out)),
+        with(vectors.clone(), "bias force, wrenches", &mut |out| batch.bias_force(q, v, f, out)),
+        with(vectors.clone(), "forward dynamics", &mut |out| batch.forward_dynamics(q, v, tau, None, out)),
+        with(vectors.clone(), "forward dynamics, wrenches", &mut |out| batch.forward_dynamics(q, v, tau, f, out)),
         with(matrices.clone(), "mass matrix", &mut |out| batch.mass_matrix(q, out)),
         with(matrices.clone(), "factors", &mut |out| batch.factors(q, out)),
         with(vectors.clone(), "solution", &mut |out| batch.solve(q, tau, out)),
@@ -67,6 +89,8 @@ fn in_lanes<S: Number + Lift<S::Lanes>>(batch: &mut Batch<'_, S>, model: &Model<
     let lanes = |rows: &[S], each| to_lanes(rows, each).unwrap();
     let (q, v) = (lanes(&states.q, t.nq()), lanes(&states.v, t.nv()));
     let (a, tau) = (lanes(&states.a, t.nv()), lanes(&states.tau, t.nv()));
+    let wrenches = lanes(&states.wrenches, 6 * t.bodies());
+    let f = Some(&wrenches[..]);
     let groups = count.div_ceil(S::LANES);
     let with = |each, name, run: &mut Call<S::Lanes>| {
         let mut out = lanes(&vec![S::zero(); groups * S::LANES * each], each);
@@ -74,9 +98,12 @@ fn in_lanes<S: Number + Lift<S::Lanes>>(batch: &mut Batch<'_, S>, model: &Model<
         (name, done, to_rows(&out, each, count).unwrap())
     };
     vec![
-        with(t.nv(), "inverse dynamics", &mut |out| batch.inverse_dynamics(&q, &v, &a, out)),
-        with(t.nv(), "bias force", &mut |out| batch.bias_force(&q, &v, out)),
-        with(t.nv(), "forward dynamics", &mut |out| batch.forward_dynamics(&q, &v, &tau, out)),
+        with(t.nv(), "inverse dynamics", &mut |out| batch.inverse_dynamics(&q, &v, &a, None, out)),
+        with(t.nv(), "inverse dynamics, wrenches", &mut |out| batch.inverse_dynamics(&q, &v, &a, f, out)),
+        with(t.nv(), "bias force", &mut |out| batch.bias_force(&q, &v, None, out)),
+        with(t.nv(), "bias force, wrenches", &mut |out| batch.bias_force(&q, &v, f, out)),
+        with(t.nv(), "forward dynamics", &mut |out| batch.forward_dynamics(&q, &v, &tau, None, out)),
+        with(t.nv(), "forward dynamics, wrenches", &mut |out| batch.forward_dynamics(&q, &v, &tau, f, out)),
         with(t.stored(), "mass matrix", &mut |out| batch.mass_matrix(&q, out)),
         with(t.stored(), "factors", &mut |out| batch.factors(&q, out)),
         with(t.nv(), "solution", &mut |out| batch.solve(&q, &tau, out)),
@@ -87,7 +114,7 @@ fn in_lanes<S: Number + Lift<S::Lanes>>(batch: &mut Batch<'_, S>, model: &Model<
 fn one_by_one<'m, S: Number>(model: impl Fn(usize) -> &'m Model<S>, states: &States<S>) -> Answers<S> {
     let t = &model(0).topology;
     let (nq, nv) = (t.nq(), t.nv());
-    let mut answers: Answers<S> = ["inverse dynamics", "bias force", "forward dynamics", "mass matrix", "factors", "solution"]
+    let mut answers: Answers<S> = QUANTITIES
         .into_iter()
         .map(|name| (name, if matches!(name, "mass matrix" | "factors") { t.stored() } else { nv }, Vec::new()))
         .collect();
@@ -95,20 +122,24 @@ fn one_by_one<'m, S: Number>(model: impl Fn(usize) -> &'m Model<S>, states: &Sta
     for k in 0..states.v.len() / nv {
         let part = |array: &'_ [S], each| array[k * each..][..each].to_vec();
         let (q, v, a, tau) = (part(&states.q, nq), part(&states.v, nv), part(&states.a, nv), part(&states.tau, nv));
-        Rnea::new(t).run(model(k), &q, &v, &a, None, &mut out).unwrap();
-        answers[0].2.extend(&out);
-        Bias::new(t).run(model(k), &q, &v, None, &mut out).unwrap();
-        answers[1].2.extend(&out);
-        Aba::new(t).run(model(k), &q, &v, &tau, None, &mut out).unwrap();
-        answers[2].2.extend(&out);
+        let numbers = part(&states.wrenches, 6 * t.bodies());
+        let wrenches: Vec<Force<S>> = numbers.as_chunks().0.iter().map(|f| Force::from_array(*f)).collect();
+        for (place, f) in [None, Some(&wrenches[..])].into_iter().enumerate() {
+            Rnea::new(t).run(model(k), &q, &v, &a, f, &mut out).unwrap();
+            answers[place].2.extend(&out);
+            Bias::new(t).run(model(k), &q, &v, f, &mut out).unwrap();
+            answers[2 + place].2.extend(&out);
+            Aba::new(t).run(model(k), &q, &v, &tau, f, &mut out).unwrap();
+            answers[4 + place].2.extend(&out);
+        }
         let mut ltdl = Ltdl::new(t);
         Crba::new(t).run(model(k), &q, ltdl.matrix_mut()).unwrap();
-        answers[3].2.extend(ltdl.factors().values());
+        answers[6].2.extend(ltdl.factors().values());
         ltdl.factor().unwrap();
-        answers[4].2.extend(ltdl.factors().values());
+        answers[7].2.extend(ltdl.factors().values());
         out.copy_from_slice(&tau);
         ltdl.solve(&mut out).unwrap();
-        answers[5].2.extend(&out);
+        answers[8].2.extend(&out);
     }
     answers
 }
@@ -133,8 +164,9 @@ fn lanes_are_as_single_states<S: Number + Lift<S::Lanes>>(precision: f64)
 where
     f64: Lift<S>,
 {
-    for (name, recipe) in &ROBOTS {
-        let wide = build(recipe);
+    let skew = ROBOTS.iter().map(|(name, recipe)| (*name, build(recipe)));
+    let aligned = Model::build(&crate::aligned::aligned()).unwrap();
+    for (name, wide) in skew.chain([("aligned axes", aligned)]) {
         let model: Model<S> = wide.lift();
         let turns = model.topology.joints().iter().any(|joint| matches!(joint.kind, JointKind::Revolute(_) | JointKind::Helical));
         let (mut batch, mut parallel) = (Batch::<S>::new(&model), Batch::<S>::new(&model).on_all_cores());
@@ -196,17 +228,29 @@ fn a_state_with_a_bad_number_is_reported_and_harms_no_other() {
     let (count, nq, nv) = (19, model.topology.nq(), model.topology.nv());
     let clean = States::random(&model, count);
     for (bad, value) in [(0, f64::NAN), (6, f64::INFINITY), (8, f64::NEG_INFINITY), (18, f64::NAN)] {
-        for (array, each, entry) in [("configurations q", nq, 0), ("configurations q", nq, nq - 1), ("velocities v", nv, 3)] {
-            let mut states = States { q: clean.q.clone(), v: clean.v.clone(), a: clean.a.clone(), tau: clean.tau.clone() };
-            let numbers = if array == "velocities v" { &mut states.v } else { &mut states.q };
+        let six = 6 * model.topology.bodies();
+        let places =
+            [("configurations q", nq, 0), ("configurations q", nq, nq - 1), ("velocities v", nv, 3), ("external wrenches", six, six - 1)];
+        for (array, each, entry) in places {
+            let mut states = clean.clone();
+            let numbers = match array {
+                "velocities v" => &mut states.v,
+                "configurations q" => &mut states.q,
+                _ => &mut states.wrenches,
+            };
             numbers[bad * each + entry] = value;
             for parallel in [false, true] {
                 let new = || if parallel { Batch::<f64>::new(&model).on_all_cores() } else { Batch::new(&model) };
                 let before = in_rows(&mut new(), &model, &clean);
                 for after in [in_rows(&mut new(), &model, &states), in_lanes(&mut new(), &model, &states)] {
                     for ((quantity, done, found), (.., before)) in after.iter().zip(&before) {
-                        if array == "velocities v" && matches!(*quantity, "mass matrix" | "factors" | "solution") {
-                            assert_eq!((done, found), (&Ok(()), before), "{quantity} does not depend on v");
+                        let independent = match array {
+                            "velocities v" => matches!(*quantity, "mass matrix" | "factors" | "solution"),
+                            "external wrenches" => !quantity.ends_with("wrenches"),
+                            _ => false,
+                        };
+                        if independent {
+                            assert_eq!((done, found), (&Ok(()), before), "{quantity} does not depend on {array}");
                             continue;
                         }
                         let Err(BatchError::Failed { failures, .. }) = done else { panic!("{quantity}, state {bad}: {done:?}") };
@@ -236,7 +280,7 @@ fn states_with_a_bad_pivot_are_those_of_the_single_states() {
     let count = 50;
     let states = States::<f64>::random(&model, count);
     let mut a = vec![0.0; 3 * count];
-    let done = Batch::<f64>::new(&model).forward_dynamics(&states.q, &states.v, &states.tau, &mut a);
+    let done = Batch::<f64>::new(&model).forward_dynamics(&states.q, &states.v, &states.tau, None, &mut a);
     let Err(BatchError::Failed { failures, states: total }) = &done else { panic!("{done:?}") };
     assert_eq!(total, &count);
     let mut failures = failures.iter();
@@ -278,7 +322,7 @@ fn results_that_overflow_are_reported() {
     let mut states = States::<f64>::random(&model, 9);
     let (nv, mut tau) = (model.topology.nv(), vec![0.0; states.v.len()]);
     states.v[8 * nv + 2] = 1e200;
-    let Err(BatchError::Failed { failures, states: 9 }) = Batch::<f64>::new(&model).bias_force(&states.q, &states.v, &mut tau) else {
+    let Err(BatchError::Failed { failures, states: 9 }) = Batch::<f64>::new(&model).bias_force(&states.q, &states.v, None, &mut tau) else {
         panic!()
     };
     assert!(matches!(failures[..], [Failure { state: 8, cause: Cause::Result { array: "bias forces h", .. } }]), "{failures:?}");
@@ -308,10 +352,10 @@ fn a_sample_without_inertia_fails_alone() {
     let mut samples: Vec<Model<f64>> = (0..12).map(|seed| sample(&ROBOTS[0].1, seed)).collect();
     let states = States::random(&samples[0], 12);
     let (mut good, mut a) = (vec![0.0; states.v.len()], vec![0.0; states.v.len()]);
-    Batch::of_samples(&samples).unwrap().forward_dynamics(&states.q, &states.v, &states.tau, &mut good).unwrap();
+    Batch::of_samples(&samples).unwrap().forward_dynamics(&states.q, &states.v, &states.tau, None, &mut good).unwrap();
     let last = samples[9].inertias.len() - 1;
     samples[9].inertias[last] = RigidBodyInertia::zero();
-    let done = Batch::of_samples(&samples).unwrap().forward_dynamics(&states.q, &states.v, &states.tau, &mut a);
+    let done = Batch::of_samples(&samples).unwrap().forward_dynamics(&states.q, &states.v, &states.tau, None, &mut a);
     let cause = Cause::NotPositiveDefinite(NotPositiveDefinite { dof: last, pivot: 0.0 });
     assert_eq!(done, Err(BatchError::Failed { failures: vec![Failure { state: 9, cause }], states: 12 }));
     let nv = samples[0].topology.nv();
@@ -333,13 +377,18 @@ fn arrays_of_the_wrong_length_are_named() {
         other => panic!("{other:?}"),
     };
     let (all, less) = (count * nv, count * nv - 1);
-    assert_eq!(refusal(batch.inverse_dynamics(&q[1..], v, v, &mut out)), ("configurations q", count * nq, count * nq - 1));
-    assert_eq!(refusal(batch.inverse_dynamics(q, few, v, &mut out)), ("velocities v", all, less));
-    assert_eq!(refusal(batch.inverse_dynamics(q, v, few, &mut out)), ("accelerations a", all, less));
-    assert_eq!(refusal(batch.inverse_dynamics(q, v, v, &mut short)), ("joint forces tau", all, less));
-    assert_eq!(refusal(batch.bias_force(q, v, &mut short)), ("bias forces h", all, less));
-    assert_eq!(refusal(batch.forward_dynamics(q, v, few, &mut out)), ("joint forces tau", all, less));
-    assert_eq!(refusal(batch.forward_dynamics(q, v, v, &mut short)), ("accelerations a", all, less));
+    assert_eq!(refusal(batch.inverse_dynamics(&q[1..], v, v, None, &mut out)), ("configurations q", count * nq, count * nq - 1));
+    assert_eq!(refusal(batch.inverse_dynamics(q, few, v, None, &mut out)), ("velocities v", all, less));
+    assert_eq!(refusal(batch.inverse_dynamics(q, v, few, None, &mut out)), ("accelerations a", all, less));
+    assert_eq!(refusal(batch.inverse_dynamics(q, v, v, None, &mut short)), ("joint forces tau", all, less));
+    assert_eq!(refusal(batch.bias_force(q, v, None, &mut short)), ("bias forces h", all, less));
+    assert_eq!(refusal(batch.forward_dynamics(q, v, few, None, &mut out)), ("joint forces tau", all, less));
+    assert_eq!(refusal(batch.forward_dynamics(q, v, v, None, &mut short)), ("accelerations a", all, less));
+    let f = Some(&states.wrenches[1..]);
+    let wrenches = ("external wrenches", count * 6 * t.bodies(), count * 6 * t.bodies() - 1);
+    assert_eq!(refusal(batch.inverse_dynamics(q, v, v, f, &mut out)), wrenches);
+    assert_eq!(refusal(batch.bias_force(q, v, f, &mut out)), wrenches);
+    assert_eq!(refusal(batch.forward_dynamics(q, v, v, f, &mut out)), wrenches);
     assert_eq!(refusal(batch.mass_matrix(q, &mut short)), ("matrices", count * t.stored(), less));
     assert_eq!(refusal(batch.factors(q, &mut short)), ("factors", count * t.stored(), less));
     assert_eq!(refusal(batch.solve(q, few, &mut out)), ("right-hand sides b", all, less));
@@ -352,11 +401,11 @@ fn arrays_of_the_wrong_length_are_named() {
     // a broken model, and samples that do not fit
     let mut broken = model.clone();
     broken.armature.pop();
-    assert_eq!(refusal(Batch::<f64>::new(&broken).bias_force(q, v, &mut out)), ("armature of the model", nv, nv - 1));
+    assert_eq!(refusal(Batch::<f64>::new(&broken).bias_force(q, v, None, &mut out)), ("armature of the model", nv, nv - 1));
     let samples = [model.clone(), build(&ROBOTS[6].1)];
     assert_eq!(Batch::<f64>::of_samples(&[]).unwrap_err().what, "samples of the model");
     assert_eq!(Batch::of_samples(&samples).unwrap_err().what, "bodies of the workspace");
     let samples = vec![model.clone(); count + 1];
-    let done = Batch::of_samples(&samples).unwrap().bias_force(q, v, &mut out);
+    let done = Batch::of_samples(&samples).unwrap().bias_force(q, v, None, &mut out);
     assert_eq!(refusal(done), ("configurations q", (count + 1) * nq, count * nq));
 }

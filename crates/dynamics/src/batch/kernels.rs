@@ -2,7 +2,7 @@
 
 use crate::{Aba, Bias, Crba, Error, Ltdl, Rnea};
 use featherbench_model::{Model, Topology};
-use featherbench_spatial::{Lift, Real};
+use featherbench_spatial::{Force, Lift, Real};
 
 /// The workspaces of all kernels.
 #[derive(Clone, Debug)]
@@ -29,7 +29,7 @@ impl<T: Real> Workspace<T> {
     }
 }
 
-/// A kernel of `N` input vectors, the first of them q.
+/// A kernel of `N` input vectors, the first of them q. External wrenches may come with them, one per body in described axes.
 ///
 /// The result is there also with [`Error::NotPositiveDefinite`]: lanes compute without regard to others, so only that of the lane with the
 /// bad pivot means nothing.
@@ -38,6 +38,7 @@ pub(super) trait Kernel<const N: usize> {
         workspace: &'w mut Workspace<T>,
         model: &Model<P>,
         inputs: [&[T]; N],
+        wrenches: Option<&[Force<T>]>,
     ) -> (&'w [T], Result<(), Error>);
 }
 
@@ -48,8 +49,9 @@ impl Kernel<3> for InverseDynamics {
         workspace: &'w mut Workspace<T>,
         model: &Model<P>,
         [q, v, a]: [&[T]; 3],
+        wrenches: Option<&[Force<T>]>,
     ) -> (&'w [T], Result<(), Error>) {
-        let done = workspace.rnea.run(model, q, v, a, None, &mut workspace.vector);
+        let done = workspace.rnea.run(model, q, v, a, wrenches, &mut workspace.vector);
         (&workspace.vector, done.map_err(Error::from))
     }
 }
@@ -61,8 +63,9 @@ impl Kernel<2> for BiasForce {
         workspace: &'w mut Workspace<T>,
         model: &Model<P>,
         [q, v]: [&[T]; 2],
+        wrenches: Option<&[Force<T>]>,
     ) -> (&'w [T], Result<(), Error>) {
-        let done = workspace.bias.run(model, q, v, None, &mut workspace.vector);
+        let done = workspace.bias.run(model, q, v, wrenches, &mut workspace.vector);
         (&workspace.vector, done.map_err(Error::from))
     }
 }
@@ -74,8 +77,9 @@ impl Kernel<3> for ForwardDynamics {
         workspace: &'w mut Workspace<T>,
         model: &Model<P>,
         [q, v, tau]: [&[T]; 3],
+        wrenches: Option<&[Force<T>]>,
     ) -> (&'w [T], Result<(), Error>) {
-        let done = workspace.aba.run(model, q, v, tau, None, &mut workspace.vector);
+        let done = workspace.aba.run(model, q, v, tau, wrenches, &mut workspace.vector);
         (&workspace.vector, done)
     }
 }
@@ -87,6 +91,7 @@ impl Kernel<1> for MassMatrix {
         workspace: &'w mut Workspace<T>,
         model: &Model<P>,
         [q]: [&[T]; 1],
+        _: Option<&[Force<T>]>,
     ) -> (&'w [T], Result<(), Error>) {
         let matrix = workspace.ltdl.matrix_mut();
         let done = workspace.crba.run(model, q, matrix);
@@ -101,6 +106,7 @@ impl Kernel<1> for Factors {
         workspace: &'w mut Workspace<T>,
         model: &Model<P>,
         [q]: [&[T]; 1],
+        _: Option<&[Force<T>]>,
     ) -> (&'w [T], Result<(), Error>) {
         let Workspace { crba, ltdl, .. } = workspace;
         let done = crba.run(model, q, ltdl.matrix_mut()).map_err(Error::from).and_then(|()| Ok(ltdl.factor()?));
@@ -115,6 +121,7 @@ impl Kernel<2> for Solution {
         workspace: &'w mut Workspace<T>,
         model: &Model<P>,
         [q, b]: [&[T]; 2],
+        _: Option<&[Force<T>]>,
     ) -> (&'w [T], Result<(), Error>) {
         let Workspace { crba, ltdl, vector, .. } = workspace;
         vector.copy_from_slice(b);

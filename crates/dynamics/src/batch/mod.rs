@@ -2,7 +2,7 @@
 //!
 //! The kernels are those of this crate, with a register of numbers ([`Number::Lanes`]) as their scalar. So the operations on each state are
 //! those of a single state. Only sine and cosine come from another library: results differ by a few roundings.
-//! Frames, units and signs are those of the kernels. There are no external wrenches.
+//! Frames, units and signs are those of the kernels.
 //!
 //! An array holds one vector per state, in one of two orders. The type of its elements says which ([`Element`]):
 //!
@@ -12,6 +12,9 @@
 //!
 //! In row order lanes without a state compute a copy of the last state, and their results are dropped. In lane order every lane is a state:
 //! [`to_lanes`] fills the last group with copies, which a list of failures may name too.
+//!
+//! External wrenches have six numbers per compiled body, moment and then force, in the described axes
+//! ([`Model::labels`](featherbench_model::Model::labels)). So a vector of wrenches has 6·bodies entries.
 //!
 //! Cost: that of the kernel for each group of [`Number::LANES`] states.
 
@@ -28,7 +31,7 @@ use crate::DimensionError;
 use featherbench_model::Model;
 use featherbench_spatial::Lift;
 use kernels::{BiasForce, Factors, ForwardDynamics, InverseDynamics, MassMatrix, Solution};
-use run::{Array, Worker};
+use run::{Array, Inputs, WRENCH, Worker};
 use samples::Models;
 
 /// Computes with many states of one robot, on one core or on all.
@@ -51,13 +54,13 @@ use samples::Models;
 /// let q: Vec<f64> = (0..100).map(f64::from).collect();
 /// let (rest, mut tau) = (vec![0.0; 100], vec![0.0; 100]);
 /// let mut batch = Batch::<f64>::new(&model).on_all_cores();
-/// batch.inverse_dynamics(&q, &rest, &rest, &mut tau)?;
+/// batch.inverse_dynamics(&q, &rest, &rest, None, &mut tau)?;
 /// assert!(q.iter().zip(&tau).all(|(q, tau)| (tau - 5.0 * q.sin()).abs() < 1e-14));
 ///
 /// // One bad state does no harm to others.
 /// let mut v = rest.clone();
 /// v[17] = f64::NAN;
-/// let Err(BatchError::Failed { failures, .. }) = batch.forward_dynamics(&q, &v, &tau, &mut vec![0.0; 100]) else { panic!() };
+/// let Err(BatchError::Failed { failures, .. }) = batch.forward_dynamics(&q, &v, &tau, None, &mut vec![0.0; 100]) else { panic!() };
 /// assert_eq!((failures.len(), failures[0].state), (1, 17));
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
@@ -91,33 +94,49 @@ impl<'m, S: Number + Lift<S::Lanes>> Batch<'m, S> {
         self
     }
 
-    /// Joint forces `tau` of configurations `q`, velocities `v` and accelerations `a`: [`Rnea`](crate::Rnea) for each state.
+    /// Joint forces `tau` of configurations `q`, velocities `v`, accelerations `a` and external wrenches: [`Rnea`](crate::Rnea) for each
+    /// state.
     ///
     /// # Errors
     /// [`BatchError`] when an array has the wrong length or a state fails.
-    pub fn inverse_dynamics<E: Element<S>>(&mut self, q: &[E], v: &[E], a: &[E], tau: &mut [E]) -> Result<(), BatchError> {
+    pub fn inverse_dynamics<E: Element<S>>(
+        &mut self,
+        q: &[E],
+        v: &[E],
+        a: &[E],
+        wrenches: Option<&[E]>,
+        tau: &mut [E],
+    ) -> Result<(), BatchError> {
         let nv = self.nv();
-        let inputs = [self.q(q), Array::new("velocities v", v, nv), Array::new("accelerations a", a, nv)];
-        self.run::<InverseDynamics, E, 3>(inputs, Array::new("joint forces tau", tau, nv))
+        let vectors = [self.q(q), Array::new("velocities v", v, nv), Array::new("accelerations a", a, nv)];
+        self.run::<InverseDynamics, E, 3>(self.inputs(vectors, wrenches), Array::new("joint forces tau", tau, nv))
     }
 
-    /// Bias forces `h` of configurations `q` and velocities `v`: [`Bias`](crate::Bias) for each state.
+    /// Bias forces `h` of configurations `q` and velocities `v`: [`Bias`](crate::Bias) for each state. External wrenches enter as `−Σ Jᵀf`.
     ///
     /// # Errors
     /// [`BatchError`] when an array has the wrong length or a state fails.
-    pub fn bias_force<E: Element<S>>(&mut self, q: &[E], v: &[E], h: &mut [E]) -> Result<(), BatchError> {
+    pub fn bias_force<E: Element<S>>(&mut self, q: &[E], v: &[E], wrenches: Option<&[E]>, h: &mut [E]) -> Result<(), BatchError> {
         let nv = self.nv();
-        self.run::<BiasForce, E, 2>([self.q(q), Array::new("velocities v", v, nv)], Array::new("bias forces h", h, nv))
+        let vectors = [self.q(q), Array::new("velocities v", v, nv)];
+        self.run::<BiasForce, E, 2>(self.inputs(vectors, wrenches), Array::new("bias forces h", h, nv))
     }
 
-    /// Accelerations `a` at configurations `q`, velocities `v` and joint forces `tau`: [`Aba`](crate::Aba) for each state.
+    /// Accelerations `a` at configurations `q`, velocities `v`, joint forces `tau` and external wrenches: [`Aba`](crate::Aba) for each state.
     ///
     /// # Errors
     /// [`BatchError`] when an array has the wrong length or a state fails.
-    pub fn forward_dynamics<E: Element<S>>(&mut self, q: &[E], v: &[E], tau: &[E], a: &mut [E]) -> Result<(), BatchError> {
+    pub fn forward_dynamics<E: Element<S>>(
+        &mut self,
+        q: &[E],
+        v: &[E],
+        tau: &[E],
+        wrenches: Option<&[E]>,
+        a: &mut [E],
+    ) -> Result<(), BatchError> {
         let nv = self.nv();
-        let inputs = [self.q(q), Array::new("velocities v", v, nv), Array::new("joint forces tau", tau, nv)];
-        self.run::<ForwardDynamics, E, 3>(inputs, Array::new("accelerations a", a, nv))
+        let vectors = [self.q(q), Array::new("velocities v", v, nv), Array::new("joint forces tau", tau, nv)];
+        self.run::<ForwardDynamics, E, 3>(self.inputs(vectors, wrenches), Array::new("accelerations a", a, nv))
     }
 
     /// Joint-space inertia matrices of configurations `q`: [`Crba`](crate::Crba) for each state.
@@ -129,7 +148,7 @@ impl<'m, S: Number + Lift<S::Lanes>> Batch<'m, S> {
     /// [`BatchError`] when an array has the wrong length or a state fails.
     pub fn mass_matrix<E: Element<S>>(&mut self, q: &[E], matrices: &mut [E]) -> Result<(), BatchError> {
         let stored = self.models.topology().stored();
-        self.run::<MassMatrix, E, 1>([self.q(q)], Array::new("matrices", matrices, stored))
+        self.run::<MassMatrix, E, 1>(self.inputs([self.q(q)], None), Array::new("matrices", matrices, stored))
     }
 
     /// Factors LᵀDL of the joint-space inertia matrices of configurations `q`: [`Crba`](crate::Crba) and [`Ltdl`](crate::Ltdl) for each state.
@@ -140,7 +159,7 @@ impl<'m, S: Number + Lift<S::Lanes>> Batch<'m, S> {
     /// [`BatchError`] when an array has the wrong length or a state fails.
     pub fn factors<E: Element<S>>(&mut self, q: &[E], factors: &mut [E]) -> Result<(), BatchError> {
         let stored = self.models.topology().stored();
-        self.run::<Factors, E, 1>([self.q(q)], Array::new("factors", factors, stored))
+        self.run::<Factors, E, 1>(self.inputs([self.q(q)], None), Array::new("factors", factors, stored))
     }
 
     /// Solutions `x` of `M(q) x = b` by these factors, for configurations `q` and right-hand sides `b`.
@@ -149,7 +168,8 @@ impl<'m, S: Number + Lift<S::Lanes>> Batch<'m, S> {
     /// [`BatchError`] when an array has the wrong length or a state fails.
     pub fn solve<E: Element<S>>(&mut self, q: &[E], b: &[E], x: &mut [E]) -> Result<(), BatchError> {
         let nv = self.nv();
-        self.run::<Solution, E, 2>([self.q(q), Array::new("right-hand sides b", b, nv)], Array::new("solutions x", x, nv))
+        let vectors = [self.q(q), Array::new("right-hand sides b", b, nv)];
+        self.run::<Solution, E, 2>(self.inputs(vectors, None), Array::new("solutions x", x, nv))
     }
 
     fn nv(&self) -> usize {
@@ -158,5 +178,10 @@ impl<'m, S: Number + Lift<S::Lanes>> Batch<'m, S> {
 
     fn q<'a, E>(&self, q: &'a [E]) -> Array<&'a [E]> {
         Array::new("configurations q", q, self.models.topology().nq())
+    }
+
+    fn inputs<'a, E, const N: usize>(&self, vectors: [Array<&'a [E]>; N], wrenches: Option<&'a [E]>) -> Inputs<Array<&'a [E]>, N> {
+        let each = WRENCH * self.models.topology().bodies();
+        Inputs { vectors, wrenches: wrenches.map(|wrenches| Array::new("external wrenches", wrenches, each)) }
     }
 }

@@ -6,7 +6,7 @@ use super::{Batch, BatchError, Cause, Element, Failure, Number};
 use crate::error::expect;
 use crate::{DimensionError, Error};
 use featherbench_model::Topology;
-use featherbench_spatial::{Lift, Real};
+use featherbench_spatial::{Force, Lift, Real};
 use rayon::iter::{IntoParallelRefMutIterator, ParallelIterator};
 use std::sync::{Mutex, PoisonError};
 
@@ -16,18 +16,24 @@ const GROUPS: usize = 32;
 /// Workers take a part of the states at least so often, so that none waits long for the last.
 const PARTS_PER_WORKER: usize = 8;
 
+/// The numbers of an external wrench: moment, then force.
+pub(super) const WRENCH: usize = 6;
+
 /// What one core needs.
 #[derive(Clone, Debug)]
 pub(super) struct Worker<S: Number> {
     workspace: Workspace<S::Lanes>,
     /// The inputs of one group, if they have to be brought into lanes.
     inputs: Vec<S::Lanes>,
+    /// The external wrenches of one group, one per body.
+    wrenches: Vec<Force<S::Lanes>>,
 }
 
 impl<S: Number> Worker<S> {
     pub(super) fn new(topology: &Topology) -> Self {
-        let inputs = vec![S::Lanes::zero(); topology.nq() + 2 * topology.nv()];
-        Self { workspace: Workspace::new(topology), inputs }
+        let bodies = topology.bodies();
+        let inputs = vec![S::Lanes::zero(); topology.nq() + 2 * topology.nv() + WRENCH * bodies];
+        Self { workspace: Workspace::new(topology), inputs, wrenches: vec![Force::zero(); bodies] }
     }
 }
 
@@ -45,11 +51,39 @@ impl<A> Array<A> {
     }
 }
 
+/// What a kernel of `N` vectors is given.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Inputs<A, const N: usize> {
+    pub(super) vectors: [A; N],
+    /// External wrenches: [`WRENCH`] numbers per body.
+    pub(super) wrenches: Option<A>,
+}
+
+impl<A, const N: usize> Inputs<A, N> {
+    /// The same in another form.
+    #[inline(always)]
+    fn map<B>(self, mut form: impl FnMut(A) -> B) -> Inputs<B, N> {
+        Inputs { vectors: self.vectors.map(&mut form), wrenches: self.wrenches.map(form) }
+    }
+
+    /// The vectors, then the wrenches.
+    #[inline(always)]
+    fn iter(&self) -> impl Iterator<Item = &A> {
+        self.vectors.iter().chain(&self.wrenches)
+    }
+}
+
+impl<T, const N: usize> Inputs<Vec<T>, N> {
+    fn as_slices(&self) -> Inputs<&[T], N> {
+        Inputs { vectors: self.vectors.each_ref().map(|vector| &vector[..]), wrenches: self.wrenches.as_deref() }
+    }
+}
+
 impl<S: Number + Lift<S::Lanes>> Batch<'_, S> {
     /// Runs a kernel on every state.
     pub(super) fn run<K: Kernel<N>, E: Element<S>, const N: usize>(
         &mut self,
-        inputs: [Array<&[E]>; N],
+        inputs: Inputs<Array<&[E]>, N>,
         output: Array<&mut [E]>,
     ) -> Result<(), BatchError> {
         let Self { models, workers } = self;
@@ -89,15 +123,15 @@ impl<S: Number + Lift<S::Lanes>> Batch<'_, S> {
 /// The number of states. Each array has one vector for each.
 fn count<S: Number + Lift<S::Lanes>, E: Element<S>, const N: usize>(
     models: &Models<'_, S>,
-    inputs: &[Array<&[E]>; N],
+    inputs: &Inputs<Array<&[E]>, N>,
     output: &Array<&mut [E]>,
 ) -> Result<usize, DimensionError> {
-    let q = &inputs[0];
+    let q = &inputs.vectors[0];
     let vectors = match models.count() {
         Some(samples) => samples.div_ceil(E::STATES),
         None => q.numbers.len().div_ceil(q.each.max(1)),
     };
-    for array in inputs {
+    for array in inputs.iter() {
         expect(array.name, vectors * array.each, array.numbers.len())?;
     }
     expect(output.name, vectors * output.each, output.numbers.len())?;
@@ -107,7 +141,7 @@ fn count<S: Number + Lift<S::Lanes>, E: Element<S>, const N: usize>(
 /// A run of a kernel on many states.
 struct Job<'a, S: Number, E, const N: usize> {
     models: &'a Models<'a, S>,
-    inputs: [Array<&'a [E]>; N],
+    inputs: Inputs<Array<&'a [E]>, N>,
     /// The name of the output, and the entries of its vectors.
     output: (&'static str, usize),
     states: usize,
@@ -122,20 +156,20 @@ impl<S: Number + Lift<S::Lanes>, E: Element<S>, const N: usize> Job<'_, S, E, N>
         results: &mut [E],
         failures: &mut Vec<Failure>,
     ) -> Result<(), DimensionError> {
-        let Worker { workspace, inputs } = worker;
+        let Worker { workspace, inputs, wrenches } = worker;
         let mut rest = &mut inputs[..];
         let inputs = self.inputs.map(|array| {
             let (buffer, others) = std::mem::take(&mut rest).split_at_mut(array.each);
             rest = others;
             E::load(array.numbers, array.each, group, buffer)
         });
-        let (found, done) = self.models.run::<K, N>(group, workspace, inputs);
+        let (found, done) = self.models.run::<K, N>(group, workspace, inputs, wrenches);
         if let Err(Error::Dimension(error)) = done {
             return Err(error);
         }
         E::store(found, results);
         if done.is_err() || !inputs.iter().all(|input| are_finite(input)) || !are_finite(found) {
-            self.examine::<K>(workspace, group, inputs, results, failures);
+            self.examine::<K>(workspace, wrenches, group, inputs, results, failures);
         }
         Ok(())
     }
@@ -146,8 +180,9 @@ impl<S: Number + Lift<S::Lanes>, E: Element<S>, const N: usize> Job<'_, S, E, N>
     fn examine<K: Kernel<N>>(
         &self,
         workspace: &mut Workspace<S::Lanes>,
+        wrenches: &mut [Force<S::Lanes>],
         group: usize,
-        inputs: [&[S::Lanes]; N],
+        inputs: Inputs<&[S::Lanes], N>,
         results: &mut [E],
         failures: &mut Vec<Failure>,
     ) {
@@ -155,8 +190,8 @@ impl<S: Number + Lift<S::Lanes>, E: Element<S>, const N: usize> Job<'_, S, E, N>
         for state in first..(first + S::LANES).min(self.states) {
             let lane = state - first;
             let copies = inputs.map(|input| input.iter().map(|x| S::pack(|_| S::lanes(x)[lane])).collect::<Vec<_>>());
-            let (found, done) = self.models.run_copies::<K, N>(state, workspace, copies.each_ref().map(|input| &input[..]));
-            let mut given = self.inputs.iter().zip(&copies);
+            let (found, done) = self.models.run_copies::<K, N>(state, workspace, copies.as_slices(), wrenches);
+            let mut given = self.inputs.iter().zip(copies.iter());
             let bad_input = given.find_map(|(array, input)| {
                 let (entry, value) = not_finite(input)?;
                 Some(Cause::Input { array: array.name, entry, value })

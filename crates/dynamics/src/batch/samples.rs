@@ -2,18 +2,29 @@
 
 use super::Number;
 use super::kernels::{Kernel, Workspace};
+use super::run::{Inputs, WRENCH};
 use crate::error::expect;
 use crate::step::expect_bodies;
 use crate::{DimensionError, Error};
-use featherbench_model::{Axis, Model, Topology};
-use featherbench_spatial::{Lift, Mat3, Motion, RigidBodyInertia, Sym3, Transform, Vec3};
+use featherbench_model::{Axis, Label, Model, Topology};
+use featherbench_spatial::{Force, Lift, Mat3, Motion, Real, RigidBodyInertia, Sym3, Transform, Vec3};
 use std::array::from_fn;
 
 #[derive(Clone, Debug)]
 pub(super) enum Models<'m, S: Number> {
     One(&'m Model<S>),
-    /// One model for each state, and the same in lanes, group by group. There is at least one.
-    Each(&'m [Model<S>], Vec<Model<S::Lanes>>),
+    /// One model for each state. There is at least one.
+    Each(Samples<'m, S>),
+}
+
+#[derive(Clone, Debug)]
+pub(super) struct Samples<'m, S: Number> {
+    samples: &'m [Model<S>],
+    /// The same in lanes, group by group.
+    packed: Vec<Model<S::Lanes>>,
+    /// Whether a body has the same label in all samples. If not, its label in the packed models is [`Label::Z`], and its wrenches are
+    /// brought into compiled axes lane by lane.
+    same_label: Vec<bool>,
 }
 
 impl<'m, S: Number + Lift<S::Lanes>> Models<'m, S> {
@@ -31,14 +42,16 @@ impl<'m, S: Number + Lift<S::Lanes>> Models<'m, S> {
         }
         let kind = |i: usize, sample: &Model<S>| sample.topology.joints()[i].kind;
         let topology = first.topology.with_skew_axes(|i| samples.iter().any(|sample| kind(i, sample) != kind(i, first)));
-        let packed = samples.chunks(S::LANES).map(|group| pack(&topology, |lane| &group[lane.min(group.len() - 1)])).collect();
-        Ok(Self::Each(samples, packed))
+        let same_label: Vec<bool> = (0..bodies).map(|i| samples.iter().all(|sample| sample.labels[i] == first.labels[i])).collect();
+        let labels: Vec<Label> = same_label.iter().zip(&first.labels).map(|(same, label)| if *same { *label } else { Label::Z }).collect();
+        let packed = samples.chunks(S::LANES).map(|group| pack(&topology, &labels, |lane| &group[lane.min(group.len() - 1)])).collect();
+        Ok(Self::Each(Samples { samples, packed, same_label }))
     }
 
     pub(super) fn topology(&self) -> &Topology {
         match self {
             Self::One(model) => &model.topology,
-            Self::Each(_, packed) => &packed[0].topology,
+            Self::Each(each) => &each.packed[0].topology,
         }
     }
 
@@ -46,21 +59,27 @@ impl<'m, S: Number + Lift<S::Lanes>> Models<'m, S> {
     pub(super) fn count(&self) -> Option<usize> {
         match self {
             Self::One(_) => None,
-            Self::Each(samples, _) => Some(samples.len()),
+            Self::Each(each) => Some(each.samples.len()),
         }
     }
 
-    /// Runs a kernel on a group.
+    /// Runs a kernel on a group. External wrenches are kept in `wrenches`.
     #[inline(always)]
     pub(super) fn run<'w, K: Kernel<N>, const N: usize>(
         &self,
         group: usize,
         workspace: &'w mut Workspace<S::Lanes>,
-        inputs: [&[S::Lanes]; N],
+        inputs: Inputs<&[S::Lanes], N>,
+        wrenches: &mut [Force<S::Lanes>],
     ) -> (&'w [S::Lanes], Result<(), Error>) {
+        let external = inputs.wrenches.map(|numbers| forces(numbers, wrenches));
         match self {
-            Self::One(model) => K::run(workspace, model, inputs),
-            Self::Each(_, packed) => K::run(workspace, &packed[group], inputs),
+            Self::One(model) => K::run(workspace, model, inputs.vectors, external.as_deref()),
+            Self::Each(each) => {
+                let last = each.samples.len() - 1;
+                let external = external.map(|forces| each.relabel(forces, |lane| (group * S::LANES + lane).min(last)));
+                K::run(workspace, &each.packed[group], inputs.vectors, external)
+            }
         }
     }
 
@@ -69,19 +88,54 @@ impl<'m, S: Number + Lift<S::Lanes>> Models<'m, S> {
         &self,
         state: usize,
         workspace: &'w mut Workspace<S::Lanes>,
-        inputs: [&[S::Lanes]; N],
+        inputs: Inputs<&[S::Lanes], N>,
+        wrenches: &mut [Force<S::Lanes>],
     ) -> (&'w [S::Lanes], Result<(), Error>) {
+        let external = inputs.wrenches.map(|numbers| forces(numbers, wrenches));
         match self {
-            Self::One(model) => K::run(workspace, model, inputs),
-            Self::Each(samples, packed) => K::run(workspace, &pack(&packed[0].topology, |_| &samples[state]), inputs),
+            Self::One(model) => K::run(workspace, model, inputs.vectors, external.as_deref()),
+            Self::Each(each) => {
+                let external = external.map(|forces| each.relabel(forces, |_| state));
+                K::run(workspace, &each.pack(|_| &each.samples[state]), inputs.vectors, external)
+            }
         }
     }
 }
 
-/// One model of which each lane is a model of this topology.
-fn pack<'a, S: Number + Lift<S::Lanes>>(topology: &Topology, sample: impl Fn(usize) -> &'a Model<S>) -> Model<S::Lanes> {
+impl<S: Number + Lift<S::Lanes>> Samples<'_, S> {
+    /// One model of which each lane is a sample.
+    fn pack<'a>(&self, sample: impl Fn(usize) -> &'a Model<S>) -> Model<S::Lanes> {
+        pack(&self.packed[0].topology, &self.packed[0].labels, sample)
+    }
+
+    /// Brings the wrenches of bodies whose label is not the same in all samples into compiled axes. Lane l is a state of sample `sample(l)`.
+    #[inline(always)]
+    fn relabel<'f>(&self, forces: &'f mut [Force<S::Lanes>], sample: impl Fn(usize) -> usize) -> &'f [Force<S::Lanes>] {
+        for (i, force) in forces.iter_mut().enumerate().filter(|(i, _)| !self.same_label[*i]) {
+            let numbers = force.to_array();
+            *force = Force::from_array(together(|lane| {
+                let described = Force::from_array(from_fn(|k| S::lanes(&numbers[k])[lane]));
+                self.samples[sample(lane)].labels[i].force_to_compiled(described).to_array()
+            }));
+        }
+        forces
+    }
+}
+
+/// The wrenches of a group, one per body, from their numbers.
+#[inline(always)]
+fn forces<'f, T: Real>(numbers: &[T], forces: &'f mut [Force<T>]) -> &'f mut [Force<T>] {
+    for (force, numbers) in forces.iter_mut().zip(numbers.as_chunks::<WRENCH>().0) {
+        *force = Force::from_array(*numbers);
+    }
+    forces
+}
+
+/// One model of which each lane is a model of this topology. It gets these labels.
+fn pack<'a, S: Number + Lift<S::Lanes>>(topology: &Topology, labels: &[Label], sample: impl Fn(usize) -> &'a Model<S>) -> Model<S::Lanes> {
     let mut packed: Model<S::Lanes> = sample(0).lift();
     packed.topology = topology.clone();
+    packed.labels.copy_from_slice(labels);
     for (i, (x, subspace)) in packed.placements.iter_mut().zip(&mut packed.subspaces).enumerate() {
         *x = Transform {
             rotation: Mat3::from_array(together(|lane| sample(lane).placements[i].rotation.to_array())),
