@@ -17,6 +17,6 @@ mod vector;
 
 pub use inertia::{ArticulatedInertia, CentralInertia, RigidBodyInertia};
 pub use linear::{Ldl3, Mat3, Sym3, Vec3};
-pub use scalar::{Compensated, Counted, DoubleDouble, Dual, Lift, Operations, Real};
+pub use scalar::{Compensated, Counted, DoubleDouble, Dual, Lift, Operations, Part, Real};
 pub use transform::{Quaternion, Transform};
 pub use vector::{Force, Motion};

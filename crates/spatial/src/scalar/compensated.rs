@@ -1,15 +1,18 @@
-//! An `f64` with the sum of its rounding errors. It is as accurate as double-double at half the cost, where no divisor has cancelled.
+//! A number with the sum of its rounding errors. In `f64` it is as accurate as double-double at half the cost, where no divisor has
+//! cancelled.
 //!
 //! Source: the pair arithmetic of M. Lange and S. M. Rump, *Faithfully rounded floating-point computations* (ACM TOMS 46, 2020). It makes a
 //! number type of the compensated dot product of Ogita, Rump and Oishi (2005).
-//! The upper part is what plain `f64` would compute. The lower part sums the errors to first order, and is never carried over.
+//! The upper part is what plain arithmetic would compute. The lower part sums the errors to first order, and is never carried over.
 //!
 //! The error of an expression of sums and products is at most about n²u² times the same expression of magnitudes.
-//! Here u = 2⁻⁵³, and n is the number of operations on the longest path.
+//! Here u = 2⁻⁵³ for `f64` and 2⁻²⁴ for `f32`, and n is the number of operations on the longest path.
 //! So cancellation costs digits as in a double-double of 106 − 2·log₂ n bits. Sine, cosine, quotients and roots renormalize their operands.
+//!
+//! The parts may be registers ([`Part`]). Then each lane computes as if it were alone, to the bit.
 
 use super::error_free::{two_product, two_sum};
-use super::{DoubleDouble, Lift, Real};
+use super::{DoubleDouble, Lift, Part, Real};
 use std::ops::{Add, AddAssign, Div, Mul, MulAssign, Neg, Sub, SubAssign};
 
 /// The sum `value + error`, where `error` is usually, but not always, the smaller.
@@ -18,16 +21,16 @@ use std::ops::{Add, AddAssign, Div, Mul, MulAssign, Neg, Sub, SubAssign};
 ///
 /// ```
 /// use featherbench_spatial::{Compensated, Lift, Real};
-/// let [large, small] = [1e20, 1.0].map(Compensated::from_f64);
+/// let [large, small] = [1e20, 1.0].map(Compensated::<f64>::from_f64);
 /// let difference: f64 = (large * large + small - large * large).lift();
 /// assert_eq!(difference, 0.0, "32 digits are not 40");
 /// let difference: f64 = (large + small - large).lift();
 /// assert_eq!(difference, 1.0);
 /// ```
 #[derive(Clone, Copy, Debug)]
-pub struct Compensated {
-    value: f64,
-    error: f64,
+pub struct Compensated<T = f64> {
+    value: T,
+    error: T,
 }
 
 impl Compensated {
@@ -36,11 +39,24 @@ impl Compensated {
     pub fn to_double_double(self) -> DoubleDouble {
         DoubleDouble::from_sum(self.value, self.error)
     }
+}
+
+impl<T: Part> Compensated<T> {
+    /// The part nearest to this number, and the rest: at most half a unit in the last place of that.
+    #[inline(always)]
+    pub fn to_parts(self) -> [T; 2] {
+        let (value, error) = two_sum(self.value, self.error);
+        [value, error]
+    }
+
+    #[inline(always)]
+    fn from_parts([value, error]: [T; 2]) -> Self {
+        Self { value, error }
+    }
 
     #[cfg_attr(not(debug_assertions), inline(always))]
     fn renormalized(self) -> Self {
-        let (value, error) = two_sum(self.value, self.error);
-        Self { value, error }
+        Self::from_parts(self.to_parts())
     }
 }
 
@@ -51,15 +67,15 @@ impl From<DoubleDouble> for Compensated {
     }
 }
 
-impl Real for Compensated {
-    #[cfg_attr(not(debug_assertions), inline(always))]
+impl<T: Part> Real for Compensated<T> {
+    #[inline(always)]
     fn from_f64(value: f64) -> Self {
-        Self { value, error: 0.0 }
+        Self { value: T::from_f64(value), error: T::zero() }
     }
 
     #[cfg_attr(not(debug_assertions), inline(always))]
     fn from_exact(_rounded: f64, exact: DoubleDouble) -> Self {
-        exact.into()
+        exact.lift()
     }
 
     #[cfg_attr(not(debug_assertions), inline(always))]
@@ -67,54 +83,54 @@ impl Real for Compensated {
         let (product, product_error) = two_product(self.value, factor.value);
         let (value, sum_error) = two_sum(product, addend.value);
         let errors = (product_error + sum_error) + addend.error;
-        Self { value, error: Real::mul_add(self.error, factor.value, Real::mul_add(self.value, factor.error, errors)) }
+        Self { value, error: T::mul_add(self.error, factor.value, T::mul_add(self.value, factor.error, errors)) }
     }
 
     #[cfg_attr(not(debug_assertions), inline(always))]
     fn sqrt(self) -> Self {
-        self.to_double_double().sqrt().into()
+        Self::from_parts(T::in_extended(self.to_parts(), DoubleDouble::sqrt))
     }
 
     #[cfg_attr(not(debug_assertions), inline(always))]
     fn sin_cos(self) -> (Self, Self) {
-        let (sin, cos) = self.to_double_double().sin_cos();
-        (sin.into(), cos.into())
+        let [sin, cos] = T::sin_cos_extended(self.to_parts());
+        (Self::from_parts(sin), Self::from_parts(cos))
     }
 
     #[cfg_attr(not(debug_assertions), inline(always))]
     fn reciprocal_or_zero(self) -> Self {
-        self.to_double_double().reciprocal_or_zero().into()
+        Self::from_parts(T::in_extended(self.to_parts(), DoubleDouble::reciprocal_or_zero))
     }
 
     #[cfg_attr(not(debug_assertions), inline(always))]
     fn min_lane(self) -> f64 {
-        self.value + self.error
+        (self.value + self.error).min_lane()
     }
 }
 
-impl Lift<Compensated> for f64 {
-    #[cfg_attr(not(debug_assertions), inline(always))]
-    fn lift(self) -> Compensated {
-        Compensated::from_f64(self)
+impl<T: Part> Lift<Compensated<T>> for T {
+    #[inline(always)]
+    fn lift(self) -> Compensated<T> {
+        Compensated { value: self, error: T::zero() }
     }
 }
 
-impl Lift<Compensated> for DoubleDouble {
-    #[cfg_attr(not(debug_assertions), inline(always))]
-    fn lift(self) -> Compensated {
-        self.into()
+impl<T: Part> Lift<Compensated<T>> for DoubleDouble {
+    #[inline(always)]
+    fn lift(self) -> Compensated<T> {
+        Compensated::from_parts(T::split(self))
     }
 }
 
 /// Rounds.
-impl Lift<f64> for Compensated {
-    #[cfg_attr(not(debug_assertions), inline(always))]
-    fn lift(self) -> f64 {
+impl<T: Part> Lift<T> for Compensated<T> {
+    #[inline(always)]
+    fn lift(self) -> T {
         self.value + self.error
     }
 }
 
-impl Add for Compensated {
+impl<T: Part> Add for Compensated<T> {
     type Output = Self;
     #[cfg_attr(not(debug_assertions), inline(always))]
     fn add(self, other: Self) -> Self {
@@ -123,7 +139,7 @@ impl Add for Compensated {
     }
 }
 
-impl Sub for Compensated {
+impl<T: Part> Sub for Compensated<T> {
     type Output = Self;
     #[cfg_attr(not(debug_assertions), inline(always))]
     fn sub(self, other: Self) -> Self {
@@ -131,16 +147,16 @@ impl Sub for Compensated {
     }
 }
 
-impl Mul for Compensated {
+impl<T: Part> Mul for Compensated<T> {
     type Output = Self;
     #[cfg_attr(not(debug_assertions), inline(always))]
     fn mul(self, other: Self) -> Self {
         let (value, error) = two_product(self.value, other.value);
-        Self { value, error: Real::mul_add(self.error, other.value, Real::mul_add(self.value, other.error, error)) }
+        Self { value, error: T::mul_add(self.error, other.value, T::mul_add(self.value, other.error, error)) }
     }
 }
 
-impl Div for Compensated {
+impl<T: Part> Div for Compensated<T> {
     type Output = Self;
     #[cfg_attr(not(debug_assertions), inline(always))]
     fn div(self, other: Self) -> Self {
@@ -148,12 +164,12 @@ impl Div for Compensated {
         let value = self.value / other.value;
         let (product, error) = two_product(value, other.value);
         // the remainder of the dividend; the first difference is exact
-        let rest = ((self.value - product) - error) + Real::mul_add(-value, other.error, self.error);
+        let rest = ((self.value - product) - error) + T::mul_add(-value, other.error, self.error);
         Self { value, error: rest / other.value }
     }
 }
 
-impl Neg for Compensated {
+impl<T: Part> Neg for Compensated<T> {
     type Output = Self;
     #[cfg_attr(not(debug_assertions), inline(always))]
     fn neg(self) -> Self {
@@ -161,22 +177,22 @@ impl Neg for Compensated {
     }
 }
 
-impl AddAssign for Compensated {
-    #[cfg_attr(not(debug_assertions), inline(always))]
+impl<T: Part> AddAssign for Compensated<T> {
+    #[inline(always)]
     fn add_assign(&mut self, other: Self) {
         *self = *self + other;
     }
 }
 
-impl SubAssign for Compensated {
-    #[cfg_attr(not(debug_assertions), inline(always))]
+impl<T: Part> SubAssign for Compensated<T> {
+    #[inline(always)]
     fn sub_assign(&mut self, other: Self) {
         *self = *self - other;
     }
 }
 
-impl MulAssign for Compensated {
-    #[cfg_attr(not(debug_assertions), inline(always))]
+impl<T: Part> MulAssign for Compensated<T> {
+    #[inline(always)]
     fn mul_assign(&mut self, other: Self) {
         *self = *self * other;
     }

@@ -16,10 +16,10 @@
 
 use super::error_free::{fast_two_sum, two_product, two_sum};
 use super::trigonometry;
-use super::{Lift, Real};
+use super::{Lift, Part, Real};
 use std::ops::{Add, AddAssign, Div, Mul, MulAssign, Neg, Sub, SubAssign};
 
-/// The sum `hi + lo` of two `f64`, of which `hi` is the one nearest to the sum.
+/// The sum `hi + lo` of two `f64`, of which `hi` is the one nearest to the sum. With a register in place of `f64`, each lane is such a sum.
 ///
 /// ```
 /// use featherbench_spatial::{DoubleDouble, Real};
@@ -29,9 +29,9 @@ use std::ops::{Add, AddAssign, Div, Mul, MulAssign, Neg, Sub, SubAssign};
 /// assert_eq!(third.to_f64(), 1.0 / 3.0);
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, PartialOrd)]
-pub struct DoubleDouble {
-    hi: f64,
-    lo: f64,
+pub struct DoubleDouble<T = f64> {
+    hi: T,
+    lo: T,
 }
 
 impl DoubleDouble {
@@ -49,29 +49,10 @@ impl DoubleDouble {
         Self { hi, lo }
     }
 
-    /// The two parts as they are: `hi` must be the `f64` nearest to `hi + lo`.
-    #[cfg_attr(not(debug_assertions), inline(always))]
-    pub(crate) const fn from_parts(hi: f64, lo: f64) -> Self {
-        Self { hi, lo }
-    }
-
-    /// `hi + lo`, exactly, where |hi| ≥ |lo|.
-    #[cfg_attr(not(debug_assertions), inline(always))]
-    pub(crate) fn renormalized(hi: f64, lo: f64) -> Self {
-        let (hi, lo) = fast_two_sum(hi, lo);
-        Self { hi, lo }
-    }
-
     /// The `f64` nearest to this number.
     #[cfg_attr(not(debug_assertions), inline(always))]
     pub fn to_f64(self) -> f64 {
         self.hi
-    }
-
-    /// The rest of this number after [`DoubleDouble::to_f64`]: at most half a unit in the last place of that.
-    #[cfg_attr(not(debug_assertions), inline(always))]
-    pub fn rest(self) -> f64 {
-        self.lo
     }
 
     /// The magnitude.
@@ -79,29 +60,62 @@ impl DoubleDouble {
     pub fn abs(self) -> Self {
         if self.hi.is_sign_negative() { -self } else { self }
     }
+}
+
+impl<T: Part> DoubleDouble<T> {
+    /// The two parts as they are: `hi` must be the number nearest to `hi + lo`.
+    #[inline(always)]
+    pub(crate) const fn from_parts(hi: T, lo: T) -> Self {
+        Self { hi, lo }
+    }
+
+    /// `hi + lo`, exactly, where |hi| ≥ |lo|.
+    #[inline(always)]
+    pub(crate) fn renormalized(hi: T, lo: T) -> Self {
+        let (hi, lo) = fast_two_sum(hi, lo);
+        Self { hi, lo }
+    }
+
+    /// The number nearest to this one, as a part.
+    #[inline(always)]
+    pub(crate) fn hi(self) -> T {
+        self.hi
+    }
+
+    /// The rest of this number after [`DoubleDouble::to_f64`]: at most half a unit in the last place of that.
+    #[inline(always)]
+    pub fn rest(self) -> T {
+        self.lo
+    }
 
     /// `self · factor` for a plain factor: relative error at most 3u².
-    #[cfg_attr(not(debug_assertions), inline(always))]
-    pub(crate) fn scale(self, factor: f64) -> Self {
+    #[inline(always)]
+    pub(crate) fn scale(self, factor: T) -> Self {
         let (product, error) = two_product(self.hi, factor);
-        Self::renormalized(product, Real::mul_add(self.lo, factor, error))
+        Self::renormalized(product, T::mul_add(self.lo, factor, error))
     }
 
     /// The product with its parts not yet renormalized: the lower one is at most 4u of the upper one.
-    #[cfg_attr(not(debug_assertions), inline(always))]
-    fn raw_product(self, other: Self) -> (f64, f64) {
+    #[inline(always)]
+    fn raw_product(self, other: Self) -> (T, T) {
         let (product, error) = two_product(self.hi, other.hi);
-        let cross = Real::mul_add(self.lo, other.hi, Real::mul_add(self.hi, other.lo, self.lo * other.lo));
+        let cross = T::mul_add(self.lo, other.hi, T::mul_add(self.hi, other.lo, self.lo * other.lo));
         (product, error + cross)
     }
 
     /// `a + b`, where `a` need not be renormalized.
-    #[cfg_attr(not(debug_assertions), inline(always))]
-    fn sum((a_hi, a_lo): (f64, f64), b: Self) -> Self {
+    #[inline(always)]
+    fn sum((a_hi, a_lo): (T, T), b: Self) -> Self {
         let ((high, high_error), (low, low_error)) = (two_sum(a_hi, b.hi), two_sum(a_lo, b.lo));
         // `high` is a multiple of the last place of what is added to it, also after cancellation.
         let (high, rest) = fast_two_sum(high, high_error + low);
         Self::renormalized(high, low_error + rest)
+    }
+
+    /// `self · factor + addend`.
+    #[inline(always)]
+    pub(crate) fn times_plus(self, factor: Self, addend: Self) -> Self {
+        Self::sum(self.raw_product(factor), addend)
     }
 }
 
@@ -118,7 +132,7 @@ impl Real for DoubleDouble {
 
     #[cfg_attr(not(debug_assertions), inline(always))]
     fn mul_add(self, factor: Self, addend: Self) -> Self {
-        Self::sum(self.raw_product(factor), addend)
+        self.times_plus(factor, addend)
     }
 
     #[cfg_attr(not(debug_assertions), inline(always))]
@@ -170,7 +184,7 @@ impl From<f64> for DoubleDouble {
     }
 }
 
-impl Add for DoubleDouble {
+impl<T: Part> Add for DoubleDouble<T> {
     type Output = Self;
     #[cfg_attr(not(debug_assertions), inline(always))]
     fn add(self, other: Self) -> Self {
@@ -178,7 +192,7 @@ impl Add for DoubleDouble {
     }
 }
 
-impl Sub for DoubleDouble {
+impl<T: Part> Sub for DoubleDouble<T> {
     type Output = Self;
     #[cfg_attr(not(debug_assertions), inline(always))]
     fn sub(self, other: Self) -> Self {
@@ -186,7 +200,7 @@ impl Sub for DoubleDouble {
     }
 }
 
-impl Mul for DoubleDouble {
+impl<T: Part> Mul for DoubleDouble<T> {
     type Output = Self;
     #[cfg_attr(not(debug_assertions), inline(always))]
     fn mul(self, other: Self) -> Self {
@@ -206,7 +220,7 @@ impl Div for DoubleDouble {
     }
 }
 
-impl Neg for DoubleDouble {
+impl<T: Part> Neg for DoubleDouble<T> {
     type Output = Self;
     #[cfg_attr(not(debug_assertions), inline(always))]
     fn neg(self) -> Self {
@@ -214,22 +228,22 @@ impl Neg for DoubleDouble {
     }
 }
 
-impl AddAssign for DoubleDouble {
-    #[cfg_attr(not(debug_assertions), inline(always))]
+impl<T: Part> AddAssign for DoubleDouble<T> {
+    #[inline(always)]
     fn add_assign(&mut self, other: Self) {
         *self = *self + other;
     }
 }
 
-impl SubAssign for DoubleDouble {
-    #[cfg_attr(not(debug_assertions), inline(always))]
+impl<T: Part> SubAssign for DoubleDouble<T> {
+    #[inline(always)]
     fn sub_assign(&mut self, other: Self) {
         *self = *self - other;
     }
 }
 
-impl MulAssign for DoubleDouble {
-    #[cfg_attr(not(debug_assertions), inline(always))]
+impl<T: Part> MulAssign for DoubleDouble<T> {
+    #[inline(always)]
     fn mul_assign(&mut self, other: Self) {
         *self = *self * other;
     }

@@ -1,13 +1,15 @@
-//! Error-free transforms: sums and products of two `f64` as the rounded result and its rounding error, exactly.
+//! Error-free transforms: sums and products of two numbers as the rounded result and its rounding error, exactly; in registers lane by lane.
 //!
 //! Sources: Knuth's two-sum and Dekker's fast two-sum. The product is by fused multiply-add. Where the machine has none, it is by
 //! Veltkamp's splitting and Dekker's product (T. J. Dekker, *A floating-point technique for extending the available precision*, 1971).
 //! All are exact in round-to-nearest unless something overflows. A product also needs that its error does not underflow (|a·b| above
-//! 2⁻⁹⁶⁹).
+//! 2⁻⁹⁶⁹ in double, 2⁻¹⁰² in single precision).
+
+use super::{Part, Real};
 
 /// `a + b` and its error, exactly.
 #[inline(always)]
-pub(crate) fn two_sum(a: f64, b: f64) -> (f64, f64) {
+pub(crate) fn two_sum<T: Real>(a: T, b: T) -> (T, T) {
     let sum = a + b;
     let b_part = sum - a;
     (sum, (a - (sum - b_part)) + (b - b_part))
@@ -15,36 +17,35 @@ pub(crate) fn two_sum(a: f64, b: f64) -> (f64, f64) {
 
 /// `a + b` and its error, exactly, if `a` is a multiple of the last place of `b`. That holds if |a| ≥ |b|, or if a is zero.
 #[inline(always)]
-pub(crate) fn fast_two_sum(a: f64, b: f64) -> (f64, f64) {
+pub(crate) fn fast_two_sum<T: Real>(a: T, b: T) -> (T, T) {
     let sum = a + b;
     (sum, b - (sum - a))
 }
 
 /// `a · b` and its error, exactly.
 #[inline(always)]
-pub(crate) fn two_product(a: f64, b: f64) -> (f64, f64) {
+pub(crate) fn two_product<T: Part>(a: T, b: T) -> (T, T) {
     if cfg!(target_feature = "fma") {
         let product = a * b;
-        (product, f64::mul_add(a, b, -product))
+        (product, a.mul_add(b, -product))
     } else {
         dekker_product(a, b)
     }
 }
 
-/// [`two_product`] without fused multiply-add; it also overflows for factors above 2⁹⁹⁶.
+/// [`two_product`] without fused multiply-add; it also overflows for factors above 2⁹⁹⁶ in double, 2¹¹⁵ in single precision.
 #[inline(always)]
-fn dekker_product(a: f64, b: f64) -> (f64, f64) {
+fn dekker_product<T: Part>(a: T, b: T) -> (T, T) {
     let product = a * b;
     let ((a_high, a_low), (b_high, b_low)) = (split(a), split(b));
     let rest = ((a_high * b_high - product) + a_high * b_low) + a_low * b_high;
     (product, rest + a_low * b_low)
 }
 
-/// `a` as the sum of two numbers of 26 bits (Veltkamp).
+/// `a` as the sum of two numbers of half its bits (Veltkamp).
 #[inline(always)]
-fn split(a: f64) -> (f64, f64) {
-    const SPLITTER: f64 = 134_217_729.0; // 2²⁷ + 1
-    let scaled = SPLITTER * a;
+fn split<T: Part>(a: T) -> (T, T) {
+    let scaled = T::from_f64(T::SPLITTER) * a;
     let high = scaled - (scaled - a);
     (high, a - high)
 }

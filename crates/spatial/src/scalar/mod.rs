@@ -6,12 +6,14 @@ mod double_double;
 mod dual;
 mod error_free;
 mod lanes;
+mod part;
 mod trigonometry;
 
 pub use compensated::Compensated;
 pub use counted::{Counted, Operations};
 pub use double_double::DoubleDouble;
 pub use dual::Dual;
+pub use part::Part;
 
 use std::fmt::Debug;
 use std::ops::{Add, AddAssign, Div, Mul, MulAssign, Neg, Sub, SubAssign};

@@ -13,9 +13,9 @@
 //! | what is added to the tabulated value | 14u² where that is half the result, 1u² elsewhere |
 //! | the addition | 3u² |
 
-use super::Real;
 use super::double_double::DoubleDouble;
 use super::error_free::{fast_two_sum, two_product, two_sum};
+use super::{Part, Real};
 
 /// Sine and cosine; NaN of angles that are infinite or NaN.
 pub(super) fn sin_cos(x: DoubleDouble) -> (DoubleDouble, DoubleDouble) {
@@ -33,31 +33,39 @@ pub(super) fn sin_cos(x: DoubleDouble) -> (DoubleDouble, DoubleDouble) {
     }
 }
 
+/// Below this angle n < 2³⁰, and n·π/2 by parts has an error of n·2⁻¹⁶³.
+pub(super) const MODERATE: f64 = 1.6e9;
+
+/// If the rest is above this, the partial sums of its errors are small against it, and so are their errors.
+pub(super) const NOT_TINY: f64 = 1.0 / 1048576.0;
+
 /// The number n of quarter turns (right in its last two bits) and the rest x − n·π/2, at most about π/4.
 #[inline(always)]
 fn reduce(x: DoubleDouble) -> (u64, DoubleDouble) {
-    /// Below this n < 2³⁰, and n·π/2 by parts has an error of n·2⁻¹⁶³.
-    const MODERATE: f64 = 1.6e9;
-    /// Above this the partial sums have the size of the rest itself, and their errors are relative to it.
-    const NOT_TINY: f64 = 1.0 / 1048576.0;
-
     let turns = (x.to_f64() * FRAC_2_PI).round_ties_even();
     if turns == 0.0 {
         return (0, x);
     }
     if x.to_f64().abs() < MODERATE {
-        let ((first, first_error), (second, second_error)) = (two_product(turns, FRAC_PI_2[0]), two_product(turns, FRAC_PI_2[1]));
-        // exact, because the two differ by less than a factor of two
-        let rest = x.to_f64() - first;
-        let (rest, e1) = two_sum(rest, -first_error);
-        let (rest, e2) = two_sum(rest, x.rest());
-        let (rest, e3) = two_sum(rest, -second);
+        let (rest, errors) = subtract_quarter_turns(x, turns);
         if rest.abs() > NOT_TINY {
-            let errors = (e1 + e2) + (e3 - second_error) - turns * FRAC_PI_2[2];
             return (turns as i64 as u64, DoubleDouble::renormalized(rest, errors));
         }
     }
     reduce_by_digits(x)
+}
+
+/// `x − turns·π/2` by the parts of π/2, as a sum and its errors. `turns` is the whole number nearest to x·2/π.
+#[inline(always)]
+pub(super) fn subtract_quarter_turns<T: Part>(x: DoubleDouble<T>, turns: T) -> (T, T) {
+    let [high, middle, low] = FRAC_PI_2.map(T::from_f64);
+    let ((first, first_error), (second, second_error)) = (two_product(turns, high), two_product(turns, middle));
+    // exact, because the two differ by less than a factor of two
+    let rest = x.hi() - first;
+    let (rest, e1) = two_sum(rest, -first_error);
+    let (rest, e2) = two_sum(rest, x.rest());
+    let (rest, e3) = two_sum(rest, -second);
+    (rest, (e1 + e2) + (e3 - second_error) - turns * low)
 }
 
 /// [`reduce`] at any magnitude, and however near to a multiple of π/2.
@@ -140,44 +148,53 @@ fn kernel(r: DoubleDouble) -> (DoubleDouble, DoubleDouble) {
     let negative = r.to_f64() < 0.0;
     let r = if negative { -r } else { r };
     let k = (r.to_f64() * 64.0).round_ties_even();
-    let [sin_hi, sin_lo, cos_hi, cos_lo] = SIN_COS_OF_64THS[k as usize];
+    let (sin, cos) = near_tabulated(r, k, SIN_COS_OF_64THS[k as usize]);
+    (if negative { -sin } else { sin }, cos)
+}
+
+/// Sine and cosine of an angle near k/64; `tabulated` has those of k/64, each in two parts.
+#[inline(always)]
+pub(super) fn near_tabulated<T: Part>(r: DoubleDouble<T>, k: T, tabulated: [T; 4]) -> (DoubleDouble<T>, DoubleDouble<T>) {
+    let [sin_hi, sin_lo, cos_hi, cos_lo] = tabulated;
     let (s, c) = (DoubleDouble::from_parts(sin_hi, sin_lo), DoubleDouble::from_parts(cos_hi, cos_lo));
+    let constants = |high: f64, rest: f64| DoubleDouble::from_parts(T::from_f64(high), T::from_f64(rest));
+    let horner = |y: T, inner: T, outer: f64| y.mul_add(inner, T::from_f64(outer));
 
     // d = r − k/64, the first difference exact;  z = d² ≤ 2⁻¹⁴
-    let (d_hi, d_lo) = fast_two_sum(r.to_f64() - k * (1.0 / 64.0), r.rest());
+    let (d_hi, d_lo) = fast_two_sum(r.hi() - k * T::from_f64(1.0 / 64.0), r.rest());
     let d = DoubleDouble::from_parts(d_hi, d_lo);
     let z = d * d;
-    let y = z.to_f64();
+    let y = z.hi();
 
-    // sin d = d + d z (−1/3! + z (1/5! + z (−1/7! + …))), the inner terms in f64: they add less than 2⁻⁵⁴ of the sum
-    let tail = Real::mul_add(y, Real::mul_add(y, Real::mul_add(y, SIN[5], SIN[4]), SIN[3]), SIN[2]);
-    let fifth = DoubleDouble::renormalized(SIN[1], Real::mul_add(y, tail, SIN_REST[1]));
-    let third = descending(DoubleDouble::from_parts(SIN[0], SIN_REST[0]), z * fifth);
+    // sin d = d + d z (−1/3! + z (1/5! + z (−1/7! + …))), the inner terms in one part: they add less than 2⁻⁵⁴ of the sum
+    let tail = horner(y, horner(y, horner(y, T::from_f64(SIN[5]), SIN[4]), SIN[3]), SIN[2]);
+    let fifth = DoubleDouble::renormalized(T::from_f64(SIN[1]), horner(y, tail, SIN_REST[1]));
+    let third = descending(constants(SIN[0], SIN_REST[0]), z * fifth);
     let sin_d = descending(d, d * (z * third));
 
     // cos d − 1 = z (−1/2! + z (1/4! + z (−1/6! + …)))
-    let tail = Real::mul_add(y, Real::mul_add(y, Real::mul_add(y, COS[6], COS[5]), COS[4]), COS[3]);
-    let sixth = DoubleDouble::renormalized(COS[2], Real::mul_add(y, tail, COS_REST[2]));
-    let fourth = descending(DoubleDouble::from_parts(COS[1], COS_REST[1]), z * sixth);
-    let cos_d_less_one = z * descending(DoubleDouble::from_f64(COS[0]), z * fourth);
+    let tail = horner(y, horner(y, horner(y, T::from_f64(COS[6]), COS[5]), COS[4]), COS[3]);
+    let sixth = DoubleDouble::renormalized(T::from_f64(COS[2]), horner(y, tail, COS_REST[2]));
+    let fourth = descending(constants(COS[1], COS_REST[1]), z * sixth);
+    let cos_d_less_one = z * descending(constants(COS[0], 0.0), z * fourth);
 
     // sin(k/64 + d) = s + (c sin d + s (cos d − 1)),  cos(k/64 + d) = c + (c (cos d − 1) − s sin d)
-    let sin = s + c.mul_add(sin_d, s * cos_d_less_one);
-    let cos = descending(c, c.mul_add(cos_d_less_one, -(s * sin_d)));
-    (if negative { -sin } else { sin }, cos)
+    let sin = s + c.times_plus(sin_d, s * cos_d_less_one);
+    let cos = descending(c, c.times_plus(cos_d_less_one, -(s * sin_d)));
+    (sin, cos)
 }
 
 /// `a + b` where |b| is less than a hundredth of |a|, so that nothing cancels: relative error at most 3u².
 #[inline(always)]
-fn descending(a: DoubleDouble, b: DoubleDouble) -> DoubleDouble {
-    let (sum, error) = fast_two_sum(a.to_f64(), b.to_f64());
+fn descending<T: Part>(a: DoubleDouble<T>, b: DoubleDouble<T>) -> DoubleDouble<T> {
+    let (sum, error) = fast_two_sum(a.hi(), b.hi());
     DoubleDouble::renormalized(sum, error + (a.rest() + b.rest()))
 }
 
 /// π/2 in three parts.
 const FRAC_PI_2: [f64; 3] = [std::f64::consts::FRAC_PI_2, 6.123233995736766e-17, -1.4973849048591698e-33];
 
-const FRAC_2_PI: f64 = std::f64::consts::FRAC_2_PI;
+pub(super) const FRAC_2_PI: f64 = std::f64::consts::FRAC_2_PI;
 
 /// (−1)ᵏ/(2k + 3)!, then the rounding errors of the first two.
 const SIN: [f64; 6] = [
@@ -215,7 +232,7 @@ const DIGITS_2_PI: [u64; 22] = [
 
 /// Sine and cosine of k/64, each in two parts.
 #[rustfmt::skip] // a table
-const SIN_COS_OF_64THS: [[f64; 4]; 52] = [
+pub(super) const SIN_COS_OF_64THS: [[f64; 4]; 52] = [
     [0.0, 0.0, 1.0, 0.0],
     [0.015624364224883372, -1.2650937552759816e-19, 0.9998779321710066, 3.216122229972341e-17],
     [0.03124491398532608, -1.562781562225433e-18, 0.9995117584851364, -3.418806487972947e-17],

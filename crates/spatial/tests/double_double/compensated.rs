@@ -19,7 +19,7 @@ proptest! {
         // the same terms again with the opposite sign, but for a few of the last digits
         let change = DoubleDouble::from_f64(1.0 + 2.0_f64.powi(-digits));
         terms.extend(x.iter().zip(&y).map(|(x, y)| (-*x * change, *y)));
-        let (mut sum, mut fused) = (Compensated::zero(), Compensated::zero());
+        let (mut sum, mut fused) = (Compensated::<f64>::zero(), Compensated::zero());
         let (mut truth, mut magnitudes) = (exact(DoubleDouble::zero()), exact(DoubleDouble::zero()));
         for (x, y) in &terms {
             let (a, b): (Compensated, Compensated) = (x.lift(), y.lift());
@@ -69,5 +69,5 @@ fn conversions_and_signs() {
     z -= y;
     assert_eq!(z.to_double_double(), x * DoubleDouble::from_f64(3.0));
     assert!((y - Compensated::from_f64(f64::NAN)).min_lane().is_nan());
-    assert_eq!(Compensated::zero().sqrt().min_lane(), 0.0);
+    assert_eq!(Compensated::<f64>::zero().sqrt().min_lane(), 0.0);
 }

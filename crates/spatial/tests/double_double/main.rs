@@ -3,4 +3,5 @@
 mod arithmetic;
 mod compensated;
 mod multi_precision;
+mod registers;
 mod sine_cosine;
