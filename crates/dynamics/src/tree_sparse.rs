@@ -153,11 +153,16 @@ impl<T: Real> TreeSparse<T> {
 
     /// Copies the numbers of a matrix of the same topology.
     pub(crate) fn copy_from(&mut self, other: &Self) -> Result<(), DimensionError> {
-        let agreeing = self.rows.iter().zip(&other.rows).filter(|(row, theirs)| row == theirs).count();
-        expect("dofs of the tree-sparse matrix", self.size(), other.size())?;
-        expect("dofs of the tree-sparse matrix with the same place in the tree", self.size(), agreeing)?;
+        self.expect_same_tree(other)?;
         self.values.copy_from_slice(&other.values);
         Ok(())
+    }
+
+    /// An error if the other matrix has another topology.
+    pub(crate) fn expect_same_tree(&self, other: &Self) -> Result<(), DimensionError> {
+        let agreeing = self.rows.iter().zip(&other.rows).filter(|(row, theirs)| row == theirs).count();
+        expect("dofs of the tree-sparse matrix", self.size(), other.size())?;
+        expect("dofs of the tree-sparse matrix with the same place in the tree", self.size(), agreeing)
     }
 
     /// An error if the topology has another shape.

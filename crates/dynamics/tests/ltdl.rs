@@ -106,6 +106,12 @@ fn registers_give_what_the_plain_text_gives() {
         slow.inverse(&mut slow_inverse).unwrap();
         let expected = plain(&slow_inverse);
         within(&format!("{name}: inverse"), distance(&fast_inverse, &expected) / largest(&expected), order * f64::EPSILON);
+        // What the selected inverse held before does not matter.
+        let mut selected = TreeSparse::from_fn(&topology, |_, _| Counted(f64::NAN));
+        slow.selected_inverse(&mut selected).unwrap();
+        let of_full: TreeSparse<Counted> = TreeSparse::from_fn(&topology, |i, j| slow_inverse[i * n + j]);
+        let off = distance(&plain(selected.values()), &plain(of_full.values())) / largest(&expected);
+        within(&format!("{name}: selected inverse"), off, order * f64::EPSILON);
         for i in 0..n {
             for j in 0..n {
                 assert_eq!(fast_inverse[i * n + j], fast_inverse[j * n + i], "{name}: entry ({i}, {j})");
@@ -224,7 +230,10 @@ fn the_inverse_is_as_good_as_solutions() {
     for (name, model) in robots.chain(chains) {
         let n = model.topology.nv();
         let states = StateBatch::random(&model, 3, 11);
-        let (mut of_inverse, mut of_solutions, mut of_plain) = (0.0_f64, 0.0_f64, 0.0_f64);
+        let (mut of_inverse, mut of_solutions, mut of_plain, mut of_selected) = (0.0_f64, 0.0_f64, 0.0_f64, 0.0_f64);
+        let mut selected = TreeSparse::new(&model.topology);
+        let on_path = |i: usize, j: usize| model.topology.row_dofs(i.max(j)).contains(&i.min(j));
+        let mut entries = 0;
         for k in 0..states.count() {
             let matrix = mass_matrix(&model, states.q(k)).unwrap();
             let exact: TreeSparse<DoubleDouble> = TreeSparse::from_fn(&model.topology, |i, j| DoubleDouble::from_f64(matrix.get(i, j)));
@@ -235,6 +244,7 @@ fn the_inverse_is_as_good_as_solutions() {
             counted.into_ltdl().unwrap().inverse(&mut divided).unwrap();
             let ltdl = matrix.into_ltdl().unwrap();
             ltdl.inverse(&mut inverse).unwrap();
+            ltdl.selected_inverse(&mut selected).unwrap();
             for i in 0..n {
                 let mut column = vec![0.0; n];
                 column[i] = 1.0;
@@ -246,6 +256,10 @@ fn the_inverse_is_as_good_as_solutions() {
                     of_inverse = larger(of_inverse, off(inverse[i * n + j]));
                     of_plain = larger(of_plain, off(divided[i * n + j].0));
                     of_solutions = larger(of_solutions, off(column[j]));
+                    if on_path(i, j) {
+                        of_selected = larger(of_selected, off(selected.get(i, j)));
+                        entries += 1;
+                    }
                 }
             }
         }
@@ -253,5 +267,30 @@ fn the_inverse_is_as_good_as_solutions() {
         within(&format!("{name}: inverse, solutions are off by {of_solutions:.1e}"), of_inverse, 4.0 * of_solutions + floor);
         // Divisions in place of products with reciprocals.
         within(&format!("{name}: inverse, the plain one is off by {of_plain:.1e}"), of_inverse, 4.0 * of_plain + floor);
+        within(&format!("{name}: selected inverse, solutions are off by {of_solutions:.1e}"), of_selected, 4.0 * of_solutions + floor);
+        let stored = 2 * model.topology.stored() - n;
+        assert_eq!(entries, states.count() * stored, "{name}: all entries of the pattern");
     }
+}
+
+/// A register of states gives what each state gives, and a matrix of another tree is refused.
+#[test]
+fn the_selected_inverse_of_registers_is_that_of_single_states() {
+    for (name, recipe) in &ROBOTS {
+        let t = &build(recipe).topology;
+        let selected = |ltdl: Ltdl<f64x4>| {
+            let mut selected = TreeSparse::new(t);
+            ltdl.selected_inverse(&mut selected).unwrap();
+            selected.values().iter().map(|x| x.to_array()[1]).collect::<Vec<_>>()
+        };
+        let fours = selected(matrix::<f64x4>(t, 4).into_ltdl().unwrap());
+        let mut counted = TreeSparse::new(t);
+        matrix::<Counted>(t, 4).into_ltdl().unwrap().selected_inverse(&mut counted).unwrap();
+        assert_eq!(fours, plain(counted.values()), "{name}");
+    }
+    let ltdl = matrix::<f64>(&tree([-1, 0, 0]), 1).into_ltdl().unwrap();
+    let mut other = TreeSparse::new(&tree([-1, 0, 1]));
+    let refused = ltdl.selected_inverse(&mut other).unwrap_err();
+    assert_eq!((refused.what, refused.expected, refused.found), ("dofs of the tree-sparse matrix with the same place in the tree", 3, 1));
+    assert_eq!(ltdl.selected_inverse(&mut TreeSparse::new(&tree([-1, 0]))).unwrap_err().what, "dofs of the tree-sparse matrix");
 }

@@ -110,6 +110,10 @@ fn counts_of_storage_factorization_and_solution() {
         let solve = Counted::count(|| ltdl.solve(&mut x).unwrap());
         assert_eq!(solve, Operations { divisions: n, fused: 2 * d1, ..Operations::default() }, "{name}: solution");
 
+        let mut inverse = TreeSparse::new(&topology);
+        let selected = Counted::count(|| ltdl.selected_inverse(&mut inverse).unwrap());
+        assert_eq!(selected, Operations { divisions: n, fused: 2 * d2, ..Operations::default() }, "{name}: selected inverse");
+
         let mut y = x.clone();
         let product = Counted::count(|| matrix.mul(&x, &mut y).unwrap());
         assert_eq!(product, Operations { multiplications: n, fused: 2 * d1, ..Operations::default() }, "{name}: product");
