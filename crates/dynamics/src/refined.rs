@@ -38,6 +38,11 @@
 //! States are exact. A quaternion stands for the rotation of the normalized one; axes and placements stand for the rotations that
 //! [`featherbench_model::Description::canonical`] says.
 //!
+//! **Many states.** With registers as scalars, one state per lane, the residual is in `Compensated` registers. The operations on each lane are
+//! those of `Refined<Compensated>`, except sine and cosine in step 1 ([`crate::Batch`]). So the starts differ by a few roundings, and the
+//! accelerations before rounding by about the error that is left in them. After rounding they are the same to the bit, unless the exact
+//! result lies so near to the middle of two numbers.
+//!
 //! Frames, shapes and units: as in [`Aba`]. Cost: O(n). A call does not allocate.
 
 use crate::error::expect;
@@ -46,11 +51,36 @@ use crate::{Aba, DimensionError, Error, Rnea};
 use featherbench_model::{Model, Topology};
 use featherbench_spatial::{Compensated, Force, Lift, Motion, Real};
 
-/// The workspace of refined forward dynamics, with the residual in `R`.
+/// The workspace of refined forward dynamics of states in `T`, with the residual in `R`.
+///
+/// ```
+/// use featherbench_dynamics::{Refined, refined_forward_dynamics};
+/// use featherbench_model::Model;
+/// use featherbench_robots::{Family, StateBatch};
+/// use featherbench_spatial::Compensated;
+/// use wide::f64x4;
+///
+/// let model: Model<f64> = Model::build(&Family::parse("humanoid")?.generate()?)?;
+/// let states = StateBatch::random(&model, 4, 1);
+/// let alone = refined_forward_dynamics(&model, states.q(2), states.v(2), states.tau(2), 1)?;
+///
+/// // Four states at once.
+/// let lanes = |state: &dyn Fn(usize, usize) -> f64, count| -> Vec<f64x4> {
+///     (0..count).map(|k| f64x4::new([0, 1, 2, 3].map(|lane| state(lane, k)))).collect()
+/// };
+/// let (nq, nv) = (model.topology.nq(), model.topology.nv());
+/// let (q, v) = (lanes(&|lane, k| states.q(lane)[k], nq), lanes(&|lane, k| states.v(lane)[k], nv));
+/// let (tau, mut a) = (lanes(&|lane, k| states.tau(lane)[k], nv), vec![f64x4::ZERO; nv]);
+/// Refined::<Compensated<f64x4>, f64x4>::new(&model.topology, 1).run(&model, &q, &v, &tau, None, &mut a)?;
+/// for (together, alone) in a.iter().zip(&alone) {
+///     assert!((together.to_array()[2] - alone).abs() <= f64::EPSILON * alone.abs());
+/// }
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Clone, Debug)]
-pub struct Refined<R = Compensated> {
+pub struct Refined<R = Compensated, T = f64> {
     steps: usize,
-    aba: Aba<f64>,
+    aba: Aba<T>,
     rnea: Rnea<R>,
     /// The state, the accelerations and the wrenches in `R`, and the joint forces that these accelerations take.
     q: Vec<R>,
@@ -59,15 +89,12 @@ pub struct Refined<R = Compensated> {
     wrenches: Vec<Force<R>>,
     taken: Vec<R>,
     /// Residual r and correction δ.
-    residual: Vec<f64>,
-    correction: Vec<f64>,
-    product: MassProduct,
+    residual: Vec<T>,
+    correction: Vec<T>,
+    product: MassProduct<T>,
 }
 
-impl<R: Real + Lift<f64>> Refined<R>
-where
-    f64: Lift<R>,
-{
+impl<R: Real + Lift<T>, T: Real + Lift<R>> Refined<R, T> {
     /// A workspace for models of this topology that refines in `steps` steps. One step is enough where the plain algorithm keeps nine
     /// digits, two where it keeps six. With 0 steps it is the plain algorithm.
     pub fn new(topology: &Topology, steps: usize) -> Self {
@@ -82,8 +109,8 @@ where
             a: zeros(nv),
             wrenches: vec![Force::zero(); bodies],
             taken: zeros(nv),
-            residual: vec![0.0; nv],
-            correction: vec![0.0; nv],
+            residual: vec![T::zero(); nv],
+            correction: vec![T::zero(); nv],
             product: MassProduct { motions: vec![Motion::zero(); bodies + 1], forces: vec![Force::zero(); bodies] },
         }
     }
@@ -91,20 +118,24 @@ where
     /// The accelerations `a` at configuration `q`, velocity `v`, joint forces `tau` and external wrenches.
     ///
     /// # Errors
-    /// [`Error`] when an argument or the workspace does not fit the model, or when a joint meets no inertia; `a` is not valid then.
-    pub fn run<P: Real + Lift<f64> + Lift<R>>(
+    /// [`Error`] when an argument or the workspace does not fit the model, or when a joint meets no inertia; `a` is not valid then, except
+    /// in lanes whose joints meet inertia.
+    pub fn run<P: Real + Lift<T> + Lift<R>>(
         &mut self,
         model: &Model<P>,
-        q: &[f64],
-        v: &[f64],
-        tau: &[f64],
-        wrenches: Option<&[Force<f64>]>,
-        a: &mut [f64],
+        q: &[T],
+        v: &[T],
+        tau: &[T],
+        wrenches: Option<&[Force<T>]>,
+        a: &mut [T],
     ) -> Result<(), Error> {
         self.expect_shapes(&model.topology)?;
-        self.aba.run(model, q, v, tau, wrenches, a)?;
+        let started = self.aba.run(model, q, v, tau, wrenches, a);
+        if let Err(Error::Dimension(_)) = started {
+            return started;
+        }
         lift_into(a, &mut self.a);
-        self.correction.fill(0.0);
+        self.correction.fill(T::zero());
 
         for step in 0..self.steps {
             if step == 0 {
@@ -121,16 +152,21 @@ where
         for (a, refined) in a.iter_mut().zip(&self.a) {
             *a = refined.lift();
         }
-        Ok(())
+        started
     }
 
-    /// The accelerations of the last run before they were rounded to `f64`.
+    /// Refines in so many steps from now on.
+    pub(crate) fn set_steps(&mut self, steps: usize) {
+        self.steps = steps;
+    }
+
+    /// The accelerations of the last run before they were rounded.
     pub fn accelerations(&self) -> &[R] {
         &self.a
     }
 
     /// The correction δ of the last step of the last run: an estimate of the error before that step, and so a bound on what is left.
-    pub fn correction(&self) -> &[f64] {
+    pub fn correction(&self) -> &[T] {
         &self.correction
     }
 
@@ -138,10 +174,10 @@ where
     fn evaluate_residual<P: Real + Lift<R>>(
         &mut self,
         model: &Model<P>,
-        q: &[f64],
-        v: &[f64],
-        tau: &[f64],
-        wrenches: Option<&[Force<f64>]>,
+        q: &[T],
+        v: &[T],
+        tau: &[T],
+        wrenches: Option<&[Force<T>]>,
     ) -> Result<(), DimensionError> {
         lift_into(q, &mut self.q);
         lift_into(v, &mut self.v);
@@ -167,46 +203,43 @@ where
 
 /// The product M x by inverse dynamics at rest without gravity.
 #[derive(Clone, Debug)]
-struct MassProduct {
+struct MassProduct<T> {
     /// Accelerations of the world and the bodies.
-    motions: Vec<Motion<f64>>,
+    motions: Vec<Motion<T>>,
     /// Force across each joint.
-    forces: Vec<Force<f64>>,
+    forces: Vec<Force<T>>,
 }
 
-impl MassProduct {
+impl<T: Real> MassProduct<T> {
     /// `y −= M x` at the configuration of the last run of `aba`.
-    fn subtract<P: Real + Lift<f64>>(&mut self, model: &Model<P>, aba: &Aba<f64>, x: &[f64], y: &mut [f64]) {
+    fn subtract<P: Real + Lift<T>>(&mut self, model: &Model<P>, aba: &Aba<T>, x: &[T], y: &mut [T]) {
         let joints = model.topology.joints();
         // outward: a_i = X a_p + S x,  f_i = I a_i
         for (i, joint) in joints.iter().enumerate() {
             let carried = aba.placement(i).inverse_motion(self.motions[parent_link(joint)]);
             let motion = add_joint(joint.kind, carried, joint.kind.motion(&model.subspaces[i], &x[joint.v..]));
-            let inertia = model.inertias[i].lift::<f64>();
+            let inertia = model.inertias[i].lift::<T>();
             (self.motions[i + 1], self.forces[i]) = (motion, inertia.mul(motion));
         }
         // inward: y_i −= Sᵀ f_i,  f_p += X* f_i
         for (i, joint) in joints.iter().enumerate().rev() {
-            let (force, mut across) = (self.forces[i], [0.0; 6]);
+            let (force, mut across) = (self.forces[i], [T::zero(); 6]);
             joint.kind.project(&model.subspaces[i], force, &mut across);
             for (y, across) in y[joint.v..].iter_mut().zip(&across[..joint.kind.nv()]) {
-                *y -= across;
+                *y -= *across;
             }
             if let Some(parent) = joint.parent {
                 self.forces[parent] += aba.placement(i).force(force);
             }
         }
         for ((y, x), armature) in y.iter_mut().zip(x).zip(&model.armature) {
-            let armature: f64 = armature.lift();
-            *y = Real::mul_add(-armature, *x, *y);
+            let armature: T = armature.lift();
+            *y = (-armature).mul_add(*x, *y);
         }
     }
 }
 
-fn lift_into<R>(numbers: &[f64], lifted: &mut [R])
-where
-    f64: Lift<R>,
-{
+fn lift_into<T: Lift<R>, R>(numbers: &[T], lifted: &mut [R]) {
     for (lifted, number) in lifted.iter_mut().zip(numbers) {
         *lifted = number.lift();
     }

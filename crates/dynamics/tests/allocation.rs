@@ -86,6 +86,7 @@ fn no_algorithm_allocates_in_a_call() {
             ltdl.run(&matrix).unwrap();
             ltdl.solve(&mut out).unwrap();
             ltdl.inverse(&mut inverse).unwrap();
+            ltdl.selected_inverse(&mut matrix).unwrap();
             crba.run(&model, q, ltdl.matrix_mut()).unwrap();
             ltdl.factor().unwrap();
             matrix.mul(v, &mut out).unwrap();
@@ -122,11 +123,13 @@ fn no_batch_allocates_in_a_call() {
         let forces: Vec<f64> = (0..21).flat_map(|_| wrenches(&model, 1)).flat_map(|f| f.to_array()).collect();
         let (force_lanes, forces) = (lanes(&forces, 6 * t.bodies()), Some(&forces[..]));
         let mut batch = Batch::<f64>::new(&model);
+        batch.refined_forward_dynamics(q, v, tau, None, 1, &mut out).unwrap();
 
         let before = ALLOCATIONS.get();
         batch.inverse_dynamics(q, v, a, forces, &mut out).unwrap();
         batch.bias_force(q, v, forces, &mut out).unwrap();
         batch.forward_dynamics(q, v, tau, forces, &mut out).unwrap();
+        batch.refined_forward_dynamics(q, v, tau, forces, 2, &mut out).unwrap();
         batch.mass_matrix(q, &mut matrices).unwrap();
         batch.factors(q, &mut matrices).unwrap();
         batch.solve(q, tau, &mut out).unwrap();

@@ -1,8 +1,8 @@
 //! The kernels of a batch in one form: vectors in, one vector out, and an error that leaves the other lanes' results valid.
 
-use crate::{Aba, Bias, Crba, Error, Ltdl, Rnea};
+use crate::{Aba, Bias, Crba, Error, Ltdl, Refined, Rnea};
 use featherbench_model::{Model, Topology};
-use featherbench_spatial::{Force, Lift, Real};
+use featherbench_spatial::{Compensated, Force, Lift, Part, Real};
 
 /// The workspaces of all kernels.
 #[derive(Clone, Debug)]
@@ -12,11 +12,15 @@ pub(super) struct Workspace<T> {
     aba: Aba<T>,
     crba: Crba<T>,
     ltdl: Ltdl<T>,
+    /// Made by the first call that needs it: it is larger than all others.
+    refined: Option<Refined<Compensated<T>, T>>,
+    /// The steps of refinement.
+    pub(super) steps: usize,
     /// The result, if it has one number per dof.
     vector: Vec<T>,
 }
 
-impl<T: Real> Workspace<T> {
+impl<T: Part> Workspace<T> {
     pub(super) fn new(topology: &Topology) -> Self {
         Self {
             rnea: Rnea::new(topology),
@@ -24,17 +28,24 @@ impl<T: Real> Workspace<T> {
             aba: Aba::new(topology),
             crba: Crba::new(topology),
             ltdl: Ltdl::new(topology),
+            refined: None,
+            steps: 0,
             vector: vec![T::zero(); topology.nv()],
         }
     }
 }
+
+/// A parameter of a model for states in `T`.
+pub(super) trait Parameter<T>: Real + Lift<T> + Lift<Compensated<T>> {}
+
+impl<T, P: Real + Lift<T> + Lift<Compensated<T>>> Parameter<T> for P {}
 
 /// A kernel of `N` input vectors, the first of them q. External wrenches may come with them, one per body in described axes.
 ///
 /// The result is there also with [`Error::NotPositiveDefinite`]: lanes compute without regard to others, so only that of the lane with the
 /// bad pivot means nothing.
 pub(super) trait Kernel<const N: usize> {
-    fn run<'w, T: Real, P: Real + Lift<T>>(
+    fn run<'w, T: Part, P: Parameter<T>>(
         workspace: &'w mut Workspace<T>,
         model: &Model<P>,
         inputs: [&[T]; N],
@@ -45,7 +56,7 @@ pub(super) trait Kernel<const N: usize> {
 pub(super) struct InverseDynamics;
 
 impl Kernel<3> for InverseDynamics {
-    fn run<'w, T: Real, P: Real + Lift<T>>(
+    fn run<'w, T: Part, P: Parameter<T>>(
         workspace: &'w mut Workspace<T>,
         model: &Model<P>,
         [q, v, a]: [&[T]; 3],
@@ -59,7 +70,7 @@ impl Kernel<3> for InverseDynamics {
 pub(super) struct BiasForce;
 
 impl Kernel<2> for BiasForce {
-    fn run<'w, T: Real, P: Real + Lift<T>>(
+    fn run<'w, T: Part, P: Parameter<T>>(
         workspace: &'w mut Workspace<T>,
         model: &Model<P>,
         [q, v]: [&[T]; 2],
@@ -73,7 +84,7 @@ impl Kernel<2> for BiasForce {
 pub(super) struct ForwardDynamics;
 
 impl Kernel<3> for ForwardDynamics {
-    fn run<'w, T: Real, P: Real + Lift<T>>(
+    fn run<'w, T: Part, P: Parameter<T>>(
         workspace: &'w mut Workspace<T>,
         model: &Model<P>,
         [q, v, tau]: [&[T]; 3],
@@ -84,10 +95,27 @@ impl Kernel<3> for ForwardDynamics {
     }
 }
 
+pub(super) struct RefinedForwardDynamics;
+
+impl Kernel<3> for RefinedForwardDynamics {
+    fn run<'w, T: Part, P: Parameter<T>>(
+        workspace: &'w mut Workspace<T>,
+        model: &Model<P>,
+        [q, v, tau]: [&[T]; 3],
+        wrenches: Option<&[Force<T>]>,
+    ) -> (&'w [T], Result<(), Error>) {
+        let Workspace { refined, steps, vector, .. } = workspace;
+        let refined = refined.get_or_insert_with(|| Refined::new(&model.topology, *steps));
+        refined.set_steps(*steps);
+        let done = refined.run(model, q, v, tau, wrenches, vector);
+        (vector, done)
+    }
+}
+
 pub(super) struct MassMatrix;
 
 impl Kernel<1> for MassMatrix {
-    fn run<'w, T: Real, P: Real + Lift<T>>(
+    fn run<'w, T: Part, P: Parameter<T>>(
         workspace: &'w mut Workspace<T>,
         model: &Model<P>,
         [q]: [&[T]; 1],
@@ -102,7 +130,7 @@ impl Kernel<1> for MassMatrix {
 pub(super) struct Factors;
 
 impl Kernel<1> for Factors {
-    fn run<'w, T: Real, P: Real + Lift<T>>(
+    fn run<'w, T: Part, P: Parameter<T>>(
         workspace: &'w mut Workspace<T>,
         model: &Model<P>,
         [q]: [&[T]; 1],
@@ -117,7 +145,7 @@ impl Kernel<1> for Factors {
 pub(super) struct Solution;
 
 impl Kernel<2> for Solution {
-    fn run<'w, T: Real, P: Real + Lift<T>>(
+    fn run<'w, T: Part, P: Parameter<T>>(
         workspace: &'w mut Workspace<T>,
         model: &Model<P>,
         [q, b]: [&[T]; 2],

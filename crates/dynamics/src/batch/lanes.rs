@@ -2,14 +2,14 @@
 
 use crate::DimensionError;
 use crate::error::expect;
-use featherbench_spatial::Real;
+use featherbench_spatial::{Compensated, Lift, Part, Real};
 
 /// A number of a batch, `f64` or `f32`, and the register that holds one of each state of a group.
 ///
 /// The register is chosen when the crate is compiled: 64 bytes with AVX-512, otherwise 32.
-pub trait Number: Real + Element<Self> {
+pub trait Number: Part + Element<Self> + Lift<<Self as Number>::Lanes> + Lift<Compensated<<Self as Number>::Lanes>> {
     /// The register.
-    type Lanes: Real + Element<Self>;
+    type Lanes: Part + Element<Self>;
 
     /// How many numbers a register holds.
     const LANES: usize;

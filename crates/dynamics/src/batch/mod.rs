@@ -29,8 +29,7 @@ pub use lanes::{Element, Number, to_lanes, to_rows};
 
 use crate::DimensionError;
 use featherbench_model::Model;
-use featherbench_spatial::Lift;
-use kernels::{BiasForce, Factors, ForwardDynamics, InverseDynamics, MassMatrix, Solution};
+use kernels::{BiasForce, Factors, ForwardDynamics, InverseDynamics, MassMatrix, RefinedForwardDynamics, Solution};
 use run::{Array, Inputs, WRENCH, Worker};
 use samples::Models;
 
@@ -71,7 +70,7 @@ pub struct Batch<'m, S: Number = f64> {
     workers: Vec<Worker<S>>,
 }
 
-impl<'m, S: Number + Lift<S::Lanes>> Batch<'m, S> {
+impl<'m, S: Number> Batch<'m, S> {
     /// States of one model, on one core. The precision `S` is that of the model: [`Model::lift`] makes a `Model<f32>`.
     pub fn new(model: &'m Model<S>) -> Self {
         Self { workers: vec![Worker::new(&model.topology)], models: Models::One(model) }
@@ -137,6 +136,28 @@ impl<'m, S: Number + Lift<S::Lanes>> Batch<'m, S> {
         let nv = self.nv();
         let vectors = [self.q(q), Array::new("velocities v", v, nv), Array::new("joint forces tau", tau, nv)];
         self.run::<ForwardDynamics, E, 3>(self.inputs(vectors, wrenches), Array::new("accelerations a", a, nv))
+    }
+
+    /// The same to the last digit, by refinement in so many steps: [`Refined`](crate::Refined) for each state, with the residual in
+    /// [`Compensated`](featherbench_spatial::Compensated) numbers of the precision `S`.
+    ///
+    /// The first call makes a workspace for each core, and so allocates.
+    ///
+    /// # Errors
+    /// [`BatchError`] when an array has the wrong length or a state fails.
+    pub fn refined_forward_dynamics<E: Element<S>>(
+        &mut self,
+        q: &[E],
+        v: &[E],
+        tau: &[E],
+        wrenches: Option<&[E]>,
+        steps: usize,
+        a: &mut [E],
+    ) -> Result<(), BatchError> {
+        let nv = self.nv();
+        self.workers.iter_mut().for_each(|worker| worker.set_steps(steps));
+        let vectors = [self.q(q), Array::new("velocities v", v, nv), Array::new("joint forces tau", tau, nv)];
+        self.run::<RefinedForwardDynamics, E, 3>(self.inputs(vectors, wrenches), Array::new("accelerations a", a, nv))
     }
 
     /// Joint-space inertia matrices of configurations `q`: [`Crba`](crate::Crba) for each state.

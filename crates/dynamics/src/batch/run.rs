@@ -6,7 +6,7 @@ use super::{Batch, BatchError, Cause, Element, Failure, Number};
 use crate::error::expect;
 use crate::{DimensionError, Error};
 use featherbench_model::Topology;
-use featherbench_spatial::{Force, Lift, Real};
+use featherbench_spatial::{Force, Real};
 use rayon::iter::{IntoParallelRefMutIterator, ParallelIterator};
 use std::sync::{Mutex, PoisonError};
 
@@ -34,6 +34,11 @@ impl<S: Number> Worker<S> {
         let bodies = topology.bodies();
         let inputs = vec![S::Lanes::zero(); topology.nq() + 2 * topology.nv() + WRENCH * bodies];
         Self { workspace: Workspace::new(topology), inputs, wrenches: vec![Force::zero(); bodies] }
+    }
+
+    /// Refines in so many steps from now on.
+    pub(super) fn set_steps(&mut self, steps: usize) {
+        self.workspace.steps = steps;
     }
 }
 
@@ -79,7 +84,7 @@ impl<T, const N: usize> Inputs<Vec<T>, N> {
     }
 }
 
-impl<S: Number + Lift<S::Lanes>> Batch<'_, S> {
+impl<S: Number> Batch<'_, S> {
     /// Runs a kernel on every state.
     pub(super) fn run<K: Kernel<N>, E: Element<S>, const N: usize>(
         &mut self,
@@ -121,7 +126,7 @@ impl<S: Number + Lift<S::Lanes>> Batch<'_, S> {
 }
 
 /// The number of states. Each array has one vector for each.
-fn count<S: Number + Lift<S::Lanes>, E: Element<S>, const N: usize>(
+fn count<S: Number, E: Element<S>, const N: usize>(
     models: &Models<'_, S>,
     inputs: &Inputs<Array<&[E]>, N>,
     output: &Array<&mut [E]>,
@@ -147,7 +152,7 @@ struct Job<'a, S: Number, E, const N: usize> {
     states: usize,
 }
 
-impl<S: Number + Lift<S::Lanes>, E: Element<S>, const N: usize> Job<'_, S, E, N> {
+impl<S: Number, E: Element<S>, const N: usize> Job<'_, S, E, N> {
     /// Runs the kernel on one group.
     fn run_group<K: Kernel<N>>(
         &self,

@@ -7,7 +7,7 @@ use crate::error::expect;
 use crate::step::expect_bodies;
 use crate::{DimensionError, Error};
 use featherbench_model::{Axis, Label, Model, Topology};
-use featherbench_spatial::{Force, Lift, Mat3, Motion, Real, RigidBodyInertia, Sym3, Transform, Vec3};
+use featherbench_spatial::{Force, Mat3, Motion, Real, RigidBodyInertia, Sym3, Transform, Vec3};
 use std::array::from_fn;
 
 #[derive(Clone, Debug)]
@@ -27,7 +27,7 @@ pub(super) struct Samples<'m, S: Number> {
     same_label: Vec<bool>,
 }
 
-impl<'m, S: Number + Lift<S::Lanes>> Models<'m, S> {
+impl<'m, S: Number> Models<'m, S> {
     /// One model for each state. An axis is along z in all samples, or is taken as a skew one in all.
     pub(super) fn of_samples(samples: &'m [Model<S>]) -> Result<Self, DimensionError> {
         let Some(first) = samples.first() else {
@@ -102,7 +102,7 @@ impl<'m, S: Number + Lift<S::Lanes>> Models<'m, S> {
     }
 }
 
-impl<S: Number + Lift<S::Lanes>> Samples<'_, S> {
+impl<S: Number> Samples<'_, S> {
     /// One model of which each lane is a sample.
     fn pack<'a>(&self, sample: impl Fn(usize) -> &'a Model<S>) -> Model<S::Lanes> {
         pack(&self.packed[0].topology, &self.packed[0].labels, sample)
@@ -132,7 +132,7 @@ fn forces<'f, T: Real>(numbers: &[T], forces: &'f mut [Force<T>]) -> &'f mut [Fo
 }
 
 /// One model of which each lane is a model of this topology. It gets these labels.
-fn pack<'a, S: Number + Lift<S::Lanes>>(topology: &Topology, labels: &[Label], sample: impl Fn(usize) -> &'a Model<S>) -> Model<S::Lanes> {
+fn pack<'a, S: Number>(topology: &Topology, labels: &[Label], sample: impl Fn(usize) -> &'a Model<S>) -> Model<S::Lanes> {
     let mut packed: Model<S::Lanes> = sample(0).lift();
     packed.topology = topology.clone();
     packed.labels.copy_from_slice(labels);
