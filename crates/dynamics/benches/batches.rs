@@ -6,9 +6,10 @@
 
 use criterion::measurement::WallTime;
 use criterion::{BenchmarkGroup, Criterion, Throughput, criterion_group, criterion_main};
-use featherbench_dynamics::{Aba, Batch, Crba, Ltdl, Number, Rnea, to_lanes};
+use featherbench_dynamics::{Aba, Batch, Crba, Ltdl, Number, Refined, Rnea, to_lanes};
 use featherbench_model::Model;
 use featherbench_robots::{Family, StateBatch};
+use featherbench_spatial::Compensated;
 use std::hint::black_box;
 use std::time::Duration;
 
@@ -26,7 +27,7 @@ fn batches(criterion: &mut Criterion) {
         let description = Family::parse(spec).expect("a family").generate().expect("a robot");
         let model: Model<f64> = Model::build(&description).expect("a valid robot");
         let states = StateBatch::random(&model, STATES, 1);
-        for quantity in ["inverse_dynamics", "forward_dynamics", "mass_matrix", "solve"] {
+        for quantity in ["inverse_dynamics", "forward_dynamics", "refined", "mass_matrix", "solve"] {
             let mut group = criterion.benchmark_group(format!("{quantity}/{name}"));
             group.throughput(Throughput::Elements(STATES as u64));
             single(&mut group, &model, &states, quantity);
@@ -46,6 +47,7 @@ fn batches(criterion: &mut Criterion) {
                             match quantity {
                                 "inverse_dynamics" => batch.inverse_dynamics($q, $v, $a, None, &mut out),
                                 "forward_dynamics" => batch.forward_dynamics($q, $v, $tau, None, &mut out),
+                                "refined" => batch.refined_forward_dynamics($q, $v, $tau, None, 1, &mut out),
                                 "mass_matrix" => batch.mass_matrix($q, &mut out),
                                 _ => batch.solve($q, $tau, &mut out),
                             }
@@ -69,6 +71,7 @@ fn batches(criterion: &mut Criterion) {
 fn single(group: &mut BenchmarkGroup<WallTime>, model: &Model<f64>, states: &StateBatch, quantity: &str) {
     let t = &model.topology;
     let (mut rnea, mut aba, mut crba, mut ltdl) = (Rnea::new(t), Aba::new(t), Crba::new(t), Ltdl::new(t));
+    let mut refined = Refined::<Compensated>::new(t, 1);
     let each = if quantity == "mass_matrix" { t.stored() } else { t.nv() };
     let mut results = vec![0.0; STATES * each];
     group.bench_function("single", |bencher| {
@@ -78,6 +81,7 @@ fn single(group: &mut BenchmarkGroup<WallTime>, model: &Model<f64>, states: &Sta
                 match quantity {
                     "inverse_dynamics" => rnea.run(model, q, v, a, None, out).expect("an answer"),
                     "forward_dynamics" => aba.run(model, q, v, tau, None, out).expect("an answer"),
+                    "refined" => refined.run(model, q, v, tau, None, out).expect("an answer"),
                     "mass_matrix" => {
                         crba.run(model, q, ltdl.matrix_mut()).expect("an answer");
                         out.copy_from_slice(ltdl.factors().values());

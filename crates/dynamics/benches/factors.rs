@@ -1,4 +1,4 @@
-//! The factorization, a solution and the inverse, by the text for `f64` and by the text for any scalar.
+//! The factorization, a solution, the selected inverse and the inverse, by the text for `f64` and by the text for any scalar.
 //!
 //! A group is an operation. An id is a text and a robot: `f64` runs in registers, `plain` is the book's text on a scalar that is an `f64` in
 //! all but its type. Each call takes another of eight matrices, or of their factors. A factorization includes copying its matrix.
@@ -74,6 +74,13 @@ fn all<T: Real>(group: &mut BenchmarkGroup<WallTime>, robot: &Robot, text: &str,
                 });
             });
         }
+        "selected_inverse" => {
+            let mut factors: Vec<_> = factors().collect();
+            let mut inverse = TreeSparse::new(&robot.topology);
+            group.bench_function(id, |bencher| {
+                bencher.iter(|| factors[next()].selected_inverse(black_box(&mut inverse)).expect("a selected inverse"));
+            });
+        }
         _ => {
             let n = robot.topology.nv();
             let factors: Vec<_> = factors().collect();
@@ -91,7 +98,7 @@ fn all<T: Real>(group: &mut BenchmarkGroup<WallTime>, robot: &Robot, text: &str,
 
 fn ltdl(criterion: &mut Criterion) {
     let robots: Vec<Robot> = ROBOTS.into_iter().map(Robot::new).collect();
-    for operation in ["factor", "solve", "inverse"] {
+    for operation in ["factor", "solve", "selected_inverse", "inverse"] {
         let mut group = criterion.benchmark_group(operation);
         for robot in &robots {
             all::<f64>(&mut group, robot, "f64", operation);

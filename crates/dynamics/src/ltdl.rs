@@ -59,6 +59,8 @@ pub struct Ltdl<T> {
     plan: Plan,
     /// What the factorization for `f64` needs beside the matrix.
     scratch: Vec<T>,
+    /// What the selected inverse for `f64` needs: X of one path.
+    square: Vec<T>,
 }
 
 impl<T: Real> Ltdl<T> {
@@ -133,7 +135,7 @@ impl<T: Real> Ltdl<T> {
     ///
     /// `1 / X_kk` is the inertia that a force at dof k meets while all other dofs are free. Its unit is that of M.
     ///
-    /// Cost: O(Σ d_k²), that of two factorizations.
+    /// Cost: O(Σ d_k²), the multiply-subtracts of two factorizations. In `f64` the first call allocates the square of the longest path.
     ///
     /// # Errors
     /// [`DimensionError`] when `inverse` has another topology.
@@ -145,7 +147,7 @@ impl<T: Real> Ltdl<T> {
     ///
     /// let model: Model<f64> = Model::build(&Family::parse("humanoid")?.generate()?)?;
     /// let states = StateBatch::random(&model, 1, 1);
-    /// let ltdl = mass_matrix(&model, states.q(0))?.into_ltdl()?;
+    /// let mut ltdl = mass_matrix(&model, states.q(0))?.into_ltdl()?;
     /// let mut inverse = TreeSparse::new(&model.topology);
     /// ltdl.selected_inverse(&mut inverse)?;
     ///
@@ -156,16 +158,19 @@ impl<T: Real> Ltdl<T> {
     /// assert!((x[20] * (1.0 / inverse.get(20, 20)) - 1.0).abs() < 1e-12);
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
-    pub fn selected_inverse(&self, inverse: &mut TreeSparse<T>) -> Result<(), DimensionError> {
+    pub fn selected_inverse(&mut self, inverse: &mut TreeSparse<T>) -> Result<(), DimensionError> {
         self.matrix.expect_same_tree(inverse)?;
-        select_inverse(&self.matrix, inverse);
+        match Blocked::find() {
+            Some(blocked) => (blocked.select)(&self.matrix, &self.plan, &mut self.square, inverse),
+            None => select_inverse(&self.matrix, inverse),
+        }
         Ok(())
     }
 
     pub(crate) fn from_unfactored(matrix: TreeSparse<T>) -> Self {
         let plan = Plan::new(&matrix);
         let scratch = vec![T::zero(); Blocked::<T>::find().map_or(0, |blocked| (blocked.scratch)(&plan))];
-        Self { matrix, plan, scratch }
+        Self { matrix, plan, scratch, square: Vec::new() }
     }
 }
 
@@ -289,20 +294,31 @@ struct Blocked<T> {
     scratch: fn(&Plan) -> usize,
     solve: Of<T>,
     inverse: Of<T>,
+    select: fn(&TreeSparse<T>, &Plan, &mut Vec<T>, &mut TreeSparse<T>),
 }
 
 /// From factors and the topology to an array.
 type Of<T> = fn(&TreeSparse<T>, &Plan, &mut [T]);
 
 impl<T: Real> Blocked<T> {
-    const IN_FOURS: &Self =
-        &Self { factor: lanes::factor, scratch: |_| 0, solve: lanes::solve, inverse: |matrix, _, inverse| invert(matrix, inverse) };
+    const IN_FOURS: &Self = &Self {
+        factor: lanes::factor,
+        scratch: |_| 0,
+        solve: lanes::solve,
+        inverse: |matrix, _, inverse| invert(matrix, inverse),
+        select: |matrix, _, _, inverse| select_inverse(matrix, inverse),
+    };
 
     /// Those of T. The compiler compares the types, and leaves a constant.
     #[inline(always)]
     fn find() -> Option<&'static Self> {
-        const OF_F64: &Blocked<f64> =
-            &Blocked { factor: factor::factor, scratch: Plan::scratch, solve: solve::solve, inverse: inverse::inverse };
+        const OF_F64: &Blocked<f64> = &Blocked {
+            factor: factor::factor,
+            scratch: Plan::scratch,
+            solve: solve::solve,
+            inverse: inverse::inverse,
+            select: inverse::select,
+        };
         Self::from(OF_F64)
             .or_else(|| Self::from(Blocked::<f64x8>::IN_FOURS))
             .or_else(|| Self::from(Blocked::<f64x4>::IN_FOURS))

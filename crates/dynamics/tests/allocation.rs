@@ -61,6 +61,10 @@ fn no_algorithm_allocates_in_a_call() {
         let (mut center, mut jacobian) = (CenterOfMass::new(t), Jacobian::new(t));
         let (mut refined, mut extended) = (Refined::<Compensated>::new(t, 2), Refined::<DoubleDouble>::new(t, 1));
         let (mut matrix, mut ltdl, mut inverse) = (TreeSparse::new(t), Ltdl::new(t), vec![0.0; t.nv() * t.nv()]);
+        // The first selected inverse makes its square.
+        crba.run(&model, states.q(0), ltdl.matrix_mut()).unwrap();
+        ltdl.factor().unwrap();
+        ltdl.selected_inverse(&mut matrix).unwrap();
         let packed = PackedModel::new(&model);
         let (mut packed_rnea, mut packed_aba, mut packed_crba) =
             (PackedRnea::new(&packed), PackedAba::new(&packed), PackedCrba::new(&packed));

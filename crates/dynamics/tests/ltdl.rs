@@ -85,7 +85,7 @@ fn sines(n: usize) -> Vec<f64> {
 fn registers_give_what_the_plain_text_gives() {
     for (name, topology) in topologies() {
         let n = topology.nv();
-        let (fast, slow) = (matrix::<f64>(&topology, 7).into_ltdl().unwrap(), matrix::<Counted>(&topology, 7).into_ltdl().unwrap());
+        let (mut fast, mut slow) = (matrix::<f64>(&topology, 7).into_ltdl().unwrap(), matrix::<Counted>(&topology, 7).into_ltdl().unwrap());
         let factors = plain(slow.factors().values());
         let off = distance(fast.factors().values(), &factors) / largest(&factors);
         // The sums have up to n terms, and another order.
@@ -112,6 +112,12 @@ fn registers_give_what_the_plain_text_gives() {
         let of_full: TreeSparse<Counted> = TreeSparse::from_fn(&topology, |i, j| slow_inverse[i * n + j]);
         let off = distance(&plain(selected.values()), &plain(of_full.values())) / largest(&expected);
         within(&format!("{name}: selected inverse"), off, order * f64::EPSILON);
+        let mut in_registers = TreeSparse::from_fn(&topology, |_, _| f64::NAN);
+        for _ in 0..2 {
+            fast.selected_inverse(&mut in_registers).unwrap();
+            let off = distance(in_registers.values(), &plain(of_full.values())) / largest(&expected);
+            within(&format!("{name}: selected inverse in registers"), off, order * f64::EPSILON);
+        }
         for i in 0..n {
             for j in 0..n {
                 assert_eq!(fast_inverse[i * n + j], fast_inverse[j * n + i], "{name}: entry ({i}, {j})");
@@ -242,7 +248,7 @@ fn the_inverse_is_as_good_as_solutions() {
             let counted: TreeSparse<Counted> = TreeSparse::from_fn(&model.topology, |i, j| Counted(matrix.get(i, j)));
             let mut divided = vec![Counted(0.0); n * n];
             counted.into_ltdl().unwrap().inverse(&mut divided).unwrap();
-            let ltdl = matrix.into_ltdl().unwrap();
+            let mut ltdl = matrix.into_ltdl().unwrap();
             ltdl.inverse(&mut inverse).unwrap();
             ltdl.selected_inverse(&mut selected).unwrap();
             for i in 0..n {
@@ -278,7 +284,7 @@ fn the_inverse_is_as_good_as_solutions() {
 fn the_selected_inverse_of_registers_is_that_of_single_states() {
     for (name, recipe) in &ROBOTS {
         let t = &build(recipe).topology;
-        let selected = |ltdl: Ltdl<f64x4>| {
+        let selected = |mut ltdl: Ltdl<f64x4>| {
             let mut selected = TreeSparse::new(t);
             ltdl.selected_inverse(&mut selected).unwrap();
             selected.values().iter().map(|x| x.to_array()[1]).collect::<Vec<_>>()
@@ -288,7 +294,7 @@ fn the_selected_inverse_of_registers_is_that_of_single_states() {
         matrix::<Counted>(t, 4).into_ltdl().unwrap().selected_inverse(&mut counted).unwrap();
         assert_eq!(fours, plain(counted.values()), "{name}");
     }
-    let ltdl = matrix::<f64>(&tree([-1, 0, 0]), 1).into_ltdl().unwrap();
+    let mut ltdl = matrix::<f64>(&tree([-1, 0, 0]), 1).into_ltdl().unwrap();
     let mut other = TreeSparse::new(&tree([-1, 0, 1]));
     let refused = ltdl.selected_inverse(&mut other).unwrap_err();
     assert_eq!((refused.what, refused.expected, refused.found), ("dofs of the tree-sparse matrix with the same place in the tree", 3, 1));
