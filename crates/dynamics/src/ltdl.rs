@@ -28,6 +28,9 @@
 //! | humanoid, 36 dofs | 374 (2.1) | 209 (1.8) | 1070 (12) |
 //! | random tree, 1000 dofs | 10000 (1.2) | 7260 (1.3) | 1.0e6 (9.4) |
 //!
+//! In `f64` the selected inverse takes two to four times as long as the factorization. On chains and the humanoid that is the time of the
+//! inverse, on the random tree a sixteenth of it.
+//!
 //! The inverse comes from L X = D⁻¹ L⁻ᵀ. Its right side is zero below the diagonal and 1/D on it. So from the root down, for c < i:
 //! `X_ic = −Σ_j L_ij X_jc` and `X_ii = 1/D_i − Σ_j L_ij X_ij` over the strict ancestors j of i; X_jc = X_cj is known. (The recurrence of
 //! Takahashi, Fagan and Chen, 1973, for every entry.)
@@ -135,7 +138,8 @@ impl<T: Real> Ltdl<T> {
     ///
     /// `1 / X_kk` is the inertia that a force at dof k meets while all other dofs are free. Its unit is that of M.
     ///
-    /// Cost: O(Σ d_k²), the multiply-subtracts of two factorizations. In `f64` the first call allocates the square of the longest path.
+    /// Cost: O(Σ d_k²), the multiply-subtracts of two factorizations. On a chain that is the cost of the inverse, on branches less. In `f64`
+    /// the first call allocates about d² numbers for the longest path.
     ///
     /// # Errors
     /// [`DimensionError`] when `inverse` has another topology.

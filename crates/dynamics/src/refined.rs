@@ -41,7 +41,8 @@
 //! **Many states.** With registers as scalars, one state per lane, the residual is in `Compensated` registers. The operations on each lane are
 //! those of `Refined<Compensated>`, except sine and cosine in step 1 ([`crate::Batch`]). So the starts differ by a few roundings, and the
 //! accelerations before rounding by about the error that is left in them. After rounding they are the same to the bit, unless the exact
-//! result lies so near to the middle of two numbers.
+//! result lies so near to the middle of two numbers. With eight states in a register and one step, a batch takes a fourth to a fifth of the
+//! time of single states, and three times as long as a batch of [`Aba`] on the humanoid.
 //!
 //! Frames, shapes and units: as in [`Aba`]. Cost: O(n). A call does not allocate.
 
