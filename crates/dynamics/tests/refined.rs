@@ -185,6 +185,24 @@ fn registers_of_states_give_what_each_state_alone_gives() {
     }
 }
 
+/// The parameters of a description with 32 digits, and a register of copies of one state.
+#[test]
+fn registers_take_a_model_in_double_double() {
+    let extended = Model::<DoubleDouble>::build(&description("humanoid:hand_mass=1000")).unwrap();
+    let states = StateBatch::random(&Model::<f64>::build(&description("humanoid:hand_mass=1000")).unwrap(), 5, 2);
+    let t = &extended.topology;
+    let (mut wide, mut single) = (Refined::<Compensated<f64x8>, f64x8>::new(t, 2), Refined::<Compensated>::new(t, 2));
+    let (mut a, mut alone) = (vec![f64x8::ZERO; t.nv()], vec![0.0; t.nv()]);
+    for k in 0..states.count() {
+        let (q, v, tau) = (states.q(k), states.v(k), states.tau(k));
+        wide.run(&extended, &lifted(q), &lifted(v), &lifted(tau), None, &mut a).unwrap();
+        single.run(&extended, q, v, tau, None, &mut alone).unwrap();
+        for lane in 0..8 {
+            assert_eq!(a.iter().map(|a| a.to_array()[lane]).collect::<Vec<_>>(), alone, "state {k}, lane {lane}");
+        }
+    }
+}
+
 /// A chain whose numbers are the same in single precision: its accelerations are the exact ones, rounded to single precision.
 #[test]
 fn single_precision_is_right_to_its_last_digit() {
