@@ -43,13 +43,13 @@ impl Compensated {
 
 impl<T: Part> Compensated<T> {
     /// The part nearest to this number, and the rest: at most half a unit in the last place of that.
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     pub fn to_parts(self) -> [T; 2] {
         let (value, error) = two_sum(self.value, self.error);
         [value, error]
     }
 
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn from_parts([value, error]: [T; 2]) -> Self {
         Self { value, error }
     }
@@ -68,7 +68,7 @@ impl From<DoubleDouble> for Compensated {
 }
 
 impl<T: Part> Real for Compensated<T> {
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn from_f64(value: f64) -> Self {
         Self { value: T::from_f64(value), error: T::zero() }
     }
@@ -109,14 +109,14 @@ impl<T: Part> Real for Compensated<T> {
 }
 
 impl<T: Part> Lift<Compensated<T>> for T {
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn lift(self) -> Compensated<T> {
         Compensated { value: self, error: T::zero() }
     }
 }
 
 impl<T: Part> Lift<Compensated<T>> for DoubleDouble {
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn lift(self) -> Compensated<T> {
         Compensated::from_parts(T::split(self))
     }
@@ -124,7 +124,7 @@ impl<T: Part> Lift<Compensated<T>> for DoubleDouble {
 
 /// Rounds.
 impl<T: Part> Lift<T> for Compensated<T> {
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn lift(self) -> T {
         self.value + self.error
     }
@@ -178,21 +178,21 @@ impl<T: Part> Neg for Compensated<T> {
 }
 
 impl<T: Part> AddAssign for Compensated<T> {
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn add_assign(&mut self, other: Self) {
         *self = *self + other;
     }
 }
 
 impl<T: Part> SubAssign for Compensated<T> {
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn sub_assign(&mut self, other: Self) {
         *self = *self - other;
     }
 }
 
 impl<T: Part> MulAssign for Compensated<T> {
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn mul_assign(&mut self, other: Self) {
         *self = *self * other;
     }

@@ -64,39 +64,39 @@ impl DoubleDouble {
 
 impl<T: Part> DoubleDouble<T> {
     /// The two parts as they are: `hi` must be the number nearest to `hi + lo`.
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     pub(crate) const fn from_parts(hi: T, lo: T) -> Self {
         Self { hi, lo }
     }
 
     /// `hi + lo`, exactly, where |hi| ≥ |lo|.
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     pub(crate) fn renormalized(hi: T, lo: T) -> Self {
         let (hi, lo) = fast_two_sum(hi, lo);
         Self { hi, lo }
     }
 
     /// The number nearest to this one, as a part.
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     pub(crate) fn hi(self) -> T {
         self.hi
     }
 
     /// The rest of this number after [`DoubleDouble::to_f64`]: at most half a unit in the last place of that.
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     pub fn rest(self) -> T {
         self.lo
     }
 
     /// `self · factor` for a plain factor: relative error at most 3u².
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     pub(crate) fn scale(self, factor: T) -> Self {
         let (product, error) = two_product(self.hi, factor);
         Self::renormalized(product, T::mul_add(self.lo, factor, error))
     }
 
     /// The product with its parts not yet renormalized: the lower one is at most 4u of the upper one.
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn raw_product(self, other: Self) -> (T, T) {
         let (product, error) = two_product(self.hi, other.hi);
         let cross = T::mul_add(self.lo, other.hi, T::mul_add(self.hi, other.lo, self.lo * other.lo));
@@ -104,7 +104,7 @@ impl<T: Part> DoubleDouble<T> {
     }
 
     /// `a + b`, where `a` need not be renormalized.
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn sum((a_hi, a_lo): (T, T), b: Self) -> Self {
         let ((high, high_error), (low, low_error)) = (two_sum(a_hi, b.hi), two_sum(a_lo, b.lo));
         // `high` is a multiple of the last place of what is added to it, also after cancellation.
@@ -113,7 +113,7 @@ impl<T: Part> DoubleDouble<T> {
     }
 
     /// `self · factor + addend`.
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     pub(crate) fn times_plus(self, factor: Self, addend: Self) -> Self {
         Self::sum(self.raw_product(factor), addend)
     }
@@ -229,21 +229,21 @@ impl<T: Part> Neg for DoubleDouble<T> {
 }
 
 impl<T: Part> AddAssign for DoubleDouble<T> {
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn add_assign(&mut self, other: Self) {
         *self = *self + other;
     }
 }
 
 impl<T: Part> SubAssign for DoubleDouble<T> {
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn sub_assign(&mut self, other: Self) {
         *self = *self - other;
     }
 }
 
 impl<T: Part> MulAssign for DoubleDouble<T> {
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn mul_assign(&mut self, other: Self) {
         *self = *self * other;
     }
