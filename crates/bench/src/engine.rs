@@ -184,6 +184,11 @@ pub trait Evaluation: Send {
         Ok(start.elapsed())
     }
 
+    /// The number of states that [`Evaluation::clock`] evaluates at once. It rounds a range up to a multiple, so a timed range should be one.
+    fn together(&self) -> usize {
+        1
+    }
+
     /// Relocates all its data to other places in memory, drawn with this seed, if they are not in this process. `false` means that the
     /// engine must be prepared again to relocate its data.
     ///

@@ -87,3 +87,6 @@ pub use suite::{NoSettings, RobotEntry, Suite};
 
 /// Our engine's name.
 pub const OWN: &str = "featherbench";
+
+/// Our method of many states at once: a state per lane of a register.
+pub const BATCH: &str = "batch";

@@ -105,6 +105,17 @@ impl Quantity {
         }
     }
 
+    /// The arithmetic of its answers: `f64`, or `f32` of a quantity in single precision.
+    pub fn precision(self) -> &'static str {
+        if self == Self::ForwardDynamicsSingle { "f32" } else { "f64" }
+    }
+
+    /// The same quantity in double precision.
+    #[must_use]
+    pub fn in_double(self) -> Self {
+        if self == Self::ForwardDynamicsSingle { Self::ForwardDynamics } else { self }
+    }
+
     /// The quantity named by a word.
     pub fn parse(word: &str) -> Option<Self> {
         Self::ALL.into_iter().find(|quantity| quantity.name() == word)

@@ -3,19 +3,33 @@
 //! A kernel owns its workspace. Evaluating leaves the answer of one state where the algorithm puts it, as in any engine. Reading it into a
 //! slice is a separate step. Studies, the timing of runs and `cargo bench` all use this registry: so what is timed is what is checked.
 
-use featherbench_bench::{DENSE_LIMIT, NoAnswer, Quantity, Robot, layout};
+use crate::batch;
+use featherbench_bench::{BATCH, DENSE_LIMIT, NoAnswer, Quantity, Robot, layout};
 use featherbench_dynamics::{
-    Aba, Bias, Crba, Energy, Error, Ltdl, PackedAba, PackedCenterOfMass, PackedCrba, PackedJacobian, PackedKinematics, PackedModel,
+    Aba, Batch, Bias, Crba, Energy, Ltdl, PackedAba, PackedCenterOfMass, PackedCrba, PackedJacobian, PackedKinematics, PackedModel,
     PackedMomentum, PackedRnea, Refined, TreeSparse,
 };
 use featherbench_model::Model;
 use featherbench_robots::StateBatch;
 use featherbench_spatial::{DoubleDouble, Force};
 
+/// Why a kernel has no answer.
+pub(crate) type Failure = Box<dyn std::error::Error>;
+
 /// An algorithm over a batch of states.
 pub(crate) trait Evaluate: Send {
     /// Evaluates state `k`.
-    fn evaluate(&mut self, k: usize) -> Result<(), Error>;
+    fn evaluate(&mut self, k: usize) -> Result<(), Failure>;
+
+    /// The number of states that [`Evaluate::sweep`] evaluates.
+    fn together(&self) -> usize {
+        1
+    }
+
+    /// Evaluates as many states from `k` on. Beyond the end of the batch its states begin again.
+    fn sweep(&mut self, k: usize) -> Result<(), Failure> {
+        self.evaluate(k)
+    }
 
     /// Writes the answer of the last evaluation into a slice as long as the quantity's value.
     fn read(&self, out: &mut [f64]);
@@ -34,10 +48,10 @@ struct Closures<W, E, R> {
 impl<W, E, R> Evaluate for Closures<W, E, R>
 where
     W: Send,
-    E: FnMut(&mut W, usize) -> Result<(), Error> + Send,
+    E: FnMut(&mut W, usize) -> Result<(), Failure> + Send,
     R: Fn(&W, &mut [f64]) + Send,
 {
-    fn evaluate(&mut self, k: usize) -> Result<(), Error> {
+    fn evaluate(&mut self, k: usize) -> Result<(), Failure> {
         (self.evaluate)(&mut self.work, k)
     }
 
@@ -49,24 +63,25 @@ where
 /// A kernel whose answer stays in its workspace.
 fn kept<'a, W: Send + 'a>(
     work: W,
-    evaluate: impl FnMut(&mut W, usize) -> Result<(), Error> + Send + 'a,
+    evaluate: impl FnMut(&mut W, usize) -> Result<(), Failure> + Send + 'a,
     read: impl Fn(&W, &mut [f64]) + Send + 'a,
 ) -> Kernel<'a> {
     Box::new(Closures { work, evaluate, read })
 }
 
 /// A kernel that writes its answer, of this number of values, into a slice itself.
-fn written<'a>(size: usize, mut evaluate: impl FnMut(usize, &mut [f64]) -> Result<(), Error> + Send + 'a) -> Kernel<'a> {
+fn written<'a>(size: usize, mut evaluate: impl FnMut(usize, &mut [f64]) -> Result<(), Failure> + Send + 'a) -> Kernel<'a> {
     kept(vec![0.0; size], move |out, k| evaluate(k, out), |answer, out| out.copy_from_slice(answer))
 }
 
 /// The methods of each quantity, the usual one first.
 pub(crate) fn methods(quantity: Quantity) -> &'static [&'static str] {
     match quantity {
-        Quantity::InverseDynamics | Quantity::InverseDynamicsWrench | Quantity::Bias => &["rnea"],
-        Quantity::MassMatrix | Quantity::MassMatrixProbe | Quantity::MassMatrixSparse => &["crba", "crba_packed"],
-        Quantity::ForwardDynamics => &["aba", "aba_packed", "ltdl", "refined_1", "refined_2"],
-        Quantity::ForwardDynamicsSingle => &["aba", "ltdl"],
+        Quantity::InverseDynamics | Quantity::Bias => &["rnea", BATCH],
+        Quantity::InverseDynamicsWrench => &["rnea"],
+        Quantity::MassMatrix | Quantity::MassMatrixProbe | Quantity::MassMatrixSparse => &["crba", "crba_packed", BATCH],
+        Quantity::ForwardDynamics => &["aba", "aba_packed", "ltdl", "refined_1", "refined_2", BATCH],
+        Quantity::ForwardDynamicsSingle => &["aba", "ltdl", BATCH],
         Quantity::KineticEnergy | Quantity::PotentialEnergy | Quantity::CenterOfMass | Quantity::Momentum => &["kinematics"],
         Quantity::BodyPlacement | Quantity::BodyVelocity | Quantity::BodyAcceleration | Quantity::BodyJacobian => &["kinematics"],
         Quantity::Readback => &["build"],
@@ -83,6 +98,10 @@ pub(crate) fn kernel<'a>(robot: &'a Robot, quantity: Quantity, method: &str, sta
     }
     let model = &robot.model;
     Ok(match quantity {
+        Quantity::InverseDynamics | Quantity::Bias | Quantity::ForwardDynamics | Quantity::MassMatrixSparse if method == BATCH => {
+            batch::double(model, states, quantity)
+        }
+        Quantity::ForwardDynamicsSingle if method == BATCH => batch::single(model, states, quantity),
         Quantity::InverseDynamics => inverse_dynamics(model, states),
         Quantity::InverseDynamicsWrench => inverse_dynamics_wrench(model, states),
         Quantity::Bias => bias(model, states),
@@ -112,9 +131,12 @@ pub(crate) fn kernel<'a>(robot: &'a Robot, quantity: Quantity, method: &str, sta
 pub fn timed(robot: &Robot) -> Vec<(Quantity, &'static str)> {
     let whole = [
         (Quantity::InverseDynamics, "rnea"),
+        (Quantity::InverseDynamics, BATCH),
         (Quantity::Bias, "rnea"),
+        (Quantity::Bias, BATCH),
         (Quantity::MassMatrixSparse, "crba"),
         (Quantity::MassMatrixSparse, "crba_packed"),
+        (Quantity::MassMatrixSparse, BATCH),
         (Quantity::Factorization, "ltdl"),
         (Quantity::Solve, "ltdl"),
         (Quantity::ForwardDynamics, "aba"),
@@ -122,6 +144,8 @@ pub fn timed(robot: &Robot) -> Vec<(Quantity, &'static str)> {
         (Quantity::ForwardDynamics, "ltdl"),
         (Quantity::ForwardDynamics, "refined_1"),
         (Quantity::ForwardDynamics, "refined_2"),
+        (Quantity::ForwardDynamics, BATCH),
+        (Quantity::ForwardDynamicsSingle, BATCH),
         (Quantity::KineticEnergy, "kinematics"),
         (Quantity::CenterOfMass, "kinematics"),
         (Quantity::Momentum, "kinematics"),
@@ -157,14 +181,17 @@ fn bias<'a>(model: &'a Model<f64>, states: &'a StateBatch) -> Kernel<'a> {
 }
 
 /// What writes the mass matrix of state k into a tree-sparse matrix.
-type Fill<'a> = Box<dyn FnMut(&mut TreeSparse<f64>, usize) -> Result<(), Error> + Send + 'a>;
+type Fill<'a> = Box<dyn FnMut(&mut TreeSparse<f64>, usize) -> Result<(), Failure> + Send + 'a>;
 
-/// The mass matrices of a batch by `crba` or `crba_packed`.
+/// The mass matrices of a batch by `crba`, `crba_packed` or the batched kernel, one state at a time.
 fn crba<'a>(model: &'a Model<f64>, states: &'a StateBatch, method: &str) -> Fill<'a> {
     if method == "crba_packed" {
         let packed = PackedModel::new(model);
         let mut crba = PackedCrba::new(&packed);
         Box::new(move |matrix, k| Ok(crba.run(&packed, states.q(k), matrix)?))
+    } else if method == BATCH {
+        let mut batch = Batch::<f64>::new(model);
+        Box::new(move |matrix, k| Ok(batch.mass_matrix(states.q(k), matrix.values_mut())?))
     } else {
         let mut crba = Crba::new(&model.topology);
         Box::new(move |matrix, k| Ok(crba.run(model, states.q(k), matrix)?))
@@ -200,14 +227,14 @@ fn mass_matrix_sparse<'a>(model: &'a Model<f64>, states: &'a StateBatch, method:
 
 fn forward_dynamics<'a>(model: &'a Model<f64>, states: &'a StateBatch) -> Kernel<'a> {
     let mut aba = Aba::new(&model.topology);
-    written(model.topology.nv(), move |k, a| aba.run(model, states.q(k), states.v(k), states.tau(k), None, a))
+    written(model.topology.nv(), move |k, a| Ok(aba.run(model, states.q(k), states.v(k), states.tau(k), None, a)?))
 }
 
 /// Several joints at a time, in the axes of the base.
 fn packed_forward_dynamics<'a>(model: &'a Model<f64>, states: &'a StateBatch) -> Kernel<'a> {
     let packed = PackedModel::new(model);
     let mut aba = PackedAba::new(&packed);
-    written(model.topology.nv(), move |k, a| aba.run(&packed, states.q(k), states.v(k), states.tau(k), None, a))
+    written(model.topology.nv(), move |k, a| Ok(aba.run(&packed, states.q(k), states.v(k), states.tau(k), None, a)?))
 }
 
 fn forward_dynamics_by_factorization<'a>(model: &'a Model<f64>, states: &'a StateBatch) -> Kernel<'a> {
@@ -250,7 +277,7 @@ fn forward_dynamics_single<'a>(model: &'a Model<f64>, states: &'a StateBatch, fa
 fn refined_forward_dynamics<'a>(robot: &'a Robot, states: &'a StateBatch, steps: usize) -> Result<Kernel<'a>, NoAnswer> {
     let model: Model<DoubleDouble> = Model::build(&robot.description).map_err(|error| NoAnswer::Failed(error.to_string()))?;
     let mut refined = Refined::<DoubleDouble>::new(&model.topology, steps);
-    Ok(written(robot.model.topology.nv(), move |k, a| refined.run(&model, states.q(k), states.v(k), states.tau(k), None, a)))
+    Ok(written(robot.model.topology.nv(), move |k, a| Ok(refined.run(&model, states.q(k), states.v(k), states.tau(k), None, a)?)))
 }
 
 /// The stored numbers of the mass matrices of a batch, computed before: the time of factorizing and solving excludes computing them.

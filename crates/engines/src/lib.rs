@@ -8,6 +8,7 @@
 //! To add an engine, write such a program, in Rust too (`oracles/rapier`), or implement [`Engine`](featherbench_bench::Engine) in a new
 //! file here.
 
+mod batch;
 mod coding;
 pub mod conformance;
 mod kernel;

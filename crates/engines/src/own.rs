@@ -1,7 +1,7 @@
 //! Our engine, `featherbench`: the kernels of this workspace, run in this process.
 
 pub use crate::kernel::timed;
-use crate::kernel::{Kernel, kernel, methods};
+use crate::kernel::{Failure, Kernel, kernel, methods};
 use featherbench_bench::{Engine, Evaluation, Identity, NoAnswer, Quantity, Robot};
 use featherbench_results::EngineSource;
 use featherbench_robots::StateBatch;
@@ -65,7 +65,7 @@ impl Evaluation for Ready<'_> {
     fn run(&mut self, range: Range<usize>) -> Result<(), NoAnswer> {
         self.values.resize(range.len() * self.size, 0.0);
         for (k, out) in range.zip(self.values.chunks_exact_mut(self.size)) {
-            self.kernel.evaluate(k).map_err(|error| NoAnswer::Failed(error.to_string()))?;
+            self.kernel.evaluate(k).map_err(failed)?;
             self.kernel.read(out);
         }
         Ok(())
@@ -74,16 +74,27 @@ impl Evaluation for Ready<'_> {
     /// Every answer goes to the same place, in the kernel. Storing all answers would measure the memory.
     fn clock(&mut self, range: Range<usize>) -> Result<Duration, NoAnswer> {
         let mut state = range.start % self.states;
+        let together = self.kernel.together();
+        let stride = together % self.states;
         let start = Instant::now();
-        for _ in range {
-            self.kernel.evaluate(state).map_err(|error| NoAnswer::Failed(error.to_string()))?;
+        for _ in range.step_by(together) {
+            self.kernel.sweep(state).map_err(failed)?;
             black_box(&mut self.kernel);
-            state = if state + 1 == self.states { 0 } else { state + 1 };
+            state += stride;
+            state -= if state >= self.states { self.states } else { 0 };
         }
         Ok(start.elapsed())
+    }
+
+    fn together(&self) -> usize {
+        self.kernel.together()
     }
 
     fn read(&self) -> &[f64] {
         &self.values
     }
+}
+
+fn failed(failure: Failure) -> NoAnswer {
+    NoAnswer::Failed(failure.to_string())
 }

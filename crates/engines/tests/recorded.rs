@@ -226,7 +226,7 @@ fn a_recorded_engine_answers_what_it_was_asked() {
     assert!(Recorded::new(&recordings, "third").is_err(), "nobody recorded it");
     let recorded = Recorded::new(&recordings, "second").unwrap();
     assert_eq!(*recorded.identity(), identity("second", "2"));
-    assert_eq!(recorded.methods(Quantity::ForwardDynamics), ["aba", "aba_packed", "ltdl", "refined_1", "refined_2"]);
+    assert_eq!(recorded.methods(Quantity::ForwardDynamics), ["aba", "aba_packed", "ltdl", "refined_1", "refined_2", "batch"]);
     assert_eq!(recorded.methods(Quantity::Bias), ["a", "b"]);
     assert!(recorded.methods(Quantity::BodyVelocity).is_empty());
 

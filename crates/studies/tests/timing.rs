@@ -68,6 +68,23 @@ fn everyone_has_times_ratios_and_intervals_beside_a_control() {
 }
 
 #[test]
+fn a_batch_in_single_precision_stands_beside_the_usual_method() {
+    let kernels = |_: &Robot| {
+        vec![(Quantity::ForwardDynamics, "aba"), (Quantity::ForwardDynamics, "batch"), (Quantity::ForwardDynamicsSingle, "batch")]
+    };
+    let study = Timing { settings: settings(&[]), kernels };
+    let rows = whole(&study, &robot4(), &gates(""), &[Box::new(Featherbench::new()) as Box<dyn Engine>]);
+    assert!(rows.iter().all(|row| row.verdict == Verdict::Info), "its answers are right to its own precision");
+    for metric in ["ns_per_call", "ratio", "finding"] {
+        let found: Vec<_> = of(&rows, "featherbench", "fd", metric).into_iter().filter(|row| row.method == "batch").collect();
+        let precisions: Vec<&str> = found.iter().map(|row| row.precision.as_str()).collect();
+        assert_eq!(precisions, ["f64", "f32", "f64", "f32"], "{metric} of the stream, then hot");
+        assert!(metric == "ns_per_call" || found.iter().all(|row| row.reference == "featherbench aba"));
+    }
+    assert!(rows.iter().all(|row| row.quantity != "fd_f32"), "it has no experiment of its own");
+}
+
+#[test]
 fn a_wrong_answer_at_one_state_costs_its_times_and_no_others() {
     let rows = rows(Double::twisting(&robot4(), |answer| {
         if answer.quantity == Quantity::InverseDynamics && answer.state == 17 {

@@ -32,6 +32,7 @@ use featherbench_model::Model;
 use kernels::{BiasForce, Factors, ForwardDynamics, InverseDynamics, MassMatrix, RefinedForwardDynamics, Solution};
 use run::{Array, Inputs, WRENCH, Worker};
 use samples::Models;
+use std::borrow::Cow;
 
 /// Computes with many states of one robot, on one core or on all.
 ///
@@ -73,7 +74,12 @@ pub struct Batch<'m, S: Number = f64> {
 impl<'m, S: Number> Batch<'m, S> {
     /// States of one model, on one core. The precision `S` is that of the model: [`Model::lift`] makes a `Model<f32>`.
     pub fn new(model: &'m Model<S>) -> Self {
-        Self { workers: vec![Worker::new(&model.topology)], models: Models::One(model) }
+        Self { workers: vec![Worker::new(&model.topology)], models: Models::One(Cow::Borrowed(model)) }
+    }
+
+    /// The same of a model that the batch keeps.
+    pub fn of_model(model: Model<S>) -> Self {
+        Self { workers: vec![Worker::new(&model.topology)], models: Models::One(Cow::Owned(model)) }
     }
 
     /// States of which each has a model of its own: state k is one of `samples[k]`. All have one topology. On one core.

@@ -9,10 +9,11 @@ use crate::{DimensionError, Error};
 use featherbench_model::{Axis, Label, Model, Topology};
 use featherbench_spatial::{Force, Mat3, Motion, Real, RigidBodyInertia, Sym3, Transform, Vec3};
 use std::array::from_fn;
+use std::borrow::Cow;
 
 #[derive(Clone, Debug)]
 pub(super) enum Models<'m, S: Number> {
-    One(&'m Model<S>),
+    One(Cow<'m, Model<S>>),
     /// One model for each state. There is at least one.
     Each(Samples<'m, S>),
 }

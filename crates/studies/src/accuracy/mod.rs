@@ -60,7 +60,7 @@ impl Study for Accuracy {
                         continue;
                     }
                     cells.extend(engine.methods(quantity).into_iter().map(|method| Cell {
-                        scalar: if quantity == Quantity::ForwardDynamicsSingle { "f32" } else { "f64" }.into(),
+                        scalar: quantity.precision().into(),
                         ..Cell::new(self.name(), robot, identity, quantity.name(), method, params.clone())
                     }));
                 }

@@ -4,13 +4,19 @@ use featherbench_bench::measure::{Magnitudes, ratio, scaled_error, worst};
 use featherbench_bench::{Engine, NoAnswer, Quantity, Robot};
 use featherbench_dynamics::{Crba, Rnea, TreeSparse};
 
+/// The unit of rounding of single precision over that of double precision: 2⁻²⁴/2⁻⁵³.
+const SINGLE: f64 = (1_u64 << 29) as f64;
+
 /// The largest error of a right answer, for a robot of this depth.
 ///
 /// Each entry is measured against the magnitudes of its terms: so rounding causes 1e-14 and less per joint of the path. The limit is a
 /// hundred times that, and far below the error of any wrong model or convention. Factors of M depend on κ(M) entry by entry (1e10 at a
 /// thousand links). They are compared by their product, which does not.
-pub(super) fn limit(depth: usize) -> f64 {
-    1e-12 * depth.max(1) as f64
+///
+/// A quantity in single precision has the same limit in its own units of rounding.
+pub(super) fn limit(depth: usize, quantity: &str) -> f64 {
+    let single = Quantity::parse(quantity).is_some_and(|quantity| quantity.in_double() != quantity);
+    1e-12 * depth.max(1) as f64 * if single { SINGLE } else { 1.0 }
 }
 
 /// The error of an engine's answer at each state of the robot, against our usual method's.
@@ -41,7 +47,7 @@ pub(super) fn errors(
             }
             match quantity {
                 _ if itself => Ok(0.0),
-                Quantity::ForwardDynamics => through_inverse_dynamics(&mut answered, state, value),
+                Quantity::ForwardDynamics | Quantity::ForwardDynamicsSingle => through_inverse_dynamics(&mut answered, state, value),
                 Quantity::Solve => through_mass_matrix(robot, state, value),
                 _ => {
                     reference.run(state..state + 1)?;

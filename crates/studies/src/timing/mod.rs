@@ -123,7 +123,8 @@ impl Study for Timing {
                 let states = self.stream_length(robot, quantity);
                 for candidate in candidates.iter().filter(|candidate| !candidate.control) {
                     let Some(engine) = context.engine(&candidate.engine) else { continue };
-                    cells.push(self.cell(robot, engine, quantity, &candidate.method, json!({"what": CHECK, "states": states})));
+                    let answered = Quantity::parse(&candidate.quantity).unwrap_or(quantity);
+                    cells.push(self.cell(robot, engine, answered, &candidate.method, json!({"what": CHECK, "states": states})));
                     if candidate.estimate && !refused(robot, candidate.estimate) {
                         cells.push(self.cell(robot, engine, quantity, &candidate.method, json!({"what": OVERHEAD, "states": states})));
                     }
@@ -168,7 +169,8 @@ impl Study for Timing {
             }
             let candidates = Candidate::of(cell);
             let prepare = |which: usize| -> Ready {
-                let Candidate { engine, method, .. } = &candidates[which];
+                let Candidate { engine, quantity, method, .. } = &candidates[which];
+                let quantity = Quantity::parse(quantity).ok_or_else(lost)?;
                 context.engine(engine).ok_or_else(lost)?.prepare(robot, quantity, method, &states)
             };
             let mut random = Random::named(context.seed, &cell.id());
@@ -191,14 +193,16 @@ impl Study for Timing {
 
 impl Timing {
     fn cell(&self, robot: &Robot, engine: &dyn Engine, quantity: Quantity, method: &str, params: Value) -> Cell {
-        Cell::new(self.name(), robot, engine.identity(), quantity.name(), method, params)
+        Cell { scalar: quantity.precision().into(), ..Cell::new(self.name(), robot, engine.identity(), quantity.name(), method, params) }
     }
 
-    /// The quantities with their candidates: our usual method, its A/A replicate, our other methods, the other engines.
+    /// The quantities with their candidates: our usual method, its A/A replicate, our other methods, the other engines. A method in single
+    /// precision stands beside those in double.
     fn experiments(&self, context: &Context, robot: &Robot) -> Vec<(Quantity, Vec<Candidate>)> {
-        let candidate = |engine: &dyn Engine, method: &str, control| Candidate {
+        let candidate = |engine: &dyn Engine, quantity: Quantity, method: &str, control| Candidate {
             engine: engine.identity().name.clone(),
             version: engine.identity().version.clone(),
+            quantity: quantity.name().to_owned(),
             method: method.to_owned(),
             control,
             estimate: engine.estimates(),
@@ -206,14 +210,15 @@ impl Timing {
         let Some(featherbench) = context.engine(REFERENCE) else { return Vec::new() };
         let mut experiments: Vec<(Quantity, Vec<Candidate>)> = Vec::new();
         for (quantity, method) in (self.kernels)(robot) {
-            match experiments.iter_mut().find(|(known, _)| *known == quantity) {
-                Some((_, candidates)) => candidates.push(candidate(featherbench, method, false)),
-                None => experiments.push((quantity, vec![candidate(featherbench, method, false), candidate(featherbench, method, true)])),
+            let one = |control| candidate(featherbench, quantity, method, control);
+            match experiments.iter_mut().find(|(known, _)| *known == quantity.in_double()) {
+                Some((_, candidates)) => candidates.push(one(false)),
+                None => experiments.push((quantity.in_double(), vec![one(false), one(true)])),
             }
         }
         for (quantity, candidates) in &mut experiments {
             for engine in self.settings.engines.iter().filter_map(|name| context.engine(name)) {
-                candidates.extend(engine.timed(*quantity).iter().map(|method| candidate(engine, method, false)));
+                candidates.extend(engine.timed(*quantity).iter().map(|method| candidate(engine, *quantity, method, false)));
             }
         }
         experiments

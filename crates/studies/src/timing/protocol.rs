@@ -156,9 +156,11 @@ fn block(candidate: &mut Ready, state: usize, calls: usize) -> Result<Duration, 
     prepared.clock(state + warm..state + warm + calls)
 }
 
-/// Warms a candidate up. Returns how many calls last as long as a block, and their time; 1 and zero after an error.
+/// Warms a candidate up. Returns how many calls last as long as a block, and their time; 1 and zero after an error. A candidate that
+/// evaluates several states at once has whole multiples of them.
 fn calls_of_a_block(candidate: &mut Ready, block: Duration) -> (usize, Duration) {
-    let mut calls = 1;
+    let together = candidate.as_ref().map_or(1, |prepared| prepared.together());
+    let mut calls = together;
     // A first call may take many times as long as later ones, and would be taken for a whole block.
     let first = candidate.as_mut().ok().and_then(|prepared| prepared.clock(0..1).err());
     if let Some(no_answer) = first {
@@ -169,7 +171,7 @@ fn calls_of_a_block(candidate: &mut Ready, block: Duration) -> (usize, Duration)
             Ok(time) if time < block && calls < MOST_CALLS => {
                 // Approaches the length of a block in few steps.
                 let missing = block.as_secs_f64() / time.as_secs_f64().max(1e-9);
-                calls = (calls as f64 * missing.clamp(1.1, 8.0)).ceil() as usize;
+                calls = ((calls as f64 * missing.clamp(1.1, 8.0)).ceil() as usize).next_multiple_of(together);
             }
             Ok(time) => return (calls, time),
             Err(no_answer) => *candidate = Err(no_answer),
@@ -357,6 +359,34 @@ mod tests {
             assert_eq!(found(&[stall]), (calls, time), "at call {stall}");
             assert_eq!(found(&[stall, stall + 1]), (calls, time), "at call {stall} and the next");
         }
+    }
+
+    /// A part of a batch costs as much as a whole one: so no block ends within one.
+    #[test]
+    fn a_block_has_whole_batches() {
+        /// 64 states at a time, in a microsecond.
+        struct Batch;
+        impl Evaluation for Batch {
+            fn run(&mut self, _: Range<usize>) -> Result<(), NoAnswer> {
+                Ok(())
+            }
+
+            fn clock(&mut self, range: Range<usize>) -> Result<Duration, NoAnswer> {
+                Ok(Duration::from_micros(range.len().div_ceil(self.together()) as u64))
+            }
+
+            fn together(&self) -> usize {
+                64
+            }
+
+            fn read(&self) -> &[f64] {
+                &[]
+            }
+        }
+        let samples = experiment(&|_| Ok(Box::new(Batch)), 1, 1000, BUDGET, &|| Duration::ZERO, &mut Random::new(1, 2));
+        let calls = samples.calls[0];
+        assert!(calls.is_multiple_of(64) && calls >= 200 * 64 && calls < 400 * 64, "{calls} calls");
+        assert!(samples.of(0).iter().all(|ns| (ns - 1000.0 / 64.0).abs() < 1e-9), "a time is that of a batch over its states");
     }
 
     #[test]

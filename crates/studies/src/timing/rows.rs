@@ -107,7 +107,7 @@ impl Check {
     fn of(gates: &Gates, robot: &Robot, (cell, outcome): &Finished) -> Self {
         let blank =
             Row { cache: "stream".into(), metric: "worst_error".into(), unit: "1".into(), reference: REFERENCE.into(), ..row(cell, robot) };
-        let limit = check::limit(robot.depth);
+        let limit = check::limit(robot.depth, &cell.quantity);
         let row = match outcome.answer() {
             Err(no_answer) => {
                 let verdict = if matches!(no_answer, NoAnswer::NotOffered(_)) { Verdict::Skip } else { Verdict::Error };
@@ -180,11 +180,12 @@ impl<'a> Experiment<'a> {
                 engine: candidate.engine.clone(),
                 engine_version: candidate.version.clone(),
                 method: candidate.method.clone(),
+                precision: candidate.precision().into(),
                 ..self.blank.clone()
             };
             let check = checks
                 .iter()
-                .find(|check| check.engine == candidate.engine && check.method == candidate.method && check.quantity == self.cell.quantity);
+                .find(|check| check.engine == candidate.engine && check.method == candidate.method && check.quantity == candidate.quantity);
             let usual = format!("{REFERENCE} {}", self.cell.method);
             if candidate.control {
                 // A reference that failed from the start has its row in the check, and there is nothing to compare.
@@ -211,7 +212,7 @@ impl<'a> Experiment<'a> {
                 }
                 continue;
             }
-            let name = format!("{} {}", candidate.engine, candidate.method);
+            let name = format!("{} {} {}", candidate.engine, candidate.method, candidate.quantity);
             let time = Estimate::median(ns, LEVEL, &mut self.random(&name));
             let complaint = complaint.or(noise).or(own_noise.as_deref());
             let blank = Row { estimated: candidate.estimate, ..blank };

@@ -1,6 +1,6 @@
 //! Raw samples: the data of an experiment, as the outcome of its cell and as a line of the run's side file.
 
-use featherbench_bench::{Cell, Finished, Outcome};
+use featherbench_bench::{Cell, Finished, Outcome, Quantity};
 use serde_json::json;
 
 /// The blocks of an experiment: nanoseconds per call, of every candidate in every round.
@@ -52,6 +52,8 @@ pub(super) struct Candidate {
     pub engine: String,
     /// Its version.
     pub version: String,
+    /// What it answers: the experiment's quantity, or the same in another precision.
+    pub quantity: String,
     /// Its method.
     pub method: String,
     /// Whether it is the A/A replicate.
@@ -61,10 +63,15 @@ pub(super) struct Candidate {
 }
 
 impl Candidate {
+    /// The arithmetic of its answers.
+    pub fn precision(&self) -> &'static str {
+        Quantity::parse(&self.quantity).map_or("f64", Quantity::precision)
+    }
+
     /// As a parameter of the cell.
     pub fn to_params(&self) -> serde_json::Value {
-        let Self { engine, version, method, control, estimate } = self;
-        json!({"engine": engine, "version": version, "method": method, "control": control, "estimate": estimate})
+        let Self { engine, version, quantity, method, control, estimate } = self;
+        json!({"engine": engine, "version": version, "quantity": quantity, "method": method, "control": control, "estimate": estimate})
     }
 
     /// The candidates of an experiment's cell, in the order of its samples.
@@ -75,6 +82,7 @@ impl Candidate {
             .map(|candidate| Self {
                 engine: text(candidate, "engine"),
                 version: text(candidate, "version"),
+                quantity: text(candidate, "quantity"),
                 method: text(candidate, "method"),
                 control: candidate["control"] == true,
                 estimate: candidate["estimate"] == true,
@@ -93,7 +101,7 @@ pub(super) fn lines(finished: &[Finished]) -> String {
             // A tenth of a picosecond is far below the resolution of a clock; the outcomes keep every bit.
             let ns: Vec<Option<f64>> = samples.of(which).iter().map(|ns| ns.is_finite().then(|| (ns * 1e4).round() / 1e4)).collect();
             let line = json!({
-                "cell": cell.id(), "model": cell.robot, "quantity": cell.quantity, "cache": cell.params["cache"],
+                "cell": cell.id(), "model": cell.robot, "quantity": candidate.quantity, "cache": cell.params["cache"],
                 "engine": candidate.engine, "method": candidate.method, "control": candidate.control, "estimate": candidate.estimate,
                 "calls": samples.calls[which], "ns": ns,
             });

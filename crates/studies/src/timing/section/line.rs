@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 
+use featherbench_bench::{BATCH, OWN};
 use featherbench_report::numbers::{larger, short, smaller};
 use featherbench_report::{Overview, labels};
 use featherbench_results::Row;
@@ -9,14 +10,13 @@ use featherbench_results::Row;
 use super::STUDY;
 use super::ratios::Speed;
 
-/// Our kernels' name in rows.
-const OWN: &str = "featherbench";
 /// Quantities that the line names.
 const TIMED: [&str; 3] = ["id", "fd", "mass_matrix_sparse"];
 
-/// Times of our kernels per body, and of the fastest other engine over ours; nothing if no time counts.
+/// Times of our kernels per body, one state at a time, and of the fastest other engine over ours; nothing if no time counts.
 pub fn line(overview: &Overview, rows: &[Row], speed: &Speed) -> Option<String> {
-    let timed = |row: &&Row| row.study == STUDY && row.metric == "ns_per_call" && row.cache == "stream" && row.engine == OWN;
+    let timed =
+        |row: &&Row| row.study == STUDY && row.metric == "ns_per_call" && row.cache == "stream" && row.engine == OWN && row.method != BATCH;
     // The fastest method of each robot.
     let mut fastest: BTreeMap<(&str, &str), f64> = BTreeMap::new();
     for row in rows.iter().filter(timed).filter(|row| row.valid) {
@@ -64,6 +64,7 @@ mod tests {
         let rows = [
             time("a", "aba", 500.0),
             time("a", "refined", 9000.0),
+            time("a", BATCH, 100.0),
             time("b", "aba", 800.0),
             time("c", "aba", 1.0).invalid("the machine was not quiet"),
         ];
@@ -73,6 +74,6 @@ mod tests {
             super::line(&overview, rows, &Speed::of(&overview, rows))
         };
         assert_eq!(line(&rows).as_deref(), Some("speed, per body of a robot: forward dynamics 50 to 80 ns"));
-        assert_eq!(line(&rows[3..]), None, "no time that counts, no line");
+        assert_eq!(line(&rows[4..]), None, "no time that counts, no line");
     }
 }

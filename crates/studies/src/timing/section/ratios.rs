@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 
+use featherbench_bench::BATCH;
 use featherbench_report::{Overview, labels};
 use featherbench_results::Row;
 use serde::Serialize;
@@ -13,6 +14,9 @@ const MACHINE: &str = "machine";
 /// Quantities whose best algorithm has an exact count of operations per revolute joint. They are multiply-adds, or single multiplications
 /// and additions, each of which takes the place of one.
 pub const OPERATIONS: [(&str, &str, f64); 2] = [("id", "RNEA", 142.0), ("fd", "ABA", 396.0)];
+
+/// The arithmetic whose operations take half the time of those in double precision.
+const SINGLE: &str = "f32";
 
 /// The data of the section on speed.
 #[derive(Debug, Serialize)]
@@ -46,6 +50,8 @@ pub struct Ratio<'a> {
     pub engine: usize,
     /// Its method.
     pub method: &'a str,
+    /// Its arithmetic.
+    pub precision: &'a str,
     /// What is computed.
     pub quantity: &'a str,
     /// `stream` or `hot`.
@@ -149,9 +155,21 @@ impl<'a> Speed<'a> {
         let mut groups: BTreeMap<_, Vec<&Ratio>> = BTreeMap::new();
         for ratio in self.ratios.iter().filter(|ratio| ratio.valid && ratio.value > 0.0) {
             let rank = labels::quantity_rank(ratio.quantity);
-            groups.entry((rank, std::cmp::Reverse(ratio.cache), ratio.engine, ratio.method)).or_default().push(ratio);
+            groups.entry((rank, std::cmp::Reverse(ratio.cache), ratio.engine, ratio.method, ratio.precision)).or_default().push(ratio);
         }
         groups.into_values().filter_map(Summary::of).collect()
+    }
+}
+
+impl Ratio<'_> {
+    /// Whether many states are computed at once.
+    pub fn is_batch(&self) -> bool {
+        self.method == BATCH
+    }
+
+    /// The method, and its arithmetic unless it is f64.
+    pub fn way(&self) -> String {
+        if self.precision == SINGLE { format!("{} {SINGLE}", self.method) } else { self.method.to_owned() }
     }
 }
 
@@ -172,6 +190,7 @@ fn ratios<'a>(overview: &Overview<'a>, timing: &[&'a Row], metric: &str) -> Vec<
             robot: overview.robot(&row.robot)?,
             engine: overview.engine(&row.engine)?,
             method: &row.method,
+            precision: &row.precision,
             quantity: &row.quantity,
             cache: &row.cache,
             reference: &row.reference,
@@ -200,7 +219,8 @@ fn limits<'a>(overview: &Overview<'a>, timing: &[&'a Row], machine: Machine) -> 
             least: operations / machine.vector,
         })
     };
-    let counted = timing.iter().filter(|row| row.metric == "ns_per_call" && row.valid);
+    // The peak is that of double precision.
+    let counted = timing.iter().filter(|row| row.metric == "ns_per_call" && row.valid && row.precision != SINGLE);
     counted.filter_map(limit).collect()
 }
 

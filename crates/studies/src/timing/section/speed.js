@@ -14,24 +14,25 @@ featherbench.ready(() => {
     const ratios = speed.ratios.filter((ratio) => ratio.quantity === quantity && ratio.cache === kind);
     const size = (robot) => overview.robots[robot].nv ?? 0;
     const robots = [...new Set(ratios.map((ratio) => ratio.robot))].sort((a, b) => size(a) - size(b) || a - b);
-    const candidates = [...new Set(ratios.map((ratio) => `${ratio.engine}\t${ratio.method}`))];
+    const way = (ratio) => (ratio.precision === "f64" ? ratio.method : `${ratio.method} ${ratio.precision}`);
+    const candidates = [...new Set(ratios.map((ratio) => `${ratio.engine}\t${way(ratio)}`))];
     const methods = new Map();
     const series = candidates.map((candidate, place) => {
-      const own = ratios.filter((ratio) => `${ratio.engine}\t${ratio.method}` === candidate);
+      const own = ratios.filter((ratio) => `${ratio.engine}\t${way(ratio)}` === candidate);
       const engine = own[0].engine;
       const index = methods.get(engine) ?? 0;
       methods.set(engine, index + 1);
       // Marks of one robot stand beside each other, so that their bars can be seen.
       const beside = candidates.length < 2 ? 0 : 0.5 * (place / (candidates.length - 1) - 0.5);
       return {
-        name: joined(overview.engines[engine], own[0].method), ink: colour(engine), mark: { symbol: symbol(index), size: 9 },
+        name: joined(overview.engines[engine], way(own[0])), ink: colour(engine), mark: { symbol: symbol(index), size: 9 },
         points: own.map((point) => ({
           x: robots.indexOf(point.robot) + beside, y: point.value, low: point.low, high: point.high, symbol: point.estimated ? "cross" : undefined, hollow: !point.valid,
           tip: [
             `${overview.robots[point.robot].name}, nv ${size(point.robot)}`, `${point.estimated ? "≈ " : ""}${point.value.toFixed(3)} × ${point.reference}`, `[${point.low.toFixed(3)}, ${point.high.toFixed(3)}]`,
             point.estimated ? "estimate" : "", point.valid ? "" : "does not count",
           ].filter(Boolean),
-          target: { robot: point.robot, filters: { study: "timing", engine: overview.engines[engine], method: point.method, quantity, cache: kind } },
+          target: { robot: point.robot, filters: { study: "timing", engine: overview.engines[engine], method: point.method, precision: point.precision, quantity, cache: kind } },
         })),
       };
     });

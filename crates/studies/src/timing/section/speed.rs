@@ -1,11 +1,12 @@
 //! Section: the speed of the engines compared with each other and with the machine's peak, and whether the machine was quiet.
 
+use featherbench_bench::BATCH;
 use featherbench_report::numbers::{count, short};
 use featherbench_report::{Overview, labels};
 use featherbench_results::RunInfo;
 use maud::{Markup, html};
 
-use super::ratios::{OPERATIONS, Speed};
+use super::ratios::{OPERATIONS, Ratio, Speed};
 
 /// The input of each quantity's time, and the work inside the clock.
 const INCLUDED: [(&str, &str, &str); 7] = [
@@ -45,6 +46,7 @@ pub fn markup(run: &RunInfo, overview: &Overview, speed: &Speed) -> Markup {
                 div #speed-plot.plot role="group" aria-label="Plot of ratios of times" {}
                 p.note { "Grey: ± 2 %, within which this experiment calls nothing a difference. Hollow marks do not count: see below." }
                 (estimates(overview, speed))
+                (batches(speed))
                 (summary(overview, speed))
                 (table(overview, speed))
             }
@@ -81,6 +83,18 @@ fn estimates(overview: &Overview, speed: &Speed) -> Markup {
     }
 }
 
+/// What a batch is, if one is timed.
+fn batches(speed: &Speed) -> Markup {
+    html! {
+        @if speed.ratios.iter().any(Ratio::is_batch) {
+            p.note #speed-batch {
+                b { (BATCH) } ": our kernels with one state in each lane of a register, on the same core. A time is that of many states over their number, with the copies into lanes and out of them. "
+                "It is the throughput where many states are known at once, as in sampling and learning. One state alone takes as long as a whole register."
+            }
+        }
+    }
+}
+
 /// `≈` before an estimate.
 fn mark(estimated: bool) -> &'static str {
     if estimated { "≈\u{202f}" } else { "" }
@@ -105,7 +119,7 @@ fn summary(overview: &Overview, speed: &Speed) -> Markup {
                         tr {
                             th scope="row" { (labels::quantity(line.of.quantity)) }
                             td { (line.of.cache) }
-                            td { (overview.engines[line.of.engine]) " " small { (line.of.method) } }
+                            td { (overview.engines[line.of.engine]) " " small { (line.of.way()) } }
                             td { (line.of.reference) }
                             td.number { (line.count) }
                             td.number { (mark(line.of.estimated)) (times(line.mean)) }
@@ -139,7 +153,7 @@ fn table(overview: &Overview, speed: &Speed) -> Markup {
                                 th scope="row" { (overview.robots[ratio.robot].name) }
                                 td { (labels::quantity(ratio.quantity)) }
                                 td { (ratio.cache) }
-                                td { (overview.engines[ratio.engine]) " " small { (ratio.method) } }
+                                td { (overview.engines[ratio.engine]) " " small { (ratio.way()) } }
                                 td { (ratio.reference) }
                                 td.number { (mark(ratio.estimated)) (times(ratio.value)) }
                                 td.number { (mark(ratio.estimated)) (times(ratio.low)) }
