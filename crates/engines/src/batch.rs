@@ -59,10 +59,10 @@ impl<'a, S: Number + Lift<S::Lanes>> Batched<'a, S> {
         let [q, v, third] = self.inputs.each_ref().map(|(numbers, each)| &numbers[k * each..(k + count) * each]);
         let results = &mut self.results[..count * self.each];
         match self.quantity {
-            Quantity::InverseDynamics => self.batch.inverse_dynamics(q, v, third, results),
-            Quantity::Bias => self.batch.bias_force(q, v, results),
+            Quantity::InverseDynamics => self.batch.inverse_dynamics(q, v, third, None, results),
+            Quantity::Bias => self.batch.bias_force(q, v, None, results),
             Quantity::MassMatrixSparse => self.batch.mass_matrix(q, results),
-            _ => self.batch.forward_dynamics(q, v, third, results),
+            _ => self.batch.forward_dynamics(q, v, third, None, results),
         }
     }
 }
