@@ -148,7 +148,7 @@ fn no_test_file_is_left_out() {
                 continue;
             }
             let module = modules.lines().any(|line| line == format!("mod {name};"));
-            let program = manifest.lines().any(|line| line == format!("name = \"{name}\""));
+            let program = manifest.contains(&format!("[[test]]\nname = \"{name}\"\n"));
             assert!(module != program, "{}: name it in tests/all.rs or as a [[test]] of Cargo.toml", path.display());
             files += 1;
         }
