@@ -385,7 +385,7 @@ mod tests {
         }
         let samples = experiment(&|_| Ok(Box::new(Batch)), 1, 1000, BUDGET, &|| Duration::ZERO, &mut Random::new(1, 2));
         let calls = samples.calls[0];
-        assert!(calls.is_multiple_of(64) && calls >= 200 * 64 && calls < 400 * 64, "{calls} calls");
+        assert!(calls.is_multiple_of(64) && (200 * 64..400 * 64).contains(&calls), "{calls} calls");
         assert!(samples.of(0).iter().all(|ns| (ns - 1000.0 / 64.0).abs() < 1e-9), "a time is that of a batch over its states");
     }
 
