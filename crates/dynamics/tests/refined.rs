@@ -150,8 +150,8 @@ fn every_kind_of_joint_with_wrenches_and_armature() {
     }
 }
 
-/// Eight states in registers and each alone. All operations but the sines and cosines of the start are the same, and the start does not
-/// matter after two steps: what is left differs by 10⁻²⁴, and one number in 10⁸ so is rounded to its other neighbour. None is here.
+/// Eight states in registers and each alone. All operations but the sines and cosines of the start are the same. After two steps what is left
+/// of the start differs by 10⁻²⁴. So one number in 10⁸ is rounded to its other neighbour. None is here.
 #[test]
 fn registers_of_states_give_what_each_state_alone_gives() {
     let robots = ROBOTS.iter().map(|(name, recipe)| ((*name).to_owned(), build(recipe)));

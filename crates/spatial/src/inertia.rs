@@ -78,8 +78,8 @@ impl<T: Real> RigidBodyInertia<T> {
 
 /// The inertia of a rigid body about its centre of mass, in the axes of a frame.
 ///
-/// It keeps digits that an inertia at the origin loses: far from the origin, that is m·c² and a little, and the little may be all that an
-/// axis through the centre of mass feels.
+/// It keeps digits that an inertia at the origin loses. Far from the origin, that is m·c² and a little. The little may be all that an axis
+/// through the centre of mass feels.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CentralInertia<T> {
     /// Mass, kg.

@@ -75,6 +75,8 @@ pub struct Double {
     twist: Twist,
     refuses: bool,
     estimates: bool,
+    /// Whether it offers the usual method alone, except of forward dynamics.
+    usual: bool,
 }
 
 impl Double {
@@ -89,6 +91,7 @@ impl Double {
             twist: |_| (),
             refuses: false,
             estimates: false,
+            usual: false,
         }
     }
 
@@ -123,6 +126,11 @@ impl Double {
         Self { estimates: true, ..self }
     }
 
+    /// One that offers the usual method of each quantity alone, and all of forward dynamics.
+    pub fn by_usual_methods(self) -> Self {
+        Self { usual: true, ..self }
+    }
+
     /// One that supports nothing, although it offers methods.
     pub fn refusing(robot: &Robot) -> Self {
         Self { refuses: true, ..Self::of(robot) }
@@ -135,7 +143,11 @@ impl Engine for Double {
     }
 
     fn methods(&self, quantity: Quantity) -> Vec<String> {
-        self.featherbench.methods(quantity)
+        let mut methods = self.featherbench.methods(quantity);
+        if self.usual && quantity != Quantity::ForwardDynamics {
+            methods.truncate(1);
+        }
+        methods
     }
 
     fn timed(&self, quantity: Quantity) -> Vec<String> {
