@@ -16,6 +16,38 @@ use featherbench_spatial::{CentralInertia, Force, Lift, Motion, Real, Transform,
 use std::ops::Range;
 
 /// The workspace of the composite-rigid-body algorithm.
+///
+/// The plain algorithm of the book, with one force at a time, gives the same numbers but for rounding:
+///
+/// ```
+/// use featherbench_dynamics::mass_matrix;
+/// use featherbench_model::{JointKind, Model};
+/// use featherbench_robots::Family;
+///
+/// let model: Model<f64> = Model::build(&Family::parse("chain:n=12,layout=spatial")?.generate()?)?;
+/// let (joints, subspaces) = (model.topology.joints(), &model.subspaces);
+/// let q: Vec<f64> = (0..model.topology.nq()).map(|k| 0.3 + 0.1 * k as f64).collect();
+/// let matrix = mass_matrix(&model, &q)?;
+///
+/// let mut composites = model.inertias.clone();
+/// for (i, joint) in joints.iter().enumerate().rev() {
+///     // Iᶜ_i is complete: F = Iᶜ_i S_i goes from joint to joint towards the root, and M_ij = S_jᵀ F
+///     let mut force = composites[i].mul(joint.kind.column(&subspaces[i], 0));
+///     let mut j = Some(i);
+///     while let Some(body) = j {
+///         let mut entry = [0.0];
+///         joints[body].kind.project(&subspaces[body], force, &mut entry);
+///         let expected = entry[0] + if body == i { model.armature[joint.v] } else { 0.0 };
+///         assert!((matrix.get(joint.v, joints[body].v) - expected).abs() < 1e-12);
+///         force = model.joint_transform(body, &q).force(force);
+///         j = joints[body].parent;
+///     }
+///     if let Some(parent) = joint.parent {
+///         composites[parent] = composites[parent] + composites[i].to_parent(&model.joint_transform(i, &q));
+///     }
+/// }
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Clone, Debug)]
 pub struct Crba<T> {
     /// Composite inertia Iᶜ: the body with everything that it supports.

@@ -19,7 +19,7 @@ use super::lanes::{LANES, Lanes};
 use super::model::{PackedModel, is_screw};
 use super::motions::Motions;
 use super::orientation::own_force;
-use crate::aba::{eliminate_spherical, free_force, solve, vec3};
+use crate::aba::{free, spherical, vec3};
 use crate::error::{Pivot, expect};
 use crate::{DimensionError, Error};
 use featherbench_model::JointKind;
@@ -262,14 +262,14 @@ fn eliminate_wide(
     let p = Force::new(r.transpose_mul(own.p.ang), r.transpose_mul(own.p.lin));
     let turned = |f: Force<f64>| Force::new(r * f.ang, r * f.lin);
     if kind == JointKind::Spherical {
-        let (apparent, d) = eliminate_spherical(&inertia, vec3(armature), dof, smallest);
+        let (apparent, d) = spherical::apparent_inertia(&inertia, vec3(armature), dof, smallest);
         let u = vec3(tau) - p.ang;
         let force = p + inertia.mul(Motion::new(d.solve(u), Vec3::zero()));
         (Passed { inertia: apparent.rotate(r), p: turned(force) }, Eliminated::Spherical { inertia, d, u })
     } else {
         // S = 1 and no armature: Iᵃ = 0,  pᵃ = τ
-        let force = free_force(tau);
-        let motion = solve(&inertia, force - p, dof, smallest);
+        let force = free::apparent_force(tau);
+        let motion = free::solve(&inertia, force - p, dof, smallest);
         (Passed { inertia: ArticulatedInertia::zero(), p: turned(force) }, Eliminated::Free { motion })
     }
 }

@@ -2,24 +2,26 @@
 //!
 //! Source: the book, table 6.2, as in [`Crba`](crate::Crba). In the axes of the base:
 //!
-//! 1. Composite inertias are sums from the leaves: their masses are parameters, first moments `H_i = h_i + Σ (H_c + m_c d_c)`, and the
-//!    rotational inertias are moved by d_c with H_c.
-//! 2. The forces `F_i = Iᶜ_i S_i`, several joints at a time.
-//! 3. The rows i of a segment have the same ancestors j. The forces F_i of these rows are moved together to the origin of each segment on
+//! 1. First moments are sums from the leaves, `H_i = h_i + Σ (H_c + m_c d_c)`; the masses m are parameters. They give the centre of mass of
+//!    each body with what it supports, and the centre c' of what it supports without itself.
+//! 2. Rotational inertias E about these centres are sums from the leaves too: `E_i = e_i + μ_i P(x_i − c'_i) + Σ (E_c + m_c P(y_c − c'_i))`.
+//!    The body's own e is about its own centre x, `P(r) = r² 1 − r rᵀ` is the inertia of a unit mass, `μ = m m'/(m + m')`, and y is
+//!    the child's centre from the body's origin. Of an only child the last term is zero.
+//! 3. The forces `F_i = Iᶜ_i S_i`, several joints at a time.
+//! 4. The rows i of a segment have the same ancestors j. The forces F_i of these rows are moved together to the origin of each segment on
 //!    the path to the root. There `M_ij = S_jᵀ F_i` for a register of ancestors at once, because the subspaces S_j of a segment are kept at
 //!    its first joint's origin too. So no lever arm is longer than a segment.
 //!
 //! Armature is added to the diagonal. Shapes: q has `nq` numbers; M is `nv`×`nv`. Units: SI, angles in radians.
 //! Cost: O(n + Σ d_k), d_k the depth of dof k. A call does not allocate.
 
-use super::lanes::{LANES, Lanes, Pack, sum_from_leaves, sum_in_segments};
+use super::lanes::{LANES, Lanes, Pack, of_parents, sum_from_leaves, sum_in_segments};
 use super::model::{PackedModel, Source};
-use super::motions::{turned, turned_inertia};
 use super::orientation::{Orientations, own_force};
 use crate::error::expect;
 use crate::{DimensionError, TreeSparse};
 use featherbench_model::JointKind;
-use featherbench_spatial::{Force, Motion, Real, RigidBodyInertia, Sym3, Vec3};
+use featherbench_spatial::{CentralInertia, Force, Motion, Real, Sym3, Vec3};
 use std::ops::Range;
 
 /// The workspace of the composite-rigid-body algorithm over packed joints.
@@ -32,11 +34,13 @@ pub struct PackedCrba {
     rotational: Vec<Sym3<f64>>,
 }
 
-/// Composite bodies of a block.
+/// Composite bodies of a block, at each joint's origin.
 #[derive(Clone, Copy, Debug)]
 struct Composite {
-    /// Iᶜ at each joint's origin.
-    inertia: RigidBodyInertia<Pack>,
+    /// Centre of mass of each body with what it supports.
+    com: Vec3<Pack>,
+    /// What each body supports, without the body.
+    carried: CentralInertia<Pack>,
     /// F of the one-dof joints at their origins.
     force: Force<Pack>,
     /// Sᵀ F and armature of the one-dof joints.
@@ -51,7 +55,8 @@ impl PackedCrba {
     pub fn new(model: &PackedModel) -> Self {
         let still = Motion::zero();
         let composite = Composite {
-            inertia: RigidBodyInertia::zero(),
+            com: Vec3::zero(),
+            carried: CentralInertia::zero(),
             force: Force::zero(),
             diagonal: Pack::zero(),
             position: Vec3::zero(),
@@ -77,6 +82,9 @@ impl PackedCrba {
 
         self.orientations.turn(model, q);
         for b in (0..model.blocks.len()).rev() {
+            self.find_centers(model, b);
+        }
+        for b in (0..model.blocks.len()).rev() {
             self.compose(model, b);
         }
         for b in 0..model.blocks.len() {
@@ -87,32 +95,49 @@ impl PackedCrba {
         Ok(())
     }
 
-    /// Steps 1 and 2 for a block; the blocks after it are done.
+    /// Step 1 for a block; the blocks after it are done.
+    #[inline(always)]
+    fn find_centers(&mut self, model: &PackedModel, b: usize) {
+        let (block, frame, composite) = (&model.blocks[b], &self.orientations.frames[b], &mut self.composites[b]);
+        let own = frame.rotation * block.inertia.first_moment;
+        let moved = frame.displacement * block.supported;
+        let (first_moment, carried) = sum_from_leaves(model, block, own, moved, &mut self.first_moments);
+        composite.com = first_moment * block.inverse_supported;
+        (composite.carried.mass, composite.carried.com) = (block.carried, carried * block.inverse_carried);
+    }
+
+    /// Steps 2 and 3 for a block; the blocks after it are done.
     #[inline(always)]
     fn compose(&mut self, model: &PackedModel, b: usize) {
         let (block, frame) = (&model.blocks[b], &self.orientations.frames[b]);
-        let (rigid, d, mass) = (turned_inertia(block, frame), frame.displacement, block.supported);
-        let moved = d * mass;
-        let first_moment = sum_from_leaves(model, block, rigid.first_moment, moved, &mut self.first_moments);
-        let passed = moved_by(first_moment, first_moment + moved, d);
-        let rotational = sum_from_leaves(model, block, rigid.rotational, passed, &mut self.rotational);
-        let inertia = RigidBodyInertia { mass, first_moment, rotational };
+        let (r, d) = (frame.rotation, frame.displacement);
+        let Composite { com, mut carried, .. } = self.composites[b];
+
+        let apart = r * block.central.com - carried.com;
+        let own = block.central.rotational.rotate(r) + Sym3::point_mass(block.reduced, apart);
+        let passed = if block.shares {
+            let centers = of_parents(model, block, carried.com, |block, lane| self.composites[block].carried.com.lane(lane));
+            Sym3::point_mass(block.supported, com + d - centers)
+        } else {
+            Sym3::zero()
+        };
+        (_, carried.rotational) = sum_from_leaves(model, block, own, passed, &mut self.rotational);
 
         let (position, _) = sum_in_segments(block, d.map(|d| d * block.ancestor[0]));
         let axis = frame.subspace.ang;
         // F = I S of the body alone and of what it supports
-        let (own, carried) = (own_force(block, frame), without(&inertia, &rigid));
         let (along, lin) = if block.slides {
             (carried.mul(frame.subspace), position.cross_add(axis, frame.subspace.lin))
         } else {
-            (Force::new(carried.rotational * axis, axis.cross(carried.first_moment)), position.cross(axis))
+            let lin = axis.cross(carried.com) * carried.mass;
+            (Force::new(carried.com.cross_add(lin, carried.rotational * axis), lin), position.cross(axis))
         };
-        let force = along + own;
+        let force = along + own_force(block, frame);
         let diagonal = frame.subspace.dot(along) + block.subspace_inertia + block.armature;
-        self.composites[b] = Composite { inertia, force, diagonal, position, subspace: Motion::new(axis, lin) };
+        self.composites[b] = Composite { com, carried, force, diagonal, position, subspace: Motion::new(axis, lin) };
     }
 
-    /// Step 3 for the rows of a segment.
+    /// Step 4 for the rows of a segment.
     #[inline(always)]
     fn fill_rows(&self, model: &PackedModel, b: usize, s: usize, matrix: &mut TreeSparse<f64>) {
         let (block, segment, composite) = (&model.blocks[b], &model.segments[s], &self.composites[b]);
@@ -132,15 +157,16 @@ impl PackedCrba {
             let lane = segment.first;
             let (r, kind) = (self.orientations.frames[b].rotation.lane(lane), model.topology.joints()[block.first + lane].kind);
             // in body axes: the body's own inertia as it is, and what it supports
-            let (own, whole) = (block.inertia.lane(lane), composite.inertia.lane(lane));
-            let carried = without(&whole, &turned(&own, r));
-            let inertia = own + turned(&carried, r.transpose());
+            let (own, carried) = (block.inertia.lane(lane), composite.carried.lane(lane));
+            let turned =
+                CentralInertia { com: r.transpose_mul(carried.com), rotational: carried.rotational.rotate(r.transpose()), ..carried };
             // three columns of the wide joint at a time
             for first in (0..kind.nv()).step_by(3) {
                 let mut force = Force::zero();
                 let mut starts = [0; LANES];
                 for column in 0..3 {
-                    let local = inertia.mul(kind.column(&Motion::<f64>::zero(), first + column));
+                    let axis = kind.column(&Motion::<f64>::zero(), first + column);
+                    let local = own.mul(axis) + turned.mul(axis);
                     force.set_lane(column, Force::new(r * local.ang, r * local.lin));
                     starts[column] = rows[block.v[lane] + first + column].start;
                     let entries = &mut values[starts[column] + block.depth[lane]..];
@@ -219,16 +245,6 @@ fn put_wide(kind: JointKind, force: Force<f64>, count: usize, entries: &mut [f64
     }
 }
 
-/// A composite inertia without one of its parts.
-#[inline(always)]
-fn without<T: Real>(whole: &RigidBodyInertia<T>, part: &RigidBodyInertia<T>) -> RigidBodyInertia<T> {
-    RigidBodyInertia {
-        mass: whole.mass - part.mass,
-        first_moment: whole.first_moment - part.first_moment,
-        rotational: whole.rotational - part.rotational,
-    }
-}
-
 /// Writes some lanes of a register; `place` is where the first of them goes.
 ///
 /// With `roomy` the whole register is written where it fits. What is overwritten is written later: entries of ancestors above, and rows below.
@@ -242,10 +258,4 @@ fn put(values: &mut [f64], place: usize, along: Pack, lanes: Range<usize>, roomy
             *value = *along;
         }
     }
-}
-
-/// What moving a composite by d adds to its rotational inertia: `−H× d× − d× (H + m d)×`, with H before and after.
-#[inline(always)]
-fn moved_by(before: Vec3<Pack>, after: Vec3<Pack>, d: Vec3<Pack>) -> Sym3<Pack> {
-    Sym3::minus_cross_cross(before, d) + Sym3::minus_cross_cross(d, after)
 }

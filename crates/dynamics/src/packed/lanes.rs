@@ -6,7 +6,7 @@
 
 use super::model::{Block, PackedModel, Source};
 use super::rotate::{rotate_down, rotate_up};
-use featherbench_spatial::{Force, Mat3, Motion, Real, RigidBodyInertia, Sym3, Vec3};
+use featherbench_spatial::{CentralInertia, Force, Mat3, Motion, Real, RigidBodyInertia, Sym3, Vec3};
 
 /// One number of each joint of a block.
 #[cfg(target_feature = "avx512f")]
@@ -101,6 +101,7 @@ lanes_of!(Mat3 { x: Vec3<Pack>, y: Vec3<Pack>, z: Vec3<Pack> });
 lanes_of!(Motion { ang: Vec3<Pack>, lin: Vec3<Pack> });
 lanes_of!(Force { ang: Vec3<Pack>, lin: Vec3<Pack> });
 lanes_of!(RigidBodyInertia { mass: Pack, first_moment: Vec3<Pack>, rotational: Sym3<Pack> });
+lanes_of!(CentralInertia { mass: Pack, com: Vec3<Pack>, rotational: Sym3<Pack> });
 lanes_of!(Sym3 { xx: Pack, xy: Pack, xz: Pack, yy: Pack, yz: Pack, zz: Pack });
 
 /// `mask·x + y`, component by component.
@@ -189,11 +190,12 @@ pub(super) fn sum_from_root(
     (sum, above)
 }
 
-/// `y_i = x_i + Σ (y_c + passed_c)` over the children c: the sums from the leaves, when a joint passes on its sum and `passed`.
+/// `(y_i = x_i + Σ (y_c + passed_c), Σ (y_c + passed_c))` over the children c: the sums from the leaves, when a joint passes on its sum and
+/// `passed`.
 ///
 /// `totals` keeps what each segment passes to its parent. Blocks must be summed last to first.
 #[inline(always)]
-pub(super) fn sum_from_leaves<V: Lanes>(model: &PackedModel, block: &Block, x: V, passed: V, totals: &mut [V::Single]) -> V
+pub(super) fn sum_from_leaves<V: Lanes>(model: &PackedModel, block: &Block, x: V, passed: V, totals: &mut [V::Single]) -> (V, V)
 where
     V::Single: std::ops::Add<Output = V::Single>,
 {
@@ -203,16 +205,35 @@ where
     if LANES > 4 {
         sum = masked_add(block.descendant[STEPS - 1], sum.map(rotate_down::<{ LANES / 2 }>), sum);
     }
+    let mut across = passed.map(|_| Pack::zero());
     for child in &model.children[block.children.clone()] {
         let total = match child.within {
             Some(lane) => sum.lane(lane) + passed.lane(lane),
             None => totals[child.segment],
         };
-        sum = masked_add(child.ancestors, V::splat(total), sum);
+        let total = V::splat(total);
+        sum = masked_add(child.ancestors, total, sum);
+        across = masked_add(child.parent, total, across);
     }
     for s in block.segments.clone() {
         let first = model.segments[s].first;
         totals[s] = sum.lane(first) + passed.lane(first);
     }
-    sum
+    let below = sum.zip(passed, |sum, passed| sum + passed).map(rotate_down::<1>);
+    (sum, masked_add(block.descendant[0], below, across))
+}
+
+/// The parents' vectors; zero at a root. `before(block, lane)` is the vector of a joint of an earlier block.
+#[inline(always)]
+pub(super) fn of_parents(model: &PackedModel, block: &Block, x: Vec3<Pack>, before: impl Fn(usize, usize) -> Vec3<f64>) -> Vec3<Pack> {
+    let mut above = x.map(rotate_up::<1>).map(|above| above * block.ancestor[0]);
+    for segment in &model.segments[block.segments.clone()] {
+        let parent = match segment.parent {
+            Source::Root => continue,
+            Source::Before { block, lane } => before(block, lane),
+            Source::Within { lane } => x.lane(lane),
+        };
+        above = masked_add(segment.first_only, Vec3::splat(parent), above);
+    }
+    above
 }

@@ -3,7 +3,7 @@
 use super::bodies::Trees;
 use super::lanes::{LANES, Pack, STEPS, from_lanes};
 use featherbench_model::{JointKind, Label, Model, Topology};
-use featherbench_spatial::{Force, Mat3, Motion, RigidBodyInertia, Sym3, Transform, Vec3};
+use featherbench_spatial::{CentralInertia, Force, Mat3, Motion, Real, RigidBodyInertia, Sym3, Transform, Vec3};
 use std::ops::Range;
 
 /// A model for the packed kernels: its parameters in registers, and where sums go from block to block.
@@ -55,8 +55,15 @@ pub(super) struct Block {
     /// I S and Sᵀ I S of each body alone, in body axes.
     pub subspace_force: Force<Pack>,
     pub subspace_inertia: Pack,
-    /// Mass of each body with everything that it supports.
+    /// The inertia of each body about its centre of mass, in body axes.
+    pub central: CentralInertia<Pack>,
+    /// Mass of each body with everything that it supports, and its reciprocal or 0.
     pub supported: Pack,
+    pub inverse_supported: Pack,
+    /// Mass m' of what each body supports, without its own mass m; 1/m' or 0; and m m'/(m + m') or 0.
+    pub carried: Pack,
+    pub inverse_carried: Pack,
+    pub reduced: Pack,
     /// Armature of the one-dof joints.
     pub armature: Pack,
     /// Joints in the block, and the first of them.
@@ -76,6 +83,8 @@ pub(super) struct Block {
     pub plain: bool,
     /// Whether some joint moves its body's origin in the parent.
     pub slides: bool,
+    /// Whether the parent of some joint may have several children.
+    pub shares: bool,
     /// 1 in the lanes whose 1, 2, 4 lanes distant ancestor (descendant) is in their segment.
     pub ancestor: [Pack; STEPS],
     pub descendant: [Pack; STEPS],
@@ -134,8 +143,9 @@ pub(super) struct Child {
     pub segment: usize,
     /// Its first lane, if it is in the same block.
     pub within: Option<usize>,
-    /// 1 in the lanes of its ancestors in their segment.
+    /// 1 in the lanes of its ancestors in their segment; 1 in its parent's.
     pub ancestors: Pack,
+    pub parent: Pack,
 }
 
 /// A spherical or free joint.
@@ -152,10 +162,10 @@ impl PackedModel {
     /// The packed parameters of a model.
     pub fn new(model: &Model<f64>) -> Self {
         let bodies = model.topology.bodies();
-        let mut supported: Vec<f64> = model.inertias.iter().map(|inertia| inertia.mass).collect();
+        let mut carried = vec![0.0; bodies];
         for (i, joint) in model.topology.joints().iter().enumerate().rev() {
             if let Some(parent) = joint.parent {
-                supported[parent] += supported[i];
+                carried[parent] += carried[i] + model.inertias[i].mass;
             }
         }
         let mut packed = Self {
@@ -176,7 +186,7 @@ impl PackedModel {
             }
         }
         for first in (0..bodies).step_by(LANES) {
-            packed.add_block(model, first, (bodies - first).min(LANES), &supported);
+            packed.add_block(model, first, (bodies - first).min(LANES), &carried);
         }
         packed.attach_segments();
         packed
@@ -187,7 +197,7 @@ impl PackedModel {
         &self.topology
     }
 
-    fn add_block(&mut self, model: &Model<f64>, first: usize, count: usize, supported: &[f64]) {
+    fn add_block(&mut self, model: &Model<f64>, first: usize, count: usize, carried: &[f64]) {
         let joints = &model.topology.joints()[first..first + count];
         let screw = |k: usize| k < count && is_screw(joints[k].kind);
         // One number per joint; zero where there is no joint.
@@ -196,7 +206,19 @@ impl PackedModel {
         let matrix = |f: &dyn Fn(usize) -> Mat3<f64>| Mat3::from_rows(vector(&|i| f(i).x), vector(&|i| f(i).y), vector(&|i| f(i).z));
         let subspace = |i: usize| if is_screw(model.topology.joints()[i].kind) { model.subspaces[i] } else { Motion::zero() };
         let own = |i: usize| model.inertias[i].mul(subspace(i));
-        let rotational = |f: fn(&Sym3<f64>) -> f64| each(&|i| f(&model.inertias[i].rotational));
+        let turns: Vec<[Mat3<f64>; 3]> = (first..first + count).map(|i| turn(model, i)).collect();
+        let sym3 = |f: &dyn Fn(usize) -> Sym3<f64>| {
+            let entry = |entry: fn(&Sym3<f64>) -> f64| each(&|i| entry(&f(i)));
+            Sym3 {
+                xx: entry(|s| s.xx),
+                xy: entry(|s| s.xy),
+                xz: entry(|s| s.xz),
+                yy: entry(|s| s.yy),
+                yz: entry(|s| s.yz),
+                zz: entry(|s| s.zz),
+            }
+        };
+        let supported = |i: usize| model.inertias[i].mass + carried[i];
 
         let segments = self.segments.len()..self.segments.len() + self.add_segments(model, first, count);
         let distance = |k: usize, stride: usize, up: bool| {
@@ -216,25 +238,27 @@ impl PackedModel {
         let slides = joints.iter().any(|joint| !matches!(joint.kind, JointKind::Revolute(_) | JointKind::Spherical));
         let place = |of: fn(&featherbench_model::Joint) -> usize| std::array::from_fn(|k| joints.get(k).map_or(0, of));
         self.blocks.push(Block {
-            turn: std::array::from_fn(|part| matrix(&|i| turn(model, i)[part])),
+            turn: std::array::from_fn(|part| matrix(&|i| turns[i - first][part])),
             mount: vector(&|i| model.placements[i].translation),
             slide: vector(&|i| model.placements[i].rotation * subspace(i).lin),
             subspace: Motion::new(vector(&|i| subspace(i).ang), vector(&|i| subspace(i).lin)),
             inertia: RigidBodyInertia {
                 mass: each(&|i| model.inertias[i].mass),
                 first_moment: vector(&|i| model.inertias[i].first_moment),
-                rotational: Sym3 {
-                    xx: rotational(|s| s.xx),
-                    xy: rotational(|s| s.xy),
-                    xz: rotational(|s| s.xz),
-                    yy: rotational(|s| s.yy),
-                    yz: rotational(|s| s.yz),
-                    zz: rotational(|s| s.zz),
-                },
+                rotational: sym3(&|i| model.inertias[i].rotational),
             },
             subspace_force: Force::new(vector(&|i| own(i).ang), vector(&|i| own(i).lin)),
             subspace_inertia: each(&|i| subspace(i).dot(own(i))),
-            supported: each(&|i| supported[i]),
+            central: CentralInertia {
+                mass: each(&|i| model.inertias[i].mass),
+                com: vector(&|i| model.inertias[i].central().com),
+                rotational: sym3(&|i| model.inertias[i].central().rotational),
+            },
+            supported: each(&supported),
+            inverse_supported: each(&|i| supported(i).reciprocal_or_zero()),
+            carried: each(&|i| carried[i]),
+            inverse_carried: each(&|i| carried[i].reciprocal_or_zero()),
+            reduced: each(&|i| model.inertias[i].mass * carried[i] * supported(i).reciprocal_or_zero()),
             armature: from_lanes(|k| if screw(k) { model.armature[joints[k].v] } else { 0.0 }),
             count,
             first,
@@ -249,6 +273,7 @@ impl PackedModel {
             is_screw: std::array::from_fn(screw),
             plain: (0..LANES).all(screw),
             slides,
+            shares: joints.iter().any(|joint| joint.parent.is_some_and(|parent| self.forks[parent])),
             ancestor,
             descendant,
             segments,
@@ -294,7 +319,8 @@ impl PackedModel {
                 };
                 let mut hosts = self.segments[self.blocks[host].segments.clone()].iter();
                 let start = hosts.find(|host| (host.first..host.end).contains(&lane)).map_or(lane, |host| host.first);
-                children[host].push(Child { segment, within, ancestors: mask(start..lane + 1) });
+                let (ancestors, parent) = (mask(start..lane + 1), mask(lane..lane + 1));
+                children[host].push(Child { segment, within, ancestors, parent });
             }
         }
         for (block, children) in self.blocks.iter_mut().zip(children) {

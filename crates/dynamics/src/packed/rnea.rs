@@ -142,9 +142,9 @@ impl PackedRnea {
         for (b, block) in model.blocks.iter().enumerate().rev() {
             let Link { force, displacement, subspace } = &self.links[b];
             // F_i = Σ f,  N_i = n_i + Σ (N_c + d_c × F_c)
-            let lin = sum_from_leaves(model, block, force.lin, still, &mut self.totals.forces);
+            let (lin, _) = sum_from_leaves(model, block, force.lin, still, &mut self.totals.forces);
             let arm = displacement.cross(lin);
-            let ang = sum_from_leaves(model, block, force.ang, arm, &mut self.totals.moments);
+            let (ang, _) = sum_from_leaves(model, block, force.ang, arm, &mut self.totals.moments);
             // τ = Sᵀ [N; F]
             let along = if block.slides { subspace.dot(Force::new(ang, lin)) } else { subspace.ang.dot(ang) };
             store(block, along, tau);
