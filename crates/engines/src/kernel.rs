@@ -79,7 +79,7 @@ pub(crate) fn methods(quantity: Quantity) -> &'static [&'static str] {
     match quantity {
         Quantity::InverseDynamics | Quantity::Bias => &["rnea", BATCH],
         Quantity::InverseDynamicsWrench => &["rnea"],
-        Quantity::MassMatrix | Quantity::MassMatrixProbe | Quantity::MassMatrixSparse => &["crba", "crba_packed", BATCH],
+        Quantity::MassMatrix | Quantity::MassMatrixProbe | Quantity::MassMatrixSparse => &["crba_packed", "crba", BATCH],
         Quantity::ForwardDynamics => &["aba", "aba_packed", "ltdl", "refined_1", "refined_2", BATCH],
         Quantity::ForwardDynamicsSingle => &["aba", "ltdl", BATCH],
         Quantity::KineticEnergy | Quantity::PotentialEnergy | Quantity::CenterOfMass | Quantity::Momentum => &["kinematics"],
@@ -239,9 +239,9 @@ fn packed_forward_dynamics<'a>(model: &'a Model<f64>, states: &'a StateBatch) ->
 
 fn forward_dynamics_by_factorization<'a>(model: &'a Model<f64>, states: &'a StateBatch) -> Kernel<'a> {
     let packed = PackedModel::new(model);
-    let (mut crba, mut rnea, mut ltdl) = (Crba::new(&model.topology), PackedRnea::new(&packed), Ltdl::new(&model.topology));
+    let (mut crba, mut rnea, mut ltdl) = (PackedCrba::new(&packed), PackedRnea::new(&packed), Ltdl::new(&model.topology));
     written(model.topology.nv(), move |k, a| {
-        crba.run(model, states.q(k), ltdl.matrix_mut())?;
+        crba.run(&packed, states.q(k), ltdl.matrix_mut())?;
         ltdl.factor()?;
         rnea.bias(&packed, states.q(k), states.v(k), None, a)?;
         for (a, tau) in a.iter_mut().zip(states.tau(k)) {
@@ -282,12 +282,12 @@ fn refined_forward_dynamics<'a>(robot: &'a Robot, states: &'a StateBatch, steps:
 
 /// The stored numbers of the mass matrices of a batch, computed before: the time of factorizing and solving excludes computing them.
 fn matrices(model: &Model<f64>, states: &StateBatch) -> Result<Vec<Vec<f64>>, NoAnswer> {
-    let (mut crba, mut matrix) = (Crba::new(&model.topology), TreeSparse::new(&model.topology));
+    let (mut crba, mut matrix) = (crba(model, states, methods(Quantity::MassMatrix)[0]), TreeSparse::new(&model.topology));
     // Big robots use a few matrices in turn: thousands of them would not fit the memory.
     let count = states.count().min(1 + (32 << 20) / (8 * model.topology.stored().max(1)));
     (0..count)
         .map(|k| {
-            crba.run(model, states.q(k), &mut matrix).map_err(|error| NoAnswer::Failed(error.to_string()))?;
+            crba(&mut matrix, k).map_err(|error| NoAnswer::Failed(error.to_string()))?;
             Ok(matrix.values().to_vec())
         })
         .collect()
@@ -322,9 +322,9 @@ fn solve<'a>(model: &'a Model<f64>, states: &'a StateBatch) -> Result<Kernel<'a>
 
 /// Factors, then the inverse from them.
 fn mass_matrix_inverse<'a>(model: &'a Model<f64>, states: &'a StateBatch) -> Kernel<'a> {
-    let (mut crba, mut ltdl) = (Crba::new(&model.topology), Ltdl::new(&model.topology));
+    let (mut crba, mut ltdl) = (crba(model, states, methods(Quantity::MassMatrix)[0]), Ltdl::new(&model.topology));
     written(model.topology.nv() * model.topology.nv(), move |k, inverse| {
-        crba.run(model, states.q(k), ltdl.matrix_mut())?;
+        crba(ltdl.matrix_mut(), k)?;
         ltdl.factor()?;
         Ok(ltdl.inverse(inverse)?)
     })

@@ -18,12 +18,14 @@ pub(super) struct Scene {
     pub(super) shows: &'static str,
     pub(super) robot: Robot,
     at: Vec<Magnitudes>,
+    /// featherbench's [`Quantity::BodyPlacement`].
+    placement: Option<Vec<f64>>,
 }
 
 impl Scene {
     pub(super) fn new(shows: &'static str, robot: Robot) -> Self {
-        let at = robot.magnitudes();
-        Self { shows, robot, at }
+        let (at, placement) = (robot.magnitudes(), featherbench(&robot, Quantity::BodyPlacement));
+        Self { shows, robot, at, placement }
     }
 
     /// The worst error of an answer over all states, in the measures of `featherbench_bench`.
@@ -59,10 +61,10 @@ impl Scene {
     pub(super) fn supposed(&self, hypotheses: &[&Hypothesis], quantity: Quantity) -> Option<Vec<f64>> {
         let mut misread = self.robot.description.clone();
         hypotheses.iter().for_each(|hypothesis| (hypothesis.robot)(&mut misread));
-        let Robot { origin, family, states, .. } = &self.robot;
-        let robot = Robot::new(&misread, family, *origin, 1, 0).ok()?;
+        let Robot { description, origin, family, states, .. } = &self.robot;
+        let robot = if misread == *description { self.robot.clone() } else { Robot::new(&misread, family, *origin, 1, 0).ok()? };
         let (mut batch, mut seen) = (StateBatch { cases: states.cases.clone(), ..self.empty() }, Vec::new());
-        let placement = featherbench(&self.robot, Quantity::BodyPlacement)?;
+        let placement = self.placement.as_ref()?;
         for k in 0..states.count() {
             let mut state = State {
                 q: states.q(k).to_vec(),
@@ -71,7 +73,7 @@ impl Scene {
                 a: if quantity == Quantity::Bias { vec![0.0; states.nv] } else { states.a(k).to_vec() },
                 tau: states.tau(k).to_vec(),
                 wrench: states.wrench(k).to_vec(),
-                placement: part(&placement, states.count(), k),
+                placement: part(placement, states.count(), k),
                 ..State::default()
             };
             seen.push(hypotheses.iter().map(|hypothesis| self.misread(hypothesis, &mut state)).collect::<Vec<_>>());
@@ -83,21 +85,17 @@ impl Scene {
         }
         let robot = robot.at(batch);
         let mut value = featherbench(&robot, if quantity == Quantity::Bias { Quantity::InverseDynamics } else { quantity })?;
-        let [placement, velocity, com, momentum] =
-            [Quantity::BodyPlacement, Quantity::BodyVelocity, Quantity::CenterOfMass, Quantity::Momentum]
-                .map(|about| featherbench(&robot, about));
-        let (placement, velocity, com, momentum) = (placement?, velocity?, com?, momentum?);
         let (size, count) = (quantity.size(&robot), states.count());
+        let bodies = if hypotheses.iter().any(|hypothesis| hypothesis.answer.is_some()) { Some(Bodies::of(&robot)?) } else { None };
         for (k, (value, seen)) in value.chunks_exact_mut(size).zip(seen).enumerate() {
             for (hypothesis, (mut state, change)) in hypotheses.iter().zip(seen).rev() {
                 if let Some(change) = change {
                     returned(&change, quantity, value);
                 }
-                state.placement = part(&placement, count, k);
-                state.velocity = part(&velocity, count, k);
-                state.com = part(&com, count, k);
-                state.momentum = part(&momentum, count, k);
-                (hypothesis.answer)(&self.robot, quantity, &state, value);
+                if let (Some(answer), Some(bodies)) = (hypothesis.answer, &bodies) {
+                    bodies.put(&mut state, count, k);
+                    answer(&self.robot, quantity, &state, value);
+                }
             }
         }
         Some(value)
@@ -118,6 +116,33 @@ impl Scene {
     fn empty(&self) -> StateBatch {
         let StateBatch { nq, nv, bodies, .. } = self.robot.states;
         StateBatch { nq, nv, bodies, ..StateBatch::default() }
+    }
+}
+
+/// featherbench's results for the bodies, at every state. Mistakes in what is sent back may use them.
+struct Bodies {
+    placement: Vec<f64>,
+    velocity: Vec<f64>,
+    com: Vec<f64>,
+    momentum: Vec<f64>,
+}
+
+impl Bodies {
+    fn of(robot: &Robot) -> Option<Self> {
+        Some(Self {
+            placement: featherbench(robot, Quantity::BodyPlacement)?,
+            velocity: featherbench(robot, Quantity::BodyVelocity)?,
+            com: featherbench(robot, Quantity::CenterOfMass)?,
+            momentum: featherbench(robot, Quantity::Momentum)?,
+        })
+    }
+
+    /// Puts the results at state `k` of `count` into a state.
+    fn put(&self, state: &mut State, count: usize, k: usize) {
+        state.placement = part(&self.placement, count, k);
+        state.velocity = part(&self.velocity, count, k);
+        state.com = part(&self.com, count, k);
+        state.momentum = part(&self.momentum, count, k);
     }
 }
 

@@ -3,7 +3,7 @@
 use super::comparison::shared_coordinates;
 use featherbench_bench::Robot;
 use featherbench_bench::measure::{Magnitudes, ratio, worst};
-use featherbench_dynamics::{Crba, PackedModel, PackedRnea, TreeSparse};
+use featherbench_dynamics::{PackedCrba, PackedModel, PackedRnea, TreeSparse};
 use featherbench_model::{Description, JointKind, Malformed, Model};
 use featherbench_results::ModelOrigin;
 use featherbench_robots::StateBatch;
@@ -27,13 +27,13 @@ pub struct Effect {
 /// Our kernels on a robot at its states. `None` if the model does not have the states' shape.
 pub(super) fn answers(model: &Model<f64>, states: &StateBatch) -> Option<Answers> {
     let packed = PackedModel::new(model);
-    let (mut rnea, mut crba) = (PackedRnea::new(&packed), Crba::new(&model.topology));
+    let (mut rnea, mut crba) = (PackedRnea::new(&packed), PackedCrba::new(&packed));
     let mut matrix = TreeSparse::new(&model.topology);
     let nv = states.nv;
     let mut answers = Answers { id: vec![0.0; states.count() * nv], mass_matrix: Vec::with_capacity(states.count() * nv * nv) };
     for (k, tau) in answers.id.chunks_exact_mut(nv).enumerate() {
         rnea.run(&packed, states.q(k), states.v(k), states.a(k), None, tau).ok()?;
-        crba.run(model, states.q(k), &mut matrix).ok()?;
+        crba.run(&packed, states.q(k), &mut matrix).ok()?;
         answers.mass_matrix.extend(matrix.to_dense().iter());
     }
     Some(answers)
