@@ -73,6 +73,13 @@ pub enum Start {
         /// The name of the program.
         program: String,
     },
+    /// A library that cargo builds, in a workspace of its own. It has the C interface of native oracles and is loaded in a child process.
+    CargoLibrary {
+        /// The workspace: a folder in `oracles/`.
+        folder: String,
+        /// The name of the library, without the system's prefix and suffix.
+        library: String,
+    },
     /// A library that CMake builds. It is loaded in a child process.
     Native(Library),
 }
@@ -127,6 +134,11 @@ impl DescribedEngine {
     /// Whether its oracle is a Python module.
     pub fn is_python(&self) -> bool {
         matches!(self.start, Start::Python { .. })
+    }
+
+    /// Whether cargo builds it.
+    pub fn is_compiled(&self) -> bool {
+        matches!(self.start, Start::Cargo { .. } | Start::CargoLibrary { .. })
     }
 
     /// Whether it is a native oracle.

@@ -1,12 +1,14 @@
 //! Engines that cargo builds: each is a Cargo workspace of its own in `oracles/`, built when it is first asked for.
 //!
-//! Beside the program stands the hash of everything of the project's that it is made of; where that is another now, it is built again.
+//! Beside what was built stands the hash of everything of the project's that it is made of; where that is another now, it is built again.
 
 use crate::fail::Fail;
 use crate::oracles::spinner;
 use crate::root::Root;
 use featherbench_bench::{DescribedEngine, Engine, hash};
-use featherbench_engines::{Limits, Oracle};
+use featherbench_engines::{Limits, Oracle, native};
+use std::env::consts::{DLL_PREFIX, DLL_SUFFIX};
+use std::ffi::OsString;
 use std::io::{BufRead, BufReader};
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
@@ -23,25 +25,42 @@ pub struct Compiled<'a> {
     name: &'a str,
     /// Its workspace, a folder in `oracles/`.
     folder: &'a str,
-    program: &'a str,
+    /// The file that cargo makes: a program, or a library that this program serves.
+    product: String,
+    is_library: bool,
     needs: String,
 }
 
 impl<'a> Compiled<'a> {
     /// The engine of this workspace and program.
-    pub fn new(root: &'a Root, engine: &'a DescribedEngine, folder: &'a str, program: &'a str) -> Self {
-        Self { root, name: &engine.name, folder, program, needs: engine.needs.join(" and, ") }
+    pub fn program(root: &'a Root, engine: &'a DescribedEngine, folder: &'a str, program: &str) -> Self {
+        Self { root, name: &engine.name, folder, product: program.to_owned(), is_library: false, needs: engine.needs.join(" and, ") }
     }
 
-    /// The program, if it is there and made of the present sources.
+    /// The engine of this workspace and library.
+    pub fn library(root: &'a Root, engine: &'a DescribedEngine, folder: &'a str, library: &str) -> Self {
+        let product = format!("{DLL_PREFIX}{library}{DLL_SUFFIX}");
+        Self { product, is_library: true, ..Self::program(root, engine, folder, library) }
+    }
+
+    /// What was built, if it is there and made of the present sources.
     fn built(&self) -> Result<Option<PathBuf>, String> {
-        let (folder, program) = (self.root.built(self.folder), self.program());
+        let (folder, product) = (self.root.built(self.folder), self.product());
         let made_of = std::fs::read_to_string(folder.join("built")).unwrap_or_default();
-        Ok((made_of == sources(self.root.path(), self.folder)? && program.is_file()).then_some(program))
+        Ok((made_of == sources(self.root.path(), self.folder)? && product.is_file()).then_some(product))
     }
 
-    fn program(&self) -> PathBuf {
-        self.root.built(self.folder).join("release").join(self.program)
+    fn product(&self) -> PathBuf {
+        self.root.built(self.folder).join("release").join(&self.product)
+    }
+
+    /// What starts it.
+    fn command(&self, product: PathBuf) -> Result<Vec<OsString>, String> {
+        if !self.is_library {
+            return Ok(vec![product.into_os_string()]);
+        }
+        let program = std::env::current_exe().map_err(|error| format!("this program does not know where it is: {error}"))?;
+        Ok(native::command(&program, &product, None))
     }
 
     fn missing(&self, message: String) -> Fail {
@@ -53,37 +72,43 @@ impl<'a> Compiled<'a> {
         Fail::Missing { message, advice }
     }
 
-    /// Builds the program unless it is there.
+    /// Builds it unless it is there.
     pub fn install(&self) -> Result<PathBuf, Fail> {
         let missing = |reason: String| self.missing(format!("{} cannot be built: {reason}", self.name));
         match self.built().map_err(missing)? {
-            Some(program) => Ok(program),
+            Some(product) => Ok(product),
             None => self.build().map_err(missing),
         }
     }
 
-    /// Builds the program if need be, and starts it. What it is made of is its identity, for runs that are resumed.
+    /// Builds it if need be, and starts it. What it is made of is its identity, for runs that are resumed.
     pub fn start(&self, limits: Limits) -> Result<Oracle, Fail> {
-        let program = self.install()?;
+        let product = self.install()?;
         let made_of = sources(self.root.path(), self.folder).map_err(Fail::input)?;
         let silent = |reason| self.missing(format!("{} does not answer: {reason}", self.name));
-        Ok(Oracle::start(vec![program.into_os_string()], limits).map_err(silent)?.with_sources(&made_of))
+        let started = self.command(product).and_then(|command| Oracle::start(command, limits));
+        Ok(started.map_err(silent)?.with_sources(&made_of))
+    }
+
+    /// Its status, or why it does not answer.
+    pub fn told(&self) -> String {
+        self.status().unwrap_or_else(|reason| reason)
     }
 
     /// Its version and where it is, if it answers.
     ///
     /// # Errors
     /// A sentence that says why it does not.
-    pub fn status(&self) -> Result<String, String> {
-        let program = self
+    fn status(&self) -> Result<String, String> {
+        let product = self
             .built()?
             .ok_or_else(|| format!("is not built: run `featherbench oracles install {}`, or a suite that asks for it", self.name))?;
-        let oracle = Oracle::start(vec![program.clone().into_os_string()], Limits::default());
+        let oracle = self.command(product.clone()).and_then(|command| Oracle::start(command, Limits::default()));
         let oracle = oracle.map_err(|reason| format!("does not answer: {reason}"))?;
-        Ok(format!("{:<8} {}", oracle.identity().version, program.display()))
+        Ok(format!("{:<8} {}", oracle.identity().version, product.display()))
     }
 
-    /// Has cargo build the program. The hash is written last: what a build that breaks off leaves behind is not taken.
+    /// Has cargo build it. The hash is written last: what a build that breaks off leaves behind is not taken.
     fn build(&self) -> Result<PathBuf, String> {
         let (start, made_of, folder) = (Instant::now(), sources(self.root.path(), self.folder)?, self.root.built(self.folder));
         let stamp = folder.join("built");
@@ -114,13 +139,13 @@ impl<'a> Compiled<'a> {
         if !status.success() {
             return Err(format!("`cargo build` in {} failed ({status}): {}", workspace.display(), complaint(&lines)));
         }
-        let program = self.program();
-        if !program.is_file() {
-            return Err(format!("cargo built something, but not {}; a CARGO_BUILD_TARGET would be why", program.display()));
+        let product = self.product();
+        if !product.is_file() {
+            return Err(format!("cargo built something, but not {}; a CARGO_BUILD_TARGET would be why", product.display()));
         }
         ::featherbench_results::atomic_write(&stamp, made_of.as_bytes()).map_err(|error| error.to_string())?;
-        eprintln!("built {} in {:.0} s: {}", self.name, start.elapsed().as_secs_f64(), program.display());
-        Ok(program)
+        eprintln!("built {} in {:.0} s: {}", self.name, start.elapsed().as_secs_f64(), product.display());
+        Ok(product)
     }
 }
 
@@ -176,6 +201,7 @@ mod tests {
     #[test]
     fn all_of_the_project_that_it_is_made_of_is_hashed() {
         assert_eq!(crates(&project(), "rapier").unwrap(), ["formats", "model", "protocol", "spatial"]);
+        assert_eq!(crates(&project(), "dynibo").unwrap(), Vec::<String>::new());
         assert!(crates(&project(), "no-such-engine").unwrap_err().contains("no-such-engine"));
     }
 

@@ -7,7 +7,7 @@ use crate::oracles;
 use crate::robots::Loaded;
 use crate::root::Root;
 use ::featherbench_results::{EngineInfo, EngineSource};
-use featherbench_bench::{DescribedEngine, Engine, OWN, Robot, Start, Study};
+use featherbench_bench::{DescribedEngine, Engine, OWN, Robot, Study};
 use featherbench_engines::{Featherbench, Limits, Recorded, read_recordings};
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -78,7 +78,7 @@ pub fn open(root: &Root, asked: &Asked) -> Result<Opened, Fail> {
         opened.add(started(root, engine, limits), &engine.name, EngineSource::Live);
     }
     let (live, recorded): (Vec<&DescribedEngine>, Vec<_>) = due.into_iter().partition(|engine| asked.live || !engine.recorded);
-    let (compiled, installed): (Vec<_>, Vec<_>) = live.into_iter().partition(|engine| matches!(engine.start, Start::Cargo { .. }));
+    let (compiled, installed): (Vec<_>, Vec<_>) = live.into_iter().partition(|engine| engine.is_compiled());
     // What cannot be built is told before anything else is started.
     for engine in compiled {
         opened.add(Ok(Box::new(oracles::start(root, engine, limits)?)), &engine.name, EngineSource::Live);

@@ -45,10 +45,12 @@ pub fn install_named(root: &Root, args: &InstallArgs) -> Result<(), Fail> {
         named.extend(engines.iter().filter(|engine| engine.is_native()));
     }
     for engine in &named {
-        if let Start::Cargo { folder, program } = &engine.start {
-            let program = Compiled::new(root, engine, folder, program).install()?;
-            eprintln!("{} is built: {}", engine.name, program.display());
-        }
+        let compiled = match &engine.start {
+            Start::Cargo { folder, program } => Compiled::program(root, engine, folder, program),
+            Start::CargoLibrary { folder, library } => Compiled::library(root, engine, folder, library),
+            Start::Python { .. } | Start::Native(_) => continue,
+        };
+        eprintln!("{} is built: {}", engine.name, compiled.install()?.display());
     }
     let (native, others): (Vec<&DescribedEngine>, Vec<_>) = named.into_iter().partition(|engine| engine.is_native());
     if !native.is_empty() || others.is_empty() || others.iter().any(|engine| engine.is_python()) {
@@ -177,7 +179,8 @@ pub fn start(root: &Root, engine: &DescribedEngine, limits: Limits) -> Result<Or
             let command = python(root).ok_or_else(|| MISSING.to_owned()).and_then(|python| package::command(root, &python, module));
             command.and_then(|command| Oracle::start(command, limits)).map_err(missing)
         }
-        Start::Cargo { folder, program } => Compiled::new(root, engine, folder, program).start(limits),
+        Start::Cargo { folder, program } => Compiled::program(root, engine, folder, program).start(limits),
+        Start::CargoLibrary { folder, library } => Compiled::library(root, engine, folder, library).start(limits),
         Start::Native(library) => native::start(root, engine, library, limits).map_err(missing),
     }
 }
@@ -206,7 +209,8 @@ pub fn status(root: &Root) -> Result<(), Fail> {
                     format!("does not answer: {fail}")
                 }
             },
-            Start::Cargo { folder, program } => Compiled::new(root, engine, folder, program).status().unwrap_or_else(|reason| reason),
+            Start::Cargo { folder, program } => Compiled::program(root, engine, folder, program).told(),
+            Start::CargoLibrary { folder, library } => Compiled::library(root, engine, folder, library).told(),
             Start::Native(library) => native::status(root, engine, library).unwrap_or_else(|reason| reason),
         };
         println!("{:<16} {told}", engine.name);

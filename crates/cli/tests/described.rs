@@ -16,7 +16,7 @@ fn each_engine_has_the_folder_of_its_start() {
     for engine in engines().iter() {
         let file = match &engine.start {
             Start::Python { module } => format!("oracles/featherbench_oracles/{module}/__main__.py"),
-            Start::Cargo { folder, .. } => format!("oracles/{folder}/Cargo.toml"),
+            Start::Cargo { folder, .. } | Start::CargoLibrary { folder, .. } => format!("oracles/{folder}/Cargo.toml"),
             Start::Native(library) => format!("oracles/native/{}/CMakeLists.txt", library.folder),
         };
         assert!(project().join(&file).is_file(), "{}: there is no {file}", engine.name);
@@ -31,12 +31,17 @@ fn each_engine_has_the_folder_of_its_start() {
 #[test]
 fn what_cargo_builds_is_locked_to_the_version() {
     for engine in engines().iter() {
-        let Start::Cargo { folder, program } = &engine.start else { continue };
+        let (folder, made) = match &engine.start {
+            Start::Cargo { folder, program } => (folder, program.clone()),
+            // A library's name is its package's, as a word of Rust.
+            Start::CargoLibrary { folder, library } => (folder, library.replace('_', "-")),
+            Start::Python { .. } | Start::Native(_) => continue,
+        };
         let engines = engines();
         let package = engines.package(engine).unwrap();
         let lock = read(&format!("oracles/{folder}/Cargo.lock"));
         assert!(lock.contains(&format!("name = \"{}\"\nversion = \"{}\"\n", package.name, package.version)), "{}", engine.name);
-        assert!(read(&format!("oracles/{folder}/Cargo.toml")).contains(&format!("name = \"{program}\"")), "{}", engine.name);
+        assert!(read(&format!("oracles/{folder}/Cargo.toml")).contains(&format!("name = \"{made}\"")), "{}", engine.name);
     }
 }
 

@@ -1,4 +1,4 @@
-//! Tests that need what a new machine may not have: Python, the reference engines, rapier, a browser.
+//! Tests that need what a new machine may not have: Python, the reference engines, rapier, dynibo, a browser.
 //!
 //! Each is run if it can be, and otherwise listed as skipped. With `FEATHERBENCH_REQUIRE_ALL` set, as in CI, a skip is a failure. The
 //! native oracles are required at night only, with `FEATHERBENCH_NIGHTLY` set.
@@ -12,6 +12,8 @@ mod compared;
 mod compiled;
 #[path = "outside/counted.rs"]
 mod counted;
+#[path = "outside/dynibo.rs"]
+mod dynibo;
 #[path = "outside/native.rs"]
 mod native;
 #[path = "outside/rapier.rs"]
@@ -65,6 +67,9 @@ fn main() -> ExitCode {
         ("big robots are refused or answered by the native oracles", native::big_robots_are_refused_or_answered),
         ("native oracles that are not there are named", native::no_compiler),
         ("instructions that were not counted are told", counted::not_counted),
+        ("dynibo conforms", dynibo::conforms),
+        ("dynibo agrees, with any gravity", || dynibo::with_dynibo(dynibo::agrees)),
+        ("dynibo refuses what it has not", || dynibo::with_dynibo(dynibo::refuses)),
         ("rapier that cannot be built is named", rapier::not_to_be_built),
         ("rapier conforms", rapier::conforms),
         ("rapier agrees on every joint that it has", || rapier::with_rapier(rapier::agrees)),

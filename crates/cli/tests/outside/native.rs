@@ -31,7 +31,7 @@ const QUANTITIES: [Quantity; 13] = [
 ];
 
 /// So long that the load of the machine has no influence: only a test that would hang for ever reaches it.
-const PATIENT: Limits = Limits { answer: Duration::from_secs(900), memory: 8 << 30 };
+pub const PATIENT: Limits = Limits { answer: Duration::from_secs(900), memory: 8 << 30 };
 
 /// A clock that stops until it is started; from then on an hour passes between any two queries.
 #[derive(Default)]
@@ -51,7 +51,7 @@ impl Clock for Stopped {
     }
 }
 
-fn robot(spec: &str, states: usize) -> Robot {
+pub fn robot(spec: &str, states: usize) -> Robot {
     let named = project().join(format!("datasets/models/{spec}.json"));
     let description = if named.is_file() {
         featherbench_formats::neutral::read(named).unwrap()
@@ -61,7 +61,7 @@ fn robot(spec: &str, states: usize) -> Robot {
     Robot::new(&description, "test", ModelOrigin::Generated, states, 1).unwrap()
 }
 
-fn start(library: &Path, limits: Limits, core: Option<usize>) -> Result<Oracle, String> {
+pub fn start(library: &Path, limits: Limits, core: Option<usize>) -> Result<Oracle, String> {
     Oracle::start(native::command(Path::new(env!("CARGO_BIN_EXE_featherbench")), library, core), limits)
 }
 
@@ -86,14 +86,14 @@ fn pendulum(folder: &Path) -> Result<PathBuf, Outcome> {
 
 /// The worst of all states, divided by what rounding may cause.
 #[derive(Debug)]
-struct Found {
-    quantity: Quantity,
-    method: String,
-    share: Result<f64, NoAnswer>,
+pub struct Found {
+    pub quantity: Quantity,
+    pub method: String,
+    pub share: Result<f64, NoAnswer>,
 }
 
 /// Each method of an engine against our kernels, on every state.
-fn compare(engine: &dyn Engine, robot: &Robot, but: &[&str]) -> Vec<Found> {
+pub fn compare(engine: &dyn Engine, robot: &Robot, but: &[&str]) -> Vec<Found> {
     let featherbench = Featherbench::new();
     let (at, depth) = (robot.magnitudes(), robot.depth as f64);
     let forward = ForwardScale::all(robot, &at);

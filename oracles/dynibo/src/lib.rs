@@ -1,0 +1,9 @@
+//! Dynibo as an oracle: a library with the C interface of `../../native/oracle.h`.
+//!
+//! Only dynibo's own calls are in `run`, which is timed. Conversions are in `states` and `read`.
+
+mod coordinates;
+mod interface;
+mod refusal;
+mod robot;
+mod urdf;
