@@ -1,7 +1,7 @@
 //! A robot in dynibo, its states, and the calls that are timed.
 
 use crate::coordinates::{self, Floating, Order};
-use crate::interface::{Body, JOINTS};
+use crate::interface::Body;
 use crate::refusal::Refusal;
 use crate::urdf;
 use dynibo::{FloatingRobot, Frame, LinkId, RobotModel};
@@ -63,14 +63,14 @@ impl Robot {
         dof_parents: &[i32],
         readback: &mut [f64],
     ) -> Result<Self, Refusal> {
-        let (unit, world, floats) = (coordinates::unit(gravity)?, coordinates::world(gravity), urdf::floats(bodies));
+        let (pace, world, floats) = (coordinates::pace(gravity)?, coordinates::world(gravity), urdf::floats(bodies));
         if bodies.iter().any(|body| body.armature.iter().any(|&armature| armature != 0.0)) {
             return Err(Refusal::Unsupported("dynibo has no armature".into()));
         }
         if floats && bodies.iter().skip(1).any(|body| body.parent < 0) {
             return Err(Refusal::Unsupported("dynibo has nothing beside a floating base".into()));
         }
-        let model = urdf::model(bodies, unit, false)?;
+        let model = urdf::model(bodies, false)?;
         let links: Vec<LinkId> = (0..bodies.len()).map(|k| model.link_id(&urdf::link(k))).collect::<Result<_, _>>()?;
         let all: Vec<LinkId> = (0..model.link_count()).map(|place| model.link_id_at(place)).collect::<Result<_, _>>()?;
         let place = |link: LinkId| Some((link, all.iter().position(|&other| other == link)?));
@@ -79,14 +79,12 @@ impl Robot {
         let mut joints = Vec::with_capacity(model.joint_count());
         for theirs in 0..model.joint_count() {
             let body: usize = model.joint_name(theirs)?.trim_start_matches('j').parse().map_err(|_| lost("a joint"))?;
-            let is_length = JOINTS.get(bodies[body].joint as usize) == Some(&"prismatic");
-            let dof = if floats { first + body - 1 } else { body };
-            joints.push((dof, if is_length { 1.0 / unit } else { 1.0 }));
+            joints.push(if floats { first + body - 1 } else { body });
         }
         if first + joints.len() != nv || nq != nv + usize::from(floats) {
             return Err(Refusal::Failed("dynibo counts other degrees of freedom".into()));
         }
-        read_back(&model, bodies, unit, readback)?;
+        read_back(&model, bodies, readback)?;
         let engine = if floats {
             // It asks for a mass of the root.
             Engine::Floating(model.floating_robot().map_err(|error| Refusal::Unsupported(format!("dynibo refuses the base: {error}")))?)
@@ -101,7 +99,7 @@ impl Robot {
             nv,
             dof_parents: dof_parents.to_vec(),
             engine,
-            order: Order { joints, floats, unit },
+            order: Order { joints, floats, pace },
             world,
             count: 0,
             bases: Vec::new(),
@@ -139,18 +137,18 @@ impl Robot {
 
     /// Takes states, as q, v, a and τ.
     pub fn convert(&mut self, [q, v, a, tau]: [&[f64]; 4]) -> Result<(), Refusal> {
-        let [nq, nv] = self.sizes();
+        let ([nq, nv], pace) = (self.sizes(), self.order.pace);
         self.count = v.len() / nv.max(1);
         (self.bases, self.joints, self.forces, self.last) = (Vec::new(), Default::default(), Vec::new(), 0);
         for k in 0..self.count {
             let [q, v, a, tau] = [&q[k * nq..][..nq], &v[k * nv..][..nv], &a[k * nv..][..nv], &tau[k * nv..][..nv]];
             let base = match &self.root {
-                Some(body) => Some(Floating::new(&self.world, body, self.order.unit, [q, v, a])?),
+                Some(body) => Some(Floating::new(&self.world, body, pace, [q, v, a])?),
                 None => None,
             };
             // The configuration of a floating base has one number more than its velocity.
-            for (to, from) in self.joints.iter_mut().zip([&q[nq - nv..], v, a]) {
-                to.extend(self.order.joints_forth(from));
+            for (to, (from, factor)) in self.joints.iter_mut().zip([(&q[nq - nv..], 1.0), (v, pace.sqrt()), (a, pace)]) {
+                to.extend(self.order.joints_forth(from, factor));
             }
             self.forces.extend(self.order.force_forth(base.as_ref(), tau));
             self.bases.extend(base);
@@ -206,7 +204,7 @@ impl Robot {
 
     /// Writes the value of the last state, in neutral coordinates.
     pub fn read(&self, method: usize, value: &mut [f64]) {
-        let (n, unit, base) = (self.nv, self.order.unit, self.bases.get(self.last));
+        let (n, base) = (self.nv, self.bases.get(self.last));
         match METHODS[method].0 {
             "fd" => self.order.acceleration_back(base, &self.values, value),
             "body_placement" => {
@@ -214,15 +212,14 @@ impl Robot {
                     let turned = self.frames[place].rotation;
                     let rotation = (self.world.rotation.inverse() * turned).to_rotation_matrix().into_inner();
                     value[..9].copy_from_slice(rotation.transpose().as_slice());
-                    let origin = self.world.rotation.inverse() * self.frames[place].translation.vector * unit;
+                    let origin = self.world.rotation.inverse() * self.frames[place].translation.vector;
                     value[9..].copy_from_slice(origin.as_slice());
                 }
             }
             "body_jacobian" => {
                 let world = self.world.rotation.inverse().to_rotation_matrix().into_inner();
                 for (row, value) in value.chunks_exact_mut(n.max(1)).enumerate() {
-                    let (first, scale) = if row < 3 { (0, 1.0) } else { (3, unit) };
-                    let axis = world.row(row % 3) * scale;
+                    let (first, axis) = (if row < 3 { 0 } else { 3 }, world.row(row % 3));
                     let entry = |column: usize| (0..3).map(|k| axis[k] * self.values[6 * column + first + k]).sum();
                     self.order.back(base, entry, value);
                 }
@@ -241,20 +238,20 @@ impl Robot {
             }
             _ => {
                 self.order.back(base, |theirs| self.values[theirs], value);
-                value.iter_mut().for_each(|force| *force *= unit * unit);
+                value.iter_mut().for_each(|force| *force /= self.order.pace);
             }
         }
     }
 
-    /// M = λ² Tᵀ M_e T: Tᵀ on each column of M_e, then on each row of the result.
+    /// M = Tᵀ M_e T: Tᵀ on each column of M_e, then on each row of the result.
     fn mass_matrix(&self) -> Vec<f64> {
-        let (n, base, energy) = (self.nv, self.bases.get(self.last), self.order.unit * self.order.unit);
+        let (n, base) = (self.nv, self.bases.get(self.last));
         let (mut half, mut mass) = (vec![0.0; n * n], vec![0.0; n * n]);
         for (theirs, column) in half.chunks_exact_mut(n.max(1)).enumerate() {
             self.order.back(base, |row| self.values[theirs * n + row], column);
         }
         for (row, value) in mass.chunks_exact_mut(n.max(1)).enumerate() {
-            self.order.back(base, |theirs| energy * half[theirs * n + row], value);
+            self.order.back(base, |theirs| half[theirs * n + row], value);
         }
         mass
     }
@@ -262,8 +259,8 @@ impl Robot {
 
 /// What dynibo has of each body. The placements are those of a robot whose joints all hang on the world, read from the same numbers: dynibo
 /// shows where links are, and along a path that adds up roundings. A floating base has none in the model: its states carry it.
-fn read_back(model: &RobotModel, bodies: &[Body], unit: f64, readback: &mut [f64]) -> Result<(), Refusal> {
-    let apart = urdf::model(bodies, unit, true)?;
+fn read_back(model: &RobotModel, bodies: &[Body], readback: &mut [f64]) -> Result<(), Refusal> {
+    let apart = urdf::model(bodies, true)?;
     let mut frames = vec![Frame::identity(); apart.link_count()];
     apart.robot().forward_kinematics_all(&vec![0.0; apart.joint_count()], &mut frames)?;
     let mut placed = vec![Frame::identity(); bodies.len()];
@@ -276,16 +273,16 @@ fn read_back(model: &RobotModel, bodies: &[Body], unit: f64, readback: &mut [f64
     let floats = urdf::floats(bodies);
     for (k, (value, body)) in readback.chunks_exact_mut(22).zip(bodies).enumerate() {
         let link = model.link_id(&urdf::link(k))?;
-        let inertia: Matrix3<f64> = model.link_inertia(link)? * unit * unit;
+        let inertia: Matrix3<f64> = model.link_inertia(link)?;
         value[0] = model.link_mass(link)?;
-        value[1..4].copy_from_slice((model.link_center_of_mass(link)? * unit).as_slice());
+        value[1..4].copy_from_slice(model.link_center_of_mass(link)?.as_slice());
         value[4..10].copy_from_slice(&[(0, 0), (0, 1), (0, 2), (1, 1), (1, 2), (2, 2)].map(|entry| inertia[entry]));
         if k == 0 && floats {
             value[10..19].copy_from_slice(&body.rotation);
             value[19..].copy_from_slice(&body.translation);
         } else {
             value[10..19].copy_from_slice(placed[k].rotation.to_rotation_matrix().into_inner().transpose().as_slice());
-            value[19..].copy_from_slice((placed[k].translation.vector * unit).as_slice());
+            value[19..].copy_from_slice(placed[k].translation.vector.as_slice());
         }
     }
     Ok(())

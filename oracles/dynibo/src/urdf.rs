@@ -1,4 +1,4 @@
-//! A robot as URDF, the only form that dynibo reads. Lengths are in the given unit.
+//! A robot as URDF, the only form that dynibo reads.
 
 use crate::interface::{Body, JOINTS};
 use crate::refusal::Refusal;
@@ -25,7 +25,7 @@ pub fn floats(bodies: &[Body]) -> bool {
 }
 
 /// A robot, read by dynibo. With `apart` each joint hangs on the world: so its placement can be read back.
-pub fn model(bodies: &[Body], unit: f64, apart: bool) -> Result<RobotModel, Refusal> {
+pub fn model(bodies: &[Body], apart: bool) -> Result<RobotModel, Refusal> {
     let mut text = String::from("<robot name=\"robot\">\n");
     let floats = floats(bodies);
     if apart || !floats {
@@ -35,8 +35,8 @@ pub fn model(bodies: &[Body], unit: f64, apart: bool) -> Result<RobotModel, Refu
         if k == 0 && floats && apart {
             continue;
         }
-        let [xx, xy, xz, yy, yz, zz] = body.inertia.map(|entry| entry / (unit * unit));
-        let _ = write!(text, "<link name=\"{}\"><inertial><origin xyz=\"{}\" rpy=\"0 0 0\"/>", link(k), three(body.com, unit));
+        let [xx, xy, xz, yy, yz, zz] = body.inertia;
+        let _ = write!(text, "<link name=\"{}\"><inertial><origin xyz=\"{}\" rpy=\"0 0 0\"/>", link(k), three(body.com));
         let _ = write!(text, "<mass value=\"{:e}\"/><inertia ixx=\"{xx:e}\" ixy=\"{xy:e}\" ixz=\"{xz:e}\" ", body.mass);
         let _ = writeln!(text, "iyy=\"{yy:e}\" iyz=\"{yz:e}\" izz=\"{zz:e}\"/></inertial></link>");
         if k == 0 && floats {
@@ -51,8 +51,8 @@ pub fn model(bodies: &[Body], unit: f64, apart: bool) -> Result<RobotModel, Refu
         };
         let [x, y, z] = roll_pitch_yaw(&body.rotation);
         let _ = write!(text, "<joint name=\"{}\" type=\"{kind}\"><parent link=\"{parent}\"/><child link=\"{}\"/>", joint(k), link(k));
-        let _ = write!(text, "<origin xyz=\"{}\" rpy=\"{x:e} {y:e} {z:e}\"/>", three(body.translation, unit));
-        let _ = writeln!(text, "<axis xyz=\"{}\"/>{limit}</joint>", three(body.axis, 1.0));
+        let _ = write!(text, "<origin xyz=\"{}\" rpy=\"{x:e} {y:e} {z:e}\"/>", three(body.translation));
+        let _ = writeln!(text, "<axis xyz=\"{}\"/>{limit}</joint>", three(body.axis));
     }
     text.push_str("</robot>\n");
     read(&text)
@@ -70,8 +70,7 @@ fn read(text: &str) -> Result<RobotModel, Refusal> {
     model.map_err(|error| Refusal::Unsupported(format!("dynibo refuses the model: {error}")))
 }
 
-fn three(vector: [f64; 3], unit: f64) -> String {
-    let [x, y, z] = vector.map(|entry| entry / unit);
+fn three([x, y, z]: [f64; 3]) -> String {
     format!("{x:e} {y:e} {z:e}")
 }
 
