@@ -69,6 +69,8 @@ fn main() -> ExitCode {
         ("instructions that were not counted are told", counted::not_counted),
         ("dynibo conforms", dynibo::conforms),
         ("dynibo agrees, with any gravity", || dynibo::with_dynibo(dynibo::agrees)),
+        ("dynibo loses digits of M on a straight chain", || dynibo::with_dynibo(dynibo::loses_digits_of_a_straight_chain)),
+        ("dynibo answers a big robot", || dynibo::with_dynibo(|dynibo| native::big_robot_is_refused_or_answered("dynibo", dynibo))),
         ("dynibo refuses what it has not", || dynibo::with_dynibo(dynibo::refuses)),
         ("rapier that cannot be built is named", rapier::not_to_be_built),
         ("rapier conforms", rapier::conforms),

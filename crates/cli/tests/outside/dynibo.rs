@@ -57,7 +57,9 @@ pub fn conforms() -> Outcome {
 /// It agrees on chains, trees and arms, fixed and floating, with gravity of any size and direction.
 pub fn agrees(dynibo: &Oracle) {
     let words = [
+        "chain-spatial-10",
         "chain:n=36,layout=spatial",
+        "chain-spatial-100",
         "binary_tree:depth=5",
         "joints:kind=revolute,base=fixed,armature=false",
         "joints:kind=prismatic,base=fixed,armature=false",
@@ -81,6 +83,26 @@ pub fn agrees(dynibo: &Oracle) {
                 assert!(share <= 1.0, "{words} {gravity:?} {} by {method}: {share} of its tolerance", quantity.name());
             }
         }
+    }
+}
+
+/// Known deviation (oracles/README.md): M loses digits on a straight chain, unless its numbers are exact in products.
+///
+/// Links of 0.5 m are such numbers, links of 0.55 m are not. At the straight configuration the error of M is 20.4 times what is allowed;
+/// it is the same for every seed, because all other configurations are far below.
+pub fn loses_digits_of_a_straight_chain(dynibo: &Oracle) {
+    let mut description = native::robot("chain:n=36,layout=spatial", 1).description;
+    for body in &mut description.bodies {
+        body.com = body.com.map(|length| 1.1 * length);
+        body.inertia = body.inertia.map(|inertia| 1.1 * 1.1 * inertia);
+        body.joint.placement.translation = body.joint.placement.translation.map(|length| 1.1 * length);
+    }
+    let robot = Robot::new(&description, "chain", ModelOrigin::Generated, 12, 1).unwrap();
+    for native::Found { quantity, method, share } in native::compare(dynibo, &robot, &[]) {
+        let share = share.unwrap_or_else(|reason| panic!("{}: {reason}", quantity.name()));
+        let is_known = matches!(quantity, Quantity::MassMatrix | Quantity::MassMatrixSparse);
+        let (least, largest) = if is_known { (1.0, 2.0 * 20.4) } else { (0.0, 1.0) };
+        assert!((least..=largest).contains(&share), "{} by {method}: {share} of its tolerance", quantity.name());
     }
 }
 
