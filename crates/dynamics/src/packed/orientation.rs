@@ -7,8 +7,9 @@
 //! Cost per joint: about 110 multiply-adds over a register of joints, and 9 multiply-adds of registers of three. The recursion waits for
 //! three dependent multiply-adds per joint.
 
-use super::lanes::{LANES, Lanes, Pack, from_lanes, load};
+use super::lanes::{LANES, Lanes, Pack, load};
 use super::model::{Block, PackedModel, Source, Wide};
+use super::xyz::transposed;
 use featherbench_model::JointKind;
 use featherbench_spatial::{Force, Mat3, Motion, Real, Transform, Vec3};
 use wide::f64x4;
@@ -59,7 +60,7 @@ impl Orientations {
         }
         for ((block, frame), columns) in model.blocks.iter().zip(&mut self.frames).zip(self.columns.as_chunks::<LANES>().0) {
             // from columns per joint to a register per component
-            let vector = |column: usize| transposed(columns, column);
+            let vector = |column: usize| transposed(|k| columns[k][column]);
             let rotation = straightened(Mat3::from_rows(vector(0), vector(1), vector(2)).transpose());
             let sliding = if block.slides { rotation * block.subspace.lin } else { Vec3::zero() };
             frame.displacement = rotation * frame.displacement;
@@ -158,15 +159,6 @@ pub(super) fn straightened(rotation: Mat3<Pack>) -> Mat3<Pack> {
     let [xy, yz, zx] = [product(x, y, Pack::zero()), product(y, z, Pack::zero()), product(z, x, Pack::zero())];
     let column = |own: Vec3<Pack>, ex: Pack, ey: Pack, ez: Pack| x.scale_add(ex, y.scale_add(ey, z.scale_add(ez, own)));
     Mat3::from_rows(column(x, xx, xy, zx), column(y, xy, yy, yz), column(z, zx, yz, zz)).transpose()
-}
-
-/// One of the columns of every joint, a register per component.
-#[inline(always)]
-fn transposed(columns: &[[f64x4; 3]; LANES], column: usize) -> Vec3<Pack> {
-    let quarter = |first: usize| f64x4::transpose(std::array::from_fn(|k| columns[first + k][column])).map(|row| row.to_array());
-    let quarters: [[[f64; 4]; 4]; LANES / 4] = std::array::from_fn(|part| quarter(4 * part));
-    let component = |row: usize| from_lanes(|k| quarters[k / 4][row][k % 4]);
-    Vec3::new(component(0), component(1), component(2))
 }
 
 fn identity() -> [f64x4; 3] {

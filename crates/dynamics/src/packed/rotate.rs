@@ -1,9 +1,10 @@
-//! Rotations of the lanes of a register.
+//! Rotations of the lanes of a register, and a register of two halves.
 //!
 //! Each is one instruction. Written as loops over lanes, they become unaligned loads of a value that was just stored. Such a load waits
 //! for the store, which made inverse dynamics a third slower.
 
 use super::lanes::{LANES, Pack};
+use wide::f64x4;
 
 /// Lane k of the result is lane k − STRIDE of x; the lanes form a ring.
 #[inline(always)]
@@ -63,4 +64,25 @@ fn ring<const SHIFT: i32>(x: Pack) -> Pack {
 fn ring<const SHIFT: i32>(x: Pack) -> Pack {
     let x = x.to_array();
     super::lanes::from_lanes(|k| x[(k + SHIFT as usize) % LANES])
+}
+
+/// The register whose halves are these.
+#[inline(always)]
+#[cfg(target_feature = "avx512f")]
+#[expect(unsafe_code, reason = "an instruction of the processor")]
+pub(super) fn joined([low, high]: [f64x4; 2]) -> Pack {
+    use core::arch::x86_64::{__m256d, _mm512_castpd256_pd512, _mm512_insertf64x4};
+    // SAFETY: this function is compiled only for processors with AVX-512F, which has the instruction. An `f64x4` and a `__m256d` both have 32
+    // bytes, a `Pack` and a `__m512d` both have 64, and none has invalid values.
+    unsafe {
+        let (low, high): (__m256d, __m256d) = (core::mem::transmute(low), core::mem::transmute(high));
+        core::mem::transmute(_mm512_insertf64x4::<1>(_mm512_castpd256_pd512(low), high))
+    }
+}
+
+/// The register of one part.
+#[inline(always)]
+#[cfg(not(target_feature = "avx512f"))]
+pub(super) fn joined([whole]: [f64x4; 1]) -> Pack {
+    whole
 }

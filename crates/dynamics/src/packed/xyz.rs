@@ -1,6 +1,7 @@
 //! A vector of one body in one register: x, y, z and an unused number.
 
-use super::lanes::{LANES, Pack, from_lanes};
+use super::lanes::{LANES, Pack};
+use super::rotate::joined;
 use featherbench_spatial::Vec3;
 use wide::f64x4;
 
@@ -47,21 +48,9 @@ fn cycled(v: Xyz) -> Xyz {
 }
 
 /// The vectors of a block's bodies, a register per component.
-///
-/// With eight lanes each register holds four bodies in its lower half and the next four in its upper half. The halves go the same way.
 #[inline(always)]
 pub(super) fn transposed(of: impl Fn(usize) -> Xyz) -> Vec3<Pack> {
-    let body = |k: usize| {
-        let groups: [[f64; 4]; LANES / 4] = std::array::from_fn(|group| of(4 * group + k).to_array());
-        from_lanes(|i| groups[i / 4][i % 4]).to_array()
-    };
-    type Row = [f64; LANES];
-    let xz = |a: &Row, b: &Row| from_lanes(|i| if i % 2 == 0 { a[i] } else { b[i - 1] }).to_array();
-    let y = |a: &Row, b: &Row| from_lanes(|i| if i % 2 == 0 { a[i + 1] } else { b[i] }).to_array();
-    let low = |a: &Row, b: &Row| from_lanes(|i| if i % 4 < 2 { a[i] } else { b[i - 2] });
-    let high = |a: &Row, b: &Row| from_lanes(|i| if i % 4 < 2 { a[i + 2] } else { b[i] });
-    let [b0, b1, b2, b3] = [body(0), body(1), body(2), body(3)];
-    let (xz01, xz23) = (xz(&b0, &b1), xz(&b2, &b3));
-    let (y01, y23) = (y(&b0, &b1), y(&b2, &b3));
-    Vec3::new(low(&xz01, &xz23), low(&y01, &y23), high(&xz01, &xz23))
+    let parts: [[Xyz; 4]; LANES / 4] = std::array::from_fn(|part| Xyz::transpose(std::array::from_fn(|k| of(4 * part + k))));
+    let component = |row: usize| joined(std::array::from_fn(|part| parts[part][row]));
+    Vec3::new(component(0), component(1), component(2))
 }
