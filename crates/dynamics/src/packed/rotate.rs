@@ -75,7 +75,8 @@ pub(super) fn joined([low, high]: [f64x4; 2]) -> Pack {
     // SAFETY: this function is compiled only for processors with AVX-512F, which has the instruction. An `f64x4` and a `__m256d` both have 32
     // bytes, a `Pack` and a `__m512d` both have 64, and none has invalid values.
     unsafe {
-        let (low, high): (__m256d, __m256d) = (core::mem::transmute(low), core::mem::transmute(high));
+        let low: __m256d = core::mem::transmute(low);
+        let high: __m256d = core::mem::transmute(high);
         core::mem::transmute(_mm512_insertf64x4::<1>(_mm512_castpd256_pd512(low), high))
     }
 }
