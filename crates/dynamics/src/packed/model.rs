@@ -103,8 +103,6 @@ pub(super) struct Segment {
     pub parent: Source,
     /// Whether it has one-dof joints only. A wide joint is a segment by itself.
     pub plain: bool,
-    /// Whether the number of dofs above its first joint is at least the number of lanes before it.
-    pub roomy: bool,
     /// 1 in its lanes; 1 in its first lane.
     pub all: Pack,
     pub first_only: Pack,
@@ -300,8 +298,7 @@ impl PackedModel {
             };
             let plain = joints[first + start..first + end].iter().all(|joint| is_screw(joint.kind));
             let (all, first_only) = (mask(start..end), mask(start..start + 1));
-            let roomy = model.topology.dof_depth(joints[first + start].v) > start;
-            self.segments.push(Segment { first: start, end, parent, plain, roomy, all, first_only });
+            self.segments.push(Segment { first: start, end, parent, plain, all, first_only });
         }
         starts.len()
     }

@@ -1,4 +1,4 @@
-//! Rotations of the lanes of a register, and a register of two halves.
+//! Rotations of the lanes of a register, a register of two halves, and stores of some lanes.
 //!
 //! Each is one instruction. Written as loops over lanes, they become unaligned loads of a value that was just stored. Such a load waits
 //! for the store, which made inverse dynamics a third slower.
@@ -86,4 +86,34 @@ pub(super) fn joined([low, high]: [f64x4; 2]) -> Pack {
 #[cfg(not(target_feature = "avx512f"))]
 pub(super) fn joined([whole]: [f64x4; 1]) -> Pack {
     whole
+}
+
+/// Writes lanes `first..first + into.len()` of a register.
+#[inline(always)]
+#[cfg(target_feature = "avx512f")]
+#[expect(unsafe_code, reason = "an instruction of the processor")]
+pub(super) fn store_lanes(into: &mut [f64], x: Pack, first: usize) {
+    use core::arch::x86_64::{__m512d, _mm512_mask_storeu_pd};
+    let end = first + into.len();
+    assert!(end <= LANES, "lanes of one register");
+    let mask = ((1_u32 << end) - (1_u32 << first)) as u8;
+    // SAFETY: this function is compiled only for processors with AVX-512F, which has the instruction. A `Pack` and a `__m512d` both have 64
+    // bytes and no invalid values. The instruction writes the lanes of the mask alone, and these are the numbers of `into`.
+    unsafe {
+        let x: __m512d = core::mem::transmute(x);
+        _mm512_mask_storeu_pd(into.as_mut_ptr().wrapping_sub(first), mask, x);
+    }
+}
+
+/// Writes lanes `first..first + into.len()` of a register.
+#[inline(always)]
+#[cfg(not(target_feature = "avx512f"))]
+pub(super) fn store_lanes(into: &mut [f64], x: Pack, first: usize) {
+    let x = x.to_array();
+    match *into {
+        [ref mut a] => *a = x[first],
+        [ref mut a, ref mut b] => (*a, *b) = (x[first], x[first + 1]),
+        [ref mut a, ref mut b, ref mut c] => (*a, *b, *c) = (x[first], x[first + 1], x[first + 2]),
+        _ => into.copy_from_slice(&x),
+    }
 }
