@@ -90,6 +90,7 @@ impl PackedAba {
     }
 
     /// Pass 2.
+    #[inline(never)]
     fn inward(&mut self, model: &PackedModel, tau: &[f64], smallest: &mut Pivot) {
         let Self { motions, eliminated, passed } = self;
         let nothing = Passed { inertia: ArticulatedInertia::zero(), p: Force::zero() };
@@ -155,6 +156,7 @@ impl PackedAba {
     }
 
     /// Pass 3.
+    #[inline(never)]
     fn outward(&mut self, model: &PackedModel, a: &mut [f64]) {
         let Self { motions, eliminated, passed } = self;
         let mut last = Motion::zero();
