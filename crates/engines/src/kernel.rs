@@ -127,15 +127,15 @@ pub(crate) fn kernel<'a>(robot: &'a Robot, quantity: Quantity, method: &str, sta
     })
 }
 
-/// The quantities of the timing study: one pass of one algorithm each, from q, v, a or τ to its result.
+/// The quantities of the timing study, the usual method first: one pass of one algorithm each, from q, v, a or τ to its result.
 pub fn timed(robot: &Robot) -> Vec<(Quantity, &'static str)> {
     let whole = [
         (Quantity::InverseDynamics, "rnea"),
         (Quantity::InverseDynamics, BATCH),
         (Quantity::Bias, "rnea"),
         (Quantity::Bias, BATCH),
-        (Quantity::MassMatrixSparse, "crba"),
         (Quantity::MassMatrixSparse, "crba_packed"),
+        (Quantity::MassMatrixSparse, "crba"),
         (Quantity::MassMatrixSparse, BATCH),
         (Quantity::Factorization, "ltdl"),
         (Quantity::Solve, "ltdl"),

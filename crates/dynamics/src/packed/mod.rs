@@ -43,14 +43,15 @@
 //! the best engine's error, so energies go link by link there. The left columns of all tables are of link by link before joints along
 //! coordinate axes had a text of their own.
 //!
-//! **Speed.** Time link by link over time packed, AVX-512, random states, one run on a busy machine:
+//! **Speed.** Time link by link over time packed, AVX-512, random states. Both texts know joints along coordinate axes:
 //!
 //! | | inverse dynamics | forward dynamics | mass matrix |
 //! |---|---|---|---|
-//! | chain of 36 | 2.2 | 1.9 | 2.3 |
-//! | humanoid | 1.9 | 1.8 | 1.5 |
+//! | chain of 36 | 1.3 | 1.5 | 1.9 |
+//! | humanoid | 1.2 | 1.4 | 1.6 |
+//! | chain of 7 | 1.4 | 1.5 | 1.8 |
 //!
-//! Since then steps that need no other block are loops of their own, so that several blocks are in flight.
+//! The next table is of link by link before joints along coordinate axes had a text of their own.
 //!
 //! | | kinematics | Jacobian | centre of mass | momentum | energies |
 //! |---|---|---|---|---|---|
