@@ -11,6 +11,8 @@ Instructions do not depend on other load or on the processor's frequency. So the
 for x86-64-v3, in its own target folder, because valgrind cannot read AVX-512. Each compiler has its own baseline. Without a baseline, the
 counts inform. Prints a Markdown table.
 
+A count is that of one state. For a batch it is that of a full call, divided by the states of the call.
+
 If nothing can be counted, it prints `not counted:` and the reason. That is a failure, except for a comparison on a machine without valgrind
 or of another architecture. With FEATHERBENCH_REQUIRE_ALL set, as in CI, this and a missing baseline are failures too.
 """
@@ -33,7 +35,7 @@ COLUMNS = ["rustc", "kernel", "model", "instructions"]
 # Inlining decisions elsewhere in a file change counts by tenths of a percent; a lost vectorisation or a bounds check by several percent.
 TOLERANCE = 0.02
 FUNCTION = "instructions::featherbench_measured"
-Counts = dict[tuple[str, str], int]  # (kernel, model) -> instructions per call
+Counts = dict[tuple[str, str], int]  # (kernel, model) -> instructions per state
 
 
 class NotCountedError(Exception):
@@ -76,7 +78,7 @@ def build() -> pathlib.Path:
 
 
 def count(program: pathlib.Path) -> Counts:
-    """Count instructions per call as {(kernel, model): number}: callgrind writes one file each time the measured function is left."""
+    """Count instructions per state as {(kernel, model): number}: callgrind writes one file each time the measured function is left."""
     with tempfile.TemporaryDirectory() as folder:
         flags = ["--tool=callgrind", f"--toggle-collect={FUNCTION}", f"--dump-after={FUNCTION}", "--callgrind-out-file=out", "--quiet"]
         runs = [line.split(",") for line in run(["valgrind", *flags, str(program)], pathlib.Path(folder)).splitlines()]
@@ -89,7 +91,7 @@ def count(program: pathlib.Path) -> Counts:
         raise NotCountedError(
             f"{len(runs)} kernels ran, callgrind told of {len(totals)}: is '{FUNCTION}' still the measured function's name?"
         )
-    return {(kernel, model): round(total / int(calls)) for (kernel, model, calls), total in zip(runs, totals, strict=True)}
+    return {(kernel, model): round(total / int(states)) for (kernel, model, states), total in zip(runs, totals, strict=True)}
 
 
 def read(path: pathlib.Path, rustc: str) -> Counts:
@@ -155,7 +157,7 @@ def main() -> None:
         return
     baseline = read(BASELINE, rustc)
     lines, wrong = compare(baseline, counts)
-    print(f"Instructions per call, rustc {rustc}\n")
+    print(f"Instructions per state, rustc {rustc}\n")
     print("\n".join(lines))
     if arguments.accept:
         write(BASELINE, rustc, counts, keep=True)
