@@ -52,14 +52,17 @@ impl Estimate {
         // If there are fewer samples than epochs, each is an epoch. Samples that do not fill an epoch are not drawn.
         let epoch = (samples.len() / EPOCHS).max(1);
         let epochs = samples.len() / epoch;
-        let mut drawn = samples[..epoch * epochs].to_vec();
+        // A draw is how often it takes each epoch. Sorted once, the samples with these weights give the median of every draw.
+        let mut sorted: Vec<(f64, usize)> = samples[..epoch * epochs].iter().enumerate().map(|(k, &sample)| (sample, k / epoch)).collect();
+        sorted.sort_unstable_by(|a, b| a.0.total_cmp(&b.0));
+        let mut taken = vec![0; epochs];
         let mut medians: Vec<f64> = (0..RESAMPLES)
             .map(|_| {
-                for place in drawn.chunks_exact_mut(epoch) {
-                    let from = epoch * draw(random, epochs);
-                    place.copy_from_slice(&samples[from..from + epoch]);
+                taken.fill(0);
+                for _ in 0..epochs {
+                    taken[draw(random, epochs)] += 1;
                 }
-                median(&mut drawn)
+                weighted_median(&sorted, &taken)
             })
             .collect();
         medians.sort_unstable_by(f64::total_cmp);
@@ -97,6 +100,29 @@ impl Estimate {
 /// Uniform among 0 … count−1, from 32 bits: four draws from one block of the generator.
 fn draw(random: &mut Random, count: usize) -> usize {
     ((u64::from(random.bits32()) * count as u64) >> 32) as usize
+}
+
+/// The median of sorted samples, or the mean of the two in the middle, where each is as many samples as its epoch was taken.
+///
+/// Every epoch has as many samples, and as many epochs are taken as there are. So the number of samples is that of `sorted`.
+fn weighted_median(sorted: &[(f64, usize)], taken: &[usize]) -> f64 {
+    let (middle, odd) = (sorted.len() / 2, sorted.len() % 2 == 1);
+    // The sample with `below` others under it.
+    let mut walk = sorted.iter();
+    let mut passed = 0;
+    let mut at = |below: usize, last: f64| {
+        let mut value = last;
+        while passed <= below {
+            let Some(&(sample, epoch)) = walk.next() else { return f64::NAN };
+            (value, passed) = (sample, passed + taken[epoch]);
+        }
+        value
+    };
+    if odd {
+        return at(middle, f64::NAN);
+    }
+    let lower = at(middle - 1, f64::NAN);
+    0.5 * (lower + at(middle, lower))
 }
 
 /// The median of the samples, or the mean of the two in the middle; it reorders them.
@@ -177,6 +203,27 @@ mod tests {
 
     fn count(trial: impl Fn(u64) -> bool) -> usize {
         (0..TRIALS as u64).filter(|&seed| trial(seed)).count()
+    }
+
+    #[test]
+    fn the_median_of_weights_is_the_median_of_the_samples_that_they_stand_for() {
+        let mut random = Random::new(3, 0);
+        for epochs in 1..12 {
+            for epoch in 1..5 {
+                // few values, so that many are equal
+                let samples: Vec<f64> = (0..epochs * epoch).map(|_| random.below(9) as f64).collect();
+                let mut sorted: Vec<(f64, usize)> = samples.iter().enumerate().map(|(k, &sample)| (sample, k / epoch)).collect();
+                sorted.sort_unstable_by(|a, b| a.0.total_cmp(&b.0));
+                for _ in 0..20 {
+                    let places: Vec<usize> = (0..epochs).map(|_| draw(&mut random, epochs)).collect();
+                    let mut taken = vec![0; epochs];
+                    places.iter().for_each(|&place| taken[place] += 1);
+                    let mut drawn: Vec<f64> =
+                        places.iter().flat_map(|&place| samples[epoch * place..epoch * (place + 1)].to_vec()).collect();
+                    assert_eq!(weighted_median(&sorted, &taken).to_bits(), median(&mut drawn).to_bits(), "{samples:?} {taken:?}");
+                }
+            }
+        }
     }
 
     #[test]
