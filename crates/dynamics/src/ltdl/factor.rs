@@ -9,15 +9,7 @@
 //! largest errors of M⁻¹ (entries over the roots of their diagonals, against double-double): 7.8e-13 on a chain of 36 and 1.4e-12 on one of
 //! 50, with divisions 4.9e-13 and 1.3e-12.
 //!
-//! What bounds it: a pivot waits about twenty cycles for the one before it (a division, a product, a multiply-subtract). A chain of 36 dofs
-//! takes about 1400 cycles, 720 of them for this. Its multiply-subtracts alone would take 500, or 800 with those that a triangle wastes.
-//!
-//! What did not pay, on a Zen 5 with AVX-512:
-//!
-//! - Rows padded to whole registers beside the matrix, with L and with D L: 1.15 to 1.5 times as long.
-//! - Blocks of one row throughout: 1.6 times as long on a humanoid. Blocks of eight throughout: 1.35 times on a chain of 36.
-//! - D_k − H²/D in place of D_k − L H on the way from pivot to pivot: 4 % less, but H² leaves the range of numbers.
-//! - Registers that end with the block's own columns: nothing.
+//! What bounds it, and what did not pay: see [`Ltdl`](crate::Ltdl).
 //!
 //! What paid most:
 //!

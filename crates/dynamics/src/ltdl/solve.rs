@@ -4,7 +4,7 @@
 //! consecutively beside x, and a tree is solved like a chain. It is read and written in whole registers at multiples of eight: a load that
 //! overlaps a narrower store shortly after it waits for the store to end. Without this, trees took 1.4 times as long.
 //!
-//! What bounds it: the blocks of a path wait for each other, some fifty cycles each, twice.
+//! What bounds it: see [`Ltdl`](crate::Ltdl).
 
 use super::blocks::{Block, Plan, by_size, down, starts, triangle, up};
 use super::registers::{LANES, first, load, only, store, subtract};

@@ -34,6 +34,31 @@ use featherbench_spatial::{Mat3, Motion, Transform};
 /// assert_eq!(tip.acceleration.to_array(), [0.0, 0.0, 0.0, 0.0, 0.0, 2.0]);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
+///
+/// # Cost
+///
+/// Per revolute joint of a chain; words and conditions are on the [crate page](crate#cost-of-the-hot-kernels). `place` gives
+/// positions, `set_moving` velocities too, `run` accelerations too.
+///
+/// | | [`place`](Self::place) | [`set_moving`](Self::set_moving) | [`run`](Self::run) |
+/// |---|---|---|---|
+/// | operations in registers of one vector | 14 | 22 | 33 |
+/// | operations in registers of joints: AVX-512, AVX2 | 5, 10 | 5, 10 | 5, 10 |
+/// | cycles: AVX-512, AVX2 | 39, 30 | 40, 38 | 46, 58 |
+/// | share of the limit: AVX-512, AVX2 | 0.24, 0.40 | 0.33, 0.42 | 0.41, 0.37 |
+/// | stack reads, writes: AVX-512 | 0, 0 | 0, 0 | 0, 0 |
+/// | stack reads, writes: AVX2 | 0, 0 | 0, 0 | 6, 6 |
+///
+/// A register of joints takes 39 operations: 21 for sine and cosine, 18 for L. A vector fills three of four lanes of 256 bits in both builds.
+/// There is no division.
+///
+/// *Bound* by latency: with AVX-512 twice the operations take a fifth more time. Each orientation waits for three dependent operations, 12
+/// cycles. The other waits are between blocks: the rotations across a block's joints stand right before its bodies. With the rotations of all
+/// blocks first, it took 0.62 to 0.76 of the time with AVX-512, in an experiment.
+///
+/// *Did not pay:* sums over lanes, as in [`PackedAba`](crate::PackedAba). They were 2.1 times as fast as link by link on the chain of 36, where going
+/// from body to body is 4.2 times as fast. The sums, the transposition of R and the step that makes it straight cost more than the whole of the
+/// latter.
 #[derive(Clone, Debug)]
 pub struct PackedKinematics {
     bodies: Bodies,

@@ -64,19 +64,7 @@
 //! bound by pass 2, which goes joint by joint.
 //!
 //! **Tried:**
-//! - One reference acceleration for pass 1 of ABA along the whole path, with gravity in it. The error grew up to a hundred times in robots
-//!   that fall, and 28 times on a chain of 100 that hangs. Without gravity two of 67 robots were beyond the gate. A reference per segment is
-//!   meant for fast robots; on these robots it changed little.
-//! - Orientations as quaternions, multiplied over lanes in log₂(lanes) steps: inverse dynamics took a tenth less time. But its error over the
-//!   best engine's rose from 0.82 to 1.19 in the mean, and to 4.6 at most with external wrenches. A matrix keeps the exact zeros and ones of
-//!   aligned axes, and a quaternion does not.
-//! - Orientations without the step that makes them straight again: 1.6 times the error of M in the mean. In inverse dynamics 1.2 times, and
-//!   3.2 times the best engine's error with external wrenches on one robot.
-//! - Composite inertias at the joints' origins, and what a body supports as the difference of two of them: the mass matrix had 1.15 times the
-//!   best engine's error in the mean and 4.2 at most, and up to 6e-14 on real robots. About centres of mass the largest is 4e-15.
-//! - Iᴬ and U translated before the division is done (rank one last): chain-spatial-12-free lost digits.
-//! - Kinematics by sums over lanes, as in inverse dynamics: 2.1 times as fast as link by link on the chain of 36, where going from body to
-//!   body is 4.2 times as fast. The sums, the transposition of R and the step that makes it straight cost more than the whole of the latter.
+//! - What did not pay in one kernel stands on the pages of [`PackedRnea`], [`PackedAba`] and [`PackedKinematics`].
 //! - Kinetic energy from velocities in world axes and Rᵀ alone: 1.65 times the best engine's error in the mean, and 4.9 at most.
 //! - Rotations of lanes as loops: see `rotate.rs`. Gathers of columns are slower than transposing four joints at a
 //!   time.
