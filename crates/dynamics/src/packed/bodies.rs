@@ -13,8 +13,8 @@
 //! Positions are summed from the root body's origin. So a robot far from the world's origin loses no digits of its shape.
 //!
 //! Cost: L has 18 multiply-adds per register of joints, beside sine and cosine. In registers of one vector a revolute joint has 9 operations
-//! for R, 5 for the position, 8 for the velocity and 10 for the acceleration. R waits for three dependent multiply-adds per joint. On a chain
-//! of 36 with AVX-512 that is 5.5, 6.6 and 8.0 ns per joint for positions, velocities too, and accelerations too.
+//! for R, 5 for the position, 8 for the velocity and 10 for the acceleration. R waits for three dependent multiply-adds per joint. Times: see
+//! [`PackedKinematics`](crate::PackedKinematics).
 
 use super::lanes::{LANES, Lanes, Pack, from_lanes, load};
 use super::model::{PackedModel, Segment, is_screw};
@@ -291,19 +291,27 @@ impl Bodies {
         }
     }
 
-    /// Block `b`, the blocks before it done. `visit(lane, parent, body, d)` sees each body once it is done.
+    /// What a configuration and its rates are across the joints of every block. A loop of its own: before each block's bodies, the rotations
+    /// across its joints would overlap little with the bodies of the block before.
+    #[inline(always)]
+    pub fn across_all_joints<const ORDER: usize>(&mut self, model: &PackedModel, numbers: [&[f64]; 3]) {
+        for b in 0..model.blocks.len() {
+            self.across_joints::<ORDER>(model, b, numbers);
+        }
+    }
+
+    /// Block `b`, the blocks before it and what is across all joints done. `visit(lane, parent, body, d)` sees each body once it is done.
     #[inline(always)]
     pub fn step<const ORDER: usize>(
         &mut self,
         model: &PackedModel,
         b: usize,
-        [q, v, a]: [&[f64]; 3],
+        rates: [&[f64]; 2],
         mut visit: impl FnMut(usize, &Body, &Body, Xyz),
     ) {
         let block = &model.blocks[b];
-        self.across_joints::<ORDER>(model, b, [q, v, a]);
         for segment in &model.segments[block.segments.clone()] {
-            self.run_segment::<ORDER>(model, (b, segment, segment.end), [v, a], &mut visit);
+            self.run_segment::<ORDER>(model, (b, segment, segment.end), rates, &mut visit);
         }
     }
 

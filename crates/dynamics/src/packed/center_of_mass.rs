@@ -30,9 +30,10 @@ impl PackedCenterOfMass {
     pub fn run(&mut self, model: &PackedModel, q: &[f64]) -> Result<MassCenter<f64>, DimensionError> {
         self.bodies.begin(model, q)?;
         let mut moment = Xyz::splat(0.0);
+        self.bodies.across_all_joints::<TURNED>(model, [q, &[], &[]]);
         for (b, block) in model.blocks.iter().enumerate() {
             let mut first_moment = FirstMoment::zero();
-            self.bodies.step::<TURNED>(model, b, [q, &[], &[]], |k, _, body, d| first_moment.add(block, k, body, d));
+            self.bodies.step::<TURNED>(model, b, [&[], &[]], |k, _, body, d| first_moment.add(block, k, body, d));
             moment += first_moment.total();
         }
         let offset = model.trees.center(self.bodies.about_first(model, vector(moment)));

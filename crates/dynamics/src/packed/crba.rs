@@ -46,6 +46,8 @@ use std::ops::Range;
 /// per joint. Then the blocks wait for each other from the leaves, for centres and again for inertias. In the AVX-512 build step 2 has most
 /// stack moves, 35 reads and 34 writes per eight joints, and `climb` of step 4 has none.
 ///
+/// *Did not pay:* composite inertias at the joints' origins, and what a body supports as the difference of two of them. M had 1.15 times the best
+/// engine's error in the mean and 4.2 at most, and up to 6e-14 on real robots. About centres of mass the largest is 4e-15, in the same time.
 /// What did not pay for orientations is told at [`PackedRnea`](crate::PackedRnea).
 #[derive(Clone, Debug)]
 pub struct PackedCrba {

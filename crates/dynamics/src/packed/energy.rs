@@ -36,11 +36,12 @@ impl PackedEnergy {
         expect("velocity v", model.topology.nv(), v.len())?;
         self.bodies.begin(model, q)?;
         let (mut moment, mut twice_kinetic) = (Xyz::splat(0.0), Pack::from_f64(0.0));
+        self.bodies.across_all_joints::<MOVING>(model, [q, v, &[]]);
         for (b, block) in model.blocks.iter().enumerate() {
             let mut first_moment = FirstMoment::zero();
             // what the parent's motion is at each body
             let mut carried = [[Xyz::splat(0.0); LANES]; 2];
-            self.bodies.step::<MOVING>(model, b, [q, v, &[]], |k, parent, body, d| {
+            self.bodies.step::<MOVING>(model, b, [v, &[]], |k, parent, body, d| {
                 first_moment.add(block, k, body, d);
                 carried[0][k] = parent.omega;
                 carried[1][k] = parent.velocity + cross(parent.omega, d);

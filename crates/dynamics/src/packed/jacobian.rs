@@ -110,14 +110,17 @@ impl PackedJacobian {
     #[inline(always)]
     fn follow(&mut self, model: &PackedModel, q: &[f64]) {
         let Self { bodies, parts, steps, .. } = self;
-        let mut parts = parts.iter().rev().peekable();
-        while let Some(b) = parts.peek().map(|part| part.block) {
-            bodies.across_joints::<TURNED>(model, b, [q, &[], &[]]);
-            let steps = &mut steps[b * LANES..][..LANES];
-            while let Some(Part { segment, lanes, .. }) = parts.next_if(|part| part.block == b) {
-                let place = (b, &model.segments[*segment], lanes.end);
-                bodies.run_segment::<TURNED>(model, place, [&[], &[]], &mut |k, _: &Body, _: &Body, d| steps[k] = d);
+        let mut last = None;
+        for part in parts.iter().rev() {
+            if last != Some(part.block) {
+                bodies.across_joints::<TURNED>(model, part.block, [q, &[], &[]]);
+                last = Some(part.block);
             }
+        }
+        for Part { block: b, segment, lanes, .. } in parts.iter().rev() {
+            let steps = &mut steps[b * LANES..][..LANES];
+            let place = (*b, &model.segments[*segment], lanes.end);
+            bodies.run_segment::<TURNED>(model, place, [&[], &[]], &mut |k, _: &Body, _: &Body, d| steps[k] = d);
         }
     }
 }

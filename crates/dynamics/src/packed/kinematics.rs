@@ -44,17 +44,17 @@ use featherbench_spatial::{Mat3, Motion, Transform};
 /// |---|---|---|---|
 /// | operations in registers of one vector | 14 | 22 | 33 |
 /// | operations in registers of joints: AVX-512, AVX2 | 5, 10 | 5, 10 | 5, 10 |
-/// | cycles: AVX-512, AVX2 | 39, 30 | 40, 38 | 46, 58 |
-/// | share of the limit: AVX-512, AVX2 | 0.24, 0.40 | 0.33, 0.42 | 0.41, 0.37 |
+/// | cycles, of a chain of 36: AVX-512, AVX2 | 26, 29 | 28, 36 | 35, 47 |
+/// | share of the limit: AVX-512, AVX2 | 0.37, 0.41 | 0.48, 0.44 | 0.54, 0.46 |
 /// | stack reads, writes: AVX-512 | 0, 0 | 0, 0 | 0, 0 |
 /// | stack reads, writes: AVX2 | 0, 0 | 0, 0 | 6, 6 |
 ///
 /// A register of joints takes 39 operations: 21 for sine and cosine, 18 for L. A vector fills three of four lanes of 256 bits in both builds.
 /// There is no division.
 ///
-/// *Bound* by latency: with AVX-512 twice the operations take a fifth more time. Each orientation waits for three dependent operations, 12
-/// cycles. The other waits are between blocks: the rotations across a block's joints stand right before its bodies. With the rotations of all
-/// blocks first, it took 0.62 to 0.76 of the time with AVX-512, in an experiment.
+/// *Bound* by latency: with AVX-512 twice the operations take a third more time. Each orientation waits for three dependent operations, 12
+/// cycles. The rotations across the joints of all blocks come first. When they came block by block, right before the bodies, it took 1.3 to 1.6
+/// times as long with AVX-512.
 ///
 /// *Did not pay:* sums over lanes, as in [`PackedAba`](crate::PackedAba). They were 2.1 times as fast as link by link on the chain of 36, where going
 /// from body to body is 4.2 times as fast. The sums, the transposition of R and the step that makes it straight cost more than the whole of the
@@ -132,8 +132,9 @@ impl PackedKinematics {
         self.bodies.begin(model, numbers[0])?;
         expect("labels of the workspace", model.labels.len(), self.labels.len())?;
         self.labels.copy_from_slice(&model.labels);
+        self.bodies.across_all_joints::<ORDER>(model, numbers);
         for b in 0..model.blocks.len() {
-            self.bodies.step::<ORDER>(model, b, numbers, |_, _, _, _| ());
+            self.bodies.step::<ORDER>(model, b, [numbers[1], numbers[2]], |_, _, _, _| ());
         }
         self.order = ORDER;
         Ok(())

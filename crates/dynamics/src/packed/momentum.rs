@@ -33,8 +33,9 @@ impl PackedMomentum {
         expect("velocity v", model.topology.nv(), v.len())?;
         self.bodies.begin(model, q)?;
         let (mut moment, mut sum) = (Vec3::zero(), Force::zero());
+        self.bodies.across_all_joints::<MOVING>(model, [q, v, &[]]);
         for (b, block) in model.blocks.iter().enumerate() {
-            self.bodies.step::<MOVING>(model, b, [q, v, &[]], |_, _, _, _| ());
+            self.bodies.step::<MOVING>(model, b, [v, &[]], |_, _, _, _| ());
             let (inertia, r) = (&block.inertia, self.bodies.rotation(b));
             let (omega, velocity) = (self.bodies.packed(b, |body| body.omega), self.bodies.packed(b, |body| body.velocity));
             let p = self.bodies.seen_from_first(model, b);

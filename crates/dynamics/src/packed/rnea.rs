@@ -29,16 +29,15 @@ use featherbench_spatial::{Force, Mat3, Motion, Real, Vec3};
 /// |---|---|---|
 /// | operations in registers of joints | 29 | 57 |
 /// | operations in registers of one vector | 29 | 29 |
-/// | cycles | 88 | 94 |
-/// | share of the limit | 0.33 | 0.46 |
+/// | cycles, of a chain of 36 | 76 | 85 |
+/// | share of the limit | 0.38 | 0.51 |
 /// | stack reads, writes | 4, 6 | 18, 17 |
 ///
 /// A register of eight joints takes 39 operations for the rotations across them (21 for sine and cosine), 150 for the forces, and 39 for the
 /// sums and the projection. The walk over the bodies has the operations of one vector. There is no division.
 ///
-/// *Bound* by latency: each orientation waits 12 cycles for the one before. In step 1 the rotations across a block's joints stand right before
-/// its bodies, and overlap little with the block before. With the rotations of all blocks first, the whole took 0.86 to 0.91 of the time with
-/// AVX-512, in an experiment. In the AVX-512 build the forces need no stack.
+/// *Bound* by latency: each orientation waits 12 cycles for the one before. The rotations across the joints of all blocks come first. When they
+/// came block by block, right before the bodies, the whole took 1.2 times as long with AVX-512. In the AVX-512 build the forces need no stack.
 ///
 /// *Did not pay:*
 /// - Orientations as quaternions, multiplied over lanes in log₂(lanes) steps: a tenth less time. But the error over the best engine's rose from
@@ -128,9 +127,11 @@ impl PackedRnea {
         if let Some(wrenches) = wrenches {
             expect("external wrenches", model.topology.bodies(), wrenches.len())?;
         }
+        self.bodies.across_all_joints::<{ ANGULAR_VELOCITIES + ACCELERATIONS }>(model, numbers);
         for b in 0..model.blocks.len() {
             let displacements = &mut self.displacements[b * LANES..][..LANES];
-            self.bodies.step::<{ ANGULAR_VELOCITIES + ACCELERATIONS }>(model, b, numbers, |k, _, _, d| displacements[k] = d);
+            self.bodies
+                .step::<{ ANGULAR_VELOCITIES + ACCELERATIONS }>(model, b, [numbers[1], numbers[2]], |k, _, _, d| displacements[k] = d);
         }
         for b in 0..model.blocks.len() {
             self.push(model, b);

@@ -27,6 +27,9 @@ pub(super) struct State {
     pub(super) momentum: Vec<f64>,
 }
 
+/// What a mistake makes of a right answer at one state.
+type Rewrite = fn(&Robot, Quantity, &State, &mut [f64]);
+
 /// A mistaken convention: how the oracle interprets the description and a state, and how it writes an answer.
 pub(super) struct Hypothesis {
     /// What the oracle seems to do.
@@ -36,7 +39,7 @@ pub(super) struct Hypothesis {
     pub(super) robot: fn(&mut Description),
     pub(super) state: fn(&Description, &mut State),
     pub(super) velocities: Option<fn(&Description, &State) -> CoordinateChange>,
-    pub(super) answer: Option<fn(&Robot, Quantity, &State, &mut [f64])>,
+    pub(super) answer: Option<Rewrite>,
 }
 
 const NONE: Hypothesis = Hypothesis { seems: "", advice: "", robot: |_| (), state: |_, _| (), velocities: None, answer: None };
