@@ -193,6 +193,12 @@ impl<'a> Compared<'a> {
         self.error <= Scene::tolerance(self.quantity)
     }
 
+    /// Whether an oracle with this mistake, and right otherwise, answers with other numbers.
+    fn changed(&self, hypothesis: &Hypothesis) -> bool {
+        let supposed = self.scene.supposed(&[hypothesis], self.quantity);
+        supposed.is_none_or(|supposed| self.scene.featherbench(self.quantity).is_none_or(|right| !same_bits(&supposed, &right)))
+    }
+
     /// Whether the answer is that of an oracle with these mistakes.
     fn explained(&self, hypotheses: &[&Hypothesis]) -> bool {
         let supposed = self.scene.supposed(hypotheses, self.quantity);
@@ -215,14 +221,17 @@ fn advice(compared: &[Compared], quantity: Quantity) -> Vec<String> {
         let wrong = compared.iter().filter(|answer| !answer.right());
         single.push((wrong.filter(|answer| answer.explained(&[hypothesis])).count(), hypothesis));
     }
-    for one in &HYPOTHESES {
-        for other in HYPOTHESES.iter().filter(|other| other.seems != one.seems) {
+    // Where a mistake changes no wrong answer, it explains nothing in a pair either.
+    let wrong = || compared.iter().filter(|answer| !answer.right());
+    let telling: Vec<&Hypothesis> = HYPOTHESES.iter().filter(|hypothesis| wrong().any(|answer| answer.changed(hypothesis))).collect();
+    for &one in &telling {
+        for &other in telling.iter().filter(|other| other.seems != one.seems) {
             if all(&[one, other]) {
                 return told(&[one, other]);
             }
         }
     }
-    let wrong = compared.iter().filter(|answer| !answer.right()).count();
+    let wrong = wrong().count();
     match single.into_iter().max_by_key(|(count, _)| *count) {
         Some((count, hypothesis)) if count > 0 => {
             vec![format!("of {count} of these {wrong}, {}: {}", hypothesis.seems, hypothesis.advice), "the rest has another cause".into()]
