@@ -69,8 +69,11 @@ class Browser:
         return self.call("POST", f"/session/{self.session}{path}", body)
 
     def open(self, address: str) -> None:
-        """Go to an address."""
+        """Go to an address, and wait until its document is whole: the driver may answer while the one before it is still there."""
         self.post("/url", url=address)
+        self.until(
+            "return document.readyState === 'complete' && location.pathname === new URL(arguments[0]).pathname", address, seconds=100
+        )
 
     def run(self, script: str, *arguments: Any) -> Any:
         """Run a script in the page; its `return` is the value."""
