@@ -1,18 +1,7 @@
 //! What can go wrong: a slice of the wrong length, or a matrix that is not positive definite.
 
+pub use featherbench_model::DimensionError;
 use thiserror::Error;
-
-/// The size of a slice, workspace or matrix is not the size that the model needs.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
-#[error("{what}: expected {expected}, found {found}; size it by the topology of the model that you pass")]
-pub struct DimensionError {
-    /// The argument, and what is counted in it.
-    pub what: &'static str,
-    /// The count that the model needs.
-    pub expected: usize,
-    /// The count that was found.
-    pub found: usize,
-}
 
 /// A factorization met a pivot that is zero, negative or not a number.
 #[derive(Clone, Copy, Debug, PartialEq, Error)]
@@ -41,7 +30,7 @@ pub enum Error {
 /// An error if a count is not the expected one.
 #[inline(always)]
 pub(crate) fn expect(what: &'static str, expected: usize, found: usize) -> Result<(), DimensionError> {
-    if expected == found { Ok(()) } else { Err(DimensionError { what, expected, found }) }
+    DimensionError::expect(what, expected, found)
 }
 
 /// The smallest pivot so far, or the first one that is not positive. Pivots after that one have no meaning.

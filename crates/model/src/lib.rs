@@ -11,17 +11,23 @@
 //! [`Topology`] is the scalar-free part of a model; `Model<P>` adds the parameters.
 
 mod canonical;
+mod configuration;
 mod description;
+mod error;
 mod joint;
 mod label;
 mod model;
 mod orthonormal;
+mod tangent;
 mod topology;
 mod validate;
 
+pub use configuration::{difference, integrate, interpolate, neutral};
 pub use description::{BodyDescription, Description, Frame, JointDescription, JointType, Placement, Provenance};
+pub use error::DimensionError;
 pub use joint::{Axis, JointKind};
 pub use label::Label;
 pub use model::Model;
+pub use tangent::{TangentMap, d_difference, d_integrate};
 pub use topology::{Joint, Topology};
 pub use validate::{Malformed, Warning};

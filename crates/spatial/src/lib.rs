@@ -9,14 +9,16 @@
 //!
 //! Source: R. Featherstone, *Rigid Body Dynamics Algorithms* (2008), chapter 2 and appendix A ("the book" in this workspace).
 
+mod exponential;
 mod inertia;
 mod linear;
 mod scalar;
 mod transform;
 mod vector;
 
+pub use exponential::TangentBlock;
 pub use inertia::{ArticulatedInertia, CentralInertia, RigidBodyInertia};
 pub use linear::{Ldl3, Mat3, Sym3, Vec3};
-pub use scalar::{Compensated, Counted, DoubleDouble, Dual, Lift, Operations, Part, Real};
+pub use scalar::{Angle, Compensated, Counted, DoubleDouble, Dual, Lift, Operations, Part, Real};
 pub use transform::{Quaternion, Transform};
 pub use vector::{Force, Motion};

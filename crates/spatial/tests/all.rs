@@ -3,4 +3,5 @@
 mod algebra;
 #[path = "double_double/main.rs"]
 mod double_double;
+mod exponential;
 mod lanes;

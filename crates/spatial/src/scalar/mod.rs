@@ -1,5 +1,6 @@
 //! The scalar trait: the operations that a kernel may use.
 
+mod angle;
 mod compensated;
 mod counted;
 mod double_double;
@@ -9,6 +10,7 @@ mod lanes;
 mod part;
 mod trigonometry;
 
+pub use angle::Angle;
 pub use compensated::Compensated;
 pub use counted::{Counted, Operations};
 pub use double_double::DoubleDouble;
