@@ -6,6 +6,7 @@ mod allocation;
 mod batch;
 mod closed_forms;
 mod common;
+mod configuration;
 mod derivatives;
 mod errors;
 mod extended;

@@ -10,4 +10,4 @@ mod states;
 
 pub use families::{BadFamily, Base, BinaryTree, Chain, Family, Hand, Humanoid, Joints, Kind, Layout, Mix, Quadruped, Shape, Star, Tree};
 pub use random::Random;
-pub use states::{BadState, Case, StateBatch};
+pub use states::{BadState, Case, StateBatch, random_configuration};

@@ -1,7 +1,7 @@
 //! States: configurations, velocities, accelerations, forces and wrenches, many at a time.
 
 use crate::Random;
-use featherbench_model::{Joint, JointKind, Model};
+use featherbench_model::{JointKind, Model};
 use thiserror::Error;
 
 /// The kind of a state.
@@ -128,8 +128,7 @@ impl StateBatch {
             }
         }
         for state in 0..count {
-            for joint in model.topology.joints() {
-                let Some(index) = quaternion_of(joint) else { continue };
+            for index in model.topology.quaternions() {
                 let quaternion = &self.q[state * nq + index..state * nq + index + 4];
                 let length = quaternion.iter().map(|x| x * x).sum::<f64>().sqrt();
                 if (length - 1.0).abs() > QUATERNION_TOLERANCE {
@@ -222,16 +221,8 @@ impl StateBatch {
     pub fn with_keyframes(mut self, model: &Model<f64>, configurations: &[Vec<f64>], seed: u64) -> Result<Self, BadState> {
         for configuration in configurations {
             let mut q = configuration.clone();
-            let quaternions = model.topology.joints().iter().filter_map(quaternion_of);
-            for index in quaternions {
-                let Some(quaternion) = q.get_mut(index..index + 4) else { break };
-                let length = quaternion.iter().map(|x| x * x).sum::<f64>().sqrt();
-                if length > 0.0 {
-                    quaternion.iter_mut().for_each(|x| *x /= length);
-                } else if length == 0.0 {
-                    quaternion.copy_from_slice(&[0.0, 0.0, 0.0, 1.0]);
-                }
-            }
+            // Of another length, it is not this model's: `check` says so.
+            let _ = model.topology.normalise(&mut q);
             let mut random = Random::new(seed, self.count() as u64);
             self.q.extend(q);
             self.draw_motion(&mut random, 1.0, 1.0);
@@ -264,13 +255,26 @@ impl StateBatch {
     }
 }
 
-/// Where a joint's quaternion begins in q, if it has one.
-fn quaternion_of(joint: &Joint) -> Option<usize> {
-    match joint.kind {
-        JointKind::Spherical => Some(joint.q),
-        JointKind::Free => Some(joint.q + 3),
-        JointKind::Revolute(_) | JointKind::Prismatic(_) | JointKind::Helical => None,
+/// A random configuration: limited joints uniform within their limits, other angles in (−π, π), distances and positions in (−1, 1),
+/// quaternions uniform on the sphere.
+///
+/// ```
+/// use featherbench_model::Model;
+/// use featherbench_robots::{Family, Random, random_configuration};
+/// let model: Model<f64> = Model::build(&Family::parse("humanoid")?.generate()?)?;
+/// let q = random_configuration(&model, &mut Random::new(1, 0));
+/// assert_eq!(q.len(), model.topology.nq());
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub fn random_configuration(model: &Model<f64>, random: &mut Random) -> Vec<f64> {
+    let mut q = Vec::with_capacity(model.topology.nq());
+    draw_configuration(model, Case::Random, random, &mut q);
+    for (q, &(lower, upper)) in q.iter_mut().zip(&model.limits) {
+        if lower.is_finite() && upper.is_finite() {
+            *q = random.uniform(lower, upper);
+        }
     }
+    q
 }
 
 fn draw_configuration(model: &Model<f64>, case: Case, random: &mut Random, q: &mut Vec<f64>) {

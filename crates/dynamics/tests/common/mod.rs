@@ -2,7 +2,7 @@
 
 #![allow(dead_code, unused_imports, reason = "two test programs compile this module, each uses a part of it")]
 
-use featherbench_model::{BodyDescription, Description, JointDescription, JointKind, JointType, Model, Placement, Topology};
+use featherbench_model::{BodyDescription, Description, JointDescription, JointKind, JointType, Model, Placement, Topology, integrate};
 use featherbench_robots::Random;
 use featherbench_spatial::{Dual, Force, Lift, Motion, Quaternion, Real, Sym3, Vec3};
 
@@ -166,27 +166,8 @@ pub fn topology(tree: &[(i64, JointKind)]) -> Topology {
 
 /// A configuration that moves: q with the rate of change that v gives it.
 pub fn flow(model: &Model<f64>, q: &[f64], v: &[f64]) -> Vec<Dual<f64>> {
-    let turn = |q: &[f64], omega: &[f64]| {
-        let quaternion = Quaternion::from_array([q[0], q[1], q[2], q[3]]);
-        let rate = quaternion.derivative(Vec3::new(omega[0], omega[1], omega[2]));
-        let rates = [rate.v.x, rate.v.y, rate.v.z, rate.w];
-        (0..4).map(|k| Dual::new(q[k], rates[k])).collect::<Vec<_>>()
-    };
-    let mut moving = Vec::new();
-    for joint in model.topology.joints() {
-        let (q, v) = (&q[joint.q..], &v[joint.v..]);
-        match joint.kind {
-            JointKind::Revolute(_) | JointKind::Prismatic(_) | JointKind::Helical => moving.push(Dual::new(q[0], v[0])),
-            JointKind::Spherical => moving.extend(turn(q, v)),
-            JointKind::Free => {
-                let rotation = Quaternion::from_array([q[3], q[4], q[5], q[6]]).to_rotation();
-                let rate = (rotation * Vec3::new(v[0], v[1], v[2])).to_array();
-                moving.extend((0..3).map(|k| Dual::new(q[k], rate[k])));
-                moving.extend(turn(&q[3..], &v[3..]));
-            }
-        }
-    }
-    moving
+    let (q, v) = (with_rate(q, &vec![0.0; q.len()]), with_rate(&vec![0.0; v.len()], v));
+    integrate(&model.topology, &q, &v).expect("q and v are the model's")
 }
 
 /// Numbers with their rates of change.
