@@ -48,6 +48,7 @@ mod batch;
 mod bias;
 mod center_of_mass;
 mod crba;
+mod derivatives;
 mod energy;
 mod error;
 mod jacobian;
@@ -65,6 +66,7 @@ pub use batch::{Batch, BatchError, Cause, Element, Failure, Number, to_lanes, to
 pub use bias::{Bias, bias_force};
 pub use center_of_mass::{CenterOfMass, MassCenter, center_of_mass};
 pub use crba::{Crba, mass_matrix};
+pub use derivatives::{FdDerivatives, FdPartials, IdDerivatives, IdPartials, TreePair, fd_derivatives, id_derivatives};
 pub use energy::{Energies, Energy, energy};
 pub use error::{DimensionError, Error, NotPositiveDefinite};
 pub use jacobian::{Jacobian, jacobian};

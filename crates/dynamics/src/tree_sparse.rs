@@ -179,6 +179,11 @@ impl<T: Real> TreeSparse<T> {
         self.values[last] += value;
     }
 
+    /// Zeros behind the stored numbers again, after rows were written in whole registers.
+    pub(crate) fn clear_padding(&mut self) {
+        self.values[self.stored..].fill(T::zero());
+    }
+
     /// A dof's depth: the length of its row.
     #[inline(always)]
     pub(crate) fn depth(&self, dof: usize) -> usize {

@@ -10,6 +10,8 @@ mod configuration;
 mod derivatives;
 mod errors;
 mod extended;
+mod fd_derivatives;
+mod id_derivatives;
 mod identities;
 mod ltdl;
 mod packed;

@@ -6,8 +6,9 @@ use crate::common;
 
 use common::{ROBOTS, build, wrenches};
 use featherbench_dynamics::{
-    Aba, Batch, Bias, CenterOfMass, Crba, Energy, Jacobian, Kinematics, Ltdl, Momentum, PackedAba, PackedCenterOfMass, PackedCrba,
-    PackedEnergy, PackedJacobian, PackedKinematics, PackedModel, PackedMomentum, PackedRnea, Refined, Rnea, TreeSparse, to_lanes,
+    Aba, Batch, Bias, CenterOfMass, Crba, Energy, FdDerivatives, FdPartials, IdDerivatives, IdPartials, Jacobian, Kinematics, Ltdl,
+    Momentum, PackedAba, PackedCenterOfMass, PackedCrba, PackedEnergy, PackedJacobian, PackedKinematics, PackedModel, PackedMomentum,
+    PackedRnea, Refined, Rnea, TreeSparse, to_lanes,
 };
 use featherbench_robots::StateBatch;
 use featherbench_spatial::{Compensated, DoubleDouble};
@@ -110,6 +111,30 @@ fn no_algorithm_allocates_in_a_call() {
         assert_eq!(ALLOCATIONS.get() - before, 0, "{name}");
         drop(vec![0_u8; 10]);
         assert!(ALLOCATIONS.get() > before, "the counter counts");
+    }
+}
+
+#[test]
+fn no_derivative_allocates_in_a_call() {
+    for (name, recipe) in &ROBOTS {
+        let model = build(recipe);
+        let t = &model.topology;
+        let states = StateBatch::random(&model, 3, 1);
+        let f = wrenches(&model, 1);
+        let (mut id, mut fd) = (IdDerivatives::new(t), FdDerivatives::new(t));
+        let (mut id_partials, mut fd_partials) = (IdPartials::new(t), FdPartials::new(t));
+        let mut out = vec![0.0; t.nv()];
+
+        let before = ALLOCATIONS.get();
+        for k in 0..3 {
+            let (q, v, a) = (states.q(k), states.v(k), states.a(k));
+            id.run(&model, q, v, a, Some(&f), &mut id_partials).unwrap();
+            fd.run(&model, q, v, a, Some(&f), &mut fd_partials).unwrap();
+            id_partials.q.mul(v, &mut out).unwrap();
+            id_partials.q.mul_transposed(v, &mut out).unwrap();
+            id_partials.v.write_dense(&mut fd_partials.v).unwrap();
+        }
+        assert_eq!(ALLOCATIONS.get() - before, 0, "{name}");
     }
 }
 

@@ -2,9 +2,11 @@
 
 #![allow(dead_code, unused_imports, reason = "two test programs compile this module, each uses a part of it")]
 
+use featherbench_dynamics::TreeSparse;
 use featherbench_model::{BodyDescription, Description, JointDescription, JointKind, JointType, Model, Placement, Topology, integrate};
-use featherbench_robots::Random;
-use featherbench_spatial::{Dual, Force, Lift, Motion, Quaternion, Real, Sym3, Vec3};
+use featherbench_robots::{Random, StateBatch};
+use featherbench_spatial::{Angle, Dual, Force, Lift, Motion, Quaternion, Real, Sym3, Vec3};
+use nalgebra::DMatrix;
 
 mod tolerance;
 
@@ -165,9 +167,10 @@ pub fn topology(tree: &[(i64, JointKind)]) -> Topology {
 }
 
 /// A configuration that moves: q with the rate of change that v gives it.
-pub fn flow(model: &Model<f64>, q: &[f64], v: &[f64]) -> Vec<Dual<f64>> {
-    let (q, v) = (with_rate(q, &vec![0.0; q.len()]), with_rate(&vec![0.0; v.len()], v));
-    integrate(&model.topology, &q, &v).expect("q and v are the model's")
+pub fn flow<T: Angle>(model: &Model<f64>, q: &[T], v: &[T]) -> Vec<Dual<T>> {
+    let still: Vec<_> = q.iter().map(|q| Dual::constant(*q)).collect();
+    let rate: Vec<_> = v.iter().map(|v| Dual::new(T::zero(), *v)).collect();
+    integrate(&model.topology, &still, &rate).expect("q and v are the model's")
 }
 
 /// Numbers with their rates of change.
@@ -197,4 +200,66 @@ pub fn wrenches(model: &Model<f64>, seed: u64) -> Vec<Force<f64>> {
 /// The six numbers of the difference of two motions.
 pub fn gap(a: Motion<f64>, b: Motion<f64>) -> f64 {
     distance(&a.to_array(), &b.to_array())
+}
+
+/// A unit vector.
+pub fn unit<T: Real>(n: usize, k: usize) -> Vec<T> {
+    (0..n).map(|i| if i == k { T::one() } else { T::zero() }).collect()
+}
+
+/// Numbers that do not move.
+pub fn constant<T: Real>(values: &[T]) -> Vec<Dual<T>> {
+    values.iter().map(|&value| Dual::constant(value)).collect()
+}
+
+/// The recipes' robots, and generated ones: every joint of the family `joints` on both bases, trees, chains, legs and hands.
+pub fn robots() -> Vec<(String, Model<f64>)> {
+    let recipes = ROBOTS.iter().map(|(name, recipe)| (name.to_string(), build(recipe)));
+    let generated = GENERATED.iter().map(|name| {
+        let family = featherbench_robots::Family::parse(name).unwrap_or_else(|bad| panic!("{name}: {bad}"));
+        (name.to_string(), Model::build(&family.generate().expect("a family makes robots")).expect("the robot is well formed"))
+    });
+    recipes.chain(generated).collect()
+}
+
+const GENERATED: [&str; 12] = [
+    "joints:kind=all,base=fixed",
+    "joints:kind=all,base=free",
+    "joints:kind=free,base=fixed",
+    "joints:kind=euler_zyx,base=free",
+    "humanoid",
+    "quadruped",
+    "hand",
+    "chain:n=12,layout=spatial",
+    "chain:n=36,layout=planar",
+    "chain:n=36,layout=spatial",
+    "tree:n=24",
+    "star:n=6",
+];
+
+/// Each robot with one state of each case: q, v, a, τ and wrenches. The last ones are far from the world's origin.
+pub fn each_robot_and_state(mut check: impl FnMut(&str, &Model<f64>, [&[f64]; 4], &[Force<f64>])) {
+    for (name, model) in &robots() {
+        let states = StateBatch::agreement(model, StateBatch::HEAD, 3);
+        for k in 0..states.count() {
+            let mut q = states.q(k).to_vec();
+            let far = k + 1 == states.count() && model.topology.joints()[0].kind == JointKind::Free;
+            if far {
+                q[..3].copy_from_slice(&[1e6, -3e6, 2e6]);
+            }
+            let label = format!("{name}, state {k} ({}{})", states.cases[k].name(), if far { ", far" } else { "" });
+            check(&label, model, [&q, states.v(k), states.a(k), states.tau(k)], &wrenches(model, k as u64));
+        }
+    }
+}
+
+/// The largest difference over the largest entry, each entry (i, j) over √(M_ii·M_jj): so units drop out.
+pub fn over_inertias(matrix: &TreeSparse<f64>, truth: &DMatrix<f64>, found: &DMatrix<f64>) -> f64 {
+    let root: Vec<f64> = matrix.diagonal().map(f64::sqrt).collect();
+    let over = |entries: &DMatrix<f64>| {
+        entries.iter().enumerate().map(|(k, x)| x.abs() / (root[k % root.len()] * root[k / root.len()])).fold(0.0, larger)
+    };
+    let scale = over(truth);
+    let error = over(&(found - truth));
+    if error == 0.0 { 0.0 } else { error / scale }
 }

@@ -1,0 +1,172 @@
+//! First derivatives of forward dynamics: ∂v̇/∂q, ∂v̇/∂v and ∂v̇/∂τ = M⁻¹.
+//!
+//! Source: J. Carpentier & N. Mansard, *Analytical derivatives of rigid body dynamics algorithms* (2018). At the solution
+//! `τ = ID(q, v, v̇)` stays as it is, so `∂v̇/∂x = −M⁻¹ ∂ID/∂x` for x = q and x = v. The solution comes from the articulated-body algorithm, the
+//! derivatives of ID from [`IdDerivatives`], and M⁻¹ from the factors LᵀDL of M.
+//!
+//! Frames, tangent space and external wrenches: as [`IdDerivatives`] has them. Shapes: q has `nq` numbers; v and τ have `nv`. Each result is
+//! `nv`×`nv`, row after row; it is dense within each tree that stands on the world. Units: SI, angles in radians.
+//! Cost: O(n + Σ d_k·n), d_k the depth of dof k: two multiply-adds per strict ancestor and column, for two matrices. A call does not
+//! allocate.
+
+use crate::error::expect;
+use crate::{Aba, Error, IdDerivatives, IdPartials, Ltdl, TreeSparse};
+use featherbench_model::{Model, Topology};
+use featherbench_spatial::{Force, Lift, Real};
+
+/// First derivatives of forward dynamics, and the accelerations at which they are.
+#[derive(Clone, Debug, PartialEq)]
+pub struct FdPartials<T> {
+    /// The accelerations v̇.
+    pub acceleration: Vec<T>,
+    /// ∂v̇/∂q on the tangent space of the configurations, row after row.
+    pub q: Vec<T>,
+    /// ∂v̇/∂v, row after row.
+    pub v: Vec<T>,
+    /// ∂v̇/∂τ = M⁻¹, row after row; symmetric to the bit.
+    pub tau: Vec<T>,
+}
+
+impl<T: Real> FdPartials<T> {
+    /// Zero derivatives for models of this topology.
+    pub fn new(topology: &Topology) -> Self {
+        let n = topology.nv();
+        let square = || vec![T::zero(); n * n];
+        Self { acceleration: vec![T::zero(); n], q: square(), v: square(), tau: square() }
+    }
+}
+
+/// The workspace of the derivatives of forward dynamics.
+///
+/// ```
+/// use featherbench_dynamics::{FdDerivatives, FdPartials, forward_dynamics};
+/// use featherbench_model::Model;
+/// use featherbench_robots::{Family, StateBatch};
+///
+/// let model: Model<f64> = Model::build(&Family::parse("chain:n=5,layout=spatial")?.generate()?)?;
+/// let states = StateBatch::random(&model, 1, 7);
+/// let (q, v, tau) = (states.q(0), states.v(0), states.tau(0));
+/// let mut partials = FdPartials::new(&model.topology);
+/// FdDerivatives::new(&model.topology).run(&model, q, v, tau, None, &mut partials)?;
+///
+/// // What a step of 1e-6 in v₂ does to the accelerations.
+/// let moved = |step: f64| {
+///     let mut v = v.to_vec();
+///     v[2] += step;
+///     forward_dynamics(&model, q, &v, tau)
+/// };
+/// let (ahead, behind) = (moved(1e-6)?, moved(-1e-6)?);
+/// for i in 0..5 {
+///     let difference = (ahead[i] - behind[i]) / 2e-6;
+///     assert!((partials.v[5 * i + 2] - difference).abs() < 1e-6 * (1.0 + difference.abs()));
+/// }
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Clone, Debug)]
+pub struct FdDerivatives<T> {
+    aba: Aba<T>,
+    id: IdDerivatives<T>,
+    partials: IdPartials<T>,
+    ltdl: Ltdl<T>,
+}
+
+impl<T: Real> FdDerivatives<T> {
+    /// A workspace for models of this topology.
+    pub fn new(topology: &Topology) -> Self {
+        Self { aba: Aba::new(topology), id: IdDerivatives::new(topology), partials: IdPartials::new(topology), ltdl: Ltdl::new(topology) }
+    }
+
+    /// The derivatives at configuration `q`, velocity `v`, joint forces `tau` and external wrenches.
+    ///
+    /// # Errors
+    /// [`Error`] when an argument, the workspace or `partials` does not fit the model, or when a joint meets no inertia; `partials` then
+    /// means nothing.
+    pub fn run<P: Real + Lift<T>>(
+        &mut self,
+        model: &Model<P>,
+        q: &[T],
+        v: &[T],
+        tau: &[T],
+        wrenches: Option<&[Force<T>]>,
+        partials: &mut FdPartials<T>,
+    ) -> Result<(), Error> {
+        let n = model.topology.nv();
+        let FdPartials { acceleration, q: by_q, v: by_v, tau: by_tau } = partials;
+        expect("∂v̇/∂q", n * n, by_q.len())?;
+        expect("∂v̇/∂v", n * n, by_v.len())?;
+        expect("∂v̇/∂τ", n * n, by_tau.len())?;
+
+        // v̇, and the derivatives of ID there. Lanes with a bad pivot do no harm to others: the error comes last.
+        let solved = self.aba.run(model, q, v, tau, wrenches, acceleration);
+        if let Err(Error::Dimension(bad)) = solved {
+            return Err(bad.into());
+        }
+        self.id.run(model, q, v, acceleration, wrenches, &mut self.partials)?;
+        self.ltdl.matrix_mut().copy_from(&self.partials.a)?;
+        let factored = self.ltdl.factor();
+
+        // −M⁻¹ ∂ID
+        self.partials.q.write_dense(by_q)?;
+        self.partials.v.write_dense(by_v)?;
+        solve_negated(self.ltdl.factors(), by_q);
+        solve_negated(self.ltdl.factors(), by_v);
+        self.ltdl.inverse(by_tau)?;
+        solved?;
+        Ok(factored?)
+    }
+
+    /// The derivatives of inverse dynamics at the solution of the last run.
+    pub fn id_partials(&self) -> &IdPartials<T> {
+        &self.partials
+    }
+
+    /// The factors of the joint-space inertia matrix of the last run.
+    pub fn factors(&self) -> &Ltdl<T> {
+        &self.ltdl
+    }
+}
+
+/// `X = −M⁻¹ A` in place, for all columns at once. A must have the sparsity of derivatives of ID.
+fn solve_negated<T: Real>(factors: &TreeSparse<T>, x: &mut [T]) {
+    let n = factors.size();
+    // Lᵀ Y = A, from the leaves: Y_j· −= L_kj Y_k·. Row k of Y is zero behind the last dof that k supports.
+    for k in (0..n).rev() {
+        let (above, row_k) = x.split_at_mut(k * n);
+        let (l_k, end) = (&factors.values()[factors.row(k)], factors.supported(k).end);
+        for (dofs, entries) in factors.ancestors(k) {
+            for (j, l) in dofs.zip(&l_k[entries]) {
+                subtract(*l, &row_k[..end], &mut above[j * n..][..end]);
+            }
+        }
+    }
+    // Z = −D⁻¹ Y, then L X = Z, from the root: X_k· −= L_kj X_j·
+    for (k, d) in factors.diagonal().enumerate() {
+        let (above, row_k) = x.split_at_mut(k * n);
+        let (row_k, scale) = (&mut row_k[..n], -(T::one() / d));
+        row_k.iter_mut().for_each(|x| *x *= scale);
+        let l_k = &factors.values()[factors.row(k)];
+        for (dofs, entries) in factors.ancestors(k) {
+            for (j, l) in dofs.zip(&l_k[entries]) {
+                subtract(*l, &above[j * n..][..n], row_k);
+            }
+        }
+    }
+}
+
+/// `y −= l x`.
+#[inline(always)]
+fn subtract<T: Real>(l: T, x: &[T], y: &mut [T]) {
+    for (x, y) in x.iter().zip(y) {
+        *y = (-l).mul_add(*x, *y);
+    }
+}
+
+/// The derivatives of forward dynamics in a workspace of the call, without external wrenches; it allocates.
+///
+/// # Errors
+/// [`Error`] when an argument does not fit the model, or a joint meets no inertia.
+pub fn fd_derivatives<T: Real, P: Real + Lift<T>>(model: &Model<P>, q: &[T], v: &[T], tau: &[T]) -> Result<FdPartials<T>, Error> {
+    let mut partials = FdPartials::new(&model.topology);
+    FdDerivatives::new(&model.topology).run(model, q, v, tau, None, &mut partials)?;
+    Ok(partials)
+}
