@@ -66,7 +66,11 @@ pub use batch::{Batch, BatchError, Cause, Element, Failure, Number, to_lanes, to
 pub use bias::{Bias, bias_force};
 pub use center_of_mass::{CenterOfMass, MassCenter, center_of_mass};
 pub use crba::{Crba, mass_matrix};
-pub use derivatives::{FdDerivatives, FdPartials, IdDerivatives, IdPartials, TreePair, fd_derivatives, id_derivatives};
+pub use derivatives::{
+    Coriolis, EnergyGradient, EnergyPartials, FdDerivatives, FdPartials, IdDerivatives, IdPartials, JacobianRate, MassGradient,
+    MomentumMatrix, TreePair, coriolis_matrix, energy_gradient, fd_derivatives, id_derivatives, jacobian_rate, mass_gradient,
+    mass_matrix_rate, momentum_matrix,
+};
 pub use energy::{Energies, Energy, energy};
 pub use error::{DimensionError, Error, NotPositiveDefinite};
 pub use jacobian::{Jacobian, jacobian};

@@ -7,6 +7,7 @@ mod batch;
 mod closed_forms;
 mod common;
 mod configuration;
+mod derivative_structure;
 mod derivatives;
 mod errors;
 mod extended;

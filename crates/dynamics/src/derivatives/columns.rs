@@ -4,12 +4,20 @@
 //! all before it are its ancestors. So a row of a tree-sparse matrix is one product of contiguous numbers.
 //! Loops run over whole registers: [`lanes`] numbers at a time. Cost: six multiply-adds per number. Nothing here allocates.
 
+use crate::TreeSparse;
+use featherbench_model::Topology;
 use featherbench_spatial::{Force, Motion, Real, Vec3};
+use std::ops::Range;
 
 /// How many scalars are computed together: those of 64 bytes, at most eight, at least one.
 pub(super) const fn lanes<T>() -> usize {
     let fitting = if size_of::<T>() < 64 { 64 / size_of::<T>() } else { 1 };
     if fitting < 8 { fitting } else { 8 }
+}
+
+/// The length of the longest path, in dofs.
+pub(super) fn deepest(topology: &Topology) -> usize {
+    (0..topology.nv()).map(|dof| topology.dof_depth(dof)).max().unwrap_or(0)
 }
 
 /// Motions by position.
@@ -63,6 +71,40 @@ impl<T: Real> Components<T> {
     #[inline(always)]
     pub(super) fn add_dot(&self, v: Vec3<T>, out: &mut [T]) {
         add_dot3(&self.x, &self.y, &self.z, v, out);
+    }
+}
+
+/// Where a dof's row is in a tree-sparse matrix.
+pub(super) struct PaddedRow {
+    exact: Range<usize>,
+    /// The row's length in whole registers.
+    padded: usize,
+}
+
+impl PaddedRow {
+    #[inline(always)]
+    pub(super) fn of<T: Real>(matrix: &TreeSparse<T>, dof: usize) -> Self {
+        let exact = matrix.row(dof);
+        Self { padded: exact.len().next_multiple_of(lanes::<T>()), exact }
+    }
+
+    /// The row and a few numbers behind it, which are not set yet: they belong to later rows or to the padding.
+    #[inline(always)]
+    pub(super) fn of_matrix<'a, T: Real>(&self, matrix: &'a mut TreeSparse<T>) -> &'a mut [T] {
+        &mut matrix.parts_mut().1[self.exact.start..][..self.padded]
+    }
+
+    /// The row alone.
+    #[inline(always)]
+    pub(super) fn exact<'a, T: Real>(&self, matrix: &'a mut TreeSparse<T>) -> &'a mut [T] {
+        &mut matrix.values_mut()[self.exact.clone()]
+    }
+
+    /// The diagonal of the lower triangle, also in the upper one.
+    #[inline(always)]
+    pub(super) fn copy_diagonal<T: Real>(&self, lower: &TreeSparse<T>, upper: &mut TreeSparse<T>) {
+        let last = self.exact.end - 1;
+        upper.values_mut()[last] = lower.values()[last];
     }
 }
 

@@ -23,13 +23,12 @@
 //! Shapes: q has `nq` numbers; v and a have `nv`. Each result is `nv`×`nv`, tree-sparse. Units: SI, angles in radians.
 //! Cost: O(n + Σ d_k), d_k the depth of dof k; 36 multiply-adds per stored pair of dofs. A call does not allocate.
 
-use super::columns::{Columns, Components, lanes};
+use super::columns::{Columns, Components, PaddedRow, deepest};
 use super::sweep::{Link, State, Sweep};
 use crate::step::by_kind;
 use crate::{DimensionError, TreePair, TreeSparse};
 use featherbench_model::{JointKind, Model, Topology};
 use featherbench_spatial::{Force, Lift, Motion, Real};
-use std::ops::Range;
 
 /// First derivatives of inverse dynamics.
 #[derive(Clone, Debug, PartialEq)]
@@ -96,7 +95,7 @@ struct Path<T> {
 impl<T: Real> IdDerivatives<T> {
     /// A workspace for models of this topology.
     pub fn new(topology: &Topology) -> Self {
-        let deepest = (0..topology.nv()).map(|dof| topology.dof_depth(dof)).max().unwrap_or(0);
+        let deepest = deepest(topology);
         let columns = || Columns::new(deepest);
         let path = Path { s: columns(), psi_rate: Components::new(deepest), v: columns(), a: columns() };
         Self { sweep: Sweep::new(topology), path }
@@ -168,26 +167,26 @@ fn rows<T: Real, P: Real + Lift<T>>(
         // 2 Bᶜ S + Iᶜ (Ψ̇ + Φ̇)
         let by_v = body.coriolis(s.ang) * two + body.inertia.mul(sum);
 
-        let row = Row::of(&partials.a, dof);
+        let row = PaddedRow::of(&partials.a, dof);
         let IdPartials { q, v, a } = partials;
-        path.s.dot(f, row.padded(a));
+        path.s.dot(f, row.of_matrix(a));
         let (lower, upper) = q.triangles_mut();
-        path.a.dot(f, row.padded(lower));
-        path.psi_rate.add_dot(b, row.padded(lower));
-        path.s.dot(by_q + carried, row.padded(upper));
-        within_joint(kind, &model.subspaces[i], link, by_q, k, &mut upper.values_mut()[row.exact.clone()]);
+        path.a.dot(f, row.of_matrix(lower));
+        path.psi_rate.add_dot(b, row.of_matrix(lower));
+        path.s.dot(by_q + carried, row.of_matrix(upper));
+        within_joint(kind, &model.subspaces[i], link, by_q, k, row.exact(upper));
         row.copy_diagonal(lower, upper);
         let (lower, upper) = v.triangles_mut();
-        path.v.dot(f, row.padded(lower));
-        path.s.ang.add_dot(b, row.padded(lower));
-        path.s.dot(by_v, row.padded(upper));
+        path.v.dot(f, row.of_matrix(lower));
+        path.s.ang.add_dot(b, row.of_matrix(lower));
+        path.s.dot(by_v, row.of_matrix(upper));
         row.copy_diagonal(lower, upper);
     }
 }
 
 /// Within a joint the columns are constant in body axes: `∂τ_j/∂q_i` is without `S_i ×* fᶜ_i`.
 #[inline(always)]
-fn within_joint<T: Real, P: Real + Lift<T>>(
+pub(super) fn within_joint<T: Real, P: Real + Lift<T>>(
     kind: JointKind,
     subspace: &Motion<P>,
     link: &Link<T>,
@@ -198,34 +197,6 @@ fn within_joint<T: Real, P: Real + Lift<T>>(
     let top = row.len() - 1 - dofs;
     for (k, entry) in row[top..].iter_mut().enumerate().take(dofs) {
         *entry = link.in_frame(kind, kind.column(subspace, k)).dot(by_q);
-    }
-}
-
-/// Where a dof's row is in a tree-sparse matrix.
-struct Row {
-    exact: Range<usize>,
-    /// The row's length in whole registers.
-    padded: usize,
-}
-
-impl Row {
-    #[inline(always)]
-    fn of<T: Real>(matrix: &TreeSparse<T>, dof: usize) -> Self {
-        let exact = matrix.row(dof);
-        Self { padded: exact.len().next_multiple_of(lanes::<T>()), exact }
-    }
-
-    /// The row and a few numbers behind it, which are not set yet: they belong to later rows or to the padding.
-    #[inline(always)]
-    fn padded<'a, T: Real>(&self, matrix: &'a mut TreeSparse<T>) -> &'a mut [T] {
-        &mut matrix.parts_mut().1[self.exact.start..][..self.padded]
-    }
-
-    /// The diagonal of the lower triangle, also in the upper one.
-    #[inline(always)]
-    fn copy_diagonal<T: Real>(&self, lower: &TreeSparse<T>, upper: &mut TreeSparse<T>) {
-        let last = self.exact.end - 1;
-        upper.values_mut()[last] = lower.values()[last];
     }
 }
 

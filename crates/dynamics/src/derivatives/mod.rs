@@ -4,11 +4,21 @@
 //! three columns, in body axes, and every matrix here is `nv`×`nv`. The numbers in v, a and τ stay as they are while q moves.
 
 mod columns;
+mod coriolis;
+mod energy_gradient;
 mod fd;
 mod id;
+mod jacobian_rate;
+mod mass_gradient;
+mod momentum_matrix;
 mod sweep;
 mod tree_pair;
 
+pub use coriolis::{Coriolis, coriolis_matrix, mass_matrix_rate};
+pub use energy_gradient::{EnergyGradient, EnergyPartials, energy_gradient};
 pub use fd::{FdDerivatives, FdPartials, fd_derivatives};
 pub use id::{IdDerivatives, IdPartials, id_derivatives};
+pub use jacobian_rate::{JacobianRate, jacobian_rate};
+pub use mass_gradient::{MassGradient, mass_gradient};
+pub use momentum_matrix::{MomentumMatrix, momentum_matrix};
 pub use tree_pair::TreePair;

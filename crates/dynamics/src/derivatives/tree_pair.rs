@@ -79,6 +79,18 @@ impl<T: Real> TreePair<T> {
         product(&self.upper, &self.lower, x, y)
     }
 
+    /// `A + Aᵀ`, into a matrix of the same topology.
+    ///
+    /// # Errors
+    /// [`DimensionError`] when `sum` has another topology.
+    pub fn symmetric_sum(&self, sum: &mut TreeSparse<T>) -> Result<(), DimensionError> {
+        self.lower.expect_same_tree(sum)?;
+        for ((sum, lower), upper) in sum.values_mut().iter_mut().zip(self.lower()).zip(self.upper()) {
+            *sum = *lower + *upper;
+        }
+        Ok(())
+    }
+
     /// Writes the dense matrix, row after row, into `nv`² numbers.
     ///
     /// # Errors
