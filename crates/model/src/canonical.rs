@@ -17,7 +17,13 @@ impl Description {
     pub fn canonical(&self) -> Result<Self, Malformed> {
         self.validate()?;
         let order = self.depth_first();
-        let mut result = Self { bodies: Vec::with_capacity(order.len()), frames: Vec::new(), ..self.clone() };
+        let mut result = Self {
+            name: self.name.clone(),
+            gravity: self.gravity,
+            bodies: Vec::with_capacity(order.len()),
+            frames: Vec::new(),
+            provenance: self.provenance.clone(),
+        };
 
         // For each given body: the body that it became part of, and its placement there.
         let mut home: Vec<(Option<usize>, Transform<DoubleDouble>)> = vec![(None, Transform::identity()); self.bodies.len()];

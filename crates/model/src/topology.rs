@@ -1,6 +1,7 @@
 //! The tree: parents, joint kinds and indices, without a scalar.
 
 use crate::{Axis, JointKind};
+use std::sync::OnceLock;
 
 /// A joint of the compiled tree and its body.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -16,15 +17,27 @@ pub struct Joint {
 }
 
 /// A tree of primitive joints in depth-first order. Body i is the body moved by joint i.
-#[derive(Clone, Debug, PartialEq, Eq)]
+///
+/// It takes O(n) memory: of a revolute joint 64 bytes. Only [`Topology::row_dofs`] takes more.
+#[derive(Clone, Debug)]
 pub struct Topology {
     joints: Vec<Joint>,
     nq: usize,
     nv: usize,
     dof_parent: Vec<Option<usize>>,
     row_start: Vec<usize>,
-    row_dofs: Vec<usize>,
+    /// The dofs of all rows, made when they are first asked for.
+    row_dofs: OnceLock<Vec<usize>>,
 }
+
+/// Trees are equal if their joints are: all else follows from these.
+impl PartialEq for Topology {
+    fn eq(&self, other: &Self) -> bool {
+        self.joints == other.joints
+    }
+}
+
+impl Eq for Topology {}
 
 impl Topology {
     /// The tree of these (parent, kind) pairs, parents before children.
@@ -51,19 +64,14 @@ impl Topology {
             dof_parent.extend((0..joint.kind.nv()).map(|k| if k == 0 { inherited } else { Some(joint.v + k - 1) }));
         }
 
-        // Row k: the dofs from the root to k, k included.
-        let (mut row_start, mut row_dofs) = (Vec::with_capacity(nv + 1), Vec::new());
+        // Row k: the dofs from the root to k, k included. It is one longer than that of its parent.
+        let mut row_start: Vec<usize> = Vec::with_capacity(nv + 1);
+        row_start.push(0);
         for (dof, parent) in dof_parent.iter().enumerate() {
-            let start = row_dofs.len();
-            row_start.push(start);
-            if let Some(parent) = *parent {
-                let range: std::ops::Range<usize> = row_start[parent]..row_start[parent + 1];
-                row_dofs.extend_from_within(range);
-            }
-            row_dofs.push(dof);
+            let above = parent.map_or(0, |parent: usize| row_start[parent + 1] - row_start[parent]);
+            row_start.push(row_start[dof] + above + 1);
         }
-        row_start.push(row_dofs.len());
-        Some(Self { joints, nq, nv, dof_parent, row_start, row_dofs })
+        Some(Self { joints, nq, nv, dof_parent, row_start, row_dofs: OnceLock::new() })
     }
 
     /// The same tree with the axes of these joints taken as skew ones.
@@ -116,15 +124,27 @@ impl Topology {
     }
 
     /// The dofs from the root to `dof`, itself last.
-    #[inline(always)]
+    ///
+    /// The first call makes the rows of all dofs: [`Topology::stored`] numbers, on a chain n (n + 1) / 2. Algorithms in O(n) follow
+    /// [`Topology::dof_parents`] in place of it.
     pub fn row_dofs(&self, dof: usize) -> &[usize] {
-        &self.row_dofs[self.row(dof)]
+        let rows = self.row_dofs.get_or_init(|| {
+            let mut rows = Vec::with_capacity(self.stored());
+            for (dof, parent) in self.dof_parent.iter().enumerate() {
+                if let Some(parent) = *parent {
+                    rows.extend_from_within(self.row(parent));
+                }
+                rows.push(dof);
+            }
+            rows
+        });
+        &rows[self.row(dof)]
     }
 
     /// Stored numbers of a tree-sparse matrix: `n + Σ(d_k − 1)`.
     #[inline(always)]
     pub fn stored(&self) -> usize {
-        self.row_dofs.len()
+        self.row_start[self.nv]
     }
 
     /// The largest number of bodies on a path from the world.

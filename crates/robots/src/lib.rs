@@ -8,6 +8,9 @@ mod families;
 mod random;
 mod states;
 
-pub use families::{BadFamily, Base, BinaryTree, Chain, Family, Hand, Humanoid, Joints, Kind, Layout, Mix, Quadruped, Shape, Star, Tree};
+pub use families::{
+    BadFamily, Base, BinaryTree, Centipede, Chain, Family, Hand, Humanoid, Joints, Kind, Layout, Mix, Platform, Quadruped, Shape, Snake,
+    Star, Tree,
+};
 pub use random::Random;
 pub use states::{BadState, Case, StateBatch, random_configuration};

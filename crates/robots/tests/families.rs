@@ -12,7 +12,7 @@ fn build(spec: &str) -> Model<f64> {
 }
 
 /// Every family with several parameters; their bits are pinned below.
-const SPECS: [&str; 28] = [
+const SPECS: [&str; 33] = [
     "chain",
     "chain:n=1",
     "chain:n=36,layout=spatial",
@@ -26,6 +26,11 @@ const SPECS: [&str; 28] = [
     "binary_tree:depth=1",
     "binary_tree",
     "star",
+    "snake",
+    "snake:n=1",
+    "centipede",
+    "centipede:segments=3,leg=0",
+    "platform:robots=10,n=3",
     "humanoid",
     "humanoid:hand_mass=1000",
     "quadruped",
@@ -56,6 +61,11 @@ fn counts_are_those_of_the_closed_forms() {
         ("binary_tree:depth=6", 63, 321, 702),
         ("binary_tree:depth=8", 255, 1_793, 5_630),
         ("binary_tree:depth=10", 1_023, 9_217, 37_886),
+        // 6 dofs of depths 1 to 6, then n − 1 of depths 7 to n + 5
+        ("snake:n=11", 16, 136, 680),
+        ("centipede:segments=4,leg=3", 33, 273, 1_112),
+        // the base, and 100 times depths 7 to 13
+        ("platform", 706, 7_021, 32_935),
     ];
     for (spec, n, stored, products) in expected {
         let topology = build(spec).topology;
@@ -128,6 +138,9 @@ fn bits_are_pinned() {
         ("tree:n=60,seed=4,spread=0.5,joints=all,base=free,armature=true", 9_409_489_239_280_068_402),
         ("binary_tree", 6_070_496_488_050_137_049),
         ("star", 15_849_369_524_077_210_708),
+        ("snake", 11_318_042_323_959_441_040),
+        ("centipede", 14_249_208_906_993_107_279),
+        ("platform", 10_478_732_478_382_275_536),
         ("humanoid", 13_519_685_228_342_680_898),
         ("quadruped", 13_574_642_916_772_521_181),
         ("hand", 10_588_947_188_295_049_794),
@@ -270,6 +283,9 @@ fn bad_specifications_are_named() {
         ("star:n=0", "n=0"),
         ("humanoid:hand_mass=-1", "hand_mass=-1"),
         ("quadruped:legs=6", "it takes none"),
+        ("snake:n=0", "n=0 does not do; give 1 to 1000000"),
+        ("centipede:segments=500000,leg=1", "leg=1 does not do; give 0 to 0"),
+        ("platform:robots=1000,n=1000", "n=1000 does not do; give 1 to 999"),
         ("joints:kind=fixed", "kind=fixed"),
     ];
     for (spec, part) in cases {

@@ -14,22 +14,28 @@
 //! ```
 
 mod binary_tree;
+mod centipede;
 mod chain;
 mod hand;
 mod humanoid;
 mod joints;
 mod parameters;
 mod parts;
+mod platform;
 mod quadruped;
+mod snake;
 mod star;
 mod tree;
 
 pub use binary_tree::BinaryTree;
+pub use centipede::Centipede;
 pub use chain::{Chain, Layout};
 pub use hand::Hand;
 pub use humanoid::Humanoid;
 pub use joints::{Joints, Kind, Shape};
+pub use platform::Platform;
 pub use quadruped::Quadruped;
+pub use snake::Snake;
 pub use star::Star;
 pub use tree::{Mix, Tree};
 
@@ -61,6 +67,12 @@ pub enum Family {
     BinaryTree(BinaryTree),
     /// Links that are all joined to the world.
     Star(Star),
+    /// A floating chain whose axes alternate.
+    Snake(Snake),
+    /// A floating spine with two legs on each link.
+    Centipede(Centipede),
+    /// Many arms that share one floating base.
+    Platform(Platform),
     /// A 36-dof humanoid.
     Humanoid(Humanoid),
     /// An 18-dof quadruped.
@@ -122,7 +134,8 @@ pub enum BadFamily {
 
 impl Family {
     /// The families' names.
-    pub const NAMES: [&'static str; 8] = ["chain", "tree", "binary_tree", "star", "humanoid", "quadruped", "hand", "joints"];
+    pub const NAMES: [&'static str; 11] =
+        ["chain", "tree", "binary_tree", "star", "snake", "centipede", "platform", "humanoid", "quadruped", "hand", "joints"];
 
     /// The family's name.
     pub fn name(&self) -> &'static str {
@@ -131,6 +144,9 @@ impl Family {
             Self::Tree(_) => "tree",
             Self::BinaryTree(_) => "binary_tree",
             Self::Star(_) => "star",
+            Self::Snake(_) => "snake",
+            Self::Centipede(_) => "centipede",
+            Self::Platform(_) => "platform",
             Self::Humanoid(_) => "humanoid",
             Self::Quadruped(_) => "quadruped",
             Self::Hand(_) => "hand",
@@ -152,6 +168,9 @@ impl Family {
             "tree" => Self::Tree(Tree::read(&mut parameters)?),
             "binary_tree" => Self::BinaryTree(BinaryTree::read(&mut parameters)?),
             "star" => Self::Star(Star::read(&mut parameters)?),
+            "snake" => Self::Snake(Snake::read(&mut parameters)?),
+            "centipede" => Self::Centipede(Centipede::read(&mut parameters)?),
+            "platform" => Self::Platform(Platform::read(&mut parameters)?),
             "humanoid" => Self::Humanoid(Humanoid::read(&mut parameters)?),
             "quadruped" => Self::Quadruped(Quadruped),
             "hand" => Self::Hand(Hand),
@@ -187,6 +206,9 @@ impl Family {
             Self::Tree(tree) => tree.describe(),
             Self::BinaryTree(tree) => tree.describe(),
             Self::Star(star) => star.describe(),
+            Self::Snake(snake) => snake.describe(),
+            Self::Centipede(centipede) => centipede.describe(),
+            Self::Platform(platform) => platform.describe(),
             Self::Humanoid(humanoid) => humanoid.describe(),
             Self::Quadruped(quadruped) => quadruped.describe(),
             Self::Hand(hand) => hand.describe(),
@@ -202,6 +224,9 @@ impl Family {
             Self::Tree(tree) => tree.check(),
             Self::BinaryTree(tree) => tree.check(),
             Self::Star(star) => star.check(),
+            Self::Snake(snake) => snake.check(),
+            Self::Centipede(centipede) => centipede.check(),
+            Self::Platform(platform) => platform.check(),
             Self::Humanoid(humanoid) => humanoid.check(),
             Self::Quadruped(_) | Self::Hand(_) | Self::Joints(_) => Ok(()),
         }
@@ -217,6 +242,9 @@ impl fmt::Display for Family {
             Self::Tree(tree) => write!(f, ":{tree}"),
             Self::BinaryTree(tree) => write!(f, ":{tree}"),
             Self::Star(star) => write!(f, ":{star}"),
+            Self::Snake(snake) => write!(f, ":{snake}"),
+            Self::Centipede(centipede) => write!(f, ":{centipede}"),
+            Self::Platform(platform) => write!(f, ":{platform}"),
             Self::Humanoid(humanoid) => write!(f, ":{humanoid}"),
             Self::Joints(joints) => write!(f, ":{joints}"),
             Self::Quadruped(_) | Self::Hand(_) => Ok(()),

@@ -3,7 +3,7 @@
 use super::BadFamily;
 use std::str::FromStr;
 
-/// The largest number of links: the tree-sparse matrices of longer chains do not fit the memory of a workstation.
+/// The largest number of links: a description and its model then take 1.4 GB.
 pub(super) const MOST_LINKS: usize = 1_000_000;
 
 /// The key=value pairs given to a family, taken one by one.
