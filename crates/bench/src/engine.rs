@@ -1,6 +1,7 @@
 //! The trait [`Engine`]: anything that answers.
 
 use crate::{Import, Quantity, Robot, RobotFile, Stepper};
+use featherbench_protocol::Memory;
 use featherbench_results::EngineSource;
 use featherbench_robots::StateBatch;
 use std::collections::BTreeMap;
@@ -156,6 +157,11 @@ pub trait Engine: Send + Sync {
         false
     }
 
+    /// Whether its times are those of its own clock, or ours in this process. Otherwise they include an exchange of messages.
+    fn has_clock(&self) -> bool {
+        true
+    }
+
     /// Its steps, if its forward dynamics is that of a step.
     fn stepper(&self) -> Option<&dyn Stepper> {
         None
@@ -200,6 +206,11 @@ pub trait Evaluation: Send {
 
     /// The overhead that was subtracted from the last time of [`Evaluation::clock`], if times are estimates.
     fn overhead(&self) -> Option<Duration> {
+        None
+    }
+
+    /// The memory of the process that evaluates, if it is another one than this.
+    fn memory(&self) -> Option<Memory> {
         None
     }
 

@@ -36,6 +36,7 @@
 //!   → a mark with its interval Section                        studies    the section of the timing study; report draws the frame
 //! ```
 
+pub mod alone;
 mod cell;
 mod class;
 pub mod conventions;
@@ -72,6 +73,7 @@ pub use described::{ClockKind, DescribedEngine, Engines, Library, Package, Start
 pub use deviation::{Deviation, DeviationFile, Reproduction, SEEDS, SLACK};
 pub use engine::{Engine, Evaluation, Identity, NoAnswer};
 pub use error::HarnessError;
+pub use featherbench_protocol::{Limits, Memory};
 pub use gates::{Factor, Gate, Gates, Sharpness};
 pub use import::{FileBase, FileFormat, FileInertial, FileLink, Import, ImportNote, RobotFile, WATER};
 pub use lack::Lack;

@@ -77,6 +77,22 @@ impl Robot {
         })
     }
 
+    /// A robot of any size at one random state, known by its name alone: a content hash would need its whole text.
+    ///
+    /// The description must be canonical, as generated ones are.
+    ///
+    /// # Errors
+    /// [`Malformed`] when the description is not a robot.
+    pub fn at_one_state(name: &str, description: Description, seed: u64) -> Result<Self, Malformed> {
+        let model = Model::build(&description)?;
+        let states = StateBatch::random(&model, 1, seed);
+        let hash = crate::hash::of_parts(&[name.as_bytes(), &seed.to_le_bytes()]);
+        let family = name.split(':').next().unwrap_or(name).to_owned();
+        let (name, depth) = (name.to_owned(), description.depth());
+        let origin = ModelOrigin::Generated;
+        Ok(Self { name, family, origin, description, model, hash, states, depth, file: None, route: Route::Neutral, studies: None })
+    }
+
     /// The same robot, with its file.
     pub fn from_file(mut self, file: RobotFile) -> Self {
         self.hash = crate::hash::of_parts(&[self.hash.as_bytes(), file.hash.as_bytes(), file.format.name().as_bytes()]);

@@ -54,6 +54,11 @@ pub trait Study: Sync {
         &[]
     }
 
+    /// Whether these must have a clock of their own.
+    fn needs_clocks(&self) -> bool {
+        self.measures_time()
+    }
+
     /// The cells, in the order of the report.
     fn plan(&self, context: &Context) -> Vec<Cell>;
 

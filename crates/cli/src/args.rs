@@ -54,6 +54,9 @@ pub enum Command {
     /// Serve a native library by the oracle protocol: what a run starts as a child process.
     #[command(hide = true)]
     Serve(ServeArgs),
+    /// Measure one of our own methods on a generated robot, in this process: what a run starts as a child process.
+    #[command(hide = true)]
+    Alone,
 }
 
 #[derive(Debug, Clone, Args)]

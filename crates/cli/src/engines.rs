@@ -23,8 +23,10 @@ pub struct Opened {
 pub struct Asked<'a> {
     /// Engines beside ours that must answer.
     pub engines: &'a [String],
-    /// Engines that are timed if they are installed.
+    /// Engines that are timed if they are installed, and have a clock.
     pub timed: Vec<String>,
+    /// Engines that are asked alone if they are installed, with or without a clock.
+    pub alone: Vec<String>,
     /// Engines that a user brings along.
     pub externals: &'a [External],
     /// Whether the engines themselves are asked.
@@ -41,9 +43,13 @@ impl<'a> Asked<'a> {
     /// The engines of a suite and its studies.
     pub fn by_suite(root: &Root, args: &'a RunArgs, loaded: &'a Loaded, studies: &[Box<dyn Study>]) -> Self {
         let answers = |robot: &&Robot| studies.iter().any(|study| !study.measures_time() && robot.takes(study.name()));
+        let of_studies = |clocks: bool| -> Vec<String> {
+            studies.iter().filter(|study| study.needs_clocks() == clocks).flat_map(|study| study.engines()).cloned().collect()
+        };
         Self {
             engines: loaded.suite.engines(),
-            timed: studies.iter().flat_map(|study| study.engines()).cloned().collect(),
+            timed: of_studies(true),
+            alone: of_studies(false),
             externals: &args.externals,
             live: args.live,
             recorded: args.recorded.clone().unwrap_or_else(|| root.recorded()),
@@ -54,7 +60,7 @@ impl<'a> Asked<'a> {
 
     /// Engines that are asked themselves, and must answer.
     pub fn live(root: &Root, engines: &'a [String], limits: Limits) -> Self {
-        Self { engines, timed: Vec::new(), externals: &[], live: true, recorded: root.recorded(), robots: Vec::new(), limits }
+        Self { engines, timed: Vec::new(), alone: Vec::new(), externals: &[], live: true, recorded: root.recorded(), robots: Vec::new(), limits }
     }
 }
 
@@ -66,10 +72,15 @@ pub fn open(root: &Root, asked: &Asked) -> Result<Opened, Fail> {
     let described = oracles::described(root)?;
     let find = |name: &String| described.get(name).map_err(Fail::input);
     let due: Vec<&DescribedEngine> = asked.engines.iter().map(find).collect::<Result<_, _>>()?;
-    let timed: Vec<&DescribedEngine> = asked.timed.iter().map(find).collect::<Result<_, _>>()?;
+    let mut timed: Vec<&DescribedEngine> = asked.timed.iter().map(find).collect::<Result<_, _>>()?;
     if let Some(engine) = timed.iter().find(|engine| engine.clock.is_none()) {
         let can = described.names(|engine| engine.clock.is_some()).join(", ");
         return Err(Fail::input(format!("{} cannot be timed; oracles/engines.toml has a clock for {can}", engine.name)));
+    }
+    for engine in asked.alone.iter().map(find).collect::<Result<Vec<_>, _>>()? {
+        if !timed.contains(&engine) {
+            timed.push(engine);
+        }
     }
     let taken: Vec<&str> = [OWN].into_iter().chain(described.names(|_| true)).collect();
     external::check_names(asked.externals, &taken)?;

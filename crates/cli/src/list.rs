@@ -28,7 +28,9 @@ fn text(root: &Root, args: &ListArgs) -> Result<String, Fail> {
         let gates = root.read_gates()?;
         let context = Context { robots: &loaded.robots, engines: &engines, gates: &gates, seed: loaded.suite.seed };
         let (kernels, reproduce) = (featherbench_engines::timed as Kernels, oracles::reproducer(root, Limits::default()));
-        let studies = featherbench_studies::of_suite(&Setup { suite: &loaded.suite, live: true, program: "", kernels, reproduce })?;
+        let measure = oracles::measurer(root)?;
+        let setup = Setup { suite: &loaded.suite, live: true, program: "", kernels, reproduce, measure };
+        let studies = featherbench_studies::of_suite(&setup)?;
         let cells = studies.iter().flat_map(|study| study.plan(&context));
         return Ok(cells.map(|cell| format!("{}  {}\n", cell.id(), cell.path())).collect());
     }

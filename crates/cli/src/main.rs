@@ -95,6 +95,7 @@ fn dispatch(cli: Cli) -> Result<(), Fail> {
             OraclesAction::Status => oracles::status(&root()?),
             OraclesAction::Check(args) => check::check(root().ok().as_ref(), &args),
         },
+        Command::Alone => featherbench_engines::alone::serve().map_err(Fail::input),
         Command::Serve(args) => featherbench_engines::native::serve(&args.library, args.core).map_err(Fail::input),
     }
 }

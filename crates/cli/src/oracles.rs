@@ -6,8 +6,8 @@ use crate::fail::Fail;
 use crate::native;
 use crate::package;
 use crate::root::Root;
-use featherbench_bench::{DescribedEngine, Engine, Engines, NoAnswer, Start};
-use featherbench_engines::{Limits, Oracle};
+use featherbench_bench::{DescribedEngine, Engine, Engines, NoAnswer, OWN, Start};
+use featherbench_engines::{Limits, Oracle, alone};
 use indicatif::{ProgressBar, ProgressStyle};
 use std::ffi::OsString;
 use std::io::{BufRead, BufReader, IsTerminal};
@@ -192,6 +192,22 @@ pub fn reproducer(root: &Root, limits: Limits) -> featherbench_studies::Reproduc
         Ok(command) => featherbench_engines::reproduce(command, limits, name, seeds),
         Err(reason) => Err(NoAnswer::Failed(reason.clone())),
     })
+}
+
+/// Measures questions, each in a process of its own: ours by this program, other engines by their oracles.
+pub fn measurer(root: &Root) -> Result<featherbench_bench::alone::Ask, Fail> {
+    let program = std::env::current_exe().map_err(|error| Fail::input(format!("this program's path: {error}")))?;
+    let (root, described) = (root.clone(), described(root)?);
+    Ok(Arc::new(move |question| {
+        if question.engine == OWN {
+            return alone::ask(&alone::command(&program), question);
+        }
+        let failed = |reason: String| NoAnswer::Failed(reason);
+        let engine = described.get(&question.engine).map_err(|error| failed(error.to_string()))?;
+        let oracle = start(&root, engine, question.limits).map_err(|fail| failed(fail.to_string()))?;
+        let robot = featherbench_bench::alone::robot(&question.robot, question.seed)?;
+        featherbench_bench::alone::measure(&oracle, &robot, question, || None)
+    }))
 }
 
 /// Prints what answers.

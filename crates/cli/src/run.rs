@@ -78,7 +78,8 @@ pub fn run(root: &Root, args: &RunArgs) -> Result<(), Fail> {
 /// The studies that a suite asks for. `program` is the hash of this program.
 fn studies(root: &Root, loaded: &Loaded, args: &RunArgs, program: &str) -> Result<Vec<Box<dyn Study>>, Fail> {
     let reproduce = oracles::reproducer(root, engines::limits(args));
-    let setup = Setup { suite: &loaded.suite, live: args.live, program, kernels: featherbench_engines::timed, reproduce };
+    let measure = oracles::measurer(root)?;
+    let setup = Setup { suite: &loaded.suite, live: args.live, program, kernels: featherbench_engines::timed, reproduce, measure };
     let mut studies = featherbench_studies::of_suite(&setup)?;
     studies.retain(|study| !(args.no_timing && study.measures_time()));
     Ok(studies)

@@ -2,12 +2,14 @@
 //!
 //! - [`Featherbench`] runs the kernels of this workspace.
 //! - [`Oracle`] asks a program that follows the protocol of `oracles/PROTOCOL.md`.
+//! - [`alone`] measures our kernels in a process of their own.
 //! - [`native`] serves an engine's native library by the same protocol.
 //! - [`Recorded`] repeats the recorded answers of an oracle.
 //!
 //! To add an engine, write such a program, in Rust too (`oracles/rapier`), or implement [`Engine`](featherbench_bench::Engine) in a new
 //! file here.
 
+pub mod alone;
 mod batch;
 mod coding;
 pub mod conformance;

@@ -6,7 +6,7 @@ use crate::{request, shape};
 use featherbench_bench::provenance::{PROGRAM, SOURCES};
 use featherbench_bench::{Engine, Evaluation, Identity, Import, ImportNote, NoAnswer, Quantity, Robot, RobotFile, Route, Stepper};
 use featherbench_model::{BodyDescription, Description};
-use featherbench_protocol::{Block, Clock, Limits, Message, Process, SystemClock, VERSION};
+use featherbench_protocol::{Block, Clock, Limits, Memory, Message, Process, SystemClock, VERSION};
 use featherbench_results::EngineSource;
 use featherbench_robots::StateBatch;
 use serde_json::{Value, json};
@@ -165,6 +165,10 @@ impl Engine for Oracle {
 
     fn estimates(&self) -> bool {
         matches!(self.timed_by, TimedBy::Estimate(_))
+    }
+
+    fn has_clock(&self) -> bool {
+        !matches!(self.timed_by, TimedBy::Us)
     }
 
     fn read(&self, file: &RobotFile) -> Result<Import, NoAnswer> {
@@ -343,6 +347,10 @@ impl Evaluation for Asked<'_> {
         }
         let session = self.session.as_mut().ok_or_else(|| NoAnswer::Failed("the oracle has ended".into()))?;
         session.ask(json!({"op": "relocate", "seed": seed}), Vec::new()).map(|_| true)
+    }
+
+    fn memory(&self) -> Option<Memory> {
+        self.session.as_ref().and_then(|session| session.process.memory())
     }
 
     fn read(&self) -> &[f64] {

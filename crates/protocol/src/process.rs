@@ -1,6 +1,7 @@
 //! A child process that exchanges messages, with limits of time and memory.
 
 use crate::clock::{Clock, SystemClock, wait};
+use crate::memory::Memory;
 use crate::message::{Message, MessageError};
 use std::collections::VecDeque;
 use std::ffi::OsString;
@@ -166,6 +167,11 @@ impl Process {
     /// Whether the process may be asked again.
     pub fn alive(&self) -> bool {
         self.alive
+    }
+
+    /// The memory that it has, while it runs.
+    pub fn memory(&self) -> Option<Memory> {
+        Memory::of(Some(self.child.id())).filter(|_| self.alive)
     }
 
     fn exit_reason(&mut self) -> String {

@@ -8,28 +8,35 @@
 //! - [`Reproductions`]: do the engines' known deviations still exist, and in their known size?
 //! - [`Steps`]: how does the acceleration of a step approach the true one, and how do steps change the energy?
 //! - [`OperationCounts`]: are the counts of the sparse algorithms the integers of the theory?
+//! - [`Scaling`]: what do sparsity and errors become as robots grow?
+//! - [`Growth`]: how do time and memory grow with the robot, and where does each engine stop?
 //! - [`Timing`]: how long does each candidate take, in a paired experiment?
 
 mod accuracy;
 mod agreement;
 mod conditioning;
+mod growth;
 pub mod import;
 mod operations;
 mod repeatability;
 mod reproductions;
+mod scaling;
 mod steps;
 mod timing;
 
 pub use accuracy::Accuracy;
 pub use agreement::Agreement;
 pub use conditioning::Conditioning;
+pub use growth::{Growth, Settings as GrowthSettings};
 pub use import::Import;
 pub use operations::OperationCounts;
 pub use repeatability::Repeatability;
 pub use reproductions::{Reproduce, Reproductions};
+pub use scaling::{Scaling, Settings as ScalingSettings};
 pub use steps::Steps;
 pub use timing::{Kernels, Settings as TimingSettings, Timing};
 
+use featherbench_bench::alone::Ask;
 use featherbench_bench::{Cell, Context, Engine, HarnessError, NoAnswer, Outcome, Quantity, Robot, Study, Suite};
 use featherbench_report::{Overview, Section};
 use featherbench_results::{Row, RunInfo};
@@ -55,8 +62,11 @@ const STUDIES: &[Entry] = &[
     Entry { name: "conditioning", make: conditioning::of_suite, sections: conditioning::section::sections },
     Entry { name: "steps", make: steps::of_suite, sections: steps::section::sections },
     Entry { name: "operations", make: operations::of_suite, sections: no_section },
+    Entry { name: "scaling", make: scaling::of_suite, sections: scaling::section::sections },
     Entry { name: "reproductions", make: reproductions::of_suite, sections: reproductions::section::sections },
     Entry { name: "repeatability", make: repeatability::of_suite, sections: no_section },
+    // Its rows are in the section of the study `scaling`.
+    Entry { name: "growth", make: growth::of_suite, sections: no_section },
     Entry { name: "timing", make: timing::of_suite, sections: timing::section::sections },
 ];
 
@@ -77,6 +87,8 @@ pub struct Setup<'a> {
     pub kernels: Kernels,
     /// Evaluates reproductions of known deviations.
     pub reproduce: Reproduce,
+    /// Measures a method in a process of its own.
+    pub measure: Ask,
 }
 
 /// The names of all studies.

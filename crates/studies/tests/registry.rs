@@ -1,5 +1,6 @@
 //! The registry: every suite of the project makes its studies, and an unknown one is named.
 
+use featherbench_bench::alone::Question;
 use featherbench_bench::{Counts, NoAnswer, Suite};
 use featherbench_studies::{Setup, names, of_suite};
 use std::collections::BTreeSet;
@@ -11,7 +12,9 @@ fn suites() -> PathBuf {
 }
 
 fn setup(suite: &Suite, live: bool) -> Setup<'_> {
-    Setup { suite, live, program: "", kernels: |_| Vec::new(), reproduce: Arc::new(|_, _| Err(NoAnswer::NotOffered("a test".into()))) }
+    let refused = || NoAnswer::NotOffered("a test".into());
+    let (reproduce, measure) = (Arc::new(move |_: &str, _: u64| Err(refused())), Arc::new(move |_: &Question| Err(refused())));
+    Setup { suite, live, program: "", kernels: |_| Vec::new(), reproduce, measure }
 }
 
 fn made(suite: &Suite, live: bool) -> Vec<&'static str> {

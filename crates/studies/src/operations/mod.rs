@@ -11,6 +11,7 @@
 use crate::{Made, Setup, row};
 use featherbench_bench::{Cell, Context, Finished, NoAnswer, NoSettings, Outcome, Quantity, Robot, Study};
 use featherbench_dynamics::{Crba, Ltdl, TreeSparse};
+use featherbench_model::Description;
 use featherbench_results::{Relation, Row, Verdict};
 use featherbench_spatial::{Counted, Operations};
 use serde_json::json;
@@ -27,7 +28,7 @@ pub(crate) fn of_suite(setup: &Setup) -> Made {
 const MOST_DOFS: usize = 1100;
 
 /// The counts, in the order of our cell's values.
-const COUNTS: [(&str, &str); 5] = [
+pub(crate) const COUNTS: [(&str, &str); 5] = [
     ("stored", "stored numbers of M"),
     ("factor_divisions", "divisions of the factorization"),
     ("factor_multiply_subtracts", "multiply-subtracts of the factorization"),
@@ -72,7 +73,7 @@ impl Study for OperationCounts {
     }
 
     fn compare(&self, context: &Context, robot: &Robot, finished: &[Finished]) -> Vec<Row> {
-        let expected = expected(robot);
+        let expected = expected(&robot.description);
         let mut rows = Vec::new();
         for (cell, outcome) in finished {
             match outcome {
@@ -94,8 +95,8 @@ impl Study for OperationCounts {
 }
 
 /// The counts by theory, from the description alone.
-fn expected(robot: &Robot) -> [f64; 5] {
-    let bodies = &robot.description.bodies;
+pub(crate) fn expected(robot: &Description) -> [f64; 5] {
+    let bodies = &robot.bodies;
     let mut depth_of_body = Vec::with_capacity(bodies.len());
     let (mut n, mut d1, mut d2) = (0_u64, 0_u64, 0_u64);
     for body in bodies {
@@ -112,7 +113,7 @@ fn expected(robot: &Robot) -> [f64; 5] {
 }
 
 /// The counts by running the kernels.
-fn counts(robot: &Robot) -> Result<Vec<f64>, String> {
+pub(crate) fn counts(robot: &Robot) -> Result<Vec<f64>, String> {
     let (model, states) = (&robot.model, &robot.states);
     let q: Vec<Counted> = states.q(0).iter().map(|&x| Counted(x)).collect();
     let mut matrix = TreeSparse::<Counted>::new(&model.topology);

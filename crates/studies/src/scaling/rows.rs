@@ -1,0 +1,122 @@
+//! The rows of the study, from the outcomes of its cells.
+
+use super::tree::{self, SIZES};
+use super::{Line, crossing};
+use crate::operations::COUNTS;
+use featherbench_bench::measure::ratio;
+use featherbench_bench::{Cell, Context, Finished, NoAnswer};
+use featherbench_results::{Relation, Row, Verdict, canonical_json};
+use serde_json::{Value, json};
+
+/// What the values are compared with.
+const THEORY: &str = "theory";
+const TRUTH: &str = "truth";
+
+/// Every row.
+pub(super) fn rows(context: &Context, lines: &[Line], finished: &[Finished]) -> Vec<Row> {
+    let mut rows = Vec::new();
+    for (cell, outcome) in finished {
+        let values = match outcome.answer() {
+            Ok(values) if values.len() > SIZES => values,
+            Ok(_) => {
+                rows.push(tree::row(context, cell, None).without_value(Verdict::Error, "the outcome has too few numbers"));
+                continue;
+            }
+            Err(no_answer) => {
+                let verdict = if matches!(no_answer, NoAnswer::NotOffered(_)) { Verdict::Skip } else { Verdict::Error };
+                rows.push(context.gates.explain(tree::row(context, cell, None).without_value(verdict, no_answer.to_string())));
+                continue;
+            }
+        };
+        let (sizes, values) = values.split_at(SIZES);
+        let blank = tree::row(context, cell, Some(sizes));
+        rows.extend(match cell.params["what"].as_str().unwrap_or_default() {
+            "counts" => counts(context, blank, values),
+            "fill_in" => fill_in(context, blank, values),
+            "factors" => factors(context, blank, sizes[1], values),
+            "floor" => vec![Row { metric: "floor".into(), estimated: true, ..blank }.informed(values[0])],
+            "dynamics" => dynamics(context, blank, values[0], floor(cell, finished)),
+            _ => work(blank, cell, values),
+        });
+    }
+    rows.extend(lines.iter().filter_map(|line| predicted(context, line, finished)));
+    rows
+}
+
+/// The integers of the factorization.
+fn counts(context: &Context, blank: Row, values: &[f64]) -> Vec<Row> {
+    let (Some((&counted, values)), count) = (values.split_first(), COUNTS.len()) else { return Vec::new() };
+    let route = if counted == 1.0 { "counted" } else { "pattern" };
+    let params = canonical_json(&json!({"what": "counts", "route": route}));
+    let (due, found) = values.split_at(count.min(values.len()));
+    let metrics = COUNTS.iter().zip(due.iter().zip(found));
+    metrics
+        .map(|((metric, _), (&due, &found))| {
+            let row = Row { metric: (*metric).into(), reference: THEORY.into(), params: params.clone(), ..blank.clone() };
+            context.gates.explain(row.gated(found, Relation::Eq, due))
+        })
+        .collect()
+}
+
+/// What an order of elimination adds to the stored numbers of M.
+fn fill_in(context: &Context, blank: Row, values: &[f64]) -> Vec<Row> {
+    let &[stored, due, found, multiply_subtracts] = values else {
+        return vec![blank.without_value(Verdict::Error, "the outcome has not four numbers")];
+    };
+    let fill = Row { metric: "fill_in".into(), reference: THEORY.into(), ..blank.clone() };
+    let work = Row { metric: "multiply_subtracts".into(), ..blank };
+    vec![context.gates.explain(fill.gated(found - stored, Relation::Eq, due - stored)), work.informed(multiply_subtracts)]
+}
+
+/// The errors of factors and solution, per dof: a stable factorization keeps them below a constant.
+fn factors(context: &Context, blank: Row, dofs: f64, values: &[f64]) -> Vec<Row> {
+    let metrics = [("factorization", "factor_error_per_dof"), ("solve", "solution_error_per_dof")];
+    let row = |((quantity, metric), &error): ((&str, &str), &f64)| {
+        let row = Row { quantity: quantity.into(), metric: metric.into(), reference: TRUTH.into(), ..blank.clone() };
+        context.gates.judge(row, error / dofs, 1.0)
+    };
+    metrics.into_iter().zip(values).map(row).collect()
+}
+
+/// The conditioning bound of a cell's tree, from its own cell.
+fn floor(cell: &Cell, finished: &[Finished]) -> Option<f64> {
+    let of_tree = |(other, _): &&Finished| other.robot == cell.robot && other.params["what"] == "floor";
+    finished.iter().find(of_tree)?.1.values()?.get(SIZES).copied().filter(|floor| floor.is_finite())
+}
+
+/// The error of an acceleration, and its ratio to the conditioning bound.
+fn dynamics(context: &Context, blank: Row, error: f64, floor: Option<f64>) -> Vec<Row> {
+    let blank = Row { reference: TRUTH.into(), states: "random".into(), floor, ..blank };
+    let mut rows = vec![context.gates.judge(Row { metric: "error".into(), ..blank.clone() }, error, 1.0)];
+    let over = Row { metric: "error_over_floor".into(), estimated: true, ..blank };
+    rows.push(match floor {
+        Some(floor) => context.gates.judge(over, ratio(error, floor), 1.0),
+        None => over.without_value(Verdict::Error, "there is no conditioning bound"),
+    });
+    rows
+}
+
+/// The operations of forward dynamics by the mass matrix over those of the articulated-body algorithm.
+fn work(blank: Row, cell: &Cell, values: &[f64]) -> Vec<Row> {
+    let &[articulated, factorizing] = values else {
+        return vec![blank.without_value(Verdict::Error, "the outcome has not two numbers")];
+    };
+    let params = json!({"what": "work", "line": cell.params["line"], "aba": articulated, "ltdl": factorizing});
+    let row = Row { metric: "work_ratio".into(), reference: "aba".into(), params: canonical_json(&params), ..blank };
+    vec![row.informed(ratio(factorizing, articulated))]
+}
+
+/// Where the two ways take equally many operations along a line, if they cross.
+fn predicted(context: &Context, line: &Line, finished: &[Finished]) -> Option<Row> {
+    let along = |(cell, outcome): &Finished| {
+        let of_line = cell.params["what"] == "work" && cell.params["line"] == Value::from(line.name.as_str());
+        let values = outcome.values().filter(|_| of_line)?;
+        Some((*values.get(1)?, ratio(*values.get(SIZES + 1)?, *values.get(SIZES)?)))
+    };
+    let points: Vec<(f64, f64)> = finished.iter().filter_map(along).collect();
+    let (first, _) = finished.iter().find(|item| along(item).is_some())?;
+    let blank = tree::row(context, first, None);
+    let params = canonical_json(&json!({"what": "crossover", "line": line.name}));
+    let row = Row { robot: String::new(), metric: "crossover_predicted".into(), reference: "aba".into(), params, ..blank };
+    crossing(&points).map(|at| row.informed(at))
+}
