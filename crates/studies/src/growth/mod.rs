@@ -92,13 +92,13 @@ impl Growth {
         Self { settings, measure, truths: Mutex::default() }
     }
 
-    /// The methods of an engine that are measured: the usual one of inverse dynamics, and all of forward dynamics.
+    /// The methods of an engine that are measured, of those that can be timed: the usual one of inverse dynamics, all of forward dynamics.
     fn methods(engine: &dyn Engine) -> Vec<(Quantity, String)> {
         if engine.identity().name == OWN {
             return OWN_METHODS.map(|(quantity, method)| (quantity, method.to_owned())).into();
         }
-        let usual = engine.methods(Quantity::InverseDynamics).into_iter().take(1).map(|method| (Quantity::InverseDynamics, method));
-        usual.chain(engine.methods(Quantity::ForwardDynamics).into_iter().map(|method| (Quantity::ForwardDynamics, method))).collect()
+        let usual = engine.timed(Quantity::InverseDynamics).into_iter().take(1).map(|method| (Quantity::InverseDynamics, method));
+        usual.chain(engine.timed(Quantity::ForwardDynamics).into_iter().map(|method| (Quantity::ForwardDynamics, method))).collect()
     }
 
     /// The true acceleration of a tree.

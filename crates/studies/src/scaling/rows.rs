@@ -11,6 +11,8 @@ use serde_json::{Value, json};
 /// What the values are compared with.
 const THEORY: &str = "theory";
 const TRUTH: &str = "truth";
+/// Numbers of f64 in a register: one, with AVX2, and with AVX-512.
+const LANES: [f64; 3] = [1.0, 4.0, 8.0];
 
 /// Every row.
 pub(super) fn rows(context: &Context, lines: &[Line], finished: &[Finished]) -> Vec<Row> {
@@ -39,7 +41,7 @@ pub(super) fn rows(context: &Context, lines: &[Line], finished: &[Finished]) -> 
             _ => work(blank, cell, values),
         });
     }
-    rows.extend(lines.iter().filter_map(|line| predicted(context, line, finished)));
+    rows.extend(lines.iter().flat_map(|line| predicted(context, line, finished)));
     rows
 }
 
@@ -101,22 +103,30 @@ fn work(blank: Row, cell: &Cell, values: &[f64]) -> Vec<Row> {
     let &[articulated, factorizing] = values else {
         return vec![blank.without_value(Verdict::Error, "the outcome has not two numbers")];
     };
-    let params = json!({"what": "work", "line": cell.params["line"], "aba": articulated, "ltdl": factorizing});
-    let row = Row { metric: "work_ratio".into(), reference: "aba".into(), params: canonical_json(&params), ..blank };
+    let params = canonical_json(&json!({"what": "work", "aba": articulated, "ltdl": factorizing}));
+    let family = cell.params["line"].as_str().unwrap_or_default().into();
+    let row = Row { family, metric: "work_ratio".into(), reference: "aba".into(), params, ..blank };
     vec![row.informed(ratio(factorizing, articulated))]
 }
 
-/// Where the two ways take equally many operations along a line, if they cross.
-fn predicted(context: &Context, line: &Line, finished: &[Finished]) -> Option<Row> {
+/// Where the two ways are predicted to take the same time along a line, if they cross.
+///
+/// Our way by the mass matrix has several numbers to a register in all its parts, and our articulated-body algorithm one link at a time. So
+/// there is one prediction for each number of lanes: the operations of the mass matrix are divided by it.
+fn predicted(context: &Context, line: &Line, finished: &[Finished]) -> Vec<Row> {
     let along = |(cell, outcome): &Finished| {
         let of_line = cell.params["what"] == "work" && cell.params["line"] == Value::from(line.name.as_str());
         let values = outcome.values().filter(|_| of_line)?;
         Some((*values.get(1)?, ratio(*values.get(SIZES + 1)?, *values.get(SIZES)?)))
     };
     let points: Vec<(f64, f64)> = finished.iter().filter_map(along).collect();
-    let (first, _) = finished.iter().find(|item| along(item).is_some())?;
+    let Some((first, _)) = finished.iter().find(|item| along(item).is_some()) else { return Vec::new() };
     let blank = tree::row(context, first, None);
-    let params = canonical_json(&json!({"what": "crossover", "line": line.name}));
-    let row = Row { robot: String::new(), metric: "crossover_predicted".into(), reference: "aba".into(), params, ..blank };
-    crossing(&points).map(|at| row.informed(at))
+    let row = |lanes: f64| {
+        let at = crossing(&points.iter().map(|(n, ratio)| (*n, ratio / lanes)).collect::<Vec<_>>())?;
+        let params = canonical_json(&json!({"what": "crossover", "lanes": lanes}));
+        let (robot, family, metric) = (String::new(), line.name.clone(), "crossover_predicted".into());
+        Some(Row { robot, family, metric, reference: "aba".into(), params, ..blank.clone() }.informed(at))
+    };
+    LANES.into_iter().filter_map(row).collect()
 }

@@ -1,0 +1,58 @@
+// Scaling: time, memory and error against size, and the ratio of our two ways to forward dynamics.
+featherbench.ready(() => {
+  const { byId, chunks, short, variable } = featherbench;
+  const { colour, dash, draw, exponent, joined, layout, least, live, symbol } = featherbench.plots;
+  const overview = chunks.get("overview");
+  const scaling = chunks.get("figures")?.scaling;
+  if (!overview || !scaling || !byId("scaling-time")) return;
+
+  const FORWARD = "fd";
+
+  // Engines by colour, their methods by symbol and dash.
+  function drawn(series, key, scale, note) {
+    const methods = new Map();
+    return series.map((one) => {
+      const style = methods.get(one.engine) ?? 0;
+      methods.set(one.engine, style + 1);
+      const points = one.points.filter((point) => point[key] !== null);
+      return {
+        name: joined(overview.engines[one.engine], one.method), note: note(one), ink: colour(one.engine),
+        line: { width: 1.4, dash: dash(style) }, mark: { size: 8, symbol: symbol(style) },
+        points: points.map((point) => ({
+          x: point.size, y: scale(point[key]), low: key === "seconds" ? point.low : null, high: key === "seconds" ? point.high : null,
+          symbol: key === "seconds" && point.estimated ? "cross" : undefined, hollow: key === "seconds" && !point.valid,
+          tip: [overview.robots[point.robot].name, `${key} ${short(point[key])}`, key !== "seconds" ? "" : point.estimated ? "estimate" : point.valid ? "" : "does not count"].filter(Boolean),
+          target: { robot: point.robot, filters: { study: "growth", engine: overview.engines[one.engine], method: one.method, quantity: one.quantity } },
+        })),
+      };
+    });
+  }
+
+  function drawScaling() {
+    const line = byId("scaling-line").value;
+    const quantity = byId("scaling-quantity").value;
+    const of = (name) => scaling.series.filter((one) => one.line === line && one.quantity === name);
+    const size = "degrees of freedom n";
+    draw("scaling-time", drawn(of(quantity), "seconds", (value) => value, (one) => exponent(one.exponent?.[0])), layout(size, "seconds per call"));
+    draw("scaling-memory", drawn(of(quantity), "resident", (value) => value, () => ""), layout(size, "resident memory, B"));
+    draw("scaling-error", drawn(of(FORWARD), "error", least, () => ""), layout(size, "relative error of forward dynamics", true));
+    drawRatios(line);
+  }
+
+  // Operations and times of the chosen family, with the line where both ways are equal.
+  function drawRatios(line) {
+    const ratios = scaling.ratios.filter((one) => one.line === line);
+    const series = ratios.flatMap((one) => [["operations", "work", 0], ["time", "time", 1]].map(([name, key, style]) => ({
+      name, ink: style ? colour(0) : variable("--ink"), line: { width: 1.4, dash: dash(style ? 0 : 1) }, mark: { size: 8, symbol: symbol(style) },
+      points: one[key].map(([robot, size, value]) => ({
+        x: size, y: value, tip: [overview.robots[robot].name, `${name}: ${short(value)}`],
+        target: { robot, filters: { study: style ? "growth" : "scaling", metric: style ? "time_ratio" : "work_ratio" } },
+      })),
+    })));
+    const shape = layout("degrees of freedom n", "mass matrix / articulated bodies");
+    shape.bands = [[1, 1, variable("--soft")]];
+    draw("scaling-ratio", series.filter((one) => one.points.length), shape);
+  }
+
+  live(drawScaling, "scaling-line", "scaling-quantity");
+});
