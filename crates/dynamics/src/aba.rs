@@ -10,7 +10,7 @@
 //!
 //! | pass | function | what it computes, in the book's symbols |
 //! |---|---|---|
-//! | 1, outward | `set_moving` | X, ω, c, Iᴬ = I, pᴬ = v ×* I v |
+//! | 1, outward | `set_moving` | X, ω, c, pᴬ = v ×* I v |
 //! | 2, inward | `pass_to_parent` | Iᴬ_p += X* Iᵃ X⁻¹, pᴬ_p += X* pᵃ |
 //! | 3, outward | `accelerate` | a' = X a_p + c, q̈, a = a' + S q̈ |
 //!
@@ -23,7 +23,7 @@
 //! In the code U is `upper_u`, because `u` is the book's u.
 
 use crate::error::{Pivot, expect};
-use crate::step::{add_joint, by_kind, cross_joint, expect_bodies, expect_wrenches, newton_euler, parent_link};
+use crate::step::{add_joint, by_kind, cross_joint, expect_bodies, expect_wrenches, newton_euler};
 use crate::{DimensionError, Error};
 use featherbench_model::{JointKind, Model, Topology};
 use featherbench_spatial::{ArticulatedInertia, Force, Ldl3, Lift, Mat3, Motion, Real, Sym3, Transform, Vec3};
@@ -61,45 +61,53 @@ pub(crate) mod spherical;
 /// chain of 36, and 0.88 on the humanoid.
 #[derive(Clone, Debug)]
 pub struct Aba<T> {
-    /// Link 0 is the world; link i + 1 is body i.
+    /// Of each body.
     links: Vec<Link<T>>,
+    /// Of the bodies on the path that a pass is on, by path slot ([`Joint::slot`](featherbench_model::Joint::slot)).
+    path: Vec<OnPath<T>>,
 }
 
 #[derive(Clone, Copy, Debug)]
 struct Link<T> {
-    /// Placement in the parent.
+    /// Placement in the parent: what [`JointKind::keep`] keeps of it.
     x: Transform<T>,
-    /// Angular velocity ω.
-    omega: Vec3<T>,
     /// Velocity-product acceleration c.
     c: Motion<T>,
-    /// Articulated-body inertia Iᴬ.
-    inertia: ArticulatedInertia<T>,
     /// Bias force pᴬ.
     p: Force<T>,
     /// Of a one-dof joint: U D⁻¹, D⁻¹ and D⁻¹ u.
     u_d_inverse: Force<T>,
     d_inverse: T,
     d_inverse_u: T,
-    /// Classical acceleration a.
+    /// Of a spherical or free joint: articulated-body inertia Iᴬ.
+    inertia: ArticulatedInertia<T>,
+}
+
+#[derive(Clone, Copy, Debug)]
+struct OnPath<T> {
+    /// Pass 1: angular velocity ω.
+    omega: Vec3<T>,
+    /// Pass 2: articulated-body inertia Iᴬ, as far as the children have been reached.
+    inertia: ArticulatedInertia<T>,
+    /// Pass 3: classical acceleration a.
     a: Motion<T>,
 }
 
 impl<T: Real> Aba<T> {
     /// A workspace for models of this topology.
     pub fn new(topology: &Topology) -> Self {
-        let rest = Link {
+        let inertia = ArticulatedInertia::zero();
+        let link = Link {
             x: Transform::identity(),
-            omega: Vec3::zero(),
             c: Motion::zero(),
-            inertia: ArticulatedInertia::zero(),
             p: Force::zero(),
             u_d_inverse: Force::zero(),
             d_inverse: T::zero(),
             d_inverse_u: T::zero(),
-            a: Motion::zero(),
+            inertia,
         };
-        Self { links: vec![rest; topology.bodies() + 1] }
+        let rest = OnPath { omega: Vec3::zero(), inertia, a: Motion::zero() };
+        Self { links: vec![link; topology.bodies()], path: vec![rest; topology.bodies() + 1] }
     }
 
     /// The accelerations `a` at configuration `q`, velocity `v`, joint forces `tau` and external wrenches.
@@ -119,13 +127,13 @@ impl<T: Real> Aba<T> {
         let joints = model.topology.joints();
         let mut smallest = Pivot::none();
 
-        self.links[0].a.lin = -model.gravity.lift();
+        let Self { links, path } = self;
+        path[0].a.lin = -model.gravity.lift();
 
-        // outward: v_i = X v_p + S q̇,  c_i,  Iᴬ = I,  pᴬ = v_i ×* I v_i − f_ext
+        // outward: v_i = X v_p + S q̇,  c_i,  pᴬ = v_i ×* I v_i − f_ext
         for (i, joint) in joints.iter().enumerate() {
-            let (before, rest) = self.links.split_at_mut(i + 1);
-            let (parent, link) = (&before[parent_link(joint)], &mut rest[0]);
-            by_kind!(joint.kind, set_moving, model, i, parent.omega, q, v, link);
+            let link = &mut links[i];
+            by_kind!(joint.kind, set_moving, model, i, q, v, path, link);
             if let Some(wrenches) = wrenches {
                 link.p -= model.labels[i].force_to_compiled(wrenches[i]);
             }
@@ -133,16 +141,12 @@ impl<T: Real> Aba<T> {
 
         // inward: Iᵃ = Iᴬ − U D⁻¹ Uᵀ,  pᵃ = pᴬ + Iᵃ c + U D⁻¹ u,  Iᴬ_p += X* Iᵃ X⁻¹,  pᴬ_p += X* pᵃ
         for (i, joint) in joints.iter().enumerate().rev() {
-            let (before, rest) = self.links.split_at_mut(i + 1);
-            let parent = joint.parent.map(|parent| &mut before[parent + 1]);
-            by_kind!(joint.kind, pass_to_parent, model, i, tau, &mut rest[0], parent, &mut smallest);
+            by_kind!(joint.kind, pass_to_parent, model, i, tau, links, path, &mut smallest);
         }
 
         // outward: a' = X a_p + c,  q̈ = D⁻¹ (u − Uᵀ a'),  a_i = a' + S q̈
         for (i, joint) in joints.iter().enumerate() {
-            let (before, rest) = self.links.split_at_mut(i + 1);
-            let (parent, link) = (&before[parent_link(joint)], &mut rest[0]);
-            by_kind!(joint.kind, accelerate, model, i, parent.a, tau, a, link, &mut smallest);
+            by_kind!(joint.kind, accelerate, model, i, tau, a, &links[i], path, &mut smallest);
         }
         Ok(smallest.check()?)
     }
@@ -154,35 +158,35 @@ impl<T: Real> Aba<T> {
     /// # Errors
     /// [`DimensionError`] when an argument or the workspace does not fit the model.
     pub fn solve<P: Real + Lift<T>>(&mut self, model: &Model<P>, f: &[T], x: &mut [T]) -> Result<(), DimensionError> {
-        expect_bodies(model, self.links.len() - 1)?;
+        let Self { links, path } = self;
+        expect_bodies(model, links.len())?;
         expect("joint forces f", model.topology.nv(), f.len())?;
         expect("solution x", model.topology.nv(), x.len())?;
         let joints = model.topology.joints();
-        for link in &mut self.links {
-            (link.p, link.a, link.c) = (Force::zero(), Motion::zero(), Motion::zero());
+        path[0].a = Motion::zero();
+        for link in links.iter_mut() {
+            (link.p, link.c) = (Force::zero(), Motion::zero());
         }
 
         // inward: u = f − Sᵀ pᴬ,  pᴬ_p += X* (pᴬ + U D⁻¹ u)
         for (i, joint) in joints.iter().enumerate().rev() {
-            let (before, rest) = self.links.split_at_mut(i + 1);
-            let parent = joint.parent.map(|parent| &mut before[parent + 1]);
+            let (before, rest) = links.split_at_mut(i);
+            let parent = joint.parent.map(|parent| &mut before[parent]);
             by_kind!(joint.kind, pass_force_to_parent, model, i, f, &mut rest[0], parent);
         }
 
         // outward: as in a run, with v = 0
         let mut smallest = Pivot::none();
         for (i, joint) in joints.iter().enumerate() {
-            let (before, rest) = self.links.split_at_mut(i + 1);
-            let (parent, link) = (&before[parent_link(joint)], &mut rest[0]);
-            by_kind!(joint.kind, accelerate, model, i, parent.a, f, x, link, &mut smallest);
+            by_kind!(joint.kind, accelerate, model, i, f, x, &links[i], path, &mut smallest);
         }
         Ok(())
     }
 
-    /// The placement of body `i` in its parent, at the configuration of the last run.
+    /// The placement of body `i` in its parent, at the configuration of the last run with this model.
     #[inline(always)]
-    pub(crate) fn placement(&self, i: usize) -> &Transform<T> {
-        &self.links[i + 1].x
+    pub(crate) fn placement<P: Real + Lift<T>>(&self, model: &Model<P>, i: usize) -> Transform<T> {
+        model.topology.joints()[i].kind.recall(&model.placements[i], &self.links[i].x)
     }
 
     fn expect_shapes<P: Real>(
@@ -194,7 +198,7 @@ impl<T: Real> Aba<T> {
         wrenches: Option<&[Force<T>]>,
         a: &[T],
     ) -> Result<(), DimensionError> {
-        expect_bodies(model, self.links.len() - 1)?;
+        expect_bodies(model, self.links.len())?;
         expect("configuration q", model.topology.nq(), q.len())?;
         expect("velocity v", model.topology.nv(), v.len())?;
         expect("joint forces tau", model.topology.nv(), tau.len())?;
@@ -203,55 +207,76 @@ impl<T: Real> Aba<T> {
     }
 }
 
-/// Pass 1 for one body: X, ω, c, Iᴬ = I and pᴬ = v ×* I v.
+/// Pass 1 for one body: X, ω, c and pᴬ = v ×* I v.
 #[inline(always)]
 fn set_moving<T: Real, P: Real + Lift<T>>(
     kind: JointKind,
     model: &Model<P>,
     i: usize,
-    parent_omega: Vec3<T>,
     q: &[T],
     v: &[T],
+    path: &mut [OnPath<T>],
     link: &mut Link<T>,
 ) {
     let (joint, subspace) = (&model.topology.joints()[i], &model.subspaces[i]);
-    link.x = kind.transform(&model.placements[i], subspace, &q[joint.q..]);
+    let x = kind.transform(&model.placements[i], subspace, &q[joint.q..]);
+    kind.keep(&x, &mut link.x);
     let joint_velocity = kind.motion(subspace, &v[joint.v..]);
-    (link.omega, link.c) = cross_joint(kind, &link.x, parent_omega, None, joint_velocity);
-    let inertia = model.inertias[i].lift();
-    link.inertia = inertia.to_articulated();
-    link.p = newton_euler(&inertia, link.omega, None);
+    let (omega, c) = cross_joint(kind, &x, path[joint.parent_slot].omega, None, joint_velocity);
+    link.c = c;
+    link.p = newton_euler(&model.inertias[i].lift(), omega, None);
+    path[joint.slot].omega = omega;
 }
 
 /// Pass 2 for one body: eliminates its joint, and adds Iᵃ and pᵃ to its parent. `smallest` takes note of the pivots D.
 #[inline(always)]
+#[expect(clippy::too_many_arguments, reason = "one body's step reads the model and the inputs, and writes the workspace")]
 fn pass_to_parent<T: Real, P: Real + Lift<T>>(
     kind: JointKind,
     model: &Model<P>,
     i: usize,
     tau: &[T],
-    link: &mut Link<T>,
-    parent: Option<&mut Link<T>>,
+    links: &mut [Link<T>],
+    path: &mut [OnPath<T>],
     smallest: &mut Pivot,
 ) {
-    let dof = model.topology.joints()[i].v;
-    let (inertia, force) = match kind {
+    let joints = model.topology.joints();
+    let (joint, dof) = (&joints[i], joints[i].v);
+    let (before, rest) = links.split_at_mut(i);
+    let link = &mut rest[0];
+    let own = |i: usize| model.inertias[i].lift::<T>().to_articulated();
+    // Iᴬ is complete: the children have been reached
+    let is_leaf = joints.get(i + 1).is_none_or(|next| next.parent != Some(i));
+    if is_leaf {
+        path[joint.slot].inertia = own(i);
+    }
+    let inertia = &path[joint.slot].inertia;
+    let (apparent, force) = match kind {
         JointKind::Revolute(_) | JointKind::Prismatic(_) | JointKind::Helical => {
             let (subspace, armature) = (model.subspaces[i].lift(), model.armature[dof].lift());
-            let (inertia, force) = one_dof::eliminate(kind, subspace, armature, tau[dof], link, dof, smallest);
-            (Some(inertia), force)
+            let (apparent, force) = one_dof::eliminate(kind, subspace, armature, tau[dof], inertia, link, dof, smallest);
+            (Some(apparent), force)
         }
         JointKind::Spherical => {
-            let (inertia, force) = spherical::eliminate(armatures(model, dof), &tau[dof..], link, dof, smallest);
-            (Some(inertia), force)
+            link.inertia = *inertia;
+            let (apparent, force) = spherical::eliminate(armatures(model, dof), &tau[dof..], link, dof, smallest);
+            (Some(apparent), force)
         }
-        JointKind::Free => (None, free::apparent_force(&tau[dof..])),
+        JointKind::Free => {
+            link.inertia = *inertia;
+            (None, free::apparent_force(&tau[dof..]))
+        }
     };
-    if let Some(parent) = parent {
-        if let Some(inertia) = inertia {
-            parent.inertia += inertia.to_parent(&link.x);
-        }
-        parent.p += link.x.force(force);
+    if let Some(parent) = joint.parent {
+        let x = kind.recall(&model.placements[i], &link.x);
+        let sum = &mut path[joint.parent_slot].inertia;
+        // the last child comes first
+        let before_it = if joint.slot == joint.parent_slot { own(parent) } else { *sum };
+        *sum = match apparent {
+            Some(apparent) => before_it + apparent.to_parent(&x),
+            None => before_it,
+        };
+        before[parent].p += x.force(force);
     }
 }
 
@@ -274,7 +299,7 @@ fn pass_force_to_parent<T: Real, P: Real + Lift<T>>(
         JointKind::Free => free::apparent_force(&f[dof..]),
     };
     if let Some(parent) = parent {
-        parent.p += link.x.force(force);
+        parent.p += kind.recall(&model.placements[i], &link.x).force(force);
     }
 }
 
@@ -285,14 +310,14 @@ fn accelerate<T: Real, P: Real + Lift<T>>(
     kind: JointKind,
     model: &Model<P>,
     i: usize,
-    parent_acceleration: Motion<T>,
     tau: &[T],
     a: &mut [T],
-    link: &mut Link<T>,
+    link: &Link<T>,
+    path: &mut [OnPath<T>],
     smallest: &mut Pivot,
 ) {
-    let dof = model.topology.joints()[i].v;
-    let carried = link.x.inverse_motion(parent_acceleration) + link.c;
+    let (joint, dof) = (&model.topology.joints()[i], model.topology.joints()[i].v);
+    let carried = kind.recall(&model.placements[i], &link.x).inverse_motion(path[joint.parent_slot].a) + link.c;
     match kind {
         JointKind::Revolute(_) | JointKind::Prismatic(_) | JointKind::Helical => a[dof] = one_dof::acceleration(link, carried),
         JointKind::Spherical => {
@@ -305,7 +330,7 @@ fn accelerate<T: Real, P: Real + Lift<T>>(
             a[dof + 3..dof + 6].copy_from_slice(&across.ang.to_array());
         }
     }
-    link.a = add_joint(kind, carried, kind.motion(&model.subspaces[i], &a[dof..]));
+    path[joint.slot].a = add_joint(kind, carried, kind.motion(&model.subspaces[i], &a[dof..]));
 }
 
 /// The three armatures of the spherical joint whose first dof is `dof`.

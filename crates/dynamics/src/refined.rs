@@ -217,7 +217,7 @@ impl<T: Real> MassProduct<T> {
         let joints = model.topology.joints();
         // outward: a_i = X a_p + S x,  f_i = I a_i
         for (i, joint) in joints.iter().enumerate() {
-            let carried = aba.placement(i).inverse_motion(self.motions[parent_link(joint)]);
+            let carried = aba.placement(model, i).inverse_motion(self.motions[parent_link(joint)]);
             let motion = add_joint(joint.kind, carried, joint.kind.motion(&model.subspaces[i], &x[joint.v..]));
             let inertia = model.inertias[i].lift::<T>();
             (self.motions[i + 1], self.forces[i]) = (motion, inertia.mul(motion));
@@ -230,7 +230,7 @@ impl<T: Real> MassProduct<T> {
                 *y -= *across;
             }
             if let Some(parent) = joint.parent {
-                self.forces[parent] += aba.placement(i).force(force);
+                self.forces[parent] += aba.placement(model, i).force(force);
             }
         }
         for ((y, x), armature) in y.iter_mut().zip(x).zip(&model.armature) {

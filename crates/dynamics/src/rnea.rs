@@ -9,34 +9,40 @@
 
 use crate::DimensionError;
 use crate::error::expect;
-use crate::step::{add_joint, by_kind, cross_joint, expect_bodies, expect_wrenches, newton_euler, parent_link};
+use crate::step::{add_joint, by_kind, cross_joint, expect_bodies, expect_wrenches, newton_euler};
 use featherbench_model::{JointKind, Model, Topology};
 use featherbench_spatial::{Force, Lift, Motion, Real, Transform, Vec3};
 
 /// The workspace of inverse dynamics.
 #[derive(Clone, Debug)]
 pub struct Rnea<T> {
-    /// Link 0 is the world; link i + 1 is body i.
+    /// Of each body.
     links: Vec<Link<T>>,
+    /// Of the bodies on the path that the outward recursion is on, by path slot ([`Joint::slot`](featherbench_model::Joint::slot)).
+    path: Vec<Moving<T>>,
 }
 
 #[derive(Clone, Copy, Debug)]
 struct Link<T> {
-    /// Placement in the parent.
+    /// Placement in the parent: what [`JointKind::keep`] keeps of it.
     x: Transform<T>,
+    /// Force f transmitted across the joint.
+    f: Force<T>,
+}
+
+#[derive(Clone, Copy, Debug)]
+struct Moving<T> {
     /// Angular velocity ω.
     omega: Vec3<T>,
     /// Classical acceleration a.
     a: Motion<T>,
-    /// Force f transmitted across the joint.
-    f: Force<T>,
 }
 
 impl<T: Real> Rnea<T> {
     /// A workspace for models of this topology.
     pub fn new(topology: &Topology) -> Self {
-        let rest = Link { x: Transform::identity(), omega: Vec3::zero(), a: Motion::zero(), f: Force::zero() };
-        Self { links: vec![rest; topology.bodies() + 1] }
+        let (link, rest) = (Link { x: Transform::identity(), f: Force::zero() }, Moving { omega: Vec3::zero(), a: Motion::zero() });
+        Self { links: vec![link; topology.bodies()], path: vec![rest; topology.bodies() + 1] }
     }
 
     /// The joint forces `tau` of configuration `q`, velocity `v`, acceleration `a` and external wrenches.
@@ -66,21 +72,20 @@ impl<T: Real> Rnea<T> {
         wrenches: Option<&[Force<T>]>,
         tau: &mut [T],
     ) -> Result<(), DimensionError> {
-        expect_bodies(model, self.links.len() - 1)?;
+        let Self { links, path } = self;
+        expect_bodies(model, links.len())?;
         expect("configuration q", model.topology.nq(), q.len())?;
         expect("velocity v", model.topology.nv(), v.len())?;
         expect("joint forces tau", model.topology.nv(), tau.len())?;
         expect_wrenches(model, wrenches)?;
         let joints = model.topology.joints();
 
-        // X_i: placement of each body in its parent
-        self.links[0].a.lin = -model.gravity.lift();
+        path[0].a.lin = -model.gravity.lift();
 
         // outward: v_i = X v_p + S q̇,  a_i = X a_p + S q̈ + c,  f_i = I a_i + v_i ×* I v_i − f_ext
         for (i, joint) in joints.iter().enumerate() {
-            let (before, rest) = self.links.split_at_mut(i + 1);
-            let (parent, link) = (&before[parent_link(joint)], &mut rest[0]);
-            by_kind!(joint.kind, outward::<T, P, ACCELERATED>, model, i, parent, q, v, a, link);
+            let link = &mut links[i];
+            by_kind!(joint.kind, outward::<T, P, ACCELERATED>, model, i, q, v, a, path, link);
             if let Some(wrenches) = wrenches {
                 link.f -= model.labels[i].force_to_compiled(wrenches[i]);
             }
@@ -89,17 +94,7 @@ impl<T: Real> Rnea<T> {
         // inward: τ_i = Sᵀ f_i,  f_p += X* f_i
         let mut passed = None;
         for (i, joint) in joints.iter().enumerate().rev() {
-            let Link { x, f, .. } = &self.links[i + 1];
-            let f = passed.take().map_or(*f, |passed| *f + passed);
-            joint.kind.project(&model.subspaces[i], f, &mut tau[joint.v..]);
-            if let Some(parent) = joint.parent {
-                let moved = x.force(f);
-                if parent + 1 == i {
-                    passed = Some(moved);
-                } else {
-                    self.links[parent + 1].f += moved;
-                }
-            }
+            by_kind!(joint.kind, inward, model, i, links, tau, &mut passed);
         }
         if ACCELERATED {
             // τ_k += armature_k q̈_k
@@ -118,20 +113,46 @@ fn outward<T: Real, P: Real + Lift<T>, const ACCELERATED: bool>(
     kind: JointKind,
     model: &Model<P>,
     i: usize,
-    parent: &Link<T>,
     q: &[T],
     v: &[T],
     a: &[T],
+    path: &mut [Moving<T>],
     link: &mut Link<T>,
 ) {
-    let (dof, subspace) = (model.topology.joints()[i].v, &model.subspaces[i]);
-    link.x = kind.transform(&model.placements[i], subspace, &q[model.topology.joints()[i].q..]);
+    let (joint, subspace) = (&model.topology.joints()[i], &model.subspaces[i]);
+    let (parent, dof) = (&path[joint.parent_slot], joint.v);
+    let x = kind.transform(&model.placements[i], subspace, &q[joint.q..]);
+    kind.keep(&x, &mut link.x);
     let joint_velocity = kind.motion(subspace, &v[dof..]);
-    (link.omega, link.a) = cross_joint(kind, &link.x, parent.omega, Some(parent.a), joint_velocity);
+    let (omega, mut acceleration) = cross_joint(kind, &x, parent.omega, Some(parent.a), joint_velocity);
     if ACCELERATED {
-        link.a = add_joint(kind, link.a, kind.motion(subspace, &a[dof..]));
+        acceleration = add_joint(kind, acceleration, kind.motion(subspace, &a[dof..]));
     }
-    link.f = newton_euler(&model.inertias[i].lift(), link.omega, Some(link.a));
+    path[joint.slot] = Moving { omega, a: acceleration };
+    link.f = newton_euler(&model.inertias[i].lift(), omega, Some(acceleration));
+}
+
+/// The inward step of one body: τ, and what its parent's force gets. `passed` is what a body gives to the one before it.
+#[inline(always)]
+fn inward<T: Real, P: Real + Lift<T>>(
+    kind: JointKind,
+    model: &Model<P>,
+    i: usize,
+    links: &mut [Link<T>],
+    tau: &mut [T],
+    passed: &mut Option<Force<T>>,
+) {
+    let (joint, Link { x, f }) = (&model.topology.joints()[i], &links[i]);
+    let f = passed.take().map_or(*f, |passed| *f + passed);
+    kind.project(&model.subspaces[i], f, &mut tau[joint.v..]);
+    if let Some(parent) = joint.parent {
+        let moved = kind.recall(&model.placements[i], x).force(f);
+        if parent + 1 == i {
+            *passed = Some(moved);
+        } else {
+            links[parent].f += moved;
+        }
+    }
 }
 
 /// Inverse dynamics that makes its own workspace, without external wrenches; it allocates.

@@ -71,6 +71,32 @@ fn table() -> Vec<(&'static str, Topology, [u64; 4])> {
     ]
 }
 
+/// Going out, a slot still holds the parent when a child reads it. Going in, a body's last child is the first to write to the body's slot.
+#[test]
+fn a_path_slot_is_kept_until_the_last_child() {
+    for (name, topology, _) in table() {
+        let joints = topology.joints();
+        let mut holds = vec![None; joints.len() + 1];
+        for (i, joint) in joints.iter().enumerate() {
+            assert_eq!(holds[joint.parent_slot], joint.parent, "{name}: the slot that body {i} reads");
+            assert_ne!(joint.slot, 0, "{name}: the slot of the world");
+            holds[joint.slot] = Some(i);
+        }
+        let mut holds = vec![None; joints.len() + 1];
+        for (i, joint) in joints.iter().enumerate().rev() {
+            assert!(holds[joint.slot] == Some(i) || joints.get(i + 1).is_none_or(|next| next.parent != Some(i)), "{name}: sum of body {i}");
+            if let Some(parent) = joint.parent {
+                let last = joints.iter().rposition(|other| other.parent == Some(parent)) == Some(i);
+                assert_eq!(joint.slot == joint.parent_slot, last, "{name}: body {i}");
+                assert!(last || holds[joint.parent_slot] == Some(parent), "{name}: body {i} adds");
+                holds[joint.parent_slot] = Some(parent);
+            }
+        }
+        let slots = joints.iter().map(|joint| joint.slot).max().unwrap();
+        assert!(slots <= topology.depth() && (!name.starts_with("chain") || slots == 1), "{name}: {slots} slots");
+    }
+}
+
 /// A random positive definite matrix with the sparsity of a topology, as its lower triangle: `LᵀDL` for random L and D.
 fn random_matrix(topology: &Topology, seed: u64) -> DMatrix<f64> {
     let mut random = Random::new(seed, 0);

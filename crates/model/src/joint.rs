@@ -1,6 +1,6 @@
 //! The primitive joints of the compiled model.
 
-use featherbench_spatial::{Force, Lift, Motion, Quaternion, Real, Transform, Vec3};
+use featherbench_spatial::{Force, Lift, Mat3, Motion, Quaternion, Real, Transform, Vec3};
 
 /// Where the axis of a screw joint points, as far as a kernel can know when it is compiled.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -85,6 +85,42 @@ impl JointKind {
                 let turn = Quaternion::from_array([q[3], q[4], q[5], q[6]]).to_rotation();
                 Transform::new(fixed.rotation * turn, fixed.point(Vec3::new(q[0], q[1], q[2])))
             }
+        }
+    }
+
+    /// Writes the part of a placement that changes with q. [`JointKind::recall`] gives the placement back.
+    ///
+    /// Kernels keep the placements of all bodies. What they keep of lanes fills the caches, so constants stay in the model.
+    #[inline(always)]
+    pub fn keep<T: Real>(self, x: &Transform<T>, kept: &mut Transform<T>) {
+        match self {
+            Self::Revolute(Axis::Z) => {
+                let (from, to) = (&x.rotation, &mut kept.rotation);
+                for (from, to) in [(from.x, &mut to.x), (from.y, &mut to.y), (from.z, &mut to.z)] {
+                    (to.x, to.y) = (from.x, from.y);
+                }
+            }
+            Self::Revolute(Axis::Skew) | Self::Spherical => kept.rotation = x.rotation,
+            Self::Prismatic(_) => kept.translation = x.translation,
+            Self::Helical | Self::Free => *kept = *x,
+        }
+    }
+
+    /// The placement of which [`JointKind::keep`] kept a part, with the constants of the placement at q = 0.
+    #[inline(always)]
+    pub fn recall<T: Real, P: Lift<T> + Real>(self, placement: &Transform<P>, kept: &Transform<T>) -> Transform<T> {
+        let fixed: Transform<T> = placement.lift();
+        match self {
+            Self::Revolute(Axis::Z) => {
+                let row = |kept: Vec3<T>, fixed: Vec3<T>| Vec3::new(kept.x, kept.y, fixed.z);
+                let (kept, fixed_rotation) = (&kept.rotation, &fixed.rotation);
+                let rows = [row(kept.x, fixed_rotation.x), row(kept.y, fixed_rotation.y), row(kept.z, fixed_rotation.z)];
+                let [x, y, z] = rows;
+                Transform::new(Mat3::from_rows(x, y, z), fixed.translation)
+            }
+            Self::Revolute(Axis::Skew) | Self::Spherical => Transform::new(kept.rotation, fixed.translation),
+            Self::Prismatic(_) => Transform::new(fixed.rotation, kept.translation),
+            Self::Helical | Self::Free => *kept,
         }
     }
 

@@ -14,6 +14,13 @@ pub struct Joint {
     pub q: usize,
     /// Where the joint's part of v begins.
     pub v: usize,
+    /// The *path slot* of the body. A recursion keeps there what it needs of the bodies on one path.
+    ///
+    /// The world has slot 0, a root has slot 1. The last child of a body takes over its parent's slot, every other child has the next slot.
+    /// So in depth-first order a slot is written only after the last child has read it. A chain has one slot, whatever its length.
+    pub slot: usize,
+    /// The path slot of the parent.
+    pub parent_slot: usize,
 }
 
 /// A tree of primitive joints in depth-first order. Body i is the body moved by joint i.
@@ -44,7 +51,7 @@ impl Topology {
     ///
     /// Returns `None` unless the order is depth-first: each body's parent must be on the path from the world to the body before it.
     pub fn new(tree: &[(Option<usize>, JointKind)]) -> Option<Self> {
-        let mut joints = Vec::with_capacity(tree.len());
+        let mut joints: Vec<Joint> = Vec::with_capacity(tree.len());
         let (mut nq, mut nv) = (0, 0);
         let mut path: Vec<usize> = Vec::new();
         for (body, &(parent, kind)) in tree.iter().enumerate() {
@@ -52,9 +59,22 @@ impl Topology {
                 path.pop()?;
             }
             path.push(body);
-            joints.push(Joint { parent, kind, q: nq, v: nv });
+            joints.push(Joint { parent, kind, q: nq, v: nv, slot: 1, parent_slot: 0 });
             nq += kind.nq();
             nv += kind.nv();
+        }
+
+        let mut last_child: Vec<usize> = vec![0; joints.len()];
+        for (body, joint) in joints.iter().enumerate() {
+            if let Some(parent) = joint.parent {
+                last_child[parent] = body;
+            }
+        }
+        for body in 0..joints.len() {
+            if let Some(parent) = joints[body].parent {
+                joints[body].parent_slot = joints[parent].slot;
+                joints[body].slot = joints[parent].slot + usize::from(last_child[parent] != body);
+            }
         }
 
         // A dof's parent is the dof before it in its joint, or the last dof of the parent body.

@@ -9,18 +9,20 @@ use featherbench_spatial::{ArticulatedInertia, Force, Motion, Real, Vec3};
 
 /// `(Iᵃ, pᵃ)`. Keeps U D⁻¹, D⁻¹ and D⁻¹ u in the link; `smallest` takes note of D.
 #[inline(always)]
+#[expect(clippy::too_many_arguments, reason = "the elimination reads the model and the inputs, and writes the link")]
 pub(super) fn eliminate<T: Real>(
     kind: JointKind,
     subspace: Motion<T>,
     armature: T,
     tau: T,
+    inertia: &ArticulatedInertia<T>,
     link: &mut Link<T>,
     dof: usize,
     smallest: &mut Pivot,
 ) -> (ArticulatedInertia<T>, Force<T>) {
-    let (inertia, p) = (link.inertia, link.p);
+    let p = link.p;
     // U = Iᴬ S,  D = Sᵀ U + armature,  u = τ − Sᵀ pᴬ
-    let upper_u = times_subspace(kind, &inertia, subspace);
+    let upper_u = times_subspace(kind, inertia, subspace);
     let d = along(kind, subspace, upper_u) + armature;
     let u = tau - along(kind, subspace, p);
     smallest.note(dof, d.min_lane());
