@@ -8,8 +8,10 @@ use featherbench_robots::{Random, StateBatch};
 use featherbench_spatial::{Angle, Dual, Force, Lift, Motion, Quaternion, Real, Sym3, Vec3};
 use nalgebra::DMatrix;
 
+mod by_reciprocal;
 mod tolerance;
 
+pub use by_reciprocal::ByReciprocal;
 pub use tolerance::assert_within as within;
 
 /// The largest |a − b|, NaN if any difference is.
