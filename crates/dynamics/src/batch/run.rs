@@ -215,10 +215,21 @@ impl<S: Number, E: Element<S>, const N: usize> Job<'_, S, E, N> {
 }
 
 /// Whether all numbers in all lanes are finite: zero times a number is zero then, and NaN otherwise.
+///
+/// There are four sums, because additions to one wait for each other.
 #[inline(always)]
 fn are_finite<T: Real>(registers: &[T]) -> bool {
     let zero = T::zero();
-    !registers.iter().fold(zero, |sum, x| x.mul_add(zero, sum)).min_lane().is_nan()
+    let (fours, rest) = registers.as_chunks::<4>();
+    let mut sums = [zero; 4];
+    for four in fours {
+        for (sum, x) in sums.iter_mut().zip(four) {
+            *sum = x.mul_add(zero, *sum);
+        }
+    }
+    let [a, b, c, d] = sums;
+    let sum = rest.iter().fold((a + b) + (c + d), |sum, x| x.mul_add(zero, sum));
+    !sum.min_lane().is_nan()
 }
 
 /// The first entry that is not finite, in registers with the same number in all lanes.
