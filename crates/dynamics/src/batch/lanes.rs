@@ -40,8 +40,20 @@ pub trait Element<S: Number>: Copy + Send + Sync {
     fn erase(part: &mut [Self], each: usize, lane: usize);
 }
 
+/// The first entries of the squares of numbers that cover a vector of `each` entries. A square has `side` entries of `side` states, and is
+/// transposed in registers. The last one overlaps the one before it where it must.
+fn squares(each: usize, side: usize) -> impl Iterator<Item = usize> {
+    let last = each.checked_sub(side);
+    (0..each.next_multiple_of(side)).step_by(side).filter_map(move |entry| Some(entry.min(last?)))
+}
+
+/// The entries of a vector that is too short for a square.
+fn rest(each: usize, side: usize) -> std::ops::Range<usize> {
+    if each < side { 0..each } else { 0..0 }
+}
+
 macro_rules! number {
-    ($scalar:ident, $lanes:path, $count:expr) => {
+    ($scalar:ident, $lanes:path, $count:expr, $square:path, $side:expr) => {
         impl Number for $scalar {
             type Lanes = $lanes;
 
@@ -92,17 +104,41 @@ macro_rules! number {
                 let rows = &rows[..rows.len().min(each * $count)];
                 let last = (rows.len() / each.max(1)).saturating_sub(1);
                 let rows: [&[$scalar]; $count] = std::array::from_fn(|lane| &rows[lane.min(last) * each..][..buffer.len()]);
-                for (entry, register) in buffer.iter_mut().enumerate() {
-                    *register = <$lanes>::new(std::array::from_fn(|lane| rows[lane][entry]));
+                for entry in squares(each, $side) {
+                    let columns: [[$square; $side]; $count / $side] = std::array::from_fn(|block| {
+                        let row = |k: usize| *rows[block * $side + k][entry..].first_chunk().expect("a row of the square");
+                        <$square>::transpose(std::array::from_fn(|k| <$square>::new(row(k))))
+                    });
+                    for (k, register) in buffer[entry..][..$side].iter_mut().enumerate() {
+                        let mut lanes = [[0.0; $side]; $count / $side];
+                        for (lanes, columns) in lanes.iter_mut().zip(&columns) {
+                            *lanes = columns[k].to_array();
+                        }
+                        *register = <$lanes>::new(*lanes.as_flattened().first_chunk().expect("all lanes"));
+                    }
+                }
+                for entry in rest(each, $side) {
+                    buffer[entry] = <$lanes>::new(std::array::from_fn(|lane| rows[lane][entry]));
                 }
                 buffer
             }
 
             #[inline(always)]
             fn store(results: &[$lanes], part: &mut [Self]) {
-                for (lane, row) in part.chunks_exact_mut(results.len().max(1)).enumerate() {
-                    for (number, register) in row.iter_mut().zip(results) {
-                        *number = register.as_array()[lane];
+                let each = results.len();
+                let states = part.len() / each.max(1);
+                for entry in squares(each, $side) {
+                    for (block, part) in part.chunks_mut(each * $side).enumerate() {
+                        let row = |k: usize| *results[entry + k].as_array()[block * $side..].first_chunk().expect("a row of the square");
+                        let columns = <$square>::transpose(std::array::from_fn(|k| <$square>::new(row(k))));
+                        for (state, column) in part.chunks_exact_mut(each).zip(columns) {
+                            state[entry..][..$side].copy_from_slice(column.as_array());
+                        }
+                    }
+                }
+                for entry in rest(each, $side) {
+                    for (lane, number) in results[entry].as_array().iter().enumerate().take(states) {
+                        part[lane * each + entry] = *number;
                     }
                 }
             }
@@ -115,13 +151,13 @@ macro_rules! number {
 }
 
 #[cfg(target_feature = "avx512f")]
-number!(f64, wide::f64x8, 8);
+number!(f64, wide::f64x8, 8, wide::f64x4, 4);
 #[cfg(target_feature = "avx512f")]
-number!(f32, wide::f32x16, 16);
+number!(f32, wide::f32x16, 16, wide::f32x8, 8);
 #[cfg(not(target_feature = "avx512f"))]
-number!(f64, wide::f64x4, 4);
+number!(f64, wide::f64x4, 4, wide::f64x4, 4);
 #[cfg(not(target_feature = "avx512f"))]
-number!(f32, wide::f32x8, 8);
+number!(f32, wide::f32x8, 8, wide::f32x8, 8);
 
 /// An array in lane order, from one in row order whose vectors have `each` entries. The last group is filled with copies of its last state.
 ///
