@@ -20,13 +20,42 @@ const USUAL: usize = 48;
 
 /// Solves `LᵀDL x = b` in place. The plain text does it where a path is longer than [`LONGEST`].
 pub(super) fn solve(matrix: &TreeSparse<f64>, plan: &Plan, x: &mut [f64]) {
-    if plan.deepest <= USUAL {
+    if let [block] = plan.blocks[..] {
+        by_size!(block.size, solve_run(matrix.values(), x));
+    } else if plan.deepest <= USUAL {
         solve_by_path(matrix, &plan.blocks, x, &mut [0.0; USUAL + 2 * LANES]);
     } else if plan.deepest <= LONGEST {
         solve_by_path(matrix, &plan.blocks, x, &mut [0.0; LONGEST + 2 * LANES]);
     } else {
         super::solve_plainly(matrix, x);
     }
+}
+
+/// A single block, which is a chain of up to eight dofs: everything is in registers, and every place is a constant.
+#[inline(never)]
+fn solve_run<const SIZE: usize>(values: &[f64], x: &mut [f64]) {
+    let x: &mut [f64; SIZE] = x.first_chunk_mut().expect("one number per dof");
+    let (mut l, mut y, mut d) = ([[0.0; LANES]; SIZE], [0.0; LANES], [1.0; LANES]);
+    up!(k < SIZE {
+        let row: &[f64; k + 1] = values[k * (k + 1) / 2..].first_chunk().expect("a row");
+        l[k][..k + 1].copy_from_slice(row);
+        (y[k], d[k]) = (x[k], l[k][k]);
+    });
+    // Lᵀ y = b
+    down!(k < SIZE {
+        down!(j < k {
+            y[j] = Real::mul_add(-l[k][j], y[k], y[j]);
+        });
+    });
+    // D z = y
+    let mut z = (f64x8::new(y) / f64x8::new(d)).to_array();
+    // L x = z
+    up!(k < SIZE {
+        up!(j < k {
+            z[k] = Real::mul_add(-l[k][j], z[j], z[k]);
+        });
+    });
+    x.copy_from_slice(&z[..SIZE]);
 }
 
 fn solve_by_path(matrix: &TreeSparse<f64>, blocks: &[Block], x: &mut [f64], path: &mut [f64]) {
