@@ -60,7 +60,16 @@ impl<'a> Asked<'a> {
 
     /// Engines that are asked themselves, and must answer.
     pub fn live(root: &Root, engines: &'a [String], limits: Limits) -> Self {
-        Self { engines, timed: Vec::new(), alone: Vec::new(), externals: &[], live: true, recorded: root.recorded(), robots: Vec::new(), limits }
+        Self {
+            engines,
+            timed: Vec::new(),
+            alone: Vec::new(),
+            externals: &[],
+            live: true,
+            recorded: root.recorded(),
+            robots: Vec::new(),
+            limits,
+        }
     }
 }
 

@@ -77,9 +77,7 @@ pub use jacobian::{Jacobian, jacobian};
 pub use kinematics::{BodyMotion, Kinematics, forward_kinematics};
 pub use ltdl::Ltdl;
 pub use momentum::{CentroidalMomentum, Momentum, centroidal_momentum};
-pub use packed::{
-    PackedAba, PackedCenterOfMass, PackedCrba, PackedEnergy, PackedJacobian, PackedKinematics, PackedModel, PackedMomentum, PackedRnea,
-};
+pub use packed::{PackedAba, PackedCenterOfMass, PackedCrba, PackedJacobian, PackedKinematics, PackedModel, PackedMomentum, PackedRnea};
 pub use refined::{Refined, refined_forward_dynamics};
 pub use rnea::{Rnea, inverse_dynamics};
 pub use tree_sparse::TreeSparse;

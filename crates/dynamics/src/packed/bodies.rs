@@ -266,10 +266,7 @@ impl Bodies {
     pub fn across_joints<const ORDER: usize>(&mut self, model: &PackedModel, b: usize, [q, v, a]: [&[f64]; 3]) {
         let (block, steps, local) = (&model.blocks[b], &model.trees.steps[b], &mut self.locals[b]);
         let angle = load(block, &block.q, q);
-        let (sin, cos) = angle.sin_cos();
-        let [fixed, by_sin, by_cos] = &block.turn;
-        let partly = by_cos.zip(*fixed, |by_cos, fixed| by_cos.mul_add(cos, fixed));
-        local.rotation = by_sin.zip(partly, |by_sin, partly| by_sin.mul_add(sin, partly));
+        local.rotation = block.turned(angle);
         local.displacement = if block.slides { steps.travel.scale_add(angle, steps.mount) } else { steps.mount };
         if has(ORDER, ANGULAR_VELOCITIES) {
             local.v = load(block, &block.v, v).to_array();

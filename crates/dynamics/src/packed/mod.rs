@@ -10,7 +10,7 @@
 //!   the world; for forward dynamics and the mass matrix of a tree whose root is a free joint they are those of its root body.
 //! - The formulas of a body are those of the other text, `step.rs`, with registers as scalars.
 //!
-//! Motions need less per body: [`PackedKinematics`], [`PackedCenterOfMass`], [`PackedMomentum`], [`PackedEnergy`], [`PackedJacobian`] and
+//! Motions need less per body: [`PackedKinematics`], [`PackedCenterOfMass`], [`PackedMomentum`], [`PackedJacobian`] and
 //! pass 1 of [`PackedRnea`] form the rotations across joints for a register of joints at once. Then they go from body to body in world
 //! axes, with a vector in a register. Only the products with inertias are done for a register of bodies again. The motions in [`PackedAba`]
 //! are sums along paths, because they are relative to the first joint of a segment.
@@ -36,11 +36,9 @@
 //! | Jacobian | 1.02, 2.0 | 1.03, 1.8 |
 //! | centre of mass | 1.02, 2.0 | 1.07, 2.0 |
 //! | momentum | 1.03, 2.9 | 1.01, 1.6 |
-//! | kinetic energy | 1.09, 2.0 | 1.06, 2.6 |
-//! | potential energy | 1.05, 2.4 | 0.99, 3.0 |
 //!
-//! These are the usual methods of the studies in this text, but for energies. On six robots the packed kinetic energy had more than twice
-//! the best engine's error, so energies go link by link there. The left columns of all tables are of link by link before joints along
+//! These are the usual methods of the studies in this text. Energies go link by link. A packed text took a third of the time. But on six robots
+//! its kinetic energy had more than twice the best engine's error, 2.6 times at most. So it was removed. The left columns of all tables are of link by link before joints along
 //! coordinate axes had a text of their own.
 //!
 //! **Speed.** Time link by link over time packed, AVX-512, random states. Both texts know joints along coordinate axes:
@@ -77,7 +75,6 @@ mod aba;
 mod bodies;
 mod center_of_mass;
 mod crba;
-mod energy;
 mod jacobian;
 mod kinematics;
 mod lanes;
@@ -92,7 +89,6 @@ mod xyz;
 pub use aba::PackedAba;
 pub use center_of_mass::PackedCenterOfMass;
 pub use crba::PackedCrba;
-pub use energy::PackedEnergy;
 pub use jacobian::PackedJacobian;
 pub use kinematics::PackedKinematics;
 pub use model::PackedModel;

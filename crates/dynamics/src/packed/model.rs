@@ -1,7 +1,7 @@
 //! The parameters of a model, several joints to a register.
 
 use super::bodies::Trees;
-use super::lanes::{LANES, Pack, STEPS, from_lanes};
+use super::lanes::{LANES, Lanes, Pack, STEPS, from_lanes};
 use featherbench_model::{JointKind, Label, Model, Topology};
 use featherbench_spatial::{CentralInertia, Force, Mat3, Motion, Real, RigidBodyInertia, Sym3, Transform, Vec3};
 use std::ops::Range;
@@ -44,8 +44,8 @@ pub struct PackedModel {
 /// The parameters of consecutive joints, one to a lane. Lanes without a joint hold zeros.
 #[derive(Clone, Debug)]
 pub(super) struct Block {
-    /// `L = turn[0] + sin q · turn[1] + cos q · turn[2]`: the orientation of each body in its parent. See `orientation.rs`.
-    pub turn: [Mat3<Pack>; 3],
+    /// `L = turn[0] + sin q · turn[1] + cos q · turn[2]`: the orientation of each body in its parent. See [`Block::turned`].
+    turn: [Mat3<Pack>; 3],
     /// The displacement from the parent's origin, in the parent's axes, at q = 0, and its change with q.
     pub mount: Vec3<Pack>,
     pub slide: Vec3<Pack>,
@@ -91,6 +91,17 @@ pub(super) struct Block {
     pub segments: Range<usize>,
     pub children: Range<usize>,
     pub wide: Range<usize>,
+}
+
+impl Block {
+    /// L at these angles: the orientation of each body in its parent, but for wide joints.
+    #[inline(always)]
+    pub fn turned(&self, angle: Pack) -> Mat3<Pack> {
+        let (sin, cos) = angle.sin_cos();
+        let [fixed, by_sin, by_cos] = &self.turn;
+        let partly = by_cos.zip(*fixed, |by_cos, fixed| by_cos.mul_add(cos, fixed));
+        by_sin.zip(partly, |by_sin, partly| by_sin.mul_add(sin, partly))
+    }
 }
 
 /// Joints of a block, each the parent of the next, or one wide joint.

@@ -95,10 +95,7 @@ impl Orientations {
     #[inline(always)]
     fn across_joints(&mut self, model: &PackedModel, block: &Block, q: &[f64]) -> (Mat3<Pack>, Vec3<Pack>) {
         let angle = load(block, &block.q, q);
-        let (sin, cos) = angle.sin_cos();
-        let [fixed, by_sin, by_cos] = &block.turn;
-        let partly = by_cos.zip(*fixed, |by_cos, fixed| by_cos.mul_add(cos, fixed));
-        let mut local = by_sin.zip(partly, |by_sin, partly| by_sin.mul_add(sin, partly));
+        let mut local = block.turned(angle);
         let mut displacement = if block.slides { block.slide.scale_add(angle, block.mount) } else { block.mount };
         for wide in &model.wide[block.wide.clone()] {
             let x = self.across_wide(model, wide, &q[block.q[wide.lane]..]);

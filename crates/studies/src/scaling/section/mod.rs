@@ -116,7 +116,9 @@ fn limit(overview: &Overview, one: &Series) -> Markup {
 
 fn crossovers(data: &Data) -> Markup {
     let range = |points: &[(usize, u64, f64)]| match points {
-        [(_, n, first), .., (_, m, last)] => format!("{} at n = {} to {} at n = {}", short(*first), grouped(*n as usize), short(*last), grouped(*m as usize)),
+        [(_, n, first), .., (_, m, last)] => {
+            format!("{} at n = {} to {} at n = {}", short(*first), grouped(*n as usize), short(*last), grouped(*m as usize))
+        }
         [(_, n, only)] => format!("{} at n = {}", short(*only), grouped(*n as usize)),
         [] => String::new(),
     };
