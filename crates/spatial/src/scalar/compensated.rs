@@ -50,7 +50,7 @@ impl<T: Part> Compensated<T> {
     }
 
     #[cfg_attr(not(debug_assertions), inline(always))]
-    fn from_parts([value, error]: [T; 2]) -> Self {
+    pub(super) fn from_parts([value, error]: [T; 2]) -> Self {
         Self { value, error }
     }
 

@@ -7,6 +7,7 @@ mod double_double;
 mod dual;
 mod error_free;
 mod lanes;
+mod logarithm;
 mod part;
 mod trigonometry;
 
@@ -15,6 +16,7 @@ pub use compensated::Compensated;
 pub use counted::{Counted, Operations};
 pub use double_double::DoubleDouble;
 pub use dual::Dual;
+pub use logarithm::Logarithm;
 pub use part::Part;
 
 use std::fmt::Debug;
