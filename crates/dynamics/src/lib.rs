@@ -51,15 +51,19 @@ mod crba;
 mod derivatives;
 mod energy;
 mod error;
+mod floating_base;
 mod jacobian;
 mod kinematics;
 mod ltdl;
+mod ltl;
 mod momentum;
 mod packed;
+mod parents;
 mod refined;
 mod rnea;
 mod step;
 mod tree_sparse;
+mod triangular;
 
 pub use aba::{Aba, forward_dynamics};
 pub use batch::{Batch, BatchError, Cause, Element, Failure, Number, to_lanes, to_rows};
@@ -73,11 +77,17 @@ pub use derivatives::{
 };
 pub use energy::{Energies, Energy, energy};
 pub use error::{DimensionError, Error, NotPositiveDefinite};
+pub use floating_base::{BaseBlocks, FloatingBase, NoFloatingBase, PartitionError};
 pub use jacobian::{Jacobian, jacobian};
 pub use kinematics::{BodyMotion, Kinematics, forward_kinematics};
 pub use ltdl::Ltdl;
+pub use ltl::Ltl;
 pub use momentum::{CentroidalMomentum, Momentum, centroidal_momentum};
+pub use packed::{
+    PackedAba, PackedCenterOfMass, PackedCrba, PackedEnergy, PackedJacobian, PackedKinematics, PackedModel, PackedMomentum, PackedRnea,
+};
 pub use packed::{PackedAba, PackedCenterOfMass, PackedCrba, PackedJacobian, PackedKinematics, PackedModel, PackedMomentum, PackedRnea};
+pub use parents::{NotATree, depth_first_order};
 pub use refined::{Refined, refined_forward_dynamics};
 pub use rnea::{Rnea, inverse_dynamics};
 pub use tree_sparse::TreeSparse;

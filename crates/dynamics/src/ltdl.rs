@@ -11,6 +11,9 @@
 //! | inverse | n | Σ (d_k − 1)·k + D1 | O(Σ d_k·n) |
 //! | selected inverse | n | 2·D2 | O(Σ d_k²) |
 //!
+//! What else can be done with the factors has its own file: `ltdl/half.rs` (half-solutions, products, square root, determinant),
+//! `ltdl/columns.rs` (columns of the inverse) and `ltdl/update.rs` (`M ± σ w wᵀ`).
+//!
 //! This file has the plain text, for any scalar: duals, extended precision, counted operations. Two blocked texts stand beside it, and the
 //! tests compare each with it:
 //!
@@ -41,19 +44,23 @@
 //! elements of the inverse of a sparse matrix*, 1975, show for every sparse LU that no other entries are needed.)
 
 use crate::error::{Pivot, expect};
-use crate::{DimensionError, Error, NotPositiveDefinite, TreeSparse};
+use crate::{DimensionError, Error, NotPositiveDefinite, TreeSparse, triangular};
 use blocks::Plan;
 use featherbench_model::Topology;
 use featherbench_spatial::Real;
 use std::any::Any;
+use std::ops::Range;
 use wide::{f32x8, f32x16, f64x4, f64x8};
 
 mod blocks;
+mod columns;
 mod factor;
+mod half;
 mod inverse;
 mod lanes;
 mod registers;
 mod solve;
+mod update;
 
 /// The factors of a tree-sparse matrix. Before the first factorization they are all zero, and not valid.
 ///
@@ -91,6 +98,8 @@ pub struct Ltdl<T> {
     scratch: Vec<T>,
     /// What the selected inverse for `f64` needs: X of one path.
     square: Vec<T>,
+    /// What an update needs: numbers of one path.
+    path: Vec<T>,
 }
 
 impl<T: Real> Ltdl<T> {
@@ -198,10 +207,11 @@ impl<T: Real> Ltdl<T> {
         Ok(())
     }
 
-    pub(crate) fn from_unfactored(matrix: TreeSparse<T>) -> Self {
+    /// A workspace that holds a matrix, to be factored by [`Ltdl::factor`].
+    pub fn from_unfactored(matrix: TreeSparse<T>) -> Self {
         let plan = Plan::new(&matrix);
         let scratch = vec![T::zero(); Blocked::<T>::find().map_or(0, |blocked| (blocked.scratch)(&plan))];
-        Self { matrix, plan, scratch, square: Vec::new() }
+        Self { matrix, plan, scratch, square: Vec::new(), path: Vec::new() }
     }
 }
 
@@ -231,31 +241,14 @@ fn eliminate<T: Real>(matrix: &mut TreeSparse<T>) -> Pivot {
     smallest
 }
 
-/// The plain solution.
+/// The plain solution: Lᵀ y = b from the leaves, D z = y, and L x = z from the root.
 fn solve_plainly<T: Real>(matrix: &TreeSparse<T>, x: &mut [T]) {
-    // Lᵀ y = b, from the leaves: x_j −= L_kj x_k
-    for k in (0..x.len()).rev() {
-        let (x_k, l_k) = (x[k], &matrix.values()[matrix.row(k)]);
-        for (dofs, entries) in matrix.ancestors(k) {
-            for (x_j, l) in x[dofs].iter_mut().zip(&l_k[entries]) {
-                *x_j = (-*l).mul_add(x_k, *x_j);
-            }
-        }
-    }
+    triangular::solve_transposed::<T, true>(matrix, x);
     // D z = y
     for (x, d) in x.iter_mut().zip(matrix.diagonal()) {
         *x = *x / d;
     }
-    // L x = z, from the root: x_k −= L_kj x_j
-    for k in 0..x.len() {
-        let (mut x_k, l_k) = (x[k], &matrix.values()[matrix.row(k)]);
-        for (dofs, entries) in matrix.ancestors(k) {
-            for (x_j, l) in x[dofs].iter().zip(&l_k[entries]) {
-                x_k = (-*l).mul_add(*x_j, x_k);
-            }
-        }
-        x[k] = x_k;
-    }
+    triangular::solve::<T, true>(matrix, 0..x.len(), x);
 }
 
 /// The plain inverse.
@@ -324,6 +317,8 @@ struct Blocked<T> {
     /// How many numbers `factor` needs beside the matrix.
     scratch: fn(&Plan) -> usize,
     solve: Of<T>,
+    solve_lower: fn(&TreeSparse<T>, &Plan, Range<usize>, &mut [T]),
+    solve_lower_transposed: Of<T>,
     inverse: Of<T>,
     select: fn(&TreeSparse<T>, &Plan, &mut Vec<T>, &mut TreeSparse<T>),
 }
@@ -336,6 +331,8 @@ impl<T: Real> Blocked<T> {
         factor: lanes::factor,
         scratch: |_| 0,
         solve: lanes::solve,
+        solve_lower: lanes::solve_lower,
+        solve_lower_transposed: lanes::solve_lower_transposed,
         inverse: |matrix, _, inverse| invert(matrix, inverse),
         select: |matrix, _, _, inverse| select_inverse(matrix, inverse),
     };
@@ -347,6 +344,8 @@ impl<T: Real> Blocked<T> {
             factor: factor::factor,
             scratch: Plan::scratch,
             solve: solve::solve,
+            solve_lower: solve::solve_lower,
+            solve_lower_transposed: solve::solve_lower_transposed,
             inverse: inverse::inverse,
             select: inverse::select,
         };

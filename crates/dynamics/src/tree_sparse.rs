@@ -7,7 +7,8 @@
 //! Cost: [`TreeSparse::get`] O(1), [`TreeSparse::mul`] O(Σ d_k). Neither allocates.
 
 use crate::error::expect;
-use crate::{DimensionError, NotPositiveDefinite};
+use crate::parents::check_depth_first;
+use crate::{DimensionError, NotATree, NotPositiveDefinite};
 use featherbench_model::Topology;
 use featherbench_spatial::Real;
 use nalgebra::{DMatrix, Scalar};
@@ -44,29 +45,75 @@ pub(crate) struct Row {
 impl<T: Real> TreeSparse<T> {
     /// The zero matrix of a topology.
     pub fn new(topology: &Topology) -> Self {
-        let parents = topology.dof_parents();
+        Self::of_depth_first(topology.dof_parents())
+    }
+
+    /// The zero matrix of a tree without a robot: the parent of each dof, `None` for a root, in depth-first order.
+    ///
+    /// # Errors
+    /// [`NotATree`] when the order is not depth-first; [`depth_first_order`](crate::depth_first_order) makes one.
+    ///
+    /// ```
+    /// use featherbench_dynamics::TreeSparse;
+    /// // Two dofs on one: rows of 1, 2 and 2 numbers.
+    /// let mut matrix = TreeSparse::of_parents(&[None, Some(0), Some(0)])?;
+    /// matrix.fill(|i, j| if i == j { 4.0 } else { 1.0 });
+    /// assert_eq!(matrix.values(), [4.0, 1.0, 4.0, 1.0, 4.0]);
+    /// let factors = matrix.into_ltdl()?;
+    /// assert_eq!(factors.factors().get(0, 0), 3.5, "4 − 1/4 − 1/4");
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn of_parents(parents: &[Option<usize>]) -> Result<Self, NotATree> {
+        check_depth_first(parents)?;
+        Ok(Self::of_depth_first(parents))
+    }
+
+    fn of_depth_first(parents: &[Option<usize>]) -> Self {
         let mut rows: Vec<Row> = Vec::with_capacity(parents.len());
+        let (mut stored, mut depths) = (0, Vec::with_capacity(parents.len()));
         for (dof, &parent) in parents.iter().enumerate() {
             let run = if dof > 0 && parent == Some(dof - 1) { rows[dof - 1].run } else { dof };
-            rows.push(Row { start: topology.row(dof).start, parent, run, end: dof + 1 });
+            rows.push(Row { start: stored, parent, run, end: dof + 1 });
+            depths.push(1 + parent.map_or(0, |parent| depths[parent]));
+            stored += depths[dof];
         }
         for dof in (0..rows.len()).rev() {
             if let Some(parent) = rows[dof].parent {
                 rows[parent].end = rows[parent].end.max(rows[dof].end);
             }
         }
-        Self { values: vec![T::zero(); topology.stored() + PADDING], stored: topology.stored(), rows }
+        Self { values: vec![T::zero(); stored + PADDING], stored, rows }
     }
 
     /// The matrix with these entries. `entry(i, j)` is called for each stored entry; dof `j` supports dof `i`.
-    pub fn from_fn(topology: &Topology, mut entry: impl FnMut(usize, usize) -> T) -> Self {
+    pub fn from_fn(topology: &Topology, entry: impl FnMut(usize, usize) -> T) -> Self {
         let mut matrix = Self::new(topology);
-        for i in 0..topology.nv() {
-            for (value, &j) in matrix.values[topology.row(i)].iter_mut().zip(topology.row_dofs(i)) {
-                *value = entry(i, j);
+        matrix.fill(entry);
+        matrix
+    }
+
+    /// Writes every stored entry, row after row. `entry(i, j)` is called with a dof `j` that supports dof `i`. It allocates one path.
+    pub fn fill(&mut self, mut entry: impl FnMut(usize, usize) -> T) {
+        let mut path: Vec<usize> = Vec::new();
+        for dof in 0..self.size() {
+            let row = self.row(dof);
+            // In depth-first order the path to a dof is that to the dof before it, cut.
+            path.truncate(row.len() - 1);
+            path.push(dof);
+            for (value, &ancestor) in self.values[row].iter_mut().zip(&path) {
+                *value = entry(dof, ancestor);
             }
         }
-        matrix
+    }
+
+    /// The parent of a dof: the last dof but one of its row. `None` for a root, and where there is no such dof.
+    pub fn parent(&self, dof: usize) -> Option<usize> {
+        self.rows.get(dof)?.parent
+    }
+
+    /// How many dofs are on the path from the root to `dof`, itself included: the length of its row. Zero where there is no such dof.
+    pub fn path_length(&self, dof: usize) -> usize {
+        if dof < self.size() { self.depth(dof) } else { 0 }
     }
 
     /// Rows and columns: the number of dofs.
@@ -139,6 +186,16 @@ impl<T: Real> TreeSparse<T> {
         T: Scalar,
     {
         DMatrix::from_fn(self.size(), self.size(), |i, j| self.get(i, j))
+    }
+
+    /// Factors the matrix as `LᵀL`; see [`Ltl`](crate::Ltl).
+    ///
+    /// # Errors
+    /// [`NotPositiveDefinite`] when a pivot is not positive.
+    pub fn into_ltl(self) -> Result<crate::Ltl<T>, NotPositiveDefinite> {
+        let mut ltl = crate::Ltl::from_unfactored(self);
+        ltl.factor()?;
+        Ok(ltl)
     }
 
     /// Factors the matrix as `LᵀDL`; see [`Ltdl`](crate::Ltdl).

@@ -6,9 +6,9 @@ use crate::common;
 
 use common::{ROBOTS, build, wrenches};
 use featherbench_dynamics::{
-    Aba, Batch, Bias, CenterOfMass, Crba, Energy, FdDerivatives, FdPartials, IdDerivatives, IdPartials, Jacobian, Kinematics, Ltdl,
-    Momentum, PackedAba, PackedCenterOfMass, PackedCrba, PackedJacobian, PackedKinematics, PackedModel, PackedMomentum, PackedRnea,
-    Refined, Rnea, TreeSparse, to_lanes,
+    Aba, Batch, Bias, CenterOfMass, Crba, Energy, FdDerivatives, FdPartials, FloatingBase, IdDerivatives, IdPartials, Jacobian, Kinematics,
+    Ltdl, Ltl, Momentum, PackedAba, PackedCenterOfMass, PackedCrba, PackedJacobian, PackedKinematics, PackedModel, PackedMomentum,
+    PackedRnea, Refined, Rnea, TreeSparse, mass_matrix, to_lanes,
 };
 use featherbench_robots::StateBatch;
 use featherbench_spatial::{Compensated, DoubleDouble};
@@ -135,6 +135,48 @@ fn no_derivative_allocates_in_a_call() {
         }
         assert_eq!(ALLOCATIONS.get() - before, 0, "{name}");
     }
+}
+
+/// What is done with factors, and the partition of a floating base; the first update makes its path.
+#[test]
+fn no_algebra_of_factors_allocates_in_a_call() {
+    let mut floating = 0;
+    for (name, recipe) in &ROBOTS {
+        let model = build(recipe);
+        let t = &model.topology;
+        let states = StateBatch::random(&model, 1, 1);
+        let matrix = mass_matrix(&model, states.q(0)).unwrap();
+        let (mut ltdl, mut ltl) = (matrix.clone().into_ltdl().unwrap(), Ltl::new(t));
+        let last = t.nv() - 1;
+        let vectors = vec![0.01; 2 * t.dof_depth(last)];
+        ltdl.update(last, 0.5, &vectors).unwrap();
+        let mut base = FloatingBase::new(t).ok();
+        let joints = t.nv().saturating_sub(6);
+        let (mut x, mut columns, mut complement) = (states.tau(0).to_vec(), vec![0.0; 2 * t.nv()], vec![0.0; joints * joints]);
+
+        let before = ALLOCATIONS.get();
+        ltl.run(&matrix).unwrap();
+        ltl.solve(&mut x).unwrap();
+        ltl.multiply_lower(&mut x).unwrap();
+        ltl.multiply_lower_transposed(&mut x).unwrap();
+        ltdl.multiply_root(&mut x).unwrap();
+        ltdl.multiply_root_transposed(&mut x).unwrap();
+        ltdl.solve_root(&mut x).unwrap();
+        ltdl.solve_root_transposed(&mut x).unwrap();
+        ltdl.inverse_columns(&[0, last], &mut columns).unwrap();
+        ltdl.downdate(last, 0.5, &vectors).unwrap();
+        ltdl.update(last, 0.5, &vectors).unwrap();
+        assert!(ltdl.downdate(last, 1e9, &vectors).is_err());
+        assert!(ltdl.log_determinant().is_finite() && ltl.log_determinant().is_finite());
+        if let Some(base) = &mut base {
+            base.run(&matrix).unwrap();
+            assert!(base.base_acceleration(&x).unwrap()[0].is_finite() && base.articulated_inertia()[0][0] > 0.0);
+            base.joint_complement(&mut complement).unwrap();
+            floating += 1;
+        }
+        assert_eq!(ALLOCATIONS.get() - before, 0, "{name}");
+    }
+    assert!(floating > 0);
 }
 
 /// On one core a batch without failures allocates nothing, in row order and in lane order.

@@ -11,12 +11,12 @@ use featherbench_spatial::{Counted, DoubleDouble, Real};
 use wide::f64x4;
 
 /// A topology of one-dof joints with these parents.
-fn tree(parents: impl IntoIterator<Item = i64>) -> Topology {
+pub(crate) fn tree(parents: impl IntoIterator<Item = i64>) -> Topology {
     topology(&parents.into_iter().map(|parent| (parent, JointKind::Revolute(Axis::Z))).collect::<Vec<_>>())
 }
 
 /// A random tree: each body begins a branch with this probability.
-fn random_tree(n: usize, spread: f64, seed: u64) -> Topology {
+pub(crate) fn random_tree(n: usize, spread: f64, seed: u64) -> Topology {
     let mut random = Random::new(seed, n as u64);
     let mut path: Vec<i64> = vec![-1];
     tree((0..n as i64).map(|body| {
@@ -29,13 +29,13 @@ fn random_tree(n: usize, spread: f64, seed: u64) -> Topology {
     }))
 }
 
-fn generated(name: &str) -> Topology {
+pub(crate) fn generated(name: &str) -> Topology {
     let model: Model<f64> = Model::build(&Family::parse(name).unwrap().generate().unwrap()).unwrap();
     model.topology
 }
 
 /// Chains as long as a block, a register, a path or more; stars, limbs on a base, and trees with blocks of every size.
-fn topologies() -> Vec<(String, Topology)> {
+pub(crate) fn topologies() -> Vec<(String, Topology)> {
     let mut all: Vec<(String, Topology)> = Vec::new();
     for n in (1..=26).chain([36, 64, 65, 67, 100]) {
         all.push((format!("chain {n}"), tree(-1..n - 1)));
@@ -57,7 +57,7 @@ fn topologies() -> Vec<(String, Topology)> {
 }
 
 /// A positive definite matrix whose condition number is moderate: its off-diagonal entries sum to less than its diagonal.
-fn matrix<T: Real>(topology: &Topology, seed: u64) -> TreeSparse<T> {
+pub(crate) fn matrix<T: Real>(topology: &Topology, seed: u64) -> TreeSparse<T> {
     let mut random = Random::new(seed, topology.nv() as u64);
     let mut matrix = TreeSparse::from_fn(topology, |_, _| random.uniform(-1.0, 1.0));
     let mut sums = vec![random.uniform(0.5, 1.5); topology.nv()];
@@ -73,11 +73,11 @@ fn matrix<T: Real>(topology: &Topology, seed: u64) -> TreeSparse<T> {
     TreeSparse::from_fn(topology, |i, j| T::from_f64(matrix.get(i, j)))
 }
 
-fn plain(numbers: &[Counted]) -> Vec<f64> {
+pub(crate) fn plain(numbers: &[Counted]) -> Vec<f64> {
     numbers.iter().map(|number| number.0).collect()
 }
 
-fn sines(n: usize) -> Vec<f64> {
+pub(crate) fn sines(n: usize) -> Vec<f64> {
     (0..n).map(|k| (1.0 + k as f64).sin()).collect()
 }
 

@@ -9,6 +9,7 @@ use crate::TreeSparse;
 use crate::error::Pivot;
 use crate::tree_sparse::BLOCK;
 use featherbench_spatial::Real;
+use std::ops::Range;
 
 // The arms of `by_block`.
 const _: () = assert!(BLOCK == 4);
@@ -38,22 +39,31 @@ pub(super) fn factor<T: Real>(matrix: &mut TreeSparse<T>, _: &Plan, _: &mut [T])
 }
 
 /// Solves `LᵀDL x = b` in place.
-pub(super) fn solve<T: Real>(matrix: &TreeSparse<T>, _: &Plan, x: &mut [T]) {
-    let n = matrix.size();
-    // Lᵀ y = b, from the leaves
-    let mut end = n;
+pub(super) fn solve<T: Real>(matrix: &TreeSparse<T>, plan: &Plan, x: &mut [T]) {
+    solve_lower_transposed(matrix, plan, x);
+    // D z = y
+    for (x, d) in x.iter_mut().zip(matrix.diagonal()) {
+        *x = *x / d;
+    }
+    solve_lower(matrix, plan, 0..x.len(), x);
+}
+
+/// Solves `Lᵀ x = b` in place, from the leaves.
+#[inline(always)]
+pub(super) fn solve_lower_transposed<T: Real>(matrix: &TreeSparse<T>, _: &Plan, x: &mut [T]) {
+    let mut end = matrix.size();
     while end > 0 {
         let size = matrix.block_before(end);
         end -= size;
         by_block!(size, subtract_from_ancestors(matrix, end, x));
     }
-    // D z = y
-    for (x, d) in x.iter_mut().zip(matrix.diagonal()) {
-        *x = *x / d;
-    }
-    // L x = z, from the root
-    let mut first = 0;
-    while first < n {
+}
+
+/// Solves `L x = b` in place for the dofs of some trees, from the root.
+#[inline(always)]
+pub(super) fn solve_lower<T: Real>(matrix: &TreeSparse<T>, _: &Plan, dofs: Range<usize>, x: &mut [T]) {
+    let mut first = dofs.start;
+    while first < dofs.end {
         let size = matrix.block_from(first);
         by_block!(size, subtract_ancestors(matrix, first, x));
         first += size;

@@ -8,9 +8,10 @@
 
 use super::blocks::{Block, Plan, by_size, down, starts, triangle, up};
 use super::registers::{LANES, first, load, only, store, subtract};
-use crate::TreeSparse;
 use crate::tree_sparse::Row;
+use crate::{TreeSparse, triangular};
 use featherbench_spatial::Real;
+use std::ops::Range;
 use wide::f64x8;
 
 /// The longest path that a solution keeps beside x.
@@ -20,14 +21,40 @@ const USUAL: usize = 48;
 
 /// Solves `LᵀDL x = b` in place. The plain text does it where a path is longer than [`LONGEST`].
 pub(super) fn solve(matrix: &TreeSparse<f64>, plan: &Plan, x: &mut [f64]) {
+    let by_path = |x: &mut [f64], path: &mut [f64]| {
+        from_leaves(matrix, &plan.blocks, x, path);
+        from_root::<true>(matrix, &plan.blocks, x, path);
+    };
     if let [block] = plan.blocks[..] {
         by_size!(block.size, solve_run(matrix.values(), x));
-    } else if plan.deepest <= USUAL {
-        solve_by_path(matrix, &plan.blocks, x, &mut [0.0; USUAL + 2 * LANES]);
-    } else if plan.deepest <= LONGEST {
-        solve_by_path(matrix, &plan.blocks, x, &mut [0.0; LONGEST + 2 * LANES]);
     } else {
-        super::solve_plainly(matrix, x);
+        with_path(plan, x, by_path, |x| super::solve_plainly(matrix, x));
+    }
+}
+
+/// Solves `Lᵀ x = b` in place.
+pub(super) fn solve_lower_transposed(matrix: &TreeSparse<f64>, plan: &Plan, x: &mut [f64]) {
+    let by_path = |x: &mut [f64], path: &mut [f64]| from_leaves(matrix, &plan.blocks, x, path);
+    with_path(plan, x, by_path, |x| triangular::solve_transposed::<f64, true>(matrix, x));
+}
+
+/// Solves `L x = b` in place for the dofs of some trees.
+pub(super) fn solve_lower(matrix: &TreeSparse<f64>, plan: &Plan, dofs: Range<usize>, x: &mut [f64]) {
+    let place = |dof: usize| plan.blocks.partition_point(|block| block.first < dof);
+    let blocks = &plan.blocks[place(dofs.start)..place(dofs.end)];
+    let by_path = |x: &mut [f64], path: &mut [f64]| from_root::<false>(matrix, blocks, x, path);
+    with_path(plan, x, by_path, |x| triangular::solve::<f64, true>(matrix, dofs.clone(), x));
+}
+
+/// Calls `by_path` with zeros for the longest path, or `plainly` where that is too long.
+#[inline(always)]
+fn with_path(plan: &Plan, x: &mut [f64], by_path: impl Fn(&mut [f64], &mut [f64]), plainly: impl Fn(&mut [f64])) {
+    if plan.deepest <= USUAL {
+        by_path(x, &mut [0.0; USUAL + 2 * LANES]);
+    } else if plan.deepest <= LONGEST {
+        by_path(x, &mut [0.0; LONGEST + 2 * LANES]);
+    } else {
+        plainly(x);
     }
 }
 
@@ -58,17 +85,29 @@ fn solve_run<const SIZE: usize>(values: &[f64], x: &mut [f64]) {
     x.copy_from_slice(&z[..SIZE]);
 }
 
-fn solve_by_path(matrix: &TreeSparse<f64>, blocks: &[Block], x: &mut [f64], path: &mut [f64]) {
+/// Lᵀ y = b.
+#[inline(always)]
+fn from_leaves(matrix: &TreeSparse<f64>, blocks: &[Block], x: &mut [f64], path: &mut [f64]) {
     let (rows, values) = matrix.parts();
     for block in blocks.iter().rev().filter(|block| !block.alone()) {
         by_size!(block.size, subtract_from_ancestors(rows, values, block, x, path));
     }
+}
+
+/// D z = y, if it `DIVIDES`, and L x = z.
+#[inline(always)]
+fn from_root<const DIVIDES: bool>(matrix: &TreeSparse<f64>, blocks: &[Block], x: &mut [f64], path: &mut [f64]) {
+    let (rows, values) = matrix.parts();
     for block in blocks {
         if block.alone() {
-            x[block.first] /= values[rows[block.first].start];
-            continue;
+            if DIVIDES {
+                x[block.first] /= values[rows[block.first].start];
+            }
+        } else if DIVIDES {
+            by_size!(block.size, divide_and_subtract_ancestors(rows, values, block, x, path));
+        } else {
+            by_size!(block.size, only_subtract_ancestors(rows, values, block, x, path));
         }
-        by_size!(block.size, subtract_ancestors(rows, values, block, x, path));
     }
 }
 
@@ -109,8 +148,26 @@ fn subtract_from_ancestors<const SIZE: usize>(rows: &[Row], values: &[f64], bloc
 /// `x_k = x_k / D_k − Σ_j L_kj x_j` for every dof k of a block, the first first, and every strict ancestor j of k.
 ///
 /// `path[p]` holds x of the ancestor at depth p of the path.
+#[inline(always)]
+fn divide_and_subtract_ancestors<const SIZE: usize>(rows: &[Row], values: &[f64], block: &Block, x: &mut [f64], path: &mut [f64]) {
+    subtract_ancestors::<SIZE, true>(rows, values, block, x, path);
+}
+
+/// The same without the division by D_k.
+#[inline(always)]
+fn only_subtract_ancestors<const SIZE: usize>(rows: &[Row], values: &[f64], block: &Block, x: &mut [f64], path: &mut [f64]) {
+    subtract_ancestors::<SIZE, false>(rows, values, block, x, path);
+}
+
+/// Both.
 #[inline(never)]
-fn subtract_ancestors<const SIZE: usize>(rows: &[Row], values: &[f64], block: &Block, x: &mut [f64], path: &mut [f64]) {
+fn subtract_ancestors<const SIZE: usize, const DIVIDES: bool>(
+    rows: &[Row],
+    values: &[f64],
+    block: &Block,
+    x: &mut [f64],
+    path: &mut [f64],
+) {
     let shared = block.shared;
     let starts: [usize; SIZE] = starts(rows, block);
     let mut sums = [f64x8::ZERO; SIZE];
@@ -136,7 +193,9 @@ fn subtract_ancestors<const SIZE: usize>(rows: &[Row], values: &[f64], block: &B
     up!(a < SIZE {
         (y[a], d[a]) = (x[a], l[a][a]);
     });
-    let mut y = (f64x8::new(y) / f64x8::new(d)).to_array();
+    if DIVIDES {
+        y = (f64x8::new(y) / f64x8::new(d)).to_array();
+    }
     for a in 0..SIZE {
         y[a] += sums[a].reduce_add();
     }

@@ -9,6 +9,7 @@ use featherbench_spatial::{Angle, Dual, Force, Lift, Motion, Quaternion, Real, S
 use nalgebra::DMatrix;
 
 mod by_reciprocal;
+pub mod dense;
 mod tolerance;
 
 pub use by_reciprocal::ByReciprocal;
