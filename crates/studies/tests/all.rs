@@ -2,6 +2,7 @@
 
 mod accounted_readings;
 mod bad_oracle;
+mod conditioning;
 mod convicted;
 mod import;
 mod over_best;

@@ -3,7 +3,10 @@
 //! The condition numbers of M and of D^-½ M D^-½ (D = diag M) at the straight configuration, by eigenvalues. The local exponent is
 //! `log₂(κ(n)/κ(n/2))`, against the robot of the same family with half the dofs, if the suite has it. For the straight chain κ grows as n⁴
 //! (Featherstone 2004). The conditioning bound of forward dynamics is beside it, and does not grow.
+//!
+//! A robot with a floating base is partitioned instead: `floating_base.rs`.
 
+mod floating_base;
 pub(crate) mod section;
 
 use crate::{Made, Setup, row};
@@ -34,8 +37,12 @@ impl Study for Conditioning {
         let Some(featherbench) = context.engine("featherbench") else { return Vec::new() };
         let robots = context.robots.iter().filter(|robot| robot.takes(self.name()) && robot.states.nv <= MOST_DOFS);
         let cell = |robot: &Robot| {
-            let params = json!({"configuration": "straight"});
-            Cell::new(self.name(), robot, featherbench.identity(), Quantity::MassMatrix.name(), "eigenvalues", params)
+            let (method, params) = if floating_base::takes(robot) {
+                (floating_base::METHOD, json!({"states": floating_base::STATES}))
+            } else {
+                ("eigenvalues", json!({"configuration": "straight"}))
+            };
+            Cell::new(self.name(), robot, featherbench.identity(), Quantity::MassMatrix.name(), method, params)
         };
         robots.map(cell).collect()
     }
@@ -43,7 +50,12 @@ impl Study for Conditioning {
     fn evaluate(&self, context: &Context, cell: &Cell) -> Outcome {
         let robot = context.robot(&cell.robot).ok_or_else(|| NoAnswer::Failed("there is no robot of this cell".into()));
         robot
-            .and_then(|robot| conditions(robot).ok_or_else(|| NoAnswer::Failed("M is singular at the straight configuration".into())))
+            .and_then(|robot| {
+                if cell.method == floating_base::METHOD {
+                    return floating_base::numbers(robot).map_err(NoAnswer::Failed);
+                }
+                conditions(robot).ok_or_else(|| NoAnswer::Failed("M is singular at the straight configuration".into()))
+            })
             .into()
     }
 
@@ -56,6 +68,10 @@ impl Study for Conditioning {
         });
         let mut rows = Vec::new();
         for (cell, outcome) in finished {
+            if cell.method == floating_base::METHOD {
+                rows.extend(floating_base::rows(context, robot, cell, outcome));
+                continue;
+            }
             let blank = Row { states: "straight".into(), unit: "1".into(), ..row(cell, robot) };
             let Some(&[raw, scaled]) = outcome.values() else {
                 rows.push(blank.without_value(Verdict::Error, "there is no condition number"));
@@ -87,12 +103,18 @@ fn conditions(robot: &Robot) -> Option<Vec<f64>> {
         }
     }
     let mass: DMatrix<f64> = mass_matrix(model, &q).ok()?.to_dense();
-    let n = mass.nrows();
-    let scaled = DMatrix::from_fn(n, n, |i, j| mass[(i, j)] / (mass[(i, i)] * mass[(j, j)]).sqrt());
-    let condition = |m: DMatrix<f64>| {
-        let eigenvalues = m.symmetric_eigenvalues();
-        eigenvalues.max() / eigenvalues.min()
-    };
+    let scaled = scaled_to_unit_diagonal(&mass);
     let conditions = vec![condition(mass), condition(scaled)];
     conditions.iter().all(|condition| condition.is_finite() && *condition > 0.0).then_some(conditions)
+}
+
+/// D^-½ M D^-½ with D = diag M.
+fn scaled_to_unit_diagonal(matrix: &DMatrix<f64>) -> DMatrix<f64> {
+    DMatrix::from_fn(matrix.nrows(), matrix.ncols(), |i, j| matrix[(i, j)] / (matrix[(i, i)] * matrix[(j, j)]).sqrt())
+}
+
+/// The largest eigenvalue over the smallest.
+fn condition(matrix: DMatrix<f64>) -> f64 {
+    let eigenvalues = matrix.symmetric_eigenvalues();
+    eigenvalues.max() / eigenvalues.min()
 }

@@ -3,8 +3,9 @@ featherbench.ready(() => {
   const { byId, chunks, short, variable } = featherbench;
   const { colour, dash, draw, exponent, joined, layout, live, symbol } = featherbench.plots;
   const overview = chunks.get("overview");
-  const families = chunks.get("figures")?.conditioning;
-  if (!overview || !families || !byId("conditioning-plot")) return;
+  const figures = chunks.get("figures")?.conditioning;
+  if (!overview || !figures) return;
+  const { families, bases } = figures;
 
   const HALF_ULP = 2 ** -53;
 
@@ -35,5 +36,20 @@ featherbench.ready(() => {
     }
   }
 
-  live(drawConditions);
+  // A mark for each matrix of each robot: κ before and after scaling to a unit diagonal.
+
+  function drawBases() {
+    const series = ["κ(M)", "κ(S_bb)", "κ(S_jj)"].map((name, place) => ({
+      name, ink: colour(place), mark: { size: 9, symbol: symbol(place) },
+      points: bases.filter((base) => base.kappa[2 * place] !== null).map((base) => {
+        const [raw, scaled] = base.kappa.slice(2 * place);
+        const robot = overview.robots[base.robot].name;
+        return { x: raw, y: scaled, tip: [`${robot}, ${name}`, `${short(raw)}, scaled ${short(scaled)}`], target: { robot: base.robot, filters: { study: "conditioning" } } };
+      }),
+    }));
+    draw("floating-base-plot", series, layout("condition number κ", "κ after scaling"));
+  }
+
+  if (byId("conditioning-plot")) live(drawConditions);
+  if (byId("floating-base-plot")) live(drawBases);
 });

@@ -1,16 +1,30 @@
-//! Section: the growth of the condition number of M with a chain's length, and how little it says about lost digits.
+//! Section: the growth of the condition number of M with a chain's length, and how little it says about lost digits; and the condition numbers of
+//! floating bases.
+
+mod floating_base;
 
 use std::collections::BTreeMap;
 
+use super::floating_base::METHOD;
 use featherbench_report::fit::{Fit, power_law};
 use featherbench_report::numbers::short;
 use featherbench_report::{Overview, Section, labels, opener, robot_chunk};
 use featherbench_results::{Row, RunInfo, Verdict};
+use floating_base::Base;
 use maud::{Markup, html};
 use serde::Serialize;
 
 /// The study's name in rows.
 const STUDY: &str = "conditioning";
+
+/// What the section draws.
+#[derive(Debug, Serialize)]
+pub struct Figures<'a> {
+    /// Chains, family by family.
+    pub families: Vec<Family<'a>>,
+    /// Robots with a floating base.
+    pub bases: Vec<Base<'a>>,
+}
 
 /// One family of chains.
 #[derive(Debug, Serialize)]
@@ -49,7 +63,7 @@ pub struct Point<'a> {
 /// Collects a run's rows.
 fn families<'a>(overview: &Overview<'a>, rows: &'a [Row]) -> Vec<Family<'a>> {
     let mut found: BTreeMap<&str, BTreeMap<(u64, usize), Point>> = BTreeMap::new();
-    for row in rows.iter().filter(|row| row.study == STUDY) {
+    for row in rows.iter().filter(|row| row.study == STUDY && row.method != METHOD) {
         let Some(robot) = overview.robot(&row.robot) else { continue };
         let Some(size) = overview.robots[robot].nv.filter(|&size| size > 0) else { continue };
         let point = found.entry(&row.family).or_default().entry((size, robot)).or_default();
@@ -75,41 +89,44 @@ fn families<'a>(overview: &Overview<'a>, rows: &'a [Row]) -> Vec<Family<'a>> {
 
 /// Makes the section, if the run has condition numbers.
 pub(crate) fn sections<'a>(_: &RunInfo, rows: &'a [Row], overview: &Overview<'a>) -> Vec<Section> {
-    let families = families(overview, rows);
-    if families.is_empty() {
+    let figures = Figures { families: families(overview, rows), bases: floating_base::bases(overview, rows) };
+    if figures.families.is_empty() && figures.bases.is_empty() {
         return Vec::new();
     }
-    let body = body(overview, &families);
-    vec![Section { script: include_str!("section.js"), ..Section::new("conditioning", "Conditioning", body).with_data(&families) }]
-}
-
-fn body(overview: &Overview, families: &[Family]) -> Markup {
-    html! {
+    let body = html! {
         section #conditioning {
             h2 { "Conditioning" }
-            p.lead {
-                "How the condition number of M grows with the length of a straight chain, and how little it says. Left: κ of M, and of M scaled to a unit diagonal. "
-                "Right, on one scale: the relative error that κ would excuse, κ·2⁻⁵³, and the conditioning bound, which rounding the inputs makes unavoidable."
-            }
-            div.pair {
-                div #conditioning-plot.plot role="group" aria-label="Plot of the condition number against the degrees of freedom" {}
-                div #floor-plot.plot role="group" aria-label="Plot of the error that the condition number would excuse, and of the conditioning bound" {}
-            }
-            div.scroll {
-                table.compact.sortable {
-                    thead {
-                        tr {
-                            th scope="col" { "robot" } th scope="col" { "family" } th.number scope="col" { "n" } th.number scope="col" { "κ(M)" } th.number scope="col" { "local exponent" }
-                            th.number scope="col" { "κ scaled" } th.number scope="col" { "local exponent" } th.number scope="col" { "bound" } th.number scope="col" { "κ·2⁻⁵³ / bound" }
-                        }
+            @if !figures.families.is_empty() { (chains(overview, &figures.families)) }
+            @if !figures.bases.is_empty() { (floating_base::body(overview, &figures.bases)) }
+        }
+    };
+    vec![Section { script: include_str!("section.js"), ..Section::new("conditioning", "Conditioning", body).with_data(&figures) }]
+}
+
+fn chains(overview: &Overview, families: &[Family]) -> Markup {
+    html! {
+        p.lead {
+            "How the condition number of M grows with the length of a straight chain, and how little it says. Left: κ of M, and of M scaled to a unit diagonal. "
+            "Right, on one scale: the relative error that κ would excuse, κ·2⁻⁵³, and the conditioning bound, which rounding the inputs makes unavoidable."
+        }
+        div.pair {
+            div #conditioning-plot.plot role="group" aria-label="Plot of the condition number against the degrees of freedom" {}
+            div #floor-plot.plot role="group" aria-label="Plot of the error that the condition number would excuse, and of the conditioning bound" {}
+        }
+        div.scroll {
+            table.compact.sortable {
+                thead {
+                    tr {
+                        th scope="col" { "robot" } th scope="col" { "family" } th.number scope="col" { "n" } th.number scope="col" { "κ(M)" } th.number scope="col" { "local exponent" }
+                        th.number scope="col" { "κ scaled" } th.number scope="col" { "local exponent" } th.number scope="col" { "bound" } th.number scope="col" { "κ·2⁻⁵³ / bound" }
                     }
-                    tbody { @for family in families { @for point in &family.points { (row(overview, family, point)) } } }
                 }
+                tbody { @for family in families { @for point in &family.points { (row(overview, family, point)) } } }
             }
-            p.note {
-                "Local exponent: log₂ κ(n)/κ(n/2). κ of a straight chain grows as n⁴ (Featherstone 2004), scaled or not. "
-                "κ scaled is of D^-½ M D^-½ with D = diag M. Both by eigenvalues at the straight configuration."
-            }
+        }
+        p.note {
+            "Local exponent: log₂ κ(n)/κ(n/2). κ of a straight chain grows as n⁴ (Featherstone 2004), scaled or not. "
+            "κ scaled is of D^-½ M D^-½ with D = diag M. Both by eigenvalues at the straight configuration."
         }
     }
 }

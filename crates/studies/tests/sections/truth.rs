@@ -174,7 +174,7 @@ fn work_against_precision_has_its_front() {
 #[test]
 fn conditioning_shows_local_exponents_and_the_floor() {
     let (_, written) = of_studies(&["conditioning"]);
-    let families = written.data("figures")["conditioning"].clone();
+    let families = written.data("figures")["conditioning"]["families"].clone();
     assert_eq!(families.as_array().unwrap().len(), 1);
     assert!((families[0]["raw"]["slope"].as_f64().unwrap() - 4.0).abs() < 1e-9, "{families}");
     assert!((families[0]["scaled"]["slope"].as_f64().unwrap() - 4.25).abs() < 1e-9);
@@ -182,6 +182,44 @@ fn conditioning_shows_local_exponents_and_the_floor() {
     for words in ["straight-64", "5.033e7", "6.400e-15", "</span> 4.000", "4.250"] {
         assert!(section.contains(words), "{words}: {section}");
     }
+}
+
+/// A robot with a floating base has a mark for each of three matrices, and no point among the chains.
+#[test]
+fn conditioning_shows_the_blocks_of_floating_bases() {
+    let run = made_up::run_info();
+    let blank = Row {
+        study: "conditioning".into(),
+        robot: run.robots[0].name.clone(),
+        engine: "featherbench".into(),
+        quantity: "mass_matrix".into(),
+        method: "partition".into(),
+        states: "random".into(),
+        ..Row::default()
+    };
+    let of = |metric: &str, value: f64| Row { metric: metric.into(), ..blank.clone() }.informed(value);
+    let judged = |metric: &str, value: f64, bound: f64| Row { metric: metric.into(), ..blank.clone() }.gated(value, Relation::Le, bound);
+    let records = [
+        of("kappa", 4e6),
+        of("kappa_scaled", 500.0),
+        of("kappa_base", 30.0),
+        of("kappa_base_scaled", 20.0),
+        of("kappa_joints", 2e6),
+        judged("complement_over_whole", 0.5, 1.0),
+        judged("complement_error", 3e-12, 1e-14),
+        Row { robot: run.robots[1].name.clone(), ..blank.clone() }.without_value(Verdict::Error, "it floats away"),
+    ];
+    let written = report(&run, &records);
+    let figures = &written.data("figures")["conditioning"];
+    assert_eq!(figures["families"], serde_json::json!([]));
+    let bases = figures["bases"].as_array().unwrap();
+    assert_eq!(bases.len(), 2);
+    assert_eq!(bases[0]["kappa"], serde_json::json!([4e6, 500.0, 30.0, 20.0, 2e6, null]));
+    let section = written.section("conditioning");
+    for words in ["floating-base-plot", "4.00e6", "5.00e2", "</span> 5.00e-1", "</span> 3.00e-12", "it floats away"] {
+        assert!(section.contains(words), "{words}: {section}");
+    }
+    assert!(!section.contains("conditioning-plot"), "there are no chains");
 }
 
 #[test]
