@@ -72,8 +72,8 @@ pub use center_of_mass::{CenterOfMass, MassCenter, center_of_mass};
 pub use crba::{Crba, mass_matrix};
 pub use derivatives::{
     Coriolis, EnergyGradient, EnergyPartials, FdDerivatives, FdPartials, IdDerivatives, IdPartials, JacobianRate, MassGradient,
-    MomentumMatrix, TreePair, coriolis_matrix, energy_gradient, fd_derivatives, id_derivatives, jacobian_rate, mass_gradient,
-    mass_matrix_rate, momentum_matrix,
+    MomentumMatrix, PARAMETERS, ParameterSensitivity, Regressor, RegressorMatrix, TreePair, coriolis_matrix, energy_gradient,
+    fd_derivatives, id_derivatives, inertial_parameters, jacobian_rate, mass_gradient, mass_matrix_rate, momentum_matrix, torque_regressor,
 };
 pub use energy::{Energies, Energy, energy};
 pub use error::{DimensionError, Error, NotPositiveDefinite};

@@ -22,5 +22,6 @@ mod packed;
 mod packed_kinematics;
 mod parents;
 mod refined;
+mod regressors;
 mod structure;
 mod updates;

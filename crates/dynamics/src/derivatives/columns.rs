@@ -67,10 +67,16 @@ impl<T: Real> Components<T> {
         (self.x[position], self.y[position], self.z[position]) = (v.x, v.y, v.z);
     }
 
+    /// `out_p = u_p · v`.
+    #[inline(always)]
+    pub(super) fn dot(&self, v: Vec3<T>, out: &mut [T]) {
+        dot3::<T, false>(&self.x, &self.y, &self.z, v, out);
+    }
+
     /// `out_p += u_p · v`.
     #[inline(always)]
     pub(super) fn add_dot(&self, v: Vec3<T>, out: &mut [T]) {
-        add_dot3(&self.x, &self.y, &self.z, v, out);
+        dot3::<T, true>(&self.x, &self.y, &self.z, v, out);
     }
 }
 
@@ -120,12 +126,13 @@ fn dot6<T: Real>(ax: &[T], ay: &[T], az: &[T], lx: &[T], ly: &[T], lz: &[T], f: 
     }
 }
 
-/// The same of three components, added to what is there.
+/// The same of three components, added to what is there or not.
 #[inline(never)]
-fn add_dot3<T: Real>(x: &[T], y: &[T], z: &[T], v: Vec3<T>, out: &mut [T]) {
+fn dot3<T: Real, const ADD: bool>(x: &[T], y: &[T], z: &[T], v: Vec3<T>, out: &mut [T]) {
     let n = out.len();
     let (x, y, z) = (&x[..n], &y[..n], &z[..n]);
     for p in 0..n {
-        out[p] = x[p].mul_add(v.x, y[p].mul_add(v.y, z[p].mul_add(v.z, out[p])));
+        let last = if ADD { z[p].mul_add(v.z, out[p]) } else { z[p] * v.z };
+        out[p] = x[p].mul_add(v.x, y[p].mul_add(v.y, last));
     }
 }

@@ -9,8 +9,9 @@
 //! Cost: O(n + Σ d_k·n), d_k the depth of dof k: two multiply-adds per strict ancestor and column, for two matrices. A call does not
 //! allocate.
 
+use super::solve::solve_negated;
 use crate::error::expect;
-use crate::{Aba, Error, IdDerivatives, IdPartials, Ltdl, TreeSparse};
+use crate::{Aba, Error, IdDerivatives, IdPartials, Ltdl};
 use featherbench_model::{Model, Topology};
 use featherbench_spatial::{Force, Lift, Real};
 
@@ -108,8 +109,8 @@ impl<T: Real> FdDerivatives<T> {
         // −M⁻¹ ∂ID
         self.partials.q.write_dense(by_q)?;
         self.partials.v.write_dense(by_v)?;
-        solve_negated(self.ltdl.factors(), by_q);
-        solve_negated(self.ltdl.factors(), by_v);
+        solve_negated(self.ltdl.factors(), by_q, n);
+        solve_negated(self.ltdl.factors(), by_v, n);
         self.ltdl.inverse(by_tau)?;
         solved?;
         Ok(factored?)
@@ -123,41 +124,6 @@ impl<T: Real> FdDerivatives<T> {
     /// The factors of the joint-space inertia matrix of the last run.
     pub fn factors(&self) -> &Ltdl<T> {
         &self.ltdl
-    }
-}
-
-/// `X = −M⁻¹ A` in place, for all columns at once. A must have the sparsity of derivatives of ID.
-fn solve_negated<T: Real>(factors: &TreeSparse<T>, x: &mut [T]) {
-    let n = factors.size();
-    // Lᵀ Y = A, from the leaves: Y_j· −= L_kj Y_k·. Row k of Y is zero behind the last dof that k supports.
-    for k in (0..n).rev() {
-        let (above, row_k) = x.split_at_mut(k * n);
-        let (l_k, end) = (&factors.values()[factors.row(k)], factors.supported(k).end);
-        for (dofs, entries) in factors.ancestors(k) {
-            for (j, l) in dofs.zip(&l_k[entries]) {
-                subtract(*l, &row_k[..end], &mut above[j * n..][..end]);
-            }
-        }
-    }
-    // Z = −D⁻¹ Y, then L X = Z, from the root: X_k· −= L_kj X_j·
-    for (k, d) in factors.diagonal().enumerate() {
-        let (above, row_k) = x.split_at_mut(k * n);
-        let (row_k, scale) = (&mut row_k[..n], -(T::one() / d));
-        row_k.iter_mut().for_each(|x| *x *= scale);
-        let l_k = &factors.values()[factors.row(k)];
-        for (dofs, entries) in factors.ancestors(k) {
-            for (j, l) in dofs.zip(&l_k[entries]) {
-                subtract(*l, &above[j * n..][..n], row_k);
-            }
-        }
-    }
-}
-
-/// `y −= l x`.
-#[inline(always)]
-fn subtract<T: Real>(l: T, x: &[T], y: &mut [T]) {
-    for (x, y) in x.iter().zip(y) {
-        *y = (-l).mul_add(*x, *y);
     }
 }
 

@@ -11,6 +11,10 @@ mod id;
 mod jacobian_rate;
 mod mass_gradient;
 mod momentum_matrix;
+mod parameter_sensitivity;
+mod parameters;
+mod regressor;
+mod solve;
 mod sweep;
 mod tree_pair;
 
@@ -21,4 +25,7 @@ pub use id::{IdDerivatives, IdPartials, id_derivatives};
 pub use jacobian_rate::{JacobianRate, jacobian_rate};
 pub use mass_gradient::{MassGradient, mass_gradient};
 pub use momentum_matrix::{MomentumMatrix, momentum_matrix};
+pub use parameter_sensitivity::ParameterSensitivity;
+pub use parameters::{PARAMETERS, inertial_parameters};
+pub use regressor::{Regressor, RegressorMatrix, torque_regressor};
 pub use tree_pair::TreePair;
