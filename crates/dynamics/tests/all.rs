@@ -4,6 +4,7 @@ mod accuracy;
 mod aligned;
 mod allocation;
 mod batch;
+mod batch_derivatives;
 mod closed_forms;
 mod common;
 mod configuration;

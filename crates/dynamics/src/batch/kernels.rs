@@ -1,5 +1,6 @@
 //! The kernels of a batch in one form: vectors in, one vector out, and an error that leaves the other lanes' results valid.
 
+use super::derivatives::Derivatives;
 use crate::{Aba, Bias, Crba, Error, Ltdl, Refined, Rnea};
 use featherbench_model::{Model, Topology};
 use featherbench_spatial::{Compensated, Force, Lift, Part, Real};
@@ -14,6 +15,7 @@ pub(super) struct Workspace<T> {
     ltdl: Ltdl<T>,
     /// Made by the first call that needs it: it is larger than all others.
     refined: Option<Refined<Compensated<T>, T>>,
+    pub(super) derivatives: Derivatives<T>,
     /// The steps of refinement.
     pub(super) steps: usize,
     /// The result, if it has one number per dof.
@@ -29,6 +31,7 @@ impl<T: Part> Workspace<T> {
             crba: Crba::new(topology),
             ltdl: Ltdl::new(topology),
             refined: None,
+            derivatives: Derivatives::new(),
             steps: 0,
             vector: vec![T::zero(); topology.nv()],
         }

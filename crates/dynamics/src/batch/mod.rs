@@ -18,6 +18,7 @@
 //!
 //! Cost: that of the kernel for each group of [`Number::LANES`] states.
 
+mod derivatives;
 mod error;
 mod kernels;
 mod lanes;

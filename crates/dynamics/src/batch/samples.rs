@@ -64,6 +64,25 @@ impl<'m, S: Number> Models<'m, S> {
         }
     }
 
+    /// The compiled body of each described body.
+    pub(super) fn described(&self) -> &[usize] {
+        match self {
+            Self::One(model) => &model.described,
+            Self::Each(each) => &each.samples[0].described,
+        }
+    }
+
+    /// An error unless the axes of each body have the same names in all samples: what is in described axes can then be computed in lanes.
+    pub(super) fn expect_same_labels(&self) -> Result<(), DimensionError> {
+        match self {
+            Self::One(_) => Ok(()),
+            Self::Each(each) => {
+                let same = each.same_label.iter().filter(|same| **same).count();
+                expect("bodies whose joint axis is the same coordinate axis in all samples, or skew in all", each.same_label.len(), same)
+            }
+        }
+    }
+
     /// Runs a kernel on a group. External wrenches are kept in `wrenches`.
     #[inline(always)]
     pub(super) fn run<'w, K: Kernel<N>, const N: usize>(

@@ -1,7 +1,7 @@
 //! `X = −M⁻¹ A` for many columns at once, by the factors `M = LᵀDL`.
 //!
 //! Source: the book, section 6.5, for one column. Shape: A has `nv` rows of so many columns, row after row; X takes its place.
-//! Some columns go through the whole factorization together, in registers: 32 of `f64`. Those that remain go in eights and one by one.
+//! Some columns go through the whole factorization together, in registers: 32 of `f64`. Those that remain go in smaller blocks.
 //! Cost: two multiply-adds per strict ancestor and column, one division per dof and block of columns. Nothing here allocates.
 
 use crate::TreeSparse;
@@ -9,29 +9,26 @@ use featherbench_spatial::Real;
 
 /// `X = −M⁻¹ A` in place; rows have `width` numbers.
 pub(super) fn solve_negated<T: Real>(factors: &TreeSparse<T>, x: &mut [T], width: usize) {
-    if size_of::<T>() <= 8 {
-        blocks::<T, 32, 8>(factors, x, width);
-    } else {
-        blocks::<T, 4, 2>(factors, x, width);
+    let solve: [(usize, Solve<T>); 5] = [
+        (32, solve_columns::<T, 32>),
+        (16, solve_columns::<T, 16>),
+        (8, solve_columns::<T, 8>),
+        (4, solve_columns::<T, 4>),
+        (1, solve_columns::<T, 1>),
+    ];
+    // Of registers, four are as much as 32 numbers.
+    let widest = if size_of::<T>() <= 8 { 32 } else { 4 };
+    let mut column = 0;
+    for (block, solve) in solve {
+        while block <= widest && column + block <= width {
+            solve(factors, x, width, column);
+            column += block;
+        }
     }
 }
 
-fn blocks<T: Real, const WIDE: usize, const NARROW: usize>(factors: &TreeSparse<T>, x: &mut [T], width: usize) {
-    let mut column = 0;
-    while column < width {
-        let left = width - column;
-        column += if left >= WIDE {
-            solve_columns::<T, WIDE>(factors, x, width, column);
-            WIDE
-        } else if left >= NARROW {
-            solve_columns::<T, NARROW>(factors, x, width, column);
-            NARROW
-        } else {
-            solve_columns::<T, 1>(factors, x, width, column);
-            1
-        };
-    }
-}
+/// From factors, rows, their width and the first column.
+type Solve<T> = fn(&TreeSparse<T>, &mut [T], usize, usize);
 
 /// `W` columns.
 #[inline(never)]
