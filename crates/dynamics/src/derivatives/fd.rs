@@ -63,6 +63,67 @@ impl<T: Real> FdPartials<T> {
 /// }
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
+///
+/// # A Riccati recursion
+///
+/// The linear-quadratic regulator about a state, `x⁺ = A x + B u` for steps of h: x = (δq, δv), u = δτ. The recursion needs products with Aᵀ
+/// and Bᵀ only. So it takes the tree-sparse derivatives of ID and the factors of M: `(∂v̇/∂q)ᵀ y = −(∂ID/∂q)ᵀ M⁻¹ y`.
+///
+/// ```
+/// use featherbench_dynamics::{Error, FdDerivatives, FdPartials};
+/// use featherbench_model::Model;
+/// use featherbench_robots::{Family, StateBatch};
+/// use nalgebra::{DMatrix, DVector};
+///
+/// let model: Model<f64> = Model::build(&Family::parse("chain:n=4,layout=spatial")?.generate()?)?;
+/// let (states, n, h) = (StateBatch::random(&model, 1, 7), model.topology.nv(), 0.01);
+/// let mut partials = FdPartials::new(&model.topology);
+/// let mut workspace = FdDerivatives::new(&model.topology);
+/// workspace.run(&model, states.q(0), states.v(0), states.tau(0), None, &mut partials)?;
+/// let (id, factors) = (workspace.id_partials(), workspace.factors());
+///
+/// // Aᵀ Y and Bᵀ Y, column by column
+/// let transposed = |y: &DMatrix<f64>| -> Result<[DMatrix<f64>; 2], Error> {
+///     let (mut a, mut b) = (y.clone(), DMatrix::zeros(n, y.ncols()));
+///     let mut product = vec![0.0; n];
+///     for c in 0..y.ncols() {
+///         let mut z = y.column(c).rows(n, n).iter().copied().collect::<Vec<_>>();
+///         factors.solve(&mut z)?;
+///         id.q.mul_transposed(&z, &mut product)?;
+///         (0..n).for_each(|k| a[(k, c)] -= h * product[k]);
+///         id.v.mul_transposed(&z, &mut product)?;
+///         (0..n).for_each(|k| a[(n + k, c)] += h * (y[(k, c)] - product[k]));
+///         (0..n).for_each(|k| b[(k, c)] = h * z[k]);
+///     }
+///     Ok([a, b])
+/// };
+/// // P = Q + AᵀPA − (BᵀPA)ᵀ K,  K = (R + BᵀPB)⁻¹ BᵀPA, with Q = 1 and R = 0.1
+/// let (mut p, mut gains) = (DMatrix::identity(2 * n, 2 * n), Vec::new());
+/// for _ in 0..50 {
+///     let [a_p, b_p] = transposed(&p)?;
+///     let [a_p_a, b_p_a] = transposed(&a_p.transpose())?;
+///     let [_, b_p_b] = transposed(&b_p.transpose())?;
+///     let gain = (b_p_b + DMatrix::identity(n, n) * 0.1).lu().solve(&b_p_a).ok_or("singular")?;
+///     p = DMatrix::identity(2 * n, 2 * n) + a_p_a - b_p_a.transpose() * &gain;
+///     gains.push(gain);
+/// }
+///
+/// // The cost along the controlled motion is xᵀ P x.
+/// let matrix = |rows: &[f64]| DMatrix::from_row_slice(n, n, rows);
+/// let (by_q, by_v, by_tau) = (matrix(&partials.q), matrix(&partials.v), matrix(&partials.tau));
+/// let start = DVector::from_fn(2 * n, |k, _| 0.1 * (k as f64 + 1.0));
+/// let (mut x, mut cost) = (start.clone(), 0.0);
+/// for gain in gains.iter().rev() {
+///     let u = -(gain * &x);
+///     cost += x.dot(&x) + 0.1 * u.dot(&u);
+///     let (q, v) = (x.rows(0, n).clone_owned(), x.rows(n, n).clone_owned());
+///     x.rows_mut(0, n).axpy(h, &v, 1.0);
+///     x.rows_mut(n, n).axpy(h, &(&by_q * q + &by_v * v + &by_tau * u), 1.0);
+/// }
+/// cost += x.dot(&x);
+/// assert!((start.dot(&(&p * &start)) - cost).abs() < 1e-9 * cost);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Clone, Debug)]
 pub struct FdDerivatives<T> {
     aba: Aba<T>,

@@ -31,6 +31,49 @@ use nalgebra::{DMatrix, Scalar};
 /// assert!((dot(states.tau(0), &y) - dot(&z, states.v(0))).abs() < 1e-10);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
+///
+/// # Conjugate gradients
+///
+/// The change x of the configuration that takes a change b of the joint forces, with the penalty μ|x|²: `(AᵀA + μ) x = Aᵀ b`, A = ∂τ/∂q.
+/// Each step takes one product with A and one with Aᵀ.
+///
+/// ```
+/// use featherbench_dynamics::id_derivatives;
+/// use featherbench_model::Model;
+/// use featherbench_robots::{Family, StateBatch};
+///
+/// let model: Model<f64> = Model::build(&Family::parse("humanoid")?.generate()?)?;
+/// let (states, n, mu) = (StateBatch::random(&model, 1, 1), model.topology.nv(), 1e-2);
+/// let a = id_derivatives(&model, states.q(0), states.v(0), states.a(0))?.q;
+/// let b = states.tau(0);
+/// let dot = |x: &[f64], y: &[f64]| x.iter().zip(y).map(|(x, y)| x * y).sum::<f64>();
+/// let add = |factor: f64, x: &[f64], y: &mut [f64]| y.iter_mut().zip(x).for_each(|(y, x)| *y += factor * x);
+///
+/// // r = b − A x, s = Aᵀ r − μ x, p the direction
+/// let (mut x, mut r, mut s, mut ap) = (vec![0.0; n], b.to_vec(), vec![0.0; n], vec![0.0; n]);
+/// a.mul_transposed(&r, &mut s)?;
+/// let (mut p, first) = (s.clone(), dot(&s, &s));
+/// let mut square = first;
+/// let mut steps = 0;
+/// while square > 1e-20 * first && steps < 1000 {
+///     a.mul(&p, &mut ap)?;
+///     let step = square / (dot(&ap, &ap) + mu * dot(&p, &p));
+///     add(step, &p, &mut x);
+///     add(-step, &ap, &mut r);
+///     a.mul_transposed(&r, &mut s)?;
+///     add(-mu, &x, &mut s);
+///     let next = dot(&s, &s);
+///     p.iter_mut().zip(&s).for_each(|(p, s)| *p = s + next / square * *p);
+///     (square, steps) = (next, steps + 1);
+/// }
+///
+/// // The solution of the dense equation.
+/// let (dense, b) = (a.to_dense(), nalgebra::DVector::from_column_slice(b));
+/// let normal = dense.transpose() * &dense + nalgebra::DMatrix::identity(n, n) * mu;
+/// let expected = normal.lu().solve(&(dense.transpose() * b)).ok_or("singular")?;
+/// assert!((nalgebra::DVector::from_vec(x) - &expected).norm() < 1e-6 * expected.norm(), "after {steps} steps");
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct TreePair<T> {
     lower: TreeSparse<T>,
