@@ -24,5 +24,6 @@ mod packed_kinematics;
 mod parents;
 mod refined;
 mod regressors;
+mod second_derivatives;
 mod structure;
 mod updates;

@@ -53,6 +53,13 @@ impl<T: Real> Columns<T> {
         let (ang, lin) = (&self.ang, &self.lin);
         dot6(&ang.x, &ang.y, &ang.z, &lin.x, &lin.y, &lin.z, f, out);
     }
+
+    /// `out_p += m_p · f`.
+    #[inline(always)]
+    pub(super) fn add_dot(&self, f: Force<T>, out: &mut [T]) {
+        self.ang.add_dot(f.ang, out);
+        self.lin.add_dot(f.lin, out);
+    }
 }
 
 impl<T: Real> Components<T> {

@@ -224,7 +224,7 @@ fn outward<T: Real, P: Real + Lift<T>, const MOVING: bool, const FORCED: bool>(
 
 /// D of one body: `(v₀·h)·1 − v₀ hᵀ − ω× Σ`, with the second moment of mass `Σ = ½ tr(Ī)·1 − Ī`.
 #[inline(always)]
-fn coriolis_moment<T: Real>(inertia: &RigidBodyInertia<T>, v: Motion<T>) -> Mat3<T> {
+pub(super) fn coriolis_moment<T: Real>(inertia: &RigidBodyInertia<T>, v: Motion<T>) -> Mat3<T> {
     let RigidBodyInertia { first_moment: h, rotational: i, .. } = *inertia;
     let half = T::from_f64(0.5);
     let trace = (i.xx + i.yy + i.zz) * half;
