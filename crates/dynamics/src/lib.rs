@@ -71,10 +71,10 @@ pub use bias::{Bias, bias_force};
 pub use center_of_mass::{CenterOfMass, MassCenter, center_of_mass};
 pub use crba::{Crba, mass_matrix};
 pub use derivatives::{
-    Coriolis, EnergyGradient, EnergyPartials, FdDerivatives, FdPartials, IdDerivatives, IdHessian, IdPartials, IdSecondPartials,
-    JacobianRate, MassGradient, MomentumMatrix, PARAMETERS, ParameterSensitivity, Regressor, RegressorMatrix, TreePair, coriolis_matrix,
-    energy_gradient, fd_derivatives, id_derivatives, id_hessian, inertial_parameters, jacobian_rate, mass_gradient, mass_matrix_rate,
-    momentum_matrix, torque_regressor,
+    Coriolis, EnergyGradient, EnergyPartials, FdDerivatives, FdHessian, FdPartials, FdSecondPartials, IdDerivatives, IdHessian, IdPartials,
+    IdSecondPartials, JacobianRate, MassGradient, MomentumMatrix, PARAMETERS, ParameterSensitivity, Regressor, RegressorMatrix, TreePair,
+    coriolis_matrix, energy_gradient, fd_derivatives, fd_hessian, id_derivatives, id_hessian, inertial_parameters, jacobian_rate,
+    mass_gradient, mass_matrix_rate, momentum_matrix, torque_regressor,
 };
 pub use energy::{Energies, Energy, energy};
 pub use error::{DimensionError, Error, NotPositiveDefinite};

@@ -6,12 +6,14 @@ use crate::common;
 
 use common::{ROBOTS, build, wrenches};
 use featherbench_dynamics::{
-    Aba, Batch, Bias, CenterOfMass, Crba, Energy, FdDerivatives, FdPartials, FloatingBase, IdDerivatives, IdPartials, Jacobian, Kinematics,
-    Ltdl, Ltl, Momentum, PackedAba, PackedCenterOfMass, PackedCrba, PackedJacobian, PackedKinematics, PackedModel, PackedMomentum,
-    PackedRnea, Refined, Rnea, TreeSparse, mass_matrix, to_lanes,
+    Aba, Batch, Bias, CenterOfMass, Coriolis, Crba, Energy, EnergyGradient, EnergyPartials, FdDerivatives, FdHessian, FdPartials,
+    FdSecondPartials, FloatingBase, IdDerivatives, IdHessian, IdPartials, IdSecondPartials, Jacobian, JacobianRate, Kinematics, Ltdl, Ltl,
+    MassGradient, Momentum, MomentumMatrix, PackedAba, PackedCenterOfMass, PackedCrba, PackedJacobian, PackedKinematics, PackedModel,
+    PackedMomentum, PackedRnea, ParameterSensitivity, Refined, Regressor, RegressorMatrix, Rnea, TreePair, TreeSparse, mass_matrix,
+    to_lanes,
 };
 use featherbench_robots::StateBatch;
-use featherbench_spatial::{Compensated, DoubleDouble};
+use featherbench_spatial::{Compensated, DoubleDouble, Vec3};
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::Cell;
 
@@ -122,16 +124,65 @@ fn no_derivative_allocates_in_a_call() {
         let f = wrenches(&model, 1);
         let (mut id, mut fd) = (IdDerivatives::new(t), FdDerivatives::new(t));
         let (mut id_partials, mut fd_partials) = (IdPartials::new(t), FdPartials::new(t));
-        let mut out = vec![0.0; t.nv()];
+        let (mut id_hessian, mut fd_hessian) = (IdHessian::new(t), FdHessian::new(t));
+        let (mut id_second, mut fd_second) = (IdSecondPartials::new(t), FdSecondPartials::new(t));
+        let (mut coriolis, mut gradient, mut pair) = (Coriolis::new(t), MassGradient::new(t), TreePair::new(t));
+        let (mut jacobian, mut momentum) = (JacobianRate::new(t), MomentumMatrix::new(t));
+        let (mut energy, mut energies) = (EnergyGradient::new(t), EnergyPartials::new(t));
+        let (mut regressor, mut columns) = (Regressor::new(t), RegressorMatrix::new(&model));
+        let mut sensitivity = ParameterSensitivity::new(&model);
+        let (mut out, mut dense) = (vec![0.0; t.nv()], vec![0.0; t.nv() * columns.columns()]);
+        let (mut kinetic, mut potential) = (vec![0.0; columns.columns()], vec![0.0; columns.columns()]);
+        let mut matrix = TreeSparse::new(t);
 
         let before = ALLOCATIONS.get();
         for k in 0..3 {
             let (q, v, a) = (states.q(k), states.v(k), states.a(k));
             id.run(&model, q, v, a, Some(&f), &mut id_partials).unwrap();
             fd.run(&model, q, v, a, Some(&f), &mut fd_partials).unwrap();
+            id_hessian.run(&model, q, v, a, Some(&f), v, &mut id_second).unwrap();
+            fd_hessian.run(&model, q, v, a, Some(&f), v, &mut fd_partials, &mut fd_second).unwrap();
             id_partials.q.mul(v, &mut out).unwrap();
             id_partials.q.mul_transposed(v, &mut out).unwrap();
+            id_partials.q.mul_rows(&fd_partials.v, &mut fd_partials.q).unwrap();
             id_partials.v.write_dense(&mut fd_partials.v).unwrap();
+            coriolis.run(&model, q, v, &mut pair).unwrap();
+            coriolis.christoffel(&model, q, 0, &mut pair).unwrap();
+            pair.symmetric_sum(&mut matrix).unwrap();
+            gradient.run(&model, q, v, &mut pair).unwrap();
+            jacobian.run(&model, q, v, t.bodies() - 1, Vec3::zero()).unwrap();
+            momentum.run(&model, q, v).unwrap();
+            energy.run(&model, q, v, &mut energies).unwrap();
+            regressor.torque(&model, q, v, a, &mut columns).unwrap();
+            regressor.momentum(&model, q, v, &mut columns).unwrap();
+            regressor.energy(&model, q, v, &mut kinetic, &mut potential).unwrap();
+            columns.mul(&kinetic, &mut out).unwrap();
+            columns.mul_transposed(v, &mut kinetic).unwrap();
+            sensitivity.run(&model, q, v, a, Some(&f), &mut out, &mut dense).unwrap();
+        }
+        assert_eq!(ALLOCATIONS.get() - before, 0, "{name}");
+    }
+}
+
+/// The first call of a kind makes its workspace.
+#[test]
+fn no_batch_of_derivatives_allocates_in_a_second_call() {
+    for (name, recipe) in &ROBOTS {
+        let model = build(recipe);
+        let (t, n) = (&model.topology, model.topology.nv());
+        let states = StateBatch::random(&model, 9, 1);
+        let (q, v, a) = (&states.q, &states.v, &states.a);
+        let (mut pairs, mut dense) = (vec![0.0; 9 * 5 * t.stored()], vec![0.0; 9 * (n + 3 * n * n)]);
+        let mut coriolis = vec![0.0; 9 * 2 * t.stored()];
+        let mut regressors = vec![0.0; 9 * RegressorMatrix::<f64>::new(&model).values().len()];
+        let mut batch = Batch::<f64>::new(&model);
+        let mut before = 0;
+        for _ in 0..2 {
+            before = ALLOCATIONS.get();
+            batch.id_derivatives(q, v, a, None, &mut pairs).unwrap();
+            batch.fd_derivatives(q, v, a, None, &mut dense).unwrap();
+            batch.coriolis_matrix(q, v, &mut coriolis).unwrap();
+            batch.torque_regressor(q, v, a, &mut regressors).unwrap();
         }
         assert_eq!(ALLOCATIONS.get() - before, 0, "{name}");
     }

@@ -122,6 +122,36 @@ impl<T: Real> TreePair<T> {
         product(&self.upper, &self.lower, x, y)
     }
 
+    /// `Y = A X` for matrices of `nv` rows, row after row.
+    ///
+    /// # Errors
+    /// [`DimensionError`] when the matrices differ in size, or do not have `nv` rows.
+    pub fn mul_rows(&self, x: &[T], y: &mut [T]) -> Result<(), DimensionError> {
+        let width = x.len() / self.size().max(1);
+        expect("matrix X", self.size() * width, x.len())?;
+        expect("matrix Y", x.len(), y.len())?;
+        let add = |factor: T, x: &[T], y: &mut [T]| {
+            for (x, y) in x.iter().zip(y) {
+                *y = factor.mul_add(*x, *y);
+            }
+        };
+        y.fill(T::zero());
+        for i in 0..self.size() {
+            let row = self.lower.row(i);
+            let (below, above) = (&self.lower.values()[row.clone()], &self.upper.values()[row]);
+            let (before, rest) = y.split_at_mut(i * width);
+            let (x_i, y_i) = (&x[i * width..][..width], &mut rest[..width]);
+            add(below[below.len() - 1], x_i, y_i);
+            for (dofs, entries) in self.lower.ancestors(i) {
+                for ((j, l), u) in dofs.zip(&below[entries.clone()]).zip(&above[entries]) {
+                    add(*l, &x[j * width..][..width], y_i);
+                    add(*u, x_i, &mut before[j * width..][..width]);
+                }
+            }
+        }
+        Ok(())
+    }
+
     /// `A + Aᵀ`, into a matrix of the same topology.
     ///
     /// # Errors
