@@ -52,6 +52,7 @@ mod derivatives;
 mod energy;
 mod error;
 mod floating_base;
+pub mod integrate;
 mod jacobian;
 mod kinematics;
 mod ltdl;

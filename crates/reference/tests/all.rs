@@ -2,6 +2,7 @@
 
 mod closed;
 mod golden;
+mod integrators;
 mod numbers;
 mod routes;
 mod support;
