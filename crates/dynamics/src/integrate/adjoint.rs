@@ -67,7 +67,7 @@ pub trait Cost<T> {
 /// A swing-up of a pendulum: the gradient of a cost with respect to each step's torque, and a descent along it.
 ///
 /// ```
-/// use featherbench_dynamics::integrate::{Adjoint, ByDuals, Cost, CostGradient, Motors, Rollout, RungeKutta4, Visit};
+/// use featherbench_dynamics::integrate::{Adjoint, Analytic, Cost, CostGradient, Motors, Rollout, RungeKutta4, Visit};
 /// use featherbench_model::{BodyDescription, Description, JointDescription, JointType, Model};
 ///
 /// // One kilogramme, half a metre below its axis; q = 0 hangs down, q = π stands.
@@ -95,7 +95,7 @@ pub trait Cost<T> {
 ///
 /// let steps = vec![0.02; 75];
 /// let mut torques = vec![0.5; 75];
-/// let mut f = ByDuals::new(&model, Motors { dofs: vec![0] }, &[])?;
+/// let mut f = Analytic::new(&model, Motors { dofs: vec![0] }, &[])?;
 /// let mut integrator = RungeKutta4::with_derivatives(&model.topology, 1);
 /// let mut adjoint = Adjoint::new(&model.topology, 75, 9, 1);
 /// let mut gradient = vec![0.0; 2 + 75];

@@ -187,7 +187,7 @@ impl<S: System, T: Angle> Linearise<T> for ByDuals<S, T> {
 }
 
 /// Values as constants.
-fn copy<T: Real>(duals: &mut [Dual<T>], values: &[T]) {
+pub(super) fn copy<T: Real>(duals: &mut [Dual<T>], values: &[T]) {
     for (dual, value) in duals.iter_mut().zip(values) {
         *dual = Dual::constant(*value);
     }

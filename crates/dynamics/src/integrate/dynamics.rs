@@ -152,6 +152,14 @@ impl<S: System, T: Angle> Dynamics<S, T> {
         Ok(())
     }
 
+    /// The joint forces and wrenches of a state; slices of the sizes of the model.
+    pub(super) fn forces(&self, t: T, q: &[T], v: &[T], tau: &mut [T], wrenches: &mut [Force<T>]) {
+        tau.fill(T::zero());
+        wrenches.fill(Force::zero());
+        let Self { system, controls, parameters, .. } = self;
+        system.forces(&Instant { time: t, q, v, controls, parameters }, tau, wrenches);
+    }
+
     /// The model with its parameters.
     pub fn model(&self) -> &Model<T> {
         &self.model

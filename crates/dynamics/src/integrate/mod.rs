@@ -19,9 +19,10 @@
 //! transpose times a gradient. [`Forward`] chains the derivatives along a trajectory. [`Adjoint`] goes back and gives the gradient of a cost.
 //!
 //! [`Acceleration`] is the right-hand side: a closure, or [`Dynamics`], the articulated-body algorithm with a [`System`] of forces.
-//! [`Linearise`] is the right-hand side with its derivatives, for example [`ByDuals`].
+//! [`Linearise`] is the right-hand side with its derivatives: [`Analytic`] by recursions, [`ByDuals`] by dual numbers alone.
 
 mod adjoint;
+mod analytic;
 mod by_duals;
 mod dense;
 mod dormand_prince;
@@ -35,6 +36,7 @@ mod rollout;
 mod symplectic_euler;
 
 pub use adjoint::{Adjoint, Cost, CostGradient, Visit};
+pub use analytic::Analytic;
 pub use by_duals::{ByDuals, Linearisation, Linearise};
 pub use dormand_prince::{DormandPrince, Statistics, Tolerance};
 pub use dynamics::{Acceleration, Dynamics, Instant, Motors, Passive, System};

@@ -2,10 +2,10 @@
 
 use crate::common;
 
-use common::{distance, larger, largest, within};
+use common::{ROBOTS, build, distance, larger, largest, within};
 use featherbench_dynamics::integrate::{
-    Adjoint, ByDuals, Cost, CostGradient, DormandPrince, Forward, ImplicitMidpoint, Instant, IntegrationError, Integrator, Rollout,
-    RungeKutta4, SymplecticEuler, System, Visit, rollout, sensitivity,
+    Adjoint, Analytic, ByDuals, Cost, CostGradient, DormandPrince, Forward, ImplicitMidpoint, Instant, IntegrationError, Integrator,
+    Linearisation, Linearise, Rollout, RungeKutta4, SymplecticEuler, System, Visit, rollout, sensitivity,
 };
 use featherbench_model::{BodyDescription, Description, JointDescription, JointType, Model, Placement, difference, integrate};
 use featherbench_robots::{Family, Random, StateBatch};
@@ -315,6 +315,46 @@ fn the_gradient_of_a_running_cost_is_that_of_differences() {
     let expected = (value(BY) - value(-BY)) / (2.0 * BY);
     // Differences in f64: 1e-16 over 1e-5, and the square of that times third derivatives of up to a hundred.
     within("gradient of a running cost", (dot(&gradient, &direction) - expected).abs() / expected.abs(), 1e-7);
+}
+
+/// Two routes to the derivatives of the right-hand side: recursions with duals for the forces, and duals through everything.
+#[test]
+fn recursions_and_duals_agree() {
+    let driven = |model: Model<f64>, name| {
+        let last = model.inertias[model.inertias.len() - 1].mass;
+        (name, Driven { motors: vec![0, model.topology.nv() - 1] }, vec![0.3, last], model)
+    };
+    let all = ROBOTS.iter().map(|(name, recipe)| driven(build(recipe), *name));
+    for (name, system, parameters, model) in all.chain(cases().into_iter().map(|case| driven(case.model, case.name))) {
+        let nv = model.topology.nv();
+        let mut duals = ByDuals::new(&model, system.clone(), &parameters).unwrap();
+        let mut recursions = Analytic::new(&model, system.clone(), &parameters).unwrap();
+        let states = StateBatch::random(&model, 3, 2);
+        for k in 0..states.count() {
+            duals.set_controls(&[0.7, -0.4]).unwrap();
+            recursions.set_controls(&[0.7, -0.4]).unwrap();
+            let (mut expected, mut found) = (Linearisation::new(nv, 4), Linearisation::new(nv, 4));
+            let (mut a, mut b) = (vec![0.0; nv], vec![0.0; nv]);
+            duals.linearise(0.3, states.q(k), states.v(k), &mut a, &mut expected).unwrap();
+            recursions.linearise(0.3, states.q(k), states.v(k), &mut b, &mut found).unwrap();
+            for (what, expected, found) in [
+                ("a", &a, &b),
+                ("∂a/∂q", &expected.by_q, &found.by_q),
+                ("∂a/∂v", &expected.by_v, &found.by_v),
+                ("∂a/∂u", &expected.by_input, &found.by_input),
+            ] {
+                // Of robots with an inertia a thousand times smaller along some direction: a hundred roundings times that.
+                within(&format!("{name}: {what}"), distance(found, expected) / (1.0 + largest(expected)), 1e-12);
+            }
+        }
+    }
+    let model = &cases()[1].model;
+    assert!(Analytic::<_, f64>::new(model, Driven { motors: Vec::new() }, &[1.0]).is_err());
+    let mut f = Analytic::new(model, Driven { motors: Vec::new() }, &[1.0, 2.0]).unwrap();
+    let (mut fits, mut short) = (Linearisation::new(2, 2), Linearisation::new(2, 1));
+    assert!(f.linearise(0.0, &[0.0], &[0.0; 2], &mut [0.0; 2], &mut fits).is_err());
+    assert!(f.linearise(0.0, &[0.0; 2], &[0.0; 2], &mut [0.0; 2], &mut short).is_err());
+    assert!(f.linearise(0.0, &[0.0; 2], &[0.0; 2], &mut [0.0; 2], &mut fits).is_ok());
 }
 
 /// The derivative of the steps goes to that of the flow at the order of the integrator.
