@@ -5,6 +5,10 @@
 use crate::common;
 
 use common::{ROBOTS, build, wrenches};
+use featherbench_dynamics::integrate::{
+    Adjoint, Analytic, ByDuals, Cost, CostGradient, DormandPrince, Forward, ImplicitMidpoint, Motors, Rollout, RungeKutta4,
+    SymplecticEuler, Tolerance, Visit,
+};
 use featherbench_dynamics::{
     Aba, Batch, Bias, CenterOfMass, Coriolis, Crba, Energy, EnergyGradient, EnergyPartials, FdDerivatives, FdHessian, FdPartials,
     FdSecondPartials, FloatingBase, IdDerivatives, IdHessian, IdPartials, IdSecondPartials, Jacobian, JacobianRate, Kinematics, Ltdl, Ltl,
@@ -185,6 +189,59 @@ fn no_batch_of_derivatives_allocates_in_a_second_call() {
             batch.torque_regressor(q, v, a, &mut regressors).unwrap();
         }
         assert_eq!(ALLOCATIONS.get() - before, 0, "{name}");
+    }
+}
+
+/// Steps, their derivatives, sensitivities and the adjoint.
+#[test]
+fn no_integration_allocates_in_a_call() {
+    /// Half of the squared velocity at the end.
+    struct Speed;
+    impl Cost<f64> for Speed {
+        fn value(&mut self, at: &Visit<'_, f64>) -> f64 {
+            if at.last { 0.5 * at.v.iter().map(|v| v * v).sum::<f64>() } else { 0.0 }
+        }
+
+        fn add_gradient(&mut self, at: &Visit<'_, f64>, gradient: &mut CostGradient<'_, f64>) {
+            if at.last {
+                gradient.v.iter_mut().zip(at.v).for_each(|(sum, v)| *sum += v);
+            }
+        }
+    }
+    for (name, recipe) in &ROBOTS {
+        let model = build(recipe);
+        let t = &model.topology;
+        let states = StateBatch::random(&model, 1, 1);
+        let steps = [1e-3; 4];
+        let controls: Vec<f64> = (0..4).map(f64::from).collect();
+        let rollout = Rollout { start: 0.0, steps: &steps, q: states.q(0), v: states.v(0), controls: &controls, parameters: &[] };
+        let motors = Motors { dofs: vec![t.nv() - 1] };
+        let mut duals = ByDuals::new(&model, motors.clone(), &[]).unwrap();
+        let mut recursions = Analytic::new(&model, motors, &[]).unwrap();
+        let (mut forward, mut adjoint) = (Forward::new(t, 1), Adjoint::new(t, 4, 2, 1));
+        let (directions, mut ends) = (vec![1.0; rollout.variables()], vec![0.0; 2 * t.nv()]);
+        let mut gradient = directions.clone();
+        let (mut q, mut v) = (states.q(0).to_vec(), states.v(0).to_vec());
+        let mut pair = DormandPrince::with_derivatives(t, 1);
+        macro_rules! all {
+            ($($integrator:expr),+) => {$(
+                let mut integrator = $integrator;
+                let before = ALLOCATIONS.get();
+                forward.run(&mut integrator, &mut recursions, &rollout, &directions, &mut ends).unwrap();
+                forward.run(&mut integrator, &mut duals, &rollout, &directions, &mut ends).unwrap();
+                adjoint.run(&mut integrator, &mut recursions, &rollout, &mut Speed, &mut gradient).unwrap();
+                assert_eq!(ALLOCATIONS.get() - before, 0, "{name}");
+            )+};
+        }
+        all!(
+            SymplecticEuler::with_derivatives(t, 1),
+            ImplicitMidpoint::with_derivatives(t, 1),
+            RungeKutta4::with_derivatives(t, 1),
+            DormandPrince::with_derivatives(t, 1)
+        );
+        let before = ALLOCATIONS.get();
+        pair.run(&mut duals, 0.0, 1e-2, &mut q, &mut v, &Tolerance::default(), |_, _, _| ()).unwrap();
+        assert_eq!(ALLOCATIONS.get() - before, 0, "{name}: adaptive");
     }
 }
 

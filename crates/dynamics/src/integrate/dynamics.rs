@@ -4,7 +4,7 @@
 //! Cost: that of [`Aba::run`] and of the system's forces. A call does not allocate.
 
 use crate::error::expect;
-use crate::{Aba, DimensionError, Error};
+use crate::{Aba, DimensionError, Error, Rnea};
 use featherbench_model::Model;
 use featherbench_spatial::{Angle, Force, Lift};
 
@@ -100,7 +100,10 @@ pub struct Dynamics<S, T> {
     system: S,
     model: Model<T>,
     aba: Aba<T>,
+    rnea: Rnea<T>,
     tau: Vec<T>,
+    /// A velocity and acceleration of zero.
+    zeros: Vec<T>,
     wrenches: Vec<Force<T>>,
     controls: Vec<T>,
     parameters: Vec<T>,
@@ -118,7 +121,9 @@ where
         let (topology, zero) = (&model.topology, T::zero());
         let mut dynamics = Self {
             aba: Aba::new(topology),
+            rnea: Rnea::new(topology),
             tau: vec![zero; topology.nv()],
+            zeros: vec![zero; topology.nv()],
             wrenches: vec![Force::zero(); if system.has_wrenches() { topology.bodies() } else { 0 }],
             controls: vec![zero; system.controls()],
             parameters: vec![zero; system.parameters()],
@@ -160,6 +165,27 @@ impl<S: System, T: Angle> Dynamics<S, T> {
         system.forces(&Instant { time: t, q, v, controls, parameters }, tau, wrenches);
     }
 
+    /// The joint forces of a state, external wrenches included: τ + Σ Jᵀf.
+    pub(super) fn joint_forces(&mut self, t: T, q: &[T], v: &[T], result: &mut [T]) -> Result<(), DimensionError> {
+        let Self { system, model, rnea, tau, wrenches, zeros, controls, parameters, .. } = self;
+        result.fill(T::zero());
+        wrenches.fill(Force::zero());
+        system.forces(&Instant { time: t, q, v, controls, parameters }, result, wrenches);
+        if !wrenches.is_empty() {
+            // Σ Jᵀf is what inverse dynamics takes less with the wrenches than without.
+            rnea.run(model, q, zeros, zeros, None, tau)?;
+            result.iter_mut().zip(tau.iter()).for_each(|(result, tau)| *result += *tau);
+            rnea.run(model, q, zeros, zeros, Some(wrenches), tau)?;
+            result.iter_mut().zip(tau.iter()).for_each(|(result, tau)| *result -= *tau);
+        }
+        Ok(())
+    }
+
+    /// `x = M⁻¹ f` at the configuration of the last acceleration.
+    pub(super) fn solve(&mut self, f: &[T], x: &mut [T]) -> Result<(), DimensionError> {
+        self.aba.solve(&self.model, f, x)
+    }
+
     /// The model with its parameters.
     pub fn model(&self) -> &Model<T> {
         &self.model
@@ -168,7 +194,7 @@ impl<S: System, T: Angle> Dynamics<S, T> {
 
 impl<S: System, T: Angle> Acceleration<T> for Dynamics<S, T> {
     fn acceleration(&mut self, t: T, q: &[T], v: &[T], a: &mut [T]) -> Result<(), Error> {
-        let Self { system, model, aba, tau, wrenches, controls, parameters } = self;
+        let Self { system, model, aba, tau, wrenches, controls, parameters, .. } = self;
         expect("configuration q", model.topology.nq(), q.len())?;
         expect("velocity v", model.topology.nv(), v.len())?;
         tau.fill(T::zero());

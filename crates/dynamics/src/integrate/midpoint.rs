@@ -30,9 +30,9 @@ use featherbench_model::{TangentMap, Topology};
 use featherbench_spatial::Angle;
 
 /// The largest number of iterations.
-const ITERATIONS: usize = 100;
+pub(super) const ITERATIONS: usize = 100;
 /// The change, relative to the largest velocity, below which the iteration may end.
-const NEAR: f64 = 1e-6;
+pub(super) const NEAR: f64 = 1e-6;
 
 /// The workspace of the implicit midpoint rule.
 #[derive(Clone, Debug)]
@@ -147,7 +147,7 @@ impl<T: Angle> ImplicitMidpoint<T> {
 }
 
 /// `result = factor · x`
-fn scale<T: Angle>(factor: T, x: &[T], result: &mut [T]) {
+pub(super) fn scale<T: Angle>(factor: T, x: &[T], result: &mut [T]) {
     for (x, result) in x.iter().zip(result) {
         *result = factor * *x;
     }

@@ -15,7 +15,9 @@
 //! | [`RungeKutta4`] | 4 | 4 | |
 //! | [`DormandPrince`] | 5 | 6, and one more in the first step | an error estimate of order 4, hence adaptive steps |
 //!
-//! [`Integrator`] is what they have in common: a step, the step with what its derivative needs, the derivative times a direction, and its
+//! [`VariationalMidpoint`] stands apart: it needs energies, not accelerations. It has order 2, is symplectic, and conserves momentum to rounding.
+//!
+//! [`Integrator`] is what the others have in common: a step, the step with what its derivative needs, the derivative times a direction, and its
 //! transpose times a gradient. [`Forward`] chains the derivatives along a trajectory. [`Adjoint`] goes back and gives the gradient of a cost.
 //!
 //! [`Acceleration`] is the right-hand side: a closure, or [`Dynamics`], the articulated-body algorithm with a [`System`] of forces.
@@ -34,6 +36,7 @@ mod midpoint;
 mod rk4;
 mod rollout;
 mod symplectic_euler;
+mod variational;
 
 pub use adjoint::{Adjoint, Cost, CostGradient, Visit};
 pub use analytic::Analytic;
@@ -46,6 +49,7 @@ pub use midpoint::ImplicitMidpoint;
 pub use rk4::RungeKutta4;
 pub use rollout::{Rollout, rollout};
 pub use symplectic_euler::SymplecticEuler;
+pub use variational::VariationalMidpoint;
 
 use featherbench_spatial::Angle;
 

@@ -6,3 +6,4 @@ mod common;
 mod conservation;
 mod order;
 mod sensitivity;
+mod variational;
