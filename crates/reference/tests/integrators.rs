@@ -31,15 +31,14 @@ fn falls<I: Integrator<f64>>(
     name: &str,
     mut integrator: I,
     model: &Model<f64>,
-    q: &[f64],
-    v: &[f64],
+    start: (&[f64], &[f64]),
     time: f64,
     steps: usize,
     error: &dyn Fn(&[f64], &[f64]) -> f64,
 ) {
     let errors = [steps, 2 * steps, 4 * steps].map(|steps| {
         let mut f = Dynamics::new(model, Passive, &[]).unwrap();
-        let (mut q, mut v) = (q.to_vec(), v.to_vec());
+        let (mut q, mut v) = (start.0.to_vec(), start.1.to_vec());
         let h = time / steps as f64;
         for step in 0..steps {
             integrator.step(&mut f, h * step as f64, h, &mut q, &mut v).unwrap();
@@ -57,10 +56,10 @@ fn falls<I: Integrator<f64>>(
 macro_rules! all_fall {
     ($model:expr, $q:expr, $v:expr, $time:expr, $steps:expr, $error:expr) => {
         let (t, model) = (&$model.topology, &$model);
-        falls("symplectic Euler", SymplecticEuler::new(t), model, $q, $v, $time, 64 * $steps, $error);
-        falls("midpoint", ImplicitMidpoint::new(t), model, $q, $v, $time, 16 * $steps, $error);
-        falls("Runge–Kutta", RungeKutta4::new(t), model, $q, $v, $time, 4 * $steps, $error);
-        falls("Dormand–Prince", DormandPrince::new(t), model, $q, $v, $time, 2 * $steps, $error);
+        falls("symplectic Euler", SymplecticEuler::new(t), model, ($q, $v), $time, 64 * $steps, $error);
+        falls("midpoint", ImplicitMidpoint::new(t), model, ($q, $v), $time, 16 * $steps, $error);
+        falls("Runge–Kutta", RungeKutta4::new(t), model, ($q, $v), $time, 4 * $steps, $error);
+        falls("Dormand–Prince", DormandPrince::new(t), model, ($q, $v), $time, 2 * $steps, $error);
         let (mut q, mut v) = ($q.to_vec(), $v.to_vec());
         let tolerance = Tolerance { absolute: 1e-12, relative: 1e-12, ..Tolerance::default() };
         let mut f = Dynamics::new(model, Passive, &[]).unwrap();

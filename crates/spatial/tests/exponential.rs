@@ -48,14 +48,13 @@ fn zero() -> Matrix {
 /// `Σ (−ad ξ)ᵏ/(k + shift)!` on [linear; angular]: for shift 0 Ad(exp ξ)⁻¹, for shift 1 the right Jacobian.
 fn power_series(numbers: [f64; 6], shift: u32) -> Matrix {
     let m: Motion<Extended> = motion(numbers);
-    let mut ad = zero();
-    for column in 0..6 {
+    let columns: [[Extended; 6]; 6] = std::array::from_fn(|column| {
         let unit = |k: usize| if k == column { Extended::one() } else { Extended::zero() };
         let moved = m.cross_motion(Motion::new(Vec3::new(unit(3), unit(4), unit(5)), Vec3::new(unit(0), unit(1), unit(2))));
-        for (row, x) in moved.lin.to_array().into_iter().chain(moved.ang.to_array()).enumerate() {
-            ad[row][column] = -x;
-        }
-    }
+        let ([a, b, c], [d, e, f]) = (moved.lin.to_array(), moved.ang.to_array());
+        [a, b, c, d, e, f]
+    });
+    let ad: Matrix = std::array::from_fn(|row| std::array::from_fn(|column| -columns[column][row]));
     let (mut sum, mut term) = (zero(), zero());
     for (k, row) in term.iter_mut().enumerate() {
         row[k] = Extended::one();

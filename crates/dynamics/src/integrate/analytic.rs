@@ -9,8 +9,8 @@
 //! Here ∂FD is [`FdDerivatives`]. The derivative at s is that with q, v and a held: by the wrenches, and by parameters of the model. It is
 //! inverse dynamics over duals, and only computed where there are wrenches or parameters. Source: as [`FdDerivatives`].
 //! Frames, shapes, units: as in [`super::ByDuals`], whose answers these are.
-//! Cost: that of [`FdDerivatives`]; for each of the 2·nv + inputs directions the system's forces over duals, and one inverse dynamics over
-//! duals where it is needed; products with M⁻¹ for directions in which the forces change. A call does not allocate.
+//! Cost: that of [`FdDerivatives`]. Each of the 2·nv + inputs directions adds the system's forces over duals, a product with M⁻¹, and with
+//! wrenches or parameters one inverse dynamics over duals. A call does not allocate.
 
 use super::by_duals::{Linearisation, Linearise, copy};
 use super::dynamics::{Acceleration, Dynamics, Instant, System};
@@ -71,7 +71,7 @@ where
     /// The dynamics of a model under a system, with these values of its parameters and controls of zero.
     ///
     /// # Errors
-    /// [`DimensionError`] when there are not as many parameters as the system has.
+    /// [`DimensionError`] when the number of parameters is not the system's.
     pub fn new(model: &Model<f64>, system: S, parameters: &[T]) -> Result<Self, DimensionError>
     where
         f64: Lift<Dual<T>>,
@@ -122,7 +122,7 @@ impl<S: System, T: Angle> Analytic<S, T> {
             let wrenches = if self.dual_wrenches.is_empty() { None } else { Some(self.dual_wrenches.as_slice()) };
             self.rnea.run(&self.model, &self.held_q, &self.held_v, &self.a, wrenches, &mut self.taken)?;
             for (change, taken) in self.change.iter_mut().zip(&self.taken) {
-                *change = *change - taken.derivative;
+                *change -= taken.derivative;
             }
         }
         let nv = self.change.len();

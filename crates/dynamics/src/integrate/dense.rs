@@ -6,7 +6,7 @@
 use super::error::magnitude;
 use featherbench_spatial::Real;
 
-/// `result += matrix · x`; the matrix has as many rows as `result`.
+/// `result += matrix · x`; `result` has one number per row of the matrix.
 pub(super) fn add_product<T: Real>(matrix: &[T], x: &[T], result: &mut [T]) {
     if x.is_empty() {
         return;
@@ -16,7 +16,7 @@ pub(super) fn add_product<T: Real>(matrix: &[T], x: &[T], result: &mut [T]) {
     }
 }
 
-/// `result += matrixᵀ · x`; the matrix has as many rows as `x`.
+/// `result += matrixᵀ · x`; `x` has one number per row of the matrix.
 pub(super) fn add_transpose_product<T: Real>(matrix: &[T], x: &[T], result: &mut [T]) {
     if result.is_empty() {
         return;

@@ -116,7 +116,7 @@ where
     /// The dynamics of a model under a system, with these values of its parameters and controls of zero.
     ///
     /// # Errors
-    /// [`DimensionError`] when there are not as many parameters as the system has.
+    /// [`DimensionError`] when the number of parameters is not the system's.
     pub fn new(model: &Model<f64>, system: S, parameters: &[T]) -> Result<Self, DimensionError> {
         let (topology, zero) = (&model.topology, T::zero());
         let mut dynamics = Self {

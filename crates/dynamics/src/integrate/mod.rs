@@ -10,8 +10,8 @@
 //!
 //! | integrator | order | evaluations of a | also |
 //! |---|---|---|---|
-//! | [`SymplecticEuler`] | 1 | 1 | symplectic where M does not depend on q |
-//! | [`ImplicitMidpoint`] | 2 | one per iteration | its own inverse under h → −h; conserves what is quadratic in v alone |
+//! | [`SymplecticEuler`] | 1 | 1 | symplectic for a constant M |
+//! | [`ImplicitMidpoint`] | 2 | iterations | a step with −h undoes one with h; conserves what is quadratic in v |
 //! | [`RungeKutta4`] | 4 | 4 | |
 //! | [`DormandPrince`] | 5 | 6, and one more in the first step | an error estimate of order 4, hence adaptive steps |
 //!

@@ -21,7 +21,7 @@ impl System for Shaken {
 
     fn forces<T: Angle>(&self, at: &Instant<'_, T>, tau: &mut [T], wrenches: &mut [Force<T>]) {
         for (tau, v) in tau.iter_mut().zip(at.v) {
-            *tau = *tau - T::from_f64(0.2) * *v;
+            *tau -= T::from_f64(0.2) * *v;
         }
         let (sin, cos) = (at.time * T::from_f64(3.0)).sin_cos();
         for wrench in wrenches {
@@ -104,8 +104,8 @@ fn doubles_lose_only_roundings() {
             ($($method:ident),+) => {$(
                 let truth = after(&mut $method::<DoubleDouble>::new(t), &model, &states, TIME, 4);
                 let found = after(&mut $method::<f64>::new(t), &model, &states, TIME, 4);
-                // Accelerations of up to 10³ with an error of 1e-13, times a hundredth of a second.
-                within(&format!("{}, {name}: rounding", stringify!($method)), error(&model, &truth, &found), 1e-12);
+                // Accelerations of up to 10³ with some roundings of their size, over a twentieth of a second.
+                within(&format!("{}, {name}: rounding", stringify!($method)), error(&model, &truth, &found), 5e-14);
             )+};
         }
         check!(SymplecticEuler, ImplicitMidpoint, RungeKutta4, DormandPrince);

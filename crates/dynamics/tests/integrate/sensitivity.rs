@@ -35,7 +35,7 @@ impl System for Driven {
             tau[dof] += control;
         }
         for (tau, v) in tau.iter_mut().zip(at.v) {
-            *tau = *tau - at.parameters[0] * *v;
+            *tau -= at.parameters[0] * *v;
         }
         let (sin, cos) = (at.time + at.q[0]).sin_cos();
         wrenches[0] += Force::new(Vec3::new(sin, T::zero(), cos) * T::from_f64(0.2), Vec3::new(cos, sin, T::one()));
@@ -183,8 +183,8 @@ fn forward_sensitivities_are_those_of_differences() {
             expected.extend(forward.1.iter().zip(&backward.1).map(|(forward, backward)| (*forward - *backward).to_f64()));
             expected.iter_mut().for_each(|x| *x /= 2.0 * BY);
             assert_eq!(expected.len(), 2 * nv);
-            // Six steps of accelerations with derivatives of up to 10³, in f64: a thousand roundings.
-            within(&format!("{name}: against differences"), distance(&found, &expected) / (1.0 + largest(&expected)), 1e-12);
+            // Six steps of some hundred operations in f64, whose roundings partly cancel.
+            within(&format!("{name}: against differences"), distance(&found, &expected) / (1.0 + largest(&expected)), 2e-14);
         }
     }
     each(&Differences);
@@ -314,7 +314,7 @@ fn the_gradient_of_a_running_cost_is_that_of_differences() {
     const BY: f64 = 1e-5;
     let expected = (value(BY) - value(-BY)) / (2.0 * BY);
     // Differences in f64: 1e-16 over 1e-5, and the square of that times third derivatives of up to a hundred.
-    within("gradient of a running cost", (dot(&gradient, &direction) - expected).abs() / expected.abs(), 1e-7);
+    within("gradient of a running cost", (dot(&gradient, &direction) - expected).abs() / expected.abs(), 1e-8);
 }
 
 /// Two routes to the derivatives of the right-hand side: recursions with duals for the forces, and duals through everything.
@@ -343,8 +343,8 @@ fn recursions_and_duals_agree() {
                 ("∂a/∂v", &expected.by_v, &found.by_v),
                 ("∂a/∂u", &expected.by_input, &found.by_input),
             ] {
-                // Of robots with an inertia a thousand times smaller along some direction: a hundred roundings times that.
-                within(&format!("{name}: {what}"), distance(found, expected) / (1.0 + largest(expected)), 1e-12);
+                // M has eigenvalues from 10⁻² to 10: a thousand roundings, partly cancelling.
+                within(&format!("{name}: {what}"), distance(found, expected) / (1.0 + largest(expected)), 5e-14);
             }
         }
     }
@@ -374,7 +374,7 @@ fn sensitivities_converge_at_the_order() {
             };
             let mut exact = DormandPrince::with_derivatives(t, 2);
             let truth = flow(&mut |f, rollout| sensitivity(t, &mut exact, f, rollout, &direction).unwrap(), 128);
-            let count = if I::ORDER > 3 { 4 } else { 64 };
+            let count = if I::ORDER > 3 { 8 } else { 64 };
             let errors = [count, 2 * count].map(|count| {
                 let mut integrator = |f: &mut ByDuals<Driven, f64>, rollout: &Rollout<'_, f64>| {
                     let mut result = vec![0.0; 2 * nv];
@@ -385,7 +385,7 @@ fn sensitivities_converge_at_the_order() {
                 distance(&flow(&mut integrator, count), &truth)
             });
             let slope = (errors[0] / errors[1]).log2();
-            within(&format!("{name}: order of sensitivities by {errors:?}"), (slope - f64::from(I::ORDER)).abs(), 0.35);
+            within(&format!("{name}: order of sensitivities by {errors:?}"), (slope - f64::from(I::ORDER)).abs(), 0.2);
         }
     }
     // The workspaces of `each` have room for the motors' derivatives: here the others suffice.

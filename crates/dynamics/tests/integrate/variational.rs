@@ -26,7 +26,7 @@ impl System for Shaken {
 
     fn forces<T: Angle>(&self, at: &Instant<'_, T>, tau: &mut [T], wrenches: &mut [Force<T>]) {
         for (tau, v) in tau.iter_mut().zip(at.v) {
-            *tau = *tau - T::from_f64(0.2) * *v;
+            *tau -= T::from_f64(0.2) * *v;
         }
         let (sin, cos) = (at.time * T::from_f64(3.0)).sin_cos();
         for wrench in wrenches {
@@ -94,7 +94,7 @@ fn momentum_is_conserved_to_rounding() {
         integrator.step(&mut f, 2e-3 * f64::from(step), 2e-3, &mut q, &mut v).unwrap();
     }
     // 200 steps, each with a rounding of M v and one of the solution: some 1e-15 of momenta of ten.
-    within("momentum", distance(&momentum(&q, &v), &before), 1e-12);
+    within("momentum", distance(&momentum(&q, &v), &before), 5e-13);
 }
 
 /// The derivative S of (q, p) → (q', p') keeps the symplectic form: Sᵀ J S = J. By differences with 32 digits.
@@ -141,8 +141,8 @@ fn a_step_is_a_symplectic_map() {
             } else {
                 0.0
             };
-            // The differences err by the square of their step, 1e-18, times third derivatives of up to a thousand; f64 by 1e-15.
-            within(&format!("Sᵀ J S at {i}, {j}"), (form - expected).abs(), 1e-13);
+            // The differences err by the square of their step, 1e-18, times third derivatives of up to a hundred; sums in f64 by 1e-15.
+            within(&format!("Sᵀ J S at {i}, {j}"), (form - expected).abs(), 1e-14);
         }
     }
 }
@@ -172,7 +172,7 @@ fn energy_does_not_drift_and_steps_go_back() {
     let (mut q, mut v) = start;
     (0..100).for_each(|_| integrator.step(&mut f, 0.0, 0.005, &mut q, &mut v).unwrap());
     (0..100).for_each(|_| integrator.step(&mut f, 0.0, -0.005, &mut q, &mut v).unwrap());
-    within("there and back", larger(distance(&q, &start.0), distance(&v, &start.1)), 1e-11);
+    within("there and back", larger(distance(&q, &start.0), distance(&v, &start.1)), 1e-13);
 }
 
 #[test]
@@ -185,8 +185,8 @@ fn doubles_lose_only_roundings() {
         let found = after(&model, states.q(0), states.v(0), 2e-3, 4);
         let way = difference(&model.topology, &truth.0, &lifted::<DoubleDouble>(&found.0)).unwrap();
         let gap = way.iter().map(|x| x.to_f64()).chain(found.1.iter().zip(&truth.1).map(|(x, y)| x - y.to_f64()));
-        // v' = M⁻¹ p: of robots whose M has eigenvalues from 10⁻³ to 10, ten thousand roundings.
-        within(&format!("{name}: rounding"), largest(&gap.collect::<Vec<_>>()), 1e-12);
+        // v' = M⁻¹ p: M has eigenvalues from 10⁻² to 10, so a thousand roundings.
+        within(&format!("{name}: rounding"), largest(&gap.collect::<Vec<_>>()), 2e-13);
     }
 }
 
