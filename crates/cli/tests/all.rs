@@ -1,5 +1,6 @@
 //! The tests of the command line as one program: so shared modules are compiled once.
 
+mod alone;
 mod bad_input;
 mod conventions;
 mod datasets;

@@ -4,6 +4,7 @@ use super::data::{Data, Series};
 use featherbench_bench::OWN;
 use featherbench_report::Overview;
 use featherbench_report::numbers::{grouped, short};
+use featherbench_results::RunInfo;
 
 /// The answer.
 #[derive(Debug, Default, PartialEq)]
@@ -15,7 +16,7 @@ pub(super) struct Answer {
 }
 
 /// The answer on the line where our forward dynamics went furthest.
-pub(super) fn answer(overview: &Overview, data: &Data) -> Answer {
+pub(super) fn answer(run: &RunInfo, overview: &Overview, data: &Data) -> Answer {
     let largest = |one: &&Series| one.points.last().map_or(0, |point| point.size);
     let forward = || data.series.iter().filter(|one| one.quantity == "fd");
     let own = forward().filter(|one| overview.engines[one.engine] == OWN && one.method == "aba");
@@ -27,7 +28,10 @@ pub(super) fn answer(overview: &Overview, data: &Data) -> Answer {
         let series = forward().filter(|one| one.line == best.line && one.engine == engine).rev().max_by_key(largest)?;
         Some((overview.engines[engine].to_owned(), stop(series)))
     });
-    Answer { own: sentence(data, best), others: stopped.collect() }
+    // An engine of the study that was not there has no series.
+    let missing = run.engines.iter().filter(|engine| engine.status != "ok");
+    let missing = missing.map(|engine| (engine.name.clone(), format!("was not measured: {}", engine.reason)));
+    Answer { own: sentence(data, best), others: stopped.chain(missing).collect() }
 }
 
 /// Ours: the size, the time, the memory and the error.

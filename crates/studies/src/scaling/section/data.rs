@@ -141,7 +141,6 @@ impl<'a> Data<'a> {
             ratios.work.sort_by_key(|(_, size, _)| *size);
             ratios.time.sort_by_key(|(_, size, _)| *size);
         });
-        trees.sort_by_key(|tree| tree.robot);
         Self { trees, ..data }
     }
 

@@ -17,12 +17,12 @@ const TERMS: &[(&str, &str)] = &[(
 )];
 
 /// Makes the section, if the run has rows of either study.
-pub(crate) fn sections<'a>(_: &RunInfo, rows: &'a [Row], overview: &Overview<'a>) -> Vec<Section> {
+pub(crate) fn sections<'a>(run: &'a RunInfo, rows: &'a [Row], overview: &Overview<'a>) -> Vec<Section> {
     let data = Data::of(overview, rows);
     if data.is_empty() {
         return Vec::new();
     }
-    let answer = answer(overview, &data);
+    let answer = answer(run, overview, &data);
     let body = body(overview, &data, &answer);
     let lines = answer.own.iter().map(|own| format!("scaling: {own}")).collect();
     vec![Section { script: include_str!("section.js"), terms: TERMS, lines, ..Section::new("scaling", "Scaling", body).with_data(&data) }]
