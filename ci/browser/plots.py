@@ -18,6 +18,10 @@ PLOTS = [
     "floor-plot",
     "steps-plot",
     "drift-plot",
+    "scaling-time",
+    "scaling-memory",
+    "scaling-error",
+    "scaling-ratio",
 ]
 # A plot as its reader has it: texts of the ticks, names that are switched on, and whether the zoom can be taken back.
 PLOT = """

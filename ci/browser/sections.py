@@ -22,6 +22,7 @@ SECTIONS = [
     "accuracy",
     "conditioning",
     "steps",
+    "scaling",
     "time",
     "speed",
     "tradeoff",
@@ -31,7 +32,7 @@ SECTIONS = [
     "method",
     "unpassed",
 ]
-ALWAYS = set(SECTIONS) - {"import", "joints", "accuracy", "speed", "tradeoff", "conditioning", "steps", "known"}
+ALWAYS = set(SECTIONS) - {"import", "joints", "accuracy", "speed", "tradeoff", "conditioning", "steps", "scaling", "known"}
 
 
 def checks(page: Browser, address: str, shots: pathlib.Path | None) -> Checks:
@@ -66,6 +67,8 @@ def checks(page: Browser, address: str, shots: pathlib.Path | None) -> Checks:
         yield "time per joint can be plotted", title, ""
     if has(page, "#speed-plot"):
         yield from speed(page, shot)
+    if has(page, "#scaling"):
+        yield from scaling(page, shot)
     if has(page, "#unpassed [data-chunk]"):
         page.click("#unpassed [data-chunk]")
         yield "what did not pass can be opened", page.until(ROWS) > 0, ""
@@ -145,6 +148,29 @@ def speed(page: Browser, shot: Shot) -> Checks:
         page.run("document.getElementById(arguments[0]).scrollIntoView({block: 'center', behavior: 'instant'})", table)
         shot(table)
     page.run("document.querySelectorAll('#speed details').forEach(part => { part.open = false; })")
+
+
+def scaling(page: Browser, shot: Shot) -> Checks:
+    """Check the section on scaling."""
+    if has(page, "#scaling-line"):
+        answer = page.run("return document.getElementById('scaling-answer').textContent")
+        yield "the section on scaling begins with its answer", "degrees of freedom" in answer and "a call" in answer, answer
+        for line in page.run("return [...document.querySelector('#scaling-line').options].map(option => option.value)")[::-1]:
+            page.choose("#scaling-line", line)
+            drawn_points = [page.until(DRAWN, name) for name in ("scaling-time", "scaling-memory", "scaling-error")]
+            yield f"time, memory and error of {line} are plotted", all(points > 0 for points in drawn_points), drawn_points
+        last = "document.querySelectorAll('#scaling-limits tbody tr td:last-child')"
+        reasons = page.run(f"return [...{last}].map(cell => cell.textContent.trim())")
+        yield "every method says why it goes no further", bool(reasons) and all(reasons), reasons
+    for table in ["scaling-crossovers", "scaling-errors", "scaling-counts"]:
+        found = page.run("return document.querySelectorAll(`#${arguments[0]} tbody tr`).length", table)
+        yield f"{table} has rows", found > 0, found
+    if has(page, "#scaling-counts td button, #scaling-counts th button"):
+        page.click("#scaling-counts th button")
+        yield "a tree's counts open its rows", page.until(ROWS) > 0, ""
+        page.press(ESCAPE)
+    page.run("document.getElementById('scaling').scrollIntoView({block: 'start', behavior: 'instant'})")
+    shot("scaling")
 
 
 def theme(page: Browser, address: str, shot: Shot, pictured: list[str]) -> Checks:

@@ -78,7 +78,10 @@ fn what_grows_is_measured() {
     let exponent = value("time_exponent", "");
     assert!((exponent.value.unwrap() - 1.0).abs() < 1e-9 && exponent.ci_low < exponent.ci_high, "{exponent:?}");
     assert_eq!(value("memory_per_dof", "").value, Some(600.0));
-    assert_eq!((value("resident", "chain:n=40,layout=spatial").value, value("peak", "chain:n=40,layout=spatial").value), (Some(1_024_000.0), Some(2_024_000.0)));
+    assert_eq!(
+        (value("resident", "chain:n=40,layout=spatial").value, value("peak", "chain:n=40,layout=spatial").value),
+        (Some(1_024_000.0), Some(2_024_000.0))
+    );
     assert_eq!((value("largest", "").value, value("largest", "").reason.as_str()), (Some(80.0), ""));
     assert!(value("error", "chain:n=80,layout=spatial").value.unwrap() < 1e-13);
     // 5e-8 n² and 1e-6 n are equal at n = 20.
@@ -89,10 +92,37 @@ fn what_grows_is_measured() {
 #[test]
 fn an_engine_that_stops_is_a_row_with_its_reason() {
     let failing: [(Behaviour, &str); 4] = [
-        (|question, dofs| if dofs > 20 { Err(NoAnswer::Failed("the oracle exited (signal: 9 (SIGKILL); memory limit 512 MiB): no message".into())) } else { right(question, dofs) }, "SIGKILL"),
+        (
+            |question, dofs| {
+                if dofs > 20 {
+                    Err(NoAnswer::Failed("the oracle exited (signal: 9 (SIGKILL); memory limit 512 MiB): no message".into()))
+                } else {
+                    right(question, dofs)
+                }
+            },
+            "SIGKILL",
+        ),
         (|question, dofs| if dofs > 20 { Err(NoAnswer::NotOffered("XML depth".into())) } else { right(question, dofs) }, "XML depth"),
-        (|question, dofs| { let mut measured = right(question, dofs)?; if dofs > 20 { measured.answer[7] = f64::NAN; } Ok(measured) }, "not finite"),
-        (|question, dofs| { let mut measured = right(question, dofs)?; if dofs > 20 { measured.calls.clear(); } Ok(measured) }, "no time"),
+        (
+            |question, dofs| {
+                let mut measured = right(question, dofs)?;
+                if dofs > 20 {
+                    measured.answer[7] = f64::NAN;
+                }
+                Ok(measured)
+            },
+            "not finite",
+        ),
+        (
+            |question, dofs| {
+                let mut measured = right(question, dofs)?;
+                if dofs > 20 {
+                    measured.calls.clear();
+                }
+                Ok(measured)
+            },
+            "no time",
+        ),
     ];
     for (double, words) in failing {
         let rows = rows(20, double);
@@ -129,7 +159,11 @@ fn a_wrong_answer_shows_in_its_error() {
         Ok(measured)
     };
     let rows = rows(80, wrong);
-    let errors: Vec<f64> = rows.iter().filter(|row| row.engine == "double" && row.method == "aba" && row.metric == "error").filter_map(|row| row.value).collect();
+    let errors: Vec<f64> = rows
+        .iter()
+        .filter(|row| row.engine == "double" && row.method == "aba" && row.metric == "error")
+        .filter_map(|row| row.value)
+        .collect();
     assert!(errors.len() == 4 && errors.iter().all(|error| (error / 1e-6 - 1.0).abs() < 1e-6), "{errors:?}");
     // One number too few is no answer of this robot.
     let short: Behaviour = |question, dofs| {
@@ -137,9 +171,17 @@ fn a_wrong_answer_shows_in_its_error() {
         measured.answer.pop();
         Ok(measured)
     };
-    let rows = self::rows(80, short);
-    let of = |row: &&Row| row.engine == "double" && row.method == "aba" && row.metric == "error";
-    assert!(rows.iter().filter(of).all(|row| row.verdict == Verdict::Error) && rows.iter().filter(of).count() == 4);
+    let row = largest(&self::rows(10, short), "double", "aba").clone();
+    assert_eq!((row.value, row.verdict), (None, Verdict::Error));
+    assert!(row.reason.contains("its answer has 9 numbers, 10 are due"), "{}", row.reason);
+    // Nor is one whose error overflows.
+    let huge: Behaviour = |question, dofs| {
+        let mut measured = right(question, dofs)?;
+        measured.answer.fill(1e300);
+        Ok(measured)
+    };
+    let row = largest(&self::rows(10, huge), "double", "aba").clone();
+    assert!(row.verdict == Verdict::Error && row.reason.contains("its error is inf"), "{}", row.reason);
 }
 
 #[test]

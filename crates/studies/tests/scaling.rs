@@ -3,7 +3,7 @@
 use crate::support;
 
 use featherbench_bench::run::{Silent, compare, evaluate, plan};
-use featherbench_bench::{Context, Engine, Finished, Gates, OutcomeStore, Outcome, Study};
+use featherbench_bench::{Context, Engine, Finished, Gates, Outcome, OutcomeStore, Study};
 use featherbench_engines::Featherbench;
 use featherbench_results::{Row, Verdict};
 use featherbench_studies::{Scaling, ScalingSettings};
@@ -93,7 +93,8 @@ fn leaves_first_fills_nothing_and_every_row_of_ours_passes() {
     assert_eq!(fill("humanoid", "root_first"), 666.0 - 351.0);
     // 63 dofs full: 2016, of which the tree's M has 321.
     assert_eq!(fill("binary_tree:depth=6", "root_first"), 2016.0 - 321.0);
-    let over: Vec<f64> = rows.iter().filter(|row| row.metric == "error_over_floor" && row.method == "aba").filter_map(|row| row.value).collect();
+    let over: Vec<f64> =
+        rows.iter().filter(|row| row.metric == "error_over_floor" && row.method == "aba").filter_map(|row| row.value).collect();
     assert!(over.len() == 1 && over[0] > 0.0, "{over:?}");
 }
 
@@ -144,7 +145,8 @@ fn a_resumed_run_has_the_same_bytes() {
     let context = Context { robots: &[], engines: &engines, gates: &gates, seed: support::SEED };
     let study = Scaling { settings: settings() };
     let folder = tempfile::tempdir().unwrap();
-    let bytes = |folder: &Path| featherbench_results::to_csv(&compare(&study, &context, finished(&study, &context, folder)), folder).unwrap();
+    let bytes =
+        |folder: &Path| featherbench_results::to_csv(&compare(&study, &context, finished(&study, &context, folder)), folder).unwrap();
     let whole = bytes(folder.path());
     let path = folder.path().join(featherbench_bench::OUTCOMES_NAME);
     let outcomes = std::fs::read(&path).unwrap();

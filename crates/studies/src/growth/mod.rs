@@ -23,7 +23,7 @@ mod slope;
 
 use crate::scaling::{relative_error, truth};
 use crate::{Made, Setup};
-use featherbench_bench::alone::{self, Ask, Question};
+use featherbench_bench::alone::{self, Ask, Measured, Question};
 use featherbench_bench::{Cell, Context, Engine, Finished, Limits, NoAnswer, OWN, Outcome, Quantity, Robot, Study};
 use featherbench_results::Row;
 use line::{Grown, Point, Stop};
@@ -112,6 +112,24 @@ impl Growth {
         Ok(truth)
     }
 
+    /// A size with its error. An answer that is none ends the line: a text of an outcome cannot hold a NaN.
+    fn point(&self, question: &Question, measured: Measured) -> Result<Point, NoAnswer> {
+        let Measured { answer, calls, .. } = &measured;
+        let failed = |reason: String| Err(NoAnswer::Failed(reason));
+        if calls.is_empty() || !answer.iter().chain(calls).all(|x| x.is_finite()) {
+            return failed("its answer holds a number that is not finite, or no time".into());
+        }
+        if question.quantity != Quantity::ForwardDynamics {
+            return Ok(Point::of(&question.robot, measured, None));
+        }
+        let truth = self.truth(&question.robot, question.seed)?;
+        if answer.len() != truth.len() {
+            return failed(format!("its answer has {} numbers, {} are due", answer.len(), truth.len()));
+        }
+        let error = relative_error(answer, &truth);
+        if error.is_finite() { Ok(Point::of(&question.robot, measured, Some(error))) } else { failed(format!("its error is {error}")) }
+    }
+
     /// Measures a method along a line, up to the first size without an answer.
     fn grow(&self, seed: u64, cell: &Cell, line: &Line) -> Result<Grown, NoAnswer> {
         let quantity = Quantity::parse(&cell.quantity).ok_or_else(|| NoAnswer::Failed("there is no such quantity".into()))?;
@@ -128,20 +146,10 @@ impl Growth {
                 seconds: self.settings.seconds,
                 limits,
             };
-            let stop = |reason: String, offered: bool| Some(Stop { size, tree: tree.clone(), reason, offered });
-            match (self.measure)(&question) {
-                Err(NoAnswer::NotOffered(reason)) => grown.stop = stop(reason, false),
-                Err(NoAnswer::Failed(reason)) => grown.stop = stop(reason, true),
-                Ok(measured) if !measured.answer.iter().chain(&measured.calls).all(|x| x.is_finite()) || measured.calls.is_empty() => {
-                    grown.stop = stop("its answer holds a number that is not finite, or no time".into(), true);
-                }
-                Ok(measured) => {
-                    let error = match quantity {
-                        Quantity::ForwardDynamics => Some(relative_error(&measured.answer, &self.truth(&tree, seed)?)),
-                        _ => None,
-                    };
-                    grown.points.push(Point::of(&tree, measured, error));
-                }
+            match (self.measure)(&question).and_then(|measured| self.point(&question, measured)) {
+                Ok(point) => grown.points.push(point),
+                Err(NoAnswer::NotOffered(reason)) => grown.stop = Some(Stop { size, tree, reason, offered: false }),
+                Err(NoAnswer::Failed(reason)) => grown.stop = Some(Stop { size, tree, reason, offered: true }),
             }
             if grown.stop.is_some() {
                 break;
