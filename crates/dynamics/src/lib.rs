@@ -85,9 +85,6 @@ pub use kinematics::{BodyMotion, Kinematics, forward_kinematics};
 pub use ltdl::Ltdl;
 pub use ltl::Ltl;
 pub use momentum::{CentroidalMomentum, Momentum, centroidal_momentum};
-pub use packed::{
-    PackedAba, PackedCenterOfMass, PackedCrba, PackedEnergy, PackedJacobian, PackedKinematics, PackedModel, PackedMomentum, PackedRnea,
-};
 pub use packed::{PackedAba, PackedCenterOfMass, PackedCrba, PackedJacobian, PackedKinematics, PackedModel, PackedMomentum, PackedRnea};
 pub use parents::{NotATree, depth_first_order};
 pub use refined::{Refined, refined_forward_dynamics};

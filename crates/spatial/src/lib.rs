@@ -19,7 +19,6 @@ mod vector;
 pub use exponential::TangentBlock;
 pub use inertia::{ArticulatedInertia, CentralInertia, RigidBodyInertia};
 pub use linear::{Ldl3, Mat3, Sym3, Vec3};
-pub use scalar::{Angle, Compensated, Counted, DoubleDouble, Dual, Lift, Operations, Part, Real};
-pub use scalar::{Compensated, Counted, DoubleDouble, Dual, Lift, Logarithm, Operations, Part, Real};
+pub use scalar::{Angle, Compensated, Counted, DoubleDouble, Dual, Lift, Logarithm, Operations, Part, Real};
 pub use transform::{Quaternion, Transform};
 pub use vector::{Force, Motion};
