@@ -38,7 +38,7 @@
 //! - *Share of the limit*: the processor begins two operations per cycle. So it is half the operations over the cycles.
 //! - *Stack moves*: reads and writes of the stack by instructions on vector registers. They are spills, and small arrays.
 //!
-//! Conditions: an Intel Xeon with AVX-512 and AMX (a shared virtual machine of two cores, 4.1 GHz by a chain of integer products); rustc 1.95.0.
+//! Conditions, where a page names no others: an Intel Xeon with AVX-512 and AMX (a shared virtual machine of two cores, 4.1 GHz by a chain of integer products); rustc 1.95.0.
 //! The AVX-512 build is for the processor itself, the AVX2 build for x86-64-v3. Times are the smallest of thousands, one core, all data in
 //! the caches. They differ by a tenth from run to run. On that processor a multiply-add takes 4 cycles and a division 14. The divider is busy for
 //! 17 cycles with a register of 512 bits, and for 8 with one of 256.

@@ -69,27 +69,33 @@ use std::borrow::Cow;
 /// # Cost
 ///
 /// Per revolute joint of a chain and group of states: eight with AVX-512, four with AVX2. Every operation is one of a whole register of states.
-/// Words and conditions are on the [crate page](crate#cost-of-the-hot-kernels).
+/// The words are on the [crate page](crate#cost-of-the-hot-kernels). The times are of a Zen 5 (AMD EPYC, 4.1 GHz), in lane order.
 ///
-/// | | inverse dynamics: AVX-512, AVX2 | forward dynamics: AVX-512, AVX2 |
+/// | | inverse dynamics | forward dynamics |
 /// |---|---|---|
-/// | operations | 171, 171 | 446, 446 |
-/// | divisions among these | 0, 0 | 1, 1 |
-/// | cycles | 252, 165 | 590, 422 |
-/// | share of the limit | 0.34, 0.52 | 0.38, 0.53 |
-/// | stack reads | 10, 23 | 28, 159 |
-/// | stack writes | 12, 28 | 32, 139 |
+/// | operations | 171 | 446 |
+/// | divisions among these | 0 | 1 |
+/// | registers kept of each body | 12 | 26 |
+/// | cycles, AVX-512 | 120 | 300 |
+/// | share of the limit, AVX-512 | 0.71 | 0.74 |
 ///
 /// They are those of [`Rnea`](crate::Rnea) (146) and [`Aba`](crate::Aba) (421), 21 for sine and cosine, and 4 that look for numbers that are
-/// not finite. The mass matrices of a chain of 36 take 582 operations per joint, at 0.41 and 0.50 of the limit. Row order took a tenth longer
-/// than lane order in inverse dynamics. A call with fewer states than a group takes as long as one with a group.
+/// not finite. The mass matrices of a chain of 36 take 582 operations per joint, at 0.63 of the limit. Row order takes 1.2 times as long as lane
+/// order in inverse dynamics of a chain of 36, and 1.4 times on a chain of 7. A call with fewer states than a group takes as long as one with a
+/// group.
 ///
-/// *Bound* by no unit; probably by latency within a joint: sine and cosine, the transform, then the recursion. A joint of forward dynamics
-/// has 958 instructions with AVX-512, and the processor looks some 500 ahead: the next joint does not fill the waits.
-/// [`factors`](Self::factors) is bound by the divider too: D1 divisions of registers ([`Ltdl`](crate::Ltdl)) keep it busy for half of the
-/// factorization of a chain of 36, with AVX-512.
+/// *Bound* by lines of the cache, beside operations: a register of eight `f64` is a line. So the recursions keep few of them. With 27 and 62
+/// registers of each body, calls took 1.1 times as long. A Xeon had 252 cycles with AVX-512 then, and 165 with AVX2, for the same number
+/// of instructions. It was not measured since.
 ///
-/// No attempt is recorded that did not pay.
+/// *Did not pay*, on the Zen 5 with AVX-512:
+/// - Two groups at a time, a pair of registers as the scalar. Inverse dynamics took 0.9 (chain of 7) to 0.98 (chain of 36) of the time, forward
+///   dynamics 1.05 to 1.15, the mass matrix 1.03 to 1.06. So latency is not what bounds it. The lean recursions gain more, in all of them.
+/// - The mass matrix with placements formed where they are used, and composite inertias by path slots: 1.00 to 1.05.
+///
+/// The width is chosen when the crate is compiled. An experiment chose it at run time: inverse dynamics with arrays as lanes, all of it inlined in a
+/// function with target features, in a build for x86-64-v2. With AVX2 it was as fast as the compiled-in width. With AVX-512 it had two thirds of
+/// the speed, and calling such a function takes `unsafe`. So compile for the processor at hand (`target-cpu=native`).
 #[derive(Clone, Debug)]
 pub struct Batch<'m, S: Number = f64> {
     models: Models<'m, S>,
