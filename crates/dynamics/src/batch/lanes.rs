@@ -42,12 +42,14 @@ pub trait Element<S: Number>: Copy + Send + Sync {
 
 /// The first entries of the squares of numbers that cover a vector of `each` entries. A square has `side` entries of `side` states, and is
 /// transposed in registers. The last one overlaps the one before it where it must.
+#[inline(always)]
 fn squares(each: usize, side: usize) -> impl Iterator<Item = usize> {
     let last = each.checked_sub(side);
     (0..each.next_multiple_of(side)).step_by(side).filter_map(move |entry| Some(entry.min(last?)))
 }
 
 /// The entries of a vector that is too short for a square.
+#[inline(always)]
 fn rest(each: usize, side: usize) -> std::ops::Range<usize> {
     if each < side { 0..each } else { 0..0 }
 }
@@ -103,7 +105,11 @@ macro_rules! number {
                 let rows = &array[group * each * $count..];
                 let rows = &rows[..rows.len().min(each * $count)];
                 let last = (rows.len() / each.max(1)).saturating_sub(1);
-                let rows: [&[$scalar]; $count] = std::array::from_fn(|lane| &rows[lane.min(last) * each..][..buffer.len()]);
+                let mut lanes = [&rows[..0]; $count];
+                for (lane, row) in lanes.iter_mut().enumerate() {
+                    *row = &rows[lane.min(last) * each..][..buffer.len()];
+                }
+                let rows = lanes;
                 for entry in squares(each, $side) {
                     let columns: [[$square; $side]; $count / $side] = std::array::from_fn(|block| {
                         let row = |k: usize| *rows[block * $side + k][entry..].first_chunk().expect("a row of the square");

@@ -80,8 +80,8 @@ use std::borrow::Cow;
 /// | share of the limit, AVX-512 | 0.71 | 0.74 |
 ///
 /// They are those of [`Rnea`](crate::Rnea) (146) and [`Aba`](crate::Aba) (421), 21 for sine and cosine, and 4 that look for numbers that are
-/// not finite. The mass matrices of a chain of 36 take 582 operations per joint, at 0.63 of the limit. Row order takes 1.2 times as long as lane
-/// order in inverse dynamics of a chain of 36, and 1.4 times on a chain of 7. A call with fewer states than a group takes as long as one with a
+/// not finite. The mass matrices of a chain of 36 take 582 operations per joint, at 0.63 of the limit. Row order takes 1.1 times as long as lane
+/// order in inverse dynamics of a chain of 36, and 1.2 times on a chain of 7. A call with fewer states than a group takes as long as one with a
 /// group.
 ///
 /// *Bound* by lines of the cache, beside operations: a register of eight `f64` is a line. So the recursions keep few of them. With 27 and 62
