@@ -13,6 +13,7 @@ use featherbench_results::{Row, Verdict};
 use featherbench_robots::Case;
 use featherbench_spatial::{DoubleDouble, Real};
 use nalgebra::DMatrix;
+use std::ops::Range;
 
 /// The method of cells.
 pub(super) const METHOD: &str = "partition";
@@ -55,9 +56,11 @@ pub(super) fn numbers(robot: &Robot) -> Result<Vec<f64>, String> {
         for (all, number) in conditions.iter_mut().zip([kappa, whole_scaled, base, base_scaled, joints, joints_scaled]) {
             all.push(number);
         }
-        let offsets = [0, BASE];
-        let errors = found.iter().zip(&truth).zip(offsets).map(|((found, truth), offset)| error(found, truth, &whole, offset));
-        judged[1] = errors.fold(judged[1], larger);
+        let (base_dofs, joint_dofs) = (0..BASE, BASE..matrix.size());
+        for (place, (own, other)) in [(base_dofs.clone(), joint_dofs.clone()), (joint_dofs, base_dofs)].into_iter().enumerate() {
+            let error = error(&found[place], &truth[place], &whole, own, other).ok_or("a block of M is not positive definite")?;
+            judged[1] = larger(judged[1], error);
+        }
         judged[0] = [base / kappa, joints / kappa].into_iter().fold(judged[0], larger);
     }
     if conditions[0].is_empty() {
@@ -90,13 +93,21 @@ fn complements<T: Real + nalgebra::Scalar>(workspace: &mut FloatingBase<T>, matr
     Ok([DMatrix::from_fn(BASE, BASE, |i, j| base[i][j]), DMatrix::from_row_slice(joints, joints, &dense)])
 }
 
-/// The largest error of a complement over the roots of the diagonal entries of M: these are what is subtracted from.
-fn error(found: &DMatrix<f64>, truth: &DMatrix<DoubleDouble>, whole: &DMatrix<f64>, offset: usize) -> f64 {
-    let scale = |i: usize| whole[(offset + i, offset + i)];
-    let off =
-        |(i, j): (usize, usize)| (DoubleDouble::from_f64(found[(i, j)]) - truth[(i, j)]).to_f64().abs() / (scale(i) * scale(j)).sqrt();
-    let n = found.nrows();
-    (0..n * n).map(|place| off((place / n, place % n))).fold(0.0, larger)
+/// The largest error of the complement of `own` dofs, as a change of M: any change |δM_kl| ≤ η √(M_kk M_ll) moves the complement by
+/// |δS_ij| ≤ η a_i a_j at most. So the largest |δS_ij| / (a_i a_j) is a change that is needed to explain the error.
+///
+/// `δS = [1, −Xᵀ] δM [1; −X]` to first order, with X = M_other⁻¹ M_other,own, and `a_i = √M_ii + Σ_k |X_ki| √M_kk`.
+fn error(found: &DMatrix<f64>, truth: &DMatrix<DoubleDouble>, whole: &DMatrix<f64>, own: Range<usize>, other: Range<usize>) -> Option<f64> {
+    let root = |dof: usize| whole[(dof, dof)].sqrt();
+    let block =
+        |rows: &Range<usize>, columns: &Range<usize>| whole.view((rows.start, columns.start), (rows.len(), columns.len())).into_owned();
+    let x = block(&other, &other).cholesky()?.solve(&block(&other, &own));
+    let reach: Vec<f64> = (0..own.len())
+        .map(|i| root(own.start + i) + (0..other.len()).map(|k| x[(k, i)].abs() * root(other.start + k)).sum::<f64>())
+        .collect();
+    let off = |i: usize, j: usize| (DoubleDouble::from_f64(found[(i, j)]) - truth[(i, j)]).to_f64().abs() / (reach[i] * reach[j]);
+    let n = own.len();
+    Some((0..n * n).map(|place| off(place / n, place % n)).fold(0.0, larger))
 }
 
 /// The larger of two numbers, NaN if either is.

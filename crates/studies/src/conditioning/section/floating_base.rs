@@ -67,7 +67,7 @@ pub(super) fn body(overview: &Overview, bases: &[Base]) -> Markup {
         }
         p.note {
             "Medians over random states; the last two columns are the largest. κ depends on the units of length and angle, κ scaled does not. "
-            "Neither complement has a larger κ than M: its inverse is a block of M⁻¹. The error is against double-double arithmetic, over √(M_ii M_jj)."
+            "Neither complement has a larger κ than M: its inverse is a block of M⁻¹. The error is against double-double arithmetic, as the change of M, over √(M_ii M_jj), that it needs."
         }
     }
 }
