@@ -30,7 +30,12 @@ use featherbench_spatial::{ArticulatedInertia, Force, Ldl3, Lift, Mat3, Motion, 
 
 pub(crate) mod free;
 mod one_dof;
+mod parallel;
 pub(crate) mod spherical;
+mod twisted;
+
+pub use parallel::ParallelAba;
+pub use twisted::Twisted;
 
 /// The workspace of the articulated-body algorithm.
 ///
@@ -88,21 +93,32 @@ struct OnPath<T> {
     a: Motion<T>,
 }
 
-impl<T: Real> Aba<T> {
-    /// A workspace for models of this topology.
-    pub fn new(topology: &Topology) -> Self {
-        let inertia = ArticulatedInertia::zero();
-        let link = Link {
+impl<T: Real> Link<T> {
+    /// A link without motion and inertia.
+    fn at_rest() -> Self {
+        Self {
             x: Transform::identity(),
             c: Motion::zero(),
             p: Force::zero(),
             u_d_inverse: Force::zero(),
             d_inverse: T::zero(),
             d_inverse_u: T::zero(),
-            inertia,
-        };
-        let rest = OnPath { omega: Vec3::zero(), inertia, a: Motion::zero() };
-        Self { links: vec![link; topology.bodies()], path: vec![rest; topology.bodies() + 1] }
+            inertia: ArticulatedInertia::zero(),
+        }
+    }
+}
+
+impl<T: Real> OnPath<T> {
+    /// A body without motion and inertia.
+    fn at_rest() -> Self {
+        Self { omega: Vec3::zero(), inertia: ArticulatedInertia::zero(), a: Motion::zero() }
+    }
+}
+
+impl<T: Real> Aba<T> {
+    /// A workspace for models of this topology.
+    pub fn new(topology: &Topology) -> Self {
+        Self { links: vec![Link::at_rest(); topology.bodies()], path: vec![OnPath::at_rest(); topology.slots()] }
     }
 
     /// The accelerations `a` at configuration `q`, velocity `v`, joint forces `tau` and external wrenches.
@@ -136,12 +152,14 @@ impl<T: Real> Aba<T> {
 
         // inward: Iᵃ = Iᴬ − U D⁻¹ Uᵀ,  pᵃ = pᴬ + Iᵃ c + U D⁻¹ u,  Iᴬ_p += X* Iᵃ X⁻¹,  pᴬ_p += X* pᵃ
         for (i, joint) in joints.iter().enumerate().rev() {
-            by_kind!(joint.kind, pass_to_parent, model, i, tau, links, path, &mut smallest);
+            let (before, rest) = links.split_at_mut(i);
+            let parent = joint.parent.map(|parent| &mut before[parent].p);
+            by_kind!(joint.kind, pass_to_parent, model, i, tau, &mut rest[0], parent, path, &mut smallest);
         }
 
         // outward: a' = X a_p + c,  q̈ = D⁻¹ (u − Uᵀ a'),  a_i = a' + S q̈
         for (i, joint) in joints.iter().enumerate() {
-            by_kind!(joint.kind, accelerate, model, i, tau, a, &links[i], path, &mut smallest);
+            by_kind!(joint.kind, accelerate, model, i, tau, &mut a[joint.v..], &links[i], path, &mut smallest);
         }
         Ok(smallest.check()?)
     }
@@ -173,7 +191,7 @@ impl<T: Real> Aba<T> {
         // outward: as in a run, with v = 0
         let mut smallest = Pivot::none();
         for (i, joint) in joints.iter().enumerate() {
-            by_kind!(joint.kind, accelerate, model, i, f, x, &links[i], path, &mut smallest);
+            by_kind!(joint.kind, accelerate, model, i, f, &mut x[joint.v..], &links[i], path, &mut smallest);
         }
         Ok(())
     }
@@ -193,13 +211,53 @@ impl<T: Real> Aba<T> {
         wrenches: Option<&[Force<T>]>,
         a: &[T],
     ) -> Result<(), DimensionError> {
-        expect_bodies(model, self.links.len())?;
-        expect("configuration q", model.topology.nq(), q.len())?;
-        expect("velocity v", model.topology.nv(), v.len())?;
-        expect("joint forces tau", model.topology.nv(), tau.len())?;
-        expect("acceleration a", model.topology.nv(), a.len())?;
-        expect_wrenches(model, wrenches)
+        expect_shapes(self.links.len(), model, q, v, tau, wrenches, a)
     }
+}
+
+/// An error if an argument or a workspace of so many bodies does not fit the model.
+fn expect_shapes<P: Real, T: Real>(
+    workspace: usize,
+    model: &Model<P>,
+    q: &[T],
+    v: &[T],
+    tau: &[T],
+    wrenches: Option<&[Force<T>]>,
+    a: &[T],
+) -> Result<(), DimensionError> {
+    expect_bodies(model, workspace)?;
+    expect("configuration q", model.topology.nq(), q.len())?;
+    expect("velocity v", model.topology.nv(), v.len())?;
+    expect("joint forces tau", model.topology.nv(), tau.len())?;
+    expect("acceleration a", model.topology.nv(), a.len())?;
+    expect_wrenches(model, wrenches)
+}
+
+/// Pass 1 for one body: X, which is returned.
+#[inline(always)]
+fn place<T: Real, P: Real + Lift<T>>(kind: JointKind, model: &Model<P>, i: usize, q: &[T], link: &mut Link<T>) -> Transform<T> {
+    let x = kind.transform(&model.placements[i], &model.subspaces[i], &q[model.topology.joints()[i].q..]);
+    kind.keep(&x, &mut link.x);
+    x
+}
+
+/// Pass 1 for one body that is placed at `x` in its parent: ω, c and pᴬ = v ×* I v.
+#[inline(always)]
+fn set_velocity<T: Real, P: Real + Lift<T>>(
+    kind: JointKind,
+    model: &Model<P>,
+    i: usize,
+    x: &Transform<T>,
+    v: &[T],
+    path: &mut [OnPath<T>],
+    link: &mut Link<T>,
+) {
+    let (joint, subspace) = (&model.topology.joints()[i], &model.subspaces[i]);
+    let joint_velocity = kind.motion(subspace, &v[joint.v..]);
+    let (omega, c) = cross_joint(kind, x, path[joint.parent_slot].omega, None, joint_velocity);
+    link.c = c;
+    link.p = newton_euler(&model.inertias[i].lift(), omega, None);
+    path[joint.slot].omega = omega;
 }
 
 /// Pass 1 for one body: X, ω, c and pᴬ = v ×* I v.
@@ -213,31 +271,25 @@ fn set_moving<T: Real, P: Real + Lift<T>>(
     path: &mut [OnPath<T>],
     link: &mut Link<T>,
 ) {
-    let (joint, subspace) = (&model.topology.joints()[i], &model.subspaces[i]);
-    let x = kind.transform(&model.placements[i], subspace, &q[joint.q..]);
-    kind.keep(&x, &mut link.x);
-    let joint_velocity = kind.motion(subspace, &v[joint.v..]);
-    let (omega, c) = cross_joint(kind, &x, path[joint.parent_slot].omega, None, joint_velocity);
-    link.c = c;
-    link.p = newton_euler(&model.inertias[i].lift(), omega, None);
-    path[joint.slot].omega = omega;
+    let x = place(kind, model, i, q, link);
+    set_velocity(kind, model, i, &x, v, path, link);
 }
 
-/// Pass 2 for one body: eliminates its joint, and adds Iᵃ and pᵃ to its parent. `smallest` takes note of the pivots D.
+/// Pass 2 for one body: eliminates its joint, and adds Iᵃ to its parent's on the path and pᵃ to its parent's pᴬ, `parent_p`. `smallest` takes
+/// note of the pivots D.
 #[inline(always)]
 fn pass_to_parent<T: Real, P: Real + Lift<T>>(
     kind: JointKind,
     model: &Model<P>,
     i: usize,
     tau: &[T],
-    links: &mut [Link<T>],
+    link: &mut Link<T>,
+    parent_p: Option<&mut Force<T>>,
     path: &mut [OnPath<T>],
     smallest: &mut Pivot,
 ) {
     let joints = model.topology.joints();
     let (joint, dof) = (&joints[i], joints[i].v);
-    let (before, rest) = links.split_at_mut(i);
-    let link = &mut rest[0];
     let own = |i: usize| model.inertias[i].lift::<T>().to_articulated();
     // Iᴬ is complete: the children have been reached
     let is_leaf = joints.get(i + 1).is_none_or(|next| next.parent != Some(i));
@@ -261,7 +313,7 @@ fn pass_to_parent<T: Real, P: Real + Lift<T>>(
             (None, free::apparent_force(&tau[dof..]))
         }
     };
-    if let Some(parent) = joint.parent {
+    if let (Some(parent), Some(parent_p)) = (joint.parent, parent_p) {
         let x = kind.recall(&model.placements[i], &link.x);
         let sum = &mut path[joint.parent_slot].inertia;
         // the last child comes first
@@ -270,7 +322,7 @@ fn pass_to_parent<T: Real, P: Real + Lift<T>>(
             Some(apparent) => before_it + apparent.to_parent(&x),
             None => before_it,
         };
-        before[parent].p += x.force(force);
+        *parent_p += x.force(force);
     }
 }
 
@@ -297,7 +349,7 @@ fn pass_force_to_parent<T: Real, P: Real + Lift<T>>(
     }
 }
 
-/// Pass 3 for one body: q̈, and a = a' + S q̈.
+/// Pass 3 for one body: q̈ into the first numbers of `a`, and a = a' + S q̈.
 #[inline(always)]
 #[expect(clippy::too_many_arguments, reason = "one body's step reads the model and the inputs, and writes the outputs")]
 fn accelerate<T: Real, P: Real + Lift<T>>(
@@ -313,18 +365,18 @@ fn accelerate<T: Real, P: Real + Lift<T>>(
     let (joint, dof) = (&model.topology.joints()[i], model.topology.joints()[i].v);
     let carried = kind.recall(&model.placements[i], &link.x).inverse_motion(path[joint.parent_slot].a) + link.c;
     match kind {
-        JointKind::Revolute(_) | JointKind::Prismatic(_) | JointKind::Helical => a[dof] = one_dof::acceleration(link, carried),
+        JointKind::Revolute(_) | JointKind::Prismatic(_) | JointKind::Helical => a[0] = one_dof::acceleration(link, carried),
         JointKind::Spherical => {
             let rate = spherical::acceleration(armatures(model, dof), &tau[dof..], link, carried);
-            a[dof..dof + 3].copy_from_slice(&rate.to_array());
+            a[..3].copy_from_slice(&rate.to_array());
         }
         JointKind::Free => {
             let across = free::acceleration(&tau[dof..], link, carried, dof, smallest);
-            a[dof..dof + 3].copy_from_slice(&across.lin.to_array());
-            a[dof + 3..dof + 6].copy_from_slice(&across.ang.to_array());
+            a[..3].copy_from_slice(&across.lin.to_array());
+            a[3..6].copy_from_slice(&across.ang.to_array());
         }
     }
-    path[joint.slot].a = add_joint(kind, carried, kind.motion(&model.subspaces[i], &a[dof..]));
+    path[joint.slot].a = add_joint(kind, carried, kind.motion(&model.subspaces[i], a));
 }
 
 /// The three armatures of the spherical joint whose first dof is `dof`.

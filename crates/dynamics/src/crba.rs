@@ -10,10 +10,15 @@
 
 use crate::error::expect;
 use crate::step::{by_kind, expect_bodies};
+use crate::tree_sparse::Row;
 use crate::{DimensionError, TreeSparse};
 use featherbench_model::{Axis, JointKind, Model, Topology};
 use featherbench_spatial::{CentralInertia, Force, Lift, Motion, Real, Transform, Vec3};
 use std::ops::Range;
+
+mod parallel;
+
+pub use parallel::ParallelCrba;
 
 /// The workspace of the composite-rigid-body algorithm.
 ///
@@ -73,10 +78,8 @@ impl<T: Real> Crba<T> {
     /// [`DimensionError`] when an argument or the workspace does not fit the model.
     pub fn run<P: Real + Lift<T>>(&mut self, model: &Model<P>, q: &[T], matrix: &mut TreeSparse<T>) -> Result<(), DimensionError> {
         let Self { composites, placements, forces } = self;
-        expect_bodies(model, composites.len())?;
         expect("dofs of the workspace", model.topology.nv(), forces.len())?;
-        expect("configuration q", model.topology.nq(), q.len())?;
-        matrix.expect_topology(&model.topology)?;
+        expect_shapes(model, composites.len(), q, matrix)?;
 
         for (i, (composite, x)) in composites.iter_mut().zip(placements.iter_mut()).enumerate() {
             *composite = model.inertias[i].lift::<T>().central();
@@ -90,8 +93,10 @@ impl<T: Real> Crba<T> {
             }
             // M_kj = S_jᵀ F_k for every dof k that the joint's dof j supports
             for column in 0..kind.nv() {
-                let supported = matrix.supported(joint.v + column);
-                by_kind!(kind, project, forces, subspace, column, supported, matrix);
+                let dofs = matrix.supported(joint.v + column);
+                let position = matrix.depth(dofs.start) - 1;
+                let (rows, values) = matrix.parts_mut();
+                by_kind!(kind, project, forces, dofs.start, subspace, column, &rows[dofs], position, values, 0);
             }
             if let Some(parent) = joint.parent {
                 // Iᶜ_p += X* Iᶜ_i X⁻¹,  F_k = X* F_k
@@ -174,25 +179,28 @@ fn transform<T: Real>(x: &Transform<T>, nx: &mut [T], ny: &mut [T], nz: &mut [T]
     }
 }
 
-/// `M_kj = S_jᵀ F_k` for every supported dof k. Dof j is the first of them, and column `column` of its joint's motion subspace.
+/// `M_kj = S_jᵀ F_k` for every supported dof k, whose forces begin at `first`. Dof j is column `column` of its joint's motion subspace, and
+/// stands at `position` in each of the rows. `values` is the flat array from number `start` on.
 #[inline(always)]
+#[expect(clippy::too_many_arguments, reason = "one joint's step reads the forces, and writes a column into rows of a part of the matrix")]
 fn project<T: Real, P: Real + Lift<T>>(
     kind: JointKind,
     forces: &Forces<T>,
+    first: usize,
     subspace: &Motion<P>,
     column: usize,
-    supported: Range<usize>,
-    matrix: &mut TreeSparse<T>,
+    rows: &[Row],
+    position: usize,
+    values: &mut [T],
+    start: usize,
 ) {
-    let position = matrix.depth(supported.start) - 1;
-    let (rows, values) = matrix.parts_mut();
-    let (first, last) = (Forces::<T>::LANES + supported.start, Forces::<T>::LANES + supported.end);
+    let (first, last) = (Forces::<T>::LANES + first, Forces::<T>::LANES + first + rows.len());
     let [nx, ny, nz] = forces.ang.each_ref().map(|component| &component[first..last]);
     let [fx, fy, fz] = forces.lin.each_ref().map(|component| &component[first..last]);
     let (ang, lin) = (nx.iter().zip(ny).zip(nz), fx.iter().zip(fy).zip(fz));
-    for (row, (((nx, ny), nz), ((fx, fy), fz))) in rows[supported].iter().zip(ang.zip(lin)) {
+    for (row, (((nx, ny), nz), ((fx, fy), fz))) in rows.iter().zip(ang.zip(lin)) {
         let f = Force::new(Vec3::new(*nx, *ny, *nz), Vec3::new(*fx, *fy, *fz));
-        values[row.start + position] = match kind {
+        values[row.start - start + position] = match kind {
             JointKind::Revolute(Axis::Z) => f.ang.z,
             JointKind::Prismatic(Axis::Z) => f.lin.z,
             JointKind::Revolute(Axis::Skew) => subspace.ang.lift().dot(f.ang),
@@ -203,6 +211,13 @@ fn project<T: Real, P: Real + Lift<T>>(
             JointKind::Free => f.ang.to_array()[column - 3],
         };
     }
+}
+
+/// An error if an argument or the workspace does not fit the model.
+fn expect_shapes<P, T: Real>(model: &Model<P>, workspace: usize, q: &[T], matrix: &TreeSparse<T>) -> Result<(), DimensionError> {
+    expect_bodies(model, workspace)?;
+    expect("configuration q", model.topology.nq(), q.len())?;
+    matrix.expect_topology(&model.topology)
 }
 
 /// The joint-space inertia matrix without a workspace of one's own; it allocates.

@@ -55,6 +55,30 @@ impl Pivot {
         }
     }
 
+    /// The same with dofs counted from another one.
+    pub(crate) fn behind(self, first: usize) -> Self {
+        Self { dof: first + self.dof, ..self }
+    }
+
+    /// Of two that were noted apart, the one that one pass from the leaves to the root would have noted.
+    pub(crate) fn leaves_first(self, other: Self) -> Self {
+        self.first_by(other, |dof, other| dof > other)
+    }
+
+    /// Of two that were noted apart, the one that one pass from the root to the leaves would have noted.
+    pub(crate) fn root_first(self, other: Self) -> Self {
+        self.first_by(other, |dof, other| dof < other)
+    }
+
+    fn first_by(self, other: Self, comes_first: impl Fn(usize, usize) -> bool) -> Self {
+        match (self.check(), other.check()) {
+            (Err(_), Err(_)) if comes_first(self.dof, other.dof) => self,
+            (Err(_), Ok(())) => self,
+            (Ok(()), Ok(())) if self.value < other.value => self,
+            _ => other,
+        }
+    }
+
     /// The error, unless every pivot was positive.
     pub(crate) fn check(self) -> Result<(), NotPositiveDefinite> {
         if self.value > 0.0 { Ok(()) } else { Err(NotPositiveDefinite { dof: self.dof, pivot: self.value }) }

@@ -61,9 +61,12 @@ mod factor;
 mod half;
 mod inverse;
 mod lanes;
+mod parallel;
 mod registers;
 mod solve;
 mod update;
+
+pub use parallel::ParallelLtdl;
 
 /// The factors of a tree-sparse matrix. Before the first factorization they are all zero, and not valid.
 ///

@@ -13,6 +13,10 @@ use crate::step::{add_joint, by_kind, cross_joint, expect_bodies, expect_wrenche
 use featherbench_model::{JointKind, Model, Topology};
 use featherbench_spatial::{Force, Lift, Motion, Real, Transform, Vec3};
 
+mod parallel;
+
+pub use parallel::ParallelRnea;
+
 /// The workspace of inverse dynamics.
 #[derive(Clone, Debug)]
 pub struct Rnea<T> {
@@ -38,11 +42,17 @@ struct Moving<T> {
     a: Motion<T>,
 }
 
+impl<T: Real> Moving<T> {
+    fn at_rest() -> Self {
+        Self { omega: Vec3::zero(), a: Motion::zero() }
+    }
+}
+
 impl<T: Real> Rnea<T> {
     /// A workspace for models of this topology.
     pub fn new(topology: &Topology) -> Self {
-        let (link, rest) = (Link { x: Transform::identity(), f: Force::zero() }, Moving { omega: Vec3::zero(), a: Motion::zero() });
-        Self { links: vec![link; topology.bodies()], path: vec![rest; topology.bodies() + 1] }
+        let link = Link { x: Transform::identity(), f: Force::zero() };
+        Self { links: vec![link; topology.bodies()], path: vec![Moving::at_rest(); topology.slots()] }
     }
 
     /// The joint forces `tau` of configuration `q`, velocity `v`, acceleration `a` and external wrenches.
@@ -73,11 +83,7 @@ impl<T: Real> Rnea<T> {
         tau: &mut [T],
     ) -> Result<(), DimensionError> {
         let Self { links, path } = self;
-        expect_bodies(model, links.len())?;
-        expect("configuration q", model.topology.nq(), q.len())?;
-        expect("velocity v", model.topology.nv(), v.len())?;
-        expect("joint forces tau", model.topology.nv(), tau.len())?;
-        expect_wrenches(model, wrenches)?;
+        expect_shapes(links.len(), model, q, v, wrenches, tau)?;
         let joints = model.topology.joints();
 
         path[0].a.lin = -model.gravity.lift();
@@ -104,6 +110,22 @@ impl<T: Real> Rnea<T> {
         }
         Ok(())
     }
+}
+
+/// An error if an argument or a workspace of so many bodies does not fit the model.
+fn expect_shapes<P: Real, T: Real>(
+    workspace: usize,
+    model: &Model<P>,
+    q: &[T],
+    v: &[T],
+    wrenches: Option<&[Force<T>]>,
+    tau: &[T],
+) -> Result<(), DimensionError> {
+    expect_bodies(model, workspace)?;
+    expect("configuration q", model.topology.nq(), q.len())?;
+    expect("velocity v", model.topology.nv(), v.len())?;
+    expect("joint forces tau", model.topology.nv(), tau.len())?;
+    expect_wrenches(model, wrenches)
 }
 
 /// The outward step of one body: its placement, ω, a and f.

@@ -39,7 +39,14 @@ pub(crate) struct Row {
     /// The first dof of this dof's *run*: consecutive dofs, each the parent of the next. Runs are contiguous in rows and in vectors.
     run: usize,
     /// One past the last dof that this one supports.
-    end: usize,
+    pub(crate) end: usize,
+}
+
+impl Row {
+    /// The same row in an array that begins at number `first` of the flat array.
+    pub(crate) fn counted_from(self, first: usize) -> Self {
+        Self { start: self.start - first, ..self }
+    }
 }
 
 impl<T: Real> TreeSparse<T> {

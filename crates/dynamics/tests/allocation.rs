@@ -13,10 +13,11 @@ use featherbench_dynamics::{
     Aba, Batch, Bias, CenterOfMass, Coriolis, Crba, Energy, EnergyGradient, EnergyPartials, FdDerivatives, FdHessian, FdPartials,
     FdSecondPartials, FloatingBase, IdDerivatives, IdHessian, IdPartials, IdSecondPartials, Jacobian, JacobianRate, Kinematics, Ltdl, Ltl,
     MassGradient, Momentum, MomentumMatrix, PackedAba, PackedCenterOfMass, PackedCrba, PackedJacobian, PackedKinematics, PackedModel,
-    PackedMomentum, PackedRnea, ParameterSensitivity, Refined, Regressor, RegressorMatrix, Rnea, TreePair, TreeSparse, mass_matrix,
-    to_lanes,
+    PackedMomentum, PackedRnea, ParameterSensitivity, Refined, Regressor, RegressorMatrix, Rnea, TreePair, TreeSparse, Twisted,
+    mass_matrix, to_lanes,
 };
-use featherbench_robots::StateBatch;
+use featherbench_model::Model;
+use featherbench_robots::{Family, StateBatch};
 use featherbench_spatial::{Compensated, DoubleDouble, Vec3};
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::Cell;
@@ -25,28 +26,34 @@ struct Counting;
 
 thread_local! {
     static ALLOCATIONS: Cell<u64> = const { Cell::new(0) };
+    /// Bytes that this thread has allocated, less those that it has freed.
+    static HELD: Cell<i64> = const { Cell::new(0) };
 }
 
-fn count() {
+fn count(allocated: usize, freed: usize) {
     // A thread that is being torn down has no counter.
-    let _ = ALLOCATIONS.try_with(|allocations| allocations.set(allocations.get() + 1));
+    if allocated > 0 {
+        let _ = ALLOCATIONS.try_with(|allocations| allocations.set(allocations.get() + 1));
+    }
+    let _ = HELD.try_with(|held| held.set(held.get() + allocated as i64 - freed as i64));
 }
 
 // SAFETY: every call is passed on to the system's allocator unchanged.
 unsafe impl GlobalAlloc for Counting {
     unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
-        count();
+        count(layout.size(), 0);
         // SAFETY: the caller's promise about `layout` is passed on.
         unsafe { System.alloc(layout) }
     }
 
     unsafe fn dealloc(&self, pointer: *mut u8, layout: Layout) {
+        count(0, layout.size());
         // SAFETY: the caller's promise about `pointer` and `layout` is passed on.
         unsafe { System.dealloc(pointer, layout) }
     }
 
     unsafe fn realloc(&self, pointer: *mut u8, layout: Layout, size: usize) -> *mut u8 {
-        count();
+        count(size, layout.size());
         // SAFETY: the caller's promise about the arguments is passed on.
         unsafe { System.realloc(pointer, layout, size) }
     }
@@ -314,4 +321,64 @@ fn no_batch_allocates_in_a_call() {
         batch.forward_dynamics(&q_lanes, &v_lanes, &v_lanes, Some(&force_lanes), &mut out_lanes).unwrap();
         assert_eq!(ALLOCATIONS.get() - before, 0, "{name}");
     }
+}
+
+/// Bytes that a value holds on the heap.
+fn held<X>(make: impl FnOnce() -> X) -> (i64, X) {
+    let before = HELD.get();
+    let value = make();
+    (HELD.get() - before, value)
+}
+
+/// Memory per joint of a chain of revolute joints, in bytes: what the documentation says. It is the same for each joint more, so linear.
+#[test]
+fn memory_per_joint_is_what_the_documentation_says() {
+    let sizes = |n: i64| -> Vec<(&'static str, i64)> {
+        let robot = Family::parse(&format!("chain:n={n},layout=spatial")).unwrap().generate().unwrap();
+        let (model_bytes, model) = held(|| Model::<f64>::build(&robot).unwrap());
+        let t = &model.topology;
+        vec![
+            ("Model", model_bytes),
+            ("Rnea", held(|| Rnea::<f64>::new(t)).0),
+            ("Aba", held(|| Aba::<f64>::new(t)).0),
+            ("Twisted", held(|| Twisted::<f64>::with_cut(t, n as usize / 2).unwrap()).0),
+            ("Kinematics", held(|| Kinematics::<f64>::new(t)).0),
+            ("Energy", held(|| Energy::<f64>::new(t)).0),
+            ("Momentum", held(|| Momentum::<f64>::new(t)).0),
+            ("Refined", held(|| Refined::<Compensated>::new(t, 1)).0),
+        ]
+    };
+    let (small, large, larger) = (sizes(200), sizes(400), sizes(600));
+    let mut total = 0;
+    let mut found = Vec::new();
+    for (((name, small), (_, large)), (_, larger)) in small.into_iter().zip(large).zip(larger) {
+        assert_eq!(large - small, larger - large, "{name} is linear");
+        found.push((name, (large - small) / 200));
+        if name == "Model" || name == "Aba" {
+            total += (large - small) / 200;
+        }
+    }
+    // q, v, τ and v̇ are four numbers more.
+    assert!(total + 32 <= 1000, "{total} bytes per joint for model and ABA");
+    // The numbers of 8 bytes of each link, of a joint's parameters and of its place in the tree. Kinematics keeps a label in 8 bytes more.
+    let (x, motion, inertia, vector) = (12, 6, 21, 3);
+    let model = 8 * (x + motion + 10 + 3 + 2) + 1 + 56 + 8 + 16 + 8;
+    let rnea = 8 * (x + motion);
+    let aba = 8 * (x + inertia + 3 * motion + 2);
+    let braced = 8 * (x + 10 + vector + inertia + 4 * motion + 1);
+    let kinematics = 8 * (2 * x + vector + 3 * motion + 1);
+    let documented = [
+        ("Model", model),
+        ("Rnea", rnea),
+        ("Aba", aba),
+        ("Twisted", (aba + braced) / 2),
+        ("Kinematics", kinematics),
+        ("Energy", kinematics),
+        ("Momentum", kinematics + 8 * (1 + vector + motion)),
+        // two numbers for each of RNEA, q, v, a, τ and the wrench; residual, correction and M δ
+        ("Refined", aba + 2 * rnea + 16 * (4 + motion) + 8 * (2 + 2 * motion)),
+    ];
+    assert_eq!(found, documented);
+    let bytes: Vec<i64> = documented.map(|(_, bytes)| bytes).to_vec();
+    assert_eq!(bytes, [353, 144, 424, 496, 368, 368, 448, 984], "the table of the crate's documentation");
 }

@@ -25,7 +25,7 @@ pub struct Joint {
 
 /// A tree of primitive joints in depth-first order. Body i is the body moved by joint i.
 ///
-/// It takes O(n) memory: of a revolute joint 64 bytes. Only [`Topology::row_dofs`] takes more.
+/// It takes O(n) memory: of a revolute joint 80 bytes. Only [`Topology::row_dofs`] takes more.
 #[derive(Clone, Debug)]
 pub struct Topology {
     joints: Vec<Joint>,
@@ -165,6 +165,11 @@ impl Topology {
     #[inline(always)]
     pub fn stored(&self) -> usize {
         self.row_start[self.nv]
+    }
+
+    /// The number of path slots ([`Joint::slot`]), the world's included. It is 2 on a chain, and at most one more than [`Topology::depth`].
+    pub fn slots(&self) -> usize {
+        1 + self.joints.iter().map(|joint| joint.slot).max().unwrap_or(0)
     }
 
     /// The largest number of bodies on a path from the world.

@@ -28,10 +28,14 @@ use wide::f64x8;
 
 /// Factors the matrix. `coefficients` has [`LANES`] numbers per dof.
 pub(super) fn factor(matrix: &mut TreeSparse<f64>, plan: &Plan, coefficients: &mut [f64]) -> Pivot {
-    let mut smallest = Pivot::none();
-    let coefficients = coefficients.as_chunks_mut().0;
     let (rows, values) = matrix.parts_mut();
-    for block in plan.blocks.iter().rev() {
+    factor_blocks(rows, values, &plan.blocks, coefficients.as_chunks_mut().0)
+}
+
+/// Factors the rows of these blocks. All rows below them stand in `values` too, factored or in the list. `coefficients` has an entry per row.
+pub(super) fn factor_blocks(rows: &[Row], values: &mut [f64], blocks: &[Block], coefficients: &mut [[f64; LANES]]) -> Pivot {
+    let mut smallest = Pivot::none();
+    for block in blocks.iter().rev() {
         if block.alone() {
             let d = values[rows[block.first].start];
             if !is_positive(d) {

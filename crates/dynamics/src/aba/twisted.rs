@@ -1,0 +1,536 @@
+//! Forward dynamics of a long chain on two cores: elimination from both ends at once.
+//!
+//! Source: the tip side is `aba.rs`. The base side eliminates the equations of motion in the other order, as the twisted factorization of a
+//! band matrix does (Meurant, *A review on the inverse of symmetric tridiagonal and block tridiagonal matrices*, 1992). What it carries along
+//! is the inverse operational-space inertia of Kreutz-Delgado, Jain and Rodriguez (*Recursive formulation of operational space control*, 1992).
+//!
+//! A body of the base side passes the force f on to the rest of the chain. Then its acceleration is `a = b − Φ f`, with Φ symmetric and positive
+//! semidefinite. For the world Φ = 0, and b is gravity.
+//!
+//! | stage | base side, bodies 0 … m−1 | tip side, bodies m … n−1, at the same time |
+//! |---|---|---|
+//! | 1 | X, ω, c, p | X |
+//! | 2 | Φ, b, outward | ω, c, pass 2 of the articulated-body algorithm, inward |
+//! | between | joint m: both sides meet | |
+//! | 3 | q̈, f, inward | q̈, a, outward |
+//!
+//! Across joint k and body k, with `a' = b' − Φ' f' + S q̈`, `Φ' = X Φ Xᵀ`, `b' = X b + c`, `f' = I a + p + f` and `Sᵀ f' = τ − armature q̈`:
+//! `I = Σ d_i l_i l_iᵀ` is taken in six steps. Each is an elimination of one number φ, the force along l_i:
+//!
+//! ```text
+//! w = 1 / (1 + d lᵀΦl),  φ = w (d lᵀb + o),  D += w d (lᵀs)²,  u −= (lᵀs) φ
+//! b −= Φl φ,  s −= Φl w d (lᵀs),  Φ −= w d Φl (Φl)ᵀ         s begins as S, D as the armature, u as τ; Σ o_i l_i = p
+//! ```
+//!
+//! Then the joint: `Φ += s D⁻¹ sᵀ`, `b += s D⁻¹ u`. In stage 3: `q̈ = D⁻¹ (u − sᵀ f)`, `a = b − Φ f`, and f' is the f of the body before.
+//! D is positive if the body itself has inertia along S. Where it has not, [`Aba`] computes the whole chain.
+//!
+//! Frames: on the base side each body's quantities are at its centre of mass, in its compiled axes. There three of the l_i are unit vectors.
+//! Shapes and units: those of `aba.rs`.
+
+use super::{Link, OnPath, accelerate, pass_to_parent, place, set_velocity};
+use crate::error::Pivot;
+use crate::step::{by_kind, cross_joint};
+use crate::{Aba, DimensionError, Error};
+use featherbench_model::{JointKind, Model, Topology};
+use featherbench_spatial::{ArticulatedInertia, CentralInertia, Force, Lift, Mat3, Motion, Real, Sym3, Transform, Vec3};
+use std::array::from_fn;
+
+/// The share of the bodies that the base side takes. There both sides take about the same time: a joint of the base side takes 2.35 times that of
+/// the tip side, and has 786 / 421 = 1.87 times the operations, which wait for each other.
+const SHARE: f64 = 0.30;
+
+/// The workspace of forward dynamics of a chain on two cores.
+///
+/// It uses two threads of the current pool of `rayon`. The answers are the same to the bit with any number of threads, and differ from
+/// those of [`Aba`] by rounding.
+///
+/// ```
+/// use featherbench_dynamics::{Twisted, forward_dynamics};
+/// use featherbench_model::Model;
+/// use featherbench_robots::{Family, StateBatch};
+///
+/// let model: Model<f64> = Model::build(&Family::parse("snake:n=50")?.generate()?)?;
+/// let states = StateBatch::random(&model, 1, 1);
+/// let (q, v, tau) = (states.q(0), states.v(0), states.tau(0));
+///
+/// let mut a = vec![0.0; model.topology.nv()];
+/// Twisted::new(&model.topology).ok_or("no chain")?.run(&model, q, v, tau, None, &mut a)?;
+/// let serial = forward_dynamics(&model, q, v, tau)?;
+/// let norm = |x: &mut dyn Iterator<Item = f64>| x.map(|x| x * x).sum::<f64>().sqrt();
+/// let off = norm(&mut a.iter().zip(&serial).map(|(a, b)| a - b));
+/// assert!(off < 1e-12 * norm(&mut serial.iter().copied()));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Clone, Debug)]
+pub struct Twisted<T> {
+    /// The bodies of the base side.
+    base: Vec<Braced<T>>,
+    /// The bodies of the tip side, and their path slots: a chain has one, beside that of the world.
+    tip: Vec<Link<T>>,
+    path: [OnPath<T>; 2],
+}
+
+/// A body of the base side.
+#[derive(Clone, Copy, Debug)]
+struct Braced<T> {
+    /// Placement of its centre of mass in the centre of mass of the body before.
+    x: Transform<T>,
+    inertia: CentralInertia<T>,
+    omega: Vec3<T>,
+    /// Velocity-product acceleration c.
+    c: Motion<T>,
+    /// Force p that velocity and wrench need.
+    p: Force<T>,
+    /// Φ: the rows of the linear acceleration first, so that it moves between frames as an inertia does.
+    flexibility: ArticulatedInertia<T>,
+    /// b.
+    free: Motion<T>,
+    /// s D⁻¹ and D⁻¹ u of a one-dof joint.
+    s_d_inverse: Motion<T>,
+    d_inverse_u: T,
+}
+
+impl<T: Real> Twisted<T> {
+    /// A workspace for chains of this topology. `None` if the tree is no chain, or has other joints than one-dof joints and a free base, or
+    /// has less than two one-dof joints.
+    pub fn new(topology: &Topology) -> Option<Self> {
+        Self::with_cut(topology, (SHARE * topology.bodies() as f64).round() as usize)
+    }
+
+    /// The same with so many bodies on the base side; at least one, and not all.
+    pub fn with_cut(topology: &Topology, cut: usize) -> Option<Self> {
+        let joints = topology.joints();
+        let is_chain = joints.iter().enumerate().all(|(i, joint)| joint.parent == i.checked_sub(1));
+        let first = usize::from(joints.first()?.kind == JointKind::Free);
+        let one_dof = joints[first..].iter().all(|joint| joint.kind.nv() == 1);
+        if !is_chain || !one_dof || joints.len() < first + 2 {
+            return None;
+        }
+        let cut = cut.clamp(1, joints.len() - 1);
+        Some(Self { base: vec![Braced::at_rest(); cut], tip: vec![Link::at_rest(); joints.len() - cut], path: [OnPath::at_rest(); 2] })
+    }
+
+    /// The accelerations `a` at configuration `q`, velocity `v`, joint forces `tau` and external wrenches.
+    ///
+    /// It allocates where it takes [`Aba`] in place of its own algorithm.
+    ///
+    /// # Errors
+    /// [`Error`] when an argument or the workspace does not fit the model, or when a joint meets no inertia; `a` then means nothing.
+    pub fn run<P: Real + Lift<T>>(
+        &mut self,
+        model: &Model<P>,
+        q: &[T],
+        v: &[T],
+        tau: &[T],
+        wrenches: Option<&[Force<T>]>,
+        a: &mut [T],
+    ) -> Result<(), Error> {
+        super::expect_shapes(self.base.len() + self.tip.len(), model, q, v, tau, wrenches, a)?;
+        self.expect_chain(&model.topology)?;
+        let Self { base, tip, path } = self;
+        let side = Side { model, q, v, tau, wrenches, cut: base.len() };
+        // One entry into the pool for all stages: from outside, each would wait for a thread to wake up.
+        let braced = rayon::scope(|_| side.run(base, tip, path, a));
+        if braced { Ok(()) } else { Aba::new(&model.topology).run(model, q, v, tau, wrenches, a) }
+    }
+
+    fn expect_chain(&self, topology: &Topology) -> Result<(), DimensionError> {
+        let chained = topology.joints().iter().enumerate().filter(|(i, joint)| joint.parent == i.checked_sub(1)).count();
+        crate::error::expect("bodies of the model in one chain", topology.bodies(), chained)?;
+        let one_dof = topology.joints()[1..].iter().filter(|joint| joint.kind.nv() == 1).count();
+        crate::error::expect("one-dof joints of the model behind the first", topology.bodies() - 1, one_dof)
+    }
+}
+
+impl<T: Real> Braced<T> {
+    fn at_rest() -> Self {
+        Self {
+            x: Transform::identity(),
+            inertia: CentralInertia::zero(),
+            omega: Vec3::zero(),
+            c: Motion::zero(),
+            p: Force::zero(),
+            flexibility: ArticulatedInertia::zero(),
+            free: Motion::zero(),
+            s_d_inverse: Motion::zero(),
+            d_inverse_u: T::zero(),
+        }
+    }
+
+    /// `a = b − Φ f`.
+    fn acceleration(&self, f: Force<T>) -> Motion<T> {
+        let phi = &self.flexibility;
+        let ang = phi.coupling.transpose_mul(f.lin) + phi.translational * f.ang;
+        let lin = phi.coupling.mul_vec_add(f.ang, phi.rotational * f.lin);
+        self.free - Motion::new(ang, lin)
+    }
+}
+
+/// What both sides know when they have met: q̈ of joint m, a of its body, and the force on body m − 1.
+struct Meeting<T> {
+    rate: T,
+    acceleration: Motion<T>,
+    force: Force<T>,
+}
+
+/// What the stages read.
+struct Side<'a, P, T> {
+    model: &'a Model<P>,
+    q: &'a [T],
+    v: &'a [T],
+    tau: &'a [T],
+    wrenches: Option<&'a [Force<T>]>,
+    /// m.
+    cut: usize,
+}
+
+impl<P: Real + Lift<T>, T: Real> Side<'_, P, T> {
+    /// All stages; false if a pivot is not positive.
+    fn run(&self, base: &mut [Braced<T>], tip: &mut [Link<T>], path: &mut [OnPath<T>; 2], a: &mut [T]) -> bool {
+        rayon::join(|| self.move_base(base), || self.place_tip(tip));
+
+        path[1].omega = base[base.len() - 1].omega;
+        let (mut base_pivot, mut tip_pivot) = (Pivot::none(), Pivot::none());
+        rayon::join(|| self.brace(base, &mut base_pivot), || self.eliminate_tip(tip, path, &mut tip_pivot));
+        let meeting = self.meet(&base[base.len() - 1], &tip[0], &path[1].inertia, &mut base_pivot);
+        if base_pivot.check().is_err() || tip_pivot.check().is_err() {
+            return false;
+        }
+
+        let (a_base, a_tip) = a.split_at_mut(self.model.topology.joints()[self.cut].v);
+        a_tip[0] = meeting.rate;
+        path[1].a = meeting.acceleration;
+        rayon::join(|| self.accelerate_base(base, meeting.force, a_base), || self.accelerate_tip(tip, path, a_tip));
+        true
+    }
+
+    /// Stage 1 of the base side.
+    fn move_base(&self, base: &mut [Braced<T>]) {
+        let Self { model, q, v, .. } = *self;
+        let (mut parent_omega, mut parent_com) = (Vec3::zero(), Vec3::zero());
+        for (i, body) in base.iter_mut().enumerate() {
+            let kind = model.topology.joints()[i].kind;
+            by_kind!(kind, move_braced, model, i, parent_omega, parent_com, q, v, body);
+            if let Some(wrenches) = self.wrenches {
+                let wrench = model.labels[i].force_to_compiled(wrenches[i]);
+                body.p -= Force::new(wrench.ang - body.inertia.com.cross(wrench.lin), wrench.lin);
+            }
+            (parent_omega, parent_com) = (body.omega, body.inertia.com);
+        }
+    }
+
+    /// Stage 1 of the tip side.
+    fn place_tip(&self, tip: &mut [Link<T>]) {
+        for (link, i) in tip.iter_mut().zip(self.cut..) {
+            let kind = self.model.topology.joints()[i].kind;
+            let _ = by_kind!(kind, place, self.model, i, self.q, link);
+        }
+    }
+
+    /// Stage 2 of the base side.
+    fn brace(&self, base: &mut [Braced<T>], smallest: &mut Pivot) {
+        let model = self.model;
+        let mut flexibility = ArticulatedInertia::zero();
+        let mut free = Motion::new(Vec3::zero(), -model.gravity.lift());
+        for (i, (body, joint)) in base.iter_mut().zip(model.topology.joints()).enumerate() {
+            if joint.kind == JointKind::Free {
+                (flexibility, free) = free_body(body, &self.tau[joint.v..], joint.v, smallest);
+            } else {
+                let subspace = at(joint.kind.column(&model.subspaces[i], 0), body.inertia.com);
+                let mut bracing =
+                    Bracing::new(flexibility, &body.x, free, body.c, subspace, model.armature[joint.v].lift(), self.tau[joint.v]);
+                bracing.add_body(&body.inertia, body.p);
+                smallest.note(joint.v, bracing.d.min_lane());
+                (body.s_d_inverse, body.d_inverse_u) = bracing.release();
+                (flexibility, free) = (bracing.flexibility(), Motion::from_array(bracing.b));
+            }
+            (body.flexibility, body.free) = (flexibility, free);
+        }
+    }
+
+    /// Stage 2 of the tip side. The path begins with ω of the body before, and ends with Iᴬ of body m.
+    fn eliminate_tip(&self, tip: &mut [Link<T>], path: &mut [OnPath<T>; 2], smallest: &mut Pivot) {
+        let (model, joints) = (self.model, &self.model.topology.joints()[self.cut..]);
+        for ((k, joint), link) in joints.iter().enumerate().zip(&mut *tip) {
+            let i = self.cut + k;
+            let x = joint.kind.recall(&model.placements[i], &link.x);
+            by_kind!(joint.kind, set_velocity, model, i, &x, self.v, path, link);
+            if let Some(wrenches) = self.wrenches {
+                link.p -= model.labels[i].force_to_compiled(wrenches[i]);
+            }
+        }
+        // If body m is the last, nothing is added to it.
+        path[1].inertia = model.inertias[self.cut].lift::<T>().to_articulated();
+        for (k, joint) in joints.iter().enumerate().skip(1).rev() {
+            let (before, rest) = tip.split_at_mut(k);
+            let parent_p = Some(&mut before[k - 1].p);
+            by_kind!(joint.kind, pass_to_parent, model, self.cut + k, self.tau, &mut rest[0], parent_p, path, smallest);
+        }
+    }
+
+    /// Joint m between the last body of the base side and the first link of the tip side. `inertia` is Iᴬ of its body.
+    fn meet(&self, base: &Braced<T>, link: &Link<T>, inertia: &ArticulatedInertia<T>, smallest: &mut Pivot) -> Meeting<T> {
+        let (model, i) = (self.model, self.cut);
+        let joint = &model.topology.joints()[i];
+        let subspace = &model.subspaces[i];
+        let at_joint = joint.kind.recall(&model.placements[i], &link.x);
+        let x = Transform::new(at_joint.rotation, at_joint.translation - base.inertia.com);
+        let (_, c) = cross_joint(joint.kind, &x, base.omega, None, joint.kind.motion(subspace, &self.v[joint.v..]));
+        let axis = joint.kind.column(subspace, 0);
+        let mut bracing = Bracing::new(base.flexibility, &x, base.free, c, axis, model.armature[joint.v].lift(), self.tau[joint.v]);
+        bracing.add_articulated(inertia, link.p);
+        smallest.note(joint.v, bracing.d.min_lane());
+        let (_, rate) = bracing.release();
+        let acceleration = Motion::from_array(bracing.b);
+        Meeting { rate, acceleration, force: x.force(inertia.mul(acceleration) + link.p) }
+    }
+
+    /// Stage 3 of the base side. `force` acts on the rest of the chain, at the centre of mass of the last body.
+    fn accelerate_base(&self, base: &[Braced<T>], mut force: Force<T>, a: &mut [T]) {
+        let joints = &self.model.topology.joints()[..base.len()];
+        for (body, joint) in base.iter().zip(joints).rev() {
+            let acceleration = body.acceleration(force);
+            if joint.kind == JointKind::Free {
+                // S q̈ = a − X a_0 − c
+                let world = Motion::new(Vec3::zero(), -self.model.gravity.lift());
+                let across = acceleration - body.x.inverse_motion(world) - body.c;
+                let lin = across.lin - across.ang.cross(body.inertia.com);
+                a[joint.v..joint.v + 3].copy_from_slice(&lin.to_array());
+                a[joint.v + 3..joint.v + 6].copy_from_slice(&across.ang.to_array());
+            } else {
+                a[joint.v] = body.d_inverse_u - body.s_d_inverse.dot(force);
+            }
+            // f' = I a + p + f
+            let CentralInertia { mass, rotational, .. } = body.inertia;
+            let inertial = Force::new(rotational * acceleration.ang, acceleration.lin * mass);
+            force = body.x.force(inertial + body.p + force);
+        }
+    }
+
+    /// Stage 3 of the tip side, once q̈ of joint m is known and the path has a of its body.
+    fn accelerate_tip(&self, tip: &[Link<T>], path: &mut [OnPath<T>; 2], a: &mut [T]) {
+        let (model, joints) = (self.model, &self.model.topology.joints()[self.cut..]);
+        // One-dof joints note no pivots on the way out.
+        let mut none = Pivot::none();
+        for (k, joint) in joints.iter().enumerate().skip(1) {
+            let a = &mut a[joint.v - joints[0].v..];
+            by_kind!(joint.kind, accelerate, model, self.cut + k, self.tau, a, &tip[k], path, &mut none);
+        }
+    }
+}
+
+/// Stage 1 of one body of the base side.
+#[inline(always)]
+#[expect(clippy::too_many_arguments, reason = "one body's step reads the model and the inputs, and writes the body")]
+fn move_braced<T: Real, P: Real + Lift<T>>(
+    kind: JointKind,
+    model: &Model<P>,
+    i: usize,
+    parent_omega: Vec3<T>,
+    parent_com: Vec3<T>,
+    q: &[T],
+    v: &[T],
+    body: &mut Braced<T>,
+) {
+    let (joint, subspace) = (&model.topology.joints()[i], &model.subspaces[i]);
+    let inertia = model.inertias[i].lift::<T>().central();
+    let Transform { rotation, translation } = kind.transform(&model.placements[i], subspace, &q[joint.q..]);
+    let x = Transform::new(rotation, translation - parent_com);
+    let (omega, c) = cross_joint(kind, &x, parent_omega, None, kind.motion(subspace, &v[joint.v..]));
+    // From the body's origin to its centre of mass: p̈ += ω̇ × r + ω × (ω × r)
+    let swing = omega.cross_add(omega.cross(inertia.com), c.ang.cross(inertia.com));
+    body.x = Transform::new(rotation, x.point(inertia.com));
+    (body.omega, body.c) = (omega, Motion::new(c.ang, c.lin + swing));
+    body.p = Force::new(omega.cross(inertia.rotational * omega), Vec3::zero());
+    body.inertia = inertia;
+}
+
+/// A motion at a frame's origin, at the point `r`.
+#[inline(always)]
+fn at<T: Real>(m: Motion<T>, r: Vec3<T>) -> Motion<T> {
+    Motion::new(m.ang, m.ang.cross_add(r, m.lin))
+}
+
+/// A body on a free joint: `Φ = I⁻¹`, `b = I⁻¹ (τ − p)`.
+fn free_body<T: Real>(body: &Braced<T>, tau: &[T], dof: usize, smallest: &mut Pivot) -> (ArticulatedInertia<T>, Motion<T>) {
+    let CentralInertia { mass, com, rotational } = body.inertia;
+    let factors = rotational.factor();
+    for (k, pivot) in [mass, mass, mass].into_iter().chain(factors.pivots.to_array()).enumerate() {
+        smallest.note(dof + k, pivot.min_lane());
+    }
+    let unit = |k: usize| Vec3::from_array(from_fn(|i| if i == k { T::one() } else { T::zero() }));
+    let [x, y, z] = [0, 1, 2].map(|k| factors.solve(unit(k)));
+    let mut flexibility = ArticulatedInertia::zero();
+    flexibility.translational = Sym3 { xx: x.x, xy: x.y, xz: x.z, yy: y.y, yz: y.z, zz: z.z };
+    flexibility.rotational = Sym3::scalar(T::one() / mass);
+
+    let joint_force = super::free::apparent_force(tau);
+    let f = Force::new(joint_force.ang - com.cross(joint_force.lin), joint_force.lin) - body.p;
+    (flexibility, Motion::new(flexibility.translational * f.ang, f.lin * (T::one() / mass)))
+}
+
+/// The elimination of one body and its joint.
+struct Bracing<T> {
+    /// Φ below its diagonal and on it; the angular part first.
+    phi: [[T; 6]; 6],
+    b: [T; 6],
+    s: [T; 6],
+    d: T,
+    u: T,
+}
+
+impl<T: Real> Bracing<T> {
+    /// Before the body is added. `x` is its placement in the body before, whose Φ and b are given.
+    #[inline(always)]
+    fn new(
+        flexibility: ArticulatedInertia<T>,
+        x: &Transform<T>,
+        free: Motion<T>,
+        c: Motion<T>,
+        subspace: Motion<T>,
+        armature: T,
+        tau: T,
+    ) -> Self {
+        // Φ' = X Φ Xᵀ
+        let ArticulatedInertia { rotational: l, coupling: h, translational: a } =
+            flexibility.translate(-x.translation).rotate(x.rotation.transpose());
+        let zero = T::zero();
+        let phi = [
+            [a.xx, zero, zero, zero, zero, zero],
+            [a.xy, a.yy, zero, zero, zero, zero],
+            [a.xz, a.yz, a.zz, zero, zero, zero],
+            [h.x.x, h.x.y, h.x.z, l.xx, zero, zero],
+            [h.y.x, h.y.y, h.y.z, l.xy, l.yy, zero],
+            [h.z.x, h.z.y, h.z.z, l.xz, l.yz, l.zz],
+        ];
+        let b = x.inverse_motion(free) + c;
+        Self { phi, b: b.to_array(), s: subspace.to_array(), d: armature, u: tau }
+    }
+
+    /// Column i of Φ.
+    #[inline(always)]
+    fn column(&self, i: usize) -> [T; 6] {
+        from_fn(|j| if j < i { self.phi[i][j] } else { self.phi[j][i] })
+    }
+
+    /// A rigid body at its centre of mass: `d = m` along the axes, and `L D Lᵀ` of the rotational inertia.
+    #[inline(always)]
+    fn add_body(&mut self, inertia: &CentralInertia<T>, p: Force<T>) {
+        for (k, offset) in p.lin.to_array().into_iter().enumerate() {
+            self.add_along_axis(3 + k, inertia.mass, offset);
+        }
+        let i = inertia.rotational;
+        // A body without inertia about an axis has none off that axis: zero takes the place of 0/0.
+        let inverse = i.xx.reciprocal_or_zero();
+        let (l21, l31) = (i.xy * inverse, i.xz * inverse);
+        let d2 = (-l21).mul_add(i.xy, i.yy);
+        let m32 = (-l21).mul_add(i.xz, i.yz);
+        let l32 = m32 * d2.reciprocal_or_zero();
+        let d3 = (-l32).mul_add(m32, (-l31).mul_add(i.xz, i.zz));
+        let o1 = p.ang.x;
+        let o2 = (-l21).mul_add(o1, p.ang.y);
+        let o3 = (-l32).mul_add(o2, (-l31).mul_add(o1, p.ang.z));
+
+        self.add_along_axis(2, d3, o3);
+        let (y, z) = (self.column(1), self.column(2));
+        let column = from_fn(|j| l32.mul_add(z[j], y[j]));
+        self.add(column, |x| l32.mul_add(x[2], x[1]), d2, o2, None);
+        let (x, y, z) = (self.column(0), self.column(1), self.column(2));
+        let column = from_fn(|j| l31.mul_add(z[j], l21.mul_add(y[j], x[j])));
+        self.add(column, |x| l31.mul_add(x[2], l21.mul_add(x[1], x[0])), i.xx, o1, None);
+    }
+
+    /// A body with an articulated-body inertia: `d` and `l` of its `L D Lᵀ`.
+    fn add_articulated(&mut self, inertia: &ArticulatedInertia<T>, p: Force<T>) {
+        let unit = |k: usize| Motion::from_array(from_fn(|i| if i == k { T::one() } else { T::zero() }));
+        let mut rest: [[T; 6]; 6] = from_fn(|k| inertia.mul(unit(k)).to_array());
+        let mut offset = p.to_array();
+        for k in 0..6 {
+            let (d, o) = (rest[k][k], offset[k]);
+            let inverse = d.reciprocal_or_zero();
+            let l: [T; 6] = from_fn(|i| {
+                if i < k {
+                    T::zero()
+                } else if i == k {
+                    T::one()
+                } else {
+                    rest[i][k] * inverse
+                }
+            });
+            for i in k + 1..6 {
+                for j in k + 1..6 {
+                    rest[i][j] = (-l[i]).mul_add(rest[k][j], rest[i][j]);
+                }
+                offset[i] = (-l[i]).mul_add(o, offset[i]);
+            }
+            let dot = |x: &[T; 6]| x.iter().zip(&l).fold(T::zero(), |sum, (x, l)| x.mul_add(*l, sum));
+            let column = from_fn(|i| dot(&from_fn(|j| self.phi[i.max(j)][i.min(j)])));
+            self.add(column, dot, d, o, None);
+        }
+    }
+
+    /// One step of the elimination, for `l = e_i`. There what is left of row i is known without a difference: w Φ_i.
+    #[inline(always)]
+    fn add_along_axis(&mut self, i: usize, d: T, o: T) {
+        let column = self.column(i);
+        let w = self.add(column, |x| x[i], d, o, Some(i));
+        for j in 0..6 {
+            self.phi[i.max(j)][i.min(j)] = column[j] * w;
+        }
+    }
+
+    /// One step of the elimination. `column` is Φl, and `along` is lᵀ. Row and column `but` of Φ are left to the caller. Returns w.
+    #[inline(always)]
+    fn add(&mut self, column: [T; 6], along: impl Fn(&[T; 6]) -> T, d: T, o: T, but: Option<usize>) -> T {
+        let w = T::one() / along(&column).mul_add(d, T::one());
+        let (weight, s_l) = (w * d, along(&self.s));
+        let force = weight.mul_add(along(&self.b), w * o);
+        let carried = weight * s_l;
+        self.d = carried.mul_add(s_l, self.d);
+        self.u = (-s_l).mul_add(force, self.u);
+        for i in 0..6 {
+            self.b[i] = (-force).mul_add(column[i], self.b[i]);
+            self.s[i] = (-carried).mul_add(column[i], self.s[i]);
+            if but == Some(i) {
+                continue;
+            }
+            let scaled = -(weight * column[i]);
+            for j in (0..=i).filter(|j| but != Some(*j)) {
+                self.phi[i][j] = scaled.mul_add(column[j], self.phi[i][j]);
+            }
+        }
+        w
+    }
+
+    /// Releases the joint: `Φ += s D⁻¹ sᵀ`, `b += s D⁻¹ u`. Returns s D⁻¹ and D⁻¹ u.
+    #[inline(always)]
+    fn release(&mut self) -> (Motion<T>, T) {
+        let inverse = T::one() / self.d;
+        let (scaled, rate) = (self.s.map(|s| s * inverse), self.u * inverse);
+        for i in 0..6 {
+            self.b[i] = rate.mul_add(self.s[i], self.b[i]);
+            for j in 0..=i {
+                self.phi[i][j] = scaled[i].mul_add(self.s[j], self.phi[i][j]);
+            }
+        }
+        (Motion::from_array(scaled), rate)
+    }
+
+    /// Φ as it moves between frames.
+    #[inline(always)]
+    fn flexibility(&self) -> ArticulatedInertia<T> {
+        let phi = &self.phi;
+        let sym = |k: usize| Sym3 {
+            xx: phi[k][k],
+            xy: phi[k + 1][k],
+            xz: phi[k + 2][k],
+            yy: phi[k + 1][k + 1],
+            yz: phi[k + 2][k + 1],
+            zz: phi[k + 2][k + 2],
+        };
+        let row = |i: usize| Vec3::new(phi[i][0], phi[i][1], phi[i][2]);
+        let coupling = Mat3::from_rows(row(3), row(4), row(5));
+        ArticulatedInertia { rotational: sym(3), coupling, translational: sym(0) }
+    }
+}
