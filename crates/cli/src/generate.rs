@@ -6,6 +6,7 @@ use crate::root::Root;
 use crate::{oracles, robot_file, robots};
 use featherbench_bench::FileFormat;
 use featherbench_formats::OnLoss;
+use featherbench_formats::neutral::{self, NeutralError};
 use featherbench_formats::urdf::{Base, Options};
 use featherbench_model::Description;
 use featherbench_robots::Family;
@@ -30,15 +31,31 @@ pub fn generate(root: &Root, args: &GenArgs) -> Result<(), Fail> {
         _ => family(args)?,
     };
     description.warnings().iter().for_each(|warning| eprintln!("warning: {warning}"));
-    let text = written(&description, args)?;
-    match &args.out {
-        Some(path) => {
-            ::featherbench_results::atomic_write(path, text.as_bytes())?;
-            eprintln!("{}: {} ({} bodies, {} dofs)", path.display(), description.name, description.bodies.len(), description.nv());
-        }
-        None => print!("{text}"),
+    match exported(&description, args)? {
+        Some(text) => match &args.out {
+            Some(path) => ::featherbench_results::atomic_write(path, text.as_bytes())?,
+            None => print!("{text}"),
+        },
+        None => write(&description, args.out.as_deref()).map_err(|error| Fail::input(error.to_string()))?,
+    }
+    if let Some(path) = &args.out {
+        eprintln!("{}: {} ({} bodies, {} dofs)", path.display(), description.name, description.bodies.len(), description.nv());
     }
     Ok(())
+}
+
+/// Writes a description file, piece by piece: that of a million links has some hundred MB.
+fn write(description: &Description, path: Option<&Path>) -> Result<(), NeutralError> {
+    match path {
+        Some(path) => {
+            if let Some(folder) = path.parent() {
+                // If there is none afterwards, the error of the file says so.
+                let _ = std::fs::create_dir_all(folder);
+            }
+            neutral::write(description, path)
+        }
+        None => neutral::write_to(description, &mut std::io::stdout().lock(), "standard output"),
+    }
 }
 
 /// What MuJoCo's compiler makes of an MJCF file, with its notes.
@@ -67,8 +84,8 @@ fn compiled(root: &Root, path: &Path, floating: bool) -> Result<Description, Fai
     Ok(reading.description)
 }
 
-/// The robot in the format asked for, with a note on everything that was left out.
-fn written(description: &Description, args: &GenArgs) -> Result<String, Fail> {
+/// The robot as a URDF or MJCF if one is asked for, with a note on everything that was left out.
+fn exported(description: &Description, args: &GenArgs) -> Result<Option<String>, Fail> {
     let ending = args.out.as_ref().and_then(|path| path.extension()).and_then(|ending| ending.to_str());
     let by_ending = match ending {
         Some("urdf") => Format::Urdf,
@@ -77,7 +94,7 @@ fn written(description: &Description, args: &GenArgs) -> Result<String, Fail> {
     };
     let on_loss = if args.lossy { OnLoss::LeaveOut } else { OnLoss::Refuse };
     let exported = match args.format.unwrap_or(by_ending) {
-        Format::Neutral => return featherbench_formats::neutral::to_string(description).map_err(|error| Fail::input(error.to_string())),
+        Format::Neutral => return Ok(None),
         Format::Urdf => featherbench_formats::urdf::to_string(description, on_loss),
         Format::Mjcf => featherbench_formats::mjcf::to_string(description, on_loss),
     };
@@ -86,7 +103,7 @@ fn written(description: &Description, args: &GenArgs) -> Result<String, Fail> {
         Fail::input(format!("{error}{way_out}"))
     })?;
     losses.iter().for_each(|loss| eprintln!("left out: {loss}"));
-    Ok(text)
+    Ok(Some(text))
 }
 
 fn family(args: &GenArgs) -> Result<Description, Fail> {

@@ -71,10 +71,15 @@ pub(crate) fn check(text: &str, limit: usize) -> Result<&str, TextError> {
 
 /// Writes the file completely or not at all: into a temporary file beside it, which is then renamed.
 pub(crate) fn write(path: &Path, text: &str) -> io::Result<()> {
+    write_by(path, |file| file.write_all(text.as_bytes()))
+}
+
+/// The same, where `content` writes the text piece by piece.
+pub(crate) fn write_by(path: &Path, content: impl FnOnce(&mut File) -> io::Result<()>) -> io::Result<()> {
     let name = path.file_name().ok_or_else(|| io::Error::new(io::ErrorKind::InvalidInput, "this is no file name"))?;
     let neighbour = path.with_file_name(format!(".{}.{}.part", name.to_string_lossy(), std::process::id()));
     let written = File::create(&neighbour)
-        .and_then(|mut file| file.write_all(text.as_bytes()).and_then(|()| file.sync_all()))
+        .and_then(|mut file| content(&mut file).and_then(|()| file.sync_all()))
         .and_then(|()| std::fs::rename(&neighbour, path));
     if written.is_err() {
         // Only the first error is reported.

@@ -259,3 +259,44 @@ proptest! {
         }
     }
 }
+
+/// Depth 20 000, on a stack that has no room for a call per body: written in pieces, read back to the bit, and dropped.
+#[test]
+fn a_long_chain_is_written_in_pieces_and_read_back_on_a_small_stack() {
+    let test = || {
+        let robot = featherbench_robots::Family::parse("chain:n=20000,layout=spatial").unwrap().generate().unwrap();
+        let text = neutral::to_string(&robot).unwrap();
+        assert!(text.len() > 5_000_000, "several pieces");
+        let mut streamed = Vec::new();
+        neutral::write_to(&robot, &mut streamed, "memory").unwrap();
+        assert!(streamed == text.as_bytes(), "the pieces are the text");
+
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("chain.json");
+        neutral::write(&robot, &path).unwrap();
+        assert!(std::fs::read(&path).unwrap() == text.as_bytes(), "the file is the text");
+        assert!(neutral::read(&path).unwrap() == robot);
+    };
+    std::thread::Builder::new().stack_size(256 << 10).spawn(test).unwrap().join().expect("the test passes on a small stack");
+}
+
+/// An output that takes no more is an error that names it.
+#[test]
+fn an_output_that_fails_is_named() {
+    struct Full(usize);
+    impl std::io::Write for Full {
+        fn write(&mut self, bytes: &[u8]) -> std::io::Result<usize> {
+            let taken = bytes.len().min(self.0);
+            self.0 -= taken;
+            Ok(taken)
+        }
+        fn flush(&mut self) -> std::io::Result<()> {
+            Ok(())
+        }
+    }
+    let robot = featherbench_robots::Family::parse("chain:n=1000").unwrap().generate().unwrap();
+    for room in [0, 100, 100_000] {
+        let error = neutral::write_to(&robot, &mut Full(room), "the pipe").expect_err("no room").to_string();
+        assert!(error.starts_with("the pipe: the file cannot be written"), "{error}");
+    }
+}

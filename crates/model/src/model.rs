@@ -51,19 +51,21 @@ impl<P: Real> Model<P> {
     /// [`Malformed`] when the description is no tree of bodies with finite, meaningful numbers.
     pub fn build(description: &Description) -> Result<Self, Malformed> {
         let canonical = description.canonical()?;
-        let mut tree = Vec::new();
+        // Exact where each joint has one dof, and too small by the other dofs elsewhere.
+        let count = canonical.bodies.len();
+        let mut tree = Vec::with_capacity(count);
         let mut model = Self {
             topology: Topology::new(&[]).ok_or(Malformed::Empty)?,
-            labels: Vec::new(),
-            placements: Vec::new(),
-            subspaces: Vec::new(),
-            inertias: Vec::new(),
-            armature: Vec::new(),
+            labels: Vec::with_capacity(count),
+            placements: Vec::with_capacity(count),
+            subspaces: Vec::with_capacity(count),
+            inertias: Vec::with_capacity(count),
+            armature: Vec::with_capacity(count),
             gravity: vec3(canonical.gravity),
-            damping: Vec::new(),
-            friction: Vec::new(),
-            limits: Vec::new(),
-            described: Vec::new(),
+            damping: Vec::with_capacity(count),
+            friction: Vec::with_capacity(count),
+            limits: Vec::with_capacity(count),
+            described: Vec::with_capacity(count),
             warnings: description.normalised().chain(canonical.warnings()).collect(),
         };
         for body in &canonical.bodies {

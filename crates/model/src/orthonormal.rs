@@ -31,12 +31,21 @@ pub(crate) struct Normalised<const N: usize> {
 
 /// The unit vector of an axis. The axis must have a length that validation accepts.
 pub(crate) fn unit(axis: [f64; 3]) -> Normalised<3> {
+    if is_exact(&axis) {
+        return Normalised { rounded: axis, exact: axis.map(DoubleDouble::from_f64), missed: 0.0 };
+    }
     let (excess, missed, exact) = divided(axis);
     if excess <= ROUNDED {
         return Normalised { rounded: axis, exact, missed };
     }
     let rounded = exact.map(DoubleDouble::to_f64);
     Normalised { rounded, exact: divided(rounded).2, missed }
+}
+
+/// Whether a vector is a coordinate axis or the opposite of one: exactly a unit vector. Most axes and rows of rotations are.
+fn is_exact(v: &[f64; 3]) -> bool {
+    let count = |magnitude: f64| v.iter().filter(|x| x.abs() == magnitude).count();
+    count(1.0) == 1 && count(0.0) == 2
 }
 
 /// | |u|² − 1 |, | |u| − 1 | and u/|u|.
@@ -51,6 +60,9 @@ fn divided(axis: [f64; 3]) -> (f64, f64, [DoubleDouble; 3]) {
 
 /// The rotation nearest to a matrix. The matrix must be one that validation accepts.
 pub(crate) fn rotation(matrix: [f64; 9]) -> Normalised<9> {
+    if matrix.as_chunks().0.iter().all(is_exact) && (0..3).all(|k| (0..3).any(|row| matrix[3 * row + k] != 0.0)) {
+        return Normalised { rounded: matrix, exact: matrix.map(DoubleDouble::from_f64), missed: 0.0 };
+    }
     let written = Mat3::from_array(matrix.map(DoubleDouble::from_f64));
     let excess = excess(&written);
     let (exact, missed) = (nearest_rotation(written), 0.5 * excess);

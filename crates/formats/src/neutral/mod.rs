@@ -25,9 +25,9 @@ mod write;
 
 pub use error::{NeutralError, NeutralProblem};
 pub use read::{parse, read};
-pub use write::{to_line, to_string, write};
+pub use write::{to_line, to_string, write, write_to};
 
 /// The format's version that this crate reads and writes.
 pub const FORMAT: u64 = 1;
-/// The largest file that is read: a chain of 300 000 links.
-pub const LIMIT: usize = 256 << 20;
+/// The largest file that is read: a random tree of a million bodies.
+pub const LIMIT: usize = 1 << 30;

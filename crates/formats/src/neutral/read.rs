@@ -31,15 +31,12 @@ pub fn parse(text: &str, file: &str) -> Result<Description, NeutralError> {
     let error = |position, problem| NeutralError { place: Place { file: file.to_owned(), position }, problem: Box::new(problem) };
     let text = text::check(text, LIMIT).map_err(|problem| error(None, problem.into()))?;
 
-    // The version first: another version may have other fields.
-    if let Ok(Version { format: Some(format) }) = serde_json::from_str(text)
-        && format.as_u64() != Some(FORMAT)
-    {
-        return Err(error(key_position(text, "format"), NeutralProblem::Version { found: format.to_string() }));
-    }
-
     let mut deserializer = serde_json::Deserializer::from_str(text);
     let document: Document = serde_path_to_error::deserialize(&mut deserializer).map_err(|found| {
+        // The version first: another version may have other fields.
+        if let Some(format) = other_version(text) {
+            return error(key_position(text, "format"), NeutralProblem::Version { found: format.to_string() });
+        }
         let field = found.path().to_string();
         let (position, problem) = explain(field, &found.into_inner());
         error(position, problem)
@@ -49,12 +46,21 @@ pub fn parse(text: &str, file: &str) -> Result<Description, NeutralError> {
         error(position, problem)
     })?;
 
+    if document.format != FORMAT {
+        return Err(error(key_position(text, "format"), NeutralProblem::Version { found: document.format.to_string() }));
+    }
     if let Some(section) = document.unsupported() {
         return Err(error(key_position(text, section), NeutralProblem::UnsupportedSection { section }));
     }
     let description = document.describe();
     description.validate().map_err(|malformed| error(body_position(text, &malformed), malformed.into()))?;
     Ok(description)
+}
+
+/// The format of a text that is JSON of another version.
+fn other_version(text: &str) -> Option<serde_json::Value> {
+    let version: Version = serde_json::from_str(text).ok()?;
+    version.format.filter(|format| format.as_u64() != Some(FORMAT))
 }
 
 /// Position and problem of a JSON error.
@@ -94,8 +100,7 @@ struct Version {
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields, rename_all = "snake_case")]
 struct Document {
-    #[serde(rename = "format")]
-    _format: u64,
+    format: u64,
     name: String,
     gravity: [f64; 3],
     bodies: Vec<Body>,
@@ -109,9 +114,14 @@ struct Document {
     parameters: Option<IgnoredAny>,
 }
 
+/// A body as it is kept, so that a list of bodies is never held twice.
+#[derive(Deserialize)]
+#[serde(from = "BodyFields")]
+struct Body(BodyDescription);
+
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
-struct Body {
+struct BodyFields {
     name: String,
     mass: f64,
     com: [f64; 3],
@@ -204,14 +214,6 @@ impl Document {
     }
 
     fn describe(self) -> Description {
-        let body = |body: Body| BodyDescription {
-            name: body.name,
-            parent: body.parent.0,
-            mass: body.mass,
-            com: body.com,
-            inertia: body.inertia,
-            joint: body.joint.0,
-        };
         let frame = |frame: NamedFrame| Frame { name: frame.name, body: frame.body.0, placement: frame.placement.into() };
         let provenance = |source: Source| Provenance {
             source: source.source,
@@ -223,10 +225,16 @@ impl Document {
         Description {
             name: self.name,
             gravity: self.gravity,
-            bodies: self.bodies.into_iter().map(body).collect(),
+            bodies: self.bodies.into_iter().map(|body| body.0).collect(),
             frames: self.frames.into_iter().map(frame).collect(),
             provenance: self.provenance.map(provenance),
         }
+    }
+}
+
+impl From<BodyFields> for Body {
+    fn from(BodyFields { name, mass, com, inertia, parent, joint }: BodyFields) -> Self {
+        Self(BodyDescription { name, parent: parent.0, mass, com, inertia, joint: joint.0 })
     }
 }
 

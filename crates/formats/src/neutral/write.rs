@@ -3,17 +3,37 @@
 use super::{NeutralError, NeutralProblem};
 use crate::{Place, text};
 use featherbench_model::{BodyDescription, Description, Frame, JointDescription, JointType, Malformed, Placement, Provenance};
+use std::fmt;
+use std::io;
 use std::path::Path;
 
-/// Writes a description file, completely or not at all.
+/// Writes a description file, completely or not at all. The text is written piece by piece, and never held as a whole.
 ///
 /// # Errors
 /// [`NeutralError`] when the description is malformed or the file cannot be written.
 pub fn write(description: &Description, path: impl AsRef<Path>) -> Result<(), NeutralError> {
     let path = path.as_ref();
     let error = |problem| NeutralError { place: Place { file: path.display().to_string(), position: None }, problem: Box::new(problem) };
-    let text = to_string(description).map_err(|malformed| error(malformed.into()))?;
-    text::write(path, &text).map_err(|io| error(NeutralProblem::Write(io)))
+    description.validate().map_err(|malformed| error(malformed.into()))?;
+    text::write_by(path, |file| stream(description, file)).map_err(|io| error(NeutralProblem::Write(io)))
+}
+
+/// Writes the text of a description file piece by piece: the same text as [`to_string`].
+///
+/// # Errors
+/// [`NeutralError`] when the description is malformed or the output does not take the text. `name` names the output in it.
+pub fn write_to(description: &Description, output: &mut dyn io::Write, name: &str) -> Result<(), NeutralError> {
+    let error = |problem| NeutralError { place: Place { file: name.to_owned(), position: None }, problem: Box::new(problem) };
+    description.validate().map_err(|malformed| error(malformed.into()))?;
+    stream(description, output).map_err(|io| error(NeutralProblem::Write(io)))
+}
+
+/// Writes a valid description.
+fn stream(description: &Description, output: &mut dyn io::Write) -> io::Result<()> {
+    let mut writer = Writer::of_file();
+    writer.output = Some(output);
+    writer.file(description);
+    writer.failed.map_or(Ok(()), Err)
 }
 
 /// The description as the text of a file: a few lines per body. [`super::parse`] gives back the same bits.
@@ -22,9 +42,8 @@ pub fn write(description: &Description, path: impl AsRef<Path>) -> Result<(), Ne
 /// [`Malformed`] when the description is not a robot (for example, JSON has no NaN).
 pub fn to_string(description: &Description) -> Result<String, Malformed> {
     description.validate()?;
-    let mut writer = Writer { text: String::new(), per_dof: PerDof::AsGiven, separator: ["\n ", "\n  ", "\n   ", "\n    "] };
-    writer.document(description, true);
-    writer.text.push('\n');
+    let mut writer = Writer::of_file();
+    writer.file(description);
     Ok(writer.text)
 }
 
@@ -35,7 +54,7 @@ pub fn to_string(description: &Description) -> Result<String, Malformed> {
 /// [`Malformed`] when the description is not a robot.
 pub fn to_line(description: &Description) -> Result<String, Malformed> {
     let canonical = description.canonical()?;
-    let mut writer = Writer { text: String::new(), per_dof: PerDof::Complete, separator: [""; 4] };
+    let mut writer = Writer { per_dof: PerDof::Complete, separator: [""; 4], ..Writer::of_file() };
     writer.document(&canonical, false);
     Ok(writer.text)
 }
@@ -47,16 +66,45 @@ enum PerDof {
     Complete,
 }
 
-struct Writer {
+struct Writer<'a> {
+    /// What is written and not yet passed on.
     text: String,
     per_dof: PerDof,
     /// The separators of the lines of each level: the file's keys, their items, a body's joint, the joint's lists.
     separator: [&'static str; 4],
+    /// Where the text is passed on to, if it is not kept.
+    output: Option<&'a mut dyn io::Write>,
+    /// The first error of the output.
+    failed: Option<io::Error>,
 }
 
-impl Writer {
+/// The text is passed on in pieces of about this size.
+const PIECE: usize = 1 << 16;
+
+impl Writer<'_> {
+    fn of_file() -> Self {
+        let separator = ["\n ", "\n  ", "\n   ", "\n    "];
+        Self { text: String::new(), per_dof: PerDof::AsGiven, separator, output: None, failed: None }
+    }
+
+    fn file(&mut self, description: &Description) {
+        self.document(description, true);
+        self.push("\n");
+        self.pass_on(0);
+    }
+
+    /// Passes the text on if it is longer than this.
+    fn pass_on(&mut self, length: usize) {
+        if let Some(output) = self.output.as_mut().filter(|_| self.text.len() > length) {
+            if self.failed.is_none() {
+                self.failed = output.write_all(self.text.as_bytes()).err();
+            }
+            self.text.clear();
+        }
+    }
+
     fn document(&mut self, description: &Description, with_sections: bool) {
-        self.push(&format!("{{\"format\":{},\"name\":{},\"gravity\":", super::FORMAT, quoted(&description.name)));
+        self.put(format_args!("{{\"format\":{},\"name\":{},\"gravity\":", super::FORMAT, quoted(&description.name)));
         self.numbers(&description.gravity);
         if let Some(provenance) = description.provenance.as_ref().filter(|_| with_sections) {
             self.key(0, "provenance");
@@ -77,7 +125,7 @@ impl Writer {
         for (k, (name, value)) in fields.into_iter().enumerate() {
             self.push(if k == 0 { "{" } else { "," });
             self.push(self.separator[1]);
-            self.push(&format!("\"{name}\":{}", quoted(value)));
+            self.put(format_args!("\"{name}\":{}", quoted(value)));
         }
         self.key(1, "notes");
         self.list(2, notes, |writer, note| writer.push(&quoted(note)));
@@ -85,24 +133,24 @@ impl Writer {
     }
 
     fn body(&mut self, body: &BodyDescription) {
-        self.push(&format!("{{\"name\":{},\"mass\":{:?},\"com\":", quoted(&body.name), body.mass));
+        self.put(format_args!("{{\"name\":{},\"mass\":{:?},\"com\":", quoted(&body.name), body.mass));
         self.numbers(&body.com);
         self.push(",\"inertia\":");
         self.numbers(&body.inertia);
-        self.push(&format!(",\"parent\":{}", index(body.parent)));
+        self.put(format_args!(",\"parent\":{}", index(body.parent)));
         self.key(2, "joint");
         self.joint(&body.joint);
         self.push("}");
     }
 
     fn joint(&mut self, joint: &JointDescription) {
-        self.push(&format!("{{\"name\":{},\"type\":\"{}\"", quoted(&joint.name), joint.kind.name()));
+        self.put(format_args!("{{\"name\":{},\"type\":\"{}\"", quoted(&joint.name), joint.kind.name()));
         if let Some(axis) = joint.kind.axis() {
             self.push(",\"axis\":");
             self.numbers(&axis);
         }
         if let JointType::Helical { pitch, .. } = joint.kind {
-            self.push(&format!(",\"pitch\":{pitch:?}"));
+            self.put(format_args!(",\"pitch\":{pitch:?}"));
         }
         self.key(3, "placement");
         self.placement(&joint.placement);
@@ -118,7 +166,7 @@ impl Writer {
                 self.key(3, name);
                 first = false;
             } else {
-                self.push(&format!(",\"{name}\":"));
+                self.put(format_args!(",\"{name}\":"));
             }
             self.numbers(list);
         }
@@ -126,7 +174,7 @@ impl Writer {
     }
 
     fn frame(&mut self, frame: &Frame) {
-        self.push(&format!("{{\"name\":{},\"body\":{},\"placement\":", quoted(&frame.name), index(frame.body)));
+        self.put(format_args!("{{\"name\":{},\"body\":{},\"placement\":", quoted(&frame.name), index(frame.body)));
         self.placement(&frame.placement);
         self.push("}");
     }
@@ -145,6 +193,7 @@ impl Writer {
             self.push(if k == 0 { "[" } else { "," });
             self.push(self.separator[level]);
             item(self, value);
+            self.pass_on(PIECE);
         }
         self.push(if items.is_empty() { "[]" } else { "]" });
     }
@@ -153,20 +202,25 @@ impl Writer {
     fn key(&mut self, level: usize, name: &str) {
         self.push(",");
         self.push(self.separator[level]);
-        self.push(&format!("\"{name}\":"));
+        self.put(format_args!("\"{name}\":"));
     }
 
     /// Each number as the shortest decimal that reads back to the same bits. `Debug` writes that for finite numbers, and it is JSON.
     fn numbers(&mut self, numbers: &[f64]) {
         for (k, number) in numbers.iter().enumerate() {
             self.push(if k == 0 { "[" } else { "," });
-            self.push(&format!("{number:?}"));
+            self.put(format_args!("{number:?}"));
         }
         self.push(if numbers.is_empty() { "[]" } else { "]" });
     }
 
     fn push(&mut self, text: &str) {
         self.text.push_str(text);
+    }
+
+    fn put(&mut self, text: fmt::Arguments<'_>) {
+        // A string takes every text: there is no error.
+        let _ = fmt::Write::write_fmt(&mut self.text, text);
     }
 }
 
