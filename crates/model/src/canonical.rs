@@ -3,6 +3,7 @@
 use crate::orthonormal::{nearest_rotation, rotation, unit};
 use crate::{BodyDescription, Description, Frame, JointDescription, JointType, Malformed, Placement};
 use featherbench_spatial::{DoubleDouble, Mat3, Real, Sym3, Transform, Vec3};
+use std::borrow::Cow;
 
 impl Description {
     /// The canonical form: validated, axes and rotations of joints normalised, fixed joints merged into their parents, depth-first order.
@@ -16,6 +17,36 @@ impl Description {
     /// [`Malformed`], naming the body and field.
     pub fn canonical(&self) -> Result<Self, Malformed> {
         self.validate()?;
+        self.made_canonical()
+    }
+
+    /// A description with the canonical bodies, without a copy where they are canonical as given. Its frames may differ.
+    pub(crate) fn with_canonical_bodies(&self) -> Result<Cow<'_, Self>, Malformed> {
+        self.validate()?;
+        if self.has_canonical_bodies() { Ok(Cow::Borrowed(self)) } else { self.made_canonical().map(Cow::Owned) }
+    }
+
+    /// Whether there is a body, each joint moves, bodies are in depth-first order, and axes and rotations are normalised.
+    fn has_canonical_bodies(&self) -> bool {
+        let mut path: Vec<usize> = Vec::new();
+        for (i, BodyDescription { parent, joint, .. }) in self.bodies.iter().enumerate() {
+            while path.last().copied() != *parent {
+                if path.pop().is_none() {
+                    return false;
+                }
+            }
+            path.push(i);
+            let unit_axis = joint.kind.axis().is_none_or(|axis| unit(axis).rounded == axis);
+            let matrix = joint.placement.rotation;
+            if joint.kind == JointType::Fixed || !unit_axis || rotation(matrix).rounded != matrix {
+                return false;
+            }
+        }
+        !self.bodies.is_empty()
+    }
+
+    /// The canonical form of a valid description.
+    fn made_canonical(&self) -> Result<Self, Malformed> {
         let order = self.depth_first();
         let mut result = Self {
             name: self.name.clone(),

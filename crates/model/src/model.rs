@@ -50,7 +50,7 @@ impl<P: Real> Model<P> {
     /// # Errors
     /// [`Malformed`] when the description is no tree of bodies with finite, meaningful numbers.
     pub fn build(description: &Description) -> Result<Self, Malformed> {
-        let canonical = description.canonical()?;
+        let canonical = description.with_canonical_bodies()?;
         // Exact where each joint has one dof, and too small by the other dofs elsewhere.
         let count = canonical.bodies.len();
         let mut tree = Vec::with_capacity(count);
