@@ -150,7 +150,8 @@ fn rates_of_jacobians() {
         let body = model.described[model.described.len() - 1];
         let speed = 1.0 + largest(v);
         let truth = jacobian(model, &moving(model, q, v), body).unwrap();
-        let (columns, rates) = jacobian_rate(model, q, v, body).unwrap();
+        let found = jacobian_rate(model, q, v, body).unwrap();
+        let (columns, rates) = (found.columns(), found.rates());
         let expected = jacobian(model, q, body).unwrap();
         for (k, truth) in truth.iter().enumerate() {
             let [value, rate] = rounded(truth);
@@ -177,7 +178,8 @@ fn rates_of_jacobians() {
 fn centroidal_momentum_matrix_and_its_rate() {
     each_robot_and_state(|name, model, [q, v, ..], _| {
         let n = v.len();
-        let (columns, rates) = momentum_matrix(model, q, v).unwrap();
+        let found = momentum_matrix(model, q, v).unwrap();
+        let (columns, rates) = (found.columns(), found.rates());
         let truth: Vec<[[f64; 6]; 2]> = (0..n)
             .map(|k| {
                 let one: Vec<Truth> = unit(n, k);

@@ -101,7 +101,7 @@ impl<S: Number> Batch<'_, S> {
     /// The first call makes a workspace for each core, and so allocates.
     ///
     /// # Errors
-    /// [`BatchError`] when an array has the wrong length or a state fails, or when each state has a model of its own and a body's joint axis
+    /// [`BatchError`] when an array has the wrong length or a state fails. Also when each state has a model of its own, and a body's joint axis
     /// is a coordinate axis in some of them only.
     pub fn torque_regressor<E: Element<S>>(&mut self, q: &[E], v: &[E], a: &[E], regressors: &mut [E]) -> Result<(), BatchError> {
         self.models.expect_same_labels()?;

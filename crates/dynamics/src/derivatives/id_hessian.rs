@@ -1,8 +1,8 @@
 //! Second derivatives of inverse dynamics, weighted: those of `μ·ID(q, v, a)` by (q,q), (v,v), (q,v) and (q,a), for constant weights μ.
 //!
-//! Sources: S. Singh, R. Russell & P. Wensing, *Efficient analytical derivatives of rigid-body dynamics using spatial vector algebra*
-//! (2022), for what a rigid motion of a sub-tree leaves; and the same authors, *On second-order derivatives of rigid-body dynamics: theory and
-//! implementation* (2023), for the weights. The tensor is never formed. Weights enter as a velocity field `u = Σ μ_m S_m`, with
+//! Sources: S. Singh, R. Russell & P. Wensing, *Efficient analytical derivatives of rigid-body dynamics using spatial vector algebra* (2022):
+//! what a rigid motion of a sub-tree leaves. The same authors, *On second-order derivatives of rigid-body dynamics: theory and implementation*
+//! (2023): the weights. The tensor is never formed. Weights enter as a velocity field `u = Σ μ_m S_m`, with
 //! u_p at the parent, and as sums over sub-trees. With the words of `id.rs`, and for a dof k that supports dof i:
 //!
 //! ```text

@@ -153,8 +153,8 @@ pub fn jacobian_rate<T: Real, P: Real + Lift<T>>(
     q: &[T],
     v: &[T],
     body: usize,
-) -> Result<(Vec<Motion<T>>, Vec<Motion<T>>), DimensionError> {
+) -> Result<JacobianRate<T>, DimensionError> {
     let mut workspace = JacobianRate::new(&model.topology);
     workspace.run(model, q, v, body, Vec3::zero())?;
-    Ok((workspace.columns, workspace.rates))
+    Ok(workspace)
 }

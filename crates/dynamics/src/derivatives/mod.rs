@@ -13,6 +13,7 @@ mod id_hessian;
 mod jacobian_rate;
 mod mass_gradient;
 mod momentum_matrix;
+mod multiply;
 mod parameter_sensitivity;
 mod parameters;
 mod regressor;

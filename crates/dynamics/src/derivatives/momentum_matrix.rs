@@ -123,16 +123,12 @@ fn column_and_rate<T: Real>(
     (moved, Force::new(rate.ang - c.cross_add(rate.lin, c_rate.cross(f.lin)), rate.lin))
 }
 
-/// The columns of the centroidal momentum matrix and of its rate of change, in a workspace of the call; it allocates.
+/// The centroidal momentum matrix and its rate of change, in a workspace of the call; it allocates.
 ///
 /// # Errors
 /// [`DimensionError`] when an argument does not fit the model.
-pub fn momentum_matrix<T: Real, P: Real + Lift<T>>(
-    model: &Model<P>,
-    q: &[T],
-    v: &[T],
-) -> Result<(Vec<Force<T>>, Vec<Force<T>>), DimensionError> {
+pub fn momentum_matrix<T: Real, P: Real + Lift<T>>(model: &Model<P>, q: &[T], v: &[T]) -> Result<MomentumMatrix<T>, DimensionError> {
     let mut workspace = MomentumMatrix::new(&model.topology);
     workspace.run(model, q, v)?;
-    Ok((workspace.columns, workspace.rates))
+    Ok(workspace)
 }
