@@ -13,6 +13,7 @@
 //! wrenches or parameters one inverse dynamics over duals. A call does not allocate.
 
 use super::by_duals::{Linearisation, Linearise, copy};
+use super::dense::add_scaled;
 use super::dynamics::{Acceleration, Dynamics, Instant, System};
 use crate::error::expect;
 use crate::{DimensionError, Error, FdDerivatives, FdPartials, Rnea};
@@ -60,8 +61,8 @@ pub struct Analytic<S, T> {
     held_q: Vec<Dual<T>>,
     held_v: Vec<Dual<T>>,
     taken: Vec<Dual<T>>,
-    /// The change of the forces in one direction.
-    change: Vec<T>,
+    /// The changes of the forces, one column per direction.
+    changes: Vec<T>,
 }
 
 impl<S: System + Clone, T: Angle> Analytic<S, T>
@@ -78,6 +79,7 @@ where
     {
         let topology = model.topology.clone();
         let zeros = |count| vec![Dual::constant(T::zero()); count];
+        let inputs = system.controls() + system.parameters();
         let bodies = if system.has_wrenches() { topology.bodies() } else { 0 };
         let mut new = Self {
             plain: Dynamics::new(model, system.clone(), parameters)?,
@@ -97,7 +99,7 @@ where
             held_q: zeros(topology.nq()),
             held_v: zeros(topology.nv()),
             taken: zeros(topology.nv()),
-            change: vec![T::zero(); topology.nv()],
+            changes: vec![T::zero(); topology.nv() * if inputs > topology.nv() { inputs } else { topology.nv() }],
             topology,
             system,
         };
@@ -107,30 +109,38 @@ where
 }
 
 impl<S: System, T: Angle> Analytic<S, T> {
-    /// Adds M⁻¹ times the change of the forces in the direction that the duals now have to column `column` of a matrix. `modelled` says
-    /// whether the model changes too.
-    fn add_column(&mut self, t: T, modelled: bool, matrix: &mut [T], width: usize, column: usize) -> Result<(), Error> {
+    /// The change of the forces in the direction that the duals now have, into column `column` of `self.changes`, which has `width` columns.
+    /// `modelled` says whether the model changes too.
+    fn note_change(&mut self, t: T, modelled: bool, width: usize, column: usize) -> Result<(), Error> {
         self.dual_tau.fill(Dual::constant(T::zero()));
         self.dual_wrenches.fill(Force::zero());
         let at = Instant { time: Dual::constant(t), q: &self.q, v: &self.v, controls: &self.controls, parameters: &self.parameters };
         self.system.forces(&at, &mut self.dual_tau, &mut self.dual_wrenches);
-        for (change, tau) in self.change.iter_mut().zip(&self.dual_tau) {
-            *change = tau.derivative;
-        }
         if modelled || !self.dual_wrenches.is_empty() {
             // q and v are held here: their own part is in ∂FD.
             let wrenches = if self.dual_wrenches.is_empty() { None } else { Some(self.dual_wrenches.as_slice()) };
             self.rnea.run(&self.model, &self.held_q, &self.held_v, &self.a, wrenches, &mut self.taken)?;
-            for (change, taken) in self.change.iter_mut().zip(&self.taken) {
-                *change -= taken.derivative;
+            for (tau, taken) in self.dual_tau.iter_mut().zip(&self.taken) {
+                *tau -= *taken;
             }
         }
-        let nv = self.change.len();
-        for (row, inverse) in self.partials.tau.chunks_exact(nv).enumerate() {
-            let entry = &mut matrix[row * width + column];
-            *entry = inverse.iter().zip(&self.change).fold(*entry, |sum, (m, change)| m.mul_add(*change, sum));
+        for (row, tau) in self.dual_tau.iter().enumerate() {
+            self.changes[row * width + column] = tau.derivative;
         }
         Ok(())
+    }
+
+    /// `matrix += M⁻¹ · changes`, all columns at once.
+    fn add_solved(&self, matrix: &mut [T], width: usize) {
+        if width == 0 {
+            return;
+        }
+        let nv = self.partials.acceleration.len();
+        for (row, inverse) in matrix.chunks_exact_mut(width).zip(self.partials.tau.chunks_exact(nv)) {
+            for (factor, changes) in inverse.iter().zip(self.changes.chunks_exact(width)) {
+                add_scaled(*factor, changes, row);
+            }
+        }
     }
 }
 
@@ -191,27 +201,30 @@ impl<S: System, T: Angle> Linearise<T> for Analytic<S, T> {
                 let mut direction = [Dual::constant(T::zero()); 6];
                 direction[k].derivative = T::one();
                 joint.kind.integrate(&self.held_q[joint.q..], &direction, &mut self.q[joint.q..]);
-                self.add_column(t, false, &mut result.by_q, nv, joint.v + k)?;
+                self.note_change(t, false, nv, joint.v + k)?;
             }
             let numbers = joint.q..joint.q + joint.kind.nq();
             self.q[numbers.clone()].copy_from_slice(&self.held_q[numbers]);
         }
+        self.add_solved(&mut result.by_q, nv);
         for dof in 0..nv {
             self.v[dof].derivative = T::one();
-            self.add_column(t, false, &mut result.by_v, nv, dof)?;
+            self.note_change(t, false, nv, dof)?;
             self.v[dof].derivative = T::zero();
         }
+        self.add_solved(&mut result.by_v, nv);
         for k in 0..controls {
             self.controls[k].derivative = T::one();
-            self.add_column(t, false, &mut result.by_input, inputs, k)?;
+            self.note_change(t, false, inputs, k)?;
             self.controls[k].derivative = T::zero();
         }
         for k in 0..parameters {
             self.parameters[k].derivative = T::one();
             self.system.adjust(&self.parameters, &mut self.model);
-            self.add_column(t, true, &mut result.by_input, inputs, controls + k)?;
+            self.note_change(t, true, inputs, controls + k)?;
             self.parameters[k].derivative = T::zero();
         }
+        self.add_solved(&mut result.by_input, inputs);
         if parameters > 0 {
             self.system.adjust(&self.parameters, &mut self.model);
         }
