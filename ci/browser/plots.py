@@ -16,6 +16,7 @@ PLOTS = [
     "tradeoff-plot",
     "conditioning-plot",
     "floor-plot",
+    "floating-base-plot",
     "steps-plot",
     "drift-plot",
     "scaling-time",
