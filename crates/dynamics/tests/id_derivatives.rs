@@ -88,7 +88,7 @@ fn products_are_those_of_the_dense_matrix() {
         let x = nalgebra::DVector::from_column_slice(states.tau(1));
         let mut y = vec![0.0; n];
         // Sums of n products.
-        let tolerance = n as f64 * f64::EPSILON * dense.amax();
+        let tolerance = n as f64 * f64::EPSILON * common::largest(dense.as_slice());
         matrix.mul(x.as_slice(), &mut y).unwrap();
         within(&format!("{name}: A x"), common::distance(&y, (&dense * &x).as_slice()), tolerance);
         matrix.mul_transposed(x.as_slice(), &mut y).unwrap();
