@@ -6,6 +6,9 @@
 //! A body belongs to the trunk if the weight of its sub-tree is more than a 64th of the whole and the sub-tree branches. So does the only child
 //! of a body of the trunk. So a part begins where the tree branches, or at the world. Units: none. Cost: O(n), once per topology.
 //!
+//! A task has path slots of its own: on most trees some dozen. They are as many as bodies where each body's first child carries the rest of the
+//! tree, and other children follow.
+//!
 //! The algorithms with such a plan are [`ParallelRnea`](crate::ParallelRnea), [`ParallelAba`](crate::ParallelAba),
 //! [`ParallelCrba`](crate::ParallelCrba) and [`ParallelLtdl`](crate::ParallelLtdl). They do the same operations in the same order as the
 //! serial ones: sums over children begin with the last child. So answers are the same to the bit, with any number of threads.

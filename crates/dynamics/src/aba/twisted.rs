@@ -1,8 +1,7 @@
 //! Forward dynamics of a long chain on two cores: elimination from both ends at once.
 //!
-//! Source: the tip side is `aba.rs`. The base side eliminates the equations of motion in the other order, as the twisted factorization of a
-//! band matrix does (Meurant, *A review on the inverse of symmetric tridiagonal and block tridiagonal matrices*, 1992). What it carries along
-//! is the inverse operational-space inertia of Kreutz-Delgado, Jain and Rodriguez (*Recursive formulation of operational space control*, 1992).
+//! Source: the tip side is `aba.rs`. The base side eliminates the equations of motion in the other order, as a twisted factorization of a band
+//! matrix does. (Meurant, *A review on the inverse of symmetric tridiagonal and block tridiagonal matrices*, 1992.) What it carries along is the inverse operational-space inertia of Kreutz-Delgado, Jain and Rodriguez (*Recursive formulation of operational space control*, 1992).
 //!
 //! A body of the base side passes the force f on to the rest of the chain. Then its acceleration is `a = b − Φ f`, with Φ symmetric and positive
 //! semidefinite. For the world Φ = 0, and b is gravity.
@@ -24,6 +23,14 @@
 //!
 //! Then the joint: `Φ += s D⁻¹ sᵀ`, `b += s D⁻¹ u`. In stage 3: `q̈ = D⁻¹ (u − sᵀ f)`, `a = b − Φ f`, and f' is the f of the body before.
 //! D is positive if the body itself has inertia along S. Where it has not, [`Aba`] computes the whole chain.
+//!
+//! Cost per revolute joint about z, in operations as [`Counted`](featherbench_spatial::Counted) counts them: 421 on the tip side, as [`Aba`], and
+//! 786 on the base side. A joint of the base side takes 2.35 times as long: its six eliminations wait for each other. With 0.3 of the bodies on the
+//! base side the longer side has 0.7 of the work of [`Aba`], and both together 1.26 times that work. Measured on two cores: 0.83 of the time of
+//! [`Aba`] on 10 000 joints, 0.89 on 10⁶; below some 2000 it does not pay. A call does not allocate, but for `rayon`.
+//!
+//! Accuracy: the error is that of [`Aba`] within a tenth, on chains of 100 and 1000 and with tips a million times as heavy
+//! (`tests/twisted.rs`). The heavy tip is on the tip side, where both algorithms are the same.
 //!
 //! Frames: on the base side each body's quantities are at its centre of mass, in its compiled axes. There three of the l_i are unit vectors.
 //! Shapes and units: those of `aba.rs`.

@@ -13,7 +13,7 @@
 //! are tasks.
 
 use super::{Forces, column_force, project};
-use crate::parallel::{Part, Piece, Plan};
+use crate::parallel::{Part, Piece, Plan, Task};
 use crate::step::by_kind;
 use crate::tree_sparse::Row;
 use crate::{DimensionError, TreeSparse};
@@ -81,7 +81,7 @@ impl<T: Real> ParallelCrba<T> {
         let place = |parent: Option<usize>| parent.and_then(|parent| trunk.binary_search_by_key(&parent, |(body, _)| *body).ok());
         let parents = plan.parts.iter().map(|part| place(part.parent)).collect();
         let trunk_parents = trunk.iter().map(|(body, _)| place(topology.joints()[*body].parent)).collect();
-        let largest = |task: &crate::parallel::Task| plan.parts[task.parts.clone()].iter().map(|part| part.dofs.len()).max();
+        let largest = |task: &Task| plan.parts[task.parts.clone()].iter().map(|part| part.dofs.len()).max();
         let forces = plan.tasks.iter().map(|task| Forces::new(largest(task).unwrap_or(0))).chain([Forces::new(6)]).collect();
         Self {
             composites: vec![CentralInertia::zero(); topology.bodies()],

@@ -3,14 +3,15 @@
 //! Source, shapes and units: those of `ltdl.rs`, whose kernel of `ltdl/factor.rs` it calls. The tree is divided by `parallel.rs`. A row of L needs
 //! the rows below it only. So the rows of a part are factored by themselves, in a copy with padding, and then the rows of the trunk.
 //! Cost: O(Σ d_k²), the operations of [`Ltdl`], and one copy of the rows of the parts each way. Memory beside the matrix: the rows of the largest
-//! part of each task, and 80 bytes per dof. Without `rayon`'s own, a call allocates one list of slices, with as many entries as there are tasks.
+//! part of each task, and 144 bytes per dof. Without `rayon`'s own, a call allocates one list of slices, with as many entries as there are tasks.
+//! Solutions are those of [`Ltdl`], on one core.
 
 use super::Ltdl;
 use super::blocks::Block;
 use super::factor::factor_blocks;
 use super::registers::LANES;
 use crate::error::Pivot;
-use crate::parallel::{Part, Plan};
+use crate::parallel::{Part, Plan, Task};
 use crate::tree_sparse::{PADDING, Row};
 use crate::{Error, NotPositiveDefinite, TreeSparse};
 use featherbench_model::Topology;
@@ -113,7 +114,7 @@ impl ParallelLtdl {
     fn factor_of(&mut self, source: Option<&[f64]>) -> Result<(), NotPositiveDefinite> {
         let Self { ltdl, plan, parts, copies, trunk } = self;
         let (rows, values) = ltdl.matrix.parts_mut();
-        let numbers = |task: &crate::parallel::Task| {
+        let numbers = |task: &Task| {
             let (first, last) = (&parts[task.parts.start], &parts[task.parts.end - 1]);
             first.numbers.start..last.numbers.end
         };
