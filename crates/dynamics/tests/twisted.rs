@@ -17,10 +17,7 @@ fn generate(spec: &str) -> Model<f64> {
     Model::build(&describe(spec)).expect("a robot")
 }
 
-fn two_norm<T: Real>(values: &[T], truth: &[DoubleDouble]) -> f64
-where
-    T: Lift<DoubleDouble>,
-{
+fn two_norm<T: Real + Lift<DoubleDouble>>(values: &[T], truth: &[DoubleDouble]) -> f64 {
     let square = |x: DoubleDouble| (x * x).to_f64();
     let off: f64 = values.iter().zip(truth).map(|(value, truth)| square(value.lift() - *truth)).sum();
     (off / truth.iter().map(|truth| square(*truth)).sum::<f64>()).sqrt()
