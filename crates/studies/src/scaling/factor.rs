@@ -89,10 +89,10 @@ impl<'a> Rows<'a> {
         for dof in 0..self.parents.len() {
             self.path(dof, &mut path);
             for (m, &other) in matrix.values()[self.starts[dof]..self.starts[dof + 1]].iter().zip(&path) {
-                residual[dof] = residual[dof] - wide(m) * wide(&x[other]);
+                residual[dof] -= wide(m) * wide(&x[other]);
                 magnitude[dof] += roots[other] * x[other].abs();
                 if other != dof {
-                    residual[other] = residual[other] - wide(m) * wide(&x[dof]);
+                    residual[other] -= wide(m) * wide(&x[dof]);
                     magnitude[other] += roots[dof] * x[dof].abs();
                 }
             }

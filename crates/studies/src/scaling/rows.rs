@@ -6,7 +6,7 @@ use crate::operations::COUNTS;
 use featherbench_bench::measure::ratio;
 use featherbench_bench::{Cell, Context, Finished, NoAnswer};
 use featherbench_results::{Relation, Row, Verdict, canonical_json};
-use serde_json::{Value, json};
+use serde_json::json;
 
 /// What the values are compared with.
 const THEORY: &str = "theory";
@@ -115,7 +115,7 @@ fn work(blank: Row, cell: &Cell, values: &[f64]) -> Vec<Row> {
 /// there is one prediction for each number of lanes: the operations of the mass matrix are divided by it.
 fn predicted(context: &Context, line: &Line, finished: &[Finished]) -> Vec<Row> {
     let along = |(cell, outcome): &Finished| {
-        let of_line = cell.params["what"] == "work" && cell.params["line"] == Value::from(line.name.as_str());
+        let of_line = cell.params["what"] == "work" && cell.params["line"] == line.name.as_str();
         let values = outcome.values().filter(|_| of_line)?;
         Some((*values.get(1)?, ratio(*values.get(SIZES + 1)?, *values.get(SIZES)?)))
     };

@@ -236,7 +236,7 @@ impl<'a> Data<'a> {
 
 impl<'a> Tree<'a> {
     fn add(&mut self, row: &'a Row, route: Option<&str>) {
-        self.size = self.size.max(row.nv.unwrap_or(0));
+        self.size = row.nv.unwrap_or(self.size);
         if let Some(route) = route {
             self.route = route.to_owned();
         }
