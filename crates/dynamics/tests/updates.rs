@@ -175,7 +175,7 @@ fn a_refused_change_leaves_the_factors() {
     assert!(after_others > 20, "{after_others}");
 }
 
-/// The text is one for all scalars: a lane has the bits of its state, a dual the derivative.
+/// The text is one for all scalars: a lane has the numbers of its state, a dual the derivative.
 #[test]
 fn every_scalar_is_changed_alike() {
     for (name, topology, dof, vectors) in cases() {
@@ -187,7 +187,10 @@ fn every_scalar_is_changed_alike() {
         fours.update(dof, sigma, &lanes).unwrap();
         slow.update(dof, Counted(0.25), &counted).unwrap();
         let lane = |of: &Ltdl<f64x4>, k: usize| of.factors().values().iter().map(|x| x.to_array()[k]).collect::<Vec<_>>();
-        assert_eq!(lane(&fours, 1), plain(slow.factors().values()), "{name}");
+        let (found, expected) = (lane(&fours, 1), plain(slow.factors().values()));
+        // The factors of lanes are products with 1/D: a rounding more for each dof of a path, before and in the change.
+        let roundings = 4.0 * (topology.nv() + vectors.len()) as f64;
+        within(&format!("{name}: lane"), common::distance(&found, &expected) / common::largest(&expected), roundings * f64::EPSILON);
 
         // d/dσ by a dual: (M + σ w wᵀ)' = Σ w wᵀ, and xᵀMx has the derivative Σ (wᵀx)².
         let mut dual = matrix::<Dual<f64>>(&topology, 7).into_ltdl().unwrap();
