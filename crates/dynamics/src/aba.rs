@@ -173,6 +173,7 @@ impl<T: Real> Aba<T> {
     pub fn solve<P: Real + Lift<T>>(&mut self, model: &Model<P>, f: &[T], x: &mut [T]) -> Result<(), DimensionError> {
         let Self { links, path } = self;
         expect_bodies(model, links.len())?;
+        expect("path slots of the workspace", model.topology.slots(), path.len())?;
         expect("joint forces f", model.topology.nv(), f.len())?;
         expect("solution x", model.topology.nv(), x.len())?;
         let joints = model.topology.joints();
@@ -211,7 +212,8 @@ impl<T: Real> Aba<T> {
         wrenches: Option<&[Force<T>]>,
         a: &[T],
     ) -> Result<(), DimensionError> {
-        expect_shapes(self.links.len(), model, q, v, tau, wrenches, a)
+        expect_shapes(self.links.len(), model, q, v, tau, wrenches, a)?;
+        expect("path slots of the workspace", model.topology.slots(), self.path.len())
     }
 }
 

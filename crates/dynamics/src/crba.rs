@@ -78,8 +78,8 @@ impl<T: Real> Crba<T> {
     /// [`DimensionError`] when an argument or the workspace does not fit the model.
     pub fn run<P: Real + Lift<T>>(&mut self, model: &Model<P>, q: &[T], matrix: &mut TreeSparse<T>) -> Result<(), DimensionError> {
         let Self { composites, placements, forces } = self;
-        expect("dofs of the workspace", model.topology.nv(), forces.len())?;
         expect_shapes(model, composites.len(), q, matrix)?;
+        expect("dofs of the workspace", model.topology.nv(), forces.len())?;
 
         for (i, (composite, x)) in composites.iter_mut().zip(placements.iter_mut()).enumerate() {
             *composite = model.inertias[i].lift::<T>().central();

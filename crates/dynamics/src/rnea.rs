@@ -84,6 +84,7 @@ impl<T: Real> Rnea<T> {
     ) -> Result<(), DimensionError> {
         let Self { links, path } = self;
         expect_shapes(links.len(), model, q, v, wrenches, tau)?;
+        expect("path slots of the workspace", model.topology.slots(), path.len())?;
         let joints = model.topology.joints();
 
         path[0].a.lin = -model.gravity.lift();

@@ -33,6 +33,7 @@ pub struct Topology {
     nv: usize,
     dof_parent: Vec<Option<usize>>,
     row_start: Vec<usize>,
+    slots: usize,
     /// The dofs of all rows, made when they are first asked for.
     row_dofs: OnceLock<Vec<usize>>,
 }
@@ -91,7 +92,8 @@ impl Topology {
             let above = parent.map_or(0, |parent: usize| row_start[parent + 1] - row_start[parent]);
             row_start.push(row_start[dof] + above + 1);
         }
-        Some(Self { joints, nq, nv, dof_parent, row_start, row_dofs: OnceLock::new() })
+        let slots = 1 + joints.iter().map(|joint| joint.slot).max().unwrap_or(0);
+        Some(Self { joints, nq, nv, dof_parent, row_start, slots, row_dofs: OnceLock::new() })
     }
 
     /// The same tree with the axes of these joints taken as skew ones.
@@ -169,7 +171,7 @@ impl Topology {
 
     /// The number of path slots ([`Joint::slot`]), the world's included. It is 2 on a chain, and at most one more than [`Topology::depth`].
     pub fn slots(&self) -> usize {
-        1 + self.joints.iter().map(|joint| joint.slot).max().unwrap_or(0)
+        self.slots
     }
 
     /// The largest number of bodies on a path from the world.

@@ -83,6 +83,7 @@ impl<T: Real> ParallelRnea<T> {
     ) -> Result<(), DimensionError> {
         expect("acceleration a", model.topology.nv(), a.len())?;
         super::expect_shapes(self.rnea.links.len(), model, q, v, wrenches, tau)?;
+        expect("path slots of the workspace", model.topology.slots(), self.rnea.path.len())?;
         self.plan.expect(&model.topology)?;
         let Self { plan, rnea: Rnea { links, path }, parents, paths } = self;
         let joints = model.topology.joints();
