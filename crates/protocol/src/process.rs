@@ -81,6 +81,8 @@ impl Process {
             .arg(program)
             .args(arguments)
             .env("PYTHONDONTWRITEBYTECODE", "1")
+            // The last lines are kept as the reason: a backtrace would stand in its place.
+            .env("RUST_BACKTRACE", "0")
             .env("OMP_NUM_THREADS", "1")
             .env("OPENBLAS_NUM_THREADS", "1")
             .stdin(Stdio::piped())
