@@ -3,6 +3,7 @@
 //! The same text serves our kernels in `f64` and the truth in double-double.
 
 use crate::Quantity;
+pub use featherbench_dynamics::PARAMETERS;
 use featherbench_dynamics::{BodyMotion, DimensionError, TreeSparse};
 use featherbench_spatial::{Motion, Real};
 

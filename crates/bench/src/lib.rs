@@ -37,10 +37,12 @@
 //! ```
 
 pub mod alone;
+pub mod by_duals;
 mod cell;
 mod class;
 pub mod conventions;
 mod counts;
+mod derivative_floor;
 mod described;
 mod deviation;
 mod engine;
@@ -69,6 +71,7 @@ pub mod truth;
 pub use cell::{Cell, Outcome};
 pub use class::RobotClass;
 pub use counts::{COUNTS_NAME, Count, Counts};
+pub use derivative_floor::derivative_floor;
 pub use described::{ClockKind, DescribedEngine, Engines, Library, Package, Start};
 pub use deviation::{Deviation, DeviationFile, Reproduction, SEEDS, SLACK};
 pub use engine::{Engine, Evaluation, Identity, NoAnswer};

@@ -1,6 +1,6 @@
 //! The quantities of which an engine can be asked, as data.
 
-use crate::Robot;
+use crate::{Robot, layout};
 
 /// A quantity of a robot at a state. Shapes, units and frames are those of `oracles/PROTOCOL.md`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -47,6 +47,18 @@ pub enum Quantity {
     Solve,
     /// M⁻¹, dense.
     MassMatrixInverse,
+    /// ∂ID/∂q on the tangent space of the configurations.
+    InverseDynamicsDq,
+    /// ∂ID/∂v.
+    InverseDynamicsDv,
+    /// ∂FD/∂q on the tangent space of the configurations.
+    ForwardDynamicsDq,
+    /// ∂FD/∂v.
+    ForwardDynamicsDv,
+    /// The Coriolis matrix C with C v = h − g and Ṁ = C + Cᵀ.
+    CoriolisMatrix,
+    /// The torque regressor Y with τ − armature·a = Y π.
+    TorqueRegressor,
 }
 
 /// Robots with more degrees of freedom than this are asked for [`Quantity::MassMatrixProbe`] and not for the whole matrix.
@@ -54,7 +66,7 @@ pub const DENSE_LIMIT: usize = 64;
 
 impl Quantity {
     /// All of them.
-    pub const ALL: [Self; 21] = [
+    pub const ALL: [Self; 27] = [
         Self::InverseDynamics,
         Self::InverseDynamicsWrench,
         Self::Bias,
@@ -76,6 +88,22 @@ impl Quantity {
         Self::Factorization,
         Self::Solve,
         Self::MassMatrixInverse,
+        Self::InverseDynamicsDq,
+        Self::InverseDynamicsDv,
+        Self::ForwardDynamicsDq,
+        Self::ForwardDynamicsDv,
+        Self::CoriolisMatrix,
+        Self::TorqueRegressor,
+    ];
+
+    /// The derivatives, and what is made of them. An engine may have some of them.
+    pub const DERIVATIVES: [Self; 6] = [
+        Self::InverseDynamicsDq,
+        Self::InverseDynamicsDv,
+        Self::ForwardDynamicsDq,
+        Self::ForwardDynamicsDv,
+        Self::CoriolisMatrix,
+        Self::TorqueRegressor,
     ];
 
     /// The word for it in rows and in the oracle protocol.
@@ -102,6 +130,12 @@ impl Quantity {
             Self::Factorization => "factorization",
             Self::Solve => "solve",
             Self::MassMatrixInverse => "mass_matrix_inverse",
+            Self::InverseDynamicsDq => "id_dq",
+            Self::InverseDynamicsDv => "id_dv",
+            Self::ForwardDynamicsDq => "fd_dq",
+            Self::ForwardDynamicsDv => "fd_dv",
+            Self::CoriolisMatrix => "coriolis_matrix",
+            Self::TorqueRegressor => "torque_regressor",
         }
     }
 
@@ -131,7 +165,14 @@ impl Quantity {
             | Self::ForwardDynamics
             | Self::ForwardDynamicsSingle
             | Self::Solve => nv,
-            Self::MassMatrix | Self::MassMatrixInverse => nv * nv,
+            Self::MassMatrix
+            | Self::MassMatrixInverse
+            | Self::InverseDynamicsDq
+            | Self::InverseDynamicsDv
+            | Self::ForwardDynamicsDq
+            | Self::ForwardDynamicsDv
+            | Self::CoriolisMatrix => nv * nv,
+            Self::TorqueRegressor => nv * bodies * layout::PARAMETERS,
             Self::MassMatrixProbe | Self::BodyJacobian => 6 * nv,
             Self::KineticEnergy | Self::PotentialEnergy | Self::StoredEntries => 1,
             Self::CenterOfMass => 3,

@@ -4,6 +4,7 @@
 //! The kernels themselves are confirmed by the crate `reference` and `oracles/featherbench_oracles/truth/`. These share no text with
 //! them, and agree with them where that was recorded.
 
+use crate::by_duals::{ByDuals, Columns, Point};
 use crate::{Quantity, Robot, layout};
 use featherbench_dynamics::{Aba, Bias, CenterOfMass, Crba, Energy, Jacobian, Kinematics, Momentum, Rnea, TreeSparse};
 use featherbench_model::Model;
@@ -11,6 +12,36 @@ use featherbench_spatial::{DoubleDouble, Dual, Force, Lift, Real};
 
 /// A model in extended precision; its inertias are formed in that precision from the description.
 pub struct TruthModel(Model<DoubleDouble>);
+
+/// Derivatives in extended precision: dual numbers over double-double through the kernels.
+///
+/// It is not the text of analytic derivatives. A test compares it with differences in double-double.
+pub struct TrueDerivatives {
+    duals: ByDuals<DoubleDouble>,
+    columns: Columns<DoubleDouble>,
+}
+
+impl TrueDerivatives {
+    /// Those of a robot; `None` when its description cannot be built.
+    pub fn new(robot: &Robot) -> Option<Self> {
+        let duals = ByDuals::new(Model::build(&robot.description).ok()?);
+        Some(Self { duals, columns: Columns::new(Model::build(&robot.description).ok()?) })
+    }
+
+    /// The true value of a derivative at state `k`, in the quantity's layout; `None` if there is none, or the quantity is no derivative.
+    pub fn answer(&mut self, robot: &Robot, quantity: Quantity, k: usize) -> Option<Vec<f64>> {
+        let wide = |values: &[f64]| -> Vec<DoubleDouble> { values.iter().map(|&x| x.lift()).collect() };
+        let [q, v, a, tau] = [robot.states.q(k), robot.states.v(k), robot.states.a(k), robot.states.tau(k)].map(wide);
+        let at = Point { q: &q, v: &v, a: &a, tau: &tau };
+        let mut out = vec![DoubleDouble::zero(); quantity.size(robot)];
+        if quantity == Quantity::TorqueRegressor {
+            self.columns.run(at, &mut out).ok()?;
+        } else if !self.duals.run(quantity, at, &mut out).ok()? {
+            return None;
+        }
+        Some(out.iter().map(|x| x.to_f64()).collect())
+    }
+}
 
 /// The truth at one state, to the nearest f64.
 #[derive(Clone, Debug)]
@@ -121,7 +152,7 @@ pub fn conditioning_bound(robot: &Robot, k: usize) -> Option<f64> {
     (0..states.nv).try_for_each(|i| inputs.move_by_itself(|inputs| &mut inputs.v[i]))?;
     (0..states.nv).try_for_each(|i| inputs.move_by_itself(|inputs| &mut inputs.tau[i]))?;
     (0..states.nv).try_for_each(|i| inputs.move_by_itself(|inputs| &mut inputs.model.armature[i]))?;
-    for parameter in PARAMETERS {
+    for parameter in parameters::<Number>() {
         (0..robot.model.topology.bodies()).try_for_each(|body| inputs.move_by_itself(|inputs| parameter(&mut inputs.model, body)))?;
     }
     inputs.move_by_itself(|inputs| &mut inputs.model.gravity.x)?;
@@ -163,18 +194,20 @@ impl Inputs {
 }
 
 /// The masses, moments, inertias and lengths of a body, one by one.
-const PARAMETERS: [fn(&mut Model<Number>, usize) -> &mut Number; 13] = [
-    |m, i| &mut m.inertias[i].mass,
-    |m, i| &mut m.inertias[i].first_moment.x,
-    |m, i| &mut m.inertias[i].first_moment.y,
-    |m, i| &mut m.inertias[i].first_moment.z,
-    |m, i| &mut m.inertias[i].rotational.xx,
-    |m, i| &mut m.inertias[i].rotational.xy,
-    |m, i| &mut m.inertias[i].rotational.xz,
-    |m, i| &mut m.inertias[i].rotational.yy,
-    |m, i| &mut m.inertias[i].rotational.yz,
-    |m, i| &mut m.inertias[i].rotational.zz,
-    |m, i| &mut m.placements[i].translation.x,
-    |m, i| &mut m.placements[i].translation.y,
-    |m, i| &mut m.placements[i].translation.z,
-];
+pub(crate) fn parameters<T>() -> [fn(&mut Model<T>, usize) -> &mut T; 13] {
+    [
+        |m, i| &mut m.inertias[i].mass,
+        |m, i| &mut m.inertias[i].first_moment.x,
+        |m, i| &mut m.inertias[i].first_moment.y,
+        |m, i| &mut m.inertias[i].first_moment.z,
+        |m, i| &mut m.inertias[i].rotational.xx,
+        |m, i| &mut m.inertias[i].rotational.xy,
+        |m, i| &mut m.inertias[i].rotational.xz,
+        |m, i| &mut m.inertias[i].rotational.yy,
+        |m, i| &mut m.inertias[i].rotational.yz,
+        |m, i| &mut m.inertias[i].rotational.zz,
+        |m, i| &mut m.placements[i].translation.x,
+        |m, i| &mut m.placements[i].translation.y,
+        |m, i| &mut m.placements[i].translation.z,
+    ]
+}

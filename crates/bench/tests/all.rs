@@ -4,6 +4,7 @@
 mod by_hand;
 mod classes;
 mod configuration;
+mod derivatives;
 mod external;
 mod gates;
 mod measures;

@@ -12,6 +12,8 @@ use featherbench_spatial::{Motion, Vec3};
 /// The magnitudes at one state. Per body they refer to the body's origin.
 #[derive(Clone, Debug)]
 pub struct Magnitudes {
+    /// The state's index.
+    pub state: usize,
     /// Length of the path from the world's origin to each body, m.
     pub reach: Vec<f64>,
     /// Size of each body, m: the distance from its origin to its centre of mass or to the farthest joint on it, whichever is larger.
@@ -48,6 +50,7 @@ impl Magnitudes {
         let moving = Recursion::outward(robot, k, states.a(k));
         let none = vec![0.0; states.wrench(k).len()];
         Self {
+            state: k,
             joint_force: moving.inward(robot, states.a(k), &none),
             joint_force_wrench: moving.inward(robot, states.a(k), states.wrench(k)),
             bias_force: still.inward(robot, &zero, &none),

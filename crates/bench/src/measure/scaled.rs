@@ -1,6 +1,6 @@
 //! The unit-free error of one quantity at one state.
 
-use super::{Magnitudes, ratio, worst};
+use super::{Magnitudes, derivative, ratio, worst};
 use crate::{Quantity, Robot};
 use featherbench_model::JointKind;
 
@@ -48,6 +48,12 @@ pub fn scaled_error(robot: &Robot, quantity: Quantity, at: &Magnitudes, referenc
         }
         Quantity::BodyJacobian => body_jacobian(robot, at, reference, value),
         Quantity::Readback => readback(reference, value),
+        Quantity::InverseDynamicsDq
+        | Quantity::InverseDynamicsDv
+        | Quantity::ForwardDynamicsDq
+        | Quantity::ForwardDynamicsDv
+        | Quantity::CoriolisMatrix => derivative::error(robot, quantity, at, reference, value),
+        Quantity::TorqueRegressor => derivative::regressor_error(robot, at, reference, value),
         Quantity::StoredEntries => entries(reference, value, &[1.0]),
         Quantity::ForwardDynamics | Quantity::ForwardDynamicsSingle | Quantity::Solve => {
             let largest = reference.iter().fold(0.0_f64, |largest, x| worst(largest, x.abs()));

@@ -79,6 +79,21 @@ fn every_entry_of_two_screws_has_its_magnitude() {
         |mass: f64, com: f64, trace: f64, length: f64| [vec![mass], vec![com; 3], vec![trace; 6], vec![1.0; 9], vec![length; 3]].concat();
     // Momentum. Linear m·v + |h|·ω: 2·1.5 + 1.5·3 = 7.5 and 4·12.5 + 2·5 = 60. Angular tr(Ī)·ω + |h|·v + reach·linear:
     // 6·3 + 1.5·1.5 + 5.5·7.5 = 61.5 and 5·5 + 2·12.5 + 9·60 = 590.
+    let mass = featherbench_dynamics::mass_matrix(&robot.model, robot.states.q(0)).unwrap();
+    let root = [mass.get(0, 0).sqrt(), mass.get(1, 1).sqrt()];
+    // So large that no rate of the state is larger
+    let partial = [2e9, -3e9, 1e9, 9e9];
+    let products_of = |unit: fn(f64, f64) -> f64| {
+        let units = [unit(root[0], root[0]), unit(root[0], root[1]), unit(root[1], root[0]), unit(root[1], root[1])];
+        let largest = partial.iter().zip(units).map(|(x, unit): (&f64, f64)| x.abs() / unit).fold(0.0, featherbench_bench::measure::worst);
+        units.map(|unit| largest * unit)
+    };
+    // The largest mass, first moment and inertia of the scaled rows are those of the first body in the first row.
+    let of_body = [50.0, -80.0, 1.0, 0.0, 1.0, 2.0, 90.0, 0.0, 1.0, 1.0];
+    let regressor: Vec<f64> = [1e9, 5e8, 1e8, 2e8].iter().flat_map(|share| of_body.map(|x| share * x)).collect();
+    assert!(root[0] < 5.0 * root[1]);
+    let of_row = |of: f64| [50.0, 80.0, 80.0, 80.0, 90.0, 90.0, 90.0, 90.0, 90.0, 90.0].map(|x| 1e9 * x / root[0] * of);
+    let of_regressor = [of_row(root[0]), of_row(root[0]), of_row(root[1]), of_row(root[1])].concat();
     let cases = [
         of(Quantity::InverseDynamics, &at.joint_force),
         of(Quantity::InverseDynamicsWrench, &at.joint_force_wrench),
@@ -103,6 +118,13 @@ fn every_entry_of_two_screws_has_its_magnitude() {
         scaled(Quantity::ForwardDynamics, &[-8.0, 2.0], &[8.0; 2]),
         scaled(Quantity::ForwardDynamicsSingle, &[-8.0, 2.0], &[8.0; 2]),
         scaled(Quantity::Solve, &[-8.0, 2.0], &[8.0; 2]),
+        // The largest scaled entry times the unit of each: √(M_ii·M_jj) of ∂ID and C, √(M_jj/M_ii) of ∂FD.
+        scaled(Quantity::InverseDynamicsDq, &partial, &products_of(|i, j| i * j)),
+        scaled(Quantity::InverseDynamicsDv, &partial, &products_of(|i, j| i * j)),
+        scaled(Quantity::CoriolisMatrix, &partial, &products_of(|i, j| i * j)),
+        scaled(Quantity::ForwardDynamicsDq, &partial, &products_of(|i, j| j / i)),
+        scaled(Quantity::ForwardDynamicsDv, &partial, &products_of(|i, j| j / i)),
+        scaled(Quantity::TorqueRegressor, &regressor, &of_regressor),
     ];
     for expected in &cases {
         check(&robot, expected);
