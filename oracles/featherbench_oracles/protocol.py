@@ -125,6 +125,10 @@ class Engine(Protocol):
         body_acceleration    (bodies, 6)    rad/s², m/s²    its time derivative (classical), without gravity
         body_jacobian        (6, nv)        -, m            J of one body, with J v = its `body_velocity`
         stored_entries       (1,)           -               how many numbers of M the engine stores
+        id_dq, id_dv         (nv, nv)       see `id`        derivatives of tau by q, on the tangent space in the axes of v, and by v
+        fd_dq, fd_dv         (nv, nv)       see `fd`        derivatives of a by q and by v, tau being fixed
+        coriolis_matrix      (nv, nv)       N s/m, N m s    C with C v = h - g and dM/dt = C + C'
+        torque_regressor     (nv, bodies, 10) see `id`      Y with tau - armature a = Y pi, pi: m, m c, and I about the body's origin
 
     For kinetic_energy, potential_energy and stored_entries a plain number will do.
 
@@ -210,8 +214,17 @@ SHAPES: dict[str, tuple[str | int, ...]] = {
     "body_jacobian": (6, "nv"),
     "stored_entries": (1,),
     "mass_matrix_sparse": ("stored",),
+    "id_dq": ("nv", "nv"),
+    "id_dv": ("nv", "nv"),
+    "fd_dq": ("nv", "nv"),
+    "fd_dv": ("nv", "nv"),
+    "coriolis_matrix": ("nv", "nv"),
+    "torque_regressor": ("nv", "bodies", 10),
 }
 
+
+# The derivatives and what is made of them: an engine may have some of them, and they take long on big robots.
+DERIVATIVES = ("id_dq", "id_dv", "fd_dq", "fd_dv", "coriolis_matrix", "torque_regressor")
 
 # The quantities of a robot read from a file: those that need no single bodies, and no masses that are fixed to the world.
 AS_READ = ("id", "bias", "mass_matrix", "mass_matrix_probe", "fd", "kinetic_energy")

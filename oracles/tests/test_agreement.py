@@ -12,7 +12,7 @@ import pytest
 
 from featherbench_oracles.algebra import Array
 from featherbench_oracles.messages import Blocks
-from featherbench_oracles.protocol import SHAPES
+from featherbench_oracles.protocol import DERIVATIVES, SHAPES
 from featherbench_oracles.robot import Description
 from featherbench_oracles.testing.draws import derivative
 from featherbench_oracles.testing.measures import DIFFERENCE, EXACT, INVERSE, ratio, residual, within
@@ -21,7 +21,8 @@ from .conftest import Oracles
 from .trials import TRIALS, Answered
 
 PAIRS = [(number, engine) for number, trial in enumerate(TRIALS) for engine in trial.engines]
-QUANTITIES = [quantity for quantity in SHAPES if quantity not in ("body_jacobian", "stored_entries", "mass_matrix_sparse")]
+OTHERS = ("body_jacobian", "stored_entries", "mass_matrix_sparse", *DERIVATIVES)
+QUANTITIES = [quantity for quantity in SHAPES if quantity not in OTHERS]
 # Quantities whose derivatives by time are compared with other quantities. The rates of a fast state are too large for finite differences.
 KEPT = slice(None, -1)
 

@@ -129,6 +129,12 @@ fn describe(quantity: Quantity) -> &'static str {
         Quantity::Factorization => "factors of M = LᵀDL",
         Quantity::Solve => "M⁻¹τ with given factors",
         Quantity::MassMatrixInverse => "M⁻¹",
+        Quantity::InverseDynamicsDq => "∂ID/∂q on the tangent space of the configurations",
+        Quantity::InverseDynamicsDv => "∂ID/∂v",
+        Quantity::ForwardDynamicsDq => "∂FD/∂q on the tangent space of the configurations",
+        Quantity::ForwardDynamicsDv => "∂FD/∂v",
+        Quantity::CoriolisMatrix => "Coriolis matrix C with Ṁ = C + Cᵀ",
+        Quantity::TorqueRegressor => "torque regressor Y, τ − armature·a = Y π",
     }
 }
 

@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
+from pydrake.autodiffutils import AutoDiffXd
 from pydrake.math import RigidTransform, RotationMatrix
 from pydrake.multibody import tree
 from pydrake.multibody.plant import MultibodyPlant
@@ -207,3 +208,24 @@ def drake_six_vectors() -> Claims:
     frame, world = body.body_frame(), plant.world_frame()
     jacobian = plant.CalcJacobianSpatialVelocity(context, tree.JacobianWrtVariable.kV, frame, np.zeros(3), world, world)
     yield claim(jacobian @ [*W, *V], [*W, *V], [*V, *W])
+
+
+def drake_derivative_by_q() -> Claims:
+    """AutoDiffXd derives by the numbers of q; along v they have the rates N v.
+
+    The moment R c x (-m g) turns about the axes of the parent.
+    """
+    plant, _, context = drake_robot(tree.QuaternionFloatingJoint)
+    plant.SetPositions(context, [*WXYZ, *P])
+    n = np.array([plant.MapVelocityToQDot(context, unit) for unit in np.eye(6)]).T
+    duals = plant.ToAutoDiffXd()
+    moving = duals.CreateDefaultContext()
+    q = np.append(WXYZ, P)
+    duals.SetPositions(moving, np.array([AutoDiffXd(value, row) for value, row in zip(q, n, strict=True)]))
+    forces = tree.MultibodyForces_[AutoDiffXd](duals)
+    duals.CalcForceElementsContribution(moving, forces)
+    tau = duals.CalcInverseDynamics(moving, np.array([AutoDiffXd(0.0)] * 6), forces)
+    found = np.array([entry.derivatives()[:3] for entry in tau[:3]])
+    lever, weight = R @ COM, MASS * np.asarray(GRAVITY)
+    due = np.array([np.cross(np.cross(unit, lever), -weight) for unit in np.eye(3)]).T
+    yield claim(found, due, due @ R, due.T)

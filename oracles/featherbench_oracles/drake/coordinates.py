@@ -16,6 +16,7 @@ from pydrake.math import RollPitchYaw
 
 from featherbench_oracles.algebra import Array, rotation
 from featherbench_oracles.change import CoordinateChange
+from featherbench_oracles.derivatives import Rates, of_turned_ball, of_turned_free
 from featherbench_oracles.robot import Description, Joint
 
 
@@ -44,3 +45,17 @@ def change_of_velocities(robot: Description, q: Array, v: Array) -> CoordinateCh
             blocks.append((joint.v, np.block([[zero, r], [r, zero]])))
             bias[joint.v] = np.append(np.zeros(3), r @ np.cross(angular, linear))
     return CoordinateChange(tuple(blocks), bias)
+
+
+SWAP = np.roll(np.eye(6), 3, axis=0)  # exchanges the halves of a free joint's velocity
+
+
+def rates_of_change(robot: Description, q: Array, v: Array) -> tuple[Rates, ...]:
+    """Differentiate T and b of the table: those of free and spherical joints depend on the rotation."""
+    rates = []
+    for joint in (body.joint for body in robot.bodies):
+        if joint.type == "spherical":
+            rates.append(of_turned_ball(joint.v, rotation(q[joint.q])))
+        if joint.type == "free":
+            rates.append(of_turned_free(joint.v, rotation(q[joint.q][3:]), v[joint.v], SWAP))
+    return tuple(rates)

@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import importlib.metadata
 from pathlib import Path
+from typing import Any
 
 import numpy as np
+from pydrake.autodiffutils import AutoDiffXd
 from pydrake.multibody import tree
 from pydrake.multibody.math import SpatialForce
 from pydrake.multibody.plant import MultibodyPlant
@@ -13,9 +15,10 @@ from pydrake.multibody.plant import MultibodyPlant
 from featherbench_oracles.algebra import Array, skew
 from featherbench_oracles.change import CoordinateChange
 from featherbench_oracles.clock import NOTHING, TimedCalls
+from featherbench_oracles.derivatives import Differentiated
 from featherbench_oracles.drake import reading
 from featherbench_oracles.drake.building import build
-from featherbench_oracles.drake.coordinates import change_of_velocities, to_engine_q
+from featherbench_oracles.drake.coordinates import change_of_velocities, rates_of_change, to_engine_q
 from featherbench_oracles.protocol import Quantities, Reading, State, mass_matrix_probe, readback_row
 from featherbench_oracles.robot import Description
 
@@ -43,6 +46,7 @@ class DrakeRobot:
             raise RuntimeError("Drake put the degrees of freedom in another order")
         self.context = plant.CreateDefaultContext()
         self.forces = tree.MultibodyForces(plant)
+        self.duals: tuple[Any, Any] | None = None
         self.drive = plant.get_applied_generalized_force_input_port().FixValue(self.context, np.zeros(plant.num_velocities()))
 
     def readback(self) -> list[Array]:
@@ -139,6 +143,74 @@ class DrakeRobot:
         mass = self.change(ask).to_neutral_mass(self.crba(self.positions(ask.q)))
         return mass_matrix_probe(mass.__matmul__, np.diag(mass), ask.probe)
 
+    # ---- derivatives, by Drake's dual numbers
+
+    def _differentiated(self, ask: State) -> tuple[Array, Array, Differentiated]:
+        """Set q and v. Find v_e, the matrix N with dq_e/dt = N v_e, and the way back of derivatives."""
+        way = Differentiated(self._update(ask), rates_of_change(self.robot, ask.q, ask.v))
+        n = np.array([self.plant.MapVelocityToQDot(self.context, unit) for unit in np.eye(self.plant.num_velocities())]).T
+        return way.change.to_engine_v(ask.v), n, way
+
+    def _plant_of_duals(self) -> tuple[Any, Any]:
+        """Convert the plant to AutoDiffXd, once."""
+        if self.duals is None:
+            plant = self.plant.ToAutoDiffXd()
+            self.duals = plant, plant.CreateDefaultContext()
+        return self.duals
+
+    def _set_duals(self, q: Array, n: Array, v: Array, seeds: int) -> tuple[Any, Any]:
+        """Set q_e with the derivatives N, and v_e with its own; tau_e may have the last of three times nv seeds."""
+        plant, context = self._plant_of_duals()
+        nv = len(v)
+        plant.SetPositions(context, with_gradient(q, np.hstack([n, np.zeros((len(q), seeds - nv))])))
+        plant.SetVelocities(context, with_gradient(v, np.eye(nv, seeds, nv)))
+        return plant, context
+
+    def _inverse_duals(self, ask: State) -> tuple[Differentiated, Array, Array, Array, Array]:
+        """Compute tau_e, and its derivatives by q_e along v_e, by v_e and by a_e."""
+        v, n, way = self._differentiated(ask)
+        nv = len(v)
+        plant, context = self._set_duals(self.positions(ask.q), n, v, 2 * nv)
+        forces = tree.MultibodyForces_[AutoDiffXd](plant)
+        plant.CalcForceElementsContribution(context, forces)
+        a = with_gradient(way.change.to_engine_a(ask.a), np.zeros((nv, 2 * nv)))
+        tau = plant.CalcInverseDynamics(context, a, forces)
+        gradient = gradient_of(tau, 2 * nv)
+        values = np.array([entry.value() for entry in tau])
+        return way, values, gradient[:, :nv], gradient[:, nv:], self.plant.CalcMassMatrix(self.context)
+
+    def inverse_dq(self, ask: State) -> Array:
+        """Answer `id_dq` by CalcInverseDynamics on AutoDiffXd."""
+        way, tau, by_q, by_v, mass = self._inverse_duals(ask)
+        return way.id_dq(ask, tau, by_q, by_v, mass)
+
+    def inverse_dv(self, ask: State) -> Array:
+        """Answer `id_dv` by CalcInverseDynamics on AutoDiffXd."""
+        way, _, _, by_v, mass = self._inverse_duals(ask)
+        return way.id_dv(by_v, mass)
+
+    def _aba_duals(self, ask: State) -> tuple[Differentiated, Array, Array, Array, Array]:
+        """Compute the neutral a, and the derivatives of a_e by q_e along v_e, by v_e and by tau_e."""
+        v, n, way = self._differentiated(ask)
+        nv = len(v)
+        plant, context = self._set_duals(self.positions(ask.q), n, v, 3 * nv)
+        tau = with_gradient(way.change.to_engine_tau(ask.tau), np.eye(nv, 3 * nv, 2 * nv))
+        plant.get_applied_generalized_force_input_port().FixValue(context, tau)
+        a = plant.get_generalized_acceleration_output_port().Eval(context)
+        gradient = gradient_of(a, 3 * nv)
+        neutral = way.change.to_neutral_a(np.array([entry.value() for entry in a]))
+        return way, neutral, gradient[:, :nv], gradient[:, nv : 2 * nv], gradient[:, 2 * nv :]
+
+    def aba_dq(self, ask: State) -> Array:
+        """Answer `fd_dq` by the acceleration port on AutoDiffXd."""
+        way, a, by_q, by_v, inverse = self._aba_duals(ask)
+        return way.fd_dq(ask, a, by_q, by_v, inverse)
+
+    def aba_dv(self, ask: State) -> Array:
+        """Answer `fd_dv` by the acceleration port on AutoDiffXd."""
+        way, _, _, by_v, _ = self._aba_duals(ask)
+        return way.fd_dv(by_v)
+
     # ---- energies, momentum, kinematics
 
     def potential_energy(self, ask: State) -> float:
@@ -176,6 +248,30 @@ class DrakeRobot:
         return [np.append(a.rotational(), a.translational()) for a in accelerations]
 
 
+def with_gradient(values: Array, gradient: Array) -> Any:
+    """Make numbers of AutoDiffXd.
+
+    Parameters
+    ----------
+    values : ndarray, shape (n,)
+        The numbers.
+    gradient : ndarray, shape (n, m)
+        The derivatives of each by m seeds, per unit of the seed.
+
+    Returns
+    -------
+    ndarray of AutoDiffXd, shape (n,)
+        The numbers with their derivatives.
+    """
+    return np.array([AutoDiffXd(value, row) for value, row in zip(values, gradient, strict=True)])
+
+
+def gradient_of(numbers: Any, seeds: int) -> Array:
+    """Read the derivatives of numbers of AutoDiffXd by each seed, shape (n, seeds). A number that depends on none has no row in Drake."""
+    rows = [number.derivatives() for number in numbers]
+    return np.array([row if len(row) else np.zeros(seeds) for row in rows])
+
+
 class Drake:
     """The engine Drake, for `session.serve`."""
 
@@ -204,6 +300,10 @@ class Drake:
         "body_velocity": {"body_velocities": DrakeRobot.velocity},
         "body_acceleration": {"spatial_accelerations": DrakeRobot.acceleration},
         "body_jacobian": {"jacobian_spatial_velocity": TimedCalls("q body", DrakeRobot.jacobian, CoordinateChange.to_neutral_jacobian)},
+        "id_dq": {"autodiff": DrakeRobot.inverse_dq},
+        "id_dv": {"autodiff": DrakeRobot.inverse_dv},
+        "fd_dq": {"autodiff": DrakeRobot.aba_dq},
+        "fd_dv": {"autodiff": DrakeRobot.aba_dv},
     }
 
     def prepare(self, description: Description) -> DrakeRobot:

@@ -6,7 +6,7 @@ import mujoco as mj
 import numpy as np
 from numpy.typing import ArrayLike
 
-from featherbench_oracles.algebra import Array
+from featherbench_oracles.algebra import Array, skew
 from featherbench_oracles.conventions import (
     ABOUT_ORIGIN,
     ALPHA,
@@ -244,3 +244,18 @@ def mujoco_inertia() -> Claims:
     held = axes @ np.diag(model.body_inertia[1]) @ axes.T
     xx, yy, zz, xy, xz, yz = *np.diag(MOMENTS), MOMENTS[0, 1], MOMENTS[0, 2], MOMENTS[1, 2]
     yield claim(held, MOMENTS, np.array([[xx, yy, zz], [yy, xy, xz], [zz, xz, yz]]), ABOUT_ORIGIN)
+
+
+def mujoco_derivative_by_q() -> Claims:
+    """Along qvel, as mj_integratePos moves, and transposed: the row is the dof that moves.
+
+    The moment is c x (-m u), with u gravity in body axes.
+    """
+    model, data = mj_robot((FREE, Z))
+    mj_set(model, data, [*P, *WXYZ], np.zeros(6))
+    mj_inverse(model, data, np.zeros(6))
+    by_q = np.zeros((6, 6))
+    mj.mjd_inverseFD(model, data, 1e-6, False, by_q, None, None, None, None, None, None)
+    due = -MASS * skew(COM) @ skew(R.T @ GRAVITY)
+    # Forward differences with the step 1e-6 have six digits.
+    yield claim(by_q[3:, 3:].round(3), due.T.round(3), due.round(3), (due @ R).T.round(3))

@@ -17,6 +17,7 @@ import numpy as np
 
 from featherbench_oracles.algebra import Array, rotation
 from featherbench_oracles.change import CoordinateChange
+from featherbench_oracles.derivatives import Rates, of_turned_free
 from featherbench_oracles.robot import Body, Description
 
 
@@ -46,6 +47,12 @@ def change_of_velocities(robot: Description, q: Array, v: Array) -> CoordinateCh
             blocks.append((linear, r))
             bias[linear] = r @ np.cross(v[joint.v][3:], v[linear])
     return CoordinateChange(tuple(blocks), bias)
+
+
+def rates_of_change(robot: Description, q: Array, v: Array) -> tuple[Rates, ...]:
+    """Differentiate T and b of the table: those of free joints depend on the rotation."""
+    free = [body.joint for body in robot.bodies if body.joint.type == "free"]
+    return tuple(of_turned_free(joint.v, joint.rotation @ rotation(q[joint.q][3:]), v[joint.v], np.eye(6)) for joint in free)
 
 
 def wxyz(matrix: Array) -> Array:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from functools import partial
 from pathlib import Path
 
 import mujoco as mj
@@ -9,9 +11,10 @@ import numpy as np
 
 from featherbench_oracles.algebra import Array
 from featherbench_oracles.change import CoordinateChange
+from featherbench_oracles.derivatives import Differentiated
 from featherbench_oracles.mujoco import reading
 from featherbench_oracles.mujoco.building import build, chains, motions
-from featherbench_oracles.mujoco.coordinates import change_of_velocities, from_wxyz, to_engine_q
+from featherbench_oracles.mujoco.coordinates import change_of_velocities, from_wxyz, rates_of_change, to_engine_q
 from featherbench_oracles.protocol import Quantities, Reading, State, Unsupported, mass_matrix_probe, readback_row
 from featherbench_oracles.robot import Description
 
@@ -145,6 +148,59 @@ class MujocoRobot:
         """Answer `stored_entries` by nM: one number for each dof and ancestor."""
         return self.model.nM
 
+    # ---- derivatives, by finite differences
+
+    def _differentiated(self, ask: State) -> Differentiated:
+        """Set q and v, and find the way back of derivatives."""
+        return Differentiated(self._update(ask), rates_of_change(self.robot, ask.q, ask.v))
+
+    def _inverse_differences(self, ask: State, eps: float) -> tuple[Differentiated, Array, Array, Array, Array]:
+        """Compute tau_e, and its derivatives by q_e, v_e and a_e by mjd_inverseFD, whose matrices are transposed."""
+        way = self._differentiated(ask)
+        tau = self._inverse(way.change.to_engine_a(ask.a))
+        by_q, by_v, by_a = np.zeros((3, self.model.nv, self.model.nv))
+        mj.mjd_inverseFD(self.model, self.data, eps, False, by_q, by_v, by_a, None, None, None, None)
+        return way, tau, by_q.T, by_v.T, by_a.T
+
+    def inverse_dq(self, ask: State, eps: float) -> Array:
+        """Answer `id_dq` by mjd_inverseFD, which takes forward differences of the step `eps`."""
+        way, tau, by_q, by_v, mass = self._inverse_differences(ask, eps)
+        return way.id_dq(ask, tau, by_q, by_v, mass)
+
+    def inverse_dv(self, ask: State, eps: float) -> Array:
+        """Answer `id_dv` by mjd_inverseFD, which takes forward differences of the step `eps`."""
+        way, _, _, by_v, mass = self._inverse_differences(ask, eps)
+        return way.id_dv(by_v, mass)
+
+    def _transition_differences(self, ask: State, eps: float, centred: bool) -> tuple[Differentiated, Array, Array, Array]:
+        """Compute the neutral a, and the derivatives of a_e by q_e and v_e by mjd_transitionFD.
+
+        Without damping, a step of one second ends with v_e + a_e. So the lower half of the transition matrix is [d_q a_e, 1 + d_v a_e].
+        """
+        way, nv = self._differentiated(ask), self.model.nv
+        self.data.qfrc_applied = way.change.to_engine_tau(ask.tau)
+        mj.mj_forward(self.model, self.data)
+        a = way.change.to_neutral_a(self.data.qacc.copy())
+        transition, timestep = np.zeros((2 * nv, 2 * nv)), self.model.opt.timestep
+        self.model.opt.timestep = 1.0
+        try:
+            mj.mjd_transitionFD(self.model, self.data, eps, centred, transition, None, None, None)
+        finally:
+            self.model.opt.timestep = timestep
+        return way, a, transition[nv:, :nv], transition[nv:, nv:] - np.eye(nv)
+
+    def forward_dq(self, ask: State, eps: float, centred: bool) -> Array:
+        """Answer `fd_dq` by mjd_transitionFD with the step `eps`. M^-1 is that of mj_solveM."""
+        way, a, by_q, by_v = self._transition_differences(ask, eps, centred)
+        inverse = np.empty((self.model.nv, self.model.nv))
+        mj.mj_solveM(self.model, self.data, inverse, np.eye(self.model.nv))
+        return way.fd_dq(ask, a, by_q, by_v, inverse)
+
+    def forward_dv(self, ask: State, eps: float, centred: bool) -> Array:
+        """Answer `fd_dv` by mjd_transitionFD with the step `eps`."""
+        way, _, _, by_v = self._transition_differences(ask, eps, centred)
+        return way.fd_dv(by_v)
+
     # ---- energies, momentum, kinematics
 
     def kinetic_energy(self, ask: State) -> float:
@@ -206,6 +262,20 @@ class MujocoRobot:
         return change.to_neutral_jacobian(np.vstack([angular, linear]))
 
 
+STEPS = ("1e-4", "1e-5", "1e-6", "1e-7", "1e-8")  # of finite differences, in the units of q and v
+
+
+def _with_steps(answer: Callable[..., Array], kind: str, **settings: bool) -> dict[str, Callable[..., Array]]:
+    """Make one method of each step, 1e-6 first, which MuJoCo's documentation names."""
+    ordered = sorted(STEPS, key=lambda eps: eps != "1e-6")
+    return {f"{kind}_{eps}": partial(answer, eps=float(eps), **settings) for eps in ordered}
+
+
+def _forward_and_centred(answer: Callable[..., Array]) -> dict[str, Callable[..., Array]]:
+    """Make the methods of centred and of forward differences."""
+    return _with_steps(answer, "difference_centred", centred=True) | _with_steps(answer, "difference", centred=False)
+
+
 class Mujoco:
     """The engine MuJoCo, for `session.serve`."""
 
@@ -228,6 +298,10 @@ class Mujoco:
         "body_acceleration": {"object_acceleration": MujocoRobot.acceleration},
         "body_jacobian": {"jac_body": MujocoRobot.jacobian},
         "stored_entries": {"nM": MujocoRobot.stored},
+        "id_dq": _with_steps(MujocoRobot.inverse_dq, "difference"),
+        "id_dv": _with_steps(MujocoRobot.inverse_dv, "difference"),
+        "fd_dq": _forward_and_centred(MujocoRobot.forward_dq),
+        "fd_dv": _forward_and_centred(MujocoRobot.forward_dv),
     }
 
     def prepare(self, description: Description) -> MujocoRobot:

@@ -8,6 +8,7 @@ import numpy as np
 import pinocchio as pin
 from numpy.typing import ArrayLike
 
+from featherbench_oracles.algebra import skew
 from featherbench_oracles.conventions import (
     ABOUT_ORIGIN,
     ALPHA,
@@ -200,3 +201,20 @@ def pinocchio_inertia() -> Claims:
     """Inertia(m, c, I) takes I about the centre of mass."""
     model, data = pin_robot(pin.JointModelRX())
     yield claim(pin.crba(model, data, np.zeros(1)), [[ABOUT_ORIGIN[0, 0]]], [[MOMENTS[0, 0]]])
+
+
+def pinocchio_derivative_by_q() -> Claims:
+    """Along v, as pin.integrate moves: a turn about body axis k takes gravity in body axes u to u - e_k x u, and the force -m u with it."""
+    model, data = pin_robot(pin.JointModelFreeFlyer())
+    zero = np.zeros(6)
+    by_q = pin.computeRNEADerivatives(model, data, np.append(P, XYZW), zero, zero)[0]
+    body_axes, world_axes = -MASS * skew(R.T @ GRAVITY), -MASS * R.T @ skew(GRAVITY)
+    yield claim(by_q[:3, 3:], body_axes, world_axes, body_axes.T)
+
+
+def pinocchio_regressor() -> Claims:
+    """Inertias stand as xx, xy, yy, xz, yz, zz, behind mass and first moments: the x component of I alpha."""
+    model, data = pin_robot(pin.JointModelFreeFlyer())
+    regressor = pin.computeJointTorqueRegressor(model, data, np.append(P, XYZW), np.zeros(6), np.append(np.zeros(3), ALPHA))
+    x, y, z = ALPHA
+    yield claim(regressor[3, 4:], [x, y, 0, z, 0, 0], [x, y, z, 0, 0, 0])

@@ -14,6 +14,7 @@ import pinocchio as pin
 
 from featherbench_oracles.algebra import Array
 from featherbench_oracles.change import CoordinateChange
+from featherbench_oracles.derivatives import Rates
 from featherbench_oracles.robot import Description
 
 
@@ -38,6 +39,40 @@ def change_of_velocities(robot: Description, q: Array, v: Array) -> CoordinateCh
             blocks.append((joint.v, t))
             bias[joint.v] = rate * vy, -rate * vx, 0
     return CoordinateChange(tuple(blocks), bias)
+
+
+def rates_of_change(robot: Description, q: Array, v: Array) -> tuple[Rates, ...]:
+    """Differentiate T and b of the table: those of planar joints depend on θ alone."""
+    rates = []
+    for joint in (body.joint for body in robot.bodies):
+        if joint.type == "planar":
+            theta, (x, y, rate) = q[joint.q][2], v[joint.v]
+            c, s = np.cos(theta), np.sin(theta)
+            t_dq, b_dq = np.zeros((3, 3, 3)), np.zeros((3, 3))
+            t_dq[2] = [[-s, c, 0], [-c, -s, 0], [0, 0, 0]]
+            b_dq[:2, 2] = rate * (-c * x - s * y), rate * (s * x - c * y)
+            b_dv = np.array([[-rate * s, rate * c, c * y - s * x], [-rate * c, -rate * s, -c * x - s * y], [0, 0, 0]])
+            rates.append(Rates(joint.v, t_dq, b_dq, b_dv))
+    return tuple(rates)
+
+
+def to_our_parameters(regressor: Array) -> Array:
+    """Reorder the columns of a regressor, ten for each body.
+
+    Parameters
+    ----------
+    regressor : ndarray, shape (nv, 10 bodies)
+        By Pinocchio's parameters: mass, first moments, then the inertia about the origin: xx, xy, yy, xz, yz, zz. Where nv is 1, its
+        shape is (10 bodies,).
+
+    Returns
+    -------
+    ndarray, shape (nv, bodies, 10)
+        By mass, first moments, and xx, xy, xz, yy, yz, zz.
+    """
+    rows = np.atleast_2d(regressor)
+    theirs = rows.reshape(len(rows), -1, 10)
+    return theirs[:, :, [0, 1, 2, 3, 4, 5, 7, 6, 8, 9]]
 
 
 def to_angular_first(motion: pin.Motion | pin.Force) -> Array:

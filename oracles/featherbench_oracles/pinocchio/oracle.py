@@ -11,9 +11,16 @@ import pinocchio as pin
 
 from featherbench_oracles.algebra import Array
 from featherbench_oracles.change import CoordinateChange
+from featherbench_oracles.derivatives import Differentiated
 from featherbench_oracles.pinocchio import reading
 from featherbench_oracles.pinocchio.building import build
-from featherbench_oracles.pinocchio.coordinates import change_of_velocities, to_angular_first, to_engine_q
+from featherbench_oracles.pinocchio.coordinates import (
+    change_of_velocities,
+    rates_of_change,
+    to_angular_first,
+    to_engine_q,
+    to_our_parameters,
+)
 from featherbench_oracles.protocol import Quantities, Reading, State, mass_matrix_probe, readback_row
 from featherbench_oracles.robot import Description
 
@@ -132,6 +139,59 @@ class PinocchioRobot:
         upper = np.triu(pin.computeMinverse(self.model, self.data, q))
         return change.to_neutral_a(upper @ rest + np.triu(upper, 1).T @ rest)
 
+    # ---- derivatives
+
+    def _differentiated(self, ask: State) -> tuple[Array, Array, Differentiated]:
+        """Find q_e, v_e and the way back of derivatives."""
+        q, v, change = self._state(ask)
+        return q, v, Differentiated(change, rates_of_change(self.robot, ask.q, ask.v))
+
+    def _rnea_derivatives(self, ask: State) -> tuple[Differentiated, Array, Array, Array]:
+        """Differentiate tau_e by q_e, v_e and a_e. The Python function fills both triangles of the last."""
+        q, v, way = self._differentiated(ask)
+        by_q, by_v, mass = pin.computeRNEADerivatives(self.model, self.data, q, v, way.change.to_engine_a(ask.a))
+        upper = np.triu(mass)
+        return way, by_q.copy(), by_v.copy(), upper + np.triu(upper, 1).T
+
+    def rnea_dq(self, ask: State) -> Array:
+        """Answer `id_dq` by computeRNEADerivatives."""
+        way, by_q, by_v, mass = self._rnea_derivatives(ask)
+        return way.id_dq(ask, self.data.tau.copy(), by_q, by_v, mass)
+
+    def rnea_dv(self, ask: State) -> Array:
+        """Answer `id_dv` by computeRNEADerivatives."""
+        way, _, by_v, mass = self._rnea_derivatives(ask)
+        return way.id_dv(by_v, mass)
+
+    def _aba_derivatives(self, ask: State) -> tuple[Differentiated, Array, Array, Array]:
+        """Differentiate a_e by q_e, v_e and tau_e."""
+        q, v, way = self._differentiated(ask)
+        by_q, by_v, inverse = pin.computeABADerivatives(self.model, self.data, q, v, way.change.to_engine_tau(ask.tau))
+        upper = np.triu(inverse)
+        return way, by_q.copy(), by_v.copy(), upper + np.triu(upper, 1).T
+
+    def aba_dq(self, ask: State) -> Array:
+        """Answer `fd_dq` by computeABADerivatives."""
+        way, by_q, by_v, inverse = self._aba_derivatives(ask)
+        return way.fd_dq(ask, way.change.to_neutral_a(self.data.ddq.copy()), by_q, by_v, inverse)
+
+    def aba_dv(self, ask: State) -> Array:
+        """Answer `fd_dv` by computeABADerivatives."""
+        way, _, by_v, _ = self._aba_derivatives(ask)
+        return way.fd_dv(by_v)
+
+    def coriolis(self, ask: State) -> Array:
+        """Answer `coriolis_matrix` by computeCoriolisMatrix."""
+        q, v, way = self._differentiated(ask)
+        matrix = pin.computeCoriolisMatrix(self.model, self.data, q, v).copy()
+        return way.coriolis(ask.v, matrix, self._mass_e(q, pin.Convention.LOCAL))
+
+    def regressor(self, ask: State) -> Array:
+        """Answer `torque_regressor` by computeJointTorqueRegressor."""
+        q, v, change = self._state(ask)
+        regressor = pin.computeJointTorqueRegressor(self.model, self.data, q, v, change.to_engine_a(ask.a))
+        return to_our_parameters(change.to_neutral_tau(regressor))
+
     # ---- energies, momentum, kinematics
 
     def kinetic_energy(self, ask: State) -> float:
@@ -213,6 +273,12 @@ class Pinocchio:
         "body_velocity": {"forward_kinematics": PinocchioRobot.velocity},
         "body_acceleration": {"forward_kinematics": PinocchioRobot.acceleration},
         "body_jacobian": {"joint_jacobian": PinocchioRobot.jacobian},
+        "id_dq": {"rnea_derivatives": PinocchioRobot.rnea_dq},
+        "id_dv": {"rnea_derivatives": PinocchioRobot.rnea_dv},
+        "fd_dq": {"aba_derivatives": PinocchioRobot.aba_dq},
+        "fd_dv": {"aba_derivatives": PinocchioRobot.aba_dv},
+        "coriolis_matrix": {"coriolis_matrix": PinocchioRobot.coriolis},
+        "torque_regressor": {"joint_torque_regressor": PinocchioRobot.regressor},
     }
 
     def prepare(self, description: Description) -> PinocchioRobot:

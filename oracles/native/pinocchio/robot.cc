@@ -15,10 +15,6 @@
 
 namespace {
 
-struct Unsupported : std::runtime_error {
-  using std::runtime_error::runtime_error;
-};
-
 // Runs an action; an exception becomes a status and its reason.
 template <typename Action>
 int guarded(char *reason, Action action) {
@@ -161,7 +157,7 @@ void convert(const fb_states &states, fb_handle &handle) {
 const std::vector<Method> &methods() {
   static const std::vector<Method> all = [] {
     std::vector<Method> all;
-    for (const auto *group : {&inverse_dynamics, &forward_dynamics, &mass_matrices, &kinematics})
+    for (const auto *group : {&inverse_dynamics, &forward_dynamics, &mass_matrices, &kinematics, &derivatives})
       all.insert(all.end(), group->begin(), group->end());
     return all;
   }();

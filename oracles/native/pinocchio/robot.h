@@ -10,6 +10,7 @@
 #include <pinocchio/multibody.hpp>
 
 #include <memory>
+#include <stdexcept>
 #include <vector>
 
 using Vector = Eigen::Map<const Eigen::VectorXd>;
@@ -42,6 +43,11 @@ struct fb_handle {
   fb_change change() const { return {turns_per_state, turns.data() + last * turns_per_state}; }
 };
 
+// What the engine does not have; the text says what.
+struct Unsupported : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
 // How a method is run and read. `run` evaluates one state; `read` writes the value of the last one in neutral coordinates.
 struct Method {
   const char *quantity, *name;
@@ -51,7 +57,7 @@ struct Method {
 };
 
 // The groups of algorithms, one file each.
-extern const std::vector<Method> inverse_dynamics, forward_dynamics, mass_matrices, kinematics;
+extern const std::vector<Method> inverse_dynamics, forward_dynamics, mass_matrices, kinematics, derivatives;
 
 // Writes a vector, a force or an acceleration, as it is.
 inline void write(const Eigen::VectorXd &x, double *value) { Eigen::Map<Eigen::VectorXd>(value, x.size()) = x; }
