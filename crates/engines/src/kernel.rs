@@ -3,7 +3,7 @@
 //! A kernel owns its workspace. Evaluating leaves the answer of one state where the algorithm puts it, as in any engine. Reading it into a
 //! slice is a separate step. Studies, the timing of runs and `cargo bench` all use this registry: so what is timed is what is checked.
 
-use crate::batch;
+use crate::{batch, derivatives};
 use featherbench_bench::{BATCH, DENSE_LIMIT, NoAnswer, Quantity, Robot, layout};
 use featherbench_dynamics::{
     Aba, Batch, Bias, Crba, Energy, Ltdl, PackedAba, PackedCenterOfMass, PackedCrba, PackedJacobian, PackedKinematics, PackedModel,
@@ -61,7 +61,7 @@ where
 }
 
 /// A kernel whose answer stays in its workspace.
-fn kept<'a, W: Send + 'a>(
+pub(crate) fn kept<'a, W: Send + 'a>(
     work: W,
     evaluate: impl FnMut(&mut W, usize) -> Result<(), Failure> + Send + 'a,
     read: impl Fn(&W, &mut [f64]) + Send + 'a,
@@ -70,7 +70,7 @@ fn kept<'a, W: Send + 'a>(
 }
 
 /// A kernel that writes its answer, of this number of values, into a slice itself.
-fn written<'a>(size: usize, mut evaluate: impl FnMut(usize, &mut [f64]) -> Result<(), Failure> + Send + 'a) -> Kernel<'a> {
+pub(crate) fn written<'a>(size: usize, mut evaluate: impl FnMut(usize, &mut [f64]) -> Result<(), Failure> + Send + 'a) -> Kernel<'a> {
     kept(vec![0.0; size], move |out, k| evaluate(k, out), |answer, out| out.copy_from_slice(answer))
 }
 
@@ -88,6 +88,12 @@ pub(crate) fn methods(quantity: Quantity) -> &'static [&'static str] {
         Quantity::StoredEntries => &["topology"],
         Quantity::Factorization => &["ltdl"],
         Quantity::Solve | Quantity::MassMatrixInverse => &["ltdl"],
+        Quantity::InverseDynamicsDq
+        | Quantity::InverseDynamicsDv
+        | Quantity::ForwardDynamicsDq
+        | Quantity::ForwardDynamicsDv
+        | Quantity::CoriolisMatrix => &[derivatives::ANALYTIC, "dual"],
+        Quantity::TorqueRegressor => &[derivatives::ANALYTIC, "columns"],
     }
 }
 
@@ -123,6 +129,20 @@ pub(crate) fn kernel<'a>(robot: &'a Robot, quantity: Quantity, method: &str, sta
         Quantity::BodyPlacement | Quantity::BodyVelocity | Quantity::BodyAcceleration => kinematics(model, states, quantity),
         Quantity::BodyJacobian => jacobian(model, states, model.described[robot.deepest_body()]),
         Quantity::Readback => constant(robot.readback()),
+        Quantity::InverseDynamicsDq | Quantity::InverseDynamicsDv if method == derivatives::ANALYTIC => {
+            derivatives::inverse_dynamics(robot, states, quantity)
+        }
+        Quantity::ForwardDynamicsDq | Quantity::ForwardDynamicsDv if method == derivatives::ANALYTIC => {
+            derivatives::forward_dynamics(robot, states, quantity)
+        }
+        Quantity::CoriolisMatrix if method == derivatives::ANALYTIC => derivatives::coriolis(robot, states),
+        Quantity::TorqueRegressor if method == derivatives::ANALYTIC => derivatives::regressor(robot, states),
+        Quantity::InverseDynamicsDq
+        | Quantity::InverseDynamicsDv
+        | Quantity::ForwardDynamicsDq
+        | Quantity::ForwardDynamicsDv
+        | Quantity::CoriolisMatrix => derivatives::by_duals(robot, states, quantity),
+        Quantity::TorqueRegressor => derivatives::columns(robot, states),
         Quantity::StoredEntries => constant(vec![model.topology.stored() as f64]),
     })
 }
@@ -151,6 +171,18 @@ pub fn timed(robot: &Robot) -> Vec<(Quantity, &'static str)> {
         (Quantity::Momentum, "kinematics"),
         (Quantity::BodyAcceleration, "kinematics"),
         (Quantity::BodyJacobian, "kinematics"),
+        (Quantity::InverseDynamicsDq, derivatives::ANALYTIC),
+        (Quantity::InverseDynamicsDq, "dual"),
+        (Quantity::InverseDynamicsDv, derivatives::ANALYTIC),
+        (Quantity::InverseDynamicsDv, "dual"),
+        (Quantity::ForwardDynamicsDq, derivatives::ANALYTIC),
+        (Quantity::ForwardDynamicsDq, "dual"),
+        (Quantity::ForwardDynamicsDv, derivatives::ANALYTIC),
+        (Quantity::ForwardDynamicsDv, "dual"),
+        (Quantity::CoriolisMatrix, derivatives::ANALYTIC),
+        (Quantity::CoriolisMatrix, "dual"),
+        (Quantity::TorqueRegressor, derivatives::ANALYTIC),
+        (Quantity::TorqueRegressor, "columns"),
     ];
     // A body Jacobian has 6·nv numbers, most of them zero on big robots. Only its nonzero columns would be worth timing.
     whole.into_iter().filter(|(quantity, _)| *quantity != Quantity::BodyJacobian || robot.states.nv <= DENSE_LIMIT).collect()

@@ -13,6 +13,7 @@ pub mod alone;
 mod batch;
 mod coding;
 pub mod conformance;
+mod derivatives;
 mod kernel;
 pub mod native;
 mod oracle;

@@ -127,7 +127,7 @@ fn readback(exchange: &mut Exchange, scene: &Scene, found: &[f64]) {
     const FIELDS: [(&str, usize, usize); 5] =
         [("mass", 0, 1), ("com", 1, 4), ("inertia", 4, 10), ("the placement's rotation", 10, 19), ("the placement's translation", 19, 22)];
     let given = scene.robot.readback();
-    if scene.error(Quantity::Readback, &given, found) <= Scene::tolerance(Quantity::Readback) {
+    if scene.error(Quantity::Readback, &given, found) <= Scene::tolerance(Quantity::Readback, "") {
         return exchange.note(Standing::Right, "prepare reads the robot back", "", &[]);
     }
     let rows = given.chunks_exact(22).zip(found.chunks_exact(22)).zip(&scene.robot.description.bodies);
@@ -151,7 +151,7 @@ impl Answers {
         for ((quantity, method), given) in &self.given {
             let Some(quantity) = Quantity::parse(quantity) else { continue };
             let compared: Vec<Compared> =
-                given.iter().filter_map(|(index, value)| Compared::new(&scenes[*index], quantity, value)).collect();
+                given.iter().filter_map(|(index, value)| Compared::new(&scenes[*index], quantity, method, value)).collect();
             let wrong: Vec<&Compared> = compared.iter().filter(|answer| !answer.right()).collect();
             let named = format!("{} by {method}{route}", quantity.name());
             let worst = compared.iter().map(|answer| answer.error).fold(0.0, featherbench_bench::measure::worst);
@@ -166,7 +166,7 @@ impl Answers {
                 compared.len(),
                 first.scene.shows,
                 first.error,
-                Scene::tolerance(quantity)
+                Scene::tolerance(quantity, method)
             );
             let advice = advice(&compared, quantity);
             let lines: Vec<&str> = advice.iter().map(String::as_str).collect();
@@ -181,16 +181,17 @@ struct Compared<'a> {
     value: &'a [f64],
     error: f64,
     quantity: Quantity,
+    tolerance: f64,
 }
 
 impl<'a> Compared<'a> {
-    fn new(scene: &'a Scene, quantity: Quantity, value: &'a [f64]) -> Option<Self> {
+    fn new(scene: &'a Scene, quantity: Quantity, method: &str, value: &'a [f64]) -> Option<Self> {
         let error = scene.error(quantity, &scene.featherbench(quantity)?, value);
-        Some(Self { scene, value, error, quantity })
+        Some(Self { scene, value, error, quantity, tolerance: Scene::tolerance(quantity, method) })
     }
 
     fn right(&self) -> bool {
-        self.error <= Scene::tolerance(self.quantity)
+        self.error <= self.tolerance
     }
 
     /// Whether an oracle with this mistake, and right otherwise, answers with other numbers.
@@ -202,7 +203,7 @@ impl<'a> Compared<'a> {
     /// Whether the answer is that of an oracle with these mistakes.
     fn explained(&self, hypotheses: &[&Hypothesis]) -> bool {
         let supposed = self.scene.supposed(hypotheses, self.quantity);
-        supposed.is_some_and(|supposed| self.scene.error(self.quantity, &supposed, self.value) <= Scene::tolerance(self.quantity))
+        supposed.is_some_and(|supposed| self.scene.error(self.quantity, &supposed, self.value) <= self.tolerance)
     }
 }
 
@@ -210,6 +211,13 @@ impl<'a> Compared<'a> {
 fn advice(compared: &[Compared], quantity: Quantity) -> Vec<String> {
     if compared.iter().any(|answer| answer.value.iter().any(|x| !x.is_finite())) {
         return vec!["some of its numbers are none (NaN or infinite) at states where featherbench's are finite".into()];
+    }
+    if Quantity::DERIVATIVES.contains(&quantity) {
+        return vec![
+            "derivatives by q are along neutral velocities in body axes, with the numbers in v, a and tau fixed; T and b of a change of \
+             coordinates have derivatives too. Compare with differences of the oracle's own id or fd"
+                .into(),
+        ];
     }
     let told = |hypotheses: &[&Hypothesis]| hypotheses.iter().map(|m| format!("{}: {}", m.seems, m.advice)).collect::<Vec<_>>();
     let all = |hypotheses: &[&Hypothesis]| compared.iter().all(|answer| answer.explained(hypotheses));

@@ -13,6 +13,10 @@ pub(super) const RIGHT: f64 = 1e-11;
 /// The same for forward dynamics, where an explicit inverse loses the condition number of M, here up to a thousand.
 pub(super) const RIGHT_FORWARD: f64 = 1e-9;
 
+/// The same for derivatives by finite differences, whose digits belong to the study of derivatives: steps of 1e-4 to 1e-8 leave 1e-2 at fast
+/// states, and a mistaken sign, order or frame changes the largest entries by their own size.
+pub(super) const RIGHT_DIFFERENCES: f64 = 0.1;
+
 /// A robot with featherbench's answers to every question.
 pub(super) struct Scene {
     pub(super) shows: &'static str,
@@ -46,9 +50,13 @@ impl Scene {
         Some(energies.iter().map(off).fold(0.0, worst))
     }
 
-    /// The error up to which an answer is right.
-    pub(super) fn tolerance(quantity: Quantity) -> f64 {
-        if quantity == Quantity::ForwardDynamics { RIGHT_FORWARD } else { RIGHT }
+    /// The error up to which an answer by a method is right.
+    pub(super) fn tolerance(quantity: Quantity, method: &str) -> f64 {
+        match quantity {
+            _ if Quantity::DERIVATIVES.contains(&quantity) && method.starts_with("difference") => RIGHT_DIFFERENCES,
+            Quantity::ForwardDynamics | Quantity::ForwardDynamicsDq | Quantity::ForwardDynamicsDv => RIGHT_FORWARD,
+            _ => RIGHT,
+        }
     }
 
     /// featherbench's answer at every state.

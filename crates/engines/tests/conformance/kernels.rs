@@ -12,12 +12,14 @@ use serde_json::{Value, json};
 /// The changes of requests before the right oracle gets them, and of its answers before they are sent.
 #[derive(Clone, Copy)]
 pub struct Plant {
+    /// Whether it offers the derivatives too, by this method.
+    pub derivatives: Option<&'static str>,
     pub request: fn(&mut Message, &Kernels),
     pub answer: fn(&mut Message, &Message, &Kernels),
 }
 
 /// No changes.
-pub const HONEST: Plant = Plant { request: |_, _| (), answer: |_, _, _| () };
+pub const HONEST: Plant = Plant { derivatives: None, request: |_, _| (), answer: |_, _, _| () };
 
 /// Our own kernels as an oracle.
 pub struct Kernels {
@@ -63,12 +65,18 @@ impl Kernels {
         Self { plant, robot: None, states: None, as_read: false, evaluated: 0 }
     }
 
+    fn derivatives(&self) -> impl Iterator<Item = (Quantity, &'static str)> + use<> {
+        let method = self.plant.derivatives;
+        Quantity::DERIVATIVES.into_iter().filter_map(move |quantity| Some((quantity, method?)))
+    }
+
     fn answer(&mut self, request: &Message) -> Result<Message, NoAnswer> {
         let number =
             |key: &str| request.header.get(key).and_then(Value::as_u64).map(|n| n as usize).ok_or_else(|| failed("a number is missing"));
         match request.text("op") {
             "hello" => {
-                let methods: serde_json::Map<String, Value> = OFFERED.iter().map(|q| (q.name().into(), json!(["kernel"]))).collect();
+                let mut methods: serde_json::Map<String, Value> = OFFERED.iter().map(|q| (q.name().into(), json!(["kernel"]))).collect();
+                methods.extend(self.derivatives().map(|(quantity, method)| (quantity.name().into(), json!([method]))));
                 Ok(Message::new(json!({"protocol": 1, "engine": "kernels", "version": "1", "build": {}, "methods": methods}), Vec::new()))
             }
             "prepare" => {
@@ -116,8 +124,9 @@ impl Kernels {
                 Ok(Message::default())
             }
             "evaluate" => {
-                let quantity = Quantity::parse(request.text("quantity")).filter(|quantity| OFFERED.contains(quantity));
-                let quantity = quantity.filter(|_| request.text("method") == "kernel");
+                let mut offered = OFFERED.into_iter().map(|quantity| (quantity, "kernel")).chain(self.derivatives());
+                let asked = (Quantity::parse(request.text("quantity")), request.text("method"));
+                let quantity = offered.find(|(quantity, method)| asked == (Some(*quantity), method)).map(|(quantity, _)| quantity);
                 let quantity = quantity.ok_or_else(|| NoAnswer::NotOffered("there is no such kernel".into()))?;
                 if self.as_read && !AS_READ.contains(&quantity) {
                     return Err(NoAnswer::NotOffered("a robot as read has no such answer".into()));
@@ -134,7 +143,8 @@ impl Kernels {
                 self.evaluated += 1;
                 let (nv, bodies) = (robot.states.nv, robot.description.bodies.len());
                 let shape = match quantity {
-                    Quantity::MassMatrix => vec![count, nv, nv],
+                    Quantity::TorqueRegressor => vec![count, nv, bodies, 10],
+                    _ if quantity == Quantity::MassMatrix || Quantity::DERIVATIVES.contains(&quantity) => vec![count, nv, nv],
                     Quantity::BodyJacobian => vec![count, 6, nv],
                     Quantity::BodyPlacement => vec![count, bodies, 12],
                     Quantity::BodyVelocity | Quantity::BodyAcceleration => vec![count, bodies, 6],

@@ -5,7 +5,7 @@ mod import;
 mod kernels;
 mod steps;
 
-use featherbench_bench::Robot;
+use featherbench_bench::{Quantity, Robot};
 use featherbench_engines::conformance::{Conformance, Connection, Standing, check};
 use featherbench_model::JointType;
 use featherbench_protocol::Message;
@@ -49,6 +49,28 @@ fn an_honest_oracle_conforms() {
     assert_eq!(as_read, 5, "and every quantity that is answered of robots as read");
     let lacking: Vec<_> = conformance.of(Standing::Lacks).map(|finding| finding.what.as_str()).collect();
     assert_eq!(lacking, ["the ids of requests", "quantities", "it reads an MJCF"]);
+}
+
+/// Derivatives are compared where they are offered; those by finite differences need not have all digits.
+#[test]
+fn derivatives_are_compared() {
+    let honest = test(Plant { derivatives: Some("kernel"), ..HONEST });
+    assert!(honest.conforms(), "{:#?}", honest.of(Standing::Wrong).collect::<Vec<_>>());
+    let values = honest.of(Standing::Right).filter(|finding| finding.found.contains("25 robots")).count();
+    assert_eq!(values, OFFERED.len() + Quantity::DERIVATIVES.len());
+
+    fn grow(answer: &mut Message, request: &Message, by: f64) {
+        if request.text("quantity") == "fd_dq" {
+            answer.blocks.iter_mut().flat_map(|block| &mut block.data).for_each(|x| *x *= by);
+        }
+    }
+    let rounded = |answer: &mut Message, request: &Message, _: &Kernels| grow(answer, request, 1.0 + 1e-6);
+    let turned = |answer: &mut Message, request: &Message, _: &Kernels| grow(answer, request, -1.0);
+    let of = |method, answer| wrong(Plant { derivatives: Some(method), answer, ..HONEST });
+    assert_eq!(of("difference_1e-6", rounded), [""; 0]);
+    for found in [of("kernel", rounded), of("difference_1e-6", turned)] {
+        assert!(found.len() == 1 && found[0].starts_with("fd_dq by ") && found[0].contains("along neutral velocities"), "{found:#?}");
+    }
 }
 
 /// Changes a block of the request `states`, state after state; the change may use the robot.
@@ -136,7 +158,7 @@ fn a_free_velocity_in_another_order() {
     };
     let moving = ["body_acceleration", "body_jacobian", "body_velocity", "kinetic_energy", "mass_matrix", "momentum"];
     let all: Vec<&str> = DYNAMICS.iter().chain(&moving).copied().collect();
-    named(Plant { request: swap, answer }, &all, "[angular; linear]");
+    named(Plant { request: swap, answer, ..HONEST }, &all, "[angular; linear]");
 }
 
 /// Only the linear velocity is in world axes: v = [Rᵀ ṗ; ω], and the forces come back rotated.
@@ -198,7 +220,7 @@ fn what_is_left_out_of_the_description() {
             }
         });
     };
-    let found = wrong(Plant { request: transposed, answer: |answer, request, _| given_back(answer, request) });
+    let found = wrong(Plant { request: transposed, answer: |answer, request, _| given_back(answer, request), ..HONEST });
     assert!(found.iter().any(|line| line.starts_with("id by kernel") && line.contains("placements are transposed")), "{found:#?}");
     let found = wrong(Plant { request: transposed, ..HONEST });
     assert!(found.iter().any(|line| line.contains("the placement's rotation of body") && line.contains("read back")), "{found:#?}");
