@@ -21,6 +21,7 @@ SECTIONS = [
     "import",
     "accuracy",
     "conditioning",
+    "derivatives",
     "steps",
     "scaling",
     "time",
@@ -32,7 +33,18 @@ SECTIONS = [
     "method",
     "unpassed",
 ]
-ALWAYS = set(SECTIONS) - {"import", "joints", "accuracy", "speed", "tradeoff", "conditioning", "steps", "scaling", "known"}
+ALWAYS = set(SECTIONS) - {
+    "import",
+    "joints",
+    "accuracy",
+    "speed",
+    "tradeoff",
+    "conditioning",
+    "derivatives",
+    "steps",
+    "scaling",
+    "known",
+}
 
 
 def checks(page: Browser, address: str, shots: pathlib.Path | None) -> Checks:

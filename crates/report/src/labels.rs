@@ -18,7 +18,7 @@ const fn label(name: &'static str, title: &'static str, measure: &'static str) -
 
 /// Quantities in the order of the page. Others follow in alphabetical order under their own names. A quantity without a measure is only
 /// counted or timed.
-pub const QUANTITIES: [Label; 20] = [
+pub const QUANTITIES: [Label; 26] = [
     label("mass_matrix", "mass matrix M", "max |ΔMᵢⱼ| / √(Mᵢᵢ·Mⱼⱼ): an entry is measured against the inertias of its own two axes"),
     label(
         "mass_matrix_probe",
@@ -79,6 +79,20 @@ pub const QUANTITIES: [Label; 20] = [
     label("solve", "solve", ""),
     label("mass_matrix_inverse", "M⁻¹", ""),
     label("stored_entries", "stored entries", ""),
+    label(
+        "id_dq",
+        "∂ID/∂q",
+        "the largest entry of D^-½ Δ D^-½ over that of the true derivative, D = diag M: entries without the units of their row and column",
+    ),
+    label("id_dv", "∂ID/∂v", "as ∂ID/∂q; where the true derivative is zero, over the rate of the state"),
+    label("fd_dq", "∂FD/∂q", "the largest entry of D^½ Δ D^-½ over that of the true derivative, D = diag M"),
+    label("fd_dv", "∂FD/∂v", "as ∂FD/∂q; where the true derivative is zero, over the rate of the state"),
+    label("coriolis_matrix", "Coriolis matrix", "as ∂ID/∂v"),
+    label(
+        "torque_regressor",
+        "torque regressor",
+        "each entry over √Mᵢᵢ of its row, and then over the largest of the same unit: those of all masses, first moments or inertias",
+    ),
 ];
 
 /// The text of a quantity; a row without one is about the whole robot.

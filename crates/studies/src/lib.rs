@@ -3,6 +3,7 @@
 //! - [`Agreement`]: do the engines agree on the same model, and how large is our error compared with the best engine's?
 //! - [`Accuracy`]: how far is each from the truth, and which engine is right?
 //! - [`Conditioning`]: how does κ(M) grow, and does it matter?
+//! - [`Derivatives`]: which engine's derivatives are right, on which joint, and what does the step of finite differences cost?
 //! - [`Import`]: do they import the same file alike, and if not, where and why do they differ?
 //! - [`Repeatability`]: does the same question have the same answer?
 //! - [`Reproductions`]: do the engines' known deviations still exist, and in their known size?
@@ -16,6 +17,7 @@ mod accuracy;
 mod agreement;
 mod conditioning;
 mod growth;
+mod derivatives;
 pub mod import;
 mod operations;
 mod repeatability;
@@ -28,6 +30,7 @@ pub use accuracy::Accuracy;
 pub use agreement::Agreement;
 pub use conditioning::Conditioning;
 pub use growth::{Growth, Settings as GrowthSettings};
+pub use derivatives::Derivatives;
 pub use import::Import;
 pub use operations::OperationCounts;
 pub use repeatability::Repeatability;
@@ -60,6 +63,7 @@ const STUDIES: &[Entry] = &[
     Entry { name: "import", make: import::of_suite, sections: import::section::sections },
     Entry { name: "accuracy", make: accuracy::of_suite, sections: accuracy::section::sections },
     Entry { name: "conditioning", make: conditioning::of_suite, sections: conditioning::section::sections },
+    Entry { name: "derivatives", make: derivatives::of_suite, sections: derivatives::section::sections },
     Entry { name: "steps", make: steps::of_suite, sections: steps::section::sections },
     Entry { name: "operations", make: operations::of_suite, sections: no_section },
     Entry { name: "scaling", make: scaling::of_suite, sections: scaling::section::sections },

@@ -10,7 +10,7 @@ use support::{Double, gates, robot, whole};
 use crate::support;
 
 fn settings(engines: &[&str]) -> TimingSettings {
-    TimingSettings { states: 20, seconds: 0.0, engines: engines.iter().map(|&name| name.into()).collect() }
+    TimingSettings { states: 20, seconds: 0.0, engines: engines.iter().map(|&name| name.into()).collect(), derivatives: false }
 }
 
 fn study() -> Timing {

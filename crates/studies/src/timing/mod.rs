@@ -54,6 +54,9 @@ pub struct Settings {
     /// oracles, and oracles whose clock estimates.
     #[serde(default)]
     pub engines: Vec<String>,
+    /// Whether derivatives are timed, and nothing else. Otherwise everything else is.
+    #[serde(default)]
+    pub derivatives: bool,
 }
 
 /// The kernels that are timed on a robot, as (quantity, method).
@@ -209,7 +212,8 @@ impl Timing {
         };
         let Some(featherbench) = context.engine(REFERENCE) else { return Vec::new() };
         let mut experiments: Vec<(Quantity, Vec<Candidate>)> = Vec::new();
-        for (quantity, method) in (self.kernels)(robot) {
+        let asked = |(quantity, _): &(Quantity, &str)| Quantity::DERIVATIVES.contains(quantity) == self.settings.derivatives;
+        for (quantity, method) in (self.kernels)(robot).into_iter().filter(asked) {
             let one = |control| candidate(featherbench, quantity, method, control);
             match experiments.iter_mut().find(|(known, _)| *known == quantity.in_double()) {
                 Some((_, candidates)) => candidates.push(one(false)),
