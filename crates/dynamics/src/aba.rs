@@ -280,6 +280,7 @@ fn set_moving<T: Real, P: Real + Lift<T>>(
 /// Pass 2 for one body: eliminates its joint, and adds Iᵃ to its parent's on the path and pᵃ to its parent's pᴬ, `parent_p`. `smallest` takes
 /// note of the pivots D.
 #[inline(always)]
+#[expect(clippy::too_many_arguments, reason = "one body's step reads the model and the inputs, and writes the workspace")]
 fn pass_to_parent<T: Real, P: Real + Lift<T>>(
     kind: JointKind,
     model: &Model<P>,

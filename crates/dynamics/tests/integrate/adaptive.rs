@@ -94,11 +94,14 @@ fn lanes_go_together() {
     within("lane 0", error, 1e-9);
 }
 
+/// Writes the acceleration at a time, a configuration and a velocity.
+type Acceleration<'a> = dyn FnMut(f64, &[f64], &[f64], &mut [f64]) -> Result<(), Error> + 'a;
+
 #[test]
 fn what_cannot_be_integrated_is_an_error() {
     let slider = slider();
     let mut integrator = DormandPrince::new(&slider);
-    let mut go = |f: &mut dyn FnMut(f64, &[f64], &[f64], &mut [f64]) -> Result<(), Error>, tolerance: &Tolerance, start: f64| {
+    let mut go = |f: &mut Acceleration, tolerance: &Tolerance, start: f64| {
         let (mut q, mut v) = ([start], [0.0]);
         let mut f = |t: f64, q: &[f64], v: &[f64], a: &mut [f64]| f(t, q, v, a);
         (integrator.run(&mut f, 0.0, 2.0, &mut q, &mut v, tolerance, |_, _, _| ()), q, v)

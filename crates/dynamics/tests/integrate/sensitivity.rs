@@ -358,6 +358,9 @@ fn recursions_and_duals_agree() {
 }
 
 /// The derivative of the steps goes to that of the flow at the order of the integrator.
+/// What an integrator gives for a rollout.
+type Flow<'a> = dyn FnMut(&mut ByDuals<Driven, f64>, &Rollout<'_, f64>) -> Vec<f64> + 'a;
+
 #[test]
 fn sensitivities_converge_at_the_order() {
     struct Orders;
@@ -368,7 +371,7 @@ fn sensitivities_converge_at_the_order() {
             let direction = [&direction[..2 * nv], &direction[direction.len() - 2..]].concat();
             // Without motors: with them the inputs would change with the steps.
             let mut f = ByDuals::new(&case.model, Driven { motors: Vec::new() }, &case.parameters).unwrap();
-            let mut flow = |integrator: &mut dyn FnMut(&mut ByDuals<Driven, f64>, &Rollout<'_, f64>) -> Vec<f64>, count: usize| {
+            let mut flow = |integrator: &mut Flow, count: usize| {
                 let steps = vec![0.1 / count as f64; count];
                 integrator(&mut f, &Rollout { steps: &steps, controls: &[], ..case.rollout() })
             };

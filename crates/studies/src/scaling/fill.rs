@@ -156,10 +156,8 @@ mod tests {
     fn by_table(parents: &[Option<usize>], order: &[usize]) -> Factor {
         let n = parents.len();
         let mut table = vec![vec![false; n]; n];
-        for dof in 0..n {
-            for other in ancestors(parents, dof) {
-                (table[dof][other], table[other][dof]) = (true, true);
-            }
+        for (a, b) in (0..n).flat_map(|dof| ancestors(parents, dof).map(move |other| (dof, other))) {
+            (table[a][b], table[b][a]) = (true, true);
         }
         let (mut left, mut size) = (vec![true; n], Factor::default());
         for &dof in order {
