@@ -38,7 +38,7 @@ fn each_row_has_its_test_and_each_test_its_row() {
     }
 }
 
-/// A conversion names functions of the engine's file in backticks, as `file: function`, or none.
+/// A conversion names functions or classes of the engine's file in backticks, as `file: name`, or none.
 #[test]
 fn each_named_function_exists() {
     let mut found = 0;
@@ -46,9 +46,10 @@ fn each_named_function_exists() {
         let named: Vec<&str> = row.conversion.split('`').skip(1).step_by(2).collect();
         assert!(!named.is_empty() || row.conversion.starts_with('–'), "{}: neither a function nor '–'", row.test);
         for word in named {
-            let (file, function) = word.split_once(": ").unwrap_or_else(|| panic!("{word} is not `file: function`"));
+            let (file, name) = word.split_once(": ").unwrap_or_else(|| panic!("{word} is not `file: name`"));
             let text = read(&format!("oracles/featherbench_oracles/{file}"));
-            assert!(text.contains(&format!("def {function}(")), "{}: {file} has no function {function}", row.test);
+            let defined = [format!("def {name}("), format!("class {name}:")].iter().any(|definition| text.contains(definition));
+            assert!(defined, "{}: {file} has neither a function nor a class {name}", row.test);
             found += 1;
         }
     }

@@ -25,6 +25,11 @@ const HARMLESS: [(&str, &str, &str); 19] = [
     ("crates/studies/src/reproductions/mod.rs", "fold(f64::min)", "the closure that calls it keeps what is no number"),
     ("crates/studies/src/timing/machine.rs", "least.min(", "durations"),
     ("crates/studies/src/timing/protocol.rs", "least.min(", "durations"),
+    ("crates/dynamics/benches/scale.rs", "smallest[place].min(", "durations"),
+    ("crates/dynamics/benches/scale.rs", "fold(f64::INFINITY, f64::min)", "durations"),
+    ("crates/dynamics/src/ltdl/parallel.rs", "numbers.max(", "counts, which are integers"),
+    ("crates/dynamics/src/parallel.rs", "end[parent].max(", "bodies, which are integers"),
+    ("crates/studies/src/derivatives/section/mod.rs", "entry.2.max(", "counts, which are integers"),
     ("crates/studies/src/reproductions/mod.rs", "fold(f64::max)", "the closure that calls it keeps what is no number"),
 ];
 
