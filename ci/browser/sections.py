@@ -177,8 +177,8 @@ def scaling(page: Browser, shot: Shot) -> Checks:
     for table in ["scaling-crossovers", "scaling-errors", "scaling-counts"]:
         found = page.run("return document.querySelectorAll(`#${arguments[0]} tbody tr`).length", table)
         yield f"{table} has rows", found > 0, found
-    if has(page, "#scaling-counts td button, #scaling-counts th button"):
-        page.click("#scaling-counts th button")
+    if has(page, "#scaling-counts tbody button"):
+        page.click("#scaling-counts tbody button")
         yield "a tree's counts open its rows", page.until(ROWS) > 0, ""
         page.press(ESCAPE)
     page.run("document.getElementById('scaling').scrollIntoView({block: 'start', behavior: 'instant'})")
