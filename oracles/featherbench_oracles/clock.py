@@ -8,6 +8,7 @@ loop of their own they are up to a quarter faster, and the estimate would be too
 from __future__ import annotations
 
 import gc
+from abc import ABC, abstractmethod
 from collections.abc import Callable
 from dataclasses import dataclass
 from statistics import median
@@ -138,6 +139,54 @@ class TimedCalls:
         """
         change = robot.change(ask)
         return self.answer(change, self.calls(robot, *self.arguments(robot, ask, change)))
+
+
+class MeasuredStream(Protocol):
+    """The states of a method whose loop is code that reads the clock itself."""
+
+    def time(self, first: int, count: int) -> int:
+        """Time the loop.
+
+        Parameters
+        ----------
+        first, count : int
+            The range of states. Beyond the end of the batch they begin again.
+
+        Returns
+        -------
+        int
+            Its nanoseconds.
+        """
+
+    def relocate(self, seed: int | None) -> None:
+        """Copy all data to other addresses.
+
+        Parameters
+        ----------
+        seed : int, optional
+            The addresses are drawn with it.
+        """
+
+
+class Measured(ABC):
+    """A method whose loop over states is compiled code, with the clock beside it: nothing of Python is timed."""
+
+    @abstractmethod
+    def stream(self, robot: Any, asks: list[State]) -> MeasuredStream:
+        """Convert states for the loop.
+
+        Parameters
+        ----------
+        robot : Any
+            The robot.
+        asks : list of State
+            The states, at least one.
+
+        Returns
+        -------
+        MeasuredStream
+            What can be timed.
+        """
 
 
 class Stream:

@@ -15,7 +15,7 @@ from typing import Any
 
 import numpy as np
 
-from featherbench_oracles.clock import Stream, TimedCalls
+from featherbench_oracles.clock import Measured, MeasuredStream, Stream, TimedCalls
 from featherbench_oracles.examination import examined
 from featherbench_oracles.messages import Answer, Blocks, Header, read_message, write_message
 from featherbench_oracles.protocol import AS_READ, PROTOCOL, SHAPES, Engine, Reading, State, Unsupported
@@ -39,6 +39,7 @@ class Session:
         self.as_read = False
         self.nothing: Any = None
         self.stream: tuple[Any, Stream] | None = None  # what was timed last: its key, and its calls
+        self.measured: tuple[Any, MeasuredStream] | None = None  # the same of compiled loops
 
     def answer(self, header: Header, blocks: Blocks) -> Answer:
         """Answer one request.
@@ -69,6 +70,7 @@ class Session:
             "states": self.set_states,
             "evaluate": self.evaluate,
             "clock": self.clock,
+            "relocate": self.relocate,
         }
         if header.get("op") not in operations:
             raise ValueError(f"unknown op {header.get('op')}")
@@ -79,6 +81,8 @@ class Session:
         engine = self.engine
         methods = {quantity: list(by_method) for quantity, by_method in engine.quantities.items()}
         hello = {"protocol": PROTOCOL, "engine": engine.name, "version": engine.version, "build": engine.build, "methods": methods}
+        if any(isinstance(function, Measured) for by_method in engine.quantities.values() for function in by_method.values()):
+            return {**hello, "clock": True, "relocate": True}, {}
         timed = {name: [m for m, f in by_method.items() if isinstance(f, TimedCalls)] for name, by_method in engine.quantities.items()}
         estimated = {name: listed for name, listed in timed.items() if listed}
         return ({**hello, "clock": "estimate", "timed": estimated} if estimated else hello), {}
@@ -116,7 +120,7 @@ class Session:
         """Keep the states for later evaluations."""
         if self.description is None:
             raise ValueError("no model was prepared")
-        self.states = self.stream = None
+        self.states = self.stream = self.measured = None
         n, nq, nv, bodies = header["count"], self.description.nq, self.description.nv, len(self.description.bodies)
         shapes = {"q": (n, nq), "v": (n, nv), "a": (n, nv), "tau": (n, nv), "wrench": (n, bodies, 6), "probe": (4, nv)}
         for name, shape in shapes.items():
@@ -141,15 +145,19 @@ class Session:
         return {}, {"value": value}
 
     def clock(self, header: Header, _blocks: Blocks) -> Answer:
-        """Time a method's own calls over a stream of the states: `nanoseconds` and `overhead` of the whole stream."""
+        """Time a method over a stream of the states: `nanoseconds` of the whole stream, and the `overhead` of calls through Python."""
         function, _, states, body = self._asked(header)
         first, count, asked = header["first"], header["count"], (header["quantity"], header["method"], body)
-        if not isinstance(function, TimedCalls):
+        if not isinstance(function, (TimedCalls, Measured)):
             raise Unsupported(
                 f"{self.engine.name} does not time {header['quantity']} by {header['method']}: it is more than calls of the engine"
             )
         if not (first >= 0 and count > 0 and len(states["q"])):
             raise ValueError(f"there are no {count} states from {first} on")
+        if isinstance(function, Measured):
+            if self.measured is None or self.measured[0] != asked:
+                self.measured = asked, function.stream(self.robot, [_state(states, k, body) for k in range(len(states["q"]))])
+            return {"nanoseconds": self.measured[1].time(first, count)}, {}
         if self.stream is None or self.stream[0] != asked:
             self.nothing = self.nothing or self.engine.prepare(Description("nothing", np.array([0, 0, -9.81]), (), 0, 0))
             asks = [_state(states, k, body) for k in range(len(states["q"]))]
@@ -157,9 +165,17 @@ class Session:
         nanoseconds, overhead = self.stream[1].time(first, count)
         return {"nanoseconds": nanoseconds, "overhead": overhead}, {}
 
+    def relocate(self, header: Header, _blocks: Blocks) -> Answer:
+        """Copy the data of the last compiled loop to other addresses. Where none was timed, there is nothing to copy."""
+        if self.description is None:
+            raise ValueError("no model was prepared")
+        if self.measured is not None:
+            self.measured[1].relocate(header["seed"])
+        return {}, {}
+
     def _forget(self) -> None:
         """Forget the robot and its states."""
-        self.description = self.robot = self.states = self.stream = None
+        self.description = self.robot = self.states = self.stream = self.measured = None
 
     def _asked(self, header: Header) -> tuple[Callable[[Any, State], Any], Description, Blocks, int]:
         """Find the method, the robot, its states and the body of a request, if all are there."""

@@ -7,10 +7,11 @@ import pytest
 
 from featherbench_oracles.algebra import Array
 from featherbench_oracles.change import CoordinateChange
-from featherbench_oracles.clock import Stream, TimedCalls
-from featherbench_oracles.messages import Header
-from featherbench_oracles.protocol import State
+from featherbench_oracles.clock import Measured, Stream, TimedCalls
+from featherbench_oracles.messages import Blocks, Header
+from featherbench_oracles.protocol import Quantities, State, Unsupported
 from featherbench_oracles.robot import Description
+from featherbench_oracles.session import Session
 from featherbench_oracles.testing.client import Oracle
 from featherbench_oracles.testing.described import ENGINES
 from featherbench_oracles.testing.draws import COUNT, random_robot, random_states, without_armature
@@ -97,6 +98,80 @@ def test_no_time_below_nothing() -> None:
     stream = Stream(WAIT, Waiting(ticks, 20_000), Waiting(ticks, 60_000), [ASK], ticks)
     with pytest.raises(ValueError, match="nothing is left"):
         stream.time(0, 5)
+
+
+class Compiled(Measured):
+    """A method whose loop takes 3 ns for each state, and that notes where its data were put."""
+
+    def __init__(self) -> None:
+        self.seeds: list[int | None] = []
+        self.batches: list[int] = []
+
+    def __call__(self, robot: Still, ask: State) -> Array:
+        """Answer with the velocities."""
+        return ask.v
+
+    def stream(self, robot: Still, asks: list[State]) -> Compiled:
+        """Note how many states there are."""
+        self.batches.append(len(asks))
+        return self
+
+    def time(self, first: int, count: int) -> int:
+        """Take 3 ns for each state."""
+        return 3 * count
+
+    def relocate(self, seed: int | None) -> None:
+        """Note the seed."""
+        self.seeds.append(seed)
+
+
+class Still:
+    """A robot that is not computed with."""
+
+    def readback(self) -> list[Array]:
+        """Read back nothing of each body."""
+        return [np.zeros(22) for _ in Description.read(MODEL).bodies]
+
+
+class Measuring:
+    """An engine with one compiled method, and one in Python."""
+
+    name, version = "measuring", "1"
+
+    def __init__(self, method: Compiled) -> None:
+        self.build: dict[str, str] = {}
+        self.quantities: Quantities = {"bias": {"compiled": method, "python": lambda _, ask: ask.v}}
+
+    def prepare(self, description: Description) -> Still:
+        """Build nothing."""
+        return Still()
+
+
+def test_a_compiled_loop_measures_its_own_time() -> None:
+    """Its times are no estimates. Its states are converted once, and its data can be relocated."""
+    method = Compiled()
+    session = Session(Measuring(method))
+    nothing: Blocks = {}
+    hello, _ = session.answer({"op": "hello"}, nothing)
+    assert (hello["clock"], hello["relocate"], "timed" in hello) == (True, True, False)
+    session.answer({"op": "prepare", "model": MODEL}, nothing)
+    session.answer({"op": "states", "count": COUNT}, STATES)
+    session.answer({"op": "relocate", "seed": 1}, nothing)  # nothing was timed yet
+    question: Header = {**CLOCK, "quantity": "bias", "method": "compiled"}
+    for _ in range(2):
+        assert session.answer(question, nothing)[0] == {"nanoseconds": 75}
+    session.answer({"op": "relocate", "seed": 2}, nothing)
+    assert (method.batches, method.seeds) == ([COUNT], [2])
+    with pytest.raises(Unsupported, match="does not time bias by python"):
+        session.answer({**question, "method": "python"}, nothing)
+    with pytest.raises(ValueError, match="there are no 0 states"):
+        session.answer({**question, "count": 0}, nothing)
+
+
+def test_without_a_robot_nothing_is_relocated() -> None:
+    """A robot comes first."""
+    with pytest.raises(ValueError, match="no model"):
+        Session(Measuring(Compiled())).answer({"op": "relocate", "seed": 1}, {})
 
 
 @pytest.mark.parametrize("engine", ENGINES)

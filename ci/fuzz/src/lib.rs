@@ -20,7 +20,7 @@ use std::sync::LazyLock;
 pub type Target = fn(&[u8]);
 
 /// Every target by its name, which is that of its folder of seeds.
-pub const TARGETS: [(&str, Target); 9] = [
+pub const TARGETS: [(&str, Target); 10] = [
     ("urdf", urdf_file),
     ("neutral", neutral_file),
     ("message", message),
@@ -30,6 +30,7 @@ pub const TARGETS: [(&str, Target); 9] = [
     ("gates", gates),
     ("records", records),
     ("run_info", run_info),
+    ("contact", contact_file),
 ];
 
 /// Bytes that are text.
@@ -62,6 +63,13 @@ pub fn neutral_file(bytes: &[u8]) {
     let written = neutral::to_string(&robot).unwrap_or_else(|error| panic!("{error}"));
     assert_eq!(neutral::parse(&written, "written").unwrap_or_else(|error| panic!("{error}\n{written}")), robot);
     let _ = (urdf::to_string(&robot, OnLoss::LeaveOut), mjcf::to_string(&robot, OnLoss::LeaveOut), neutral::to_line(&robot));
+}
+
+/// A file of a contact problem; what is read is written to the same numbers.
+pub fn contact_file(bytes: &[u8]) {
+    let Ok(problem) = featherbench_contact::file::parse(text(bytes), "fuzzed") else { return };
+    let written = featherbench_contact::file::to_text(&problem);
+    assert_eq!(featherbench_contact::file::parse(&written, "written").unwrap_or_else(|error| panic!("{error}\n{written}")), problem);
 }
 
 /// Messages of the oracle protocol, one after the other.

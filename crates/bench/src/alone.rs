@@ -19,6 +19,8 @@ pub struct Question {
     pub quantity: Quantity,
     /// The engine's method.
     pub method: String,
+    /// Threads of the process, for methods of ours that use several; other methods and engines run on one.
+    pub threads: usize,
     /// The seed of the state.
     pub seed: u64,
     /// Seconds for the blocks of calls.
@@ -47,8 +49,10 @@ pub type Ask = Arc<dyn Fn(&Question) -> Result<Measured, NoAnswer> + Send + Sync
 
 /// Blocks of calls, if there is time for them.
 const BLOCKS: usize = 15;
-/// The least number of blocks.
+/// The least number of blocks, unless they take [`LONG`] times the seconds that the question gives them.
 const FEWEST: usize = 3;
+/// After so many times the seconds of the question no block begins: the slowest calls have one block, and a time without an interval.
+const LONG: f64 = 5.0;
 /// A block takes this long or a call: a reading of the clock takes some 20 ns.
 const BLOCK: Duration = Duration::from_micros(50);
 /// The most calls in a block.
@@ -89,7 +93,15 @@ pub fn measure(
     let calls = if engine.has_clock() { (BLOCK.as_secs_f64() / first.max(1e-9)).ceil() as usize } else { 1 };
     let calls = calls.clamp(1, MOST_CALLS).next_multiple_of(together);
     let mut blocks = Vec::with_capacity(BLOCKS);
-    while blocks.len() < FEWEST || blocks.len() < BLOCKS && begun.elapsed().as_secs_f64() < question.seconds {
+    if calls == together {
+        blocks.push(first / calls as f64);
+    }
+    let more = |blocks: usize, seconds: f64| match blocks {
+        0 => true,
+        few if few < FEWEST => seconds < LONG * question.seconds,
+        _ => blocks < BLOCKS && seconds < question.seconds,
+    };
+    while more(blocks.len(), begun.elapsed().as_secs_f64()) {
         blocks.push(prepared.clock(0..calls)?.as_secs_f64() / calls as f64);
     }
     let memory = prepared.memory().or_else(memory);

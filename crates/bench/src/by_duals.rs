@@ -10,7 +10,7 @@
 
 use crate::{Quantity, layout};
 use featherbench_dynamics::{Aba, Crba, Error, Rnea, TreeSparse};
-use featherbench_model::{JointKind, Label, Model};
+use featherbench_model::{JointKind, Label, Model, Topology};
 use featherbench_spatial::{Dual, Quaternion, Real, RigidBodyInertia, Sym3, Vec3};
 
 /// One state: configuration, velocity, acceleration and joint force.
@@ -114,25 +114,7 @@ impl<T: Real> ByDuals<T> {
 
     /// Gives q the rate of the velocity `e_dof`.
     fn move_along(&mut self, dof: usize, q: &[T]) {
-        let Some(joint) = self.model.topology.joints().iter().rev().find(|joint| joint.v <= dof) else { return };
-        let (k, at) = (dof - joint.v, joint.q);
-        match joint.kind {
-            JointKind::Spherical => self.turn(at, k, q),
-            JointKind::Free if k >= 3 => self.turn(at + 3, k - 3, q),
-            JointKind::Free => {
-                let rotation = Quaternion::from_array([q[at + 3], q[at + 4], q[at + 5], q[at + 6]]).to_rotation();
-                let rate = (rotation * unit(k)).to_array();
-                self.q[at..at + 3].iter_mut().zip(rate).for_each(|(q, rate)| q.derivative = rate);
-            }
-            _ => self.q[at].derivative = T::one(),
-        }
-    }
-
-    /// Gives the quaternion from `at` on the rate of the unit angular velocity about body axis `k`.
-    fn turn(&mut self, at: usize, k: usize, q: &[T]) {
-        let rate = Quaternion::from_array([q[at], q[at + 1], q[at + 2], q[at + 3]]).derivative(unit(k));
-        let rates = [rate.v.x, rate.v.y, rate.v.z, rate.w];
-        self.q[at..at + 4].iter_mut().zip(rates).for_each(|(q, rate)| q.derivative = rate);
+        move_along(&self.model.topology, dof, q, &mut self.q);
     }
 
     /// C by Koszul's formula for the velocities v, of which [E_k, E_j] = Σ c^l_kj E_l:
@@ -173,8 +155,31 @@ impl<T: Real> ByDuals<T> {
     }
 }
 
+/// Gives the configuration `moving`, with the values of `q`, the rate of the velocity `e_dof`.
+pub fn move_along<T: Real>(topology: &Topology, dof: usize, q: &[T], moving: &mut [Dual<T>]) {
+    let Some(joint) = topology.joints().iter().rev().find(|joint| joint.v <= dof) else { return };
+    let (k, at) = (dof - joint.v, joint.q);
+    match joint.kind {
+        JointKind::Spherical => turn(at, k, q, moving),
+        JointKind::Free if k >= 3 => turn(at + 3, k - 3, q, moving),
+        JointKind::Free => {
+            let rotation = Quaternion::from_array([q[at + 3], q[at + 4], q[at + 5], q[at + 6]]).to_rotation();
+            let rate = (rotation * unit(k)).to_array();
+            moving[at..at + 3].iter_mut().zip(rate).for_each(|(q, rate)| q.derivative = rate);
+        }
+        _ => moving[at].derivative = T::one(),
+    }
+}
+
+/// Gives the quaternion from `at` on the rate of the unit angular velocity about body axis `k`.
+fn turn<T: Real>(at: usize, k: usize, q: &[T], moving: &mut [Dual<T>]) {
+    let rate = Quaternion::from_array([q[at], q[at + 1], q[at + 2], q[at + 3]]).derivative(unit(k));
+    let rates = [rate.v.x, rate.v.y, rate.v.z, rate.w];
+    moving[at..at + 4].iter_mut().zip(rates).for_each(|(q, rate)| q.derivative = rate);
+}
+
 /// `[E_a, E_b] = ±E_l` of two dofs of one quaternion joint: l and the sign. `None` where the dofs commute.
-fn bracket(topology: &featherbench_model::Topology, (a, b): (usize, usize)) -> Option<(usize, f64)> {
+fn bracket(topology: &Topology, (a, b): (usize, usize)) -> Option<(usize, f64)> {
     let joint = topology.joints().iter().rev().find(|joint| joint.v <= a)?;
     let turns = match joint.kind {
         JointKind::Spherical => joint.v,
@@ -196,7 +201,7 @@ fn bracket(topology: &featherbench_model::Topology, (a, b): (usize, usize)) -> O
 }
 
 /// Makes the numbers constants of these values.
-fn still<T: Real>(numbers: &mut [Dual<T>], values: &[T]) {
+pub fn still<T: Real>(numbers: &mut [Dual<T>], values: &[T]) {
     numbers.iter_mut().zip(values).for_each(|(number, &value)| *number = Dual::constant(value));
 }
 

@@ -66,6 +66,11 @@ pub enum Start {
         /// The module's name within the package.
         module: String,
     },
+    /// A module of the package `featherbench_oracles`, run by a Python of its own with the packages of the file `requirements.txt` beside it.
+    PythonAlone {
+        /// The module's name within the package.
+        module: String,
+    },
     /// A program that cargo builds, in a workspace of its own.
     Cargo {
         /// The workspace: a folder in `oracles/`.
@@ -131,7 +136,7 @@ pub enum ClockKind {
 }
 
 impl DescribedEngine {
-    /// Whether its oracle is a Python module.
+    /// Whether its oracle is a Python module, in the environment that such engines share.
     pub fn is_python(&self) -> bool {
         matches!(self.start, Start::Python { .. })
     }

@@ -43,6 +43,8 @@ pub enum Quantity {
     MassMatrixSparse,
     /// The factors of M = LᵀDL in the tree-sparse layout.
     Factorization,
+    /// How many numbers of the engine's own triangular factor of M may differ from zero.
+    FactorEntries,
     /// M⁻¹τ with M factorized beforehand.
     Solve,
     /// M⁻¹, dense.
@@ -59,6 +61,10 @@ pub enum Quantity {
     CoriolisMatrix,
     /// The torque regressor Y with τ − armature·a = Y π.
     TorqueRegressor,
+    /// Second derivatives of weighted inverse dynamics, μ·ID, by (q, q), (q, v), (v, v) and (q, a). μ are the state's joint forces.
+    InverseDynamicsSecond,
+    /// Second derivatives of weighted forward dynamics, λ·FD, by (q, q), (q, v), (v, v) and (q, τ). λ are the state's accelerations.
+    ForwardDynamicsSecond,
 }
 
 /// Robots with more degrees of freedom than this are asked for [`Quantity::MassMatrixProbe`] and not for the whole matrix.
@@ -66,7 +72,7 @@ pub const DENSE_LIMIT: usize = 64;
 
 impl Quantity {
     /// All of them.
-    pub const ALL: [Self; 27] = [
+    pub const ALL: [Self; 30] = [
         Self::InverseDynamics,
         Self::InverseDynamicsWrench,
         Self::Bias,
@@ -86,6 +92,7 @@ impl Quantity {
         Self::StoredEntries,
         Self::MassMatrixSparse,
         Self::Factorization,
+        Self::FactorEntries,
         Self::Solve,
         Self::MassMatrixInverse,
         Self::InverseDynamicsDq,
@@ -94,7 +101,12 @@ impl Quantity {
         Self::ForwardDynamicsDv,
         Self::CoriolisMatrix,
         Self::TorqueRegressor,
+        Self::InverseDynamicsSecond,
+        Self::ForwardDynamicsSecond,
     ];
+
+    /// Second derivatives, which only our engine answers, and only the timing study asks for.
+    pub const SECOND_DERIVATIVES: [Self; 2] = [Self::InverseDynamicsSecond, Self::ForwardDynamicsSecond];
 
     /// The derivatives, and what is made of them. An engine may have some of them.
     pub const DERIVATIVES: [Self; 6] = [
@@ -128,6 +140,7 @@ impl Quantity {
             Self::StoredEntries => "stored_entries",
             Self::MassMatrixSparse => "mass_matrix_sparse",
             Self::Factorization => "factorization",
+            Self::FactorEntries => "factor_entries",
             Self::Solve => "solve",
             Self::MassMatrixInverse => "mass_matrix_inverse",
             Self::InverseDynamicsDq => "id_dq",
@@ -136,6 +149,8 @@ impl Quantity {
             Self::ForwardDynamicsDv => "fd_dv",
             Self::CoriolisMatrix => "coriolis_matrix",
             Self::TorqueRegressor => "torque_regressor",
+            Self::InverseDynamicsSecond => "id_second",
+            Self::ForwardDynamicsSecond => "fd_second",
         }
     }
 
@@ -148,6 +163,11 @@ impl Quantity {
     #[must_use]
     pub fn in_double(self) -> Self {
         if self == Self::ForwardDynamicsSingle { Self::ForwardDynamics } else { self }
+    }
+
+    /// Whether it is a derivative, of first or second order, or made of derivatives.
+    pub fn is_derivative(self) -> bool {
+        Self::DERIVATIVES.contains(&self) || Self::SECOND_DERIVATIVES.contains(&self)
     }
 
     /// The quantity named by a word.
@@ -173,8 +193,9 @@ impl Quantity {
             | Self::ForwardDynamicsDv
             | Self::CoriolisMatrix => nv * nv,
             Self::TorqueRegressor => nv * bodies * layout::PARAMETERS,
+            Self::InverseDynamicsSecond | Self::ForwardDynamicsSecond => 4 * nv * nv,
             Self::MassMatrixProbe | Self::BodyJacobian => 6 * nv,
-            Self::KineticEnergy | Self::PotentialEnergy | Self::StoredEntries => 1,
+            Self::KineticEnergy | Self::PotentialEnergy | Self::StoredEntries | Self::FactorEntries => 1,
             Self::CenterOfMass => 3,
             Self::Momentum => 6,
             Self::BodyPlacement => 12 * bodies,
@@ -190,7 +211,7 @@ impl Quantity {
     /// - one, where it does not depend on the state.
     pub fn states(self, count: usize) -> usize {
         match self {
-            Self::Readback | Self::StoredEntries => count.min(1),
+            Self::Readback | Self::StoredEntries | Self::FactorEntries => count.min(1),
             Self::InverseDynamicsWrench | Self::BodyPlacement | Self::BodyVelocity | Self::BodyAcceleration | Self::BodyJacobian => {
                 count.min(featherbench_robots::StateBatch::HEAD)
             }

@@ -80,6 +80,9 @@ pub struct RobotEntry {
     pub name: Option<String>,
     /// The studies that use it; all by default.
     pub studies: Option<Vec<String>>,
+    /// Whether runs that are not live leave it out. Otherwise a file's robot makes them an error.
+    #[serde(default)]
+    pub only_live: bool,
 }
 
 impl RobotEntry {
@@ -138,6 +141,11 @@ impl Suite {
         }
         let states = states.unwrap_or(1);
         Ok(Self { about, seed, states, engines, thorough, robots, studies, text: text.into(), path: path.into() })
+    }
+
+    /// The suite's file, as errors name it.
+    pub fn path(&self) -> &Path {
+        &self.path
     }
 
     /// The engines beside ours.

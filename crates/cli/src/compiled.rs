@@ -157,13 +157,17 @@ fn complaint(lines: &[String]) -> String {
     cause.map_or_else(|| first.clone(), |cause| format!("{first}: {cause}"))
 }
 
-/// The crates of the project that a workspace is compiled with, by its lock file: the names of their folders.
-fn crates(project: &Path, folder: &str) -> Result<Vec<String>, String> {
+/// The folders of the project's crates that a workspace is compiled with, by its lock file: in `crates/`, or in `oracles/` what engines share.
+fn crates(project: &Path, folder: &str) -> Result<Vec<PathBuf>, String> {
     let file = project.join("oracles").join(folder).join("Cargo.lock");
     let lock = std::fs::read_to_string(&file).map_err(|error| format!("{}: {error}", file.display()))?;
     let names = lock.lines().filter_map(|line| line.strip_prefix("name = \"")?.strip_prefix(OURS)?.strip_suffix('"'));
     // Its own package is not among the crates.
-    Ok(names.filter(|name| project.join("crates").join(name).is_dir()).map(str::to_owned).collect())
+    let found = names.filter(|name| *name != folder).filter_map(|name| {
+        let folders = ["crates", "oracles"].map(|room| PathBuf::from(room).join(name));
+        folders.into_iter().find(|folder| project.join(folder).is_dir())
+    });
+    Ok(found.collect())
 }
 
 /// The hash of the sources and the lock file.
@@ -171,7 +175,7 @@ fn sources(project: &Path, folder: &str) -> Result<String, String> {
     let mut files: Vec<PathBuf> = SETTINGS.map(PathBuf::from).into();
     let own = PathBuf::from("oracles").join(folder);
     files.push(own.join("Cargo.lock"));
-    for folder in crates(project, folder)?.iter().map(|name| PathBuf::from("crates").join(name)).chain([own]) {
+    for folder in crates(project, folder)?.into_iter().chain([own]) {
         files.push(folder.join("Cargo.toml"));
         files.push(folder.join("build.rs"));
         let mut folders = vec![folder.join("src")];
@@ -200,9 +204,14 @@ mod tests {
 
     #[test]
     fn all_of_the_project_that_it_is_made_of_is_hashed() {
-        assert_eq!(crates(&project(), "rapier").unwrap(), ["formats", "model", "protocol", "spatial"]);
-        assert_eq!(crates(&project(), "dynibo").unwrap(), Vec::<String>::new());
-        assert!(crates(&project(), "no-such-engine").unwrap_err().contains("no-such-engine"));
+        let crates =
+            |folder: &str| crates(&project(), folder).map(|folders| folders.iter().map(|f| f.display().to_string()).collect::<Vec<_>>());
+        assert_eq!(crates("rapier").unwrap(), ["crates/formats", "crates/model", "crates/protocol", "crates/spatial"]);
+        assert_eq!(crates("dynibo").unwrap(), ["oracles/interface"]);
+        let factorizing = ["crates/dynamics", "oracles/factors", "oracles/interface", "crates/model", "crates/spatial"];
+        assert_eq!(crates("faer").unwrap(), factorizing);
+        assert_eq!(crates("nalgebra").unwrap(), factorizing);
+        assert!(crates("no-such-engine").unwrap_err().contains("no-such-engine"));
     }
 
     #[test]
@@ -213,16 +222,22 @@ mod tests {
             std::fs::create_dir_all(path.parent().unwrap()).unwrap();
             std::fs::write(path, text).unwrap();
         };
-        for name in ["crates/model", "crates/formats", "oracles/rapier"] {
+        for name in ["crates/model", "crates/formats", "oracles/interface", "oracles/rapier"] {
             write(&format!("{name}/src/deep/a.rs"), "one");
         }
-        let lock = "name = \"featherbench-formats\"\nname = \"featherbench-model\"\nname = \"featherbench-rapier\"\n";
-        write("oracles/rapier/Cargo.lock", lock);
+        let lock = ["formats", "interface", "model", "rapier"].map(|name| format!("name = \"featherbench-{name}\"\n")).concat();
+        write("oracles/rapier/Cargo.lock", &lock);
         let sources = |folder: &Path| sources(folder, "rapier");
         let mut seen = vec![sources(folder.path()).unwrap()];
         write("oracles/rapier/Cargo.lock", &format!("{lock}version = 2\n"));
         seen.push(sources(folder.path()).unwrap());
-        for path in ["oracles/rapier/build.rs", "crates/model/src/deep/a.rs", "crates/formats/src/b.rs", "Cargo.toml"] {
+        for path in [
+            "oracles/rapier/build.rs",
+            "oracles/interface/src/deep/a.rs",
+            "crates/model/src/deep/a.rs",
+            "crates/formats/src/b.rs",
+            "Cargo.toml",
+        ] {
             write(path, "another");
             seen.push(sources(folder.path()).unwrap());
         }

@@ -7,7 +7,7 @@ use crate::oracles;
 use crate::robots::Loaded;
 use crate::root::Root;
 use ::featherbench_results::{EngineInfo, EngineSource};
-use featherbench_bench::{DescribedEngine, Engine, OWN, Robot, Study};
+use featherbench_bench::{DescribedEngine, Engine, OWN, Robot, Start, Study};
 use featherbench_engines::{Featherbench, Limits, Recorded, read_recordings};
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -104,7 +104,10 @@ pub fn open(root: &Root, asked: &Asked) -> Result<Opened, Fail> {
         opened.add(Ok(Box::new(oracles::start(root, engine, limits)?)), &engine.name, EngineSource::Live);
     }
     if !installed.is_empty() {
-        oracles::install(root)?;
+        // An engine with an environment of its own needs nothing of the others'.
+        if installed.iter().any(|engine| !matches!(engine.start, Start::PythonAlone { .. })) {
+            oracles::install(root)?;
+        }
         // Together: an engine's start is its libraries being read from disk.
         let answers: Vec<_> = std::thread::scope(|scope| {
             let starting: Vec<_> = installed.iter().map(|engine| scope.spawn(move || started(root, engine, limits))).collect();

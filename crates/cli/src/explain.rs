@@ -127,6 +127,7 @@ fn describe(quantity: Quantity) -> &'static str {
         Quantity::Readback => "inertias and placements that the engine holds after building the robot",
         Quantity::StoredEntries => "stored numbers of the sparse mass matrix",
         Quantity::Factorization => "factors of M = LᵀDL",
+        Quantity::FactorEntries => "numbers of the engine's own triangular factor of M",
         Quantity::Solve => "M⁻¹τ with given factors",
         Quantity::MassMatrixInverse => "M⁻¹",
         Quantity::InverseDynamicsDq => "∂ID/∂q on the tangent space of the configurations",
@@ -135,6 +136,8 @@ fn describe(quantity: Quantity) -> &'static str {
         Quantity::ForwardDynamicsDv => "∂FD/∂v",
         Quantity::CoriolisMatrix => "Coriolis matrix C with Ṁ = C + Cᵀ",
         Quantity::TorqueRegressor => "torque regressor Y, τ − armature·a = Y π",
+        Quantity::InverseDynamicsSecond => "second derivatives of weighted inverse dynamics",
+        Quantity::ForwardDynamicsSecond => "second derivatives of weighted forward dynamics",
     }
 }
 

@@ -35,6 +35,7 @@ mod compare;
 mod compiled;
 mod diff;
 mod engines;
+mod environment;
 mod explain;
 mod external;
 mod fail;

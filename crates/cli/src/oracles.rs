@@ -2,19 +2,20 @@
 
 use crate::args::InstallArgs;
 use crate::compiled::Compiled;
+use crate::environment::{Alone, Environment};
 use crate::fail::Fail;
 use crate::native;
 use crate::package;
 use crate::root::Root;
-use featherbench_bench::{DescribedEngine, Engine, Engines, NoAnswer, OWN, Start};
+use featherbench_bench::alone::{Measured, Question};
+use featherbench_bench::{DescribedEngine, Engine, Engines, NoAnswer, OWN, Robot, Start};
 use featherbench_engines::{Limits, Oracle, alone};
 use indicatif::{ProgressBar, ProgressStyle};
 use std::ffi::OsString;
-use std::io::{BufRead, BufReader, IsTerminal};
+use std::io::IsTerminal;
 use std::path::{Path, PathBuf};
-use std::process::{Command, Stdio};
-use std::sync::Arc;
-use std::time::Duration;
+use std::sync::{Arc, Mutex, PoisonError};
+use std::time::{Duration, Instant};
 
 /// What the oracles share.
 const SHARED: &str = "requirements.txt";
@@ -22,6 +23,10 @@ const SHARED: &str = "requirements.txt";
 const ROBOTS: &str = "packages.txt";
 /// What is said where the environment is missing.
 const MISSING: &str = "the reference engines are not installed: run `featherbench oracles install`";
+
+/// What is said where the environment cannot be made.
+const MISSING_PYTHON: &str = "the engines need Python 3.11 with venv (Debian: python3 python3-venv) and a reachable package index; \
+                              without them, `featherbench run` compares with the recorded answers";
 
 /// The engines that `oracles/engines.toml` describes.
 pub fn described(root: &Root) -> Result<Engines, Fail> {
@@ -48,6 +53,10 @@ pub fn install_named(root: &Root, args: &InstallArgs) -> Result<(), Fail> {
         let compiled = match &engine.start {
             Start::Cargo { folder, program } => Compiled::program(root, engine, folder, program),
             Start::CargoLibrary { folder, library } => Compiled::library(root, engine, folder, library),
+            Start::PythonAlone { module } => {
+                eprintln!("{} is installed: {}", engine.name, Alone::new(root, engine, &engines, module).install()?.display());
+                continue;
+            }
             Start::Python { .. } | Start::Native(_) => continue,
         };
         eprintln!("{} is built: {}", engine.name, compiled.install()?.display());
@@ -66,74 +75,21 @@ pub fn install(root: &Root) -> Result<PathBuf, Fail> {
         return Ok(python);
     }
     let folder = root.engines();
-    let environment = folder.join("venv");
-    std::fs::create_dir_all(&folder).map_err(|error| Fail::input(format!("{}: {error}", folder.display())))?;
     let requirements = root.oracles().join(SHARED);
     let packages = root.oracles().join(ROBOTS);
     let pins = described(root)?.pins().into_iter().map(OsString::from);
     let engines: Vec<OsString> = pins.chain(["-r".into(), requirements.into_os_string()]).collect();
-    let python = environment.join("bin/python");
     let bar = spinner("installing the reference engines (about 1.6 GB) …");
-    let text = |path: &Path| path.as_os_str().to_owned();
-    let uv = Command::new("uv").arg("--version").output().is_ok_and(|output| output.status.success());
-    if uv {
-        if !python.exists() {
-            step(&bar, "uv", &["venv".into(), "--python".into(), "3.11".into(), text(&environment)])?;
-        }
-        let install = ["pip".into(), "install".into(), "--python".into(), text(&python)];
-        let files = ["--no-deps".into(), "--target".into(), text(&root.packages()), "-r".into(), text(&packages)];
-        step(&bar, "uv", &[&install[..], &engines].concat())?;
-        step(&bar, "uv", &[&install[..], &files].concat())?;
-    } else {
-        if !python.exists() {
-            step(&bar, "python3", &["-m".into(), "venv".into(), text(&environment)])?;
-        }
-        let install = ["-m", "pip", "install", "--progress-bar", "off"].map(OsString::from);
-        // Into a folder of their own, emptied first: pip does not replace what stands there.
-        let _ = std::fs::remove_dir_all(root.packages());
-        let files = ["--no-deps".into(), "--target".into(), text(&root.packages()), "-r".into(), text(&packages)];
-        step(&bar, &python.to_string_lossy(), &[&install[..], &engines].concat())?;
-        step(&bar, &python.to_string_lossy(), &[&install[..], &files].concat())?;
-    }
+    let environment = Environment::make(&bar, &folder.join("venv"), MISSING_PYTHON)?;
+    environment.install(&engines)?;
+    let into = root.packages();
+    environment.install_into(&into, &["--no-deps".into(), "-r".into(), packages.into_os_string()])?;
+    let python = environment.python;
     bar.finish_and_clear();
     let stamp = stamp(root)?;
     ::featherbench_results::atomic_write(&folder.join("installed"), stamp.as_bytes())?;
     eprintln!("installed the reference engines in {}", folder.display());
     Ok(python)
-}
-
-/// Runs one command of the installation, showing its last line.
-fn step(bar: &ProgressBar, program: &str, arguments: &[OsString]) -> Result<(), Fail> {
-    let missing = |message: String| {
-        let advice = "the engines need Python 3.11 with venv (Debian: python3 python3-venv) and a reachable package index; \
-                      without them, `featherbench run` compares with the recorded answers";
-        Fail::Missing { message, advice: advice.into() }
-    };
-    let shown: Vec<_> = arguments.iter().map(|argument| argument.to_string_lossy()).collect();
-    bar.set_message(format!("{program} {}", shown.join(" ")));
-    let mut child = Command::new(program)
-        .args(arguments)
-        .stdin(Stdio::null())
-        .stdout(Stdio::piped())
-        .stderr(Stdio::piped())
-        .spawn()
-        .map_err(|error| missing(format!("{program} cannot be started: {error}")))?;
-    let errors = child.stderr.take();
-    let collector = std::thread::spawn(move || -> Vec<String> {
-        errors.map(|errors| BufReader::new(errors).lines().map_while(Result::ok).collect()).unwrap_or_default()
-    });
-    if let Some(output) = child.stdout.take() {
-        for line in BufReader::new(output).lines().map_while(Result::ok) {
-            bar.set_message(line);
-        }
-    }
-    let status = child.wait().map_err(|error| missing(format!("{program}: {error}")))?;
-    let errors = collector.join().unwrap_or_default();
-    if status.success() {
-        return Ok(());
-    }
-    let last = errors.iter().rev().find(|line| line.to_lowercase().contains("error")).or(errors.last()).cloned().unwrap_or_default();
-    Err(missing(format!("`{program} {}` failed ({status}): {last}", shown.join(" "))))
 }
 
 /// Progress of something long; without a terminal, `announced` is printed once.
@@ -164,7 +120,7 @@ fn stamp(root: &Root) -> Result<String, Fail> {
 }
 
 /// The lines of a requirements file that ask for something.
-fn pins(path: &Path) -> Result<Vec<String>, Fail> {
+pub fn pins(path: &Path) -> Result<Vec<String>, Fail> {
     let text = std::fs::read_to_string(path).map_err(|error| Fail::input(format!("{}: {error}", path.display())))?;
     let lines = text.lines().map(|line| line.split(" #").next().unwrap_or_default().trim());
     Ok(lines.filter(|line| !line.is_empty() && !line.starts_with('#')).map(str::to_owned).collect())
@@ -177,6 +133,11 @@ pub fn start(root: &Root, engine: &DescribedEngine, limits: Limits) -> Result<Or
     match &engine.start {
         Start::Python { module } => {
             let command = python(root).ok_or_else(|| MISSING.to_owned()).and_then(|python| package::command(root, &python, module));
+            command.and_then(|command| Oracle::start(command, limits)).map_err(missing)
+        }
+        Start::PythonAlone { module } => {
+            let engines = described(root)?;
+            let command = Alone::new(root, engine, &engines, module).command();
             command.and_then(|command| Oracle::start(command, limits)).map_err(missing)
         }
         Start::Cargo { folder, program } => Compiled::program(root, engine, folder, program).start(limits),
@@ -194,20 +155,61 @@ pub fn reproducer(root: &Root, limits: Limits) -> featherbench_studies::Reproduc
     })
 }
 
-/// Measures questions, each in a process of its own: ours by this program, other engines by their oracles.
+/// Measures questions in processes of their own: ours by this program, one for each question; other engines by their oracles, one for each
+/// robot.
 pub fn measurer(root: &Root) -> Result<featherbench_bench::alone::Ask, Fail> {
     let program = std::env::current_exe().map_err(|error| Fail::input(format!("this program's path: {error}")))?;
     let (root, described) = (root.clone(), described(root)?);
+    let last: Mutex<Option<Built>> = Mutex::new(None);
     Ok(Arc::new(move |question| {
         if question.engine == OWN {
             return alone::ask(&alone::command(&program), question);
         }
-        let failed = |reason: String| NoAnswer::Failed(reason);
-        let engine = described.get(&question.engine).map_err(|error| failed(error.to_string()))?;
-        let oracle = start(&root, engine, question.limits).map_err(|fail| failed(fail.to_string()))?;
-        let robot = featherbench_bench::alone::robot(&question.robot, question.seed)?;
-        featherbench_bench::alone::measure(&oracle, &robot, question, || None)
+        let mut last = last.lock().unwrap_or_else(PoisonError::into_inner);
+        if last.as_ref().is_none_or(|built| !built.is_for(question)) {
+            // The process of the last robot ends before the next one begins.
+            *last = None;
+            *last = Some(Built::new(&root, &described, question));
+        }
+        last.as_ref().map_or_else(|| Err(NoAnswer::Failed("there is no oracle".into())), |built| built.measure(question))
     }))
+}
+
+/// An oracle with a robot, for the questions about it that follow each other.
+struct Built {
+    /// The question that it was built for.
+    first: Question,
+    /// The oracle, its robot and the seconds from the description to the model; or why there is none.
+    state: Result<(Oracle, Robot, f64), NoAnswer>,
+}
+
+impl Built {
+    /// Starts the oracle of a question and lets it build the robot.
+    fn new(root: &Root, described: &Engines, question: &Question) -> Self {
+        let failed = |reason: String| NoAnswer::Failed(reason);
+        let build = || {
+            let engine = described.get(&question.engine).map_err(|error| failed(error.to_string()))?;
+            let oracle = start(root, engine, question.limits).map_err(|fail| failed(fail.to_string()))?;
+            let robot = featherbench_bench::alone::robot(&question.robot, question.seed)?;
+            let begun = Instant::now();
+            drop(oracle.prepare(&robot, question.quantity, &question.method, &robot.states)?);
+            let seconds = begun.elapsed().as_secs_f64();
+            Ok((oracle, robot, seconds))
+        };
+        Self { first: question.clone(), state: build() }
+    }
+
+    /// Whether a question is about the same robot and engine.
+    fn is_for(&self, question: &Question) -> bool {
+        let key = |of: &Question| (of.engine.clone(), of.robot.clone(), of.seed, of.limits);
+        key(&self.first) == key(question)
+    }
+
+    fn measure(&self, question: &Question) -> Result<Measured, NoAnswer> {
+        let (oracle, robot, build) = self.state.as_ref().map_err(NoAnswer::clone)?;
+        let measured = featherbench_bench::alone::measure(oracle, robot, question, || None)?;
+        Ok(Measured { build: *build, ..measured })
+    }
 }
 
 /// Prints what answers.
@@ -224,6 +226,11 @@ pub fn status(root: &Root) -> Result<(), Fail> {
                     broken.push(engine.name.as_str());
                     format!("does not answer: {fail}")
                 }
+            },
+            Start::PythonAlone { .. } => match start(root, engine, Limits::default()) {
+                Ok(oracle) => oracle.identity().version.clone(),
+                Err(Fail::Missing { message, .. }) => message,
+                Err(fail) => fail.to_string(),
             },
             Start::Cargo { folder, program } => Compiled::program(root, engine, folder, program).told(),
             Start::CargoLibrary { folder, library } => Compiled::library(root, engine, folder, library).told(),

@@ -29,7 +29,11 @@ pub fn load(root: &Root, suite: &str, live: bool, seed: Option<u64>) -> Result<L
     let states = parsed.states;
     let mut files = Files { root, live, compiler: None };
     let mut robots: Vec<Robot> = Vec::with_capacity(parsed.robots.len());
-    for entry in &parsed.robots {
+    let left_out = parsed.robots.iter().filter(|entry| entry.only_live && !live).count();
+    if left_out > 0 {
+        eprintln!("note: {left_out} of the suite's robots need --live and are left out");
+    }
+    for entry in parsed.robots.iter().filter(|entry| live || !entry.only_live) {
         for (base, named) in entry.bases() {
             let Described { description, warnings, origin, file, keyframes } = files.describe(entry, base)?;
             let bad = |error: &dyn std::error::Error| Fail::input(format!("{}: robot '{}': {error}", path.display(), description.name));

@@ -10,7 +10,7 @@ use std::time::Duration;
 
 fn question(robot: &str, limits: Limits) -> Question {
     let (engine, method) = (OWN.to_owned(), "aba".to_owned());
-    Question { engine, robot: robot.into(), quantity: Quantity::ForwardDynamics, method, seed: 3, seconds: 0.001, limits }
+    Question { engine, robot: robot.into(), quantity: Quantity::ForwardDynamics, method, threads: 1, seed: 3, seconds: 0.001, limits }
 }
 
 fn program() -> Vec<OsString> {
@@ -35,6 +35,34 @@ fn a_child_gives_the_answer_of_this_process_with_its_time_and_memory() {
     assert!(measured.calls.len() >= 3 && measured.calls.iter().all(|&time| time > 0.0) && measured.build > 0.0, "{measured:?}");
     let memory = measured.memory.unwrap();
     assert!(memory.peak >= memory.resident && memory.resident > 100_000, "{memory:?}");
+}
+
+#[test]
+fn a_method_on_two_threads_gives_the_bits_of_one() {
+    let ask = |robot: &str, quantity, method: &str, threads| {
+        let question = Question { quantity, method: method.into(), threads, ..question(robot, Limits::default()) };
+        ask(&program(), &question).map(|measured| measured.answer.iter().map(|x| x.to_bits()).collect::<Vec<_>>())
+    };
+    let tree = "binary_tree:depth=9";
+    for (quantity, parallel, serial) in [
+        (Quantity::InverseDynamics, "rnea_parallel", None),
+        (Quantity::ForwardDynamics, "aba_parallel", Some("aba")),
+        (Quantity::ForwardDynamics, "ltdl_parallel", None),
+        (Quantity::MassMatrixSparse, "crba_parallel", Some("crba")),
+        (Quantity::Factorization, "ltdl_parallel", Some("ltdl")),
+    ] {
+        let one = ask(tree, quantity, parallel, 1).unwrap();
+        assert!(!one.is_empty() && ask(tree, quantity, parallel, 2).unwrap() == one, "{parallel}");
+        if let Some(serial) = serial {
+            assert!(ask(tree, quantity, serial, 1).unwrap() == one, "{parallel} beside {serial}");
+        }
+    }
+    let chain = "chain:n=40,layout=spatial";
+    assert_eq!(ask(chain, Quantity::ForwardDynamics, "twisted", 2), ask(chain, Quantity::ForwardDynamics, "twisted", 1));
+    // What does not divide this robot says so.
+    for (robot, method) in [(chain, "aba_parallel"), (tree, "twisted")] {
+        assert!(matches!(ask(robot, Quantity::ForwardDynamics, method, 2), Err(NoAnswer::NotOffered(_))), "{robot} {method}");
+    }
 }
 
 #[test]

@@ -71,13 +71,18 @@ fn formats_refuse_what_they_cannot_hold() {
 fn broken_suites_are_refused_by_file_and_key() {
     let sandbox = Sandbox::new();
     let good = std::fs::read_to_string(project().join("datasets/suites/smoke.toml")).unwrap();
-    let cases: [(&str, String, &[&str]); 9] = [
+    let cases: [(&str, String, &[&str]); 10] = [
         ("unknown study", good.replace("[operations]", "[operashuns]"), &["no study 'operashuns'", "operations"]),
         ("unknown engine", good.replace("\"mujoco\"", "\"mujoko\""), &["there is no engine 'mujoko'", "pinocchio, mujoco, drake"]),
         (
             "engine without a clock",
             good.replace("[timing]", "[timing]\nengines = [\"mujoco\"]"),
             &["mujoco cannot be timed", "drake, dart"],
+        ),
+        (
+            "best of an engine that is not timed",
+            good.replace("[timing]", "[timing]\nbest_of = [\"drake\"]"),
+            &["'drake' is in best_of, but not in engines"],
         ),
         ("unknown key", good.replace("states = 20", "stades = 20"), &["stades", "line 4"]),
         ("unknown model", good.replace("\"panda\"", "\"pander\""), &["pander.json"]),
@@ -95,6 +100,12 @@ fn broken_suites_are_refused_by_file_and_key() {
         sandbox.run(&["run", "--suite", file.to_str().unwrap()]).expect(2, words);
     }
     sandbox.run(&["run", "--suite", "nowhere"]).expect(2, &["nowhere.toml"]);
+    // The file of a live robot: a suite leaves it out by name, or it is an error.
+    let robots = "[[robot]]\nmodel = \"panda\"\nfamily = \"robot\"\n[[robot]]\nurdf = \"a.urdf\"\nfamily = \"robot\"\n";
+    let suite = |more: &str| sandbox.write("live.toml", &format!("about = \"x\"\nseed = 1\n[operations]\n{robots}{more}"));
+    let run = |file: &std::path::Path| sandbox.run(&["run", "--suite", file.to_str().unwrap(), "--out", "live"]);
+    run(&suite("")).expect(3, &["a.urdf", "which only live runs have"]);
+    run(&suite("only_live = true\n")).expect(0, &["report:"]);
     sandbox.run(&["run", "--filter", "("]).expect(2, &["--filter"]);
 }
 

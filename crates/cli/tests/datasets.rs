@@ -23,12 +23,13 @@ fn generated() -> Vec<(String, String)> {
     lines.map(|(name, spec)| (name.to_owned(), spec.to_owned())).collect()
 }
 
+/// Nine tenths are recorded answers. What else is kept may grow by half a megabyte before somebody has to choose.
 #[test]
-fn the_data_stay_below_eight_megabytes() {
+fn the_data_stay_below_eight_and_a_half_megabytes() {
     let files = files(&project().join("datasets"));
     assert!(files.len() >= 50, "{} files in datasets", files.len());
     let bytes: u64 = files.iter().map(|path| path.metadata().unwrap().len()).sum();
-    assert!(bytes <= 8_000_000, "{bytes} bytes in datasets");
+    assert!(bytes <= 8_500_000, "{bytes} bytes in datasets");
 }
 
 #[test]

@@ -15,7 +15,7 @@ fn engines() -> Engines {
 fn each_engine_has_the_folder_of_its_start() {
     for engine in engines().iter() {
         let file = match &engine.start {
-            Start::Python { module } => format!("oracles/featherbench_oracles/{module}/__main__.py"),
+            Start::Python { module } | Start::PythonAlone { module } => format!("oracles/featherbench_oracles/{module}/__main__.py"),
             Start::Cargo { folder, .. } | Start::CargoLibrary { folder, .. } => format!("oracles/{folder}/Cargo.toml"),
             Start::Native(library) => format!("oracles/native/{}/CMakeLists.txt", library.folder),
         };
@@ -35,7 +35,7 @@ fn what_cargo_builds_is_locked_to_the_version() {
             Start::Cargo { folder, program } => (folder, program.clone()),
             // A library's name is its package's, as a word of Rust.
             Start::CargoLibrary { folder, library } => (folder, library.replace('_', "-")),
-            Start::Python { .. } | Start::Native(_) => continue,
+            Start::Python { .. } | Start::PythonAlone { .. } | Start::Native(_) => continue,
         };
         let engines = engines();
         let package = engines.package(engine).unwrap();

@@ -1,9 +1,11 @@
-//! Tests that need what a new machine may not have: Python, the reference engines, rapier, dynibo, a browser.
+//! Tests that need what a new machine may not have: Python, the reference engines, rapier, dynibo, faer, nalgebra, adam, a browser.
 //!
 //! Each is run if it can be, and otherwise listed as skipped. With `FEATHERBENCH_REQUIRE_ALL` set, as in CI, a skip is a failure. The
 //! native oracles are required at night only, with `FEATHERBENCH_NIGHTLY` set.
 //! The tests do not use libtest: its captured output would hide the skips.
 
+#[path = "outside/adam.rs"]
+mod adam;
 #[path = "outside/added.rs"]
 mod added;
 #[path = "outside/compared.rs"]
@@ -14,6 +16,10 @@ mod compiled;
 mod counted;
 #[path = "outside/dynibo.rs"]
 mod dynibo;
+#[path = "outside/factors.rs"]
+mod factors;
+#[path = "outside/library.rs"]
+mod library;
 #[path = "outside/native.rs"]
 mod native;
 #[path = "outside/rapier.rs"]
@@ -67,11 +73,22 @@ fn main() -> ExitCode {
         ("big robots are refused or answered by the native oracles", native::big_robots_are_refused_or_answered),
         ("native oracles that are not there are named", native::no_compiler),
         ("instructions that were not counted are told", counted::not_counted),
-        ("dynibo conforms", dynibo::conforms),
+        ("dynibo conforms", || library::conforms("dynibo", &["dynibo has no armature"])),
         ("dynibo agrees, with any gravity", || dynibo::with_dynibo(dynibo::agrees)),
         ("dynibo loses digits of M on a straight chain", || dynibo::with_dynibo(dynibo::loses_digits_of_a_straight_chain)),
         ("dynibo answers a big robot", || dynibo::with_dynibo(|dynibo| native::big_robot_is_refused_or_answered("dynibo", dynibo))),
         ("dynibo refuses what it has not", || dynibo::with_dynibo(dynibo::refuses)),
+        ("faer conforms", || library::conforms("faer", &["factor_entries by sparse_natural"])),
+        ("faer factorizes in every order", || library::with("faer", factors::agrees)),
+        ("faer's fill-in is that of the theory", || library::with("faer", factors::fills_as_the_theory_says)),
+        ("faer is given our matrix, and says what is too large", || library::with("faer", factors::refuses)),
+        ("nalgebra conforms", || library::conforms("nalgebra", &["solve by dense"])),
+        ("nalgebra factorizes", || library::with("nalgebra", factors::agrees)),
+        ("nalgebra says what is too large", || library::with("nalgebra", factors::refuses)),
+        ("adam conforms", adam::conforms),
+        ("adam agrees, fixed and floating", || adam::with_adam(adam::agrees)),
+        ("adam is clocked beside its loop", || adam::with_adam(adam::is_clocked)),
+        ("adam refuses what it has not", || adam::with_adam(adam::refuses)),
         ("rapier that cannot be built is named", rapier::not_to_be_built),
         ("rapier conforms", rapier::conforms),
         ("rapier agrees on every joint that it has", || rapier::with_rapier(rapier::agrees)),

@@ -6,7 +6,7 @@
 //! Gravity enters as an acceleration −g of the base. Shapes: q has `nq` numbers; v, τ and v̇ have `nv`. Units: SI, angles in radians.
 //! Cost: O(n), with one division per one-dof joint. A call does not allocate.
 //!
-//! [`Aba::run`] has the three recursions. One body's part of each is a function here:
+//! `Inputs` has the three recursions, over a tree or a sub-tree. One body's part of each is a function here:
 //!
 //! | pass | function | what it computes, in the book's symbols |
 //! |---|---|---|
@@ -23,7 +23,7 @@
 //! In the code U is `upper_u`, because `u` is the book's u.
 
 use crate::error::{Pivot, expect};
-use crate::step::{add_joint, by_kind, cross_joint, expect_bodies, expect_wrenches, newton_euler};
+use crate::step::{add_joint, by_kind, cross_joint, expect_workspace, expect_wrenches, newton_euler};
 use crate::{DimensionError, Error};
 use featherbench_model::{JointKind, Model, Topology};
 use featherbench_spatial::{ArticulatedInertia, Force, Ldl3, Lift, Mat3, Motion, Real, Sym3, Transform, Vec3};
@@ -134,46 +134,42 @@ impl<T: Real> Aba<T> {
         wrenches: Option<&[Force<T>]>,
         a: &mut [T],
     ) -> Result<(), Error> {
-        self.expect_shapes(model, q, v, tau, wrenches, a)?;
-        let joints = model.topology.joints();
-        let mut smallest = Pivot::none();
+        self.recurse(model, q, v, tau, wrenches, a)
+    }
 
+    /// [`Aba::run`] as a part of its caller, and so with the instructions that the caller is compiled for.
+    #[inline(always)]
+    pub(crate) fn recurse<P: Real + Lift<T>>(
+        &mut self,
+        model: &Model<P>,
+        q: &[T],
+        v: &[T],
+        tau: &[T],
+        wrenches: Option<&[Force<T>]>,
+        a: &mut [T],
+    ) -> Result<(), Error> {
+        let inputs = Inputs { model, q, v, tau, wrenches };
+        self.expect_shapes(&inputs, a)?;
         let Self { links, path } = self;
         path[0].a.lin = -model.gravity.lift();
 
-        // outward: v_i = X v_p + S q̇,  c_i,  pᴬ = v_i ×* I v_i − f_ext
-        for (i, joint) in joints.iter().enumerate() {
-            let link = &mut links[i];
-            by_kind!(joint.kind, set_moving, model, i, q, v, path, link);
-            if let Some(wrenches) = wrenches {
-                link.p -= model.labels[i].force_to_compiled(wrenches[i]);
-            }
-        }
-
-        // inward: Iᵃ = Iᴬ − U D⁻¹ Uᵀ,  pᵃ = pᴬ + Iᵃ c + U D⁻¹ u,  Iᴬ_p += X* Iᵃ X⁻¹,  pᴬ_p += X* pᵃ
-        for (i, joint) in joints.iter().enumerate().rev() {
-            let (before, rest) = links.split_at_mut(i);
-            let parent = joint.parent.map(|parent| &mut before[parent].p);
-            by_kind!(joint.kind, pass_to_parent, model, i, tau, &mut rest[0], parent, path, &mut smallest);
-        }
-
-        // outward: a' = X a_p + c,  q̈ = D⁻¹ (u − Uᵀ a'),  a_i = a' + S q̈
-        for (i, joint) in joints.iter().enumerate() {
-            by_kind!(joint.kind, accelerate, model, i, tau, &mut a[joint.v..], &links[i], path, &mut smallest);
-        }
+        let mut smallest = Pivot::none();
+        inputs.outward(0, links, path);
+        inputs.inward(0, links, path, None, &mut smallest);
+        inputs.accelerate(0, links, path, a, &mut smallest);
         Ok(smallest.check()?)
     }
 
-    /// The solution `x` of `M x = f`: the accelerations by joint forces alone, with v = 0 and no gravity, at the configuration of the last successful run with this
-    /// model.
-    /// It uses the articulated inertias of that run again, and so takes a third of its time.
+    /// The solution `x` of `M x = f`: the accelerations by joint forces alone, with v = 0 and no gravity.
+    ///
+    /// The configuration is that of the last successful run with this model. The articulated inertias of that run are used again. So it takes
+    /// a third of the time of a run.
     ///
     /// # Errors
     /// [`DimensionError`] when an argument or the workspace does not fit the model.
     pub fn solve<P: Real + Lift<T>>(&mut self, model: &Model<P>, f: &[T], x: &mut [T]) -> Result<(), DimensionError> {
         let Self { links, path } = self;
-        expect_bodies(model, links.len())?;
-        expect("path slots of the workspace", model.topology.slots(), path.len())?;
+        expect_workspace(model, links.len(), path.len())?;
         expect("joint forces f", model.topology.nv(), f.len())?;
         expect("solution x", model.topology.nv(), x.len())?;
         let joints = model.topology.joints();
@@ -189,11 +185,8 @@ impl<T: Real> Aba<T> {
             by_kind!(joint.kind, pass_force_to_parent, model, i, f, &mut rest[0], parent);
         }
 
-        // outward: as in a run, with v = 0
-        let mut smallest = Pivot::none();
-        for (i, joint) in joints.iter().enumerate() {
-            by_kind!(joint.kind, accelerate, model, i, f, &mut x[joint.v..], &links[i], path, &mut smallest);
-        }
+        // outward: as in a run, with v = 0. One that succeeded has left no pivot to judge.
+        Inputs { model, q: &[], v: &[], tau: f, wrenches: None }.accelerate(0, links, path, x, &mut Pivot::none());
         Ok(())
     }
 
@@ -203,36 +196,90 @@ impl<T: Real> Aba<T> {
         model.topology.joints()[i].kind.recall(&model.placements[i], &self.links[i].x)
     }
 
-    fn expect_shapes<P: Real>(
-        &self,
-        model: &Model<P>,
-        q: &[T],
-        v: &[T],
-        tau: &[T],
-        wrenches: Option<&[Force<T>]>,
-        a: &[T],
-    ) -> Result<(), DimensionError> {
-        expect_shapes(self.links.len(), model, q, v, tau, wrenches, a)?;
-        expect("path slots of the workspace", model.topology.slots(), self.path.len())
+    fn expect_shapes<P: Real>(&self, inputs: &Inputs<'_, P, T>, a: &[T]) -> Result<(), DimensionError> {
+        expect_workspace(inputs.model, self.links.len(), self.path.len())?;
+        inputs.expect_shapes(a)
     }
 }
 
-/// An error if an argument or a workspace of so many bodies does not fit the model.
-fn expect_shapes<P: Real, T: Real>(
-    workspace: usize,
-    model: &Model<P>,
-    q: &[T],
-    v: &[T],
-    tau: &[T],
-    wrenches: Option<&[Force<T>]>,
-    a: &[T],
-) -> Result<(), DimensionError> {
-    expect_bodies(model, workspace)?;
-    expect("configuration q", model.topology.nq(), q.len())?;
-    expect("velocity v", model.topology.nv(), v.len())?;
-    expect("joint forces tau", model.topology.nv(), tau.len())?;
-    expect("acceleration a", model.topology.nv(), a.len())?;
-    expect_wrenches(model, wrenches)
+/// What the recursions read.
+pub(crate) struct Inputs<'a, P, T> {
+    pub(crate) model: &'a Model<P>,
+    pub(crate) q: &'a [T],
+    pub(crate) v: &'a [T],
+    pub(crate) tau: &'a [T],
+    pub(crate) wrenches: Option<&'a [Force<T>]>,
+}
+
+/// The recursions over consecutive bodies: `links` are those of the bodies from `first` on. All of the tree, or a sub-tree.
+///
+/// They are always inlined: for all of the tree, `first` is known to be 0.
+impl<P: Real + Lift<T>, T: Real> Inputs<'_, P, T> {
+    /// Pass 1, outward: `v_i = X v_p + S q̇`, `c_i`, `pᴬ = v_i ×* I v_i − f_ext`. The path begins with ω of the first body's parent.
+    #[inline(always)]
+    fn outward(&self, first: usize, links: &mut [Link<T>], path: &mut [OnPath<T>]) {
+        let Self { model, q, v, .. } = *self;
+        for (i, link) in (first..).zip(links) {
+            by_kind!(model.topology.joints()[i].kind, set_moving, model, i, q, v, path, link);
+            self.subtract_wrench(i, link);
+        }
+    }
+
+    /// `pᴬ −= f_ext`.
+    #[inline(always)]
+    fn subtract_wrench(&self, i: usize, link: &mut Link<T>) {
+        if let Some(wrenches) = self.wrenches {
+            link.p -= self.model.labels[i].force_to_compiled(wrenches[i]);
+        }
+    }
+
+    /// Pass 2, inward: `Iᵃ = Iᴬ − U D⁻¹ Uᵀ`, `pᵃ = pᴬ + Iᵃ c + U D⁻¹ u`, `Iᴬ_p += X* Iᵃ X⁻¹`, `pᴬ_p += X* pᵃ`. The pᵃ that goes to a body
+    /// before the first is added to `outside`.
+    #[inline(always)]
+    fn inward(
+        &self,
+        first: usize,
+        links: &mut [Link<T>],
+        path: &mut [OnPath<T>],
+        mut outside: Option<&mut Force<T>>,
+        smallest: &mut Pivot,
+    ) {
+        let Self { model, tau, .. } = *self;
+        let joints = &model.topology.joints()[first..first + links.len()];
+        for (k, joint) in joints.iter().enumerate().rev() {
+            let (before, rest) = links.split_at_mut(k);
+            let parent = match joint.parent.map(|parent| parent.checked_sub(first)) {
+                Some(Some(parent)) => Some(&mut before[parent].p),
+                Some(None) => outside.as_deref_mut(),
+                None => None,
+            };
+            by_kind!(joint.kind, pass_to_parent, model, first + k, tau, &mut rest[0], parent, path, smallest);
+        }
+    }
+
+    /// Pass 3, outward: `a' = X a_p + c`, `q̈ = D⁻¹ (u − Uᵀ a')`, `a_i = a' + S q̈`. The path begins with a of the first body's parent, and
+    /// `a` with the dofs of the first body.
+    #[inline(always)]
+    fn accelerate(&self, first: usize, links: &[Link<T>], path: &mut [OnPath<T>], a: &mut [T], smallest: &mut Pivot) {
+        let Self { model, tau, .. } = *self;
+        let joints = &model.topology.joints()[first..first + links.len()];
+        let Some(first_dof) = joints.first().map(|joint| joint.v) else { return };
+        for ((i, joint), link) in (first..).zip(joints).zip(links) {
+            by_kind!(joint.kind, accelerate, model, i, tau, &mut a[joint.v - first_dof..], link, path, smallest);
+        }
+    }
+}
+
+impl<P: Real, T: Real> Inputs<'_, P, T> {
+    /// An error if an argument does not fit the model.
+    pub(crate) fn expect_shapes(&self, a: &[T]) -> Result<(), DimensionError> {
+        let topology = &self.model.topology;
+        expect("configuration q", topology.nq(), self.q.len())?;
+        expect("velocity v", topology.nv(), self.v.len())?;
+        expect("joint forces tau", topology.nv(), self.tau.len())?;
+        expect("acceleration a", topology.nv(), a.len())?;
+        expect_wrenches(topology, self.wrenches)
+    }
 }
 
 /// Pass 1 for one body: X, which is returned.
@@ -293,11 +340,10 @@ fn pass_to_parent<T: Real, P: Real + Lift<T>>(
 ) {
     let joints = model.topology.joints();
     let (joint, dof) = (&joints[i], joints[i].v);
-    let own = |i: usize| model.inertias[i].lift::<T>().to_articulated();
     // Iᴬ is complete: the children have been reached
     let is_leaf = joints.get(i + 1).is_none_or(|next| next.parent != Some(i));
     if is_leaf {
-        path[joint.slot].inertia = own(i);
+        path[joint.slot].inertia = own_inertia(model, i);
     }
     let inertia = &path[joint.slot].inertia;
     let (apparent, force) = match kind {
@@ -320,7 +366,7 @@ fn pass_to_parent<T: Real, P: Real + Lift<T>>(
         let x = kind.recall(&model.placements[i], &link.x);
         let sum = &mut path[joint.parent_slot].inertia;
         // the last child comes first
-        let before_it = if joint.slot == joint.parent_slot { own(parent) } else { *sum };
+        let before_it = if joint.slot == joint.parent_slot { own_inertia(model, parent) } else { *sum };
         *sum = match apparent {
             Some(apparent) => before_it + apparent.to_parent(&x),
             None => before_it,
@@ -380,6 +426,12 @@ fn accelerate<T: Real, P: Real + Lift<T>>(
         }
     }
     path[joint.slot].a = add_joint(kind, carried, kind.motion(&model.subspaces[i], a));
+}
+
+/// The inertia of body `i` alone, as an articulated one.
+#[inline(always)]
+fn own_inertia<T: Real, P: Real + Lift<T>>(model: &Model<P>, i: usize) -> ArticulatedInertia<T> {
+    model.inertias[i].lift().to_articulated()
 }
 
 /// The three armatures of the spherical joint whose first dof is `dof`.

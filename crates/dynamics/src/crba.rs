@@ -77,6 +77,17 @@ impl<T: Real> Crba<T> {
     /// # Errors
     /// [`DimensionError`] when an argument or the workspace does not fit the model.
     pub fn run<P: Real + Lift<T>>(&mut self, model: &Model<P>, q: &[T], matrix: &mut TreeSparse<T>) -> Result<(), DimensionError> {
+        self.recurse::<P, false>(model, q, matrix)
+    }
+
+    /// [`Crba::run`] as a part of its caller. If `INLINED`, all of it is: so it has the instructions that the caller is compiled for.
+    #[inline(always)]
+    pub(crate) fn recurse<P: Real + Lift<T>, const INLINED: bool>(
+        &mut self,
+        model: &Model<P>,
+        q: &[T],
+        matrix: &mut TreeSparse<T>,
+    ) -> Result<(), DimensionError> {
         let Self { composites, placements, forces } = self;
         expect_shapes(model, composites.len(), q, matrix)?;
         expect("dofs of the workspace", model.topology.nv(), forces.len())?;
@@ -102,7 +113,7 @@ impl<T: Real> Crba<T> {
                 // Iᶜ_p += X* Iᶜ_i X⁻¹,  F_k = X* F_k
                 let moved = composites[i].to_parent(x);
                 composites[parent] += moved;
-                forces.carry_to_parent(x, matrix.supported(joint.v));
+                forces.carry::<INLINED>(x, matrix.supported(joint.v));
             }
         }
         for (k, armature) in model.armature.iter().enumerate() {
@@ -160,16 +171,28 @@ impl<T: Real> Forces<T> {
     /// yet.
     #[inline(always)]
     fn carry_to_parent(&mut self, x: &Transform<T>, dofs: Range<usize>) {
+        self.carry::<false>(x, dofs);
+    }
+
+    /// The same. If `INLINED`, all of it is a part of its caller.
+    #[inline(always)]
+    fn carry<const INLINED: bool>(&mut self, x: &Transform<T>, dofs: Range<usize>) {
         let end = Self::LANES + dofs.end;
         let start = end - dofs.len().next_multiple_of(Self::LANES);
         let [nx, ny, nz] = self.ang.each_mut().map(|component| &mut component[start..end]);
         let [fx, fy, fz] = self.lin.each_mut().map(|component| &mut component[start..end]);
-        transform(x, nx, ny, nz, fx, fy, fz);
+        if INLINED { transform(x, nx, ny, nz, fx, fy, fz) } else { transform_apart(x, nx, ny, nz, fx, fy, fz) }
     }
 }
 
-/// `F = X* F`, component by component. It is a function of its own: so the compiler knows that the slices do not overlap.
+/// [`transform`] as a function of its own: so the compiler knows that the slices do not overlap, and takes several numbers at a time.
 #[inline(never)]
+fn transform_apart<T: Real>(x: &Transform<T>, nx: &mut [T], ny: &mut [T], nz: &mut [T], fx: &mut [T], fy: &mut [T], fz: &mut [T]) {
+    transform(x, nx, ny, nz, fx, fy, fz);
+}
+
+/// `F = X* F`, component by component.
+#[inline(always)]
 fn transform<T: Real>(x: &Transform<T>, nx: &mut [T], ny: &mut [T], nz: &mut [T], fx: &mut [T], fy: &mut [T], fz: &mut [T]) {
     let x = *x;
     for (((nx, ny), nz), ((fx, fy), fz)) in nx.iter_mut().zip(ny).zip(nz).zip(fx.iter_mut().zip(fy).zip(fz)) {

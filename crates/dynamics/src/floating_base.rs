@@ -148,6 +148,18 @@ pub enum PartitionError {
     /// An argument has the wrong size.
     #[error(transparent)]
     Dimension(#[from] DimensionError),
+    /// The mass matrix is not positive definite.
+    #[error(transparent)]
+    NotPositiveDefinite(#[from] NotPositiveDefinite),
+}
+
+impl From<Error> for PartitionError {
+    fn from(error: Error) -> Self {
+        match error {
+            Error::Dimension(error) => Self::Dimension(error),
+            Error::NotPositiveDefinite(error) => Self::NotPositiveDefinite(error),
+        }
+    }
 }
 
 /// The workspace of block elimination on a mass matrix with a floating base.
@@ -190,6 +202,31 @@ impl<T: Real> FloatingBase<T> {
         NoFloatingBase::check(topology)?;
         let coupling = vec![[T::zero(); BASE]; topology.nv() - BASE];
         Ok(Self { matrix: TreeSparse::new(topology), ltdl: Ltdl::new(topology), forces: vec![T::zero(); topology.nv()], coupling })
+    }
+
+    /// The workspace of a robot of this topology, with its mass matrix factored. It allocates.
+    ///
+    /// # Errors
+    /// [`PartitionError`] when the robot has no floating base, or the matrix has another topology or is not positive definite.
+    ///
+    /// ```
+    /// use featherbench_dynamics::{FloatingBase, mass_matrix};
+    /// use featherbench_model::Model;
+    /// use featherbench_robots::{Family, StateBatch};
+    ///
+    /// let model: Model<f64> = Model::build(&Family::parse("quadruped")?.generate()?)?;
+    /// let states = StateBatch::random(&model, 1, 1);
+    /// let mut base = FloatingBase::of(&model.topology, &mass_matrix(&model, states.q(0))?)?;
+    /// let joints = model.topology.nv() - 6;
+    /// assert_eq!((base.blocks().joint_dofs(), base.joint_complement_dense()?.len()), (joints, joints * joints));
+    /// // A base whose joints move freely meets less inertia than one with locked joints.
+    /// assert!(base.articulated_inertia()[0][0] < base.blocks().base()[0][0]);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn of(topology: &Topology, matrix: &TreeSparse<T>) -> Result<Self, PartitionError> {
+        let mut base = Self::new(topology)?;
+        base.run(matrix)?;
+        Ok(base)
     }
 
     /// Takes a mass matrix and factors it.
@@ -271,6 +308,32 @@ impl<T: Real> FloatingBase<T> {
             }
         }
         Ok(())
+    }
+
+    /// S_jj, as [`FloatingBase::joint_complement`] writes it. It allocates (nv − 6)² numbers.
+    ///
+    /// # Errors
+    /// [`Error`](enum@Error) when M_bb is not positive definite: a robot without mass.
+    ///
+    /// ```
+    /// use featherbench_dynamics::{FloatingBase, mass_matrix};
+    /// use featherbench_model::Model;
+    /// use featherbench_robots::{Family, StateBatch};
+    ///
+    /// let model: Model<f64> = Model::build(&Family::parse("snake:n=3")?.generate()?)?;
+    /// let matrix = mass_matrix(&model, StateBatch::random(&model, 1, 1).q(0))?;
+    /// let complement = FloatingBase::of(&model.topology, &matrix)?.joint_complement_dense()?;
+    /// // Its inverse is the joint block of M⁻¹.
+    /// let (n, m) = (matrix.size(), matrix.size() - 6);
+    /// let inverse = matrix.into_ltdl()?.dense_inverse();
+    /// let entry: f64 = (0..m).map(|k| complement[k] * inverse[(6 + k) * n + 6]).sum();
+    /// assert!((entry - 1.0).abs() < 1e-12);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn joint_complement_dense(&mut self) -> Result<Vec<T>, Error> {
+        let mut complement = vec![T::zero(); self.coupling.len() * self.coupling.len()];
+        self.joint_complement(&mut complement)?;
+        Ok(complement)
     }
 }
 

@@ -94,7 +94,7 @@ mod tree_sparse;
 mod triangular;
 
 pub use aba::{Aba, ParallelAba, Twisted, forward_dynamics};
-pub use batch::{Batch, BatchError, Cause, Element, Failure, Number, to_lanes, to_rows};
+pub use batch::{Batch, BatchError, Cause, Element, Failure, NoSuchWidth, Number, Width, to_lanes, to_rows};
 pub use bias::{Bias, bias_force};
 pub use center_of_mass::{CenterOfMass, MassCenter, center_of_mass};
 pub use crba::{Crba, ParallelCrba, mass_matrix};
@@ -113,6 +113,7 @@ pub use ltdl::{Ltdl, ParallelLtdl};
 pub use ltl::Ltl;
 pub use momentum::{CentroidalMomentum, Momentum, centroidal_momentum};
 pub use packed::{PackedAba, PackedCenterOfMass, PackedCrba, PackedJacobian, PackedKinematics, PackedModel, PackedMomentum, PackedRnea};
+pub use parallel::Division;
 pub use parents::{NotATree, depth_first_order};
 pub use refined::{Refined, refined_forward_dynamics};
 pub use rnea::{ParallelRnea, Rnea, inverse_dynamics};

@@ -146,10 +146,35 @@ impl<T: Real> Ltdl<T> {
         smallest.check()
     }
 
+    /// [`Ltdl::factor`] for registers, as a part of its caller, and so with the instructions that the caller is compiled for.
+    #[inline(always)]
+    pub(crate) fn factor_registers(&mut self) -> Result<(), NotPositiveDefinite> {
+        lanes::factor(&mut self.matrix, &self.plan, &mut self.scratch).check()
+    }
+
+    /// [`Ltdl::solve`] for registers, as a part of its caller.
+    #[inline(always)]
+    pub(crate) fn solve_registers(&self, x: &mut [T]) -> Result<(), DimensionError> {
+        expect("right-hand side x", self.matrix.size(), x.len())?;
+        lanes::solve(&self.matrix, &self.plan, x);
+        Ok(())
+    }
+
     /// Solves `M x = b` in place: `x` holds b before and the solution afterwards.
     ///
     /// # Errors
     /// [`DimensionError`] when `x` has not one number per dof.
+    ///
+    /// ```
+    /// use featherbench_dynamics::TreeSparse;
+    /// let mut matrix = TreeSparse::of_parents(&[None, Some(0)])?;
+    /// matrix.values_mut().copy_from_slice(&[5.0, 4.0, 8.0]);
+    /// let ltdl = matrix.into_ltdl()?;
+    /// let mut x = [9.0_f64, 12.0];
+    /// ltdl.solve(&mut x)?;
+    /// assert!(x.iter().all(|x| (x - 1.0).abs() < 1e-15));
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     pub fn solve(&self, x: &mut [T]) -> Result<(), DimensionError> {
         expect("right-hand side x", self.matrix.size(), x.len())?;
         match Blocked::find() {
@@ -166,6 +191,18 @@ impl<T: Real> Ltdl<T> {
     ///
     /// # Errors
     /// [`DimensionError`] when `inverse` has not `nv`² numbers.
+    ///
+    /// ```
+    /// use featherbench_dynamics::TreeSparse;
+    /// let mut matrix = TreeSparse::of_parents(&[None, Some(0)])?;
+    /// matrix.values_mut().copy_from_slice(&[5.0, 4.0, 8.0]);
+    /// let ltdl = matrix.into_ltdl()?;
+    /// // M⁻¹ = [[8, −4], [−4, 5]] / 24
+    /// let mut inverse = [0.0_f64; 4];
+    /// ltdl.inverse(&mut inverse)?;
+    /// assert!(inverse.iter().zip([8.0, -4.0, -4.0, 5.0]).all(|(x, due)| (24.0 * x - due).abs() < 1e-14));
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     pub fn inverse(&self, inverse: &mut [T]) -> Result<(), DimensionError> {
         expect("inverse of the mass matrix", self.matrix.size() * self.matrix.size(), inverse.len())?;
         match Blocked::find() {
@@ -173,6 +210,26 @@ impl<T: Real> Ltdl<T> {
             None => invert(&self.matrix, inverse),
         }
         Ok(())
+    }
+
+    /// The inverse of M, as [`Ltdl::inverse`] writes it. It allocates `nv`² numbers.
+    ///
+    /// ```
+    /// use featherbench_dynamics::TreeSparse;
+    /// let mut matrix = TreeSparse::of_parents(&[None, Some(0)])?;
+    /// matrix.values_mut().copy_from_slice(&[5.0, 4.0, 8.0]);
+    /// let ltdl = matrix.into_ltdl()?;
+    /// assert!((ltdl.dense_inverse()[3] - 5.0 / 24.0_f64).abs() < 1e-16);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn dense_inverse(&self) -> Vec<T> {
+        let n = self.matrix.size();
+        let mut inverse = vec![T::zero(); n * n];
+        match Blocked::find() {
+            Some(blocked) => (blocked.inverse)(&self.matrix, &self.plan, &mut inverse),
+            None => invert(&self.matrix, &mut inverse),
+        }
+        inverse
     }
 
     /// Writes the entries of the inverse X of M at the places where M can differ from zero: those of the dofs of which one supports the other.

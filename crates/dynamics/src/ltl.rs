@@ -57,6 +57,20 @@ impl<T: Real> Ltl<T> {
     ///
     /// # Errors
     /// [`Error`] when the matrix has another topology or a pivot is not positive.
+    ///
+    /// ```
+    /// use featherbench_dynamics::{Ltl, TreeSparse};
+    /// let mut matrix = TreeSparse::of_parents(&[None, Some(0)])?;
+    /// matrix.values_mut().copy_from_slice(&[5.0, 4.0, 16.0]);
+    /// let mut ltl = Ltl::from_unfactored(matrix.clone());
+    /// ltl.run(&matrix)?;
+    /// assert_eq!(ltl.factors().get(1, 0), 1.0);
+    /// // The same without a copy:
+    /// ltl.matrix_mut().values_mut().copy_from_slice(matrix.values());
+    /// ltl.factor()?;
+    /// assert_eq!(ltl.factors().get(1, 0), 1.0);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     pub fn run(&mut self, matrix: &TreeSparse<T>) -> Result<(), Error> {
         self.matrix.copy_from(matrix)?;
         self.factor()?;
@@ -69,6 +83,16 @@ impl<T: Real> Ltl<T> {
     }
 
     /// L: its rows, the diagonal included.
+    ///
+    /// ```
+    /// use featherbench_dynamics::TreeSparse;
+    /// let mut matrix = TreeSparse::of_parents(&[None, Some(0)])?;
+    /// matrix.values_mut().copy_from_slice(&[5.0, 4.0, 16.0]);
+    /// // L = [[2, 0], [1, 4]]: M = [[5, 4], [4, 16]] = LᵀL
+    /// let ltl = matrix.into_ltl()?;
+    /// assert_eq!(ltl.factors().values(), [2.0, 1.0, 4.0]);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     pub fn factors(&self) -> &TreeSparse<T> {
         &self.matrix
     }
@@ -108,6 +132,18 @@ impl<T: Real> Ltl<T> {
     ///
     /// # Errors
     /// [`DimensionError`] when `x` has not one number per dof.
+    ///
+    /// ```
+    /// use featherbench_dynamics::TreeSparse;
+    /// let mut matrix = TreeSparse::of_parents(&[None, Some(0)])?;
+    /// matrix.values_mut().copy_from_slice(&[5.0, 4.0, 16.0]);
+    /// // L = [[2, 0], [1, 4]]: M = [[5, 4], [4, 16]] = LᵀL
+    /// let ltl = matrix.into_ltl()?;
+    /// let mut x = [9.0, 20.0];
+    /// ltl.solve(&mut x)?;
+    /// assert_eq!(x, [1.0, 1.0]);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     pub fn solve(&self, x: &mut [T]) -> Result<(), DimensionError> {
         self.solve_lower_transposed(x)?;
         self.solve_lower(x)
@@ -117,6 +153,18 @@ impl<T: Real> Ltl<T> {
     ///
     /// # Errors
     /// [`DimensionError`] when `x` has not one number per dof.
+    ///
+    /// ```
+    /// use featherbench_dynamics::TreeSparse;
+    /// let mut matrix = TreeSparse::of_parents(&[None, Some(0)])?;
+    /// matrix.values_mut().copy_from_slice(&[5.0, 4.0, 16.0]);
+    /// // L = [[2, 0], [1, 4]]: M = [[5, 4], [4, 16]] = LᵀL
+    /// let ltl = matrix.into_ltl()?;
+    /// let mut x = [1.0, 1.0];
+    /// ltl.multiply_lower(&mut x)?;
+    /// assert_eq!(x, [2.0, 5.0]);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     pub fn multiply_lower(&self, x: &mut [T]) -> Result<(), DimensionError> {
         expect("vector x", self.matrix.size(), x.len())?;
         triangular::multiply::<T, false>(&self.matrix, x);
@@ -127,6 +175,18 @@ impl<T: Real> Ltl<T> {
     ///
     /// # Errors
     /// [`DimensionError`] when `x` has not one number per dof.
+    ///
+    /// ```
+    /// use featherbench_dynamics::TreeSparse;
+    /// let mut matrix = TreeSparse::of_parents(&[None, Some(0)])?;
+    /// matrix.values_mut().copy_from_slice(&[5.0, 4.0, 16.0]);
+    /// // L = [[2, 0], [1, 4]]: M = [[5, 4], [4, 16]] = LᵀL
+    /// let ltl = matrix.into_ltl()?;
+    /// let mut x = [1.0, 1.0];
+    /// ltl.multiply_lower_transposed(&mut x)?;
+    /// assert_eq!(x, [3.0, 4.0]);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     pub fn multiply_lower_transposed(&self, x: &mut [T]) -> Result<(), DimensionError> {
         expect("vector x", self.matrix.size(), x.len())?;
         triangular::multiply_transposed::<T, false>(&self.matrix, x);
@@ -137,6 +197,18 @@ impl<T: Real> Ltl<T> {
     ///
     /// # Errors
     /// [`DimensionError`] when `x` has not one number per dof.
+    ///
+    /// ```
+    /// use featherbench_dynamics::TreeSparse;
+    /// let mut matrix = TreeSparse::of_parents(&[None, Some(0)])?;
+    /// matrix.values_mut().copy_from_slice(&[5.0, 4.0, 16.0]);
+    /// // L = [[2, 0], [1, 4]]: M = [[5, 4], [4, 16]] = LᵀL
+    /// let ltl = matrix.into_ltl()?;
+    /// let mut x = [2.0, 5.0];
+    /// ltl.solve_lower(&mut x)?;
+    /// assert_eq!(x, [1.0, 1.0]);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     pub fn solve_lower(&self, x: &mut [T]) -> Result<(), DimensionError> {
         expect("right-hand side x", self.matrix.size(), x.len())?;
         triangular::solve::<T, false>(&self.matrix, 0..x.len(), x);
@@ -147,13 +219,60 @@ impl<T: Real> Ltl<T> {
     ///
     /// # Errors
     /// [`DimensionError`] when `x` has not one number per dof.
+    ///
+    /// ```
+    /// use featherbench_dynamics::TreeSparse;
+    /// let mut matrix = TreeSparse::of_parents(&[None, Some(0)])?;
+    /// matrix.values_mut().copy_from_slice(&[5.0, 4.0, 16.0]);
+    /// // L = [[2, 0], [1, 4]]: M = [[5, 4], [4, 16]] = LᵀL
+    /// let ltl = matrix.into_ltl()?;
+    /// let mut x = [3.0, 4.0];
+    /// ltl.solve_lower_transposed(&mut x)?;
+    /// assert_eq!(x, [1.0, 1.0]);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     pub fn solve_lower_transposed(&self, x: &mut [T]) -> Result<(), DimensionError> {
         expect("right-hand side x", self.matrix.size(), x.len())?;
         triangular::solve_transposed::<T, false>(&self.matrix, x);
         Ok(())
     }
 
+    /// A copy of `x`, changed by one of the operations in place: [`Ltl::solve`], a half of it, or a product. It allocates the copy.
+    ///
+    /// # Errors
+    /// [`DimensionError`] when `x` has not one number per dof.
+    ///
+    /// ```
+    /// use featherbench_dynamics::TreeSparse;
+    /// let mut matrix = TreeSparse::of_parents(&[None, Some(0)])?;
+    /// matrix.values_mut().copy_from_slice(&[5.0, 4.0, 16.0]);
+    /// // L = [[2, 0], [1, 4]]: M = [[5, 4], [4, 16]] = LᵀL
+    /// let ltl = matrix.into_ltl()?;
+    /// use featherbench_dynamics::Ltl;
+    /// assert_eq!(ltl.applied(Ltl::solve, &[9.0, 20.0])?, [1.0, 1.0]);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn applied(
+        &self,
+        operation: impl FnOnce(&Self, &mut [T]) -> Result<(), DimensionError>,
+        x: &[T],
+    ) -> Result<Vec<T>, DimensionError> {
+        let mut copy = x.to_vec();
+        operation(self, &mut copy)?;
+        Ok(copy)
+    }
+
     /// `ln det M = 2 Σ ln L_kk`.
+    ///
+    /// ```
+    /// use featherbench_dynamics::TreeSparse;
+    /// let mut matrix = TreeSparse::of_parents(&[None, Some(0)])?;
+    /// matrix.values_mut().copy_from_slice(&[5.0, 4.0, 16.0]);
+    /// // L = [[2, 0], [1, 4]]: M = [[5, 4], [4, 16]] = LᵀL
+    /// let ltl = matrix.into_ltl()?;
+    /// assert!((ltl.log_determinant() - 64.0_f64.ln()).abs() < 1e-15);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     pub fn log_determinant(&self) -> T
     where
         T: Logarithm,

@@ -142,6 +142,62 @@ impl Plan {
     }
 }
 
+/// How a tree is divided between cores: what of the work is in the trunk, and what in the heaviest task.
+///
+/// A dof with d dofs on its path, itself included, weighs a power of d:
+///
+/// | power | algorithm |
+/// |---|---|
+/// | 0 | [`ParallelRnea`](crate::ParallelRnea), [`ParallelAba`](crate::ParallelAba) |
+/// | 1 | [`ParallelCrba`](crate::ParallelCrba) |
+/// | 2 | [`ParallelLtdl`](crate::ParallelLtdl) |
+///
+/// Cost: O(n).
+///
+/// ```
+/// use featherbench_dynamics::Division;
+/// use featherbench_model::Model;
+/// use featherbench_robots::Family;
+///
+/// let tree: Model<f64> = Model::build(&Family::parse("binary_tree:depth=10")?.generate()?)?;
+/// let division = Division::of(&tree.topology, 0);
+/// assert_eq!(division.total, 1023);
+/// assert!(division.tasks > 16 && division.span_share() < 0.2);
+/// // A chain is one task.
+/// let chain: Model<f64> = Model::build(&Family::parse("chain:n=10")?.generate()?)?;
+/// assert_eq!(Division::of(&chain.topology, 0), Division { total: 10, trunk: 0, heaviest: 10, tasks: 1 });
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Division {
+    /// The weight of all dofs.
+    pub total: u64,
+    /// The weight of the trunk, which is not divided.
+    pub trunk: u64,
+    /// The weight of the heaviest task.
+    pub heaviest: u64,
+    /// The number of tasks.
+    pub tasks: usize,
+}
+
+impl Division {
+    /// The division of a tree for algorithms of this power.
+    pub fn of(topology: &Topology, power: u32) -> Self {
+        let weight = |depth: u64| depth.saturating_pow(power);
+        let plan = Plan::new(topology, weight);
+        let of_dofs = |dofs: Range<usize>| dofs.map(|dof| weight(topology.dof_depth(dof) as u64)).sum::<u64>();
+        let total = of_dofs(0..topology.nv());
+        let parts: Vec<u64> = plan.parts.iter().map(|part| of_dofs(part.dofs.clone())).collect();
+        let heaviest = plan.tasks.iter().map(|task| parts[task.parts.clone()].iter().sum()).max().unwrap_or(0);
+        Self { total, trunk: total - parts.iter().sum::<u64>(), heaviest, tasks: plan.tasks.len() }
+    }
+
+    /// The share of the work that waits for each other: the trunk, then the heaviest task.
+    pub fn span_share(&self) -> f64 {
+        (self.trunk + self.heaviest) as f64 / self.total.max(1) as f64
+    }
+}
+
 /// Consecutive parts in groups of about equal weight.
 fn tasks(topology: &Topology, parts: &[Part], weights: &[u64]) -> Vec<Task> {
     let enough = weights.iter().sum::<u64>() / TASKS;

@@ -9,7 +9,7 @@
 
 use crate::DimensionError;
 use crate::error::expect;
-use crate::step::{add_joint, by_kind, cross_joint, expect_bodies, expect_wrenches, newton_euler};
+use crate::step::{add_joint, by_kind, cross_joint, expect_workspace, expect_wrenches, newton_euler};
 use featherbench_model::{JointKind, Model, Topology};
 use featherbench_spatial::{Force, Lift, Motion, Real, Transform, Vec3};
 
@@ -73,6 +73,7 @@ impl<T: Real> Rnea<T> {
     }
 
     /// Inverse dynamics if `ACCELERATED`; otherwise the bias force, and `a` is not read.
+    #[inline(always)]
     pub(crate) fn recurse<P: Real + Lift<T>, const ACCELERATED: bool>(
         &mut self,
         model: &Model<P>,
@@ -83,8 +84,8 @@ impl<T: Real> Rnea<T> {
         tau: &mut [T],
     ) -> Result<(), DimensionError> {
         let Self { links, path } = self;
-        expect_shapes(links.len(), model, q, v, wrenches, tau)?;
-        expect("path slots of the workspace", model.topology.slots(), path.len())?;
+        expect_workspace(model, links.len(), path.len())?;
+        expect_shapes(model, q, v, wrenches, tau)?;
         let joints = model.topology.joints();
 
         path[0].a.lin = -model.gravity.lift();
@@ -113,20 +114,18 @@ impl<T: Real> Rnea<T> {
     }
 }
 
-/// An error if an argument or a workspace of so many bodies does not fit the model.
+/// An error if an argument does not fit the model.
 fn expect_shapes<P: Real, T: Real>(
-    workspace: usize,
     model: &Model<P>,
     q: &[T],
     v: &[T],
     wrenches: Option<&[Force<T>]>,
     tau: &[T],
 ) -> Result<(), DimensionError> {
-    expect_bodies(model, workspace)?;
     expect("configuration q", model.topology.nq(), q.len())?;
     expect("velocity v", model.topology.nv(), v.len())?;
     expect("joint forces tau", model.topology.nv(), tau.len())?;
-    expect_wrenches(model, wrenches)
+    expect_wrenches(&model.topology, wrenches)
 }
 
 /// The outward step of one body: its placement, ω, a and f.

@@ -9,7 +9,7 @@
 
 use crate::DimensionError;
 use crate::error::expect;
-use featherbench_model::{Axis, Joint, JointKind, Model};
+use featherbench_model::{Axis, Joint, JointKind, Model, Topology};
 use featherbench_spatial::{Force, Motion, Real, RigidBodyInertia, Transform, Vec3};
 
 /// Calls `step(kind, …)` from one arm per kind, so that each inlined copy is compiled with its kind known.
@@ -18,22 +18,37 @@ macro_rules! by_kind {
         use featherbench_model::Axis::{Skew, Z};
         use featherbench_model::JointKind::{Free, Helical, Prismatic, Revolute, Spherical};
         match $kind {
-            Revolute(Z) => $crate::step::arm(|| $step(Revolute(Z), $($argument),+)),
-            Revolute(Skew) => $crate::step::arm(|| $step(Revolute(Skew), $($argument),+)),
-            Prismatic(Z) => $crate::step::arm(|| $step(Prismatic(Z), $($argument),+)),
-            Prismatic(Skew) => $crate::step::arm(|| $step(Prismatic(Skew), $($argument),+)),
-            Helical => $crate::step::arm(|| $step(Helical, $($argument),+)),
-            Spherical => $crate::step::arm(|| $step(Spherical, $($argument),+)),
-            Free => $crate::step::arm(|| $step(Free, $($argument),+)),
+            Revolute(Z) => $crate::step::arm!($step(Revolute(Z), $($argument),+)),
+            Revolute(Skew) => $crate::step::arm!($step(Revolute(Skew), $($argument),+)),
+            Prismatic(Z) => $crate::step::arm!($step(Prismatic(Z), $($argument),+)),
+            Prismatic(Skew) => $crate::step::arm!($step(Prismatic(Skew), $($argument),+)),
+            Helical => $crate::step::arm!($step(Helical, $($argument),+)),
+            Spherical => $crate::step::arm!($step(Spherical, $($argument),+)),
+            Free => $crate::step::arm!($step(Free, $($argument),+)),
         }
     }};
 }
 pub(crate) use by_kind;
 
-/// Runs an arm of `by_kind` in a stack frame of its own. Without optimization, one frame with the variables of all arms would fill the stack
-/// of a thread. With optimization this is the arm itself.
+/// An arm of `by_kind`. In a debug build it has a stack frame of its own: one frame with the variables of all arms would fill the stack of a
+/// thread. Otherwise it is no closure, because a closure cannot be always inlined, and a batch needs that.
+#[cfg(debug_assertions)]
+macro_rules! arm {
+    ($call:expr) => {
+        $crate::step::in_own_frame(|| $call)
+    };
+}
+#[cfg(not(debug_assertions))]
+macro_rules! arm {
+    ($call:expr) => {
+        $call
+    };
+}
+pub(crate) use arm;
+
+#[cfg(debug_assertions)]
 #[inline(always)]
-pub(crate) fn arm<R>(step: impl FnOnce() -> R) -> R {
+pub(crate) fn in_own_frame<R>(step: impl FnOnce() -> R) -> R {
     step()
 }
 
@@ -155,6 +170,12 @@ pub(crate) fn expect_bodies<P>(model: &Model<P>, workspace: usize) -> Result<(),
 }
 
 /// Checks an optional list of external wrenches, one per body.
-pub(crate) fn expect_wrenches<P, T>(model: &Model<P>, wrenches: Option<&[Force<T>]>) -> Result<(), DimensionError> {
-    wrenches.map_or(Ok(()), |wrenches| expect("external wrenches", model.topology.bodies(), wrenches.len()))
+pub(crate) fn expect_wrenches<T>(topology: &Topology, wrenches: Option<&[Force<T>]>) -> Result<(), DimensionError> {
+    wrenches.map_or(Ok(()), |wrenches| expect("external wrenches", topology.bodies(), wrenches.len()))
+}
+
+/// Checks the model, and that the workspace has its number of bodies and of path slots.
+pub(crate) fn expect_workspace<P>(model: &Model<P>, bodies: usize, slots: usize) -> Result<(), DimensionError> {
+    expect_bodies(model, bodies)?;
+    expect("path slots of the workspace", model.topology.slots(), slots)
 }

@@ -187,6 +187,24 @@ impl<T: Real> TreeSparse<T> {
         Ok(())
     }
 
+    /// `M x` for the symmetric matrix M. It allocates.
+    ///
+    /// # Errors
+    /// [`DimensionError`] when x has not one number per dof.
+    ///
+    /// ```
+    /// use featherbench_dynamics::TreeSparse;
+    /// let mut matrix = TreeSparse::of_parents(&[None, Some(0)])?;
+    /// matrix.values_mut().copy_from_slice(&[5.0, 4.0, 8.0]);
+    /// assert_eq!(matrix.product(&[1.0, 1.0])?, [9.0, 12.0]);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn product(&self, x: &[T]) -> Result<Vec<T>, DimensionError> {
+        let mut y = vec![T::zero(); self.size()];
+        self.mul(x, &mut y)?;
+        Ok(y)
+    }
+
     /// The dense matrix; it allocates.
     pub fn to_dense(&self) -> DMatrix<T>
     where

@@ -5,6 +5,7 @@ mod aligned;
 mod allocation;
 mod batch;
 mod batch_derivatives;
+mod batch_motion;
 mod closed_forms;
 mod common;
 mod configuration;

@@ -348,7 +348,7 @@ fn integrate(model: &Model<f64>, tau: &[f64], mut q: Vec<f64>, mut v: Vec<f64>, 
     (q, v)
 }
 
-/// Without gravity and external forces the spatial momentum is conserved while the joints push: a trajectory of the humanoid changes it by the
+/// Without gravity and external forces the spatial momentum is conserved while the joints push. A trajectory of the humanoid changes it by the
 /// error of the integrator alone, which falls by 2⁴ where the step is halved. The centre of mass moves on a line.
 #[test]
 fn spatial_momentum_is_conserved_at_the_order_of_the_integrator() {

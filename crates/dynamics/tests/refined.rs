@@ -297,7 +297,7 @@ fn steps_converge_and_say_how_far_they_moved() {
     }
     let [plain, first, second, third] = errors;
     assert!(plain > 1e-8, "the plain algorithm loses more than half of the digits: {plain:e}");
-    // Seen: 3e-6, 5e-11, 7e-16, 3e-20. Each step adds about as many digits as the start had.
+    // Seen: 3e-6, 5e-11, 7e-16, 3e-20. Each step adds about the digits of the start.
     assert!(first < 1e-4 * plain && second < 1e-4 * first && third < 1e-3 * second, "{errors:?}");
 }
 

@@ -7,6 +7,7 @@ use crate::oracle::{checked, shaped};
 use featherbench_bench::alone::{self, Measured, Question};
 use featherbench_bench::{Limits, Memory, NoAnswer, OWN, Quantity, Robot};
 use featherbench_protocol::{Block, Message, Process};
+use rayon::ThreadPoolBuilder;
 use serde_json::{Value, json};
 use std::ffi::OsString;
 use std::io::{BufReader, Write, stdin, stdout};
@@ -23,9 +24,10 @@ pub fn command(program: &Path) -> Vec<OsString> {
 /// [`NoAnswer`], with the reason of the process' end if it ended.
 pub fn ask(command: &[OsString], question: &Question) -> Result<Measured, NoAnswer> {
     let mut process = Process::start(command, question.limits).map_err(NoAnswer::Failed)?;
-    let Question { robot, quantity, method, seed, seconds, .. } = question;
+    let Question { robot, quantity, method, threads, seed, seconds, .. } = question;
     let header = json!({
-        "op": "measure", "robot": robot, "quantity": quantity.name(), "method": method, "seed": seed, "seconds": seconds,
+        "op": "measure", "robot": robot, "quantity": quantity.name(), "method": method, "threads": threads, "seed": seed,
+        "seconds": seconds,
     });
     let answer = checked(process.ask(&Message::new(header, Vec::new())).map_err(NoAnswer::Failed)?)?;
     let length = |name: &str| answer.block(name).map_or(0, |block| block.data.len());
@@ -69,16 +71,24 @@ fn question(request: &Message) -> Result<Question, NoAnswer> {
         robot: request.text("robot").to_owned(),
         quantity: Quantity::parse(request.text("quantity")).ok_or_else(|| wrong("quantity"))?,
         method: request.text("method").to_owned(),
+        threads: request
+            .header
+            .get("threads")
+            .and_then(Value::as_u64)
+            .and_then(|n| usize::try_from(n).ok())
+            .ok_or_else(|| wrong("threads"))?,
         seed: request.header.get("seed").and_then(Value::as_u64).ok_or_else(|| wrong("seed"))?,
         seconds: request.header.get("seconds").and_then(Value::as_f64).ok_or_else(|| wrong("seconds"))?,
         limits: Limits::default(),
     })
 }
 
-/// Measures our kernels in this process.
+/// Measures our kernels in this process, inside a pool of as many threads: so the entry into the pool is not part of a call.
 fn measure(question: &Question) -> Result<Measured, NoAnswer> {
     let mut robot: Robot = alone::robot(&question.robot, question.seed)?;
     // Algorithms take the model alone. What is resident then is the model, the state and the workspace.
     robot.description.bodies = Vec::new();
-    alone::measure(&Featherbench::new(), &robot, question, || Memory::of(None))
+    let pool = ThreadPoolBuilder::new().num_threads(question.threads).build();
+    let pool = pool.map_err(|error| NoAnswer::Failed(format!("{} threads: {error}", question.threads)))?;
+    pool.install(|| alone::measure(&Featherbench::new(), &robot, question, || Memory::of(None)))
 }

@@ -3,9 +3,9 @@
 //! The arrays are in row order, as users have them: bringing states into lanes and results out of them is part of the method.
 
 use crate::kernel::{Evaluate, Failure, Kernel};
-use featherbench_bench::Quantity;
-use featherbench_dynamics::{Batch, BatchError, Number};
-use featherbench_model::Model;
+use featherbench_bench::{Quantity, Robot};
+use featherbench_dynamics::{Batch, BatchError, Number, RegressorMatrix};
+use featherbench_model::{Model, Topology};
 use featherbench_robots::StateBatch;
 use featherbench_spatial::Lift;
 
@@ -25,33 +25,45 @@ struct Batched<'a, S: Number> {
     results: Vec<S>,
     /// The numbers of one result.
     each: usize,
+    /// Where the numbers of the quantity's value are in a result; the others are zero.
+    places: Places,
     /// The states of a call.
     together: usize,
+    /// The compiled body of a body Jacobian.
+    body: usize,
 }
 
 /// In double precision.
-pub(crate) fn double<'a>(model: &'a Model<f64>, states: &'a StateBatch, quantity: Quantity) -> Kernel<'a> {
-    Box::new(Batched::new(Batch::new(model), model, states, quantity))
+pub(crate) fn double<'a>(robot: &'a Robot, states: &'a StateBatch, quantity: Quantity) -> Kernel<'a> {
+    Box::new(Batched::new(Batch::new(&robot.model), robot, states, quantity))
 }
 
 /// In single precision throughout, states and parameters rounded to it before.
-pub(crate) fn single<'a>(model: &'a Model<f64>, states: &'a StateBatch, quantity: Quantity) -> Kernel<'a> {
-    Box::new(Batched::<f32>::new(Batch::of_model(model.lift()), model, states, quantity))
+pub(crate) fn single<'a>(robot: &'a Robot, states: &'a StateBatch, quantity: Quantity) -> Kernel<'a> {
+    Box::new(Batched::<f32>::new(Batch::of_model(robot.model.lift()), robot, states, quantity))
 }
 
 impl<'a, S: Number + Lift<S::Lanes>> Batched<'a, S> {
-    fn new(batch: Batch<'a, S>, model: &Model<f64>, states: &StateBatch, quantity: Quantity) -> Self {
-        let topology = &model.topology;
-        let each = if quantity == Quantity::MassMatrixSparse { topology.stored() } else { topology.nv() };
+    fn new(batch: Batch<'a, S>, robot: &Robot, states: &StateBatch, quantity: Quantity) -> Self {
+        let topology = &robot.model.topology;
+        let body = robot.model.described[robot.deepest_body()];
+        let (each, places) = shape(&robot.model, quantity);
         let group = each.max(1) * S::LANES * size_of::<S>();
         let together = S::LANES * (RESULTS / group).clamp(1, GROUPS);
-        let third = if quantity == Quantity::InverseDynamics { StateBatch::a } else { StateBatch::tau };
+        let third = match quantity {
+            Quantity::InverseDynamics
+            | Quantity::InverseDynamicsDq
+            | Quantity::InverseDynamicsDv
+            | Quantity::TorqueRegressor
+            | Quantity::BodyAcceleration => StateBatch::a,
+            _ => StateBatch::tau,
+        };
         let row = |of: fn(&StateBatch, usize) -> &[f64], each: usize| {
             let places = (0..states.count() + together).map(|place| place % states.count());
             (places.flat_map(|k| of(states, k).iter().map(|&x| S::from_f64(x))).collect(), each)
         };
         let inputs = [row(StateBatch::q, topology.nq()), row(StateBatch::v, topology.nv()), row(third, topology.nv())];
-        Self { batch, quantity, inputs, results: vec![S::zero(); each * together], each, together }
+        Self { batch, quantity, inputs, results: vec![S::zero(); each * together], each, places, together, body }
     }
 
     /// Evaluates `count` states from `k` on.
@@ -62,9 +74,77 @@ impl<'a, S: Number + Lift<S::Lanes>> Batched<'a, S> {
             Quantity::InverseDynamics => self.batch.inverse_dynamics(q, v, third, None, results),
             Quantity::Bias => self.batch.bias_force(q, v, None, results),
             Quantity::MassMatrixSparse => self.batch.mass_matrix(q, results),
+            Quantity::MassMatrixInverse => self.batch.inverse_mass_matrix(q, results),
+            Quantity::Momentum => self.batch.momentum(q, v, results),
+            Quantity::BodyAcceleration => self.batch.kinematics(q, v, third, results),
+            Quantity::BodyJacobian => self.batch.body_jacobian(q, self.body, results),
+            Quantity::InverseDynamicsDq | Quantity::InverseDynamicsDv => self.batch.id_derivatives(q, v, third, None, results),
+            Quantity::ForwardDynamicsDq | Quantity::ForwardDynamicsDv => self.batch.fd_derivatives(q, v, third, None, results),
+            Quantity::CoriolisMatrix => self.batch.coriolis_matrix(q, v, results),
+            Quantity::TorqueRegressor => self.batch.torque_regressor(q, v, third, results),
             _ => self.batch.forward_dynamics(q, v, third, None, results),
         }
     }
+}
+
+/// Where the numbers of a value are in a result.
+enum Places {
+    /// From this one on, in the value's order.
+    From(usize),
+    /// Of each number of the value; where there is none, it is zero.
+    Each(Vec<Option<usize>>),
+}
+
+/// The numbers of a body's motion in [`Batch::kinematics`], and where its acceleration begins.
+const MOTION: usize = 24;
+const ACCELERATION: usize = 18;
+
+/// The numbers of one result of a batch, and where those of the quantity are.
+fn shape(model: &Model<f64>, quantity: Quantity) -> (usize, Places) {
+    let topology = &model.topology;
+    let (nv, stored) = (topology.nv(), topology.stored());
+    match quantity {
+        Quantity::MassMatrixSparse => (stored, Places::From(0)),
+        Quantity::InverseDynamicsDq => (5 * stored, pair(topology, 0)),
+        Quantity::InverseDynamicsDv => (5 * stored, pair(topology, 2 * stored)),
+        Quantity::CoriolisMatrix => (2 * stored, pair(topology, 0)),
+        Quantity::ForwardDynamicsDq => (nv + 3 * nv * nv, Places::From(nv)),
+        Quantity::ForwardDynamicsDv => (nv + 3 * nv * nv, Places::From(nv + nv * nv)),
+        Quantity::TorqueRegressor => regressor(model),
+        Quantity::MassMatrixInverse => (nv * nv, Places::From(0)),
+        Quantity::Momentum => (6, Places::From(0)),
+        Quantity::BodyAcceleration => {
+            let bodies = model.described.len();
+            (MOTION * bodies, Places::Each((0..6 * bodies).map(|entry| Some(entry / 6 * MOTION + ACCELERATION + entry % 6)).collect()))
+        }
+        // Column after column; an answer is row after row.
+        Quantity::BodyJacobian => (6 * nv, Places::Each((0..6 * nv).map(|entry| Some(entry % nv * 6 + entry / nv)).collect())),
+        _ => (nv, Places::From(0)),
+    }
+}
+
+/// A matrix row after row, of which the lower and the upper triangle stand from a place on.
+fn pair(topology: &Topology, from: usize) -> Places {
+    let n = topology.nv();
+    let mut places = vec![None; n * n];
+    for i in 0..n {
+        for (&j, entry) in topology.row_dofs(i).iter().zip(topology.row(i)) {
+            places[j * n + i] = Some(from + topology.stored() + entry);
+            places[i * n + j] = Some(from + entry);
+        }
+    }
+    Places::Each(places)
+}
+
+/// A regressor row after row; its stored numbers stand column after column.
+fn regressor(model: &Model<f64>) -> (usize, Places) {
+    let matrix = RegressorMatrix::<f64>::new(model);
+    let mut places = vec![None; matrix.rows() * matrix.columns()];
+    let entries = matrix.iter().flat_map(|(column, dofs, _)| dofs.iter().map(move |dof| (dof, column)));
+    for (place, (dof, column)) in entries.enumerate() {
+        places[dof * matrix.columns() + column] = Some(place);
+    }
+    (matrix.values().len(), Places::Each(places))
 }
 
 impl<S: Number + Lift<S::Lanes>> Evaluate for Batched<'_, S> {
@@ -82,6 +162,11 @@ impl<S: Number + Lift<S::Lanes>> Evaluate for Batched<'_, S> {
     }
 
     fn read(&self, out: &mut [f64]) {
-        out.iter_mut().zip(&self.results).for_each(|(out, x)| *out = x.min_lane());
+        match &self.places {
+            Places::From(first) => out.iter_mut().zip(&self.results[*first..]).for_each(|(out, x)| *out = x.min_lane()),
+            Places::Each(places) => {
+                out.iter_mut().zip(places).for_each(|(out, place)| *out = place.map_or(0.0, |place| self.results[place].min_lane()));
+            }
+        }
     }
 }

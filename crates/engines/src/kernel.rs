@@ -3,7 +3,7 @@
 //! A kernel owns its workspace. Evaluating leaves the answer of one state where the algorithm puts it, as in any engine. Reading it into a
 //! slice is a separate step. Studies, the timing of runs and `cargo bench` all use this registry: so what is timed is what is checked.
 
-use crate::{batch, derivatives};
+use crate::{batch, derivatives, factors, parallel, second_derivatives};
 use featherbench_bench::{BATCH, DENSE_LIMIT, NoAnswer, Quantity, Robot, layout};
 use featherbench_dynamics::{
     Aba, Batch, Bias, Crba, Energy, Ltdl, PackedAba, PackedCenterOfMass, PackedCrba, PackedJacobian, PackedKinematics, PackedModel,
@@ -86,28 +86,52 @@ pub(crate) fn methods(quantity: Quantity) -> &'static [&'static str] {
         Quantity::BodyPlacement | Quantity::BodyVelocity | Quantity::BodyAcceleration | Quantity::BodyJacobian => &["kinematics"],
         Quantity::Readback => &["build"],
         Quantity::StoredEntries => &["topology"],
-        Quantity::Factorization => &["ltdl"],
-        Quantity::Solve | Quantity::MassMatrixInverse => &["ltdl"],
+        Quantity::FactorEntries => &["ltdl"],
+        Quantity::Factorization | Quantity::Solve | Quantity::MassMatrixInverse => &["ltdl", BATCH],
         Quantity::InverseDynamicsDq
         | Quantity::InverseDynamicsDv
         | Quantity::ForwardDynamicsDq
         | Quantity::ForwardDynamicsDv
-        | Quantity::CoriolisMatrix => &[derivatives::ANALYTIC, "dual"],
-        Quantity::TorqueRegressor => &[derivatives::ANALYTIC, "columns"],
+        | Quantity::CoriolisMatrix => &[derivatives::ANALYTIC, "dual", BATCH],
+        Quantity::TorqueRegressor => &[derivatives::ANALYTIC, "columns", BATCH],
+        Quantity::InverseDynamicsSecond | Quantity::ForwardDynamicsSecond => &[derivatives::ANALYTIC, "dual"],
     }
 }
 
-/// The kernel of a quantity and method over a batch of states.
+/// Further methods, which only the timing study asks for. It compares their answers with those of the usual method at every state.
+fn timed_alone(quantity: Quantity) -> &'static [&'static str] {
+    match quantity {
+        Quantity::Momentum | Quantity::BodyAcceleration | Quantity::BodyJacobian => &[BATCH],
+        _ => &[],
+    }
+}
+
+/// The kernel of a quantity and method over a batch of states. Beside those of [`methods`] there are those of [`parallel::methods`].
 pub(crate) fn kernel<'a>(robot: &'a Robot, quantity: Quantity, method: &str, states: &'a StateBatch) -> Result<Kernel<'a>, NoAnswer> {
-    if !methods(quantity).contains(&method) {
+    if parallel::methods(quantity).contains(&method) {
+        return parallel::kernel(robot, quantity, method, states);
+    }
+    if !methods(quantity).contains(&method) && !timed_alone(quantity).contains(&method) {
         return Err(NoAnswer::NotOffered(format!("there is no own method of {} by {method}", quantity.name())));
     }
     let model = &robot.model;
     Ok(match quantity {
-        Quantity::InverseDynamics | Quantity::Bias | Quantity::ForwardDynamics | Quantity::MassMatrixSparse if method == BATCH => {
-            batch::double(model, states, quantity)
+        Quantity::Factorization if method == BATCH => factors::factorization(model, states)?,
+        Quantity::Solve if method == BATCH => factors::solve(model, states)?,
+        Quantity::InverseDynamics
+        | Quantity::Bias
+        | Quantity::ForwardDynamics
+        | Quantity::MassMatrixSparse
+        | Quantity::MassMatrixInverse
+        | Quantity::Momentum
+        | Quantity::BodyAcceleration
+        | Quantity::BodyJacobian
+            if method == BATCH =>
+        {
+            batch::double(robot, states, quantity)
         }
-        Quantity::ForwardDynamicsSingle if method == BATCH => batch::single(model, states, quantity),
+        quantity if Quantity::DERIVATIVES.contains(&quantity) && method == BATCH => batch::double(robot, states, quantity),
+        Quantity::ForwardDynamicsSingle if method == BATCH => batch::single(robot, states, quantity),
         Quantity::InverseDynamics => inverse_dynamics(model, states),
         Quantity::InverseDynamicsWrench => inverse_dynamics_wrench(model, states),
         Quantity::Bias => bias(model, states),
@@ -143,7 +167,11 @@ pub(crate) fn kernel<'a>(robot: &'a Robot, quantity: Quantity, method: &str, sta
         | Quantity::ForwardDynamicsDv
         | Quantity::CoriolisMatrix => derivatives::by_duals(robot, states, quantity),
         Quantity::TorqueRegressor => derivatives::columns(robot, states),
-        Quantity::StoredEntries => constant(vec![model.topology.stored() as f64]),
+        Quantity::InverseDynamicsSecond if method == derivatives::ANALYTIC => second_derivatives::inverse_dynamics(robot, states),
+        Quantity::ForwardDynamicsSecond if method == derivatives::ANALYTIC => second_derivatives::forward_dynamics(robot, states),
+        Quantity::InverseDynamicsSecond | Quantity::ForwardDynamicsSecond => second_derivatives::by_duals(robot, states, quantity),
+        // No fill-in: the factors stand in the places of M.
+        Quantity::StoredEntries | Quantity::FactorEntries => constant(vec![model.topology.stored() as f64]),
     })
 }
 
@@ -158,7 +186,11 @@ pub fn timed(robot: &Robot) -> Vec<(Quantity, &'static str)> {
         (Quantity::MassMatrixSparse, "crba"),
         (Quantity::MassMatrixSparse, BATCH),
         (Quantity::Factorization, "ltdl"),
+        (Quantity::Factorization, BATCH),
         (Quantity::Solve, "ltdl"),
+        (Quantity::Solve, BATCH),
+        (Quantity::MassMatrixInverse, "ltdl"),
+        (Quantity::MassMatrixInverse, BATCH),
         (Quantity::ForwardDynamics, "aba"),
         (Quantity::ForwardDynamics, "aba_packed"),
         (Quantity::ForwardDynamics, "ltdl"),
@@ -169,23 +201,21 @@ pub fn timed(robot: &Robot) -> Vec<(Quantity, &'static str)> {
         (Quantity::KineticEnergy, "kinematics"),
         (Quantity::CenterOfMass, "kinematics"),
         (Quantity::Momentum, "kinematics"),
+        (Quantity::Momentum, BATCH),
         (Quantity::BodyAcceleration, "kinematics"),
+        (Quantity::BodyAcceleration, BATCH),
         (Quantity::BodyJacobian, "kinematics"),
-        (Quantity::InverseDynamicsDq, derivatives::ANALYTIC),
-        (Quantity::InverseDynamicsDq, "dual"),
-        (Quantity::InverseDynamicsDv, derivatives::ANALYTIC),
-        (Quantity::InverseDynamicsDv, "dual"),
-        (Quantity::ForwardDynamicsDq, derivatives::ANALYTIC),
-        (Quantity::ForwardDynamicsDq, "dual"),
-        (Quantity::ForwardDynamicsDv, derivatives::ANALYTIC),
-        (Quantity::ForwardDynamicsDv, "dual"),
-        (Quantity::CoriolisMatrix, derivatives::ANALYTIC),
-        (Quantity::CoriolisMatrix, "dual"),
-        (Quantity::TorqueRegressor, derivatives::ANALYTIC),
-        (Quantity::TorqueRegressor, "columns"),
+        (Quantity::BodyJacobian, BATCH),
     ];
-    // A body Jacobian has 6·nv numbers, most of them zero on big robots. Only its nonzero columns would be worth timing.
-    whole.into_iter().filter(|(quantity, _)| *quantity != Quantity::BodyJacobian || robot.states.nv <= DENSE_LIMIT).collect()
+    // Of derivatives every method is timed.
+    let all = |quantity: Quantity| methods(quantity).iter().map(move |&method| (quantity, method));
+    let derivatives = Quantity::DERIVATIVES.into_iter().chain(Quantity::SECOND_DERIVATIVES).flat_map(all);
+    // A body Jacobian has 6·nv numbers, most of them zero on big robots. Only its nonzero columns would be worth timing. An inverse is dense:
+    // the check of its answers takes O(nv³) for each state of the stream, as second derivatives by dual numbers do.
+    let dense = |quantity: &Quantity| {
+        matches!(quantity, Quantity::BodyJacobian | Quantity::MassMatrixInverse) || Quantity::SECOND_DERIVATIVES.contains(quantity)
+    };
+    whole.into_iter().chain(derivatives).filter(|(quantity, _)| !dense(quantity) || robot.states.nv <= DENSE_LIMIT).collect()
 }
 
 fn inverse_dynamics<'a>(model: &'a Model<f64>, states: &'a StateBatch) -> Kernel<'a> {
@@ -313,7 +343,7 @@ fn refined_forward_dynamics<'a>(robot: &'a Robot, states: &'a StateBatch, steps:
 }
 
 /// The stored numbers of the mass matrices of a batch, computed before: the time of factorizing and solving excludes computing them.
-fn matrices(model: &Model<f64>, states: &StateBatch) -> Result<Vec<Vec<f64>>, NoAnswer> {
+pub(crate) fn matrices(model: &Model<f64>, states: &StateBatch) -> Result<Vec<Vec<f64>>, NoAnswer> {
     let (mut crba, mut matrix) = (crba(model, states, methods(Quantity::MassMatrix)[0]), TreeSparse::new(&model.topology));
     // Big robots use a few matrices in turn: thousands of them would not fit the memory.
     let count = states.count().min(1 + (32 << 20) / (8 * model.topology.stored().max(1)));

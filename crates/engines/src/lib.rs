@@ -14,13 +14,16 @@ mod batch;
 mod coding;
 pub mod conformance;
 mod derivatives;
+mod factors;
 mod kernel;
 pub mod native;
 mod oracle;
 mod own;
+mod parallel;
 mod recorded;
 mod reproducer;
 mod request;
+mod second_derivatives;
 mod shape;
 
 pub use featherbench_protocol::{Clock, Limits, SystemClock};

@@ -6,3 +6,4 @@ mod conformance;
 #[path = "oracle/main.rs"]
 mod oracle;
 mod recorded;
+mod second_derivatives;

@@ -93,7 +93,7 @@ impl<P: Real> Model<P> {
             model.armature.extend(per_dof(&joint.armature, nv, 0.0).map(P::from_f64));
             model.damping.extend(per_dof(&joint.damping, nv, 0.0));
             model.friction.extend(per_dof(&joint.friction, nv, 0.0));
-            // Quaternions have no limits; every other joint has as many coordinates as dofs.
+            // Quaternions have no limits; of every other joint, nq = nv.
             let limited = if joint.kind.nq() == nv { nv } else { 0 };
             let lower = per_dof(&joint.lower[..joint.lower.len().min(limited)], joint.kind.nq(), f64::NEG_INFINITY);
             let upper = per_dof(&joint.upper[..joint.upper.len().min(limited)], joint.kind.nq(), f64::INFINITY);

@@ -18,7 +18,7 @@ const fn label(name: &'static str, title: &'static str, measure: &'static str) -
 
 /// Quantities in the order of the page. Others follow in alphabetical order under their own names. A quantity without a measure is only
 /// counted or timed.
-pub const QUANTITIES: [Label; 26] = [
+pub const QUANTITIES: [Label; 29] = [
     label("mass_matrix", "mass matrix M", "max |ΔMᵢⱼ| / √(Mᵢᵢ·Mⱼⱼ): an entry is measured against the inertias of its own two axes"),
     label(
         "mass_matrix_probe",
@@ -76,6 +76,7 @@ pub const QUANTITIES: [Label; 26] = [
     ),
     label("mass_matrix_sparse", "M, tree-sparse", ""),
     label("factorization", "factorization", ""),
+    label("factor_entries", "numbers of the factor", ""),
     label("solve", "solve", ""),
     label("mass_matrix_inverse", "M⁻¹", ""),
     label("stored_entries", "stored entries", ""),
@@ -93,6 +94,8 @@ pub const QUANTITIES: [Label; 26] = [
         "torque regressor",
         "each entry over √Mᵢᵢ of its row, and then over the largest of the same unit: those of all masses, first moments or inertias",
     ),
+    label("id_second", "∂²(μ·ID)", "block by block: entries over √(MⱼⱼMₖₖ), and then over the largest of the block"),
+    label("fd_second", "∂²(λ·FD)", "as ∂²(μ·ID)"),
 ];
 
 /// The text of a quantity; a row without one is about the whole robot.

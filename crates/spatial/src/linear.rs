@@ -45,6 +45,12 @@ impl<T: Real> Vec3<T> {
         self.x.mul_add(other.x, self.y.mul_add(other.y, self.z * other.z))
     }
 
+    /// `self · other + addend`.
+    #[cfg_attr(not(debug_assertions), inline(always))]
+    fn dot_add(self, other: Self, addend: T) -> T {
+        self.x.mul_add(other.x, self.y.mul_add(other.y, self.z.mul_add(other.z, addend)))
+    }
+
     /// Vector product.
     #[cfg_attr(not(debug_assertions), inline(always))]
     pub fn cross(self, other: Self) -> Self {
@@ -133,6 +139,12 @@ impl<T: Real> SubAssign for Vec3<T> {
     }
 }
 
+/// A row of `M R`, R the rotation about z by the angle with this sine and cosine.
+#[cfg_attr(not(debug_assertions), inline(always))]
+fn turn_row<T: Real>(r: Vec3<T>, sin: T, cos: T) -> Vec3<T> {
+    Vec3::new(r.x.mul_add(cos, r.y * sin), r.y.mul_add(cos, -(r.x * sin)), r.z)
+}
+
 /// A 3×3 matrix by rows.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Mat3<T> {
@@ -200,8 +212,7 @@ impl<T: Real> Mat3<T> {
     /// `M R`, R the rotation about z by the angle with this sine and cosine. The third column stays.
     #[cfg_attr(not(debug_assertions), inline(always))]
     pub fn turn_about_z(self, sin: T, cos: T) -> Self {
-        let row = |r: Vec3<T>| Vec3::new(r.x.mul_add(cos, r.y * sin), r.y.mul_add(cos, -(r.x * sin)), r.z);
-        Self::from_rows(row(self.x), row(self.y), row(self.z))
+        Self::from_rows(turn_row(self.x, sin, cos), turn_row(self.y, sin, cos), turn_row(self.z, sin, cos))
     }
 
     /// `Mᵀ v`.
@@ -213,8 +224,7 @@ impl<T: Real> Mat3<T> {
     /// `M v + addend`.
     #[cfg_attr(not(debug_assertions), inline(always))]
     pub fn mul_vec_add(self, v: Vec3<T>, addend: Vec3<T>) -> Vec3<T> {
-        let row = |r: Vec3<T>, a: T| r.x.mul_add(v.x, r.y.mul_add(v.y, r.z.mul_add(v.z, a)));
-        Vec3::new(row(self.x, addend.x), row(self.y, addend.y), row(self.z, addend.z))
+        Vec3::new(self.x.dot_add(v, addend.x), self.y.dot_add(v, addend.y), self.z.dot_add(v, addend.z))
     }
 
     /// The parameter matrix in another scalar.
@@ -239,8 +249,7 @@ impl<T: Real> Mul for Mat3<T> {
     type Output = Self;
     #[cfg_attr(not(debug_assertions), inline(always))]
     fn mul(self, other: Self) -> Self {
-        let row = |r: Vec3<T>| other.transpose_mul(r);
-        Self::from_rows(row(self.x), row(self.y), row(self.z))
+        Self::from_rows(other.transpose_mul(self.x), other.transpose_mul(self.y), other.transpose_mul(self.z))
     }
 }
 

@@ -94,7 +94,17 @@ fn main() -> Result<ExitCode, Box<dyn std::error::Error>> {
     }
     let gates = Gates::default();
     let context = Context { robots: &robots, engines: &engines, gates: &gates, seed: 1 };
-    let study = Timing { settings: TimingSettings { states: 1000, seconds, engines: names.clone(), derivatives: false }, kernels };
+    let study = Timing {
+        settings: TimingSettings {
+            states: 1000,
+            seconds,
+            engines: names.clone(),
+            quantities: Vec::new(),
+            best_of: Vec::new(),
+            derivatives: false,
+        },
+        kernels,
+    };
     let folder = tempfile::tempdir()?;
     let store = OutcomeStore::open(folder.path())?;
     let finished = evaluate(&study, &context, plan(&study, &context, &|_| true), &store, &Silent)?;

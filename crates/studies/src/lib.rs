@@ -37,7 +37,7 @@ pub use repeatability::Repeatability;
 pub use reproductions::{Reproduce, Reproductions};
 pub use scaling::{Scaling, Settings as ScalingSettings};
 pub use steps::Steps;
-pub use timing::{Kernels, Settings as TimingSettings, Timing};
+pub use timing::{Kernels, Settings as TimingSettings, Timing, multiply_adds_per_ns};
 
 use featherbench_bench::alone::Ask;
 use featherbench_bench::{Cell, Context, Engine, HarnessError, NoAnswer, Outcome, Quantity, Robot, Study, Suite};

@@ -13,7 +13,7 @@ use support::{Answer, Double, Twist, doubles, gates, robot, whole};
 const ROBOT: &str = "tree:n=7,joints=all,seed=4,base=free,armature=true";
 
 fn rows(robot: &Robot, double: Double) -> Vec<Row> {
-    whole(&Derivatives, robot, &gates(""), &[Box::new(Featherbench::new()), Box::new(double)])
+    whole(&Derivatives::default(), robot, &gates(""), &[Box::new(Featherbench::new()), Box::new(double)])
 }
 
 /// Our own kernels and an honest double pass every gate, and each quantity is judged.

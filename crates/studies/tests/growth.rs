@@ -4,7 +4,7 @@ use crate::support;
 
 use featherbench_bench::alone::{self, Ask, Measured, Question};
 use featherbench_bench::run::{Silent, compare, evaluate, plan};
-use featherbench_bench::{Context, Engine, Gates, Memory, NoAnswer, OutcomeStore, Quantity};
+use featherbench_bench::{Context, Engine, Gates, Memory, NoAnswer, OutcomeStore};
 use featherbench_engines::Featherbench;
 use featherbench_results::{Kind, Row, RunInfo, Verdict};
 use featherbench_studies::{Growth, GrowthSettings, sections};
@@ -17,12 +17,24 @@ use support::Double;
 type Behaviour = fn(&Question, usize) -> Result<Measured, NoAnswer>;
 
 fn settings(must: u64) -> GrowthSettings {
+    settings_with(must, "")
+}
+
+/// The settings with more keys.
+fn settings_with(must: u64, more: &str) -> GrowthSettings {
     let text = format!(
-        "about = \"a\"\nseed = 1\n[growth]\nseconds = 0.001\npatience = 5\nmemory = 512\nengines = [\"double\"]\n\
+        "about = \"a\"\nseed = 1\n[growth]\nseconds = 0.001\npatience = 5\nmemory = 512\nengines = [\"double\"]\n{more}\
          [[growth.lines]]\nname = \"chain\"\nof = \"chain:n=*,layout=spatial\"\nsizes = [10, 20, 40, 80]\nmust = {must}\n"
     );
     let suite = featherbench_bench::Suite::parse(&text, Path::new("s.toml")).unwrap();
     suite.settings("growth").unwrap().unwrap()
+}
+
+/// The settings with other sizes for other engines.
+fn settings_with_peers(must: u64) -> GrowthSettings {
+    let mut settings = settings(must);
+    settings.lines[0].peers = Some(vec![10, 40]);
+    settings
 }
 
 /// The right answer with made-up times: n microseconds per call by `aba`, n² tenths of a nanosecond by others.
@@ -56,7 +68,11 @@ fn rows_in(folder: &Path, study: &Growth) -> Vec<Row> {
 }
 
 fn rows(must: u64, double: Behaviour) -> Vec<Row> {
-    rows_in(tempfile::tempdir().unwrap().path(), &Growth::new(settings(must), ask(double)))
+    rows_of(settings(must), ask(double))
+}
+
+fn rows_of(settings: GrowthSettings, ask: Ask) -> Vec<Row> {
+    rows_in(tempfile::tempdir().unwrap().path(), &Growth::new(settings, ask))
 }
 
 /// The row on the largest size of an engine's method of forward dynamics.
@@ -85,8 +101,98 @@ fn what_grows_is_measured() {
     assert_eq!((value("largest", "").value, value("largest", "").reason.as_str()), (Some(80.0), ""));
     assert!(value("error", "chain:n=80,layout=spatial").value.unwrap() < 1e-13);
     // 5e-8 n² and 1e-6 n are equal at n = 20.
-    let crossover = rows.iter().find(|row| row.metric == "crossover_measured").unwrap();
+    let crossover = rows.iter().find(|row| row.metric == "crossover_measured" && row.method == "ltdl").unwrap();
     assert!((crossover.value.unwrap() - 20.0).abs() < 1e-9, "{crossover:?}");
+}
+
+#[test]
+fn methods_on_several_threads_stand_beside_the_serial_one() {
+    let threaded: Ask = Arc::new(|question| {
+        let parallel = ["rnea_parallel", "aba_parallel", "crba_parallel", "ltdl_parallel", "twisted"].contains(&question.method.as_str());
+        assert!(matches!((parallel, question.threads), (true, 1 | 2) | (false, 1)), "{question:?}");
+        let n = alone::robot(&question.robot, question.seed)?.states.nv;
+        let mut measured = right(question, n)?;
+        // A fifth more work than the serial method, divided by the threads, and 20 µs once.
+        if question.method == "twisted" {
+            measured.calls = vec![(1.2e-6 * n as f64) / question.threads as f64 + 2e-5; 3];
+        }
+        Ok(measured)
+    });
+    let rows = rows_of(settings_with(10, "threads = [1, 2]\n"), threaded);
+    let of = |method: &str, metric: &str| -> Vec<&Row> {
+        rows.iter()
+            .filter(|row| row.engine == "featherbench" && row.method == method && row.metric == metric && row.quantity == "fd")
+            .collect()
+    };
+    // On two threads (0.6 + 20/n)/1.04 crosses one at n = 45.5; the power law between 40 and 80 crosses near it. On one thread it is above one.
+    let [crossing] = of("twisted_2", "crossover_measured")[..] else { panic!("{rows:#?}") };
+    assert!((crossing.value.unwrap() - 45.5).abs() < 2.0 && crossing.reference == "aba", "{crossing:?}");
+    assert!(of("twisted_1", "crossover_measured").is_empty());
+    assert!(crossing.params.contains("\"threads\":2"), "{}", crossing.params);
+    // Threads and, for the articulated-body algorithm, the serial method: one answer at each of four sizes.
+    assert_eq!(of("aba_parallel_2", "seconds").len(), 0, "a chain is no tree with branches");
+    let one = of("twisted_2", "different_answers");
+    assert!(one.len() == 4 && one.iter().all(|row| row.value == Some(1.0) && row.verdict == Verdict::Pass && row.kind == Kind::Exact));
+    assert!(of("twisted_1", "different_answers").is_empty(), "one row for all numbers of threads");
+}
+
+#[test]
+fn an_answer_that_depends_on_the_threads_fails() {
+    let spoilt: Ask = Arc::new(|question| {
+        let mut measured = right(question, alone::robot(&question.robot, question.seed)?.states.nv)?;
+        if question.method == "twisted" && question.threads == 2 {
+            measured.answer[3] = measured.answer[3].next_up();
+        }
+        Ok(measured)
+    });
+    let rows = rows_of(settings_with(10, "threads = [1, 2]\n"), spoilt);
+    let red: Vec<&Row> = rows.iter().filter(|row| row.verdict == Verdict::Fail).collect();
+    assert!(red.len() == 4 && red.iter().all(|row| row.metric == "different_answers" && row.value == Some(2.0)), "{red:#?}");
+}
+
+#[test]
+fn an_engine_is_asked_all_its_methods_of_a_robot_before_the_next_and_at_its_own_sizes() {
+    let asked = Arc::new(std::sync::Mutex::new(Vec::new()));
+    let recorded: Ask = {
+        let (asked, inner) = (Arc::clone(&asked), ask(right));
+        Arc::new(move |question| {
+            if question.engine == "double" {
+                asked.lock().unwrap().push(question.robot.clone());
+            }
+            inner(question)
+        })
+    };
+    let rows = rows_of(settings_with_peers(10), recorded);
+    let mut asked = asked.lock().unwrap().clone();
+    let questions = asked.len();
+    asked.dedup();
+    assert_eq!(asked, ["chain:n=10,layout=spatial", "chain:n=40,layout=spatial"]);
+    assert!(questions > asked.len(), "{questions} questions: there are several methods");
+    let sizes = |engine: &str| {
+        let mut sizes: Vec<u64> =
+            rows.iter().filter(|row| row.engine == engine && row.metric == "seconds").filter_map(|row| row.nv).collect();
+        sizes.sort_unstable();
+        sizes.dedup();
+        sizes
+    };
+    assert_eq!((sizes("double"), sizes("featherbench")), (vec![10, 40], vec![10, 20, 40, 80]));
+}
+
+#[test]
+fn a_size_that_is_expected_to_take_too_long_is_not_asked() {
+    // Cubic: 2 calls take 0.8 s for 20 dofs.
+    let slow: Ask = Arc::new(|question| {
+        let n = alone::robot(&question.robot, question.seed)?.states.nv;
+        assert!(question.method != "aba" || n < 40, "{question:?}");
+        let calls = vec![if question.method == "aba" { 0.4 * (n as f64 / 20.0).powi(3) } else { 1e-3 }; 3];
+        Ok(Measured { calls, build: 0.0, ..right(question, n)? })
+    });
+    // Of 20 dofs 6.4 s for 40 are expected, more than the five of the suite.
+    let rows = rows_of(settings(40), slow);
+    let row = largest(&rows, "featherbench", "aba");
+    assert_eq!((row.value, row.verdict), (Some(20.0), Verdict::Info), "{}", row.reason);
+    assert_eq!(row.reason, "chain:n=40,layout=spatial: not asked: 6 s are expected by the last two sizes, and the suite waits 5 s");
+    assert_eq!(largest(&rows, "featherbench", "ltdl").value, Some(80.0));
 }
 
 #[test]
@@ -210,7 +316,7 @@ fn a_resumed_run_measures_nothing_twice_and_has_the_same_bytes() {
 fn a_question_is_asked_with_the_limits_of_the_suite() {
     let checked: Ask = Arc::new(|question| {
         assert_eq!((question.limits.memory, question.limits.answer.as_secs(), question.seed), (512 << 20, 5, support::SEED));
-        assert!(matches!(question.quantity, Quantity::InverseDynamics | Quantity::ForwardDynamics | Quantity::Momentum));
+        assert_eq!(question.threads, 1, "{question:?}");
         Err(NoAnswer::NotOffered("a test".into()))
     });
     let rows = rows_in(tempfile::tempdir().unwrap().path(), &Growth::new(settings(10), checked));

@@ -60,6 +60,7 @@ fn what_is_wrong_with_a_table_is_named() {
         ("[toy]\n", "there is no study 'toy'; there are agreement, import"),
         ("[timing]\nstates = 3\n", "seconds"),
         ("[timing]\nstates = 3\nseconds = 0.1\npeers = []\n", "peers"),
+        ("[timing]\nstates = 3\nseconds = 0.1\nquantities = [\"mass\"]\n", "there is no quantity 'mass'"),
         ("[accuracy]\nstates = 3\n", "states"),
     ] {
         let suite = Suite::parse(&format!("about = \"a\"\nseed = 1\n{text}"), Path::new("s.toml")).unwrap();

@@ -20,6 +20,9 @@ fn settings() -> ScalingSettings {
         factors: list(&["chain:n=36,layout=spatial", "humanoid", "binary_tree:depth=6", "star:n=5"]),
         dynamics: list(&["chain:n=60,layout=spatial"]),
         by_factorization: list(&["chain:n=60,layout=spatial"]),
+        engines: Vec::new(),
+        sub_trees: list(&["binary_tree:depth=8"]),
+        both_ends: list(&["chain:n=60,layout=spatial"]),
         lines: Vec::new(),
     }
 }
@@ -154,4 +157,30 @@ fn a_resumed_run_has_the_same_bytes() {
         std::fs::write(&path, &outcomes[..outcomes.len() * share / 10]).unwrap();
         assert!(bytes(folder.path()) == whole, "killed at {share} tenths");
     }
+}
+
+/// An engine named faer is given our M, and has our gate; one with its own M has none. An engine that refuses has skips.
+#[test]
+fn factors_of_other_engines_stand_beside_ours() {
+    let robot = support::robot("hand");
+    let rows_of = |double: support::Double| {
+        let settings = ScalingSettings { engines: vec!["faer".into(), "double".into()], ..ScalingSettings::default() };
+        let engines: Vec<Box<dyn Engine>> = vec![Box::new(Featherbench::new()), Box::new(double)];
+        let rows = support::whole(&Scaling { settings }, &robot, &support::gates(""), &engines);
+        let asked = |row: &Row| row.params == "{\"what\":\"others\"}" && row.method == "ltdl";
+        let answers = rows.into_iter().filter(asked).map(|row| (row.metric, row.value, row.verdict)).collect::<Vec<_>>();
+        assert_eq!(answers.len(), 3, "{answers:?}");
+        answers
+    };
+    let honest = rows_of(support::Double::of(&robot).named("faer"));
+    assert_eq!(honest[0], ("fill_in".into(), Some(0.0), Verdict::Info));
+    for (at, metric) in [(1, "factor_error_per_dof"), (2, "solution_error_per_dof")] {
+        assert!(honest[at].0 == metric && honest[at].2 == Verdict::Pass, "{honest:?}");
+    }
+    let spoil: support::Twist = |answer| answer.values.iter_mut().for_each(|x| *x += 1e-9);
+    let spoilt = rows_of(support::Double::twisting(&robot, spoil).named("faer"));
+    assert!(spoilt[1].2 == Verdict::Fail && spoilt[2].2 == Verdict::Fail, "{spoilt:?}");
+    let other = rows_of(support::Double::twisting(&robot, spoil));
+    assert!(other[1].2 == Verdict::Info && other[2].2 == Verdict::Info, "{other:?}");
+    assert!(rows_of(support::Double::refusing(&robot)).iter().all(|(_, value, verdict)| value.is_none() && *verdict == Verdict::Skip));
 }

@@ -10,7 +10,14 @@ use support::{Double, gates, robot, whole};
 use crate::support;
 
 fn settings(engines: &[&str]) -> TimingSettings {
-    TimingSettings { states: 20, seconds: 0.0, engines: engines.iter().map(|&name| name.into()).collect(), derivatives: false }
+    TimingSettings {
+        states: 20,
+        seconds: 0.0,
+        engines: engines.iter().map(|&name| name.into()).collect(),
+        quantities: Vec::new(),
+        best_of: Vec::new(),
+        derivatives: false,
+    }
 }
 
 fn study() -> Timing {
@@ -65,6 +72,66 @@ fn everyone_has_times_ratios_and_intervals_beside_a_control() {
     );
     assert!(machine.iter().all(|row| row.robot.is_empty() && row.value.is_some_and(|value| value > 0.0)));
     assert!(rows.iter().all(|row| row.engine != "absent"));
+}
+
+/// Each of our methods stands beside the fastest of the named engines' methods whose answers are right.
+#[test]
+fn the_best_other_is_the_fastest_whose_answers_are_right() {
+    let named = TimingSettings { best_of: vec!["double".into()], ..settings(&["double"]) };
+    let found = |double: Double| {
+        let rows = rows_of(&Timing { settings: named.clone(), ..study() }, double);
+        let ours = |quantity: &str| of(&rows, "featherbench", quantity, "best_other").into_iter().cloned().collect::<Vec<_>>();
+        (ours("id"), ours("fd"))
+    };
+    let (id, fd) = found(Double::of(&robot4()));
+    // One of our methods for id and two for fd, over the stream and hot.
+    assert_eq!((id.len(), fd.len()), (2, 4));
+    for row in id.iter().chain(&fd) {
+        let params: serde_json::Value = serde_json::from_str(&row.params).unwrap();
+        let others = params["others"].as_array().unwrap();
+        assert_eq!(others.len(), if row.quantity == "id" { 2 } else { 6 }, "all methods of the double");
+        assert!(others.contains(&row.reference.as_str().into()), "{} among {others:?}", row.reference);
+        assert!(row.ci_low <= row.value && row.value <= row.ci_high && row.value.is_some_and(|ratio| ratio > 0.0), "{row:?}");
+    }
+    assert_eq!(fd.iter().map(|row| row.method.as_str()).collect::<Vec<_>>(), ["aba", "ltdl", "aba", "ltdl"]);
+    let (id, fd) = found(Double::twisting(&robot4(), |answer| {
+        if answer.quantity == Quantity::InverseDynamics {
+            answer.values[0] += 1.0;
+        }
+    }));
+    assert_eq!((id.len(), fd.len()), (0, 4), "a wrong answer is beside nothing");
+    assert!(of(&rows(Double::of(&robot4())), "featherbench", "fd", "best_other").is_empty(), "no engine was named");
+}
+
+/// Inverses are multiplied with M.
+#[test]
+fn an_inverse_is_checked_backwards() {
+    let wrong = |twist: support::Twist| {
+        let study = Timing { kernels: |_| vec![(Quantity::MassMatrixInverse, "ltdl"), (Quantity::MassMatrixInverse, "batch")], ..study() };
+        let rows = rows_of(&study, Double::twisting(&robot4(), twist));
+        assert!(rows.iter().filter(|row| row.engine == "featherbench").all(|row| row.verdict == Verdict::Info), "ours are right");
+        let errors = of(&rows, "double", "mass_matrix_inverse", "worst_error");
+        (errors.len(), errors.iter().filter(|row| row.verdict == Verdict::Fail).count())
+    };
+    assert_eq!(wrong(|_| ()), (2, 0));
+    assert_eq!(
+        wrong(|answer| {
+            if answer.quantity == Quantity::MassMatrixInverse {
+                answer.values[0] *= 1.0 + 1e-8;
+            }
+        }),
+        (2, 2),
+        "an entry of the diagonal"
+    );
+    assert_eq!(
+        wrong(|answer| {
+            if answer.quantity == Quantity::MassMatrixInverse {
+                answer.values[1] += 1e-8 * answer.values[0];
+            }
+        }),
+        (2, 2),
+        "one beside it"
+    );
 }
 
 #[test]
@@ -385,4 +452,17 @@ fn one_that_stops_answering_is_an_error() {
     assert_eq!(errors.iter().filter(|row| row.method == "ltdl" && row.metric == "ns_per_call").count(), 2);
     assert_eq!(errors.iter().filter(|row| row.quantity == "id" && row.metric == "control").count(), 2);
     assert!(rows.iter().filter(|row| row.quantity == "id" && row.metric == "ns_per_call").all(|row| !row.valid));
+}
+
+#[test]
+fn a_suite_chooses_quantities() {
+    let timed = |quantities: Vec<Quantity>| {
+        let study = Timing { settings: TimingSettings { quantities, ..settings(&["double"]) }, ..study() };
+        let mut timed: Vec<String> = rows_of(&study, Double::of(&robot4())).into_iter().map(|row| row.quantity).collect();
+        timed.sort_unstable();
+        timed.dedup();
+        timed
+    };
+    assert_eq!(timed(vec![Quantity::ForwardDynamics]), ["fd", "machine"]);
+    assert_eq!(timed(Vec::new()), ["fd", "id", "machine"]);
 }

@@ -11,9 +11,8 @@
 //! round every number of the robot; with one of time, dynibo has the robot as described, and M, placements and Jacobians need no unit.
 //! The world is turned until gravity points along −z.
 
-use crate::interface::Body;
-use crate::refusal::Refusal;
 use dynibo::{BaseState, Frame, Twist};
+use featherbench_interface::{Body, Refusal};
 use nalgebra::{Matrix3, Quaternion, Rotation3, Translation3, UnitQuaternion, Vector3};
 
 /// Dynibo's gravity, m/s².

@@ -3,7 +3,7 @@
 //! Only dynibo's own calls are in `run`, which is timed. Conversions are in `states` and `read`.
 
 mod coordinates;
-mod interface;
-mod refusal;
 mod robot;
 mod urdf;
+
+featherbench_interface::export!(robot::Robot);

@@ -1,14 +1,13 @@
 //! A robot in dynibo, its states, and the calls that are timed.
 
 use crate::coordinates::{self, Floating, Order};
-use crate::interface::Body;
-use crate::refusal::Refusal;
 use crate::urdf;
 use dynibo::{FloatingRobot, Frame, LinkId, RobotModel};
+use featherbench_interface::{self as interface, Body, Given, Refusal};
 use nalgebra::Matrix3;
 
 /// What is answered: quantity and method.
-pub const METHODS: [(&str, &str); 7] = [
+const METHODS: &[(&str, &str)] = &[
     ("id", "rnea"),
     ("bias", "rnea"),
     ("fd", "aba"),
@@ -54,15 +53,12 @@ pub struct Robot {
     last: usize,
 }
 
-impl Robot {
-    /// Builds a robot, and reads back what dynibo has: 22 numbers per body.
-    pub fn new(
-        bodies: &[Body],
-        gravity: [f64; 3],
-        [nq, nv]: [usize; 2],
-        dof_parents: &[i32],
-        readback: &mut [f64],
-    ) -> Result<Self, Refusal> {
+impl interface::Robot for Robot {
+    const ENGINE: &'static str = "dynibo";
+    const METHODS: &'static [(&'static str, &'static str)] = METHODS;
+
+    fn new(given: &Given, readback: &mut [f64]) -> Result<Self, Refusal> {
+        let &Given { bodies, gravity, sizes: [nq, nv], dof_parents } = given;
         let (pace, world, floats) = (coordinates::pace(gravity)?, coordinates::world(gravity), urdf::floats(bodies));
         if bodies.iter().any(|body| body.armature.iter().any(|&armature| armature != 0.0)) {
             return Err(Refusal::Unsupported("dynibo has no armature".into()));
@@ -114,13 +110,11 @@ impl Robot {
         })
     }
 
-    /// nq and nv.
-    pub fn sizes(&self) -> [usize; 2] {
+    fn sizes(&self) -> [usize; 2] {
         [self.nv + usize::from(self.order.floats), self.nv]
     }
 
-    /// The numbers of a value.
-    pub fn size(&self, method: usize) -> usize {
+    fn size(&self, method: usize) -> usize {
         match METHODS[method].0 {
             "mass_matrix" => self.nv * self.nv,
             "mass_matrix_sparse" => (0..self.nv).map(|dof| self.path(dof).count()).sum(),
@@ -130,13 +124,7 @@ impl Robot {
         }
     }
 
-    /// The dofs from one to the root.
-    fn path(&self, dof: usize) -> impl Iterator<Item = usize> + '_ {
-        std::iter::successors(Some(dof), |&dof| usize::try_from(self.dof_parents[dof]).ok())
-    }
-
-    /// Takes states, as q, v, a and τ.
-    pub fn convert(&mut self, [q, v, a, tau]: [&[f64]; 4]) -> Result<(), Refusal> {
+    fn convert(&mut self, [q, v, a, tau]: [&[f64]; 4]) -> Result<(), Refusal> {
         let ([nq, nv], pace) = (self.sizes(), self.order.pace);
         self.count = v.len() / nv.max(1);
         (self.bases, self.joints, self.forces, self.last) = (Vec::new(), Default::default(), Vec::new(), 0);
@@ -156,14 +144,12 @@ impl Robot {
         Ok(())
     }
 
-    /// Chooses the body whose Jacobian is asked for.
-    pub fn aim(&mut self, body: usize) -> Result<(), Refusal> {
+    fn ready(&mut self, _: usize, body: usize) -> Result<(), Refusal> {
         self.body = body;
         if body < self.links.len() { Ok(()) } else { Err(lost("a body")) }
     }
 
-    /// Evaluates states by a method: what is timed.
-    pub fn run(&mut self, method: usize, first: usize, count: usize) -> Result<(), Refusal> {
+    fn run(&mut self, method: usize, first: usize, count: usize) -> Result<(), Refusal> {
         let mut k = first % self.count;
         for _ in 0..count {
             self.evaluate(METHODS[method].0, k)?;
@@ -173,37 +159,7 @@ impl Robot {
         Ok(())
     }
 
-    fn evaluate(&mut self, quantity: &str, k: usize) -> Result<(), Refusal> {
-        let (n, link, rest) = (self.order.joints.len(), self.links[self.body].0, &self.rest[..]);
-        let [q, v, a] = self.joints.each_ref().map(|numbers| &numbers[k * n..(k + 1) * n]);
-        let tau = &self.forces[k * self.nv..(k + 1) * self.nv];
-        let (values, nv) = (&mut self.values, self.nv);
-        match &mut self.engine {
-            Engine::Fixed(robot) => match quantity {
-                "id" => robot.inverse_dynamics(q, v, a, &[], &mut values[..nv])?,
-                "bias" => robot.inverse_dynamics(q, v, rest, &[], &mut values[..nv])?,
-                "fd" => robot.forward_dynamics(q, v, tau, &[], &mut values[..nv])?,
-                "body_placement" => robot.forward_kinematics_all(q, &mut self.frames)?,
-                "body_jacobian" => robot.jacobian(q, link, &mut values[..6 * nv])?,
-                _ => robot.mass_matrix(q, &mut values[..nv * nv])?,
-            },
-            Engine::Floating(robot) => {
-                let base = &self.bases[k];
-                match quantity {
-                    "id" => robot.inverse_dynamics(&base.state, q, v, a, &[], &mut values[..nv])?,
-                    "bias" => robot.inverse_dynamics(&base.unaccelerated, q, v, rest, &[], &mut values[..nv])?,
-                    "fd" => robot.forward_dynamics(&base.state, q, v, tau, &[], &mut values[..nv])?,
-                    "body_placement" => robot.forward_kinematics_all(&base.state, q, &mut self.frames)?,
-                    "body_jacobian" => robot.jacobian(&base.state, q, link, &mut values[..6 * nv])?,
-                    _ => robot.mass_matrix(&base.state, q, &mut values[..nv * nv])?,
-                }
-            }
-        }
-        Ok(())
-    }
-
-    /// Writes the value of the last state, in neutral coordinates.
-    pub fn read(&self, method: usize, value: &mut [f64]) {
+    fn read(&mut self, method: usize, value: &mut [f64]) -> Result<(), Refusal> {
         let (n, base) = (self.nv, self.bases.get(self.last));
         match METHODS[method].0 {
             "fd" => self.order.acceleration_back(base, &self.values, value),
@@ -241,6 +197,44 @@ impl Robot {
                 value.iter_mut().for_each(|force| *force /= self.order.pace);
             }
         }
+        Ok(())
+    }
+}
+
+impl Robot {
+    /// The dofs from one to the root.
+    fn path(&self, dof: usize) -> impl Iterator<Item = usize> + '_ {
+        std::iter::successors(Some(dof), |&dof| usize::try_from(self.dof_parents[dof]).ok())
+    }
+
+    /// Evaluates a state.
+    fn evaluate(&mut self, quantity: &str, k: usize) -> Result<(), Refusal> {
+        let (n, link, rest) = (self.order.joints.len(), self.links[self.body].0, &self.rest[..]);
+        let [q, v, a] = self.joints.each_ref().map(|numbers| &numbers[k * n..(k + 1) * n]);
+        let tau = &self.forces[k * self.nv..(k + 1) * self.nv];
+        let (values, nv) = (&mut self.values, self.nv);
+        match &mut self.engine {
+            Engine::Fixed(robot) => match quantity {
+                "id" => robot.inverse_dynamics(q, v, a, &[], &mut values[..nv])?,
+                "bias" => robot.inverse_dynamics(q, v, rest, &[], &mut values[..nv])?,
+                "fd" => robot.forward_dynamics(q, v, tau, &[], &mut values[..nv])?,
+                "body_placement" => robot.forward_kinematics_all(q, &mut self.frames)?,
+                "body_jacobian" => robot.jacobian(q, link, &mut values[..6 * nv])?,
+                _ => robot.mass_matrix(q, &mut values[..nv * nv])?,
+            },
+            Engine::Floating(robot) => {
+                let base = &self.bases[k];
+                match quantity {
+                    "id" => robot.inverse_dynamics(&base.state, q, v, a, &[], &mut values[..nv])?,
+                    "bias" => robot.inverse_dynamics(&base.unaccelerated, q, v, rest, &[], &mut values[..nv])?,
+                    "fd" => robot.forward_dynamics(&base.state, q, v, tau, &[], &mut values[..nv])?,
+                    "body_placement" => robot.forward_kinematics_all(&base.state, q, &mut self.frames)?,
+                    "body_jacobian" => robot.jacobian(&base.state, q, link, &mut values[..6 * nv])?,
+                    _ => robot.mass_matrix(&base.state, q, &mut values[..nv * nv])?,
+                }
+            }
+        }
+        Ok(())
     }
 
     /// M = Tᵀ M_e T: Tᵀ on each column of M_e, then on each row of the result.

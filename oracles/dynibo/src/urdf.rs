@@ -1,8 +1,7 @@
 //! A robot as URDF, the only form that dynibo reads.
 
-use crate::interface::{Body, JOINTS};
-use crate::refusal::Refusal;
 use dynibo::RobotModel;
+use featherbench_interface::{Body, JOINTS, Refusal};
 use std::fmt::Write;
 use std::sync::atomic::{AtomicUsize, Ordering};
 

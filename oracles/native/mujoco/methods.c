@@ -83,6 +83,22 @@ static void run_solve(struct fb_handle *h, size_t k) {
   h->data->qLDiagInv = h->own_inverse;
 }
 
+/* kinematics + comPos + makeM + factorM, then solveM with the n columns of the identity */
+static void run_inverse_matrix(struct fb_handle *h, size_t k) {
+  run_mass(h, k);
+  mj_factorM(h->model, h->data);
+  mj_solveM(h->model, h->data, h->work[0], h->work[1], (int)h->nv);
+}
+
+/* kinematics + comPos, whose subtree_com of the world is the robot's centre of mass */
+static void run_com(struct fb_handle *h, size_t k) { position(h, k); }
+
+/* kinematics + comPos + comVel + subtreeVel */
+static void run_momentum(struct fb_handle *h, size_t k) {
+  velocity(h, k);
+  mj_subtreeVel(h->model, h->data);
+}
+
 static void run_placements(struct fb_handle *h, size_t k) {
   set_q(h, k);
   mj_kinematics(h->model, h->data);
@@ -144,6 +160,19 @@ static void read_factors(struct fb_handle *h, double *sparse) {
   fb_factors_to_neutral(change(h), h->nv, h->dof_parent, h->work[0], h->work[1], sparse);
 }
 
+static void read_inverse_matrix(struct fb_handle *h, double *inverse) {
+  memcpy(inverse, h->work[0], h->nv * h->nv * sizeof *inverse);
+  fb_back_matrix(change(h), h->nv, inverse);
+}
+
+static void read_com(struct fb_handle *h, double *com) { memcpy(com, h->data->subtree_com, 3 * sizeof *com); }
+
+/* The linear part is the total mass times the velocity of the centre of mass. */
+static void read_momentum(struct fb_handle *h, double *momentum) {
+  memcpy(momentum, h->data->subtree_angmom, 3 * sizeof *momentum);
+  for (size_t i = 0; i < 3; i++) momentum[3 + i] = h->model->body_subtreemass[0] * h->data->subtree_linvel[i];
+}
+
 static void read_placements(struct fb_handle *h, double *value) {
   for (size_t i = 1; i <= h->bodies; i++, value += 12) {
     memcpy(value, h->data->xmat + 9 * i, 9 * sizeof *value);
@@ -174,6 +203,14 @@ static int ready_dense(struct fb_handle *h) {
   return make_room(&h->work[0], h->nv * h->nv) && make_room(&h->work[1], h->nv * h->nv);
 }
 
+/* The identity, whose columns are right-hand sides. */
+static int ready_identity(struct fb_handle *h) {
+  if (!ready_dense(h)) return 0;
+  memset(h->work[1], 0, h->nv * h->nv * sizeof *h->work[1]);
+  for (size_t i = 0; i < h->nv; i++) h->work[1][i * h->nv + i] = 1;
+  return 1;
+}
+
 /* Mass matrices of the states and their factors. For big robots a few are reused in turn: thousands of them would not fit into memory. */
 static int ready_matrices(struct fb_handle *h) {
   const size_t stored = (size_t)h->model->nC, most = 1 + ((size_t)32 << 20) / (8 * stored);
@@ -200,6 +237,9 @@ static const struct fb_method names[] = {
     {"mass_matrix_sparse", "crb"},
     {"factorization", "factor"},
     {"solve", "solve"},
+    {"mass_matrix_inverse", "solve_identity"},
+    {"com", "subtree_com"},
+    {"momentum", "subtree_vel"},
     {"fd", "stages"},
     {"fd", "forward"},
     {"body_placement", "kinematics"},
@@ -220,6 +260,9 @@ static const struct {
     {ready_dense, run_mass, read_sparse_mass},
     {ready_matrices, run_factor, read_factors},
     {ready_matrices, run_solve, read_force},
+    {ready_identity, run_inverse_matrix, read_inverse_matrix},
+    {NULL, run_com, read_com},
+    {NULL, run_momentum, read_momentum},
     {NULL, run_stages, read_acceleration},
     {NULL, run_forward, read_acceleration},
     {NULL, run_placements, read_placements},

@@ -25,7 +25,7 @@ struct fb_handle {
   double *inverses;         /* and of nv numbers */
   size_t made;
   double *result;   /* nv, or 6 nv of a Jacobian */
-  double *work[2];  /* nv × nv */
+  double *work[2];  /* nv × nv; of an inverse the result, and the identity */
   size_t last;      /* the state that was evaluated last */
 };
 

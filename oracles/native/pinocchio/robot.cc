@@ -157,7 +157,7 @@ void convert(const fb_states &states, fb_handle &handle) {
 const std::vector<Method> &methods() {
   static const std::vector<Method> all = [] {
     std::vector<Method> all;
-    for (const auto *group : {&inverse_dynamics, &forward_dynamics, &mass_matrices, &kinematics, &derivatives})
+    for (const auto *group : {&inverse_dynamics, &forward_dynamics, &mass_matrices, &kinematics, &momenta, &derivatives})
       all.insert(all.end(), group->begin(), group->end());
     return all;
   }();

@@ -57,7 +57,7 @@ struct Method {
 };
 
 // The groups of algorithms, one file each.
-extern const std::vector<Method> inverse_dynamics, forward_dynamics, mass_matrices, kinematics, derivatives;
+extern const std::vector<Method> inverse_dynamics, forward_dynamics, mass_matrices, kinematics, momenta, derivatives;
 
 // Writes a vector, a force or an acceleration, as it is.
 inline void write(const Eigen::VectorXd &x, double *value) { Eigen::Map<Eigen::VectorXd>(value, x.size()) = x; }

@@ -38,6 +38,30 @@ fn scales(robot: &Robot, quantity: Quantity, state: usize) -> Option<Vec<f64>> {
     Some(root.iter().flat_map(|of_row| root.iter().map(move |of_column| row(of_row) / of_column)).collect())
 }
 
+/// The error of second derivatives, block by block. An entry is divided by √(M_jj·M_kk), and one by τ_k by √(M_jj/M_kk): so the entries of a
+/// block have one unit. The largest difference is over the largest entry of the block.
+///
+/// Terms may cancel in the blocks by (q, q) and (q, v). So these are not smaller than the largest entry by (v, v) or (q, a) times the rate of
+/// the state, squared or not. The result is NaN if an entry is.
+pub(super) fn second_error(robot: &Robot, quantity: Quantity, at: &Magnitudes, reference: &[f64], value: &[f64]) -> f64 {
+    let Some(root) = root(robot, at.state) else { return f64::NAN };
+    let turning = Rates::of(robot, at).turning;
+    let n = root.len();
+    let largest = |block: usize, entry: &dyn Fn(usize) -> f64| {
+        let by_tau = block == 3 && quantity == Quantity::ForwardDynamicsSecond;
+        let scale = |j: usize, k: usize| if by_tau { root[k] / root[j] } else { (root[j] * root[k]).recip() };
+        (0..n * n).fold(0.0, |most, place| worst(most, (entry(block * n * n + place) * scale(place / n, place % n)).abs()))
+    };
+    let size = |block: usize| largest(block, &|entry| reference[entry]);
+    // Those by (q, τ) have another unit.
+    let still = if quantity == Quantity::InverseDynamicsSecond { worst(size(2), size(3)) } else { size(2) };
+    let least = [still * turning, still * turning.sqrt(), 0.0, 0.0];
+    least.into_iter().enumerate().fold(0.0, |error, (block, least)| {
+        let difference = largest(block, &|entry| value[entry] - reference[entry]);
+        worst(error, ratio(difference, worst(size(block), least)))
+    })
+}
+
 /// √M_ii at a state. `None` if M cannot be computed there.
 fn root(robot: &Robot, state: usize) -> Option<Vec<f64>> {
     let model = &robot.model;
@@ -106,7 +130,33 @@ fn by_unit(root: &[f64], least: [f64; 3], reference: &[f64], value: &[f64]) -> f
 
 #[cfg(test)]
 mod tests {
-    use super::by_unit;
+    use super::*;
+    use featherbench_results::ModelOrigin;
+    use featherbench_robots::Family;
+
+    /// Each block has its own size, and entries that are small in their units count as much as large ones.
+    #[test]
+    fn second_derivatives_are_measured_by_block() {
+        let description = Family::parse("chain:n=2,layout=spatial").unwrap().generate().unwrap();
+        let robot = Robot::new(&description, "test", ModelOrigin::Generated, 1, 1).unwrap();
+        let (at, root) = (&robot.magnitudes()[0], root(&robot, 0).unwrap());
+        for quantity in Quantity::SECOND_DERIVATIVES {
+            let forward = quantity == Quantity::ForwardDynamicsSecond;
+            let unit = |entry: usize| {
+                let (block, j, k) = (entry / 4, entry / 2 % 2, entry % 2);
+                if block == 3 && forward { root[j] / root[k] } else { root[j] * root[k] }
+            };
+            // 1e9 in the blocks by (q, q) and (q, v), where the rates of the state are a smaller size.
+            let due: Vec<f64> = (0..16).map(|entry| unit(entry) * [1e9, 1e9, 2.0, 4.0][entry / 4]).collect();
+            for entry in 0..16 {
+                let mut value = due.clone();
+                value[entry] += 0.25 * unit(entry);
+                let found = second_error(&robot, quantity, at, &due, &value);
+                let size = [1e9, 1e9, 2.0, 4.0][entry / 4];
+                assert!((found * size / 0.25 - 1.0).abs() < 1e-6, "{quantity:?} at {entry}: {found:e}");
+            }
+        }
+    }
 
     #[test]
     fn a_regressor_is_measured_by_unit() {

@@ -54,7 +54,13 @@ pub fn scaled_error(robot: &Robot, quantity: Quantity, at: &Magnitudes, referenc
         | Quantity::ForwardDynamicsDv
         | Quantity::CoriolisMatrix => derivative::error(robot, quantity, at, reference, value),
         Quantity::TorqueRegressor => derivative::regressor_error(robot, at, reference, value),
+        Quantity::InverseDynamicsSecond | Quantity::ForwardDynamicsSecond => {
+            derivative::second_error(robot, quantity, at, reference, value)
+        }
         Quantity::StoredEntries => entries(reference, value, &[1.0]),
+        // More numbers than ours are fill-in, and no error.
+        Quantity::FactorEntries if value >= reference => 0.0,
+        Quantity::FactorEntries => entries(reference, value, &[1.0]),
         Quantity::ForwardDynamics | Quantity::ForwardDynamicsSingle | Quantity::Solve => {
             let largest = reference.iter().fold(0.0_f64, |largest, x| worst(largest, x.abs()));
             entries(reference, value, &vec![largest; reference.len()])

@@ -131,7 +131,18 @@ fn every_entry_of_two_screws_has_its_magnitude() {
     }
     let missing: Vec<Quantity> =
         Quantity::ALL.into_iter().filter(|quantity| !cases.iter().any(|case| case.quantity == *quantity)).collect();
-    assert_eq!(missing, [Quantity::Factorization], "factors have a test of their own");
+    let others = [Quantity::Factorization, Quantity::FactorEntries, Quantity::InverseDynamicsSecond, Quantity::ForwardDynamicsSecond];
+    assert_eq!(missing, others, "factors and second derivatives have tests of their own");
+}
+
+/// Fill-in is no error, and a factor with fewer numbers than M is one.
+#[test]
+fn a_factor_has_as_many_numbers_as_the_matrix_or_more() {
+    let robot = two_screws();
+    let at = Magnitudes::new(&robot, 0);
+    let error = |value: f64| scaled_error(&robot, Quantity::FactorEntries, &at, &[3.0], &[value]);
+    assert_eq!([3.0, 4.0, 2.0].map(error), [0.0, 0.0, 1.0]);
+    assert!(error(f64::NAN).is_nan());
 }
 
 /// LᵀDL with D = (2, 9) and L_10 = 0.5: M_11 = D_1 = 9, M_10 = L_10·D_1 = 4.5, M_00 = D_0 + L_10²·D_1 = 4.25.

@@ -1,57 +1,15 @@
 //! Dynibo, if it is built: a library that cargo makes, its answers against our own kernels, and what it refuses.
 
 use super::Outcome;
-use super::native::{self, PATIENT};
-use crate::support::{Ended, Sandbox, project};
+use super::library;
+use super::native;
 use featherbench_bench::{Engine, NoAnswer, Quantity, Robot};
 use featherbench_engines::Oracle;
 use featherbench_results::ModelOrigin;
-use std::path::PathBuf;
-use std::process::Command;
-use std::sync::LazyLock;
-
-/// The library, if it was compiled from the present sources.
-static LIBRARY: LazyLock<Option<PathBuf>> = LazyLock::new(|| {
-    let sandbox = Sandbox::new();
-    for name in ["Cargo.toml", ".cargo", "crates"] {
-        std::os::unix::fs::symlink(project().join(name), sandbox.path(name)).unwrap();
-    }
-    std::fs::create_dir_all(sandbox.path("target/oracles")).unwrap();
-    std::os::unix::fs::symlink(project().join("target/oracles/dynibo"), sandbox.path("target/oracles/dynibo")).unwrap();
-    // The other engines are missing, so that they are not started.
-    let status = sandbox.run(&["oracles", "status"]).output;
-    let line = status.lines().find(|line| line.starts_with("dynibo")).unwrap_or_else(|| panic!("dynibo is not in {status}"));
-    let name = PathBuf::from(line.rsplit(' ').next().unwrap()).file_name()?.to_owned();
-    let library = project().join("target/oracles/dynibo/release").join(name);
-    (line.contains(".so") || line.contains(".dylib")).then_some(library).filter(|library| library.is_file())
-});
-
-fn library() -> Result<PathBuf, Outcome> {
-    LIBRARY.clone().ok_or_else(|| Outcome::Skipped("dynibo is not built (`featherbench oracles install dynibo`)".into()))
-}
 
 /// A test that asks dynibo.
 pub fn with_dynibo(test: fn(&Oracle)) -> Outcome {
-    match library() {
-        Ok(library) => {
-            test(&native::start(&library, PATIENT, None).unwrap());
-            Outcome::Passed
-        }
-        Err(skipped) => skipped,
-    }
-}
-
-/// It conforms to the protocol.
-pub fn conforms() -> Outcome {
-    let library = match library() {
-        Ok(library) => library,
-        Err(skipped) => return skipped,
-    };
-    let program = env!("CARGO_BIN_EXE_featherbench");
-    let command = &mut Command::new(program);
-    let ended = Ended::new(command.current_dir(project()).args(["oracles", "check", program, "serve"]).arg(library).output().unwrap());
-    ended.expect(0, &["conforms", "dynibo has no armature"]);
-    Outcome::Passed
+    library::with("dynibo", test)
 }
 
 /// It agrees on chains, trees and arms, fixed and floating, with gravity of any size and direction.

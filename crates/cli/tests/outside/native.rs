@@ -14,13 +14,14 @@ use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::time::{Duration, Instant};
 
 /// All quantities that a native oracle may be asked for.
-const QUANTITIES: [Quantity; 13] = [
+const QUANTITIES: [Quantity; 14] = [
     Quantity::Readback,
     Quantity::InverseDynamics,
     Quantity::Bias,
     Quantity::MassMatrix,
     Quantity::MassMatrixSparse,
     Quantity::Factorization,
+    Quantity::FactorEntries,
     Quantity::Solve,
     Quantity::ForwardDynamics,
     Quantity::MassMatrixInverse,
@@ -252,12 +253,16 @@ pub fn pendulum_dies_alone() -> Outcome {
     Outcome::Passed
 }
 
-/// The libraries that `oracles status` names, but for dynibo: cargo builds it by day as well, and its tests are in `dynibo.rs`.
+/// The libraries that `oracles status` names, but for those that cargo builds, by day as well: their tests are in files of their own.
 fn built() -> Vec<(String, PathBuf)> {
     let output = Command::new(env!("CARGO_BIN_EXE_featherbench")).current_dir(project()).args(["oracles", "status"]).output().unwrap();
     let text = String::from_utf8_lossy(&output.stdout).into_owned();
     let library = |line: &str| Some((line.split_whitespace().next()?.to_owned(), PathBuf::from(line.split("  ").last()?)));
-    text.lines().filter(|line| line.ends_with(".so")).filter_map(library).filter(|(name, _)| name != "dynibo").collect()
+    text.lines()
+        .filter(|line| line.ends_with(".so"))
+        .filter_map(library)
+        .filter(|(name, _)| !super::library::NAMES.contains(&name.as_str()))
+        .collect()
 }
 
 /// The known ratio of an engine's error to what rounding may cause (ci/deviations). It is twice the largest ratio over twenty seeds of

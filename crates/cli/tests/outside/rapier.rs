@@ -57,7 +57,7 @@ pub fn conforms() -> Outcome {
     };
     let command = &mut Command::new(env!("CARGO_BIN_EXE_featherbench"));
     let ended = Ended::new(command.current_dir(project()).args(["oracles", "check"]).arg(program).output().unwrap());
-    ended.expect(0, &["conforms", "offers  steps by step, step_default", "step by step: 17 robots", "fall by step: 5 robots"]);
+    ended.expect(0, &["conforms", "offers  steps by step, step_default", "step by step: 19 robots", "fall by step: 7 robots"]);
     Outcome::Passed
 }
 

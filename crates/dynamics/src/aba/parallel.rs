@@ -1,6 +1,6 @@
 //! The articulated-body algorithm for one state on all cores, sub-tree by sub-tree.
 //!
-//! Source, frames, shapes and units: those of `aba.rs`, whose functions for one body it calls. The tree is divided by `parallel.rs`. Each part
+//! Source, frames, shapes and units: those of `aba.rs`, whose recursions it calls. The tree is divided by `parallel.rs`. Each part
 //! has a stand-in for its parent: it brings ω and a of the parent into the part, and collects the Iᵃ and pᵃ that the part adds to the parent.
 //! Each task has path slots of its own.
 //!
@@ -11,16 +11,15 @@
 //! | 3 | trunk | pass 2, inward; then pass 3, outward |
 //! | 4 | parts, in parallel | pass 3, outward |
 //!
-//! Cost: O(n), the operations of [`Aba`]. Without `rayon`'s own, a call allocates three lists of slices, each with as many entries as there are
-//! tasks.
+//! Cost: O(n), the operations of [`Aba`]. Beside what `rayon` itself allocates, a call allocates three lists of slices,
+//! with one entry per task each.
 
-use super::{Link, OnPath, accelerate, pass_to_parent, set_moving};
+use super::{Inputs, Link, OnPath};
 use crate::error::Pivot;
-use crate::parallel::{Part, Piece, Plan};
-use crate::step::by_kind;
+use crate::parallel::{Piece, Plan};
 use crate::{Aba, Error};
 use featherbench_model::{Model, Topology};
-use featherbench_spatial::{ArticulatedInertia, Force, Lift, Motion, Real, Vec3};
+use featherbench_spatial::{ArticulatedInertia, Force, Lift, Real};
 use rayon::prelude::*;
 
 /// The workspace of the articulated-body algorithm for one state on all cores. Its answers are those of [`Aba`] to the bit.
@@ -58,15 +57,6 @@ struct Parent<T> {
     p: Force<T>,
 }
 
-/// What a step reads.
-struct Inputs<'a, P, T> {
-    model: &'a Model<P>,
-    q: &'a [T],
-    v: &'a [T],
-    tau: &'a [T],
-    wrenches: Option<&'a [Force<T>]>,
-}
-
 impl<T: Real> ParallelAba<T> {
     /// A workspace for models of this topology.
     pub fn new(topology: &Topology) -> Self {
@@ -89,16 +79,24 @@ impl<T: Real> ParallelAba<T> {
         wrenches: Option<&[Force<T>]>,
         a: &mut [T],
     ) -> Result<(), Error> {
-        self.aba.expect_shapes(model, q, v, tau, wrenches, a)?;
+        let inputs = Inputs { model, q, v, tau, wrenches };
+        self.aba.expect_shapes(&inputs, a)?;
         self.plan.expect(&model.topology)?;
         let Self { plan, aba: Aba { links, path }, parents, paths } = self;
         let joints = model.topology.joints();
-        let inputs = Inputs { model, q, v, tau, wrenches };
+        // Functions, of which trunk and parts share one copy.
+        let outward = |first: usize, links: &mut [Link<T>], path: &mut [OnPath<T>]| inputs.outward(first, links, path);
+        let inward = |first: usize, links: &mut [Link<T>], path: &mut [OnPath<T>], outside: Option<&mut Force<T>>, smallest: &mut Pivot| {
+            inputs.inward(first, links, path, outside, smallest);
+        };
+        let accelerate = |first: usize, links: &[Link<T>], path: &mut [OnPath<T>], a: &mut [T], smallest: &mut Pivot| {
+            inputs.accelerate(first, links, path, a, smallest);
+        };
 
-        path[0] = OnPath { a: Motion::new(Vec3::zero(), -model.gravity.lift()), ..OnPath::at_rest() };
+        path[0].a.lin = -model.gravity.lift();
         for piece in &plan.order {
             match *piece {
-                Piece::Trunk(i) => inputs.set_moving(i, path, &mut links[i]),
+                Piece::Trunk(i) => outward(i, &mut links[i..=i], path),
                 Piece::Part(k) => {
                     let omega = path[joints[plan.parts[k].bodies.start].parent_slot].omega;
                     parents[k] = Parent { on_path: OnPath { omega, ..OnPath::at_rest() }, p: Force::zero() };
@@ -112,7 +110,14 @@ impl<T: Real> ParallelAba<T> {
         let in_parts = tasks.map(|(((task, links), parents), path)| {
             let mut smallest = Pivot::none();
             for (part, parent) in plan.parts[task.parts.clone()].iter().zip(parents).rev() {
-                inputs.inward(part, &mut links[part.bodies.start - task.bodies.start..], parent, path, &mut smallest);
+                let links = &mut links[part.bodies.start - task.bodies.start..part.bodies.end - task.bodies.start];
+                let (root, slot) = (part.bodies.start, joints[part.bodies.start].parent_slot);
+                path[slot] = parent.on_path;
+                outward(root, links, path);
+                // The parent's slot is the root's as well if the root is the last child. Then the root reads it last, and begins the sum anew.
+                path[slot].inertia = ArticulatedInertia::zero();
+                inward(root, links, path, Some(&mut parent.p), &mut smallest);
+                parent.on_path.inertia = path[slot].inertia;
             }
             smallest
         });
@@ -124,7 +129,7 @@ impl<T: Real> ParallelAba<T> {
                 Piece::Trunk(i) => {
                     let (before, rest) = links.split_at_mut(i);
                     let parent = joints[i].parent.map(|parent| &mut before[parent].p);
-                    by_kind!(joints[i].kind, pass_to_parent, model, i, tau, &mut rest[0], parent, path, &mut in_trunk);
+                    inward(i, &mut rest[..1], path, parent, &mut in_trunk);
                 }
                 Piece::Part(k) => {
                     let root = &joints[plan.parts[k].bodies.start];
@@ -139,13 +144,10 @@ impl<T: Real> ParallelAba<T> {
         }
         smallest = smallest.leaves_first(in_trunk);
 
-        let mut outward = Pivot::none();
+        let mut last = Pivot::none();
         for piece in &plan.order {
             match *piece {
-                Piece::Trunk(i) => {
-                    let a = &mut a[joints[i].v..];
-                    by_kind!(joints[i].kind, accelerate, model, i, tau, a, &links[i], path, &mut outward);
-                }
+                Piece::Trunk(i) => accelerate(i, &links[i..=i], path, &mut a[joints[i].v..], &mut last),
                 Piece::Part(k) => parents[k].on_path.a = path[joints[plan.parts[k].bodies.start].parent_slot].a,
             }
         }
@@ -153,51 +155,15 @@ impl<T: Real> ParallelAba<T> {
         let accelerations = plan.divide(a, |task| task.dofs.clone());
         let in_parts = plan.tasks.par_iter().zip(accelerations).zip(paths).map(|((task, a), path)| {
             let mut smallest = Pivot::none();
-            for k in task.parts.clone() {
-                let part = &plan.parts[k];
-                path[joints[part.bodies.start].parent_slot].a = parents[k].on_path.a;
-                for i in part.bodies.clone() {
-                    let a = &mut a[joints[i].v - task.dofs.start..];
-                    by_kind!(joints[i].kind, accelerate, model, i, tau, a, &links[i], path, &mut smallest);
-                }
+            for (part, parent) in plan.parts[task.parts.clone()].iter().zip(&parents[task.parts.clone()]) {
+                path[joints[part.bodies.start].parent_slot].a = parent.on_path.a;
+                let a = &mut a[part.dofs.start - task.dofs.start..];
+                accelerate(part.bodies.start, &links[part.bodies.clone()], path, a, &mut smallest);
             }
             smallest
         });
-        outward = outward.root_first(in_parts.reduce(Pivot::none, Pivot::root_first));
+        last = last.root_first(in_parts.reduce(Pivot::none, Pivot::root_first));
         smallest.check()?;
-        Ok(outward.check()?)
-    }
-}
-
-impl<P: Real + Lift<T>, T: Real> Inputs<'_, P, T> {
-    /// Pass 1 for one body.
-    fn set_moving(&self, i: usize, path: &mut [OnPath<T>], link: &mut Link<T>) {
-        let Self { model, q, v, .. } = *self;
-        by_kind!(model.topology.joints()[i].kind, set_moving, model, i, q, v, path, link);
-        if let Some(wrenches) = self.wrenches {
-            link.p -= model.labels[i].force_to_compiled(wrenches[i]);
-        }
-    }
-
-    /// Passes 1 and 2 for the bodies of a part. `links` begins with its root.
-    fn inward(&self, part: &Part, links: &mut [Link<T>], parent: &mut Parent<T>, path: &mut [OnPath<T>], smallest: &mut Pivot) {
-        let (model, root) = (self.model, part.bodies.start);
-        let joints = &model.topology.joints()[part.bodies.clone()];
-        let slot = joints[0].parent_slot;
-        path[slot] = parent.on_path;
-        for (k, link) in links[..joints.len()].iter_mut().enumerate() {
-            self.set_moving(root + k, path, link);
-        }
-        // The parent's slot is the root's as well if the root is the last child. Then the root reads it last, and begins the sum anew.
-        path[slot].inertia = ArticulatedInertia::zero();
-        for (k, joint) in joints.iter().enumerate().rev() {
-            let (before, rest) = links.split_at_mut(k);
-            let parent_p = match joint.parent.and_then(|parent| parent.checked_sub(root)) {
-                Some(parent) => Some(&mut before[parent].p),
-                None => part.parent.map(|_| &mut parent.p),
-            };
-            by_kind!(joint.kind, pass_to_parent, model, root + k, self.tau, &mut rest[0], parent_p, path, smallest);
-        }
-        parent.on_path.inertia = path[slot].inertia;
+        Ok(last.check()?)
     }
 }

@@ -1,7 +1,9 @@
 //! Forward dynamics of a long chain on two cores: elimination from both ends at once.
 //!
 //! Source: the tip side is `aba.rs`. The base side eliminates the equations of motion in the other order, as a twisted factorization of a band
-//! matrix does. (Meurant, *A review on the inverse of symmetric tridiagonal and block tridiagonal matrices*, 1992.) What it carries along is the inverse operational-space inertia of Kreutz-Delgado, Jain and Rodriguez (*Recursive formulation of operational space control*, 1992).
+//! matrix does: Meurant, *A review on the inverse of symmetric tridiagonal and block tridiagonal matrices*, 1992.
+//! What it carries along is the inverse operational-space inertia: Kreutz-Delgado, Jain and Rodriguez, *Recursive formulation of operational
+//! space control*, 1992.
 //!
 //! A body of the base side passes the force f on to the rest of the chain. Then its acceleration is `a = b − Φ f`, with Φ symmetric and positive
 //! semidefinite. For the world Φ = 0, and b is gravity.
@@ -35,9 +37,9 @@
 //! Frames: on the base side each body's quantities are at its centre of mass, in its compiled axes. There three of the l_i are unit vectors.
 //! Shapes and units: those of `aba.rs`.
 
-use super::{Link, OnPath, accelerate, pass_to_parent, place, set_velocity};
+use super::{Inputs, Link, OnPath, place, set_velocity};
 use crate::error::Pivot;
-use crate::step::{by_kind, cross_joint};
+use crate::step::{by_kind, cross_joint, expect_bodies};
 use crate::{Aba, DimensionError, Error};
 use bracing::Bracing;
 use featherbench_model::{JointKind, Model, Topology};
@@ -121,6 +123,11 @@ impl<T: Real> Twisted<T> {
         Some(Self { base: vec![Braced::at_rest(); cut], tip: vec![Link::at_rest(); joints.len() - cut], path: [OnPath::at_rest(); 2] })
     }
 
+    /// The number of bodies on the base side.
+    pub fn cut(&self) -> usize {
+        self.base.len()
+    }
+
     /// The accelerations `a` at configuration `q`, velocity `v`, joint forces `tau` and external wrenches.
     ///
     /// It allocates where it takes [`Aba`] in place of its own algorithm.
@@ -136,10 +143,12 @@ impl<T: Real> Twisted<T> {
         wrenches: Option<&[Force<T>]>,
         a: &mut [T],
     ) -> Result<(), Error> {
-        super::expect_shapes(self.base.len() + self.tip.len(), model, q, v, tau, wrenches, a)?;
+        let inputs = Inputs { model, q, v, tau, wrenches };
+        expect_bodies(model, self.base.len() + self.tip.len())?;
+        inputs.expect_shapes(a)?;
         self.expect_chain(&model.topology)?;
         let Self { base, tip, path } = self;
-        let side = Side { model, q, v, tau, wrenches, cut: base.len() };
+        let side = Side { inputs, cut: base.len() };
         // One entry into the pool for all stages: from outside, each would wait for a thread to wake up.
         let braced = rayon::scope(|_| side.run(base, tip, path, a));
         if braced { Ok(()) } else { Aba::new(&model.topology).run(model, q, v, tau, wrenches, a) }
@@ -186,11 +195,7 @@ struct Meeting<T> {
 
 /// What the stages read.
 struct Side<'a, P, T> {
-    model: &'a Model<P>,
-    q: &'a [T],
-    v: &'a [T],
-    tau: &'a [T],
-    wrenches: Option<&'a [Force<T>]>,
+    inputs: Inputs<'a, P, T>,
     /// m.
     cut: usize,
 }
@@ -208,7 +213,7 @@ impl<P: Real + Lift<T>, T: Real> Side<'_, P, T> {
             return false;
         }
 
-        let (a_base, a_tip) = a.split_at_mut(self.model.topology.joints()[self.cut].v);
+        let (a_base, a_tip) = a.split_at_mut(self.inputs.model.topology.joints()[self.cut].v);
         a_tip[0] = meeting.rate;
         path[1].a = meeting.acceleration;
         rayon::join(|| self.accelerate_base(base, meeting.force, a_base), || self.accelerate_tip(tip, path, a_tip));
@@ -217,12 +222,12 @@ impl<P: Real + Lift<T>, T: Real> Side<'_, P, T> {
 
     /// Stage 1 of the base side.
     fn move_base(&self, base: &mut [Braced<T>]) {
-        let Self { model, q, v, .. } = *self;
+        let Inputs { model, q, v, wrenches, .. } = self.inputs;
         let (mut parent_omega, mut parent_com) = (Vec3::zero(), Vec3::zero());
         for (i, body) in base.iter_mut().enumerate() {
             let kind = model.topology.joints()[i].kind;
             by_kind!(kind, move_braced, model, i, parent_omega, parent_com, q, v, body);
-            if let Some(wrenches) = self.wrenches {
+            if let Some(wrenches) = wrenches {
                 let wrench = model.labels[i].force_to_compiled(wrenches[i]);
                 body.p -= Force::new(wrench.ang - body.inertia.com.cross(wrench.lin), wrench.lin);
             }
@@ -233,23 +238,22 @@ impl<P: Real + Lift<T>, T: Real> Side<'_, P, T> {
     /// Stage 1 of the tip side.
     fn place_tip(&self, tip: &mut [Link<T>]) {
         for (link, i) in tip.iter_mut().zip(self.cut..) {
-            let kind = self.model.topology.joints()[i].kind;
-            let _ = by_kind!(kind, place, self.model, i, self.q, link);
+            let Inputs { model, q, .. } = self.inputs;
+            let _ = by_kind!(model.topology.joints()[i].kind, place, model, i, q, link);
         }
     }
 
     /// Stage 2 of the base side.
     fn brace(&self, base: &mut [Braced<T>], smallest: &mut Pivot) {
-        let model = self.model;
+        let Inputs { model, tau, .. } = self.inputs;
         let mut flexibility = ArticulatedInertia::zero();
         let mut free = Motion::new(Vec3::zero(), -model.gravity.lift());
         for (i, (body, joint)) in base.iter_mut().zip(model.topology.joints()).enumerate() {
             if joint.kind == JointKind::Free {
-                (flexibility, free) = free_body(body, &self.tau[joint.v..], joint.v, smallest);
+                (flexibility, free) = free_body(body, &tau[joint.v..], joint.v, smallest);
             } else {
                 let subspace = at(joint.kind.column(&model.subspaces[i], 0), body.inertia.com);
-                let mut bracing =
-                    Bracing::new(flexibility, &body.x, free, body.c, subspace, model.armature[joint.v].lift(), self.tau[joint.v]);
+                let mut bracing = Bracing::new(flexibility, &body.x, free, body.c, subspace, model.armature[joint.v].lift(), tau[joint.v]);
                 bracing.add_body(&body.inertia, body.p);
                 smallest.note(joint.v, bracing.d.min_lane());
                 (body.s_d_inverse, body.d_inverse_u) = bracing.release();
@@ -261,34 +265,31 @@ impl<P: Real + Lift<T>, T: Real> Side<'_, P, T> {
 
     /// Stage 2 of the tip side. The path begins with ω of the body before, and ends with Iᴬ of body m.
     fn eliminate_tip(&self, tip: &mut [Link<T>], path: &mut [OnPath<T>; 2], smallest: &mut Pivot) {
-        let (model, joints) = (self.model, &self.model.topology.joints()[self.cut..]);
-        for ((k, joint), link) in joints.iter().enumerate().zip(&mut *tip) {
-            let i = self.cut + k;
-            let x = joint.kind.recall(&model.placements[i], &link.x);
-            by_kind!(joint.kind, set_velocity, model, i, &x, self.v, path, link);
-            if let Some(wrenches) = self.wrenches {
-                link.p -= model.labels[i].force_to_compiled(wrenches[i]);
-            }
+        let Inputs { model, v, .. } = self.inputs;
+        for (i, link) in (self.cut..).zip(&mut *tip) {
+            let kind = model.topology.joints()[i].kind;
+            let x = kind.recall(&model.placements[i], &link.x);
+            by_kind!(kind, set_velocity, model, i, &x, v, path, link);
+            self.inputs.subtract_wrench(i, link);
         }
         // If body m is the last, nothing is added to it.
         path[1].inertia = model.inertias[self.cut].lift::<T>().to_articulated();
-        for (k, joint) in joints.iter().enumerate().skip(1).rev() {
-            let (before, rest) = tip.split_at_mut(k);
-            let parent_p = Some(&mut before[k - 1].p);
-            by_kind!(joint.kind, pass_to_parent, model, self.cut + k, self.tau, &mut rest[0], parent_p, path, smallest);
+        if let Some((met, behind)) = tip.split_first_mut() {
+            self.inputs.inward(self.cut + 1, behind, path, Some(&mut met.p), smallest);
         }
     }
 
     /// Joint m between the last body of the base side and the first link of the tip side. `inertia` is Iᴬ of its body.
     fn meet(&self, base: &Braced<T>, link: &Link<T>, inertia: &ArticulatedInertia<T>, smallest: &mut Pivot) -> Meeting<T> {
-        let (model, i) = (self.model, self.cut);
+        let Inputs { model, v, tau, .. } = self.inputs;
+        let i = self.cut;
         let joint = &model.topology.joints()[i];
         let subspace = &model.subspaces[i];
         let at_joint = joint.kind.recall(&model.placements[i], &link.x);
         let x = Transform::new(at_joint.rotation, at_joint.translation - base.inertia.com);
-        let (_, c) = cross_joint(joint.kind, &x, base.omega, None, joint.kind.motion(subspace, &self.v[joint.v..]));
+        let (_, c) = cross_joint(joint.kind, &x, base.omega, None, joint.kind.motion(subspace, &v[joint.v..]));
         let axis = joint.kind.column(subspace, 0);
-        let mut bracing = Bracing::new(base.flexibility, &x, base.free, c, axis, model.armature[joint.v].lift(), self.tau[joint.v]);
+        let mut bracing = Bracing::new(base.flexibility, &x, base.free, c, axis, model.armature[joint.v].lift(), tau[joint.v]);
         bracing.add_articulated(inertia, link.p);
         smallest.note(joint.v, bracing.d.min_lane());
         let (_, rate) = bracing.release();
@@ -298,12 +299,13 @@ impl<P: Real + Lift<T>, T: Real> Side<'_, P, T> {
 
     /// Stage 3 of the base side. `force` acts on the rest of the chain, at the centre of mass of the last body.
     fn accelerate_base(&self, base: &[Braced<T>], mut force: Force<T>, a: &mut [T]) {
-        let joints = &self.model.topology.joints()[..base.len()];
+        let model = self.inputs.model;
+        let joints = &model.topology.joints()[..base.len()];
         for (body, joint) in base.iter().zip(joints).rev() {
             let acceleration = body.acceleration(force);
             if joint.kind == JointKind::Free {
                 // S q̈ = a − X a_0 − c
-                let world = Motion::new(Vec3::zero(), -self.model.gravity.lift());
+                let world = Motion::new(Vec3::zero(), -model.gravity.lift());
                 let across = acceleration - body.x.inverse_motion(world) - body.c;
                 let lin = across.lin - across.ang.cross(body.inertia.com);
                 a[joint.v..joint.v + 3].copy_from_slice(&lin.to_array());
@@ -320,13 +322,11 @@ impl<P: Real + Lift<T>, T: Real> Side<'_, P, T> {
 
     /// Stage 3 of the tip side, once q̈ of joint m is known and the path has a of its body.
     fn accelerate_tip(&self, tip: &[Link<T>], path: &mut [OnPath<T>; 2], a: &mut [T]) {
-        let (model, joints) = (self.model, &self.model.topology.joints()[self.cut..]);
+        let (joints, first) = (self.inputs.model.topology.joints(), self.cut + 1);
+        let Some(behind) = joints.get(first) else { return };
+        let a = &mut a[behind.v - joints[self.cut].v..];
         // One-dof joints note no pivots on the way out.
-        let mut none = Pivot::none();
-        for (k, joint) in joints.iter().enumerate().skip(1) {
-            let a = &mut a[joint.v - joints[0].v..];
-            by_kind!(joint.kind, accelerate, model, self.cut + k, self.tau, a, &tip[k], path, &mut none);
-        }
+        self.inputs.accelerate(first, &tip[1..], path, a, &mut Pivot::none());
     }
 }
 

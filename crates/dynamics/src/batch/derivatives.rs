@@ -5,7 +5,7 @@
 use super::kernels::{Kernel, Parameter, Workspace};
 use super::run::Array;
 use super::{Batch, BatchError, Element, Number};
-use crate::{Coriolis, Error, FdDerivatives, FdPartials, IdDerivatives, IdPartials, PARAMETERS, Regressor, RegressorMatrix, TreePair};
+use crate::{Coriolis, Error, FdDerivatives, IdDerivatives, IdPartials, PARAMETERS, Regressor, RegressorMatrix, TreePair};
 use featherbench_model::Model;
 use featherbench_spatial::{Force, Part, Real};
 
@@ -13,7 +13,7 @@ use featherbench_spatial::{Force, Part, Real};
 #[derive(Clone, Debug)]
 pub(super) struct Derivatives<T> {
     id: Option<Box<(IdDerivatives<T>, IdPartials<T>)>>,
-    fd: Option<Box<(FdDerivatives<T>, FdPartials<T>)>>,
+    fd: Option<Box<FdDerivatives<T>>>,
     coriolis: Option<Box<(Coriolis<T>, TreePair<T>)>>,
     regressor: Option<Box<(Regressor<T>, RegressorMatrix<T>)>>,
     /// The parts of a result, one after the other.
@@ -147,12 +147,13 @@ impl Kernel<3> for OfForwardDynamics {
         wrenches: Option<&[Force<T>]>,
     ) -> (&'w [T], Result<(), Error>) {
         let all = &mut workspace.derivatives;
-        let make = || Box::new((FdDerivatives::new(&model.topology), FdPartials::new(&model.topology)));
-        let mut own = all.fd.take().unwrap_or_else(make);
-        let (kernel, partials) = &mut *own;
-        let done = kernel.run(model, q, v, tau, wrenches, partials);
-        all.join(&[&partials.acceleration, &partials.q, &partials.v, &partials.tau]);
-        all.fd = Some(own);
+        let nv = model.topology.nv();
+        let kernel = all.fd.get_or_insert_with(|| Box::new(FdDerivatives::new(&model.topology)));
+        all.parts.resize(nv + 3 * nv * nv, T::zero());
+        let (a, squares) = all.parts.split_at_mut(nv);
+        let (by_q, squares) = squares.split_at_mut(nv * nv);
+        let (by_v, by_tau) = squares.split_at_mut(nv * nv);
+        let done = kernel.write(model, q, v, tau, wrenches, [a, by_q, by_v, by_tau]);
         (&all.parts, done)
     }
 }

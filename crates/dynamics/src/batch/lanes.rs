@@ -1,24 +1,36 @@
-//! Numbers, registers of them, and the two orders of an array.
+//! Numbers, the registers of the build, and the two orders of an array.
 
-use crate::DimensionError;
+use super::kernels::{Inlined, Workspace};
+use super::register::{Register, kernels_of_register, methods_of_register};
+use super::run::are_finite;
+use super::selected::Selectable;
 use crate::error::expect;
-use featherbench_spatial::{Compensated, Lift, Part, Real};
+use crate::{DimensionError, Error};
+use featherbench_model::Model;
+use featherbench_spatial::{Compensated, Force, Lift, Part, Real};
 
-/// A number of a batch, `f64` or `f32`, and the register that holds one of each state of a group.
+/// A number of a batch, `f64` or `f32`, and the register of the build that holds one of each state of a group.
 ///
-/// The register is chosen when the crate is compiled: 64 bytes with AVX-512, otherwise 32.
-pub trait Number: Part + Element<Self> + Lift<<Self as Number>::Lanes> + Lift<Compensated<<Self as Number>::Lanes>> {
+/// The register is chosen when the crate is compiled: 64 bytes with AVX-512, otherwise 32. A batch can compute in wider ones
+/// ([`Width`](crate::Width)). Arrays in lane order always consist of these.
+pub trait Number: Part + Element<Self> + Selectable + Lift<<Self as Number>::Lanes> + Lift<Compensated<<Self as Number>::Lanes>> {
     /// The register.
-    type Lanes: Part + Element<Self>;
+    type Lanes: Part + Element<Self> + Register<Self>;
 
     /// How many numbers a register holds.
     const LANES: usize;
 
     /// The register with these numbers, lane after lane.
-    fn pack(number: impl FnMut(usize) -> Self) -> Self::Lanes;
+    #[inline(always)]
+    fn pack(number: impl FnMut(usize) -> Self) -> Self::Lanes {
+        Register::pack(number)
+    }
 
     /// The numbers of a register.
-    fn lanes(register: &Self::Lanes) -> &[Self];
+    #[inline(always)]
+    fn lanes(register: &Self::Lanes) -> &[Self] {
+        Register::lanes(register)
+    }
 
     /// The numbers of a register, to be written.
     fn lanes_mut(register: &mut Self::Lanes) -> &mut [Self];
@@ -29,47 +41,23 @@ pub trait Element<S: Number>: Copy + Send + Sync {
     /// How many states an element belongs to: 1, or [`Number::LANES`].
     const STATES: usize;
 
-    /// The vectors of one group, of `each` entries. The array has those of all groups. A number's are copied to `buffer`, and the last state
-    /// fills lanes without a state.
-    fn load<'a>(array: &'a [Self], each: usize, group: usize, buffer: &'a mut [S::Lanes]) -> &'a [S::Lanes];
+    /// The vectors of one group of registers `L`, of `each` entries. The array has those of all groups. Unless it consists of `L`, the group's
+    /// are copied to `buffer`, and the last state fills lanes without a state.
+    fn load<'a, L: Register<S>>(array: &'a [Self], each: usize, group: usize, buffer: &'a mut [L]) -> &'a [L];
 
     /// Writes the results of one group to its part of an array.
-    fn store(results: &[S::Lanes], part: &mut [Self]);
+    fn store<L: Register<S>>(results: &[L], part: &mut [Self]);
 
     /// Writes NaN over the results of the state in a lane, in its group's part of an array; a vector has `each` entries.
     fn erase(part: &mut [Self], each: usize, lane: usize);
 }
 
-/// The first entries of the squares of numbers that cover a vector of `each` entries. A square has `side` entries of `side` states, and is
-/// transposed in registers. The last one overlaps the one before it where it must.
-#[inline(always)]
-fn squares(each: usize, side: usize) -> impl Iterator<Item = usize> {
-    let last = each.checked_sub(side);
-    (0..each.next_multiple_of(side)).step_by(side).filter_map(move |entry| Some(entry.min(last?)))
-}
-
-/// The entries of a vector that is too short for a square.
-#[inline(always)]
-fn rest(each: usize, side: usize) -> std::ops::Range<usize> {
-    if each < side { 0..each } else { 0..0 }
-}
-
 macro_rules! number {
-    ($scalar:ident, $lanes:path, $count:expr, $square:path, $side:expr) => {
+    ($scalar:ident, $lanes:path, $count:literal, $square:path, $side:literal) => {
         impl Number for $scalar {
             type Lanes = $lanes;
 
             const LANES: usize = $count;
-
-            #[inline(always)]
-            fn pack(number: impl FnMut(usize) -> Self) -> $lanes {
-                <$lanes>::new(std::array::from_fn(number))
-            }
-
-            #[inline(always)]
-            fn lanes(register: &$lanes) -> &[Self] {
-                register.as_array()
-            }
 
             #[inline(always)]
             fn lanes_mut(register: &mut $lanes) -> &mut [Self] {
@@ -77,22 +65,57 @@ macro_rules! number {
             }
         }
 
-        impl Element<$scalar> for $lanes {
-            const STATES: usize = $count;
+        impl Register<$scalar> for $lanes {
+            methods_of_register!($scalar, $count, $square, $side);
+            kernels_of_register!($scalar, run_as_built);
 
             #[inline(always)]
-            fn load<'a>(array: &'a [Self], each: usize, group: usize, _: &'a mut [$lanes]) -> &'a [$lanes] {
+            fn load_rows(array: &[$scalar], each: usize, group: usize, buffer: &mut [Self]) {
+                Self::load_rows_inlined(array, each, group, buffer);
+            }
+
+            #[inline(always)]
+            fn store_rows(results: &[Self], part: &mut [$scalar]) {
+                Self::store_rows_inlined(results, part);
+            }
+
+            #[inline(always)]
+            fn are_finite(registers: &[Self]) -> bool {
+                are_finite(registers)
+            }
+
+            #[inline(always)]
+            fn load_lanes<'a>(array: &'a [$lanes], each: usize, group: usize, _: &'a mut [$lanes]) -> &'a [$lanes] {
                 &array[group * each..][..each]
             }
 
             #[inline(always)]
-            fn store(results: &[$lanes], part: &mut [Self]) {
+            fn store_lanes(results: &[$lanes], part: &mut [$lanes]) {
                 part.copy_from_slice(results);
             }
 
-            fn erase(part: &mut [Self], _: usize, lane: usize) {
-                for register in part {
-                    register.as_mut_array()[lane] = $scalar::NAN;
+            #[inline(always)]
+            fn with_instructions<R>(work: impl FnOnce() -> R) -> R {
+                work()
+            }
+        }
+
+        impl Element<$scalar> for $lanes {
+            const STATES: usize = $count;
+
+            #[inline(always)]
+            fn load<'a, L: Register<$scalar>>(array: &'a [Self], each: usize, group: usize, buffer: &'a mut [L]) -> &'a [L] {
+                L::load_lanes(array, each, group, buffer)
+            }
+
+            #[inline(always)]
+            fn store<L: Register<$scalar>>(results: &[L], part: &mut [Self]) {
+                L::store_lanes(results, part);
+            }
+
+            fn erase(part: &mut [Self], each: usize, lane: usize) {
+                for register in &mut part[lane / $count * each..][..each] {
+                    register.as_mut_array()[lane % $count] = $scalar::NAN;
                 }
             }
         }
@@ -101,52 +124,14 @@ macro_rules! number {
             const STATES: usize = 1;
 
             #[inline(always)]
-            fn load<'a>(array: &'a [Self], each: usize, group: usize, buffer: &'a mut [$lanes]) -> &'a [$lanes] {
-                let rows = &array[group * each * $count..];
-                let rows = &rows[..rows.len().min(each * $count)];
-                let last = (rows.len() / each.max(1)).saturating_sub(1);
-                let mut lanes = [&rows[..0]; $count];
-                for (lane, row) in lanes.iter_mut().enumerate() {
-                    *row = &rows[lane.min(last) * each..][..buffer.len()];
-                }
-                let rows = lanes;
-                for entry in squares(each, $side) {
-                    let columns: [[$square; $side]; $count / $side] = std::array::from_fn(|block| {
-                        let row = |k: usize| *rows[block * $side + k][entry..].first_chunk().expect("a row of the square");
-                        <$square>::transpose(std::array::from_fn(|k| <$square>::new(row(k))))
-                    });
-                    for (k, register) in buffer[entry..][..$side].iter_mut().enumerate() {
-                        let mut lanes = [[0.0; $side]; $count / $side];
-                        for (lanes, columns) in lanes.iter_mut().zip(&columns) {
-                            *lanes = columns[k].to_array();
-                        }
-                        *register = <$lanes>::new(*lanes.as_flattened().first_chunk().expect("all lanes"));
-                    }
-                }
-                for entry in rest(each, $side) {
-                    buffer[entry] = <$lanes>::new(std::array::from_fn(|lane| rows[lane][entry]));
-                }
+            fn load<'a, L: Register<$scalar>>(array: &'a [Self], each: usize, group: usize, buffer: &'a mut [L]) -> &'a [L] {
+                L::load_rows(array, each, group, buffer);
                 buffer
             }
 
             #[inline(always)]
-            fn store(results: &[$lanes], part: &mut [Self]) {
-                let each = results.len();
-                let states = part.len() / each.max(1);
-                for entry in squares(each, $side) {
-                    for (block, part) in part.chunks_mut(each * $side).enumerate() {
-                        let row = |k: usize| *results[entry + k].as_array()[block * $side..].first_chunk().expect("a row of the square");
-                        let columns = <$square>::transpose(std::array::from_fn(|k| <$square>::new(row(k))));
-                        for (state, column) in part.chunks_exact_mut(each).zip(columns) {
-                            state[entry..][..$side].copy_from_slice(column.as_array());
-                        }
-                    }
-                }
-                for entry in rest(each, $side) {
-                    for (lane, number) in results[entry].as_array().iter().enumerate().take(states) {
-                        part[lane * each + entry] = *number;
-                    }
-                }
+            fn store<L: Register<$scalar>>(results: &[L], part: &mut [Self]) {
+                L::store_rows(results, part);
             }
 
             fn erase(part: &mut [Self], each: usize, lane: usize) {
@@ -165,6 +150,17 @@ number!(f64, wide::f64x4, 4, wide::f64x4, 4);
 #[cfg(not(target_feature = "avx512f"))]
 number!(f32, wide::f32x8, 8, wide::f32x8, 8);
 
+/// Runs a kernel with the instructions of the build. A function of its own: row order and lane order share it.
+#[inline(never)]
+fn run_as_built<'w, K: Inlined<N>, T: Real, P: Real + Lift<T>, const N: usize>(
+    workspace: &'w mut Workspace<T>,
+    model: &Model<P>,
+    inputs: [&[T]; N],
+    wrenches: Option<&[Force<T>]>,
+) -> (&'w [T], Result<(), Error>) {
+    K::run(workspace, model, inputs, wrenches)
+}
+
 /// An array in lane order, from one in row order whose vectors have `each` entries. The last group is filled with copies of its last state.
 ///
 /// # Errors
@@ -174,7 +170,7 @@ pub fn to_lanes<S: Number>(rows: &[S], each: usize) -> Result<Vec<S::Lanes>, Dim
     expect("numbers in row order", states * each, rows.len())?;
     let mut lanes = vec![S::Lanes::zero(); states.div_ceil(S::LANES) * each];
     for (group, part) in lanes.chunks_exact_mut(each.max(1)).enumerate() {
-        S::load(rows, each, group, part);
+        Register::load_rows(rows, each, group, part);
     }
     Ok(lanes)
 }
@@ -188,7 +184,7 @@ pub fn to_rows<S: Number>(lanes: &[S::Lanes], each: usize, states: usize) -> Res
     let mut rows = vec![S::zero(); states * each];
     let parts = rows.chunks_mut((each * S::LANES).max(1));
     for (results, part) in lanes.chunks_exact(each.max(1)).zip(parts) {
-        S::store(results, part);
+        Register::store_rows(results, part);
     }
     Ok(rows)
 }

@@ -8,7 +8,8 @@
 //!
 //! - *row order*, `&[f64]`: state after state. Its length is the number of states times the length of a vector.
 //! - *lane order*, `&[wide::f64x8]` for example: group after group, one register per entry of the vector. Lane l of group g is state
-//!   g·[`Number::LANES`] + l. Nothing is copied, so this is the faster one. [`to_lanes`] and [`to_rows`] change the order.
+//!   g·[`Number::LANES`] + l. At the width of the build nothing is copied, so this is the faster one. [`to_lanes`] and [`to_rows`] change the
+//!   order.
 //!
 //! In row order lanes without a state compute a copy of the last state, and their results are dropped. In lane order every lane is a state:
 //! [`to_lanes`] fills the last group with copies, which a list of failures may name too.
@@ -22,18 +23,24 @@ mod derivatives;
 mod error;
 mod kernels;
 mod lanes;
+mod motion;
+mod register;
 mod run;
 mod samples;
+mod selected;
+mod width;
 
 pub use error::{BatchError, Cause, Failure};
 pub use lanes::{Element, Number, to_lanes, to_rows};
+pub use width::{NoSuchWidth, Width};
 
 use crate::DimensionError;
 use featherbench_model::Model;
-use kernels::{BiasForce, Factors, ForwardDynamics, InverseDynamics, MassMatrix, RefinedForwardDynamics, Solution};
-use run::{Array, Inputs, WRENCH, Worker};
+use kernels::{BiasForce, Factors, ForwardDynamics, Inlined, InverseDynamics, Kernel, MassMatrix, RefinedForwardDynamics, Solution};
+use run::{Array, AsBuilt, AtItsWidth, Inputs, WRENCH, Workers};
 use samples::Models;
 use std::borrow::Cow;
+use width::Selected;
 
 /// Computes with many states of one robot, on one core or on all.
 ///
@@ -93,25 +100,45 @@ use std::borrow::Cow;
 ///   dynamics 1.05 to 1.15, the mass matrix 1.03 to 1.06. So latency is not what bounds it. The lean recursions gain more, in all of them.
 /// - The mass matrix with placements formed where they are used, and composite inertias by path slots: 1.00 to 1.05.
 ///
-/// The width is chosen when the crate is compiled. An experiment chose it at run time: inverse dynamics with arrays as lanes, all of it inlined in a
-/// function with target features, in a build for x86-64-v2. With AVX2 it was as fast as the compiled-in width. With AVX-512 it had two thirds of
-/// the speed, and calling such a function takes `unsafe`. So compile for the processor at hand (`target-cpu=native`).
+/// # Width
+///
+/// A build has the instructions of the processor that it is compiled for: for plain x86-64 that is SSE2, without fused multiply-add. So kernels
+/// are compiled with AVX2 and with AVX-512 too, if the build is narrower, and a batch takes the widest that the processor has
+/// ([`Width`], [`Batch::with_width`]). Derivatives and refined forward dynamics keep the instructions of the build.
+///
+/// In a build for plain x86-64, times over those of its own SSE2, in lane order:
+///
+/// | | inverse dynamics | forward dynamics | mass matrix | factors |
+/// |---|---|---|---|---|
+/// | chain of 36, AVX2 | 0.45 | 0.44 | 0.52 | 0.55 |
+/// | chain of 36, AVX-512 | 0.31 | 0.35 | 0.45 | 0.51 |
+/// | humanoid, AVX2 | 0.43 | 0.41 | 0.57 | 0.60 |
+/// | humanoid, AVX-512 | 0.31 | 0.33 | 0.45 | 0.50 |
+///
+/// Against a build for the processor itself, selected AVX-512 takes 1.0 to 1.04 times as long in row order, and up to 1.15 times in lane order.
+/// There, groups of four doubles become groups of eight on the way. `f32` is 1.9 to 2.05 times as fast as `f64`. Conditions: an AMD EPYC with
+/// AVX-512, a virtual machine of two cores that others used too, smallest of 60 to 200 calls in alternation.
+///
+/// *How*: a register of a selected width is a type over the processor's vectors. A kernel is a part of one function with that width's
+/// instructions, and all that it calls is marked to be always inlined. In a debug build it is not, and a selected width is slow there.
 #[derive(Clone, Debug)]
 pub struct Batch<'m, S: Number = f64> {
     models: Models<'m, S>,
-    /// One per core.
-    workers: Vec<Worker<S>>,
+    cores: usize,
+    /// Of the width of the build. A batch of another width has them from its first call of a kernel that needs them on.
+    as_built: Option<Workers<S::Lanes>>,
+    selected: Selected<S>,
 }
 
 impl<'m, S: Number> Batch<'m, S> {
-    /// States of one model, on one core. The precision `S` is that of the model: [`Model::lift`] makes a `Model<f32>`.
+    /// States of one model, on one core, at the widest width. The precision `S` is that of the model: [`Model::lift`] makes a `Model<f32>`.
     pub fn new(model: &'m Model<S>) -> Self {
-        Self { workers: vec![Worker::new(&model.topology)], models: Models::One(Cow::Borrowed(model)) }
+        Self::of(Models::One(Cow::Borrowed(model)))
     }
 
     /// The same of a model that the batch keeps.
     pub fn of_model(model: Model<S>) -> Self {
-        Self { workers: vec![Worker::new(&model.topology)], models: Models::One(Cow::Owned(model)) }
+        Self::of(Models::One(Cow::Owned(model)))
     }
 
     /// States of which each has a model of its own: state k is one of `samples[k]`. All have one topology. On one core.
@@ -119,15 +146,63 @@ impl<'m, S: Number> Batch<'m, S> {
     /// # Errors
     /// [`DimensionError`] when there is no sample, or the samples have not one topology.
     pub fn of_samples(samples: &'m [Model<S>]) -> Result<Self, DimensionError> {
-        let models = Models::of_samples(samples)?;
-        Ok(Self { workers: vec![Worker::new(models.topology())], models })
+        Ok(Self::of(Models::of_samples(samples)?))
+    }
+
+    fn of(models: Models<'m, S>) -> Self {
+        let mut batch = Self { models, cores: 1, as_built: None, selected: Selected::AsBuilt };
+        // Without the widest width, which is there, the batch would have that of the build.
+        batch.selected = Selected::new(Width::widest(), &batch.models, 1).unwrap_or(Selected::AsBuilt);
+        batch.with_workers()
     }
 
     /// The same on all cores: with the threads that the current pool of `rayon` has now. Calls then allocate a little.
     #[must_use]
     pub fn on_all_cores(mut self) -> Self {
-        let worker = self.workers[0].clone();
-        self.workers.resize(rayon::current_num_threads().max(1), worker);
+        self.cores = rayon::current_num_threads().max(1);
+        self.selected.resize(self.cores);
+        if let Some(workers) = &mut self.as_built {
+            workers.resize(self.cores);
+        }
+        self
+    }
+
+    /// The same with the instructions of this width.
+    ///
+    /// Derivatives and refined forward dynamics have those of the build at every width.
+    ///
+    /// # Errors
+    /// [`NoSuchWidth`] when this build or this processor does not have the width.
+    ///
+    /// ```
+    /// use featherbench_dynamics::{Batch, Width};
+    /// use featherbench_model::Model;
+    /// use featherbench_robots::{Family, StateBatch};
+    ///
+    /// let model: Model<f64> = Model::build(&Family::parse("humanoid")?.generate()?)?;
+    /// let states = StateBatch::random(&model, 9, 1);
+    /// assert_eq!(Batch::new(&model).width(), Width::widest());
+    /// for width in Width::available() {
+    ///     let mut tau = vec![0.0; states.v.len()];
+    ///     Batch::new(&model).with_width(width)?.inverse_dynamics(&states.q, &states.v, &states.a, None, &mut tau)?;
+    /// }
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn with_width(mut self, width: Width) -> Result<Self, NoSuchWidth> {
+        self.selected = Selected::new(width, &self.models, self.cores)?;
+        Ok(self.with_workers())
+    }
+
+    /// The width of the batch.
+    pub fn width(&self) -> Width {
+        self.selected.width()
+    }
+
+    /// Makes the workers of the width of the build, if the batch has that width.
+    fn with_workers(mut self) -> Self {
+        if self.width() == Width::AsBuilt && self.as_built.is_none() {
+            self.as_built = Some(Workers::new(&self.models, self.cores));
+        }
         self
     }
 
@@ -146,7 +221,7 @@ impl<'m, S: Number> Batch<'m, S> {
     ) -> Result<(), BatchError> {
         let nv = self.nv();
         let vectors = [self.q(q), Array::new("velocities v", v, nv), Array::new("accelerations a", a, nv)];
-        self.run::<InverseDynamics, E, 3>(self.inputs(vectors, wrenches), Array::new("joint forces tau", tau, nv))
+        self.run_at_width::<InverseDynamics, E, 3>(self.inputs(vectors, wrenches), Array::new("joint forces tau", tau, nv))
     }
 
     /// Bias forces `h` of configurations `q` and velocities `v`: [`Bias`](crate::Bias) for each state. External wrenches enter as `−Σ Jᵀf`.
@@ -156,7 +231,7 @@ impl<'m, S: Number> Batch<'m, S> {
     pub fn bias_force<E: Element<S>>(&mut self, q: &[E], v: &[E], wrenches: Option<&[E]>, h: &mut [E]) -> Result<(), BatchError> {
         let nv = self.nv();
         let vectors = [self.q(q), Array::new("velocities v", v, nv)];
-        self.run::<BiasForce, E, 2>(self.inputs(vectors, wrenches), Array::new("bias forces h", h, nv))
+        self.run_at_width::<BiasForce, E, 2>(self.inputs(vectors, wrenches), Array::new("bias forces h", h, nv))
     }
 
     /// Accelerations `a` at configurations `q`, velocities `v`, joint forces `tau` and external wrenches: [`Aba`](crate::Aba) for each state.
@@ -173,7 +248,7 @@ impl<'m, S: Number> Batch<'m, S> {
     ) -> Result<(), BatchError> {
         let nv = self.nv();
         let vectors = [self.q(q), Array::new("velocities v", v, nv), Array::new("joint forces tau", tau, nv)];
-        self.run::<ForwardDynamics, E, 3>(self.inputs(vectors, wrenches), Array::new("accelerations a", a, nv))
+        self.run_at_width::<ForwardDynamics, E, 3>(self.inputs(vectors, wrenches), Array::new("accelerations a", a, nv))
     }
 
     /// The same to the last digit, by refinement in so many steps: [`Refined`](crate::Refined) for each state, with the residual in
@@ -193,7 +268,7 @@ impl<'m, S: Number> Batch<'m, S> {
         a: &mut [E],
     ) -> Result<(), BatchError> {
         let nv = self.nv();
-        self.workers.iter_mut().for_each(|worker| worker.set_steps(steps));
+        self.workers_as_built().1.set_steps(steps);
         let vectors = [self.q(q), Array::new("velocities v", v, nv), Array::new("joint forces tau", tau, nv)];
         self.run::<RefinedForwardDynamics, E, 3>(self.inputs(vectors, wrenches), Array::new("accelerations a", a, nv))
     }
@@ -207,7 +282,7 @@ impl<'m, S: Number> Batch<'m, S> {
     /// [`BatchError`] when an array has the wrong length or a state fails.
     pub fn mass_matrix<E: Element<S>>(&mut self, q: &[E], matrices: &mut [E]) -> Result<(), BatchError> {
         let stored = self.models.topology().stored();
-        self.run::<MassMatrix, E, 1>(self.inputs([self.q(q)], None), Array::new("matrices", matrices, stored))
+        self.run_at_width::<MassMatrix, E, 1>(self.inputs([self.q(q)], None), Array::new("matrices", matrices, stored))
     }
 
     /// Factors LᵀDL of the joint-space inertia matrices of configurations `q`: [`Crba`](crate::Crba) and [`Ltdl`](crate::Ltdl) for each state.
@@ -218,7 +293,7 @@ impl<'m, S: Number> Batch<'m, S> {
     /// [`BatchError`] when an array has the wrong length or a state fails.
     pub fn factors<E: Element<S>>(&mut self, q: &[E], factors: &mut [E]) -> Result<(), BatchError> {
         let stored = self.models.topology().stored();
-        self.run::<Factors, E, 1>(self.inputs([self.q(q)], None), Array::new("factors", factors, stored))
+        self.run_at_width::<Factors, E, 1>(self.inputs([self.q(q)], None), Array::new("factors", factors, stored))
     }
 
     /// Solutions `x` of `M(q) x = b` by these factors, for configurations `q` and right-hand sides `b`.
@@ -228,7 +303,41 @@ impl<'m, S: Number> Batch<'m, S> {
     pub fn solve<E: Element<S>>(&mut self, q: &[E], b: &[E], x: &mut [E]) -> Result<(), BatchError> {
         let nv = self.nv();
         let vectors = [self.q(q), Array::new("right-hand sides b", b, nv)];
-        self.run::<Solution, E, 2>(self.inputs(vectors, None), Array::new("solutions x", x, nv))
+        self.run_at_width::<Solution, E, 2>(self.inputs(vectors, None), Array::new("solutions x", x, nv))
+    }
+
+    /// Runs a kernel on every state, at the width of the batch.
+    fn run_at_width<K: Inlined<N>, E: Element<S>, const N: usize>(
+        &mut self,
+        inputs: Inputs<Array<&[E]>, N>,
+        output: Array<&mut [E]>,
+    ) -> Result<(), BatchError> {
+        let models = &self.models;
+        match &mut self.selected {
+            Selected::AsBuilt => {
+                let (models, workers) = self.workers_as_built();
+                workers.run::<S, AtItsWidth<K>, E, N>(models, inputs, output)
+            }
+            Selected::Avx2(workers) => workers.run::<S, AtItsWidth<K>, E, N>(models, inputs, output),
+            Selected::Avx512(workers) => workers.run::<S, AtItsWidth<K>, E, N>(models, inputs, output),
+        }
+    }
+
+    /// Runs a kernel on every state, at the width of the build.
+    fn run<K: Kernel<N>, E: Element<S>, const N: usize>(
+        &mut self,
+        inputs: Inputs<Array<&[E]>, N>,
+        output: Array<&mut [E]>,
+    ) -> Result<(), BatchError> {
+        let (models, workers) = self.workers_as_built();
+        workers.run::<S, AsBuilt<K>, E, N>(models, inputs, output)
+    }
+
+    /// The models, and the workers of the width of the build.
+    fn workers_as_built(&mut self) -> (&Models<'m, S>, &mut Workers<S::Lanes>) {
+        let Self { models, cores, as_built, .. } = self;
+        let workers = as_built.get_or_insert_with(|| Workers::new(models, *cores));
+        (models, workers)
     }
 
     fn nv(&self) -> usize {

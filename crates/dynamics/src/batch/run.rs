@@ -1,13 +1,15 @@
 //! The way through a batch: groups of states are taken in turn by the workers, and a group in which a lane fails is examined.
 
-use super::kernels::{Kernel, Workspace};
+use super::kernels::{Inlined, Kernel, Workspace};
+use super::register::Register;
 use super::samples::Models;
-use super::{Batch, BatchError, Cause, Element, Failure, Number};
+use super::{BatchError, Cause, Element, Failure, Number};
 use crate::error::expect;
 use crate::{DimensionError, Error};
-use featherbench_model::Topology;
+use featherbench_model::Model;
 use featherbench_spatial::{Force, Real};
 use rayon::iter::{IntoParallelRefMutIterator, ParallelIterator};
+use std::marker::PhantomData;
 use std::sync::{Mutex, PoisonError};
 
 /// The most groups that a worker takes at a time: taking costs some ten nanoseconds, a group some thousand and more.
@@ -21,24 +23,120 @@ pub(super) const WRENCH: usize = 6;
 
 /// What one core needs.
 #[derive(Clone, Debug)]
-pub(super) struct Worker<S: Number> {
-    workspace: Workspace<S::Lanes>,
+struct Worker<L> {
+    workspace: Workspace<L>,
     /// The inputs of one group, if they have to be brought into lanes.
-    inputs: Vec<S::Lanes>,
+    inputs: Vec<L>,
     /// The external wrenches of one group, one per body.
-    wrenches: Vec<Force<S::Lanes>>,
+    wrenches: Vec<Force<L>>,
 }
 
-impl<S: Number> Worker<S> {
-    pub(super) fn new(topology: &Topology) -> Self {
+/// What registers of one type need: a worker per core, and the models in lanes if each state has its own.
+#[derive(Clone, Debug)]
+pub(super) struct Workers<L> {
+    workers: Vec<Worker<L>>,
+    /// Group by group.
+    packed: Vec<Model<L>>,
+}
+
+impl<L: Real> Workers<L> {
+    /// For so many cores.
+    pub(super) fn new<S: Number>(models: &Models<'_, S>, cores: usize) -> Self
+    where
+        L: Register<S>,
+    {
+        let topology = models.topology();
         let bodies = topology.bodies();
-        let inputs = vec![S::Lanes::zero(); topology.nq() + 2 * topology.nv() + WRENCH * bodies];
-        Self { workspace: Workspace::new(topology), inputs, wrenches: vec![Force::zero(); bodies] }
+        let inputs = vec![L::zero(); topology.nq() + 2 * topology.nv() + WRENCH * bodies];
+        let worker = Worker { workspace: Workspace::new(topology), inputs, wrenches: vec![Force::zero(); bodies] };
+        Self { workers: vec![worker; cores], packed: models.pack() }
+    }
+
+    /// Changes the number of cores.
+    pub(super) fn resize(&mut self, cores: usize) {
+        let worker = self.workers[0].clone();
+        self.workers.resize(cores, worker);
     }
 
     /// Refines in so many steps from now on.
     pub(super) fn set_steps(&mut self, steps: usize) {
-        self.workspace.steps = steps;
+        for worker in &mut self.workers {
+            worker.workspace.steps = steps;
+        }
+    }
+
+    /// Jacobians are those of this body from now on.
+    pub(super) fn set_body(&mut self, body: usize) {
+        for worker in &mut self.workers {
+            worker.workspace.motions.body = body;
+        }
+    }
+}
+
+/// A kernel on registers `L`, for states that have one model and for states each of which has its own.
+pub(super) trait RunsOn<S, L, const N: usize> {
+    fn run<'w>(
+        workspace: &'w mut Workspace<L>,
+        model: &Model<S>,
+        inputs: [&[L]; N],
+        wrenches: Option<&[Force<L>]>,
+    ) -> (&'w [L], Result<(), Error>);
+
+    fn run_each<'w>(
+        workspace: &'w mut Workspace<L>,
+        model: &Model<L>,
+        inputs: [&[L]; N],
+        wrenches: Option<&[Force<L>]>,
+    ) -> (&'w [L], Result<(), Error>);
+}
+
+/// An [`Inlined`] kernel, with the instructions of the registers' width.
+pub(super) struct AtItsWidth<K>(PhantomData<K>);
+
+impl<S: Number, L: Register<S>, K: Inlined<N>, const N: usize> RunsOn<S, L, N> for AtItsWidth<K> {
+    #[inline(always)]
+    fn run<'w>(
+        workspace: &'w mut Workspace<L>,
+        model: &Model<S>,
+        inputs: [&[L]; N],
+        wrenches: Option<&[Force<L>]>,
+    ) -> (&'w [L], Result<(), Error>) {
+        L::run::<K, N>(workspace, model, inputs, wrenches)
+    }
+
+    #[inline(always)]
+    fn run_each<'w>(
+        workspace: &'w mut Workspace<L>,
+        model: &Model<L>,
+        inputs: [&[L]; N],
+        wrenches: Option<&[Force<L>]>,
+    ) -> (&'w [L], Result<(), Error>) {
+        L::run_each::<K, N>(workspace, model, inputs, wrenches)
+    }
+}
+
+/// A [`Kernel`], with the registers and the instructions of the build.
+pub(super) struct AsBuilt<K>(PhantomData<K>);
+
+impl<S: Number, K: Kernel<N>, const N: usize> RunsOn<S, S::Lanes, N> for AsBuilt<K> {
+    #[inline(always)]
+    fn run<'w>(
+        workspace: &'w mut Workspace<S::Lanes>,
+        model: &Model<S>,
+        inputs: [&[S::Lanes]; N],
+        wrenches: Option<&[Force<S::Lanes>]>,
+    ) -> (&'w [S::Lanes], Result<(), Error>) {
+        K::run(workspace, model, inputs, wrenches)
+    }
+
+    #[inline(always)]
+    fn run_each<'w>(
+        workspace: &'w mut Workspace<S::Lanes>,
+        model: &Model<S::Lanes>,
+        inputs: [&[S::Lanes]; N],
+        wrenches: Option<&[Force<S::Lanes>]>,
+    ) -> (&'w [S::Lanes], Result<(), Error>) {
+        K::run(workspace, model, inputs, wrenches)
     }
 }
 
@@ -84,22 +182,26 @@ impl<T, const N: usize> Inputs<Vec<T>, N> {
     }
 }
 
-impl<S: Number> Batch<'_, S> {
+impl<L: Real> Workers<L> {
     /// Runs a kernel on every state.
-    pub(super) fn run<K: Kernel<N>, E: Element<S>, const N: usize>(
+    pub(super) fn run<S: Number, K: RunsOn<S, L, N>, E: Element<S>, const N: usize>(
         &mut self,
+        models: &Models<'_, S>,
         inputs: Inputs<Array<&[E]>, N>,
         output: Array<&mut [E]>,
-    ) -> Result<(), BatchError> {
-        let Self { models, workers } = self;
+    ) -> Result<(), BatchError>
+    where
+        L: Register<S>,
+    {
+        let Self { workers, packed } = self;
         let states = count(models, &inputs, &output)?;
 
-        let group_len = (output.each * S::LANES / E::STATES).max(1);
-        let groups = states.div_ceil(S::LANES);
+        let group_len = (output.each * L::LANES / E::STATES).max(1);
+        let groups = states.div_ceil(L::LANES);
         let part = groups.div_ceil(PARTS_PER_WORKER * workers.len()).clamp(1, GROUPS);
         let parts = Mutex::new(output.numbers.chunks_mut(part * group_len).enumerate());
-        let job = Job { models, inputs, output: (output.name, output.each), states };
-        let work = |worker: &mut Worker<S>| -> Result<Vec<Failure>, DimensionError> {
+        let job = Job { models, packed: &packed[..], inputs, output: (output.name, output.each), states };
+        let work = |worker: &mut Worker<L>| -> Result<Vec<Failure>, DimensionError> {
             let mut failures = Vec::new();
             loop {
                 let next = parts.lock().unwrap_or_else(PoisonError::into_inner).next();
@@ -144,36 +246,40 @@ fn count<S: Number, E: Element<S>, const N: usize>(
 }
 
 /// A run of a kernel on many states.
-struct Job<'a, S: Number, E, const N: usize> {
+struct Job<'a, S: Number, L, E, const N: usize> {
     models: &'a Models<'a, S>,
+    /// The models in lanes, if each state has its own.
+    packed: &'a [Model<L>],
     inputs: Inputs<Array<&'a [E]>, N>,
     /// The name of the output, and the entries of its vectors.
     output: (&'static str, usize),
     states: usize,
 }
 
-impl<S: Number, E: Element<S>, const N: usize> Job<'_, S, E, N> {
+impl<S: Number, L: Register<S>, E: Element<S>, const N: usize> Job<'_, S, L, E, N> {
     /// Runs the kernel on one group.
-    fn run_group<K: Kernel<N>>(
+    fn run_group<K: RunsOn<S, L, N>>(
         &self,
-        worker: &mut Worker<S>,
+        worker: &mut Worker<L>,
         group: usize,
         results: &mut [E],
         failures: &mut Vec<Failure>,
     ) -> Result<(), DimensionError> {
         let Worker { workspace, inputs, wrenches } = worker;
-        let mut rest = &mut inputs[..];
-        let inputs = self.inputs.map(|array| {
-            let (buffer, others) = std::mem::take(&mut rest).split_at_mut(array.each);
-            rest = others;
-            E::load(array.numbers, array.each, group, buffer)
+        let inputs = L::with_instructions(|| {
+            let mut rest = &mut inputs[..];
+            self.inputs.map(|array| {
+                let (buffer, others) = std::mem::take(&mut rest).split_at_mut(array.each);
+                rest = others;
+                E::load(array.numbers, array.each, group, buffer)
+            })
         });
-        let (found, done) = self.models.run::<K, N>(group, workspace, inputs, wrenches);
+        let (found, done) = self.models.run::<K, L, N>(self.packed, group, workspace, inputs, wrenches);
         if let Err(Error::Dimension(error)) = done {
             return Err(error);
         }
-        E::store(found, results);
-        if done.is_err() || !inputs.iter().all(|input| are_finite(input)) || !are_finite(found) {
+        L::with_instructions(|| E::store(found, results));
+        if done.is_err() || !inputs.iter().all(|input| L::are_finite(input)) || !L::are_finite(found) {
             self.examine::<K>(workspace, wrenches, group, inputs, results, failures);
         }
         Ok(())
@@ -182,20 +288,20 @@ impl<S: Number, E: Element<S>, const N: usize> Job<'_, S, E, N> {
     /// Finds the states of a group that fail, each alone: as copies of itself in all lanes, so that its operations are the same.
     #[cold]
     #[inline(never)]
-    fn examine<K: Kernel<N>>(
+    fn examine<K: RunsOn<S, L, N>>(
         &self,
-        workspace: &mut Workspace<S::Lanes>,
-        wrenches: &mut [Force<S::Lanes>],
+        workspace: &mut Workspace<L>,
+        wrenches: &mut [Force<L>],
         group: usize,
-        inputs: Inputs<&[S::Lanes], N>,
+        inputs: Inputs<&[L], N>,
         results: &mut [E],
         failures: &mut Vec<Failure>,
     ) {
-        let first = group * S::LANES;
-        for state in first..(first + S::LANES).min(self.states) {
+        let first = group * L::LANES;
+        for state in first..(first + L::LANES).min(self.states) {
             let lane = state - first;
-            let copies = inputs.map(|input| input.iter().map(|x| S::pack(|_| S::lanes(x)[lane])).collect::<Vec<_>>());
-            let (found, done) = self.models.run_copies::<K, N>(state, workspace, copies.as_slices(), wrenches);
+            let copies = inputs.map(|input| input.iter().map(|x| L::pack(|_| x.lanes()[lane])).collect::<Vec<_>>());
+            let (found, done) = self.models.run_copies::<K, L, N>(state, workspace, copies.as_slices(), wrenches);
             let mut given = self.inputs.iter().zip(copies.iter());
             let bad_input = given.find_map(|(array, input)| {
                 let (entry, value) = not_finite(input)?;
@@ -218,7 +324,7 @@ impl<S: Number, E: Element<S>, const N: usize> Job<'_, S, E, N> {
 ///
 /// There are four sums, because additions to one wait for each other.
 #[inline(always)]
-fn are_finite<T: Real>(registers: &[T]) -> bool {
+pub(super) fn are_finite<T: Real>(registers: &[T]) -> bool {
     let zero = T::zero();
     let (fours, rest) = registers.as_chunks::<4>();
     let mut sums = [zero; 4];
@@ -228,7 +334,10 @@ fn are_finite<T: Real>(registers: &[T]) -> bool {
         }
     }
     let [a, b, c, d] = sums;
-    let sum = rest.iter().fold((a + b) + (c + d), |sum, x| x.mul_add(zero, sum));
+    let mut sum = (a + b) + (c + d);
+    for x in rest {
+        sum = x.mul_add(zero, sum);
+    }
     !sum.min_lane().is_nan()
 }
 

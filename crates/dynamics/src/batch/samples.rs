@@ -1,8 +1,9 @@
 //! The models of a batch: one for all states, or one for each.
 
 use super::Number;
-use super::kernels::{Kernel, Workspace};
-use super::run::{Inputs, WRENCH};
+use super::kernels::Workspace;
+use super::register::Register;
+use super::run::{Inputs, RunsOn, WRENCH};
 use crate::error::expect;
 use crate::step::expect_bodies;
 use crate::{DimensionError, Error};
@@ -21,10 +22,11 @@ pub(super) enum Models<'m, S: Number> {
 #[derive(Clone, Debug)]
 pub(super) struct Samples<'m, S: Number> {
     samples: &'m [Model<S>],
-    /// The same in lanes, group by group.
-    packed: Vec<Model<S::Lanes>>,
-    /// Whether a body has the same label in all samples. If not, its label in the packed models is [`Label::Z`], and its wrenches are
-    /// brought into compiled axes lane by lane.
+    /// The topology of all: an axis is along z where it is in all samples.
+    topology: Topology,
+    /// The label of a body, if it has the same in all samples, or else [`Label::Z`].
+    labels: Vec<Label>,
+    /// Whether a body has the same label in all samples. If not, its wrenches are brought into compiled axes lane by lane.
     same_label: Vec<bool>,
 }
 
@@ -45,14 +47,24 @@ impl<'m, S: Number> Models<'m, S> {
         let topology = first.topology.with_skew_axes(|i| samples.iter().any(|sample| kind(i, sample) != kind(i, first)));
         let same_label: Vec<bool> = (0..bodies).map(|i| samples.iter().all(|sample| sample.labels[i] == first.labels[i])).collect();
         let labels: Vec<Label> = same_label.iter().zip(&first.labels).map(|(same, label)| if *same { *label } else { Label::Z }).collect();
-        let packed = samples.chunks(S::LANES).map(|group| pack(&topology, &labels, |lane| &group[lane.min(group.len() - 1)])).collect();
-        Ok(Self::Each(Samples { samples, packed, same_label }))
+        Ok(Self::Each(Samples { samples, topology, labels, same_label }))
+    }
+
+    /// The models in lanes, group by group, if each state has its own.
+    pub(super) fn pack<L: Register<S>>(&self) -> Vec<Model<L>> {
+        match self {
+            Self::One(_) => Vec::new(),
+            Self::Each(each) => {
+                let in_lanes = |group: &[Model<S>]| each.pack(|lane| &group[lane.min(group.len() - 1)]);
+                each.samples.chunks(L::LANES).map(in_lanes).collect()
+            }
+        }
     }
 
     pub(super) fn topology(&self) -> &Topology {
         match self {
             Self::One(model) => &model.topology,
-            Self::Each(each) => &each.packed[0].topology,
+            Self::Each(each) => &each.topology,
         }
     }
 
@@ -85,38 +97,39 @@ impl<'m, S: Number> Models<'m, S> {
 
     /// Runs a kernel on a group. External wrenches are kept in `wrenches`.
     #[inline(always)]
-    pub(super) fn run<'w, K: Kernel<N>, const N: usize>(
+    pub(super) fn run<'w, K: RunsOn<S, L, N>, L: Register<S>, const N: usize>(
         &self,
+        packed: &[Model<L>],
         group: usize,
-        workspace: &'w mut Workspace<S::Lanes>,
-        inputs: Inputs<&[S::Lanes], N>,
-        wrenches: &mut [Force<S::Lanes>],
-    ) -> (&'w [S::Lanes], Result<(), Error>) {
+        workspace: &'w mut Workspace<L>,
+        inputs: Inputs<&[L], N>,
+        wrenches: &mut [Force<L>],
+    ) -> (&'w [L], Result<(), Error>) {
         let external = inputs.wrenches.map(|numbers| forces(numbers, wrenches));
         match self {
             Self::One(model) => K::run(workspace, model, inputs.vectors, external.as_deref()),
             Self::Each(each) => {
                 let last = each.samples.len() - 1;
-                let external = external.map(|forces| each.relabel(forces, |lane| (group * S::LANES + lane).min(last)));
-                K::run(workspace, &each.packed[group], inputs.vectors, external)
+                let external = external.map(|forces| each.relabel(forces, |lane| (group * L::LANES + lane).min(last)));
+                K::run_each(workspace, &packed[group], inputs.vectors, external)
             }
         }
     }
 
     /// Runs a kernel on copies of one state.
-    pub(super) fn run_copies<'w, K: Kernel<N>, const N: usize>(
+    pub(super) fn run_copies<'w, K: RunsOn<S, L, N>, L: Register<S>, const N: usize>(
         &self,
         state: usize,
-        workspace: &'w mut Workspace<S::Lanes>,
-        inputs: Inputs<&[S::Lanes], N>,
-        wrenches: &mut [Force<S::Lanes>],
-    ) -> (&'w [S::Lanes], Result<(), Error>) {
+        workspace: &'w mut Workspace<L>,
+        inputs: Inputs<&[L], N>,
+        wrenches: &mut [Force<L>],
+    ) -> (&'w [L], Result<(), Error>) {
         let external = inputs.wrenches.map(|numbers| forces(numbers, wrenches));
         match self {
             Self::One(model) => K::run(workspace, model, inputs.vectors, external.as_deref()),
             Self::Each(each) => {
                 let external = external.map(|forces| each.relabel(forces, |_| state));
-                K::run(workspace, &each.pack(|_| &each.samples[state]), inputs.vectors, external)
+                K::run_each(workspace, &each.pack(|_| &each.samples[state]), inputs.vectors, external)
             }
         }
     }
@@ -124,17 +137,20 @@ impl<'m, S: Number> Models<'m, S> {
 
 impl<S: Number> Samples<'_, S> {
     /// One model of which each lane is a sample.
-    fn pack<'a>(&self, sample: impl Fn(usize) -> &'a Model<S>) -> Model<S::Lanes> {
-        pack(&self.packed[0].topology, &self.packed[0].labels, sample)
+    fn pack<'a, L: Register<S>>(&self, sample: impl Fn(usize) -> &'a Model<S>) -> Model<L>
+    where
+        S: 'a,
+    {
+        pack(&self.topology, &self.labels, sample)
     }
 
     /// Brings the wrenches of bodies whose label is not the same in all samples into compiled axes. Lane l is a state of sample `sample(l)`.
     #[inline(always)]
-    fn relabel<'f>(&self, forces: &'f mut [Force<S::Lanes>], sample: impl Fn(usize) -> usize) -> &'f [Force<S::Lanes>] {
+    fn relabel<'f, L: Register<S>>(&self, forces: &'f mut [Force<L>], sample: impl Fn(usize) -> usize) -> &'f [Force<L>] {
         for (i, force) in forces.iter_mut().enumerate().filter(|(i, _)| !self.same_label[*i]) {
             let numbers = force.to_array();
             *force = Force::from_array(together(|lane| {
-                let described = Force::from_array(from_fn(|k| S::lanes(&numbers[k])[lane]));
+                let described = Force::from_array(from_fn(|k| numbers[k].lanes()[lane]));
                 self.samples[sample(lane)].labels[i].force_to_compiled(described).to_array()
             }));
         }
@@ -152,8 +168,8 @@ fn forces<'f, T: Real>(numbers: &[T], forces: &'f mut [Force<T>]) -> &'f mut [Fo
 }
 
 /// One model of which each lane is a model of this topology. It gets these labels.
-fn pack<'a, S: Number>(topology: &Topology, labels: &[Label], sample: impl Fn(usize) -> &'a Model<S>) -> Model<S::Lanes> {
-    let mut packed: Model<S::Lanes> = sample(0).lift();
+fn pack<'a, S: Number, L: Register<S>>(topology: &Topology, labels: &[Label], sample: impl Fn(usize) -> &'a Model<S>) -> Model<L> {
+    let mut packed = L::lift(sample(0));
     packed.topology = topology.clone();
     packed.labels.copy_from_slice(labels);
     for (i, (x, subspace)) in packed.placements.iter_mut().zip(&mut packed.subspaces).enumerate() {
@@ -165,23 +181,23 @@ fn pack<'a, S: Number>(topology: &Topology, labels: &[Label], sample: impl Fn(us
     }
     for (i, inertia) in packed.inertias.iter_mut().enumerate() {
         *inertia = RigidBodyInertia {
-            mass: S::pack(|lane| sample(lane).inertias[i].mass),
+            mass: L::pack(|lane| sample(lane).inertias[i].mass),
             first_moment: vec3(|lane| sample(lane).inertias[i].first_moment),
             rotational: Sym3::from_array(together(|lane| sample(lane).inertias[i].rotational.to_array())),
         };
     }
     for (k, armature) in packed.armature.iter_mut().enumerate() {
-        *armature = S::pack(|lane| sample(lane).armature[k]);
+        *armature = L::pack(|lane| sample(lane).armature[k]);
     }
     packed.gravity = vec3(|lane| sample(lane).gravity);
     packed
 }
 
-fn vec3<S: Number>(vector: impl Fn(usize) -> Vec3<S>) -> Vec3<S::Lanes> {
+fn vec3<S: Number, L: Register<S>>(vector: impl Fn(usize) -> Vec3<S>) -> Vec3<L> {
     Vec3::from_array(together(|lane| vector(lane).to_array()))
 }
 
 /// Arrays, one per lane, as one array of registers.
-fn together<S: Number, const N: usize>(array: impl Fn(usize) -> [S; N]) -> [S::Lanes; N] {
-    from_fn(|k| S::pack(|lane| array(lane)[k]))
+fn together<S: Number, L: Register<S>, const N: usize>(array: impl Fn(usize) -> [S; N]) -> [L; N] {
+    from_fn(|k| L::pack(|lane| array(lane)[k]))
 }

@@ -9,8 +9,8 @@
 //! | 2 | parts, in parallel | placements, composite inertias Iᶜ, all rows of the part |
 //! | 3 | trunk | composite inertias, and the rows of the trunk by the book's algorithm, one force at a time |
 //!
-//! Cost: O(n + Σ d_k), the operations of [`crate::Crba`]. Without `rayon`'s own, a call allocates five lists of slices, each with as many entries as there
-//! are tasks.
+//! Cost: O(n + Σ d_k), the operations of [`crate::Crba`]. Beside what `rayon` itself allocates, a call allocates five lists of slices,
+//! with one entry per task each.
 
 use super::{Forces, column_force, project};
 use crate::parallel::{Part, Piece, Plan, Task};

@@ -4,7 +4,7 @@
 //! all before it are its ancestors. So a row of a tree-sparse matrix is one product of contiguous numbers.
 //! Loops run over whole registers: [`lanes`] numbers at a time. Cost: six multiply-adds per number. Nothing here allocates.
 
-use crate::TreeSparse;
+use crate::{TreePair, TreeSparse};
 use featherbench_model::Topology;
 use featherbench_spatial::{Force, Motion, Real, Vec3};
 use std::ops::Range;
@@ -84,6 +84,38 @@ impl<T: Real> Components<T> {
     #[inline(always)]
     pub(super) fn add_dot(&self, v: Vec3<T>, out: &mut [T]) {
         dot3::<T, true>(&self.x, &self.y, &self.z, v, out);
+    }
+}
+
+/// S of the dofs on the path, and another vector of each, by which a [`TreePair`] is written.
+#[derive(Clone, Debug)]
+pub(super) struct TwoColumns<T> {
+    pub(super) s: Columns<T>,
+    rate: Columns<T>,
+}
+
+impl<T: Real> TwoColumns<T> {
+    /// Zeros for models of this topology.
+    pub(super) fn new(topology: &Topology) -> Self {
+        let deepest = deepest(topology);
+        Self { s: Columns::new(deepest), rate: Columns::new(deepest) }
+    }
+
+    /// Puts `s` and `rate` on the path at `position`, and writes the rows of the dof: `rate_j · below` for ancestors j, and `s_j · above`.
+    #[inline(always)]
+    pub(super) fn write(
+        &mut self,
+        position: usize,
+        [s, rate]: [Motion<T>; 2],
+        [below, above]: [Force<T>; 2],
+        row: &PaddedRow,
+        matrix: &mut TreePair<T>,
+    ) {
+        self.s.set(position, s);
+        self.rate.set(position, rate);
+        let (lower, upper) = matrix.triangles_mut();
+        self.rate.dot(below, row.of_matrix(lower));
+        self.s.dot(above, row.of_matrix(upper));
     }
 }
 

@@ -14,7 +14,7 @@
 //! Frame: one per tree, see `sweep.rs`. Shapes: q has `nq` numbers, v has `nv`; C is `nv`×`nv`, tree-sparse. Units: SI, angles in radians.
 //! Armature adds nothing. Cost: O(n + Σ d_k), d_k the depth of dof k; 15 multiply-adds per stored pair of dofs. A call does not allocate.
 
-use super::columns::{Columns, PaddedRow, deepest};
+use super::columns::{PaddedRow, TwoColumns};
 use super::sweep::{Link, State, Sweep};
 use crate::error::expect;
 use crate::step::by_kind;
@@ -51,8 +51,7 @@ use featherbench_spatial::{Lift, Real};
 pub struct Coriolis<T> {
     sweep: Sweep<T>,
     /// S and Φ̇ of the dofs on the path to the root.
-    s: Columns<T>,
-    s_rate: Columns<T>,
+    path: TwoColumns<T>,
     /// The velocity e_k of Christoffel symbols.
     unit: Vec<T>,
 }
@@ -60,9 +59,7 @@ pub struct Coriolis<T> {
 impl<T: Real> Coriolis<T> {
     /// A workspace for models of this topology.
     pub fn new(topology: &Topology) -> Self {
-        let deepest = deepest(topology);
-        let zeros = vec![T::zero(); topology.nv()];
-        Self { sweep: Sweep::new(topology), s: Columns::new(deepest), s_rate: Columns::new(deepest), unit: zeros }
+        Self { sweep: Sweep::new(topology), path: TwoColumns::new(topology), unit: vec![T::zero(); topology.nv()] }
     }
 
     /// The Coriolis matrix of configuration `q` and velocity `v`.
@@ -72,9 +69,9 @@ impl<T: Real> Coriolis<T> {
     pub fn run<P: Real + Lift<T>>(&mut self, model: &Model<P>, q: &[T], v: &[T], matrix: &mut TreePair<T>) -> Result<(), DimensionError> {
         matrix.expect_topology(&model.topology)?;
         self.sweep.run::<P, true, false>(model, State { q, v, a: &[], wrenches: None, gravity: false })?;
-        let Self { sweep, s, s_rate, .. } = self;
+        let Self { sweep, path, .. } = self;
         for (i, joint) in model.topology.joints().iter().enumerate() {
-            by_kind!(joint.kind, rows, model, i, &sweep.links[i], s, s_rate, matrix);
+            by_kind!(joint.kind, rows, model, i, &sweep.links[i], path, matrix);
         }
         matrix.clear_padding();
         Ok(())
@@ -114,23 +111,20 @@ fn rows<T: Real, P: Real + Lift<T>>(
     model: &Model<P>,
     i: usize,
     link: &Link<T>,
-    path: &mut Columns<T>,
-    path_rate: &mut Columns<T>,
+    path: &mut TwoColumns<T>,
     matrix: &mut TreePair<T>,
 ) {
     let first = model.topology.joints()[i].v;
     let top = model.topology.dof_depth(first) - 1;
+    let sum = &link.sum;
     for k in 0..kind.nv() {
         let s = link.in_frame(kind, kind.column(&model.subspaces[i], k));
         let rate = link.v.cross_motion(s);
-        path.set(top + k, s);
-        path_rate.set(top + k, rate);
+        let row = PaddedRow::of(matrix.triangles_mut().0, first + k);
+        // F = Iᶜ S, Iᶜ Φ̇ + Bᶜ S, and Bᶜᵀ S
+        path.write(top + k, [s, rate], [sum.inertia.mul(s), sum.inertia.mul(rate) + sum.coriolis(s.ang)], &row, matrix);
         let (lower, upper) = matrix.triangles_mut();
-        let row = PaddedRow::of(lower, first + k);
-        // F = Iᶜ S and Bᶜᵀ S; Iᶜ Φ̇ + Bᶜ S
-        path_rate.dot(link.sum.inertia.mul(s), row.of_matrix(lower));
-        path.ang.add_dot(link.sum.coriolis_transposed(s), row.of_matrix(lower));
-        path.dot(link.sum.inertia.mul(rate) + link.sum.coriolis(s.ang), row.of_matrix(upper));
+        path.s.ang.add_dot(sum.coriolis_transposed(s), row.of_matrix(lower));
         row.copy_diagonal(lower, upper);
     }
 }

@@ -113,10 +113,10 @@ impl<T: Real> FdHessian<T> {
         }
         self.first.run(model, q, v, tau, wrenches, first)?;
 
-        for (mu, lambda) in self.weights.iter_mut().zip(weights) {
-            *mu = -*lambda;
+        for (row, mu) in self.weights.iter_mut().enumerate() {
+            let inverse = first.tau[row * n..][..n].iter().zip(weights);
+            *mu = inverse.fold(T::zero(), |sum, (entry, lambda)| (-*entry).mul_add(*lambda, sum));
         }
-        self.first.factors().solve(&mut self.weights)?;
         self.id.run(model, q, v, &first.acceleration, wrenches, &self.weights, &mut self.partials)?;
         let IdSecondPartials { qq, vv, qv, qa: k } = &self.partials;
 

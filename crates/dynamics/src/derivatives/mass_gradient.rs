@@ -14,7 +14,7 @@
 //! result is `nv`×`nv`, tree-sparse. Units: SI. Armature adds nothing. Cost: O(n + Σ d_k); 12 multiply-adds per stored pair of dofs. A call
 //! does not allocate.
 
-use super::columns::{Columns, PaddedRow, deepest};
+use super::columns::{PaddedRow, TwoColumns};
 use super::id::within_joint;
 use super::sweep::{Link, State, Sweep};
 use crate::step::by_kind;
@@ -49,15 +49,13 @@ use featherbench_spatial::{Lift, Real};
 pub struct MassGradient<T> {
     sweep: Sweep<T>,
     /// S and Ψ̈ of the dofs on the path to the root.
-    s: Columns<T>,
-    psi: Columns<T>,
+    path: TwoColumns<T>,
 }
 
 impl<T: Real> MassGradient<T> {
     /// A workspace for models of this topology.
     pub fn new(topology: &Topology) -> Self {
-        let deepest = deepest(topology);
-        Self { sweep: Sweep::new(topology), s: Columns::new(deepest), psi: Columns::new(deepest) }
+        Self { sweep: Sweep::new(topology), path: TwoColumns::new(topology) }
     }
 
     /// `∂(M x)/∂q` at configuration `q`, for a constant `x`.
@@ -67,9 +65,9 @@ impl<T: Real> MassGradient<T> {
     pub fn run<P: Real + Lift<T>>(&mut self, model: &Model<P>, q: &[T], x: &[T], gradient: &mut TreePair<T>) -> Result<(), DimensionError> {
         gradient.expect_topology(&model.topology)?;
         self.sweep.run::<P, false, true>(model, State { q, v: &[], a: x, wrenches: None, gravity: false })?;
-        let Self { sweep, s, psi } = self;
+        let Self { sweep, path } = self;
         for (i, joint) in model.topology.joints().iter().enumerate() {
-            by_kind!(joint.kind, rows, model, i, &sweep.links[i], s, psi, gradient);
+            by_kind!(joint.kind, rows, model, i, &sweep.links[i], path, gradient);
         }
         gradient.clear_padding();
         Ok(())
@@ -83,22 +81,19 @@ fn rows<T: Real, P: Real + Lift<T>>(
     model: &Model<P>,
     i: usize,
     link: &Link<T>,
-    path: &mut Columns<T>,
-    path_psi: &mut Columns<T>,
+    path: &mut TwoColumns<T>,
     gradient: &mut TreePair<T>,
 ) {
     let first = model.topology.joints()[i].v;
     let top = model.topology.dof_depth(first) - 1;
+    let sum = &link.sum;
     for k in 0..kind.nv() {
         let s = link.in_frame(kind, kind.column(&model.subspaces[i], k));
         let psi = link.parent_a.cross_motion(s);
-        path.set(top + k, s);
-        path_psi.set(top + k, psi);
+        let row = PaddedRow::of(gradient.triangles_mut().0, first + k);
+        let own = sum.inertia.mul(psi);
+        path.write(top + k, [s, psi], [sum.inertia.mul(s), own + s.cross_force(sum.force)], &row, gradient);
         let (lower, upper) = gradient.triangles_mut();
-        let row = PaddedRow::of(lower, first + k);
-        let own = link.sum.inertia.mul(psi);
-        path_psi.dot(link.sum.inertia.mul(s), row.of_matrix(lower));
-        path.dot(own + s.cross_force(link.sum.force), row.of_matrix(upper));
         within_joint(kind, &model.subspaces[i], link, own, k, row.exact(upper));
         row.copy_diagonal(lower, upper);
     }

@@ -3,6 +3,7 @@
 //! Derivatives by q are on the tangent space of the configurations: dof j moves as the velocity `v = e_j` moves it. So a quaternion joint has
 //! three columns, in body axes, and every matrix here is `nv`×`nv`. The numbers in v, a and τ stay as they are while q moves.
 
+mod articulated;
 mod columns;
 mod coriolis;
 mod energy_gradient;
@@ -13,10 +14,10 @@ mod id_hessian;
 mod jacobian_rate;
 mod mass_gradient;
 mod momentum_matrix;
-mod multiply;
 mod parameter_sensitivity;
 mod parameters;
 mod regressor;
+mod response;
 mod solve;
 mod sweep;
 mod tree_pair;

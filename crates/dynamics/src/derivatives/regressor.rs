@@ -148,8 +148,8 @@ impl<T: Real> RegressorMatrix<T> {
         self.values.len() - lanes::<T>()
     }
 
-    /// Column after column: its index, the dofs and their entries.
-    fn iter(&self) -> impl Iterator<Item = (usize, &[usize], &[T])> {
+    /// Column after column, in the order of [`RegressorMatrix::values`]: its index, the dofs from the root to its body, and their entries.
+    pub fn iter(&self) -> impl Iterator<Item = (usize, &[usize], &[T])> {
         self.bodies.iter().enumerate().flat_map(|(b, body)| {
             let rows = self.values[body.start..].chunks_exact(body.dofs.len()).take(PARAMETERS);
             rows.enumerate().map(move |(parameter, entries)| (PARAMETERS * b + parameter, &body.dofs[..], entries))

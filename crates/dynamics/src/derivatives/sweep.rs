@@ -142,7 +142,7 @@ impl<T: Real> Sweep<T> {
         }
         if FORCED {
             expect("acceleration a", nv, state.a.len())?;
-            expect_wrenches(model, state.wrenches)?;
+            expect_wrenches(&model.topology, state.wrenches)?;
         }
         let joints = model.topology.joints();
 

@@ -12,12 +12,13 @@
 //! Cost: that of [`FdDerivatives`]. Each of the 2·nv + inputs directions adds the system's forces over duals, a product with M⁻¹, and with
 //! wrenches or parameters one inverse dynamics over duals. A call does not allocate.
 
-use super::by_duals::{Linearisation, Linearise, copy};
+use super::by_duals::{Linearisation, Linearise};
 use super::dense::add_scaled;
+use super::directions::{Directions, Input, copy};
 use super::dynamics::{Acceleration, Dynamics, Instant, System};
 use crate::error::expect;
 use crate::{DimensionError, Error, FdDerivatives, FdPartials, Rnea};
-use featherbench_model::{Model, Topology};
+use featherbench_model::Model;
 use featherbench_spatial::{Angle, Dual, Force, Lift};
 
 /// [`Dynamics`] and their derivatives by recursions.
@@ -39,30 +40,31 @@ use featherbench_spatial::{Angle, Dual, Force, Lift};
 /// ```
 #[derive(Clone, Debug)]
 pub struct Analytic<S, T> {
-    system: S,
     plain: Dynamics<S, T>,
-    topology: Topology,
     derivatives: FdDerivatives<T>,
     partials: FdPartials<T>,
     /// τ and f at the state.
     tau: Vec<T>,
     wrenches: Vec<Force<T>>,
-    /// The same over duals, with all that they depend on.
+    directions: Directions<T>,
+    changes: Changes<S, T>,
+}
+
+/// How the forces change, and what inverse dynamics takes less or more, while q and v are held.
+#[derive(Clone, Debug)]
+struct Changes<S, T> {
+    system: S,
     model: Model<Dual<T>>,
     rnea: Rnea<Dual<T>>,
+    /// q, v and a without rates.
     q: Vec<Dual<T>>,
     v: Vec<Dual<T>>,
     a: Vec<Dual<T>>,
-    controls: Vec<Dual<T>>,
-    parameters: Vec<Dual<T>>,
-    dual_tau: Vec<Dual<T>>,
-    dual_wrenches: Vec<Force<Dual<T>>>,
-    /// q and v without rates.
-    held_q: Vec<Dual<T>>,
-    held_v: Vec<Dual<T>>,
+    tau: Vec<Dual<T>>,
+    wrenches: Vec<Force<Dual<T>>>,
     taken: Vec<Dual<T>>,
-    /// The changes of the forces, one column per direction.
-    changes: Vec<T>,
+    /// The changes, one column per direction.
+    columns: Vec<T>,
 }
 
 impl<S: System + Clone, T: Angle> Analytic<S, T>
@@ -77,67 +79,66 @@ where
     where
         f64: Lift<Dual<T>>,
     {
-        let topology = model.topology.clone();
+        let topology = &model.topology;
+        let nv = topology.nv();
         let zeros = |count| vec![Dual::constant(T::zero()); count];
-        let inputs = system.controls() + system.parameters();
         let bodies = if system.has_wrenches() { topology.bodies() } else { 0 };
+        let directions = Directions::new(topology.clone(), system.controls(), parameters);
+        let widest = if directions.inputs() > nv { directions.inputs() } else { nv };
         let mut new = Self {
             plain: Dynamics::new(model, system.clone(), parameters)?,
-            derivatives: FdDerivatives::new(&topology),
-            partials: FdPartials::new(&topology),
-            tau: vec![T::zero(); topology.nv()],
+            derivatives: FdDerivatives::new(topology),
+            partials: FdPartials::new(topology),
+            tau: vec![T::zero(); nv],
             wrenches: vec![Force::zero(); bodies],
-            model: model.lift(),
-            rnea: Rnea::new(&topology),
-            q: zeros(topology.nq()),
-            v: zeros(topology.nv()),
-            a: zeros(topology.nv()),
-            controls: zeros(system.controls()),
-            parameters: zeros(system.parameters()),
-            dual_tau: zeros(topology.nv()),
-            dual_wrenches: vec![Force::zero(); bodies],
-            held_q: zeros(topology.nq()),
-            held_v: zeros(topology.nv()),
-            taken: zeros(topology.nv()),
-            changes: vec![T::zero(); topology.nv() * if inputs > topology.nv() { inputs } else { topology.nv() }],
-            topology,
-            system,
+            directions,
+            changes: Changes {
+                system,
+                model: model.lift(),
+                rnea: Rnea::new(topology),
+                q: zeros(topology.nq()),
+                v: zeros(nv),
+                a: zeros(nv),
+                tau: zeros(nv),
+                wrenches: vec![Force::zero(); bodies],
+                taken: zeros(nv),
+                columns: vec![T::zero(); nv * widest],
+            },
         };
         new.set_parameters(parameters)?;
         Ok(new)
     }
 }
 
-impl<S: System, T: Angle> Analytic<S, T> {
-    /// The change of the forces in the direction that the duals now have, into column `column` of `self.changes`, which has `width` columns.
-    /// `modelled` says whether the model changes too.
-    fn note_change(&mut self, t: T, modelled: bool, width: usize, column: usize) -> Result<(), Error> {
-        self.dual_tau.fill(Dual::constant(T::zero()));
-        self.dual_wrenches.fill(Force::zero());
-        let at = Instant { time: Dual::constant(t), q: &self.q, v: &self.v, controls: &self.controls, parameters: &self.parameters };
-        self.system.forces(&at, &mut self.dual_tau, &mut self.dual_wrenches);
-        if modelled || !self.dual_wrenches.is_empty() {
+impl<S: System, T: Angle> Changes<S, T> {
+    /// The change of the forces in the direction that the duals have, into column `column` of `width`. `modelled` says whether the model
+    /// changes too.
+    fn note(&mut self, t: T, at: &Directions<T>, modelled: bool, width: usize, column: usize) -> Result<(), Error> {
+        self.tau.fill(Dual::constant(T::zero()));
+        self.wrenches.fill(Force::zero());
+        let at = Instant { time: Dual::constant(t), q: &at.q, v: &at.v, controls: &at.controls, parameters: &at.parameters };
+        self.system.forces(&at, &mut self.tau, &mut self.wrenches);
+        if modelled || !self.wrenches.is_empty() {
             // q and v are held here: their own part is in ∂FD.
-            let wrenches = if self.dual_wrenches.is_empty() { None } else { Some(self.dual_wrenches.as_slice()) };
-            self.rnea.run(&self.model, &self.held_q, &self.held_v, &self.a, wrenches, &mut self.taken)?;
-            for (tau, taken) in self.dual_tau.iter_mut().zip(&self.taken) {
+            let wrenches = if self.wrenches.is_empty() { None } else { Some(self.wrenches.as_slice()) };
+            self.rnea.run(&self.model, &self.q, &self.v, &self.a, wrenches, &mut self.taken)?;
+            for (tau, taken) in self.tau.iter_mut().zip(&self.taken) {
                 *tau -= *taken;
             }
         }
-        for (row, tau) in self.dual_tau.iter().enumerate() {
-            self.changes[row * width + column] = tau.derivative;
+        for (row, tau) in self.tau.iter().enumerate() {
+            self.columns[row * width + column] = tau.derivative;
         }
         Ok(())
     }
 
     /// `matrix += M⁻¹ · changes`, all columns at once.
-    fn add_solved(&self, matrix: &mut [T], width: usize) {
+    fn add_solved(&self, inverse: &[T], matrix: &mut [T], width: usize) {
         if width == 0 {
             return;
         }
-        let nv = self.partials.acceleration.len();
-        for (row, inverse) in matrix.chunks_exact_mut(width).zip(self.partials.tau.chunks_exact(nv)) {
-            for (factor, changes) in inverse.iter().zip(self.changes.chunks_exact(width)) {
+        for (row, inverse) in matrix.chunks_exact_mut(width).zip(inverse.chunks_exact(self.v.len())) {
+            for (factor, changes) in inverse.iter().zip(self.columns.chunks_exact(width)) {
                 add_scaled(*factor, changes, row);
             }
         }
@@ -152,82 +153,55 @@ impl<S: System, T: Angle> Acceleration<T> for Analytic<S, T> {
 
 impl<S: System, T: Angle> Linearise<T> for Analytic<S, T> {
     fn controls(&self) -> usize {
-        self.controls.len()
+        self.directions.controls.len()
     }
 
     fn parameters(&self) -> usize {
-        self.parameters.len()
+        self.directions.parameters.len()
     }
 
     fn set_controls(&mut self, controls: &[T]) -> Result<(), DimensionError> {
         self.plain.set_controls(controls)?;
-        copy(&mut self.controls, controls);
+        copy(&mut self.directions.controls, controls);
         Ok(())
     }
 
     fn set_parameters(&mut self, parameters: &[T]) -> Result<(), DimensionError> {
         self.plain.set_parameters(parameters)?;
-        copy(&mut self.parameters, parameters);
-        self.system.adjust(&self.parameters, &mut self.model);
+        copy(&mut self.directions.parameters, parameters);
+        self.changes.system.adjust(&self.directions.parameters, &mut self.changes.model);
         Ok(())
     }
 
     fn linearise(&mut self, t: T, q: &[T], v: &[T], a: &mut [T], result: &mut Linearisation<T>) -> Result<(), Error> {
-        let nv = self.topology.nv();
-        let (controls, parameters) = (self.controls.len(), self.parameters.len());
-        let inputs = controls + parameters;
-        expect("configuration q", self.topology.nq(), q.len())?;
-        expect("velocity v", nv, v.len())?;
+        let Self { plain, derivatives, partials, tau, wrenches, directions, changes } = self;
+        let (nv, inputs) = (tau.len(), directions.inputs());
         expect("acceleration a", nv, a.len())?;
-        expect("derivatives by q", nv * nv, result.by_q.len())?;
-        expect("derivatives by v", nv * nv, result.by_v.len())?;
-        expect("derivatives by inputs", nv * inputs, result.by_input.len())?;
-        self.plain.forces(t, q, v, &mut self.tau, &mut self.wrenches);
-        let wrenches = if self.wrenches.is_empty() { None } else { Some(self.wrenches.as_slice()) };
-        self.derivatives.run(self.plain.model(), q, v, &self.tau, wrenches, &mut self.partials)?;
-        a.copy_from_slice(&self.partials.acceleration);
-        result.by_q.copy_from_slice(&self.partials.q);
-        result.by_v.copy_from_slice(&self.partials.v);
+        result.expect_size(nv, inputs)?;
+        directions.set_state(q, v)?;
+        plain.forces(t, q, v, tau, wrenches);
+        let wrenches = if wrenches.is_empty() { None } else { Some(wrenches.as_slice()) };
+        derivatives.run(plain.model(), q, v, tau, wrenches, partials)?;
+        a.copy_from_slice(&partials.acceleration);
+        result.by_q.copy_from_slice(&partials.q);
+        result.by_v.copy_from_slice(&partials.v);
         result.by_input.fill(T::zero());
 
-        copy(&mut self.q, q);
-        copy(&mut self.held_q, q);
-        copy(&mut self.v, v);
-        copy(&mut self.held_v, v);
-        copy(&mut self.a, a);
-        for joint in 0..self.topology.bodies() {
-            let joint = self.topology.joints()[joint];
-            for k in 0..joint.kind.nv() {
-                let mut direction = [Dual::constant(T::zero()); 6];
-                direction[k].derivative = T::one();
-                joint.kind.integrate(&self.held_q[joint.q..], &direction, &mut self.q[joint.q..]);
-                self.note_change(t, false, nv, joint.v + k)?;
+        copy(&mut changes.q, q);
+        copy(&mut changes.v, v);
+        copy(&mut changes.a, a);
+        directions.by_q(|at, k| changes.note(t, at, false, nv, k))?;
+        changes.add_solved(&partials.tau, &mut result.by_q, nv);
+        directions.by_v(|at, k| changes.note(t, at, false, nv, k))?;
+        changes.add_solved(&partials.tau, &mut result.by_v, nv);
+        directions.by_inputs(|at, input, k| {
+            if input == Input::Parameter {
+                changes.system.adjust(&at.parameters, &mut changes.model);
             }
-            let numbers = joint.q..joint.q + joint.kind.nq();
-            self.q[numbers.clone()].copy_from_slice(&self.held_q[numbers]);
-        }
-        self.add_solved(&mut result.by_q, nv);
-        for dof in 0..nv {
-            self.v[dof].derivative = T::one();
-            self.note_change(t, false, nv, dof)?;
-            self.v[dof].derivative = T::zero();
-        }
-        self.add_solved(&mut result.by_v, nv);
-        for k in 0..controls {
-            self.controls[k].derivative = T::one();
-            self.note_change(t, false, inputs, k)?;
-            self.controls[k].derivative = T::zero();
-        }
-        for k in 0..parameters {
-            self.parameters[k].derivative = T::one();
-            self.system.adjust(&self.parameters, &mut self.model);
-            self.note_change(t, true, inputs, controls + k)?;
-            self.parameters[k].derivative = T::zero();
-        }
-        self.add_solved(&mut result.by_input, inputs);
-        if parameters > 0 {
-            self.system.adjust(&self.parameters, &mut self.model);
-        }
+            changes.note(t, at, input == Input::Parameter, inputs, k)
+        })?;
+        changes.add_solved(&partials.tau, &mut result.by_input, inputs);
+        changes.system.adjust(&directions.parameters, &mut changes.model);
         Ok(())
     }
 }

@@ -5,10 +5,11 @@
 //! Shapes: matrices are dense, row after row, `nv` rows. Units: as in [`crate::Aba`].
 //! Cost: 2·nv + inputs times that of [`crate::Aba::run`] over duals, about twice as many operations. A call does not allocate.
 
+use super::directions::{Directions, Input, copy};
 use super::dynamics::{Acceleration, Dynamics, System};
 use crate::error::expect;
 use crate::{DimensionError, Error};
-use featherbench_model::{Model, Topology};
+use featherbench_model::Model;
 use featherbench_spatial::{Angle, Dual, Lift, Real};
 
 /// The derivatives of the acceleration at one state.
@@ -27,6 +28,13 @@ impl<T: Real> Linearisation<T> {
     pub fn new(nv: usize, inputs: usize) -> Self {
         let zeros = |count| vec![T::zero(); count];
         Self { by_q: zeros(nv * nv), by_v: zeros(nv * nv), by_input: zeros(nv * inputs) }
+    }
+
+    /// An error if the matrices have other sizes.
+    pub(super) fn expect_size(&self, nv: usize, inputs: usize) -> Result<(), DimensionError> {
+        expect("derivatives by q", nv * nv, self.by_q.len())?;
+        expect("derivatives by v", nv * nv, self.by_v.len())?;
+        expect("derivatives by inputs", nv * inputs, self.by_input.len())
     }
 }
 
@@ -62,11 +70,7 @@ pub trait Linearise<T>: Acceleration<T> {
 pub struct ByDuals<S, T> {
     plain: Dynamics<S, T>,
     dual: Dynamics<S, Dual<T>>,
-    topology: Topology,
-    controls: Vec<Dual<T>>,
-    parameters: Vec<Dual<T>>,
-    q: Vec<Dual<T>>,
-    v: Vec<Dual<T>>,
+    directions: Directions<T>,
     a: Vec<Dual<T>>,
 }
 
@@ -82,31 +86,13 @@ where
     where
         f64: Lift<Dual<T>>,
     {
-        let topology = model.topology.clone();
-        let constants = |values: &[T]| values.iter().map(|x| Dual::constant(*x)).collect::<Vec<_>>();
-        let (controls, parameters_dual) = (constants(&vec![T::zero(); system.controls()]), constants(parameters));
-        let zeros = |count| constants(&vec![T::zero(); count]);
+        let directions = Directions::new(model.topology.clone(), system.controls(), parameters);
         Ok(Self {
             plain: Dynamics::new(model, system.clone(), parameters)?,
-            dual: Dynamics::new(model, system, &parameters_dual)?,
-            controls,
-            parameters: parameters_dual,
-            q: zeros(topology.nq()),
-            v: zeros(topology.nv()),
-            a: zeros(topology.nv()),
-            topology,
+            dual: Dynamics::new(model, system, &directions.parameters)?,
+            a: vec![Dual::constant(T::zero()); model.topology.nv()],
+            directions,
         })
-    }
-}
-
-impl<S: System, T: Angle> ByDuals<S, T> {
-    /// The derivative of a in the direction that the duals now have, into column `column` of a matrix with `width` columns.
-    fn column(&mut self, t: T, matrix: &mut [T], width: usize, column: usize) -> Result<(), Error> {
-        self.dual.acceleration(Dual::constant(t), &self.q, &self.v, &mut self.a)?;
-        for (row, a) in self.a.iter().enumerate() {
-            matrix[row * width + column] = a.derivative;
-        }
-        Ok(())
     }
 }
 
@@ -118,77 +104,52 @@ impl<S: System, T: Angle> Acceleration<T> for ByDuals<S, T> {
 
 impl<S: System, T: Angle> Linearise<T> for ByDuals<S, T> {
     fn controls(&self) -> usize {
-        self.controls.len()
+        self.directions.controls.len()
     }
 
     fn parameters(&self) -> usize {
-        self.parameters.len()
+        self.directions.parameters.len()
     }
 
     fn set_controls(&mut self, controls: &[T]) -> Result<(), DimensionError> {
         self.plain.set_controls(controls)?;
-        copy(&mut self.controls, controls);
-        self.dual.set_controls(&self.controls)
+        copy(&mut self.directions.controls, controls);
+        self.dual.set_controls(&self.directions.controls)
     }
 
     fn set_parameters(&mut self, parameters: &[T]) -> Result<(), DimensionError> {
         self.plain.set_parameters(parameters)?;
-        copy(&mut self.parameters, parameters);
-        self.dual.set_parameters(&self.parameters)
+        copy(&mut self.directions.parameters, parameters);
+        self.dual.set_parameters(&self.directions.parameters)
     }
 
     fn linearise(&mut self, t: T, q: &[T], v: &[T], a: &mut [T], result: &mut Linearisation<T>) -> Result<(), Error> {
-        let nv = self.topology.nv();
-        let (controls, parameters) = (self.controls.len(), self.parameters.len());
-        let inputs = controls + parameters;
-        expect("derivatives by q", nv * nv, result.by_q.len())?;
-        expect("derivatives by v", nv * nv, result.by_v.len())?;
-        expect("derivatives by inputs", nv * inputs, result.by_input.len())?;
-        self.plain.acceleration(t, q, v, a)?;
-        copy(&mut self.q, q);
-        copy(&mut self.v, v);
+        let Self { plain, dual, directions, a: rates } = self;
+        let (nv, inputs) = (rates.len(), directions.inputs());
+        result.expect_size(nv, inputs)?;
+        plain.acceleration(t, q, v, a)?;
+        directions.set_state(q, v)?;
 
-        for joint in 0..self.topology.bodies() {
-            let joint = self.topology.joints()[joint];
-            let (at, width) = (joint.q, joint.kind.nq());
-            let mut still = [Dual::constant(T::zero()); 7];
-            still[..width].copy_from_slice(&self.q[at..at + width]);
-            for k in 0..joint.kind.nv() {
-                let mut direction = [Dual::constant(T::zero()); 6];
-                direction[k].derivative = T::one();
-                joint.kind.integrate(&still, &direction, &mut self.q[at..]);
-                self.column(t, &mut result.by_q, nv, joint.v + k)?;
+        // The derivative of a in the direction that the duals have, into a column of a matrix of this width.
+        let mut column = |dual: &mut Dynamics<S, Dual<T>>, at: &Directions<T>, matrix: &mut [T], width: usize, column: usize| {
+            dual.acceleration(Dual::constant(t), &at.q, &at.v, rates)?;
+            rates.iter().enumerate().for_each(|(row, a)| matrix[row * width + column] = a.derivative);
+            Ok(())
+        };
+        directions.by_q(|at, k| column(dual, at, &mut result.by_q, nv, k))?;
+        directions.by_v(|at, k| column(dual, at, &mut result.by_v, nv, k))?;
+        directions.by_inputs(|at, input, k| {
+            match input {
+                Input::Control => dual.set_controls(&at.controls)?,
+                Input::Parameter => {
+                    // without the rate of the last control
+                    dual.set_controls(&at.controls)?;
+                    dual.set_parameters(&at.parameters)?;
+                }
             }
-            self.q[at..at + width].copy_from_slice(&still[..width]);
-        }
-        for dof in 0..nv {
-            self.v[dof].derivative = T::one();
-            self.column(t, &mut result.by_v, nv, dof)?;
-            self.v[dof].derivative = T::zero();
-        }
-        for k in 0..controls {
-            self.controls[k].derivative = T::one();
-            self.dual.set_controls(&self.controls)?;
-            self.column(t, &mut result.by_input, inputs, k)?;
-            self.controls[k].derivative = T::zero();
-        }
-        self.dual.set_controls(&self.controls)?;
-        for k in 0..parameters {
-            self.parameters[k].derivative = T::one();
-            self.dual.set_parameters(&self.parameters)?;
-            self.column(t, &mut result.by_input, inputs, controls + k)?;
-            self.parameters[k].derivative = T::zero();
-        }
-        if parameters > 0 {
-            self.dual.set_parameters(&self.parameters)?;
-        }
-        Ok(())
-    }
-}
-
-/// Values as constants.
-pub(super) fn copy<T: Real>(duals: &mut [Dual<T>], values: &[T]) {
-    for (dual, value) in duals.iter_mut().zip(values) {
-        *dual = Dual::constant(*value);
+            column(dual, at, &mut result.by_input, inputs, k)
+        })?;
+        dual.set_controls(&directions.controls)?;
+        Ok(dual.set_parameters(&directions.parameters)?)
     }
 }

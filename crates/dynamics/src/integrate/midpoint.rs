@@ -12,8 +12,9 @@
 //!
 //! **Stop.** u is found by fixed-point iteration. The iteration ends when the change of u, at most 10⁻⁶ of the largest velocity, no longer
 //! shrinks: then only roundings are left, in every scalar. It converges if `(h/2)·‖∂a/∂v + (h/2) ∂a/∂q‖ < 1`. After 100 iterations it is an
-//! error. With lanes all iterate until the last one ends. With duals as scalars the derivatives lag behind: use
-//! [`Integrator::linearise`], which differentiates the converged step.
+//! error. [`ImplicitMidpoint::step_by_newton`] has no such condition: `u ← u + N⁻¹ (v + (h/2) a − u)`, with N as below.
+//! [`Integrator::linearise`] does so where the fixed-point iteration fails. With lanes all iterate until the last one ends. With duals as scalars
+//! the derivatives lag behind: use [`Integrator::linearise`], which differentiates the converged step.
 //!
 //! Derivative, with Q, V those of `q ⊕ (h/2)u`, E, W those of `q ⊕ h u`, and N = 1 − (h/2) A_v − (h/2)² A_q V:
 //! `δu = N⁻¹ (δv + (h/2)(A_q Q δq + A_u δu))`, `δq' = E δq + h W δu`, `δv' = 2δu − δv`.
@@ -30,9 +31,42 @@ use featherbench_model::{TangentMap, Topology};
 use featherbench_spatial::Angle;
 
 /// The largest number of iterations.
-pub(super) const ITERATIONS: usize = 100;
+const ITERATIONS: usize = 100;
 /// The change, relative to the largest velocity, below which the iteration may end.
-pub(super) const NEAR: f64 = 1e-6;
+const NEAR: f64 = 1e-6;
+
+/// The iteration of an implicit step, and when it ends.
+pub(super) struct Iteration {
+    time: f64,
+    previous: f64,
+    pub(super) count: usize,
+}
+
+impl Iteration {
+    /// Before the first change, of a step from this time.
+    pub(super) fn new(time: f64) -> Self {
+        Self { time, previous: f64::INFINITY, count: 0 }
+    }
+
+    /// Whether a largest change of the velocities, the largest of which is `size`, was the last one.
+    ///
+    /// # Errors
+    /// [`IntegrationError`]: the change is not finite, or there were too many.
+    pub(super) fn ends(&mut self, change: f64, size: f64) -> Result<bool, IntegrationError> {
+        self.count += 1;
+        if !change.is_finite() {
+            return Err(IntegrationError::NotFinite { time: self.time });
+        }
+        if change == 0.0 || (change <= NEAR * size && change >= self.previous) {
+            return Ok(true);
+        }
+        if self.count == ITERATIONS {
+            return Err(IntegrationError::NotConverged { time: self.time, iterations: ITERATIONS, change });
+        }
+        self.previous = change;
+        Ok(false)
+    }
+}
 
 /// The workspace of the implicit midpoint rule.
 #[derive(Clone, Debug)]
@@ -109,40 +143,94 @@ impl<T: Angle> ImplicitMidpoint<T> {
         self.iterations
     }
 
-    /// Solves for u, and computes the state after the step in `self.q` and `self.v`.
+    /// [`Integrator::step`] by Newton's method, for stiff forces and long steps. The workspace must have been made for derivatives. An
+    /// iteration takes one [`Linearise::linearise`] and the solution of `nv` equations.
+    ///
+    /// # Errors
+    /// As [`Integrator::step`]; also for a workspace without room for derivatives, and if the equations of an iteration are singular.
+    pub fn step_by_newton<F: Linearise<T>>(&mut self, f: &mut F, t: T, h: T, q: &mut [T], v: &mut [T]) -> Result<(), IntegrationError> {
+        self.solve_by_newton(f, t, h, q, v)?;
+        q.copy_from_slice(&self.q);
+        v.copy_from_slice(&self.v);
+        Ok(())
+    }
+
+    /// Solves for u by fixed-point iteration, and computes the state after the step in `self.q` and `self.v`.
     fn solve<F: Acceleration<T>>(&mut self, f: &mut F, t: T, h: T, q: &[T], v: &[T]) -> Result<(), IntegrationError> {
         expect("velocity v", self.topology.nv(), v.len())?;
         let half = h * T::from_f64(0.5);
         self.middle.copy_from_slice(v);
-        let mut previous = f64::INFINITY;
-        self.iterations = 0;
+        let mut iteration = Iteration::new(t.min_lane());
         loop {
             scale(half, &self.middle, &mut self.increment);
             self.topology.integrate(q, &self.increment, &mut self.q)?;
             f.acceleration(t + half, &self.q, &self.middle, &mut self.a)?;
             self.next.copy_from_slice(v);
             add_scaled(half, &self.a, &mut self.next);
-            self.iterations += 1;
             let change = largest(self.next.iter().zip(&self.middle).map(|(next, middle)| *next - *middle));
             let size = largest(self.next.iter().copied());
             std::mem::swap(&mut self.middle, &mut self.next);
-            if !change.is_finite() {
-                return Err(IntegrationError::NotFinite { time: t.min_lane() });
-            }
-            if change == 0.0 || (change <= NEAR * size && change >= previous) {
+            if iteration.ends(change, size)? {
                 break;
             }
-            if self.iterations == ITERATIONS {
-                return Err(IntegrationError::NotConverged { time: t.min_lane(), iterations: ITERATIONS, change });
-            }
-            previous = change;
         }
+        self.iterations = iteration.count;
+        self.end(t, h, q, v)
+    }
+
+    /// The same by Newton's method.
+    fn solve_by_newton<F: Linearise<T>>(&mut self, f: &mut F, t: T, h: T, q: &[T], v: &[T]) -> Result<(), IntegrationError> {
+        expect("velocity v", self.topology.nv(), v.len())?;
+        let half = h * T::from_f64(0.5);
+        self.middle.copy_from_slice(v);
+        let mut iteration = Iteration::new(t.min_lane());
+        loop {
+            self.expand(f, t, h, q)?;
+            let tape = self.tape.as_mut().ok_or_else(no_room)?;
+            for (((x, v), middle), a) in tape.x.iter_mut().zip(v).zip(&self.middle).zip(&self.a) {
+                *x = half.mul_add(*a, *v - *middle);
+            }
+            tape.factors.solve(&mut tape.x);
+            add_scaled(T::one(), &tape.x, &mut self.middle);
+            if iteration.ends(largest(tape.x.iter().copied()), largest(self.middle.iter().copied()))? {
+                break;
+            }
+        }
+        self.iterations = iteration.count;
+        self.end(t, h, q, v)
+    }
+
+    /// The state after the step, from u.
+    fn end(&mut self, t: T, h: T, q: &[T], v: &[T]) -> Result<(), IntegrationError> {
         scale(h, &self.middle, &mut self.increment);
         self.topology.integrate(q, &self.increment, &mut self.q)?;
         for ((end, middle), v) in self.v.iter_mut().zip(&self.middle).zip(v) {
             *end = *middle + (*middle - *v);
         }
         expect_finite(t, &self.q, &self.v)
+    }
+
+    /// The acceleration in the middle with its derivatives, and the factors of N.
+    fn expand<F: Linearise<T>>(&mut self, f: &mut F, t: T, h: T, q: &[T]) -> Result<(), IntegrationError> {
+        let tape = self.tape.as_mut().ok_or_else(no_room)?;
+        let (nv, half) = (self.middle.len(), h * T::from_f64(0.5));
+        scale(half, &self.middle, &mut self.increment);
+        tape.middle_by_q.d_integrate_q(&self.increment)?;
+        tape.middle_by_step.d_integrate_v(&self.increment)?;
+        self.topology.integrate(q, &self.increment, &mut tape.q)?;
+        f.linearise(t + half, &tape.q, &self.middle, &mut self.a, &mut tape.linear)?;
+
+        // N = 1 − (h/2) A_v − (h/2)² A_q V, row by row: row of A_q V = Vᵀ (row of A_q)
+        for row in 0..nv {
+            let of_row = row * nv..(row + 1) * nv;
+            tape.middle_by_step.transpose_mul(&tape.linear.by_q[of_row], &mut tape.x)?;
+            for column in 0..nv {
+                let unit = if row == column { T::one() } else { T::zero() };
+                let sum = half.mul_add(tape.x[column], tape.linear.by_v[row * nv + column]);
+                tape.factors.values[row * nv + column] = (-half).mul_add(sum, unit);
+            }
+        }
+        if tape.factors.factor() { Ok(()) } else { Err(IntegrationError::Singular { time: t.min_lane() }) }
     }
 }
 
@@ -164,32 +252,16 @@ impl<T: Angle> Integrator<T> for ImplicitMidpoint<T> {
     }
 
     fn linearise<F: Linearise<T>>(&mut self, f: &mut F, t: T, h: T, q: &mut [T], v: &mut [T]) -> Result<(), IntegrationError> {
-        self.solve(f, t, h, q, v)?;
+        match self.solve(f, t, h, q, v) {
+            Err(IntegrationError::NotConverged { .. } | IntegrationError::NotFinite { .. }) => self.solve_by_newton(f, t, h, q, v)?,
+            solved => solved?,
+        }
+        self.expand(f, t, h, q)?;
         let tape = self.tape.as_mut().ok_or_else(no_room)?;
-        let half = h * T::from_f64(0.5);
         tape.h = h;
+        scale(h, &self.middle, &mut self.increment);
         tape.end_by_q.d_integrate_q(&self.increment)?;
         tape.end_by_step.d_integrate_v(&self.increment)?;
-        scale(half, &self.middle, &mut self.increment);
-        tape.middle_by_q.d_integrate_q(&self.increment)?;
-        tape.middle_by_step.d_integrate_v(&self.increment)?;
-        self.topology.integrate(q, &self.increment, &mut tape.q)?;
-        f.linearise(t + half, &tape.q, &self.middle, &mut self.a, &mut tape.linear)?;
-
-        let nv = v.len();
-        // N = 1 − (h/2) A_v − (h/2)² A_q V, row by row: row of A_q V = Vᵀ (row of A_q)
-        for row in 0..nv {
-            let of_row = row * nv..(row + 1) * nv;
-            tape.middle_by_step.transpose_mul(&tape.linear.by_q[of_row.clone()], &mut tape.x)?;
-            for column in 0..nv {
-                let unit = if row == column { T::one() } else { T::zero() };
-                let sum = half.mul_add(tape.x[column], tape.linear.by_v[row * nv + column]);
-                tape.factors.values[row * nv + column] = (-half).mul_add(sum, unit);
-            }
-        }
-        if !tape.factors.factor() {
-            return Err(IntegrationError::Singular { time: t.min_lane() });
-        }
         q.copy_from_slice(&self.q);
         v.copy_from_slice(&self.v);
         Ok(())

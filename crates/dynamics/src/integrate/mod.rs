@@ -42,6 +42,7 @@ mod adjoint;
 mod analytic;
 mod by_duals;
 mod dense;
+mod directions;
 mod dormand_prince;
 mod dynamics;
 mod error;

@@ -25,7 +25,7 @@ use super::IntegrationError;
 use super::dense::add_scaled;
 use super::dynamics::{Acceleration, Dynamics, System};
 use super::error::{expect_finite, largest};
-use super::midpoint::{ITERATIONS, NEAR, scale};
+use super::midpoint::{Iteration, scale};
 use crate::error::expect;
 use crate::{EnergyGradient, EnergyPartials};
 use featherbench_model::{JointKind, TangentMap, Topology};
@@ -125,28 +125,19 @@ impl<T: Angle> VariationalMidpoint<T> {
         self.u.copy_from_slice(v);
         add_scaled(half, &self.x, &mut self.u);
 
-        let mut previous = f64::INFINITY;
-        self.iterations = 0;
+        let mut iteration = Iteration::new(t.min_lane());
         loop {
             self.momenta(f, t, h, q)?;
-            self.iterations += 1;
             for (y, momentum) in self.y.iter_mut().zip(&self.momentum) {
                 *y = *momentum - *y;
             }
             f.solve(&self.y, &mut self.x)?;
             add_scaled(T::one(), &self.x, &mut self.u);
-            let (change, size) = (largest(self.x.iter().copied()), largest(self.u.iter().copied()));
-            if !change.is_finite() {
-                return Err(IntegrationError::NotFinite { time: t.min_lane() });
-            }
-            if change == 0.0 || (change <= NEAR * size && change >= previous) {
+            if iteration.ends(largest(self.x.iter().copied()), largest(self.u.iter().copied()))? {
                 break;
             }
-            if self.iterations == ITERATIONS {
-                return Err(IntegrationError::NotConverged { time: t.min_lane(), iterations: ITERATIONS, change });
-            }
-            previous = change;
         }
+        self.iterations = iteration.count;
 
         // q' = q ⊕ h u, and v' = M(q')⁻¹ w
         self.momenta(f, t, h, q)?;

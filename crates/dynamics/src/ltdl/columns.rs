@@ -57,6 +57,24 @@ impl<T: Real> Ltdl<T> {
         Ok(())
     }
 
+    /// The columns of M⁻¹ of these dofs, as [`Ltdl::inverse_columns`] writes them. It allocates them.
+    ///
+    /// # Errors
+    /// [`DimensionError`] when there is no such dof.
+    ///
+    /// ```
+    /// use featherbench_dynamics::TreeSparse;
+    /// let mut matrix = TreeSparse::of_parents(&[None, None])?;
+    /// matrix.values_mut().copy_from_slice(&[4.0, 8.0]);
+    /// assert_eq!(matrix.into_ltdl()?.columns_of_inverse(&[1, 0])?, [0.0, 0.125, 0.25, 0.0]);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn columns_of_inverse(&self, dofs: &[usize]) -> Result<Vec<T>, DimensionError> {
+        let mut columns = vec![T::zero(); dofs.len() * self.matrix.size()];
+        self.inverse_columns(dofs, &mut columns)?;
+        Ok(columns)
+    }
+
     /// An error if there is no such dof.
     pub(super) fn expect_dof(&self, dof: usize) -> Result<(), DimensionError> {
         let size = self.matrix.size();

@@ -3,7 +3,7 @@
 //! `M = LᵀDL`, so M x = b is Lᵀ y = b, D z = y, L x = z. With the root `R = D^½ L` it is `M = RᵀR`. Of these halves is made what needs a
 //! square root of M: norms `|R x|² = xᵀMx` and `|R⁻ᵀ b|² = bᵀM⁻¹b`, noise of covariance M or M⁻¹ from noise of unit variance, and matrices like
 //! `J M⁻¹ Jᵀ = (R⁻ᵀJᵀ)ᵀ (R⁻ᵀJᵀ)`.
-//! Shapes: vectors have `nv` numbers. All is in place, and does not allocate.
+//! Shapes: vectors have `nv` numbers. All is in place, and does not allocate; [`Ltdl::applied`] leaves the vector and gives another.
 //! Cost: D1 = Σ (d_k − 1) multiply-adds; with the root n square roots more, and n products or divisions.
 //! Products have the plain text; the two halves of a solution have the text in registers where the whole has it.
 
@@ -42,6 +42,18 @@ impl<T: Real> Ltdl<T> {
     ///
     /// # Errors
     /// [`DimensionError`] when `x` has not one number per dof.
+    ///
+    /// ```
+    /// use featherbench_dynamics::TreeSparse;
+    /// let mut matrix = TreeSparse::of_parents(&[None, Some(0)])?;
+    /// matrix.values_mut().copy_from_slice(&[5.0, 4.0, 8.0]);
+    /// // D = diag(3, 8) and L = [[1, 0], [0.5, 1]]: M = [[5, 4], [4, 8]] = LᵀDL
+    /// let factors = matrix.into_ltdl()?;
+    /// let mut x = [1.0, 1.0];
+    /// factors.multiply_lower_transposed(&mut x)?;
+    /// assert_eq!(x, [1.5, 1.0]);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     pub fn multiply_lower_transposed(&self, x: &mut [T]) -> Result<(), DimensionError> {
         expect("vector x", self.matrix.size(), x.len())?;
         triangular::multiply_transposed::<T, true>(&self.matrix, x);
@@ -52,6 +64,18 @@ impl<T: Real> Ltdl<T> {
     ///
     /// # Errors
     /// [`DimensionError`] when `x` has not one number per dof.
+    ///
+    /// ```
+    /// use featherbench_dynamics::TreeSparse;
+    /// let mut matrix = TreeSparse::of_parents(&[None, Some(0)])?;
+    /// matrix.values_mut().copy_from_slice(&[5.0, 4.0, 8.0]);
+    /// // D = diag(3, 8) and L = [[1, 0], [0.5, 1]]: M = [[5, 4], [4, 8]] = LᵀDL
+    /// let factors = matrix.into_ltdl()?;
+    /// let mut x = [1.0, 1.0];
+    /// factors.solve_lower(&mut x)?;
+    /// assert_eq!(x, [1.0, 0.5]);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     pub fn solve_lower(&self, x: &mut [T]) -> Result<(), DimensionError> {
         expect("right-hand side x", self.matrix.size(), x.len())?;
         match Blocked::find() {
@@ -66,6 +90,18 @@ impl<T: Real> Ltdl<T> {
     ///
     /// # Errors
     /// [`DimensionError`] when `x` has not one number per dof.
+    ///
+    /// ```
+    /// use featherbench_dynamics::TreeSparse;
+    /// let mut matrix = TreeSparse::of_parents(&[None, Some(0)])?;
+    /// matrix.values_mut().copy_from_slice(&[5.0, 4.0, 8.0]);
+    /// // D = diag(3, 8) and L = [[1, 0], [0.5, 1]]: M = [[5, 4], [4, 8]] = LᵀDL
+    /// let factors = matrix.into_ltdl()?;
+    /// let mut x = [1.0, 1.0];
+    /// factors.solve_lower_transposed(&mut x)?;
+    /// assert_eq!(x, [0.5, 1.0]);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     pub fn solve_lower_transposed(&self, x: &mut [T]) -> Result<(), DimensionError> {
         expect("right-hand side x", self.matrix.size(), x.len())?;
         match Blocked::find() {
@@ -100,6 +136,19 @@ impl<T: Real> Ltdl<T> {
     ///
     /// # Errors
     /// [`DimensionError`] when `x` has not one number per dof.
+    ///
+    /// ```
+    /// use featherbench_dynamics::TreeSparse;
+    /// let mut matrix = TreeSparse::of_parents(&[None, Some(0)])?;
+    /// matrix.values_mut().copy_from_slice(&[5.0, 4.0, 8.0]);
+    /// // D = diag(3, 8) and L = [[1, 0], [0.5, 1]]: M = [[5, 4], [4, 8]] = LᵀDL
+    /// let factors = matrix.into_ltdl()?;
+    /// let mut x = [1.0_f64, 1.0];
+    /// factors.multiply_root_transposed(&mut x)?;
+    /// let due = [3.0_f64.sqrt() + 2.0_f64.sqrt(), 8.0_f64.sqrt()];
+    /// assert!(x.iter().zip(due).all(|(x, due)| (x - due).abs() < 1e-15));
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     pub fn multiply_root_transposed(&self, x: &mut [T]) -> Result<(), DimensionError> {
         expect("vector x", self.matrix.size(), x.len())?;
         self.scale_by_root(x, |x, root| x * root);
@@ -110,6 +159,20 @@ impl<T: Real> Ltdl<T> {
     ///
     /// # Errors
     /// [`DimensionError`] when `x` has not one number per dof.
+    ///
+    /// ```
+    /// use featherbench_dynamics::TreeSparse;
+    /// let mut matrix = TreeSparse::of_parents(&[None, Some(0)])?;
+    /// matrix.values_mut().copy_from_slice(&[5.0, 4.0, 8.0]);
+    /// // D = diag(3, 8) and L = [[1, 0], [0.5, 1]]: M = [[5, 4], [4, 8]] = LᵀDL
+    /// let factors = matrix.into_ltdl()?;
+    /// let mut x = [1.0_f64, 1.0];
+    /// factors.solve_root(&mut x)?;
+    /// // R = D^½ L gives the right side back.
+    /// factors.multiply_root(&mut x)?;
+    /// assert!(x.iter().all(|x| (x - 1.0).abs() < 1e-15));
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     pub fn solve_root(&self, x: &mut [T]) -> Result<(), DimensionError> {
         expect("right-hand side x", self.matrix.size(), x.len())?;
         self.scale_by_root(x, |x, root| x / root);
@@ -120,6 +183,19 @@ impl<T: Real> Ltdl<T> {
     ///
     /// # Errors
     /// [`DimensionError`] when `x` has not one number per dof.
+    ///
+    /// ```
+    /// use featherbench_dynamics::TreeSparse;
+    /// let mut matrix = TreeSparse::of_parents(&[None, Some(0)])?;
+    /// matrix.values_mut().copy_from_slice(&[5.0, 4.0, 8.0]);
+    /// // D = diag(3, 8) and L = [[1, 0], [0.5, 1]]: M = [[5, 4], [4, 8]] = LᵀDL
+    /// let factors = matrix.into_ltdl()?;
+    /// // bᵀM⁻¹b = 5/24, with M⁻¹ = [[8, −4], [−4, 5]] / 24
+    /// let mut x = [1.0_f64, 1.0];
+    /// factors.solve_root_transposed(&mut x)?;
+    /// assert!((x[0] * x[0] + x[1] * x[1] - 5.0 / 24.0).abs() < 1e-15);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     pub fn solve_root_transposed(&self, x: &mut [T]) -> Result<(), DimensionError> {
         self.solve_lower_transposed(x)?;
         self.scale_by_root(x, |x, root| x / root);
@@ -140,6 +216,33 @@ impl<T: Real> Ltdl<T> {
         T: Logarithm,
     {
         self.matrix.diagonal().fold(T::zero(), |sum, d| sum + d.ln())
+    }
+
+    /// A copy of `x`, changed by one of the operations in place: [`Ltdl::solve`], a half of it, or a product. It allocates the copy.
+    ///
+    /// # Errors
+    /// [`DimensionError`] when `x` has not one number per dof.
+    ///
+    /// ```
+    /// use featherbench_dynamics::TreeSparse;
+    /// let mut matrix = TreeSparse::of_parents(&[None, Some(0)])?;
+    /// matrix.values_mut().copy_from_slice(&[5.0, 4.0, 8.0]);
+    /// // D = diag(3, 8) and L = [[1, 0], [0.5, 1]]: M = [[5, 4], [4, 8]] = LᵀDL
+    /// let factors = matrix.into_ltdl()?;
+    /// use featherbench_dynamics::Ltdl;
+    /// let x = [1.0, 1.0];
+    /// assert_eq!(factors.applied(Ltdl::multiply_lower, &x)?, [1.0, 1.5]);
+    /// assert_eq!(factors.applied(Ltdl::solve_lower, &x)?, [1.0, 0.5]);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn applied(
+        &self,
+        operation: impl FnOnce(&Self, &mut [T]) -> Result<(), DimensionError>,
+        x: &[T],
+    ) -> Result<Vec<T>, DimensionError> {
+        let mut copy = x.to_vec();
+        operation(self, &mut copy)?;
+        Ok(copy)
     }
 
     /// x_k and √D_k.

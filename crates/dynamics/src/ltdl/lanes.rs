@@ -27,6 +27,7 @@ macro_rules! by_block {
 }
 
 /// Factors the matrix.
+#[inline(always)]
 pub(super) fn factor<T: Real>(matrix: &mut TreeSparse<T>, _: &Plan, _: &mut [T]) -> Pivot {
     let mut smallest = Pivot::none();
     let mut end = matrix.size();
@@ -39,6 +40,7 @@ pub(super) fn factor<T: Real>(matrix: &mut TreeSparse<T>, _: &Plan, _: &mut [T])
 }
 
 /// Solves `LᵀDL x = b` in place.
+#[inline(always)]
 pub(super) fn solve<T: Real>(matrix: &TreeSparse<T>, plan: &Plan, x: &mut [T]) {
     solve_lower_transposed(matrix, plan, x);
     // D z = y

@@ -3,7 +3,7 @@
 //! Source, shapes and units: those of `ltdl.rs`, whose kernel of `ltdl/factor.rs` it calls. The tree is divided by `parallel.rs`. A row of L needs
 //! the rows below it only. So the rows of a part are factored by themselves, in a copy with padding, and then the rows of the trunk.
 //! Cost: O(Σ d_k²), the operations of [`Ltdl`], and one copy of the rows of the parts each way. Memory beside the matrix: the rows of the largest
-//! part of each task, and 144 bytes per dof. Without `rayon`'s own, a call allocates one list of slices, with as many entries as there are tasks.
+//! part of each task, and 144 bytes per dof. Beside what `rayon` allocates, a call allocates one list of slices, with one entry per task.
 //! Solutions are those of [`Ltdl`], on one core.
 
 use super::Ltdl;

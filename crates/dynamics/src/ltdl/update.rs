@@ -81,6 +81,47 @@ impl<T: Real> Ltdl<T> {
         self.change::<false>(dof, sigma, vectors)
     }
 
+    /// The factors of `M + σ Σ w wᵀ`, as [`Ltdl::update`] makes them, and those of M unchanged. It allocates a workspace.
+    ///
+    /// # Errors
+    /// As of [`Ltdl::update`].
+    ///
+    /// ```
+    /// use featherbench_dynamics::TreeSparse;
+    /// let mut matrix = TreeSparse::of_parents(&[None])?;
+    /// matrix.values_mut()[0] = 4.0;
+    /// let ltdl = matrix.into_ltdl()?;
+    /// // 4 + 2·3²
+    /// assert_eq!(ltdl.updated(0, 2.0, &[3.0])?.factors().get(0, 0), 22.0);
+    /// assert_eq!(ltdl.factors().get(0, 0), 4.0);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn updated(&self, dof: usize, sigma: T, vectors: &[T]) -> Result<Self, Error> {
+        let mut copy = self.clone();
+        copy.update(dof, sigma, vectors)?;
+        Ok(copy)
+    }
+
+    /// The factors of `M − σ Σ w wᵀ`, as [`Ltdl::downdate`] makes them, and those of M unchanged. It allocates a workspace.
+    ///
+    /// # Errors
+    /// As of [`Ltdl::downdate`].
+    ///
+    /// ```
+    /// use featherbench_dynamics::TreeSparse;
+    /// let mut matrix = TreeSparse::of_parents(&[None])?;
+    /// matrix.values_mut()[0] = 4.0;
+    /// let ltdl = matrix.into_ltdl()?;
+    /// assert_eq!(ltdl.downdated(0, 3.0, &[1.0])?.factors().get(0, 0), 1.0);
+    /// assert!(ltdl.downdated(0, 5.0, &[1.0]).is_err());
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn downdated(&self, dof: usize, sigma: T, vectors: &[T]) -> Result<Self, Error> {
+        let mut copy = self.clone();
+        copy.downdate(dof, sigma, vectors)?;
+        Ok(copy)
+    }
+
     fn change<const ADD: bool>(&mut self, dof: usize, sigma: T, vectors: &[T]) -> Result<(), Error> {
         self.expect_dof(dof)?;
         let depth = self.matrix.depth(dof);

@@ -7,7 +7,7 @@ use super::orientation::{Frame, Orientations, across};
 use super::rnea::subtract_wrenches;
 use crate::DimensionError;
 use crate::error::expect;
-use crate::step::newton_euler;
+use crate::step::{expect_wrenches, newton_euler};
 use featherbench_spatial::{Force, Mat3, Motion, Real, RigidBodyInertia, Vec3};
 
 /// Motions of the bodies, and the force that each body needs.
@@ -46,9 +46,7 @@ impl Motions {
         expect("segments of the workspace", model.segments.len(), self.orientations.bases.len())?;
         expect("configuration q", model.topology.nq(), q.len())?;
         expect("velocity v", model.topology.nv(), v.len())?;
-        if let Some(wrenches) = wrenches {
-            expect("external wrenches", model.topology.bodies(), wrenches.len())?;
-        }
+        expect_wrenches(&model.topology, wrenches)?;
         self.orientations.bases.fill(-model.gravity);
         self.orientations.turn(model, q);
         for b in 0..model.blocks.len() {

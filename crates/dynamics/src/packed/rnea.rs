@@ -17,6 +17,7 @@ use super::orientation::straightened;
 use super::xyz::{Xyz, transposed};
 use crate::DimensionError;
 use crate::error::expect;
+use crate::step::expect_wrenches;
 use featherbench_spatial::{Force, Mat3, Motion, Real, Vec3};
 
 /// The workspace of inverse dynamics over packed joints.
@@ -124,9 +125,7 @@ impl PackedRnea {
     #[inline(always)]
     fn move_bodies(&mut self, model: &PackedModel, numbers: [&[f64]; 3], wrenches: Option<&[Force<f64>]>) -> Result<(), DimensionError> {
         expect("segments of the workspace", model.segments.len(), self.totals.forces.len())?;
-        if let Some(wrenches) = wrenches {
-            expect("external wrenches", model.topology.bodies(), wrenches.len())?;
-        }
+        expect_wrenches(&model.topology, wrenches)?;
         self.bodies.across_all_joints::<{ ANGULAR_VELOCITIES + ACCELERATIONS }>(model, numbers);
         for b in 0..model.blocks.len() {
             let displacements = &mut self.displacements[b * LANES..][..LANES];

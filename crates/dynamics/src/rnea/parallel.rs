@@ -10,13 +10,13 @@
 //! | 2 | parts, in parallel | outward, then inward |
 //! | 3 | trunk | inward |
 //!
-//! Cost: O(n), the operations of [`Rnea`]. Without `rayon`'s own, a call allocates three lists of slices, each with as many entries as there are
-//! tasks.
+//! Cost: O(n), the operations of [`Rnea`]. Beside what `rayon` itself allocates, a call allocates three lists of slices,
+//! with one entry per task each.
 
 use super::{Link, Moving, outward};
 use crate::error::expect;
 use crate::parallel::{Part, Piece, Plan};
-use crate::step::by_kind;
+use crate::step::{by_kind, expect_workspace};
 use crate::{DimensionError, Rnea};
 use featherbench_model::{Joint, Model, Topology};
 use featherbench_spatial::{Force, Lift, Motion, Real, Vec3};
@@ -82,8 +82,8 @@ impl<T: Real> ParallelRnea<T> {
         tau: &mut [T],
     ) -> Result<(), DimensionError> {
         expect("acceleration a", model.topology.nv(), a.len())?;
-        super::expect_shapes(self.rnea.links.len(), model, q, v, wrenches, tau)?;
-        expect("path slots of the workspace", model.topology.slots(), self.rnea.path.len())?;
+        expect_workspace(model, self.rnea.links.len(), self.rnea.path.len())?;
+        super::expect_shapes(model, q, v, wrenches, tau)?;
         self.plan.expect(&model.topology)?;
         let Self { plan, rnea: Rnea { links, path }, parents, paths } = self;
         let joints = model.topology.joints();

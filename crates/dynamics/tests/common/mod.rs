@@ -1,6 +1,6 @@
 //! What the tests share: robots, states, tolerances, and flow derivatives.
 
-#![allow(dead_code, unused_imports, reason = "two test programs compile this module, each uses a part of it")]
+#![allow(dead_code, unused_imports, reason = "three test programs compile this module, each uses a part of it")]
 
 use featherbench_dynamics::TreeSparse;
 use featherbench_model::{BodyDescription, Description, JointDescription, JointKind, JointType, Model, Placement, Topology, integrate};
@@ -10,6 +10,7 @@ use nalgebra::DMatrix;
 
 mod by_reciprocal;
 pub mod dense;
+pub mod fused;
 mod tolerance;
 
 pub use by_reciprocal::ByReciprocal;

@@ -4,12 +4,12 @@ use crate::common;
 
 use common::{ROBOTS, build, distance, larger, largest, within};
 use featherbench_dynamics::integrate::{
-    Acceleration, DormandPrince, Dynamics, ImplicitMidpoint, Integrator, Passive, RungeKutta4, SymplecticEuler,
+    Acceleration, Analytic, DormandPrince, Dynamics, ImplicitMidpoint, Instant, Integrator, Passive, RungeKutta4, SymplecticEuler, System,
 };
 use featherbench_dynamics::{Error, centroidal_momentum, energy};
 use featherbench_model::{BodyDescription, Description, JointDescription, JointType, Model, difference};
 use featherbench_robots::{Family, StateBatch};
-use featherbench_spatial::Vec3;
+use featherbench_spatial::{Angle, Force, Vec3};
 
 fn total_energy(model: &Model<f64>, q: &[f64], v: &[f64]) -> f64 {
     let energies = energy(model, q, v).unwrap();
@@ -177,4 +177,54 @@ fn errors_leave_the_state() {
     check!(SymplecticEuler, ImplicitMidpoint, RungeKutta4, DormandPrince);
     let mut dynamics = Dynamics::<_, f64>::new(&model, Passive, &[]).unwrap();
     assert!(dynamics.acceleration(0.0, &q[1..], &v, &mut [0.0; 3]).is_err() && dynamics.set_controls(&[1.0]).is_err());
+}
+
+/// Springs between a joint and its zero, so stiff that a step is many of their periods.
+#[derive(Clone, Copy)]
+struct Stiff;
+
+impl System for Stiff {
+    fn forces<T: Angle>(&self, at: &Instant<'_, T>, tau: &mut [T], _: &mut [Force<T>]) {
+        for (tau, q) in tau.iter_mut().zip(at.q) {
+            *tau -= T::from_f64(1e6) * *q;
+        }
+    }
+}
+
+/// Newton's method solves the step of a stiff system, which the fixed-point iteration cannot; elsewhere both find the same step.
+#[test]
+fn newton_solves_what_is_stiff() {
+    let model = Model::build(&Family::parse("chain:n=4,layout=spatial").unwrap().generate().unwrap()).unwrap();
+    let states = StateBatch::random(&model, 1, 8);
+    let start: Vec<f64> = states.q(0).iter().map(|q| 0.1 * q).collect();
+    let mut integrator = ImplicitMidpoint::with_derivatives(&model.topology, 0);
+    let mut stiff = Analytic::new(&model, Stiff, &[]).unwrap();
+    let (h, mut q, mut v) = (0.01, start.clone(), states.v(0).to_vec());
+    assert!(integrator.step(&mut stiff, 0.0, h, &mut q, &mut v).is_err(), "the spring is stiff");
+    assert_eq!((&q[..], &v[..]), (&start[..], states.v(0)), "after an error the state is as before");
+    integrator.step_by_newton(&mut stiff, 0.0, h, &mut q, &mut v).unwrap();
+    assert!(integrator.iterations() < 30, "{}", integrator.iterations());
+    // v' = v + h a(middle), by a text of its own: the middle is half-way in q, and the mean in v.
+    let middle: Vec<f64> = (0..4).map(|k| (start[k] + q[k]) / 2.0).collect();
+    let mean: Vec<f64> = (0..4).map(|k| (states.v(0)[k] + v[k]) / 2.0).collect();
+    let mut a = vec![0.0; 4];
+    stiff.acceleration(h / 2.0, &middle, &mean, &mut a).unwrap();
+    let found: Vec<f64> = (0..4).map(|k| (v[k] - states.v(0)[k]) / h).collect();
+    // a is 1e6/M times the rounding of the middle configuration, and 1/h times that of the velocities.
+    within("the midpoint equation", distance(&found, &a) / largest(&a), 1e-10);
+    // The linearised step falls back on it.
+    let (mut again_q, mut again_v) = (start.clone(), states.v(0).to_vec());
+    integrator.linearise(&mut stiff, 0.0, h, &mut again_q, &mut again_v).unwrap();
+    assert_eq!((again_q, again_v), (q, v));
+
+    let mut passive = Analytic::new(&model, Passive, &[]).unwrap();
+    let step = |newton: bool, integrator: &mut ImplicitMidpoint<f64>, f: &mut Analytic<Passive, f64>| {
+        let (mut q, mut v) = (states.q(0).to_vec(), states.v(0).to_vec());
+        let done = if newton { integrator.step_by_newton(f, 0.0, h, &mut q, &mut v) } else { integrator.step(f, 0.0, h, &mut q, &mut v) };
+        done.unwrap();
+        [q, v].concat()
+    };
+    let (by_newton, by_iteration) = (step(true, &mut integrator, &mut passive), step(false, &mut integrator, &mut passive));
+    // Both end at the rounding of the accelerations, times h.
+    within("Newton against fixed point", distance(&by_newton, &by_iteration), 1e-12);
 }

@@ -250,8 +250,11 @@ fn advice(compared: &[Compared], quantity: Quantity) -> Vec<String> {
 
 /// Notes the quantities that the oracle does not offer.
 pub(super) fn lacking(exchange: &mut Exchange, offered: &Methods) {
-    let ours = |quantity: &Quantity| matches!(quantity, Quantity::Readback | Quantity::ForwardDynamicsSingle | Quantity::MassMatrixSparse);
-    let inner = |quantity: &Quantity| matches!(quantity, Quantity::Factorization | Quantity::Solve);
+    let ours = |quantity: &Quantity| {
+        matches!(quantity, Quantity::Readback | Quantity::ForwardDynamicsSingle | Quantity::MassMatrixSparse)
+            || Quantity::SECOND_DERIVATIVES.contains(quantity)
+    };
+    let inner = |quantity: &Quantity| matches!(quantity, Quantity::Factorization | Quantity::FactorEntries | Quantity::Solve);
     let asked = Quantity::ALL.into_iter().filter(|quantity| !ours(quantity) && !inner(quantity));
     let missing: Vec<&str> = asked.map(Quantity::name).filter(|name| !offered.contains_key(*name)).collect();
     if !missing.is_empty() {

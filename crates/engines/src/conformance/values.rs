@@ -13,8 +13,8 @@ pub(super) const RIGHT: f64 = 1e-11;
 /// The same for forward dynamics, where an explicit inverse loses the condition number of M, here up to a thousand.
 pub(super) const RIGHT_FORWARD: f64 = 1e-9;
 
-/// The same for derivatives by finite differences, whose digits belong to the study of derivatives: steps of 1e-4 to 1e-8 leave 1e-2 at fast
-/// states, and a mistaken sign, order or frame changes the largest entries by their own size.
+/// The same for derivatives by finite differences, whose digits belong to the study of derivatives. Steps of 1e-4 to 1e-8 leave 1e-2 at fast
+/// states. A mistaken sign, order or frame changes the largest entries by their own size.
 pub(super) const RIGHT_DIFFERENCES: f64 = 0.1;
 
 /// A robot with featherbench's answers to every question.

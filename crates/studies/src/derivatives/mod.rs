@@ -14,9 +14,10 @@ pub(crate) mod section;
 use crate::{Made, Setup, row};
 use featherbench_bench::measure::{ForwardScale, ratio, scaled_error, worst};
 use featherbench_bench::truth::TrueDerivatives;
-use featherbench_bench::{Cell, Context, DENSE_LIMIT, Finished, NoAnswer, NoSettings, Outcome, Quantity, Robot, Study, derivative_floor};
+use featherbench_bench::{Cell, Context, DENSE_LIMIT, Finished, NoAnswer, OWN, Outcome, Quantity, Robot, Study, derivative_floor};
 use featherbench_results::{Row, Verdict, canonical_json};
 use featherbench_robots::Case;
+use serde::Deserialize;
 use serde_json::json;
 
 /// The study's name in rows.
@@ -32,12 +33,25 @@ const FLOOR_DOFS: usize = 50;
 /// A derivative that is zero has no bound: what is left is rounding of the bound's own computation.
 const NO_FLOOR: f64 = 1e-20;
 
-/// The study of derivatives.
-pub struct Derivatives;
+/// The study of derivatives: the table `[derivatives]` of a suite.
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct Derivatives {
+    /// Whether the suite's engines are asked beside ours. Recordings have no derivatives: a suite that runs without live engines says no.
+    pub peers: bool,
+    /// The most dofs of a robot.
+    pub most_dofs: usize,
+}
+
+impl Default for Derivatives {
+    fn default() -> Self {
+        Self { peers: true, most_dofs: DENSE_LIMIT }
+    }
+}
 
 /// The study, if the suite asks for it.
 pub(crate) fn of_suite(setup: &Setup) -> Made {
-    Ok(setup.suite.settings::<NoSettings>(STUDY)?.map(|_| Box::new(Derivatives) as _))
+    Ok(setup.suite.settings::<Derivatives>(STUDY)?.map(|study| Box::new(study) as _))
 }
 
 impl Study for Derivatives {
@@ -47,9 +61,10 @@ impl Study for Derivatives {
 
     fn plan(&self, context: &Context) -> Vec<Cell> {
         let mut cells = Vec::new();
-        for robot in context.robots.iter().filter(|robot| robot.takes(self.name()) && robot.states.nv <= DENSE_LIMIT) {
+        let most = self.most_dofs.min(DENSE_LIMIT);
+        for robot in context.robots.iter().filter(|robot| robot.takes(self.name()) && robot.states.nv <= most) {
             let params = json!({"base": robot.base(), "joints": robot.joint_kinds(), "states": robot.states.count()});
-            for engine in context.engines {
+            for engine in context.engines.iter().filter(|engine| self.peers || engine.identity().name == OWN) {
                 for quantity in Quantity::DERIVATIVES {
                     let mut methods = engine.methods(quantity);
                     if methods.is_empty() {

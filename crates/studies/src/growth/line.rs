@@ -1,6 +1,7 @@
 //! What one method of one engine did along a line: the text of an outcome.
 
 use featherbench_bench::alone::Measured;
+use featherbench_bench::hash;
 use serde::{Deserialize, Serialize};
 
 /// A method along a line.
@@ -24,6 +25,8 @@ pub(super) struct Point {
     pub(super) peak: Option<u64>,
     pub(super) resident: Option<u64>,
     pub(super) error: Option<f64>,
+    /// Content hash of the answer's bits: two answers are the same if their hashes are.
+    pub(super) answer: String,
 }
 
 /// The end of a line.
@@ -38,9 +41,10 @@ pub(super) struct Stop {
 
 impl Point {
     pub(super) fn of(tree: &str, measured: Measured, error: Option<f64>) -> Self {
-        let Measured { dofs, build, calls, memory, .. } = measured;
+        let Measured { dofs, build, calls, memory, answer } = measured;
+        let answer = hash::of(&answer.iter().flat_map(|x| x.to_le_bytes()).collect::<Vec<u8>>());
         let (peak, resident) = memory.map(|memory| (memory.peak, memory.resident)).unzip();
-        Self { tree: tree.into(), dofs, build, calls, peak, resident, error }
+        Self { tree: tree.into(), dofs, build, calls, peak, resident, error, answer }
     }
 }
 

@@ -1,13 +1,19 @@
 //! The rows of the study, from the text of each line.
 
 use super::line::{Grown, Point, Stop};
+use super::own;
 use super::slope::{self, Interval};
 use crate::scaling::crossing;
 use featherbench_bench::measure::ratio;
-use featherbench_bench::{Cell, Context, Finished, OWN, Outcome, Quantity};
-use featherbench_results::{Kind, Row, Verdict, canonical_json};
+use featherbench_bench::{Cell, Context, Finished, Outcome};
+use featherbench_report::fit::power_law;
+use featherbench_results::{Kind, Relation, Row, Verdict, canonical_json};
 use featherbench_robots::Random;
 use serde_json::json;
+use std::collections::BTreeSet;
+
+/// From so many dofs on, the whole resident memory over the dofs is a row: program and libraries take some bytes per dof of it.
+const MANY_DOFS: usize = 1_000_000;
 
 /// Why a time does not count.
 const NO_CLOCK: &str = "the engine has no clock beside its loop: the time includes the exchange of messages";
@@ -31,11 +37,16 @@ pub(super) fn rows(context: &Context, finished: &[Finished]) -> Vec<Row> {
         }
     }
     rows.extend(against_each_other(&lines));
+    rows.extend(answers(context, &lines));
     rows
 }
 
 /// A row about a whole line.
 fn blank(cell: &Cell) -> Row {
+    let mut params = json!({"line": cell.robot});
+    if let Some(threads) = cell.params.get("threads") {
+        params["threads"] = threads.clone();
+    }
     Row {
         cell: cell.id(),
         study: cell.study.clone(),
@@ -46,7 +57,7 @@ fn blank(cell: &Cell) -> Row {
         precision: cell.scalar.clone(),
         quantity: cell.quantity.clone(),
         kind: Kind::Measured,
-        params: canonical_json(&json!({"line": cell.robot})),
+        params: canonical_json(&params),
         ..Row::default()
     }
 }
@@ -60,23 +71,29 @@ fn of_line(context: &Context, cell: &Cell, grown: &Grown) -> Vec<Row> {
     let mut random = Random::named(context.seed, &cell.id());
     let engine = context.engine(&cell.engine);
     let (clock, estimated) = engine.map_or((true, false), |engine| (engine.has_clock(), engine.estimates()));
-    let of_time = |row: Row, Interval { value, low, high }: Interval| {
-        let row = Row { estimated, ..row }.measured(value, low, high);
-        if clock { row } else { row.invalid(NO_CLOCK) }
-    };
+    let counts = |row: Row| if clock { Row { estimated, ..row } } else { Row { estimated, ..row }.invalid(NO_CLOCK) };
+    let of_time = |row: Row, Interval { value, low, high }: Interval| counts(row.measured(value, low, high));
     let mut rows = Vec::new();
     for point in &grown.points {
         let row = |metric: &str, unit: &str| Row { metric: metric.into(), unit: unit.into(), ..sized(cell, point) };
-        rows.push(of_time(row("seconds", "s"), slope::of_median(&point.calls, &mut random)));
+        rows.push(match point.calls[..] {
+            // One block has no interval.
+            [only] => counts(row("seconds", "s").informed(only)),
+            _ => of_time(row("seconds", "s"), slope::of_median(&point.calls, &mut random)),
+        });
         rows.push(row("build_seconds", "s").informed(point.build));
         rows.extend(point.peak.map(|bytes| row("peak", "B").informed(bytes as f64)));
         rows.extend(point.resident.map(|bytes| row("resident", "B").informed(bytes as f64)));
+        if let Some(bytes) = point.resident.filter(|_| point.dofs >= MANY_DOFS) {
+            rows.push(context.gates.judge(row("resident_per_dof", "B"), bytes as f64 / point.dofs as f64, 1.0));
+        }
         rows.extend(point.error.map(|error| Row { reference: "truth".into(), ..row("error", "1") }.informed(error)));
     }
     let sizes: Vec<(f64, &[f64])> = grown.points.iter().map(|point| (point.dofs as f64, point.calls.as_slice())).collect();
     let row = |metric: &str, unit: &str| Row { metric: metric.into(), unit: unit.into(), ..blank(cell) };
     rows.extend(slope::of_exponent(&sizes, &mut random).map(|exponent| of_time(row("time_exponent", "1"), exponent)));
     rows.extend(memory_per_dof(&grown.points).map(|bytes| row("memory_per_dof", "B").informed(bytes)));
+    rows.extend(memory_exponent(&grown.points).map(|exponent| row("memory_exponent", "1").informed(exponent)));
     rows.push(largest(context, cell, row("largest", "1"), grown));
     rows
 }
@@ -86,6 +103,14 @@ fn memory_per_dof(points: &[Point]) -> Option<f64> {
     let [.., before, last] = points else { return None };
     let grown = last.resident? as f64 - before.resident? as f64;
     (last.dofs > before.dofs).then(|| grown / (last.dofs - before.dofs) as f64)
+}
+
+/// The exponent p of `resident − resident at the smallest size ~ nᵖ` over the last two decades: program and libraries are in both.
+fn memory_exponent(points: &[Point]) -> Option<f64> {
+    let (first, last) = (points.first()?, points.last()?);
+    let grown = |point: &Point| Some((point.dofs as f64, point.resident?.checked_sub(first.resident?)? as f64));
+    let grown: Option<Vec<(f64, f64)>> = points[1..].iter().filter(|point| point.dofs * 100 >= last.dofs).map(grown).collect();
+    power_law(grown?.into_iter().filter(|(_, bytes)| *bytes > 0.0)).map(|fit| fit.slope)
 }
 
 /// The largest size that was answered, and why no larger one was. It is an error if a size that every engine must answer was not.
@@ -100,24 +125,54 @@ fn largest(context: &Context, cell: &Cell, row: Row, grown: &Grown) -> Row {
     Row { reason, ..row.informed(dofs) }
 }
 
-/// Our way by the mass matrix against our articulated-body algorithm, along each line: the ratios, and where they cross one.
-fn against_each_other(lines: &[(&Cell, Grown)]) -> Vec<Row> {
-    let own = |method: &'static str| {
-        let forward = Quantity::ForwardDynamics.name();
-        lines.iter().filter(move |(cell, _)| cell.engine == OWN && cell.quantity == forward && cell.method == method)
-    };
+/// A cell with its sizes.
+type Lines<'a> = [(&'a Cell, Grown)];
+
+/// Our method of this name on the line of a cell, for the same quantity.
+fn beside<'a>(lines: &'a Lines, cell: &Cell, method: &str) -> Option<&'a Grown> {
+    let key = |cell: &Cell| (cell.robot.clone(), cell.engine.clone(), cell.quantity.clone());
+    lines.iter().find(|(other, _)| other.method == method && key(other) == key(cell)).map(|(_, grown)| grown)
+}
+
+/// Our methods against each other, along each line: the ratios of their times, and where these cross one.
+fn against_each_other(lines: &Lines) -> Vec<Row> {
     let mut rows = Vec::new();
-    for (cell, factorizing) in own("ltdl") {
-        let Some((_, articulated)) = own("aba").find(|(other, _)| other.robot == cell.robot) else { continue };
+    for (cell, grown) in lines {
+        let Some(over) = own::of(cell).and_then(|own| own.over) else { continue };
+        let Some(serial) = beside(lines, cell, over) else { continue };
+        let row = |metric: &str, of: Row| Row { metric: metric.into(), unit: "1".into(), reference: over.into(), ..of };
         let mut ratios = Vec::new();
-        for (a, b) in factorizing.points.iter().zip(&articulated.points) {
-            let median = |point: &Point| slope::of_median(&point.calls, &mut Random::new(0, 0)).value;
+        for (a, b) in grown.points.iter().zip(&serial.points) {
+            let median = |point: &Point| slope::median(point.calls.clone());
             let ratio = ratio(median(a), median(b));
             ratios.push((a.dofs as f64, ratio));
-            rows.push(Row { metric: "time_ratio".into(), unit: "1".into(), reference: "aba".into(), ..sized(cell, a) }.informed(ratio));
+            rows.push(row("time_ratio", sized(cell, a)).informed(ratio));
         }
-        let row = Row { metric: "crossover_measured".into(), unit: "1".into(), reference: "aba".into(), ..blank(cell) };
-        rows.extend(crossing(&ratios).map(|at| row.informed(at)));
+        rows.extend(crossing(&ratios).map(|at| row("crossover_measured", blank(cell)).informed(at)));
+    }
+    rows
+}
+
+/// How many different answers a parallel method of ours gives at each size, over all numbers of threads: one, to the bit. The serial method's
+/// answer is among them, where it has the same operations.
+fn answers(context: &Context, lines: &Lines) -> Vec<Row> {
+    let mut rows = Vec::new();
+    for (cell, grown) in lines {
+        let Some(own) = own::of(cell).filter(|own| own.parallel) else { continue };
+        let on = |other: &Cell| other.robot == cell.robot && own::of(other) == Some(own);
+        let all: Vec<&(&Cell, Grown)> = lines.iter().filter(|(other, _)| on(other)).collect();
+        // One row for all of them, at the cell with the most threads.
+        if all.iter().any(|(other, _)| own::threads(other) > own::threads(cell)) {
+            continue;
+        }
+        let serial = own.over.filter(|_| own.same).and_then(|over| beside(lines, cell, over));
+        for point in &grown.points {
+            let others = all.iter().map(|(_, grown)| grown).chain(serial);
+            let of_size = others.flat_map(|grown| &grown.points).filter(|other| other.tree == point.tree);
+            let different: BTreeSet<&str> = of_size.map(|point| point.answer.as_str()).collect();
+            let row = Row { metric: "different_answers".into(), unit: "1".into(), kind: Kind::Exact, ..sized(cell, point) };
+            rows.push(context.gates.explain(row.gated(different.len() as f64, Relation::Eq, 1.0)));
+        }
     }
     rows
 }

@@ -1,6 +1,6 @@
 //! Medians and exponents with percentile bootstrap intervals.
 //!
-//! A draw takes, at each size, as many blocks of calls as there are, with replacement. The median at each size and the exponent through these
+//! A draw takes n of the n blocks of calls at each size, with replacement. The median at each size and the exponent through these
 //! medians follow from it. The interval contains the middle of all draws' values. It shows how noise within one process changes the value. It
 //! does not show how another process, with its data elsewhere, would.
 
@@ -31,7 +31,8 @@ impl Interval {
     }
 }
 
-fn median(mut values: Vec<f64>) -> f64 {
+/// The median of values.
+pub(super) fn median(mut values: Vec<f64>) -> f64 {
     values.sort_unstable_by(f64::total_cmp);
     quantile(&values, 0.5)
 }
@@ -40,7 +41,7 @@ fn drawn(blocks: &[f64], random: &mut Random) -> Vec<f64> {
     blocks.iter().map(|_| blocks[random.below(blocks.len())]).collect()
 }
 
-/// The median of blocks.
+/// The median of blocks, and its interval.
 pub(super) fn of_median(blocks: &[f64], random: &mut Random) -> Interval {
     let draws = (0..DRAWS).map(|_| median(drawn(blocks, random))).collect();
     Interval::of(median(blocks.to_vec()), draws)

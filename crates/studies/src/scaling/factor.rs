@@ -18,15 +18,37 @@ use featherbench_spatial::{DoubleDouble, Lift, Real};
 /// # Errors
 /// A sentence, when M cannot be factorized.
 pub(super) fn errors(robot: &Robot) -> Result<[f64; 2], String> {
-    let (topology, states) = (&robot.model.topology, &robot.states);
-    let matrix = mass_matrix(&robot.model, states.q(0)).map_err(|error| error.to_string())?;
-    let mut ltdl = Ltdl::new(topology);
-    ltdl.run(&matrix).map_err(|error| error.to_string())?;
-    let (b, mut x) = (states.tau(0), states.tau(0).to_vec());
+    let mut ltdl = Ltdl::new(&robot.model.topology);
+    ltdl.run(&matrix(robot)?).map_err(|error| error.to_string())?;
+    let mut x = robot.states.tau(0).to_vec();
     ltdl.solve(&mut x).map_err(|error| error.to_string())?;
-    let rows = Rows::of(topology.dof_parents());
-    let roots: Vec<f64> = matrix.diagonal().map(f64::sqrt).collect();
-    Ok([rows.of_factors(&matrix, ltdl.factors(), &roots), rows.of_solution(&matrix, &roots, b, &x)])
+    Ok([error_of_factors(robot, ltdl.factors().values())?, error_of_solution(robot, &x)?])
+}
+
+/// The error of factors in the tree-sparse layout, L below the diagonal and D on it, at the robot's first state.
+///
+/// # Errors
+/// A sentence, when there is no M.
+pub(super) fn error_of_factors(robot: &Robot, factors: &[f64]) -> Result<f64, String> {
+    let matrix = matrix(robot)?;
+    Ok(Rows::of(robot.model.topology.dof_parents()).of_factors(&matrix, factors, &roots(&matrix)))
+}
+
+/// The error of a solution of M x = τ at the robot's first state.
+///
+/// # Errors
+/// A sentence, when there is no M.
+pub(super) fn error_of_solution(robot: &Robot, x: &[f64]) -> Result<f64, String> {
+    let matrix = matrix(robot)?;
+    Ok(Rows::of(robot.model.topology.dof_parents()).of_solution(&matrix, &roots(&matrix), robot.states.tau(0), x))
+}
+
+fn matrix(robot: &Robot) -> Result<TreeSparse<f64>, String> {
+    mass_matrix(&robot.model, robot.states.q(0)).map_err(|error| error.to_string())
+}
+
+fn roots(matrix: &TreeSparse<f64>) -> Vec<f64> {
+    matrix.diagonal().map(f64::sqrt).collect()
 }
 
 /// The rows of a tree-sparse matrix: row i has the entries (i, j) of the dofs j from the root to i.
@@ -54,14 +76,14 @@ impl<'a> Rows<'a> {
     }
 
     /// `max_ij |LᵀDL − M|_ij / √(M_ii M_jj)`. Row k of L adds L_ki D_k L_kj to the entry (i, j) of each two dofs on its path.
-    fn of_factors(&self, matrix: &TreeSparse<f64>, factors: &TreeSparse<f64>, roots: &[f64]) -> f64 {
+    fn of_factors(&self, matrix: &TreeSparse<f64>, factors: &[f64], roots: &[f64]) -> f64 {
         let wide = |&x: &f64| -> DoubleDouble { x.lift() };
         let mut difference: Vec<DoubleDouble> = matrix.values().iter().map(|m| -wide(m)).collect();
         let (mut path, mut row) = (Vec::new(), Vec::new());
         for dof in 0..self.parents.len() {
             self.path(dof, &mut path);
             row.clear();
-            row.extend(factors.values()[self.starts[dof]..self.starts[dof + 1]].iter().map(wide));
+            row.extend(factors[self.starts[dof]..self.starts[dof + 1]].iter().map(wide));
             // L has ones on its diagonal, and D stands in their places.
             let pivot = row.pop().unwrap_or_else(DoubleDouble::zero);
             row.push(DoubleDouble::one());
@@ -119,7 +141,7 @@ mod tests {
         spoil(factors.values_mut(), &mut x);
         let rows = Rows::of(topology.dof_parents());
         let roots: Vec<f64> = matrix.diagonal().map(f64::sqrt).collect();
-        [rows.of_factors(&matrix, &factors, &roots), rows.of_solution(&matrix, &roots, b, &x)]
+        [rows.of_factors(&matrix, factors.values(), &roots), rows.of_solution(&matrix, &roots, b, &x)]
     }
 
     #[test]

@@ -1,8 +1,8 @@
 //! Fill-in of a Cholesky factorization of a tree-sparse matrix, by the order of elimination.
 //!
 //! No number is factorized. The factor's pattern follows from that of M alone (J. W. H. Liu, *The role of elimination trees in sparse
-//! factorization*, 1990): its elimination tree in time O(|M| log n), and the length of each column by a walk of its entries' subtrees in
-//! time O(|L|) and memory O(n).
+//! factorization*, 1990). Its elimination tree takes time O(|M| log n). The length of each column follows by a walk of its entries' subtrees,
+//! in time O(|L|) and memory O(n).
 //!
 //! | order | fill-in of a tree-sparse M |
 //! |---|---|

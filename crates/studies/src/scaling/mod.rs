@@ -5,8 +5,10 @@
 //! | counts | are stored numbers and operations the integers of the theory, also at 10⁶ dofs? | equality, with the depths of the description |
 //! | fill-in | what does each order of elimination add to the pattern of M? | equality: zero leaves first, everything root first |
 //! | factors | how far are LᵀDL from M, and a solution from its right side, per dof? | a gate, in double-double arithmetic |
+//! | others | what fills the factors of other engines, and how far are these and their solutions from M? | a gate, as ours, for those that are given our M |
 //! | dynamics | how far is forward dynamics from the truth? | a gate, and one over the conditioning bound |
 //! | work | where do the articulated-body algorithm and the mass matrix take equally many operations? | nothing: `growth` measures it |
+//! | parallel | how much more work has one robot on several cores, and how much of it must wait? | a gate on the work: twice the serial one |
 //!
 //! A tree is a robot of the suite or a generator's text. A generated tree is made when a cell needs it, and not kept: the robots of a suite
 //! are all in memory at once.
@@ -15,6 +17,8 @@ mod dynamics;
 mod factor;
 mod fill;
 mod floor;
+pub(crate) mod others;
+mod parallel;
 mod rows;
 pub(crate) mod section;
 mod tree;
@@ -45,10 +49,16 @@ pub struct Settings {
     pub counts: Vec<String>,
     /// Trees whose fill-in is counted, and whose factors are compared with M.
     pub factors: Vec<String>,
+    /// Engines beside ours, if they are installed, whose factors of the suite's robots are compared with M too.
+    pub engines: Vec<String>,
     /// Trees whose forward dynamics is compared with the truth.
     pub dynamics: Vec<String>,
     /// Of these, those whose M is factorized too.
     pub by_factorization: Vec<String>,
+    /// Trees whose work and span are counted for the methods that divide a tree into sub-trees.
+    pub sub_trees: Vec<String>,
+    /// Chains whose work and span are counted for the method that divides a chain.
+    pub both_ends: Vec<String>,
     /// Families along which the work of forward dynamics is counted.
     pub lines: Vec<Line>,
 }
@@ -89,9 +99,13 @@ impl Study for Scaling {
         "scaling"
     }
 
+    fn engines(&self) -> &[String] {
+        &self.settings.engines
+    }
+
     fn plan(&self, context: &Context) -> Vec<Cell> {
         let Some(featherbench) = context.engine(OWN) else { return Vec::new() };
-        let Settings { counts, factors, dynamics, by_factorization, lines } = &self.settings;
+        let Settings { counts, factors, engines, dynamics, by_factorization, sub_trees, both_ends, lines } = &self.settings;
         let cell = |tree: &str, quantity: Quantity, method: &str, what: serde_json::Value| {
             tree::cell(self.name(), context.seed, tree, featherbench.identity(), quantity.name(), method, what)
         };
@@ -106,12 +120,24 @@ impl Study for Scaling {
             }
             cells.push(cell(tree, Quantity::Factorization, "ltdl", json!({"what": "factors"})));
         }
+        let others = others::engines(context, engines);
+        for robot in context.robots.iter().filter(|robot| robot.takes(self.name())) {
+            cells.extend(others::cells(&others, self.name(), robot));
+        }
         for tree in dynamics {
             cells.push(cell(tree, Quantity::ForwardDynamics, "floor", json!({"what": "floor"})));
             let factorizing = by_factorization.contains(tree).then_some("ltdl");
             for method in METHODS.into_iter().chain(factorizing) {
                 cells.push(cell(tree, Quantity::ForwardDynamics, method, json!({"what": "dynamics"})));
             }
+        }
+        for tree in sub_trees {
+            for (quantity, method, _) in parallel::BY_SUB_TREES {
+                cells.push(cell(tree, quantity, method, json!({"what": "parallel"})));
+            }
+        }
+        for tree in both_ends {
+            cells.push(cell(tree, Quantity::ForwardDynamics, parallel::FROM_BOTH_ENDS, json!({"what": "parallel"})));
         }
         for line in lines {
             for tree in line.trees() {
@@ -152,8 +178,10 @@ impl Scaling {
                 Ok(fill_in(robot, order))
             }
             "factors" => Ok(factor::errors(robot).map_err(NoAnswer::Failed)?.to_vec()),
+            others::WHAT => Ok(vec![others::value(context, cell, robot)?]),
             "floor" => floor::estimate(robot, 0, context.seed).map(|floor| vec![floor]).ok_or_else(lost),
             "dynamics" => Ok(vec![dynamics::error(context.engine(OWN).ok_or_else(lost)?, robot, &cell.method)?]),
+            "parallel" => Ok(parallel::counts(robot, &cell.method)?.to_vec()),
             "work" => Ok(work::of_forward_dynamics(robot).map_err(NoAnswer::Failed)?.to_vec()),
             _ => Err(lost()),
         }

@@ -1,5 +1,6 @@
 //! The rows of the study, from the outcomes of its cells.
 
+use super::others;
 use super::tree::{self, SIZES};
 use super::{Line, crossing};
 use crate::operations::COUNTS;
@@ -10,7 +11,7 @@ use serde_json::json;
 
 /// What the values are compared with.
 const THEORY: &str = "theory";
-const TRUTH: &str = "truth";
+pub(super) const TRUTH: &str = "truth";
 /// Numbers of f64 in a register: one, with AVX2, and with AVX-512.
 const LANES: [f64; 3] = [1.0, 4.0, 8.0];
 
@@ -26,7 +27,7 @@ pub(super) fn rows(context: &Context, lines: &[Line], finished: &[Finished]) -> 
             }
             Err(no_answer) => {
                 let verdict = if matches!(no_answer, NoAnswer::NotOffered(_)) { Verdict::Skip } else { Verdict::Error };
-                rows.push(context.gates.explain(tree::row(context, cell, None).without_value(verdict, no_answer.to_string())));
+                rows.push(context.gates.explain(others::blank(context, cell).without_value(verdict, no_answer.to_string())));
                 continue;
             }
         };
@@ -36,8 +37,10 @@ pub(super) fn rows(context: &Context, lines: &[Line], finished: &[Finished]) -> 
             "counts" => counts(context, blank, values),
             "fill_in" => fill_in(context, blank, values),
             "factors" => factors(context, blank, sizes[1], values),
+            others::WHAT => vec![others::row(context, blank, sizes[1], values[0])],
             "floor" => vec![Row { metric: "floor".into(), estimated: true, ..blank }.informed(values[0])],
             "dynamics" => dynamics(context, blank, values[0], floor(cell, finished)),
+            "parallel" => parallel(context, blank, values),
             _ => work(blank, cell, values),
         });
     }
@@ -107,6 +110,19 @@ fn work(blank: Row, cell: &Cell, values: &[f64]) -> Vec<Row> {
     let family = cell.params["line"].as_str().unwrap_or_default().into();
     let row = Row { family, metric: "work_ratio".into(), reference: "aba".into(), params, ..blank };
     vec![row.informed(ratio(factorizing, articulated))]
+}
+
+/// Work and span of a method on several cores, over the work of the serial one.
+fn parallel(context: &Context, blank: Row, values: &[f64]) -> Vec<Row> {
+    let &[serial, work, span] = values else {
+        return vec![blank.without_value(Verdict::Error, "the outcome has not three numbers")];
+    };
+    let params = canonical_json(&json!({"what": "parallel", "serial": serial, "work": work, "span": span}));
+    let row = |metric: &str, value: f64| {
+        let row = Row { metric: metric.into(), reference: "serial".into(), params: params.clone(), ..blank.clone() };
+        context.gates.judge(row, ratio(value, serial), 1.0)
+    };
+    vec![row("parallel_work", work), row("parallel_span", span)]
 }
 
 /// Where the two ways are predicted to take the same time along a line, if they cross.

@@ -17,7 +17,8 @@ use featherbench_spatial::{Counted, Operations};
 /// product every half.
 pub(super) const DIVISION: f64 = 8.0;
 
-fn weighted(count: Operations) -> f64 {
+/// All operations, with their weights.
+pub(super) fn weighted(count: Operations) -> f64 {
     let Operations { additions, multiplications, fused, divisions, roots, .. } = count;
     (additions + multiplications + fused) as f64 + DIVISION * (divisions + roots) as f64
 }

@@ -21,8 +21,8 @@ pub(super) fn limit(depth: usize, quantity: &str) -> f64 {
 
 /// The error of an engine's answer at each state of the robot, against our usual method's.
 ///
-/// Forward dynamics and solving are checked backwards: the answer goes into inverse dynamics, or is multiplied with M, and the result is
-/// compared with τ. It is done state by state: the answers to a whole stream would not fit the memory.
+/// Forward dynamics, solving and the inverse of M are checked backwards: the answer goes into inverse dynamics, or is multiplied with M. The
+/// result is compared with τ, or with the identity. It is done state by state: the answers to a whole stream would not fit the memory.
 pub(super) fn errors(
     robot: &Robot,
     featherbench: &dyn Engine,
@@ -49,6 +49,7 @@ pub(super) fn errors(
                 _ if itself => Ok(0.0),
                 Quantity::ForwardDynamics | Quantity::ForwardDynamicsSingle => through_inverse_dynamics(&mut answered, state, value),
                 Quantity::Solve => through_mass_matrix(robot, state, value),
+                Quantity::MassMatrixInverse => inverse_of_mass_matrix(robot, state, value),
                 _ => {
                     reference.run(state..state + 1)?;
                     Ok(match quantity {
@@ -93,6 +94,26 @@ fn through_mass_matrix(robot: &Robot, state: usize, x: &[f64]) -> Result<f64, No
         }
     }
     Ok(largest(product.into_iter().zip(size)))
+}
+
+/// max |M N − 1|_ik / Σ_j √(M_ii·M_jj·N_jj·N_kk): what is left if each entry of N has an error of ε relative to its own two axes.
+fn inverse_of_mass_matrix(robot: &Robot, state: usize, inverse: &[f64]) -> Result<f64, NoAnswer> {
+    let topology = &robot.model.topology;
+    let n = topology.nv();
+    let mut matrix = TreeSparse::new(topology);
+    Crba::new(topology).run(&robot.model, robot.states.q(state), &mut matrix).map_err(failed)?;
+    let (root_m, root_n): (Vec<f64>, Vec<f64>) = matrix.diagonal().enumerate().map(|(i, m)| (m.sqrt(), inverse[i * n + i].sqrt())).unzip();
+    let weight: f64 = root_m.iter().zip(&root_n).map(|(m, n)| m * n).sum();
+    let mut column = vec![0.0; n];
+    let mut product = vec![f64::NAN; n];
+    let mut error = 0.0;
+    for k in 0..n {
+        column.iter_mut().enumerate().for_each(|(j, x)| *x = inverse[j * n + k]);
+        matrix.mul(&column, &mut product).map_err(failed)?;
+        product[k] -= 1.0;
+        error = worst(error, largest(product.iter().zip(&root_m).map(|(left, m)| (*left, m * weight * root_n[k]))));
+    }
+    Ok(error)
 }
 
 /// max |ΔM_ij| / √(M_ii·M_jj) over the stored entries.

@@ -31,9 +31,7 @@ pub(super) struct Machine {
 impl Machine {
     /// Measures it; `empty` is an engine's evaluation that computes nothing.
     pub fn measure(empty: &mut dyn Evaluation) -> Result<Self, NoAnswer> {
-        let peak = rate(VECTOR_WORK, || {
-            black_box(vector_chains(black_box(START), black_box(M), black_box(C)));
-        });
+        let peak = multiply_adds_per_ns();
         let scalar = rate(SCALAR_WORK, || {
             black_box(scalar_chains(black_box(START), black_box(M), black_box(C)));
         });
@@ -82,6 +80,19 @@ const SCALAR_WORK: usize = STEPS * CHAINS;
 const START: f64 = 1.0;
 const M: f64 = 0.999;
 const C: f64 = 1e-3;
+
+/// The peak of the core at hand: fused multiply-adds of doubles per nanosecond in full vector registers of this build, the best of 200 blocks.
+/// It takes some milliseconds.
+///
+/// ```
+/// // An operation per joint takes at least this long, in nanoseconds.
+/// assert!(1.0 / featherbench_studies::multiply_adds_per_ns() > 0.0);
+/// ```
+pub fn multiply_adds_per_ns() -> f64 {
+    rate(VECTOR_WORK, || {
+        black_box(vector_chains(black_box(START), black_box(M), black_box(C)));
+    })
+}
 
 /// Multiply-adds per nanosecond of a block with this number of them; the best of many blocks.
 fn rate(work: usize, mut block: impl FnMut()) -> f64 {

@@ -14,6 +14,7 @@
 //! A pure function makes rows of them. A time does not count in three cases: without a good check; in an experiment whose A/A replicate
 //! differs from the first copy; and on a robot with many such experiments. These rows keep their values, are not valid and give the reason.
 
+mod best_other;
 mod check;
 mod machine;
 mod overhead;
@@ -24,13 +25,15 @@ pub(crate) mod section;
 mod statistics;
 
 use crate::{Made, Setup};
-use featherbench_bench::{Cell, Context, Engine, Finished, NoAnswer, Outcome, Quantity, Robot, Study};
+use featherbench_bench::{Cell, Context, Engine, Finished, HarnessError, NoAnswer, Outcome, Quantity, Robot, Study};
 use featherbench_results::Row;
 use featherbench_robots::{Random, StateBatch};
+pub use machine::multiply_adds_per_ns;
 use machine::{Machine, Pinned};
 use protocol::{Budget, Ready};
 use samples::Candidate;
-use serde::Deserialize;
+use serde::de::Error;
+use serde::{Deserialize, Deserializer};
 use serde_json::{Value, json};
 use std::time::Instant;
 
@@ -54,9 +57,22 @@ pub struct Settings {
     /// oracles, and oracles whose clock estimates.
     #[serde(default)]
     pub engines: Vec<String>,
+    /// The quantities that are timed, if not all of our kernels.
+    #[serde(default, deserialize_with = "quantities")]
+    pub quantities: Vec<Quantity>,
+    /// Those of the engines whose fastest method is compared with each of ours: rows `best_other`.
+    #[serde(default)]
+    pub best_of: Vec<String>,
     /// Whether derivatives are timed, and nothing else. Otherwise everything else is.
     #[serde(default)]
     pub derivatives: bool,
+}
+
+/// Quantities by their words.
+fn quantities<'de, D: Deserializer<'de>>(words: D) -> Result<Vec<Quantity>, D::Error> {
+    let words = Vec::<String>::deserialize(words)?;
+    let parsed = |word: &String| Quantity::parse(word).ok_or_else(|| D::Error::custom(format!("there is no quantity '{word}'")));
+    words.iter().map(parsed).collect()
 }
 
 /// The kernels that are timed on a robot, as (quantity, method).
@@ -65,6 +81,12 @@ pub type Kernels = fn(&Robot) -> Vec<(Quantity, &'static str)>;
 /// The study, if the suite asks for it.
 pub(crate) fn of_suite(setup: &Setup) -> Made {
     let settings = setup.suite.settings::<Settings>("timing")?;
+    if let Some(stranger) =
+        settings.iter().flat_map(|settings| settings.best_of.iter().filter(|engine| !settings.engines.contains(engine))).next()
+    {
+        let message = format!("[timing]: '{stranger}' is in best_of, but not in engines");
+        return Err(HarnessError::Config { path: setup.suite.path().to_owned(), message });
+    }
     Ok(settings.map(|settings| Box::new(Timing { settings, kernels: setup.kernels }) as _))
 }
 
@@ -73,6 +95,8 @@ const SAMPLES_NAME: &str = "timing.jsonl";
 
 /// Our own kernels, with which all candidates are compared.
 const REFERENCE: &str = "featherbench";
+/// The metric of the time of the fastest method of some engines over that of one of ours.
+const BEST_OTHER: &str = "best_other";
 /// The kinds of cells, as their parameter `what`.
 const MACHINE: &str = "machine";
 const CHECK: &str = "check";
@@ -185,7 +209,7 @@ impl Study for Timing {
     }
 
     fn compare(&self, context: &Context, robot: &Robot, finished: &[Finished]) -> Vec<Row> {
-        rows::rows(context.gates, robot, finished)
+        rows::rows(context.gates, robot, &self.settings.best_of, finished)
     }
 
     /// The raw samples.
@@ -212,7 +236,9 @@ impl Timing {
         };
         let Some(featherbench) = context.engine(REFERENCE) else { return Vec::new() };
         let mut experiments: Vec<(Quantity, Vec<Candidate>)> = Vec::new();
-        let asked = |(quantity, _): &(Quantity, &str)| Quantity::DERIVATIVES.contains(quantity) == self.settings.derivatives;
+        let Settings { quantities, derivatives, .. } = &self.settings;
+        let named = |quantity: &Quantity| quantities.is_empty() || quantities.contains(&quantity.in_double());
+        let asked = |(quantity, _): &(Quantity, &str)| quantity.is_derivative() == *derivatives && named(quantity);
         for (quantity, method) in (self.kernels)(robot).into_iter().filter(asked) {
             let one = |control| candidate(featherbench, quantity, method, control);
             match experiments.iter_mut().find(|(known, _)| *known == quantity.in_double()) {

@@ -15,7 +15,7 @@ use serde_json::{Value, json};
 const BAD_CONTROLS: usize = 4;
 
 /// All rows of a robot.
-pub(super) fn rows(gates: &Gates, robot: &Robot, finished: &[Finished]) -> Vec<Row> {
+pub(super) fn rows(gates: &Gates, robot: &Robot, best_of: &[String], finished: &[Finished]) -> Vec<Row> {
     let of_kind = |what: &'static str| finished.iter().filter(move |(cell, _)| cell.params["what"] == what);
     let checks: Vec<Check> = of_kind(CHECK).map(|finished| Check::of(gates, robot, finished)).collect();
     let experiments: Vec<Experiment> = of_kind(EXPERIMENT).map(|finished| Experiment::of(robot, finished)).collect();
@@ -23,7 +23,11 @@ pub(super) fn rows(gates: &Gates, robot: &Robot, finished: &[Finished]) -> Vec<R
     let machine = of_kind(MACHINE).flat_map(|(cell, outcome)| machine(cell, robot, outcome));
     let checked = checks.iter().filter_map(|check| check.row.clone());
     let overheads = of_kind(OVERHEAD).filter_map(|finished| overhead(robot, finished));
-    let timed = experiments.iter().flat_map(|experiment| experiment.rows(&checks, noise.as_deref()));
+    let timed = experiments.iter().flat_map(|experiment| {
+        let mut rows = experiment.rows(&checks, noise.as_deref());
+        rows.extend(experiment.beside(best_of, &checks, noise.as_deref()));
+        rows
+    });
     machine.chain(checked).chain(overheads).chain(timed).collect()
 }
 
@@ -86,7 +90,7 @@ fn overhead(robot: &Robot, (cell, outcome): &Finished) -> Option<Row> {
 }
 
 /// A measured row, not valid if there is a complaint. A row without a value has its reason already.
-fn judged(row: Row, complaint: Option<&str>) -> Row {
+pub(super) fn judged(row: Row, complaint: Option<&str>) -> Row {
     match complaint.filter(|_| row.value.is_some()) {
         Some(reason) => row.invalid(reason),
         None => row,
@@ -94,7 +98,7 @@ fn judged(row: Row, complaint: Option<&str>) -> Row {
 }
 
 /// Whether the times of one engine's method count.
-struct Check {
+pub(super) struct Check {
     engine: String,
     method: String,
     quantity: String,
@@ -127,12 +131,28 @@ impl Check {
     }
 }
 
+impl Check {
+    pub(super) fn find<'c>(checks: &'c [Self], candidate: &Candidate) -> Option<&'c Self> {
+        let of =
+            |check: &&Self| check.engine == candidate.engine && check.method == candidate.method && check.quantity == candidate.quantity;
+        checks.iter().find(of)
+    }
+
+    /// Why a candidate's times do not count, as far as its answers go.
+    pub(super) fn complaint(check: Option<&Self>) -> Option<&str> {
+        match check {
+            None => Some("its answers were not checked in this run"),
+            Some(check) => check.complaint.as_deref(),
+        }
+    }
+}
+
 /// One experiment with its statistics.
-struct Experiment<'a> {
-    cell: &'a Cell,
-    blank: Row,
-    candidates: Vec<Candidate>,
-    samples: Result<Samples, String>,
+pub(super) struct Experiment<'a> {
+    pub(super) cell: &'a Cell,
+    pub(super) blank: Row,
+    pub(super) candidates: Vec<Candidate>,
+    pub(super) samples: Result<Samples, String>,
     /// The ratio of the A/A replicate to the reference, or why it is not known.
     control: Result<Estimate, &'static str>,
 }
@@ -157,14 +177,14 @@ impl<'a> Experiment<'a> {
     }
 
     /// Why no time of this experiment counts, if its A/A ratio shows that or is missing.
-    fn noise(&self) -> Option<String> {
+    pub(super) fn noise(&self) -> Option<String> {
         match &self.control {
             Ok(control) => control.complaint(),
             Err(reason) => Some((*reason).to_owned()),
         }
     }
 
-    fn random(&self, what: &str) -> Random {
+    pub(super) fn random(&self, what: &str) -> Random {
         Random::named(0, &format!("{} {what}", self.cell.id()))
     }
 
@@ -183,9 +203,7 @@ impl<'a> Experiment<'a> {
                 precision: candidate.precision().into(),
                 ..self.blank.clone()
             };
-            let check = checks
-                .iter()
-                .find(|check| check.engine == candidate.engine && check.method == candidate.method && check.quantity == candidate.quantity);
+            let check = Check::find(checks, candidate);
             let usual = format!("{REFERENCE} {}", self.cell.method);
             if candidate.control {
                 // A reference that failed from the start has its row in the check, and there is nothing to compare.
@@ -199,10 +217,7 @@ impl<'a> Experiment<'a> {
                 });
                 continue;
             }
-            let complaint = match check {
-                None => Some("its answers were not checked in this run"),
-                Some(check) => check.complaint.as_deref(),
-            };
+            let complaint = Check::complaint(check);
             let ns = samples.of(which);
             if ns.iter().any(|ns| ns.is_nan()) {
                 // A candidate that failed from the start has its row in the check.
@@ -235,12 +250,12 @@ impl<'a> Experiment<'a> {
 }
 
 /// A row closed with a value and its interval.
-fn estimated(blank: Row, estimate: &Estimate) -> Row {
+pub(super) fn estimated(blank: Row, estimate: &Estimate) -> Row {
     blank.measured(estimate.value, estimate.low, estimate.high)
 }
 
 /// The parameters of an experiment's rows. The candidates are in rows of their own: a list of them here would be in each.
-fn params(cell: &Cell) -> Value {
+pub(super) fn params(cell: &Cell) -> Value {
     json!({"states": cell.params["states"], "seconds": cell.params["seconds"]})
 }
 

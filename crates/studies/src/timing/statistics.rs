@@ -102,9 +102,9 @@ fn draw(random: &mut Random, count: usize) -> usize {
     ((u64::from(random.bits32()) * count as u64) >> 32) as usize
 }
 
-/// The median of sorted samples, or the mean of the two in the middle, where each is as many samples as its epoch was taken.
+/// The median of sorted samples, or the mean of the two in the middle. A sample counts once for each time that its epoch was taken.
 ///
-/// Every epoch has as many samples, and as many epochs are taken as there are. So the number of samples is that of `sorted`.
+/// All epochs have the same number of samples, and of n epochs n are taken. So the number of samples is that of `sorted`.
 fn weighted_median(sorted: &[(f64, usize)], taken: &[usize]) -> f64 {
     let (middle, odd) = (sorted.len() / 2, sorted.len() % 2 == 1);
     // The sample with `below` others under it.

@@ -94,6 +94,49 @@ fn ratios_have_intervals_a_mean_and_a_least() {
     assert!(!none.index.contains("<section id=\"speed\"") && !none.index.contains("href=\"#speed\""));
 }
 
+/// The geometric mean and the least of each of our methods beside the best other, with the robots that do not count.
+#[test]
+fn ours_stand_beside_the_best_other() {
+    let row = |quantity: &str, method: &str, robot: &str, reference: &str, ratio: f64| {
+        Row {
+            study: "timing".into(),
+            engine: "featherbench".into(),
+            robot: robot.into(),
+            method: method.into(),
+            precision: "f64".into(),
+            quantity: quantity.into(),
+            cache: "stream".into(),
+            metric: "best_other".into(),
+            reference: reference.into(),
+            nv: Some(7),
+            ..Row::default()
+        }
+        .measured(ratio, 0.9 * ratio, 1.1 * ratio)
+    };
+    let rows = [
+        row("id", "rnea", "a", "pinocchio-clang rnea", 2.0),
+        row("id", "rnea", "b", "mujoco-native rne", 8.0),
+        row("id", "rnea", "c", "mujoco-native rne", 100.0).invalid("noise"),
+        row("id", "batch", "a", "pinocchio-clang rnea", 13.5),
+        row("fd", "aba", "a", "pinocchio-clang aba_local", 3.0).invalid("noise"),
+    ];
+    let written = report(&RunInfo::default(), &rows);
+    let section = written.section("speed");
+    let table = section.split("id=\"speed-best\"").nth(1).expect("the table").split("</table>").next().unwrap();
+    let line =
+        |method: &str| table.split("<tr>").find(|line| line.contains(method)).unwrap_or_else(|| panic!("{method}: {table}")).to_owned();
+    let rnea = line("<td>rnea</td>");
+    assert!(
+        rnea.contains("<td class=\"number\">2</td><td class=\"number\">1</td><td class=\"number\">4.000</td>"),
+        "two count, one is void: {rnea}"
+    );
+    assert!(rnea.contains("<td class=\"number\">2.000</td><td>a</td><td class=\"number\">8.000</td><td>b</td>"), "{rnea}");
+    assert!(rnea.contains("mujoco-native 1, pinocchio-clang 1"), "{rnea}");
+    assert!(line("<td>batch</td>").contains("13.5"));
+    assert!(line("<td>aba</td>").contains("none of 1 robot counts"));
+    assert!(!report(&RunInfo::default(), &rows[..0]).index.contains("speed-best"));
+}
+
 /// No kernel is faster than the machine. If a time is below its limit, or the peak is not valid, no limit is shown.
 #[test]
 fn a_limit_that_is_none_is_not_shown() {

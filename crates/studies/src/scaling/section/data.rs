@@ -1,5 +1,7 @@
 //! What the section shows, from the rows of the studies `scaling` and `growth`.
 
+use super::others::{self, Other};
+use crate::scaling::others::WHAT;
 use featherbench_report::Overview;
 use featherbench_results::{Row, Verdict};
 use serde::Serialize;
@@ -18,12 +20,20 @@ pub(super) struct Data<'a> {
     pub(super) series: Vec<Series<'a>>,
     /// Ratios of our two ways along lines.
     pub(super) ratios: Vec<Ratios<'a>>,
+    /// Our methods beside the serial ones that they are compared with.
+    pub(super) beside: Vec<Beside<'a>>,
+    /// Work and span on several cores.
+    #[serde(skip)]
+    pub(super) shares: Vec<Shares<'a>>,
     /// Counts and fill-in of trees.
     #[serde(skip)]
     pub(super) trees: Vec<Tree<'a>>,
     /// Errors of forward dynamics.
     #[serde(skip)]
     pub(super) errors: Vec<Error<'a>>,
+    /// Factorizations of other engines.
+    #[serde(skip)]
+    pub(super) others: Vec<Other<'a>>,
 }
 
 /// A method of an engine along a line.
@@ -40,6 +50,8 @@ pub(super) struct Series<'a> {
     pub(super) exponent: Option<[f64; 3]>,
     /// Bytes per dof between the last two sizes.
     pub(super) memory_per_dof: Option<f64>,
+    /// The exponent of the memory beyond that at the smallest size.
+    pub(super) memory_exponent: Option<f64>,
     /// Dofs of the largest tree that was answered.
     pub(super) largest: Option<f64>,
     /// Why no larger one was.
@@ -73,6 +85,44 @@ pub(super) struct Ratios<'a> {
     /// (numbers in a register, dofs).
     pub(super) predicted: Vec<(f64, f64)>,
     pub(super) measured: Option<f64>,
+}
+
+/// A method of ours beside the serial one that it is compared with, along a line and on so many threads.
+#[derive(Debug, Serialize)]
+pub(super) struct Beside<'a> {
+    pub(super) line: &'a str,
+    pub(super) quantity: &'a str,
+    /// With the number of threads behind it, if it uses several.
+    pub(super) method: &'a str,
+    pub(super) over: &'a str,
+    pub(super) threads: Option<u64>,
+    /// (robot, dofs, ratio of times).
+    pub(super) time: Vec<(usize, u64, f64)>,
+    /// Dofs where both take the same time.
+    pub(super) crossing: Option<f64>,
+}
+
+impl Beside<'_> {
+    /// The method without its threads.
+    pub(super) fn plain(&self) -> &str {
+        let digits = |text: &str| !text.is_empty() && text.bytes().all(|b| b.is_ascii_digit());
+        match self.method.rsplit_once('_') {
+            Some((plain, threads)) if self.threads.is_some() && digits(threads) => plain,
+            _ => self.method,
+        }
+    }
+}
+
+/// Work and span of a method on several cores, over the work of the serial one.
+#[derive(Debug)]
+pub(super) struct Shares<'a> {
+    pub(super) robot: usize,
+    pub(super) size: u64,
+    pub(super) quantity: &'a str,
+    pub(super) method: &'a str,
+    pub(super) work: Option<f64>,
+    pub(super) span: Option<f64>,
+    pub(super) verdict: Verdict,
 }
 
 /// The counts of a tree.
@@ -121,7 +171,9 @@ impl<'a> Data<'a> {
                     });
                     trees[place].add(row, params["route"].as_str());
                 }
+                (WHAT, Some(robot)) => others::add(&mut data.others, robot, row),
                 ("dynamics", Some(robot)) => data.add_error(robot, row),
+                ("parallel", Some(robot)) => data.add_share(robot, row),
                 ("work", Some(robot)) => {
                     let ratios = data.ratios_of(&row.family);
                     ratios.work.extend(row.value.map(|value| (robot, row.nv.unwrap_or(0), value)));
@@ -141,12 +193,14 @@ impl<'a> Data<'a> {
             ratios.work.sort_by_key(|(_, size, _)| *size);
             ratios.time.sort_by_key(|(_, size, _)| *size);
         });
+        data.beside.iter_mut().for_each(|one| one.time.sort_by_key(|(_, size, _)| *size));
         Self { trees, ..data }
     }
 
     /// Whether the run has nothing to show.
     pub(super) fn is_empty(&self) -> bool {
-        self.series.is_empty() && self.trees.is_empty() && self.errors.is_empty() && self.ratios.is_empty()
+        let tables = [self.series.is_empty(), self.trees.is_empty(), self.others.is_empty(), self.errors.is_empty()];
+        tables.into_iter().all(|empty| empty) && self.ratios.is_empty() && self.shares.is_empty()
     }
 
     fn ratios_of(&mut self, line: &'a str) -> &mut Ratios<'a> {
@@ -178,17 +232,60 @@ impl<'a> Data<'a> {
         }
     }
 
+    /// Work and span stand in two rows.
+    fn add_share(&mut self, robot: usize, row: &'a Row) {
+        let known = self.shares.iter().position(|one| one.robot == robot && one.method == row.method);
+        let place = known.unwrap_or_else(|| {
+            let (size, quantity, method) = (row.nv.unwrap_or(0), row.quantity.as_str(), row.method.as_str());
+            self.shares.push(Shares { robot, size, quantity, method, work: None, span: None, verdict: row.verdict });
+            self.shares.len() - 1
+        });
+        let share = &mut self.shares[place];
+        match row.metric.as_str() {
+            "parallel_span" => share.span = row.value,
+            _ => share.work = row.value,
+        }
+        share.verdict = worse(share.verdict, row.verdict);
+    }
+
+    /// The entry of a row that compares a method of ours with a serial one.
+    fn beside_of(&mut self, row: &'a Row) -> &mut Beside<'a> {
+        let key = (row.family.as_str(), row.quantity.as_str(), row.method.as_str());
+        let place = self.beside.iter().position(|one| (one.line, one.quantity, one.method) == key).unwrap_or_else(|| {
+            let params: Value = serde_json::from_str(&row.params).unwrap_or_default();
+            let ((line, quantity, method), threads) = (key, params["threads"].as_u64());
+            self.beside.push(Beside { line, quantity, method, over: &row.reference, threads, time: Vec::new(), crossing: None });
+            self.beside.len() - 1
+        });
+        &mut self.beside[place]
+    }
+
+    /// Our way by the mass matrix has a figure with counted operations; all other methods are compared in times alone.
+    fn by_mass_matrix(row: &Row) -> bool {
+        row.quantity == "fd" && row.method == "ltdl"
+    }
+
     fn add_growth(&mut self, overview: &Overview<'a>, row: &'a Row) {
         let Some(engine) = overview.engine(&row.engine) else { return };
         let (robot, value) = (overview.robot(&row.robot), row.value);
-        if row.metric == "time_ratio" {
-            let point = robot.zip(value).map(|(robot, value)| (robot, row.nv.unwrap_or(0), value));
-            self.ratios_of(&row.family).time.extend(point);
-            return;
-        }
-        if row.metric == "crossover_measured" {
-            self.ratios_of(&row.family).measured = value;
-            return;
+        match row.metric.as_str() {
+            "time_ratio" => {
+                let point = robot.zip(value).map(|(robot, value)| (robot, row.nv.unwrap_or(0), value));
+                let by_mass_matrix = Self::by_mass_matrix(row);
+                let time = if by_mass_matrix { &mut self.ratios_of(&row.family).time } else { &mut self.beside_of(row).time };
+                time.extend(point);
+                return;
+            }
+            "crossover_measured" if Self::by_mass_matrix(row) => {
+                self.ratios_of(&row.family).measured = value;
+                return;
+            }
+            "crossover_measured" => {
+                self.beside_of(row).crossing = value;
+                return;
+            }
+            "different_answers" => return,
+            _ => {}
         }
         let key = (row.family.as_str(), engine, row.quantity.as_str(), row.method.as_str());
         let known = self.series.iter().position(|one| (one.line, one.engine, one.quantity, one.method) == key);
@@ -202,6 +299,7 @@ impl<'a> Data<'a> {
             match row.metric.as_str() {
                 "time_exponent" => series.exponent = value.zip(row.ci_low).zip(row.ci_high).map(|((value, low), high)| [value, low, high]),
                 "memory_per_dof" => series.memory_per_dof = value,
+                "memory_exponent" => series.memory_exponent = value,
                 _ => (series.largest, series.reason) = (value, &row.reason),
             }
             return;
@@ -252,7 +350,7 @@ impl<'a> Tree<'a> {
 }
 
 /// The worse of two verdicts: an error or a failure, then what passes, then what is not judged.
-fn worse(a: Verdict, b: Verdict) -> Verdict {
+pub(super) fn worse(a: Verdict, b: Verdict) -> Verdict {
     let rank = |verdict: Verdict| match verdict {
         Verdict::Error => 5,
         Verdict::Fail => 4,

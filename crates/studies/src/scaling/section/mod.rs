@@ -2,6 +2,8 @@
 
 mod answer;
 mod data;
+mod others;
+mod several;
 
 use answer::{Answer, answer, memory};
 use data::{Data, Error, GROWTH, Ratios, SCALING, Series, Tree};
@@ -46,15 +48,20 @@ fn body(overview: &Overview, data: &Data, answer: &Answer) -> Markup {
             }
             @if !data.series.is_empty() { (growth(overview, data)) }
             @if !data.ratios.is_empty() { (crossovers(data)) }
+            @if !data.beside.is_empty() || !data.shares.is_empty() { (several::cores(overview, data)) }
             @if !data.errors.is_empty() { (errors(overview, &data.errors)) }
             @if !data.trees.is_empty() { (trees(overview, &data.trees)) }
+            @if !data.others.is_empty() { (others::table(overview, &data.others)) }
         }
     }
 }
 
 /// The quantities that are measured, with their words.
 fn quantities<'a>(data: &Data<'a>) -> Vec<&'a str> {
-    ["fd", "id", "momentum"].into_iter().filter(|name| data.series.iter().any(|one| one.quantity == *name)).collect()
+    ["fd", "id", "momentum", "mass_matrix_sparse", "factorization", "solve"]
+        .into_iter()
+        .filter(|name| data.series.iter().any(|one| one.quantity == *name))
+        .collect()
 }
 
 fn growth(overview: &Overview, data: &Data) -> Markup {
@@ -73,19 +80,19 @@ fn growth(overview: &Overview, data: &Data) -> Markup {
         }
         div.pair {
             div #scaling-error.plot role="group" aria-label="Plot of the error of forward dynamics against the degrees of freedom" {}
-            div #scaling-ratio.plot role="group" aria-label="Plot of the mass matrix over the articulated-body algorithm against the degrees of freedom" {}
+            div #scaling-ratio.plot role="group" aria-label="Plot of the time of our methods over that of the serial one against the degrees of freedom" {}
         }
         p.note {
             "Time of one call, bars are 95 % intervals of the median. A cross is an estimate. A hollow mark does not count: that engine has no clock, "
             "and its time includes an exchange of messages. Memory is resident, program and libraries included. Error is ‖a − truth‖₂ / ‖truth‖₂. "
-            "Ratio: our forward dynamics by the mass matrix over our articulated-body algorithm, in counted operations and in time."
+            "Ratio: our methods over the serial one, in time; the mass matrix over articulated bodies in counted operations too. A method's last number is its threads."
         }
         h3 { "How far each method goes" }
         div.scroll {
             table #scaling-limits.compact.sortable {
                 thead { tr {
                     th scope="col" { "engine" } th scope="col" { "family" } th scope="col" { "quantity" } th scope="col" { "method" }
-                    th.number scope="col" { "largest n" } th.number scope="col" { "exponent of time" } th.number scope="col" { "memory per dof" } th scope="col" { "why not larger" }
+                    th.number scope="col" { "largest n" } th.number scope="col" { "exponent of time" } th.number scope="col" { "memory per dof" } th.number scope="col" { "exponent of memory" } th scope="col" { "why not larger" }
                 } }
                 tbody { @for one in &data.series { (limit(overview, one)) } }
             }
@@ -109,6 +116,7 @@ fn limit(overview: &Overview, one: &Series) -> Markup {
             td.number { @if let Some(largest) = one.largest { (grouped(largest as usize)) } @else { span.badge.error { (labels::glyph(Verdict::Error)) } } }
             td.number { @if let Some([p, low, high]) = one.exponent { (format!("{p:.2} [{low:.2}, {high:.2}]")) } }
             td.number { @if let Some(bytes) = one.memory_per_dof { (memory(bytes)) } }
+            td.number { @if let Some(exponent) = one.memory_exponent { (format!("{exponent:.2}")) } }
             td { @if one.reason.is_empty() { "the largest that was asked" } @else { (one.reason) } }
         }
     }

@@ -36,22 +36,32 @@ featherbench.ready(() => {
     draw("scaling-time", drawn(of(quantity), "seconds", (value) => value, (one) => exponent(one.exponent?.[0])), layout(size, "seconds per call"));
     draw("scaling-memory", drawn(of(quantity), "resident", (value) => value, () => ""), layout(size, "resident memory, B"));
     draw("scaling-error", drawn(of(FORWARD), "error", least, () => ""), layout(size, "relative error of forward dynamics", true));
-    drawRatios(line);
+    drawRatios(line, quantity);
   }
 
-  // Operations and times of the chosen family, with the line where both ways are equal.
-  function drawRatios(line) {
-    const ratios = scaling.ratios.filter((one) => one.line === line);
-    const series = ratios.flatMap((one) => [["operations", "work", 0], ["time", "time", 1]].map(([name, key, style]) => ({
+  // Our methods over the serial ones, with the line where both are equal: the mass matrix in operations and in time, others in time, on the
+  // most threads.
+  function drawRatios(line, quantity) {
+    const ratios = quantity === FORWARD ? scaling.ratios.filter((one) => one.line === line) : [];
+    const beside = scaling.beside.filter((one) => one.line === line && one.quantity === quantity);
+    const most = Math.max(1, ...beside.map((one) => one.threads ?? 1));
+    const others = beside.filter((one) => (one.threads ?? most) === most).map((one, place) => ({
+      name: `${one.method} / ${one.over}`, ink: colour(0), line: { width: 1.4, dash: dash(place + 1) }, mark: { size: 8, symbol: symbol(place + 2) },
+      points: one.time.map(([robot, size, value]) => ({
+        x: size, y: value, tip: [overview.robots[robot].name, `time over ${one.over}: ${short(value)}`],
+        target: { robot, filters: { study: "growth", metric: "time_ratio", method: one.method, quantity: one.quantity } },
+      })),
+    }));
+    const series = ratios.flatMap((one) => [["ltdl / aba, operations", "work", 0], ["ltdl / aba", "time", 1]].map(([name, key, style]) => ({
       name, ink: style ? colour(0) : variable("--ink"), line: { width: 1.4, dash: dash(style ? 0 : 1) }, mark: { size: 8, symbol: symbol(style) },
       points: one[key].map(([robot, size, value]) => ({
         x: size, y: value, tip: [overview.robots[robot].name, `${name}: ${short(value)}`],
         target: { robot, filters: { study: style ? "growth" : "scaling", metric: style ? "time_ratio" : "work_ratio" } },
       })),
     })));
-    const shape = layout("degrees of freedom n", "mass matrix / articulated bodies");
+    const shape = layout("degrees of freedom n", "method / serial method");
     shape.bands = [[1, 1, variable("--soft")]];
-    draw("scaling-ratio", series.filter((one) => one.points.length), shape);
+    draw("scaling-ratio", [...series, ...others].filter((one) => one.points.length), shape);
   }
 
   live(drawScaling, "scaling-line", "scaling-quantity");

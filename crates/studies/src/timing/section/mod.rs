@@ -1,5 +1,6 @@
 //! The sections of this study: time against size, ratios of times, and time against true error.
 
+mod best;
 mod line;
 mod ratios;
 mod speed;
@@ -22,14 +23,15 @@ const TERMS: &[(&str, &str)] = &[(
 /// Makes the sections; ratios appear only with paired experiments, and the last one only with rows of accuracy.
 pub(crate) fn sections<'a>(run: &RunInfo, rows: &'a [Row], overview: &Overview<'a>) -> Vec<Section> {
     let (times, speed) = (time::lines(overview, rows), Speed::of(overview, rows));
+    let best = best::summaries(overview, rows);
     let mut sections = vec![Section {
         script: include_str!("time.js"),
         terms: if times.is_empty() { &[] } else { TERMS },
-        lines: line::line(overview, rows, &speed).into_iter().collect(),
+        lines: line::line(overview, rows, &speed).into_iter().chain(best::lines(&best)).collect(),
         ..Section::new("time", "Time", time::markup(overview, &times)).with_data(&times)
     }];
-    if !speed.is_empty() {
-        let body = speed::markup(run, overview, &speed);
+    if !speed.is_empty() || !best.is_empty() {
+        let body = speed::markup(run, overview, &speed, &best);
         sections.push(Section { script: include_str!("speed.js"), ..Section::new("speed", "Speed", body).with_data(&speed) });
     }
     let points = tradeoff::points(overview, rows, &times);

@@ -161,7 +161,26 @@ impl<'a> Speed<'a> {
     }
 }
 
-impl Ratio<'_> {
+impl<'a> Ratio<'a> {
+    /// The ratio of a row, if it has a value.
+    pub fn of(overview: &Overview<'a>, row: &'a Row) -> Option<Self> {
+        let value = row.value?;
+        Some(Self {
+            robot: overview.robot(&row.robot)?,
+            engine: overview.engine(&row.engine)?,
+            method: &row.method,
+            precision: &row.precision,
+            quantity: &row.quantity,
+            cache: &row.cache,
+            reference: &row.reference,
+            value,
+            low: row.ci_low.unwrap_or(value),
+            high: row.ci_high.unwrap_or(value),
+            valid: row.valid,
+            estimated: row.estimated,
+        })
+    }
+
     /// Whether many states are computed at once.
     pub fn is_batch(&self) -> bool {
         self.method == BATCH
@@ -178,30 +197,19 @@ impl<'a> Summary<'a> {
     fn of(mut ratios: Vec<&'a Ratio<'a>>) -> Option<Self> {
         ratios.sort_by(|a, b| a.value.total_cmp(&b.value));
         let (least, largest) = (*ratios.first()?, *ratios.last()?);
-        let mean = (ratios.iter().map(|ratio| ratio.value.ln()).sum::<f64>() / ratios.len() as f64).exp();
+        let mean = mean(ratios.iter().map(|ratio| ratio.value));
         Some(Self { of: least, count: ratios.len(), mean, least: (least.value, least.robot), largest: (largest.value, largest.robot) })
     }
 }
 
 fn ratios<'a>(overview: &Overview<'a>, timing: &[&'a Row], metric: &str) -> Vec<Ratio<'a>> {
-    let ratio = |row: &&'a Row| {
-        let value = row.value?;
-        Some(Ratio {
-            robot: overview.robot(&row.robot)?,
-            engine: overview.engine(&row.engine)?,
-            method: &row.method,
-            precision: &row.precision,
-            quantity: &row.quantity,
-            cache: &row.cache,
-            reference: &row.reference,
-            value,
-            low: row.ci_low.unwrap_or(value),
-            high: row.ci_high.unwrap_or(value),
-            valid: row.valid,
-            estimated: row.estimated,
-        })
-    };
-    timing.iter().filter(|row| row.metric == metric).filter_map(ratio).collect()
+    timing.iter().filter(|row| row.metric == metric).filter_map(|row| Ratio::of(overview, row)).collect()
+}
+
+/// The geometric mean of ratios.
+pub fn mean(ratios: impl ExactSizeIterator<Item = f64>) -> f64 {
+    let count = ratios.len() as f64;
+    (ratios.map(f64::ln).sum::<f64>() / count).exp()
 }
 
 fn limits<'a>(overview: &Overview<'a>, timing: &[&'a Row], machine: Machine) -> Vec<Limit<'a>> {

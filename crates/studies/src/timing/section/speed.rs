@@ -6,10 +6,11 @@ use featherbench_report::{Overview, labels};
 use featherbench_results::RunInfo;
 use maud::{Markup, html};
 
+use super::best::{self, Best};
 use super::ratios::{OPERATIONS, Ratio, Speed};
 
 /// The input of each quantity's time, and the work inside the clock.
-const INCLUDED: [(&str, &str, &str); 7] = [
+const INCLUDED: [(&str, &str, &str); 10] = [
     ("id", "q, q̇, q̈", "kinematics with sines and cosines, the recursion to τ; rotors' inertia, gravity"),
     ("bias", "q, q̇", "as inverse dynamics with q̈ = 0"),
     ("mass_matrix_sparse", "q", "kinematics with sines and cosines, every stored entry of M; rotors' inertia"),
@@ -20,6 +21,13 @@ const INCLUDED: [(&str, &str, &str); 7] = [
     ),
     ("factorization", "M, made before", "the factors alone"),
     ("solve", "factors of M, made before, and τ", "the substitutions alone"),
+    (
+        "mass_matrix_inverse",
+        "q",
+        "kinematics with sines and cosines, M or articulated bodies, and every entry of M⁻¹ or of its upper triangle",
+    ),
+    ("momentum", "q, q̇", "kinematics with sines and cosines, the centre of mass, and the momentum about it"),
+    ("body_acceleration", "q, q̇, q̈", "kinematics with sines and cosines: placements, velocities and accelerations of all bodies"),
     ("body_jacobian", "q", "kinematics, and the columns of one body's Jacobian in world axes"),
 ];
 
@@ -27,7 +35,7 @@ const INCLUDED: [(&str, &str, &str); 7] = [
 const REASONS: usize = 12;
 
 /// Writes the section.
-pub fn markup(run: &RunInfo, overview: &Overview, speed: &Speed) -> Markup {
+pub fn markup(run: &RunInfo, overview: &Overview, speed: &Speed, best: &[Best]) -> Markup {
     html! {
         section #speed {
             h2 { "Speed, side by side" }
@@ -47,6 +55,9 @@ pub fn markup(run: &RunInfo, overview: &Overview, speed: &Speed) -> Markup {
                 p.note { "Grey: ± 2 %, within which this experiment calls nothing a difference. Hollow marks do not count: see below." }
                 (estimates(overview, speed))
                 (batches(speed))
+            }
+            (best::table(overview, best))
+            @if !speed.ratios.is_empty() {
                 (summary(overview, speed))
                 (table(overview, speed))
             }
@@ -288,7 +299,7 @@ fn included(speed: &Speed) -> Markup {
 }
 
 /// A ratio with the digits that its interval allows.
-fn times(ratio: f64) -> String {
+pub fn times(ratio: f64) -> String {
     if ratio >= 100.0 {
         format!("{ratio:.0}")
     } else if ratio >= 10.0 {

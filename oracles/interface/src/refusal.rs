@@ -1,16 +1,18 @@
 //! Why there is no answer.
 
-/// Why a question has no answer.
+use std::error::Error;
+
+/// Why a question has no answer. An error of an engine is a failure.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Refusal {
-    /// Dynibo does not have it.
+    /// The engine does not have it.
     Unsupported(String),
     /// The engine failed, or the request is wrong.
     Failed(String),
 }
 
-impl From<dynibo::Error> for Refusal {
-    fn from(error: dynibo::Error) -> Self {
+impl<E: Error> From<E> for Refusal {
+    fn from(error: E) -> Self {
         Self::Failed(error.to_string())
     }
 }

@@ -1,0 +1,161 @@
+//! What a solver answers: an outcome that says what is known, never a number without it.
+
+use crate::problem::Problem;
+use crate::residual::Residuals;
+use nalgebra::DVector;
+
+/// Impulses, the velocities that they give, and how well both obey the laws.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Point {
+    /// λ in N·s (or N), in the order of the contacts' rows.
+    pub impulses: DVector<f64>,
+    /// c = G λ + b in m/s (or m/s²).
+    pub velocities: DVector<f64>,
+    /// The residuals of the governing equations: of the true contact laws, whatever the solver's model is.
+    pub residuals: Residuals,
+}
+
+impl Point {
+    /// The point of these impulses.
+    ///
+    /// # Panics
+    /// If `impulses` does not have [`Problem::rows`] numbers.
+    pub fn new(problem: &Problem, impulses: DVector<f64>) -> Self {
+        let (velocities, residuals) = (problem.velocities(&impulses), Residuals::of(problem, &impulses));
+        Self { impulses, velocities, residuals }
+    }
+}
+
+/// Which equations a solver solves.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Model {
+    /// Signorini's and Coulomb's laws as the problem states them.
+    Coulomb,
+    /// Coulomb's law with each round cone replaced by an inscribed pyramid.
+    Polyhedral {
+        /// The number of vertices of the pyramid.
+        directions: usize,
+    },
+    /// The convex relaxation K ∋ λ ⊥ c ∈ K*: no De Saxcé term, so a sliding contact opens with c_n = μ‖c_t‖.
+    Convex,
+    /// Compliant contacts: λ_n = k max(0, −c_n), and friction by the same k until it slides.
+    Compliant {
+        /// k, in units of the problem's impulse scale by its velocity scale.
+        stiffness: f64,
+    },
+}
+
+/// Why there is no solution.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Certificate {
+    /// A direction y ≥ 0 of the complementarity problem w = M z + q with Mᵀy ≤ 0 and qᵀy < 0. So no z ≥ 0 gives w ≥ 0.
+    Ray {
+        /// y, of length 1 in the largest entry.
+        direction: Vec<f64>,
+        /// The largest entry of Mᵀy: zero or less, up to rounding.
+        growth: f64,
+        /// qᵀy < 0.
+        descent: f64,
+    },
+    /// Every contact mode was tried in double-double arithmetic, and each breaks a law.
+    Enumeration {
+        /// How many modes.
+        modes: usize,
+        /// The smallest violation, free of units: how far the problem is from having a solution in one of its modes. Infinite where no
+        /// mode has impulses at all.
+        margin: f64,
+    },
+}
+
+/// What is known when a solver ends.
+///
+/// ```
+/// use featherbench_contact::library::PainleveRod;
+/// use featherbench_contact::{Certificate, Lemke, Outcome, Solver};
+/// let rod = PainleveRod { friction: 1.5, ..PainleveRod::default() };
+/// match Lemke::default().solve(&rod.problem()?)?.outcome {
+///     Outcome::NoSolution(Certificate::Ray { descent, .. }) => assert!(descent < 0.0),
+///     other => panic!("{other:?}"),
+/// }
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Clone, Debug, PartialEq)]
+pub enum Outcome {
+    /// The equations of the solver's model hold to its tolerance. For enumeration: there is no other solution.
+    Converged(Point),
+    /// The cap on iterations was reached, and the equations do not hold. The last iterate is no answer.
+    CapReached {
+        /// The last iterate, for diagnosis.
+        last: Point,
+    },
+    /// The iteration cannot go on (no step makes the residual smaller, or a number is none), and the equations do not hold. The last
+    /// iterate is no answer.
+    Stalled {
+        /// The last iterate, for diagnosis.
+        last: Point,
+    },
+    /// There is no solution, and this proves it.
+    NoSolution(Certificate),
+    /// Several solutions exist: all isolated ones, and the corners of each connected family.
+    Several(Vec<Point>),
+    /// Lemke's method ended with a ray that proves nothing.
+    Ray {
+        /// The direction of the ray in the variables of the complementarity problem.
+        direction: Vec<f64>,
+    },
+}
+
+impl Outcome {
+    /// The outcome of an iteration that ended: its equations hold, or its cap was reached, or it could not go on.
+    pub(crate) fn judged(point: Point, holds: bool, capped: bool) -> Self {
+        match (holds, capped) {
+            (true, _) => Self::Converged(point),
+            (false, true) => Self::CapReached { last: point },
+            (false, false) => Self::Stalled { last: point },
+        }
+    }
+}
+
+/// A solver's answer.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Solution {
+    /// What is known.
+    pub outcome: Outcome,
+    /// Which equations the solver solves.
+    pub model: Model,
+    /// Pivots, sweeps, Newton steps or modes: the solver's unit of work.
+    pub iterations: usize,
+    /// The size of each step of an iterative solver, for [`crate::rate::fitted`]. Empty for direct solvers.
+    pub steps: Vec<f64>,
+}
+
+impl Solution {
+    /// The solver's single answer: only if it converged.
+    pub fn point(&self) -> Option<&Point> {
+        match &self.outcome {
+            Outcome::Converged(point) => Some(point),
+            _ => None,
+        }
+    }
+
+    /// All answers: one if the solver converged, several if it found several, none otherwise.
+    pub fn points(&self) -> &[Point] {
+        match &self.outcome {
+            Outcome::Converged(point) => std::slice::from_ref(point),
+            Outcome::Several(points) => points,
+            _ => &[],
+        }
+    }
+
+    /// The outcome as one word of a row: `converged`, `cap_reached`, `stalled`, `no_solution`, `several` or `ray`.
+    pub fn status(&self) -> &'static str {
+        match self.outcome {
+            Outcome::Converged(_) => "converged",
+            Outcome::CapReached { .. } => "cap_reached",
+            Outcome::Stalled { .. } => "stalled",
+            Outcome::NoSolution(_) => "no_solution",
+            Outcome::Several(_) => "several",
+            Outcome::Ray { .. } => "ray",
+        }
+    }
+}

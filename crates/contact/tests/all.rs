@@ -1,0 +1,10 @@
+//! The tests of contact problems as one program: they share what is compiled for them.
+
+mod certificates;
+mod draws;
+mod first_order;
+mod impacts;
+mod known;
+mod painleve;
+mod reader;
+mod relaxation;
