@@ -56,6 +56,7 @@ use std::ops::Range;
 use wide::{f32x8, f32x16, f64x4, f64x8};
 
 mod blocks;
+mod bushy;
 mod columns;
 mod factor;
 mod half;

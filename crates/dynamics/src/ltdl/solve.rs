@@ -7,6 +7,7 @@
 //! What bounds it: see [`Ltdl`](crate::Ltdl).
 
 use super::blocks::{Block, Plan, by_size, down, starts, triangle, up};
+use super::bushy;
 use super::registers::{LANES, first, load, only, store, subtract};
 use crate::tree_sparse::Row;
 use crate::{TreeSparse, triangular};
@@ -21,25 +22,39 @@ const USUAL: usize = 48;
 
 /// Solves `LᵀDL x = b` in place. The plain text does it where a path is longer than [`LONGEST`].
 pub(super) fn solve(matrix: &TreeSparse<f64>, plan: &Plan, x: &mut [f64]) {
-    let by_path = |x: &mut [f64], path: &mut [f64]| {
-        from_leaves(matrix, &plan.blocks, x, path);
-        from_root::<true>(matrix, &plan.blocks, x, path);
-    };
     if let [block] = plan.blocks[..] {
         by_size!(block.size, solve_run(matrix.values(), x));
-    } else {
-        with_path(plan, x, by_path, |x| super::solve_plainly(matrix, x));
+        return;
     }
+    let by_path = |x: &mut [f64], path: &mut [f64]| {
+        if plan.single.from_leaves {
+            bushy::from_leaves(matrix, plan.deepest, x);
+        } else {
+            from_leaves(matrix, &plan.blocks, x, path);
+        }
+        if plan.single.from_root {
+            bushy::from_root::<true>(matrix, 0..x.len(), x);
+        } else {
+            from_root::<true>(matrix, &plan.blocks, x, path);
+        }
+    };
+    with_path(plan, x, by_path, |x| super::solve_plainly(matrix, x));
 }
 
 /// Solves `Lᵀ x = b` in place.
 pub(super) fn solve_lower_transposed(matrix: &TreeSparse<f64>, plan: &Plan, x: &mut [f64]) {
+    if plan.single.from_leaves {
+        return bushy::from_leaves(matrix, plan.deepest, x);
+    }
     let by_path = |x: &mut [f64], path: &mut [f64]| from_leaves(matrix, &plan.blocks, x, path);
     with_path(plan, x, by_path, |x| triangular::solve_transposed::<f64, true>(matrix, x));
 }
 
 /// Solves `L x = b` in place for the dofs of some trees.
 pub(super) fn solve_lower(matrix: &TreeSparse<f64>, plan: &Plan, dofs: Range<usize>, x: &mut [f64]) {
+    if plan.single.from_root {
+        return bushy::from_root::<false>(matrix, dofs, x);
+    }
     let place = |dof: usize| plan.blocks.partition_point(|block| block.first < dof);
     let blocks = &plan.blocks[place(dofs.start)..place(dofs.end)];
     let by_path = |x: &mut [f64], path: &mut [f64]| from_root::<false>(matrix, blocks, x, path);
