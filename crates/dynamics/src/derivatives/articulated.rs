@@ -1,8 +1,9 @@
 //! The articulated-body recursion and what differentiates it, at a known solution of forward dynamics.
 //!
-//! Frames: every vector is in the axes of the world, about the origin of its own body. A body's velocities are those that an observer sees who
-//! moves with the velocity of that origin. So neither the distance from the base nor the speed of a limb enters a number, and no digit is lost
-//! to them. A step to the parent is a translation, and a change of the observer.
+//! Frames: every vector is in the axes of its tree's first body, about the origin of its own body. A body's velocities are those that an observer
+//! sees who moves with the velocity of that origin. So neither the distance from the base nor the speed of a limb enters a number, and no digit
+//! is lost to them. A step to the parent is a translation, and a change of the observer. The axes are not those of the world: of a slender
+//! floating base, whose inertia is small about one axis, turning the inertia would lose that axis' digits.
 //!
 //! Let dof j move its sub-tree, in q or in v. Seen from the sub-tree, all its bodies change their angular velocity by δω and their acceleration
 //! by the rigid field ρ, both at j; the joints add their own δv̇ ([`Column`]). On body i acts the change `I_i δa + 2 B_i δω` of its force. B is
@@ -25,7 +26,7 @@ use crate::aba::{Inputs, free};
 use crate::error::{Pivot, expect};
 use crate::step::{by_kind, expect_bodies, newton_euler, slides, turns};
 use featherbench_model::{Axis, JointKind, Model, Topology};
-use featherbench_spatial::{ArticulatedInertia, Force, Lift, Mat3, Motion, Real, RigidBodyInertia, Transform, Vec3};
+use featherbench_spatial::{ArticulatedInertia, Force, Lift, Mat3, Motion, Real, RigidBodyInertia, Sym3, Transform, Vec3};
 
 /// The bodies at one state, the rows of the dofs, and their columns.
 #[derive(Clone, Debug)]
@@ -38,14 +39,15 @@ pub(super) struct Articulated<T> {
 /// A body.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Link<T> {
-    /// The axes of the body.
+    /// The axes of the body in those of its tree's first body.
     rotation: Mat3<T>,
     /// From the origin of the parent to that of the body, and the velocity of the one against the other.
     pub(super) d: Vec3<T>,
     w: Vec3<T>,
     /// 2 w.
     pub(super) twice_w: Vec3<T>,
-    /// Angular velocity, the velocity products c, and the acceleration a. All accelerations are classical; the world's is −g.
+    /// Angular velocity, the velocity products c, and the acceleration a, which of a first body is that of the world, −g, until the last pass.
+    /// All accelerations are classical.
     omega: Vec3<T>,
     c: Motion<T>,
     a: Motion<T>,
@@ -229,7 +231,10 @@ fn place<T: Real, P: Real + Lift<T>>(
 ) {
     let (joint, subspace) = (&model.topology.joints()[i], &model.subspaces[i]);
     let x: Transform<T> = kind.transform(&model.placements[i], subspace, &at.q[joint.q..]);
-    link.rotation = parent.map_or(x.rotation, |parent| parent.rotation * x.rotation);
+    link.rotation = parent.map_or(Mat3::identity(), |parent| parent.rotation * x.rotation);
+    if parent.is_none() {
+        link.a = Motion::new(Vec3::zero(), x.rotation.transpose_mul(-model.gravity.lift()));
+    }
     let across = turned(kind, &link.rotation, kind.motion(subspace, &at.v[joint.v..]));
     let parent_omega = parent.map_or(Vec3::zero(), |parent| parent.omega);
     // v = v_p + S q̇: about the body's origin, and seen from it, v has no linear part, and v_p has that of −S q̇
@@ -314,6 +319,9 @@ fn eliminate<T: Real, P: Real + Lift<T>>(
         link.p = row.scaled.scale_add(force, link.p);
         link.inertia = link.inertia.subtract_rank_one(row.scaled, u);
         link.coriolis = link.coriolis.subtract_outer(row.scaled, turn);
+        let free = row.d_inverse * model.armature[dof].lift();
+        let turning = if kind == JointKind::Free { dof - first >= 3 } else { turns(kind) };
+        clear(turning, row.s, u * free, turn * free, tau[dof] - force * free, link);
     }
     let Some(parent) = parent else { return };
     if kind == JointKind::Free {
@@ -326,6 +334,46 @@ fn eliminate<T: Real, P: Real + Lift<T>>(
     parent.coriolis = parent.coriolis.add(&carried);
     parent.inertia += link.inertia.translate(link.d);
     parent.p += translated(link.p + link.inertia.mul(link.c), link.d);
+}
+
+/// Takes rounding out of the direction S of an eliminated dof, with r the armature over D:
+///
+/// ```text
+/// Iᵃ S = r U    Sᵀ Bᵃ = r Sᵀ Bᴬ    Sᵀ pᵃ = τ − r u
+/// ```
+///
+/// Iᴬ − U D⁻¹ Uᵀ has these up to a rounding of Iᴬ. That would be much, where the joint before moves a light body nearly along S too: wrists, and
+/// Euler angles near their singularity. In body axes with S along z (`aba.rs`) such a joint mixes in little of the z direction.
+#[inline(always)]
+fn clear<T: Real>(turning: bool, s: Motion<T>, inertia: Force<T>, coriolis: Vec3<T>, force: T, link: &mut Link<T>) {
+    // t · S = 1
+    let (zero, half) = (Vec3::zero(), T::from_f64(0.5));
+    let t = if turning { Force::new(s.ang, zero) } else { Force::new(zero, s.lin) };
+    // Iᵃ − w tᵀ − t wᵀ, with w = x − ½ (Sᵀx) t and x = Iᵃ S − r U
+    let x = link.inertia.mul(s) - inertia;
+    let w = t.scale_add(-(s.dot(x) * half), x);
+    let ArticulatedInertia { rotational, coupling, translational } = &mut link.inertia;
+    *rotational = *rotational - twice_symmetric(w.ang, t.ang);
+    *translational = *translational - twice_symmetric(w.lin, t.lin);
+    let outer = |a: Vec3<T>, b: Vec3<T>| Mat3::from_rows(b * a.x, b * a.y, b * a.z);
+    *coupling = *coupling - (outer(w.ang, t.lin) + outer(t.ang, w.lin));
+    link.coriolis = link.coriolis.subtract_outer(t, link.coriolis.transpose_mul(s) - coriolis);
+    link.p = t.scale_add(force - s.dot(link.p), link.p);
+}
+
+/// `a bᵀ + b aᵀ`.
+#[inline(always)]
+fn twice_symmetric<T: Real>(a: Vec3<T>, b: Vec3<T>) -> Sym3<T> {
+    let two = |x: T, y: T| x.mul_add(y, x * y);
+    let sum = |a: T, b: T, c: T, d: T| a.mul_add(b, c * d);
+    Sym3 {
+        xx: two(a.x, b.x),
+        xy: sum(a.x, b.y, a.y, b.x),
+        xz: sum(a.x, b.z, a.z, b.x),
+        yy: two(a.y, b.y),
+        yz: sum(a.y, b.z, a.z, b.y),
+        zz: two(a.z, b.z),
+    }
 }
 
 /// `S · f`, S a column of a joint of this kind.
@@ -359,7 +407,7 @@ fn accelerate<T: Real, P: Real + Lift<T>>(
             (Motion::new(moved.ang, parent.omega.cross_add(link.w, moved.lin)), moved + link.c)
         }
         None => {
-            let world = Motion::new(Vec3::zero(), -model.gravity.lift());
+            let world = link.a;
             (world, world + link.c)
         }
     };

@@ -5,7 +5,8 @@
 //! - A method's rows are the worst state of each case, and the median over the states.
 //! - A method by finite differences (`difference…_EPS`) has no gate: its worst and median rows say what its step costs, with `eps` among
 //!   the parameters.
-//! - The derivatives of FD have the conditioning bound of the first state beside them, and our errors over it are a row.
+//! - The derivatives of FD have the median of the conditioning bounds of the first states beside them. The median of the errors over these
+//!   bounds is a row.
 //!
 //! An engine without a quantity has a row that says so.
 
@@ -17,6 +18,7 @@ use featherbench_bench::truth::TrueDerivatives;
 use featherbench_bench::{Cell, Context, DENSE_LIMIT, Finished, NoAnswer, OWN, Outcome, Quantity, Robot, Study, derivative_floor};
 use featherbench_results::{Row, Verdict, canonical_json};
 use featherbench_robots::Case;
+use rayon::prelude::*;
 use serde::Deserialize;
 use serde_json::json;
 
@@ -30,6 +32,8 @@ const DIFFERENCE: &str = "difference";
 const NONE: &str = "none";
 /// Above this size no conditioning bound is computed: it takes O(n³) runs of forward dynamics.
 const FLOOR_DOFS: usize = 50;
+/// The states that have a bound, from the first.
+const FLOOR_STATES: usize = 5;
 /// A derivative that is zero has no bound: what is left is rounding of the bound's own computation.
 const NO_FLOOR: f64 = 1e-20;
 
@@ -93,7 +97,8 @@ impl Study for Derivatives {
         for quantity in Quantity::DERIVATIVES {
             let asked = || finished.iter().filter(|(cell, _)| cell.quantity == quantity.name());
             let truth = true_values(robot, quantity);
-            let floor = floor(robot, quantity);
+            let floors = floors(robot, quantity);
+            let floor = (!floors.is_empty()).then(|| median(&floors.iter().map(|(_, floor)| *floor).collect::<Vec<_>>()));
             let growth = if is_forward(quantity) { &conditions } else { &still };
             for (cell, outcome) in asked() {
                 let blank = Row { reference: TRUTH.into(), unit: "1".into(), states: "all".into(), floor, ..row(cell, robot) };
@@ -108,7 +113,7 @@ impl Study for Derivatives {
                     Ok((truth, values)) => {
                         let states = values.chunks_exact(quantity.size(robot)).zip(truth).zip(&at);
                         let errors: Vec<f64> = states.map(|((value, truth), at)| scaled_error(robot, quantity, at, truth, value)).collect();
-                        rows.extend(of_answer(context, robot, &blank, &errors, growth));
+                        rows.extend(of_answer(context, robot, &blank, &errors, growth, &floors));
                     }
                     Err((verdict, reason)) => rows.push(context.gates.explain(blank.without_value(verdict, reason))),
                 }
@@ -124,10 +129,11 @@ fn true_values(robot: &Robot, quantity: Quantity) -> Option<Vec<Vec<f64>>> {
     (0..robot.states.count()).map(|k| truth.answer(robot, quantity, k)).collect()
 }
 
-/// The conditioning bound at the first state, of a derivative of forward dynamics of a robot that is not too big.
-fn floor(robot: &Robot, quantity: Quantity) -> Option<f64> {
-    let bounded = is_forward(quantity) && robot.states.nv <= FLOOR_DOFS;
-    bounded.then(|| derivative_floor(robot, quantity, 0)).flatten().filter(|floor| *floor > NO_FLOOR)
+/// The conditioning bounds at the first states, with their numbers, of a derivative of forward dynamics of a robot that is not too big.
+fn floors(robot: &Robot, quantity: Quantity) -> Vec<(usize, f64)> {
+    let count = if is_forward(quantity) && robot.states.nv <= FLOOR_DOFS { robot.states.count().min(FLOOR_STATES) } else { 0 };
+    let bound = |state| Some((state, derivative_floor(robot, quantity, state)?));
+    (0..count).into_par_iter().filter_map(bound).filter(|(_, floor)| *floor > NO_FLOOR).collect()
 }
 
 /// Whether it is a derivative of forward dynamics: its error may grow by the condition number of D^-½ M D^-½, as
@@ -137,7 +143,7 @@ fn is_forward(quantity: Quantity) -> bool {
 }
 
 /// The rows of one method's errors at each state, which may grow there by these factors.
-fn of_answer(context: &Context, robot: &Robot, blank: &Row, errors: &[f64], growth: &[f64]) -> Vec<Row> {
+fn of_answer(context: &Context, robot: &Robot, blank: &Row, errors: &[f64], growth: &[f64], floors: &[(usize, f64)]) -> Vec<Row> {
     if let Some(eps) = step(&blank.method) {
         let params = canonical_json(&json!({"eps": eps, "base": robot.base(), "joints": robot.joint_kinds()}));
         let largest = errors.iter().copied().fold(0.0, worst);
@@ -154,8 +160,9 @@ fn of_answer(context: &Context, robot: &Robot, blank: &Row, errors: &[f64], grow
         rows.push(context.gates.judge(row, errors[state], growth[state]));
     }
     rows.push(context.gates.judge(Row { metric: "error_median".into(), ..blank.clone() }, median(errors), 1.0));
-    if let (Some(floor), Some(&first)) = (blank.floor, errors.first()) {
-        rows.push(context.gates.judge(Row { metric: "error_over_floor".into(), ..blank.clone() }, ratio(first, floor), 1.0));
+    if !floors.is_empty() {
+        let over: Vec<f64> = floors.iter().map(|&(state, floor)| ratio(errors[state], floor)).collect();
+        rows.push(context.gates.judge(Row { metric: "error_over_floor".into(), ..blank.clone() }, median(&over), 1.0));
     }
     rows
 }
