@@ -5,9 +5,10 @@ use crate::external;
 use crate::fail::Fail;
 use crate::package;
 use crate::root::Root;
+use crate::say;
 use featherbench_engines::Limits;
 use featherbench_engines::conformance::{Conformance, Finding, Standing, check_program};
-use std::io::{IsTerminal, Write};
+use std::io::IsTerminal;
 use std::time::Duration;
 
 /// Tests the program and prints what was found. In a project the program may import the package of its oracles.
@@ -25,8 +26,7 @@ pub fn check(root: Option<&Root>, args: &CheckArgs) -> Result<(), Fail> {
     if terminal {
         eprint!("\r\x1b[2K");
     }
-    // A reader who closes the pipe has seen enough: that is no error.
-    let _ = std::io::stdout().write_all(text(&conformance, args.all).as_bytes());
+    say::text(&text(&conformance, args.all));
     let wrong = conformance.of(Standing::Wrong).count();
     if wrong == 0 {
         return Ok(());

@@ -9,7 +9,8 @@ use crate::progress::Bar;
 use crate::robots;
 use crate::root::Root;
 use crate::run::About;
-use crate::{outcome, report, robot_file, run, table};
+use crate::say::say;
+use crate::{outcome, report, robot_file, run, say, table};
 use ::featherbench_results::{ModelOrigin, Verdict};
 use featherbench_bench::run::{Opening, Run};
 use featherbench_bench::{Cell, Context, Engine, Engines, FileFormat, OWN, Robot, RobotFile, hash, provenance};
@@ -98,12 +99,12 @@ pub fn compare(root: &Root, args: &CompareArgs) -> Result<(), Fail> {
     let page = report::render(&folder, &run.info, &records)?;
     let info = &run.info;
     for (robot, (_, remarks)) in robots.iter().zip(&remarks) {
-        print!("{}", table::of(robot, remarks, &opened.engines, &records));
+        say::text(&table::of(robot, remarks, &opened.engines, &records));
     }
-    println!("report: {}", page.display());
+    say!("report: {}", page.display());
     let unmet: Vec<_> = info.expected.iter().filter(|condition| condition.verdict != Verdict::Pass).collect();
     for condition in &unmet {
-        println!("differs: {}: {}", condition.what, condition.reason);
+        say!("differs: {}: {}", condition.what, condition.reason);
     }
     if !bad.is_empty() {
         return Err(ended(bad));

@@ -2,6 +2,7 @@
 
 use crate::args::DiffArgs;
 use crate::fail::Fail;
+use crate::say;
 use ::featherbench_results::{Change, Changed, Diff, ERROR_FACTOR, Row, RunInfo, TIME_NOISE, diff, read_run};
 use std::fmt::Write as _;
 
@@ -13,7 +14,7 @@ pub fn compare(args: &DiffArgs) -> Result<(), Fail> {
     let (before, old) = read_run(&args.before)?;
     let (after, new) = read_run(&args.after)?;
     let found = diff(&old, &new);
-    print!("{}", if args.markdown { markdown(&before, &after, &found) } else { terminal(&before, &after, &found) });
+    say::text(&if args.markdown { markdown(&before, &after, &found) } else { terminal(&before, &after, &found) });
     match found.changes.len() {
         0 => Ok(()),
         count => Err(Fail::Gate(format!("{count} of {} rows changed beyond noise", found.compared + unmatched(&found)))),

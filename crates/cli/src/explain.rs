@@ -2,6 +2,7 @@
 
 use crate::args::ExplainArgs;
 use crate::fail::Fail;
+use crate::say::say;
 use crate::shell::{quoted, words};
 use ::featherbench_results::{Row, RunInfo};
 use featherbench_bench::{NoAnswer, OUTCOMES_NAME, Outcome, OutcomeStore, Quantity};
@@ -19,34 +20,34 @@ pub fn explain(args: &ExplainArgs) -> Result<(), Fail> {
         return Err(Fail::input(format!("'{}' begins more than one cell: {}, {}; give more digits", args.cell, first.cell, other.cell)));
     }
     let quantity = Quantity::parse(&first.quantity).map_or("", describe);
-    println!("cell      {}", first.cell);
-    println!("study     {}", first.study);
-    println!("robot     {} ({}; nv {}, depth {})", first.robot, first.family, count(first.nv), count(first.depth));
-    println!("asked     {} {} by {} in {}", first.engine, first.engine_version, first.method, first.precision);
-    println!("quantity  {}: {quantity}", first.quantity);
-    println!("params    {}", first.params);
+    say!("cell      {}", first.cell);
+    say!("study     {}", first.study);
+    say!("robot     {} ({}; nv {}, depth {})", first.robot, first.family, count(first.nv), count(first.depth));
+    say!("asked     {} {} by {} in {}", first.engine, first.engine_version, first.method, first.precision);
+    say!("quantity  {}: {quantity}", first.quantity);
+    say!("params    {}", first.params);
     if args.folder.join(OUTCOMES_NAME).is_file() {
         let (outcomes, lost) = OutcomeStore::look(&args.folder)?;
         match outcomes.get(&first.cell) {
             Some(Outcome::Values(values)) => {
                 let head: Vec<String> = values.iter().take(6).map(|value| format!("{value:?}")).collect();
-                println!("answer    {} numbers: {}{}", values.len(), head.join(", "), if values.len() > 6 { ", …" } else { "" });
+                say!("answer    {} numbers: {}{}", values.len(), head.join(", "), if values.len() > 6 { ", …" } else { "" });
             }
             Some(Outcome::Text(text)) => {
                 let head: String = text.chars().take(400).collect();
                 let more = if head.len() < text.len() { " …" } else { "" };
-                println!("answer    a text of {} characters: {head}{more}", text.chars().count());
+                say!("answer    a text of {} characters: {head}{more}", text.chars().count());
             }
-            Some(Outcome::NoAnswer(NoAnswer::NotOffered(reason))) => println!("answer    not offered: {reason}"),
-            Some(Outcome::NoAnswer(NoAnswer::Failed(reason))) => println!("answer    failed: {reason}"),
-            None => println!("answer    not kept{}", lost.map_or_else(String::new, |lost| format!(": {lost}"))),
+            Some(Outcome::NoAnswer(NoAnswer::NotOffered(reason))) => say!("answer    not offered: {reason}"),
+            Some(Outcome::NoAnswer(NoAnswer::Failed(reason))) => say!("answer    failed: {reason}"),
+            None => say!("answer    not kept{}", lost.map_or_else(String::new, |lost| format!(": {lost}"))),
         }
     }
-    println!();
+    say!("");
     for row in &rows {
         let number = |value: Option<f64>| value.map_or_else(|| "–".into(), |value| format!("{value:.3e}"));
         let against = if row.reference.is_empty() { String::new() } else { format!(" against {}", row.reference) };
-        println!(
+        say!(
             "{:<9} {:<10} {:<24} {} {} (bound {}, margin {} decades){against} {}",
             row.verdict.as_str(),
             [row.body.as_str(), &row.states, &row.cache].concat(),
@@ -58,7 +59,7 @@ pub fn explain(args: &ExplainArgs) -> Result<(), Fail> {
             row.reason
         );
     }
-    println!("\nagain     {}", again(&info, first).map_err(Fail::input)?);
+    say!("\nagain     {}", again(&info, first).map_err(Fail::input)?);
     Ok(())
 }
 

@@ -3,7 +3,7 @@
 use crate::args::{Format, GenArgs};
 use crate::fail::Fail;
 use crate::root::Root;
-use crate::{oracles, robot_file, robots};
+use crate::{oracles, robot_file, robots, say};
 use featherbench_bench::FileFormat;
 use featherbench_formats::OnLoss;
 use featherbench_formats::neutral::{self, NeutralError};
@@ -34,7 +34,7 @@ pub fn generate(root: &Root, args: &GenArgs) -> Result<(), Fail> {
     match exported(&description, args)? {
         Some(text) => match &args.out {
             Some(path) => ::featherbench_results::atomic_write(path, text.as_bytes())?,
-            None => print!("{text}"),
+            None => say::text(&text),
         },
         None => write(&description, args.out.as_deref()).map_err(|error| Fail::input(error.to_string()))?,
     }
@@ -54,7 +54,7 @@ fn write(description: &Description, path: Option<&Path>) -> Result<(), NeutralEr
             }
             neutral::write(description, path)
         }
-        None => neutral::write_to(description, &mut std::io::stdout().lock(), "standard output"),
+        None => neutral::write_to(description, &mut say::Output, "standard output"),
     }
 }
 

@@ -3,6 +3,7 @@
 use crate::args::HistoryArgs;
 use crate::fail::Fail;
 use crate::root::Root;
+use crate::say::say;
 use ::featherbench_results::{Host, Row, RunInfo, atomic_write, read_run};
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -27,7 +28,7 @@ pub fn append(root: &dyn Fn() -> Result<Root, Fail>, args: &HistoryArgs) -> Resu
     let before = if path.exists() { std::fs::read_to_string(&path).map_err(|error| failed(&path, &error))? } else { String::new() };
     let text = merged(&before, &lines).map_err(|what| failed(&path, &what))?;
     atomic_write(&path, text.as_bytes())?;
-    println!(
+    say!(
         "{} kernels in {}{}",
         lines.len(),
         path.display(),

@@ -5,16 +5,15 @@ use crate::fail::Fail;
 use crate::oracles;
 use crate::robots;
 use crate::root::Root;
+use crate::say;
 use featherbench_bench::{Context, Engine};
 use featherbench_engines::{Featherbench, Limits};
 use featherbench_robots::Family;
 use featherbench_studies::{Kernels, Setup};
-use std::io::Write;
 
 /// Prints what there is to run.
 pub fn list(root: &Root, args: &ListArgs) -> Result<(), Fail> {
-    // A reader who closes the pipe has seen enough: that is no error.
-    let _ = std::io::stdout().write_all(text(root, args)?.as_bytes());
+    say::text(&text(root, args)?);
     Ok(())
 }
 

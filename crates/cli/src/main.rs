@@ -57,6 +57,7 @@ mod robot_file;
 mod robots;
 mod root;
 mod run;
+mod say;
 mod shell;
 mod table;
 

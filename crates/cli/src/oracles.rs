@@ -7,6 +7,7 @@ use crate::fail::Fail;
 use crate::native;
 use crate::package;
 use crate::root::Root;
+use crate::say::say;
 use featherbench_bench::alone::{Measured, Question};
 use featherbench_bench::{DescribedEngine, Engine, Engines, NoAnswer, OWN, Robot, Start};
 use featherbench_engines::{Limits, Oracle, alone};
@@ -236,7 +237,7 @@ pub fn status(root: &Root) -> Result<(), Fail> {
             Start::CargoLibrary { folder, library } => Compiled::library(root, engine, folder, library).told(),
             Start::Native(library) => native::status(root, engine, library).unwrap_or_else(|reason| reason),
         };
-        println!("{:<16} {told}", engine.name);
+        say!("{:<16} {told}", engine.name);
     }
     if !installed {
         let message = "the reference engines are not installed (or not in the versions of oracles/engines.toml)".into();

@@ -4,6 +4,7 @@ use crate::args::GateArgs;
 use crate::fail::Fail;
 use crate::report::properties;
 use crate::root::Root;
+use crate::say::say;
 use ::featherbench_results::{Row, RunInfo};
 use featherbench_bench::{Deviation, Engines, Gates, Ranges, RangesMeter, SEEDS, SLACK};
 use std::path::Path;
@@ -28,7 +29,7 @@ pub fn measure(root: &Root, args: &GateArgs, info: &RunInfo, first: &[Row]) -> R
     for (what, factors) in [("above the largest", up), ("below the smallest", down)] {
         if let (Some(median), Some(worst)) = (factors.get(factors.len() / 2), factors.last()) {
             let beyond = factors.iter().filter(|&&factor| factor > SLACK).count();
-            println!(
+            say!(
                 "of {} ranges, one run lies {what} of the others by a factor of at most {worst:.2} (median {median:.2}; beyond {SLACK}: {beyond})",
                 factors.len()
             );
@@ -41,9 +42,9 @@ pub fn measure(root: &Root, args: &GateArgs, info: &RunInfo, first: &[Row]) -> R
     let name = args.processor.as_ref().map_or_else(|| info.suite.clone(), |processor| format!("{}-{processor}", info.suite));
     let path = root.ranges().join(format!("{name}.csv"));
     ::featherbench_results::atomic_write(&path, ranges.to_csv().as_bytes())?;
-    println!("written: {}", path.display());
+    say!("written: {}", path.display());
     if (seeds.len() as u64) < SEEDS {
-        println!("a range is that of {SEEDS} seeds; here are {}", seeds.len());
+        say!("a range is that of {SEEDS} seeds; here are {}", seeds.len());
     }
     Ok(())
 }
@@ -79,6 +80,6 @@ fn print(deviations: &[Deviation], ranges: &Ranges, runs: usize) {
             0 => "not seen".into(),
             count => format!("{count} ranges from {low:.1e} to {high:.1e}, {always} seen in all of {runs} runs"),
         };
-        println!("{span}: {} {}: {}", deviation.engine, deviation.id, deviation.reason);
+        say!("{span}: {} {}: {}", deviation.engine, deviation.id, deviation.reason);
     }
 }

@@ -7,6 +7,7 @@ use crate::oracles;
 use crate::progress::Bar;
 use crate::robots;
 use crate::root::Root;
+use crate::say::say;
 use ::featherbench_results::Verdict;
 use featherbench_bench::measure::{ForwardScale, scaled_error, worst};
 use featherbench_bench::run::Progress;
@@ -109,7 +110,7 @@ pub fn record(root: &Root, args: &RecordArgs) -> Result<(), Fail> {
         let message = format!("{} recorded answers do not match their engines:\n{}", stale.len(), shown.join("\n"));
         return Err(Fail::Gate(message));
     }
-    println!("{} {}", if args.check { "the engines answer as recorded in" } else { "recorded in" }, folder.display());
+    say!("{} {}", if args.check { "the engines answer as recorded in" } else { "recorded in" }, folder.display());
     Ok(())
 }
 

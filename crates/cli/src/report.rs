@@ -4,6 +4,7 @@ use crate::args::GateArgs;
 use crate::fail::Fail;
 use crate::ranges;
 use crate::root::Root;
+use crate::say::{self, say};
 use ::featherbench_results::{Properties, RobotInfo, Row, RunInfo, Verdict};
 use featherbench_bench::{Counts, Suite, provenance};
 use std::path::{Path, PathBuf};
@@ -12,7 +13,7 @@ use std::path::{Path, PathBuf};
 pub fn write(folder: &Path) -> Result<(), Fail> {
     let (info, records) = ::featherbench_results::read_run(folder)?;
     let page = render(folder, &info, &records)?;
-    println!("report: {}", page.display());
+    say!("report: {}", page.display());
     Ok(())
 }
 
@@ -53,13 +54,13 @@ pub fn properties(folder: &Path, info: &RunInfo) -> Result<Vec<(String, Properti
 fn count(root: &Root, suite: &Suite, info: &RunInfo, rows: &[Row], write: bool) -> Result<(), Fail> {
     let counts = Counts::of(&info.suite, suite.engines(), rows);
     if !write {
-        print!("{}", counts.to_csv());
+        say::text(&counts.to_csv());
         return Ok(());
     }
     let path = root.counts();
     let all = Counts::read(&path)?.with(&info.suite, counts);
     ::featherbench_results::atomic_write(&path, all.to_csv().as_bytes())?;
-    println!("written: {}", path.display());
+    say!("written: {}", path.display());
     Ok(())
 }
 
@@ -67,9 +68,9 @@ fn count(root: &Root, suite: &Suite, info: &RunInfo, rows: &[Row], write: bool) 
 pub fn conclude(info: &RunInfo, records: &[Row], page: &Path) -> Result<(), Fail> {
     let count = |verdict: Verdict| records.iter().filter(|row| row.verdict == verdict).count();
     let counts: Vec<String> = Verdict::ALL.iter().map(|&verdict| format!("{} {verdict}", count(verdict))).collect();
-    println!("{} rows: {}", records.len(), counts.join(", "));
+    say!("{} rows: {}", records.len(), counts.join(", "));
     for row in records.iter().filter(|row| matches!(row.verdict, Verdict::Fail | Verdict::Error)).take(20) {
-        println!(
+        say!(
             "  {}: {} {} {} {} {} [{}]: {}",
             row.verdict,
             row.robot,
@@ -83,11 +84,11 @@ pub fn conclude(info: &RunInfo, records: &[Row], page: &Path) -> Result<(), Fail
     }
     let broken: Vec<_> = info.expected.iter().filter(|condition| condition.verdict != Verdict::Pass).collect();
     for condition in &broken {
-        println!("  gate: {}: {}", condition.what, condition.reason);
+        say!("  gate: {}: {}", condition.what, condition.reason);
     }
     let sections = featherbench_studies::sections(info, records);
-    featherbench_report::summary(info, records, &sections).iter().for_each(|line| println!("{line}"));
-    println!("report: {}", page.display());
+    featherbench_report::summary(info, records, &sections).iter().for_each(|line| say!("{line}"));
+    say!("report: {}", page.display());
     if broken.is_empty() {
         return Ok(());
     }

@@ -3,6 +3,7 @@
 
 use crate::support;
 
+use std::process::Stdio;
 use support::{Sandbox, project};
 
 /// A URDF with the given middle part between two good links.
@@ -268,4 +269,17 @@ fn what_cannot_be_compared_gets_advice() {
     sandbox.write("good.xml", "<mujoco/>");
     sandbox.run(&["gen", "mjcf", "--file", "good.xml", "--floating"]).expect(2, &["says itself what floats"]);
     sandbox.run(&["gen", "mjcf", "--file", "good.xml"]).expect(3, &["good.xml", "MuJoCo", "not installed", "oracles install"]);
+}
+
+/// The reader of standard output leaves at once: nothing panics, and the exit code is that of a reader who stays.
+#[test]
+fn a_reader_that_leaves_early_is_no_error() {
+    let sandbox = Sandbox::new();
+    for arguments in [&["gen", "chain:n=20000"][..], &["gen", "chain:n=2000", "--format", "urdf"], &["list", "--cells"]] {
+        let mut child = sandbox.command(arguments).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
+        drop(child.stdout.take());
+        let output = child.wait_with_output().unwrap();
+        let errors = String::from_utf8_lossy(&output.stderr);
+        assert!(output.status.success() && !errors.contains("panic") && !errors.contains("pipe"), "{arguments:?}: {output:?}");
+    }
 }

@@ -3,6 +3,7 @@
 //! [`command`] is this same program as `featherbench alone`. It answers one request by [`serve`], on standard input and output.
 
 use crate::Featherbench;
+use crate::kernel::reads_description;
 use crate::oracle::{checked, shaped};
 use featherbench_bench::alone::{self, Measured, Question};
 use featherbench_bench::{Limits, Memory, NoAnswer, OWN, Quantity, Robot};
@@ -86,8 +87,11 @@ fn question(request: &Message) -> Result<Question, NoAnswer> {
 /// Measures our kernels in this process, inside a pool of as many threads: so the entry into the pool is not part of a call.
 fn measure(question: &Question) -> Result<Measured, NoAnswer> {
     let mut robot: Robot = alone::robot(&question.robot, question.seed)?;
-    // Algorithms take the model alone. What is resident then is the model, the state and the workspace.
-    robot.description.bodies = Vec::new();
+    // Algorithms take the model alone. What is resident then is the model, the state and the workspace. Refinement reads the description
+    // in extended precision.
+    if !reads_description(&question.method) {
+        robot.description.bodies = Vec::new();
+    }
     let pool = ThreadPoolBuilder::new().num_threads(question.threads).build();
     let pool = pool.map_err(|error| NoAnswer::Failed(format!("{} threads: {error}", question.threads)))?;
     pool.install(|| alone::measure(&Featherbench::new(), &robot, question, || Memory::of(None)))

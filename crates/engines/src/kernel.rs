@@ -335,6 +335,11 @@ fn forward_dynamics_single<'a>(model: &'a Model<f64>, states: &'a StateBatch, fa
     kept(vec![0.0; topology.nv()], evaluate, read)
 }
 
+/// Whether a method needs the robot's description beside its model.
+pub(crate) fn reads_description(method: &str) -> bool {
+    matches!(method, "refined_1" | "refined_2")
+}
+
 /// Refined with the residual in double-double, of the robot as its description says it.
 fn refined_forward_dynamics<'a>(robot: &'a Robot, states: &'a StateBatch, steps: usize) -> Result<Kernel<'a>, NoAnswer> {
     let model: Model<DoubleDouble> = Model::build(&robot.description).map_err(|error| NoAnswer::Failed(error.to_string()))?;

@@ -13,8 +13,8 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::time::{Duration, Instant};
 
-/// All quantities that a native oracle may be asked for.
-const QUANTITIES: [Quantity; 14] = [
+/// The quantities that are compared. Of those that a native oracle may be asked for, ∂FD is left to the study of derivatives.
+const QUANTITIES: [Quantity; 20] = [
     Quantity::Readback,
     Quantity::InverseDynamics,
     Quantity::Bias,
@@ -29,6 +29,12 @@ const QUANTITIES: [Quantity; 14] = [
     Quantity::BodyVelocity,
     Quantity::BodyAcceleration,
     Quantity::BodyJacobian,
+    Quantity::CenterOfMass,
+    Quantity::Momentum,
+    Quantity::InverseDynamicsDq,
+    Quantity::InverseDynamicsDv,
+    Quantity::CoriolisMatrix,
+    Quantity::TorqueRegressor,
 ];
 
 /// So long that the load of the machine has no influence: only a test that would hang for ever reaches it.
@@ -114,6 +120,10 @@ pub fn compare(engine: &dyn Engine, robot: &Robot, but: &[&str]) -> Vec<Found> {
                         Quantity::ForwardDynamics => forward[k].backward_error(value) / (1e-14 * depth),
                         Quantity::Solve => residual(mass, value, robot.states.tau(k)) / (1e-14 * depth),
                         Quantity::MassMatrixInverse => inverse_residual(mass, value) / (1e-14 * depth),
+                        Quantity::InverseDynamicsDq
+                        | Quantity::InverseDynamicsDv
+                        | Quantity::CoriolisMatrix
+                        | Quantity::TorqueRegressor => scaled_error(robot, quantity, &at[k], reference, value) / 1e-12,
                         Quantity::Readback => scaled_error(robot, quantity, &at[k], reference, value) / 3.6e-15,
                         _ => scaled_error(robot, quantity, &at[k], reference, value) / (1e-14 * (depth / 20.0).max(1.0)),
                     }
