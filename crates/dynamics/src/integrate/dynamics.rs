@@ -3,6 +3,7 @@
 //! Computes: a = M⁻¹ (τ − h + Σ Jᵀf) by [`Aba`], with τ and f from a [`System`]. Frames, shapes and units: as in [`Aba`].
 //! Cost: that of [`Aba::run`] and of the system's forces. A call does not allocate.
 
+use super::lagrangian::Lagrangian;
 use crate::error::expect;
 use crate::{Aba, DimensionError, Error, Rnea};
 use featherbench_model::Model;
@@ -17,6 +18,11 @@ pub trait Acceleration<T> {
     /// # Errors
     /// [`Error`] when an argument does not fit, or a joint meets no inertia.
     fn acceleration(&mut self, t: T, q: &[T], v: &[T], a: &mut [T]) -> Result<(), Error>;
+
+    /// The energies and forces behind the acceleration, which variational rules need. A closure has none.
+    fn lagrangian(&mut self) -> Option<&mut dyn Lagrangian<T>> {
+        None
+    }
 }
 
 impl<T, F: FnMut(T, &[T], &[T], &mut [T]) -> Result<(), Error>> Acceleration<T> for F {
@@ -165,27 +171,6 @@ impl<S: System, T: Angle> Dynamics<S, T> {
         system.forces(&Instant { time: t, q, v, controls, parameters }, tau, wrenches);
     }
 
-    /// The joint forces of a state, external wrenches included: τ + Σ Jᵀf.
-    pub(super) fn joint_forces(&mut self, t: T, q: &[T], v: &[T], result: &mut [T]) -> Result<(), DimensionError> {
-        let Self { system, model, rnea, tau, wrenches, zeros, controls, parameters, .. } = self;
-        result.fill(T::zero());
-        wrenches.fill(Force::zero());
-        system.forces(&Instant { time: t, q, v, controls, parameters }, result, wrenches);
-        if !wrenches.is_empty() {
-            // Σ Jᵀf is what inverse dynamics takes less with the wrenches than without.
-            rnea.run(model, q, zeros, zeros, None, tau)?;
-            result.iter_mut().zip(tau.iter()).for_each(|(result, tau)| *result += *tau);
-            rnea.run(model, q, zeros, zeros, Some(wrenches), tau)?;
-            result.iter_mut().zip(tau.iter()).for_each(|(result, tau)| *result -= *tau);
-        }
-        Ok(())
-    }
-
-    /// `x = M⁻¹ f` at the configuration of the last acceleration.
-    pub(super) fn solve(&mut self, f: &[T], x: &mut [T]) -> Result<(), DimensionError> {
-        self.aba.solve(&self.model, f, x)
-    }
-
     /// The model with its parameters.
     pub fn model(&self) -> &Model<T> {
         &self.model
@@ -201,5 +186,34 @@ impl<S: System, T: Angle> Acceleration<T> for Dynamics<S, T> {
         wrenches.fill(Force::zero());
         system.forces(&Instant { time: t, q, v, controls, parameters }, tau, wrenches);
         aba.run(model, q, v, tau, if wrenches.is_empty() { None } else { Some(wrenches) }, a)
+    }
+
+    fn lagrangian(&mut self) -> Option<&mut dyn Lagrangian<T>> {
+        Some(self)
+    }
+}
+
+impl<S: System, T: Angle> Lagrangian<T> for Dynamics<S, T> {
+    fn model(&self) -> &Model<T> {
+        &self.model
+    }
+
+    fn joint_forces(&mut self, t: T, q: &[T], v: &[T], result: &mut [T]) -> Result<(), DimensionError> {
+        let Self { system, model, rnea, tau, wrenches, zeros, controls, parameters, .. } = self;
+        result.fill(T::zero());
+        wrenches.fill(Force::zero());
+        system.forces(&Instant { time: t, q, v, controls, parameters }, result, wrenches);
+        if !wrenches.is_empty() {
+            // Σ Jᵀf is what inverse dynamics takes less with the wrenches than without.
+            rnea.run(model, q, zeros, zeros, None, tau)?;
+            result.iter_mut().zip(tau.iter()).for_each(|(result, tau)| *result += *tau);
+            rnea.run(model, q, zeros, zeros, Some(wrenches), tau)?;
+            result.iter_mut().zip(tau.iter()).for_each(|(result, tau)| *result -= *tau);
+        }
+        Ok(())
+    }
+
+    fn solve(&mut self, f: &[T], x: &mut [T]) -> Result<(), DimensionError> {
+        self.aba.solve(&self.model, f, x)
     }
 }

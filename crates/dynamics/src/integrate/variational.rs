@@ -10,6 +10,14 @@
 //!
 //! The middle equation is solved for u: `u ← u + M(q)⁻¹ (M(q) v − …)`. The iteration ends as that of [`super::ImplicitMidpoint`].
 //!
+//! Derivative, with p = M(q) v, p⁻(q, u) the right-hand side of the middle equation, and p' = w:
+//!
+//! ```text
+//! ∂p⁻/∂u δu = M(q) δv + (∂p/∂q − ∂p⁻/∂q) δq        M(q') δv' = ∂w/∂q δq + ∂w/∂u δu − ∂p'/∂q' δq'
+//! ```
+//!
+//! Inputs enter as q does. It is that of the solution, whatever the iterations that led there.
+//!
 //! Armature A of a spherical joint: here the dynamics have A ω̇ and no more. A Lagrangian with ½ ωᵀAω would have ω × A ω as well. So that is
 //! added to τ. It is zero where the three armatures are equal; elsewhere the map is not symplectic.
 //!
@@ -18,24 +26,30 @@
 //!
 //! Order 2. A step with −h undoes one with h. Without dissipation (q, M v) moves by a symplectic map, so that the energy does not drift. A momentum
 //! that belongs to a symmetry is conserved to rounding: of a floating robot without gravity, the linear and angular momentum in world axes.
-//! Frames, shapes, units: as in [`crate::Aba`]. Cost of a step: two [`crate::Aba::run`], and one [`EnergyGradient`] and one
-//! [`crate::Aba::solve`] per iteration. A call does not allocate.
+//! Frames, shapes, units: as in [`crate::Aba`]. Cost of a step: two [`crate::Aba::run`], and one [`crate::EnergyGradient`] and one
+//! [`crate::Aba::solve`] per iteration. The derivative adds [`Linearise::linearise_lagrangian`], a dense factorization of ∂p⁻/∂u, and nv products
+//! with block-diagonal maps; push and pull are five dense products and two solutions. A call does not allocate.
 
-use super::IntegrationError;
+mod derivative;
+mod momenta;
+
+use self::derivative::{Derivative, Ends};
+use self::momenta::Momenta;
 use super::dense::add_scaled;
-use super::dynamics::{Acceleration, Dynamics, System};
-use super::error::{expect_finite, largest};
+use super::dynamics::Acceleration;
+use super::error::{expect_finite, largest, no_room};
+use super::lagrangian::{Lagrangian, MomentumAndForce};
 use super::midpoint::{Iteration, scale};
+use super::{IntegrationError, Integrator, Linearise};
 use crate::error::expect;
-use crate::{EnergyGradient, EnergyPartials};
-use featherbench_model::{JointKind, TangentMap, Topology};
-use featherbench_spatial::{Angle, Vec3};
+use featherbench_model::Topology;
+use featherbench_spatial::Angle;
 
 /// The workspace of the variational midpoint rule.
 ///
 /// ```
 /// use featherbench_dynamics::centroidal_momentum;
-/// use featherbench_dynamics::integrate::{Dynamics, Passive, VariationalMidpoint};
+/// use featherbench_dynamics::integrate::{Dynamics, Integrator, Passive, VariationalMidpoint};
 /// use featherbench_model::Model;
 /// use featherbench_robots::{Family, StateBatch};
 /// use featherbench_spatial::Vec3;
@@ -58,51 +72,44 @@ use featherbench_spatial::{Angle, Vec3};
 #[derive(Clone, Debug)]
 pub struct VariationalMidpoint<T> {
     topology: Topology,
-    gradient: EnergyGradient<T>,
-    energy: EnergyPartials<T>,
-    /// A(hu), J(hu)⁻¹, A(hu/2), J(hu/2).
-    whole_by_q: TangentMap<T>,
-    whole_inverse: TangentMap<T>,
-    half_by_q: TangentMap<T>,
-    half_by_step: TangentMap<T>,
-    /// M(q) v, u, and a step.
+    /// μ and g in the middle.
+    middle: MomentumAndForce<T>,
+    momenta: Momenta<T>,
+    /// M(q) v and u.
     momentum: Vec<T>,
     u: Vec<T>,
+    /// A step, and what the iteration lacks.
     increment: Vec<T>,
-    /// g and w, and products.
-    force: Vec<T>,
-    after: Vec<T>,
-    x: Vec<T>,
-    y: Vec<T>,
+    gap: Vec<T>,
+    /// The configuration in the middle, then the state after the step.
     q: Vec<T>,
+    v: Vec<T>,
     iterations: usize,
+    derivative: Option<Derivative<T>>,
 }
 
 impl<T: Angle> VariationalMidpoint<T> {
-    /// The order p: the error after a fixed time falls like hᵖ.
-    pub const ORDER: u32 = 2;
-
     /// A workspace for steps of this tree.
     pub fn new(topology: &Topology) -> Self {
-        let (zeros, map) = (|| vec![T::zero(); topology.nv()], TangentMap::new(topology));
+        let zeros = || vec![T::zero(); topology.nv()];
         Self {
             topology: topology.clone(),
-            gradient: EnergyGradient::new(topology),
-            energy: EnergyPartials::new(topology),
-            whole_by_q: map.clone(),
-            whole_inverse: map.clone(),
-            half_by_q: map.clone(),
-            half_by_step: map,
+            middle: MomentumAndForce::new(topology),
+            momenta: Momenta::new(topology),
             momentum: zeros(),
             u: zeros(),
             increment: zeros(),
-            force: zeros(),
-            after: zeros(),
-            x: zeros(),
-            y: zeros(),
+            gap: zeros(),
             q: vec![T::zero(); topology.nq()],
+            v: zeros(),
             iterations: 0,
+            derivative: None,
         }
+    }
+
+    /// A workspace for steps and their derivatives with this many inputs.
+    pub fn with_derivatives(topology: &Topology, inputs: usize) -> Self {
+        Self { derivative: Some(Derivative::new(topology, inputs)), ..Self::new(topology) }
     }
 
     /// The iterations of the last step.
@@ -110,80 +117,79 @@ impl<T: Angle> VariationalMidpoint<T> {
         self.iterations
     }
 
-    /// Replaces the state at time `t` by that at `t + h`. After an error the state is as before.
-    ///
-    /// # Errors
-    /// [`IntegrationError`]: an argument does not fit, a joint meets no inertia, a number is not finite, or the iteration does not converge.
-    pub fn step<S: System>(&mut self, f: &mut Dynamics<S, T>, t: T, h: T, q: &mut [T], v: &mut [T]) -> Result<(), IntegrationError> {
+    /// Solves for u, and computes the state after the step in `self.q` and `self.v`.
+    fn solve<F: Acceleration<T>>(&mut self, f: &mut F, t: T, h: T, q: &[T], v: &[T]) -> Result<(), IntegrationError> {
         expect("velocity v", self.topology.nv(), v.len())?;
-        let half = h * T::from_f64(0.5);
+        let f = f.lagrangian().ok_or(IntegrationError::NoEnergies)?;
 
         // M(q) v; u begins at v + (h/2) a, and that acceleration leaves the factors of M(q)
-        self.gradient.run(f.model(), q, v, &mut self.energy)?;
-        self.momentum.copy_from_slice(&self.energy.kinetic_by_v);
-        f.acceleration(t, q, v, &mut self.x)?;
+        self.middle.set_momentum(f.model(), q, v)?;
+        self.momentum.copy_from_slice(self.middle.momentum());
+        f.acceleration(t, q, v, &mut self.v)?;
         self.u.copy_from_slice(v);
-        add_scaled(half, &self.x, &mut self.u);
+        add_scaled(h * T::from_f64(0.5), &self.v, &mut self.u);
 
         let mut iteration = Iteration::new(t.min_lane());
         loop {
-            self.momenta(f, t, h, q)?;
-            for (y, momentum) in self.y.iter_mut().zip(&self.momentum) {
-                *y = *momentum - *y;
+            self.set_momenta(f, t, h, q)?;
+            for ((gap, momentum), before) in self.gap.iter_mut().zip(&self.momentum).zip(self.momenta.before()) {
+                *gap = *momentum - *before;
             }
-            f.solve(&self.y, &mut self.x)?;
-            add_scaled(T::one(), &self.x, &mut self.u);
-            if iteration.ends(largest(self.x.iter().copied()), largest(self.u.iter().copied()))? {
+            f.solve(&self.gap, &mut self.v)?;
+            add_scaled(T::one(), &self.v, &mut self.u);
+            if iteration.ends(largest(self.v.iter().copied()), largest(self.u.iter().copied()))? {
                 break;
             }
         }
         self.iterations = iteration.count;
 
         // q' = q ⊕ h u, and v' = M(q')⁻¹ w
-        self.momenta(f, t, h, q)?;
+        self.set_momenta(f, t, h, q)?;
         scale(h, &self.u, &mut self.increment);
         self.topology.integrate(q, &self.increment, &mut self.q)?;
-        f.acceleration(t + h, &self.q, &self.u, &mut self.x)?;
-        f.solve(&self.after, &mut self.x)?;
-        expect_finite(t, &self.q, &self.x)?;
+        f.acceleration(t + h, &self.q, &self.u, &mut self.v)?;
+        f.solve(self.momenta.after(), &mut self.v)?;
+        expect_finite(t, &self.q, &self.v)
+    }
+
+    /// The momenta of a step with u from `q`.
+    fn set_momenta(&mut self, f: &mut dyn Lagrangian<T>, t: T, h: T, q: &[T]) -> Result<(), IntegrationError> {
+        let half = h * T::from_f64(0.5);
+        scale(half, &self.u, &mut self.increment);
+        self.topology.integrate(q, &self.increment, &mut self.q)?;
+        self.middle.set(f, t + half, &self.q, &self.u)?;
+        self.momenta.set_step(h, &self.u)?;
+        Ok(self.momenta.set(self.middle.momentum(), self.middle.force())?)
+    }
+}
+
+impl<T: Angle> Integrator<T> for VariationalMidpoint<T> {
+    const ORDER: u32 = 2;
+
+    fn step<F: Acceleration<T>>(&mut self, f: &mut F, t: T, h: T, q: &mut [T], v: &mut [T]) -> Result<(), IntegrationError> {
+        self.solve(f, t, h, q, v)?;
         q.copy_from_slice(&self.q);
-        v.copy_from_slice(&self.x);
+        v.copy_from_slice(&self.v);
         Ok(())
     }
 
-    /// The momenta of a step with u from `q`: that before it in `self.y`, that after it in `self.after`.
-    fn momenta<S: System>(&mut self, f: &mut Dynamics<S, T>, t: T, h: T, q: &[T]) -> Result<(), IntegrationError> {
-        let half = h * T::from_f64(0.5);
-        scale(half, &self.u, &mut self.increment);
-        self.half_by_q.d_integrate_q(&self.increment)?;
-        self.half_by_step.d_integrate_v(&self.increment)?;
-        self.topology.integrate(q, &self.increment, &mut self.q)?;
-        scale(h, &self.u, &mut self.increment);
-        self.whole_by_q.d_integrate_q(&self.increment)?;
-        self.whole_inverse.d_difference_to(&self.increment)?;
-
-        // g = ∂T/∂q − ∂V/∂q + τ
-        self.gradient.run(f.model(), &self.q, &self.u, &mut self.energy)?;
-        f.joint_forces(t + half, &self.q, &self.u, &mut self.force)?;
-        for joint in self.topology.joints().iter().filter(|joint| joint.kind == JointKind::Spherical) {
-            let three = |x: &[T]| Vec3::new(x[joint.v], x[joint.v + 1], x[joint.v + 2]);
-            let (omega, armature) = (three(&self.u), three(&f.model().armature));
-            let spin = omega.cross(Vec3::new(armature.x * omega.x, armature.y * omega.y, armature.z * omega.z));
-            add_scaled(T::one(), &spin.to_array(), &mut self.force[joint.v..]);
-        }
-        add_scaled(T::one(), &self.energy.kinetic_by_q, &mut self.force);
-        add_scaled(-T::one(), &self.energy.potential_by_q, &mut self.force);
-
-        // w = J(hu)⁻ᵀ (μ + (h/2) J(hu/2)ᵀ g)
-        self.half_by_step.transpose_mul(&self.force, &mut self.x)?;
-        self.y.copy_from_slice(&self.energy.kinetic_by_v);
-        add_scaled(half, &self.x, &mut self.y);
-        self.whole_inverse.transpose_mul(&self.y, &mut self.after)?;
-
-        // before: A(hu)ᵀ w − h A(hu/2)ᵀ g
-        self.whole_by_q.transpose_mul(&self.after, &mut self.y)?;
-        self.half_by_q.transpose_mul(&self.force, &mut self.x)?;
-        add_scaled(-h, &self.x, &mut self.y);
+    fn linearise<F: Linearise<T>>(&mut self, f: &mut F, t: T, h: T, q: &mut [T], v: &mut [T]) -> Result<(), IntegrationError> {
+        self.solve(f, t, h, q, v)?;
+        let Self { topology, middle, momenta, u, derivative, .. } = self;
+        let ends = Ends { t, h, q, v, next_q: &self.q, next_v: &self.v };
+        derivative.as_mut().ok_or_else(no_room)?.set(f, topology, &ends, u, middle, momenta)?;
+        q.copy_from_slice(&self.q);
+        v.copy_from_slice(&self.v);
         Ok(())
+    }
+
+    fn push(&mut self, dq: &mut [T], dv: &mut [T], du: &[T]) {
+        let derivative = self.derivative.as_mut().expect("a workspace made for derivatives");
+        derivative.push(dq, dv, du).expect("directions have the sizes of the tree");
+    }
+
+    fn pull(&mut self, lq: &mut [T], lv: &mut [T], lu: &mut [T]) {
+        let derivative = self.derivative.as_mut().expect("a workspace made for derivatives");
+        derivative.pull(lq, lv, lu).expect("gradients have the sizes of the tree");
     }
 }

@@ -7,3 +7,4 @@ mod conservation;
 mod order;
 mod sensitivity;
 mod variational;
+mod variational_derivative;

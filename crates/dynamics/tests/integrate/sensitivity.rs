@@ -5,7 +5,7 @@ use crate::common;
 use common::{ROBOTS, build, distance, larger, largest, within};
 use featherbench_dynamics::integrate::{
     Adjoint, Analytic, ByDuals, Cost, CostGradient, DormandPrince, Forward, ImplicitMidpoint, Instant, IntegrationError, Integrator,
-    Linearisation, Linearise, Rollout, RungeKutta4, SymplecticEuler, System, Visit, rollout, sensitivity,
+    Linearisation, Linearise, Rollout, RungeKutta4, SymplecticEuler, System, VariationalMidpoint, Visit, rollout, sensitivity,
 };
 use featherbench_model::{BodyDescription, Description, JointDescription, JointType, Model, Placement, difference, integrate};
 use featherbench_robots::{Family, Random, StateBatch};
@@ -13,8 +13,8 @@ use featherbench_spatial::{Angle, DoubleDouble, Force, Real, Vec3};
 
 /// Motors at these dofs. The parameters are a damping, and the mass of the last body. A wrench that changes with time acts on the first.
 #[derive(Clone, Debug)]
-struct Driven {
-    motors: Vec<usize>,
+pub(super) struct Driven {
+    pub(super) motors: Vec<usize>,
 }
 
 impl System for Driven {
@@ -49,15 +49,15 @@ impl System for Driven {
 }
 
 /// A robot with the numbers of a trajectory.
-struct Case {
-    name: &'static str,
-    model: Model<f64>,
-    system: Driven,
-    q: Vec<f64>,
-    v: Vec<f64>,
-    steps: Vec<f64>,
-    controls: Vec<f64>,
-    parameters: Vec<f64>,
+pub(super) struct Case {
+    pub(super) name: &'static str,
+    pub(super) model: Model<f64>,
+    pub(super) system: Driven,
+    pub(super) q: Vec<f64>,
+    pub(super) v: Vec<f64>,
+    pub(super) steps: Vec<f64>,
+    pub(super) controls: Vec<f64>,
+    pub(super) parameters: Vec<f64>,
 }
 
 fn arm(links: usize) -> Model<f64> {
@@ -80,45 +80,47 @@ fn cases() -> Vec<Case> {
     let quadruped = Model::build(&Family::parse("quadruped").unwrap().generate().unwrap()).unwrap();
     [("pendulum", arm(1), 0), ("2R arm", arm(2), 0), ("floating quadruped", quadruped, 6)]
         .into_iter()
-        .map(|(name, model, passive)| {
-            let states = StateBatch::random(&model, 1, 4);
-            let (nv, count) = (model.topology.nv(), 6);
-            let mut random = Random::new(9, nv as u64);
-            let motors: Vec<usize> = (passive..nv).collect();
-            let mut numbers = |count: usize, reach: f64| (0..count).map(|_| random.uniform(-reach, reach)).collect::<Vec<_>>();
-            let last = model.inertias[model.inertias.len() - 1].mass;
-            // Steps of unequal lengths, as an adaptive integration makes them.
-            let steps = (0..count).map(|k| 0.01 + 0.002 * f64::from(k)).collect();
-            Case {
-                name,
-                q: states.q(0).to_vec(),
-                v: states.v(0).to_vec(),
-                steps,
-                controls: numbers(count as usize * motors.len(), 2.0),
-                parameters: vec![0.1, last],
-                system: Driven { motors },
-                model,
-            }
-        })
+        .map(|(name, model, passive)| Case::new(name, model, passive))
         .collect()
 }
 
 impl Case {
-    fn rollout(&self) -> Rollout<'_, f64> {
+    /// Six steps of a robot with motors at all dofs but the first ones.
+    pub(super) fn new(name: &'static str, model: Model<f64>, passive: usize) -> Self {
+        let states = StateBatch::random(&model, 1, 4);
+        let (nv, count) = (model.topology.nv(), 6);
+        let mut random = Random::new(9, nv as u64);
+        let motors: Vec<usize> = (passive..nv).collect();
+        let mut numbers = |count: usize, reach: f64| (0..count).map(|_| random.uniform(-reach, reach)).collect::<Vec<_>>();
+        let last = model.inertias[model.inertias.len() - 1].mass;
+        Self {
+            name,
+            q: states.q(0).to_vec(),
+            v: states.v(0).to_vec(),
+            // Steps of unequal lengths, as an adaptive integration makes them.
+            steps: (0..count).map(|k| 0.01 + 0.002 * f64::from(k)).collect(),
+            controls: numbers(count as usize * motors.len(), 2.0),
+            parameters: vec![0.1, last],
+            system: Driven { motors },
+            model,
+        }
+    }
+
+    pub(super) fn rollout(&self) -> Rollout<'_, f64> {
         let Self { q, v, steps, controls, parameters, .. } = self;
         Rollout { start: 0.3, steps, q, v, controls, parameters }
     }
 
-    fn inputs(&self) -> usize {
+    pub(super) fn inputs(&self) -> usize {
         self.system.motors.len() + 2
     }
 
-    fn by_duals(&self) -> ByDuals<Driven, f64> {
+    pub(super) fn by_duals(&self) -> ByDuals<Driven, f64> {
         ByDuals::new(&self.model, self.system.clone(), &self.parameters).unwrap()
     }
 
     /// A random direction of all variables.
-    fn direction(&self, seed: u64) -> Vec<f64> {
+    pub(super) fn direction(&self, seed: u64) -> Vec<f64> {
         let mut random = Random::new(seed, 1);
         (0..self.rollout().variables()).map(|_| random.uniform(-1.0, 1.0)).collect()
     }
@@ -138,7 +140,7 @@ fn each(question: &impl Ask) {
                 question.ask(&name, &case, $method::with_derivatives(t, inputs), $method::<DoubleDouble>::new(t));
             )+};
         }
-        ask!(SymplecticEuler, ImplicitMidpoint, RungeKutta4, DormandPrince);
+        ask!(SymplecticEuler, ImplicitMidpoint, VariationalMidpoint, RungeKutta4, DormandPrince);
     }
 }
 
@@ -167,6 +169,17 @@ fn moved_end<W: Integrator<DoubleDouble>>(
     (qs[qs.len() - q.len()..].to_vec(), vs[vs.len() - nv..].to_vec())
 }
 
+/// The derivative of the end along a direction, by differences.
+pub(super) fn differences<W: Integrator<DoubleDouble>>(case: &Case, integrator: &mut W, direction: &[f64]) -> Vec<f64> {
+    // The difference of 32-digit ends errs by the square of this, and by 1e-31 over it.
+    const BY: f64 = 1e-9;
+    let [forward, backward] = [BY, -BY].map(|by| moved_end(case, integrator, direction, by));
+    let mut all: Vec<f64> = difference(&case.model.topology, &backward.0, &forward.0).unwrap().iter().map(|x| x.to_f64()).collect();
+    all.extend(forward.1.iter().zip(&backward.1).map(|(forward, backward)| (*forward - *backward).to_f64()));
+    all.iter_mut().for_each(|x| *x /= 2.0 * BY);
+    all
+}
+
 #[test]
 fn forward_sensitivities_are_those_of_differences() {
     struct Differences;
@@ -176,12 +189,7 @@ fn forward_sensitivities_are_those_of_differences() {
             let nv = t.nv();
             let direction = case.direction(3);
             let found = sensitivity(t, &mut integrator, &mut case.by_duals(), &case.rollout(), &direction).unwrap();
-            // The difference of 32-digit ends errs by the square of this, and by 1e-31 over it.
-            const BY: f64 = 1e-9;
-            let [forward, backward] = [BY, -BY].map(|by| moved_end(case, &mut extended, &direction, by));
-            let mut expected: Vec<f64> = difference(t, &backward.0, &forward.0).unwrap().iter().map(|x| x.to_f64()).collect();
-            expected.extend(forward.1.iter().zip(&backward.1).map(|(forward, backward)| (*forward - *backward).to_f64()));
-            expected.iter_mut().for_each(|x| *x /= 2.0 * BY);
+            let expected = differences(case, &mut extended, &direction);
             assert_eq!(expected.len(), 2 * nv);
             // Six steps of some hundred operations in f64, whose roundings partly cancel.
             within(&format!("{name}: against differences"), distance(&found, &expected) / (1.0 + largest(&expected)), 2e-14);
@@ -236,7 +244,7 @@ impl Cost<f64> for End {
     }
 }
 
-fn dot(x: &[f64], y: &[f64]) -> f64 {
+pub(super) fn dot(x: &[f64], y: &[f64]) -> f64 {
     x.iter().zip(y).map(|(x, y)| x * y).sum()
 }
 
@@ -400,7 +408,7 @@ fn sensitivities_converge_at_the_order() {
                 Orders.ask(&name, &case, $method::with_derivatives(t, 2), $method::<DoubleDouble>::new(t));
             )+};
         }
-        ask!(SymplecticEuler, ImplicitMidpoint, RungeKutta4, DormandPrince);
+        ask!(SymplecticEuler, ImplicitMidpoint, VariationalMidpoint, RungeKutta4, DormandPrince);
     }
 }
 
@@ -417,6 +425,7 @@ fn what_does_not_fit_is_an_error() {
     assert!(complains(sensitivity(t, &mut RungeKutta4::new(t), &mut f, &fits, &direction)), "no room for derivatives");
     assert!(complains(sensitivity(t, &mut SymplecticEuler::new(t), &mut f, &fits, &direction)));
     assert!(complains(sensitivity(t, &mut ImplicitMidpoint::new(t), &mut f, &fits, &direction)));
+    assert!(complains(sensitivity(t, &mut VariationalMidpoint::new(t), &mut f, &fits, &direction)));
     let mut integrator = RungeKutta4::with_derivatives(t, case.inputs());
     for wrong in [
         Rollout { q: &fits.q[1..], ..fits },

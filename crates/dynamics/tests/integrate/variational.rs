@@ -6,7 +6,7 @@ use common::{ROBOTS, build, distance, larger, largest, lifted, within};
 use featherbench_dynamics::integrate::{
     DormandPrince, Dynamics, Instant, IntegrationError, Integrator, Motors, Passive, System, VariationalMidpoint,
 };
-use featherbench_dynamics::{centroidal_momentum, energy, mass_matrix};
+use featherbench_dynamics::{Error, centroidal_momentum, energy, mass_matrix};
 use featherbench_model::{Model, difference, integrate};
 use featherbench_robots::{Family, StateBatch};
 use featherbench_spatial::{Angle, DoubleDouble, Force, Lift, Real, Vec3};
@@ -205,6 +205,11 @@ fn what_does_not_work_is_an_error() {
     assert_eq!((q, v), before);
     integrator.step(&mut f, 0.0, 0.01, &mut q, &mut v).unwrap();
     assert!((2..30).contains(&integrator.iterations()), "{}", integrator.iterations());
+    let mut bare = |_: f64, _: &[f64], _: &[f64], a: &mut [f64]| -> Result<(), Error> {
+        a.fill(0.0);
+        Ok(())
+    };
+    assert_eq!(integrator.step(&mut bare, 0.0, 0.01, &mut q, &mut v), Err(IntegrationError::NoEnergies));
     let moved = integrate(t, &before.0, &[0.01 * 0.3, 0.01 * 0.2]).unwrap();
     within("it moves as the velocity says", distance(&q, &moved), 2e-3);
 }
