@@ -9,7 +9,7 @@
 //! Armature A of a spherical joint adds ω × A ω to g: see [`super::VariationalMidpoint`].
 //! Source: the definitions; the derivatives are those of forward-mode differentiation, one direction at a time, and the last equation.
 //! Frames, shapes, units: as in [`EnergyGradient`]; matrices are dense, row after row, `nv` rows.
-//! Cost of the derivatives: `nv` and as many as there are inputs of [`EnergyGradient::run`] over duals, and the forces in each direction.
+//! Cost of the derivatives: one [`EnergyGradient::run`] over duals per dof and per parameter, and the joint forces over duals in each direction.
 //! A call does not allocate.
 
 use super::by_duals::{enter, leave};
@@ -22,6 +22,21 @@ use featherbench_model::{JointKind, Model, Topology};
 use featherbench_spatial::{Angle, Dual, Real, Vec3};
 
 /// An acceleration with the mechanics behind it: energies of a model, and joint forces.
+///
+/// ```
+/// use featherbench_dynamics::integrate::{Acceleration, Dynamics, Motors};
+/// use featherbench_model::Model;
+/// use featherbench_robots::Family;
+///
+/// let model: Model<f64> = Model::build(&Family::parse("chain:n=3,layout=spatial")?.generate()?)?;
+/// let mut f = Dynamics::new(&model, Motors { dofs: vec![2] }, &[])?;
+/// f.set_controls(&[0.5])?;
+/// let mechanics = f.lagrangian().ok_or("dynamics have energies")?;
+/// let mut tau = [0.0; 3];
+/// mechanics.joint_forces(0.0, &[0.1; 3], &[0.0; 3], &mut tau)?;
+/// assert_eq!(tau, [0.0, 0.0, 0.5]);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 pub trait Lagrangian<T>: Acceleration<T> {
     /// The model with its parameters.
     fn model(&self) -> &Model<T>;
@@ -40,6 +55,23 @@ pub trait Lagrangian<T>: Acceleration<T> {
 }
 
 /// The derivatives of the momentum μ = M v and of the force g = ∂T/∂q − ∂V/∂q + τ at one state.
+///
+/// ```
+/// use featherbench_dynamics::integrate::{Analytic, LagrangianPartials, Linearise, Motors};
+/// use featherbench_model::Model;
+/// use featherbench_robots::{Family, StateBatch};
+///
+/// let model: Model<f64> = Model::build(&Family::parse("chain:n=3,layout=spatial")?.generate()?)?;
+/// let states = StateBatch::random(&model, 1, 7);
+/// let mut f = Analytic::new(&model, Motors { dofs: vec![0, 1, 2] }, &[])?;
+/// let mut partials = LagrangianPartials::new(3, 3);
+/// f.linearise_lagrangian(0.0, states.q(0), states.v(0), &mut partials)?;
+/// // A motor is a force on its own dof, and no momentum. No momentum depends on the first angle of a chain.
+/// assert!((0..3).all(|k| partials.force_by_input[4 * k] == 1.0));
+/// assert!(partials.momentum_by_input.iter().all(|x| *x == 0.0));
+/// assert!((0..3).all(|row| partials.momentum_by_q[3 * row].abs() < 1e-15));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Clone, Debug)]
 pub struct LagrangianPartials<T> {
     /// ∂μ/∂q on the tangent space of q, with the numbers in v held: nv × nv, row after row.
@@ -161,10 +193,17 @@ impl<T: Angle> MomentumAndForce<Dual<T>> {
             // ∂(∂T/∂q)/∂v = (∂μ/∂q)ᵀ
             by_v.iter_mut().enumerate().for_each(|(column, x)| *x += result.momentum_by_q[column * nv + row]);
         }
+        result.momentum_by_input.fill(T::zero());
         at.by_inputs(|at, input, k| {
             enter(f, at, input)?;
-            self.set(f, t, &at.q, &at.v)?;
-            write_column(self.momentum(), &mut result.momentum_by_input, inputs, k);
+            match input {
+                // Controls do not change the model, hence no energy.
+                Input::Control => self.set_joint_forces(f, t, &at.q, &at.v)?,
+                Input::Parameter => {
+                    self.set(f, t, &at.q, &at.v)?;
+                    write_column(self.momentum(), &mut result.momentum_by_input, inputs, k);
+                }
+            }
             write_column(&self.force, &mut result.force_by_input, inputs, k);
             Ok(())
         })?;

@@ -12,16 +12,16 @@
 //! |---|---|---|---|
 //! | [`SymplecticEuler`] | 1 | 1 | symplectic for a constant M |
 //! | [`ImplicitMidpoint`] | 2 | iterations | a step with −h undoes one with h; conserves what is quadratic in v |
+//! | [`VariationalMidpoint`] | 2 | 2, and energies in iterations | symplectic; conserves momentum to rounding |
 //! | [`RungeKutta4`] | 4 | 4 | |
 //! | [`DormandPrince`] | 5 | 6, and one more in the first step | an error estimate of order 4, hence adaptive steps |
 //!
-//! [`VariationalMidpoint`] stands apart: it needs energies, not accelerations. It has order 2, is symplectic, and conserves momentum to rounding.
-//!
-//! [`Integrator`] is what the others have in common: a step, the step with what its derivative needs, the derivative times a direction, and its
+//! [`Integrator`] is what they have in common: a step, the step with what its derivative needs, the derivative times a direction, and its
 //! transpose times a gradient. [`Forward`] chains the derivatives along a trajectory. [`Adjoint`] goes back and gives the gradient of a cost.
 //!
 //! [`Acceleration`] is the right-hand side: a closure, or [`Dynamics`], the articulated-body algorithm with a [`System`] of forces.
 //! [`Linearise`] is the right-hand side with its derivatives: [`Analytic`] by recursions, [`ByDuals`] by dual numbers alone.
+//! [`VariationalMidpoint`] needs the energies too: [`Lagrangian`] with [`LagrangianPartials`]. All of them have those but closures.
 //!
 //! # Cost
 //!
@@ -32,7 +32,7 @@
 //! |---|---|---|---|
 //! | [`SymplecticEuler`] | 2.4 | 36 | 0.7 |
 //! | [`ImplicitMidpoint`] | 16 | 64 | 1.7 |
-//! | [`VariationalMidpoint`] | 33 | | |
+//! | [`VariationalMidpoint`] | 33 | not measured | not measured |
 //! | [`RungeKutta4`] | 9.6 | 154 | 2.9 |
 //! | [`DormandPrince`], no stage shared | 17 | 264 | 4.4 |
 //!

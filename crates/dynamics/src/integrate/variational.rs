@@ -13,7 +13,7 @@
 //! Derivative, with p = M(q) v, p⁻(q, u) the right-hand side of the middle equation, and p' = w:
 //!
 //! ```text
-//! ∂p⁻/∂u δu = M(q) δv + (∂p/∂q − ∂p⁻/∂q) δq        M(q') δv' = ∂w/∂q δq + ∂w/∂u δu − ∂p'/∂q' δq'
+//! ∂p⁻/∂u δu = M(q) δv + ∂(p − p⁻)/∂q δq        M(q') δv' = ∂w/∂q δq + ∂w/∂u δu − ∂p'/∂q' δq'
 //! ```
 //!
 //! Inputs enter as q does. It is that of the solution, whatever the iterations that led there.
@@ -27,8 +27,9 @@
 //! Order 2. A step with −h undoes one with h. Without dissipation (q, M v) moves by a symplectic map, so that the energy does not drift. A momentum
 //! that belongs to a symmetry is conserved to rounding: of a floating robot without gravity, the linear and angular momentum in world axes.
 //! Frames, shapes, units: as in [`crate::Aba`]. Cost of a step: two [`crate::Aba::run`], and one [`crate::EnergyGradient`] and one
-//! [`crate::Aba::solve`] per iteration. The derivative adds [`Linearise::linearise_lagrangian`], a dense factorization of ∂p⁻/∂u, and nv products
-//! with block-diagonal maps; push and pull are five dense products and two solutions. A call does not allocate.
+//! [`crate::Aba::solve`] per iteration. The derivative adds one [`Linearise::linearise_lagrangian`], three [`crate::Crba::run`], two
+//! [`crate::MassGradient::run`], and the factors of ∂p⁻/∂u. [`Integrator::push`] and [`Integrator::pull`] take five products with dense
+//! matrices and two solutions. A call does not allocate.
 
 mod derivative;
 mod momenta;

@@ -3,7 +3,7 @@
 //! With p = M(q) v, p⁻(q, u) and w(q, u) the momenta before and after the step, and p' = M(q') v':
 //!
 //! ```text
-//! ∂p⁻/∂u δu = M(q) δv + (∂p/∂q − ∂p⁻/∂q) δq        δq' = A(hu) δq + h J(hu) δu        M(q') δv' = ∂w/∂q δq + ∂w/∂u δu − ∂p'/∂q' δq'
+//! ∂p⁻/∂u δu = M(q) δv + ∂(p − p⁻)/∂q δq        δq' = A(hu) δq + h J(hu) δu        M(q') δv' = ∂w/∂q δq + ∂w/∂u δu − ∂p'/∂q' δq'
 //! ```
 //!
 //! Source: the implicit function theorem. The state in the middle moves by `A(hu/2) δq + (h/2) J(hu/2) δu`. The momenta are linear in μ and g, so
@@ -36,7 +36,7 @@ pub(super) struct Derivative<T> {
     h: T,
     crba: Crba<T>,
     gradient: MassGradient<T>,
-    /// Of μ and g; then, in the same places, of p⁻ and w.
+    /// Of μ and g; then, in the same places, of p⁻ and w; at last of p − p⁻ and w, less p' where the inputs are meant.
     partials: LagrangianPartials<T>,
     /// Of p⁻ with respect to u.
     by_u: Lu<T>,
@@ -132,6 +132,7 @@ impl<T: Angle> Derivative<T> {
         to_momenta(momenta, &mut by_u.values, &mut partials.force_by_v, x, y)?;
         to_momenta(momenta, &mut partials.momentum_by_input, &mut partials.force_by_input, x, y)?;
         self.add_change_of_maps(topology, u, middle)?;
+        self.subtract_momenta();
         if self.by_u.factor() { Ok(()) } else { Err(IntegrationError::Singular { time: ends.t.min_lane() }) }
     }
 
@@ -184,21 +185,28 @@ impl<T: Angle> Derivative<T> {
         Ok(())
     }
 
+    /// From the derivatives of p⁻ to those of p − p⁻; and those of w by the inputs become those of w − p'.
+    fn subtract_momenta(&mut self) {
+        let nv = self.x.len();
+        for (place, x) in self.partials.momentum_by_q.iter_mut().enumerate() {
+            *x = self.momentum_by_q.get(place / nv, place % nv) - *x;
+        }
+        for (x, momentum) in self.partials.momentum_by_input.iter_mut().zip(&self.momentum_by_input) {
+            *x = *momentum - *x;
+        }
+        add_scaled(-T::one(), &self.next_momentum_by_input, &mut self.partials.force_by_input);
+    }
+
     /// The derivative times a direction.
     pub(super) fn push(&mut self, dq: &mut [T], dv: &mut [T], du: &[T]) -> Result<(), DimensionError> {
         let Self { partials, x, y, z, .. } = self;
-        // x = δu from M δv + δp by q and inputs − δp⁻ by q and inputs
-        y.fill(T::zero());
-        add_product(&partials.momentum_by_q, dq, y);
-        add_product(&partials.momentum_by_input, du, y);
+        // x = δu
         self.mass.mul(dv, x)?;
-        add_scaled(-T::one(), y, x);
-        self.momentum_by_q.mul(dq, y)?;
-        add_scaled(T::one(), y, x);
-        add_product(&self.momentum_by_input, du, x);
+        add_product(&partials.momentum_by_q, dq, x);
+        add_product(&partials.momentum_by_input, du, x);
         self.by_u.solve(x);
 
-        // y = δw
+        // y = δw, less what the inputs do to p'
         y.fill(T::zero());
         add_product(&partials.force_by_q, dq, y);
         add_product(&partials.force_by_v, x, y);
@@ -207,10 +215,7 @@ impl<T: Angle> Derivative<T> {
         dq.copy_from_slice(z);
         self.end_by_step.mul(x, z)?;
         add_scaled(self.h, z, dq);
-        // δv' = M(q')⁻¹ (δw − δp' by q' and inputs)
-        x.fill(T::zero());
-        add_product(&self.next_momentum_by_input, du, x);
-        add_scaled(-T::one(), x, y);
+        // δv' = M(q')⁻¹ (y − ∂p'/∂q' δq')
         self.next_momentum_by_q.mul(dq, z)?;
         add_scaled(-T::one(), z, y);
         self.next_mass.solve(y)?;
@@ -221,15 +226,11 @@ impl<T: Angle> Derivative<T> {
     /// The transpose times a gradient: the lines of [`Self::push`] backwards.
     pub(super) fn pull(&mut self, lq: &mut [T], lv: &mut [T], lu: &mut [T]) -> Result<(), DimensionError> {
         let Self { partials, x, y, z, .. } = self;
-        // y = −λw
-        for (y, lv) in y.iter_mut().zip(lv.iter()) {
-            *y = -*lv;
-        }
+        // y = λw
+        y.copy_from_slice(lv);
         self.next_mass.solve(y)?;
         self.next_momentum_by_q.mul_transposed(y, z)?;
-        add_scaled(T::one(), z, lq);
-        add_transpose_product(&self.next_momentum_by_input, y, lu);
-        y.iter_mut().for_each(|y| *y = -*y);
+        add_scaled(-T::one(), z, lq);
 
         // x = λu, through ∂p⁻/∂u
         self.end_by_step.transpose_mul(lq, z)?;
@@ -242,10 +243,6 @@ impl<T: Angle> Derivative<T> {
         self.by_u.transpose_solve(x);
 
         self.mass.mul(x, lv)?;
-        self.momentum_by_q.mul_transposed(x, z)?;
-        add_scaled(T::one(), z, lq);
-        add_transpose_product(&self.momentum_by_input, x, lu);
-        x.iter_mut().for_each(|x| *x = -*x);
         add_transpose_product(&partials.momentum_by_q, x, lq);
         add_transpose_product(&partials.momentum_by_input, x, lu);
         Ok(())
