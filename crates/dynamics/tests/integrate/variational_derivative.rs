@@ -178,6 +178,9 @@ fn without_energies_or_room_there_is_no_derivative() {
     let found = VariationalMidpoint::new(t).step(&mut Still, 0.0, 0.01, &mut q, &mut v);
     assert_eq!(found, Err(IntegrationError::NoEnergies));
     let mut f = Analytic::new(&model, Passive, &[]).unwrap();
+    let mut lost = vec![f64::NAN; t.nv()];
+    let found = VariationalMidpoint::with_derivatives(t, 0).linearise(&mut f, 2.0, 0.01, &mut q, &mut lost);
+    assert_eq!(found, Err(IntegrationError::NotFinite { time: 2.0 }));
     for mut integrator in [VariationalMidpoint::new(t), VariationalMidpoint::with_derivatives(t, 1)] {
         let found = integrator.linearise(&mut f, 0.0, 0.01, &mut q, &mut v);
         assert!(matches!(found, Err(IntegrationError::Dynamics(_))), "{found:?}");
