@@ -9,7 +9,8 @@
 //! Armature A of a spherical joint adds ω × A ω to g: see [`super::VariationalMidpoint`].
 //! Source: the definitions; the derivatives are those of forward-mode differentiation, one direction at a time, and the last equation.
 //! Frames, shapes, units: as in [`EnergyGradient`]; matrices are dense, row after row, `nv` rows.
-//! Cost of the derivatives: one [`EnergyGradient::run`] over duals per dof and per parameter, and the joint forces over duals in each direction.
+//! Cost of the derivatives: one [`EnergyGradient::run`] over duals per dof and per parameter, and the joint forces over duals in each
+//! direction.
 //! A call does not allocate.
 
 use super::by_duals::{enter, leave};

@@ -10,7 +10,7 @@
 //!
 //! The middle equation is solved for u: `u ← u + M(q)⁻¹ (M(q) v − …)`. The iteration ends as that of [`super::ImplicitMidpoint`].
 //!
-//! Derivative, with p = M(q) v, p⁻(q, u) the right-hand side of the middle equation, and p' = w:
+//! Derivative, with p = M(q) v, p⁻(q, u) the right-hand side of the middle equation, and p' = M(q') v':
 //!
 //! ```text
 //! ∂p⁻/∂u δu = M(q) δv + ∂(p − p⁻)/∂q δq        M(q') δv' = ∂w/∂q δq + ∂w/∂u δu − ∂p'/∂q' δq'

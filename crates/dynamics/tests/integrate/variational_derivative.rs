@@ -75,8 +75,8 @@ fn pull_is_the_transpose_of_push_entry_by_entry() {
     }
 }
 
-/// The symplectic form at momentum p: `δ₁q·δ₂p − δ₂q·δ₁p + p·[δ₁q, δ₂q]`, minus the exterior derivative of p·δq. Directions are in the axes of
-/// the moving bodies; there they do not commute, hence the last term. It is zero for one-dof joints.
+/// The symplectic form at momentum p: `δ₁q·δ₂p − δ₂q·δ₁p + p·[δ₁q, δ₂q]`, minus the exterior derivative of p·δq, and a bound of its
+/// products. Directions are in the axes of the moving bodies. They do not commute there, hence the last term.
 fn form(model: &Model<f64>, p: &[f64], x: &[f64], y: &[f64]) -> (f64, f64) {
     let nv = p.len();
     let mut sum = dot(&x[..nv], &y[nv..]) - dot(&y[..nv], &x[nv..]);

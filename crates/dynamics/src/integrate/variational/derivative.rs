@@ -6,9 +6,9 @@
 //! ∂p⁻/∂u δu = M(q) δv + ∂(p − p⁻)/∂q δq        δq' = A(hu) δq + h J(hu) δu        M(q') δv' = ∂w/∂q δq + ∂w/∂u δu − ∂p'/∂q' δq'
 //! ```
 //!
-//! Source: the implicit function theorem. The state in the middle moves by `A(hu/2) δq + (h/2) J(hu/2) δu`. The momenta are linear in μ and g, so
-//! that the columns of their derivatives are momenta as well. The maps' own change with u comes from duals: no joint's block depends on
-//! another joint, so that one direction moves all joints.
+//! Source: the implicit function theorem. The state in the middle moves by `A(hu/2) δq + (h/2) J(hu/2) δu`. The momenta are linear in μ and
+//! g, so that the columns of their derivatives are momenta as well. The maps' own change with u comes from duals: no joint's block depends
+//! on another joint, so that one direction moves all joints.
 //! Frames, shapes, units: as in [`super::VariationalMidpoint`]. Cost: see there. A call does not allocate.
 
 use super::momenta::Momenta;

@@ -4,8 +4,9 @@
 //! after: w = J(hu)⁻ᵀ (μ + (h/2) J(hu/2)ᵀ g)        before: A(hu)ᵀ w − h A(hu/2)ᵀ g
 //! ```
 //!
-//! Both are linear in μ and g; the maps depend on u alone. Source and names: see [`super::VariationalMidpoint`]. Frames: tangent spaces of the
-//! configurations before, in the middle, after. Shapes: `nv` numbers. Units: as ∂T/∂v. Cost: O(n). A call does not allocate.
+//! Both are linear in μ and g; the maps depend on u alone. Source and names: see [`super::VariationalMidpoint`].
+//! Frames: tangent spaces of the configurations before, in the middle, after. Shapes: `nv` numbers. Units: as ∂T/∂v. Cost: O(n). A call
+//! does not allocate.
 
 use crate::DimensionError;
 use crate::integrate::dense::add_scaled;
