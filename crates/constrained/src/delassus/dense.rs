@@ -1,0 +1,65 @@
+//! The Delassus matrix by a dense factorization of M, in any scalar.
+//!
+//! Computes `M = L Lᵀ`, `Y = L⁻¹ Jᵀ`, `G = Yᵀ Y`. Source: Golub and Van Loan, *Matrix Computations* (4th edition), algorithm 4.2.1 (gaxpy
+//! Cholesky) and 3.1.1. It knows nothing of the tree: no zero is used. It allocates.
+
+use crate::error::Error;
+use featherbench_dynamics::{DimensionError, NotPositiveDefinite, TreeSparse};
+use featherbench_spatial::Real;
+use nalgebra::{DMatrix, Scalar};
+
+/// G from J (m rows of n numbers, row after row) and M.
+///
+/// # Errors
+/// [`Error`]: J is no whole number of rows, or M is not positive definite.
+///
+/// ```
+/// use featherbench_dynamics::TreeSparse;
+/// let mut mass = TreeSparse::of_parents(&[None, Some(0)])?;
+/// mass.values_mut().copy_from_slice(&[5.0, 4.0, 8.0]);
+/// // M⁻¹ = [[8, −4], [−4, 5]] / 24
+/// let g = featherbench_constrained::delassus::dense(&[1.0, 1.0], &mass)?;
+/// assert!((g[(0, 0)] - 5.0_f64 / 24.0).abs() < 1e-16);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub fn dense<T: Real + Scalar>(jacobian: &[T], mass: &TreeSparse<T>) -> Result<DMatrix<T>, Error> {
+    let n = mass.size();
+    let rows = jacobian.len().checked_div(n).unwrap_or(0);
+    DimensionError::expect("numbers of the Jacobian", rows * n, jacobian.len())?;
+    let mut lower = DMatrix::from_element(n, n, T::zero());
+    for column in 0..n {
+        for row in column..n {
+            let sum = (0..column).fold(mass.get(row, column), |sum, k| (-lower[(row, k)]).mul_add(lower[(column, k)], sum));
+            if row == column {
+                let pivot = sum.min_lane();
+                if pivot.is_nan() || pivot <= 0.0 {
+                    return Err(NotPositiveDefinite { dof: column, pivot }.into());
+                }
+                lower[(row, column)] = sum.sqrt();
+            } else {
+                lower[(row, column)] = sum / lower[(column, column)];
+            }
+        }
+    }
+    let mut half = DMatrix::from_element(n, rows, T::zero());
+    for row in 0..rows {
+        for dof in 0..n {
+            let sum = (0..dof).fold(jacobian[row * n + dof], |sum, k| (-lower[(dof, k)]).mul_add(half[(k, row)], sum));
+            half[(dof, row)] = sum / lower[(dof, dof)];
+        }
+    }
+    Ok(gram(&half))
+}
+
+/// `YᵀY`, each pair of columns once.
+pub(super) fn gram<T: Real + Scalar>(half: &DMatrix<T>) -> DMatrix<T> {
+    let rows = half.ncols();
+    let mut g = DMatrix::from_element(rows, rows, T::zero());
+    for a in 0..rows {
+        for b in 0..=a {
+            let sum = half.column(a).iter().zip(half.column(b).iter()).fold(T::zero(), |sum, (x, y)| x.mul_add(*y, sum));
+            (g[(a, b)], g[(b, a)]) = (sum, sum);
+        }
+    }
+    g
+}

@@ -1,0 +1,43 @@
+//! The Delassus matrix by the tree-sparse factors of M.
+//!
+//! Computes `M = RᵀR` with `R = D^½ L`, then `Y = R⁻ᵀ Jᵀ` by one half of a solution per row, then `G = Yᵀ Y`.
+//! Source: the book, sections 6.5 and 8.5 (exploiting branch-induced sparsity). It allocates Y and G.
+
+use super::dense::gram;
+use crate::error::Error;
+use featherbench_dynamics::{DimensionError, Ltdl};
+use featherbench_spatial::Real;
+use nalgebra::{DMatrix, Scalar};
+
+/// `Y = R⁻ᵀ Jᵀ`: one column of n numbers per row of J. Its columns have the lengths and angles of the rows in the metric of M⁻¹.
+///
+/// # Errors
+/// [`Error::Dimension`] when J is no whole number of rows.
+pub fn half_solved<T: Real + Scalar>(jacobian: &[T], factors: &Ltdl<T>) -> Result<DMatrix<T>, Error> {
+    let n = factors.factors().size();
+    let rows = jacobian.len().checked_div(n).unwrap_or(0);
+    DimensionError::expect("numbers of the Jacobian", rows * n, jacobian.len())?;
+    // A row of J is a column of Jᵀ, and columns are contiguous.
+    let mut half = DMatrix::from_column_slice(n, rows, jacobian);
+    for column in half.as_mut_slice().chunks_exact_mut(n.max(1)) {
+        factors.solve_root_transposed(column)?;
+    }
+    Ok(half)
+}
+
+/// G from J (m rows of n numbers, row after row) and the factors of M.
+///
+/// # Errors
+/// [`Error::Dimension`] when J is no whole number of rows.
+///
+/// ```
+/// use featherbench_dynamics::TreeSparse;
+/// let mut mass = TreeSparse::of_parents(&[None, Some(0)])?;
+/// mass.values_mut().copy_from_slice(&[5.0, 4.0, 8.0]);
+/// let g = featherbench_constrained::delassus::by_factors(&[1.0, 1.0], &mass.into_ltdl()?)?;
+/// assert!((g[(0, 0)] - 5.0_f64 / 24.0).abs() < 1e-16);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub fn by_factors<T: Real + Scalar>(jacobian: &[T], factors: &Ltdl<T>) -> Result<DMatrix<T>, Error> {
+    Ok(gram(&half_solved(jacobian, factors)?))
+}
