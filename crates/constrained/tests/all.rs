@@ -4,3 +4,4 @@ mod common;
 mod delassus;
 mod laws;
 mod refusals;
+mod solve;

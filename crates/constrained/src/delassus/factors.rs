@@ -1,7 +1,7 @@
 //! The Delassus matrix by the tree-sparse factors of M.
 //!
 //! Computes `M = RᵀR` with `R = D^½ L`, then `Y = R⁻ᵀ Jᵀ` by one half of a solution per row, then `G = Yᵀ Y`.
-//! Source: the book, sections 6.5 and 8.5 (exploiting branch-induced sparsity). It allocates Y and G.
+//! Source: the book, section 6.5 (branch-induced sparsity), and chapter 8. It allocates Y and G.
 
 use super::dense::gram;
 use crate::error::Error;

@@ -1,0 +1,148 @@
+//! Projection of configurations and velocities onto the constraints, in the metric of M.
+//!
+//! Computes, with `J M⁻¹ Jᵀ` of the rank that [`Kkt`](crate::Kkt) finds:
+//!
+//! ```text
+//! q ← q ⊕ δ,   δ = −M⁻¹ Jᵀ (J M⁻¹ Jᵀ)⁺ φ     until |φ| ≤ tolerance, or rounding lets it fall no more
+//! v ← v − M⁻¹ Jᵀ (J M⁻¹ Jᵀ)⁺ J v             once: the velocity nearest in kinetic energy
+//! ```
+//!
+//! δ is the shortest step in the metric of M, so a configuration on the constraints is left as it is. Rows below `cut` of the longest are taken
+//! as redundant: near a singular configuration a smaller one would ask for a large step.
+//! Source: E. Eich, *Convergence results for a coordinate projection method applied to mechanical systems* (SIAM J. Numer. Anal. 30, 1993);
+//! the book, section 8.3 (loop-closure errors). Convergence: quadratic where J has constant rank. Units: as [`Law`](crate::Law). It allocates.
+
+use crate::constraint::Constraints;
+use crate::delassus::half_solved;
+use crate::error::Error;
+use crate::rows::Rows;
+use crate::solve::check_tolerance;
+use crate::solve::rank::Revealed;
+use featherbench_dynamics::{Crba, Ltdl};
+use featherbench_model::{Model, Topology};
+
+/// How to project.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Projection {
+    /// The largest residual |φ| that is allowed, m and rad.
+    pub tolerance: f64,
+    /// What a row's rest may be of the longest row, and count as redundant.
+    pub cut: f64,
+    /// The most iterations.
+    pub iterations: usize,
+    /// The longest step of one iteration, rad and m per dof: a longer one is shortened. From far away Newton's steps lead anywhere.
+    pub reach: f64,
+}
+
+impl Default for Projection {
+    /// |φ| ≤ 10⁻¹², cut 10⁻⁸, 50 iterations, steps of 0.5 at most.
+    fn default() -> Self {
+        Self { tolerance: 1e-12, cut: 1e-8, iterations: 50, reach: 0.5 }
+    }
+}
+
+/// What a projection did.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Projected {
+    /// Iterations of Newton's method.
+    pub iterations: usize,
+    /// The largest |φ| at the end.
+    pub residual: f64,
+    /// The rank of J there.
+    pub rank: usize,
+}
+
+/// The workspace of a projection.
+#[derive(Clone, Debug)]
+struct Metric {
+    rows: Rows<f64>,
+    crba: Crba<f64>,
+    factors: Ltdl<f64>,
+}
+
+impl Metric {
+    fn new(constraints: &Constraints) -> Self {
+        let topology = constraints.topology();
+        Self { rows: Rows::new(constraints), crba: Crba::new(topology), factors: Ltdl::new(topology) }
+    }
+
+    /// Rows at q and v; the factors of `J M^−½`.
+    fn form(&mut self, model: &Model<f64>, constraints: &Constraints, q: &[f64], v: &[f64], cut: f64) -> Result<Revealed, Error> {
+        self.rows.run(model, constraints, q, v)?;
+        self.crba.run(model, q, self.factors.matrix_mut())?;
+        self.factors.factor()?;
+        Ok(Revealed::of(half_solved(self.rows.jacobian(), &self.factors)?, cut))
+    }
+
+    /// The shortest δ with J δ = c.
+    fn step(&self, revealed: &Revealed, c: &[f64]) -> Result<Vec<f64>, Error> {
+        Ok(self.factors.applied(Ltdl::solve_root, revealed.shortest(c).as_slice())?)
+    }
+}
+
+impl Projection {
+    /// Moves `q` onto the constraints.
+    ///
+    /// # Errors
+    /// [`Error::NotConverged`] when the residual is above the tolerance after all iterations, or can fall no more: `q` is then as it was.
+    /// The others as [`Rows::run`](crate::Rows::run).
+    ///
+    /// ```
+    /// use featherbench_constrained::{Attachment, Constraint, Constraints, stabilise::Projection};
+    /// use featherbench_model::Model;
+    /// use featherbench_robots::Family;
+    /// let model: Model<f64> = Model::build(&Family::parse("chain:n=4")?.generate()?)?;
+    /// let held = Constraint::point("tip", Attachment::point(0, [0.0; 3]), Attachment::point(3, [0.1, 0.0, 0.0]));
+    /// let constraints = Constraints::new(&model.topology, vec![held])?;
+    /// let mut q = vec![0.0, 1.0, 1.8, 1.2];
+    /// let found = Projection::default().configuration(&model, &constraints, &mut q);
+    /// # let _ = found;
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn configuration(&self, model: &Model<f64>, constraints: &Constraints, q: &mut [f64]) -> Result<Projected, Error> {
+        check_tolerance("cut of the projection", self.cut)?;
+        check_tolerance("tolerance of the projection", self.tolerance)?;
+        let mut metric = Metric::new(constraints);
+        let still = vec![0.0; model.topology.nv()];
+        let mut at = q.to_vec();
+        let mut iterations = 0;
+        loop {
+            let revealed = metric.form(model, constraints, &at, &still, self.cut)?;
+            let phi: Vec<f64> = metric.rows.residuals().map(|residual| -residual).collect();
+            let residual = phi.iter().fold(0.0_f64, |a, b| a.max(b.abs()));
+            if residual <= self.tolerance {
+                q.copy_from_slice(&at);
+                return Ok(Projected { iterations, residual, rank: revealed.rank() });
+            }
+            if iterations == self.iterations {
+                return Err(Error::NotConverged { what: "the projection onto the constraints", iterations, residual });
+            }
+            let mut step = metric.step(&revealed, &phi)?;
+            let longest = step.iter().fold(0.0_f64, |a, b| a.max(b.abs()));
+            if longest > self.reach {
+                step.iter_mut().for_each(|x| *x *= self.reach / longest);
+            }
+            at = integrated(&model.topology, &at, &step)?;
+            iterations += 1;
+        }
+    }
+
+    /// Moves `v` to the nearest velocity with J v = 0.
+    ///
+    /// # Errors
+    /// [`Error`]: an argument does not fit or is not finite, a dof meets no inertia, or a weld is half a turn off.
+    pub fn velocity(&self, model: &Model<f64>, constraints: &Constraints, q: &[f64], v: &mut [f64]) -> Result<(), Error> {
+        check_tolerance("cut of the projection", self.cut)?;
+        let mut metric = Metric::new(constraints);
+        let revealed = metric.form(model, constraints, q, v, self.cut)?;
+        let mut rate = vec![0.0; constraints.rows()];
+        metric.rows.multiply(v, &mut rate)?;
+        let change = metric.step(&revealed, &rate)?;
+        v.iter_mut().zip(change).for_each(|(v, change)| *v -= change);
+        Ok(())
+    }
+}
+
+fn integrated(topology: &Topology, q: &[f64], step: &[f64]) -> Result<Vec<f64>, Error> {
+    Ok(featherbench_model::integrate(topology, q, step)?)
+}
