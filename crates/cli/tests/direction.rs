@@ -5,7 +5,7 @@ use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
 /// The crates of ours on which each crate may depend.
-const ALLOWED: [(&str, &[&str]); 14] = [
+const ALLOWED: [(&str, &[&str]); 15] = [
     ("spatial", &["wide"]),
     ("model", &["spatial"]),
     ("robots", &["spatial", "model"]),
@@ -13,6 +13,7 @@ const ALLOWED: [(&str, &[&str]); 14] = [
     ("dynamics", &["spatial", "model"]),
     ("reference", &["model"]),
     ("contact", &["spatial"]),
+    ("constrained", &["spatial", "model", "dynamics"]),
     ("results", &[]),
     ("report", &["results"]),
     ("protocol", &["spatial", "model"]),

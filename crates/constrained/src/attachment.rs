@@ -61,10 +61,7 @@ where
             arm,
             placement: Transform::new(placement.rotation * own.rotation, placement.translation + arm),
             velocity: Motion::new(velocity.ang, velocity.lin + swing),
-            acceleration: Motion::new(
-                acceleration.ang,
-                acceleration.lin + velocity.ang.cross_add(swing, acceleration.ang.cross(arm)),
-            ),
+            acceleration: Motion::new(acceleration.ang, acceleration.lin + velocity.ang.cross_add(swing, acceleration.ang.cross(arm))),
         })
     }
 

@@ -170,7 +170,9 @@ impl Graph {
                 }
                 if seen[link] == start + 1 {
                     let from = path.iter().position(|other| *other == link).unwrap_or(0);
-                    return Err(BadGraph::CycleWithoutCut { links: path[from..].iter().map(|link: &usize| links[*link].clone()).collect() });
+                    return Err(BadGraph::CycleWithoutCut {
+                        links: path[from..].iter().map(|link: &usize| links[*link].clone()).collect(),
+                    });
                 }
                 if moved_by[link].is_none() {
                     return Err(BadGraph::Orphan { link: links[link].clone() });

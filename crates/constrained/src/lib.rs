@@ -1,4 +1,29 @@
-//! Robots with loops: constraints on a tree, and their dynamics.
+//! Robots with loops: the graph, constraints on its spanning tree, and constrained dynamics.
+//!
+//! - [`Graph`] has links and joints with loops: spanning tree, cut joints, fundamental [`Cycle`]s, Grübler's count. [`Mechanism`] is a
+//!   description with the [`LoopJoint`]s that close it; [`Mobility`] is the truth that the count misses.
+//! - [`Constraint`] holds points, frames, distances, gears and joints that follow others. [`Rows`] are residual φ, Jacobian J and bias J̇v of
+//!   all of them at a state.
+//! - [`delassus`] computes `G = J M⁻¹ Jᵀ` by three routes.
+//! - [`Constrained`] forms the equations of motion, and a [`Method`] solves them: [`Kkt`], [`RangeSpace`], [`Proximal`]. Redundant rows are
+//!   found by rank, with a tolerance that is stated. Each [`Solution`] has its residuals.
+//! - [`stabilise`] keeps loops closed in time, and measures their drift.
+//! - [`library`] has robots with loops whose motion is known.
+//!
+//! Conventions: SI units; rows have the axes of the first frame of their constraint; multipliers act on the second frame as they are named, and
+//! opposite on the first. "The book" is R. Featherstone, *Rigid Body Dynamics Algorithms* (2008).
+//!
+//! ```
+//! use featherbench_constrained::{Constrained, Kkt, library::Ladder};
+//! // A parallelogram four-bar: one loop, of five rows of which two are independent.
+//! let ladder = Ladder::default();
+//! let four_bar = ladder.mechanism()?;
+//! let mut dynamics = Constrained::new(&four_bar.model, &four_bar.constraints)?;
+//! let solution = dynamics.run(&ladder.spread(0.5), &ladder.spread(0.0), &[0.0; 3], &Kkt::default())?;
+//! assert_eq!(solution.rank, Some(2));
+//! assert!((solution.acceleration[0] - ladder.acceleration(0.5)).abs() < 1e-13);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
 
 mod attachment;
 mod constraint;
@@ -6,8 +31,8 @@ pub mod delassus;
 mod error;
 mod graph;
 mod laws;
-mod malformed;
 pub mod library;
+mod malformed;
 mod mechanism;
 mod mobility;
 mod rows;

@@ -71,16 +71,17 @@ impl Mechanism {
     ) -> Result<Self, BadMechanism> {
         let canonical = description.canonical()?;
         let model: Model<f64> = Model::build(&canonical)?;
-        let find = |joint: &LoopJoint, name: &Option<String>, placement: &Placement| -> Result<(Option<usize>, Transform<f64>), BadMechanism> {
-            let Some(name) = name else { return Ok((None, placement.to_transform())) };
-            if let Some(body) = canonical.bodies.iter().position(|body| body.name == *name) {
-                return Ok((Some(body), placement.to_transform()));
-            }
-            // A merged body has left a frame.
-            let frame = canonical.frames.iter().find(|frame| frame.name == *name);
-            let frame = frame.ok_or_else(|| BadMechanism::NoBody { joint: joint.name.clone(), body: name.clone() })?;
-            Ok((frame.body, frame.placement.to_transform().compose(&placement.to_transform())))
-        };
+        let find =
+            |joint: &LoopJoint, name: &Option<String>, placement: &Placement| -> Result<(Option<usize>, Transform<f64>), BadMechanism> {
+                let Some(name) = name else { return Ok((None, placement.to_transform())) };
+                if let Some(body) = canonical.bodies.iter().position(|body| body.name == *name) {
+                    return Ok((Some(body), placement.to_transform()));
+                }
+                // A merged body has left a frame.
+                let frame = canonical.frames.iter().find(|frame| frame.name == *name);
+                let frame = frame.ok_or_else(|| BadMechanism::NoBody { joint: joint.name.clone(), body: name.clone() })?;
+                Ok((frame.body, frame.placement.to_transform().compose(&placement.to_transform())))
+            };
         let links = canonical.bodies.iter().map(|body| body.name.clone()).collect();
         let mut edges: Vec<Edge> = Vec::new();
         for (child, body) in canonical.bodies.iter().enumerate() {

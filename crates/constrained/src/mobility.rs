@@ -33,6 +33,17 @@ impl Mobility {
     ///
     /// # Errors
     /// [`Error`]: `q` does not fit or is not finite, or a weld is half a turn off.
+    ///
+    /// ```
+    /// use featherbench_constrained::{Mobility, library::Ladder};
+    /// let ladder = Ladder::default();
+    /// let four_bar = ladder.mechanism()?;
+    /// let at = |angle: f64| Mobility::at(&four_bar.model, &four_bar.constraints, &ladder.spread(angle));
+    /// assert_eq!(at(0.5)?.freedom(), 1);
+    /// // All bars on one line.
+    /// assert_eq!(at(std::f64::consts::FRAC_PI_2)?.freedom(), 2);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     pub fn at(model: &Model<f64>, constraints: &Constraints, q: &[f64]) -> Result<Self, Error> {
         let dofs = model.topology.nv();
         let mut rows = Rows::new(constraints);
@@ -42,6 +53,26 @@ impl Mobility {
         let rank = singular_values.iter().filter(|value| **value > cut).count();
         let residual = rows.residuals().fold(0.0, |a: f64, b| a.max(b.abs()));
         Ok(Self { dofs, rank, singular_values, residual })
+    }
+
+    /// The mobility at the configuration where J has the largest rank: the generic one, if one of the configurations is not singular. `None`
+    /// without configurations.
+    ///
+    /// # Errors
+    /// As [`Mobility::at`].
+    pub fn generic<'q>(
+        model: &Model<f64>,
+        constraints: &Constraints,
+        configurations: impl IntoIterator<Item = &'q [f64]>,
+    ) -> Result<Option<Self>, Error> {
+        let mut best: Option<Self> = None;
+        for q in configurations {
+            let found = Self::at(model, constraints, q)?;
+            if best.as_ref().is_none_or(|best| found.rank > best.rank) {
+                best = Some(found);
+            }
+        }
+        Ok(best)
     }
 
     /// Instantaneous degrees of freedom: dofs − rank.

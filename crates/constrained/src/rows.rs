@@ -151,7 +151,6 @@ where
         }
         Ok(())
     }
-
 }
 
 /// The last dof of a body's joint.
@@ -199,11 +198,10 @@ fn relate<P, T: Real>(law: &Law, model: &Model<P>, q: &[T], v: &[T], row: &mut R
     }
 }
 
-/// An error unless each number is finite: only then x − x is zero.
+/// An error unless each number is finite: only then 0·x is zero.
 pub(crate) fn expect_finite<T: Real>(what: &'static str, numbers: &[T]) -> Result<(), Error> {
-    match numbers.iter().position(|x| (*x - *x).min_lane() != 0.0) {
+    match numbers.iter().position(|x| (*x * T::zero()).min_lane() != 0.0) {
         Some(index) => Err(Error::NotFinite { what, index }),
         None => Ok(()),
     }
 }
-

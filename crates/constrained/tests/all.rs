@@ -2,6 +2,10 @@
 
 mod common;
 mod delassus;
+mod graph;
 mod laws;
+mod library;
 mod refusals;
 mod solve;
+mod squeezer;
+mod stabilise;

@@ -34,10 +34,8 @@ fn agree(what: &str, model: &Model<f64>, constraints: &Constraints, q: &[f64]) {
     let eigenvalues = DMatrix::from_fn(mass.size(), mass.size(), |i, j| mass.get(i, j)).symmetric_eigenvalues();
     let condition = eigenvalues.max() / eigenvalues.min();
     let factors = mass.into_ltdl().unwrap();
-    let routes = [
-        ("factors", by_factors(rows.jacobian(), &factors).unwrap()),
-        ("propagation", by_propagation(model, q, rows.rows()).unwrap()),
-    ];
+    let routes =
+        [("factors", by_factors(rows.jacobian(), &factors).unwrap()), ("propagation", by_propagation(model, q, rows.rows()).unwrap())];
     for (route, found) in routes {
         let loss = if route == "factors" { condition * f64::EPSILON } else { 0.0 };
         assert_within(&format!("{what} by {route}"), (&found - &due).amax() / scale, (AGREEMENT + loss) * slack(constraints, &rows));

@@ -38,7 +38,17 @@ pub struct Biped {
 impl Default for Biped {
     /// 30 kg, legs of 0.8 m.
     fn default() -> Self {
-        Self { trunk_mass: 20.0, limb_mass: 2.0, foot_mass: 0.8, drive_mass: 0.1, limb: 0.4, foot: 0.2, crank: 0.06, hip: 0.1, gravity: 9.81 }
+        Self {
+            trunk_mass: 20.0,
+            limb_mass: 2.0,
+            foot_mass: 0.8,
+            drive_mass: 0.1,
+            limb: 0.4,
+            foot: 0.2,
+            crank: 0.06,
+            hip: 0.1,
+            gravity: 9.81,
+        }
     }
 }
 
@@ -63,7 +73,14 @@ impl Biped {
         let moment = self.trunk_mass * size * size / 6.0;
         let free = JointDescription { kind: JointType::Free, ..JointDescription::default() };
         let inertia = [moment, 0.0, 0.0, moment, 0.0, moment];
-        let trunk = BodyDescription { name: "trunk".into(), parent: None, mass: self.trunk_mass, com: [0.0, 0.0, 0.5 * size], inertia, joint: free };
+        let trunk = BodyDescription {
+            name: "trunk".into(),
+            parent: None,
+            mass: self.trunk_mass,
+            com: [0.0, 0.0, 0.5 * size],
+            inertia,
+            joint: free,
+        };
         let mut bodies = vec![trunk];
         let mut loops = Vec::new();
         for (side, sign) in [("left", 1.0), ("right", -1.0)] {

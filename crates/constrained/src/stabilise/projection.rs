@@ -3,7 +3,7 @@
 //! Computes, with `J M⁻¹ Jᵀ` of the rank that [`Kkt`](crate::Kkt) finds:
 //!
 //! ```text
-//! q ← q ⊕ δ,   δ = −M⁻¹ Jᵀ (J M⁻¹ Jᵀ)⁺ φ     until |φ| ≤ tolerance, or rounding lets it fall no more
+//! q ← q ⊕ δ,   δ = −M⁻¹ Jᵀ (J M⁻¹ Jᵀ)⁺ φ     until |φ| ≤ tolerance, and does not fall any more
 //! v ← v − M⁻¹ Jᵀ (J M⁻¹ Jᵀ)⁺ J v             once: the velocity nearest in kinetic energy
 //! ```
 //!
@@ -84,19 +84,17 @@ impl Projection {
     /// Moves `q` onto the constraints.
     ///
     /// # Errors
-    /// [`Error::NotConverged`] when the residual is above the tolerance after all iterations, or can fall no more: `q` is then as it was.
+    /// [`Error::NotConverged`] when the residual is above the tolerance after all iterations: `q` is then as it was.
     /// The others as [`Rows::run`](crate::Rows::run).
     ///
     /// ```
-    /// use featherbench_constrained::{Attachment, Constraint, Constraints, stabilise::Projection};
-    /// use featherbench_model::Model;
-    /// use featherbench_robots::Family;
-    /// let model: Model<f64> = Model::build(&Family::parse("chain:n=4")?.generate()?)?;
-    /// let held = Constraint::point("tip", Attachment::point(0, [0.0; 3]), Attachment::point(3, [0.1, 0.0, 0.0]));
-    /// let constraints = Constraints::new(&model.topology, vec![held])?;
-    /// let mut q = vec![0.0, 1.0, 1.8, 1.2];
-    /// let found = Projection::default().configuration(&model, &constraints, &mut q);
-    /// # let _ = found;
+    /// use featherbench_constrained::{library::Ladder, stabilise::Projection};
+    /// let ladder = Ladder::default();
+    /// let four_bar = ladder.mechanism()?;
+    /// let mut q = ladder.spread(0.5);
+    /// q[1] += 0.01;
+    /// let found = Projection::default().configuration(&four_bar.model, &four_bar.constraints, &mut q)?;
+    /// assert!(found.residual <= 1e-12 && found.rank == 2);
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     pub fn configuration(&self, model: &Model<f64>, constraints: &Constraints, q: &mut [f64]) -> Result<Projected, Error> {
@@ -104,19 +102,26 @@ impl Projection {
         check_tolerance("tolerance of the projection", self.tolerance)?;
         let mut metric = Metric::new(constraints);
         let still = vec![0.0; model.topology.nv()];
-        let mut at = q.to_vec();
-        let mut iterations = 0;
+        let (mut at, mut best) = (q.to_vec(), q.to_vec());
+        let (mut iterations, mut before) = (0, f64::INFINITY);
         loop {
             let revealed = metric.form(model, constraints, &at, &still, self.cut)?;
             let phi: Vec<f64> = metric.rows.residuals().map(|residual| -residual).collect();
             let residual = phi.iter().fold(0.0_f64, |a, b| a.max(b.abs()));
-            if residual <= self.tolerance {
-                q.copy_from_slice(&at);
+            if residual < before {
+                best.copy_from_slice(&at);
+            }
+            // Near a singular configuration each digit counts twice: it goes on while the residual falls.
+            let last = residual == 0.0 || residual > 0.5 * before || iterations == self.iterations;
+            if last && residual.min(before) <= self.tolerance {
+                let residual = residual.min(before);
+                q.copy_from_slice(&best);
                 return Ok(Projected { iterations, residual, rank: revealed.rank() });
             }
             if iterations == self.iterations {
                 return Err(Error::NotConverged { what: "the projection onto the constraints", iterations, residual });
             }
+            before = residual;
             let mut step = metric.step(&revealed, &phi)?;
             let longest = step.iter().fold(0.0_f64, |a, b| a.max(b.abs()));
             if longest > self.reach {

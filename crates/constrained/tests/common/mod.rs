@@ -40,14 +40,8 @@ pub fn coordinates(model: &Model<f64>) -> Vec<usize> {
     joints.filter(|joint| !matches!(joint.kind, JointKind::Spherical | JointKind::Free)).map(|joint| joint.v).collect()
 }
 
-pub const MOTIONS: [LoopMotion; 6] = [
-    LoopMotion::Fixed,
-    LoopMotion::Revolute,
-    LoopMotion::Prismatic,
-    LoopMotion::Cylindrical,
-    LoopMotion::Spherical,
-    LoopMotion::Planar,
-];
+pub const MOTIONS: [LoopMotion; 6] =
+    [LoopMotion::Fixed, LoopMotion::Revolute, LoopMotion::Prismatic, LoopMotion::Cylindrical, LoopMotion::Spherical, LoopMotion::Planar];
 
 /// One constraint of every kind, between random frames.
 pub fn every_law(model: &Model<f64>, seed: u64) -> Constraints {
@@ -73,9 +67,11 @@ pub fn every_law(model: &Model<f64>, seed: u64) -> Constraints {
 /// How many roundings an orientation costs: 1/w², the largest of all welds. 4 w² = 1 + tr R is known to ε, and |φ|² = 4 (1 − w²).
 pub fn slack(constraints: &Constraints, rows: &Rows<f64>) -> f64 {
     let residuals: Vec<f64> = rows.residuals().collect();
-    let welds = constraints.list().iter().enumerate().filter(|(_, constraint)| {
-        matches!(constraint.law, Law::Joint { motion: LoopMotion::Fixed | LoopMotion::Prismatic, .. })
-    });
+    let welds = constraints
+        .list()
+        .iter()
+        .enumerate()
+        .filter(|(_, constraint)| matches!(constraint.law, Law::Joint { motion: LoopMotion::Fixed | LoopMotion::Prismatic, .. }));
     welds.fold(1.0, |largest, (k, _)| {
         let phi = &residuals[constraints.rows_of(k)][..3];
         let square = 1.0 - 0.25 * phi.iter().map(|x| x * x).sum::<f64>();
