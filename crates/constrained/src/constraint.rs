@@ -2,6 +2,7 @@
 
 use crate::attachment::Attachment;
 use crate::malformed::{BadConstraint, Defect};
+use crate::rows::largest;
 use featherbench_model::{JointKind, Topology};
 use featherbench_spatial::Mat3;
 
@@ -200,11 +201,12 @@ fn check_attachment(frame: &Attachment, side: &'static str, topology: &Topology)
     let rotation = frame.placement.rotation;
     frame.placement.translation.to_array().into_iter().chain(rotation.to_array()).try_for_each(|x| expect_finite("placement", x))?;
     let product: Mat3<f64> = rotation * rotation.transpose();
-    let miss = product.to_array().into_iter().zip(Mat3::identity().to_array()).map(|(found, due): (f64, f64)| (found - due).abs());
-    let miss = miss.fold(0.0, f64::max);
+    let miss = product.to_array().into_iter().zip(Mat3::identity().to_array()).map(|(found, due): (f64, f64)| found - due);
+    let miss = largest(miss);
     let determinant = rotation.x.dot(rotation.y.cross(rotation.z));
     // As the model accepts rotations: written with ten digits or more.
-    if miss > 1e-9 || determinant < 0.0 { Err(Defect::NotARotation { side, miss, determinant }) } else { Ok(()) }
+    let good = miss <= 1e-9 && determinant > 0.0;
+    if good { Ok(()) } else { Err(Defect::NotARotation { side, miss, determinant }) }
 }
 
 fn expect_finite(field: &'static str, value: f64) -> Result<(), Defect> {

@@ -64,6 +64,20 @@ impl Mechanism {
     ///
     /// # Errors
     /// [`BadMechanism`], which names the body, joint or constraint.
+    ///
+    /// ```
+    /// use featherbench_constrained::{LoopJoint, LoopMotion, Mechanism};
+    /// use featherbench_model::Placement;
+    /// use featherbench_robots::Family;
+    /// let chain = Family::parse("chain:n=4")?.generate()?;
+    /// let (first, second) = (None, Some(chain.bodies[3].name.clone()));
+    /// let place = Placement::default();
+    /// let motion = LoopMotion::Spherical;
+    /// let closing = LoopJoint { name: "tip".into(), first, first_placement: place, second, second_placement: place, motion };
+    /// let ring = Mechanism::new(&chain, &[closing], |_| Vec::new())?;
+    /// assert_eq!((ring.graph.loops(), ring.constraints.rows()), (1, 3));
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     pub fn new(
         description: &Description,
         loops: &[LoopJoint],

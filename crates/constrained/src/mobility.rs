@@ -7,7 +7,7 @@
 
 use crate::constraint::Constraints;
 use crate::error::Error;
-use crate::rows::Rows;
+use crate::rows::{Rows, largest};
 use crate::singular::singular_values;
 use featherbench_model::Model;
 use nalgebra::DMatrix;
@@ -51,7 +51,7 @@ impl Mobility {
         let singular_values = singular_values(&DMatrix::from_row_slice(constraints.rows(), dofs, rows.jacobian()));
         let cut = singular_values.first().map_or(0.0, |largest| RANK * largest);
         let rank = singular_values.iter().filter(|value| **value > cut).count();
-        let residual = rows.residuals().fold(0.0, |a: f64, b| a.max(b.abs()));
+        let residual = largest(rows.residuals());
         Ok(Self { dofs, rank, singular_values, residual })
     }
 

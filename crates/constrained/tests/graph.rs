@@ -160,3 +160,40 @@ fn singular_values_are_those_of_the_construction() {
         assert!(found.iter().zip(due).all(|(found, due)| (found - due).abs() < 3e-15), "{found:?}");
     }
 }
+
+/// A loop joint on a body that is merged into its parent has the rows of the same joint on the parent.
+#[test]
+fn loop_joints_reach_merged_bodies() {
+    let mut description = featherbench_robots::Family::parse("chain:n=3").unwrap().generate().unwrap();
+    let offset = Placement { rotation: [0.0, -1.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0], translation: [0.1, 0.2, 0.3] };
+    let joint = featherbench_model::JointDescription { placement: offset, ..Default::default() };
+    let tip = description.bodies[2].name.clone();
+    description.bodies.push(featherbench_model::BodyDescription {
+        name: "tool".into(),
+        parent: Some(2),
+        mass: 0.0,
+        com: [0.0; 3],
+        inertia: [0.0; 6],
+        joint,
+    });
+    let closing = |second: &str, second_placement| LoopJoint {
+        name: "closing".into(),
+        first: None,
+        first_placement: Placement::default(),
+        second: Some(second.into()),
+        second_placement,
+        motion: LoopMotion::Revolute,
+    };
+    let rows = |joint: LoopJoint| {
+        let mechanism = Mechanism::new(&description, &[joint], |_| Vec::new()).unwrap();
+        assert_eq!((mechanism.graph.links().len(), mechanism.graph.loops()), (3, 1));
+        let mut rows = featherbench_constrained::Rows::new(&mechanism.constraints);
+        rows.run(&mechanism.model, &mechanism.constraints, &[0.3, 0.5, 0.7], &[1.0, -0.4, 0.2]).unwrap();
+        let numbers: Vec<f64> = rows.residuals().chain(rows.biases()).chain(rows.jacobian().iter().copied()).collect();
+        numbers
+    };
+    let (merged, direct) = (rows(closing("tool", Placement::default())), rows(closing(&tip, offset)));
+    assert!(merged.iter().any(|x| x.abs() > 0.1));
+    // One product of placements more: a rounding or two of numbers near one.
+    assert!(merged.iter().zip(&direct).all(|(a, b)| (a - b).abs() < 1e-14), "{merged:?} {direct:?}");
+}

@@ -5,7 +5,7 @@ use featherbench_constrained::{
     Attachment, Constrained, Constraint, Constraints, Error, Kkt, Law, Method, Outcome, Proximal, RangeSpace, Solution,
 };
 use featherbench_dynamics::{bias_force, forward_kinematics, mass_matrix};
-use featherbench_model::Model;
+use featherbench_model::{BodyDescription, Description, JointDescription, JointType, Model};
 use featherbench_robots::StateBatch;
 use nalgebra::{DMatrix, DVector};
 
@@ -215,6 +215,62 @@ fn without_constraints_the_robot_falls_freely() {
         for (method, _) in methods() {
             let found = dynamics.run(q, v, tau, method.as_ref()).unwrap();
             assert_within(method.name(), (vector(&found.acceleration) - &due).amax() / due.amax(), 1e-11);
+        }
+    }
+}
+
+/// Finite numbers whose products are not: refused, and no number is taken for an answer.
+#[test]
+fn overflow_is_refused() {
+    let model = model("chain:n=4");
+    let held = Constraint::point("tip", Attachment::world([0.1, 0.2, 0.3]), Attachment::point(3, [0.1, 0.0, 0.0]));
+    let constraints = Constraints::new(&model.topology, vec![held]).unwrap();
+    let mut dynamics = Constrained::new(&model, &constraints).unwrap();
+    let q = [0.1, 0.2, 0.3, 0.4];
+    for (method, _) in methods() {
+        let found = dynamics.run(&q, &[1e200; 4], &[0.0; 4], method.as_ref());
+        assert!(matches!(found, Err(Error::NotFinite { .. })), "{found:?}");
+        let found = dynamics.run(&q, &[0.0; 4], &[f64::NAN; 4], method.as_ref());
+        assert_eq!(found, Err(Error::NotFinite { what: "joint forces tau", index: 0 }));
+        let found = dynamics.run(&q, &[0.0; 4], &[0.0; 3], method.as_ref());
+        assert!(matches!(found, Err(Error::Dimension(_))));
+    }
+}
+
+/// Two wheels with c₁ q₁ + c₂ q₂ = 0 and a torque on the first: q̈₁ = τ / (I₁ + (c₁/c₂)² I₂).
+#[test]
+fn a_gear_reflects_inertia_by_the_square_of_its_ratio() {
+    let (first, second, torque, ratio) = (0.3, 0.7, 1.1, [2.0, -3.0]);
+    let wheel = |name: &str, inertia: f64| BodyDescription {
+        name: name.into(),
+        parent: None,
+        mass: 1.0,
+        com: [0.0; 3],
+        inertia: [inertia, 0.0, 0.0, inertia, 0.0, inertia],
+        joint: JointDescription { kind: JointType::Revolute { axis: [0.0, 0.0, 1.0] }, ..JointDescription::default() },
+    };
+    let bodies = vec![wheel("first", first), wheel("second", second)];
+    let model: Model<f64> = Model::build(&Description { bodies, ..Description::default() }).unwrap();
+    let gear = Law::Gear { terms: vec![(0, ratio[0]), (1, ratio[1])], offset: 0.0 };
+    let slope = -ratio[0] / ratio[1];
+    let mimic = Law::Mimic { follower: 1, leader: 0, polynomial: [0.0, slope, 0.0, 0.0, 0.0] };
+    let due = torque / (first + slope * slope * second);
+    for law in [gear, mimic] {
+        let constraints = Constraints::new(&model.topology, vec![Constraint { name: "gear".into(), law }]).unwrap();
+        let mut dynamics = Constrained::new(&model, &constraints).unwrap();
+        for (method, _) in methods() {
+            let found = dynamics.run(&[0.0; 2], &[0.4, 0.4 * slope], &[torque, 0.0], method.as_ref()).unwrap();
+            // One row: a few roundings; the proximal method ends at 10⁻¹¹ of them.
+            let tolerance = if method.name() == "proximal" { 1e-10 } else { 1e-15 };
+            assert_within(method.name(), (found.acceleration[0] - due).abs() / due, tolerance);
+            assert_within(method.name(), (found.acceleration[1] - slope * due).abs() / due, tolerance);
+            // What the row does to the second wheel is all that turns it.
+            let force = second * slope * due;
+            let row = match constraints.list()[0].law {
+                Law::Gear { .. } => ratio[1],
+                _ => 1.0,
+            };
+            assert_within("λ", (found.multipliers[0] * row - force).abs() / due, tolerance);
         }
     }
 }

@@ -23,7 +23,7 @@ pub use range_space::RangeSpace;
 
 use crate::constraint::Constraints;
 use crate::error::Error;
-use crate::rows::{Rows, expect_finite};
+use crate::rows::{Rows, expect_finite, largest};
 use featherbench_dynamics::{Bias, Crba, DimensionError, TreeSparse};
 use featherbench_model::Model;
 
@@ -119,17 +119,19 @@ impl Equations<'_> {
             let terms = self.rows.jacobian_row(row).iter().zip(a.iter().zip(free)).map(|(j, (a, free))| j.abs() * (a.abs() + free.abs()));
             target.abs() + terms.sum::<f64>()
         };
-        self.target.iter().enumerate().map(row_scale).fold(0.0, f64::max)
+        largest(self.target.iter().enumerate().map(row_scale))
     }
 
     /// The solution with its residuals.
     pub(crate) fn judged(&self, acceleration: Vec<f64>, multipliers: Vec<f64>) -> Result<Solution, Error> {
-        let residual = self.shortfall(&acceleration)?.iter().fold(0.0_f64, |a, b| a.max(b.abs()));
+        expect_finite("acceleration", &acceleration)?;
+        expect_finite("multipliers", &multipliers)?;
+        let residual = largest(self.shortfall(&acceleration)?);
         let mut inertial = vec![0.0; acceleration.len()];
         self.mass.mul(&acceleration, &mut inertial)?;
         let forces = self.constraint_force(&multipliers);
-        let rest = inertial.iter().zip(self.force.iter().zip(forces)).map(|(m, (force, constraint))| (m - force - constraint).abs());
-        let imbalance = rest.fold(0.0, f64::max);
+        let rest = inertial.iter().zip(self.force.iter().zip(forces)).map(|(m, (force, constraint))| m - force - constraint);
+        let imbalance = largest(rest);
         Ok(Solution { acceleration, multipliers, outcome: Outcome::Solved, rank: None, iterations: 1, mu: None, residual, imbalance })
     }
 
@@ -200,6 +202,7 @@ impl<'a> Constrained<'a> {
         self.crba.run(self.model, q, &mut self.mass)?;
         self.bias.run(self.model, q, v, None, &mut self.force)?;
         self.force.iter_mut().zip(tau).for_each(|(h, tau)| *h = tau - *h);
+        expect_finite("joint forces less bias forces", &self.force)?;
         self.rows.multiply(v, &mut self.target)?;
         for (row, (target, at)) in self.target.iter_mut().zip(self.rows.rows()).enumerate() {
             *target = ask(row, at.residual, *target) - at.bias;

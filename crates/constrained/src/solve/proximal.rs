@@ -15,6 +15,7 @@
 use super::{Equations, Method, Outcome, Solution, check_tolerance};
 use crate::delassus::by_factors;
 use crate::error::Error;
+use crate::rows::largest;
 use featherbench_dynamics::Ltdl;
 use nalgebra::{Cholesky, DVector};
 
@@ -57,9 +58,9 @@ impl Method for Proximal {
         let free = factors.applied(Ltdl::solve, equations.force)?;
         let g = by_factors(equations.rows.jacobian(), &factors)?;
         let c = DVector::from_vec(equations.shortfall(&free)?);
-        let largest = (0..c.len()).map(|k| g[(k, k)]).fold(0.0, f64::max);
+        let peak = largest((0..c.len()).map(|k| g[(k, k)]));
         // Without rows, or with rows of zeros only, any μ does.
-        let mu = if largest > 0.0 { self.mu * largest } else { self.mu };
+        let mu = if peak > 0.0 { self.mu * peak } else { self.mu };
         let mut regular = g.clone();
         (0..c.len()).for_each(|k| regular[(k, k)] += mu);
         let Some(regular) = Cholesky::new(regular) else {
@@ -77,7 +78,7 @@ impl Method for Proximal {
             rest = &c - &g * &lambda;
             if rest.amax() <= self.tolerance * scale {
                 outcome = Outcome::Solved;
-            } else if (&g * &rest).amax() <= UNREACHABLE * largest * rest.amax() {
+            } else if (&g * &rest).amax() <= UNREACHABLE * peak * rest.amax() {
                 outcome = Outcome::LeastSquares;
             }
         }

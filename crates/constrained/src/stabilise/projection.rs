@@ -15,7 +15,7 @@
 use crate::constraint::Constraints;
 use crate::delassus::half_solved;
 use crate::error::Error;
-use crate::rows::Rows;
+use crate::rows::{Rows, largest};
 use crate::solve::check_tolerance;
 use crate::solve::rank::Revealed;
 use featherbench_dynamics::{Crba, Ltdl};
@@ -107,7 +107,7 @@ impl Projection {
         loop {
             let revealed = metric.form(model, constraints, &at, &still, self.cut)?;
             let phi: Vec<f64> = metric.rows.residuals().map(|residual| -residual).collect();
-            let residual = phi.iter().fold(0.0_f64, |a, b| a.max(b.abs()));
+            let residual = largest(phi.iter().copied());
             if residual < before {
                 best.copy_from_slice(&at);
             }
@@ -123,7 +123,7 @@ impl Projection {
             }
             before = residual;
             let mut step = metric.step(&revealed, &phi)?;
-            let longest = step.iter().fold(0.0_f64, |a, b| a.max(b.abs()));
+            let longest = largest(step.iter().copied());
             if longest > self.reach {
                 step.iter_mut().for_each(|x| *x *= self.reach / longest);
             }
@@ -136,6 +136,17 @@ impl Projection {
     ///
     /// # Errors
     /// [`Error`]: an argument does not fit or is not finite, a dof meets no inertia, or a weld is half a turn off.
+    ///
+    /// ```
+    /// use featherbench_constrained::{library::Ladder, stabilise::Projection};
+    /// let ladder = Ladder::default();
+    /// let four_bar = ladder.mechanism()?;
+    /// let mut v = [1.0, 0.0, 0.0];
+    /// Projection::default().velocity(&four_bar.model, &four_bar.constraints, &ladder.spread(0.5), &mut v)?;
+    /// // Both cranks turn alike, and the coupler turns back.
+    /// assert!((v[0] - v[2]).abs() < 1e-14 && (v[0] + v[1]).abs() < 1e-14);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     pub fn velocity(&self, model: &Model<f64>, constraints: &Constraints, q: &[f64], v: &mut [f64]) -> Result<(), Error> {
         check_tolerance("cut of the projection", self.cut)?;
         let mut metric = Metric::new(constraints);

@@ -6,7 +6,7 @@
 use super::projection::Projection;
 use crate::constraint::Constraints;
 use crate::error::Error;
-use crate::rows::Rows;
+use crate::rows::{Rows, largest};
 use crate::solve::{Constrained, Method, Outcome};
 use featherbench_dynamics::integrate::{IntegrationError, Integrator, RungeKutta4};
 use featherbench_dynamics::{DimensionError, energy};
@@ -79,18 +79,18 @@ pub struct Run {
 impl Run {
     /// The largest |φ| of all steps.
     pub fn position_drift(&self) -> f64 {
-        self.drift.iter().fold(0.0, |largest, drift| largest.max(drift.position))
+        largest(self.drift.iter().map(|drift| drift.position))
     }
 
     /// The largest |φ̇| of all steps.
     pub fn velocity_drift(&self) -> f64 {
-        self.drift.iter().fold(0.0, |largest, drift| largest.max(drift.velocity))
+        largest(self.drift.iter().map(|drift| drift.velocity))
     }
 
     /// The largest change of the energy since the beginning, J.
     pub fn energy_drift(&self) -> f64 {
         let first = self.drift.first().map_or(0.0, |drift| drift.energy);
-        self.drift.iter().fold(0.0, |largest, drift| largest.max((drift.energy - first).abs()))
+        largest(self.drift.iter().map(|drift| drift.energy - first))
     }
 }
 
@@ -204,10 +204,10 @@ impl Simulation<'_> {
     fn measure(&self, rows: &mut Rows<f64>, time: f64, q: &[f64], v: &[f64]) -> Result<Drift, Error> {
         DimensionError::expect("velocity v", self.model.topology.nv(), v.len())?;
         rows.run(self.model, self.constraints, q, v)?;
-        let position = rows.residuals().fold(0.0, |a: f64, b| a.max(b.abs()));
+        let position = largest(rows.residuals());
         let mut rate = vec![0.0; self.constraints.rows()];
         rows.multiply(v, &mut rate)?;
-        let velocity = rate.iter().fold(0.0, |a: f64, b| a.max(b.abs()));
+        let velocity = largest(rate);
         let energies = energy(self.model, q, v)?;
         Ok(Drift { time, position, velocity, energy: energies.kinetic + energies.potential })
     }
