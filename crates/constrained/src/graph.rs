@@ -1,8 +1,8 @@
 //! A robot as a graph: links and joints with loops.
 //!
-//! Links are vertices, the world among them; joints are edges. The joints that are not cut form the spanning tree: each link has one of them
-//! as its parent, and every chain of parents ends at the world. Each cut joint closes one *fundamental cycle*: itself, and the tree's paths
-//! from its two ends to where they meet. So loops = joints − moving links.
+//! Links are vertices, the world among them; joints are edges. The joints that are not cut form the spanning tree: each link has one of
+//! them as its parent, and every chain of parents ends at the world. Each cut joint closes one *fundamental cycle*: itself, and the tree's
+//! paths from its two ends to where they meet. So loops = joints − moving links.
 //!
 //! Grübler's count assumes that all rows of all loops are independent. The truth is [`Mobility`](crate::Mobility).
 //! Source: the book, section 4.1 (connectivity graphs, spanning trees) and 8.1. Cost: O(n) for the tree, O(depth) per cycle.

@@ -2,16 +2,16 @@
 //!
 //! - [`Graph`] has links and joints with loops: spanning tree, cut joints, fundamental [`Cycle`]s, Grübler's count. [`Mechanism`] is a
 //!   description with the [`LoopJoint`]s that close it; [`Mobility`] is the truth that the count misses.
-//! - [`Constraint`] holds points, frames, distances, gears and joints that follow others. [`Rows`] are residual φ, Jacobian J and bias J̇v of
-//!   all of them at a state.
+//! - [`Constraint`] holds points, frames, distances, gears and joints that follow others. [`Rows`] are residual φ, Jacobian J and
+//!   bias J̇v of all of them at a state.
 //! - [`delassus`] computes `G = J M⁻¹ Jᵀ` by three routes.
 //! - [`Constrained`] forms the equations of motion, and a [`Method`] solves them: [`Kkt`], [`RangeSpace`], [`Proximal`]. Redundant rows are
 //!   found by rank, with a tolerance that is stated. Each [`Solution`] has its residuals.
 //! - [`stabilise`] keeps loops closed in time, and measures their drift.
 //! - [`library`] has robots with loops whose motion is known.
 //!
-//! Conventions: SI units; rows have the axes of the first frame of their constraint; multipliers act on the second frame as they are named, and
-//! opposite on the first. "The book" is R. Featherstone, *Rigid Body Dynamics Algorithms* (2008).
+//! Conventions: SI units; rows have the axes of the first frame of their constraint; multipliers act on the second frame as they are named,
+//! and opposite on the first. "The book" is R. Featherstone, *Rigid Body Dynamics Algorithms* (2008).
 //!
 //! ```
 //! use featherbench_constrained::{Constrained, Kkt, library::Ladder};

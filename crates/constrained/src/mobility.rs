@@ -1,8 +1,8 @@
 //! True mobility: the dofs of the tree less the rank of the constraint Jacobian, at configurations that close the loops.
 //!
 //! The rank counts the singular values of J above `1e-10` of the largest: a closed loop leaves 10⁻¹³ of a dependent row, and the shortest
-//! independent rows of a mechanism near its singularity are longer than 10⁻⁸. Rank is counted at each configuration. The generic mobility is
-//! the least of all: at a singular configuration J loses rank, and gives more instantaneous freedom than there is motion.
+//! independent rows of a mechanism near its singularity are longer than 10⁻⁸. Rank is counted at each configuration. The generic mobility
+//! is the least of all: at a singular configuration J loses rank, and gives more instantaneous freedom than there is motion.
 //! Source: C. Gosselin and J. Angeles (1990) for singularities of loops; singular values: `singular.rs`.
 
 use crate::constraint::Constraints;
@@ -55,8 +55,8 @@ impl Mobility {
         Ok(Self { dofs, rank, singular_values, residual })
     }
 
-    /// The mobility at the configuration where J has the largest rank: the generic one, if one of the configurations is not singular. `None`
-    /// without configurations.
+    /// The mobility at the configuration where J has the largest rank: the generic one, if one of the configurations is not singular.
+    /// `None` without configurations.
     ///
     /// # Errors
     /// As [`Mobility::at`].

@@ -1,7 +1,7 @@
 //! The rows of all constraints at a state: φ(q), J and J̇v.
 //!
-//! Each row is two wrenches on bodies, or numbers per dof (`laws/`). A row of J has the entry `S_jᵀ f` for each dof j that supports the body:
-//! the power of the wrench in the columns of the body's Jacobian. The bias is the row's acceleration at v̇ = 0, from the classical
+//! Each row is two wrenches on bodies, or numbers per dof (`laws/`). A row of J has the entry `S_jᵀ f` for each dof j that supports the
+//! body: the power of the wrench in the columns of the body's Jacobian. The bias is the row's acceleration at v̇ = 0, from the classical
 //! accelerations of [`Kinematics`]. Shapes: J has one row of `nv` numbers per row of the constraints, row after row. Units: of [`Law`], per
 //! rad or m; SI. Frames: [`Law`]. Cost: O(n) per constraint. A call does not allocate but for lists of dofs in the first one.
 

@@ -2,7 +2,7 @@
 //!
 //! Computes the singular values of a matrix, largest first: columns are turned in pairs until each pair is orthogonal; their lengths are
 //! the singular values. Small ones are found to rounding of the largest, and often much better, so a rank can be read from them.
-//! Source: Golub and Van Loan, *Matrix Computations* (4th edition), section 8.6.3; Demmel and Veselić (1992) for the accuracy.
+//! Source: Golub and Van Loan, *Matrix Computations* (4th edition), section 8.6; Demmel and Veselić (1992) for the accuracy.
 //! Cost: about 6 sweeps of n² m multiply-adds for n columns. It allocates.
 
 use nalgebra::DMatrix;

@@ -9,8 +9,8 @@ use featherbench_spatial::Dual;
 /// Sums of some hundred products of numbers up to ten, each rounded: 100·10²·ε, and a hundred times that for powers of coordinates.
 const ROUNDING: f64 = 1e-11;
 
-/// φ̇ = J v and d(J v)/dt = J̇v along q ⊕ ε v, for every law on every joint. The duals differentiate φ through another formula than J's: that
-/// of placements alone.
+/// φ̇ = J v and d(J v)/dt = J̇v along q ⊕ ε v, for every law on every joint. The duals differentiate φ through another formula than J's:
+/// that of placements alone.
 #[test]
 fn residual_jacobian_and_bias_agree_on_every_joint() {
     let mut draws = 0;

@@ -74,13 +74,15 @@ fn methods_solve_the_dense_equations_on_every_joint() {
             let constraints = every_law(&model, 40 + k as u64);
             let (q, v, tau) = (states.q(k), states.v(k), states.tau(k));
             let dense = form(&model, &constraints, q, v, tau);
-            // What some acceleration does is consistent, also where rows are redundant: bodies next to each other have fewer dofs than rows.
+            // What some acceleration does is consistent, also where rows are redundant: bodies next to each other have fewer dofs than
+            // rows.
             let ask = &dense.jacobian * vector(states.a(k)) + &dense.bias;
             let (acceleration, force, rank) = dense.solve(&ask, 1e-9);
             let mut dynamics = Constrained::new(&model, &constraints).unwrap();
             for (method, tolerance) in methods() {
                 let equations = dynamics.equations(q, v, tau, |row, _, _| ask[row]).unwrap();
                 let found = method.solve(&equations).unwrap();
+                assert_eq!(method.solve(&equations).unwrap(), found, "a repeated call gives the same bits");
                 assert_eq!(found.outcome, Outcome::Solved, "{}", method.name());
                 let what = |of: &str| format!("{of} by {}, {spec} {k}", method.name());
                 let error = (vector(&found.acceleration) - &acceleration).amax() / acceleration.amax();

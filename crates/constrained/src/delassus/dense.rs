@@ -1,7 +1,7 @@
 //! The Delassus matrix by a dense factorization of M, in any scalar.
 //!
-//! Computes `M = L Lᵀ`, `Y = L⁻¹ Jᵀ`, `G = Yᵀ Y`. Source: Golub and Van Loan, *Matrix Computations* (4th edition), algorithm 4.2.1 (gaxpy
-//! Cholesky) and 3.1.1. It knows nothing of the tree: no zero is used. It allocates.
+//! Computes `M = L Lᵀ`, `Y = L⁻¹ Jᵀ`, `G = Yᵀ Y`. Source: Golub and Van Loan, *Matrix Computations* (4th edition), sections 4.2 (Cholesky) and 3.1
+//! (triangular systems). It knows nothing of the tree: no zero is used. It allocates.
 
 use crate::error::Error;
 use featherbench_dynamics::{DimensionError, NotPositiveDefinite, TreeSparse};

@@ -6,8 +6,8 @@
 //! | [`by_factors`] | J and the factors of M | m·D1 + m² n/2, D1 = Σ (d_k − 1) |
 //! | [`Articulated`] | the wrenches of the rows | O(n) per row, and O(m) per pair of rows |
 //!
-//! In [`DoubleDouble`](featherbench_spatial::DoubleDouble) the dense route is the truth for the others. Shapes: G is m×m. Units: the row's unit
-//! per s² and unit of multiplier.
+//! In [`DoubleDouble`](featherbench_spatial::DoubleDouble) the dense route is the truth for the others. Shapes: G is m×m. Units: the row's
+//! unit per s² and unit of multiplier.
 
 mod dense;
 mod factors;

@@ -13,8 +13,8 @@
 //! outward   q̈ = D⁻¹ (u − Uᵀ a),   a ← a + S q̈                       (a: X a_p before the first dof)
 //! ```
 //!
-//! An entry of G is the power of one row's wrenches in the accelerations of another. Eliminating a joint's dofs one by one gives what the block
-//! of the joint gives, so all kinds of joints share this text.
+//! An entry of G is the power of one row's wrenches in the accelerations of another. Eliminating a joint's dofs one by one gives what the
+//! block of the joint gives, so all kinds of joints share this text.
 //!
 //! Source: P. M. Wensing, R. Featherstone and D. E. Orin, *A reduced-order recursive algorithm for the computation of the operational-space
 //! inertia matrix* (ICRA 2012), whose extended force propagator is the inward pass; the book, table 7.1, for Iᴬ, U and D.

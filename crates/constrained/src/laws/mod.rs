@@ -1,7 +1,7 @@
 //! The rows of each kind of constraint: residual, wrenches on the bodies, bias.
 //!
-//! A row of the Jacobian is what the constraint does with a unit multiplier. So each row is kept as at most two wrenches, one per body, or as
-//! numbers per dof. Rows of J, propagated forces and multipliers follow from these.
+//! A row of the Jacobian is what the constraint does with a unit multiplier. So each row is kept as at most two wrenches, one per body, or
+//! as numbers per dof. Rows of J, propagated forces and multipliers follow from these.
 //!
 //! Symbols: A and B are the first and the second frame, d = p_B − p_A, a_k the axes of A, all in world axes.
 

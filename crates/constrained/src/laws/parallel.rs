@@ -3,7 +3,7 @@
 //! Computes, for the axis a of frame A and b = z of frame B: `φ = a·b`, `φ̇ = (ω_B − ω_A)·(b × a)`, and the bias
 //! `(ω̇_A × a + ω_A × (ω_A × a))·b + 2 (ω_A × a)·(ω_B × b) + a·(ω̇_B × b + ω_B × (ω_B × b))` with the accelerations at v̇ = 0.
 //! It also holds where the z axes are opposite. Unlike an orientation it knows no half turn: a hinge may turn as far as it likes.
-//! Source: P. E. Nikravesh, *Computer-Aided Analysis of Mechanical Systems* (1988), section 7.1 (two parallel vectors). Units: none.
+//! Source: P. E. Nikravesh, *Computer-Aided Analysis of Mechanical Systems* (1988), chapter 7 (two parallel vectors). Units: none.
 
 use super::Row;
 use crate::attachment::Anchor;

@@ -1,8 +1,8 @@
 //! A biped on a free base whose knees and ankles are driven through six loops.
 //!
-//! Each leg has hip, knee and ankle about y. A crank on the thigh pushes the shin by a rod; two cranks on the shin push the foot by a rod each,
-//! one on either side. Each rod's far end is a ball joint of the loop, at a distance from its hinge that makes a parallelogram of crank, rod
-//! and lever. All hinges are parallel, so each loop has three rows of rank two: the row along y is redundant.
+//! Each leg has hip, knee and ankle about y. A crank on the thigh pushes the shin by a rod; two cranks on the shin push the foot by a rod
+//! each, one on either side. Each rod's far end is a ball joint of the loop, at a distance from its hinge that makes a parallelogram of
+//! crank, rod and lever. All hinges are parallel, so each loop has three rows of rank two: the row along y is redundant.
 //!
 //! Dofs: 6 + 2·3 + 6·2 = 24. Rows: 18, of rank 12. Mobility: 12, the base's six and three per leg. Grübler's count in space is 6.
 //! The bodies are uniform rods, so all masses and lengths are arguments. Units: SI. Frames: x ahead, y left, z up.

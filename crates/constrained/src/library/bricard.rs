@@ -1,7 +1,7 @@
 //! Bricard's six-bar: six hinges in a ring, each at a right angle to the next. Grübler counts 0 dofs, and it moves.
 //!
-//! The ring begins along six edges of a cube: +x, +y, +z, −x, −y and back along −z, which is the ground. Each hinge is at a right angle to both
-//! of its links. The loop's hinge has five rows for five dofs, of which four are independent.
+//! The ring begins along six edges of a cube: +x, +y, +z, −x, −y and back along −z, which is the ground. Each hinge is at a right angle to
+//! both of its links. The loop's hinge has five rows for five dofs, of which four are independent.
 //! Source: IFToMM T.C. for Multibody Dynamics, benchmark A04 (five rods of 1 kg and 1 m); R. Bricard (1897). Units: SI.
 
 use super::parts::{closed, rod};

@@ -1,7 +1,8 @@
 //! Andrews' squeezing mechanism: seven bodies in a plane, three loops through one point, driven by a constant torque.
 //!
-//! Bodies K1 … K7 in the notation of the source; the dofs here are β (K1), Θ (K2 on K1), γ (K3), δ (K5), Φ (K4 on K5), ε (K7), Ω (K6 on K7).
-//! K2, K3, K4 and K6 meet in point E. A spring pulls point D of K3 to point C of the ground. Motion is in the xy-plane about z, without gravity.
+//! Bodies K1 … K7 in the notation of the source; the dofs here are β (K1), Θ (K2 on K1), γ (K3), δ (K5), Φ (K4 on K5), ε (K7), Ω (K6 on
+//! K7). K2, K3, K4 and K6 meet in point E. A spring pulls point D of K3 to point C of the ground. Motion is in the xy-plane about z,
+//! without gravity.
 //! Source: W. Schiehlen (ed.), *Multibody Systems Handbook* (1990); E. Hairer and G. Wanner, *Solving Ordinary Differential Equations II*,
 //! section VII.7, with the numbers of the test set for IVP solvers (problem *Andrews' squeezing mechanism*). Units: SI.
 

@@ -7,8 +7,8 @@
 //! [J  0 ] = [Yᵀ   1] [0 −YᵀY] [0  1]        v̇ = R⁻¹ (R⁻ᵀ(τ − h) + z),   z the shortest with Yᵀ z = b − Yᵀ R⁻ᵀ (τ − h),   Y λ = z
 //! ```
 //!
-//! YᵀY is never formed: Y gets an orthogonal factorization with column pivots, so κ(J) enters once and not squared. The rank is the number of
-//! rows whose rest is longer than `tolerance` times the longest row, in the metric of M⁻¹.
+//! YᵀY is never formed: Y gets an orthogonal factorization with column pivots, so κ(J) enters once and not squared. The rank is the number
+//! of rows whose rest is longer than `tolerance` times the longest row, in the metric of M⁻¹.
 //! Source: J. Carpentier, R. Budhiraja and N. Mansard, *Proximal and sparse resolution of constrained dynamic equations* (RSS 2021),
 //! for the sparse factors; Å. Björck, *Numerical Methods for Least Squares Problems* (1996), for the orthogonal ones.
 //! Cost: that of the factors of M, D1 per row, and 2 n m r for rank r. It allocates.

@@ -55,8 +55,8 @@ pub struct Equations<'a> {
 pub enum Outcome {
     /// The equations hold to the method's tolerance.
     Solved,
-    /// The accelerations asked for contradict each other: v̇ misses them by as little as possible (in the norm of the rows). λ is that of the
-    /// last iteration, and has no limit.
+    /// The accelerations asked for contradict each other: v̇ misses them by as little as possible (in the norm of the rows). λ is that of
+    /// the last iteration, and has no limit.
     LeastSquares,
     /// The cap of the iterations was reached before either was known.
     CapReached,
@@ -91,7 +91,8 @@ pub trait Method {
     /// v̇ and λ.
     ///
     /// # Errors
-    /// [`Error`]: a dof meets no inertia, a parameter makes no sense, or accelerations contradict each other where the method does not report it.
+    /// [`Error`]: a dof meets no inertia, a parameter makes no sense, or accelerations contradict each other where the method does not
+    /// report it.
     fn solve(&self, equations: &Equations<'_>) -> Result<Solution, Error>;
 }
 

@@ -6,8 +6,8 @@
 //! (G + μ 1) λ' = c + μ λ        the rest c − G λ' = μ (λ' − λ) falls by μ / (μ + σ) along an eigenvector of G with eigenvalue σ
 //! ```
 //!
-//! Of consistent rows the limit solves the equations, and λ is the shortest. Of inconsistent ones the rest tends to what G cannot reach: v̇ is the
-//! least-squares answer. μ is given as a share of the largest diagonal entry of G, and reported as it was.
+//! Of consistent rows the limit solves the equations, and λ is the shortest. Of inconsistent ones the rest tends to what G cannot reach: v̇
+//! is the least-squares answer. μ is given as a share of the largest diagonal entry of G, and reported as it was.
 //!
 //! Source: J. Carpentier, R. Budhiraja and N. Mansard, *Proximal and sparse resolution of constrained dynamic equations* (RSS 2021).
 //! Cost: that of G, m³/6, and m² per iteration. It allocates.
@@ -19,8 +19,8 @@ use crate::rows::largest;
 use featherbench_dynamics::Ltdl;
 use nalgebra::{Cholesky, DVector};
 
-/// What G may make of a rest, of its own size, so that no multiplier reduces the rest: rounding leaves ε/μ = 10⁻¹⁰ of it, and some more where λ
-/// has grown.
+/// What G may make of a rest, of its own size, so that no multiplier reduces the rest: rounding leaves ε/μ = 10⁻¹⁰ of it, and some more
+/// where λ has grown.
 const UNREACHABLE: f64 = 1e-8;
 
 /// The proximal method.
@@ -35,8 +35,8 @@ pub struct Proximal {
 }
 
 impl Default for Proximal {
-    /// μ = 10⁻⁶, a tolerance of 10⁻¹¹ and 100 iterations: two of them where σ > 10⁻³ of the largest entry. A smaller μ would cost digits where rows
-    /// are redundant: ε/μ of λ.
+    /// μ = 10⁻⁶, a tolerance of 10⁻¹¹ and 100 iterations: two of them where σ > 10⁻³ of the largest entry. A smaller μ would cost digits
+    /// where rows are redundant: ε/μ of λ.
     fn default() -> Self {
         Self { mu: 1e-6, tolerance: 1e-11, iterations: 100 }
     }

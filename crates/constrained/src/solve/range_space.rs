@@ -1,12 +1,12 @@
 //! The range-space method: multipliers first, from the Delassus matrix.
 //!
-//! Computes `G λ = b − J M⁻¹(τ − h)`, then `v̇ = M⁻¹ (τ − h + Jᵀλ)`. G comes from propagation through the articulated bodies and `M⁻¹` from the
-//! articulated-body algorithm, so no matrix of the size of the robot is factored. G is factored with diagonal pivots: `Pᵀ G P = L D Lᵀ`,
-//! which ends where the largest pivot left is at most `tolerance` times the first.
+//! Computes `G λ = b − J M⁻¹(τ − h)`, then `v̇ = M⁻¹ (τ − h + Jᵀλ)`. G comes from propagation through the articulated bodies and `M⁻¹` from
+//! the articulated-body algorithm, so no matrix of the size of the robot is factored. G is factored with diagonal pivots: `Pᵀ G P = L D
+//! Lᵀ`, which ends where the largest pivot left is at most `tolerance` times the first.
 //!
-//! Source: the book, chapter 8 (multipliers from `J M⁻¹ Jᵀ`, with redundant rows dropped); N. J. Higham, *Accuracy and Stability of Numerical
-//! Algorithms* (2002), section 10.3, for the pivots. G has the squares of what the rows have: a dependent row is seen at 10⁻¹², which is 10⁻⁶
-//! of a row's length. Between 10⁻¹⁰ and 10⁻⁶ its rank can therefore be less than that of [`Kkt`](super::Kkt).
+//! Source: the book, chapter 8 (multipliers from `J M⁻¹ Jᵀ`, with redundant rows dropped); N. J. Higham, *Accuracy and Stability of
+//! Numerical Algorithms* (2002), section 10.3, for the pivots. G has the squares of what the rows have: a dependent row is seen at 10⁻¹²,
+//! which is 10⁻⁶ of a row's length. Between 10⁻¹⁰ and 10⁻⁶ its rank can therefore be less than that of [`Kkt`](super::Kkt).
 //! Cost: O(n m) for G, m r² / 2 for its factors. It allocates.
 
 use super::{Equations, Method, Solution, check_tolerance};

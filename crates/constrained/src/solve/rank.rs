@@ -1,8 +1,8 @@
 //! A rank-revealing orthogonal factorization: the rows of a constraint that are independent, found by their lengths and not by luck.
 //!
 //! Computes `Y P = Q R` for an n×m matrix Y: the column with the longest rest comes next, its direction is a column of Q, and the others
-//! lose their part along it. It ends where the longest rest is at most `tolerance` times the first. Each new direction is made orthogonal to the
-//! others a second time, so Q is orthogonal to rounding also where the rest is short.
+//! lose their part along it. It ends where the longest rest is at most `tolerance` times the first. Each new direction is made orthogonal
+//! to the others a second time, so Q is orthogonal to rounding also where the rest is short.
 //!
 //! Source: Golub and Van Loan, *Matrix Computations* (4th edition), sections 5.2.8 (modified Gram–Schmidt) and 5.4.2 (column pivoting);
 //! Giraud, Langou and Rozložník (2005) for "twice is enough". Cost: 2 n m r multiply-adds, r the rank. It allocates.

@@ -4,7 +4,7 @@
 //! |---|---|---|---|
 //! | [`Stabilisation::None`] | nothing | | φ drifts, in general with t² |
 //! | [`Stabilisation::Baumgarte`] | a* = −2α φ̇ − β² φ | α, β in 1/s | φ stays near zero, and is not zero |
-//! | [`Stabilisation::Projection`] | q and v after each step and before each v̇ | tolerance | Newton's iterations; φ and φ̇ are zero to rounding |
+//! | [`Stabilisation::Projection`] | q and v, after each step and before each v̇ | tolerance | iterations; φ and φ̇ are zero to rounding |
 
 mod projection;
 mod run;

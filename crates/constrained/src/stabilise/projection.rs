@@ -7,10 +7,11 @@
 //! v ← v − M⁻¹ Jᵀ (J M⁻¹ Jᵀ)⁺ J v             once: the velocity nearest in kinetic energy
 //! ```
 //!
-//! δ is the shortest step in the metric of M, so a configuration on the constraints is left as it is. Rows below `cut` of the longest are taken
-//! as redundant: near a singular configuration a smaller one would ask for a large step.
+//! δ is the shortest step in the metric of M, so a configuration on the constraints is left as it is, but for rounding. Rows below `cut` of the longest are
+//! taken as redundant: near a singular configuration a smaller one would ask for a large step.
 //! Source: E. Eich, *Convergence results for a coordinate projection method applied to mechanical systems* (SIAM J. Numer. Anal. 30, 1993);
-//! the book, section 8.3 (loop-closure errors). Convergence: quadratic where J has constant rank. Units: as [`Law`](crate::Law). It allocates.
+//! the book, section 8.3 (constraint stabilization). Convergence: quadratic where J has constant rank. Units: as [`Law`](crate::Law). It
+//! allocates.
 
 use crate::constraint::Constraints;
 use crate::delassus::half_solved;

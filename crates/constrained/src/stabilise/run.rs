@@ -26,8 +26,8 @@ pub enum Stabilisation {
         /// Stiffness β, 1/s; not negative.
         beta: f64,
     },
-    /// q and v are projected after each step, and before each acceleration: rows that are redundant on the constraints are not so beside them,
-    /// and the stages of a step lie h² beside them.
+    /// q and v are projected after each step, and before each acceleration: rows that are redundant on the constraints are not so beside
+    /// them, and the stages of a step lie h² beside them.
     Projection(Projection),
 }
 
@@ -113,11 +113,12 @@ pub struct Simulation<'a> {
 }
 
 impl Simulation<'_> {
-    /// The run from a state at t = 0 by `steps` steps of length `step`. It is taken as it is: [`Projection`] makes one that closes the loops.
+    /// The run from a state at t = 0 by `steps` steps of length `step`. It is taken as it is: [`Projection`] makes one that closes the
+    /// loops.
     ///
     /// # Errors
-    /// [`Error`]: an argument does not fit or is not finite, a parameter makes no sense, or what the method or the projection meets on the way.
-    /// An iterative method that reaches its cap is [`Error::NotConverged`].
+    /// [`Error`]: an argument does not fit or is not finite, a parameter makes no sense, or what the method or the projection meets on the
+    /// way. An iterative method that reaches its cap is [`Error::NotConverged`].
     ///
     /// ```
     /// use featherbench_constrained::{Kkt, library::Ladder, stabilise::{Simulation, Stabilisation}};
