@@ -18,6 +18,7 @@
 //! | `featherbench_dynamics` | what a robot does: one file per algorithm | an algorithm |
 //! | `featherbench_constrained` | robots with loops: graph, constraints, constrained dynamics | a constraint, a method, a robot with loops |
 //! | `featherbench_reference` | slow truth that shares no text with `dynamics` | a witness |
+//! | `featherbench_hybrid` | hybrid systems: events, Zeno, saltation, derivatives of whole runs | a hybrid system |
 //! | `featherbench_results` | the row: its columns, files, differences of runs | a column |
 //! | `featherbench_protocol` | messages to an oracle, and its process | – |
 //! | `featherbench_bench` | suite, cell, run, store, measures, gates; the traits `Engine` and `Study` | a measure of an error |

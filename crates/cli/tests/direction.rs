@@ -5,7 +5,7 @@ use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
 /// The crates of ours on which each crate may depend.
-const ALLOWED: [(&str, &[&str]); 15] = [
+const ALLOWED: [(&str, &[&str]); 16] = [
     ("spatial", &["wide"]),
     ("model", &["spatial"]),
     ("robots", &["spatial", "model"]),
@@ -14,6 +14,7 @@ const ALLOWED: [(&str, &[&str]); 15] = [
     ("reference", &["model"]),
     ("contact", &["spatial"]),
     ("constrained", &["spatial", "model", "dynamics"]),
+    ("hybrid", &["spatial"]),
     ("results", &[]),
     ("report", &["results"]),
     ("protocol", &["spatial", "model"]),
