@@ -8,6 +8,9 @@
 //! | + + | − + | a minimum: two crossings, grazing, or nothing |
 //! | − − | + − | a maximum: a crossing behind it, grazing, or nothing |
 //!
+//! A guard may vary faster than the state, by the time or by its own text. So a step is accepted only if each guard along it is a polynomial of
+//! degree 5 too, to 10⁻⁴ of its largest value on the step. What is finer than that is not looked for.
+//!
 //! A root is bracketed on the dense output by bisection. Its time is then that of Newton's method on steps of the integrator, which is kept
 //! in the bracket.
 
@@ -25,6 +28,31 @@ const CELLS: usize = 8;
 const HALVINGS: usize = 52;
 /// How far a crossing may lie from that on the dense output, as a fraction of the step.
 pub(crate) const SLACK: f64 = 1e-3;
+
+/// How far a guard on a step may be from its polynomial, relative to its largest value there.
+const RESOLUTION: f64 = 1e-4;
+/// Where that is looked at: not at equal distances, so that no oscillation is met at its zeros alone.
+const LOOKS: [f64; 4] = [0.13, 0.31, 0.72, 0.89];
+
+/// How far a guard along the dense output is from the polynomial through its values and rates at the beginning, the middle and the end; 1 is what is
+/// allowed, and NaN is none.
+pub(crate) fn unresolved<S: Hybrid, T: Real>(bound: &Bound<S, T>, guard: usize, dense: &Dense<T>, settings: &Settings) -> f64 {
+    let at = |s: f64| {
+        let (t, x, rate) = dense.at(s);
+        bound.guard(guard, t, &x, &rate)
+    };
+    let nodes = [at(0.0), at(0.5), at(1.0)].map(|(value, rate)| ([value], [rate]));
+    let polynomial = Dense::new(dense.start, dense.length, [0, 1, 2].map(|k| (&nodes[k].0[..], &nodes[k].1[..])));
+    let mut largest = nodes.iter().map(|(value, _)| value[0].min_lane().abs()).fold(0.0, f64::max);
+    let mut deviation = 0.0_f64;
+    for s in LOOKS {
+        let value = at(s).0;
+        let off = (value - polynomial.at(s).1[0]).min_lane().abs();
+        largest = largest.max(value.min_lane().abs());
+        deviation = if off > deviation || off.is_nan() { off } else { deviation };
+    }
+    deviation / (RESOLUTION * largest + settings.grazing_value)
+}
 
 /// What is in a step.
 #[derive(Clone, Copy, Debug)]

@@ -9,8 +9,8 @@ use featherbench_spatial::Real;
 pub(crate) struct Dense<T> {
     /// The divided differences of each state.
     coefficients: Vec<[T; 6]>,
-    start: T,
-    length: T,
+    pub(crate) start: T,
+    pub(crate) length: T,
 }
 
 const NODES: [f64; 5] = [0.0, 0.0, 0.5, 0.5, 1.0];

@@ -61,7 +61,9 @@ pub enum HybridError {
         range: &'static str,
     },
     /// The tolerance asks for a step that time cannot resolve.
-    #[error("at t = {time:e} the tolerance asks for a step of {step:e}, which is too small; the flow is not smooth there, or not finite")]
+    #[error(
+        "at t = {time:e} the tolerance asks for a step of {step:e}, which is too small; the flow or a guard is not smooth there, or not finite"
+    )]
     StepTooSmall {
         /// When it happened.
         time: f64,

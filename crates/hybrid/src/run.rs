@@ -20,8 +20,8 @@ pub struct Start<T> {
 pub struct Event<T> {
     /// t*.
     pub time: T,
-    /// The last Newton correction of t* that was seen; one more followed. Above [`crate::Settings::time`] only where the rounding of g hides
-    /// more. Zero for an event at the instant of another.
+    /// The last Newton correction of t* that was seen; one more followed. Above [`crate::Settings::time`] only where the rounding of g
+    /// hides more. Zero for an event at the instant of another.
     pub correction: f64,
     /// The mode before.
     pub mode: usize,

@@ -9,7 +9,7 @@
 //! Integrator: [`crate::extrapolation`], of order 2κ, with the step size of the elementary controller, 0.9·e^(−1/(2κ−1)) (Hairer, Nørsett
 //! and Wanner, *Solving Ordinary Differential Equations I*, §II.4). The scalar is one number: f64, dual or double-double, not lanes.
 
-use crate::crossing::{Begin, Cut, Found, Located, SLACK, search};
+use crate::crossing::{Begin, Cut, Found, Located, SLACK, search, unresolved};
 use crate::dense::Dense;
 use crate::error::{HybridError, expect, expect_finite};
 use crate::extrapolation::{Extrapolation, Trial};
@@ -247,6 +247,8 @@ impl<S: Hybrid, T: Real> Driver<'_, S, T> {
             let trial = self.method.step(|t, x, rate| bound.flow(t, x, rate), time, length, state, &first);
             let error = self.error(&trial);
             let (dense, defect) = self.dense(&bound, length, &first, &trial);
+            let guards = (0..self.system.guards(self.now.mode)).map(|guard| unresolved(&bound, guard, &dense, self.settings));
+            let defect = largest(guards.chain([defect]));
             let taken = length.min_lane();
             if error <= 1.0 && defect <= 1.0 {
                 // The last step is short for another reason, and a step may be longer than what is tried here.

@@ -130,6 +130,7 @@ fn derivatives() {
 /// x grows so fast that it is infinite at t = 1; and a guard that jumps at x = 1.9, so that Newton's method has no root to find.
 struct Wild {
     guards: usize,
+    jump: f64,
 }
 
 impl Hybrid for Wild {
@@ -158,9 +159,10 @@ impl Hybrid for Wild {
     }
 
     fn guard<T: Real>(&self, _: usize, _: usize, _: T, x: &[T], _: &[T]) -> T {
-        // x is a multiple of 2.2·10⁻¹⁶ there: the distance is never zero.
+        // x is a multiple of 2.2·10⁻¹⁶ there: the distance is never zero. The jump is below the tolerance of grazing, and above that of time.
         let distance = x[0] - T::from_f64(1.9) + T::from_f64(1e-16);
-        distance / (distance * distance + T::from_f64(1e-60)).sqrt()
+        let sign = distance / (distance * distance + T::from_f64(1e-60)).sqrt();
+        distance + T::from_f64(self.jump) * sign
     }
 
     fn reset<T: Real>(&self, _: usize, _: usize, _: T, x: &[T], _: &[T], after: &mut [T]) {
@@ -171,11 +173,14 @@ impl Hybrid for Wild {
 #[test]
 fn wild_systems() {
     let start = Start { mode: 0, time: 0.0, state: vec![1.0] };
-    let run = |guards| simulate(&Wild { guards }, &[], &start, 2.0, &Settings::default()).unwrap_err();
+    let run = |guards, jump| simulate(&Wild { guards, jump }, &[], &start, 2.0, &Settings::default()).unwrap_err();
     // 1/(1 − t): the steps shrink towards its pole.
-    let error = run(0);
+    let error = run(0, 0.0);
     assert!(matches!(error, HybridError::StepTooSmall { time, .. } if (time - 1.0).abs() < 1e-12), "{error}");
-    // x = 1.9 at t = 1 − 1/1.9.
-    let error = run(1);
-    assert!(matches!(error, HybridError::NotLocated { guard: 0, time, .. } if (time - 0.9 / 1.9).abs() < 1e-12), "{error}");
+    // x = 1.9 at t = 1 − 1/1.9. They shrink towards a large jump of a guard; a small one is no crossing.
+    let due = 0.9 / 1.9;
+    let error = run(1, 1.0);
+    assert!(matches!(error, HybridError::StepTooSmall { time, .. } if (time - due).abs() < 1e-12), "{error}");
+    let error = run(1, 5e-11);
+    assert!(matches!(error, HybridError::NotLocated { guard: 0, time, .. } if (time - due).abs() < 1e-12), "{error}");
 }

@@ -83,8 +83,8 @@ fn check<S: Hybrid>(system: &S, case: &Case) {
     }
     assert!(inputs == forward.len() && outputs > 0);
     println!("{}: re-simulation {worst:e}, duals {worst_dual:e}, adjoint {worst_adjoint:e}", case.name);
-    // The tolerance of f64 runs, 10⁻¹⁴ per step, grows by the condition of the events: 10⁻¹² is a hundred of it. The derivative of a Newton step
-    // errs by its correction, at most 10⁻¹² s, times a second derivative of g and the like.
+    // The tolerance of f64 runs, 10⁻¹⁴ per step, grows by the condition of the events: 10⁻¹² is a hundred of it. The derivative of a Newton
+    // step errs by its correction, at most 10⁻¹² s, times a second derivative of g and the like.
     assert!(worst <= 1e-12 && worst_dual <= 1e-11, "{}: {worst:e} {worst_dual:e}", case.name);
     // The adjoint is the transpose of the same numbers: rounding alone.
     assert!(worst_adjoint <= 1e-12, "{}: {worst_adjoint:e}", case.name);

@@ -1,6 +1,6 @@
 //! How runs end: grazing, several guards at once, chains, caps; and events that hide within a step.
 
-use featherbench_hybrid::library::{BouncingBall, SlantedBox};
+use featherbench_hybrid::library::{BouncingBall, MovingTable, SlantedBox};
 use featherbench_hybrid::{Cap, Direction, Hybrid, Run, Settings, Start, Status, simulate};
 use featherbench_spatial::Real;
 use std::f64::consts::{FRAC_PI_2, PI};
@@ -147,6 +147,29 @@ fn no_drawn_throw_is_passed_over() {
     }
     println!("{seen:?}");
     assert!(seen.len() == 2 && seen.values().all(|count| *count > 50), "{seen:?}");
+}
+
+/// A guard may move faster than the state. The flow of a ball is a parabola, for which any step is exact; its table moves up and down many times
+/// within such a step. The first contact is that of a scan of the closed form in steps of a thousandth of the table's period.
+#[test]
+fn a_fast_guard_is_resolved() {
+    let mut random = featherbench_robots::Random::named(9, "fast table");
+    let mut impacts = 0;
+    for _ in 0..60 {
+        let (gravity, height, frequency) = (random.uniform(2.0, 12.0), random.uniform(0.2, 1.0), random.uniform(30.0, 400.0));
+        let amplitude = random.uniform(0.01, 0.1) * height;
+        let theta = [gravity, 0.5, amplitude, frequency];
+        let start = Start { mode: 0, time: 0.0, state: vec![height, 0.0] };
+        let to = (2.0 * (height + amplitude) / gravity).sqrt();
+        let run = simulate(&MovingTable, &theta, &start, to, &Settings { events: 1, ..Settings::default() }).unwrap();
+        let gap = |t: f64| height - 0.5 * gravity * t * t - amplitude * (frequency * t).sin();
+        let step = 1e-3 * std::f64::consts::TAU / frequency;
+        let known = (1..).map(|k| f64::from(k) * step).find(|t| gap(*t) <= 0.0).unwrap();
+        let first = run.events.first().map_or(run.time, |event| event.time);
+        assert!(first <= known && first >= known - step, "Ω = {frequency}, A = {amplitude}: {first} {known} {:?}", run.status);
+        impacts += run.events.len();
+    }
+    assert!(impacts > 50, "{impacts}");
 }
 
 /// A ball into a corner of a given opening, along its bisector.
