@@ -15,6 +15,7 @@
 
 use crate::run::Event;
 use crate::settings::Zeno;
+use crate::system::rounding;
 use featherbench_spatial::Real;
 
 /// A limit that was extrapolated.
@@ -68,7 +69,7 @@ pub(crate) fn recognise<T: Real>(settings: &Zeno, events: &[Event<T>]) -> Option
 fn limit<T: Real>(values: &[T], settings: &Zeno) -> Option<Limit<T>> {
     let magnitude = values.iter().map(|value| value.min_lane().abs()).fold(0.0, f64::max);
     // It does not move any more, or it only keeps the rounding of numbers near one.
-    let noise = 64.0 * f64::EPSILON * magnitude.max(1.0);
+    let noise = 64.0 * rounding::<T>() * magnitude.max(1.0);
     let moves: Vec<f64> = values.windows(2).map(|pair| (pair[1] - pair[0]).min_lane().abs()).collect();
     if moves[moves.len() - 1] <= noise {
         return Some(Limit { value: values[values.len() - 1], error: 2.0 * noise });
@@ -95,6 +96,6 @@ fn aitken<T: Real>(values: &[T], last: f64) -> Limit<T> {
     let estimates: Vec<T> = values.windows(3).map(estimate).collect();
     let value = estimates[estimates.len() - 1];
     let change = estimates.iter().map(|other| (*other - value).min_lane().abs()).fold(0.0, f64::max);
-    let rounding = 64.0 * f64::EPSILON * values[values.len() - 1].min_lane().abs() / (1.0 - last).powi(2);
+    let rounding = 64.0 * rounding::<T>() * values[values.len() - 1].min_lane().abs() / (1.0 - last).powi(2);
     Limit { value, error: change + rounding }
 }

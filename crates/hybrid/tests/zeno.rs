@@ -117,3 +117,15 @@ fn limits_have_derivatives() {
         assert!((found / known - 1.0).abs() < 1e-11, "{input}: {found} {known}");
     }
 }
+
+/// In double-double the same run gives t∞ to 10⁻²⁴, and states that.
+#[test]
+fn limits_in_double_double() {
+    let [height, gravity, e] = [1.0, 9.81, 0.8].map(DoubleDouble::from_f64);
+    let zero = DoubleDouble::zero();
+    let start = Start { mode: 0, time: zero, state: vec![height, zero, zero] };
+    let run = simulate(&BouncingBall, &[gravity, e], &start, DoubleDouble::from_f64(10.0), &Settings::extended()).unwrap();
+    let tail = tail(&run);
+    let error = (tail.time.value - BouncingBall::zeno_time(height, gravity, e)).abs().to_f64();
+    assert!(error <= tail.time.error && tail.time.error < 1e-24, "{error:e} {:?}", tail.time);
+}
