@@ -8,8 +8,8 @@
 //! | + + | − + | a minimum: two crossings, grazing, or nothing |
 //! | − − | + − | a maximum: a crossing behind it, grazing, or nothing |
 //!
-//! A guard may vary faster than the state, by the time or by its own text. So a step is accepted only if each guard along it is a polynomial of
-//! degree 5 too, to 10⁻⁴ of its largest value on the step. What is finer than that is not looked for.
+//! A guard may vary faster than the state, by the time or by its own text. So a step is accepted only if each guard along it is a
+//! polynomial of degree 5 too, to 10⁻⁴ of its largest value on the step. What is finer than that is not looked for.
 //!
 //! A root is bracketed on the dense output by bisection. Its time is then that of Newton's method on steps of the integrator, which is kept
 //! in the bracket.
@@ -34,8 +34,8 @@ const RESOLUTION: f64 = 1e-4;
 /// Where that is looked at: not at equal distances, so that no oscillation is met at its zeros alone.
 const LOOKS: [f64; 4] = [0.13, 0.31, 0.72, 0.89];
 
-/// How far a guard along the dense output is from the polynomial through its values and rates at the beginning, the middle and the end; 1 is what is
-/// allowed, and NaN is none.
+/// How far a guard along the dense output is from the polynomial through its values and rates at the beginning, the middle and the end; 1
+/// is what is allowed, and NaN is none.
 pub(crate) fn unresolved<S: Hybrid, T: Real>(bound: &Bound<S, T>, guard: usize, dense: &Dense<T>, settings: &Settings) -> f64 {
     let at = |s: f64| {
         let (t, x, rate) = dense.at(s);

@@ -62,7 +62,8 @@ pub enum HybridError {
     },
     /// The tolerance asks for a step that time cannot resolve.
     #[error(
-        "at t = {time:e} the tolerance asks for a step of {step:e}, which is too small; the flow or a guard is not smooth there, or not finite"
+        "at t = {time:e} the tolerance asks for a step of {step:e}, which is too small; the flow or a guard is not smooth there, or not \
+         finite"
     )]
     StepTooSmall {
         /// When it happened.

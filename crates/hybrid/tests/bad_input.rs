@@ -159,7 +159,8 @@ impl Hybrid for Wild {
     }
 
     fn guard<T: Real>(&self, _: usize, _: usize, _: T, x: &[T], _: &[T]) -> T {
-        // x is a multiple of 2.2·10⁻¹⁶ there: the distance is never zero. The jump is below the tolerance of grazing, and above that of time.
+        // x is a multiple of 2.2·10⁻¹⁶ there: the distance is never zero. The small jump is below the tolerance of grazing, and above that
+        // of time.
         let distance = x[0] - T::from_f64(1.9) + T::from_f64(1e-16);
         let sign = distance / (distance * distance + T::from_f64(1e-60)).sqrt();
         distance + T::from_f64(self.jump) * sign

@@ -149,8 +149,8 @@ fn no_drawn_throw_is_passed_over() {
     assert!(seen.len() == 2 && seen.values().all(|count| *count > 50), "{seen:?}");
 }
 
-/// A guard may move faster than the state. The flow of a ball is a parabola, for which any step is exact; its table moves up and down many times
-/// within such a step. The first contact is that of a scan of the closed form in steps of a thousandth of the table's period.
+/// A guard may move faster than the state. The flow of a ball is a parabola, for which any step is exact; its table moves up and down many
+/// times within such a step. The first contact is that of a scan of the closed form in steps of a thousandth of the table's period.
 #[test]
 fn a_fast_guard_is_resolved() {
     let mut random = featherbench_robots::Random::named(9, "fast table");
