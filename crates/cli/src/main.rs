@@ -16,6 +16,7 @@
 //! | `featherbench_robots` | generated robots, random states, the random generator | a family of robots |
 //! | `featherbench_formats` | how a robot is written: neutral JSON, URDF, MJCF | a format |
 //! | `featherbench_dynamics` | what a robot does: one file per algorithm | an algorithm |
+//! | `featherbench_contact` | contact problems as data, their solvers, impact laws | a solver, a problem, an impact law |
 //! | `featherbench_constrained` | robots with loops: graph, constraints, constrained dynamics | a constraint, a method, a robot with loops |
 //! | `featherbench_reference` | slow truth that shares no text with `dynamics` | a witness |
 //! | `featherbench_hybrid` | hybrid systems: events, Zeno, saltation, derivatives of whole runs | a hybrid system |

@@ -7,7 +7,7 @@ use crate::common;
 use common::{ROBOTS, build, wrenches};
 use featherbench_dynamics::integrate::{
     Adjoint, Analytic, ByDuals, Cost, CostGradient, DormandPrince, Forward, ImplicitMidpoint, Motors, Rollout, RungeKutta4,
-    SymplecticEuler, Tolerance, Visit,
+    SymplecticEuler, Tolerance, VariationalMidpoint, Visit,
 };
 use featherbench_dynamics::{
     Aba, Batch, Bias, CenterOfMass, Coriolis, Crba, Energy, EnergyGradient, EnergyPartials, FdDerivatives, FdHessian, FdPartials,
@@ -243,6 +243,7 @@ fn no_integration_allocates_in_a_call() {
         all!(
             SymplecticEuler::with_derivatives(t, 1),
             ImplicitMidpoint::with_derivatives(t, 1),
+            VariationalMidpoint::with_derivatives(t, 1),
             RungeKutta4::with_derivatives(t, 1),
             DormandPrince::with_derivatives(t, 1)
         );
