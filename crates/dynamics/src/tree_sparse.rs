@@ -138,16 +138,13 @@ impl<T: Real> TreeSparse<T> {
         &mut self.values[..self.stored]
     }
 
-    /// Exchanges the stored numbers with others of the same count: matrices of one topology in turn, without a copy.
-    /// It allocates if the vector has no capacity for eight numbers more; a vector that comes from an exchange has it.
+    /// Exchanges the stored numbers with those of another matrix: matrices of one topology in turn, without a copy.
     ///
     /// # Errors
     /// [`DimensionError`] when the counts differ; nothing is exchanged then.
-    pub fn exchange(&mut self, values: &mut Vec<T>) -> Result<(), DimensionError> {
-        expect("stored numbers of the tree-sparse matrix", self.stored, values.len())?;
-        values.resize(self.stored + PADDING, T::zero());
-        std::mem::swap(&mut self.values, values);
-        values.truncate(self.stored);
+    pub fn exchange(&mut self, other: &mut Self) -> Result<(), DimensionError> {
+        expect("stored numbers of the tree-sparse matrix", self.stored, other.stored)?;
+        std::mem::swap(&mut self.values, &mut other.values);
         Ok(())
     }
 

@@ -151,14 +151,15 @@ fn matrices_exchange_their_numbers_with_as_many() {
     let topology =
         common::topology(&[(-1, JointKind::Revolute(Axis::Z)), (0, JointKind::Revolute(Axis::Z)), (0, JointKind::Revolute(Axis::Z))]);
     let mut matrix = TreeSparse::from_fn(&topology, |i, j| (10 * i + j) as f64);
-    let (own, mut others) = (matrix.values().to_vec(), vec![1.0, 2.0, 3.0, 4.0, 5.0]);
-    assert_eq!(own, [0.0, 10.0, 11.0, 20.0, 22.0]);
+    let (own, mut others) = (matrix.clone(), TreeSparse::new(&topology));
+    assert_eq!(own.values(), [0.0, 10.0, 11.0, 20.0, 22.0]);
+    others.values_mut().copy_from_slice(&[1.0, 2.0, 3.0, 4.0, 5.0]);
     matrix.exchange(&mut others).unwrap();
     assert_eq!((matrix.values(), &others), (&[1.0, 2.0, 3.0, 4.0, 5.0][..], &own));
-    for length in [4, 6] {
-        let mut wrong = vec![7.0; length];
+    for (parents, length) in [(&[None, None, None, None][..], 4), (&[None, Some(0), Some(1)], 6)] {
+        let mut wrong = TreeSparse::of_parents(parents).unwrap();
         assert_eq!(refusal(matrix.exchange(&mut wrong)), ("stored numbers of the tree-sparse matrix", 5, length));
-        assert_eq!((matrix.values(), wrong), (&[1.0, 2.0, 3.0, 4.0, 5.0][..], vec![7.0; length]), "nothing is exchanged");
+        assert_eq!((matrix.values(), wrong.values()), (&[1.0, 2.0, 3.0, 4.0, 5.0][..], &vec![0.0; length][..]), "nothing is exchanged");
     }
 }
 

@@ -5,7 +5,7 @@
 
 use crate::kernel::{Evaluate, Failure, Kernel, matrices};
 use featherbench_bench::NoAnswer;
-use featherbench_dynamics::{Ltdl, Number};
+use featherbench_dynamics::{Ltdl, Number, TreeSparse};
 use featherbench_model::Model;
 use featherbench_robots::StateBatch;
 use featherbench_spatial::Real;
@@ -20,8 +20,8 @@ const GROUPS: usize = 4;
 /// Groups of matrices, or of factors with right-hand sides.
 struct Grouped {
     ltdl: Ltdl<Lanes>,
-    /// The stored numbers of each group. Of the last group those lanes without a state are the first states.
-    groups: Vec<Vec<Lanes>>,
+    /// The matrix of each group, or its factors. Of the last group those lanes without a state are the first states.
+    groups: Vec<TreeSparse<Lanes>>,
     /// The right-hand sides of each group, if it solves.
     sides: Option<Vec<Vec<Lanes>>>,
     /// The last solution.
@@ -44,9 +44,9 @@ pub(crate) fn solve<'a>(model: &'a Model<f64>, states: &'a StateBatch) -> Result
     };
     let sides = (0..grouped.groups.len()).map(side).collect();
     for group in &mut grouped.groups {
-        grouped.ltdl.matrix_mut().values_mut().copy_from_slice(group);
+        grouped.ltdl.matrix_mut().values_mut().copy_from_slice(group.values());
         grouped.ltdl.factor().map_err(|error| NoAnswer::Failed(error.to_string()))?;
-        group.copy_from_slice(grouped.ltdl.factors().values());
+        group.values_mut().copy_from_slice(grouped.ltdl.factors().values());
     }
     grouped.sides = Some(sides);
     Ok(Box::new(grouped))
@@ -55,9 +55,12 @@ pub(crate) fn solve<'a>(model: &'a Model<f64>, states: &'a StateBatch) -> Result
 impl Grouped {
     fn new(model: &Model<f64>, states: &StateBatch) -> Result<Self, NoAnswer> {
         let rows = matrices(model, states)?;
-        let group = |first: usize| -> Vec<Lanes> {
-            let entry = |entry: usize| f64::pack(|lane| rows[(first + lane) % rows.len()][entry]);
-            (0..model.topology.stored()).map(entry).collect()
+        let group = |first: usize| {
+            let mut group = TreeSparse::new(&model.topology);
+            for (entry, value) in group.values_mut().iter_mut().enumerate() {
+                *value = f64::pack(|lane| rows[(first + lane) % rows.len()][entry]);
+            }
+            group
         };
         let groups = (0..rows.len()).step_by(LANES).map(group).collect();
         let x = vec![Lanes::zero(); model.topology.nv()];
@@ -68,7 +71,7 @@ impl Grouped {
         let Self { ltdl, groups, sides, x, .. } = self;
         match sides {
             None => {
-                ltdl.matrix_mut().values_mut().copy_from_slice(&groups[group]);
+                ltdl.matrix_mut().values_mut().copy_from_slice(groups[group].values());
                 ltdl.factor()?;
             }
             Some(sides) => {
@@ -88,7 +91,7 @@ impl Evaluate for Grouped {
     fn evaluate(&mut self, k: usize) -> Result<(), Failure> {
         let (group, lane) = (k % self.states / LANES, k % self.states % LANES);
         let copies = |lanes: &[Lanes]| -> Vec<Lanes> { lanes.iter().map(|x| f64::pack(|_| f64::lanes(x)[lane])).collect() };
-        self.ltdl.matrix_mut().values_mut().copy_from_slice(&copies(&self.groups[group]));
+        self.ltdl.matrix_mut().values_mut().copy_from_slice(&copies(self.groups[group].values()));
         match &self.sides {
             None => self.ltdl.factor()?,
             Some(sides) => {

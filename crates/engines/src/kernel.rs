@@ -371,12 +371,12 @@ fn factorization<'a>(model: &'a Model<f64>, states: &'a StateBatch) -> Result<Ke
 
 fn solve<'a>(model: &'a Model<f64>, states: &'a StateBatch) -> Result<Kernel<'a>, NoAnswer> {
     let mut ltdl = Ltdl::new(&model.topology);
-    let mut factors = matrices(model, states)?;
-    for matrix in &mut factors {
+    let factored = |matrix: &Vec<f64>| {
         ltdl.matrix_mut().values_mut().copy_from_slice(matrix);
         ltdl.factor().map_err(|error| NoAnswer::Failed(error.to_string()))?;
-        matrix.copy_from_slice(ltdl.factors().values());
-    }
+        Ok(ltdl.factors().clone())
+    };
+    let mut factors = matrices(model, states)?.iter().map(factored).collect::<Result<Vec<_>, NoAnswer>>()?;
     Ok(written(model.topology.nv(), move |k, x| {
         x.copy_from_slice(states.tau(k));
         let at = k % factors.len();
