@@ -1,6 +1,6 @@
 //! φ, J and J̇v of every law agree: by dual numbers, which differentiate the residual itself.
 
-use crate::common::{EVERY_JOINT, assert_within, every_law, model, slack};
+use crate::common::{EVERY_JOINT, assert_within, every_law, largest, model, slack};
 use featherbench_constrained::{Constraint, Constraints, Law, LoopMotion, Rows};
 use featherbench_model::integrate;
 use featherbench_robots::StateBatch;
@@ -104,7 +104,7 @@ fn loop_joints_leave_their_motion_free() {
             // Far from home: half a turn and more is no matter for a hinge.
             step[dof] = 2.0;
             rows.run(&model, &constraints, &integrate(&model.topology, &home, &step).unwrap(), &[0.0; 6]).unwrap();
-            let largest = rows.residuals().fold(0.0_f64, |a, b| a.max(b.abs()));
+            let largest = largest(rows.residuals());
             if free.contains(&dof) {
                 assert_within(motion.name(), largest, 4.0 * f64::EPSILON);
             } else {

@@ -1,6 +1,6 @@
 //! The robots of the library move as their closed forms say.
 
-use crate::common::assert_within;
+use crate::common::{assert_within, largest};
 use featherbench_constrained::library::{Biped, Bricard, Ladder};
 use featherbench_constrained::stabilise::{Projection, Simulation, Stabilisation};
 use featherbench_constrained::{Constrained, Kkt, Mechanism, Method, Proximal, RangeSpace};
@@ -50,7 +50,7 @@ fn ladders_accelerate_as_the_closed_form_says() {
                 [(&Kkt::default() as &dyn Method, 1e-11), (&RangeSpace::default(), 1e-9), (&Proximal::default(), 1e-6)]
             {
                 let found = dynamics.run(&q, &v, &tau, method).unwrap();
-                let error = found.acceleration.iter().zip(&due).map(|(a, due)| (a - due).abs()).fold(0.0, f64::max);
+                let error = largest(found.acceleration.iter().zip(&due).map(|(a, due)| a - due));
                 assert_within(&format!("θ̈ of {windows} windows by {}", method.name()), error, tolerance * (1.0 + rate * rate));
                 cases += 1;
             }

@@ -1,6 +1,6 @@
 //! Andrews' squeezer: bodies and loops against the equations of the literature, by two integrators.
 
-use crate::common::assert_within;
+use crate::common::{assert_within, largest};
 use featherbench_constrained::library::Squeezer;
 use featherbench_constrained::stabilise::{Projection, Simulation, Stabilisation};
 use featherbench_constrained::{Constrained, Kkt, Rows};
@@ -85,8 +85,8 @@ fn the_bodies_are_those_of_the_literature() {
     let mut rows = Rows::new(&mechanism.constraints);
     rows.run(&mechanism.model, &mechanism.constraints, &q, &[0.0; 7]).unwrap();
     // Lengths of 0.1 m, rounded.
-    assert_within("closure", rows.residuals().fold(0.0, |a: f64, b| a.max(b.abs())), 1e-16);
-    assert_within("closure of the literature", closure(&squeezer, &q).into_iter().fold(0.0, |a: f64, b| a.max(b.abs())), 1e-16);
+    assert_within("closure", largest(rows.residuals()), 1e-16);
+    assert_within("closure of the literature", largest(closure(&squeezer, &q)), 1e-16);
     let mut dynamics = Constrained::new(&mechanism.model, &mechanism.constraints).unwrap();
     for rate in [0.0, 100.0] {
         // A velocity that keeps the loops closed.
@@ -97,7 +97,7 @@ fn the_bodies_are_those_of_the_literature() {
         let found = dynamics.run(&q, &v, &tau, &Kkt::default()).unwrap();
         assert_eq!(found.rank, Some(6));
         let due = literature(&squeezer, &q, &v);
-        let scale = due.iter().fold(0.0, |a: f64, b| a.max(b.abs()));
+        let scale = largest(due.iter().copied());
         assert!(scale > 1e3);
         if rate == 0.0 {
             // The consistent β̈ and Θ̈ at the start that the test set prints.

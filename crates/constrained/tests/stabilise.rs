@@ -1,6 +1,6 @@
 //! Drift, and what is done against it.
 
-use crate::common::{EVERY_JOINT, assert_within, model};
+use crate::common::{EVERY_JOINT, assert_within, largest, model};
 use featherbench_constrained::library::Ladder;
 use featherbench_constrained::stabilise::{Projection, Simulation, Stabilisation};
 use featherbench_constrained::{Attachment, Constraint, Constraints, Error, Kkt, Mechanism, Proximal, Rows};
@@ -78,7 +78,7 @@ fn velocities_are_projected_in_the_metric_of_m() {
             let mut rate = vec![0.0; constraints.rows()];
             rows.multiply(&v, &mut rate).unwrap();
             // κ(J)·ε, up to 10⁵ ε.
-            assert_within("J v", rate.iter().fold(0.0, |a: f64, b| a.max(b.abs())), 1e-10);
+            assert_within("J v", largest(rate), 1e-10);
             let taken: Vec<f64> = states.v(k).iter().zip(&v).map(|(before, after)| before - after).collect();
             let momentum = mass_matrix(&model, states.q(k)).unwrap().product(&taken).unwrap();
             let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();

@@ -15,7 +15,7 @@
 //! in the bracket.
 
 use crate::dense::Dense;
-use crate::error::HybridError;
+use crate::error::{HybridError, largest};
 use crate::extrapolation::Extrapolation;
 use crate::settings::Settings;
 use crate::system::{Bound, Hybrid};
@@ -43,15 +43,15 @@ pub(crate) fn unresolved<S: Hybrid, T: Real>(bound: &Bound<S, T>, guard: usize, 
     };
     let nodes = [at(0.0), at(0.5), at(1.0)].map(|(value, rate)| ([value], [rate]));
     let polynomial = Dense::new(dense.start, dense.length, [0, 1, 2].map(|k| (&nodes[k].0[..], &nodes[k].1[..])));
-    let mut largest = nodes.iter().map(|(value, _)| value[0].min_lane().abs()).fold(0.0, f64::max);
+    let mut size = largest(nodes.iter().map(|(value, _)| value[0].min_lane()));
     let mut deviation = 0.0_f64;
     for s in LOOKS {
         let value = at(s).0;
         let off = (value - polynomial.at(s).1[0]).min_lane().abs();
-        largest = largest.max(value.min_lane().abs());
+        size = largest([size, value.min_lane()]);
         deviation = if off > deviation || off.is_nan() { off } else { deviation };
     }
-    deviation / (RESOLUTION * largest + settings.grazing_value)
+    deviation / (RESOLUTION * size + settings.grazing_value)
 }
 
 /// What is in a step.

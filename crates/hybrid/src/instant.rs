@@ -4,7 +4,7 @@
 //! direction. A guard for both directions is met by crossings only. A guard is not met again right after its own event in the same mode:
 //! where its reset does not turn g back, the flow passes.
 
-use crate::error::{HybridError, expect_finite};
+use crate::error::{HybridError, expect_finite, largest};
 use crate::run::{Event, Settled, Simultaneous};
 use crate::settings::Settings;
 use crate::system::{Bound, Direction, Hybrid};
@@ -92,8 +92,8 @@ pub(crate) fn both_orders<S: Hybrid, T: Real>(
     let (ascending, descending) = (run(Order::Ascending)?, run(Order::Descending)?);
     let same = ascending.mode == descending.mode && ascending.complete && descending.complete;
     let difference = |(a, b): (&T, &T)| (*a - *b).min_lane().abs() / (1.0 + a.min_lane().abs());
-    let largest = ascending.state.iter().zip(&descending.state).map(difference).fold(0.0, f64::max);
-    let disagreement = if same { largest } else { f64::INFINITY };
+    let differences = ascending.state.iter().zip(&descending.state).map(difference);
+    let disagreement = if same { largest(differences) } else { f64::INFINITY };
     Ok(Simultaneous { time: now.time, mode: now.mode, guards, ascending, descending, disagreement })
 }
 

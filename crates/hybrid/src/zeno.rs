@@ -13,6 +13,7 @@
 //!
 //! Source: A. C. Aitken, *On Bernoulli's numerical solution of algebraic equations* (1926).
 
+use crate::error::largest;
 use crate::run::Event;
 use crate::settings::Zeno;
 use crate::system::rounding;
@@ -54,8 +55,9 @@ pub(crate) fn recognise<T: Real>(settings: &Zeno, events: &[Event<T>]) -> Option
     let tail = &kind[kind.len() - settings.intervals - 1..];
     let times: Vec<T> = tail.iter().map(|event| event.time).collect();
     let ratios: Vec<f64> = times.windows(3).map(|t| ratio(t).min_lane()).collect();
-    let (low, high) = ratios.iter().fold((f64::INFINITY, 0.0_f64), |(low, high), ratio| (low.min(*ratio), high.max(*ratio)));
-    // Written so that NaN, from two events at one instant, is no tail.
+    let first = ratios[0];
+    let (low, high) = ratios.iter().fold((first, first), |(a, b), &x| (if x < a { x } else { a }, if x > b { x } else { b }));
+    // NaN, from two events at one instant, is no tail.
     let geometric = low > 0.0 && high <= settings.ratio && high - low <= settings.spread;
     if !geometric || ratios.iter().any(|ratio| ratio.is_nan()) {
         return None;
@@ -67,7 +69,7 @@ pub(crate) fn recognise<T: Real>(settings: &Zeno, events: &[Event<T>]) -> Option
 
 /// The limit of a sequence; `None` if it has no geometric tail.
 fn limit<T: Real>(values: &[T], settings: &Zeno) -> Option<Limit<T>> {
-    let magnitude = values.iter().map(|value| value.min_lane().abs()).fold(0.0, f64::max);
+    let magnitude = largest(values.iter().map(|value| value.min_lane()));
     // It does not move any more, or it only keeps the rounding of numbers near one.
     let noise = 64.0 * rounding::<T>() * magnitude.max(1.0);
     let moves: Vec<f64> = values.windows(2).map(|pair| (pair[1] - pair[0]).min_lane().abs()).collect();
@@ -95,7 +97,7 @@ fn aitken<T: Real>(values: &[T], last: f64) -> Limit<T> {
     };
     let estimates: Vec<T> = values.windows(3).map(estimate).collect();
     let value = estimates[estimates.len() - 1];
-    let change = estimates.iter().map(|other| (*other - value).min_lane().abs()).fold(0.0, f64::max);
+    let change = largest(estimates.iter().map(|other| (*other - value).min_lane()));
     let rounding = 64.0 * rounding::<T>() * values[values.len() - 1].min_lane().abs() / (1.0 - last).powi(2);
     Limit { value, error: change + rounding }
 }

@@ -2,6 +2,7 @@
 
 mod bad_input;
 mod closed_forms;
+mod common;
 mod derivatives;
 mod ends;
 mod penalty;

@@ -1,6 +1,7 @@
 //! Derivatives of whole runs: forward and adjoint, against re-simulation in double-double, against duals of the whole simulation, and each
 //! other.
 
+use crate::common::largest;
 use featherbench_hybrid::library::{BouncingBall, MovingTable, RimlessWheel, RockingBlock, SlantedBox, SlidingSphere, StickSlip};
 use featherbench_hybrid::penalty::PenaltyBall;
 use featherbench_hybrid::{Hybrid, Run, Settings, Start, Status, adjoint, sensitivity, simulate};
@@ -36,7 +37,7 @@ fn check<S: Hybrid>(system: &S, case: &Case) {
     for time in &derivative.times {
         forward.iter_mut().zip(time).for_each(|(column, entry)| column.push(*entry));
     }
-    let scale = |row: usize| forward.iter().map(|column| column[row].abs()).fold(1.0, f64::max);
+    let scale = |row: usize| largest(forward.iter().map(|column| column[row]).chain([1.0]));
     let (mut worst, mut worst_dual, mut worst_adjoint) = (0.0_f64, 0.0_f64, 0.0_f64);
 
     // Re-simulation: central differences of a step of 10⁻⁹ err by 10⁻¹⁸ times a third derivative, and by 10⁻²⁵/10⁻⁹ of rounding.
@@ -55,7 +56,7 @@ fn check<S: Hybrid>(system: &S, case: &Case) {
         let (after, before) = (moved(input, step), moved(input, -step));
         for (row, entry) in column.iter().enumerate() {
             let truth = ((after[row] - before[row]) / twice).to_f64();
-            worst = worst.max((entry - truth).abs() / scale(row));
+            worst = largest([worst, (entry - truth) / scale(row)]);
         }
     }
 
@@ -67,7 +68,7 @@ fn check<S: Hybrid>(system: &S, case: &Case) {
         };
         let run = go(system, case, &seed(case.state.len(), case.theta), seed(0, case.state), &Settings::default());
         for (row, (entry, output)) in column.iter().zip(outputs(&run)).enumerate() {
-            worst_dual = worst_dual.max((entry - output.derivative).abs() / scale(row));
+            worst_dual = largest([worst_dual, (entry - output.derivative) / scale(row)]);
         }
     }
 
@@ -78,7 +79,7 @@ fn check<S: Hybrid>(system: &S, case: &Case) {
         let (of_state, of_times) = unit.split_at(case.state.len());
         let gradient = adjoint(system, case.theta, &run, of_state, of_times).unwrap();
         for (column, entry) in forward.iter().zip(gradient.state.iter().chain(&gradient.parameters)) {
-            worst_adjoint = worst_adjoint.max((entry - column[row]).abs() / scale(row));
+            worst_adjoint = largest([worst_adjoint, (entry - column[row]) / scale(row)]);
         }
     }
     assert!(inputs == forward.len() && outputs > 0);

@@ -1,5 +1,6 @@
 //! Infinitely many events in finite time, against geometric sums.
 
+use crate::common::largest;
 use featherbench_hybrid::library::{BouncingBall, RockingBlock};
 use featherbench_hybrid::{Cap, Run, Settings, Start, Status, Tail, Zeno, simulate};
 use featherbench_spatial::{DoubleDouble, Dual, Real};
@@ -41,9 +42,9 @@ fn ball_comes_to_rest() {
         let impacts = run.events.iter().filter(|event| event.mode == 0).enumerate();
         for (index, event) in impacts {
             let known = BouncingBall::impact_time(height, gravity, e, index);
-            worst[2] = worst[2].max((event.time / known - 1.0).abs());
+            worst[2] = largest([worst[2], event.time / known - 1.0]);
         }
-        worst = [worst[0].max(errors[0]), worst[1].max(errors[1]), worst[2]];
+        worst = [largest([worst[0], errors[0]]), largest([worst[1], errors[1]]), worst[2]];
     }
     println!("worst relative errors of t∞, path, impact times: {worst:?}");
     assert!(worst[2] <= 1e-12, "{worst:?}");

@@ -59,7 +59,7 @@ pub fn agrees(adam: &Oracle) {
             // Its articulated body algorithm is that of a floating base.
             let fixed = robot.properties().base == Base::Fixed;
             let found = native::compare(adam, &robot, if fixed { &["aba"] } else { &[] });
-            assert_eq!(found.len(), if fixed { 7 } else { 8 }, "{words}");
+            assert_eq!(found.len(), if fixed { 9 } else { 10 }, "{words}: {found:?}");
             for native::Found { quantity, method, share } in found {
                 let share = share.unwrap_or_else(|reason| panic!("{words} {}: {reason}", quantity.name()));
                 assert!(share <= 1.0, "{words} {gravity:?} {} by {method}: {share} of its tolerance", quantity.name());

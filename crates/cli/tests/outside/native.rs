@@ -310,6 +310,9 @@ pub fn oracles_agree() -> Outcome {
                 }
                 // Only MuJoCo has no helical joint.
                 let excused = matches!(&share, Err(NoAnswer::NotOffered(why)) if name == "mujoco-native" && why.contains("helical"));
+                // Derivatives by configuration-dependent subspaces are those of the oracle in Python, which composes them.
+                let excused = excused
+                    || matches!(&share, Err(NoAnswer::NotOffered(why)) if name.starts_with("pinocchio") && why.contains("oracle in Python"));
                 assert!(excused || share.is_ok_and(|share| share <= slack(&name, quantity, spec)), "{line}");
             }
         }

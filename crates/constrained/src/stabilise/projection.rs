@@ -114,8 +114,8 @@ impl Projection {
             }
             // Near a singular configuration each digit counts twice: it goes on while the residual falls.
             let last = residual == 0.0 || residual > 0.5 * before || iterations == self.iterations;
-            if last && residual.min(before) <= self.tolerance {
-                let residual = residual.min(before);
+            if last && (residual <= self.tolerance || before <= self.tolerance) {
+                let residual = if residual < before { residual } else { before };
                 q.copy_from_slice(&best);
                 return Ok(Projected { iterations, residual, rank: revealed.rank() });
             }

@@ -61,7 +61,7 @@ fn pull_is_the_transpose_of_push_entry_by_entry() {
         assert_eq!((&q, &v), (&step_q, &step_v), "{}: the same step", case.name);
 
         let forward = columns(&mut integrator, nv, inputs);
-        let size = forward.iter().map(|column| largest(column)).fold(0.0, f64::max);
+        let size = largest(&forward.concat());
         for row in 0..2 * nv {
             let mut gradient = vec![0.0; 2 * nv + inputs];
             gradient[row] = 1.0;
