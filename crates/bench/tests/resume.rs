@@ -9,6 +9,7 @@ use featherbench_protocol::Message;
 use featherbench_results::{ModelOrigin, Row, Verdict};
 use featherbench_robots::{Family, Random};
 use rayon::ThreadPoolBuilder;
+use std::cmp::Ordering;
 use std::collections::{BTreeMap, BTreeSet};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::Path;
@@ -67,12 +68,13 @@ impl Study for Counting {
             evaluated.values().sum::<usize>()
         };
         if let Some(last) = self.dies_at {
-            if total == last {
-                std::process::exit(70);
-            }
-            // The exit takes a while: no other thread begins a cell meanwhile, however busy the machine is.
-            while total > last {
-                std::thread::park();
+            match total.cmp(&last) {
+                Ordering::Less => {}
+                Ordering::Equal => std::process::exit(70),
+                // The exit takes a while: no other thread begins a cell meanwhile, however busy the machine is.
+                Ordering::Greater => loop {
+                    std::thread::park();
+                },
             }
         }
         let method = cell.params["method"].as_u64().unwrap() as usize;
