@@ -17,7 +17,7 @@ use plain::Plain;
 use std::hint::black_box;
 use std::time::Duration;
 
-const ROBOTS: [&str; 7] = [
+const ROBOTS: [&str; 11] = [
     "chain:n=6,layout=spatial",
     "chain:n=7,layout=spatial",
     "chain:n=36,layout=spatial",
@@ -25,6 +25,10 @@ const ROBOTS: [&str; 7] = [
     "humanoid",
     "tree:n=1000",
     "binary_tree:depth=10",
+    "binary_tree:depth=4",
+    "binary_tree:depth=6",
+    "tree:n=100,seed=6,spread=0.3",
+    "tree:n=30,seed=6,spread=0.3",
 ];
 const STATES: usize = 8;
 const SEED: u64 = 1;

@@ -1,16 +1,17 @@
 //! The joint-space inertia matrix of one state on all cores, sub-tree by sub-tree.
 //!
 //! Source, frames, shapes and units: those of `crba.rs`, whose functions for one joint it calls. The tree is divided by `parallel.rs`. The rows
-//! of a part's dofs are consecutive. Each part computes all of them: it carries its forces on through the trunk to the world.
+//! of a task's dofs are consecutive. The task computes those of its parts: it carries their forces together through the trunk to the world.
+//! Dofs of the trunk stand between them; their forces are zero, and step 3 writes their rows.
 //!
 //! | step | where | what |
 //! |---|---|---|
 //! | 1 | trunk | placements |
-//! | 2 | parts, in parallel | placements, composite inertias Iᶜ, all rows of the part |
-//! | 3 | trunk | composite inertias, and the rows of the trunk by the book's algorithm, one force at a time |
+//! | 2 | tasks, in parallel | placements and composite inertias Iᶜ of the parts, all rows of the parts |
+//! | 3 | trunk | composite inertias, and the rows of the trunk, the forces of its dofs together |
 //!
-//! Cost: O(n + Σ d_k), the operations of [`crate::Crba`]. Beside what `rayon` itself allocates, a call allocates five lists of slices,
-//! with one entry per task each.
+//! Cost: O(n + Σ d_k), the operations of [`crate::Crba`] and those on the zeros of step 2. Beside what `rayon` itself allocates, a call allocates
+//! four lists of slices, with one entry per task each.
 
 use super::{Forces, column_force, project};
 use crate::parallel::{Part, Piece, Plan, Task};
@@ -18,8 +19,9 @@ use crate::step::by_kind;
 use crate::tree_sparse::Row;
 use crate::{DimensionError, TreeSparse};
 use featherbench_model::{Model, Topology};
-use featherbench_spatial::{CentralInertia, Lift, Real, Transform};
+use featherbench_spatial::{CentralInertia, Force, Lift, Real, Transform};
 use rayon::prelude::*;
+use std::ops::Range;
 
 /// The workspace of the composite-rigid-body algorithm for one state on all cores. Its answers are those of [`crate::Crba`] to the bit.
 ///
@@ -41,30 +43,40 @@ use rayon::prelude::*;
 #[derive(Clone, Debug)]
 pub struct ParallelCrba<T> {
     plan: Plan,
+    /// Per task: its parts and the bodies of the trunk between them, in the plan's order.
+    pieces: Vec<Range<usize>>,
     composites: Vec<CentralInertia<T>>,
     placements: Vec<Transform<T>>,
-    /// Per body of the trunk, in the plan's order: its index and its placement, for all parts to read.
-    trunk: Vec<(usize, Transform<T>)>,
-    /// Per part: where its parent stands in `trunk`.
-    parents: Vec<Option<usize>>,
-    /// Per body of the trunk: where its parent stands in `trunk`.
-    trunk_parents: Vec<Option<usize>>,
+    trunk: Vec<Body<T>>,
+    /// The rows of the trunk's dofs.
+    trunk_rows: Vec<Row>,
     /// Per part: its composite inertia in its parent.
     carried: Vec<CentralInertia<T>>,
-    /// Per task: the forces of one part. The last is for the trunk.
+    /// Per task: the forces of its dofs. The last is for the dofs of the trunk.
     forces: Vec<Forces<T>>,
 }
 
-/// What a part reads.
+/// A body of the trunk, in the plan's order.
+#[derive(Clone, Debug)]
+struct Body<T> {
+    index: usize,
+    /// Its placement in its parent, for all tasks to read.
+    x: Transform<T>,
+    /// Where its parent stands in the trunk.
+    parent: Option<usize>,
+    /// The dofs of the trunk that it supports, its own first, counted within the trunk.
+    dofs: Range<usize>,
+}
+
+/// What a task reads.
 struct Inputs<'a, P, T> {
     model: &'a Model<P>,
     q: &'a [T],
-    trunk: &'a [(usize, Transform<T>)],
-    trunk_parents: &'a [Option<usize>],
+    trunk: &'a [Body<T>],
     rows: &'a [Row],
 }
 
-/// What a part writes: slices that begin with its root, and its rows in the flat array, which begin at `start`.
+/// What a task writes: slices that begin with its first body, and its rows in the flat array, which begin at number `start`.
 struct Outputs<'a, T> {
     composites: &'a mut [CentralInertia<T>],
     placements: &'a mut [Transform<T>],
@@ -77,19 +89,18 @@ impl<T: Real> ParallelCrba<T> {
     /// A workspace for models of this topology.
     pub fn new(topology: &Topology) -> Self {
         let plan = Plan::new(topology, |depth| depth);
-        let trunk: Vec<_> = plan.trunk().map(|body| (body, Transform::identity())).collect();
-        let place = |parent: Option<usize>| parent.and_then(|parent| trunk.binary_search_by_key(&parent, |(body, _)| *body).ok());
-        let parents = plan.parts.iter().map(|part| place(part.parent)).collect();
-        let trunk_parents = trunk.iter().map(|(body, _)| place(topology.joints()[*body].parent)).collect();
-        let largest = |task: &Task| plan.parts[task.parts.clone()].iter().map(|part| part.dofs.len()).max();
-        let forces = plan.tasks.iter().map(|task| Forces::new(largest(task).unwrap_or(0))).chain([Forces::new(6)]).collect();
+        let trunk = trunk(&plan, topology);
+        let trunk_dofs = trunk.iter().map(|body| body.dofs.end).max().unwrap_or(0);
+        let place = |part: usize| plan.order.iter().position(|piece| *piece == Piece::Part(part)).unwrap_or(0);
+        let pieces = plan.tasks.iter().map(|task| place(task.parts.start)..place(task.parts.end - 1) + 1).collect();
+        let forces = plan.tasks.iter().map(|task| Forces::new(task.dofs.len())).chain([Forces::new(trunk_dofs)]).collect();
         Self {
+            pieces,
             composites: vec![CentralInertia::zero(); topology.bodies()],
             placements: vec![Transform::identity(); topology.bodies()],
             carried: vec![CentralInertia::zero(); plan.parts.len()],
             trunk,
-            parents,
-            trunk_parents,
+            trunk_rows: Vec::with_capacity(trunk_dofs),
             forces,
             plan,
         }
@@ -100,15 +111,15 @@ impl<T: Real> ParallelCrba<T> {
     /// # Errors
     /// [`DimensionError`] when an argument or the workspace does not fit the model.
     pub fn run<P: Real + Lift<T>>(&mut self, model: &Model<P>, q: &[T], matrix: &mut TreeSparse<T>) -> Result<(), DimensionError> {
-        let Self { plan, composites, placements, trunk, parents, trunk_parents, carried, forces } = self;
+        let Self { plan, pieces, composites, placements, trunk, trunk_rows, carried, forces } = self;
         super::expect_shapes(model, composites.len(), q, matrix)?;
         plan.expect(&model.topology)?;
 
-        for (body, x) in trunk.iter_mut() {
-            *x = model.joint_transform(*body, q);
+        for body in trunk.iter_mut() {
+            body.x = model.joint_transform(body.index, q);
         }
         let (rows, values) = matrix.parts_mut();
-        let inputs = Inputs { model, q, trunk, trunk_parents, rows };
+        let inputs = Inputs { model, q, trunk, rows };
         let first_number = |dof: usize| rows[dof].start;
         let last_number = |dof: usize| rows.get(dof).map_or(model.topology.stored(), |row| row.start);
 
@@ -117,30 +128,35 @@ impl<T: Real> ParallelCrba<T> {
         let value_slices = plan.divide(values, |task| first_number(task.dofs.start)..last_number(task.dofs.end));
         let carried_slices = plan.divide_parts(carried);
         let slices = composite_slices.into_par_iter().zip(placement_slices).zip(value_slices).zip(carried_slices);
-        plan.tasks.par_iter().zip(slices).zip(&mut *forces).for_each(|((task, (((composites, placements), values), carried)), forces)| {
-            for (k, carried) in task.parts.clone().zip(carried) {
-                let part = &plan.parts[k];
-                let body = part.bodies.start - task.bodies.start;
-                let (composites, placements) = (&mut composites[body..], &mut placements[body..]);
-                let start = first_number(task.dofs.start);
-                let outputs = Outputs { composites, placements, forces, values, start };
-                *carried = inputs.run(part, parents[k], outputs);
-            }
+        let tasks = plan.tasks.par_iter().zip(&*pieces).zip(slices).zip(&mut *forces);
+        tasks.for_each(|(((task, pieces), (((composites, placements), values), carried)), forces)| {
+            let outputs = Outputs { composites, placements, forces, values, start: first_number(task.dofs.start) };
+            inputs.run(plan, task, &plan.order[pieces.clone()], outputs, carried);
         });
 
-        for (body, _) in trunk.iter() {
-            composites[*body] = model.inertias[*body].lift::<T>().central();
-        }
         let Some(forces) = forces.last_mut() else { return Ok(()) };
+        let dofs_of = |body: &Body<T>| dofs(&model.topology, body.index);
+        trunk_rows.clear();
+        trunk_rows.extend(trunk.iter().flat_map(|body| &rows[dofs_of(body)]));
+        for body in trunk.iter() {
+            composites[body.index] = model.inertias[body.index].lift::<T>().central();
+        }
         let mut next = trunk.len();
         for piece in plan.order.iter().rev() {
             match *piece {
-                Piece::Trunk(body) => {
+                Piece::Trunk(index) => {
                     next -= 1;
-                    inputs.set_rows_of_trunk(next, &composites[body], forces, values);
-                    if let Some(parent) = trunk_parents[next] {
-                        let moved = composites[body].to_parent(&trunk[next].1);
-                        composites[trunk[parent].0] += moved;
+                    let body = &trunk[next];
+                    let (kind, subspace) = (model.topology.joints()[index].kind, &model.subspaces[index]);
+                    for column in 0..kind.nv() {
+                        forces.set(body.dofs.start + column, column_force(kind, &composites[index], subspace, column));
+                    }
+                    let rows = Supported { first: body.dofs.start, rows: &trunk_rows[body.dofs.clone()], own: true };
+                    inputs.set_columns(index, forces, rows, values, 0);
+                    if let Some(parent) = body.parent {
+                        let moved = composites[index].to_parent(&body.x);
+                        composites[trunk[parent].index] += moved;
+                        forces.carry_to_parent(&body.x, body.dofs.clone());
                     }
                 }
                 Piece::Part(part) => {
@@ -150,16 +166,113 @@ impl<T: Real> ParallelCrba<T> {
                 }
             }
         }
+        for dof in trunk.iter().flat_map(dofs_of) {
+            values[rows[dof].start + model.topology.dof_depth(dof) - 1] += model.armature[dof].lift();
+        }
         Ok(())
     }
 }
 
+/// The trunk in the plan's order.
+fn trunk<T: Real>(plan: &Plan, topology: &Topology) -> Vec<Body<T>> {
+    let indices: Vec<usize> = plan.trunk().collect();
+    let mut trunk: Vec<Body<T>> = Vec::with_capacity(indices.len());
+    let mut next = 0;
+    for &index in &indices {
+        let parent = topology.joints()[index].parent.and_then(|parent| indices.binary_search(&parent).ok());
+        let first = next;
+        next += dofs(topology, index).len();
+        trunk.push(Body { index, x: Transform::identity(), parent, dofs: first..next });
+    }
+    // What a body supports, its parent supports.
+    for place in (0..trunk.len()).rev() {
+        let end = trunk[place].dofs.end;
+        if let Some(parent) = trunk[place].parent {
+            let dofs = &mut trunk[parent].dofs;
+            dofs.end = dofs.end.max(end);
+        }
+    }
+    trunk
+}
+
+/// The dofs of a body's joint.
+fn dofs(topology: &Topology, body: usize) -> Range<usize> {
+    let joint = &topology.joints()[body];
+    joint.v..joint.v + joint.kind.nv()
+}
+
+/// Consecutive dofs that a body supports: where their forces begin, and their rows.
+struct Supported<'a> {
+    first: usize,
+    rows: &'a [Row],
+    /// Whether the first of them are the body's own.
+    own: bool,
+}
+
 impl<P: Real + Lift<T>, T: Real> Inputs<'_, P, T> {
-    /// The rows of a part whose parent stands at `parent` in the trunk; returns its composite inertia in its parent.
-    fn run(&self, part: &Part, parent: Option<usize>, outputs: Outputs<'_, T>) -> CentralInertia<T> {
+    /// The rows of a task's parts, and for each part its composite inertia in its parent.
+    fn run(&self, plan: &Plan, task: &Task, pieces: &[Piece], outputs: Outputs<'_, T>, carried: &mut [CentralInertia<T>]) {
+        let Outputs { composites, placements, forces, values, start } = outputs;
+        let topology = &self.model.topology;
+        for piece in pieces.iter().rev() {
+            match *piece {
+                Piece::Part(k) => {
+                    let part = &plan.parts[k];
+                    let body = part.bodies.start - task.bodies.start;
+                    let (composites, placements) = (&mut composites[body..], &mut placements[body..]);
+                    carried[k - task.parts.start] =
+                        self.run_part(part, task.dofs.start, Outputs { composites, placements, forces, values, start });
+                }
+                Piece::Trunk(index) => {
+                    let own = dofs(topology, index);
+                    for dof in own.clone() {
+                        forces.set(dof - task.dofs.start, Force::zero());
+                    }
+                    let supported = own.start..self.rows[own.start].end.min(task.dofs.end);
+                    self.carry(index, &supported, true, task, forces, values, start);
+                }
+            }
+        }
+        // The bodies that support the whole task.
+        let mut above = topology.joints()[task.bodies.start].parent;
+        while let Some(index) = above {
+            let end = self.rows[dofs(topology, index).start].end.min(task.dofs.end);
+            self.carry(index, &(task.dofs.start..end), false, task, forces, values, start);
+            above = topology.joints()[index].parent;
+        }
+        for dof in plan.parts[task.parts.clone()].iter().flat_map(|part| part.dofs.clone()) {
+            values[self.rows[dof].start - start + topology.dof_depth(dof) - 1] += self.model.armature[dof].lift();
+        }
+    }
+
+    /// The entries of a task's dofs in the columns of a body of the trunk. Then their forces go to its parent.
+    #[expect(
+        clippy::too_many_arguments,
+        reason = "a body's step reads and carries the forces, and writes into rows of a part of the matrix"
+    )]
+    fn carry(
+        &self,
+        index: usize,
+        supported: &Range<usize>,
+        own: bool,
+        task: &Task,
+        forces: &mut Forces<T>,
+        values: &mut [T],
+        start: usize,
+    ) {
+        let first = supported.start - task.dofs.start;
+        self.set_columns(index, forces, Supported { first, rows: &self.rows[supported.clone()], own }, values, start);
+        let place = self.trunk.binary_search_by_key(&index, |body| body.index);
+        if let Some(body) = place.ok().map(|place| &self.trunk[place]).filter(|body| body.parent.is_some()) {
+            forces.carry_to_parent(&body.x, first..supported.end - task.dofs.start);
+        }
+    }
+
+    /// The rows of a part up to its root; returns its composite inertia in its parent. `first` is the task's first dof.
+    fn run_part(&self, part: &Part, first: usize, outputs: Outputs<'_, T>) -> CentralInertia<T> {
         let Outputs { composites, placements, forces, values, start } = outputs;
         let (model, topology) = (self.model, &self.model.topology);
-        let (root, first) = (part.bodies.start, part.dofs.start);
+        let root = part.bodies.start;
         let joints = &topology.joints()[part.bodies.clone()];
         for (k, (composite, x)) in composites.iter_mut().zip(placements.iter_mut()).enumerate().take(joints.len()) {
             *composite = model.inertias[root + k].lift::<T>().central();
@@ -167,63 +280,32 @@ impl<P: Real + Lift<T>, T: Real> Inputs<'_, P, T> {
         }
         let mut carried = CentralInertia::zero();
         for (k, joint) in joints.iter().enumerate().rev() {
-            let (kind, subspace, x) = (joint.kind, &model.subspaces[root + k], &placements[k]);
+            let (kind, x) = (joint.kind, &placements[k]);
             let end = self.rows[joint.v].end;
             for column in 0..kind.nv() {
-                forces.set(joint.v + column - first, column_force(kind, &composites[k], subspace, column));
+                forces.set(joint.v + column - first, column_force(kind, &composites[k], &model.subspaces[root + k], column));
             }
-            for column in 0..kind.nv() {
-                let dofs = joint.v + column..end;
-                let position = topology.dof_depth(dofs.start) - 1;
-                by_kind!(kind, project, forces, dofs.start - first, subspace, column, &self.rows[dofs], position, values, start);
-            }
+            let rows = Supported { first: joint.v - first, rows: &self.rows[joint.v..end], own: true };
+            self.set_columns(root + k, forces, rows, values, start);
+            let Some(parent) = joint.parent else { continue };
             let moved = composites[k].to_parent(x);
-            match joint.parent.filter(|parent| *parent >= root) {
-                Some(parent) => composites[parent - root] += moved,
+            match parent.checked_sub(root) {
+                Some(parent) => composites[parent] += moved,
                 None => carried = moved,
             }
             forces.carry_to_parent(x, joint.v - first..end - first);
         }
-        self.walk(parent, forces, part.dofs.clone(), values, start);
-        for dof in part.dofs.clone() {
-            values[self.rows[dof].start - start + topology.dof_depth(dof) - 1] += model.armature[dof].lift();
-        }
         carried
     }
 
-    /// The rows of the body that stands at `place` in the trunk.
-    fn set_rows_of_trunk(&self, place: usize, composite: &CentralInertia<T>, forces: &mut Forces<T>, values: &mut [T]) {
-        let (body, x) = &self.trunk[place];
-        let (joint, subspace) = (&self.model.topology.joints()[*body], &self.model.subspaces[*body]);
-        let (kind, dofs) = (joint.kind, joint.v..joint.v + joint.kind.nv());
-        for column in 0..kind.nv() {
-            forces.set(column, column_force(kind, composite, subspace, column));
-        }
-        for column in 0..kind.nv() {
-            let rows = &self.rows[dofs.start + column..dofs.end];
-            let position = self.model.topology.dof_depth(dofs.start + column) - 1;
-            by_kind!(kind, project, forces, column, subspace, column, rows, position, values, 0);
-        }
-        forces.carry_to_parent(x, 0..kind.nv());
-        self.walk(self.trunk_parents[place], forces, dofs.clone(), values, 0);
-        for dof in dofs {
-            values[self.rows[dof].start + self.model.topology.dof_depth(dof) - 1] += self.model.armature[dof].lift();
-        }
-    }
-
-    /// Carries the forces of these dofs from the body at `place` in the trunk to the world, and writes their entries on the way.
-    fn walk(&self, mut place: Option<usize>, forces: &mut Forces<T>, dofs: std::ops::Range<usize>, values: &mut [T], start: usize) {
-        while let Some(at) = place {
-            let (body, x) = &self.trunk[at];
-            let (joint, subspace) = (&self.model.topology.joints()[*body], &self.model.subspaces[*body]);
-            for column in 0..joint.kind.nv() {
-                let position = self.model.topology.dof_depth(joint.v + column) - 1;
-                by_kind!(joint.kind, project, forces, 0, subspace, column, &self.rows[dofs.clone()], position, values, start);
-            }
-            place = self.trunk_parents[at];
-            if place.is_some() {
-                forces.carry_to_parent(x, 0..dofs.len());
-            }
+    /// `M_kj = S_jᵀ F_k` for each dof j of a body and the dofs k that it supports.
+    fn set_columns(&self, body: usize, forces: &Forces<T>, supported: Supported<'_>, values: &mut [T], start: usize) {
+        let (joint, subspace) = (&self.model.topology.joints()[body], &self.model.subspaces[body]);
+        for column in 0..joint.kind.nv() {
+            let skipped = if supported.own { column } else { 0 };
+            let (first, rows) = (supported.first + skipped, &supported.rows[skipped..]);
+            let position = self.model.topology.dof_depth(joint.v + column) - 1;
+            by_kind!(joint.kind, project, forces, first, subspace, column, rows, position, values, start);
         }
     }
 }

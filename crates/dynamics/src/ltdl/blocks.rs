@@ -35,9 +35,11 @@ pub(super) struct Plan {
     /// From the root.
     pub(super) blocks: Vec<Block>,
     size: usize,
+    /// The stored numbers.
+    stored: usize,
     /// The length of the longest row.
     pub(super) deepest: usize,
-    /// Whether a solution goes a dof at a time: from the leaves, and from the root.
+    /// What goes a dof at a time.
     pub(super) single: Single,
 }
 
@@ -47,12 +49,13 @@ impl Plan {
         let blocks = blocks(matrix);
         let deepest = (0..size).map(|dof| matrix.depth(dof)).max().unwrap_or(0);
         let single = Single::of(deepest, size, blocks.len());
-        Self { blocks, size, deepest, single }
+        Self { blocks, size, stored: matrix.values().len(), deepest, single }
     }
 
     /// How many numbers the factorization needs beside the matrix.
     pub(super) fn scratch(&self) -> usize {
-        LANES * self.size
+        let factors = if self.single.factor { self.stored + LANES } else { 0 };
+        factors.max(LANES * self.size)
     }
 
     /// Whether registers loaded from any row but the last end within the inverse, or none is loaded.
@@ -61,19 +64,25 @@ impl Plan {
     }
 }
 
-/// The parts of a solution that go a dof at a time.
+/// What goes a dof at a time: a factorization, and the parts of a solution.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Single {
+    pub(super) factor: bool,
     pub(super) from_leaves: bool,
     pub(super) from_root: bool,
 }
 
 impl Single {
-    /// By the dofs per block, as measured on a Zen 4. A binary tree has 1, and a solution takes 0.5 times as long as in blocks. A random tree
-    /// has 1.9 to 2.4: from the leaves blocks are faster, from the root they are slower. A centipede has 2.5, and blocks are faster.
+    /// By the dofs per block, as measured on a Zen 4. A binary tree has 1: a solution takes 0.5 times as long as in blocks, and a factorization 0.65
+    /// (depth 4) to 0.8 (6 and 10). A random tree has 1.9 to 2.4: from the leaves blocks are faster, from the root they are slower. A centipede has
+    /// 2.5, and blocks are faster.
     fn of(deepest: usize, size: usize, blocks: usize) -> Self {
         let short = (2..=bushy::LONGEST).contains(&deepest);
-        Self { from_leaves: short && 2 * size < 3 * blocks, from_root: short && 2 * size < 5 * blocks }
+        Self {
+            factor: short && deepest <= bushy::DEEPEST && size <= bushy::MOST && 2 * size < 3 * blocks,
+            from_leaves: short && 2 * size < 3 * blocks,
+            from_root: short && 2 * size < 5 * blocks,
+        }
     }
 }
 

@@ -18,6 +18,7 @@
 //! - Masks only on registers that are incomplete.
 
 use super::blocks::{Block, Plan, by_size, down, starts, up};
+use super::bushy;
 use super::registers::{LANES, load, store, subtract};
 use crate::TreeSparse;
 use crate::error::Pivot;
@@ -26,8 +27,11 @@ use featherbench_spatial::Real;
 use std::ops::Range;
 use wide::f64x8;
 
-/// Factors the matrix. `coefficients` has [`LANES`] numbers per dof.
+/// Factors the matrix. `coefficients` has [`Plan::scratch`] numbers.
 pub(super) fn factor(matrix: &mut TreeSparse<f64>, plan: &Plan, coefficients: &mut [f64]) -> Pivot {
+    if plan.single.factor {
+        return bushy::factor(matrix, plan.deepest, coefficients);
+    }
     let (rows, values) = matrix.parts_mut();
     factor_blocks(rows, values, &plan.blocks, coefficients.as_chunks_mut().0)
 }

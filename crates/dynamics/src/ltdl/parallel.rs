@@ -86,6 +86,9 @@ impl ParallelLtdl {
     /// # Errors
     /// [`Error`] when the matrix has another topology, or a pivot is not positive; the factors then mean nothing.
     pub fn run(&mut self, matrix: &TreeSparse<f64>) -> Result<(), Error> {
+        if self.ltdl.plan.single.factor {
+            return self.ltdl.run(matrix);
+        }
         self.ltdl.matrix.expect_same_tree(matrix)?;
         let source = matrix.values();
         let (rows, values) = self.ltdl.matrix.parts_mut();
@@ -107,7 +110,7 @@ impl ParallelLtdl {
     /// # Errors
     /// [`NotPositiveDefinite`] when a pivot is not positive; the factors then mean nothing.
     pub fn factor(&mut self) -> Result<(), NotPositiveDefinite> {
-        self.factor_of(None)
+        if self.ltdl.plan.single.factor { self.ltdl.factor() } else { self.factor_of(None) }
     }
 
     /// Factors these numbers, or those of the matrix. The rows of the trunk are always those of the matrix.

@@ -26,6 +26,11 @@ pub(super) fn solve(matrix: &TreeSparse<f64>, plan: &Plan, x: &mut [f64]) {
         by_size!(block.size, solve_run(matrix.values(), x));
         return;
     }
+    if plan.deepest == 1 {
+        // Only D.
+        x.iter_mut().zip(matrix.values()).for_each(|(x, d)| *x /= d);
+        return;
+    }
     let by_path = |x: &mut [f64], path: &mut [f64]| {
         if plan.single.from_leaves {
             bushy::from_leaves(matrix, plan.deepest, x);

@@ -127,4 +127,14 @@ mod tests {
         }
         assert!(matches!(counts(&alone::robot("star:n=3", 1).unwrap(), "twisted"), Err(NoAnswer::NotOffered(_))));
     }
+
+    /// Many small parts below a long trunk, and parts that stand on the world: forces go to the root together, and a part on the world has
+    /// none to carry.
+    #[test]
+    fn small_parts_add_little_work() {
+        for spec in ["centipede:segments=100,leg=3", "star:n=100", "tree:n=300,seed=6,spread=0.05"] {
+            let [work, _] = shares(spec, "crba_parallel");
+            assert!((1.0..1.5).contains(&work), "{spec}: {work}");
+        }
+    }
 }
