@@ -189,7 +189,9 @@ fn trunk<T: Real>(plan: &Plan, topology: &Topology) -> Vec<Body<T>> {
         let end = trunk[place].dofs.end;
         if let Some(parent) = trunk[place].parent {
             let dofs = &mut trunk[parent].dofs;
-            dofs.end = dofs.end.max(end);
+            if end > dofs.end {
+                dofs.end = end;
+            }
         }
     }
     trunk
