@@ -20,7 +20,7 @@ const ALLOWED: [(&str, &[&str]); 16] = [
     ("protocol", &["spatial", "model"]),
     ("bench", &["spatial", "model", "robots", "formats", "dynamics", "results", "protocol"]),
     ("engines", &["spatial", "model", "robots", "formats", "dynamics", "results", "protocol", "bench"]),
-    ("studies", &["spatial", "model", "robots", "dynamics", "results", "report", "bench"]),
+    ("studies", &["spatial", "model", "robots", "dynamics", "contact", "constrained", "hybrid", "results", "report", "bench"]),
     ("cli", &["spatial", "model", "robots", "formats", "dynamics", "results", "report", "bench", "engines", "studies"]),
 ];
 

@@ -7,6 +7,7 @@
 //! - [`Import`]: do they import the same file alike, and if not, where and why do they differ?
 //! - [`Repeatability`]: does the same question have the same answer?
 //! - [`Reproductions`]: do the engines' known deviations still exist, and in their known size?
+//! - [`Contact`]: what do solvers, laws and integrators answer where the answer is known?
 //! - [`Steps`]: how does the acceleration of a step approach the true one, and how do steps change the energy?
 //! - [`OperationCounts`]: are the counts of the sparse algorithms the integers of the theory?
 //! - [`Scaling`]: what do sparsity and errors become as robots grow?
@@ -16,6 +17,7 @@
 mod accuracy;
 mod agreement;
 mod conditioning;
+mod contact;
 mod derivatives;
 mod growth;
 pub mod import;
@@ -29,6 +31,7 @@ mod timing;
 pub use accuracy::Accuracy;
 pub use agreement::Agreement;
 pub use conditioning::Conditioning;
+pub use contact::Contact;
 pub use derivatives::Derivatives;
 pub use growth::{Growth, Settings as GrowthSettings};
 pub use import::Import;
@@ -64,6 +67,7 @@ const STUDIES: &[Entry] = &[
     Entry { name: "accuracy", make: accuracy::of_suite, sections: accuracy::section::sections },
     Entry { name: "conditioning", make: conditioning::of_suite, sections: conditioning::section::sections },
     Entry { name: "derivatives", make: derivatives::of_suite, sections: derivatives::section::sections },
+    Entry { name: "contact", make: contact::of_suite, sections: contact::section::sections },
     Entry { name: "steps", make: steps::of_suite, sections: steps::section::sections },
     Entry { name: "operations", make: operations::of_suite, sections: no_section },
     Entry { name: "scaling", make: scaling::of_suite, sections: scaling::section::sections },

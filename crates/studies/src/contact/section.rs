@@ -1,0 +1,194 @@
+//! Section: problems with loops, contacts and events whose answers are known.
+
+use super::STUDY;
+use featherbench_report::numbers::short;
+use featherbench_report::{Overview, Section, labels, opener};
+use featherbench_results::{Row, RunInfo, Verdict};
+use maud::{Markup, html};
+use serde::Serialize;
+use std::collections::BTreeSet;
+
+/// Of each method: its name, and of each problem its name, iterations and a value.
+type Lines<'a> = Vec<(&'a str, Vec<(&'a str, f64, f64)>)>;
+
+/// What the section draws.
+#[derive(Serialize)]
+struct Figures<'a> {
+    /// Of each shape of the cone: its name, and heading (°) with the friction felt over that of the round cone.
+    felt: Vec<(&'a str, Vec<(f64, f64)>)>,
+    /// First-order solvers: fitted over predicted rate less one.
+    rates: Lines<'a>,
+    /// All solvers: the residual of the natural map.
+    accuracy: Lines<'a>,
+}
+
+/// What the rows of a quantity are about, in the order of the table.
+const QUANTITIES: [(&str, &str); 15] = [
+    ("contact_solution", "contact problems: existence and the laws"),
+    ("contact_quantity", "contact problems: closed forms"),
+    ("existence", "Painlevé's rod: how many forces there are"),
+    ("contact_draws", "drawn contact problems"),
+    ("felt_friction", "friction that a sliding body feels"),
+    ("convergence", "rates of first-order solvers"),
+    ("impact", "impact laws"),
+    ("mobility", "mobility of robots with loops"),
+    ("loop_dynamics", "accelerations with loops"),
+    ("loop_motion", "motions with loops"),
+    ("event_time", "times of events"),
+    ("saltation", "saltation matrices"),
+    ("run_derivative", "derivatives of runs through events"),
+    ("end_of_run", "how runs end"),
+    ("penalty_law", "penalty limit law"),
+];
+
+/// Makes the section, if the run has rows of the study.
+pub(crate) fn sections<'a>(_: &RunInfo, rows: &'a [Row], overview: &Overview<'a>) -> Vec<Section> {
+    let rows: Vec<&Row> = rows.iter().filter(|row| row.study == STUDY).collect();
+    let Some(first) = rows.first() else { return Vec::new() };
+    let chunk = overview.chunk_of(first);
+    let section = Section { script: include_str!("section/figures.js"), ..Section::new("contact", "Contact", body(&rows, &chunk)) };
+    vec![section.with_data(&figures(&rows))]
+}
+
+fn figures<'a>(rows: &[&'a Row]) -> Figures<'a> {
+    Figures { felt: felt(rows), rates: rates(rows), accuracy: accuracy(rows) }
+}
+
+/// The values of different methods, each with what `of` makes of its rows.
+fn by_method<'a, X>(rows: &[&'a Row], quantity: &str, of: impl Fn(&'a Row) -> Option<X>) -> Vec<(&'a str, Vec<X>)> {
+    let rows: Vec<&&Row> = rows.iter().filter(|row| row.quantity == quantity).collect();
+    let mut methods: Vec<&str> = Vec::new();
+    for row in &rows {
+        if !methods.contains(&row.method.as_str()) {
+            methods.push(&row.method);
+        }
+    }
+    let lines =
+        methods.into_iter().map(|method| (method, rows.iter().filter(|row| row.method == method).filter_map(|row| of(row)).collect()));
+    lines.filter(|(_, points): &(&str, Vec<X>)| !points.is_empty()).collect()
+}
+
+fn felt<'a>(rows: &[&'a Row]) -> Vec<(&'a str, Vec<(f64, f64)>)> {
+    let params = |row: &Row| serde_json::from_str::<serde_json::Value>(&row.params).ok();
+    ["round", "inscribed", "box"]
+        .into_iter()
+        .map(|section| {
+            let of = |row: &&&Row| row.quantity == "felt_friction" && row.metric == "over_cone";
+            let point = |row: &&Row| {
+                let params = params(row)?;
+                let heading = params["case"]["heading"].as_f64()?;
+                (params["case"]["section"] == section).then_some((heading.to_degrees(), row.value?))
+            };
+            (section, rows.iter().filter(of).filter_map(point).collect())
+        })
+        .collect()
+}
+
+/// The value of a metric of the same cell.
+fn beside(rows: &[&Row], row: &Row, metric: &str) -> Option<f64> {
+    rows.iter().find(|other| other.cell == row.cell && other.metric == metric)?.value
+}
+
+fn rates<'a>(rows: &[&'a Row]) -> Lines<'a> {
+    by_method(rows, "convergence", |row| {
+        (row.metric == "fitted_rate_error").then_some(())?;
+        Some((row.family.as_str(), beside(rows, row, "iterations")?, row.value?))
+    })
+}
+
+fn accuracy<'a>(rows: &[&'a Row]) -> Lines<'a> {
+    by_method(rows, "contact_solution", |row| {
+        (row.metric == "natural_map").then_some(())?;
+        Some((row.family.as_str(), beside(rows, row, "iterations")?, row.value?))
+    })
+}
+
+/// Passed and judged rows of a quantity, and the one nearest to its bound or beyond it.
+struct Line<'a> {
+    quantity: &'a str,
+    about: &'a str,
+    methods: usize,
+    passed: usize,
+    judged: usize,
+    nearest: Option<&'a Row>,
+}
+
+fn lines<'a>(rows: &[&'a Row]) -> Vec<Line<'a>> {
+    let of = |(quantity, about): (&'a str, &'a str)| {
+        let own: Vec<&'a Row> = rows.iter().filter(|row| row.quantity == quantity).copied().collect();
+        let judged: Vec<&'a Row> = own.iter().filter(|row| matches!(row.verdict, Verdict::Pass | Verdict::Fail)).copied().collect();
+        let margin = |row: &Row| row.margin.unwrap_or(f64::INFINITY);
+        Line {
+            quantity,
+            about,
+            methods: own.iter().map(|row| row.method.as_str()).collect::<BTreeSet<_>>().len(),
+            passed: judged.iter().filter(|row| row.verdict == Verdict::Pass).count(),
+            judged: judged.len(),
+            nearest: judged.into_iter().min_by(|a, b| margin(a).total_cmp(&margin(b))),
+        }
+    };
+    QUANTITIES.into_iter().map(of).filter(|line| line.methods > 0).collect()
+}
+
+/// The solvers that answer with impulses where no solution exists, and those that say that there is none.
+fn of_none<'a>(rows: &[&'a Row]) -> (Vec<&'a str>, Vec<&'a str>) {
+    let none = rows.iter().filter(|row| row.family == "painleve_none" && row.metric == "answers");
+    let (silent, answering): (Vec<&&Row>, Vec<&&Row>) = none.partition(|row| row.value == Some(0.0));
+    let names = |rows: Vec<&&'a Row>| rows.into_iter().map(|row| row.method.as_str()).collect();
+    (names(answering), names(silent))
+}
+
+fn body(rows: &[&Row], chunk: &str) -> Markup {
+    let lines = lines(rows);
+    let (passed, judged) = lines.iter().fold((0, 0), |(passed, judged), line| (passed + line.passed, judged + line.judged));
+    let (answering, silent) = of_none(rows);
+    html! {
+        section #contact {
+            h2 { "Loops, contact and events" }
+            p.lead { b { (passed) " of " (judged) " known numbers are reproduced." } }
+            ul {
+                @if !silent.is_empty() || !answering.is_empty() {
+                    li {
+                        "Where Painlevé's rod has no solution, "
+                        @if answering.is_empty() { "no solver gives a number" } @else { (answering.join(", ")) " give a number" }
+                        "; " (silent.join(", ")) " give none."
+                    }
+                }
+                li { "Residuals are those of Signorini's and Coulomb's laws, whatever model a solver has. Errors are against closed forms or a second route." }
+            }
+            div.pair {
+                div #contact-accuracy.plot role="group" aria-label="Plot of residuals against iterations, per solver" {}
+                div #contact-rates.plot role="group" aria-label="Plot of fitted against predicted rates" {}
+            }
+            div #contact-felt.plot role="group" aria-label="Plot of the friction that a body feels against its heading" {}
+            div.scroll {
+                table.compact.sortable {
+                    thead {
+                        tr {
+                            th scope="col" { "question" } th.number scope="col" { "methods" } th.number scope="col" { "passed" } th.number scope="col" { "judged" }
+                            th scope="col" { "nearest to its bound" } th.number scope="col" { "value" } th.number scope="col" { "bound" }
+                        }
+                    }
+                    tbody { @for line in &lines { (row(line, chunk)) } }
+                }
+            }
+        }
+    }
+}
+
+fn row(line: &Line, chunk: &str) -> Markup {
+    let verdict = if line.passed == line.judged { Verdict::Pass } else { Verdict::Fail };
+    html! {
+        tr {
+            th scope="row" { (opener(chunk, &[("study", STUDY), ("quantity", line.quantity)], line.about)) }
+            td.number { (line.methods) }
+            td.number { @if line.judged > 0 { span class={ "badge " (verdict) } { (labels::glyph(verdict)) } " " (line.passed) } }
+            td.number { (line.judged) }
+            @if let Some(nearest) = line.nearest {
+                td { (nearest.family) ", " (nearest.method) ", " (nearest.metric) }
+                td.number { @if let Some(value) = nearest.value { (short(value)) } }
+                td.number { @if let Some(bound) = nearest.bound { (short(bound)) } }
+            } @else { td {} td {} td {} }
+        }
+    }
+}
