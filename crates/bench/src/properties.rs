@@ -103,7 +103,7 @@ impl Robot {
                 let index = self.description.bodies.iter().position(|other| other.name == *body);
                 !index.is_some_and(|index| self.is_only_a_joint(index))
             }
-            Warning::Normalised { .. } => false,
+            Warning::Normalised { .. } | Warning::Loops { .. } => false,
         })
     }
 

@@ -3,7 +3,7 @@
 use crate::attachment::Attachment;
 use crate::malformed::{BadConstraint, Defect};
 use crate::rows::largest;
-use featherbench_model::{JointKind, Topology};
+use featherbench_model::{JointKind, LoopMotion, Topology};
 use featherbench_spatial::Mat3;
 
 /// A constraint with its name.
@@ -61,61 +61,6 @@ pub enum Law {
         /// The coefficients of p, by rising power: offset, multiplier, and those of the square, cube and fourth power.
         polynomial: [f64; 5],
     },
-}
-
-/// The motion that a joint of a loop leaves free. Its axis is z of both frames.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
-pub enum LoopMotion {
-    /// None (a weld): rows of orientation x, y, z, then of position x, y, z.
-    #[default]
-    Fixed,
-    /// Rotation about z: rows that z be parallel (x, y), then of position x, y, z.
-    Revolute,
-    /// Translation along z: rows of orientation x, y, z, then of position x, y.
-    Prismatic,
-    /// Rotation about z and translation along it: rows that z be parallel (x, y), then of position x, y.
-    Cylindrical,
-    /// Rotation about the point: rows of position x, y, z.
-    Spherical,
-    /// Rotation about z and translation along x and y: rows that z be parallel (x, y), then of position z.
-    Planar,
-}
-
-impl LoopMotion {
-    /// How many rotations are held: three, the two that tilt z, or none.
-    pub(crate) fn held_rotations(self) -> usize {
-        match self {
-            Self::Fixed | Self::Prismatic => 3,
-            Self::Revolute | Self::Cylindrical | Self::Planar => 2,
-            Self::Spherical => 0,
-        }
-    }
-
-    /// The axes along which the origin is held.
-    pub(crate) fn held_axes(self) -> [bool; 3] {
-        match self {
-            Self::Fixed | Self::Revolute | Self::Spherical => [true; 3],
-            Self::Prismatic | Self::Cylindrical => [true, true, false],
-            Self::Planar => [false, false, true],
-        }
-    }
-
-    /// Degrees of freedom of the joint.
-    pub fn freedom(self) -> usize {
-        6 - self.held_rotations() - count(self.held_axes())
-    }
-
-    /// The word for it.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Fixed => "fixed",
-            Self::Revolute => "revolute",
-            Self::Prismatic => "prismatic",
-            Self::Cylindrical => "cylindrical",
-            Self::Spherical => "spherical",
-            Self::Planar => "planar",
-        }
-    }
 }
 
 fn count(axes: [bool; 3]) -> usize {

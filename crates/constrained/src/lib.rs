@@ -1,9 +1,10 @@
 //! Robots with loops: the graph, constraints on its spanning tree, and constrained dynamics.
 //!
 //! - [`Graph`] has links and joints with loops: spanning tree, cut joints, fundamental [`Cycle`]s, Grübler's count. [`Mechanism`] is a
-//!   description with the [`LoopJoint`]s that close it; [`Mobility`] is the truth that the count misses.
+//!   description with the loops that close it: its own, or [`LoopJoint`]s beside it. [`Mobility`] is the truth that the count misses.
 //! - [`Constraint`] holds points, frames, distances, gears and joints that follow others. [`Rows`] are residual φ, Jacobian J and
 //!   bias J̇v of all of them at a state.
+//! - [`Dynamics`] is what a graph's state accelerates by: [`Tree`] alone, or [`Closed`] by its constraints.
 //! - [`delassus`] computes `G = J M⁻¹ Jᵀ` by three routes.
 //! - [`Constrained`] forms the equations of motion, and a [`Method`] solves them: [`Kkt`], [`RangeSpace`], [`Proximal`]. Redundant rows are
 //!   found by rank, with a tolerance that is stated. Each [`Solution`] has its residuals.
@@ -28,6 +29,7 @@
 mod attachment;
 mod constraint;
 pub mod delassus;
+mod dynamics;
 mod error;
 mod graph;
 mod laws;
@@ -41,8 +43,10 @@ mod solve;
 pub mod stabilise;
 
 pub use attachment::Attachment;
-pub use constraint::{Constraint, Constraints, Law, LoopMotion};
+pub use constraint::{Constraint, Constraints, Law};
+pub use dynamics::{Closed, Dynamics, Tree};
 pub use error::Error;
+pub use featherbench_model::LoopMotion;
 pub use graph::{BadGraph, Cycle, Edge, Graph};
 pub use laws::Row;
 pub use malformed::{BadConstraint, Defect};

@@ -1,6 +1,7 @@
 //! The tests of formats as one program: they share what is compiled for them.
 
 mod datasets;
+mod loops;
 mod neutral;
 mod robots;
 mod urdf_errors;

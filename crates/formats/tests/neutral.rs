@@ -166,7 +166,7 @@ fn bad_files_are_named() {
         ("[0,1,0]", "[0,2,0]", &["the axis of joint 'hinge' has length 2"]),
         (r#""rotation":[1,"#, r#""rotation":[-1,"#, &["the rotation of joint 'hinge' misses orthonormality"]),
         ("\n ]}", "\n ],\"contacts\":[{}]}", &["f.json:6:4: section 'contacts' is not supported by this version"]),
-        ("\n ]}", "\n ],\"loops\":{}}", &["section 'loops'"]),
+        ("\n ]}", "\n ],\"loops\":{}}", &["field 'loops'", "expected a sequence"]),
         ("\n ]}", "\n ],\"actuation\":1}", &["section 'actuation'"]),
         ("\n ]}", "\n ],\"residuals\":[]}", &["section 'residuals'"]),
         ("\n ]}", "\n ],\"parameters\":[]}", &["section 'parameters'"]),

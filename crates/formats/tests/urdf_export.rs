@@ -125,7 +125,7 @@ fn what_urdf_lacks_is_refused_by_name() {
     bodies[5].joint.placement.rotation = turned;
     bodies[8].joint.name = "screw_joint".to_owned();
     let frame = Frame { name: "ball".to_owned(), body: Some(2), placement: Placement { rotation: turned, ..Placement::default() } };
-    let robot = Description { name: "odd".to_owned(), gravity: [0.0, 0.0, -1.6], bodies, frames: vec![frame], provenance: None };
+    let robot = Description { name: "odd".to_owned(), gravity: [0.0, 0.0, -1.6], bodies, frames: vec![frame], ..Description::default() };
 
     let Err(ExportError::Inexpressible { losses, .. }) = urdf::to_string(&robot, OnLoss::Refuse) else { panic!("refused") };
     let told: Vec<String> = losses.iter().map(ToString::to_string).collect();

@@ -1,7 +1,7 @@
 //! The canonical form of a description: valid, axes and rotations normalised, fixed joints merged, bodies in depth-first order.
 
 use crate::orthonormal::{nearest_rotation, rotation, unit};
-use crate::{BodyDescription, Description, Frame, JointDescription, JointType, Malformed, Placement};
+use crate::{BodyDescription, Description, Frame, JointDescription, JointType, LoopDefect, LoopEnd, Malformed, Placement};
 use featherbench_spatial::{DoubleDouble, Mat3, Real, Sym3, Transform, Vec3};
 use std::borrow::Cow;
 
@@ -20,7 +20,7 @@ impl Description {
         self.made_canonical()
     }
 
-    /// A description with the canonical bodies, without a copy where they are canonical as given. Its frames may differ.
+    /// A description with the canonical bodies, without a copy where they are canonical as given. Its frames and loops may differ.
     pub(crate) fn with_canonical_bodies(&self) -> Result<Cow<'_, Self>, Malformed> {
         self.validate()?;
         if self.has_canonical_bodies() { Ok(Cow::Borrowed(self)) } else { self.made_canonical().map(Cow::Owned) }
@@ -53,6 +53,7 @@ impl Description {
             gravity: self.gravity,
             bodies: Vec::with_capacity(order.len()),
             frames: Vec::new(),
+            loops: Vec::with_capacity(self.loops.len()),
             provenance: self.provenance.clone(),
         };
 
@@ -87,13 +88,22 @@ impl Description {
         }
         for frame in &self.frames {
             let (body, on_body) = frame.body.map_or((None, Transform::identity()), |body| home[body]);
-            let placement = if on_body == Transform::identity() {
-                frame.placement.normalised()
-            } else {
-                let exact = Mat3::from_array(rotation(frame.placement.rotation).exact);
-                narrow(&merged(&on_body, &Transform::new(exact, wide(frame.placement.translation))))
-            };
-            result.frames.push(Frame { name: frame.name.clone(), body, placement });
+            result.frames.push(Frame { name: frame.name.clone(), body, placement: frame.placement.on(&on_body) });
+        }
+        for (index, given) in self.loops.iter().enumerate() {
+            let mut tie = given.clone();
+            if let Some(ends) = tie.ends_mut() {
+                for end in ends.iter_mut() {
+                    let (body, on_body) = end.body.map_or((None, Transform::identity()), |body| home[body]);
+                    *end = LoopEnd { body, placement: end.placement.on(&on_body) };
+                }
+                if ends[0].body == ends[1].body {
+                    return Err(given.bad(index, LoopDefect::SameBody));
+                }
+            }
+            // Their joints move: so each has a body of its own.
+            tie.joints_mut().into_iter().for_each(|body| *body = home[*body].0.unwrap_or(*body));
+            result.loops.push(tie);
         }
         if result.bodies.is_empty() {
             return Err(Malformed::Empty);
@@ -170,6 +180,15 @@ impl Placement {
     /// The same placement with the doubles of the rotation that its matrix stands for. The matrix must be one that validation accepts.
     pub fn normalised(&self) -> Self {
         Self { rotation: rotation(self.rotation).rounded, ..*self }
+    }
+
+    /// The placement on the body that its own body became part of, at `on_body` there. The rotation is normalised.
+    fn on(&self, on_body: &Transform<DoubleDouble>) -> Self {
+        if *on_body == Transform::identity() {
+            return self.normalised();
+        }
+        let exact = Mat3::from_array(rotation(self.rotation).exact);
+        narrow(&merged(on_body, &Transform::new(exact, wide(self.translation))))
     }
 
     /// As a spatial transform.

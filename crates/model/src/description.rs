@@ -1,5 +1,7 @@
 //! A robot as a user describes it: plain numbers, no scalar, no compiled order.
 
+use crate::Loop;
+
 /// A robot: bodies, each with the joint that carries it, and gravity.
 #[derive(Clone, Debug, PartialEq, Default)]
 pub struct Description {
@@ -11,6 +13,8 @@ pub struct Description {
     pub bodies: Vec<BodyDescription>,
     /// Named frames fixed to bodies, such as the merged links of a file.
     pub frames: Vec<Frame>,
+    /// What ties bodies beside the tree. The dynamics of the tree alone do not know of it.
+    pub loops: Vec<Loop>,
     /// Where the numbers come from, if they are not generated.
     pub provenance: Option<Provenance>,
 }

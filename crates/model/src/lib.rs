@@ -16,6 +16,7 @@ mod description;
 mod error;
 mod joint;
 mod label;
+mod loops;
 mod model;
 mod orthonormal;
 mod tangent;
@@ -27,6 +28,7 @@ pub use description::{BodyDescription, Description, Frame, JointDescription, Joi
 pub use error::DimensionError;
 pub use joint::{Axis, JointKind};
 pub use label::Label;
+pub use loops::{Loop, LoopDefect, LoopEnd, LoopKind, LoopMotion};
 pub use model::Model;
 pub use tangent::{TangentMap, d_difference, d_integrate};
 pub use topology::{Joint, Topology};

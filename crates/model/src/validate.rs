@@ -1,7 +1,7 @@
 //! The two levels of validation: malformed is an error, unphysical is a warning of the model.
 
 use crate::orthonormal::{rotation, unit};
-use crate::{BodyDescription, Description, JointType};
+use crate::{BodyDescription, Description, JointType, LoopDefect};
 use thiserror::Error;
 
 /// Why a description is not a robot. Every message names the body and says what to do.
@@ -134,14 +134,25 @@ pub enum Malformed {
         /// The index that it names.
         body: usize,
     },
+    /// A loop is none.
+    #[error("loops[{index}] '{name}': {defect}")]
+    Loop {
+        /// The loop's name.
+        name: String,
+        /// Its place in the list, counted from 0.
+        index: usize,
+        /// What is wrong with it.
+        defect: LoopDefect,
+    },
 }
 
 impl Malformed {
-    /// The body or frame of the error, so that a parser can say where it is in the file.
+    /// The body, frame or loop of the error, so that a parser can say where it is in the file.
     pub fn about(&self) -> Option<&str> {
         match self {
             Self::Empty => None,
             Self::FrameOrphan { frame, .. } | Self::FrameNotARotation { frame, .. } => Some(frame),
+            Self::Loop { name, .. } => Some(name),
             Self::NotFinite { body, .. }
             | Self::NegativeMass { body, .. }
             | Self::Orphan { body, .. }
@@ -188,10 +199,16 @@ pub enum Warning {
         /// | |u| − 1 | of an axis, half the largest entry of |RRᵀ − 1| of a rotation.
         by: f64,
     },
+    /// The description has loops. A model does not.
+    #[error("its loops ({}) are left out: model, states and answers are those of the tree without them", names.join(", "))]
+    Loops {
+        /// Their names.
+        names: Vec<String>,
+    },
 }
 
 /// A rotation with 17 digits is orthonormal to about 1e-15. One typed with 8 digits must be accepted, one with 5 digits must not.
-const ROTATION_TOLERANCE: f64 = 1e-6;
+pub(crate) const ROTATION_TOLERANCE: f64 = 1e-6;
 /// The same for the length of an axis.
 const AXIS_TOLERANCE: f64 = 1e-6;
 
@@ -199,7 +216,7 @@ impl Description {
     /// Checks that the description is a forest of bodies with finite, meaningful numbers.
     ///
     /// # Errors
-    /// The first [`Malformed`] finding, in the order of the bodies.
+    /// The first [`Malformed`] finding: in the order of the bodies, then of the frames, then of the loops.
     pub fn validate(&self) -> Result<(), Malformed> {
         let count = self.bodies.len();
         let mut names = std::collections::HashSet::new();
@@ -225,7 +242,7 @@ impl Description {
                 return Err(Malformed::FrameNotARotation { frame: frame.name.clone(), error });
             }
         }
-        Ok(())
+        self.validate_loops()
     }
 
     /// Every chain of parents must end at the world; a chain of more steps than there are bodies has a cycle.
@@ -246,10 +263,12 @@ impl Description {
     }
 
     /// The warnings: axes and rotations that are normalised by more than an ulp, moving bodies without mass, and moving bodies with an
-    /// inertia that no mass distribution has.
+    /// inertia that no mass distribution has; and loops, of which a model knows nothing.
     pub fn warnings(&self) -> Vec<Warning> {
         let moving = self.bodies.iter().filter(|body| body.joint.kind != JointType::Fixed);
-        self.normalised().chain(moving.filter_map(BodyDescription::warning)).collect()
+        let names: Vec<String> = self.loops.iter().map(|tie| tie.name.clone()).collect();
+        let loops = (!names.is_empty()).then_some(Warning::Loops { names });
+        self.normalised().chain(moving.filter_map(BodyDescription::warning)).chain(loops).collect()
     }
 
     /// The axes and rotations that the canonical form normalises by more than an ulp. A canonical description has none.
@@ -343,7 +362,7 @@ fn finite(body: &str, field: &'static str, values: &[f64]) -> Result<(), Malform
     }
 }
 
-fn rotation_error(r: &[f64; 9]) -> f64 {
+pub(crate) fn rotation_error(r: &[f64; 9]) -> f64 {
     let dot = |a: usize, b: usize| (0..3).map(|k| r[3 * a + k] * r[3 * b + k]).sum::<f64>();
     let gram = (0..3).flat_map(|a| (0..3).map(move |b| (a, b))).map(|(a, b)| (dot(a, b) - f64::from(a == b)).abs());
     let det = r[0] * (r[4] * r[8] - r[5] * r[7]) - r[1] * (r[3] * r[8] - r[5] * r[6]) + r[2] * (r[3] * r[7] - r[4] * r[6]);

@@ -3,4 +3,5 @@
 mod anything;
 mod arbitrary;
 mod descriptions;
+mod loops;
 mod normalisation;

@@ -63,6 +63,7 @@ pub fn any_description() -> impl Strategy<Value = Description> {
             gravity,
             bodies,
             frames: frames.into_iter().map(|(body, placement)| Frame { name: "frame".to_owned(), body, placement }).collect(),
+            loops: Vec::new(),
             provenance: None,
         })
     })

@@ -8,8 +8,8 @@
 //! The bodies are uniform rods, so all masses and lengths are arguments. Units: SI. Frames: x ahead, y left, z up.
 
 use super::parts::{at, closed, rod};
-use crate::constraint::LoopMotion;
 use crate::mechanism::{BadMechanism, Mechanism};
+use featherbench_model::LoopMotion;
 use featherbench_model::{BodyDescription, Description, JointDescription, JointType};
 
 /// A biped with six loops.

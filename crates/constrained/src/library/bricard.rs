@@ -5,8 +5,8 @@
 //! Source: IFToMM T.C. for Multibody Dynamics, benchmark A04 (five rods of 1 kg and 1 m); R. Bricard (1897). Units: SI.
 
 use super::parts::{closed, rod};
-use crate::constraint::LoopMotion;
 use crate::mechanism::{BadMechanism, Mechanism};
+use featherbench_model::LoopMotion;
 use featherbench_model::{Description, Placement};
 
 /// Bricard's six-bar of five equal rods.

@@ -11,10 +11,9 @@
 //! Source: IFToMM T.C. for Multibody Dynamics, benchmark A02 (rods of 1 kg and 1 m, ẋ_B0 = 1 m/s from the upright position, 10 s).
 //! Frames: motion in the xz-plane about y, gravity along −z. Units: SI.
 
-use super::parts::{about_y, closed, rod};
-use crate::constraint::LoopMotion;
+use super::parts::{about_y, rod};
 use crate::mechanism::{BadMechanism, Mechanism};
-use featherbench_model::Description;
+use featherbench_model::{Description, Loop, LoopEnd, LoopKind, LoopMotion};
 
 /// N parallelograms in a row.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -54,6 +53,11 @@ impl Ladder {
     /// # Ok::<(), featherbench_constrained::BadMechanism>(())
     /// ```
     pub fn mechanism(&self) -> Result<Mechanism, BadMechanism> {
+        Mechanism::of(&self.description())
+    }
+
+    /// The robot as a description that has the loops' hinges in its section `loops`.
+    pub fn description(&self) -> Description {
         let (axis, tip) = ([0.0, 1.0, 0.0], [0.0, 0.0, -self.crank]);
         let foot = |k: usize| [k as f64 * self.coupler, 0.0, 0.0];
         let end = [self.coupler, 0.0, 0.0];
@@ -65,14 +69,13 @@ impl Ladder {
             if k < self.windows {
                 let coupler = format!("coupler {}", k + 1);
                 bodies.push(rod(&coupler, Some(2 * k), tip, axis, end, self.coupler_mass));
-                let crank = format!("crank {}", k + 1);
-                let (on_crank, on_coupler) = ((Some(&*crank), about_y(tip)), (Some(&*coupler), about_y(end)));
-                loops.push(closed(format!("loop {}", k + 1), on_crank, on_coupler, LoopMotion::Revolute));
+                let on = |body: usize, place: [f64; 3]| LoopEnd { body: Some(body), placement: about_y(place) };
+                let kind = LoopKind::Joint { ends: [on(2 * k + 2, tip), on(2 * k + 1, end)], motion: LoopMotion::Revolute };
+                loops.push(Loop { name: format!("loop {}", k + 1), kind });
             }
         }
         let gravity = [0.0, 0.0, -self.gravity];
-        let description = Description { name: format!("ladder-{}", self.windows), gravity, bodies, ..Description::default() };
-        Mechanism::new(&description, &loops, |_| Vec::new())
+        Description { name: format!("ladder-{}", self.windows), gravity, bodies, loops, ..Description::default() }
     }
 
     /// The configuration with all cranks at angle θ, or their velocities from θ̇: couplers turn back by what the cranks turn.

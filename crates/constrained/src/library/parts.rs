@@ -1,7 +1,7 @@
 //! What the robots of the library are made of: rods, hinges and loop hinges.
 
-use crate::constraint::LoopMotion;
 use crate::mechanism::LoopJoint;
+use featherbench_model::LoopMotion;
 use featherbench_model::{BodyDescription, JointDescription, JointType, Placement};
 
 /// A placement without rotation.

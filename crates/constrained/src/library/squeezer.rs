@@ -7,9 +7,9 @@
 //! section VII.7, with the numbers of the test set for IVP solvers (problem *Andrews' squeezing mechanism*). Units: SI.
 
 use super::parts::{at, body, closed};
-use crate::constraint::LoopMotion;
 use crate::mechanism::{BadMechanism, Mechanism};
 use featherbench_model::Description;
+use featherbench_model::LoopMotion;
 
 /// Andrews' squeezing mechanism.
 #[derive(Clone, Copy, Debug, PartialEq)]

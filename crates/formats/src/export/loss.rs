@@ -47,6 +47,11 @@ pub enum Reason {
         /// The field.
         field: &'static str,
     },
+    /// The format has no such loop.
+    Loop {
+        /// The loop's type.
+        kind: &'static str,
+    },
     /// A free joint whose coordinates do not begin at the world's origin, as those of MuJoCo do.
     FreePlacement,
     /// MuJoCo moves no body without mass.
@@ -74,6 +79,7 @@ impl Reason {
             | Self::OneSided
             | Self::IncompleteLimits
             | Self::EmptyRange { .. }
+            | Self::Loop { .. }
             | Self::FreePlacement => true,
             Self::JointType { .. }
             | Self::Massless
@@ -102,6 +108,7 @@ impl fmt::Display for Reason {
                 )
             }
             Self::EmptyRange { field } => write!(f, "{field} that leave no range; the format asks for a lower end below the upper one"),
+            Self::Loop { kind } => write!(f, "a loop of type {kind}, for which the format has no place"),
             Self::FreePlacement => {
                 write!(f, "a free joint whose coordinates are not the world's, as the format has them; place it at the world's origin")
             }

@@ -2,6 +2,7 @@
 //! holds besides is found here.
 
 mod contents;
+mod equality;
 mod joints;
 mod quaternion;
 mod write;

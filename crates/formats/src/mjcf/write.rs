@@ -1,5 +1,6 @@
 //! Writing MJCF: nested bodies with their joints.
 
+use super::equality;
 use super::joints::{Part, is_part_of_child, parts};
 use super::quaternion::quaternion;
 use crate::export::names::{self, Names, ROOT};
@@ -24,7 +25,7 @@ pub fn write(description: &Description, path: impl AsRef<Path>, on_loss: OnLoss)
 /// The robot's canonical form as the text of an MJCF file, and what was left out.
 ///
 /// A joint that MuJoCo does not have becomes several joints in one body, named after it. If such joints were imported as massless bodies,
-/// these become joints of one body again. Frames are bodies without joints. MuJoCo's compiler is told to edit nothing.
+/// these become joints of one body again. Frames are bodies without joints. Loops are equality constraints. MuJoCo's compiler is told to edit nothing.
 /// Scalars and vectors are imported to the bit, rotations and inertias within 8ε, and a second round trip changes nothing.
 /// The provenance is a comment of the file.
 ///
@@ -47,6 +48,9 @@ pub fn to_string(description: &Description, on_loss: OnLoss) -> Result<(String, 
     xml.empty("option", |attributes| _ = attributes.numbers("gravity", &robot.gravity));
     xml.open("worldbody", |_| {});
     let world = xml.depth();
+    // A body that is written as a joint of another has no place for a site.
+    let is_written = |body: usize| row(&robot, &carried, body).len() == 1;
+    equality::sites(&mut xml, &robot, None, &is_written);
     // Each item with its depth.
     let mut stack: Vec<(usize, Item)> = carried[0].iter().rev().map(|&item| (world, item)).collect();
     while let Some((depth, item)) = stack.pop() {
@@ -60,10 +64,15 @@ pub fn to_string(description: &Description, on_loss: OnLoss) -> Result<(String, 
                 let row = row(&robot, &carried, first);
                 let last = row[row.len() - 1];
                 body(&mut xml, &row.iter().map(|&i| &robot.bodies[i]).collect::<Vec<_>>());
+                equality::sites(&mut xml, &robot, Some(last), &is_written);
                 stack.extend(carried[last + 1].iter().rev().map(|&item| (depth + 1, item)));
             }
         }
     }
+    while xml.depth() >= world {
+        xml.close();
+    }
+    equality::section(&mut xml, &robot, &is_written);
     Ok((xml.finish(), losses))
 }
 
@@ -170,6 +179,9 @@ fn losses(robot: &Description, carried: &[Vec<Item>]) -> Vec<Loss> {
     for frame in robot.frames.iter().filter(|frame| !is_world(frame)) {
         bodies.take("frame", &frame.name, &mut losses);
     }
+    let mut ties = Names::default();
+    robot.loops.iter().for_each(|tie| ties.take("loop", &tie.name, &mut losses));
+    losses.extend(equality::losses(robot, &|body| row(robot, carried, body).len() == 1));
     losses
 }
 

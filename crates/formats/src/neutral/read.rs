@@ -1,5 +1,6 @@
 //! Reading: serde mirrors of the description; what does not fit them is an error.
 
+use super::loops::Tie;
 use super::{FORMAT, LIMIT, NeutralError, NeutralProblem};
 use crate::{Place, text};
 use featherbench_model::{BodyDescription, Description, Frame, JointDescription, JointType, Malformed, Placement, Provenance};
@@ -107,8 +108,9 @@ struct Document {
     #[serde(default)]
     frames: Vec<NamedFrame>,
     provenance: Option<Source>,
+    #[serde(default)]
+    loops: Vec<Tie>,
     actuation: Option<IgnoredAny>,
-    loops: Option<IgnoredAny>,
     contacts: Option<IgnoredAny>,
     residuals: Option<IgnoredAny>,
     parameters: Option<IgnoredAny>,
@@ -133,7 +135,7 @@ struct BodyFields {
 /// An index of a body, or −1 for the world.
 #[derive(Clone, Copy, Deserialize)]
 #[serde(try_from = "i64")]
-struct BodyIndex(Option<usize>);
+pub(super) struct BodyIndex(pub Option<usize>);
 
 impl TryFrom<i64> for BodyIndex {
     type Error = String;
@@ -177,7 +179,7 @@ struct JointFields {
 
 #[derive(Clone, Copy, Deserialize)]
 #[serde(deny_unknown_fields)]
-struct PlacementFields {
+pub(super) struct PlacementFields {
     rotation: [f64; 9],
     translation: [f64; 3],
 }
@@ -205,7 +207,6 @@ impl Document {
     fn unsupported(&self) -> Option<&'static str> {
         let sections = [
             ("actuation", &self.actuation),
-            ("loops", &self.loops),
             ("contacts", &self.contacts),
             ("residuals", &self.residuals),
             ("parameters", &self.parameters),
@@ -227,6 +228,7 @@ impl Document {
             gravity: self.gravity,
             bodies: self.bodies.into_iter().map(|body| body.0).collect(),
             frames: self.frames.into_iter().map(frame).collect(),
+            loops: self.loops.into_iter().map(|tie| tie.0).collect(),
             provenance: self.provenance.map(provenance),
         }
     }

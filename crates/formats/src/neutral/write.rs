@@ -2,7 +2,9 @@
 
 use super::{NeutralError, NeutralProblem};
 use crate::{Place, text};
-use featherbench_model::{BodyDescription, Description, Frame, JointDescription, JointType, Malformed, Placement, Provenance};
+use featherbench_model::{
+    BodyDescription, Description, Frame, JointDescription, JointType, Loop, LoopEnd, LoopKind, Malformed, Placement, Provenance,
+};
 use std::fmt;
 use std::io;
 use std::path::Path;
@@ -48,7 +50,8 @@ pub fn to_string(description: &Description) -> Result<String, Malformed> {
 }
 
 /// The robot alone on a single line without a newline, as oracles receive it. It is canonical (depth-first, fixed joints merged), and has
-/// armature, damping and friction for every degree of freedom. It has no frames and no provenance.
+/// armature, damping and friction for every degree of freedom. It has no frames, no loops and no provenance: an oracle
+/// computes with the tree.
 ///
 /// # Errors
 /// [`Malformed`] when the description is not a robot.
@@ -116,6 +119,10 @@ impl Writer<'_> {
             self.key(0, "frames");
             self.list(1, &description.frames, Self::frame);
         }
+        if with_sections && !description.loops.is_empty() {
+            self.key(0, "loops");
+            self.list(1, &description.loops, Self::tie);
+        }
         self.push("}");
     }
 
@@ -176,6 +183,39 @@ impl Writer<'_> {
     fn frame(&mut self, frame: &Frame) {
         self.put(format_args!("{{\"name\":{},\"body\":{},\"placement\":", quoted(&frame.name), index(frame.body)));
         self.placement(&frame.placement);
+        self.push("}");
+    }
+
+    fn tie(&mut self, tie: &Loop) {
+        self.put(format_args!("{{\"name\":{},\"type\":\"{}\"", quoted(&tie.name), tie.kind.name()));
+        if let Some([first, second]) = tie.ends() {
+            self.end("first", first);
+            self.end("second", second);
+        }
+        match &tie.kind {
+            LoopKind::Joint { .. } => {}
+            LoopKind::Point { axes: [x, y, z], .. } => self.put(format_args!(",\"axes\":[{x},{y},{z}]")),
+            LoopKind::Distance { length, .. } => self.put(format_args!(",\"length\":{length:?}")),
+            LoopKind::Gear { terms, offset } => {
+                self.key(2, "terms");
+                for (k, (body, coefficient)) in terms.iter().enumerate() {
+                    let before = if k == 0 { "[" } else { "," };
+                    self.put(format_args!("{before}{{\"body\":{body},\"coefficient\":{coefficient:?}}}"));
+                }
+                self.put(format_args!("],\"offset\":{offset:?}"));
+            }
+            LoopKind::Mimic { follower, leader, polynomial } => {
+                self.put(format_args!(",\"follower\":{follower},\"leader\":{leader},\"polynomial\":"));
+                self.numbers(polynomial);
+            }
+        }
+        self.push("}");
+    }
+
+    fn end(&mut self, name: &str, end: &LoopEnd) {
+        self.key(2, name);
+        self.put(format_args!("{{\"body\":{},\"placement\":", index(end.body)));
+        self.placement(&end.placement);
         self.push("}");
     }
 

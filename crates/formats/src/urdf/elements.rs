@@ -40,8 +40,18 @@ pub(super) struct Joint {
     pub effort: Vec<f64>,
     pub damping: Vec<f64>,
     pub friction: Vec<f64>,
-    /// The joint that it mimics, and the byte offset of that element.
-    pub mimics: Option<(String, usize)>,
+    /// The joint that it follows.
+    pub mimics: Option<Mimicry>,
+}
+
+/// A `<mimic>`.
+pub(super) struct Mimicry {
+    /// Where it stands.
+    pub place: usize,
+    /// The joint that leads.
+    pub of: String,
+    /// Offset and multiplier; none of a joint that is read as independent.
+    pub line: Option<[f64; 2]>,
 }
 
 /// A joint's type with its unit axis.
@@ -91,6 +101,7 @@ impl Robot {
             return Err(UrdfProblem::NoLinks.at(root.range().start));
         }
         note_mimics_of_nothing(&robot.joints, notes);
+        robot.joints.iter().try_for_each(|joint| check_mimic(joint, &robot.joints))?;
         note_what_is_not_read(root, notes);
         Ok(robot)
     }
@@ -126,12 +137,12 @@ fn refuse_macros(root: Node) -> Result<(), At> {
 fn note_mimics_of_nothing(joints: &[Joint], notes: &mut Vec<NoteAt>) {
     let index: HashMap<&str, usize> = joints.iter().enumerate().map(|(k, joint)| (joint.name.as_str(), k)).collect();
     for (k, joint) in joints.iter().enumerate() {
-        let Some((of, offset)) = &joint.mimics else { continue };
+        let Some(Mimicry { of, place, .. }) = &joint.mimics else { continue };
         if !index.contains_key(of.as_str()) {
             let text = format!("joint '{}' mimics '{of}', which is not there", joint.name);
-            notes.push(NoteAt { offset: *offset, text, warning: None });
+            notes.push(NoteAt { offset: *place, text, warning: None });
         }
-        let follow = |k: &usize| joints[*k].mimics.as_ref().and_then(|(of, _)| index.get(of.as_str()).copied());
+        let follow = |k: &usize| joints[*k].mimics.as_ref().and_then(|mimic| index.get(mimic.of.as_str()).copied());
         let behind: Vec<usize> = std::iter::successors(follow(&k), follow).take(joints.len()).collect();
         // A cycle is noted once, at the first of its joints.
         let Some(length) = behind.iter().position(|&at| at == k) else { continue };
@@ -139,9 +150,23 @@ fn note_mimics_of_nothing(joints: &[Joint], notes: &mut Vec<NoteAt>) {
         if circle.iter().all(|&at| at >= k) {
             let names = std::iter::once(&k).chain(circle).map(|&at| format!("'{}'", joints[at].name)).collect::<Vec<_>>().join(" → ");
             let text = format!("the joints {names} mimic each other in a circle: nothing drives them");
-            notes.push(NoteAt { offset: *offset, text, warning: None });
+            notes.push(NoteAt { offset: *place, text, warning: None });
         }
     }
+}
+
+/// An error if a joint that is to follow another cannot.
+fn check_mimic(joint: &Joint, joints: &[Joint]) -> Result<(), At> {
+    let Some(Mimicry { place, of, line: Some(_) }) = &joint.mimics else { return Ok(()) };
+    let has_coordinate = |joint: &Joint| matches!(joint.kind, Kind::Revolute(_) | Kind::Prismatic(_));
+    let why = match joints.iter().find(|known| known.name == *of) {
+        None => "which is not there",
+        Some(_) if *of == joint.name => "which is itself",
+        Some(_) if !has_coordinate(joint) => "and has not one degree of freedom itself",
+        Some(leader) if !has_coordinate(leader) => "which has not one degree of freedom",
+        Some(_) => return Ok(()),
+    };
+    Err(UrdfProblem::Mimic { joint: joint.name.clone(), of: of.clone(), why }.at(*place))
 }
 
 /// One note per kind of element that is not used.
@@ -208,15 +233,15 @@ impl Joint {
         let mut mimics = None;
         if let Some(mimic) = element.optional("mimic")? {
             let of = mimic.attribute("joint")?;
-            if !options.independent_mimics {
-                return Err(mimic.problem(UrdfProblem::Mimic { joint: name.to_owned(), of: of.to_owned() }));
-            }
-            notes.push(NoteAt {
-                offset: mimic.offset(),
-                text: format!("joint '{name}' mimics '{of}' and is read as a joint of its own"),
-                warning: None,
-            });
-            mimics = Some((of.to_owned(), mimic.offset()));
+            let place = mimic.offset();
+            let line = if options.independent_mimics {
+                let text = format!("joint '{name}' mimics '{of}' and is read as a joint of its own");
+                notes.push(NoteAt { offset: place, text, warning: None });
+                None
+            } else {
+                Some([mimic.optional_number("offset")?.unwrap_or(0.0), mimic.optional_number("multiplier")?.unwrap_or(1.0)])
+            };
+            mimics = Some(Mimicry { place, of: of.to_owned(), line });
         }
         let mut axis = || axis(element, name, notes);
         let kind_read = match kind {

@@ -151,13 +151,15 @@ pub enum UrdfProblem {
         /// Its type.
         kind: String,
     },
-    /// A joint mimics another.
-    #[error("joint '{joint}' mimics joint '{of}', and constrained joints are not supported; import with independent mimics to free it")]
+    /// A joint mimics another, and cannot follow it.
+    #[error("joint '{joint}' mimics joint '{of}', {why}; import with independent mimics to free it")]
     Mimic {
         /// The joint.
         joint: String,
         /// The joint that it mimics.
         of: String,
+        /// Why it cannot follow.
+        why: &'static str,
     },
     /// Two elements share a name.
     #[error("two {what}s are named '{name}'; names must be unique")]

@@ -15,8 +15,9 @@
 //! - A `floating` joint becomes free, a `planar` one planar in the plane normal to its axis, `continuous` revolute without position limits.
 //!   A `revolute` or `prismatic` joint whose `<limit>` gives neither `lower` nor `upper` has none (urdfdom would lock it at zero).
 //! - xacro is an error: macros must be expanded first. Meshes and other formats are errors that name the format.
-//! - `mimic` is an error that names the joints, unless [`Options::independent_mimics`]. Then the joint is independent, as in engines by
-//!   default.
+//! - A joint with `<mimic>` is a joint of the tree, and a loop ties it to the joint that it follows: q = offset + multiplier·q_leader.
+//!   A mimic that cannot be tied is an error that names the joints. With [`Options::independent_mimics`] there is a note instead of the
+//!   loop, and the joint is independent, as in engines by default.
 //! - Noted and not imported: visual and collision geometry, `safety_controller`, `calibration`, and every element of `<robot>` that is
 //!   neither link nor joint.
 //!
@@ -59,7 +60,7 @@ pub struct Options {
     pub base: Base,
     /// Whether a moving body may have no mass (with a note); otherwise that is an error.
     pub allow_massless: bool,
-    /// Whether joints that mimic another are imported as independent joints (with a note); otherwise they are errors.
+    /// Whether joints that mimic another are imported as independent joints (with a note); otherwise a loop ties each to the other.
     pub independent_mimics: bool,
 }
 

@@ -1,9 +1,9 @@
 //! From links and joints to a description.
 
-use super::elements::{Joint, Kind, Link, Robot};
+use super::elements::{Joint, Kind, Link, Mimicry, Robot};
 use super::error::{At, NoteAt, UrdfProblem};
 use super::{Base, Options};
-use featherbench_model::{BodyDescription, Description, JointDescription, JointType, Malformed, Placement, Warning};
+use featherbench_model::{BodyDescription, Description, JointDescription, JointType, Loop, LoopKind, Malformed, Placement, Warning};
 use featherbench_spatial::{Mat3, Transform, Vec3};
 use std::collections::HashMap;
 
@@ -155,7 +155,21 @@ fn describe(robot: &Robot, connected: &Connected, base: Base) -> Description {
             }
         }
     }
-    Description { name: robot.name.clone(), gravity: GRAVITY, bodies, ..Description::default() }
+    let loops = mimics(robot, connected, &place);
+    Description { name: robot.name.clone(), gravity: GRAVITY, bodies, loops, ..Description::default() }
+}
+
+/// The loops of joints that follow others. A loop has the name of the joint that follows.
+fn mimics(robot: &Robot, connected: &Connected, place: &[usize]) -> Vec<Loop> {
+    let body_of: HashMap<&str, usize> =
+        robot.joints.iter().zip(&connected.ends).map(|(joint, &(_, child))| (joint.name.as_str(), place[child])).collect();
+    let tie = |joint: &Joint| {
+        let Mimicry { of, line: Some([offset, multiplier]), .. } = joint.mimics.as_ref()? else { return None };
+        let (follower, leader) = (*body_of.get(joint.name.as_str())?, *body_of.get(of.as_str())?);
+        let polynomial = [*offset, *multiplier, 0.0, 0.0, 0.0];
+        Some(Loop { name: joint.name.clone(), kind: LoopKind::Mimic { follower, leader, polynomial } })
+    };
+    robot.joints.iter().filter_map(tie).collect()
 }
 
 fn body(link: &Link, parent: Option<usize>, joint: JointDescription) -> BodyDescription {

@@ -6,7 +6,7 @@ use crate::export::names::{self, Names, ROOT};
 use crate::export::order::{Item, carried};
 use crate::export::xml::{Attributes, Xml};
 use crate::export::{self, ExportError, Loss, OnLoss, Reason};
-use featherbench_model::{BodyDescription, Description, Frame, JointDescription, JointType, Placement};
+use featherbench_model::{Description, Frame, JointDescription, JointType, LoopKind, Placement};
 use std::path::Path;
 
 /// Writes a URDF file, completely or not at all, and returns what was left out.
@@ -40,12 +40,13 @@ pub fn to_string(description: &Description, on_loss: OnLoss) -> Result<(String, 
         xml.comment(&format!("{}; {}", provenance.source, provenance.licence));
     }
     xml.empty("link", |attributes| _ = attributes.text("name", ROOT));
+    let followed = followed(&robot);
     let carried = carried(&robot);
     let mut stack: Vec<Item> = carried[0].iter().rev().copied().collect();
     while let Some(item) = stack.pop() {
         match item {
             Item::Body(i) => {
-                body(&mut xml, &robot, &robot.bodies[i]);
+                body(&mut xml, &robot, i, followed.iter().find(|mimic| mimic.follower == i));
                 stack.extend(carried[i + 1].iter().rev());
             }
             Item::Frame(k) if is_root(&robot.frames[k]) => {}
@@ -60,7 +61,8 @@ fn is_root(frame: &Frame) -> bool {
     frame.name == ROOT && frame.body.is_none() && frame.placement == Placement::default()
 }
 
-fn body(xml: &mut Xml, robot: &Description, body: &BodyDescription) {
+fn body(xml: &mut Xml, robot: &Description, i: usize, mimic: Option<&Followed>) {
+    let body = &robot.bodies[i];
     xml.open("link", |attributes| _ = attributes.text("name", &body.name));
     xml.open("inertial", |_| {});
     xml.empty("origin", |attributes| _ = attributes.numbers("xyz", &body.com));
@@ -97,7 +99,35 @@ fn body(xml: &mut Xml, robot: &Description, body: &BodyDescription) {
     if kind != "floating" && kind != "planar" {
         properties(xml, joint);
     }
+    if let Some(&Followed { leader, offset, multiplier, .. }) = mimic {
+        let leader = &robot.bodies[leader].joint.name;
+        xml.empty("mimic", |attributes| {
+            _ = attributes.text("joint", leader).numbers("multiplier", &[multiplier]).numbers("offset", &[offset]);
+        });
+    }
     xml.close();
+}
+
+/// A loop that URDF can hold: a joint that follows another by a straight line.
+struct Followed {
+    /// Its place among the loops.
+    index: usize,
+    follower: usize,
+    leader: usize,
+    offset: f64,
+    multiplier: f64,
+}
+
+/// The loops that URDF can hold; a joint has one at most.
+fn followed(robot: &Description) -> Vec<Followed> {
+    let mut found: Vec<Followed> = Vec::new();
+    for (index, tie) in robot.loops.iter().enumerate() {
+        let LoopKind::Mimic { follower, leader, polynomial: [offset, multiplier, 0.0, 0.0, 0.0] } = tie.kind else { continue };
+        if found.iter().all(|known| known.follower != follower) {
+            found.push(Followed { index, follower, leader, offset, multiplier });
+        }
+    }
+    found
 }
 
 /// Limits and friction of a joint with one degree of freedom. Incomplete limits that gave no error are left out.
@@ -161,6 +191,11 @@ fn losses(robot: &Description) -> Vec<Loss> {
     }
     for frame in robot.frames.iter().filter(|frame| !is_root(frame)) {
         links.take("frame", &frame.name, &mut losses);
+    }
+    let held = followed(robot);
+    for (index, tie) in robot.loops.iter().enumerate().filter(|(index, _)| held.iter().all(|mimic| mimic.index != *index)) {
+        let about = format!("loops[{index}] '{}'", tie.name);
+        losses.push(Loss { about, reason: Reason::Loop { kind: tie.kind.name() } });
     }
     losses
 }

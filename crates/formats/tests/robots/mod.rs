@@ -108,6 +108,6 @@ pub fn of(kinds: &'static [Kind]) -> impl Strategy<Value = Description> {
         };
         let frames = frames.into_iter().enumerate().map(frame).collect();
         let name = name.chars().filter(|c| !c.is_control() && !matches!(c, '$' | '\u{fffe}' | '\u{ffff}')).collect();
-        Description { name, gravity: [0.0; 3], bodies, frames, provenance: None }
+        Description { name, gravity: [0.0; 3], bodies, frames, ..Description::default() }
     })
 }

@@ -69,11 +69,12 @@ impl Pairing {
 }
 
 /// The robot with planar and universal joints written as chains of one-dof joints, with massless bodies between: some engines have them so.
-/// Coordinates and their order stay the same.
+/// Coordinates and their order stay the same. Loops are left out: trees are compared.
 pub(super) fn chained(description: &Description) -> Description {
     let (x, y, z) = ([1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]);
     let (slide, turn) = (|axis| JointType::Prismatic { axis }, |axis| JointType::Revolute { axis });
-    let mut result = Description { bodies: Vec::with_capacity(description.bodies.len()), frames: Vec::new(), ..description.clone() };
+    let bodies = Vec::with_capacity(description.bodies.len());
+    let mut result = Description { bodies, frames: Vec::new(), loops: Vec::new(), ..description.clone() };
     let mut place = Vec::with_capacity(description.bodies.len());
     for body in &description.bodies {
         let mut parent = body.parent.map(|parent: usize| place[parent]);

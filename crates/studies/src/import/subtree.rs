@@ -70,7 +70,7 @@ pub(super) fn unexplained(description: &Description, replay: &Replay) -> Vec<Sub
     begins.map(|i| SubTree { error: errors[i], quantity, robot: cut(description, i) }).collect()
 }
 
-/// The sub-tree of a body; the world is the body's parent.
+/// The sub-tree of a body, without loops; the world is the body's parent.
 fn cut(description: &Description, root: usize) -> Description {
     let mut place = vec![None; description.bodies.len()];
     let mut bodies = Vec::new();
@@ -85,6 +85,7 @@ fn cut(description: &Description, root: usize) -> Description {
         name: format!("{}/{}", description.name, description.bodies[root].name),
         bodies,
         frames: Vec::new(),
+        loops: Vec::new(),
         ..description.clone()
     }
 }

@@ -1,0 +1,188 @@
+//! Robots with loops from files: the four-bar of the library out of JSON and URDF, and dynamics on graphs with and without loops.
+
+use crate::common::{assert_within, largest};
+use featherbench_constrained::library::Ladder;
+use featherbench_constrained::{
+    Attachment, BadMechanism, Dynamics, Error, Kkt, Law, LoopMotion, Mechanism, Mobility, Proximal, RangeSpace, Tree,
+};
+use featherbench_dynamics::Aba;
+use featherbench_formats::{neutral, urdf};
+use featherbench_model::{Description, Loop, LoopEnd, LoopKind, Model, Placement};
+use featherbench_robots::{Family, Random};
+
+fn acceleration(dynamics: &mut dyn Dynamics, q: &[f64], v: &[f64], tau: &[f64]) -> Vec<f64> {
+    let mut found = vec![f64::NAN; v.len()];
+    dynamics.acceleration(q, v, tau, &mut found).unwrap_or_else(|error| panic!("{}: {error}", dynamics.name()));
+    found
+}
+
+/// The largest error against the closed form, at random states on the loop.
+fn assert_moves_as(ladder: &Ladder, mechanism: &Mechanism, what: &str) {
+    let random = &mut Random::new(11, 2);
+    let mut cases = 0;
+    for _ in 0..10 {
+        let (theta, rate) = (random.uniform(-1.2, 1.2), random.uniform(-2.0, 2.0));
+        let (q, v) = (ladder.spread(theta), ladder.spread(rate));
+        let due = ladder.spread(ladder.acceleration(theta));
+        let kkt = Kkt::default();
+        let found = acceleration(&mut *mechanism.dynamics(&kkt).unwrap(), &q, &v, &vec![0.0; v.len()]);
+        // As in the tests of the library: the bars' moments differ by some 10 N·m, and the worst angle divides by cos 1.2.
+        assert_within(&format!("θ̈ of {what}"), largest(found.iter().zip(&due).map(|(a, due)| a - due)), 1e-11 * (1.0 + rate * rate));
+        cases += 1;
+    }
+    assert_eq!(cases, 10);
+}
+
+/// The description is written, read, and moves as the closed form says.
+#[test]
+fn a_four_bar_in_json_moves_as_the_library_s() {
+    for ladder in [Ladder::default(), Ladder { windows: 3, crank: 0.7, coupler: 1.3, crank_mass: 2.0, ..Ladder::default() }] {
+        let text = neutral::to_string(&ladder.description()).unwrap();
+        let read = neutral::parse(&text, "four-bar.json").unwrap_or_else(|error| panic!("{error}"));
+        assert_eq!(read, ladder.description());
+        let mechanism = Mechanism::of(&read).unwrap();
+        assert_eq!((mechanism.graph.loops(), mechanism.graph.gruebler(3)), (ladder.windows, 1));
+        assert_eq!(mechanism.constraints, ladder.mechanism().unwrap().constraints);
+        let mobility = Mobility::at(&mechanism.model, &mechanism.constraints, &ladder.spread(0.5)).unwrap();
+        assert_eq!(mobility.freedom(), 1);
+        assert_moves_as(&ladder, &mechanism, "a ladder in JSON");
+    }
+}
+
+/// In URDF a parallelogram is two mimics: the coupler turns back by what its crank turns, and the other crank turns as far.
+#[test]
+fn a_four_bar_of_urdf_mimics_moves_as_the_library_s() {
+    let ladder = Ladder::default();
+    // Uniform rods of 1 kg and 1 m: 1/12 kg·m² about the centre, and nothing about their own axis.
+    let link = |name: &str, com: &str, inertia: [&str; 3]| {
+        let [ixx, iyy, izz] = inertia;
+        format!(
+            r#"<link name="{name}"><inertial><origin xyz="{com}"/><mass value="1"/>
+            <inertia ixx="{ixx}" ixy="0" ixz="0" iyy="{iyy}" iyz="0" izz="{izz}"/></inertial></link>"#
+        )
+    };
+    let joint = |name: &str, parent: &str, child: &str, place: &str, more: &str| {
+        format!(
+            r#"<joint name="{name}" type="continuous"><origin xyz="{place}"/><parent link="{parent}"/><child link="{child}"/>
+            <axis xyz="0 1 0"/>{more}</joint>"#
+        )
+    };
+    let (twelfth, hangs, lies) = ("0.08333333333333333", "0 0 -0.5", "0.5 0 0");
+    let text = [
+        r#"<robot name="four_bar"><link name="ground"/>"#.to_owned(),
+        link("crank0", hangs, [twelfth, twelfth, "0"]),
+        link("coupler", lies, ["0", twelfth, twelfth]),
+        link("crank1", hangs, [twelfth, twelfth, "0"]),
+        joint("a", "ground", "crank0", "0 0 0", ""),
+        joint("b", "crank0", "coupler", "0 0 -1", r#"<mimic joint="a" multiplier="-1"/>"#),
+        joint("c", "ground", "crank1", "1 0 0", r#"<mimic joint="a"/>"#),
+        "</robot>".to_owned(),
+    ];
+    let (robot, _) = urdf::import(&text.concat(), "four_bar.urdf", &urdf::Options::default()).unwrap_or_else(|error| panic!("{error}"));
+    let mechanism = Mechanism::of(&robot).unwrap();
+    assert_eq!((mechanism.graph.loops(), mechanism.constraints.rows()), (0, 2), "a gear is no joint between links");
+    assert_moves_as(&ladder, &mechanism, "a four-bar of mimics");
+
+    // As independent joints, as in comparisons, it is a tree: a double pendulum beside another one.
+    let free = urdf::Options { independent_mimics: true, ..urdf::Options::default() };
+    let (tree, _) = urdf::import(&text.concat(), "four_bar.urdf", &free).unwrap();
+    assert!(Mechanism::of(&tree).unwrap().constraints.list().is_empty());
+}
+
+/// Every kind of a description's loops becomes the constraint of its numbers, on the bodies and dofs of the model.
+#[test]
+fn every_kind_becomes_its_constraint() {
+    let mut robot = Family::parse("joints:kind=all,base=free").unwrap().generate().unwrap();
+    let hinges: Vec<usize> = (0..robot.bodies.len()).filter(|&body| robot.bodies[body].joint.kind.nv() == 1).collect();
+    let placement = Placement { rotation: [0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 1.0, 0.0, 0.0], translation: [0.1, 0.2, 0.3] };
+    let ends = [LoopEnd::default(), LoopEnd { body: Some(4), placement }];
+    let polynomial = [0.1, 0.2, 0.3, 0.4, 0.5];
+    let kinds = [
+        LoopKind::Point { ends, axes: [true, false, true] },
+        LoopKind::Joint { ends, motion: LoopMotion::Planar },
+        LoopKind::Distance { ends, length: 0.5 },
+        LoopKind::Gear { terms: vec![(hinges[0], 2.0), (hinges[2], -1.0)], offset: 0.5 },
+        LoopKind::Mimic { follower: hinges[1], leader: hinges[0], polynomial },
+    ];
+    robot.loops = kinds.into_iter().enumerate().map(|(k, kind)| Loop { name: format!("tie {k}"), kind }).collect();
+    let Mechanism { graph, model, constraints } = Mechanism::of(&robot).unwrap();
+    let names: Vec<&str> = constraints.list().iter().map(|constraint| constraint.name.as_str()).collect();
+    assert_eq!(names, ["tie 1", "tie 0", "tie 2", "tie 3", "tie 4"], "joints come first");
+    assert_eq!(graph.loops(), 1);
+    let first = Attachment::world([0.0; 3]);
+    let second = Attachment { body: Some(model.described[4]), placement: placement.to_transform() };
+    let dof = |body: usize| robot.bodies[..body].iter().map(|body| body.joint.kind.nv()).sum::<usize>();
+    let due = [
+        Law::Joint { first, second, motion: LoopMotion::Planar },
+        Law::Point { first, second, axes: [true, false, true] },
+        Law::Distance { first, second, length: 0.5 },
+        Law::Gear { terms: vec![(dof(hinges[0]), 2.0), (dof(hinges[2]), -1.0)], offset: 0.5 },
+        Law::Mimic { follower: dof(hinges[1]), leader: dof(hinges[0]), polynomial },
+    ];
+    assert_eq!(constraints.list().iter().map(|constraint| &constraint.law).collect::<Vec<_>>(), due.iter().collect::<Vec<_>>());
+}
+
+/// Without loops a graph's dynamics are the articulated-body algorithm's, to the bit; a tied one's are each method's.
+#[test]
+fn dynamics_of_a_graph_without_loops_are_those_of_the_tree() {
+    let mut cases = 0;
+    for spec in ["joints:kind=all,base=free", "humanoid", "binary_tree:depth=4"] {
+        let robot = Family::parse(spec).unwrap().generate().unwrap();
+        let mechanism = Mechanism::of(&robot).unwrap();
+        let model = Model::<f64>::build(&robot).unwrap();
+        let states = featherbench_robots::StateBatch::random(&model, 3, 5);
+        for k in 0..states.count() {
+            let (q, v, tau) = (states.q(k), states.v(k), states.tau(k));
+            let mut due = vec![0.0; states.nv];
+            Aba::new(&model.topology).run(&model, q, v, tau, None, &mut due).unwrap();
+            assert_eq!(acceleration(&mut *mechanism.dynamics(&Kkt::default()).unwrap(), q, v, tau), due, "{spec}");
+            cases += 1;
+        }
+    }
+    assert_eq!(cases, 9);
+}
+
+#[test]
+fn each_method_is_a_dynamics_of_the_same_graph() {
+    let ladder = Ladder::default();
+    let mechanism = ladder.mechanism().unwrap();
+    let (kkt, range, proximal) = (Kkt::default(), RangeSpace::default(), Proximal::default());
+    let methods: [(&dyn featherbench_constrained::Method, f64); 3] = [(&kkt, 1e-12), (&range, 1e-10), (&proximal, 1e-7)];
+    for (method, tolerance) in methods {
+        let mut dynamics = mechanism.dynamics(method).unwrap();
+        assert_eq!(dynamics.name(), method.name());
+        let found = acceleration(&mut *dynamics, &ladder.spread(0.5), &ladder.spread(0.0), &[0.0; 3]);
+        // The tolerances of the methods, as in the tests of the library.
+        assert_within(method.name(), (found[0] - ladder.acceleration(0.5)).abs(), tolerance);
+    }
+    // A tied robot falls otherwise than its tree.
+    let free = acceleration(&mut Tree::new(&mechanism.model), &ladder.spread(0.5), &ladder.spread(0.0), &[0.0; 3]);
+    assert!((free[0] - ladder.acceleration(0.5)).abs() > 0.1);
+}
+
+#[test]
+fn bad_states_and_graphs_are_refused_by_name() {
+    let mechanism = Ladder::default().mechanism().unwrap();
+    let mut out = [0.0; 3];
+    let kkt = Kkt::default();
+    for dynamics in [&mut *mechanism.dynamics(&kkt).unwrap(), &mut Tree::new(&mechanism.model) as &mut dyn Dynamics] {
+        let zero = [0.0; 3];
+        let nan = [0.0, f64::NAN, 0.0];
+        assert_eq!(dynamics.acceleration(&nan, &zero, &zero, &mut out), Err(Error::NotFinite { what: "configuration q", index: 1 }));
+        assert_eq!(dynamics.acceleration(&zero, &nan, &zero, &mut out), Err(Error::NotFinite { what: "velocity v", index: 1 }));
+        assert_eq!(dynamics.acceleration(&zero, &zero, &nan, &mut out), Err(Error::NotFinite { what: "joint forces tau", index: 1 }));
+        assert!(matches!(dynamics.acceleration(&zero, &zero, &zero, &mut out[..2]), Err(Error::Dimension(_))));
+        assert!(matches!(dynamics.acceleration(&zero[..2], &zero, &zero, &mut out), Err(Error::Dimension(_))));
+    }
+
+    // A loop joint of the name of a joint of the tree.
+    let mut robot = Ladder::default().description();
+    robot.loops[0].name = robot.bodies[0].name.clone();
+    let found = Mechanism::of(&robot).unwrap_err();
+    assert!(matches!(found, BadMechanism::Graph(featherbench_constrained::BadGraph::DuplicateName { .. })), "{found}");
+    // A loop that the description itself refuses.
+    robot.loops[0].kind = LoopKind::Distance { ends: [LoopEnd::default(); 2], length: 1.0 };
+    let found = Mechanism::of(&robot).unwrap_err();
+    assert!(matches!(found, BadMechanism::Tree(_)) && found.to_string().contains("loops[0]"), "{found}");
+    assert!(Mechanism::of(&Description::default()).is_err());
+}
