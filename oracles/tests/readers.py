@@ -96,7 +96,8 @@ class Readers:
         states = random_states(np.random.default_rng(3), robot)
         quantities = ("mass_matrix", "id", "bias")
         held = [oracle.at(states, quantity, oracle.methods()[quantity][0]) for quantity in quantities]
-        prepare = {"op": "prepare", "model": answer["model"]}
+        tree = {key: value for key, value in answer["model"].items() if key != "loops"}
+        prepare = {"op": "prepare", "model": tree}
         if oracle.ask(prepare)[0]["status"] == "unsupported":
             oracle = self.oracles["pinocchio"]
             oracle.must(prepare)

@@ -7,7 +7,9 @@ is a part of the world for a fixed base, and gets a free joint for a free base. 
 - then with balanceinertia;
 - then with lower bounds of mass and inertia.
 
-A note says so. Positions are MuJoCo's own (`qpos`): a hinge with a `ref` is at its place in the file when its coordinate is `ref`.
+A note says so. The equality constraints of an MJCF are the description's `loops`; the answers are those of the tree.
+
+Positions are MuJoCo's own (`qpos`): a hinge with a `ref` is at its place in the file when its coordinate is `ref`.
 """
 
 from __future__ import annotations
@@ -23,6 +25,7 @@ import numpy as np
 
 from featherbench_oracles.algebra import Array
 from featherbench_oracles.messages import Header
+from featherbench_oracles.mujoco.loops import loops
 from featherbench_oracles.protocol import Reading
 from featherbench_oracles.reading import HeldJoint, Link, Place, describe, inertial, listed, note, overheard, turned, without_free_armature
 from featherbench_oracles.robot import Description
@@ -63,6 +66,10 @@ def read(path: Path, form: str, base: str, make: Callable[[Description, mj.MjMod
     if floating and not any(body["joint"]["type"] == "free" for body in description["bodies"]):
         notes.append(note("root_welded", None, "the file has no single root link that could float"))
     _add_fused_frames(description, names, whole, notes)
+    if form == "mjcf" and model.neq:
+        description["loops"] = loops(model, names, description, notes)
+        if written is not None:
+            written["loops"] = description["loops"]
     keyframes = {_named(model.key(i).name, "key", i): neutral_q(model, model.key_qpos[i]) for i in range(model.nkey)}
     _without_extras(model)
     held = Description.read(description)
