@@ -274,7 +274,7 @@ pub struct GenArgs {
     /// Give the URDF's base six degrees of freedom.
     #[arg(long)]
     pub floating: bool,
-    /// Read joints that mimic another as joints of their own.
+    /// Read joints that mimic another as joints of their own, instead of tying them by a loop.
     #[arg(long)]
     pub independent_mimics: bool,
     /// Let moving bodies have no mass.

@@ -15,6 +15,7 @@ use ::featherbench_results::{ModelOrigin, Verdict};
 use featherbench_bench::run::{Opening, Run};
 use featherbench_bench::{Cell, Context, Engine, Engines, FileFormat, OWN, Robot, RobotFile, hash, provenance};
 use featherbench_engines::Limits;
+use featherbench_model::Warning;
 use featherbench_studies::{Agreement, Import};
 use std::time::{Duration, Instant, SystemTime};
 
@@ -182,7 +183,9 @@ fn read_file(mut file: RobotFile, compiler: Option<&dyn Engine>) -> Result<Sourc
                 || format!("{}: MuJoCo's compiler is the reference of MJCF files; do not leave it out of --engines", file.path.display());
             let reading = robots::read_mjcf(&file, compiler.ok_or_else(|| Fail::input(message()))?)?;
             let remarks = reading.notes.iter().filter(|note| note.cause == "free_armature");
-            let remarks = remarks.map(|note| format!("joint '{}': {}", note.about.as_deref().unwrap_or_default(), note.text)).collect();
+            let remarks = remarks.map(|note| format!("joint '{}': {}", note.about.as_deref().unwrap_or_default(), note.text));
+            let loops = reading.description.warnings().into_iter().filter(|warning| matches!(warning, Warning::Loops { .. }));
+            let remarks = remarks.chain(loops.map(|warning| warning.to_string())).collect();
             (reading.description, Vec::new(), reading.keyframes, remarks)
         }
     };

@@ -5,10 +5,11 @@ use crate::fail::Fail;
 use crate::root::Root;
 use crate::{oracles, robot_file, robots, say};
 use featherbench_bench::FileFormat;
+use featherbench_constrained::{Mechanism, Mobility};
 use featherbench_formats::OnLoss;
 use featherbench_formats::neutral::{self, NeutralError};
 use featherbench_formats::urdf::{Base, Options};
-use featherbench_model::Description;
+use featherbench_model::{Description, neutral as at_home};
 use featherbench_robots::Family;
 use std::path::Path;
 
@@ -31,6 +32,9 @@ pub fn generate(root: &Root, args: &GenArgs) -> Result<(), Fail> {
         _ => family(args)?,
     };
     description.warnings().iter().for_each(|warning| eprintln!("warning: {warning}"));
+    if !description.loops.is_empty() {
+        eprintln!("loops: {}", mobility(&description)?);
+    }
     match exported(&description, args)? {
         Some(text) => match &args.out {
             Some(path) => ::featherbench_results::atomic_write(path, text.as_bytes())?,
@@ -42,6 +46,26 @@ pub fn generate(root: &Root, args: &GenArgs) -> Result<(), Fail> {
         eprintln!("{}: {} ({} bodies, {} dofs)", path.display(), description.name, description.bodies.len(), description.nv());
     }
     Ok(())
+}
+
+/// What the loops of a robot leave free: by count, and in truth at the neutral configuration.
+fn mobility(description: &Description) -> Result<String, Fail> {
+    let bad = |error: &dyn std::error::Error| Fail::input(format!("{}: {error}", description.name));
+    let Mechanism { graph, model, constraints } = Mechanism::of(description).map_err(|error| bad(&error))?;
+    let (count, in_plane) = (graph.gruebler(6), graph.gruebler(3));
+    let counted = format!("{} closed by joints; Grübler's count {count} (in a plane {in_plane})", graph.loops());
+    // At half a turn an orientation has no residual: the count is told all the same.
+    Ok(match Mobility::at(&model, &constraints, &at_home(&model.topology)) {
+        Ok(found) => format!(
+            "{counted}; at the neutral configuration {} rows of rank {}, {} degrees of freedom of {}, largest residual {:.1e}",
+            constraints.rows(),
+            found.rank,
+            found.freedom(),
+            found.dofs,
+            found.residual
+        ),
+        Err(error) => format!("{counted}; at the neutral configuration: {error}"),
+    })
 }
 
 /// Writes a description file, piece by piece: that of a million links has some hundred MB.

@@ -59,6 +59,7 @@ fn main() -> ExitCode {
         ("a live run agrees with the recorded answers", live_run),
         ("MuJoCo reads the MJCF that we write", || with_engines(written::mjcf_round_trip)),
         ("MuJoCo's compiler writes a description", || with_engines(compiled::gen_mjcf)),
+        ("equality constraints of an MJCF are loops", || with_engines(compiled::loops)),
         ("a file's keyframes are states", || with_engines(compiled::keyframes)),
         ("a file that an engine refuses is compared as written", || with_engines(compared::refused_files)),
         ("armature of a free joint is compared as a number", || with_engines(compared::free_armature)),

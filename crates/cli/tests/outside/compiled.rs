@@ -2,6 +2,8 @@
 
 use crate::Outcome;
 use crate::support::{Ended, Sandbox, project};
+use featherbench_constrained::library::Ladder;
+use featherbench_constrained::{Kkt, Mechanism};
 use std::path::Path;
 use std::process::Command;
 
@@ -72,5 +74,58 @@ pub fn keyframes(_: &Path) -> Outcome {
         assert!(at_keyframe.clone().count() > 0, "{quantity}");
         assert!(at_keyframe.clone().all(|row| !row.contains(",fail,")), "{quantity}: {:?}", at_keyframe.collect::<Vec<_>>());
     }
+    Outcome::Passed
+}
+
+/// The parallelogram of rods of 1 kg and 1 m in MJCF. Its last hinge is a `connect`; the slider follows the first hinge.
+const FOUR_BAR: &str = r#"<mujoco model="four_bar"><compiler angle="radian"/><worldbody>
+<body name="crank0"><joint name="a" axis="0 1 0"/>
+ <inertial pos="0 0 -.5" mass="1" diaginertia=".08333333333333333 .08333333333333333 1e-12"/>
+ <body name="coupler" pos="0 0 -1"><joint name="b" axis="0 1 0"/>
+  <inertial pos=".5 0 0" mass="1" diaginertia="1e-12 .08333333333333333 .08333333333333333"/></body></body>
+<body name="crank1" pos="1 0 0"><joint name="c" axis="0 1 0"/>
+ <inertial pos="0 0 -.5" mass="1" diaginertia=".08333333333333333 .08333333333333333 1e-12"/></body>
+</worldbody><equality><connect name="pin" body1="crank1" body2="coupler" anchor="0 0 -1"/></equality></mujoco>"#;
+
+/// A four-bar in MJCF moves as the library's. Written as MJCF again, its loops are the same to the bit. A comparison is of its tree, and
+/// says so.
+pub fn loops(_: &Path) -> Outcome {
+    let sandbox = Sandbox::new();
+    let file = sandbox.write("four_bar.xml", FOUR_BAR);
+    let read = |file: &Path| {
+        let out = sandbox.path("four_bar.json");
+        let ended = featherbench(&["gen", "mjcf", "--file"], file, &["--out", out.to_str().unwrap()]);
+        ended.expect(
+            0,
+            &[
+                "its loops (pin) are left out",
+                "loops: 1 closed by joints; Grübler's count 0",
+                "3 rows of rank 2, 1 degrees of freedom of 3",
+            ],
+        );
+        featherbench_formats::neutral::read(&out).unwrap()
+    };
+    let robot = read(&file);
+    let mechanism = Mechanism::of(&robot).unwrap();
+    let ladder = Ladder { gravity: 9.81, ..Ladder::default() };
+    let kkt = Kkt::default();
+    let mut dynamics = mechanism.dynamics(&kkt).unwrap();
+    for (theta, rate) in [(0.5, 0.0), (-1.0, 2.0), (0.1, -1.0)] {
+        let mut found = [f64::NAN; 3];
+        dynamics.acceleration(&ladder.spread(theta), &ladder.spread(rate), &[0.0; 3], &mut found).unwrap();
+        let error = (found[0] - ladder.acceleration(theta)).abs();
+        // As in the tests of the library. The thickness of the rods does not turn.
+        assert!(error <= 1e-11 * (1.0 + rate * rate), "{error:e} at {theta}");
+    }
+
+    let (text, losses) = featherbench_formats::mjcf::to_string(&robot, featherbench_formats::OnLoss::Refuse).unwrap();
+    assert_eq!(losses, []);
+    let again = read(&sandbox.write("again.xml", &text));
+    let ends = |robot: &featherbench_model::Description| robot.loops[0].ends().unwrap().map(|end| (end.body, end.placement));
+    assert_eq!((again.loops.len(), ends(&again)), (1, ends(&robot)));
+
+    let out = sandbox.path("out");
+    featherbench(&["compare"], &file, &["--engines", "mujoco", "--out", out.to_str().unwrap()])
+        .expect(0, &["its loops (pin) are left out"]);
     Outcome::Passed
 }
