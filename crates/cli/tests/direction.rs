@@ -12,7 +12,7 @@ const ALLOWED: [(&str, &[&str]); 16] = [
     ("formats", &["model", "spatial"]),
     ("dynamics", &["spatial", "model"]),
     ("reference", &["model"]),
-    ("contact", &["spatial"]),
+    ("contact", &["spatial", "model", "dynamics"]),
     ("constrained", &["spatial", "model", "dynamics"]),
     ("hybrid", &["spatial"]),
     ("results", &[]),

@@ -38,6 +38,10 @@ impl Matrix {
         self.entries[row * self.columns + column] = value;
     }
 
+    fn row(&self, row: usize) -> &[DoubleDouble] {
+        &self.entries[row * self.columns..][..self.columns]
+    }
+
     /// The product with a vector, plus another vector.
     pub fn times_plus(&self, vector: &[DoubleDouble], addend: &[DoubleDouble]) -> Vec<DoubleDouble> {
         (0..self.rows).map(|row| (0..self.columns).fold(addend[row], |sum, k| self.at(row, k).mul_add(vector[k], sum))).collect()
@@ -120,27 +124,44 @@ pub(crate) fn solve(mut a: Matrix, mut y: Vec<DoubleDouble>, zero: f64) -> Solve
     Solved::Unique(x)
 }
 
-/// G = J M⁻¹ Jᵀ and b = J v of a mechanism, by elimination; none if M is singular.
+/// G = J M⁻¹ Jᵀ and J v_free of a mechanism; `None` where M has no Cholesky factor. `M = L Lᵀ`, `Y = L⁻¹ Jᵀ`, `G = Yᵀ Y`.
 pub(crate) fn delassus(mechanism: &Mechanism) -> Option<(Matrix, Vec<DoubleDouble>)> {
     let (mass, jacobian) = (Matrix::from_f64(&mechanism.mass), Matrix::from_f64(&mechanism.jacobian));
     let (dofs, rows) = (mass.rows, jacobian.rows);
     let free: Vec<DoubleDouble> = mechanism.free.iter().map(|v| DoubleDouble::from_f64(*v)).collect();
     let free = jacobian.times_plus(&free, &vec![DoubleDouble::zero(); rows]);
-    let mut delassus = Matrix::zeros(rows, rows);
-    for column in 0..rows {
-        let force = (0..dofs).map(|dof| jacobian.at(column, dof)).collect();
-        let Solved::Unique(motion) = solve(mass.clone(), force, 0.0) else { return None };
-        let velocities = jacobian.times_plus(&motion, &vec![DoubleDouble::zero(); rows]);
-        for (row, velocity) in velocities.into_iter().enumerate() {
-            delassus.set(row, column, velocity);
+    let mut lower = Matrix::zeros(dofs, dofs);
+    for row in 0..dofs {
+        for column in 0..=row {
+            let sum = less_products(mass.at(row, column), lower.row(row), lower.row(column), column);
+            let is_positive = sum.to_f64() > 0.0;
+            match (row == column, is_positive) {
+                (true, true) => lower.set(row, row, sum.sqrt()),
+                (true, false) => return None,
+                (false, _) => lower.set(row, column, sum / lower.at(column, column)),
+            }
         }
     }
-    // The two triangles differ by rounding: the lower one counts.
+    // Each row of `half` is a column of Y.
+    let mut half = Matrix::zeros(rows, dofs);
     for row in 0..rows {
-        for column in 0..row {
-            let value = delassus.at(row, column);
-            delassus.set(column, row, value);
+        for dof in 0..dofs {
+            let sum = less_products(jacobian.at(row, dof), half.row(row), lower.row(dof), dof);
+            half.set(row, dof, sum / lower.at(dof, dof));
+        }
+    }
+    let mut delassus = Matrix::zeros(rows, rows);
+    for a in 0..rows {
+        for b in 0..=a {
+            let product = -less_products(DoubleDouble::zero(), half.row(a), half.row(b), dofs);
+            delassus.set(a, b, product);
+            delassus.set(b, a, product);
         }
     }
     Some((delassus, free))
+}
+
+/// `from − Σ a_k b_k` over the first `count` numbers.
+fn less_products(from: DoubleDouble, a: &[DoubleDouble], b: &[DoubleDouble], count: usize) -> DoubleDouble {
+    a[..count].iter().zip(b).fold(from, |sum, (a, b)| (-*a).mul_add(*b, sum))
 }

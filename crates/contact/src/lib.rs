@@ -6,6 +6,7 @@
 //!   proof), several exist (with them).
 //! - [`Residuals`] measure how far any impulses are from the governing equations.
 //! - [`impact`] has the impact laws of Newton, Poisson, Stronge and Moreau, and sequences of simultaneous impacts.
+//! - [`Grounded`] is a robot over level ground: its contact problem at a state, and one step in time.
 //! - [`library`] has problems with known answers; [`rate`] predicts and fits how fast first-order methods converge.
 //!
 //! Conventions: SI units. Each contact has its own frame; its rows are the normal first, then one or two tangents. A positive normal
@@ -26,6 +27,7 @@
 mod cones;
 mod extended;
 pub mod file;
+mod grounded;
 pub mod impact;
 pub mod library;
 mod malformed;
@@ -35,8 +37,9 @@ mod residual;
 mod solution;
 pub mod solver;
 
+pub use grounded::{Grounded, GroundedError, Stepped, Touch};
 pub use malformed::{Defect, Malformed};
 pub use problem::{Contact, Friction, Level, Mechanism, Problem, Scales};
 pub use residual::Residuals;
 pub use solution::{Certificate, Model, Outcome, Point, Solution};
-pub use solver::{Admm, Convex, Enumeration, GaussSeidel, Lcp, Lemke, Newton, Penalty, Solver, Unsupported};
+pub use solver::{Admm, BlockGaussSeidel, Convex, Enumeration, GaussSeidel, Lcp, Lemke, Newton, Penalty, Solver, Unsupported};

@@ -3,6 +3,7 @@
 mod certificates;
 mod draws;
 mod first_order;
+mod grounded;
 mod impacts;
 mod known;
 mod painleve;

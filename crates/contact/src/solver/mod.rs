@@ -6,11 +6,13 @@
 //! | [`Enumeration`] | direct, double-double | Coulomb | planar, sliding, frictionless; one spatial | all solutions, or that there is none |
 //! | [`Newton`] | semismooth Newton | Coulomb | all but pyramids | one solution |
 //! | [`GaussSeidel`] | first order | Coulomb | all but pyramids | one solution |
+//! | [`BlockGaussSeidel`] | first order | Coulomb | no pyramids, no sliding direction | one solution |
 //! | [`Admm`] | first order | Coulomb | no pyramids, no sliding direction | one solution |
 //! | [`Convex`] | semismooth Newton | convex relaxation | no pyramids, no sliding direction | its one velocity |
 //! | [`Penalty`] | semismooth Newton | compliant contacts | no pyramids, no sliding direction | one solution |
 
 mod admm;
+mod block;
 mod enumeration;
 mod gauss_seidel;
 mod lcp;
@@ -20,6 +22,7 @@ mod spatial;
 mod standard;
 
 pub use admm::Admm;
+pub use block::{BlockGaussSeidel, Blocks};
 pub use enumeration::Enumeration;
 pub use gauss_seidel::GaussSeidel;
 pub use lcp::Lcp;
@@ -97,6 +100,7 @@ pub fn all() -> Vec<Box<dyn Solver>> {
         Box::new(Enumeration::default()),
         Box::new(Newton::default()),
         Box::new(GaussSeidel::default()),
+        Box::new(BlockGaussSeidel::default()),
         Box::new(Admm::default()),
         Box::new(Convex::default()),
         Box::new(Penalty::default()),

@@ -32,7 +32,7 @@ pub struct Newton {
 
 impl Default for Newton {
     fn default() -> Self {
-        Self { tolerance: 1e-12, steps: 500 }
+        Self { tolerance: 1e-12, steps: 2000 }
     }
 }
 
@@ -60,7 +60,7 @@ pub struct Convex {
 
 impl Default for Convex {
     fn default() -> Self {
-        Self { tolerance: 1e-12, steps: 500 }
+        Self { tolerance: 1e-12, steps: 2000 }
     }
 }
 
@@ -86,7 +86,7 @@ pub struct Penalty {
 
 impl Default for Penalty {
     fn default() -> Self {
-        Self { stiffness: 1e4, tolerance: 1e-12, steps: 500 }
+        Self { stiffness: 1e4, tolerance: 1e-12, steps: 2000 }
     }
 }
 
@@ -213,15 +213,16 @@ impl Law {
     }
 }
 
-/// How many first-order sweeps come first, and how many where Newton's method gains nothing.
+/// How many first-order sweeps come first, and how many where Newton's method gains nothing: twice as many each time, up to a limit.
 const SWEEPS: usize = 20;
+const MOST_SWEEPS: usize = 640;
 /// A singular value below this part of the largest counts as zero: rounding leaves 1e-16 per row.
 const RANK: f64 = 1e-12;
 
 fn run(problem: &Problem, law: &Law, name: &'static str, (tolerance, cap): (f64, usize), model: Model) -> Result<Solution, Unsupported> {
     positive(name, "tolerance", tolerance)?;
     let mut x = DVector::zeros(law.standard.size());
-    let mut steps = Vec::new();
+    let (mut steps, mut sweeps) = (Vec::new(), SWEEPS);
     let mut residual = law.residual(&x);
     if residual > tolerance {
         (0..SWEEPS).for_each(|_| law.sweep(&mut x));
@@ -230,15 +231,22 @@ fn run(problem: &Problem, law: &Law, name: &'static str, (tolerance, cap): (f64,
     while residual > tolerance && residual.is_finite() && steps.len() < cap {
         let value = law.value(&x);
         let derivative = law.derivative(&x);
-        let better = [false, true].into_iter().find_map(|least_squares| {
-            let step = direction(&derivative, &value, least_squares)?;
+        let better = DIRECTIONS.into_iter().find_map(|by| {
+            let step = direction(&derivative, &value, by)?;
             shortened(law, &x, &step, value.norm())
         });
-        let next = better.unwrap_or_else(|| {
-            let mut swept = x.clone();
-            (0..SWEEPS).for_each(|_| law.sweep(&mut swept));
-            swept
-        });
+        let next = match better {
+            Some(next) => {
+                sweeps = SWEEPS;
+                next
+            }
+            None => {
+                let mut swept = x.clone();
+                (0..sweeps).for_each(|_| law.sweep(&mut swept));
+                sweeps = (2 * sweeps).min(MOST_SWEEPS);
+                swept
+            }
+        };
         steps.push((&next - &x).amax());
         x = next;
         residual = law.residual(&x);
@@ -251,21 +259,38 @@ fn run(problem: &Problem, law: &Law, name: &'static str, (tolerance, cap): (f64,
     Ok(Solution { outcome, model, iterations, steps })
 }
 
-/// The Newton step: by elimination, or the shortest least-squares step.
-fn direction(derivative: &DMatrix<f64>, value: &DVector<f64>, least_squares: bool) -> Option<DVector<f64>> {
-    let step = if least_squares {
-        let parts = derivative.clone().try_svd(true, true, f64::EPSILON, 0)?;
-        let zero = RANK * parts.singular_values.max();
-        parts.solve(&-value, zero).ok()?
-    } else {
-        derivative.clone().lu().solve(&-value)?
+/// How a Newton step is found.
+#[derive(Clone, Copy)]
+enum By {
+    /// By elimination, with a part of the largest diagonal entry added to the diagonal.
+    Elimination(f64),
+    /// The shortest least-squares step.
+    LeastSquares,
+}
+
+/// The ways to a Newton step, in the order in which they are tried.
+const DIRECTIONS: [By; 4] = [By::Elimination(0.0), By::Elimination(1e-9), By::Elimination(1e-3), By::LeastSquares];
+
+fn direction(derivative: &DMatrix<f64>, value: &DVector<f64>, by: By) -> Option<DVector<f64>> {
+    let step = match by {
+        By::LeastSquares => {
+            let parts = derivative.clone().try_svd(true, true, f64::EPSILON, 0)?;
+            let zero = RANK * parts.singular_values.max();
+            parts.solve(&-value, zero).ok()?
+        }
+        By::Elimination(part) => {
+            let mut matrix = derivative.clone();
+            let added = part * matrix.diagonal().amax();
+            (0..matrix.nrows()).for_each(|k| matrix[(k, k)] += added);
+            matrix.lu().solve(&-value)?
+        }
     };
     step.iter().all(|x| x.is_finite()).then_some(step)
 }
 
-/// The first point along a step, halved at most eight times, whose value is smaller by a part of what the step promises.
+/// The first point along a step, halved at most five times, whose value is smaller by a part of what the step promises.
 fn shortened(law: &Law, x: &DVector<f64>, step: &DVector<f64>, norm: f64) -> Option<DVector<f64>> {
-    (0..=8).map(|halvings| 0.5_f64.powi(halvings)).map(|part| (part, x + step * part)).find_map(|(part, next)| {
+    (0..=5).map(|halvings| 0.5_f64.powi(halvings)).map(|part| (part, x + step * part)).find_map(|(part, next)| {
         let sufficient = law.value(&next).norm() <= (1.0 - 0.1 * part) * norm;
         sufficient.then_some(next)
     })

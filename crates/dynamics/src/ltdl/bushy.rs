@@ -1,7 +1,7 @@
 //! Factorization and solution for `f64` in a tree of short paths and many branches: a dof at a time.
 //!
-//! There nearly every block would be one row, and all would wait for each other through what they share: rows of the matrix in the
-//! factorization, the one path that is kept beside x in a solution. Here
+//! There nearly every block would be one row. All would wait for each other through what they share: rows of the matrix in the
+//! factorization, and one path beside x in a solution. Here
 //!
 //! - in the factorization, each depth has sums of its own: the triangle S(s) is what the dofs below subtract from the rows of s ancestors.
 //!   `H_k = M_k + S(s + 1)_s`, `L_k = H_k / D_k`, and `S(s)_i += S(s + 1)_i − L_ki H_k`. The last child of a dof, which comes first, writes S(s)
@@ -35,8 +35,8 @@ pub(super) const MOST: usize = 1024;
 /// Where no path is longer, a factorization takes a number at a time: registers would be nearly empty.
 const SHORT: usize = 5;
 
-/// Factors the matrix, where no path is longer than `deepest`, which is at most [`DEEPEST`]. `factors` has as many numbers as the matrix, and a
-/// register more.
+/// Factors the matrix, where no path is longer than `deepest`, which is at most [`DEEPEST`]. `factors` has the length of the matrix's
+/// numbers, and a register more.
 pub(super) fn factor(matrix: &mut TreeSparse<f64>, deepest: usize, factors: &mut [f64]) -> Pivot {
     let end = matrix.values().len();
     let (rows, values) = matrix.parts_mut();

@@ -19,7 +19,7 @@ pub(super) fn cases() -> Vec<Case> {
 
 /// A robot of the library, with what is known of its mobility.
 #[derive(Clone, Copy)]
-enum Named {
+pub(super) enum Named {
     FourBar,
     TwoWindows,
     Bricard,
@@ -28,7 +28,7 @@ enum Named {
 }
 
 impl Named {
-    fn name(self) -> &'static str {
+    pub(super) fn name(self) -> &'static str {
         match self {
             Self::FourBar => "four-bar",
             Self::TwoWindows => "four-bar, two windows",
@@ -48,7 +48,7 @@ impl Named {
     }
 
     /// The robot, and a configuration that closes its loops.
-    fn make(self) -> Result<(Mechanism, Vec<f64>), NoAnswer> {
+    pub(super) fn make(self) -> Result<(Mechanism, Vec<f64>), NoAnswer> {
         let ladder = |windows| Ladder { windows, ..Ladder::default() };
         let (mechanism, q) = match self {
             Self::FourBar => (ladder(1).mechanism(), Some(ladder(1).spread(0.7))),

@@ -8,9 +8,12 @@
 //! - `draws.rs`: each problem with random numbers against enumeration in double-double arithmetic;
 //! - `impacts.rs`: impact laws, and sequences of simultaneous impacts;
 //! - `rates.rs`: how fast first-order solvers converge;
+//! - `standing.rs`: problems of robots that land and stand, by every solver;
+//! - `delassus.rs`: the Delassus matrix by three routes;
 //! - `loops.rs`: mobility, constrained dynamics, drift;
 //! - `events.rs`: event times, saltation matrices, derivatives of runs, the penalty law.
 
+mod delassus;
 mod draws;
 mod events;
 mod impacts;
@@ -19,6 +22,7 @@ mod loops;
 mod problems;
 mod rates;
 pub(crate) mod section;
+mod standing;
 #[cfg(test)]
 mod tests;
 
@@ -109,10 +113,20 @@ fn largest(numbers: impl IntoIterator<Item = f64>) -> f64 {
 
 /// Every case.
 fn cases() -> Vec<Case> {
-    [problems::cases(), known::cases(), draws::cases(), impacts::cases(), rates::cases(), loops::cases(), events::cases()]
-        .into_iter()
-        .flatten()
-        .collect()
+    [
+        problems::cases(),
+        known::cases(),
+        draws::cases(),
+        impacts::cases(),
+        rates::cases(),
+        standing::cases(),
+        delassus::cases(),
+        loops::cases(),
+        events::cases(),
+    ]
+    .into_iter()
+    .flatten()
+    .collect()
 }
 
 impl Case {

@@ -23,13 +23,15 @@ struct Figures<'a> {
 }
 
 /// What the rows of a quantity are about, in the order of the table.
-const QUANTITIES: [(&str, &str); 15] = [
+const QUANTITIES: [(&str, &str); 17] = [
     ("contact_solution", "contact problems: existence and the laws"),
     ("contact_quantity", "contact problems: closed forms"),
     ("existence", "Painlevé's rod: how many forces there are"),
     ("contact_draws", "drawn contact problems"),
     ("felt_friction", "friction that a sliding body feels"),
     ("convergence", "rates of first-order solvers"),
+    ("standing", "contact problems of robots that land and stand"),
+    ("delassus", "Delassus matrices by three routes"),
     ("impact", "impact laws"),
     ("mobility", "mobility of robots with loops"),
     ("loop_dynamics", "accelerations with loops"),

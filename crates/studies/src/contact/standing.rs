@@ -1,0 +1,236 @@
+//! Robots that land and stand: a quadruped on pads, a humanoid on its soles. Contact problems are taken from the running robot, and every
+//! solver answers them.
+//!
+//! The robot meets the ground with all feet at once, moves sideways too, and springs in its joints hold it up. Nonsmooth
+//! Gauss–Seidel steps it in time; where its cap is reached, Newton's method does.
+
+use super::{Case, Number, count, error, failed, largest, told};
+use featherbench_bench::NoAnswer;
+use featherbench_contact::{BlockGaussSeidel, Grounded, Newton, Problem, Touch, solver};
+use featherbench_dynamics::Kinematics;
+use featherbench_model::{Model, neutral};
+use featherbench_robots::{Family, Random};
+use featherbench_spatial::{Transform, Vec3};
+use serde_json::json;
+use std::f64::consts::TAU;
+
+/// μ of the feet on the ground.
+const FRICTION: f64 = 0.6;
+/// The step in s, and how many are made.
+const STEP: f64 = 1e-3;
+const STEPS: usize = 100;
+/// Every so many steps a problem is taken.
+const EVERY: usize = 5;
+/// The speed with which it meets the ground, m/s: that of a fall from 1 cm.
+const FALL: f64 = 0.44;
+
+/// A robot that stands on points of its feet.
+#[derive(Clone, Copy)]
+pub(super) enum Stand {
+    /// The quadruped: each shank ends in a level pad with so many points.
+    Quadruped(usize),
+    /// The humanoid on the corners of its soles.
+    Humanoid,
+}
+
+/// A bent leg: parts of names, their angles in rad, and the gains of the springs and dampers in N·m/rad and N·m·s/rad.
+type Stance = (&'static [(&'static str, f64)], [f64; 2]);
+
+impl Stand {
+    pub(super) const ALL: [Self; 6] =
+        [Self::Humanoid, Self::Quadruped(1), Self::Quadruped(2), Self::Quadruped(4), Self::Quadruped(8), Self::Quadruped(16)];
+
+    fn family(self) -> &'static str {
+        if matches!(self, Self::Humanoid) { "humanoid" } else { "quadruped" }
+    }
+
+    fn contacts(self) -> usize {
+        match self {
+            Self::Quadruped(points) => 4 * points,
+            Self::Humanoid => 8,
+        }
+    }
+
+    pub(super) fn name(self) -> String {
+        format!("{}, {} contacts", self.family(), self.contacts())
+    }
+
+    /// The rank of J, by what the feet leave free when they are held.
+    ///
+    /// - Four points: the 6 of the trunk, since each leg has three joints. The 18 dofs less 6 are 12.
+    /// - Pads of two points, one before the other: the trunk swings ahead on four parallel thighs, and aside on legs that turn about the line
+    ///   of the pad. The rank is 16.
+    /// - Pads of more points: it swings ahead alone. The rank is 17.
+    /// - Two soles: 6 rows each, and the legs have six joints: 12.
+    pub(super) fn rank(self) -> usize {
+        match self {
+            Self::Humanoid | Self::Quadruped(1) => 12,
+            Self::Quadruped(2) => 16,
+            Self::Quadruped(_) => 17,
+        }
+    }
+
+    fn stance(self) -> Stance {
+        match self {
+            Self::Quadruped(_) => (&[("thigh", 0.7), ("shank", -1.4)], [150.0, 2.0]),
+            Self::Humanoid => (&[("thigh", -0.3), ("shin", 0.6), ("ankle", -0.3)], [400.0, 5.0]),
+        }
+    }
+
+    /// Points of a foot from its middle, level.
+    fn pad(self) -> Vec<[f64; 2]> {
+        match self {
+            Self::Humanoid => vec![[0.11, 0.045], [-0.11, 0.045], [-0.11, -0.045], [0.11, -0.045]],
+            Self::Quadruped(1) => vec![[0.0, 0.0]],
+            Self::Quadruped(points) => {
+                (0..points).map(|k| TAU * k as f64 / points as f64).map(|angle| [0.02 * angle.cos(), 0.02 * angle.sin()]).collect()
+            }
+        }
+    }
+
+    /// The middle of a foot, by the name of its body: in the body's axes, m.
+    fn foot(self, body: &str) -> Option<[f64; 3]> {
+        match self {
+            Self::Humanoid => body.ends_with("foot").then_some([0.03, 0.0, -0.05]),
+            Self::Quadruped(_) => body.ends_with("shank").then_some([0.0, 0.0, -0.22]),
+        }
+    }
+
+    /// The robot, its stance on the ground, and the points of its feet.
+    pub(super) fn make(self) -> Result<Standing, NoAnswer> {
+        let description = Family::parse(self.family()).map_err(failed)?.generate().map_err(failed)?;
+        let model: Model<f64> = Model::build(&description).map_err(failed)?;
+        let (angles, gains) = self.stance();
+        let mut q = neutral(&model.topology);
+        for (k, body) in description.bodies.iter().enumerate() {
+            if let Some((_, angle)) = angles.iter().find(|(part, _)| body.name.ends_with(part)) {
+                q[model.topology.joints()[model.described[k]].q] = *angle;
+            }
+        }
+        let still = vec![0.0; model.topology.nv()];
+        let mut kinematics = Kinematics::new(&model.topology);
+        kinematics.run(&model, &q, &still, &still).map_err(failed)?;
+        let (mut touches, mut heights) = (Vec::new(), Vec::new());
+        for (k, body) in description.bodies.iter().enumerate() {
+            let (Some(middle), Some(motion)) = (self.foot(&body.name), kinematics.body(model.described[k])) else { continue };
+            let Transform { rotation, translation } = motion.placement;
+            let middle = rotation * Vec3::from_array(middle);
+            heights.push(translation.z + middle.z);
+            for (number, [x, y]) in self.pad().into_iter().enumerate() {
+                let point = rotation.transpose_mul(middle + Vec3::new(x, y, 0.0)).to_array();
+                let name = format!("{} {number}", body.name);
+                touches.push(Touch { name, body: model.described[k], point, friction: FRICTION, restitution: 0.0 });
+            }
+        }
+        // The free base is the first body; its position is the first three numbers of q. All feet are equally high in the stance.
+        q[2] = -heights.first().copied().unwrap_or_default();
+        Ok(Standing { model, touches, stance: q, gains })
+    }
+}
+
+/// A robot with its stance.
+pub(super) struct Standing {
+    pub(super) model: Model<f64>,
+    pub(super) touches: Vec<Touch>,
+    /// The configuration.
+    pub(super) stance: Vec<f64>,
+    gains: [f64; 2],
+}
+
+impl Standing {
+    /// The forces of springs and dampers in the joints.
+    fn forces(&self, q: &[f64], v: &[f64]) -> Vec<f64> {
+        let mut tau = vec![0.0; v.len()];
+        for joint in self.model.topology.joints().iter().filter(|joint| joint.kind.nv() == 1) {
+            tau[joint.v] = self.gains[0] * (self.stance[joint.q] - q[joint.q]) - self.gains[1] * v[joint.v];
+        }
+        tau
+    }
+
+    /// The problems of the running robot, with a sideways velocity by the seed. The first has all contacts.
+    pub(super) fn run(&self, seed: u64) -> Result<Vec<Problem>, NoAnswer> {
+        let robot = Grounded::new(&self.model, self.touches.clone());
+        let mut random = Random::named(seed, "standing");
+        let (mut q, mut v) = (self.stance.clone(), vec![0.0; self.model.topology.nv()]);
+        // Base velocity [ṗ; ω] in base axes, which are level here.
+        (v[0], v[1], v[2]) = (random.uniform(-0.5, 0.5), random.uniform(-0.5, 0.5), -FALL);
+        let mut problems = Vec::new();
+        for number in 0..STEPS {
+            let tau = self.forces(&q, &v);
+            if number % EVERY == 0 {
+                problems.extend(robot.problem(&format!("step {number}"), &q, &v, &tau, STEP).map_err(failed)?);
+            }
+            let first = BlockGaussSeidel { sweeps: 2000, ..BlockGaussSeidel::default() };
+            let stepped = robot.step(&q, &v, &tau, STEP, &first).or_else(|_| robot.step(&q, &v, &tau, STEP, &Newton::default()));
+            let stepped = stepped.map_err(failed)?;
+            (q, v) = (stepped.q, stepped.v);
+        }
+        Ok(problems)
+    }
+}
+
+pub(super) fn cases() -> Vec<Case> {
+    Stand::ALL.into_iter().flat_map(|stand| (0..solver::all().len()).map(move |which| case(stand, which))).collect()
+}
+
+/// The problems of a run by one solver: how many it answers, and the worst residual and the iterations of its answers.
+fn case(stand: Stand, which: usize) -> Case {
+    let name = solver::all()[which].name();
+    let direct = name == "newton";
+    let first_order = ["gauss_seidel", "block_gauss_seidel", "admm"].contains(&name);
+    let residual = match (direct, first_order) {
+        (true, _) => error("residual", "laws"),
+        (_, true) => error("first_order_residual", "laws"),
+        _ => Number { reference: "laws", ..told("residual", "1") },
+    };
+    Case {
+        name: stand.name(),
+        quantity: "standing",
+        method: name.into(),
+        params: json!({"step": STEP, "steps": STEPS, "every": EVERY, "friction": FRICTION, "fall": FALL}),
+        numbers: vec![
+            count("rank", stand.rank() as f64, "theory"),
+            told("problems", "1"),
+            if direct { count("unanswered", 0.0, "theory") } else { told("unanswered", "1") },
+            told("iterations", "1"),
+            residual,
+        ],
+        evaluate: Box::new(move |seed| {
+            let solver = &solver::all()[which];
+            let problems = stand.make()?.run(seed)?;
+            let all = problems.first().filter(|problem| problem.contacts().len() == stand.contacts());
+            let Some(mechanism) = all.and_then(|problem| problem.mechanism()) else {
+                return Err(NoAnswer::Failed("the robot does not meet the ground with all its feet".into()));
+            };
+            let rank = mechanism.jacobian.rank(1e-8);
+            let (mut unanswered, mut iterations, mut residual) = (0, 0, 0.0);
+            for problem in &problems {
+                let solution = solver.solve(problem).map_err(|unsupported| NoAnswer::NotOffered(unsupported.to_string()))?;
+                match solution.point() {
+                    Some(point) => residual = largest([residual, point.residuals.largest()]),
+                    None => unanswered += 1,
+                }
+                if solution.iterations > iterations {
+                    iterations = solution.iterations;
+                }
+            }
+            Ok(vec![rank as f64, problems.len() as f64, f64::from(unanswered), iterations as f64, residual])
+        }),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Other seeds than those of suites run too: every step has an answer.
+    #[test]
+    fn runs_do_not_depend_on_the_seed() {
+        for seed in 1..=4 {
+            for stand in Stand::ALL {
+                let problems = stand.make().unwrap().run(seed).unwrap_or_else(|error| panic!("{}, seed {seed}: {error}", stand.name()));
+                assert_eq!(problems[0].contacts().len(), stand.contacts());
+            }
+        }
+    }
+}
