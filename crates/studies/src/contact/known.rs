@@ -3,7 +3,7 @@
 use super::problems::answer;
 use super::{Case, Number, count, error, failed, largest, told};
 use featherbench_bench::NoAnswer;
-use featherbench_contact::library::{Answers, BoxOnBalls, Feet, Incline, PainleveRod, RockingBlock, Section, SlidingSphere, Stack, Table};
+use featherbench_contact::library::{BoxOnBalls, Feet, Incline, RockingBlock, Section, SlidingSphere, Stack, Table};
 use featherbench_contact::{Convex, Enumeration, Outcome, Residuals, Solver};
 use serde_json::{Value, json};
 use std::f64::consts::FRAC_PI_4;
@@ -45,7 +45,7 @@ fn relative(found: f64, known: f64) -> f64 {
 }
 
 pub(super) fn cases() -> Vec<Case> {
-    [inclines(), pyramids(), spheres(), tables(), stacks(), blocks(), boxes(), feet(), rods()].into_iter().flatten().collect()
+    [inclines(), pyramids(), spheres(), tables(), stacks(), blocks(), boxes(), feet()].into_iter().flatten().collect()
 }
 
 /// a = g (sin θ − μ cos θ) in every heading.
@@ -235,61 +235,4 @@ fn feet() -> Vec<Case> {
         })
     });
     [rank].into_iter().chain(stops).collect()
-}
-
-/// Painlevé's rod: p = 0 at the ends of the paradox, which vanishes at the critical friction; and the map against enumeration.
-fn rods() -> Vec<Case> {
-    let numbers: Vec<Number> = vec![error("error", "closed form"), told("lower_angle", "rad"), told("upper_angle", "rad")];
-    let ends = Case {
-        name: "painleve_rod, paradox".into(),
-        quantity: QUANTITY,
-        method: "closed form".into(),
-        params: json!({"friction": 1.5}),
-        numbers,
-        evaluate: Box::new(|_| {
-            let rod = PainleveRod { friction: 1.5, ..PainleveRod::default() };
-            let (lower, upper) = rod.paradox().ok_or_else(|| NoAnswer::Failed("there is no paradox at μ = 1.5".into()))?;
-            let p = |angle: f64| PainleveRod { angle, ..rod }.effective().0;
-            // At the critical friction the least p over all angles, at tan θ = 2, is zero.
-            let critical = PainleveRod { friction: rod.critical_friction(), ..rod }.effective().0;
-            Ok(vec![largest([p(lower), p(upper), critical]), lower, upper])
-        }),
-    };
-    let map = Case {
-        name: "painleve_rod, map".into(),
-        quantity: "existence",
-        method: "enumeration".into(),
-        params: json!({"friction": 1.5, "angles": MAP, "rates": MAP}),
-        numbers: vec![count("disagreements", 0.0, "closed form"), told("none", "1"), told("two", "1"), told("one", "1")],
-        evaluate: Box::new(|_| {
-            let mut counts = [0.0; 4];
-            for rod in grid() {
-                let solution = Enumeration::default().solve(&rod.problem().map_err(failed)?).map_err(failed)?;
-                let found = solution.points().len();
-                let (known, place) = match rod.answers() {
-                    Answers::None => (0, 1),
-                    Answers::Two => (2, 2),
-                    _ => (1, 3),
-                };
-                counts[0] += f64::from(u8::from(found != known));
-                counts[place] += 1.0;
-            }
-            Ok(counts.to_vec())
-        }),
-    };
-    vec![ends, map]
-}
-
-/// Angles and rates of the map, each.
-pub(super) const MAP: usize = 25;
-
-/// The rods of the map: angles from 0 to 90°, rates from 0 to 5 rad/s, both at the middle of their cells.
-pub(super) fn grid() -> impl Iterator<Item = PainleveRod> {
-    let middle = |k: usize| (k as f64 + 0.5) / MAP as f64;
-    (0..MAP * MAP).map(move |cell| PainleveRod {
-        friction: 1.5,
-        angle: std::f64::consts::FRAC_PI_2 * middle(cell / MAP),
-        rate: 5.0 * middle(cell % MAP),
-        ..PainleveRod::default()
-    })
 }

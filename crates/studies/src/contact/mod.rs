@@ -5,6 +5,7 @@
 //!
 //! - `problems.rs`: contact problems by every solver: what it says of existence, and the residuals of its answers;
 //! - `known.rs`: quantities of these problems with closed forms;
+//! - `painleve.rs`: how many forces a sliding rod has, and where that changes;
 //! - `draws.rs`: each problem with random numbers against enumeration in double-double arithmetic;
 //! - `impacts.rs`: impact laws, and sequences of simultaneous impacts;
 //! - `rates.rs`: how fast first-order solvers converge;
@@ -19,6 +20,7 @@ mod events;
 mod impacts;
 mod known;
 mod loops;
+mod painleve;
 mod problems;
 mod rates;
 pub(crate) mod section;
@@ -116,6 +118,7 @@ fn cases() -> Vec<Case> {
     [
         problems::cases(),
         known::cases(),
+        painleve::cases(),
         draws::cases(),
         impacts::cases(),
         rates::cases(),

@@ -16,6 +16,8 @@ type Lines<'a> = Vec<(&'a str, Vec<(&'a str, f64, f64)>)>;
 struct Figures<'a> {
     /// Of each shape of the cone: its name, and heading (°) with the friction felt over that of the round cone.
     felt: Vec<(&'a str, Vec<(f64, f64)>)>,
+    /// Of each angle of Painlevé's rod, °: the rate where the number of forces changes, rad/s, and that number below and above.
+    existence: Vec<[f64; 4]>,
     /// First-order solvers: fitted over predicted rate less one.
     rates: Lines<'a>,
     /// All solvers: the residual of the natural map.
@@ -53,7 +55,7 @@ pub(crate) fn sections<'a>(_: &RunInfo, rows: &'a [Row], overview: &Overview<'a>
 }
 
 fn figures<'a>(rows: &[&'a Row]) -> Figures<'a> {
-    Figures { felt: felt(rows), rates: rates(rows), accuracy: accuracy(rows) }
+    Figures { felt: felt(rows), existence: existence(rows), rates: rates(rows), accuracy: accuracy(rows) }
 }
 
 /// The values of different methods, each with what `of` makes of its rows.
@@ -84,6 +86,19 @@ fn felt<'a>(rows: &[&'a Row]) -> Vec<(&'a str, Vec<(f64, f64)>)> {
             (section, rows.iter().filter(of).filter_map(point).collect())
         })
         .collect()
+}
+
+/// The map of Painlevé's rod by rising angle.
+fn existence(rows: &[&Row]) -> Vec<[f64; 4]> {
+    let of = |row: &&Row| {
+        (row.quantity == "existence" && row.metric == "critical_rate").then_some(())?;
+        let params: serde_json::Value = serde_json::from_str(&row.params).ok()?;
+        let angle = params["case"]["angle"].as_f64()?.to_degrees();
+        Some([angle, row.value?, beside(rows, row, "forces_below")?, beside(rows, row, "forces_above")?])
+    };
+    let mut angles: Vec<[f64; 4]> = rows.iter().filter_map(of).collect();
+    angles.sort_by(|a, b| a[0].total_cmp(&b[0]));
+    angles
 }
 
 /// The value of a metric of the same cell.
@@ -162,7 +177,10 @@ fn body(rows: &[&Row], chunk: &str) -> Markup {
                 div #contact-accuracy.plot role="group" aria-label="Plot of residuals against iterations, per solver" {}
                 div #contact-rates.plot role="group" aria-label="Plot of fitted against predicted rates" {}
             }
-            div #contact-felt.plot role="group" aria-label="Plot of the friction that a body feels against its heading" {}
+            div.pair {
+                div #contact-existence.plot role="group" aria-label="Map of how many forces Painlevé's rod has, over its angle and rate" {}
+                div #contact-felt.plot role="group" aria-label="Plot of the friction that a body feels against its heading" {}
+            }
             div.scroll {
                 table.compact.sortable {
                     thead {
