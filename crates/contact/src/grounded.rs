@@ -87,6 +87,14 @@ pub enum GroundedError {
     },
 }
 
+/// Where a touch is, in world axes.
+struct Place {
+    /// From the body's origin to the point, m.
+    arm: Vec3<f64>,
+    /// The body's origin, m.
+    origin: Vec3<f64>,
+}
+
 impl<'a> Grounded<'a> {
     /// A robot with these points. A point counts as closed up to 1e-9 m above the ground.
     pub fn new(model: &'a Model<f64>, touches: Vec<Touch>) -> Self {
@@ -103,11 +111,10 @@ impl<'a> Grounded<'a> {
     /// # Errors
     /// [`GroundedError::Dimension`]: `q` does not fit, or a touch is on no body.
     pub fn heights(&self, q: &[f64]) -> Result<Vec<f64>, GroundedError> {
-        Ok(self.places(q)?.into_iter().map(|(arm, origin)| arm.z + origin.z).collect())
+        Ok(self.places(q)?.into_iter().map(|place| place.arm.z + place.origin.z).collect())
     }
 
-    /// Of each touch, in world axes: from the body's origin to the point, and the origin.
-    fn places(&self, q: &[f64]) -> Result<Vec<(Vec3<f64>, Vec3<f64>)>, GroundedError> {
+    fn places(&self, q: &[f64]) -> Result<Vec<Place>, GroundedError> {
         expect_finite("configuration q", q)?;
         let still = vec![0.0; self.model.topology.nv()];
         let mut kinematics = Kinematics::new(&self.model.topology);
@@ -116,7 +123,7 @@ impl<'a> Grounded<'a> {
             let what = "bodies, for the one of a touch";
             let missing = DimensionError { what, expected: touch.body + 1, found: self.model.topology.bodies() };
             let place = kinematics.body(touch.body).ok_or(missing)?.placement;
-            Ok((place.rotation * Vec3::from_array(touch.point), place.translation))
+            Ok(Place { arm: place.rotation * Vec3::from_array(touch.point), origin: place.translation })
         });
         found.collect()
     }
@@ -127,7 +134,7 @@ impl<'a> Grounded<'a> {
     /// [`GroundedError`]: an argument does not fit, M is not positive definite, or a number is not finite.
     pub fn problem(&self, name: &str, q: &[f64], v: &[f64], tau: &[f64], step: f64) -> Result<Option<Problem>, GroundedError> {
         let places = self.places(q)?;
-        let closed: Vec<usize> = (0..places.len()).filter(|k| places[*k].0.z + places[*k].1.z <= self.reach).collect();
+        let closed: Vec<usize> = (0..places.len()).filter(|k| places[*k].arm.z + places[*k].origin.z <= self.reach).collect();
         if closed.is_empty() {
             return Ok(None);
         }
@@ -135,7 +142,7 @@ impl<'a> Grounded<'a> {
         let mut jacobian = DMatrix::zeros(3 * closed.len(), n);
         let mut of_body = Jacobian::new(&self.model.topology);
         for (k, &touch) in closed.iter().enumerate() {
-            let arm = places[touch].0;
+            let arm = places[touch].arm;
             for (dof, column) in of_body.run(self.model, q, self.touches[touch].body)?.iter().enumerate() {
                 let moved = column.lin + column.ang.cross(arm);
                 for (row, entry) in [moved.z, moved.x, moved.y].into_iter().enumerate() {
