@@ -16,6 +16,7 @@ from typing import Any
 import numpy as np
 
 from featherbench_oracles.clock import Measured, MeasuredStream, Stream, TimedCalls
+from featherbench_oracles.contacts import Contacts
 from featherbench_oracles.examination import examined
 from featherbench_oracles.messages import Answer, Blocks, Header, read_message, write_message
 from featherbench_oracles.protocol import AS_READ, PROTOCOL, SHAPES, Engine, Reading, State, Unsupported
@@ -33,6 +34,7 @@ class Session:
 
     def __init__(self, engine: Engine) -> None:
         self.engine = engine
+        self.contacts = Contacts(engine.name, getattr(engine, "contact_solvers", {}))
         self.description: Description | None = None
         self.robot: Any = None
         self.states: Blocks | None = None
@@ -71,6 +73,8 @@ class Session:
             "evaluate": self.evaluate,
             "clock": self.clock,
             "relocate": self.relocate,
+            "contact_problems": self.contacts.set_problems,
+            "solve_contacts": self.contacts.solve,
         }
         if header.get("op") not in operations:
             raise ValueError(f"unknown op {header.get('op')}")
@@ -81,6 +85,8 @@ class Session:
         engine = self.engine
         methods = {quantity: list(by_method) for quantity, by_method in engine.quantities.items()}
         hello = {"protocol": PROTOCOL, "engine": engine.name, "version": engine.version, "build": engine.build, "methods": methods}
+        if self.contacts.solvers:
+            hello["contact_solvers"] = list(self.contacts.solvers)
         if any(isinstance(function, Measured) for by_method in engine.quantities.values() for function in by_method.values()):
             return {**hello, "clock": True, "relocate": True}, {}
         timed = {name: [m for m, f in by_method.items() if isinstance(f, TimedCalls)] for name, by_method in engine.quantities.items()}

@@ -1,6 +1,6 @@
 //! The trait [`Engine`]: anything that answers.
 
-use crate::{Import, Quantity, Robot, RobotFile, Stepper};
+use crate::{ContactSolver, Import, Quantity, Robot, RobotFile, Stepper};
 use featherbench_protocol::Memory;
 use featherbench_results::EngineSource;
 use featherbench_robots::StateBatch;
@@ -160,6 +160,11 @@ pub trait Engine: Send + Sync {
     /// Whether its times are those of its own clock, or ours in this process. Otherwise they include an exchange of messages.
     fn has_clock(&self) -> bool {
         true
+    }
+
+    /// Its solvers of contact problems, if it has any.
+    fn contact_solver(&self) -> Option<&dyn ContactSolver> {
+        None
     }
 
     /// Its steps, if its forward dynamics is that of a step.

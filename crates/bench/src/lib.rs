@@ -40,6 +40,7 @@ pub mod alone;
 pub mod by_duals;
 mod cell;
 mod class;
+mod contact_solver;
 pub mod conventions;
 mod counts;
 mod derivative_floor;
@@ -70,6 +71,7 @@ pub mod truth;
 
 pub use cell::{Cell, Outcome};
 pub use class::RobotClass;
+pub use contact_solver::{ContactProblems, ContactSolver};
 pub use counts::{COUNTS_NAME, Count, Counts};
 pub use derivative_floor::derivative_floor;
 pub use described::{ClockKind, DescribedEngine, Engines, Library, Package, Start};

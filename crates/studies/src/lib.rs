@@ -8,6 +8,7 @@
 //! - [`Repeatability`]: does the same question have the same answer?
 //! - [`Reproductions`]: do the engines' known deviations still exist, and in their known size?
 //! - [`Contact`]: what do solvers, laws and integrators answer where the answer is known?
+//! - [`ContactTiming`]: how long do solvers take for the contacts of standing robots, at the same residual?
 //! - [`Steps`]: how does the acceleration of a step approach the true one, and how do steps change the energy?
 //! - [`OperationCounts`]: are the counts of the sparse algorithms the integers of the theory?
 //! - [`Scaling`]: what do sparsity and errors become as robots grow?
@@ -18,6 +19,7 @@ mod accuracy;
 mod agreement;
 mod conditioning;
 mod contact;
+mod contact_timing;
 mod derivatives;
 mod growth;
 pub mod import;
@@ -32,6 +34,7 @@ pub use accuracy::Accuracy;
 pub use agreement::Agreement;
 pub use conditioning::Conditioning;
 pub use contact::Contact;
+pub use contact_timing::ContactTiming;
 pub use derivatives::Derivatives;
 pub use growth::{Growth, Settings as GrowthSettings};
 pub use import::Import;
@@ -75,6 +78,7 @@ const STUDIES: &[Entry] = &[
     Entry { name: "repeatability", make: repeatability::of_suite, sections: no_section },
     // Its rows are in the section of the study `scaling`.
     Entry { name: "growth", make: growth::of_suite, sections: no_section },
+    Entry { name: "contact_timing", make: contact_timing::of_suite, sections: contact_timing::section::sections },
     Entry { name: "timing", make: timing::of_suite, sections: timing::section::sections },
 ];
 

@@ -12,7 +12,7 @@ import pinocchio as pin
 from featherbench_oracles.algebra import Array
 from featherbench_oracles.change import CoordinateChange
 from featherbench_oracles.derivatives import Differentiated
-from featherbench_oracles.pinocchio import reading
+from featherbench_oracles.pinocchio import contacts, reading
 from featherbench_oracles.pinocchio.building import build
 from featherbench_oracles.pinocchio.coordinates import (
     change_of_velocities,
@@ -280,6 +280,8 @@ class Pinocchio:
         "coriolis_matrix": {"coriolis_matrix": PinocchioRobot.coriolis},
         "torque_regressor": {"joint_torque_regressor": PinocchioRobot.regressor},
     }
+
+    contact_solvers = contacts.SOLVERS
 
     def prepare(self, description: Description) -> PinocchioRobot:
         """Build the robot, if its workspace fits into the process's memory."""

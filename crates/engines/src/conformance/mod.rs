@@ -7,6 +7,7 @@
 //! named. An oracle that imports files is asked about the imported robot in the same way, and one that integrates about its steps.
 
 mod answers;
+mod contacts;
 mod coordinate_change;
 mod exchange;
 mod files;
@@ -92,7 +93,7 @@ pub fn check(start: &dyn Fn() -> Result<Box<dyn Connection>, String>, watch: &dy
     let scenes: Vec<Scene> = robots::all()?.into_iter().map(|(shows, robot)| Scene::new(shows, robot)).collect();
     let mut exchange = Exchange::new(start);
     watch("hello");
-    let Some(steps) = protocol::hello(&mut exchange) else { return Ok(exchange.conformance) };
+    let Some((steps, contact_solvers)) = protocol::hello(&mut exchange) else { return Ok(exchange.conformance) };
     watch("what has no answer");
     protocol::before_prepare(&mut exchange);
     let offered = exchange.conformance.methods.clone();
@@ -111,6 +112,8 @@ pub fn check(start: &dyn Fn() -> Result<Box<dyn Connection>, String>, watch: &dy
     answers.judge(&mut exchange, &scenes, "");
     steps::judge(&mut exchange, &steps, &stepped);
     answers::lacking(&mut exchange, &offered);
+    watch("contacts");
+    contacts::ask(&mut exchange, &contact_solvers);
     watch("files");
     files::read(&mut exchange, &offered)?;
     watch("the end");

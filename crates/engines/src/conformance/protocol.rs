@@ -13,8 +13,8 @@ use std::collections::BTreeMap;
 /// Quantities by method.
 pub(super) type Methods = BTreeMap<String, Vec<String>>;
 
-/// Asks for its identity and the steps that it offers. Without an answer the test ends here.
-pub(super) fn hello(exchange: &mut Exchange) -> Option<Steps> {
+/// Asks for its identity, the steps and the contact solvers that it offers. Without an answer the test ends here.
+pub(super) fn hello(exchange: &mut Exchange) -> Option<(Steps, Vec<String>)> {
     let answer = exchange.expect("it answers hello", json!({"op": "hello"}), Vec::new(), &["ok"])?;
     let mut wrong = Vec::new();
     let header = &answer.header;
@@ -44,6 +44,11 @@ pub(super) fn hello(exchange: &mut Exchange) -> Option<Steps> {
         wrong.push(reason);
         None
     });
+    let solvers = header.get("contact_solvers").map_or(Ok(Vec::new()), |solvers| serde_json::from_value(solvers.clone()));
+    let solvers: Vec<String> = solvers.unwrap_or_else(|_| {
+        wrong.push("`contact_solvers` is no list of names".into());
+        Vec::new()
+    });
     let standing = if wrong.is_empty() { Standing::Right } else { Standing::Wrong };
     exchange.note(standing, "hello names protocol, engine, version, build and methods", &wrong.join("; "), &[]);
     exchange.conformance.engine = format!("{} {}", answer.text("engine"), answer.text("version"));
@@ -51,7 +56,7 @@ pub(super) fn hello(exchange: &mut Exchange) -> Option<Steps> {
     exchange.conformance.methods.retain(|quantity, _| Quantity::parse(quantity).is_some());
     let steps = steps.unwrap_or_default();
     exchange.conformance.steps.clone_from(&steps.methods);
-    Some(steps)
+    Some((steps, solvers))
 }
 
 /// Requests that have no answer while there is no robot.

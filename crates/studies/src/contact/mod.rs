@@ -24,7 +24,7 @@ mod painleve;
 mod problems;
 mod rates;
 pub(crate) mod section;
-mod standing;
+pub(crate) mod standing;
 #[cfg(test)]
 mod tests;
 

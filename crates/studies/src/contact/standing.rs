@@ -15,7 +15,7 @@ use serde_json::json;
 use std::f64::consts::TAU;
 
 /// μ of the feet on the ground.
-const FRICTION: f64 = 0.6;
+pub(crate) const FRICTION: f64 = 0.6;
 /// The step in s, and how many are made.
 const STEP: f64 = 1e-3;
 const STEPS: usize = 100;
@@ -26,7 +26,7 @@ const FALL: f64 = 0.44;
 
 /// A robot that stands on points of its feet.
 #[derive(Clone, Copy)]
-pub(super) enum Stand {
+pub(crate) enum Stand {
     /// The quadruped: each shank ends in a level pad with so many points.
     Quadruped(usize),
     /// The humanoid on the corners of its soles.
@@ -37,21 +37,21 @@ pub(super) enum Stand {
 type Stance = (&'static [(&'static str, f64)], [f64; 2]);
 
 impl Stand {
-    pub(super) const ALL: [Self; 6] =
+    pub(crate) const ALL: [Self; 6] =
         [Self::Humanoid, Self::Quadruped(1), Self::Quadruped(2), Self::Quadruped(4), Self::Quadruped(8), Self::Quadruped(16)];
 
     fn family(self) -> &'static str {
         if matches!(self, Self::Humanoid) { "humanoid" } else { "quadruped" }
     }
 
-    fn contacts(self) -> usize {
+    pub(crate) fn contacts(self) -> usize {
         match self {
             Self::Quadruped(points) => 4 * points,
             Self::Humanoid => 8,
         }
     }
 
-    pub(super) fn name(self) -> String {
+    pub(crate) fn name(self) -> String {
         format!("{}, {} contacts", self.family(), self.contacts())
     }
 
@@ -62,7 +62,7 @@ impl Stand {
     ///   of the pad. The rank is 16.
     /// - Pads of more points: it swings ahead alone. The rank is 17.
     /// - Two soles: 6 rows each, and the legs have six joints: 12.
-    pub(super) fn rank(self) -> usize {
+    pub(crate) fn rank(self) -> usize {
         match self {
             Self::Humanoid | Self::Quadruped(1) => 12,
             Self::Quadruped(2) => 16,
@@ -97,7 +97,7 @@ impl Stand {
     }
 
     /// The robot, its stance on the ground, and the points of its feet.
-    pub(super) fn make(self) -> Result<Standing, NoAnswer> {
+    pub(crate) fn make(self) -> Result<Standing, NoAnswer> {
         let description = Family::parse(self.family()).map_err(failed)?.generate().map_err(failed)?;
         let model: Model<f64> = Model::build(&description).map_err(failed)?;
         let (angles, gains) = self.stance();
@@ -129,11 +129,11 @@ impl Stand {
 }
 
 /// A robot with its stance.
-pub(super) struct Standing {
-    pub(super) model: Model<f64>,
-    pub(super) touches: Vec<Touch>,
+pub(crate) struct Standing {
+    pub(crate) model: Model<f64>,
+    pub(crate) touches: Vec<Touch>,
     /// The configuration.
-    pub(super) stance: Vec<f64>,
+    pub(crate) stance: Vec<f64>,
     gains: [f64; 2],
 }
 
@@ -147,13 +147,26 @@ impl Standing {
         tau
     }
 
-    /// The problems of the running robot, with a sideways velocity by the seed. The first has all contacts.
-    pub(super) fn run(&self, seed: u64) -> Result<Vec<Problem>, NoAnswer> {
-        let robot = Grounded::new(&self.model, self.touches.clone());
+    /// Where it meets the ground, with a sideways velocity by the seed.
+    fn touch_down(&self, seed: u64) -> [Vec<f64>; 2] {
         let mut random = Random::named(seed, "standing");
-        let (mut q, mut v) = (self.stance.clone(), vec![0.0; self.model.topology.nv()]);
+        let mut v = vec![0.0; self.model.topology.nv()];
         // Base velocity [ṗ; ω] in base axes, which are level here.
         (v[0], v[1], v[2]) = (random.uniform(-0.5, 0.5), random.uniform(-0.5, 0.5), -FALL);
+        [self.stance.clone(), v]
+    }
+
+    /// The problem of the first step, which has all contacts.
+    pub(crate) fn landing(&self, seed: u64) -> Result<Option<Problem>, NoAnswer> {
+        let [q, v] = self.touch_down(seed);
+        let tau = self.forces(&q, &v);
+        Grounded::new(&self.model, self.touches.clone()).problem(&format!("landing {seed}"), &q, &v, &tau, STEP).map_err(failed)
+    }
+
+    /// The problems of the running robot. The first has all contacts.
+    pub(crate) fn run(&self, seed: u64) -> Result<Vec<Problem>, NoAnswer> {
+        let robot = Grounded::new(&self.model, self.touches.clone());
+        let [mut q, mut v] = self.touch_down(seed);
         let mut problems = Vec::new();
         for number in 0..STEPS {
             let tau = self.forces(&q, &v);

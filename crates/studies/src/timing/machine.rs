@@ -162,7 +162,7 @@ fn empty_call(empty: &mut dyn Evaluation) -> Result<f64, NoAnswer> {
 }
 
 /// While it exists, this thread and every child process stay on one core. If the system refuses, it has no effect.
-pub(super) struct Pinned(Option<rustix::thread::CpuSet>);
+pub(crate) struct Pinned(Option<rustix::thread::CpuSet>);
 
 impl Pinned {
     /// The last core that this thread may use: the first one serves most interrupts.

@@ -16,13 +16,13 @@
 
 mod best_other;
 mod check;
-mod machine;
+pub(crate) mod machine;
 mod overhead;
-mod protocol;
-mod rows;
-mod samples;
+pub(crate) mod protocol;
+pub(crate) mod rows;
+pub(crate) mod samples;
 pub(crate) mod section;
-mod statistics;
+pub(crate) mod statistics;
 
 use crate::{Made, Setup};
 use featherbench_bench::{Cell, Context, Engine, Finished, HarnessError, NoAnswer, Outcome, Quantity, Robot, Study};

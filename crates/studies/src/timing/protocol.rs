@@ -20,7 +20,7 @@ use std::time::Duration;
 const BLOCK: Duration = Duration::from_micros(200);
 /// Epochs of an experiment, and so the fewest rounds. Times vary more between layouts than between rounds of one layout. With thirty epochs
 /// of ten rounds a third of all A/A ratios had an interval slightly wider than the noise. The same time is better spent on many epochs.
-pub(super) const EPOCHS: usize = 60;
+pub(crate) const EPOCHS: usize = 60;
 /// Most rounds of an epoch: with more time the blocks become longer.
 const MOST_ROUNDS: usize = 5;
 /// Calls before a block that are not timed: one per this number of calls of the block.
@@ -35,11 +35,11 @@ const LAST_MOVES: usize = 5;
 const AGAIN: [usize; 2] = [1, 8];
 
 /// A candidate that is ready to run, or why it is not.
-pub(super) type Ready<'a> = Result<Box<dyn Evaluation + 'a>, NoAnswer>;
+pub(crate) type Ready<'a> = Result<Box<dyn Evaluation + 'a>, NoAnswer>;
 
 /// The time of an experiment.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Budget {
+pub(crate) struct Budget {
     /// Rounds of each epoch.
     pub rounds: usize,
     /// The shortest block.
@@ -87,7 +87,7 @@ impl Moves {
 
 /// Times `count` candidates over a batch of `states` states. `prepare` makes one of them ready; `clock` gives the time since some moment.
 /// After an error a candidate's times are NaN.
-pub(super) fn experiment<'a>(
+pub(crate) fn experiment<'a>(
     prepare: &dyn Fn(usize) -> Ready<'a>,
     count: usize,
     states: usize,

@@ -90,7 +90,7 @@ fn overhead(robot: &Robot, (cell, outcome): &Finished) -> Option<Row> {
 }
 
 /// A measured row, not valid if there is a complaint. A row without a value has its reason already.
-pub(super) fn judged(row: Row, complaint: Option<&str>) -> Row {
+pub(crate) fn judged(row: Row, complaint: Option<&str>) -> Row {
     match complaint.filter(|_| row.value.is_some()) {
         Some(reason) => row.invalid(reason),
         None => row,
@@ -250,7 +250,7 @@ impl<'a> Experiment<'a> {
 }
 
 /// A row closed with a value and its interval.
-pub(super) fn estimated(blank: Row, estimate: &Estimate) -> Row {
+pub(crate) fn estimated(blank: Row, estimate: &Estimate) -> Row {
     blank.measured(estimate.value, estimate.low, estimate.high)
 }
 

@@ -5,7 +5,7 @@ use serde_json::json;
 
 /// The blocks of an experiment: nanoseconds per call, of every candidate in every round.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct Samples {
+pub(crate) struct Samples {
     /// Calls in a block of each candidate.
     pub calls: Vec<usize>,
     rounds: usize,

@@ -13,17 +13,17 @@ use crate::quantile;
 use featherbench_robots::Random;
 
 /// Fraction of the bootstrap's medians inside an interval that is reported.
-pub(super) const LEVEL: f64 = 0.95;
+pub(crate) const LEVEL: f64 = 0.95;
 /// The same for an A/A ratio. A robot has about twenty of them; chance alone must not invalidate it more often than once in fifty runs.
-pub(super) const CONTROL_LEVEL: f64 = 0.999;
+pub(crate) const CONTROL_LEVEL: f64 = 0.999;
 /// Two engines differ if the interval of their ratio is farther from one than this. The interval of an A/A ratio must be within it.
-pub(super) const NOISE: f64 = 0.02;
+pub(crate) const NOISE: f64 = 0.02;
 /// Number of bootstrap draws: one median is then beyond each end of an interval at [`CONTROL_LEVEL`].
 const RESAMPLES: usize = 2000;
 
 /// A median with its interval.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Estimate {
+pub(crate) struct Estimate {
     /// The median of the samples.
     pub value: f64,
     /// Lower end of its interval.
@@ -34,7 +34,7 @@ pub(super) struct Estimate {
 
 /// The result of comparing an engine with the reference.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Finding {
+pub(crate) enum Finding {
     /// It takes longer, by more than the noise.
     Slower,
     /// It takes less time, by more than the noise.

@@ -1,0 +1,120 @@
+//! Section: how long solvers take for the contacts of standing robots.
+
+use super::{STUDY, TARGET};
+use featherbench_report::numbers::short;
+use featherbench_report::{Overview, Section, labels, opener};
+use featherbench_results::{Row, RunInfo, Verdict};
+use maud::{Markup, html};
+use serde::Serialize;
+
+/// A time of a method on a robot.
+#[derive(Clone, Serialize)]
+struct Time<'a> {
+    robot: &'a str,
+    contacts: f64,
+    engine: &'a str,
+    method: &'a str,
+    ns: f64,
+    valid: bool,
+    /// Over the reference's; none for the reference itself.
+    ratio: Option<f64>,
+    residual: Option<f64>,
+    tolerance: Option<f64>,
+}
+
+/// Makes the section, if the run has rows of the study.
+pub(crate) fn sections<'a>(_: &RunInfo, rows: &'a [Row], overview: &Overview<'a>) -> Vec<Section> {
+    let rows: Vec<&Row> = rows.iter().filter(|row| row.study == STUDY).collect();
+    let Some(first) = rows.first() else { return Vec::new() };
+    let chunk = overview.chunk_of(first);
+    let times = times(&rows);
+    let body = body(&rows, &times, &chunk);
+    let section = Section { script: include_str!("section/figures.js"), ..Section::new("contact_timing", "Contact timing", body) };
+    vec![section.with_data(&times)]
+}
+
+fn times<'a>(rows: &[&'a Row]) -> Vec<Time<'a>> {
+    let beside = |row: &Row, metric: &str| {
+        let same =
+            |other: &&&Row| other.cell == row.cell && other.engine == row.engine && other.method == row.method && other.metric == metric;
+        rows.iter().find(same)?.value
+    };
+    let of = |row: &&'a Row| {
+        (row.metric == "ns_per_call").then_some(())?;
+        let params: serde_json::Value = serde_json::from_str(&row.params).ok()?;
+        Some(Time {
+            robot: &row.family,
+            contacts: params["contacts"].as_f64()?,
+            engine: &row.engine,
+            method: &row.method,
+            ns: row.value?,
+            valid: row.valid,
+            ratio: beside(row, "ratio"),
+            residual: beside(row, "residual"),
+            tolerance: beside(row, "tolerance"),
+        })
+    };
+    rows.iter().filter_map(of).collect()
+}
+
+/// Of each robot the best other engine's time over that of our sweeps.
+fn best_others<'a>(times: &'a [Time]) -> Vec<(&'a str, &'a Time<'a>)> {
+    let mut best: Vec<(&str, &Time)> = Vec::new();
+    for time in times.iter().filter(|time| time.engine != "featherbench" && time.valid && time.ratio.is_some()) {
+        match best.iter_mut().find(|(robot, _)| *robot == time.robot) {
+            Some((_, known)) if known.ns <= time.ns => {}
+            Some((_, known)) => *known = time,
+            None => best.push((time.robot, time)),
+        }
+    }
+    best
+}
+
+fn body(rows: &[&Row], times: &[Time], chunk: &str) -> Markup {
+    let best = best_others(times);
+    let ratios: Vec<f64> = best.iter().filter_map(|(_, time)| time.ratio).collect();
+    let ends = ratios.iter().copied().min_by(f64::total_cmp).zip(ratios.iter().copied().max_by(f64::total_cmp));
+    let unreached: Vec<&&Row> = rows.iter().filter(|row| row.metric == "residual" && row.value.is_none()).collect();
+    html! {
+        section #contact_timing {
+            h2 { "Contacts of standing robots in time" }
+            p.lead {
+                @match ends {
+                    Some((least, most)) => b { "The fastest other solver takes " (short(least)) " to " (short(most)) " times as long as our block Gauss–Seidel." },
+                    None => b { "No other engine was timed, or no time counts." },
+                }
+            }
+            ul {
+                li { "Every time is of answers with a natural-map residual of at most " (short(TARGET)) ", by the laws of Signorini and Coulomb." }
+                li { "Times of the sweeps and of other engines begin with G, b and memory prepared. Those of the other two methods of ours include preparation." }
+                @for row in &unreached { li { (row.engine) " " (row.method) " on " (row.family) ": " (row.reason) "." } }
+            }
+            div #contact-times.plot role="group" aria-label="Plot of solution times against contacts, per solver" {}
+            div.scroll {
+                table.compact.sortable {
+                    thead {
+                        tr {
+                            th scope="col" { "robot" } th scope="col" { "solver" } th.number scope="col" { "time, µs" }
+                            th.number scope="col" { "over ours" } th.number scope="col" { "tolerance" } th.number scope="col" { "residual" }
+                        }
+                    }
+                    tbody { @for time in times { (line(time, chunk)) } }
+                }
+            }
+        }
+    }
+}
+
+fn line(time: &Time, chunk: &str) -> Markup {
+    let filter = [("study", STUDY), ("family", time.robot), ("engine", time.engine), ("method", time.method)];
+    html! {
+        tr {
+            th scope="row" { (opener(chunk, &filter, time.robot)) }
+            td { (time.engine) " " (time.method) }
+            td.number { @if !time.valid { span class={ "badge " (Verdict::Skip) } { (labels::glyph(Verdict::Skip)) } " " } (short(time.ns * 1e-3)) }
+            td.number { @if let Some(ratio) = time.ratio { (short(ratio)) } }
+            td.number { @if let Some(tolerance) = time.tolerance { (short(tolerance)) } }
+            td.number { @if let Some(residual) = time.residual { (short(residual)) } }
+        }
+    }
+}
