@@ -7,7 +7,7 @@
 //! - [`Import`]: do they import the same file alike, and if not, where and why do they differ?
 //! - [`Repeatability`]: does the same question have the same answer?
 //! - [`Reproductions`]: do the engines' known deviations still exist, and in their known size?
-//! - [`Contact`]: what do solvers, laws and integrators answer where the answer is known?
+//! - `contact`: what do solvers, laws and integrators answer where the answer is known?
 //! - [`ContactTiming`]: how long do solvers take for the contacts of standing robots, at the same residual?
 //! - [`Steps`]: how does the acceleration of a step approach the true one, and how do steps change the energy?
 //! - [`OperationCounts`]: are the counts of the sparse algorithms the integers of the theory?
@@ -23,6 +23,7 @@ mod contact_timing;
 mod derivatives;
 mod growth;
 pub mod import;
+mod known;
 mod operations;
 mod repeatability;
 mod reproductions;
@@ -33,7 +34,6 @@ mod timing;
 pub use accuracy::Accuracy;
 pub use agreement::Agreement;
 pub use conditioning::Conditioning;
-pub use contact::Contact;
 pub use contact_timing::ContactTiming;
 pub use derivatives::Derivatives;
 pub use growth::{Growth, Settings as GrowthSettings};

@@ -1,12 +1,11 @@
 //! Section: problems with loops, contacts and events whose answers are known.
 
 use super::STUDY;
-use featherbench_report::numbers::short;
-use featherbench_report::{Overview, Section, labels, opener};
-use featherbench_results::{Row, RunInfo, Verdict};
+use crate::known::{passed, table};
+use featherbench_report::{Overview, Section};
+use featherbench_results::{Row, RunInfo};
 use maud::{Markup, html};
 use serde::Serialize;
-use std::collections::BTreeSet;
 
 /// Of each method: its name, and of each problem its name, iterations and a value.
 type Lines<'a> = Vec<(&'a str, Vec<(&'a str, f64, f64)>)>;
@@ -120,33 +119,6 @@ fn accuracy<'a>(rows: &[&'a Row]) -> Lines<'a> {
     })
 }
 
-/// Passed and judged rows of a quantity, and the one nearest to its bound or beyond it.
-struct Line<'a> {
-    quantity: &'a str,
-    about: &'a str,
-    methods: usize,
-    passed: usize,
-    judged: usize,
-    nearest: Option<&'a Row>,
-}
-
-fn lines<'a>(rows: &[&'a Row]) -> Vec<Line<'a>> {
-    let of = |(quantity, about): (&'a str, &'a str)| {
-        let own: Vec<&'a Row> = rows.iter().filter(|row| row.quantity == quantity).copied().collect();
-        let judged: Vec<&'a Row> = own.iter().filter(|row| matches!(row.verdict, Verdict::Pass | Verdict::Fail)).copied().collect();
-        let margin = |row: &Row| row.margin.unwrap_or(f64::INFINITY);
-        Line {
-            quantity,
-            about,
-            methods: own.iter().map(|row| row.method.as_str()).collect::<BTreeSet<_>>().len(),
-            passed: judged.iter().filter(|row| row.verdict == Verdict::Pass).count(),
-            judged: judged.len(),
-            nearest: judged.into_iter().min_by(|a, b| margin(a).total_cmp(&margin(b))),
-        }
-    };
-    QUANTITIES.into_iter().map(of).filter(|line| line.methods > 0).collect()
-}
-
 /// The solvers that answer with impulses where no solution exists, and those that say that there is none.
 fn of_none<'a>(rows: &[&'a Row]) -> (Vec<&'a str>, Vec<&'a str>) {
     let none = rows.iter().filter(|row| row.family == "painleve_none" && row.metric == "answers");
@@ -156,8 +128,7 @@ fn of_none<'a>(rows: &[&'a Row]) -> (Vec<&'a str>, Vec<&'a str>) {
 }
 
 fn body(rows: &[&Row], chunk: &str) -> Markup {
-    let lines = lines(rows);
-    let (passed, judged) = lines.iter().fold((0, 0), |(passed, judged), line| (passed + line.passed, judged + line.judged));
+    let (passed, judged) = passed(rows);
     let (answering, silent) = of_none(rows);
     html! {
         section #contact {
@@ -181,34 +152,7 @@ fn body(rows: &[&Row], chunk: &str) -> Markup {
                 div #contact-existence.plot role="group" aria-label="Map of how many forces Painlevé's rod has, over its angle and rate" {}
                 div #contact-felt.plot role="group" aria-label="Plot of the friction that a body feels against its heading" {}
             }
-            div.scroll {
-                table.compact.sortable {
-                    thead {
-                        tr {
-                            th scope="col" { "question" } th.number scope="col" { "methods" } th.number scope="col" { "passed" } th.number scope="col" { "judged" }
-                            th scope="col" { "nearest to its bound" } th.number scope="col" { "value" } th.number scope="col" { "bound" }
-                        }
-                    }
-                    tbody { @for line in &lines { (row(line, chunk)) } }
-                }
-            }
-        }
-    }
-}
-
-fn row(line: &Line, chunk: &str) -> Markup {
-    let verdict = if line.passed == line.judged { Verdict::Pass } else { Verdict::Fail };
-    html! {
-        tr {
-            th scope="row" { (opener(chunk, &[("study", STUDY), ("quantity", line.quantity)], line.about)) }
-            td.number { (line.methods) }
-            td.number { @if line.judged > 0 { span class={ "badge " (verdict) } { (labels::glyph(verdict)) } " " (line.passed) } }
-            td.number { (line.judged) }
-            @if let Some(nearest) = line.nearest {
-                td { (nearest.family) ", " (nearest.method) ", " (nearest.metric) }
-                td.number { @if let Some(value) = nearest.value { (short(value)) } }
-                td.number { @if let Some(bound) = nearest.bound { (short(bound)) } }
-            } @else { td {} td {} td {} }
+            (table(STUDY, rows, &QUANTITIES, chunk))
         }
     }
 }
