@@ -192,13 +192,38 @@ def _read_joint(data: Mapping[str, Any], nq: int, nv: int) -> Joint:
     if kind in WITH_AXIS and abs(np.linalg.norm(axis) - 1) > 1e-9:
         raise ValueError(f"{where}: its axis is not a unit vector")
     pitch = float(_numbers(data["pitch"], (), f"{where}: pitch")) if kind == "helical" else 0.0
-    rotation = _numbers(data["placement"]["rotation"], (9,), f"{where}: rotation").reshape(3, 3)
-    if np.abs(rotation @ rotation.T - np.eye(3)).max() > 1e-9 or np.linalg.det(rotation) < 0:
-        raise ValueError(f"{where}: its placement's rotation is not a rotation")
-    translation = _numbers(data["placement"]["translation"], (3,), f"{where}: translation")
+    rotation, translation = read_placement(data["placement"], where)
     armature = _numbers(data["armature"], (sizes[1],), f"{where}: armature")
     q, v = slice(nq, nq + sizes[0]), slice(nv, nv + sizes[1])
     return Joint(name, kind, axis, pitch, rotation, translation, armature, q, v)
+
+
+def read_placement(data: Mapping[str, Any], where: str) -> tuple[Array, Array]:
+    """Read and check a placement.
+
+    Parameters
+    ----------
+    data : mapping
+        Its JSON form.
+    where : str
+        What it places, for messages.
+
+    Returns
+    -------
+    rotation : ndarray, shape (3, 3)
+        From the placed axes to the carrier's.
+    translation : ndarray, shape (3,)
+        The placed origin, m.
+
+    Raises
+    ------
+    ValueError, KeyError
+        If it is malformed.
+    """
+    rotation = _numbers(data["rotation"], (9,), f"{where}: rotation").reshape(3, 3)
+    if np.abs(rotation @ rotation.T - np.eye(3)).max() > 1e-9 or np.linalg.det(rotation) < 0:
+        raise ValueError(f"{where}: its placement's rotation is not a rotation")
+    return rotation, _numbers(data["translation"], (3,), f"{where}: translation")
 
 
 def _numbers(value: Any, shape: tuple[int, ...], what: str) -> Array:

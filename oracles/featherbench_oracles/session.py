@@ -18,6 +18,7 @@ import numpy as np
 from featherbench_oracles.clock import Measured, MeasuredStream, Stream, TimedCalls
 from featherbench_oracles.contacts import Contacts
 from featherbench_oracles.examination import examined
+from featherbench_oracles.loops import Loops
 from featherbench_oracles.messages import Answer, Blocks, Header, read_message, write_message
 from featherbench_oracles.protocol import AS_READ, PROTOCOL, SHAPES, Engine, Reading, State, Unsupported
 from featherbench_oracles.robot import Description
@@ -36,6 +37,7 @@ class Session:
     def __init__(self, engine: Engine) -> None:
         self.engine = engine
         self.contacts = Contacts(engine.name, getattr(engine, "contact_solvers", {}), getattr(engine, "contact_relaxations", {}))
+        self.loops = Loops(engine)
         self.semidefinite = SemidefiniteLeastSquares(engine.name, getattr(engine, "semidefinite_solvers", {}))
         self.description: Description | None = None
         self.robot: Any = None
@@ -77,6 +79,9 @@ class Session:
             "relocate": self.relocate,
             "contact_problems": self.contacts.set_problems,
             "solve_contacts": self.contacts.solve,
+            "loops": self.loops.prepare,
+            "loop_accelerations": self.loops.accelerations,
+            "loop_motion": self.loops.motion,
             "semidefinite_least_squares": self.semidefinite.solve,
         }
         if header.get("op") not in operations:
@@ -93,6 +98,7 @@ class Session:
             "contact_relaxations": self.contacts.relaxations,
             "semidefinite_least_squares": self.semidefinite.solvers,
         }
+        hello |= self.loops.hello()
         hello |= {key: list(solvers) for key, solvers in listed.items() if solvers}
         if any(isinstance(function, Measured) for by_method in engine.quantities.values() for function in by_method.values()):
             return {**hello, "clock": True, "relocate": True}, {}

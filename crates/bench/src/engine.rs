@@ -1,6 +1,6 @@
 //! The trait [`Engine`]: anything that answers.
 
-use crate::{ContactSolver, Import, Quantity, Robot, RobotFile, SemidefiniteSolver, Stepper};
+use crate::{ContactSolver, Import, LoopSolver, Quantity, Robot, RobotFile, SemidefiniteSolver, Stepper};
 use featherbench_protocol::Memory;
 use featherbench_results::EngineSource;
 use featherbench_robots::StateBatch;
@@ -164,6 +164,11 @@ pub trait Engine: Send + Sync {
 
     /// Its solvers of contact problems, if it has any.
     fn contact_solver(&self) -> Option<&dyn ContactSolver> {
+        None
+    }
+
+    /// Its dynamics of robots with loops, if it holds loops.
+    fn loop_solver(&self) -> Option<&dyn LoopSolver> {
         None
     }
 

@@ -1,19 +1,21 @@
 //! An engine behind the oracle protocol: one program, with one process per thread that asks.
 
 pub(crate) mod contacts;
+pub(crate) mod loops;
 mod semidefinite;
 pub(crate) mod steps;
 
 use crate::{request, shape};
 use featherbench_bench::provenance::{PROGRAM, SOURCES};
 use featherbench_bench::{
-    ContactSolver, Engine, Evaluation, Identity, Import, ImportNote, NoAnswer, Quantity, Robot, RobotFile, Route, SemidefiniteSolver,
-    Stepper,
+    ContactSolver, Engine, Evaluation, Identity, Import, ImportNote, LoopSolver, NoAnswer, Quantity, Robot, RobotFile, Route,
+    SemidefiniteSolver, Stepper,
 };
 use featherbench_model::{BodyDescription, Description};
 use featherbench_protocol::{Block, Clock, Limits, Memory, Message, Process, SystemClock, VERSION};
 use featherbench_results::EngineSource;
 use featherbench_robots::StateBatch;
+use loops::Loops;
 use serde_json::{Value, json};
 use std::collections::BTreeMap;
 use std::ffi::OsString;
@@ -31,6 +33,8 @@ pub struct Oracle {
     relocate: bool,
     /// What it offers of steps, if it integrates.
     steps: Option<Steps>,
+    /// What it offers of robots with loops.
+    loops: Option<Loops>,
     /// Its solvers of contact problems.
     contact_solvers: Vec<String>,
     /// Its solvers of their convex relaxation.
@@ -110,6 +114,7 @@ impl Oracle {
         };
         let relocate = hello.header.get("relocate").and_then(Value::as_bool).unwrap_or(false);
         let steps = Steps::offered(hello.header.get("steps")).map_err(|reason| format!("hello: {reason}"))?;
+        let loops = Loops::offered(hello.header.get("loops")).map_err(|reason| format!("hello: {reason}"))?;
         let listed = |key: &str| -> Result<Vec<String>, String> {
             let names = hello.header.get(key).cloned().unwrap_or_else(|| json!([]));
             serde_json::from_value(names).map_err(|error| format!("hello: {key}: {error}"))
@@ -123,6 +128,7 @@ impl Oracle {
             timed_by,
             relocate,
             steps,
+            loops,
             contact_solvers,
             contact_relaxations,
             semidefinite,
@@ -230,6 +236,10 @@ impl Engine for Oracle {
 
     fn contact_solver(&self) -> Option<&dyn ContactSolver> {
         (!self.contact_solvers.is_empty() || !self.contact_relaxations.is_empty()).then_some(self)
+    }
+
+    fn loop_solver(&self) -> Option<&dyn LoopSolver> {
+        self.loops.is_some().then_some(self)
     }
 
     fn semidefinite_solver(&self) -> Option<&dyn SemidefiniteSolver> {

@@ -87,13 +87,19 @@ def joint_chain(joint: Joint) -> list[JointMaker]:
     return chains[joint.type]
 
 
-def build(robot: Description) -> tuple[MultibodyPlant, list[list[tree.Joint]]]:
+def build(
+    robot: Description, time_step: float = 0.0, add: Callable[[MultibodyPlant, list[list[tree.Joint]]], None] | None = None
+) -> tuple[MultibodyPlant, list[list[tree.Joint]]]:
     """Build the plant of a description.
 
     Parameters
     ----------
     robot : Description
         The robot.
+    time_step : float
+        The step of a discrete plant, s; zero makes a continuous one.
+    add : callable, optional
+        Adds to the plant, before it is finalized. It gets the chains too.
 
     Returns
     -------
@@ -107,12 +113,14 @@ def build(robot: Description) -> tuple[MultibodyPlant, list[list[tree.Joint]]]:
     Unsupported
         If Drake has no such robot.
     """
-    plant = MultibodyPlant(0.0)
+    plant = MultibodyPlant(time_step)
     plant.mutable_gravity_field().set_gravity_vector(robot.gravity)
     chains: list[list[tree.Joint]] = []
     for i, body in enumerate(robot.bodies):
         parent = chains[body.parent][-1].child_body() if body.parent >= 0 else plant.world_body()
         chains.append(_add(plant, i, body, parent))
+    if add is not None:
+        add(plant, chains)
     plant.Finalize()
     return plant, chains
 

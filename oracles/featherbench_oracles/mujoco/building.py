@@ -24,7 +24,7 @@ one body. MuJoCo then lacks the body, so quantities of every body are unsupporte
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from itertools import pairwise
 
 import mujoco as mj
@@ -210,13 +210,15 @@ def refuse_unsupported(body: Body) -> None:
         raise Unsupported(f"MuJoCo's linear armature of free joint {joint.name} would act on world accelerations, not on body ones")
 
 
-def build(robot: Description) -> mj.MjModel:
+def build(robot: Description, add: Callable[[mj.MjSpec, dict[int, mj.MjsBody]], None] | None = None) -> mj.MjModel:
     """Build the model of a description.
 
     Parameters
     ----------
     robot : Description
         The robot.
+    add : callable, optional
+        Adds to the spec, before it is compiled. It gets MuJoCo's bodies by their index in the description; the world's is -1.
 
     Returns
     -------
@@ -235,6 +237,8 @@ def build(robot: Description) -> mj.MjModel:
         for body in bodies:
             refuse_unsupported(body)
         held[chain[-1]] = add_body(held[bodies[0].parent], bodies, chain[-1])
+    if add is not None:
+        add(spec, held)
     try:
         model = spec.compile()
     except ValueError as reason:

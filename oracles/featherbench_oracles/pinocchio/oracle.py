@@ -12,7 +12,7 @@ import pinocchio as pin
 from featherbench_oracles.algebra import Array
 from featherbench_oracles.change import CoordinateChange
 from featherbench_oracles.derivatives import Differentiated
-from featherbench_oracles.pinocchio import contacts, reading
+from featherbench_oracles.pinocchio import contacts, loops, reading
 from featherbench_oracles.pinocchio.building import build
 from featherbench_oracles.pinocchio.coordinates import (
     change_of_velocities,
@@ -282,6 +282,10 @@ class Pinocchio:
     }
 
     contact_solvers = contacts.SOLVERS
+
+    loop_mechanics = loops.PinocchioLoops
+    loop_accelerations = loops.ACCELERATIONS
+    loop_motions = tuple(loops.MOTIONS)
 
     def prepare(self, description: Description) -> PinocchioRobot:
         """Build the robot, if its workspace fits into the process's memory."""

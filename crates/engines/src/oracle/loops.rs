@@ -1,0 +1,112 @@
+//! Robots with loops, held by the engine behind an oracle: the operations `loops`, `loop_accelerations` and `loop_motion`.
+
+use super::{Oracle, Session, shaped};
+use featherbench_bench::{LoopAccelerations, LoopMotion, LoopSolver, LoopStates, LoopSteps, NoAnswer};
+use featherbench_model::Description;
+use featherbench_protocol::{Block, Message};
+use serde::Deserialize;
+use serde_json::{Value, json};
+use std::time::Duration;
+
+/// The part of `hello` about loops.
+#[derive(Clone, Debug, PartialEq, Default, Deserialize)]
+pub(crate) struct Loops {
+    /// Methods of accelerations.
+    pub(crate) accelerations: Vec<String>,
+    /// Methods of motions.
+    pub(crate) motions: Vec<String>,
+}
+
+impl Loops {
+    /// What the header of a `hello` offers; `None` if it has no `loops`.
+    ///
+    /// # Errors
+    /// A sentence, when `loops` is not what the protocol says.
+    pub(crate) fn offered(loops: Option<&Value>) -> Result<Option<Self>, String> {
+        let Some(loops) = loops else { return Ok(None) };
+        let read: Self = serde_json::from_value(loops.clone()).map_err(|error| format!("`loops`: {error}"))?;
+        let nameless = read.accelerations.iter().chain(&read.motions).any(String::is_empty);
+        if nameless || (read.accelerations.is_empty() && read.motions.is_empty()) {
+            return Err("`loops` have no method, or one without a name".into());
+        }
+        Ok(Some(read))
+    }
+}
+
+impl Oracle {
+    /// One question about a robot with loops.
+    fn held(&self, robot: &Description, header: Value, blocks: Vec<Block>) -> Result<Message, NoAnswer> {
+        let prepare = model(robot)?;
+        let mut session = self.session()?;
+        let answer = build(&mut session, robot, prepare).and_then(|()| session.ask(header, blocks));
+        self.give_back(session);
+        answer
+    }
+}
+
+/// Lets the engine build the robot.
+fn build(session: &mut Session, robot: &Description, model: Value) -> Result<(), NoAnswer> {
+    let answer = session.ask(json!({"op": "loops", "model": model}), Vec::new())?;
+    for (key, due) in [("nq", robot.nq()), ("nv", robot.nv())] {
+        let found = answer.header.get(key).and_then(Value::as_u64);
+        if found != Some(due as u64) {
+            return Err(NoAnswer::Failed(format!("the engine reports {key} {found:?}, the robot has {due}")));
+        }
+    }
+    Ok(())
+}
+
+/// The robot with its loops in the form of the protocol.
+fn model(robot: &Description) -> Result<Value, NoAnswer> {
+    let line = featherbench_formats::neutral::to_line(robot).map_err(|error| NoAnswer::Failed(error.to_string()))?;
+    serde_json::from_str(&line).map_err(|error| NoAnswer::Failed(error.to_string()))
+}
+
+/// The engine's own time, and its settings.
+fn told(answer: &Message) -> Result<(Duration, Value), NoAnswer> {
+    let time = answer.header.get("nanoseconds").and_then(Value::as_f64).filter(|time| time.is_finite() && *time >= 0.0);
+    let time = time.ok_or_else(|| NoAnswer::Failed("the oracle's answer has no nanoseconds".into()))?;
+    let settings = answer.header.get("settings").filter(|settings| settings.is_object());
+    let settings = settings.ok_or_else(|| NoAnswer::Failed("the oracle's answer has no settings".into()))?;
+    Ok((Duration::from_secs_f64(time * 1e-9), settings.clone()))
+}
+
+impl LoopSolver for Oracle {
+    fn acceleration_methods(&self) -> Vec<String> {
+        self.loops.as_ref().map(|loops| loops.accelerations.clone()).unwrap_or_default()
+    }
+
+    fn motion_methods(&self) -> Vec<String> {
+        self.loops.as_ref().map(|loops| loops.motions.clone()).unwrap_or_default()
+    }
+
+    fn loop_accelerations(
+        &self,
+        robot: &Description,
+        method: &str,
+        states: &LoopStates,
+        repeats: usize,
+    ) -> Result<LoopAccelerations, NoAnswer> {
+        let LoopStates { count, q, v, tau } = states;
+        let blocks = vec![
+            Block::new("q", &[*count, robot.nq()], q),
+            Block::new("v", &[*count, robot.nv()], v),
+            Block::new("tau", &[*count, robot.nv()], tau),
+        ];
+        let header = json!({"op": "loop_accelerations", "method": method, "count": count, "repeats": repeats});
+        let answer = self.held(robot, header, blocks)?;
+        let (time, settings) = told(&answer)?;
+        Ok(LoopAccelerations { acceleration: shaped(&answer, "acceleration", &[*count, robot.nv()])?, time, settings })
+    }
+
+    fn loop_motion(&self, robot: &Description, method: &str, q: &[f64], v: &[f64], steps: LoopSteps) -> Result<LoopMotion, NoAnswer> {
+        let LoopSteps { dt, steps, every } = steps;
+        let records = steps.checked_div(every).unwrap_or_default();
+        let blocks = vec![Block::new("q", &[robot.nq()], q), Block::new("v", &[robot.nv()], v)];
+        let header = json!({"op": "loop_motion", "method": method, "dt": dt, "steps": steps, "every": every});
+        let answer = self.held(robot, header, blocks)?;
+        let (time, settings) = told(&answer)?;
+        let block = |name: &str, numbers: usize| shaped(&answer, name, &[records, numbers]);
+        Ok(LoopMotion { q: block("q", robot.nq())?, v: block("v", robot.nv())?, time, settings })
+    }
+}

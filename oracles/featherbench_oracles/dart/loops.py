@@ -1,0 +1,101 @@
+"""Robots with loops in DART: its joint constraints, and steps of a `World`.
+
+A constraint holds what coincides when it is made, so it is made at each beginning. An acceleration is that of a step: the change of velocity
+over its length. DART corrects openings of loops by a share of them in each step (error reduction); the settings name it.
+"""
+
+from __future__ import annotations
+
+from time import perf_counter_ns
+
+import numpy as np
+from dartpy import constraint, dynamics, simulation
+
+from featherbench_oracles.algebra import Array
+from featherbench_oracles.dart.building import build
+from featherbench_oracles.dart.coordinates import change_of_velocities, to_engine_q
+from featherbench_oracles.loops import End, Loop, Motion
+from featherbench_oracles.messages import Header
+from featherbench_oracles.protocol import Unsupported
+from featherbench_oracles.robot import Description
+
+ACCELERATIONS = ("step_1e-3",)
+MOTIONS = ("step",)
+
+
+class DartLoops:
+    """A robot with loops in DART.
+
+    Parameters
+    ----------
+    robot : Description
+        The robot.
+    loops : list of Loop
+        Its loops: ball joint constraints, two for a hinge, or a weld.
+    """
+
+    def __init__(self, robot: Description, loops: list[Loop]) -> None:
+        if any(body.joint.type == "free" for body in robot.bodies):
+            raise Unsupported("motions of a free joint are not converted from DART's rotation vectors")
+        self.robot, self.loops = robot, loops
+        self._world(np.zeros(robot.nq), np.zeros(robot.nv), 1e-3)
+
+    def _world(self, q: Array, v: Array, dt: float) -> tuple[simulation.World, dynamics.Skeleton]:
+        """Build a world at a state, with the loops as they are there."""
+        skeleton, joints, bodies = build(self.robot)
+        world = simulation.World()
+        world.setTimeStep(dt)
+        world.setGravity(self.robot.gravity)
+        world.addSkeleton(skeleton)
+        skeleton.setPositions(to_engine_q(self.robot, q))
+        skeleton.setVelocities(change_of_velocities(self.robot, joints, q, v).to_engine_v(v))
+        solver = world.getConstraintSolver()
+        for loop in self.loops:
+            for ends in loop.points():
+                solver.addConstraint(_constraint(loop, ends, bodies))
+        return world, skeleton
+
+    def settings(self, method: str) -> Header:
+        """List the error reduction, and the step of an acceleration, s."""
+        step = {} if method in MOTIONS else {"dt": float(method.removeprefix("step_"))}
+        reduction = constraint.BallJointConstraint.getErrorReductionParameter()
+        return {"error_reduction": reduction, "solver": "boxed LCP, by DART", **step}
+
+    def accelerate(self, method: str, q: Array, v: Array, tau: Array) -> tuple[Array, int]:
+        """Compute the change of velocity in one step over its length."""
+        dt = float(method.removeprefix("step_"))
+        world, skeleton = self._world(q, v, dt)
+        skeleton.setForces(tau)
+        before = skeleton.getVelocities().copy()
+        start = perf_counter_ns()
+        world.step()
+        spent = perf_counter_ns() - start
+        return (skeleton.getVelocities() - before) / dt, spent
+
+    def move(self, method: str, q: Array, v: Array, motion: Motion) -> tuple[Array, Array, int]:
+        """Run steps of the world, each a call."""
+        world, skeleton = self._world(q, v, motion.dt)
+        qs, vs, spent = [], [], 0
+        for _ in range(motion.steps // motion.every):
+            start = perf_counter_ns()
+            for _ in range(motion.every):
+                world.step()
+            spent += perf_counter_ns() - start
+            qs.append(skeleton.getPositions().copy())
+            vs.append(skeleton.getVelocities().copy())
+        return np.array(qs), np.array(vs), spent
+
+
+def _constraint(loop: Loop, ends: tuple[End, End], bodies: list[dynamics.BodyNode]) -> constraint.JointConstraint:
+    """Make DART's constraint where the loop is now: at the frame on the second body, which has to be one."""
+    first, second = ends
+    if second.body < 0:
+        first, second = second, first
+    moved = bodies[second.body]
+    place = moved.getWorldTransform()
+    point = place.rotation() @ second.translation + place.translation()
+    if loop.type == "fixed":
+        return constraint.WeldJointConstraint(*([moved] if first.body < 0 else [bodies[first.body], moved]))
+    if first.body < 0:
+        return constraint.BallJointConstraint(moved, point)
+    return constraint.BallJointConstraint(bodies[first.body], moved, point)

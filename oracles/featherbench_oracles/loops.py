@@ -1,0 +1,237 @@
+"""Robots with loops: the operations `loops`, `loop_accelerations` and `loop_motion`. This module depends on no engine."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from typing import Any, Protocol
+
+import numpy as np
+
+from featherbench_oracles.algebra import Array
+from featherbench_oracles.messages import Answer, Blocks, Header
+from featherbench_oracles.protocol import Unsupported
+from featherbench_oracles.robot import Description, read_placement
+
+# The types of loops that engines are asked to hold, and by what.
+TYPES = {"fixed": "weld", "spherical": "point", "point": "point", "revolute": "two points"}
+# The joints whose coordinates come back from every engine.
+JOINTS = ("revolute", "prismatic", "helical", "free")
+# The most numbers that a motion may record: 800 MB.
+MOST_NUMBERS = 100_000_000
+
+
+@dataclass(frozen=True)
+class End:
+    """A frame on a body.
+
+    Attributes
+    ----------
+    body : int
+        The body's index; -1 is the world.
+    rotation : ndarray, shape (3, 3)
+        From the frame's axes to the body's.
+    translation : ndarray, shape (3,)
+        The frame's origin on the body, m.
+    """
+
+    body: int
+    rotation: Array
+    translation: Array
+
+    def along(self, distance: float) -> End:
+        """Move the frame along its z axis, m."""
+        return End(self.body, self.rotation, self.translation + distance * self.rotation[:, 2])
+
+
+@dataclass(frozen=True)
+class Loop:
+    """A loop that engines hold: the second frame as its type allows on the first.
+
+    Attributes
+    ----------
+    name, type : str
+        The name; a key of `TYPES`.
+    first, second : End
+        The frames. The axis of a revolute loop is z of both.
+    """
+
+    name: str
+    type: str
+    first: End
+    second: End
+
+    def points(self) -> list[tuple[End, End]]:
+        """List the pairs of frames whose origins coincide. A hinge is two of them on its axis.
+
+        They are as far from each other as the longer of the two frames' distances from their bodies' origins: the size of the links.
+        """
+        if self.type != "revolute":
+            return [(self.first, self.second)]
+        arm = max(float(np.linalg.norm(end.translation)) for end in (self.first, self.second)) or 1.0
+        return [(self.first, self.second), (self.first.along(arm), self.second.along(arm))]
+
+
+class Mechanics(Protocol):
+    """A robot with loops in an engine."""
+
+    def settings(self, method: str) -> Header:
+        """List the settings on which the answers of a method depend, by name."""
+
+    def accelerate(self, method: str, q: Array, v: Array, tau: Array) -> tuple[Array, int]:
+        """Compute the acceleration at a state.
+
+        Parameters
+        ----------
+        method : str
+            One of the engine's `loop_accelerations`.
+        q, v, tau : ndarray
+            The state and the joints' forces, neutral.
+
+        Returns
+        -------
+        acceleration : ndarray, shape (nv,)
+            Neutral.
+        nanoseconds : int
+            Of the engine's calls, with the overhead of calling them through Python.
+        """
+
+    def move(self, method: str, q: Array, v: Array, motion: Motion) -> tuple[Array, Array, int]:
+        """Run a motion under gravity alone.
+
+        Parameters
+        ----------
+        method : str
+            One of the engine's `loop_motions`.
+        q, v : ndarray
+            The state at its beginning, neutral.
+        motion : Motion
+            The steps.
+
+        Returns
+        -------
+        q, v : ndarray, shape (records, nq) and (records, nv)
+            The states after each `every` steps, neutral.
+        nanoseconds : int
+            As of `accelerate`.
+        """
+
+
+@dataclass(frozen=True)
+class Motion:
+    """The steps of a motion.
+
+    Attributes
+    ----------
+    dt : float
+        The length of a step, s.
+    steps, every : int
+        How many; and after how many of them the state is recorded.
+    """
+
+    dt: float
+    steps: int
+    every: int
+
+
+# Makes the robot of a description and its loops.
+MakeMechanics = Callable[[Description, list[Loop]], Mechanics]
+
+
+class Loops:
+    """The robot with loops of a session.
+
+    Parameters
+    ----------
+    engine : Any
+        The engine: if it has `loop_mechanics`, also its `loop_accelerations` and `loop_motions`, lists of methods.
+    """
+
+    def __init__(self, engine: Any) -> None:
+        self.engine = engine.name
+        self.make: MakeMechanics | None = getattr(engine, "loop_mechanics", None)
+        self.methods: Mapping[str, list[str]] = {
+            "accelerations": list(getattr(engine, "loop_accelerations", ())),
+            "motions": list(getattr(engine, "loop_motions", ())),
+        }
+        self.robot: tuple[Description, Mechanics] | None = None
+
+    def hello(self) -> Header:
+        """Tell what is offered."""
+        return {"loops": {**self.methods, "types": TYPES}} if self.make else {}
+
+    def prepare(self, header: Header, _blocks: Blocks) -> Answer:
+        """Build a robot with its loops."""
+        self.robot = None
+        if self.make is None:
+            raise Unsupported(f"{self.engine} is not asked about loops")
+        description = Description.read(header["model"])
+        for body in description.bodies:
+            if body.joint.type not in JOINTS:
+                raise Unsupported(f"the coordinates of {body.joint.type} joints do not come back ({body.joint.name})")
+        loops = [_read(item, len(description.bodies)) for item in header["model"].get("loops", [])]
+        self.robot = description, self.make(description, loops)
+        return {"nq": description.nq, "nv": description.nv, "held": {loop.name: TYPES[loop.type] for loop in loops}}, {}
+
+    def accelerations(self, header: Header, blocks: Blocks) -> Answer:
+        """Answer block `acceleration` of shape (states, nv), and `nanoseconds` of `repeats` rounds."""
+        description, robot = self._asked(header, "accelerations")
+        count, repeats = header["count"], header.get("repeats", 1)
+        _check(blocks, {"q": (count, description.nq), "v": (count, description.nv), "tau": (count, description.nv)})
+        if not (count > 0 and repeats > 0):
+            raise ValueError("count and repeats must be positive")
+        found, nanoseconds = np.empty((count, description.nv)), 0
+        for _ in range(repeats):
+            for k in range(count):
+                found[k], spent = robot.accelerate(header["method"], blocks["q"][k], blocks["v"][k], blocks["tau"][k])
+                nanoseconds += spent
+        return {"nanoseconds": nanoseconds, "settings": robot.settings(header["method"])}, {"acceleration": found}
+
+    def motion(self, header: Header, blocks: Blocks) -> Answer:
+        """Answer blocks `q` and `v`, a row after each `every` steps, and `nanoseconds` of all steps."""
+        description, robot = self._asked(header, "motions")
+        motion = Motion(header["dt"], header["steps"], header["every"])
+        _check(blocks, {"q": (description.nq,), "v": (description.nv,)})
+        if not (np.isfinite(motion.dt) and motion.dt > 0):
+            raise ValueError("dt must be positive and finite")
+        if motion.steps < 1 or motion.every < 1 or motion.steps % motion.every:
+            raise ValueError("steps must be a positive multiple of every")
+        if motion.steps // motion.every * (description.nq + description.nv) > MOST_NUMBERS:
+            raise ValueError(f"the motion would record more than {MOST_NUMBERS} numbers: record fewer of its steps")
+        q, v, nanoseconds = robot.move(header["method"], blocks["q"], blocks["v"], motion)
+        return {"nanoseconds": nanoseconds, "settings": robot.settings(header["method"])}, {"q": q, "v": v}
+
+    def _asked(self, header: Header, kind: str) -> tuple[Description, Mechanics]:
+        """Find the robot, if it and the method are there."""
+        if header["method"] not in self.methods[kind]:
+            raise Unsupported(f"{self.engine} offers no {kind} of loops by {header['method']}")
+        if self.robot is None:
+            raise ValueError("no robot with loops was given before")
+        return self.robot
+
+
+def _read(item: Header, bodies: int) -> Loop:
+    """Read a loop of a description."""
+    kind = item["type"]
+    if kind not in TYPES or (kind == "point" and not all(item["axes"])):
+        raise Unsupported(
+            f"loop {item['name']}: engines are asked about loops that are fixed, spherical, revolute or a point along all axes"
+        )
+    ends = []
+    for side in ("first", "second"):
+        body = item[side]["body"]
+        if not (isinstance(body, int) and -1 <= body < bodies):
+            raise ValueError(f"loop {item['name']}: there is no body {body}")
+        ends.append(End(body, *read_placement(item[side]["placement"], f"loop {item['name']}: {side}")))
+    if ends[0].body == ends[1].body:
+        raise ValueError(f"loop {item['name']}: both ends are on body {ends[0].body}")
+    return Loop(item["name"], kind, *ends)
+
+
+def _check(blocks: Blocks, shapes: Mapping[str, tuple[int, ...]]) -> None:
+    """Check that blocks are there, of their shape, and finite: engines end the process at other numbers, or never come back."""
+    for name, shape in shapes.items():
+        if name not in blocks or blocks[name].shape != shape:
+            raise ValueError(f"block {name} is missing or not of shape {list(shape)}")
+        if not np.isfinite(blocks[name]).all():
+            raise ValueError(f"block {name} has a number that is not finite")
