@@ -8,6 +8,7 @@
 //! - [`delassus`] computes `G = J M⁻¹ Jᵀ` by three routes.
 //! - [`Constrained`] forms the equations of motion, and a [`Method`] solves them: [`Kkt`], [`RangeSpace`], [`Proximal`]. Redundant rows are
 //!   found by rank, with a tolerance that is stated. Each [`Solution`] has its residuals.
+//! - [`accelerations`] solves the equations in double-double arithmetic: the truth for the methods, and for engines.
 //! - [`stabilise`] keeps loops closed in time, and measures their drift.
 //! - [`library`] has robots with loops whose motion is known.
 //!
@@ -31,6 +32,7 @@ mod constraint;
 pub mod delassus;
 mod dynamics;
 mod error;
+mod extended;
 mod graph;
 mod laws;
 pub mod library;
@@ -46,6 +48,7 @@ pub use attachment::Attachment;
 pub use constraint::{Constraint, Constraints, Law};
 pub use dynamics::{Closed, Dynamics, Tree};
 pub use error::Error;
+pub use extended::{REDUNDANT, accelerations};
 pub use featherbench_model::LoopMotion;
 pub use graph::{BadGraph, Cycle, Edge, Graph};
 pub use laws::Row;

@@ -2,6 +2,7 @@
 
 mod common;
 mod delassus;
+mod extended;
 mod files;
 mod graph;
 mod laws;

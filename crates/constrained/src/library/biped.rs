@@ -67,6 +67,11 @@ impl Biped {
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     pub fn mechanism(&self) -> Result<Mechanism, BadMechanism> {
+        Mechanism::of(&self.description())
+    }
+
+    /// The robot as a description that has the loops' joints in its section `loops`.
+    pub fn description(&self) -> Description {
         let y = [0.0, 1.0, 0.0];
         let down = [0.0, 0.0, -self.limb];
         let size = 0.3_f64;
@@ -89,8 +94,9 @@ impl Biped {
             bodies.push(rod(&named("thigh"), Some(0), [0.0, sign * self.hip, 0.0], y, down, self.limb_mass));
             bodies.push(rod(&named("shin"), Some(thigh), down, y, down, self.limb_mass));
             bodies.push(rod(&named("foot"), Some(thigh + 1), down, y, [self.foot, 0.0, 0.0], self.foot_mass));
+            let (shin, foot) = (thigh + 1, thigh + 2);
             for (drive, base, pushed, aside) in
-                [("knee", thigh, "shin", 0.0), ("outer ankle", thigh + 1, "foot", 0.03), ("inner ankle", thigh + 1, "foot", -0.03)]
+                [("knee", thigh, shin, 0.0), ("outer ankle", shin, foot, 0.03), ("inner ankle", shin, foot, -0.03)]
             {
                 // Crank and lever point back, the rod down: a parallelogram with the limb between their hinges.
                 let back = [-self.crank, 0.0, 0.0];
@@ -98,11 +104,10 @@ impl Biped {
                 let (crank, pusher) = (named(&format!("{drive} crank")), named(&format!("{drive} rod")));
                 bodies.push(rod(&crank, Some(base), shifted([0.0; 3]), y, back, self.drive_mass));
                 bodies.push(rod(&pusher, Some(bodies.len() - 1), back, y, down, self.drive_mass));
-                let (lever, name) = (named(pushed), named(&format!("{drive} loop")));
-                loops.push(closed(name, (Some(&lever), at(shifted(back))), (Some(&pusher), at(down)), LoopMotion::Spherical));
+                let ends = [(Some(pushed), at(shifted(back))), (Some(bodies.len() - 1), at(down))];
+                loops.push(closed(named(&format!("{drive} loop")), ends, LoopMotion::Spherical));
             }
         }
-        let description = Description { name: "biped".into(), gravity: [0.0, 0.0, -self.gravity], bodies, ..Description::default() };
-        Mechanism::new(&description, &loops, |_| Vec::new())
+        Description { name: "biped".into(), gravity: [0.0, 0.0, -self.gravity], bodies, loops, ..Description::default() }
     }
 }

@@ -41,6 +41,11 @@ impl Bricard {
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     pub fn mechanism(&self) -> Result<Mechanism, BadMechanism> {
+        Mechanism::of(&self.description())
+    }
+
+    /// The robot as a description that has the loops' joints in its section `loops`.
+    pub fn description(&self) -> Description {
         let (x, y, z) = ([1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]);
         let long = |direction: [f64; 3], sign: f64| direction.map(|part| sign * part * self.length);
         let rods = [(y, long(x, 1.0)), (z, long(y, 1.0)), (x, long(z, 1.0)), (y, long(x, -1.0)), (z, long(y, -1.0))];
@@ -52,9 +57,8 @@ impl Bricard {
         }
         // The last hinge turns about x, at the end of the last rod and at the far end of the ground's edge.
         let about_x = |translation| Placement { rotation: [0.0, 0.0, 1.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0], translation };
-        let ground = (None, about_x([0.0, 0.0, self.length]));
-        let hinge = closed("loop".into(), ground, (Some("rod 4"), about_x(place)), LoopMotion::Revolute);
-        let description = Description { name: "bricard".into(), gravity: self.gravity, bodies, ..Description::default() };
-        Mechanism::new(&description, &[hinge], |_| Vec::new())
+        let ends = [(None, about_x([0.0, 0.0, self.length])), (Some(4), about_x(place))];
+        let loops = vec![closed("loop".into(), ends, LoopMotion::Revolute)];
+        Description { name: "bricard".into(), gravity: self.gravity, bodies, loops, ..Description::default() }
     }
 }

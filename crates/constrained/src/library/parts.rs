@@ -1,8 +1,6 @@
 //! What the robots of the library are made of: rods, hinges and loop hinges.
 
-use crate::mechanism::LoopJoint;
-use featherbench_model::LoopMotion;
-use featherbench_model::{BodyDescription, JointDescription, JointType, Placement};
+use featherbench_model::{BodyDescription, JointDescription, JointType, Loop, LoopEnd, LoopKind, LoopMotion, Placement};
 
 /// A placement without rotation.
 pub(super) fn at(translation: [f64; 3]) -> Placement {
@@ -39,12 +37,8 @@ pub(super) fn body(
     BodyDescription { name: name.into(), parent, mass, com, inertia, joint }
 }
 
-/// A loop joint between two bodies, `None` for the world.
-pub(super) fn closed(
-    name: String,
-    (first, first_placement): (Option<&str>, Placement),
-    (second, second_placement): (Option<&str>, Placement),
-    motion: LoopMotion,
-) -> LoopJoint {
-    LoopJoint { name, first: first.map(Into::into), first_placement, second: second.map(Into::into), second_placement, motion }
+/// A loop joint between frames on two bodies of a description, `None` for the world.
+pub(super) fn closed(name: String, ends: [(Option<usize>, Placement); 2], motion: LoopMotion) -> Loop {
+    let ends = ends.map(|(body, placement)| LoopEnd { body, placement });
+    Loop { name, kind: LoopKind::Joint { ends, motion } }
 }

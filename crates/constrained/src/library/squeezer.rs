@@ -84,6 +84,11 @@ impl Squeezer {
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     pub fn mechanism(&self) -> Result<Mechanism, BadMechanism> {
+        Mechanism::of(&self.description())
+    }
+
+    /// The robot as a description that has the loops' joints in its section `loops`.
+    pub fn description(&self) -> Description {
         let z = [0.0, 0.0, 1.0];
         let ground = |[x, y]: [f64; 2]| [x, y, 0.0];
         let link = |k: usize, parent, place, com| {
@@ -102,13 +107,12 @@ impl Squeezer {
             link(7, None, ground(self.a), [self.k7[1], self.k7[2], 0.0]),
             link(6, Some(5), [0.0, -self.k7[0], 0.0], [self.k6[0] - self.k6[1], 0.0, 0.0]),
         ];
-        let meets = |name: &str, point| {
-            let on_k2 = (Some("K2"), at([-self.k2[0], 0.0, 0.0]));
-            closed(format!("E of {name}"), on_k2, (Some(name), at(point)), LoopMotion::Revolute)
+        let meets = |name: &str, body, point| {
+            let on_k2 = (Some(1), at([-self.k2[0], 0.0, 0.0]));
+            closed(format!("E of {name}"), [on_k2, (Some(body), at(point))], LoopMotion::Revolute)
         };
-        let loops = [meets("K3", [0.0, -ss, 0.0]), meets("K4", [0.0, -self.k4[0], 0.0]), meets("K6", [self.k6[0], 0.0, 0.0])];
-        let description = Description { name: "squeezer".into(), bodies, ..Description::default() };
-        Mechanism::new(&description, &loops, |_| Vec::new())
+        let loops = vec![meets("K3", 2, [0.0, -ss, 0.0]), meets("K4", 4, [0.0, -self.k4[0], 0.0]), meets("K6", 6, [self.k6[0], 0.0, 0.0])];
+        Description { name: "squeezer".into(), bodies, loops, ..Description::default() }
     }
 
     /// The consistent configuration at t = 0 of the test set, for its own numbers: β, Θ, γ, δ, Φ, ε, Ω.
