@@ -61,6 +61,24 @@ def log(quaternion: Array) -> Array:
     return 2 * atan2(sine, w) / sine * u if sine > 0 else np.zeros(3)
 
 
+def exponential(turn: Array) -> Array:
+    """Compute the quaternion of a rotation vector: the inverse of `log`.
+
+    Parameters
+    ----------
+    turn : ndarray, shape (3,)
+        The rotation vector, rad.
+
+    Returns
+    -------
+    ndarray, shape (4,)
+        (x, y, z, w), of length one.
+    """
+    angle = float(np.linalg.norm(turn))
+    # np.sinc(x) is sin(pi x) / (pi x), and one at zero.
+    return np.append(0.5 * np.sinc(0.5 * angle / np.pi) * turn, np.cos(0.5 * angle))
+
+
 def change_of_velocities(robot: Description, made: Sequence[dynamics.Joint], q: Array, v: Array) -> CoordinateChange:
     """Find T and b of the table; `made` are DART's joints of the robot."""
     blocks, bias = [], np.zeros(robot.nv)

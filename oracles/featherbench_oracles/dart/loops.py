@@ -1,7 +1,7 @@
 """Robots with loops in DART: its joint constraints, and steps of a `World`.
 
-A constraint holds what coincides when it is made, so it is made at each beginning. An acceleration is that of a step: the change of velocity
-over its length. DART corrects openings of loops by a share of them in each step (error reduction); the settings name it.
+A constraint holds what coincides when it is made, so it is made at each beginning. An acceleration is that of a step: the change of
+velocity over its length. DART corrects openings of loops by a share of them in each step (error reduction); the settings name it.
 """
 
 from __future__ import annotations
@@ -13,10 +13,9 @@ from dartpy import constraint, dynamics, simulation
 
 from featherbench_oracles.algebra import Array
 from featherbench_oracles.dart.building import build
-from featherbench_oracles.dart.coordinates import change_of_velocities, to_engine_q
+from featherbench_oracles.dart.coordinates import change_of_velocities, exponential, to_engine_q
 from featherbench_oracles.loops import End, Loop, Motion
 from featherbench_oracles.messages import Header
-from featherbench_oracles.protocol import Unsupported
 from featherbench_oracles.robot import Description
 
 ACCELERATIONS = ("step_1e-3",)
@@ -35,12 +34,10 @@ class DartLoops:
     """
 
     def __init__(self, robot: Description, loops: list[Loop]) -> None:
-        if any(body.joint.type == "free" for body in robot.bodies):
-            raise Unsupported("motions of a free joint are not converted from DART's rotation vectors")
         self.robot, self.loops = robot, loops
         self._world(np.zeros(robot.nq), np.zeros(robot.nv), 1e-3)
 
-    def _world(self, q: Array, v: Array, dt: float) -> tuple[simulation.World, dynamics.Skeleton]:
+    def _world(self, q: Array, v: Array, dt: float) -> tuple[simulation.World, dynamics.Skeleton, list[dynamics.Joint]]:
         """Build a world at a state, with the loops as they are there."""
         skeleton, joints, bodies = build(self.robot)
         world = simulation.World()
@@ -53,7 +50,7 @@ class DartLoops:
         for loop in self.loops:
             for ends in loop.points():
                 solver.addConstraint(_constraint(loop, ends, bodies))
-        return world, skeleton
+        return world, skeleton, joints
 
     def settings(self, method: str) -> Header:
         """List the error reduction, and the step of an acceleration, s."""
@@ -64,26 +61,36 @@ class DartLoops:
     def accelerate(self, method: str, q: Array, v: Array, tau: Array) -> tuple[Array, int]:
         """Compute the change of velocity in one step over its length."""
         dt = float(method.removeprefix("step_"))
-        world, skeleton = self._world(q, v, dt)
-        skeleton.setForces(tau)
+        world, skeleton, joints = self._world(q, v, dt)
+        change = change_of_velocities(self.robot, joints, q, v)
+        skeleton.setForces(change.to_engine_tau(tau))
         before = skeleton.getVelocities().copy()
         start = perf_counter_ns()
         world.step()
         spent = perf_counter_ns() - start
-        return (skeleton.getVelocities() - before) / dt, spent
+        return change.to_neutral_a((skeleton.getVelocities() - before) / dt), spent
 
     def move(self, method: str, q: Array, v: Array, motion: Motion) -> tuple[Array, Array, int]:
         """Run steps of the world, each a call."""
-        world, skeleton = self._world(q, v, motion.dt)
+        world, skeleton, joints = self._world(q, v, motion.dt)
         qs, vs, spent = [], [], 0
         for _ in range(motion.steps // motion.every):
             start = perf_counter_ns()
             for _ in range(motion.every):
                 world.step()
             spent += perf_counter_ns() - start
-            qs.append(skeleton.getPositions().copy())
-            vs.append(skeleton.getVelocities().copy())
+            qs.append(self._neutral(skeleton.getPositions()))
+            change = change_of_velocities(self.robot, joints, qs[-1], np.zeros(self.robot.nv))
+            vs.append(change.to_neutral_tau(skeleton.getVelocities()))
         return np.array(qs), np.array(vs), spent
+
+    def _neutral(self, positions: Array) -> Array:
+        """Convert positions back: of a free joint (rotation vector, p) to (p, quaternion xyzw)."""
+        parts = []
+        for joint in (body.joint for body in self.robot.bodies):
+            held = positions[joint.v]
+            parts.append(np.append(held[3:], exponential(held[:3])) if joint.type == "free" else held)
+        return np.concatenate(parts)
 
 
 def _constraint(loop: Loop, ends: tuple[End, End], bodies: list[dynamics.BodyNode]) -> constraint.JointConstraint:

@@ -1,7 +1,7 @@
 """Robots with loops in Drake: ball and weld constraints of a discrete plant, which its solver SAP holds.
 
-A continuous plant of Drake has no constraints. So an acceleration is that of a step: the change of velocity over its length. SAP holds a loop
-almost rigidly: its compliance is made such that the loop's own frequency is that of the step.
+A continuous plant of Drake has no constraints. So an acceleration is that of a step: the change of velocity over its length. SAP holds a
+loop almost rigidly: its compliance is made such that the loop's own frequency is that of the step.
 """
 
 from __future__ import annotations
@@ -53,8 +53,12 @@ class DrakeLoops:
         plant.set_discrete_contact_approximation(DiscreteContactApproximation.kSap)
         plant.SetUseSampledOutputPorts(False)  # else the accelerations are those of the step before
 
+        # Drake 1.51.1 ends the process where a constraint is on the world itself; a body that is welded to the world is taken.
+        ground = plant.AddRigidBody("ground of loops", tree.SpatialInertia.Zero())
+        plant.WeldFrames(plant.world_frame(), ground.body_frame())
+
         def on(end: End) -> tree.RigidBody:
-            return plant.world_body() if end.body < 0 else chains[end.body][-1].child_body()
+            return ground if end.body < 0 else chains[end.body][-1].child_body()
 
         for loop in self.loops:
             for first, second in loop.points():
@@ -102,12 +106,12 @@ class DrakeLoops:
         return np.array(qs), np.array(vs), spent
 
     def _neutral(self, positions: Array) -> Array:
-        """Convert positions back: of a free joint (quaternion wxyz, p) to (p, quaternion xyzw)."""
+        """Convert positions back: of a free joint (quaternion wxyz, p) to (p, quaternion xyzw). Drake's steps leave its length off one."""
         q = np.array(positions)
         for joint in (body.joint for body in self.robot.bodies):
             if joint.type == "free":
                 w, place = positions[joint.q][:4], positions[joint.q][4:]
-                q[joint.q] = np.concatenate([place, np.roll(w, -1)])
+                q[joint.q] = np.concatenate([place, np.roll(w, -1) / np.linalg.norm(w)])
         return q
 
 

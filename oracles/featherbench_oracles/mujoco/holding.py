@@ -1,8 +1,8 @@
 """Robots with loops in MuJoCo: equality constraints between sites, accelerations by `mj_forward` and motions by `mj_step`.
 
-MuJoCo's constraints are soft: `solref` is the time constant and damping ratio with which an opening vanishes, `solimp` the impedance d, and
-of the acceleration that would hold a loop it leaves the share 1 - d. Methods differ in these numbers. MuJoCo's own are (0.02, 1) and d = 0.9
-to 0.95. A stiff method has the shortest time constant that MuJoCo takes, two steps, and the largest d.
+MuJoCo's constraints are soft. `solref` is the time constant and damping ratio with which an opening vanishes. `solimp` is the impedance d:
+of the acceleration that would hold a loop, the share 1 - d is left. Methods differ in these numbers. MuJoCo's own are (0.02, 1), and d from
+0.9 to 0.95. A stiff method has the shortest time constant that MuJoCo takes, two steps, and the largest d.
 """
 
 from __future__ import annotations

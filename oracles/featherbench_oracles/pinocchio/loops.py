@@ -50,7 +50,8 @@ class PinocchioLoops:
         for loop in self.loops:
             kind = pin.ContactType.CONTACT_6D if loop.type == "fixed" else pin.ContactType.CONTACT_3D
             for ends in loop.points():
-                (one, at), (other, there) = (self._place(end) for end in ends)
+                # The world comes second: `lcaba` ends the process where it is first.
+                (one, at), (other, there) = (self._place(end) for end in sorted(ends, key=lambda end: end.body < 0))
                 held = pin.RigidConstraintModel(kind, self.model, one, at, other, there, pin.ReferenceFrame.LOCAL)
                 if time is not None:
                     held.m_baumgarte_parameters.Kp = 1 / time**2
@@ -90,8 +91,8 @@ class PinocchioLoops:
     def move(self, method: str, q: Array, v: Array, motion: Motion) -> tuple[Array, Array, int]:
         """Run a motion by the method of Runge and Kutta of order four, on the configuration space by `pin.integrate`.
 
-        A stage's configuration is reached from the step's beginning by one velocity. So velocities of a free joint, which has its own axes at
-        each stage, are combined as if they had the same: with a free joint the order is two.
+        Velocities of a free joint have the body's axes, which differ between stages. They are combined as if they had the same: with a free
+        joint the order is two.
         """
         by, stabilised = MOTIONS[method]
         nothing, spent = np.zeros(self.model.nv), 0
