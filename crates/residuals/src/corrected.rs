@@ -142,32 +142,8 @@ impl<N: Nominal, R: Residual> Corrected<N, R> {
         check(&self.residual, &State::new(q, v, &a).with_command(tau).with_inner(inner))?;
         self.nominal.forward(q, v, tau, &mut a)?;
         finite("acceleration a", &a)?;
-        let free = DVector::from_column_slice(&a);
         let mass = self.nominal.mass_matrix(q)?;
-        let mut left = 0.0;
-        for _ in 0..STEPS {
-            let state = State::new(q, v, &a).with_command(tau).with_inner(inner);
-            let r = DVector::from_vec(self.residual.value(&state)?);
-            let by_acceleration = self.residual.by_acceleration(&state)?;
-            WellPosed::of(&mass, &by_acceleration)?;
-            let now = DVector::from_column_slice(&a);
-            // M (a − a₀) + r = 0, which a₀ solves exactly where r is zero.
-            let inertial = &mass * (&now - &free);
-            let error = &inertial + &r;
-            if error.iter().all(|&x| x == 0.0) {
-                return Ok(a);
-            }
-            left = error.amax() / inertial.amax().max(r.amax());
-            let Some(step) = (&mass + by_acceleration).lu().solve(&error) else {
-                return Err(ResidualError::IllPosed { reciprocal_condition: 0.0, threshold: WELL_POSED });
-            };
-            a.iter_mut().zip(&step).for_each(|(a, step)| *a -= step);
-            finite("acceleration a", &a)?;
-            if step.amax() <= LAST_STEP * now.amax().max(free.amax()) {
-                return Ok(a);
-            }
-        }
-        Err(ResidualError::NotConverged { iterations: STEPS, residual: left })
+        corrected_acceleration(&self.residual, &mass, &a, &State::new(q, v, &a).with_command(tau).with_inner(inner))
     }
 
     /// How well the acceleration is determined at a state.
@@ -178,6 +154,47 @@ impl<N: Nominal, R: Residual> Corrected<N, R> {
         let by_acceleration = self.residual.by_acceleration(state)?;
         WellPosed::of(&self.nominal.mass_matrix(state.q)?, &by_acceleration)
     }
+}
+
+/// The acceleration with a residual, from that of the nominal model: solves M (a − a₀) + r(q, v, a) = 0 by Newton's method from a₀, `free`.
+///
+/// So a residual can correct any engine that tells its forward dynamics a₀ and its mass matrix M. Where r(a₀) is zero, a₀ comes back to the bit. Of
+/// the state, `a` is not read.
+///
+/// # Errors
+/// [`ResidualError`] when an argument does not fit, r has no single value, or the acceleration is not determined or not found.
+pub fn corrected_acceleration<R: Residual + ?Sized>(
+    residual: &R,
+    mass: &DMatrix<f64>,
+    free: &[f64],
+    state: &State<'_>,
+) -> Result<Vec<f64>, ResidualError> {
+    let mut a = free.to_vec();
+    let free = DVector::from_column_slice(free);
+    let mut left = 0.0;
+    for _ in 0..STEPS {
+        let state = State { a: &a, ..*state };
+        let r = DVector::from_vec(residual.value(&state)?);
+        let by_acceleration = residual.by_acceleration(&state)?;
+        WellPosed::of(mass, &by_acceleration)?;
+        let now = DVector::from_column_slice(&a);
+        // a₀ solves it exactly where r is zero.
+        let inertial = mass * (&now - &free);
+        let error = &inertial + &r;
+        if error.iter().all(|&x| x == 0.0) {
+            return Ok(a);
+        }
+        left = error.amax() / inertial.amax().max(r.amax());
+        let Some(step) = (mass + by_acceleration).lu().solve(&error) else {
+            return Err(ResidualError::IllPosed { reciprocal_condition: 0.0, threshold: WELL_POSED });
+        };
+        a.iter_mut().zip(&step).for_each(|(a, step)| *a -= step);
+        finite("acceleration a", &a)?;
+        if step.amax() <= LAST_STEP * now.amax().max(free.amax()) {
+            return Ok(a);
+        }
+    }
+    Err(ResidualError::NotConverged { iterations: STEPS, residual: left })
 }
 
 /// A corrected model is one again, for a further residual such as dry friction. Its mass matrix is M + ∂r/∂a at rest; so r must be affine in a,
@@ -209,8 +226,8 @@ impl<N: Nominal, R: Residual> Nominal for Corrected<N, R> {
     }
 }
 
-/// Adds `sign · r` to `forces`, and leaves their bits where r is zero.
-pub(crate) fn add_unless_zero(forces: &mut [f64], r: &[f64], sign: f64) {
+/// Adds `sign · r` to `forces`, and leaves their bits where r is zero: −0 + 0 would be +0.
+pub fn add_unless_zero(forces: &mut [f64], r: &[f64], sign: f64) {
     for (force, &r) in forces.iter_mut().zip(r).filter(|(_, r)| **r != 0.0) {
         *force += sign * r;
     }

@@ -114,6 +114,11 @@ impl Passive {
         Ok(v.dot(&(&self.damping * &v)))
     }
 
+    /// The damping D.
+    pub fn damping(&self) -> &DMatrix<f64> {
+        &self.damping
+    }
+
     /// The largest entry of D in absolute value: what its eigenvalues are measured by.
     pub fn damping_scale(&self) -> f64 {
         self.damping.amax()

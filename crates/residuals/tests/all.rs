@@ -7,5 +7,6 @@ mod inner;
 mod known;
 mod linear;
 mod passive;
+mod power;
 mod support;
 mod well_posed;
