@@ -20,7 +20,7 @@ const ALLOWED: &[(&str, &[&str])] = &[
     ("results", &[]),
     ("report", &["results"]),
     ("protocol", &["spatial", "model"]),
-    ("bench", &["spatial", "model", "robots", "formats", "dynamics", "results", "protocol"]),
+    ("bench", &["spatial", "model", "robots", "formats", "dynamics", "residuals", "results", "protocol"]),
     ("engines", &["spatial", "model", "robots", "formats", "dynamics", "results", "protocol", "bench"]),
     (
         "studies",

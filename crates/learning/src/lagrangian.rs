@@ -196,7 +196,8 @@ impl Lagrangian {
         let [at_b, at_u] = [hidden * n, hidden * n + hidden];
         let at_c = at_u + outputs * hidden;
         for joint in 0..n {
-            let slope = |place: usize| slopes[place][joint];
+            let of_joint: Vec<f64> = slopes.iter().map(|row| row[joint]).collect();
+            let slope = |place: usize| of_joint[place];
             for h in 0..hidden {
                 let [s, d, dd] = layer[h];
                 let mut by_input = 0.0;
