@@ -70,6 +70,7 @@ mod store;
 mod study;
 mod suite;
 pub mod truth;
+mod with_residual;
 
 pub use cell::{Cell, Outcome};
 pub use class::RobotClass;
@@ -95,6 +96,7 @@ pub use stepper::Stepper;
 pub use store::{Lost, OUTCOMES_NAME, OutcomeStore};
 pub use study::{Context, Finished, Study};
 pub use suite::{NoSettings, RobotEntry, Suite};
+pub use with_residual::WithResidual;
 
 /// Our engine's name.
 pub const OWN: &str = "featherbench";
