@@ -15,6 +15,7 @@ const ALLOWED: &[(&str, &[&str])] = &[
     ("contact", &["spatial", "model", "dynamics"]),
     ("constrained", &["spatial", "model", "dynamics"]),
     ("hybrid", &["spatial"]),
+    ("identification", &["spatial", "model", "robots", "formats", "dynamics"]),
     ("results", &[]),
     ("report", &["results"]),
     ("protocol", &["spatial", "model"]),

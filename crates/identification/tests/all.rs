@@ -1,0 +1,3 @@
+//! The tests of identification as one program: they share what is compiled for them.
+
+mod ranks;
