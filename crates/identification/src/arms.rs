@@ -25,14 +25,21 @@ impl Arm {
     /// The Unimation PUMA 560. Source of the distances: B. Armstrong, O. Khatib & J. Burdick, *The explicit dynamic model and inertial
     /// parameters of the PUMA 560 arm* (1986).
     pub fn puma560() -> Self {
-        let joints = [[0.0, 0.0, 0.0], [0.0, -90.0, 0.2435], [0.4318, 0.0, -0.0934], [-0.0203, 90.0, 0.4331], [0.0, -90.0, 0.0], [0.0, 90.0, 0.0]];
+        let joints =
+            [[0.0, 0.0, 0.0], [0.0, -90.0, 0.2435], [0.4318, 0.0, -0.0934], [-0.0203, 90.0, 0.4331], [0.0, -90.0, 0.0], [0.0, 90.0, 0.0]];
         Self { name: "puma560".into(), joints: joints.into() }
     }
 
     /// The Universal Robots UR5, by the maker's table of Denavit–Hartenberg numbers.
     pub fn ur5() -> Self {
-        let joints =
-            [[0.0, 0.0, 0.089159], [0.0, 90.0, 0.0], [-0.425, 0.0, 0.0], [-0.39225, 0.0, 0.10915], [0.0, 90.0, 0.09465], [0.0, -90.0, 0.0823]];
+        let joints = [
+            [0.0, 0.0, 0.089159],
+            [0.0, 90.0, 0.0],
+            [-0.425, 0.0, 0.0],
+            [-0.39225, 0.0, 0.10915],
+            [0.0, 90.0, 0.09465],
+            [0.0, -90.0, 0.0823],
+        ];
         Self { name: "ur5".into(), joints: joints.into() }
     }
 
@@ -80,8 +87,7 @@ impl Arm {
         let count = self.joints.len();
         let body = |(k, &[along, turn, up]): (usize, &[f64; 3])| {
             let (s, c) = quarter(turn);
-            let placement =
-                Placement { rotation: [1.0, 0.0, 0.0, 0.0, c, -s, 0.0, s, c], translation: [along, -s * up, c * up] };
+            let placement = Placement { rotation: [1.0, 0.0, 0.0, 0.0, c, -s, 0.0, s, c], translation: [along, -s * up, c * up] };
             // Links are lighter towards the tip.
             let mass = 4.0 * (1.0 - k as f64 / (1.5 * count as f64));
             let (mass, com, inertia) = cloud(&mut Random::new(seed, k as u64), mass);

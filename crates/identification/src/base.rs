@@ -112,7 +112,8 @@ impl Base {
 
         let pivoted = scaled.col_piv_qr().unpack_r();
         let first = pivoted[(0, 0)].abs();
-        let by_pivots = pivoted.diagonal().iter().filter(|entry| entry.abs() > RANK * first).count();
+        let diagonal = (0..pivoted.nrows().min(pivoted.ncols())).map(|k| pivoted[(k, k)].abs());
+        let by_pivots = diagonal.filter(|&entry| entry > RANK * first).count();
         if by_pivots != rank {
             return Err(unclear(by_pivots));
         }

@@ -81,7 +81,9 @@ pub enum IdentificationError {
         defect: String,
     },
     /// A joint that a Fourier trajectory cannot move.
-    #[error("joint '{joint}' is {kind}; Fourier trajectories move joints whose positions are plain numbers (fix the base, or log a motion of yours)")]
+    #[error(
+        "joint '{joint}' is {kind}; Fourier trajectories move joints whose positions are plain numbers (fix the base, or log a motion of yours)"
+    )]
     NotExcitable {
         /// The joint.
         joint: String,
@@ -99,7 +101,9 @@ pub enum IdentificationError {
         expected: &'static str,
     },
     /// No trajectory within the limits was found.
-    #[error("none of {tries} trajectories keeps the limits of joints, speed and torque; the last broke that of joint '{joint}'; lower the frequency or widen the limits")]
+    #[error(
+        "none of {tries} trajectories keeps the limits of joints, speed and torque; the last broke that of joint '{joint}'; lower the frequency or widen the limits"
+    )]
     NoTrajectory {
         /// Trajectories tried.
         tries: usize,

@@ -6,13 +6,18 @@
 //! - `information.rs`: stacked equations in triangular form;
 //! - `base.rs`: rank and base parameters;
 //! - `arms.rs`: arms whose ranks are known;
-//! - `pseudo.rs`: which parameters a body can have;
+//! - `pseudo.rs`, `log_cholesky.rs`: which parameters a body can have;
+//! - `excitation.rs`: trajectories that tell much;
+//! - `estimate/`: least squares, consistent estimates, residuals;
 
 mod arms;
 mod base;
 mod error;
+mod estimate;
+mod excitation;
 mod information;
 mod linear;
+mod log_cholesky;
 mod pseudo;
 mod samples;
 mod unknowns;
@@ -20,8 +25,13 @@ mod unknowns;
 pub use arms::{Arm, Gravity};
 pub use base::{Base, INDEPENDENT, Motion, NO_EFFECT, RANK};
 pub use error::IdentificationError;
+pub use estimate::{
+    Consistent, ConsistentSettings, Estimate, Fit, LAGS, Whiteness, fit, log_cholesky, ordinary, student, total, weighted, whiteness,
+};
+pub use excitation::{Excitation, Fourier, Search, excite};
 pub use information::{Information, Stacking};
 pub use linear::{LinearModel, Rows};
+pub use log_cholesky::LogCholesky;
 pub use pseudo::{Consistency, PseudoInertia, ZERO};
 pub use samples::Samples;
 pub use unknowns::{Dof, Kind, Terms, Unknown};

@@ -141,12 +141,8 @@ pub(crate) fn positions(description: &Description) -> Vec<String> {
 /// The unknowns of a robot: ten per body, then armature, viscous, Coulomb and offset, each dof after dof.
 pub(crate) fn unknowns(bodies: usize, dofs: &[Dof], terms: Terms) -> Vec<Unknown> {
     let inertial = (0..bodies).flat_map(|of| (0..PARAMETERS).map(move |which| Unknown { kind: Kind::Inertial(which), of }));
-    let asked = [
-        (terms.armature, Kind::Armature),
-        (terms.viscous, Kind::Viscous),
-        (terms.coulomb, Kind::Coulomb),
-        (terms.offset, Kind::Offset),
-    ];
+    let asked =
+        [(terms.armature, Kind::Armature), (terms.viscous, Kind::Viscous), (terms.coulomb, Kind::Coulomb), (terms.offset, Kind::Offset)];
     let kinds = asked.into_iter().filter(|(asked, _)| *asked).map(|(_, kind)| kind);
     let plain = move |kind| dofs.iter().enumerate().filter(|(_, dof)| dof.position.is_some()).map(move |(of, _)| Unknown { kind, of });
     inertial.chain(kinds.flat_map(plain)).collect()

@@ -17,7 +17,14 @@ fn family(spec: &str) -> Description {
 /// The rank, with the gap that SCIENCE asks for.
 fn rank(description: &Description) -> usize {
     let base = Base::of_robot(&linear(description), 1).unwrap();
-    println!("{:<16} rank {:>3} of {:>3}  gap {:.1e}  condition {:.1e}", description.name, base.rank(), base.map.ncols(), base.gap, base.condition());
+    println!(
+        "{:<16} rank {:>3} of {:>3}  gap {:.1e}  condition {:.1e}",
+        description.name,
+        base.rank(),
+        base.map.ncols(),
+        base.gap,
+        base.condition()
+    );
     assert!(base.gap > 1e6, "{}: gap {:e}", description.name, base.gap);
     base.rank()
 }
@@ -44,12 +51,9 @@ fn rank_by_energy(description: &Description) -> usize {
 
 #[test]
 fn named_arms_have_their_known_ranks() {
-    for (arm, ranks) in [
-        (Arm::puma560(), [36, 38, 34]),
-        (Arm::ur5(), [36, 38, 34]),
-        (Arm::panda(), [43, 45, 39]),
-        (Arm::iiwa(), [43, 45, 39]),
-    ] {
+    for (arm, ranks) in
+        [(Arm::puma560(), [36, 38, 34]), (Arm::ur5(), [36, 38, 34]), (Arm::panda(), [43, 45, 39]), (Arm::iiwa(), [43, 45, 39])]
+    {
         for (gravity, due) in [Gravity::Parallel, Gravity::Oblique, Gravity::Zero].into_iter().zip(ranks) {
             let robot = arm.describe(gravity, 1);
             assert_eq!(rank(&robot), due, "{} {gravity:?}", arm.name);
@@ -118,9 +122,14 @@ fn base_parameters_are_named() {
         mass: 1.0,
         com: [0.1, 0.0, 0.2],
         inertia: [0.01, 0.0, 0.0, 0.01, 0.0, 0.01],
-        joint: JointDescription { name: format!("rail_{k}"), kind: JointType::Prismatic { axis: [0.0, 0.0, 1.0] }, ..JointDescription::default() },
+        joint: JointDescription {
+            name: format!("rail_{k}"),
+            kind: JointType::Prismatic { axis: [0.0, 0.0, 1.0] },
+            ..JointDescription::default()
+        },
     };
-    let robot = Description { name: "slides".into(), gravity: [0.0, 0.0, -9.81], bodies: (0..3).map(slide).collect(), ..Description::default() };
+    let robot =
+        Description { name: "slides".into(), gravity: [0.0, 0.0, -9.81], bodies: (0..3).map(slide).collect(), ..Description::default() };
     let linear = LinearModel::new(&robot, Terms { viscous: true, coulomb: true, ..Terms::NONE }).unwrap();
     let base = Base::of_robot(&linear, 1).unwrap();
     assert_eq!(base.names(&linear), ["m1", "m2", "m3", "fv1", "fv2", "fv3", "fc1", "fc2", "fc3"]);
