@@ -7,6 +7,7 @@
 //! - `base.rs`: rank and base parameters;
 //! - `arms.rs`: arms whose ranks are known;
 //! - `pseudo.rs`, `log_cholesky.rs`: which parameters a body can have;
+//! - `log/`, `smooth.rs`: logs, and the samples that they become;
 //! - `excitation.rs`: trajectories that tell much;
 //! - `estimate/`: least squares, consistent estimates, residuals;
 
@@ -17,9 +18,11 @@ mod estimate;
 mod excitation;
 mod information;
 mod linear;
+mod log;
 mod log_cholesky;
 mod pseudo;
 mod samples;
+mod smooth;
 mod unknowns;
 
 pub use arms::{Arm, Gravity};
@@ -31,7 +34,9 @@ pub use estimate::{
 pub use excitation::{Excitation, Fourier, Search, excite};
 pub use information::{Information, Stacking};
 pub use linear::{LinearModel, Rows};
+pub use log::{Flag, FlagKind, GAP, Log, LogError, LogProblem, SATURATED, Table};
 pub use log_cholesky::LogCholesky;
 pub use pseudo::{Consistency, PseudoInertia, ZERO};
 pub use samples::Samples;
+pub use smooth::{Smoothing, samples};
 pub use unknowns::{Dof, Kind, Terms, Unknown};

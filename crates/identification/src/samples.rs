@@ -49,19 +49,29 @@ impl Samples {
         Ok(samples)
     }
 
-    /// The samples of a range.
+    /// The samples of a range; those that are not there are left out.
     pub fn range(&self, linear: &LinearModel, range: std::ops::Range<usize>) -> Self {
-        let (nq, nv) = (linear.model().topology.nq(), linear.model().topology.nv());
-        let (start, end) = (range.start.min(self.count()), range.end.min(self.count()));
-        let of = |values: &[f64], each: usize| values[start * each..end.max(start) * each].to_vec();
-        Self {
-            time: of(&self.time, 1),
-            q: of(&self.q, nq),
-            v: of(&self.v, nv),
-            a: of(&self.a, nv),
-            tau: of(&self.tau, nv),
-            used: self.used[start * nv..end.max(start) * nv].to_vec(),
+        self.those(linear, (0..self.count()).filter(|k| range.contains(k)))
+    }
+
+    /// Every `stride`-th sample.
+    pub fn every(&self, linear: &LinearModel, stride: usize) -> Self {
+        self.those(linear, (0..self.count()).step_by(stride.max(1)))
+    }
+
+    fn those(&self, linear: &LinearModel, which: impl Iterator<Item = usize>) -> Self {
+        let nv = linear.model().topology.nv();
+        let mut those = Self::default();
+        for k in which {
+            let (q, v, a) = self.state(linear, k);
+            those.time.push(self.time[k]);
+            those.q.extend(q);
+            those.v.extend(v);
+            those.a.extend(a);
+            those.tau.extend(&self.tau[k * nv..][..nv]);
+            those.used.extend(&self.used[k * nv..][..nv]);
         }
+        those
     }
 
     /// Checks lengths, and that every number is finite.

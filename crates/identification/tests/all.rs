@@ -3,4 +3,5 @@
 mod consistency;
 mod estimators;
 mod excitation;
+mod logs;
 mod ranks;
