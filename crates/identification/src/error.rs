@@ -100,6 +100,14 @@ pub enum IdentificationError {
         /// What it takes.
         expected: &'static str,
     },
+    /// No answer of a solver of semidefinite programmes.
+    #[error(
+        "the semidefinite programme has no answer: {reason}; install the engine by `featherbench oracles install`, or take log_cholesky"
+    )]
+    NoSolver {
+        /// Why.
+        reason: String,
+    },
     /// No trajectory within the limits was found.
     #[error(
         "none of {tries} trajectories keeps the limits of joints, speed and torque; the last broke that of joint '{joint}'; lower the frequency or widen the limits"

@@ -10,18 +10,23 @@
 //! - `log/`, `smooth.rs`: logs, and the samples that they become;
 //! - `excitation.rs`: trajectories that tell much;
 //! - `estimate/`: least squares, consistent estimates, residuals;
+//! - `semidefinite.rs`: consistent estimates as a problem for a solver outside;
+//! - `identify.rs`, `outcome.rs`: the whole way, and the robot with its new parameters.
 
 mod arms;
 mod base;
 mod error;
 mod estimate;
 mod excitation;
+mod identify;
 mod information;
 mod linear;
 mod log;
 mod log_cholesky;
+mod outcome;
 mod pseudo;
 mod samples;
+mod semidefinite;
 mod smooth;
 mod unknowns;
 
@@ -32,11 +37,14 @@ pub use estimate::{
     Consistent, ConsistentSettings, Estimate, Fit, LAGS, Whiteness, fit, log_cholesky, ordinary, student, total, weighted, whiteness,
 };
 pub use excitation::{Excitation, Fourier, Search, excite};
+pub use identify::{Identified, Method, Request, Solve, WEAK, identify};
 pub use information::{Information, Stacking};
 pub use linear::{LinearModel, Rows};
 pub use log::{Flag, FlagKind, GAP, Log, LogError, LogProblem, SATURATED, Table};
 pub use log_cholesky::LogCholesky;
+pub use outcome::{Change, changes, consistency, described};
 pub use pseudo::{Consistency, PseudoInertia, ZERO};
 pub use samples::Samples;
+pub use semidefinite::{MARGIN, Semidefinite};
 pub use smooth::{Smoothing, samples};
 pub use unknowns::{Dof, Kind, Terms, Unknown};

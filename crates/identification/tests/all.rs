@@ -3,5 +3,6 @@
 mod consistency;
 mod estimators;
 mod excitation;
+mod identified;
 mod logs;
 mod ranks;
