@@ -15,6 +15,8 @@
 //!    in the row space stands on those before it. They have to be r.
 
 use crate::{IdentificationError, Information, LinearModel, Samples, Stacking};
+use featherbench_dynamics::{PARAMETERS, Regressor};
+use featherbench_robots::StateBatch;
 use nalgebra::{DMatrix, DVector};
 
 /// Singular values below this share of the largest are zero. Rounding leaves some 1e-14 of it, and of the robots here the least that is not
@@ -78,6 +80,30 @@ impl Base {
             samples.a.fill(0.0);
         }
         Self::of(&Information::of(linear, &samples, stacking)?)
+    }
+
+    /// The base parameters that the total energy tells, from random states: those of [`Base::of_robot`] by another way.
+    ///
+    /// Torques do not depend on a combination of parameters if, and only if, `E(q, v) − E(q₀, v₀)` does not. No acceleration enters.
+    ///
+    /// # Errors
+    /// [`IdentificationError`] when the rank is not clear.
+    pub fn of_energy(linear: &LinearModel, seed: u64) -> Result<Self, IdentificationError> {
+        let model = linear.model();
+        let width = PARAMETERS * model.described.len();
+        let states = StateBatch::random(model, 1 + 3 * width, seed);
+        let mut regressor = Regressor::new(&model.topology);
+        let (mut kinetic, mut potential) = (vec![0.0; width], vec![0.0; width]);
+        let mut energies = DMatrix::zeros(states.count(), width);
+        for k in 0..states.count() {
+            regressor.energy(model, states.q(k), states.v(k), &mut kinetic, &mut potential)?;
+            (0..width).for_each(|column| energies[(k, column)] = kinetic[column] + potential[column]);
+        }
+        let start = energies.row(0).into_owned();
+        for mut row in energies.row_iter_mut() {
+            row -= &start;
+        }
+        Self::of(&Information::of_rows(&energies, &DVector::zeros(energies.nrows())))
     }
 
     /// The base parameters that equations tell.

@@ -11,7 +11,8 @@
 //! - `excitation.rs`: trajectories that tell much;
 //! - `estimate/`: least squares, consistent estimates, residuals;
 //! - `semidefinite.rs`: consistent estimates as a problem for a solver outside;
-//! - `identify.rs`, `outcome.rs`: the whole way, and the robot with its new parameters.
+//! - `identify.rs`, `outcome.rs`: the whole way, and the robot with its new parameters;
+//! - `scenario.rs`: robots whose true parameters are known, to measure estimators on.
 
 mod arms;
 mod base;
@@ -26,6 +27,7 @@ mod log_cholesky;
 mod outcome;
 mod pseudo;
 mod samples;
+mod scenario;
 mod semidefinite;
 mod smooth;
 mod unknowns;
@@ -45,6 +47,7 @@ pub use log_cholesky::LogCholesky;
 pub use outcome::{Change, changes, consistency, described};
 pub use pseudo::{Consistency, PseudoInertia, ZERO};
 pub use samples::Samples;
+pub use scenario::{Scatter, Scenario, disturbed, scatter};
 pub use semidefinite::{MARGIN, Semidefinite};
 pub use smooth::{Smoothing, samples};
 pub use unknowns::{Dof, Kind, Terms, Unknown};

@@ -1,8 +1,8 @@
 //! Estimators on samples whose parameters are known.
 
 use featherbench_identification::{
-    Arm, Base, ConsistentSettings, Gravity, IdentificationError, LinearModel, PseudoInertia, Samples, Search, Stacking, Terms, excite, fit,
-    log_cholesky, ordinary, student, total, weighted, whiteness,
+    Arm, Base, ConsistentSettings, Gravity, IdentificationError, LinearModel, PseudoInertia, Samples, Scenario, Search, Stacking, Terms,
+    excite, fit, log_cholesky, ordinary, scatter, student, total, weighted, whiteness,
 };
 use featherbench_robots::{Family, Random};
 
@@ -117,6 +117,17 @@ fn consistent_estimates_are_consistent() {
     // Cramér and Rao: no worse than ordinary least squares by much on the base parameters.
     let due = plain.base.values(&truth);
     assert!(error(&consistent.beta, &due) < 2.0 * error(&plain.beta, &due));
+}
+
+/// Estimates scatter as the theory says; five hundred draws, a variance known to 2 %.
+#[test]
+fn estimates_scatter_as_the_theory_says() {
+    let scenario = Scenario::of(&Arm::general(2, 4), Terms { viscous: true, coulomb: true, ..Terms::NONE }, 40).unwrap();
+    let found = scatter(&scenario, 0.2, 500, 1).unwrap();
+    println!("{found:?}");
+    assert!((found.variance - 1.0).abs() < 0.05, "{found:?}");
+    assert!(found.extremes[0] > found.edges[0] - 0.1 && found.extremes[1] < found.edges[1] + 0.1, "{found:?}");
+    assert!((found.coverage - 0.95).abs() < 0.02 && found.bias < 2.0, "{found:?}");
 }
 
 #[test]
