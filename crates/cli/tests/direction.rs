@@ -17,6 +17,7 @@ const ALLOWED: &[(&str, &[&str])] = &[
     ("hybrid", &["spatial"]),
     ("residuals", &["spatial", "model", "dynamics"]),
     ("learning", &["spatial", "model", "robots", "dynamics", "residuals"]),
+    ("identification", &["spatial", "model", "robots", "formats", "dynamics"]),
     ("results", &[]),
     ("report", &["results"]),
     ("protocol", &["spatial", "model"]),
