@@ -18,6 +18,7 @@ const ALLOWED: &[(&str, &[&str])] = &[
     ("residuals", &["spatial", "model", "dynamics"]),
     ("learning", &["spatial", "model", "robots", "dynamics", "residuals"]),
     ("identification", &["spatial", "model", "robots", "formats", "dynamics"]),
+    ("continua", &["spatial", "model", "dynamics"]),
     ("results", &[]),
     ("report", &["results"]),
     ("protocol", &["spatial", "model"]),
