@@ -20,7 +20,7 @@ fn sections() -> [ContinuumSection; 4] {
         ContinuumSection::Circle { radius: 0.1 + 0.2 },
         ContinuumSection::Tube { inner: 0.0, outer: 1.0 / 3.0 },
         ContinuumSection::Rectangle { width: 5e-324, height: 1e300 },
-        ContinuumSection::General { area: 1e-4, second_moments: [1.0 / 3.0, 0.1 + 0.7], torsion: 1e-12 },
+        ContinuumSection::General { area: 1e-4, second_moments: [1.0 / 3.0, 0.1 + 0.7], torsion: 1e-12, shear_factor: 5.0 / 6.0 },
     ]
 }
 
@@ -32,7 +32,7 @@ fn every_continuum() -> Vec<Continuum> {
         body: (k % 2 == 0).then_some(k % 3),
         placement: Placement { rotation: [0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 1.0, 0.0, 0.0], translation: [0.1 + 0.2, -0.0, 1e-300] },
         length: 0.1 + 0.7,
-        material: ContinuumMaterial { young: 1e11 / 3.0, poisson: 0.5, density: 7850.1, retardation: 0.0 },
+        material: ContinuumMaterial { young: 1e11 / 3.0, poisson: 0.5, density: 7850.1, damping: 0.0 },
         section: sections()[k % 4],
         element,
         count: k + 1,
@@ -46,13 +46,15 @@ fn bits(continua: &[Continuum]) -> Vec<u64> {
     let mut numbers = Vec::new();
     for continuum in continua {
         numbers.extend(continuum.placement.rotation.into_iter().chain(continuum.placement.translation).chain([continuum.length]));
-        let ContinuumMaterial { young, poisson, density, retardation } = continuum.material;
-        numbers.extend([young, poisson, density, retardation]);
+        let ContinuumMaterial { young, poisson, density, damping } = continuum.material;
+        numbers.extend([young, poisson, density, damping]);
         match continuum.section {
             ContinuumSection::Circle { radius } => numbers.push(radius),
             ContinuumSection::Tube { inner, outer } => numbers.extend([inner, outer]),
             ContinuumSection::Rectangle { width, height } => numbers.extend([width, height]),
-            ContinuumSection::General { area, second_moments: [y, z], torsion } => numbers.extend([area, y, z, torsion]),
+            ContinuumSection::General { area, second_moments: [y, z], torsion, shear_factor } => {
+                numbers.extend([area, y, z, torsion, shear_factor]);
+            }
         }
         let of_tip = continuum.tip.map(|tip| [tip.mass].into_iter().chain(tip.com).chain(tip.inertia).collect::<Vec<_>>());
         numbers.extend(of_tip.into_iter().flatten());
@@ -88,7 +90,8 @@ fn oracles_urdf_and_mjcf_get_none() {
             let error = refused.expect_err("without them it is another robot");
             assert!(!error.can_be_left_out());
             assert!(
-                error.to_string().contains("continua[6] 'a \"string\" one'") && error.to_string().contains(&Reason::Deforms.to_string())
+                error.to_string().contains("continua[7] 'a \"string_links\" one'")
+                    && error.to_string().contains(&Reason::Deforms.to_string())
             );
         }
     }
@@ -99,10 +102,10 @@ const GOOD: &str = r#"{"format":1,"name":"r","gravity":[0,0,-9.81],
   {"name":"a","mass":1,"com":[0,0,0],"inertia":[1,0,0,1,0,1],"parent":-1,"joint":{"name":"h","type":"revolute","axis":[0,1,0],"placement":P}}
  ],
  "continua":[
-  {"name":"beam","body":0,"placement":P,"length":1.5,"material":{"young":2e11,"poisson":0.3,"density":7850,"retardation":0},
-   "section":{"type":"rectangle","width":0.01,"height":0.02},"element":"hinges_at_middle","count":16,"strains":["bending_y"]},
-  {"name":"finger","body":-1,"placement":P,"length":0.1,"material":{"young":1e6,"poisson":0.48,"density":1070,"retardation":0.01},
-   "section":{"type":"tube","inner":0.002,"outer":0.008},"element":"constant_strain","count":8,"strains":["bending_y","bending_z"],
+  {"name":"beam","body":0,"placement":P,"length":1.5,"material":{"young":2e11,"poisson":0.3,"density":7850,"damping":0},
+   "section":{"type":"rectangle","width":0.01,"height":0.02},"element":"links_middle","count":16,"strains":["bend_y"]},
+  {"name":"finger","body":-1,"placement":P,"length":0.1,"material":{"young":1e6,"poisson":0.48,"density":1070,"damping":0.01},
+   "section":{"type":"tube","inner":0.002,"outer":0.008},"element":"sections","count":8,"strains":["bend_y","bend_z"],
    "tip":{"mass":0.1,"com":[0,0,0],"inertia":[1,0,0,1,0,1]}}
  ]}"#;
 
@@ -127,13 +130,17 @@ fn bad_continua_are_named_by_file_field_and_index() {
         (r#""width":0.01,"#, "", &["continua[0].section", "has no 'width'; it needs width, height"]),
         (r#""type":"tube""#, r#""type":"pipe""#, &["continua[1].section", "unknown type 'pipe'; choose one of circle"]),
         (r#""inner":0.002"#, r#""inner":0.02"#, &["continua[1] 'finger': section.inner is 0.02 m"]),
-        (r#""hinges_at_middle""#, r#""cable""#, &["continua[0].element", "'cable' is no element; choose one of hinges_at_start"]),
-        (r#""hinges_at_middle""#, r#""string","nodes":2"#, &["continua[0].nodes", "unknown field `nodes`"]),
+        (r#""links_middle""#, r#""cable""#, &["continua[0].element", "'cable' is no element; choose one of links_start"]),
+        (r#""links_middle""#, r#""string_links","nodes":2"#, &["continua[0].nodes", "unknown field `nodes`"]),
         (r#""count":16"#, r#""count":0"#, &["continua[0] 'beam': count is 0"]),
         (r#""count":16"#, r#""count":-1"#, &["continua[0].count", "expected usize"]),
-        (r#"["bending_y"]"#, r#"["bend"]"#, &["continua[0].strains[0]", "'bend' is no strain; choose from torsion"]),
-        (r#"["bending_y"]"#, r#"["shear_y"]"#, &["continua[0] 'beam': strains: 'shear_y' is none of a continuum of element"]),
-        (r#"["bending_y"]"#, "[]", &["continua[0] 'beam': strains: the list is empty"]),
+        (r#"["bend_y"]"#, r#"["bend"]"#, &["continua[0].strains[0]", "'bend' is no strain; choose from twist"]),
+        (
+            r#""links_middle","count":16,"strains":["bend_y"]"#,
+            r#""modes","count":16,"strains":["shear_y"]"#,
+            &["continua[0] 'beam': strains: 'shear_y' is none of a continuum of element 'modes'; it has twist, bend_y"],
+        ),
+        (r#"["bend_y"]"#, "[]", &["continua[0] 'beam': strains: the list is empty"]),
         (r#""body":-1"#, r#""body":-2"#, &["continua[1].body", "-2 is no body; the world is -1"]),
         (r#""body":-1"#, r#""body":1"#, &["continua[1] 'finger': body: it is clamped to nothing"]),
         (r#""tip":{"mass":0.1,"#, r#""tip":{"#, &["continua[1].tip", "missing field `mass`"]),

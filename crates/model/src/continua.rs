@@ -44,8 +44,8 @@ pub struct ContinuumMaterial {
     pub poisson: f64,
     /// Density ρ, kg/m³.
     pub density: f64,
-    /// The retardation time, s: the stress is E(ε + retardation·ε̇), and in shear alike.
-    pub retardation: f64,
+    /// The damping time η, s: the stress is E(ε + η ε̇), and in shear alike.
+    pub damping: f64,
 }
 
 /// A section: the frame's x is along the body, y and z are the principal axes of the section.
@@ -78,37 +78,43 @@ pub enum ContinuumSection {
         second_moments: [f64; 2],
         /// Torsion constant, m⁴: torque is G times this times twist.
         torsion: f64,
+        /// The shear factor k, at most 1: shear force is k G area times shear strain.
+        shear_factor: f64,
     },
 }
 
 /// How a continuum is discretised.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ContinuumElement {
-    /// Rigid links of equal length; each has its hinges at its start.
-    HingesAtStart,
-    /// Rigid links of equal length; the hinges are in the middle of the elements.
-    HingesAtMiddle,
+    /// Rigid links of equal length; each has its springs at its start.
+    LinksStart,
+    /// The same, with springs of twice the stiffness at the root.
+    LinksStartStiffWall,
+    /// Rigid links of equal length; the springs are in the middle of the elements.
+    LinksMiddle,
     /// The deflection is a sum of monomials s², s³, ….
-    RitzMonomials,
+    Monomials,
     /// The deflection is a sum of the exact modes of a clamped beam.
-    RitzModes,
-    /// The deflection is a clamped spline.
-    RitzSplines,
+    Modes,
+    /// The deflection is a cubic Hermite spline.
+    Hermite,
     /// A Cosserat rod with strains that are constant in each element.
-    ConstantStrain,
-    /// A string without bending stiffness: its tension holds it.
-    String,
+    Sections,
+    /// A string of rigid links without springs.
+    StringLinks,
+    /// A string with a point mass at the end of each link.
+    StringPoints,
 }
 
 /// A strain of a rod, in axes of its section.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum ContinuumStrain {
-    /// Twist about x.
-    Torsion,
-    /// Curvature about y.
-    BendingY,
-    /// Curvature about z.
-    BendingZ,
+    /// Twist κ_x, about x.
+    Twist,
+    /// Curvature κ_y: bending about y.
+    BendY,
+    /// Curvature κ_z: bending about z.
+    BendZ,
     /// Extension along x.
     Extension,
     /// Shear along y.
@@ -186,6 +192,12 @@ pub enum ContinuumDefect {
         /// The outer radius.
         outer: f64,
     },
+    /// A shear factor above one.
+    #[error("section.shear_factor is {value}; it is at most 1")]
+    ShearFactor {
+        /// The factor.
+        value: f64,
+    },
     /// No elements.
     #[error("count is 0; a continuum has one element at least")]
     NoElements,
@@ -198,6 +210,9 @@ pub enum ContinuumDefect {
         /// The strain's word.
         strain: &'static str,
     },
+    /// A string that does not swing about z.
+    #[error("strains: a string turns about z, or about y and z; name bend_z too")]
+    StringAboutY,
     /// The element does not have this strain.
     #[error("strains: '{strain}' is none of a continuum of element '{element}'; it has {known}")]
     StrainOfOther {
@@ -212,50 +227,58 @@ pub enum ContinuumDefect {
 
 impl ContinuumElement {
     /// All elements.
-    pub const ALL: [Self; 7] = [
-        Self::HingesAtStart,
-        Self::HingesAtMiddle,
-        Self::RitzMonomials,
-        Self::RitzModes,
-        Self::RitzSplines,
-        Self::ConstantStrain,
-        Self::String,
+    pub const ALL: [Self; 9] = [
+        Self::LinksStart,
+        Self::LinksStartStiffWall,
+        Self::LinksMiddle,
+        Self::Monomials,
+        Self::Modes,
+        Self::Hermite,
+        Self::Sections,
+        Self::StringLinks,
+        Self::StringPoints,
     ];
 
     /// The word for it in a description file.
     pub fn name(self) -> &'static str {
         match self {
-            Self::HingesAtStart => "hinges_at_start",
-            Self::HingesAtMiddle => "hinges_at_middle",
-            Self::RitzMonomials => "ritz_monomials",
-            Self::RitzModes => "ritz_modes",
-            Self::RitzSplines => "ritz_splines",
-            Self::ConstantStrain => "constant_strain",
-            Self::String => "string",
+            Self::LinksStart => "links_start",
+            Self::LinksStartStiffWall => "links_start_stiff_wall",
+            Self::LinksMiddle => "links_middle",
+            Self::Monomials => "monomials",
+            Self::Modes => "modes",
+            Self::Hermite => "hermite",
+            Self::Sections => "sections",
+            Self::StringLinks => "string_links",
+            Self::StringPoints => "string_points",
         }
     }
 
-    /// The strains that it can have. A string bends freely: its links turn about y and z.
+    /// The strains that it can have. A string bends freely: its links turn about z, or about y and z.
     pub fn strains(self) -> &'static [ContinuumStrain] {
-        use ContinuumStrain::{BendingY, BendingZ, Torsion};
+        use ContinuumStrain::{BendY, BendZ, Extension, Twist};
         match self {
-            Self::HingesAtStart | Self::HingesAtMiddle => &[Torsion, BendingY, BendingZ],
-            Self::RitzMonomials | Self::RitzModes | Self::RitzSplines | Self::String => &[BendingY, BendingZ],
-            Self::ConstantStrain => &ContinuumStrain::ALL,
+            Self::LinksStart | Self::LinksStartStiffWall | Self::LinksMiddle | Self::Sections => &ContinuumStrain::ALL,
+            Self::Monomials | Self::Modes | Self::Hermite => &[Twist, BendY, BendZ, Extension],
+            Self::StringLinks | Self::StringPoints => &[BendY, BendZ],
         }
+    }
+
+    fn is_string(self) -> bool {
+        matches!(self, Self::StringLinks | Self::StringPoints)
     }
 }
 
 impl ContinuumStrain {
     /// All strains: rotations, then translations, as in a 6-vector.
-    pub const ALL: [Self; 6] = [Self::Torsion, Self::BendingY, Self::BendingZ, Self::Extension, Self::ShearY, Self::ShearZ];
+    pub const ALL: [Self; 6] = [Self::Twist, Self::BendY, Self::BendZ, Self::Extension, Self::ShearY, Self::ShearZ];
 
     /// The word for it in a description file.
     pub fn name(self) -> &'static str {
         match self {
-            Self::Torsion => "torsion",
-            Self::BendingY => "bending_y",
-            Self::BendingZ => "bending_z",
+            Self::Twist => "twist",
+            Self::BendY => "bend_y",
+            Self::BendZ => "bend_z",
             Self::Extension => "extension",
             Self::ShearY => "shear_y",
             Self::ShearZ => "shear_z",
@@ -286,10 +309,12 @@ impl ContinuumSection {
                 positive("section.width", width)?;
                 positive("section.height", height)
             }
-            Self::General { area, second_moments, torsion } => {
+            Self::General { area, second_moments, torsion, shear_factor } => {
                 positive("section.area", area)?;
                 second_moments.into_iter().try_for_each(|moment| positive("section.second_moments", moment))?;
-                positive("section.torsion", torsion)
+                positive("section.torsion", torsion)?;
+                positive("section.shear_factor", shear_factor)?;
+                if shear_factor <= 1.0 { Ok(()) } else { Err(ContinuumDefect::ShearFactor { value: shear_factor }) }
             }
         }
     }
@@ -303,7 +328,7 @@ impl ContinuumMaterial {
             return Err(ContinuumDefect::Poisson { value: self.poisson });
         }
         positive("material.density", self.density)?;
-        not_negative("material.retardation", self.retardation)
+        not_negative("material.damping", self.damping)
     }
 }
 
@@ -345,6 +370,9 @@ impl Continuum {
             return Err(ContinuumDefect::NoStrain);
         }
         let own = self.element.strains();
+        if self.element.is_string() && self.strains == [ContinuumStrain::BendY] {
+            return Err(ContinuumDefect::StringAboutY);
+        }
         for (k, strain) in self.strains.iter().enumerate() {
             let name = strain.name();
             if self.strains[..k].contains(strain) {

@@ -19,11 +19,11 @@ fn finger() -> Continuum {
         body: Some(0),
         placement: Placement { translation: [0.0, 0.25, 0.0], ..Placement::default() },
         length: 0.1,
-        material: ContinuumMaterial { young: 1e6, poisson: 0.48, density: 1070.0, retardation: 0.01 },
+        material: ContinuumMaterial { young: 1e6, poisson: 0.48, density: 1070.0, damping: 0.01 },
         section: ContinuumSection::Circle { radius: 0.008 },
-        element: ContinuumElement::ConstantStrain,
+        element: ContinuumElement::Sections,
         count: 8,
-        strains: vec![ContinuumStrain::BendingY, ContinuumStrain::BendingZ],
+        strains: vec![ContinuumStrain::BendY, ContinuumStrain::BendZ],
         tip: Some(ContinuumTip { mass: 0.1, com: [0.01, 0.0, 0.0], inertia: [1e-6, 0.0, 0.0, 1e-6, 0.0, 1e-6] }),
     }
 }
@@ -71,24 +71,35 @@ fn malformed_continua_are_refused_by_name_and_field() {
         (|c| c.material.poisson = -1.0, "material.poisson is -1"),
         (|c| c.material.poisson = f64::NAN, "material.poisson is NaN"),
         (|c| c.material.density = 0.0, "material.density is 0"),
-        (|c| c.material.retardation = -0.1, "material.retardation is -0.1; it cannot be negative"),
+        (|c| c.material.damping = -0.1, "material.damping is -0.1; it cannot be negative"),
         (|c| c.section = ContinuumSection::Circle { radius: 0.0 }, "section.radius is 0; it must be positive"),
         (|c| c.section = ContinuumSection::Tube { inner: 0.02, outer: 0.01 }, "section.inner is 0.02 m, and section.outer is 0.01 m"),
         (|c| c.section = ContinuumSection::Tube { inner: -0.02, outer: 0.01 }, "section.inner is -0.02"),
         (|c| c.section = ContinuumSection::Tube { inner: 0.0, outer: f64::NAN }, "section.outer is NaN"),
         (|c| c.section = ContinuumSection::Rectangle { width: 0.01, height: 0.0 }, "section.height is 0"),
         (
-            |c| c.section = ContinuumSection::General { area: 1e-4, second_moments: [1e-9, -1e-9], torsion: 1e-9 },
+            |c| c.section = ContinuumSection::General { area: 1e-4, second_moments: [1e-9, -1e-9], torsion: 1e-9, shear_factor: 0.8 },
             "section.second_moments is -0.000000001",
         ),
-        (|c| c.section = ContinuumSection::General { area: 0.0, second_moments: [1e-9; 2], torsion: 1e-9 }, "section.area is 0"),
-        (|c| c.section = ContinuumSection::General { area: 1e-4, second_moments: [1e-9; 2], torsion: 0.0 }, "section.torsion is 0"),
+        (
+            |c| c.section = ContinuumSection::General { area: 0.0, second_moments: [1e-9; 2], torsion: 1e-9, shear_factor: 0.8 },
+            "section.area is 0",
+        ),
+        (
+            |c| c.section = ContinuumSection::General { area: 1e-4, second_moments: [1e-9; 2], torsion: 0.0, shear_factor: 0.8 },
+            "section.torsion is 0",
+        ),
+        (
+            |c| c.section = ContinuumSection::General { area: 1e-4, second_moments: [1e-9; 2], torsion: 1e-9, shear_factor: 1.5 },
+            "section.shear_factor is 1.5; it is at most 1",
+        ),
+        (|c| (c.element, c.strains) = (ContinuumElement::StringLinks, vec![ContinuumStrain::BendY]), "strains: a string turns about z"),
         (|c| c.count = 0, "count is 0"),
         (|c| c.strains.clear(), "strains: the list is empty"),
-        (|c| c.strains.push(ContinuumStrain::BendingY), "strains: 'bending_y' stands twice"),
+        (|c| c.strains.push(ContinuumStrain::BendY), "strains: 'bend_y' stands twice"),
         (
-            |c| (c.element, c.strains) = (ContinuumElement::RitzModes, vec![ContinuumStrain::ShearZ]),
-            "strains: 'shear_z' is none of a continuum of element 'ritz_modes'; it has bending_y, bending_z",
+            |c| (c.element, c.strains) = (ContinuumElement::Modes, vec![ContinuumStrain::ShearZ]),
+            "strains: 'shear_z' is none of a continuum of element 'modes'; it has twist, bend_y, bend_z, extension",
         ),
         (|c| c.tip = c.tip.map(|tip| ContinuumTip { mass: -1.0, ..tip }), "tip.mass is -1"),
         (|c| c.tip = c.tip.map(|tip| ContinuumTip { com: [f64::NAN; 3], ..tip }), "tip.com is NaN"),
@@ -116,7 +127,9 @@ fn every_element_takes_its_own_strains() {
     for element in ContinuumElement::ALL {
         assert!(!element.strains().is_empty());
         for strain in ContinuumStrain::ALL {
-            let continuum = Continuum { element, strains: vec![strain], ..finger() };
+            let string = element.name().starts_with("string") && strain == ContinuumStrain::BendY;
+            let strains = if string { vec![strain, ContinuumStrain::BendZ] } else { vec![strain] };
+            let continuum = Continuum { element, strains, ..finger() };
             let accepted = Description { continua: vec![continuum], ..robot() }.validate().is_ok();
             assert_eq!(accepted, element.strains().contains(&strain), "{} {}", element.name(), strain.name());
         }

@@ -26,7 +26,7 @@ struct MaterialFields {
     young: f64,
     poisson: f64,
     density: f64,
-    retardation: f64,
+    damping: f64,
 }
 
 #[derive(Deserialize)]
@@ -63,6 +63,7 @@ struct SectionFields {
     area: Option<f64>,
     second_moments: Option<[f64; 2]>,
     torsion: Option<f64>,
+    shear_factor: Option<f64>,
 }
 
 impl TryFrom<String> for Element {
@@ -86,12 +87,12 @@ impl TryFrom<String> for Strain {
 impl TryFrom<SectionFields> for Section {
     type Error = String;
     fn try_from(fields: SectionFields) -> Result<Self, String> {
-        let SectionFields { kind, radius, inner, outer, width, height, area, second_moments, torsion } = fields;
+        let SectionFields { kind, radius, inner, outer, width, height, area, second_moments, torsion, shear_factor } = fields;
         let own: &[&str] = match kind.as_str() {
             "circle" => &["radius"],
             "tube" => &["inner", "outer"],
             "rectangle" => &["width", "height"],
-            "general" => &["area", "second_moments", "torsion"],
+            "general" => &["area", "second_moments", "torsion", "shear_factor"],
             other => return Err(format!("the section has the unknown type '{other}'; choose one of circle, tube, rectangle, general")),
         };
         let given = [
@@ -103,6 +104,7 @@ impl TryFrom<SectionFields> for Section {
             ("area", area.is_some()),
             ("second_moments", second_moments.is_some()),
             ("torsion", torsion.is_some()),
+            ("shear_factor", shear_factor.is_some()),
         ];
         if let Some((field, _)) = given.into_iter().find(|(field, given)| *given && !own.contains(field)) {
             return Err(format!("a section of type {kind} has '{field}', which such a section has not; remove it"));
@@ -117,6 +119,7 @@ impl TryFrom<SectionFields> for Section {
                 area: need("area", area)?,
                 second_moments: second_moments.ok_or_else(|| missing("second_moments"))?,
                 torsion: need("torsion", torsion)?,
+                shear_factor: need("shear_factor", shear_factor)?,
             },
         }))
     }
@@ -125,13 +128,13 @@ impl TryFrom<SectionFields> for Section {
 impl From<ContinuumFields> for Continuum {
     fn from(fields: ContinuumFields) -> Self {
         let ContinuumFields { name, body, placement, length, material, section, element, count, strains, tip } = fields;
-        let MaterialFields { young, poisson, density, retardation } = material;
+        let MaterialFields { young, poisson, density, damping } = material;
         Self {
             name,
             body: body.0,
             placement: placement.into(),
             length,
-            material: ContinuumMaterial { young, poisson, density, retardation },
+            material: ContinuumMaterial { young, poisson, density, damping },
             section: section.0,
             element: element.0,
             count,
@@ -147,17 +150,18 @@ impl Writer<'_> {
         self.put(format_args!("{{\"name\":{},\"body\":{},\"placement\":", quoted(name), index(*body)));
         self.placement(placement);
         self.key(2, "length");
-        let ContinuumMaterial { young, poisson, density, retardation } = material;
+        let ContinuumMaterial { young, poisson, density, damping } = material;
         self.put(format_args!("{length:?},\"material\":{{\"young\":{young:?},\"poisson\":{poisson:?},"));
-        self.put(format_args!("\"density\":{density:?},\"retardation\":{retardation:?}}}"));
+        self.put(format_args!("\"density\":{density:?},\"damping\":{damping:?}}}"));
         self.key(2, "section");
         self.put(format_args!("{{\"type\":\"{}\"", section.name()));
         match section {
             ContinuumSection::Circle { radius } => self.put(format_args!(",\"radius\":{radius:?}}}")),
             ContinuumSection::Tube { inner, outer } => self.put(format_args!(",\"inner\":{inner:?},\"outer\":{outer:?}}}")),
             ContinuumSection::Rectangle { width, height } => self.put(format_args!(",\"width\":{width:?},\"height\":{height:?}}}")),
-            ContinuumSection::General { area, second_moments: [y, z], torsion } => {
-                self.put(format_args!(",\"area\":{area:?},\"second_moments\":[{y:?},{z:?}],\"torsion\":{torsion:?}}}"));
+            ContinuumSection::General { area, second_moments: [y, z], torsion, shear_factor } => {
+                self.put(format_args!(",\"area\":{area:?},\"second_moments\":[{y:?},{z:?}],\"torsion\":{torsion:?}"));
+                self.put(format_args!(",\"shear_factor\":{shear_factor:?}}}"));
             }
         }
         let strains: Vec<String> = strains.iter().map(|strain| format!("\"{}\"", strain.name())).collect();
