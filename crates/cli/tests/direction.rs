@@ -15,6 +15,7 @@ const ALLOWED: &[(&str, &[&str])] = &[
     ("contact", &["spatial", "model", "dynamics"]),
     ("constrained", &["spatial", "model", "dynamics"]),
     ("hybrid", &["spatial"]),
+    ("continua", &["spatial", "model", "dynamics"]),
     ("results", &[]),
     ("report", &["results"]),
     ("protocol", &["spatial", "model"]),

@@ -1,0 +1,157 @@
+//! Known answers of rods: what a discretisation is compared with.
+//!
+//! | function | what | how |
+//! |---|---|---|
+//! | [`cantilever_root`] | β of cos β cosh β = −1; ω = β² √(EI/ρA)/L² | Newton |
+//! | [`elastica`] | the cantilever with a dead transverse force at its tip | quadrature of the closed first integral |
+//! | [`bessel_zero`] | j_{0k}; the hanging string has ω = j_{0k}/2 √(g/L) | series and Newton in double-double |
+//! | [`laguerre_zeros`] | roots of L_n; n masses on a hanging string of links ℓ have ω² = (g/ℓ) times them | Newton in double-double |
+//! | [`tip_ratio`] | tip deflection of discrete cantilevers over the exact one, small loads | closed form |
+//! | [`exact_modes_tip_ratio`] | the same with the first r exact modes | closed form |
+//! | [`lumped_axial`] | frequencies of a clamped bar of masses and springs | closed form |
+
+use crate::Hinges;
+use crate::quadrature::composite;
+use featherbench_spatial::DoubleDouble;
+use nalgebra::{DMatrix, SymmetricEigen};
+use std::f64::consts::{FRAC_PI_2, PI};
+
+/// Root number `k`, from 0, of cos β cosh β = −1.
+///
+/// ```
+/// use featherbench_continua::known::cantilever_root;
+/// assert!((cantilever_root(0) - 1.87510406871196).abs() < 1e-14);
+/// ```
+pub fn cantilever_root(k: usize) -> f64 {
+    let mut beta = if k == 0 { 1.875 } else { (k as f64 + 0.5) * PI };
+    // From a guess within 2e-2: five steps of quadratic convergence.
+    for _ in 0..5 {
+        let sech = 1.0 / beta.cosh();
+        let (sin, cos) = beta.sin_cos();
+        beta -= (cos + sech) / (-sin - sech * beta.tanh());
+    }
+    beta
+}
+
+/// The tip of an elastica: the rod's shape under a force.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Elastica {
+    /// The tip's deflection along the force, over L.
+    pub deflection: f64,
+    /// The tip's distance from the wall along the unloaded rod, over L.
+    pub reach: f64,
+    /// The tip's angle, rad.
+    pub angle: f64,
+}
+
+/// The cantilever with a dead force P across its unloaded axis at the tip: α = P L²/EI > 0.
+///
+/// From EI θ'' = −P cos θ: with k² = (1 + sin θ_L)/2 and sin θ = 2 k² sin² φ − 1,
+/// `√α = ∫ dφ/√(1 − k² sin² φ)` from sin φ₁ = 1/(k √2) to π/2, and the same integral of sin θ is √α δ/L. x/L = √(2 sin θ_L/α).
+/// θ_L is found by bisection; the integrals are Gauss sums of 16 parts with 16 points. NaN for α that is not positive.
+///
+/// ```
+/// use featherbench_continua::known::elastica;
+/// assert!((elastica(1.0).deflection - 0.30172077379981).abs() < 1e-13);
+/// ```
+pub fn elastica(alpha: f64) -> Elastica {
+    if !(alpha > 0.0 && alpha.is_finite()) {
+        return Elastica { deflection: f64::NAN, reach: f64::NAN, angle: f64::NAN };
+    }
+    let rule = composite(16, 16);
+    let integrals = |angle: f64| {
+        let square = 0.5 * (1.0 + angle.sin());
+        let first = (0.5 / square).sqrt().min(1.0).asin();
+        let width = FRAC_PI_2 - first;
+        let sum = |term: &dyn Fn(f64) -> f64| {
+            let part = |(x, w): &(f64, f64)| {
+                let sine = (first + width * x).sin().powi(2) * square;
+                w * width * term(2.0 * sine - 1.0) / (1.0 - sine).sqrt()
+            };
+            rule.iter().map(part).sum::<f64>()
+        };
+        (sum(&|_| 1.0), sum(&|sin_theta| sin_theta))
+    };
+    let (mut low, mut high) = (0.0, FRAC_PI_2);
+    // 60 halvings leave an interval of two neighbouring numbers.
+    for _ in 0..60 {
+        let middle = 0.5 * (low + high);
+        if integrals(middle).0 < alpha.sqrt() { low = middle } else { high = middle }
+    }
+    let (length, deflection) = integrals(low);
+    Elastica { deflection: deflection / length, reach: (2.0 * low.sin() / alpha).sqrt(), angle: low }
+}
+
+fn wide(x: f64) -> DoubleDouble {
+    DoubleDouble::from(x)
+}
+
+/// Root number `k`, from 0, of the Bessel function J₀; for k up to 12, beyond which the series loses its digits (the error grows like e^{2k π}/10³²).
+pub fn bessel_zero(k: usize) -> f64 {
+    let guess = (k as f64 + 0.75) * PI;
+    let mut x = wide(guess + 1.0 / (8.0 * guess));
+    for _ in 0..6 {
+        // J₀ = Σ (−x²/4)^m / m!²,  J₀' = −J₁ = Σ 2m/x (…)
+        let (quarter, mut term, mut value, mut slope) = (x * x * wide(-0.25), wide(1.0), wide(1.0), wide(0.0));
+        for m in 1..=(20 + 8 * k.max(2)) {
+            let m = m as f64;
+            term = term * quarter / wide(m * m);
+            value += term;
+            slope += term * wide(2.0 * m) / x;
+        }
+        x -= value / slope;
+    }
+    x.to_f64()
+}
+
+/// The roots of the Laguerre polynomial L_n, increasing.
+///
+/// The guesses are eigenvalues of the Jacobi matrix, with 2i + 1 on the diagonal and i beside it. Newton's steps are in double-double.
+pub fn laguerre_zeros(n: usize) -> Vec<f64> {
+    let jacobi = DMatrix::from_fn(n, n, |i, j| match i.abs_diff(j) {
+        0 => (2 * i + 1) as f64,
+        1 => i.max(j) as f64,
+        _ => 0.0,
+    });
+    let mut roots: Vec<f64> = SymmetricEigen::new(jacobi).eigenvalues.iter().copied().collect();
+    roots.sort_by(f64::total_cmp);
+    for root in &mut roots {
+        let mut x = wide(*root);
+        for _ in 0..3 {
+            // (k + 1) L_{k+1} = (2k + 1 − x) L_k − k L_{k−1};  x L_n' = n (L_n − L_{n−1})
+            let (mut before, mut value) = (wide(0.0), wide(1.0));
+            for k in 0..n {
+                let k = k as f64;
+                (before, value) = (value, ((wide(2.0 * k + 1.0) - x) * value - wide(k) * before) / wide(k + 1.0));
+            }
+            x = x - value * x / (wide(n as f64) * (value - before));
+        }
+        *root = x.to_f64();
+    }
+    roots
+}
+
+/// The small deflection under a tip force of a cantilever of `n` rigid links over the exact one, P L³/3EI.
+///
+/// With constant-strain sections it is that of [`Hinges::Middle`]: both are the midpoint rule of ∫ M²/EI.
+pub fn tip_ratio(hinges: Hinges, n: usize) -> f64 {
+    let n = n as f64;
+    match hinges {
+        Hinges::Start => 1.0 + 1.5 / n + 0.5 / (n * n),
+        Hinges::StartStiffWall => 1.0 + 0.5 / (n * n),
+        Hinges::Middle => 1.0 - 0.25 / (n * n),
+    }
+}
+
+/// The small deflection under a tip force by the first `r` exact modes over the exact one: 12 Σ 1/β⁴, since φ(1)² = 4.
+pub fn exact_modes_tip_ratio(r: usize) -> f64 {
+    (0..r).map(|k| 12.0 / cantilever_root(k).powi(4)).sum()
+}
+
+/// Frequency number `k`, from 0, of a clamped bar of `n` elements of mass ρAh, half of it at each end, with springs EA/h; c = √(E/ρ).
+///
+/// ω = (2c/h) sin((2k + 1) π/4n); the exact one is (2k + 1) π c/2L.
+pub fn lumped_axial(n: usize, k: usize, speed: f64, length: f64) -> f64 {
+    let n = n as f64;
+    2.0 * speed * n / length * ((2 * k + 1) as f64 * PI / (4.0 * n)).sin()
+}

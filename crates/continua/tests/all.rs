@@ -1,0 +1,1 @@
+//! The tests of continua as one program: they share what is compiled for them.
