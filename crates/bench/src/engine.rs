@@ -1,6 +1,6 @@
 //! The trait [`Engine`]: anything that answers.
 
-use crate::{ContactSolver, Import, Quantity, Robot, RobotFile, Stepper};
+use crate::{ContactSolver, Import, Quantity, Robot, RobotFile, RodSolver, Stepper};
 use featherbench_protocol::Memory;
 use featherbench_results::EngineSource;
 use featherbench_robots::StateBatch;
@@ -164,6 +164,11 @@ pub trait Engine: Send + Sync {
 
     /// Its solvers of contact problems, if it has any.
     fn contact_solver(&self) -> Option<&dyn ContactSolver> {
+        None
+    }
+
+    /// Its elastic rods, if it has any.
+    fn rod_solver(&self) -> Option<&dyn RodSolver> {
         None
     }
 
