@@ -94,7 +94,9 @@ pub struct Solver<T> {
     aba: Aba<T>,
     kinematics: Kinematics<T>,
     wrenches: Vec<Force<T>>,
+    /// Velocity of the mass matrix's columns, and acceleration of forward dynamics: zero.
     zeros: Vec<T>,
+    still: Vec<T>,
     force: Vec<T>,
     mass: Ltdl<T>,
 }
@@ -120,6 +122,7 @@ where
             kinematics: Kinematics::new(fine),
             wrenches: vec![Force::zero(); fine.bodies()],
             zeros: zeros(reduced.nv()),
+            still: zeros(reduced.nv()),
             force: zeros(reduced.nv()),
             mass,
         }
@@ -239,15 +242,15 @@ where
         let nv = continuum.topology().nv();
         DimensionError::expect("forces tau", nv, tau.len())?;
         DimensionError::expect("accelerations", nv, second.len())?;
-        let zeros = std::mem::take(&mut self.zeros);
+        let still = std::mem::take(&mut self.still);
         let mut force = std::mem::take(&mut self.force);
         let done = if continuum.is_direct() {
             force.fill(T::zero());
-            self.forward_direct(continuum, &Moving { q: s, v: rate, a: &zeros[..] }, tau, loads, (&mut force, second))
+            self.forward_direct(continuum, &Moving { q: s, v: rate, a: &still[..] }, tau, loads, (&mut force, second))
         } else {
-            self.forward_embedded(continuum, &Moving { q: s, v: rate, a: &zeros[..] }, tau, loads, (&mut force, second))
+            self.forward_embedded(continuum, &Moving { q: s, v: rate, a: &still[..] }, tau, loads, (&mut force, second))
         };
-        (self.zeros, self.force) = (zeros, force);
+        (self.still, self.force) = (still, force);
         done
     }
 

@@ -98,26 +98,28 @@ pub fn equilibrium(continuum: &Continuum, loads: &[Load], settings: &Settings) -
             return Ok(Equilibrium { s, status: Status::Converged, steps, iterations: search.iterations });
         }
         if steps >= settings.steps || step < 1e-9 {
-            let residual = search.residual(&s, 1.0, loads)?.amax();
+            let residual = largest(search.residual(&s, 1.0, loads)?.iter());
             return Ok(Equilibrium { s, status: Status::CapReached { load, residual }, steps, iterations: search.iterations });
         }
         steps += 1;
         let next = if load + step > 1.0 - 1e-9 { 1.0 } else { load + step };
         // r is linear in λ
         let by_load = search.residual(&s, 1.0, loads)? - search.residual(&s, 0.0, loads)?;
-        let Some(slope) = tangent.lu().solve(&by_load) else {
+        let slope = if by_load.is_empty() { Some(by_load) } else { tangent.lu().solve(&by_load) };
+        let Some(slope) = slope else {
             step *= 0.5;
             continue;
         };
         let predicted = slope * (load - next);
+        let length = if predicted.is_empty() { 0.0 } else { predicted.amax() };
         let mut moved = s.clone();
         search.advance(&mut moved, &predicted)?;
         let before = moved.clone();
         let converged = search.newton(&mut moved, next, loads)?;
         let correction = search.distance(&before, &moved)?;
-        if converged && correction <= 0.5 * predicted.amax() + SAME {
+        if converged && correction <= 0.5 * length + SAME {
             (s, load) = (moved, next);
-            step *= if correction <= 0.1 * predicted.amax() { 1.5 } else { 1.0 };
+            step *= if correction <= 0.1 * length { 1.5 } else { 1.0 };
         } else {
             step *= 0.5;
         }
@@ -135,7 +137,7 @@ pub fn newton(continuum: &Continuum, from: &[f64], loads: &[Load], settings: &Se
     let status = if converged {
         judge(continuum, &s, loads, settings)?
     } else {
-        Status::CapReached { load: 1.0, residual: search.residual(&s, 1.0, loads)?.amax() }
+        Status::CapReached { load: 1.0, residual: largest(search.residual(&s, 1.0, loads)?.iter()) }
     };
     Ok(Equilibrium { s, status, steps: 1, iterations: search.iterations })
 }
@@ -152,13 +154,16 @@ pub fn judge(continuum: &Continuum, s: &[f64], loads: &[Load], settings: &Settin
     }
     let branch = equilibrium(continuum, loads, settings)?;
     let distance = search.distance(&branch.s, s)?;
-    let size = branch.s.iter().fold(1.0, |a: f64, b| if b.abs() > a || b.is_nan() { b.abs() } else { a });
+    let size = 1.0 + largest(branch.s.iter());
     let same = branch.status == Status::Converged && distance <= SAME * size;
     Ok(if same { Status::Converged } else { Status::Spurious { distance, eigenvalue: smallest(&tangent) } })
 }
 
-/// The smallest eigenvalue of the symmetric part.
+/// The smallest eigenvalue of the symmetric part; infinite where nothing is free.
 fn smallest(matrix: &DMatrix<f64>) -> f64 {
+    if matrix.is_empty() {
+        return f64::INFINITY;
+    }
     let symmetric = (matrix + matrix.transpose()) * 0.5;
     if symmetric.iter().any(|x| !x.is_finite()) { f64::NAN } else { SymmetricEigen::new(symmetric).eigenvalues.min() }
 }
@@ -168,6 +173,11 @@ fn negative(matrix: &DMatrix<f64>) -> Option<f64> {
     let eigenvalue = smallest(matrix);
     let rounding = matrix.nrows() as f64 * f64::EPSILON * matrix.norm();
     (eigenvalue.is_nan() || eigenvalue < -rounding).then_some(eigenvalue)
+}
+
+/// The largest magnitude, NaN if a number is; zero of none.
+fn largest<'a>(numbers: impl Iterator<Item = &'a f64>) -> f64 {
+    numbers.fold(0.0, |a: f64, b| if b.abs() > a || b.is_nan() { b.abs() } else { a })
 }
 
 /// The free dofs, and the continuum at a load factor.
@@ -214,11 +224,14 @@ impl<'a> Search<'a> {
         let topology = self.continuum.topology();
         let mut way = vec![0.0; topology.nv()];
         topology.difference(from, to, &mut way)?;
-        Ok(way.into_iter().fold(0.0, |a: f64, b| if b.abs() > a || b.is_nan() { b.abs() } else { a }))
+        Ok(largest(way.iter()))
     }
 
     /// Newton's method until its steps no longer shrink; whether it converged.
     fn newton(&mut self, s: &mut Vec<f64>, load: f64, loads: &[Load]) -> Result<bool, SolveError> {
+        if self.free.is_empty() {
+            return Ok(true);
+        }
         let mut previous = f64::INFINITY;
         for _ in 0..self.most {
             self.iterations += 1;
@@ -229,7 +242,7 @@ impl<'a> Search<'a> {
                 return Ok(false);
             }
             self.advance(s, &-step)?;
-            let size = s.iter().fold(1.0, |a: f64, b| if b.abs() > a || b.is_nan() { b.abs() } else { a });
+            let size = 1.0 + largest(s.iter());
             if change == 0.0 || change <= 1e-15 * size || (change <= NEAR * size && change >= 0.25 * previous) {
                 return Ok(true);
             }

@@ -1,1 +1,9 @@
 //! The tests of continua as one program: they share what is compiled for them.
+
+mod answers;
+mod beams;
+mod laws;
+mod motion;
+mod refusals;
+mod statics;
+mod wide;

@@ -1,0 +1,198 @@
+//! Orders and prefactors of the discretisations.
+
+use crate::beams::{links, ritz, rod, sections, tip_under};
+use crate::wide::{smallest_eigenvalue, wide};
+use featherbench_continua::known::{
+    bessel_zero, cantilever_root, elastica, exact_modes_tip_ratio, hermite_frequency_prefactor, laguerre_zeros, lumped_axial,
+    sections_frequency_prefactor, tip_ratio,
+};
+use featherbench_continua::{Basis, Element, Hinges, Masses, Strain, fit, generalized, library, modes};
+use nalgebra::DMatrix;
+
+fn frequencies(element: &Element) -> Vec<f64> {
+    let (beam, _) = library::cantilever(&rod(), element).unwrap();
+    modes(&beam, &beam.rest(), &[]).unwrap().frequencies()
+}
+
+/// Slope within 0.05 of theory over these refinements, prefactor within 3 %.
+fn assert_law(name: &str, refinements: &[usize], error: impl Fn(usize) -> f64, order: f64, next: f64, prefactor: f64) {
+    let errors: Vec<_> = refinements.iter().map(|n| (*n as f64, error(*n))).collect();
+    let law = fit(&errors, order, next);
+    println!("{name}: {law:?} for {order} and {prefactor}");
+    assert!(errors.len() >= 4 && (law.order - order).abs() < 0.05, "{name}: {law:?}");
+    assert!((law.prefactor / prefactor - 1.0).abs() < 0.03, "{name}: {law:?} for {prefactor}");
+}
+
+#[test]
+fn small_deflections_are_those_of_the_quadrature_at_every_n() {
+    // Of order α² beside 1, and the rounding of δ.
+    let (alpha, tolerance) = (1e-6, 1e-11);
+    for n in [1, 2, 3, 7, 16] {
+        for hinges in [Hinges::Start, Hinges::StartStiffWall, Hinges::Middle] {
+            let ratio = tip_under(&links(n, hinges), alpha)[1] * 3.0 / alpha;
+            assert!((ratio / tip_ratio(hinges, n) - 1.0).abs() < tolerance, "{hinges:?} {n}: {ratio}");
+        }
+        let ratio = tip_under(&sections(n), alpha)[1] * 3.0 / alpha;
+        assert!((ratio / tip_ratio(Hinges::Middle, n) - 1.0).abs() < tolerance, "sections {n}: {ratio}");
+    }
+    for r in 1..=4 {
+        let ratio = tip_under(&ritz(Basis::Modes(r)), alpha)[1] * 3.0 / alpha;
+        assert!((ratio / exact_modes_tip_ratio(r) - 1.0).abs() < tolerance);
+    }
+    // One monomial of degree 2 gives 3/4; with s³ the deflection is in the space. So it is with Hermite splines.
+    assert!((tip_under(&ritz(Basis::Monomials(1)), alpha)[1] * 4.0 / alpha - 1.0).abs() < tolerance);
+    for basis in [Basis::Monomials(2), Basis::Monomials(4), Basis::Hermite(1), Basis::Hermite(3)] {
+        assert!((tip_under(&ritz(basis), alpha)[1] * 3.0 / alpha - 1.0).abs() < tolerance, "{basis:?}");
+    }
+}
+
+/// The matrices of a chain of rigid links in absolute angles, written down from kinematics: the second route of the frequencies. Heights of link
+/// ends are Σ l θ; link i of length l has the mass l, ∫ (w + x θ)² dx = l (w² + w l θ + l² θ²/3).
+fn chain(lengths: &[f64], springs: &[f64]) -> Vec<f64> {
+    let n = lengths.len();
+    let mass = DMatrix::from_fn(n, n, |a, b| {
+        (a.max(b)..n)
+            .map(|i| {
+                let l = lengths[i];
+                // w = Σ_{k<i} l_k θ_k: the coefficient of θ_a is l_a if a < i
+                let (wa, wb) = (if a < i { lengths[a] } else { 0.0 }, if b < i { lengths[b] } else { 0.0 });
+                let (own_a, own_b) = (f64::from(a == i), f64::from(b == i));
+                l * (wa * wb + 0.5 * l * (wa * own_b + wb * own_a) + l * l / 3.0 * own_a * own_b)
+            })
+            .sum::<f64>()
+    });
+    let stiffness = DMatrix::from_fn(n, n, |a, b| match a.abs_diff(b) {
+        0 => springs[a] + springs.get(a + 1).unwrap_or(&0.0),
+        1 => -springs[a.max(b)],
+        _ => 0.0,
+    });
+    generalized(&stiffness, &mass).unwrap().0.into_iter().map(f64::sqrt).collect()
+}
+
+#[test]
+fn frequencies_of_links_are_those_of_a_chain_in_absolute_angles() {
+    for n in [1, 2, 5, 12] {
+        let h = 1.0 / n as f64;
+        for hinges in [Hinges::Start, Hinges::StartStiffWall, Hinges::Middle] {
+            let (mut lengths, mut springs) = (vec![h; n], vec![1.0 / h; n]);
+            match hinges {
+                Hinges::Middle => lengths[n - 1] = 0.5 * h,
+                Hinges::StartStiffWall => springs[0] = 2.0 / h,
+                Hinges::Start => {}
+            }
+            for (ours, second) in frequencies(&links(n, hinges)).iter().zip(chain(&lengths, &springs)) {
+                // The condition of M is some n⁴, and of the second route's eigenvalues so much is lost.
+                assert!((ours / second - 1.0).abs() < 1e-11, "{hinges:?} {n}: {ours} {second}");
+            }
+        }
+    }
+}
+
+#[test]
+fn frequency_errors_have_order_and_prefactor() {
+    let error = |element: Element, k: usize| frequencies(&element)[k] / cantilever_root(k).powi(2) - 1.0;
+    for (k, prefactor) in [0.2294, 0.7968, 1.3081].into_iter().enumerate() {
+        assert_law("middle", &[8, 16, 32, 64], |n| error(links(n, Hinges::Middle), k), 2.0, 4.0, prefactor);
+        let theory = sections_frequency_prefactor(k);
+        assert_law("sections", &[8, 16, 32, 64], |n| error(sections(n), k), 2.0, 4.0, theory);
+        let theory = hermite_frequency_prefactor(k);
+        // The law holds where an element is short beside a half wave.
+        assert_law("Hermite", &[4, 6, 8, 12].map(|n| n * (2 * k + 1)), |n| error(ritz(Basis::Hermite(n)), k), 4.0, 6.0, theory);
+        // The wall's spring is h/2 too soft: the rod is as if longer by h/2, and ω ∝ 1/L².
+        assert_law("start", &[24, 48, 96, 144], |n| error(links(n, Hinges::Start), k), 1.0, 2.0, -1.0);
+    }
+}
+
+#[test]
+fn monomials_have_the_percentages_of_ritz() {
+    let squares = |r: usize| frequencies(&ritz(Basis::Monomials(r))).into_iter().map(|w| w * w).collect::<Vec<_>>();
+    // r = 1: ω² = 4/(1/5) = 20. r = 2: det(K − λM) = 0 with K = [[4, 6], [6, 12]], M = [[1/5, 1/6], [1/6, 1/7]].
+    assert!((squares(1)[0] / 20.0 - 1.0).abs() < 1e-14);
+    let (a, b, c) = (1.0_f64 / 35.0 - 1.0 / 36.0, -(4.0 / 7.0 + 12.0 / 5.0 - 2.0), 12.0);
+    let root = (b * b - 4.0 * a * c).sqrt();
+    for (square, known) in squares(2).iter().zip([(-b - root) / (2.0 * a), (-b + root) / (2.0 * a)]) {
+        assert!((square / known - 1.0).abs() < 1e-11, "{square} {known}");
+    }
+    for (w, printed) in frequencies(&ritz(Basis::Monomials(2))).iter().zip([3.53273154, 34.80689311]) {
+        assert!((w / printed - 1.0).abs() < 1e-8);
+    }
+    // Higher r: M_ij = 1/(i + j + 5), K_ij = (i+2)(i+1)(j+2)(j+1)/(i + j + 1), by inverse iteration in double-double.
+    for (r, printed) in [(3, 3.0170384e-4), (4, 1.5392236e-6), (5, 3.8476854e-8), (6, 8.1333e-11)] {
+        let entry = |f: &dyn Fn(f64, f64) -> [f64; 2]| {
+            let row = |i: usize| (0..r).map(|j| f(i as f64, j as f64)).map(|[a, b]| wide(a) / wide(b)).collect::<Vec<_>>();
+            (0..r).map(row).collect::<Vec<_>>()
+        };
+        let mass = entry(&|i, j| [1.0, i + j + 5.0]);
+        let stiffness = entry(&|i, j| [(i + 2.0) * (i + 1.0) * (j + 2.0) * (j + 1.0), i + j + 1.0]);
+        let second = smallest_eigenvalue(&stiffness, &mass).sqrt();
+        let ours = frequencies(&ritz(Basis::Monomials(r)))[0];
+        // The Gauss sums are in doubles; Rayleigh's quotient in double-double adds no more.
+        assert!((ours / second - 1.0).abs() < 1e-14, "{r}: {ours} {second}");
+        let error = ours / cantilever_root(0).powi(2) - 1.0;
+        assert!((error / printed - 1.0).abs() < 1e-4, "{r}: {error:e} {printed:e}");
+    }
+}
+
+#[test]
+fn the_elastica_is_met_with_the_order_of_each_element() {
+    let error = |element: Element| tip_under(&element, 1.0)[1] / elastica(1.0).deflection - 1.0;
+    // Prefactors from the finest refinement of each: no closed form is known at α = 1. Slopes are those of theory.
+    assert_law("middle", &[4, 8, 16, 32], |n| error(links(n, Hinges::Middle)), 2.0, 4.0, -0.2728);
+    assert_law("sections", &[4, 8, 16, 32], |n| error(sections(n)), 2.0, 4.0, -0.2218);
+    assert_law("start", &[8, 16, 32, 64], |n| error(links(n, Hinges::Start)), 1.0, 2.0, 1.3256);
+    assert!((error(links(4, Hinges::Middle)) + 1.71e-2).abs() < 1e-4);
+}
+
+#[test]
+fn a_string_of_masses_has_the_laguerre_zeros() {
+    for n in [1, 2, 3, 8, 20] {
+        let length = n as f64 * 0.3;
+        let (string, _) = library::hanging_string(n, Masses::Ends, length, 2.0, 9.81).unwrap();
+        let squares = modes(&string, &string.rest(), &[]).unwrap().squares;
+        for (square, zero) in squares.iter().zip(laguerre_zeros(n)) {
+            let known = 9.81 / (length / n as f64) * zero;
+            assert!((square / known - 1.0).abs() < 1e-13, "{n}: {square} {known}");
+        }
+    }
+}
+
+#[test]
+fn strings_come_to_the_bessel_zeros() {
+    let error = |n: usize, masses: Masses, k: usize| {
+        let (string, _) = library::hanging_string(n, masses, 1.0, 1.0, 1.0).unwrap();
+        modes(&string, &string.rest(), &[]).unwrap().squares[k] / (bessel_zero(k) / 2.0).powi(2) - 1.0
+    };
+    assert_law("masses", &[16, 32, 64, 96], |n| error(n, Masses::Ends, 0), 1.0, 2.0, -0.5);
+    assert_law("uniform", &[8, 16, 32, 64], |n| error(n, Masses::Uniform, 0), 2.0, 3.0, 0.0613);
+    assert_law("uniform", &[16, 32, 64, 96], |n| error(n, Masses::Uniform, 1), 2.0, 3.0, 2.06);
+}
+
+#[test]
+fn axial_links_are_masses_and_springs() {
+    for n in [1, 2, 6, 15] {
+        let element = Element::Links { count: n, hinges: Hinges::Middle, strains: vec![Strain::Extension] };
+        for (k, w) in frequencies(&element).iter().enumerate() {
+            // EA = ρA = L = 1
+            assert!((w / lumped_axial(n, k, 1.0, 1.0) - 1.0).abs() < 1e-12, "{n} {k}");
+        }
+    }
+    // Exact modes are exact, of a bar and of a shaft; linear splines are above by (2k + 1)² π²/96n².
+    for strain in [Strain::Extension, Strain::Twist] {
+        let bar = |basis: Basis| frequencies(&Element::Ritz { basis, strains: vec![strain] });
+        // GJ/ρ(I_y + I_z) = ½ · 2/2
+        let speed = if strain == Strain::Twist { 0.5_f64.sqrt() } else { 1.0 };
+        for (k, w) in bar(Basis::Modes(4)).iter().enumerate() {
+            let exact = speed * (2 * k + 1) as f64 * std::f64::consts::FRAC_PI_2;
+            assert!((w / exact - 1.0).abs() < 1e-13, "{strain:?} {k}: {w} {exact}");
+        }
+        let prefactor = std::f64::consts::PI.powi(2) / 96.0;
+        assert_law(
+            "hat",
+            &[4, 8, 16, 32],
+            |n| bar(Basis::Hermite(n))[0] / (speed * std::f64::consts::FRAC_PI_2) - 1.0,
+            2.0,
+            4.0,
+            prefactor,
+        );
+    }
+}
