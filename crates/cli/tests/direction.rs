@@ -21,7 +21,7 @@ const ALLOWED: &[(&str, &[&str])] = &[
     ("protocol", &["spatial", "model"]),
     ("bench", &["spatial", "model", "robots", "formats", "dynamics", "results", "protocol"]),
     ("engines", &["spatial", "model", "robots", "formats", "dynamics", "results", "protocol", "bench"]),
-    ("studies", &["spatial", "model", "robots", "dynamics", "contact", "constrained", "hybrid", "results", "report", "bench"]),
+    ("studies", &["spatial", "model", "robots", "dynamics", "contact", "constrained", "continua", "hybrid", "results", "report", "bench"]),
     ("cli", &["spatial", "model", "robots", "formats", "dynamics", "constrained", "results", "report", "bench", "engines", "studies"]),
 ];
 
