@@ -22,6 +22,7 @@ from featherbench_oracles.loops import Loops
 from featherbench_oracles.messages import Answer, Blocks, Header, read_message, write_message
 from featherbench_oracles.protocol import AS_READ, PROTOCOL, SHAPES, Engine, Reading, State, Unsupported
 from featherbench_oracles.robot import Description
+from featherbench_oracles.rods import Rods
 from featherbench_oracles.semidefinite import SemidefiniteLeastSquares
 
 
@@ -39,6 +40,7 @@ class Session:
         self.contacts = Contacts(engine.name, getattr(engine, "contact_solvers", {}), getattr(engine, "contact_relaxations", {}))
         self.loops = Loops(engine)
         self.semidefinite = SemidefiniteLeastSquares(engine.name, getattr(engine, "semidefinite_solvers", {}))
+        self.rods = Rods(engine.name, getattr(engine, "rods", {}))
         self.description: Description | None = None
         self.robot: Any = None
         self.states: Blocks | None = None
@@ -83,6 +85,7 @@ class Session:
             "loop_accelerations": self.loops.accelerations,
             "loop_motion": self.loops.motion,
             "semidefinite_least_squares": self.semidefinite.solve,
+            "rod": self.rods.solve,
         }
         if header.get("op") not in operations:
             raise ValueError(f"unknown op {header.get('op')}")
@@ -97,6 +100,7 @@ class Session:
             "contact_solvers": self.contacts.solvers,
             "contact_relaxations": self.contacts.relaxations,
             "semidefinite_least_squares": self.semidefinite.solvers,
+            "rods": self.rods.elements,
         }
         hello |= self.loops.hello()
         hello |= {key: list(solvers) for key, solvers in listed.items() if solvers}

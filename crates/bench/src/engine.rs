@@ -1,6 +1,6 @@
 //! The trait [`Engine`]: anything that answers.
 
-use crate::{ContactSolver, Import, LoopSolver, Quantity, Robot, RobotFile, SemidefiniteSolver, Stepper};
+use crate::{ContactSolver, Import, LoopSolver, Quantity, Robot, RobotFile, RodSolver, SemidefiniteSolver, Stepper};
 use featherbench_protocol::Memory;
 use featherbench_results::EngineSource;
 use featherbench_robots::StateBatch;
@@ -174,6 +174,11 @@ pub trait Engine: Send + Sync {
 
     /// Its solver of least squares under semidefinite conditions, if it has one.
     fn semidefinite_solver(&self) -> Option<&dyn SemidefiniteSolver> {
+        None
+    }
+
+    /// Its elastic rods, if it has any.
+    fn rod_solver(&self) -> Option<&dyn RodSolver> {
         None
     }
 

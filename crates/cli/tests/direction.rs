@@ -41,6 +41,7 @@ const ALLOWED: &[(&str, &[&str])] = &[
             "bench",
         ],
     ),
+    ("studies", &["spatial", "model", "robots", "dynamics", "contact", "constrained", "continua", "hybrid", "results", "report", "bench"]),
     ("cli", &["spatial", "model", "robots", "formats", "dynamics", "constrained", "results", "report", "bench", "engines", "studies"]),
 ];
 

@@ -2,13 +2,14 @@
 
 pub(crate) mod contacts;
 pub(crate) mod loops;
+pub(crate) mod rods;
 mod semidefinite;
 pub(crate) mod steps;
 
 use crate::{request, shape};
 use featherbench_bench::provenance::{PROGRAM, SOURCES};
 use featherbench_bench::{
-    ContactSolver, Engine, Evaluation, Identity, Import, ImportNote, LoopSolver, NoAnswer, Quantity, Robot, RobotFile, Route,
+    ContactSolver, Engine, Evaluation, Identity, Import, ImportNote, LoopSolver, NoAnswer, Quantity, Robot, RobotFile, RodSolver, Route,
     SemidefiniteSolver, Stepper,
 };
 use featherbench_model::{BodyDescription, Description};
@@ -41,6 +42,8 @@ pub struct Oracle {
     contact_relaxations: Vec<String>,
     /// Its methods for least squares under semidefinite conditions.
     semidefinite: Vec<String>,
+    /// Its elements of elastic rods.
+    rods: Vec<String>,
     command: Vec<OsString>,
     limits: Limits,
     clock: Arc<dyn Clock>,
@@ -120,7 +123,7 @@ impl Oracle {
             serde_json::from_value(names).map_err(|error| format!("hello: {key}: {error}"))
         };
         let (contact_solvers, contact_relaxations) = (listed("contact_solvers")?, listed("contact_relaxations")?);
-        let semidefinite = listed("semidefinite_least_squares")?;
+        let (semidefinite, rods) = (listed("semidefinite_least_squares")?, listed("rods")?);
         let session = Session { process, model: String::new(), readback: Vec::new(), states: None, reading: None };
         Ok(Self {
             identity,
@@ -132,6 +135,7 @@ impl Oracle {
             contact_solvers,
             contact_relaxations,
             semidefinite,
+            rods,
             command,
             limits,
             clock,
@@ -244,6 +248,10 @@ impl Engine for Oracle {
 
     fn semidefinite_solver(&self) -> Option<&dyn SemidefiniteSolver> {
         (!self.semidefinite.is_empty()).then_some(self)
+    }
+
+    fn rod_solver(&self) -> Option<&dyn RodSolver> {
+        (!self.rods.is_empty()).then_some(self)
     }
 
     fn stepper(&self) -> Option<&dyn Stepper> {

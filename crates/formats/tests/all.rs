@@ -1,5 +1,6 @@
 //! The tests of formats as one program: they share what is compiled for them.
 
+mod continua;
 mod datasets;
 mod loops;
 mod neutral;

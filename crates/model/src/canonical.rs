@@ -1,7 +1,7 @@
 //! The canonical form of a description: valid, axes and rotations normalised, fixed joints merged, bodies in depth-first order.
 
 use crate::orthonormal::{nearest_rotation, rotation, unit};
-use crate::{BodyDescription, Description, Frame, JointDescription, JointType, LoopDefect, LoopEnd, Malformed, Placement};
+use crate::{BodyDescription, Continuum, Description, Frame, JointDescription, JointType, LoopDefect, LoopEnd, Malformed, Placement};
 use featherbench_spatial::{DoubleDouble, Mat3, Real, Sym3, Transform, Vec3};
 use std::borrow::Cow;
 
@@ -20,7 +20,7 @@ impl Description {
         self.made_canonical()
     }
 
-    /// A description with the canonical bodies, without a copy where they are canonical as given. Its frames and loops may differ.
+    /// A description with the canonical bodies, without a copy where they are canonical as given. Its frames, loops and continua may differ.
     pub(crate) fn with_canonical_bodies(&self) -> Result<Cow<'_, Self>, Malformed> {
         self.validate()?;
         if self.has_canonical_bodies() { Ok(Cow::Borrowed(self)) } else { self.made_canonical().map(Cow::Owned) }
@@ -54,6 +54,7 @@ impl Description {
             bodies: Vec::with_capacity(order.len()),
             frames: Vec::new(),
             loops: Vec::with_capacity(self.loops.len()),
+            continua: Vec::with_capacity(self.continua.len()),
             provenance: self.provenance.clone(),
         };
 
@@ -104,6 +105,10 @@ impl Description {
             // Their joints move: so each has a body of its own.
             tie.joints_mut().into_iter().for_each(|body| *body = home[*body].0.unwrap_or(*body));
             result.loops.push(tie);
+        }
+        for given in &self.continua {
+            let (body, on_body) = given.body.map_or((None, Transform::identity()), |body| home[body]);
+            result.continua.push(Continuum { body, placement: given.placement.on(&on_body), ..given.clone() });
         }
         if result.bodies.is_empty() {
             return Err(Malformed::Empty);

@@ -12,6 +12,7 @@
 
 mod canonical;
 mod configuration;
+mod continua;
 mod description;
 mod error;
 mod joint;
@@ -24,6 +25,7 @@ mod topology;
 mod validate;
 
 pub use configuration::{difference, integrate, interpolate, neutral};
+pub use continua::{Continuum, ContinuumDefect, ContinuumElement, ContinuumMaterial, ContinuumSection, ContinuumStrain, ContinuumTip};
 pub use description::{BodyDescription, Description, Frame, JointDescription, JointType, Placement, Provenance};
 pub use error::DimensionError;
 pub use joint::{Axis, JointKind};

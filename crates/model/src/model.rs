@@ -48,8 +48,9 @@ impl<P: Real> Model<P> {
     /// The description need not be canonical: fixed joints are merged and the bodies put in depth-first order.
     ///
     /// # Errors
-    /// [`Malformed`] when the description is no tree of bodies with finite, meaningful numbers.
+    /// [`Malformed`] when the description is no tree of bodies with finite, meaningful numbers, or has bodies that deform.
     pub fn build(description: &Description) -> Result<Self, Malformed> {
+        description.must_be_rigid()?;
         let canonical = description.with_canonical_bodies()?;
         // Exact where each joint has one dof, and too small by the other dofs elsewhere.
         let count = canonical.bodies.len();

@@ -1,7 +1,7 @@
 //! The two levels of validation: malformed is an error, unphysical is a warning of the model.
 
 use crate::orthonormal::{rotation, unit};
-use crate::{BodyDescription, Description, JointType, LoopDefect};
+use crate::{BodyDescription, ContinuumDefect, Description, JointType, LoopDefect};
 use thiserror::Error;
 
 /// Why a description is not a robot. Every message names the body and says what to do.
@@ -144,15 +144,31 @@ pub enum Malformed {
         /// What is wrong with it.
         defect: LoopDefect,
     },
+    /// A continuum is none.
+    #[error("continua[{index}] '{name}': {defect}")]
+    Continuum {
+        /// The continuum's name.
+        name: String,
+        /// Its place in the list, counted from 0.
+        index: usize,
+        /// What is wrong with it.
+        defect: ContinuumDefect,
+    },
+    /// Bodies deform where a rigid tree is asked for.
+    #[error("its continua ({}) deform, and this is for rigid bodies alone; take them out, or use featherbench_continua", names.join(", "))]
+    Deforms {
+        /// Their names.
+        names: Vec<String>,
+    },
 }
 
 impl Malformed {
-    /// The body, frame or loop of the error, so that a parser can say where it is in the file.
+    /// The body, frame, loop or continuum of the error, so that a parser can say where it is in the file.
     pub fn about(&self) -> Option<&str> {
         match self {
-            Self::Empty => None,
+            Self::Empty | Self::Deforms { .. } => None,
             Self::FrameOrphan { frame, .. } | Self::FrameNotARotation { frame, .. } => Some(frame),
-            Self::Loop { name, .. } => Some(name),
+            Self::Loop { name, .. } | Self::Continuum { name, .. } => Some(name),
             Self::NotFinite { body, .. }
             | Self::NegativeMass { body, .. }
             | Self::Orphan { body, .. }
@@ -216,7 +232,7 @@ impl Description {
     /// Checks that the description is a forest of bodies with finite, meaningful numbers.
     ///
     /// # Errors
-    /// The first [`Malformed`] finding: in the order of the bodies, then of the frames, then of the loops.
+    /// The first [`Malformed`] finding: in the order of the bodies, of the frames, of the loops, of the continua.
     pub fn validate(&self) -> Result<(), Malformed> {
         let count = self.bodies.len();
         let mut names = std::collections::HashSet::new();
@@ -242,7 +258,8 @@ impl Description {
                 return Err(Malformed::FrameNotARotation { frame: frame.name.clone(), error });
             }
         }
-        self.validate_loops()
+        self.validate_loops()?;
+        self.validate_continua()
     }
 
     /// Every chain of parents must end at the world; a chain of more steps than there are bodies has a cycle.

@@ -2,6 +2,7 @@
 
 mod anything;
 mod arbitrary;
+mod continua;
 mod descriptions;
 mod loops;
 mod normalisation;

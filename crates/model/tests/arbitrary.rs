@@ -64,6 +64,7 @@ pub fn any_description() -> impl Strategy<Value = Description> {
             bodies,
             frames: frames.into_iter().map(|(body, placement)| Frame { name: "frame".to_owned(), body, placement }).collect(),
             loops: Vec::new(),
+            continua: Vec::new(),
             provenance: None,
         })
     })

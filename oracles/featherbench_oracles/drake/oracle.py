@@ -19,6 +19,7 @@ from featherbench_oracles.derivatives import Differentiated
 from featherbench_oracles.drake import loops, reading
 from featherbench_oracles.drake.building import build
 from featherbench_oracles.drake.coordinates import change_of_velocities, rates_of_change, to_engine_q
+from featherbench_oracles.drake.rods import RODS
 from featherbench_oracles.protocol import Quantities, Reading, State, mass_matrix_probe, readback_row
 from featherbench_oracles.robot import Description
 
@@ -278,6 +279,7 @@ class Drake:
     name = "drake"
     version = importlib.metadata.version("drake")
     build = {"language": "C++ (Python package drake)"}
+    rods = RODS
     quantities: Quantities = {
         "id": {"inverse_dynamics": TimedCalls("q v a", DrakeRobot.inverse_dynamics, CoordinateChange.to_neutral_tau)},
         "id_wrench": {"inverse_dynamics": DrakeRobot.inverse_wrench},

@@ -15,6 +15,7 @@ from featherbench_oracles.derivatives import Differentiated
 from featherbench_oracles.mujoco import holding, reading
 from featherbench_oracles.mujoco.building import build, chains, motions
 from featherbench_oracles.mujoco.coordinates import change_of_velocities, from_wxyz, rates_of_change, to_engine_q
+from featherbench_oracles.mujoco.rods import RODS
 from featherbench_oracles.protocol import Quantities, Reading, State, Unsupported, mass_matrix_probe, readback_row
 from featherbench_oracles.robot import Description
 
@@ -282,6 +283,7 @@ class Mujoco:
     name = "mujoco"
     version = mj.mj_versionString()
     build = {"language": "C (Python package mujoco)"}
+    rods = RODS
     quantities: Quantities = {
         "id": {"inverse": MujocoRobot.inverse, "rne": MujocoRobot.rne},
         "id_wrench": {"inverse": MujocoRobot.inverse_wrench},

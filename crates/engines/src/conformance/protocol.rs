@@ -13,8 +13,8 @@ use std::collections::BTreeMap;
 /// Quantities by method.
 pub(super) type Methods = BTreeMap<String, Vec<String>>;
 
-/// Asks for its identity, the steps and the contact solvers that it offers. Without an answer the test ends here.
-pub(super) fn hello(exchange: &mut Exchange) -> Option<(Steps, Vec<String>)> {
+/// Asks for its identity, and the steps, contact solvers and rods that it offers. Without an answer the test ends here.
+pub(super) fn hello(exchange: &mut Exchange) -> Option<(Steps, Vec<String>, Vec<String>)> {
     let answer = exchange.expect("it answers hello", json!({"op": "hello"}), Vec::new(), &["ok"])?;
     let mut wrong = Vec::new();
     let header = &answer.header;
@@ -49,6 +49,11 @@ pub(super) fn hello(exchange: &mut Exchange) -> Option<(Steps, Vec<String>)> {
         wrong.push("`contact_solvers` is no list of names".into());
         Vec::new()
     });
+    let elements = header.get("rods").map_or(Ok(Vec::new()), |elements| serde_json::from_value(elements.clone()));
+    let elements: Vec<String> = elements.unwrap_or_else(|_| {
+        wrong.push("`rods` is no list of names".into());
+        Vec::new()
+    });
     let standing = if wrong.is_empty() { Standing::Right } else { Standing::Wrong };
     exchange.note(standing, "hello names protocol, engine, version, build and methods", &wrong.join("; "), &[]);
     exchange.conformance.engine = format!("{} {}", answer.text("engine"), answer.text("version"));
@@ -56,7 +61,7 @@ pub(super) fn hello(exchange: &mut Exchange) -> Option<(Steps, Vec<String>)> {
     exchange.conformance.methods.retain(|quantity, _| Quantity::parse(quantity).is_some());
     let steps = steps.unwrap_or_default();
     exchange.conformance.steps.clone_from(&steps.methods);
-    Some((steps, solvers))
+    Some((steps, solvers, elements))
 }
 
 /// Requests that have no answer while there is no robot.

@@ -1,5 +1,6 @@
 //! What a format cannot hold.
 
+use featherbench_model::Description;
 use std::fmt;
 
 /// Something of a robot that a format cannot hold.
@@ -52,6 +53,8 @@ pub enum Reason {
         /// The loop's type.
         kind: &'static str,
     },
+    /// The format has no bodies that deform.
+    Deforms,
     /// A free joint whose coordinates do not begin at the world's origin, as those of MuJoCo do.
     FreePlacement,
     /// MuJoCo moves no body without mass.
@@ -82,6 +85,7 @@ impl Reason {
             | Self::Loop { .. }
             | Self::FreePlacement => true,
             Self::JointType { .. }
+            | Self::Deforms
             | Self::Massless
             | Self::Unphysical
             | Self::FreeBelow
@@ -109,6 +113,7 @@ impl fmt::Display for Reason {
             }
             Self::EmptyRange { field } => write!(f, "{field} that leave no range; the format asks for a lower end below the upper one"),
             Self::Loop { kind } => write!(f, "a loop of type {kind}, for which the format has no place"),
+            Self::Deforms => write!(f, "a body that deforms, which the format has not; keep the neutral format"),
             Self::FreePlacement => {
                 write!(f, "a free joint whose coordinates are not the world's, as the format has them; place it at the world's origin")
             }
@@ -130,6 +135,12 @@ impl fmt::Display for Loss {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "{}: {}", self.about, self.reason)
     }
+}
+
+/// The bodies that deform.
+pub(crate) fn deforming(robot: &Description) -> impl Iterator<Item = Loss> + '_ {
+    let about = |(index, name): (usize, &str)| Loss { about: format!("continua[{index}] '{name}'"), reason: Reason::Deforms };
+    robot.continua.iter().map(|continuum| continuum.name.as_str()).enumerate().map(about)
 }
 
 /// All losses, one line for each reason.

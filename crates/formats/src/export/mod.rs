@@ -8,6 +8,7 @@ pub(crate) mod names;
 pub(crate) mod order;
 pub(crate) mod xml;
 
+pub(crate) use loss::deforming;
 pub use loss::{Loss, Reason};
 
 use crate::{Place, text};

@@ -181,6 +181,7 @@ fn losses(robot: &Description, carried: &[Vec<Item>]) -> Vec<Loss> {
     }
     let mut ties = Names::default();
     robot.loops.iter().for_each(|tie| ties.take("loop", &tie.name, &mut losses));
+    losses.extend(export::deforming(robot));
     losses.extend(equality::losses(robot, &|body| row(robot, carried, body).len() == 1));
     losses
 }

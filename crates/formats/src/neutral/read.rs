@@ -1,9 +1,10 @@
 //! Reading: serde mirrors of the description; what does not fit them is an error.
 
+use super::continua::ContinuumFields;
 use super::loops::Tie;
 use super::{FORMAT, LIMIT, NeutralError, NeutralProblem};
 use crate::{Place, text};
-use featherbench_model::{BodyDescription, Description, Frame, JointDescription, JointType, Malformed, Placement, Provenance};
+use featherbench_model::{BodyDescription, Continuum, Description, Frame, JointDescription, JointType, Malformed, Placement, Provenance};
 use serde::Deserialize;
 use serde::de::IgnoredAny;
 use serde_json::error::Category;
@@ -110,6 +111,8 @@ struct Document {
     provenance: Option<Source>,
     #[serde(default)]
     loops: Vec<Tie>,
+    #[serde(default)]
+    continua: Vec<ContinuumFields>,
     actuation: Option<IgnoredAny>,
     contacts: Option<IgnoredAny>,
     residuals: Option<IgnoredAny>,
@@ -229,6 +232,7 @@ impl Document {
             bodies: self.bodies.into_iter().map(|body| body.0).collect(),
             frames: self.frames.into_iter().map(frame).collect(),
             loops: self.loops.into_iter().map(|tie| tie.0).collect(),
+            continua: self.continua.into_iter().map(Continuum::from).collect(),
             provenance: self.provenance.map(provenance),
         }
     }

@@ -54,8 +54,9 @@ pub fn to_string(description: &Description) -> Result<String, Malformed> {
 /// computes with the tree.
 ///
 /// # Errors
-/// [`Malformed`] when the description is not a robot.
+/// [`Malformed`] when the description is not a robot, or has bodies that deform.
 pub fn to_line(description: &Description) -> Result<String, Malformed> {
+    description.must_be_rigid()?;
     let canonical = description.canonical()?;
     let mut writer = Writer { per_dof: PerDof::Complete, separator: [""; 4], ..Writer::of_file() };
     writer.document(&canonical, false);
@@ -69,7 +70,7 @@ enum PerDof {
     Complete,
 }
 
-struct Writer<'a> {
+pub(super) struct Writer<'a> {
     /// What is written and not yet passed on.
     text: String,
     per_dof: PerDof,
@@ -122,6 +123,10 @@ impl Writer<'_> {
         if with_sections && !description.loops.is_empty() {
             self.key(0, "loops");
             self.list(1, &description.loops, Self::tie);
+        }
+        if with_sections && !description.continua.is_empty() {
+            self.key(0, "continua");
+            self.list(1, &description.continua, Self::continuum);
         }
         self.push("}");
     }
@@ -219,7 +224,7 @@ impl Writer<'_> {
         self.push("}");
     }
 
-    fn placement(&mut self, placement: &Placement) {
+    pub(super) fn placement(&mut self, placement: &Placement) {
         self.push("{\"rotation\":");
         self.numbers(&placement.rotation);
         self.push(",\"translation\":");
@@ -239,14 +244,14 @@ impl Writer<'_> {
     }
 
     /// A key on a new line of this level, after a comma.
-    fn key(&mut self, level: usize, name: &str) {
+    pub(super) fn key(&mut self, level: usize, name: &str) {
         self.push(",");
         self.push(self.separator[level]);
         self.put(format_args!("\"{name}\":"));
     }
 
     /// Each number as the shortest decimal that reads back to the same bits. `Debug` writes that for finite numbers, and it is JSON.
-    fn numbers(&mut self, numbers: &[f64]) {
+    pub(super) fn numbers(&mut self, numbers: &[f64]) {
         for (k, number) in numbers.iter().enumerate() {
             self.push(if k == 0 { "[" } else { "," });
             self.put(format_args!("{number:?}"));
@@ -254,20 +259,20 @@ impl Writer<'_> {
         self.push(if numbers.is_empty() { "[]" } else { "]" });
     }
 
-    fn push(&mut self, text: &str) {
+    pub(super) fn push(&mut self, text: &str) {
         self.text.push_str(text);
     }
 
-    fn put(&mut self, text: fmt::Arguments<'_>) {
+    pub(super) fn put(&mut self, text: fmt::Arguments<'_>) {
         // A string takes every text: there is no error.
         let _ = fmt::Write::write_fmt(&mut self.text, text);
     }
 }
 
-fn quoted(text: &str) -> String {
+pub(super) fn quoted(text: &str) -> String {
     serde_json::Value::from(text).to_string()
 }
 
-fn index(body: Option<usize>) -> String {
+pub(super) fn index(body: Option<usize>) -> String {
     body.map_or("-1".to_owned(), |body| body.to_string())
 }

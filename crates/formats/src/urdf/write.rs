@@ -197,6 +197,7 @@ fn losses(robot: &Description) -> Vec<Loss> {
         let about = format!("loops[{index}] '{}'", tie.name);
         losses.push(Loss { about, reason: Reason::Loop { kind: tie.kind.name() } });
     }
+    losses.extend(export::deforming(robot));
     losses
 }
 

@@ -1,0 +1,285 @@
+//! One cantilever by every element, of ours and of engines: tips under forces, frequencies, and the time of a forward dynamics.
+//!
+//! Every cell is one engine's rod of so many elements. Its rows tell the errors against the elastica and the roots of the cantilever. Over the
+//! refinements of an element errors have an order and, for frequencies, a prefactor of theory:
+//!
+//! | element | ω/ω_exact − 1 → |
+//! |---|---|
+//! | rigid links, springs in the middle of elements | σβ/6 /n² |
+//! | rigid links, springs at their start | −1/n |
+//! | the same with 2EI/h at the wall | −σβ/3 /n² |
+//! | constant curvature | σβ (2 + σβ)/24 /n² |
+//! | cubic Hermite splines | β⁴/1440 /n⁴ |
+//!
+//! The first three follow from what discretisation does to the boundary: inside the rod, links have M and K with the same factor 1 + h²/6 ∂²,
+//! which cancels. With y(0) = −h²/8 w'' and y'(0) = −h²/24 w''' (springs in the middle), y'(0) = h/2 w'' (start) or −h²/6 w''' (2EI/h), Green's
+//! identity gives δλ = w'''(0) y(0) − w''(0) y'(0), where w''(0) w'''(0) = −4σβ⁵ for ∫ w² = 1.
+
+use super::{Law, NoAnswer, STUDY, element, failed, largest, rod};
+use featherbench_bench::{Cell, Context, Finished, OWN, RodAnswer, RodQuestion, hash};
+use featherbench_continua::known::{cantilever_root, elastica, hermite_frequency_prefactor, sections_frequency_prefactor};
+use featherbench_continua::{Load, Settings, Solver, Status, equilibrium, fit, library, modes};
+use featherbench_results::{Kind, Row, Verdict, canonical_json};
+use serde_json::json;
+use std::time::Instant;
+
+/// The quantity of these cells.
+pub(super) const QUANTITY: &str = "beam";
+/// The refinements. An error of first order has the slope 1 to 0.05 only where the next term is small: it needs finer ones.
+const COUNTS: [usize; 6] = [4, 8, 16, 32, 48, 64];
+const COUNTS_OF_FIRST_ORDER: [usize; 7] = [16, 24, 32, 48, 64, 96, 144];
+/// Splines converge so fast that more parts show rounding alone.
+const COUNTS_OF_SPLINES: [usize; 5] = [4, 6, 8, 12, 16];
+/// Tips are compared up to so many elements.
+const MOST_OF_TIPS: usize = 64;
+/// The dead forces at the tip, F L²/EI.
+const FORCES: [f64; 3] = [0.1, 1.0, 10.0];
+/// Frequencies.
+const MODES: usize = 3;
+/// Our elements. Shape functions are for small deflections: their tips are not compared.
+const OWN_ELEMENTS: [&str; 5] = ["links_start", "links_start_stiff_wall", "links_middle", "sections", "hermite"];
+/// Calls of forward dynamics whose median time is told.
+const CALLS: usize = 50;
+
+/// The refinements of an element, and the least of them from which its frequencies are in the law: in mode 3 coarser ones have other terms.
+fn refinements(element: &str) -> (&'static [usize], f64) {
+    match element {
+        "links_start" => (&COUNTS_OF_FIRST_ORDER, 24.0),
+        "hermite" => (&COUNTS_OF_SPLINES, 4.0),
+        _ => (&COUNTS, 8.0),
+    }
+}
+
+/// Whether the tip of a rod of this element is compared. Shape functions are for small deflections.
+fn has_tip(element: &str, count: usize) -> bool {
+    element != "hermite" && count <= MOST_OF_TIPS
+}
+
+/// The cells of our elements, then of each engine's; one for an engine that is not there, so that a row says so.
+pub(super) fn plan(context: &Context, engines: &[String]) -> Vec<Cell> {
+    let mut cells = Vec::new();
+    for name in std::iter::once(OWN).chain(engines.iter().map(String::as_str)) {
+        let version = context.engine(name).map(|engine| engine.identity().version.clone()).unwrap_or_default();
+        let elements = if name == OWN {
+            OWN_ELEMENTS.map(str::to_owned).to_vec()
+        } else {
+            context.engine(name).and_then(|engine| engine.rod_solver()).map(|solver| solver.rod_elements()).unwrap_or_default()
+        };
+        if elements.is_empty() {
+            cells.push(cell(name, &version, "none", 0));
+        }
+        for element in &elements {
+            cells.extend(refinements(element).0.iter().map(|count| cell(name, &version, element, *count)));
+        }
+    }
+    cells
+}
+
+fn cell(engine: &str, version: &str, element: &str, count: usize) -> Cell {
+    let params = json!({"elements": count, "forces": FORCES});
+    Cell {
+        study: STUDY.into(),
+        robot: format!("cantilever, n = {count}"),
+        robot_hash: hash::of(canonical_json(&params).as_bytes()),
+        params,
+        engine: engine.into(),
+        version: version.into(),
+        method: element.into(),
+        quantity: QUANTITY.into(),
+        scalar: "f64".into(),
+    }
+}
+
+/// Of each force the tip's x and y, then the frequencies, then nanoseconds.
+pub(super) fn evaluate(context: &Context, cell: &Cell) -> Result<Vec<f64>, NoAnswer> {
+    let missing = || NoAnswer::NotOffered(format!("{0} is not installed, or has no rods: `featherbench oracles install {0}`", cell.engine));
+    let count = cell.params["elements"].as_u64().unwrap_or_default() as usize;
+    let answer = if cell.engine == OWN {
+        own(&cell.method, count)?
+    } else {
+        let solver = context.engine(&cell.engine).and_then(|engine| engine.rod_solver()).ok_or_else(missing)?;
+        let question = RodQuestion { count, length: 1.0, bending: 1.0, mass_per_length: 1.0, forces: FORCES.to_vec() };
+        solver.rod(&question, &cell.method)?
+    };
+    Ok(answer.tips.into_iter().flatten().chain(answer.frequencies).chain([answer.nanoseconds]).collect())
+}
+
+/// The answer by an element of ours.
+fn own(name: &str, count: usize) -> Result<RodAnswer, NoAnswer> {
+    let (beam, tip) = library::cantilever(&rod()?, &element(name, count)?).map_err(failed)?;
+    let place = |force: f64| -> Result<[f64; 2], NoAnswer> {
+        let load = Load::force(tip.body, tip.placement.translation, [0.0, force, 0.0]);
+        let found = equilibrium(&beam, &[load], &Settings::default()).map_err(failed)?;
+        if found.status != Status::Converged {
+            return Err(failed(format!("the equilibrium at α = {force} is {:?}", found.status)));
+        }
+        let at = beam.place(&found.s, &tip).map_err(failed)?.translation;
+        Ok([at.x, at.y])
+    };
+    let tips = if has_tip(name, count) { FORCES.into_iter().map(place).collect::<Result<Vec<_>, _>>()? } else { Vec::new() };
+    let rest = beam.rest();
+    let mut frequencies = modes(&beam, &rest, &[]).map_err(failed)?.frequencies();
+    frequencies.truncate(MODES);
+    let zeros = vec![0.0; beam.topology().nv()];
+    let (mut solver, mut second, mut times) = (Solver::new(&beam), zeros.clone(), Vec::with_capacity(CALLS));
+    for _ in 0..CALLS {
+        let start = Instant::now();
+        solver.forward(&beam, &rest, &zeros, &zeros, &[], &mut second).map_err(failed)?;
+        times.push(start.elapsed().as_secs_f64() * 1e9);
+    }
+    times.sort_by(f64::total_cmp);
+    Ok(RodAnswer { tips, frequencies, nanoseconds: times[CALLS / 2] })
+}
+
+/// The law of the frequency of mode k with this element; `None` where we know none.
+fn frequency_law(element: &str, k: usize) -> Option<Law> {
+    let beta = cantilever_root(k);
+    let sigma_beta = beta * (beta.cosh() + beta.cos()) / (beta.sinh() + beta.sin());
+    let second = |prefactor| Some(Law { order: 2.0, next: 4.0, prefactor });
+    match element {
+        "links_middle" | "hinge_chain" => second(sigma_beta / 6.0),
+        "links_start_stiff_wall" => second(-sigma_beta / 3.0),
+        "sections" | "constant_strain" => second(sections_frequency_prefactor(k)),
+        "links_start" => Some(Law { order: 1.0, next: 2.0, prefactor: -1.0 }),
+        "hermite" => Some(Law { order: 4.0, next: 6.0, prefactor: hermite_frequency_prefactor(k) }),
+        _ => None,
+    }
+}
+
+/// The order of the tip under a large force: that of the quadrature which the springs are.
+fn tip_order(element: &str) -> Option<f64> {
+    match element {
+        "links_start" => Some(1.0),
+        "links_middle" | "links_start_stiff_wall" | "hinge_chain" | "sections" | "constant_strain" => Some(2.0),
+        _ => None,
+    }
+}
+
+/// An element of an engine over its refinements.
+struct Refined<'a> {
+    last: &'a Cell,
+    /// Of each force, the number of elements and the signed relative error of the tip.
+    tips: [Vec<(f64, f64)>; FORCES.len()],
+    /// The same of each frequency.
+    frequencies: [Vec<(f64, f64)>; MODES],
+}
+
+/// All rows.
+pub(super) fn rows(context: &Context, finished: &[Finished]) -> Vec<Row> {
+    let (mut rows, mut all): (Vec<Row>, Vec<Refined>) = (Vec::new(), Vec::new());
+    for (cell, outcome) in finished.iter().filter(|(cell, _)| cell.quantity == QUANTITY) {
+        let blank = blank(cell, &cell.robot, QUANTITY);
+        let values = match outcome.answer() {
+            Ok(values) => values,
+            Err(NoAnswer::NotOffered(reason)) => {
+                rows.push(blank.without_value(Verdict::Info, reason));
+                continue;
+            }
+            Err(failure) => {
+                rows.push(blank.without_value(Verdict::Error, failure.to_string()));
+                continue;
+            }
+        };
+        let count = cell.params["elements"].as_u64().unwrap_or_default() as usize;
+        let forces: &[f64] = if has_tip(&cell.method, count) { &FORCES } else { &[] };
+        if values.len() != 2 * forces.len() + MODES + 1 {
+            rows.push(blank.without_value(Verdict::Error, format!("{} numbers came", values.len())));
+            continue;
+        }
+        let same = |refined: &Refined| refined.last.engine == cell.engine && refined.last.method == cell.method;
+        let index = all.iter().position(same).unwrap_or_else(|| {
+            all.push(Refined { last: cell, tips: Default::default(), frequencies: Default::default() });
+            all.len() - 1
+        });
+        let (refined, (tips, rest)) = (&mut all[index], values.split_at(2 * forces.len()));
+        refined.last = cell;
+        for ((force, tip), series) in forces.iter().zip(tips.chunks_exact(2)).zip(&mut refined.tips) {
+            let missed = tip[1] / elastica(*force).deflection - 1.0;
+            series.push((count as f64, missed));
+            rows.push(told(&blank, &format!("tip_error_{}", force_name(*force)), "1", "elastica").informed(missed));
+        }
+        for (k, (frequency, series)) in rest.iter().zip(&mut refined.frequencies).enumerate() {
+            let missed = frequency / cantilever_root(k).powi(2) - 1.0;
+            series.push((count as f64, missed));
+            rows.push(told(&blank, &format!("frequency_error_{}", k + 1), "1", "roots").informed(missed));
+        }
+        let clock = Row { kind: Kind::Measured, estimated: cell.engine != OWN, ..told(&blank, "forward_dynamics", "ns", "") };
+        rows.push(clock.informed(rest[MODES]));
+    }
+    rows.extend(all.iter().flat_map(|refined| laws(context, refined)));
+    rows.extend(agreement(context, &all));
+    rows
+}
+
+/// A force in the name of a metric.
+fn force_name(force: f64) -> String {
+    force.to_string().replace('.', "_")
+}
+
+fn blank(cell: &Cell, family: &str, quantity: &str) -> Row {
+    Row {
+        cell: cell.id(),
+        study: cell.study.clone(),
+        family: family.into(),
+        params: canonical_json(&cell.params),
+        engine: cell.engine.clone(),
+        engine_version: cell.version.clone(),
+        method: cell.method.clone(),
+        precision: cell.scalar.clone(),
+        quantity: quantity.into(),
+        ..Row::default()
+    }
+}
+
+fn told(blank: &Row, metric: &str, unit: &str, reference: &str) -> Row {
+    Row { metric: metric.into(), unit: unit.into(), reference: reference.into(), ..blank.clone() }
+}
+
+/// Orders and prefactors of an element.
+fn laws(context: &Context, refined: &Refined) -> Vec<Row> {
+    let (cell, mut rows) = (refined.last, Vec::new());
+    let judged = |blank: &Row, metric: &str, value: f64| context.gates.judge(told(blank, metric, "1", "theory"), value, 1.0);
+    for (force, series) in FORCES.iter().zip(&refined.tips) {
+        let Some(order) = tip_order(&cell.method) else { continue };
+        let blank = blank(cell, &format!("cantilever, α = {force}"), "beam_law");
+        // The next term of a quadrature of order 1 or 2 at every hinge.
+        let found = fit(series, order, 2.0 * order);
+        rows.push(judged(&blank, "order_error", (found.order - order).abs()));
+        rows.push(told(&blank, "order", "1", "").informed(found.order));
+        rows.push(told(&blank, "prefactor", "1", "").informed(found.prefactor));
+    }
+    let (_, least) = refinements(&cell.method);
+    for (k, series) in refined.frequencies.iter().enumerate() {
+        let Some(law) = frequency_law(&cell.method, k) else { continue };
+        let blank = blank(cell, &format!("cantilever, mode {}", k + 1), "beam_law");
+        let series: Vec<(f64, f64)> = series.iter().copied().filter(|(n, _)| *n >= least).collect();
+        let found = fit(&series, law.order, law.next);
+        let [order, prefactor] = law.missed(&found).map(f64::abs);
+        rows.push(judged(&blank, "order_error", order));
+        rows.push(judged(&blank, "prefactor_error", prefactor));
+        rows.push(told(&blank, "order", "1", "").informed(found.order));
+        rows.push(told(&blank, "prefactor", "1", "").informed(found.prefactor));
+    }
+    rows
+}
+
+/// Engines with an element of ours have the same errors at each number of elements: the largest difference.
+fn agreement(context: &Context, all: &[Refined]) -> Vec<Row> {
+    let ours = |method: &str| match method {
+        "hinge_chain" => Some("links_middle"),
+        "constant_strain" => Some("sections"),
+        _ => None,
+    };
+    let of = |refined: &Refined| {
+        let twin = ours(&refined.last.method)?;
+        let twin = all.iter().find(|other| other.last.engine == OWN && other.last.method == twin)?;
+        let both = refined.tips.iter().zip(&twin.tips).chain(refined.frequencies.iter().zip(&twin.frequencies));
+        let apart = both.flat_map(|(series, own)| {
+            let of_same = |(n, missed): &(f64, f64)| own.iter().find(|(other, _)| other == n).map(|(_, own)| missed - own);
+            series.iter().filter_map(of_same).collect::<Vec<_>>()
+        });
+        let row = blank(refined.last, "cantilever, same element", "beam_agreement");
+        Some(context.gates.judge(told(&row, "difference", "1", OWN), largest(apart), 1.0))
+    };
+    all.iter().filter_map(of).collect()
+}

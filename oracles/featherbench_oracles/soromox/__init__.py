@@ -1,0 +1,1 @@
+"""SoRoMoX as an oracle: rods of piecewise constant strain, in an environment of its own."""
