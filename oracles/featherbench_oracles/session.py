@@ -21,6 +21,7 @@ from featherbench_oracles.examination import examined
 from featherbench_oracles.messages import Answer, Blocks, Header, read_message, write_message
 from featherbench_oracles.protocol import AS_READ, PROTOCOL, SHAPES, Engine, Reading, State, Unsupported
 from featherbench_oracles.robot import Description
+from featherbench_oracles.scenes import Scenes
 
 
 class Session:
@@ -35,6 +36,7 @@ class Session:
     def __init__(self, engine: Engine) -> None:
         self.engine = engine
         self.contacts = Contacts(engine.name, getattr(engine, "contact_solvers", {}))
+        self.scenes = Scenes(engine.name, getattr(engine, "scene_variants", {}))
         self.description: Description | None = None
         self.robot: Any = None
         self.states: Blocks | None = None
@@ -75,6 +77,7 @@ class Session:
             "relocate": self.relocate,
             "contact_problems": self.contacts.set_problems,
             "solve_contacts": self.contacts.solve,
+            "scene": self.scenes.simulate,
         }
         if header.get("op") not in operations:
             raise ValueError(f"unknown op {header.get('op')}")
@@ -87,6 +90,8 @@ class Session:
         hello = {"protocol": PROTOCOL, "engine": engine.name, "version": engine.version, "build": engine.build, "methods": methods}
         if self.contacts.solvers:
             hello["contact_solvers"] = list(self.contacts.solvers)
+        if self.scenes.variants:
+            hello["scenes"] = list(self.scenes.variants)
         if any(isinstance(function, Measured) for by_method in engine.quantities.values() for function in by_method.values()):
             return {**hello, "clock": True, "relocate": True}, {}
         timed = {name: [m for m, f in by_method.items() if isinstance(f, TimedCalls)] for name, by_method in engine.quantities.items()}

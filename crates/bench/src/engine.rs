@@ -167,6 +167,11 @@ pub trait Engine: Send + Sync {
         None
     }
 
+    /// Its simulation of scenes of bodies in contact, if it has any.
+    fn scene_engine(&self) -> Option<&dyn SceneEngine> {
+        None
+    }
+
     /// Its steps, if its forward dynamics is that of a step.
     fn stepper(&self) -> Option<&dyn Stepper> {
         None

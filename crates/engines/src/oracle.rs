@@ -1,12 +1,13 @@
 //! An engine behind the oracle protocol: one program, with one process per thread that asks.
 
 pub(crate) mod contacts;
+pub(crate) mod scenes;
 pub(crate) mod steps;
 
 use crate::{request, shape};
 use featherbench_bench::provenance::{PROGRAM, SOURCES};
 use featherbench_bench::{
-    ContactSolver, Engine, Evaluation, Identity, Import, ImportNote, NoAnswer, Quantity, Robot, RobotFile, Route, Stepper,
+    ContactSolver, Engine, Evaluation, Identity, Import, ImportNote, NoAnswer, Quantity, Robot, RobotFile, Route, SceneEngine, Stepper,
 };
 use featherbench_model::{BodyDescription, Description};
 use featherbench_protocol::{Block, Clock, Limits, Memory, Message, Process, SystemClock, VERSION};
@@ -31,6 +32,8 @@ pub struct Oracle {
     steps: Option<Steps>,
     /// Its solvers of contact problems.
     contact_solvers: Vec<String>,
+    /// Its variants of contact in scenes.
+    scenes: Vec<String>,
     command: Vec<OsString>,
     limits: Limits,
     clock: Arc<dyn Clock>,
@@ -106,8 +109,10 @@ impl Oracle {
         let steps = Steps::offered(hello.header.get("steps")).map_err(|reason| format!("hello: {reason}"))?;
         let solvers = hello.header.get("contact_solvers").cloned().unwrap_or_else(|| json!([]));
         let contact_solvers = serde_json::from_value(solvers).map_err(|error| format!("hello: contact_solvers: {error}"))?;
+        let scenes = hello.header.get("scenes").cloned().unwrap_or_else(|| json!([]));
+        let scenes = serde_json::from_value(scenes).map_err(|error| format!("hello: scenes: {error}"))?;
         let session = Session { process, model: String::new(), readback: Vec::new(), states: None, reading: None };
-        Ok(Self { identity, methods, timed_by, relocate, steps, contact_solvers, command, limits, clock, idle: Mutex::new(vec![session]) })
+        Ok(Self { identity, methods, timed_by, relocate, steps, contact_solvers, scenes, command, limits, clock, idle: Mutex::new(vec![session]) })
     }
 
     /// The same oracle under another name; the engine's own name goes into its build, where it differs.
@@ -207,6 +212,10 @@ impl Engine for Oracle {
 
     fn contact_solver(&self) -> Option<&dyn ContactSolver> {
         (!self.contact_solvers.is_empty()).then_some(self)
+    }
+
+    fn scene_engine(&self) -> Option<&dyn SceneEngine> {
+        (!self.scenes.is_empty()).then_some(self)
     }
 
     fn stepper(&self) -> Option<&dyn Stepper> {

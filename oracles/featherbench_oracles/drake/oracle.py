@@ -16,7 +16,7 @@ from featherbench_oracles.algebra import Array, skew
 from featherbench_oracles.change import CoordinateChange
 from featherbench_oracles.clock import NOTHING, TimedCalls
 from featherbench_oracles.derivatives import Differentiated
-from featherbench_oracles.drake import reading
+from featherbench_oracles.drake import reading, scenes
 from featherbench_oracles.drake.building import build
 from featherbench_oracles.drake.coordinates import change_of_velocities, rates_of_change, to_engine_q
 from featherbench_oracles.protocol import Quantities, Reading, State, mass_matrix_probe, readback_row
@@ -305,6 +305,8 @@ class Drake:
         "fd_dq": {"autodiff": DrakeRobot.aba_dq},
         "fd_dv": {"autodiff": DrakeRobot.aba_dv},
     }
+
+    scene_variants = scenes.VARIANTS
 
     def prepare(self, description: Description) -> DrakeRobot:
         """Build the robot."""

@@ -12,7 +12,7 @@ import numpy as np
 from featherbench_oracles.algebra import Array
 from featherbench_oracles.change import CoordinateChange
 from featherbench_oracles.derivatives import Differentiated
-from featherbench_oracles.mujoco import reading
+from featherbench_oracles.mujoco import reading, scenes
 from featherbench_oracles.mujoco.building import build, chains, motions
 from featherbench_oracles.mujoco.coordinates import change_of_velocities, from_wxyz, rates_of_change, to_engine_q
 from featherbench_oracles.protocol import Quantities, Reading, State, Unsupported, mass_matrix_probe, readback_row
@@ -303,6 +303,8 @@ class Mujoco:
         "fd_dq": _forward_and_centred(MujocoRobot.forward_dq),
         "fd_dv": _forward_and_centred(MujocoRobot.forward_dv),
     }
+
+    scene_variants = scenes.VARIANTS
 
     def prepare(self, description: Description) -> MujocoRobot:
         """Build the robot."""
