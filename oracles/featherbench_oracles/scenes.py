@@ -1,4 +1,4 @@
-"""Scenes: the operation `scene`, bodies of spheres and boxes over level ground."""
+"""Scenes: the operations `scene` and `scene_derivative`, bodies of spheres and boxes over level ground."""
 
 from __future__ import annotations
 
@@ -119,19 +119,58 @@ class Motion:
         Of each sample and body thirteen numbers: position, quaternion (x, y, z, w), linear and angular velocity in world axes.
     contacts : list of ndarray
         Of the last step's contacts eight numbers: the body, the other (-1 is the ground), the point, the force on the body.
-    settings : dict
-        The engine's own parameters that were used.
     """
 
     samples: list[list[Array]]
     contacts: list[Array]
+
+
+@dataclass(frozen=True)
+class Derivative:
+    """The derivative of a body's vertical motion.
+
+    Attributes
+    ----------
+    state : ndarray, shape (2,)
+        z and its rate at the end.
+    matrix : ndarray, shape (2, 2)
+        The derivative of `state` by both at the start.
+    """
+
+    state: Array
+    matrix: Array
+
+
+@dataclass(frozen=True)
+class Variant:
+    """A contact model with its solver.
+
+    Attributes
+    ----------
+    simulate : callable
+        Simulates a scene.
+    settings : dict
+        The engine's own parameters, for rows.
+    """
+
+    simulate: Callable[[Scene, Stepping], Motion]
     settings: dict[str, Any]
 
 
-# Simulates a scene.
-Simulate = Callable[[Scene, Stepping], Motion]
-# By the variant's name: a contact model and a solver.
-Variants = Mapping[str, Simulate]
+@dataclass(frozen=True)
+class DerivativeVariant:
+    """A way to differentiate a motion.
+
+    Attributes
+    ----------
+    differentiate : callable
+        `(scene, stiffness, stepping) -> Derivative`.
+    settings : dict
+        The engine's own parameters, for rows.
+    """
+
+    differentiate: Callable[[Scene, float, Stepping], Derivative]
+    settings: dict[str, Any]
 
 
 def read(scene: Any) -> Scene:
@@ -188,25 +227,47 @@ class Scenes:
     ----------
     engine : str
         The engine's name.
-    variants : mapping of str to callable
-        Simulates a scene, by the variant's name.
+    variants : mapping of str to Variant
+        By the variant's name.
+    derivatives : mapping of str to DerivativeVariant
+        The same of derivatives.
     """
 
-    def __init__(self, engine: str, variants: Variants) -> None:
-        self.engine, self.variants = engine, variants
+    def __init__(self, engine: str, variants: Mapping[str, Variant], derivatives: Mapping[str, DerivativeVariant]) -> None:
+        self.engine, self.variants, self.derivatives = engine, variants, derivatives
+
+    def hello(self) -> dict[str, Any]:
+        """Tell what the engine offers, with the settings."""
+        offered = {"scenes": self.variants, "scene_derivatives": self.derivatives}
+        return {key: {name: one.settings for name, one in table.items()} for key, table in offered.items() if table}
+
+    def _asked(self, header: Header, table: Mapping[str, Any]) -> tuple[Any, Scene, Stepping]:
+        """Read variant, scene and steps of a request."""
+        variant = header["variant"]
+        if variant not in table:
+            raise Unsupported(f"{self.engine} has no variant {variant} of contact")
+        dt, steps, every = header["dt"], header["steps"], header.get("every", 1)
+        if not (isinstance(steps, int) and isinstance(every, int) and 0 < every <= steps <= MOST_STEPS):
+            raise ValueError(f"steps and every must be whole numbers with 0 < every <= steps <= {MOST_STEPS}")
+        if not (isinstance(dt, int | float) and np.isfinite(dt) and dt > 0):
+            raise ValueError("dt must be positive and finite")
+        return table[variant], read(header["scene"]), Stepping(float(dt), steps, every)
+
+    def differentiate(self, header: Header, _blocks: Blocks) -> Answer:
+        """Differentiate the vertical motion of one body: blocks `state` of shape (2,) and `derivative` of shape (2, 2)."""
+        variant, scene, stepping = self._asked(header, self.derivatives)
+        stiffness = float(header["stiffness"])
+        if not (np.isfinite(stiffness) and stiffness > 0):
+            raise ValueError("stiffness must be positive and finite")
+        if len(scene.bodies) != 1:
+            raise Unsupported("a derivative is of a scene of one body")
+        found = variant.differentiate(scene, stiffness, stepping)
+        return {}, {"state": np.array(found.state), "derivative": np.array(found.matrix)}
 
     def simulate(self, header: Header, _blocks: Blocks) -> Answer:
         """Simulate a scene: blocks `motion` of shape (samples, bodies, 13) and `contacts` of shape (contacts, 8)."""
-        variant = header["variant"]
-        if variant not in self.variants:
-            raise Unsupported(f"{self.engine} has no variant {variant} of contact")
-        dt, steps, every = header["dt"], header["steps"], header["every"]
-        if not (isinstance(steps, int) and isinstance(every, int) and 0 < every <= steps <= MOST_STEPS):
-            raise ValueError(f"steps and every must be whole numbers with 0 < every <= steps <= {MOST_STEPS}")
-        if not (np.isfinite(dt) and dt > 0):
-            raise ValueError("dt must be positive and finite")
-        scene = read(header["scene"])
-        motion = self.variants[variant](scene, Stepping(float(dt), steps, every))
-        samples = np.array(motion.samples, dtype=float).reshape(steps // every, len(scene.bodies), 13)
+        variant, scene, stepping = self._asked(header, self.variants)
+        motion = variant.simulate(scene, stepping)
+        samples = np.array(motion.samples, dtype=float).reshape(stepping.steps // stepping.every, len(scene.bodies), 13)
         contacts = np.array(motion.contacts, dtype=float).reshape(len(motion.contacts), 8)
-        return {"settings": motion.settings}, {"motion": samples, "contacts": contacts}
+        return {}, {"motion": samples, "contacts": contacts}

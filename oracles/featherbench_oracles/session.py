@@ -36,7 +36,7 @@ class Session:
     def __init__(self, engine: Engine) -> None:
         self.engine = engine
         self.contacts = Contacts(engine.name, getattr(engine, "contact_solvers", {}))
-        self.scenes = Scenes(engine.name, getattr(engine, "scene_variants", {}))
+        self.scenes = Scenes(engine.name, getattr(engine, "scene_variants", {}), getattr(engine, "scene_derivatives", {}))
         self.description: Description | None = None
         self.robot: Any = None
         self.states: Blocks | None = None
@@ -78,6 +78,7 @@ class Session:
             "contact_problems": self.contacts.set_problems,
             "solve_contacts": self.contacts.solve,
             "scene": self.scenes.simulate,
+            "scene_derivative": self.scenes.differentiate,
         }
         if header.get("op") not in operations:
             raise ValueError(f"unknown op {header.get('op')}")
@@ -90,8 +91,7 @@ class Session:
         hello = {"protocol": PROTOCOL, "engine": engine.name, "version": engine.version, "build": engine.build, "methods": methods}
         if self.contacts.solvers:
             hello["contact_solvers"] = list(self.contacts.solvers)
-        if self.scenes.variants:
-            hello["scenes"] = list(self.scenes.variants)
+        hello.update(self.scenes.hello())
         if any(isinstance(function, Measured) for by_method in engine.quantities.values() for function in by_method.values()):
             return {**hello, "clock": True, "relocate": True}, {}
         timed = {name: [m for m, f in by_method.items() if isinstance(f, TimedCalls)] for name, by_method in engine.quantities.items()}

@@ -1,6 +1,6 @@
 //! The trait [`Engine`]: anything that answers.
 
-use crate::{ContactSolver, Import, Quantity, Robot, RobotFile, Stepper};
+use crate::{ContactSolver, Import, Quantity, Robot, RobotFile, SceneEngine, Stepper};
 use featherbench_protocol::Memory;
 use featherbench_results::EngineSource;
 use featherbench_robots::StateBatch;

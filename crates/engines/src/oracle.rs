@@ -19,6 +19,7 @@ use std::ffi::OsString;
 use std::ops::Range;
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Duration;
+use scenes::Scenes;
 use steps::Steps;
 
 /// An engine that runs in its own process.
@@ -32,8 +33,8 @@ pub struct Oracle {
     steps: Option<Steps>,
     /// Its solvers of contact problems.
     contact_solvers: Vec<String>,
-    /// Its variants of contact in scenes.
-    scenes: Vec<String>,
+    /// What it offers of scenes.
+    scenes: Scenes,
     command: Vec<OsString>,
     limits: Limits,
     clock: Arc<dyn Clock>,
@@ -109,8 +110,7 @@ impl Oracle {
         let steps = Steps::offered(hello.header.get("steps")).map_err(|reason| format!("hello: {reason}"))?;
         let solvers = hello.header.get("contact_solvers").cloned().unwrap_or_else(|| json!([]));
         let contact_solvers = serde_json::from_value(solvers).map_err(|error| format!("hello: contact_solvers: {error}"))?;
-        let scenes = hello.header.get("scenes").cloned().unwrap_or_else(|| json!([]));
-        let scenes = serde_json::from_value(scenes).map_err(|error| format!("hello: scenes: {error}"))?;
+        let scenes = Scenes::offered(&hello.header).map_err(|reason| format!("hello: {reason}"))?;
         let session = Session { process, model: String::new(), readback: Vec::new(), states: None, reading: None };
         Ok(Self { identity, methods, timed_by, relocate, steps, contact_solvers, scenes, command, limits, clock, idle: Mutex::new(vec![session]) })
     }

@@ -26,6 +26,7 @@ mod motion;
 mod scene;
 mod step;
 mod touch;
+mod variant;
 
 pub use fit::Fit;
 pub use laws::{SoftContact, box_pyramid_felt, inscribed_pyramid_felt};
@@ -34,3 +35,4 @@ pub use motion::{Motion, Push};
 pub use scene::{Body, Geometry, Scene, SceneError, Shape};
 pub use step::{OwnSolver, StepProblem, StepSolver, simulate};
 pub use touch::{Touch, touches};
+pub use variant::{Derivative, Variant};

@@ -2,7 +2,6 @@
 
 use crate::scene::SceneError;
 use nalgebra::{Quaternion, UnitQuaternion, Vector3};
-use serde_json::{Map, Value};
 
 /// Numbers of a body in a sample: position, quaternion (x, y, z, w), velocity of the centre of mass, angular velocity.
 const BODY: usize = 13;
@@ -29,8 +28,6 @@ pub struct Motion {
     samples: Vec<f64>,
     /// The contacts of the last step.
     pub pushes: Vec<Push>,
-    /// What the engine says of its own settings.
-    pub settings: Map<String, Value>,
 }
 
 impl Motion {
@@ -38,7 +35,7 @@ impl Motion {
     ///
     /// # Errors
     /// [`SceneError::Malformed`] when numbers are missing or a push is of no body.
-    pub fn new(bodies: usize, samples: Vec<f64>, pushes: &[f64], settings: Map<String, Value>) -> Result<Self, SceneError> {
+    pub fn new(bodies: usize, samples: Vec<f64>, pushes: &[f64]) -> Result<Self, SceneError> {
         let wrong = |field: &str, problem| SceneError::Malformed { field: field.into(), problem };
         if bodies == 0 || samples.is_empty() || samples.len() % (BODY * bodies) != 0 {
             return Err(wrong("motion", "must have thirteen numbers for each sample and body"));
@@ -57,7 +54,7 @@ impl Motion {
             Ok(Push { on, from, at: vector(2), force: vector(5) })
         };
         let pushes = pushes.chunks_exact(PUSH).map(push).collect::<Result<_, _>>()?;
-        Ok(Self { bodies, samples, pushes, settings })
+        Ok(Self { bodies, samples, pushes })
     }
 
     /// How many samples there are.

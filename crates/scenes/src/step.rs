@@ -14,7 +14,6 @@ use crate::scene::{Scene, SceneError};
 use crate::touch::{Touch, touches};
 use featherbench_contact::{BlockGaussSeidel, Contact, Level, Newton, Problem, Residuals, Solver};
 use nalgebra::{DMatrix, DVector, Matrix3, Quaternion, UnitQuaternion, Vector3};
-use serde_json::{Map, json};
 
 /// A step's contact problem: c = G λ + b with a normal and two tangents per contact.
 #[derive(Clone, Debug, PartialEq)]
@@ -188,11 +187,7 @@ pub fn simulate(scene: &Scene, dt: f64, steps: usize, every: usize, solver: &mut
             }
         }
     }
-    let settings = Map::from_iter([
-        ("contact".to_owned(), json!("rigid, round cone, gap/dt")),
-        ("integrator".to_owned(), json!("semi-implicit Euler")),
-    ]);
-    Motion::new(scene.bodies.len(), samples, &pushes, settings)
+    Motion::new(scene.bodies.len(), samples, &pushes)
 }
 
 /// Applies an impulse at a touch.

@@ -56,12 +56,11 @@ fn a_step_without_an_answer_is_an_error() {
 
 #[test]
 fn malformed_motions_are_refused() {
-    let empty = serde_json::Map::new;
-    assert!(Motion::new(1, vec![0.0; 12], &[], empty()).is_err());
-    assert!(Motion::new(1, vec![0.0; 13], &[0.0; 7], empty()).is_err());
-    assert!(Motion::new(1, vec![0.0; 13], &[1.0, -1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0], empty()).is_err());
-    assert!(Motion::new(1, vec![0.0; 13], &[0.0, -2.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0], empty()).is_err());
-    let good = Motion::new(1, vec![0.0; 13], &[0.0, -1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0], empty()).unwrap();
+    assert!(Motion::new(1, vec![0.0; 12], &[]).is_err());
+    assert!(Motion::new(1, vec![0.0; 13], &[0.0; 7]).is_err());
+    assert!(Motion::new(1, vec![0.0; 13], &[1.0, -1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0]).is_err());
+    assert!(Motion::new(1, vec![0.0; 13], &[0.0, -2.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0]).is_err());
+    let good = Motion::new(1, vec![0.0; 13], &[0.0, -1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0]).unwrap();
     assert!(good.is_finite() && good.pushes[0].from.is_none() && good.samples() == 1);
     assert!(good.position(1, 0).x.is_nan() && good.position(0, 1).x.is_nan());
 }

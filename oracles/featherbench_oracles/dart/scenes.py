@@ -8,7 +8,7 @@ import dartpy
 import numpy as np
 
 from featherbench_oracles.algebra import Array
-from featherbench_oracles.scenes import Body, Motion, Scene, Shape, Simulate, Stepping
+from featherbench_oracles.scenes import Body, Motion, Scene, Shape, Stepping, Variant
 
 # Of each variant the friction that its solver has.
 SOLVERS = {
@@ -136,12 +136,12 @@ def _simulate(name: str, scene: Scene, stepping: Stepping) -> Motion:
         world.step()
         if (step + 1) % stepping.every == 0:
             samples.append(_sample(nodes))
-    settings = {
-        "contact": f"complementarity problem of velocities, {SOLVERS[name]}",
-        "integrator": "semi-implicit Euler",
-        "collisions": world.getCollisionDetector().getType(),
-    }
-    return Motion(samples, _contacts(world), settings)
+    return Motion(samples, _contacts(world))
 
 
-VARIANTS: dict[str, Simulate] = {name: partial(_simulate, name) for name in SOLVERS}
+def _variant(name: str) -> Variant:
+    contact = f"complementarity problem of velocities, {SOLVERS[name]}"
+    return Variant(partial(_simulate, name), {"contact": contact, "integrator": "semi-implicit Euler", "collisions": "dart"})
+
+
+VARIANTS = {name: _variant(name) for name in SOLVERS}

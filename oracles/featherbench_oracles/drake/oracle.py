@@ -307,6 +307,7 @@ class Drake:
     }
 
     scene_variants = scenes.VARIANTS
+    scene_derivatives = scenes.DERIVATIVES
 
     def prepare(self, description: Description) -> DrakeRobot:
         """Build the robot."""

@@ -5,19 +5,26 @@ from __future__ import annotations
 from functools import partial
 
 import numpy as np
+from pydrake.autodiffutils import AutoDiffXd, InitializeAutoDiff
 from pydrake.common.eigen_geometry import Quaternion
-from pydrake.geometry import Box, HalfSpace, Sphere
+from pydrake.geometry import AddContactMaterial, Box, HalfSpace, ProximityProperties, Sphere
 from pydrake.math import RigidTransform, RotationMatrix
 from pydrake.multibody.math import SpatialForce, SpatialVelocity
-from pydrake.multibody.plant import AddMultibodyPlantSceneGraph, CoulombFriction, DiscreteContactApproximation, ExternallyAppliedSpatialForce
-from pydrake.multibody.plant import MultibodyPlant
+from pydrake.multibody.plant import (
+    AddMultibodyPlantSceneGraph,
+    CoulombFriction,
+    DiscreteContactApproximation,
+    ExternallyAppliedSpatialForce,
+    MultibodyPlant,
+    MultibodyPlantConfig,
+)
 from pydrake.multibody.tree import RigidBody, SpatialInertia, UnitInertia
-from pydrake.systems.analysis import ApplySimulatorConfig, Simulator, SimulatorConfig
+from pydrake.systems.analysis import ApplySimulatorConfig, Simulator, Simulator_, SimulatorConfig
 from pydrake.systems.framework import Context, DiagramBuilder
 
 from featherbench_oracles.algebra import Array
 from featherbench_oracles.protocol import Unsupported
-from featherbench_oracles.scenes import Motion, Scene, Simulate, Stepping
+from featherbench_oracles.scenes import Derivative, DerivativeVariant, Motion, Scene, Stepping, Variant
 
 APPROXIMATIONS = {
     "tamsi": DiscreteContactApproximation.kTamsi,
@@ -27,6 +34,8 @@ APPROXIMATIONS = {
 }
 # The accuracy that is asked of CENIC.
 ACCURACY = 1e-6
+# Drake's own settings of contact.
+DEFAULTS = MultibodyPlantConfig()
 
 
 def _build(plant: MultibodyPlant, scene: Scene) -> list[RigidBody]:
@@ -102,14 +111,56 @@ def _simulate(name: str, scene: Scene, stepping: Stepping) -> Motion:
         # Half a step beyond is before the next step of discrete time; a continuous motion ends where it is asked.
         simulator.AdvanceTo((k * stepping.every + (0.25 if discrete else 0.0)) * stepping.dt)
         samples.append(_sample(plant, context, bodies))
-    contact = "point contact, " + (name if discrete else "continuous")
+    return Motion(samples, _contacts(plant, context, bodies))
+
+
+def _variant(name: str) -> Variant:
+    discrete = name in APPROXIMATIONS
     settings = {
-        "contact": contact,
-        "penetration_allowance": 1e-3,
-        "stiction_tolerance": 1e-3,
+        "contact": "point contact, " + (name if discrete else "forces told are those of the continuous model, which has no static friction"),
         "integrator": "discrete" if discrete else f"CENIC, accuracy {ACCURACY:g}, steps up to dt",
+        "penetration_allowance": DEFAULTS.penetration_allowance,
+        "stiction_tolerance": DEFAULTS.stiction_tolerance,
     }
-    return Motion(samples, _contacts(plant, context, bodies), settings)
+    return Variant(partial(_simulate, name), settings)
 
 
-VARIANTS: dict[str, Simulate] = {name: partial(_simulate, name) for name in (*APPROXIMATIONS, "cenic")}
+def _autodiff(name: str, scene: Scene, stiffness: float, stepping: Stepping) -> Derivative:
+    """Simulate with AutoDiffXd. Two materials of twice the stiffness, one behind the other, have it once; neither dissipates."""
+    body = scene.bodies[0]
+    radius = body.shapes[0].radius
+    if radius is None or body.linear[:2].any() or body.angular.any() or scene.gravity[:2].any():
+        raise Unsupported("the derivative is of a sphere that moves up and down")
+    builder = DiagramBuilder()
+    plant, _ = AddMultibodyPlantSceneGraph(builder, time_step=stepping.dt)
+    plant.set_discrete_contact_approximation(APPROXIMATIONS[name])
+    plant.mutable_gravity_field().set_gravity_vector(scene.gravity)
+    material = ProximityProperties()
+    friction = CoulombFriction(scene.friction, scene.friction)
+    AddContactMaterial(dissipation=0.0, point_stiffness=2 * stiffness, friction=friction, properties=material)
+    material.AddProperty("material", "relaxation_time", 0.0)
+    made = plant.AddRigidBody("body", SpatialInertia(body.mass, np.zeros(3), UnitInertia(*(body.inertia / body.mass))))
+    plant.RegisterCollisionGeometry(plant.world_body(), RigidTransform(), HalfSpace(), "ground", material)
+    plant.RegisterCollisionGeometry(made, RigidTransform(), Sphere(radius), "sphere", material)
+    plant.Finalize()
+    diagram = builder.Build().ToAutoDiffXd()
+    simulator = Simulator_[AutoDiffXd](diagram)
+    plant = diagram.GetSubsystemByName(plant.get_name())
+    context = plant.GetMyMutableContextFromRoot(simulator.get_mutable_context())
+    start = InitializeAutoDiff(np.array([body.position[2], body.linear[2]]))
+    positions = np.array([AutoDiffXd(x) for x in (1, 0, 0, 0, *body.position)], dtype=object)
+    velocities = np.array([AutoDiffXd(0.0) for _ in range(6)], dtype=object)
+    positions[6], velocities[5] = start[0, 0], start[1, 0]
+    plant.SetPositions(context, positions)
+    plant.SetVelocities(context, velocities)
+    simulator.Initialize()
+    simulator.AdvanceTo((stepping.steps + 0.25) * stepping.dt)
+    end = [plant.GetPositions(context)[6], plant.GetVelocities(context)[5]]
+    return Derivative(np.array([x.value() for x in end]), np.array([x.derivatives() for x in end]))
+
+
+DERIVATIVES = {
+    f"autodiff_{name}": DerivativeVariant(partial(_autodiff, name), {"contact": f"point contact, {name}", "differences": "none: AutoDiffXd"})
+    for name in ("tamsi", "lagged")
+}
+VARIANTS = {name: _variant(name) for name in (*APPROXIMATIONS, "cenic")}

@@ -305,6 +305,7 @@ class Mujoco:
     }
 
     scene_variants = scenes.VARIANTS
+    scene_derivatives = scenes.DERIVATIVES
 
     def prepare(self, description: Description) -> MujocoRobot:
         """Build the robot."""

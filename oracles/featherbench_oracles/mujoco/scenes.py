@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 from functools import partial
-from typing import Any
 
 import mujoco
 import numpy as np
 
 from featherbench_oracles.algebra import Array
 from featherbench_oracles.protocol import Unsupported
-from featherbench_oracles.scenes import Body, Motion, Scene, Simulate, Stepping
+from featherbench_oracles.scenes import Body, Derivative, DerivativeVariant, Motion, Scene, Stepping, Variant
 
 CONES = {"pyramidal": mujoco.mjtCone.mjCONE_PYRAMIDAL, "elliptic": mujoco.mjtCone.mjCONE_ELLIPTIC}
 SOLVERS = {"pgs": mujoco.mjtSolver.mjSOL_PGS, "cg": mujoco.mjtSolver.mjSOL_CG, "newton": mujoco.mjtSolver.mjSOL_NEWTON}
@@ -76,35 +75,70 @@ def _contacts(model: mujoco.MjModel, data: mujoco.MjData, known: dict[int, int])
     return found
 
 
-def _settings(model: mujoco.MjModel, contact: Any) -> dict[str, Any]:
-    """Tell the parameters that matter."""
-    return {
-        "contact": "soft, convex; " + ("pyramidal" if model.opt.cone == mujoco.mjtCone.mjCONE_PYRAMIDAL else "elliptic") + " cone",
-        "integrator": "Euler",
-        "impratio": float(model.opt.impratio),
-        "iterations": int(model.opt.iterations),
-        "tolerance": float(model.opt.tolerance),
-        **({"solref": list(map(float, contact.solref)), "solimp": list(map(float, contact.solimp))} if contact is not None else {}),
-    }
+def _set(model: mujoco.MjModel, cone: str, solver: str, impratio: float) -> None:
+    model.opt.cone, model.opt.solver, model.opt.impratio = CONES[cone], SOLVERS[solver], impratio
 
 
 def _simulate(cone: str, solver: str, impratio: float, scene: Scene, stepping: Stepping) -> Motion:
     if scene.restitution > 0:
         raise Unsupported("MuJoCo has no coefficient of restitution")
     model, known = compiled(scene, stepping.dt)
-    model.opt.cone, model.opt.solver, model.opt.impratio = CONES[cone], SOLVERS[solver], impratio
+    _set(model, cone, solver, impratio)
     data = mujoco.MjData(model)
     _start(data, scene.bodies)
-    samples, contact = [], None
+    samples = []
     for step in range(stepping.steps):
         mujoco.mj_step(model, data)
-        if data.ncon and contact is None:
-            contact = data.contact[0]
         if (step + 1) % stepping.every == 0:
             samples.append(sample(data, len(scene.bodies)))
-    settings = _settings(model, contact)
-    return Motion(samples, _contacts(model, data, known), settings)
+    return Motion(samples, _contacts(model, data, known))
 
 
-VARIANTS: dict[str, Simulate] = {f"{cone}_{solver}": partial(_simulate, cone, solver, 1.0) for cone in CONES for solver in SOLVERS}
-VARIANTS["elliptic_newton_impratio_100"] = partial(_simulate, "elliptic", "newton", 100.0)
+def _variant(cone: str, solver: str, impratio: float) -> Variant:
+    """Make a variant. Its settings are those that a compiled model has."""
+    model, _ = compiled(Scene(np.zeros(3), 1.0, 0.0, ()), 1e-3)
+    _set(model, cone, solver, impratio)
+    settings = {
+        "contact": f"soft, convex, {cone} cone",
+        "integrator": "Euler",
+        "impratio": float(model.opt.impratio),
+        "iterations": int(model.opt.iterations),
+        "tolerance": float(model.opt.tolerance),
+        "solref": [float(x) for x in model.geom_solref[0]],
+        "solimp": [float(x) for x in model.geom_solimp[0]],
+    }
+    return Variant(partial(_simulate, cone, solver, impratio), settings)
+
+
+VARIANTS = {f"{cone}_{solver}": _variant(cone, solver, 1.0) for cone in CONES for solver in SOLVERS}
+VARIANTS["elliptic_newton_impratio_100"] = _variant("elliptic", "newton", 100.0)
+
+
+def _transitions(impedance: float, scene: Scene, stiffness: float, stepping: Stepping) -> Derivative:
+    """Multiply the transition matrices of all steps, by mjd_transitionFD with centred differences.
+
+    A negative `solref` is stiffness and damping per unit of inverse mass; the reference is scaled by 1/d^2 of the impedance d.
+    """
+    model, _ = compiled(scene, stepping.dt)
+    body = scene.bodies[0]
+    model.geom_solref[:] = [-stiffness / body.mass, 0.0]
+    model.geom_solimp[:, :2] = impedance
+    data = mujoco.MjData(model)
+    _start(data, scene.bodies)
+    chain, size = np.eye(12), 12
+    for _ in range(stepping.steps):
+        step = np.zeros((size, size))
+        mujoco.mjd_transitionFD(model, data, 1e-6, True, step, None, None, None)
+        chain = step @ chain
+        mujoco.mj_step(model, data)
+    # The third position and the third velocity: the height.
+    rows = [2, 8]
+    return Derivative(np.array([data.qpos[2], data.qvel[2]]), chain[np.ix_(rows, rows)])
+
+
+def _derivative(impedance: float) -> DerivativeVariant:
+    settings = {"contact": "soft, convex", "differences": "mjd_transitionFD, centred, 1e-6", "impedance": impedance}
+    return DerivativeVariant(partial(_transitions, impedance), settings)
+
+
+DERIVATIVES = {"transition_fd": _derivative(0.9999)}
