@@ -31,7 +31,7 @@ fn sweeps_need_more_than_their_cap_under_a_heavy_ball() {
 fn every_scene_has_its_answer() {
     let mut judged = 0;
     for question in library::all() {
-        for (measure, value) in question.measures.iter().zip(values(&question, 1e-3, OwnSolver::newton())) {
+        for (measure, value) in question.measures.iter().zip(values(&question, question.finest(), OwnSolver::newton())) {
             let error = measure.error(value);
             println!("{:<18} {:<18} {:>14.6e} exact {:>12.6e} error {:.1e}", question.scene.name, measure.quantity, value, measure.exact, error);
             assert!(error <= allowed(measure.quantity), "{} {}: {value:e}, exact {:e}", question.scene.name, measure.quantity, measure.exact);

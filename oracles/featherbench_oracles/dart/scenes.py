@@ -36,7 +36,8 @@ def _add(node: dartpy.dynamics.BodyNode, shape: Shape, scene: Scene) -> None:
     added.createCollisionAspect()
     dynamics = added.createDynamicsAspect()
     dynamics.setFrictionCoeff(scene.friction)
-    dynamics.setRestitutionCoeff(scene.restitution)
+    # DART multiplies the coefficients of both shapes.
+    dynamics.setRestitutionCoeff(float(np.sqrt(scene.restitution)))
     placed = dartpy.math.Isometry3()
     placed.set_translation(shape.at)
     added.setRelativeTransform(placed)

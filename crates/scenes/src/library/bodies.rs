@@ -1,6 +1,6 @@
 //! Single bodies: inclines, a sphere that begins to roll, Painlevé's rod, a block that rocks, a ball that bounces.
 
-use super::{Measure, Question};
+use super::{Measure, Question, SHORT_STEPS, STEPS};
 use crate::scene::{Body, Scene};
 use nalgebra::Vector3;
 use serde::Serialize;
@@ -79,6 +79,7 @@ impl Incline {
         Question {
             scene: Scene { name, gravity: gravity.into(), friction: self.friction, restitution: 0.0, bodies: vec![sled] },
             duration: INCLINE,
+            dts: STEPS,
             measures: vec![measure, lift],
             params: json!(self),
         }
@@ -131,6 +132,7 @@ impl Sliding {
                 bodies: vec![ball],
             },
             duration: self.duration,
+            dts: STEPS,
             measures: vec![
                 Measure::new("rolling_speed", "m/s", rolling, rolling, |motion| motion.linear(motion.last(), 0).x),
                 Measure::new("way", "m", way, way, |motion| motion.position(motion.last(), 0).x),
@@ -186,6 +188,7 @@ impl Rod {
                 bodies: vec![rod],
             },
             duration: 0.02,
+            dts: STEPS,
             measures: vec![
                 Measure::new("tip_slip", "1", 0.0, 1.0, move |motion| {
                     let last = motion.last();
@@ -269,6 +272,7 @@ impl Block {
                 bodies: vec![block],
             },
             duration: 0.08,
+            dts: SHORT_STEPS,
             measures: vec![Measure::new("energy_ratio", "1", self.ratio().powi(2), 1.0, move |motion| {
                 let last = motion.last();
                 let (linear, angular) = (motion.linear(last, 0), motion.angular(last, 0));
@@ -309,6 +313,7 @@ impl Bounce {
             scene: Scene { name: "bouncing_ball".into(), gravity: [0.0, 0.0, -gravity], friction: 0.5, restitution, bodies: vec![ball] },
             // Half of the flight after it.
             duration: lands * (1.0 + restitution / 2.0),
+            dts: STEPS,
             measures: vec![Measure::new("felt_restitution", "1", restitution, 1.0, move |motion| {
                 let last = motion.last();
                 let energy = gravity * (motion.position(last, 0).z - radius) + motion.linear(last, 0).norm_squared() / 2.0;

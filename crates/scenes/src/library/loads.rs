@@ -1,6 +1,6 @@
 //! Loads that are shared: a box on balls, a stack of balls, a table on four legs.
 
-use super::{Measure, Question};
+use super::{Measure, Question, STEPS};
 use crate::motion::Motion;
 use crate::scene::{Body, Geometry, Scene, Shape};
 use nalgebra::{DMatrix, DVector, Vector3};
@@ -68,6 +68,7 @@ impl BoxOnBalls {
                 bodies,
             },
             duration: DURATION,
+            dts: STEPS,
             measures: vec![
                 Measure::new("box_acceleration", "m/s²", exact, exact, move |motion| by_way(motion.position(motion.last(), 0).x)),
                 Measure::new("ball_acceleration", "m/s²", exact / 2.0, exact / 2.0, move |motion| by_way(middle_of(motion))),
@@ -116,6 +117,7 @@ impl Stack {
                 bodies,
             },
             duration: 0.4,
+            dts: STEPS,
             measures: vec![
                 Measure::new("load_error", "1", 0.0, 1.0, move |motion| {
                     let off = |k: usize| {
@@ -191,6 +193,7 @@ impl Table {
                 bodies: vec![table],
             },
             duration: 0.4,
+            dts: STEPS,
             measures: vec![
                 Measure::new("wrench_error", "1", 0.0, 1.0, move |motion| {
                     let centre = motion.position(motion.last(), 0);

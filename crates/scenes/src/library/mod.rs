@@ -56,6 +56,8 @@ pub struct Question {
     pub scene: Scene,
     /// s.
     pub duration: f64,
+    /// The steps at which an answer is asked, s, the finest last.
+    pub dts: [f64; 3],
     /// What is measured.
     pub measures: Vec<Measure>,
     /// The scene's parameters, for rows.
@@ -63,11 +65,21 @@ pub struct Question {
 }
 
 impl Question {
+    /// The finest step, s.
+    pub fn finest(&self) -> f64 {
+        self.dts[self.dts.len() - 1]
+    }
+
     /// How many steps of dt the duration has.
     pub fn steps(&self, dt: f64) -> usize {
         (self.duration / dt).round() as usize
     }
 }
+
+/// The usual steps, s.
+const STEPS: [f64; 3] = [4e-3, 2e-3, 1e-3];
+/// Those of a short scene with an impact, s: it falls on any part of a step, and what that changes must be small beside the scene.
+const SHORT_STEPS: [f64; 3] = [1e-3, 5e-4, 2e-4];
 
 /// Headings of sliding inclines, as parts of a right angle: 24ths.
 const HEADINGS: [u8; 7] = [0, 4, 8, 12, 16, 20, 24];
