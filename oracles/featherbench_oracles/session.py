@@ -23,6 +23,7 @@ from featherbench_oracles.messages import Answer, Blocks, Header, read_message, 
 from featherbench_oracles.protocol import AS_READ, PROTOCOL, SHAPES, Engine, Reading, State, Unsupported
 from featherbench_oracles.robot import Description
 from featherbench_oracles.rods import Rods
+from featherbench_oracles.scenes import Scenes
 from featherbench_oracles.semidefinite import SemidefiniteLeastSquares
 
 
@@ -41,6 +42,7 @@ class Session:
         self.loops = Loops(engine)
         self.semidefinite = SemidefiniteLeastSquares(engine.name, getattr(engine, "semidefinite_solvers", {}))
         self.rods = Rods(engine.name, getattr(engine, "rods", {}))
+        self.scenes = Scenes(engine.name, getattr(engine, "scene_variants", {}), getattr(engine, "scene_derivatives", {}))
         self.description: Description | None = None
         self.robot: Any = None
         self.states: Blocks | None = None
@@ -86,6 +88,8 @@ class Session:
             "loop_motion": self.loops.motion,
             "semidefinite_least_squares": self.semidefinite.solve,
             "rod": self.rods.solve,
+            "scene": self.scenes.simulate,
+            "scene_derivative": self.scenes.differentiate,
         }
         if header.get("op") not in operations:
             raise ValueError(f"unknown op {header.get('op')}")
@@ -102,7 +106,7 @@ class Session:
             "semidefinite_least_squares": self.semidefinite.solvers,
             "rods": self.rods.elements,
         }
-        hello |= self.loops.hello()
+        hello |= self.loops.hello() | self.scenes.hello()
         hello |= {key: list(solvers) for key, solvers in listed.items() if solvers}
         if any(isinstance(function, Measured) for by_method in engine.quantities.values() for function in by_method.values()):
             return {**hello, "clock": True, "relocate": True}, {}

@@ -1,6 +1,6 @@
 //! The trait [`Engine`]: anything that answers.
 
-use crate::{ContactSolver, Import, LoopSolver, Quantity, Robot, RobotFile, RodSolver, SemidefiniteSolver, Stepper};
+use crate::{ContactSolver, Import, LoopSolver, Quantity, Robot, RobotFile, RodSolver, SceneEngine, SemidefiniteSolver, Stepper};
 use featherbench_protocol::Memory;
 use featherbench_results::EngineSource;
 use featherbench_robots::StateBatch;
@@ -179,6 +179,11 @@ pub trait Engine: Send + Sync {
 
     /// Its elastic rods, if it has any.
     fn rod_solver(&self) -> Option<&dyn RodSolver> {
+        None
+    }
+
+    /// Its simulation of scenes of bodies in contact, if it has any.
+    fn scene_engine(&self) -> Option<&dyn SceneEngine> {
         None
     }
 

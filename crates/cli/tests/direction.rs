@@ -42,6 +42,13 @@ const ALLOWED: &[(&str, &[&str])] = &[
         ],
     ),
     ("studies", &["spatial", "model", "robots", "dynamics", "contact", "constrained", "continua", "hybrid", "results", "report", "bench"]),
+    ("scenes", &["contact"]),
+    ("results", &[]),
+    ("report", &["results"]),
+    ("protocol", &["spatial", "model"]),
+    ("bench", &["spatial", "model", "robots", "formats", "dynamics", "scenes", "results", "protocol"]),
+    ("engines", &["spatial", "model", "robots", "formats", "dynamics", "scenes", "results", "protocol", "bench"]),
+    ("studies", &["spatial", "model", "robots", "dynamics", "contact", "constrained", "hybrid", "scenes", "results", "report", "bench"]),
     ("cli", &["spatial", "model", "robots", "formats", "dynamics", "constrained", "results", "report", "bench", "engines", "studies"]),
 ];
 

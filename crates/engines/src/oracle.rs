@@ -3,6 +3,7 @@
 pub(crate) mod contacts;
 pub(crate) mod loops;
 pub(crate) mod rods;
+pub(crate) mod scenes;
 mod semidefinite;
 pub(crate) mod steps;
 
@@ -10,13 +11,14 @@ use crate::{request, shape};
 use featherbench_bench::provenance::{PROGRAM, SOURCES};
 use featherbench_bench::{
     ContactSolver, Engine, Evaluation, Identity, Import, ImportNote, LoopSolver, NoAnswer, Quantity, Robot, RobotFile, RodSolver, Route,
-    SemidefiniteSolver, Stepper,
+    SceneEngine, SemidefiniteSolver, Stepper,
 };
 use featherbench_model::{BodyDescription, Description};
 use featherbench_protocol::{Block, Clock, Limits, Memory, Message, Process, SystemClock, VERSION};
 use featherbench_results::EngineSource;
 use featherbench_robots::StateBatch;
 use loops::Loops;
+use scenes::Scenes;
 use serde_json::{Value, json};
 use std::collections::BTreeMap;
 use std::ffi::OsString;
@@ -44,6 +46,8 @@ pub struct Oracle {
     semidefinite: Vec<String>,
     /// Its elements of elastic rods.
     rods: Vec<String>,
+    /// What it offers of scenes.
+    scenes: Scenes,
     command: Vec<OsString>,
     limits: Limits,
     clock: Arc<dyn Clock>,
@@ -118,6 +122,7 @@ impl Oracle {
         let relocate = hello.header.get("relocate").and_then(Value::as_bool).unwrap_or(false);
         let steps = Steps::offered(hello.header.get("steps")).map_err(|reason| format!("hello: {reason}"))?;
         let loops = Loops::offered(hello.header.get("loops")).map_err(|reason| format!("hello: {reason}"))?;
+        let scenes = Scenes::offered(&hello.header).map_err(|reason| format!("hello: {reason}"))?;
         let listed = |key: &str| -> Result<Vec<String>, String> {
             let names = hello.header.get(key).cloned().unwrap_or_else(|| json!([]));
             serde_json::from_value(names).map_err(|error| format!("hello: {key}: {error}"))
@@ -136,6 +141,7 @@ impl Oracle {
             contact_relaxations,
             semidefinite,
             rods,
+            scenes,
             command,
             limits,
             clock,
@@ -252,6 +258,10 @@ impl Engine for Oracle {
 
     fn rod_solver(&self) -> Option<&dyn RodSolver> {
         (!self.rods.is_empty()).then_some(self)
+    }
+
+    fn scene_engine(&self) -> Option<&dyn SceneEngine> {
+        (!self.scenes.is_empty()).then_some(self)
     }
 
     fn stepper(&self) -> Option<&dyn Stepper> {

@@ -10,6 +10,7 @@
 //! - `contact`: what do solvers, laws and integrators answer where the answer is known?
 //! - `continuum`: what do discretised rods and strings answer where the answer is known?
 //! - [`ContactTiming`]: how long do solvers take for the contacts of standing robots, at the same residual?
+//! - `scenes`: what do engines make of bodies in contact whose motion is known?
 //! - [`Steps`]: how does the acceleration of a step approach the true one, and how do steps change the energy?
 //! - [`OperationCounts`]: are the counts of the sparse algorithms the integers of the theory?
 //! - [`Scaling`]: what do sparsity and errors become as robots grow?
@@ -30,6 +31,7 @@ mod operations;
 mod repeatability;
 mod reproductions;
 mod scaling;
+mod scenes;
 mod steps;
 mod timing;
 
@@ -74,6 +76,7 @@ const STUDIES: &[Entry] = &[
     Entry { name: "derivatives", make: derivatives::of_suite, sections: derivatives::section::sections },
     Entry { name: "contact", make: contact::of_suite, sections: contact::section::sections },
     Entry { name: "continuum", make: continuum::of_suite, sections: continuum::section::sections },
+    Entry { name: "scenes", make: scenes::of_suite, sections: scenes::section::sections },
     Entry { name: "steps", make: steps::of_suite, sections: steps::section::sections },
     Entry { name: "operations", make: operations::of_suite, sections: no_section },
     Entry { name: "scaling", make: scaling::of_suite, sections: scaling::section::sections },

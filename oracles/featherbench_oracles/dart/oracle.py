@@ -11,7 +11,7 @@ from dartpy import dynamics
 from featherbench_oracles.algebra import Array
 from featherbench_oracles.change import CoordinateChange
 from featherbench_oracles.clock import TimedCalls
-from featherbench_oracles.dart import loops, reading
+from featherbench_oracles.dart import loops, reading, scenes
 from featherbench_oracles.dart.building import build
 from featherbench_oracles.dart.coordinates import AXES, change_of_velocities, to_engine_q
 from featherbench_oracles.protocol import Quantities, Reading, State, mass_matrix_probe, readback_row
@@ -204,6 +204,7 @@ class Dart:
     loop_mechanics = loops.DartLoops
     loop_accelerations = loops.ACCELERATIONS
     loop_motions = tuple(loops.MOTIONS)
+    scene_variants = scenes.VARIANTS
 
     def prepare(self, description: Description) -> DartRobot:
         """Build the robot. DART has no armature."""

@@ -16,7 +16,7 @@ from featherbench_oracles.algebra import Array, skew
 from featherbench_oracles.change import CoordinateChange
 from featherbench_oracles.clock import NOTHING, TimedCalls
 from featherbench_oracles.derivatives import Differentiated
-from featherbench_oracles.drake import loops, reading
+from featherbench_oracles.drake import loops, reading, scenes
 from featherbench_oracles.drake.building import build
 from featherbench_oracles.drake.coordinates import change_of_velocities, rates_of_change, to_engine_q
 from featherbench_oracles.drake.rods import RODS
@@ -311,6 +311,8 @@ class Drake:
     loop_mechanics = loops.DrakeLoops
     loop_accelerations = loops.ACCELERATIONS
     loop_motions = tuple(loops.MOTIONS)
+    scene_variants = scenes.VARIANTS
+    scene_derivatives = scenes.DERIVATIVES
 
     def prepare(self, description: Description) -> DrakeRobot:
         """Build the robot."""

@@ -12,7 +12,7 @@ import numpy as np
 from featherbench_oracles.algebra import Array
 from featherbench_oracles.change import CoordinateChange
 from featherbench_oracles.derivatives import Differentiated
-from featherbench_oracles.mujoco import holding, reading
+from featherbench_oracles.mujoco import holding, reading, scenes
 from featherbench_oracles.mujoco.building import build, chains, motions
 from featherbench_oracles.mujoco.coordinates import change_of_velocities, from_wxyz, rates_of_change, to_engine_q
 from featherbench_oracles.mujoco.rods import RODS
@@ -309,6 +309,8 @@ class Mujoco:
     loop_mechanics = holding.MujocoLoops
     loop_accelerations = holding.ACCELERATIONS
     loop_motions = tuple(holding.MOTIONS)
+    scene_variants = scenes.VARIANTS
+    scene_derivatives = scenes.DERIVATIVES
 
     def prepare(self, description: Description) -> MujocoRobot:
         """Build the robot."""

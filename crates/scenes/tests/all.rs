@@ -1,0 +1,5 @@
+//! All tests of the crate: one program, which is linked once.
+
+mod answers;
+mod laws;
+mod refusals;

@@ -1,0 +1,282 @@
+//! Section: what engines make of scenes whose motion is known.
+
+use super::drawing::drawing;
+use super::{BOUNCE, STUDY};
+use featherbench_report::numbers::short;
+use featherbench_report::{Overview, Section, opener};
+use featherbench_results::{Row, RunInfo, Verdict};
+use featherbench_scenes::library::{BoxOnBalls, Incline, Rod, Table};
+use featherbench_scenes::{OwnSolver, Question, simulate};
+use maud::{Markup, html};
+use serde::Serialize;
+
+/// A variant with its points.
+#[derive(Clone, Serialize)]
+struct Line<'a> {
+    engine: &'a str,
+    method: String,
+    points: Vec<(f64, f64)>,
+}
+
+/// Errors of a number of a scene over the steps.
+#[derive(Serialize)]
+struct Errors<'a> {
+    question: String,
+    lines: Vec<Line<'a>>,
+}
+
+/// What the section draws.
+#[derive(Serialize)]
+struct Figures<'a> {
+    /// Heading, °, and the felt friction over μ; variants of an engine that feel alike are one line.
+    rose: Vec<Line<'a>>,
+    errors: Vec<Errors<'a>>,
+    /// Of each way and stiffness: step, error of the derivative.
+    bounce: Vec<Line<'a>>,
+}
+
+/// Makes the section, if the run has rows of the study.
+pub(crate) fn sections<'a>(_: &RunInfo, rows: &'a [Row], overview: &Overview<'a>) -> Vec<Section> {
+    let rows: Vec<&Row> = rows.iter().filter(|row| row.study == STUDY).collect();
+    let Some(first) = rows.first() else { return Vec::new() };
+    let chunk = overview.chunk_of(first);
+    let figures = Figures { rose: rose(&rows), errors: errors(&rows), bounce: bounce(&rows) };
+    let section = Section { script: include_str!("section/figures.js"), ..Section::new("scenes", "Scenes", body(&rows, &figures, &chunk)) };
+    vec![section.with_data(&figures)]
+}
+
+/// A number of a row's parameters.
+fn param(row: &Row, path: &str) -> Option<f64> {
+    serde_json::from_str::<serde_json::Value>(&row.params).ok()?.pointer(path)?.as_f64()
+}
+
+/// The rows of a number at the finest step of its scene: the last of several.
+fn finest<'a, 'b>(rows: &'b [&'a Row], quantity: &'b str, metric: &'b str) -> impl Iterator<Item = &'a Row> + 'b {
+    let of: Vec<&'a Row> = rows.iter().filter(|row| row.quantity == quantity && row.metric == metric).copied().collect();
+    let next: Vec<Option<String>> = of.iter().skip(1).map(|row| Some(row.cell.clone())).chain([None]).collect();
+    of.into_iter().zip(next).filter(|(row, next)| next.as_ref() != Some(&row.cell)).map(|(row, _)| row)
+}
+
+fn rose<'a>(rows: &[&'a Row]) -> Vec<Line<'a>> {
+    let mut lines: Vec<Line> = Vec::new();
+    for row in finest(rows, "felt_friction", "value") {
+        let (Some(heading), Some(value)) = (param(row, "/scene/heading"), row.value) else { continue };
+        let point = (heading.to_degrees(), value);
+        match lines.iter_mut().find(|line| line.engine == row.engine && line.method == row.method) {
+            Some(line) => line.points.push(point),
+            None => lines.push(Line { engine: &row.engine, method: row.method.clone(), points: vec![point] }),
+        }
+    }
+    // Variants of one engine that differ by less than the width of a line are drawn once.
+    let mut groups: Vec<(Line, usize)> = Vec::new();
+    for line in lines {
+        let alike = |other: &Line| {
+            other.engine == line.engine
+                && other.points.len() == line.points.len()
+                && other.points.iter().zip(&line.points).all(|(a, b)| (a.1 - b.1).abs() < 0.03)
+        };
+        match groups.iter_mut().find(|(other, _)| alike(other)) {
+            Some((_, count)) => *count += 1,
+            None => groups.push((line, 0)),
+        }
+    }
+    let named = |(line, more): (Line<'a>, usize)| match more {
+        0 => line,
+        more => Line { method: format!("{} and {more} more", line.method), ..line },
+    };
+    groups.into_iter().map(named).collect()
+}
+
+/// Which numbers are plotted: a scene's own name where it has variants of it, and the number.
+fn question_of(row: &Row) -> String {
+    format!("{} · {}", row.family, row.quantity)
+}
+
+fn errors<'a>(rows: &[&'a Row]) -> Vec<Errors<'a>> {
+    let mut found: Vec<Errors> = Vec::new();
+    for row in rows.iter().filter(|row| row.metric == "error") {
+        let (Some(dt), Some(value)) = (param(row, "/dt"), row.value) else { continue };
+        let question = question_of(row);
+        let at = found.iter().position(|errors| errors.question == question).unwrap_or_else(|| {
+            found.push(Errors { question, lines: Vec::new() });
+            found.len() - 1
+        });
+        let lines = &mut found[at].lines;
+        match lines.iter_mut().find(|line| line.engine == row.engine && line.method == row.method) {
+            Some(line) => line.points.push((dt, value)),
+            None => lines.push(Line { engine: &row.engine, method: row.method.clone(), points: vec![(dt, value)] }),
+        }
+    }
+    found
+}
+
+fn bounce<'a>(rows: &[&'a Row]) -> Vec<Line<'a>> {
+    let mut lines: Vec<Line> = Vec::new();
+    for row in rows.iter().filter(|row| row.quantity == BOUNCE && row.metric == "derivative_error") {
+        let (Some(dt), Some(stiffness), Some(value)) = (param(row, "/dt"), param(row, "/stiffness"), row.value) else { continue };
+        let method = format!("{}, k = {}", row.method, short(stiffness));
+        match lines.iter_mut().find(|line| line.engine == row.engine && line.method == method) {
+            Some(line) => line.points.push((dt, value)),
+            None => lines.push(Line { engine: &row.engine, method, points: vec![(dt, value)] }),
+        }
+    }
+    lines
+}
+
+/// "engine variant", and "engine variant 0.71" beside it.
+fn named(row: &Row) -> String {
+    format!("{} {}", row.engine, row.method)
+}
+
+fn valued(row: &Row) -> String {
+    format!("{} {}", named(row), row.value.map_or_else(|| "–".into(), short))
+}
+
+/// The columns of the table: a scene, a number, and words.
+const COLUMNS: [(&str, &str, &str); 12] = [
+    ("incline_0", "felt_friction", "friction along x"),
+    ("incline_45", "felt_friction", "friction at 45°"),
+    ("incline_0", "lift", "lift of what slides, m"),
+    ("incline_sticking", "creep", "creep of what sticks, m/s"),
+    ("sliding_sphere", "rolling_speed", "speed of a rolling sphere"),
+    ("sliding_sphere", "way", "its way"),
+    ("box_on_balls", "box_acceleration", "box on balls"),
+    ("stack_10", "load_error", "stack 10 : 1"),
+    ("stack_1000", "load_error", "stack 1000 : 1"),
+    ("rocking_block", "energy_ratio", "rocking block"),
+    ("table", "wrench_error", "table"),
+    ("bouncing_ball", "felt_restitution", "restitution"),
+];
+
+fn body(rows: &[&Row], figures: &Figures, chunk: &str) -> Markup {
+    let count = |verdict| rows.iter().filter(|row| row.verdict == verdict).count();
+    let laws: Vec<&&Row> = rows.iter().filter(|row| row.metric == "law_error" && row.verdict == Verdict::Pass).collect();
+    let diagonal: Vec<String> = figures.rose.iter().filter_map(|line| felt_at(line, 45.0)).collect();
+    let lifted = largest(finest(rows, "lift", "value").filter(|row| row.family == "incline_0"), 3, 1e-4);
+    let creeping = largest(finest(rows, "creep", "value"), 3, 1e-6);
+    let slipping = finest(rows, "tip_slip", "value").map(valued).collect::<Vec<_>>();
+    let heavy = largest(finest(rows, "load_error", "error").filter(|row| row.family == "stack_1000"), 3, 1e-2);
+    let derivative = rows.iter().filter(|row| row.quantity == BOUNCE && row.metric == "derivative_error" && row.engine != "featherbench");
+    let (nearest, farthest) = ends(derivative.copied());
+    html! {
+        section #scenes {
+            h2 { "Scenes" }
+            p.lead {
+                b { (count(Verdict::Pass)) " of " (count(Verdict::Pass) + count(Verdict::Fail)) " judged numbers are as known" }
+                @if !laws.is_empty() { "; " (laws.len()) " of them are laws of other engines' contact models" } "."
+            }
+            ul {
+                @if !diagonal.is_empty() { li { "Friction that a sled feels at 45° to the axes, over μ: " (diagonal.join("; ")) ". Coulomb's law says 1." } }
+                @if !lifted.is_empty() { li { "What slides is lifted off level ground, mean height in m: " (lifted.join("; ")) ". A convex model asks for v" sub { "n" } " = μ|v" sub { "t" } "|." } }
+                @if !creeping.is_empty() { li { "What should stick creeps, m/s: " (creeping.join("; ")) "." } }
+                @if !heavy.is_empty() { li { "Below a ball of a thousand times the mass, error of the loads 0.4 s after the start: " (heavy.join("; ")) "." } }
+                @if !slipping.is_empty() {
+                    li { "Painlevé's rod where no force obeys the laws, tip's speed after 20 ms over that before (rigid: 0, it stops at once): " (slipping.join("; ")) "." }
+                }
+                @if let (Some(nearest), Some(farthest)) = (nearest, farthest) {
+                    li { "Derivative through an elastic bounce, relative error: " (valued(nearest)) " at best, " (valued(farthest)) " at worst. Ours is exact to rounding." }
+                }
+            }
+            (heat(rows, chunk))
+            div.pair {
+                div #scenes-rose.plot role="group" aria-label="Rose of the friction that a sled feels, over its heading" {}
+                div {
+                    p { label for="scenes-question" { "error of " } select #scenes-question {} }
+                    div #scenes-errors.plot role="group" aria-label="Plot of errors against the step, per engine and variant" {}
+                }
+            }
+            div.pair {
+                div #scenes-bounce.plot role="group" aria-label="Plot of the error of the derivative of a bounce against the step" {}
+                div { (views()) }
+            }
+        }
+    }
+}
+
+/// "engine variant felt" at a heading.
+fn felt_at(line: &Line, heading: f64) -> Option<String> {
+    // Headings are multiples of 15°, up to rounding.
+    let (_, felt) = line.points.iter().find(|point| (point.0 - heading).abs() < 1.0)?;
+    Some(format!("{} {} {}", line.engine, line.method, short(*felt)))
+}
+
+/// The `count` largest values above a level, in words.
+fn largest<'a>(rows: impl Iterator<Item = &'a Row>, count: usize, level: f64) -> Vec<String> {
+    let mut rows: Vec<(&Row, f64)> = rows.filter_map(|row| Some((row, row.value?))).filter(|(_, value)| *value > level).collect();
+    rows.sort_by(|a, b| b.1.total_cmp(&a.1));
+    rows.into_iter().take(count).map(|(row, _)| valued(row)).collect()
+}
+
+/// The rows with the smallest and the largest value.
+fn ends<'a>(rows: impl Iterator<Item = &'a Row>) -> (Option<&'a Row>, Option<&'a Row>) {
+    let mut rows: Vec<(&Row, f64)> = rows.filter_map(|row| Some((row, row.value?))).collect();
+    rows.sort_by(|a, b| a.1.total_cmp(&b.1));
+    (rows.first().map(|row| row.0), rows.last().map(|row| row.0))
+}
+
+/// Errors at the finest step: a line for each variant, a column for each question. Below an error stands the bias, where the step does not
+/// remove it.
+fn heat(rows: &[&Row], chunk: &str) -> Markup {
+    let mut variants: Vec<(&str, &str)> = Vec::new();
+    for row in rows.iter().filter(|row| row.quantity != BOUNCE) {
+        if !variants.contains(&(&row.engine, &row.method)) {
+            variants.push((&row.engine, &row.method));
+        }
+    }
+    let value = |engine: &str, method: &str, scene: &str, quantity: &str, metric: &str| {
+        let same = |row: &&&Row| {
+            row.engine == engine && row.method == method && row.family == scene && row.quantity == quantity && row.metric == metric
+        };
+        // By falling steps: the last is the finest.
+        rows.iter().rfind(same)?.value
+    };
+    html! {
+        div.scroll {
+            table.compact {
+                caption { "Errors at the finest step (1 ms; the block's: 0.2 ms) against rigid mechanics. A dot marks a bias: at least half of the error stays at dt → 0." }
+                thead { tr { th scope="col" { "engine" } th scope="col" { "variant" } @for (_, _, words) in COLUMNS { th.number scope="col" { (words) } } } }
+                tbody {
+                    @for (engine, method) in variants {
+                        tr {
+                            th scope="row" { (opener(chunk, &[("study", STUDY), ("engine", engine), ("method", method)], engine)) }
+                            td { (method) }
+                            @for (scene, quantity, _) in COLUMNS {
+                                @match value(engine, method, scene, quantity, "error") {
+                                    None => td.number { "–" }
+                                    Some(error) => {
+                                        @let stays = value(engine, method, scene, quantity, "bias").is_some_and(|bias| error > 1e-9 && bias >= error / 2.0);
+                                        td.number style=(shade(error)) { (short(error)) @if stays { " •" } }
+                                    }
+                                }
+                            }
+                        }
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// A darker ground for a larger error, by decades from 1e-6 to 1e-1.
+fn shade(error: f64) -> String {
+    let level = (error.max(1e-12).log10() + 6.0).clamp(0.0, 5.0).round();
+    let ink = if level > 3.0 { "d-ink-far" } else { "d-ink" };
+    format!("background: var(--d{level}); color: var(--{ink})")
+}
+
+/// Drawings of scenes, by our own step.
+fn views() -> Markup {
+    let shown: [(Question, &str); 4] = [
+        (Table::default().question(), "A table whose load is not in the middle"),
+        (Incline { heading: 0.0, ..Incline::sliding() }.question(), "A sled that slides: each force is on the side of its cone"),
+        (BoxOnBalls::default().question(), "A box that is pulled over balls"),
+        (Rod::default().question(), "Painlevé's rod after the impact without collision"),
+    ];
+    html! {
+        @for (question, caption) in &shown {
+            // A scene that cannot be moved is not drawn; its rows say why.
+            @if let Ok(motion) = simulate(&question.scene, 2e-3, 5, 5, &mut OwnSolver::newton()) { (drawing(question, &motion, caption)) }
+        }
+        p.quiet { "Cones: friction. Arrows: forces of one step of ours, the longest to scale." }
+    }
+}
