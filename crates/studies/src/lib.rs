@@ -8,6 +8,8 @@
 //! - [`Repeatability`]: does the same question have the same answer?
 //! - [`Reproductions`]: do the engines' known deviations still exist, and in their known size?
 //! - `contact`: what do solvers, laws and integrators answer where the answer is known?
+//! - `loops`: how right are engines' accelerations and motions of robots with loops, and what do they cost?
+//! - `relaxation`: does another solver find the velocities of our convex relaxation?
 //! - [`ContactTiming`]: how long do solvers take for the contacts of standing robots, at the same residual?
 //! - [`Steps`]: how does the acceleration of a step approach the true one, and how do steps change the energy?
 //! - [`OperationCounts`]: are the counts of the sparse algorithms the integers of the theory?
@@ -24,7 +26,9 @@ mod derivatives;
 mod growth;
 pub mod import;
 mod known;
+mod loops;
 mod operations;
+mod relaxation;
 mod repeatability;
 mod reproductions;
 mod scaling;
@@ -71,6 +75,8 @@ const STUDIES: &[Entry] = &[
     Entry { name: "conditioning", make: conditioning::of_suite, sections: conditioning::section::sections },
     Entry { name: "derivatives", make: derivatives::of_suite, sections: derivatives::section::sections },
     Entry { name: "contact", make: contact::of_suite, sections: contact::section::sections },
+    // Its rows are in the verdict and in the tables of rows.
+    Entry { name: "relaxation", make: relaxation::of_suite, sections: no_section },
     Entry { name: "steps", make: steps::of_suite, sections: steps::section::sections },
     Entry { name: "operations", make: operations::of_suite, sections: no_section },
     Entry { name: "scaling", make: scaling::of_suite, sections: scaling::section::sections },
@@ -78,6 +84,7 @@ const STUDIES: &[Entry] = &[
     Entry { name: "repeatability", make: repeatability::of_suite, sections: no_section },
     // Its rows are in the section of the study `scaling`.
     Entry { name: "growth", make: growth::of_suite, sections: no_section },
+    Entry { name: "loops", make: loops::of_suite, sections: loops::section::sections },
     Entry { name: "contact_timing", make: contact_timing::of_suite, sections: contact_timing::section::sections },
     Entry { name: "timing", make: timing::of_suite, sections: timing::section::sections },
 ];
