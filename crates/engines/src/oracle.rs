@@ -2,7 +2,7 @@
 
 pub(crate) mod contacts;
 pub(crate) mod loops;
-mod semidefinite;
+pub(crate) mod semidefinite;
 pub(crate) mod steps;
 
 use crate::{request, shape};
