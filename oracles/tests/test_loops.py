@@ -103,7 +103,7 @@ def test_a_four_bar_swings(oracles: Oracles, engine: str) -> None:
 @pytest.mark.parametrize("engine", ENGINES)
 def test_a_free_joint_comes_back(oracles: Oracles, engine: str) -> None:
     """A body on a free joint, held at a point of the world, is a spherical pendulum: its acceleration, and the held point in time."""
-    body = {"name": "b", "parent": -1, "mass": 2.0, "com": [0.3, 0.0, 0.0], "inertia": [0.1, 0.0, 0.0, 0.2, 0.0, 0.25]}
+    body: Header = {"name": "b", "parent": -1, "mass": 2.0, "com": [0.3, 0.0, 0.0], "inertia": [0.1, 0.0, 0.0, 0.2, 0.0, 0.25]}
     joint: Header = {"name": "j", "type": "free", "placement": {"rotation": ABOUT_Y, "translation": [0.1, 0.2, 0.3]}}
     joint |= {"axis": [0.0, 0.0, 0.0], "pitch": 0.0, "armature": [0.0] * 6, "damping": [0.0] * 6, "friction": [0.0] * 6}
     # Where q is zero the body's origin is at the joint's frame: there it is held.

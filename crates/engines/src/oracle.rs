@@ -4,7 +4,7 @@ pub(crate) mod contacts;
 pub(crate) mod loops;
 pub(crate) mod rods;
 pub(crate) mod scenes;
-mod semidefinite;
+pub(crate) mod semidefinite;
 pub(crate) mod steps;
 
 use crate::{request, shape};

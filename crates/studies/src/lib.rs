@@ -9,6 +9,8 @@
 //! - [`Reproductions`]: do the engines' known deviations still exist, and in their known size?
 //! - `contact`: what do solvers, laws and integrators answer where the answer is known?
 //! - `continuum`: what do discretised rods and strings answer where the answer is known?
+//! - `loops`: how right are engines' accelerations and motions of robots with loops, and what do they cost?
+//! - `relaxation`: does another solver find the velocities of our convex relaxation?
 //! - [`ContactTiming`]: how long do solvers take for the contacts of standing robots, at the same residual?
 //! - `scenes`: what do engines make of bodies in contact whose motion is known?
 //! - [`Steps`]: how does the acceleration of a step approach the true one, and how do steps change the energy?
@@ -27,7 +29,9 @@ mod derivatives;
 mod growth;
 pub mod import;
 mod known;
+mod loops;
 mod operations;
+mod relaxation;
 mod repeatability;
 mod reproductions;
 mod scaling;
@@ -77,6 +81,8 @@ const STUDIES: &[Entry] = &[
     Entry { name: "contact", make: contact::of_suite, sections: contact::section::sections },
     Entry { name: "continuum", make: continuum::of_suite, sections: continuum::section::sections },
     Entry { name: "scenes", make: scenes::of_suite, sections: scenes::section::sections },
+    // Its rows are in the verdict and in the tables of rows.
+    Entry { name: "relaxation", make: relaxation::of_suite, sections: no_section },
     Entry { name: "steps", make: steps::of_suite, sections: steps::section::sections },
     Entry { name: "operations", make: operations::of_suite, sections: no_section },
     Entry { name: "scaling", make: scaling::of_suite, sections: scaling::section::sections },
@@ -84,6 +90,7 @@ const STUDIES: &[Entry] = &[
     Entry { name: "repeatability", make: repeatability::of_suite, sections: no_section },
     // Its rows are in the section of the study `scaling`.
     Entry { name: "growth", make: growth::of_suite, sections: no_section },
+    Entry { name: "loops", make: loops::of_suite, sections: loops::section::sections },
     Entry { name: "contact_timing", make: contact_timing::of_suite, sections: contact_timing::section::sections },
     Entry { name: "timing", make: timing::of_suite, sections: timing::section::sections },
 ];

@@ -12,10 +12,12 @@ mod coordinate_change;
 mod exchange;
 mod files;
 mod hypotheses;
+mod loops;
 mod orders;
 mod protocol;
 mod robots;
 mod rods;
+mod semidefinite;
 mod steps;
 mod values;
 
@@ -94,32 +96,55 @@ pub fn check(start: &dyn Fn() -> Result<Box<dyn Connection>, String>, watch: &dy
     let scenes: Vec<Scene> = robots::all()?.into_iter().map(|(shows, robot)| Scene::new(shows, robot)).collect();
     let mut exchange = Exchange::new(start);
     watch("hello");
-    let Some((steps, contact_solvers, elements)) = protocol::hello(&mut exchange) else { return Ok(exchange.conformance) };
+    let Some(extras) = protocol::hello(&mut exchange) else { return Ok(exchange.conformance) };
     watch("what has no answer");
     protocol::before_prepare(&mut exchange);
     let offered = exchange.conformance.methods.clone();
-    let built = protocol::first_built(&mut exchange, &scenes);
+    // A solver of problems need not know robots.
+    let robots = !(offered.is_empty() && extras.solves());
+    if robots {
+        robots_of(&mut exchange, &scenes, &offered, &extras, watch)?;
+    } else {
+        exchange.note(Standing::Lacks, "robots", "optional for an oracle that solves problems: it offers no quantity", &[]);
+    }
+    watch("problems");
+    contacts::ask(&mut exchange, &extras.contact_solvers, contacts::Law::Coulomb);
+    contacts::ask(&mut exchange, &extras.contact_relaxations, contacts::Law::Relaxed);
+    semidefinite::ask(&mut exchange, &extras.semidefinite);
+    if let Some(offered) = &extras.loops {
+        watch("loops");
+        loops::ask(&mut exchange, offered);
+    }
+    watch("rods");
+    rods::ask(&mut exchange, &extras.rods);
+    watch("the end");
+    protocol::end(&mut exchange);
+    Ok(exchange.conformance)
+}
+
+/// What is asked about robots and files.
+fn robots_of(
+    exchange: &mut Exchange,
+    scenes: &[Scene],
+    offered: &BTreeMap<String, Vec<String>>,
+    extras: &protocol::Offered,
+    watch: &dyn Fn(&str),
+) -> Result<(), String> {
+    let built = protocol::first_built(exchange, scenes);
     if let Some(scene) = built {
-        protocol::with_robot(&mut exchange, scene, &offered);
+        protocol::with_robot(exchange, scene, offered);
     }
     let (mut answers, mut stepped) = (Answers::default(), steps::Found::default());
     for (index, scene) in scenes.iter().enumerate() {
         watch(scene.shows);
-        if answers::ask(&mut exchange, index, scene, &offered, &mut answers) {
-            steps::ask(&mut exchange, scene, &steps, &mut stepped);
+        if answers::ask(exchange, index, scene, offered, &mut answers) {
+            steps::ask(exchange, scene, &extras.steps, &mut stepped);
         }
     }
     watch("conventions");
-    answers.judge(&mut exchange, &scenes, "");
-    steps::judge(&mut exchange, &steps, &stepped);
-    answers::lacking(&mut exchange, &offered);
-    watch("contacts");
-    contacts::ask(&mut exchange, &contact_solvers);
-    watch("rods");
-    rods::ask(&mut exchange, &elements);
+    answers.judge(exchange, scenes, "");
+    steps::judge(exchange, &extras.steps, &stepped);
+    answers::lacking(exchange, offered);
     watch("files");
-    files::read(&mut exchange, &offered)?;
-    watch("the end");
-    protocol::end(&mut exchange);
-    Ok(exchange.conformance)
+    files::read(exchange, offered)
 }

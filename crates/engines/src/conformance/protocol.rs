@@ -3,6 +3,7 @@
 use super::exchange::Exchange;
 use super::values::{Scene, same_bits};
 use super::{Standing, robots};
+use crate::oracle::loops::Loops;
 use crate::oracle::steps::Steps;
 use crate::request::{description, states};
 use featherbench_bench::Quantity;
@@ -13,8 +14,27 @@ use std::collections::BTreeMap;
 /// Quantities by method.
 pub(super) type Methods = BTreeMap<String, Vec<String>>;
 
-/// Asks for its identity, and the steps, contact solvers and rods that it offers. Without an answer the test ends here.
-pub(super) fn hello(exchange: &mut Exchange) -> Option<(Steps, Vec<String>, Vec<String>)> {
+/// What it offers beside quantities.
+#[derive(Default)]
+pub(super) struct Offered {
+    pub(super) steps: Steps,
+    pub(super) contact_solvers: Vec<String>,
+    pub(super) contact_relaxations: Vec<String>,
+    pub(super) semidefinite: Vec<String>,
+    pub(super) rods: Vec<String>,
+    pub(super) loops: Option<Loops>,
+}
+
+impl Offered {
+    /// Whether it solves problems that need no robot.
+    pub(super) fn solves(&self) -> bool {
+        let lists = [&self.contact_solvers, &self.contact_relaxations, &self.semidefinite, &self.rods];
+        lists.iter().any(|names| !names.is_empty())
+    }
+}
+
+/// Asks for its identity and what it offers. Without an answer the test ends here.
+pub(super) fn hello(exchange: &mut Exchange) -> Option<Offered> {
     let answer = exchange.expect("it answers hello", json!({"op": "hello"}), Vec::new(), &["ok"])?;
     let mut wrong = Vec::new();
     let header = &answer.header;
@@ -44,16 +64,19 @@ pub(super) fn hello(exchange: &mut Exchange) -> Option<(Steps, Vec<String>, Vec<
         wrong.push(reason);
         None
     });
-    let solvers = header.get("contact_solvers").map_or(Ok(Vec::new()), |solvers| serde_json::from_value(solvers.clone()));
-    let solvers: Vec<String> = solvers.unwrap_or_else(|_| {
-        wrong.push("`contact_solvers` is no list of names".into());
-        Vec::new()
+    let loops = Loops::offered(header.get("loops")).unwrap_or_else(|reason| {
+        wrong.push(reason);
+        None
     });
-    let elements = header.get("rods").map_or(Ok(Vec::new()), |elements| serde_json::from_value(elements.clone()));
-    let elements: Vec<String> = elements.unwrap_or_else(|_| {
-        wrong.push("`rods` is no list of names".into());
-        Vec::new()
-    });
+    let mut listed = |key: &str| -> Vec<String> {
+        let names = header.get(key).map_or(Ok(Vec::new()), |names| serde_json::from_value(names.clone()));
+        names.unwrap_or_else(|_| {
+            wrong.push(format!("`{key}` is no list of names"));
+            Vec::new()
+        })
+    };
+    let (contact_solvers, contact_relaxations) = (listed("contact_solvers"), listed("contact_relaxations"));
+    let (semidefinite, rods) = (listed("semidefinite_least_squares"), listed("rods"));
     let standing = if wrong.is_empty() { Standing::Right } else { Standing::Wrong };
     exchange.note(standing, "hello names protocol, engine, version, build and methods", &wrong.join("; "), &[]);
     exchange.conformance.engine = format!("{} {}", answer.text("engine"), answer.text("version"));
@@ -61,7 +84,7 @@ pub(super) fn hello(exchange: &mut Exchange) -> Option<(Steps, Vec<String>, Vec<
     exchange.conformance.methods.retain(|quantity, _| Quantity::parse(quantity).is_some());
     let steps = steps.unwrap_or_default();
     exchange.conformance.steps.clone_from(&steps.methods);
-    Some((steps, solvers, elements))
+    Some(Offered { steps, contact_solvers, contact_relaxations, semidefinite, rods, loops })
 }
 
 /// Requests that have no answer while there is no robot.

@@ -57,13 +57,13 @@ fn build(session: &mut Session, robot: &Description, model: Value) -> Result<(),
 }
 
 /// The robot with its loops in the form of the protocol.
-fn model(robot: &Description) -> Result<Value, NoAnswer> {
+pub(crate) fn model(robot: &Description) -> Result<Value, NoAnswer> {
     let line = featherbench_formats::neutral::to_line(robot).map_err(|error| NoAnswer::Failed(error.to_string()))?;
     serde_json::from_str(&line).map_err(|error| NoAnswer::Failed(error.to_string()))
 }
 
 /// The engine's own time, and its settings.
-fn told(answer: &Message) -> Result<(Duration, Value), NoAnswer> {
+pub(crate) fn told(answer: &Message) -> Result<(Duration, Value), NoAnswer> {
     let time = answer.header.get("nanoseconds").and_then(Value::as_f64).filter(|time| time.is_finite() && *time >= 0.0);
     let time = time.ok_or_else(|| NoAnswer::Failed("the oracle's answer has no nanoseconds".into()))?;
     let settings = answer.header.get("settings").filter(|settings| settings.is_object());
