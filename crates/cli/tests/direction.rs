@@ -21,8 +21,27 @@ const ALLOWED: &[(&str, &[&str])] = &[
     ("protocol", &["spatial", "model"]),
     ("bench", &["spatial", "model", "robots", "formats", "dynamics", "results", "protocol"]),
     ("engines", &["spatial", "model", "robots", "formats", "dynamics", "results", "protocol", "bench"]),
-    ("studies", &["spatial", "model", "robots", "dynamics", "contact", "constrained", "hybrid", "results", "report", "bench"]),
-    ("cli", &["spatial", "model", "robots", "formats", "dynamics", "constrained", "results", "report", "bench", "engines", "studies"]),
+    (
+        "studies",
+        &["spatial", "model", "robots", "dynamics", "contact", "constrained", "hybrid", "identification", "results", "report", "bench"],
+    ),
+    (
+        "cli",
+        &[
+            "spatial",
+            "model",
+            "robots",
+            "formats",
+            "dynamics",
+            "constrained",
+            "identification",
+            "results",
+            "report",
+            "bench",
+            "engines",
+            "studies",
+        ],
+    ),
 ];
 
 /// What `cargo metadata` says of the workspace: its packages alone.
