@@ -69,7 +69,7 @@ fn mobility(description: &Description) -> Result<String, Fail> {
 }
 
 /// Writes a description file, piece by piece: that of a million links has some hundred MB.
-fn write(description: &Description, path: Option<&Path>) -> Result<(), NeutralError> {
+pub fn write(description: &Description, path: Option<&Path>) -> Result<(), NeutralError> {
     match path {
         Some(path) => {
             if let Some(folder) = path.parent() {
@@ -83,7 +83,7 @@ fn write(description: &Description, path: Option<&Path>) -> Result<(), NeutralEr
 }
 
 /// What MuJoCo's compiler makes of an MJCF file, with its notes.
-fn compiled(root: &Root, path: &Path, floating: bool) -> Result<Description, Fail> {
+pub fn compiled(root: &Root, path: &Path, floating: bool) -> Result<Description, Fail> {
     // A bad file is told before any engine is started.
     let file = robot_file::open(path, false)?;
     if file.format == FileFormat::Urdf {
@@ -110,14 +110,23 @@ fn compiled(root: &Root, path: &Path, floating: bool) -> Result<Description, Fai
 
 /// The robot as a URDF or MJCF if one is asked for, with a note on everything that was left out.
 fn exported(description: &Description, args: &GenArgs) -> Result<Option<String>, Fail> {
-    let ending = args.out.as_ref().and_then(|path| path.extension()).and_then(|ending| ending.to_str());
-    let by_ending = match ending {
+    let by_ending = args.out.as_deref().map_or(Format::Neutral, by_ending);
+    written(description, args.format.unwrap_or(by_ending), args.lossy)
+}
+
+/// The format that a file's ending asks for.
+pub fn by_ending(path: &Path) -> Format {
+    match path.extension().and_then(|ending| ending.to_str()) {
         Some("urdf") => Format::Urdf,
         Some("xml" | "mjcf") => Format::Mjcf,
         _ => Format::Neutral,
-    };
-    let on_loss = if args.lossy { OnLoss::LeaveOut } else { OnLoss::Refuse };
-    let exported = match args.format.unwrap_or(by_ending) {
+    }
+}
+
+/// The robot's text in a format, `None` for the neutral one.
+pub fn written(description: &Description, format: Format, lossy: bool) -> Result<Option<String>, Fail> {
+    let on_loss = if lossy { OnLoss::LeaveOut } else { OnLoss::Refuse };
+    let exported = match format {
         Format::Neutral => return Ok(None),
         Format::Urdf => featherbench_formats::urdf::to_string(description, on_loss),
         Format::Mjcf => featherbench_formats::mjcf::to_string(description, on_loss),

@@ -18,6 +18,7 @@
 //! | `featherbench_dynamics` | what a robot does: one file per algorithm | an algorithm |
 //! | `featherbench_contact` | contact problems as data, their solvers, impact laws | a solver, a problem, an impact law |
 //! | `featherbench_constrained` | robots with loops: graph, constraints, constrained dynamics | a constraint, a method, a robot with loops |
+//! | `featherbench_identification` | base parameters, logs, estimators, bodies that can exist | an estimator |
 //! | `featherbench_reference` | slow truth that shares no text with `dynamics` | a witness |
 //! | `featherbench_hybrid` | hybrid systems: events, Zeno, saltation, derivatives of whole runs | a hybrid system |
 //! | `featherbench_results` | the row: its columns, files, differences of runs | a column |
@@ -45,6 +46,7 @@ mod fail;
 mod filter;
 mod generate;
 mod history;
+mod identify;
 mod list;
 mod native;
 mod offers;
@@ -95,6 +97,7 @@ fn dispatch(cli: Cli) -> Result<(), Fail> {
         Command::Explain(args) => explain::explain(&args),
         Command::Record(args) => record::record(&root()?, &args),
         Command::Gen(args) => generate::generate(&root()?, &args),
+        Command::Identify(args) => identify::identify(&root, &args),
         Command::Oracles(args) => match args.action {
             OraclesAction::Install(args) => oracles::install_named(&root()?, &args),
             OraclesAction::Status => oracles::status(&root()?),

@@ -26,6 +26,10 @@ const ALLOWED: &[(&str, &[&str])] = &[
     ("engines", &["spatial", "model", "robots", "formats", "dynamics", "results", "protocol", "bench"]),
     (
         "studies",
+        &["spatial", "model", "robots", "dynamics", "contact", "constrained", "hybrid", "identification", "results", "report", "bench"],
+    ),
+    (
+        "cli",
         &[
             "spatial",
             "model",
@@ -50,6 +54,17 @@ const ALLOWED: &[(&str, &[&str])] = &[
     ("engines", &["spatial", "model", "robots", "formats", "dynamics", "scenes", "results", "protocol", "bench"]),
     ("studies", &["spatial", "model", "robots", "dynamics", "contact", "constrained", "hybrid", "scenes", "results", "report", "bench"]),
     ("cli", &["spatial", "model", "robots", "formats", "dynamics", "constrained", "results", "report", "bench", "engines", "studies"]),
+            "formats",
+            "dynamics",
+            "constrained",
+            "identification",
+            "results",
+            "report",
+            "bench",
+            "engines",
+            "studies",
+        ],
+    ),
 ];
 
 /// What `cargo metadata` says of the workspace: its packages alone.

@@ -11,6 +11,7 @@
 //! - `continuum`: what do discretised rods and strings answer where the answer is known?
 //! - `loops`: how right are engines' accelerations and motions of robots with loops, and what do they cost?
 //! - `relaxation`: does another solver find the velocities of our convex relaxation?
+//! - `identification`: what do logs tell of a robot's parameters, and do estimators find them?
 //! - [`ContactTiming`]: how long do solvers take for the contacts of standing robots, at the same residual?
 //! - `scenes`: what do engines make of bodies in contact whose motion is known?
 //! - [`Steps`]: how does the acceleration of a step approach the true one, and how do steps change the energy?
@@ -27,6 +28,7 @@ mod contact_timing;
 mod continuum;
 mod derivatives;
 mod growth;
+mod identification;
 pub mod import;
 mod known;
 mod loops;
@@ -83,6 +85,7 @@ const STUDIES: &[Entry] = &[
     Entry { name: "scenes", make: scenes::of_suite, sections: scenes::section::sections },
     // Its rows are in the verdict and in the tables of rows.
     Entry { name: "relaxation", make: relaxation::of_suite, sections: no_section },
+    Entry { name: "identification", make: identification::of_suite, sections: identification::section::sections },
     Entry { name: "steps", make: steps::of_suite, sections: steps::section::sections },
     Entry { name: "operations", make: operations::of_suite, sections: no_section },
     Entry { name: "scaling", make: scaling::of_suite, sections: scaling::section::sections },
