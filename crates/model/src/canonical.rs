@@ -54,6 +54,7 @@ impl Description {
             bodies: Vec::with_capacity(order.len()),
             frames: Vec::new(),
             loops: Vec::with_capacity(self.loops.len()),
+            uncertain: self.uncertain.clone(),
             provenance: self.provenance.clone(),
         };
 
@@ -104,6 +105,10 @@ impl Description {
             // Their joints move: so each has a body of its own.
             tie.joints_mut().into_iter().for_each(|body| *body = home[*body].0.unwrap_or(*body));
             result.loops.push(tie);
+        }
+        // Their bodies move: so each is a body of its own.
+        for target in result.uncertain.variables.iter_mut().flat_map(|variable| &mut variable.on) {
+            target.body = home[target.body].0.unwrap_or(target.body);
         }
         if result.bodies.is_empty() {
             return Err(Malformed::Empty);

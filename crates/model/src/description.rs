@@ -1,6 +1,6 @@
 //! A robot as a user describes it: plain numbers, no scalar, no compiled order.
 
-use crate::Loop;
+use crate::{Loop, Uncertain};
 
 /// A robot: bodies, each with the joint that carries it, and gravity.
 #[derive(Clone, Debug, PartialEq, Default)]
@@ -15,6 +15,8 @@ pub struct Description {
     pub frames: Vec<Frame>,
     /// What ties bodies beside the tree. The dynamics of the tree alone do not know of it.
     pub loops: Vec<Loop>,
+    /// Which numbers are uncertain, and how. The written numbers are the nominal ones.
+    pub uncertain: Uncertain,
     /// Where the numbers come from, if they are not generated.
     pub provenance: Option<Provenance>,
 }

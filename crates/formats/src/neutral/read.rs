@@ -1,6 +1,7 @@
 //! Reading: serde mirrors of the description; what does not fit them is an error.
 
 use super::loops::Tie;
+use super::uncertain::Section;
 use super::{FORMAT, LIMIT, NeutralError, NeutralProblem};
 use crate::{Place, text};
 use featherbench_model::{BodyDescription, Description, Frame, JointDescription, JointType, Malformed, Placement, Provenance};
@@ -110,10 +111,11 @@ struct Document {
     provenance: Option<Source>,
     #[serde(default)]
     loops: Vec<Tie>,
+    #[serde(default)]
+    uncertain: Section,
     actuation: Option<IgnoredAny>,
     contacts: Option<IgnoredAny>,
     residuals: Option<IgnoredAny>,
-    parameters: Option<IgnoredAny>,
 }
 
 /// A body as it is kept, so that a list of bodies is never held twice.
@@ -209,7 +211,6 @@ impl Document {
             ("actuation", &self.actuation),
             ("contacts", &self.contacts),
             ("residuals", &self.residuals),
-            ("parameters", &self.parameters),
         ];
         sections.into_iter().find(|(_, section)| section.is_some()).map(|(name, _)| name)
     }
@@ -229,6 +230,7 @@ impl Document {
             bodies: self.bodies.into_iter().map(|body| body.0).collect(),
             frames: self.frames.into_iter().map(frame).collect(),
             loops: self.loops.into_iter().map(|tie| tie.0).collect(),
+            uncertain: self.uncertain.into(),
             provenance: self.provenance.map(provenance),
         }
     }

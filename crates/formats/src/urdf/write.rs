@@ -197,6 +197,8 @@ fn losses(robot: &Description) -> Vec<Loss> {
         let about = format!("loops[{index}] '{}'", tie.name);
         losses.push(Loss { about, reason: Reason::Loop { kind: tie.kind.name() } });
     }
+    let uncertain = robot.uncertain.variables.iter().map(|variable| &variable.name);
+    losses.extend(uncertain.map(|name| Loss { about: format!("the uncertain variable '{name}'"), reason: Reason::Uncertain }));
     losses
 }
 
