@@ -19,6 +19,7 @@ const ALLOWED: &[(&str, &[&str])] = &[
     ("learning", &["spatial", "model", "robots", "dynamics", "residuals"]),
     ("identification", &["spatial", "model", "robots", "formats", "dynamics"]),
     ("continua", &["spatial", "model", "dynamics"]),
+    ("uncertainty", &["spatial", "model", "robots", "dynamics", "hybrid"]),
     ("results", &[]),
     ("report", &["results"]),
     ("protocol", &["spatial", "model"]),
@@ -65,6 +66,8 @@ const ALLOWED: &[(&str, &[&str])] = &[
             "studies",
         ],
     ),
+    ("studies", &["spatial", "model", "robots", "dynamics", "contact", "constrained", "hybrid", "uncertainty", "results", "report", "bench"]),
+    ("cli", &["spatial", "model", "robots", "formats", "dynamics", "constrained", "uncertainty", "results", "report", "bench", "engines", "studies"]),
 ];
 
 /// What `cargo metadata` says of the workspace: its packages alone.

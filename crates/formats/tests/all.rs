@@ -5,6 +5,7 @@ mod datasets;
 mod loops;
 mod neutral;
 mod robots;
+mod uncertain;
 mod urdf_errors;
 mod urdf_export;
 mod urdf_import;

@@ -169,7 +169,7 @@ fn bad_files_are_named() {
         ("\n ]}", "\n ],\"loops\":{}}", &["field 'loops'", "expected a sequence"]),
         ("\n ]}", "\n ],\"actuation\":1}", &["section 'actuation'"]),
         ("\n ]}", "\n ],\"residuals\":[]}", &["section 'residuals'"]),
-        ("\n ]}", "\n ],\"parameters\":[]}", &["section 'parameters'"]),
+        ("\n ]}", "\n ],\"parameters\":[]}", &["unknown field `parameters`"]),
         ("\n ]}", "\n ],\"sensors\":[]}", &["unknown field `sensors`"]),
         ("\n ]}", "\n ],\"frames\":[{\"name\":\"t\",\"body\":0}]}", &["frames[0]", "missing field `placement`"]),
         ("\n ]}", "\n ],\"provenance\":{}}", &["provenance", "missing field `source`"]),

@@ -55,6 +55,7 @@ impl Description {
             frames: Vec::new(),
             loops: Vec::with_capacity(self.loops.len()),
             continua: Vec::with_capacity(self.continua.len()),
+            uncertain: self.uncertain.clone(),
             provenance: self.provenance.clone(),
         };
 
@@ -109,6 +110,10 @@ impl Description {
         for given in &self.continua {
             let (body, on_body) = given.body.map_or((None, Transform::identity()), |body| home[body]);
             result.continua.push(Continuum { body, placement: given.placement.on(&on_body), ..given.clone() });
+        }
+        // Their bodies move: so each is a body of its own.
+        for target in result.uncertain.variables.iter_mut().flat_map(|variable| &mut variable.on) {
+            target.body = home[target.body].0.unwrap_or(target.body);
         }
         if result.bodies.is_empty() {
             return Err(Malformed::Empty);

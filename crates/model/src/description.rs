@@ -1,6 +1,6 @@
 //! A robot as a user describes it: plain numbers, no scalar, no compiled order.
 
-use crate::{Continuum, Loop};
+use crate::{Continuum, Loop, Uncertain};
 
 /// A robot: bodies, each with the joint that carries it, and gravity.
 #[derive(Clone, Debug, PartialEq, Default)]
@@ -17,6 +17,8 @@ pub struct Description {
     pub loops: Vec<Loop>,
     /// Bodies that deform. A [`Model`](crate::Model) refuses them.
     pub continua: Vec<Continuum>,
+    /// Which numbers are uncertain, and how. The written numbers are the nominal ones.
+    pub uncertain: Uncertain,
     /// Where the numbers come from, if they are not generated.
     pub provenance: Option<Provenance>,
 }

@@ -22,6 +22,7 @@ mod model;
 mod orthonormal;
 mod tangent;
 mod topology;
+mod uncertain;
 mod validate;
 
 pub use configuration::{difference, integrate, interpolate, neutral};
@@ -34,4 +35,5 @@ pub use loops::{Loop, LoopDefect, LoopEnd, LoopKind, LoopMotion};
 pub use model::Model;
 pub use tangent::{TangentMap, d_difference, d_integrate};
 pub use topology::{Joint, Topology};
+pub use uncertain::{Acts, Correlation, Distribution, Target, TargetField, Uncertain, UncertainDefect, UncertainVariable};
 pub use validate::{Malformed, Warning};

@@ -1,7 +1,7 @@
 //! The two levels of validation: malformed is an error, unphysical is a warning of the model.
 
 use crate::orthonormal::{rotation, unit};
-use crate::{BodyDescription, ContinuumDefect, Description, JointType, LoopDefect};
+use crate::{BodyDescription, ContinuumDefect, Description, JointType, LoopDefect, UncertainDefect};
 use thiserror::Error;
 
 /// Why a description is not a robot. Every message names the body and says what to do.
@@ -160,6 +160,16 @@ pub enum Malformed {
         /// Their names.
         names: Vec<String>,
     },
+    /// An uncertain variable or correlation is none.
+    #[error("uncertain{} '{name}': {defect}", place.map_or_else(String::new, |k| format!(".variables[{k}]")))]
+    Uncertain {
+        /// The variable's name.
+        name: String,
+        /// Its place in the list, counted from 0; `None` of what is about several.
+        place: Option<usize>,
+        /// What is wrong with it.
+        defect: UncertainDefect,
+    },
 }
 
 impl Malformed {
@@ -168,7 +178,7 @@ impl Malformed {
         match self {
             Self::Empty | Self::Deforms { .. } => None,
             Self::FrameOrphan { frame, .. } | Self::FrameNotARotation { frame, .. } => Some(frame),
-            Self::Loop { name, .. } | Self::Continuum { name, .. } => Some(name),
+            Self::Loop { name, .. } | Self::Continuum { name, .. } | Self::Uncertain { name, .. } => Some(name),
             Self::NotFinite { body, .. }
             | Self::NegativeMass { body, .. }
             | Self::Orphan { body, .. }
@@ -232,7 +242,7 @@ impl Description {
     /// Checks that the description is a forest of bodies with finite, meaningful numbers.
     ///
     /// # Errors
-    /// The first [`Malformed`] finding: in the order of the bodies, of the frames, of the loops, of the continua.
+    /// The first [`Malformed`] finding: in the order of the bodies, of the frames, of the loops, of the continua, of the uncertain parameters.
     pub fn validate(&self) -> Result<(), Malformed> {
         let count = self.bodies.len();
         let mut names = std::collections::HashSet::new();
@@ -259,7 +269,8 @@ impl Description {
             }
         }
         self.validate_loops()?;
-        self.validate_continua()
+        self.validate_continua()?;
+        self.validate_uncertain()
     }
 
     /// Every chain of parents must end at the world; a chain of more steps than there are bodies has a cycle.

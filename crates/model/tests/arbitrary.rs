@@ -1,6 +1,6 @@
 //! Arbitrary descriptions, most of them wrong in some way.
 
-use featherbench_model::{BodyDescription, Description, Frame, JointDescription, JointType, Placement};
+use featherbench_model::{BodyDescription, Description, Frame, JointDescription, JointType, Placement, Uncertain};
 use proptest::prelude::*;
 
 /// Numbers as users may write them: mostly ordinary, sometimes zero, negative, huge, infinite or NaN.
@@ -65,6 +65,7 @@ pub fn any_description() -> impl Strategy<Value = Description> {
             frames: frames.into_iter().map(|(body, placement)| Frame { name: "frame".to_owned(), body, placement }).collect(),
             loops: Vec::new(),
             continua: Vec::new(),
+            uncertain: Uncertain::default(),
             provenance: None,
         })
     })

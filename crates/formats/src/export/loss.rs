@@ -55,6 +55,8 @@ pub enum Reason {
     },
     /// The format has no bodies that deform.
     Deforms,
+    /// Uncertain parameters.
+    Uncertain,
     /// A free joint whose coordinates do not begin at the world's origin, as those of MuJoCo do.
     FreePlacement,
     /// MuJoCo moves no body without mass.
@@ -83,6 +85,7 @@ impl Reason {
             | Self::IncompleteLimits
             | Self::EmptyRange { .. }
             | Self::Loop { .. }
+            | Self::Uncertain
             | Self::FreePlacement => true,
             Self::JointType { .. }
             | Self::Deforms
@@ -114,6 +117,7 @@ impl fmt::Display for Reason {
             Self::EmptyRange { field } => write!(f, "{field} that leave no range; the format asks for a lower end below the upper one"),
             Self::Loop { kind } => write!(f, "a loop of type {kind}, for which the format has no place"),
             Self::Deforms => write!(f, "a body that deforms, which the format has not; keep the neutral format"),
+            Self::Uncertain => write!(f, "its distribution: the format has nominal numbers alone"),
             Self::FreePlacement => {
                 write!(f, "a free joint whose coordinates are not the world's, as the format has them; place it at the world's origin")
             }

@@ -2,6 +2,7 @@
 
 use super::continua::ContinuumFields;
 use super::loops::Tie;
+use super::uncertain::Section;
 use super::{FORMAT, LIMIT, NeutralError, NeutralProblem};
 use crate::{Place, text};
 use featherbench_model::{BodyDescription, Continuum, Description, Frame, JointDescription, JointType, Malformed, Placement, Provenance};
@@ -113,10 +114,11 @@ struct Document {
     loops: Vec<Tie>,
     #[serde(default)]
     continua: Vec<ContinuumFields>,
+    #[serde(default)]
+    uncertain: Section,
     actuation: Option<IgnoredAny>,
     contacts: Option<IgnoredAny>,
     residuals: Option<IgnoredAny>,
-    parameters: Option<IgnoredAny>,
 }
 
 /// A body as it is kept, so that a list of bodies is never held twice.
@@ -208,12 +210,7 @@ struct Source {
 
 impl Document {
     fn unsupported(&self) -> Option<&'static str> {
-        let sections = [
-            ("actuation", &self.actuation),
-            ("contacts", &self.contacts),
-            ("residuals", &self.residuals),
-            ("parameters", &self.parameters),
-        ];
+        let sections = [("actuation", &self.actuation), ("contacts", &self.contacts), ("residuals", &self.residuals)];
         sections.into_iter().find(|(_, section)| section.is_some()).map(|(name, _)| name)
     }
 
@@ -233,6 +230,7 @@ impl Document {
             frames: self.frames.into_iter().map(frame).collect(),
             loops: self.loops.into_iter().map(|tie| tie.0).collect(),
             continua: self.continua.into_iter().map(Continuum::from).collect(),
+            uncertain: self.uncertain.into(),
             provenance: self.provenance.map(provenance),
         }
     }

@@ -3,7 +3,8 @@
 use super::{NeutralError, NeutralProblem};
 use crate::{Place, text};
 use featherbench_model::{
-    BodyDescription, Description, Frame, JointDescription, JointType, Loop, LoopEnd, LoopKind, Malformed, Placement, Provenance,
+    Acts, BodyDescription, Correlation, Description, Frame, JointDescription, JointType, Loop, LoopEnd, LoopKind, Malformed, Placement,
+    Provenance, Uncertain, UncertainVariable,
 };
 use std::fmt;
 use std::io;
@@ -50,7 +51,7 @@ pub fn to_string(description: &Description) -> Result<String, Malformed> {
 }
 
 /// The robot alone on a single line without a newline, as oracles receive it. It is canonical (depth-first, fixed joints merged), and has
-/// armature, damping and friction for every degree of freedom. It has no frames, no loops and no provenance: an oracle
+/// armature, damping and friction for every degree of freedom. It has no frames, no loops, no uncertain parameters and no provenance: an oracle
 /// computes with the tree.
 ///
 /// # Errors
@@ -127,6 +128,10 @@ impl Writer<'_> {
         if with_sections && !description.continua.is_empty() {
             self.key(0, "continua");
             self.list(1, &description.continua, Self::continuum);
+        }
+        if with_sections && !description.uncertain.is_empty() {
+            self.key(0, "uncertain");
+            self.uncertain(&description.uncertain);
         }
         self.push("}");
     }
@@ -215,6 +220,36 @@ impl Writer<'_> {
             }
         }
         self.push("}");
+    }
+
+    fn uncertain(&mut self, uncertain: &Uncertain) {
+        self.push("{\"variables\":");
+        self.list(1, &uncertain.variables, Self::variable);
+        if !uncertain.correlations.is_empty() {
+            self.key(0, "correlations");
+            self.list(1, &uncertain.correlations, |writer, Correlation { first, second, value }| {
+                writer.put(format_args!("{{\"first\":{first},\"second\":{second},\"value\":{value:?}}}"));
+            });
+        }
+        self.push("}");
+    }
+
+    fn variable(&mut self, variable: &UncertainVariable) {
+        let UncertainVariable { name, distribution, acts, on } = variable;
+        self.put(format_args!("{{\"name\":{},\"distribution\":{{\"type\":\"{}\"", quoted(name), distribution.name()));
+        distribution.numbers().into_iter().for_each(|(name, value)| self.put(format_args!(",\"{name}\":{value:?}")));
+        let acts = match acts {
+            Acts::Value => "value",
+            Acts::Factor => "factor",
+        };
+        self.put(format_args!("}},\"acts\":\"{acts}\",\"on\":["));
+        for (k, target) in on.iter().enumerate() {
+            let ((field, index), before) = (target.field.name(), if k == 0 { "" } else { "," });
+            self.put(format_args!("{before}{{\"body\":{},\"field\":\"{field}\"", target.body));
+            index.into_iter().for_each(|index| self.put(format_args!(",\"index\":{index}")));
+            self.push("}");
+        }
+        self.push("]}");
     }
 
     fn end(&mut self, name: &str, end: &LoopEnd) {

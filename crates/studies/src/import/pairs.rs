@@ -1,6 +1,6 @@
 //! The pairs of bodies of two import results.
 
-use featherbench_model::{BodyDescription, Description, JointType, Placement};
+use featherbench_model::{BodyDescription, Description, JointType, Placement, Uncertain};
 
 /// For each body of `ours`, its partner in `theirs`: by its name, else by its joint's name, else by its place in the tree.
 pub(super) fn pairs(ours: &Description, theirs: &Description) -> Vec<Option<usize>> {
@@ -74,7 +74,7 @@ pub(super) fn chained(description: &Description) -> Description {
     let (x, y, z) = ([1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]);
     let (slide, turn) = (|axis| JointType::Prismatic { axis }, |axis| JointType::Revolute { axis });
     let bodies = Vec::with_capacity(description.bodies.len());
-    let mut result = Description { bodies, frames: Vec::new(), loops: Vec::new(), ..description.clone() };
+    let mut result = Description { bodies, frames: Vec::new(), loops: Vec::new(), uncertain: Uncertain::default(), ..description.clone() };
     let mut place = Vec::with_capacity(description.bodies.len());
     for body in &description.bodies {
         let mut parent = body.parent.map(|parent: usize| place[parent]);

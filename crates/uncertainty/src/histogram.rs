@@ -1,0 +1,85 @@
+//! A histogram of fixed bins: the density, and quantiles from it.
+
+/// Bins between the bounds.
+pub const BINS: usize = 1024;
+
+/// Counts of samples in equal bins.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Histogram {
+    /// The lower bound of the first bin.
+    pub low: f64,
+    /// The upper bound of the last one.
+    pub high: f64,
+    /// Samples in each bin.
+    pub counts: Vec<u64>,
+    /// Samples below and above the bounds.
+    pub outside: [u64; 2],
+}
+
+impl Histogram {
+    /// An empty one. Equal bounds get a bin of width one.
+    pub fn new(low: f64, high: f64) -> Self {
+        let (low, high) = if high > low { (low, high) } else { (low - 0.5, low + 0.5) };
+        Self { low, high, counts: vec![0; BINS], outside: [0; 2] }
+    }
+
+    /// The width of a bin.
+    pub fn width(&self) -> f64 {
+        (self.high - self.low) / BINS as f64
+    }
+
+    /// Counts samples.
+    pub fn count(&mut self, values: &[f64]) {
+        let scale = BINS as f64 / (self.high - self.low);
+        for y in values {
+            let place = (y - self.low) * scale;
+            if place < 0.0 {
+                self.outside[0] += 1;
+            } else if place < BINS as f64 {
+                self.counts[place as usize] += 1;
+            } else {
+                self.outside[1] += 1;
+            }
+        }
+    }
+
+    /// Adds the counts of another with the same bins.
+    pub fn add(&mut self, other: &Self) {
+        self.counts.iter_mut().zip(&other.counts).for_each(|(count, more)| *count += more);
+        self.outside.iter_mut().zip(other.outside).for_each(|(count, more)| *count += more);
+    }
+
+    /// How many samples there are.
+    pub fn total(&self) -> u64 {
+        self.counts.iter().sum::<u64>() + self.outside[0] + self.outside[1]
+    }
+
+    /// The value that a part p of the samples is below, linear within a bin; `None` where it is outside the bounds.
+    pub fn quantile(&self, p: f64) -> Option<f64> {
+        let due = p * self.total() as f64;
+        let mut below = self.outside[0] as f64;
+        if due < below {
+            return None;
+        }
+        for (bin, &count) in self.counts.iter().enumerate() {
+            let next = below + count as f64;
+            if count > 0 && due <= next {
+                return Some(self.low + self.width() * (bin as f64 + (due - below) / count as f64));
+            }
+            below = next;
+        }
+        None
+    }
+
+    /// The density in the middle of each of so many groups of bins: (value, density).
+    pub fn density(&self, groups: usize) -> Vec<(f64, f64)> {
+        let size = BINS.div_ceil(groups.max(1));
+        let total = self.total() as f64;
+        let group = |(k, counts): (usize, &[u64])| {
+            let width = self.width() * counts.len() as f64;
+            let begin = self.low + self.width() * (k * size) as f64;
+            (begin + 0.5 * width, counts.iter().sum::<u64>() as f64 / total / width)
+        };
+        self.counts.chunks(size).enumerate().map(group).collect()
+    }
+}
