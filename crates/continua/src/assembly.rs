@@ -2,7 +2,7 @@
 
 use crate::element::{along_x, links, ritz, sections, string};
 use crate::{Continuum, Defect, Element, Refused, Rod, Strain};
-use featherbench_model::{BodyDescription, Description, JointType, Placement};
+use featherbench_model::{BodyDescription, Description, JointType, Loop, Placement};
 use nalgebra::DMatrix;
 
 /// A robot with rods: a description to which rods are attached, each at a body or at the world.
@@ -110,6 +110,12 @@ impl Assembly {
     pub fn add(&mut self, body: BodyDescription) -> usize {
         self.description.bodies.push(body);
         self.description.bodies.len() - 1
+    }
+
+    /// Ties bodies beside the tree, for example a rod's end to the world. The dynamics of this crate are those of the tree: `featherbench_constrained`
+    /// closes the loop on [`Continuum::model`], where rods of links and strings have their own coordinates.
+    pub fn tie(&mut self, tie: Loop) {
+        self.description.loops.push(tie);
     }
 
     /// The description with all bodies so far.

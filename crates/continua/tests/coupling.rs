@@ -1,14 +1,17 @@
 //! Rods on rigid bodies: a hub, a tip body, a humanoid; limits of heavy hubs and stiff rods.
 
 use crate::beams::{links, ritz, rod, sections};
+use featherbench_constrained::{Constrained, Kkt, Mechanism, Rows};
 use featherbench_continua::known::cantilever_root;
 use featherbench_continua::{
-    Assembly, Basis, Element, Hinges, Load, Motion, Rod, Solver, Strain, energies, library, modes, momentum, rigid_limit,
+    Assembly, Basis, Element, Hinges, Load, Motion, Rod, Solver, Strain, energies, generalized, library, mass_matrix, modes, momentum,
+    rigid_limit,
 };
 use featherbench_dynamics::integrate::{DormandPrince, Tolerance};
-use featherbench_model::Placement;
+use featherbench_model::{Loop, LoopEnd, LoopKind, LoopMotion, Placement};
 use featherbench_robots::Family;
 use featherbench_spatial::Vec3;
+use nalgebra::{DMatrix, SymmetricEigen};
 
 fn bending() -> [Element; 3] {
     [links(16, Hinges::Middle), sections(12), ritz(Basis::Hermite(6))]
@@ -188,4 +191,52 @@ fn links_on_a_humanoid_are_served_by_aba() {
     let mut by_factors: Vec<f64> = tau.iter().zip(&bias).map(|(tau, bias)| tau - bias).collect();
     matrix.into_ltdl().unwrap().solve(&mut by_factors).unwrap();
     assert!(by_factors.iter().zip(&by_aba).all(|(a, b)| (a - b).abs() < 1e-6 * size));
+}
+
+/// A rod whose tip is tied to the world, but for sliding along the rod: the loop is closed by `featherbench_constrained`, with the springs as forces.
+#[test]
+fn a_rod_that_closes_a_loop_vibrates_as_one_clamped_at_both_ends() {
+    let beta = first_root(|b| b.cos() * b.cosh() - 1.0, 4.0, 5.0);
+    let [coarse, fine] = [12, 24].map(|count| clamped_at_both_ends(count) / (beta * beta) - 1.0);
+    // The midpoint rule: of order 2 with a next term of order 4, some 1/n² beside 4.
+    assert!((coarse / fine - 4.0).abs() < 0.04, "{coarse:e} {fine:e}");
+    assert!(((4.0 * fine - coarse) / 3.0).abs() < 1e-4, "{coarse:e} {fine:e}");
+}
+
+/// The first frequency of as many links.
+fn clamped_at_both_ends(count: usize) -> f64 {
+    let mut assembly = Assembly::new(Default::default());
+    let tip = assembly.attach("rod", &rod(), &links(count, Hinges::Middle), None, Placement::default()).unwrap();
+    // The loop's joint slides along its z, which is x here.
+    let rotation = [0.0, 0.0, 1.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0];
+    let on_tip = LoopEnd { body: Some(tip.body), placement: Placement { rotation, ..tip.placement } };
+    let on_world = LoopEnd { body: None, placement: Placement { rotation, translation: [1.0, 0.0, 0.0] } };
+    assembly.tie(Loop { name: "clamp".into(), kind: LoopKind::Joint { ends: [on_world, on_tip], motion: LoopMotion::Prismatic } });
+    let mechanism = Mechanism::of(assembly.description()).unwrap();
+    let beam = assembly.build().unwrap();
+    let nv = beam.topology().nv();
+
+    // Vibrations in the null space of J.
+    let mut rows = Rows::new(&mechanism.constraints);
+    rows.run(&mechanism.model, &mechanism.constraints, &beam.rest(), &vec![0.0; nv]).unwrap();
+    let jacobian = DMatrix::from_row_slice(rows.jacobian().len() / nv, nv, rows.jacobian());
+    let eigen = SymmetricEigen::new(jacobian.transpose() * &jacobian);
+    let free: Vec<usize> = (0..nv).filter(|k| eigen.eigenvalues[*k] < 1e-12).collect();
+    assert_eq!(free.len(), nv - 2);
+    let null = DMatrix::from_fn(nv, free.len(), |i, j| eigen.eigenvectors[(i, free[j])]);
+    let (stiffness, mass) = (beam.stiffness_matrix(), mass_matrix(&beam, &beam.rest()).unwrap());
+    let (squares, shapes) = generalized(&(null.transpose() * &stiffness * &null), &(null.transpose() * mass * &null)).unwrap();
+
+    // A small deflection in that shape accelerates by −ω² of itself.
+    let small = null * shapes.column(0) * 1e-7;
+    let tau = -(stiffness * &small);
+    let still = vec![0.0; nv];
+    let mut closed = Constrained::new(&mechanism.model, &mechanism.constraints).unwrap();
+    let solution = closed.run(small.as_slice(), &still, tau.as_slice(), &Kkt::default()).unwrap();
+    let expected = &small * -squares[0];
+    for (a, known) in solution.acceleration.iter().zip(expected.iter()) {
+        // Terms of the second order of the deflection, and the condition of M, some n⁴.
+        assert!((a - known).abs() < 1e-5 * expected.amax(), "{a:e} {known:e}");
+    }
+    squares[0].sqrt()
 }
