@@ -112,8 +112,8 @@ impl Assembly {
         self.description.bodies.len() - 1
     }
 
-    /// Ties bodies beside the tree, for example a rod's end to the world. The dynamics of this crate are those of the tree: `featherbench_constrained`
-    /// closes the loop on [`Continuum::model`], where rods of links and strings have their own coordinates.
+    /// Ties bodies beside the tree, for example a rod's end to the world. The dynamics of this crate are those of the tree:
+    /// `featherbench_constrained` closes the loop on [`Continuum::model`], where rods of links and strings have their own coordinates.
     pub fn tie(&mut self, tie: Loop) {
         self.description.loops.push(tie);
     }
@@ -123,8 +123,8 @@ impl Assembly {
         &self.description
     }
 
-    /// The robot with rigid rods: every elastic joint is fixed where the rod is straight. Its dofs are those of the robot, in their order; a rod
-    /// that stands on the world is no longer there.
+    /// The robot with rigid rods: every elastic joint is fixed where the rod is straight. Its dofs are those of the robot, in their order;
+    /// a rod that stands on the world is no longer there.
     pub fn rigid(&self) -> Description {
         let mut description = self.description.clone();
         let fix = |body: &mut BodyDescription| body.joint.kind = JointType::Fixed;

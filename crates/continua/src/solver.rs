@@ -6,8 +6,8 @@
 //! forward dynamics   s̈ = M⁻¹ (τ − inverse dynamics of s̈ = 0)
 //! ```
 //!
-//! If all coordinates are direct (rigid links, strings), forward dynamics is the articulated-body algorithm: O(n). Else M is factored as LᵀDL in
-//! the reduced tree's sparsity: n_s inverse dynamics of O(n), and the factorization.
+//! If all coordinates are direct (rigid links, strings), forward dynamics is the articulated-body algorithm: O(n). Else M is factored as
+//! LᵀDL in the reduced tree's sparsity: n_s inverse dynamics of O(n), and the factorization.
 //!
 //! Shapes: s has `nq` numbers of [`Continuum::topology`]; velocities, accelerations and forces have `nv`. Loads: [`Load`]. Calls of
 //! [`Solver::inverse`] and [`Solver::forward`] on direct coordinates do not allocate.
@@ -209,8 +209,8 @@ where
         }
     }
 
-    /// The mass matrix in the reduced tree's sparsity: by the composite-rigid-body algorithm if all coordinates are direct, else column by column.
-    /// It allocates.
+    /// The mass matrix in the reduced tree's sparsity: by the composite-rigid-body algorithm if all coordinates are direct, else column by
+    /// column. It allocates.
     ///
     /// # Errors
     /// [`DimensionError`] when `s` does not fit.
@@ -384,6 +384,9 @@ impl<L: FnMut(f64) -> Vec<Load>> Linearise<f64> for Motion<'_, L> {
 
     fn linearise(&mut self, t: f64, q: &[f64], v: &[f64], a: &mut [f64], result: &mut Linearisation<f64>) -> Result<(), Error> {
         self.acceleration(t, q, v, a)?;
+        let square = self.tau.len() * self.tau.len();
+        DimensionError::expect("derivatives by q", square, result.by_q.len())?;
+        DimensionError::expect("derivatives by v", square, result.by_v.len())?;
         let (loads, topology) = ((self.loads)(t), self.continuum.topology());
         let nv = topology.nv();
         let constant = |x: &[f64]| x.iter().map(|x| Dual::constant(*x)).collect::<Vec<_>>();

@@ -133,8 +133,8 @@ fn a_flying_rod_has_the_momentum_of_its_loads() {
         let at_tip = Load { moment, ..Load::force(tip.body, tip.placement.translation, force) };
         let topology = flying.topology();
         let (mut s, mut rate) = (flying.rest(), vec![0.0; topology.nv()]);
-        // The angular momentum about the world's origin grows by m + p × f. The impulse of p × f is integrated beside, by Simpson's rule on each
-        // step of equal length.
+        // The angular momentum about the world's origin grows by m + p × f. The impulse of p × f is integrated beside, by Simpson's rule on
+        // each step of equal length.
         let tolerance = Tolerance { absolute: 1e-10, relative: 1e-10, ..Tolerance::default() };
         let mut motion = Motion::new(&flying, |t| vec![at_tip.times(pulse(t))]);
         let mut method = DormandPrince::new(topology);
@@ -193,7 +193,8 @@ fn links_on_a_humanoid_are_served_by_aba() {
     assert!(by_factors.iter().zip(&by_aba).all(|(a, b)| (a - b).abs() < 1e-6 * size));
 }
 
-/// A rod whose tip is tied to the world, but for sliding along the rod: the loop is closed by `featherbench_constrained`, with the springs as forces.
+/// A rod whose tip is tied to the world, but for sliding along the rod: the loop is closed by `featherbench_constrained`, with the springs
+/// as forces.
 #[test]
 fn a_rod_that_closes_a_loop_vibrates_as_one_clamped_at_both_ends() {
     let beta = first_root(|b| b.cos() * b.cosh() - 1.0, 4.0, 5.0);
