@@ -16,12 +16,14 @@ const ALLOWED: &[(&str, &[&str])] = &[
     ("constrained", &["spatial", "model", "dynamics"]),
     ("hybrid", &["spatial"]),
     ("lesson", &["spatial", "model", "robots", "dynamics", "contact", "constrained", "hybrid"]),
+    ("residuals", &["spatial", "model", "dynamics"]),
     ("results", &[]),
     ("report", &["results"]),
     ("protocol", &["spatial", "model"]),
     ("bench", &["spatial", "model", "robots", "formats", "dynamics", "results", "protocol"]),
     ("engines", &["spatial", "model", "robots", "formats", "dynamics", "results", "protocol", "bench"]),
     ("studies", &["spatial", "model", "robots", "dynamics", "contact", "constrained", "hybrid", "lesson", "results", "report", "bench"]),
+    ("studies", &["spatial", "model", "robots", "dynamics", "contact", "constrained", "hybrid", "residuals", "results", "report", "bench"]),
     ("cli", &["spatial", "model", "robots", "formats", "dynamics", "constrained", "results", "report", "bench", "engines", "studies"]),
 ];
 
