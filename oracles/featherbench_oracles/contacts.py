@@ -76,12 +76,12 @@ class Contacts:
     ----------
     engine : str
         The engine's name.
-    solvers : mapping of str to callable
-        `(problems, tolerance, iterations) -> ContactSolver` by the method's name.
+    solvers, relaxations : mapping of str to callable
+        `(problems, tolerance, iterations) -> ContactSolver` by the method's name: of the laws themselves, and of their convex relaxation.
     """
 
-    def __init__(self, engine: str, solvers: SolverTable) -> None:
-        self.engine, self.solvers = engine, solvers
+    def __init__(self, engine: str, solvers: SolverTable, relaxations: SolverTable | None = None) -> None:
+        self.engine, self.solvers, self.relaxations = engine, solvers, relaxations or {}
         self.problems: Sequence[ContactProblem] | None = None
         self.ready: tuple[Any, ContactSolver] | None = None
 
@@ -110,7 +110,8 @@ class Contacts:
         """Solve a range of the problems, which begin again at their end: block `impulses` of shape (count, rows)."""
         method, first, count = header["method"], header["first"], header["count"]
         tolerance, iterations = header["tolerance"], header["iterations"]
-        if method not in self.solvers:
+        make = self.solvers.get(method) or self.relaxations.get(method)
+        if make is None:
             raise Unsupported(f"{self.engine} offers no contact solver {method}")
         if self.problems is None:
             raise ValueError("no contact problems were given before")
@@ -120,7 +121,7 @@ class Contacts:
             raise ValueError(f"there are no {count} problems from {first} on")
         asked = method, tolerance, iterations
         if self.ready is None or self.ready[0] != asked:
-            self.ready = asked, self.solvers[method](self.problems, tolerance, iterations)
+            self.ready = asked, make(self.problems, tolerance, iterations)
         solver, all_of_them = self.ready[1], len(self.problems)
         solved = [solver.solve((first + k) % all_of_them) for k in range(count)]
         # A time needs no impulses: those of a last round are enough.

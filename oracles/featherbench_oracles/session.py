@@ -21,6 +21,7 @@ from featherbench_oracles.examination import examined
 from featherbench_oracles.messages import Answer, Blocks, Header, read_message, write_message
 from featherbench_oracles.protocol import AS_READ, PROTOCOL, SHAPES, Engine, Reading, State, Unsupported
 from featherbench_oracles.robot import Description
+from featherbench_oracles.semidefinite import SemidefiniteLeastSquares
 
 
 class Session:
@@ -34,7 +35,8 @@ class Session:
 
     def __init__(self, engine: Engine) -> None:
         self.engine = engine
-        self.contacts = Contacts(engine.name, getattr(engine, "contact_solvers", {}))
+        self.contacts = Contacts(engine.name, getattr(engine, "contact_solvers", {}), getattr(engine, "contact_relaxations", {}))
+        self.semidefinite = SemidefiniteLeastSquares(engine.name, getattr(engine, "semidefinite_solvers", {}))
         self.description: Description | None = None
         self.robot: Any = None
         self.states: Blocks | None = None
@@ -75,6 +77,7 @@ class Session:
             "relocate": self.relocate,
             "contact_problems": self.contacts.set_problems,
             "solve_contacts": self.contacts.solve,
+            "semidefinite_least_squares": self.semidefinite.solve,
         }
         if header.get("op") not in operations:
             raise ValueError(f"unknown op {header.get('op')}")
@@ -85,8 +88,12 @@ class Session:
         engine = self.engine
         methods = {quantity: list(by_method) for quantity, by_method in engine.quantities.items()}
         hello = {"protocol": PROTOCOL, "engine": engine.name, "version": engine.version, "build": engine.build, "methods": methods}
-        if self.contacts.solvers:
-            hello["contact_solvers"] = list(self.contacts.solvers)
+        listed = {
+            "contact_solvers": self.contacts.solvers,
+            "contact_relaxations": self.contacts.relaxations,
+            "semidefinite_least_squares": self.semidefinite.solvers,
+        }
+        hello |= {key: list(solvers) for key, solvers in listed.items() if solvers}
         if any(isinstance(function, Measured) for by_method in engine.quantities.values() for function in by_method.values()):
             return {**hello, "clock": True, "relocate": True}, {}
         timed = {name: [m for m, f in by_method.items() if isinstance(f, TimedCalls)] for name, by_method in engine.quantities.items()}

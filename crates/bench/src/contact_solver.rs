@@ -24,6 +24,12 @@ pub trait ContactSolver {
     /// Its methods, the usual one first.
     fn contact_methods(&self) -> Vec<String>;
 
+    /// Its methods for the convex relaxation: minimise ½λᵀGλ + bᵀλ over the friction cones. They are prepared like the others. The velocities
+    /// of a relaxation are unique.
+    fn contact_relaxations(&self) -> Vec<String> {
+        Vec::new()
+    }
+
     /// Makes a method ready for these problems. A range of [`Evaluation::run`] is one of problems, which begin again at their end. What is
     /// read are the impulses of the last round, problem after problem. Problems differ, so a block of timed calls has whole rounds of them.
     /// Every solution begins at impulses of zero; a clock has the time of the engine's call alone.

@@ -1,6 +1,6 @@
 //! The trait [`Engine`]: anything that answers.
 
-use crate::{ContactSolver, Import, Quantity, Robot, RobotFile, Stepper};
+use crate::{ContactSolver, Import, Quantity, Robot, RobotFile, SemidefiniteSolver, Stepper};
 use featherbench_protocol::Memory;
 use featherbench_results::EngineSource;
 use featherbench_robots::StateBatch;
@@ -164,6 +164,11 @@ pub trait Engine: Send + Sync {
 
     /// Its solvers of contact problems, if it has any.
     fn contact_solver(&self) -> Option<&dyn ContactSolver> {
+        None
+    }
+
+    /// Its solver of least squares under semidefinite conditions, if it has one.
+    fn semidefinite_solver(&self) -> Option<&dyn SemidefiniteSolver> {
         None
     }
 

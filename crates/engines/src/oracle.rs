@@ -1,12 +1,14 @@
 //! An engine behind the oracle protocol: one program, with one process per thread that asks.
 
 pub(crate) mod contacts;
+mod semidefinite;
 pub(crate) mod steps;
 
 use crate::{request, shape};
 use featherbench_bench::provenance::{PROGRAM, SOURCES};
 use featherbench_bench::{
-    ContactSolver, Engine, Evaluation, Identity, Import, ImportNote, NoAnswer, Quantity, Robot, RobotFile, Route, Stepper,
+    ContactSolver, Engine, Evaluation, Identity, Import, ImportNote, NoAnswer, Quantity, Robot, RobotFile, Route, SemidefiniteSolver,
+    Stepper,
 };
 use featherbench_model::{BodyDescription, Description};
 use featherbench_protocol::{Block, Clock, Limits, Memory, Message, Process, SystemClock, VERSION};
@@ -31,6 +33,10 @@ pub struct Oracle {
     steps: Option<Steps>,
     /// Its solvers of contact problems.
     contact_solvers: Vec<String>,
+    /// Its solvers of their convex relaxation.
+    contact_relaxations: Vec<String>,
+    /// Its methods for least squares under semidefinite conditions.
+    semidefinite: Vec<String>,
     command: Vec<OsString>,
     limits: Limits,
     clock: Arc<dyn Clock>,
@@ -104,10 +110,27 @@ impl Oracle {
         };
         let relocate = hello.header.get("relocate").and_then(Value::as_bool).unwrap_or(false);
         let steps = Steps::offered(hello.header.get("steps")).map_err(|reason| format!("hello: {reason}"))?;
-        let solvers = hello.header.get("contact_solvers").cloned().unwrap_or_else(|| json!([]));
-        let contact_solvers = serde_json::from_value(solvers).map_err(|error| format!("hello: contact_solvers: {error}"))?;
+        let listed = |key: &str| -> Result<Vec<String>, String> {
+            let names = hello.header.get(key).cloned().unwrap_or_else(|| json!([]));
+            serde_json::from_value(names).map_err(|error| format!("hello: {key}: {error}"))
+        };
+        let (contact_solvers, contact_relaxations) = (listed("contact_solvers")?, listed("contact_relaxations")?);
+        let semidefinite = listed("semidefinite_least_squares")?;
         let session = Session { process, model: String::new(), readback: Vec::new(), states: None, reading: None };
-        Ok(Self { identity, methods, timed_by, relocate, steps, contact_solvers, command, limits, clock, idle: Mutex::new(vec![session]) })
+        Ok(Self {
+            identity,
+            methods,
+            timed_by,
+            relocate,
+            steps,
+            contact_solvers,
+            contact_relaxations,
+            semidefinite,
+            command,
+            limits,
+            clock,
+            idle: Mutex::new(vec![session]),
+        })
     }
 
     /// The same oracle under another name; the engine's own name goes into its build, where it differs.
@@ -206,7 +229,11 @@ impl Engine for Oracle {
     }
 
     fn contact_solver(&self) -> Option<&dyn ContactSolver> {
-        (!self.contact_solvers.is_empty()).then_some(self)
+        (!self.contact_solvers.is_empty() || !self.contact_relaxations.is_empty()).then_some(self)
+    }
+
+    fn semidefinite_solver(&self) -> Option<&dyn SemidefiniteSolver> {
+        (!self.semidefinite.is_empty()).then_some(self)
     }
 
     fn stepper(&self) -> Option<&dyn Stepper> {

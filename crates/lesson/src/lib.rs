@@ -12,6 +12,7 @@ pub mod arm;
 mod claim;
 pub mod claims;
 mod lagrange;
+pub mod pipeline;
 mod quadrature;
 
 pub use algebra::{Algebra, AlgebraError, Expression, Language};

@@ -2,4 +2,5 @@
 
 mod decided;
 mod languages;
+mod pipeline;
 mod symbols;

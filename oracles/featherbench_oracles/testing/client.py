@@ -22,19 +22,21 @@ class Oracle:
     ----------
     *arguments : str
         The arguments of Python, as in `-m featherbench_oracles.mujoco`. It finds this package, and no module in the current folder.
+    python : str
+        The Python that runs it: this one, or that of an engine's own environment.
     """
 
-    def __init__(self, *arguments: str) -> None:
+    def __init__(self, *arguments: str, python: str = sys.executable) -> None:
         paths = [str(HOME), *filter(None, [os.environ.get("PYTHONPATH")])]
         environment = {**os.environ, "PYTHONPATH": os.pathsep.join(paths)}
-        command = [sys.executable, "-P", *arguments]
+        command = [python, "-P", *arguments]
         self.process = Popen(command, stdin=PIPE, stdout=PIPE, stderr=DEVNULL, env=environment)
         self.requests, self.answers = cast(BinaryIO, self.process.stdin), cast(BinaryIO, self.process.stdout)
 
     @classmethod
-    def of(cls, engine: str) -> Oracle:
+    def of(cls, engine: str, python: str = sys.executable) -> Oracle:
         """Start the oracle of an engine of this package."""
-        return cls("-m", f"featherbench_oracles.{engine}")
+        return cls("-m", f"featherbench_oracles.{engine}", python=python)
 
     def ask(self, header: Header, blocks: Blocks | None = None) -> Answer:
         """Send one request.

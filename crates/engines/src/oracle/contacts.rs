@@ -12,6 +12,10 @@ impl ContactSolver for Oracle {
         self.contact_solvers.clone()
     }
 
+    fn contact_relaxations(&self) -> Vec<String> {
+        self.contact_relaxations.clone()
+    }
+
     fn prepare_contacts<'a>(
         &'a self,
         problems: &'a ContactProblems,

@@ -1,0 +1,6 @@
+//! The tests of identification as one program: they share what is compiled for them.
+
+mod consistency;
+mod estimators;
+mod excitation;
+mod ranks;

@@ -1,0 +1,1 @@
+"""Clarabel: convex problems with cones, by an interior-point method."""
