@@ -18,6 +18,8 @@ mod counted;
 mod dynibo;
 #[path = "outside/factors.rs"]
 mod factors;
+#[path = "outside/lesson.rs"]
+mod lesson;
 #[path = "outside/library.rs"]
 mod library;
 #[path = "outside/native.rs"]
@@ -29,6 +31,7 @@ mod written;
 
 use featherbench_bench::{Engine, FileBase, FileFormat, RobotFile};
 use featherbench_engines::{Limits, Oracle};
+use featherbench_lesson::Language;
 use featherbench_studies::import::{Cause, Comparison, Difference, Field};
 use std::ffi::OsString;
 use std::path::Path;
@@ -90,6 +93,9 @@ fn main() -> ExitCode {
         ("adam agrees, fixed and floating", || adam::with_adam(adam::agrees)),
         ("adam is clocked beside its loop", || adam::with_adam(adam::is_clocked)),
         ("adam refuses what it has not", || adam::with_adam(adam::refuses)),
+        ("the lesson's arm in Rust is our kernels' arm", || lesson::agrees_in(Language::Rust)),
+        ("the lesson's arm in C is our kernels' arm", || lesson::agrees_in(Language::C)),
+        ("the lesson's arm in Python is our kernels' arm", || lesson::agrees_in(Language::Python)),
         ("rapier that cannot be built is named", rapier::not_to_be_built),
         ("rapier conforms", rapier::conforms),
         ("rapier agrees on every joint that it has", || rapier::with_rapier(rapier::agrees)),
