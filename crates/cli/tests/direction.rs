@@ -21,7 +21,7 @@ const ALLOWED: &[(&str, &[&str])] = &[
     ("report", &["results"]),
     ("protocol", &["spatial", "model"]),
     ("bench", &["spatial", "model", "robots", "formats", "dynamics", "residuals", "results", "protocol"]),
-    ("engines", &["spatial", "model", "robots", "formats", "dynamics", "results", "protocol", "bench"]),
+    ("engines", &["spatial", "model", "robots", "formats", "dynamics", "residuals", "results", "protocol", "bench"]),
     (
         "studies",
         &[

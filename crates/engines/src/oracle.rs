@@ -1,7 +1,10 @@
 //! An engine behind the oracle protocol: one program, with one process per thread that asks.
 
 pub(crate) mod contacts;
+mod residual;
 pub(crate) mod steps;
+
+pub use residual::OracleResidual;
 
 use crate::{request, shape};
 use featherbench_bench::provenance::{PROGRAM, SOURCES};
@@ -31,6 +34,8 @@ pub struct Oracle {
     steps: Option<Steps>,
     /// Its solvers of contact problems.
     contact_solvers: Vec<String>,
+    /// What it says of its residual, if it has one.
+    residual: Option<residual::Offered>,
     command: Vec<OsString>,
     limits: Limits,
     clock: Arc<dyn Clock>,
@@ -106,8 +111,22 @@ impl Oracle {
         let steps = Steps::offered(hello.header.get("steps")).map_err(|reason| format!("hello: {reason}"))?;
         let solvers = hello.header.get("contact_solvers").cloned().unwrap_or_else(|| json!([]));
         let contact_solvers = serde_json::from_value(solvers).map_err(|error| format!("hello: contact_solvers: {error}"))?;
+        let residual = hello.header.get("residual").cloned().map(serde_json::from_value).transpose();
+        let residual = residual.map_err(|error| format!("hello: residual: {error}"))?;
         let session = Session { process, model: String::new(), readback: Vec::new(), states: None, reading: None };
-        Ok(Self { identity, methods, timed_by, relocate, steps, contact_solvers, command, limits, clock, idle: Mutex::new(vec![session]) })
+        Ok(Self {
+            identity,
+            methods,
+            timed_by,
+            relocate,
+            steps,
+            contact_solvers,
+            residual,
+            command,
+            limits,
+            clock,
+            idle: Mutex::new(vec![session]),
+        })
     }
 
     /// The same oracle under another name; the engine's own name goes into its build, where it differs.

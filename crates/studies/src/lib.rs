@@ -9,6 +9,7 @@
 //! - [`Reproductions`]: do the engines' known deviations still exist, and in their known size?
 //! - `contact`: what do solvers, laws and integrators answer where the answer is known?
 //! - [`ContactTiming`]: how long do solvers take for the contacts of standing robots, at the same residual?
+//! - `residuals`: are residuals what their formulas say, does any engine take them, and what is structure worth in learning?
 //! - [`Steps`]: how does the acceleration of a step approach the true one, and how do steps change the energy?
 //! - [`OperationCounts`]: are the counts of the sparse algorithms the integers of the theory?
 //! - [`Scaling`]: what do sparsity and errors become as robots grow?
@@ -27,6 +28,7 @@ mod known;
 mod operations;
 mod repeatability;
 mod reproductions;
+mod residuals;
 mod scaling;
 mod steps;
 mod timing;
@@ -71,6 +73,7 @@ const STUDIES: &[Entry] = &[
     Entry { name: "conditioning", make: conditioning::of_suite, sections: conditioning::section::sections },
     Entry { name: "derivatives", make: derivatives::of_suite, sections: derivatives::section::sections },
     Entry { name: "contact", make: contact::of_suite, sections: contact::section::sections },
+    Entry { name: "residuals", make: residuals::of_suite, sections: residuals::section::sections },
     Entry { name: "steps", make: steps::of_suite, sections: steps::section::sections },
     Entry { name: "operations", make: operations::of_suite, sections: no_section },
     Entry { name: "scaling", make: scaling::of_suite, sections: scaling::section::sections },
