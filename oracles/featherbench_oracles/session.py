@@ -81,6 +81,7 @@ class Session:
             "evaluate": self.evaluate,
             "clock": self.clock,
             "relocate": self.relocate,
+            "residual": self.residual,
             "contact_problems": self.contacts.set_problems,
             "solve_contacts": self.contacts.solve,
             "loops": self.loops.prepare,
@@ -108,6 +109,8 @@ class Session:
         }
         hello |= self.loops.hello() | self.scenes.hello()
         hello |= {key: list(solvers) for key, solvers in listed.items() if solvers}
+        if hasattr(engine, "residual"):
+            hello["residual"] = {"acceleration": bool(getattr(engine, "residual_acceleration", False))}
         if any(isinstance(function, Measured) for by_method in engine.quantities.values() for function in by_method.values()):
             return {**hello, "clock": True, "relocate": True}, {}
         timed = {name: [m for m, f in by_method.items() if isinstance(f, TimedCalls)] for name, by_method in engine.quantities.items()}
@@ -171,6 +174,24 @@ class Session:
         for k in range(count):
             answer = function(self.robot, _state(states, first + k, body))
             value[k] = np.reshape(answer[entries] if entries else answer, shape)
+        return {}, {"value": value}
+
+    def residual(self, header: Header, _blocks: Blocks) -> Answer:
+        """Answer the residual r(q, v, a) over a range of the states: block `value` of shape (count, nv)."""
+        function: Callable[[Any, State], Any] | None = getattr(self.engine, "residual", None)
+        if function is None:
+            raise Unsupported(f"{self.engine.name} has no residual")
+        if self.description is None or self.states is None:
+            raise ValueError("no model and states were given before")
+        first, count = header["first"], header["count"]
+        if not 0 <= first <= first + count <= len(self.states["q"]):
+            raise ValueError(f"states {first}..{first + count} do not exist")
+        value = np.empty((count, self.description.nv))
+        for k in range(count):
+            row = np.asarray(function(self.robot, _state(self.states, first + k, 0)), dtype=float)
+            if row.shape != (self.description.nv,) or not np.isfinite(row).all():
+                raise ValueError(f"the residual of state {first + k} is not {self.description.nv} finite numbers: its shape is {list(row.shape)}")
+            value[k] = row
         return {}, {"value": value}
 
     def clock(self, header: Header, _blocks: Blocks) -> Answer:

@@ -21,6 +21,8 @@
 //! | `featherbench_identification` | base parameters, logs, estimators, bodies that can exist | an estimator |
 //! | `featherbench_reference` | slow truth that shares no text with `dynamics` | a witness |
 //! | `featherbench_hybrid` | hybrid systems: events, Zeno, saltation, derivatives of whole runs | a hybrid system |
+//! | `featherbench_residuals` | what a nominal model lacks: τ = ID + r | a residual |
+//! | `featherbench_learning` | models learned from motions, and their scores | a learned model |
 //! | `featherbench_results` | the row: its columns, files, differences of runs | a column |
 //! | `featherbench_protocol` | messages to an oracle, and its process | – |
 //! | `featherbench_bench` | suite, cell, run, store, measures, gates; the traits `Engine` and `Study` | a measure of an error |

@@ -27,7 +27,7 @@ mod second_derivatives;
 mod shape;
 
 pub use featherbench_protocol::{Clock, Limits, SystemClock};
-pub use oracle::Oracle;
+pub use oracle::{Oracle, OracleResidual};
 pub use own::{Featherbench, timed};
 pub use recorded::{EngineRecording, Recorded, Recording, RecordingError, Recordings, read_recordings, recording_name};
 pub use reproducer::reproduce;

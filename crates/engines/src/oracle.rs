@@ -2,10 +2,13 @@
 
 pub(crate) mod contacts;
 pub(crate) mod loops;
+mod residual;
 pub(crate) mod rods;
 pub(crate) mod scenes;
 pub(crate) mod semidefinite;
 pub(crate) mod steps;
+
+pub use residual::OracleResidual;
 
 use crate::{request, shape};
 use featherbench_bench::provenance::{PROGRAM, SOURCES};
@@ -48,6 +51,8 @@ pub struct Oracle {
     rods: Vec<String>,
     /// What it offers of scenes.
     scenes: Scenes,
+    /// What it says of its residual, if it has one.
+    residual: Option<residual::Offered>,
     command: Vec<OsString>,
     limits: Limits,
     clock: Arc<dyn Clock>,
@@ -129,6 +134,8 @@ impl Oracle {
         };
         let (contact_solvers, contact_relaxations) = (listed("contact_solvers")?, listed("contact_relaxations")?);
         let (semidefinite, rods) = (listed("semidefinite_least_squares")?, listed("rods")?);
+        let residual = hello.header.get("residual").cloned().map(serde_json::from_value).transpose();
+        let residual = residual.map_err(|error| format!("hello: residual: {error}"))?;
         let session = Session { process, model: String::new(), readback: Vec::new(), states: None, reading: None };
         Ok(Self {
             identity,
@@ -142,6 +149,7 @@ impl Oracle {
             semidefinite,
             rods,
             scenes,
+            residual,
             command,
             limits,
             clock,

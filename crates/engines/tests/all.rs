@@ -7,3 +7,4 @@ mod conformance;
 mod oracle;
 mod recorded;
 mod second_derivatives;
+mod with_residual;

@@ -88,6 +88,9 @@ pub enum ResidualError {
         /// Its smallest eigenvalue.
         smallest: f64,
     },
+    /// A residual in another program did not answer.
+    #[error("the residual did not answer: {0}")]
+    NoAnswer(String),
     /// The data do not determine what was to be learned, or the optimiser gave up.
     #[error("learning failed: {0}")]
     Learning(String),

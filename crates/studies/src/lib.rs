@@ -14,6 +14,7 @@
 //! - `identification`: what do logs tell of a robot's parameters, and do estimators find them?
 //! - [`ContactTiming`]: how long do solvers take for the contacts of standing robots, at the same residual?
 //! - `scenes`: what do engines make of bodies in contact whose motion is known?
+//! - `residuals`: are residuals what their formulas say, does any engine take them, and what is structure worth in learning?
 //! - [`Steps`]: how does the acceleration of a step approach the true one, and how do steps change the energy?
 //! - [`OperationCounts`]: are the counts of the sparse algorithms the integers of the theory?
 //! - [`Scaling`]: what do sparsity and errors become as robots grow?
@@ -36,6 +37,7 @@ mod operations;
 mod relaxation;
 mod repeatability;
 mod reproductions;
+mod residuals;
 mod scaling;
 mod scenes;
 mod steps;
@@ -86,6 +88,7 @@ const STUDIES: &[Entry] = &[
     // Its rows are in the verdict and in the tables of rows.
     Entry { name: "relaxation", make: relaxation::of_suite, sections: no_section },
     Entry { name: "identification", make: identification::of_suite, sections: identification::section::sections },
+    Entry { name: "residuals", make: residuals::of_suite, sections: residuals::section::sections },
     Entry { name: "steps", make: steps::of_suite, sections: steps::section::sections },
     Entry { name: "operations", make: operations::of_suite, sections: no_section },
     Entry { name: "scaling", make: scaling::of_suite, sections: scaling::section::sections },
