@@ -15,6 +15,7 @@ mod hypotheses;
 mod orders;
 mod protocol;
 mod robots;
+mod scenes;
 mod steps;
 mod values;
 
@@ -93,7 +94,7 @@ pub fn check(start: &dyn Fn() -> Result<Box<dyn Connection>, String>, watch: &dy
     let scenes: Vec<Scene> = robots::all()?.into_iter().map(|(shows, robot)| Scene::new(shows, robot)).collect();
     let mut exchange = Exchange::new(start);
     watch("hello");
-    let Some((steps, contact_solvers)) = protocol::hello(&mut exchange) else { return Ok(exchange.conformance) };
+    let Some((steps, contact_solvers, scenes_offered)) = protocol::hello(&mut exchange) else { return Ok(exchange.conformance) };
     watch("what has no answer");
     protocol::before_prepare(&mut exchange);
     let offered = exchange.conformance.methods.clone();
@@ -114,6 +115,8 @@ pub fn check(start: &dyn Fn() -> Result<Box<dyn Connection>, String>, watch: &dy
     answers::lacking(&mut exchange, &offered);
     watch("contacts");
     contacts::ask(&mut exchange, &contact_solvers);
+    watch("scenes");
+    scenes::ask(&mut exchange, &scenes_offered);
     watch("files");
     files::read(&mut exchange, &offered)?;
     watch("the end");

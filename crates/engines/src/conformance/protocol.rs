@@ -3,6 +3,7 @@
 use super::exchange::Exchange;
 use super::values::{Scene, same_bits};
 use super::{Standing, robots};
+use crate::oracle::scenes::Scenes;
 use crate::oracle::steps::Steps;
 use crate::request::{description, states};
 use featherbench_bench::Quantity;
@@ -13,8 +14,8 @@ use std::collections::BTreeMap;
 /// Quantities by method.
 pub(super) type Methods = BTreeMap<String, Vec<String>>;
 
-/// Asks for its identity, the steps and the contact solvers that it offers. Without an answer the test ends here.
-pub(super) fn hello(exchange: &mut Exchange) -> Option<(Steps, Vec<String>)> {
+/// Asks for its identity, the steps, contact solvers and scenes that it offers. Without an answer the test ends here.
+pub(super) fn hello(exchange: &mut Exchange) -> Option<(Steps, Vec<String>, Scenes)> {
     let answer = exchange.expect("it answers hello", json!({"op": "hello"}), Vec::new(), &["ok"])?;
     let mut wrong = Vec::new();
     let header = &answer.header;
@@ -49,6 +50,10 @@ pub(super) fn hello(exchange: &mut Exchange) -> Option<(Steps, Vec<String>)> {
         wrong.push("`contact_solvers` is no list of names".into());
         Vec::new()
     });
+    let scenes = Scenes::offered(header).unwrap_or_else(|reason| {
+        wrong.push(reason);
+        Scenes::default()
+    });
     let standing = if wrong.is_empty() { Standing::Right } else { Standing::Wrong };
     exchange.note(standing, "hello names protocol, engine, version, build and methods", &wrong.join("; "), &[]);
     exchange.conformance.engine = format!("{} {}", answer.text("engine"), answer.text("version"));
@@ -56,7 +61,7 @@ pub(super) fn hello(exchange: &mut Exchange) -> Option<(Steps, Vec<String>)> {
     exchange.conformance.methods.retain(|quantity, _| Quantity::parse(quantity).is_some());
     let steps = steps.unwrap_or_default();
     exchange.conformance.steps.clone_from(&steps.methods);
-    Some((steps, solvers))
+    Some((steps, solvers, scenes))
 }
 
 /// Requests that have no answer while there is no robot.
