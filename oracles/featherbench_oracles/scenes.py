@@ -207,8 +207,9 @@ def read(scene: Any) -> Scene:
         if abs(turn @ turn - 1) > 1e-9:
             raise ValueError("orientation must be a unit quaternion")
         mass, inertia = number(of, "mass", 1e-12, np.inf), vector(of, "inertia", 3, positive=True)
-        rest = [vector(of, key, 3) for key in ("linear", "angular", "force")]
-        return Body(str(of["name"]), mass, inertia, vector(of, "position", 3), turn, *rest, tuple(map(shape, of["shapes"])))
+        linear, angular, force = (vector(of, key, 3) for key in ("linear", "angular", "force"))
+        position, shapes = vector(of, "position", 3), tuple(map(shape, of["shapes"]))
+        return Body(str(of["name"]), mass, inertia, position, turn, linear, angular, force, shapes)
 
     try:
         friction, restitution = number(scene, "friction", 0, np.inf), number(scene, "restitution", 0, 1)
@@ -238,7 +239,7 @@ class Scenes:
 
     def hello(self) -> dict[str, Any]:
         """Tell what the engine offers, with the settings."""
-        offered = {"scenes": self.variants, "scene_derivatives": self.derivatives}
+        offered: dict[str, Mapping[str, Any]] = {"scenes": self.variants, "scene_derivatives": self.derivatives}
         return {key: {name: one.settings for name, one in table.items()} for key, table in offered.items() if table}
 
     def _asked(self, header: Header, table: Mapping[str, Any]) -> tuple[Any, Scene, Stepping]:

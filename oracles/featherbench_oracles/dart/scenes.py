@@ -31,7 +31,9 @@ def _rotation(turn: Array) -> Array:
 
 
 def _add(node: dartpy.dynamics.BodyNode, shape: Shape, scene: Scene) -> None:
-    geometry = dartpy.dynamics.SphereShape(shape.radius) if shape.radius is not None else dartpy.dynamics.BoxShape(2 * np.asarray(shape.half))
+    geometry = (
+        dartpy.dynamics.SphereShape(shape.radius) if shape.radius is not None else dartpy.dynamics.BoxShape(2 * np.asarray(shape.half))
+    )
     added = node.createShapeNode(geometry)
     added.createCollisionAspect()
     dynamics = added.createDynamicsAspect()

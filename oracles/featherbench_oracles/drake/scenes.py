@@ -108,8 +108,8 @@ def _simulate(name: str, scene: Scene, stepping: Stepping) -> Motion:
     simulator.Initialize()
     samples = []
     for k in range(1, stepping.steps // stepping.every + 1):
-        # Half a step beyond is before the next step of discrete time; a continuous motion ends where it is asked.
-        simulator.AdvanceTo((k * stepping.every + (0.25 if discrete else 0.0)) * stepping.dt)
+        # Step n happens at the time (n - 1) dt: half a step after it, before the next. A continuous motion ends where it is asked.
+        simulator.AdvanceTo((k * stepping.every - (0.5 if discrete else 0.0)) * stepping.dt)
         samples.append(_sample(plant, context, bodies))
     return Motion(samples, _contacts(plant, context, bodies))
 
@@ -117,7 +117,8 @@ def _simulate(name: str, scene: Scene, stepping: Stepping) -> Motion:
 def _variant(name: str) -> Variant:
     discrete = name in APPROXIMATIONS
     settings = {
-        "contact": "point contact, " + (name if discrete else "forces told are those of the continuous model, which has no static friction"),
+        "contact": "point contact, "
+        + (name if discrete else "forces told are those of the continuous model, which has no static friction"),
         "integrator": "discrete" if discrete else f"CENIC, accuracy {ACCURACY:g}, steps up to dt",
         "penetration_allowance": DEFAULTS.penetration_allowance,
         "stiction_tolerance": DEFAULTS.stiction_tolerance,
@@ -154,13 +155,15 @@ def _autodiff(name: str, scene: Scene, stiffness: float, stepping: Stepping) -> 
     plant.SetPositions(context, positions)
     plant.SetVelocities(context, velocities)
     simulator.Initialize()
-    simulator.AdvanceTo((stepping.steps + 0.25) * stepping.dt)
+    simulator.AdvanceTo((stepping.steps - 0.5) * stepping.dt)
     end = [plant.GetPositions(context)[6], plant.GetVelocities(context)[5]]
     return Derivative(np.array([x.value() for x in end]), np.array([x.derivatives() for x in end]))
 
 
 DERIVATIVES = {
-    f"autodiff_{name}": DerivativeVariant(partial(_autodiff, name), {"contact": f"point contact, {name}", "differences": "none: AutoDiffXd"})
+    f"autodiff_{name}": DerivativeVariant(
+        partial(_autodiff, name), {"contact": f"point contact, {name}", "differences": "none: AutoDiffXd"}
+    )
     for name in ("tamsi", "lagged")
 }
 VARIANTS = {name: _variant(name) for name in (*APPROXIMATIONS, "cenic")}

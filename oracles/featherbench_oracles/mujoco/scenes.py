@@ -30,10 +30,9 @@ def compiled(scene: Scene, dt: float) -> tuple[mujoco.MjModel, dict[int, int]]:
         made.iquat = [1, 0, 0, 0]
         made.add_freejoint()
         for shape in body.shapes:
-            if shape.radius is not None:
-                kind, size = mujoco.mjtGeom.mjGEOM_SPHERE, [shape.radius, 0, 0]
-            else:
-                kind, size = mujoco.mjtGeom.mjGEOM_BOX, shape.half
+            sphere = shape.radius is not None
+            kind = mujoco.mjtGeom.mjGEOM_SPHERE if sphere else mujoco.mjtGeom.mjGEOM_BOX
+            size = [shape.radius, 0, 0] if sphere else shape.half
             made.add_geom(type=kind, size=size, pos=shape.at, condim=3, friction=slide)
     model = spec.compile()
     return model, {model.body(f"{k}").id: k for k in range(len(scene.bodies))}

@@ -17,6 +17,7 @@ mod orders;
 mod protocol;
 mod robots;
 mod rods;
+mod scenes;
 mod semidefinite;
 mod steps;
 mod values;
@@ -117,6 +118,8 @@ pub fn check(start: &dyn Fn() -> Result<Box<dyn Connection>, String>, watch: &dy
     }
     watch("rods");
     rods::ask(&mut exchange, &extras.rods);
+    watch("scenes");
+    scenes::ask(&mut exchange, &extras.scenes);
     watch("the end");
     protocol::end(&mut exchange);
     Ok(exchange.conformance)

@@ -4,6 +4,7 @@ use super::exchange::Exchange;
 use super::values::{Scene, same_bits};
 use super::{Standing, robots};
 use crate::oracle::loops::Loops;
+use crate::oracle::scenes::Scenes;
 use crate::oracle::steps::Steps;
 use crate::request::{description, states};
 use featherbench_bench::Quantity;
@@ -22,6 +23,7 @@ pub(super) struct Offered {
     pub(super) contact_relaxations: Vec<String>,
     pub(super) semidefinite: Vec<String>,
     pub(super) rods: Vec<String>,
+    pub(super) scenes: Scenes,
     pub(super) loops: Option<Loops>,
 }
 
@@ -29,7 +31,7 @@ impl Offered {
     /// Whether it solves problems that need no robot.
     pub(super) fn solves(&self) -> bool {
         let lists = [&self.contact_solvers, &self.contact_relaxations, &self.semidefinite, &self.rods];
-        lists.iter().any(|names| !names.is_empty())
+        lists.iter().any(|names| !names.is_empty()) || !self.scenes.is_empty()
     }
 }
 
@@ -68,6 +70,10 @@ pub(super) fn hello(exchange: &mut Exchange) -> Option<Offered> {
         wrong.push(reason);
         None
     });
+    let scenes = Scenes::offered(header).unwrap_or_else(|reason| {
+        wrong.push(reason);
+        Scenes::default()
+    });
     let mut listed = |key: &str| -> Vec<String> {
         let names = header.get(key).map_or(Ok(Vec::new()), |names| serde_json::from_value(names.clone()));
         names.unwrap_or_else(|_| {
@@ -84,7 +90,7 @@ pub(super) fn hello(exchange: &mut Exchange) -> Option<Offered> {
     exchange.conformance.methods.retain(|quantity, _| Quantity::parse(quantity).is_some());
     let steps = steps.unwrap_or_default();
     exchange.conformance.steps.clone_from(&steps.methods);
-    Some(Offered { steps, contact_solvers, contact_relaxations, semidefinite, rods, loops })
+    Some(Offered { steps, contact_solvers, contact_relaxations, semidefinite, rods, scenes, loops })
 }
 
 /// Requests that have no answer while there is no robot.

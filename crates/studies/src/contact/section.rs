@@ -2,6 +2,7 @@
 
 use super::STUDY;
 use crate::known::{passed, table};
+use crate::scenes::section::views;
 use featherbench_report::{Overview, Section};
 use featherbench_results::{Row, RunInfo};
 use maud::{Markup, html};
@@ -152,6 +153,7 @@ fn body(rows: &[&Row], chunk: &str) -> Markup {
                 div #contact-existence.plot role="group" aria-label="Map of how many forces Painlevé's rod has, over its angle and rate" {}
                 div #contact-felt.plot role="group" aria-label="Plot of the friction that a body feels against its heading" {}
             }
+            (views())
             (table(STUDY, rows, &QUANTITIES, chunk))
         }
     }
