@@ -13,13 +13,13 @@ use featherbench_model::{BodyDescription, Description};
 use featherbench_protocol::{Block, Clock, Limits, Memory, Message, Process, SystemClock, VERSION};
 use featherbench_results::EngineSource;
 use featherbench_robots::StateBatch;
+use scenes::Scenes;
 use serde_json::{Value, json};
 use std::collections::BTreeMap;
 use std::ffi::OsString;
 use std::ops::Range;
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Duration;
-use scenes::Scenes;
 use steps::Steps;
 
 /// An engine that runs in its own process.
@@ -112,7 +112,19 @@ impl Oracle {
         let contact_solvers = serde_json::from_value(solvers).map_err(|error| format!("hello: contact_solvers: {error}"))?;
         let scenes = Scenes::offered(&hello.header).map_err(|reason| format!("hello: {reason}"))?;
         let session = Session { process, model: String::new(), readback: Vec::new(), states: None, reading: None };
-        Ok(Self { identity, methods, timed_by, relocate, steps, contact_solvers, scenes, command, limits, clock, idle: Mutex::new(vec![session]) })
+        Ok(Self {
+            identity,
+            methods,
+            timed_by,
+            relocate,
+            steps,
+            contact_solvers,
+            scenes,
+            command,
+            limits,
+            clock,
+            idle: Mutex::new(vec![session]),
+        })
     }
 
     /// The same oracle under another name; the engine's own name goes into its build, where it differs.

@@ -163,8 +163,7 @@ impl Scene {
             if !positive(&body.inertia) {
                 return wrong(of("inertia"), "must be positive and finite");
             }
-            let fields =
-                [("position", &body.position), ("linear", &body.linear), ("angular", &body.angular), ("force", &body.force)];
+            let fields = [("position", &body.position), ("linear", &body.linear), ("angular", &body.angular), ("force", &body.force)];
             for (name, numbers) in fields {
                 if !finite(numbers) {
                     return wrong(of(name), "must be finite");

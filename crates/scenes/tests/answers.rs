@@ -33,8 +33,17 @@ fn every_scene_has_its_answer() {
     for question in library::all() {
         for (measure, value) in question.measures.iter().zip(values(&question, question.finest(), OwnSolver::newton())) {
             let error = measure.error(value);
-            println!("{:<18} {:<18} {:>14.6e} exact {:>12.6e} error {:.1e}", question.scene.name, measure.quantity, value, measure.exact, error);
-            assert!(error <= allowed(measure.quantity), "{} {}: {value:e}, exact {:e}", question.scene.name, measure.quantity, measure.exact);
+            println!(
+                "{:<18} {:<18} {:>14.6e} exact {:>12.6e} error {:.1e}",
+                question.scene.name, measure.quantity, value, measure.exact, error
+            );
+            assert!(
+                error <= allowed(measure.quantity),
+                "{} {}: {value:e}, exact {:e}",
+                question.scene.name,
+                measure.quantity,
+                measure.exact
+            );
             judged += 1;
         }
     }
@@ -44,9 +53,13 @@ fn every_scene_has_its_answer() {
 #[test]
 fn errors_fall_with_the_step() {
     let mut fitted = 0;
-    for question in library::all().into_iter().filter(|q| ["incline_0", "sliding_sphere", "bouncing_ball", "box_on_balls"].contains(&q.scene.name.as_str())) {
+    for question in library::all()
+        .into_iter()
+        .filter(|q| ["incline_0", "sliding_sphere", "bouncing_ball", "box_on_balls"].contains(&q.scene.name.as_str()))
+    {
         for (k, measure) in question.measures.iter().enumerate() {
-            let points: Vec<(f64, f64)> = [4e-3, 2e-3, 1e-3].iter().map(|&dt| (dt, values(&question, dt, OwnSolver::sweeps())[k])).collect();
+            let points: Vec<(f64, f64)> =
+                [4e-3, 2e-3, 1e-3].iter().map(|&dt| (dt, values(&question, dt, OwnSolver::sweeps())[k])).collect();
             let fit = Fit::of(&points).unwrap();
             println!("{} {}: {points:?} {fit:?}", question.scene.name, measure.quantity);
             // A tenth of the error at the largest step: what second order leaves, and the rounding of the impact's time to a step.

@@ -9,7 +9,10 @@ fn known_forms_by_other_routes() {
     // Energy and the angular momentum about the contact: v = v₀ I-free part, 1/(1 + 2/5).
     let sphere = Sliding::default();
     let rolling = sphere.question().measures[0].exact;
-    assert!((rolling - sphere.speed / 1.4).abs() < 1e-15 && (rolling - (sphere.speed - sphere.friction * sphere.gravity * sphere.rolls_at())).abs() < 1e-14);
+    assert!(
+        (rolling - sphere.speed / 1.4).abs() < 1e-15
+            && (rolling - (sphere.speed - sphere.friction * sphere.gravity * sphere.rolls_at())).abs() < 1e-14
+    );
     // Housner: angular momentum about the new foot is kept, (I + m(h² − b²)) ω⁻ = (I + m(h² + b²)) ω⁺.
     let block = Block::default();
     let (b, h) = (block.half_width.powi(2), block.half_height.powi(2));

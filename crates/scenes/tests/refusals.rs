@@ -26,7 +26,9 @@ fn malformed_scenes_are_refused_by_field() {
         ("bodies[0].linear", |scene| scene.bodies[0].linear[0] = f64::NAN),
         ("bodies[0].orientation", |scene| scene.bodies[0].orientation = [0.0; 4]),
         ("bodies[0].shapes[0].radius", |scene| scene.bodies[0].shapes[0].geometry = Geometry::Sphere { radius: -1.0 }),
-        ("bodies[0].shapes[1].half", |scene| scene.bodies[0].shapes.push(Shape { geometry: Geometry::Box { half: [1.0, 0.0, 1.0] }, at: [0.0; 3] })),
+        ("bodies[0].shapes[1].half", |scene| {
+            scene.bodies[0].shapes.push(Shape { geometry: Geometry::Box { half: [1.0, 0.0, 1.0] }, at: [0.0; 3] })
+        }),
     ];
     for (field, change) in changes {
         let mut wrong = scene();

@@ -92,5 +92,10 @@ fn moved(exchange: &mut Exchange, variant: &str) {
         "velocities are in world axes at the centre of mass; quaternions are (x, y, z, w), body to world",
         "a contact's force is that on the first body of its row, in world axes; -1 is the ground",
     ];
-    exchange.note(Standing::Wrong, &what, &format!("errors of a flight are {errors:?}, a weight of {} is held by {force}", MASS * GRAVITY), &advice);
+    exchange.note(
+        Standing::Wrong,
+        &what,
+        &format!("errors of a flight are {errors:?}, a weight of {} is held by {force}", MASS * GRAVITY),
+        &advice,
+    );
 }

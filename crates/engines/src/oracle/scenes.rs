@@ -61,7 +61,8 @@ impl SceneEngine for Oracle {
     }
 
     fn differentiate(&self, scene: &Scene, variant: &str, stiffness: f64, dt: f64, steps: usize) -> Result<Derivative, NoAnswer> {
-        let question = json!({"op": "scene_derivative", "scene": scene, "variant": variant, "stiffness": stiffness, "dt": dt, "steps": steps});
+        let question =
+            json!({"op": "scene_derivative", "scene": scene, "variant": variant, "stiffness": stiffness, "dt": dt, "steps": steps});
         let answer = self.about_scene(scene, question)?;
         let [z, v] = numbers(&shaped(&answer, "state", &[2])?)?;
         let [a, b, c, d] = numbers(&shaped(&answer, "derivative", &[2, 2])?)?;

@@ -185,13 +185,7 @@ impl Table {
         }
         let half = self.half;
         Question {
-            scene: Scene {
-                name: "table".into(),
-                gravity: [0.0, 0.0, -self.gravity],
-                friction: 0.5,
-                restitution: 0.0,
-                bodies: vec![table],
-            },
+            scene: Scene { name: "table".into(), gravity: [0.0, 0.0, -self.gravity], friction: 0.5, restitution: 0.0, bodies: vec![table] },
             duration: 0.4,
             dts: STEPS,
             measures: vec![

@@ -35,7 +35,13 @@ pub struct Measure {
 }
 
 impl Measure {
-    fn new(quantity: &'static str, unit: &'static str, exact: f64, scale: f64, of: impl Fn(&Motion) -> f64 + Send + Sync + 'static) -> Self {
+    fn new(
+        quantity: &'static str,
+        unit: &'static str,
+        exact: f64,
+        scale: f64,
+        of: impl Fn(&Motion) -> f64 + Send + Sync + 'static,
+    ) -> Self {
         Self { quantity, unit, exact, scale, of: Box::new(of) }
     }
 

@@ -111,7 +111,12 @@ pub(super) fn rows(gates: &Gates, cell: &Cell, outcome: &Outcome) -> Vec<Row> {
     let mut rows = Vec::new();
     for (&(stiffness, dt), found) in cases.iter().zip(values.chunks_exact(6)) {
         let params = if own { cell.params.clone() } else { json!({"settings": cell.params["settings"], "stiffness": stiffness, "dt": dt}) };
-        let of = |metric: &str, unit: &str| Row { metric: metric.into(), unit: unit.into(), reference: "closed form".into(), ..blank(cell, &params) };
+        let of = |metric: &str, unit: &str| Row {
+            metric: metric.into(),
+            unit: unit.into(),
+            reference: "closed form".into(),
+            ..blank(cell, &params)
+        };
         let row = of("derivative_error", "1");
         rows.push(if own { gates.judge(row, error(&found[2..]), 1.0) } else { row.informed(error(&found[2..])) });
         rows.push(of("dz_dz0", "1").informed(found[2]));

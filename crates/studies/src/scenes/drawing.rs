@@ -21,7 +21,8 @@ struct View {
 impl View {
     /// The view in which all of these points are inside, with room for arrows.
     fn of(points: &[Vector3<f64>]) -> Self {
-        let range = |axis: usize| points.iter().fold((0.0_f64, 0.0_f64), |(low, high), point| (low.min(point[axis]), high.max(point[axis])));
+        let range =
+            |axis: usize| points.iter().fold((0.0_f64, 0.0_f64), |(low, high), point| (low.min(point[axis]), high.max(point[axis])));
         let ((x0, x1), (_, z1)) = (range(0), range(2));
         // A scene of one point has no extent.
         let scale = ((WIDTH - 80.0) / (x1 - x0).max(1e-3)).min((HEIGHT - 100.0) / z1.max(1e-3));

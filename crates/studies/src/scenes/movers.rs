@@ -40,7 +40,8 @@ impl Mover {
     pub(super) fn simulate(self, engine: &dyn Engine, question: &Question, variant: &str, dt: f64) -> Result<Motion, NoAnswer> {
         let (scene, steps) = (&question.scene, question.steps(dt));
         let every = (steps / SAMPLES).max(1);
-        let by = |solver: &mut dyn StepSolver| simulate(scene, dt, steps, every, solver).map_err(|error| NoAnswer::Failed(error.to_string()));
+        let by =
+            |solver: &mut dyn StepSolver| simulate(scene, dt, steps, every, solver).map_err(|error| NoAnswer::Failed(error.to_string()));
         match self {
             Self::Own if variant == "newton" => by(&mut OwnSolver::newton()),
             Self::Own => by(&mut OwnSolver::sweeps()),

@@ -28,7 +28,9 @@ fn judged(rows: &[Row], metric: &str) -> Vec<Verdict> {
 #[test]
 fn our_errors_are_judged_and_those_of_others_inform() {
     let gates = gates();
-    for (engine, method, judges) in [("featherbench", "newton", true), ("featherbench", "block_gauss_seidel", false), ("peer", "any", false)] {
+    for (engine, method, judges) in
+        [("featherbench", "newton", true), ("featherbench", "block_gauss_seidel", false), ("peer", "any", false)]
+    {
         let (question, cell) = asked("sliding_sphere", engine, method);
         let good: Vec<f64> = question.dts.iter().flat_map(|_| question.measures.iter().map(|measure| measure.exact)).collect();
         let rows = rows::of_motion(&gates, &question, &cell, &Outcome::Values(good.clone()));
