@@ -37,10 +37,10 @@ impl Motion {
     /// [`SceneError::Malformed`] when numbers are missing or a push is of no body.
     pub fn new(bodies: usize, samples: Vec<f64>, pushes: &[f64]) -> Result<Self, SceneError> {
         let wrong = |field: &str, problem| SceneError::Malformed { field: field.into(), problem };
-        if bodies == 0 || samples.is_empty() || samples.len() % (BODY * bodies) != 0 {
+        if bodies == 0 || samples.is_empty() || !samples.len().is_multiple_of(BODY * bodies) {
             return Err(wrong("motion", "must have thirteen numbers for each sample and body"));
         }
-        if pushes.len() % PUSH != 0 {
+        if !pushes.len().is_multiple_of(PUSH) {
             return Err(wrong("contacts", "must have eight numbers for each contact"));
         }
         let body = |number: f64| (0..bodies).find(|&body| body as f64 == number);

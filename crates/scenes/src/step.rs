@@ -180,7 +180,7 @@ pub fn simulate(scene: &Scene, dt: f64, steps: usize, every: usize, solver: &mut
             }
         }
         state.advance(dt);
-        if (step + 1) % every == 0 {
+        if (step + 1).is_multiple_of(every) {
             for k in 0..scene.bodies.len() {
                 let turn = state.turn[k].coords;
                 samples.extend(state.position[k].iter().chain(turn.iter()).chain(state.linear[k].iter()).chain(state.angular[k].iter()));

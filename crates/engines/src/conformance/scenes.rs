@@ -34,16 +34,19 @@ fn resting() -> Scene {
     scene(Body::ball("ball", MASS, RADIUS, [0.0, 0.0, RADIUS]))
 }
 
+/// A change of a question.
+type Change = fn(&mut Value);
+
 /// Asks for everything.
 pub(super) fn ask(exchange: &mut Exchange, offered: &Scenes) {
     let Some(first) = offered.variants.first() else { return };
     let asked = || question(&flying(), &first.name, DT, STEPS, STEPS);
-    let changed = |change: fn(&mut Value)| {
+    let changed = |change: Change| {
         let mut question = asked();
         change(&mut question);
         question
     };
-    let wrong: [(&str, fn(&mut Value)); 4] = [
+    let wrong: [(&str, Change); 4] = [
         ("a scene with a step of zero is an error", |question| question["dt"] = 0.0.into()),
         ("a scene without samples is an error", |question| question["every"] = 0.into()),
         ("a scene without bodies is an error", |question| question["scene"]["bodies"] = Value::Array(Vec::new())),
