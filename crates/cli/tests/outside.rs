@@ -1,4 +1,4 @@
-//! Tests that need what a new machine may not have: Python, the reference engines, rapier, dynibo, faer, nalgebra, adam, a browser.
+//! Tests that need what a new machine may not have: Python, the reference engines, rapier, dynibo, faer, nalgebra, adam, clarabel, a browser.
 //!
 //! Each is run if it can be, and otherwise listed as skipped. With `FEATHERBENCH_REQUIRE_ALL` set, as in CI, a skip is a failure. The
 //! native oracles are required at night only, with `FEATHERBENCH_NIGHTLY` set.
@@ -6,6 +6,8 @@
 
 #[path = "outside/adam.rs"]
 mod adam;
+#[path = "outside/clarabel.rs"]
+mod clarabel;
 #[path = "outside/added.rs"]
 mod added;
 #[path = "outside/compared.rs"]
@@ -90,6 +92,7 @@ fn main() -> ExitCode {
         ("adam agrees, fixed and floating", || adam::with_adam(adam::agrees)),
         ("adam is clocked beside its loop", || adam::with_adam(adam::is_clocked)),
         ("adam refuses what it has not", || adam::with_adam(adam::refuses)),
+        ("clarabel conforms", clarabel::conforms),
         ("rapier that cannot be built is named", rapier::not_to_be_built),
         ("rapier conforms", rapier::conforms),
         ("rapier agrees on every joint that it has", || rapier::with_rapier(rapier::agrees)),
