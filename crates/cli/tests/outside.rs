@@ -6,10 +6,10 @@
 
 #[path = "outside/adam.rs"]
 mod adam;
-#[path = "outside/clarabel.rs"]
-mod clarabel;
 #[path = "outside/added.rs"]
 mod added;
+#[path = "outside/clarabel.rs"]
+mod clarabel;
 #[path = "outside/compared.rs"]
 mod compared;
 #[path = "outside/compiled.rs"]
