@@ -191,7 +191,13 @@ def test_wrong_questions_are_refused() -> None:
     with pytest.raises(ValueError, match="not finite"):
         loops.accelerations({"method": "any", "count": 1}, {**good, "v": np.full((1, 3), np.nan)})
     start: Blocks = {"q": np.zeros(3), "v": np.zeros(3)}
-    for steps, says in [({"dt": 0.0}, "dt"), ({"dt": np.inf}, "dt"), ({"steps": 10, "every": 3}, "multiple"), ({"steps": 0}, "multiple")]:
+    wrong: list[tuple[Header, str]] = [
+        ({"dt": 0.0}, "dt"),
+        ({"dt": np.inf}, "dt"),
+        ({"steps": 10, "every": 3}, "multiple"),
+        ({"steps": 0}, "multiple"),
+    ]
+    for steps, says in wrong:
         question = {"method": "any", "dt": 1e-3, "steps": 10, "every": 1, **steps}
         with pytest.raises(ValueError, match=says):
             loops.motion(question, start)

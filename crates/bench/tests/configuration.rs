@@ -367,6 +367,7 @@ fn the_engines_of_the_project_are_described() {
         "faer",
         "nalgebra",
         "adam",
+        "clarabel",
         "pinocchio-clang",
         "pinocchio-gcc",
         "mujoco-native",

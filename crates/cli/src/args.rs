@@ -424,7 +424,7 @@ pub struct CheckArgs {
 
 #[derive(Debug, Clone, Args)]
 #[command(
-    after_help = "Engines in Python share one environment: one of them installs all. An engine that cargo builds (rapier, dynibo, faer, nalgebra; some minutes, once) is built alone; a suite that asks for it builds it as well. An engine with an environment of its own (adam) is installed alone too, when it is named.\n\nExamples:\n  featherbench oracles install\n  featherbench oracles install rapier\n  featherbench oracles install --native"
+    after_help = "Engines in Python share one environment: one of them installs all. An engine that cargo builds (rapier, dynibo, faer, nalgebra; some minutes, once) is built alone; a suite that asks for it builds it as well. An engine with an environment of its own (adam, clarabel) is installed alone too, when it is named.\n\nExamples:\n  featherbench oracles install\n  featherbench oracles install rapier\n  featherbench oracles install --native"
 )]
 pub struct InstallArgs {
     /// Engines of oracles/engines.toml; by default those in Python.

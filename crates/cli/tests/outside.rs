@@ -1,4 +1,4 @@
-//! Tests that need what a new machine may not have: Python, the reference engines, rapier, dynibo, faer, nalgebra, adam, a browser.
+//! Tests that need what a new machine may not have: Python, the reference engines, rapier, dynibo, faer, nalgebra, adam, clarabel, a browser.
 //!
 //! Each is run if it can be, and otherwise listed as skipped. With `FEATHERBENCH_REQUIRE_ALL` set, as in CI, a skip is a failure. The
 //! native oracles are required at night only, with `FEATHERBENCH_NIGHTLY` set.
@@ -8,6 +8,8 @@
 mod adam;
 #[path = "outside/added.rs"]
 mod added;
+#[path = "outside/clarabel.rs"]
+mod clarabel;
 #[path = "outside/compared.rs"]
 mod compared;
 #[path = "outside/compiled.rs"]
@@ -96,6 +98,7 @@ fn main() -> ExitCode {
         ("the lesson's arm in Rust is our kernels' arm", || lesson::agrees_in(Language::Rust)),
         ("the lesson's arm in C is our kernels' arm", || lesson::agrees_in(Language::C)),
         ("the lesson's arm in Python is our kernels' arm", || lesson::agrees_in(Language::Python)),
+        ("clarabel conforms", clarabel::conforms),
         ("rapier that cannot be built is named", rapier::not_to_be_built),
         ("rapier conforms", rapier::conforms),
         ("rapier agrees on every joint that it has", || rapier::with_rapier(rapier::agrees)),

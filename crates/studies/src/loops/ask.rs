@@ -67,7 +67,8 @@ impl Asked {
         matches!(self, Self::Motion(..))
     }
 
-    fn system(&self) -> System {
+    /// Its robot.
+    pub fn system(&self) -> System {
         match self {
             Self::Accelerations(system) => *system,
             Self::Singular => System::Windows(1),

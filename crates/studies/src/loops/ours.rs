@@ -1,6 +1,7 @@
 //! Our methods, behind the same trait as engines.
 
 use super::ask::Asked;
+use super::systems::System;
 use crate::known::failed;
 use featherbench_bench::{LoopAccelerations, LoopMotion, LoopSolver, LoopStates, LoopSteps, NoAnswer};
 use featherbench_constrained::stabilise::{Projection, Simulation, Stabilisation};
@@ -17,9 +18,14 @@ const RANK: f64 = 1e-10;
 /// The time constant of Baumgarte's stabilisation, s: that of Pinocchio's method beside it.
 const BAUMGARTE: f64 = 0.05;
 
-/// The methods for a question.
+/// The methods for a question. Bricard's six-bar has no motion by Baumgarte's stabilisation: beside its loop the redundant row is independent, and
+/// the acceleration that it asks for contradicts the others.
 pub(super) fn methods(asked: &Asked) -> &'static [&'static str] {
-    if asked.moves() { &MOTIONS } else { &ACCELERATIONS }
+    match asked {
+        Asked::Accelerations(_) | Asked::Singular => &ACCELERATIONS,
+        Asked::Motion(..) if asked.system() == System::Bricard => &MOTIONS[..1],
+        Asked::Motion(..) => &MOTIONS,
+    }
 }
 
 /// Our engine as one that holds loops.
