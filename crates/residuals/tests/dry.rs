@@ -24,8 +24,10 @@ fn a_box_sticks_and_slides() {
         (-0.0, 2.0, 0.0, 2.0, true),
     ] {
         let found = answer(v, tau);
-        assert_eq!((found.a[0], found.stuck.len()), (a, usize::from(sticks)), "{v} {tau}");
-        assert!((found.friction[0] - r).abs() < 4.0 * f64::EPSILON * r.abs(), "{v} {tau}"); // M⁻¹ and its inverse round
+        assert_eq!(found.stuck.len(), usize::from(sticks), "{v} {tau}");
+        // Exactly zero where it sticks; elsewhere a factor of M and its solution round.
+        assert!((found.a[0] - a).abs() <= 4.0 * f64::EPSILON * a.abs(), "{v} {tau}");
+        assert!((found.friction[0] - r).abs() < 4.0 * f64::EPSILON * r.abs(), "{v} {tau}");
     }
 }
 

@@ -25,11 +25,11 @@ fn the_error_falls_with_the_order() {
             let stored = |q: &[f64], v: &[f64]| energy(&nominal, q, v).map(|e| e.kinetic + e.potential).map_err(Into::into);
             PowerBalance::of((rule, intervals, 2.0), motion, &payload, forces, stored).unwrap()
         };
-        let [coarse, fine] = [balance(32).error(), balance(64).error()];
+        let [coarse, fine] = [balance(16).error(), balance(32).error()];
         let order = (coarse / fine).log2();
-        // The next term of the error is h² of the first: 1 % here.
+        // The next term of the error is h² of the first: 1 % here; at 64 intervals Gauss's rule would reach rounding.
         assert!((order - f64::from(rule.order())).abs() < 0.05, "{rule:?}: {order}");
-        assert!(balance(64).residual.abs() > 0.1);
-        println!("{rule:?} {order} {:?} {fine:e}", balance(64));
+        assert!(balance(32).residual.abs() > 0.1);
+        println!("{rule:?} {order} {:?} {fine:e}", balance(32));
     }
 }

@@ -80,7 +80,10 @@ fn energy_law() -> Case {
         evaluate: Box::new(|seed| {
             let model = Model::<f64>::build(&arm(1.0).describe()).map_err(failed)?;
             let mut random = Random::named(seed, "passive motion");
-            let linear = Linear::new(2, 2, draw(&mut random, 14)).map_err(failed)?;
+            let mut theta = draw(&mut random, 14);
+            // More damping than is drawn, so that some is left: entries of D at row · 7 + 2 + column.
+            [2, 10].into_iter().for_each(|place| theta[place] += 1.0);
+            let linear = Linear::new(2, 2, theta).map_err(failed)?;
             let (passive, _) = Passive::nearest(&linear, &projection(2)).map_err(failed)?;
             let mut corrected = Corrected::new(Rigid::new(&model), passive.clone()).map_err(failed)?;
             let energy = |q: &[f64], v: &[f64]| -> Result<f64, NoAnswer> {
