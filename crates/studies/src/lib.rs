@@ -8,6 +8,7 @@
 //! - [`Repeatability`]: does the same question have the same answer?
 //! - [`Reproductions`]: do the engines' known deviations still exist, and in their known size?
 //! - `contact`: what do solvers, laws and integrators answer where the answer is known?
+//! - `lesson`: which statements of a course's lesson hold, and by how much do the others miss?
 //! - [`ContactTiming`]: how long do solvers take for the contacts of standing robots, at the same residual?
 //! - [`Steps`]: how does the acceleration of a step approach the true one, and how do steps change the energy?
 //! - [`OperationCounts`]: are the counts of the sparse algorithms the integers of the theory?
@@ -24,6 +25,7 @@ mod derivatives;
 mod growth;
 pub mod import;
 mod known;
+mod lesson;
 mod operations;
 mod repeatability;
 mod reproductions;
@@ -71,6 +73,7 @@ const STUDIES: &[Entry] = &[
     Entry { name: "conditioning", make: conditioning::of_suite, sections: conditioning::section::sections },
     Entry { name: "derivatives", make: derivatives::of_suite, sections: derivatives::section::sections },
     Entry { name: "contact", make: contact::of_suite, sections: contact::section::sections },
+    Entry { name: "lesson", make: lesson::of_suite, sections: lesson::section::sections },
     Entry { name: "steps", make: steps::of_suite, sections: steps::section::sections },
     Entry { name: "operations", make: operations::of_suite, sections: no_section },
     Entry { name: "scaling", make: scaling::of_suite, sections: scaling::section::sections },
