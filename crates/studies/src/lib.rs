@@ -12,6 +12,7 @@
 //! - `loops`: how right are engines' accelerations and motions of robots with loops, and what do they cost?
 //! - `relaxation`: does another solver find the velocities of our convex relaxation?
 //! - `identification`: what do logs tell of a robot's parameters, and do estimators find them?
+//! - `lesson`: which statements of a course's lesson hold, and by how much do the others miss?
 //! - [`ContactTiming`]: how long do solvers take for the contacts of standing robots, at the same residual?
 //! - `scenes`: what do engines make of bodies in contact whose motion is known?
 //! - `residuals`: are residuals what their formulas say, does any engine take them, and what is structure worth in learning?
@@ -33,6 +34,7 @@ mod identification;
 pub mod import;
 mod known;
 mod loops;
+mod lesson;
 mod operations;
 mod relaxation;
 mod repeatability;
@@ -89,6 +91,7 @@ const STUDIES: &[Entry] = &[
     Entry { name: "relaxation", make: relaxation::of_suite, sections: no_section },
     Entry { name: "identification", make: identification::of_suite, sections: identification::section::sections },
     Entry { name: "residuals", make: residuals::of_suite, sections: residuals::section::sections },
+    Entry { name: "lesson", make: lesson::of_suite, sections: lesson::section::sections },
     Entry { name: "steps", make: steps::of_suite, sections: steps::section::sections },
     Entry { name: "operations", make: operations::of_suite, sections: no_section },
     Entry { name: "scaling", make: scaling::of_suite, sections: scaling::section::sections },
