@@ -2,7 +2,7 @@
 
 use crate::element::{along_x, links, ritz, sections, string};
 use crate::{Continuum, Defect, Element, Refused, Rod, Strain};
-use featherbench_model::{BodyDescription, Description, JointType, Placement};
+use featherbench_model::{BodyDescription, Description, JointType, Loop, Placement};
 use nalgebra::DMatrix;
 
 /// A robot with rods: a description to which rods are attached, each at a body or at the world.
@@ -112,13 +112,19 @@ impl Assembly {
         self.description.bodies.len() - 1
     }
 
+    /// Ties bodies beside the tree, for example a rod's end to the world. The dynamics of this crate are those of the tree:
+    /// `featherbench_constrained` closes the loop on [`Continuum::model`], where rods of links and strings have their own coordinates.
+    pub fn tie(&mut self, tie: Loop) {
+        self.description.loops.push(tie);
+    }
+
     /// The description with all bodies so far.
     pub fn description(&self) -> &Description {
         &self.description
     }
 
-    /// The robot with rigid rods: every elastic joint is fixed where the rod is straight. Its dofs are those of the robot, in their order; a rod
-    /// that stands on the world is no longer there.
+    /// The robot with rigid rods: every elastic joint is fixed where the rod is straight. Its dofs are those of the robot, in their order;
+    /// a rod that stands on the world is no longer there.
     pub fn rigid(&self) -> Description {
         let mut description = self.description.clone();
         let fix = |body: &mut BodyDescription| body.joint.kind = JointType::Fixed;

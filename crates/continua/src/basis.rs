@@ -6,8 +6,8 @@
 //! | modes, r | the first r exact modes of a cantilever, φ(1) = ±2 | sin((2j − 1) π s/2) |
 //! | Hermite, m | cubic splines on m parts: w and w' at the m nodes | linear splines: the value at the m nodes |
 //!
-//! The modes of a cantilever are cosh βs − cos βs − σ (sinh βs − sin βs), σ = (cosh β + cos β)/(sinh β + sin β). Written like that they lose all
-//! digits for large β. Here cosh − σ sinh is written by exponentials of what is at most 0: with c = (1 − σ)/2 it is
+//! The modes of a cantilever are cosh βs − cos βs − σ (sinh βs − sin βs), σ = (cosh β + cos β)/(sinh β + sin β). Written like that they
+//! lose all digits for large β. Here cosh − σ sinh is written by exponentials of what is at most 0: with c = (1 − σ)/2 it is
 //! `e^{−βs} (1 − c) + c e^{βs}`, and c e^{β} is known without cancellation.
 
 use crate::known::cantilever_root;
@@ -88,7 +88,8 @@ fn power(p: usize, s: f64) -> Shape {
 fn cantilever_mode(j: usize, s: f64) -> Shape {
     let beta = cantilever_root(j);
     let (sin_end, cos_end) = beta.sin_cos();
-    // σ, and c e^β = ½ (1 − σ) e^β = ½ e^β (sinh + sin − cosh − cos)/(sinh + sin) = (sin β − cos β − e^{−β}) / (1 − e^{−2β} + 2 e^{−β} sin β)
+    // σ, and c e^β = ½ (1 − σ) e^β = ½ e^β (sinh + sin − cosh − cos)/(sinh + sin) = (sin β − cos β − e^{−β}) / (1 − e^{−2β} + 2 e^{−β} sin
+    // β)
     let decayed = (-beta).exp();
     let grown = (sin_end - cos_end - decayed) / (1.0 - decayed * decayed + 2.0 * decayed * sin_end);
     let sigma = 1.0 - 2.0 * grown * decayed;

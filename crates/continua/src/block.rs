@@ -94,32 +94,95 @@ impl Block {
         }
     }
 
-    /// `τ_s = Bᵀ τ` at the reduced configuration `s`.
-    pub(crate) fn project<T: Angle>(&self, s: &[T], tau: &[T], result: &mut [T])
+    /// B at the reduced configuration `s`; allocates for a screw block alone.
+    pub(crate) fn columns<T: Angle>(&self, s: &[T]) -> Columns<'_, T>
     where
         f64: Lift<T>,
     {
         match self {
-            Self::Direct { fine: (_, in_v), reduced: (_, v) } => result[*v..v + in_v.len()].copy_from_slice(&tau[in_v.clone()]),
-            Self::Linear { fine, reduced: (_, v), shapes } => {
-                for j in 0..shapes.ncols() {
-                    let product = |sum, (row, (_, in_v)): (usize, &(usize, usize))| tau[*in_v].mul_add(shapes[(row, j)].lift(), sum);
-                    result[v + j] = fine.iter().enumerate().fold(T::zero(), product);
-                }
-            }
+            Self::Direct { fine: (_, in_v), reduced: (_, v) } => Columns::Direct { fine: in_v.clone(), first: *v },
+            Self::Linear { fine, reduced: (_, v), shapes } => Columns::Linear { fine, shapes, first: *v },
             Self::Screw { fine, reduced: (q, v), strains } => {
                 let strain = strain(strains, &s[*q..], true);
-                result[*v..v + strains.len()].fill(T::zero());
-                for (_, in_v, step) in fine {
-                    let step = T::from_f64(*step);
-                    let jacobian = (strain * step).right_jacobian();
-                    for (j, direction) in strains.iter().enumerate() {
-                        let column = apply(&jacobian, unit(*direction)).to_array();
-                        let mut sum = T::zero();
-                        for (k, entry) in column.into_iter().enumerate() {
-                            sum = entry.mul_add(tau[in_v + in_body_order(k)], sum);
+                let mut entries = Vec::with_capacity(strains.len() * fine.len());
+                let jacobians: Vec<_> = fine.iter().map(|(_, _, step)| (strain * T::from_f64(*step)).right_jacobian()).collect();
+                for direction in strains {
+                    for (jacobian, (_, _, step)) in jacobians.iter().zip(fine) {
+                        entries.push((apply(jacobian, unit(*direction)) * T::from_f64(*step)).to_array());
+                    }
+                }
+                Columns::Screw { fine, entries, first: *v, count: strains.len() }
+            }
+        }
+    }
+}
+
+/// The matrix B of a block at a configuration.
+pub(crate) enum Columns<'a, T> {
+    Direct {
+        fine: Range<usize>,
+        first: usize,
+    },
+    Linear {
+        fine: &'a [(usize, usize)],
+        shapes: &'a DMatrix<f64>,
+        first: usize,
+    },
+    /// One entry per strain and joint, joint after joint.
+    Screw {
+        fine: &'a [(usize, usize, f64)],
+        entries: Vec<[T; 6]>,
+        first: usize,
+        count: usize,
+    },
+}
+
+impl<T: Real> Columns<'_, T>
+where
+    f64: Lift<T>,
+{
+    /// The reduced dofs.
+    pub(crate) fn dofs(&self) -> Range<usize> {
+        match self {
+            Self::Direct { fine, first } => *first..first + fine.len(),
+            Self::Linear { shapes, first, .. } => *first..first + shapes.ncols(),
+            Self::Screw { first, count, .. } => *first..first + count,
+        }
+    }
+
+    /// Writes `factor` times column `j` of the block into a fine vector, over what the block's dofs had.
+    pub(crate) fn spread(&self, j: usize, factor: T, into: &mut [T]) {
+        match self {
+            Self::Direct { fine, .. } => into[fine.start + j] = factor,
+            Self::Linear { fine, shapes, .. } => {
+                fine.iter().enumerate().for_each(|(row, (_, in_v))| into[*in_v] = factor * shapes[(row, j)].lift());
+            }
+            Self::Screw { fine, entries, .. } => {
+                for ((_, in_v, _), entries) in fine.iter().zip(&entries[j * fine.len()..]) {
+                    entries.iter().enumerate().for_each(|(k, entry)| into[in_v + in_body_order(k)] = *entry * factor);
+                }
+            }
+        }
+    }
+
+    /// `τ_s = Bᵀ τ`
+    pub(crate) fn project(&self, tau: &[T], result: &mut [T]) {
+        let into = &mut result[self.dofs()];
+        match self {
+            Self::Direct { fine, .. } => into.copy_from_slice(&tau[fine.clone()]),
+            Self::Linear { fine, shapes, .. } => {
+                for (j, into) in into.iter_mut().enumerate() {
+                    let product = |sum, (row, (_, in_v)): (usize, &(usize, usize))| tau[*in_v].mul_add(shapes[(row, j)].lift(), sum);
+                    *into = fine.iter().enumerate().fold(T::zero(), product);
+                }
+            }
+            Self::Screw { fine, entries, .. } => {
+                for (into, entries) in into.iter_mut().zip(entries.chunks_exact(fine.len())) {
+                    *into = T::zero();
+                    for ((_, in_v, _), entries) in fine.iter().zip(entries) {
+                        for (k, entry) in entries.iter().enumerate() {
+                            *into = entry.mul_add(tau[in_v + in_body_order(k)], *into);
                         }
-                        result[v + j] = sum.mul_add(step, result[v + j]);
                     }
                 }
             }

@@ -11,8 +11,9 @@ use std::collections::HashMap;
 
 /// A robot with rods.
 ///
-/// The reduced coordinates s are those of [`Continuum::topology`]: the robot's joints as they are, and one coordinate per spring, shape function
-/// or strain, zero where the rod is straight and unloaded. Integrators and sparse factorizations take that topology as they take any other.
+/// The reduced coordinates s are those of [`Continuum::topology`]: the robot's joints as they are, and one coordinate per spring, shape
+/// function or strain, zero where the rod is straight and unloaded. Integrators and sparse factorizations take that topology as they take
+/// any other.
 #[derive(Clone, Debug)]
 pub struct Continuum {
     model: Model<f64>,

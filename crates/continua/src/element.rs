@@ -1,7 +1,7 @@
 //! How a rod is discretised, and the bodies that this makes.
 //!
-//! Each file makes the bodies of one kind of element. They are bodies of a [`Description`](featherbench_model::Description): primitive joints
-//! that our algorithms know. What ties their coordinates to those of the element is a [`Block`](crate::block::Block).
+//! Each file makes the bodies of one kind of element. They are bodies of a [`Description`](featherbench_model::Description): primitive
+//! joints that our algorithms know. What ties their coordinates to those of the element is a [`Block`](crate::block::Block).
 
 pub(crate) mod links;
 pub(crate) mod ritz;
@@ -29,7 +29,8 @@ pub enum Element {
     Ritz {
         /// The shape functions of each strain.
         basis: Basis,
-        /// What is deflected: [`Strain::Twist`], [`Strain::BendY`], [`Strain::BendZ`], [`Strain::Extension`]. Shears have no shape functions.
+        /// What is deflected: [`Strain::Twist`], [`Strain::BendY`], [`Strain::BendZ`], [`Strain::Extension`]. Shears have no shape
+        /// functions.
         strains: Vec<Strain>,
     },
     /// Elements of constant strain: each is a part of a screw motion, so large deflections are exact for the strain that there is. The
@@ -67,7 +68,8 @@ pub enum Hinges {
 /// Where the mass of a string is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Masses {
-    /// A point mass at the end of each link: for the hanging string the squared frequencies are (g/ℓ) times the roots of the Laguerre polynomial.
+    /// A point mass at the end of each link: for the hanging string the squared frequencies are (g/ℓ) times the roots of the Laguerre
+    /// polynomial.
     Ends,
     /// Uniform rods.
     Uniform,

@@ -9,8 +9,8 @@ pub struct Fit {
     pub prefactor: f64,
 }
 
-/// Fits errors at numbers of elements n, increasing. `known` is the order p of the theory, and `next` that of the term after it: the prefactor
-/// at the last two n is extrapolated with error n^p = prefactor + c/n^(next − p).
+/// Fits errors at numbers of elements n, increasing. `known` is the order p of the theory, and `next` that of the term after it: the
+/// prefactor at the last two n is extrapolated with error n^p = prefactor + c/n^(next − p).
 ///
 /// NaN for fewer than two refinements.
 ///

@@ -87,7 +87,8 @@ fn wide(x: f64) -> DoubleDouble {
     DoubleDouble::from(x)
 }
 
-/// Root number `k`, from 0, of the Bessel function J₀; for k up to 12, beyond which the series loses its digits (the error grows like e^{2k π}/10³²).
+/// Root number `k`, from 0, of the Bessel function J₀; for k up to 12, beyond which the series loses its digits (the error grows like e^{2k
+/// π}/10³²).
 pub fn bessel_zero(k: usize) -> f64 {
     let guess = (k as f64 + 0.75) * PI;
     let mut x = wide(guess + 1.0 / (8.0 * guess));
@@ -165,8 +166,8 @@ fn sigma_beta(k: usize) -> f64 {
 
 /// The prefactor of the frequency error of mode `k`, from 0, with sections of constant curvature: ω/ω_exact − 1 → this/n².
 ///
-/// Galerkin's error is that of the best approximation: of w'' by constants it is h²/12 ∫ w'''², and ∫ w'''² = β⁴ ∫ w'² for a cantilever, with
-/// ∫ w'² = σβ (2 + σβ) and ∫ w''² = β⁴. Half of it is the error of ω: σβ (2 + σβ)/24.
+/// Galerkin's error is that of the best approximation: of w'' by constants it is h²/12 ∫ w'''², and ∫ w'''² = β⁴ ∫ w'² for a cantilever,
+/// with ∫ w'² = σβ (2 + σβ) and ∫ w''² = β⁴. Half of it is the error of ω: σβ (2 + σβ)/24.
 pub fn sections_frequency_prefactor(k: usize) -> f64 {
     let x = sigma_beta(k);
     x * (2.0 + x) / 24.0

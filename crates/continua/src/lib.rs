@@ -9,9 +9,9 @@
 //!
 //! # One concept
 //!
-//! Every element is an *embedding*: its coordinates s move a fine tree of rigid bodies by q = φ(s), q̇ = B ṡ, q̈ = B s̈ + Ḃ ṡ, B block-diagonal. So
-//! M_s = Bᵀ M B and τ_s = Bᵀ ID(q, q̇, q̈), with the inverse dynamics of `featherbench_dynamics` as they are. Virtual work goes through B both ways:
-//! M_s is symmetric and positive definite, energy and momentum are those of the bodies, whatever φ is.
+//! Every element is an *embedding*: its coordinates s move a fine tree of rigid bodies by q = φ(s), q̇ = B ṡ, q̈ = B s̈ + Ḃ ṡ, B
+//! block-diagonal. So M_s = Bᵀ M B and τ_s = Bᵀ ID(q, q̇, q̈), with the inverse dynamics of `featherbench_dynamics` as they are. Virtual
+//! work goes through B both ways: M_s is symmetric and positive definite, energy and momentum are those of the bodies, whatever φ is.
 //!
 //! Conventions: SI units; a rod lies along x of its placement; strains are ξ = [κ; ε] in the axes of the section.
 //!

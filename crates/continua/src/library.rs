@@ -24,7 +24,8 @@ pub fn hanging_string(count: usize, masses: Masses, length: f64, mass: f64, grav
     Ok((assembly.build()?, tip))
 }
 
-/// A free body of this mass and inertia about each axis, without gravity, that carries a rod along x from its centre: the rod's tip, and the body's index.
+/// A free body of this mass and inertia about each axis, without gravity, that carries a rod along x from its centre: the rod's tip, and
+/// the body's index.
 ///
 /// # Errors
 /// [`Refused`] as [`Assembly::attach`].

@@ -1,7 +1,7 @@
 //! Vibrations about an equilibrium: K_T φ = ω² M φ.
 //!
-//! Method: M = L Lᵀ (Cholesky), then the symmetric eigenproblem of L⁻¹ K_T L⁻ᵀ. Each ω² is then Rayleigh's quotient of its φ in double-double. So its
-//! error is of second order in that of φ, and small eigenvalues keep their digits beside large ones.
+//! Method: M = L Lᵀ (Cholesky), then the symmetric eigenproblem of L⁻¹ K_T L⁻ᵀ. Each ω² is then Rayleigh's quotient of its φ in
+//! double-double. So its error is of second order in that of φ, and small eigenvalues keep their digits beside large ones.
 
 use crate::tangent::{Rayleigh, mass_matrix, tangent_stiffness};
 use crate::{Continuum, Load, SolveError};
@@ -40,12 +40,18 @@ pub fn modes(continuum: &Continuum, s: &[f64], loads: &[Load]) -> Result<Modes, 
 /// The eigenvalues, increasing, and eigenvectors of K φ = λ M φ, from the symmetric part of K; it allocates.
 ///
 /// # Errors
-/// [`SolveError::NotPositiveDefinite`] when M is not.
+/// [`SolveError::NotPositiveDefinite`] when M is not, or a number of a matrix is not finite.
 pub fn generalized(stiffness: &DMatrix<f64>, mass: &DMatrix<f64>) -> Result<(Vec<f64>, DMatrix<f64>), SolveError> {
     let indefinite = || {
         let eigenvalue = SymmetricEigen::new(mass.clone()).eigenvalues.min();
         SolveError::NotPositiveDefinite { matrix: "mass", eigenvalue }
     };
+    // Iterations on NaN need not end.
+    for (matrix, name) in [(mass, "mass"), (stiffness, "stiffness")] {
+        if matrix.iter().any(|x| !x.is_finite()) {
+            return Err(SolveError::NotPositiveDefinite { matrix: name, eigenvalue: f64::NAN });
+        }
+    }
     let lower = mass.clone().cholesky().ok_or_else(indefinite)?.l();
     let symmetric = (stiffness + stiffness.transpose()) * 0.5;
     // L⁻¹ K L⁻ᵀ

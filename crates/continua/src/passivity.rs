@@ -1,8 +1,8 @@
 //! Whether matrices are those of a passive rod: M ≻ 0, K ⪰ 0, D ⪰ 0, by the eigenvalues of their symmetric parts.
 //!
-//! With E = ½ ẋᵀ M ẋ + ½ xᵀ K x and M, K symmetric, M ẍ + D ẋ + K x = 0 gives dE/dt = −ẋᵀ D ẋ ≤ 0. A Galerkin discretisation, which tests with its
-//! own shape functions, has such matrices. Collocation asks for the equation at points instead. Its matrices are not symmetric: with the
-//! energy of the symmetric parts, dE/dt = −ẋᵀ D ẋ − ẋᵀ ½(K − Kᵀ) x − ẋᵀ ½(M − Mᵀ) ẍ, which has no sign.
+//! With E = ½ ẋᵀ M ẋ + ½ xᵀ K x and M, K symmetric, M ẍ + D ẋ + K x = 0 gives dE/dt = −ẋᵀ D ẋ ≤ 0. A Galerkin discretisation, which tests
+//! with its own shape functions, has such matrices. Collocation asks for the equation at points instead. Its matrices are not symmetric:
+//! with the energy of the symmetric parts, dE/dt = −ẋᵀ D ẋ − ẋᵀ ½(K − Kᵀ) x − ẋᵀ ½(M − Mᵀ) ẍ, which has no sign.
 
 use crate::{Basis, Refused, Rod};
 use nalgebra::{DMatrix, SymmetricEigen};
@@ -10,8 +10,8 @@ use nalgebra::{DMatrix, SymmetricEigen};
 /// What was found of three matrices.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Passivity {
-    /// The smallest eigenvalues of the symmetric parts of M, K and D, each over the largest magnitude of an eigenvalue of that part. Zero for a
-    /// matrix of zeros.
+    /// The smallest eigenvalues of the symmetric parts of M, K and D, each over the largest magnitude of an eigenvalue of that part. Zero
+    /// for a matrix of zeros.
     pub smallest: [f64; 3],
     /// ‖A − Aᵀ‖/‖A‖ of M, K and D, in the Frobenius norm; zero for a matrix of zeros.
     pub asymmetry: [f64; 3],

@@ -1,13 +1,13 @@
 //! The limit of stiff rods: the accelerations of the robot's own joints come to those of the rigid tree.
 //!
-//! A rod that is stiff and does not vibrate is deflected by x with K x the forces that it carries: its acceleration is zero, and x → 0 like 1/K.
-//! [`rigid_limit`] computes x by the iteration `x ← x − K⁻¹ r`, where r are the elastic dofs' forces of inverse dynamics with s̈ = (a, 0), and a the
-//! accelerations of the rigid tree. Then forward dynamics of the flexible robot at that state gives the robot's accelerations, to be compared with
-//! those of the articulated-body algorithm on the rigid tree.
+//! A rod that is stiff and does not vibrate is deflected by x with K x the forces that it carries: its acceleration is zero, and x → 0 like
+//! 1/K. [`rigid_limit`] computes x by the iteration `x ← x − K⁻¹ r`, where r are the elastic dofs' forces of inverse dynamics with s̈ = (a,
+//! 0), and a the accelerations of the rigid tree. Then forward dynamics of the flexible robot at that state gives the robot's
+//! accelerations, to be compared with those of the articulated-body algorithm on the rigid tree.
 //!
-//! The difference has two parts: the deflection, of order 1/K, and rounding. The forces K x are rounded to ε K x, and M⁻¹ of light elements makes
-//! accelerations of it. [`RigidLimit::floor`] is that part: `max |M⁻¹| (ε |K x|)` over the robot's dofs. Where it is above a tolerance, the tolerance
-//! cannot be held by any algorithm that has M, K and x in doubles.
+//! The difference has two parts: the deflection, of order 1/K, and rounding. The forces K x are rounded to ε K x, and M⁻¹ of light elements
+//! makes accelerations of it. [`RigidLimit::floor`] is that part: `max |M⁻¹| (ε |K x|)` over the robot's dofs. Where it is above a
+//! tolerance, the tolerance cannot be held by any algorithm that has M, K and x in doubles.
 
 use crate::tangent::mass_matrix;
 use crate::{Assembly, Refused, SolveError, Solver};

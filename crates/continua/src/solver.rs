@@ -6,17 +6,17 @@
 //! forward dynamics   s̈ = M⁻¹ (τ − inverse dynamics of s̈ = 0)
 //! ```
 //!
-//! If all coordinates are direct (rigid links, strings), forward dynamics is the articulated-body algorithm: O(n). Else M is factored as LᵀDL in
-//! the reduced tree's sparsity: n_s inverse dynamics of O(n), and the factorization.
+//! If all coordinates are direct (rigid links, strings), forward dynamics is the articulated-body algorithm: O(n). Else M is factored as
+//! LᵀDL in the reduced tree's sparsity: n_s inverse dynamics of O(n), and the factorization.
 //!
 //! Shapes: s has `nq` numbers of [`Continuum::topology`]; velocities, accelerations and forces have `nv`. Loads: [`Load`]. Calls of
-//! [`Solver::inverse`] and of [`Solver::forward`] on direct coordinates do not allocate.
+//! [`Solver::inverse`] and [`Solver::forward`] on direct coordinates do not allocate.
 
 use crate::block::Moving;
 use crate::{Continuum, Refused};
 use featherbench_dynamics::integrate::{Acceleration, IntegrationError, Linearisation, Linearise};
 use featherbench_dynamics::{
-    Aba, CentroidalMomentum, DimensionError, Energies, Energy, Error, Kinematics, Ltdl, Momentum, Rnea, TreeSparse,
+    Aba, CentroidalMomentum, DimensionError, Energies, Energy, Error, Kinematics, Ltdl, Momentum, Rnea, TreeSparse, mass_matrix,
 };
 use featherbench_spatial::{Angle, Dual, Force, Lift, Vec3};
 use thiserror::Error as Fault;
@@ -205,21 +205,33 @@ where
 
     fn project(&self, continuum: &Continuum, s: &[T], tau: &mut [T]) {
         for block in continuum.blocks() {
-            block.project(s, &self.tau, tau);
+            block.columns(s).project(&self.tau, tau);
         }
     }
 
-    /// The mass matrix in the reduced tree's sparsity; it allocates.
+    /// The mass matrix in the reduced tree's sparsity: by the composite-rigid-body algorithm if all coordinates are direct, else column by
+    /// column. It allocates.
     ///
     /// # Errors
     /// [`DimensionError`] when `s` does not fit.
     pub fn mass(&mut self, continuum: &Continuum, s: &[T]) -> Result<TreeSparse<T>, DimensionError> {
         let nv = continuum.topology().nv();
-        let (mut columns, mut direction) = (vec![T::zero(); nv * nv], vec![T::zero(); nv]);
-        for (j, column) in columns.chunks_exact_mut(nv).enumerate() {
-            direction[j] = T::one();
-            self.mass_times(continuum, s, &direction, column)?;
-            direction[j] = T::zero();
+        if continuum.is_direct() {
+            return mass_matrix(continuum.model(), s);
+        }
+        let zeros = std::mem::take(&mut self.zeros);
+        let embedded = self.embed(continuum, s, &zeros, &zeros);
+        self.zeros = zeros;
+        embedded?;
+        let blocks: Vec<_> = continuum.blocks().iter().map(|block| block.columns(s)).collect();
+        let mut columns = vec![T::zero(); nv * nv];
+        for block in &blocks {
+            for (j, dof) in block.dofs().enumerate() {
+                block.spread(j, T::one(), &mut self.a);
+                self.rnea.run(continuum.weightless(), &self.q, &self.v, &self.a, None, &mut self.tau)?;
+                block.spread(j, T::zero(), &mut self.a);
+                blocks.iter().for_each(|block| block.project(&self.tau, &mut columns[dof * nv..(dof + 1) * nv]));
+            }
         }
         // Entry (i, j) and (j, i) differ by rounding: their mean is symmetric.
         let half = T::from_f64(0.5);
@@ -372,6 +384,9 @@ impl<L: FnMut(f64) -> Vec<Load>> Linearise<f64> for Motion<'_, L> {
 
     fn linearise(&mut self, t: f64, q: &[f64], v: &[f64], a: &mut [f64], result: &mut Linearisation<f64>) -> Result<(), Error> {
         self.acceleration(t, q, v, a)?;
+        let square = self.tau.len() * self.tau.len();
+        DimensionError::expect("derivatives by q", square, result.by_q.len())?;
+        DimensionError::expect("derivatives by v", square, result.by_v.len())?;
         let (loads, topology) = ((self.loads)(t), self.continuum.topology());
         let nv = topology.nv();
         let constant = |x: &[f64]| x.iter().map(|x| Dual::constant(*x)).collect::<Vec<_>>();

@@ -1,8 +1,11 @@
 //! Equilibria under loads: r(s, λ) = elastic forces + λ (gravity and loads) = 0 at λ = 1.
 //!
-//! Method: continuation from the rest at λ = 0. A step predicts by the tangent, s' = −K_T⁻¹ ∂r/∂λ, and Newton's method corrects. A step is taken back
-//! and halved if the correction is longer than half of the prediction: then it may have left the branch. Newton's method alone finds whatever
-//! equilibrium is near, stable or not, or one on another branch; [`judge`] tells.
+//! Method: continuation from the rest at λ = 0. A step predicts by the tangent, s' = −K_T⁻¹ ∂r/∂λ, and Newton's method corrects. A step is
+//! taken back and halved if the correction is longer than half of the prediction: then it may have left the branch. Newton's method alone
+//! finds whatever equilibrium is near, stable or not, or one on another branch; [`judge`] tells.
+//!
+//! K_T is judged by its symmetric part. That is stability where gravity and dead loads in a plane have a potential; follower loads can make
+//! a rod flutter before.
 //!
 //! | status | meaning |
 //! |---|---|
@@ -26,11 +29,13 @@ pub struct Settings {
     pub iterations: usize,
     /// Reduced dofs that motors hold where they are.
     pub held: Vec<usize>,
+    /// The configuration without loads and gravity, for example a robot's pose with straight rods; [`Continuum::rest`] if there is none.
+    pub start: Option<Vec<f64>>,
 }
 
 impl Default for Settings {
     fn default() -> Self {
-        Self { first_step: 0.1, steps: 400, iterations: 20, held: Vec::new() }
+        Self { first_step: 0.1, steps: 400, iterations: 20, held: Vec::new(), start: None }
     }
 }
 
@@ -87,7 +92,7 @@ const SAME: f64 = 1e-7;
 /// [`SolveError`]: a load acts on no body. A search without success is no error: see the status.
 pub fn equilibrium(continuum: &Continuum, loads: &[Load], settings: &Settings) -> Result<Equilibrium, SolveError> {
     let mut search = Search::new(continuum, settings);
-    let mut s = continuum.rest();
+    let mut s = settings.start.clone().unwrap_or_else(|| continuum.rest());
     let (mut load, mut step, mut steps) = (0.0, settings.first_step.clamp(1e-6, 1.0), 0);
     loop {
         let tangent = search.tangent(&s, load, loads)?;

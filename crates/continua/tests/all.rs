@@ -2,6 +2,7 @@
 
 mod answers;
 mod beams;
+mod coupling;
 mod laws;
 mod motion;
 mod refusals;

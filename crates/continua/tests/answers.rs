@@ -11,8 +11,8 @@ use featherbench_dynamics::integrate::{DormandPrince, Tolerance};
 use featherbench_model::{Axis, JointKind, Topology};
 use featherbench_spatial::Real;
 
-/// The elastica by shooting: θ'' = −α cos θ from (0, κ) along the rod, with the tip's moment zero by the secant rule. x and y are integrated too,
-/// as x'' = −sin θ θ' and y'' = cos θ θ'.
+/// The elastica by shooting: θ'' = −α cos θ from (0, κ) along the rod, with the tip's moment zero by the secant rule. x and y are
+/// integrated too, as x'' = −sin θ θ' and y'' = cos θ θ'.
 fn shot(alpha: f64) -> [f64; 2] {
     let slides = Topology::new(&[None, Some(0), Some(1)].map(|parent| (parent, JointKind::Prismatic(Axis::Z)))).unwrap();
     let mut rod = |_: f64, q: &[f64], v: &[f64], a: &mut [f64]| -> Result<(), Error> {

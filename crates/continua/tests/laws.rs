@@ -6,7 +6,9 @@ use featherbench_continua::known::{
     bessel_zero, cantilever_root, elastica, exact_modes_tip_ratio, hermite_frequency_prefactor, laguerre_zeros, lumped_axial,
     sections_frequency_prefactor, tip_ratio,
 };
-use featherbench_continua::{Basis, Element, Hinges, Masses, Strain, fit, generalized, library, modes};
+use featherbench_continua::{
+    Basis, Element, Hinges, Load, Masses, Material, Rod, Section, Settings, Status, Strain, equilibrium, fit, generalized, library, modes,
+};
 use nalgebra::DMatrix;
 
 fn frequencies(element: &Element) -> Vec<f64> {
@@ -46,8 +48,8 @@ fn small_deflections_are_those_of_the_quadrature_at_every_n() {
     }
 }
 
-/// The matrices of a chain of rigid links in absolute angles, written down from kinematics: the second route of the frequencies. Heights of link
-/// ends are Σ l θ; link i of length l has the mass l, ∫ (w + x θ)² dx = l (w² + w l θ + l² θ²/3).
+/// The matrices of a chain of rigid links in absolute angles, written down from kinematics: the second route of the frequencies. Heights of
+/// link ends are Σ l θ; link i of length l has the mass l, ∫ (w + x θ)² dx = l (w² + w l θ + l² θ²/3).
 fn chain(lengths: &[f64], springs: &[f64]) -> Vec<f64> {
     let n = lengths.len();
     let mass = DMatrix::from_fn(n, n, |a, b| {
@@ -194,5 +196,35 @@ fn axial_links_are_masses_and_springs() {
             4.0,
             prefactor,
         );
+    }
+}
+
+#[test]
+fn shear_extension_and_twist_are_those_of_timoshenko() {
+    let material = Material { young: 5.0, poisson: 0.25, density: 1.0, damping: 0.0 };
+    let rod = Rod::new(material, Section::rectangle(0.2, 0.3), 1.5).unwrap();
+    let strains = vec![Strain::Twist, Strain::BendZ, Strain::Extension, Strain::ShearY];
+    let length = rod.length();
+    for (n, element) in [1, 4].into_iter().flat_map(|n| {
+        let sections = Element::Sections { count: n, strains: strains.clone(), points: 2 };
+        [(n, sections), (n, Element::Links { count: n, hinges: Hinges::Middle, strains: strains.clone() })]
+    }) {
+        let (beam, tip) = library::cantilever(&rod, &element).unwrap();
+        // Small: terms of the second order are below the tolerance.
+        let (force, moment) = (1e-9, 1e-9);
+        let under = |load: Load| {
+            let found = equilibrium(&beam, &[load], &Settings::default()).unwrap();
+            assert_eq!(found.status, Status::Converged);
+            beam.place(&found.s, &tip).unwrap()
+        };
+        let across = under(Load::force(tip.body, tip.placement.translation, [0.0, force, 0.0])).translation.y / force;
+        let bending = length.powi(3) / (3.0 * rod.stiffness(Strain::BendZ)) * tip_ratio(Hinges::Middle, n);
+        let known = bending + length / rod.stiffness(Strain::ShearY);
+        assert!((across / known - 1.0).abs() < 1e-7, "{element:?}: {across} {known}");
+        let along = under(Load::force(tip.body, tip.placement.translation, [force, 0.0, 0.0])).translation.x - length;
+        // A difference of 1e-9 beside 1.5: the rounding is 1e-7 of it.
+        assert!((along / force / (length / rod.stiffness(Strain::Extension)) - 1.0).abs() < 1e-6, "{element:?}: {along}");
+        let turned = under(Load::moment(tip.body, [moment, 0.0, 0.0])).rotation.to_array()[7] / moment;
+        assert!((turned / (length / rod.stiffness(Strain::Twist)) - 1.0).abs() < 1e-9, "{element:?}: {turned}");
     }
 }

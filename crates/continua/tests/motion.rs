@@ -119,7 +119,7 @@ fn energy_and_momentum_of_a_free_robot_are_conserved() {
         let start = state(&continuum, 0.2);
         let total = |s: &[f64], rate: &[f64]| energies(&continuum, s, rate).map(|e| e.kinetic + e.potential).unwrap();
         let (before, energy) = (momentum(&continuum, &start.0, &start.1).unwrap(), total(&start.0, &start.1));
-        let (s, rate) = run(&continuum, start, 0.5, |_, _| ());
+        let (s, rate) = run(&continuum, start, 0.2, |_, _| ());
         let after = momentum(&continuum, &s, &rate).unwrap();
         // The integrator's tolerance of 1e-11 per step over some hundred steps.
         assert!((total(&s, &rate) / energy - 1.0).abs() < 1e-8, "{element:?}");
@@ -136,7 +136,7 @@ fn damping_takes_energy_at_every_step_and_as_much_as_it_says() {
         let total = |s: &[f64], rate: &[f64]| energies(&continuum, s, rate).map(|e| e.kinetic + e.potential).unwrap();
         let mut last = total(&start.0, &start.1);
         let first = last;
-        run(&continuum, start.clone(), 0.5, |s, rate| {
+        run(&continuum, start.clone(), 0.2, |s, rate| {
             let now = total(s, rate);
             assert!(now <= last * (1.0 + 1e-13), "{element:?}");
             last = now;

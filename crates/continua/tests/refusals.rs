@@ -2,9 +2,10 @@
 
 use crate::beams::{links, rod};
 use featherbench_continua::{
-    Assembly, Basis, Defect, Element, Hinges, Load, Material, Rod, Section, Settings, SolveError, Strain, equilibrium, library,
+    Assembly, Basis, Defect, Element, Hinges, Load, Material, Rod, Section, Settings, SolveError, Strain, equilibrium, generalized, library,
 };
 use featherbench_model::Placement;
+use nalgebra::DMatrix;
 
 const STEEL: Material = Material { young: 2.1e11, poisson: 0.3, density: 7850.0, damping: 0.0 };
 
@@ -80,6 +81,12 @@ fn loads_on_no_body_and_states_of_another_size_are_errors() {
         let load = Load::force(body, [0.0; 3], [1.0, 0.0, 0.0]);
         let error = equilibrium(&beam, &[load], &Settings::default()).unwrap_err();
         assert!(matches!(error, SolveError::Refused(_)), "{error}");
+    }
+    let start = Some(vec![0.0; 99]);
+    assert!(equilibrium(&beam, &[], &Settings { start, ..Settings::default() }).is_err());
+    let (one, nan) = (DMatrix::identity(2, 2), DMatrix::from_element(2, 2, f64::NAN));
+    for (stiffness, mass) in [(&nan, &one), (&one, &nan), (&one, &-one.clone())] {
+        assert!(matches!(generalized(stiffness, mass), Err(SolveError::NotPositiveDefinite { .. })));
     }
     assert!(beam.elastic_energy(&[0.0]).is_err() && beam.shape(&[0.0]).is_err() && beam.dissipation(&[]).is_err());
 }

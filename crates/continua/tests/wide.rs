@@ -14,11 +14,10 @@ pub fn solve(mut a: Vec<Vec<Wide>>, mut b: Vec<Wide>) -> Vec<Wide> {
     for k in 0..n {
         for i in k + 1..n {
             let factor = a[i][k] / a[k][k];
-            for j in k..n {
-                let product = factor * a[k][j];
-                a[i][j] = a[i][j] - product;
-            }
-            b[i] = b[i] - factor * b[k];
+            let (above, below) = a.split_at_mut(i);
+            below[0][k..].iter_mut().zip(&above[k][k..]).for_each(|(entry, pivot)| *entry -= factor * *pivot);
+            let product = factor * b[k];
+            b[i] -= product;
         }
     }
     for k in (0..n).rev() {

@@ -1,7 +1,7 @@
 //! Rigid links with springs.
 //!
-//! With the loads of the weak form, the springs stand for the integral of the strain energy by a rule with nodes at the joints. So errors of
-//! statics have closed forms: of a cantilever with a tip load, δ/δ_exact = 1 + 3/(2n) + 1/(2n²) for [`Hinges::Start`], 1 + 1/(2n²) for
+//! With the loads of the weak form, the springs stand for the integral of the strain energy by a rule with nodes at the joints. So errors
+//! of statics have closed forms: of a cantilever with a tip load, δ/δ_exact = 1 + 3/(2n) + 1/(2n²) for [`Hinges::Start`], 1 + 1/(2n²) for
 //! [`Hinges::StartStiffWall`], 1 − 1/(4n²) for [`Hinges::Middle`].
 
 use super::{Hinges, add_piece, along, joint_of, massless};

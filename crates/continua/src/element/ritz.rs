@@ -1,7 +1,9 @@
 //! Shape functions: point masses at Gauss points, each on slides of its own from the clamped end, and a tip that follows.
 //!
-//! The slides and turns are q = Φ s, with Φ_{kj} = φ_j(x_k): so M = Σ_k w_k ρA φ(x_k) φ(x_k)ᵀ is the mass matrix of the rod as far as the Gauss
-//! rule is exact. The stiffness is ∫ EI φ'' φ''ᵀ, ∫ EA φ' φ'ᵀ or ∫ GJ φ' φ'ᵀ by the same rule.
+//! The masses are points: Euler–Bernoulli's beam, without the rotary inertia of bending. A twist turns them with ρ (I_y + I_z).
+//!
+//! The slides and turns are q = Φ s, with Φ_{kj} = φ_j(x_k): so M = Σ_k w_k ρA φ(x_k) φ(x_k)ᵀ is the mass matrix of the rod as far as the
+//! Gauss rule is exact. The stiffness is ∫ EI φ'' φ''ᵀ, ∫ EA φ' φ'ᵀ or ∫ GJ φ' φ'ᵀ by the same rule.
 
 use super::{along, along_x, joint_of, massless};
 use crate::assembly::{Host, Made, Piece, Ties};
