@@ -15,14 +15,33 @@ const ALLOWED: &[(&str, &[&str])] = &[
     ("contact", &["spatial", "model", "dynamics"]),
     ("constrained", &["spatial", "model", "dynamics"]),
     ("hybrid", &["spatial"]),
-    ("uncertainty", &["spatial", "model", "robots", "dynamics", "hybrid"]),
+    ("uncertainty", &["spatial", "model", "robots", "dynamics"]),
     ("results", &[]),
     ("report", &["results"]),
     ("protocol", &["spatial", "model"]),
     ("bench", &["spatial", "model", "robots", "formats", "dynamics", "results", "protocol"]),
     ("engines", &["spatial", "model", "robots", "formats", "dynamics", "results", "protocol", "bench"]),
-    ("studies", &["spatial", "model", "robots", "dynamics", "contact", "constrained", "hybrid", "uncertainty", "results", "report", "bench"]),
-    ("cli", &["spatial", "model", "robots", "formats", "dynamics", "constrained", "uncertainty", "results", "report", "bench", "engines", "studies"]),
+    (
+        "studies",
+        &["spatial", "model", "robots", "dynamics", "contact", "constrained", "hybrid", "uncertainty", "results", "report", "bench"],
+    ),
+    (
+        "cli",
+        &[
+            "spatial",
+            "model",
+            "robots",
+            "formats",
+            "dynamics",
+            "constrained",
+            "uncertainty",
+            "results",
+            "report",
+            "bench",
+            "engines",
+            "studies",
+        ],
+    ),
 ];
 
 /// What `cargo metadata` says of the workspace: its packages alone.

@@ -22,7 +22,12 @@ fn every() -> Uncertain {
         variable(1, Distribution::Lognormal { mean: 1.0, deviation: 0.1 }, Acts::Factor, TargetField::Density),
         variable(2, Distribution::Gamma { mean: 1.0, deviation: 0.3 }, Acts::Value, TargetField::Inertia(3)),
         variable(3, Distribution::Normal { mean: -0.0, deviation: 1e-300 }, Acts::Value, TargetField::Com(2)),
-        variable(4, Distribution::TruncatedNormal { mean: 0.5, deviation: 0.1, low: 0.0, high: 1.0 }, Acts::Value, TargetField::Armature(0)),
+        variable(
+            4,
+            Distribution::TruncatedNormal { mean: 0.5, deviation: 0.1, low: 0.0, high: 1.0 },
+            Acts::Value,
+            TargetField::Armature(0),
+        ),
         variable(5, uniform, Acts::Value, TargetField::Damping(0)),
         variable(6, uniform, Acts::Value, TargetField::Friction(0)),
     ];

@@ -173,7 +173,9 @@ pub enum UncertainDefect {
         count: usize,
     },
     /// A body that is part of another.
-    #[error("on: body {body} is fixed to its parent and has no inertia of its own in the dynamics; name the moving body, or merge them first")]
+    #[error(
+        "on: body {body} is fixed to its parent and has no inertia of its own in the dynamics; name the moving body, or merge them first"
+    )]
     FixedBody {
         /// The body.
         body: usize,
@@ -263,7 +265,9 @@ pub enum UncertainDefect {
         what: String,
     },
     /// No variables are correlated so.
-    #[error("correlations: the matrix is not positive definite (its smallest pivot is {pivot:e}); no variables are correlated so. For variables that are equal, let one act on several numbers")]
+    #[error(
+        "correlations: the matrix is not positive definite (its smallest pivot is {pivot:e}); no variables are correlated so. For variables that are equal, let one act on several numbers"
+    )]
     Indefinite {
         /// The smallest pivot of the elimination.
         pivot: f64,

@@ -13,6 +13,7 @@
 //! - [`OperationCounts`]: are the counts of the sparse algorithms the integers of the theory?
 //! - [`Scaling`]: what do sparsity and errors become as robots grow?
 //! - [`Growth`]: how do time and memory grow with the robot, and where does each engine stop?
+//! - `uncertainty`: what do uncertain parameters do to the dynamics, where the answer is known?
 //! - [`Timing`]: how long does each candidate take, in a paired experiment?
 
 mod accuracy;
@@ -30,6 +31,7 @@ mod reproductions;
 mod scaling;
 mod steps;
 mod timing;
+mod uncertainty;
 
 pub use accuracy::Accuracy;
 pub use agreement::Agreement;
@@ -71,6 +73,7 @@ const STUDIES: &[Entry] = &[
     Entry { name: "conditioning", make: conditioning::of_suite, sections: conditioning::section::sections },
     Entry { name: "derivatives", make: derivatives::of_suite, sections: derivatives::section::sections },
     Entry { name: "contact", make: contact::of_suite, sections: contact::section::sections },
+    Entry { name: "uncertainty", make: uncertainty::of_suite, sections: uncertainty::section::sections },
     Entry { name: "steps", make: steps::of_suite, sections: steps::section::sections },
     Entry { name: "operations", make: operations::of_suite, sections: no_section },
     Entry { name: "scaling", make: scaling::of_suite, sections: scaling::section::sections },

@@ -18,9 +18,7 @@ use crate::{Error, Lanes, Linear, Response, Space};
 use featherbench_dynamics::{
     Aba, Ltdl, ParameterSensitivity, Rnea, TreeSparse, inertial_parameters, inverse_dynamics, mass_matrix, torque_regressor,
 };
-use featherbench_model::{
-    Acts, Description, DimensionError, Distribution, Model, Target, TargetField, Uncertain, UncertainVariable,
-};
+use featherbench_model::{Acts, Description, DimensionError, Distribution, Model, Target, TargetField, Uncertain, UncertainVariable};
 use featherbench_spatial::{Dual, Real, RigidBodyInertia, Sym3, Vec3};
 use nalgebra::{DMatrix, DVector};
 
@@ -175,18 +173,7 @@ impl Body {
         let [cx, cy, cz] = com;
         let [mx, my, mz] = com.map(|c| mass * c);
         let [xx, xy, xz, yy, yz, zz] = inertia;
-        [
-            mass,
-            mx,
-            my,
-            mz,
-            xx + my * cy + mz * cz,
-            xy - mx * cy,
-            xz - mx * cz,
-            yy + mx * cx + mz * cz,
-            yz - my * cz,
-            zz + mx * cx + my * cy,
-        ]
+        [mass, mx, my, mz, xx + my * cy + mz * cz, xy - mx * cy, xz - mx * cz, yy + mx * cx + mz * cz, yz - my * cz, zz + mx * cx + my * cy]
     }
 
     /// The derivatives of the ten parameters by a variable.
@@ -302,7 +289,9 @@ impl RobotResponse {
             return losses;
         }
         for (dof, loss) in losses.iter_mut().enumerate() {
-            for (field, nominal) in [(TargetField::Damping(0), self.model.damping[dof]), (TargetField::Friction(0), self.model.friction[dof])] {
+            for (field, nominal) in
+                [(TargetField::Damping(0), self.model.damping[dof]), (TargetField::Friction(0), self.model.friction[dof])]
+            {
                 let same = |edit: &&Dof| edit.dof == dof && edit.field.name().0 == field.name().0;
                 let value = match (self.dofs.iter().find(same), at) {
                     (None, _) => nominal,
@@ -352,7 +341,8 @@ impl RobotResponse {
         let with_dofs = |(mut mass, mut h): (DMatrix<f64>, Vec<f64>), theta: Option<usize>| {
             match theta {
                 None => {
-                    let uncertain = |dof: usize| self.dofs.iter().any(|edit| edit.dof == dof && matches!(edit.field, TargetField::Armature(_)));
+                    let uncertain =
+                        |dof: usize| self.dofs.iter().any(|edit| edit.dof == dof && matches!(edit.field, TargetField::Armature(_)));
                     (0..nv).filter(|dof| !uncertain(*dof)).for_each(|dof| mass[(dof, dof)] += model.armature[dof]);
                     h.iter_mut().zip(self.losses(None)).for_each(|(h, loss)| *h += loss);
                 }

@@ -38,7 +38,11 @@ pub fn sensitivity<R: Response>(space: &Space, response: &R, settings: &Sampling
     let (n, outputs, replicates) = (space.len(), response.outputs(), settings.replicates);
     let each = settings.samples.div_ceil(replicates.max(1));
     if replicates < 2 || each < 2 {
-        return Err(Error::Setting { setting: "samples", found: settings.samples, demand: "two at least in each of two replicates at least" });
+        return Err(Error::Setting {
+            setting: "samples",
+            found: settings.samples,
+            demand: "two at least in each of two replicates at least",
+        });
     }
     let streams = Stream::all(settings.points, 2 * n, settings.seed, replicates)?;
     let middle = at(response, &space.means());

@@ -133,20 +133,21 @@ fn grown(degree: usize, polynomial: u32, random: &mut Random) -> [u32; BITS] {
 fn primitive(degree: usize) -> impl Iterator<Item = (usize, u32)> {
     let order = (1_u32 << degree) - 1;
     let candidates = (0..1_u32 << (degree - 1)).map(move |middle| 1 << degree | middle << 1 | 1);
-    candidates.filter(move |polynomial| {
-        let (mut power, mut count) = (1_u32, 0);
-        loop {
-            power <<= 1;
-            if power >> degree & 1 == 1 {
-                power ^= polynomial;
+    candidates
+        .filter(move |polynomial| {
+            let (mut power, mut count) = (1_u32, 0);
+            loop {
+                power <<= 1;
+                if power >> degree & 1 == 1 {
+                    power ^= polynomial;
+                }
+                count += 1;
+                if power == 1 || count > order {
+                    return count == order;
+                }
             }
-            count += 1;
-            if power == 1 || count > order {
-                return count == order;
-            }
-        }
-    })
-    .map(move |polynomial| (degree, polynomial))
+        })
+        .map(move |polynomial| (degree, polynomial))
 }
 
 /// Σ t over the planes of 2¹, …, 2^DEEP points. Of 2^m points, t = m − k, where k is the largest number such that the first a rows of one matrix

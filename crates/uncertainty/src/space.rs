@@ -30,7 +30,8 @@ impl Space {
             return Err(Error::NoVariables);
         }
         let made = distributions.iter().enumerate();
-        let made = made.map(|(variable, distribution)| Variable::new(*distribution).map_err(|defect| Error::Distribution { variable, defect }));
+        let made =
+            made.map(|(variable, distribution)| Variable::new(*distribution).map_err(|defect| Error::Distribution { variable, defect }));
         let variables = made.collect::<Result<Vec<Variable>, Error>>()?;
         let variances: Vec<f64> = variables.iter().map(Variable::variance).collect();
         let covariance = DMatrix::from_fn(variances.len(), variances.len(), |i, j| if i == j { variances[i] } else { 0.0 });

@@ -36,12 +36,34 @@ pub struct Variable {
 
 #[derive(Clone, Debug)]
 enum Kind {
-    Uniform { low: f64, width: f64 },
-    Lognormal { location: f64, scale: f64 },
-    Gamma { shape: f64, scale: f64, ln_gamma: f64 },
-    Normal { mean: f64, deviation: f64 },
+    Uniform {
+        low: f64,
+        width: f64,
+    },
+    Lognormal {
+        location: f64,
+        scale: f64,
+    },
+    Gamma {
+        shape: f64,
+        scale: f64,
+        ln_gamma: f64,
+    },
+    Normal {
+        mean: f64,
+        deviation: f64,
+    },
     /// Φ at the lower bound, and what is between the bounds. Reflected if most of it is above the mean: probabilities near one have few digits.
-    Truncated { mean: f64, deviation: f64, low: f64, high: f64, below: f64, mass: f64, reflected: bool, polynomials: Recurrence },
+    Truncated {
+        mean: f64,
+        deviation: f64,
+        low: f64,
+        high: f64,
+        below: f64,
+        mass: f64,
+        reflected: bool,
+        polynomials: Recurrence,
+    },
 }
 
 impl Variable {
@@ -132,8 +154,20 @@ impl Variable {
     pub fn cdf(&self, x: f64) -> f64 {
         match self.kind {
             Kind::Uniform { low, width } => ((x - low) / width).clamp(0.0, 1.0),
-            Kind::Lognormal { location, scale } => if x > 0.0 { normal_cdf((x.ln() - location) / scale) } else { 0.0 },
-            Kind::Gamma { shape, scale, .. } => if x > 0.0 { gamma_lr(shape, x / scale) } else { 0.0 },
+            Kind::Lognormal { location, scale } => {
+                if x > 0.0 {
+                    normal_cdf((x.ln() - location) / scale)
+                } else {
+                    0.0
+                }
+            }
+            Kind::Gamma { shape, scale, .. } => {
+                if x > 0.0 {
+                    gamma_lr(shape, x / scale)
+                } else {
+                    0.0
+                }
+            }
             Kind::Normal { mean, deviation } => normal_cdf((x - mean) / deviation),
             Kind::Truncated { mean, deviation, below, mass, reflected, .. } => {
                 let z = (x - mean) / deviation;

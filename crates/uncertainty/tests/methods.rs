@@ -65,7 +65,8 @@ fn samples_agree_with_the_closed_form() {
 /// The same bits by one thread, two and five; blocks that are not full, registers that are not full.
 #[test]
 fn threads_do_not_change_a_bit() {
-    let space = Space::independent(&[Distribution::Gamma { mean: 1.0, deviation: 0.2 }, Distribution::Uniform { low: -1.0, high: 2.0 }]).unwrap();
+    let space =
+        Space::independent(&[Distribution::Gamma { mean: 1.0, deviation: 0.2 }, Distribution::Uniform { low: -1.0, high: 2.0 }]).unwrap();
     let response = Closure::new(2, 2, |x: &[f64], y: &mut [f64]| (y[0], y[1]) = (x[1].sin() / x[0], x[0] * x[1]));
     for points in [Points::Random, Points::Sobol] {
         let run = |threads| {
@@ -86,7 +87,8 @@ fn sobol_indices_are_those_of_ishigami() {
     let (a, b) = (7.0, 0.1);
     let pi = std::f64::consts::PI;
     let space = Space::independent(&[Distribution::Uniform { low: -pi, high: pi }; 3]).unwrap();
-    let response = Closure::new(3, 1, move |x: &[f64], y: &mut [f64]| y[0] = x[0].sin() + a * x[1].sin().powi(2) + b * x[2].powi(4) * x[0].sin());
+    let response =
+        Closure::new(3, 1, move |x: &[f64], y: &mut [f64]| y[0] = x[0].sin() + a * x[1].sin().powi(2) + b * x[2].powi(4) * x[0].sin());
     let first = 0.5 * (1.0 + b * pi.powi(4) / 5.0).powi(2);
     let second = a * a / 8.0;
     let pair = b * b * pi.powi(8) * (1.0 / 18.0 - 1.0 / 50.0);

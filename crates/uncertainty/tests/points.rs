@@ -35,7 +35,8 @@ fn the_first_two_dimensions_are_the_known_ones() {
         let mut hits = vec![0; 1 << m];
         for k in 0..1 << m {
             let p = sobol.plain(k);
-            hits[((p[0] as usize).checked_shr(32 - a).unwrap_or(0)) << (m - a) | (p[1] as usize).checked_shr(32 - (m - a)).unwrap_or(0)] += 1;
+            hits[((p[0] as usize).checked_shr(32 - a).unwrap_or(0)) << (m - a) | (p[1] as usize).checked_shr(32 - (m - a)).unwrap_or(0)] +=
+                1;
         }
         assert!(hits.iter().all(|h| *h == 1), "{a}");
     }

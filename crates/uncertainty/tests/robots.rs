@@ -105,7 +105,8 @@ const FAMILIES: [&str; 3] = ["chain:n=6,layout=spatial", "humanoid", "tree:n=9,s
 fn routes_agree_with_a_rebuilt_robot() {
     for family in FAMILIES {
         let robot = with_everything(family);
-        let x: Vec<f64> = Space::of(&robot.uncertain).unwrap().variables().iter().enumerate().map(|(k, v)| v.quantile(0.1 + 0.1 * k as f64)).collect();
+        let x: Vec<f64> =
+            Space::of(&robot.uncertain).unwrap().variables().iter().enumerate().map(|(k, v)| v.quantile(0.1 + 0.1 * k as f64)).collect();
         for quantity in [Quantity::Acceleration, Quantity::Torque] {
             let state = state(&robot, quantity);
             let due = rebuilt(&robot, &state, quantity, &x);

@@ -79,7 +79,9 @@ fn rules_are_exact_for_polynomials() {
 fn small_rules_are_the_known_ones() {
     let close = |a: &[f64], b: [f64; 3]| a.iter().zip(b).all(|(a, b)| (a - b).abs() < 1e-14);
     let legendre = Recurrence::legendre(3).rule(3);
-    assert!(close(&legendre.nodes, [-0.6_f64.sqrt(), 0.0, 0.6_f64.sqrt()]) && close(&legendre.weights, [5.0 / 18.0, 8.0 / 18.0, 5.0 / 18.0]));
+    assert!(
+        close(&legendre.nodes, [-0.6_f64.sqrt(), 0.0, 0.6_f64.sqrt()]) && close(&legendre.weights, [5.0 / 18.0, 8.0 / 18.0, 5.0 / 18.0])
+    );
     let hermite = Recurrence::hermite(3).rule(3);
     assert!(close(&hermite.nodes, [-3.0_f64.sqrt(), 0.0, 3.0_f64.sqrt()]) && close(&hermite.weights, [1.0 / 6.0, 2.0 / 3.0, 1.0 / 6.0]));
     // ∫ t^k t² e^(−t)/2 dt = (k + 2)!/2.

@@ -207,11 +207,7 @@ struct Source {
 
 impl Document {
     fn unsupported(&self) -> Option<&'static str> {
-        let sections = [
-            ("actuation", &self.actuation),
-            ("contacts", &self.contacts),
-            ("residuals", &self.residuals),
-        ];
+        let sections = [("actuation", &self.actuation), ("contacts", &self.contacts), ("residuals", &self.residuals)];
         sections.into_iter().find(|(_, section)| section.is_some()).map(|(name, _)| name)
     }
 
