@@ -20,6 +20,7 @@
 //! | `featherbench_constrained` | robots with loops: graph, constraints, constrained dynamics | a constraint, a method, a robot with loops |
 //! | `featherbench_reference` | slow truth that shares no text with `dynamics` | a witness |
 //! | `featherbench_hybrid` | hybrid systems: events, Zeno, saltation, derivatives of whole runs | a hybrid system |
+//! | `featherbench_uncertainty` | what uncertain parameters do to the dynamics | a distribution, a method |
 //! | `featherbench_results` | the row: its columns, files, differences of runs | a column |
 //! | `featherbench_protocol` | messages to an oracle, and its process | – |
 //! | `featherbench_bench` | suite, cell, run, store, measures, gates; the traits `Engine` and `Study` | a measure of an error |
@@ -63,6 +64,7 @@ mod run;
 mod say;
 mod shell;
 mod table;
+mod uncertainty;
 
 use args::{Cli, Command, OraclesAction, RunArgs};
 use clap::Parser;
@@ -94,6 +96,7 @@ fn dispatch(cli: Cli) -> Result<(), Fail> {
         Command::List(args) => list::list(&root()?, &args),
         Command::Explain(args) => explain::explain(&args),
         Command::Record(args) => record::record(&root()?, &args),
+        Command::Uncertainty(args) => uncertainty::propagate(root, &args),
         Command::Gen(args) => generate::generate(&root()?, &args),
         Command::Oracles(args) => match args.action {
             OraclesAction::Install(args) => oracles::install_named(&root()?, &args),
