@@ -23,6 +23,7 @@
 //! | `featherbench_hybrid` | hybrid systems: events, Zeno, saltation, derivatives of whole runs | a hybrid system |
 //! | `featherbench_residuals` | what a nominal model lacks: τ = ID + r | a residual |
 //! | `featherbench_learning` | models learned from motions, and their scores | a learned model |
+//! | `featherbench_uncertainty` | what uncertain parameters do to the dynamics | a distribution, a method |
 //! | `featherbench_results` | the row: its columns, files, differences of runs | a column |
 //! | `featherbench_protocol` | messages to an oracle, and its process | – |
 //! | `featherbench_bench` | suite, cell, run, store, measures, gates; the traits `Engine` and `Study` | a measure of an error |
@@ -67,6 +68,7 @@ mod run;
 mod say;
 mod shell;
 mod table;
+mod uncertainty;
 
 use args::{Cli, Command, OraclesAction, RunArgs};
 use clap::Parser;
@@ -98,6 +100,7 @@ fn dispatch(cli: Cli) -> Result<(), Fail> {
         Command::List(args) => list::list(&root()?, &args),
         Command::Explain(args) => explain::explain(&args),
         Command::Record(args) => record::record(&root()?, &args),
+        Command::Uncertainty(args) => uncertainty::propagate(root, &args),
         Command::Gen(args) => generate::generate(&root()?, &args),
         Command::Identify(args) => identify::identify(&root, &args),
         Command::Oracles(args) => match args.action {

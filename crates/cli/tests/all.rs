@@ -14,3 +14,4 @@ mod history_diff;
 mod parsers;
 mod resume;
 mod support;
+mod uncertainty;

@@ -20,6 +20,7 @@
 //! - [`OperationCounts`]: are the counts of the sparse algorithms the integers of the theory?
 //! - [`Scaling`]: what do sparsity and errors become as robots grow?
 //! - [`Growth`]: how do time and memory grow with the robot, and where does each engine stop?
+//! - `uncertainty`: what do uncertain parameters do to the dynamics, where the answer is known?
 //! - [`Timing`]: how long does each candidate take, in a paired experiment?
 
 mod accuracy;
@@ -33,8 +34,8 @@ mod growth;
 mod identification;
 pub mod import;
 mod known;
-mod loops;
 mod lesson;
+mod loops;
 mod operations;
 mod relaxation;
 mod repeatability;
@@ -44,6 +45,7 @@ mod scaling;
 mod scenes;
 mod steps;
 mod timing;
+mod uncertainty;
 
 pub use accuracy::Accuracy;
 pub use agreement::Agreement;
@@ -92,6 +94,7 @@ const STUDIES: &[Entry] = &[
     Entry { name: "identification", make: identification::of_suite, sections: identification::section::sections },
     Entry { name: "residuals", make: residuals::of_suite, sections: residuals::section::sections },
     Entry { name: "lesson", make: lesson::of_suite, sections: lesson::section::sections },
+    Entry { name: "uncertainty", make: uncertainty::of_suite, sections: uncertainty::section::sections },
     Entry { name: "steps", make: steps::of_suite, sections: steps::section::sections },
     Entry { name: "operations", make: operations::of_suite, sections: no_section },
     Entry { name: "scaling", make: scaling::of_suite, sections: scaling::section::sections },
