@@ -56,9 +56,21 @@ pub fn to_string(description: &Description) -> Result<String, Malformed> {
 /// # Errors
 /// [`Malformed`] when the description is not a robot.
 pub fn to_line(description: &Description) -> Result<String, Malformed> {
+    line(description, false)
+}
+
+/// The same with the section `loops`: what an engine is asked about that holds loops.
+///
+/// # Errors
+/// As of [`to_line`].
+pub fn to_line_with_loops(description: &Description) -> Result<String, Malformed> {
+    line(description, true)
+}
+
+fn line(description: &Description, loops: bool) -> Result<String, Malformed> {
     let canonical = description.canonical()?;
     let mut writer = Writer { per_dof: PerDof::Complete, separator: [""; 4], ..Writer::of_file() };
-    writer.document(&canonical, false);
+    writer.document(&canonical, loops);
     Ok(writer.text)
 }
 
