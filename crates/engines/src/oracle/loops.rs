@@ -53,12 +53,17 @@ fn build(session: &mut Session, robot: &Description, model: Value) -> Result<(),
             return Err(NoAnswer::Failed(format!("the engine reports {key} {found:?}, the robot has {due}")));
         }
     }
+    // Without its loops a robot is another one.
+    let held = answer.header.get("held").and_then(Value::as_object).map_or(0, serde_json::Map::len);
+    if held != robot.loops.len() {
+        return Err(NoAnswer::Failed(format!("the engine holds {held} loops, the robot has {}", robot.loops.len())));
+    }
     Ok(())
 }
 
 /// The robot with its loops in the form of the protocol.
 pub(crate) fn model(robot: &Description) -> Result<Value, NoAnswer> {
-    let line = featherbench_formats::neutral::to_line(robot).map_err(|error| NoAnswer::Failed(error.to_string()))?;
+    let line = featherbench_formats::neutral::to_line_with_loops(robot).map_err(|error| NoAnswer::Failed(error.to_string()))?;
     serde_json::from_str(&line).map_err(|error| NoAnswer::Failed(error.to_string()))
 }
 

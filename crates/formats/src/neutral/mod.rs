@@ -28,7 +28,7 @@ mod write;
 
 pub use error::{NeutralError, NeutralProblem};
 pub use read::{parse, read};
-pub use write::{to_line, to_string, write, write_to};
+pub use write::{to_line, to_line_with_loops, to_string, write, write_to};
 
 /// The format's version that this crate reads and writes.
 pub const FORMAT: u64 = 1;

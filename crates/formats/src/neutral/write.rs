@@ -57,10 +57,22 @@ pub fn to_string(description: &Description) -> Result<String, Malformed> {
 /// # Errors
 /// [`Malformed`] when the description is not a robot, or has bodies that deform.
 pub fn to_line(description: &Description) -> Result<String, Malformed> {
+    line(description, Sections::None)
+}
+
+/// The same with the section `loops`: what an engine is asked about that holds loops.
+///
+/// # Errors
+/// As of [`to_line`].
+pub fn to_line_with_loops(description: &Description) -> Result<String, Malformed> {
+    line(description, Sections::Loops)
+}
+
+fn line(description: &Description, sections: Sections) -> Result<String, Malformed> {
     description.must_be_rigid()?;
     let canonical = description.canonical()?;
     let mut writer = Writer { per_dof: PerDof::Complete, separator: [""; 4], ..Writer::of_file() };
-    writer.document(&canonical, false);
+    writer.document(&canonical, sections);
     Ok(writer.text)
 }
 
@@ -83,6 +95,14 @@ pub(super) struct Writer<'a> {
     failed: Option<io::Error>,
 }
 
+/// Which optional sections are written.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Sections {
+    None,
+    Loops,
+    All,
+}
+
 /// The text is passed on in pieces of about this size.
 const PIECE: usize = 1 << 16;
 
@@ -93,7 +113,7 @@ impl Writer<'_> {
     }
 
     fn file(&mut self, description: &Description) {
-        self.document(description, true);
+        self.document(description, Sections::All);
         self.push("\n");
         self.pass_on(0);
     }
@@ -108,28 +128,29 @@ impl Writer<'_> {
         }
     }
 
-    fn document(&mut self, description: &Description, with_sections: bool) {
+    fn document(&mut self, description: &Description, sections: Sections) {
+        let all = sections == Sections::All;
         self.put(format_args!("{{\"format\":{},\"name\":{},\"gravity\":", super::FORMAT, quoted(&description.name)));
         self.numbers(&description.gravity);
-        if let Some(provenance) = description.provenance.as_ref().filter(|_| with_sections) {
+        if let Some(provenance) = description.provenance.as_ref().filter(|_| all) {
             self.key(0, "provenance");
             self.provenance(provenance);
         }
         self.key(0, "bodies");
         self.list(1, &description.bodies, Self::body);
-        if with_sections && !description.frames.is_empty() {
+        if all && !description.frames.is_empty() {
             self.key(0, "frames");
             self.list(1, &description.frames, Self::frame);
         }
-        if with_sections && !description.loops.is_empty() {
+        if sections != Sections::None && !description.loops.is_empty() {
             self.key(0, "loops");
             self.list(1, &description.loops, Self::tie);
         }
-        if with_sections && !description.continua.is_empty() {
+        if all && !description.continua.is_empty() {
             self.key(0, "continua");
             self.list(1, &description.continua, Self::continuum);
         }
-        if with_sections && !description.uncertain.is_empty() {
+        if all && !description.uncertain.is_empty() {
             self.key(0, "uncertain");
             self.uncertain(&description.uncertain);
         }
