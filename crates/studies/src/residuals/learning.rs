@@ -12,11 +12,12 @@ use serde_json::json;
 /// What is learned from. Another seed's stream of two trajectories is held out, without noise.
 const MOTION: Motion = Motion { amplitude: 0.8, frequency: 0.8, harmonics: 5, trajectories: 4, samples: 150, noise: 0.0 };
 const NET: Net = Net { hidden: 12, epsilon: 1e-3, seed: 1, patience: 3 };
-const DEGREES: Degrees = Degrees { total: 6, damping: false };
+/// The degree of M and V without and with noise: fewer coefficients average over more of it.
+const DEGREES: [usize; 2] = [6, 3];
 /// The total degree of the black box, in six variables.
 const BLACK: usize = 4;
 /// λ of ridge regressions, without and with noise.
-const RIDGE: [f64; 2] = [1e-13, 1e-8];
+const RIDGE: [f64; 2] = [1e-13, 1e-5];
 /// Noise on torques over their root mean square.
 const NOISE: [f64; 2] = [0.0, 1e-2];
 /// Where the motion begins, at rest, rad.
@@ -48,7 +49,7 @@ fn learned(model: &str, noise: usize, seed: u64) -> Result<Box<dyn Dynamics>, No
         "truth" => Box::new(truth),
         "lagrangian net" => Box::new(Lagrangian::fit(&samples, NET).map_err(failed)?.0),
         "port-hamiltonian" => {
-            let fitted = PortHamiltonian::fit(&samples, DEGREES, RIDGE[noise]).map_err(failed)?;
+            let fitted = PortHamiltonian::fit(&samples, Degrees { total: DEGREES[noise], damping: false }, RIDGE[noise]).map_err(failed)?;
             let smallest = fitted.smallest_mass(&samples);
             if smallest.is_nan() || smallest <= 0.0 {
                 return Err(NoAnswer::Failed(format!("the mass matrix has the eigenvalue {smallest:e} at a sample")));
@@ -70,7 +71,9 @@ fn case(model: &'static str, noise: usize) -> Case {
     };
     // A black box has no energy of its own to conserve.
     let own = structured.then(|| error("own_energy_drift", "conservation"));
-    let stays = if structured { count("seconds", 1000.0, "theory") } else { told("seconds", "s") };
+    // M ≻ 0 is by form in the net alone: with noise the polynomials may lose it, and then there is no acceleration.
+    let positive = structured && (model, noise) != ("port-hamiltonian", 1);
+    let stays = if positive { count("seconds", 1000.0, "theory") } else { told("seconds", "s") };
     let drift = |metric: &'static str| Number { reference: "truth", ..told(metric, "1") };
     Case {
         name: if noise == 0 { "arm, no noise".into() } else { format!("arm, noise {}", NOISE[noise]) },
@@ -79,7 +82,7 @@ fn case(model: &'static str, noise: usize) -> Case {
         params: json!({
             "noise": NOISE[noise], "ridge": RIDGE[noise], "amplitude": MOTION.amplitude, "frequency": MOTION.frequency,
             "harmonics": MOTION.harmonics, "trajectories": MOTION.trajectories, "samples": MOTION.samples, "hidden": NET.hidden,
-            "degree": DEGREES.total, "black_degree": BLACK, "start": START, "step": STEP,
+            "degree": DEGREES[noise], "black_degree": BLACK, "start": START, "step": STEP,
         }),
         numbers: [torque].into_iter().chain(own).chain([stays]).chain(DRIFTS.map(drift)).collect(),
         evaluate: Box::new(move |seed| {
