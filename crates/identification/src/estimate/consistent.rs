@@ -114,7 +114,7 @@ fn start(linear: &LinearModel) -> Result<(DVector<f64>, Vec<String>), Identifica
         let at = PARAMETERS * body;
         let mut pi: [f64; PARAMETERS] = std::array::from_fn(|k| nominal[at + k]);
         let consistency = PseudoInertia::of(&pi).consistency();
-        if !(consistency.smallest > THIN * consistency.largest) {
+        if consistency.smallest.is_nan() || consistency.smallest <= THIN * consistency.largest {
             // A ball of a thousandth of the largest mass, with the radius of gyration of a tenth of a metre, and what is missing besides.
             let missing = (-consistency.smallest).max(0.0) + THIN * consistency.largest;
             let ball = Matrix4::from_diagonal(&nalgebra::Vector4::new(0.01, 0.01, 0.01, 1.0)) * (SMALL * sizes[at]);
