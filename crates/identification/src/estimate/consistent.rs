@@ -23,7 +23,9 @@ const SMALL: f64 = 1e-3;
 /// are followed.
 const PULLS: [f64; 4] = [1e4, 1e3, 1e1, 1.0];
 /// Steps of too little gain after which it ends.
-const FLAT: usize = 3;
+const FLAT: usize = 5;
+/// A residual below this share of the torques is less than any sensor tells: it ends there.
+const EXACT: f64 = 1e-7;
 /// Numbers of φ change by no more than this in a step: e³ is a factor of twenty.
 const REACH: f64 = 3.0;
 
@@ -36,7 +38,7 @@ pub struct Settings {
     pub steps: usize,
     /// The relative change of φ at which it ends.
     pub end: f64,
-    /// The relative gain of a step that is too little: after three such steps it ends. What is left then is the valley of parameters that
+    /// The relative gain of a step that is too little: after five such steps it ends. What is left then is the valley of parameters that
     /// the torques do not tell, in which the pull alone leads on.
     pub gain: f64,
 }
@@ -44,7 +46,7 @@ pub struct Settings {
 impl Default for Settings {
     /// A pull of 1e-6 moves a parameter that the torques tell by 1e-12 of its distance, times its condition squared.
     fn default() -> Self {
-        Self { pull: 1e-6, steps: 300, end: 1e-10, gain: 1e-3 }
+        Self { pull: 1e-6, steps: 1000, end: 1e-10, gain: 1e-6 }
     }
 }
 
@@ -112,7 +114,7 @@ fn start(linear: &LinearModel) -> Result<(DVector<f64>, Vec<String>), Identifica
         let at = PARAMETERS * body;
         let mut pi: [f64; PARAMETERS] = std::array::from_fn(|k| nominal[at + k]);
         let consistency = PseudoInertia::of(&pi).consistency();
-        if !(consistency.smallest > THIN * consistency.largest) {
+        if consistency.smallest.is_nan() || consistency.smallest <= THIN * consistency.largest {
             // A ball of a thousandth of the largest mass, with the radius of gyration of a tenth of a metre, and what is missing besides.
             let missing = (-consistency.smallest).max(0.0) + THIN * consistency.largest;
             let ball = Matrix4::from_diagonal(&nalgebra::Vector4::new(0.01, 0.01, 0.01, 1.0)) * (SMALL * sizes[at]);
@@ -203,7 +205,7 @@ fn descend(
             (*phi, rest, jacobian, now) = (trial, trial_rest, trial_jacobian, next);
             damping = (damping * 0.2).max(1e-9);
             flat = if gained < settings.gain { flat + 1 } else { 0 };
-            if step < settings.end || flat >= FLAT {
+            if step < settings.end || flat >= FLAT || rest.norm() <= EXACT * right.norm() {
                 return Ok(taken + 1);
             }
         } else {
