@@ -1,7 +1,7 @@
 //! Robots with loops from files: the four-bar of the library out of JSON and URDF, and dynamics on graphs with and without loops.
 
 use crate::common::{assert_within, largest};
-use featherbench_constrained::library::Ladder;
+use featherbench_constrained::library::{Biped, Bricard, Ladder, Squeezer};
 use featherbench_constrained::{
     Attachment, BadMechanism, Dynamics, Error, Kkt, Law, LoopMotion, Mechanism, Mobility, Proximal, RangeSpace, Tree,
 };
@@ -185,4 +185,21 @@ fn bad_states_and_graphs_are_refused_by_name() {
     let found = Mechanism::of(&robot).unwrap_err();
     assert!(matches!(found, BadMechanism::Tree(_)) && found.to_string().contains("loops[0]"), "{found}");
     assert!(Mechanism::of(&Description::default()).is_err());
+}
+
+/// The line that an engine is asked with has the loops, and the one of a tree has none.
+#[test]
+fn lines_have_loops_where_they_are_asked_for() {
+    let robots = [
+        Ladder::default().description(),
+        Bricard::default().description(),
+        Squeezer::default().description(),
+        Biped::default().description(),
+    ];
+    for robot in robots {
+        let line = neutral::to_line_with_loops(&robot).unwrap();
+        assert!(!line.contains('\n'));
+        assert_eq!(neutral::parse(&line, "a line").unwrap().loops, robot.canonical().unwrap().loops, "{}", robot.name);
+        assert!(neutral::parse(&neutral::to_line(&robot).unwrap(), "a line").unwrap().loops.is_empty());
+    }
 }
