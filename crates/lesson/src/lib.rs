@@ -4,6 +4,7 @@
 //!   has a second route: a closed form, extended precision, dual numbers or another formulation.
 //! - [`Algebra`] is a small store of expressions: derivatives, values in any scalar, and source text in Rust, C and Python.
 //! - [`Equations`] are the equations of motion of a Lagrangian; [`arm`] has those of the lesson's planar arm.
+//! - [`pipeline`] generates a robot and models it in stages.
 //!
 //! Conventions: SI units; r is what the true robot has and the nominal one lacks, `true = nominal + r`, so the lesson's d is −r.
 

@@ -24,8 +24,11 @@ fn four_bar() -> Result<Graph, BadGraph> {
     Graph::new(links(&["crank", "coupler", "rocker"]), joints)
 }
 
+/// What is wrong, what the graph says, and whether that is the refusal that is due.
+type Malformed = (&'static str, Result<Graph, BadGraph>, fn(&BadGraph) -> bool);
+
 /// Graphs that are no robot, each with the refusal that is due.
-fn malformed() -> [(&'static str, Result<Graph, BadGraph>, fn(&BadGraph) -> bool); 5] {
+fn malformed() -> [Malformed; 5] {
     let two = || links(&["one", "two"]);
     [
         (
@@ -79,8 +82,9 @@ fn numbers() -> Result<Vec<Number>, Failure> {
         numbers.push(Number::new(name, "1", count, freedom(&mechanism, &ladder.spread(0.5))?));
     }
     let (name, count) = counted("Bricard's ring", &bricard.graph, 6);
-    // Its links: five rods in a row on one hinge each; and a hinge that closes the ring.
-    numbers.push(Number::new(name, "1", count, 6.0 - 6.0));
+    // By hand: six hinges in one loop.
+    let (hinges, loops) = (6.0, 1.0);
+    numbers.push(Number::new(name, "1", count, hinges - 6.0 * loops));
     numbers.push(Number::new("true mobility, Bricard's ring", "1", freedom(&bricard, &[0.0; 5])?, 1.0));
     for (name, result, due) in malformed() {
         let refused = usize::from(result.as_ref().err().is_some_and(due));

@@ -168,6 +168,9 @@ fn sensitivities(arm: &Arm) -> Result<Vec<Number>, Failure> {
     Ok(numbers)
 }
 
+/// A rule of quadrature on the heights that have bounced.
+type Integral<'a> = &'a dyn Fn(&dyn Fn(f64) -> f64) -> f64;
+
 /// A ball whose height is normal, looked at about the time of its impact.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Drop {
@@ -195,7 +198,7 @@ impl Drop {
         let rule = Rule::gauss(20);
         let panels = |f: &dyn Fn(f64) -> f64| rule.on_panels(low, limit, 24, f);
         let other = |f: &dyn Fn(f64) -> f64| simpson(low, limit, 40_000, f);
-        let moments = |integral: &dyn Fn(&dyn Fn(f64) -> f64) -> f64| {
+        let moments = |integral: Integral| {
             let share = integral(&normal);
             let first = integral(&|z| normal(z) * jump(z));
             let second = integral(&|z| normal(z) * jump(z) * jump(z));

@@ -13,10 +13,13 @@ use serde::Serialize;
 /// A share of the right value below which the lesson's is the same.
 const SAME: f64 = 1e-9;
 
-/// What the section draws: of each robot its name, and of each stage its name with the errors on the unseen motion and on the log.
+/// Of each robot its name, and of each stage its name with the errors on the unseen motion and on the log.
+type Stages<'a> = Vec<(&'a str, Vec<(&'a str, f64, f64)>)>;
+
+/// What the section draws.
 #[derive(Serialize)]
 struct Figures<'a> {
-    stages: Vec<(&'a str, Vec<(&'a str, f64, f64)>)>,
+    stages: Stages<'a>,
 }
 
 /// A number that the lesson gives, with the right one.
@@ -76,7 +79,7 @@ fn value(rows: &[&Row], quantity: &str, family: &str, method: &str, metric: &str
     rows.iter().find(is_it)?.value
 }
 
-fn stages<'a>(rows: &[&'a Row]) -> Vec<(&'a str, Vec<(&'a str, f64, f64)>)> {
+fn stages<'a>(rows: &[&'a Row]) -> Stages<'a> {
     let of = |(name, ..): (&'static str, _, _)| {
         let points = STAGES.into_iter().filter_map(|stage| {
             let at = |metric| value(rows, pipeline::QUANTITY, name, stage, metric);
