@@ -66,8 +66,8 @@ pub(crate) fn sections<'a>(_: &RunInfo, rows: &'a [Row], overview: &Overview<'a>
 
 fn figures(rows: &[&Row]) -> Figures {
     Figures {
-        tip: errors(rows, "tip_error_1", |row| elements(row)),
-        frequency: errors(rows, "frequency_error_1", |row| elements(row)),
+        tip: errors(rows, "tip_error_1", elements),
+        frequency: errors(rows, "frequency_error_1", elements),
         cost: errors(rows, "frequency_error_1", |row| beside(rows, row, "forward_dynamics")),
         elastica: shapes(rows, "elastica"),
         modes: shapes(rows, "mode"),
