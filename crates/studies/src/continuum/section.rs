@@ -154,7 +154,7 @@ fn body(rows: &[&Row], chunk: &str) -> Markup {
                     li { "With 16 elements, the first frequency of a cantilever is nearest with " (element) ": " (short(missed)) " of it." }
                 }
                 @for (engine, apart) in agreement {
-                    li { "The errors of " (engine) " are those of our element of the same kind, to " (short(apart)) "." }
+                    li { "Tips of " (engine) " are those of our element of the same kind, and frequencies of hinge chains are too: to " (short(apart)) "." }
                 }
                 @if within + beyond > 0 {
                     li {
