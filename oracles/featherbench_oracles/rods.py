@@ -134,7 +134,7 @@ def equilibrium(model: RodModel, rod: Rod, force: float) -> Array:
 
 
 def _newton(model: RodModel, rod: Rod, force: float, q: Array) -> Array:
-    """Iterate to the equilibrium from a near one. The tangent is by central differences: its error slows the iteration and moves no result."""
+    """Iterate to the equilibrium from a near one. The tangent is by central differences: its error moves no result."""
     scale, last = rod.bending / rod.length, np.inf
     for _ in range(MOST_ITERATIONS):
         left = model.imbalance(q, force)

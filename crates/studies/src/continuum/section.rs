@@ -66,8 +66,8 @@ pub(crate) fn sections<'a>(_: &RunInfo, rows: &'a [Row], overview: &Overview<'a>
 
 fn figures(rows: &[&Row]) -> Figures {
     Figures {
-        tip: errors(rows, "tip_error_1", |row| elements(row)),
-        frequency: errors(rows, "frequency_error_1", |row| elements(row)),
+        tip: errors(rows, "tip_error_1", elements),
+        frequency: errors(rows, "frequency_error_1", elements),
         cost: errors(rows, "frequency_error_1", |row| beside(rows, row, "forward_dynamics")),
         elastica: shapes(rows, "elastica"),
         modes: shapes(rows, "mode"),
@@ -154,7 +154,7 @@ fn body(rows: &[&Row], chunk: &str) -> Markup {
                     li { "With 16 elements, the first frequency of a cantilever is nearest with " (element) ": " (short(missed)) " of it." }
                 }
                 @for (engine, apart) in agreement {
-                    li { "The errors of " (engine) " are those of our element of the same kind, to " (short(apart)) "." }
+                    li { "Tips of " (engine) " are those of our element of the same kind, and frequencies of hinge chains are too: to " (short(apart)) "." }
                 }
                 @if within + beyond > 0 {
                     li {
