@@ -186,11 +186,12 @@ class Session:
         first, count = header["first"], header["count"]
         if not 0 <= first <= first + count <= len(self.states["q"]):
             raise ValueError(f"states {first}..{first + count} do not exist")
-        value = np.empty((count, self.description.nv))
+        nv = self.description.nv
+        value = np.empty((count, nv))
         for k in range(count):
             row = np.asarray(function(self.robot, _state(self.states, first + k, 0)), dtype=float)
-            if row.shape != (self.description.nv,) or not np.isfinite(row).all():
-                raise ValueError(f"the residual of state {first + k} is not {self.description.nv} finite numbers: its shape is {list(row.shape)}")
+            if row.shape != (nv,) or not np.isfinite(row).all():
+                raise ValueError(f"the residual of state {first + k} is not {nv} finite numbers: its shape is {list(row.shape)}")
             value[k] = row
         return {}, {"value": value}
 

@@ -74,8 +74,8 @@ def test_an_engine_without_one_says_so() -> None:
 
     class Plain:
         name, version = "plain", "1"
-        build: dict[str, str] = {}  # noqa: RUF012 (as the protocol's engines have it)
-        quantities: dict[str, dict[str, object]] = {}  # noqa: RUF012 (the same)
+        build: dict[str, str] = {}
+        quantities: dict[str, dict[str, object]] = {}
 
     session = Session(Plain())  # type: ignore[arg-type]
     assert "residual" not in session.answer({"op": "hello"}, {})[0]

@@ -26,7 +26,7 @@ fn case(robot: &'static str, small: bool) -> Case {
         numbers.push(error("acceleration_error", "enumeration"));
     }
     Case {
-        name: robot.into(),
+        name: format!("dry friction on {robot}"),
         quantity: "dry_friction",
         method: "principal pivoting".into(),
         params: json!({"robot": robot, "draws": DRAWS}),

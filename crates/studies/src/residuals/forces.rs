@@ -100,7 +100,7 @@ fn payload(robot: &'static str) -> Case {
     const MASS: f64 = 0.7;
     const COM: [f64; 3] = [0.02, -0.03, 0.05];
     Case {
-        name: robot.into(),
+        name: format!("payload on {robot}"),
         quantity: "payload",
         method: "residual".into(),
         params: json!({"robot": robot, "mass": MASS, "com": COM}),
