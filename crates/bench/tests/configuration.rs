@@ -368,6 +368,7 @@ fn the_engines_of_the_project_are_described() {
         "nalgebra",
         "adam",
         "clarabel",
+        "soromox",
         "pinocchio-clang",
         "pinocchio-gcc",
         "mujoco-native",

@@ -1,6 +1,7 @@
 //! Linear algebra in double-double, for second routes.
 
 use featherbench_spatial::DoubleDouble;
+use featherbench_spatial::larger;
 
 pub type Wide = DoubleDouble;
 
@@ -38,7 +39,7 @@ pub fn smallest_eigenvalue(k: &[Vec<Wide>], m: &[Vec<Wide>]) -> f64 {
     // The next eigenvalue is at least five times as large: forty steps leave 5⁻⁸⁰.
     for _ in 0..40 {
         x = solve(k.to_vec(), times(m, &x));
-        let size = x.iter().fold(0.0, |a: f64, x| a.max(x.to_f64().abs()));
+        let size = x.iter().fold(0.0, |a: f64, x| larger(a, x.to_f64().abs()));
         x.iter_mut().for_each(|x| *x = *x / wide(size));
         let product = |a: &[Vec<Wide>]| x.iter().zip(times(a, &x)).fold(wide(0.0), |sum, (x, y)| sum + *x * y);
         quotient = product(k) / product(m);

@@ -17,6 +17,7 @@
 use crate::{IdentificationError, Information, LinearModel, Samples, Stacking};
 use featherbench_dynamics::{PARAMETERS, Regressor};
 use featherbench_robots::StateBatch;
+use featherbench_spatial::larger;
 use nalgebra::{DMatrix, DVector};
 
 /// Singular values below this share of the largest are zero. Rounding leaves some 1e-14 of it, and of the robots here the least that is not
@@ -114,7 +115,7 @@ impl Base {
         let factor = information.factor();
         let unknowns = information.unknowns();
         let lengths: Vec<f64> = factor.column_iter().map(|column| column.norm()).collect();
-        let longest = lengths.iter().copied().fold(0.0, f64::max);
+        let longest = lengths.iter().copied().fold(0.0, larger);
         if let Some(&value) = lengths.iter().find(|length| !length.is_finite()) {
             return Err(IdentificationError::NotFinite { what: "the length of a column".into(), value });
         }

@@ -12,6 +12,7 @@
 use crate::linear::Rows;
 use crate::{Base, IdentificationError, LinearModel, Samples};
 use featherbench_robots::Random;
+use featherbench_spatial::smaller;
 use nalgebra::DMatrix;
 use std::f64::consts::{PI, TAU};
 
@@ -239,7 +240,7 @@ impl Seeker<'_> {
             // A joint that turns freely needs no more than a turn.
             let room = (upper - lower).min(2.0 * PI);
             let factor = [room * SHARE / (high[dof] - low[dof]), self.limits.speed[dof] * SHARE / fastest[dof], 1.0];
-            let factor = factor.into_iter().fold(1.0, f64::min);
+            let factor = factor.into_iter().fold(1.0, smaller);
             harmonics.iter_mut().flatten().for_each(|x| *x *= factor);
             trajectory.centre[dof] = 0.5 * (lower + upper) - 0.5 * factor * (low[dof] + high[dof]);
         }

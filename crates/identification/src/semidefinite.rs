@@ -13,6 +13,7 @@
 use crate::estimate::sizes;
 use crate::{IdentificationError, Information, Kind, LinearModel, PseudoInertia};
 use featherbench_dynamics::PARAMETERS;
+use featherbench_spatial::larger;
 use nalgebra::{DMatrix, DVector};
 
 /// The least eigenvalue of a scaled pseudo-inertia, of the largest mass of the description.
@@ -43,7 +44,7 @@ impl Semidefinite {
             return Err(IdentificationError::Length { array: "equations", found: information.unknowns(), samples: 1, expected: count });
         }
         let scaled = information.factor() * DMatrix::from_diagonal(&DVector::from_column_slice(&sizes));
-        let longest = scaled.column_iter().map(|column| column.norm()).fold(0.0, f64::max);
+        let longest = scaled.column_iter().map(|column| column.norm()).fold(0.0, larger);
         // In units of the longest column: a solver's tolerances are for numbers near one.
         let mut matrix: Vec<f64> = scaled.transpose().iter().map(|x| x / longest).collect();
         let mut target: Vec<f64> = information.right().iter().map(|x| x / longest).collect();

@@ -7,6 +7,7 @@
 
 use crate::log::{Log, LogError, LogProblem};
 use crate::{IdentificationError, LinearModel, Samples};
+use featherbench_spatial::larger;
 use nalgebra::DMatrix;
 
 /// The order and width of the local polynomials.
@@ -117,7 +118,7 @@ impl Weights {
     /// Weights of a window, kept from the last one if the times are the same to 1e-6 of a step.
     fn prepare(&mut self, times: &[f64], centre: f64) {
         let apart: Vec<f64> = times.iter().map(|t| t - centre).collect();
-        let reach = apart.iter().fold(0.0, |most: f64, t| most.max(t.abs()));
+        let reach = apart.iter().fold(0.0, |most: f64, t| larger(most, t.abs()));
         let near = 1e-6 * reach / times.len() as f64;
         if self.times.len() == apart.len() && self.times.iter().zip(&apart).all(|(a, b)| (a - b).abs() <= near) {
             return;

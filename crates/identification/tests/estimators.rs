@@ -5,6 +5,7 @@ use featherbench_identification::{
     disturbed, excite, fit, log_cholesky, ordinary, scatter, student, total, weighted, whiteness,
 };
 use featherbench_robots::{Family, Random};
+use featherbench_spatial::{larger, smaller};
 
 /// Nearly normal, mean 0, variance 1: a sum of twelve uniform numbers.
 fn noise(random: &mut Random) -> f64 {
@@ -29,8 +30,8 @@ fn arm(arm: &Arm, terms: Terms) -> (LinearModel, Vec<f64>, Samples) {
 
 /// The largest error of base parameters over the largest of them.
 fn error(found: &[f64], due: &[f64]) -> f64 {
-    let largest = due.iter().fold(0.0, |most: f64, x| most.max(x.abs()));
-    found.iter().zip(due).fold(0.0, |most: f64, (a, b)| most.max((a - b).abs())) / largest
+    let largest = due.iter().fold(0.0, |most: f64, x| larger(most, x.abs()));
+    found.iter().zip(due).fold(0.0, |most: f64, (a, b)| larger(most, (a - b).abs())) / largest
 }
 
 #[test]
@@ -109,7 +110,7 @@ fn consistent_estimates_are_consistent() {
     let consistent = log_cholesky(&linear, &samples, &Stacking::plain(&linear), ConsistentSettings::default()).unwrap();
     let smallest = |theta: &[f64]| {
         let bodies = theta.chunks_exact(10).take(6).map(|pi| PseudoInertia::of(pi.try_into().unwrap()).consistency());
-        bodies.map(|body| body.smallest / body.largest).fold(f64::INFINITY, f64::min)
+        bodies.map(|body| body.smallest / body.largest).fold(f64::INFINITY, smaller)
     };
     println!("smallest eigenvalue {:e} plain, {:e} consistent", smallest(&plain.theta), smallest(&consistent.theta));
     assert!(smallest(&plain.theta) < -1e-3 && smallest(&consistent.theta) > 0.0);

@@ -2,6 +2,7 @@
 
 use featherbench_identification::{Arm, Base, Excitation, Gravity, IdentificationError, LinearModel, Search, Terms, excite};
 use featherbench_robots::Family;
+use featherbench_spatial::larger;
 
 fn search(draws: usize, changes: usize) -> Search {
     Search { draws, changes, frequency: 0.2, harmonics: 4, ..Search::default() }
@@ -24,9 +25,9 @@ fn limits_are_kept_between_the_points_of_the_search() {
         let dof = &linear.dofs()[at % 6];
         assert!(tau.abs() <= dof.effort, "{}: {tau} N·m", dof.name);
         assert!(samples.q[at].abs() <= 2.5 && samples.v[at].abs() <= 4.0, "{}", dof.name);
-        fastest = fastest.max(samples.v[at].abs());
+        fastest = larger(fastest, samples.v[at].abs());
         if at % 6 == 1 {
-            strongest = strongest.max(tau.abs());
+            strongest = larger(strongest, tau.abs());
         }
     }
     // The limits are used, not only kept.

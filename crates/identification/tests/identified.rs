@@ -5,6 +5,7 @@ use featherbench_identification::{
     Semidefinite, Stacking, Terms, changes, described, excite, identify,
 };
 use featherbench_robots::Random;
+use featherbench_spatial::larger;
 use nalgebra::{DMatrix, DVector};
 
 const FRICTION: Terms = Terms { viscous: true, coulomb: true, armature: false, offset: false };
@@ -51,7 +52,7 @@ fn held_out_torques_are_predicted_and_the_description_is_written() {
             assert!(found.bodies.iter().all(|body| body.smallest > 0.0));
             let robot = described(&linear, &found.theta).unwrap();
             let back = LinearModel::new(&robot, FRICTION).unwrap().nominal();
-            let worst = back.iter().zip(&found.theta).fold(0.0, |most: f64, (a, b)| most.max((a - b).abs()));
+            let worst = back.iter().zip(&found.theta).fold(0.0, |most: f64, (a, b)| larger(most, (a - b).abs()));
             assert!(worst < 1e-12, "{worst:e}");
             let changed = changes(linear.description(), &robot);
             assert!(changed.iter().any(|change| change.of == "joint_2" && change.field == "damping" && (change.after - 0.6).abs() < 0.3));
@@ -106,7 +107,7 @@ fn the_semidefinite_programme_is_the_same_problem() {
     let due = (information.factor() * DVector::from_column_slice(&truth) - information.right()).norm();
     let longest = due / rest.rows(0, information.factor().nrows()).norm();
     let scaled = information.factor() * DMatrix::from_diagonal(&DVector::from_column_slice(&sizes));
-    let expected = scaled.column_iter().map(|column| column.norm()).fold(0.0, f64::max);
+    let expected = scaled.column_iter().map(|column| column.norm()).fold(0.0, larger);
     assert!((longest / expected - 1.0).abs() < 1e-9, "{longest} {expected}");
 
     let maps = DMatrix::from_row_slice(problem.maps.len() / (count + 1), count + 1, &problem.maps);
@@ -130,6 +131,6 @@ fn the_semidefinite_programme_is_the_same_problem() {
     assert!(matches!(refused, IdentificationError::NoSolver { .. }), "{refused}");
     let solve = |_: &Semidefinite| Ok(x.clone());
     let found = identify(&linear, &samples, &Request { solver: Some(&solve), ..request(Method::Semidefinite) }).unwrap();
-    let worst = found.theta.iter().zip(&truth).fold(0.0, |most: f64, (a, b)| most.max((a - b).abs()));
+    let worst = found.theta.iter().zip(&truth).fold(0.0, |most: f64, (a, b)| larger(most, (a - b).abs()));
     assert!(worst < 1e-12);
 }

@@ -5,6 +5,7 @@ use featherbench_identification::{
     samples,
 };
 use featherbench_robots::{Family, Random};
+use featherbench_spatial::larger;
 use parquet::data_type::DoubleType;
 use parquet::file::properties::WriterProperties;
 use parquet::file::writer::SerializedFileWriter;
@@ -155,7 +156,7 @@ fn derivatives_converge() {
         let log = Log { v: None, ..Log::of_samples(&exact) };
         let found = samples(&log, &linear, Smoothing { order: 4, half: 5, stride: 1 }).unwrap();
         let differences = found.a.iter().zip(&exact.a[3 * 5..]).map(|(a, b)| (a - b).abs());
-        differences.fold(0.0, |most: f64, x| if x.is_nan() { x } else { most.max(x) })
+        differences.fold(0.0, |most: f64, x| larger(most, x))
     };
     let (coarse, fine) = (worst(200), worst(400));
     println!("{coarse:e} {fine:e}");
@@ -175,8 +176,8 @@ fn a_noisy_log_identifies() {
     assert_eq!(found.count(), 1960_usize.div_ceil(41));
     let estimate = ordinary(&linear, &found).unwrap();
     let due = estimate.base.values(&linear.nominal());
-    let largest = due.iter().fold(0.0, |most: f64, x| most.max(x.abs()));
-    let worst = estimate.beta.iter().zip(&due).fold(0.0, |most: f64, (a, b)| most.max((a - b).abs()));
+    let largest = due.iter().fold(0.0, |most: f64, x| larger(most, x.abs()));
+    let worst = estimate.beta.iter().zip(&due).fold(0.0, |most: f64, (a, b)| larger(most, (a - b).abs()));
     println!("{worst:e} of {largest:e}");
     assert!(worst < 0.03 * largest);
     let without = Log { v: None, ..log };

@@ -3,6 +3,7 @@
 use featherbench_identification::{Arm, Base, Gravity, LinearModel, Motion, Samples, Stacking, Terms};
 use featherbench_model::Description;
 use featherbench_robots::Family;
+use featherbench_spatial::larger;
 
 fn linear(description: &Description) -> LinearModel {
     LinearModel::new(description, Terms::NONE).unwrap()
@@ -145,8 +146,8 @@ fn parameters_of_one_beta_have_one_torque() {
     }
     let samples = Samples::random(&linear, 20, 9, &theta).unwrap();
     let torques = linear.torques(&samples, &other).unwrap();
-    let largest = samples.tau.iter().fold(0.0, |most: f64, tau| most.max(tau.abs()));
-    let worst = torques.iter().zip(&samples.tau).fold(0.0, |most: f64, (a, b)| most.max((a - b).abs()));
+    let largest = samples.tau.iter().fold(0.0, |most: f64, tau| larger(most, tau.abs()));
+    let worst = torques.iter().zip(&samples.tau).fold(0.0, |most: f64, (a, b)| larger(most, (a - b).abs()));
     // β is known to RANK's roundings times the condition of the columns.
     assert!(worst < 1e-11 * largest, "{worst:e} of {largest:e}");
 }

@@ -5,6 +5,7 @@ use featherbench_dynamics::{inverse_dynamics, mass_matrix};
 use featherbench_model::{Model, integrate, neutral};
 use featherbench_residuals::{Corrected, Payload, Residual, Rigid, SmoothCoulomb, SpringDamper, State, Stribeck, Viscous};
 use featherbench_robots::Random;
+use featherbench_spatial::larger;
 
 fn of_speed(residual: &dyn Residual, v: f64) -> f64 {
     residual.value(&State::new(&[0.0], &[v], &[0.0])).unwrap()[0]
@@ -72,7 +73,7 @@ fn payload_is_a_difference_of_models() {
             let r = payload.value(&State::new(&q, &v, &a)).unwrap();
             let [without, with] = [&light, &heavy].map(|model| inverse_dynamics(model, &q, &v, &a).unwrap());
             let due: Vec<f64> = with.iter().zip(&without).map(|(with, without)| with - without).collect();
-            let most = 1e-14 * with.iter().fold(1.0, |most: f64, x| most.max(x.abs()));
+            let most = 1e-14 * with.iter().fold(1.0, |most: f64, x| larger(most, x.abs()));
             assert!(r.iter().zip(&due).all(|(r, due)| (r - due).abs() < most), "{r:?} {due:?}");
             let matrix = payload.by_acceleration(&State::new(&q, &v, &a)).unwrap();
             let due = mass_matrix(&heavy, &q).unwrap().to_dense() - mass_matrix(&light, &q).unwrap().to_dense();

@@ -1,4 +1,5 @@
 //! Errors over step lengths: the part that falls with the step, and the bias that does not.
+use featherbench_spatial::larger;
 
 /// The line value(dt) ≈ limit + slope·dt through the values at several steps, by least squares.
 ///
@@ -32,7 +33,7 @@ impl Fit {
         }
         let slope = xy / xx;
         let limit = y - slope * x;
-        let off = points.iter().map(|(dt, value)| (value - limit - slope * dt).abs()).fold(0.0, f64::max);
+        let off = points.iter().map(|(dt, value)| (value - limit - slope * dt).abs()).fold(0.0, larger);
         Some(Self { limit, slope, off })
     }
 }

@@ -13,6 +13,7 @@ use crate::motion::Motion;
 use crate::scene::{Scene, SceneError};
 use crate::touch::{Touch, touches};
 use featherbench_contact::{BlockGaussSeidel, Contact, Level, Newton, Problem, Residuals, Solver};
+use featherbench_spatial::larger;
 use nalgebra::{DMatrix, DVector, Matrix3, Quaternion, UnitQuaternion, Vector3};
 
 /// A step's contact problem: c = G λ + b with a normal and two tangents per contact.
@@ -154,7 +155,7 @@ pub fn simulate(scene: &Scene, dt: f64, steps: usize, every: usize, solver: &mut
     for step in 0..steps {
         let failed = |reason| SceneError::Solver { step, reason };
         // A body closes at most its speed times dt; a touch beyond that has no impulse.
-        let fastest = state.linear.iter().zip(&state.angular).map(|(v, w)| v.norm() + w.norm()).fold(0.0, f64::max);
+        let fastest = state.linear.iter().zip(&state.angular).map(|(v, w)| v.norm() + w.norm()).fold(0.0, larger);
         let reach = 2.0 * dt * (fastest + dt * Vector3::from(scene.gravity).norm()) + 1e-6;
         let before: Vec<(Touch, f64)> = touches(scene, &state.position, &state.turn, reach)
             .into_iter()

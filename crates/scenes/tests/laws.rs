@@ -3,6 +3,7 @@
 use featherbench_contact::library::{BoxOnBalls as Known, PainleveRod};
 use featherbench_scenes::library::{Block, BoxOnBalls, Incline, Rod, Sliding, Table};
 use featherbench_scenes::{Fit, SoftContact, box_pyramid_felt, inscribed_pyramid_felt};
+use featherbench_spatial::larger;
 
 #[test]
 fn known_forms_by_other_routes() {
@@ -44,7 +45,7 @@ fn pyramids_feel_their_known_friction() {
     // By search over the corners of each section.
     for degrees in 0..90 {
         let heading = f64::from(degrees).to_radians();
-        let felt = |corners: &[[f64; 2]]| corners.iter().map(|[x, y]| x * heading.cos() + y * heading.sin()).fold(0.0, f64::max);
+        let felt = |corners: &[[f64; 2]]| corners.iter().map(|[x, y]| x * heading.cos() + y * heading.sin()).fold(0.0, larger);
         assert!((felt(&[[1.0, 0.0], [0.0, 1.0]]) - inscribed_pyramid_felt(heading)).abs() < 1e-15);
         assert!((felt(&[[1.0, 1.0], [1.0, -1.0]]) - box_pyramid_felt(heading)).abs() < 1e-15);
     }

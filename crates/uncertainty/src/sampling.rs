@@ -13,6 +13,7 @@ use crate::moments::product_sum;
 use crate::{Error, Histogram, LANES, Lanes, Linear, Moments, Response, Sobol, Space};
 use featherbench_robots::Random;
 use featherbench_spatial::Real;
+use featherbench_spatial::{larger, smaller};
 use nalgebra::DMatrix;
 use rayon::prelude::*;
 use rayon::{ThreadPool, ThreadPoolBuilder};
@@ -321,7 +322,7 @@ pub fn sample<R: Response>(
     bench.fill(&problem, 0, 0, first);
     let range = |k: usize| {
         let values = &bench.values[k * BLOCK as usize..k * BLOCK as usize + first];
-        let bounds = values.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), y| (low.min(*y), high.max(*y)));
+        let bounds = values.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), y| (smaller(low, *y), larger(high, *y)));
         (bounds.0 - 0.5 * (bounds.1 - bounds.0), bounds.1 + 0.5 * (bounds.1 - bounds.0))
     };
     let ranges: Vec<(f64, f64)> = (0..outputs).map(range).collect();

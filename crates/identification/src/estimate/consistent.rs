@@ -11,6 +11,7 @@
 use super::{Fit, fit, sizes};
 use crate::{Base, IdentificationError, Information, Kind, LinearModel, LogCholesky, PseudoInertia, Samples, Stacking};
 use featherbench_dynamics::PARAMETERS;
+use featherbench_spatial::larger;
 use nalgebra::{DMatrix, DVector, Matrix4};
 
 /// The method's name.
@@ -46,7 +47,7 @@ pub struct Settings {
 impl Default for Settings {
     /// A pull of 1e-6 moves a parameter that the torques tell by 1e-12 of its distance, times its condition squared.
     fn default() -> Self {
-        Self { pull: 1e-6, steps: 1000, end: 1e-10, gain: 1e-6 }
+        Self { pull: 1e-6, steps: 4000, end: 1e-10, gain: 1e-6 }
     }
 }
 
@@ -175,10 +176,10 @@ fn descend(
         (&factor * theta - &right, &factor * jacobian)
     };
     let (mut rest, mut jacobian) = columns(phi);
-    let longest = jacobian.column_iter().map(|column| column.norm()).fold(0.0, f64::max);
+    let longest = jacobian.column_iter().map(|column| column.norm()).fold(0.0, larger);
     let pull = settings.pull * longest;
     let cost = |rest: &DVector<f64>, phi: &DVector<f64>| rest.norm_squared() + pull * pull * (phi - home).norm_squared();
-    let (mut now, mut damping, mut step, mut flat) = (cost(&rest, phi), 1e-3, f64::INFINITY, 0);
+    let (mut now, mut damping, mut growth, mut step, mut flat) = (cost(&rest, phi), 1e-3, 2.0, f64::INFINITY, 0);
     for taken in 0..settings.steps {
         // Least squares of the stacked rows, which keep their condition number: [J; pull; √λ pull'] δ = −[r; pull (φ − φ₀); 0].
         let mut rows = jacobian.clone().insert_rows(factor.nrows(), 2 * count, 0.0);
@@ -197,19 +198,24 @@ fn descend(
             .ok_or(IdentificationError::Singular("the step of log-Cholesky"))?;
         let change = &change * (REACH / change.amax().max(REACH));
         step = change.norm() / (1.0 + phi.norm());
-        let trial = &*phi + change;
+        let trial = &*phi + &change;
+        let promised = now - cost(&(&rest + &jacobian * &change), &trial);
         let (trial_rest, trial_jacobian) = columns(&trial);
         let next = cost(&trial_rest, &trial);
         if next.is_finite() && next <= now {
             let gained = (now - next) / now.max(f64::MIN_POSITIVE);
+            // Nielsen's rule: the damping falls where the model promised what came, and rises where it promised too much.
+            let kept = (1.0 - (2.0 * (now - next) / promised.max(f64::MIN_POSITIVE) - 1.0).powi(3)).clamp(1.0 / 3.0, 2.0);
             (*phi, rest, jacobian, now) = (trial, trial_rest, trial_jacobian, next);
-            damping = (damping * 0.2).max(1e-9);
+            damping = (damping * kept).max(1e-12);
+            growth = 2.0;
             flat = if gained < settings.gain { flat + 1 } else { 0 };
             if step < settings.end || flat >= FLAT || rest.norm() <= EXACT * right.norm() {
                 return Ok(taken + 1);
             }
         } else {
-            damping *= 5.0;
+            damping *= growth;
+            growth *= 2.0;
             // No direction leads down any more.
             if step < settings.end || damping > 1e8 {
                 return Ok(taken + 1);

@@ -15,6 +15,7 @@ pub use consistent::{Consistent, Settings as ConsistentSettings, log_cholesky};
 pub use residuals::{Fit, LAGS, Whiteness, fit, whiteness};
 
 use crate::{Base, IdentificationError, Information, LinearModel, Samples, Stacking};
+use featherbench_spatial::larger;
 use nalgebra::{DMatrix, DVector};
 
 /// The 97.5 % point of the normal distribution: half the width of a 95 % interval in standard deviations.
@@ -96,7 +97,7 @@ pub fn ordinary(linear: &LinearModel, samples: &Samples) -> Result<Estimate, Ide
 pub fn weighted(linear: &LinearModel, samples: &Samples) -> Result<Estimate, IdentificationError> {
     let mut estimate = ordinary(linear, samples)?;
     for _ in 0..2 {
-        let loudest = estimate.fit.rms.iter().copied().fold(0.0, f64::max);
+        let loudest = estimate.fit.rms.iter().copied().fold(0.0, larger);
         // A dof without residuals would weigh infinitely: none weighs more than 1e6 times the loudest.
         let weights: Vec<f64> =
             estimate.fit.rms.iter().map(|rms| if loudest > 0.0 { 1.0 / rms.max(1e-6 * loudest) } else { 1.0 }).collect();
@@ -203,7 +204,7 @@ pub(crate) fn sizes(linear: &LinearModel) -> Vec<f64> {
     let mut largest = [0.0_f64; 4];
     for (unknown, value) in linear.unknowns().iter().zip(&nominal) {
         let class = class(unknown.kind);
-        largest[class] = largest[class].max(value.abs());
+        largest[class] = larger(largest[class], value.abs());
     }
     largest[3] = 1.0;
     linear.unknowns().iter().map(|unknown| largest[class(unknown.kind)]).map(|size| if size > 0.0 { size } else { 1.0 }).collect()

@@ -2,6 +2,7 @@
 
 use super::Log;
 use crate::LinearModel;
+use featherbench_spatial::larger;
 use std::fmt;
 
 /// A step of time above this many times the median is a gap.
@@ -89,7 +90,7 @@ impl Log {
         let mut used = vec![true; self.tau.len()];
         for (dof, of) in linear.dofs().iter().enumerate() {
             let torques: Vec<f64> = self.tau.iter().skip(dof).step_by(nv).copied().collect();
-            let largest = torques.iter().fold(0.0, |most: f64, tau| most.max(tau.abs()));
+            let largest = torques.iter().fold(0.0, |most: f64, tau| larger(most, tau.abs()));
             let mut mark = |row: usize| used[row * nv + dof] = false;
             if of.effort.is_finite() {
                 torques.iter().enumerate().filter(|(_, tau)| tau.abs() >= SATURATED * of.effort).for_each(|(row, _)| mark(row));

@@ -3,6 +3,7 @@
 use super::{Measure, Question, STEPS};
 use crate::motion::Motion;
 use crate::scene::{Body, Geometry, Scene, Shape};
+use featherbench_spatial::larger;
 use nalgebra::{DMatrix, DVector, Vector3};
 use serde::Serialize;
 use serde_json::json;
@@ -130,7 +131,7 @@ impl Stack {
                         });
                         (up.sum::<f64>() - above[k]).abs()
                     };
-                    (0..balls).map(off).fold(0.0, f64::max) / above[0]
+                    (0..balls).map(off).fold(0.0, larger) / above[0]
                 }),
                 Measure::new("sinking", "1", 0.0, 1.0, move |motion| {
                     let height = motion.position(motion.last(), balls - 1).z;

@@ -7,6 +7,7 @@ use featherbench_bench::{LoopMotion, LoopSolver, LoopSteps, NoAnswer};
 use featherbench_constrained::{Mechanism, Rows};
 use featherbench_dynamics::energy;
 use featherbench_model::difference;
+use featherbench_spatial::smaller;
 use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
 use std::sync::OnceLock;
@@ -163,7 +164,7 @@ fn end(plan: &Plan, mechanism: &Mechanism, seed: u64) -> Result<Vec<f64>, NoAnsw
         let (angle, _) = scalar(&ladder, plan.start, FINE, (plan.seconds / FINE).round() as usize);
         return Ok(ladder.spread(angle));
     }
-    let shortest = plan.steps.iter().copied().fold(f64::INFINITY, f64::min);
+    let shortest = plan.steps.iter().copied().fold(f64::INFINITY, smaller);
     let (q, v) = plan.begin(mechanism, seed)?;
     let description = plan.system.description()?;
     let run = |dt: f64| -> Result<Vec<f64>, NoAnswer> {

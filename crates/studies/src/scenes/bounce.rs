@@ -14,6 +14,7 @@ use featherbench_hybrid::library::BouncingBall;
 use featherbench_hybrid::{Settings, Start, sensitivity, simulate};
 use featherbench_results::{Row, Verdict};
 use featherbench_scenes::{Body, Scene};
+use featherbench_spatial::larger;
 use serde_json::json;
 
 /// z₀ and T: from rest.
@@ -105,7 +106,7 @@ pub(super) fn rows(gates: &Gates, cell: &Cell, outcome: &Outcome) -> Vec<Row> {
     }
     let exact = exact();
     let error = |found: &[f64]| {
-        let scale = exact[2..].iter().fold(0.0, |most: f64, x| most.max(x.abs()));
+        let scale = exact[2..].iter().fold(0.0, |most: f64, x| larger(most, x.abs()));
         found.iter().zip(&exact[2..]).map(|(found, exact)| (found - exact).abs()).fold(0.0, larger) / scale
     };
     let mut rows = Vec::new();

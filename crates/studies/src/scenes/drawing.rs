@@ -1,6 +1,7 @@
 //! A side view of a scene: bodies, contacts with their friction cones, and the forces of a step.
 
 use featherbench_scenes::{Geometry, Motion, Push, Question, Scene};
+use featherbench_spatial::{larger, smaller};
 use maud::{Markup, html};
 use nalgebra::{UnitQuaternion, Vector3};
 
@@ -21,8 +22,9 @@ struct View {
 impl View {
     /// The view in which all of these points are inside, with room for arrows.
     fn of(points: &[Vector3<f64>]) -> Self {
-        let range =
-            |axis: usize| points.iter().fold((0.0_f64, 0.0_f64), |(low, high), point| (low.min(point[axis]), high.max(point[axis])));
+        let range = |axis: usize| {
+            points.iter().fold((0.0_f64, 0.0_f64), |(low, high), point| (smaller(low, point[axis]), larger(high, point[axis])))
+        };
         let ((x0, x1), (_, z1)) = (range(0), range(2));
         // A scene of one point has no extent.
         let scale = ((WIDTH - 80.0) / (x1 - x0).max(1e-3)).min((HEIGHT - 100.0) / z1.max(1e-3));
@@ -38,7 +40,7 @@ impl View {
 pub(crate) fn drawing(question: &Question, motion: &Motion, caption: &str) -> Markup {
     let (scene, last) = (&question.scene, motion.last());
     let view = View::of(&outline(scene, motion));
-    let strongest = motion.pushes.iter().map(|push| push.force.norm()).fold(0.0, f64::max);
+    let strongest = motion.pushes.iter().map(|push| push.force.norm()).fold(0.0, larger);
     html! {
         figure {
             svg role="img" aria-label={ "Side view: " (caption) } viewBox={ "0 0 " (WIDTH) " " (HEIGHT) } width="100%" style="max-width: 26rem" {
