@@ -88,7 +88,7 @@ fn motion(linear: &LinearModel, args: &IdentifyArgs, path: &Path) -> Result<(), 
 }
 
 fn from_log(root: &dyn Fn() -> Result<Root, Fail>, linear: &LinearModel, args: &IdentifyArgs, path: &Path) -> Result<(), Fail> {
-    if args.window % 2 == 0 {
+    if args.window.is_multiple_of(2) {
         return Err(Fail::input(format!("--window {}: give an odd number of rows, so that one is in the middle", args.window)));
     }
     let log = Log::read(path, linear).map_err(bad)?;

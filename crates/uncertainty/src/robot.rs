@@ -542,7 +542,7 @@ impl RobotResponse {
             None => matrix[row] = value,
             Some(dof) => force[dof] = Lanes::from_f64(self.state.drive[dof]) - value,
         });
-        if ltdl.factor().and_then(|()| Ok(ltdl.solve(force))).is_ok_and(|solved| solved.is_ok()) {
+        if ltdl.factor().is_ok() && ltdl.solve(force).is_ok() {
             y.copy_from_slice(force);
         } else {
             y.fill(Lanes::from_f64(f64::NAN));
@@ -570,7 +570,7 @@ impl RobotResponse {
         }
         let done = match self.quantity {
             Quantity::Acceleration => {
-                force.iter_mut().zip(&losses).for_each(|(force, loss)| *force = *force - *loss);
+                force.iter_mut().zip(&losses).for_each(|(force, loss)| *force -= *loss);
                 aba.run(model, q, v, force, None, y).is_ok()
             }
             Quantity::Torque => {

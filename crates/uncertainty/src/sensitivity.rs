@@ -111,7 +111,7 @@ fn block<R: Response>(
         }
         for k in 0..2 {
             response.evaluate(scratch, &points[k], &mut answers[k]);
-            answers[k].iter_mut().zip(middle).for_each(|(y, middle)| *y = *y - Lanes::from_f64(*middle));
+            answers[k].iter_mut().zip(middle).for_each(|(y, middle)| *y -= Lanes::from_f64(*middle));
             for (sum, y) in sums.plain.iter_mut().zip(&answers[k]) {
                 y.to_array()[..lanes].iter().for_each(|y| *sum = [sum[0] + y, sum[1] + y * y]);
             }

@@ -22,7 +22,7 @@ pub struct Propagated {
 pub fn unscented<R: Response>(space: &Space, response: &R, kappa: f64) -> Result<Propagated, Error> {
     let n = space.len();
     let scale = n as f64 + kappa;
-    if !(scale > 0.0) {
+    if scale.is_nan() || scale <= 0.0 {
         return Err(Error::Unbounded("the unscented transform needs κ above minus the number of variables"));
     }
     // The symmetric root of Σ always exists: correlated variables may have a singular one.

@@ -6,7 +6,10 @@ use featherbench_uncertainty::{
 };
 use nalgebra::{DMatrix, DVector};
 
-fn reciprocal() -> Closure<fn(&[f64], &mut [f64])> {
+/// A function of a sample that writes its answer.
+type Function = fn(&[f64], &mut [f64]);
+
+fn reciprocal() -> Closure<Function> {
     Closure::new(1, 1, |x, y| y[0] = 1.0 / x[0])
 }
 

@@ -22,13 +22,16 @@ const QUANTITIES: [(&str, &str); 9] = [
     ("witness", "other engines' regressors on the same samples"),
 ];
 
+/// A name and three numbers.
+type Named<'a> = (&'a str, f64, f64, f64);
+
 /// What the section draws.
 #[derive(Serialize)]
 struct Figures<'a> {
     /// Of each way to a rank: its name, and of each robot its name, unknowns, last kept and first dropped singular value over the largest.
-    gaps: Vec<(&'a str, Vec<(&'a str, f64, f64, f64)>)>,
+    gaps: Vec<(&'a str, Vec<Named<'a>>)>,
     /// Of each base parameter: its name, estimate, truth, and half its interval.
-    intervals: Vec<(&'a str, f64, f64, f64)>,
+    intervals: Vec<Named<'a>>,
 }
 
 /// Makes the section, if the run has rows of the study.
@@ -81,7 +84,9 @@ fn worst(rows: &[&Row], quantity: &str, metric: &str) -> Option<f64> {
 
 /// Ranks by robot: of each the law's number and what each way found.
 fn ranks(rows: &[&Row]) -> Markup {
-    let mut robots: Vec<(&str, Vec<(&str, f64, f64)>)> = Vec::new();
+    /// Of each way: its name, the rank and the law's.
+    type Ways<'a> = Vec<(&'a str, f64, f64)>;
+    let mut robots: Vec<(&str, Ways)> = Vec::new();
     for (row, cell) in cells(rows, "rank") {
         if robots.last().is_none_or(|(name, _)| *name != row.family) && !robots.iter().any(|(name, _)| *name == row.family) {
             robots.push((&row.family, Vec::new()));

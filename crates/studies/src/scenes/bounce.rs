@@ -87,11 +87,6 @@ fn own() -> Result<Vec<f64>, NoAnswer> {
     Ok(vec![*end.0, *end.1, zz, zv, vz, vv])
 }
 
-/// The larger of two; NaN if either is.
-fn larger(a: f64, b: f64) -> f64 {
-    if a.is_nan() || a > b { a } else { b }
-}
-
 /// Of each case: the derivative's entries by z₀, its error, how much of that is the spring's, and the state's error.
 pub(super) fn rows(gates: &Gates, cell: &Cell, outcome: &Outcome) -> Vec<Row> {
     let own = cell.engine == "featherbench";

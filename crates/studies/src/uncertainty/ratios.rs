@@ -83,7 +83,10 @@ impl Mass {
     }
 }
 
-fn reciprocal() -> Closure<fn(&[f64], &mut [f64])> {
+/// A function of a sample that writes its answer.
+type Function = fn(&[f64], &mut [f64]);
+
+fn reciprocal() -> Closure<Function> {
     Closure::new(1, 1, |x, y| y[0] = 1.0 / x[0])
 }
 

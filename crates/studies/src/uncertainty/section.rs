@@ -9,11 +9,14 @@ use featherbench_results::{Row, RunInfo};
 use maud::{Markup, html};
 use serde::Serialize;
 
+/// A kind of points: its name, its slope, and (samples, error of the mean).
+type Rate<'a> = (&'a str, f64, Vec<(usize, f64)>);
+
 /// What the section draws.
 #[derive(Serialize)]
 struct Figures<'a> {
-    /// Of each kind of points: its name, its slope, and (samples, error of the mean).
-    rates: Vec<(&'a str, f64, Vec<(usize, f64)>)>,
+    /// Of each kind of points.
+    rates: Vec<Rate<'a>>,
     /// Of velocities after an impact: value, density of the samples, exact density.
     density: Vec<[f64; 3]>,
     /// Of each joint of the arm: the deviation of first order, and that of samples.
@@ -56,7 +59,7 @@ fn beside(rows: &[&Row], row: &Row, metric: &str) -> Option<f64> {
     rows.iter().find(|other| other.cell == row.cell && other.metric == metric)?.value
 }
 
-fn rates<'a>(rows: &[&'a Row]) -> Vec<(&'a str, f64, Vec<(usize, f64)>)> {
+fn rates<'a>(rows: &[&'a Row]) -> Vec<Rate<'a>> {
     let of = |row: &&'a Row| {
         let (row, slope) = (*row, row.value?);
         let points = SIZES.iter().filter_map(|&(size, metric)| Some((size, beside(rows, row, metric)?))).collect();
