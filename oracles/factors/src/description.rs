@@ -9,7 +9,7 @@ use featherbench_model::{BodyDescription, Description, JointDescription, JointTy
 /// [`Refusal::Failed`] for a joint type that the interface does not have.
 pub(crate) fn description(given: &Given) -> Result<Description, Refusal> {
     let bodies = given.bodies.iter().enumerate().map(|(k, body)| described(k, body)).collect::<Result<_, _>>()?;
-    Ok(Description { name: "robot".into(), gravity: given.gravity, bodies, frames: Vec::new(), loops: Vec::new(), provenance: None })
+    Ok(Description { name: "robot".into(), gravity: given.gravity, bodies, ..Description::default() })
 }
 
 fn described(k: usize, body: &Body) -> Result<BodyDescription, Refusal> {
