@@ -7,7 +7,7 @@ use serde::Serialize;
 pub struct Fit {
     /// The exponent p.
     pub slope: f64,
-    /// Its standard error, from the residuals about the line.
+    /// Its standard error, from the distances to the line.
     pub error: f64,
     /// log₁₀ c.
     pub intercept: f64,
