@@ -2,9 +2,9 @@
 
 use crate::attachment::Attachment;
 use crate::malformed::{BadConstraint, Defect};
-use crate::rows::largest;
 use featherbench_model::{JointKind, LoopMotion, Topology};
 use featherbench_spatial::Mat3;
+use featherbench_spatial::largest;
 
 /// A constraint with its name.
 #[derive(Clone, Debug, PartialEq)]

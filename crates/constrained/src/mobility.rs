@@ -7,9 +7,10 @@
 
 use crate::constraint::Constraints;
 use crate::error::Error;
-use crate::rows::{Rows, largest};
+use crate::rows::Rows;
 use crate::singular::singular_values;
 use featherbench_model::Model;
+use featherbench_spatial::largest;
 use nalgebra::DMatrix;
 
 /// A singular value counts if it is more than this of the largest.

@@ -1,11 +1,12 @@
 //! Accelerations in double-double arithmetic, against closed forms and the methods in doubles.
 
-use crate::common::{assert_within, largest};
+use crate::common::assert_within;
 use featherbench_constrained::library::{Biped, Bricard, Ladder, Squeezer};
 use featherbench_constrained::stabilise::Projection;
 use featherbench_constrained::{Constrained, Error, Kkt, Mechanism, RangeSpace, accelerations};
 use featherbench_model::{integrate, neutral};
 use featherbench_robots::Random;
+use featherbench_spatial::largest;
 
 /// The mechanism, and a state on its constraints that is drawn beside `near`.
 fn drawn(mechanism: &Mechanism, near: &[f64], random: &mut Random) -> (Vec<f64>, Vec<f64>) {

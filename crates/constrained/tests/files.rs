@@ -1,6 +1,6 @@
 //! Robots with loops from files: the four-bar of the library out of JSON and URDF, and dynamics on graphs with and without loops.
 
-use crate::common::{assert_within, largest};
+use crate::common::assert_within;
 use featherbench_constrained::library::{Biped, Bricard, Ladder, Squeezer};
 use featherbench_constrained::{
     Attachment, BadMechanism, Dynamics, Error, Kkt, Law, LoopMotion, Mechanism, Mobility, Proximal, RangeSpace, Tree,
@@ -9,6 +9,7 @@ use featherbench_dynamics::Aba;
 use featherbench_formats::{neutral, urdf};
 use featherbench_model::{Description, Loop, LoopEnd, LoopKind, Model, Placement};
 use featherbench_robots::{Family, Random};
+use featherbench_spatial::largest;
 
 fn acceleration(dynamics: &mut dyn Dynamics, q: &[f64], v: &[f64], tau: &[f64]) -> Vec<f64> {
     let mut found = vec![f64::NAN; v.len()];

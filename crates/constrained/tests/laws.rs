@@ -1,10 +1,11 @@
 //! φ, J and J̇v of every law agree: by dual numbers, which differentiate the residual itself.
 
-use crate::common::{EVERY_JOINT, assert_within, every_law, largest, model, slack};
+use crate::common::{EVERY_JOINT, assert_within, every_law, model, slack};
 use featherbench_constrained::{Constraint, Constraints, Law, LoopMotion, Rows};
 use featherbench_model::integrate;
 use featherbench_robots::StateBatch;
 use featherbench_spatial::Dual;
+use featherbench_spatial::largest;
 
 /// Sums of some hundred products of numbers up to ten, each rounded: 100·10²·ε, and a hundred times that for powers of coordinates.
 const ROUNDING: f64 = 1e-11;

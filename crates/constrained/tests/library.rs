@@ -1,10 +1,11 @@
 //! The robots of the library move as their closed forms say.
 
-use crate::common::{assert_within, largest};
+use crate::common::assert_within;
 use featherbench_constrained::library::{Biped, Bricard, Ladder};
 use featherbench_constrained::stabilise::{Projection, Simulation, Stabilisation};
 use featherbench_constrained::{Constrained, Kkt, Mechanism, Method, Proximal, RangeSpace};
 use featherbench_robots::Random;
+use featherbench_spatial::largest;
 
 fn none(_: f64, _: &[f64], _: &[f64], _: &mut [f64]) {}
 

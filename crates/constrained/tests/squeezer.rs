@@ -1,11 +1,12 @@
 //! Andrews' squeezer: bodies and loops against the equations of the literature, by two integrators.
 
-use crate::common::{assert_within, largest};
+use crate::common::assert_within;
 use featherbench_constrained::library::Squeezer;
 use featherbench_constrained::stabilise::{Projection, Simulation, Stabilisation};
 use featherbench_constrained::{Constrained, Kkt, Rows};
 use featherbench_dynamics::integrate::{DormandPrince, Tolerance};
 use featherbench_model::{Axis, JointKind, Topology};
+use featherbench_spatial::largest;
 use featherbench_spatial::{Dual, Real};
 use nalgebra::{DMatrix, DVector};
 

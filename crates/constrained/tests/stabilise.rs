@@ -1,11 +1,12 @@
 //! Drift, and what is done against it.
 
-use crate::common::{EVERY_JOINT, assert_within, largest, model};
+use crate::common::{EVERY_JOINT, assert_within, model};
 use featherbench_constrained::library::Ladder;
 use featherbench_constrained::stabilise::{Projection, Simulation, Stabilisation};
 use featherbench_constrained::{Attachment, Constraint, Constraints, Error, Kkt, Mechanism, Proximal, Rows};
 use featherbench_dynamics::mass_matrix;
 use featherbench_robots::StateBatch;
+use featherbench_spatial::largest;
 
 fn none(_: f64, _: &[f64], _: &[f64], _: &mut [f64]) {}
 

@@ -63,7 +63,7 @@ pub(crate) fn natural(x: &[f64], c: &[f64]) -> f64 {
     }
     moved[0] -= norm(&c[1..]);
     project(moved);
-    x.iter().zip(moved).map(|(x, p)| (x - *p).abs()).fold(0.0, crate::residual::larger)
+    x.iter().zip(moved).map(|(x, p)| (x - *p).abs()).fold(0.0, featherbench_spatial::larger)
 }
 
 /// x − P_K(x − c): zero exactly where K ∋ x ⊥ c ∈ K, the law of the convex relaxation.

@@ -24,7 +24,7 @@ pub fn gauss_seidel(problem: &Problem) -> Option<f64> {
     let upper = DMatrix::from_fn(size, size, |row, column| if column > row { matrix[(row, column)] } else { 0.0 });
     let iteration = lower.solve_lower_triangular(&upper)?;
     let sizes = iteration.complex_eigenvalues();
-    Some(sizes.iter().map(|value| value.re.hypot(value.im)).fold(0.0, crate::residual::larger))
+    Some(sizes.iter().map(|value| value.re.hypot(value.im)).fold(0.0, featherbench_spatial::larger))
 }
 
 /// The factor by which the error of ADMM falls each iteration while every contact stays inside its cone: ρ/(ρ + λ_min).

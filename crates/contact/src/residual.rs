@@ -2,6 +2,7 @@
 
 use crate::cones;
 use crate::problem::{Friction, Level, Problem};
+use featherbench_spatial::larger;
 use nalgebra::DVector;
 
 /// The residuals of a point. Velocities are divided by the problem's velocity scale, impulses by its impulse scale; see
@@ -66,11 +67,6 @@ impl Residuals {
     pub fn largest(&self) -> f64 {
         [self.signorini, self.cone, self.dissipation, self.natural_map, self.energy].into_iter().fold(0.0, larger)
     }
-}
-
-/// The larger number; NaN if one is.
-pub(crate) fn larger(a: f64, b: f64) -> f64 {
-    if b > a || b.is_nan() { b } else { a }
 }
 
 fn dot(a: &[f64], b: &[f64]) -> f64 {

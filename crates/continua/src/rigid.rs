@@ -13,6 +13,7 @@ use crate::tangent::mass_matrix;
 use crate::{Assembly, Refused, SolveError, Solver};
 use featherbench_dynamics::forward_dynamics;
 use featherbench_model::Model;
+use featherbench_spatial::largest;
 use nalgebra::{DMatrix, DVector};
 
 /// A stiff rod beside a rigid one. Errors are relative to the largest acceleration of the rigid tree.
@@ -75,16 +76,14 @@ pub fn rigid_limit(assembly: &Assembly, factor: f64, q: &[f64], v: &[f64], tau: 
     let mut flexible = vec![0.0; topology.nv()];
     solver.forward(&continuum, &s, &rate, &forces, &[], &mut flexible)?;
 
-    let largest =
-        |numbers: &mut dyn Iterator<Item = f64>| numbers.fold(0.0, |a: f64, b| if b.abs() > a || b.is_nan() { b.abs() } else { a });
-    let size = largest(&mut rigid.iter().copied());
+    let size = largest(rigid.iter().copied());
     let x = DVector::from_iterator(elastic.len(), elastic_q.iter().map(|place| s[*place]));
     let carried = DMatrix::from_fn(elastic.len(), elastic.len(), |i, j| all[(elastic[i], elastic[j])].abs()) * x.abs() * f64::EPSILON;
     let inverse =
         mass_matrix(&continuum, &s)?.cholesky().ok_or(SolveError::NotPositiveDefinite { matrix: "mass", eigenvalue: 0.0 })?.inverse();
     let reached = own.iter().map(|i| elastic.iter().zip(carried.iter()).map(|(j, force)| inverse[(*i, *j)].abs() * force).sum::<f64>());
-    let floor = largest(&mut reached.collect::<Vec<f64>>().into_iter()) / size;
+    let floor = largest(reached) / size;
     let flexible: Vec<f64> = own.iter().map(|dof| flexible[*dof]).collect();
-    let difference = largest(&mut flexible.iter().zip(&rigid).map(|(a, b)| a - b)) / size;
+    let difference = largest(flexible.iter().zip(&rigid).map(|(a, b)| a - b)) / size;
     Ok(RigidLimit { rigid, flexible, difference, floor, deflection: x.amax() })
 }

@@ -16,6 +16,7 @@
 
 use crate::tangent::{residual, tangent_stiffness};
 use crate::{Continuum, Load, SolveError};
+use featherbench_spatial::largest;
 use nalgebra::{DMatrix, DVector, SymmetricEigen};
 
 /// How to look for an equilibrium.
@@ -103,7 +104,7 @@ pub fn equilibrium(continuum: &Continuum, loads: &[Load], settings: &Settings) -
             return Ok(Equilibrium { s, status: Status::Converged, steps, iterations: search.iterations });
         }
         if steps >= settings.steps || step < 1e-9 {
-            let residual = largest(search.residual(&s, 1.0, loads)?.iter());
+            let residual = largest(search.residual(&s, 1.0, loads)?.iter().copied());
             return Ok(Equilibrium { s, status: Status::CapReached { load, residual }, steps, iterations: search.iterations });
         }
         steps += 1;
@@ -142,7 +143,7 @@ pub fn newton(continuum: &Continuum, from: &[f64], loads: &[Load], settings: &Se
     let status = if converged {
         judge(continuum, &s, loads, settings)?
     } else {
-        Status::CapReached { load: 1.0, residual: largest(search.residual(&s, 1.0, loads)?.iter()) }
+        Status::CapReached { load: 1.0, residual: largest(search.residual(&s, 1.0, loads)?.iter().copied()) }
     };
     Ok(Equilibrium { s, status, steps: 1, iterations: search.iterations })
 }
@@ -159,7 +160,7 @@ pub fn judge(continuum: &Continuum, s: &[f64], loads: &[Load], settings: &Settin
     }
     let branch = equilibrium(continuum, loads, settings)?;
     let distance = search.distance(&branch.s, s)?;
-    let size = 1.0 + largest(branch.s.iter());
+    let size = 1.0 + largest(branch.s.iter().copied());
     let same = branch.status == Status::Converged && distance <= SAME * size;
     Ok(if same { Status::Converged } else { Status::Spurious { distance, eigenvalue: smallest(&tangent) } })
 }
@@ -178,11 +179,6 @@ fn negative(matrix: &DMatrix<f64>) -> Option<f64> {
     let eigenvalue = smallest(matrix);
     let rounding = matrix.nrows() as f64 * f64::EPSILON * matrix.norm();
     (eigenvalue.is_nan() || eigenvalue < -rounding).then_some(eigenvalue)
-}
-
-/// The largest magnitude, NaN if a number is; zero of none.
-fn largest<'a>(numbers: impl Iterator<Item = &'a f64>) -> f64 {
-    numbers.fold(0.0, |a: f64, b| if b.abs() > a || b.is_nan() { b.abs() } else { a })
 }
 
 /// The free dofs, and the continuum at a load factor.
@@ -229,7 +225,7 @@ impl<'a> Search<'a> {
         let topology = self.continuum.topology();
         let mut way = vec![0.0; topology.nv()];
         topology.difference(from, to, &mut way)?;
-        Ok(largest(way.iter()))
+        Ok(largest(way.iter().copied()))
     }
 
     /// Newton's method until its steps no longer shrink; whether it converged.
@@ -247,7 +243,7 @@ impl<'a> Search<'a> {
                 return Ok(false);
             }
             self.advance(s, &-step)?;
-            let size = 1.0 + largest(s.iter());
+            let size = 1.0 + largest(s.iter().copied());
             if change == 0.0 || change <= 1e-15 * size || (change <= NEAR * size && change >= 0.25 * previous) {
                 return Ok(true);
             }

@@ -126,8 +126,3 @@ pub(crate) fn expect_finite<T: Real>(what: &'static str, time: T, numbers: &[T])
     let finite = numbers.iter().all(|number| number.min_lane().is_finite());
     if finite { Ok(()) } else { Err(HybridError::Overflow { what, time: time.min_lane() }) }
 }
-
-/// The largest magnitude; NaN if any number is.
-pub(crate) fn largest(numbers: impl IntoIterator<Item = f64>) -> f64 {
-    numbers.into_iter().map(f64::abs).fold(0.0, |a, b| if b > a || b.is_nan() { b } else { a })
-}

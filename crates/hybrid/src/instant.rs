@@ -4,11 +4,12 @@
 //! direction. A guard for both directions is met by crossings only. A guard is not met again right after its own event in the same mode:
 //! where its reset does not turn g back, the flow passes.
 
-use crate::error::{HybridError, expect_finite, largest};
+use crate::error::{HybridError, expect_finite};
 use crate::run::{Event, Settled, Simultaneous};
 use crate::settings::Settings;
 use crate::system::{Bound, Direction, Hybrid};
 use featherbench_spatial::Real;
+use featherbench_spatial::largest;
 
 /// A moment of a run.
 #[derive(Clone)]

@@ -18,7 +18,7 @@ use crate::run::{Cap, Event, Record, Run, Start, Status, Step};
 use crate::settings::Settings;
 use crate::system::{Bound, Direction, Hybrid};
 use crate::zeno::recognise;
-use featherbench_spatial::Real;
+use featherbench_spatial::{Real, larger, largest};
 
 /// Runs a system from a start to a time.
 ///
@@ -292,7 +292,7 @@ impl<S: Hybrid, T: Real> Driver<'_, S, T> {
             };
             largest((0..x.len()).map(of))
         };
-        let defect = largest([at(0.25), at(0.75)].into_iter());
+        let defect = larger(at(0.25), at(0.75));
         (dense, defect)
     }
 
@@ -351,9 +351,4 @@ impl<S: Hybrid, T: Real> Driver<'_, S, T> {
         }
         self.now.time = time + length;
     }
-}
-
-/// The largest number; NaN if any is.
-fn largest(numbers: impl Iterator<Item = f64>) -> f64 {
-    numbers.fold(0.0, |a, b| if b > a || b.is_nan() { b } else { a })
 }

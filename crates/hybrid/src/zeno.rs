@@ -13,11 +13,11 @@
 //!
 //! Source: A. C. Aitken, *On Bernoulli's numerical solution of algebraic equations* (1926).
 
-use crate::error::largest;
 use crate::run::Event;
 use crate::settings::Zeno;
 use crate::system::rounding;
 use featherbench_spatial::Real;
+use featherbench_spatial::largest;
 
 /// A limit that was extrapolated.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -2,7 +2,6 @@
 
 mod bad_input;
 mod closed_forms;
-mod common;
 mod derivatives;
 mod ends;
 mod penalty;

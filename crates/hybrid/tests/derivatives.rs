@@ -1,10 +1,10 @@
 //! Derivatives of whole runs: forward and adjoint, against re-simulation in double-double, against duals of the whole simulation, and each
 //! other.
 
-use crate::common::largest;
 use featherbench_hybrid::library::{BouncingBall, MovingTable, RimlessWheel, RockingBlock, SlantedBox, SlidingSphere, StickSlip};
 use featherbench_hybrid::penalty::PenaltyBall;
 use featherbench_hybrid::{Hybrid, Run, Settings, Start, Status, adjoint, sensitivity, simulate};
+use featherbench_spatial::largest;
 use featherbench_spatial::{DoubleDouble, Dual, Real};
 
 /// A run to take derivatives of.

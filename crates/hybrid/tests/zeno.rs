@@ -1,8 +1,8 @@
 //! Infinitely many events in finite time, against geometric sums.
 
-use crate::common::largest;
 use featherbench_hybrid::library::{BouncingBall, RockingBlock};
 use featherbench_hybrid::{Cap, Run, Settings, Start, Status, Tail, Zeno, simulate};
+use featherbench_spatial::largest;
 use featherbench_spatial::{DoubleDouble, Dual, Real};
 
 fn ball(height: f64, gravity: f64, restitution: f64, settings: &Settings) -> Run<f64> {

@@ -4,6 +4,7 @@ use featherbench_constrained::{BadGraph, BadMechanism};
 use featherbench_dynamics::{DimensionError, Error};
 use featherbench_hybrid::HybridError;
 use featherbench_model::Malformed;
+use featherbench_spatial::largest;
 use thiserror::Error as ThisError;
 
 /// What of a claim is right.
@@ -81,7 +82,7 @@ impl Number {
 
     /// The larger magnitude of both right values; 1 where both are 0.
     fn scale(&self) -> f64 {
-        let largest = if self.corrected.abs() > self.second.abs() { self.corrected.abs() } else { self.second.abs() };
+        let largest = largest([self.corrected, self.second]);
         if largest == 0.0 { 1.0 } else { largest }
     }
 

@@ -21,6 +21,7 @@ use featherbench_identification::{Arm, Base, Gravity, Kind, LinearModel, Rows, S
 use featherbench_model::{Description, Model};
 use featherbench_residuals::{Linear, Residual, State};
 use featherbench_robots::Random;
+use featherbench_spatial::largest;
 use nalgebra::{DMatrix, DVector};
 
 /// The ground: f = λ (−μ tanh(v_x/w), −μ tanh(v_y/w), 1) at the last link's origin, with λ = k max(0, height − z).
@@ -200,11 +201,9 @@ fn norm(list: impl IntoIterator<Item = f64>) -> f64 {
 fn missed(linear: &LinearModel, base: &Base, theta: &[f64], found: &[f64]) -> f64 {
     let due = base.values(theta);
     let inertial = base.independent.iter().map(|unknown| matches!(linear.unknowns()[*unknown].kind, Kind::Inertial(_)));
-    let largest =
-        |list: &mut dyn Iterator<Item = f64>| list.fold(0.0, |most: f64, x| if x.is_nan() || x.abs() > most { x.abs() } else { most });
     let kept: Vec<(f64, f64)> =
         due.into_iter().zip(found).zip(inertial).filter(|(_, kept)| *kept).map(|((due, found), _)| (due, *found)).collect();
-    largest(&mut kept.iter().map(|(due, found)| found - due)) / largest(&mut kept.iter().map(|(due, _)| *due))
+    largest(kept.iter().map(|(due, found)| found - due)) / largest(kept.iter().map(|(due, _)| *due))
 }
 
 /// θ̂ and φ̂ of one least-squares problem.

@@ -20,7 +20,7 @@ mod vector;
 pub use exponential::TangentBlock;
 pub use inertia::{ArticulatedInertia, CentralInertia, RigidBodyInertia};
 pub use linear::{Ldl3, Mat3, Sym3, Vec3};
-pub use order::{larger, smaller};
+pub use order::{larger, largest, smaller};
 pub use scalar::{Angle, Compensated, Counted, DoubleDouble, Dual, Lift, Logarithm, Operations, Part, Real};
 pub use transform::{Quaternion, Transform};
 pub use vector::{Force, Motion};

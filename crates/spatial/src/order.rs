@@ -1,4 +1,4 @@
-//! The larger and the smaller of two numbers, for folds. `f64::max` and `f64::min` lose a NaN: the largest of some errors would be a number
+//! The larger and the smaller of two numbers, for folds, and the largest magnitude. `f64::max` and `f64::min` lose a NaN: the largest of some errors would be a number
 //! although one of them is none.
 
 /// The larger of two numbers; NaN if one of them is.
@@ -21,4 +21,15 @@ pub fn larger(a: f64, b: f64) -> f64 {
 /// ```
 pub fn smaller(a: f64, b: f64) -> f64 {
     if a.is_nan() || b >= a { a } else { b }
+}
+
+/// The largest magnitude of some numbers; NaN if one of them is; zero of none.
+///
+/// ```
+/// use featherbench_spatial::largest;
+/// assert_eq!(largest([1.0, -3.0, 2.0]), 3.0);
+/// assert!(largest([f64::NAN, 3.0]).is_nan());
+/// ```
+pub fn largest(numbers: impl IntoIterator<Item = f64>) -> f64 {
+    numbers.into_iter().map(f64::abs).fold(0.0, larger)
 }

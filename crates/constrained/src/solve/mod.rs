@@ -23,9 +23,10 @@ pub use range_space::RangeSpace;
 
 use crate::constraint::Constraints;
 use crate::error::Error;
-use crate::rows::{Rows, expect_finite, largest};
+use crate::rows::{Rows, expect_finite};
 use featherbench_dynamics::{Bias, Crba, DimensionError, TreeSparse};
 use featherbench_model::Model;
+use featherbench_spatial::largest;
 
 /// What an acceleration may miss, of the size of the terms of a row: the direct methods refuse more. Half of the digits: near a singular
 /// configuration the others are lost.

@@ -15,8 +15,8 @@
 use super::{Equations, Method, Outcome, Solution, check_tolerance};
 use crate::delassus::by_factors;
 use crate::error::Error;
-use crate::rows::largest;
 use featherbench_dynamics::Ltdl;
+use featherbench_spatial::largest;
 use nalgebra::{Cholesky, DVector};
 
 /// What G may make of a rest, of its own size, so that no multiplier reduces the rest: rounding leaves ε/μ = 10⁻¹⁰ of it, and some more

@@ -16,11 +16,12 @@
 use crate::constraint::Constraints;
 use crate::delassus::half_solved;
 use crate::error::Error;
-use crate::rows::{Rows, largest};
+use crate::rows::Rows;
 use crate::solve::check_tolerance;
 use crate::solve::rank::Revealed;
 use featherbench_dynamics::{Crba, Ltdl};
 use featherbench_model::{Model, Topology};
+use featherbench_spatial::largest;
 
 /// How to project.
 #[derive(Clone, Copy, Debug, PartialEq)]

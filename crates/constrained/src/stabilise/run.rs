@@ -6,11 +6,12 @@
 use super::projection::Projection;
 use crate::constraint::Constraints;
 use crate::error::Error;
-use crate::rows::{Rows, largest};
+use crate::rows::Rows;
 use crate::solve::{Constrained, Method, Outcome};
 use featherbench_dynamics::integrate::{IntegrationError, Integrator, RungeKutta4};
 use featherbench_dynamics::{DimensionError, energy};
 use featherbench_model::Model;
+use featherbench_spatial::largest;
 
 /// What keeps the loops closed.
 #[derive(Clone, Copy, Debug, PartialEq)]

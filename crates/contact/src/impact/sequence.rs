@@ -97,7 +97,7 @@ pub fn orders(problem: &Problem, law: Law, cap: usize) -> Result<Orders, NoImpac
             let square = difference.dot(&(problem.delassus() * &difference));
             // A rounding error below zero is zero; NaN stays.
             let distance = if square < 0.0 { 0.0 } else { square.sqrt() };
-            disagreement = crate::residual::larger(disagreement, distance);
+            disagreement = featherbench_spatial::larger(disagreement, distance);
         }
     }
     Ok(Orders { sequences, disagreement })

@@ -173,7 +173,7 @@ impl Blocks {
             let size = self.standard.range(k).len();
             cones::natural(&contact.x[..size], &self.velocity(k)[..size])
         };
-        self.contacts.iter().enumerate().map(of).fold(0.0, crate::residual::larger)
+        self.contacts.iter().enumerate().map(of).fold(0.0, featherbench_spatial::larger)
     }
 
     fn impulses(&self) -> DVector<f64> {

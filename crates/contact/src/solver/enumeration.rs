@@ -11,8 +11,8 @@
 use super::{Solver, Unsupported, spatial};
 use crate::extended::{self, Matrix, Solved};
 use crate::problem::{Friction, Problem};
-use crate::residual::larger;
 use crate::solution::{Certificate, Model, Outcome, Point, Solution};
+use featherbench_spatial::larger;
 use featherbench_spatial::{DoubleDouble, Real};
 use nalgebra::{DVector, SymmetricEigen};
 

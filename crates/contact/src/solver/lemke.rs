@@ -201,7 +201,7 @@ fn violation(matrix: &DMatrix<f64>, constant: &DVector<f64>, z: &DVector<f64>) -
     let w = matrix * z + constant;
     let smaller = w.iter().zip(z).map(|(w, z)| if w < z { w.abs() } else { z.abs() });
     let scale = 1.0 + z.amax();
-    smaller.fold(0.0, crate::residual::larger) / scale
+    smaller.fold(0.0, featherbench_spatial::larger) / scale
 }
 
 /// The solution of the basis again, by elimination and three corrections with double-double residuals: pivoting lost digits.

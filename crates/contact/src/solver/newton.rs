@@ -8,8 +8,8 @@ use super::standard::Standard;
 use super::{Solver, Unsupported, positive};
 use crate::cones::{self, Linearized};
 use crate::problem::Problem;
-use crate::residual::larger;
 use crate::solution::{Model, Outcome, Solution};
+use featherbench_spatial::larger;
 use nalgebra::{DMatrix, DVector};
 
 /// Newton's method on the true laws (function of Alart and Curnier). O(rows³) per step.

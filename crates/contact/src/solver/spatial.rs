@@ -11,7 +11,7 @@
 use super::enumeration::{Exact, Search, signorini};
 use crate::extended::{self, Matrix, Solved};
 use crate::problem::{Friction, Problem};
-use crate::residual::larger;
+use featherbench_spatial::larger;
 use featherbench_spatial::{DoubleDouble, Real};
 use nalgebra::{DMatrix, Matrix4};
 

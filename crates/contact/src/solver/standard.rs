@@ -3,8 +3,8 @@
 use super::Unsupported;
 use crate::cones;
 use crate::problem::{Friction, Problem};
-use crate::residual::larger;
 use crate::solution::Point;
+use featherbench_spatial::larger;
 use nalgebra::{DMatrix, DVector};
 use std::ops::Range;
 

@@ -14,17 +14,13 @@ pub mod fused;
 mod tolerance;
 
 pub use by_reciprocal::ByReciprocal;
+pub use featherbench_spatial::larger;
 pub use tolerance::assert_within as within;
 
 /// The largest |a − b|, NaN if any difference is.
 pub fn distance(a: &[f64], b: &[f64]) -> f64 {
     assert_eq!(a.len(), b.len());
     a.iter().zip(b).map(|(a, b)| (a - b).abs()).fold(0.0, larger)
-}
-
-/// The larger of two numbers, NaN if either is.
-pub fn larger(a: f64, b: f64) -> f64 {
-    if b > a || b.is_nan() { b } else { a }
 }
 
 /// The largest magnitude.

@@ -6,6 +6,7 @@
 use crate::claim::{Claim, Failure, Holds, Number};
 use crate::quadrature::Rule;
 use featherbench_robots::Random;
+use featherbench_spatial::larger;
 use nalgebra::DMatrix;
 
 /// The lab's numbers.
@@ -30,7 +31,7 @@ fn statistics(draws: &DMatrix<f64>) -> (f64, f64, usize) {
     let centred = DMatrix::from_fn(rows, columns, |i, j| draws[(i, j)] - mean[j]);
     let covariance = centred.transpose() * &centred / (rows - 1) as f64;
     let values = covariance.clone().symmetric_eigen().eigenvalues;
-    let largest = values.iter().copied().fold(0.0, |most: f64, x| if x.is_nan() || x > most { x } else { most });
+    let largest = values.iter().copied().fold(0.0, larger);
     // Of independent masses the smallest is some tenths of the largest; of equal ones it is rounding.
     let rank = values.iter().filter(|value| **value > 1e-10 * largest).count();
     (mean[0], covariance[(0, 0)].sqrt(), rank)

@@ -6,6 +6,7 @@
 use crate::arm::Arm;
 use crate::claim::{Claim, Failure, Holds, Number};
 use featherbench_dynamics::{coriolis_matrix, mass_matrix_rate};
+use featherbench_spatial::largest;
 
 type Matrix = [[f64; 2]; 2];
 
@@ -36,8 +37,8 @@ fn numbers(arm: &Arm) -> Result<Vec<Number>, Failure> {
         Number::new("Ṁ by our kernel, entry 11", "N·m·s", rate[0][0], rate_by_hand[0][0]),
     ];
     for (name, c, known) in [
-        ("C with all velocity products in column 2", grouped, largest(2.0 * eta * v2, eta * v1)),
-        ("C with q̇₁q̇₂ in column 1", first_column, largest(2.0 * eta * v2, eta * v1)),
+        ("C with all velocity products in column 2", grouped, largest([2.0 * eta * v2, eta * v1])),
+        ("C with q̇₁q̇₂ in column 1", first_column, largest([2.0 * eta * v2, eta * v1])),
     ] {
         let same = |i: usize| (c[i][0] * v1 + c[i][1] * v2 - ours[i][0] * v1 - ours[i][1] * v2).abs();
         let force = snapped(same(0) + same(1), eta);
@@ -52,10 +53,6 @@ fn numbers(arm: &Arm) -> Result<Vec<Number>, Failure> {
 /// Zero, where rounding alone is left of numbers of this size.
 fn snapped(value: f64, size: f64) -> f64 {
     if value.abs() <= 16.0 * f64::EPSILON * (1.0 + size.abs()) { 0.0 } else { value }
-}
-
-fn largest(a: f64, b: f64) -> f64 {
-    if a.abs() > b.abs() { a.abs() } else { b.abs() }
 }
 
 /// §2's structural property.

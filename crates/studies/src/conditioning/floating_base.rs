@@ -11,7 +11,7 @@ use featherbench_bench::{Cell, Context, Outcome, Robot};
 use featherbench_dynamics::{FloatingBase, TreeSparse, mass_matrix};
 use featherbench_results::{Row, Verdict};
 use featherbench_robots::Case;
-use featherbench_spatial::{DoubleDouble, Real};
+use featherbench_spatial::{DoubleDouble, Real, larger};
 use nalgebra::DMatrix;
 use std::ops::Range;
 
@@ -108,11 +108,6 @@ fn error(found: &DMatrix<f64>, truth: &DMatrix<DoubleDouble>, whole: &DMatrix<f6
     let off = |i: usize, j: usize| (DoubleDouble::from_f64(found[(i, j)]) - truth[(i, j)]).to_f64().abs() / (reach[i] * reach[j]);
     let n = own.len();
     Some((0..n * n).map(|place| off(place / n, place % n)).fold(0.0, larger))
-}
-
-/// The larger of two numbers, NaN if either is.
-fn larger(a: f64, b: f64) -> f64 {
-    if b > a || b.is_nan() { b } else { a }
 }
 
 fn median(mut numbers: Vec<f64>) -> f64 {

@@ -63,16 +63,6 @@ pub(crate) fn failed(error: impl std::fmt::Display) -> NoAnswer {
     NoAnswer::Failed(error.to_string())
 }
 
-/// The larger magnitude; NaN if either is.
-pub(crate) fn larger(a: f64, b: f64) -> f64 {
-    if a.is_nan() || a.abs() > b { a.abs() } else { b }
-}
-
-/// The largest magnitude; NaN if any is.
-pub(crate) fn largest(numbers: impl IntoIterator<Item = f64>) -> f64 {
-    numbers.into_iter().fold(0.0, |most, x| larger(x, most))
-}
-
 impl Case {
     pub(super) fn cell(&self, study: &str, context: &Context) -> Option<Cell> {
         let identity = context.engine("featherbench")?.identity();

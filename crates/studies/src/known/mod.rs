@@ -10,7 +10,8 @@ mod table;
 #[cfg(test)]
 pub(crate) mod tests;
 
-pub(crate) use case::{Case, Number, count, error, failed, larger, largest, told};
+pub(crate) use case::{Case, Number, count, error, failed, told};
+pub(crate) use featherbench_spatial::{larger, largest};
 pub(crate) use table::{passed, table};
 
 use featherbench_bench::{Cell, Context, Finished, NoAnswer, Outcome, Robot, Study};
