@@ -1,5 +1,7 @@
 //! A histogram of fixed bins: the density, and quantiles from it.
 
+use featherbench_spatial::{larger, smaller};
+
 /// Bins between the bounds.
 pub const BINS: usize = 1024;
 
@@ -14,13 +16,16 @@ pub struct Histogram {
     pub counts: Vec<u64>,
     /// Samples below and above the bounds.
     pub outside: [u64; 2],
+    /// The smallest and the largest sample; NaN if one is.
+    pub extremes: [f64; 2],
 }
 
 impl Histogram {
-    /// An empty one. Equal bounds get a bin of width one.
+    /// An empty one. Equal bounds x are widened by half of |x|, at least by one half.
     pub fn new(low: f64, high: f64) -> Self {
-        let (low, high) = if high > low { (low, high) } else { (low - 0.5, low + 0.5) };
-        Self { low, high, counts: vec![0; BINS], outside: [0; 2] }
+        let half = 0.5 * larger(1.0, low.abs());
+        let (low, high) = if high > low { (low, high) } else { (low - half, low + half) };
+        Self { low, high, counts: vec![0; BINS], outside: [0; 2], extremes: [f64::INFINITY, f64::NEG_INFINITY] }
     }
 
     /// The width of a bin.
@@ -32,6 +37,7 @@ impl Histogram {
     pub fn count(&mut self, values: &[f64]) {
         let scale = BINS as f64 / (self.high - self.low);
         for y in values {
+            self.extremes = [smaller(self.extremes[0], *y), larger(self.extremes[1], *y)];
             let place = (y - self.low) * scale;
             if place < 0.0 {
                 self.outside[0] += 1;
@@ -47,6 +53,7 @@ impl Histogram {
     pub fn add(&mut self, other: &Self) {
         self.counts.iter_mut().zip(&other.counts).for_each(|(count, more)| *count += more);
         self.outside.iter_mut().zip(other.outside).for_each(|(count, more)| *count += more);
+        self.extremes = [smaller(self.extremes[0], other.extremes[0]), larger(self.extremes[1], other.extremes[1])];
     }
 
     /// How many samples there are.
@@ -54,7 +61,8 @@ impl Histogram {
         self.counts.iter().sum::<u64>() + self.outside[0] + self.outside[1]
     }
 
-    /// The value that a part p of the samples is below, linear within a bin; `None` where it is outside the bounds.
+    /// The value that a part p of the samples is below, linear within a bin and never beyond a sample; `None` where it is
+    /// outside the bounds.
     pub fn quantile(&self, p: f64) -> Option<f64> {
         let due = p * self.total() as f64;
         let mut below = self.outside[0] as f64;
@@ -64,7 +72,8 @@ impl Histogram {
         for (bin, &count) in self.counts.iter().enumerate() {
             let next = below + count as f64;
             if count > 0 && due <= next {
-                return Some(self.low + self.width() * (bin as f64 + (due - below) / count as f64));
+                let within = self.low + self.width() * (bin as f64 + (due - below) / count as f64);
+                return Some(smaller(larger(within, self.extremes[0]), self.extremes[1]));
             }
             below = next;
         }

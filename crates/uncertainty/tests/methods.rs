@@ -2,7 +2,7 @@
 
 use featherbench_model::Distribution;
 use featherbench_uncertainty::{
-    Closure, Error, Linear, Points, Sampling, Space, chaos, draw, first_order, mixture, sample, sensitivity, unscented,
+    Closure, Error, Histogram, Linear, Points, Sampling, Space, chaos, draw, first_order, mixture, sample, sensitivity, unscented,
 };
 use nalgebra::{DMatrix, DVector};
 
@@ -149,4 +149,15 @@ fn drawn_answers_are_those_of_the_first_replicate() {
     let drawn = draw(&uniform(), &reciprocal(), Points::Random, 5000, 9).unwrap();
     assert_eq!((drawn.len(), drawn[0].len()), (1, 5000));
     assert!(drawn[0].iter().all(|y| (1.0 / 1.2..=1.0 / 0.8).contains(y)));
+}
+
+/// An answer that no parameter changes has its value as every quantile, whatever the bins.
+#[test]
+fn quantiles_of_a_constant_are_the_constant() {
+    for value in [0.0, -7.25, 1e300] {
+        let mut histogram = Histogram::new(value, value);
+        histogram.count(&[value; 10]);
+        let found = [0.01, 0.5, 0.99].map(|p| histogram.quantile(p));
+        assert_eq!(found, [Some(value); 3]);
+    }
 }
