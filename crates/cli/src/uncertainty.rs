@@ -5,11 +5,10 @@ use crate::fail::Fail;
 use crate::robots;
 use crate::root::Root;
 use crate::say::say;
-use featherbench_bench::measure::ratio;
+use featherbench_bench::measure::{ratio, worst};
 use featherbench_formats::urdf::Options;
 use featherbench_model::{Description, Model};
 use featherbench_robots::{Family, StateBatch};
-use featherbench_spatial::larger;
 use featherbench_uncertainty::{
     Indices, Points, Quantity, RobotResponse, Route, Sampling, Space, State, chaos, first_order, largest_order, sample, sensitivity,
     spread, unscented,
@@ -144,7 +143,7 @@ pub fn propagate(root: impl Fn() -> Result<Root, Fail>, args: &UncertaintyArgs) 
         return Ok(());
     }
     let what = if args.torque { "torques" } else { "accelerations" };
-    let widest = lines.iter().map(|line| ratio(line.deviation, line.mean.abs())).fold(0.0, larger);
+    let widest = lines.iter().map(|line| ratio(line.deviation, line.mean.abs())).fold(0.0, worst);
     say!("{}: {what} deviate by up to {:.3} of their mean, from {} uncertain parameters ({source})", robot.name, widest, names.len());
     say!("{:>4} {:>14} {:>10} {:>14} {:>10} {:>14} {:>14}", "dof", "mean", "±", "deviation", "±", "5 %", "95 %");
     let shown = |number: Option<f64>| number.map_or_else(String::new, |x| format!("{x:.1e}"));
