@@ -9,7 +9,10 @@
 //! | [`tip_ratio`] | tip deflection of discrete cantilevers over the exact one, small loads | closed form |
 //! | [`exact_modes_tip_ratio`] | the same with the first r exact modes | closed form |
 //! | [`lumped_axial`] | frequencies of a clamped bar of masses and springs | closed form |
+//! | [`links_frequency_prefactor`] | errors of frequencies of links | what links do to the boundary |
 //! | [`sections_frequency_prefactor`], [`hermite_frequency_prefactor`] | errors of frequencies | the best approximation |
+//! | [`string_frequency_prefactor`] | errors of ω² of a hanging chain of uniform rods | the best approximation |
+//! | [`links_tip_prefactor`], [`sections_tip_prefactor`] | errors of the elastica's tip | first-order change of the energy |
 
 use crate::Hinges;
 use crate::quadrature::composite;
@@ -56,8 +59,13 @@ pub struct Elastica {
 /// assert!((elastica(1.0).deflection - 0.30172077379981).abs() < 1e-13);
 /// ```
 pub fn elastica(alpha: f64) -> Elastica {
+    solved(alpha).0
+}
+
+/// The elastica, and ∫ cos² θ over its length, over L.
+fn solved(alpha: f64) -> (Elastica, f64) {
     if !(alpha > 0.0 && alpha.is_finite()) {
-        return Elastica { deflection: f64::NAN, reach: f64::NAN, angle: f64::NAN };
+        return (Elastica { deflection: f64::NAN, reach: f64::NAN, angle: f64::NAN }, f64::NAN);
     }
     let rule = composite(16, 16);
     let integrals = |angle: f64| {
@@ -71,7 +79,7 @@ pub fn elastica(alpha: f64) -> Elastica {
             };
             rule.iter().map(part).sum::<f64>()
         };
-        (sum(&|_| 1.0), sum(&|sin_theta| sin_theta))
+        (sum(&|_| 1.0), sum(&|sin_theta| sin_theta), sum(&|sin_theta| 1.0 - sin_theta * sin_theta))
     };
     let (mut low, mut high) = (0.0, FRAC_PI_2);
     // 60 halvings leave an interval of two neighbouring numbers.
@@ -79,8 +87,51 @@ pub fn elastica(alpha: f64) -> Elastica {
         let middle = 0.5 * (low + high);
         if integrals(middle).0 < alpha.sqrt() { low = middle } else { high = middle }
     }
-    let (length, deflection) = integrals(low);
-    Elastica { deflection: deflection / length, reach: (2.0 * low.sin() / alpha).sqrt(), angle: low }
+    let (length, deflection, squares) = integrals(low);
+    (Elastica { deflection: deflection / length, reach: (2.0 * low.sin() / alpha).sqrt(), angle: low }, squares / length)
+}
+
+/// The prefactor c of the tip's deflection of an elastica of `n` rigid links: deflection/exact − 1 → c/n^p, p = 1 for [`Hinges::Start`] and 2
+/// else.
+///
+/// Let Π(α) be the least energy, EI = L = 1. Then dΠ/dα = −δ. Links have Π + h^p Π₁ + …, and Π₁ is the change of the energy at the elastica
+/// itself, as Π is stationary there. So c = −(dΠ₁/dα)/δ. Springs have ½ ∫ θ'² − h²/24 ∫ θ''² with θ'' = −α cos θ. The load's work is that of
+/// a sum over links, by Euler and Maclaurin, with θ'(0) = α times the reach:
+///
+/// | hinges | Π₁ |
+/// |---|---|
+/// | start | −α sin θ_L/2 |
+/// | start, 2EI/h at the wall | −α² ∫ cos² θ/24 − α θ'(0)/24 |
+/// | middle | −α² ∫ cos² θ/24 + α θ'(0)/12 |
+///
+/// NaN for α that is not positive.
+///
+/// ```
+/// use featherbench_continua::{Hinges, known::links_tip_prefactor};
+/// // Small loads: 3/2n.
+/// assert!((links_tip_prefactor(Hinges::Start, 1e-3) - 1.5).abs() < 1e-5);
+/// ```
+pub fn links_tip_prefactor(hinges: Hinges, alpha: f64) -> f64 {
+    tip_prefactor(alpha, |alpha, elastica, squares| match hinges {
+        Hinges::Start => -0.5 * alpha * elastica.angle.sin(),
+        Hinges::StartStiffWall => -alpha * alpha * (squares + elastica.reach) / 24.0,
+        Hinges::Middle => alpha * alpha * (2.0 * elastica.reach - squares) / 24.0,
+    })
+}
+
+/// The same with sections of constant curvature, p = 2: θ is piecewise linear, and the best of them has the energy Π + h²/24 ∫ θ''².
+pub fn sections_tip_prefactor(alpha: f64) -> f64 {
+    tip_prefactor(alpha, |alpha, _, squares| alpha * alpha * squares / 24.0)
+}
+
+/// −(dΠ₁/dα)/δ by central differences of Π₁(α, elastica, ∫ cos² θ) with two steps, extrapolated: an error of 10⁻¹¹, roundings of ε/10⁻³.
+fn tip_prefactor(alpha: f64, energy: impl Fn(f64, Elastica, f64) -> f64) -> f64 {
+    let at = |alpha: f64| {
+        let (elastica, squares) = solved(alpha);
+        energy(alpha, elastica, squares)
+    };
+    let slope = |step: f64| (at(alpha * (1.0 + step)) - at(alpha * (1.0 - step))) / (2.0 * step * alpha);
+    -(4.0 * slope(1e-3) - slope(2e-3)) / (3.0 * elastica(alpha).deflection)
 }
 
 fn wide(x: f64) -> DoubleDouble {
@@ -90,8 +141,13 @@ fn wide(x: f64) -> DoubleDouble {
 /// Root number `k`, from 0, of the Bessel function J₀; for k up to 12, beyond which the series loses its digits (the error grows like e^{2k
 /// π}/10³²).
 pub fn bessel_zero(k: usize) -> f64 {
+    bessel(k).0
+}
+
+/// Root number `k` of J₀, and J₀' = −J₁ there.
+fn bessel(k: usize) -> (f64, f64) {
     let guess = (k as f64 + 0.75) * PI;
-    let mut x = wide(guess + 1.0 / (8.0 * guess));
+    let (mut x, mut at) = (wide(guess + 1.0 / (8.0 * guess)), wide(0.0));
     for _ in 0..6 {
         // J₀ = Σ (−x²/4)^m / m!²,  J₀' = −J₁ = Σ 2m/x (…)
         let (quarter, mut term, mut value, mut slope) = (x * x * wide(-0.25), wide(1.0), wide(1.0), wide(0.0));
@@ -102,8 +158,25 @@ pub fn bessel_zero(k: usize) -> f64 {
             slope += term * wide(2.0 * m) / x;
         }
         x -= value / slope;
+        at = slope;
     }
-    x.to_f64()
+    (x.to_f64(), at.to_f64())
+}
+
+/// The prefactor of the error of ω² of mode `k`, from 0, of a hanging chain of uniform rods: ω²/ω²_exact − 1 → this/n².
+///
+/// Rods have the energies of a string that is piecewise linear, which is Galerkin's method. So the error is that of the best approximation:
+/// h²/12 ∫ g s w''² for ∫ w² = 1, s the distance from the free end and w = J₀(j √s)/J₁(j). With λ = j²/4 = ω², the equation s w'' = −w' − λ w, and
+/// ∫ J₁²/x = (1 − J₀² − J₁²)/2, it is λ/24J₁² − λ/12 − 1/24.
+///
+/// ```
+/// use featherbench_continua::known::string_frequency_prefactor;
+/// assert!((string_frequency_prefactor(0) - 0.0613692664).abs() < 1e-10);
+/// ```
+pub fn string_frequency_prefactor(k: usize) -> f64 {
+    let (root, slope) = bessel(k);
+    let square = 0.25 * root * root;
+    (square / (slope * slope) - 2.0 * square - 1.0) / 24.0
 }
 
 /// The roots of the Laguerre polynomial L_n, increasing.
@@ -162,6 +235,24 @@ pub fn lumped_axial(n: usize, k: usize, speed: f64, length: f64) -> f64 {
 fn sigma_beta(k: usize) -> f64 {
     let beta = cantilever_root(k);
     beta * (beta.cosh() + beta.cos()) / (beta.sinh() + beta.sin())
+}
+
+/// The prefactor c of the frequency error of mode `k`, from 0, of rigid links: ω/ω_exact − 1 → c/n^p, p = 1 for [`Hinges::Start`] and 2 else.
+///
+/// Inside the rod, links have M and K with the same factor 1 + h²/6 ∂², which cancels. At the wall they have y(0) = −h²/8 w'' and y'(0) = −h²/24
+/// w''' (middle), y'(0) = h/2 w'' (start) or −h²/6 w''' (2EI/h). Green's identity gives δλ = w'''(0) y(0) − w''(0) y'(0), where w''(0) w'''(0) =
+/// −4σβ⁵ for ∫ w² = 1. So c = σβ/6, −1 and −σβ/3.
+///
+/// ```
+/// use featherbench_continua::{Hinges, known::links_frequency_prefactor};
+/// assert!((links_frequency_prefactor(Hinges::Middle, 0) - 0.2294175808).abs() < 1e-10);
+/// ```
+pub fn links_frequency_prefactor(hinges: Hinges, k: usize) -> f64 {
+    match hinges {
+        Hinges::Start => -1.0,
+        Hinges::StartStiffWall => -sigma_beta(k) / 3.0,
+        Hinges::Middle => sigma_beta(k) / 6.0,
+    }
 }
 
 /// The prefactor of the frequency error of mode `k`, from 0, with sections of constant curvature: ω/ω_exact − 1 → this/n².

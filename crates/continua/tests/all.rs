@@ -5,6 +5,7 @@ mod beams;
 mod coupling;
 mod laws;
 mod motion;
+mod prefactors;
 mod refusals;
 mod statics;
 mod wide;

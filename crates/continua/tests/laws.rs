@@ -3,8 +3,8 @@
 use crate::beams::{links, ritz, rod, sections, tip_under};
 use crate::wide::{smallest_eigenvalue, wide};
 use featherbench_continua::known::{
-    bessel_zero, cantilever_root, elastica, exact_modes_tip_ratio, hermite_frequency_prefactor, laguerre_zeros, lumped_axial,
-    sections_frequency_prefactor, tip_ratio,
+    bessel_zero, cantilever_root, elastica, exact_modes_tip_ratio, hermite_frequency_prefactor, laguerre_zeros, links_frequency_prefactor,
+    links_tip_prefactor, lumped_axial, sections_frequency_prefactor, sections_tip_prefactor, string_frequency_prefactor, tip_ratio,
 };
 use featherbench_continua::{
     Basis, Element, Hinges, Load, Masses, Material, Rod, Section, Settings, Status, Strain, equilibrium, fit, generalized, library, modes,
@@ -93,8 +93,9 @@ fn frequencies_of_links_are_those_of_a_chain_in_absolute_angles() {
 #[test]
 fn frequency_errors_have_order_and_prefactor() {
     let error = |element: Element, k: usize| frequencies(&element)[k] / cantilever_root(k).powi(2) - 1.0;
-    for (k, prefactor) in [0.2294, 0.7968, 1.3081].into_iter().enumerate() {
-        assert_law("middle", &[8, 16, 32, 64], |n| error(links(n, Hinges::Middle), k), 2.0, 4.0, prefactor);
+    for k in 0..3 {
+        let theory = links_frequency_prefactor(Hinges::Middle, k);
+        assert_law("middle", &[8, 16, 32, 64], |n| error(links(n, Hinges::Middle), k), 2.0, 4.0, theory);
         let theory = sections_frequency_prefactor(k);
         assert_law("sections", &[8, 16, 32, 64], |n| error(sections(n), k), 2.0, 4.0, theory);
         let theory = hermite_frequency_prefactor(k);
@@ -138,10 +139,10 @@ fn monomials_have_the_percentages_of_ritz() {
 #[test]
 fn the_elastica_is_met_with_the_order_of_each_element() {
     let error = |element: Element| tip_under(&element, 1.0)[1] / elastica(1.0).deflection - 1.0;
-    // Prefactors from the finest refinement of each: no closed form is known at α = 1. Slopes are those of theory.
-    assert_law("middle", &[4, 8, 16, 32], |n| error(links(n, Hinges::Middle)), 2.0, 4.0, -0.2728);
-    assert_law("sections", &[4, 8, 16, 32], |n| error(sections(n)), 2.0, 4.0, -0.2218);
-    assert_law("start", &[8, 16, 32, 64], |n| error(links(n, Hinges::Start)), 1.0, 2.0, 1.3256);
+    let theory = |hinges| links_tip_prefactor(hinges, 1.0);
+    assert_law("middle", &[4, 8, 16, 32], |n| error(links(n, Hinges::Middle)), 2.0, 4.0, theory(Hinges::Middle));
+    assert_law("sections", &[4, 8, 16, 32], |n| error(sections(n)), 2.0, 4.0, sections_tip_prefactor(1.0));
+    assert_law("start", &[8, 16, 32, 64], |n| error(links(n, Hinges::Start)), 1.0, 2.0, theory(Hinges::Start));
     assert!((error(links(4, Hinges::Middle)) + 1.71e-2).abs() < 1e-4);
 }
 
@@ -165,8 +166,8 @@ fn strings_come_to_the_bessel_zeros() {
         modes(&string, &string.rest(), &[]).unwrap().squares[k] / (bessel_zero(k) / 2.0).powi(2) - 1.0
     };
     assert_law("masses", &[16, 32, 64, 96], |n| error(n, Masses::Ends, 0), 1.0, 2.0, -0.5);
-    assert_law("uniform", &[8, 16, 32, 64], |n| error(n, Masses::Uniform, 0), 2.0, 3.0, 0.0613);
-    assert_law("uniform", &[16, 32, 64, 96], |n| error(n, Masses::Uniform, 1), 2.0, 3.0, 2.06);
+    assert_law("uniform", &[8, 16, 32, 64], |n| error(n, Masses::Uniform, 0), 2.0, 3.0, string_frequency_prefactor(0));
+    assert_law("uniform", &[16, 32, 64, 96], |n| error(n, Masses::Uniform, 1), 2.0, 3.0, string_frequency_prefactor(1));
 }
 
 #[test]

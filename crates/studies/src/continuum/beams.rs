@@ -11,14 +11,15 @@
 //! | constant curvature | σβ (2 + σβ)/24 /n² |
 //! | cubic Hermite splines | β⁴/1440 /n⁴ |
 //!
-//! The first three follow from what discretisation does to the boundary: inside the rod, links have M and K with the same factor 1 + h²/6 ∂²,
-//! which cancels. With y(0) = −h²/8 w'' and y'(0) = −h²/24 w''' (springs in the middle), y'(0) = h/2 w'' (start) or −h²/6 w''' (2EI/h), Green's
-//! identity gives δλ = w'''(0) y(0) − w''(0) y'(0), where w''(0) w'''(0) = −4σβ⁵ for ∫ w² = 1.
+//! Tips have prefactors too, for each force. Derivations are those of `featherbench_continua::known`.
 
 use super::{Law, NoAnswer, STUDY, element, failed, largest, rod};
 use featherbench_bench::{Cell, Context, Finished, OWN, RodAnswer, RodQuestion, hash};
-use featherbench_continua::known::{cantilever_root, elastica, hermite_frequency_prefactor, sections_frequency_prefactor};
-use featherbench_continua::{Load, Settings, Solver, Status, equilibrium, fit, library, modes};
+use featherbench_continua::known::{
+    cantilever_root, elastica, hermite_frequency_prefactor, links_frequency_prefactor, links_tip_prefactor, sections_frequency_prefactor,
+    sections_tip_prefactor,
+};
+use featherbench_continua::{Hinges, Load, Settings, Solver, Status, equilibrium, fit, library, modes};
 use featherbench_results::{Kind, Row, Verdict, canonical_json};
 use serde_json::json;
 use std::time::Instant;
@@ -147,24 +148,27 @@ fn own(name: &str, count: usize) -> Result<RodAnswer, NoAnswer> {
 
 /// The law of the frequency of mode k with this element; `None` where we know none.
 fn frequency_law(element: &str, k: usize) -> Option<Law> {
-    let beta = cantilever_root(k);
-    let sigma_beta = beta * (beta.cosh() + beta.cos()) / (beta.sinh() + beta.sin());
+    let first = |prefactor| Some(Law { order: 1.0, next: 2.0, prefactor });
     let second = |prefactor| Some(Law { order: 2.0, next: 4.0, prefactor });
     match element {
-        "links_middle" | "hinge_chain" => second(sigma_beta / 6.0),
-        "links_start_stiff_wall" => second(-sigma_beta / 3.0),
+        "links_middle" | "hinge_chain" => second(links_frequency_prefactor(Hinges::Middle, k)),
+        "links_start_stiff_wall" => second(links_frequency_prefactor(Hinges::StartStiffWall, k)),
         "sections" | "constant_strain" => second(sections_frequency_prefactor(k)),
-        "links_start" => Some(Law { order: 1.0, next: 2.0, prefactor: -1.0 }),
+        "links_start" => first(links_frequency_prefactor(Hinges::Start, k)),
         "hermite" => Some(Law { order: 4.0, next: 6.0, prefactor: hermite_frequency_prefactor(k) }),
         _ => None,
     }
 }
 
-/// The order of the tip under a large force: that of the quadrature which the springs are.
-fn tip_order(element: &str) -> Option<f64> {
+/// The law of the tip under a force; `None` where we know none. The next term has twice the order: springs are a quadrature.
+fn tip_law(element: &str, alpha: f64) -> Option<Law> {
+    let first = |prefactor| Some(Law { order: 1.0, next: 2.0, prefactor });
+    let second = |prefactor| Some(Law { order: 2.0, next: 4.0, prefactor });
     match element {
-        "links_start" => Some(1.0),
-        "links_middle" | "links_start_stiff_wall" | "hinge_chain" | "sections" | "constant_strain" => Some(2.0),
+        "links_start" => first(links_tip_prefactor(Hinges::Start, alpha)),
+        "links_start_stiff_wall" => second(links_tip_prefactor(Hinges::StartStiffWall, alpha)),
+        "links_middle" | "hinge_chain" => second(links_tip_prefactor(Hinges::Middle, alpha)),
+        "sections" | "constant_strain" => second(sections_tip_prefactor(alpha)),
         _ => None,
     }
 }
@@ -252,26 +256,26 @@ fn told(blank: &Row, metric: &str, unit: &str, reference: &str) -> Row {
 /// Orders and prefactors of an element.
 fn laws(context: &Context, refined: &Refined) -> Vec<Row> {
     let (cell, mut rows) = (refined.last, Vec::new());
-    let judged = |blank: &Row, metric: &str, value: f64| context.gates.judge(told(blank, metric, "1", "theory"), value, 1.0);
-    for (force, series) in FORCES.iter().zip(&refined.tips) {
-        let Some(order) = tip_order(&cell.method) else { continue };
-        let blank = blank(cell, &format!("cantilever, α = {force}"), "beam_law");
-        // The next term of a quadrature of order 1 or 2 at every hinge.
-        let found = fit(series, order, 2.0 * order);
-        rows.push(judged(&blank, "order_error", (found.order - order).abs()));
+    let mut judge = |of: String, law: &Law, series: &[(f64, f64)]| {
+        let blank = blank(cell, &of, "beam_law");
+        let found = fit(series, law.order, law.next);
+        let [order, prefactor] = law.missed(&found).map(f64::abs);
+        for (metric, value) in [("order_error", order), ("prefactor_error", prefactor)] {
+            rows.push(context.gates.judge(told(&blank, metric, "1", "theory"), value, 1.0));
+        }
         rows.push(told(&blank, "order", "1", "").informed(found.order));
         rows.push(told(&blank, "prefactor", "1", "").informed(found.prefactor));
+    };
+    for (force, series) in FORCES.iter().zip(&refined.tips) {
+        if let Some(law) = tip_law(&cell.method, *force) {
+            judge(format!("cantilever, α = {force}"), &law, series);
+        }
     }
     for (k, series) in refined.frequencies.iter().enumerate() {
-        let Some(law) = frequency_law(&cell.method, k) else { continue };
-        let blank = blank(cell, &format!("cantilever, mode {}", k + 1), "beam_law");
-        let series: Vec<(f64, f64)> = series.iter().copied().filter(|(n, _)| is_in_law(&cell.method, k, *n)).collect();
-        let found = fit(&series, law.order, law.next);
-        let [order, prefactor] = law.missed(&found).map(f64::abs);
-        rows.push(judged(&blank, "order_error", order));
-        rows.push(judged(&blank, "prefactor_error", prefactor));
-        rows.push(told(&blank, "order", "1", "").informed(found.order));
-        rows.push(told(&blank, "prefactor", "1", "").informed(found.prefactor));
+        if let Some(law) = frequency_law(&cell.method, k) {
+            let series: Vec<(f64, f64)> = series.iter().copied().filter(|(n, _)| is_in_law(&cell.method, k, *n)).collect();
+            judge(format!("cantilever, mode {}", k + 1), &law, &series);
+        }
     }
     rows
 }

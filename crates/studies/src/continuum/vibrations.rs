@@ -1,7 +1,7 @@
 //! Frequencies: roots, shape functions, strings.
 
 use super::{Case, Law, NoAnswer, case, element, error, failed, largest, rod, told};
-use featherbench_continua::known::{bessel_zero, cantilever_root, laguerre_zeros};
+use featherbench_continua::known::{bessel_zero, cantilever_root, laguerre_zeros, string_frequency_prefactor};
 use featherbench_continua::{Masses, library, mass_matrix, modes};
 use nalgebra::SymmetricEigen;
 use serde_json::json;
@@ -27,8 +27,8 @@ pub(super) fn cases() -> Vec<Case> {
     let string = |masses, name, mode, law, counts| string_law(masses, name, mode, law, counts);
     let second = |prefactor| Law { order: 2.0, next: 3.0, prefactor };
     cases.push(string(Masses::Ends, "string_points", 0, Law { order: 1.0, next: 2.0, prefactor: -0.5 }, [16, 24, 32, 48, 64]));
-    cases.push(string(Masses::Uniform, "string_links", 0, second(0.0613), [8, 16, 24, 32, 64]));
-    cases.push(string(Masses::Uniform, "string_links", 1, second(2.06), [16, 24, 32, 48, 64]));
+    cases.push(string(Masses::Uniform, "string_links", 0, second(string_frequency_prefactor(0)), [8, 16, 24, 32, 64]));
+    cases.push(string(Masses::Uniform, "string_links", 1, second(string_frequency_prefactor(1)), [16, 24, 32, 48, 64]));
     cases
 }
 
