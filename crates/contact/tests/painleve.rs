@@ -134,3 +134,25 @@ fn an_impact_without_collision_is_always_possible() {
         }
     }
 }
+
+/// A short step leaves nearly no free normal velocity, and the merit function of Newton's method has a local minimum where the tip still
+/// slides. The answer exists, is the only one by enumeration, and is known: the tip sticks, so G λ = −b.
+#[test]
+fn newton_leaves_the_local_minimum_of_a_sliding_tip() {
+    let rod = rod(1.5, 0.0);
+    // G of (n, t) at tan θ = 2 and m = l = 1: 1 + 3 cos² θ, 3 sin θ cos θ, 1 + 3 sin² θ.
+    let (nn, nt, tt) = (1.6, 1.2, 3.4);
+    let determinant = nn * tt - nt * nt;
+    for duration in [1e-2, 1e-3, 2e-4, 1e-4, 1e-5, 1e-6, 1e-8] {
+        let problem = rod.impact(1.0, duration).unwrap();
+        let [normal, slip] = [-9.81 * duration, 1.0];
+        let due = [(-normal * tt + slip * nt) / determinant, (normal * nt - slip * nn) / determinant];
+        for solver in [&Newton::default() as &dyn Solver, &Enumeration::default()] {
+            let solution = solver.solve(&problem).unwrap();
+            let point = solution.point().unwrap_or_else(|| panic!("{} at {duration:e}: {}", solver.name(), solution.status()));
+            assert!(point.residuals.largest() <= 1e-10, "{} at {duration:e}: {:?}", solver.name(), point.residuals);
+            // Newton ends at 1e-12 of the scale; λ = G⁻¹ b has the condition of G, 4.6.
+            assert!((point.impulses[0] - due[0]).abs() < 1e-11 && (point.impulses[1] - due[1]).abs() < 1e-11, "{duration:e} {point:?}");
+        }
+    }
+}

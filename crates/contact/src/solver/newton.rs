@@ -9,7 +9,7 @@ use super::{Solver, Unsupported, positive};
 use crate::cones::{self, Linearized};
 use crate::problem::Problem;
 use crate::solution::{Model, Outcome, Solution};
-use featherbench_spatial::larger;
+use featherbench_spatial::{larger, smaller};
 use nalgebra::{DMatrix, DVector};
 
 /// Newton's method on the true laws (function of Alart and Curnier). O(rows³) per step.
@@ -216,6 +216,8 @@ impl Law {
 /// How many first-order sweeps come first, and how many where Newton's method gains nothing: twice as many each time, up to a limit.
 const SWEEPS: usize = 20;
 const MOST_SWEEPS: usize = 640;
+/// A norm below this part of the lowest is another place: the same local minimum is reached again up to the steps' lengths.
+const LOWER: f64 = 0.9;
 /// A singular value below this part of the largest counts as zero: rounding leaves 1e-16 per row.
 const RANK: f64 = 1e-12;
 
@@ -223,6 +225,8 @@ fn run(problem: &Problem, law: &Law, name: &'static str, (tolerance, cap): (f64,
     positive(name, "tolerance", tolerance)?;
     let mut x = DVector::zeros(law.standard.size());
     let (mut steps, mut sweeps) = (Vec::new(), SWEEPS);
+    // The lowest norm of F at which Newton's method gained nothing, and whether it has gained since.
+    let (mut lowest, mut gained) = (f64::INFINITY, false);
     let mut residual = law.residual(&x);
     if residual > tolerance {
         (0..SWEEPS).for_each(|_| law.sweep(&mut x));
@@ -237,10 +241,16 @@ fn run(problem: &Problem, law: &Law, name: &'static str, (tolerance, cap): (f64,
         });
         let next = match better {
             Some(next) => {
-                sweeps = SWEEPS;
+                gained = true;
                 next
             }
             None => {
+                // A local minimum of ‖F‖ takes Newton's method back after each short series of sweeps: only a lower one is a gain.
+                let norm = value.norm();
+                if gained && norm < LOWER * lowest {
+                    sweeps = SWEEPS;
+                }
+                (lowest, gained) = (smaller(lowest, norm), false);
                 let mut swept = x.clone();
                 (0..sweeps).for_each(|_| law.sweep(&mut swept));
                 sweeps = (2 * sweeps).min(MOST_SWEEPS);
