@@ -90,8 +90,8 @@ class StepMethod:
     make : callable
         `(steps, tolerance, iterations) -> StepSolver`.
     settings : dict
-        The engine's model of contact; `time`: what the time includes; `limit`: the method whose answers by a small tolerance are those of the
-        same model without an error of the solver.
+        The engine's model of contact; `time`: what the time includes; `limit`: the method whose answers by a small tolerance are those of
+        the same model without an error of the solver.
     """
 
     make: MakeStepSolver

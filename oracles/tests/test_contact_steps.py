@@ -22,7 +22,13 @@ SPEEDS = np.array([[0.05, 0.015, -0.44], [-3.0, -0.9, -0.44]])
 
 def _steps() -> tuple[Header, Blocks]:
     """Describe a free body that lands on one point."""
-    joint: Header = {"name": "j", "type": "free", "axis": [0.0] * 3, "pitch": 0.0, "placement": {"rotation": IDENTITY, "translation": [0.0] * 3}}
+    joint: Header = {
+        "name": "j",
+        "type": "free",
+        "axis": [0.0] * 3,
+        "pitch": 0.0,
+        "placement": {"rotation": IDENTITY, "translation": [0.0] * 3},
+    }
     joint |= {"armature": [0.0] * 6, "damping": [0.0] * 6, "friction": [0.0] * 6}
     moments = [INERTIA[0], 0.0, 0.0, INERTIA[1], 0.0, INERTIA[2]]
     body = {"name": "b", "parent": -1, "mass": MASS, "com": [0.0] * 3, "inertia": moments, "joint": joint}
