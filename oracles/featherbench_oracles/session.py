@@ -16,6 +16,7 @@ from typing import Any
 import numpy as np
 
 from featherbench_oracles.clock import Measured, MeasuredStream, Stream, TimedCalls
+from featherbench_oracles.contact_steps import StepsOnContacts
 from featherbench_oracles.contacts import Contacts
 from featherbench_oracles.examination import examined
 from featherbench_oracles.loops import Loops
@@ -39,6 +40,7 @@ class Session:
     def __init__(self, engine: Engine) -> None:
         self.engine = engine
         self.contacts = Contacts(engine.name, getattr(engine, "contact_solvers", {}), getattr(engine, "contact_relaxations", {}))
+        self.contact_steps = StepsOnContacts(engine.name, getattr(engine, "contact_steps", {}))
         self.loops = Loops(engine)
         self.semidefinite = SemidefiniteLeastSquares(engine.name, getattr(engine, "semidefinite_solvers", {}))
         self.rods = Rods(engine.name, getattr(engine, "rods", {}))
@@ -84,6 +86,8 @@ class Session:
             "residual": self.residual,
             "contact_problems": self.contacts.set_problems,
             "solve_contacts": self.contacts.solve,
+            "contact_steps": self.contact_steps.prepare,
+            "solve_contact_steps": self.contact_steps.solve,
             "loops": self.loops.prepare,
             "loop_accelerations": self.loops.accelerations,
             "loop_motion": self.loops.motion,
@@ -107,7 +111,7 @@ class Session:
             "semidefinite_least_squares": self.semidefinite.solvers,
             "rods": self.rods.elements,
         }
-        hello |= self.loops.hello() | self.scenes.hello()
+        hello |= self.contact_steps.hello() | self.loops.hello() | self.scenes.hello()
         hello |= {key: list(solvers) for key, solvers in listed.items() if solvers}
         if hasattr(engine, "residual"):
             hello["residual"] = {"acceleration": bool(getattr(engine, "residual_acceleration", False))}

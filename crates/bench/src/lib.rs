@@ -76,7 +76,7 @@ mod with_residual;
 
 pub use cell::{Cell, Outcome};
 pub use class::RobotClass;
-pub use contact_solver::{ContactProblems, ContactSolver};
+pub use contact_solver::{ContactProblems, ContactSolver, ContactSteps, StepMethod};
 pub use counts::{COUNTS_NAME, Count, Counts};
 pub use derivative_floor::derivative_floor;
 pub use described::{ClockKind, DescribedEngine, Engines, Library, Package, Start};

@@ -1,6 +1,8 @@
 //! An engine behind the oracle protocol: one program, with one process per thread that asks.
 
+mod asked;
 pub(crate) mod contacts;
+mod import;
 pub(crate) mod loops;
 mod residual;
 pub(crate) mod rods;
@@ -8,16 +10,17 @@ pub(crate) mod scenes;
 pub(crate) mod semidefinite;
 pub(crate) mod steps;
 
+pub(crate) use import::reading;
 pub use residual::OracleResidual;
 
 use crate::{request, shape};
+use asked::Asked;
 use featherbench_bench::provenance::{PROGRAM, SOURCES};
 use featherbench_bench::{
-    ContactSolver, Engine, Evaluation, Identity, Import, ImportNote, LoopSolver, NoAnswer, Quantity, Robot, RobotFile, RodSolver, Route,
-    SceneEngine, SemidefiniteSolver, Stepper,
+    ContactSolver, Engine, Evaluation, Identity, Import, LoopSolver, NoAnswer, Quantity, Robot, RobotFile, RodSolver, Route, SceneEngine,
+    SemidefiniteSolver, StepMethod, Stepper,
 };
-use featherbench_model::{BodyDescription, Description};
-use featherbench_protocol::{Block, Clock, Limits, Memory, Message, Process, SystemClock, VERSION};
+use featherbench_protocol::{Block, Clock, Limits, Message, Process, SystemClock, VERSION};
 use featherbench_results::EngineSource;
 use featherbench_robots::StateBatch;
 use loops::Loops;
@@ -25,9 +28,7 @@ use scenes::Scenes;
 use serde_json::{Value, json};
 use std::collections::BTreeMap;
 use std::ffi::OsString;
-use std::ops::Range;
 use std::sync::{Arc, Mutex, PoisonError};
-use std::time::Duration;
 use steps::Steps;
 
 /// An engine that runs in its own process.
@@ -45,6 +46,8 @@ pub struct Oracle {
     contact_solvers: Vec<String>,
     /// Its solvers of their convex relaxation.
     contact_relaxations: Vec<String>,
+    /// Its methods for steps of a robot on its contacts.
+    contact_steps: Vec<StepMethod>,
     /// Its methods for least squares under semidefinite conditions.
     semidefinite: Vec<String>,
     /// Its elements of elastic rods.
@@ -127,6 +130,7 @@ impl Oracle {
         let relocate = hello.header.get("relocate").and_then(Value::as_bool).unwrap_or(false);
         let steps = Steps::offered(hello.header.get("steps")).map_err(|reason| format!("hello: {reason}"))?;
         let loops = Loops::offered(hello.header.get("loops")).map_err(|reason| format!("hello: {reason}"))?;
+        let contact_steps = contacts::steps_offered(hello.header.get("contact_steps")).map_err(|reason| format!("hello: {reason}"))?;
         let scenes = Scenes::offered(&hello.header).map_err(|reason| format!("hello: {reason}"))?;
         let listed = |key: &str| -> Result<Vec<String>, String> {
             let names = hello.header.get(key).cloned().unwrap_or_else(|| json!([]));
@@ -146,6 +150,7 @@ impl Oracle {
             loops,
             contact_solvers,
             contact_relaxations,
+            contact_steps,
             semidefinite,
             rods,
             scenes,
@@ -241,10 +246,7 @@ impl Engine for Oracle {
     ) -> Result<Box<dyn Evaluation + 'a>, NoAnswer> {
         let mut session = self.session()?;
         match session.build(robot).and_then(|()| session.send_states(robot, states)) {
-            Ok(()) => {
-                let method = method.to_owned();
-                Ok(Box::new(Asked { oracle: self, session: Some(session), robot, quantity, method, values: Vec::new(), overhead: None }))
-            }
+            Ok(()) => Ok(Box::new(Asked::new(self, session, robot, quantity, method))),
             Err(refusal) => {
                 self.give_back(session);
                 Err(refusal)
@@ -253,7 +255,8 @@ impl Engine for Oracle {
     }
 
     fn contact_solver(&self) -> Option<&dyn ContactSolver> {
-        (!self.contact_solvers.is_empty() || !self.contact_relaxations.is_empty()).then_some(self)
+        let lists = [&self.contact_solvers, &self.contact_relaxations];
+        (lists.iter().any(|names| !names.is_empty()) || !self.contact_steps.is_empty()).then_some(self)
     }
 
     fn loop_solver(&self) -> Option<&dyn LoopSolver> {
@@ -354,154 +357,6 @@ impl Session {
         self.ask(header, blocks)?;
         self.states = Some(key);
         Ok(())
-    }
-}
-
-/// A question to a session that has robot and states.
-struct Asked<'a> {
-    oracle: &'a Oracle,
-    session: Option<Session>,
-    robot: &'a Robot,
-    quantity: Quantity,
-    method: String,
-    values: Vec<f64>,
-    /// The overhead that was subtracted from the last time of the oracle's clock.
-    overhead: Option<Duration>,
-}
-
-impl Asked<'_> {
-    /// The question about a range of states.
-    fn question(&self, op: &str, range: &Range<usize>) -> Value {
-        json!({
-            "op": op, "quantity": self.quantity.name(), "method": self.method,
-            "first": range.start, "count": range.len(), "body": self.robot.deepest_body(),
-        })
-    }
-}
-
-impl Evaluation for Asked<'_> {
-    fn run(&mut self, range: Range<usize>) -> Result<(), NoAnswer> {
-        let question = self.question("evaluate", &range);
-        let session = self.session.as_mut().ok_or_else(|| NoAnswer::Failed("the oracle has ended".into()))?;
-        if self.quantity == Quantity::Readback {
-            self.values.clone_from(&session.readback);
-            return Ok(());
-        }
-        let answer = session.ask(question, Vec::new())?;
-        self.values = shaped(&answer, "value", &shape::of_value(self.quantity, self.robot, range.len()))?;
-        Ok(())
-    }
-
-    /// By the oracle's own clock, if it has one. Then the values are not sent, and [`Evaluation::read`] still has those of the last `run`.
-    /// A range that goes beyond the batch begins again at its first state.
-    fn clock(&mut self, range: Range<usize>) -> Result<Duration, NoAnswer> {
-        if matches!(self.oracle.timed_by, TimedBy::Us) {
-            let start = self.oracle.clock.now();
-            self.run(range)?;
-            return Ok(self.oracle.clock.now() - start);
-        }
-        let question = self.question("clock", &range);
-        let session = self.session.as_mut().ok_or_else(|| NoAnswer::Failed("the oracle has ended".into()))?;
-        let answer = session.ask(question, Vec::new())?;
-        let time = |key: &str| answer.header.get(key).and_then(Value::as_u64).map(Duration::from_nanos);
-        self.overhead = time("overhead");
-        if self.oracle.estimates() && self.overhead.is_none() {
-            return Err(NoAnswer::Failed("the oracle's answer has no overhead, and its times are estimates".into()));
-        }
-        time("nanoseconds").ok_or_else(|| NoAnswer::Failed("the oracle's answer has no nanoseconds".into()))
-    }
-
-    fn overhead(&self) -> Option<Duration> {
-        self.overhead
-    }
-
-    fn relocate(&mut self, seed: u32) -> Result<bool, NoAnswer> {
-        if !self.oracle.relocate {
-            return Ok(false);
-        }
-        let session = self.session.as_mut().ok_or_else(|| NoAnswer::Failed("the oracle has ended".into()))?;
-        session.ask(json!({"op": "relocate", "seed": seed}), Vec::new()).map(|_| true)
-    }
-
-    fn memory(&self) -> Option<Memory> {
-        self.session.as_ref().and_then(|session| session.process.memory())
-    }
-
-    fn read(&self) -> &[f64] {
-        &self.values
-    }
-}
-
-impl Drop for Asked<'_> {
-    fn drop(&mut self) {
-        if let Some(session) = self.session.take() {
-            self.oracle.give_back(session);
-        }
-    }
-}
-
-/// The result in an answer to `import`.
-///
-/// # Errors
-/// A sentence, when its bodies are not in an order in which states and answers can be given.
-pub(crate) fn reading(answer: &Message) -> Result<Import, String> {
-    let model = answer.header.get("model").ok_or("there is no model")?;
-    let parse = |model: &Value| featherbench_formats::neutral::parse(&model.to_string(), "the model").map_err(|error| error.to_string());
-    let description = parse(model)?;
-    let canonical = description.canonical().map_err(|error| error.to_string())?;
-    // States and answers are in the order of the bodies. An order that changed here would mix them up. Numbers may be normalised.
-    let order = |robot: &Description| robot.bodies.iter().map(|body| (body.name.clone(), body.parent)).collect::<Vec<_>>();
-    if order(&canonical) != order(&description) {
-        let moved = description.bodies.iter().zip(&canonical.bodies).find(|(given, due)| given.name != due.name);
-        let found = moved.map_or_else(
-            || "the last ones are fixed to others".to_owned(),
-            |(given, due)| format!("{} stands where {} is due", given.name, due.name),
-        );
-        return Err(format!("its bodies are not in depth-first order without fixed joints: {found}"));
-    }
-    for (key, due) in [("nq", canonical.nq()), ("nv", canonical.nv())] {
-        let found = answer.header.get(key).unwrap_or(&Value::Null);
-        if found.as_u64() != Some(due as u64) {
-            return Err(format!("{key} is {found}, the model has {due}"));
-        }
-    }
-    let keyframes = keyframes(answer, canonical.nq())?;
-    let notes = answer.header.get("notes").and_then(Value::as_array).map_or(&[][..], Vec::as_slice);
-    let written = answer.header.get("written").map(parse).transpose().map_err(|error| format!("as written: {error}"))?;
-    if let Some(written) = written.as_ref().filter(|written| !same_tree(written, &canonical)) {
-        return Err(format!("'{}' as written has other bodies or joints than as read", written.name));
-    }
-    Ok(Import { description: canonical, notes: notes.iter().map(note).collect(), keyframes, written })
-}
-
-/// Whether two descriptions have the same bodies on the same joints: states of one are states of the other.
-fn same_tree(a: &Description, b: &Description) -> bool {
-    let known =
-        |x: &BodyDescription, y: &BodyDescription| (&x.name, x.parent, x.joint.kind.name()) == (&y.name, y.parent, y.joint.kind.name());
-    a.bodies.len() == b.bodies.len() && a.bodies.iter().zip(&b.bodies).all(|(x, y)| known(x, y))
-}
-
-/// The configurations that the file names, if any.
-fn keyframes(answer: &Message, nq: usize) -> Result<Vec<Vec<f64>>, String> {
-    let Some(block) = answer.block("keyframes") else { return Ok(Vec::new()) };
-    if nq == 0 || block.shape.get(1..) != Some(&[nq]) {
-        return Err(format!("block 'keyframes' has the shape {:?}, rows of {nq} numbers are due", block.shape));
-    }
-    if let Some(at) = block.data.iter().position(|x| !x.is_finite()) {
-        return Err(format!("keyframe {} is not finite", at / nq));
-    }
-    Ok(block.data.chunks_exact(nq).map(<[f64]>::to_vec).collect())
-}
-
-/// A parser's note; a field that is not text is left empty.
-fn note(note: &Value) -> ImportNote {
-    let text = |key: &str| note.get(key).and_then(Value::as_str).map(str::to_owned);
-    let numbers: Option<Vec<f64>> = note.get("numbers").and_then(Value::as_array).and_then(|list| list.iter().map(Value::as_f64).collect());
-    ImportNote {
-        cause: text("cause").unwrap_or_default(),
-        about: text("about"),
-        text: text("text").unwrap_or_default(),
-        numbers: numbers.unwrap_or_default(),
     }
 }
 

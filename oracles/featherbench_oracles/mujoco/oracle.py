@@ -12,7 +12,7 @@ import numpy as np
 from featherbench_oracles.algebra import Array
 from featherbench_oracles.change import CoordinateChange
 from featherbench_oracles.derivatives import Differentiated
-from featherbench_oracles.mujoco import holding, reading, scenes
+from featherbench_oracles.mujoco import holding, reading, scenes, standing
 from featherbench_oracles.mujoco.building import build, chains, motions
 from featherbench_oracles.mujoco.coordinates import change_of_velocities, from_wxyz, rates_of_change, to_engine_q
 from featherbench_oracles.mujoco.rods import RODS
@@ -306,6 +306,7 @@ class Mujoco:
         "fd_dv": _forward_and_centred(MujocoRobot.forward_dv),
     }
 
+    contact_steps = standing.METHODS
     loop_mechanics = holding.MujocoLoops
     loop_accelerations = holding.ACCELERATIONS
     loop_motions = tuple(holding.MOTIONS)

@@ -5,10 +5,10 @@
 //! Gauss–Seidel steps it in time; where its cap is reached, Newton's method does, or more sweeps.
 
 use super::{Case, Number, count, error, failed, largest, told};
-use featherbench_bench::NoAnswer;
+use featherbench_bench::{ContactSteps, NoAnswer};
 use featherbench_contact::{BlockGaussSeidel, Grounded, Newton, Problem, Solver, Touch, solver};
 use featherbench_dynamics::Kinematics;
-use featherbench_model::{Model, neutral};
+use featherbench_model::{Description, Model, neutral};
 use featherbench_robots::{Family, Random};
 use featherbench_spatial::{Transform, Vec3};
 use serde_json::json;
@@ -98,7 +98,7 @@ impl Stand {
 
     /// The robot, its stance on the ground, and the points of its feet.
     pub(crate) fn make(self) -> Result<Standing, NoAnswer> {
-        let description = Family::parse(self.family()).map_err(failed)?.generate().map_err(failed)?;
+        let description = Family::parse(self.family()).map_err(failed)?.generate().map_err(failed)?.canonical().map_err(failed)?;
         let model: Model<f64> = Model::build(&description).map_err(failed)?;
         let (angles, gains) = self.stance();
         let mut q = neutral(&model.topology);
@@ -124,17 +124,26 @@ impl Stand {
         }
         // The free base is the first body; its position is the first three numbers of q. All feet are equally high in the stance.
         q[2] = -heights.first().copied().unwrap_or_default();
-        Ok(Standing { model, touches, stance: q, gains })
+        Ok(Standing { description, model, touches, stance: q, gains })
     }
 }
 
 /// A robot with its stance.
 pub(crate) struct Standing {
+    description: Description,
     pub(crate) model: Model<f64>,
     pub(crate) touches: Vec<Touch>,
     /// The configuration.
     pub(crate) stance: Vec<f64>,
     gains: [f64; 2],
+}
+
+/// A contact problem and the state from which it is that of a step.
+pub(crate) struct Taken {
+    pub(crate) problem: Problem,
+    q: Vec<f64>,
+    v: Vec<f64>,
+    tau: Vec<f64>,
 }
 
 impl Standing {
@@ -157,21 +166,23 @@ impl Standing {
     }
 
     /// The problem of the first step, which has all contacts.
-    pub(crate) fn landing(&self, seed: u64) -> Result<Option<Problem>, NoAnswer> {
+    pub(crate) fn landing(&self, seed: u64) -> Result<Option<Taken>, NoAnswer> {
         let [q, v] = self.touch_down(seed);
         let tau = self.forces(&q, &v);
-        Grounded::new(&self.model, self.touches.clone()).problem(&format!("landing {seed}"), &q, &v, &tau, STEP).map_err(failed)
+        let problem = Grounded::new(&self.model, self.touches.clone()).problem(&format!("landing {seed}"), &q, &v, &tau, STEP);
+        Ok(problem.map_err(failed)?.map(|problem| Taken { problem, q, v, tau }))
     }
 
     /// The problems of the running robot. The first has all contacts.
-    pub(crate) fn run(&self, seed: u64) -> Result<Vec<Problem>, NoAnswer> {
+    pub(crate) fn run(&self, seed: u64) -> Result<Vec<Taken>, NoAnswer> {
         let robot = Grounded::new(&self.model, self.touches.clone());
         let [mut q, mut v] = self.touch_down(seed);
         let mut problems = Vec::new();
         for number in 0..STEPS {
             let tau = self.forces(&q, &v);
             if number % EVERY == 0 {
-                problems.extend(robot.problem(&format!("step {number}"), &q, &v, &tau, STEP).map_err(failed)?);
+                let problem = robot.problem(&format!("step {number}"), &q, &v, &tau, STEP).map_err(failed)?;
+                problems.extend(problem.map(|problem| Taken { problem, q: q.clone(), v: v.clone(), tau: tau.clone() }));
             }
             let by = |solver: &dyn Solver| robot.step(&q, &v, &tau, STEP, solver);
             let sweeps = |sweeps| BlockGaussSeidel { sweeps, ..BlockGaussSeidel::default() };
@@ -180,6 +191,24 @@ impl Standing {
             (q, v) = (stepped.q, stepped.v);
         }
         Ok(problems)
+    }
+
+    /// The same problems as steps of the robot, for engines whose solvers take no G.
+    pub(crate) fn steps(&self, taken: &[Taken]) -> Result<ContactSteps, NoAnswer> {
+        let described = |touch: &Touch| self.model.described.iter().position(|body| *body == touch.body);
+        let bodies: Option<Vec<usize>> = self.touches.iter().map(described).collect();
+        let of = |state: fn(&Taken) -> &Vec<f64>| taken.iter().flat_map(|taken| state(taken).iter().copied()).collect();
+        Ok(ContactSteps {
+            robot: self.description.clone(),
+            dt: STEP,
+            bodies: bodies.ok_or_else(|| NoAnswer::Failed("a point is on no described body".into()))?,
+            points: self.touches.iter().flat_map(|touch| touch.point).collect(),
+            friction: self.touches.iter().map(|touch| touch.friction).collect(),
+            count: taken.len(),
+            q: of(|taken| &taken.q),
+            v: of(|taken| &taken.v),
+            tau: of(|taken| &taken.tau),
+        })
     }
 }
 
@@ -212,13 +241,13 @@ fn case(stand: Stand, which: usize) -> Case {
         evaluate: Box::new(move |seed| {
             let solver = &solver::all()[which];
             let problems = stand.make()?.run(seed)?;
-            let all = problems.first().filter(|problem| problem.contacts().len() == stand.contacts());
+            let all = problems.first().map(|taken| &taken.problem).filter(|problem| problem.contacts().len() == stand.contacts());
             let Some(mechanism) = all.and_then(|problem| problem.mechanism()) else {
                 return Err(NoAnswer::Failed("the robot does not meet the ground with all its feet".into()));
             };
             let rank = mechanism.jacobian.rank(1e-8);
             let (mut unanswered, mut iterations, mut residual) = (0, 0, 0.0);
-            for problem in &problems {
+            for problem in problems.iter().map(|taken| &taken.problem) {
                 let solution = solver.solve(problem).map_err(|unsupported| NoAnswer::NotOffered(unsupported.to_string()))?;
                 match solution.point() {
                     Some(point) => residual = largest([residual, point.residuals.largest()]),
@@ -243,7 +272,7 @@ mod tests {
         for seed in 1..=4 {
             for stand in Stand::ALL {
                 let problems = stand.make().unwrap().run(seed).unwrap_or_else(|error| panic!("{}, seed {seed}: {error}", stand.name()));
-                assert_eq!(problems[0].contacts().len(), stand.contacts());
+                assert_eq!(problems[0].problem.contacts().len(), stand.contacts());
             }
         }
     }

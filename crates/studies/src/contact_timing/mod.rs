@@ -4,12 +4,17 @@
 //! the paired experiment of the study `timing`, from impulses of zero, problem after problem. Each has the loosest tolerance, by powers of
 //! ten, with which all its answers have a natural-map residual within [`TARGET`]. The residual is ours, whatever the solver's own measure is.
 //!
+//! An engine whose solver takes no G gets the robot, its points and the states. It answers by its own model of contact, so no tolerance makes
+//! its residual small. Its tolerance is the loosest with which the velocities are within [`TARGET`] of the limit of its own model. Its rows say
+//! so, and its ratios have a name of their own.
+//!
 //! | candidate | what its time includes |
 //! |---|---|
 //! | `block_gauss_seidel` | the sweeps; rows, blocks and their inverses were made before |
 //! | `block_gauss_seidel_whole` | those too, from M and J |
 //! | `newton` | everything from G and b, and the residuals of the answer |
 //! | an engine's method | its call, by its own clock; G, b and memory were there before |
+//! | … with its own model | its stage of contact forces: what it says itself |
 
 mod candidates;
 mod rows;
@@ -20,7 +25,7 @@ use crate::timing::machine::Pinned;
 use crate::timing::protocol::{Budget, Ready, experiment};
 use crate::timing::samples::Samples;
 use crate::{Made, Setup};
-use candidates::{Candidate, Landed, OWN};
+use candidates::{Candidate, Landed, OWN, Told};
 use featherbench_bench::{Cell, Context, Finished, NoAnswer, Outcome, Robot, Study, hash};
 use featherbench_results::{Row, canonical_json};
 use featherbench_robots::Random;
@@ -69,9 +74,7 @@ impl ContactTiming {
             .map(|method| Candidate::new("featherbench", method, false));
         let control = Candidate::new("featherbench", OWN[0], true);
         let engines = self.settings.engines.iter().filter_map(|name| Some((name, context.engine(name)?.contact_solver()?)));
-        let others = engines.flat_map(|(name, solver)| {
-            solver.contact_methods().into_iter().map(|method| Candidate::new(name, &method, false)).collect::<Vec<_>>()
-        });
+        let others = engines.flat_map(|(name, solver)| Candidate::all_of(name, solver));
         own.chain([control]).chain(others).collect()
     }
 
@@ -92,7 +95,7 @@ impl ContactTiming {
         })
     }
 
-    /// Of each candidate its tolerance, residual and most iterations, then the samples.
+    /// How many problems, what is told of each candidate, then the samples.
     fn measured(&self, context: &Context, cell: &Cell) -> Result<Vec<f64>, NoAnswer> {
         let lost = || NoAnswer::Failed("there is no robot of this cell".into());
         let stand = Stand::ALL.into_iter().find(|stand| stand.name() == cell.robot).ok_or_else(lost)?;
@@ -100,31 +103,28 @@ impl ContactTiming {
         let candidates = Candidate::of(cell);
         let chosen: Vec<_> = candidates.iter().map(|candidate| candidate.at_target(context, &landed)).collect();
         let _pinned = Pinned::to_one_core();
-        let prepare = |which: usize| -> Ready {
-            let (tolerance, _) = chosen[which].clone()?;
-            candidates[which].prepare(context, &landed, tolerance)
-        };
+        let prepare = |which: usize| -> Ready { candidates[which].prepare(context, &landed, chosen[which].clone()?.tolerance) };
         let mut random = Random::named(context.seed, &cell.id());
         let start = Instant::now();
         let clock = || start.elapsed();
         let samples = experiment(&prepare, candidates.len(), landed.problems.len(), Budget::of(self.settings.seconds), &clock, &mut random);
-        let told = chosen.into_iter().flat_map(|chosen| chosen.map_or([f64::NAN; 2], |(tolerance, residual)| [tolerance, residual]));
+        let told = chosen.into_iter().flat_map(|chosen| chosen.unwrap_or(Told::NONE).to_values());
         Ok(std::iter::once(landed.problems.len() as f64).chain(told).chain(samples.to_values()).collect())
     }
 }
 
-/// The outcome of a cell: how many problems, each candidate's tolerance and residual, and the samples.
+/// The outcome of a cell.
 struct Measured {
     problems: f64,
-    told: Vec<[f64; 2]>,
+    told: Vec<Told>,
     samples: Samples,
 }
 
 impl Measured {
     fn from_values(values: &[f64], candidates: usize) -> Option<Self> {
         let (&problems, rest) = values.split_first()?;
-        let (told, samples) = rest.split_at_checked(2 * candidates)?;
-        let told = told.chunks_exact(2).map(|pair| [pair[0], pair[1]]).collect();
+        let (told, samples) = rest.split_at_checked(3 * candidates)?;
+        let told = told.chunks_exact(3).map(Told::from_values).collect();
         let samples = Samples::from_values(samples).filter(|samples| samples.calls.len() == candidates)?;
         Some(Self { problems, told, samples })
     }

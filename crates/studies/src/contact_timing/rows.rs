@@ -1,6 +1,6 @@
 //! Rows of a robot's experiment.
 
-use super::candidates::Candidate;
+use super::candidates::{Candidate, Told, WHOLE};
 use super::{Measured, STUDY, TARGET};
 use crate::timing::rows::{estimated, judged};
 use crate::timing::statistics::{CONTROL_LEVEL, Estimate, LEVEL};
@@ -12,13 +12,12 @@ use serde_json::json;
 /// All rows of a cell.
 pub(super) fn rows(gates: &Gates, cell: &Cell, outcome: &Outcome) -> Vec<Row> {
     let candidates = Candidate::of(cell);
+    let params = json!({"contacts": cell.params["contacts"], "rank": cell.params["rank"], "seconds": cell.params["seconds"]});
     let blank = Row {
         cell: cell.id(),
         study: STUDY.into(),
         family: cell.robot.clone(),
-        params: canonical_json(
-            &json!({"contacts": cell.params["contacts"], "rank": cell.params["rank"], "seconds": cell.params["seconds"]}),
-        ),
+        params: canonical_json(&params),
         engine: cell.engine.clone(),
         engine_version: cell.version.clone(),
         method: cell.method.clone(),
@@ -46,27 +45,43 @@ pub(super) fn rows(gates: &Gates, cell: &Cell, outcome: &Outcome) -> Vec<Row> {
     };
     let noise = noise.as_deref();
     let usual = format!("{} {}", cell.engine, cell.method);
+    let whole = candidates.iter().position(|candidate| candidate.engine == cell.engine && candidate.method == WHOLE);
     let mut rows = vec![Row { metric: "problems".into(), unit: "1".into(), ..blank.clone() }.informed(measured.problems)];
     for (which, candidate) in candidates.iter().enumerate() {
-        let Candidate { engine, version, method, .. } = candidate.clone();
-        let blank = Row { engine, engine_version: version, method, ..blank.clone() };
+        let Candidate { engine, version, method, own_model, .. } = candidate.clone();
+        let mut blank = Row { engine, engine_version: version, method, ..blank.clone() };
+        let own = !own_model.is_null();
+        if own {
+            let mut params = params.clone();
+            params["own_model"] = own_model;
+            blank.params = canonical_json(&params);
+        }
         let of = |metric: &str, unit: &str, kind| Row { metric: metric.into(), unit: unit.into(), kind, ..blank.clone() };
         if candidate.control {
             let row = Row { reference: format!("{usual}, its first copy"), ..of("control", "1", Kind::Measured) };
             rows.extend(control.as_ref().map(|(ratio, _)| judged(estimated(row, ratio), noise)));
             continue;
         }
-        let [tolerance, residual] = measured.told[which];
+        let Told { tolerance, residual, from_limit } = measured.told[which];
         if tolerance.is_nan() {
             // An engine's own measure may end before its answers are as good as asked. That is a result, and its time is not comparable.
-            let reason = format!("at no tolerance are all its answers within a natural-map residual of {TARGET:.0e}");
+            let reason = if own {
+                format!("at no tolerance are all its velocities within {TARGET:.0e} of the limit of its own model")
+            } else {
+                format!("at no tolerance are all its answers within a natural-map residual of {TARGET:.0e}")
+            };
             let verdict = if candidate.engine == cell.engine { Verdict::Error } else { Verdict::Info };
             rows.push(of("residual", "1", Kind::Exact).without_value(verdict, reason));
             continue;
         }
         rows.push(of("tolerance", "1", Kind::Exact).informed(tolerance));
         let row = Row { reference: "laws".into(), ..of("residual", "1", Kind::Exact) };
-        rows.push(gates.explain(row.gated(residual, Relation::Le, TARGET)));
+        if own {
+            let limit = Row { reference: "its own model".into(), ..of("from_limit", "1", Kind::Exact) };
+            rows.extend([row.informed(residual), limit.informed(from_limit)]);
+        } else {
+            rows.push(gates.explain(row.gated(residual, Relation::Le, TARGET)));
+        }
         let ns = samples.of(which);
         let timed = of("ns_per_call", "ns", Kind::Measured);
         if ns.iter().any(|ns| ns.is_nan()) {
@@ -75,7 +90,12 @@ pub(super) fn rows(gates: &Gates, cell: &Cell, outcome: &Outcome) -> Vec<Row> {
         }
         let name = format!("{} {}", candidate.engine, candidate.method);
         rows.push(judged(estimated(timed, &Estimate::median(ns, LEVEL, &mut random(&name))), noise));
-        if which > 0 {
+        if let Some(whole) = whole.filter(|_| own) {
+            // From M and J on, as the engine's: but another model at another residual, so by a name of its own.
+            let ratio = Estimate::ratio(ns, samples.of(whole), LEVEL, &mut random(&format!("{name} ratio")));
+            let row = Row { reference: format!("{} {WHOLE}", cell.engine), ..of("own_model_ratio", "1", Kind::Measured) };
+            rows.push(judged(estimated(row, &ratio), noise));
+        } else if which > 0 && !own {
             let ratio = Estimate::ratio(ns, samples.of(0), LEVEL, &mut random(&format!("{name} ratio")));
             let row = Row { reference: usual.clone(), ..of("ratio", "1", Kind::Measured) };
             rows.push(judged(estimated(row, &ratio), noise));

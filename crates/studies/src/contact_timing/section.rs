@@ -4,6 +4,7 @@ use super::{STUDY, TARGET};
 use featherbench_report::numbers::short;
 use featherbench_report::{Overview, Section, labels, opener};
 use featherbench_results::{Row, RunInfo, Verdict};
+use featherbench_spatial::{larger, smaller};
 use maud::{Markup, html};
 use serde::Serialize;
 
@@ -16,8 +17,10 @@ struct Time<'a> {
     method: &'a str,
     ns: f64,
     valid: bool,
-    /// Over the reference's; none for the reference itself.
+    /// Over the reference's; none for the reference itself, and for an engine's own model.
     ratio: Option<f64>,
+    /// Of an engine's own model: over the time of ours from M and J.
+    own_ratio: Option<f64>,
     residual: Option<f64>,
     tolerance: Option<f64>,
 }
@@ -50,6 +53,7 @@ fn times<'a>(rows: &[&'a Row]) -> Vec<Time<'a>> {
             ns: row.value?,
             valid: row.valid,
             ratio: beside(row, "ratio"),
+            own_ratio: beside(row, "own_model_ratio"),
             residual: beside(row, "residual"),
             tolerance: beside(row, "tolerance"),
         })
@@ -70,6 +74,29 @@ fn best_others<'a>(times: &'a [Time]) -> Vec<(&'a str, &'a Time<'a>)> {
     best
 }
 
+/// Of each engine with a model of its own: its name, the least and the most of its fastest method's times over ours, and the least residual.
+fn own_models<'a>(times: &'a [Time]) -> Vec<(&'a str, [f64; 2], f64)> {
+    let mut fastest: Vec<(&str, &str, f64, f64)> = Vec::new();
+    for time in times.iter().filter(|time| time.valid) {
+        let (Some(ratio), Some(residual)) = (time.own_ratio, time.residual) else { continue };
+        match fastest.iter_mut().find(|(engine, robot, ..)| *engine == time.engine && *robot == time.robot) {
+            Some((.., least, known)) => (*least, *known) = (smaller(*least, ratio), smaller(*known, residual)),
+            None => fastest.push((time.engine, time.robot, ratio, residual)),
+        }
+    }
+    let mut models: Vec<(&str, [f64; 2], f64)> = Vec::new();
+    for (engine, _, ratio, residual) in fastest {
+        match models.iter_mut().find(|(known, ..)| *known == engine) {
+            Some((_, ends, least)) => {
+                *ends = [smaller(ends[0], ratio), larger(ends[1], ratio)];
+                *least = smaller(*least, residual);
+            }
+            None => models.push((engine, [ratio; 2], residual)),
+        }
+    }
+    models
+}
+
 fn body(rows: &[&Row], times: &[Time], chunk: &str) -> Markup {
     let best = best_others(times);
     let ratios: Vec<f64> = best.iter().filter_map(|(_, time)| time.ratio).collect();
@@ -85,7 +112,16 @@ fn body(rows: &[&Row], times: &[Time], chunk: &str) -> Markup {
                 }
             }
             ul {
-                li { "Every time is of answers with a natural-map residual of at most " (short(TARGET)) ", by the laws of Signorini and Coulomb." }
+                li {
+                    "Times are of answers with a natural-map residual of at most " (short(TARGET)) ", by the laws of Signorini and Coulomb; of an own "
+                    "model, of velocities within " (short(TARGET)) " of its limit."
+                }
+                @for (engine, [least, most], residual) in own_models(times) {
+                    li {
+                        (engine) " answers by its own model of contact. Its fastest method takes " (short(least)) " to " (short(most))
+                        " times as long as ours from M and J, and its residual by the laws is " (short(residual)) " at the least."
+                    }
+                }
                 li { "Times of the sweeps and of other engines begin with G, b and memory prepared. Those of the other two methods of ours include preparation." }
                 @for row in &unreached { li { (row.engine) " " (row.method) " on " (row.family) ": " (row.reason) "." } }
             }
@@ -95,7 +131,8 @@ fn body(rows: &[&Row], times: &[Time], chunk: &str) -> Markup {
                     thead {
                         tr {
                             th scope="col" { "robot" } th scope="col" { "solver" } th.number scope="col" { "time, µs" }
-                            th.number scope="col" { "over ours" } th.number scope="col" { "tolerance" } th.number scope="col" { "residual" }
+                            th.number scope="col" { "over ours" } th.number scope="col" { "own model, over ours" }
+                            th.number scope="col" { "tolerance" } th.number scope="col" { "residual" }
                         }
                     }
                     tbody { @for time in times { (line(time, chunk)) } }
@@ -113,6 +150,7 @@ fn line(time: &Time, chunk: &str) -> Markup {
             td { (time.engine) " " (time.method) }
             td.number { @if !time.valid { span class={ "badge " (Verdict::Skip) } { (labels::glyph(Verdict::Skip)) } " " } (short(time.ns * 1e-3)) }
             td.number { @if let Some(ratio) = time.ratio { (short(ratio)) } }
+            td.number { @if let Some(ratio) = time.own_ratio { (short(ratio)) } }
             td.number { @if let Some(tolerance) = time.tolerance { (short(tolerance)) } }
             td.number { @if let Some(residual) = time.residual { (short(residual)) } }
         }

@@ -51,7 +51,7 @@ fn names() -> Vec<String> {
 /// The problems of a name, all of one size.
 fn problems(name: &str, seed: u64) -> Result<Vec<Problem>, NoAnswer> {
     if let Some(stand) = Stand::ALL.into_iter().find(|stand| stand.name() == name) {
-        let mut problems = stand.make()?.run(seed)?;
+        let mut problems: Vec<Problem> = stand.make()?.run(seed)?.into_iter().map(|taken| taken.problem).collect();
         problems.retain(|problem| problem.contacts().len() == stand.contacts());
         return Ok(problems);
     }

@@ -1,0 +1,71 @@
+//! The answer to the operation `import`: what an engine's own parser has made of a file.
+
+use featherbench_bench::{Import, ImportNote};
+use featherbench_model::{BodyDescription, Description};
+use featherbench_protocol::Message;
+use serde_json::Value;
+
+/// The result in an answer to `import`.
+///
+/// # Errors
+/// A sentence, when its bodies are not in an order in which states and answers can be given.
+pub(crate) fn reading(answer: &Message) -> Result<Import, String> {
+    let model = answer.header.get("model").ok_or("there is no model")?;
+    let parse = |model: &Value| featherbench_formats::neutral::parse(&model.to_string(), "the model").map_err(|error| error.to_string());
+    let description = parse(model)?;
+    let canonical = description.canonical().map_err(|error| error.to_string())?;
+    // States and answers are in the order of the bodies. An order that changed here would mix them up. Numbers may be normalised.
+    let order = |robot: &Description| robot.bodies.iter().map(|body| (body.name.clone(), body.parent)).collect::<Vec<_>>();
+    if order(&canonical) != order(&description) {
+        let moved = description.bodies.iter().zip(&canonical.bodies).find(|(given, due)| given.name != due.name);
+        let found = moved.map_or_else(
+            || "the last ones are fixed to others".to_owned(),
+            |(given, due)| format!("{} stands where {} is due", given.name, due.name),
+        );
+        return Err(format!("its bodies are not in depth-first order without fixed joints: {found}"));
+    }
+    for (key, due) in [("nq", canonical.nq()), ("nv", canonical.nv())] {
+        let found = answer.header.get(key).unwrap_or(&Value::Null);
+        if found.as_u64() != Some(due as u64) {
+            return Err(format!("{key} is {found}, the model has {due}"));
+        }
+    }
+    let keyframes = keyframes(answer, canonical.nq())?;
+    let notes = answer.header.get("notes").and_then(Value::as_array).map_or(&[][..], Vec::as_slice);
+    let written = answer.header.get("written").map(parse).transpose().map_err(|error| format!("as written: {error}"))?;
+    if let Some(written) = written.as_ref().filter(|written| !same_tree(written, &canonical)) {
+        return Err(format!("'{}' as written has other bodies or joints than as read", written.name));
+    }
+    Ok(Import { description: canonical, notes: notes.iter().map(note).collect(), keyframes, written })
+}
+
+/// Whether two descriptions have the same bodies on the same joints: states of one are states of the other.
+fn same_tree(a: &Description, b: &Description) -> bool {
+    let known =
+        |x: &BodyDescription, y: &BodyDescription| (&x.name, x.parent, x.joint.kind.name()) == (&y.name, y.parent, y.joint.kind.name());
+    a.bodies.len() == b.bodies.len() && a.bodies.iter().zip(&b.bodies).all(|(x, y)| known(x, y))
+}
+
+/// The configurations that the file names, if any.
+fn keyframes(answer: &Message, nq: usize) -> Result<Vec<Vec<f64>>, String> {
+    let Some(block) = answer.block("keyframes") else { return Ok(Vec::new()) };
+    if nq == 0 || block.shape.get(1..) != Some(&[nq]) {
+        return Err(format!("block 'keyframes' has the shape {:?}, rows of {nq} numbers are due", block.shape));
+    }
+    if let Some(at) = block.data.iter().position(|x| !x.is_finite()) {
+        return Err(format!("keyframe {} is not finite", at / nq));
+    }
+    Ok(block.data.chunks_exact(nq).map(<[f64]>::to_vec).collect())
+}
+
+/// A parser's note; a field that is not text is left empty.
+fn note(note: &Value) -> ImportNote {
+    let text = |key: &str| note.get(key).and_then(Value::as_str).map(str::to_owned);
+    let numbers: Option<Vec<f64>> = note.get("numbers").and_then(Value::as_array).and_then(|list| list.iter().map(Value::as_f64).collect());
+    ImportNote {
+        cause: text("cause").unwrap_or_default(),
+        about: text("about"),
+        text: text("text").unwrap_or_default(),
+        numbers: numbers.unwrap_or_default(),
+    }
+}
