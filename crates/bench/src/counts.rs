@@ -2,8 +2,8 @@
 //!
 //! `featherbench gate RUN --counts --write` writes it. A complete run that has others fails: a study that asks less than it did is noticed.
 
-use crate::{HarnessError, gates::condition};
-use featherbench_results::{Expectation, Kind, Row, RunInfo, Verdict};
+use crate::HarnessError;
+use featherbench_results::{Culprit, Expectation, GateKind, Kind, Row, RunInfo, Verdict};
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
@@ -104,16 +104,16 @@ impl Counts {
                 (due.get(key).map_or_else(Count::default, |count| **count), found.0.get(key).copied().unwrap_or_default())
             };
             let sum = |which: fn((Count, Count)) -> Count| keys.iter().map(|key| which(count(key)).rows).sum::<u64>();
-            let other: Vec<String> = keys
-                .iter()
-                .filter_map(|key| {
-                    let (due, found) = count(key);
-                    let words = format!("{}: {} cells and {} rows, not {} and {}", key[3], found.cells, found.rows, due.cells, due.rows);
-                    (due != found).then_some(words)
-                })
-                .collect();
+            let others = || keys.iter().copied().filter(|key| count(key).0 != count(key).1);
+            let words = |key: &[String; 4]| {
+                let (due, found) = count(key);
+                format!("{}: {} cells and {} rows, not {} and {}", key[3], found.cells, found.rows, due.cells, due.rows)
+            };
+            let other: Vec<String> = others().map(words).collect();
+            let quantity = others().next().map(|key| key[3].clone()).unwrap_or_default();
             let what = format!("cells and rows of {engine} in the study {study} as {COUNTS_NAME} has them");
-            let mut condition = condition(what, sum(|(due, _)| due), sum(|(_, found)| found));
+            let culprit = Culprit { study: study.clone(), quantity, ..Culprit::engine(engine) };
+            let mut condition = Expectation::new(GateKind::Counts, what, sum(|(due, _)| due), sum(|(_, found)| found)).about(culprit);
             if !other.is_empty() {
                 condition.verdict = Verdict::Fail;
                 condition.reason = other.join("; ");

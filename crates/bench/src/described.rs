@@ -227,7 +227,11 @@ impl Engines {
     /// A sentence that names the engines that there are.
     pub fn get(&self, name: &str) -> Result<&DescribedEngine, String> {
         let found = self.0.iter().find(|engine| engine.name == name);
-        found.ok_or_else(|| format!("there is no engine '{name}'; oracles/engines.toml has {}", self.names(|_| true).join(", ")))
+        found.ok_or_else(|| {
+            let names = self.names(|_| true);
+            let near = crate::did_you_mean(name, names.iter().copied());
+            format!("there is no engine '{name}'{near}; oracles/engines.toml has {}", names.join(", "))
+        })
     }
 
     /// The package of an engine; of a native oracle that of the engine which it is built of.

@@ -4,7 +4,7 @@ use crate::class::named;
 use crate::known::Known;
 use crate::ranges::files;
 use crate::{Deviation, DeviationFile, Engines, HarnessError, Lack, Mean, Ranges, Reproduction, Suite};
-use featherbench_results::{Expectation, Properties, Relation, Row, Verdict};
+use featherbench_results::{Culprit, Expectation, GateKind, Properties, Relation, Row, Verdict};
 use serde::Deserialize;
 use serde_json::Value;
 use std::collections::{BTreeMap, HashMap};
@@ -181,6 +181,17 @@ impl Gates {
         &self.known.reproductions
     }
 
+    /// Plants a fault of ten times its bound under each gate: which of them fire. One that does not is hidden by a gate before it.
+    pub fn planted(&self) -> Vec<Planted<'_>> {
+        let first = |row: &Row| self.gates.iter().find(|gate| gate.matches(row));
+        let fires = |gate: &Gate, row: Row| {
+            let depth = row.depth.unwrap_or(0) as f64;
+            let fault = 10.0 * gate.bound * if gate.times == Factor::One { 1.0 } else { depth };
+            first(&row).is_some_and(|found| std::ptr::eq(found, gate)) && self.judge(row, fault, 1.0).verdict == Verdict::Fail
+        };
+        self.gates.iter().map(|gate| Planted { gate, fired: gate.examples().any(|row| fires(gate, row)) }).collect()
+    }
+
     /// Closes a row with its value: judged if a gate matches, otherwise informed. Then known deviations are searched.
     ///
     /// `amplification` turns a backward error into a forward one at the row's state (1 where it does not apply).
@@ -214,20 +225,26 @@ impl Gates {
     /// - No row fails, and every skip and error is explained.
     /// - If the run is `complete`, it has rows. A thorough suite then also shows every known deviation in its known size, everything that is not offered, and sharp bounds.
     pub fn conditions(&self, suite: &Suite, records: &[Row], complete: bool) -> Vec<Expectation> {
-        let count = |of_these: &dyn Fn(&Row) -> bool| records.iter().filter(|row| of_these(row)).count() as u64;
+        // The culprit is the first row of those with the least margin.
+        let none = |kind: GateKind, what: &str, of_these: &dyn Fn(&Row) -> bool| {
+            let rows = || records.iter().filter(|row| of_these(row));
+            let margin = |row: &Row| row.margin.unwrap_or(f64::NEG_INFINITY);
+            let worst = rows().min_by(|a, b| margin(a).total_cmp(&margin(b)));
+            Expectation::new(kind, what.into(), 0, rows().count() as u64).about(worst.map(Culprit::of).unwrap_or_default())
+        };
         let unknown = |row: &Row| {
             let excused = self.externals.contains(&row.engine) || self.known.is_lacking(row);
             row.verdict == Verdict::Skip && !excused
         };
         let mut conditions = vec![
-            condition("rows outside their bound".into(), 0, count(&|row| row.verdict == Verdict::Fail)),
-            condition("rows without a value that was due".into(), 0, count(&|row| row.verdict == Verdict::Error)),
-            condition("rows that an engine does not offer and oracles/engines.toml does not name".into(), 0, count(&unknown)),
+            none(GateKind::Bound, "rows outside their bound", &|row| row.verdict == Verdict::Fail),
+            none(GateKind::Answer, "rows without a value that was due", &|row| row.verdict == Verdict::Error),
+            none(GateKind::Unlisted, "rows that an engine does not offer and oracles/engines.toml does not name", &unknown),
         ];
         if !complete {
             return conditions;
         }
-        conditions.push(condition("rows at all".into(), 1, u64::from(!records.is_empty())));
+        conditions.push(Expectation::new(GateKind::Rows, "rows at all".into(), 1, u64::from(!records.is_empty())));
         if suite.thorough {
             conditions.extend(self.known.still_seen(suite, records));
             conditions.extend(self.sharp.iter().flat_map(|sharp| sharp.conditions(suite, records)));
@@ -235,12 +252,6 @@ impl Gates {
         }
         conditions
     }
-}
-
-pub(crate) fn condition(what: String, expected: u64, found: u64) -> Expectation {
-    let met = expected == found;
-    let reason = if met { String::new() } else { format!("expected {expected}, found {found}") };
-    Expectation { what, expected, found, verdict: if met { Verdict::Pass } else { Verdict::Fail }, reason }
 }
 
 /// The sharpest bound for each kind of joint and base.
@@ -264,13 +275,50 @@ impl Sharpness {
         let condition = |((engine, method), bounds): (&(&str, &str), &Bounds)| {
             let blunt = bounds.values().filter(|&&bound| bound > self.bound).count() as u64;
             let what = format!("kinds of joint and base for which {engine} {method} has no {} bound below {:e}", self.metric, self.bound);
-            condition(what, 0, blunt)
+            let culprit = Culprit {
+                study: self.study.clone(),
+                quantity: self.quantity.clone(),
+                method: (*method).to_owned(),
+                ..Culprit::engine(engine)
+            };
+            Expectation::new(GateKind::Sharp, what, 0, blunt).about(culprit)
         };
         sharpest.iter().map(condition).collect()
     }
 }
 
+/// A gate in which a fault was planted.
+#[derive(Clone, Copy, Debug)]
+pub struct Planted<'a> {
+    /// The gate.
+    pub gate: &'a Gate,
+    /// Whether the fault made it fail.
+    pub fired: bool,
+}
+
+/// Depths of the rows that a gate is tried with: below, at and far beyond every `max_depth`.
+const DEPTHS: [u64; 3] = [1, 20, 1000];
+
 impl Gate {
+    /// Rows that it judges, if no gate before it does: of each quantity, engine, method and robot that it names.
+    fn examples(&self) -> impl Iterator<Item = Row> + '_ {
+        fn named(names: Option<&Vec<String>>) -> Vec<String> {
+            names.map_or_else(|| vec!["any".to_owned()], |names| names.iter().map(|name| name.trim_end_matches('*').to_owned()).collect())
+        }
+        let lists = [Some(&self.quantities), self.engines.as_ref(), self.methods.as_ref(), self.robots.as_ref()].map(named);
+        let mut rows = vec![Row { study: self.study.clone(), metric: self.metric.clone(), ..Row::default() }];
+        let set: [fn(Row, String) -> Row; 4] = [
+            |row, quantity| Row { quantity, ..row },
+            |row, engine| Row { engine, ..row },
+            |row, method| Row { method, ..row },
+            |row, robot| Row { robot, ..row },
+        ];
+        for (names, set) in lists.iter().zip(set) {
+            rows = rows.iter().flat_map(|row| names.iter().map(move |name| set(row.clone(), name.clone()))).collect();
+        }
+        rows.into_iter().flat_map(|row| DEPTHS.map(|depth| Row { depth: Some(depth), ..row.clone() }))
+    }
+
     fn matches(&self, row: &Row) -> bool {
         let among = |names: &Option<Vec<String>>, name: &String| names.as_ref().is_none_or(|names| names.contains(name));
         self.study == row.study

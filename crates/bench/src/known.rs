@@ -1,9 +1,8 @@
 //! What is known of the engines: their deviations, with their sizes, and what they do not offer. It explains rows that do not pass.
 
-use crate::gates::condition;
 use crate::measure::worst;
 use crate::{Deviation, DeviationFile, HarnessError, Lack, RangeKey, Ranges, Reproduction, Suite};
-use featherbench_results::{Expectation, Properties, Row, Verdict};
+use featherbench_results::{Culprit, Expectation, GateKind, Properties, Row, Verdict};
 use serde_json::Value;
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
@@ -142,14 +141,15 @@ impl Known {
             if records.iter().any(|row| known.concerns(row) && robots.contains(row.robot.as_str())) {
                 let seen = records.iter().any(|row| self.is_excused(row, known));
                 let what = format!("known deviation of {}, '{}', still seen: {}", known.engine, known.id, known.reason);
-                conditions.push(condition(what, 1, u64::from(seen)));
+                conditions.push(Expectation::new(GateKind::Seen, what, 1, u64::from(seen)).about(Culprit::engine(&known.engine)));
                 conditions.extend(self.still_large(known, records));
             }
         }
         for lack in self.lacks.iter().filter(|lack| asked(&lack.engine)) {
             if records.iter().any(|row| lack.concerns(row, self.properties(row))) {
                 let seen = records.iter().any(|row| lack.explains(row, self.properties(row)));
-                conditions.push(condition(format!("{} still does not offer: {}", lack.engine, lack.reason), 1, u64::from(seen)));
+                let what = format!("{} still does not offer: {}", lack.engine, lack.reason);
+                conditions.push(Expectation::new(GateKind::Lack, what, 1, u64::from(seen)).about(Culprit::engine(&lack.engine)));
             }
         }
         conditions
@@ -185,16 +185,14 @@ impl Known {
         }
         let shrunk = found.iter().filter_map(|(key, &value)| {
             let range = self.ranges.of(key).filter(|range| range.has_shrunk(value))?;
-            Some(format!("{} {} {} ({value:e}, known from {:e})", key.robot, key.method, key.quantity, range.low))
+            Some((key, format!("{} {} {} ({value:e}, known from {:e})", key.robot, key.method, key.quantity, range.low)))
         });
-        let shrunk: Vec<String> = shrunk.collect();
+        let (keys, shrunk): (Vec<&RangeKey>, Vec<String>) = shrunk.unzip();
+        let culprit = keys.first().map_or_else(|| Culprit::engine(&known.engine), |key| key.culprit());
         let what =
             format!("robots on which a known deviation of {}, '{}', is smaller than known: {}", known.engine, known.id, known.reason);
-        let mut condition = condition(what, 0, shrunk.len() as u64);
-        if !shrunk.is_empty() {
-            condition.reason = format!("{}: {}", condition.reason, shrunk.join(", "));
-        }
-        Some(condition)
+        let reason = format!("expected 0, found {}: {}", shrunk.len(), shrunk.join(", "));
+        Some(Expectation::new(GateKind::Size, what, 0, shrunk.len() as u64).because(reason).about(culprit))
     }
 }
 

@@ -1,8 +1,7 @@
 //! Means: bounds on the rows of many robots together.
 
-use crate::gates::condition;
 use crate::measure::worst;
-use featherbench_results::{Expectation, Row};
+use featherbench_results::{Culprit, Expectation, GateKind, Row};
 use serde::Deserialize;
 
 /// A bound on the geometric mean of a metric over the robots of a run, and on the largest value.
@@ -53,16 +52,25 @@ impl Mean {
             let known = |robot: &str| self.known.iter().find(|known| known.quantity == *quantity && known.robot == robot);
             let others = values.iter().filter(|(robot, _)| known(robot).is_none()).map(|&(_, value)| value);
             let largest = others.reduce(worst).unwrap_or(f64::NAN);
+            let condition = |what: String, met: bool, robot: &str| {
+                let culprit = Culprit {
+                    study: self.study.clone(),
+                    robot: robot.to_owned(),
+                    quantity: quantity.clone(),
+                    ..Culprit::engine(crate::OWN)
+                };
+                Expectation::new(GateKind::Mean, what, 1, u64::from(met)).about(culprit)
+            };
             let held = |value: f64, bound: f64, name: &str| {
                 let what = format!("{name} of {} on {quantity} over {count} robots is {value:.2}, at most {bound}", self.metric);
-                condition(what, 1, u64::from(value <= bound))
+                condition(what, value <= bound, "")
             };
             let mut conditions = vec![held(mean, self.mean, "geometric mean"), held(largest, self.bound, "largest")];
             conditions.extend(values.iter().filter_map(|&(robot, value)| {
                 let Known { up_to, reason, .. } = known(robot)?;
                 let what =
                     format!("{} on {quantity} of {robot} is {value:.2}, known from {} to {up_to}: {reason}", self.metric, self.bound);
-                Some(condition(what, 1, u64::from(self.bound < value && value <= *up_to)))
+                Some(condition(what, self.bound < value && value <= *up_to, robot))
             }));
             conditions
         };

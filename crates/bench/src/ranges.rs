@@ -11,7 +11,7 @@
 
 use crate::measure::worst;
 use crate::{Gates, HarnessError, SLACK};
-use featherbench_results::{Row, Verdict};
+use featherbench_results::{Culprit, Row, Verdict};
 use std::collections::BTreeMap;
 use std::fmt::{self, Write as _};
 use std::path::{Path, PathBuf};
@@ -56,6 +56,12 @@ pub struct Range {
 pub struct Ranges(BTreeMap<RangeKey, Range>);
 
 impl RangeKey {
+    /// Who a condition on this deviation is about.
+    pub(crate) fn culprit(&self) -> Culprit {
+        let [robot, quantity, method] = [&self.robot, &self.quantity, &self.method].map(String::clone);
+        Culprit { robot, quantity, method, ..Culprit::engine(&self.engine) }
+    }
+
     /// The key of a row.
     pub fn of(row: &Row) -> Self {
         Self {

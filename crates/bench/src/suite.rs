@@ -175,7 +175,10 @@ impl Suite {
     pub fn check_studies(&self, known: &[&str]) -> Result<(), HarnessError> {
         let of_robots = self.robots.iter().flat_map(|robot| robot.studies.iter().flatten());
         match self.studies.iter().chain(of_robots).find(|name| !known.contains(&name.as_str())) {
-            Some(name) => Err(self.wrong(format!("there is no study '{name}'; there are {}", known.join(", ")))),
+            Some(name) => {
+                let near = crate::did_you_mean(name, known.iter().copied());
+                Err(self.wrong(format!("there is no study '{name}'{near}; there are {}", known.join(", "))))
+            }
             None => Ok(()),
         }
     }

@@ -160,7 +160,10 @@ fn engines(args: &CompareArgs, described: &Engines) -> Result<Vec<String>, Fail>
     let all = || readers.iter().map(|&name| name.to_owned()).collect();
     let engines = args.engines.clone().unwrap_or_else(all);
     match engines.iter().find(|name| !readers.contains(&name.as_str())) {
-        Some(unknown) => Err(Fail::input(format!("--engines: there is no '{unknown}'; choose from {}", readers.join(", ")))),
+        Some(unknown) => {
+            let near = featherbench_bench::did_you_mean(unknown, readers.iter().copied());
+            Err(Fail::input(format!("--engines: there is no '{unknown}'{near}; choose from {}", readers.join(", "))))
+        }
         None => Ok(engines),
     }
 }

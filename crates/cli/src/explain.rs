@@ -3,8 +3,7 @@
 use crate::args::ExplainArgs;
 use crate::fail::Fail;
 use crate::say::say;
-use crate::shell::{quoted, words};
-use ::featherbench_results::{Row, RunInfo};
+use ::featherbench_results::Row;
 use featherbench_bench::{NoAnswer, OUTCOMES_NAME, Outcome, OutcomeStore, Quantity};
 
 /// Prints what a cell asked, what was answered, and how it was judged.
@@ -59,47 +58,8 @@ pub fn explain(args: &ExplainArgs) -> Result<(), Fail> {
             row.reason
         );
     }
-    say!("\nagain     {}", again(&info, first).map_err(Fail::input)?);
+    say!("\nagain     {}", info.again(&first.study, &first.robot).map_err(Fail::input)?);
     Ok(())
-}
-
-/// Options of a run that say where it was written and how much of it: each with its value.
-const OF_THE_RUN: [&str; 2] = ["--filter", "--out"];
-/// Options that continue a run.
-const CONTINUING: [&str; 2] = ["--resume", "--allow-mixed"];
-
-/// The command that makes a cell's rows again: that of the run, with a filter that leaves the study of the robot. The rows compare an answer
-/// with those of others, so the others are asked too.
-fn again(info: &RunInfo, row: &Row) -> Result<String, String> {
-    let all = words(&info.command)?;
-    let (program, given) = all.split_at(all.iter().position(|word| word == "--").map_or(0, |at| at + 1));
-    let mut kept: Vec<String> = Vec::new();
-    let mut words = given.iter();
-    while let Some(word) = words.next() {
-        if OF_THE_RUN.contains(&word.as_str()) {
-            words.next();
-        } else if !CONTINUING.contains(&word.as_str()) && !OF_THE_RUN.iter().any(|option| word.starts_with(&format!("{option}="))) {
-            kept.push(word.clone());
-        }
-    }
-    let has = |kept: &[String], option: &str| kept.iter().any(|word| word == option || word.starts_with(&format!("{option}=")));
-    // A comparison of files has no filter: it is made again as a whole.
-    if !has(&kept, "compare") {
-        if !has(&kept, "run") {
-            kept.push("run".into());
-        }
-        if !has(&kept, "--suite") && info.suite != "default" {
-            kept.extend(["--suite".into(), info.suite.clone()]);
-        }
-        if !has(&kept, "--live") && info.live {
-            kept.push("--live".into());
-        }
-        // Cells that belong to no robot, or draw one, are known by their study.
-        let of_study = row.robot.is_empty() || row.study == "repeatability";
-        let robot = if of_study { String::new() } else { format!("{}/", regex_lite::escape(&row.robot)) };
-        kept.extend(["--filter".into(), format!("^{}/{robot}", row.study)]);
-    }
-    Ok(program.iter().chain(&kept).map(|word| quoted(word)).collect::<Vec<_>>().join(" "))
 }
 
 fn count(number: Option<u64>) -> String {
@@ -139,30 +99,5 @@ fn describe(quantity: Quantity) -> &'static str {
         Quantity::TorqueRegressor => "torque regressor Y, τ − armature·a = Y π",
         Quantity::InverseDynamicsSecond => "second derivatives of weighted inverse dynamics",
         Quantity::ForwardDynamicsSecond => "second derivatives of weighted forward dynamics",
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    fn of(command: &str, live: bool, suite: &str) -> String {
-        let info = RunInfo { command: command.into(), live, suite: suite.into(), ..RunInfo::default() };
-        let row = Row { study: "agreement".into(), robot: "tree_0.3".into(), ..Row::default() };
-        again(&info, &row).unwrap()
-    }
-
-    #[test]
-    fn the_command_keeps_what_the_answer_depends_on() {
-        let only = "--filter '^agreement/tree_0\\.3/'";
-        assert_eq!(of("cargo run --release --", false, "default"), format!("cargo run --release -- run {only}"));
-        assert_eq!(
-            of("cargo run --release -- run --suite smoke --live --seed 3 --filter 'x|y' --out a --resume", true, "smoke"),
-            format!("cargo run --release -- run --suite smoke --live --seed 3 {only}")
-        );
-        assert_eq!(of("run --filter=x --out=a --allow-mixed", true, "smoke"), format!("run --suite smoke --live {only}"));
-        let external = "run --engine 'mine=sh '\"'\"'my oracle.sh'\"'\"''";
-        assert_eq!(of(external, false, "default"), format!("{external} {only}"));
-        assert_eq!(of("compare 'my robot.urdf' --floating --out x", true, "compare"), "compare 'my robot.urdf' --floating");
     }
 }

@@ -3,7 +3,7 @@
 use crate::fail::Fail;
 use crate::package;
 use crate::root::Root;
-use crate::shell::{quoted, words};
+use ::featherbench_results::{quoted, words};
 use featherbench_bench::{HarnessError, hash};
 use featherbench_engines::{Limits, Oracle};
 use std::ffi::OsString;

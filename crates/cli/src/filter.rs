@@ -1,6 +1,7 @@
 //! `--filter`: a filter that lets nothing through is a mistake, and its words are compared with those that there are.
 
 use crate::fail::Fail;
+use featherbench_bench::distance;
 use regex_lite::Regex;
 use std::collections::BTreeSet;
 
@@ -41,33 +42,9 @@ fn hint(word: &str, names: &BTreeSet<&str>) -> Option<String> {
     Some(format!("nothing is named '{word}': nearest are {}", listed.join(", ")))
 }
 
-/// Levenshtein's distance, in letters.
-fn distance(a: &str, b: &str) -> usize {
-    let b: Vec<char> = b.chars().collect();
-    let mut row: Vec<usize> = (0..=b.len()).collect();
-    for (i, letter) in a.chars().enumerate() {
-        let mut diagonal = std::mem::replace(&mut row[0], i + 1);
-        for (j, other) in b.iter().enumerate() {
-            let changed = diagonal + usize::from(letter != *other);
-            diagonal = row[j + 1];
-            row[j + 1] = changed.min(row[j] + 1).min(diagonal + 1);
-        }
-    }
-    row[b.len()]
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn distances_count_letters() {
-        for (a, b, due) in
-            [("", "", 0), ("fd", "fd", 0), ("fdd", "fd", 1), ("", "id", 2), ("pinochio", "pinocchio", 1), ("panda", "hand", 2)]
-        {
-            assert_eq!((distance(a, b), distance(b, a)), (due, due), "{a} {b}");
-        }
-    }
 
     #[test]
     fn a_filter_without_a_match_is_told_what_is_near() {

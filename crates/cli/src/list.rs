@@ -5,16 +5,41 @@ use crate::fail::Fail;
 use crate::oracles;
 use crate::robots;
 use crate::root::Root;
-use crate::say;
-use featherbench_bench::{Context, Engine};
+use crate::say::{self, say};
+use featherbench_bench::{Context, Engine, Factor, Planted, Suite};
 use featherbench_engines::{Featherbench, Limits};
 use featherbench_robots::Family;
 use featherbench_studies::{Kernels, Setup};
 
 /// Prints what there is to run.
 pub fn list(root: &Root, args: &ListArgs) -> Result<(), Fail> {
+    if args.gates {
+        return gates(root);
+    }
     say::text(&text(root, args)?);
     Ok(())
+}
+
+/// Prints every gate, and whether a fault that is planted in it fires it.
+fn gates(root: &Root) -> Result<(), Fail> {
+    let gates = root.read_gates()?;
+    let planted = gates.planted();
+    for Planted { gate, fired } in &planted {
+        let factor = match gate.times {
+            Factor::One => "",
+            Factor::Depth => " per joint of depth",
+            Factor::DepthAndAmplification => " per joint of depth and amplification",
+        };
+        let word = if *fired { "fires" } else { "NEVER FIRES" };
+        say!("{word:<12} {:<15} {:<24} {:e}{factor}  {}", gate.study, gate.metric, gate.bound, gate.quantities.join(", "));
+    }
+    let silent = planted.iter().filter(|planted| !planted.fired).count();
+    say!("{} gates, {silent} of them that no planted fault fires", planted.len());
+    if silent > 0 {
+        Err(Fail::Gate(format!("{silent} of {} gates never fire: another one stands before them", planted.len())))
+    } else {
+        Ok(())
+    }
 }
 
 fn text(root: &Root, args: &ListArgs) -> Result<String, Fail> {
@@ -46,6 +71,11 @@ fn text(root: &Root, args: &ListArgs) -> Result<String, Fail> {
             states.bodies,
             robot.depth
         );
+    }
+    text += "\nsuites:\n";
+    for name in robots::suites(root)? {
+        let (suite, _) = Suite::read(&robots::suite_path(root, &name)?)?;
+        text += &format!("  {name:<16} {}\n", suite.about);
     }
     let described = oracles::described(root)?;
     text += &format!("\nengines:  featherbench, {}\n", described.names(|engine| !engine.is_native()).join(", "));

@@ -47,6 +47,7 @@ mod explain;
 mod external;
 mod fail;
 mod filter;
+mod gate;
 mod generate;
 mod history;
 mod identify;
@@ -66,12 +67,11 @@ mod robots;
 mod root;
 mod run;
 mod say;
-mod shell;
 mod table;
 mod uncertainty;
 
 use args::{Cli, Command, OraclesAction, RunArgs};
-use clap::Parser;
+use clap::{CommandFactory, Parser};
 use fail::Fail;
 use root::Root;
 use std::process::ExitCode;
@@ -93,8 +93,8 @@ fn dispatch(cli: Cli) -> Result<(), Fail> {
     match cli.command.unwrap_or_else(default) {
         Command::Run(args) => run::run(&root()?, &args),
         Command::Compare(args) => compare::compare(&root()?, &args),
-        Command::Report(args) => report::write(&args.folder),
-        Command::Gate(args) => report::gate(&root()?, &args),
+        Command::Report(args) => report::write(&args.folder, args.open),
+        Command::Gate(args) => gate::gate(&root()?, &args),
         Command::Diff(args) => diff::compare(&args),
         Command::History(args) => history::append(&root, &args),
         Command::List(args) => list::list(&root()?, &args),
@@ -108,6 +108,13 @@ fn dispatch(cli: Cli) -> Result<(), Fail> {
             OraclesAction::Status => oracles::status(&root()?),
             OraclesAction::Check(args) => check::check(root().ok().as_ref(), &args),
         },
+        Command::Completions { shell } => {
+            clap_complete::generate(shell, &mut Cli::command(), "featherbench", &mut say::Output);
+            Ok(())
+        }
+        Command::Man => {
+            clap_mangen::Man::new(Cli::command()).render(&mut say::Output).map_err(|error| Fail::input(format!("standard output: {error}")))
+        }
         Command::Alone => featherbench_engines::alone::serve().map_err(Fail::input),
         Command::Serve(args) => featherbench_engines::native::serve(&args.library, args.core).map_err(Fail::input),
     }

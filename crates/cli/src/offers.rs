@@ -1,7 +1,7 @@
 //! Whether an engine that was asked for takes part at all.
 
 use crate::engines::Opened;
-use ::featherbench_results::{Expectation, Row, Verdict};
+use ::featherbench_results::{Culprit, Expectation, GateKind, Row};
 use featherbench_bench::{Cell, Quantity};
 use std::collections::BTreeSet;
 
@@ -30,13 +30,6 @@ fn condition(engine: &str, cells: &[Cell], records: &[Row], complete: bool) -> E
     } else {
         String::new()
     };
-    let met = reason.is_empty();
-    let verdict = if met { Verdict::Pass } else { Verdict::Fail };
-    Expectation {
-        what: format!("engine {engine} answers something that the suite asks"),
-        expected: 1,
-        found: u64::from(met),
-        verdict,
-        reason,
-    }
+    let what = format!("engine {engine} answers something that the suite asks");
+    Expectation::new(GateKind::Engine, what, 1, u64::from(reason.is_empty())).because(reason).about(Culprit::engine(engine))
 }

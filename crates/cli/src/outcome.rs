@@ -1,6 +1,6 @@
 //! How a comparison ends for an engine and a robot: four questions, each with its row, and which of them make the exit code.
 
-use ::featherbench_results::{Expectation, Row, Verdict};
+use ::featherbench_results::{Culprit, Expectation, GateKind, Row, Verdict};
 use featherbench_bench::{Engine, Robot, measure::worst};
 use featherbench_studies::import::bound;
 use serde_json::Value;
@@ -18,8 +18,8 @@ fn of_engine(robot: &Robot, engine: &str, records: &[Row], strict: bool) -> Vec<
     let read = of("differences");
     let bound = bound(robot.depth);
     let condition = |what: String, found: u64, reason: String| {
-        let verdict = if found == 0 { Verdict::Pass } else { Verdict::Fail };
-        Expectation { what, expected: 0, found, verdict, reason: if found == 0 { String::new() } else { reason } }
+        let culprit = Culprit { study: "import".into(), robot: name.clone(), ..Culprit::engine(engine) };
+        Expectation::new(GateKind::Import, what, 0, found).because(reason).about(culprit)
     };
     let told = |found: u64| format!("found {found}");
     // A file that is refused is no answer to "do they read it alike"; one that is beyond a limit was not asked.

@@ -2,7 +2,7 @@
 
 use crate::args::GateArgs;
 use crate::fail::Fail;
-use crate::report::properties;
+use crate::gate::properties;
 use crate::root::Root;
 use crate::say::say;
 use ::featherbench_results::{Row, RunInfo};

@@ -5,7 +5,7 @@ use crate::oracles;
 use crate::root::Root;
 use ::featherbench_results::ModelOrigin;
 use featherbench_bench::{
-    Engine, FileBase, FileFormat, FileInertial, FileLink, Import, NoAnswer, Robot, RobotEntry, RobotFile, Suite, WATER,
+    Engine, FileBase, FileFormat, FileInertial, FileLink, Import, NoAnswer, Robot, RobotEntry, RobotFile, Suite, WATER, did_you_mean,
 };
 use featherbench_engines::{Limits, Oracle};
 use featherbench_formats::urdf::{Base, Inertial, LinkInFile, Note, Options};
@@ -23,7 +23,7 @@ pub struct Loaded {
 
 /// Reads a suite by name or path, and its robots; another seed than its own draws other states.
 pub fn load(root: &Root, suite: &str, live: bool, seed: Option<u64>) -> Result<Loaded, Fail> {
-    let path = if suite.ends_with(".toml") { PathBuf::from(suite) } else { root.suites().join(format!("{suite}.toml")) };
+    let path = suite_path(root, suite)?;
     let (mut parsed, hash) = Suite::read(&path)?;
     parsed.seed = seed.unwrap_or(parsed.seed);
     let states = parsed.states;
@@ -59,6 +59,43 @@ pub fn load(root: &Root, suite: &str, live: bool, seed: Option<u64>) -> Result<L
     }
     let name = path.file_stem().map(|stem| stem.to_string_lossy().into_owned()).unwrap_or_default();
     Ok(Loaded { name, suite: parsed, hash, robots })
+}
+
+/// The file of a suite that is given by name or path.
+pub fn suite_path(root: &Root, suite: &str) -> Result<PathBuf, Fail> {
+    if suite.ends_with(".toml") {
+        return Ok(PathBuf::from(suite));
+    }
+    let path = root.suites().join(format!("{suite}.toml"));
+    if path.is_file() {
+        return Ok(path);
+    }
+    let names = suites(root)?;
+    let near = did_you_mean(suite, names.iter().map(String::as_str));
+    Err(Fail::input(format!("there is no suite '{suite}'{near}; datasets/suites has {}", names.join(", "))))
+}
+
+/// The names of the suites, in alphabetical order.
+pub fn suites(root: &Root) -> Result<Vec<String>, Fail> {
+    names(&root.suites(), "toml")
+}
+
+/// The names of the committed robots, in alphabetical order.
+pub fn models(root: &Root) -> Result<Vec<String>, Fail> {
+    names(&root.models(), "json")
+}
+
+/// The names of the files of a folder that have an ending, without it.
+fn names(folder: &Path, ending: &str) -> Result<Vec<String>, Fail> {
+    let failed = |error: std::io::Error| Fail::input(format!("{}: {error}", folder.display()));
+    let paths = std::fs::read_dir(folder).map_err(failed)?.map(|entry| entry.map(|entry| entry.path()));
+    let paths = paths.collect::<Result<Vec<_>, _>>().map_err(failed)?;
+    let of = |path: &PathBuf| {
+        path.extension().is_some_and(|found| found == ending).then(|| path.file_stem().map(|stem| stem.to_string_lossy().into_owned()))?
+    };
+    let mut names: Vec<String> = paths.iter().filter_map(of).collect();
+    names.sort();
+    Ok(names)
 }
 
 /// A robot and where it came from.

@@ -107,10 +107,9 @@ fn choose(given: Option<&Path>, variable: Option<&Path>, here: &Path, built: &Pa
     let built_in = || built.canonicalize().ok().filter(|folder| is_project(folder));
     found.or_else(built_in).ok_or_else(|| {
         format!(
-            "no featherbench project was found: {} and the folders above it are none, and {}, where this program was built, is gone; name a \
-             checkout with --root DIR or {VARIABLE}=DIR, or run the command inside of one",
-            here.display(),
-            built.display()
+            "no featherbench project was found: {} and the folders above it are none, and the checkout that this program was built in is gone; \
+             name one with --root DIR or {VARIABLE}=DIR, or run the command inside of one",
+            here.display()
         )
     })
 }

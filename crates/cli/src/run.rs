@@ -11,8 +11,7 @@ use crate::progress::Bar;
 use crate::report;
 use crate::robots::{self, Loaded};
 use crate::root::Root;
-use crate::shell::quoted;
-use ::featherbench_results::{Expectation, RunInfo, Verdict};
+use ::featherbench_results::{Culprit, Expectation, GateKind, RunInfo, quoted};
 use featherbench_bench::run::{Opening, Run};
 use featherbench_bench::{Cell, Context, Counts, Robot, Study, provenance};
 use featherbench_studies::Setup;
@@ -72,7 +71,7 @@ pub fn run(root: &Root, args: &RunArgs) -> Result<(), Fail> {
     run.info.seconds.insert("total".into(), start.elapsed().as_secs_f64());
     run.write(&rows)?;
     let page = report::render(&run.folder, &run.info, &rows)?;
-    report::conclude(&run.info, &rows, &page)
+    report::conclude(&run.info, &rows, &page, args.open)
 }
 
 /// The studies that a suite asks for. `program` is the hash of this program.
@@ -137,5 +136,5 @@ pub fn describe(root: &Root, program: RunInfo, about: &About, opened: &Opened, s
 
 /// The condition that an engine of the suite answers, which is not met.
 fn missing_engine(name: &str, reason: &str) -> Expectation {
-    Expectation { what: format!("engine {name} answers"), expected: 1, found: 0, verdict: Verdict::Fail, reason: reason.to_owned() }
+    Expectation::new(GateKind::Engine, format!("engine {name} answers"), 1, 0).because(reason.to_owned()).about(Culprit::engine(name))
 }

@@ -5,6 +5,7 @@ use crate::fail::Fail;
 use crate::robots;
 use crate::root::Root;
 use crate::say::say;
+use featherbench_bench::did_you_mean;
 use featherbench_bench::measure::{ratio, worst};
 use featherbench_formats::urdf::Options;
 use featherbench_model::{Description, Model};
@@ -208,8 +209,10 @@ fn read(root: impl Fn() -> Result<Root, Fail>, name: &str) -> Result<Description
     }
     let generated = Family::parse(name).and_then(|family| family.generate());
     generated.map_err(|error| {
+        let models = root().and_then(|root| robots::models(&root)).unwrap_or_default();
+        let near = did_you_mean(name, models.iter().map(String::as_str).chain(Family::NAMES));
         Fail::input(format!(
-            "{name}: no file that ends in .json or .urdf, no robot of datasets/models, and no family of generated robots: {error}"
+            "{name}: no file that ends in .json or .urdf, no robot of datasets/models, and no family of generated robots{near}: {error}"
         ))
     })
 }

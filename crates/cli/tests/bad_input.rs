@@ -100,7 +100,10 @@ fn broken_suites_are_refused_by_file_and_key() {
         let file = sandbox.write(&format!("{}.toml", name.replace(' ', "_")), &text);
         sandbox.run(&["run", "--suite", file.to_str().unwrap()]).expect(2, words);
     }
-    sandbox.run(&["run", "--suite", "nowhere"]).expect(2, &["nowhere.toml"]);
+    sandbox.run(&["run", "--suite", "nowhere"]).expect(2, &["there is no suite 'nowhere'"]);
+    sandbox.run(&["run", "--suite", "smok"]).expect(2, &["there is no suite 'smok'; did you mean 'smoke'?", "default, "]);
+    sandbox.run(&["oracles", "install", "pinochio"]).expect(2, &["did you mean 'pinocchio'?"]);
+    sandbox.run(&["uncertainty", "pandda"]).expect(2, &["did you mean 'panda'?"]);
     // The file of a live robot: a suite leaves it out by name, or it is an error.
     let robots = "[[robot]]\nmodel = \"panda\"\nfamily = \"robot\"\n[[robot]]\nurdf = \"a.urdf\"\nfamily = \"robot\"\n";
     let suite = |more: &str| sandbox.write("live.toml", &format!("about = \"x\"\nseed = 1\n[operations]\n{robots}{more}"));

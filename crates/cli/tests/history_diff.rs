@@ -53,6 +53,14 @@ fn two_runs_are_compared_as_a_table_and_as_markdown() {
     sandbox
         .run(&["diff", "a", "c", "--markdown"])
         .expect(1, &["| change | robot |", "| time | humanoid | featherbench x | id | ns_per_call stream | 100.0 ns | 130.0 ns | 1.300 |"]);
+    // A kernel at half its speed is named before one that is a little slower.
+    let both = |id: f64, fd: f64| [("id", "ns_per_call", id, ""), ("fd", "ns_per_call", fd, "")];
+    run(&sandbox, "fast", &both(100.0, 100.0));
+    run(&sandbox, "slow", &both(110.0, 200.0));
+    let ended = sandbox.run(&["diff", "fast", "slow"]);
+    ended.expect(1, &["2 of 2 rows"]);
+    let first = ended.output.lines().nth(1).unwrap();
+    assert!(["time", "humanoid", "featherbench x", "fd", "2.000"].iter().all(|word| first.contains(word)), "{first}");
     sandbox.run(&["diff", "a", "nowhere"]).expect(2, &["nowhere"]);
     sandbox.run(&["diff", "--help"]).expect(0, &["Exit codes: 0 nothing changed"]);
 }

@@ -1,18 +1,23 @@
-//! Findings, in sentences: whether the run passed, and which engines fail on what.
+//! Findings: what a run found, each in one sentence with its numbers, from the gravest.
+//!
+//! A finding is a set of rows that do not pass for one reason, or a condition of the run that is not met. Which level it has is decided in
+//! [`Severity`] alone. A *new* finding turns the gate red; the others are known.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
-use featherbench_results::{Row, RunInfo, Verdict};
+use featherbench_results::{Culprit, Expectation, GateKind, Relation, Row, RunInfo, Severity, Verdict};
 
 use crate::labels;
 use crate::numbers::{count, grouped, listed, short};
-use crate::section::Section;
-use crate::tally::{Tally, severity};
+use crate::tally::{Tally, worst_first};
+
+/// Quantities that a sentence names.
+const NAMED: usize = 3;
 
 /// The state of a run in one word.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Status {
-    /// Every judged row is inside its gate and every expectation is met.
+    /// Every judged row is inside its gate, or deviates as is known, and every expectation is met.
     Passed,
     /// A row failed or gave no answer, or an expectation is not met.
     Failed,
@@ -20,135 +25,299 @@ pub enum Status {
     Empty,
 }
 
-/// An engine that failed gates on a quantity.
-pub struct Failure<'a> {
-    /// The engine.
-    pub engine: &'a str,
-    /// The reference; empty if nothing was compared.
-    pub reference: &'a str,
-    /// The quantity.
-    pub quantity: &'a str,
-    /// All its judged rows there.
-    pub tally: Tally,
-    /// The row that is worst.
-    pub worst: &'a Row,
+/// One finding.
+#[derive(Clone, Debug)]
+pub struct Found<'a> {
+    /// Its level; `None` for a condition that says nothing about an answer: a list that is out of date.
+    pub severity: Option<Severity>,
+    /// Whether it turns the gate red.
+    pub new: bool,
+    /// The gate that it turns red, or that its known cause excuses.
+    pub gate: GateKind,
+    /// Who it is about: of rows, the worst one.
+    pub culprit: Culprit,
+    /// Its quantities in words, those of the worst row first.
+    pub quantities: Vec<String>,
+    /// Number of rows.
+    pub rows: usize,
+    /// Number of robots.
+    pub robots: usize,
+    /// The worst row; `None` if it is about no row.
+    pub worst: Option<&'a Row>,
+    /// The cause, if it is known, or the reason as the row or the condition has it.
+    pub cause: String,
+    /// The command that makes its worst row again; empty if there is none.
+    pub again: String,
 }
 
-/// The contents of the head of the page.
+/// What a run found.
+#[derive(Clone, Debug)]
 pub struct Findings<'a> {
     /// The run as a whole.
     pub status: Status,
     /// Verdicts of all rows.
     pub tally: Tally,
-    /// Expectations that are not met.
-    pub unmet: usize,
-    /// The engines that fail gates, worst first.
-    pub failures: Vec<Failure<'a>>,
-    /// The passing row that is closest to its gate.
-    pub closest: Option<&'a Row>,
+    /// The findings, from the gravest; of one level, new ones first.
+    pub found: Vec<Found<'a>>,
 }
 
 impl<'a> Findings<'a> {
-    /// Collects a run's rows. Failures about which a section tells itself are not collected again.
-    pub fn of(run: &RunInfo, rows: &'a [Row], sections: &[Section]) -> Self {
+    /// Collects a run's rows and conditions.
+    pub fn of(run: &'a RunInfo, rows: &'a [Row]) -> Self {
         let tally = Tally::of(rows.iter().map(|row| row.verdict));
-        let unmet = run
-            .expected
-            .iter()
-            .filter(|condition| !matches!(condition.verdict, Verdict::Pass | Verdict::Deviation | Verdict::Info))
-            .count();
+        let mut found = of_rows(run, rows);
+        found.extend(run.expected.iter().filter_map(|condition| of_condition(run, condition, &tally)));
+        found.sort_by(|a, b| a.order().cmp(&b.order()).then(b.size().total_cmp(&a.size())));
         let judged = tally.total() - tally.get(Verdict::Info) - tally.get(Verdict::Skip);
-        let status = if tally.broken() + unmet > 0 {
+        let status = if found.iter().any(|found| found.new) {
             Status::Failed
         } else if judged == 0 {
             Status::Empty
         } else {
             Status::Passed
         };
-        let passing = rows.iter().filter(|row| row.verdict == Verdict::Pass && row.margin.is_some());
-        Self { status, tally, unmet, failures: failures(rows, sections), closest: passing.min_by_key(|row| severity(row)) }
+        Self { status, tally, found }
     }
 
-    /// The first line of the page.
+    /// Those that turn the gate red, from the gravest.
+    pub fn new(&self) -> impl Iterator<Item = &Found<'a>> {
+        self.found.iter().filter(|found| found.new)
+    }
+
+    /// The first line of the page: the gravest finding, of those that turn the gate red if there are any.
     pub fn headline(&self) -> String {
-        let judged = self.tally.total() - self.tally.get(Verdict::Info) - self.tally.get(Verdict::Skip);
-        match self.status {
-            Status::Empty => "Nothing was judged in this run".into(),
-            Status::Passed => match self.tally.get(Verdict::Deviation) {
-                0 if judged == 1 => "The one judged row is inside its gate".into(),
-                0 => format!("All {} are inside their gates", count(judged, "judged row")),
-                known => {
-                    format!("{} are inside their gates, {} by known cause", count(judged - known, "judged row"), count(known, "deviation"))
-                }
-            },
-            Status::Failed => {
-                let mut parts = Vec::new();
-                match self.tally.get(Verdict::Fail) {
-                    0 => {}
-                    failed => parts.push(format!("{} of {} outside their gates", count(failed, "row"), grouped(judged))),
-                }
-                match self.tally.get(Verdict::Error) {
-                    0 => {}
-                    errors => parts.push(format!("{} without an answer", grouped(errors))),
-                }
-                match self.unmet {
-                    0 => {}
-                    unmet => parts.push(format!("{} not met", count(unmet, "expectation"))),
-                }
-                listed(&parts)
-            }
+        let first = self.new().next().or(self.found.iter().find(|found| found.severity != Some(Severity::NotOffered)));
+        match (self.status, first) {
+            (_, Some(found)) => found.short(),
+            (Status::Empty, None) => "Nothing was judged in this run".into(),
+            (_, None) => "No engine misses a gate".into(),
         }
+    }
+
+    /// The second: how many findings of each level there are, and how many are new.
+    pub fn levels(&self) -> String {
+        let levels = Severity::ALL.iter().map(|&level| Some(level)).chain([None]);
+        let parts: Vec<String> = levels
+            .map(|level| (level, self.found.iter().filter(|found| found.severity == level).count()))
+            .filter(|(_, number)| *number > 0)
+            .map(|(level, number)| format!("{} {}", grouped(number), level.map_or("gate not met", Severity::as_str)))
+            .collect();
+        if parts.is_empty() {
+            return "no findings".into();
+        }
+        let new = self.new().count();
+        let known = if new == 0 { "all known".to_owned() } else { format!("{} new", grouped(new)) };
+        format!("{}: {}; {known}", count(self.found.len(), "finding"), parts.join(", "))
+    }
+
+    /// The third: how many rows the findings are among.
+    pub fn extent(&self) -> String {
+        format!("{}: {}", count(self.tally.total(), "row"), self.tally.words())
+    }
+
+    /// The worst finding of an engine.
+    pub fn of_engine(&self, engine: &str) -> Option<&Found<'a>> {
+        self.found.iter().find(|found| found.culprit.engine == engine && found.severity != Some(Severity::NotOffered))
     }
 }
 
-impl Failure<'_> {
-    /// `3 of 124 rows of forward dynamics fail against featherbench`.
+impl Found<'_> {
+    /// The level, in words.
+    pub fn level(&self) -> &'static str {
+        self.severity.map_or("gate not met", Severity::as_str)
+    }
+
+    /// The engine and what it is off by: `pinocchio, kinetic energy: off by 2.4 %`.
+    pub fn short(&self) -> String {
+        let mut words = self.who();
+        words.push_str(": ");
+        words.push_str(&self.size_words());
+        words
+    }
+
+    /// `pinocchio, kinetic energy`: engine and quantities, as far as they are known.
+    pub fn who(&self) -> String {
+        let quantities = match self.quantities.len() {
+            0 => String::new(),
+            number if number > NAMED => format!("{} and {} more", self.quantities[..NAMED].join(", "), number - NAMED),
+            _ => listed(&self.quantities),
+        };
+        match (self.culprit.engine.is_empty(), quantities.is_empty()) {
+            (false, false) => format!("{}, {quantities}", self.culprit.engine),
+            (false, true) => self.culprit.engine.clone(),
+            (true, false) => quantities,
+            (true, true) => "the run".to_owned(),
+        }
+    }
+
+    /// The robot, state and method of its worst row, or as much of them as a condition names.
+    pub fn place(&self) -> String {
+        let Culprit { robot, method, .. } = &self.culprit;
+        let (body, states, cache) = self.worst.map_or(("", "", ""), |row| (&row.body, &row.states, &row.cache));
+        let words = [robot.as_str(), body, states, cache, method];
+        words.into_iter().filter(|word| !word.is_empty()).collect::<Vec<_>>().join(", ")
+    }
+
+    /// How large it is.
+    pub fn size_words(&self) -> String {
+        let Some(row) = self.worst else { return self.cause.clone() };
+        let (Some(value), Some(bound)) = (row.value, row.bound) else {
+            let skipped = row.verdict == Verdict::Skip;
+            return if skipped { "not offered".into() } else { "no answer where one is due".into() };
+        };
+        let against = if row.reference.is_empty() { String::new() } else { format!(" against {}", row.reference) };
+        let Some((error, rounding)) = row.unit_free_error() else {
+            let unit = if row.unit == "ratio" || row.unit.is_empty() { String::new() } else { format!(" {}", row.unit) };
+            let relation = row.relation.map_or("", Relation::phrase);
+            return format!("{}{unit} where {relation} {} is due", short(value), short(bound));
+        };
+        match self.severity {
+            Some(Severity::PhysicsDiffers) => format!("off by {}{against}", part(error)),
+            Some(Severity::Rounding) => format!("{} times its gate of {}{against}", short(error / bound), short(bound)),
+            _ => format!(
+                "{:.1} digits lost beyond rounding{against} ({} where {} is allowed)",
+                (error / rounding).log10(),
+                short(value),
+                short(bound)
+            ),
+        }
+    }
+
+    /// How many rows and robots it has.
+    pub fn extent(&self) -> String {
+        match (self.rows, self.robots) {
+            (0, _) => String::new(),
+            (rows, 0) => count(rows, "row"),
+            (rows, robots) => format!("{} on {}", count(rows, "row"), count(robots, "robot")),
+        }
+    }
+
+    /// All of it in one line.
     pub fn sentence(&self) -> String {
-        let quantity = labels::quantity(self.quantity);
-        let total = self.tally.total();
-        let mut parts = Vec::new();
-        if self.tally.get(Verdict::Fail) > 0 {
-            let against = if self.reference.is_empty() { String::new() } else { format!(" against {}", self.reference) };
-            parts.push(format!("fails {} of {}{against}", self.tally.get(Verdict::Fail), count(total, "row")));
-        }
-        if self.tally.get(Verdict::Error) > 0 {
-            parts.push(format!("gives no answer in {} of {}", self.tally.get(Verdict::Error), count(total, "row")));
-        }
-        format!("{quantity}: {}", listed(&parts))
+        let place = match self.place() {
+            place if place.is_empty() => String::new(),
+            place => format!(" ({place})"),
+        };
+        let extent = match self.extent() {
+            extent if extent.is_empty() => String::new(),
+            extent => format!("; {extent}"),
+        };
+        let cause = match (self.new, self.worst) {
+            (false, _) => format!("; known: {}", self.cause),
+            (true, Some(row)) if row.value.is_none() || self.cause != refuted(row) => format!("; {}", self.cause),
+            (true, _) => String::new(),
+        };
+        format!("{}{place}{extent}{cause}", self.short())
     }
 
-    /// `chain_10, fast, forward 3.0e-9 over 1.0e-12`, or why there is no number.
-    pub fn worst_words(&self) -> String {
-        let row = self.worst;
-        let mut parts: Vec<String> =
-            [&row.robot, &row.body, &row.states, &row.cache, &row.method].into_iter().filter(|part| !part.is_empty()).cloned().collect();
-        match (row.value, row.bound) {
-            (Some(value), Some(bound)) => parts.push(format!("{} {} where {} is allowed", row.metric, short(value), short(bound))),
-            _ => parts.push(row.reason.clone()),
+    /// Level, then new before known. An engine that is missing comes before what is missing of it, a condition without a level last.
+    fn order(&self) -> (bool, Option<Severity>, bool, bool) {
+        (self.severity.is_none(), self.severity, !self.new, self.gate != GateKind::Engine)
+    }
+
+    /// What orders findings of one level: the error if the physics differs, decades beyond the gate otherwise.
+    fn size(&self) -> f64 {
+        let Some(row) = self.worst else { return 0.0 };
+        match (self.severity, row.unit_free_error()) {
+            (Some(Severity::PhysicsDiffers), Some((error, _))) => error,
+            _ => -row.margin.unwrap_or(0.0),
         }
-        parts.join(", ")
     }
 }
 
-fn failures<'a>(rows: &'a [Row], sections: &[Section]) -> Vec<Failure<'a>> {
-    let mut found: BTreeMap<(&str, &str, &str), Failure> = BTreeMap::new();
-    let told: Vec<&str> =
-        sections.iter().filter_map(|section| section.finding.as_ref()).flat_map(|finding| finding.told).copied().collect();
-    let told_here = |row: &&Row| !told.contains(&row.study.as_str()) && !matches!(row.verdict, Verdict::Info | Verdict::Skip);
-    for row in rows.iter().filter(told_here) {
-        let group = found.entry((&row.engine, &row.reference, &row.quantity)).or_insert_with(|| Failure {
-            engine: &row.engine,
-            reference: &row.reference,
-            quantity: &row.quantity,
-            tally: Tally::default(),
-            worst: row,
-        });
-        group.tally.add(row.verdict);
-        if severity(row) < severity(group.worst) {
-            group.worst = row;
+/// A part of a whole: `78 %`, `0.24 %`, `2.4e-5`, `12 times its size`.
+fn part(error: f64) -> String {
+    if error >= 10.0 {
+        format!("{} times its size", short(error))
+    } else if error >= 1e-3 {
+        format!("{} %", short(100.0 * error))
+    } else {
+        short(error)
+    }
+}
+
+/// What a row that misses its gate says of itself.
+fn refuted(row: &Row) -> String {
+    match (row.value, row.relation, row.bound) {
+        (Some(value), Some(relation), Some(bound)) => format!("{value:e} is not {} {bound:e}", relation.phrase()),
+        _ => String::new(),
+    }
+}
+
+/// The cause of a row, without what the row says of itself.
+fn cause(row: &Row) -> String {
+    let own = format!(" ({})", refuted(row));
+    row.reason.strip_suffix(own.as_str()).unwrap_or(&row.reason).to_owned()
+}
+
+/// The rows that do not pass. Failures and missing answers are grouped by engine and quantity, known deviations by their cause, and what an
+/// engine does not offer by engine.
+fn of_rows<'a>(run: &RunInfo, rows: &'a [Row]) -> Vec<Found<'a>> {
+    let mut groups: BTreeMap<(&str, Verdict, &str, String), Vec<&Row>> = BTreeMap::new();
+    for row in rows.iter().filter(|row| !matches!(row.verdict, Verdict::Pass | Verdict::Info)) {
+        let (quantity, cause) = match row.verdict {
+            Verdict::Deviation => ("", named_cause(row).unwrap_or_else(|| cause(row))),
+            Verdict::Skip => ("", String::new()),
+            _ => (row.quantity.as_str(), String::new()),
+        };
+        groups.entry((&row.engine, row.verdict, quantity, cause)).or_default().push(row);
+    }
+    groups.into_values().filter_map(|rows| of_group(run, &rows)).collect()
+}
+
+fn of_group<'a>(run: &RunInfo, rows: &[&'a Row]) -> Option<Found<'a>> {
+    // The gravest level first, then the largest miss.
+    let worst = *rows.iter().min_by_key(|row| (Severity::of(row), worst_first(row)))?;
+    let mut quantities = vec![labels::error(&worst.quantity, &worst.metric)];
+    for row in rows {
+        let quantity = labels::error(&row.quantity, &row.metric);
+        if !quantities.contains(&quantity) {
+            quantities.push(quantity);
         }
     }
-    let mut broken: Vec<Failure> = found.into_values().filter(|group| group.tally.broken() > 0).collect();
-    broken.sort_by_key(|group| severity(group.worst));
-    broken
+    let robots: BTreeSet<&str> = rows.iter().map(|row| row.robot.as_str()).filter(|robot| !robot.is_empty()).collect();
+    Some(Found {
+        severity: Severity::of(worst),
+        new: matches!(worst.verdict, Verdict::Fail | Verdict::Error),
+        gate: match worst.verdict {
+            Verdict::Error => GateKind::Answer,
+            Verdict::Skip => GateKind::Unlisted,
+            _ => GateKind::Bound,
+        },
+        culprit: Culprit::of(worst),
+        quantities,
+        rows: rows.len(),
+        robots: robots.len(),
+        worst: Some(worst),
+        cause: cause(worst),
+        again: run.again(&worst.study, &worst.robot).unwrap_or_default(),
+    })
+}
+
+/// The id of the known deviation that a row names in its parameters.
+fn named_cause(row: &Row) -> Option<String> {
+    let params: serde_json::Value = serde_json::from_str(&row.params).ok()?;
+    Some(params.get("deviation")?.as_str()?.to_owned())
+}
+
+/// A condition that is not met. Rows that fail or have no answer are findings of their own; so are conditions that count nothing but them.
+fn of_condition(run: &RunInfo, condition: &Expectation, tally: &Tally) -> Option<Found<'static>> {
+    let told = match condition.kind {
+        GateKind::Bound => tally.get(Verdict::Fail) > 0,
+        GateKind::Answer => tally.get(Verdict::Error) > 0,
+        _ => false,
+    };
+    if told || matches!(condition.verdict, Verdict::Pass | Verdict::Deviation | Verdict::Info) {
+        return None;
+    }
+    let culprit = condition.culprit.clone();
+    let severity = match condition.kind {
+        GateKind::Engine | GateKind::Unlisted | GateKind::Counts | GateKind::Rows => Some(Severity::NotOffered),
+        GateKind::Import => Some(Severity::PhysicsDiffers),
+        _ => None,
+    };
+    let again = if culprit.study.is_empty() { String::new() } else { run.again(&culprit.study, &culprit.robot).unwrap_or_default() };
+    let quantities = if culprit.quantity.is_empty() { Vec::new() } else { vec![labels::quantity(&culprit.quantity).to_owned()] };
+    let cause = if condition.reason.is_empty() { condition.what.clone() } else { format!("{}: {}", condition.what, condition.reason) };
+    Some(Found { severity, new: true, gate: condition.kind, culprit, quantities, rows: 0, robots: 0, worst: None, cause, again })
 }

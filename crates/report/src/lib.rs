@@ -12,8 +12,8 @@
 //!
 //! | layer | files |
 //! |---|---|
-//! | data | [`numbers`], [`labels`], [`fit`], `error`, then `tally`, `overview`, `section`, then `chunks` |
-//! | sections | `blocks`, `findings`, then `verdict`, `conventions`, `provenance`, `method`, `unpassed` |
+//! | data | [`numbers`], [`labels`], [`fit`], `error`, then `tally`, `overview`, `section`, then `findings`, `chunks`, then [`forms`] |
+//! | sections | `blocks`, then `verdict`, `conventions`, `provenance`, `method`, `unpassed` |
 //! | page | `page`, `summary`, then `write` |
 
 mod blocks;
@@ -22,6 +22,7 @@ mod conventions;
 mod error;
 mod findings;
 pub mod fit;
+pub mod forms;
 pub mod labels;
 mod method;
 pub mod numbers;
@@ -38,8 +39,9 @@ mod write;
 pub use blocks::{opener, swatch};
 pub use chunks::UNPASSED;
 pub use error::ReportError;
+pub use findings::{Findings, Found, Status};
 pub use overview::{EVERYONE, Overview, Robot, robot_chunk};
 pub use section::{Finding, Section};
 pub use summary::summary;
-pub use tally::{Tally, severity};
+pub use tally::{Tally, worst_first};
 pub use write::{ReportPaths, write};

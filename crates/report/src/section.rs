@@ -45,8 +45,6 @@ pub struct Finding {
     pub rank: u8,
     /// The text, with its heading.
     pub body: Markup,
-    /// Studies about whose failures the text tells: the verdict does not list these failures again.
-    pub told: &'static [&'static str],
 }
 
 impl Section {

@@ -17,7 +17,7 @@ pub fn gravity(verdict: Verdict) -> usize {
 }
 
 /// Orders rows from the worst: by verdict, then by margin. A failure without a margin is the worst.
-pub fn severity(row: &Row) -> (usize, i64) {
+pub fn worst_first(row: &Row) -> (usize, i64) {
     let unknown = if matches!(row.verdict, Verdict::Fail | Verdict::Error) { i64::MIN } else { i64::MAX };
     // Margins are within ±16: millionths of decades order them like the numbers themselves.
     (gravity(row.verdict), row.margin.map_or(unknown, |margin| (margin * 1e6) as i64))

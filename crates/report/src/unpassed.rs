@@ -10,7 +10,7 @@ use crate::chunks::{UNPASSED, is_unpassed};
 use crate::labels;
 use crate::numbers::{count, decades};
 use crate::section::Section;
-use crate::tally::{gravity, severity};
+use crate::tally::{gravity, worst_first};
 
 /// Number of groups that the page itself lists; the button that opens all rows shows the others.
 const LISTED: usize = 600;
@@ -114,7 +114,7 @@ fn groups(rows: &[Row]) -> Vec<Group<'_>> {
         if !row.robot.is_empty() && !group.robots.contains(&row.robot) {
             group.robots.push(row.robot.clone());
         }
-        if severity(row) < severity(group.worst) {
+        if worst_first(row) < worst_first(group.worst) {
             group.worst = row;
         }
     }

@@ -1,19 +1,19 @@
-//! Section: whether the run passed, and if not, where it failed.
+//! Section: what the run found, from the gravest, and whether it passed.
 
-use featherbench_results::{Row, RunInfo, Verdict};
+use featherbench_results::{Row, RunInfo, Severity, Verdict};
 use maud::{Markup, html};
 
 use crate::blocks::opener;
 use crate::chunks::UNPASSED;
-use crate::findings::{Findings, Status};
+use crate::findings::{Findings, Found, Status};
 use crate::labels;
 use crate::numbers::{count, decades, grouped};
 use crate::overview::Overview;
 use crate::section::Section;
-use crate::tally::{BY_GRAVITY, Tally};
+use crate::tally::{BY_GRAVITY, Tally, worst_first};
 
-/// Number of failures in the head of the page; the others are in the list of rows that did not pass.
-const TOLD: usize = 8;
+/// Number of findings in the head of the page; a click opens the others.
+const TOLD: usize = 6;
 
 /// Writes the section, with what the sections of studies add to it.
 pub fn section(run: &RunInfo, overview: &Overview, rows: &[Row], sections: &[Section]) -> Section {
@@ -21,7 +21,7 @@ pub fn section(run: &RunInfo, overview: &Overview, rows: &[Row], sections: &[Sec
 }
 
 fn body(run: &RunInfo, overview: &Overview, rows: &[Row], sections: &[Section]) -> Markup {
-    let findings = &Findings::of(run, rows, sections);
+    let findings = &Findings::of(run, rows);
     let mut added: Vec<_> = sections.iter().filter_map(|section| section.finding.as_ref()).collect();
     added.sort_by_key(|finding| finding.rank);
     let (class, word) = match findings.status {
@@ -34,14 +34,15 @@ fn body(run: &RunInfo, overview: &Overview, rows: &[Row], sections: &[Section]) 
             p.stamp { span.glyph aria-hidden="true" { (match findings.status { Status::Passed => "✓", Status::Failed => "✕", Status::Empty => "·" }) } (word) }
             h1 { (findings.headline()) }
             (tiles(findings))
+            (list(overview, findings))
+            (extent(findings))
             div.columns {
                 div {
                     @for finding in added { (finding.body) }
-                    (failures(overview, findings))
-                    (closest(overview, findings))
+                    (closest(overview, rows))
                 }
                 div {
-                    (by_engine(overview, rows))
+                    (by_engine(overview, rows, findings))
                     @if overview.studies.len() > 1 { (by_study(overview, rows)) }
                 }
             }
@@ -50,52 +51,87 @@ fn body(run: &RunInfo, overview: &Overview, rows: &[Row], sections: &[Section]) 
     }
 }
 
+/// How many findings each level has.
 fn tiles(findings: &Findings) -> Markup {
-    let order = [Verdict::Pass, Verdict::Fail, Verdict::Error, Verdict::Deviation, Verdict::Skip, Verdict::Info];
     html! {
         ul.tiles {
-            @for verdict in order {
-                @let number = findings.tally.get(verdict);
-                li class={ "tile " (verdict) @if number == 0 { " none" } } {
-                    @let figure = html! { b { (grouped(number)) } span { i aria-hidden="true" { (labels::glyph(verdict)) } " " (labels::verdict(verdict)) } };
-                    @if number > 0 && !matches!(verdict, Verdict::Pass | Verdict::Info) {
-                        button type="button" data-chunk=(UNPASSED) data-filter={ "{\"verdict\":\"" (verdict) "\"}" } { (figure) }
-                    } @else {
-                        div { (figure) }
-                    }
+            @for &level in Severity::ALL {
+                @let of_level = || findings.found.iter().filter(|found| found.severity == Some(level));
+                @let (all, new) = (of_level().count(), of_level().filter(|found| found.new).count());
+                li class={ "tile " (class(level)) @if all == 0 { " none" } } title=(level.meaning()) {
+                    div { b { (grouped(all)) } span { (level) @if new > 0 { ", " (grouped(new)) " new" } } }
                 }
             }
         }
     }
 }
 
-fn failures(overview: &Overview, findings: &Findings) -> Markup {
+/// The class of a level: its colour.
+fn class(level: Severity) -> &'static str {
+    match level {
+        Severity::PhysicsDiffers => "physics",
+        Severity::MethodLosesDigits => "digits",
+        Severity::NotOffered => "absent",
+        Severity::Rounding => "rounding",
+    }
+}
+
+/// The findings from the gravest, each with its rows and the command that repeats it.
+fn list(overview: &Overview, findings: &Findings) -> Markup {
+    let (shown, rest) = findings.found.split_at(findings.found.len().min(TOLD));
     html! {
-        @if !findings.failures.is_empty() {
-            h3 { "Who does not" }
-            ul.findings {
-                @for found in findings.failures.iter().take(TOLD) {
-                    li.fail {
-                        b { (found.engine) } ", " (found.sentence()) ". Worst: "
-                        (opener(
-                            &overview.chunk_of(found.worst),
-                            &[("engine", found.engine), ("quantity", found.quantity), ("verdict", found.worst.verdict.as_str())],
-                            &found.worst_words(),
-                        ))
-                        @if let Some(margin) = found.worst.margin { " " span.number { "(" (decades(margin)) " decades)" } }
-                    }
-                }
-            }
-            @if findings.failures.len() > TOLD {
-                p.note { (count(findings.failures.len() - TOLD, "more disagreement")) " in " a href="#unpassed" { "the list of what did not pass" } "." }
+        @if !shown.is_empty() {
+            h3 { "What was found" }
+            ol.findings { @for found in shown { (item(overview, found)) } }
+        }
+        @if !rest.is_empty() {
+            details {
+                summary { (count(rest.len(), "more finding")) }
+                ol.findings start=(TOLD + 1) { @for found in rest { (item(overview, found)) } }
             }
         }
     }
 }
 
-fn closest(overview: &Overview, findings: &Findings) -> Markup {
+fn item(overview: &Overview, found: &Found) -> Markup {
+    let level = found.severity.map_or("condition", class);
     html! {
-        @if let Some(row) = findings.closest {
+        li class=(if found.new { "fail" } else { "known" }) {
+            span class={ "level " (level) } { (found.level()) @if found.new { ", new" } } " "
+            b { (found.who()) } ": " (found.size_words())
+            @if let Some(worst) = found.worst {
+                @let here = [("engine", worst.engine.as_str()), ("quantity", worst.quantity.as_str()), ("verdict", worst.verdict.as_str())];
+                @let all = [("engine", worst.engine.as_str()), ("verdict", worst.verdict.as_str())];
+                " on " (opener(&overview.chunk_of(worst), &here, &if found.place().is_empty() { worst.study.clone() } else { found.place() }))
+                "; " (opener(UNPASSED, if found.quantities.len() == 1 { &here[..] } else { &all[..] }, &found.extent())) "."
+                @if !found.cause.is_empty() { " " span.cause { @if !found.new { "Known: " } (found.cause) } }
+            } @else if !found.place().is_empty() { " (" (found.place()) ")" }
+            @if !found.again.is_empty() {
+                details.again { summary { "Repeat it" } pre { code { (found.again) } } }
+            }
+        }
+    }
+}
+
+/// How many rows the findings are among, each kind of verdict with its rows.
+fn extent(findings: &Findings) -> Markup {
+    html! {
+        p.note {
+            "Among " (count(findings.tally.total(), "row")) ": "
+            @for (index, verdict) in BY_GRAVITY.into_iter().filter(|&verdict| findings.tally.get(verdict) > 0).enumerate() {
+                @if index > 0 { ", " }
+                @let words = format!("{} {}", grouped(findings.tally.get(verdict)), labels::verdict(verdict));
+                @if matches!(verdict, Verdict::Pass | Verdict::Info) { (words) } @else { (opener(UNPASSED, &[("verdict", verdict.as_str())], &words)) }
+            }
+            "."
+        }
+    }
+}
+
+fn closest(overview: &Overview, rows: &[Row]) -> Markup {
+    let passing = rows.iter().filter(|row| row.verdict == Verdict::Pass && row.margin.is_some());
+    html! {
+        @if let Some(row) = passing.min_by_key(|row| worst_first(row)) {
             p.note {
                 "Closest call among what passed: "
                 (opener(&overview.chunk_of(row), &[("engine", &row.engine), ("quantity", &row.quantity), ("states", &row.states), ("body", &row.body)],
@@ -122,11 +158,11 @@ fn tally_heads() -> Markup {
     }
 }
 
-fn by_engine(overview: &Overview, rows: &[Row]) -> Markup {
+fn by_engine(overview: &Overview, rows: &[Row], findings: &Findings) -> Markup {
     html! {
         h3 { "By engine" }
         div.scroll { table.compact {
-            thead { tr { th scope="col" { "engine" } (tally_heads()) th.number scope="col" { "worst margin" } } }
+            thead { tr { th scope="col" { "engine" } (tally_heads()) th.number scope="col" { "worst margin" } th scope="col" { "gravest finding" } } }
             tbody {
                 @for &engine in &overview.engines {
                     @let own = || rows.iter().filter(|row| row.engine == engine);
@@ -135,6 +171,7 @@ fn by_engine(overview: &Overview, rows: &[Row]) -> Markup {
                         th scope="row" { (engine) }
                         (tally_cells(&Tally::of(own().map(|row| row.verdict))))
                         td.number { @if let Some(margin) = worst { (decades(margin)) } }
+                        td.gravest { @if let Some(found) = findings.of_engine(engine) { (found.level()) ": " (found.quantities.join(", ")) ", " (found.size_words()) } }
                     }
                 }
             }

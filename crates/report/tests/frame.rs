@@ -3,8 +3,8 @@
 use std::fs;
 use std::path::Path;
 
-use featherbench_report::{Finding, Section};
-use featherbench_results::{Convention, EngineInfo, EngineSource, Relation, Row, RunInfo};
+use featherbench_report::{Finding, Findings, Section, Status, forms};
+use featherbench_results::{Convention, Culprit, EngineInfo, EngineSource, Expectation, GateKind, Relation, Row, RunInfo, Verdict};
 use maud::html;
 
 use crate::written::Written;
@@ -63,22 +63,86 @@ fn the_method_explains_the_terms_and_measures_of_sections() {
     }
 }
 
+/// A row with a unit-free error where 1e-14 is allowed.
+fn erring(engine: &str, quantity: &str, value: f64) -> Row {
+    let (engine, quantity) = (engine.to_owned(), quantity.to_owned());
+    Row { engine, quantity, metric: "scaled".into(), unit: "ratio".into(), ..failing("one") }.gated(value, Relation::Le, 1e-14)
+}
+
 #[test]
-fn findings_stand_by_rank_and_failures_are_told_once() {
-    let finding = |rank, words: &'static str, told| Some(Finding { rank, body: html! { p { (words) } }, told });
-    let rows = [failing("one"), failing("two")];
-    let verdict = |told: &'static [&'static str]| {
-        let sections = [
-            Section { finding: finding(2, "the last", &[]), ..section("a") },
-            Section { finding: finding(1, "the first", told), ..section("b") },
-        ];
-        Written::of(&RunInfo::default(), &rows, &sections).section("verdict").to_owned()
-    };
-    let all = verdict(&[]);
-    assert!(all.find("the first").unwrap() < all.find("the last").unwrap());
-    assert!(all.contains("Who does not") && all.contains("fails 2 of 2 rows"), "{all}");
-    assert!(verdict(&["two"]).contains("fails 1 of 1 row"));
-    assert!(!verdict(&["one", "two"]).contains("Who does not"));
+fn the_page_opens_with_the_gravest_finding() {
+    let finding = |rank, words: &'static str| Some(Finding { rank, body: html! { p { (words) } } });
+    let rows = [
+        erring("drake", "id", 3e-14),
+        erring("mujoco", "id", 1e-16),
+        erring("dart", "kinetic_energy", 0.78).deviating("it forgets the armature"),
+        erring("dart", "kinetic_energy", 0.5).deviating("it forgets the armature"),
+        erring("drake", "com", 1e-10),
+        Row { quantity: "fd".into(), ..erring("mujoco", "fd", 0.0) }.without_value(Verdict::Skip, "it has no such joint"),
+    ];
+    let sections =
+        [Section { finding: finding(2, "the last"), ..section("a") }, Section { finding: finding(1, "the first"), ..section("b") }];
+    let written = Written::of(&RunInfo::default(), &rows, &sections);
+    let verdict = written.section("verdict");
+    let places: Vec<usize> = [
+        "<h1>drake, centre of mass: 4.0 digits lost beyond rounding (1e-10 where 1e-14 is allowed)</h1>",
+        "<b>dart, kinetic energy</b>: off by 78 %",
+        "Known: it forgets the armature",
+        "method loses digits, new</span> <b>drake, centre of mass</b>",
+        "not offered</span> <b>mujoco, forward dynamics</b>",
+        "rounding, new</span> <b>drake, inverse dynamics</b>: 3 times its gate",
+        "Among 6 rows: ",
+        "the first",
+        "the last",
+    ]
+    .iter()
+    .map(|words| verdict.find(words).unwrap_or_else(|| panic!("{words}: {verdict}")))
+    .collect();
+    assert!(places.is_sorted(), "{places:?}");
+    assert!(verdict.contains(">2 rows on 1 robot</button>") && verdict.contains("--filter"), "{verdict}");
+    // Each level has its number of findings.
+    let tiles =
+        |class: &str, number: usize| verdict.contains(&format!("class=\"tile {class}")) && verdict.contains(&format!("<b>{number}</b>"));
+    assert!(["physics", "digits", "absent", "rounding"].iter().all(|class| tiles(class, 1)), "{verdict}");
+}
+
+#[test]
+fn a_condition_that_is_not_met_is_a_finding_too() {
+    let missing = Expectation::new(GateKind::Engine, "engine drake answers".into(), 1, 0).because("not installed".into());
+    let stale = Expectation::new(GateKind::Seen, "known deviation of dart still seen".into(), 1, 0);
+    let expected = vec![stale.about(Culprit::engine("dart")), missing.about(Culprit::engine("drake"))];
+    let run = RunInfo { expected, ..RunInfo::default() };
+    let rows = [erring("drake", "id", 1e-16)];
+    let findings = Findings::of(&run, &rows);
+    assert_eq!(findings.status, Status::Failed);
+    assert_eq!(findings.headline(), "drake: engine drake answers: not installed");
+    assert_eq!(findings.found[1].sentence(), "dart: known deviation of dart still seen: expected 1, found 0");
+    let met = RunInfo { expected: vec![Expectation::new(GateKind::Rows, "rows at all".into(), 1, 1)], ..RunInfo::default() };
+    let findings = Findings::of(&met, &rows);
+    assert_eq!((findings.status, findings.headline().as_str()), (Status::Passed, "No engine misses a gate"));
+}
+
+#[test]
+fn forms_for_programs_hold_every_new_finding_and_escape_names() {
+    let mut row = erring("drake", "id", 0.5);
+    row.robot = "arm <1> | \"a\"".into();
+    let run = RunInfo { suite: "yard".into(), ..RunInfo::default() };
+    let rows = [row, erring("dart", "com", 0.5).deviating("known")];
+    let findings = Findings::of(&run, &rows);
+    let junit = forms::junit(&run, &findings);
+    assert!(junit.contains("tests=\"1\" failures=\"1\"") && junit.contains("arm &lt;1&gt; | &quot;a&quot;"), "{junit}");
+    assert!(!junit.contains("dart"), "what is known is no failure: {junit}");
+    let markdown = forms::markdown(&run, &findings);
+    assert!(markdown.contains("arm <1> \\| \"a\"") && markdown.contains("#### Known") && markdown.contains("off by 50 %"), "{markdown}");
+    let annotations = forms::annotations(&findings);
+    assert_eq!(annotations.lines().count(), 1);
+    assert!(
+        annotations.starts_with("::error title=physics differs%3A drake%2C inverse dynamics::") && annotations.contains("50 %25"),
+        "{annotations}"
+    );
+    let json = forms::json(&run, &findings);
+    assert_eq!(json["findings"].as_array().unwrap().len(), 2);
+    assert_eq!((&json["status"], &json["findings"][0]["culprit"]["engine"]), (&"failed".into(), &"drake".into()));
 }
 
 #[test]

@@ -65,7 +65,7 @@ impl Changed<'_> {
 /// The changes, and how many rows were compared.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Diff<'a> {
-    /// The rows that changed, by kind of change and then in the order of the second run.
+    /// The rows that changed, by kind of change and then from the largest factor.
     pub changes: Vec<Changed<'a>>,
     /// Rows that are in both runs.
     pub compared: usize,
@@ -105,7 +105,10 @@ pub fn diff<'a>(before: &'a [Row], after: &'a [Row]) -> Diff<'a> {
     }
     let gone = old.iter().filter(|(key, _)| !new_rows.contains_key(key));
     diff.changes.extend(gone.map(|(_, row)| Changed { change: Change::Gone, before: Some(row), after: None }));
-    diff.changes.sort_by_key(|changed| changed.change);
+    // A factor has no size where a value is zero or missing: those come first.
+    let size = |changed: &Changed| changed.factor().map_or(f64::INFINITY, |factor| factor.abs().ln().abs());
+    let larger = |a: &Changed, b: &Changed| size(b).total_cmp(&size(a));
+    diff.changes.sort_by(|a, b| a.change.cmp(&b.change).then_with(|| larger(a, b)));
     diff
 }
 

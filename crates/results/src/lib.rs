@@ -22,8 +22,10 @@ mod file;
 mod names;
 mod params;
 mod properties;
+mod repeat;
 mod row;
 mod run_info;
+mod severity;
 
 pub use checksum::{CHECKSUMS_NAME, Checksums, checksum, seal, unsealed};
 pub use columns::{COLUMNS, Column, ColumnType, schema_json};
@@ -35,5 +37,9 @@ pub use file::{
 pub use names::{Kind, Relation, Verdict};
 pub use params::canonical_json;
 pub use properties::{Base, Feature, Properties};
+pub use repeat::{quoted, words};
 pub use row::{MARGIN_LIMIT, Row};
-pub use run_info::{Convention, EngineInfo, EngineSource, Expectation, GitInfo, Host, ModelOrigin, RUN_FORMAT, RobotInfo, RunInfo};
+pub use run_info::{
+    Convention, Culprit, EngineInfo, EngineSource, Expectation, GateKind, GitInfo, Host, ModelOrigin, RUN_FORMAT, RobotInfo, RunInfo,
+};
+pub use severity::Severity;

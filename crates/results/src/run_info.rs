@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::file::{atomic_write, read_text};
 use crate::names::words;
-use crate::{Properties, ResultsError, Verdict};
+use crate::{Properties, ResultsError, Row, Verdict};
 
 /// Format of `run.json` and `schema.json` that this version writes and reads.
 pub const RUN_FORMAT: u32 = 2;
@@ -181,10 +181,64 @@ pub struct Convention {
     pub test: String,
 }
 
+words! {
+    /// What a condition of a run is about.
+    GateKind {
+        /// Every judged row is inside its bound.
+        Bound = "bound",
+        /// Every question that an engine offers to answer has a value.
+        Answer = "answer",
+        /// Nothing is skipped that `oracles/engines.toml` does not name.
+        Unlisted = "unlisted skip",
+        /// There are rows.
+        Rows = "rows",
+        /// A known deviation still occurs.
+        Seen = "known deviation seen",
+        /// A known deviation has its known size.
+        Size = "known deviation size",
+        /// What an engine does not offer is still not offered.
+        Lack = "lack",
+        /// Computed bounds are sharp enough to find errors.
+        Sharp = "sharp bound",
+        /// The mean and the largest value over robots.
+        Mean = "mean",
+        /// Cells and rows of a complete run.
+        Counts = "counts",
+        /// An engine that was asked for takes part.
+        Engine = "engine",
+        /// Engines import a file alike.
+        Import = "import",
+        /// A condition of a run that an older version wrote.
+        Other = "other",
+    }
+}
+
+/// Who a condition that is not met is about; what is not known is empty.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct Culprit {
+    /// The study.
+    pub study: String,
+    /// The robot.
+    pub robot: String,
+    /// The engine.
+    pub engine: String,
+    /// The quantity.
+    pub quantity: String,
+    /// The method.
+    pub method: String,
+}
+
 /// A condition on the number of rows: the suite's own gate.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Expectation {
+    /// What it is about.
+    #[serde(default = "GateKind::unknown")]
+    pub kind: GateKind,
+    /// Who it is about, if it is not met.
+    #[serde(default)]
+    pub culprit: Culprit,
     /// The rows that are counted: "drake: passing rows of fd".
     pub what: String,
     /// The number that the suite expects.
@@ -195,6 +249,55 @@ pub struct Expectation {
     pub verdict: Verdict,
     /// Why it does not pass.
     pub reason: String,
+}
+
+impl GateKind {
+    /// The kind of a condition that names none.
+    const fn unknown() -> Self {
+        Self::Other
+    }
+}
+
+impl Culprit {
+    /// A culprit of which only the engine is known.
+    pub fn engine(name: &str) -> Self {
+        Self { engine: name.to_owned(), ..Self::default() }
+    }
+
+    /// Everyone a row names.
+    pub fn of(row: &Row) -> Self {
+        Self {
+            study: row.study.clone(),
+            robot: row.robot.clone(),
+            engine: row.engine.clone(),
+            quantity: row.quantity.clone(),
+            method: row.method.clone(),
+        }
+    }
+}
+
+impl Expectation {
+    /// A condition that is met if both numbers are equal.
+    pub fn new(kind: GateKind, what: String, expected: u64, found: u64) -> Self {
+        let met = expected == found;
+        let reason = if met { String::new() } else { format!("expected {expected}, found {found}") };
+        Self { kind, culprit: Culprit::default(), what, expected, found, verdict: if met { Verdict::Pass } else { Verdict::Fail }, reason }
+    }
+
+    /// The condition with the one it is about.
+    pub fn about(self, culprit: Culprit) -> Self {
+        Self { culprit, ..self }
+    }
+
+    /// The condition with another reason, if it is not met.
+    pub fn because(self, reason: String) -> Self {
+        if self.is_met() { self } else { Self { reason, ..self } }
+    }
+
+    /// Whether it is met.
+    pub fn is_met(&self) -> bool {
+        self.verdict == Verdict::Pass
+    }
 }
 
 impl RobotInfo {

@@ -5,9 +5,9 @@ use std::fs;
 use std::path::Path;
 
 use featherbench_results::{
-    Base, COLUMNS, CSV_NAME, Checksums, ColumnType, Convention, EngineInfo, EngineSource, Expectation, Feature, GitInfo, Host, Kind,
-    ModelOrigin, Properties, RUN_FORMAT, RUN_NAME, Relation, ResultsError, RobotInfo, Row, RunInfo, SCHEMA_NAME, Verdict, atomic_write,
-    canonical_json, read_csv, read_run, schema_json, to_csv, write_csv, write_run,
+    Base, COLUMNS, CSV_NAME, Checksums, ColumnType, Convention, Culprit, EngineInfo, EngineSource, Expectation, Feature, GateKind, GitInfo,
+    Host, Kind, ModelOrigin, Properties, RUN_FORMAT, RUN_NAME, Relation, ResultsError, RobotInfo, Row, RunInfo, SCHEMA_NAME, Verdict,
+    atomic_write, canonical_json, read_csv, read_run, schema_json, to_csv, write_csv, write_run,
 };
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
@@ -276,7 +276,9 @@ fn run_info() -> RunInfo {
             notes: vec!["the axis is normalised".into()],
         }],
         seconds: BTreeMap::from([("accuracy".into(), 0.1)]),
-        expected: vec![Expectation { what: "id".into(), expected: 2, found: 1, verdict: Verdict::Fail, reason: "one is missing".into() }],
+        expected: vec![
+            Expectation::new(GateKind::Counts, "id".into(), 2, 1).because("one is missing".into()).about(Culprit::engine("drake")),
+        ],
         conventions: vec![Convention {
             engine: "featherbench".into(),
             topic: "free q".into(),

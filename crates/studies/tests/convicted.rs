@@ -9,7 +9,8 @@ use crate::support;
 use featherbench_bench::{Engine, Engines, Gates, Quantity, Range, RangeKey, Ranges, RangesMeter, Robot};
 use featherbench_engines::Featherbench;
 use featherbench_model::{Description, JointType, Model};
-use featherbench_results::{Expectation, Row, Verdict};
+use featherbench_report::{Findings, Status};
+use featherbench_results::{Culprit, Expectation, GateKind, Row, RunInfo, Verdict};
 use featherbench_robots::StateBatch;
 use std::collections::BTreeSet;
 use std::path::Path;
@@ -40,6 +41,21 @@ fn fails_in(robot: &Robot, double: Double, quantities: &[&str]) {
         assert!(miscounted(&conditions, "double").contains(quantity), "{quantity}: {unmet:?}");
     }
     assert!(miscounted(&conditions, "featherbench").is_empty(), "our own kernels are innocent: {unmet:?}");
+    first_names_the_double(&conditions, &records, GateKind::Bound, quantities);
+}
+
+/// Asserts that the report's first finding names the double, one of the quantities, and a robot or the study that misses rows.
+#[track_caller]
+fn first_names_the_double(conditions: &[Expectation], records: &[Row], gate: GateKind, quantities: &[&str]) {
+    let run = RunInfo { expected: conditions.to_vec(), ..RunInfo::default() };
+    let findings = Findings::of(&run, records);
+    assert_eq!(findings.status, Status::Failed);
+    let first = findings.new().next().unwrap();
+    let Culprit { engine, quantity, robot, study, .. } = &first.culprit;
+    assert_eq!((engine.as_str(), first.gate), ("double", gate), "{}", first.sentence());
+    assert!(quantities.is_empty() || quantities.contains(&quantity.as_str()), "{}", first.sentence());
+    assert!(!robot.is_empty() || !study.is_empty(), "{first:?}");
+    assert!(findings.headline().starts_with("double"), "{}", findings.headline());
 }
 
 /// The quantities of which an engine has other cells or rows than are expected.
@@ -304,6 +320,7 @@ fn not_a_number_is_an_error() {
     let conditions = expected.conditions(&gates, &records, true);
     let unmet = red(&conditions);
     assert!(unmet.contains(&"rows without a value that was due"), "{unmet:?}");
+    first_names_the_double(&conditions, &records, GateKind::Answer, &EVERYTHING);
     for partial in [false, true] {
         assert!(!red(&expected.conditions(&gates, &records, !partial)).is_empty());
     }
@@ -336,6 +353,7 @@ fn a_missing_engine_does_not_pass_unnoticed() {
     let mut due: BTreeSet<&str> = EVERYTHING.into_iter().collect();
     assert!(due.insert("readback"), "the read-back is demanded as well");
     assert_eq!(miscounted(&conditions, "double"), due);
+    first_names_the_double(&conditions, &alone, GateKind::Counts, &due.into_iter().collect::<Vec<_>>());
 }
 
 #[test]
@@ -391,6 +409,9 @@ fn a_skip_is_red_unless_it_is_known_that_it_is_not_offered() {
     let (deviations, _, skips, green) = trial(&gates(""), &robot, Double::refusing(&robot));
     assert_eq!((deviations, green), (0, false));
     assert!(skips > EVERYTHING.len(), "the forward dynamics has two methods: {skips}");
+    let records = beside_native(&robot, &gates(""), Double::refusing(&robot));
+    let conditions = suite(&records).conditions(&gates(""), &records, true);
+    first_names_the_double(&conditions, &records, GateKind::Unlisted, &[]);
     let not_offered = |more: &str| {
         let engine = "[double]\ntitle = \"T\"\npackage = { name = \"double\", version = \"1\", licence = \"MIT\", home = \"https://example.org\" }\nstart = { kind = \"python\", module = \"m\" }\n";
         let text = format!("{engine}[[double.lacks]]\nrobots = [\"joints-*\"]\nreason = \"a known cause\"\n{more}");
@@ -463,6 +484,9 @@ fn a_deviation_explains_no_more_than_was_measured() {
     let (deviations, left, _, green) = trial(&sized("", 0.1), &robot, wrong(&robot));
     assert!(left > deviations && !green, "ten times as large as known; the largest case has the range: {deviations} excused, {left} not");
     assert_eq!(deviations + left, fails);
+    let grown = sized("", 0.1);
+    let records = beside_native(&robot, &grown, wrong(&robot));
+    first_names_the_double(&suite(&records).conditions(&grown, &records, true), &records, GateKind::Bound, &EVERYTHING);
     // Smaller than known: every row is explained, and the list must be corrected.
     assert_eq!(trial(&sized("", 10.0), &robot, wrong(&robot)), (fails, 0, 0, false));
     let (deviations, left, _, green) = trial(&sized("quantities = [\"id\"]", 1.0), &robot, wrong(&robot));

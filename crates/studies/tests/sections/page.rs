@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::fs;
 
-use featherbench_results::{Relation, Row, RunInfo, Verdict};
+use featherbench_results::{Expectation, GateKind, Relation, Row, RunInfo, Verdict};
 
 use super::written::Written;
 use super::{made_up, report};
@@ -208,6 +208,7 @@ fn sentences_tell_who_agrees_and_who_does_not() {
             robot: model.into(),
             quantity: quantity.into(),
             metric: "scaled".into(),
+            unit: "ratio".into(),
             reference: "featherbench".into(),
             ..Row::default()
         }
@@ -224,24 +225,18 @@ fn sentences_tell_who_agrees_and_who_does_not() {
     let engines = RunInfo { engines: made_up::run_info().engines, ..RunInfo::default() };
     let written = report(&engines, &rows);
     let verdict = written.section("verdict");
-    assert!(verdict.contains("1 row of 6 outside their gates"), "{verdict}");
+    assert!(verdict.contains("<h1>mujoco, inverse dynamics: 3.0 digits lost beyond rounding"), "{verdict}");
     assert!(
         verdict.contains("mujoco and drake agree with featherbench on") && verdict.contains("(2e-15)") && verdict.contains("over 2 robots")
     );
     assert!(verdict.contains("drake agrees with featherbench on") && verdict.contains("over 1 robot."));
-    assert!(verdict.contains("inverse dynamics: fails 1 of 1 row against featherbench") && verdict.contains("(−3.0 decades)"));
+    assert!(verdict.contains("<b>mujoco, inverse dynamics</b>: ") && verdict.contains("where 1e-14 is allowed"));
     assert!(written.section("pairs").contains("1e-11"));
     assert!(written.section("unpassed").contains("1e-11 is not at most 1e-14"));
 
     let good = report(&RunInfo::default(), &rows[..5]);
-    assert!(good.section("verdict").contains("All 5 judged rows are inside their gates"));
-    let expected = featherbench_results::Expectation {
-        what: "id".into(),
-        expected: 2,
-        found: 1,
-        verdict: Verdict::Fail,
-        reason: "one is missing".into(),
-    };
+    assert!(good.section("verdict").contains("No engine misses a gate"));
+    let expected = Expectation::new(GateKind::Counts, "id".into(), 2, 1).because("one is missing".into());
     let short = report(&RunInfo { expected: vec![expected], ..RunInfo::default() }, &rows[..5]);
-    assert!(short.section("verdict").contains("verdict bad") && short.section("verdict").contains("1 expectation not met"));
+    assert!(short.section("verdict").contains("verdict bad") && short.section("verdict").contains("id: one is missing"));
 }

@@ -125,7 +125,6 @@ fn the_verdict_says_who_is_right_by_truth() {
         assert!(verdict.contains(words), "{words}: {verdict}");
     }
     assert!(written.section("accuracy").contains("The reference is the suspect"));
-    assert!(!verdict.contains("Who does not"), "a failure against the truth is told once");
 }
 
 #[test]

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use featherbench_report::fit::{Fit, power_law};
-use featherbench_report::{EVERYONE, Overview, severity};
+use featherbench_report::{EVERYONE, Overview, worst_first};
 use featherbench_results::{Row, Verdict};
 use serde::Serialize;
 
@@ -133,7 +133,7 @@ impl<'a> Accuracy<'a> {
             cell.floor = cell.floor.or(row.floor);
             if is_judged(row) {
                 let worst = deciding.entry((key, robot)).or_insert(row);
-                if severity(row) < severity(worst) {
+                if worst_first(row) < worst_first(worst) {
                     *worst = row;
                 }
                 (cell.verdict, cell.margin, cell.reason) = (Some(worst.verdict), worst.margin, &worst.reason);

@@ -40,7 +40,7 @@ pub(crate) fn sections<'a>(_: &RunInfo, rows: &'a [Row], overview: &Overview<'a>
     vec![Section {
         script: include_str!("accuracy.js"),
         style: include_str!("accuracy.css"),
-        finding: Some(Finding { rank: 0, body: truth::markup(overview, &accuracy, &truth), told: &[STUDY] }),
+        finding: Some(Finding { rank: 0, body: truth::markup(overview, &accuracy, &truth) }),
         quantities: accuracy.quantities().into_iter().map(str::to_owned).collect(),
         terms: TERMS,
         ..Section::new("accuracy", "Accuracy", body(overview, &accuracy)).with_data(&accuracy)

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use featherbench_report::numbers::{count, decades, larger, listed, short};
-use featherbench_report::{Overview, labels, opener, severity};
+use featherbench_report::{Overview, labels, opener, worst_first};
 use featherbench_results::{Row, Verdict};
 use maud::{Markup, html};
 
@@ -53,7 +53,7 @@ impl<'a> Truth<'a> {
             let (Some(robot), Some(engine)) = (overview.robot(&row.robot), overview.engine(&row.engine)) else { continue };
             let account = accounts.entry((rank(shown_quantity(&row.quantity)), engine, &row.method)).or_default();
             let worst = account.entry(robot).or_insert(row);
-            if severity(row) < severity(worst) {
+            if worst_first(row) < worst_first(worst) {
                 *worst = row;
             }
         }
@@ -61,7 +61,7 @@ impl<'a> Truth<'a> {
             let mut groups: BTreeMap<_, Missed> = BTreeMap::new();
             for ((quantity, engine, method), account) in &accounts {
                 let rows: Vec<(usize, &Row)> = account.iter().filter(|(_, row)| miss(row)).map(|(&robot, &row)| (robot, row)).collect();
-                let Some(worst) = rows.iter().map(|&(_, row)| row).min_by_key(|row| severity(row)) else { continue };
+                let Some(worst) = rows.iter().map(|&(_, row)| row).min_by_key(|row| worst_first(row)) else { continue };
                 let robots: Vec<usize> = rows.iter().map(|&(robot, _)| robot).collect();
                 let group = groups.entry((*quantity, *engine, robots.clone())).or_insert_with(|| Missed {
                     engine: overview.engines[*engine],
@@ -72,12 +72,12 @@ impl<'a> Truth<'a> {
                     worst,
                 });
                 group.methods.push(*method);
-                if severity(worst) < severity(group.worst) {
+                if worst_first(worst) < worst_first(group.worst) {
                     group.worst = worst;
                 }
             }
             let mut groups: Vec<Missed> = groups.into_values().collect();
-            groups.sort_by_key(|group| severity(group.worst));
+            groups.sort_by_key(|group| worst_first(group.worst));
             groups
         };
         let failed = missed(|row| matches!(row.verdict, Verdict::Fail | Verdict::Error));

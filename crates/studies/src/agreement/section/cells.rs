@@ -2,7 +2,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use featherbench_report::{Overview, Tally, labels, severity};
+use featherbench_report::{Overview, Tally, labels, worst_first};
 use featherbench_results::{Row, Verdict};
 use serde::Serialize;
 
@@ -113,7 +113,7 @@ impl<'a> Cell<'a> {
 
     fn add(&mut self, row: &'a Row) {
         self.tally.add(row.verdict);
-        if severity(row) < severity(self.worst) {
+        if worst_first(row) < worst_first(self.worst) {
             self.worst = row;
         }
     }

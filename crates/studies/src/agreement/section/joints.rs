@@ -6,7 +6,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use featherbench_report::numbers::{decades, larger, listed, short};
-use featherbench_report::{Overview, Tally, labels, severity, swatch};
+use featherbench_report::{Overview, Tally, labels, swatch, worst_first};
 use featherbench_results::{Row, Verdict};
 use maud::{Markup, html};
 use serde::Serialize;
@@ -138,7 +138,7 @@ impl<'a> Fold<'a> {
         }
         self.tally.add(row.verdict);
         self.answered.insert(&row.robot);
-        if self.worst.is_none_or(|worst| severity(row) < severity(worst)) {
+        if self.worst.is_none_or(|worst| worst_first(row) < worst_first(worst)) {
             self.worst = Some(row);
         }
     }

@@ -29,7 +29,7 @@ pub(crate) fn sections<'a>(_: &RunInfo, rows: &'a [Row], overview: &Overview<'a>
     let mut sections = vec![
         Section {
             script: include_str!("heatmap.js"),
-            finding: Some(Finding { rank: 1, body: findings::markup(&who), told: &[] }),
+            finding: Some(Finding { rank: 1, body: findings::markup(&who) }),
             quantities: cells.quantities.iter().map(|&name| name.to_owned()).collect(),
             ..Section::new("agreement", "Agreement", heatmap::markup(overview, &cells, &who)).with_data(&cells.data())
         },

@@ -2,7 +2,7 @@
 
 use super::super::STUDY;
 use featherbench_report::numbers::short;
-use featherbench_report::{Overview, labels, opener, severity};
+use featherbench_report::{Overview, labels, opener, worst_first};
 use featherbench_results::{Row, Verdict};
 use maud::{Markup, html};
 use std::collections::{BTreeMap, BTreeSet};
@@ -24,7 +24,7 @@ pub(super) fn table(overview: &Overview, rows: &[&Row]) -> Markup {
         let (Some(kind), Some(engine)) = (kind(&row.robot), overview.engine(&row.engine)) else { continue };
         let place = TYPES.iter().position(|known| *known == kind).unwrap_or(TYPES.len());
         let held = worst.entry((place, engine, labels::quantity_rank(&row.quantity))).or_insert(row);
-        if severity(row) < severity(held) {
+        if worst_first(row) < worst_first(held) {
             *held = row;
         }
     }

@@ -6,7 +6,7 @@ mod lines;
 
 use super::{NONE, STUDY};
 use featherbench_report::numbers::{count, larger, listed, short};
-use featherbench_report::{Finding, Overview, Section, labels, opener, severity};
+use featherbench_report::{Finding, Overview, Section, labels, opener, worst_first};
 use featherbench_results::{Row, RunInfo, Verdict};
 use lines::{Line, lines};
 use maud::{Markup, html};
@@ -35,7 +35,7 @@ struct Account<'a> {
 impl<'a> Account<'a> {
     fn with(&self, verdicts: &[Verdict]) -> Vec<&'a Row> {
         let mut rows: Vec<&Row> = self.decides.values().copied().filter(|row| verdicts.contains(&row.verdict)).collect();
-        rows.sort_by_key(|row| severity(row));
+        rows.sort_by_key(|row| worst_first(row));
         rows
     }
 
@@ -55,7 +55,7 @@ pub(crate) fn sections<'a>(_: &RunInfo, rows: &'a [Row], overview: &Overview<'a>
     let quantities: BTreeSet<&str> = own.iter().map(|row| row.quantity.as_str()).collect();
     vec![Section {
         script: include_str!("section.js"),
-        finding: Some(Finding { rank: 1, body: answer(overview, &accounts), told: &[STUDY] }),
+        finding: Some(Finding { rank: 1, body: answer(overview, &accounts) }),
         quantities: quantities.into_iter().map(str::to_owned).collect(),
         terms: TERMS,
         ..Section::new("derivatives", "Derivatives", body(overview, &own, &accounts, &lines, rows)).with_data(&lines)
@@ -74,7 +74,7 @@ fn accounts<'a>(overview: &Overview<'a>, rows: &[&'a Row]) -> Vec<Account<'a>> {
             decides: BTreeMap::new(),
         });
         let decides = account.decides.entry(robot).or_insert(row);
-        if severity(row) < severity(decides) {
+        if worst_first(row) < worst_first(decides) {
             *decides = row;
         }
     }

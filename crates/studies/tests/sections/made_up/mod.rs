@@ -3,8 +3,8 @@
 use std::collections::BTreeMap;
 
 use featherbench_results::{
-    Convention, EngineInfo, EngineSource, Expectation, GitInfo, Host, Kind, ModelOrigin, Relation, RobotInfo, Row, RunInfo, Verdict,
-    canonical_json,
+    Convention, Culprit, EngineInfo, EngineSource, Expectation, GateKind, GitInfo, Host, Kind, ModelOrigin, Relation, RobotInfo, Row,
+    RunInfo, Verdict, canonical_json,
 };
 
 mod truth;
@@ -165,20 +165,10 @@ pub fn run_info() -> RunInfo {
         robots: models(),
         seconds: BTreeMap::from([("accuracy".into(), 11.4), ("timing".into(), 30.25)]),
         expected: vec![
-            Expectation {
-                what: "drake: passing rows of id".into(),
-                expected: 175,
-                found: 175,
-                verdict: Verdict::Pass,
-                reason: String::new(),
-            },
-            Expectation {
-                what: "mujoco: passing rows of fd".into(),
-                expected: 350,
-                found: 331,
-                verdict: Verdict::Fail,
-                reason: "19 rows are missing".into(),
-            },
+            Expectation::new(GateKind::Counts, "drake: passing rows of id".into(), 175, 175),
+            Expectation::new(GateKind::Counts, "mujoco: passing rows of fd".into(), 350, 331)
+                .because("19 rows are missing".into())
+                .about(Culprit { quantity: "fd".into(), ..Culprit::engine("mujoco") }),
         ],
         ..RunInfo::default()
     }

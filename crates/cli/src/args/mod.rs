@@ -1,4 +1,10 @@
-//! The command line.
+//! The command line: running suites, and what surrounds it. Judging a run and analysing a robot have files of their own.
+
+mod analysis;
+mod judge;
+
+pub use analysis::{Estimator, IdentifyArgs, Propagation, Term, UncertaintyArgs};
+pub use judge::{DiffArgs, FolderArgs, GateArgs, HistoryArgs};
 
 use crate::external::External;
 use clap::{Args, Parser, Subcommand, ValueEnum};
@@ -55,6 +61,13 @@ pub enum Command {
     Uncertainty(UncertaintyArgs),
     /// Set up and look at the reference engines.
     Oracles(OraclesArgs),
+    /// Print the completions of a shell: bash, elvish, fish, powershell or zsh.
+    Completions {
+        /// The shell.
+        shell: clap_complete::Shell,
+    },
+    /// Print the manual page, in roff.
+    Man,
     /// Serve a native library by the oracle protocol: what a run starts as a child process.
     #[command(hide = true)]
     Serve(ServeArgs),
@@ -92,6 +105,9 @@ pub struct RunArgs {
     /// Continue although program, target features, libm, suite or a program of --engine differ.
     #[arg(long, requires = "resume")]
     pub allow_mixed: bool,
+    /// Open the report when the run ends.
+    #[arg(long)]
+    pub open: bool,
     /// Leave the timing study out.
     #[arg(long)]
     pub no_timing: bool,
@@ -148,80 +164,10 @@ pub struct CompareArgs {
     pub out: Option<PathBuf>,
 }
 
-/// A word that can stand in the name of a file.
-fn file_name(text: &str) -> Result<String, String> {
-    let plain = !text.is_empty() && text.chars().all(|c| c.is_ascii_lowercase() || c.is_ascii_digit());
-    if plain { Ok(text.to_owned()) } else { Err("use small letters and digits".into()) }
-}
-
-#[derive(Debug, Clone, Args)]
-pub struct FolderArgs {
-    /// A run's folder.
-    pub folder: PathBuf,
-}
-
 #[derive(Debug, Clone, Args)]
 #[command(
-    after_help = "Example, the sizes of known deviations over twenty seeds:\n  for seed in $(seq 1 20); do featherbench run --live --no-timing --seed $seed --out reports/seed-$seed; done\n  featherbench gate reports/seed-* --ranges --write"
+    after_help = "Examples:\n  featherbench list                     the robots of the default suite, all suites, engines, studies\n  featherbench list --suite robots\n  featherbench list --gates             every gate, and whether a planted fault fires it"
 )]
-pub struct GateArgs {
-    /// A run's folder.
-    pub folder: PathBuf,
-    /// More runs, for --ranges.
-    #[arg(requires = "ranges", value_name = "FOLDER")]
-    pub others: Vec<PathBuf>,
-    /// Measure how large each known deviation is on each robot, over runs of one suite with different seeds.
-    #[arg(long, group = "measured")]
-    pub ranges: bool,
-    /// Count the cells and the rows that pass or deviate as known, by study, engine and quantity.
-    #[arg(long, group = "measured")]
-    pub counts: bool,
-    /// With --ranges or --counts: write what was measured into ci/deviations/SUITE.csv or ci/counts.csv, in the place of what
-    /// stands there about the suite. Each range keeps the deviation that the file names; a new one takes the only deviation of
-    /// ci/deviations/ENGINE.toml that matches.
-    #[arg(long, requires = "measured")]
-    pub write: bool,
-    /// With --ranges --write: the runs are of another processor, which rounds otherwise. Write ci/deviations/SUITE-NAME.csv beside SUITE.csv: a
-    /// range spans both.
-    #[arg(long, requires_all = ["write", "ranges"], value_name = "NAME", value_parser = file_name)]
-    pub processor: Option<String>,
-}
-
-#[derive(Debug, Clone, Args)]
-#[command(
-    after_help = "What changes: a verdict; a count; an error by a factor of 4; a time when the intervals of both runs are apart and their ratio is beyond 2 % and the A/A controls of both; a row that only one run has. Times that do not count are not compared.\n\nExit codes: 0 nothing changed beyond noise, 1 something did, 2 usage or bad input.\n\nExample:\n  featherbench diff reports/before reports/after --markdown"
-)]
-pub struct DiffArgs {
-    /// The folder of the first run.
-    #[arg(value_name = "RUN_A")]
-    pub before: PathBuf,
-    /// The folder of the second run.
-    #[arg(value_name = "RUN_B")]
-    pub after: PathBuf,
-    /// Print a Markdown table.
-    #[arg(long)]
-    pub markdown: bool,
-}
-
-#[derive(Debug, Clone, Args)]
-#[command(
-    after_help = "Example:\n  python ci/instructions.py --out counts.csv\n  featherbench history reports/timing --instructions counts.csv --to datasets/history"
-)]
-pub struct HistoryArgs {
-    /// The folder of a run with times.
-    pub folder: PathBuf,
-    /// The robot whose times are kept.
-    #[arg(long, default_value = "humanoid")]
-    pub model: String,
-    /// Instruction counts, as `ci/instructions.py --out` writes them.
-    #[arg(long, value_name = "CSV")]
-    pub instructions: Option<PathBuf>,
-    /// The folder of histories; by default reports/history, which git ignores. The project's own are in datasets/history.
-    #[arg(long, value_name = "DIR")]
-    pub to: Option<PathBuf>,
-}
-
-#[derive(Debug, Clone, Args)]
 pub struct ListArgs {
     /// The suite whose robots and cells are listed.
     #[arg(long, default_value = "default")]
@@ -232,6 +178,9 @@ pub struct ListArgs {
     /// List the conventions of the engines beside ours, as CONVENTIONS.md shows them.
     #[arg(long, conflicts_with = "cells")]
     pub conventions: bool,
+    /// List every gate of ci/gates.toml, and plant a fault of ten times its bound in each: exit 1 when one does not fire.
+    #[arg(long, conflicts_with_all = ["cells", "conventions"])]
+    pub gates: bool,
 }
 
 #[derive(Debug, Clone, Args)]
@@ -295,91 +244,6 @@ pub struct GenArgs {
     pub lossy: bool,
 }
 
-#[derive(Debug, Clone, Args)]
-#[command(after_help = "\
-Examples:
-  featherbench identify arm.urdf --excite motion.csv              a motion within the limits that tells the parameters
-  featherbench identify arm.urdf log.csv                          inertias, viscous and Coulomb friction; who fits how well
-  featherbench identify arm.urdf log.parquet --method log_cholesky --out arm_identified.urdf
-  featherbench identify arm.json log.csv --terms armature,viscous,coulomb,offset --json
-
-The log has the columns time, q.JOINT, tau.JOINT, and v.JOINT and a.JOINT if they were measured, as CSV or Parquet (plain or Snappy). What is not
-measured is differentiated: a polynomial of --order over --window rows around each row. Positions, velocities and torques get the same filter. A
-sample is taken every --stride rows.
-
-Gaps in time, saturated torques and combinations of parameters that the motion does not tell are flagged with their line and consequence. A missing
-column, NaN, or times that do not rise are refused.
-
-Methods: ordinary, weighted and total least squares; log_cholesky and semidefinite give bodies that can exist. semidefinite asks Clarabel
-(`featherbench oracles install clarabel`). Intervals are of 95 %.
-
-Exit codes: 0 good, 1 what is held out is predicted worse than by the description, 2 usage or bad input, 3 a required engine is missing.")]
-pub struct IdentifyArgs {
-    /// The robot: a description, URDF or MJCF file.
-    #[arg(value_name = "ROBOT")]
-    pub robot: PathBuf,
-    /// The log: CSV or Parquet.
-    #[arg(value_name = "LOG", required_unless_present = "excite")]
-    pub log: Option<PathBuf>,
-    /// Write a motion that tells the parameters, as a log, instead of reading one.
-    #[arg(long, value_name = "FILE", conflicts_with = "log")]
-    pub excite: Option<PathBuf>,
-    /// Give a URDF's base six degrees of freedom.
-    #[arg(long)]
-    pub floating: bool,
-    /// The estimator.
-    #[arg(long, value_enum, default_value = "weighted")]
-    pub method: Estimator,
-    /// What is identified beside inertias: armature, viscous, coulomb, offset, or none.
-    #[arg(long, value_enum, value_delimiter = ',', value_name = "TERMS", default_value = "viscous,coulomb")]
-    pub terms: Vec<Term>,
-    /// Rows of the window that derivatives are taken by: an odd number; 1 takes the log as it is.
-    #[arg(long, value_name = "ROWS", default_value_t = 21)]
-    pub window: usize,
-    /// The order of the polynomial.
-    #[arg(long, default_value_t = 4)]
-    pub order: usize,
-    /// Rows from one sample to the next; by default the window, so that samples share no noise.
-    #[arg(long, value_name = "ROWS")]
-    pub stride: Option<usize>,
-    /// The share of samples, at the end, that is not fitted but predicted.
-    #[arg(long, value_name = "SHARE", default_value_t = 0.25)]
-    pub held_out: f64,
-    /// Base frequency of --excite, Hz.
-    #[arg(long, value_name = "HZ", default_value_t = 0.1)]
-    pub frequency: f64,
-    /// Write the robot with its new parameters: .json, .urdf or .xml.
-    #[arg(long, value_name = "FILE")]
-    pub out: Option<PathBuf>,
-    /// Leave out what the format of --out cannot hold, naming it, instead of refusing.
-    #[arg(long)]
-    pub lossy: bool,
-    /// Print JSON.
-    #[arg(long)]
-    pub json: bool,
-}
-
-/// An estimator of `identify`.
-#[derive(Debug, Clone, Copy, ValueEnum)]
-#[value(rename_all = "snake_case")]
-pub enum Estimator {
-    Ordinary,
-    Weighted,
-    Total,
-    LogCholesky,
-    Semidefinite,
-}
-
-/// What `identify` identifies beside inertias.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub enum Term {
-    Armature,
-    Viscous,
-    Coulomb,
-    Offset,
-    None,
-}
-
 /// How a robot is written.
 #[derive(Debug, Clone, Copy, ValueEnum)]
 pub enum Format {
@@ -389,83 +253,6 @@ pub enum Format {
     Urdf,
     /// MuJoCo's format.
     Mjcf,
-}
-
-#[derive(Debug, Clone, Args)]
-#[command(after_help = "\
-Examples:
-  featherbench uncertainty panda                                    every mass ± 20 %, at a drawn state
-  featherbench uncertainty robot.json --method chaos                the section 'uncertain' of the file, by polynomial chaos
-  featherbench uncertainty robot.urdf --spread 0.05 --indices       which mass matters for which joint
-  featherbench uncertainty chain:n=7,layout=spatial --method random --samples 100000000 --threads 2
-
-Methods: first-order (y(μ) and J Σ Jᵀ), unscented, chaos (Gauss quadrature, exact for smooth answers of few parameters), random (Monte Carlo), sobol
-(scrambled Sobol' points; the default). The last two have standard errors, quantiles and densities, and the same digits for any number of threads.
-
-A state file is {\"q\":[…],\"v\":[…],\"drive\":[…]}; drive is joint forces, or with --torque accelerations.
-
-Exit codes: 0 good, 2 usage or bad input.")]
-pub struct UncertaintyArgs {
-    /// A description (.json) or URDF file, a robot of datasets/models, or a family of generated robots.
-    pub robot: String,
-    /// How the uncertainty is propagated.
-    #[arg(long, value_enum, default_value_t = Propagation::Sobol)]
-    pub method: Propagation,
-    /// Samples, of the methods that sample.
-    #[arg(long, default_value_t = 65536, value_name = "N")]
-    pub samples: u64,
-    /// Threads; by default all cores.
-    #[arg(long, value_name = "N")]
-    pub threads: Option<usize>,
-    /// The seed of the samples, and of the state if none is given.
-    #[arg(long, default_value_t = 1)]
-    pub seed: u64,
-    /// The state: a JSON file.
-    #[arg(long, value_name = "FILE")]
-    pub state: Option<PathBuf>,
-    /// Make each mass uniform within this part of its value, in the place of what the description says. Without either, 0.2.
-    #[arg(long, value_name = "PART")]
-    pub spread: Option<f64>,
-    /// The order of polynomial chaos; by default the largest up to 6 that takes at most 100 000 nodes.
-    #[arg(long, value_name = "P")]
-    pub order: Option<usize>,
-    /// Torques of accelerations, instead of accelerations of torques.
-    #[arg(long)]
-    pub torque: bool,
-    /// Also Sobol' indices: the part of the variance that each parameter explains.
-    #[arg(long)]
-    pub indices: bool,
-    /// Print JSON.
-    #[arg(long)]
-    pub json: bool,
-}
-
-/// How uncertainty is propagated.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub enum Propagation {
-    /// First order.
-    FirstOrder,
-    /// The unscented transform.
-    Unscented,
-    /// Polynomial chaos.
-    Chaos,
-    /// Random points: Monte Carlo.
-    Random,
-    /// Scrambled Sobol' points.
-    Sobol,
-}
-
-impl Propagation {
-    /// The word for it.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::FirstOrder => "first_order",
-            Self::Unscented => "unscented",
-            Self::Chaos => "chaos",
-            Self::Random => "random",
-            Self::Sobol => "sobol",
-        }
-    }
 }
 
 #[derive(Debug, Clone, Args)]
