@@ -90,7 +90,7 @@ pub use import::{FileBase, FileFormat, FileInertial, FileLink, Import, ImportNot
 pub use lack::Lack;
 pub use loops::{LoopAccelerations, LoopMotion, LoopSolver, LoopStates, LoopSteps};
 pub use means::{Known, Mean};
-pub use near::{did_you_mean, distance};
+pub use near::did_you_mean;
 pub use quantity::{DENSE_LIMIT, Quantity};
 pub use ranges::{Range, RangeKey, Ranges, RangesMeter};
 pub use relocation::Relocation;

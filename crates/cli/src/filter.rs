@@ -1,9 +1,9 @@
 //! `--filter`: a filter that lets nothing through is a mistake, and its words are compared with those that there are.
 
 use crate::fail::Fail;
-use featherbench_bench::distance;
 use regex_lite::Regex;
 use std::collections::BTreeSet;
+use strsim::levenshtein;
 
 /// Names that are shown for each word that is none.
 const SHOWN: usize = 4;
@@ -36,7 +36,7 @@ fn hint(word: &str, names: &BTreeSet<&str>) -> Option<String> {
     if names.iter().any(|name| name.contains(word)) {
         return None;
     }
-    let mut near: Vec<(usize, &str)> = names.iter().map(|name| (distance(word, name), *name)).collect();
+    let mut near: Vec<(usize, &str)> = names.iter().map(|name| (levenshtein(word, name), *name)).collect();
     near.sort_unstable();
     let listed: Vec<&str> = near.into_iter().take(SHOWN).map(|(_, name)| name).collect();
     Some(format!("nothing is named '{word}': nearest are {}", listed.join(", ")))
