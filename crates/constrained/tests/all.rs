@@ -2,12 +2,12 @@
 
 mod common;
 mod delassus;
+mod errors;
 mod extended;
 mod files;
 mod graph;
 mod laws;
 mod library;
-mod refusals;
 mod solve;
 mod squeezer;
 mod stabilise;

@@ -1,4 +1,4 @@
-//! Graphs with loops: cycles, Grübler's count, true mobility, refusals.
+//! Graphs with loops: cycles, Grübler's count, true mobility, errors.
 
 use featherbench_constrained::library::{Biped, Bricard, Ladder, Squeezer};
 use featherbench_constrained::stabilise::Projection;

@@ -1,4 +1,4 @@
-//! Continua in files: exact round trips in the neutral format, refusals that name the place, and formats that have no such bodies.
+//! Continua in files: exact round trips in the neutral format, errors that name the place, and formats that have no such bodies.
 
 use featherbench_formats::{OnLoss, Reason, mjcf, neutral, urdf};
 use featherbench_model::{

@@ -1,4 +1,4 @@
-//! Loops in files: exact round trips in the neutral format, mimics in URDF, equality constraints in MJCF, and refusals that name the place.
+//! Loops in files: exact round trips in the neutral format, mimics in URDF, equality constraints in MJCF, and errors that name the place.
 
 use featherbench_formats::urdf::Options;
 use featherbench_formats::{ExportError, OnLoss, Reason, mjcf, neutral, urdf};

@@ -1,4 +1,4 @@
-//! Uncertain parameters in files: exact round trips, refusals that name the place, and exports that say what they leave out.
+//! Uncertain parameters in files: exact round trips, errors that name the place, and exports that say what they leave out.
 
 use featherbench_formats::{OnLoss, Reason, mjcf, neutral, urdf};
 use featherbench_model::{Acts, Correlation, Description, Distribution, Target, TargetField, Uncertain, UncertainVariable};

@@ -159,7 +159,7 @@ pub(super) fn read(exchange: &mut Exchange, offered: &Methods) -> Result<(), Str
     }
     answers.judge(exchange, &scenes, ", as read");
     if let Some(format) = format {
-        refusals(exchange, format, folder.path())?;
+        invalid(exchange, format, folder.path())?;
     }
     Ok(())
 }
@@ -276,7 +276,7 @@ fn difference(one: &BodyDescription, other: &BodyDescription) -> Option<&'static
 }
 
 /// Files that are invalid, and whether the oracle works afterwards.
-fn refusals(exchange: &mut Exchange, format: FileFormat, folder: &Path) -> Result<(), String> {
+fn invalid(exchange: &mut Exchange, format: FileFormat, folder: &Path) -> Result<(), String> {
     let root = if format == FileFormat::Urdf { "robot" } else { "mujoco" };
     let broken = format!("<{root} name=\"broken\"><unclosed></{root}>");
     let nested = format!("<{root} name=\"nested\">{}{}</{root}>", "<a>".repeat(NESTED), "</a>".repeat(NESTED));

@@ -29,7 +29,7 @@ pub(super) struct Found {
 /// Asks for steps of the robot from the states that the oracle has.
 pub(super) fn ask(exchange: &mut Exchange, scene: &Scene, steps: &Steps, found: &mut Found) {
     let Some(plain) = steps.methods.first() else { return };
-    refusals(exchange, plain);
+    unanswerable(exchange, plain);
     for method in &steps.methods {
         let accelerations = answers(exchange, scene, question("step", method, SHORT), scene.robot.states.nv);
         let energies = answers(exchange, scene, question("fall", method, FALL.0), FALL.1);
@@ -76,7 +76,7 @@ fn question(op: &str, method: &str, dt: f64) -> Value {
 }
 
 /// Requests for steps that have no answer.
-fn refusals(exchange: &mut Exchange, method: &str) {
+fn unanswerable(exchange: &mut Exchange, method: &str) {
     for op in ["step", "fall"] {
         let nothing = question(op, "no such way", SHORT);
         exchange.expect(&format!("a {op} by a way that it does not have is unsupported"), nothing, Vec::new(), &["unsupported"]);
