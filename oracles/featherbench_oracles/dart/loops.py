@@ -14,12 +14,18 @@ from dartpy import constraint, dynamics, simulation
 from featherbench_oracles.algebra import Array
 from featherbench_oracles.dart.building import build
 from featherbench_oracles.dart.coordinates import change_of_velocities, exponential, to_engine_q
-from featherbench_oracles.loops import End, Loop, Motion
+from featherbench_oracles.loops import End, Loop, Motion, Tie
 from featherbench_oracles.messages import Header
 from featherbench_oracles.robot import Description
 
 ACCELERATIONS = ("step_1e-3",)
 MOTIONS = ("step",)
+# What DART does not hold, or not from Python.
+LACKS = {
+    "distance": "DART has no constraint of a distance",
+    "gear": "DART's Python package cannot name the joint that a mimicking joint follows",
+    "mimic": "DART's Python package cannot name the joint that a mimicking joint follows",
+}
 
 
 class DartLoops:
@@ -29,12 +35,13 @@ class DartLoops:
     ----------
     robot : Description
         The robot.
-    loops : list of Loop
+    loops : list of Tie
         Its loops: ball joint constraints, two for a hinge, or a weld.
     """
 
-    def __init__(self, robot: Description, loops: list[Loop]) -> None:
-        self.robot, self.loops = robot, loops
+    def __init__(self, robot: Description, loops: list[Tie]) -> None:
+        # Others are refused before (`LACKS`).
+        self.robot, self.loops = robot, [loop for loop in loops if isinstance(loop, Loop)]
         self._world(np.zeros(robot.nq), np.zeros(robot.nv), 1e-3)
 
     def _world(self, q: Array, v: Array, dt: float) -> tuple[simulation.World, dynamics.Skeleton, list[dynamics.Joint]]:

@@ -17,12 +17,14 @@ from pydrake.systems.analysis import Simulator
 from featherbench_oracles.algebra import Array
 from featherbench_oracles.drake.building import build
 from featherbench_oracles.drake.coordinates import change_of_velocities, to_engine_q
-from featherbench_oracles.loops import End, Loop, Motion
+from featherbench_oracles.loops import TYPES, End, Follow, Motion, Tie
 from featherbench_oracles.messages import Header
+from featherbench_oracles.protocol import Unsupported
 from featherbench_oracles.robot import Description
 
 ACCELERATIONS = ("sap_1e-3",)
 MOTIONS = ("sap",)
+HELD = {**TYPES, "distance": "distance", "gear": "coupler", "mimic": "coupler"}
 
 
 class DrakeLoops:
@@ -32,11 +34,11 @@ class DrakeLoops:
     ----------
     robot : Description
         The robot.
-    loops : list of Loop
-        Its loops: ball constraints, two for a hinge, or a weld.
+    loops : list of Tie
+        Its loops: ball constraints, two for a hinge, a weld, a distance, or a coupler.
     """
 
-    def __init__(self, robot: Description, loops: list[Loop]) -> None:
+    def __init__(self, robot: Description, loops: list[Tie]) -> None:
         self.robot, self.loops = robot, loops
         self.built: dict[float, MultibodyPlant] = {}
         self._plant(1e-3)
@@ -61,8 +63,16 @@ class DrakeLoops:
             return ground if end.body < 0 else chains[end.body][-1].child_body()
 
         for loop in self.loops:
+            if isinstance(loop, Follow):
+                offset, ratio, *bends = loop.polynomial
+                if any(bends):
+                    raise Unsupported(f"loop {loop.name}: Drake's coupler is linear, and the polynomial is not")
+                plant.AddCouplerConstraint(chains[loop.follower][-1], chains[loop.leader][-1], ratio, offset)
+                continue
             for first, second in loop.points():
-                if loop.type == "fixed":
+                if loop.type == "distance":
+                    plant.AddDistanceConstraint(on(first), first.translation, on(second), second.translation, loop.length)
+                elif loop.type == "fixed":
                     plant.AddWeldConstraint(on(first), _pose(first), on(second), _pose(second))
                 else:
                     plant.AddBallConstraint(on(first), first.translation, on(second), second.translation)

@@ -8,7 +8,7 @@ import numpy as np
 import pinocchio as pin
 
 from featherbench_oracles.algebra import Array
-from featherbench_oracles.loops import End, Loop, Motion
+from featherbench_oracles.loops import End, Loop, Motion, Tie
 from featherbench_oracles.messages import Header
 from featherbench_oracles.pinocchio.building import build
 from featherbench_oracles.pinocchio.coordinates import change_of_velocities, to_engine_q
@@ -18,6 +18,12 @@ from featherbench_oracles.robot import Description
 # At a smaller accuracy rounding would decide how many iterations are made.
 MU, ACCURACY, ITERATIONS = 1e-6, 1e-10, 20
 ACCELERATIONS = ("constraint_dynamics", "lcaba")
+# What Pinocchio's rigid constraints do not hold.
+LACKS = {
+    "distance": "Pinocchio's rigid constraints hold a point or a frame, and no distance",
+    "gear": "Pinocchio has no constraint between coordinates",
+    "mimic": "Pinocchio has no constraint between coordinates: its mimicking joint has none of its own",
+}
 # method of a motion -> method of its accelerations, and the time constant of Baumgarte's stabilisation, s
 MOTIONS: dict[str, tuple[str, float | None]] = {
     "rk4_constraint_dynamics": ("constraint_dynamics", None),
@@ -33,12 +39,13 @@ class PinocchioLoops:
     ----------
     robot : Description
         The robot.
-    loops : list of Loop
+    loops : list of Tie
         Its loops. Pinocchio has rigid constraints of a point (three rows) and of a frame (six rows).
     """
 
-    def __init__(self, robot: Description, loops: list[Loop]) -> None:
-        self.robot, self.loops = robot, loops
+    def __init__(self, robot: Description, loops: list[Tie]) -> None:
+        # Others are refused before (`LACKS`).
+        self.robot, self.loops = robot, [loop for loop in loops if isinstance(loop, Loop)]
         self.model = build(robot)
         # Data of their own: `lcaba` leaves in its `Data` what makes later answers of `constraintDynamics` wrong.
         asked = {*MOTIONS.values(), *((method, None) for method in ACCELERATIONS)}
