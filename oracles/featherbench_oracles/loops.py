@@ -99,6 +99,40 @@ class Follow:
 Tie = Loop | Follow
 
 
+@dataclass(frozen=True)
+class Spring:
+    """A linear spring without mass between two points: a pull of `stiffness` times (distance - `length`).
+
+    Attributes
+    ----------
+    first, second : End
+        The points: origins of frames.
+    stiffness, length : float
+        N/m; the distance without force, m.
+    """
+
+    first: End
+    second: End
+    stiffness: float
+    length: float
+
+
+@dataclass(frozen=True)
+class Drive:
+    """What drives a robot beside gravity, in accelerations and motions.
+
+    Attributes
+    ----------
+    tau : ndarray, shape (nv,)
+        Constant forces of the joints, neutral.
+    springs : tuple of Spring
+        The springs.
+    """
+
+    tau: Array
+    springs: tuple[Spring, ...] = ()
+
+
 class Mechanics(Protocol):
     """A robot with loops in an engine."""
 
@@ -124,7 +158,7 @@ class Mechanics(Protocol):
         """
 
     def move(self, method: str, q: Array, v: Array, motion: Motion) -> tuple[Array, Array, int]:
-        """Run a motion under gravity alone.
+        """Run a motion under gravity and the drive.
 
         Parameters
         ----------
@@ -161,8 +195,8 @@ class Motion:
     every: int
 
 
-# Makes the robot of a description and its loops.
-MakeMechanics = Callable[[Description, list[Tie]], Mechanics]
+# Makes the robot of a description, its loops and what drives it.
+MakeMechanics = Callable[[Description, list[Tie], Drive], Mechanics]
 
 
 class Loops:
@@ -200,8 +234,11 @@ class Loops:
             if body.joint.type not in JOINTS:
                 raise Unsupported(f"the coordinates of {body.joint.type} joints do not come back ({body.joint.name})")
         loops = [self._read(item, description) for item in header["model"].get("loops", [])]
-        self.robot = description, self.make(description, loops)
-        return {"nq": description.nq, "nv": description.nv, "held": {loop.name: self.types[loop.type] for loop in loops}}, {}
+        given = header.get("drive")
+        drive = Drive(np.zeros(description.nv)) if given is None else _drive(given, description)
+        self.robot = description, self.make(description, loops, drive)
+        driven = {} if given is None else {"driven": True}
+        return {"nq": description.nq, "nv": description.nv, **driven, "held": {loop.name: self.types[loop.type] for loop in loops}}, {}
 
     def accelerations(self, header: Header, blocks: Blocks) -> Answer:
         """Answer block `acceleration` of shape (states, nv), and `nanoseconds` of `repeats` rounds."""
@@ -286,6 +323,31 @@ def _follow(item: Header, robot: Description) -> Follow:
         if len(robot.bodies[body].joint.armature) != 1:
             raise ValueError(f"loop {item['name']}: the joint of body {body} has not one degree of freedom")
     return Follow(item["name"], item["type"], follower, leader, tuple(numbers))
+
+
+def _drive(given: Header, robot: Description) -> Drive:
+    """Read what drives a robot."""
+    tau = np.array(given["tau"], dtype=float)
+    if tau.shape != (robot.nv,) or not np.isfinite(tau).all():
+        raise ValueError(f"drive: tau must be {robot.nv} finite numbers")
+    if any(body.joint.type == "free" and tau[body.joint.v].any() for body in robot.bodies):
+        raise Unsupported("a constant force of a free joint is not asked about: its axes turn")
+
+    def point(end: Header) -> End:
+        body, place = end["body"], np.array(end["point"], dtype=float)
+        if not (isinstance(body, int) and -1 <= body < len(robot.bodies) and place.shape == (3,) and np.isfinite(place).all()):
+            raise ValueError(f"drive: a spring is at {end}, which is no point of a body")
+        return End(body, np.eye(3), place)
+
+    springs = []
+    for item in given["springs"]:
+        spring = Spring(point(item["first"]), point(item["second"]), float(item["stiffness"]), float(item["length"]))
+        if not (np.isfinite([spring.stiffness, spring.length]).all() and spring.stiffness > 0 and spring.length >= 0):
+            raise ValueError("drive: a spring's stiffness must be positive, its length not negative, and both finite")
+        if spring.first.body == spring.second.body:
+            raise ValueError(f"drive: both ends of a spring are on body {spring.first.body}")
+        springs.append(spring)
+    return Drive(tau, tuple(springs))
 
 
 def _check(blocks: Blocks, shapes: Mapping[str, tuple[int, ...]]) -> None:

@@ -187,6 +187,66 @@ def test_tied_pendulums_accelerate(oracles: Oracles, engine: str, kind: str) -> 
         assert np.abs(found - due).max() < EXACT[method] * (np.abs(due).max() + rate**2), (method, found, due)
 
 
+PULL, REST = 7.0, 0.4
+
+
+def _sprung() -> Header:
+    """Describe two pendulums on one hinge that are welded, a spring from the first one's end to a point of the world, and a torque."""
+    spring = {"first": {"body": 0, "point": [0.0, 0.0, -1.0]}, "second": {"body": -1, "point": [0.9, 0.0, -0.2]}}
+    return {"tau": [0.0, 1.5], "springs": [{**spring, "stiffness": PULL, "length": REST}]}
+
+
+def _sprung_acceleration(angle: float) -> float:
+    """Compute the closed form: the end is at (-sin, -cos), and turns by (-cos, sin) per rad."""
+    inertia, moment = sum(LINK) / 3, sum(LINK) * 9.81 / 2
+    way = np.array([0.9, -0.2]) - [-np.sin(angle), -np.cos(angle)]
+    distance = float(np.linalg.norm(way))
+    pull = PULL * (distance - REST) * float(way @ [-np.cos(angle), np.sin(angle)]) / distance
+    return (1.5 + pull - moment * float(np.sin(angle))) / inertia
+
+
+@pytest.mark.parametrize("engine", ENGINES)
+def test_springs_and_torques_drive(oracles: Oracles, engine: str) -> None:
+    """Accelerations are those of the closed form, and a motion ends where its steps by the closed form do."""
+    oracle = oracles[engine]
+    offered = oracle.must({"op": "hello"})[0]["loops"]
+    model, _ = _tied("fixed")
+    assert oracle.must({"op": "loops", "model": model, "drive": _sprung()})[0]["driven"]
+    angle = 0.4
+    blocks = {"q": np.full((1, 2), angle), "v": np.zeros((1, 2)), "tau": np.zeros((1, 2))}
+    due = _sprung_acceleration(angle)
+    for method in offered["accelerations"]:
+        found = oracle.must({"op": "loop_accelerations", "method": method, "count": 1}, blocks)[1]["acceleration"][0]
+        assert np.abs(found - due).max() < EXACT[method] * abs(due), method
+    turn, rate = angle, 0.0
+    for _ in range(20_000):  # semi-implicit steps of 10 us
+        rate += 1e-5 * _sprung_acceleration(turn)
+        turn += 1e-5 * rate
+    for method in offered["motions"]:
+        start = {"q": np.full(2, angle), "v": np.zeros(2)}
+        end = oracle.must({"op": "loop_motion", "method": method, "dt": 1e-3, "steps": 200, "every": 200}, start)[1]["q"][0]
+        assert np.abs(end - turn).max() < 2e-3, method  # order one at 1 ms, or a soft weld
+    assert "driven" not in oracle.must({"op": "loops", "model": model})[0]
+
+
+@pytest.mark.parametrize(
+    ("change", "says"),
+    [
+        ({"stiffness": 0.0}, "stiffness"),
+        ({"second": {"body": 0, "point": [0.0] * 3}}, "both ends"),
+        ({"first": {"body": 5, "point": [0.0] * 3}}, "point"),
+    ],
+)
+def test_wrong_springs_are_refused(change: Header, says: str) -> None:
+    """A spring that cannot be is named, and so are forces that do not fit."""
+    drive = _sprung()
+    drive["springs"][0] |= change
+    with pytest.raises(ValueError, match=says):
+        Loops(_Anybody()).prepare({"model": _four_bar(), "drive": {**drive, "tau": [0.0] * 3}}, {})
+    with pytest.raises(ValueError, match="tau"):
+        Loops(_Anybody()).prepare({"model": _four_bar(), "drive": drive}, {})
+
+
 def test_rotation_vectors_come_back() -> None:
     """The exponential is the inverse of the logarithm, at zero too."""
     assert np.array_equal(exponential(np.zeros(3)), [0.0, 0.0, 0.0, 1.0])

@@ -15,7 +15,7 @@ import mujoco as mj
 import numpy as np
 
 from featherbench_oracles.algebra import Array
-from featherbench_oracles.loops import TYPES, End, Follow, Loop, Motion, Tie
+from featherbench_oracles.loops import TYPES, Drive, End, Follow, Loop, Motion, Tie
 from featherbench_oracles.messages import Header
 from featherbench_oracles.mujoco.building import build
 from featherbench_oracles.mujoco.coordinates import change_of_velocities, from_wxyz, to_engine_q, wxyz
@@ -48,10 +48,12 @@ class MujocoLoops:
         The robot.
     loops : list of Tie
         Its loops: `connect` between two sites, twice for a hinge, or `weld`; a `joint` equality; of a distance a tendon.
+    drive : Drive
+        Springs are tendons too.
     """
 
-    def __init__(self, robot: Description, loops: list[Tie]) -> None:
-        self.robot, self.loops = robot, loops
+    def __init__(self, robot: Description, loops: list[Tie], drive: Drive) -> None:
+        self.robot, self.loops, self.drive = robot, loops, drive
         self.model = build(robot, self._add)
         for loop in loops:
             if loop.type == "distance" and isinstance(loop, Loop):
@@ -64,7 +66,14 @@ class MujocoLoops:
         self.data = mj.MjData(self.model)
 
     def _add(self, spec: mj.MjSpec, bodies: dict[int, mj.MjsBody]) -> None:
-        """Add sites and the constraints between them."""
+        """Add sites, the constraints between them, and springs."""
+        for k, spring in enumerate(self.drive.springs):
+            tendon = spec.add_tendon(name=f"spring {k}", stiffness=spring.stiffness, springlength=[spring.length] * 2)
+            for side, end in enumerate((spring.first, spring.second)):
+                if end.body not in bodies:
+                    raise Unsupported("MuJoCo has no massless body, which a spring would pull")
+                self._site(bodies[end.body], end, f"spring {k}.{side}")
+                tendon.wrap_site(f"spring {k}.{side}")
         count = 0
         for loop in self.loops:
             if isinstance(loop, Follow):
@@ -127,14 +136,15 @@ class MujocoLoops:
         """Set a state. What the solver begins from is forgotten."""
         mj.mj_resetData(self.model, self.data)
         self.data.qpos = to_engine_q(self.robot, q)
-        self.data.qvel = change_of_velocities(self.robot, q, v).to_engine_v(v)
+        change = change_of_velocities(self.robot, q, v)
+        self.data.qvel, self.data.qfrc_applied = change.to_engine_v(v), change.to_engine_tau(self.drive.tau)
 
     def accelerate(self, method: str, q: Array, v: Array, tau: Array) -> tuple[Array, int]:
         """Compute qacc of `mj_forward`."""
         self._soften(TIME, STIFF if method == "stiff" else SOFT)
         self._start(q, v)
         change = change_of_velocities(self.robot, q, v)
-        self.data.qfrc_applied = change.to_engine_tau(tau)
+        self.data.qfrc_applied = change.to_engine_tau(tau + self.drive.tau)
         start = perf_counter_ns()
         mj.mj_forward(self.model, self.data)
         spent = perf_counter_ns() - start

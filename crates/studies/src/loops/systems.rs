@@ -1,7 +1,7 @@
 //! The robots of the study: descriptions with loops, states on them, motions, and what is known.
 
 use crate::known::{failed, largest};
-use featherbench_bench::{LoopStates, LoopSteps, NoAnswer};
+use featherbench_bench::{LoopDrive, LoopSpring, LoopStates, LoopSteps, NoAnswer};
 use featherbench_constrained::library::{Biped, Bricard, Ladder, Pair, Squeezer, Tie};
 use featherbench_constrained::stabilise::Projection;
 use featherbench_constrained::{Mechanism, accelerations};
@@ -41,11 +41,13 @@ pub(super) struct Plan {
 }
 
 /// All motions. A02 begins upright with 1 m/s at the cranks' ends. Its cranks are horizontal several times in 10 s, and flat is singular.
-pub(super) const PLANS: [Plan; 11] = [
+pub(super) const PLANS: [Plan; 12] = [
     Plan { system: System::Windows(1), name: "four-bar", start: (0.7, 0.0), seconds: 2.0, steps: &[0.02, 0.01, 0.005, 0.0025] },
     Plan { system: System::Windows(1), name: "four-bar, singular", start: (3.0, 1.0), seconds: 3.0, steps: &[0.01, 0.005, 0.0025] },
     Plan { system: System::Bricard, name: "A04", start: (0.0, 0.0), seconds: 10.0, steps: &[0.02, 0.01, 0.005] },
     Plan { system: System::Biped, name: "biped", start: (0.0, 0.0), seconds: 0.5, steps: &[0.01, 0.005, 0.0025] },
+    // The time and the start of the test set for IVP solvers.
+    Plan { system: System::Squeezer, name: "Andrews' squeezer", start: (0.0, 0.0), seconds: 0.03, steps: &[6e-5, 3e-5, 1.5e-5] },
     Plan { system: System::Pair(Tie::Gear), name: "geared pendulums", start: (0.7, 0.0), seconds: 2.0, steps: &[0.01, 0.005, 0.0025] },
     Plan { system: System::Pair(Tie::Rod), name: "pendulums and a rod", start: (0.7, 0.0), seconds: 2.0, steps: &[0.01, 0.005, 0.0025] },
     Plan { system: System::Windows(1), name: "A02, N = 1", ..UPRIGHT },
@@ -157,6 +159,19 @@ impl System {
             }
         }
         description.canonical().map_err(failed)
+    }
+
+    /// What drives its motion beside gravity.
+    pub fn drive(self) -> Option<LoopDrive> {
+        if self != Self::Squeezer {
+            return None;
+        }
+        let squeezer = Squeezer::default();
+        let [moved, fixed] = squeezer.spring_ends();
+        let spring = LoopSpring { bodies: [Some(2), None], points: [moved, fixed], stiffness: squeezer.stiffness, length: squeezer.spring };
+        let mut tau = vec![0.0; 7];
+        tau[0] = squeezer.torque;
+        Some(LoopDrive { tau, springs: vec![spring] })
     }
 
     pub fn mechanism(self) -> Result<Mechanism, NoAnswer> {
