@@ -140,3 +140,21 @@ impl LoopSolver for Oracle {
         Ok(LoopMotion { q: block("q", robot.nq())?, v: block("v", robot.nv())?, time, settings })
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use featherbench_bench::LoopSpring;
+
+    /// The world is −1, and without a drive the request has none.
+    #[test]
+    fn a_drive_is_written_as_the_protocol_says() {
+        let spring = LoopSpring { bodies: [Some(2), None], points: [[1.0, 2.0, 3.0], [0.0; 3]], stiffness: 5.0, length: 0.5 };
+        let drive = LoopDrive { tau: vec![1.0, 0.0], springs: vec![spring] };
+        let robot = Description { name: "nothing".into(), ..Description::default() };
+        let written = request(&robot, Some(&drive)).unwrap();
+        let due = json!({"first": {"body": 2, "point": [1.0, 2.0, 3.0]}, "second": {"body": -1, "point": [0.0, 0.0, 0.0]}, "stiffness": 5.0, "length": 0.5});
+        assert_eq!(written["drive"], json!({"tau": [1.0, 0.0], "springs": [due]}));
+        assert!(request(&robot, None).unwrap().get("drive").is_none());
+    }
+}
