@@ -13,7 +13,7 @@ from featherbench_oracles.messages import Answer, Blocks, Header
 from featherbench_oracles.protocol import Unsupported
 from featherbench_oracles.robot import Description, read_placement
 
-# The types of loops that engines are asked to hold, and by what.
+# The types of loops that every engine is asked to hold, and by what. An engine that has more of them names them in its `loop_types`.
 TYPES = {"fixed": "weld", "spherical": "point", "point": "point", "revolute": "two points"}
 # The joints whose coordinates come back from every engine.
 JOINTS = ("revolute", "prismatic", "helical", "free")
@@ -51,15 +51,18 @@ class Loop:
     Attributes
     ----------
     name, type : str
-        The name; a key of `TYPES`.
+        The name; a type of the engine.
     first, second : End
         The frames. The axis of a revolute loop is z of both.
+    length : float
+        Of a distance: that of the frames' origins, m.
     """
 
     name: str
     type: str
     first: End
     second: End
+    length: float = 0.0
 
     def points(self) -> list[tuple[End, End]]:
         """List the pairs of frames whose origins coincide. A hinge is two of them on its axis.
@@ -70,6 +73,64 @@ class Loop:
             return [(self.first, self.second)]
         arm = max(float(np.linalg.norm(end.translation)) for end in (self.first, self.second)) or 1.0
         return [(self.first, self.second), (self.first.along(arm), self.second.along(arm))]
+
+
+@dataclass(frozen=True)
+class Follow:
+    """A joint that follows another, both of one degree of freedom: a mimic, or a gear of two coordinates.
+
+    Attributes
+    ----------
+    name, type : str
+        The name; a type of the engine.
+    follower, leader : int
+        The bodies whose joints have the coordinates.
+    polynomial : tuple of float
+        q_follower is the sum of these coefficients times the powers 0 to 4 of q_leader.
+    """
+
+    name: str
+    type: str
+    follower: int
+    leader: int
+    polynomial: tuple[float, ...]
+
+
+Tie = Loop | Follow
+
+
+@dataclass(frozen=True)
+class Spring:
+    """A linear spring without mass between two points: a pull of `stiffness` times (distance - `length`).
+
+    Attributes
+    ----------
+    first, second : End
+        The points: origins of frames.
+    stiffness, length : float
+        N/m; the distance without force, m.
+    """
+
+    first: End
+    second: End
+    stiffness: float
+    length: float
+
+
+@dataclass(frozen=True)
+class Drive:
+    """What drives a robot beside gravity, in accelerations and motions.
+
+    Attributes
+    ----------
+    tau : ndarray, shape (nv,)
+        Constant forces of the joints, neutral.
+    springs : tuple of Spring
+        The springs.
+    """
+
+    tau: Array
+    springs: tuple[Spring, ...] = ()
 
 
 class Mechanics(Protocol):
@@ -97,7 +158,7 @@ class Mechanics(Protocol):
         """
 
     def move(self, method: str, q: Array, v: Array, motion: Motion) -> tuple[Array, Array, int]:
-        """Run a motion under gravity alone.
+        """Run a motion under gravity and the drive.
 
         Parameters
         ----------
@@ -134,8 +195,8 @@ class Motion:
     every: int
 
 
-# Makes the robot of a description and its loops.
-MakeMechanics = Callable[[Description, list[Loop]], Mechanics]
+# Makes the robot of a description, its loops and what drives it.
+MakeMechanics = Callable[[Description, list[Tie], Drive], Mechanics]
 
 
 class Loops:
@@ -144,7 +205,8 @@ class Loops:
     Parameters
     ----------
     engine : Any
-        The engine: if it has `loop_mechanics`, also its `loop_accelerations` and `loop_motions`, lists of methods.
+        The engine: if it has `loop_mechanics`, also its `loop_accelerations` and `loop_motions`, lists of methods. `loop_types` are its
+        types of loops, and `loop_lacks` says of others why it has none.
     """
 
     def __init__(self, engine: Any) -> None:
@@ -154,11 +216,13 @@ class Loops:
             "accelerations": list(getattr(engine, "loop_accelerations", ())),
             "motions": list(getattr(engine, "loop_motions", ())),
         }
+        self.types: Mapping[str, str] = getattr(engine, "loop_types", TYPES)
+        self.lacks: Mapping[str, str] = getattr(engine, "loop_lacks", {})
         self.robot: tuple[Description, Mechanics] | None = None
 
     def hello(self) -> Header:
         """Tell what is offered."""
-        return {"loops": {**self.methods, "types": TYPES}} if self.make else {}
+        return {"loops": {**self.methods, "types": dict(self.types)}} if self.make else {}
 
     def prepare(self, header: Header, _blocks: Blocks) -> Answer:
         """Build a robot with its loops."""
@@ -169,9 +233,12 @@ class Loops:
         for body in description.bodies:
             if body.joint.type not in JOINTS:
                 raise Unsupported(f"the coordinates of {body.joint.type} joints do not come back ({body.joint.name})")
-        loops = [_read(item, len(description.bodies)) for item in header["model"].get("loops", [])]
-        self.robot = description, self.make(description, loops)
-        return {"nq": description.nq, "nv": description.nv, "held": {loop.name: TYPES[loop.type] for loop in loops}}, {}
+        loops = [self._read(item, description) for item in header["model"].get("loops", [])]
+        given = header.get("drive")
+        drive = Drive(np.zeros(description.nv)) if given is None else _drive(given, description)
+        self.robot = description, self.make(description, loops, drive)
+        driven = {} if given is None else {"driven": True}
+        return {"nq": description.nq, "nv": description.nv, **driven, "held": {loop.name: self.types[loop.type] for loop in loops}}, {}
 
     def accelerations(self, header: Header, blocks: Blocks) -> Answer:
         """Answer block `acceleration` of shape (states, nv), and `nanoseconds` of `repeats` rounds."""
@@ -201,6 +268,18 @@ class Loops:
         q, v, nanoseconds = robot.move(header["method"], blocks["q"], blocks["v"], motion)
         return {"nanoseconds": nanoseconds, "settings": robot.settings(header["method"])}, {"q": q, "v": v}
 
+    def _read(self, item: Header, robot: Description) -> Tie:
+        """Read a loop of a description."""
+        kind = item["type"]
+        if kind in self.lacks:
+            raise Unsupported(f"loop {item['name']}: {self.lacks[kind]}")
+        if kind not in self.types or (kind == "point" and not all(item["axes"])):
+            raise Unsupported(
+                f"loop {item['name']}: engines are asked about loops that are fixed, spherical, revolute or a point along all axes, "
+                "a distance, a gear or a mimic, where they have them"
+            )
+        return _follow(item, robot) if kind in ("gear", "mimic") else _between(item, len(robot.bodies))
+
     def _asked(self, header: Header, kind: str) -> tuple[Description, Mechanics]:
         """Find the robot, if it and the method are there."""
         if header["method"] not in self.methods[kind]:
@@ -210,13 +289,8 @@ class Loops:
         return self.robot
 
 
-def _read(item: Header, bodies: int) -> Loop:
-    """Read a loop of a description."""
-    kind = item["type"]
-    if kind not in TYPES or (kind == "point" and not all(item["axes"])):
-        raise Unsupported(
-            f"loop {item['name']}: engines are asked about loops that are fixed, spherical, revolute or a point along all axes"
-        )
+def _between(item: Header, bodies: int) -> Loop:
+    """Read a loop between two frames."""
     ends = []
     for side in ("first", "second"):
         body = item[side]["body"]
@@ -225,7 +299,55 @@ def _read(item: Header, bodies: int) -> Loop:
         ends.append(End(body, *read_placement(item[side]["placement"], f"loop {item['name']}: {side}")))
     if ends[0].body == ends[1].body:
         raise ValueError(f"loop {item['name']}: both ends are on body {ends[0].body}")
-    return Loop(item["name"], kind, *ends)
+    length = float(item["length"]) if item["type"] == "distance" else 0.0
+    if not np.isfinite(length) or (item["type"] == "distance" and length <= 0):
+        raise ValueError(f"loop {item['name']}: length must be positive and finite")
+    return Loop(item["name"], item["type"], ends[0], ends[1], length)
+
+
+def _follow(item: Header, robot: Description) -> Follow:
+    """Read a mimic, or a gear of two coordinates: c1 q1 + c2 q2 = offset."""
+    if item["type"] == "mimic":
+        follower, leader, numbers = item["follower"], item["leader"], [float(x) for x in item["polynomial"]]
+    else:
+        terms = item["terms"]
+        if len(terms) != 2:
+            raise Unsupported(f"loop {item['name']}: engines are asked about gears of two coordinates, and it has {len(terms)}")
+        (follower, own), (leader, other) = ((term["body"], float(term["coefficient"])) for term in terms)
+        numbers = [float(item["offset"]) / own, -other / own, 0.0, 0.0, 0.0]
+    if len(numbers) != 5 or not np.isfinite(numbers).all():
+        raise ValueError(f"loop {item['name']}: its coefficients must be finite, and five of a polynomial")
+    for body in (follower, leader):
+        if not (isinstance(body, int) and 0 <= body < len(robot.bodies)):
+            raise ValueError(f"loop {item['name']}: there is no body {body}")
+        if len(robot.bodies[body].joint.armature) != 1:
+            raise ValueError(f"loop {item['name']}: the joint of body {body} has not one degree of freedom")
+    return Follow(item["name"], item["type"], follower, leader, tuple(numbers))
+
+
+def _drive(given: Header, robot: Description) -> Drive:
+    """Read what drives a robot."""
+    tau = np.array(given["tau"], dtype=float)
+    if tau.shape != (robot.nv,) or not np.isfinite(tau).all():
+        raise ValueError(f"drive: tau must be {robot.nv} finite numbers")
+    if any(body.joint.type == "free" and tau[body.joint.v].any() for body in robot.bodies):
+        raise Unsupported("a constant force of a free joint is not asked about: its axes turn")
+
+    def point(end: Header) -> End:
+        body, place = end["body"], np.array(end["point"], dtype=float)
+        if not (isinstance(body, int) and -1 <= body < len(robot.bodies) and place.shape == (3,) and np.isfinite(place).all()):
+            raise ValueError(f"drive: a spring is at {end}, which is no point of a body")
+        return End(body, np.eye(3), place)
+
+    springs = []
+    for item in given["springs"]:
+        spring = Spring(point(item["first"]), point(item["second"]), float(item["stiffness"]), float(item["length"]))
+        if not (np.isfinite([spring.stiffness, spring.length]).all() and spring.stiffness > 0 and spring.length >= 0):
+            raise ValueError("drive: a spring's stiffness must be positive, its length not negative, and both finite")
+        if spring.first.body == spring.second.body:
+            raise ValueError(f"drive: both ends of a spring are on body {spring.first.body}")
+        springs.append(spring)
+    return Drive(tau, tuple(springs))
 
 
 def _check(blocks: Blocks, shapes: Mapping[str, tuple[int, ...]]) -> None:

@@ -130,6 +130,123 @@ def test_a_free_joint_comes_back(oracles: Oracles, engine: str) -> None:
         assert np.abs(moved["v"][0, :3]).max() < 1e-2, method
 
 
+LINK = [1.0, 2.5]  # masses of two pendulums of 1 m
+OFFSET, RATIO, SQUARE, APART = 0.3, -1.5, 0.4, 1.5
+
+
+def _tied(kind: str) -> tuple[Header, Any]:
+    """Describe two pendulums that are tied, and how the second angle follows: its value, slope and bend."""
+    apart = 0.0 if kind == "fixed" else APART
+    bodies = [_rod(name, -1, [place, 0.0, 0.0], [0.0, 0.0, -1.0]) for name, place in (("a", 0.0), ("b", apart))]
+    bodies[1]["mass"] = LINK[1]
+    bodies[1]["inertia"] = [LINK[1] * x for x in bodies[1]["inertia"]]
+    tip, origin = [0.0, 0.0, -1.0], [0.0] * 3
+    ties: dict[str, tuple[Header, Any]] = {
+        "gear": (
+            {"terms": [{"body": 1, "coefficient": 2.0}, {"body": 0, "coefficient": -2.0 * RATIO}], "offset": 2.0 * OFFSET},
+            lambda x: (OFFSET + RATIO * x, RATIO, 0.0),
+        ),
+        "mimic": (
+            {"follower": 1, "leader": 0, "polynomial": [OFFSET, RATIO, SQUARE, 0.0, 0.0]},
+            lambda x: (OFFSET + RATIO * x + SQUARE * x**2, RATIO + 2 * SQUARE * x, 2 * SQUARE),
+        ),
+        "distance": ({"length": APART, "first": _end(0, tip, IDENTITY), "second": _end(1, tip, IDENTITY)}, lambda x: (x, 1.0, 0.0)),
+        "fixed": ({"first": _end(0, origin, IDENTITY), "second": _end(1, origin, IDENTITY)}, lambda x: (x, 1.0, 0.0)),
+    }
+    tie, follow = ties[kind]
+    loops = [{"name": "tie", "type": kind, **tie}]
+    return {"format": 1, "name": kind, "gravity": [0.0, 0.0, -9.81], "bodies": bodies, "loops": loops}, follow
+
+
+@pytest.mark.parametrize("kind", ["gear", "mimic", "distance", "fixed"])
+@pytest.mark.parametrize("engine", ENGINES)
+def test_tied_pendulums_accelerate(oracles: Oracles, engine: str, kind: str) -> None:
+    """Lagrange's equation of the first angle. What an engine lacks it says, by the loop's name.
+
+    MuJoCo's equalities are about J a alone, without the derivative of J: of a cam it misses the bend.
+    """
+    oracle, (model, follow) = oracles[engine], _tied(kind)
+    offered = oracle.must({"op": "hello"})[0]["loops"]
+    answer = oracle.ask({"op": "loops", "model": model})[0]
+    lacks = kind not in offered["types"] or (engine, kind) == ("drake", "mimic")
+    assert answer["status"] == ("unsupported" if lacks else "ok"), answer
+    if lacks:
+        assert "tie" in answer["reason"]
+        return
+    assert answer["held"] == {"tie": offered["types"][kind]}
+    angle, rate = 0.6, 1.1
+    value, slope, bend = follow(angle)
+    bend = 0.0 if engine == "mujoco" else bend
+    inertia, moment = [m / 3 for m in LINK], [m * 9.81 / 2 for m in LINK]
+    pull = inertia[1] * slope * bend * rate**2 + moment[0] * np.sin(angle) + slope * moment[1] * np.sin(value)
+    first = -pull / (inertia[0] + slope**2 * inertia[1])
+    due = np.array([first, slope * first + bend * rate**2])
+    blocks = {"q": np.array([[angle, value]]), "v": np.array([[rate, slope * rate]]), "tau": np.zeros((1, 2))}
+    for method in offered["accelerations"]:
+        found = oracle.must({"op": "loop_accelerations", "method": method, "count": 1}, blocks)[1]["acceleration"][0]
+        assert np.abs(found - due).max() < EXACT[method] * (np.abs(due).max() + rate**2), (method, found, due)
+
+
+PULL, REST = 7.0, 0.4
+
+
+def _sprung() -> Header:
+    """Describe two pendulums on one hinge that are welded, a spring from the first one's end to a point of the world, and a torque."""
+    spring = {"first": {"body": 0, "point": [0.0, 0.0, -1.0]}, "second": {"body": -1, "point": [0.9, 0.0, -0.2]}}
+    return {"tau": [0.0, 1.5], "springs": [{**spring, "stiffness": PULL, "length": REST}]}
+
+
+def _sprung_acceleration(angle: float) -> float:
+    """Compute the closed form: the end is at (-sin, -cos), and turns by (-cos, sin) per rad."""
+    inertia, moment = sum(LINK) / 3, sum(LINK) * 9.81 / 2
+    way = np.array([0.9, -0.2]) - [-np.sin(angle), -np.cos(angle)]
+    distance = float(np.linalg.norm(way))
+    pull = PULL * (distance - REST) * float(way @ [-np.cos(angle), np.sin(angle)]) / distance
+    return (1.5 + pull - moment * float(np.sin(angle))) / inertia
+
+
+@pytest.mark.parametrize("engine", ENGINES)
+def test_springs_and_torques_drive(oracles: Oracles, engine: str) -> None:
+    """Accelerations are those of the closed form, and a motion ends where its steps by the closed form do."""
+    oracle = oracles[engine]
+    offered = oracle.must({"op": "hello"})[0]["loops"]
+    model, _ = _tied("fixed")
+    assert oracle.must({"op": "loops", "model": model, "drive": _sprung()})[0]["driven"]
+    angle = 0.4
+    blocks = {"q": np.full((1, 2), angle), "v": np.zeros((1, 2)), "tau": np.zeros((1, 2))}
+    due = _sprung_acceleration(angle)
+    for method in offered["accelerations"]:
+        found = oracle.must({"op": "loop_accelerations", "method": method, "count": 1}, blocks)[1]["acceleration"][0]
+        assert np.abs(found - due).max() < EXACT[method] * abs(due), method
+    turn, rate = angle, 0.0
+    for _ in range(20_000):  # semi-implicit steps of 10 us
+        rate += 1e-5 * _sprung_acceleration(turn)
+        turn += 1e-5 * rate
+    for method in offered["motions"]:
+        start = {"q": np.full(2, angle), "v": np.zeros(2)}
+        end = oracle.must({"op": "loop_motion", "method": method, "dt": 1e-3, "steps": 200, "every": 200}, start)[1]["q"][0]
+        assert np.abs(end - turn).max() < 2e-3, method  # order one at 1 ms, or a soft weld
+    assert "driven" not in oracle.must({"op": "loops", "model": model})[0]
+
+
+@pytest.mark.parametrize(
+    ("change", "says"),
+    [
+        ({"stiffness": 0.0}, "stiffness"),
+        ({"second": {"body": 0, "point": [0.0] * 3}}, "both ends"),
+        ({"first": {"body": 5, "point": [0.0] * 3}}, "point"),
+    ],
+)
+def test_wrong_springs_are_refused(change: Header, says: str) -> None:
+    """A spring that cannot be is named, and so are forces that do not fit."""
+    drive = _sprung()
+    drive["springs"][0] |= change
+    with pytest.raises(ValueError, match=says):
+        Loops(_Anybody()).prepare({"model": _four_bar(), "drive": {**drive, "tau": [0.0] * 3}}, {})
+    with pytest.raises(ValueError, match="tau"):
+        Loops(_Anybody()).prepare({"model": _four_bar(), "drive": drive}, {})
+
+
 def test_rotation_vectors_come_back() -> None:
     """The exponential is the inverse of the logarithm, at zero too."""
     assert np.array_equal(exponential(np.zeros(3)), [0.0, 0.0, 0.0, 1.0])
@@ -173,6 +290,27 @@ def test_wrong_loops_are_refused(change: Header, error: type[Exception], says: s
     model["loops"][0] |= change
     with pytest.raises(error, match=says):
         Loops(_Anybody()).prepare({"model": model}, {})
+
+
+@pytest.mark.parametrize(
+    ("kind", "change", "error", "says"),
+    [
+        ("gear", {"terms": [{"body": b, "coefficient": 1.0} for b in (0, 1, 0)]}, Unsupported, "two coordinates"),
+        ("gear", {"offset": np.nan}, ValueError, "finite"),
+        ("mimic", {"polynomial": [1.0]}, ValueError, "five"),
+        ("mimic", {"leader": 7}, ValueError, "no body 7"),
+        ("distance", {"length": 0.0}, ValueError, "length"),
+        ("distance", {"second": _end(0, [0.0] * 3, IDENTITY)}, ValueError, "both ends"),
+    ],
+)
+def test_wrong_ties_are_refused(kind: str, change: Header, error: type[Exception], says: str) -> None:
+    """A tie that cannot be held is named."""
+    holder = _Anybody()
+    holder.loop_types = {kind: "anything"}  # type: ignore[attr-defined]
+    model, _ = _tied(kind)
+    model["loops"][0] |= change
+    with pytest.raises(error, match=says):
+        Loops(holder).prepare({"model": model}, {})
 
 
 def test_wrong_questions_are_refused() -> None:

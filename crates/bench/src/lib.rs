@@ -88,7 +88,7 @@ pub use featherbench_protocol::{Limits, Memory};
 pub use gates::{Factor, Gate, Gates, Planted, Sharpness};
 pub use import::{FileBase, FileFormat, FileInertial, FileLink, Import, ImportNote, RobotFile, WATER};
 pub use lack::Lack;
-pub use loops::{LoopAccelerations, LoopMotion, LoopSolver, LoopStates, LoopSteps};
+pub use loops::{LoopAccelerations, LoopDrive, LoopMotion, LoopSolver, LoopSpring, LoopStates, LoopSteps};
 pub use means::{Known, Mean};
 pub use near::did_you_mean;
 pub use quantity::{DENSE_LIMIT, Quantity};

@@ -40,6 +40,28 @@ pub struct LoopSteps {
     pub every: usize,
 }
 
+/// A linear spring without mass between two points of bodies: a pull of `stiffness · (distance − length)`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LoopSpring {
+    /// The body of each end, by its index in the description; `None` is the world.
+    pub bodies: [Option<usize>; 2],
+    /// The ends, in axes of their bodies, m.
+    pub points: [[f64; 3]; 2],
+    /// Its stiffness, N/m.
+    pub stiffness: f64,
+    /// Its length without force, m.
+    pub length: f64,
+}
+
+/// What drives a robot beside gravity.
+#[derive(Clone, Debug, PartialEq, Default)]
+pub struct LoopDrive {
+    /// Constant forces of the joints.
+    pub tau: Vec<f64>,
+    /// Springs.
+    pub springs: Vec<LoopSpring>,
+}
+
 /// A motion.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LoopMotion {
@@ -73,9 +95,16 @@ pub trait LoopSolver {
         repeats: usize,
     ) -> Result<LoopAccelerations, NoAnswer>;
 
-    /// A motion from a state under gravity and the loops' forces.
+    /// A motion from a state under gravity, a drive if there is one, and the loops' forces.
     ///
     /// # Errors
     /// As of [`LoopSolver::loop_accelerations`].
-    fn loop_motion(&self, robot: &Description, method: &str, q: &[f64], v: &[f64], steps: LoopSteps) -> Result<LoopMotion, NoAnswer>;
+    fn loop_motion(
+        &self,
+        robot: &Description,
+        drive: Option<&LoopDrive>,
+        method: &str,
+        state: (&[f64], &[f64]),
+        steps: LoopSteps,
+    ) -> Result<LoopMotion, NoAnswer>;
 }

@@ -1,7 +1,7 @@
 //! Accelerations in double-double arithmetic, against closed forms and the methods in doubles.
 
 use crate::common::assert_within;
-use featherbench_constrained::library::{Biped, Bricard, Ladder, Squeezer};
+use featherbench_constrained::library::{Biped, Bricard, Ladder, Pair, Squeezer, Tie};
 use featherbench_constrained::stabilise::Projection;
 use featherbench_constrained::{Constrained, Error, Kkt, Mechanism, RangeSpace, accelerations};
 use featherbench_model::{integrate, neutral};
@@ -18,6 +18,27 @@ fn drawn(mechanism: &Mechanism, near: &[f64], random: &mut Random) -> (Vec<f64>,
     closing.configuration(&mechanism.model, &mechanism.constraints, &mut q).unwrap();
     closing.velocity(&mechanism.model, &mechanism.constraints, &q, &mut v).unwrap();
     (q, v)
+}
+
+/// θ̈ of two pendulums that are tied, by every kind of loop that is no hinge.
+#[test]
+fn tied_pendulums_have_their_closed_form() {
+    let mut random = Random::new(4, 1);
+    for tie in Tie::ALL {
+        for _ in 0..20 {
+            let mass = [random.uniform(0.5, 3.0), random.uniform(0.5, 3.0)];
+            let length = if tie == Tie::Rod { [random.uniform(0.5, 2.0); 2] } else { [random.uniform(0.5, 2.0), random.uniform(0.5, 2.0)] };
+            let pair = Pair { mass, length, ratio: random.uniform(-2.0, 2.0), square: random.uniform(-1.0, 1.0), ..Pair::new(tie) };
+            let mechanism = pair.mechanism().unwrap();
+            let (theta, rate) = (random.uniform(-1.0, 1.0), random.uniform(-2.0, 2.0));
+            let (q, v) = (pair.configuration(theta), pair.velocity(theta, rate));
+            let found = accelerations(&mechanism.model, &mechanism.constraints, &q, &v, &[0.0; 2]).unwrap();
+            let due = pair.acceleration(theta, rate);
+            let missed = largest(found.iter().zip(&due).map(|(a, b)| a - b));
+            // Some ten operations of the closed form in doubles, and a configuration that is rounded: ε times what p'' makes of it.
+            assert_within(&format!("{tie:?}"), missed / (largest(due) + rate * rate), 4e-15);
+        }
+    }
 }
 
 /// θ̈ of ladders: a rounding of the closed form, which is computed in doubles.

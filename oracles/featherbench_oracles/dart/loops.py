@@ -7,6 +7,7 @@ velocity over its length. DART corrects openings of loops by a share of them in 
 from __future__ import annotations
 
 from time import perf_counter_ns
+from typing import TypeAlias
 
 import numpy as np
 from dartpy import constraint, dynamics, simulation
@@ -14,12 +15,20 @@ from dartpy import constraint, dynamics, simulation
 from featherbench_oracles.algebra import Array
 from featherbench_oracles.dart.building import build
 from featherbench_oracles.dart.coordinates import change_of_velocities, exponential, to_engine_q
-from featherbench_oracles.loops import End, Loop, Motion
+from featherbench_oracles.loops import Drive, End, Loop, Motion, Tie
 from featherbench_oracles.messages import Header
 from featherbench_oracles.robot import Description
 
+Joints: TypeAlias = list[dynamics.Joint]
+Bodies: TypeAlias = list[dynamics.BodyNode]
 ACCELERATIONS = ("step_1e-3",)
 MOTIONS = ("step",)
+# What DART does not hold, or not from Python.
+LACKS = {
+    "distance": "DART has no constraint of a distance",
+    "gear": "DART's Python package cannot name the joint that a mimicking joint follows",
+    "mimic": "DART's Python package cannot name the joint that a mimicking joint follows",
+}
 
 
 class DartLoops:
@@ -29,15 +38,19 @@ class DartLoops:
     ----------
     robot : Description
         The robot.
-    loops : list of Loop
+    loops : list of Tie
         Its loops: ball joint constraints, two for a hinge, or a weld.
+    drive : Drive
+        What drives it.
     """
 
-    def __init__(self, robot: Description, loops: list[Loop]) -> None:
-        self.robot, self.loops = robot, loops
+    def __init__(self, robot: Description, loops: list[Tie], drive: Drive) -> None:
+        # Others are refused before (`LACKS`).
+        self.robot, self.loops = robot, [loop for loop in loops if isinstance(loop, Loop)]
+        self.drive = drive
         self._world(np.zeros(robot.nq), np.zeros(robot.nv), 1e-3)
 
-    def _world(self, q: Array, v: Array, dt: float) -> tuple[simulation.World, dynamics.Skeleton, list[dynamics.Joint]]:
+    def _world(self, q: Array, v: Array, dt: float) -> tuple[simulation.World, dynamics.Skeleton, Joints, Bodies]:
         """Build a world at a state, with the loops as they are there."""
         skeleton, joints, bodies = build(self.robot)
         world = simulation.World()
@@ -50,7 +63,20 @@ class DartLoops:
         for loop in self.loops:
             for ends in loop.points():
                 solver.addConstraint(_constraint(loop, ends, bodies))
-        return world, skeleton, joints
+        return world, skeleton, joints, bodies
+
+    def _pull(self, skeleton: dynamics.Skeleton, bodies: Bodies, forces: Array) -> None:
+        """Set forces of the joints, and those of the springs, which DART does not have."""
+        skeleton.setForces(forces)
+        for spring in self.drive.springs:
+            ends = (spring.first, spring.second)
+            places = [end.translation if end.body < 0 else _point(bodies[end.body], end.translation) for end in ends]
+            way = places[1] - places[0]
+            distance = float(np.linalg.norm(way))
+            pull = spring.stiffness * (distance - spring.length) / distance * way
+            for end, force in zip(ends, (pull, -pull), strict=True):
+                if end.body >= 0:
+                    bodies[end.body].addExtForce(force, end.translation, False, True)
 
     def settings(self, method: str) -> Header:
         """List the error reduction, and the step of an acceleration, s."""
@@ -61,9 +87,9 @@ class DartLoops:
     def accelerate(self, method: str, q: Array, v: Array, tau: Array) -> tuple[Array, int]:
         """Compute the change of velocity in one step over its length."""
         dt = float(method.removeprefix("step_"))
-        world, skeleton, joints = self._world(q, v, dt)
+        world, skeleton, joints, bodies = self._world(q, v, dt)
         change = change_of_velocities(self.robot, joints, q, v)
-        skeleton.setForces(change.to_engine_tau(tau))
+        self._pull(skeleton, bodies, change.to_engine_tau(tau + self.drive.tau))
         before = skeleton.getVelocities().copy()
         start = perf_counter_ns()
         world.step()
@@ -72,13 +98,16 @@ class DartLoops:
 
     def move(self, method: str, q: Array, v: Array, motion: Motion) -> tuple[Array, Array, int]:
         """Run steps of the world, each a call."""
-        world, skeleton, joints = self._world(q, v, motion.dt)
+        world, skeleton, joints, bodies = self._world(q, v, motion.dt)
+        forces = change_of_velocities(self.robot, joints, q, v).to_engine_tau(self.drive.tau)
         qs, vs, spent = [], [], 0
         for _ in range(motion.steps // motion.every):
-            start = perf_counter_ns()
             for _ in range(motion.every):
+                if forces.any() or self.drive.springs:
+                    self._pull(skeleton, bodies, forces)  # a step takes them away
+                start = perf_counter_ns()
                 world.step()
-            spent += perf_counter_ns() - start
+                spent += perf_counter_ns() - start
             qs.append(self._neutral(skeleton.getPositions()))
             change = change_of_velocities(self.robot, joints, qs[-1], np.zeros(self.robot.nv))
             vs.append(change.to_neutral_tau(skeleton.getVelocities()))
@@ -93,14 +122,20 @@ class DartLoops:
         return np.concatenate(parts)
 
 
+def _point(body: dynamics.BodyNode, place: Array) -> Array:
+    """Compute where a point of a body is in the world."""
+    at = body.getWorldTransform()
+    found: Array = at.rotation() @ place + at.translation()
+    return found
+
+
 def _constraint(loop: Loop, ends: tuple[End, End], bodies: list[dynamics.BodyNode]) -> constraint.JointConstraint:
     """Make DART's constraint where the loop is now: at the frame on the second body, which has to be one."""
     first, second = ends
     if second.body < 0:
         first, second = second, first
     moved = bodies[second.body]
-    place = moved.getWorldTransform()
-    point = place.rotation() @ second.translation + place.translation()
+    point = _point(moved, second.translation)
     if loop.type == "fixed":
         return constraint.WeldJointConstraint(*([moved] if first.body < 0 else [bodies[first.body], moved]))
     if first.body < 0:

@@ -202,6 +202,7 @@ class Dart:
     }
 
     loop_mechanics = loops.DartLoops
+    loop_lacks = loops.LACKS
     loop_accelerations = loops.ACCELERATIONS
     loop_motions = tuple(loops.MOTIONS)
     scene_variants = scenes.VARIANTS

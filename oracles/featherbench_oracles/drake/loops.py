@@ -17,12 +17,14 @@ from pydrake.systems.analysis import Simulator
 from featherbench_oracles.algebra import Array
 from featherbench_oracles.drake.building import build
 from featherbench_oracles.drake.coordinates import change_of_velocities, to_engine_q
-from featherbench_oracles.loops import End, Loop, Motion
+from featherbench_oracles.loops import TYPES, Drive, End, Follow, Motion, Tie
 from featherbench_oracles.messages import Header
+from featherbench_oracles.protocol import Unsupported
 from featherbench_oracles.robot import Description
 
 ACCELERATIONS = ("sap_1e-3",)
 MOTIONS = ("sap",)
+HELD = {**TYPES, "distance": "distance", "gear": "coupler", "mimic": "coupler"}
 
 
 class DrakeLoops:
@@ -32,12 +34,14 @@ class DrakeLoops:
     ----------
     robot : Description
         The robot.
-    loops : list of Loop
-        Its loops: ball constraints, two for a hinge, or a weld.
+    loops : list of Tie
+        Its loops: ball constraints, two for a hinge, a weld, a distance, or a coupler.
+    drive : Drive
+        What drives it.
     """
 
-    def __init__(self, robot: Description, loops: list[Loop]) -> None:
-        self.robot, self.loops = robot, loops
+    def __init__(self, robot: Description, loops: list[Tie], drive: Drive) -> None:
+        self.robot, self.loops, self.drive = robot, loops, drive
         self.built: dict[float, MultibodyPlant] = {}
         self._plant(1e-3)
 
@@ -60,9 +64,21 @@ class DrakeLoops:
         def on(end: End) -> tree.RigidBody:
             return ground if end.body < 0 else chains[end.body][-1].child_body()
 
+        for spring in self.drive.springs:
+            one, other = spring.first, spring.second
+            force = tree.LinearSpringDamper(on(one), one.translation, on(other), other.translation, spring.length, spring.stiffness, 0.0)
+            plant.AddForceElement(force)
         for loop in self.loops:
+            if isinstance(loop, Follow):
+                offset, ratio, *bends = loop.polynomial
+                if any(bends):
+                    raise Unsupported(f"loop {loop.name}: Drake's coupler is linear, and the polynomial is not")
+                plant.AddCouplerConstraint(chains[loop.follower][-1], chains[loop.leader][-1], ratio, offset)
+                continue
             for first, second in loop.points():
-                if loop.type == "fixed":
+                if loop.type == "distance":
+                    plant.AddDistanceConstraint(on(first), first.translation, on(second), second.translation, loop.length)
+                elif loop.type == "fixed":
                     plant.AddWeldConstraint(on(first), _pose(first), on(second), _pose(second))
                 else:
                     plant.AddBallConstraint(on(first), first.translation, on(second), second.translation)
@@ -80,7 +96,7 @@ class DrakeLoops:
         context = plant.CreateDefaultContext()
         plant.SetPositions(context, to_engine_q(self.robot, q))
         plant.SetVelocities(context, change.to_engine_v(v))
-        plant.get_applied_generalized_force_input_port().FixValue(context, change.to_engine_tau(tau))
+        plant.get_applied_generalized_force_input_port().FixValue(context, change.to_engine_tau(tau + self.drive.tau))
         start = perf_counter_ns()
         found = plant.get_generalized_acceleration_output_port().Eval(context)
         return change.to_neutral_a(found), perf_counter_ns() - start
@@ -91,8 +107,9 @@ class DrakeLoops:
         simulator = Simulator(plant)
         context = simulator.get_mutable_context()
         plant.SetPositions(context, to_engine_q(self.robot, q))
-        plant.SetVelocities(context, change_of_velocities(self.robot, q, v).to_engine_v(v))
-        plant.get_applied_generalized_force_input_port().FixValue(context, np.zeros(plant.num_velocities()))
+        change = change_of_velocities(self.robot, q, v)
+        plant.SetVelocities(context, change.to_engine_v(v))
+        plant.get_applied_generalized_force_input_port().FixValue(context, change.to_engine_tau(self.drive.tau))
         simulator.Initialize()
         qs, vs, spent = [], [], 0
         for record in range(1, motion.steps // motion.every + 1):

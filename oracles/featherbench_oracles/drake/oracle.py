@@ -309,6 +309,7 @@ class Drake:
     }
 
     loop_mechanics = loops.DrakeLoops
+    loop_types = loops.HELD
     loop_accelerations = loops.ACCELERATIONS
     loop_motions = tuple(loops.MOTIONS)
     scene_variants = scenes.VARIANTS

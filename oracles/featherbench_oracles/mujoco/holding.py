@@ -3,6 +3,8 @@
 MuJoCo's constraints are soft. `solref` is the time constant and damping ratio with which an opening vanishes. `solimp` is the impedance d:
 of the acceleration that would hold a loop, the share 1 - d is left. Methods differ in these numbers. MuJoCo's own are (0.02, 1), and d from
 0.9 to 0.95. A stiff method has the shortest time constant that MuJoCo takes, two steps, and the largest d.
+
+Rows are about J a alone. A loop whose rows turn, as that of a cam, misses the derivative of J times v in each acceleration.
 """
 
 from __future__ import annotations
@@ -13,7 +15,7 @@ import mujoco as mj
 import numpy as np
 
 from featherbench_oracles.algebra import Array
-from featherbench_oracles.loops import End, Loop, Motion
+from featherbench_oracles.loops import TYPES, Drive, End, Follow, Loop, Motion, Tie
 from featherbench_oracles.messages import Header
 from featherbench_oracles.mujoco.building import build
 from featherbench_oracles.mujoco.coordinates import change_of_velocities, from_wxyz, to_engine_q, wxyz
@@ -26,6 +28,7 @@ SOFT, STIFF = (0.9, 0.95, 0.001, 0.5, 2.0), (0.9999, 0.9999, 0.001, 0.5, 2.0)
 TIME = 0.02
 TOLERANCE, ITERATIONS = 1e-14, 100
 ACCELERATIONS = ("default", "stiff")
+HELD = {**TYPES, "distance": "tendon of fixed length", "gear": "joint equality", "mimic": "joint equality"}
 EULER, RK4 = mj.mjtIntegrator.mjINT_EULER, mj.mjtIntegrator.mjINT_RK4
 # method of a motion -> integrator, impedance, whether the time constant is two steps
 MOTIONS = {
@@ -43,33 +46,70 @@ class MujocoLoops:
     ----------
     robot : Description
         The robot.
-    loops : list of Loop
-        Its loops: `connect` between two sites, twice for a hinge, or `weld`.
+    loops : list of Tie
+        Its loops: `connect` between two sites, twice for a hinge, or `weld`; a `joint` equality; of a distance a tendon.
+    drive : Drive
+        Springs are tendons too.
     """
 
-    def __init__(self, robot: Description, loops: list[Loop]) -> None:
-        self.robot, self.loops = robot, loops
+    def __init__(self, robot: Description, loops: list[Tie], drive: Drive) -> None:
+        self.robot, self.loops, self.drive = robot, loops, drive
         self.model = build(robot, self._add)
+        for loop in loops:
+            if loop.type == "distance" and isinstance(loop, Loop):
+                # The equality is about the change of the length since `qpos0`.
+                rest = self.model.tendon_length0[self.model.tendon(loop.name).id]
+                self.model.eq_data[self.model.equality(loop.name).id, 0] = loop.length - rest
         option = self.model.opt
         option.disableflags &= ~int(mj.mjtDisableBit.mjDSBL_CONSTRAINT)
         option.solver, option.tolerance, option.iterations = mj.mjtSolver.mjSOL_NEWTON, TOLERANCE, ITERATIONS
         self.data = mj.MjData(self.model)
 
     def _add(self, spec: mj.MjSpec, bodies: dict[int, mj.MjsBody]) -> None:
-        """Add sites and the constraints between them."""
+        """Add sites, the constraints between them, and springs."""
+        for k, spring in enumerate(self.drive.springs):
+            tendon = spec.add_tendon(name=f"spring {k}", stiffness=spring.stiffness, springlength=[spring.length] * 2)
+            for side, end in enumerate((spring.first, spring.second)):
+                if end.body not in bodies:
+                    raise Unsupported("MuJoCo has no massless body, which a spring would pull")
+                self._site(bodies[end.body], end, f"spring {k}.{side}")
+                tendon.wrap_site(f"spring {k}.{side}")
         count = 0
         for loop in self.loops:
+            if isinstance(loop, Follow):
+                self._follow(spec, bodies, loop)
+                continue
             for ends in loop.points():
                 names = [f"loop {count}.{k}" for k in range(2)]
                 for end, name in zip(ends, names, strict=True):
                     if end.body not in bodies:
                         raise Unsupported(f"MuJoCo has no massless body, which loop {loop.name} would hold")
                     self._site(bodies[end.body], end, name)
+                count += 1
+                if loop.type == "distance":
+                    tendon = spec.add_tendon(name=loop.name)
+                    for name in names:
+                        tendon.wrap_site(name)
+                    spec.add_equality(name=loop.name, type=mj.mjtEq.mjEQ_TENDON, objtype=mj.mjtObj.mjOBJ_TENDON, name1=loop.name)
+                    continue
                 kind = mj.mjtEq.mjEQ_WELD if loop.type == "fixed" else mj.mjtEq.mjEQ_CONNECT
                 data = np.zeros(mj.mjNEQDATA)
                 data[10] = 1.0  # of a weld: the weight of a rotation against a translation
                 spec.add_equality(type=kind, objtype=mj.mjtObj.mjOBJ_SITE, name1=names[0], name2=names[1], data=data)
-                count += 1
+
+    @staticmethod
+    def _follow(spec: mj.MjSpec, bodies: dict[int, mj.MjsBody], loop: Follow) -> None:
+        """Let a joint be a polynomial of another."""
+        names = []
+        for body in (loop.follower, loop.leader):
+            if body not in bodies:
+                raise Unsupported(f"MuJoCo folds massless body {body}, whose joint loop {loop.name} names")
+            joint = bodies[body].joints[-1]
+            joint.name = f"joint of body {body}"
+            names.append(joint.name)
+        data = np.zeros(mj.mjNEQDATA)
+        data[:5] = loop.polynomial
+        spec.add_equality(type=mj.mjtEq.mjEQ_JOINT, objtype=mj.mjtObj.mjOBJ_JOINT, name1=names[0], name2=names[1], data=data)
 
     @staticmethod
     def _site(body: mj.MjsBody, end: End, name: str) -> None:
@@ -96,14 +136,15 @@ class MujocoLoops:
         """Set a state. What the solver begins from is forgotten."""
         mj.mj_resetData(self.model, self.data)
         self.data.qpos = to_engine_q(self.robot, q)
-        self.data.qvel = change_of_velocities(self.robot, q, v).to_engine_v(v)
+        change = change_of_velocities(self.robot, q, v)
+        self.data.qvel, self.data.qfrc_applied = change.to_engine_v(v), change.to_engine_tau(self.drive.tau)
 
     def accelerate(self, method: str, q: Array, v: Array, tau: Array) -> tuple[Array, int]:
         """Compute qacc of `mj_forward`."""
         self._soften(TIME, STIFF if method == "stiff" else SOFT)
         self._start(q, v)
         change = change_of_velocities(self.robot, q, v)
-        self.data.qfrc_applied = change.to_engine_tau(tau)
+        self.data.qfrc_applied = change.to_engine_tau(tau + self.drive.tau)
         start = perf_counter_ns()
         mj.mj_forward(self.model, self.data)
         spent = perf_counter_ns() - start

@@ -308,6 +308,7 @@ class Mujoco:
 
     contact_steps = standing.METHODS
     loop_mechanics = holding.MujocoLoops
+    loop_types = holding.HELD
     loop_accelerations = holding.ACCELERATIONS
     loop_motions = tuple(holding.MOTIONS)
     scene_variants = scenes.VARIANTS

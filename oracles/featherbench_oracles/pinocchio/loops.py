@@ -8,7 +8,7 @@ import numpy as np
 import pinocchio as pin
 
 from featherbench_oracles.algebra import Array
-from featherbench_oracles.loops import End, Loop, Motion
+from featherbench_oracles.loops import Drive, End, Loop, Motion, Tie
 from featherbench_oracles.messages import Header
 from featherbench_oracles.pinocchio.building import build
 from featherbench_oracles.pinocchio.coordinates import change_of_velocities, to_engine_q
@@ -18,6 +18,12 @@ from featherbench_oracles.robot import Description
 # At a smaller accuracy rounding would decide how many iterations are made.
 MU, ACCURACY, ITERATIONS = 1e-6, 1e-10, 20
 ACCELERATIONS = ("constraint_dynamics", "lcaba")
+# What Pinocchio's rigid constraints do not hold.
+LACKS = {
+    "distance": "Pinocchio's rigid constraints hold a point or a frame, and no distance",
+    "gear": "Pinocchio has no constraint between coordinates",
+    "mimic": "Pinocchio has no constraint between coordinates: its mimicking joint has none of its own",
+}
 # method of a motion -> method of its accelerations, and the time constant of Baumgarte's stabilisation, s
 MOTIONS: dict[str, tuple[str, float | None]] = {
     "rk4_constraint_dynamics": ("constraint_dynamics", None),
@@ -33,13 +39,17 @@ class PinocchioLoops:
     ----------
     robot : Description
         The robot.
-    loops : list of Loop
+    loops : list of Tie
         Its loops. Pinocchio has rigid constraints of a point (three rows) and of a frame (six rows).
+    drive : Drive
+        What drives it.
     """
 
-    def __init__(self, robot: Description, loops: list[Loop]) -> None:
-        self.robot, self.loops = robot, loops
-        self.model = build(robot)
+    def __init__(self, robot: Description, loops: list[Tie], drive: Drive) -> None:
+        # Others are refused before (`LACKS`).
+        self.robot, self.loops = robot, [loop for loop in loops if isinstance(loop, Loop)]
+        self.model, self.drive = build(robot), drive
+        self.data = self.model.createData()
         # Data of their own: `lcaba` leaves in its `Data` what makes later answers of `constraintDynamics` wrong.
         asked = {*MOTIONS.values(), *((method, None) for method in ACCELERATIONS)}
         self.held = {(method, stabilised): self._constraints(stabilised) for method, stabilised in asked}
@@ -73,11 +83,31 @@ class PinocchioLoops:
         proximal = {"mu": MU, "accuracy": ACCURACY, "iterations": ITERATIONS}
         return {**proximal, "baumgarte_seconds": MOTIONS[method][1]} if method in MOTIONS else proximal
 
+    def _driven(self, q: Array, tau: Array) -> Array:
+        """Add the drive to forces of the joints, in Pinocchio's coordinates. It has no springs: their pull is brought there by J'."""
+        if self.drive.springs:
+            pin.computeJointJacobians(self.model, self.data, q)
+        tau = tau + self.drive.tau
+        for spring in self.drive.springs:
+            places, jacobians = [], []
+            for end in (spring.first, spring.second):
+                joint, at = self._place(end)
+                place = self.data.oMi[joint] * at
+                moved = pin.getJointJacobian(self.model, self.data, joint, pin.LOCAL_WORLD_ALIGNED)
+                arm = place.translation - self.data.oMi[joint].translation
+                places.append(place.translation)
+                jacobians.append(moved[:3] - pin.skew(arm) @ moved[3:] if joint else np.zeros((3, self.model.nv)))
+            way = places[1] - places[0]
+            distance = float(np.linalg.norm(way))
+            tau = tau + spring.stiffness * (distance - spring.length) / distance * (jacobians[0] - jacobians[1]).T @ way
+        return tau
+
     def _solve(self, method: str, stabilised: float | None, q: Array, v: Array, tau: Array) -> tuple[Array, int]:
         """Compute an acceleration in Pinocchio's coordinates, and the time of the call."""
         data, models, of_models = self.held[method, stabilised]
         proximal = pin.ProximalSettings(ACCURACY, ACCURACY, MU, ITERATIONS)
         call = pin.lcaba if method == "lcaba" else pin.constraintDynamics
+        tau = self._driven(q, tau)
         start = perf_counter_ns()
         found = call(self.model, data, q, v, tau, models, of_models, proximal)
         return found.copy(), perf_counter_ns() - start

@@ -284,6 +284,7 @@ class Pinocchio:
     contact_solvers = contacts.SOLVERS
 
     loop_mechanics = loops.PinocchioLoops
+    loop_lacks = loops.LACKS
     loop_accelerations = loops.ACCELERATIONS
     loop_motions = tuple(loops.MOTIONS)
 

@@ -128,6 +128,12 @@ impl Squeezer {
         ]
     }
 
+    /// The spring's ends: D in the axes of K3, the third body of the description, and C on the ground, m.
+    pub fn spring_ends(&self) -> [[f64; 3]; 2] {
+        let [.., sc, sd] = self.k3;
+        [[sd, -sc, 0.0], [self.c[0], self.c[1], 0.0]]
+    }
+
     /// Adds the driving torque and the spring's moment about B to the joint forces of this configuration.
     pub fn add_forces(&self, q: &[f64], tau: &mut [f64]) {
         let [.., sc, sd] = self.k3;

@@ -7,6 +7,7 @@
 //! named. An oracle that imports files is asked about the imported robot in the same way, and one that integrates about its steps.
 
 mod answers;
+mod contact_steps;
 mod contacts;
 mod coordinate_change;
 mod exchange;
@@ -111,6 +112,7 @@ pub fn check(start: &dyn Fn() -> Result<Box<dyn Connection>, String>, watch: &dy
     watch("problems");
     contacts::ask(&mut exchange, &extras.contact_solvers, contacts::Law::Coulomb);
     contacts::ask(&mut exchange, &extras.contact_relaxations, contacts::Law::Relaxed);
+    contact_steps::ask(&mut exchange, &extras.contact_steps);
     semidefinite::ask(&mut exchange, &extras.semidefinite);
     if let Some(offered) = &extras.loops {
         watch("loops");

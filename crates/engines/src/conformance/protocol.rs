@@ -3,11 +3,12 @@
 use super::exchange::Exchange;
 use super::values::{Scene, same_bits};
 use super::{Standing, robots};
+use crate::oracle::contacts;
 use crate::oracle::loops::Loops;
 use crate::oracle::scenes::Scenes;
 use crate::oracle::steps::Steps;
 use crate::request::{description, states};
-use featherbench_bench::Quantity;
+use featherbench_bench::{Quantity, StepMethod};
 use featherbench_protocol::{Block, Message, VERSION};
 use serde_json::{Value, json};
 use std::collections::BTreeMap;
@@ -21,6 +22,7 @@ pub(super) struct Offered {
     pub(super) steps: Steps,
     pub(super) contact_solvers: Vec<String>,
     pub(super) contact_relaxations: Vec<String>,
+    pub(super) contact_steps: Vec<StepMethod>,
     pub(super) semidefinite: Vec<String>,
     pub(super) rods: Vec<String>,
     pub(super) scenes: Scenes,
@@ -74,6 +76,10 @@ pub(super) fn hello(exchange: &mut Exchange) -> Option<Offered> {
         wrong.push(reason);
         Scenes::default()
     });
+    let contact_steps = contacts::steps_offered(header.get("contact_steps")).unwrap_or_else(|reason| {
+        wrong.push(reason);
+        Vec::new()
+    });
     let mut listed = |key: &str| -> Vec<String> {
         let names = header.get(key).map_or(Ok(Vec::new()), |names| serde_json::from_value(names.clone()));
         names.unwrap_or_else(|_| {
@@ -90,7 +96,7 @@ pub(super) fn hello(exchange: &mut Exchange) -> Option<Offered> {
     exchange.conformance.methods.retain(|quantity, _| Quantity::parse(quantity).is_some());
     let steps = steps.unwrap_or_default();
     exchange.conformance.steps.clone_from(&steps.methods);
-    Some(Offered { steps, contact_solvers, contact_relaxations, semidefinite, rods, scenes, loops })
+    Some(Offered { steps, contact_solvers, contact_relaxations, contact_steps, semidefinite, rods, scenes, loops })
 }
 
 /// Requests that have no answer while there is no robot.

@@ -154,3 +154,27 @@ impl Drop for Solving<'_> {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_offer_names_its_time_and_its_limit() {
+        assert_eq!(steps_offered(None).unwrap(), Vec::new());
+        let good = json!({"newton": {"time": "all", "limit": "newton"}, "sweeps": {"time": "all", "limit": "newton", "impedance": 0.9}});
+        let offered = steps_offered(Some(&good)).unwrap();
+        assert_eq!(offered.iter().map(|method| method.name.as_str()).collect::<Vec<_>>(), ["newton", "sweeps"]);
+        assert_eq!(offered[1].settings["impedance"], 0.9);
+        for wrong in [
+            json!(["newton"]),
+            json!({"newton": 1}),
+            json!({"newton": {"limit": "newton"}}),
+            json!({"newton": {"time": "all"}}),
+            json!({"newton": {"time": "all", "limit": "other"}}),
+            json!({"": {"time": "all", "limit": ""}}),
+        ] {
+            assert!(steps_offered(Some(&wrong)).unwrap_err().contains("contact_steps"), "{wrong}");
+        }
+    }
+}

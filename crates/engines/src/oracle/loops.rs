@@ -1,7 +1,7 @@
 //! Robots with loops, held by the engine behind an oracle: the operations `loops`, `loop_accelerations` and `loop_motion`.
 
 use super::{Oracle, Session, shaped};
-use featherbench_bench::{LoopAccelerations, LoopMotion, LoopSolver, LoopStates, LoopSteps, NoAnswer};
+use featherbench_bench::{LoopAccelerations, LoopDrive, LoopMotion, LoopSolver, LoopStates, LoopSteps, NoAnswer};
 use featherbench_model::Description;
 use featherbench_protocol::{Block, Message};
 use serde::Deserialize;
@@ -35,18 +35,36 @@ impl Loops {
 
 impl Oracle {
     /// One question about a robot with loops.
-    fn held(&self, robot: &Description, header: Value, blocks: Vec<Block>) -> Result<Message, NoAnswer> {
-        let prepare = model(robot)?;
+    fn held(&self, robot: &Description, drive: Option<&LoopDrive>, header: Value, blocks: Vec<Block>) -> Result<Message, NoAnswer> {
+        let prepare = request(robot, drive)?;
         let mut session = self.session()?;
-        let answer = build(&mut session, robot, prepare).and_then(|()| session.ask(header, blocks));
+        let answer = build(&mut session, robot, drive.is_some(), prepare).and_then(|()| session.ask(header, blocks));
         self.give_back(session);
         answer
     }
 }
 
+/// The request that builds a robot.
+fn request(robot: &Description, drive: Option<&LoopDrive>) -> Result<Value, NoAnswer> {
+    let mut request = json!({"op": "loops", "model": model(robot)?});
+    if let Some(LoopDrive { tau, springs }) = drive {
+        let end = |body: Option<usize>, point: [f64; 3]| json!({"body": body.map_or(-1, |body| body as i64), "point": point});
+        let springs = springs.iter().map(|spring| {
+            let [first, second] = [0, 1].map(|side| end(spring.bodies[side], spring.points[side]));
+            json!({"first": first, "second": second, "stiffness": spring.stiffness, "length": spring.length})
+        });
+        request["drive"] = json!({"tau": tau, "springs": springs.collect::<Vec<_>>()});
+    }
+    Ok(request)
+}
+
 /// Lets the engine build the robot.
-fn build(session: &mut Session, robot: &Description, model: Value) -> Result<(), NoAnswer> {
-    let answer = session.ask(json!({"op": "loops", "model": model}), Vec::new())?;
+fn build(session: &mut Session, robot: &Description, driven: bool, request: Value) -> Result<(), NoAnswer> {
+    let answer = session.ask(request, Vec::new())?;
+    // An oracle leaves out what it does not know, and without its drive a robot is another one.
+    if driven && answer.header.get("driven") != Some(&Value::Bool(true)) {
+        return Err(NoAnswer::NotOffered("the oracle takes no springs and constant forces".into()));
+    }
     for (key, due) in [("nq", robot.nq()), ("nv", robot.nv())] {
         let found = answer.header.get(key).and_then(Value::as_u64);
         if found != Some(due as u64) {
@@ -99,19 +117,44 @@ impl LoopSolver for Oracle {
             Block::new("tau", &[*count, robot.nv()], tau),
         ];
         let header = json!({"op": "loop_accelerations", "method": method, "count": count, "repeats": repeats});
-        let answer = self.held(robot, header, blocks)?;
+        let answer = self.held(robot, None, header, blocks)?;
         let (time, settings) = told(&answer)?;
         Ok(LoopAccelerations { acceleration: shaped(&answer, "acceleration", &[*count, robot.nv()])?, time, settings })
     }
 
-    fn loop_motion(&self, robot: &Description, method: &str, q: &[f64], v: &[f64], steps: LoopSteps) -> Result<LoopMotion, NoAnswer> {
+    fn loop_motion(
+        &self,
+        robot: &Description,
+        drive: Option<&LoopDrive>,
+        method: &str,
+        (q, v): (&[f64], &[f64]),
+        steps: LoopSteps,
+    ) -> Result<LoopMotion, NoAnswer> {
         let LoopSteps { dt, steps, every } = steps;
         let records = steps.checked_div(every).unwrap_or_default();
         let blocks = vec![Block::new("q", &[robot.nq()], q), Block::new("v", &[robot.nv()], v)];
         let header = json!({"op": "loop_motion", "method": method, "dt": dt, "steps": steps, "every": every});
-        let answer = self.held(robot, header, blocks)?;
+        let answer = self.held(robot, drive, header, blocks)?;
         let (time, settings) = told(&answer)?;
         let block = |name: &str, numbers: usize| shaped(&answer, name, &[records, numbers]);
         Ok(LoopMotion { q: block("q", robot.nq())?, v: block("v", robot.nv())?, time, settings })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use featherbench_bench::LoopSpring;
+
+    /// The world is −1, and without a drive the request has none.
+    #[test]
+    fn a_drive_is_written_as_the_protocol_says() {
+        let spring = LoopSpring { bodies: [Some(2), None], points: [[1.0, 2.0, 3.0], [0.0; 3]], stiffness: 5.0, length: 0.5 };
+        let drive = LoopDrive { tau: vec![1.0, 0.0], springs: vec![spring] };
+        let robot = Description { name: "nothing".into(), ..Description::default() };
+        let written = request(&robot, Some(&drive)).unwrap();
+        let due = json!({"first": {"body": 2, "point": [1.0, 2.0, 3.0]}, "second": {"body": -1, "point": [0.0, 0.0, 0.0]}, "stiffness": 5.0, "length": 0.5});
+        assert_eq!(written["drive"], json!({"tau": [1.0, 0.0], "springs": [due]}));
+        assert!(request(&robot, None).unwrap().get("drive").is_none());
     }
 }

@@ -13,6 +13,8 @@ use std::ops::Range;
 
 /// Our methods, the reference first.
 pub(super) const OWN: [&str; 3] = ["block_gauss_seidel", WHOLE, "newton"];
+/// The cap on iterations of an engine with a model of its own: engines make some ten or a hundred in a step.
+const CAP_OF_STEPS: usize = 2_000;
 /// The one that begins with M and J.
 pub(super) const WHOLE: &str = "block_gauss_seidel_whole";
 /// How many landings there are.
@@ -157,7 +159,7 @@ impl Candidate {
             let solver = context.engine(&self.engine).and_then(|engine| engine.contact_solver()).ok_or_else(lost)?;
             return match self.own_model {
                 Value::Null => solver.prepare_contacts(&landed.given, &self.method, tolerance, CAP),
-                _ => solver.prepare_contact_steps(&landed.steps, &self.method, tolerance, CAP),
+                _ => solver.prepare_contact_steps(&landed.steps, &self.method, tolerance, CAP_OF_STEPS),
             };
         }
         let problems = &landed.problems;

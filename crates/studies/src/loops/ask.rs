@@ -1,5 +1,6 @@
 //! What a cell asks, and how the answer is judged.
 
+use super::drive::Driven;
 use super::ours::Ours;
 use super::systems::{ACCELERATED, NEAR, PLANS, Plan, System, errors, scalar};
 use crate::known::{failed, largest};
@@ -127,7 +128,7 @@ impl Asked {
             Self::Motion(plan, step) => {
                 let (q, v) = PLANS[plan].begin(&mechanism, seed)?;
                 let steps = PLANS[plan].of(PLANS[plan].steps[step]);
-                let motion = solver.loop_motion(&description, method, &q, &v, steps)?;
+                let motion = solver.loop_motion(&description, self.system().drive().as_ref(), method, (&q, &v), steps)?;
                 let due = truths.of(plan, &mechanism, seed)?;
                 judge(&PLANS[plan], &mechanism, (&q, &v), steps, &motion, &due)?
             }
@@ -169,7 +170,8 @@ fn end(plan: &Plan, mechanism: &Mechanism, seed: u64) -> Result<Vec<f64>, NoAnsw
     let description = plan.system.description()?;
     let run = |dt: f64| -> Result<Vec<f64>, NoAnswer> {
         let steps = (plan.seconds / dt).round() as usize;
-        Ok(Ours.loop_motion(&description, "rk4_kkt_projection", &q, &v, LoopSteps { dt, steps, every: steps })?.q)
+        let (drive, steps) = (plan.system.drive(), LoopSteps { dt, steps, every: steps });
+        Ok(Ours.loop_motion(&description, drive.as_ref(), "rk4_kkt_projection", (&q, &v), steps)?.q)
     };
     let (coarse, fine) = (run(shortest / 2.0)?, run(shortest / 4.0)?);
     // The error of order four falls to a sixteenth.
@@ -194,9 +196,12 @@ fn judge(
         // It has left all bounds: there is nothing to measure.
         return Ok(judged);
     }
+    let drive = plan.system.drive();
+    let driven = drive.as_ref().map(|drive| Driven { drive, model });
     let total = |q: &[f64], v: &[f64]| -> Result<f64, NoAnswer> {
         let energies = energy(model, q, v).map_err(failed)?;
-        Ok(energies.kinetic + energies.potential)
+        let stored = driven.as_ref().map_or(Ok(0.0), |driven| driven.potential(q))?;
+        Ok(energies.kinetic + energies.potential + stored)
     };
     let first = total(q, v)?;
     let (mut drift, mut open, mut rows) = (0.0, 0.0, Rows::<f64>::new(constraints));

@@ -14,11 +14,12 @@
 //! | all | `ns_per_state`, `ns_per_step`: the engine's own clock | – |
 //!
 //! - `systems.rs`: robots, states, motions and what is known of them;
-//! - `ours.rs`: our methods;
+//! - `ours.rs`: our methods; `drive.rs`: springs and constant forces;
 //! - `ask.rs`: what a cell asks, and how the answer is judged;
 //! - `rows.rs`, `section.rs`: rows and report.
 
 mod ask;
+mod drive;
 mod ours;
 mod rows;
 pub(crate) mod section;

@@ -1,9 +1,10 @@
 //! Our methods, behind the same trait as engines.
 
 use super::ask::Asked;
+use super::drive::Driven;
 use super::systems::System;
 use crate::known::failed;
-use featherbench_bench::{LoopAccelerations, LoopMotion, LoopSolver, LoopStates, LoopSteps, NoAnswer};
+use featherbench_bench::{LoopAccelerations, LoopDrive, LoopMotion, LoopSolver, LoopStates, LoopSteps, NoAnswer};
 use featherbench_constrained::stabilise::{Projection, Simulation, Stabilisation};
 use featherbench_constrained::{Constrained, Kkt, Mechanism, Method, Proximal, RangeSpace};
 use featherbench_model::Description;
@@ -73,7 +74,14 @@ impl LoopSolver for Ours {
     }
 
     /// Its time includes the measurement of drift after each step.
-    fn loop_motion(&self, robot: &Description, name: &str, q: &[f64], v: &[f64], steps: LoopSteps) -> Result<LoopMotion, NoAnswer> {
+    fn loop_motion(
+        &self,
+        robot: &Description,
+        drive: Option<&LoopDrive>,
+        name: &str,
+        (q, v): (&[f64], &[f64]),
+        steps: LoopSteps,
+    ) -> Result<LoopMotion, NoAnswer> {
         let stabilisation = match name {
             "rk4_kkt_projection" => Stabilisation::Projection(Projection { tolerance: 1e-12, cut: 1e-8, iterations: 50, reach: 0.5 }),
             "rk4_kkt_baumgarte" => Stabilisation::Baumgarte { alpha: 1.0 / BAUMGARTE, beta: 1.0 / BAUMGARTE },
@@ -82,7 +90,14 @@ impl LoopSolver for Ours {
         let mechanism = Mechanism::of(robot).map_err(failed)?;
         let (model, constraints) = (&mechanism.model, &mechanism.constraints);
         let method = &Kkt { tolerance: RANK };
-        let simulation = Simulation { model, constraints, forces: &|_, _, _, _| (), method, stabilisation };
+        let driven = drive.map(|drive| Driven { drive, model });
+        let forces = |_: f64, q: &[f64], _: &[f64], tau: &mut [f64]| {
+            // A run refuses forces that are not finite.
+            if driven.as_ref().is_some_and(|driven| driven.add(q, tau).is_err()) {
+                tau.fill(f64::NAN);
+            }
+        };
+        let simulation = Simulation { model, constraints, forces: &forces, method, stabilisation };
         let LoopSteps { dt, steps, every } = steps;
         let (mut at, mut rate) = (q.to_vec(), v.to_vec());
         let (mut qs, mut vs) = (Vec::new(), Vec::new());

@@ -1,8 +1,8 @@
 //! The robots of the study: descriptions with loops, states on them, motions, and what is known.
 
 use crate::known::{failed, largest};
-use featherbench_bench::{LoopStates, LoopSteps, NoAnswer};
-use featherbench_constrained::library::{Biped, Bricard, Ladder, Squeezer};
+use featherbench_bench::{LoopDrive, LoopSpring, LoopStates, LoopSteps, NoAnswer};
+use featherbench_constrained::library::{Biped, Bricard, Ladder, Pair, Squeezer, Tie};
 use featherbench_constrained::stabilise::Projection;
 use featherbench_constrained::{Mechanism, accelerations};
 use featherbench_model::{Description, integrate, neutral};
@@ -24,6 +24,8 @@ pub(super) enum System {
     Bricard,
     Squeezer,
     Biped,
+    /// Two pendulums that are tied by another kind of loop than a hinge.
+    Pair(Tie),
 }
 
 /// A motion that is asked for.
@@ -31,7 +33,7 @@ pub(super) enum System {
 pub(super) struct Plan {
     pub system: System,
     pub name: &'static str,
-    /// Angle and rate of the cranks at the beginning, of a row of parallelograms.
+    /// Angle and rate of the cranks at the beginning, of a row of parallelograms, or of the first pendulum.
     pub start: (f64, f64),
     pub seconds: f64,
     /// The lengths of steps, s.
@@ -39,11 +41,15 @@ pub(super) struct Plan {
 }
 
 /// All motions. A02 begins upright with 1 m/s at the cranks' ends. Its cranks are horizontal several times in 10 s, and flat is singular.
-pub(super) const PLANS: [Plan; 9] = [
+pub(super) const PLANS: [Plan; 12] = [
     Plan { system: System::Windows(1), name: "four-bar", start: (0.7, 0.0), seconds: 2.0, steps: &[0.02, 0.01, 0.005, 0.0025] },
     Plan { system: System::Windows(1), name: "four-bar, singular", start: (3.0, 1.0), seconds: 3.0, steps: &[0.01, 0.005, 0.0025] },
     Plan { system: System::Bricard, name: "A04", start: (0.0, 0.0), seconds: 10.0, steps: &[0.02, 0.01, 0.005] },
     Plan { system: System::Biped, name: "biped", start: (0.0, 0.0), seconds: 0.5, steps: &[0.01, 0.005, 0.0025] },
+    // The time and the start of the test set for IVP solvers.
+    Plan { system: System::Squeezer, name: "Andrews' squeezer", start: (0.0, 0.0), seconds: 0.03, steps: &[6e-5, 3e-5, 1.5e-5] },
+    Plan { system: System::Pair(Tie::Gear), name: "geared pendulums", start: (0.7, 0.0), seconds: 2.0, steps: &[0.01, 0.005, 0.0025] },
+    Plan { system: System::Pair(Tie::Rod), name: "pendulums and a rod", start: (0.7, 0.0), seconds: 2.0, steps: &[0.01, 0.005, 0.0025] },
     Plan { system: System::Windows(1), name: "A02, N = 1", ..UPRIGHT },
     Plan { system: System::Windows(5), name: "A02, N = 5", ..UPRIGHT },
     Plan { system: System::Windows(10), name: "A02, N = 10", ..UPRIGHT },
@@ -54,8 +60,18 @@ pub(super) const PLANS: [Plan; 9] = [
 const UPRIGHT: Plan = Plan { system: System::Windows(1), name: "", start: (std::f64::consts::PI, 1.0), seconds: 10.0, steps: &[0.01] };
 
 /// The robots whose accelerations are asked for.
-pub(super) const ACCELERATED: [System; 6] =
-    [System::Windows(1), System::Windows(5), System::Windows(40), System::Bricard, System::Squeezer, System::Biped];
+pub(super) const ACCELERATED: [System; 10] = [
+    System::Windows(1),
+    System::Windows(5),
+    System::Windows(40),
+    System::Bricard,
+    System::Squeezer,
+    System::Biped,
+    System::Pair(Tie::Gear),
+    System::Pair(Tie::Cam),
+    System::Pair(Tie::Rod),
+    System::Pair(Tie::Weld),
+];
 
 impl Plan {
     /// The steps of one length; the state is told a hundred times or after every step.
@@ -71,6 +87,10 @@ impl Plan {
             System::Windows(windows) => {
                 let ladder = ladder(windows);
                 Ok((ladder.spread(self.start.0), ladder.spread(self.start.1)))
+            }
+            System::Pair(tie) => {
+                let ((angle, rate), pair) = (self.start, Pair::new(tie));
+                Ok((pair.configuration(angle).to_vec(), pair.velocity(angle, rate).to_vec()))
             }
             System::Bricard => Ok((vec![0.0; 5], vec![0.0; 5])),
             System::Squeezer => Ok((Squeezer::start().to_vec(), vec![0.0; 7])),
@@ -102,6 +122,10 @@ impl System {
             Self::Bricard => "Bricard".into(),
             Self::Squeezer => "Andrews' squeezer".into(),
             Self::Biped => "biped".into(),
+            Self::Pair(Tie::Gear) => "pendulums, gear".into(),
+            Self::Pair(Tie::Cam) => "pendulums, cam".into(),
+            Self::Pair(Tie::Rod) => "pendulums, rod".into(),
+            Self::Pair(Tie::Weld) => "pendulums, weld".into(),
         }
     }
 
@@ -117,6 +141,7 @@ impl System {
             Self::Bricard => Bricard::default().description(),
             Self::Squeezer => Squeezer::default().description(),
             Self::Biped => Biped::default().description(),
+            Self::Pair(tie) => Pair::new(tie).description(),
         };
         for body in &mut description.bodies {
             let along = Vec3::from_array(body.com);
@@ -136,6 +161,19 @@ impl System {
         description.canonical().map_err(failed)
     }
 
+    /// What drives its motion beside gravity.
+    pub fn drive(self) -> Option<LoopDrive> {
+        if self != Self::Squeezer {
+            return None;
+        }
+        let squeezer = Squeezer::default();
+        let [moved, fixed] = squeezer.spring_ends();
+        let spring = LoopSpring { bodies: [Some(2), None], points: [moved, fixed], stiffness: squeezer.stiffness, length: squeezer.spring };
+        let mut tau = vec![0.0; 7];
+        tau[0] = squeezer.torque;
+        Some(LoopDrive { tau, springs: vec![spring] })
+    }
+
     pub fn mechanism(self) -> Result<Mechanism, NoAnswer> {
         Mechanism::of(&self.description()?).map_err(failed)
     }
@@ -153,6 +191,9 @@ impl System {
             let mut tau = vec![0.0; topology.nv()];
             let (q, v) = if let Some(ladder) = self.ladder() {
                 (ladder.spread(random.uniform(-1.2, 1.2)), ladder.spread(random.uniform(-2.0, 2.0)))
+            } else if let Self::Pair(tie) = self {
+                let (angle, rate, pair) = (random.uniform(-1.0, 1.0), random.uniform(-2.0, 2.0), Pair::new(tie));
+                (pair.configuration(angle).to_vec(), pair.velocity(angle, rate).to_vec())
             } else {
                 let mut draw = || (0..topology.nv()).map(|_| random.uniform(-0.2, 0.2)).collect::<Vec<f64>>();
                 let mut q = integrate(topology, &near, &draw()).map_err(failed)?;
@@ -189,9 +230,10 @@ impl System {
         let mut due = Vec::with_capacity(states.v.len());
         for k in 0..states.count {
             let (q, v, tau) = (&states.q[k * nq..][..nq], &states.v[k * nv..][..nv], &states.tau[k * nv..][..nv]);
-            match self.ladder() {
-                Some(ladder) => due.extend(ladder.spread(ladder.acceleration(q[0]))),
-                None => due.extend(accelerations(&mechanism.model, &mechanism.constraints, q, v, tau).map_err(failed)?),
+            match (self, self.ladder()) {
+                (_, Some(ladder)) => due.extend(ladder.spread(ladder.acceleration(q[0]))),
+                (Self::Pair(tie), _) => due.extend(Pair::new(tie).acceleration(q[0], v[0])),
+                _ => due.extend(accelerations(&mechanism.model, &mechanism.constraints, q, v, tau).map_err(failed)?),
             }
         }
         Ok(due)

@@ -1,14 +1,16 @@
 //! Our methods on every question but the longest, rows of answers that are wrong, and the closed form.
 
 use super::ask::{Asked, Judged, Truths};
+use super::drive::Driven;
 use super::ours::{Ours, methods};
 use super::rows::rows;
 use super::systems::{PLANS, System, errors, scalar};
 use super::{STUDY, Settings};
 use crate::known::tests::gates;
 use featherbench_bench::{Cell, LoopStates, NoAnswer, OWN, Outcome};
-use featherbench_constrained::library::Ladder;
+use featherbench_constrained::library::{Ladder, Squeezer};
 use featherbench_results::{Row, Verdict};
+use featherbench_robots::Random;
 use serde_json::json;
 
 fn cell(asked: &Asked, engine: &str, method: &str) -> Cell {
@@ -121,6 +123,32 @@ fn an_error_of_nan_is_nan() {
     let found = errors(&states, &[1.0, f64::NAN], &[3.0, 4.0]);
     assert_eq!(found[0], 0.5);
     assert!(found[1].is_nan());
+}
+
+/// The squeezer's spring and torque between points are the moments of its closed form, and the negative slope of their potential.
+#[test]
+fn a_drive_is_that_of_the_squeezer() {
+    let (drive, mechanism) = (System::Squeezer.drive().unwrap(), System::Squeezer.mechanism().unwrap());
+    let driven = Driven { drive: &drive, model: &mechanism.model };
+    let mut random = Random::new(7, 0);
+    for _ in 0..20 {
+        let q: Vec<f64> = (0..7).map(|_| random.uniform(-2.0, 2.0)).collect();
+        let (mut found, mut due) = (vec![0.0; 7], vec![0.0; 7]);
+        driven.add(&q, &mut found).unwrap();
+        Squeezer::default().add_forces(&q, &mut due);
+        for k in 0..7 {
+            // Rounding of a pull of k·0.1 m = 450 N at an arm of 0.03 m.
+            assert!((found[k] - due[k]).abs() < 1e-12, "{k}: {found:?} {due:?}");
+            let moved = |by: f64| {
+                let mut q = q.clone();
+                q[k] += by;
+                driven.potential(&q).unwrap()
+            };
+            // Centred differences lose 1e-10 of the third derivative, and ε/1e-5 of some 50 J.
+            let slope = (moved(1e-5) - moved(-1e-5)) / 2e-5;
+            assert!((slope + due[k]).abs() < 1e-7, "{k}: {slope} {due:?}");
+        }
+    }
 }
 
 /// No two questions make the same cell, and records end with the motion.
