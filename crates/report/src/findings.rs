@@ -167,7 +167,7 @@ impl Found<'_> {
         };
         let against = if row.reference.is_empty() { String::new() } else { format!(" against {}", row.reference) };
         let Some((error, rounding)) = row.unit_free_error() else {
-            let unit = if row.unit == "ratio" || row.unit.is_empty() { String::new() } else { format!(" {}", row.unit) };
+            let unit = if row.unit == "1" || row.unit.is_empty() { String::new() } else { format!(" {}", row.unit) };
             let relation = row.relation.map_or("", Relation::phrase);
             return format!("{}{unit} where {relation} {} is due", short(value), short(bound));
         };

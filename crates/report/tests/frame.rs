@@ -66,7 +66,7 @@ fn the_method_explains_the_terms_and_measures_of_sections() {
 /// A row with a unit-free error where 1e-14 is allowed.
 fn erring(engine: &str, quantity: &str, value: f64) -> Row {
     let (engine, quantity) = (engine.to_owned(), quantity.to_owned());
-    Row { engine, quantity, metric: "scaled".into(), unit: "ratio".into(), ..failing("one") }.gated(value, Relation::Le, 1e-14)
+    Row { engine, quantity, metric: "scaled".into(), unit: "1".into(), ..failing("one") }.gated(value, Relation::Le, 1e-14)
 }
 
 #[test]

@@ -208,7 +208,7 @@ fn sentences_tell_who_agrees_and_who_does_not() {
             robot: model.into(),
             quantity: quantity.into(),
             metric: "scaled".into(),
-            unit: "ratio".into(),
+            unit: "1".into(),
             reference: "featherbench".into(),
             ..Row::default()
         }
