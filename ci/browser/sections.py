@@ -34,6 +34,8 @@ SECTIONS = [
     "method",
     "unpassed",
 ]
+# The levels of findings from the gravest; conditions without a level come last.
+LEVELS = ["physics differs", "method loses digits", "not offered", "rounding", "gate not met"]
 ALWAYS = set(SECTIONS) - {
     "import",
     "joints",
@@ -65,6 +67,7 @@ def checks(page: Browser, address: str, shots: pathlib.Path | None) -> Checks:
     yield "the page is no wider than its window", width[0] <= width[1], width
     shot("top")
 
+    yield from findings(page)
     yield from plots(page, shot)
     yield from conventions(page, shot)
     if has(page, "#heat td button"):
@@ -90,6 +93,28 @@ def checks(page: Browser, address: str, shots: pathlib.Path | None) -> Checks:
     yield from theme(page, address, shot, sections if shots else [])
     yield from narrow(page, shot)
     yield from silence(page)
+
+
+def findings(page: Browser) -> Checks:
+    """Check the findings on the first page: their order, their rows, the command that repeats them."""
+    listed = page.run(
+        "return [...document.querySelectorAll('#verdict ol.findings .level')].map(level => level.textContent.split(',')[0].trim())"
+    )
+    known = [level for level in listed if level in LEVELS]
+    places = [LEVELS.index(level) for level in known]
+    yield "findings stand from the gravest", len(known) == len(listed) and places == sorted(places), listed
+    said = page.run("return [document.querySelector('h1').textContent, document.querySelectorAll('#verdict .tile').length]")
+    yield (
+        "the page opens with a finding, not with a number of rows",
+        "inside their gates" not in said[0] and said[1] == len(LEVELS) - 1,
+        said,
+    )
+    if has(page, "#verdict ol.findings [data-chunk]"):
+        page.click("#verdict ol.findings [data-chunk]")
+        yield "the rows of a finding can be opened", page.until(ROWS) > 0, ""
+        page.press(ESCAPE)
+        again = page.run("return document.querySelector('#verdict details.again code').textContent")
+        yield "a finding has the command that repeats it", "--filter" in again or "compare" in again, again
 
 
 def conventions(page: Browser, shot: Shot) -> Checks:

@@ -181,12 +181,14 @@ impl Gates {
         &self.known.reproductions
     }
 
-    /// Plants a fault of ten times its bound under each gate: which of them fire. One that does not is hidden by a gate before it.
+    /// Plants a fault of ten times its bound (or one, where the bound is zero) under each gate: which of them fire. One that does not is hidden by a gate before it.
     pub fn planted(&self) -> Vec<Planted<'_>> {
         let first = |row: &Row| self.gates.iter().find(|gate| gate.matches(row));
         let fires = |gate: &Gate, row: Row| {
             let depth = row.depth.unwrap_or(0) as f64;
-            let fault = 10.0 * gate.bound * if gate.times == Factor::One { 1.0 } else { depth };
+            let bound = gate.bound * if gate.times == Factor::One { 1.0 } else { depth };
+            // Nothing may be counted where the bound is zero: one is the smallest fault.
+            let fault = if bound == 0.0 { 1.0 } else { 10.0 * bound };
             first(&row).is_some_and(|found| std::ptr::eq(found, gate)) && self.judge(row, fault, 1.0).verdict == Verdict::Fail
         };
         self.gates.iter().map(|gate| Planted { gate, fired: gate.examples().any(|row| fires(gate, row)) }).collect()

@@ -1,7 +1,7 @@
 //! Gates and known deviations on rows made by hand: each condition in both directions.
 
 use featherbench_bench::{Counts, DeviationFile, Engines, Gates, Range, RangeKey, Ranges, RangesMeter, SLACK, Suite};
-use featherbench_results::{Expectation, Kind, Relation, Row, RunInfo, Verdict};
+use featherbench_results::{Expectation, GateKind, Kind, Relation, Row, RunInfo, Verdict};
 use std::path::Path;
 
 const GATES: &str = r#"
@@ -404,6 +404,65 @@ fn a_computed_bound_must_be_sharp_somewhere() {
     ] {
         assert_eq!(blunt(&[other]), []);
     }
+}
+
+/// A fault for each kind of gate: it fires, and names the crane. Those of engines and of files are planted in the tests of the command.
+#[test]
+fn every_kind_of_gate_fires_and_names_its_culprit() {
+    let mean = "[[mean]]\nstudy = \"agreement\"\nmetric = \"over_best\"\nquantities = [\"id\"]\nmean = 1.5\nbound = 3.0\nreason = \"r\"\n";
+    let engines = Engines::parse(ENGINES, Path::new("engines.toml")).unwrap();
+    let plain = Gates::parse(&format!("{GATES}{mean}"), Path::new("gates.toml")).unwrap();
+    let plain = plain.with_deviations(crane(DEVIATIONS)).with_lacks(engines.lacks());
+    let sized = plain.clone().with_ranges([(RangeKey::of(&row()), range(8e-14, 9e-14, 20, 20))].into_iter().collect(), Path::new("here"));
+    let sized = sized.unwrap();
+    let pass = || row().gated(1e-15, Relation::Le, 1e-14);
+    let lacking = Row { quantity: "com".into(), states: "zero".into(), ..on("hoist-9") };
+    let blunt =
+        Row { quantity: "fd".into(), metric: "forward".into(), params: "{\"base\":\"free\",\"joints\":[\"planar\"]}".into(), ..row() };
+    let far = Row { metric: "over_best".into(), engine: "featherbench".into(), ..row() };
+    let counts = Counts::parse("suite,study,engine,quantity,cells,rows\nyard,agreement,crane,id,1,2\n", Path::new("counts.csv")).unwrap();
+    let run = RunInfo { suite: "yard".into(), studies: vec!["agreement".into()], ..RunInfo::default() };
+    let of = |gates: &Gates, rows: &[Row]| {
+        let mut all = gates.conditions(&suite(), rows, true);
+        all.extend(counts.conditions(&run, &["crane".to_owned()], rows));
+        all
+    };
+    let planted = [
+        (GateKind::Bound, of(&plain, &[row().gated(1.0, Relation::Le, 1e-14)])),
+        (GateKind::Answer, of(&plain, &[row().without_value(Verdict::Error, "NaN")])),
+        (GateKind::Unlisted, of(&plain, &[row().without_value(Verdict::Skip, "no")])),
+        (GateKind::Rows, of(&plain, &[])),
+        (GateKind::Seen, of(&sized, &[pass()])),
+        (GateKind::Size, of(&sized, &[sized.judge(row(), 2e-14, 1.0)])),
+        (GateKind::Lack, of(&plain, &[lacking.gated(1e-15, Relation::Le, 1e-14)])),
+        (GateKind::Sharp, of(&plain, &[blunt.gated(0.0, Relation::Le, 1.0)])),
+        (GateKind::Mean, of(&plain, &[far.informed(4.0)])),
+        (GateKind::Counts, of(&plain, &[pass()])),
+    ];
+    for (kind, conditions) in &planted {
+        let fired = conditions.iter().find(|condition| condition.kind == *kind && !condition.is_met());
+        let culprit = &fired.unwrap_or_else(|| panic!("{kind} did not fire: {conditions:?}")).culprit;
+        let due = match kind {
+            GateKind::Rows => "",
+            GateKind::Mean => "featherbench",
+            _ => "crane",
+        };
+        assert_eq!(culprit.engine, due, "{kind}");
+    }
+    let never = GateKind::ALL.iter().filter(|kind| !planted.iter().any(|(planted, _)| planted == *kind)).collect::<Vec<_>>();
+    assert_eq!(never, [&GateKind::Engine, &GateKind::Import, &GateKind::Other]);
+}
+
+/// A gate behind another one that matches all of its rows never fires, and is found.
+#[test]
+fn a_hidden_gate_is_found() {
+    let silent = |text: &str| {
+        let gates = Gates::parse(text, Path::new("gates.toml")).unwrap();
+        gates.planted().iter().filter(|planted| !planted.fired).map(|planted| planted.gate.reason.clone()).collect::<Vec<_>>()
+    };
+    assert_eq!(silent(GATES), [""; 0]);
+    let hidden = "[[gate]]\nstudy = \"agreement\"\nquantities = [\"id\"]\nmetric = \"scaled\"\nrobots = [\"hoist-*\"]\nbound = 1e-9\nreason = \"hidden\"\n";
+    assert_eq!(silent(&format!("{GATES}{hidden}")), ["hidden"]);
 }
 
 #[test]

@@ -1,10 +1,11 @@
-//! `featherbench history`: the times of our kernels, night after night, one file per machine.
+//! `featherbench history`: a page over a folder of runs, and the times of our kernels, night after night, one file per machine.
 
 use crate::args::HistoryArgs;
 use crate::fail::Fail;
 use crate::root::Root;
 use crate::say::say;
-use ::featherbench_results::{Host, Row, RunInfo, atomic_write, read_run};
+use ::featherbench_results::{CSV_NAME, Host, RUN_NAME, Row, RunInfo, atomic_write, read_run};
+use featherbench_report::runs::{self, Past};
 use std::collections::BTreeMap;
 use std::path::Path;
 
@@ -13,9 +14,32 @@ const HEADER: &str = "date,revision,kernel,model,ns,ns_low,ns_high,instructions"
 /// A history is cut to this many bytes, the oldest nights first: the data of this repository are small.
 const LIMIT: usize = 24_000;
 
+/// Writes a page over the runs of a folder, or appends the times of one run to the history of its machine.
+pub fn history(root: &dyn Fn() -> Result<Root, Fail>, args: &HistoryArgs) -> Result<(), Fail> {
+    if args.folder.join(RUN_NAME).is_file() || !args.folder.is_dir() {
+        return append(root, args);
+    }
+    let mut runs = Vec::new();
+    for entry in std::fs::read_dir(&args.folder).map_err(|error| failed(&args.folder, &error))? {
+        let path = entry.map_err(|error| failed(&args.folder, &error))?.path();
+        // A run that has not ended has no rows yet.
+        if path.join(CSV_NAME).is_file() && path.join(RUN_NAME).is_file() {
+            let (info, rows) = read_run(&path)?;
+            runs.push(Past { folder: path.file_name().unwrap_or_default().to_string_lossy().into_owned(), info, rows });
+        }
+    }
+    if runs.is_empty() {
+        return Err(failed(&args.folder, &"it is no run, and no folder in it is one"));
+    }
+    let (page, number) = (args.folder.join("index.html"), runs.len());
+    atomic_write(&page, runs::render(runs).as_bytes())?;
+    say!("history of {number} runs: {}", page.display());
+    Ok(())
+}
+
 /// Appends a run's times of our kernels on one robot to the history of its machine. It is in the folder that is named, or else in
 /// `reports/history` of the project. Only then the project must be found.
-pub fn append(root: &dyn Fn() -> Result<Root, Fail>, args: &HistoryArgs) -> Result<(), Fail> {
+fn append(root: &dyn Fn() -> Result<Root, Fail>, args: &HistoryArgs) -> Result<(), Fail> {
     let (run, records) = read_run(&args.folder)?;
     let instructions = args.instructions.as_deref().map(read_instructions).transpose()?.unwrap_or_default();
     let (lines, invalid) = lines(&run, &records, &args.model, &instructions);

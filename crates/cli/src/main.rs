@@ -96,7 +96,7 @@ fn dispatch(cli: Cli) -> Result<(), Fail> {
         Command::Report(args) => report::write(&args.folder, args.open),
         Command::Gate(args) => gate::gate(&root()?, &args),
         Command::Diff(args) => diff::compare(&args),
-        Command::History(args) => history::append(&root, &args),
+        Command::History(args) => history::history(&root, &args),
         Command::List(args) => list::list(&root()?, &args),
         Command::Explain(args) => explain::explain(&args),
         Command::Record(args) => record::record(&root()?, &args),

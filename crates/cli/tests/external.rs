@@ -153,16 +153,16 @@ fn a_run_is_not_continued_with_another_program_of_an_external_engine() {
     let engine = ["--engine", "mine=sh 'shy oracle.sh'"];
     let with = |more: &[&'static str]| [&engine[..], more].concat();
     let asked = || std::fs::read(sandbox.path("out/outcomes.bin")).unwrap();
-    run(&with(&[])).expect(0, &["6 skip"]);
+    run(&with(&[])).expect(0, &["6 not offered"]);
     let first = asked();
-    run(&with(&["--resume"])).expect(0, &["6 skip"]);
+    run(&with(&["--resume"])).expect(0, &["6 not offered"]);
     assert_eq!(asked(), first, "nothing was asked twice");
     sandbox.write("shy oracle.sh", &SHY.replace("no such robot", "no robot today"));
     run(&with(&["--resume"])).expect(2, &["another program of engine mine", "--allow-mixed"]);
     run(&["--resume"]).expect(2, &["another program of engine mine", "none now"]);
     assert_eq!(asked(), first, "and nothing is lost");
-    run(&with(&["--resume", "--allow-mixed"])).expect(0, &["6 skip"]);
-    run(&with(&["--resume"])).expect(0, &["6 skip"]);
+    run(&with(&["--resume", "--allow-mixed"])).expect(0, &["6 not offered"]);
+    run(&with(&["--resume"])).expect(0, &["6 not offered"]);
 }
 
 #[test]

@@ -66,6 +66,20 @@ fn two_runs_are_compared_as_a_table_and_as_markdown() {
 }
 
 #[test]
+fn a_folder_of_runs_has_a_page() {
+    let sandbox = Sandbox::new();
+    std::fs::create_dir(sandbox.path("runs")).unwrap();
+    sandbox.run(&["history", "runs"]).expect(2, &["runs", "no folder in it is one"]);
+    run(&sandbox, "runs/a", &times(100.0));
+    run(&sandbox, "runs/b", &times(200.0));
+    sandbox.run(&["history", "runs"]).expect(0, &["history of 2 runs", "runs/index.html"]);
+    let page = std::fs::read_to_string(sandbox.path("runs/index.html")).unwrap();
+    for words in ["2 runs", "href=\"a/index.html\"", "nothing to compare with", "1 time, of 1 row compared", "featherbench x", ">2<"] {
+        assert!(page.contains(words), "{words}: {page}");
+    }
+}
+
+#[test]
 fn a_night_is_kept_once_with_its_instructions() {
     let sandbox = Sandbox::new();
     // A project with data of its own.

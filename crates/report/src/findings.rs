@@ -13,6 +13,8 @@ use crate::tally::{Tally, worst_first};
 
 /// Quantities that a sentence names.
 const NAMED: usize = 3;
+/// Characters of a reason in a sentence.
+const LONGEST: usize = 300;
 
 /// The state of a run in one word.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -36,7 +38,7 @@ pub struct Found<'a> {
     pub gate: GateKind,
     /// Who it is about: of rows, the worst one.
     pub culprit: Culprit,
-    /// Its quantities in words, those of the worst row first.
+    /// Its quantities in words, that of the worst row first; a single one with its measure of error.
     pub quantities: Vec<String>,
     /// Number of rows.
     pub rows: usize,
@@ -44,6 +46,8 @@ pub struct Found<'a> {
     pub robots: usize,
     /// The worst row; `None` if it is about no row.
     pub worst: Option<&'a Row>,
+    /// The condition that is not met; empty if it is about rows.
+    pub what: String,
     /// The cause, if it is known, or the reason as the row or the condition has it.
     pub cause: String,
     /// The command that makes its worst row again; empty if there is none.
@@ -160,14 +164,18 @@ impl Found<'_> {
 
     /// How large it is.
     pub fn size_words(&self) -> String {
-        let Some(row) = self.worst else { return self.cause.clone() };
+        let Some(row) = self.worst else { return self.what.clone() };
         let (Some(value), Some(bound)) = (row.value, row.bound) else {
-            let skipped = row.verdict == Verdict::Skip;
-            return if skipped { "not offered".into() } else { "no answer where one is due".into() };
+            let words = match row.verdict {
+                Verdict::Skip => "not offered",
+                Verdict::Error => "no answer where one is due",
+                _ => "no answer",
+            };
+            return words.into();
         };
         let against = if row.reference.is_empty() { String::new() } else { format!(" against {}", row.reference) };
         let Some((error, rounding)) = row.unit_free_error() else {
-            let unit = if row.unit == "ratio" || row.unit.is_empty() { String::new() } else { format!(" {}", row.unit) };
+            let unit = if row.unit == "1" || row.unit.is_empty() { String::new() } else { format!(" {}", row.unit) };
             let relation = row.relation.map_or("", Relation::phrase);
             return format!("{}{unit} where {relation} {} is due", short(value), short(bound));
         };
@@ -204,15 +212,21 @@ impl Found<'_> {
         };
         let cause = match (self.new, self.worst) {
             (false, _) => format!("; known: {}", self.cause),
-            (true, Some(row)) if row.value.is_none() || self.cause != refuted(row) => format!("; {}", self.cause),
-            (true, _) => String::new(),
+            (true, Some(row)) if row.value.is_some() && self.cause == refuted(row) => String::new(),
+            (true, _) => format!("; {}", clipped(&self.cause)),
         };
         format!("{}{place}{extent}{cause}", self.short())
     }
 
-    /// Level, then new before known. An engine that is missing comes before what is missing of it, a condition without a level last.
-    fn order(&self) -> (bool, Option<Severity>, bool, bool) {
-        (self.severity.is_none(), self.severity, !self.new, self.gate != GateKind::Engine)
+    /// Level, then new before known. Of what is missing, an engine comes before its rows, and rows with their reason before their number. A
+    /// condition without a level comes last.
+    fn order(&self) -> (bool, Option<Severity>, bool, u8) {
+        let near = match self.gate {
+            GateKind::Engine => 0,
+            GateKind::Counts | GateKind::Rows => 2,
+            _ => 1,
+        };
+        (self.severity.is_none(), self.severity, !self.new, near)
     }
 
     /// What orders findings of one level: the error if the physics differs, decades beyond the gate otherwise.
@@ -223,6 +237,12 @@ impl Found<'_> {
             _ => -row.margin.unwrap_or(0.0),
         }
     }
+}
+
+/// The beginning of a long reason: a condition may list every quantity of an engine.
+pub fn clipped(text: &str) -> String {
+    let head: String = text.chars().take(LONGEST).collect();
+    if head.len() < text.len() { format!("{head} …") } else { head }
 }
 
 /// A part of a whole: `78 %`, `0.24 %`, `2.4e-5`, `12 times its size`.
@@ -250,14 +270,15 @@ fn cause(row: &Row) -> String {
     row.reason.strip_suffix(own.as_str()).unwrap_or(&row.reason).to_owned()
 }
 
-/// The rows that do not pass. Failures and missing answers are grouped by engine and quantity, known deviations by their cause, and what an
-/// engine does not offer by engine.
+/// The rows that do not pass. Failures are grouped by engine and quantity, missing answers by their reason, known deviations by their cause,
+/// and what an engine does not offer by engine.
 fn of_rows<'a>(run: &RunInfo, rows: &'a [Row]) -> Vec<Found<'a>> {
     let mut groups: BTreeMap<(&str, Verdict, &str, String), Vec<&Row>> = BTreeMap::new();
     for row in rows.iter().filter(|row| !matches!(row.verdict, Verdict::Pass | Verdict::Info)) {
         let (quantity, cause) = match row.verdict {
             Verdict::Deviation => ("", named_cause(row).unwrap_or_else(|| cause(row))),
             Verdict::Skip => ("", String::new()),
+            Verdict::Error => ("", row.reason.clone()),
             _ => (row.quantity.as_str(), String::new()),
         };
         groups.entry((&row.engine, row.verdict, quantity, cause)).or_default().push(row);
@@ -268,12 +289,15 @@ fn of_rows<'a>(run: &RunInfo, rows: &'a [Row]) -> Vec<Found<'a>> {
 fn of_group<'a>(run: &RunInfo, rows: &[&'a Row]) -> Option<Found<'a>> {
     // The gravest level first, then the largest miss.
     let worst = *rows.iter().min_by_key(|row| (Severity::of(row), worst_first(row)))?;
-    let mut quantities = vec![labels::error(&worst.quantity, &worst.metric)];
+    let mut quantities = vec![labels::quantity(&worst.quantity).to_owned()];
     for row in rows {
-        let quantity = labels::error(&row.quantity, &row.metric);
+        let quantity = labels::quantity(&row.quantity).to_owned();
         if !quantities.contains(&quantity) {
             quantities.push(quantity);
         }
+    }
+    if quantities.len() == 1 {
+        quantities = vec![labels::error(&worst.quantity, &worst.metric)];
     }
     let robots: BTreeSet<&str> = rows.iter().map(|row| row.robot.as_str()).filter(|robot| !robot.is_empty()).collect();
     Some(Found {
@@ -289,6 +313,7 @@ fn of_group<'a>(run: &RunInfo, rows: &[&'a Row]) -> Option<Found<'a>> {
         rows: rows.len(),
         robots: robots.len(),
         worst: Some(worst),
+        what: String::new(),
         cause: cause(worst),
         again: run.again(&worst.study, &worst.robot).unwrap_or_default(),
     })
@@ -318,6 +343,6 @@ fn of_condition(run: &RunInfo, condition: &Expectation, tally: &Tally) -> Option
     };
     let again = if culprit.study.is_empty() { String::new() } else { run.again(&culprit.study, &culprit.robot).unwrap_or_default() };
     let quantities = if culprit.quantity.is_empty() { Vec::new() } else { vec![labels::quantity(&culprit.quantity).to_owned()] };
-    let cause = if condition.reason.is_empty() { condition.what.clone() } else { format!("{}: {}", condition.what, condition.reason) };
-    Some(Found { severity, new: true, gate: condition.kind, culprit, quantities, rows: 0, robots: 0, worst: None, cause, again })
+    let (what, cause) = (condition.what.clone(), condition.reason.clone());
+    Some(Found { severity, new: true, gate: condition.kind, culprit, quantities, rows: 0, robots: 0, worst: None, what, cause, again })
 }

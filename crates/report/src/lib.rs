@@ -14,7 +14,7 @@
 //! |---|---|
 //! | data | [`numbers`], [`labels`], [`fit`], `error`, then `tally`, `overview`, `section`, then `findings`, `chunks`, then [`forms`] |
 //! | sections | `blocks`, then `verdict`, `conventions`, `provenance`, `method`, `unpassed` |
-//! | page | `page`, `summary`, then `write` |
+//! | page | `page`, `summary`, [`runs`], then `write` |
 
 mod blocks;
 mod chunks;
@@ -29,6 +29,7 @@ pub mod numbers;
 mod overview;
 mod page;
 mod provenance;
+pub mod runs;
 mod section;
 mod summary;
 mod tally;

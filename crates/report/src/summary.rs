@@ -46,7 +46,7 @@ mod tests {
     fn row(engine: &str, quantity: &str, verdict: Verdict, value: f64) -> Row {
         let (engine, quantity) = (engine.to_owned(), quantity.to_owned());
         let (robot, states, method, metric) = ("panda".into(), "fast".into(), "aba".into(), "scaled".into());
-        let (study, reference, reason, unit) = ("of engines".into(), "truth".into(), "far (too) from it".into(), "ratio".into());
+        let (study, reference, reason, unit) = ("of engines".into(), "truth".into(), "far (too) from it".into(), "1".into());
         let (value, bound, margin) = (Some(value), Some(1e-14), Some((1e-14 / value).log10()));
         let relation = Some(featherbench_results::Relation::Le);
         Row {

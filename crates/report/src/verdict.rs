@@ -5,7 +5,7 @@ use maud::{Markup, html};
 
 use crate::blocks::opener;
 use crate::chunks::UNPASSED;
-use crate::findings::{Findings, Found, Status};
+use crate::findings::{Findings, Found, Status, clipped};
 use crate::labels;
 use crate::numbers::{count, decades, grouped};
 use crate::overview::Overview;
@@ -25,7 +25,8 @@ fn body(run: &RunInfo, overview: &Overview, rows: &[Row], sections: &[Section]) 
     let mut added: Vec<_> = sections.iter().filter_map(|section| section.finding.as_ref()).collect();
     added.sort_by_key(|finding| finding.rank);
     let (class, word) = match findings.status {
-        Status::Passed => ("good", "Passed"),
+        Status::Passed if findings.found.is_empty() => ("good", "Passed"),
+        Status::Passed => ("good", "Passed: every finding is known"),
         Status::Failed => ("bad", "Failed"),
         Status::Empty => ("void", "Empty"),
     };
@@ -105,7 +106,10 @@ fn item(overview: &Overview, found: &Found) -> Markup {
                 " on " (opener(&overview.chunk_of(worst), &here, &if found.place().is_empty() { worst.study.clone() } else { found.place() }))
                 "; " (opener(UNPASSED, if found.quantities.len() == 1 { &here[..] } else { &all[..] }, &found.extent())) "."
                 @if !found.cause.is_empty() { " " span.cause { @if !found.new { "Known: " } (found.cause) } }
-            } @else if !found.place().is_empty() { " (" (found.place()) ")" }
+            } @else {
+                @if !found.place().is_empty() { " (" (found.place()) ")" }
+                @if !found.cause.is_empty() { "; " span.cause { (clipped(&found.cause)) } }
+            }
             @if !found.again.is_empty() {
                 details.again { summary { "Repeat it" } pre { code { (found.again) } } }
             }
@@ -171,7 +175,7 @@ fn by_engine(overview: &Overview, rows: &[Row], findings: &Findings) -> Markup {
                         th scope="row" { (engine) }
                         (tally_cells(&Tally::of(own().map(|row| row.verdict))))
                         td.number { @if let Some(margin) = worst { (decades(margin)) } }
-                        td.gravest { @if let Some(found) = findings.of_engine(engine) { (found.level()) ": " (found.quantities.join(", ")) ", " (found.size_words()) } }
+                        td.gravest { @if let Some(found) = findings.of_engine(engine) { (found.level()) @if let Some(first) = found.quantities.first() { ": " (first) } } }
                     }
                 }
             }

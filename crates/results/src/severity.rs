@@ -6,7 +6,7 @@ use crate::names::words;
 use crate::{Relation, Row, Verdict};
 
 /// The unit of an error that is relative to a size of its own.
-const UNIT_FREE: &str = "ratio";
+const UNIT_FREE: &str = "1";
 /// An error within this factor of what rounding accounts for is still rounding: one digit. Another seed, compiler or processor moves an error
 /// by a factor of two to three.
 const ONE_DIGIT: f64 = 10.0;

@@ -75,10 +75,10 @@ pub struct DiffArgs {
 
 #[derive(Debug, Clone, Args)]
 #[command(
-    after_help = "Example:\n  python ci/instructions.py --out counts.csv\n  featherbench history reports/timing --instructions counts.csv --to datasets/history"
+    after_help = "Of a folder of runs: writes its page index.html, which says what appeared, vanished and changed from run to run.\nOf a run: appends its times of our kernels to the history of its machine.\n\nExamples:\n  featherbench history reports\n  python ci/instructions.py --out counts.csv\n  featherbench history reports/timing --instructions counts.csv --to datasets/history"
 )]
 pub struct HistoryArgs {
-    /// The folder of a run with times.
+    /// A folder of runs, or the folder of a run with times.
     pub folder: PathBuf,
     /// The robot whose times are kept.
     #[arg(long, default_value = "humanoid")]

@@ -47,7 +47,7 @@ pub enum Command {
     List(ListArgs),
     /// Compare two runs: what changed beyond noise; exit 1 when something did.
     Diff(DiffArgs),
-    /// Append the times of our kernels in a run to a history, one file per machine.
+    /// Write a page over a folder of runs; of one run, append the times of our kernels to a history, one file per machine.
     History(HistoryArgs),
     /// Explain a cell of a run: what was asked, what was answered, how it was judged.
     Explain(ExplainArgs),

@@ -208,7 +208,7 @@ fn sentences_tell_who_agrees_and_who_does_not() {
             robot: model.into(),
             quantity: quantity.into(),
             metric: "scaled".into(),
-            unit: "ratio".into(),
+            unit: "1".into(),
             reference: "featherbench".into(),
             ..Row::default()
         }
@@ -238,5 +238,5 @@ fn sentences_tell_who_agrees_and_who_does_not() {
     assert!(good.section("verdict").contains("No engine misses a gate"));
     let expected = Expectation::new(GateKind::Counts, "id".into(), 2, 1).because("one is missing".into());
     let short = report(&RunInfo { expected: vec![expected], ..RunInfo::default() }, &rows[..5]);
-    assert!(short.section("verdict").contains("verdict bad") && short.section("verdict").contains("id: one is missing"));
+    assert!(short.section("verdict").contains("verdict bad") && short.section("verdict").contains("one is missing"));
 }
