@@ -15,7 +15,7 @@ const ALLOWED: &[(&str, &[&str])] = &[
     ("contact", &["spatial", "model", "dynamics"]),
     ("constrained", &["spatial", "model", "dynamics"]),
     ("hybrid", &["spatial"]),
-    ("scenes", &["spatial", "contact"]),
+    ("scenes", &["spatial", "model", "robots", "dynamics", "contact"]),
     ("residuals", &["spatial", "model", "dynamics"]),
     ("learning", &["spatial", "model", "robots", "dynamics", "residuals"]),
     ("identification", &["spatial", "model", "robots", "formats", "dynamics"]),

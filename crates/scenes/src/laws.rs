@@ -13,6 +13,26 @@ pub fn box_pyramid_felt(heading: f64) -> f64 {
     sine.abs() + cosine.abs()
 }
 
+/// The same of round cones whose force is not opposed to the slip v but along K⁻¹ v, as a sweep leaves it that solves both tangential rows at
+/// once and shortens the result to μN. K is the tangential block of the inverse mass that the contact sees:
+///
+/// ```text
+/// K = 1/m + Σ (r × e_i)·(r × e_j)/I,    felt = mean over the contacts of v·K⁻¹v / (|v| |K⁻¹v|)
+/// ```
+///
+/// `arms` go from the centre of mass to the contacts, m, with z along the normal; the body has the mass `mass`, kg, and the moment `moment` about all
+/// axes, kg m². The answer is of contacts that all have the same share or the same load, and of a body that does not turn.
+pub fn block_step_felt(heading: f64, arms: &[[f64; 3]], mass: f64, moment: f64) -> f64 {
+    let (sine, cosine) = heading.sin_cos();
+    let share = |[x, y, z]: &[f64; 3]| {
+        let (xx, yy, xy) = (1.0 / mass + (y * y + z * z) / moment, 1.0 / mass + (x * x + z * z) / moment, -x * y / moment);
+        // K⁻¹ v up to a positive factor.
+        let (along_x, along_y) = (yy * cosine - xy * sine, xx * sine - xy * cosine);
+        (along_x * cosine + along_y * sine) / along_x.hypot(along_y)
+    };
+    arms.iter().map(share).sum::<f64>() / arms.len() as f64
+}
+
 /// A soft contact in MuJoCo's model, as its documentation states it: a spring-damper reference acceleration and a regularisation R.
 ///
 /// ```text

@@ -25,6 +25,9 @@ pub struct StepProblem {
     pub free: DVector<f64>,
     /// μ of every contact.
     pub friction: f64,
+    /// What the rounding of the gaps leaves in b, m/s: ε times the largest coordinate of a touch, over dt. Where more contacts hold a body than it
+    /// has dofs, b then contradicts itself by this much, and no residual can be below it.
+    pub rounding: f64,
 }
 
 /// Solves the contact problem of a step.
@@ -59,15 +62,19 @@ impl OwnSolver {
 
 /// The largest natural-map residual of a step's answer. A solver may end a little above its own tolerance.
 const ACCEPTED: f64 = 1e-8;
+/// Roundings of a gap: a turn of the arm, two sums, and the touch's own point.
+const ROUNDINGS: f64 = 8.0;
 
 impl StepSolver for OwnSolver {
     fn solve(&mut self, problem: &StepProblem) -> Result<DVector<f64>, String> {
+        let scale = problem.free.amax();
+        let floor = if scale > 0.0 { ROUNDINGS * problem.rounding / scale } else { 0.0 };
         let contacts = (0..problem.free.len() / 3).map(|k| Contact::spatial(format!("contact {k}"), problem.friction)).collect();
         let problem = Problem::from_delassus("step", Level::Impulse, contacts, problem.delassus.clone(), problem.free.clone());
         let problem = problem.map_err(|error| error.to_string())?;
         let solution = match self {
-            Self::Sweeps(solver) => solver.solve(&problem),
-            Self::Newton(solver) => solver.solve(&problem),
+            Self::Sweeps(solver) => BlockGaussSeidel { tolerance: larger(solver.tolerance, floor), ..*solver }.solve(&problem),
+            Self::Newton(solver) => Newton { tolerance: larger(solver.tolerance, floor), ..*solver }.solve(&problem),
         };
         let solution = solution.map_err(|error| error.to_string())?;
         let point = solution.point().ok_or_else(|| format!("the solver says: {}", solution.status()))?;
@@ -229,5 +236,6 @@ fn problem(scene: &Scene, state: &State, touches: &[(Touch, f64)], frames: &[[Ve
     let delassus: DMatrix<f64> = jacobian * scaled;
     // Both triangles are rounded apart; the problem asks for one matrix.
     let delassus = (&delassus + delassus.transpose()) / 2.0;
-    StepProblem { delassus, free, friction: scene.friction }
+    let farthest = touches.iter().map(|(touch, _)| touch.at.amax()).fold(0.0, larger);
+    StepProblem { delassus, free, friction: scene.friction, rounding: f64::EPSILON * farthest / dt }
 }

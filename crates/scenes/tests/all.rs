@@ -2,4 +2,5 @@
 
 mod answers;
 mod laws;
+mod loads;
 mod refusals;

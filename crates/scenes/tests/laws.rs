@@ -2,7 +2,7 @@
 
 use featherbench_contact::library::{BoxOnBalls as Known, PainleveRod};
 use featherbench_scenes::library::{Block, BoxOnBalls, Incline, Rod, Sliding, Table};
-use featherbench_scenes::{Fit, SoftContact, box_pyramid_felt, inscribed_pyramid_felt};
+use featherbench_scenes::{Fit, SoftContact, block_step_felt, box_pyramid_felt, inscribed_pyramid_felt};
 use featherbench_spatial::larger;
 
 #[test]
@@ -49,6 +49,28 @@ fn pyramids_feel_their_known_friction() {
         assert!((felt(&[[1.0, 0.0], [0.0, 1.0]]) - inscribed_pyramid_felt(heading)).abs() < 1e-15);
         assert!((felt(&[[1.0, 1.0], [1.0, -1.0]]) - box_pyramid_felt(heading)).abs() < 1e-15);
     }
+}
+
+/// The inverse mass of a contact by vectors and a matrix inverse, where the law has products and Cramer's rule.
+#[test]
+fn a_block_step_turns_friction_away_from_the_slip() {
+    use nalgebra::{Matrix2, Vector2, Vector3};
+    let (mass, moment) = (1.0, 0.125);
+    let arms = [[0.5, 0.5, -0.1], [-0.5, 0.5, -0.1], [-0.5, -0.5, -0.1], [0.5, -0.5, -0.1]];
+    for degrees in [0.0_f64, 15.0, 45.0, 70.0, 90.0] {
+        let heading = degrees.to_radians();
+        let slip = Vector2::new(heading.cos(), heading.sin());
+        let along = |arm: [f64; 3]| {
+            let turned = [Vector3::x(), Vector3::y()].map(|axis| Vector3::from(arm).cross(&axis));
+            let seen = Matrix2::from_fn(|i, j| turned[i].dot(&turned[j]) / moment + if i == j { 1.0 / mass } else { 0.0 });
+            (seen.try_inverse().unwrap() * slip).normalize().dot(&slip)
+        };
+        let due = arms.map(along).iter().sum::<f64>() / 4.0;
+        assert!((block_step_felt(heading, &arms, mass, moment) - due).abs() < 1e-15, "{degrees}");
+    }
+    // By hand: K = (3.08, −2; −2, 3.08) at a corner, so e_x is turned to (3.08, 2); the diagonals are its axes.
+    assert!((block_step_felt(0.0, &arms, mass, moment) - 3.08 / 3.08_f64.hypot(2.0)).abs() < 1e-15);
+    assert!((block_step_felt(std::f64::consts::FRAC_PI_4, &arms, mass, moment) - 1.0).abs() < 1e-15);
 }
 
 /// At rest the soft contact carries its load: the two sides of its equation, and the creep of a box on four corners at 20°.

@@ -1,8 +1,9 @@
-//! Rapier3d in double precision, its reduced-coordinate multibodies, as an oracle: it speaks `../../PROTOCOL.md` on standard input and output.
+//! Rapier3d in double precision as an oracle, its reduced-coordinate multibodies and its free bodies in contact: it speaks `../../PROTOCOL.md` on standard input and output.
 
 mod coordinates;
 mod refusal;
 mod robot;
+mod scenes;
 mod session;
 mod world;
 

@@ -2,6 +2,7 @@
 
 use crate::refusal::{Refusal, failed};
 use crate::robot::{GUARD, QUANTITIES, Robot, STEPS, State};
+use crate::scenes;
 use featherbench_formats::neutral;
 use featherbench_protocol::{Block, Message};
 use serde_json::{Map, Value, json};
@@ -33,6 +34,8 @@ impl Session {
             "evaluate" => self.evaluate(request),
             "step" => self.step(request),
             "fall" => self.fall(request),
+            "scene" => scenes::simulate(request),
+            "scene_derivative" => Err(Refusal::Unsupported("rapier has no derivatives".into())),
             "import" => Err(Refusal::Unsupported("rapier imports no files here".into())),
             other => Err(failed(format!("there is no op '{other}'"))),
         }
@@ -132,6 +135,7 @@ fn hello() -> Message {
             "build": {"language": "Rust (crate rapier3d-f64)", "compiler": env!("RAPIER_COMPILER")},
             "methods": methods,
             "steps": {"methods": steps, "guard": GUARD},
+            "scenes": scenes::offered(),
         }),
         Vec::new(),
     )

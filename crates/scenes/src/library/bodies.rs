@@ -188,7 +188,7 @@ impl Rod {
                 bodies: vec![rod],
             },
             duration: 0.02,
-            dts: STEPS,
+            dts: SHORT_STEPS,
             measures: vec![
                 Measure::new("tip_slip", "1", 0.0, 1.0, move |motion| {
                     let last = motion.last();

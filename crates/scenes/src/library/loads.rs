@@ -120,19 +120,7 @@ impl Stack {
             duration: 0.4,
             dts: STEPS,
             measures: vec![
-                Measure::new("load_error", "1", 0.0, 1.0, move |motion| {
-                    let off = |k: usize| {
-                        let below = k.checked_sub(1);
-                        let up = motion.pushes.iter().map(|push| match (push.on, push.from) {
-                            (on, from) if on == k && from == below => push.force.z,
-                            // The force on the ball below is the opposite.
-                            (on, from) if below == Some(on) && from == Some(k) => -push.force.z,
-                            _ => 0.0,
-                        });
-                        (up.sum::<f64>() - above[k]).abs()
-                    };
-                    (0..balls).map(off).fold(0.0, larger) / above[0]
-                }),
+                Measure::new("load_error", "1", 0.0, 1.0, move |motion| load_error(motion, &above)),
                 Measure::new("sinking", "1", 0.0, 1.0, move |motion| {
                     let height = motion.position(motion.last(), balls - 1).z;
                     (radius * (2 * balls - 1) as f64 - height) / radius
@@ -141,6 +129,21 @@ impl Stack {
             params: json!(self),
         }
     }
+}
+
+/// The largest error of the vertical force below a body of a stack, over the stack's weight. `above` is the weight that is due below each.
+pub(super) fn load_error(motion: &Motion, above: &[f64]) -> f64 {
+    let off = |k: usize| {
+        let below = k.checked_sub(1);
+        let up = motion.pushes.iter().map(|push| match (push.on, push.from) {
+            (on, from) if on == k && from == below => push.force.z,
+            // The force on the body below is the opposite.
+            (on, from) if below == Some(on) && from == Some(k) => -push.force.z,
+            _ => 0.0,
+        });
+        (up.sum::<f64>() - above[k]).abs()
+    };
+    (0..above.len()).map(off).fold(0.0, larger) / above[0]
 }
 
 /// A table on four legs whose load is not in the middle.

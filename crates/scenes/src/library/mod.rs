@@ -7,16 +7,22 @@
 //! | [`Sliding`] sphere | it rolls with 5/7 of its speed after 2v/(7 μ g) |
 //! | [`BoxOnBalls`] | a = F/(M + 7 n m/20) |
 //! | [`Stack`] of balls | each contact carries the weight above it |
+//! | [`BoxStack`] | the same, and it rests: no box sinks, drifts or gains energy |
+//! | [`Standing`] quadruped and humanoid, joints locked | the contacts carry the weight and hold the push; no moment about the centre of mass |
 //! | [`Rod`], Painlevé's, where no force obeys the laws | an impact without collision: the tip stops at once |
 //! | [`Block`] that rocks | an impact leaves r² of the energy, r = 1 − (m/I_O) 2 b² |
 //! | [`Table`] on four legs | the legs carry W about its centre; their single forces are not unique |
 //! | [`Bounce`] | Newton's law: e of the speed |
 
 mod bodies;
+mod boxes;
 mod loads;
+mod standing;
 
 pub use bodies::{Block, Bounce, Incline, Rod, Sliding};
+pub use boxes::BoxStack;
 pub use loads::{BoxOnBalls, Stack, Table};
+pub use standing::{Foot, Locked, Standing};
 
 use crate::motion::Motion;
 use crate::scene::Scene;
@@ -100,6 +106,12 @@ pub fn all() -> Vec<Question> {
         BoxOnBalls::default().question(),
         Stack::default().question(),
         Stack { top: 1000.0, ..Stack::default() }.question(),
+        BoxStack { boxes: 2, ..BoxStack::default() }.question(),
+        BoxStack::default().question(),
+        BoxStack { boxes: 10, ..BoxStack::default() }.question(),
+        BoxStack { top: 100.0, ..BoxStack::default() }.question(),
+        Standing::quadruped().question(),
+        Standing::humanoid().question(),
         Rod::default().question(),
         Block::default().question(),
         Table::default().question(),

@@ -8,7 +8,7 @@
 //! `spring_share` says how much of the error that is. What is left comes from steps that do not meet the instant of the impact.
 
 use super::rows::{blank, without_answer};
-use super::{BOUNCE, cell};
+use super::{BOUNCE, cell, of_engine};
 use featherbench_bench::{Cell, Context, Gates, NoAnswer, Outcome};
 use featherbench_hybrid::library::BouncingBall;
 use featherbench_hybrid::{Settings, Start, sensitivity, simulate};
@@ -46,12 +46,12 @@ pub(super) fn plan(context: &Context) -> Vec<Cell> {
     for engine in context.engines {
         let identity = engine.identity();
         if identity.name == "featherbench" {
-            cells.push(cell("elastic_bounce", identity, "saltation", BOUNCE, json!({"height": HEIGHT, "duration": DURATION})));
+            cells.push(cell("elastic_bounce", of_engine(identity), "saltation", BOUNCE, json!({"height": HEIGHT, "duration": DURATION})));
         }
         let variants = engine.scene_engine().map(|scenes| scenes.derivative_variants()).unwrap_or_default();
         cells.extend(variants.iter().map(|variant| {
             let params = json!({"height": HEIGHT, "duration": DURATION, "cases": CASES, "settings": variant.settings});
-            cell("elastic_bounce", identity, &variant.name, BOUNCE, params)
+            cell("elastic_bounce", of_engine(identity), &variant.name, BOUNCE, params)
         }));
     }
     cells

@@ -31,6 +31,9 @@ const STUDY: &str = "scenes";
 /// The quantities of its cells: motions, and the derivative of a bounce.
 const MOTION: &str = "scene_motion";
 const BOUNCE: &str = "bounce_derivative";
+/// The method and the scene of the one cell of an engine that is not there.
+const NONE: &str = "none";
+const EVERY: &str = "all scenes";
 
 /// The study of scenes.
 pub(crate) struct Scenes {
@@ -59,15 +62,20 @@ impl Scenes {
     }
 }
 
+/// An engine's name and version.
+fn of_engine(identity: &Identity) -> (&str, &str) {
+    (&identity.name, &identity.version)
+}
+
 /// A cell that belongs to no robot.
-fn cell(scene: &str, identity: &Identity, method: &str, quantity: &str, params: Value) -> Cell {
+fn cell(scene: &str, (engine, version): (&str, &str), method: &str, quantity: &str, params: Value) -> Cell {
     Cell {
         study: STUDY.into(),
         robot: scene.into(),
         robot_hash: hash::of(canonical_json(&params).as_bytes()),
         params,
-        engine: identity.name.clone(),
-        version: identity.version.clone(),
+        engine: engine.into(),
+        version: version.into(),
         method: method.into(),
         quantity: quantity.into(),
         scalar: "f64".into(),
@@ -83,15 +91,23 @@ impl Study for Scenes {
         &self.settings.engines
     }
 
+    /// One cell for each engine that is asked and is not there, or moves no scenes: so a row says so.
     fn plan(&self, context: &Context) -> Vec<Cell> {
         let mut cells = Vec::new();
+        for name in &self.settings.engines {
+            let engine = context.engine(name);
+            if engine.is_none_or(|engine| movers::of(engine).is_empty()) {
+                let version = engine.map(|engine| engine.identity().version.clone()).unwrap_or_default();
+                cells.push(cell(EVERY, (name, &version), NONE, MOTION, json!({"settings": {}})));
+            }
+        }
         for engine in context.engines {
             let identity = engine.identity();
             for (mover, variant) in movers::of(engine.as_ref()) {
                 for question in &self.questions {
                     let scene = json!({"parameters": question.params, "duration": question.duration, "scene": question.scene});
                     let params = json!({"scene": scene, "settings": variant.settings, "steps": question.dts, "mover": mover.name()});
-                    cells.push(cell(&question.scene.name, identity, &variant.name, MOTION, params));
+                    cells.push(cell(&question.scene.name, of_engine(identity), &variant.name, MOTION, params));
                 }
             }
         }
@@ -102,6 +118,10 @@ impl Study for Scenes {
     fn evaluate(&self, context: &Context, cell: &Cell) -> Outcome {
         if cell.quantity == BOUNCE {
             return bounce::evaluate(context, cell).into();
+        }
+        if cell.method == NONE {
+            let hint = format!("{0} is not installed, or moves no scenes: `featherbench oracles install {0}`", cell.engine);
+            return Outcome::NoAnswer(NoAnswer::NotOffered(hint));
         }
         let lost = |what: &str| Outcome::NoAnswer(NoAnswer::Failed(format!("there is no {what} of this cell")));
         let Some(question) = self.question(cell) else { return lost("scene") };
@@ -121,6 +141,7 @@ impl Study for Scenes {
     fn compare_all(&self, context: &Context, finished: &[Finished]) -> Vec<Row> {
         let of = |(cell, outcome): &Finished| match self.question(cell) {
             Some(question) if cell.quantity == MOTION => rows::of_motion(context.gates, question, cell, outcome),
+            _ if cell.method == NONE => rows::of_absent(cell, outcome),
             _ => bounce::rows(context.gates, cell, outcome),
         };
         finished.iter().flat_map(of).collect()

@@ -3,7 +3,7 @@
 use super::MOTION;
 use featherbench_bench::{Cell, Gates, NoAnswer, Outcome};
 use featherbench_results::{Row, Verdict, canonical_json};
-use featherbench_scenes::{Fit, Measure, Question, SoftContact};
+use featherbench_scenes::{Fit, Measure, Question, SoftContact, block_step_felt};
 use serde_json::{Value, json};
 use std::f64::consts::SQRT_2;
 
@@ -32,6 +32,11 @@ pub(super) fn without_answer(blank: Row, no_answer: NoAnswer) -> Row {
         _ => Verdict::Info,
     };
     blank.without_value(verdict, no_answer.to_string())
+}
+
+/// The row of an engine that is not there.
+pub(super) fn of_absent(cell: &Cell, outcome: &Outcome) -> Vec<Row> {
+    outcome.answer().err().map(|no_answer| without_answer(blank(cell, &json!({})), no_answer)).into_iter().collect()
 }
 
 /// Whether a row is of a method of ours whose errors are judged: all but sweeps, which may end at their cap.
@@ -99,10 +104,18 @@ fn bias(gates: &Gates, row: Row, measure: &Measure, fit: &Fit) -> Row {
 pub(super) fn law(cell: &Cell, question: &Question, measure: &Measure) -> Option<(&'static str, f64)> {
     debug_assert_eq!(cell.quantity, MOTION);
     let number = |key: &str| question.params[key].as_f64();
+    let straight = ["incline_0", "incline_90"].contains(&question.scene.name.as_str()) && measure.quantity == "felt_friction";
     let diagonal = question.scene.name == "incline_45" && measure.quantity == "felt_friction";
     match (cell.engine.as_str(), cell.method.as_str()) {
         ("mujoco", method) if diagonal && method.starts_with("pyramidal") => Some(("inscribed pyramid: 1/√2", 1.0 / SQRT_2)),
         ("mujoco", method) if diagonal && method.starts_with("elliptic") => Some(("round cone", 1.0)),
+        // At other headings the sled turns and leaves its way.
+        ("rapier", _) if diagonal || straight => {
+            let (heading, half, height, mass) = (number("heading")?, number("half")?, number("height")?, number("mass")?);
+            let arms = [(1.0, 1.0), (-1.0, 1.0), (-1.0, -1.0), (1.0, -1.0)].map(|(x, y)| [x * half, y * half, -height]);
+            let felt = block_step_felt(heading, &arms, mass, question.scene.bodies.first()?.inertia[0]);
+            Some(("friction along K⁻¹v", felt))
+        }
         ("dart", "dantzig" | "pgs") if diagonal => Some(("box pyramid: √2", SQRT_2)),
         ("mujoco", method) if measure.quantity == "creep" && method.starts_with("elliptic") => {
             let setting = |key: &str, k: usize| cell.params["settings"][key][k].as_f64();

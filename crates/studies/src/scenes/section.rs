@@ -5,7 +5,7 @@ use super::{BOUNCE, STUDY};
 use featherbench_report::numbers::short;
 use featherbench_report::{Overview, Section, opener};
 use featherbench_results::{Row, RunInfo, Verdict};
-use featherbench_scenes::library::{BoxOnBalls, Incline, Rod, Table};
+use featherbench_scenes::library::{BoxOnBalls, BoxStack, Incline, Rod, Standing, Table};
 use featherbench_scenes::{OwnSolver, Question, simulate};
 use maud::{Markup, html};
 use serde::Serialize;
@@ -133,7 +133,7 @@ fn valued(row: &Row) -> String {
 }
 
 /// The columns of the table: a scene, a number, and words.
-const COLUMNS: [(&str, &str, &str); 12] = [
+const COLUMNS: [(&str, &str, &str); 16] = [
     ("incline_0", "felt_friction", "friction along x"),
     ("incline_45", "felt_friction", "friction at 45°"),
     ("incline_0", "lift", "lift of what slides, m"),
@@ -143,8 +143,12 @@ const COLUMNS: [(&str, &str, &str); 12] = [
     ("box_on_balls", "box_acceleration", "box on balls"),
     ("stack_10", "load_error", "stack 10 : 1"),
     ("stack_1000", "load_error", "stack 1000 : 1"),
+    ("boxes_10_1", "drift", "drift of ten boxes"),
+    ("boxes_5_100", "load_error", "boxes 100 : 1"),
     ("rocking_block", "energy_ratio", "rocking block"),
     ("table", "wrench_error", "table"),
+    ("standing_quadruped", "drift", "drift of a quadruped"),
+    ("standing_humanoid", "wrench_error", "humanoid"),
     ("bouncing_ball", "felt_restitution", "restitution"),
 ];
 
@@ -160,6 +164,8 @@ fn body(rows: &[&Row], figures: &Figures, chunk: &str) -> Markup {
     let stopped = tips.iter().filter(stops).count();
     let slipping: Vec<String> = tips.iter().filter(|row| !stops(row)).map(|row| valued(row)).collect();
     let heavy = largest(finest(rows, "load_error", "error").filter(|row| row.family == "stack_1000"), 3, 1e-2);
+    let created = largest(finest(rows, "energy_created", "error"), 3, 1e-6);
+    let drifting = largest(finest(rows, "drift", "error").filter(|row| row.family.starts_with("standing")), 3, 1e-4);
     let derivative = rows.iter().filter(|row| row.quantity == BOUNCE && row.metric == "derivative_error" && row.engine != "featherbench");
     let (nearest, farthest) = ends(derivative.copied());
     html! {
@@ -174,6 +180,8 @@ fn body(rows: &[&Row], figures: &Figures, chunk: &str) -> Markup {
                 @if !lifted.is_empty() { li { "What slides is lifted off level ground, mean height in m: " (lifted.join("; ")) ". A convex model asks for v" sub { "n" } " = μ|v" sub { "t" } "|." } }
                 @if !creeping.is_empty() { li { "What should stick creeps, m/s: " (creeping.join("; ")) "." } }
                 @if !heavy.is_empty() { li { "Below a ball of a thousand times the mass, error of the loads 0.4 s after the start: " (heavy.join("; ")) "." } }
+                @if !created.is_empty() { li { "Stacks of boxes at rest gain energy, over that of the stack: " (created.join("; ")) "." } }
+                @if !drifting.is_empty() { li { "A robot that stands and is pushed by a thirtieth of its weight drifts in 0.4 s, over its height: " (drifting.join("; ")) "." } }
                 @if !tips.is_empty() {
                     li {
                         "Where no force obeys the laws, the tip of Painlevé's rod stops at once in " (stopped) " of " (tips.len()) " variants."
@@ -271,11 +279,13 @@ fn shade(error: f64) -> String {
 
 /// Drawings of scenes, by our own step: also for the section of contact problems.
 pub(crate) fn views() -> Markup {
-    let shown: [(Question, &str); 4] = [
+    let shown: [(Question, &str); 6] = [
         (Table::default().question(), "A table whose load is not in the middle"),
         (Incline { heading: 0.0, ..Incline::sliding() }.question(), "A sled that slides: each force is on the side of its cone"),
         (BoxOnBalls::default().question(), "A box that is pulled over balls"),
         (Rod::default().question(), "Painlevé's rod after the impact without collision"),
+        (BoxStack::default().question(), "A stack of boxes: each plane carries the weight above it"),
+        (Standing::humanoid().question(), "A humanoid with locked joints on two feet, pushed; the point is its centre of mass"),
     ];
     html! {
         @for pair in shown.chunks(2) {

@@ -1,16 +1,11 @@
 //! The study of scenes: rows of good and bad answers, laws, and our own answers.
 
-use super::{MOTION, cell, movers::Mover, rows};
+use super::{MOTION, NONE, Scenes, Settings, cell, movers::Mover, rows};
 use crate::known::tests::gates;
-use featherbench_bench::{Cell, Identity, NoAnswer, Outcome};
-use featherbench_results::{EngineSource, Row, Verdict};
+use featherbench_bench::{Cell, Context, NoAnswer, Outcome, Study};
+use featherbench_results::{Row, Verdict};
 use featherbench_scenes::{Question, library};
 use serde_json::json;
-use std::collections::BTreeMap;
-
-fn identity(name: &str) -> Identity {
-    Identity { name: name.into(), version: "1".into(), source: EngineSource::Live, build: BTreeMap::new() }
-}
 
 fn question(name: &str) -> Question {
     library::all().into_iter().find(|question| question.scene.name == name).unwrap()
@@ -18,7 +13,7 @@ fn question(name: &str) -> Question {
 
 fn asked(scene: &str, engine: &str, method: &str) -> (Question, Cell) {
     let settings = json!({"solref": [0.02, 1.0], "solimp": [0.9, 0.95, 0.001, 0.5, 2.0], "impratio": 1.0});
-    (question(scene), cell(scene, &identity(engine), method, MOTION, json!({"settings": settings})))
+    (question(scene), cell(scene, (engine, "1"), method, MOTION, json!({"settings": settings})))
 }
 
 fn judged(rows: &[Row], metric: &str) -> Vec<Verdict> {
@@ -54,6 +49,8 @@ fn laws_of_contact_models_are_judged() {
         ("incline_45", "mujoco", "pyramidal_newton", 0.5_f64.sqrt()),
         ("incline_45", "mujoco", "elliptic_cg", 1.0),
         ("incline_45", "dart", "dantzig", 2.0_f64.sqrt()),
+        ("incline_45", "rapier", "simplified", 1.0),
+        ("incline_0", "rapier", "coulomb", 0.838_69),
         ("incline_sticking", "mujoco", "elliptic_newton", 8.77e-4),
     ];
     for (scene, engine, method, due) in cases {
@@ -91,4 +88,22 @@ fn movers_have_different_names() {
         assert_eq!(Mover::named(mover.name()), Some(mover));
     }
     assert_eq!(Mover::named(""), None);
+}
+
+/// An engine that is asked and is not there has one cell, and its row says what to do.
+#[test]
+fn an_absent_engine_is_a_row() {
+    let gates = gates();
+    let settings = Settings { engines: vec!["rapier".into(), "dart".into()] };
+    let study = Scenes { settings, questions: library::all() };
+    let context = Context { robots: &[], engines: &[], gates: &gates, seed: 1 };
+    let cells = study.plan(&context);
+    assert!(cells.len() == 2 && cells.iter().all(|cell| cell.method == NONE));
+    let finished: Vec<_> = cells.into_iter().map(|cell| (cell.clone(), study.evaluate(&context, &cell))).collect();
+    let rows = study.compare_all(&context, &finished);
+    for (row, engine) in rows.iter().zip(["rapier", "dart"]) {
+        assert!(row.engine == engine && row.verdict == Verdict::Skip && row.value.is_none(), "{row:?}");
+        assert!(row.reason.contains("not installed") && row.reason.contains(&format!("oracles install {engine}")), "{}", row.reason);
+    }
+    assert_eq!(rows.len(), 2);
 }
