@@ -31,6 +31,7 @@ pub(super) const QUANTITY: &str = "beam";
 /// The refinements. An error of first order has the slope 1 to 0.05 only where the next term is small: it needs finer ones.
 const COUNTS: [usize; 6] = [4, 8, 16, 32, 48, 64];
 const COUNTS_OF_FIRST_ORDER: [usize; 7] = [16, 24, 32, 48, 64, 96, 144];
+const COUNTS_OF_HELD: [usize; 9] = [16, 24, 32, 48, 64, 96, 144, 216, 324];
 /// Of splines the refinements of a law are few parts per wave: finer ones show rounding alone, coarser ones the next term.
 const COUNTS_OF_SPLINES: [usize; 10] = [4, 6, 8, 12, 16, 24, 32, 48, 64, 80];
 /// Tips are compared up to so many elements.
@@ -47,7 +48,8 @@ const CALLS: usize = 50;
 /// The refinements of an element.
 fn refinements(element: &str) -> &'static [usize] {
     match element {
-        "links_start" | "held_director" => &COUNTS_OF_FIRST_ORDER,
+        "links_start" => &COUNTS_OF_FIRST_ORDER,
+        "held_director" => &COUNTS_OF_HELD,
         "hermite" => &COUNTS_OF_SPLINES,
         _ => &COUNTS,
     }
@@ -57,7 +59,9 @@ fn refinements(element: &str) -> &'static [usize] {
 fn is_in_law(element: &str, k: usize, count: f64) -> bool {
     let waves = (2 * k + 1) as f64;
     match element {
-        "links_start" | "held_director" => count >= 24.0,
+        "links_start" => count >= 24.0,
+        // The next term of mode 3 is some −4.5/n beside the first.
+        "held_director" => count >= 24.0 * 2.0_f64.powi(k as i32),
         "flex_rod" => count >= 16.0,
         "hermite" => (4.0 * waves..=16.0 * waves).contains(&count),
         _ => count >= 8.0,
