@@ -26,6 +26,8 @@ pub struct RodAnswer {
     pub frequencies: Vec<f64>,
     /// The time of one forward dynamics, ns, by the engine's own clock; calls from Python include their overhead.
     pub nanoseconds: f64,
+    /// The time to make the rod and its first forward dynamics, ns: some engines compile there.
+    pub preparation: f64,
 }
 
 /// An engine that has elastic rods.

@@ -369,6 +369,7 @@ fn the_engines_of_the_project_are_described() {
         "adam",
         "clarabel",
         "soromox",
+        "pyelastica",
         "pinocchio-clang",
         "pinocchio-gcc",
         "mujoco-native",

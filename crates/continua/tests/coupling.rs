@@ -4,14 +4,14 @@ use crate::beams::{links, ritz, rod, sections};
 use featherbench_constrained::{Constrained, Kkt, Mechanism, Rows};
 use featherbench_continua::known::cantilever_root;
 use featherbench_continua::{
-    Assembly, Basis, Element, Hinges, Load, Motion, Rod, Solver, Strain, energies, generalized, library, mass_matrix, modes, momentum,
-    rigid_limit,
+    Assembly, Basis, Continuum, Element, Hinges, Load, Motion, Rod, Solver, Strain, energies, generalized, library, mass_matrix, modes,
+    momentum, rigid_limit,
 };
 use featherbench_dynamics::integrate::{DormandPrince, Tolerance};
-use featherbench_model::{Loop, LoopEnd, LoopKind, LoopMotion, Placement};
+use featherbench_dynamics::{Aba, forward_dynamics};
+use featherbench_model::{Loop, LoopEnd, LoopKind, LoopMotion, Model, Placement};
 use featherbench_robots::Family;
-use featherbench_spatial::Vec3;
-use featherbench_spatial::larger;
+use featherbench_spatial::{Counted, Vec3, larger};
 use nalgebra::{DMatrix, SymmetricEigen};
 
 fn bending() -> [Element; 3] {
@@ -192,6 +192,53 @@ fn links_on_a_humanoid_are_served_by_aba() {
     let mut by_factors: Vec<f64> = tau.iter().zip(&bias).map(|(tau, bias)| tau - bias).collect();
     matrix.into_ltdl().unwrap().solve(&mut by_factors).unwrap();
     assert!(by_factors.iter().zip(&by_aba).all(|(a, b)| (a - b).abs() < 1e-6 * size));
+}
+
+/// A humanoid with a rod of links at its last body.
+fn humanoid_with(count: usize) -> (Assembly, Continuum) {
+    let mut assembly = Assembly::new(Family::parse("humanoid").unwrap().generate().unwrap());
+    let hand = assembly.description().bodies.len() - 1;
+    assembly.attach("rod", &rod(), &links(count, Hinges::Middle), Some(hand), Placement::default()).unwrap();
+    let continuum = assembly.clone().build().unwrap();
+    (assembly, continuum)
+}
+
+/// What `examples/rod_on_humanoid.rs` times: the answers are those of ABA on the bodies' own model with the springs as forces, and the operations of
+/// ABA grow by the same number with each link.
+#[test]
+fn a_rod_on_a_humanoid_is_a_tree_and_costs_the_same_per_link() {
+    let (assembly, continuum) = humanoid_with(30);
+    let model: Model<f64> = Model::build(assembly.description()).unwrap();
+    let nv = continuum.topology().nv();
+    let mut s = continuum.rest();
+    let elastic = continuum.elastic_dofs();
+    let first = s.len() - elastic.len();
+    s[first..].iter_mut().enumerate().for_each(|(k, s)| *s = 0.1 * (1.0 + k as f64).sin());
+    let rate: Vec<f64> = (0..nv).map(|k| 0.2 * (2.0 + k as f64).cos()).collect();
+    let tau: Vec<f64> = (0..nv).map(|k| (3.0 + k as f64).sin()).collect();
+    let mut second = vec![0.0; nv];
+    Solver::new(&continuum).forward(&continuum, &s, &rate, &tau, &[], &mut second).unwrap();
+    let stiffness = continuum.stiffness_matrix();
+    let mut forces = tau.clone();
+    for (i, dof) in elastic.iter().enumerate() {
+        forces[*dof] -= stiffness[(*dof, *dof)] * s[first + i];
+    }
+    let known = forward_dynamics(&model, &s, &rate, &forces).unwrap();
+    // The same recursions on the same tree: roundings of K x alone, which accelerations of light links enlarge.
+    let size = known.iter().fold(0.0, |a: f64, b| larger(a, b.abs()));
+    assert!(known.iter().zip(&second).all(|(a, b)| (a - b).abs() < 1e-12 * size), "{known:?} {second:?}");
+
+    let operations = [100, 200, 400].map(|count| {
+        let (_, continuum) = humanoid_with(count);
+        let (model, topology) = (continuum.model(), continuum.topology());
+        let q: Vec<Counted> = continuum.rest().into_iter().map(Counted).collect();
+        let zeros = vec![Counted(0.0); topology.nv()];
+        let (mut aba, mut second) = (Aba::<Counted>::new(&model.topology), zeros.clone());
+        let counted = Counted::count(|| aba.run(model, &q, &zeros, &zeros, None, &mut second).unwrap());
+        counted.additions + counted.multiplications + counted.fused + counted.divisions
+    });
+    assert!(operations[0] > 0);
+    assert_eq!(operations[2] - operations[1], 2 * (operations[1] - operations[0]), "{operations:?}");
 }
 
 /// A rod whose tip is tied to the world, but for sliding along the rod: the loop is closed by `featherbench_constrained`, with the springs

@@ -1,4 +1,4 @@
-"""A rod in MuJoCo: rigid links with hinges whose joints have springs. MuJoCo 4.0 has no cable plugin and no `<composite>`."""
+"""Rods in MuJoCo: links with hinges that have springs, and a flex of edges. MuJoCo 4.0 has no cable plugin and no `<composite>`."""
 
 from __future__ import annotations
 
@@ -6,6 +6,7 @@ import mujoco as mj
 import numpy as np
 
 from featherbench_oracles.algebra import Array
+from featherbench_oracles.inextensible import nodes, on_angles, straight_mass, straight_stiffness
 from featherbench_oracles.rods import Rod, RodTable
 
 
@@ -73,4 +74,79 @@ class HingeChain:
         mj.mj_forward(self.model, self.data)
 
 
-RODS: RodTable = {"hinge_chain": HingeChain}
+# The section of a flex: its radius over the rod's length enters by E alone.
+RADIUS = 0.01
+# An edge within the wall, over the length of the others: with it the first vertex is clamped, and its hinge has 2EI/h.
+WALL = 1e-6
+
+
+class FlexRod:
+    """A flex of edges whose vertices have MuJoCo's bending forces, and masses of half the edges beside them.
+
+    MuJoCo keeps the edges' length by constraints. Here the coordinates are the edges' angles, so that they keep it exactly.
+
+    Parameters
+    ----------
+    rod : Rod
+        The rod.
+    """
+
+    def __init__(self, rod: Rod) -> None:
+        self.dofs, self.edge = rod.count, rod.length / rod.count
+        young = rod.bending / (np.pi * (RADIUS * rod.length) ** 4 / 4)
+        places = [-WALL * self.edge, *(self.edge * vertex for vertex in range(rod.count + 1))]
+        points = " ".join(f"{place!r} 0 0" for place in places)
+        edges = " ".join(f"{vertex} {vertex + 1}" for vertex in range(rod.count + 1))
+        self.model = mj.MjModel.from_xml_string(
+            f"""<mujoco><option gravity="0 0 0"/><worldbody>
+            <flexcomp name="rod" type="direct" dim="1" point="{points}" element="{edges}" radius="{RADIUS * rod.length!r}"
+              mass="{rod.mass_per_length * rod.length!r}">
+            <contact selfcollide="none" contype="0" conaffinity="0"/><edge equality="false" stiffness="0"/>
+            <elasticity young="{young!r}" poisson="0" thickness="{2 * RADIUS * rod.length!r}"/><pin id="0 1"/>
+            </flexcomp></worldbody></mujoco>"""
+        )
+        self.masses = np.full(rod.count + 1, rod.mass_per_length * self.edge)
+        self.masses[[0, -1]] *= 0.5
+        bodies = self.model.flex_vertbodyid[2:]
+        self.model.body_mass[bodies] = self.masses[1:]
+        self.data = mj.MjData(self.model)
+        mj.mj_setConst(self.model, self.data)
+        # The slides of each free vertex along x, y and z.
+        first = self.model.body_dofadr[bodies]
+        self.slides, self.rest = np.stack([first, first + 1], axis=1), nodes(np.zeros(rod.count), self.edge)
+
+    def _place(self, q: Array) -> None:
+        """Set the configuration at rest."""
+        self.data.qpos[self.slides] = (nodes(q, self.edge) - self.rest)[1:]
+        self.data.qvel = 0.0
+        mj.mj_fwdPosition(self.model, self.data)
+        mj.mj_fwdVelocity(self.model, self.data)
+
+    def imbalance(self, q: Array, force: float) -> Array:
+        """Add what bending and a force along y at the tip leave."""
+        self._place(q)
+        forces = np.zeros((self.dofs + 1, 2))
+        forces[1:] = (self.data.qfrc_passive - self.data.qfrc_bias)[self.slides]
+        forces[-1, 1] += force
+        return on_angles(q, self.edge, forces)
+
+    def tip(self, q: Array) -> Array:
+        """Read the tip's place."""
+        self._place(q)
+        return self.data.flexvert_xpos[-1, :2].copy()
+
+    def mass(self) -> Array:
+        """Read the vertices' masses."""
+        return straight_mass(np.concatenate([self.masses[:1], self.model.body_mass[self.model.flex_vertbodyid[2:]]]), self.edge)
+
+    def stiffness(self) -> Array:
+        """Differentiate the bending forces."""
+        return straight_stiffness(self)
+
+    def accelerate(self, q: Array) -> None:
+        """Compute qacc."""
+        self._place(q)
+        mj.mj_forward(self.model, self.data)
+
+
+RODS: RodTable = {"hinge_chain": HingeChain, "flex_rod": FlexRod}

@@ -31,7 +31,10 @@ pub(crate) fn request(question: &RodQuestion, element: &str) -> (Value, Vec<Bloc
 pub(crate) fn read(answer: &Message, question: &RodQuestion) -> Result<RodAnswer, NoAnswer> {
     let tips = shaped(answer, "tips", &[question.forces.len(), 2])?;
     let frequencies = shaped(answer, "frequencies", &[question.count.min(3)])?;
-    let nanoseconds = answer.header.get("nanoseconds").and_then(Value::as_f64).filter(|time| time.is_finite() && *time >= 0.0);
-    let nanoseconds = nanoseconds.ok_or_else(|| NoAnswer::Failed("the oracle's answer has no nanoseconds".into()))?;
-    Ok(RodAnswer { tips: tips.chunks_exact(2).map(|tip| [tip[0], tip[1]]).collect(), frequencies, nanoseconds })
+    let time = |field: &str| {
+        let time = answer.header.get(field).and_then(Value::as_f64).filter(|time| time.is_finite() && *time >= 0.0);
+        time.ok_or_else(|| NoAnswer::Failed(format!("the oracle's answer has no {field}")))
+    };
+    let (nanoseconds, preparation) = (time("nanoseconds")?, time("preparation")?);
+    Ok(RodAnswer { tips: tips.chunks_exact(2).map(|tip| [tip[0], tip[1]]).collect(), frequencies, nanoseconds, preparation })
 }

@@ -5,6 +5,7 @@
 //! - `vibrations.rs`: frequencies of shape functions and of strings;
 //! - `motions.rs`: momentum, energy, and the limits of a heavy hub and of a stiff rod;
 //! - `passive.rs`: eigenvalues of M, K and D;
+//! - `printed.rs`: numbers of texts, to their last digit;
 //! - `shapes.rs`: a gripper finger and an arm with a cable, read from their description files.
 //!
 //! The rod has EI = ρA = L = 1 where nothing else is said, so forces are α = F L²/EI, and frequencies are β².
@@ -12,6 +13,7 @@
 mod beams;
 mod motions;
 mod passive;
+mod printed;
 pub(crate) mod section;
 mod shapes;
 mod statics;
@@ -53,7 +55,10 @@ pub(crate) fn of_suite(setup: &Setup) -> Made {
 
 /// Every case of ours.
 fn cases() -> Vec<Case> {
-    [statics::cases(), vibrations::cases(), passive::cases(), motions::cases(), shapes::cases()].into_iter().flatten().collect()
+    [statics::cases(), vibrations::cases(), passive::cases(), motions::cases(), printed::cases(), shapes::cases()]
+        .into_iter()
+        .flatten()
+        .collect()
 }
 
 impl Study for Continuum {

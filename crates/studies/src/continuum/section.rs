@@ -33,7 +33,8 @@ struct Figures {
 }
 
 /// What the rows of a quantity are about, in the order of the table.
-const QUANTITIES: [(&str, &str); 19] = [
+const QUANTITIES: [(&str, &str); 20] = [
+    ("printed", "numbers that are in print, to their last digit"),
     ("beam_law", "one beam by every element: order and prefactor"),
     ("beam_agreement", "engines with the same element"),
     ("small_deflection", "small deflections: the closed law at every n"),

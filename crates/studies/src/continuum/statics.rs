@@ -34,7 +34,7 @@ pub(super) fn cases() -> Vec<Case> {
 }
 
 /// The deflection under a small tip force over the exact one: Jᵀ K⁻¹ J by the exact tangent at rest, so that no term of second order is left.
-fn compliance(name: &str, n: usize) -> Result<f64, NoAnswer> {
+pub(super) fn compliance(name: &str, n: usize) -> Result<f64, NoAnswer> {
     let (beam, tip) = library::cantilever(&rod()?, &element(name, n)?).map_err(failed)?;
     let rest = beam.rest();
     let load = Load::force(tip.body, tip.placement.translation, [0.0, 1.0, 0.0]);
@@ -43,6 +43,17 @@ fn compliance(name: &str, n: usize) -> Result<f64, NoAnswer> {
     let stiffness = tangent_stiffness(&beam, &rest, &[]).map_err(failed)?;
     let moved = stiffness.cholesky().ok_or_else(|| failed("K is not positive definite"))?.solve(&force);
     Ok(3.0 * force.dot(&moved))
+}
+
+/// The deflection of the tip under a dead force α.
+pub(super) fn deflection(name: &str, n: usize, alpha: f64) -> Result<f64, NoAnswer> {
+    let (beam, tip) = library::cantilever(&rod()?, &element(name, n)?).map_err(failed)?;
+    let load = Load::force(tip.body, tip.placement.translation, [0.0, alpha, 0.0]);
+    let found = equilibrium(&beam, &[load], &Settings::default()).map_err(failed)?;
+    if found.status != Status::Converged {
+        return Err(failed(format!("the equilibrium at α = {alpha} is {:?}", found.status)));
+    }
+    Ok(beam.place(&found.s, &tip).map_err(failed)?.translation.y)
 }
 
 fn hinges(name: &str) -> Hinges {

@@ -25,7 +25,8 @@ pub(super) fn cases() -> Vec<Case> {
     cases.extend(MONOMIALS.iter().map(|&(terms, due, digits)| monomials(terms, due, digits)));
     cases.push(exact_modes());
     let string = |masses, name, mode, law, counts| string_law(masses, name, mode, law, counts);
-    let second = |prefactor| Law { order: 2.0, next: 3.0, prefactor };
+    // The next term is h⁴ ln h.
+    let second = |prefactor| Law { order: 2.0, next: 4.0, prefactor };
     cases.push(string(Masses::Ends, "string_points", 0, Law { order: 1.0, next: 2.0, prefactor: -0.5 }, [16, 24, 32, 48, 64]));
     cases.push(string(Masses::Uniform, "string_links", 0, second(string_frequency_prefactor(0)), [8, 16, 24, 32, 64]));
     cases.push(string(Masses::Uniform, "string_links", 1, second(string_frequency_prefactor(1)), [16, 24, 32, 48, 64]));
@@ -33,7 +34,7 @@ pub(super) fn cases() -> Vec<Case> {
 }
 
 /// ω of a cantilever with this element.
-fn frequencies(name: &str, n: usize) -> Result<Vec<f64>, NoAnswer> {
+pub(super) fn frequencies(name: &str, n: usize) -> Result<Vec<f64>, NoAnswer> {
     let (beam, _) = library::cantilever(&rod()?, &element(name, n)?).map_err(failed)?;
     Ok(modes(&beam, &beam.rest(), &[]).map_err(failed)?.frequencies())
 }
@@ -108,11 +109,22 @@ fn monomials(terms: usize, due: f64, digits: f64) -> Case {
     let numbers = vec![error("digits_error", "double-double"), told("frequency_error", "1"), told("condition", "1")];
     case(format!("cantilever, {terms} monomials"), "ritz_error", "monomials", json!({"terms": terms}), numbers, move || {
         let found = frequencies("monomials", terms)?[0] / cantilever_root(0).powi(2) - 1.0;
-        let (beam, _) = library::cantilever(&rod()?, &element("monomials", terms)?).map_err(failed)?;
-        let mass = SymmetricEigen::new(mass_matrix(&beam, &beam.rest()).map_err(failed)?).eigenvalues;
         // In units of the printed digits.
-        Ok(vec![(found / due - 1.0).abs() / digits, found, mass.max() / mass.min()])
+        Ok(vec![(found / due - 1.0).abs() / digits, found, mass_condition(terms)?])
     })
+}
+
+/// The condition of M of so many monomials.
+pub(super) fn mass_condition(terms: usize) -> Result<f64, NoAnswer> {
+    let (beam, _) = library::cantilever(&rod()?, &element("monomials", terms)?).map_err(failed)?;
+    let mass = SymmetricEigen::new(mass_matrix(&beam, &beam.rest()).map_err(failed)?).eigenvalues;
+    Ok(mass.max() / mass.min())
+}
+
+/// ω² of a hanging string of this many links, increasing, with g = L = 1.
+pub(super) fn string_squares(masses: Masses, n: usize) -> Result<Vec<f64>, NoAnswer> {
+    let (string, _) = library::hanging_string(n, masses, 1.0, 1.0, 1.0).map_err(failed)?;
+    Ok(modes(&string, &string.rest(), &[]).map_err(failed)?.squares)
 }
 
 /// Exact modes have exact frequencies, each of them.
@@ -127,11 +139,7 @@ fn exact_modes() -> Case {
 fn string_law(masses: Masses, name: &'static str, mode: usize, law: Law, counts: [usize; 5]) -> Case {
     let title = format!("string, mode {}", mode + 1);
     case(title, "string_law", name, json!({"counts": counts, "mode": mode}), Law::numbers(), move || {
-        let errors = counts.iter().map(|&n| {
-            let (string, _) = library::hanging_string(n, masses, 1.0, 1.0, 1.0).map_err(failed)?;
-            let squares = modes(&string, &string.rest(), &[]).map_err(failed)?.squares;
-            Ok((n as f64, squares[mode] / (0.5 * bessel_zero(mode)).powi(2) - 1.0))
-        });
+        let errors = counts.iter().map(|&n| Ok((n as f64, string_squares(masses, n)?[mode] / (0.5 * bessel_zero(mode)).powi(2) - 1.0)));
         Ok(law.fitted(&errors.collect::<Result<Vec<_>, NoAnswer>>()?))
     })
 }
