@@ -61,6 +61,30 @@ pub fn load(root: &Root, suite: &str, live: bool, seed: Option<u64>) -> Result<L
     Ok(Loaded { name, suite: parsed, hash, robots })
 }
 
+/// A description or URDF file, a robot of datasets/models, or a family of generated robots.
+pub fn named(root: impl Fn() -> Result<Root, Fail>, name: &str) -> Result<Description, Fail> {
+    let path = Path::new(name);
+    match path.extension().and_then(|ending| ending.to_str()) {
+        Some("json") => return read_model(path),
+        Some("urdf") => {
+            let (description, notes) = import(path, &Options::default())?;
+            notes.iter().for_each(|note| eprintln!("note: {name}: {note}"));
+            return Ok(description);
+        }
+        _ => {}
+    }
+    let known = root().map(|root| root.models().join(format!("{name}.json"))).ok().filter(|path| path.is_file());
+    if let Some(path) = known {
+        return read_model(&path);
+    }
+    let generated = Family::parse(name).and_then(|family| family.generate());
+    generated.map_err(|error| {
+        Fail::input(format!(
+            "{name}: no file that ends in .json or .urdf, no robot of datasets/models, and no family of generated robots: {error}"
+        ))
+    })
+}
+
 /// A robot and where it came from.
 struct Described {
     description: Description,

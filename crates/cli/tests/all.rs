@@ -12,6 +12,7 @@ mod external;
 mod folds;
 mod history_diff;
 mod parsers;
+mod residuals;
 mod resume;
 mod support;
 mod uncertainty;
