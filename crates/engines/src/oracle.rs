@@ -2,7 +2,7 @@
 
 pub(crate) mod contacts;
 pub(crate) mod loops;
-mod residual;
+pub(crate) mod residual;
 pub(crate) mod rods;
 pub(crate) mod scenes;
 pub(crate) mod semidefinite;
