@@ -12,6 +12,7 @@ use crate::{asked, row};
 use featherbench_bench::measure::{ForwardScale, scaled_error, worst};
 use featherbench_bench::{Cell, Context, Finished, NoAnswer, Quantity, Robot, WithResidual};
 use featherbench_dynamics::inverse_dynamics;
+use featherbench_formats::neutral;
 use featherbench_residuals::{Described, Payload, Residual, SmoothCoulomb, State, Sum, Viscous, Zero};
 use featherbench_results::{Relation, Row, Verdict};
 use serde_json::{Value, json};
@@ -20,13 +21,13 @@ const RESIDUALS: [&str; 3] = ["zero", "friction", "payload and friction"];
 /// The residual of the robot's own description.
 const DESCRIBED: &str = "described";
 
-/// What defines the residual of a cell. A robot's hash is that of its rigid bodies, so its own residuals are written out.
+/// What defines the residual of a cell. A robot's hash is that of its rigid bodies, so its own residuals are written out as its file has them.
 fn params(robot: &Robot, residual: &str) -> Value {
-    if residual == DESCRIBED {
-        json!({"residual": residual, "laws": format!("{:?}", robot.description.residuals)})
-    } else {
-        json!({"residual": residual})
+    if residual != DESCRIBED {
+        return json!({"residual": residual});
     }
+    let written = neutral::to_string(&robot.description).ok().and_then(|text| serde_json::from_str::<Value>(&text).ok());
+    json!({"residual": residual, "residuals": written.map_or(Value::Null, |file| file["residuals"].clone())})
 }
 
 /// A cell per engine, robot, residual and quantity, by the engine's usual method.
