@@ -62,6 +62,7 @@ mod progress;
 mod ranges;
 mod record;
 mod report;
+mod residuals;
 mod robot_file;
 mod robots;
 mod root;
@@ -100,6 +101,7 @@ fn dispatch(cli: Cli) -> Result<(), Fail> {
         Command::List(args) => list::list(&root()?, &args),
         Command::Explain(args) => explain::explain(&args),
         Command::Record(args) => record::record(&root()?, &args),
+        Command::Residuals(args) => residuals::correct(root, &args),
         Command::Uncertainty(args) => uncertainty::propagate(root, &args),
         Command::Gen(args) => generate::generate(&root()?, &args),
         Command::Identify(args) => identify::identify(&root, &args),

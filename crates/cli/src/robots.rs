@@ -98,6 +98,32 @@ fn names(folder: &Path, ending: &str) -> Result<Vec<String>, Fail> {
     Ok(names)
 }
 
+/// A description or URDF file, a robot of datasets/models, or a family of generated robots.
+pub fn named(root: impl Fn() -> Result<Root, Fail>, name: &str) -> Result<Description, Fail> {
+    let path = Path::new(name);
+    match path.extension().and_then(|ending| ending.to_str()) {
+        Some("json") => return read_model(path),
+        Some("urdf") => {
+            let (description, notes) = import(path, &Options::default())?;
+            notes.iter().for_each(|note| eprintln!("note: {name}: {note}"));
+            return Ok(description);
+        }
+        _ => {}
+    }
+    let known = root().map(|root| root.models().join(format!("{name}.json"))).ok().filter(|path| path.is_file());
+    if let Some(path) = known {
+        return read_model(&path);
+    }
+    let generated = Family::parse(name).and_then(|family| family.generate());
+    generated.map_err(|error| {
+        let committed = root().and_then(|root| models(&root)).unwrap_or_default();
+        let near = did_you_mean(name, committed.iter().map(String::as_str).chain(Family::NAMES));
+        Fail::input(format!(
+            "{name}: no file that ends in .json or .urdf, no robot of datasets/models, and no family of generated robots{near}: {error}"
+        ))
+    })
+}
+
 /// A robot and where it came from.
 struct Described {
     description: Description,

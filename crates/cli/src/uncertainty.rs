@@ -5,11 +5,9 @@ use crate::fail::Fail;
 use crate::robots;
 use crate::root::Root;
 use crate::say::say;
-use featherbench_bench::did_you_mean;
 use featherbench_bench::measure::{ratio, worst};
-use featherbench_formats::urdf::Options;
 use featherbench_model::{Description, Model};
-use featherbench_robots::{Family, StateBatch};
+use featherbench_robots::StateBatch;
 use featherbench_uncertainty::{
     Indices, Points, Quantity, RobotResponse, Route, Sampling, Space, State, chaos, first_order, largest_order, sample, sensitivity,
     spread, unscented,
@@ -17,7 +15,6 @@ use featherbench_uncertainty::{
 use indicatif::{ProgressBar, ProgressStyle};
 use serde::Deserialize;
 use serde_json::{Value, json};
-use std::path::Path;
 use std::time::Instant;
 
 /// Nodes of a tensor rule of polynomial chaos, at most.
@@ -48,7 +45,7 @@ struct Line {
 /// Propagates the uncertain parameters of a robot and tells what comes of it.
 pub fn propagate(root: impl Fn() -> Result<Root, Fail>, args: &UncertaintyArgs) -> Result<(), Fail> {
     let bad = |error: featherbench_uncertainty::Error| Fail::input(format!("{}: {error}", args.robot));
-    let mut robot = read(root, &args.robot)?;
+    let mut robot = robots::named(root, &args.robot)?;
     let source = match (args.spread, robot.uncertain.variables.is_empty()) {
         (None, false) => "the description's own parameters".to_owned(),
         (given, _) => {
@@ -189,32 +186,6 @@ fn of_indices(own: &Indices, names: &[&str]) -> Value {
         json!({"variable": name, "first": first.value, "first_error": first.error, "total": total.value, "total_error": total.error})
     };
     names.iter().enumerate().map(one).collect()
-}
-
-/// A description or URDF file, a robot of datasets/models, or a family of generated robots.
-fn read(root: impl Fn() -> Result<Root, Fail>, name: &str) -> Result<Description, Fail> {
-    let path = Path::new(name);
-    match path.extension().and_then(|ending| ending.to_str()) {
-        Some("json") => return robots::read_model(path),
-        Some("urdf") => {
-            let (description, notes) = robots::import(path, &Options::default())?;
-            notes.iter().for_each(|note| eprintln!("note: {name}: {note}"));
-            return Ok(description);
-        }
-        _ => {}
-    }
-    let known = root().map(|root| root.models().join(format!("{name}.json"))).ok().filter(|path| path.is_file());
-    if let Some(path) = known {
-        return robots::read_model(&path);
-    }
-    let generated = Family::parse(name).and_then(|family| family.generate());
-    generated.map_err(|error| {
-        let models = root().and_then(|root| robots::models(&root)).unwrap_or_default();
-        let near = did_you_mean(name, models.iter().map(String::as_str).chain(Family::NAMES));
-        Fail::input(format!(
-            "{name}: no file that ends in .json or .urdf, no robot of datasets/models, and no family of generated robots{near}: {error}"
-        ))
-    })
 }
 
 /// The state of a file, or a drawn one.

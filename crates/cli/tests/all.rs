@@ -14,6 +14,7 @@ mod history_diff;
 mod manners;
 mod parsers;
 mod planted;
+mod residuals;
 mod resume;
 mod support;
 mod uncertainty;

@@ -59,6 +59,7 @@ const ALLOWED: &[(&str, &[&str])] = &[
             "formats",
             "dynamics",
             "constrained",
+            "residuals",
             "identification",
             "uncertainty",
             "lesson",

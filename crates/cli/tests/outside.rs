@@ -59,6 +59,7 @@ fn main() -> ExitCode {
         ("the oracles pass their own tests", oracles_by_themselves),
         ("the engines keep the conventions of the ledger", conventions),
         ("the project's own oracles conform", own_oracles),
+        ("a residual in Python conforms", python_residual),
         ("an oracle that forgets a conversion is told which", forgetful_oracles),
         ("a small oracle runs beside the recorded engines", small_oracle),
         ("a live run agrees with the recorded answers", live_run),
@@ -99,6 +100,7 @@ fn main() -> ExitCode {
         ("the lesson's arm in C is our kernels' arm", || lesson::agrees_in(Language::C)),
         ("the lesson's arm in Python is our kernels' arm", || lesson::agrees_in(Language::Python)),
         ("clarabel conforms", clarabel::conforms),
+        ("clarabel identifies an arm", clarabel::identifies),
         ("rapier that cannot be built is named", rapier::not_to_be_built),
         ("rapier conforms", rapier::conforms),
         ("rapier agrees on every joint that it has", || rapier::with_rapier(rapier::agrees)),
@@ -257,6 +259,18 @@ fn own_oracles() -> Outcome {
             },
         );
     }
+    Outcome::Passed
+}
+
+/// Friction in ten lines of Python keeps the protocol of a residual.
+fn python_residual() -> Outcome {
+    let python = match installed_python() {
+        Ok(python) => python,
+        Err(skipped) => return skipped,
+    };
+    let mut check = Command::new(env!("CARGO_BIN_EXE_featherbench"));
+    check.current_dir(project()).args(["oracles", "check", "--all"]).arg(python).arg(project().join("oracles/friction.py"));
+    Ended::new(check.output().unwrap()).expect(0, &["residual: 27 robots, the same for any acceleration", "conforms"]);
     Outcome::Passed
 }
 

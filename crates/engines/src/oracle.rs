@@ -4,7 +4,7 @@ mod asked;
 pub(crate) mod contacts;
 mod import;
 pub(crate) mod loops;
-mod residual;
+pub(crate) mod residual;
 pub(crate) mod rods;
 pub(crate) mod scenes;
 pub(crate) mod semidefinite;

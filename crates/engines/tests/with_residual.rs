@@ -1,5 +1,6 @@
 //! Engines with a residual: the bits without one, the answers with one, and a residual in Python.
 
+use featherbench_bench::measure::{ForwardScale, scaled_error};
 use featherbench_bench::{Engine, NoAnswer, Quantity, Robot, WithResidual};
 use featherbench_dynamics::{forward_dynamics, inverse_dynamics};
 use featherbench_engines::{Featherbench, Limits, Oracle};
@@ -27,6 +28,19 @@ fn apart(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).fold(0.0, |most, (a, b)| larger(most, (a - b).abs() / size))
 }
 
+fn bits(values: &[f64]) -> Vec<u64> {
+    values.iter().map(|x| x.to_bits()).collect()
+}
+
+/// Of two recursions over a chain of this many bodies, each to this many halves of an ulp of its terms, the difference in ulps.
+///
+/// A term of a joint force meets, per body: the rotation of its joint (5 roundings from q, outward and inward), two products with it (3 each), a
+/// cross product and a sum on each way (3 each), and the velocity product of the acceleration (2): 24. Once: the inertia's products, v × I v, their
+/// sum and the projection: 13.
+fn roundings(depth: usize) -> f64 {
+    24.0 * depth as f64 + 13.0
+}
+
 const ASKED: [Quantity; 2] = [Quantity::InverseDynamics, Quantity::ForwardDynamics];
 
 #[test]
@@ -35,8 +49,7 @@ fn no_residual_changes_no_bit() {
     let robot = robot("quadruped");
     let zero = Zero::new(robot.states.nv);
     for quantity in ASKED {
-        let bits = |values: Vec<f64>| values.into_iter().map(f64::to_bits).collect::<Vec<_>>();
-        assert_eq!(bits(ask(&WithResidual::new(&own, &zero), &robot, quantity).unwrap()), bits(ask(&own, &robot, quantity).unwrap()));
+        assert_eq!(bits(&ask(&WithResidual::new(&own, &zero), &robot, quantity).unwrap()), bits(&ask(&own, &robot, quantity).unwrap()));
     }
 }
 
@@ -107,7 +120,8 @@ fn python_corrects_an_engine() {
     for quantity in ASKED {
         let [found, due] =
             [&far as &dyn Residual, &near].map(|residual| ask(&WithResidual::new(&own, residual), &robot, quantity).unwrap());
-        assert!(apart(&found, &due) < 1e-15);
+        // The same products and sums, in Python and here.
+        assert_eq!(bits(&found), bits(&due));
     }
     let armature = oracle(&python, "serve_residual('armature', lambda q, v, a: 0.2 * a, acceleration=True)");
     let far = armature.residual(&robot).unwrap();
@@ -116,17 +130,26 @@ fn python_corrects_an_engine() {
     assert!((matrix - nalgebra::DMatrix::identity(nv, nv) * 0.2).amax() < 1e-16);
     let with = WithResidual::new(&own, &far);
     let (tau, a) = (ask(&with, &robot, ASKED[0]).unwrap(), ask(&with, &robot, ASKED[1]).unwrap());
+    // By the same method: one product and one sum more, so the same bits.
+    let plus = |tau: &[f64], a: &[f64]| tau.iter().zip(a).map(|(tau, a)| tau + 0.2 * a).collect::<Vec<f64>>();
+    assert_eq!(bits(&tau), bits(&plus(&ask(&own, &robot, ASKED[0]).unwrap(), &states.a)));
+    let mut at = robot.magnitudes();
+    let mut under = states.clone();
     for k in 0..states.count() {
         let row = k * nv..(k + 1) * nv;
-        let due: Vec<f64> = inverse_dynamics(&robot.model, states.q(k), states.v(k), states.a(k)).unwrap();
-        let due: Vec<f64> = due.iter().zip(states.a(k)).map(|(tau, a)| tau + 0.2 * a).collect();
-        // Ours of a study and of the library are two methods: they differ by some roundings of the largest terms.
-        assert!(apart(&tau[row.clone()], &due) < 1e-14);
-        let back = inverse_dynamics(&robot.model, states.q(k), states.v(k), &a[row.clone()]).unwrap();
-        let back: Vec<f64> = back.iter().zip(&a[row]).map(|(tau, a)| tau + 0.2 * a).collect();
-        // The largest terms of the fast states are 10⁶ of the joint forces.
-        let size = due.iter().chain(&back).fold(1.0, |most: f64, x| larger(most, x.abs()));
-        assert!(back.iter().zip(states.tau(k)).all(|(found, given)| (found - given).abs() < 1e-8 * size), "state {k}");
+        // By the library's recursion, which is another method: the engine answers many states at once, with other products. The difference is
+        // measured in the terms of each joint force.
+        let due = plus(&inverse_dynamics(&robot.model, states.q(k), states.v(k), states.a(k)).unwrap(), states.a(k));
+        at[k].joint_force.iter_mut().zip(states.a(k)).for_each(|(sum, a)| *sum += 0.2 * a.abs());
+        let error = scaled_error(&robot, ASKED[0], &at[k], &due, &tau[row.clone()]);
+        assert!(error <= roundings(robot.depth) * f64::EPSILON, "state {k}: {error:e}");
+        under.tau[row.clone()].iter_mut().zip(&a[row]).for_each(|(tau, a)| *tau -= 0.2 * a);
+    }
+    // The accelerations solve M a + h = τ − 0.2 a, in the terms of these equations: one dense solution with M to some roundings.
+    let fallen = robot.clone().at(under);
+    for (k, scale) in ForwardScale::all(&fallen, &at).iter().enumerate() {
+        let error = scale.backward_error(&a[k * nv..(k + 1) * nv]);
+        assert!(error <= 10.0 * roundings(robot.depth) * f64::EPSILON, "state {k}: {error:e}");
     }
     // A function of the wrong shape, and NaN, are errors that say so.
     for wrong in ["lambda q, v, a: v[:1]", "lambda q, v, a: v * float('nan')"] {

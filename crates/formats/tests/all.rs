@@ -4,6 +4,7 @@ mod continua;
 mod datasets;
 mod loops;
 mod neutral;
+mod residuals;
 mod robots;
 mod uncertain;
 mod urdf_errors;

@@ -168,7 +168,6 @@ fn bad_files_are_named() {
         ("\n ]}", "\n ],\"contacts\":[{}]}", &["f.json:6:4: section 'contacts' is not supported by this version"]),
         ("\n ]}", "\n ],\"loops\":{}}", &["field 'loops'", "expected a sequence"]),
         ("\n ]}", "\n ],\"actuation\":1}", &["section 'actuation'"]),
-        ("\n ]}", "\n ],\"residuals\":[]}", &["section 'residuals'"]),
         ("\n ]}", "\n ],\"parameters\":[]}", &["unknown field `parameters`"]),
         ("\n ]}", "\n ],\"sensors\":[]}", &["unknown field `sensors`"]),
         ("\n ]}", "\n ],\"frames\":[{\"name\":\"t\",\"body\":0}]}", &["frames[0]", "missing field `placement`"]),

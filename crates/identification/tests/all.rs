@@ -1,5 +1,6 @@
 //! The tests of identification as one program: they share what is compiled for them.
 
+mod arms;
 mod consistency;
 mod estimators;
 mod excitation;

@@ -1,7 +1,9 @@
 //! The canonical form of a description: valid, axes and rotations normalised, fixed joints merged, bodies in depth-first order.
 
 use crate::orthonormal::{nearest_rotation, rotation, unit};
-use crate::{BodyDescription, Continuum, Description, Frame, JointDescription, JointType, LoopDefect, LoopEnd, Malformed, Placement};
+use crate::{
+    BodyDescription, Continuum, Description, Frame, JointDescription, JointType, LoopDefect, LoopEnd, Malformed, Placement, ResidualLaw,
+};
 use featherbench_spatial::{DoubleDouble, Mat3, Real, Sym3, Transform, Vec3};
 use std::borrow::Cow;
 
@@ -55,6 +57,7 @@ impl Description {
             frames: Vec::new(),
             loops: Vec::with_capacity(self.loops.len()),
             continua: Vec::with_capacity(self.continua.len()),
+            residuals: self.residuals.clone(),
             uncertain: self.uncertain.clone(),
             provenance: self.provenance.clone(),
         };
@@ -110,6 +113,20 @@ impl Description {
         for given in &self.continua {
             let (body, on_body) = given.body.map_or((None, Transform::identity()), |body| home[body]);
             result.continua.push(Continuum { body, placement: given.placement.on(&on_body), ..given.clone() });
+        }
+        for residual in &mut result.residuals {
+            if let (ResidualLaw::Payload { com, inertia, .. }, [carrier]) = (&mut residual.law, residual.bodies.as_mut_slice()) {
+                let (body, on_body) = home[*carrier];
+                *carrier = body.unwrap_or(*carrier);
+                if on_body != Transform::identity() {
+                    let placement: Transform<f64> = on_body.lift();
+                    *com = placement.point(Vec3::from_array(*com)).to_array();
+                    *inertia = Sym3::from_array(*inertia).rotate(placement.rotation).to_array();
+                }
+                continue;
+            }
+            // Their joints move: so each has a body of its own.
+            residual.bodies.iter_mut().for_each(|body| *body = home[*body].0.unwrap_or(*body));
         }
         // Their bodies move: so each is a body of its own.
         for target in result.uncertain.variables.iter_mut().flat_map(|variable| &mut variable.on) {

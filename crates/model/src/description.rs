@@ -1,6 +1,6 @@
 //! A robot as a user describes it: plain numbers, no scalar, no compiled order.
 
-use crate::{Continuum, Loop, Uncertain};
+use crate::{Continuum, DescribedResidual, Loop, Uncertain};
 
 /// A robot: bodies, each with the joint that carries it, and gravity.
 #[derive(Clone, Debug, PartialEq, Default)]
@@ -17,6 +17,8 @@ pub struct Description {
     pub loops: Vec<Loop>,
     /// Bodies that deform. A [`Model`](crate::Model) refuses them.
     pub continua: Vec<Continuum>,
+    /// What the true robot needs beyond the rigid bodies. A [`Model`](crate::Model) does not know of it.
+    pub residuals: Vec<DescribedResidual>,
     /// Which numbers are uncertain, and how. The written numbers are the nominal ones.
     pub uncertain: Uncertain,
     /// Where the numbers come from, if they are not generated.

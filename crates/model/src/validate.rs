@@ -1,7 +1,7 @@
 //! The two levels of validation: malformed is an error, unphysical is a warning of the model.
 
 use crate::orthonormal::{rotation, unit};
-use crate::{BodyDescription, ContinuumDefect, Description, JointType, LoopDefect, UncertainDefect};
+use crate::{BodyDescription, ContinuumDefect, Description, JointType, LoopDefect, ResidualDefect, UncertainDefect};
 use thiserror::Error;
 
 /// Why a description is not a robot. Every message names the body and says what to do.
@@ -160,6 +160,16 @@ pub enum Malformed {
         /// Their names.
         names: Vec<String>,
     },
+    /// A residual is none.
+    #[error("residuals[{index}] '{name}': {defect}")]
+    Residual {
+        /// The residual's name.
+        name: String,
+        /// Its place in the list, counted from 0.
+        index: usize,
+        /// What is wrong with it.
+        defect: ResidualDefect,
+    },
     /// An uncertain variable or correlation is none.
     #[error("uncertain{} '{name}': {defect}", place.map_or_else(String::new, |k| format!(".variables[{k}]")))]
     Uncertain {
@@ -173,12 +183,14 @@ pub enum Malformed {
 }
 
 impl Malformed {
-    /// The body, frame, loop or continuum of the error, so that a parser can say where it is in the file.
+    /// The body, frame, loop, continuum, residual or variable of the error, so that a parser can say where it is in the file.
     pub fn about(&self) -> Option<&str> {
         match self {
             Self::Empty | Self::Deforms { .. } => None,
             Self::FrameOrphan { frame, .. } | Self::FrameNotARotation { frame, .. } => Some(frame),
-            Self::Loop { name, .. } | Self::Continuum { name, .. } | Self::Uncertain { name, .. } => Some(name),
+            Self::Loop { name, .. } | Self::Continuum { name, .. } | Self::Residual { name, .. } | Self::Uncertain { name, .. } => {
+                Some(name)
+            }
             Self::NotFinite { body, .. }
             | Self::NegativeMass { body, .. }
             | Self::Orphan { body, .. }
@@ -242,7 +254,8 @@ impl Description {
     /// Checks that the description is a forest of bodies with finite, meaningful numbers.
     ///
     /// # Errors
-    /// The first [`Malformed`] finding: in the order of the bodies, of the frames, of the loops, of the continua, of the uncertain parameters.
+    /// The first [`Malformed`] finding: in the order of the bodies, of the frames, of the loops, of the continua, of the residuals, of the
+    /// uncertain parameters.
     pub fn validate(&self) -> Result<(), Malformed> {
         let count = self.bodies.len();
         let mut names = std::collections::HashSet::new();
@@ -270,6 +283,7 @@ impl Description {
         }
         self.validate_loops()?;
         self.validate_continua()?;
+        self.validate_residuals()?;
         self.validate_uncertain()
     }
 

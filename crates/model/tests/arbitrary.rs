@@ -65,6 +65,7 @@ pub fn any_description() -> impl Strategy<Value = Description> {
             frames: frames.into_iter().map(|(body, placement)| Frame { name: "frame".to_owned(), body, placement }).collect(),
             loops: Vec::new(),
             continua: Vec::new(),
+            residuals: Vec::new(),
             uncertain: Uncertain::default(),
             provenance: None,
         })

@@ -130,20 +130,8 @@ impl<N: Nominal, R: Residual> Corrected<N, R> {
         let n = self.nominal.nv();
         expect("configuration q", self.nominal.nq(), q.len())?;
         expect("joint forces τ", n, tau.len())?;
-        let mut a = vec![0.0; n];
-        if !self.residual.has_acceleration() {
-            let r = self.residual.value(&State::new(q, v, &a).with_command(tau).with_inner(inner))?;
-            let mut rest = tau.to_vec();
-            add_unless_zero(&mut rest, &r, -1.0);
-            self.nominal.forward(q, v, &rest, &mut a)?;
-            finite("acceleration a", &a)?;
-            return Ok(a);
-        }
-        check(&self.residual, &State::new(q, v, &a).with_command(tau).with_inner(inner))?;
-        self.nominal.forward(q, v, tau, &mut a)?;
-        finite("acceleration a", &a)?;
-        let mass = self.nominal.mass_matrix(q)?;
-        corrected_acceleration(&self.residual, &mass, &a, &State::new(q, v, &a).with_command(tau).with_inner(inner))
+        let still = vec![0.0; n];
+        forward_under(&mut self.nominal, &self.residual, tau, &State::new(q, v, &still).with_command(tau).with_inner(inner))
     }
 
     /// How well the acceleration is determined at a state.
@@ -154,6 +142,29 @@ impl<N: Nominal, R: Residual> Corrected<N, R> {
         let by_acceleration = self.residual.by_acceleration(state)?;
         WellPosed::of(&self.nominal.mass_matrix(state.q)?, &by_acceleration)
     }
+}
+
+/// a with M a + h + r(q, v, a) = forces. The command of the state may be other forces: further residuals were taken off. Its `a` is not read.
+pub(crate) fn forward_under<N: Nominal, R: Residual>(
+    nominal: &mut N,
+    residual: &R,
+    forces: &[f64],
+    state: &State<'_>,
+) -> Result<Vec<f64>, ResidualError> {
+    let mut a = vec![0.0; nominal.nv()];
+    let state = State { a: &vec![0.0; nominal.nv()], ..*state };
+    if !residual.has_acceleration() {
+        let mut rest = forces.to_vec();
+        add_unless_zero(&mut rest, &residual.value(&state)?, -1.0);
+        nominal.forward(state.q, state.v, &rest, &mut a)?;
+        finite("acceleration a", &a)?;
+        return Ok(a);
+    }
+    check(residual, &state)?;
+    nominal.forward(state.q, state.v, forces, &mut a)?;
+    finite("acceleration a", &a)?;
+    let mass = nominal.mass_matrix(state.q)?;
+    corrected_acceleration(residual, &mass, &a, &state)
 }
 
 /// The acceleration with a residual, from that of the nominal model: solves M (a − a₀) + r(q, v, a) = 0 by Newton's method from a₀, `free`.

@@ -16,6 +16,7 @@
 //! - [`SpringDamper`] is the compliance of a joint or link. [`SeriesElastic`], [`Lag`] and [`Delay`] have inner states, which are named.
 //! - [`Payload`] is a mass that a body carries. [`Linear`] is linear in its parameters.
 //! - [`Passive`] is a linear residual that provably makes no energy, by projection.
+//! - [`Described`] are the residuals of a description file.
 //! - [`Corrected`] has the inverse and forward dynamics of a nominal model with a residual. A [`Nominal`] is any rigid-body dynamics: [`Rigid`]
 //!   is ours.
 //!
@@ -36,10 +37,12 @@
 mod compliance;
 mod corrected;
 mod delay;
+mod described;
 mod error;
 mod friction;
 mod linear;
 mod nominal;
+mod on_joints;
 mod passive;
 mod payload;
 mod power;
@@ -49,6 +52,7 @@ mod series_elastic;
 pub use compliance::SpringDamper;
 pub use corrected::{Corrected, WELL_POSED, WellPosed, add_unless_zero, corrected_acceleration};
 pub use delay::{Delay, Lag};
+pub use described::{Described, DescribedError};
 pub use error::ResidualError;
 pub use friction::{DryFriction, Forces, SmoothCoulomb, Stribeck, Viscous};
 pub use linear::Linear;

@@ -5,7 +5,7 @@
 
 use crate::error::{expect, finite};
 use crate::{Residual, ResidualError, State};
-use nalgebra::{DMatrix, DVector};
+use nalgebra::DMatrix;
 
 /// r = (I ⊗ [q; v; a; 1]ᵀ) θ.
 #[derive(Clone, Debug, PartialEq)]
@@ -15,8 +15,8 @@ pub struct Linear {
     theta: Vec<f64>,
 }
 
-/// Singular values of the scaled regressor below this share of the largest count as zero. Columns are scaled to length one, so noise-free data
-/// leave a gap between 10⁻¹⁴ and the data's own excitation.
+/// Columns of the scaled regressor that are this near to the span of others, as a share of the longest, count as dependent. Columns are scaled to
+/// length one, so noise-free data leave a gap between 10⁻¹⁴ and the data's own excitation.
 const RANK: f64 = 1e-10;
 
 impl Linear {
@@ -92,15 +92,10 @@ impl Linear {
         let norm = |column: usize| features.column(column).norm();
         let scales: Vec<f64> = (0..p).map(|column| if norm(column) > 0.0 { norm(column) } else { 1.0 }).collect();
         scales.iter().enumerate().for_each(|(column, scale)| features.column_mut(column).unscale_mut(*scale));
-        let svd = features.svd(true, true);
-        let threshold = RANK * svd.singular_values.max();
-        let mut theta = Vec::with_capacity(nv * p);
-        for dof in 0..nv {
-            let seen = DVector::from_iterator(samples.len(), samples.iter().map(|(_, r)| r[dof]));
-            let row = svd.solve(&seen, threshold).map_err(|reason| ResidualError::Learning(reason.into()))?;
-            theta.extend(row.iter().zip(&scales).map(|(x, scale)| x / scale));
-        }
-        Ok((Self::new(nq, nv, theta)?, svd.rank(threshold)))
+        let seen = DMatrix::from_fn(samples.len(), nv, |row, dof| samples[row].1[dof]);
+        let (rows, rank) = shortest(features, seen)?;
+        let theta = rows.column_iter().flat_map(|row| row.iter().zip(&scales).map(|(x, scale)| x / scale).collect::<Vec<f64>>());
+        Ok((Self::new(nq, nv, theta.collect())?, rank))
     }
 
     /// A block of the parameters as a matrix: the columns `first..first + count` of each dof's row.
@@ -113,6 +108,28 @@ impl Linear {
     pub(crate) fn sizes(&self) -> (usize, usize) {
         (self.nq, self.nv)
     }
+}
+
+/// The shortest X of least squares A X = B, column by column, and the rank of A.
+///
+/// By the complete orthogonal factorization (G. Golub & C. Van Loan, *Matrix Computations* (2013), section 5.4.7): A P = Q [R₁ R₂; 0 E] with
+/// |E| below the threshold, [R₁ R₂]ᵀ = Z T, X = P Z T⁻ᵀ (Qᵀ B)₁. It has no iteration that may end early, as one for singular values has.
+fn shortest(a: DMatrix<f64>, b: DMatrix<f64>) -> Result<(DMatrix<f64>, usize), ResidualError> {
+    let columns = a.ncols();
+    let factors = a.col_piv_qr();
+    let r = factors.r();
+    let steps = r.nrows().min(r.ncols());
+    let rank = (0..steps).take_while(|&k| r[(k, k)].abs() > RANK * r[(0, 0)].abs()).count();
+    let mut solution = DMatrix::zeros(columns, b.ncols());
+    if rank > 0 {
+        let wide = r.rows(0, rank).transpose().qr();
+        let seen = factors.q().transpose() * b;
+        let singular = || ResidualError::Learning("the pivots of the factorization are zero".into());
+        let inside = wide.r().tr_solve_upper_triangular(&seen.rows(0, rank)).ok_or_else(singular)?;
+        solution.copy_from(&(wide.q() * inside));
+    }
+    factors.p().inv_permute_rows(&mut solution);
+    Ok((solution, rank))
 }
 
 impl Residual for Linear {

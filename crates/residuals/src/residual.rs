@@ -232,6 +232,11 @@ impl Sum {
         Ok(Self { nv, nq, parts })
     }
 
+    /// The residual of this place in the sum.
+    pub(crate) fn part(&self, index: usize) -> Option<&dyn Residual> {
+        self.parts.get(index).map(AsRef::as_ref)
+    }
+
     /// The residuals, each with its part of the inner state.
     fn each<'a>(&'a self, state: &State<'a>) -> impl Iterator<Item = (&'a dyn Residual, State<'a>)> {
         let mut rest = state.inner;

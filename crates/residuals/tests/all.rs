@@ -2,6 +2,7 @@
 
 mod bad_input;
 mod conventions;
+mod described;
 mod dry;
 mod inner;
 mod known;

@@ -1,11 +1,10 @@
-//! Dry friction: intervals at rest, and forward dynamics by enumeration of all cases.
+//! Dry friction: intervals at rest, and the laws of many dofs. The enumeration of all cases is in the study `residuals`.
 
-use crate::support::{apart, cart, draw, lesson, robots, state};
+use crate::support::{cart, draw, lesson, robots, state};
 use featherbench_dynamics::inverse_dynamics;
 use featherbench_model::Model;
-use featherbench_residuals::{Corrected, DryFriction, Nominal, Residual, ResidualError, Rigid, State, Viscous};
+use featherbench_residuals::{Corrected, DryFriction, Residual, ResidualError, Rigid, State, Viscous};
 use featherbench_robots::Random;
-use nalgebra::{DMatrix, DVector};
 
 /// A box on a plane: it sticks up to F, and beyond that the rest accelerates it.
 #[test]
@@ -46,52 +45,6 @@ fn at_rest_inverse_dynamics_is_an_interval() {
     assert_eq!(error, ResidualError::Interval { dof: 0, limit: 3.0 });
     let mut corrected = Corrected::new(Rigid::new(&model), friction).unwrap();
     assert!(matches!(corrected.forward(&q, &[0.0, 0.0], &tau), Err(ResidualError::Interval { .. })));
-}
-
-/// All 3ⁿ cases, each solved, and the one that contradicts nothing.
-fn enumerated(mass: &DMatrix<f64>, forces: &DVector<f64>, limits: &[f64]) -> Option<DVector<f64>> {
-    let n = limits.len();
-    (0..3_usize.pow(n as u32)).find_map(|number| {
-        let sign = |k: usize| [0.0, 1.0, -1.0][number / 3_usize.pow(k as u32) % 3];
-        let moving: Vec<usize> = (0..n).filter(|&k| sign(k) != 0.0).collect();
-        let block = DMatrix::from_fn(moving.len(), moving.len(), |i, j| mass[(moving[i], moving[j])]);
-        let right = DVector::from_fn(moving.len(), |i, _| forces[moving[i]] - sign(moving[i]) * limits[moving[i]]);
-        let some = block.cholesky()?.solve(&right);
-        let mut a = DVector::zeros(n);
-        moving.iter().zip(&some).for_each(|(&k, &x)| a[k] = x);
-        let r = forces - mass * &a;
-        let holds = (0..n).all(|k| if sign(k) == 0.0 { r[k].abs() <= limits[k] } else { a[k] * sign(k) > 0.0 });
-        holds.then_some(a)
-    })
-}
-
-/// Forward dynamics at rest is the case that enumeration finds; the drawn forces make dofs stick and set off.
-#[test]
-fn sticking_is_as_enumerated() {
-    let (mut stuck, mut free, mut cases) = (0, 0, 0);
-    for description in robots().into_iter().filter(|robot| robot.nv() <= 6).chain([lesson()]) {
-        let model = Model::build(&description).unwrap();
-        let nv = model.topology.nv();
-        let mut random = Random::named(6, "sticking");
-        for _ in 0..12 {
-            let [q, _, _] = state(&mut random, &model);
-            let limits: Vec<f64> = (0..nv).map(|_| random.uniform(0.1, 4.0)).collect();
-            let push: Vec<f64> = draw(&mut random, nv).iter().map(|x| 3.0 * x).collect();
-            let still = vec![0.0; nv];
-            let held = inverse_dynamics(&model, &q, &still, &still).unwrap();
-            let tau: Vec<f64> = held.iter().zip(&push).map(|(held, push)| held + push).collect();
-            let mut rigid = Rigid::new(&model);
-            let mass = rigid.mass_matrix(&q).unwrap();
-            let due = enumerated(&mass, &DVector::from_column_slice(&push), &limits).unwrap();
-            let found = DryFriction::new(limits.clone()).unwrap().forward(&mut rigid, &q, &still, &tau).unwrap();
-            // The drawn forces and M lose κ(M) ≤ 1e4 of these small robots.
-            assert!(apart(&found.a, due.as_slice()) < 1e-10, "{}: {:?} {due}", description.name, found.a);
-            assert!(found.stuck.iter().all(|&k| due[k] == 0.0) && found.stuck.len() == due.iter().filter(|x| **x == 0.0).count());
-            assert!(found.friction.iter().zip(&limits).all(|(r, limit)| r.abs() <= *limit));
-            (stuck, free, cases) = (stuck + found.stuck.len(), free + nv - found.stuck.len(), cases + 1);
-        }
-    }
-    assert!(cases == 24 && stuck > 20 && free > 20, "{cases} {stuck} {free}");
 }
 
 /// A robot of many dofs: the answer obeys the laws, where enumeration would have 3¹⁸ cases.

@@ -66,3 +66,37 @@ fn fits_find_the_parameters() {
     assert_eq!(rank, 3);
     assert!(fit.theta()[2..6].iter().all(|x| x.abs() < 1e-14));
 }
+
+/// Where the samples leave a choice, the shortest parameters in the scaled columns are taken, and the rank says so. By closed form: q₂ = −3 q₁ and
+/// v = 0, so r = α q₁ + β is α/2 of q₁ and −α/6 of q₂, and of v nothing.
+#[test]
+fn dependent_columns_share_their_parameters() {
+    let mut random = Random::named(5, "dependent");
+    for count in [6, 40, 400] {
+        let numbers: Vec<[Vec<f64>; 3]> = (0..count)
+            .map(|_| {
+                let [x, a, b] = [random.uniform(-1.0, 1.0), random.uniform(-1.0, 1.0), random.uniform(-1.0, 1.0)];
+                [vec![x, -3.0 * x], vec![0.0, 0.0], vec![a, b]]
+            })
+            .collect();
+        let value = |[q, _, a]: &[Vec<f64>; 3]| vec![0.8 * q[0] - 0.3, 0.5 * a[1]];
+        let samples: Vec<_> = numbers.iter().map(|all| (State::new(&all[0], &all[1], &all[2]), value(all))).collect();
+        let (fit, rank) = Linear::fit(&samples).unwrap();
+        // q, a₁, a₂, 1.
+        assert_eq!(rank, 4);
+        let due = [[0.4, -0.8 / 6.0, 0.0, 0.0, 0.0, 0.0, -0.3], [0.0, 0.0, 0.0, 0.0, 0.0, 0.5, 0.0]].concat();
+        // Some roundings times the condition of four scaled columns, below 100.
+        assert!(fit.theta().iter().zip(&due).all(|(found, due)| (found - due).abs() < 1e-13), "{count} {:?}", fit.theta());
+    }
+    // Fewer samples than parameters: all are met, by the shortest.
+    let (q, v, a) = ([0.3], [0.5], [-0.4]);
+    let (fit, rank) = Linear::fit(&[(State::new(&q, &v, &a), vec![2.0])]).unwrap();
+    assert_eq!(rank, 1);
+    // Each scaled column is ±1: each gives a quarter.
+    let due = [0.5 / 0.3, 0.5 / 0.5, -0.5 / 0.4, 0.5];
+    assert!(fit.theta().iter().zip(due).all(|(found, due)| (found - due).abs() < 1e-14), "{:?}", fit.theta());
+    // Nothing but zeros has no rank but that of the constant.
+    let still = [0.0];
+    let (fit, rank) = Linear::fit(&[(State::new(&still, &still, &still), vec![2.0])]).unwrap();
+    assert_eq!((rank, fit.theta()), (1, [0.0, 0.0, 0.0, 2.0].as_slice()));
+}

@@ -12,7 +12,7 @@
 //! | scrambled Sobol' points | `sampling.rs` | all of it | about N^(−1) and better for smooth answers, with standard errors |
 //!
 //! The parts: `variable.rs` (a distribution: quantile, moments, orthogonal polynomials), `space.rs` (all variables, correlated by a Gaussian
-//! copula), `quadrature.rs` (Gauss rules), `sobol.rs` (points), `response.rs` (a function of the variables in SIMD lanes), `robot.rs` (the
+//! copula), `quadrature.rs` (Gauss rules), `sobol.rs` (points), `response.rs` (a function of the variables in SIMD lanes), `robot/` (the
 //! dynamics of a robot as such a function), `sensitivity.rs` (Sobol' indices by sampling), `mixture.rs` (answers that differ by contact mode),
 //! `moments.rs` and `histogram.rs` (what samples are reduced to).
 //!
@@ -45,6 +45,7 @@ mod sampling;
 mod sensitivity;
 mod sobol;
 mod space;
+mod spread;
 mod unscented;
 mod variable;
 
@@ -56,10 +57,11 @@ pub use mixture::{Mixture, Mode, mixture};
 pub use moments::Moments;
 pub use quadrature::{Recurrence, Rule};
 pub use response::{Closure, LANES, Lanes, Response, at};
-pub use robot::{Quantity, RobotResponse, Route, State, spread};
+pub use robot::{Quantity, RobotResponse, Route, State};
 pub use sampling::{Estimate, Output, Points, Sampled, Sampling, draw, sample};
 pub use sensitivity::{Indices, sensitivity};
 pub use sobol::Sobol;
 pub use space::Space;
+pub use spread::spread;
 pub use unscented::{Propagated, unscented};
 pub use variable::{Variable, normal_cdf, normal_quantile};

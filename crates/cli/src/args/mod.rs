@@ -57,6 +57,8 @@ pub enum Command {
     Gen(GenArgs),
     /// Identify a robot's parameters from a log, or write a motion that tells them.
     Identify(IdentifyArgs),
+    /// Tell what the residuals of a robot's description do to its torques and accelerations: friction, compliance, drives, payload.
+    Residuals(ResidualsArgs),
     /// Tell what uncertain parameters do to a robot's accelerations or torques: moments, quantiles, sensitivities.
     Uncertainty(UncertaintyArgs),
     /// Set up and look at the reference engines.
@@ -253,6 +255,27 @@ pub enum Format {
     Urdf,
     /// MuJoCo's format.
     Mjcf,
+}
+
+#[derive(Debug, Clone, Args)]
+#[command(after_help = "\
+Examples:
+  featherbench residuals worn-arm                        a drawn state
+  featherbench residuals my_robot.json --state now.json --json
+
+The state's file: {\"q\": […], \"v\": […], \"a\": […], \"tau\": […], \"inner\": […]}; without inner, drives put out what is commanded.")]
+pub struct ResidualsArgs {
+    /// A description (.json), or a robot of datasets/models, with a section `residuals`.
+    pub robot: String,
+    /// The state: a JSON file.
+    #[arg(long, value_name = "FILE")]
+    pub state: Option<PathBuf>,
+    /// The seed of the state, if none is given.
+    #[arg(long, default_value_t = 1)]
+    pub seed: u64,
+    /// Print JSON.
+    #[arg(long)]
+    pub json: bool,
 }
 
 #[derive(Debug, Clone, Args)]

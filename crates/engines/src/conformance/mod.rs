@@ -16,6 +16,7 @@ mod hypotheses;
 mod loops;
 mod orders;
 mod protocol;
+mod residual;
 mod robots;
 mod rods;
 mod scenes;
@@ -102,12 +103,21 @@ pub fn check(start: &dyn Fn() -> Result<Box<dyn Connection>, String>, watch: &dy
     watch("what has no answer");
     protocol::before_prepare(&mut exchange);
     let offered = exchange.conformance.methods.clone();
-    // A solver of problems need not know robots.
+    // A solver of problems, or a residual, need not have quantities.
     let robots = !(offered.is_empty() && extras.solves());
     if robots {
         robots_of(&mut exchange, &scenes, &offered, &extras, watch)?;
     } else {
-        exchange.note(Standing::Lacks, "robots", "optional for an oracle that solves problems: it offers no quantity", &[]);
+        exchange.note(
+            Standing::Lacks,
+            "robots",
+            "optional for an oracle that solves problems or has a residual: it offers no quantity",
+            &[],
+        );
+    }
+    if let Some(offered) = extras.residual {
+        watch("residual");
+        residual::ask(&mut exchange, &scenes, offered);
     }
     watch("problems");
     contacts::ask(&mut exchange, &extras.contact_solvers, contacts::Law::Coulomb);

@@ -5,6 +5,7 @@ use super::values::{Scene, same_bits};
 use super::{Standing, robots};
 use crate::oracle::contacts;
 use crate::oracle::loops::Loops;
+use crate::oracle::residual;
 use crate::oracle::scenes::Scenes;
 use crate::oracle::steps::Steps;
 use crate::request::{description, states};
@@ -27,13 +28,14 @@ pub(super) struct Offered {
     pub(super) rods: Vec<String>,
     pub(super) scenes: Scenes,
     pub(super) loops: Option<Loops>,
+    pub(super) residual: Option<residual::Offered>,
 }
 
 impl Offered {
-    /// Whether it solves problems that need no robot.
+    /// Whether it solves problems that need no robot, or has a residual: then it need have no quantities.
     pub(super) fn solves(&self) -> bool {
         let lists = [&self.contact_solvers, &self.contact_relaxations, &self.semidefinite, &self.rods];
-        lists.iter().any(|names| !names.is_empty()) || !self.scenes.is_empty()
+        lists.iter().any(|names| !names.is_empty()) || !self.scenes.is_empty() || self.residual.is_some()
     }
 }
 
@@ -80,6 +82,11 @@ pub(super) fn hello(exchange: &mut Exchange) -> Option<Offered> {
         wrong.push(reason);
         Vec::new()
     });
+    let residual = header.get("residual").map(|offered| serde_json::from_value(offered.clone())).transpose();
+    let residual: Option<residual::Offered> = residual.unwrap_or_else(|error| {
+        wrong.push(format!("`residual` is no {{\"acceleration\": true or false}}: {error}"));
+        None
+    });
     let mut listed = |key: &str| -> Vec<String> {
         let names = header.get(key).map_or(Ok(Vec::new()), |names| serde_json::from_value(names.clone()));
         names.unwrap_or_else(|_| {
@@ -96,7 +103,7 @@ pub(super) fn hello(exchange: &mut Exchange) -> Option<Offered> {
     exchange.conformance.methods.retain(|quantity, _| Quantity::parse(quantity).is_some());
     let steps = steps.unwrap_or_default();
     exchange.conformance.steps.clone_from(&steps.methods);
-    Some(Offered { steps, contact_solvers, contact_relaxations, contact_steps, semidefinite, rods, scenes, loops })
+    Some(Offered { steps, contact_solvers, contact_relaxations, contact_steps, semidefinite, rods, scenes, loops, residual })
 }
 
 /// Requests that have no answer while there is no robot.

@@ -11,9 +11,9 @@ use serde_json::json;
 /// What `hello` says of a residual.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub(super) struct Offered {
+pub(crate) struct Offered {
     /// Whether r depends on the acceleration.
-    acceleration: bool,
+    pub(crate) acceleration: bool,
 }
 
 /// The residual of an oracle for one robot.

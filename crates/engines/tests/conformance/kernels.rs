@@ -152,6 +152,17 @@ impl Kernels {
                 };
                 Ok(Message::new(json!({}), vec![Block::new("value", &shape, prepared.read())]))
             }
+            "residual" => {
+                let (Some(robot), Some((_, states))) = (&self.robot, &self.states) else { return Err(failed("nothing to correct")) };
+                let (first, count) = (number("first")?, number("count")?);
+                if first + count > states.count() {
+                    return Err(failed("there are no such states"));
+                }
+                let nv = robot.states.nv;
+                let range = first * nv..(first + count) * nv;
+                let r: Vec<f64> = states.v[range.clone()].iter().zip(&states.a[range]).map(|(v, a)| 0.3 * v + 0.2 * a).collect();
+                Ok(Message::new(json!({}), vec![Block::new("value", &[count, nv], &r)]))
+            }
             op @ ("step" | "fall") => self.step(op, request),
             other => Err(failed(format!("there is no op '{other}'"))),
         }

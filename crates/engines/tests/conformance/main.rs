@@ -3,6 +3,7 @@
 
 mod import;
 mod kernels;
+mod residual;
 mod steps;
 
 use featherbench_bench::{Quantity, Robot};

@@ -55,6 +55,8 @@ pub enum Reason {
     },
     /// The format has no bodies that deform.
     Deforms,
+    /// A residual.
+    Residual,
     /// Uncertain parameters.
     Uncertain,
     /// A free joint whose coordinates do not begin at the world's origin, as those of MuJoCo do.
@@ -85,6 +87,7 @@ impl Reason {
             | Self::IncompleteLimits
             | Self::EmptyRange { .. }
             | Self::Loop { .. }
+            | Self::Residual
             | Self::Uncertain
             | Self::FreePlacement => true,
             Self::JointType { .. }
@@ -117,6 +120,7 @@ impl fmt::Display for Reason {
             Self::EmptyRange { field } => write!(f, "{field} that leave no range; the format asks for a lower end below the upper one"),
             Self::Loop { kind } => write!(f, "a loop of type {kind}, for which the format has no place"),
             Self::Deforms => write!(f, "a body that deforms, which the format has not; keep the neutral format"),
+            Self::Residual => write!(f, "a residual: the format has rigid bodies alone"),
             Self::Uncertain => write!(f, "its distribution: the format has nominal numbers alone"),
             Self::FreePlacement => {
                 write!(f, "a free joint whose coordinates are not the world's, as the format has them; place it at the world's origin")
@@ -145,6 +149,11 @@ impl fmt::Display for Loss {
 pub(crate) fn deforming(robot: &Description) -> impl Iterator<Item = Loss> + '_ {
     let about = |(index, name): (usize, &str)| Loss { about: format!("continua[{index}] '{name}'"), reason: Reason::Deforms };
     robot.continua.iter().map(|continuum| continuum.name.as_str()).enumerate().map(about)
+}
+
+/// The residuals.
+pub(crate) fn residuals(robot: &Description) -> impl Iterator<Item = Loss> + '_ {
+    robot.residuals.iter().map(|residual| Loss { about: format!("the residual '{}'", residual.name), reason: Reason::Residual })
 }
 
 /// All losses, one line for each reason.

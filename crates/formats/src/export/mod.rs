@@ -8,8 +8,8 @@ pub(crate) mod names;
 pub(crate) mod order;
 pub(crate) mod xml;
 
-pub(crate) use loss::deforming;
 pub use loss::{Loss, Reason};
+pub(crate) use loss::{deforming, residuals};
 
 use crate::{Place, text};
 use featherbench_model::Malformed;

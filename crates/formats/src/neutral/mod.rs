@@ -15,14 +15,15 @@
 //! - `type` is `fixed` or one of the joint types of the oracle protocol. `axis` belongs to revolute, prismatic, helical and cylindrical
 //!   joints, `pitch` to helical ones.
 //! - `armature`, `damping`, `friction`, `lower`, `upper`, `velocity`, `effort` have one number per degree of freedom, or are left out.
-//! - `frames`, `loops`, `continua`, `uncertain` and `provenance` are optional. An empty section is not written.
-//! - The sections `actuation`, `contacts` and `residuals` are errors that name the section, until a study supports them.
+//! - `frames`, `loops`, `continua`, `residuals`, `uncertain` and `provenance` are optional. An empty section is not written.
+//! - The sections `actuation` and `contacts` are errors that name the section, until a study supports them.
 //! - Numbers are written as the shortest decimal that reads back to the same bits, and read exactly.
 
 mod continua;
 mod error;
 mod loops;
 mod read;
+mod residuals;
 mod uncertain;
 mod write;
 

@@ -2,10 +2,13 @@
 
 use super::continua::ContinuumFields;
 use super::loops::Tie;
+use super::residuals::Entry;
 use super::uncertain::Section;
 use super::{FORMAT, LIMIT, NeutralError, NeutralProblem};
 use crate::{Place, text};
-use featherbench_model::{BodyDescription, Continuum, Description, Frame, JointDescription, JointType, Malformed, Placement, Provenance};
+use featherbench_model::{
+    BodyDescription, Continuum, DescribedResidual, Description, Frame, JointDescription, JointType, Malformed, Placement, Provenance,
+};
 use serde::Deserialize;
 use serde::de::IgnoredAny;
 use serde_json::error::Category;
@@ -115,10 +118,11 @@ struct Document {
     #[serde(default)]
     continua: Vec<ContinuumFields>,
     #[serde(default)]
+    residuals: Vec<Entry>,
+    #[serde(default)]
     uncertain: Section,
     actuation: Option<IgnoredAny>,
     contacts: Option<IgnoredAny>,
-    residuals: Option<IgnoredAny>,
 }
 
 /// A body as it is kept, so that a list of bodies is never held twice.
@@ -210,7 +214,7 @@ struct Source {
 
 impl Document {
     fn unsupported(&self) -> Option<&'static str> {
-        let sections = [("actuation", &self.actuation), ("contacts", &self.contacts), ("residuals", &self.residuals)];
+        let sections = [("actuation", &self.actuation), ("contacts", &self.contacts)];
         sections.into_iter().find(|(_, section)| section.is_some()).map(|(name, _)| name)
     }
 
@@ -230,6 +234,7 @@ impl Document {
             frames: self.frames.into_iter().map(frame).collect(),
             loops: self.loops.into_iter().map(|tie| tie.0).collect(),
             continua: self.continua.into_iter().map(Continuum::from).collect(),
+            residuals: self.residuals.into_iter().map(DescribedResidual::from).collect(),
             uncertain: self.uncertain.into(),
             provenance: self.provenance.map(provenance),
         }

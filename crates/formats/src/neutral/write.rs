@@ -51,8 +51,8 @@ pub fn to_string(description: &Description) -> Result<String, Malformed> {
 }
 
 /// The robot alone on a single line without a newline, as oracles receive it. It is canonical (depth-first, fixed joints merged), and has
-/// armature, damping and friction for every degree of freedom. It has no frames, no loops, no uncertain parameters and no provenance: an oracle
-/// computes with the tree.
+/// armature, damping and friction for every degree of freedom. It has no frames, no loops, no residuals, no uncertain parameters and no
+/// provenance: an oracle computes with the tree.
 ///
 /// # Errors
 /// [`Malformed`] when the description is not a robot, or has bodies that deform.
@@ -149,6 +149,10 @@ impl Writer<'_> {
         if all && !description.continua.is_empty() {
             self.key(0, "continua");
             self.list(1, &description.continua, Self::continuum);
+        }
+        if all && !description.residuals.is_empty() {
+            self.key(0, "residuals");
+            self.list(1, &description.residuals, Self::residual);
         }
         if all && !description.uncertain.is_empty() {
             self.key(0, "uncertain");

@@ -198,6 +198,7 @@ fn losses(robot: &Description) -> Vec<Loss> {
         losses.push(Loss { about, reason: Reason::Loop { kind: tie.kind.name() } });
     }
     losses.extend(export::deforming(robot));
+    losses.extend(export::residuals(robot));
     let uncertain = robot.uncertain.variables.iter().map(|variable| &variable.name);
     losses.extend(uncertain.map(|name| Loss { about: format!("the uncertain variable '{name}'"), reason: Reason::Uncertain }));
     losses

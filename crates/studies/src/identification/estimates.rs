@@ -13,6 +13,8 @@ use std::sync::{Arc, OnceLock};
 const NOISE: f64 = 0.2;
 /// Draws of the noise.
 const REPEATS: usize = 1000;
+/// Sets of draws, each judged by itself: what is added to the suite's seed.
+const SETS: [u64; 4] = [0, 1, 2, 3];
 const FRICTION: Terms = Terms { viscous: true, coulomb: true, armature: false, offset: false };
 
 /// A scenario that cases share: it is made when the first of them is evaluated.
@@ -51,7 +53,7 @@ pub(super) fn cases() -> Vec<Case> {
     let held = [&general, &puma].into_iter().flat_map(|shared| {
         [Method::Ordinary, Method::Weighted, Method::Total, Method::LogCholesky].map(|method| with_noise(shared, method))
     });
-    exact.chain(held).chain([repeats(&small)]).chain(intervals(&general)).collect()
+    exact.chain(held).chain(SETS.map(|set| repeats(&small, set))).chain(intervals(&general)).collect()
 }
 
 /// The largest error of base parameters over the largest of them.
@@ -119,13 +121,14 @@ fn with_noise(shared: &Shared, method: Method) -> Case {
 }
 
 /// The scatter of a thousand estimates against σ²(YᵀY)⁻¹.
-fn repeats(shared: &Shared) -> Case {
+fn repeats(shared: &Shared, set: u64) -> Case {
     let own = shared.clone();
     let mut params = shared.params();
     params["noise"] = NOISE.into();
     params["repeats"] = REPEATS.into();
+    params["set"] = set.into();
     Case {
-        name: shared.arm.name.clone(),
+        name: format!("{}, set {set}", shared.arm.name),
         quantity: "scatter",
         method: "ordinary".into(),
         params,
@@ -138,7 +141,8 @@ fn repeats(shared: &Shared) -> Case {
             told("largest_variance", "1"),
         ],
         evaluate: Box::new(move |seed| {
-            let Scatter { variance, extremes, edges, bias, coverage } = scatter(own.get()?, NOISE, REPEATS, seed).map_err(failed)?;
+            let Scatter { variance, extremes, edges, bias, coverage } =
+                scatter(own.get()?, NOISE, REPEATS, seed.wrapping_add(set)).map_err(failed)?;
             // How far the extremes are outside of where they are expected, on each side.
             let below = (edges[0] - extremes[0]).max(0.0);
             let above = if extremes[1].is_nan() { f64::NAN } else { (extremes[1] - edges[1]).max(0.0) };

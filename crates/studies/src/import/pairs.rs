@@ -74,7 +74,14 @@ pub(super) fn chained(description: &Description) -> Description {
     let (x, y, z) = ([1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]);
     let (slide, turn) = (|axis| JointType::Prismatic { axis }, |axis| JointType::Revolute { axis });
     let bodies = Vec::with_capacity(description.bodies.len());
-    let mut result = Description { bodies, frames: Vec::new(), loops: Vec::new(), uncertain: Uncertain::default(), ..description.clone() };
+    let mut result = Description {
+        bodies,
+        frames: Vec::new(),
+        loops: Vec::new(),
+        residuals: Vec::new(),
+        uncertain: Uncertain::default(),
+        ..description.clone()
+    };
     let mut place = Vec::with_capacity(description.bodies.len());
     for body in &description.bodies {
         let mut parent = body.parent.map(|parent: usize| place[parent]);

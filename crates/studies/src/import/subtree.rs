@@ -86,6 +86,7 @@ fn cut(description: &Description, root: usize) -> Description {
         bodies,
         frames: Vec::new(),
         loops: Vec::new(),
+        residuals: Vec::new(),
         uncertain: featherbench_model::Uncertain::default(),
         ..description.clone()
     }

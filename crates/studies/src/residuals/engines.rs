@@ -1,21 +1,34 @@
-//! Engines that are corrected by a residual: each engine and robot, with three residuals.
+//! Engines that are corrected by a residual: each engine and robot, with three residuals, and with that of the robot's own description.
 //!
 //! | residual | what must hold |
 //! |---|---|
 //! | `zero` | the engine's own answer, to the bit |
 //! | `friction` | τ = ID + r as ours; a solves M a + h + r = τ |
 //! | `payload and friction` | the same with a part that depends on the acceleration |
+//! | `described` | the same with the section `residuals` of the robot, if it has one |
 
 use super::STUDY;
 use crate::{asked, row};
 use featherbench_bench::measure::{ForwardScale, scaled_error, worst};
 use featherbench_bench::{Cell, Context, Finished, NoAnswer, Quantity, Robot, WithResidual};
 use featherbench_dynamics::inverse_dynamics;
-use featherbench_residuals::{Payload, Residual, SmoothCoulomb, State, Sum, Viscous, Zero};
+use featherbench_formats::neutral;
+use featherbench_residuals::{Described, Payload, Residual, SmoothCoulomb, State, Sum, Viscous, Zero};
 use featherbench_results::{Relation, Row, Verdict};
-use serde_json::json;
+use serde_json::{Value, json};
 
 const RESIDUALS: [&str; 3] = ["zero", "friction", "payload and friction"];
+/// The residual of the robot's own description.
+const DESCRIBED: &str = "described";
+
+/// What defines the residual of a cell. A robot's hash is that of its rigid bodies, so its own residuals are written out as its file has them.
+fn params(robot: &Robot, residual: &str) -> Value {
+    if residual != DESCRIBED {
+        return json!({"residual": residual});
+    }
+    let written = neutral::to_string(&robot.description).ok().and_then(|text| serde_json::from_str::<Value>(&text).ok());
+    json!({"residual": residual, "residuals": written.map_or(Value::Null, |file| file["residuals"].clone())})
+}
 
 /// A cell per engine, robot, residual and quantity, by the engine's usual method.
 pub(super) fn plan(context: &Context) -> Vec<Cell> {
@@ -24,10 +37,10 @@ pub(super) fn plan(context: &Context) -> Vec<Cell> {
         for engine in context.engines {
             for quantity in [Quantity::InverseDynamics, Quantity::ForwardDynamics] {
                 if let Some(method) = engine.methods(quantity).first() {
-                    let of = |residual| {
-                        Cell::new(STUDY, robot, engine.identity(), quantity.name(), method.as_str(), json!({"residual": residual}))
-                    };
+                    let of =
+                        |residual| Cell::new(STUDY, robot, engine.identity(), quantity.name(), method.as_str(), params(robot, residual));
                     cells.extend(RESIDUALS.map(of));
+                    cells.extend((!robot.description.residuals.is_empty()).then(|| of(DESCRIBED)));
                 }
             }
         }
@@ -48,6 +61,7 @@ fn residual(robot: &Robot, name: &str) -> Result<Box<dyn Residual>, NoAnswer> {
     };
     Ok(match name {
         "zero" => Box::new(Zero::new(nv)),
+        DESCRIBED => Box::new(Described::of(&robot.description).map_err(failed)?),
         "friction" => Box::new(Sum::new(nv, friction()?.into()).map_err(failed)?),
         _ => {
             let last = robot.description.bodies.len().saturating_sub(1);

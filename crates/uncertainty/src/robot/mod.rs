@@ -14,13 +14,15 @@
 //! Derivatives: `∂v̇/∂π = −M⁻¹ Y(q, v, v̇)`, exactly (`featherbench_dynamics::ParameterSensitivity`).
 //! Units: SI. Damping and dry friction are part of this function if, and only if, one of them is uncertain: `τ − d∘v − f∘sign v` moves the robot.
 
-use crate::{Error, Lanes, Linear, Response, Space};
-use featherbench_dynamics::{
-    Aba, Ltdl, ParameterSensitivity, Rnea, TreeSparse, inertial_parameters, inverse_dynamics, mass_matrix, torque_regressor,
-};
-use featherbench_model::{Acts, Description, DimensionError, Distribution, Model, Target, TargetField, Uncertain, UncertainVariable};
-use featherbench_spatial::{Dual, Real, RigidBodyInertia, Sym3, Vec3};
+mod numbers;
+mod samples;
+
+use crate::{Error, Linear, Space};
+use featherbench_dynamics::{ParameterSensitivity, TreeSparse, inertial_parameters, inverse_dynamics, mass_matrix, torque_regressor};
+use featherbench_model::{Description, DimensionError, Model, TargetField};
+use featherbench_spatial::Vec3;
 use nalgebra::{DMatrix, DVector};
+use numbers::{Body, Columns, Dof, compiled, follow};
 
 /// Inertial parameters of a body.
 const TEN: usize = 10;
@@ -87,111 +89,6 @@ pub struct RobotResponse {
     /// Whether damping and friction are part of the function.
     lossy: bool,
     columns: Columns,
-}
-
-/// A body that has uncertain numbers.
-#[derive(Clone, Debug)]
-struct Body {
-    /// Its place among the described bodies.
-    place: usize,
-    mass: f64,
-    com: [f64; 3],
-    inertia: [f64; 6],
-    edits: Vec<(usize, Acts, TargetField)>,
-    /// Whether its centre of mass is uncertain: its parameters are not affine in the variables.
-    bent: bool,
-}
-
-/// An uncertain number of a dof.
-#[derive(Clone, Copy, Debug)]
-struct Dof {
-    dof: usize,
-    variable: usize,
-    acts: Acts,
-    nominal: f64,
-    field: TargetField,
-}
-
-/// Affine functions of θ: numbers of M in its tree-sparse order, then those of h; or those of τ alone.
-#[derive(Clone, Debug, Default)]
-struct Columns {
-    base: Vec<f64>,
-    /// Where the terms of each row end.
-    ends: Vec<usize>,
-    /// θ's index and its coefficient.
-    terms: Vec<(u32, f64)>,
-}
-
-impl Columns {
-    /// From dense columns: the base, and one for each θ.
-    fn new(base: Vec<f64>, columns: &[Vec<f64>]) -> Self {
-        let (mut ends, mut terms) = (Vec::with_capacity(base.len()), Vec::new());
-        for row in 0..base.len() {
-            let here = columns.iter().enumerate().map(|(j, column)| (j as u32, column[row]));
-            terms.extend(here.filter(|(_, coefficient)| *coefficient != 0.0));
-            ends.push(terms.len());
-        }
-        Self { base, ends, terms }
-    }
-
-    fn run(&self, theta: &[Lanes], mut write: impl FnMut(usize, Lanes)) {
-        let mut begin = 0;
-        for (row, (base, end)) in self.base.iter().zip(&self.ends).enumerate() {
-            let terms = self.terms[begin..*end].iter();
-            let sum = terms.fold(Lanes::from_f64(*base), |sum, (j, c)| theta[*j as usize].mul_add(Lanes::from_f64(*c), sum));
-            write(row, sum);
-            begin = *end;
-        }
-    }
-}
-
-/// A number that follows a variable.
-fn follow<T: Real>(acts: Acts, nominal: f64, x: T) -> T {
-    match acts {
-        Acts::Value => x,
-        Acts::Factor => T::from_f64(nominal) * x,
-    }
-}
-
-impl Body {
-    /// The ten parameters: mass, m c, and the inertia about the origin, `I_c + m (|c|² 1 − c cᵀ)`.
-    fn parameters<T: Real>(&self, x: &[T]) -> [T; TEN] {
-        let (mut mass, mut com, mut inertia) = (T::from_f64(self.mass), self.com.map(T::from_f64), self.inertia.map(T::from_f64));
-        for &(variable, acts, field) in &self.edits {
-            let x = x[variable];
-            match field {
-                TargetField::Mass => mass = follow(acts, self.mass, x),
-                TargetField::Density => {
-                    mass = follow(Acts::Factor, self.mass, x);
-                    inertia = self.inertia.map(|entry| follow(Acts::Factor, entry, x));
-                }
-                TargetField::Com(k) => com[k] = follow(acts, self.com[k], x),
-                TargetField::Inertia(k) => inertia[k] = follow(acts, self.inertia[k], x),
-                TargetField::Armature(_) | TargetField::Damping(_) | TargetField::Friction(_) => {}
-            }
-        }
-        let [cx, cy, cz] = com;
-        let [mx, my, mz] = com.map(|c| mass * c);
-        let [xx, xy, xz, yy, yz, zz] = inertia;
-        [mass, mx, my, mz, xx + my * cy + mz * cz, xy - mx * cy, xz - mx * cz, yy + mx * cx + mz * cz, yz - my * cz, zz + mx * cx + my * cy]
-    }
-
-    /// The derivatives of the ten parameters by a variable.
-    fn slope(&self, x: &[f64], variable: usize) -> [f64; TEN] {
-        let seeded = |(k, x): (usize, &f64)| Dual::new(*x, f64::from(u8::from(k == variable)));
-        let x: Vec<Dual<f64>> = x.iter().enumerate().map(seeded).collect();
-        self.parameters(&x).map(|parameter| parameter.derivative)
-    }
-}
-
-/// The ten parameters as the inertia of a body in its compiled axes.
-fn compiled<T: Real>(model: &Model<f64>, body: usize, parameters: [T; TEN]) -> RigidBodyInertia<T> {
-    let label = model.labels[body];
-    let [mass, x, y, z, xx, xy, xz, yy, yz, zz] = parameters;
-    // B Ī Bᵀ, by two turns of columns.
-    let half = label.rotation_to_compiled(Sym3::from_array([xx, xy, xz, yy, yz, zz]).to_mat3()).transpose();
-    let rotational = Sym3::from_upper(label.rotation_to_compiled(half));
-    RigidBodyInertia { mass, first_moment: label.to_compiled(Vec3::new(x, y, z)), rotational }
 }
 
 impl RobotResponse {
@@ -467,141 +364,4 @@ impl RobotResponse {
         }
         Ok(bounds)
     }
-}
-
-/// What a thread computes in.
-#[derive(Debug)]
-pub struct Scratch {
-    theta: Vec<Lanes>,
-    ltdl: Ltdl<Lanes>,
-    force: Vec<Lanes>,
-    recursive: Option<Box<Recursive>>,
-}
-
-#[derive(Debug)]
-struct Recursive {
-    model: Model<Lanes>,
-    aba: Aba<Lanes>,
-    rnea: Rnea<Lanes>,
-    q: Vec<Lanes>,
-    v: Vec<Lanes>,
-}
-
-impl Response for RobotResponse {
-    type Scratch = Scratch;
-
-    fn inputs(&self) -> usize {
-        self.inputs
-    }
-
-    fn outputs(&self) -> usize {
-        self.nv()
-    }
-
-    fn scratch(&self) -> Scratch {
-        let topology = &self.model.topology;
-        let lanes = |list: &[f64]| list.iter().map(|x| Lanes::from_f64(*x)).collect();
-        let recursive = (self.route == Route::Recursive).then(|| {
-            Box::new(Recursive {
-                model: self.model.lift(),
-                aba: Aba::new(topology),
-                rnea: Rnea::new(topology),
-                q: lanes(&self.state.q),
-                v: lanes(&self.state.v),
-            })
-        });
-        let bent = self.bodies.iter().filter(|body| body.bent).count();
-        let theta = vec![Lanes::zero(); self.inputs + TEN * bent];
-        Scratch { theta, ltdl: Ltdl::new(topology), force: vec![Lanes::zero(); topology.nv()], recursive }
-    }
-
-    fn evaluate(&self, scratch: &mut Scratch, x: &[Lanes], y: &mut [Lanes]) {
-        match &mut scratch.recursive {
-            Some(recursive) => self.recurse(recursive, &mut scratch.force, x, y),
-            None => self.combine(scratch, x, y),
-        }
-    }
-}
-
-impl RobotResponse {
-    /// By the columns.
-    fn combine(&self, scratch: &mut Scratch, x: &[Lanes], y: &mut [Lanes]) {
-        let Scratch { theta, ltdl, force, .. } = scratch;
-        theta[..self.inputs].copy_from_slice(x);
-        for (slot, body) in self.bodies.iter().filter(|body| body.bent).enumerate() {
-            let begin = self.inputs + TEN * slot;
-            theta[begin..begin + TEN].copy_from_slice(&body.parameters(x));
-        }
-        if self.quantity == Quantity::Torque {
-            self.columns.run(theta, |row, tau| y[row] = tau);
-            return;
-        }
-        let stored = self.columns.base.len() - force.len();
-        let matrix = ltdl.matrix_mut().values_mut();
-        self.columns.run(theta, |row, value| match row.checked_sub(stored) {
-            None => matrix[row] = value,
-            Some(dof) => force[dof] = Lanes::from_f64(self.state.drive[dof]) - value,
-        });
-        if ltdl.factor().is_ok() && ltdl.solve(force).is_ok() {
-            y.copy_from_slice(force);
-        } else {
-            y.fill(Lanes::from_f64(f64::NAN));
-        }
-    }
-
-    /// By the recursive algorithms.
-    fn recurse(&self, recursive: &mut Recursive, force: &mut [Lanes], x: &[Lanes], y: &mut [Lanes]) {
-        let Recursive { model, aba, rnea, q, v } = recursive;
-        for body in &self.bodies {
-            let place = self.model.described[body.place];
-            model.inertias[place] = compiled(&self.model, place, body.parameters(x));
-        }
-        let drive = |dof: usize| Lanes::from_f64(self.state.drive[dof]);
-        for (dof, force) in force.iter_mut().enumerate() {
-            *force = drive(dof);
-        }
-        let mut losses: Vec<Lanes> = self.losses(None).into_iter().map(Lanes::from_f64).collect();
-        for edit in &self.dofs {
-            let value = follow(edit.acts, edit.nominal, x[edit.variable]);
-            match edit.field {
-                TargetField::Armature(_) => model.armature[edit.dof] = value,
-                field => losses[edit.dof] = value.mul_add(Lanes::from_f64(self.loss(field, edit.dof)), losses[edit.dof]),
-            }
-        }
-        let done = match self.quantity {
-            Quantity::Acceleration => {
-                force.iter_mut().zip(&losses).for_each(|(force, loss)| *force -= *loss);
-                aba.run(model, q, v, force, None, y).is_ok()
-            }
-            Quantity::Torque => {
-                let done = rnea.run(model, q, v, force, None, y).is_ok();
-                y.iter_mut().zip(&losses).for_each(|(y, loss)| *y += *loss);
-                done
-            }
-        };
-        if !done {
-            y.fill(Lanes::from_f64(f64::NAN));
-        }
-    }
-}
-
-/// A factor uniform in (1 − relative, 1 + relative) on the mass of each moving body that has one, independent of the others.
-///
-/// # Errors
-/// [`Error`] when the description is none, no body has a mass, or the spread is not between 0 and 1.
-pub fn spread(description: &Description, relative: f64) -> Result<Uncertain, Error> {
-    let moving = description.bodies.iter().enumerate().filter(|(_, body)| body.mass > 0.0 && body.joint.kind.nv() > 0);
-    let distribution = Distribution::Uniform { low: 1.0 - relative, high: 1.0 + relative };
-    let variable = |(body, described): (usize, &featherbench_model::BodyDescription)| UncertainVariable {
-        name: format!("mass of {}", described.name),
-        distribution,
-        acts: Acts::Factor,
-        on: vec![Target { body, field: TargetField::Mass }],
-    };
-    let uncertain = Uncertain { variables: moving.map(variable).collect(), correlations: Vec::new() };
-    if uncertain.variables.is_empty() {
-        return Err(Error::NoVariables);
-    }
-    Description { uncertain: uncertain.clone(), ..description.clone() }.validate()?;
-    Ok(uncertain)
 }
