@@ -1,4 +1,5 @@
-//! Rapier3d in double precision as an oracle, its reduced-coordinate multibodies and its free bodies in contact: it speaks `../../PROTOCOL.md` on standard input and output.
+//! Rapier3d in double precision as an oracle: its reduced-coordinate multibodies, and its free bodies in contact. It speaks `../../PROTOCOL.md` on
+//! standard input and output.
 
 mod coordinates;
 mod refusal;

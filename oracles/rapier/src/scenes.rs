@@ -8,8 +8,8 @@ use featherbench_protocol::{Block, Message};
 use featherbench_scenes::{Body, Geometry, Scene};
 use rapier3d_f64::math::{Pose, Rotation, Vector};
 use rapier3d_f64::prelude::{
-    ColliderBuilder, ContactManifold, ContactPair, FrictionModel, IntegrationParameters, MassProperties, PhysicsWorld, RigidBody, RigidBodyBuilder,
-    RigidBodyHandle,
+    ColliderBuilder, ContactManifold, ContactPair, FrictionModel, IntegrationParameters, MassProperties, PhysicsWorld, RigidBody,
+    RigidBodyBuilder, RigidBodyHandle, SpringCoefficients,
 };
 use serde_json::{Map, Value, json};
 
@@ -34,7 +34,12 @@ const VARIANTS: [Variant; 3] = [
 
 impl Variant {
     fn parameters(&self, dt: f64) -> IntegrationParameters {
-        IntegrationParameters { dt, friction_model: self.friction, num_solver_iterations: self.substeps, ..IntegrationParameters::default() }
+        IntegrationParameters {
+            dt,
+            friction_model: self.friction,
+            num_solver_iterations: self.substeps,
+            ..IntegrationParameters::default()
+        }
     }
 
     /// What rows tell.
@@ -44,7 +49,7 @@ impl Variant {
             FrictionModel::Simplified => "round cone, one force and one twist for up to four points",
             FrictionModel::Coulomb => "round cone at each point",
         };
-        let spring = |of: rapier3d_f64::prelude::SpringCoefficients<f64>| json!({"frequency": of.natural_frequency, "damping_ratio": of.damping_ratio});
+        let spring = |of: SpringCoefficients<f64>| json!({"frequency": of.natural_frequency, "damping_ratio": of.damping_ratio});
         json!({
             "contact": format!("damped springs by sweeps over substeps, {friction}"),
             "coordinates": "maximal",
@@ -98,7 +103,8 @@ pub fn simulate(request: &Message) -> Result<Message, Refusal> {
         }
     }
     let substeps = variant.substeps as f64 / dt;
-    let pushes: Vec<[f64; 8]> = world.contact_pairs().flat_map(|pair| pushes(&world, &bodies, pair, [1.0 / dt, substeps], variant.friction)).collect();
+    let pushes: Vec<[f64; 8]> =
+        world.contact_pairs().flat_map(|pair| pushes(&world, &bodies, pair, [1.0 / dt, substeps], variant.friction)).collect();
     let contacts = Block::new("contacts", &[pushes.len(), 8], &pushes.concat());
     Ok(Message::new(json!({}), vec![Block::new("motion", &[steps / every, bodies.len(), 13], &motion), contacts]))
 }
@@ -177,7 +183,8 @@ fn pushes(world: &PhysicsWorld, bodies: &[RigidBodyHandle], pair: &ContactPair, 
 fn points(manifold: &ContactManifold, friction: FrictionModel) -> impl Iterator<Item = (&rapier3d_f64::prelude::SolverContact, Vector)> {
     let seen = &manifold.data.solver_contacts;
     seen.iter().enumerate().map(move |(k, point)| {
-        let told = manifold.points.get(point.contact_indices()[0] as usize).map_or(Vector::ZERO, |contact| contact.data.warmstart_tangent_world);
+        let told =
+            manifold.points.get(point.contact_indices()[0] as usize).map_or(Vector::ZERO, |contact| contact.data.warmstart_tangent_world);
         let sharing = match friction {
             FrictionModel::Coulomb => 1,
             FrictionModel::Simplified => GROUP.min(seen.len() - k / GROUP * GROUP),
