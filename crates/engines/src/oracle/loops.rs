@@ -48,7 +48,8 @@ impl Oracle {
 fn request(robot: &Description, drive: Option<&LoopDrive>) -> Result<Value, NoAnswer> {
     let mut request = json!({"op": "loops", "model": model(robot)?});
     if let Some(LoopDrive { tau, springs }) = drive {
-        let end = |body: Option<usize>, point: [f64; 3]| json!({"body": body.map_or(-1, |body| body as i64), "point": point});
+        let end =
+            |body: Option<usize>, point: [f64; 3]| json!({"body": body.map_or_else(|| json!(-1), |body| json!(body)), "point": point});
         let springs = springs.iter().map(|spring| {
             let [first, second] = [0, 1].map(|side| end(spring.bodies[side], spring.points[side]));
             json!({"first": first, "second": second, "stiffness": spring.stiffness, "length": spring.length})
@@ -145,13 +146,17 @@ impl LoopSolver for Oracle {
 mod tests {
     use super::*;
     use featherbench_bench::LoopSpring;
+    use featherbench_model::{BodyDescription, JointDescription, JointType};
 
     /// The world is −1, and without a drive the request has none.
     #[test]
     fn a_drive_is_written_as_the_protocol_says() {
         let spring = LoopSpring { bodies: [Some(2), None], points: [[1.0, 2.0, 3.0], [0.0; 3]], stiffness: 5.0, length: 0.5 };
         let drive = LoopDrive { tau: vec![1.0, 0.0], springs: vec![spring] };
-        let robot = Description { name: "nothing".into(), ..Description::default() };
+        let joint = JointDescription { kind: JointType::Revolute { axis: [0.0, 0.0, 1.0] }, ..JointDescription::default() };
+        let inertia = [1.0, 0.0, 0.0, 1.0, 0.0, 1.0];
+        let body = BodyDescription { name: "one".into(), parent: None, mass: 1.0, com: [0.0; 3], inertia, joint };
+        let robot = Description { name: "one".into(), bodies: vec![body], ..Description::default() };
         let written = request(&robot, Some(&drive)).unwrap();
         let due = json!({"first": {"body": 2, "point": [1.0, 2.0, 3.0]}, "second": {"body": -1, "point": [0.0, 0.0, 0.0]}, "stiffness": 5.0, "length": 0.5});
         assert_eq!(written["drive"], json!({"tau": [1.0, 0.0], "springs": [due]}));

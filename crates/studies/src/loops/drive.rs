@@ -30,7 +30,7 @@ impl Driven<'_> {
         let still = vec![0.0; self.model.topology.nv()];
         let mut kinematics = Kinematics::new(&self.model.topology);
         kinematics.run(self.model, q, &still, &still).map_err(failed)?;
-        let place = |side: usize| {
+        let place = |side: usize| -> Result<Place, NoAnswer> {
             let point = Vec3::from_array(spring.points[side]);
             let Some(body) = spring.bodies[side] else { return Ok(Place { at: point, body: None }) };
             let missing = || NoAnswer::Failed(format!("a spring is on body {body}, which is not there"));
