@@ -30,17 +30,3 @@ fn structure_holds_the_energy() {
     let [net, hamiltonian, black] = ["lagrangian net", "port-hamiltonian", "black box"].map(energy);
     assert!(black > 5.0 * net && black > 5.0 * hamiltonian, "{net} {hamiltonian} {black}");
 }
-
-/// Degrees and ridges of the noisy fits are those that validation chooses, on draws that are not judged.
-#[test]
-fn validation_chooses_degree_and_ridge() {
-    let (structured, black, ridges) = learning::GRID;
-    for (model, degrees) in [("port-hamiltonian", structured.as_slice()), ("black box", black.as_slice())] {
-        let choices = degrees.iter().flat_map(|&degree| ridges.map(|ridge| (degree, ridge)));
-        let errors: Vec<_> = choices.map(|choice| (choice, learning::validated(model, choice))).collect();
-        let best = errors.iter().min_by(|a, b| a.1.total_cmp(&b.1)).unwrap();
-        assert!(best.1.is_finite());
-        assert_eq!(best.0, learning::chosen(model, 1), "{model}: {errors:?}");
-    }
-    assert!(learning::VALIDATION.iter().all(|&seed| seed > 9000), "suites have small seeds");
-}
