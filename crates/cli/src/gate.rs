@@ -60,13 +60,13 @@ fn tell(info: &RunInfo, findings: &Findings) {
         Status::Empty => "nothing judged",
     };
     say!("{word}: {}", findings.headline());
-    for (index, found) in findings.new().take(TOLD).enumerate() {
+    for (index, found) in findings.red().take(TOLD).enumerate() {
         say!("  {}. {}: {}", index + 1, found.level(), found.sentence());
         if !found.again.is_empty() {
             say!("     again: {}", found.again);
         }
     }
-    let more = findings.new().count().saturating_sub(TOLD);
+    let more = findings.red().count().saturating_sub(TOLD);
     if more > 0 {
         say!("  and {more} more; --json, --junit and --markdown have all");
     }
@@ -85,7 +85,7 @@ pub fn tell_unmet(info: &RunInfo) {
 /// The exit of a run by its findings and conditions.
 pub fn conclude(info: &RunInfo, findings: &Findings) -> Result<(), Fail> {
     let unmet = info.expected.iter().filter(|condition| !condition.is_met()).count();
-    match (unmet, findings.new().next()) {
+    match (unmet, findings.red().next()) {
         (0, None) => Ok(()),
         (_, first) => {
             let first = first.map_or_else(String::new, |found| format!("; first: {}", found.short()));

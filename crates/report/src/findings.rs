@@ -84,13 +84,13 @@ impl<'a> Findings<'a> {
     }
 
     /// Those that turn the gate red, from the gravest.
-    pub fn new(&self) -> impl Iterator<Item = &Found<'a>> {
+    pub fn red(&self) -> impl Iterator<Item = &Found<'a>> {
         self.found.iter().filter(|found| found.new)
     }
 
     /// The first line of the page: the gravest finding, of those that turn the gate red if there are any.
     pub fn headline(&self) -> String {
-        let first = self.new().next().or(self.found.iter().find(|found| found.severity != Some(Severity::NotOffered)));
+        let first = self.red().next().or(self.found.iter().find(|found| found.severity != Some(Severity::NotOffered)));
         match (self.status, first) {
             (_, Some(found)) => found.short(),
             (Status::Empty, None) => "Nothing was judged in this run".into(),
@@ -109,7 +109,7 @@ impl<'a> Findings<'a> {
         if parts.is_empty() {
             return "no findings".into();
         }
-        let new = self.new().count();
+        let new = self.red().count();
         let known = if new == 0 { "all known".to_owned() } else { format!("{} new", grouped(new)) };
         format!("{}: {}; {known}", count(self.found.len(), "finding"), parts.join(", "))
     }

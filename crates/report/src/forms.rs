@@ -21,7 +21,7 @@ fn name(found: &Found) -> String {
 
 /// One test case for each new finding, which fails, and one for each condition that is met. Characters that XML cannot hold are left out.
 pub fn junit(run: &RunInfo, findings: &Findings) -> String {
-    let new: Vec<&Found> = findings.new().collect();
+    let new: Vec<&Found> = findings.red().collect();
     let met: Vec<_> = run.expected.iter().filter(|condition| condition.is_met()).collect();
     let body = html! {
         testsuites name="featherbench" {
@@ -86,7 +86,7 @@ pub fn annotations(findings: &Findings) -> String {
     let escaped = |text: &str| text.replace('%', "%25").replace('\r', "%0D").replace('\n', "%0A");
     let title = |text: &str| escaped(text).replace(':', "%3A").replace(',', "%2C");
     findings
-        .new()
+        .red()
         .map(|found| format!("::error title={}::{}\n", title(&format!("{}: {}", found.level(), found.who())), escaped(&found.sentence())))
         .collect()
 }

@@ -91,7 +91,7 @@ fn table(runs: &[Past], findings: &[Findings]) -> Markup {
                         @for &level in Severity::ALL {
                             td.number { (grouped(found.found.iter().filter(|found| found.severity == Some(level)).count())) }
                         }
-                        td.number { (grouped(found.new().count())) }
+                        td.number { (grouped(found.red().count())) }
                         td.number { (grouped(found.tally.total())) }
                         td { (past.info.engines.iter().map(|engine| format!("{} {}", engine.name, engine.version)).collect::<Vec<_>>().join(", ")) }
                     }

@@ -166,16 +166,16 @@ fn by_engine(overview: &Overview, rows: &[Row], findings: &Findings) -> Markup {
     html! {
         h3 { "By engine" }
         div.scroll { table.compact {
-            thead { tr { th scope="col" { "engine" } (tally_heads()) th.number scope="col" { "worst margin" } th scope="col" { "gravest finding" } } }
+            thead { tr { th scope="col" { "engine" } th scope="col" { "gravest finding" } (tally_heads()) th.number scope="col" { "worst margin" } } }
             tbody {
                 @for &engine in &overview.engines {
                     @let own = || rows.iter().filter(|row| row.engine == engine);
                     @let worst = own().filter_map(|row| row.margin).min_by(f64::total_cmp);
                     tr {
                         th scope="row" { (engine) }
+                        td.gravest { @if let Some(found) = findings.of_engine(engine) { (found.level()) @if let Some(first) = found.quantities.first() { ": " (first) } } }
                         (tally_cells(&Tally::of(own().map(|row| row.verdict))))
                         td.number { @if let Some(margin) = worst { (decades(margin)) } }
-                        td.gravest { @if let Some(found) = findings.of_engine(engine) { (found.level()) @if let Some(first) = found.quantities.first() { ": " (first) } } }
                     }
                 }
             }

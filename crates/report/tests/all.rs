@@ -2,4 +2,5 @@
 
 mod frame;
 mod layers;
+mod runs;
 mod written;

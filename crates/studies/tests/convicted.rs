@@ -50,7 +50,7 @@ fn first_names_the_double(conditions: &[Expectation], records: &[Row], gate: Gat
     let run = RunInfo { expected: conditions.to_vec(), ..RunInfo::default() };
     let findings = Findings::of(&run, records);
     assert_eq!(findings.status, Status::Failed);
-    let first = findings.new().next().unwrap();
+    let first = findings.red().next().unwrap();
     let Culprit { engine, quantity, robot, study, .. } = &first.culprit;
     assert_eq!((engine.as_str(), first.gate), ("double", gate), "{}", first.sentence());
     assert!(quantities.is_empty() || quantities.contains(&quantity.as_str()), "{}", first.sentence());
