@@ -382,7 +382,9 @@ impl Robot {
     /// The neutral description file as a text.
     ///
     /// ```
-    /// assert!(featherbench_library::Robot::generated("chain:n=5")?.to_json()?.contains("\"format\": 1"));
+    /// use featherbench_library::{Robot, formats::neutral};
+    /// let robot = Robot::generated("chain:n=5")?;
+    /// assert_eq!(&neutral::parse(&robot.to_json()?, "chain.json")?, robot.description());
     /// # Ok::<(), featherbench_library::Error>(())
     /// ```
     ///
