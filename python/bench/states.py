@@ -45,7 +45,10 @@ def candidates(robot: featherbench.Robot, path: Path, states: int) -> dict[str, 
     except ImportError as missing:
         print(f"Pinocchio is left out: {missing} (put oracles/ on PYTHONPATH)")
         return ours
-    model = build(Description.read(json.loads(path.read_text())))
+    description = json.loads(path.read_text())
+    for body, joint in zip(description["bodies"], robot.joints, strict=True):
+        body["joint"].setdefault("armature", [0.0] * (joint.v[1] - joint.v[0]))  # a file may leave out what is zero
+    model = build(Description.read(description))
     data = model.createData()
     theirs = robot.to_pinocchio(q)
     ours["inverse dynamics"]["Pinocchio, a loop"] = lambda: [pin.rnea(model, data, *state) for state in zip(theirs, v, x, strict=True)]

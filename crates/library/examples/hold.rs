@@ -1,5 +1,6 @@
 //! The joint forces that hold a robot still. `cargo run -p featherbench-library --example hold [ROBOT.urdf]`
 
+use featherbench_library::spatial::largest;
 use featherbench_library::{Error, Robot};
 
 fn main() -> Result<(), Error> {
@@ -10,7 +11,6 @@ fn main() -> Result<(), Error> {
         println!("{:<24} {:?}", joint.name, &tau[joint.v.clone()]);
     }
     let left = robot.forward_dynamics(&q, &still, &tau)?;
-    let largest = left.iter().fold(0.0, |largest, a| if a.abs() > largest { a.abs() } else { largest });
-    println!("left over: an acceleration of {largest:.1e}");
+    println!("left over: an acceleration of {:.1e}", largest(left));
     Ok(())
 }

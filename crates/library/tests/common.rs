@@ -55,5 +55,5 @@ pub fn random_v(robot: &Robot, seed: u64, stream: u64) -> Vec<f64> {
 
 /// The largest absolute value.
 pub fn largest(values: &[f64]) -> f64 {
-    featherbench_library::spatial::largest(values.iter().map(|x| x.abs()))
+    featherbench_library::spatial::largest(values.iter().copied())
 }
