@@ -11,6 +11,8 @@ const ALLOWED: &[(&str, &[&str])] = &[
     ("robots", &["spatial", "model"]),
     ("formats", &["model", "spatial"]),
     ("dynamics", &["spatial", "model"]),
+    // What programs add: it has no harness, no report and no process in its tree.
+    ("library", &["spatial", "model", "robots", "formats", "dynamics"]),
     ("reference", &["model"]),
     ("contact", &["spatial", "model", "dynamics"]),
     ("constrained", &["spatial", "model", "dynamics"]),
@@ -170,6 +172,15 @@ fn kernels_depend_on_few_crates_of_others() {
         let found: BTreeSet<&str> = normal(package).filter(|name| short(name).is_none()).collect();
         assert_eq!(found, allowed.iter().copied().collect(), "{kernel}");
     }
+}
+
+/// The library crate is for programs that are no benchmark: nothing of the harness comes with it, in no feature.
+#[test]
+fn the_library_reaches_five_crates_of_ours() {
+    let text =
+        cargo(&["tree", "--offline", "--edges", "normal", "--prefix", "none", "--all-features", "--package", "featherbench-library"]);
+    let ours: BTreeSet<&str> = text.lines().filter_map(|line| line.split_whitespace().next()).filter_map(short).collect();
+    assert_eq!(ours, BTreeSet::from(["dynamics", "formats", "library", "model", "robots", "spatial"]));
 }
 
 /// The Rust files below a folder.

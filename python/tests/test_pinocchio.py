@@ -1,0 +1,103 @@
+"""The package against Pinocchio, which reads the same URDF by its own parser.
+
+Joints of the file are in the order of their names, so the parser's order of dofs is ours. No joint is continuous.
+"""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import featherbench
+
+pin = pytest.importorskip("pinocchio", reason="Pinocchio is not installed")
+
+URDF = Path(__file__).with_name("arm.urdf")
+STATES = 50
+# Both sides round some hundred operations on numbers below a hundred.
+FORMED = 1e-12
+# Solutions with M, whose condition number is below a thousand here.
+SOLVED = 1e-10
+
+
+def close(ours, theirs, tolerance):
+    assert ours.shape == theirs.shape
+    assert np.all(np.abs(ours - theirs) <= tolerance * (1 + np.abs(theirs)))
+
+
+@pytest.fixture(params=[False, True], ids=["fixed", "floating"])
+def pair(request):
+    """Give the robot, Pinocchio's model, and random states of both."""
+    robot = featherbench.Robot.from_urdf(URDF, floating=request.param)
+    joint = (pin.JointModelFreeFlyer(),) if request.param else ()
+    model = pin.buildModelFromUrdf(str(URDF), *joint)
+    assert (model.nq, model.nv) == (robot.nq, robot.nv)
+    rng = np.random.default_rng(1)
+    q = robot.random(seed=1, states=STATES)
+    v, a = rng.uniform(-1, 1, (2, STATES, robot.nv))
+    return robot, model, q, v, a
+
+
+def test_inverse_dynamics(pair):
+    robot, model, q, v, a = pair
+    data = model.createData()
+    close(robot.inverse_dynamics(q, v, a), np.array([pin.rnea(model, data, *state).copy() for state in zip(q, v, a, strict=True)]), FORMED)
+
+
+def test_forward_dynamics(pair):
+    robot, model, q, v, tau = pair
+    data = model.createData()
+    theirs = np.array([pin.aba(model, data, *state).copy() for state in zip(q, v, tau, strict=True)])
+    close(robot.forward_dynamics(q, v, tau), theirs, SOLVED)
+
+
+def test_mass_matrix_and_solution(pair):
+    robot, model, q, _, b = pair
+    data = model.createData()
+    upper = np.triu(np.array([pin.crba(model, data, x).copy() for x in q]))
+    theirs = upper + np.triu(upper, 1).transpose(0, 2, 1)
+    close(robot.mass_matrix(q), theirs, FORMED)
+    close(robot.solve(q, b), np.linalg.solve(theirs, b[..., None])[..., 0], SOLVED)
+
+
+@pytest.mark.parametrize("frame", ["upper", "lower", "rail", "tool"])
+def test_placements_jacobians_and_motions(pair, frame):
+    robot, model, q, v, a = pair
+    data, index = model.createData(), model.getFrameId(frame)
+    axes = pin.ReferenceFrame.LOCAL_WORLD_ALIGNED
+    places, jacobians, motions = [], [], []
+    for state in zip(q, v, a, strict=True):
+        pin.forwardKinematics(model, data, *state)
+        pin.updateFramePlacements(model, data)
+        places.append(data.oMf[index].homogeneous.copy())
+        jacobians.append(np.roll(pin.computeFrameJacobian(model, data, state[0], index, axes), 3, axis=0))
+        velocity = pin.getFrameVelocity(model, data, index, axes)
+        acceleration = pin.getFrameClassicalAcceleration(model, data, index, axes)
+        motions.append([np.concatenate([x.angular, x.linear]) for x in (velocity, acceleration)])
+    close(robot.placement(q, frame), np.array(places), FORMED)
+    close(robot.jacobian(q, frame), np.array(jacobians), FORMED)
+    close(robot.motion(q, v, a, frame), np.array(motions), FORMED)
+
+
+def test_derivatives(pair):
+    robot, model, q, v, a = pair
+    data = model.createData()
+    theirs = []
+    for state in zip(q, v, a, strict=True):
+        by_q, by_v, by_a = pin.computeRNEADerivatives(model, data, *state)
+        theirs.append([by_q.copy(), by_v.copy(), np.triu(by_a) + np.triu(by_a, 1).T])
+    close(robot.inverse_dynamics_derivatives(q, v, a), np.array(theirs), FORMED)
+    theirs = []
+    for state in zip(q, v, a, strict=True):
+        pin.computeABADerivatives(model, data, *state)
+        theirs.append([data.ddq_dq.copy(), data.ddq_dv.copy(), np.triu(data.Minv) + np.triu(data.Minv, 1).T])
+    close(robot.forward_dynamics_derivatives(q, v, a), np.array(theirs), SOLVED)
+
+
+def test_configurations(pair):
+    robot, model, q, v, _ = pair
+    close(robot.integrate(q, v), np.array([pin.integrate(model, *state) for state in zip(q, v, strict=True)]), FORMED)
+    start, end = q[:-1], q[1:]
+    close(robot.difference(start, end), np.array([pin.difference(model, *way) for way in zip(start, end, strict=True)]), FORMED)
+    close(robot.neutral(), pin.neutral(model), 0)
+    assert np.array_equal(robot.to_pinocchio(q), q)
