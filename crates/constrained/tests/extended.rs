@@ -28,7 +28,9 @@ fn tied_pendulums_have_their_closed_form() {
         for _ in 0..20 {
             let mass = [random.uniform(0.5, 3.0), random.uniform(0.5, 3.0)];
             let length = if tie == Tie::Rod { [random.uniform(0.5, 2.0); 2] } else { [random.uniform(0.5, 2.0), random.uniform(0.5, 2.0)] };
-            let pair = Pair { mass, length, ratio: random.uniform(-2.0, 2.0), square: random.uniform(-1.0, 1.0), ..Pair::new(tie) };
+            let bob = [random.uniform(0.0, 3.0), random.uniform(0.0, 3.0)];
+            let (ratio, square) = (random.uniform(-2.0, 2.0), random.uniform(-1.0, 1.0));
+            let pair = Pair { mass, bob, length, ratio, square, ..Pair::new(tie) };
             let mechanism = pair.mechanism().unwrap();
             let (theta, rate) = (random.uniform(-1.0, 1.0), random.uniform(-2.0, 2.0));
             let (q, v) = (pair.configuration(theta), pair.velocity(theta, rate));

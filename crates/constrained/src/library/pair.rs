@@ -3,8 +3,8 @@
 //! The second angle is a polynomial of the first, θ₂ = p(θ₁). Angles are from hanging down, so
 //!
 //! ```text
-//! T = ½ (I₁ + p'² I₂) θ̇₁²        V = −½ g (m₁ l₁ cos θ₁ + m₂ l₂ cos p)        I_k = m_k l_k²/3
-//! (I₁ + p'² I₂) θ̈₁ = −I₂ p' p'' θ̇₁² − ½ g (m₁ l₁ sin θ₁ + p' m₂ l₂ sin p)
+//! T = ½ (I₁ + p'² I₂) θ̇₁²        V = −c₁ cos θ₁ − c₂ cos p        I_k = (m_k/3 + b_k) l_k²        c_k = (m_k/2 + b_k) g l_k
+//! (I₁ + p'² I₂) θ̈₁ = −I₂ p' p'' θ̇₁² − c₁ sin θ₁ − p' c₂ sin p
 //! ```
 //!
 //! | [`Tie`] | p(θ) | rows |
@@ -14,9 +14,12 @@
 //! | `Rod` | θ: a rod without mass between the ends of cranks of one length | one distance |
 //! | `Weld` | θ: both hang on one hinge, and are welded | six of rank one |
 //!
+//! Each pendulum is a rod of mass m with a point mass b at its end. Rods of one length without it fall alike, and a tie of one angle to the
+//! other would carry no force.
+//!
 //! Source: Lagrange's equation of one coordinate. Frames: motion in the xz-plane about y, gravity along −z. Units: SI.
 
-use super::parts::{at, closed, rod};
+use super::parts::{at, body, closed};
 use crate::mechanism::{BadMechanism, Mechanism};
 use featherbench_model::{Description, Loop, LoopEnd, LoopKind, LoopMotion};
 
@@ -43,8 +46,10 @@ impl Tie {
 pub struct Pair {
     /// What ties them.
     pub tie: Tie,
-    /// Masses, kg.
+    /// Masses of the rods, kg.
     pub mass: [f64; 2],
+    /// Point masses at their ends, kg.
+    pub bob: [f64; 2],
     /// Lengths, m. Those of [`Tie::Rod`] are equal.
     pub length: [f64; 2],
     /// θ₂ where θ₁ is zero, of a gear or a cam, rad.
@@ -60,9 +65,9 @@ pub struct Pair {
 }
 
 impl Pair {
-    /// Rods of 1 m with 1 kg and 2.5 kg.
+    /// Rods of 1 m with 1 kg and 2.5 kg; the second has 1.5 kg at its end.
     pub fn new(tie: Tie) -> Self {
-        Self { tie, mass: [1.0, 2.5], length: [1.0; 2], offset: 0.3, ratio: -1.5, square: 0.4, apart: 1.5, gravity: 9.81 }
+        Self { tie, mass: [1.0, 2.5], bob: [0.0, 1.5], length: [1.0; 2], offset: 0.3, ratio: -1.5, square: 0.4, apart: 1.5, gravity: 9.81 }
     }
 
     /// The robot.
@@ -85,8 +90,15 @@ impl Pair {
     pub fn description(&self) -> Description {
         let apart = if self.tie == Tie::Weld { 0.0 } else { self.apart };
         let tips = self.length.map(|length| [0.0, 0.0, -length]);
-        let pendulum =
-            |k: usize, place: f64| rod(&format!("pendulum {}", k + 1), None, [place, 0.0, 0.0], [0.0, 1.0, 0.0], tips[k], self.mass[k]);
+        let pendulum = |k: usize, place: f64| {
+            let (rod, bob, length) = (self.mass[k], self.bob[k], self.length[k]);
+            let mass = rod + bob;
+            let com = (0.5 * rod + bob) * length / mass;
+            // About the common centre of mass: that of the rod, and both masses at their distances.
+            let across = rod * (length * length / 12.0 + (com - 0.5 * length).powi(2)) + bob * (length - com).powi(2);
+            let inertia = [across, 0.0, 0.0, across, 0.0, 0.0];
+            body(&format!("pendulum {}", k + 1), None, [place, 0.0, 0.0], [0.0, 1.0, 0.0], mass, [0.0, 0.0, -com], inertia)
+        };
         let on = |k: usize| LoopEnd { body: Some(k), placement: at(tips[k]) };
         let tie = match self.tie {
             Tie::Gear => {
@@ -131,8 +143,8 @@ impl Pair {
     /// The closed form of both accelerations.
     pub fn acceleration(&self, theta: f64, rate: f64) -> [f64; 2] {
         let [p, slope, bend] = self.follower(theta);
-        let inertia = |k: usize| self.mass[k] * self.length[k] * self.length[k] / 3.0;
-        let moment = |k: usize| 0.5 * self.gravity * self.mass[k] * self.length[k];
+        let inertia = |k: usize| (self.mass[k] / 3.0 + self.bob[k]) * self.length[k] * self.length[k];
+        let moment = |k: usize| (0.5 * self.mass[k] + self.bob[k]) * self.gravity * self.length[k];
         let pull = inertia(1) * slope * bend * rate * rate + moment(0) * theta.sin() + slope * moment(1) * p.sin();
         let first = -pull / (inertia(0) + slope * slope * inertia(1));
         [first, slope * first + bend * rate * rate]
