@@ -135,13 +135,13 @@ fn python_corrects_an_engine() {
     assert_eq!(bits(&tau), bits(&plus(&ask(&own, &robot, ASKED[0]).unwrap(), &states.a)));
     let mut at = robot.magnitudes();
     let mut under = states.clone();
-    for k in 0..states.count() {
+    for (k, at) in at.iter_mut().enumerate() {
         let row = k * nv..(k + 1) * nv;
         // By the library's recursion, which is another method: the engine answers many states at once, with other products. The difference is
         // measured in the terms of each joint force.
         let due = plus(&inverse_dynamics(&robot.model, states.q(k), states.v(k), states.a(k)).unwrap(), states.a(k));
-        at[k].joint_force.iter_mut().zip(states.a(k)).for_each(|(sum, a)| *sum += 0.2 * a.abs());
-        let error = scaled_error(&robot, ASKED[0], &at[k], &due, &tau[row.clone()]);
+        at.joint_force.iter_mut().zip(states.a(k)).for_each(|(sum, a)| *sum += 0.2 * a.abs());
+        let error = scaled_error(&robot, ASKED[0], at, &due, &tau[row.clone()]);
         assert!(error <= roundings(robot.depth) * f64::EPSILON, "state {k}: {error:e}");
         under.tau[row.clone()].iter_mut().zip(&a[row]).for_each(|(tau, a)| *tau -= 0.2 * a);
     }

@@ -54,6 +54,9 @@ struct Drive {
     stiffness: Option<Vec<f64>>,
 }
 
+/// The name of a residual, with the least and the greatest r of each dof.
+pub type NamedBounds<'a> = (&'a str, Vec<[f64; 2]>);
+
 /// Where the residual of a name is.
 #[derive(Clone, Debug)]
 enum Part {
@@ -154,7 +157,7 @@ impl Described {
     ///
     /// # Errors
     /// As [`Residual::value`].
-    pub fn each(&self, state: &State<'_>) -> Result<Vec<(&str, Vec<[f64; 2]>)>, ResidualError> {
+    pub fn each(&self, state: &State<'_>) -> Result<Vec<NamedBounds<'_>>, ResidualError> {
         crate::residual::check(self, state)?;
         let bounds = |part: &Part| match part {
             Part::Dry(dry) => dry.interval(state.v, state.a),

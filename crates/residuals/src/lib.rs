@@ -52,7 +52,7 @@ mod series_elastic;
 pub use compliance::SpringDamper;
 pub use corrected::{Corrected, WELL_POSED, WellPosed, add_unless_zero, corrected_acceleration};
 pub use delay::{Delay, Lag};
-pub use described::{Described, DescribedError};
+pub use described::{Described, DescribedError, NamedBounds};
 pub use error::ResidualError;
 pub use friction::{DryFriction, Forces, SmoothCoulomb, Stribeck, Viscous};
 pub use linear::Linear;

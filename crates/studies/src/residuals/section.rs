@@ -11,7 +11,7 @@ use serde::Serialize;
 use std::collections::BTreeSet;
 
 /// What the rows of a quantity are about, in the order of the table.
-const QUANTITIES: [(&str, &str); 8] = [
+const QUANTITIES: [(&str, &str); 9] = [
     ("sign", "true = nominal + r on an arm"),
     ("payload", "a payload against the loaded model"),
     ("well_posed", "where the acceleration is determined"),
@@ -20,6 +20,7 @@ const QUANTITIES: [(&str, &str); 8] = [
     ("power", "the balance of power"),
     ("passive", "projections onto passive residuals"),
     ("learning", "learned models"),
+    ("learning_draws", "learned models, further draws"),
 ];
 
 /// What the section draws: of each noise and model, times and the change of the true energy.
