@@ -123,7 +123,12 @@ fn body(rows: &[&Row], times: &[Time], chunk: &str) -> Markup {
                     }
                 }
                 li { "Times of the sweeps and of other engines begin with G, b and memory prepared. Those of the other two methods of ours include preparation." }
-                @for row in &unreached { li { (row.engine) " " (row.method) " on " (row.family) ": " (row.reason) "." } }
+            }
+            @if !unreached.is_empty() {
+                details {
+                    summary { (unreached.len()) " solvers of a robot have no time, because their answers do not come as near as asked" }
+                    ul { @for row in &unreached { li { (row.engine) " " (row.method) " on " (row.family) ": " (row.reason) "." } } }
+                }
             }
             div #contact-times.plot role="group" aria-label="Plot of solution times against contacts, per solver" {}
             div.scroll {
