@@ -146,7 +146,7 @@ impl Robot {
         self.convert(py, ("q", q, self.robot.nq()), size, |robot, q| robot.configuration_to(convention, q))
     }
 
-    fn from_engine<'py>(&self, py: Python<'py>, convention: Convention, q: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
+    fn neutral_from<'py>(&self, py: Python<'py>, convention: Convention, q: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
         let size = self.robot.nq_of(convention).map_err(failed)?;
         self.convert(py, ("q", q, size), self.robot.nq(), |robot, q| robot.configuration_from(convention, q))
     }
@@ -723,8 +723,9 @@ impl Robot {
     /// -------
     /// ndarray, shape (nq,) or (states, nq)
     ///     Configurations.
-    fn from_pinocchio<'py>(&self, py: Python<'py>, q: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
-        self.from_engine(py, Convention::Pinocchio, q)
+    #[pyo3(name = "from_pinocchio")]
+    fn neutral_from_pinocchio<'py>(&self, py: Python<'py>, q: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
+        self.neutral_from(py, Convention::Pinocchio, q)
     }
 
     /// Give MuJoCo's numbers of configurations: quaternions (w, x, y, z), free joints with the pose in the world.
@@ -753,8 +754,9 @@ impl Robot {
     /// -------
     /// ndarray, shape (nq,) or (states, nq)
     ///     Configurations.
-    fn from_mujoco<'py>(&self, py: Python<'py>, q: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
-        self.from_engine(py, Convention::MuJoCo, q)
+    #[pyo3(name = "from_mujoco")]
+    fn neutral_from_mujoco<'py>(&self, py: Python<'py>, q: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
+        self.neutral_from(py, Convention::MuJoCo, q)
     }
 
     /// Give Drake's numbers of configurations: free joints begin with the quaternion (w, x, y, z), spherical ones have roll, pitch, yaw.
@@ -783,8 +785,9 @@ impl Robot {
     /// -------
     /// ndarray, shape (nq,) or (states, nq)
     ///     Configurations.
-    fn from_drake<'py>(&self, py: Python<'py>, q: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
-        self.from_engine(py, Convention::Drake, q)
+    #[pyo3(name = "from_drake")]
+    fn neutral_from_drake<'py>(&self, py: Python<'py>, q: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
+        self.neutral_from(py, Convention::Drake, q)
     }
 
     /// Give an engine's numbers of velocities.
