@@ -1,6 +1,8 @@
 //! The Python package `featherbench`: robots and their dynamics on numpy arrays.
 
 mod arrays;
+mod coordinates;
+mod quantities;
 mod robot;
 mod states;
 
