@@ -13,6 +13,7 @@ from typing import Any, Protocol
 import numpy as np
 
 from featherbench_oracles.algebra import Array
+from featherbench_oracles.contacts import check_blocks
 from featherbench_oracles.messages import Answer, Blocks, Header
 from featherbench_oracles.protocol import Unsupported
 from featherbench_oracles.robot import Description
@@ -137,13 +138,7 @@ class StepsOnContacts:
             raise ValueError("dt must be positive and finite")
         shapes = {"points": (contacts, 3), "friction": (contacts,)}
         shapes |= {"q": (count, robot.nq), "v": (count, robot.nv), "tau": (count, robot.nv)}
-        for name, shape in shapes.items():
-            if name not in blocks or blocks[name].shape != shape:
-                raise ValueError(f"block {name} is missing or not of shape {list(shape)}")
-            if not np.isfinite(blocks[name]).all():
-                raise ValueError(f"block {name} has a number that is not finite")
-        if (blocks["friction"] < 0).any():
-            raise ValueError("a friction is negative")
+        check_blocks(blocks, shapes)
         self.steps = ContactSteps(robot, dt, bodies, **{name: blocks[name] for name in shapes})
         return {"nq": robot.nq, "nv": robot.nv}, {}
 

@@ -69,6 +69,30 @@ SolverTable = Mapping[str, MakeSolver]
 MOST_NUMBERS = 100_000_000
 
 
+def check_blocks(blocks: Blocks, shapes: Mapping[str, tuple[int, ...]]) -> None:
+    """Check the numbers of contacts.
+
+    Parameters
+    ----------
+    blocks : Blocks
+        What was sent; `friction` is among it.
+    shapes : mapping of str to tuple of int
+        The shape of each block.
+
+    Raises
+    ------
+    ValueError
+        If a block is missing, has another shape or a number that is not finite, or a friction is negative.
+    """
+    for name, shape in shapes.items():
+        if name not in blocks or blocks[name].shape != shape:
+            raise ValueError(f"block {name} is missing or not of shape {list(shape)}")
+        if not np.isfinite(blocks[name]).all():
+            raise ValueError(f"block {name} has a number that is not finite")
+    if (blocks["friction"] < 0).any():
+        raise ValueError("a friction is negative")
+
+
 class Contacts:
     """The problems of a session, and the solvers that are ready for them.
 
@@ -95,13 +119,7 @@ class Contacts:
         if count * rows * rows > MOST_NUMBERS:
             raise ValueError(f"{count} problems of {contacts} contacts are more than {MOST_NUMBERS} numbers")
         shapes = {"delassus": (count, rows, rows), "free": (count, rows), "friction": (count, contacts)}
-        for name, shape in shapes.items():
-            if name not in blocks or blocks[name].shape != shape:
-                raise ValueError(f"block {name} is missing or not of shape {list(shape)}")
-            if not np.isfinite(blocks[name]).all():
-                raise ValueError(f"block {name} has a number that is not finite")
-        if (blocks["friction"] < 0).any():
-            raise ValueError("a friction is negative")
+        check_blocks(blocks, shapes)
         each = zip(blocks["delassus"], blocks["free"], blocks["friction"], strict=True)
         self.problems = [ContactProblem(*numbers) for numbers in each]
         return {}, {}

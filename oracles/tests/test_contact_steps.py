@@ -1,4 +1,4 @@
-"""Steps on contacts: a body on one point against Euler's equations, and refusals."""
+"""Steps on contacts: a body on one point against Euler's equations, and errors."""
 
 from __future__ import annotations
 

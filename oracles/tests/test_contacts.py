@@ -1,4 +1,4 @@
-"""Contact problems: solutions by hand, and refusals."""
+"""Contact problems: solutions by hand, and errors."""
 
 from __future__ import annotations
 

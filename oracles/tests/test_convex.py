@@ -1,4 +1,4 @@
-"""Convex problems by Clarabel: solutions by hand, optimality conditions, and refusals."""
+"""Convex problems by Clarabel: solutions by hand, optimality conditions, and errors."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Robots with loops: accelerations and motions against closed forms, coordinates that come back, and refusals."""
+"""Robots with loops: accelerations and motions against closed forms, coordinates that come back, and errors."""
 
 from __future__ import annotations
 

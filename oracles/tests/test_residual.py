@@ -1,4 +1,4 @@
-"""A residual behind the protocol: its answers, and refusals."""
+"""A residual behind the protocol: its answers, and errors."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Scenes: motions by hand, laws of contact models, and refusals."""
+"""Scenes: motions by hand, laws of contact models, and errors."""
 
 from __future__ import annotations
 

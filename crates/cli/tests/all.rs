@@ -2,6 +2,7 @@
 
 mod alone;
 mod bad_input;
+mod command_line;
 mod conventions;
 mod datasets;
 mod described;
@@ -11,7 +12,6 @@ mod explain;
 mod external;
 mod folds;
 mod history_diff;
-mod manners;
 mod parsers;
 mod planted;
 mod residuals;

@@ -57,9 +57,9 @@ pub enum Element {
 /// Where the springs of rigid links are. h = L/n.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Hinges {
-    /// At the start of each link, each with stiffness EI/h: a quadrature of order 1, since the spring at the wall stands for h/2 only.
+    /// At the start of each link, each with stiffness EI/h: a quadrature of order 1, since the spring at the clamp stands for h/2 only.
     Start,
-    /// At the start of each link, with 2EI/h at the wall: the trapezoidal rule, of order 2.
+    /// At the start of each link, with 2EI/h at the clamp: the trapezoidal rule, of order 2.
     StartStiffWall,
     /// In the middle of each element, with EI/h: the midpoint rule, of order 2. Half an element is rigid with the host.
     Middle,

@@ -102,7 +102,7 @@ fn solved(alpha: f64) -> (Elastica, f64) {
 /// | hinges | Π₁ |
 /// |---|---|
 /// | start | −α sin θ_L/2 |
-/// | start, 2EI/h at the wall | −α² ∫ cos² θ/24 − α θ'(0)/24 |
+/// | start, 2EI/h at the clamp | −α² ∫ cos² θ/24 − α θ'(0)/24 |
 /// | middle | −α² ∫ cos² θ/24 + α θ'(0)/12 |
 ///
 /// NaN for α that is not positive.
@@ -283,7 +283,7 @@ pub fn hermite_frequency_prefactor(k: usize) -> f64 {
     cantilever_root(k).powi(4) / 1440.0
 }
 
-/// The same with a flex of edges, of nodes with masses, and 2EI/h at the wall: ω/ω_exact − 1 → this/n².
+/// The same with a flex of edges, of nodes with masses, and 2EI/h at the clamp: ω/ω_exact − 1 → this/n².
 ///
 /// On the exact mode w with ∫ w² = 1 the elastic energy is h²/12 ∫ w'''² less, where ∫ w'''² = β⁴ σβ (2 + σβ). Twice the kinetic energy is
 /// h²/6 w(1) w'(1) = h²/6·4σβ more. So c = −σβ (6 + σβ)/12.

@@ -3,9 +3,9 @@
 mod answers;
 mod beams;
 mod coupling;
+mod errors;
 mod laws;
 mod motion;
 mod prefactors;
-mod refusals;
 mod statics;
 mod wide;

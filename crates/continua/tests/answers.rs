@@ -26,7 +26,7 @@ fn shot(alpha: f64) -> [f64; 2] {
         DormandPrince::new(&slides).run(&mut rod, 0.0, 1.0, &mut q, &mut v, &tolerance, |_, _, _| ()).unwrap();
         (v[0], [q[1], q[2]])
     };
-    // The curvature at the wall is α times the reach, at most α and at most √(2α) by the first integral.
+    // The curvature at the clamp is α times the reach, at most α and at most √(2α) by the first integral.
     let (mut low, mut high) = (0.0, alpha.min((2.0 * alpha).sqrt()) * 1.0001);
     for _ in 0..60 {
         let middle = 0.5 * (low + high);

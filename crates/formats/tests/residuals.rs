@@ -1,4 +1,4 @@
-//! Residuals in files: exact round trips, the canonical form, refusals that name the place, and exports that say what they leave out.
+//! Residuals in files: exact round trips, the canonical form, errors that name the place, and exports that say what they leave out.
 
 use featherbench_formats::{OnLoss, Reason, mjcf, neutral, urdf};
 use featherbench_model::{DescribedResidual, Description, JointType, ResidualLaw};

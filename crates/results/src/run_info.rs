@@ -264,7 +264,7 @@ impl Culprit {
         Self { engine: name.to_owned(), ..Self::default() }
     }
 
-    /// Everyone a row names.
+    /// All that a row names.
     pub fn of(row: &Row) -> Self {
         Self {
             study: row.study.clone(),

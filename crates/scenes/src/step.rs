@@ -1,4 +1,4 @@
-//! A rigid step in time: semi-implicit Euler, with the contact problem of each step solved by whoever is asked.
+//! A rigid step in time: semi-implicit Euler, with the contact problem of each step solved by the solver that is given.
 //!
 //! ```text
 //! u  = v + dt (g + f/m),  ω + dt I⁻¹(−ω × I ω)     free velocity

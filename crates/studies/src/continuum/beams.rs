@@ -7,7 +7,7 @@
 //! |---|---|
 //! | rigid links, springs in the middle of elements | σβ/6 /n² |
 //! | rigid links, springs at their start | −1/n |
-//! | the same with 2EI/h at the wall | −σβ/3 /n² |
+//! | the same with 2EI/h at the clamp | −σβ/3 /n² |
 //! | constant curvature | σβ (2 + σβ)/24 /n² |
 //! | MuJoCo's flex of edges, clamped by an edge within the wall | −σβ (6 + σβ)/12 /n² |
 //! | PyElastica, with its first director held | 1/n |

@@ -272,13 +272,13 @@ fn refused() -> Case {
         params: json!({"mean": 1.0, "deviation": 0.1}),
         numbers: vec![count("refused", 1.0, "theory"), count("truncated_refused", 0.0, "theory")],
         evaluate: Box::new(move |_| {
-            let refusals = [normal, truncated].map(|distribution| -> Result<f64, NoAnswer> {
+            let refused = [normal, truncated].map(|distribution| -> Result<f64, NoAnswer> {
                 let mut robot = Family::parse("chain:n=1,layout=planar").and_then(|family| family.generate()).map_err(failed)?;
                 let on = vec![Target { body: 0, field: TargetField::Mass }];
                 robot.uncertain.variables = vec![UncertainVariable { name: "mass".into(), distribution, acts: Acts::Value, on }];
                 Ok(f64::from(u8::from(robot.validate().is_err())))
             });
-            refusals.into_iter().collect()
+            refused.into_iter().collect()
         }),
     }
 }
