@@ -9,8 +9,11 @@ Conventions
 - Units are SI and radians.
 
 `Robot.to_pinocchio`, `Robot.to_mujoco` and `Robot.to_drake` convert.
+
+`read_run` gives the rows of a run of the program as a frame; `compare` asks whether engines read a robot's file alike.
 """
 
 from featherbench._native import Error, Joint, Robot
+from featherbench._runs import Comparison, Question, RunError, compare, read_run
 
-__all__ = ["Error", "Joint", "Robot"]
+__all__ = ["Comparison", "Error", "Joint", "Question", "Robot", "RunError", "compare", "read_run"]

@@ -6,6 +6,8 @@ from typing import Literal, TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
+from featherbench._runs import Comparison, Question, RunError, compare, read_run
+
 _Scalar = TypeVar("_Scalar", np.float32, np.float64)
 _Double = NDArray[np.float64]
 _Engine = Literal["pinocchio", "mujoco", "drake"]
@@ -35,6 +37,7 @@ class Robot:
     def from_json(path: str | PathLike[str]) -> Robot: ...
     @staticmethod
     def generated(family: str) -> Robot: ...
+    def to_json(self) -> str: ...
     @property
     def name(self) -> str: ...
     @property
@@ -88,4 +91,4 @@ class Robot:
     def velocity_to(self, engine: _Engine, q: _Double, v: _Double) -> _Double: ...
     def force_to(self, engine: _Engine, q: _Double, tau: _Double) -> _Double: ...
 
-__all__ = ["Error", "Joint", "Robot"]
+__all__ = ["Comparison", "Error", "Joint", "Question", "Robot", "RunError", "compare", "read_run"]

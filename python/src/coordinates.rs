@@ -24,7 +24,7 @@ impl Robot {
         size: usize,
         f: impl Fn(&Library, &[f64]) -> Result<Vec<f64>, featherbench_library::Error> + Sync,
     ) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
-        map(py, &self.robot, [argument], &[size], Some(1), |workspace, [x], out| {
+        map(py, self, [argument], &[size], Some(1), |workspace, [x], out| {
             out.copy_from_slice(&f(workspace.robot(), x)?);
             Ok(())
         })
@@ -160,7 +160,7 @@ impl Robot {
         v: &Bound<'py, PyAny>,
     ) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
         let (engine, nq, nv) = (convention(engine)?, self.robot.nq(), self.robot.nv());
-        map(py, &self.robot, [("q", q, nq), ("v", v, nv)], &[nv], Some(1), |workspace, [q, v], out| {
+        map(py, self, [("q", q, nq), ("v", v, nv)], &[nv], Some(1), |workspace, [q, v], out| {
             out.copy_from_slice(&workspace.robot().velocity_to(engine, q, v)?);
             Ok(())
         })
@@ -189,7 +189,7 @@ impl Robot {
         tau: &Bound<'py, PyAny>,
     ) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
         let (engine, nq, nv) = (convention(engine)?, self.robot.nq(), self.robot.nv());
-        map(py, &self.robot, [("q", q, nq), ("tau", tau, nv)], &[nv], Some(1), |workspace, [q, tau], out| {
+        map(py, self, [("q", q, nq), ("tau", tau, nv)], &[nv], Some(1), |workspace, [q, tau], out| {
             out.copy_from_slice(&workspace.robot().force_to(engine, q, tau)?);
             Ok(())
         })

@@ -182,7 +182,7 @@ impl Robot {
         threads: Option<usize>,
     ) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
         let (nq, nv) = (self.robot.nq(), self.robot.nv());
-        map(py, &self.robot, [("q", q, nq), ("v", v, nv)], &[nv], threads, |workspace, [q, v], out| workspace.bias_force(q, v, None, out))
+        map(py, self, [("q", q, nq), ("v", v, nv)], &[nv], threads, |workspace, [q, v], out| workspace.bias_force(q, v, None, out))
     }
 
     /// Compute joint-space inertia matrices.
@@ -201,7 +201,7 @@ impl Robot {
     #[pyo3(signature = (q, *, threads = Some(1)))]
     fn mass_matrix<'py>(&self, py: Python<'py>, q: &Bound<'py, PyAny>, threads: Option<usize>) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
         let (nq, nv) = (self.robot.nq(), self.robot.nv());
-        map(py, &self.robot, [("q", q, nq)], &[nv, nv], threads, |workspace, [q], out| {
+        map(py, self, [("q", q, nq)], &[nv, nv], threads, |workspace, [q], out| {
             let matrix = workspace.mass_matrix(q)?;
             out.chunks_exact_mut(nv).enumerate().for_each(|(i, row)| row.iter_mut().enumerate().for_each(|(j, m)| *m = matrix.get(i, j)));
             Ok(())
@@ -232,7 +232,7 @@ impl Robot {
         threads: Option<usize>,
     ) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
         let (nq, nv) = (self.robot.nq(), self.robot.nv());
-        map(py, &self.robot, [("q", q, nq), ("b", b, nv)], &[nv], threads, |workspace, [q, b], out| {
+        map(py, self, [("q", q, nq), ("b", b, nv)], &[nv], threads, |workspace, [q, b], out| {
             out.copy_from_slice(b);
             workspace.solve(q, out)
         })
@@ -262,7 +262,7 @@ impl Robot {
         threads: Option<usize>,
     ) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
         let frame = self.robot.frame(frame).map_err(failed)?;
-        map(py, &self.robot, [("q", q, self.robot.nq())], &[4, 4], threads, |workspace, [q], out| {
+        map(py, self, [("q", q, self.robot.nq())], &[4, 4], threads, |workspace, [q], out| {
             let x = workspace.placements(q)?.placement(&frame)?;
             let (rotation, translation) = (x.rotation.to_array(), x.translation.to_array());
             for i in 0..3 {
@@ -303,7 +303,7 @@ impl Robot {
     ) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
         let frame = self.robot.frame(frame).map_err(failed)?;
         let (nq, nv) = (self.robot.nq(), self.robot.nv());
-        map(py, &self.robot, [("q", q, nq), ("v", v, nv), ("a", a, nv)], &[2, 6], threads, |workspace, [q, v, a], out| {
+        map(py, self, [("q", q, nq), ("v", v, nv), ("a", a, nv)], &[2, 6], threads, |workspace, [q, v, a], out| {
             let motion = workspace.kinematics(q, v, a)?.motion(&frame)?;
             out[..6].copy_from_slice(&motion.velocity.to_array());
             out[6..].copy_from_slice(&motion.acceleration.to_array());
@@ -336,7 +336,7 @@ impl Robot {
     ) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
         let frame = self.robot.frame(frame).map_err(failed)?;
         let (nq, nv) = (self.robot.nq(), self.robot.nv());
-        map(py, &self.robot, [("q", q, nq)], &[6, nv], threads, |workspace, [q], out| {
+        map(py, self, [("q", q, nq)], &[6, nv], threads, |workspace, [q], out| {
             for (j, column) in workspace.jacobian(q, &frame)?.iter().enumerate() {
                 column.to_array().into_iter().enumerate().for_each(|(i, x)| out[i * nv + j] = x);
             }
@@ -369,7 +369,7 @@ impl Robot {
         threads: Option<usize>,
     ) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
         let (nq, nv) = (self.robot.nq(), self.robot.nv());
-        map(py, &self.robot, [("q", q, nq), ("v", v, nv), ("a", a, nv)], &[3, nv, nv], threads, |workspace, [q, v, a], out| {
+        map(py, self, [("q", q, nq), ("v", v, nv), ("a", a, nv)], &[3, nv, nv], threads, |workspace, [q, v, a], out| {
             let partials = workspace.inverse_dynamics_derivatives(q, v, a, None)?;
             let (by_q, rest) = out.split_at_mut(nv * nv);
             let (by_v, by_a) = rest.split_at_mut(nv * nv);
@@ -407,7 +407,7 @@ impl Robot {
         threads: Option<usize>,
     ) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
         let (nq, nv) = (self.robot.nq(), self.robot.nv());
-        map(py, &self.robot, [("q", q, nq), ("v", v, nv), ("tau", tau, nv)], &[3, nv, nv], threads, |workspace, [q, v, tau], out| {
+        map(py, self, [("q", q, nq), ("v", v, nv), ("tau", tau, nv)], &[3, nv, nv], threads, |workspace, [q, v, tau], out| {
             let partials = workspace.forward_dynamics_derivatives(q, v, tau, None)?;
             for (out, part) in out.chunks_exact_mut(nv * nv).zip([&partials.q, &partials.v, &partials.tau]) {
                 out.copy_from_slice(part);

@@ -126,6 +126,16 @@ impl Robot {
         Library::generated(family).map(Self::new).map_err(failed)
     }
 
+    /// Write the neutral description, which `from_json` reads.
+    ///
+    /// Returns
+    /// -------
+    /// str
+    ///     JSON.
+    fn to_json(&self) -> PyResult<String> {
+        self.robot.to_json().map_err(failed)
+    }
+
     /// The robot's name.
     #[getter]
     fn name(&self) -> &str {
@@ -228,9 +238,7 @@ impl Robot {
     ///     q plus v, on the space of configurations.
     fn integrate<'py>(&self, py: Python<'py>, q: &Bound<'py, PyAny>, v: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
         let (nq, nv) = (self.robot.nq(), self.robot.nv());
-        map(py, &self.robot, [("q", q, nq), ("v", v, nv)], &[nq], Some(1), |workspace, [q, v], out| {
-            workspace.robot().integrate_into(q, v, out)
-        })
+        map(py, self, [("q", q, nq), ("v", v, nv)], &[nq], Some(1), |workspace, [q, v], out| workspace.robot().integrate_into(q, v, out))
     }
 
     /// Give the velocities that lead from one configuration to another in a unit of time.
@@ -251,7 +259,7 @@ impl Robot {
         end: &Bound<'py, PyAny>,
     ) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
         let (nq, nv) = (self.robot.nq(), self.robot.nv());
-        map(py, &self.robot, [("start", start, nq), ("end", end, nq)], &[nv], Some(1), |workspace, [from, to], out| {
+        map(py, self, [("start", start, nq), ("end", end, nq)], &[nv], Some(1), |workspace, [from, to], out| {
             workspace.robot().difference_into(from, to, out)
         })
     }

@@ -2,7 +2,8 @@
 
 use crate::Error;
 use crate::arrays::{States, numbers, output};
-use featherbench_library::{Error as LibraryError, Robot, Workspace};
+use crate::robot::Robot;
+use featherbench_library::{Error as LibraryError, Workspace};
 use numpy::PyArrayDyn;
 use pyo3::prelude::*;
 use rayon::prelude::*;
@@ -94,11 +95,11 @@ pub(crate) fn map<'py, const N: usize>(
         parts
     };
     match states[0].1 {
-        None => each(&mut robot.workspace(), part(0), result).map_err(failed)?,
+        None => robot.with_workspace(|workspace| each(workspace, part(0), result)).map_err(failed)?,
         Some(0) => {}
         Some(_) => {
             let run = |first: usize, results: &mut [f64]| -> Result<(), (usize, LibraryError)> {
-                let mut workspace = robot.workspace();
+                let mut workspace = robot.robot.workspace();
                 for (k, result) in results.chunks_exact_mut(each_size).enumerate() {
                     each(&mut workspace, part(first + k), result).map_err(|error| (first + k, error))?;
                 }

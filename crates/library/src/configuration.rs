@@ -79,22 +79,22 @@ impl Robot {
         check_result("q ⊕ v", result)
     }
 
-    /// to ⊖ from: the velocity that leads from `from` to `to` in a unit of time. Rotations take the shortest way.
+    /// end ⊖ start: the velocity that leads from `start` to `end` in a unit of time. Rotations take the shortest way.
     ///
     /// # Errors
     /// [`Error`] when an argument does not fit the robot.
     ///
     /// ```
     /// let robot = featherbench_library::Robot::generated("humanoid")?;
-    /// let (from, to) = (robot.random(1), robot.random(2));
-    /// let there = robot.integrate(&from, &robot.difference(&from, &to)?)?;
-    /// let left = robot.difference(&there, &to)?;
+    /// let (start, end) = (robot.random(1), robot.random(2));
+    /// let there = robot.integrate(&start, &robot.difference(&start, &end)?)?;
+    /// let left = robot.difference(&there, &end)?;
     /// assert!(left.iter().all(|x| x.abs() < 1e-13));
     /// # Ok::<(), featherbench_library::Error>(())
     /// ```
-    pub fn difference(&self, from: &[f64], to: &[f64]) -> Result<Vec<f64>, Error> {
+    pub fn difference(&self, start: &[f64], end: &[f64]) -> Result<Vec<f64>, Error> {
         let mut v = vec![0.0; self.nv()];
-        self.difference_into(from, to, &mut v)?;
+        self.difference_into(start, end, &mut v)?;
         Ok(v)
     }
 
@@ -110,12 +110,12 @@ impl Robot {
     /// assert_eq!(v, [0.5, 0.0]);
     /// # Ok::<(), featherbench_library::Error>(())
     /// ```
-    pub fn difference_into(&self, from: &[f64], to: &[f64], v: &mut [f64]) -> Result<(), Error> {
-        self.check_q("from", from)?;
-        self.check_q("to", to)?;
+    pub fn difference_into(&self, start: &[f64], end: &[f64], v: &mut [f64]) -> Result<(), Error> {
+        self.check_q("start", start)?;
+        self.check_q("end", end)?;
         check_length("v", self.nv(), v.len())?;
-        self.inner.model.topology.difference(from, to, v)?;
-        check_result("to ⊖ from", v)
+        self.inner.model.topology.difference(start, end, v)?;
+        check_result("end ⊖ start", v)
     }
 
     /// An error, unless `q` has `nq` finite numbers and each of its quaternions is a rotation.

@@ -1,0 +1,5 @@
+from featherbench import Error, Joint, Robot
+
+def checksum(content: bytes) -> str: ...
+
+__all__ = ["Error", "Joint", "Robot", "checksum"]
