@@ -73,7 +73,7 @@ def main() -> None:
     parser.add_argument("--rounds", type=int, default=7)
     parser.add_argument("--threads", type=int, default=os.cpu_count() or 1, help="what all cores are")
     parser.add_argument("--json", type=Path, help="where the table is written")
-    parser.add_argument("robots", nargs="*", default=["panda", "talos", "chain:n=36,layout=spatial"], help="descriptions, or families")
+    parser.add_argument("robots", nargs="*", default=["panda", "humanoid", "chain:n=36,layout=spatial"], help="descriptions, or families")
     arguments = parser.parse_args()
     order, table = np.random.default_rng(1), []
     for name in arguments.robots:
