@@ -1,7 +1,7 @@
 """Time one state per call, and the import.
 
-The overhead of a call is the time of a call for a pendulum of one joint: its kernel takes some ten nanoseconds. Rounds alternate; medians are
-printed.
+The overhead of a call is the time of a call for a pendulum of one joint: its kernel takes some ten nanoseconds. Rounds alternate; medians
+are printed.
 """
 
 from __future__ import annotations
