@@ -89,6 +89,28 @@ impl Robot {
         read.map(Self::new).map_err(failed)
     }
 
+    /// Read an MJCF file, as far as that needs no compiler of MuJoCo.
+    ///
+    /// Parameters
+    /// ----------
+    /// path : str or os.PathLike
+    ///     The file. Bodies, joints, inertials, classes and shapes of closed form are read. Included files, and meshes without an
+    ///     inertial, are errors.
+    ///
+    /// Returns
+    /// -------
+    /// Robot
+    ///     The robot, with MuJoCo's coordinates but for quaternions, which end with w, and velocities of a free joint, in body axes.
+    ///
+    /// Raises
+    /// ------
+    /// Error
+    ///     Naming file, line, column and the body.
+    #[staticmethod]
+    fn from_mjcf(path: PathBuf) -> PyResult<Self> {
+        Library::from_mjcf(path).map(Self::new).map_err(failed)
+    }
+
     /// Read a neutral description file, which `featherbench gen` writes from URDF and MJCF.
     ///
     /// Parameters

@@ -43,7 +43,7 @@ def arguments(method, states):
 
 
 def test_every_method_of_arrays_is_here():
-    known = {"from_urdf", "from_json", "generated", "neutral", "random", "to_json", "from_drake"}
+    known = {"from_urdf", "from_mjcf", "from_json", "generated", "neutral", "random", "to_json", "from_drake"}
     public = {name for name in dir(featherbench.Robot) if not name.startswith("_") and callable(getattr(featherbench.Robot, name))}
     assert public - known == set(METHODS)
 

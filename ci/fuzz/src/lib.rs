@@ -20,8 +20,9 @@ use std::sync::LazyLock;
 pub type Target = fn(&[u8]);
 
 /// Every target by its name, which is that of its folder of seeds.
-pub const TARGETS: [(&str, Target); 10] = [
+pub const TARGETS: [(&str, Target); 11] = [
     ("urdf", urdf_file),
+    ("mjcf", mjcf_file),
     ("neutral", neutral_file),
     ("message", message),
     ("recording", recording),
@@ -55,6 +56,18 @@ pub fn urdf_file(bytes: &[u8]) {
         let (twice, _) = urdf::to_string(&again, OnLoss::LeaveOut).unwrap_or_else(|error| panic!("{error}\n{written}"));
         assert_eq!(twice, written, "a second trip changes nothing");
     }
+}
+
+/// An MJCF file; what is read goes into MJCF and back to the same text.
+pub fn mjcf_file(bytes: &[u8]) {
+    let Ok((robot, _)) = mjcf::import(text(bytes), "fuzzed") else { return };
+    assert_eq!(robot.canonical().as_ref(), Ok(&robot), "what is read is canonical");
+    let Ok((written, _)) = mjcf::to_string(&robot, OnLoss::LeaveOut) else { return };
+    // A mass that MuJoCo refuses is a loss of the writer, and an error of the reader.
+    let Ok((again, _)) = mjcf::import(&written, "written") else { return };
+    let (twice, _) = mjcf::to_string(&again, OnLoss::LeaveOut).unwrap_or_else(|error| panic!("{error}\n{written}"));
+    let (third, _) = mjcf::import(&twice, "twice").unwrap_or_else(|error| panic!("{error}\n{twice}"));
+    assert_eq!(mjcf::to_string(&third, OnLoss::LeaveOut).map(|(text, _)| text).ok(), Some(twice), "a further trip changes nothing");
 }
 
 /// A description file; what is read is written to the same numbers.

@@ -64,6 +64,9 @@ fn seeds_are_good() {
     for name in ["urdf/arm.urdf", "urdf/floating.urdf"] {
         featherbench_formats::urdf::import(&read(name), name, &options).unwrap_or_else(|error| panic!("{error}"));
     }
+    for name in ["mjcf/arm.xml", "mjcf/short.xml"] {
+        featherbench_formats::mjcf::import(&read(name), name).unwrap_or_else(|error| panic!("{error}"));
+    }
     for name in ["neutral/all.json", "neutral/short.json"] {
         featherbench_formats::neutral::parse(&read(name), name).unwrap_or_else(|error| panic!("{error}"));
     }

@@ -1,4 +1,4 @@
-//! File formats of robots: the neutral description file ([`neutral`]), URDF ([`urdf`]) and, to write only, MJCF ([`mjcf`]).
+//! File formats of robots: the neutral description file ([`neutral`]), URDF ([`urdf`]) and MJCF ([`mjcf`]).
 //!
 //! Reading never panics, and repairs nothing without a note. An error is typed and names file, line and field. What was left out is a note.
 //! Sizes are limited; nothing recurses on the input.
@@ -6,6 +6,7 @@
 mod export;
 pub mod mjcf;
 pub mod neutral;
+mod solid;
 mod text;
 pub mod urdf;
 

@@ -3,6 +3,7 @@
 mod continua;
 mod datasets;
 mod loops;
+mod mjcf_import;
 mod neutral;
 mod residuals;
 mod robots;

@@ -2,6 +2,7 @@
 
 use crate::Convention;
 use featherbench_dynamics::{BatchError, DimensionError, NotPositiveDefinite};
+use featherbench_formats::mjcf::MjcfError;
 use featherbench_formats::neutral::NeutralError;
 use featherbench_formats::urdf::UrdfError;
 use featherbench_model::Malformed;
@@ -24,6 +25,9 @@ pub enum Error {
     /// A URDF file cannot be read.
     #[error(transparent)]
     Urdf(#[from] UrdfError),
+    /// An MJCF file cannot be read.
+    #[error(transparent)]
+    Mjcf(#[from] MjcfError),
     /// A description file cannot be read.
     #[error(transparent)]
     Neutral(#[from] NeutralError),
@@ -34,10 +38,7 @@ pub enum Error {
     #[error(transparent)]
     Family(#[from] BadFamily),
     /// The ending of a file's name is not one that is read.
-    #[error(
-        "{path}: the name ends neither in .urdf nor in .json. An MJCF is compiled by MuJoCo: \
-         `featherbench gen mjcf --file IN --out OUT.json` writes a description that can be read here"
-    )]
+    #[error("{path}: the name ends neither in .urdf nor in .xml (MJCF) nor in .json; read it by `from_urdf`, `from_mjcf` or `from_json`")]
     UnknownEnding {
         /// The file as the caller named it.
         path: String,

@@ -35,7 +35,8 @@
 //! What is here in [`spatial`], [`model`], [`formats`], [`dynamics`] and [`robots`] is all of these crates: second derivatives, regressors,
 //! integrators and more.
 //!
-//! An MJCF is compiled by MuJoCo alone. `featherbench gen mjcf --file IN --out OUT.json` writes what [`Robot::from_json`] reads.
+//! [`Robot::from_mjcf`] reads what needs no compiler of MuJoCo. `featherbench gen mjcf --file IN --out OUT.json` compiles the rest by MuJoCo, and
+//! writes what [`Robot::from_json`] reads.
 //!
 //! # Conventions
 //!

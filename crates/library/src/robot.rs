@@ -115,7 +115,7 @@ impl Robot {
     /// ```
     pub fn from_urdf(path: impl AsRef<Path>) -> Result<Self, Error> {
         let (description, notes) = urdf::read(path, &with_base(Base::Fixed))?;
-        Self::noted(&description, notes)
+        Self::noted(&description, &notes)
     }
 
     /// The same with a free joint, `root_joint`, between the world and the root link.
@@ -128,7 +128,7 @@ impl Robot {
     /// ```
     pub fn from_urdf_floating(path: impl AsRef<Path>) -> Result<Self, Error> {
         let (description, notes) = urdf::read(path, &with_base(Base::Floating))?;
-        Self::noted(&description, notes)
+        Self::noted(&description, &notes)
     }
 
     /// Reads URDF from a text; `name` stands for the file in errors.
@@ -149,7 +149,7 @@ impl Robot {
     pub fn from_urdf_text(text: &str, name: &str, floating: bool) -> Result<Self, Error> {
         let base = if floating { Base::Floating } else { Base::Fixed };
         let (description, notes) = urdf::import(text, name, &with_base(base))?;
-        Self::noted(&description, notes)
+        Self::noted(&description, &notes)
     }
 
     /// Reads a neutral description file (`datasets/models/FORMAT.md`), which `featherbench gen` writes from URDF and MJCF.
@@ -164,19 +164,53 @@ impl Robot {
         Self::from_description(&neutral::read(path)?)
     }
 
-    /// Reads a file by the ending of its name: `.urdf` (fixed to the world) or `.json`.
+    /// Reads an MJCF file, as far as that needs no compiler of MuJoCo ([`featherbench_formats::mjcf`] says what is read).
+    ///
+    /// # Errors
+    /// [`Error::Mjcf`], naming file, line, column and the body.
+    ///
+    /// ```
+    /// use featherbench_library::{Error, Robot};
+    /// let missing = Robot::from_mjcf("no_such_scene.xml").unwrap_err();
+    /// assert!(matches!(missing, Error::Mjcf(_)) && missing.to_string().starts_with("no_such_scene.xml"));
+    /// ```
+    pub fn from_mjcf(path: impl AsRef<Path>) -> Result<Self, Error> {
+        let (description, notes) = mjcf::read(path)?;
+        Self::noted(&description, &notes)
+    }
+
+    /// Reads MJCF from a text; `name` stands for the file in errors.
+    ///
+    /// # Errors
+    /// [`Error::Mjcf`].
+    ///
+    /// ```
+    /// use featherbench_library::Robot;
+    /// let text = r#"<mujoco><worldbody><body><joint axis="0 1 0"/><geom type="sphere" size="0.1" pos="0 0 -0.5" mass="1"/></body></worldbody></mujoco>"#;
+    /// let robot = Robot::from_mjcf_text(text, "pendulum.xml")?;
+    /// let tau = robot.inverse_dynamics(&[std::f64::consts::FRAC_PI_2], &[0.0], &[0.0])?;
+    /// assert!((tau[0] - 9.81 * 0.5).abs() < 1e-12, "m g l");
+    /// # Ok::<(), featherbench_library::Error>(())
+    /// ```
+    pub fn from_mjcf_text(text: &str, name: &str) -> Result<Self, Error> {
+        let (description, notes) = mjcf::import(text, name)?;
+        Self::noted(&description, &notes)
+    }
+
+    /// Reads a file by the ending of its name: `.urdf` (fixed to the world), `.xml` (MJCF) or `.json`.
     ///
     /// # Errors
     /// That of the reader, or [`Error::UnknownEnding`].
     ///
     /// ```
     /// use featherbench_library::{Error, Robot};
-    /// assert!(matches!(Robot::from_file("scene.xml"), Err(Error::UnknownEnding { .. })));
+    /// assert!(matches!(Robot::from_file("robot.sdf"), Err(Error::UnknownEnding { .. })));
     /// ```
     pub fn from_file(path: impl AsRef<Path>) -> Result<Self, Error> {
         let path = path.as_ref();
         match path.extension().and_then(|ending| ending.to_str()) {
             Some("urdf") => Self::from_urdf(path),
+            Some("xml") => Self::from_mjcf(path),
             Some("json") => Self::from_json(path),
             _ => Err(Error::UnknownEnding { path: path.display().to_string() }),
         }
@@ -193,7 +227,7 @@ impl Robot {
     /// assert!(Robot::from_description(&Description::default()).is_err(), "a robot has at least one body that moves");
     /// ```
     pub fn from_description(description: &Description) -> Result<Self, Error> {
-        Self::noted(description, Vec::new())
+        Self::noted(description, &[] as &[String])
     }
 
     /// A generated robot, such as `chain:n=36,layout=spatial`, `humanoid`, `quadruped` or `tree:n=100`.
@@ -210,7 +244,7 @@ impl Robot {
         Self::from_description(&Family::parse(family)?.generate()?)
     }
 
-    fn noted(description: &Description, notes: Vec<urdf::Note>) -> Result<Self, Error> {
+    fn noted(description: &Description, notes: &[impl ToString]) -> Result<Self, Error> {
         let model = Model::build(description)?;
         let description = description.canonical()?;
         let (mut q, mut v) = (0, 0);

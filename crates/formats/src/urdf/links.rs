@@ -3,11 +3,11 @@
 use super::elements::{Link, origin};
 use super::error::At;
 use super::xml::Element;
+use crate::solid::{self, Solid};
 use crate::text;
 use featherbench_model::Placement;
 use featherbench_spatial::{RigidBodyInertia, Sym3, Transform, Vec3};
 use roxmltree::Node;
-use std::f64::consts::PI;
 
 /// Mass properties, in axes of their own.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -82,7 +82,7 @@ fn solids(link: Element, density: f64) -> Result<Option<Inertial>, At> {
     for node in link.node.children().filter(|node| node.has_tag_name("collision")) {
         let collision = Element { node, ..link };
         let shape = collision.optional("geometry")?.and_then(|geometry| geometry.node.children().find(Node::is_element));
-        let Some((volume, moments)) = shape.map(|node| solid(Element { node, ..link })).transpose()?.flatten() else { return Ok(None) };
+        let Some((volume, moments)) = shape.map(|node| of_shape(Element { node, ..link })).transpose()?.flatten() else { return Ok(None) };
         let Placement { rotation, translation } = origin(collision)?;
         let place = Transform::new(featherbench_spatial::Mat3::from_array(rotation), Vec3::from_array(translation));
         let mass = density * volume;
@@ -96,26 +96,13 @@ fn solids(link: Element, density: f64) -> Result<Option<Inertial>, At> {
     }))
 }
 
-/// Volume (m³) and moments of inertia per mass (m²) of a shape about its centre; `None` of an unknown shape.
-fn solid(shape: Element) -> Result<Option<(f64, [f64; 3])>, At> {
+/// A shape as a solid; `None` of an unknown shape.
+fn of_shape(shape: Element) -> Result<Option<Solid>, At> {
     Ok(match shape.node.tag_name().name() {
-        "box" => shape.optional_vector("size")?.map(|[x, y, z]| {
-            let (xx, yy, zz) = (x * x / 12.0, y * y / 12.0, z * z / 12.0);
-            (x * y * z, [yy + zz, xx + zz, xx + yy])
-        }),
-        "sphere" => shape.optional_number("radius")?.map(|r| (4.0 / 3.0 * PI * r.powi(3), [0.4 * r * r; 3])),
-        "cylinder" => shape.optional_number("radius")?.zip(shape.optional_number("length")?).map(|(r, l)| {
-            let across = r * r / 4.0 + l * l / 12.0;
-            (PI * r * r * l, [across, across, r * r / 2.0])
-        }),
-        "capsule" => shape.optional_number("radius")?.zip(shape.optional_number("length")?).map(|(r, l)| {
-            // A cylinder, and two half balls whose centres of mass are 3r/8 beyond its ends.
-            let (middle, ends) = (PI * r * r * l, 4.0 / 3.0 * PI * r.powi(3));
-            let ball = 0.4 * r * r + l * l / 4.0 + 3.0 / 8.0 * l * r;
-            let across = (middle * (r * r / 4.0 + l * l / 12.0) + ends * ball) / (middle + ends);
-            let along = (middle * r * r / 2.0 + ends * 0.4 * r * r) / (middle + ends);
-            (middle + ends, [across, across, along])
-        }),
+        "box" => shape.optional_vector("size")?.map(solid::cuboid),
+        "sphere" => shape.optional_number("radius")?.map(solid::ball),
+        "cylinder" => shape.optional_number("radius")?.zip(shape.optional_number("length")?).map(|(r, l)| solid::cylinder(r, l)),
+        "capsule" => shape.optional_number("radius")?.zip(shape.optional_number("length")?).map(|(r, l)| solid::capsule(r, l)),
         _ => None,
     })
 }

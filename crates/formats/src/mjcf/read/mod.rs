@@ -1,0 +1,98 @@
+//! Reading MJCF: nested bodies with their joints as a neutral description.
+
+mod element;
+mod error;
+mod inertial;
+mod joint;
+mod settings;
+mod tree;
+
+pub use error::{MjcfError, MjcfProblem};
+
+use crate::{Place, text};
+use error::At;
+use featherbench_model::Description;
+use roxmltree::{Document, ParsingOptions};
+use std::fmt;
+use std::path::Path;
+
+/// The largest file that is read, bytes.
+pub const LIMIT: usize = 10 << 20;
+/// More nodes than any robot has; each costs some hundred bytes.
+const MOST_NODES: u32 = 1_000_000;
+
+/// Something that was left out.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Note {
+    /// The line it is about, counted from 1.
+    pub line: usize,
+    /// What was done.
+    pub text: String,
+}
+
+impl fmt::Display for Note {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "line {}: {}", self.line, self.text)
+    }
+}
+
+/// Reads an MJCF file: a canonical description, and notes in the order of the file.
+///
+/// # Errors
+/// [`MjcfError`], naming file, line, column and the body.
+pub fn read(path: impl AsRef<Path>) -> Result<(Description, Vec<Note>), MjcfError> {
+    let path = path.as_ref();
+    let file = path.display().to_string();
+    match text::read(path, LIMIT) {
+        Ok(text) => import(&text, &file),
+        Err(error) => Err(MjcfError { place: Place { file, position: None }, problem: Box::new(error.into()) }),
+    }
+}
+
+/// Imports MJCF from a text; `file` is its name in errors.
+///
+/// ```
+/// let text = r#"<mujoco model="pendulum"><worldbody><body name="arm">
+///   <joint name="hinge" axis="0 1 0"/><inertial pos="0 0 -1" mass="2" diaginertia="0.1 0.1 0.01"/>
+/// </body></worldbody></mujoco>"#;
+/// let (robot, notes) = featherbench_formats::mjcf::import(text, "pendulum.xml")?;
+/// assert_eq!((robot.nv(), robot.bodies[0].mass, notes.len()), (1, 2.0, 0));
+/// # Ok::<(), featherbench_formats::mjcf::MjcfError>(())
+/// ```
+///
+/// # Errors
+/// [`MjcfError`], naming file, line, column and the body.
+pub fn import(text: &str, file: &str) -> Result<(Description, Vec<Note>), MjcfError> {
+    let place = |position| Place { file: file.to_owned(), position };
+    let text = text::check(text, LIMIT).map_err(|problem| MjcfError { place: place(None), problem: Box::new(problem.into()) })?;
+    let read = || -> Result<_, At> {
+        let document = parse(text)?;
+        let root = document.root_element();
+        if !root.has_tag_name("mujoco") {
+            return Err(MjcfProblem::NotMujoco { found: root.tag_name().name().to_owned() }.at(root.range().start));
+        }
+        tree::assemble(root, file)
+    };
+    let (description, notes) = read().map_err(|At { offset, problem }| {
+        let of_parser = if let MjcfProblem::Xml { position, .. } = &problem { Some(*position) } else { None };
+        let position = offset.map(|offset| text::position(text, offset)).or(of_parser);
+        MjcfError { place: place(position), problem: Box::new(problem) }
+    })?;
+    let lines = text::Lines::new(text);
+    let note = |(offset, text): (usize, String)| Note { line: lines.line(offset), text };
+    Ok((description, notes.into_iter().map(note).collect()))
+}
+
+/// The document of a text. Entities are off, and the parser keeps its own stack.
+fn parse(text: &str) -> Result<Document<'_>, At> {
+    let options = ParsingOptions { allow_dtd: false, nodes_limit: MOST_NODES, ..ParsingOptions::default() };
+    Document::parse_with_options(text, options).map_err(|error| match error {
+        roxmltree::Error::DtdDetected => MjcfProblem::DocumentType.at(text.find("<!DOCTYPE").unwrap_or(0)),
+        other => {
+            let (place, message) = (other.pos(), other.to_string());
+            let position = (place.row as usize, place.col as usize);
+            let message = message.strip_suffix(&format!(" at {place}")).unwrap_or(&message).to_owned();
+            At { offset: None, problem: MjcfProblem::Xml { message, position } }
+        }
+    })
+}
