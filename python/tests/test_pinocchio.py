@@ -12,7 +12,7 @@ import featherbench
 
 pin = pytest.importorskip("pinocchio", reason="Pinocchio is not installed")
 
-URDF = Path(__file__).with_name("arm.urdf")
+URDF = Path(__file__).parents[2] / "guide" / "arm.urdf"
 STATES = 50
 # Both sides round some hundred operations on numbers below a hundred.
 FORMED = 1e-12

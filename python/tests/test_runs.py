@@ -12,7 +12,7 @@ import featherbench
 from featherbench import _program
 from featherbench._native import checksum
 
-HERE = Path(__file__).parent
+ARM = Path(__file__).parents[2] / "guide" / "arm.urdf"
 
 
 @pytest.fixture(scope="module")
@@ -85,7 +85,7 @@ def test_another_format_is_refused(tmp_path):
 
 def test_a_comparison_is_an_object(program, tmp_path):
     pytest.importorskip("pinocchio", reason="pinocchio is not installed")
-    found = featherbench.compare(HERE / "arm.urdf", engines=["pinocchio"], out=tmp_path / "compare")
+    found = featherbench.compare(ARM, engines=["pinocchio"], out=tmp_path / "compare")
     assert found.folder == tmp_path / "compare"
     assert {question.engine for question in found.questions} == {"pinocchio"}
     # Pinocchio reads a plain arm as it is written.
