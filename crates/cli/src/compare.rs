@@ -10,12 +10,13 @@ use crate::robots;
 use crate::root::Root;
 use crate::run::About;
 use crate::say::say;
-use crate::{outcome, report, robot_file, run, say, table};
+use crate::{compared, outcome, report, robot_file, run, say, table};
 use ::featherbench_results::{ModelOrigin, Verdict};
 use featherbench_bench::run::{Opening, Run};
 use featherbench_bench::{Cell, Context, Engine, Engines, FileFormat, OWN, Robot, RobotFile, hash, provenance};
 use featherbench_engines::Limits;
 use featherbench_model::Warning;
+use featherbench_studies::import::answers;
 use featherbench_studies::{Agreement, Import};
 use std::time::{Duration, Instant, SystemTime};
 
@@ -99,13 +100,19 @@ pub fn compare(root: &Root, args: &CompareArgs) -> Result<(), Fail> {
     run.write(&records)?;
     let page = report::render(&folder, &run.info, &records)?;
     let info = &run.info;
-    for (robot, (_, remarks)) in robots.iter().zip(&remarks) {
-        say::text(&table::of(robot, remarks, &opened.engines, &records));
-    }
-    say!("report: {}", page.display());
     let unmet: Vec<_> = info.expected.iter().filter(|condition| condition.verdict != Verdict::Pass).collect();
-    for condition in &unmet {
-        say!("differs: {}: {}", condition.what, condition.reason);
+    if args.json {
+        let told: Vec<(&Robot, &[String])> = robots.iter().zip(remarks.iter().map(|(_, remarks)| remarks.as_slice())).collect();
+        say!("{:#}", compared::json(info, &page, &told, &records, &bad));
+    } else {
+        say::text(&table::answers(&answers(&records)));
+        for (robot, (_, remarks)) in robots.iter().zip(&remarks) {
+            say::text(&table::of(robot, remarks, &opened.engines, &records));
+        }
+        say!("report: {}", page.display());
+        for condition in &unmet {
+            say!("differs: {}: {}", condition.what, condition.reason);
+        }
     }
     if !bad.is_empty() {
         return Err(ended(bad));

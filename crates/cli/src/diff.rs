@@ -2,8 +2,9 @@
 
 use crate::args::DiffArgs;
 use crate::fail::Fail;
-use crate::say;
+use crate::say::{self, say};
 use ::featherbench_results::{Change, Changed, Diff, ERROR_FACTOR, Row, RunInfo, TIME_NOISE, diff, read_run};
+use serde_json::{Value, json};
 use std::fmt::Write as _;
 
 /// Rows of each kind of change that are listed one by one.
@@ -13,16 +14,98 @@ const LISTED: usize = 40;
 pub fn compare(args: &DiffArgs) -> Result<(), Fail> {
     let (before, old) = read_run(&args.before)?;
     let (after, new) = read_run(&args.after)?;
-    let found = diff(&old, &new);
-    say::text(&if args.markdown { markdown(&before, &after, &found) } else { terminal(&before, &after, &found) });
-    match found.changes.len() {
-        0 => Ok(()),
-        count => Err(Fail::Gate(format!("{count} of {} rows changed beyond noise", found.compared + unmatched(&found)))),
+    let mut found = diff(&old, &new);
+    let apart = Apart::of(&before, &after, &mut found);
+    if args.json {
+        say!("{:#}", json(&before, &after, &found, apart.as_ref()));
+    } else {
+        let text = if args.markdown { markdown(&before, &after, &found) } else { terminal(&before, &after, &found) };
+        say::text(&(text + &apart.as_ref().map_or_else(String::new, |apart| format!("\n{}\n", apart.sentence()))));
+    }
+    match (found.changes.len(), apart) {
+        (0, None) => Ok(()),
+        (0, Some(apart)) => Err(Fail::Gate(apart.sentence())),
+        (count, _) => Err(Fail::Gate(format!("{count} of {} rows changed beyond noise", found.compared + unmatched(&found)))),
     }
 }
 
+fn is_unmatched(changed: &Changed) -> bool {
+    matches!(changed.change, Change::Gone | Change::New)
+}
+
 fn unmatched(found: &Diff) -> usize {
-    found.changes.iter().filter(|changed| matches!(changed.change, Change::Gone | Change::New)).count()
+    found.changes.iter().filter(|changed| is_unmatched(changed)).count()
+}
+
+/// Two suites that differ. Rows that only one of them has are no changes: they are counted and not listed.
+struct Apart {
+    suites: [String; 2],
+    /// Rows of the first run alone, and of the second.
+    only: [usize; 2],
+}
+
+impl Apart {
+    /// Takes rows of one run alone out of the changes, if the suites differ by name or by content.
+    fn of(before: &RunInfo, after: &RunInfo, found: &mut Diff) -> Option<Self> {
+        if before.suite == after.suite && before.suite_hash == after.suite_hash {
+            return None;
+        }
+        let count = |change: Change| found.changes.iter().filter(|changed| changed.change == change).count();
+        let only = [count(Change::Gone), count(Change::New)];
+        found.changes.retain(|changed| !is_unmatched(changed));
+        Some(Self { suites: [before.suite.clone(), after.suite.clone()], only })
+    }
+
+    fn sentence(&self) -> String {
+        let ([a, b], [gone, new]) = (&self.suites, self.only);
+        let what = if a == b {
+            format!("the suite '{a}' changed between the two runs")
+        } else {
+            format!("the runs are of two suites, '{a}' and '{b}'")
+        };
+        format!("{what}: {gone} rows are in the first run only and {new} in the second only")
+    }
+}
+
+/// Everything that changed, for programs. `diff --help` describes the fields.
+fn json(before: &RunInfo, after: &RunInfo, found: &Diff, apart: Option<&Apart>) -> Value {
+    let run = |run: &RunInfo| json!({ "run": run.run, "suite": run.suite, "revision": run.git.revision, "started": run.started });
+    let count = |change: Change| found.changes.iter().filter(|changed| changed.change == change).count();
+    let only = apart.map_or_else(|| [count(Change::Gone), count(Change::New)], |apart| apart.only);
+    json!({
+        "before": run(before),
+        "after": run(after),
+        "status": if found.changes.is_empty() && apart.is_none() { "same" } else { "changed" },
+        "same_suite": apart.is_none(),
+        "compared": found.compared,
+        "invalid": found.invalid,
+        "only_before": only[0],
+        "only_after": only[1],
+        "changes": found.changes.iter().filter_map(changed).collect::<Vec<_>>(),
+    })
+}
+
+fn changed(changed: &Changed) -> Option<Value> {
+    let side = |row: Option<&Row>| row.map(|row| json!({ "value": row.value, "verdict": row.verdict }));
+    let row = changed.after.or(changed.before)?;
+    Some(json!({
+        "change": changed.change.as_str(),
+        "study": row.study,
+        "robot": row.robot,
+        "engine": row.engine,
+        "method": row.method,
+        "precision": row.precision,
+        "quantity": row.quantity,
+        "states": row.states,
+        "body": row.body,
+        "cache": row.cache,
+        "metric": row.metric,
+        "reference": row.reference,
+        "unit": row.unit,
+        "before": side(changed.before),
+        "after": side(changed.after),
+        "factor": changed.factor().filter(|factor| factor.is_finite()),
+    }))
 }
 
 /// The columns of a listing.

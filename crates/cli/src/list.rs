@@ -3,43 +3,114 @@
 use crate::args::ListArgs;
 use crate::fail::Fail;
 use crate::oracles;
-use crate::robots;
+use crate::robots::{self, Loaded};
 use crate::root::Root;
 use crate::say::{self, say};
-use featherbench_bench::{Context, Engine, Factor, Planted, Suite};
+use featherbench_bench::{Cell, Context, Engine, Factor, Planted, Robot, Suite};
 use featherbench_engines::{Featherbench, Limits};
 use featherbench_robots::Family;
 use featherbench_studies::{Kernels, Setup};
+use serde_json::{Value, json};
 
 /// Prints what there is to run.
 pub fn list(root: &Root, args: &ListArgs) -> Result<(), Fail> {
     if args.gates {
-        return gates(root);
+        return gates(root, args.json);
     }
-    say::text(&text(root, args)?);
+    if args.json {
+        say!("{:#}", json(root, args)?);
+    } else {
+        say::text(&text(root, args)?);
+    }
     Ok(())
 }
 
 /// Prints every gate, and whether a fault that is planted in it fires it.
-fn gates(root: &Root) -> Result<(), Fail> {
+fn gates(root: &Root, json: bool) -> Result<(), Fail> {
     let gates = root.read_gates()?;
     let planted = gates.planted();
-    for Planted { gate, fired } in &planted {
-        let factor = match gate.times {
-            Factor::One => "",
-            Factor::Depth => " per joint of depth",
-            Factor::DepthAndAmplification => " per joint of depth and amplification",
+    let silent = planted.iter().filter(|planted| !planted.fired).count();
+    if json {
+        let gate = |Planted { gate, fired }: &Planted| {
+            json!({
+                "study": gate.study, "metric": gate.metric, "quantities": gate.quantities, "bound": gate.bound,
+                "times": times(gate.times).0, "fires": fired,
+            })
         };
+        say!("{:#}", json!({ "gates": planted.iter().map(gate).collect::<Vec<_>>(), "silent": silent }));
+        return fires(silent, planted.len());
+    }
+    for Planted { gate, fired } in &planted {
+        let factor = times(gate.times).1;
         let word = if *fired { "fires" } else { "NEVER FIRES" };
         say!("{word:<12} {:<15} {:<24} {:e}{factor}  {}", gate.study, gate.metric, gate.bound, gate.quantities.join(", "));
     }
-    let silent = planted.iter().filter(|planted| !planted.fired).count();
     say!("{} gates, {silent} of them that no planted fault fires", planted.len());
-    if silent > 0 {
-        Err(Fail::Gate(format!("{silent} of {} gates never fire: another one stands before them", planted.len())))
-    } else {
-        Ok(())
+    fires(silent, planted.len())
+}
+
+/// A factor of a bound, as a word and as the end of a line.
+fn times(factor: Factor) -> (&'static str, &'static str) {
+    match factor {
+        Factor::One => ("one", ""),
+        Factor::Depth => ("depth", " per joint of depth"),
+        Factor::DepthAndAmplification => ("depth_and_amplification", " per joint of depth and amplification"),
     }
+}
+
+fn fires(silent: usize, all: usize) -> Result<(), Fail> {
+    if silent > 0 { Err(Fail::Gate(format!("{silent} of {all} gates never fire: another one stands before them"))) } else { Ok(()) }
+}
+
+/// The cells of a suite on its robots.
+fn cells(root: &Root, loaded: &Loaded) -> Result<Vec<Cell>, Fail> {
+    let engines: Vec<Box<dyn Engine>> = vec![Box::new(Featherbench::new())];
+    let gates = root.read_gates()?;
+    let context = Context { robots: &loaded.robots, engines: &engines, gates: &gates, seed: loaded.suite.seed };
+    let (kernels, reproduce) = (featherbench_engines::timed as Kernels, oracles::reproducer(root, Limits::default()));
+    let measure = oracles::measurer(root)?;
+    let setup = Setup { suite: &loaded.suite, live: true, program: "", kernels, reproduce, measure };
+    let studies = featherbench_studies::of_suite(&setup)?;
+    Ok(studies.iter().flat_map(|study| study.plan(&context)).collect())
+}
+
+/// The name of every suite and what it is about.
+fn suites(root: &Root) -> Result<Vec<(String, String)>, Fail> {
+    let about = |name: String| Ok((Suite::read(&robots::suite_path(root, &name)?)?.0.about, name));
+    robots::suites(root)?.into_iter().map(about).map(|suite| suite.map(|(about, name)| (name, about))).collect()
+}
+
+/// What there is to run, for programs. `list --help` describes the fields.
+fn json(root: &Root, args: &ListArgs) -> Result<Value, Fail> {
+    let loaded = robots::load(root, &args.suite, false, None)?;
+    let suite = json!({ "name": loaded.name, "about": loaded.suite.about });
+    if args.cells {
+        let cell = |cell: &Cell| {
+            let Cell { study, robot, engine, quantity, method, .. } = cell;
+            json!({
+                "cell": cell.id(), "path": cell.path(), "study": study, "robot": robot, "engine": engine, "quantity": quantity, "method": method,
+            })
+        };
+        return Ok(json!({ "suite": suite, "cells": cells(root, &loaded)?.iter().map(cell).collect::<Vec<_>>() }));
+    }
+    let robot = |robot: &Robot| {
+        json!({
+            "robot": robot.name, "family": robot.family, "base": robot.base().to_string(), "nv": robot.states.nv, "bodies": robot.states.bodies,
+            "depth": robot.depth,
+        })
+    };
+    let described = oracles::described(root)?;
+    let names = |names: Vec<&str>| std::iter::once("featherbench").chain(names).map(str::to_owned).collect::<Vec<_>>();
+    let suites = suites(root)?.into_iter().map(|(name, about)| json!({ "name": name, "about": about }));
+    Ok(json!({
+        "suite": suite,
+        "robots": loaded.robots.iter().map(robot).collect::<Vec<_>>(),
+        "suites": suites.collect::<Vec<_>>(),
+        "engines": names(described.names(|engine| !engine.is_native())),
+        "timed": names(described.names(|engine| engine.clock.is_some())),
+        "studies": featherbench_studies::names(),
+        "families": Family::NAMES,
+    }))
 }
 
 fn text(root: &Root, args: &ListArgs) -> Result<String, Fail> {
@@ -48,15 +119,7 @@ fn text(root: &Root, args: &ListArgs) -> Result<String, Fail> {
     }
     let loaded = robots::load(root, &args.suite, false, None)?;
     if args.cells {
-        let engines: Vec<Box<dyn Engine>> = vec![Box::new(Featherbench::new())];
-        let gates = root.read_gates()?;
-        let context = Context { robots: &loaded.robots, engines: &engines, gates: &gates, seed: loaded.suite.seed };
-        let (kernels, reproduce) = (featherbench_engines::timed as Kernels, oracles::reproducer(root, Limits::default()));
-        let measure = oracles::measurer(root)?;
-        let setup = Setup { suite: &loaded.suite, live: true, program: "", kernels, reproduce, measure };
-        let studies = featherbench_studies::of_suite(&setup)?;
-        let cells = studies.iter().flat_map(|study| study.plan(&context));
-        return Ok(cells.map(|cell| format!("{}  {}\n", cell.id(), cell.path())).collect());
+        return Ok(cells(root, &loaded)?.iter().map(|cell| format!("{}  {}\n", cell.id(), cell.path())).collect());
     }
     let mut text = format!("suite {}: {}\n\n", loaded.name, loaded.suite.about);
     text += "robot                     family       base   nv  bodies  depth\n";
@@ -73,9 +136,8 @@ fn text(root: &Root, args: &ListArgs) -> Result<String, Fail> {
         );
     }
     text += "\nsuites:\n";
-    for name in robots::suites(root)? {
-        let (suite, _) = Suite::read(&robots::suite_path(root, &name)?)?;
-        text += &format!("  {name:<16} {}\n", suite.about);
+    for (name, about) in suites(root)? {
+        text += &format!("  {name:<16} {about}\n");
     }
     let described = oracles::described(root)?;
     text += &format!("\nengines:  featherbench, {}\n", described.names(|engine| !engine.is_native()).join(", "));

@@ -39,6 +39,7 @@
 mod args;
 mod check;
 mod compare;
+mod compared;
 mod compiled;
 mod diff;
 mod engines;

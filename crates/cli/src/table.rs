@@ -3,12 +3,38 @@
 use crate::outcome::{neutral, params};
 use ::featherbench_results::{Row, Verdict};
 use featherbench_bench::{Engine, Robot};
-use featherbench_studies::import::LARGEST;
+use featherbench_studies::import::{Answer, LARGEST, repairs};
 use serde_json::Value;
 use std::collections::BTreeMap;
 
 /// Differences that are listed of one engine; the report has them all.
 const LISTED: usize = 12;
+
+/// The columns of the answers.
+const HEAD: [&str; 6] = ["robot", "engine", "loads as written", "same M and τ", "largest change", "what to do"];
+
+/// The answer of each engine on each robot, in one line.
+pub fn answers(answers: &[Answer]) -> String {
+    let line = |answer: &Answer| {
+        let same = match answer.same {
+            Some(true) => "yes",
+            Some(false) => "no",
+            None => "–",
+        };
+        let change = answer.largest.as_ref().map_or_else(
+            || "–".to_owned(),
+            |largest| {
+                let effect = largest.effect().map_or_else(String::new, |effect| format!(" by {effect:.1e}"));
+                format!("{}{effect}", largest.place())
+            },
+        );
+        [answer.robot.clone(), answer.engine.clone(), answer.loads.name().into(), same.into(), change, answer.advice.clone()]
+    };
+    let lines: Vec<[String; 6]> = std::iter::once(HEAD.map(str::to_owned)).chain(answers.iter().map(line)).collect();
+    let widths: [usize; 6] = std::array::from_fn(|column| lines.iter().map(|line| line[column].chars().count()).max().unwrap_or(0));
+    let padded = |line: &[String; 6]| line.iter().zip(widths).map(|(cell, width)| format!("{cell:<width$}")).collect::<Vec<_>>().join("  ");
+    lines.iter().map(|line| padded(line).trim_end().to_owned() + "\n").collect()
+}
 
 /// What each engine makes of a robot, as text.
 pub fn of(robot: &Robot, remarks: &[String], engines: &[Box<dyn Engine>], records: &[Row]) -> String {
@@ -38,7 +64,6 @@ pub fn of(robot: &Robot, remarks: &[String], engines: &[Box<dyn Engine>], record
 /// The engines that reject the file as it is written, and what was repaired to go on. It is told first: an engine that imports the file as
 /// written is not the one at fault.
 fn unread(robot: &Robot, engines: &[Box<dyn Engine>], records: &[Row]) -> String {
-    let repairs = ["balanceinertia", "bounds", "geometry_dropped"];
     let mut text = String::new();
     for name in engines.iter().map(|engine| &engine.identity().name) {
         let read = records.iter().find(|row| row.robot == robot.name && row.engine == *name && row.metric == "differences");
@@ -47,9 +72,8 @@ fn unread(robot: &Robot, engines: &[Box<dyn Engine>], records: &[Row]) -> String
             let how = if row.verdict == Verdict::Skip { "does not read the file" } else { "refuses the file" };
             text += &format!("  {name} {how}: {}\n", row.reason);
         }
-        let params = params(row);
-        for note in params["notes"].as_array().into_iter().flatten().filter(|note| repairs.iter().any(|word| note["cause"] == *word)) {
-            text += &format!("  {name} refuses the file as written; repaired to go on: {}\n", note["text"].as_str().unwrap_or_default());
+        for repair in repairs(row) {
+            text += &format!("  {name} refuses the file as written; repaired to go on: {repair}\n");
         }
     }
     text

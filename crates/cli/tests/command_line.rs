@@ -30,3 +30,42 @@ fn suites_are_listed_with_their_purpose() {
         assert!(line.len() > name.len() + 20, "{line}");
     }
 }
+
+fn parsed(ended: &support::Ended) -> serde_json::Value {
+    serde_json::from_str(&ended.output).unwrap_or_else(|error| panic!("{error}: {ended:?}"))
+}
+
+#[test]
+fn lists_are_read_by_programs() {
+    let sandbox = Sandbox::new();
+    let ended = sandbox.run(&["list", "--suite", "smoke", "--json"]);
+    ended.expect(0, &[]);
+    let list = parsed(&ended);
+    assert_eq!(list["suite"]["name"], "smoke");
+    let robots = list["robots"].as_array().unwrap();
+    assert!(!robots.is_empty() && robots.iter().all(|robot| robot["nv"].as_u64().unwrap() > 0 && robot["robot"].is_string()), "{list}");
+    assert!(list["suites"].as_array().unwrap().iter().any(|suite| suite["name"] == "smoke" && suite["about"].is_string()));
+    for names in ["engines", "timed"] {
+        assert_eq!(list[names][0], "featherbench", "{list}");
+    }
+    for names in ["studies", "families"] {
+        assert!(list[names].as_array().unwrap().iter().all(serde_json::Value::is_string), "{list}");
+    }
+
+    let ended = sandbox.run(&["list", "--suite", "smoke", "--cells", "--json"]);
+    ended.expect(0, &[]);
+    let (list, plain) = (parsed(&ended), sandbox.run(&["list", "--suite", "smoke", "--cells"]));
+    let cells = list["cells"].as_array().unwrap();
+    assert_eq!(cells.len(), plain.output.lines().count(), "the cells of the plain list");
+    assert!(!cells.is_empty());
+    for (cell, line) in cells.iter().zip(plain.output.lines()) {
+        assert_eq!(format!("{}  {}", cell["cell"].as_str().unwrap(), cell["path"].as_str().unwrap()), line);
+    }
+
+    let ended = sandbox.run(&["list", "--gates", "--json"]);
+    ended.expect(0, &[]);
+    let list = parsed(&ended);
+    assert_eq!(list["silent"], 0);
+    assert!(list["gates"].as_array().unwrap().iter().all(|gate| gate["fires"] == true && gate["bound"].is_number()), "{list}");
+    sandbox.run(&["list", "--conventions", "--json"]).expect(2, &["--json", "--conventions"]);
+}

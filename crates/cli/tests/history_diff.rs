@@ -66,6 +66,44 @@ fn two_runs_are_compared_as_a_table_and_as_markdown() {
 }
 
 #[test]
+fn a_program_reads_what_changed() {
+    let sandbox = Sandbox::new();
+    run(&sandbox, "a", &times(100.0));
+    run(&sandbox, "b", &times(130.0));
+    let parsed = |ended: &crate::support::Ended| -> serde_json::Value { serde_json::from_str(&ended.output).unwrap() };
+    let ended = sandbox.run(&["diff", "a", "a", "--json"]);
+    ended.expect(0, &[]);
+    let same = parsed(&ended);
+    assert_eq!((&same["status"], &same["compared"], &same["changes"]), (&"same".into(), &1.into(), &serde_json::json!([])));
+    let ended = sandbox.run(&["diff", "a", "b", "--json"]);
+    assert_eq!(ended.code, Some(1), "{ended:?}");
+    let found = parsed(&ended);
+    assert_eq!((&found["status"], &found["same_suite"]), (&"changed".into(), &true.into()));
+    let change = &found["changes"][0];
+    assert_eq!((&change["change"], &change["robot"], &change["quantity"]), (&"time".into(), &"humanoid".into(), &"id".into()));
+    assert_eq!((&change["before"]["value"], &change["after"]["value"]), (&100.0.into(), &130.0.into()));
+    assert_eq!(change["factor"], 1.3);
+}
+
+#[test]
+fn two_suites_are_told_in_a_sentence() {
+    let sandbox = Sandbox::new();
+    let names: Vec<String> = (0..100).map(|index| format!("quantity{index}")).collect();
+    let many: Vec<_> = names.iter().map(|name| (&**name, "ns_per_call", 5.0, "")).collect();
+    run(&sandbox, "small", &times(100.0));
+    let (mut info, rows) = featherbench_results::read_run(&sandbox.path("small")).unwrap();
+    info.suite = "small".into();
+    featherbench_results::write_run(&sandbox.path("small"), &info, &rows).unwrap();
+    run(&sandbox, "large", &many);
+    let ended = sandbox.run(&["diff", "small", "large"]);
+    ended.expect(1, &["two suites, 'small' and ''", "1 rows are in the first run only and 100 in the second only"]);
+    assert!(ended.output.lines().count() < 5 && !ended.output.contains("quantity7"), "{}", ended.output);
+    let ended = sandbox.run(&["diff", "small", "large", "--json"]);
+    let found: serde_json::Value = serde_json::from_str(&ended.output).unwrap();
+    assert_eq!((&found["same_suite"], &found["only_before"], &found["only_after"]), (&false.into(), &1.into(), &100.into()));
+}
+
+#[test]
 fn a_folder_of_runs_has_a_page() {
     let sandbox = Sandbox::new();
     std::fs::create_dir(sandbox.path("runs")).unwrap();

@@ -59,7 +59,7 @@ pub struct GateArgs {
 
 #[derive(Debug, Clone, Args)]
 #[command(
-    after_help = "What changes: a verdict; a count; an error by a factor of 4; a time when the intervals of both runs are apart and their ratio is beyond 2 % and the A/A controls of both; a row that only one run has. Times that do not count are not compared.\n\nExit codes: 0 nothing changed beyond noise, 1 something did, 2 usage or bad input.\n\nExample:\n  featherbench diff reports/before reports/after --markdown"
+    after_help = "What changes: a verdict; a count; an error by a factor of 4; a time when the intervals of both runs are apart and their ratio is beyond 2 % and the A/A controls of both; a row that only one run has. Times that do not count are not compared.\n\nTwo suites that differ: rows that only one run has are counted, not listed; the exit code is 1.\n\nWith --json, standard output is one object: before and after {run, suite, revision, started}, status (same, changed), same_suite, compared (rows), invalid (times that do not count), only_before, only_after (rows), changes [{change, study, robot, engine, method, precision, quantity, states, body, cache, metric, reference, unit, before, after, factor}]. before and after of a change are {value, verdict}, or null.\n\nExit codes: 0 nothing changed beyond noise, 1 something did, 2 usage or bad input.\n\nExample:\n  featherbench diff reports/before reports/after --markdown"
 )]
 pub struct DiffArgs {
     /// The folder of the first run.
@@ -69,8 +69,11 @@ pub struct DiffArgs {
     #[arg(value_name = "RUN_B")]
     pub after: PathBuf,
     /// Print a Markdown table.
-    #[arg(long)]
+    #[arg(long, conflicts_with = "json")]
     pub markdown: bool,
+    /// Print everything as JSON.
+    #[arg(long)]
+    pub json: bool,
 }
 
 #[derive(Debug, Clone, Args)]

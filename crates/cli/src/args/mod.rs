@@ -141,6 +141,12 @@ joint of a chain beyond a hundred), a body or joint is another, the answers are 
 field that enters them differs, and they do not. Not read: what enters neither, such as damping, friction, limits or the order of joints. Only
 physics makes the exit code 1; with --strict the two others do as well.
 
+The answer is first: one line for each robot and engine. With --json, standard output is one object: run, suite, status (alike, differs), report (the
+page), robots: [{robot, base, bodies, nv, reference, remarks, engines}], conditions: {met, all, unmet: [{what, reason, culprit}]}, refused (messages of
+files that cannot be compared). Each of engines has engine, version, loads (yes, altered, no), same, error (the largest scaled error of M and inverse
+dynamics) and its bound, neutral (that error on the neutral model), largest (the difference that changes them most), advice, reason (why there is
+no answer), differences: [{body, field, class, cause, ours, theirs, size, id, mass_matrix, note}]. What is not known is null.
+
 Limits: XML nested 500 elements deep, 10 MB; an engine that gives no answer in time, or whose workspace does not fit into its memory, is left out
 with a row that says so, and counts as a difference with --strict only.
 
@@ -158,6 +164,9 @@ pub struct CompareArgs {
     /// Exit 1 also for differences that change no physics: fields that an engine does not read, rounding, files beyond its limits.
     #[arg(long)]
     pub strict: bool,
+    /// Print everything as JSON.
+    #[arg(long)]
+    pub json: bool,
     /// Longest wait for one answer of an engine, in seconds; it is asked no more about that robot then.
     #[arg(long, value_name = "SECONDS", default_value_t = 60)]
     pub timeout: u64,
@@ -168,7 +177,7 @@ pub struct CompareArgs {
 
 #[derive(Debug, Clone, Args)]
 #[command(
-    after_help = "Examples:\n  featherbench list                     the robots of the default suite, all suites, engines, studies\n  featherbench list --suite robots\n  featherbench list --gates             every gate, and whether a planted fault fires it"
+    after_help = "Examples:\n  featherbench list                     the robots of the default suite, all suites, engines, studies\n  featherbench list --suite robots\n  featherbench list --gates             every gate, and whether a planted fault fires it\n  featherbench list --json\n\nWith --json, standard output is one object: suite {name, about}, robots [{robot, family, base, nv, bodies, depth}], suites [{name, about}], and the names engines, timed, studies, families. With --cells: suite, cells [{cell, path, study, robot, engine, quantity, method}]. With --gates: gates [{study, metric, quantities, bound, times, fires}], silent (the number of gates that do not fire)."
 )]
 pub struct ListArgs {
     /// The suite whose robots and cells are listed.
@@ -183,6 +192,9 @@ pub struct ListArgs {
     /// List every gate of ci/gates.toml, and plant a fault of ten times its bound in each: exit 1 when one does not fire.
     #[arg(long, conflicts_with_all = ["cells", "conventions"])]
     pub gates: bool,
+    /// Print JSON.
+    #[arg(long, conflicts_with = "conventions")]
+    pub json: bool,
 }
 
 #[derive(Debug, Clone, Args)]

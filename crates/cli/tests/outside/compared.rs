@@ -36,12 +36,31 @@ pub fn refused_files(_: &Path) -> Outcome {
     let file = sandbox
         .write("flat.xml", &format!(r#"<mujoco model="flat"><worldbody><body name="a">{hinge}{unbalanced}</body></worldbody></mujoco>"#));
     let out = sandbox.path("flat");
-    let ended = compare(&[file], &["--engines", "mujoco,pinocchio"], &out);
+    let ended = compare(std::slice::from_ref(&file), &["--engines", "mujoco,pinocchio"], &out);
     ended.expect(1, &["mujoco refuses the file as written; repaired to go on: balanceinertia", "differs: differences of flat in mujoco"]);
     let (first, second) = (ended.output.find("refuses the file as written").unwrap(), ended.output.find("one neutral model").unwrap());
     assert!(first < second, "{}", ended.output);
     assert_eq!(differences(&out, "mujoco"), [("inertia".to_owned(), "balanced".to_owned())]);
     assert_eq!(differences(&out, "pinocchio"), []);
+    let head = ended.output.lines().position(|line| line.starts_with("robot") && line.contains("loads as written")).unwrap();
+    let lines: Vec<&str> = ended.output.lines().skip(head + 1).take(2).collect();
+    let line = |engine: &str| *lines.iter().find(|line| line.contains(engine)).unwrap_or_else(|| panic!("{engine}: {lines:?}"));
+    assert!(["altered", "no", "a: inertia by", "correct the file"].iter().all(|word| line("mujoco").contains(word)), "{lines:?}");
+    assert!(["yes", "nothing"].iter().all(|word| line("pinocchio").contains(word)), "{lines:?}");
+
+    // The same for a program.
+    let ended = compare(&[file], &["--engines", "mujoco,pinocchio", "--json"], &sandbox.path("json"));
+    assert_eq!(ended.code, Some(1), "{ended:?}");
+    let found: serde_json::Value = serde_json::from_str(&ended.output).unwrap_or_else(|error| panic!("{error}: {ended:?}"));
+    assert_eq!((&found["status"], &found["robots"][0]["robot"]), (&"differs".into(), &"flat".into()));
+    let of = |engine: &str| found["robots"][0]["engines"].as_array().unwrap().iter().find(|of| of["engine"] == engine).unwrap().clone();
+    let mujoco = of("mujoco");
+    assert_eq!((&mujoco["loads"], &mujoco["same"], &mujoco["largest"]["body"]), (&"altered".into(), &false.into(), &"a".into()));
+    assert_eq!(mujoco["differences"][0]["cause"], "balanced");
+    assert!(mujoco["largest"]["mass_matrix"].as_f64().unwrap() > 1e-3 && mujoco["error"].as_f64() > mujoco["bound"].as_f64(), "{mujoco}");
+    let pinocchio = of("pinocchio");
+    assert_eq!((&pinocchio["loads"], &pinocchio["same"], &pinocchio["largest"]), (&"yes".into(), &true.into(), &serde_json::Value::Null));
+    assert!(found["conditions"]["unmet"][0]["what"].as_str().unwrap().contains("mujoco"), "{found}");
 
     // A body without mass: the reference is the file; MuJoCo's bound and DART's kilogram are named.
     let empty = format!(

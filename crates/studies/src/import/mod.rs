@@ -10,6 +10,7 @@
 
 mod account;
 mod align;
+mod answers;
 mod armature;
 mod cause;
 mod comparison;
@@ -22,6 +23,7 @@ mod rows;
 pub(crate) mod section;
 mod subtree;
 
+pub use answers::{Answer, Largest, Loads, answers, repairs};
 pub use comparison::{Comparison, Finding};
 pub use difference::{Cause, Class, Difference, Field, Weight};
 pub use replay::Effect;
