@@ -12,6 +12,9 @@ use crate::section::Section;
 /// The chunk with every row that did not pass.
 pub const UNPASSED: &str = "unpassed";
 
+/// The chunk with every time and what is made of times, of all robots: the rows with a cache regime.
+pub const TIMES: &str = "times";
+
 /// A file's name in the report's folder, and its bytes.
 type NamedFile = (String, Vec<u8>);
 
@@ -60,7 +63,8 @@ pub fn is_unpassed(row: &Row) -> bool {
     !matches!(row.verdict, Verdict::Pass | Verdict::Info)
 }
 
-/// All rows: a chunk per robot, one per study for rows without a robot, and one with every row that did not pass.
+/// All rows: a chunk per robot, one per study for rows without a robot, one with every row that did not pass, and one
+/// with every time.
 pub fn rows(overview: &Overview, rows: &[Row]) -> Result<Vec<NamedFile>, ReportError> {
     let mut chunks: BTreeMap<String, Vec<&Row>> = BTreeMap::new();
     // A robot without rows has a chunk too: a click on it must show that there are none.
@@ -68,6 +72,7 @@ pub fn rows(overview: &Overview, rows: &[Row]) -> Result<Vec<NamedFile>, ReportE
         chunks.insert(robot_chunk(robot), Vec::new());
     }
     chunks.insert(UNPASSED.to_owned(), rows.iter().filter(|row| is_unpassed(row)).collect());
+    chunks.insert(TIMES.to_owned(), rows.iter().filter(|row| !row.cache.is_empty()).collect());
     for row in rows {
         chunks.entry(overview.chunk_of(row)).or_default().push(row);
     }

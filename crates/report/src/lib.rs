@@ -38,7 +38,7 @@ mod verdict;
 mod write;
 
 pub use blocks::{opener, swatch};
-pub use chunks::UNPASSED;
+pub use chunks::{TIMES, UNPASSED};
 pub use error::ReportError;
 pub use findings::{Findings, Found, Status};
 pub use overview::{EVERYONE, Overview, Robot, robot_chunk};

@@ -28,6 +28,8 @@ pub struct Section {
     pub style: &'static str,
     /// What it adds to the verdict.
     pub finding: Option<Finding>,
+    /// What it answers on the first page in its full width, below the findings.
+    pub answer: Option<Markup>,
     /// Quantities of whose errors it tells: the section on the method defines their measures.
     pub quantities: Vec<String>,
     /// Terms and their definitions, for the section on the method.
@@ -58,6 +60,7 @@ impl Section {
             script: "",
             style: "",
             finding: None,
+            answer: None,
             quantities: Vec::new(),
             terms: &[],
             lines: Vec::new(),

@@ -37,6 +37,7 @@ fn body(run: &RunInfo, overview: &Overview, rows: &[Row], sections: &[Section]) 
             (tiles(findings))
             (list(overview, findings))
             (extent(findings))
+            @for answer in sections.iter().filter_map(|section| section.answer.as_ref()) { (answer) }
             div.columns {
                 div {
                     @for finding in added { (finding.body) }

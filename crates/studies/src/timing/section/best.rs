@@ -47,20 +47,41 @@ fn engine(reference: &str) -> &str {
     reference.split(' ').next().unwrap_or(reference)
 }
 
-/// Geometric mean and least of each quantity at many states, for the terminal.
+/// A table for the terminal: a line for each quantity at many states with our fastest single-state method, and the batch beside it.
 pub fn lines(all: &[Best]) -> Vec<String> {
-    let mut quantities: Vec<(&str, Vec<String>)> = Vec::new();
-    for best in all.iter().filter(|best| best.of.cache == "stream") {
-        let Some((least, _)) = best.valid.first() else { continue };
-        let words = format!("{} {} (least {})", best.of.way(), times(mean(best.valid.iter().map(|(ratio, _)| *ratio))), times(*least));
-        match quantities.last_mut().filter(|(quantity, _)| *quantity == best.of.quantity) {
-            Some((_, ways)) => ways.push(words),
-            None => quantities.push((best.of.quantity, vec![words])),
-        }
+    let mean_of = |best: &Best| mean(best.valid.iter().map(|(ratio, _)| *ratio));
+    let counted = || all.iter().filter(|best| best.of.cache == "stream" && !best.valid.is_empty());
+    let mut quantities: Vec<&str> = counted().map(|best| best.of.quantity).collect();
+    quantities.dedup();
+    let line = |quantity: &str| {
+        let of = |batch: bool| counted().filter(move |best| best.of.quantity == quantity && best.of.is_batch() == batch);
+        let fastest = |best: &&Best, other: &&Best| mean_of(best).total_cmp(&mean_of(other));
+        let (one, many) = (of(false).max_by(fastest), of(true).max_by(fastest));
+        let words = |best: Option<&Best>, number: fn(&Best) -> Option<f64>| best.and_then(number).map_or_else(|| "–".to_owned(), times);
+        [
+            labels::quantity(quantity).to_owned(),
+            one.map_or_else(|| "–".to_owned(), |best| best.of.way()),
+            one.map_or_else(|| "–".to_owned(), |best| times(mean_of(best))),
+            words(one, |best| best.valid.first().map(|(least, _)| *least)),
+            many.map_or_else(|| "–".to_owned(), |best| times(mean_of(best))),
+        ]
+    };
+    if quantities.is_empty() {
+        return Vec::new();
     }
-    let line =
-        |(quantity, ways): (&str, Vec<String>)| format!("the best other over ours, {}: {}", labels::quantity(quantity), ways.join(", "));
-    quantities.into_iter().map(line).collect()
+    let heads = ["the best other over ours", "our method", "mean", "least", "batch"].map(str::to_owned);
+    aligned(&[vec![heads], quantities.into_iter().map(line).collect()].concat())
+}
+
+/// Columns of one width: the first two are words, the others numbers.
+fn aligned(lines: &[[String; 5]]) -> Vec<String> {
+    let width = |column: usize| lines.iter().map(|line| line[column].chars().count()).max().unwrap_or(0);
+    let widths: [usize; 5] = std::array::from_fn(width);
+    let cell = |(column, text): (usize, &String)| {
+        let width = widths[column];
+        if column < 2 { format!("{text:<width$}") } else { format!("{text:>width$}") }
+    };
+    lines.iter().map(|line| line.iter().enumerate().map(cell).collect::<Vec<_>>().join("  ")).collect()
 }
 
 /// Writes the table.

@@ -6,11 +6,13 @@ mod ratios;
 mod speed;
 mod time;
 mod tradeoff;
+mod verdict;
 
 use featherbench_report::{Overview, Section};
 use featherbench_results::{Row, RunInfo};
 
 use ratios::Speed;
+use verdict::SpeedVerdict;
 
 /// The study's name in rows.
 const STUDY: &str = "timing";
@@ -24,11 +26,14 @@ const TERMS: &[(&str, &str)] = &[(
 pub(crate) fn sections<'a>(run: &RunInfo, rows: &'a [Row], overview: &Overview<'a>) -> Vec<Section> {
     let (times, speed) = (time::lines(overview, rows), Speed::of(overview, rows));
     let best = best::summaries(overview, rows);
+    let verdict = SpeedVerdict::of(overview, rows);
     let mut sections = vec![Section {
         script: include_str!("time.js"),
         terms: if times.is_empty() { &[] } else { TERMS },
         lines: line::line(overview, rows, &speed).into_iter().chain(best::lines(&best)).collect(),
-        ..Section::new("time", "Time", time::markup(overview, &times)).with_data(&times)
+        style: include_str!("speed.css"),
+        answer: verdict.markup(overview),
+        ..Section::new("time", "Time", time::markup(overview, &times, verdict.first_times(overview))).with_data(&times)
     }];
     if !speed.is_empty() || !best.is_empty() {
         let body = speed::markup(run, overview, &speed, &best);

@@ -91,8 +91,8 @@ pub fn lines<'a>(overview: &Overview<'a>, rows: &'a [Row]) -> Vec<TimeLine<'a>> 
         .collect()
 }
 
-/// Writes the section.
-pub fn markup(overview: &Overview, times: &[TimeLine]) -> Markup {
+/// Writes the section; `first` tells the times of one robot before anything else.
+pub fn markup(overview: &Overview, times: &[TimeLine], first: Option<Markup>) -> Markup {
     let families: BTreeSet<&str> = times.iter().map(|line| line.family).collect();
     // All families at once are hard to read: the plot first shows the one with the most points.
     let points = |family: &&&str| times.iter().filter(|line| line.family == **family).map(|line| line.points.len()).sum::<usize>();
@@ -101,6 +101,7 @@ pub fn markup(overview: &Overview, times: &[TimeLine]) -> Markup {
     html! {
         section #time {
             h2 { "Time against size" }
+            @if let Some(first) = first { (first) }
             p.lead { "Time of one call on one pinned core, against the degrees of freedom. Bars are 95 % intervals of the median, hollow marks times that do not count, crosses estimates." }
             @if times.is_empty() {
                 p.empty { "This run holds no times." }
