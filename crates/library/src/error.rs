@@ -38,7 +38,7 @@ pub enum Error {
     #[error(transparent)]
     Family(#[from] BadFamily),
     /// The ending of a file's name is not one that is read.
-    #[error("{path}: the name ends neither in .urdf nor in .xml (MJCF) nor in .json; read it by `from_urdf`, `from_mjcf` or `from_json`")]
+    #[error("{path}: the name ends in none of .urdf, .xml and .mjcf (MJCF), and .json; read it by `from_urdf`, `from_mjcf` or `from_json`")]
     UnknownEnding {
         /// The file as the caller named it.
         path: String,

@@ -56,6 +56,7 @@ mod convention;
 mod coordinates;
 mod error;
 mod quantities;
+mod reading;
 mod robot;
 #[cfg(feature = "glam")]
 pub mod to_glam;

@@ -2,13 +2,10 @@
 
 use crate::{Error, Workspace};
 use featherbench_dynamics::{Batch, PackedModel};
-use featherbench_formats::urdf::{self, Base, Options};
 use featherbench_formats::{mjcf, neutral};
 use featherbench_model::{Description, JointType, Model};
-use featherbench_robots::Family;
 use featherbench_spatial::Transform;
 use std::ops::Range;
-use std::path::Path;
 use std::sync::Arc;
 
 /// A robot with its compiled model. A clone shares it.
@@ -94,157 +91,21 @@ pub struct Frame {
 
 impl Frame {
     /// The frame's name.
+    ///
+    /// ```
+    /// let robot = featherbench_library::Robot::generated("chain:n=2")?;
+    /// let body = robot.bodies()[0];
+    /// assert_eq!(robot.frame(body)?.name(), body);
+    /// # Ok::<(), featherbench_library::Error>(())
+    /// ```
     pub fn name(&self) -> &str {
         &self.name
     }
 }
 
 impl Robot {
-    /// Reads a URDF file. The root link is fixed to the world.
-    ///
-    /// A link that is fixed to another is merged with it and stays as a frame. Siblings keep the order of the file. What was left out or
-    /// altered is told by [`Robot::notes`].
-    ///
-    /// # Errors
-    /// [`Error::Urdf`], naming file, line, column and the link or joint.
-    ///
-    /// ```
-    /// use featherbench_library::{Error, Robot};
-    /// let missing = Robot::from_urdf("no_such_robot.urdf").unwrap_err();
-    /// assert!(matches!(missing, Error::Urdf(_)) && missing.to_string().starts_with("no_such_robot.urdf"));
-    /// ```
-    pub fn from_urdf(path: impl AsRef<Path>) -> Result<Self, Error> {
-        let (description, notes) = urdf::read(path, &with_base(Base::Fixed))?;
-        Self::noted(&description, &notes)
-    }
-
-    /// The same with a free joint, `root_joint`, between the world and the root link.
-    ///
-    /// # Errors
-    /// [`Error::Urdf`].
-    ///
-    /// ```
-    /// assert!(featherbench_library::Robot::from_urdf_floating("no_such_robot.urdf").is_err());
-    /// ```
-    pub fn from_urdf_floating(path: impl AsRef<Path>) -> Result<Self, Error> {
-        let (description, notes) = urdf::read(path, &with_base(Base::Floating))?;
-        Self::noted(&description, &notes)
-    }
-
-    /// Reads URDF from a text; `name` stands for the file in errors.
-    ///
-    /// # Errors
-    /// [`Error::Urdf`].
-    ///
-    /// ```
-    /// use featherbench_library::Robot;
-    /// let text = r#"<robot name="pendulum"><link name="world"/><link name="bob"><inertial><origin xyz="0 0 -0.5"/><mass value="1"/>
-    ///     <inertia ixx="0" ixy="0" ixz="0" iyy="0" iyz="0" izz="0"/></inertial></link>
-    ///     <joint name="swing" type="continuous"><parent link="world"/><child link="bob"/><axis xyz="0 1 0"/></joint></robot>"#;
-    /// let robot = Robot::from_urdf_text(text, "pendulum.urdf", false)?;
-    /// let tau = robot.inverse_dynamics(&[std::f64::consts::FRAC_PI_2], &[0.0], &[0.0])?;
-    /// assert!((tau[0] - 9.81 * 0.5).abs() < 1e-12, "m g l");
-    /// # Ok::<(), featherbench_library::Error>(())
-    /// ```
-    pub fn from_urdf_text(text: &str, name: &str, floating: bool) -> Result<Self, Error> {
-        let base = if floating { Base::Floating } else { Base::Fixed };
-        let (description, notes) = urdf::import(text, name, &with_base(base))?;
-        Self::noted(&description, &notes)
-    }
-
-    /// Reads a neutral description file (`datasets/models/FORMAT.md`), which `featherbench gen` writes from URDF and MJCF.
-    ///
-    /// # Errors
-    /// [`Error::Neutral`], naming file, line, column and field.
-    ///
-    /// ```
-    /// assert!(featherbench_library::Robot::from_json("no_such_robot.json").is_err());
-    /// ```
-    pub fn from_json(path: impl AsRef<Path>) -> Result<Self, Error> {
-        Self::from_description(&neutral::read(path)?)
-    }
-
-    /// Reads an MJCF file, as far as that needs no compiler of MuJoCo ([`featherbench_formats::mjcf`] says what is read).
-    ///
-    /// # Errors
-    /// [`Error::Mjcf`], naming file, line, column and the body.
-    ///
-    /// ```
-    /// use featherbench_library::{Error, Robot};
-    /// let missing = Robot::from_mjcf("no_such_scene.xml").unwrap_err();
-    /// assert!(matches!(missing, Error::Mjcf(_)) && missing.to_string().starts_with("no_such_scene.xml"));
-    /// ```
-    pub fn from_mjcf(path: impl AsRef<Path>) -> Result<Self, Error> {
-        let (description, notes) = mjcf::read(path)?;
-        Self::noted(&description, &notes)
-    }
-
-    /// Reads MJCF from a text; `name` stands for the file in errors.
-    ///
-    /// # Errors
-    /// [`Error::Mjcf`].
-    ///
-    /// ```
-    /// use featherbench_library::Robot;
-    /// let text = r#"<mujoco><worldbody><body><joint axis="0 1 0"/><geom type="sphere" size="0.1" pos="0 0 -0.5" mass="1"/></body></worldbody></mujoco>"#;
-    /// let robot = Robot::from_mjcf_text(text, "pendulum.xml")?;
-    /// let tau = robot.inverse_dynamics(&[std::f64::consts::FRAC_PI_2], &[0.0], &[0.0])?;
-    /// assert!((tau[0] - 9.81 * 0.5).abs() < 1e-12, "m g l");
-    /// # Ok::<(), featherbench_library::Error>(())
-    /// ```
-    pub fn from_mjcf_text(text: &str, name: &str) -> Result<Self, Error> {
-        let (description, notes) = mjcf::import(text, name)?;
-        Self::noted(&description, &notes)
-    }
-
-    /// Reads a file by the ending of its name: `.urdf` (fixed to the world), `.xml` (MJCF) or `.json`.
-    ///
-    /// # Errors
-    /// That of the reader, or [`Error::UnknownEnding`].
-    ///
-    /// ```
-    /// use featherbench_library::{Error, Robot};
-    /// assert!(matches!(Robot::from_file("robot.sdf"), Err(Error::UnknownEnding { .. })));
-    /// ```
-    pub fn from_file(path: impl AsRef<Path>) -> Result<Self, Error> {
-        let path = path.as_ref();
-        match path.extension().and_then(|ending| ending.to_str()) {
-            Some("urdf") => Self::from_urdf(path),
-            Some("xml") => Self::from_mjcf(path),
-            Some("json") => Self::from_json(path),
-            _ => Err(Error::UnknownEnding { path: path.display().to_string() }),
-        }
-    }
-
-    /// The robot of a description, which need not be canonical.
-    ///
-    /// # Errors
-    /// [`Error::Malformed`], naming the body and field.
-    ///
-    /// ```
-    /// use featherbench_library::Robot;
-    /// use featherbench_library::model::Description;
-    /// assert!(Robot::from_description(&Description::default()).is_err(), "a robot has at least one body that moves");
-    /// ```
-    pub fn from_description(description: &Description) -> Result<Self, Error> {
-        Self::noted(description, &[] as &[String])
-    }
-
-    /// A generated robot, such as `chain:n=36,layout=spatial`, `humanoid`, `quadruped` or `tree:n=100`.
-    ///
-    /// # Errors
-    /// [`Error::Family`], naming what is not known.
-    ///
-    /// ```
-    /// let robot = featherbench_library::Robot::generated("chain:n=36,layout=spatial")?;
-    /// assert_eq!(robot.nv(), 36);
-    /// # Ok::<(), featherbench_library::Error>(())
-    /// ```
-    pub fn generated(family: &str) -> Result<Self, Error> {
-        Self::from_description(&Family::parse(family)?.generate()?)
-    }
-
-    fn noted(description: &Description, notes: &[impl ToString]) -> Result<Self, Error> {
+    /// The robot of a description, with what its reader left out.
+    pub(crate) fn noted(description: &Description, notes: &[impl ToString]) -> Result<Self, Error> {
         let model = Model::build(description)?;
         let description = description.canonical()?;
         let (mut q, mut v) = (0, 0);
@@ -484,10 +345,6 @@ impl Robot {
     pub fn batch_f32(&self) -> Batch<'static, f32> {
         Batch::of_model(self.model().lift())
     }
-}
-
-fn with_base(base: Base) -> Options {
-    Options { base, ..Options::default() }
 }
 
 /// The most names that an error lists.

@@ -5,3 +5,5 @@ mod common;
 mod conventions;
 mod dynamics;
 mod errors;
+mod mjcf;
+mod sources;
