@@ -47,7 +47,8 @@ impl<'a> SpeedVerdict<'a> {
     /// Collects a run's rows.
     pub fn of(overview: &Overview<'a>, rows: &'a [Row]) -> Self {
         let timed: Vec<&Row> = rows.iter().filter(|row| row.study == STUDY && !row.robot.is_empty()).collect();
-        let stream = || timed.iter().copied().filter(|row| row.cache == REGIME && row.value.is_some() && [DOUBLE, ""].contains(&&*row.precision));
+        let stream =
+            || timed.iter().copied().filter(|row| row.cache == REGIME && row.value.is_some() && [DOUBLE, ""].contains(&&*row.precision));
         let mut ratios: BTreeMap<(&str, usize), BTreeMap<usize, Ratio>> = BTreeMap::new();
         for row in stream().filter(|row| row.metric == "ratio" && row.engine != OWN) {
             let Some(ratio) = Ratio::of(overview, row) else { continue };
@@ -71,8 +72,11 @@ impl<'a> SpeedVerdict<'a> {
                 ours.insert(key, row);
             }
         }
-        let line = |((quantity, robot), ours): ((&'a str, usize), &'a Row)| {
-            Line { robot, quantity, ours, ratios: ratios.remove(&(quantity, robot)).unwrap_or_default() }
+        let line = |((quantity, robot), ours): ((&'a str, usize), &'a Row)| Line {
+            robot,
+            quantity,
+            ours,
+            ratios: ratios.remove(&(quantity, robot)).unwrap_or_default(),
         };
         let mut lines: Vec<Line> = ours.into_iter().map(line).collect();
         lines.sort_by_key(|line| (labels::quantity_rank(line.quantity), overview.robots[line.robot].nv, line.robot));
@@ -109,7 +113,8 @@ impl<'a> SpeedVerdict<'a> {
     pub fn headline(&self) -> String {
         let fastest = |line: &Line| line.ratios.values().filter(|ratio| ratio.valid).map(|ratio| ratio.value).min_by(f64::total_cmp);
         let best: Vec<f64> = self.lines.iter().filter_map(fastest).collect();
-        let (slower, faster) = (best.iter().filter(|&&ratio| ratio < 1.0 - ALIKE).count(), best.iter().filter(|&&ratio| ratio > 1.0 + ALIKE).count());
+        let (slower, faster) =
+            (best.iter().filter(|&&ratio| ratio < 1.0 - ALIKE).count(), best.iter().filter(|&&ratio| ratio > 1.0 + ALIKE).count());
         if best.is_empty() {
             return "No ratio of times counts in this run".into();
         }
@@ -129,7 +134,11 @@ impl<'a> SpeedVerdict<'a> {
         if all == 0 {
             return format!("All {} on speed count.", count(self.rows, "row"));
         }
-        let whys = ["the answers are missing or wrong", "the A/A control of their experiment is not 1", "too many A/A controls of their robot are not 1"];
+        let whys = [
+            "the answers are missing or wrong",
+            "the A/A control of their experiment is not 1",
+            "too many A/A controls of their robot are not 1",
+        ];
         let parts = self.void.iter().zip(whys).filter(|(number, _)| **number > 0);
         let parts: Vec<String> = parts.map(|(number, why)| format!("{} because {why}", grouped(*number))).collect();
         format!("{} of {} on speed do not count: {}.", grouped(all), count(self.rows, "row"), parts.join(", "))
