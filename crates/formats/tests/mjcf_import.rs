@@ -5,6 +5,7 @@ use featherbench_formats::mjcf::{self, MjcfProblem};
 use featherbench_formats::{OnLoss, neutral};
 use featherbench_model::{Description, JointType};
 use featherbench_robots::Family;
+use featherbench_spatial::larger;
 
 fn read(text: &str) -> Description {
     mjcf::import(text, "f.xml").unwrap_or_else(|error| panic!("{error}\n{text}")).0
@@ -33,7 +34,8 @@ fn what_is_written_is_read_again() {
             assert_eq!((&a.joint.name, a.joint.kind.name()), (&b.joint.name, b.joint.kind.name()), "{family}");
             assert_eq!(a.joint.placement.translation, b.joint.placement.translation, "{family}");
             // The writer's quaternions give rotations within 8 ε (its documentation).
-            let worst = a.joint.placement.rotation.iter().zip(b.joint.placement.rotation).map(|(x, y)| (x - y).abs()).fold(0.0, f64::max);
+            let errors = a.joint.placement.rotation.iter().zip(b.joint.placement.rotation).map(|(x, y)| (x - y).abs());
+            let worst = errors.fold(0.0, larger);
             assert!(worst <= 8.0 * f64::EPSILON, "{family}: {worst:e}");
         }
         assert_eq!(mjcf::to_string(&again, OnLoss::LeaveOut).unwrap().0, text, "{family}: a second trip changes nothing");
