@@ -47,6 +47,7 @@ mod environment;
 mod explain;
 mod external;
 mod fail;
+mod figures;
 mod filter;
 mod gate;
 mod generate;
@@ -95,7 +96,7 @@ fn dispatch(cli: Cli) -> Result<(), Fail> {
     match cli.command.unwrap_or_else(default) {
         Command::Run(args) => run::run(&root()?, &args),
         Command::Compare(args) => compare::compare(&root()?, &args),
-        Command::Report(args) => report::write(&args.folder, args.open),
+        Command::Report(args) => report::write(&args),
         Command::Gate(args) => gate::gate(&root()?, &args),
         Command::Diff(args) => diff::compare(&args),
         Command::History(args) => history::history(&root, &args),

@@ -1,18 +1,23 @@
 //! `featherbench report`, and how a run ends: its page and its findings.
 
+use crate::args::ReportArgs;
 use crate::fail::Fail;
+use crate::figures;
 use crate::gate;
 use crate::say::say;
 use ::featherbench_results::{Row, RunInfo};
 use featherbench_report::Findings;
 use std::path::{Path, PathBuf};
 
-/// Writes the report of a finished run again, and opens it if that is wanted.
-pub fn write(folder: &Path, open: bool) -> Result<(), Fail> {
-    let (info, records) = ::featherbench_results::read_run(folder)?;
-    let page = render(folder, &info, &records)?;
+/// Writes the report of a finished run again, and its figures for a paper and opens it if that is wanted.
+pub fn write(args: &ReportArgs) -> Result<(), Fail> {
+    let (info, records) = ::featherbench_results::read_run(&args.folder)?;
+    let page = render(&args.folder, &info, &records)?;
+    if let Some(folder) = &args.figures {
+        figures::write(folder, &info, &featherbench_studies::sections(&info, &records))?;
+    }
     say!("report: {}", page.display());
-    show(&page, open)
+    show(&page, args.open)
 }
 
 /// Renders the report into the run's folder and returns its page.

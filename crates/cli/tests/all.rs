@@ -12,6 +12,7 @@ mod explain;
 mod external;
 mod folds;
 mod history_diff;
+mod paper;
 mod parsers;
 mod planted;
 mod residuals;

@@ -36,6 +36,11 @@ pub fn figures(sections: &[Section]) -> Result<Vec<u8>, ReportError> {
     Ok(script("figures", &format!("{{{}}}", parts.join(","))))
 }
 
+/// The data of all figures for papers.
+pub fn figure_data(json: &str) -> NamedFile {
+    ("data/figure-data.js".to_owned(), script("figure-data", json))
+}
+
 /// One call, `featherbench.chunk("name",{…});`, whose second argument is plain JSON.
 ///
 /// Characters that could end a script element or a line are written as escapes, so that no name of a robot can become markup.

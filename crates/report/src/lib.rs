@@ -4,7 +4,8 @@
 //! It is a pure function of its arguments and reads no clock.
 //!
 //! The folder needs no network and no server. `index.html` has every table that is worth printing. `data/*.js` has the rows: the page adds
-//! a script element to read them when a cell is clicked, as a page under `file://` may not fetch. `app.js` draws the plots as SVG.
+//! a script element to read them when a cell is clicked, as a page under `file://` may not fetch. `app.js` draws the plots as SVG. `figures/` has
+//! the figures for papers, which [`mod@figure`] draws.
 //! Every number on the page is made from rows, and every cell and point leads back to its rows.
 //!
 //! # The order of the files
@@ -12,14 +13,16 @@
 //!
 //! | layer | files |
 //! |---|---|
-//! | data | [`numbers`], [`labels`], [`fit`], `error`, then `tally`, `overview`, `section`, then `findings`, `chunks`, then [`forms`] |
-//! | sections | `blocks`, then `verdict`, `conventions`, `provenance`, `method`, `unpassed` |
+//! | data | [`numbers`], [`labels`], [`fit`], `error`, then [`figure`], then `tally`, `overview`, `section`, then `findings`, `chunks`, then [`forms`] |
+//! | sections | `blocks`, then `verdict`, `conventions`, `provenance`, `method`, `unpassed`, `figures` |
 //! | page | `page`, `summary`, [`runs`], then `write` |
 
 mod blocks;
 mod chunks;
 mod conventions;
 mod error;
+pub mod figure;
+mod figures;
 mod findings;
 pub mod fit;
 pub mod forms;

@@ -5,16 +5,17 @@ use maud::{DOCTYPE, Markup, html};
 
 use crate::overview::Overview;
 use crate::section::Section;
-use crate::{conventions, method, provenance, unpassed, verdict};
+use crate::{conventions, figures, method, provenance, unpassed, verdict};
 
 /// The whole page as text.
 pub fn render(run: &RunInfo, rows: &[Row], overview: &Overview, sections: &[Section]) -> String {
     // The frame's own sections stand around those of the studies.
     let (first, conventions) = (verdict::section(run, overview, rows, sections), conventions::section(run));
+    let figures = figures::section(run, sections);
     let last = [provenance::section(run, overview), method::section(run, sections), unpassed::section(rows)];
     let of_studies = |appendix: bool| sections.iter().filter(move |section| section.appendix == appendix);
     let all: Vec<&Section> =
-        [&first].into_iter().chain(of_studies(false)).chain([&conventions]).chain(of_studies(true)).chain(&last).collect();
+        [&first].into_iter().chain(of_studies(false)).chain(&figures).chain([&conventions]).chain(of_studies(true)).chain(&last).collect();
     let page = html! {
         (DOCTYPE)
         html lang="en" {

@@ -3,6 +3,8 @@
 use maud::Markup;
 use serde::Serialize;
 
+use crate::figure::Figure;
+
 /// A section of the page, with everything that it adds to other places.
 ///
 /// ```
@@ -30,6 +32,8 @@ pub struct Section {
     pub finding: Option<Finding>,
     /// What it answers on the first page in its full width, below the findings.
     pub answer: Option<Markup>,
+    /// Its figures for papers.
+    pub figures: Vec<Figure>,
     /// Quantities of whose errors it tells: the section on the method defines their measures.
     pub quantities: Vec<String>,
     /// Terms and their definitions, for the section on the method.
@@ -61,6 +65,7 @@ impl Section {
             style: "",
             finding: None,
             answer: None,
+            figures: Vec::new(),
             quantities: Vec::new(),
             terms: &[],
             lines: Vec::new(),

@@ -6,6 +6,7 @@ use featherbench_results::{Row, RunInfo};
 
 use crate::chunks;
 use crate::error::ReportError;
+use crate::figures;
 use crate::overview::Overview;
 use crate::page;
 use crate::section::Section;
@@ -23,6 +24,7 @@ const SCRIPT: &str = concat!(
     include_str!("../assets/chart_draw.js"),
     include_str!("../assets/chart.js"),
     include_str!("../assets/plots.js"),
+    include_str!("../assets/figures.js"),
 );
 
 /// Where a report was written.
@@ -52,6 +54,8 @@ pub fn write(run: &RunInfo, rows: &[Row], sections: &[Section], out: &Path) -> R
         ("data/figures.js".to_owned(), chunks::figures(sections)?),
     ];
     files.extend(chunks::rows(&overview, rows)?);
+    files.extend(figures::files(sections));
+    files.push(chunks::figure_data(&figures::data(sections)?));
     // Last, so that a page is never older than what it links to.
     files.push(("index.html".to_owned(), page::render(run, rows, &overview, sections).into_bytes()));
 

@@ -163,7 +163,7 @@ fn a_row_lies_in_the_chunk_of_its_robot_or_of_its_study() {
     let written = Written::of(&RunInfo::default(), &rows, &[]);
     let mut names = written.chunk_names();
     names.sort();
-    assert_eq!(names, ["figures", "overview", "robot-0", "study-1", "unpassed"]);
+    assert_eq!(names, ["figure-data", "figures", "overview", "robot-0", "study-1", "times", "unpassed"]);
     let count = |name: &str| written.data(name)["rows"].as_array().unwrap().len();
     assert_eq!(["robot-0", "study-1", "unpassed"].map(count), [1, 1, 2]);
 }

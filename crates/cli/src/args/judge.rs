@@ -10,9 +10,13 @@ fn file_name(text: &str) -> Result<String, String> {
 }
 
 #[derive(Debug, Clone, Args)]
-pub struct FolderArgs {
+#[command(after_help = "Example:\n  featherbench report reports/today --figures paper/figures")]
+pub struct ReportArgs {
     /// A run's folder.
     pub folder: PathBuf,
+    /// Write the run's figures for a paper into this folder: each as SVG, CSV and, with Chromium, PDF; captions.md and references.bib.
+    #[arg(long, value_name = "DIR")]
+    pub figures: Option<PathBuf>,
     /// Open the page.
     #[arg(long)]
     pub open: bool,

@@ -4,7 +4,7 @@ mod analysis;
 mod judge;
 
 pub use analysis::{Estimator, IdentifyArgs, Propagation, Term, UncertaintyArgs};
-pub use judge::{DiffArgs, FolderArgs, GateArgs, HistoryArgs};
+pub use judge::{DiffArgs, GateArgs, HistoryArgs, ReportArgs};
 
 use crate::external::External;
 use clap::{Args, Parser, Subcommand, ValueEnum};
@@ -40,7 +40,7 @@ pub enum Command {
     /// Ask whether the engines read robots' files alike, and if not, where and why.
     Compare(CompareArgs),
     /// Write the report of a run again from its records.
-    Report(FolderArgs),
+    Report(ReportArgs),
     /// Judge a run by its records: exit 1 when a gate fails.
     Gate(GateArgs),
     /// List suites, robots, engines, studies and families of generated robots.

@@ -177,3 +177,90 @@ fn a_limit_that_is_none_is_not_shown() {
     let told = section("vectors make too little", 7.1, [35.0, 17.51]);
     assert!(!told.contains(table) && told.contains("The peak does not count: vectors make too little."), "{told}");
 }
+
+/// The first page says who is fastest by what counts and is no estimate, shows a median over robots for each engine and quantity, and tells
+/// in one sentence what does not count.
+#[test]
+fn the_first_page_says_who_is_fastest() {
+    let row = |engine: &str, robot: &str, method: &str, metric: &str, value: f64| {
+        let row = Row {
+            study: "timing".into(),
+            engine: engine.into(),
+            robot: robot.into(),
+            method: method.into(),
+            precision: "f64".into(),
+            quantity: "id".into(),
+            cache: "stream".into(),
+            metric: metric.into(),
+            reference: "featherbench rnea".into(),
+            nv: Some(7),
+            bodies: Some(7),
+            ..Row::default()
+        };
+        row.measured(value, 0.9 * value, 1.1 * value)
+    };
+    let mut rows = vec![
+        row("featherbench", "a", "refined", "ns_per_call", 90.0),
+        row("featherbench", "a", "rnea", "ns_per_call", 100.0),
+        row("featherbench", "b", "rnea", "ns_per_call", 200.0),
+        row("featherbench", "c", "rnea", "ns_per_call", 300.0),
+        row("featherbench", "d", "rnea", "ns_per_call", 400.0),
+        // Two methods of one engine: the faster one speaks for it.
+        row("pinocchio", "a", "slow", "ratio", 9.0),
+        row("pinocchio", "a", "rnea", "ratio", 2.0),
+        row("pinocchio", "b", "rnea", "ratio", 0.5),
+        row("pinocchio", "c", "rnea", "ratio", 4.0),
+        row("pinocchio", "d", "rnea", "ratio", 8.0).invalid("noise"),
+        row("featherbench", "d", "rnea", "control", 1.5).invalid("noise"),
+        Row { estimated: true, ..row("drake", "a", "inverse_dynamics", "ratio", 0.25) },
+    ];
+    let written = report(&RunInfo::default(), &rows);
+    let verdict = written.section("verdict");
+    assert!(
+        verdict.contains(
+            "Of 4 robots and quantities with times of others, 3 count: ours is the fastest for 2, within 2 % of the fastest other for 0, slower for 1"
+        ),
+        "{verdict}"
+    );
+    assert!(verdict.contains("2 of 12 rows on speed do not count, because the A/A control of their experiment is not 1."), "{verdict}");
+    let map = verdict.split("speed-map").nth(1).expect("the map").split("</table>").next().unwrap();
+    // The median of 2, 0.5 and 4; the estimate is marked; a click opens the rows of all robots.
+    assert!(map.contains(">2.00</button>") && map.contains("≈\u{202f}0.25</button>") && map.contains("data-chunk=\"times\""), "{map}");
+    assert_eq!(written.data("times")["rows"].as_array().unwrap().len(), rows.len());
+    let table = verdict.split("speed-by-robot").nth(1).expect("the table");
+    assert!(table.contains("100 ns [90, 110]") && !table.contains("90 ns ["), "our usual method, as the ratios are over it: {table}");
+    assert!(table.contains("class=\"number void\">8.000 <small>[7.200, 8.800]</small>"), "what does not count is struck out: {table}");
+    assert!(written.section("time").contains("id=\"time-first\"") && written.section("time").contains("ns ["));
+
+    rows.truncate(5);
+    let alone = report(&RunInfo::default(), &rows);
+    assert!(alone.section("verdict").contains("No other engine was timed here but by estimates"));
+    assert!(!report(&RunInfo::default(), &[]).index.contains("speed-verdict"));
+}
+
+/// At the end of a run: a line for each quantity with our fastest method, and the batch beside it.
+#[test]
+fn the_best_other_is_a_table_in_the_terminal() {
+    let row = |method: &str, robot: &str, ratio: f64| {
+        let row = Row {
+            study: "timing".into(),
+            engine: "featherbench".into(),
+            robot: robot.into(),
+            method: method.into(),
+            precision: "f64".into(),
+            quantity: "fd".into(),
+            cache: "stream".into(),
+            metric: "best_other".into(),
+            reference: "pinocchio aba".into(),
+            ..Row::default()
+        };
+        row.measured(ratio, ratio, ratio)
+    };
+    let rows = [row("aba", "a", 2.0), row("aba", "b", 8.0), row("refined", "a", 1.5), row("batch", "a", 20.0)];
+    let lines: Vec<String> =
+        featherbench_studies::sections(&RunInfo::default(), &rows).into_iter().flat_map(|section| section.lines).collect();
+    let at = lines.iter().position(|line| line.starts_with("the best other over ours")).expect("the table");
+    let words: Vec<&str> = lines[at + 1].split_whitespace().collect();
+    assert_eq!(words, ["forward", "dynamics", "aba", "4.000", "2.000", "20.0"], "{lines:?}");
+    assert_eq!(lines.len(), at + 2, "one line for one quantity: {lines:?}");
+}

@@ -2,6 +2,7 @@
 
 mod axes;
 mod data;
+mod figures;
 mod truth;
 
 use std::collections::{BTreeMap, BTreeSet};
@@ -43,6 +44,7 @@ pub(crate) fn sections<'a>(_: &RunInfo, rows: &'a [Row], overview: &Overview<'a>
         finding: Some(Finding { rank: 0, body: truth::markup(overview, &accuracy, &truth) }),
         quantities: accuracy.quantities().into_iter().map(str::to_owned).collect(),
         terms: TERMS,
+        figures: figures::figures(overview, rows),
         ..Section::new("accuracy", "Accuracy", body(overview, &accuracy)).with_data(&accuracy)
     }]
 }

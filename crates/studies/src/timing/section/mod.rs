@@ -1,6 +1,7 @@
 //! The sections of this study: time against size, ratios of times, and time against true error.
 
 mod best;
+mod figures;
 mod line;
 mod ratios;
 mod speed;
@@ -33,6 +34,7 @@ pub(crate) fn sections<'a>(run: &RunInfo, rows: &'a [Row], overview: &Overview<'
         lines: line::line(overview, rows, &speed).into_iter().chain(best::lines(&best)).collect(),
         style: include_str!("speed.css"),
         answer: verdict.markup(overview),
+        figures: figures::figures(overview, rows, &verdict),
         ..Section::new("time", "Time", time::markup(overview, &times, verdict.first_times(overview))).with_data(&times)
     }];
     if !speed.is_empty() || !best.is_empty() {

@@ -109,39 +109,46 @@ impl<'a> SpeedVerdict<'a> {
         (engines, quantities)
     }
 
-    /// How often ours is faster, alike or slower than the fastest other engine, over robots and quantities whose numbers count.
+    /// How often ours is faster, alike or slower than the fastest other engine, over robots and quantities whose numbers count. Estimates,
+    /// which are rather too long, decide nothing here.
     pub fn headline(&self) -> String {
-        let fastest = |line: &Line| line.ratios.values().filter(|ratio| ratio.valid).map(|ratio| ratio.value).min_by(f64::total_cmp);
-        let best: Vec<f64> = self.lines.iter().filter_map(fastest).collect();
-        let (slower, faster) =
-            (best.iter().filter(|&&ratio| ratio < 1.0 - ALIKE).count(), best.iter().filter(|&&ratio| ratio > 1.0 + ALIKE).count());
-        if best.is_empty() {
-            return "No ratio of times counts in this run".into();
+        let timed = |line: &&Line| line.ratios.values().any(|ratio| !ratio.estimated);
+        let all = self.lines.iter().filter(timed).count();
+        if all == 0 {
+            return "No other engine was timed here but by estimates".into();
         }
-        let (all, alike) = (best.len(), best.len() - slower - faster);
+        let counts = |ratio: &&Ratio| ratio.valid && !ratio.estimated;
+        let fastest = |line: &Line| line.ratios.values().filter(counts).map(|ratio| ratio.value).min_by(f64::total_cmp);
+        let best: Vec<f64> = self.lines.iter().filter_map(fastest).collect();
+        if best.is_empty() {
+            return format!("None of the {} with another engine counts", count(all, "ratio"));
+        }
+        let number = |holds: fn(f64) -> bool| grouped(best.iter().filter(|&&ratio| holds(ratio)).count());
         format!(
-            "Ours is the fastest for {} of {} robots and quantities, within 2 % of the fastest other for {}, slower for {}",
-            grouped(faster),
+            "Of {} robots and quantities with times of others, {} count: ours is the fastest for {}, within 2 % of the fastest other for {}, slower for {}",
             grouped(all),
-            grouped(alike),
-            grouped(slower)
+            grouped(best.len()),
+            number(|ratio| ratio > 1.0 + ALIKE),
+            number(|ratio| (1.0 - ALIKE..=1.0 + ALIKE).contains(&ratio)),
+            number(|ratio| ratio < 1.0 - ALIKE)
         )
     }
 
     /// What does not count, and why: one sentence.
     pub fn void_words(&self) -> String {
         let all: usize = self.void.iter().sum();
-        if all == 0 {
-            return format!("All {} on speed count.", count(self.rows, "row"));
-        }
         let whys = [
             "the answers are missing or wrong",
             "the A/A control of their experiment is not 1",
             "too many A/A controls of their robot are not 1",
         ];
-        let parts = self.void.iter().zip(whys).filter(|(number, _)| **number > 0);
-        let parts: Vec<String> = parts.map(|(number, why)| format!("{} because {why}", grouped(*number))).collect();
-        format!("{} of {} on speed do not count: {}.", grouped(all), count(self.rows, "row"), parts.join(", "))
+        let parts: Vec<(usize, &str)> = self.void.into_iter().zip(whys).filter(|(number, _)| *number > 0).collect();
+        let words = match &parts[..] {
+            [] => return format!("All {} on speed count.", count(self.rows, "row")),
+            [(_, why)] => format!("because {why}"),
+            many => many.iter().map(|(number, why)| format!("{} because {why}", grouped(*number))).collect::<Vec<_>>().join(", "),
+        };
+        format!("{} of {} on speed do not count, {words}.", grouped(all), count(self.rows, "row"))
     }
 
     /// One robot's times in a sentence: of the robots with most quantities the middle one by size.
@@ -172,7 +179,7 @@ impl<'a> SpeedVerdict<'a> {
         Some(html! {
             div #speed-verdict {
                 h3 { "How fast" }
-                p { b { (self.headline()) } ". " (self.void_words()) " " a href="#speed" { "More on speed" } "." }
+                p { b { (self.headline()) } ". " (self.void_words()) " " a href="#time" { "More on times" } "." }
                 (self.heat(overview))
                 details {
                     summary { "By robot and quantity: our time, and each engine over it" }
