@@ -7,6 +7,9 @@ featherbench.plots = (() => {
   // Logarithms have no place for zero: what is smaller stands here, hollow.
   const ZERO = 1e-18;
   const colour = (index) => variable(`--series-${index % COLOURS}`);
+  // An engine has one colour on every page; its first method has the engine's mark, its others the next ones.
+  const ink = (engine) => colour(chunks.get("overview").styles[engine].colour);
+  const mark = (engine, method) => symbol(chunks.get("overview").styles[engine].mark + method);
   const symbol = (index) => SYMBOLS[index % SYMBOLS.length];
   const dash = (index) => DASHES[index % DASHES.length];
   const joined = (...parts) => parts.filter(Boolean).join(" · ");
@@ -37,5 +40,5 @@ featherbench.plots = (() => {
     task();
   }
 
-  return { ZERO, least, colour, symbol, dash, joined, exponent, layout, draw, fitted, choices, live };
+  return { ZERO, least, colour, ink, mark, symbol, dash, joined, exponent, layout, draw, fitted, choices, live };
 })();

@@ -5,6 +5,8 @@ use std::collections::{BTreeMap, BTreeSet};
 use featherbench_results::{Row, RunInfo};
 use serde::Serialize;
 
+use crate::figure::{Style, style};
+
 /// The engine of rows about all engines together.
 pub const EVERYONE: &str = "all";
 
@@ -28,6 +30,8 @@ pub struct Robot<'a> {
 pub struct Overview<'a> {
     /// Names of the engines, also of those that failed to answer.
     pub engines: Vec<&'a str>,
+    /// How each looks in every drawing.
+    pub styles: Vec<Style>,
     /// Robots, families together.
     pub robots: Vec<Robot<'a>>,
     /// Studies, in alphabetical order.
@@ -45,7 +49,8 @@ impl<'a> Overview<'a> {
         let robots = robots(run, rows);
         let robot_index = robots.iter().enumerate().map(|(index, robot)| (robot.name, index)).collect();
         let studies: BTreeSet<&str> = rows.iter().map(|row| row.study.as_str()).collect();
-        Self { engines, robots, studies: studies.into_iter().collect(), robot_index }
+        let styles = engines.iter().map(|engine| style(engine)).collect();
+        Self { engines, styles, robots, studies: studies.into_iter().collect(), robot_index }
     }
 
     /// The index of a robot.

@@ -60,7 +60,7 @@ impl Scale {
     pub(super) fn ticks(&self) -> Vec<(f64, String)> {
         let [low, high] = self.range;
         if !self.log {
-            let step = nice((high - low) / 5.0);
+            let step = nice((high - low) / 6.0);
             let (first, last) = ((low / step).ceil() as i64, (high / step).floor() as i64);
             let decimals = larger(0.0, -step.log10().floor()) as usize;
             return (first..=last).map(|k| k as f64 * step).map(|value| (value, format!("{value:.decimals$}"))).collect();
@@ -120,7 +120,7 @@ mod tests {
         assert_eq!(labels(Axis::log("x"), &[1.0, 100.0]), ["1", "10", "100"]);
         assert_eq!(labels(Axis::log("x"), &[1e-16, 1e-4]), ["10⁻¹⁶", "10⁻¹⁴", "10⁻¹²", "10⁻¹⁰", "10⁻⁸", "10⁻⁶", "10⁻⁴"]);
         assert_eq!(labels(Axis::log("x"), &[1.0, 6.0]), ["1", "2", "5"]);
-        assert_eq!(labels(Axis::linear("x"), &[0.0, 1.0]), ["0.0", "0.5", "1.0"]);
+        assert_eq!(labels(Axis::linear("x"), &[0.0, 1.0]), ["0.0", "0.2", "0.4", "0.6", "0.8", "1.0"]);
         assert!(Scale::of(&Axis::log("x"), [0.0, f64::NAN].into_iter(), [0.0, 1.0]).is_none(), "zero has no logarithm");
     }
 

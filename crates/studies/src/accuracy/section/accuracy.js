@@ -1,7 +1,7 @@
 // Accuracy: the median error against the truth along one axis, and the table of all medians.
 featherbench.ready(() => {
   const { byId, chunks, decades, make, short, variable } = featherbench;
-  const { colour, dash, draw, exponent, fitted, joined, layout, least, live, symbol, ZERO } = featherbench.plots;
+  const { ink, dash, draw, exponent, fitted, joined, layout, least, live, mark, ZERO } = featherbench.plots;
   const { power } = featherbench.axes;
   const overview = chunks.get("overview");
   const accuracy = chunks.get("figures")?.accuracy;
@@ -70,8 +70,8 @@ featherbench.ready(() => {
       const points = curve.points.map(([x, cell]) => ({ x, ...accuracy.cells[cell] }));
       for (const { x, floor } of points) if (floor !== null) floors.set(x, floor);
       series.push({
-        name: joined(engine(answer), answer.method, answer.scalar === "f64" ? "" : answer.scalar), note: exponent(curve.fit?.slope), ink: colour(answer.engine),
-        line: { width: 1.3, dash: dash(index) }, mark: { symbol: symbol(index), size: 8 }, broad: curve.fit ? fitted(curve.fit, curve.span) : [],
+        name: joined(engine(answer), answer.method, answer.scalar === "f64" ? "" : answer.scalar), note: exponent(curve.fit?.slope), ink: ink(answer.engine),
+        line: { width: 1.3, dash: dash(index) }, mark: { symbol: mark(answer.engine, index), size: 8 }, broad: curve.fit ? fitted(curve.fit, curve.span) : [],
         points: points.map((point) => ({
           x: point.x, y: least(point.median), low: least(point.q1), high: least(point.q3), hollow: point.median < ZERO || point.quantity !== answer.quantity,
           tip: lines(point), target: { robot: point.robot, filters: filters(point) },

@@ -1,7 +1,7 @@
 // Error against depth.
 featherbench.ready(() => {
   const { byId, chunks, short, variable } = featherbench;
-  const { choices, colour, dash, draw, joined, layout, least, live, symbol } = featherbench.plots;
+  const { choices, dash, draw, ink, joined, layout, least, live, mark } = featherbench.plots;
   const overview = chunks.get("overview");
   const plots = chunks.get("figures")?.depth;
   if (!overview || !plots || !byId("depth-plot")) return;
@@ -31,7 +31,7 @@ featherbench.ready(() => {
       const name = joined(overview.engines[trace.engine], trace.method, trace.scalar === "f64" ? "" : trace.scalar);
       const envelope = new Map(points.map((point) => [point.depth, least(point.value)]));
       series.push({
-        name, ink: colour(trace.engine), mark: { symbol: symbol(index), size: 8, opacity: 0.9 }, line: { width: 1.2, dash: dash(index), opacity: 0.6, path: [...envelope] },
+        name, ink: ink(trace.engine), mark: { symbol: mark(trace.engine, index), size: 8, opacity: 0.9 }, line: { width: 1.2, dash: dash(index), opacity: 0.6, path: [...envelope] },
         points: points.map((point) => ({
           x: point.depth, y: least(point.value), hollow: point.value === 0,
           tip: [`${overview.robots[point.robot].name}, depth ${point.depth}`, short(point.value) + (point.bound === null ? "" : `, gate ${short(point.bound)}`), point.kind].filter(Boolean),

@@ -1,7 +1,7 @@
 // Scaling: time, memory and error against size, and the ratio of our two ways to forward dynamics.
 featherbench.ready(() => {
   const { byId, chunks, short, variable } = featherbench;
-  const { colour, dash, draw, exponent, joined, layout, least, live, symbol } = featherbench.plots;
+  const { colour, ink, dash, draw, exponent, joined, layout, least, live, symbol } = featherbench.plots;
   const overview = chunks.get("overview");
   const scaling = chunks.get("figures")?.scaling;
   if (!overview || !scaling || !byId("scaling-time")) return;
@@ -16,7 +16,7 @@ featherbench.ready(() => {
       methods.set(one.engine, style + 1);
       const points = one.points.filter((point) => point[key] !== null);
       return {
-        name: joined(overview.engines[one.engine], one.method), note: note(one), ink: colour(one.engine),
+        name: joined(overview.engines[one.engine], one.method), note: note(one), ink: ink(one.engine),
         line: { width: 1.4, dash: dash(style) }, mark: { size: 8, symbol: symbol(style) },
         points: points.map((point) => ({
           x: point.size, y: scale(point[key]), low: key === "seconds" ? point.low : null, high: key === "seconds" ? point.high : null,

@@ -1,7 +1,7 @@
 // Speed, side by side: ratios with their intervals, robots along the paper.
 featherbench.ready(() => {
   const { byId, chunks, variable } = featherbench;
-  const { colour, draw, joined, layout, live, symbol } = featherbench.plots;
+  const { ink, draw, joined, layout, live, mark } = featherbench.plots;
   const overview = chunks.get("overview");
   const speed = chunks.get("figures")?.speed;
   if (!overview || !speed || !byId("speed-plot")) return;
@@ -25,7 +25,7 @@ featherbench.ready(() => {
       // Marks of one robot stand beside each other, so that their bars can be seen.
       const beside = candidates.length < 2 ? 0 : 0.5 * (place / (candidates.length - 1) - 0.5);
       return {
-        name: joined(overview.engines[engine], way(own[0])), ink: colour(engine), mark: { symbol: symbol(index), size: 9 },
+        name: joined(overview.engines[engine], way(own[0])), ink: ink(engine), mark: { symbol: mark(engine, index), size: 9 },
         points: own.map((point) => ({
           x: robots.indexOf(point.robot) + beside, y: point.value, low: point.low, high: point.high, symbol: point.estimated ? "cross" : undefined, hollow: !point.valid,
           tip: [

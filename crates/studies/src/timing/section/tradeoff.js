@@ -1,7 +1,7 @@
 // Work–precision.
 featherbench.ready(() => {
   const { byId, chunks, short, variable } = featherbench;
-  const { colour, draw, joined, layout, least, live, symbol } = featherbench.plots;
+  const { ink, draw, joined, layout, least, live, mark } = featherbench.plots;
   const overview = chunks.get("overview");
   const methods = chunks.get("figures")?.tradeoff;
   if (!overview || !methods || !byId("tradeoff-plot")) return;
@@ -26,7 +26,7 @@ featherbench.ready(() => {
       marks.set(point.engine, index + 1);
       const name = joined(overview.engines[point.engine], point.method, point.scalar === "f64" ? "" : point.scalar);
       series.push({
-        name, ink: colour(point.engine), mark: { size: point.front ? 12 : 9, symbol: symbol(index) },
+        name, ink: ink(point.engine), mark: { size: point.front ? 12 : 9, symbol: mark(point.engine, index) },
         points: [{
           x: point.ns, y: least(point.error), left: point.p10, right: point.p90, low: least(point.q1), high: least(point.q3), hollow: !point.front, label: point.method, soft: !point.front,
           tip: [name, `${short(point.ns)} ns per call`, `median error ${short(point.error)}`, point.front ? "unbeaten" : ""].filter(Boolean),
