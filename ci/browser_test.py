@@ -21,9 +21,7 @@ from browser.sections import checks
 def main() -> int:
     """Run the checks."""
     parser = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
-    parser.add_argument(
-        "report", type=pathlib.Path, help="folder that holds index.html"
-    )
+    parser.add_argument("report", type=pathlib.Path, help="folder that holds index.html")
     parser.add_argument("--shots", type=pathlib.Path, help="folder for screenshots")
     arguments = parser.parse_args()
     index = (arguments.report / "index.html").resolve()
@@ -41,10 +39,7 @@ def main() -> int:
             return 2
         try:
             for what, good, seen in checks(page, index.as_uri(), arguments.shots):
-                print(
-                    f"{'ok  ' if good else 'FAIL'} {what}"
-                    + ("" if good else f": {seen}")
-                )
+                print(f"{'ok  ' if good else 'FAIL'} {what}" + ("" if good else f": {seen}"))
                 passed, failed = passed + bool(good), failed + (not good)
         except (OSError, RuntimeError) as error:
             print(f"FAIL the test was cut short: {error}")

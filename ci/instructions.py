@@ -45,34 +45,21 @@ class NotCountedError(Exception):
 def missing() -> str | None:
     """Say what is missing on this machine, if anything."""
     if platform.machine() != "x86_64":
-        return (
-            f"the counts are those of x86-64, and this machine is {platform.machine()}"
-        )
+        return f"the counts are those of x86-64, and this machine is {platform.machine()}"
     if shutil.which("valgrind") is None:
         return "there is no valgrind (Debian: apt-get install valgrind)"
     return None
 
 
-def run(
-    command: list[str],
-    folder: pathlib.Path,
-    capture: bool = True,
-    environment: dict[str, str] | None = None,
-) -> str:
+def run(command: list[str], folder: pathlib.Path, capture: bool = True, environment: dict[str, str] | None = None) -> str:
     """Run a command, and return what it prints; if it fails, raise `NotCountedError`."""
     try:
-        ended = subprocess.run(
-            command, cwd=folder, env=environment, capture_output=capture, text=True
-        )
+        ended = subprocess.run(command, cwd=folder, env=environment, capture_output=capture, text=True)
     except OSError as error:
-        raise NotCountedError(
-            f"{command[0]} cannot be started: {error.strerror}"
-        ) from error
+        raise NotCountedError(f"{command[0]} cannot be started: {error.strerror}") from error
     if ended.returncode != 0:
         told = ended.stderr.strip()[-400:] if capture else "mend what it says above"
-        raise NotCountedError(
-            f"`{' '.join(command)}` failed ({ended.returncode}): {told}"
-        )
+        raise NotCountedError(f"`{' '.join(command)}` failed ({ended.returncode}): {told}")
     return ended.stdout or ""
 
 
@@ -84,21 +71,8 @@ def compiler() -> str:
 
 def build() -> pathlib.Path:
     """Build the program that runs the kernels, and return its path."""
-    environment = {
-        **os.environ,
-        "RUSTFLAGS": "-C target-cpu=x86-64-v3 -C no-vectorize-slp",
-        "CARGO_TARGET_DIR": str(TARGET),
-    }
-    command = [
-        "cargo",
-        "build",
-        "--release",
-        "--quiet",
-        "-p",
-        "featherbench-engines",
-        "--example",
-        "instructions",
-    ]
+    environment = {**os.environ, "RUSTFLAGS": "-C target-cpu=x86-64-v3 -C no-vectorize-slp", "CARGO_TARGET_DIR": str(TARGET)}
+    command = ["cargo", "build", "--release", "--quiet", "-p", "featherbench-engines", "--example", "instructions"]
     run(command, ROOT, capture=False, environment=environment)
     return TARGET / "release/examples/instructions"
 
@@ -106,38 +80,18 @@ def build() -> pathlib.Path:
 def count(program: pathlib.Path) -> Counts:
     """Count instructions per state as {(kernel, model): number}: callgrind writes one file each time the measured function is left."""
     with tempfile.TemporaryDirectory() as folder:
-        flags = [
-            "--tool=callgrind",
-            f"--toggle-collect={FUNCTION}",
-            f"--dump-after={FUNCTION}",
-            "--callgrind-out-file=out",
-            "--quiet",
-        ]
-        runs = [
-            line.split(",")
-            for line in run(
-                ["valgrind", *flags, str(program)], pathlib.Path(folder)
-            ).splitlines()
-        ]
-        files = sorted(
-            pathlib.Path(folder).glob("out.*"), key=lambda path: int(path.suffix[1:])
-        )
+        flags = ["--tool=callgrind", f"--toggle-collect={FUNCTION}", f"--dump-after={FUNCTION}", "--callgrind-out-file=out", "--quiet"]
+        runs = [line.split(",") for line in run(["valgrind", *flags, str(program)], pathlib.Path(folder)).splitlines()]
+        files = sorted(pathlib.Path(folder).glob("out.*"), key=lambda path: int(path.suffix[1:]))
         counted = [
-            int(number)
-            for path in files
-            for number in re.findall(
-                r"^(?:totals|summary): (\d+)", path.read_text(), re.MULTILINE
-            )[:1]
+            int(number) for path in files for number in re.findall(r"^(?:totals|summary): (\d+)", path.read_text(), re.MULTILINE)[:1]
         ]
     totals = [total for total in counted if total > 0]
     if not runs or len(runs) != len(totals):
         raise NotCountedError(
             f"{len(runs)} kernels ran, callgrind told of {len(totals)}: is '{FUNCTION}' still the measured function's name?"
         )
-    return {
-        (kernel, model): round(total / int(states))
-        for (kernel, model, states), total in zip(runs, totals, strict=True)
-    }
+    return {(kernel, model): round(total / int(states)) for (kernel, model, states), total in zip(runs, totals, strict=True)}
 
 
 def read(path: pathlib.Path, rustc: str) -> Counts:
@@ -145,11 +99,7 @@ def read(path: pathlib.Path, rustc: str) -> Counts:
     if not path.exists():
         return {}
     with path.open(newline="") as file:
-        return {
-            (row["kernel"], row["model"]): int(row["instructions"])
-            for row in csv.DictReader(file)
-            if row["rustc"] == rustc
-        }
+        return {(row["kernel"], row["model"]): int(row["instructions"]) for row in csv.DictReader(file) if row["rustc"] == rustc}
 
 
 def write(path: pathlib.Path, rustc: str, counts: Counts, keep: bool) -> None:
@@ -158,10 +108,7 @@ def write(path: pathlib.Path, rustc: str, counts: Counts, keep: bool) -> None:
     if keep and path.exists():
         with path.open(newline="") as file:
             rows = [row for row in csv.DictReader(file) if row["rustc"] != rustc]
-    rows += [
-        {"rustc": rustc, "kernel": kernel, "model": model, "instructions": number}
-        for (kernel, model), number in counts.items()
-    ]
+    rows += [{"rustc": rustc, "kernel": kernel, "model": model, "instructions": number} for (kernel, model), number in counts.items()]
     temporary = path.with_suffix(".tmp")
     with temporary.open("w", newline="") as file:
         writer = csv.DictWriter(file, COLUMNS, lineterminator="\n")
@@ -181,9 +128,7 @@ def compare(baseline: Counts, counts: Counts) -> tuple[list[str], list[str]]:
         if change is not None and change > TOLERANCE:
             said = f"**{said}**"
             wrong.append(f"{kernel} on {model}: {said}")
-        lines.append(
-            f"| {kernel} | {model} | {before if before is not None else '–'} | {now} | {said} |"
-        )
+        lines.append(f"| {kernel} | {model} | {before if before is not None else '–'} | {now} | {said} |")
     for kernel, model in baseline.keys() - counts.keys():
         lines.append(f"| {kernel} | {model} | {baseline[kernel, model]} | – | gone |")
         wrong.append(f"{kernel} on {model} is no longer counted")
@@ -192,15 +137,9 @@ def compare(baseline: Counts, counts: Counts) -> tuple[list[str], list[str]]:
 
 def main() -> None:
     """Count, and compare or accept."""
-    parser = argparse.ArgumentParser(
-        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
-    )
-    parser.add_argument(
-        "--accept", action="store_true", help="make what is counted now the baseline"
-    )
-    parser.add_argument(
-        "--out", type=pathlib.Path, help="write the counts here, and judge nothing"
-    )
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--accept", action="store_true", help="make what is counted now the baseline")
+    parser.add_argument("--out", type=pathlib.Path, help="write the counts here, and judge nothing")
     arguments = parser.parse_args()
     required = "FEATHERBENCH_REQUIRE_ALL" in os.environ
     if reason := missing():
@@ -224,18 +163,11 @@ def main() -> None:
         write(BASELINE, rustc, counts, keep=True)
         print(f"\naccepted: {len(counts)} counts in {BASELINE.relative_to(ROOT)}")
     elif not baseline:
-        print(
-            f"\nnot judged: {BASELINE.relative_to(ROOT)} does not have this compiler. `python ci/instructions.py --accept` adds it."
-        )
+        print(f"\nnot judged: {BASELINE.relative_to(ROOT)} does not have this compiler. `python ci/instructions.py --accept` adds it.")
         sys.exit(1 if required else 0)
     elif wrong:
-        print(
-            f"\n{len(wrong)} above the baseline by more than {TOLERANCE:.0%}, or gone:\n- "
-            + "\n- ".join(wrong)
-        )
-        print(
-            "\nWhere that is meant, `python ci/instructions.py --accept` makes it the baseline."
-        )
+        print(f"\n{len(wrong)} above the baseline by more than {TOLERANCE:.0%}, or gone:\n- " + "\n- ".join(wrong))
+        print("\nWhere that is meant, `python ci/instructions.py --accept` makes it the baseline.")
         sys.exit(1)
 
 

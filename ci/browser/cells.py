@@ -25,24 +25,14 @@ def heatmap(page: Browser, shot: Shot) -> Checks:
         page.run(f"{head}.click()")
         low = page.run("return document.querySelector('#rows-table tbody').textContent")
         page.run(f"{head}.click()")
-        high = page.run(
-            "return document.querySelector('#rows-table tbody').textContent"
-        )
-        yield (
-            "rows sort both ways",
-            rows < 2 or low != high,
-            [first[:60], low[:60], high[:60]],
-        )
+        high = page.run("return document.querySelector('#rows-table tbody').textContent")
+        yield "rows sort both ways", rows < 2 or low != high, [first[:60], low[:60], high[:60]]
     here = page.run("return location.href")
     page.press(ESCAPE)
     yield "Escape closes the rows", page.until(CLOSED), ""
     page.open("about:blank")
     page.open(here)
-    yield (
-        "the address of open rows opens them again",
-        page.until(ROWS) == rows,
-        here[-80:],
-    )
+    yield "the address of open rows opens them again", page.until(ROWS) == rows, here[-80:]
     page.press(ESCAPE)
 
     page.run("document.querySelector('#heat td button').focus()")
@@ -50,14 +40,8 @@ def heatmap(page: Browser, shot: Shot) -> Checks:
     page.press(ARROW_RIGHT)
     page.press(ARROW_DOWN)
     end = page.run(FOCUS)
-    yield (
-        "arrow keys walk the heatmap",
-        start and end and end[0] > start[0] and end[1] > start[1],
-        [start, end],
-    )
-    tip = page.run(
-        "const tip = document.querySelector('#tip'); return tip.hidden ? '' : tip.textContent"
-    )
+    yield "arrow keys walk the heatmap", start and end and end[0] > start[0] and end[1] > start[1], [start, end]
+    tip = page.run("const tip = document.querySelector('#tip'); return tip.hidden ? '' : tip.textContent")
     yield "the focused cell is explained", len(tip) > 10, tip
     shot("tip")
     page.press(ENTER)
@@ -66,31 +50,23 @@ def heatmap(page: Browser, shot: Shot) -> Checks:
 
     engine = page.run("return document.querySelector('#heat-engine').options[1].value")
     page.choose("#heat-engine", engine)
-    shown = page.run(
-        "return [...document.querySelectorAll('#heat th.engine')].filter(head => !head.hidden).length"
-    )
+    shown = page.run("return [...document.querySelectorAll('#heat th.engine')].filter(head => !head.hidden).length")
     yield "one engine can be chosen", shown == 1, shown
     shot("engine")
     page.choose("#heat-engine", "")
     page.run(
         "const box = document.querySelector('#heat-filter'); box.value = 'no model has this name'; box.dispatchEvent(new Event('input'))"
     )
-    shown = page.run(
-        "return [...document.querySelectorAll('#heat tr[data-m]')].filter(row => !row.hidden).length"
-    )
+    shown = page.run("return [...document.querySelectorAll('#heat tr[data-m]')].filter(row => !row.hidden).length")
     yield "the filter hides models", shown == 0, shown
-    page.run(
-        "const box = document.querySelector('#heat-filter'); box.value = ''; box.dispatchEvent(new Event('input'))"
-    )
+    page.run("const box = document.querySelector('#heat-filter'); box.value = ''; box.dispatchEvent(new Event('input'))")
 
 
 def joints(page: Browser, shot: Shot) -> Checks:
     """Check the joint matrix."""
     page.run("document.getElementById('joints').scrollIntoView({behavior: 'instant'})")
     shot("joints")
-    drawn = page.run(
-        "return document.querySelectorAll('#joints-table td button').length"
-    )
+    drawn = page.run("return document.querySelectorAll('#joints-table td button').length")
     told = page.run("return featherbench.chunks.get('figures').joints.cells.length")
     yield "the joint matrix shows every cell", drawn == told > 0, [drawn, told]
     kinds = {"unsupported": "skip", "deviates": "deviation", "agrees": "p"}
@@ -103,16 +79,8 @@ def joints(page: Browser, shot: Shot) -> Checks:
             return document.querySelector('#tip').textContent""",
             style,
         )
-        words = {
-            "unsupported": "not offered",
-            "deviates": "deviates by known cause",
-            "agrees": "method",
-        }[state]
-        yield (
-            f"a cell of the joint matrix that {state} says so",
-            tip is None or words in tip,
-            tip,
-        )
+        words = {"unsupported": "not offered", "deviates": "deviates by known cause", "agrees": "method"}[state]
+        yield f"a cell of the joint matrix that {state} says so", tip is None or words in tip, tip
     shot("joints-tip")
     page.click("#joints-table td button")
     rows = page.until(ROWS)
@@ -122,9 +90,7 @@ def joints(page: Browser, shot: Shot) -> Checks:
         return ['engine', 'quantity', 'robot'].map(name => [...new Set(table.map(row => row.cells[heads.indexOf(name)].textContent))])""")
     yield (
         "a click on a cell of the joint matrix shows its rows alone",
-        rows > 0
-        and all(len(part) == 1 for part in seen)
-        and seen[2][0].startswith("joints-"),
+        rows > 0 and all(len(part) == 1 for part in seen) and seen[2][0].startswith("joints-"),
         seen,
     )
     page.press(ESCAPE)
@@ -133,11 +99,7 @@ def joints(page: Browser, shot: Shot) -> Checks:
     page.press(ARROW_RIGHT)
     page.press(ARROW_DOWN)
     end = page.run(FOCUS)
-    yield (
-        "arrow keys walk the joint matrix",
-        start and end and end != start,
-        [start, end],
-    )
+    yield "arrow keys walk the joint matrix", start and end and end != start, [start, end]
 
 
 def accuracy(page: Browser, shot: Shot) -> Checks:
@@ -163,9 +125,7 @@ def accuracy(page: Browser, shot: Shot) -> Checks:
         return [values('engine'), values('method'), values('quantity'), document.querySelector('#rows-filters [name=study]').value]""")
     yield (
         "a click on a cell of the digits shows its method's rows alone",
-        rows > 0
-        and [len(part) for part in seen[:3]] == [1, 1, 1]
-        and seen[3] == "accuracy",
+        rows > 0 and [len(part) for part in seen[:3]] == [1, 1, 1] and seen[3] == "accuracy",
         seen,
     )
     page.press(ESCAPE)
@@ -177,30 +137,18 @@ def accuracy(page: Browser, shot: Shot) -> Checks:
     end = page.run(FOCUS)
     yield "arrow keys walk the digits", start and end and end != start, [start, end]
 
-    for quantity in page.run(
-        "return [...document.querySelector('#accuracy-quantity').options].map(option => option.value)"
-    )[::-1]:
+    for quantity in page.run("return [...document.querySelector('#accuracy-quantity').options].map(option => option.value)")[::-1]:
         page.choose("#accuracy-quantity", quantity)
-        heads = page.run(
-            "return [...document.querySelectorAll('#accuracy-table th.engine')].filter(head => !head.hidden).length"
-        )
-        plotted = (
-            page.run("return !document.getElementById('accuracy-plot')")
-            or page.until(DRAWN, "accuracy-plot") > 0
-        )
+        heads = page.run("return [...document.querySelectorAll('#accuracy-table th.engine')].filter(head => !head.hidden).length")
+        plotted = page.run("return !document.getElementById('accuracy-plot')") or page.until(DRAWN, "accuracy-plot") > 0
         yield f"the digits of {quantity} can be chosen", heads == 1 and plotted, heads
     if page.run("return document.querySelector('#accuracy-axis') !== null"):
         title = "return document.querySelector('#accuracy-plot .xtitle').textContent"
         titles: set[str] = set()
-        axes = page.run(
-            "return [...document.querySelector('#accuracy-axis').options].map(option => option.value)"
-        )
+        axes = page.run("return [...document.querySelector('#accuracy-axis').options].map(option => option.value)")
         for axis in axes[::-1]:
             page.choose("#accuracy-axis", axis)
-            now = page.until(
-                f"const now = (() => {{ {title} }})(); return !arguments[0].includes(now) && now",
-                sorted(titles),
-            )
+            now = page.until(f"const now = (() => {{ {title} }})(); return !arguments[0].includes(now) && now", sorted(titles))
             family = page.run("return document.querySelector('#accuracy-family').value")
             yield (
                 f"the digits can be plotted against {axis}",
@@ -208,17 +156,9 @@ def accuracy(page: Browser, shot: Shot) -> Checks:
                 [now, family],
             )
             titles.add(now)
-            page.run(
-                "document.getElementById('accuracy-plot').scrollIntoView({block: 'center', behavior: 'instant'})"
-            )
+            page.run("document.getElementById('accuracy-plot').scrollIntoView({block: 'center', behavior: 'instant'})")
             shot(f"accuracy-{axis}")
-    page.run(
-        "const box = document.querySelector('#accuracy-filter'); box.value = 'no such robot'; box.dispatchEvent(new Event('input'))"
-    )
-    left = page.run(
-        "return [...document.querySelectorAll('#accuracy-table tr[data-m]')].filter(row => !row.hidden).length"
-    )
+    page.run("const box = document.querySelector('#accuracy-filter'); box.value = 'no such robot'; box.dispatchEvent(new Event('input'))")
+    left = page.run("return [...document.querySelectorAll('#accuracy-table tr[data-m]')].filter(row => !row.hidden).length")
     yield "the filter hides robots of the table of accuracy", left == 0, left
-    page.run(
-        "const box = document.querySelector('#accuracy-filter'); box.value = ''; box.dispatchEvent(new Event('input'))"
-    )
+    page.run("const box = document.querySelector('#accuracy-filter'); box.value = ''; box.dispatchEvent(new Event('input'))")

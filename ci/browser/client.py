@@ -21,12 +21,7 @@ class Browser:
     """One page of Chromium, driven through chromedriver."""
 
     def __init__(self, profile: str) -> None:
-        self.driver = subprocess.Popen(
-            ["chromedriver", "--port=0"],
-            stdout=subprocess.PIPE,
-            stderr=subprocess.STDOUT,
-            text=True,
-        )
+        self.driver = subprocess.Popen(["chromedriver", "--port=0"], stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
         self.session: str | None = None
         self.downloads = pathlib.Path(profile) / "downloads"
         try:
@@ -50,24 +45,11 @@ class Browser:
                 f"--user-data-dir={profile}",
                 "--window-size=1440,1000",
             ]
-            options: dict[str, Any] = {
-                "args": flags,
-                "prefs": {"download.default_directory": str(self.downloads)},
-            }
-            if (
-                binary := shutil.which("chromium")
-                or shutil.which("chromium-browser")
-                or shutil.which("google-chrome")
-            ):
+            options: dict[str, Any] = {"args": flags, "prefs": {"download.default_directory": str(self.downloads)}}
+            if binary := shutil.which("chromium") or shutil.which("chromium-browser") or shutil.which("google-chrome"):
                 options["binary"] = binary
-            wanted = {
-                "browserName": "chrome",
-                "goog:chromeOptions": options,
-                "goog:loggingPrefs": {"browser": "ALL", "performance": "ALL"},
-            }
-            self.session = self.call(
-                "POST", "/session", {"capabilities": {"alwaysMatch": wanted}}
-            )["sessionId"]
+            wanted = {"browserName": "chrome", "goog:chromeOptions": options, "goog:loggingPrefs": {"browser": "ALL", "performance": "ALL"}}
+            self.session = self.call("POST", "/session", {"capabilities": {"alwaysMatch": wanted}})["sessionId"]
         except BaseException:
             self.close()
             raise
@@ -75,16 +57,12 @@ class Browser:
     def call(self, method: str, path: str, body: dict[str, Any] | None = None) -> Any:
         """Send a command of WebDriver, and return its value."""
         data = None if body is None else json.dumps(body).encode()
-        request = urllib.request.Request(
-            self.base + path, data, {"Content-Type": "application/json"}, method=method
-        )
+        request = urllib.request.Request(self.base + path, data, {"Content-Type": "application/json"}, method=method)
         try:
             with urllib.request.urlopen(request, timeout=120) as answer:
                 return json.load(answer)["value"]
         except urllib.error.HTTPError as error:
-            raise RuntimeError(
-                json.load(error)["value"]["message"].splitlines()[0]
-            ) from None
+            raise RuntimeError(json.load(error)["value"]["message"].splitlines()[0]) from None
 
     def post(self, path: str, **body: Any) -> Any:
         """Send a command of this session."""
@@ -94,9 +72,7 @@ class Browser:
         """Go to an address, and wait until its document is whole: the driver may answer while the one before it is still there."""
         self.post("/url", url=address)
         self.until(
-            "return document.readyState === 'complete' && location.pathname === new URL(arguments[0]).pathname",
-            address,
-            seconds=100,
+            "return document.readyState === 'complete' && location.pathname === new URL(arguments[0]).pathname", address, seconds=100
         )
 
     def run(self, script: str, *arguments: Any) -> Any:
@@ -109,22 +85,13 @@ class Browser:
 
     def click(self, selector: str) -> None:
         """Click at the element's place on the screen: one that is covered or off the screen fails."""
-        self.run(
-            "document.querySelector(arguments[0]).scrollIntoView({block: 'center', behavior: 'instant'})",
-            selector,
-        )
+        self.run("document.querySelector(arguments[0]).scrollIntoView({block: 'center', behavior: 'instant'})", selector)
         self.post(f"/element/{self.find(selector)}/click")
 
     def press(self, *keys: str) -> None:
         """Press keys, one after the other."""
-        actions = [
-            {"type": kind, "value": key}
-            for key in keys
-            for kind in ("keyDown", "keyUp")
-        ]
-        self.post(
-            "/actions", actions=[{"type": "key", "id": "keyboard", "actions": actions}]
-        )
+        actions = [{"type": kind, "value": key} for key in keys for kind in ("keyDown", "keyUp")]
+        self.post("/actions", actions=[{"type": "key", "id": "keyboard", "actions": actions}])
 
     def choose(self, selector: str, value: str) -> None:
         """Choose an option of a list with the event of a user's choice."""
@@ -149,9 +116,7 @@ class Browser:
 
     def shot(self, path: pathlib.Path) -> None:
         """Write a picture of the window."""
-        path.write_bytes(
-            base64.b64decode(self.call("GET", f"/session/{self.session}/screenshot"))
-        )
+        path.write_bytes(base64.b64decode(self.call("GET", f"/session/{self.session}/screenshot")))
 
     def close(self) -> None:
         """End the page and the driver."""

@@ -18,6 +18,4 @@ FOCUS = "const cell = document.activeElement.closest('td'); return cell ? [cell.
 
 def has(page: Browser, selector: str) -> bool:
     """Tell whether the page has an element."""
-    return bool(
-        page.run("return document.querySelector(arguments[0]) !== null", selector)
-    )
+    return bool(page.run("return document.querySelector(arguments[0]) !== null", selector))

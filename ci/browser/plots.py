@@ -76,10 +76,7 @@ def plots(page: Browser, shot: Shot) -> Checks:
     for box in boxes:
         points = page.until(DRAWN, box)
         yield f"{box} draws points", points > 0, points
-        page.run(
-            "document.getElementById(arguments[0]).scrollIntoView({block: 'center', behavior: 'instant'})",
-            box,
-        )
+        page.run("document.getElementById(arguments[0]).scrollIntoView({block: 'center', behavior: 'instant'})", box)
         shot(box)
     for box in boxes:
         yield from chart(page, box, shot)
@@ -91,11 +88,7 @@ def plots(page: Browser, shot: Shot) -> Checks:
         while not text.endswith("</svg>") and time.monotonic() < end:
             time.sleep(0.05)
             text = file.read_text() if file.is_file() else ""
-        yield (
-            "a figure is saved as a file",
-            text.startswith("<svg xmlns=") and text.endswith("</svg>"),
-            text[:200],
-        )
+        yield "a figure is saved as a file", text.startswith("<svg xmlns=") and text.endswith("</svg>"), text[:200]
     yield from axes(page)
     yield from awkward(page)
 
@@ -105,21 +98,10 @@ def pointer(page: Browser, *steps: str | tuple[float, float]) -> None:
     actions: list[dict[str, Any]] = []
     for step in steps:
         if step == "down" or step == "up":
-            actions.append(
-                {"type": "pointerDown" if step == "down" else "pointerUp", "button": 0}
-            )
+            actions.append({"type": "pointerDown" if step == "down" else "pointerUp", "button": 0})
         else:
-            actions.append(
-                {
-                    "type": "pointerMove",
-                    "duration": 30,
-                    "x": round(step[0]),
-                    "y": round(step[1]),
-                }
-            )  # type: ignore[arg-type]
-    page.post(
-        "/actions", actions=[{"type": "pointer", "id": "mouse", "actions": actions}]
-    )
+            actions.append({"type": "pointerMove", "duration": 30, "x": round(step[0]), "y": round(step[1])})  # type: ignore[arg-type]
+    page.post("/actions", actions=[{"type": "pointer", "id": "mouse", "actions": actions}])
 
 
 def chart(page: Browser, box: str, shot: Shot) -> Checks:
@@ -130,24 +112,17 @@ def chart(page: Browser, box: str, shot: Shot) -> Checks:
     numbers = [text for axis in first["ticks"] for text in axis]
     yield (
         f"{box} has ticks on both axes",
-        all(first["ticks"])
-        and all("NaN" not in text and "undefined" not in text for text in numbers),
+        all(first["ticks"]) and all("NaN" not in text and "undefined" not in text for text in numbers),
         numbers,
     )
-    label = page.run(
-        "return document.querySelector(`#${arguments[0]} svg[role=img]`).ariaLabel", box
-    )
+    label = page.run("return document.querySelector(`#${arguments[0]} svg[role=img]`).ariaLabel", box)
     yield f"{box} is described in words", f"{first['points']} points" in label, label
 
     place = page.run(LONELY, box)
     x, y = place["mark"]
     pointer(page, (x + 3, y - 3), (x, y))
     text = page.run(EXPLAINED, box)
-    yield (
-        f"{box} explains the mark that is pointed at",
-        len(text) > 5 and "undefined" not in text and "NaN" not in text,
-        text,
-    )
+    yield f"{box} explains the mark that is pointed at", len(text) > 5 and "undefined" not in text and "NaN" not in text, text
     shot(f"{box}-tip")
     left, top, _, bottom = place["edge"]
     pointer(page, (left + 2, bottom - 2))
@@ -159,21 +134,13 @@ def chart(page: Browser, box: str, shot: Shot) -> Checks:
     page.press(ARROW_RIGHT)
     page.press(ARROW_DOWN)
     other = page.run(EXPLAINED, box)
-    yield (
-        f"{box} is walked with the arrow keys",
-        len(text) > 5 and (first["points"] < 2 or other != text),
-        [text, other],
-    )
+    yield f"{box} is walked with the arrow keys", len(text) > 5 and (first["points"] < 2 or other != text), [text, other]
     page.press(ESCAPE)
 
     name = f"#{box} .chart-names button"
     page.click(name)
     off = page.run(PLOT, box)
-    yield (
-        f"{box}: a click on a name switches it off",
-        first["names"][0] and off["names"] == [False, *first["names"][1:]],
-        off["names"],
-    )
+    yield f"{box}: a click on a name switches it off", first["names"][0] and off["names"] == [False, *first["names"][1:]], off["names"]
     page.run("document.querySelector(arguments[0]).focus()", name)
     page.press(ENTER)
     again = page.run(PLOT, box)
@@ -181,11 +148,7 @@ def chart(page: Browser, box: str, shot: Shot) -> Checks:
     buttons = "[...document.querySelectorAll(`#${arguments[0]} .chart-names button`)]"
     page.run(f"{buttons}.forEach(button => button.click())", box)
     none = page.run(PLOT, box)
-    yield (
-        f"{box} without any series says so",
-        none["points"] == 0 and none["nothing"] != "",
-        none["nothing"],
-    )
+    yield f"{box} without any series says so", none["points"] == 0 and none["nothing"] != "", none["nothing"]
     page.run(f"{buttons}.forEach(button => button.click())", box)
     yield f"{box} comes back whole", page.run(PLOT, box) == first, ""
 
@@ -194,25 +157,10 @@ def chart(page: Browser, box: str, shot: Shot) -> Checks:
     left, top, right, bottom = place["edge"]
     for way in ["Escape", "a double click", "its button"]:
         begin = (x - min(60, x - left - 5), max(y - 50, top + 5))
-        pointer(
-            page,
-            begin,
-            "down",
-            (x, y),
-            (x + min(50, right - x - 5), y + min(40, bottom - y - 5)),
-            "up",
-        )
+        pointer(page, begin, "down", (x, y), (x + min(50, right - x - 5), y + min(40, bottom - y - 5)), "up")
         zoomed = page.run(PLOT, box)
-        good = (
-            zoomed["zoomed"]
-            and 0 < zoomed["points"] <= first["points"]
-            and zoomed["ticks"] != first["ticks"]
-        )
-        yield (
-            f"{box}: a drawn rectangle zooms, and opens no rows",
-            good and not page.run(ROWS),
-            [zoomed["points"], zoomed["ticks"]],
-        )
+        good = zoomed["zoomed"] and 0 < zoomed["points"] <= first["points"] and zoomed["ticks"] != first["ticks"]
+        yield f"{box}: a drawn rectangle zooms, and opens no rows", good and not page.run(ROWS), [zoomed["points"], zoomed["ticks"]]
         if way == "Escape":
             shot(f"{box}-zoom")
             page.press(ESCAPE)
@@ -222,24 +170,14 @@ def chart(page: Browser, box: str, shot: Shot) -> Checks:
             corner = (left + 3, bottom - 3)
             pointer(page, corner, "down", "up", "down", "up")
         whole = page.run(PLOT, box)
-        yield (
-            f"{box} is whole again after {way}",
-            whole == first,
-            [whole["zoomed"], whole["points"]],
-        )
+        yield f"{box} is whole again after {way}", whole == first, [whole["zoomed"], whole["points"]]
         place = page.run(LONELY, box)
         x, y = place["mark"]
         left, top, right, bottom = place["edge"]
 
     saved = page.run(SAVED, box)
-    whole = (
-        saved["root"] == "svg" and saved["marks"] == first["points"] and saved["names"]
-    )
-    yield (
-        f"{box} as a file has its marks, names and colours",
-        whole and saved["paper"].startswith("#") and not saved["borrowed"],
-        saved,
-    )
+    whole = saved["root"] == "svg" and saved["marks"] == first["points"] and saved["names"]
+    yield f"{box} as a file has its marks, names and colours", whole and saved["paper"].startswith("#") and not saved["borrowed"], saved
 
 
 def axes(page: Browser) -> Checks:
@@ -263,17 +201,7 @@ def axes(page: Browser) -> Checks:
           range(false, [3, 3]),
         ]""")
     wanted = [
-        [
-            "10^−16",
-            "10^−15",
-            "10^−14",
-            "10^−13",
-            "10^−12",
-            "10^−11",
-            "10^−10",
-            "10^−9",
-            "10^−8",
-        ],
+        ["10^−16", "10^−15", "10^−14", "10^−13", "10^−12", "10^−11", "10^−10", "10^−9", "10^−8"],
         True,
         ["2", "5", "10", "20", "50", "100"],
         ["100", "200", "500", "1000"],
@@ -287,11 +215,7 @@ def axes(page: Browser) -> Checks:
         [2.7, 3.3],
     ]
     for index, (one, other) in enumerate(zip(found, wanted, strict=True)):
-        yield (
-            f"ticks and labels are right ({index + 1} of {len(wanted)})",
-            one == other,
-            [one, other],
-        )
+        yield f"ticks and labels are right ({index + 1} of {len(wanted)})", one == other, [one, other]
 
 
 def awkward(page: Browser) -> Checks:
@@ -325,19 +249,5 @@ def awkward(page: Browser) -> Checks:
           place.remove();
         }""")
     none = [0, "no values to draw", False]
-    wanted = [
-        none,
-        none,
-        none,
-        [2, "", False],
-        [1, "", False],
-        [1, "", False],
-        [1, "", False],
-        [1, "", False],
-        [0, "words", False],
-    ]
-    yield (
-        "plots leave out what has no place, and say when nothing is left",
-        found == wanted,
-        found,
-    )
+    wanted = [none, none, none, [2, "", False], [1, "", False], [1, "", False], [1, "", False], [1, "", False], [0, "words", False]]
+    yield "plots leave out what has no place, and say when nothing is left", found == wanted, found

@@ -36,13 +36,7 @@ SECTIONS = [
     "unpassed",
 ]
 # The levels of findings from the gravest; conditions without a level come last.
-LEVELS = [
-    "physics differs",
-    "method loses digits",
-    "not offered",
-    "rounding",
-    "gate not met",
-]
+LEVELS = ["physics differs", "method loses digits", "not offered", "rounding", "gate not met"]
 ALWAYS = set(SECTIONS) - {
     "import",
     "joints",
@@ -67,17 +61,9 @@ def checks(page: Browser, address: str, shots: pathlib.Path | None) -> Checks:
             page.shot(shots / f"{name}.png")
 
     page.open(address)
-    sections = page.run(
-        "return [...document.querySelectorAll('main > section')].map(section => section.id)"
-    )
-    yield (
-        "the page has its sections",
-        sections == [name for name in SECTIONS if name in ALWAYS or name in sections],
-        sections,
-    )
-    led = page.run(
-        "return [...document.querySelectorAll('nav a')].map(link => link.hash.slice(1))"
-    )
+    sections = page.run("return [...document.querySelectorAll('main > section')].map(section => section.id)")
+    yield "the page has its sections", sections == [name for name in SECTIONS if name in ALWAYS or name in sections], sections
+    led = page.run("return [...document.querySelectorAll('nav a')].map(link => link.hash.slice(1))")
     yield "the navigation leads to all of them", led == sections, led
     width = page.run("return [document.documentElement.scrollWidth, innerWidth]")
     yield "the page is no wider than its window", width[0] <= width[1], width
@@ -96,9 +82,7 @@ def checks(page: Browser, address: str, shots: pathlib.Path | None) -> Checks:
         yield from depth(page)
     if has(page, "#time-unit"):
         page.choose("#time-unit", "joint")
-        title = page.until(
-            "return document.querySelector('#time-plot .ytitle').textContent.includes('joint')"
-        )
+        title = page.until("return document.querySelector('#time-plot .ytitle').textContent.includes('joint')")
         yield "time per joint can be plotted", title, ""
     if has(page, "#speed-plot"):
         yield from speed(page, shot)
@@ -124,14 +108,8 @@ def findings(page: Browser) -> Checks:
     )
     known = [level for level in listed if level in LEVELS]
     places = [LEVELS.index(level) for level in known]
-    yield (
-        "findings stand from the gravest",
-        len(known) == len(listed) and places == sorted(places),
-        listed,
-    )
-    said = page.run(
-        "return [document.querySelector('h1').textContent, document.querySelectorAll('#verdict .tile').length]"
-    )
+    yield "findings stand from the gravest", len(known) == len(listed) and places == sorted(places), listed
+    said = page.run("return [document.querySelector('h1').textContent, document.querySelectorAll('#verdict .tile').length]")
     yield (
         "the page opens with a finding, not with a number of rows",
         "inside their gates" not in said[0] and said[1] == len(LEVELS) - 1,
@@ -141,14 +119,8 @@ def findings(page: Browser) -> Checks:
         page.click("#verdict ol.findings [data-chunk]")
         yield "the rows of a finding can be opened", page.until(ROWS) > 0, ""
         page.press(ESCAPE)
-        again = page.run(
-            "return document.querySelector('#verdict details.again code').textContent"
-        )
-        yield (
-            "a finding has the command that repeats it",
-            "--filter" in again or "compare" in again,
-            again,
-        )
+        again = page.run("return document.querySelector('#verdict details.again code').textContent")
+        yield "a finding has the command that repeats it", "--filter" in again or "compare" in again, again
 
 
 def fastest(page: Browser, shot: Shot) -> Checks:
@@ -156,9 +128,7 @@ def fastest(page: Browser, shot: Shot) -> Checks:
     told = page.run("return document.querySelector('#time-first')?.textContent ?? ''")
     yield "the section on time begins with a time", " ns" in told, told
     page.click("#speed-verdict details summary")
-    lines = page.run(
-        "return document.querySelectorAll('#speed-by-robot tbody tr').length"
-    )
+    lines = page.run("return document.querySelectorAll('#speed-by-robot tbody tr').length")
     yield "the verdict on speed lists robots and quantities", lines > 0, lines
     shot("fastest")
     if has(page, ".speed-map [data-chunk]"):
@@ -169,59 +139,30 @@ def fastest(page: Browser, shot: Shot) -> Checks:
 
 def figures(page: Browser, shot: Shot) -> Checks:
     """Check the figures for papers: each is drawn, and its data can be copied or saved."""
-    page.run(
-        "document.getElementById('figures').scrollIntoView({block: 'start', behavior: 'instant'})"
-    )
-    whole = "const images = [...document.querySelectorAll('#figures img')]; return images.length > 0 && images.every(image => image.naturalWidth > 100)"
-    page.run(
-        "for (const image of document.querySelectorAll('#figures img')) image.loading = 'eager'"
-    )
-    yield (
-        "every figure for papers is drawn",
-        page.until(whole),
-        page.run("return document.querySelectorAll('#figures img').length"),
-    )
-    captions = page.run(
-        "return [...document.querySelectorAll('#figures figcaption')].map(caption => caption.textContent.length)"
-    )
+    page.run("document.getElementById('figures').scrollIntoView({block: 'start', behavior: 'instant'})")
+    # Those off the screen are drawn at once, too.
+    page.run("for (const image of document.querySelectorAll('#figures img')) image.loading = 'eager'")
+    widths = "[...document.querySelectorAll('#figures img')].map(image => image.naturalWidth)"
+    whole = page.until(f"const widths = {widths}; return widths.length > 0 && Math.min(...widths) > 100")
+    yield "every figure for papers is drawn", whole, page.run(f"return {widths}")
+    captions = page.run("return [...document.querySelectorAll('#figures figcaption')].map(caption => caption.textContent.length)")
     yield "every figure has a caption", min(captions) > 60, captions
-    saved = page.run(
-        "return [...document.querySelectorAll('#figures a[download]')].map(link => link.getAttribute('href'))"
-    )
-    yield (
-        "every figure can be saved, with its data",
-        len(saved) == 2 * len(captions),
-        saved,
-    )
+    saved = page.run("return [...document.querySelectorAll('#figures a[download]')].map(link => link.getAttribute('href'))")
+    yield "every figure can be saved, with its data", len(saved) == 2 * len(captions), saved
     page.click("#figures button.copy-data")
-    answered = page.until(
-        "return document.querySelector('#figures button.copy-data').textContent !== 'Copy data'"
-    )
-    data = page.run(
-        "return featherbench.chunks.get('figure-data')[document.querySelector('#figures button.copy-data').dataset.figure]"
-    )
-    yield (
-        "the data of a figure can be copied",
-        answered and data.count("\n") > 2,
-        data[:80],
-    )
+    answered = page.until("return document.querySelector('#figures button.copy-data').textContent !== 'Copy data'")
+    name = page.run("return document.querySelector('#figures button.copy-data').dataset.figure")
+    data = page.run("return featherbench.chunks.get('figure-data')[arguments[0]]", name)
+    yield "the data of a figure can be copied", answered and data.count("\n") > 2, data[:80]
     shot("figures")
 
 
 def conventions(page: Browser, shot: Shot) -> Checks:
     """Check the list of conventions."""
-    listed = page.run(
-        "return document.querySelectorAll('#conventions tbody tr').length"
-    )
+    listed = page.run("return document.querySelectorAll('#conventions tbody tr').length")
     named = has(page, "#conventions-unlisted")
-    yield (
-        "conventions are listed, or engines without a list are named",
-        listed > 0 or named,
-        [listed, named],
-    )
-    page.run(
-        "document.getElementById('conventions').scrollIntoView({block: 'start', behavior: 'instant'})"
-    )
+    yield "conventions are listed, or engines without a list are named", listed > 0 or named, [listed, named]
+    page.run("document.getElementById('conventions').scrollIntoView({block: 'start', behavior: 'instant'})")
     shot("conventions")
 
 
@@ -235,15 +176,8 @@ def depth(page: Browser) -> Checks:
     )
     if others:
         page.choose("#depth-quantity", others[0])
-        after = page.until(
-            f"const now = (() => {{ {title} }})(); return now !== arguments[0] && now",
-            before,
-        )
-        yield (
-            "another quantity can be plotted",
-            bool(after) and page.until(DRAWN, "depth-plot") > 0,
-            [before, after],
-        )
+        after = page.until(f"const now = (() => {{ {title} }})(); return now !== arguments[0] && now", before)
+        yield "another quantity can be plotted", bool(after) and page.until(DRAWN, "depth-plot") > 0, [before, after]
     marks = """
         const mark = document.querySelector('#depth-plot .marks .mark');
         if (!mark) return null;
@@ -252,21 +186,9 @@ def depth(page: Browser) -> Checks:
         return [box.x + box.width / 2, box.y + box.height / 2]"""
     place = page.run(marks)
     if place:
-        move = {
-            "type": "pointerMove",
-            "duration": 50,
-            "x": round(place[0]),
-            "y": round(place[1]),
-        }
-        pointer = [
-            move,
-            {"type": "pause", "duration": 300},
-            {"type": "pointerDown", "button": 0},
-            {"type": "pointerUp", "button": 0},
-        ]
-        page.post(
-            "/actions", actions=[{"type": "pointer", "id": "mouse", "actions": pointer}]
-        )
+        move = {"type": "pointerMove", "duration": 50, "x": round(place[0]), "y": round(place[1])}
+        pointer = [move, {"type": "pause", "duration": 300}, {"type": "pointerDown", "button": 0}, {"type": "pointerUp", "button": 0}]
+        page.post("/actions", actions=[{"type": "pointer", "id": "mouse", "actions": pointer}])
         yield "a click on a mark shows its rows", page.until(ROWS) > 0, place
         page.press(ESCAPE)
 
@@ -274,23 +196,13 @@ def depth(page: Browser) -> Checks:
 def speed(page: Browser, shot: Shot) -> Checks:
     """Check the section on speed."""
     title = "return document.querySelector('#speed-plot .ytitle').textContent"
-    for quantity in page.run(
-        "return [...document.querySelector('#speed-quantity').options].map(option => option.value)"
-    )[::-1]:
-        words = page.run(
-            "return document.querySelector('#speed-quantity').options[arguments[0]].textContent",
-            int(quantity),
-        )
+    for quantity in page.run("return [...document.querySelector('#speed-quantity').options].map(option => option.value)")[::-1]:
+        words = page.run("return document.querySelector('#speed-quantity').options[arguments[0]].textContent", int(quantity))
         for case in ["hot", "stream"]:
             page.choose("#speed-case", case)
             page.choose("#speed-quantity", quantity)
-            seen = page.until(
-                f"const now = (() => {{ {title} }})(); return now.startsWith(arguments[0]) && now",
-                words,
-            )
-            ends = page.until(
-                "return document.querySelectorAll('#speed-plot .bar').length"
-            )
+            seen = page.until(f"const now = (() => {{ {title} }})(); return now.startsWith(arguments[0]) && now", words)
+            ends = page.until("return document.querySelectorAll('#speed-plot .bar').length")
             yield (
                 f"ratios of {words}, {case}, are plotted with intervals",
                 bool(seen) and page.until(DRAWN, "speed-plot") > 0 and ends > 0,
@@ -302,77 +214,41 @@ def speed(page: Browser, shot: Shot) -> Checks:
         const means = rows.map(row => [...row.querySelectorAll('td.number')].map(number));
         return means.map(([robots, mean, least, largest]) => least <= mean && mean <= largest && robots > 0)""")
     # On a machine that is not quiet, all ratios may be invalid. The page then says so, and why.
-    none = page.run(
-        "return !!document.querySelector('#speed-none-valid') && document.querySelectorAll('#speed-invalid li').length > 0"
-    )
+    none = page.run("return !!document.querySelector('#speed-none-valid') && document.querySelectorAll('#speed-invalid li').length > 0")
     yield (
         "every geometric mean lies between its least and its largest, or no ratio counts and the page says why",
         bool(rows) != none and all(rows),
         [rows, none],
     )
-    page.run(
-        "document.querySelectorAll('#speed details').forEach(part => { part.open = true; })"
-    )
+    page.run("document.querySelectorAll('#speed details').forEach(part => { part.open = true; })")
     for table in ["speed-controls"] if none else ["speed-summary", "speed-controls"]:
-        found = page.run(
-            "return document.querySelectorAll(`#${arguments[0]} tbody tr`).length",
-            table,
-        )
+        found = page.run("return document.querySelectorAll(`#${arguments[0]} tbody tr`).length", table)
         yield f"{table} has rows", found > 0, found
-        page.run(
-            "document.getElementById(arguments[0]).scrollIntoView({block: 'center', behavior: 'instant'})",
-            table,
-        )
+        page.run("document.getElementById(arguments[0]).scrollIntoView({block: 'center', behavior: 'instant'})", table)
         shot(table)
-    page.run(
-        "document.querySelectorAll('#speed details').forEach(part => { part.open = false; })"
-    )
+    page.run("document.querySelectorAll('#speed details').forEach(part => { part.open = false; })")
 
 
 def scaling(page: Browser, shot: Shot) -> Checks:
     """Check the section on scaling."""
     if has(page, "#scaling-line"):
-        answer = page.run(
-            "return document.getElementById('scaling-answer').textContent"
-        )
-        yield (
-            "the section on scaling begins with its answer",
-            "degrees of freedom" in answer and "a call" in answer,
-            answer,
-        )
-        for line in page.run(
-            "return [...document.querySelector('#scaling-line').options].map(option => option.value)"
-        )[::-1]:
+        answer = page.run("return document.getElementById('scaling-answer').textContent")
+        yield "the section on scaling begins with its answer", "degrees of freedom" in answer and "a call" in answer, answer
+        for line in page.run("return [...document.querySelector('#scaling-line').options].map(option => option.value)")[::-1]:
             page.choose("#scaling-line", line)
-            drawn_points = [
-                page.until(DRAWN, name)
-                for name in ("scaling-time", "scaling-memory", "scaling-error")
-            ]
-            yield (
-                f"time, memory and error of {line} are plotted",
-                all(points > 0 for points in drawn_points),
-                drawn_points,
-            )
+            drawn_points = [page.until(DRAWN, name) for name in ("scaling-time", "scaling-memory", "scaling-error")]
+            yield f"time, memory and error of {line} are plotted", all(points > 0 for points in drawn_points), drawn_points
         last = "document.querySelectorAll('#scaling-limits tbody tr td:last-child')"
         reasons = page.run(f"return [...{last}].map(cell => cell.textContent.trim())")
-        yield (
-            "every method says why it goes no further",
-            bool(reasons) and all(reasons),
-            reasons,
-        )
+        yield "every method says why it goes no further", bool(reasons) and all(reasons), reasons
     for table in ["scaling-crossovers", "scaling-errors", "scaling-counts"]:
-        found = page.run(
-            "return document.querySelectorAll(`#${arguments[0]} tbody tr`).length",
-            table,
-        )
+        found = page.run("return document.querySelectorAll(`#${arguments[0]} tbody tr`).length", table)
         yield f"{table} has rows", found > 0, found
     if has(page, "#scaling-counts tbody button"):
         page.click("#scaling-counts tbody button")
         yield "a tree's counts open its rows", page.until(ROWS) > 0, ""
         page.press(ESCAPE)
-    page.run(
-        "document.getElementById('scaling').scrollIntoView({block: 'start', behavior: 'instant'})"
-    )
+    page.run("document.getElementById('scaling').scrollIntoView({block: 'start', behavior: 'instant'})")
     shot("scaling")
 
 
@@ -388,18 +264,12 @@ def theme(page: Browser, address: str, shot: Shot, pictured: list[str]) -> Check
     if plot_before:
         yield (
             "the plots change with it",
-            page.until(
-                f"const now = (() => {{ {ink} }})(); return now !== arguments[0] && now",
-                plot_before,
-            ),
+            page.until(f"const now = (() => {{ {ink} }})(); return now !== arguments[0] && now", plot_before),
             plot_before,
         )
     shot("theme")
     for place in pictured:
-        page.run(
-            "document.getElementById(arguments[0]).scrollIntoView({behavior: 'instant'})",
-            place,
-        )
+        page.run("document.getElementById(arguments[0]).scrollIntoView({behavior: 'instant'})", place)
         shot(f"theme-{place}")
     page.open("about:blank")
     page.open(address)
@@ -409,41 +279,25 @@ def theme(page: Browser, address: str, shot: Shot, pictured: list[str]) -> Check
 def narrow(page: Browser, shot: Shot) -> Checks:
     """Check the page in a narrow window."""
     page.post("/window/rect", width=500, height=900)
-    fits = page.until(
-        "return innerWidth < 600 && document.documentElement.scrollWidth <= innerWidth"
-    )
-    yield (
-        "a narrow window does not scroll sideways",
-        fits,
-        page.run("return [document.documentElement.scrollWidth, innerWidth]"),
-    )
+    fits = page.until("return innerWidth < 600 && document.documentElement.scrollWidth <= innerWidth")
+    yield "a narrow window does not scroll sideways", fits, page.run("return [document.documentElement.scrollWidth, innerWidth]")
     shot("narrow")
     if boxes := drawn(page):
         sizes = """
             const drawings = arguments[0].map(id => document.querySelector(`#${id} svg[role=img]`));
             return drawings.map(svg => [svg.viewBox.baseVal.width, svg.clientWidth])"""
         fitted = f"return (() => {{ {sizes} }})().every(([drawn, wide]) => drawn === wide && wide < 500)"
-        yield (
-            "the plots are drawn again for a narrow window",
-            page.until(fitted, boxes),
-            page.run(sizes, boxes),
-        )
+        yield "the plots are drawn again for a narrow window", page.until(fitted, boxes), page.run(sizes, boxes)
 
 
 def silence(page: Browser) -> Checks:
     """Check that the page reported no error and asked nothing of a network."""
-    errors = [
-        entry["message"]
-        for entry in page.log("browser")
-        if entry["level"] in ("SEVERE", "WARNING")
-    ]
+    errors = [entry["message"] for entry in page.log("browser") if entry["level"] in ("SEVERE", "WARNING")]
     yield "the console is silent", not errors, errors[:3]
     asked: set[str] = set()
     for entry in page.log("performance"):
         message = json.loads(entry["message"])["message"]
         if message["method"] == "Network.requestWillBeSent":
             asked.add(message["params"]["request"]["url"])
-    outside = [
-        url for url in asked if url.startswith(("http:", "https:", "ws:", "wss:"))
-    ]
+    outside = [url for url in asked if url.startswith(("http:", "https:", "ws:", "wss:"))]
     yield "nothing is asked of the network", bool(asked) and not outside, outside[:3]

@@ -3,10 +3,10 @@
 //! # Why they are drawn here
 //! | way | result |
 //! |---|---|
-//! | this module | SVG of 10 to 60 kB, deterministic to the byte, texts stay texts; no dependency, as maud writes the elements |
-//! | a script of the page | needs a browser to make a file; the charts on the page are such, for zooming and clicking |
+//! | this module | SVG of 4 to 22 kB on the default run, deterministic to the byte, texts stay texts; no dependency, as maud writes the elements |
+//! | a script of the page | needs a browser to make a file; the charts on the page stay such, for zooming and clicking |
 //! | plotly | its script alone has 4.65 MB, and its files come from a browser too |
-//! | a plotting crate with an SVG back end | draws into a raster's coordinates: marks that differ by shape, powers of ten on an axis and a legend beside the box would still be ours to write, and they are most of what is here |
+//! | a plotting crate | not tried: a dependency more for axes and lines; what is most of this module, marks for each engine, the legend and captions, would remain |
 //!
 //! A figure has a caption that says its finding, and its data as CSV. An engine has one colour and one mark in all of them: [`style`].
 
