@@ -2,11 +2,12 @@
 //!
 //! Cells are evaluated on all cores, those of exclusive studies alone. Each outcome is stored when it is known.
 
+use crate::shard::{Shard, hash_of};
 use crate::study::{Context, Finished, Study, by_robot};
-use crate::{Cell, HarnessError, Lost, NoAnswer, Outcome, OutcomeStore, provenance};
+use crate::{Cell, HarnessError, Lost, NoAnswer, Outcome, OutcomeStore, Robot, provenance};
 use featherbench_results::{Row, RunInfo};
 use rayon::prelude::*;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, HashSet};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::{Path, PathBuf};
 use std::time::Instant;
@@ -38,6 +39,15 @@ impl Progress for Silent {
 
 /// The file that holds what a resumed run must share with the first one.
 const FINGERPRINT_NAME: &str = "fingerprint.json";
+
+/// The fact in it that says which shard a folder is of.
+const SHARD: &str = "shard";
+
+/// The shard that was begun in a folder, if one was.
+pub fn shard_of(folder: &Path) -> Option<String> {
+    let text = std::fs::read_to_string(folder.join(FINGERPRINT_NAME)).ok()?;
+    serde_json::from_str::<BTreeMap<String, String>>(&text).ok()?.remove(SHARD)
+}
 
 /// How the folder of a run is opened.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -81,6 +91,25 @@ impl Run {
     /// # Errors
     /// [`HarnessError`] when a new run has an occupied folder, a resumed one has none, or the run in it was made of something else.
     pub fn open(folder: &Path, opening: Opening, info: RunInfo) -> Result<Self, HarnessError> {
+        Self::open_with(folder, opening, info, BTreeMap::new())
+    }
+
+    /// The same for a shard with these cells: it is continued only as itself.
+    ///
+    /// # Errors
+    /// As [`open`](Self::open).
+    pub fn open_shard<'a>(
+        folder: &Path,
+        opening: Opening,
+        info: RunInfo,
+        shard: Shard,
+        cells: impl Iterator<Item = &'a str>,
+    ) -> Result<Self, HarnessError> {
+        let more = [(SHARD.to_owned(), shard.to_string()), ("set of cells".to_owned(), hash_of(cells))];
+        Self::open_with(folder, opening, info, more.into())
+    }
+
+    fn open_with(folder: &Path, opening: Opening, info: RunInfo, more: BTreeMap<String, String>) -> Result<Self, HarnessError> {
         let io = |source| HarnessError::io(folder, source);
         let path = folder.join(FINGERPRINT_NAME);
         if opening == Opening::New {
@@ -91,7 +120,8 @@ impl Run {
             return Err(HarnessError::NothingToResume { path: folder.to_owned() });
         }
         std::fs::create_dir_all(folder).map_err(io)?;
-        let now = provenance::fingerprint(&info);
+        let mut now = provenance::fingerprint(&info);
+        now.extend(more);
         if opening == Opening::Resume {
             compare_fingerprints(folder, &path, &now)?;
         } else {
@@ -113,20 +143,78 @@ impl Run {
         keep: &(dyn Fn(&Cell) -> bool + Sync),
         progress: &dyn Progress,
     ) -> Result<Vec<Row>, HarnessError> {
+        self.rows(studies, context, keep, Some(progress))
+    }
+
+    /// Compares the outcomes that are in the folder, study after study, and evaluates nothing. A cell without an outcome is a row that says so.
+    ///
+    /// # Errors
+    /// Only when a file of the run cannot be read or written.
+    pub fn assemble(
+        &mut self,
+        studies: &[Box<dyn Study>],
+        context: &Context,
+        keep: &(dyn Fn(&Cell) -> bool + Sync),
+    ) -> Result<Vec<Row>, HarnessError> {
+        self.rows(studies, context, keep, None)
+    }
+
+    /// Evaluates some cells, and compares nothing: the outcomes are kept in the folder.
+    ///
+    /// # Errors
+    /// Only when a file of the run cannot be read or written. An engine that fails, or panics, is an outcome.
+    pub fn evaluate(
+        &self,
+        studies: &[Box<dyn Study>],
+        context: &Context,
+        keep: &(dyn Fn(&Cell) -> bool + Sync),
+        mine: &HashSet<String>,
+        progress: &dyn Progress,
+    ) -> Result<(), HarnessError> {
+        let store = self.store(progress)?;
+        for study in studies {
+            let mut cells = plan(study.as_ref(), context, keep);
+            cells.retain(|cell| mine.contains(&cell.id()));
+            if !cells.is_empty() {
+                complete(study.as_ref(), context, &cells, &store, progress)?;
+            }
+        }
+        Ok(())
+    }
+
+    fn store(&self, progress: &dyn Progress) -> Result<OutcomeStore, HarnessError> {
         let store = OutcomeStore::open(&self.folder)?;
         if let Some(lost) = store.lost() {
             progress.lost(lost);
         }
+        Ok(store)
+    }
+
+    fn rows(
+        &mut self,
+        studies: &[Box<dyn Study>],
+        context: &Context,
+        keep: &(dyn Fn(&Cell) -> bool + Sync),
+        progress: Option<&dyn Progress>,
+    ) -> Result<Vec<Row>, HarnessError> {
+        let store = self.store(progress.unwrap_or(&Silent))?;
         let mut rows: Vec<Row> = Vec::new();
         for study in studies {
             let start = Instant::now();
             let cells = plan(study.as_ref(), context, keep);
-            let finished = evaluate(study.as_ref(), context, cells, &store, progress)?;
-            if let Some((name, text)) = study.side_file(&finished) {
-                featherbench_results::atomic_write(&self.folder.join(name), text.as_bytes())?;
-                self.files.push(name);
+            if let Some(progress) = progress {
+                complete(study.as_ref(), context, &cells, &store, progress)?;
             }
-            rows.extend(compare(study.as_ref(), context, finished));
+            if study.compares_all() {
+                let finished = outcomes(cells, &store)?;
+                if let Some((name, text)) = study.side_file(&finished) {
+                    featherbench_results::atomic_write(&self.folder.join(name), text.as_bytes())?;
+                    self.files.push(name);
+                }
+                rows.extend(compare(study.as_ref(), context, finished));
+            } else {
+                rows.extend(compare_stored(study.as_ref(), context, cells, &store)?);
+            }
             self.info.studies.push(study.name().into());
             self.info.seconds.insert(study.name().into(), start.elapsed().as_secs_f64());
         }
@@ -173,6 +261,18 @@ pub fn evaluate(
     store: &OutcomeStore,
     progress: &dyn Progress,
 ) -> Result<Vec<Finished>, HarnessError> {
+    complete(study, context, &cells, store, progress)?;
+    outcomes(cells, store)
+}
+
+/// Evaluates the unfinished cells of a study.
+fn complete(
+    study: &dyn Study,
+    context: &Context,
+    cells: &[Cell],
+    store: &OutcomeStore,
+    progress: &dyn Progress,
+) -> Result<(), HarnessError> {
     let missing: Vec<&Cell> = cells.iter().filter(|cell| !store.contains(&cell.id())).collect();
     progress.begin(study.name(), missing.len());
     // One group per robot and engine, so that a process behind an engine builds each robot once.
@@ -186,9 +286,11 @@ pub fn evaluate(
     let work = |group: &Vec<&Cell>| -> Result<(), HarnessError> {
         for cell in group {
             progress.cell(cell);
+            let start = Instant::now();
             let outcome = guarded(study, context, cell);
+            let took = start.elapsed();
             progress.done(cell, &outcome);
-            store.insert(cell, outcome)?;
+            store.insert_after(cell, &outcome, took)?;
         }
         Ok(())
     };
@@ -198,14 +300,19 @@ pub fn evaluate(
         groups.par_iter().with_max_len(1).try_for_each(work)?
     }
     progress.end();
-    Ok(cells
-        .into_iter()
-        .map(|cell| {
-            let lost = || Outcome::NoAnswer(NoAnswer::Failed("the outcome was not kept".into()));
-            let outcome = store.get(&cell.id()).unwrap_or_else(lost);
-            (cell, outcome)
-        })
-        .collect())
+    Ok(())
+}
+
+/// Cells with their outcomes.
+fn outcomes(cells: Vec<Cell>, store: &OutcomeStore) -> Result<Vec<Finished>, HarnessError> {
+    let of = |cell: Cell| {
+        let absent = || {
+            Outcome::NoAnswer(NoAnswer::Failed("there is no outcome of this cell: it was not evaluated, or its shard is missing".into()))
+        };
+        let outcome = store.get(&cell.id())?.unwrap_or_else(absent);
+        Ok((cell, outcome))
+    };
+    cells.into_iter().map(of).collect()
 }
 
 /// A panic in an engine or study is a failure of that cell alone.
@@ -226,4 +333,18 @@ pub fn compare(study: &dyn Study, context: &Context, finished: Vec<Finished>) ->
         .map(|robot| groups.get(&robot.name).map_or_else(Vec::new, |group| study.compare(context, robot, group)))
         .collect();
     together.into_iter().chain(compared.into_iter().flatten()).collect()
+}
+
+/// The same rows of a study whose rows all belong to robots: one robot's outcomes are read at a time, on each core.
+fn compare_stored(study: &dyn Study, context: &Context, cells: Vec<Cell>, store: &OutcomeStore) -> Result<Vec<Row>, HarnessError> {
+    let mut groups: BTreeMap<String, Vec<Cell>> = BTreeMap::new();
+    for cell in cells {
+        groups.entry(cell.robot.clone()).or_default().push(cell);
+    }
+    let of = |robot: &Robot| -> Result<Vec<Row>, HarnessError> {
+        let Some(group) = groups.get(&robot.name) else { return Ok(Vec::new()) };
+        Ok(study.compare(context, robot, &outcomes(group.clone(), store)?))
+    };
+    let compared: Vec<Vec<Row>> = context.robots.par_iter().map(of).collect::<Result<_, _>>()?;
+    Ok(compared.into_iter().flatten().collect())
 }

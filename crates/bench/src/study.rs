@@ -62,6 +62,14 @@ pub trait Study: Sync {
     /// The cells, in the order of the report.
     fn plan(&self, context: &Context) -> Vec<Cell>;
 
+    /// About how long a cell takes on one core, in seconds, where no run has measured it. It decides how a run is cut into shards, and no result.
+    ///
+    /// By default: a millisecond for the question, and a microsecond for each state and dof.
+    fn seconds(&self, context: &Context, cell: &Cell) -> f64 {
+        let robot = context.robot(&cell.robot);
+        1e-3 + robot.map_or(0.0, |robot| 1e-6 * (robot.states.count() * robot.states.nv) as f64)
+    }
+
     /// Whether a cell belongs to no robot. It is evaluated whenever any cell of the study is.
     fn is_common(&self, _cell: &Cell) -> bool {
         false
@@ -72,6 +80,12 @@ pub trait Study: Sync {
 
     /// Turns the outcomes of one robot into rows.
     fn compare(&self, context: &Context, robot: &Robot, finished: &[Finished]) -> Vec<Row>;
+
+    /// Whether [`compare_all`](Self::compare_all) or [`side_file`](Self::side_file) may have something to say: then the outcomes of all robots
+    /// are in memory together. A study that says no is compared robot by robot, and these two are not asked.
+    fn compares_all(&self) -> bool {
+        true
+    }
 
     /// Turns the outcomes into the rows that belong to no robot. Most studies have none.
     fn compare_all(&self, _context: &Context, _finished: &[Finished]) -> Vec<Row> {

@@ -18,6 +18,17 @@ pub fn checksum(bytes: &[u8]) -> String {
     blake3::hash(bytes).to_hex().to_string()
 }
 
+/// The checksum of a file, which need not fit into the memory.
+///
+/// # Errors
+/// [`ResultsError::Io`] when it cannot be read.
+pub fn checksum_of(path: &Path) -> Result<String, ResultsError> {
+    let io = |source| ResultsError::Io { path: path.to_owned(), source };
+    let mut hasher = blake3::Hasher::new();
+    hasher.update_reader(std::fs::File::open(path).map_err(io)?).map_err(io)?;
+    Ok(hasher.finalize().to_hex().to_string())
+}
+
 /// Ends a file with the line that holds the checksum of all bytes before it.
 pub fn seal(bytes: &mut Vec<u8>) {
     let line = last_line(bytes);
@@ -48,7 +59,7 @@ impl Checksums {
     /// # Errors
     /// [`ResultsError::Io`] when one of the files cannot be read.
     pub fn of(folder: &Path, names: &[&str]) -> Result<Self, ResultsError> {
-        let one = |name: &&str| Ok(((*name).to_owned(), checksum(&read_bytes(&folder.join(name))?)));
+        let one = |name: &&str| Ok(((*name).to_owned(), checksum_of(&folder.join(name))?));
         Ok(Self { folder: folder.to_owned(), by_name: names.iter().map(one).collect::<Result<_, ResultsError>>()? })
     }
 

@@ -21,6 +21,14 @@ pub const RATIO: &str = "ratio";
 ///
 /// The bytes go to a temporary file in the same folder, are flushed to the disk, and the file is renamed. Missing folders are made.
 pub fn atomic_write(path: &Path, bytes: &[u8]) -> Result<(), ResultsError> {
+    atomic_write_with(path, |file| file.write_all(bytes))
+}
+
+/// The same for a file that is written piece by piece, and need not be in memory as a whole.
+///
+/// # Errors
+/// [`ResultsError::Io`], also when `write` fails: there is the old file then.
+pub fn atomic_write_with(path: &Path, write: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> Result<(), ResultsError> {
     /// Distinguishes the temporary files of one process.
     static SERIAL: AtomicU64 = AtomicU64::new(0);
 
@@ -36,7 +44,10 @@ pub fn atomic_write(path: &Path, bytes: &[u8]) -> Result<(), ResultsError> {
     let replace = || -> io::Result<()> {
         fs::create_dir_all(&folder)?;
         let mut file = OpenOptions::new().write(true).create_new(true).open(&temporary)?;
-        file.write_all(bytes)?;
+        let mut buffer = io::BufWriter::with_capacity(1 << 16, &mut file);
+        write(&mut buffer)?;
+        buffer.flush()?;
+        drop(buffer);
         file.sync_all()?;
         drop(file);
         fs::rename(&temporary, path)?;
@@ -57,27 +68,42 @@ pub fn atomic_write(path: &Path, bytes: &[u8]) -> Result<(), ResultsError> {
 /// The unit 1 of a pure ratio is written as the word [`RATIO`]. Some readers guess the type of a column from its first rows. They took a
 /// column that begins with many `1` for integers, and failed at the first other unit. Quotes do not help against that.
 pub fn to_csv(records: &[Row], path: &Path) -> Result<Vec<u8>, ResultsError> {
-    let failed = |error: csv::Error| ResultsError::Io { path: path.to_owned(), source: io::Error::other(error) };
-    let mut writer = csv::WriterBuilder::new().has_headers(false).from_writer(Vec::new());
-    writer.write_record(COLUMNS.iter().map(|column| column.name)).map_err(failed)?;
+    check_finite(records, path)?;
+    let mut bytes = Vec::new();
+    csv_into(records, &mut bytes).map_err(|source| ResultsError::Io { path: path.to_owned(), source })?;
+    Ok(bytes)
+}
+
+/// Writes rows to a CSV file, in one step. Their text is never in memory as a whole.
+pub fn write_csv(path: &Path, records: &[Row]) -> Result<(), ResultsError> {
+    check_finite(records, path)?;
+    atomic_write_with(path, |file| csv_into(records, file))
+}
+
+/// Refuses rows with a number that is not finite.
+fn check_finite(records: &[Row], path: &Path) -> Result<(), ResultsError> {
     for (index, record) in records.iter().enumerate() {
         for (name, value) in record.floats() {
             if let Some(value) = value.filter(|value| !value.is_finite()) {
                 return Err(ResultsError::NonFinite { path: path.to_owned(), field: format!("{name} of row {}", index + 1), value });
             }
         }
-        if record.unit == "1" {
-            writer.serialize(Row { unit: RATIO.into(), ..record.clone() }).map_err(failed)?;
-        } else {
-            writer.serialize(record).map_err(failed)?;
-        }
     }
-    writer.into_inner().map_err(|error| ResultsError::Io { path: path.to_owned(), source: error.into_error() })
+    Ok(())
 }
 
-/// Writes rows to a CSV file, in one step.
-pub fn write_csv(path: &Path, records: &[Row]) -> Result<(), ResultsError> {
-    atomic_write(path, &to_csv(records, path)?)
+/// Writes the header and the rows.
+fn csv_into(records: &[Row], out: &mut dyn Write) -> io::Result<()> {
+    let mut writer = csv::WriterBuilder::new().has_headers(false).from_writer(out);
+    writer.write_record(COLUMNS.iter().map(|column| column.name))?;
+    for record in records {
+        if record.unit == "1" {
+            writer.serialize(Row { unit: RATIO.into(), ..record.clone() })?;
+        } else {
+            writer.serialize(record)?;
+        }
+    }
+    writer.flush()
 }
 
 /// Reads rows from a CSV file. The header must be this version's, every field must have its type, every row all fields, and no pass a value

@@ -27,12 +27,13 @@ mod row;
 mod run_info;
 mod severity;
 
-pub use checksum::{CHECKSUMS_NAME, Checksums, checksum, seal, unsealed};
+pub use checksum::{CHECKSUMS_NAME, Checksums, checksum, checksum_of, seal, unsealed};
 pub use columns::{COLUMNS, Column, ColumnType, schema_json};
 pub use diff::{Change, Changed, Diff, ERROR_FACTOR, ERROR_FLOOR, TIME_NOISE, diff};
 pub use error::ResultsError;
 pub use file::{
-    CSV_NAME, RUN_NAME, SCHEMA_NAME, atomic_write, parse_csv, read_csv, read_run, to_csv, write_csv, write_run, write_run_with,
+    CSV_NAME, RUN_NAME, SCHEMA_NAME, atomic_write, atomic_write_with, parse_csv, read_csv, read_run, to_csv, write_csv, write_run,
+    write_run_with,
 };
 pub use names::{Kind, Relation, Verdict};
 pub use params::canonical_json;

@@ -47,6 +47,10 @@ impl Study for Accuracy {
         "accuracy"
     }
 
+    fn compares_all(&self) -> bool {
+        false
+    }
+
     fn plan(&self, context: &Context) -> Vec<Cell> {
         let mut cells = Vec::new();
         for robot in context.robots.iter().filter(|robot| robot.takes(self.name())) {

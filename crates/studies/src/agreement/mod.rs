@@ -51,6 +51,10 @@ impl Study for Agreement {
         "agreement"
     }
 
+    fn compares_all(&self) -> bool {
+        false
+    }
+
     fn plan(&self, context: &Context) -> Vec<Cell> {
         let mut cells = Vec::new();
         for robot in context.robots.iter().filter(|robot| robot.takes(self.name())) {

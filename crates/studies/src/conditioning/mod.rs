@@ -33,6 +33,10 @@ impl Study for Conditioning {
         "conditioning"
     }
 
+    fn compares_all(&self) -> bool {
+        false
+    }
+
     fn plan(&self, context: &Context) -> Vec<Cell> {
         let Some(featherbench) = context.engine("featherbench") else { return Vec::new() };
         let robots = context.robots.iter().filter(|robot| robot.takes(self.name()) && robot.states.nv <= MOST_DOFS);

@@ -63,6 +63,10 @@ impl Study for Derivatives {
         STUDY
     }
 
+    fn compares_all(&self) -> bool {
+        false
+    }
+
     fn plan(&self, context: &Context) -> Vec<Cell> {
         let mut cells = Vec::new();
         let most = self.most_dofs.min(DENSE_LIMIT);

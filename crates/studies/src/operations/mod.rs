@@ -41,6 +41,10 @@ impl Study for OperationCounts {
         "operations"
     }
 
+    fn compares_all(&self) -> bool {
+        false
+    }
+
     fn plan(&self, context: &Context) -> Vec<Cell> {
         let mut cells = Vec::new();
         let robots = context.robots.iter().filter(|robot| robot.takes(self.name()) && robot.states.nv <= MOST_DOFS);
