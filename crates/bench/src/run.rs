@@ -213,7 +213,7 @@ impl Run {
                 }
                 rows.extend(compare(study.as_ref(), context, finished));
             } else {
-                rows.extend(compare_stored(study.as_ref(), context, cells, &store)?);
+                compare_stored(study.as_ref(), context, cells, &store, &mut rows)?;
             }
             self.info.studies.push(study.name().into());
             self.info.seconds.insert(study.name().into(), start.elapsed().as_secs_f64());
@@ -335,16 +335,29 @@ pub fn compare(study: &dyn Study, context: &Context, finished: Vec<Finished>) ->
     together.into_iter().chain(compared.into_iter().flatten()).collect()
 }
 
-/// The same rows of a study whose rows all belong to robots: one robot's outcomes are read at a time, on each core.
-fn compare_stored(study: &dyn Study, context: &Context, cells: Vec<Cell>, store: &OutcomeStore) -> Result<Vec<Row>, HarnessError> {
+/// Robots that are compared before their rows are moved to those of the run. More would have them in memory twice, fewer would leave cores idle.
+const TOGETHER: usize = 256;
+
+/// Appends the same rows of a study whose rows all belong to robots: one robot's outcomes are read at a time, on each core.
+fn compare_stored(
+    study: &dyn Study,
+    context: &Context,
+    cells: Vec<Cell>,
+    store: &OutcomeStore,
+    rows: &mut Vec<Row>,
+) -> Result<(), HarnessError> {
     let mut groups: BTreeMap<String, Vec<Cell>> = BTreeMap::new();
     for cell in cells {
         groups.entry(cell.robot.clone()).or_default().push(cell);
     }
-    let of = |robot: &Robot| -> Result<Vec<Row>, HarnessError> {
-        let Some(group) = groups.get(&robot.name) else { return Ok(Vec::new()) };
+    let robots: Vec<(&Robot, Vec<Cell>)> =
+        context.robots.iter().filter_map(|robot| groups.remove(&robot.name).map(|group| (robot, group))).collect();
+    let of = |(robot, group): &(&Robot, Vec<Cell>)| -> Result<Vec<Row>, HarnessError> {
         Ok(study.compare(context, robot, &outcomes(group.clone(), store)?))
     };
-    let compared: Vec<Vec<Row>> = context.robots.par_iter().map(of).collect::<Result<_, _>>()?;
-    Ok(compared.into_iter().flatten().collect())
+    for some in robots.chunks(TOGETHER) {
+        let compared: Vec<Vec<Row>> = some.par_iter().map(of).collect::<Result<_, _>>()?;
+        rows.extend(compared.into_iter().flatten());
+    }
+    Ok(())
 }

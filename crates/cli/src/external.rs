@@ -35,6 +35,13 @@ impl FromStr for External {
     }
 }
 
+impl std::fmt::Display for External {
+    /// Writes it as it is read.
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(f, "{}={}", self.name, shown(&self.command))
+    }
+}
+
 /// The file of a program; one that is not there is refused before anything is started.
 pub fn find(command: &[OsString]) -> Result<PathBuf, Fail> {
     let Some(program) = command.first() else { return Err(Fail::input("no program is named".into())) };

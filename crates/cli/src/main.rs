@@ -54,12 +54,14 @@ mod generate;
 mod history;
 mod identify;
 mod list;
+mod merge;
 mod native;
 mod offers;
 mod oracles;
 mod outcome;
 mod package;
 mod patience;
+mod plan;
 mod progress;
 mod ranges;
 mod record;
@@ -70,6 +72,7 @@ mod robots;
 mod root;
 mod run;
 mod say;
+mod shard;
 mod table;
 mod uncertainty;
 
@@ -95,6 +98,8 @@ fn dispatch(cli: Cli) -> Result<(), Fail> {
     let default = || Command::Run(RunArgs::default_suite());
     match cli.command.unwrap_or_else(default) {
         Command::Run(args) => run::run(&root()?, &args),
+        Command::Plan(args) => plan::plan(&root()?, &args),
+        Command::Merge(args) => merge::merge(&root()?, &args),
         Command::Compare(args) => compare::compare(&root()?, &args),
         Command::Report(args) => report::write(&args),
         Command::Gate(args) => gate::gate(&root()?, &args),

@@ -11,67 +11,125 @@ use crate::progress::Bar;
 use crate::report;
 use crate::robots::{self, Loaded};
 use crate::root::Root;
-use ::featherbench_results::{Culprit, Expectation, GateKind, RunInfo, quoted};
+use crate::shard;
+use ::featherbench_results::{Culprit, Expectation, GateKind, Row, RunInfo, quoted};
 use featherbench_bench::run::{Opening, Run};
-use featherbench_bench::{Cell, Context, Counts, Robot, Study, provenance};
+use featherbench_bench::{Cell, Context, Counts, Gates, Robot, Study, provenance};
 use featherbench_studies::Setup;
 use regex_lite::Regex;
 use std::path::PathBuf;
 use std::time::{Instant, SystemTime};
 
-/// Runs a suite and reports on it.
-pub fn run(root: &Root, args: &RunArgs) -> Result<(), Fail> {
+/// Everything that a run needs before its folder.
+pub struct Prepared {
+    pub loaded: Loaded,
+    pub studies: Vec<Box<dyn Study>>,
+    pub filter: Option<Regex>,
+    gates: Gates,
+    counts: Counts,
+    opened: Opened,
+    program: RunInfo,
+    start: Instant,
+}
+
+/// Reads a suite with its robots and gates, and opens its engines.
+pub fn prepare(root: &Root, args: &RunArgs) -> Result<Prepared, Fail> {
     let start = Instant::now();
     let filter = args.filter.as_deref().map(Regex::new).transpose();
     let filter = filter.map_err(|error| Fail::input(format!("--filter: {error}")))?;
     let loaded = robots::load(root, &args.suite, args.live, args.seed)?;
-    let suite = &loaded.suite;
     let program = provenance::collect(root.path());
     let studies = studies(root, &loaded, args, &program.binary_hash)?;
-    let externals: Vec<&str> = args.externals.iter().map(|external: &External| external.name.as_str()).collect();
-    let gates = root.read_gates()?.with_external(&externals);
+    let gates = root.read_gates()?.with_external(&externals(args));
     let gates = gates.with_robots(loaded.robots.iter().map(|robot| (robot.name.clone(), robot.properties())))?;
     let counts = Counts::read(&root.counts())?;
     let opened = engines::open(root, &Asked::by_suite(root, args, &loaded, &studies))?;
-    let context = Context { robots: &loaded.robots, engines: &opened.engines, gates: &gates, seed: suite.seed };
-    let cells: Vec<Cell> = studies.iter().flat_map(|study| study.plan(&context)).collect();
-    let filtered = || match args.filter.as_ref().zip(filter.as_ref()) {
-        Some((text, filter)) => filter::check(text, filter, &loaded.name, &cells.iter().map(Cell::path).collect::<Vec<_>>()),
-        None => Ok(()),
-    };
-    // Before a folder is made; of a run that goes on, that it is the same comes first.
-    if !args.resume {
-        filtered()?;
+    Ok(Prepared { loaded, studies, filter, gates, counts, opened, program, start })
+}
+
+impl Prepared {
+    /// The data of the studies.
+    pub fn context(&self) -> Context<'_> {
+        Context { robots: &self.loaded.robots, engines: &self.opened.engines, gates: &self.gates, seed: self.loaded.suite.seed }
     }
 
-    let started = SystemTime::now();
-    let folder = args.out.clone().unwrap_or_else(|| folder(root, &loaded.name, started));
-    let about = About { suite: &loaded.name, hash: &loaded.hash, seed: suite.seed, live: args.live, robots: &loaded.robots };
-    let info = describe(root, program, &about, &opened, started)?;
-    let opening = match (args.resume, args.allow_mixed) {
+    /// Whether a cell is asked.
+    pub fn keeps(&self, cell: &Cell) -> bool {
+        self.filter.as_ref().is_none_or(|filter| filter.is_match(&cell.path()))
+    }
+
+    /// The cells of all studies, whatever the filter leaves.
+    fn cells(&self) -> Vec<Cell> {
+        let context = self.context();
+        self.studies.iter().flat_map(|study| study.plan(&context)).collect()
+    }
+
+    /// Refuses a filter that leaves nothing.
+    pub fn check_filter(&self, args: &RunArgs) -> Result<(), Fail> {
+        let Some((text, filter)) = args.filter.as_ref().zip(self.filter.as_ref()) else { return Ok(()) };
+        filter::check(text, filter, &self.loaded.name, &self.cells().iter().map(Cell::path).collect::<Vec<_>>())
+    }
+
+    /// What the rows of a run that starts now share.
+    pub fn describe(&self, root: &Root, args: &RunArgs, started: SystemTime) -> Result<RunInfo, Fail> {
+        let Loaded { name, hash, suite, robots } = &self.loaded;
+        let about = About { suite: name, hash, seed: suite.seed, live: args.live, robots };
+        describe(root, self.program.clone(), &about, &self.opened, started)
+    }
+
+    /// Judges the rows of a run, writes it with its report, and tells the end.
+    pub fn conclude(&self, args: &RunArgs, mut run: Run, rows: &[Row], more: Vec<Expectation>) -> Result<(), Fail> {
+        let suite = &self.loaded.suite;
+        let complete = self.filter.is_none();
+        run.info.expected = self.gates.conditions(suite, rows, complete);
+        if complete {
+            run.info.expected.extend(self.counts.conditions(&run.info, suite.engines(), rows));
+        }
+        let asked: Vec<&str> = suite.engines().iter().map(String::as_str).chain(externals(args)).collect();
+        run.info.expected.extend(offers::conditions(&self.opened, &asked, &self.cells(), rows, complete));
+        let missing = self.opened.missing(suite.engines());
+        run.info.expected.extend(missing.into_iter().map(|engine| missing_engine(&engine.name, &engine.reason)));
+        run.info.expected.extend(more);
+        run.info.seconds.insert("total".into(), self.start.elapsed().as_secs_f64());
+        run.write(rows)?;
+        let page = report::render(&run.folder, &run.info, rows)?;
+        report::conclude(&run.info, rows, &page, args.open)
+    }
+}
+
+/// The names of the engines that a user brings along.
+fn externals(args: &RunArgs) -> Vec<&str> {
+    args.externals.iter().map(|external: &External| external.name.as_str()).collect()
+}
+
+/// How the folder of a run is opened.
+pub fn opening(args: &RunArgs) -> Opening {
+    match (args.resume, args.allow_mixed) {
         (false, _) => Opening::New,
         (true, false) => Opening::Resume,
         (true, true) => Opening::ResumeMixed,
-    };
-    tell_notes(&info);
-    let mut run = Run::open(&folder, opening, info)?;
-    filtered()?;
-    run.info.seconds.insert("setup".into(), start.elapsed().as_secs_f64());
-
-    let keep = |cell: &Cell| filter.as_ref().is_none_or(|filter| filter.is_match(&cell.path()));
-    let rows = run.conduct(&studies, &context, &keep, &Bar::new())?;
-    let complete = filter.is_none();
-    run.info.expected = gates.conditions(suite, &rows, complete);
-    if complete {
-        run.info.expected.extend(counts.conditions(&run.info, suite.engines(), &rows));
     }
-    let asked: Vec<&str> = suite.engines().iter().map(String::as_str).chain(externals.iter().copied()).collect();
-    run.info.expected.extend(offers::conditions(&opened, &asked, &cells, &rows, complete));
-    run.info.expected.extend(opened.missing(suite.engines()).into_iter().map(|engine| missing_engine(&engine.name, &engine.reason)));
-    run.info.seconds.insert("total".into(), start.elapsed().as_secs_f64());
-    run.write(&rows)?;
-    let page = report::render(&run.folder, &run.info, &rows)?;
-    report::conclude(&run.info, &rows, &page, args.open)
+}
+
+/// Runs a suite and reports on it, or evaluates a shard of it.
+pub fn run(root: &Root, args: &RunArgs) -> Result<(), Fail> {
+    let prepared = prepare(root, args)?;
+    // Before a folder is made; of a run that goes on, that it is the same comes first.
+    if !args.resume {
+        prepared.check_filter(args)?;
+    }
+    let started = SystemTime::now();
+    let folder = args.out.clone().unwrap_or_else(|| folder(root, &prepared.loaded.name, started));
+    let info = prepared.describe(root, args, started)?;
+    tell_notes(&info);
+    if let Some(shard) = args.shard {
+        return shard::evaluate(&prepared, args, shard, &folder, info);
+    }
+    let mut run = Run::open(&folder, opening(args), info)?;
+    prepared.check_filter(args)?;
+    run.info.seconds.insert("setup".into(), prepared.start.elapsed().as_secs_f64());
+    let rows = run.conduct(&prepared.studies, &prepared.context(), &|cell| prepared.keeps(cell), &Bar::new())?;
+    prepared.conclude(args, run, &rows, Vec::new())
 }
 
 /// The studies that a suite asks for. `program` is the hash of this program.

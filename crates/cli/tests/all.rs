@@ -17,5 +17,6 @@ mod parsers;
 mod planted;
 mod residuals;
 mod resume;
+mod shards;
 mod support;
 mod uncertainty;

@@ -42,5 +42,6 @@ pub use repeat::{quoted, words};
 pub use row::{MARGIN_LIMIT, Row};
 pub use run_info::{
     Convention, Culprit, EngineInfo, EngineSource, Expectation, GateKind, GitInfo, Host, ModelOrigin, RUN_FORMAT, RobotInfo, RunInfo,
+    ShardInfo,
 };
 pub use severity::Severity;

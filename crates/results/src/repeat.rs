@@ -33,7 +33,7 @@ pub fn words(text: &str) -> Result<Vec<String>, String> {
 }
 
 /// Options of a run that say where it was written and how much of it: each with its value.
-const OF_THE_RUN: [&str; 2] = ["--filter", "--out"];
+const OF_THE_RUN: [&str; 4] = ["--filter", "--out", "--shard", "--costs"];
 /// Options that continue a run.
 const CONTINUING: [&str; 2] = ["--resume", "--allow-mixed"];
 

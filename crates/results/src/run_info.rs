@@ -61,6 +61,25 @@ pub struct RunInfo {
     /// The conventions of the engines, compared with ours.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub conventions: Vec<Convention>,
+    /// The shards that the run was merged from; none if one process made it.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub shards: Vec<ShardInfo>,
+}
+
+/// A part of a run that was evaluated apart.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct ShardInfo {
+    /// Which of how many: `2/7`.
+    pub shard: String,
+    /// When it started.
+    pub started: String,
+    /// How long its cells took together, in seconds.
+    pub seconds: f64,
+    /// The machine.
+    pub host: Host,
+    /// Number of its cells.
+    pub cells: u64,
 }
 
 /// The source revision.

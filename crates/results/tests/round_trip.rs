@@ -6,8 +6,8 @@ use std::path::Path;
 
 use featherbench_results::{
     Base, COLUMNS, CSV_NAME, Checksums, ColumnType, Convention, Culprit, EngineInfo, EngineSource, Expectation, Feature, GateKind, GitInfo,
-    Host, Kind, ModelOrigin, Properties, RUN_FORMAT, RUN_NAME, Relation, ResultsError, RobotInfo, Row, RunInfo, SCHEMA_NAME, Verdict,
-    atomic_write, canonical_json, read_csv, read_run, schema_json, to_csv, write_csv, write_run,
+    Host, Kind, ModelOrigin, Properties, RUN_FORMAT, RUN_NAME, Relation, ResultsError, RobotInfo, Row, RunInfo, SCHEMA_NAME, ShardInfo,
+    Verdict, atomic_write, canonical_json, read_csv, read_run, schema_json, to_csv, write_csv, write_run,
 };
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
@@ -279,6 +279,13 @@ fn run_info() -> RunInfo {
         expected: vec![
             Expectation::new(GateKind::Counts, "id".into(), 2, 1).because("one is missing".into()).about(Culprit::engine("drake")),
         ],
+        shards: vec![ShardInfo {
+            shard: "2/7".into(),
+            started: "2026-01-01T00:00:00Z".into(),
+            seconds: 0.25,
+            host: Host { cpu: "another".into(), ..Host::default() },
+            cells: 3,
+        }],
         conventions: vec![Convention {
             engine: "featherbench".into(),
             topic: "free q".into(),

@@ -31,7 +31,10 @@ pub enum ShardError {
         what: String,
     },
     /// Another version wrote the shard.
-    #[error("{path}: format {found}, this program reads format {expected}; evaluate the shard again with this program", path = path.display())]
+    #[error(
+        "{path}: format {found}, this program reads format {expected}; evaluate the shard again with this program",
+        path = path.display()
+    )]
     Format {
         /// The file.
         path: PathBuf,
@@ -63,7 +66,11 @@ pub enum ShardError {
         first: String,
     },
     /// Another shard has the same cells.
-    #[error("{path}: {count} of its cells are in {other} too, {first} first; leave one of the two out", path = path.display(), other = other.display())]
+    #[error(
+        "{path}: {count} of its cells are in {other} too, {first} first; leave one of the two out",
+        path = path.display(),
+        other = other.display()
+    )]
     Duplicate {
         /// The folder.
         path: PathBuf,

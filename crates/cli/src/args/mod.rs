@@ -2,12 +2,15 @@
 
 mod analysis;
 mod judge;
+mod sweep;
 
 pub use analysis::{Estimator, IdentifyArgs, Propagation, Term, UncertaintyArgs};
-pub use judge::{DiffArgs, GateArgs, HistoryArgs, ReportArgs};
+pub use judge::{DiffArgs, FolderArgs, GateArgs, HistoryArgs, ReportArgs};
+pub use sweep::{MergeArgs, PlanArgs};
 
 use crate::external::External;
 use clap::{Args, Parser, Subcommand, ValueEnum};
+use featherbench_bench::shard::Shard;
 use std::ffi::OsString;
 use std::path::PathBuf;
 
@@ -37,6 +40,10 @@ Exit codes: 0 good, 1 a gate failed, engines disagree or two runs differ, 2 usag
 pub enum Command {
     /// Run a suite: evaluate, compare, judge, report.
     Run(RunArgs),
+    /// Print the cells of a suite with what they cost, and how they are cut into shards.
+    Plan(PlanArgs),
+    /// Merge the shards of a run into what one process would have written: compare, judge, report.
+    Merge(MergeArgs),
     /// Ask whether the engines read robots' files alike, and if not, where and why.
     Compare(CompareArgs),
     /// Write the report of a run again from its records.
@@ -107,6 +114,12 @@ pub struct RunArgs {
     /// Continue although program, target features, libm, suite or a program of --engine differ.
     #[arg(long, requires = "resume")]
     pub allow_mixed: bool,
+    /// Evaluate only this part of the cells, as i/n, and write no rows: `merge` does, from all n parts.
+    #[arg(long, value_name = "I/N", requires = "out", conflicts_with = "open")]
+    pub shard: Option<Shard>,
+    /// An earlier run or shard whose times balance the shards; may be repeated. All shards must be given the same.
+    #[arg(long, value_name = "DIR", requires = "shard")]
+    pub costs: Vec<PathBuf>,
     /// Open the report when the run ends.
     #[arg(long)]
     pub open: bool,
@@ -348,12 +361,52 @@ pub struct ServeArgs {
 impl RunArgs {
     /// What a bare `featherbench` does.
     pub fn default_suite() -> Self {
-        /// The arguments of `run` as a command of their own.
-        #[derive(Parser)]
-        struct Bare {
-            #[command(flatten)]
-            run: RunArgs,
-        }
         Bare::parse_from(["featherbench"]).run
+    }
+
+    /// The run that some arguments of `run` define.
+    pub fn of(arguments: &[String]) -> Result<Self, clap::Error> {
+        Ok(Bare::try_parse_from(std::iter::once("run").chain(arguments.iter().map(String::as_str)))?.run)
+    }
+
+    /// The arguments of `run` that define the whole run, whatever part of it is evaluated and wherever it is written.
+    pub fn defining(&self) -> Vec<String> {
+        let mut words = vec!["--suite".to_owned(), self.suite.clone()];
+        let mut option = |name: &str, value: Option<String>| words.extend(value.into_iter().flat_map(|value| [name.to_owned(), value]));
+        option("--seed", self.seed.map(|seed| seed.to_string()));
+        for external in &self.externals {
+            option("--engine", Some(external.to_string()));
+        }
+        option("--filter", self.filter.clone());
+        option("--recorded", self.recorded.as_ref().map(|path| path.to_string_lossy().into_owned()));
+        let usual = Self::default_suite();
+        option("--timeout", (self.timeout != usual.timeout).then(|| self.timeout.to_string()));
+        option("--memory", (self.memory != usual.memory).then(|| self.memory.to_string()));
+        let flags = [("--live", self.live), ("--no-timing", self.no_timing)];
+        words.extend(flags.into_iter().filter(|(_, given)| *given).map(|(name, _)| name.to_owned()));
+        words
+    }
+}
+
+/// The arguments of `run` as a command of their own.
+#[derive(Parser)]
+struct Bare {
+    #[command(flatten)]
+    run: RunArgs,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// What a shard keeps of its command is enough to make the whole run.
+    #[test]
+    fn the_arguments_that_define_a_run_make_it_again() {
+        let all = "--suite smoke --live --seed 3 --engine a='my oracle' --engine b=x --filter 'a|b' --recorded r --timeout 7 --memory 9 --no-timing";
+        let all = ::featherbench_results::words(&all.replace("a='my oracle'", "\"a='my oracle'\"")).unwrap();
+        let part = [&all[..], &["--shard", "2/7", "--out", "x", "--resume", "--costs", "y"].map(str::to_owned)].concat();
+        let whole = RunArgs::of(&RunArgs::of(&part).unwrap().defining()).unwrap();
+        assert_eq!(format!("{whole:?}"), format!("{:?}", RunArgs::of(&all).unwrap()));
+        assert_eq!(RunArgs::default_suite().defining(), ["--suite", "default"]);
     }
 }

@@ -138,6 +138,12 @@ impl Study for Timing {
         cell.params["what"] == MACHINE
     }
 
+    /// The time that each candidate is given; other cells take about as long as one candidate.
+    fn seconds(&self, _: &Context, cell: &Cell) -> f64 {
+        let candidates = cell.params["candidates"].as_array().map_or(1, Vec::len);
+        self.settings.seconds * candidates as f64
+    }
+
     fn plan(&self, context: &Context) -> Vec<Cell> {
         let mut cells = Vec::new();
         let Some(featherbench) = context.engine(REFERENCE) else { return cells };

@@ -1,0 +1,86 @@
+//! The command line: runs in shards.
+
+use super::RunArgs;
+use crate::external::External;
+use clap::Args;
+use std::num::NonZeroUsize;
+use std::path::PathBuf;
+
+#[derive(Debug, Clone, Args)]
+#[command(
+    after_help = "Examples:\n  featherbench plan default\n  featherbench plan default --costs reports/today --shards 7\n  featherbench plan default --shards 100 --slurm > sweep.sh && sbatch sweep.sh\n\nA cost is the wall time of a cell on one core: that of the runs in --costs, else an estimate from its robot's states and dofs, marked ~."
+)]
+pub struct PlanArgs {
+    /// The suite: a name in datasets/suites, or a TOML file.
+    #[arg(default_value = "default")]
+    pub suite: String,
+    /// Ask the engines themselves instead of their recorded answers.
+    #[arg(long)]
+    pub live: bool,
+    /// The seed of the states, instead of the suite's.
+    #[arg(long, requires = "live")]
+    pub seed: Option<u64>,
+    /// An engine of one's own, as in `run`; may be repeated.
+    #[arg(long = "engine", value_name = "NAME=PROGRAM")]
+    pub externals: Vec<External>,
+    /// Only cells whose path study/robot/engine/quantity/method matches this regular expression.
+    #[arg(long, value_name = "REGEX")]
+    pub filter: Option<String>,
+    /// Leave the timing study out.
+    #[arg(long)]
+    pub no_timing: bool,
+    /// Where recorded answers are read from; by default datasets/recorded.
+    #[arg(long, value_name = "DIR")]
+    pub recorded: Option<PathBuf>,
+    /// An earlier run or shard whose times the costs are taken from; may be repeated.
+    #[arg(long, value_name = "DIR")]
+    pub costs: Vec<PathBuf>,
+    /// Number of shards.
+    #[arg(long, value_name = "N", default_value = "1")]
+    pub shards: NonZeroUsize,
+    /// Print JSON.
+    #[arg(long, conflicts_with = "slurm")]
+    pub json: bool,
+    /// Print a job-array script of SLURM with one task per shard, and the command that merges them.
+    #[arg(long)]
+    pub slurm: bool,
+}
+
+impl PlanArgs {
+    /// The run that is planned.
+    pub fn run(&self) -> RunArgs {
+        RunArgs {
+            suite: self.suite.clone(),
+            live: self.live,
+            seed: self.seed,
+            externals: self.externals.clone(),
+            filter: self.filter.clone(),
+            no_timing: self.no_timing,
+            recorded: self.recorded.clone(),
+            costs: self.costs.clone(),
+            ..RunArgs::default_suite()
+        }
+    }
+}
+
+#[derive(Debug, Clone, Args)]
+#[command(
+    after_help = "Example:\n  featherbench run --suite smoke --shard 1/2 --out a\n  featherbench run --suite smoke --shard 2/2 --out b\n  featherbench merge a b --out whole\n\nA shard is refused by name when it is unfinished, damaged, of another version, suite, program or machine library, when its cells are not in the\nplan, or when another shard has them. With --keep-good the others are merged; the cells that no shard has are rows of errors then, and\n`run --resume --out DIR` evaluates them.\n\nExit codes: as of `run`; 2 also when a shard is refused or missing and --keep-good is not given."
+)]
+pub struct MergeArgs {
+    /// The folders of finished shards.
+    #[arg(required = true, value_name = "DIR")]
+    pub shards: Vec<PathBuf>,
+    /// The run's folder.
+    #[arg(long, value_name = "DIR")]
+    pub out: PathBuf,
+    /// Merge the shards that are good, and name the others and the cells that are missing.
+    #[arg(long)]
+    pub keep_good: bool,
+    /// Merge although program, target features, libm, suite or arguments differ.
+    #[arg(long)]
+    pub allow_mixed: bool,
+    /// Open the report when the run is written.
+    #[arg(long)]
+    pub open: bool,
+}
