@@ -45,6 +45,7 @@ mod diff;
 mod engines;
 mod environment;
 mod explain;
+mod export;
 mod external;
 mod fail;
 mod figures;
@@ -107,6 +108,7 @@ fn dispatch(cli: Cli) -> Result<(), Fail> {
         Command::History(args) => history::history(&root, &args),
         Command::List(args) => list::list(&root()?, &args),
         Command::Explain(args) => explain::explain(&args),
+        Command::Export(args) => export::export(&args),
         Command::Record(args) => record::record(&root()?, &args),
         Command::Residuals(args) => residuals::correct(root, &args),
         Command::Uncertainty(args) => uncertainty::propagate(root, &args),

@@ -26,6 +26,8 @@ mod lesson;
 mod library;
 #[path = "outside/native.rs"]
 mod native;
+#[path = "outside/parquet.rs"]
+mod parquet;
 #[path = "outside/rapier.rs"]
 mod rapier;
 mod support;
@@ -80,6 +82,7 @@ fn main() -> ExitCode {
         ("big robots are refused or answered by the native oracles", native::big_robots_are_refused_or_answered),
         ("native oracles that are not there are named", native::no_compiler),
         ("instructions that were not counted are told", counted::not_counted),
+        ("polars and DuckDB read rows in Parquet", || with_engines(parquet::figures)),
         ("dynibo conforms", || library::conforms("dynibo", &["dynibo has no armature"])),
         ("dynibo agrees, with any gravity", || dynibo::with_dynibo(dynibo::agrees)),
         ("dynibo loses digits of M on a straight chain", || dynibo::with_dynibo(dynibo::loses_digits_of_a_straight_chain)),

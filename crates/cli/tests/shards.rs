@@ -167,3 +167,15 @@ fn a_plan_tells_costs_and_its_job_array_makes_the_run() {
     assert_eq!(shards.iter().map(|shard| shard["cells"].as_u64().unwrap() as usize).sum::<usize>(), ids.len());
     sandbox.run(&["plan", "smoke", "--costs", "nowhere"]).expect(2, &["nowhere/outcomes.bin"]);
 }
+
+/// `export` mixes no runs, and takes no run that was altered.
+#[test]
+fn rows_are_exported_into_a_new_folder() {
+    let sandbox = Sandbox::new();
+    sandbox.run(&["run", "--suite", "smoke", "--filter", "operations", "--out", "run"]).expect(0, &["report:"]);
+    sandbox.run(&["export", "run", "--parquet", "rows"]).expect(0, &["rows/study=operations/part-0.parquet", " rows"]);
+    sandbox.run(&["export", "run", "--parquet", "rows"]).expect(2, &["rows is not empty", "--parquet"]);
+    let path = sandbox.path("run/rows.csv");
+    std::fs::write(&path, std::fs::read_to_string(&path).unwrap().replace(",pass,", ",info,")).unwrap();
+    sandbox.run(&["export", "run", "--parquet", "other"]).expect(2, &["rows.csv", "checksum"]);
+}

@@ -28,7 +28,7 @@ pub fn atomic_write(path: &Path, bytes: &[u8]) -> Result<(), ResultsError> {
 ///
 /// # Errors
 /// [`ResultsError::Io`], also when `write` fails: there is the old file then.
-pub fn atomic_write_with(path: &Path, write: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> Result<(), ResultsError> {
+pub fn atomic_write_with(path: &Path, write: impl FnOnce(&mut (dyn Write + Send)) -> io::Result<()>) -> Result<(), ResultsError> {
     /// Distinguishes the temporary files of one process.
     static SERIAL: AtomicU64 = AtomicU64::new(0);
 
@@ -93,7 +93,7 @@ fn check_finite(records: &[Row], path: &Path) -> Result<(), ResultsError> {
 }
 
 /// Writes the header and the rows.
-fn csv_into(records: &[Row], out: &mut dyn Write) -> io::Result<()> {
+fn csv_into(records: &[Row], out: &mut (dyn Write + Send)) -> io::Result<()> {
     let mut writer = csv::WriterBuilder::new().has_headers(false).from_writer(out);
     writer.write_record(COLUMNS.iter().map(|column| column.name))?;
     for record in records {

@@ -6,7 +6,7 @@ mod sweep;
 
 pub use analysis::{Estimator, IdentifyArgs, Propagation, Term, UncertaintyArgs};
 pub use judge::{DiffArgs, FolderArgs, GateArgs, HistoryArgs, ReportArgs};
-pub use sweep::{MergeArgs, PlanArgs};
+pub use sweep::{ExportArgs, MergeArgs, PlanArgs};
 
 use crate::external::External;
 use clap::{Args, Parser, Subcommand, ValueEnum};
@@ -58,6 +58,8 @@ pub enum Command {
     History(HistoryArgs),
     /// Explain a cell of a run: what was asked, what was answered, how it was judged.
     Explain(ExplainArgs),
+    /// Write the rows of a run as Parquet, for polars, pandas and DuckDB.
+    Export(ExportArgs),
     /// Ask the engines and keep their answers in datasets/recorded.
     Record(RecordArgs),
     /// Write a robot, generated or read from URDF or MJCF, as a description, URDF or MJCF.

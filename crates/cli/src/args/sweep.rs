@@ -1,4 +1,4 @@
-//! The command line: runs in shards.
+//! The command line: runs in shards, and rows for programs that load many.
 
 use super::RunArgs;
 use crate::external::External;
@@ -83,4 +83,16 @@ pub struct MergeArgs {
     /// Open the report when the run is written.
     #[arg(long)]
     pub open: bool,
+}
+
+#[derive(Debug, Clone, Args)]
+#[command(
+    after_help = "Example:\n  featherbench export reports/default-20260101-120000 --parquet rows\n  python reports/examples/figures.py rows figures\n\nA folder for each study: DIR/study=agreement/part-0.parquet. Columns and types are those of schema.json; empty texts are null."
+)]
+pub struct ExportArgs {
+    /// The run's folder.
+    pub folder: PathBuf,
+    /// The folder of the Parquet files: a new one, or an empty one.
+    #[arg(long, value_name = "DIR")]
+    pub parquet: PathBuf,
 }
