@@ -5,7 +5,7 @@ mod judge;
 mod sweep;
 
 pub use analysis::{Estimator, IdentifyArgs, Propagation, Term, UncertaintyArgs};
-pub use judge::{DiffArgs, FolderArgs, GateArgs, HistoryArgs, ReportArgs};
+pub use judge::{DiffArgs, GateArgs, HistoryArgs, ReportArgs};
 pub use sweep::{ExportArgs, MergeArgs, PlanArgs};
 
 use crate::external::External;
