@@ -265,3 +265,80 @@ fn a_deep_chain_is_read() {
     let (n, text) = (500, format!("<mujoco><worldbody>{}{}</worldbody></mujoco>", body.repeat(500), "</body>".repeat(500)));
     assert_eq!(read(&text).nv(), n);
 }
+
+/// Writes files into a new folder.
+fn files(of: &[(&str, &str)]) -> tempfile::TempDir {
+    let folder = tempfile::tempdir().unwrap();
+    for (name, text) in of {
+        let path = folder.path().join(name);
+        std::fs::create_dir_all(path.parent().unwrap()).unwrap();
+        std::fs::write(path, text).unwrap();
+    }
+    folder
+}
+
+#[test]
+fn included_files_take_the_place_of_the_include() {
+    let arm = |leaf: &str| format!("<body name='arm'><joint name='j'/><geom size='0.1'/>{leaf}</body>");
+    let leaf = "<body name='leaf'><joint name='k'/><geom size='0.2'/></body>";
+    let settings = "<compiler angle='radian'/><default><geom density='500'/></default>";
+    let whole = read(&format!("<mujoco model='m'>{settings}<worldbody>{}{leaf}</worldbody></mujoco>", arm("")));
+    // Part by part: in the root and in a body, a file that includes another, in the folder of the first and in that of the naming one.
+    let folder = files(&[
+        (
+            "main.xml",
+            &format!(
+                "<mujoco model='m'><include file='sub/settings.xml'/><worldbody>{}<include file=\"sub/leaf.xml\"/></worldbody></mujoco>",
+                arm("")
+            ),
+        ),
+        ("sub/settings.xml", "\u{feff}<?xml version='1.0'?><anything><compiler angle='radian'/><include file='sub/deep.xml'/></anything>"),
+        ("sub/deep.xml", "<a><include file='density.xml'/></a>"),
+        ("sub/density.xml", "<a><default><geom density='500'/></default></a>"),
+        ("sub/leaf.xml", &format!("<a><!-- a leaf -->{leaf}</a>")),
+    ]);
+    assert_eq!(mjcf::read(folder.path().join("main.xml")).unwrap().0, whole);
+    // The folder of the first file comes first.
+    std::fs::write(folder.path().join("density.xml"), "<a><default><geom density='1'/></default></a>").unwrap();
+    let other = mjcf::read(folder.path().join("main.xml")).unwrap().0;
+    assert!((other.bodies[0].mass * 500.0 - whole.bodies[0].mass).abs() < 1e-12, "a product of densities that are exact");
+}
+
+#[test]
+fn bad_includes_are_named_with_their_file() {
+    let body = "<body name='leaf'><joint name='k'/><geom size='0.2'/></body>";
+    let cases: &[(&str, &str, &str)] = &[
+        ("<mujoco>\n <include file='no.xml'/></mujoco>", "", "main.xml:2:2: the included file "),
+        ("<mujoco>\n <include/></mujoco>", "", "main.xml:2:2: <include> of the file has no attribute 'file'"),
+        ("<mujoco>\n <include file='main.xml'/></mujoco>", "", "main.xml:2:2: main.xml is included already"),
+        ("<mujoco>\n <include file='a.xml'><size/></include></mujoco>", "<a><b/></a>", "main.xml:2:2: <include> has elements of its own"),
+        ("<mujoco><include file='a.xml'/>\n<include file='a.xml'/></mujoco>", "<a><b/></a>", "main.xml:2:1: a.xml is included already"),
+        ("<mujoco><include file='a.xml'/></mujoco>", "\n<a></a>", "a.xml:2:1: this file is included, and its root has no elements"),
+        ("<mujoco><include file='a.xml'/></mujoco>", "<a>\n<b></a>", "a.xml:2:4: this is not well-formed XML"),
+        ("<mujoco><include file='a.xml'/></mujoco>", "<!DOCTYPE a><a><b/></a>", "a.xml:1:1: the file declares a document type"),
+        ("<mujoco><include file='a.xml'/></mujoco>", "", "main.xml:1:9: the included file "),
+        ("<mujoco><include file='a.xml'/></mujoco>", "<a>\n <include file='a.xml'/></a>", "a.xml:2:2: a.xml is included already"),
+        (
+            "<mujoco><worldbody><include file='a.xml'/></worldbody></mujoco>",
+            "<a>\n\n  <body name='b'><joint axis='0 0 0'/><geom size='1'/></body></a>",
+            "a.xml:3:18: axis=\"0 0 0\" of body 'b'",
+        ),
+    ];
+    for (main, part, due) in cases {
+        let folder = files(&[("main.xml", main), ("a.xml", part)]);
+        let error = mjcf::read(folder.path().join("main.xml")).expect_err(main).to_string();
+        let told = error.strip_prefix(&format!("{}/", folder.path().display())).unwrap_or_else(|| panic!("{error}"));
+        assert!(told.starts_with(due), "{told}; due {due}");
+    }
+    // What is left out of an included file says which.
+    let folder = files(&[
+        ("main.xml", &format!("<mujoco><include file='a.xml'/>\n<worldbody>{body}</worldbody><sensor><clock/></sensor></mujoco>")),
+        ("a.xml", "<a>\n\n<actuator><motor joint='k'/></actuator></a>"),
+    ]);
+    let notes = mjcf::read(folder.path().join("main.xml")).unwrap().1;
+    assert_eq!((notes[0].line, notes[1].line), (3, 2));
+    assert!(notes[0].text.ends_with("a.xml)") && !notes[1].text.contains("main.xml"), "{notes:?}");
+    // A text is in no folder.
+    let error = mjcf::import("<mujoco><include file='a.xml'/></mujoco>", "f.xml").unwrap_err();
+    assert!(error.to_string().starts_with("f.xml:1:9: <include> is not read here"), "{error}");
+}

@@ -1,6 +1,6 @@
 //! What can be wrong with an MJCF file.
 
-use crate::{Place, TextError};
+use crate::{Place, TextError, text};
 use featherbench_model::Malformed;
 use std::fmt;
 use thiserror::Error;
@@ -55,6 +55,26 @@ pub enum MjcfProblem {
         /// The element or attribute.
         what: String,
     },
+    /// An included file that cannot be read.
+    #[error("the included file {file} {why}")]
+    Include {
+        /// The file.
+        file: String,
+        /// Why.
+        why: TextError,
+    },
+    /// A file that is included already, or includes itself.
+    #[error("{file} is included already; MuJoCo refuses it too")]
+    IncludedTwice {
+        /// The file, as the include names it.
+        file: String,
+    },
+    /// A file whose root has nothing in it.
+    #[error("this file is included, and its root has no elements")]
+    IncludesNothing,
+    /// An include with elements of its own.
+    #[error("<include> has elements of its own; write it as <include file=\"…\"/>")]
+    IncludeWithContent,
     /// An element lacks an attribute.
     #[error("<{element}> of {owner} has no attribute '{attribute}'")]
     MissingAttribute {
@@ -154,5 +174,14 @@ impl MjcfProblem {
     /// This problem at a byte offset.
     pub(super) fn at(self, offset: usize) -> At {
         At { offset: Some(offset), problem: self }
+    }
+}
+
+impl At {
+    /// An error of this text; `name` is its file.
+    pub(super) fn in_text(self, name: &str, text: &str) -> MjcfError {
+        let of_parser = if let MjcfProblem::Xml { position, .. } = &self.problem { Some(*position) } else { None };
+        let position = self.offset.map(|offset| text::position(text, offset)).or(of_parser);
+        MjcfError { place: Place { file: name.to_owned(), position }, problem: Box::new(self.problem) }
     }
 }

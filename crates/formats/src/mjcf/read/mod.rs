@@ -2,6 +2,7 @@
 
 mod element;
 mod error;
+mod include;
 mod inertial;
 mod joint;
 mod settings;
@@ -12,6 +13,7 @@ pub use error::{MjcfError, MjcfProblem};
 use crate::{Place, text};
 use error::At;
 use featherbench_model::Description;
+use include::Source;
 use roxmltree::{Document, ParsingOptions};
 use std::fmt;
 use std::path::Path;
@@ -36,20 +38,16 @@ impl fmt::Display for Note {
     }
 }
 
-/// Reads an MJCF file: a canonical description, and notes in the order of the file.
+/// Reads an MJCF file with the files that it includes: a canonical description, and notes in the order of the file.
 ///
 /// # Errors
 /// [`MjcfError`], naming file, line, column and the body.
 pub fn read(path: impl AsRef<Path>) -> Result<(Description, Vec<Note>), MjcfError> {
     let path = path.as_ref();
-    let file = path.display().to_string();
-    match text::read(path, LIMIT) {
-        Ok(text) => import(&text, &file),
-        Err(error) => Err(MjcfError { place: Place { file, position: None }, problem: Box::new(error.into()) }),
-    }
+    assemble(&Source::read(path)?, &path.display().to_string())
 }
 
-/// Imports MJCF from a text; `file` is its name in errors.
+/// Imports MJCF from a text, which includes no files; `file` is its name in errors.
 ///
 /// ```
 /// let text = r#"<mujoco model="pendulum"><worldbody><body name="arm">
@@ -65,22 +63,21 @@ pub fn read(path: impl AsRef<Path>) -> Result<(Description, Vec<Note>), MjcfErro
 pub fn import(text: &str, file: &str) -> Result<(Description, Vec<Note>), MjcfError> {
     let place = |position| Place { file: file.to_owned(), position };
     let text = text::check(text, LIMIT).map_err(|problem| MjcfError { place: place(None), problem: Box::new(problem.into()) })?;
+    assemble(&Source::text(text, file), file)
+}
+
+/// The description of a text that has all its files.
+fn assemble(source: &Source, file: &str) -> Result<(Description, Vec<Note>), MjcfError> {
     let read = || -> Result<_, At> {
-        let document = parse(text)?;
+        let document = parse(&source.text)?;
         let root = document.root_element();
         if !root.has_tag_name("mujoco") {
             return Err(MjcfProblem::NotMujoco { found: root.tag_name().name().to_owned() }.at(root.range().start));
         }
         tree::assemble(root, file)
     };
-    let (description, notes) = read().map_err(|At { offset, problem }| {
-        let of_parser = if let MjcfProblem::Xml { position, .. } = &problem { Some(*position) } else { None };
-        let position = offset.map(|offset| text::position(text, offset)).or(of_parser);
-        MjcfError { place: place(position), problem: Box::new(problem) }
-    })?;
-    let lines = text::Lines::new(text);
-    let note = |(offset, text): (usize, String)| Note { line: lines.line(offset), text };
-    Ok((description, notes.into_iter().map(note).collect()))
+    let (description, notes) = read().map_err(|at| source.blame(at))?;
+    Ok((description, notes.into_iter().map(|(offset, text)| source.note(offset, text)).collect()))
 }
 
 /// The document of a text. Entities are off, and the parser keeps its own stack.
