@@ -24,6 +24,12 @@ def find() -> Path:
     ------
     FileNotFoundError
         Saying how to get it.
+
+    Examples
+    --------
+    >>> find()
+    Traceback (most recent call last):
+    FileNotFoundError: FEATHERBENCH_PROGRAM names no_such_file, which is no file
     """
     named = os.environ.get(VARIABLE)
     if named:

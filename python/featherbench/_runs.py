@@ -112,6 +112,12 @@ def read_run(folder: str | PathLike[str], frame: str = "polars") -> Any:
         When a file is missing or is not what checksums.txt says, or when the format is another.
     ImportError
         When the package is not installed.
+
+    Examples
+    --------
+    >>> featherbench.read_run("no_such_run")
+    Traceback (most recent call last):
+    featherbench._runs.RunError: no_such_run is no whole run: ...
     """
     path = Path(fspath(folder))
     if frame not in ("polars", "pandas"):
@@ -156,12 +162,18 @@ def compare(
         With the program's words, when a file is bad or an engine is missing.
     FileNotFoundError
         When the program is not found.
+
+    Examples
+    --------
+    >>> featherbench.compare("arm.urdf")
+    Traceback (most recent call last):
+    FileNotFoundError: FEATHERBENCH_PROGRAM names no_such_file, which is no file
     """
     folder = Path(fspath(out)) if out is not None else Path(tempfile.mkdtemp(prefix="featherbench-")) / "compare"
     arguments = ["compare", "--out", str(folder), *(["--floating"] if floating else [])]
     if engines is not None:
         arguments += ["--engines", ",".join(engines)]
-    done = subprocess.run([find(), *arguments, "--", *map(fspath, files)], capture_output=True, text=True, check=False)
+    done = subprocess.run([find(), *arguments, "--", *(fspath(file) for file in files)], capture_output=True, text=True, check=False)
     # 1 says that engines differ, which is an answer.
     if done.returncode not in (0, 1):
         raise RunError(done.stderr.strip().splitlines()[-1] if done.stderr.strip() else f"the program ended with {done.returncode}")

@@ -19,14 +19,16 @@ impl Scalar for f32 {}
 /// # Errors
 /// `TypeError`, naming the argument.
 pub(crate) fn is_double(name: &str, array: &Bound<'_, PyAny>) -> PyResult<bool> {
+    // The usual case first: of one state the call itself is most of the time.
+    if array.cast::<PyArrayDyn<f64>>().is_ok() {
+        return Ok(true);
+    }
     let Ok(array) = array.cast::<PyUntypedArray>() else {
         let kind = array.get_type().name()?;
         return Err(PyTypeError::new_err(format!("{name} is of type {kind}; give a numpy array of float64 or float32")));
     };
     let dtype = array.dtype();
-    if dtype.is_equiv_to(&numpy::dtype::<f64>(array.py())) {
-        Ok(true)
-    } else if dtype.is_equiv_to(&numpy::dtype::<f32>(array.py())) {
+    if dtype.is_equiv_to(&numpy::dtype::<f32>(array.py())) {
         Ok(false)
     } else {
         Err(PyTypeError::new_err(format!("{name} has dtype {dtype}; give float64 or float32, in the byte order of the machine")))
@@ -58,11 +60,10 @@ pub(crate) type States = Option<usize>;
 /// # Errors
 /// `TypeError` of the dtype, [`Error`] of the shape; both name the argument.
 pub(crate) fn numbers<'py, S: Scalar>(name: &str, array: &Bound<'py, PyAny>, each: usize) -> PyResult<(Numbers<'py, S>, States)> {
-    let wanted = numpy::dtype::<S>(array.py());
     let Ok(array) = array.cast::<PyArrayDyn<S>>() else {
         // Which error it is: no array, or another dtype than that of q.
         is_double(name, array)?;
-        return Err(PyTypeError::new_err(format!("{name} has another dtype than q; give {wanted}")));
+        return Err(PyTypeError::new_err(format!("{name} has another dtype than q; give {}", numpy::dtype::<S>(array.py()))));
     };
     let states = match *array.shape() {
         [count] if count == each => None,

@@ -1,4 +1,4 @@
-//! The engines' coordinates: configurations, velocities and joint forces, there and back.
+//! The engines' coordinates of configurations, there and back.
 
 use crate::Error;
 use crate::robot::Robot;
@@ -8,7 +8,7 @@ use numpy::PyArrayDyn;
 use pyo3::prelude::*;
 
 /// The engine of a name.
-fn convention(engine: &str) -> PyResult<Convention> {
+pub(crate) fn convention(engine: &str) -> PyResult<Convention> {
     match engine {
         "pinocchio" => Ok(Convention::Pinocchio),
         "mujoco" => Ok(Convention::MuJoCo),
@@ -48,13 +48,29 @@ impl Robot {
     /// Parameters
     /// ----------
     /// q : ndarray, shape (nq,) or (states, nq)
-    ///     Configurations.
+    ///     Configurations, rad and m; quaternions (x, y, z, w).
     ///
     /// Returns
     /// -------
     /// ndarray, shape (n,) or (states, n)
-    ///     For a model with this robot's order of joints, and angles of continuous joints. Pinocchio's own URDF parser sorts siblings by
+    ///     Rad and m, for a model with this robot's order of joints, and angles of continuous joints. Pinocchio's own URDF parser sorts siblings by
     ///     name, and gives continuous joints a cosine and a sine.
+    ///
+    /// Raises
+    /// ------
+    /// Error
+    ///     Naming the argument whose shape or number of states does not fit, or that has a number that is not finite or a quaternion of
+    ///     zeros.
+    ///     Naming the joint for which the engine has no coordinates.
+    /// TypeError
+    ///     Naming the argument that is no array of float64.
+    ///
+    /// Examples
+    /// --------
+    /// >>> robot = featherbench.Robot.generated("humanoid")
+    /// >>> q = robot.random(seed=1)
+    /// >>> np.array_equal(robot.to_pinocchio(q), q)  # it has no planar joint
+    /// True
     fn to_pinocchio<'py>(&self, py: Python<'py>, q: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
         self.to_engine(py, Convention::Pinocchio, q)
     }
@@ -64,12 +80,28 @@ impl Robot {
     /// Parameters
     /// ----------
     /// q : ndarray, shape (n,) or (states, n)
-    ///     Pinocchio's numbers.
+    ///     Pinocchio's numbers, rad and m.
     ///
     /// Returns
     /// -------
     /// ndarray, shape (nq,) or (states, nq)
-    ///     Configurations.
+    ///     Configurations, rad and m; quaternions (x, y, z, w).
+    ///
+    /// Raises
+    /// ------
+    /// Error
+    ///     Naming the argument whose shape or number of states does not fit, or that has a number that is not finite or a quaternion of
+    ///     zeros.
+    ///     Naming the joint for which the engine has no coordinates.
+    /// TypeError
+    ///     Naming the argument that is no array of float64.
+    ///
+    /// Examples
+    /// --------
+    /// >>> robot = featherbench.Robot.generated("humanoid")
+    /// >>> q = robot.random(seed=1)
+    /// >>> np.allclose(robot.from_pinocchio(robot.to_pinocchio(q)), q)
+    /// True
     #[pyo3(name = "from_pinocchio")]
     fn neutral_from_pinocchio<'py>(&self, py: Python<'py>, q: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
         self.neutral_from(py, Convention::Pinocchio, q)
@@ -80,12 +112,27 @@ impl Robot {
     /// Parameters
     /// ----------
     /// q : ndarray, shape (nq,) or (states, nq)
-    ///     Configurations.
+    ///     Configurations, rad and m; quaternions (x, y, z, w).
     ///
     /// Returns
     /// -------
     /// ndarray, shape (nq,) or (states, nq)
-    ///     qpos.
+    ///     qpos, rad and m.
+    ///
+    /// Raises
+    /// ------
+    /// Error
+    ///     Naming the argument whose shape or number of states does not fit, or that has a number that is not finite or a quaternion of
+    ///     zeros.
+    ///     Naming the joint for which the engine has no coordinates.
+    /// TypeError
+    ///     Naming the argument that is no array of float64.
+    ///
+    /// Examples
+    /// --------
+    /// >>> robot = featherbench.Robot.generated("humanoid")
+    /// >>> robot.to_mujoco(robot.neutral())[3:7]
+    /// array([1., 0., 0., 0.])
     fn to_mujoco<'py>(&self, py: Python<'py>, q: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
         self.to_engine(py, Convention::MuJoCo, q)
     }
@@ -95,12 +142,28 @@ impl Robot {
     /// Parameters
     /// ----------
     /// q : ndarray, shape (nq,) or (states, nq)
-    ///     qpos.
+    ///     qpos, rad and m.
     ///
     /// Returns
     /// -------
     /// ndarray, shape (nq,) or (states, nq)
-    ///     Configurations.
+    ///     Configurations, rad and m; quaternions (x, y, z, w).
+    ///
+    /// Raises
+    /// ------
+    /// Error
+    ///     Naming the argument whose shape or number of states does not fit, or that has a number that is not finite or a quaternion of
+    ///     zeros.
+    ///     Naming the joint for which the engine has no coordinates.
+    /// TypeError
+    ///     Naming the argument that is no array of float64.
+    ///
+    /// Examples
+    /// --------
+    /// >>> robot = featherbench.Robot.generated("humanoid")
+    /// >>> q = robot.random(seed=1)
+    /// >>> np.allclose(robot.from_mujoco(robot.to_mujoco(q)), q)
+    /// True
     #[pyo3(name = "from_mujoco")]
     fn neutral_from_mujoco<'py>(&self, py: Python<'py>, q: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
         self.neutral_from(py, Convention::MuJoCo, q)
@@ -111,12 +174,27 @@ impl Robot {
     /// Parameters
     /// ----------
     /// q : ndarray, shape (nq,) or (states, nq)
-    ///     Configurations.
+    ///     Configurations, rad and m; quaternions (x, y, z, w).
     ///
     /// Returns
     /// -------
     /// ndarray, shape (n,) or (states, n)
-    ///     Drake's positions.
+    ///     Drake's positions, rad and m.
+    ///
+    /// Raises
+    /// ------
+    /// Error
+    ///     Naming the argument whose shape or number of states does not fit, or that has a number that is not finite or a quaternion of
+    ///     zeros.
+    ///     Naming the joint for which the engine has no coordinates.
+    /// TypeError
+    ///     Naming the argument that is no array of float64.
+    ///
+    /// Examples
+    /// --------
+    /// >>> robot = featherbench.Robot.generated("humanoid")
+    /// >>> robot.to_drake(robot.neutral())[:7]
+    /// array([1., 0., 0., 0., 0., 0., 0.])
     fn to_drake<'py>(&self, py: Python<'py>, q: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
         self.to_engine(py, Convention::Drake, q)
     }
@@ -126,72 +204,30 @@ impl Robot {
     /// Parameters
     /// ----------
     /// q : ndarray, shape (n,) or (states, n)
-    ///     Drake's positions.
+    ///     Drake's positions, rad and m.
     ///
     /// Returns
     /// -------
     /// ndarray, shape (nq,) or (states, nq)
-    ///     Configurations.
+    ///     Configurations, rad and m; quaternions (x, y, z, w).
+    ///
+    /// Raises
+    /// ------
+    /// Error
+    ///     Naming the argument whose shape or number of states does not fit, or that has a number that is not finite or a quaternion of
+    ///     zeros.
+    ///     Naming the joint for which the engine has no coordinates.
+    /// TypeError
+    ///     Naming the argument that is no array of float64.
+    ///
+    /// Examples
+    /// --------
+    /// >>> robot = featherbench.Robot.generated("humanoid")
+    /// >>> q = robot.random(seed=1)
+    /// >>> np.allclose(robot.difference(q, robot.from_drake(robot.to_drake(q))), 0)
+    /// True
     #[pyo3(name = "from_drake")]
     fn neutral_from_drake<'py>(&self, py: Python<'py>, q: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
         self.neutral_from(py, Convention::Drake, q)
-    }
-
-    /// Give an engine's numbers of velocities.
-    ///
-    /// Parameters
-    /// ----------
-    /// engine : {'pinocchio', 'mujoco', 'drake'}
-    ///     The engine.
-    /// q : ndarray, shape (nq,) or (states, nq)
-    ///     Configurations, in this robot's numbers.
-    /// v : ndarray, shape (nv,) or (states, nv)
-    ///     Velocities.
-    ///
-    /// Returns
-    /// -------
-    /// ndarray, shape of v
-    ///     The engine's velocities.
-    fn velocity_to<'py>(
-        &self,
-        py: Python<'py>,
-        engine: &str,
-        q: &Bound<'py, PyAny>,
-        v: &Bound<'py, PyAny>,
-    ) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
-        let (engine, nq, nv) = (convention(engine)?, self.robot.nq(), self.robot.nv());
-        map(py, self, [("q", q, nq), ("v", v, nv)], &[nv], Some(1), |workspace, [q, v], out| {
-            out.copy_from_slice(&workspace.robot().velocity_to(engine, q, v)?);
-            Ok(())
-        })
-    }
-
-    /// Give an engine's numbers of joint forces.
-    ///
-    /// Parameters
-    /// ----------
-    /// engine : {'pinocchio', 'mujoco', 'drake'}
-    ///     The engine.
-    /// q : ndarray, shape (nq,) or (states, nq)
-    ///     Configurations, in this robot's numbers.
-    /// tau : ndarray, shape (nv,) or (states, nv)
-    ///     Joint forces.
-    ///
-    /// Returns
-    /// -------
-    /// ndarray, shape of tau
-    ///     The engine's joint forces.
-    fn force_to<'py>(
-        &self,
-        py: Python<'py>,
-        engine: &str,
-        q: &Bound<'py, PyAny>,
-        tau: &Bound<'py, PyAny>,
-    ) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
-        let (engine, nq, nv) = (convention(engine)?, self.robot.nq(), self.robot.nv());
-        map(py, self, [("q", q, nq), ("tau", tau, nv)], &[nv], Some(1), |workspace, [q, tau], out| {
-            out.copy_from_slice(&workspace.robot().force_to(engine, q, tau)?);
-            Ok(())
-        })
     }
 }

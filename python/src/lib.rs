@@ -2,7 +2,9 @@
 
 mod arrays;
 mod coordinates;
+mod kinematics;
 mod quantities;
+mod rates;
 mod robot;
 mod states;
 

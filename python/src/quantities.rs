@@ -1,4 +1,4 @@
-//! Quantities of a robot: inverse and forward dynamics, M, placements, Jacobians, derivatives.
+//! What forces do: inverse and forward dynamics, M, solutions with it, derivatives.
 
 use crate::Error;
 use crate::arrays::{Scalar, is_double, numbers, output};
@@ -21,7 +21,7 @@ impl Robot {
         py: Python<'py>,
         arguments: [Argument<'_, 'py>; 3],
         out: Option<&Bound<'py, PyAny>>,
-        threads: Option<usize>,
+        threads: Option<i64>,
         quantity: Quantity,
     ) -> PyResult<Bound<'py, PyAny>> {
         if !is_double(arguments[0].0, arguments[0].1)? {
@@ -52,7 +52,7 @@ impl Robot {
         py: Python<'py>,
         arguments: [Argument<'_, 'py>; 3],
         out: Option<&Bound<'py, PyAny>>,
-        threads: Option<usize>,
+        threads: Option<i64>,
         quantity: Quantity,
         batch: Batch<'_, S>,
     ) -> PyResult<Bound<'py, PyAny>> {
@@ -87,25 +87,39 @@ impl Robot {
     /// Parameters
     /// ----------
     /// q : ndarray, shape (nq,) or (states, nq)
-    ///     Configurations, float64 or float32.
-    /// v, a : ndarray, shape (nv,) or (states, nv)
-    ///     Velocities and accelerations, of the dtype of q.
+    ///     Configurations, rad and m; quaternions (x, y, z, w); float64 or float32.
+    /// v : ndarray, shape (nv,) or (states, nv)
+    ///     Velocities, rad/s and m/s; of a free joint [linear, angular] in body axes.
+    /// a : ndarray, shape (nv,) or (states, nv)
+    ///     Accelerations, rad/s² and m/s²: the rates of the numbers in v.
     /// threads : int, optional
     ///     Threads for many states; None takes all cores.
     /// out : ndarray, optional
-    ///     Where the result is written.
+    ///     Where the result is written: C-contiguous, of its shape and of the dtype of q.
     ///
     /// Returns
     /// -------
-    /// ndarray, shape of v
-    ///     The joint forces tau = M a + h.
+    /// ndarray, shape (nv,) or (states, nv)
+    ///     The joint forces tau = M a + h, N m and N.
     ///
     /// Raises
     /// ------
     /// Error
-    ///     Naming the argument, and the state and number that is not finite.
+    ///     Naming the argument whose shape or number of states does not fit, or that has a number that is not finite or a quaternion of
+    ///     zeros.
     /// TypeError
-    ///     When an argument is no array of float64 or float32.
+    ///     Naming the argument that is no array of float64 or float32, or that has another dtype than q.
+    ///
+    /// Examples
+    /// --------
+    /// >>> robot = featherbench.Robot.generated("humanoid")
+    /// >>> q, v, a = robot.random(seed=1), np.ones(robot.nv), np.ones(robot.nv)
+    /// >>> tau = robot.inverse_dynamics(q, v, a)
+    /// >>> np.allclose(robot.forward_dynamics(q, v, tau), a)
+    /// True
+    /// >>> q = robot.random(seed=1, states=1000)
+    /// >>> robot.inverse_dynamics(q, *np.zeros((2, 1000, robot.nv)), threads=None).shape
+    /// (1000, 36)
     #[pyo3(signature = (q, v, a, *, threads = Some(1), out = None))]
     fn inverse_dynamics<'py>(
         &self,
@@ -113,7 +127,7 @@ impl Robot {
         q: &Bound<'py, PyAny>,
         v: &Bound<'py, PyAny>,
         a: &Bound<'py, PyAny>,
-        threads: Option<usize>,
+        threads: Option<i64>,
         out: Option<&Bound<'py, PyAny>>,
     ) -> PyResult<Bound<'py, PyAny>> {
         let (nq, nv) = (self.robot.nq(), self.robot.nv());
@@ -125,25 +139,37 @@ impl Robot {
     /// Parameters
     /// ----------
     /// q : ndarray, shape (nq,) or (states, nq)
-    ///     Configurations, float64 or float32.
-    /// v, tau : ndarray, shape (nv,) or (states, nv)
-    ///     Velocities and joint forces, of the dtype of q.
+    ///     Configurations, rad and m; quaternions (x, y, z, w); float64 or float32.
+    /// v : ndarray, shape (nv,) or (states, nv)
+    ///     Velocities, rad/s and m/s; of a free joint [linear, angular] in body axes.
+    /// tau : ndarray, shape (nv,) or (states, nv)
+    ///     Joint forces, N m and N; of a free joint [force, moment] in body axes.
     /// threads : int, optional
     ///     Threads for many states; None takes all cores.
     /// out : ndarray, optional
-    ///     Where the result is written.
+    ///     Where the result is written: C-contiguous, of its shape and of the dtype of q.
     ///
     /// Returns
     /// -------
-    /// ndarray, shape of v
-    ///     The accelerations. Of a free joint they are the rates of the numbers in v.
+    /// ndarray, shape (nv,) or (states, nv)
+    ///     The accelerations, rad/s² and m/s². Of a free joint they are the rates of the numbers in v.
     ///
     /// Raises
     /// ------
     /// Error
-    ///     Naming the argument, and the state and number that is not finite, or the dof that moves no inertia.
+    ///     Naming the argument whose shape or number of states does not fit, or that has a number that is not finite or a quaternion of
+    ///     zeros.
+    ///     Naming the dof that moves no inertia.
     /// TypeError
-    ///     When an argument is no array of float64 or float32.
+    ///     Naming the argument that is no array of float64 or float32, or that has another dtype than q.
+    ///
+    /// Examples
+    /// --------
+    /// >>> robot = featherbench.Robot.generated("chain:n=2")
+    /// >>> q, v = np.array([0.3, -0.1]), np.zeros(2)
+    /// >>> a = robot.forward_dynamics(q, v, robot.bias_force(q, v))
+    /// >>> np.allclose(a, 0)  # the forces that hold it
+    /// True
     #[pyo3(signature = (q, v, tau, *, threads = Some(1), out = None))]
     fn forward_dynamics<'py>(
         &self,
@@ -151,7 +177,7 @@ impl Robot {
         q: &Bound<'py, PyAny>,
         v: &Bound<'py, PyAny>,
         tau: &Bound<'py, PyAny>,
-        threads: Option<usize>,
+        threads: Option<i64>,
         out: Option<&Bound<'py, PyAny>>,
     ) -> PyResult<Bound<'py, PyAny>> {
         let (nq, nv) = (self.robot.nq(), self.robot.nv());
@@ -163,23 +189,38 @@ impl Robot {
     /// Parameters
     /// ----------
     /// q : ndarray, shape (nq,) or (states, nq)
-    ///     Configurations.
+    ///     Configurations, rad and m; quaternions (x, y, z, w).
     /// v : ndarray, shape (nv,) or (states, nv)
-    ///     Velocities.
+    ///     Velocities, rad/s and m/s; of a free joint [linear, angular] in body axes.
     /// threads : int, optional
     ///     Threads for many states; None takes all cores.
     ///
     /// Returns
     /// -------
-    /// ndarray, shape of v
-    ///     tau at a = 0.
+    /// ndarray, shape (nv,) or (states, nv)
+    ///     The joint forces at a = 0, N m and N.
+    ///
+    /// Raises
+    /// ------
+    /// Error
+    ///     Naming the argument whose shape or number of states does not fit, or that has a number that is not finite or a quaternion of
+    ///     zeros.
+    /// TypeError
+    ///     Naming the argument that is no array of float64.
+    ///
+    /// Examples
+    /// --------
+    /// >>> robot = featherbench.Robot.generated("chain:n=2")
+    /// >>> q, v = np.array([0.3, -0.1]), np.ones(2)
+    /// >>> np.array_equal(robot.bias_force(q, v), robot.inverse_dynamics(q, v, np.zeros(2)))
+    /// True
     #[pyo3(signature = (q, v, *, threads = Some(1)))]
     fn bias_force<'py>(
         &self,
         py: Python<'py>,
         q: &Bound<'py, PyAny>,
         v: &Bound<'py, PyAny>,
-        threads: Option<usize>,
+        threads: Option<i64>,
     ) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
         let (nq, nv) = (self.robot.nq(), self.robot.nv());
         map(py, self, [("q", q, nq), ("v", v, nv)], &[nv], threads, |workspace, [q, v], out| workspace.bias_force(q, v, None, out))
@@ -190,16 +231,31 @@ impl Robot {
     /// Parameters
     /// ----------
     /// q : ndarray, shape (nq,) or (states, nq)
-    ///     Configurations.
+    ///     Configurations, rad and m; quaternions (x, y, z, w).
     /// threads : int, optional
     ///     Threads for many states; None takes all cores.
     ///
     /// Returns
     /// -------
     /// ndarray, shape (nv, nv) or (states, nv, nv)
-    ///     M, both triangles, armature included.
+    ///     M, both triangles, armature included. Entries are kg m², kg m and kg, as the dofs are angles or lengths.
+    ///
+    /// Raises
+    /// ------
+    /// Error
+    ///     Naming the argument whose shape or number of states does not fit, or that has a number that is not finite or a quaternion of
+    ///     zeros.
+    /// TypeError
+    ///     Naming the argument that is no array of float64.
+    ///
+    /// Examples
+    /// --------
+    /// >>> robot = featherbench.Robot.generated("humanoid")
+    /// >>> m = robot.mass_matrix(robot.random(seed=1))
+    /// >>> np.array_equal(m, m.T)
+    /// True
     #[pyo3(signature = (q, *, threads = Some(1)))]
-    fn mass_matrix<'py>(&self, py: Python<'py>, q: &Bound<'py, PyAny>, threads: Option<usize>) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
+    fn mass_matrix<'py>(&self, py: Python<'py>, q: &Bound<'py, PyAny>, threads: Option<i64>) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
         let (nq, nv) = (self.robot.nq(), self.robot.nv());
         map(py, self, [("q", q, nq)], &[nv, nv], threads, |workspace, [q], out| {
             let matrix = workspace.mass_matrix(q)?;
@@ -213,23 +269,39 @@ impl Robot {
     /// Parameters
     /// ----------
     /// q : ndarray, shape (nq,) or (states, nq)
-    ///     Configurations.
+    ///     Configurations, rad and m; quaternions (x, y, z, w).
     /// b : ndarray, shape (nv,) or (states, nv)
-    ///     Right-hand sides.
+    ///     Right-hand sides, N m and N.
     /// threads : int, optional
     ///     Threads for many states; None takes all cores.
     ///
     /// Returns
     /// -------
-    /// ndarray, shape of b
-    ///     The solutions.
+    /// ndarray, shape (nv,) or (states, nv)
+    ///     The solutions x, rad/s² and m/s².
+    ///
+    /// Raises
+    /// ------
+    /// Error
+    ///     Naming the argument whose shape or number of states does not fit, or that has a number that is not finite or a quaternion of
+    ///     zeros.
+    ///     Naming the dof that moves no inertia.
+    /// TypeError
+    ///     Naming the argument that is no array of float64.
+    ///
+    /// Examples
+    /// --------
+    /// >>> robot = featherbench.Robot.generated("humanoid")
+    /// >>> q, b = robot.random(seed=1), np.ones(robot.nv)
+    /// >>> np.allclose(robot.mass_matrix(q) @ robot.solve(q, b), b)
+    /// True
     #[pyo3(signature = (q, b, *, threads = Some(1)))]
     fn solve<'py>(
         &self,
         py: Python<'py>,
         q: &Bound<'py, PyAny>,
         b: &Bound<'py, PyAny>,
-        threads: Option<usize>,
+        threads: Option<i64>,
     ) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
         let (nq, nv) = (self.robot.nq(), self.robot.nv());
         map(py, self, [("q", q, nq), ("b", b, nv)], &[nv], threads, |workspace, [q, b], out| {
@@ -238,127 +310,39 @@ impl Robot {
         })
     }
 
-    /// Compute the placements of a frame in the world.
-    ///
-    /// Parameters
-    /// ----------
-    /// q : ndarray, shape (nq,) or (states, nq)
-    ///     Configurations.
-    /// frame : str
-    ///     A body, or a frame that is fixed to one.
-    /// threads : int, optional
-    ///     Threads for many states; None takes all cores.
-    ///
-    /// Returns
-    /// -------
-    /// ndarray, shape (4, 4) or (states, 4, 4)
-    ///     Homogeneous transforms, frame to world.
-    #[pyo3(signature = (q, frame, *, threads = Some(1)))]
-    fn placement<'py>(
-        &self,
-        py: Python<'py>,
-        q: &Bound<'py, PyAny>,
-        frame: &str,
-        threads: Option<usize>,
-    ) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
-        let frame = self.robot.frame(frame).map_err(failed)?;
-        map(py, self, [("q", q, self.robot.nq())], &[4, 4], threads, |workspace, [q], out| {
-            let x = workspace.placements(q)?.placement(&frame)?;
-            let (rotation, translation) = (x.rotation.to_array(), x.translation.to_array());
-            for i in 0..3 {
-                out[4 * i..4 * i + 3].copy_from_slice(&rotation[3 * i..3 * i + 3]);
-                out[4 * i + 3] = translation[i];
-            }
-            out[12..].copy_from_slice(&[0.0, 0.0, 0.0, 1.0]);
-            Ok(())
-        })
-    }
-
-    /// Compute velocities and classical accelerations of a frame's origin.
-    ///
-    /// Parameters
-    /// ----------
-    /// q : ndarray, shape (nq,) or (states, nq)
-    ///     Configurations.
-    /// v, a : ndarray, shape (nv,) or (states, nv)
-    ///     Velocities and accelerations.
-    /// frame : str
-    ///     A body, or a frame that is fixed to one.
-    /// threads : int, optional
-    ///     Threads for many states; None takes all cores.
-    ///
-    /// Returns
-    /// -------
-    /// ndarray, shape (2, 6) or (states, 2, 6)
-    ///     Velocity and acceleration, each [angular, linear] in world axes. Gravity does not enter.
-    #[pyo3(signature = (q, v, a, frame, *, threads = Some(1)))]
-    fn motion<'py>(
-        &self,
-        py: Python<'py>,
-        q: &Bound<'py, PyAny>,
-        v: &Bound<'py, PyAny>,
-        a: &Bound<'py, PyAny>,
-        frame: &str,
-        threads: Option<usize>,
-    ) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
-        let frame = self.robot.frame(frame).map_err(failed)?;
-        let (nq, nv) = (self.robot.nq(), self.robot.nv());
-        map(py, self, [("q", q, nq), ("v", v, nv), ("a", a, nv)], &[2, 6], threads, |workspace, [q, v, a], out| {
-            let motion = workspace.kinematics(q, v, a)?.motion(&frame)?;
-            out[..6].copy_from_slice(&motion.velocity.to_array());
-            out[6..].copy_from_slice(&motion.acceleration.to_array());
-            Ok(())
-        })
-    }
-
-    /// Compute Jacobians of a frame.
-    ///
-    /// Parameters
-    /// ----------
-    /// q : ndarray, shape (nq,) or (states, nq)
-    ///     Configurations.
-    /// frame : str
-    ///     A body, or a frame that is fixed to one.
-    /// threads : int, optional
-    ///     Threads for many states; None takes all cores.
-    ///
-    /// Returns
-    /// -------
-    /// ndarray, shape (6, nv) or (states, 6, nv)
-    ///     J, with J v = [angular, linear] velocity of the frame's origin in world axes.
-    #[pyo3(signature = (q, frame, *, threads = Some(1)))]
-    fn jacobian<'py>(
-        &self,
-        py: Python<'py>,
-        q: &Bound<'py, PyAny>,
-        frame: &str,
-        threads: Option<usize>,
-    ) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
-        let frame = self.robot.frame(frame).map_err(failed)?;
-        let (nq, nv) = (self.robot.nq(), self.robot.nv());
-        map(py, self, [("q", q, nq)], &[6, nv], threads, |workspace, [q], out| {
-            for (j, column) in workspace.jacobian(q, &frame)?.iter().enumerate() {
-                column.to_array().into_iter().enumerate().for_each(|(i, x)| out[i * nv + j] = x);
-            }
-            Ok(())
-        })
-    }
-
     /// Compute the derivatives of inverse dynamics.
     ///
     /// Parameters
     /// ----------
     /// q : ndarray, shape (nq,) or (states, nq)
-    ///     Configurations.
-    /// v, a : ndarray, shape (nv,) or (states, nv)
-    ///     Velocities and accelerations.
+    ///     Configurations, rad and m; quaternions (x, y, z, w).
+    /// v : ndarray, shape (nv,) or (states, nv)
+    ///     Velocities, rad/s and m/s; of a free joint [linear, angular] in body axes.
+    /// a : ndarray, shape (nv,) or (states, nv)
+    ///     Accelerations, rad/s² and m/s²: the rates of the numbers in v.
     /// threads : int, optional
     ///     Threads for many states; None takes all cores.
     ///
     /// Returns
     /// -------
     /// ndarray, shape (3, nv, nv) or (states, 3, nv, nv)
-    ///     By q on the tangent space of the configurations, by v, and by a, which is M.
+    ///     Of tau by q on the tangent space of the configurations, by v, and by a, which is M. Row i is tau[i], in SI units and rad.
+    ///
+    /// Raises
+    /// ------
+    /// Error
+    ///     Naming the argument whose shape or number of states does not fit, or that has a number that is not finite or a quaternion of
+    ///     zeros.
+    /// TypeError
+    ///     Naming the argument that is no array of float64.
+    ///
+    /// Examples
+    /// --------
+    /// >>> robot = featherbench.Robot.generated("humanoid")
+    /// >>> q, v, a = robot.random(seed=1), np.ones(robot.nv), np.ones(robot.nv)
+    /// >>> by_q, by_v, by_a = robot.inverse_dynamics_derivatives(q, v, a)
+    /// >>> np.allclose(by_a, robot.mass_matrix(q))
+    /// True
     #[pyo3(signature = (q, v, a, *, threads = Some(1)))]
     fn inverse_dynamics_derivatives<'py>(
         &self,
@@ -366,7 +350,7 @@ impl Robot {
         q: &Bound<'py, PyAny>,
         v: &Bound<'py, PyAny>,
         a: &Bound<'py, PyAny>,
-        threads: Option<usize>,
+        threads: Option<i64>,
     ) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
         let (nq, nv) = (self.robot.nq(), self.robot.nv());
         map(py, self, [("q", q, nq), ("v", v, nv), ("a", a, nv)], &[3, nv, nv], threads, |workspace, [q, v, a], out| {
@@ -387,16 +371,36 @@ impl Robot {
     /// Parameters
     /// ----------
     /// q : ndarray, shape (nq,) or (states, nq)
-    ///     Configurations.
-    /// v, tau : ndarray, shape (nv,) or (states, nv)
-    ///     Velocities and joint forces.
+    ///     Configurations, rad and m; quaternions (x, y, z, w).
+    /// v : ndarray, shape (nv,) or (states, nv)
+    ///     Velocities, rad/s and m/s; of a free joint [linear, angular] in body axes.
+    /// tau : ndarray, shape (nv,) or (states, nv)
+    ///     Joint forces, N m and N; of a free joint [force, moment] in body axes.
     /// threads : int, optional
     ///     Threads for many states; None takes all cores.
     ///
     /// Returns
     /// -------
     /// ndarray, shape (3, nv, nv) or (states, 3, nv, nv)
-    ///     By q on the tangent space of the configurations, by v, and by tau, which is the inverse of M.
+    ///     Of a by q on the tangent space of the configurations, by v, and by tau, which is the inverse of M. Row i is a[i], in SI units
+    ///     and rad.
+    ///
+    /// Raises
+    /// ------
+    /// Error
+    ///     Naming the argument whose shape or number of states does not fit, or that has a number that is not finite or a quaternion of
+    ///     zeros.
+    ///     Naming the dof that moves no inertia.
+    /// TypeError
+    ///     Naming the argument that is no array of float64.
+    ///
+    /// Examples
+    /// --------
+    /// >>> robot = featherbench.Robot.generated("humanoid")
+    /// >>> q, v, tau = robot.random(seed=1), np.ones(robot.nv), np.ones(robot.nv)
+    /// >>> by_q, by_v, by_tau = robot.forward_dynamics_derivatives(q, v, tau)
+    /// >>> np.allclose(by_tau @ robot.mass_matrix(q), np.eye(robot.nv))
+    /// True
     #[pyo3(signature = (q, v, tau, *, threads = Some(1)))]
     fn forward_dynamics_derivatives<'py>(
         &self,
@@ -404,7 +408,7 @@ impl Robot {
         q: &Bound<'py, PyAny>,
         v: &Bound<'py, PyAny>,
         tau: &Bound<'py, PyAny>,
-        threads: Option<usize>,
+        threads: Option<i64>,
     ) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
         let (nq, nv) = (self.robot.nq(), self.robot.nv());
         map(py, self, [("q", q, nq), ("v", v, nv), ("tau", tau, nv)], &[3, nv, nv], threads, |workspace, [q, v, tau], out| {

@@ -2,7 +2,7 @@
 
 use crate::arrays::output;
 use crate::states::{failed, map};
-use featherbench_library::{Robot as Library, Workspace};
+use featherbench_library::{Error, Robot as Library, Workspace};
 use numpy::PyArrayDyn;
 use pyo3::prelude::*;
 use std::path::PathBuf;
@@ -82,6 +82,12 @@ impl Robot {
     /// ------
     /// Error
     ///     Naming file, line, column and the link or joint.
+    ///
+    /// Examples
+    /// --------
+    /// >>> featherbench.Robot.from_urdf("no_such.urdf")
+    /// Traceback (most recent call last):
+    /// featherbench.Error: no_such.urdf: the file cannot be read: No such file or directory (os error 2)
     #[staticmethod]
     #[pyo3(signature = (path, *, floating = false))]
     fn from_urdf(path: PathBuf, floating: bool) -> PyResult<Self> {
@@ -94,8 +100,8 @@ impl Robot {
     /// Parameters
     /// ----------
     /// path : str or os.PathLike
-    ///     The file. Bodies, joints, inertials, classes and shapes of closed form are read. Included files, and meshes without an
-    ///     inertial, are errors.
+    ///     The file. Bodies, joints, inertials, classes, shapes of closed form and included files are read. Meshes without an inertial
+    ///     are errors.
     ///
     /// Returns
     /// -------
@@ -106,6 +112,12 @@ impl Robot {
     /// ------
     /// Error
     ///     Naming file, line, column and the body.
+    ///
+    /// Examples
+    /// --------
+    /// >>> featherbench.Robot.from_mjcf("no_such.xml")
+    /// Traceback (most recent call last):
+    /// featherbench.Error: no_such.xml: ...
     #[staticmethod]
     fn from_mjcf(path: PathBuf) -> PyResult<Self> {
         Library::from_mjcf(path).map(Self::new).map_err(failed)
@@ -127,6 +139,12 @@ impl Robot {
     /// ------
     /// Error
     ///     Naming file, line, column and field.
+    ///
+    /// Examples
+    /// --------
+    /// >>> featherbench.Robot.from_json("no_such.json")
+    /// Traceback (most recent call last):
+    /// featherbench.Error: no_such.json: ...
     #[staticmethod]
     fn from_json(path: PathBuf) -> PyResult<Self> {
         Library::from_json(path).map(Self::new).map_err(failed)
@@ -143,6 +161,16 @@ impl Robot {
     /// -------
     /// Robot
     ///     The robot.
+    ///
+    /// Raises
+    /// ------
+    /// Error
+    ///     Naming the family or the parameter that does not exist, or whose value does not fit.
+    ///
+    /// Examples
+    /// --------
+    /// >>> featherbench.Robot.generated("chain:n=36,layout=spatial").nv
+    /// 36
     #[staticmethod]
     fn generated(family: &str) -> PyResult<Self> {
         Library::generated(family).map(Self::new).map_err(failed)
@@ -154,6 +182,12 @@ impl Robot {
     /// -------
     /// str
     ///     JSON.
+    ///
+    /// Examples
+    /// --------
+    /// >>> robot = featherbench.Robot.generated("chain:n=2")
+    /// >>> robot.to_json().startswith("{")
+    /// True
     fn to_json(&self) -> PyResult<String> {
         self.robot.to_json().map_err(failed)
     }
@@ -218,7 +252,13 @@ impl Robot {
     /// Returns
     /// -------
     /// ndarray, shape (nq,)
-    ///     Zeros, and quaternions without rotation.
+    ///     Zeros, and quaternions without rotation; rad and m.
+    ///
+    /// Examples
+    /// --------
+    /// >>> robot = featherbench.Robot.generated("humanoid")
+    /// >>> robot.neutral()[:7]  # of the free joint: the origin, and the quaternion (x, y, z, w)
+    /// array([0., 0., 0., 0., 0., 0., 1.])
     fn neutral<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
         filled(py, &self.robot.neutral(), &[self.robot.nq()])
     }
@@ -235,7 +275,18 @@ impl Robot {
     /// Returns
     /// -------
     /// ndarray, shape (nq,) or (states, nq)
-    ///     The configurations.
+    ///     The configurations, rad and m.
+    ///
+    /// Raises
+    /// ------
+    /// OverflowError
+    ///     When the seed or the number of states is negative.
+    ///
+    /// Examples
+    /// --------
+    /// >>> robot = featherbench.Robot.generated("humanoid")
+    /// >>> robot.random(seed=1).shape, robot.random(seed=1, states=5).shape
+    /// ((37,), (5, 37))
     #[pyo3(signature = (seed = 0, states = None))]
     fn random<'py>(&self, py: Python<'py>, seed: u64, states: Option<usize>) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
         let nq = self.robot.nq();
@@ -250,14 +301,29 @@ impl Robot {
     /// Parameters
     /// ----------
     /// q : ndarray, shape (nq,) or (states, nq)
-    ///     Where to begin.
+    ///     Where to begin, rad and m; quaternions (x, y, z, w).
     /// v : ndarray, shape (nv,) or (states, nv)
-    ///     The velocity; h v for a step of h.
+    ///     The velocity, rad/s and m/s; h v for a step of h.
     ///
     /// Returns
     /// -------
-    /// ndarray, shape of q
-    ///     q plus v, on the space of configurations.
+    /// ndarray, shape (nq,) or (states, nq)
+    ///     q plus v, on the space of configurations, rad and m.
+    ///
+    /// Raises
+    /// ------
+    /// Error
+    ///     Naming the argument whose shape or number of states does not fit, or that has a number that is not finite or a quaternion of
+    ///     zeros.
+    /// TypeError
+    ///     Naming the argument that is no array of float64.
+    ///
+    /// Examples
+    /// --------
+    /// >>> robot = featherbench.Robot.generated("humanoid")
+    /// >>> q, v = robot.random(seed=1), np.full(robot.nv, 0.1)
+    /// >>> np.allclose(robot.difference(q, robot.integrate(q, v)), v)
+    /// True
     fn integrate<'py>(&self, py: Python<'py>, q: &Bound<'py, PyAny>, v: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
         let (nq, nv) = (self.robot.nq(), self.robot.nv());
         map(py, self, [("q", q, nq), ("v", v, nv)], &[nq], Some(1), |workspace, [q, v], out| workspace.robot().integrate_into(q, v, out))
@@ -268,12 +334,26 @@ impl Robot {
     /// Parameters
     /// ----------
     /// start, end : ndarray, shape (nq,) or (states, nq)
-    ///     The configurations.
+    ///     The configurations, rad and m; quaternions (x, y, z, w).
     ///
     /// Returns
     /// -------
     /// ndarray, shape (nv,) or (states, nv)
-    ///     end minus start, on the space of configurations. Rotations take the shortest way.
+    ///     end minus start, on the space of configurations, rad/s and m/s. Rotations take the shortest way.
+    ///
+    /// Raises
+    /// ------
+    /// Error
+    ///     Naming the argument whose shape or number of states does not fit, or that has a number that is not finite or a quaternion of
+    ///     zeros.
+    /// TypeError
+    ///     Naming the argument that is no array of float64.
+    ///
+    /// Examples
+    /// --------
+    /// >>> robot = featherbench.Robot.generated("chain:n=2")
+    /// >>> robot.difference(np.zeros(2), np.array([0.25, -0.5]))
+    /// array([ 0.25, -0.5 ])
     fn difference<'py>(
         &self,
         py: Python<'py>,
@@ -282,8 +362,22 @@ impl Robot {
     ) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
         let (nq, nv) = (self.robot.nq(), self.robot.nv());
         map(py, self, [("start", start, nq), ("end", end, nq)], &[nv], Some(1), |workspace, [from, to], out| {
-            workspace.robot().difference_into(from, to, out)
+            workspace.robot().difference_into(from, to, out).map_err(renamed)
         })
+    }
+}
+
+/// An error about the arguments of `difference`, by their names in Python, where `from` is a keyword.
+fn renamed(error: Error) -> Error {
+    let name = |argument| match argument {
+        "from" => "start",
+        "to" => "end",
+        other => other,
+    };
+    match error {
+        Error::NotFinite { argument, index, value } => Error::NotFinite { argument: name(argument), index, value },
+        Error::NotARotation { argument, index, joint, length } => Error::NotARotation { argument: name(argument), index, joint, length },
+        other => other,
     }
 }
 

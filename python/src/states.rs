@@ -36,11 +36,12 @@ pub(crate) fn pool(threads: usize) -> PyResult<Arc<rayon::ThreadPool>> {
 /// The threads of `threads=`: `None` is all cores, which is 0 here.
 ///
 /// # Errors
-/// [`Error`] when it is zero.
-pub(crate) fn threads(given: Option<usize>) -> PyResult<usize> {
-    match given {
-        Some(0) => Err(Error::new_err("threads is 0; give 1 or more, or None for all cores")),
-        given => Ok(given.unwrap_or(0)),
+/// [`Error`] when it is zero or below.
+pub(crate) fn threads(given: Option<i64>) -> PyResult<usize> {
+    match given.map(usize::try_from) {
+        None => Ok(0),
+        Some(Ok(count)) if count > 0 => Ok(count),
+        Some(_) => Err(Error::new_err(format!("threads is {}; give 1 or more, or None for all cores", given.unwrap_or_default()))),
     }
 }
 
@@ -68,7 +69,7 @@ pub(crate) fn map<'py, const N: usize>(
     robot: &Robot,
     arguments: [Argument<'_, 'py>; N],
     shape: &[usize],
-    given_threads: Option<usize>,
+    given_threads: Option<i64>,
     each: impl Fn(&mut Workspace, [&[f64]; N], &mut [f64]) -> Result<(), LibraryError> + Sync,
 ) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
     let threads = threads(given_threads)?;

@@ -79,8 +79,5 @@ def test_the_names_in_the_tables_exist(theirs, python, rust):
     pytest.importorskip(package, reason=f"{package} is not installed")
     found = import_module(package)
     for k, name in enumerate(names):
-        if not hasattr(found, name):
-            # A module that is not loaded with its package.
-            found = import_module(".".join([package, *names[: k + 1]]))
-        else:
-            found = getattr(found, name)
+        # A module need not be loaded with its package.
+        found = getattr(found, name) if hasattr(found, name) else import_module(".".join([package, *names[: k + 1]]))

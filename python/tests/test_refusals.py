@@ -1,4 +1,6 @@
-"""Each method names the argument that it refuses."""
+"""Every method refuses arrays that do not fit, and names the argument: shape, dtype, byte order, type, states, numbers not finite."""
+
+import re
 
 import numpy as np
 import pytest
@@ -6,93 +8,198 @@ import pytest
 import featherbench
 
 ROBOT = featherbench.Robot.generated("humanoid")
+NQ, NV = ROBOT.nq, ROBOT.nv
 FRAME = ROBOT.bodies[-1]
-# The arrays that each method takes, and what it takes besides.
+STATES = 3
+
+Q, V, A, TAU = ("q", NQ), ("v", NV), ("a", NV), ("tau", NV)
+# Each method with arrays: what comes before and after the arrays, and the arrays with their lengths.
 METHODS = {
-    "inverse_dynamics": (("q", "v", "a"), {}),
-    "forward_dynamics": (("q", "v", "tau"), {}),
-    "bias_force": (("q", "v"), {}),
-    "mass_matrix": (("q",), {}),
-    "solve": (("q", "b"), {}),
-    "placement": (("q",), {"frame": FRAME}),
-    "motion": (("q", "v", "a"), {"frame": FRAME}),
-    "jacobian": (("q",), {"frame": FRAME}),
-    "inverse_dynamics_derivatives": (("q", "v", "a"), {}),
-    "forward_dynamics_derivatives": (("q", "v", "tau"), {}),
-    "integrate": (("q", "v"), {}),
-    "difference": (("start", "end"), {}),
-    "to_pinocchio": (("q",), {}),
-    "to_mujoco": (("q",), {}),
-    "to_drake": (("q",), {}),
-    "from_pinocchio": (("q",), {}),
-    "from_mujoco": (("q",), {}),
-    "velocity_to": (("q", "v"), {"engine": "mujoco"}),
-    "force_to": (("q", "tau"), {"engine": "mujoco"}),
+    "inverse_dynamics": ((), [Q, V, A], {}),
+    "forward_dynamics": ((), [Q, V, TAU], {}),
+    "bias_force": ((), [Q, V], {}),
+    "mass_matrix": ((), [Q], {}),
+    "solve": ((), [Q, ("b", NV)], {}),
+    "placement": ((), [Q], {"frame": FRAME}),
+    "motion": ((), [Q, V, A], {"frame": FRAME}),
+    "jacobian": ((), [Q], {"frame": FRAME}),
+    "inverse_dynamics_derivatives": ((), [Q, V, A], {}),
+    "forward_dynamics_derivatives": ((), [Q, V, TAU], {}),
+    "integrate": ((), [Q, V], {}),
+    "difference": ((), [("start", NQ), ("end", NQ)], {}),
+    **{f"{way}_{engine}": ((), [Q], {}) for way in ("to", "from") for engine in ("pinocchio", "mujoco", "drake")},
+    "velocity_to": (("mujoco",), [Q, V], {}),
+    "velocity_from": (("mujoco",), [Q, V], {}),
+    "acceleration_to": (("mujoco",), [Q, V, A], {}),
+    "acceleration_from": (("mujoco",), [Q, V, A], {}),
+    "force_to": (("mujoco",), [Q, TAU], {}),
+    "force_from": (("mujoco",), [Q, TAU], {}),
 }
-CASES = [(method, name) for method, (names, _) in METHODS.items() for name in names]
+# Those that take no array.
+OTHERS = {"from_urdf", "from_mjcf", "from_json", "to_json", "generated", "neutral", "random"}
+WITH_OUT = ("inverse_dynamics", "forward_dynamics")
+WITH_THREADS = [name for name in METHODS if "threads" in (getattr(featherbench.Robot, name).__text_signature__ or "")]
+CASES = [(method, argument) for method, (_, arguments, _) in METHODS.items() for argument, _ in arguments]
 
 
-def arguments(method, states):
-    names, others = METHODS[method]
-    q = ROBOT.random(seed=4, states=states)
-    v = np.random.default_rng(4).uniform(-1, 1, (states, ROBOT.nv))
-    arrays = {name: q.copy() if name in ("q", "start", "end") else v.copy() for name in names}
-    if method.startswith("from_"):
-        arrays["q"] = getattr(ROBOT, method.replace("from_", "to_"))(q)
-    return arrays, others
+def good(method):
+    """Give arrays that fit, of several states."""
+    rng = np.random.default_rng(4)
+    of_q = {
+        "q": ROBOT.random(seed=4, states=STATES),
+        "start": ROBOT.random(seed=5, states=STATES),
+        "end": ROBOT.random(seed=6, states=STATES),
+    }
+    return {name: of_q[name] if name in of_q else rng.uniform(-1, 1, (STATES, size)) for name, size in METHODS[method][1]}
 
 
-def test_every_method_of_arrays_is_here():
-    known = {"from_urdf", "from_mjcf", "from_json", "generated", "neutral", "random", "to_json", "from_drake"}
+def call(method, arrays, **more):
+    before, _, after = METHODS[method]
+    return getattr(ROBOT, method)(*before, **arrays, **after, **more)
+
+
+def refused(error, method, arrays, text, **more):
+    with pytest.raises(error, match=text) as caught:
+        call(method, arrays, **more)
+    assert type(caught.value) is error
+
+
+def test_every_method_is_here():
     public = {name for name in dir(featherbench.Robot) if not name.startswith("_") and callable(getattr(featherbench.Robot, name))}
-    assert public - known == set(METHODS)
+    assert public == set(METHODS) | OTHERS
 
 
-@pytest.mark.parametrize(("method", "name"), CASES)
-def test_a_wrong_array_is_named(method, name):
-    arrays, others = arguments(method, 3)
-    call = getattr(ROBOT, method)
-    call(*arrays.values(), *others.values()) if not others or method in ("placement", "motion", "jacobian") else call(
-        *others.values(), *arrays.values()
-    )
-
-    def refused(error, value, states=None):
-        bad = {key: array if states is None else array[states] for key, array in arrays.items()} | {name: value}
-        with pytest.raises(error, match=rf"\b{name}\b"):
-            call(**bad, **others)
-
-    x = arrays[name]
-    refused(featherbench.Error, x[:, 1:].copy())
-    refused(featherbench.Error, np.hstack([x, x]))
-    refused(featherbench.Error, x[None])
-    refused(featherbench.Error, np.array(1.0))
-    refused(TypeError, x.astype(int))
-    refused(TypeError, x.astype(x.dtype.newbyteorder()))
-    refused(TypeError, x.tolist())
-    refused(TypeError, None)
-    if len(arrays) > 1:
-        with pytest.raises(featherbench.Error, match="states"):
-            call(**{**arrays, name: x[:2].copy()}, **others)
-    for bad in (np.nan, np.inf, -np.inf):
-        y = x.copy()
-        y[1, -1] = bad
-        refused(featherbench.Error, y)
-        refused(featherbench.Error, y[1], 1)
+@pytest.mark.parametrize("method", METHODS)
+def test_what_fits_is_computed(method):
+    arrays = good(method)
+    many = call(method, arrays)
+    assert many.shape[0] == STATES
+    assert np.isfinite(many).all()
+    strided = {name: np.repeat(x, 2, axis=0)[::2] for name, x in arrays.items()}
+    assert np.array_equal(call(method, strided), many)
+    for x in arrays.values():
+        x.flags.writeable = False
+    assert np.array_equal(call(method, arrays), many)
 
 
-@pytest.mark.parametrize("method", [method for method, (_, others) in METHODS.items() if "frame" in others])
-def test_an_unknown_frame_is_named(method):
-    arrays, _ = arguments(method, 1)
-    with pytest.raises(featherbench.Error, match="'hand'"):
-        getattr(ROBOT, method)(**arrays, frame="hand")
+@pytest.mark.parametrize(("method", "argument"), CASES)
+def test_shapes(method, argument):
+    arrays = good(method)
+    x = arrays[argument]
+    for bad, shape in [
+        (x[:, 1:].copy(), f"({STATES}, {x.shape[1] - 1})"),
+        (x[None], f"(1, {STATES}, {x.shape[1]})"),
+        (np.array(1.0), "()"),
+    ]:
+        refused(
+            featherbench.Error, method, arrays | {argument: bad}, rf"^{argument} has shape {re.escape(shape)}; give \({x.shape[1]},\) or "
+        )
 
 
-@pytest.mark.parametrize(("method", "name"), CASES)
-def test_strides_and_read_only_arrays_are_read(method, name):
-    arrays, others = arguments(method, 6)
-    call = getattr(ROBOT, method)
-    due = call(**arrays, **others)
-    for change in (np.asfortranarray, lambda x: np.repeat(x, 2, axis=0)[::2], lambda x: np.hstack([x, x])[:, : x.shape[1]]):
-        changed = change(arrays[name])
-        changed.flags.writeable = False
-        assert np.array_equal(call(**{**arrays, name: changed}, **others), due)
+@pytest.mark.parametrize(("method", "argument"), CASES)
+def test_dtypes(method, argument):
+    arrays = good(method)
+    x = arrays[argument]
+    swapped = x.astype(x.dtype.newbyteorder())
+    for bad, text in [
+        (x.astype(int), f"^{argument} has dtype int64; give float64 or float32"),
+        (x.astype(complex), f"^{argument} has dtype complex128"),
+        (x.astype(object), f"^{argument} has dtype object"),
+        (swapped, f"^{argument} has dtype .f8; .* in the byte order of the machine"),
+        (x.tolist(), f"^{argument} is of type list; give a numpy array"),
+        (None, f"^{argument} is of type NoneType"),
+    ]:
+        refused(TypeError, method, arrays | {argument: bad}, text)
+
+
+@pytest.mark.parametrize(("method", "argument"), CASES)
+def test_single_precision(method, argument):
+    arrays = good(method)
+    if method in WITH_OUT and argument == "q":
+        # Then it is another argument that has another dtype than q.
+        refused(TypeError, method, arrays | {"q": arrays["q"].astype(np.float32)}, "^v has another dtype than q; give float32")
+    else:
+        refused(TypeError, method, arrays | {argument: arrays[argument].astype(np.float32)}, rf"^{argument} .*; give float64$")
+
+
+@pytest.mark.parametrize(("method", "argument"), CASES)
+def test_numbers_of_states(method, argument):
+    arrays = good(method)
+    if len(arrays) == 1:
+        return  # nothing to disagree with
+    names = list(arrays)
+    told = names[1] if argument == names[0] else argument
+    refused(featherbench.Error, method, arrays | {argument: arrays[argument][:2].copy()}, f"^{told} has . states; {names[0]} has . states")
+    refused(featherbench.Error, method, arrays | {argument: arrays[argument][0].copy()}, rf"^{told} has .*states; {names[0]} has .*states")
+
+
+@pytest.mark.parametrize("bad", [np.nan, np.inf, -np.inf])
+@pytest.mark.parametrize(("method", "argument"), CASES)
+def test_numbers_that_are_not_finite(method, argument, bad):
+    arrays = good(method)
+    arrays[argument][1, 2] = bad
+    word = {"nan": "NaN", "inf": "inf", "-inf": "-inf"}[str(bad)]
+    refused(featherbench.Error, method, arrays, rf"\bstate 1: .*\b{argument}\b.* is {word}")
+    one = {name: x[1].copy() for name, x in arrays.items()}
+    refused(featherbench.Error, method, one, rf"\b{argument}\[2\] is {word}; give a finite number$")
+
+
+# MuJoCo's quaternions begin at the same place, Drake's at the first number.
+QUATERNIONS = [
+    (method, name, slice(0, 4) if method == "from_drake" else slice(3, 7)) for method, name in CASES if name in ("q", "start", "end")
+]
+
+
+@pytest.mark.parametrize(("method", "argument", "place"), QUATERNIONS)
+def test_quaternions_of_zeros(method, argument, place):
+    arrays = good(method)
+    if method == "from_drake":
+        arrays["q"] = ROBOT.to_drake(arrays["q"])
+    arrays[argument][1, place] = 0
+    refused(featherbench.Error, method, arrays, rf"\bstate 1: .*(\b{argument}\b.*no rotation|quaternions that are not zero)")
+    one = {name: x[1].copy() for name, x in arrays.items()}
+    refused(featherbench.Error, method, one, rf"\b{argument}\[{place.start}\]: the quaternion of joint .*: no rotation; give length 1$")
+
+
+@pytest.mark.parametrize("method", WITH_OUT)
+def test_out(method):
+    arrays = good(method)
+    due = call(method, arrays)
+    read_only = np.empty_like(due)
+    read_only.flags.writeable = False
+    for error, bad, text in [
+        (featherbench.Error, read_only, "^out cannot be written: it is read-only"),
+        (featherbench.Error, arrays["v"], "^out cannot be written: .* one of the other arguments"),
+        (featherbench.Error, np.asfortranarray(due), "^out has gaps or another order"),
+        (featherbench.Error, np.empty((2 * STATES, NV))[::2], "^out has gaps or another order"),
+        (featherbench.Error, np.empty((STATES, NV + 1)), rf"^out has shape \({STATES}, {NV + 1}\); give \({STATES}, {NV}\)"),
+        (featherbench.Error, np.empty(NV), rf"^out has shape \({NV},\); give \({STATES}, {NV}\)"),
+        (TypeError, np.empty(due.shape, np.float32), "^out has another dtype than q; give float64"),
+        (TypeError, np.empty(due.shape, int), "^out has dtype int64"),
+        (TypeError, due.tolist(), "^out is of type list"),
+    ]:
+        refused(error, method, arrays, text, out=bad)
+
+
+def test_methods_with_threads():
+    assert len(WITH_THREADS) == 10
+
+
+@pytest.mark.parametrize("method", WITH_THREADS)
+@pytest.mark.parametrize("threads", [0, -1])
+def test_threads(method, threads):
+    refused(featherbench.Error, method, good(method), f"^threads is {threads}; give 1 or more", threads=threads)
+    one = {name: x[0].copy() for name, x in good(method).items()}
+    refused(featherbench.Error, method, one, f"^threads is {threads}; give 1 or more", threads=threads)
+
+
+@pytest.mark.parametrize("method", ["placement", "motion", "jacobian"])
+def test_frames(method):
+    with pytest.raises(featherbench.Error, match="there is no body or frame 'no such frame'"):
+        getattr(ROBOT, method)(*good(method).values(), "no such frame")
+
+
+@pytest.mark.parametrize("method", [name for name, (before, _, _) in METHODS.items() if before])
+def test_engines(method):
+    with pytest.raises(featherbench.Error, match="^engine is 'bullet'; give 'pinocchio', 'mujoco' or 'drake'"):
+        getattr(ROBOT, method)("bullet", *good(method).values())
