@@ -1,4 +1,4 @@
-//! The manners of the command line: completions, the manual page, lists.
+//! What users expect of a command line: completions, the manual page, lists.
 
 use crate::support;
 

@@ -23,6 +23,8 @@ pub enum Line {
     Straight,
     /// By stairs: across, then up. Only some points have marks.
     Stairs,
+    /// Not at all.
+    Marks,
 }
 
 /// A point with its name in the data.
@@ -71,7 +73,8 @@ impl Plot {
         let [right, bottom] = [left + BOX[0], top + BOX[1]];
         let x = Scale::of(&self.x, points().map(|point| point.x), [left, right])?;
         let y = Scale::of(&self.y, points().map(|point| point.y), [bottom, top])?;
-        let names: Vec<(String, Style, bool)> = self.series.iter().map(|series| (series.name.clone(), series.style, true)).collect();
+        let names: Vec<(String, Style, bool)> =
+            self.series.iter().map(|series| (series.name.clone(), series.style, series.line != Line::Marks)).collect();
         let below = bottom + BELOW;
         let size = [right + 14.0 + legend_width(&names), crate::numbers::larger(below, top + 20.0 * names.len() as f64 + 10.0)];
         let body = html! {
@@ -80,7 +83,7 @@ impl Plot {
                 @let places: Vec<(f64, f64)> = series.points.iter().filter(shown).map(|point| (x.place(point.x), y.place(point.y))).collect();
                 @let every = if series.line == Line::Stairs { places.len().div_ceil(SPARSE).max(1) } else { 1 };
                 g.series {
-                    @if places.len() > 1 { (path(series.style, &places, series.line == Line::Stairs)) }
+                    @if places.len() > 1 && series.line != Line::Marks { (path(series.style, &places, series.line == Line::Stairs)) }
                     @for &(x, y) in places.iter().skip((every - 1) / 2).step_by(every) { (mark(series.style, x, y)) }
                 }
             }

@@ -2,6 +2,7 @@
 
 mod answer;
 mod data;
+mod figures;
 mod others;
 mod several;
 
@@ -10,6 +11,7 @@ use data::{Data, Error, GROWTH, Ratios, SCALING, Series, Tree};
 use featherbench_report::numbers::{grouped, short};
 use featherbench_report::{Overview, Section, labels, opener, robot_chunk};
 use featherbench_results::{Row, RunInfo, Verdict};
+use figures::memory as memory_figure;
 use maud::{Markup, html};
 
 /// Terms that the page explains.
@@ -27,7 +29,9 @@ pub(crate) fn sections<'a>(run: &'a RunInfo, rows: &'a [Row], overview: &Overvie
     let answer = answer(run, overview, &data);
     let body = body(overview, &data, &answer);
     let lines = answer.own.iter().map(|own| format!("scaling: {own}")).collect();
-    vec![Section { script: include_str!("section.js"), terms: TERMS, lines, ..Section::new("scaling", "Scaling", body).with_data(&data) }]
+    let figures = memory_figure(overview, &data).into_iter().collect();
+    let section = Section::new("scaling", "Scaling", body).with_data(&data);
+    vec![Section { script: include_str!("section.js"), terms: TERMS, lines, figures, ..section }]
 }
 
 fn body(overview: &Overview, data: &Data, answer: &Answer) -> Markup {

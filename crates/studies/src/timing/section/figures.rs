@@ -1,21 +1,31 @@
-//! The study's figures for papers: ratios by engine and quantity, time against size, and the performance profile of Dolan and Moré.
+//! The study's figures for papers: ratios by engine and quantity, time against size, the performance profile of Dolan and Moré, time
+//! against error, and the share of the machine's peak.
 
 use std::collections::{BTreeMap, BTreeSet};
 
 use featherbench_bench::BATCH;
-use featherbench_report::figure::{Axis, Figure, Heat, Plot};
-use featherbench_report::numbers::{count, listed, short};
+use featherbench_report::figure::{Axis, Figure, Heat, Line, Plot, Point, Series, style};
+use featherbench_report::numbers::{count, larger, listed, scientific, short};
 use featherbench_report::{Overview, labels};
 use featherbench_results::Row;
 
 use super::STUDY;
+use super::ratios::{OPERATIONS, Speed};
+use super::tradeoff::{Tradeoff, richest};
 use super::verdict::SpeedVerdict;
 use crate::figures::{Measured, largest, shares};
 
 /// Makes the figures.
-pub fn figures(overview: &Overview, rows: &[Row], verdict: &SpeedVerdict) -> Vec<Figure> {
+pub fn figures(overview: &Overview, rows: &[Row], verdict: &SpeedVerdict, speed: &Speed, points: &[Tradeoff]) -> Vec<Figure> {
     let times = fastest(overview, rows);
-    [heat(overview, verdict), against_size(overview, &times), profile(overview, &times)].into_iter().flatten().collect()
+    let all = [
+        heat(overview, verdict),
+        against_size(overview, &times),
+        profile(overview, &times),
+        precision(overview, points),
+        share(overview, speed),
+    ];
+    all.into_iter().flatten().collect()
 }
 
 /// Time of an engine's fastest method, and whether it is an estimate.
@@ -133,4 +143,74 @@ fn profile(overview: &Overview, times: &Times) -> Option<Figure> {
         series: series.collect(),
     };
     plot.figure("speed-profile", caption)
+}
+
+/// Time against error of every method, on the robot that most methods answer.
+fn precision(overview: &Overview, points: &[Tradeoff]) -> Option<Figure> {
+    let robot = richest(overview, points)?;
+    let mut engines: BTreeMap<usize, Vec<&Tradeoff>> = BTreeMap::new();
+    // An error of zero has no place on the axis; it is in the data.
+    points.iter().filter(|point| point.robot == robot).for_each(|point| engines.entry(point.engine).or_default().push(point));
+    let way = |point: &Tradeoff| if point.scalar == "f64" { point.method.to_owned() } else { format!("{} {}", point.method, point.scalar) };
+    let front = |point: &&Tradeoff| {
+        let engine = overview.engines[point.engine];
+        format!("{engine} {} ({} ns, error {})", way(point), short(point.ns), scientific(point.error))
+    };
+    let unbeaten: Vec<String> = points.iter().filter(|point| point.robot == robot && point.front).map(|point| front(&point)).collect();
+    let caption = format!(
+        "Forward dynamics of {}. No method is both faster and more accurate than {}. An error is the median over the states, against the answer in \
+         double-double arithmetic.",
+        overview.robots[robot].name,
+        listed(&unbeaten)
+    );
+    let mark = |point: &Tradeoff| Point { name: way(point), x: point.ns, y: point.error };
+    let series = |(engine, points): (usize, Vec<&Tradeoff>)| Series {
+        name: overview.engines[engine].to_owned(),
+        style: style(overview.engines[engine]),
+        line: Line::Marks,
+        points: points.into_iter().map(mark).collect(),
+    };
+    let plot = Plot {
+        title: format!("Time against error of forward dynamics, {}", overview.robots[robot].name),
+        x: Axis::log("time per call, ns"),
+        y: Axis::log("median relative error"),
+        series: engines.into_iter().map(series).collect(),
+    };
+    plot.figure("work-precision", caption)
+}
+
+/// The share of the core's peak that each engine's best method reaches, by the quantity with the most engines.
+fn share(overview: &Overview, speed: &Speed) -> Option<Figure> {
+    let counted = || speed.limits.iter().filter(|limit| limit.cache == "stream" && !limit.estimated && limit.method != BATCH);
+    let engines_of =
+        |quantity: &str| counted().filter(|limit| limit.quantity == quantity).map(|limit| limit.engine).collect::<BTreeSet<_>>().len();
+    let (quantity, algorithm, operations) = OPERATIONS.into_iter().max_by_key(|(quantity, ..)| engines_of(quantity))?;
+    let mut engines: BTreeMap<usize, Vec<Measured>> = BTreeMap::new();
+    for limit in counted().filter(|limit| limit.quantity == quantity) {
+        if let Some(size) = overview.robots[limit.robot].nv.filter(|&size| size > 0) {
+            let measured = Measured { robot: overview.robots[limit.robot].name, x: size as f64, y: limit.least / limit.per_joint };
+            engines.entry(limit.engine).or_default().push(measured);
+        }
+    }
+    let best = |(&engine, values): (&usize, &Vec<Measured>)| {
+        let share = values.iter().map(|value| value.y).fold(0.0, larger);
+        format!("{} {} %", overview.engines[engine], short(100.0 * share))
+    };
+    let words: Vec<String> = engines.iter().map(best).collect();
+    let caption = format!(
+        "Largest share of the core's peak in full vectors, one state per call: {}. The count is that of {algorithm}, {operations} multiply-adds per \
+         revolute joint, without sines and cosines; an engine that computes more reaches less. Each mark is the engine's best method on a robot \
+         of that size.",
+        words.join(", ")
+    );
+    let plot = Plot {
+        title: format!("Share of the machine's peak, {}", labels::quantity(quantity)),
+        x: Axis::log("degrees of freedom nv"),
+        y: Axis::log("share of the peak of one core"),
+        series: engines
+            .iter()
+            .map(|(&engine, values)| largest(overview.engines[engine], overview.engines[engine].to_owned(), values))
+            .collect(),
+    };
+    plot.figure("peak-share", caption)
 }

@@ -28,20 +28,20 @@ pub(crate) fn sections<'a>(run: &RunInfo, rows: &'a [Row], overview: &Overview<'
     let (times, speed) = (time::lines(overview, rows), Speed::of(overview, rows));
     let best = best::summaries(overview, rows);
     let verdict = SpeedVerdict::of(overview, rows);
+    let points = tradeoff::points(overview, rows, &times);
     let mut sections = vec![Section {
         script: include_str!("time.js"),
         terms: if times.is_empty() { &[] } else { TERMS },
         lines: line::line(overview, rows, &speed).into_iter().chain(best::lines(&best)).collect(),
         style: include_str!("speed.css"),
         answer: verdict.markup(overview),
-        figures: figures::figures(overview, rows, &verdict),
+        figures: figures::figures(overview, rows, &verdict, &speed, &points),
         ..Section::new("time", "Time", time::markup(overview, &times, verdict.first_times(overview))).with_data(&times)
     }];
     if !speed.is_empty() || !best.is_empty() {
         let body = speed::markup(run, overview, &speed, &best);
         sections.push(Section { script: include_str!("speed.js"), ..Section::new("speed", "Speed", body).with_data(&speed) });
     }
-    let points = tradeoff::points(overview, rows, &times);
     if !points.is_empty() {
         let body = tradeoff::markup(overview, &points);
         sections

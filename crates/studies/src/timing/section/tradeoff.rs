@@ -78,8 +78,8 @@ pub fn points<'a>(overview: &Overview<'a>, rows: &'a [Row], times: &[TimeLine<'a
     found
 }
 
-/// Writes the section.
-pub fn markup(overview: &Overview, points: &[Tradeoff]) -> Markup {
+/// The robots with their numbers of methods.
+fn robots(points: &[Tradeoff]) -> Vec<(usize, usize)> {
     let mut robots: Vec<(usize, usize)> = Vec::new();
     for point in points {
         match robots.last_mut().filter(|(robot, _)| *robot == point.robot) {
@@ -87,8 +87,17 @@ pub fn markup(overview: &Overview, points: &[Tradeoff]) -> Markup {
             None => robots.push((point.robot, 1)),
         }
     }
-    // The largest of the robots with the most methods: there they differ most.
-    let opening = robots.iter().max_by_key(|&&(robot, methods)| (methods, overview.robots[robot].nv)).map(|&(robot, _)| robot);
+    robots
+}
+
+/// The largest of the robots with the most methods: there they differ most.
+pub fn richest(overview: &Overview, points: &[Tradeoff]) -> Option<usize> {
+    robots(points).into_iter().max_by_key(|&(robot, methods)| (methods, overview.robots[robot].nv)).map(|(robot, _)| robot)
+}
+
+/// Writes the section.
+pub fn markup(overview: &Overview, points: &[Tradeoff]) -> Markup {
+    let (robots, opening) = (robots(points), richest(overview, points));
     html! {
         section #tradeoff {
             h2 { "Work–precision" }
