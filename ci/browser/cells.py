@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from browser.client import ARROW_DOWN, ARROW_RIGHT, ENTER, ESCAPE, Browser
-from browser.page import CLOSED, DRAWN, FOCUS, ROWS, Checks, Shot
+from browser.page import CLOSED, DRAWN, FOCUS, ROWS, Checks, Shot, open_whole
 
 
 def heatmap(page: Browser, shot: Shot) -> Checks:
@@ -31,7 +31,7 @@ def heatmap(page: Browser, shot: Shot) -> Checks:
     page.press(ESCAPE)
     yield "Escape closes the rows", page.until(CLOSED), ""
     page.open("about:blank")
-    page.open(here)
+    open_whole(page, here)
     yield "the address of open rows opens them again", page.until(ROWS) == rows, here[-80:]
     page.press(ESCAPE)
 

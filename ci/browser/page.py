@@ -19,3 +19,10 @@ FOCUS = "const cell = document.activeElement.closest('td'); return cell ? [cell.
 def has(page: Browser, selector: str) -> bool:
     """Tell whether the page has an element."""
     return bool(page.run("return document.querySelector(arguments[0]) !== null", selector))
+
+
+def open_whole(page: Browser, address: str) -> None:
+    """Open a report, and bring every section and piece that its first page leaves out."""
+    page.open(address)
+    page.run("featherbench.everything()")
+    page.until("return !document.querySelector('[data-part]')")

@@ -7,9 +7,11 @@ import pathlib
 
 from browser.cells import accuracy, heatmap, joints
 from browser.client import ESCAPE, Browser
-from browser.page import DRAWN, ROWS, Checks, Shot, has
+from browser.page import DRAWN, ROWS, Checks, Shot, has, open_whole
 from browser.plots import drawn, plots
 
+# The most nodes of the first page before the reader does anything.
+MOST_NODES = 3000
 BACKGROUND = "return getComputedStyle(document.body).backgroundColor"
 # Every section in its order. Those that are not in ALWAYS appear only if they have rows.
 SECTIONS = [
@@ -61,6 +63,8 @@ def checks(page: Browser, address: str, shots: pathlib.Path | None) -> Checks:
             page.shot(shots / f"{name}.png")
 
     page.open(address)
+    yield from first_page(page)
+    open_whole(page, address)
     sections = page.run("return [...document.querySelectorAll('main > section')].map(section => section.id)")
     yield "the page has its sections", sections == [name for name in SECTIONS if name in ALWAYS or name in sections], sections
     led = page.run("return [...document.querySelectorAll('nav a')].map(link => link.hash.slice(1))")
@@ -99,6 +103,34 @@ def checks(page: Browser, address: str, shots: pathlib.Path | None) -> Checks:
     yield from theme(page, address, shot, sections if shots else [])
     yield from narrow(page, shot)
     yield from silence(page)
+
+
+def first_page(page: Browser) -> Checks:
+    """Check what the browser holds before the reader does anything. Times are printed, and decide nothing."""
+    nodes = page.run("return document.querySelectorAll('*').length")
+    yield f"the first page has at most {MOST_NODES} nodes: {nodes}", nodes <= MOST_NODES, nodes
+    times = page.until("""
+        const [page] = performance.getEntriesByType('navigation');
+        const paint = performance.getEntriesByName('first-contentful-paint')[0];
+        return page.loadEventEnd > 0 && paint && {
+          'first paint': paint.startTime, 'usable': page.domContentLoadedEventEnd, 'loaded': page.loadEventEnd}""")
+    told = ", ".join(f"{what} after {ms:.0f} ms" for what, ms in times.items()) if times else "no times"
+    yield f"the browser tells its times: {told}", bool(times), times
+    left = page.run("return [...document.querySelectorAll('[data-part]')].map(place => place.querySelector('a')?.getAttribute('href'))")
+    missing = [place for place in left if not place or not place.startswith("sections/")]
+    yield "what is left out is linked, for readers without scripts", not missing, missing
+    details = "document.querySelector('#verdict details:has(> [data-part])')"
+    if page.run(f"return {details} !== null"):
+        page.run(f"{details}.id = 'opened'")
+        page.click("#opened > summary")
+        brought = page.until("return !document.querySelector('#opened > [data-part]') && document.querySelectorAll('#opened *').length")
+        yield "what is left out is brought when it is opened", brought > 3, brought
+    far = page.run("return document.querySelector('main > section[data-part]:last-of-type')?.id")
+    if far:
+        page.click(f"nav a[href='#{far}']")
+        brought = page.until("return !document.getElementById(arguments[0]).dataset.part", far)
+        inside = page.run("return document.getElementById(arguments[0]).getBoundingClientRect().top < innerHeight", far)
+        yield "a section is brought when the reader goes to it", brought and inside, [far, inside]
 
 
 def findings(page: Browser) -> Checks:
@@ -272,7 +304,7 @@ def theme(page: Browser, address: str, shot: Shot, pictured: list[str]) -> Check
         page.run("document.getElementById(arguments[0]).scrollIntoView({behavior: 'instant'})", place)
         shot(f"theme-{place}")
     page.open("about:blank")
-    page.open(address)
+    open_whole(page, address)
     yield "and is remembered", page.run(BACKGROUND) == after, ""
 
 

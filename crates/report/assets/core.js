@@ -12,18 +12,18 @@ const featherbench = (() => {
   }
 
   // A chunk's data: at hand, on its way, or brought by adding its script to the page.
-  function load(name) {
+  function load(name, file = `data/${name}.js`) {
     if (chunks.has(name)) return Promise.resolve(chunks.get(name));
     if (!waiting.has(name)) {
       const entry = {};
       entry.promise = new Promise((resolve, reject) => {
         entry.resolve = resolve;
         const script = document.createElement("script");
-        script.src = `data/${name}.js`;
+        script.src = file;
         script.onerror = () => {
           waiting.delete(name);
           script.remove();
-          reject(new Error(`data/${name}.js is missing or damaged`));
+          reject(new Error(`${file} is missing or damaged`));
         };
         // A script that ran without delivering was cut or altered.
         script.onload = () => { if (!chunks.has(name)) script.onerror(); };
@@ -59,9 +59,14 @@ const featherbench = (() => {
   const describe = (robot) => `${robot.family}, ${robot.nv ?? "?"} degrees of freedom, ${robot.bodies ?? "?"} bodies, depth ${robot.depth ?? "?"}`;
 
   // Runs a task when the page and its data are complete; each on its own, so that one that fails leaves the others.
-  const ready = (task) => document.addEventListener("DOMContentLoaded", task);
+  const ready = (task) => { if (document.readyState === "loading") document.addEventListener("DOMContentLoaded", task); else task(); };
 
-  return { chunk, load, make, short, decades, glyphs, variable, byId, describe, ready, chunks };
+  // Runs a task on the page, and on each piece that is brought later.
+  const dressers = [];
+  const dress = (root) => { for (const task of dressers) task(root); };
+  const dressed = (task) => { dressers.push(task); ready(() => task(document)); };
+
+  return { chunk, load, make, short, decades, glyphs, variable, byId, describe, ready, dress, dressed, chunks };
 })();
 
 // Light and dark: the system's choice until the reader makes one, which is kept where the browser allows it. Paper is light.
@@ -91,24 +96,22 @@ const featherbench = (() => {
 })();
 
 // The command's copy button. Under file:// a browser may refuse its clipboard; then the command is selected, ready to be copied.
-featherbench.ready(() => {
-  const button = featherbench.byId("copy");
+document.addEventListener("click", async (event) => {
+  const button = event.target.closest("#copy");
   if (!button) return;
   const text = featherbench.byId("command");
-  button.addEventListener("click", async () => {
-    try {
-      await navigator.clipboard.writeText(text.textContent);
-      button.textContent = "Copied";
-    } catch {
-      getSelection().selectAllChildren(text);
-      button.textContent = "Selected";
-    }
-    setTimeout(() => { button.textContent = "Copy"; }, 1500);
-  });
+  try {
+    await navigator.clipboard.writeText(text.textContent);
+    button.textContent = "Copied";
+  } catch {
+    getSelection().selectAllChildren(text);
+    button.textContent = "Selected";
+  }
+  setTimeout(() => { button.textContent = "Copy"; }, 1500);
 });
 
 // Tables whose columns sort on a click on their head.
-featherbench.ready(() => {
+featherbench.dressed((root) => {
   const key = (row, column) => {
     const cell = row.cells[column];
     const text = cell.textContent.trim();
@@ -117,7 +120,7 @@ featherbench.ready(() => {
     return Number.isNaN(number) ? -Infinity : number;
   };
   const order = (a, b) => (a === b ? 0 : a < b ? -1 : 1);
-  for (const table of document.querySelectorAll("table.sortable")) {
+  for (const table of root.querySelectorAll("table.sortable")) {
     for (const head of table.tHead.rows[0].cells) {
       const button = featherbench.make("button", { type: "button" });
       button.append(...head.childNodes);

@@ -7,6 +7,7 @@ use serde::Serialize;
 
 use crate::error::ReportError;
 use crate::overview::{Overview, robot_chunk};
+use crate::parts::{self, Piece};
 use crate::section::Section;
 
 /// The chunk with every row that did not pass.
@@ -16,7 +17,7 @@ pub const UNPASSED: &str = "unpassed";
 pub const TIMES: &str = "times";
 
 /// A file's name in the report's folder, and its bytes.
-type NamedFile = (String, Vec<u8>);
+pub type NamedFile = (String, Vec<u8>);
 
 /// The words of the run.
 pub fn overview(overview: &Overview) -> Result<Vec<u8>, ReportError> {
@@ -39,6 +40,12 @@ pub fn figures(sections: &[Section]) -> Result<Vec<u8>, ReportError> {
 /// The data of all figures for papers.
 pub fn figure_data(json: &str) -> NamedFile {
     ("data/figure-data.js".to_owned(), script("figure-data", json))
+}
+
+/// The markup of a piece that the first page leaves out.
+pub fn piece(piece: &Piece) -> Result<NamedFile, ReportError> {
+    let text = script(&format!("part-{}", piece.name), &serde_json::to_string(&piece.body.0)?);
+    Ok((format!("{}/{}.js", parts::FOLDER, piece.name), text))
 }
 
 /// One call, `featherbench.chunk("name",{…});`, whose second argument is plain JSON.
@@ -70,7 +77,7 @@ pub fn is_unpassed(row: &Row) -> bool {
 
 /// All rows: a chunk per robot, one per study for rows without a robot, one with every row that did not pass, and one
 /// with every time.
-pub fn rows(overview: &Overview, rows: &[Row]) -> Result<Vec<NamedFile>, ReportError> {
+pub fn rows<'a>(overview: &Overview, rows: &'a [Row]) -> impl Iterator<Item = Result<NamedFile, ReportError>> + use<'a> {
     let mut chunks: BTreeMap<String, Vec<&Row>> = BTreeMap::new();
     // A robot without rows has a chunk too: a click on it must show that there are none.
     for robot in 0..overview.robots.len() {
@@ -81,7 +88,7 @@ pub fn rows(overview: &Overview, rows: &[Row]) -> Result<Vec<NamedFile>, ReportE
     for row in rows {
         chunks.entry(overview.chunk_of(row)).or_default().push(row);
     }
-    chunks.iter().map(|(name, rows)| Ok((format!("data/{name}.js"), script(name, &serde_json::to_string(&Table::of(rows)?)?)))).collect()
+    chunks.into_iter().map(|(name, rows)| Ok((format!("data/{name}.js"), script(&name, &serde_json::to_string(&Table::of(&rows)?)?))))
 }
 
 /// Rows as arrays: the names of the columns are given once.

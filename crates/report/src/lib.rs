@@ -3,9 +3,10 @@
 //! This crate knows no study. A study makes [`Section`]s from rows; [`write()`] puts them on the page in the order in which they are given.
 //! It is a pure function of its arguments and reads no clock.
 //!
-//! The folder needs no network and no server. `index.html` has every table that is worth printing. `data/*.js` has the rows: the page adds
-//! a script element to read them when a cell is clicked, as a page under `file://` may not fetch. `app.js` draws the plots as SVG. `figures/` has
-//! the figures for papers, which [`mod@figure`] draws.
+//! The folder needs no network and no server. `index.html` opens with the findings and names every section; what is large is brought when the
+//! window is near it or when it is opened, and has a page of its own under `sections/`. `data/*.js` has the rows and those pieces: the page
+//! adds a script element to read them, as a page under `file://` may not fetch. `app.js` draws the plots as SVG. `figures/` has the figures for
+//! papers, which [`mod@figure`] draws.
 //! Every number on the page is made from rows, and every cell and point leads back to its rows.
 //!
 //! # The order of the files
@@ -13,7 +14,7 @@
 //!
 //! | layer | files |
 //! |---|---|
-//! | data | [`numbers`], [`labels`], [`fit`], `error`, then [`figure`], then `tally`, `overview`, `section`, then `findings`, `chunks`, then [`forms`] |
+//! | data | [`numbers`], [`labels`], [`fit`], `error`, then [`figure`], then `tally`, `overview`, `section`, then `findings`, `parts`, then `chunks`, [`forms`] |
 //! | sections | `blocks`, then `verdict`, `conventions`, `provenance`, `method`, `unpassed`, `figures` |
 //! | page | `page`, `summary`, [`runs`], then `write` |
 
@@ -31,6 +32,7 @@ mod method;
 pub mod numbers;
 mod overview;
 mod page;
+mod parts;
 mod provenance;
 pub mod runs;
 mod section;
@@ -45,7 +47,7 @@ pub use chunks::{TIMES, UNPASSED};
 pub use error::ReportError;
 pub use findings::{Findings, Found, Status};
 pub use overview::{EVERYONE, Overview, Robot, robot_chunk};
-pub use section::{Finding, Section};
+pub use section::{Finding, Part, Section};
 pub use summary::summary;
 pub use tally::{Tally, worst_first};
 pub use write::{ReportPaths, write};

@@ -4,18 +4,52 @@ use featherbench_results::{CSV_NAME, RUN_NAME, Row, RunInfo, SCHEMA_NAME};
 use maud::{DOCTYPE, Markup, html};
 
 use crate::overview::Overview;
+use crate::parts::{self, Piece};
 use crate::section::Section;
 use crate::{conventions, figures, method, provenance, unpassed, verdict};
 
-/// The whole page as text.
-pub fn render(run: &RunInfo, rows: &[Row], overview: &Overview, sections: &[Section]) -> String {
-    // The frame's own sections stand around those of the studies.
-    let (first, conventions) = (verdict::section(run, overview, rows, sections), conventions::section(run));
-    let figures = figures::section(run, sections);
-    let last = [provenance::section(run, overview), method::section(run, sections), unpassed::section(rows)];
-    let of_studies = |appendix: bool| sections.iter().filter(move |section| section.appendix == appendix);
-    let all: Vec<&Section> =
-        [&first].into_iter().chain(of_studies(false)).chain(&figures).chain([&conventions]).chain(of_studies(true)).chain(&last).collect();
+/// The frame's sections at the end of the page.
+const LAST: usize = 3;
+
+/// All sections of a run: those of the studies, and the frame's own around them.
+pub struct Page<'a> {
+    run: &'a RunInfo,
+    own: Vec<Section>,
+    studies: &'a [Section],
+}
+
+impl<'a> Page<'a> {
+    /// Makes the frame's own sections.
+    pub fn of(run: &'a RunInfo, rows: &[Row], overview: &Overview, studies: &'a [Section]) -> Self {
+        let own = [verdict::section(run, overview, rows, studies), conventions::section(run)].into_iter();
+        let last = [provenance::section(run, overview), method::section(run, studies), unpassed::section(rows)];
+        Self { run, own: own.chain(figures::section(run, studies)).chain(last).collect(), studies }
+    }
+
+    /// The sections in the order of the page. The figures stand behind the results, the conventions behind the figures.
+    pub fn sections(&self) -> Vec<&Section> {
+        let [first, conventions, others @ ..] = &self.own[..] else { return Vec::new() };
+        let (figures, last) = others.split_at(others.len() - LAST);
+        let of_studies = |appendix: bool| self.studies.iter().filter(move |section| section.appendix == appendix);
+        [first].into_iter().chain(of_studies(false)).chain(figures).chain([conventions]).chain(of_studies(true)).chain(last).collect()
+    }
+
+    /// The first page.
+    pub fn index(&self) -> String {
+        let sections = self.sections();
+        frame(self.run, &sections, None, &html! { @for section in &sections { (parts::on_first_page(section)) } })
+    }
+
+    /// The page of a piece that the first page leaves out.
+    pub fn piece(&self, piece: &Piece) -> String {
+        let is_section = self.sections().iter().any(|section| section.anchor == piece.name);
+        let body = html! { @if is_section { (piece.body) } @else { section { h2 { (piece.title) } (piece.body) } } };
+        frame(self.run, &self.sections(), Some(piece.title), &body)
+    }
+}
+
+/// A page: the first one, or one with a title of its own in a folder below it, all of whose links start at the first page.
+fn frame(run: &RunInfo, sections: &[&Section], below: Option<&str>, body: &Markup) -> String {
     let page = html! {
         (DOCTYPE)
         html lang="en" {
@@ -23,19 +57,17 @@ pub fn render(run: &RunInfo, rows: &[Row], overview: &Overview, sections: &[Sect
                 meta charset="utf-8";
                 meta name="viewport" content="width=device-width, initial-scale=1";
                 meta name="color-scheme" content="light dark";
-                title { "featherbench: " (run.suite) " " (run.run) }
+                @if below.is_some() { base href="../index.html"; }
+                title { @if let Some(title) = below { (title) ", " } "featherbench: " (run.suite) " " (run.run) }
                 link rel="stylesheet" href="style.css";
-                // The first is small, defines the function that the data scripts call, and sets the theme before anything is drawn.
+                // It is small, defines the function that the data scripts call, and sets the theme before anything is drawn.
                 script src="app.js" {}
                 script defer src="data/overview.js" {}
-                script defer src="data/figures.js" {}
             }
             body {
-                a.to-content href="#verdict" { "Skip to the verdict" }
-                (header(run, &all))
-                main {
-                    @for section in &all { (section.body) }
-                }
+                @if below.is_none() { a.to-content href="#verdict" { "Skip to the verdict" } }
+                (header(run, sections))
+                main { (body) }
                 footer {
                     p {
                         "Made by featherbench " (run.version) " from the rows of run " code { (run.run) } ": "
@@ -43,10 +75,11 @@ pub fn render(run: &RunInfo, rows: &[Row], overview: &Overview, sections: &[Sect
                         a href=(RUN_NAME) { (RUN_NAME) } ", columns described in "
                         a href=(SCHEMA_NAME) { (SCHEMA_NAME) } "."
                     }
+                    @if below.is_none() { p { button.more #everything type="button" { "Bring every section, to search or print the page" } } }
                 }
                 (rows_dialog())
                 div #tip role="tooltip" hidden {}
-                noscript { p.notice { "Without scripts the tables can be read; plots and the rows behind each cell need them." } }
+                noscript { p.notice { "Without scripts each section is read on its own page; plots and the rows behind each cell need them." } }
             }
         }
     };

@@ -1,6 +1,6 @@
 //! A section of the page: what a study hands to the report.
 
-use maud::Markup;
+use maud::{Markup, html};
 use serde::Serialize;
 
 use crate::figure::Figure;
@@ -24,7 +24,8 @@ pub struct Section {
     pub body: Markup,
     /// Its data, which its script finds as `featherbench.chunks.get("figures")[anchor]`; see [`Section::with_data`].
     pub data: Option<Result<String, serde_json::Error>>,
-    /// Its script. It runs after the report's own ones, which offer tables, plots and drill-down.
+    /// Its script. It runs when the section is first near the window, after the report's own scripts, which offer tables, plots and
+    /// drill-down; the body and the data are at hand then.
     pub script: &'static str,
     /// Its style, if it needs more than the report's own.
     pub style: &'static str,
@@ -32,6 +33,8 @@ pub struct Section {
     pub finding: Option<Finding>,
     /// What it answers on the first page in its full width, below the findings.
     pub answer: Option<Markup>,
+    /// What is seen only when it is opened: a [`Part::place`] stands for each, in the body or in the answer.
+    pub parts: Vec<Part>,
     /// Its figures for papers.
     pub figures: Vec<Figure>,
     /// Quantities of whose errors it tells: the section on the method defines their measures.
@@ -42,6 +45,25 @@ pub struct Section {
     pub lines: Vec<String>,
     /// Whether it stands with the facts about the run, behind the conventions, and not with the results.
     pub appendix: bool,
+}
+
+/// A piece of the report that the first page does not hold at first: it is brought from its own script when it is opened, and it has a page of
+/// its own, which needs no script.
+#[derive(Debug)]
+pub struct Part {
+    /// Its name among all parts and sections; its page is `sections/NAME.html`.
+    pub name: &'static str,
+    /// The title of its page.
+    pub title: &'static str,
+    /// What it holds.
+    pub body: Markup,
+}
+
+impl Part {
+    /// What stands in its place until it is brought: a link to its page. In a closed `details` it is brought when that is opened.
+    pub fn place(&self) -> Markup {
+        html! { div data-part=(self.name) { a href={ "sections/" (self.name) ".html" } { (self.title) " on a page of its own" } } }
+    }
 }
 
 /// What a section adds to the verdict.
@@ -65,6 +87,7 @@ impl Section {
             style: "",
             finding: None,
             answer: None,
+            parts: Vec::new(),
             figures: Vec::new(),
             quantities: Vec::new(),
             terms: &[],

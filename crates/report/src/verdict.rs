@@ -9,7 +9,7 @@ use crate::findings::{Findings, Found, Status, clipped};
 use crate::labels;
 use crate::numbers::{count, decades, grouped};
 use crate::overview::Overview;
-use crate::section::Section;
+use crate::section::{Part, Section};
 use crate::tally::{BY_GRAVITY, Tally, worst_first};
 
 /// Number of findings in the head of the page; a click opens the others.
@@ -17,11 +17,20 @@ const TOLD: usize = 6;
 
 /// Writes the section, with what the sections of studies add to it.
 pub fn section(run: &RunInfo, overview: &Overview, rows: &[Row], sections: &[Section]) -> Section {
-    Section::new("verdict", "Verdict", body(run, overview, rows, sections))
+    let findings = Findings::of(run, rows);
+    let (rest, conditions) = (rest(overview, &findings), conditions(run));
+    let body = body(run, overview, rows, sections, &findings, [rest.as_ref(), conditions.as_ref()]);
+    Section { parts: rest.into_iter().chain(conditions).collect(), ..Section::new("verdict", "Verdict", body) }
 }
 
-fn body(run: &RunInfo, overview: &Overview, rows: &[Row], sections: &[Section]) -> Markup {
-    let findings = &Findings::of(run, rows);
+fn body(
+    run: &RunInfo,
+    overview: &Overview,
+    rows: &[Row],
+    sections: &[Section],
+    findings: &Findings,
+    [rest, conditions]: [Option<&Part>; 2],
+) -> Markup {
     let mut added: Vec<_> = sections.iter().filter_map(|section| section.finding.as_ref()).collect();
     added.sort_by_key(|finding| finding.rank);
     let (class, word) = match findings.status {
@@ -36,6 +45,9 @@ fn body(run: &RunInfo, overview: &Overview, rows: &[Row], sections: &[Section]) 
             h1 { (findings.headline()) }
             (tiles(findings))
             (list(overview, findings))
+            @if let Some(part) = rest {
+                details { summary { (count(findings.found.len() - TOLD, "more finding")) } (part.place()) }
+            }
             (extent(findings))
             @for answer in sections.iter().filter_map(|section| section.answer.as_ref()) { (answer) }
             div.columns {
@@ -48,7 +60,7 @@ fn body(run: &RunInfo, overview: &Overview, rows: &[Row], sections: &[Section]) 
                     @if overview.studies.len() > 1 { (by_study(overview, rows)) }
                 }
             }
-            (expectations(run))
+            @if let Some(part) = conditions { details { summary { (expectations(run)) } (part.place()) } }
         }
     }
 }
@@ -80,19 +92,19 @@ fn class(level: Severity) -> &'static str {
 
 /// The findings from the gravest, each with its rows and the command that repeats it.
 fn list(overview: &Overview, findings: &Findings) -> Markup {
-    let (shown, rest) = findings.found.split_at(findings.found.len().min(TOLD));
     html! {
-        @if !shown.is_empty() {
+        @if !findings.found.is_empty() {
             h3 { "What was found" }
-            ol.findings { @for found in shown { (item(overview, found)) } }
-        }
-        @if !rest.is_empty() {
-            details {
-                summary { (count(rest.len(), "more finding")) }
-                ol.findings start=(TOLD + 1) { @for found in rest { (item(overview, found)) } }
-            }
+            ol.findings { @for found in findings.found.iter().take(TOLD) { (item(overview, found)) } }
         }
     }
+}
+
+/// The other findings.
+fn rest(overview: &Overview, findings: &Findings) -> Option<Part> {
+    let rest = findings.found.get(TOLD..).filter(|rest| !rest.is_empty())?;
+    let body = html! { ol.findings start=(TOLD + 1) { @for found in rest { (item(overview, found)) } } };
+    Some(Part { name: "findings", title: "More findings", body })
 }
 
 fn item(overview: &Overview, found: &Found) -> Markup {
@@ -200,34 +212,40 @@ fn by_study(overview: &Overview, rows: &[Row]) -> Markup {
     }
 }
 
+/// How many conditions of the suite are met.
 fn expectations(run: &RunInfo) -> Markup {
-    let mut conditions: Vec<_> = run.expected.iter().collect();
-    conditions.sort_by_key(|condition| BY_GRAVITY.iter().position(|&verdict| verdict == condition.verdict));
-    let unmet = conditions.iter().filter(|condition| condition.verdict != Verdict::Pass).count();
+    let unmet = run.expected.iter().filter(|condition| condition.verdict != Verdict::Pass).count();
+    let all = count(run.expected.len(), "condition");
     html! {
-        @if !conditions.is_empty() {
-            details open[unmet > 0] {
-                summary {
-                    "What the suite expects: "
-                    @if unmet == 0 { "all " (count(conditions.len(), "condition")) " met" } @else { (unmet) " of " (count(conditions.len(), "condition")) " not met" }
-                }
-                div.scroll {
-                    table.compact {
-                        thead { tr { th scope="col" { "condition" } th.number scope="col" { "expected" } th.number scope="col" { "found" } th scope="col" { "verdict" } th scope="col" { "reason" } } }
-                        tbody {
-                            @for condition in conditions {
-                                tr {
-                                    th scope="row" { (condition.what) }
-                                    td.number { (condition.expected) }
-                                    td.number { (condition.found) }
-                                    td { span class={ "badge " (condition.verdict) } { (labels::glyph(condition.verdict)) " " (condition.verdict) } }
-                                    td { (condition.reason) }
-                                }
-                            }
+        "What the suite expects: "
+        @if unmet == 0 { "all " (all) " met" } @else { (unmet) " of " (all) " not met" }
+    }
+}
+
+/// Every condition of the suite, those that are not met first.
+fn conditions(run: &RunInfo) -> Option<Part> {
+    let mut conditions: Vec<_> = run.expected.iter().collect();
+    if conditions.is_empty() {
+        return None;
+    }
+    conditions.sort_by_key(|condition| BY_GRAVITY.iter().position(|&verdict| verdict == condition.verdict));
+    let body = html! {
+        div.scroll {
+            table.compact {
+                thead { tr { th scope="col" { "condition" } th.number scope="col" { "expected" } th.number scope="col" { "found" } th scope="col" { "verdict" } th scope="col" { "reason" } } }
+                tbody {
+                    @for condition in conditions {
+                        tr {
+                            th scope="row" { (condition.what) }
+                            td.number { (condition.expected) }
+                            td.number { (condition.found) }
+                            td { span class={ "badge " (condition.verdict) } { (labels::glyph(condition.verdict)) " " (condition.verdict) } }
+                            td { (condition.reason) }
                         }
                     }
                 }
             }
         }
-    }
+    };
+    Some(Part { name: "conditions", title: "What the suite expects", body })
 }

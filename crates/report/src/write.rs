@@ -4,11 +4,12 @@ use std::path::{Path, PathBuf};
 
 use featherbench_results::{Row, RunInfo};
 
-use crate::chunks;
+use crate::chunks::{self, NamedFile};
 use crate::error::ReportError;
 use crate::figures;
 use crate::overview::Overview;
-use crate::page;
+use crate::page::Page;
+use crate::parts;
 use crate::section::Section;
 
 /// The report's style sheet; sections add to it.
@@ -17,6 +18,7 @@ const STYLE: &str = include_str!("../assets/style.css");
 /// The report's scripts; sections add to them.
 const SCRIPT: &str = concat!(
     include_str!("../assets/core.js"),
+    include_str!("../assets/parts.js"),
     include_str!("../assets/rows.js"),
     include_str!("../assets/grid.js"),
     include_str!("../assets/chart_axes.js"),
@@ -43,27 +45,37 @@ pub struct ReportPaths {
 /// [`ReportError`] if a file cannot be written, or if a section's data are no JSON.
 pub fn write(run: &RunInfo, rows: &[Row], sections: &[Section], out: &Path) -> Result<ReportPaths, ReportError> {
     let overview = Overview::of(run, rows);
-    let with_sections = |own: &str, of: fn(&Section) -> &'static str| {
-        let parts = std::iter::once(own).chain(sections.iter().map(of));
-        parts.collect::<String>().into_bytes()
-    };
-    let mut files = vec![
-        ("style.css".to_owned(), with_sections(STYLE, |section| section.style)),
-        ("app.js".to_owned(), with_sections(SCRIPT, |section| section.script)),
-        ("data/overview.js".to_owned(), chunks::overview(&overview)?),
-        ("data/figures.js".to_owned(), chunks::figures(sections)?),
-    ];
-    files.extend(chunks::rows(&overview, rows)?);
-    files.extend(figures::files(sections));
-    files.push(chunks::figure_data(&figures::data(sections)?));
-    // Last, so that a page is never older than what it links to.
-    files.push(("index.html".to_owned(), page::render(run, rows, &overview, sections).into_bytes()));
-
-    let mut written = Vec::with_capacity(files.len());
-    for (name, bytes) in files {
+    let mut written = Vec::new();
+    // File by file, so that no more than one is held.
+    let mut put = |(name, bytes): NamedFile| -> Result<(), ReportError> {
         let path = out.join(name);
         featherbench_results::atomic_write(&path, &bytes)?;
         written.push(path);
+        Ok(())
+    };
+    let style: String = std::iter::once(STYLE).chain(sections.iter().map(|section| section.style)).collect();
+    put(("style.css".to_owned(), style.into_bytes()))?;
+    put(("app.js".to_owned(), script(sections).into_bytes()))?;
+    put(("data/overview.js".to_owned(), chunks::overview(&overview)?))?;
+    put(("data/figures.js".to_owned(), chunks::figures(sections)?))?;
+    chunks::rows(&overview, rows).try_for_each(|file| put(file?))?;
+    figures::files(sections).try_for_each(&mut put)?;
+    put(chunks::figure_data(&figures::data(sections)?))?;
+    let page = Page::of(run, rows, &overview, sections);
+    for piece in parts::of(&page.sections()) {
+        put(chunks::piece(&piece)?)?;
+        put((format!("{}/{}.html", parts::FOLDER, piece.name), page.piece(&piece).into_bytes()))?;
     }
+    // Last, so that a page is never older than what it links to.
+    put(("index.html".to_owned(), page.index().into_bytes()))?;
     Ok(ReportPaths { index: out.join("index.html"), files: written })
+}
+
+/// The report's scripts, then those of the sections, each of which runs when its section is shown.
+fn script(sections: &[Section]) -> String {
+    let mut text = SCRIPT.to_owned();
+    for section in sections.iter().filter(|section| !section.script.is_empty()) {
+        text += &format!("featherbench.section(\"{}\", () => {{\n{}}});\n", section.anchor, section.script);
+    }
+    text
 }

@@ -42,7 +42,10 @@ fn a_section_brings_its_data_script_and_style() {
     let written = Written::of(&RunInfo::default(), &[], &[one, section("two")]);
     assert_eq!(written.data("figures"), serde_json::json!({"one": ["</script>", null]}));
     assert!(!written.text("data/figures.js").contains("</script>"));
-    assert!(written.text("app.js").ends_with("// script one\n") && written.text("app.js").contains("featherbench.chart = "));
+    assert!(
+        written.text("app.js").ends_with("featherbench.section(\"one\", () => {\n// script one\n});\n")
+            && written.text("app.js").contains("featherbench.chart = ")
+    );
     assert!(written.text("style.css").ends_with(".one { color: red; }\n") && written.text("style.css").contains(".tiles"));
 }
 
@@ -56,7 +59,7 @@ fn data_that_are_no_json_are_an_error_with_the_name_of_the_section() {
 #[test]
 fn the_method_explains_the_terms_and_measures_of_sections() {
     let one = Section { terms: &[("Widget", "a thing")], quantities: vec!["com".into()], ..section("one") };
-    let page = |sections: &[Section]| Written::of(&RunInfo::default(), &[], sections).section("method").to_owned();
+    let page = |sections: &[Section]| Written::of(&RunInfo::default(), &[], sections).section("method");
     let (with, without) = (page(&[one]), page(&[]));
     for words in ["<dt>Widget</dt><dd>a thing</dd>", "<dt>centre of mass</dt>"] {
         assert!(with.contains(words) && !without.contains(words), "{words}: {with}");

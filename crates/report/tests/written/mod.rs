@@ -43,9 +43,14 @@ impl Written {
         entries.map(|entry| entry.unwrap().path().file_stem().unwrap().to_str().unwrap().to_owned()).collect()
     }
 
-    /// A section's text.
-    pub fn section(&self, id: &str) -> &str {
-        let start = self.index.find(&format!("<section id=\"{id}\"")).unwrap_or_else(|| panic!("no section {id}"));
-        &self.index[start..start + self.index[start..].find("</section>").unwrap()]
+    /// A section's text, or that of a part: on its own page if it has one, else on the first.
+    pub fn section(&self, id: &str) -> String {
+        let own = fs::read_to_string(self.folder.path().join(format!("sections/{id}.html")));
+        let (page, opening) = match &own {
+            Ok(page) => (page, "<section".to_owned()),
+            Err(_) => (&self.index, format!("<section id=\"{id}\"")),
+        };
+        let start = page.find(&opening).unwrap_or_else(|| panic!("no section {id}"));
+        page[start..start + page[start..].find("</section>").unwrap()].to_owned()
     }
 }

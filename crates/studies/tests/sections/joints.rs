@@ -94,7 +94,7 @@ fn cells_tell_agreement_deviation_and_what_is_not_offered() {
 
     let section = written.section("joints");
     assert_eq!(section.matches("<button").count(), 8);
-    let sentence = |engine| sentence(section, engine);
+    let sentence = |engine| sentence(&section, engine);
     assert!(sentence("pinocchio").contains("at least +0.6 decades"), "{}", sentence("pinocchio"));
     assert!(sentence("pinocchio").contains("; deviates by known cause in inverse dynamics (3e-12); does not offer planar with armature."));
     assert!(sentence("mujoco").contains("; does not offer helical; offers in part free."), "{}", sentence("mujoco"));

@@ -29,12 +29,14 @@ pub(crate) fn sections<'a>(run: &RunInfo, rows: &'a [Row], overview: &Overview<'
     let best = best::summaries(overview, rows);
     let verdict = SpeedVerdict::of(overview, rows);
     let points = tradeoff::points(overview, rows, &times);
+    let (answer, part) = verdict.markup(overview).unzip();
     let mut sections = vec![Section {
         script: include_str!("time.js"),
         terms: if times.is_empty() { &[] } else { TERMS },
         lines: line::line(overview, rows, &speed).into_iter().chain(best::lines(&best)).collect(),
         style: include_str!("speed.css"),
-        answer: verdict.markup(overview),
+        answer,
+        parts: part.into_iter().collect(),
         figures: figures::figures(overview, rows, &verdict, &speed, &points),
         ..Section::new("time", "Time", time::markup(overview, &times, verdict.first_times(overview))).with_data(&times)
     }];

@@ -5,7 +5,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use featherbench_bench::{BATCH, OWN};
 use featherbench_report::numbers::{count, grouped, short};
-use featherbench_report::{Overview, TIMES, labels, opener};
+use featherbench_report::{Overview, Part, TIMES, labels, opener};
 use featherbench_results::{Row, Verdict};
 use maud::{Markup, html};
 
@@ -171,22 +171,28 @@ impl<'a> SpeedVerdict<'a> {
         })
     }
 
-    /// Writes the verdict; nothing without a time.
-    pub fn markup(&self, overview: &Overview) -> Option<Markup> {
+    /// Writes the verdict, and the table that it opens; nothing without a time.
+    pub fn markup(&self, overview: &Overview) -> Option<(Markup, Part)> {
         if self.lines.is_empty() {
             return None;
         }
-        Some(html! {
+        let part = Part {
+            name: "speed-by-robot",
+            title: "Times by robot and quantity",
+            body: html! { div.scroll.tall { (self.table(overview)) } },
+        };
+        let verdict = html! {
             div #speed-verdict {
                 h3 { "How fast" }
                 p { b { (self.headline()) } ". " (self.void_words()) " " a href="#time" { "More on times" } "." }
                 (self.heat(overview))
                 details {
                     summary { "By robot and quantity: our time, and each engine over it" }
-                    div.scroll.tall { (self.table(overview)) }
+                    (part.place())
                 }
             }
-        })
+        };
+        Some((verdict, part))
     }
 
     fn heat(&self, overview: &Overview) -> Markup {
