@@ -47,6 +47,29 @@ fn the_page_has_its_sections_and_stays_small() {
 }
 
 #[test]
+fn a_run_of_fifty_thousand_rows_has_a_small_first_page() {
+    let (run, rows) = made_up::large(50_000);
+    assert!(rows.len() >= 50_000);
+    let folder = tempfile::tempdir().unwrap();
+    let paths = featherbench_report::write(&run, &rows, &featherbench_studies::sections(&run, &rows), folder.path()).unwrap();
+    let page = fs::read_to_string(&paths.index).unwrap();
+    // A browser lays out so many in a fraction of a second.
+    assert!(made_up::nodes(&page) <= 3000, "{} nodes", made_up::nodes(&page));
+    let of_summary = paths.files.iter().filter(|path| !made_up::holds_rows(path.file_name().unwrap().to_str().unwrap()));
+    let bytes: u64 = of_summary.map(|path| fs::metadata(path).unwrap().len()).sum();
+    assert!(bytes <= 15 << 20, "{bytes} bytes without the rows");
+    // Nothing is lost: each row is in a chunk, and what is left out has a script and a page of its own.
+    let left_out: Vec<&str> = page.split("data-part=\"").skip(1).map(|rest| rest.split('"').next().unwrap()).collect();
+    assert!(left_out.contains(&"agreement") && left_out.contains(&"findings"), "{left_out:?}");
+    for name in left_out {
+        let own = fs::read_to_string(folder.path().join(format!("sections/{name}.html"))).unwrap();
+        assert!(page.contains(&format!("href=\"sections/{name}.html\"")) && own.contains("<base href=\"../index.html\">"), "{name}");
+        let script = fs::read_to_string(folder.path().join(format!("sections/{name}.js"))).unwrap();
+        assert!(script.starts_with(&format!("featherbench.chunk(\"part-{name}\",\"")), "{name}");
+    }
+}
+
+#[test]
 fn counts_on_the_page_are_those_of_the_records() {
     let (run, records, written) = demo();
     let count = |verdict| records.iter().filter(|row| row.verdict == verdict).count();

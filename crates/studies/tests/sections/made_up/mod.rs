@@ -210,6 +210,29 @@ pub fn rows(run: &RunInfo) -> Vec<Row> {
     rows
 }
 
+/// Whether a file of a report is raw data: rows as they are.
+pub fn holds_rows(name: &str) -> bool {
+    ["robot-", "study-", "unpassed.", "times."].iter().any(|start| name.starts_with(start)) && name.ends_with(".js")
+}
+
+/// Elements of a page: every opening tag makes one.
+pub fn nodes(page: &str) -> usize {
+    page.as_bytes().windows(2).filter(|pair| pair[0] == b'<' && pair[1].is_ascii_alphabetic()).count()
+}
+
+/// The run again and again with other robots, until it has at least this many rows.
+pub fn large(count: usize) -> (RunInfo, Vec<Row>) {
+    let mut run = run_info();
+    let (once, robots) = (rows(&run), run.robots.clone());
+    let mut all = once.clone();
+    for copy in (2..).take_while(|copy| (copy - 1) * once.len() < count) {
+        let renamed = |name: &str| if name.is_empty() { String::new() } else { format!("{name} {copy}") };
+        run.robots.extend(robots.iter().map(|robot| RobotInfo { name: renamed(&robot.name), ..robot.clone() }));
+        all.extend(once.iter().map(|row| Row { robot: renamed(&row.robot), ..row.clone() }));
+    }
+    (run, all)
+}
+
 fn agreement(run: &RunInfo, model: &RobotInfo, random: &mut Random, rows: &mut Vec<Row>) {
     for (engine, methods) in METHODS {
         let version = run.engines.iter().find(|info| info.name == engine).map(|info| info.version.clone()).unwrap_or_default();
