@@ -5,7 +5,7 @@
 use crate::shard::{Shard, hash_of};
 use crate::study::{Context, Finished, Study, by_robot};
 use crate::{Cell, HarnessError, Lost, NoAnswer, Outcome, OutcomeStore, Robot, provenance};
-use featherbench_results::{Row, RunInfo};
+use featherbench_results::{Dictionary, Row, RunInfo};
 use rayon::prelude::*;
 use std::collections::{BTreeMap, HashSet};
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -72,7 +72,7 @@ pub enum Opening {
 /// let gates = Gates::default();
 /// let context = Context { robots: &[], engines: &[], gates: &gates, seed: 1 };
 /// let rows = run.conduct(&[], &context, &|_| true, &Silent).unwrap();
-/// run.write(&rows).unwrap();
+/// run.write(&rows, &featherbench_results::Dictionary::default()).unwrap();
 /// assert_eq!(featherbench_results::read_run(&run.folder).unwrap().0.run, "first");
 /// ```
 #[derive(Debug)]
@@ -225,12 +225,12 @@ impl Run {
         Ok(rows)
     }
 
-    /// Writes rows, provenance and checksums into the folder.
+    /// Writes rows, what their names mean, provenance and checksums into the folder.
     ///
     /// # Errors
     /// When a file cannot be written, or a row holds a number that is not finite.
-    pub fn write(&self, rows: &[Row]) -> Result<(), HarnessError> {
-        Ok(featherbench_results::write_run_with(&self.folder, &self.info, rows, &self.files)?)
+    pub fn write(&self, rows: &[Row], dictionary: &Dictionary) -> Result<(), HarnessError> {
+        Ok(featherbench_results::write_run_with(&self.folder, &self.info, rows, dictionary, &self.files)?)
     }
 }
 

@@ -97,7 +97,7 @@ pub fn compare(root: &Root, args: &CompareArgs) -> Result<(), Fail> {
     let conditions = |robot| outcome::conditions(robot, &opened.engines, &records, args.strict);
     run.info.expected = robots.iter().flat_map(conditions).collect();
     run.info.seconds.insert("total".into(), start.elapsed().as_secs_f64());
-    run.write(&records)?;
+    run.write(&records, &featherbench_studies::dictionary(&records))?;
     let page = report::render(&folder, &run.info, &records)?;
     let info = &run.info;
     let unmet: Vec<_> = info.expected.iter().filter(|condition| condition.verdict != Verdict::Pass).collect();

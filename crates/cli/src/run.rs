@@ -91,7 +91,7 @@ impl Prepared {
         run.info.expected.extend(missing.into_iter().map(|engine| missing_engine(&engine.name, &engine.reason)));
         run.info.expected.extend(more);
         run.info.seconds.insert("total".into(), self.start.elapsed().as_secs_f64());
-        run.write(rows)?;
+        run.write(rows, &featherbench_studies::dictionary(rows))?;
         let page = report::render(&run.folder, &run.info, rows)?;
         report::conclude(&run.info, rows, &page, args.open)
     }

@@ -98,15 +98,17 @@ pub const COLUMNS: [Column; 33] = [
     ),
 ];
 
-/// The text of `schema.json`: format, and every column with type, unit, words and meaning.
-pub fn schema_json() -> String {
+/// The text of `schema.json`: format, every column with type, unit, words and meaning, and the meaning of the names in rows.
+pub fn schema_json(dictionary: &crate::Dictionary) -> String {
     #[derive(Serialize)]
-    struct Schema {
+    struct Schema<'a> {
         format: u32,
         file: &'static str,
         columns: &'static [Column],
+        #[serde(flatten)]
+        dictionary: &'a crate::Dictionary,
     }
-    let schema = Schema { format: crate::RUN_FORMAT, file: crate::CSV_NAME, columns: &COLUMNS };
+    let schema = Schema { format: crate::RUN_FORMAT, file: crate::CSV_NAME, columns: &COLUMNS, dictionary };
     let mut text = serde_json::to_string_pretty(&schema).unwrap_or_default();
     text.push('\n');
     text

@@ -5,7 +5,7 @@ use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicU64, Ordering};
 
-use crate::{COLUMNS, Checksums, ColumnType, ResultsError, Row, RunInfo, schema_json};
+use crate::{COLUMNS, Checksums, ColumnType, Dictionary, ResultsError, Row, RunInfo, schema_json};
 
 /// Name of the rows' file in a run's folder.
 pub const CSV_NAME: &str = "rows.csv";
@@ -159,16 +159,16 @@ pub fn parse_csv(text: &str, path: &Path) -> Result<Vec<Row>, ResultsError> {
 /// # Errors
 /// [`ResultsError`]; the folder then has no valid checksums of the earlier files.
 pub fn write_run(folder: &Path, run: &RunInfo, records: &[Row]) -> Result<(), ResultsError> {
-    write_run_with(folder, run, records, &[])
+    write_run_with(folder, run, records, &Dictionary::default(), &[])
 }
 
-/// The same, with the checksums of further files of the run that are in the folder already.
+/// The same, with what the names in the rows mean, and with the checksums of further files of the run that are in the folder already.
 ///
 /// # Errors
 /// As [`write_run`].
-pub fn write_run_with(folder: &Path, run: &RunInfo, records: &[Row], more: &[&str]) -> Result<(), ResultsError> {
+pub fn write_run_with(folder: &Path, run: &RunInfo, records: &[Row], dictionary: &Dictionary, more: &[&str]) -> Result<(), ResultsError> {
     write_csv(&folder.join(CSV_NAME), records)?;
-    atomic_write(&folder.join(SCHEMA_NAME), schema_json().as_bytes())?;
+    atomic_write(&folder.join(SCHEMA_NAME), schema_json(dictionary).as_bytes())?;
     RunInfo { rows: records.len() as u64, ..run.clone() }.write(&folder.join(RUN_NAME))?;
     Checksums::of(folder, &[&[CSV_NAME, SCHEMA_NAME, RUN_NAME], more].concat())?.write()
 }

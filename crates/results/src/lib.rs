@@ -16,6 +16,7 @@
 
 mod checksum;
 mod columns;
+mod dictionary;
 mod diff;
 mod error;
 mod file;
@@ -30,10 +31,11 @@ mod severity;
 
 pub use checksum::{CHECKSUMS_NAME, Checksums, checksum, checksum_of, seal, unsealed};
 pub use columns::{COLUMNS, Column, ColumnType, schema_json};
+pub use dictionary::{Dictionary, Named, Term};
 pub use diff::{Change, Changed, Diff, ERROR_FACTOR, ERROR_FLOOR, TIME_NOISE, diff};
 pub use error::ResultsError;
 pub use file::{
-    CSV_NAME, RUN_NAME, SCHEMA_NAME, atomic_write, atomic_write_with, parse_csv, read_csv, read_run, to_csv, write_csv, write_run,
+    CSV_NAME, RATIO, RUN_NAME, SCHEMA_NAME, atomic_write, atomic_write_with, parse_csv, read_csv, read_run, to_csv, write_csv, write_run,
     write_run_with,
 };
 pub use names::{Kind, Relation, Verdict};

@@ -13,7 +13,8 @@ fn write(folder: &Path) {
     let row = |value| Row { engine: "mujoco".into(), nv: Some(7), unit: "1".into(), ..Row::default() }.gated(value, Relation::Le, 1e-14);
     fs::write(folder.join("samples.csv"), "1,2,3\n").unwrap();
     let run = RunInfo { suite: "smoke".into(), seed: 7, ..RunInfo::default() };
-    write_run_with(folder, &run, &[row(1e-16), row(2.5e-15), row(1e-13)], &["samples.csv"]).unwrap();
+    write_run_with(folder, &run, &[row(1e-16), row(2.5e-15), row(1e-13)], &featherbench_results::Dictionary::default(), &["samples.csv"])
+        .unwrap();
 }
 
 #[test]

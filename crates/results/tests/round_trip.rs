@@ -127,7 +127,7 @@ fn struct_header_and_schema_agree() {
     let by_writer = String::from_utf8(to_csv(&[], Path::new("x")).unwrap()).unwrap();
     assert_eq!(by_writer, names.join(",") + "\n");
 
-    let schema: serde_json::Value = serde_json::from_str(&schema_json()).unwrap();
+    let schema: serde_json::Value = serde_json::from_str(&schema_json(&featherbench_results::Dictionary::default())).unwrap();
     let columns = schema["columns"].as_array().unwrap();
     assert_eq!(schema["file"], CSV_NAME);
     let row = serde_json::to_value(Row {
@@ -305,7 +305,10 @@ fn a_run_survives_its_folder() {
     let (run, read) = read_run(&folder.path().join("new/run")).unwrap();
     assert_eq!(run, run_info());
     assert_eq!(read, rows);
-    assert_eq!(fs::read_to_string(folder.path().join("new/run").join(SCHEMA_NAME)).unwrap(), schema_json());
+    assert_eq!(
+        fs::read_to_string(folder.path().join("new/run").join(SCHEMA_NAME)).unwrap(),
+        schema_json(&featherbench_results::Dictionary::default())
+    );
 }
 
 #[test]

@@ -30,6 +30,7 @@ mod contact;
 mod contact_timing;
 mod continuum;
 mod derivatives;
+mod dictionary;
 mod figures;
 mod growth;
 mod identification;
@@ -53,6 +54,7 @@ pub use agreement::Agreement;
 pub use conditioning::Conditioning;
 pub use contact_timing::ContactTiming;
 pub use derivatives::Derivatives;
+pub use dictionary::dictionary;
 pub use figures::FIGURES;
 pub use growth::{Growth, Settings as GrowthSettings};
 pub use import::Import;
@@ -78,35 +80,57 @@ struct Entry {
     make: fn(&Setup) -> Made,
     /// Its sections of the report of a run.
     sections: fn(&RunInfo, &[Row], &Overview) -> Vec<Section>,
+    /// What its names in rows mean.
+    words: dictionary::Words,
 }
 
 /// Every study, in the order of a run and of its report. Those that run alone come after all others; timing is the last, as it needs a quiet
 /// machine.
 const STUDIES: &[Entry] = &[
-    Entry { name: "agreement", make: agreement::of_suite, sections: agreement::section::sections },
-    Entry { name: "import", make: import::of_suite, sections: import::section::sections },
-    Entry { name: "accuracy", make: accuracy::of_suite, sections: accuracy::section::sections },
-    Entry { name: "conditioning", make: conditioning::of_suite, sections: conditioning::section::sections },
-    Entry { name: "derivatives", make: derivatives::of_suite, sections: derivatives::section::sections },
-    Entry { name: "contact", make: contact::of_suite, sections: contact::section::sections },
-    Entry { name: "continuum", make: continuum::of_suite, sections: continuum::section::sections },
-    Entry { name: "scenes", make: scenes::of_suite, sections: scenes::section::sections },
+    Entry { name: "agreement", make: agreement::of_suite, sections: agreement::section::sections, words: agreement::words::WORDS },
+    Entry { name: "import", make: import::of_suite, sections: import::section::sections, words: import::words::WORDS },
+    Entry { name: "accuracy", make: accuracy::of_suite, sections: accuracy::section::sections, words: accuracy::words::WORDS },
+    Entry {
+        name: "conditioning",
+        make: conditioning::of_suite,
+        sections: conditioning::section::sections,
+        words: conditioning::words::WORDS,
+    },
+    Entry { name: "derivatives", make: derivatives::of_suite, sections: derivatives::section::sections, words: derivatives::words::WORDS },
+    Entry { name: "contact", make: contact::of_suite, sections: contact::section::sections, words: contact::words::WORDS },
+    Entry { name: "continuum", make: continuum::of_suite, sections: continuum::section::sections, words: continuum::words::WORDS },
+    Entry { name: "scenes", make: scenes::of_suite, sections: scenes::section::sections, words: scenes::words::WORDS },
     // Its rows are in the verdict and in the tables of rows.
-    Entry { name: "relaxation", make: relaxation::of_suite, sections: no_section },
-    Entry { name: "identification", make: identification::of_suite, sections: identification::section::sections },
-    Entry { name: "residuals", make: residuals::of_suite, sections: residuals::section::sections },
-    Entry { name: "lesson", make: lesson::of_suite, sections: lesson::section::sections },
-    Entry { name: "uncertainty", make: uncertainty::of_suite, sections: uncertainty::section::sections },
-    Entry { name: "steps", make: steps::of_suite, sections: steps::section::sections },
-    Entry { name: "operations", make: operations::of_suite, sections: no_section },
-    Entry { name: "scaling", make: scaling::of_suite, sections: scaling::section::sections },
-    Entry { name: "reproductions", make: reproductions::of_suite, sections: reproductions::section::sections },
-    Entry { name: "repeatability", make: repeatability::of_suite, sections: no_section },
+    Entry { name: "relaxation", make: relaxation::of_suite, sections: no_section, words: relaxation::words::WORDS },
+    Entry {
+        name: "identification",
+        make: identification::of_suite,
+        sections: identification::section::sections,
+        words: identification::words::WORDS,
+    },
+    Entry { name: "residuals", make: residuals::of_suite, sections: residuals::section::sections, words: residuals::words::WORDS },
+    Entry { name: "lesson", make: lesson::of_suite, sections: lesson::section::sections, words: lesson::words::WORDS },
+    Entry { name: "uncertainty", make: uncertainty::of_suite, sections: uncertainty::section::sections, words: uncertainty::words::WORDS },
+    Entry { name: "steps", make: steps::of_suite, sections: steps::section::sections, words: steps::words::WORDS },
+    Entry { name: "operations", make: operations::of_suite, sections: no_section, words: operations::words::WORDS },
+    Entry { name: "scaling", make: scaling::of_suite, sections: scaling::section::sections, words: scaling::words::WORDS },
+    Entry {
+        name: "reproductions",
+        make: reproductions::of_suite,
+        sections: reproductions::section::sections,
+        words: reproductions::words::WORDS,
+    },
+    Entry { name: "repeatability", make: repeatability::of_suite, sections: no_section, words: repeatability::words::WORDS },
     // Its rows are in the section of the study `scaling`.
-    Entry { name: "growth", make: growth::of_suite, sections: no_section },
-    Entry { name: "loops", make: loops::of_suite, sections: loops::section::sections },
-    Entry { name: "contact_timing", make: contact_timing::of_suite, sections: contact_timing::section::sections },
-    Entry { name: "timing", make: timing::of_suite, sections: timing::section::sections },
+    Entry { name: "growth", make: growth::of_suite, sections: no_section, words: growth::words::WORDS },
+    Entry { name: "loops", make: loops::of_suite, sections: loops::section::sections, words: loops::words::WORDS },
+    Entry {
+        name: "contact_timing",
+        make: contact_timing::of_suite,
+        sections: contact_timing::section::sections,
+        words: contact_timing::words::WORDS,
+    },
+    Entry { name: "timing", make: timing::of_suite, sections: timing::section::sections, words: timing::words::WORDS },
 ];
 
 /// The rows of some studies are in the verdict and in the tables of rows alone.

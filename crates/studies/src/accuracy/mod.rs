@@ -10,6 +10,7 @@
 //! the number of engines that are limited by the reference (`limited_by_the_reference`).
 
 pub(crate) mod section;
+pub(crate) mod words;
 
 use crate::{Made, Setup, row};
 use featherbench_bench::measure::{ForwardScale, scaled_error};

@@ -5,6 +5,7 @@
 
 mod over_best;
 pub(crate) mod section;
+pub(crate) mod words;
 
 use crate::{Made, Setup, row};
 use featherbench_bench::measure::{ForwardScale, Magnitudes, scaled_error, worst};

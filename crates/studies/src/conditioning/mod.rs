@@ -8,6 +8,7 @@
 
 mod floating_base;
 pub(crate) mod section;
+pub(crate) mod words;
 
 use crate::{Made, Setup, row};
 use featherbench_bench::truth::conditioning_bound;

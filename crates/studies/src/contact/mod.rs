@@ -27,6 +27,7 @@ pub(crate) mod section;
 pub(crate) mod standing;
 #[cfg(test)]
 mod tests;
+pub(crate) mod words;
 
 use crate::known::{Case, KnownAnswers, Number, count, error, failed, larger, largest, told};
 use crate::{Made, Setup};

@@ -171,3 +171,4 @@ impl Study for ContactTiming {
 
 #[cfg(test)]
 mod tests;
+pub(crate) mod words;

@@ -20,6 +20,7 @@ mod statics;
 #[cfg(test)]
 mod tests;
 mod vibrations;
+pub(crate) mod words;
 
 use crate::known::{Case, KnownAnswers, Number, count, error, failed, largest, told};
 use crate::{Made, Setup};

@@ -11,6 +11,7 @@
 //! An engine without a quantity has a row that says so.
 
 pub(crate) mod section;
+pub(crate) mod words;
 
 use crate::{Made, Setup, row};
 use featherbench_bench::measure::{ForwardScale, ratio, scaled_error, worst};

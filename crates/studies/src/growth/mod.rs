@@ -27,6 +27,7 @@ mod line;
 mod own;
 mod rows;
 mod slope;
+pub(crate) mod words;
 
 use crate::scaling::{relative_error, truth};
 use crate::{Made, Setup};

@@ -14,6 +14,7 @@ pub(crate) mod section;
 #[cfg(test)]
 mod tests;
 mod witness;
+pub(crate) mod words;
 
 use crate::known::{Case, KnownAnswers, Number, count, error, failed, largest, told};
 use crate::{Made, Setup};

@@ -22,6 +22,7 @@ mod replay;
 mod rows;
 pub(crate) mod section;
 mod subtree;
+pub(crate) mod words;
 
 pub use answers::{Answer, Largest, Loads, answers, repairs};
 pub use comparison::{Comparison, Finding};

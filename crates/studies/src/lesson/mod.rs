@@ -9,6 +9,7 @@ mod pipeline;
 pub(crate) mod section;
 #[cfg(test)]
 mod tests;
+pub(crate) mod words;
 
 use crate::known::{Case, KnownAnswers, error, failed, told};
 use crate::{Made, Setup};
@@ -17,7 +18,7 @@ use featherbench_lesson::{Claim, Number, claims};
 use serde_json::json;
 
 /// The study's name in rows.
-const STUDY: &str = "lesson";
+pub(crate) const STUDY: &str = "lesson";
 
 /// The method that is right.
 const CORRECTED: &str = "corrected";

@@ -26,6 +26,7 @@ pub(crate) mod section;
 mod systems;
 #[cfg(test)]
 mod tests;
+pub(crate) mod words;
 
 use crate::{Made, Setup};
 use ask::{Asked, Truths};

@@ -8,6 +8,8 @@
 //! The depths are computed here from the description, without the topology of the kernels. The operations are counted by running the
 //! kernels on a scalar that counts.
 
+pub(crate) mod words;
+
 use crate::{Made, Setup, row};
 use featherbench_bench::{Cell, Context, Finished, NoAnswer, NoSettings, Outcome, Quantity, Robot, Study};
 use featherbench_dynamics::{Crba, Ltdl, TreeSparse};

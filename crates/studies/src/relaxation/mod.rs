@@ -7,6 +7,8 @@
 //! A problem is given free of units and of μ: with D = diag(1, μ₁, μ₂) of each contact, x = D⁻¹λ has the cone x_n ≥ |x_t|, G' = D G D and
 //! b' = D b. Rows that a contact does not have are zero.
 
+pub(crate) mod words;
+
 use crate::contact::standing::Stand;
 use crate::known::{failed, largest};
 use crate::{Made, Setup};

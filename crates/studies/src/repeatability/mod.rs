@@ -6,6 +6,8 @@
 //! deviation excuses it. The causes may be random numbers, memory that was not initialised, or sums over threads in any order.
 //! Recorded answers cannot be asked twice: their engine is asked when it is recorded.
 
+pub(crate) mod words;
+
 use crate::agreement::{self, QUANTITIES};
 use crate::{Made, Setup, asked, row};
 use featherbench_bench::{Cell, Context, Engine, Finished, NoAnswer, NoSettings, Outcome, Quantity, Robot, Study, hash};

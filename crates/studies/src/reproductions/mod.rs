@@ -5,6 +5,7 @@
 //! So a deviation that its engine has corrected fails the gate, and so does one that has grown. Then the list must be corrected.
 
 pub(crate) mod section;
+pub(crate) mod words;
 
 use crate::{Made, Setup};
 use featherbench_bench::{Cell, Context, Finished, NoAnswer, NoSettings, Outcome, Reproduction, Robot, SEEDS, SLACK, Study};

@@ -19,6 +19,7 @@ mod power;
 pub(crate) mod section;
 #[cfg(test)]
 mod tests;
+pub(crate) mod words;
 
 use crate::known::{Case, KnownAnswers, Number, count, error, failed, largest, told};
 use crate::{Made, Setup};

@@ -22,6 +22,7 @@ mod parallel;
 mod rows;
 pub(crate) mod section;
 mod tree;
+pub(crate) mod words;
 mod work;
 
 pub(crate) use dynamics::{relative_error, truth};

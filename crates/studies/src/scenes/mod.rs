@@ -17,6 +17,7 @@ mod rows;
 pub(crate) mod section;
 #[cfg(test)]
 mod tests;
+pub(crate) mod words;
 
 use crate::{Made, Setup};
 use featherbench_bench::{Cell, Context, Finished, Identity, NoAnswer, Outcome, Robot, Study, hash};

@@ -14,6 +14,7 @@
 //! names the regime of its step, and an order is fitted over implicit steps alone.
 
 pub(crate) mod section;
+pub(crate) mod words;
 
 use crate::{Made, Setup, row};
 use featherbench_bench::measure::{ForwardScale, scaled_error, worst};

@@ -23,6 +23,7 @@ pub(crate) mod rows;
 pub(crate) mod samples;
 pub(crate) mod section;
 pub(crate) mod statistics;
+pub(crate) mod words;
 
 use crate::{Made, Setup};
 use featherbench_bench::{Cell, Context, Engine, Finished, HarnessError, NoAnswer, Outcome, Quantity, Robot, Study};

@@ -16,6 +16,7 @@ pub(crate) mod section;
 #[cfg(test)]
 mod tests;
 mod torques;
+pub(crate) mod words;
 
 use crate::known::{Case, KnownAnswers, count, error, failed, largest, told};
 use crate::{Made, Setup};
