@@ -7,7 +7,7 @@
 use featherbench_bench::run::{Opening, Run, Silent};
 use featherbench_bench::shard::{Costs, Merge, Part, Plan, Shard, ShardFile};
 use featherbench_bench::{Cell, Context, Finished, Gates, NoAnswer, OUTCOMES_NAME, Outcome, Robot, Study, provenance};
-use featherbench_results::{ModelOrigin, Relation, Row, RunInfo, Verdict, checksum_of};
+use featherbench_results::{Dictionary, ModelOrigin, Relation, Row, RunInfo, Verdict, checksum_of};
 use featherbench_robots::{Family, Random};
 use std::error::Error;
 use std::path::{Path, PathBuf};
@@ -113,7 +113,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let mut run = Run::open(&root.join("merged"), Opening::New, RunInfo::default())?;
     merge.write(&plan, &run.folder)?;
     let rows = run.assemble(&studies, &context, &|_| true)?;
-    run.write(&rows)?;
+    run.write(&rows, &Dictionary::default())?;
     let size = std::fs::metadata(run.folder.join(featherbench_results::CSV_NAME))?.len();
     println!("{} rows, {size} bytes, merged in {:.1} s, peak {} MiB", rows.len(), start.elapsed().as_secs_f64(), peak());
     std::fs::remove_dir_all(root)?;
