@@ -17,6 +17,7 @@ mod comparison;
 mod context;
 mod difference;
 mod fields;
+mod opening;
 mod pairs;
 mod replay;
 mod rows;

@@ -1,5 +1,6 @@
 //! Section: the engines' imports of the robots' own files, as a matrix of robots and engines, and the number of differences by cause.
 
+use super::opening::opening;
 use std::collections::BTreeMap;
 
 use featherbench_report::numbers::{count, larger, short};
@@ -84,7 +85,9 @@ pub(crate) fn sections<'a>(_: &RunInfo, rows: &'a [Row], overview: &Overview<'a>
         return Vec::new();
     }
     let (script, style) = (include_str!("section.js"), include_str!("section.css"));
-    vec![Section { script, style, ..Section::new("import", "Imports", body(overview, &imports)) }]
+    let (answer, part) = opening(rows);
+    let parts = part.into_iter().collect();
+    vec![Section { script, style, answer: Some(answer), parts, ..Section::new("import", "Imports", body(overview, &imports)) }]
 }
 
 fn body(overview: &Overview, imports: &Imports) -> Markup {

@@ -26,7 +26,7 @@ fn rows(run: &RunInfo) -> Vec<Row> {
         row("one", "pinocchio", "id", "as_read", "{}").informed(1e-15),
         row("one", "pinocchio", "import", "unexplained", "{}").gated(0.0, Relation::Le, 0.0),
         row("one", "mujoco", "import", "differences", "{}").informed(1.0),
-        row("one", "mujoco", "inertia", "difference", edited).informed(0.5),
+        Row { body: "arm".into(), ..row("one", "mujoco", "inertia", "difference", edited).informed(0.5) },
         row("one", "mujoco", "id", "as_read", "{}").informed(0.25),
         row("one", "drake", "import", "differences", "{}").without_value(Verdict::Error, "no <such> joint"),
         // A long chain; the study's bound for rounding depends on its depth.
@@ -57,6 +57,45 @@ fn each_import_has_its_cell_and_each_cause_its_count() {
     assert!(cell("two", "drake").contains("class=\"unexplained\">?"), "{}", cell("two", "drake"));
     assert!(section.contains("impossible principal moments were made equal"));
     assert!(written.index.contains("href=\"#import\""));
+}
+
+#[test]
+fn the_first_page_says_what_each_engine_loads_and_what_to_do() {
+    let run = made_up::run_info();
+    let written = report(&run, &rows(&run));
+    let opening = written.index.split("id=\"import-opening\"").nth(1).expect("the answers are on the first page");
+    assert!(opening.contains("<b>2 of 5 readings</b>"), "pinocchio takes both robots as they are");
+    let lines: Vec<Vec<String>> =
+        opening.split("<tbody>").nth(1).unwrap().split("</tbody>").next().unwrap().split("<tr>").skip(1).map(cells).collect();
+    let due = [
+        ["one", "drake", "no", "–", "–", "correct what its parser names: no &lt;such&gt; joint"],
+        ["one", "mujoco", "yes", "no", "arm: inertia by 0.20", "write an inertia of 'arm' that a body can have"],
+    ];
+    assert_eq!(lines.len(), 5);
+    for (line, due) in lines.iter().zip(due) {
+        assert_eq!(line[..], due, "{lines:?}");
+    }
+    assert!(lines[2][3] == "no" && lines[2][5].starts_with("do not trust its answers on this file"), "{:?}", lines[2]);
+    assert!(lines[3..].iter().all(|line| line[2..] == ["yes", "yes", "–", "nothing"]), "{lines:?}");
+}
+
+/// The texts of a line's cells.
+fn cells(line: &str) -> Vec<String> {
+    let inner = |cell: &str| cell.split('>').nth(1).unwrap_or_default().split('<').next().unwrap_or_default().to_owned();
+    line.split("<t").skip(1).map(inner).collect()
+}
+
+#[test]
+fn many_readings_are_a_part_of_their_own() {
+    let run = made_up::run_info();
+    let one = rows(&run);
+    let many: Vec<Row> =
+        (0..5).flat_map(|k| one.iter().map(move |row| Row { robot: format!("{}{k}", row.robot), ..row.clone() })).collect();
+    let written = report(&run, &many);
+    let opening = written.index.split("id=\"import-opening\"").nth(1).unwrap();
+    assert!(
+        opening.contains("10 of 25 readings") && opening.contains("13 more readings") && opening.contains("sections/import-answers.html")
+    );
 }
 
 #[test]
