@@ -1,19 +1,23 @@
 #!/usr/bin/env python3
 """Opens a report in Chromium from a file:// address and uses it as a reader would.
 
-    python ci/browser_test.py REPORT_DIR [--shots FOLDER]
+    python ci/browser_test.py REPORT_DIR [--shots FOLDER] [--only axe]
 
-Needs chromium and chromedriver on the path, and no Python package: chromedriver is asked by JSON over local HTTP.
+Needs chromium and chromedriver on the path, and no Python package: chromedriver is asked by JSON over local HTTP. The rules of accessibility
+are those of axe-core, which npm brings once, at a pinned version and checksum, into target/axe.
 Prints each check and `N passed, N failed`. Exit status: 0 if all passed, 1 if one failed, 2 if the browser could not be started.
 """
 
 from __future__ import annotations
 
 import argparse
+import itertools
 import pathlib
+import subprocess
 import sys
 import tempfile
 
+from browser.axe import accessible
 from browser.client import Browser
 from browser.sections import checks
 
@@ -22,6 +26,7 @@ def main() -> int:
     """Run the checks."""
     parser = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
     parser.add_argument("report", type=pathlib.Path, help="folder that holds index.html")
+    parser.add_argument("--only", choices=["axe", "use"], help="the rules of accessibility alone, or all but them")
     parser.add_argument("--shots", type=pathlib.Path, help="folder for screenshots")
     arguments = parser.parse_args()
     index = (arguments.report / "index.html").resolve()
@@ -38,10 +43,12 @@ def main() -> int:
             print(f"the browser could not be started: {error}", file=sys.stderr)
             return 2
         try:
-            for what, good, seen in checks(page, index.as_uri(), arguments.shots):
+            used = () if arguments.only == "axe" else checks(page, index.as_uri(), arguments.shots)
+            ruled = () if arguments.only == "use" else accessible(page, arguments.report)
+            for what, good, seen in itertools.chain(used, ruled):
                 print(f"{'ok  ' if good else 'FAIL'} {what}" + ("" if good else f": {seen}"))
                 passed, failed = passed + bool(good), failed + (not good)
-        except (OSError, RuntimeError) as error:
+        except (OSError, RuntimeError, subprocess.SubprocessError) as error:
             print(f"FAIL the test was cut short: {error}")
             failed += 1
         finally:

@@ -5,6 +5,12 @@ from __future__ import annotations
 from browser.client import ARROW_DOWN, ARROW_RIGHT, ENTER, ESCAPE, Browser
 from browser.page import CLOSED, DRAWN, FOCUS, ROWS, Checks, Shot, open_whole
 
+FOLLOWING = 4  # what compareDocumentPosition says of an element behind another
+DISTINCT = """
+    const heads = [...document.querySelectorAll('#rows-table th')].map(head => head.textContent);
+    const table = [...document.querySelectorAll('#rows-table tbody tr')];
+    return arguments[0].map(name => [...new Set(table.map(row => row.cells[heads.indexOf(name)].textContent))])"""
+
 
 def heatmap(page: Browser, shot: Shot) -> Checks:
     """Check the heatmap of margins, and the rows that a cell opens."""
@@ -16,8 +22,19 @@ def heatmap(page: Browser, shot: Shot) -> Checks:
         const heads = [...document.querySelectorAll('#rows-table th')].map(head => head.textContent);
         const column = heads.indexOf('engine');
         const engines = [...document.querySelectorAll('#rows-table tbody tr')].map(row => row.cells[column].textContent);
-        return [[...new Set(engines)], document.querySelector('#heat th.engine').textContent]""")
+        return [[...new Set(engines)], document.querySelector('#heat th.engine').title]""")
     yield "they are that engine's rows alone", seen[0] == [seen[1]], seen
+    about = page.run("""
+        const heads = [...document.querySelectorAll('#rows-about dt')].map(head => head.textContent);
+        const words = [...document.querySelectorAll('#rows-about dd')].map(words => words.textContent);
+        return [heads, words, document.querySelector('#rows-about').compareDocumentPosition(document.querySelector('#rows-table'))]""")
+    due = ["robot", "engine", "quantity", "reference", "worst", "level", "repeat it"]
+    named = [head for head in about[0] if head in due]
+    yield (
+        "the rows begin with what the cell is about, and with the command that repeats it",
+        named == due and all(about[1]) and "--filter" in about[1][-1] and about[2] == FOLLOWING,
+        about,
+    )
     shot("rows")
     first = page.run("return document.querySelector('#rows-table tbody').textContent")
     head = "[...document.querySelectorAll('#rows-table th button')].find(button => button.textContent === 'value')"
@@ -48,18 +65,41 @@ def heatmap(page: Browser, shot: Shot) -> Checks:
     yield "Enter opens the focused cell", page.until(ROWS) > 0, ""
     page.press(ESCAPE)
 
-    engine = page.run("return document.querySelector('#heat-engine').options[1].value")
-    page.choose("#heat-engine", engine)
-    shown = page.run("return [...document.querySelectorAll('#heat th.engine')].filter(head => !head.hidden).length")
-    yield "one engine can be chosen", shown == 1, shown
-    shot("engine")
-    page.choose("#heat-engine", "")
+    first = "[...document.querySelector('#heat').tBodies].find(body => body.rows.length > 0).rows"
+    names = f"return [...{first}].filter(row => row.dataset.m).map(row => row.cells[0].firstChild.textContent)"
+    given = page.run(names)
+    page.choose("#heat-sort", "worst")
+    ranks = page.run(f"return [...{first}].map(row => Number(row.dataset.worst))")
+    yield "the robots can be sorted from the worst", len(ranks) > 0 and ranks == sorted(ranks), ranks[:9]
+    page.choose("#heat-sort", "")
+    yield "and stand in their order again", page.run(names) == given, given[:3]
+    page.click("#heat-trouble")
+    seen = page.run(f"""
+        const shown = [...document.querySelectorAll('#heat tr[data-m]')].filter(row => !row.hidden);
+        return shown.every(row => [...row.querySelectorAll('td button')].some(button => !/^p\\d/.test(button.className)))""")
+    yield "only robots with trouble can be shown", seen, ""
+    page.click("#heat-trouble")
     page.run(
         "const box = document.querySelector('#heat-filter'); box.value = 'no model has this name'; box.dispatchEvent(new Event('input'))"
     )
     shown = page.run("return [...document.querySelectorAll('#heat tr[data-m]')].filter(row => !row.hidden).length")
     yield "the filter hides models", shown == 0, shown
     page.run("const box = document.querySelector('#heat-filter'); box.value = ''; box.dispatchEvent(new Event('input'))")
+
+    engine = page.run("return document.querySelector('#heat th.engine').title")
+    page.click("#heat th.engine")
+    table = page.until("return document.querySelector('.heat-of:not([hidden]) table.map')?.id ?? ''")
+    heads = page.run("return [...document.querySelectorAll(`#${arguments[0]} th.engine`)].map(head => head.title)", table)
+    hidden = page.run("return document.querySelector('#heat-whole').hidden")
+    yield "the head of an engine opens its quantities", hidden and len(heads) > 1, [engine, heads]
+    shot("engine")
+    page.click(f"#{table} td button")
+    rows = page.until(ROWS)
+    seen = page.run(DISTINCT, ["engine", "quantity", "robot"])
+    yield "a cell of an engine's quantities opens its rows alone", rows > 0 and seen[0] == [engine] and all(len(part) == 1 for part in seen), seen
+    page.press(ESCAPE)
+    page.choose("#heat-engine", "")
+    yield "the worst of each engine comes back", page.run("return !document.querySelector('#heat-whole').hidden"), ""
 
 
 def joints(page: Browser, shot: Shot) -> Checks:

@@ -31,7 +31,7 @@
 
   // Makes a table a grid. `about(button)` is the tip's lines, `open(button)` what a click does. Rows with data-m can be walked.
   featherbench.grid = (table, about, open) => {
-    const rows = [...table.querySelectorAll("tr[data-m]")];
+    const found = () => [...table.querySelectorAll("tr[data-m]")];
 
     // One button at a time is reached with Tab; the arrows go to the next one in their direction that is there and shown.
     function focusable(button) {
@@ -40,7 +40,7 @@
     }
 
     function step(button, down, right) {
-      const shown = rows.filter((row) => !row.hidden);
+      const shown = found().filter((row) => !row.hidden);
       let row = shown.indexOf(button.closest("tr"));
       let column = button.parentElement.cellIndex;
       for (;;) {
@@ -81,6 +81,8 @@
     // vanishes takes the way in with it: the first button that is shown becomes the one that Tab reaches.
     function filter(column, row) {
       let count = 0;
+      const rows = found();
+      const what = table.dataset.of ?? "robot";
       for (const line of rows) {
         for (const cell of line.cells) if (cell.tagName !== "TH") cell.hidden = !column(cell.cellIndex - 1);
         line.hidden = !row(line);
@@ -92,7 +94,8 @@
         const first = [...table.querySelectorAll("td button")].find((button) => !button.closest("[hidden]"));
         if (first) focusable(first);
       }
-      return count === rows.length ? `${count} robots` : `${count} of ${rows.length} robots`;
+      const noun = rows.length === 1 ? what : what.replace(/y$/, "ie") + "s";
+      return count === rows.length ? `${count} ${noun}` : `${count} of ${rows.length} ${noun}`;
     }
     return { filter };
   };

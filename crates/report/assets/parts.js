@@ -80,5 +80,6 @@
   });
 
   featherbench.section = (anchor, script) => scripts.set(anchor, script);
+  featherbench.bring = bring;
   featherbench.everything = everything;
 })();

@@ -1,6 +1,6 @@
 // The rows behind whatever was clicked: a dialog with filters and a table that sorts.
 (() => {
-  const { byId, load, make, short, decades, glyphs, ready } = featherbench;
+  const { byId, chunks, load, make, short, decades, glyphs, ready } = featherbench;
   const FILTERS = ["study", "engine", "quantity", "states", "body", "cache", "method", "metric", "reference", "verdict"];
   const BRIEF = ["verdict", "robot", "engine", "method", "precision", "quantity", "states", "body", "cache", "metric", "value", "relation", "bound", "margin", "reference", "reason"];
   const RELATIONS = { le: "≤", ge: "≥", eq: "=", within: "|·| ≤" };
@@ -20,6 +20,7 @@
     const dialog = byId("rows");
     byId("rows-title").textContent = title || "Rows";
     byId("rows-count").textContent = "Loading…";
+    byId("rows-about").replaceChildren();
     byId("rows-filters").replaceChildren();
     byId("rows-table").replaceChildren();
     if (!dialog.open) dialog.showModal();
@@ -39,6 +40,43 @@
       if (value !== "" && row[at(column)] !== value) return false;
     }
     return state.text === "" || row.some((field) => field !== null && String(field).toLowerCase().includes(state.text));
+  }
+
+  // What the shown rows are about, before the rows themselves: robot, engine, quantity and reference, the worst error and its level, and the
+  // command that repeats it.
+  const GRAVITY = ["fail", "error", "deviation", "pass", "skip", "info"];
+  function drawAbout(rows) {
+    const { pages, engines, robots, studies, titles } = chunks.get("overview");
+    const list = byId("rows-about");
+    list.replaceChildren();
+    if (rows.length === 0) return;
+    const add = (name, ...content) => list.append(make("dt", {}, name), make("dd", {}, ...content));
+    const link = (kind, names) => (value) => { const page = pages[kind][names.indexOf(value)]; return page ? make("a", { href: page }, value) : value; };
+    const kinds = [
+      ["robot", "robot", link("robots", robots.map(({ name }) => name))], ["engine", "engine", link("engines", engines)],
+      ["quantity", "quantity", (value) => titles[value] ?? value], ["reference", "reference", (value) => value], ["study", "study", link("studies", studies)],
+    ];
+    for (const [name, column, text] of kinds) {
+      const values = [...new Set(rows.map((row) => row[at(column)]))].filter((value) => value !== "" && value !== null);
+      if (values.length === 1) add(name, text(values[0]));
+      else if (values.length > 1) add(name, `${values.length}: ${values.slice(0, 8).map((value) => (column === "quantity" ? titles[value] ?? value : value)).join(", ")}${values.length > 8 ? ", …" : ""}`);
+    }
+    const far = (row) => row[at("margin")] ?? (["fail", "error"].includes(row[at("verdict")]) ? -Infinity : Infinity);
+    const worst = rows.reduce((a, b) => {
+      const [one, other] = [a, b].map((row) => GRAVITY.indexOf(row[at("verdict")]));
+      return other < one || (other === one && far(b) < far(a)) ? b : a;
+    });
+    const field = (column) => worst[at(column)];
+    const where = ["robot", "states", "body", "cache", "method"].map(field).filter(Boolean).join(", ");
+    if (field("value") !== null) {
+      const gate = field("bound") === null ? "" : `, gate ${short(field("bound"))}${field("margin") === null ? "" : `, ${decades(field("margin"))} decades`}`;
+      const measure = [titles[field("quantity")] ?? field("quantity"), field("metric")].filter(Boolean).join(", ");
+      add("worst", `${measure} ${short(field("value"))}${gate} (${where})`);
+    }
+    const level = state.table.levels[state.table.rows.indexOf(worst)];
+    add("level", level ? `${level} (${field("verdict")})` : field("verdict"));
+    const again = state.table.again[`${field("study")}/${field("robot")}`];
+    if (again) add("repeat it", make("code", {}, again));
   }
 
   function drawFilters() {
@@ -72,6 +110,7 @@
 
   function drawRows() {
     let rows = state.table.rows.filter((row) => passes(row));
+    drawAbout(rows);
     byId("rows-count").textContent = `${rows.length} of ${state.table.rows.length} rows`;
     if (state.sort) {
       const { column, direction } = state.sort;

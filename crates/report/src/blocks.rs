@@ -2,6 +2,27 @@
 
 use maud::{Markup, html};
 
+use crate::overview::Overview;
+
+/// An engine's name, which leads to its page.
+pub fn engine(overview: &Overview, name: &str) -> Markup {
+    linked(overview.engine(name).map(|index| overview.pages.engines[index].as_str()), name)
+}
+
+/// A robot's name, which leads to its page.
+pub fn robot(overview: &Overview, name: &str) -> Markup {
+    linked(overview.robot(name).map(|index| overview.pages.robots[index].as_str()), name)
+}
+
+/// A study's name, which leads to its page.
+pub fn study(overview: &Overview, name: &str) -> Markup {
+    linked(overview.study(name).map(|index| overview.pages.studies[index].as_str()), name)
+}
+
+fn linked(page: Option<&str>, name: &str) -> Markup {
+    html! { @match page { Some(page) => a href=(page) { (name) }, None => (name) } }
+}
+
 /// A button that opens rows: those of a chunk whose columns have the given values. A filter without a value is left out.
 pub fn opener(chunk: &str, filters: &[(&str, &str)], text: &str) -> Markup {
     let filters: serde_json::Map<String, serde_json::Value> =

@@ -1,8 +1,8 @@
 //! Data of the page as scripts: a page under `file://` may run a script beside it, but not read a file.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
-use featherbench_results::{COLUMNS, Row, Verdict};
+use featherbench_results::{COLUMNS, Row, RunInfo, Severity, Verdict};
 use serde::Serialize;
 
 use crate::error::ReportError;
@@ -42,10 +42,13 @@ pub fn figure_data(json: &str) -> NamedFile {
     ("data/figure-data.js".to_owned(), script("figure-data", json))
 }
 
-/// The markup of a piece that the first page leaves out.
+/// The markup of a piece that the first page leaves out. It is a file of its own, so that its angle brackets end no element and stay as they
+/// are; as escapes they would be half of it.
 pub fn piece(piece: &Piece) -> Result<NamedFile, ReportError> {
-    let text = script(&format!("part-{}", piece.name), &serde_json::to_string(&piece.body.0)?);
-    Ok((format!("{}/{}.js", parts::FOLDER, piece.name), text))
+    let json = serde_json::to_string(&piece.body.0)?;
+    let json = json.replace('\u{2028}', "\\u2028").replace('\u{2029}', "\\u2029");
+    let text = format!("featherbench.chunk(\"part-{}\",{json});\n", piece.name);
+    Ok((format!("{}/{}.js", parts::FOLDER, piece.name), text.into_bytes()))
 }
 
 /// One call, `featherbench.chunk("name",{…});`, whose second argument is plain JSON.
@@ -77,7 +80,7 @@ pub fn is_unpassed(row: &Row) -> bool {
 
 /// All rows: a chunk per robot, one per study for rows without a robot, one with every row that did not pass, and one
 /// with every time.
-pub fn rows<'a>(overview: &Overview, rows: &'a [Row]) -> impl Iterator<Item = Result<NamedFile, ReportError>> + use<'a> {
+pub fn rows<'a>(run: &'a RunInfo, overview: &Overview, rows: &'a [Row]) -> impl Iterator<Item = Result<NamedFile, ReportError>> + use<'a> {
     let mut chunks: BTreeMap<String, Vec<&Row>> = BTreeMap::new();
     // A robot without rows has a chunk too: a click on it must show that there are none.
     for robot in 0..overview.robots.len() {
@@ -88,7 +91,7 @@ pub fn rows<'a>(overview: &Overview, rows: &'a [Row]) -> impl Iterator<Item = Re
     for row in rows {
         chunks.entry(overview.chunk_of(row)).or_default().push(row);
     }
-    chunks.into_iter().map(|(name, rows)| Ok((format!("data/{name}.js"), script(&name, &serde_json::to_string(&Table::of(&rows)?)?))))
+    chunks.into_iter().map(|(name, rows)| Ok((format!("data/{name}.js"), script(&name, &serde_json::to_string(&Table::of(run, &rows)?)?))))
 }
 
 /// Rows as arrays: the names of the columns are given once.
@@ -96,16 +99,24 @@ pub fn rows<'a>(overview: &Overview, rows: &'a [Row]) -> impl Iterator<Item = Re
 struct Table {
     columns: Vec<&'static str>,
     rows: Vec<Vec<serde_json::Value>>,
+    /// The level of each row that has one, by its place.
+    levels: BTreeMap<usize, &'static str>,
+    /// The command that makes rows again, by `study/robot`.
+    again: BTreeMap<String, String>,
 }
 
 impl Table {
-    fn of(rows: &[&Row]) -> Result<Self, ReportError> {
+    fn of(run: &RunInfo, rows: &[&Row]) -> Result<Self, ReportError> {
         let columns: Vec<&str> = COLUMNS.iter().map(|column| column.name).collect();
         let row = |row: &&Row| -> Result<Vec<serde_json::Value>, ReportError> {
             let mut fields = serde_json::to_value(row)?;
             Ok(columns.iter().map(|&name| fields[name].take()).collect())
         };
-        let rows = rows.iter().map(row).collect::<Result<_, _>>()?;
-        Ok(Self { columns, rows })
+        let levels = rows.iter().enumerate().filter_map(|(place, row)| Some((place, Severity::of(row)?.as_str()))).collect();
+        let pairs: BTreeSet<(&str, &str)> = rows.iter().map(|row| (row.study.as_str(), row.robot.as_str())).collect();
+        // A run without a command of its own has none for its rows.
+        let again = pairs.into_iter().filter_map(|(study, robot)| Some((format!("{study}/{robot}"), run.again(study, robot).ok()?)));
+        let (rows, again) = (rows.iter().map(row).collect::<Result<_, _>>()?, again.collect());
+        Ok(Self { columns, rows, levels, again })
     }
 }

@@ -68,9 +68,15 @@ pub struct Findings<'a> {
 impl<'a> Findings<'a> {
     /// Collects a run's rows and conditions.
     pub fn of(run: &'a RunInfo, rows: &'a [Row]) -> Self {
-        let tally = Tally::of(rows.iter().map(|row| row.verdict));
+        Self::about(run, rows, |_| true)
+    }
+
+    /// Collects some of a run's rows, and the conditions about those that they are about.
+    pub fn about(run: &'a RunInfo, rows: impl IntoIterator<Item = &'a Row> + Clone, concerned: impl Fn(&Culprit) -> bool) -> Self {
+        let tally = Tally::of(rows.clone().into_iter().map(|row| row.verdict));
         let mut found = of_rows(run, rows);
-        found.extend(run.expected.iter().filter_map(|condition| of_condition(run, condition, &tally)));
+        let conditions = run.expected.iter().filter(|condition| concerned(&condition.culprit));
+        found.extend(conditions.filter_map(|condition| of_condition(run, condition, &tally)));
         found.sort_by(|a, b| a.order().cmp(&b.order()).then(b.size().total_cmp(&a.size())));
         let judged = tally.total() - tally.get(Verdict::Info) - tally.get(Verdict::Skip);
         let status = if found.iter().any(|found| found.new) {
@@ -90,12 +96,21 @@ impl<'a> Findings<'a> {
 
     /// The first line of the page: the gravest finding, of those that turn the gate red if there are any.
     pub fn headline(&self) -> String {
-        let first = self.red().next().or(self.found.iter().find(|found| found.severity != Some(Severity::NotOffered)));
-        match (self.status, first) {
+        match (self.status, self.loudest()) {
             (_, Some(found)) => found.short(),
             (Status::Empty, None) => "Nothing was judged in this run".into(),
             (_, None) => "No engine misses a gate".into(),
         }
+    }
+
+    /// Whether no engine misses a gate.
+    pub fn is_quiet(&self) -> bool {
+        self.status != Status::Empty && self.loudest().is_none()
+    }
+
+    /// The gravest finding, of those that turn the gate red if there are any; `None` if there is nothing but questions that are not offered.
+    fn loudest(&self) -> Option<&Found<'a>> {
+        self.red().next().or(self.found.iter().find(|found| found.severity != Some(Severity::NotOffered)))
     }
 
     /// The second: how many findings of each level there are, and how many are new.
@@ -156,10 +171,13 @@ impl Found<'_> {
 
     /// The robot, state and method of its worst row, or as much of them as a condition names.
     pub fn place(&self) -> String {
-        let Culprit { robot, method, .. } = &self.culprit;
+        joined([&self.culprit.robot, &self.case()])
+    }
+
+    /// The state and method of its worst row.
+    pub fn case(&self) -> String {
         let (body, states, cache) = self.worst.map_or(("", "", ""), |row| (&row.body, &row.states, &row.cache));
-        let words = [robot.as_str(), body, states, cache, method];
-        words.into_iter().filter(|word| !word.is_empty()).collect::<Vec<_>>().join(", ")
+        joined([body, states, cache, &self.culprit.method])
     }
 
     /// How large it is.
@@ -239,6 +257,11 @@ impl Found<'_> {
     }
 }
 
+/// The words that are there, with commas between them.
+fn joined<const N: usize>(words: [&str; N]) -> String {
+    words.into_iter().filter(|word| !word.is_empty()).collect::<Vec<_>>().join(", ")
+}
+
 /// The beginning of a long reason: a condition may list every quantity of an engine.
 pub fn clipped(text: &str) -> String {
     let head: String = text.chars().take(LONGEST).collect();
@@ -272,9 +295,9 @@ fn cause(row: &Row) -> String {
 
 /// The rows that do not pass. Failures are grouped by engine and quantity, missing answers by their reason, known deviations by their cause,
 /// and what an engine does not offer by engine.
-fn of_rows<'a>(run: &RunInfo, rows: &'a [Row]) -> Vec<Found<'a>> {
+fn of_rows<'a>(run: &RunInfo, rows: impl IntoIterator<Item = &'a Row>) -> Vec<Found<'a>> {
     let mut groups: BTreeMap<(&str, Verdict, &str, String), Vec<&Row>> = BTreeMap::new();
-    for row in rows.iter().filter(|row| !matches!(row.verdict, Verdict::Pass | Verdict::Info)) {
+    for row in rows.into_iter().filter(|row| !matches!(row.verdict, Verdict::Pass | Verdict::Info)) {
         let (quantity, cause) = match row.verdict {
             Verdict::Deviation => ("", named_cause(row).unwrap_or_else(|| cause(row))),
             Verdict::Skip => ("", String::new()),

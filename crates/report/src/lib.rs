@@ -4,7 +4,7 @@
 //! It is a pure function of its arguments and reads no clock.
 //!
 //! The folder needs no network and no server. `index.html` opens with the findings and names every section; what is large is brought when the
-//! window is near it or when it is opened, and has a page of its own under `sections/`. `data/*.js` has the rows and those pieces: the page
+//! window is near it or when it is opened, and has a page of its own under `sections/`. Each engine, robot and study has a page, too. `data/*.js` has the rows and those pieces: the page
 //! adds a script element to read them, as a page under `file://` may not fetch. `app.js` draws the plots as SVG. `figures/` has the figures for
 //! papers, which [`mod@figure`] draws.
 //! Every number on the page is made from rows, and every cell and point leads back to its rows.
@@ -15,10 +15,11 @@
 //! | layer | files |
 //! |---|---|
 //! | data | [`numbers`], [`labels`], [`fit`], `error`, then [`figure`], then `tally`, `overview`, `section`, then `findings`, `parts`, then `chunks`, [`forms`] |
-//! | sections | `blocks`, then `verdict`, `conventions`, `provenance`, `method`, `unpassed`, `figures` |
+//! | sections | `blocks`, then [`map`], `cards`, then `verdict`, `conventions`, `provenance`, `method`, `unpassed`, `figures`, `subjects` |
 //! | page | `page`, `summary`, [`runs`], then `write` |
 
 mod blocks;
+mod cards;
 mod chunks;
 mod conventions;
 mod error;
@@ -28,6 +29,7 @@ mod findings;
 pub mod fit;
 pub mod forms;
 pub mod labels;
+pub mod map;
 mod method;
 pub mod numbers;
 mod overview;
@@ -36,17 +38,18 @@ mod parts;
 mod provenance;
 pub mod runs;
 mod section;
+mod subjects;
 mod summary;
 mod tally;
 mod unpassed;
 mod verdict;
 mod write;
 
-pub use blocks::{opener, swatch};
+pub use blocks::{engine, opener, robot, study, swatch};
 pub use chunks::{TIMES, UNPASSED};
 pub use error::ReportError;
 pub use findings::{Findings, Found, Status};
-pub use overview::{EVERYONE, Overview, Robot, robot_chunk};
+pub use overview::{EVERYONE, Overview, Pages, Robot, robot_chunk};
 pub use section::{Finding, Part, Section};
 pub use summary::summary;
 pub use tally::{Tally, worst_first};

@@ -6,6 +6,10 @@ use featherbench_results::{Row, RunInfo};
 use serde::Serialize;
 
 use crate::figure::{Style, style};
+use crate::labels;
+
+/// Characters of a name in an address: file systems allow 255 bytes.
+const LONGEST: usize = 120;
 
 /// The engine of rows about all engines together.
 pub const EVERYONE: &str = "all";
@@ -25,6 +29,17 @@ pub struct Robot<'a> {
     pub depth: Option<u64>,
 }
 
+/// The pages of engines, robots and studies, by index: addresses in the report's folder.
+#[derive(Clone, Debug, Default, Serialize)]
+pub struct Pages {
+    /// `engines/NAME.html`.
+    pub engines: Vec<String>,
+    /// `robots/NAME.html`.
+    pub robots: Vec<String>,
+    /// `studies/NAME.html`.
+    pub studies: Vec<String>,
+}
+
 /// The words of a run. Sections and scripts name an engine or a robot by its index here.
 #[derive(Debug, Serialize)]
 pub struct Overview<'a> {
@@ -35,8 +50,11 @@ pub struct Overview<'a> {
     /// Robots, families together.
     pub robots: Vec<Robot<'a>>,
     /// Studies, in alphabetical order.
-    #[serde(skip)]
     pub studies: Vec<&'a str>,
+    /// The page of each engine, robot and study.
+    pub pages: Pages,
+    /// The quantities of the run, with their text.
+    pub titles: BTreeMap<&'a str, &'a str>,
     #[serde(skip)]
     robot_index: BTreeMap<&'a str, usize>,
 }
@@ -49,8 +67,18 @@ impl<'a> Overview<'a> {
         let robots = robots(run, rows);
         let robot_index = robots.iter().enumerate().map(|(index, robot)| (robot.name, index)).collect();
         let studies: BTreeSet<&str> = rows.iter().map(|row| row.study.as_str()).collect();
+        let studies: Vec<&str> = studies.into_iter().collect();
         let styles = engines.iter().map(|engine| style(engine)).collect();
-        Self { engines, styles, robots, studies: studies.into_iter().collect(), robot_index }
+        let names: Vec<&str> = robots.iter().map(|robot| robot.name).collect();
+        let pages =
+            Pages { engines: addresses("engines", &engines), robots: addresses("robots", &names), studies: addresses("studies", &studies) };
+        let titles = rows.iter().map(|row| (row.quantity.as_str(), labels::quantity(&row.quantity))).collect();
+        Self { engines, styles, robots, studies, pages, titles, robot_index }
+    }
+
+    /// The index of a study.
+    pub fn study(&self, name: &str) -> Option<usize> {
+        self.studies.binary_search(&name).ok()
     }
 
     /// The index of a robot.
@@ -87,6 +115,23 @@ impl<'a> Overview<'a> {
 /// The name of the chunk with a robot's rows.
 pub fn robot_chunk(robot: usize) -> String {
     format!("robot-{robot}")
+}
+
+/// Addresses in a folder that differ even where a file system takes capitals for small letters. A name may hold any character: only letters,
+/// digits and a few signs are kept.
+fn addresses(folder: &str, names: &[&str]) -> Vec<String> {
+    let mut taken = BTreeSet::new();
+    let mut address = |name: &&str| {
+        let kept = |c: char| if c.is_ascii_alphanumeric() || matches!(c, '-' | '_' | '+') { c } else { '_' };
+        let plain: String = name.chars().map(kept).take(LONGEST).collect();
+        let mut stems =
+            (1..=names.len() + 1).map(|copy| if copy == 1 && !plain.is_empty() { plain.clone() } else { format!("{plain}~{copy}") });
+        // Of so many names, one is free.
+        let free = stems.find(|stem| !taken.contains(&stem.to_ascii_lowercase())).unwrap_or_default();
+        taken.insert(free.to_ascii_lowercase());
+        format!("{folder}/{free}.html")
+    };
+    names.iter().map(&mut address).collect()
 }
 
 /// The announced names, then the others in alphabetical order.
@@ -148,4 +193,17 @@ fn robots<'a>(run: &'a RunInfo, rows: &'a [Row]) -> Vec<Robot<'a>> {
     }
     robots.sort_by_key(|robot| families.iter().position(|&family| family == robot.family));
     robots
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn addresses_are_plain_and_differ() {
+        let names = ["panda", "a/b", "a.b", "Panda", "../x", ""];
+        let found = addresses("robots", &names);
+        let expected = ["panda", "a_b", "a_b~2", "Panda~2", "___x", "~1"].map(|stem| format!("robots/{stem}.html"));
+        assert_eq!(found, expected);
+    }
 }

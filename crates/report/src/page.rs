@@ -6,6 +6,7 @@ use maud::{DOCTYPE, Markup, html};
 use crate::overview::Overview;
 use crate::parts::{self, Piece};
 use crate::section::Section;
+use crate::subjects::Subject;
 use crate::{conventions, figures, method, provenance, unpassed, verdict};
 
 /// The frame's sections at the end of the page.
@@ -22,7 +23,7 @@ impl<'a> Page<'a> {
     /// Makes the frame's own sections.
     pub fn of(run: &'a RunInfo, rows: &[Row], overview: &Overview, studies: &'a [Section]) -> Self {
         let own = [verdict::section(run, overview, rows, studies), conventions::section(run)].into_iter();
-        let last = [provenance::section(run, overview), method::section(run, studies), unpassed::section(rows)];
+        let last = [provenance::section(run, overview), method::section(run, studies), unpassed::section(overview, rows)];
         Self { run, own: own.chain(figures::section(run, studies)).chain(last).collect(), studies }
     }
 
@@ -43,13 +44,19 @@ impl<'a> Page<'a> {
     /// The page of a piece that the first page leaves out.
     pub fn piece(&self, piece: &Piece) -> String {
         let is_section = self.sections().iter().any(|section| section.anchor == piece.name);
-        let body = html! { @if is_section { (piece.body) } @else { section { h2 { (piece.title) } (piece.body) } } };
-        frame(self.run, &self.sections(), Some(piece.title), &body)
+        let body = html! { h1.page { (piece.title) } @if is_section { (piece.body) } @else { section { (piece.body) } } };
+        let path = format!("{}/{}.html", parts::FOLDER, piece.name);
+        frame(self.run, &self.sections(), Some([piece.title, &path]), &body)
+    }
+
+    /// The page of an engine, a robot or a study.
+    pub fn subject(&self, subject: &Subject) -> String {
+        frame(self.run, &self.sections(), Some([&subject.title, &subject.path]), &subject.body)
     }
 }
 
-/// A page: the first one, or one with a title of its own in a folder below it, all of whose links start at the first page.
-fn frame(run: &RunInfo, sections: &[&Section], below: Option<&str>, body: &Markup) -> String {
+/// A page: the first one, or one with title and address in a folder below it, all of whose links start at the first page.
+fn frame(run: &RunInfo, sections: &[&Section], below: Option<[&str; 2]>, body: &Markup) -> String {
     let page = html! {
         (DOCTYPE)
         html lang="en" {
@@ -58,16 +65,16 @@ fn frame(run: &RunInfo, sections: &[&Section], below: Option<&str>, body: &Marku
                 meta name="viewport" content="width=device-width, initial-scale=1";
                 meta name="color-scheme" content="light dark";
                 @if below.is_some() { base href="../index.html"; }
-                title { @if let Some(title) = below { (title) ", " } "featherbench: " (run.suite) " " (run.run) }
+                title { @if let Some([title, _]) = below { (title) ", " } "featherbench: " (run.suite) " " (run.run) }
                 link rel="stylesheet" href="style.css";
                 // It is small, defines the function that the data scripts call, and sets the theme before anything is drawn.
                 script src="app.js" {}
                 script defer src="data/overview.js" {}
             }
             body {
-                @if below.is_none() { a.to-content href="#verdict" { "Skip to the verdict" } }
+                a.to-content href={ @if let Some([_, path]) = below { (path) } "#content" } { "Skip to the content" }
                 (header(run, sections))
-                main { (body) }
+                main #content { (body) }
                 footer {
                     p {
                         "Made by featherbench " (run.version) " from the rows of run " code { (run.run) } ": "
@@ -129,6 +136,7 @@ fn rows_dialog() -> Markup {
                 p #rows-count role="status" {}
                 button #rows-close type="button" aria-label="Close" { "✕" }
             }
+            dl #rows-about {}
             form #rows-filters method="dialog" {}
             div #rows-table tabindex="0" {}
         }

@@ -20,16 +20,16 @@ pub fn nodes(markup: &str) -> usize {
 /// A piece with its name and title.
 pub struct Piece<'a> {
     /// Its name: that of its files, and the anchor of a section.
-    pub name: &'static str,
+    pub name: &'a str,
     /// The title of its page.
-    pub title: &'static str,
+    pub title: &'a str,
     /// What it holds.
     pub body: &'a Markup,
 }
 
 /// Every piece that the first page leaves out.
 pub fn of<'a>(sections: &[&'a Section]) -> Vec<Piece<'a>> {
-    let part = |part: &'a Part| Piece { name: part.name, title: part.title, body: &part.body };
+    let part = |part: &'a Part| Piece { name: &part.name, title: &part.title, body: &part.body };
     let whole =
         |section: &&'a Section| is_large(section).then_some(Piece { name: section.anchor, title: section.name, body: &section.body });
     sections.iter().flat_map(|section| whole(section).into_iter().chain(section.parts.iter().map(part))).collect()

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use featherbench_results::{RobotInfo, RunInfo};
 use maud::{Markup, html};
 
-use crate::blocks::opener;
+use crate::blocks::{self, opener};
 use crate::numbers::short;
 use crate::overview::{Overview, robot_chunk};
 use crate::section::Section;
@@ -19,14 +19,14 @@ fn body(run: &RunInfo, overview: &Overview) -> Markup {
     html! {
         section #provenance {
             h2 { "Engines, machine and robots" }
-            (engines(run))
+            (engines(run, overview))
             div.columns { (build(run)) (machine(run)) }
             (robots(run, overview))
         }
     }
 }
 
-fn engines(run: &RunInfo) -> Markup {
+fn engines(run: &RunInfo, overview: &Overview) -> Markup {
     html! {
         h3 { "Engines" }
         div.scroll {
@@ -35,7 +35,7 @@ fn engines(run: &RunInfo) -> Markup {
                 tbody {
                     @for engine in &run.engines {
                         tr {
-                            th scope="row" { (engine.name) }
+                            th scope="row" { (blocks::engine(overview, &engine.name)) }
                             td { code { (engine.version) } }
                             td { (engine.source) }
                             td {
@@ -111,7 +111,7 @@ fn robots(run: &RunInfo, overview: &Overview) -> Markup {
             table.compact.sortable {
                 thead {
                     tr {
-                        th scope="col" { "robot" } th scope="col" { "family" } th scope="col" { "origin" }
+                        th scope="col" { "robot" } th scope="col" { "family" } th scope="col" { "origin" } th scope="col" { "rows" }
                         th.number scope="col" { "nv" } th.number scope="col" { "bodies" } th.number scope="col" { "depth" }
                         th scope="col" { "licence" } th scope="col" { "source" } th scope="col" { "hash" }
                     }
@@ -120,9 +120,10 @@ fn robots(run: &RunInfo, overview: &Overview) -> Markup {
                     @for (index, robot) in overview.robots.iter().enumerate() {
                         @let info = announced.get(robot.name);
                         tr {
-                            th scope="row" { (opener(&robot_chunk(index), &[], robot.name)) }
+                            th scope="row" { (blocks::robot(overview, robot.name)) }
                             td { (robot.family) }
                             td { @if let Some(info) = info { (info.origin) } }
+                            td { (opener(&robot_chunk(index), &[], "rows")) }
                             td.number { (size(robot.nv)) }
                             td.number { (size(robot.bodies)) }
                             td.number { (size(robot.depth)) }

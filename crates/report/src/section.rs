@@ -52,9 +52,9 @@ pub struct Section {
 #[derive(Debug)]
 pub struct Part {
     /// Its name among all parts and sections; its page is `sections/NAME.html`.
-    pub name: &'static str,
+    pub name: String,
     /// The title of its page.
-    pub title: &'static str,
+    pub title: String,
     /// What it holds.
     pub body: Markup,
 }

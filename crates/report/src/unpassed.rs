@@ -5,10 +5,11 @@ use std::collections::BTreeMap;
 use featherbench_results::{Row, Verdict};
 use maud::{Markup, html};
 
-use crate::blocks::opener;
+use crate::blocks::{self, opener};
 use crate::chunks::{UNPASSED, is_unpassed};
 use crate::labels;
 use crate::numbers::{count, decades};
+use crate::overview::Overview;
 use crate::section::Section;
 use crate::tally::{gravity, worst_first};
 
@@ -26,11 +27,11 @@ struct Group<'a> {
 }
 
 /// Writes the section.
-pub fn section(rows: &[Row]) -> Section {
-    Section::new("unpassed", "Not passed", body(rows))
+pub fn section(overview: &Overview, rows: &[Row]) -> Section {
+    Section::new("unpassed", "Not passed", body(overview, rows))
 }
 
-fn body(rows: &[Row]) -> Markup {
+fn body(overview: &Overview, rows: &[Row]) -> Markup {
     let groups = groups(rows);
     let total: usize = groups.iter().map(|group| group.rows).sum();
     html! {
@@ -52,7 +53,7 @@ fn body(rows: &[Row]) -> Markup {
                                 th scope="col" { "robots" } th.number scope="col" { "worst margin" } th scope="col" { "reason" }
                             }
                         }
-                        tbody { @for group in groups.iter().take(LISTED) { (row(group)) } }
+                        tbody { @for group in groups.iter().take(LISTED) { (row(overview, group)) } }
                     }
                 }
             }
@@ -60,7 +61,7 @@ fn body(rows: &[Row]) -> Markup {
     }
 }
 
-fn row(group: &Group) -> Markup {
+fn row(overview: &Overview, group: &Group) -> Markup {
     let worst = group.worst;
     let mut filters = vec![("verdict", worst.verdict.as_str()), ("study", &worst.study), ("engine", &worst.engine)];
     // As for the groups: rows with a number by their quantity and measure, others by their reason.
@@ -72,7 +73,7 @@ fn row(group: &Group) -> Markup {
         tr {
             td { span class={ "badge " (worst.verdict) } { (labels::glyph(worst.verdict)) " " (worst.verdict) } }
             td.number { (opener(UNPASSED, &filters, &group.rows.to_string())) }
-            td { (worst.engine) }
+            td { (blocks::engine(overview, &worst.engine)) }
             td { (some(&group.quantities)) }
             td { (some(&group.robots)) }
             td.number { @if let Some(margin) = worst.margin { (decades(margin)) } }

@@ -3,9 +3,10 @@
 use featherbench_results::{Row, RunInfo, Severity, Verdict};
 use maud::{Markup, html};
 
-use crate::blocks::opener;
+use crate::blocks::{self, opener};
+use crate::cards::{card, class};
 use crate::chunks::UNPASSED;
-use crate::findings::{Findings, Found, Status, clipped};
+use crate::findings::{Findings, Status};
 use crate::labels;
 use crate::numbers::{count, decades, grouped};
 use crate::overview::Overview;
@@ -80,22 +81,12 @@ fn tiles(findings: &Findings) -> Markup {
     }
 }
 
-/// The class of a level: its colour.
-fn class(level: Severity) -> &'static str {
-    match level {
-        Severity::PhysicsDiffers => "physics",
-        Severity::MethodLosesDigits => "digits",
-        Severity::NotOffered => "absent",
-        Severity::Rounding => "rounding",
-    }
-}
-
 /// The findings from the gravest, each with its rows and the command that repeats it.
 fn list(overview: &Overview, findings: &Findings) -> Markup {
     html! {
         @if !findings.found.is_empty() {
             h3 { "What was found" }
-            ol.findings { @for found in findings.found.iter().take(TOLD) { (item(overview, found)) } }
+            ol.findings { @for found in findings.found.iter().take(TOLD) { (card(overview, found)) } }
         }
     }
 }
@@ -103,31 +94,8 @@ fn list(overview: &Overview, findings: &Findings) -> Markup {
 /// The other findings.
 fn rest(overview: &Overview, findings: &Findings) -> Option<Part> {
     let rest = findings.found.get(TOLD..).filter(|rest| !rest.is_empty())?;
-    let body = html! { ol.findings start=(TOLD + 1) { @for found in rest { (item(overview, found)) } } };
-    Some(Part { name: "findings", title: "More findings", body })
-}
-
-fn item(overview: &Overview, found: &Found) -> Markup {
-    let level = found.severity.map_or("condition", class);
-    html! {
-        li class=(if found.new { "fail" } else { "known" }) {
-            span class={ "level " (level) } { (found.level()) @if found.new { ", new" } } " "
-            b { (found.who()) } ": " (found.size_words())
-            @if let Some(worst) = found.worst {
-                @let here = [("engine", worst.engine.as_str()), ("quantity", worst.quantity.as_str()), ("verdict", worst.verdict.as_str())];
-                @let all = [("engine", worst.engine.as_str()), ("verdict", worst.verdict.as_str())];
-                " on " (opener(&overview.chunk_of(worst), &here, &if found.place().is_empty() { worst.study.clone() } else { found.place() }))
-                "; " (opener(UNPASSED, if found.quantities.len() == 1 { &here[..] } else { &all[..] }, &found.extent())) "."
-                @if !found.cause.is_empty() { " " span.cause { @if !found.new { "Known: " } (found.cause) } }
-            } @else {
-                @if !found.place().is_empty() { " (" (found.place()) ")" }
-                @if !found.cause.is_empty() { "; " span.cause { (clipped(&found.cause)) } }
-            }
-            @if !found.again.is_empty() {
-                details.again { summary { "Repeat it" } pre { code { (found.again) } } }
-            }
-        }
-    }
+    let body = html! { ol.findings start=(TOLD + 1) { @for found in rest { (card(overview, found)) } } };
+    Some(Part { name: "findings".into(), title: "More findings".into(), body })
 }
 
 /// How many rows the findings are among, each kind of verdict with its rows.
@@ -185,7 +153,7 @@ fn by_engine(overview: &Overview, rows: &[Row], findings: &Findings) -> Markup {
                     @let own = || rows.iter().filter(|row| row.engine == engine);
                     @let worst = own().filter_map(|row| row.margin).min_by(f64::total_cmp);
                     tr {
-                        th scope="row" { (engine) }
+                        th scope="row" { (blocks::engine(overview, engine)) }
                         td.gravest { @if let Some(found) = findings.of_engine(engine) { (found.level()) @if let Some(first) = found.quantities.first() { ": " (first) } } }
                         (tally_cells(&Tally::of(own().map(|row| row.verdict))))
                         td.number { @if let Some(margin) = worst { (decades(margin)) } }
@@ -205,7 +173,7 @@ fn by_study(overview: &Overview, rows: &[Row]) -> Markup {
             tbody {
                 @for &study in &overview.studies {
                     @let tally = Tally::of(rows.iter().filter(|row| row.study == study).map(|row| row.verdict));
-                    tr { th scope="row" { (study) } (tally_cells(&tally)) td.number { (grouped(tally.total())) } }
+                    tr { th scope="row" { (blocks::study(overview, study)) } (tally_cells(&tally)) td.number { (grouped(tally.total())) } }
                 }
             }
         } }
@@ -247,5 +215,5 @@ fn conditions(run: &RunInfo) -> Option<Part> {
             }
         }
     };
-    Some(Part { name: "conditions", title: "What the suite expects", body })
+    Some(Part { name: "conditions".into(), title: "What the suite expects".into(), body })
 }

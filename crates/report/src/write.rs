@@ -11,6 +11,7 @@ use crate::overview::Overview;
 use crate::page::Page;
 use crate::parts;
 use crate::section::Section;
+use crate::subjects::Subjects;
 
 /// The report's style sheet; sections add to it.
 const STYLE: &str = include_str!("../assets/style.css");
@@ -21,6 +22,7 @@ const SCRIPT: &str = concat!(
     include_str!("../assets/parts.js"),
     include_str!("../assets/rows.js"),
     include_str!("../assets/grid.js"),
+    include_str!("../assets/map.js"),
     include_str!("../assets/chart_axes.js"),
     include_str!("../assets/chart_marks.js"),
     include_str!("../assets/chart_draw.js"),
@@ -49,7 +51,8 @@ pub fn write(run: &RunInfo, rows: &[Row], sections: &[Section], out: &Path) -> R
     // File by file, so that no more than one is held.
     let mut put = |(name, bytes): NamedFile| -> Result<(), ReportError> {
         let path = out.join(name);
-        featherbench_results::atomic_write(&path, &bytes)?;
+        // The rows are safe already; a report can be written again.
+        featherbench_results::quick_write(&path, &bytes)?;
         written.push(path);
         Ok(())
     };
@@ -58,13 +61,16 @@ pub fn write(run: &RunInfo, rows: &[Row], sections: &[Section], out: &Path) -> R
     put(("app.js".to_owned(), script(sections).into_bytes()))?;
     put(("data/overview.js".to_owned(), chunks::overview(&overview)?))?;
     put(("data/figures.js".to_owned(), chunks::figures(sections)?))?;
-    chunks::rows(&overview, rows).try_for_each(|file| put(file?))?;
+    chunks::rows(run, &overview, rows).try_for_each(|file| put(file?))?;
     figures::files(sections).try_for_each(&mut put)?;
     put(chunks::figure_data(&figures::data(sections)?))?;
     let page = Page::of(run, rows, &overview, sections);
     for piece in parts::of(&page.sections()) {
         put(chunks::piece(&piece)?)?;
         put((format!("{}/{}.html", parts::FOLDER, piece.name), page.piece(&piece).into_bytes()))?;
+    }
+    for subject in Subjects::of(run, rows, &overview, sections).pages() {
+        put((subject.path.clone(), page.subject(&subject).into_bytes()))?;
     }
     // Last, so that a page is never older than what it links to.
     put(("index.html".to_owned(), page.index().into_bytes()))?;

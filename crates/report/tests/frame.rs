@@ -89,11 +89,11 @@ fn the_page_opens_with_the_gravest_finding() {
     let verdict = written.section("verdict");
     let places: Vec<usize> = [
         "<h1>drake, centre of mass: 4.0 digits lost beyond rounding (1e-10 where 1e-14 is allowed)</h1>",
-        "<b>dart, kinetic energy</b>: off by 78 %",
+        "<b><a href=\"engines/dart.html\">dart</a>, kinetic energy</b>: off by 78 %",
         "Known: it forgets the armature",
-        "method loses digits, new</span> <b>drake, centre of mass</b>",
-        "not offered</span> <b>mujoco, forward dynamics</b>",
-        "rounding, new</span> <b>drake, inverse dynamics</b>: 3 times its gate",
+        "method loses digits, new</span> <b><a href=\"engines/drake.html\">drake</a>, centre of mass</b>",
+        "not offered</span> <b><a href=\"engines/mujoco.html\">mujoco</a>, forward dynamics</b>",
+        "rounding, new</span> <b><a href=\"engines/drake.html\">drake</a>, inverse dynamics</b>: 3 times its gate",
         "Among 6 rows: ",
         "the first",
         "the last",

@@ -24,11 +24,25 @@ pub fn atomic_write(path: &Path, bytes: &[u8]) -> Result<(), ResultsError> {
     atomic_write_with(path, |file| file.write_all(bytes))
 }
 
+/// Writes a file whole or not at all, without waiting for the disk: for what can be made again from other files. After a power failure the
+/// file may be empty or the old one.
+///
+/// # Errors
+/// [`ResultsError::Io`], which names the file.
+pub fn quick_write(path: &Path, bytes: &[u8]) -> Result<(), ResultsError> {
+    replace_file(path, false, |file| file.write_all(bytes))
+}
+
 /// The same for a file that is written piece by piece, and need not be in memory as a whole.
 ///
 /// # Errors
 /// [`ResultsError::Io`], also when `write` fails: there is the old file then.
 pub fn atomic_write_with(path: &Path, write: impl FnOnce(&mut (dyn Write + Send)) -> io::Result<()>) -> Result<(), ResultsError> {
+    replace_file(path, true, write)
+}
+
+/// Writes a temporary file beside the file and renames it; `durable` waits until the disk has both.
+fn replace_file(path: &Path, durable: bool, write: impl FnOnce(&mut (dyn Write + Send)) -> io::Result<()>) -> Result<(), ResultsError> {
     /// Distinguishes the temporary files of one process.
     static SERIAL: AtomicU64 = AtomicU64::new(0);
 
@@ -48,11 +62,13 @@ pub fn atomic_write_with(path: &Path, write: impl FnOnce(&mut (dyn Write + Send)
         write(&mut buffer)?;
         buffer.flush()?;
         drop(buffer);
-        file.sync_all()?;
+        if durable {
+            file.sync_all()?;
+        }
         drop(file);
         fs::rename(&temporary, path)?;
         // The renaming is permanent only once the folder is flushed. Systems that cannot flush a folder are left as they are.
-        if let Ok(folder) = File::open(&folder) {
+        if durable && let Ok(folder) = File::open(&folder) {
             let _ = folder.sync_all();
         }
         Ok(())

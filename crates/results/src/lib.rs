@@ -35,8 +35,8 @@ pub use dictionary::{Dictionary, Named, Term};
 pub use diff::{Change, Changed, Diff, ERROR_FACTOR, ERROR_FLOOR, TIME_NOISE, diff};
 pub use error::ResultsError;
 pub use file::{
-    CSV_NAME, RATIO, RUN_NAME, SCHEMA_NAME, atomic_write, atomic_write_with, parse_csv, read_csv, read_run, to_csv, write_csv, write_run,
-    write_run_with,
+    CSV_NAME, RATIO, RUN_NAME, SCHEMA_NAME, atomic_write, atomic_write_with, parse_csv, quick_write, read_csv, read_run, to_csv, write_csv,
+    write_run, write_run_with,
 };
 pub use names::{Kind, Relation, Verdict};
 pub use params::canonical_json;

@@ -90,13 +90,48 @@ fn counts_on_the_page_are_those_of_the_records() {
     }
     let cells = records.iter().filter(|row| row.study == "agreement" && row.metric != "pairwise");
     let cells: std::collections::BTreeSet<_> = cells.map(|row| (&row.robot, &row.engine, &row.quantity)).collect();
-    assert_eq!(written.data("figures")["agreement"]["cells"].as_array().unwrap().len(), cells.len());
-    assert_eq!(
-        written.section("agreement").matches("<td").count()
-            - written.section("agreement").matches("<td></td>").count()
-            - written.section("agreement").matches("<td class=\"first\"></td>").count(),
-        cells.len()
+    // Each engine has its quantities on a page of its own; the section has the worst of each robot and engine.
+    let filled = |page: &str| page.matches("<td").count() - page.matches("<td></td>").count();
+    let engines: std::collections::BTreeSet<_> = cells.iter().map(|&(_, engine, _)| engine).collect();
+    let of_engines: usize = engines.iter().map(|engine| filled(&written.section(&format!("agreement-{engine}")))).sum();
+    assert_eq!(of_engines, cells.len());
+    let pairs: std::collections::BTreeSet<_> = cells.iter().map(|&(robot, engine, _)| (robot, engine)).collect();
+    assert_eq!(filled(&written.section("agreement")), pairs.len());
+}
+
+#[test]
+fn engines_robots_and_studies_have_pages() {
+    let (run, records, written) = demo();
+    let engine = written.text("engines/pinocchio.html");
+    assert!(engine.contains("<h1>pinocchio: ") && engine.contains("href=\"robots/panda.html\""), "{engine}");
+    // Its findings stand as on the first page, from the gravest.
+    let own = featherbench_report::Findings::of(&run, &records);
+    let own: Vec<_> = own.found.iter().filter(|found| found.culprit.engine == "pinocchio").collect();
+    assert!(!own.is_empty() && engine.matches("class=\"level ").count() == own.len().min(30));
+    let cells: std::collections::BTreeSet<_> =
+        records.iter().filter(|row| row.engine == "pinocchio" && !row.robot.is_empty()).map(|row| (&row.robot, &row.quantity)).collect();
+    assert_eq!(engine.matches("<td").count() - engine.matches("<td></td>").count(), cells.len());
+
+    let robot = written.text("robots/panda.html");
+    assert!(
+        robot.contains("<h1>panda: ") && robot.contains("href=\"engines/drake.html\"") && robot.contains("9 degrees of freedom"),
+        "{robot}"
     );
+    let study = written.text("studies/timing.html");
+    assert!(study.contains("<h1>timing: ") && study.contains("href=\"robots/panda.html\""));
+    assert!(written.text("studies/agreement.html").contains("href=\"#agreement\""), "it leads to its section");
+    // Every link of the first page and of the pages leads to a file.
+    for page in ["index.html", "engines/pinocchio.html", "robots/panda.html", "studies/timing.html"] {
+        let text = written.text(page);
+        let links = text.split("href=\"").skip(1).map(|rest| rest.split('"').next().unwrap());
+        let files: Vec<&str> =
+            links.filter(|link| ["engines/", "robots/", "studies/", "sections/"].iter().any(|at| link.starts_with(at))).collect();
+        assert!(files.len() > 3, "{page}: {files:?}");
+        for link in files {
+            let file = link.split('#').next().unwrap();
+            assert!(written.folder.path().join(file).is_file(), "{page} links to {link}");
+        }
+    }
 }
 
 #[test]
@@ -179,6 +214,11 @@ fn every_text_of_a_run_is_escaped() {
     let written = report(&run, &rows);
     assert!(!written.index.contains("<img"));
     assert!(written.index.contains("&lt;img"));
+    let folders = ["engines", "robots", "studies", "sections"].map(|folder| fs::read_dir(written.folder.path().join(folder)).unwrap());
+    for file in folders.into_iter().flatten().map(|entry| entry.unwrap().path()) {
+        let text = fs::read_to_string(&file).unwrap();
+        assert!(!text.contains("<img") && !text.contains("<script>"), "{}", file.display());
+    }
     for name in written.chunk_names() {
         assert!(!written.text(&format!("data/{name}.js")).contains('<'));
         written.data(&name);
@@ -258,7 +298,10 @@ fn sentences_tell_who_agrees_and_who_does_not() {
         verdict.contains("mujoco and drake agree with featherbench on") && verdict.contains("(2e-15)") && verdict.contains("over 2 robots")
     );
     assert!(verdict.contains("drake agrees with featherbench on") && verdict.contains("over 1 robot."));
-    assert!(verdict.contains("<b>mujoco, inverse dynamics</b>: ") && verdict.contains("where 1e-14 is allowed"));
+    assert!(
+        verdict.contains("<b><a href=\"engines/mujoco.html\">mujoco</a>, inverse dynamics</b>: ")
+            && verdict.contains("where 1e-14 is allowed")
+    );
     assert!(written.section("pairs").contains("1e-11"));
     assert!(written.section("unpassed").contains("1e-11 is not at most 1e-14"));
 

@@ -1,122 +1,89 @@
-//! The rows of the heatmap by robot, engine and quantity.
+//! The rows of the heatmap: by robot and engine, and of each engine by robot and quantity.
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use featherbench_report::{Overview, Tally, labels, worst_first};
-use featherbench_results::{Row, Verdict};
+use featherbench_report::map::{Map, engine_heads, quantity_head, robot_heads};
+use featherbench_report::{Overview, labels};
+use featherbench_results::Row;
 use serde::Serialize;
 
 use super::{PAIRWISE, STUDY};
 
-/// All rows of one robot, engine and quantity.
-#[derive(Clone, Debug)]
-pub struct Cell<'a> {
-    /// Their verdicts.
-    pub tally: Tally,
-    /// The row that decides: of the worst verdict, the one with the smallest margin.
-    pub worst: &'a Row,
-}
-
 /// The heatmap.
 #[derive(Debug)]
 pub struct Cells<'a> {
-    /// The columns: engine and quantity, as indices.
-    pub columns: Vec<(usize, usize)>,
     /// The quantities, in the order of the page.
     pub quantities: Vec<&'a str>,
-    /// The cells by robot, engine and quantity.
-    pub cells: BTreeMap<(usize, usize, usize), Cell<'a>>,
+    /// Robot × engine: the worst row over all quantities.
+    pub whole: Map<'a>,
+    /// Robot × quantity of each engine that has rows, by its index.
+    pub engines: BTreeMap<usize, Map<'a>>,
 }
 
 impl<'a> Cells<'a> {
     /// Groups a run's rows.
     pub fn of(overview: &Overview<'a>, rows: &'a [Row]) -> Self {
         let judged: Vec<&Row> = rows.iter().filter(|row| in_heatmap(row)).collect();
-        let named = judged.iter().filter(|row| !row.quantity.is_empty());
-        let mut quantities: Vec<&str> = named.clone().map(|row| row.quantity.as_str()).collect::<BTreeSet<_>>().into_iter().collect();
+        let named = || judged.iter().copied().filter(|row| !row.quantity.is_empty());
+        let mut quantities: Vec<&str> = named().map(|row| row.quantity.as_str()).collect::<BTreeSet<_>>().into_iter().collect();
         quantities.sort_by_key(|name| labels::quantity_rank(name));
 
-        let quantity_index = |name: &str| quantities.iter().position(|&quantity| quantity == name);
-        let mut cells: BTreeMap<(usize, usize, usize), Cell> = BTreeMap::new();
-        for row in named {
-            if let (Some(robot), Some(engine), Some(quantity)) =
-                (overview.robot(&row.robot), overview.engine(&row.engine), quantity_index(&row.quantity))
-            {
-                cells.entry((robot, engine, quantity)).or_insert_with(|| Cell::empty(row)).add(row);
-            }
-        }
-        let mut columns: BTreeSet<(usize, usize)> = cells.keys().map(|&(_, engine, quantity)| (engine, quantity)).collect();
-
-        // A row without a quantity is about the whole robot: it fills the gaps. An engine without other rows has one column.
-        for row in judged.iter().filter(|row| row.quantity.is_empty()) {
+        let mut whole = Map {
+            id: "heat".into(),
+            label: "Margin to the gate by robot and engine".into(),
+            axes: ["robot", "engine"],
+            filters: vec![("study", STUDY.into())],
+            lines: robot_heads(overview),
+            columns: engine_heads(overview),
+            cells: BTreeMap::new(),
+            named: true,
+        };
+        let mut engines: BTreeMap<usize, Map> = BTreeMap::new();
+        for &row in &judged {
             let (Some(robot), Some(engine)) = (overview.robot(&row.robot), overview.engine(&row.engine)) else { continue };
-            if !columns.iter().any(|&(other, _)| other == engine) {
-                let whole = quantities.iter().position(|name| name.is_empty()).unwrap_or(quantities.len());
-                if whole == quantities.len() {
-                    quantities.push("");
-                }
-                columns.insert((engine, whole));
-            }
-            for &(_, quantity) in columns.iter().filter(|&&(other, _)| other == engine) {
-                cells.entry((robot, engine, quantity)).or_insert_with(|| Cell::empty(row)).add(row);
+            whole.add((robot, engine), row);
+            let of_engine = engines.entry(engine).or_insert_with(|| Map {
+                id: format!("heat-{engine}"),
+                label: format!("Margin to the gate by robot and quantity: {}", row.engine),
+                axes: ["robot", "quantity"],
+                filters: vec![("study", STUDY.into()), ("engine", row.engine.clone())],
+                lines: robot_heads(overview),
+                columns: quantities.iter().map(|quantity| quantity_head(quantity)).collect(),
+                cells: BTreeMap::new(),
+                named: false,
+            });
+            if let Some(quantity) = quantities.iter().position(|&name| name == row.quantity) {
+                of_engine.add((robot, quantity), row);
             }
         }
-        Self { columns: columns.into_iter().collect(), quantities, cells }
+        // A row without a quantity is about the whole robot: it stands in each column of its engine, or in one of its own if there is no other.
+        for &row in judged.iter().filter(|row| row.quantity.is_empty()) {
+            let (Some(robot), Some(engine)) = (overview.robot(&row.robot), overview.engine(&row.engine)) else { continue };
+            let Some(map) = engines.get_mut(&engine) else { continue };
+            let mut shown: BTreeSet<usize> = map.cells.keys().map(|&(_, column)| column).collect();
+            if shown.is_empty() {
+                map.columns.push(quantity_head(""));
+                shown.insert(map.columns.len() - 1);
+            }
+            shown.into_iter().for_each(|column| map.add((robot, column), row));
+        }
+        // Rows of the whole robot have no quantity to filter by.
+        for map in engines.values_mut() {
+            map.columns.iter_mut().for_each(|head| head.filters.retain(|(_, value)| !value.is_empty()));
+        }
+        Self { quantities, whole, engines }
     }
 
-    /// The data for the script.
-    pub fn data(&self) -> CellsData<'_> {
-        let cells = self.cells.iter().map(|(&(robot, engine, quantity), cell)| {
-            let row = cell.worst;
-            CellData {
-                at: [robot, engine, quantity],
-                verdict: cell.tally.verdict(),
-                rows: cell.tally.words(),
-                margin: row.margin,
-                value: row.value,
-                bound: row.bound,
-                worst: [&row.metric, &row.states, &row.method, &row.reason],
-            }
-        });
-        CellsData {
-            quantities: self.quantities.iter().map(|&name| [name, labels::quantity(name)]).collect(),
-            columns: &self.columns,
-            cells: cells.collect(),
-        }
+    /// The data for the scripts.
+    pub fn data(&self) -> Data<'_> {
+        Data { quantities: self.quantities.iter().map(|&name| [name, labels::quantity(name)]).collect() }
     }
 }
 
-/// The heatmap for the script; a quantity has its name and its text.
+/// The quantities for the scripts, each with its name and its text.
 #[derive(Serialize)]
-pub struct CellsData<'a> {
+pub struct Data<'a> {
     quantities: Vec<[&'a str; 2]>,
-    columns: &'a [(usize, usize)],
-    cells: Vec<CellData<'a>>,
-}
-
-/// A cell for the script.
-#[derive(Serialize)]
-struct CellData<'a> {
-    at: [usize; 3],
-    verdict: Verdict,
-    rows: String,
-    margin: Option<f64>,
-    value: Option<f64>,
-    bound: Option<f64>,
-    worst: [&'a str; 4],
-}
-
-impl<'a> Cell<'a> {
-    fn empty(row: &'a Row) -> Self {
-        Self { tally: Tally::default(), worst: row }
-    }
-
-    fn add(&mut self, row: &'a Row) {
-        self.tally.add(row.verdict);
-        if worst_first(row) < worst_first(self.worst) {
-            self.worst = row;
-        }
-    }
 }
 
 /// Whether a row is about one engine's answer for one robot, with a verdict or a known deviation.

@@ -5,13 +5,13 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
+use featherbench_report::map::{inside, outside};
 use featherbench_report::numbers::{decades, larger, listed, short};
 use featherbench_report::{Overview, Tally, labels, swatch, worst_first};
 use featherbench_results::{Row, Verdict};
 use maud::{Markup, html};
 use serde::Serialize;
 
-use super::heatmap::{inside, outside};
 use super::{PAIRWISE, STUDY};
 
 /// The prefix of these robots' names.

@@ -26,12 +26,14 @@ pub(crate) fn sections<'a>(_: &RunInfo, rows: &'a [Row], overview: &Overview<'a>
     let (cells, who) = (Cells::of(overview, rows), WhoAgrees::of(overview, rows));
     let matrix = JointMatrix::of(overview, &cells.quantities, rows);
     let plots = depth::plots(overview, rows);
+    let (body, parts) = heatmap::markup(overview, &cells, &who);
     let mut sections = vec![
         Section {
+            parts,
             script: include_str!("heatmap.js"),
             finding: Some(Finding { rank: 1, body: findings::markup(&who) }),
             quantities: cells.quantities.iter().map(|&name| name.to_owned()).collect(),
-            ..Section::new("agreement", "Agreement", heatmap::markup(overview, &cells, &who)).with_data(&cells.data())
+            ..Section::new("agreement", "Agreement", body).with_data(&cells.data())
         },
         Section { script: include_str!("depth.js"), ..Section::new("depth", "Error", depth::markup(&plots)).with_data(&plots) },
         Section { style: include_str!("pairs.css"), ..Section::new("pairs", "Pairs", pairs::markup(overview, rows)) },

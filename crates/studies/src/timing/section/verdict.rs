@@ -5,7 +5,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use featherbench_bench::{BATCH, OWN};
 use featherbench_report::numbers::{count, grouped, short};
-use featherbench_report::{Overview, Part, TIMES, labels, opener};
+use featherbench_report::{Overview, Part, TIMES, engine, labels, opener, robot};
 use featherbench_results::{Row, Verdict};
 use maud::{Markup, html};
 
@@ -177,8 +177,8 @@ impl<'a> SpeedVerdict<'a> {
             return None;
         }
         let part = Part {
-            name: "speed-by-robot",
-            title: "Times by robot and quantity",
+            name: "speed-by-robot".into(),
+            title: "Times by robot and quantity".into(),
             body: html! { div.scroll.tall { (self.table(overview)) } },
         };
         let verdict = html! {
@@ -207,7 +207,7 @@ impl<'a> SpeedVerdict<'a> {
                     tbody {
                         @for &engine in &engines {
                             tr {
-                                th scope="row" { (overview.engines[engine]) }
+                                th scope="row" { (self::engine(overview, overview.engines[engine])) }
                                 @for &quantity in &quantities {
                                     @match self.median(engine, quantity) {
                                         Some((median, robots, estimated)) => td class={ "number " (step(median)) } title={ "median over " (count(robots, "robot")) } {
@@ -236,7 +236,7 @@ impl<'a> SpeedVerdict<'a> {
                 tbody {
                     @for line in &self.lines {
                         tr {
-                            th scope="row" { (labels::quantity(line.quantity)) } td { (overview.robots[line.robot].name) }
+                            th scope="row" { (labels::quantity(line.quantity)) } td { (robot(overview, overview.robots[line.robot].name)) }
                             td.number { @if let Some(nv) = overview.robots[line.robot].nv { (nv) } }
                             td.number.void[!line.ours.valid] { (time(line.ours)) }
                             @for engine in &self.engines {

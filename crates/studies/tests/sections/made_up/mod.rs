@@ -220,7 +220,7 @@ pub fn nodes(page: &str) -> usize {
     page.as_bytes().windows(2).filter(|pair| pair[0] == b'<' && pair[1].is_ascii_alphabetic()).count()
 }
 
-/// The run again and again with other robots, until it has at least this many rows.
+/// The run again and again with other robots, cut at this many rows; at least once as it is.
 pub fn large(count: usize) -> (RunInfo, Vec<Row>) {
     let mut run = run_info();
     let (once, robots) = (rows(&run), run.robots.clone());
@@ -230,6 +230,7 @@ pub fn large(count: usize) -> (RunInfo, Vec<Row>) {
         run.robots.extend(robots.iter().map(|robot| RobotInfo { name: renamed(&robot.name), ..robot.clone() }));
         all.extend(once.iter().map(|row| Row { robot: renamed(&row.robot), ..row.clone() }));
     }
+    all.truncate(count.max(once.len()));
     (run, all)
 }
 

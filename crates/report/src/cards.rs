@@ -1,0 +1,53 @@
+//! A finding in a list: its level, its sentence with links, and the command that repeats it.
+
+use featherbench_results::Severity;
+use maud::{Markup, html};
+
+use crate::blocks::{self, opener};
+use crate::chunks::UNPASSED;
+use crate::findings::{Found, clipped};
+use crate::overview::Overview;
+
+/// The class of a level: its colour.
+pub fn class(level: Severity) -> &'static str {
+    match level {
+        Severity::PhysicsDiffers => "physics",
+        Severity::MethodLosesDigits => "digits",
+        Severity::NotOffered => "absent",
+        Severity::Rounding => "rounding",
+    }
+}
+
+/// The finding as an item of a list.
+pub fn card(overview: &Overview, found: &Found) -> Markup {
+    let level = found.severity.map_or("condition", class);
+    html! {
+        li class=(if found.new { "fail" } else { "known" }) {
+            span class={ "level " (level) } { (found.level()) @if found.new { ", new" } } " "
+            b { (who(overview, found)) } ": " (found.size_words())
+            @if let Some(worst) = found.worst {
+                @let here = [("engine", worst.engine.as_str()), ("quantity", worst.quantity.as_str()), ("verdict", worst.verdict.as_str())];
+                @let all = [("engine", worst.engine.as_str()), ("verdict", worst.verdict.as_str())];
+                " on " @if !worst.robot.is_empty() { (blocks::robot(overview, &worst.robot)) ", " }
+                (opener(&overview.chunk_of(worst), &here, &if found.case().is_empty() { worst.study.clone() } else { found.case() }))
+                "; " (opener(UNPASSED, if found.quantities.len() == 1 { &here[..] } else { &all[..] }, &found.extent())) "."
+                @if !found.cause.is_empty() { " " span.cause { @if !found.new { "Known: " } (found.cause) } }
+            } @else {
+                @if !found.place().is_empty() { " (" (found.place()) ")" }
+                @if !found.cause.is_empty() { "; " span.cause { (clipped(&found.cause)) } }
+            }
+            @if !found.again.is_empty() {
+                details.again { summary { "Repeat it" } pre { code { (found.again) } } }
+            }
+        }
+    }
+}
+
+/// The engine, which leads to its page, and the quantities.
+fn who(overview: &Overview, found: &Found) -> Markup {
+    let words = found.who();
+    match words.strip_prefix(found.culprit.engine.as_str()).filter(|_| !found.culprit.engine.is_empty()) {
+        Some(rest) => html! { (blocks::engine(overview, &found.culprit.engine)) (rest) },
+        None => html! { (words) },
+    }
+}

@@ -1,0 +1,221 @@
+//! The pages of an engine, a robot and a study: what was found about it, from the gravest, then the map of its rows.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use featherbench_results::{Culprit, EngineInfo, RobotInfo, Row, RunInfo};
+use maud::{Markup, html};
+
+use crate::blocks::opener;
+use crate::cards::card;
+use crate::findings::{Findings, Status};
+use crate::labels;
+use crate::map::{Head, Map, engine_heads, legend, quantity_head, robot_heads};
+use crate::numbers::count;
+use crate::overview::{Overview, robot_chunk};
+use crate::section::Section;
+use crate::tally::Tally;
+
+/// Findings on a page; the first page has all.
+const LISTED: usize = 30;
+
+/// A page.
+pub struct Subject {
+    /// Its address in the report's folder.
+    pub path: String,
+    /// Its title.
+    pub title: String,
+    /// Its sections.
+    pub body: Markup,
+}
+
+/// What the pages are made from.
+pub struct Subjects<'a> {
+    run: &'a RunInfo,
+    overview: &'a Overview<'a>,
+    sections: &'a [Section],
+    engines: Vec<Vec<&'a Row>>,
+    robots: Vec<Vec<&'a Row>>,
+    studies: Vec<Vec<&'a Row>>,
+}
+
+impl<'a> Subjects<'a> {
+    /// Sorts the rows by engine, robot and study.
+    pub fn of(run: &'a RunInfo, rows: &'a [Row], overview: &'a Overview, sections: &'a [Section]) -> Self {
+        let (mut engines, mut robots) = (vec![Vec::new(); overview.engines.len()], vec![Vec::new(); overview.robots.len()]);
+        let mut studies = vec![Vec::new(); overview.studies.len()];
+        for row in rows {
+            let places = [
+                overview.engine(&row.engine).map(|at| &mut engines[at]),
+                overview.robot(&row.robot).map(|at| &mut robots[at]),
+                overview.study(&row.study).map(|at| &mut studies[at]),
+            ];
+            places.into_iter().flatten().for_each(|list| list.push(row));
+        }
+        Self { run, overview, sections, engines, robots, studies }
+    }
+
+    /// Every page, one after the other.
+    pub fn pages(&self) -> impl Iterator<Item = Subject> {
+        let engines = (0..self.engines.len()).map(|index| self.engine(index));
+        let robots = (0..self.robots.len()).map(|index| self.robot(index));
+        let studies = (0..self.studies.len()).map(|index| self.study(index));
+        engines.chain(robots).chain(studies)
+    }
+
+    fn engine(&self, index: usize) -> Subject {
+        let (name, rows) = (self.overview.engines[index], &self.engines[index]);
+        let info = self.run.engines.iter().find(|engine| engine.name == name);
+        let quantities = quantities(rows);
+        let mut map = Map {
+            id: "map".into(),
+            label: format!("Margin to the gate by robot and quantity: {name}"),
+            axes: ["robot", "quantity"],
+            filters: vec![("engine", name.to_owned())],
+            lines: robot_heads(self.overview),
+            columns: quantities.iter().map(|&quantity| quantity_head(quantity)).collect(),
+            cells: BTreeMap::new(),
+            named: false,
+        };
+        for &row in rows {
+            let quantity = quantities.iter().position(|&other| other == row.quantity);
+            if let (Some(line), Some(column)) = (self.overview.robot(&row.robot), quantity) {
+                map.add((line, column), row);
+            }
+        }
+        let about = html! { @if let Some(info) = info { (version(info)) } };
+        let findings = Findings::about(self.run, rows.iter().copied(), |culprit: &Culprit| culprit.engine == name);
+        self.page(&self.overview.pages.engines[index], "Engine", name, &findings, &about, &map)
+    }
+
+    fn robot(&self, index: usize) -> Subject {
+        let (about, rows) = (&self.overview.robots[index], &self.robots[index]);
+        let info = self.run.robots.iter().find(|robot| robot.name == about.name);
+        let quantities = quantities(rows);
+        let chunk = robot_chunk(index);
+        let mut map = Map {
+            id: "map".into(),
+            label: format!("Margin to the gate by quantity and engine: {}", about.name),
+            axes: ["quantity", "engine"],
+            filters: Vec::new(),
+            lines: quantities.iter().map(|&quantity| Head { chunk: Some(chunk.clone()), ..quantity_head(quantity) }).collect(),
+            columns: engine_heads(self.overview),
+            cells: BTreeMap::new(),
+            named: false,
+        };
+        for &row in rows {
+            let quantity = quantities.iter().position(|&other| other == row.quantity);
+            if let (Some(line), Some(column)) = (quantity, self.overview.engine(&row.engine)) {
+                map.add((line, column), row);
+            }
+        }
+        let number = |value: Option<u64>| value.map_or_else(|| "?".to_owned(), |value| value.to_string());
+        let words = html! {
+            p.lead {
+                @if !about.family.is_empty() { "Family " b { (about.family) } ", " }
+                (number(about.nv)) " degrees of freedom, " (number(about.bodies)) " bodies, depth " (number(about.depth)) ". "
+                (opener(&chunk, &[], "All its rows")) "."
+            }
+            @if let Some(info) = info { (source(info)) }
+        };
+        let findings = Findings::about(self.run, rows.iter().copied(), |culprit: &Culprit| culprit.robot == about.name);
+        self.page(&self.overview.pages.robots[index], "Robot", about.name, &findings, &words, &map)
+    }
+
+    fn study(&self, index: usize) -> Subject {
+        let (name, rows) = (self.overview.studies[index], &self.studies[index]);
+        // A study without robots has a line for each of its quantities.
+        let of_robots = rows.iter().any(|row| !row.robot.is_empty());
+        let quantities = quantities(rows);
+        let own = |quantity: &&str| Head { chunk: Some(format!("study-{index}")), ..quantity_head(quantity) };
+        let mut map = Map {
+            id: "map".into(),
+            label: format!("Margin to the gate by {} and engine: {name}", if of_robots { "robot" } else { "quantity" }),
+            axes: if of_robots { ["robot", "engine"] } else { ["quantity", "engine"] },
+            filters: vec![("study", name.to_owned())],
+            lines: if of_robots { robot_heads(self.overview) } else { quantities.iter().map(own).collect() },
+            columns: engine_heads(self.overview),
+            cells: BTreeMap::new(),
+            named: of_robots,
+        };
+        for &row in rows {
+            let line = if of_robots { self.overview.robot(&row.robot) } else { quantities.iter().position(|&other| other == row.quantity) };
+            if let (Some(line), Some(column)) = (line, self.overview.engine(&row.engine)) {
+                map.add((line, column), row);
+            }
+        }
+        let shown = self.sections.iter().find(|section| section.anchor == name);
+        let tally = Tally::of(rows.iter().map(|row| row.verdict));
+        let words = html! {
+            p.lead {
+                (count(rows.len(), "row")) ": " (tally.words()) "."
+                @if let Some(section) = shown { " " a href={ "#" (section.anchor) } { "Its section on the first page" } "." }
+            }
+        };
+        let findings = Findings::about(self.run, rows.iter().copied(), |culprit: &Culprit| culprit.study == name);
+        self.page(&self.overview.pages.studies[index], "Study", name, &findings, &words, &map)
+    }
+
+    /// The one template.
+    fn page(&self, path: &str, kind: &str, name: &str, findings: &Findings, about: &Markup, map: &Map) -> Subject {
+        let (class, sign) = match findings.status {
+            Status::Passed => ("good", "✓"),
+            Status::Failed => ("bad", "✕"),
+            Status::Empty => ("void", "·"),
+        };
+        let told = findings.headline();
+        // The headline of an engine's page begins with the engine already.
+        let headline = match told.strip_prefix(name) {
+            Some(rest) => rest.trim_start_matches([',', ':', ' ']),
+            None if findings.is_quiet() => "no engine misses a gate",
+            None => &told,
+        };
+        let body = html! {
+            section #about class={ "verdict " (class) } {
+                p.stamp { span.glyph aria-hidden="true" { (sign) } (kind) }
+                h1 { (name) ": " (headline) }
+                (about)
+                @if !findings.found.is_empty() {
+                    h2 { "What was found" }
+                    ol.findings { @for found in findings.found.iter().take(LISTED) { (card(self.overview, found)) } }
+                    @if findings.found.len() > LISTED { p.note { "The first " (LISTED) " of " (findings.found.len()) "." } }
+                }
+                p.note { (findings.levels()) " among " (findings.extent()) "." }
+            }
+            section #rows-map {
+                h2 { "By " (map.axes[0]) " and " (map.axes[1]) }
+                @if map.cells.is_empty() {
+                    p.empty { "No rows." }
+                } @else {
+                    p.lead { "Each cell is the worst row of its kind: the decades left between its error and its gate. A click opens its rows." }
+                    (legend())
+                    (map.markup(&html! {}))
+                }
+            }
+        };
+        Subject { path: path.to_owned(), title: name.to_owned(), body }
+    }
+}
+
+/// The quantities of rows, in the order of the page.
+fn quantities<'a>(rows: &[&'a Row]) -> Vec<&'a str> {
+    let names: BTreeSet<&str> = rows.iter().map(|row| row.quantity.as_str()).collect();
+    let mut names: Vec<&str> = names.into_iter().collect();
+    names.sort_by_key(|name| labels::quantity_rank(name));
+    names
+}
+
+fn version(info: &EngineInfo) -> Markup {
+    html! {
+        p.lead {
+            "Version " code { (info.version) } ", " (info.source) ": "
+            (info.status) @if !info.reason.is_empty() { ", " (info.reason) } "."
+        }
+    }
+}
+
+fn source(info: &RobotInfo) -> Markup {
+    html! {
+        p.note { "Origin: " (info.origin) @if !info.source.is_empty() { ", " (info.source) } @if !info.licence.is_empty() { "; licence " (info.licence) } "." }
+        @if !info.notes.is_empty() { ul { @for note in &info.notes { li { (note) } } } }
+    }
+}
