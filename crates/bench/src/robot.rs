@@ -5,6 +5,8 @@ use crate::{Import, RobotFile};
 use featherbench_model::{Description, Malformed, Model, Warning};
 use featherbench_results::ModelOrigin;
 use featherbench_robots::{BadState, StateBatch};
+use serde_json::Value;
+use std::collections::BTreeMap;
 
 /// The most configurations of a file that become states; a recorded motion may have thousands.
 const KEYFRAMES: usize = 16;
@@ -49,6 +51,8 @@ pub struct Robot {
     pub route: Route,
     /// The studies that use it; all, when there is no list.
     pub studies: Option<Vec<String>>,
+    /// The levels at which a suite drew it, by axis.
+    pub axes: BTreeMap<String, Value>,
 }
 
 impl Robot {
@@ -74,6 +78,7 @@ impl Robot {
             file: None,
             route: Route::Neutral,
             studies: None,
+            axes: BTreeMap::new(),
         })
     }
 
@@ -90,7 +95,8 @@ impl Robot {
         let family = name.split(':').next().unwrap_or(name).to_owned();
         let (name, depth) = (name.to_owned(), description.depth());
         let origin = ModelOrigin::Generated;
-        Ok(Self { name, family, origin, description, model, hash, states, depth, file: None, route: Route::Neutral, studies: None })
+        let axes = BTreeMap::new();
+        Ok(Self { name, family, origin, description, model, hash, states, depth, file: None, route: Route::Neutral, studies: None, axes })
     }
 
     /// The same robot, with its file.

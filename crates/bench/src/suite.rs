@@ -2,9 +2,11 @@
 //!
 //! A suite file has its own keys, and one table for each study that it asks for. The study reads its table itself, by [`Suite::settings`].
 
-use crate::{FileBase, HarnessError};
+use crate::{Draw, FileBase, HarnessError};
 use serde::Deserialize;
 use serde::de::DeserializeOwned;
+use serde_json::Value;
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use toml::de::{DeTable, DeValue, ValueDeserializer};
 
@@ -24,6 +26,8 @@ pub struct Suite {
     pub thorough: bool,
     /// The robots.
     pub robots: Vec<RobotEntry>,
+    /// The robots that it draws beside these.
+    pub draw: Option<Draw>,
     /// The names of its tables in alphabetical order, each that of a study.
     pub studies: Vec<String>,
     text: String,
@@ -41,10 +45,11 @@ struct Keys {
     thorough: bool,
     #[serde(default)]
     robot: Vec<RobotEntry>,
+    draw: Option<Draw>,
 }
 
 /// Their names.
-const KEYS: [&str; 6] = ["about", "seed", "states", "engines", "thorough", "robot"];
+const KEYS: [&str; 7] = ["about", "seed", "states", "engines", "thorough", "robot", "draw"];
 
 /// The table of a study without settings.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
@@ -52,7 +57,7 @@ const KEYS: [&str; 6] = ["about", "seed", "states", "engines", "thorough", "robo
 pub struct NoSettings {}
 
 /// A robot of a suite: a committed model, a generator's text, or a file of the robots' package, which only live runs have.
-#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct RobotEntry {
     /// Name of a file in `datasets/models`, without its extension.
@@ -83,6 +88,9 @@ pub struct RobotEntry {
     /// Whether runs that are not live leave it out. Otherwise a file's robot makes them an error.
     #[serde(default)]
     pub only_live: bool,
+    /// The levels at which it was drawn, by axis.
+    #[serde(skip)]
+    pub axes: BTreeMap<String, Value>,
 }
 
 impl RobotEntry {
@@ -122,7 +130,7 @@ impl Suite {
     /// [`HarnessError`], naming file, line and key.
     pub fn parse(text: &str, path: &Path) -> Result<Self, HarnessError> {
         let wrong = |message: String| HarnessError::Config { path: path.to_owned(), message };
-        let Keys { about, seed, states, engines, thorough, robot: robots } =
+        let Keys { about, seed, states, engines, thorough, robot: robots, draw } =
             toml::from_str(text).map_err(|error| wrong(error.to_string()))?;
         let mut studies = Vec::new();
         for (key, value) in document(text, path)?.iter().filter(|(key, _)| !KEYS.contains(&key.get_ref().as_ref())) {
@@ -139,13 +147,28 @@ impl Suite {
         if let Some(complaint) = robots.iter().find_map(RobotEntry::complaint) {
             return Err(wrong(complaint));
         }
+        if let Some(complaint) = draw.as_ref().and_then(Draw::complaint) {
+            return Err(wrong(complaint));
+        }
         let states = states.unwrap_or(1);
-        Ok(Self { about, seed, states, engines, thorough, robots, studies, text: text.into(), path: path.into() })
+        Ok(Self { about, seed, states, engines, thorough, robots, draw, studies, text: text.into(), path: path.into() })
     }
 
     /// The suite's file, as errors name it.
     pub fn path(&self) -> &Path {
         &self.path
+    }
+
+    /// The same suite with another number of drawn robots.
+    ///
+    /// # Errors
+    /// [`HarnessError`] when it draws none.
+    pub fn with_size(mut self, size: usize) -> Result<Self, HarnessError> {
+        match &mut self.draw {
+            Some(draw) => draw.size = size,
+            None => return Err(self.wrong("--size is for suites with a table [draw], as sweep has it".into())),
+        }
+        Ok(self)
     }
 
     /// The engines beside ours.

@@ -82,7 +82,7 @@ fn suites(root: &Root) -> Result<Vec<(String, String)>, Fail> {
 
 /// What there is to run, for programs. `list --help` describes the fields.
 fn json(root: &Root, args: &ListArgs) -> Result<Value, Fail> {
-    let loaded = robots::load(root, &args.suite, false, None)?;
+    let loaded = robots::load(root, &args.suite, false, None, None)?;
     let suite = json!({ "name": loaded.name, "about": loaded.suite.about });
     if args.cells {
         let cell = |cell: &Cell| {
@@ -117,7 +117,7 @@ fn text(root: &Root, args: &ListArgs) -> Result<String, Fail> {
     if args.conventions {
         return Ok(featherbench_bench::conventions::markdown(&featherbench_bench::conventions::read(&root.conventions())?));
     }
-    let loaded = robots::load(root, &args.suite, false, None)?;
+    let loaded = robots::load(root, &args.suite, false, None, None)?;
     if args.cells {
         return Ok(cells(root, &loaded)?.iter().map(|cell| format!("{}  {}\n", cell.id(), cell.path())).collect());
     }

@@ -35,7 +35,7 @@ fn processor() -> String {
 
 /// Records, or checks the recordings of, a suite.
 pub fn record(root: &Root, args: &RecordArgs) -> Result<(), Fail> {
-    let loaded = robots::load(root, &args.suite, false, None)?;
+    let loaded = robots::load(root, &args.suite, false, None, None)?;
     let gates = root.read_gates()?;
     let engines = loaded.suite.engines();
     let opened = engines::open(root, &Asked::live(root, engines, Limits::default()))?;

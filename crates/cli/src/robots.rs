@@ -11,6 +11,8 @@ use featherbench_engines::{Limits, Oracle};
 use featherbench_formats::urdf::{Base, Inertial, LinkInFile, Note, Options};
 use featherbench_model::{Description, Warning};
 use featherbench_robots::{Family, StateBatch};
+use std::collections::HashSet;
+use std::num::NonZeroUsize;
 use std::path::{Path, PathBuf};
 
 /// A suite with its file's hash and its robots.
@@ -21,14 +23,21 @@ pub struct Loaded {
     pub robots: Vec<Robot>,
 }
 
-/// Reads a suite by name or path, and its robots; another seed than its own draws other states.
-pub fn load(root: &Root, suite: &str, live: bool, seed: Option<u64>) -> Result<Loaded, Fail> {
+/// Reads a suite by name or path, and its robots; another seed than its own draws other states, another size more or fewer robots.
+pub fn load(root: &Root, suite: &str, live: bool, seed: Option<u64>, size: Option<NonZeroUsize>) -> Result<Loaded, Fail> {
     let path = suite_path(root, suite)?;
-    let (mut parsed, hash) = Suite::read(&path)?;
+    let (mut parsed, mut hash) = Suite::read(&path)?;
     parsed.seed = seed.unwrap_or(parsed.seed);
+    if let Some(size) = size {
+        parsed = parsed.with_size(size.get())?;
+        hash = featherbench_bench::hash::of_parts(&[hash.as_bytes(), &size.get().to_le_bytes()]);
+    }
+    let drawn: Vec<RobotEntry> = parsed.draw.iter().flat_map(|draw| draw.robots(parsed.seed)).collect();
+    parsed.robots.extend(drawn);
     let states = parsed.states;
     let mut files = Files { root, live, compiler: None };
     let mut robots: Vec<Robot> = Vec::with_capacity(parsed.robots.len());
+    let mut names = HashSet::new();
     let left_out = parsed.robots.iter().filter(|entry| entry.only_live && !live).count();
     if left_out > 0 {
         eprintln!("note: {left_out} of the suite's robots need --live and are left out");
@@ -51,7 +60,8 @@ pub fn load(root: &Root, suite: &str, live: bool, seed: Option<u64>) -> Result<L
             let name = entry.name.clone().unwrap_or(robot.name);
             robot.name = if named { format!("{name}-free") } else { name };
             robot.studies.clone_from(&entry.studies);
-            if robots.iter().any(|known| known.name == robot.name) {
+            robot.axes.clone_from(&entry.axes);
+            if !names.insert(robot.name.clone()) {
                 return Err(Fail::input(format!("{}: two robots are named '{}'", path.display(), robot.name)));
             }
             robots.push(robot);

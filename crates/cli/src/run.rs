@@ -37,7 +37,7 @@ pub fn prepare(root: &Root, args: &RunArgs) -> Result<Prepared, Fail> {
     let start = Instant::now();
     let filter = args.filter.as_deref().map(Regex::new).transpose();
     let filter = filter.map_err(|error| Fail::input(format!("--filter: {error}")))?;
-    let loaded = robots::load(root, &args.suite, args.live, args.seed)?;
+    let loaded = robots::load(root, &args.suite, args.live, args.seed, args.size)?;
     let program = provenance::collect(root.path());
     let studies = studies(root, &loaded, args, &program.binary_hash)?;
     let gates = root.read_gates()?.with_external(&externals(args));

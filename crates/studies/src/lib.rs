@@ -2,6 +2,7 @@
 //!
 //! - [`Agreement`]: do the engines agree on the same model, and how large is our error compared with the best engine's?
 //! - [`Accuracy`]: how far is each from the truth, and which engine is right?
+//! - `sweep`: what errors do drawn robots have, by depth, mass ratio, offset, speed and kind of joint?
 //! - [`Conditioning`]: how does κ(M) grow, and does it matter?
 //! - [`Derivatives`]: which engine's derivatives are right, on which joint, and what does the step of finite differences cost?
 //! - [`Import`]: do they import the same file alike, and if not, where and why do they differ?
@@ -46,6 +47,7 @@ mod residuals;
 mod scaling;
 mod scenes;
 mod steps;
+mod sweep;
 mod timing;
 mod uncertainty;
 
@@ -100,6 +102,15 @@ const STUDIES: &[Entry] = &[
     Entry { name: "contact", make: contact::of_suite, sections: contact::section::sections, words: contact::words::WORDS },
     Entry { name: "continuum", make: continuum::of_suite, sections: continuum::section::sections, words: continuum::words::WORDS },
     Entry { name: "scenes", make: scenes::of_suite, sections: scenes::section::sections, words: scenes::words::WORDS },
+    Entry { name: "agreement", make: agreement::of_suite, sections: agreement::section::sections },
+    Entry { name: "import", make: import::of_suite, sections: import::section::sections },
+    Entry { name: "accuracy", make: accuracy::of_suite, sections: accuracy::section::sections },
+    Entry { name: "sweep", make: sweep::of_suite, sections: sweep::section::sections },
+    Entry { name: "conditioning", make: conditioning::of_suite, sections: conditioning::section::sections },
+    Entry { name: "derivatives", make: derivatives::of_suite, sections: derivatives::section::sections },
+    Entry { name: "contact", make: contact::of_suite, sections: contact::section::sections },
+    Entry { name: "continuum", make: continuum::of_suite, sections: continuum::section::sections },
+    Entry { name: "scenes", make: scenes::of_suite, sections: scenes::section::sections },
     // Its rows are in the verdict and in the tables of rows.
     Entry { name: "relaxation", make: relaxation::of_suite, sections: no_section, words: relaxation::words::WORDS },
     Entry {

@@ -18,7 +18,7 @@ fn convicted(records: &[Row]) -> BTreeSet<&str> {
 fn records_of_a_wrong_majority(robot: &Robot, twist: support::Twist) -> Vec<Row> {
     let wrong = |name: &str| Box::new(Double::twisting(robot, twist).named(name)) as Box<dyn Engine>;
     let engines = [Box::new(Featherbench::new()) as Box<dyn Engine>, wrong("a"), wrong("b"), Box::new(Double::of(robot).named("c"))];
-    whole(&Accuracy, robot, &gates(""), &engines)
+    whole(&Accuracy::STATES, robot, &gates(""), &engines)
 }
 
 /// A relative error of 1e-11 in one quantity.
@@ -68,7 +68,7 @@ fn engines_that_stop_at_one_error_make_the_reference_the_suspect() {
         Box::new(heavier.named(name)) as Box<dyn Engine>
     };
     let limited = |engines: &[Box<dyn Engine>]| -> Vec<f64> {
-        let records = whole(&Accuracy, &robot, &gates(""), engines);
+        let records = whole(&Accuracy::STATES, &robot, &gates(""), engines);
         records.iter().filter(|row| row.metric == "limited_by_the_reference").filter_map(|row| row.value).collect()
     };
     assert_eq!(limited(&[other("a"), other("b"), other("c")]), [3.0]);

@@ -12,6 +12,7 @@ use crate::external::External;
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use featherbench_bench::shard::Shard;
 use std::ffi::OsString;
+use std::num::NonZeroUsize;
 use std::path::PathBuf;
 
 /// Who is right, by how much, and how fast: dynamics engines on one and the same robots.
@@ -101,6 +102,9 @@ pub struct RunArgs {
     /// The seed of the states, instead of the suite's; recorded answers are to the suite's own.
     #[arg(long, requires = "live")]
     pub seed: Option<u64>,
+    /// The number of robots that the suite draws, instead of its own (for suites with a table [draw]).
+    #[arg(long, value_name = "N")]
+    pub size: Option<NonZeroUsize>,
     /// An engine of one's own, as NAME=PROGRAM [ARGS…]: a program that speaks oracles/PROTOCOL.md; may be repeated.
     #[arg(long = "engine", value_name = "NAME=PROGRAM")]
     pub externals: Vec<External>,
@@ -376,6 +380,7 @@ impl RunArgs {
         let mut words = vec!["--suite".to_owned(), self.suite.clone()];
         let mut option = |name: &str, value: Option<String>| words.extend(value.into_iter().flat_map(|value| [name.to_owned(), value]));
         option("--seed", self.seed.map(|seed| seed.to_string()));
+        option("--size", self.size.map(|size| size.to_string()));
         for external in &self.externals {
             option("--engine", Some(external.to_string()));
         }
@@ -404,7 +409,7 @@ mod tests {
     /// What a shard keeps of its command is enough to make the whole run.
     #[test]
     fn the_arguments_that_define_a_run_make_it_again() {
-        let all = "--suite smoke --live --seed 3 --engine a='my oracle' --engine b=x --filter 'a|b' --recorded r --timeout 7 --memory 9 --no-timing";
+        let all = "--suite smoke --live --seed 3 --size 9 --engine a='my oracle' --engine b=x --filter 'a|b' --recorded r --timeout 7 --memory 9 --no-timing";
         let all = ::featherbench_results::words(&all.replace("a='my oracle'", "\"a='my oracle'\"")).unwrap();
         let part = [&all[..], &["--shard", "2/7", "--out", "x", "--resume", "--costs", "y"].map(str::to_owned)].concat();
         let whole = RunArgs::of(&RunArgs::of(&part).unwrap().defining()).unwrap();

@@ -20,6 +20,9 @@ pub struct PlanArgs {
     /// The seed of the states, instead of the suite's.
     #[arg(long, requires = "live")]
     pub seed: Option<u64>,
+    /// The number of robots that the suite draws, as in `run`.
+    #[arg(long, value_name = "N")]
+    pub size: Option<NonZeroUsize>,
     /// An engine of one's own, as in `run`; may be repeated.
     #[arg(long = "engine", value_name = "NAME=PROGRAM")]
     pub externals: Vec<External>,
@@ -53,6 +56,7 @@ impl PlanArgs {
             suite: self.suite.clone(),
             live: self.live,
             seed: self.seed,
+            size: self.size,
             externals: self.externals.clone(),
             filter: self.filter.clone(),
             no_timing: self.no_timing,

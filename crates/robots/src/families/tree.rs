@@ -17,9 +17,28 @@ pub enum Mix {
     All,
     /// The same without screws, which not every engine has.
     Common,
+    /// Prismatic joints alone.
+    Prismatic,
+    /// Screws alone.
+    Helical,
+    /// Spherical joints alone.
+    Spherical,
+    /// Planar joints alone.
+    Planar,
+    /// Universal joints alone.
+    Universal,
 }
 
-words!(Mix { Revolute => "revolute", All => "all", Common => "common" });
+words!(Mix {
+    Revolute => "revolute",
+    All => "all",
+    Common => "common",
+    Prismatic => "prismatic",
+    Helical => "helical",
+    Spherical => "spherical",
+    Planar => "planar",
+    Universal => "universal",
+});
 
 /// A random tree. Body k depends on the seed and k only, the tree's shape on the seed and `spread`.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -37,11 +56,15 @@ pub struct Tree {
     pub base: Base,
     /// Whether one-dof joints have armature.
     pub armature: bool,
+    /// Factor on the last body's mass and inertia.
+    pub tip_scale: f64,
+    /// The joints on the world are this far along x and y from where they were drawn, m.
+    pub base_offset: f64,
 }
 
 impl Default for Tree {
     fn default() -> Self {
-        Self { n: 20, seed: 1, spread: 0.3, joints: Mix::Revolute, base: Base::Fixed, armature: false }
+        Self { n: 20, seed: 1, spread: 0.3, joints: Mix::Revolute, base: Base::Fixed, armature: false, tip_scale: 1.0, base_offset: 0.0 }
     }
 }
 
@@ -58,12 +81,16 @@ impl Tree {
             joints: parameters.take("joints", default.joints, Mix::WORDS)?,
             base: parameters.take("base", default.base, Base::WORDS)?,
             armature: parameters.take("armature", default.armature, "true or false")?,
+            tip_scale: parameters.take("tip_scale", default.tip_scale, "a positive number")?,
+            base_offset: parameters.take("base_offset", default.base_offset, "a distance in metres")?,
         })
     }
 
     pub(super) fn check(&self) -> Result<(), BadFamily> {
         require((1..=MOST_LINKS).contains(&self.n), "tree", "n", self.n, "1 to 1000000")?;
-        require((0.0..=1.0).contains(&self.spread), "tree", "spread", self.spread, "a probability, 0 to 1")
+        require((0.0..=1.0).contains(&self.spread), "tree", "spread", self.spread, "a probability, 0 to 1")?;
+        require(self.tip_scale.is_normal() && self.tip_scale > 0.0, "tree", "tip_scale", self.tip_scale, "a positive number")?;
+        require(self.base_offset.is_finite(), "tree", "base_offset", self.base_offset, "a finite distance in metres")
     }
 
     pub(super) fn describe(&self) -> Description {
@@ -87,13 +114,21 @@ impl Tree {
             }
             let mut random = Random::named(self.seed, &format!("tree/body/{k}"));
             let word = match self.joints {
-                Mix::Revolute => "revolute",
                 Mix::All => MOVABLE[random.below(MOVABLE.len())],
                 Mix::Common => COMMON[random.below(COMMON.len())],
+                one => one.name(),
             };
             let kind = random_kind(&mut random, word);
             bodies.push(random_body(&mut random, format!("body_{k}"), path.last().copied(), kind, MASS, self.armature));
             path.push(bodies.len() - 1);
+        }
+        if let Some(tip) = bodies.last_mut() {
+            tip.mass *= self.tip_scale;
+            tip.inertia = tip.inertia.map(|entry| entry * self.tip_scale);
+        }
+        for body in bodies.iter_mut().filter(|body| body.parent.is_none()) {
+            let [x, y, z] = body.joint.placement.translation;
+            body.joint.placement.translation = [x + self.base_offset, y + self.base_offset, z];
         }
         Description { name: self.name(), gravity, bodies, ..Description::default() }
     }
@@ -101,13 +136,21 @@ impl Tree {
     fn name(&self) -> String {
         let base = if self.base == Base::Free { "-free" } else { "" };
         let armature = if self.armature { "-armature" } else { "" };
-        format!("tree-{}-{}-spread{}-seed{}{base}{armature}", self.joints, self.n, self.spread, self.seed)
+        let mut name = format!("tree-{}-{}-spread{}-seed{}{base}{armature}", self.joints, self.n, self.spread, self.seed);
+        if self.tip_scale != 1.0 {
+            name += &format!("-tip{:e}", self.tip_scale);
+        }
+        if self.base_offset != 0.0 {
+            name += &format!("-offset{:e}", self.base_offset);
+        }
+        name
     }
 }
 
 impl fmt::Display for Tree {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { n, seed, spread, joints, base, armature } = self;
-        write!(f, "n={n},seed={seed},spread={spread:?},joints={joints},base={base},armature={armature}")
+        let Self { n, seed, spread, joints, base, armature, tip_scale, base_offset } = self;
+        write!(f, "n={n},seed={seed},spread={spread:?},joints={joints},base={base},armature={armature}")?;
+        write!(f, ",tip_scale={tip_scale:?},base_offset={base_offset:?}")
     }
 }

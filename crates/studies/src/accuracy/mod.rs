@@ -20,12 +20,29 @@ use featherbench_dynamics::TreeSparse;
 use featherbench_results::{Row, Verdict};
 use serde_json::json;
 
-/// The accuracy study.
-pub struct Accuracy;
+/// The accuracy study, and the study `sweep`, which asks the same of drawn robots at one state each.
+pub struct Accuracy {
+    name: &'static str,
+    /// The quantiles over the states that have rows.
+    quantiles: &'static [(&'static str, f64)],
+    /// Whether errors of several engines that are alike throw a suspicion on the reference. At a single state they are alike by chance.
+    suspects: bool,
+}
+
+impl Accuracy {
+    /// The accuracy study.
+    pub const STATES: Self = Self {
+        name: "accuracy",
+        quantiles: &[("error_q1", 0.25), ("error_median", 0.5), ("error_q3", 0.75), ("error_worst", 1.0)],
+        suspects: true,
+    };
+    /// The same of drawn robots. Their quantiles are over the robots: the report takes them from the rows.
+    pub const SWEEP: Self = Self { name: "sweep", quantiles: &[("error_worst", 1.0)], suspects: false };
+}
 
 /// The study, if the suite asks for it.
 pub(crate) fn of_suite(setup: &Setup) -> Made {
-    Ok(setup.suite.settings::<NoSettings>("accuracy")?.map(|_| Box::new(Accuracy) as _))
+    Ok(setup.suite.settings::<NoSettings>("accuracy")?.map(|_| Box::new(Accuracy::STATES) as _))
 }
 
 /// The quantities that are compared with the truth.
@@ -45,7 +62,7 @@ const FLOOR_DOFS: usize = 300;
 
 impl Study for Accuracy {
     fn name(&self) -> &'static str {
-        "accuracy"
+        self.name
     }
 
     fn compares_all(&self) -> bool {
@@ -56,7 +73,10 @@ impl Study for Accuracy {
         let mut cells = Vec::new();
         for robot in context.robots.iter().filter(|robot| robot.takes(self.name())) {
             let big = robot.states.nv > DENSE_LIMIT;
-            let params = json!({"base": robot.base(), "states": robot.states.count()});
+            let mut params = json!({"base": robot.base(), "states": robot.states.count()});
+            if !robot.axes.is_empty() {
+                params["axes"] = json!(robot.axes);
+            }
             for engine in context.engines {
                 let identity = engine.identity();
                 for quantity in QUANTITIES {
@@ -125,7 +145,7 @@ impl Study for Accuracy {
                     let typical = median(&mut residuals);
                     rows.extend(typical.map(|residual| Row { metric: "residual_median".into(), ..blank.clone() }.informed(residual)));
                 }
-                rows.extend(quartiles(context, &blank, &mut plain));
+                rows.extend(self.quantiles(context, &blank, &mut plain));
                 if quantity == Quantity::ForwardDynamics {
                     medians.extend(median(&mut plain).map(|error| (cell.engine.clone(), error)));
                 }
@@ -137,10 +157,11 @@ impl Study for Accuracy {
                     .collect();
                 let worst = errors.iter().copied().fold(0.0, featherbench_bench::measure::worst);
                 rows.push(context.gates.judge(Row { metric: "true".into(), ..blank.clone() }, worst, 1.0));
-                rows.extend(quartiles(context, &blank, &mut errors));
+                rows.extend(self.quantiles(context, &blank, &mut errors));
             }
         }
-        if let (Some((cell, _)), Some(standing)) = (finished.first(), limited_by_the_reference(&medians, floor)) {
+        let standing = self.suspects.then(|| limited_by_the_reference(&medians, floor)).flatten();
+        if let (Some((cell, _)), Some(standing)) = (finished.first(), standing) {
             let row = Row { engine: "all".into(), engine_version: String::new(), method: String::new(), ..row(cell, robot) };
             let row = Row {
                 quantity: "fd".into(),
@@ -153,6 +174,18 @@ impl Study for Accuracy {
             rows.push(row.informed(standing as f64));
         }
         rows
+    }
+}
+
+impl Accuracy {
+    /// The quantiles of the errors, as measured rows. A row with a gate is judged.
+    fn quantiles(&self, context: &Context, blank: &Row, errors: &mut [f64]) -> Vec<Row> {
+        sort(errors);
+        let of = |&(metric, fraction): &(&str, f64)| {
+            let row = Row { metric: metric.into(), ..blank.clone() };
+            context.gates.judge(row, crate::quantile(errors, fraction), 1.0)
+        };
+        self.quantiles.iter().map(of).collect()
     }
 }
 
@@ -208,17 +241,6 @@ fn probe(mass: &TreeSparse<f64>, vectors: &[f64]) -> Vec<f64> {
     values.extend(mass.diagonal());
     values.extend((0..n).map(|j| mass.get(n - 1, j)));
     values
-}
-
-/// First quartile, median, third quartile and largest of the errors, as measured rows. A row with a gate is judged.
-fn quartiles(context: &Context, blank: &Row, errors: &mut [f64]) -> Vec<Row> {
-    sort(errors);
-    let metrics = [("error_q1", 0.25), ("error_median", 0.5), ("error_q3", 0.75), ("error_worst", 1.0)];
-    let rows = metrics.map(|(metric, fraction)| {
-        let row = Row { metric: metric.into(), ..blank.clone() };
-        context.gates.judge(row, crate::quantile(errors, fraction), 1.0)
-    });
-    rows.into()
 }
 
 /// The largest ratio of an error to the conditioning bound of its state: what the algorithm adds to the effect of rounding the inputs.
