@@ -53,6 +53,7 @@ mod filter;
 mod gate;
 mod generate;
 mod history;
+mod hyperqueue;
 mod identify;
 mod list;
 mod merge;
@@ -74,6 +75,7 @@ mod root;
 mod run;
 mod say;
 mod shard;
+mod sweep;
 mod table;
 mod uncertainty;
 
@@ -100,6 +102,7 @@ fn dispatch(cli: Cli) -> Result<(), Fail> {
     match cli.command.unwrap_or_else(default) {
         Command::Run(args) => run::run(&root()?, &args),
         Command::Plan(args) => plan::plan(&root()?, &args),
+        Command::Sweep(args) => sweep::sweep(&root()?, &args),
         Command::Merge(args) => merge::merge(&root()?, &args),
         Command::Compare(args) => compare::compare(&root()?, &args),
         Command::Report(args) => report::write(&args),

@@ -17,7 +17,7 @@ const LEAST_MINUTES: f64 = 10.0;
 
 /// Prints the plan of a suite.
 pub fn plan(root: &Root, args: &PlanArgs) -> Result<(), Fail> {
-    let whole = args.run();
+    let whole = args.whole.run();
     let prepared = run::prepare(root, &whole)?;
     prepared.check_filter(&whole)?;
     let plan = shard::plan(&prepared, &whole)?;
@@ -36,7 +36,7 @@ pub fn plan(root: &Root, args: &PlanArgs) -> Result<(), Fail> {
 }
 
 /// The cells and the estimated cost of each shard.
-fn totals(plan: &Plan, numbers: &[usize], shards: usize) -> Vec<(usize, f64)> {
+pub fn totals(plan: &Plan, numbers: &[usize], shards: usize) -> Vec<(usize, f64)> {
     let mut totals = vec![(0, 0.0); shards];
     for (planned, number) in plan.cells.iter().zip(numbers) {
         if let Some((cells, seconds)) = totals.get_mut(number - 1) {

@@ -5,11 +5,14 @@ use crate::fail::Fail;
 use crate::progress::Bar;
 use crate::run::{Prepared, opening};
 use crate::say::say;
+use crate::sweep;
 use ::featherbench_results::{RunInfo, checksum_of};
 use featherbench_bench::run::Run;
 use featherbench_bench::shard::{Costs, Plan, Shard, ShardFile};
-use featherbench_bench::{Entries, OUTCOMES_NAME};
+use featherbench_bench::{Entries, HarnessError, OUTCOMES_NAME};
+use serde_json::json;
 use std::collections::HashSet;
+use std::fs::File;
 use std::path::Path;
 
 /// The plan of a run; its costs are those of earlier runs where they are known.
@@ -18,13 +21,20 @@ pub fn plan(prepared: &Prepared, args: &RunArgs) -> Result<Plan, Fail> {
     Ok(Plan::new(&prepared.studies, &prepared.context(), &|cell| prepared.keeps(cell), &costs))
 }
 
+/// The file whose lock the process has that evaluates a shard. Another one waits: a task may be started again while its first process lives on.
+const LOCK_NAME: &str = "lock";
+
 /// Evaluates a shard into its folder.
 pub fn evaluate(prepared: &Prepared, args: &RunArgs, shard: Shard, folder: &Path, info: RunInfo) -> Result<(), Fail> {
-    let plan = plan(prepared, args)?;
+    let (plan, started) = (plan(prepared, args)?, info.started.clone());
     let ids: Vec<String> = plan.part(shard).into_iter().map(|planned| planned.id.clone()).collect();
     let run = Run::open_shard(folder, opening(args), info, shard, ids.iter().map(String::as_str))?;
     prepared.check_filter(args)?;
+    let lock = File::create(folder.join(LOCK_NAME)).and_then(|file| file.lock().map(|()| file));
+    let _lock = lock.map_err(|source| HarnessError::io(folder, source))?;
     let mine: HashSet<String> = ids.iter().cloned().collect();
+    let kept = if folder.join(OUTCOMES_NAME).exists() { Entries::open(folder)?.cells().count() } else { 0 };
+    sweep::journal(folder, &json!({ "process": std::process::id(), "time": started, "cells": ids.len(), "kept": kept }))?;
     run.evaluate(&prepared.studies, &prepared.context(), &|cell| prepared.keeps(cell), &mine, &Bar::new())?;
     let mut file = ShardFile::new(shard, &run.info, args.defining(), ids);
     let entries = Entries::open(folder)?;

@@ -6,7 +6,7 @@ mod sweep;
 
 pub use analysis::{Estimator, IdentifyArgs, Propagation, Term, UncertaintyArgs};
 pub use judge::{DiffArgs, GateArgs, HistoryArgs, ReportArgs};
-pub use sweep::{ExportArgs, MergeArgs, PlanArgs};
+pub use sweep::{ExportArgs, MergeArgs, PlanArgs, SweepArgs};
 
 use crate::external::External;
 use clap::{Args, Parser, Subcommand, ValueEnum};
@@ -43,6 +43,8 @@ pub enum Command {
     Run(RunArgs),
     /// Print the cells of a suite with what they cost, and how they are cut into shards.
     Plan(PlanArgs),
+    /// Run a suite as tasks of HyperQueue, on this machine or a cluster, and merge them.
+    Sweep(SweepArgs),
     /// Merge the shards of a run into what one process would have written: compare, judge, report.
     Merge(MergeArgs),
     /// Ask whether the engines read robots' files alike, and if not, where and why.

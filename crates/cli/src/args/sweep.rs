@@ -6,11 +6,9 @@ use clap::Args;
 use std::num::NonZeroUsize;
 use std::path::PathBuf;
 
+/// What is planned, in shards or as tasks.
 #[derive(Debug, Clone, Args)]
-#[command(
-    after_help = "Examples:\n  featherbench plan default\n  featherbench plan default --costs reports/today --shards 7\n  featherbench plan default --shards 100 --slurm > sweep.sh && sbatch sweep.sh\n\nA cost is the wall time of a cell on one core: that of the runs in --costs, else an estimate from its robot's states and dofs, marked ~."
-)]
-pub struct PlanArgs {
+pub struct WholeArgs {
     /// The suite: a name in datasets/suites, or a TOML file.
     #[arg(default_value = "default")]
     pub suite: String,
@@ -38,18 +36,9 @@ pub struct PlanArgs {
     /// An earlier run or shard whose times the costs are taken from; may be repeated.
     #[arg(long, value_name = "DIR")]
     pub costs: Vec<PathBuf>,
-    /// Number of shards.
-    #[arg(long, value_name = "N", default_value = "1")]
-    pub shards: NonZeroUsize,
-    /// Print JSON.
-    #[arg(long, conflicts_with = "slurm")]
-    pub json: bool,
-    /// Print a job-array script of SLURM with one task per shard, and the command that merges them.
-    #[arg(long)]
-    pub slurm: bool,
 }
 
-impl PlanArgs {
+impl WholeArgs {
     /// The run that is planned.
     pub fn run(&self) -> RunArgs {
         RunArgs {
@@ -65,6 +54,54 @@ impl PlanArgs {
             ..RunArgs::default_suite()
         }
     }
+}
+
+#[derive(Debug, Clone, Args)]
+#[command(
+    after_help = "Examples:\n  featherbench sweep sweep --live --size 10000 --workers 8 --out reports/large\n  featherbench sweep sweep --live --size 10000 --out reports/large --resume\n  featherbench sweep nightly --live --server-dir ~/.hq-server --out reports/night\n\nThe cells are cut into tasks, each a shard in a folder of its own below DIR, which keeps outcomes as they come. HyperQueue starts the tasks: without\n--server-dir on this machine. Tasks with cells that must run alone (timing) come last, one at a time, each with all cores of a worker. A task\nthat failed, and all tasks of a server that ended, are started again and go on where they were. When all are done they are merged into one run.\n\nOn a cluster: start `hq server start` on a login node, give it workers (`hq alloc add slurm …`, or `hq worker start` in a job), and sweep with its\nfolder as --server-dir. All nodes need this checkout, the same program and a file system that they share. DIR/journal.jsonl has the rounds, and\nDIR/shard-I-of-N/journal.jsonl the starts of a task.\n\nExit codes: as of `run`; 2 also when tasks fail in every round: --resume goes on."
+)]
+pub struct SweepArgs {
+    #[command(flatten)]
+    pub whole: WholeArgs,
+    /// The folder of the tasks and of the merged run; by default a new one in reports/.
+    #[arg(long, value_name = "DIR")]
+    pub out: Option<PathBuf>,
+    /// Go on with the sweep in --out: what is finished is kept.
+    #[arg(long, requires = "out")]
+    pub resume: bool,
+    /// Workers of one core each on this machine; by default one for each core.
+    #[arg(long, value_name = "N", conflicts_with = "server_dir")]
+    pub workers: Option<NonZeroUsize>,
+    /// The folder of a running HyperQueue server, whose workers are used.
+    #[arg(long, value_name = "DIR")]
+    pub server_dir: Option<PathBuf>,
+    /// The least estimated work of a task, in seconds; a task starts this program and its engines, which takes about one.
+    #[arg(long, value_name = "SECONDS", default_value_t = 10.0)]
+    pub task_seconds: f64,
+    /// How often unfinished tasks are started again.
+    #[arg(long, value_name = "N", default_value_t = 3)]
+    pub retries: usize,
+    /// Open the report when the sweep ends.
+    #[arg(long)]
+    pub open: bool,
+}
+
+#[derive(Debug, Clone, Args)]
+#[command(
+    after_help = "Examples:\n  featherbench plan default\n  featherbench plan default --costs reports/today --shards 7\n  featherbench plan default --shards 100 --slurm > sweep.sh && sbatch sweep.sh\n\nA cost is the wall time of a cell on one core: that of the runs in --costs, else an estimate from its robot's states and dofs, marked ~."
+)]
+pub struct PlanArgs {
+    #[command(flatten)]
+    pub whole: WholeArgs,
+    /// Number of shards.
+    #[arg(long, value_name = "N", default_value = "1")]
+    pub shards: NonZeroUsize,
+    /// Print JSON.
+    #[arg(long, conflicts_with = "slurm")]
+    pub json: bool,
+    /// Print a job-array script of SLURM with one task per shard, and the command that merges them.
+    #[arg(long)]
+    pub slurm: bool,
 }
 
 #[derive(Debug, Clone, Args)]
