@@ -15,6 +15,7 @@ from pathlib import Path
 
 import duckdb
 import matplotlib as mpl
+import pandas as pd
 import polars as pl
 
 mpl.use("svg")
@@ -40,17 +41,37 @@ def by_depth(files: str) -> pl.DataFrame:
     return mine.drop_nulls("value").group_by("engine", "depth").agg(pl.col("value").max()).sort("engine", "depth").collect()
 
 
-def check(files: str) -> tuple[int, int]:
-    """Number of rows by polars and by DuckDB; an error if a column has another type than `schema.json` says."""
-    rows = pl.scan_parquet(files, hive_partitioning=True)
-    types = dict(rows.collect_schema())
-    due = {"study": pl.String, "engine": pl.String, "nv": pl.Int64, "value": pl.Float64, "margin": pl.Float64, "valid": pl.Boolean}
-    for name, kind in due.items():
-        if types[name] != kind:
-            message = f"{files}: the column {name} is {types[name]}, not {kind}"
+#: The names of one type in polars, pandas (with the types of Arrow) and DuckDB.
+TYPES = {
+    ("String", "string", "VARCHAR"),
+    ("Int64", "int64", "BIGINT"),
+    ("Float64", "double", "DOUBLE"),
+    ("Boolean", "bool", "BOOLEAN"),
+}
+#: Some columns with their types in `schema.json`, in the words of polars.
+DUE = {"study": "String", "engine": "String", "nv": "Int64", "value": "Float64", "margin": "Float64", "valid": "Boolean"}
+
+
+def check(folder: Path, files: str) -> tuple[int, int, int]:
+    """Number of rows by polars, pandas and DuckDB; an error if a column has another type in one of them, or than `schema.json` says."""
+    lazy = pl.scan_parquet(files, hive_partitioning=True)
+    by_polars = {name: str(kind) for name, kind in lazy.collect_schema().items()}
+    frame = pd.read_parquet(folder, dtype_backend="pyarrow")
+    # pandas makes categories of what is in the names of folders.
+    frame["study"] = frame["study"].astype("string[pyarrow]")
+    by_pandas = {name: str(kind).removesuffix("[pyarrow]") for name, kind in frame.dtypes.items()}
+    described = duckdb.execute("DESCRIBE SELECT * FROM read_parquet(?, hive_partitioning = true)", [files]).fetchall()
+    by_duckdb = {column[0]: column[1] for column in described}
+    if not set(by_polars) == set(by_pandas) == set(by_duckdb):
+        message = f"{folder}: the columns differ: {sorted(by_polars)}, {sorted(by_pandas)}, {sorted(by_duckdb)}"
+        raise TypeError(message)
+    for name, kind in by_polars.items():
+        kinds = (kind, by_pandas[name], by_duckdb[name])
+        if kinds not in TYPES or kind != DUE.get(name, kind):
+            message = f"{folder}: the column {name} is {kinds[0]} in polars, {kinds[1]} in pandas and {kinds[2]} in DuckDB"
             raise TypeError(message)
     counted = duckdb.execute("SELECT count(*) FROM read_parquet(?, hive_partitioning = true)", [files]).fetchall()[0][0]
-    return rows.select(pl.len()).collect().item(), counted
+    return lazy.select(pl.len()).collect().item(), len(frame), counted
 
 
 def draw_map(cells: list[tuple[str, str, float]], path: Path) -> None:
@@ -87,13 +108,15 @@ def main() -> None:
     parser.add_argument("out", type=Path, help="the folder of the figures")
     arguments = parser.parse_args()
     files = f"{arguments.rows}/**/*.parquet"
-    cells, table, (by_polars, by_duckdb) = worst(files), by_depth(files), check(files)
+    cells, table, counts = worst(files), by_depth(files), check(arguments.rows, files)
     if not cells or table.is_empty():
         parser.error(f"{arguments.rows} has no errors of the study agreement")
     arguments.out.mkdir(parents=True, exist_ok=True)
     draw_map(cells, arguments.out / "map.svg")
     draw_depth(table, arguments.out / "depth.svg")
-    print(f"{by_polars} rows by polars, {by_duckdb} by DuckDB, {len(cells)} pairs of engine and quantity, {table.height} depths")
+    by_polars, by_pandas, by_duckdb = counts
+    rows = f"{by_polars} rows by polars, {by_pandas} by pandas, {by_duckdb} by DuckDB"
+    print(f"{rows}, {len(cells)} pairs of engine and quantity, {table.height} depths")
 
 
 if __name__ == "__main__":

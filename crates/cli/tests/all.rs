@@ -17,6 +17,7 @@ mod parsers;
 mod planted;
 mod residuals;
 mod resume;
+mod schema;
 mod shards;
 mod support;
 mod uncertainty;

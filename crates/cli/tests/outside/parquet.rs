@@ -1,4 +1,4 @@
-//! Rows in Parquet are what polars and DuckDB read, and figures are made of them.
+//! Rows in Parquet have the same types in polars, pandas and DuckDB, and figures are made of them.
 
 use crate::Outcome;
 use crate::support::{Sandbox, project};
@@ -7,9 +7,9 @@ use std::process::Command;
 
 /// The example script on the rows of a recorded run.
 pub fn figures(python: &Path) -> Outcome {
-    let has = Command::new(python).args(["-c", "import duckdb, matplotlib, polars"]).output();
+    let has = Command::new(python).args(["-c", "import duckdb, matplotlib, pandas, polars, pyarrow"]).output();
     if !has.is_ok_and(|output| output.status.success()) {
-        return Outcome::Skipped("polars, DuckDB and matplotlib are not installed: ci/python-tools".into());
+        return Outcome::Skipped("polars, pandas, DuckDB and matplotlib are not installed: ci/python-tools".into());
     }
     let sandbox = Sandbox::new();
     sandbox.run(&["run", "--suite", "smoke", "--no-timing", "--out", "run"]).expect(0, &["report:"]);
@@ -20,7 +20,10 @@ pub fn figures(python: &Path) -> Outcome {
     assert!(output.status.success(), "{said}{}", String::from_utf8_lossy(&output.stderr));
     let (_, rows) = featherbench_results::read_run(&sandbox.path("run")).unwrap();
     let count = rows.len();
-    assert!(count > 500 && said.starts_with(&format!("{count} rows by polars, {count} by DuckDB")), "{count} rows: {said}");
+    assert!(
+        count > 500 && said.starts_with(&format!("{count} rows by polars, {count} by pandas, {count} by DuckDB")),
+        "{count} rows: {said}"
+    );
     for name in ["figures/map.svg", "figures/depth.svg"] {
         assert!(std::fs::read_to_string(sandbox.path(name)).unwrap().contains("pinocchio"), "{name} names no engine");
     }

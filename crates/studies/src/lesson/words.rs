@@ -11,8 +11,8 @@ pub(crate) const WORDS: Words = Words {
         ("separation_error", "distance of `off_by` from a second route, relative"),
         ("held_out", "error of torques on a motion that none has seen, over their size"),
         ("logged", "the same, on the motion that was logged"),
-        ("held_out_over_before", "the error of this stage over that of the stage before"),
-        ("held_out_exact", "the error of the last stage, which knows everything"),
+        ("held_out_over_before", "`held_out` of this stage over that of the stage before"),
+        ("held_out_exact", "`held_out` of a stage whose model has the form of the truth"),
     ],
     params: &[],
 };

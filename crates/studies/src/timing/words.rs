@@ -6,9 +6,9 @@ pub(crate) const WORDS: Words = Words {
     quantities: &[("machine", "the machine itself")],
     metrics: &[
         ("ns_per_call", "time of a call"),
-        ("ratio", "the candidate's time over ours, paired"),
-        ("best_other", "our time over that of the best other engine"),
-        ("finding", "the candidate's ratio, with what the controls say"),
+        ("ratio", "the candidate's time over that of our usual method, paired"),
+        ("best_other", "time of the best other engine over ours, paired"),
+        ("finding", "1 if the candidate is slower than our usual method, -1 if it is faster, 0 if the interval holds 1"),
         ("control", "ratio of a candidate to its own copy: the A/A control"),
         ("worst_error", "the largest error of the timed answers"),
         ("overhead_ns", "the cost of calling the engine, which was subtracted"),
