@@ -17,7 +17,8 @@ use std::process::{Child, Command, Stdio};
 const NAME: &str = "hyperqueue";
 const REQUIREMENTS: &str = "requirements.txt";
 const DRIVER: &str = "drive.py";
-const ADVICE: &str = "sweeps need Python 3.11 with venv on Linux x86-64, and once a reachable package index; `featherbench plan --slurm` needs neither";
+const ADVICE: &str =
+    "sweeps need Python 3.11 with venv on Linux x86-64, and once a reachable package index; `featherbench plan --slurm` needs neither";
 
 /// The Python in which HyperQueue is installed; it is installed if need be. The stamp is written last: an installation that broke off is not taken.
 pub fn install(root: &Root) -> Result<PathBuf, Fail> {

@@ -124,7 +124,8 @@ fn open(root: &Root, args: &SweepArgs, whole: &RunArgs) -> Result<(PathBuf, Swee
     if args.resume {
         let folder = absolute(args.out.as_deref().unwrap_or(Path::new(".")))?;
         let path = folder.join(SWEEP_NAME);
-        let read = std::fs::read(&path).map_err(|error| Fail::input(format!("{}: there is no sweep to go on with: {error}", path.display())))?;
+        let read =
+            std::fs::read(&path).map_err(|error| Fail::input(format!("{}: there is no sweep to go on with: {error}", path.display())))?;
         let known: Sweep = serde_json::from_slice(&read).map_err(|error| Fail::input(format!("{}: {error}", path.display())))?;
         if known.arguments != arguments {
             let (then, now) = (known.arguments.join(" "), arguments.join(" "));

@@ -207,6 +207,7 @@ fn any_tree() -> impl Strategy<Value = Description> {
             joints: if all { Mix::All } else { Mix::Revolute },
             base: if free { Base::Free } else { Base::Fixed },
             armature,
+            ..Tree::default()
         };
         Family::Tree(tree).generate().expect("in range")
     })

@@ -92,6 +92,8 @@ const STUDIES: &[Entry] = &[
     Entry { name: "agreement", make: agreement::of_suite, sections: agreement::section::sections, words: agreement::words::WORDS },
     Entry { name: "import", make: import::of_suite, sections: import::section::sections, words: import::words::WORDS },
     Entry { name: "accuracy", make: accuracy::of_suite, sections: accuracy::section::sections, words: accuracy::words::WORDS },
+    // The measures and the truth are those of the study before it, and so are the words.
+    Entry { name: "sweep", make: sweep::of_suite, sections: sweep::section::sections, words: accuracy::words::WORDS },
     Entry {
         name: "conditioning",
         make: conditioning::of_suite,
@@ -102,15 +104,6 @@ const STUDIES: &[Entry] = &[
     Entry { name: "contact", make: contact::of_suite, sections: contact::section::sections, words: contact::words::WORDS },
     Entry { name: "continuum", make: continuum::of_suite, sections: continuum::section::sections, words: continuum::words::WORDS },
     Entry { name: "scenes", make: scenes::of_suite, sections: scenes::section::sections, words: scenes::words::WORDS },
-    Entry { name: "agreement", make: agreement::of_suite, sections: agreement::section::sections },
-    Entry { name: "import", make: import::of_suite, sections: import::section::sections },
-    Entry { name: "accuracy", make: accuracy::of_suite, sections: accuracy::section::sections },
-    Entry { name: "sweep", make: sweep::of_suite, sections: sweep::section::sections },
-    Entry { name: "conditioning", make: conditioning::of_suite, sections: conditioning::section::sections },
-    Entry { name: "derivatives", make: derivatives::of_suite, sections: derivatives::section::sections },
-    Entry { name: "contact", make: contact::of_suite, sections: contact::section::sections },
-    Entry { name: "continuum", make: continuum::of_suite, sections: continuum::section::sections },
-    Entry { name: "scenes", make: scenes::of_suite, sections: scenes::section::sections },
     // Its rows are in the verdict and in the tables of rows.
     Entry { name: "relaxation", make: relaxation::of_suite, sections: no_section, words: relaxation::words::WORDS },
     Entry {

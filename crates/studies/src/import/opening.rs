@@ -16,8 +16,8 @@ pub(super) fn opening(rows: &[Row]) -> (Markup, Option<Part>) {
     all.sort_by_key(rank);
     let alike = all.iter().filter(|answer| rank(answer) == ALIKE).count();
     let part = (all.len() > TOLD).then(|| Part {
-        name: "import-answers",
-        title: "Every robot in every engine",
+        name: "import-answers".into(),
+        title: "Every robot in every engine".into(),
         body: html! { div.scroll.tall { (table(&all)) } },
     });
     let markup = html! {

@@ -176,10 +176,7 @@ mod tests {
         let told = |params: &str, depth| {
             levels(&row(params, depth)).into_iter().map(|level| format!("{} {}", level.axis, level.name)).collect::<Vec<_>>()
         };
-        assert_eq!(
-            told(r#"{"axes":{"joints":"all","n":16,"tip_scale":1e-6}}"#, 5),
-            ["joints all", "n 16", "tip_scale 1e-6", "depth ≤ 8"]
-        );
+        assert_eq!(told(r#"{"axes":{"joints":"all","n":16,"tip_scale":1e-6}}"#, 5), ["joints all", "n 16", "tip_scale 1e-6", "depth ≤ 8"]);
         assert_eq!(told("no JSON", 1), ["depth ≤ 1"]);
     }
 
