@@ -18,5 +18,9 @@ pub(crate) const WORDS: Words = Words {
             "the number of engines whose best answers all have the same error: there the reference may be the limit",
         ),
     ],
-    params: &[("base", "how the first body is attached: fixed or free"), ("states", "the number of states that were asked")],
+    params: &[
+        ("base", "how the first body is attached: fixed or free"),
+        ("states", "the number of states that were asked"),
+        ("axes", "the level of each axis at which the suite drew the robot (study sweep)"),
+    ],
 };
