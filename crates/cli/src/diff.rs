@@ -3,7 +3,7 @@
 use crate::args::DiffArgs;
 use crate::fail::Fail;
 use crate::say::{self, say};
-use ::featherbench_results::{Change, Changed, Diff, ERROR_FACTOR, Row, RunInfo, TIME_NOISE, diff, read_run};
+use ::featherbench_results::{Apart, Change, Changed, Diff, ERROR_FACTOR, Row, RunInfo, TIME_NOISE, atomic_write, diff, read_run};
 use serde_json::{Value, json};
 use std::fmt::Write as _;
 
@@ -14,6 +14,11 @@ const LISTED: usize = 40;
 pub fn compare(args: &DiffArgs) -> Result<(), Fail> {
     let (before, old) = read_run(&args.before)?;
     let (after, new) = read_run(&args.after)?;
+    if let Some(path) = &args.html {
+        atomic_write(path, featherbench_report::changes::between((&before, &old), (&after, &new)).as_bytes())?;
+        // Standard output is one object with --json.
+        eprintln!("page: {}", path.display());
+    }
     let mut found = diff(&old, &new);
     let apart = Apart::of(&before, &after, &mut found);
     if args.json {
@@ -29,42 +34,8 @@ pub fn compare(args: &DiffArgs) -> Result<(), Fail> {
     }
 }
 
-fn is_unmatched(changed: &Changed) -> bool {
-    matches!(changed.change, Change::Gone | Change::New)
-}
-
 fn unmatched(found: &Diff) -> usize {
-    found.changes.iter().filter(|changed| is_unmatched(changed)).count()
-}
-
-/// Two suites that differ. Rows that only one of them has are no changes: they are counted and not listed.
-struct Apart {
-    suites: [String; 2],
-    /// Rows of the first run alone, and of the second.
-    only: [usize; 2],
-}
-
-impl Apart {
-    /// Takes rows of one run alone out of the changes, if the suites differ by name or by content.
-    fn of(before: &RunInfo, after: &RunInfo, found: &mut Diff) -> Option<Self> {
-        if before.suite == after.suite && before.suite_hash == after.suite_hash {
-            return None;
-        }
-        let count = |change: Change| found.changes.iter().filter(|changed| changed.change == change).count();
-        let only = [count(Change::Gone), count(Change::New)];
-        found.changes.retain(|changed| !is_unmatched(changed));
-        Some(Self { suites: [before.suite.clone(), after.suite.clone()], only })
-    }
-
-    fn sentence(&self) -> String {
-        let ([a, b], [gone, new]) = (&self.suites, self.only);
-        let what = if a == b {
-            format!("the suite '{a}' changed between the two runs")
-        } else {
-            format!("the runs are of two suites, '{a}' and '{b}'")
-        };
-        format!("{what}: {gone} rows are in the first run only and {new} in the second only")
-    }
+    found.changes.iter().filter(|changed| changed.is_unmatched()).count()
 }
 
 /// Everything that changed, for programs. `diff --help` describes the fields.

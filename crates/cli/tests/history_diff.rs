@@ -61,6 +61,9 @@ fn two_runs_are_compared_as_a_table_and_as_markdown() {
     ended.expect(1, &["2 of 2 rows"]);
     let first = ended.output.lines().nth(1).unwrap();
     assert!(["time", "humanoid", "featherbench x", "fd", "2.000"].iter().all(|word| first.contains(word)), "{first}");
+    sandbox.run(&["diff", "a", "c", "--html", "pages/changes.html"]).expect(1, &["page: pages/changes.html", "130.0 ns"]);
+    let page = std::fs::read_to_string(sandbox.path("pages/changes.html")).unwrap();
+    assert!(["1 row changed beyond noise", "featherbench x", ">1.3<"].iter().all(|words| page.contains(words)), "{page}");
     sandbox.run(&["diff", "a", "nowhere"]).expect(2, &["nowhere"]);
     sandbox.run(&["diff", "--help"]).expect(0, &["Exit codes: 0 nothing changed"]);
 }

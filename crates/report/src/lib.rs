@@ -16,10 +16,11 @@
 //! |---|---|
 //! | data | [`numbers`], [`labels`], [`fit`], `error`, then [`figure`], then `tally`, `overview`, `section`, then `findings`, `parts`, then `chunks`, [`forms`] |
 //! | sections | `blocks`, then [`map`], `cards`, then `verdict`, `conventions`, `provenance`, `method`, `unpassed`, `figures`, `subjects` |
-//! | page | `page`, `summary`, [`runs`], then `write` |
+//! | page | `page`, `summary`, [`changes`], `trends`, then [`runs`], then `write` |
 
 mod blocks;
 mod cards;
+pub mod changes;
 mod chunks;
 mod conventions;
 mod error;
@@ -41,6 +42,7 @@ mod section;
 mod subjects;
 mod summary;
 mod tally;
+mod trends;
 mod unpassed;
 mod verdict;
 mod write;

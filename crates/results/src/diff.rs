@@ -74,7 +74,7 @@ pub struct Diff<'a> {
 }
 
 /// The columns that identify a row in a run. Parameters are not among them: the same time may be taken with other settings.
-type Key<'a> = ([&'a str; 11], usize);
+pub(crate) type Key<'a> = ([&'a str; 11], usize);
 
 /// Compares two runs.
 pub fn diff<'a>(before: &'a [Row], after: &'a [Row]) -> Diff<'a> {
@@ -113,7 +113,7 @@ pub fn diff<'a>(before: &'a [Row], after: &'a [Row]) -> Diff<'a> {
 }
 
 /// Rows with the columns that identify them. Rows that have the same columns are numbered.
-fn keyed(rows: &[Row]) -> Vec<(Key<'_>, &Row)> {
+pub(crate) fn keyed(rows: &[Row]) -> Vec<(Key<'_>, &Row)> {
     let mut seen: BTreeMap<[&str; 11], usize> = BTreeMap::new();
     rows.iter()
         .map(|row| {
@@ -141,8 +141,13 @@ fn identity(row: &Row) -> [&str; 11] {
 }
 
 /// Whether a row is a time, or a ratio of times: rows with an interval.
-fn is_time(row: &Row) -> bool {
+pub(crate) fn is_time(row: &Row) -> bool {
     row.kind == Kind::Measured && matches!(row.metric.as_str(), "ns_per_call" | "ratio")
+}
+
+/// Whether an exact value is a count: it has a unit, or must equal its bound. Any other pure number is an error.
+pub(crate) fn is_count(row: &Row) -> bool {
+    row.unit != "1" || row.relation == Some(Relation::Eq)
 }
 
 /// The kind of change of an exact value, if it changed.
@@ -151,9 +156,7 @@ fn moved(before: &Row, after: &Row) -> Option<Change> {
         return None;
     }
     let (was, is) = (before.value?, after.value?);
-    // A value with a unit, or one that must equal its bound, is a count; a pure number is an error.
-    let count = after.unit != "1" || after.relation == Some(Relation::Eq);
-    if count {
+    if is_count(after) {
         return (was != is).then_some(Change::Count);
     }
     // NaN.max(x) is x: a NaN would count as zero.
@@ -165,16 +168,21 @@ fn moved(before: &Row, after: &Row) -> Option<Change> {
 }
 
 /// The noise of a run's experiments by robot, quantity and cache: the larger distance of the A/A interval's ends from 1.
-struct Noise<'a>(BTreeMap<[&'a str; 3], f64>);
+pub(crate) struct Noise<'a>(BTreeMap<[&'a str; 3], f64>);
 
 impl<'a> Noise<'a> {
-    fn of(rows: &'a [Row]) -> Self {
+    pub(crate) fn of(rows: &'a [Row]) -> Self {
         let mut noise: BTreeMap<[&str; 3], f64> = BTreeMap::new();
         for row in rows.iter().filter(|row| row.kind == Kind::Measured && row.metric == "control") {
             let reach = noise.entry([&row.robot, &row.quantity, &row.cache]).or_default();
             *reach = [row.ci_low, row.ci_high].into_iter().flatten().fold(*reach, |reach, end| larger(reach, (end - 1.0).abs()));
         }
         Self(noise)
+    }
+
+    /// The noise of a time in this run; NaN if it is not known.
+    pub(crate) fn of_row(&self, row: &Row) -> f64 {
+        self.beside(self, row)
     }
 
     /// The noise of a time in both runs; NaN if an A/A ratio is NaN, and the noise is not known.
@@ -185,7 +193,7 @@ impl<'a> Noise<'a> {
 }
 
 /// The interval of a time; without one, the time itself.
-fn interval(row: &Row) -> (f64, f64) {
+pub(crate) fn interval(row: &Row) -> (f64, f64) {
     let value = row.value.unwrap_or(f64::NAN);
     (row.ci_low.unwrap_or(value), row.ci_high.unwrap_or(value))
 }

@@ -14,6 +14,7 @@
 //! assert_eq!((lost.value, lost.verdict), (None, Verdict::Error));
 //! ```
 
+mod apart;
 mod checksum;
 mod columns;
 mod dictionary;
@@ -28,7 +29,9 @@ mod repeat;
 mod row;
 mod run_info;
 mod severity;
+mod trend;
 
+pub use apart::Apart;
 pub use checksum::{CHECKSUMS_NAME, Checksums, checksum, checksum_of, seal, unsealed};
 pub use columns::{COLUMNS, Column, ColumnType, schema_json};
 pub use dictionary::{Dictionary, Named, Term};
@@ -49,3 +52,4 @@ pub use run_info::{
     ShardInfo,
 };
 pub use severity::Severity;
+pub use trend::{BESIDE, ChangePoint, Point, Trend, Trended, trends};

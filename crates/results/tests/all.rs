@@ -4,3 +4,4 @@ mod diff;
 mod integrity;
 mod parquet;
 mod round_trip;
+mod trend;

@@ -63,7 +63,7 @@ pub struct GateArgs {
 
 #[derive(Debug, Clone, Args)]
 #[command(
-    after_help = "What changes: a verdict; a count; an error by a factor of 4; a time when the intervals of both runs are apart and their ratio is beyond 2 % and the A/A controls of both; a row that only one run has. Times that do not count are not compared.\n\nTwo suites that differ: rows that only one run has are counted, not listed; the exit code is 1.\n\nWith --json, standard output is one object: before and after {run, suite, revision, started}, status (same, changed), same_suite, compared (rows), invalid (times that do not count), only_before, only_after (rows), changes [{change, study, robot, engine, method, precision, quantity, states, body, cache, metric, reference, unit, before, after, factor}]. before and after of a change are {value, verdict}, or null.\n\nExit codes: 0 nothing changed beyond noise, 1 something did, 2 usage or bad input.\n\nExample:\n  featherbench diff reports/before reports/after --markdown"
+    after_help = "What changes: a verdict; a count; an error by a factor of 4; a time when the intervals of both runs are apart and their ratio is beyond 2 % and the A/A controls of both; a row that only one run has. Times that do not count are not compared.\n\nTwo suites that differ: rows that only one run has are counted, not listed; the exit code is 1.\n\nWith --json, standard output is one object: before and after {run, suite, revision, started}, status (same, changed), same_suite, compared (rows), invalid (times that do not count), only_before, only_after (rows), changes [{change, study, robot, engine, method, precision, quantity, states, body, cache, metric, reference, unit, before, after, factor}]. before and after of a change are {value, verdict}, or null.\n\nExit codes: 0 nothing changed beyond noise, 1 something did, 2 usage or bad input.\n\nExample:\n  featherbench diff reports/before reports/after --markdown\n  featherbench diff reports/before reports/after --html changes.html"
 )]
 pub struct DiffArgs {
     /// The folder of the first run.
@@ -78,11 +78,14 @@ pub struct DiffArgs {
     /// Print everything as JSON.
     #[arg(long)]
     pub json: bool,
+    /// Write a page of one file, too, which opens without a network.
+    #[arg(long, value_name = "FILE")]
+    pub html: Option<PathBuf>,
 }
 
 #[derive(Debug, Clone, Args)]
 #[command(
-    after_help = "Of a folder of runs: writes its page index.html, which says what appeared, vanished and changed from run to run.\nOf a run: appends its times of our kernels to the history of its machine.\n\nExamples:\n  featherbench history reports\n  python ci/instructions.py --out counts.csv\n  featherbench history reports/timing --instructions counts.csv --to datasets/history"
+    after_help = "Of a folder of runs: writes its page index.html: trends of errors, times and failing rows of each engine and robot, change points, engine upgrades, and what appeared, vanished and changed from run to run.\nOf a run: appends its times of our kernels to the history of its machine.\n\nExamples:\n  featherbench history reports\n  python ci/instructions.py --out counts.csv\n  featherbench history reports/timing --instructions counts.csv --to datasets/history"
 )]
 pub struct HistoryArgs {
     /// A folder of runs, or the folder of a run with times.

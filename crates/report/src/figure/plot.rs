@@ -13,6 +13,8 @@ const BOX: [f64; 2] = [430.0, 310.0];
 const CORNER: [f64; 2] = [72.0, 16.0];
 /// Room below the box.
 const BELOW: f64 = 50.0;
+/// Heights at which the words of events stand.
+const EVENT_LINES: usize = 6;
 /// Marks on stairs, which may have thousands of points.
 const SPARSE: usize = 8;
 
@@ -67,6 +69,11 @@ pub struct Plot {
 impl Plot {
     /// Draws it; `None` if no point has a place.
     pub fn figure(self, name: &'static str, caption: String) -> Option<Figure> {
+        self.figure_with(name, caption, &[])
+    }
+
+    /// The same with events: a vertical line at a place of the axis across, and what happened there.
+    pub fn figure_with(self, name: &'static str, caption: String, events: &[(f64, String)]) -> Option<Figure> {
         let shown = |point: &&Point| self.x.fits(point.x) && self.y.fits(point.y);
         let points = || self.series.iter().flat_map(|series| &series.points).filter(shown);
         let [left, top] = CORNER;
@@ -79,6 +86,15 @@ impl Plot {
         let size = [right + 14.0 + legend_width(&names), crate::numbers::larger(below, top + 20.0 * names.len() as f64 + 10.0)];
         let body = html! {
             (frame(&self, &x, &y, [left, top, right, bottom]))
+            @for (index, (value, words)) in events.iter().filter(|(value, _)| self.x.fits(*value)).enumerate() {
+                @let place = x.place(*value);
+                // Words of neighbours stand below one another.
+                @let height = top + 14.0 + 13.0 * (index % EVENT_LINES) as f64;
+                path.event d={ "M" (at(place)) " " (at(top)) "V" (at(bottom)) } stroke="#8a5a00" stroke-dasharray="2 3" {}
+                @let late = place > (left + right) / 2.0;
+                text x=(at(if late { place - 4.0 } else { place + 4.0 })) y=(at(height)) font-size="11" fill="#6b4700"
+                    text-anchor=(if late { "end" } else { "start" }) { (words) }
+            }
             @for series in &self.series {
                 @let places: Vec<(f64, f64)> = series.points.iter().filter(shown).map(|point| (x.place(point.x), y.place(point.y))).collect();
                 @let every = if series.line == Line::Stairs { places.len().div_ceil(SPARSE).max(1) } else { 1 };
