@@ -1,0 +1,47 @@
+"""`ci/newest`: versions are read from `engines.toml` and written into a copy of it, and what pip cannot resolve is a warning."""
+
+import runpy
+import tomllib
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+ROOT = Path(__file__).resolve().parents[2]
+
+
+@pytest.fixture(scope="module")
+def script() -> dict[str, Any]:
+    return runpy.run_path(str(ROOT / "ci/newest"))
+
+
+@pytest.fixture(scope="module")
+def engines() -> str:
+    return (ROOT / "oracles/engines.toml").read_text()
+
+
+def test_the_shared_engines_are_pinned(script: dict[str, Any], engines: str) -> None:
+    found = script["pinned"](engines)
+    assert set(found) == {"pin", "mujoco", "drake", "dartpy"}
+    assert found["mujoco"] == tomllib.loads(engines)["mujoco"]["package"]["version"]
+
+
+def test_one_version_is_renewed_and_nothing_else(script: dict[str, Any], engines: str) -> None:
+    renewed = script["renewed"](engines, {"mujoco": "99.1"})
+    changed = [(a, b) for a, b in zip(engines.splitlines(), renewed.splitlines(), strict=True) if a != b]
+    assert len(changed) == 1
+    assert 'version = "99.1"' in changed[0][1]
+    assert script["pinned"](renewed)["mujoco"] == "99.1"
+    with pytest.raises(ValueError, match="no line with the package mojoco"):
+        script["renewed"](engines, {"mojoco": "1"})
+
+
+def test_the_table_says_what_is_newer(script: dict[str, Any]) -> None:
+    told = script["table"]({"a": "1", "b": "2"}, {"a": "1", "b": "3"})
+    assert "| a | 1 | 1 |" in told
+    assert "| b | 2 | 3 (newer) |" in told
+
+
+def test_a_warning_is_one_line(script: dict[str, Any], capsys: pytest.CaptureFixture[str]) -> None:
+    script["warn"]("50 %\nmore")
+    assert capsys.readouterr().out == "::warning title=the newest engines::50 %25%0Amore\n"
