@@ -12,21 +12,25 @@ ROOT = Path(__file__).resolve().parents[2]
 
 @pytest.fixture(scope="module")
 def script() -> dict[str, Any]:
+    """The names of the script."""
     return runpy.run_path(str(ROOT / "ci/newest"))
 
 
 @pytest.fixture(scope="module")
 def engines() -> str:
+    """The text of `engines.toml`."""
     return (ROOT / "oracles/engines.toml").read_text()
 
 
 def test_the_shared_engines_are_pinned(script: dict[str, Any], engines: str) -> None:
+    """Four engines share the environment, each with its version."""
     found = script["pinned"](engines)
     assert set(found) == {"pin", "mujoco", "drake", "dartpy"}
     assert found["mujoco"] == tomllib.loads(engines)["mujoco"]["package"]["version"]
 
 
 def test_one_version_is_renewed_and_nothing_else(script: dict[str, Any], engines: str) -> None:
+    """One line changes, and an unknown package is an error."""
     renewed = script["renewed"](engines, {"mujoco": "99.1"})
     changed = [(a, b) for a, b in zip(engines.splitlines(), renewed.splitlines(), strict=True) if a != b]
     assert len(changed) == 1
@@ -37,11 +41,13 @@ def test_one_version_is_renewed_and_nothing_else(script: dict[str, Any], engines
 
 
 def test_the_table_says_what_is_newer(script: dict[str, Any]) -> None:
+    """A newer version is marked."""
     told = script["table"]({"a": "1", "b": "2"}, {"a": "1", "b": "3"})
     assert "| a | 1 | 1 |" in told
     assert "| b | 2 | 3 (newer) |" in told
 
 
 def test_a_warning_is_one_line(script: dict[str, Any], capsys: pytest.CaptureFixture[str]) -> None:
+    """Line ends and per cent signs are escaped as GitHub asks."""
     script["warn"]("50 %\nmore")
     assert capsys.readouterr().out == "::warning title=the newest engines::50 %25%0Amore\n"

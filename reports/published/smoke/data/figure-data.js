@@ -1,0 +1,1 @@
+featherbench.chunk("figure-data",{});

@@ -1,0 +1,1 @@
+featherbench.chunk("times",{"columns":["run","cell","study","family","robot","nq","nv","bodies","depth","engine","engine_version","method","precision","quantity","states","body","cache","metric","kind","value","ci_low","ci_high","unit","reference","relation","bound","floor","margin","verdict","valid","estimated","reason","params"],"rows":[]});
