@@ -96,7 +96,11 @@ def heatmap(page: Browser, shot: Shot) -> Checks:
     page.click(f"#{table} td button")
     rows = page.until(ROWS)
     seen = page.run(DISTINCT, ["engine", "quantity", "robot"])
-    yield "a cell of an engine's quantities opens its rows alone", rows > 0 and seen[0] == [engine] and all(len(part) == 1 for part in seen), seen
+    yield (
+        "a cell of an engine's quantities opens its rows alone",
+        rows > 0 and seen[0] == [engine] and all(len(part) == 1 for part in seen),
+        seen,
+    )
     page.press(ESCAPE)
     page.choose("#heat-engine", "")
     yield "the worst of each engine comes back", page.run("return !document.querySelector('#heat-whole').hidden"), ""

@@ -136,3 +136,16 @@ featherbench.dressed((root) => {
     }
   }
 });
+
+// Boxes that scroll and hold nothing that Tab reaches are reached themselves, so that the arrow keys scroll them.
+(() => {
+  const focusable = (box) => {
+    const scrolls = box.scrollWidth > box.clientWidth || box.scrollHeight > box.clientHeight;
+    if (scrolls && !box.querySelector("a, button, input, select")) box.tabIndex = 0;
+    else box.removeAttribute("tabindex");
+  };
+  const all = (root) => { for (const box of [...root.querySelectorAll(".scroll"), ...(root.matches?.(".scroll") ? [root] : [])]) focusable(box); };
+  featherbench.dressed(all);
+  addEventListener("resize", () => all(document));
+  document.addEventListener("toggle", ({ target }) => all(target), true);
+})();

@@ -97,7 +97,7 @@ fn header(run: &RunInfo, sections: &[&Section]) -> Markup {
     html! {
         header {
             div.bar {
-                a.brand href="#verdict" {
+                a.brand href="#verdict" aria-label="featherbench: the verdict" {
                     (logo())
                     span { "featherbench" }
                 }

@@ -84,8 +84,8 @@ fn tiles(findings: &Findings) -> Markup {
 /// The findings from the gravest, each with its rows and the command that repeats it.
 fn list(overview: &Overview, findings: &Findings) -> Markup {
     html! {
-        @if !findings.found.is_empty() {
-            h3 { "What was found" }
+        h2 { "What was found" }
+        @if findings.found.is_empty() { p { "Nothing." } } @else {
             ol.findings { @for found in findings.found.iter().take(TOLD) { (card(overview, found)) } }
         }
     }
