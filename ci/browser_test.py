@@ -3,8 +3,8 @@
 
     python ci/browser_test.py REPORT_DIR [--shots FOLDER] [--only axe]
 
-Needs chromium and chromedriver on the path, and no Python package: chromedriver is asked by JSON over local HTTP. The rules of accessibility
-are those of axe-core, which npm brings once, at a pinned version and checksum, into target/axe.
+Needs chromium and chromedriver on the path, and no Python package: chromedriver is asked by JSON over local HTTP.
+The rules of accessibility are those of axe-core, which npm brings once, at a pinned version and checksum, into target/axe.
 Prints each check and `N passed, N failed`. Exit status: 0 if all passed, 1 if one failed, 2 if the browser could not be started.
 """
 

@@ -22,8 +22,9 @@ START = """
     window.axeAnswer = null;
     axe.run(document, {runOnly: {type: 'tag', values: arguments[0]}, resultTypes: ['violations']})
       .then(results => {
-        const part = ({id, impact, nodes}) => ({id, impact, count: nodes.length,
-          nodes: nodes.slice(0, 3).map(node => `${node.target.join(' ')}: ${node.any.concat(node.all).map(({message}) => message).join('; ')}`)});
+        const why = node => node.any.concat(node.all).map(({message}) => message).join('; ');
+        const told = node => `${node.target.join(' ')}: ${why(node)}`;
+        const part = ({id, impact, nodes}) => ({id, impact, count: nodes.length, nodes: nodes.slice(0, 3).map(told)});
         window.axeAnswer = {rules: results.testEngine.version, violations: results.violations.map(part)};
       })
       .catch(error => { window.axeAnswer = {rules: '', violations: [{id: String(error)}]}; });"""
@@ -32,7 +33,7 @@ PATIENCE = 300
 
 
 def source() -> str:
-    """Get the script of axe-core: from the folder of builds, or else from the registry of npm. A package with another checksum is an error."""
+    """Get the script of axe-core: from the folder of builds, or else by npm. A package with another checksum is an error."""
     package = FOLDER / f"axe-core-{VERSION}.tgz"
     if not package.is_file():
         FOLDER.mkdir(parents=True, exist_ok=True)

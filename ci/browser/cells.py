@@ -74,7 +74,7 @@ def heatmap(page: Browser, shot: Shot) -> Checks:
     page.choose("#heat-sort", "")
     yield "and stand in their order again", page.run(names) == given, given[:3]
     page.click("#heat-trouble")
-    seen = page.run(f"""
+    seen = page.run("""
         const shown = [...document.querySelectorAll('#heat tr[data-m]')].filter(row => !row.hidden);
         return shown.every(row => [...row.querySelectorAll('td button')].some(button => !/^p\\d/.test(button.className)))""")
     yield "only robots with trouble can be shown", seen, ""
