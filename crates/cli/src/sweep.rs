@@ -13,7 +13,7 @@ use crate::run;
 use crate::shard;
 use ::featherbench_results::atomic_write;
 use featherbench_bench::HarnessError;
-use featherbench_bench::shard::{Part, Plan};
+use featherbench_bench::shard::{Part, Plan, SHARD_NAME};
 use serde::{Deserialize, Serialize};
 use serde_json::json;
 use std::fs::OpenOptions;
@@ -27,10 +27,11 @@ const SWEEP_NAME: &str = "sweep.json";
 const JOURNAL_NAME: &str = "journal.jsonl";
 /// How many workers may end under a task before HyperQueue gives it up; the next round starts it again.
 const CRASHES: usize = 5;
-/// A task: a shard that was begun goes on, and one that is finished is not begun again. The arguments: the shard's folder, the command.
+/// A task: a shard that was begun goes on, and one that is finished is not begun again. A folder without a fingerprint holds nothing but what a
+/// process left that ended while it wrote that. The arguments: the shard's folder, the command.
 const SCRIPT: &str = r#"shard=$1; shift
-[ -e "$shard/shard.json" ] && exit 0
-resume=; [ -e "$shard/fingerprint.json" ] && resume=--resume
+if [ -e "$shard/shard.json" ]; then exit 0; fi
+if [ -e "$shard/fingerprint.json" ]; then resume=--resume; else rm -rf "$shard"; resume=; fi
 RAYON_NUM_THREADS=1 exec "$@" --out "$shard" $resume"#;
 
 /// The file of a sweep.
@@ -84,6 +85,13 @@ pub fn sweep(root: &Root, args: &SweepArgs) -> Result<(), Fail> {
         }
         if round > 0 {
             eprintln!("note: {} of {} tasks are not finished and are started again", numbers.len(), sweep.shards);
+        }
+        for &number in &numbers {
+            // What is there is damaged: without the file the shard is an unfinished one, whose good outcomes are kept.
+            let path = sweep.shard(&folder, number).join(SHARD_NAME);
+            if path.exists() {
+                std::fs::remove_file(&path).map_err(|source| HarnessError::io(&path, source))?;
+            }
         }
         let tasks = numbers.iter().map(|&number| task(root, &folder, &sweep, number)).collect::<Result<_, _>>()?;
         let workers = args.workers.map_or_else(|| std::thread::available_parallelism().map_or(1, usize::from), usize::from);

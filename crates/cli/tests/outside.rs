@@ -20,6 +20,8 @@ mod counted;
 mod dynibo;
 #[path = "outside/factors.rs"]
 mod factors;
+#[path = "outside/hyperqueue.rs"]
+mod hyperqueue;
 #[path = "outside/lesson.rs"]
 mod lesson;
 #[path = "outside/library.rs"]
@@ -83,6 +85,7 @@ fn main() -> ExitCode {
         ("native oracles that are not there are named", native::no_compiler),
         ("instructions that were not counted are told", counted::not_counted),
         ("polars and DuckDB read rows in Parquet", || with_engines(parquet::figures)),
+        ("a sweep goes on after a task, its server and its client", hyperqueue::goes_on),
         ("dynibo conforms", || library::conforms("dynibo", &["dynibo has no armature"])),
         ("dynibo agrees, with any gravity", || dynibo::with_dynibo(dynibo::agrees)),
         ("dynibo loses digits of M on a straight chain", || dynibo::with_dynibo(dynibo::loses_digits_of_a_straight_chain)),
