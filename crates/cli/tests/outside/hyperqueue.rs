@@ -11,7 +11,8 @@ use std::process::{Child, Command, Stdio};
 use std::time::Duration;
 
 /// Nineteen tasks of some cells each; the last runs alone.
-const SWEEP: [&str; 10] = ["sweep", "smoke", "--no-timing", "--workers", "2", "--task-seconds", "0.015", "--out", "swept/made", "--retries"];
+const SWEEP: [&str; 10] =
+    ["sweep", "smoke", "--no-timing", "--workers", "2", "--task-seconds", "0.015", "--out", "swept/made", "--retries"];
 
 /// The journal of a folder: what has been started in it.
 fn journal(folder: &Path) -> Vec<Value> {
