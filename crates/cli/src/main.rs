@@ -67,6 +67,7 @@ mod plan;
 mod progress;
 mod ranges;
 mod record;
+mod reduce;
 mod report;
 mod residuals;
 mod robot_file;
@@ -103,6 +104,7 @@ fn dispatch(cli: Cli) -> Result<(), Fail> {
         Command::Run(args) => run::run(&root()?, &args),
         Command::Plan(args) => plan::plan(&root()?, &args),
         Command::Sweep(args) => sweep::sweep(&root()?, &args),
+        Command::Reduce(args) => reduce::reduce(&root()?, &args),
         Command::Merge(args) => merge::merge(&root()?, &args),
         Command::Compare(args) => compare::compare(&root()?, &args),
         Command::Report(args) => report::write(&args),

@@ -65,6 +65,7 @@ pub use repeatability::Repeatability;
 pub use reproductions::{Reproduce, Reproductions};
 pub use scaling::{Scaling, Settings as ScalingSettings};
 pub use steps::Steps;
+pub use sweep::reduce;
 pub use timing::{Kernels, Settings as TimingSettings, Timing, multiply_adds_per_ns};
 
 use featherbench_bench::alone::Ask;

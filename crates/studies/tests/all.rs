@@ -11,6 +11,7 @@ mod over_best;
 mod planted;
 mod planted_answers;
 mod planted_readings;
+mod reduce;
 mod registry;
 mod repeatability;
 mod reproductions;

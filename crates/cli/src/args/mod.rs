@@ -6,7 +6,7 @@ mod sweep;
 
 pub use analysis::{Estimator, IdentifyArgs, Propagation, Term, UncertaintyArgs};
 pub use judge::{DiffArgs, GateArgs, HistoryArgs, ReportArgs};
-pub use sweep::{ExportArgs, MergeArgs, PlanArgs, SweepArgs};
+pub use sweep::{ExportArgs, MergeArgs, PlanArgs, ReduceArgs, SweepArgs};
 
 use crate::external::External;
 use clap::{Args, Parser, Subcommand, ValueEnum};
@@ -45,6 +45,8 @@ pub enum Command {
     Plan(PlanArgs),
     /// Run a suite as tasks of HyperQueue, on this machine or a cluster, and merge them.
     Sweep(SweepArgs),
+    /// Reduce the largest errors of a run to the smallest robots that show them.
+    Reduce(ReduceArgs),
     /// Merge the shards of a run into what one process would have written: compare, judge, report.
     Merge(MergeArgs),
     /// Ask whether the engines read robots' files alike, and if not, where and why.

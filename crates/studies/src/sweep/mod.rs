@@ -4,6 +4,7 @@
 //! one state: more robots say more than more states of one. So a cell has one error, and what a level of an axis costs is a
 //! quantile over the robots at that level. The section takes these quantiles from the rows, and needs no outcome in memory.
 
+pub mod reduce;
 pub(crate) mod section;
 
 use crate::{Accuracy, Made, Setup};
