@@ -1,4 +1,4 @@
-"""Accessibility of every kind of page, light and dark, by the rules of axe-core."""
+"""Accessibility of every kind of page, light and dark, by the rules of axe-core (MPL-2.0; brought for the test, part of nothing)."""
 
 from __future__ import annotations
 

@@ -23,6 +23,8 @@
     byId("rows-about").replaceChildren();
     byId("rows-filters").replaceChildren();
     byId("rows-table").replaceChildren();
+    // In a narrow window the filters would push the rows off the screen.
+    byId("rows-narrow").open = innerWidth > 768;
     if (!dialog.open) dialog.showModal();
     try {
       Object.assign(state, { name, table: await load(name), filters: { ...filters }, text: "", sort: null, limit: PAGE });

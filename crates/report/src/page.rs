@@ -137,7 +137,10 @@ fn rows_dialog() -> Markup {
                 button #rows-close type="button" aria-label="Close" { "✕" }
             }
             dl #rows-about {}
-            form #rows-filters method="dialog" {}
+            details #rows-narrow {
+                summary { "Filters" }
+                form #rows-filters method="dialog" {}
+            }
             div #rows-table tabindex="0" {}
         }
     }

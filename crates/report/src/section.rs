@@ -20,6 +20,8 @@ pub struct Section {
     pub anchor: &'static str,
     /// Its entry in the navigation.
     pub name: &'static str,
+    /// The study that it is about, as rows name it: that study's page begins with what the section adds to the verdict.
+    pub study: &'static str,
     /// Its element `section`, with the anchor as `id`.
     pub body: Markup,
     /// Its data, which its script finds as `featherbench.chunks.get("figures")[anchor]`; see [`Section::with_data`].
@@ -81,6 +83,7 @@ impl Section {
         Self {
             anchor,
             name,
+            study: "",
             body,
             data: None,
             script: "",

@@ -10,10 +10,8 @@ use crate::cards::card;
 use crate::findings::{Findings, Status};
 use crate::labels;
 use crate::map::{Head, Map, engine_heads, legend, quantity_head, robot_heads};
-use crate::numbers::count;
 use crate::overview::{Overview, robot_chunk};
 use crate::section::Section;
-use crate::tally::Tally;
 
 /// Findings on a page; the first page has all.
 const LISTED: usize = 30;
@@ -26,6 +24,14 @@ pub struct Subject {
     pub title: String,
     /// Its sections.
     pub body: Markup,
+}
+
+/// What a page says besides its findings.
+struct About {
+    /// Before them.
+    before: Markup,
+    /// Behind them.
+    after: Markup,
 }
 
 /// What the pages are made from.
@@ -82,7 +88,7 @@ impl<'a> Subjects<'a> {
                 map.add((line, column), row);
             }
         }
-        let about = html! { @if let Some(info) = info { (version(info)) } };
+        let about = About { before: html! { @if let Some(info) = info { (version(info)) } }, after: html! {} };
         let findings = Findings::about(self.run, rows.iter().copied(), |culprit: &Culprit| culprit.engine == name);
         self.page(&self.overview.pages.engines[index], "Engine", name, &findings, &about, &map)
     }
@@ -118,7 +124,7 @@ impl<'a> Subjects<'a> {
             @if let Some(info) = info { (source(info)) }
         };
         let findings = Findings::about(self.run, rows.iter().copied(), |culprit: &Culprit| culprit.robot == about.name);
-        self.page(&self.overview.pages.robots[index], "Robot", about.name, &findings, &words, &map)
+        self.page(&self.overview.pages.robots[index], "Robot", about.name, &findings, &About { before: words, after: html! {} }, &map)
     }
 
     fn study(&self, index: usize) -> Subject {
@@ -143,20 +149,26 @@ impl<'a> Subjects<'a> {
                 map.add((line, column), row);
             }
         }
-        let shown = self.sections.iter().find(|section| section.anchor == name);
-        let tally = Tally::of(rows.iter().map(|row| row.verdict));
+        let shown: Vec<&Section> = self.sections.iter().filter(|section| section.study == name).collect();
         let words = html! {
-            p.lead {
-                (count(rows.len(), "row")) ": " (tally.words()) "."
-                @if let Some(section) = shown { " " a href={ "#" (section.anchor) } { "Its section on the first page" } "." }
+            @if !shown.is_empty() {
+                p.lead {
+                    "On the first page: "
+                    @for (place, section) in shown.iter().enumerate() { @if place > 0 { ", " } a href={ "#" (section.anchor) } { (section.name) } }
+                    "."
+                }
+            }
+            @for section in shown {
+                @if let Some(finding) = &section.finding { (finding.body) }
+                @if let Some(answer) = &section.answer { (answer) }
             }
         };
         let findings = Findings::about(self.run, rows.iter().copied(), |culprit: &Culprit| culprit.study == name);
-        self.page(&self.overview.pages.studies[index], "Study", name, &findings, &words, &map)
+        self.page(&self.overview.pages.studies[index], "Study", name, &findings, &About { before: html! {}, after: words }, &map)
     }
 
     /// The one template.
-    fn page(&self, path: &str, kind: &str, name: &str, findings: &Findings, about: &Markup, map: &Map) -> Subject {
+    fn page(&self, path: &str, kind: &str, name: &str, findings: &Findings, about: &About, map: &Map) -> Subject {
         let (class, sign) = match findings.status {
             Status::Passed => ("good", "✓"),
             Status::Failed => ("bad", "✕"),
@@ -167,18 +179,20 @@ impl<'a> Subjects<'a> {
         let headline = match told.strip_prefix(name) {
             Some(rest) => rest.trim_start_matches([',', ':', ' ']),
             None if findings.is_quiet() => "no engine misses a gate",
+            None if findings.status == Status::Empty => "nothing is judged here",
             None => &told,
         };
         let body = html! {
             section #about class={ "verdict " (class) } {
                 p.stamp { span.glyph aria-hidden="true" { (sign) } (kind) }
                 h1 { (name) ": " (headline) }
-                (about)
+                (about.before)
                 @if !findings.found.is_empty() {
                     h2 { "What was found" }
                     ol.findings { @for found in findings.found.iter().take(LISTED) { (card(self.overview, found)) } }
                     @if findings.found.len() > LISTED { p.note { "The first " (LISTED) " of " (findings.found.len()) "." } }
                 }
+                (about.after)
                 p.note { (findings.levels()) " among " (findings.extent()) "." }
             }
             section #rows-map {

@@ -176,7 +176,12 @@ pub fn of_suite(setup: &Setup) -> Result<Vec<Box<dyn Study>>, HarnessError> {
 /// The sections of the report of a run, study by study: of each that has rows, and of those that say that they have none.
 pub fn sections(run: &RunInfo, rows: &[Row]) -> Vec<Section> {
     let overview = Overview::of(run, rows);
-    STUDIES.iter().flat_map(|study| (study.sections)(run, rows, &overview)).collect()
+    let mut all = Vec::new();
+    for study in STUDIES {
+        let sections = (study.sections)(run, rows, &overview).into_iter();
+        all.extend(sections.map(|section| Section { study: study.name, ..section }));
+    }
+    all
 }
 
 /// A row with the fields of its cell and robot; the study adds case, metric and value.

@@ -119,7 +119,9 @@ fn engines_robots_and_studies_have_pages() {
     );
     let study = written.text("studies/timing.html");
     assert!(study.contains("<h1>timing: ") && study.contains("href=\"robots/panda.html\""));
-    assert!(written.text("studies/agreement.html").contains("href=\"#agreement\""), "it leads to its section");
+    // A study's page leads to its sections, and says what they add to the verdict.
+    assert!(study.contains("href=\"#time\"") && study.contains("href=\"#speed\"") && study.contains("id=\"speed-verdict\""));
+    assert!(written.text("studies/agreement.html").contains("href=\"#agreement\""));
     // Every link of the first page and of the pages leads to a file.
     for page in ["index.html", "engines/pinocchio.html", "robots/panda.html", "studies/timing.html"] {
         let text = written.text(page);
