@@ -77,7 +77,8 @@ def accessible(page: Browser, folder: pathlib.Path) -> Checks:
             yield f"{kind}, {theme}, {width} px, has no violation of accessibility", not found, found
         page.open((folder / "index.html").resolve().as_uri())
         page.run("document.documentElement.dataset.theme = arguments[0]", theme)
-        page.run("document.querySelector('[data-chunk]')?.click()")
-        if page.until(ROWS):
-            found = violations(page, script)
-            yield f"the rows, {theme}, {width} px, have no violation of accessibility", not found, found
+        # A page over several runs opens no rows.
+        if not page.run("const first = document.querySelector('[data-chunk]'); first?.click(); return first !== null"):
+            continue
+        found = violations(page, script) if page.until(ROWS) else ["no rows were opened"]
+        yield f"the rows, {theme}, {width} px, have no violation of accessibility", not found, found
