@@ -187,11 +187,11 @@ impl<'a> Subjects<'a> {
                 p.stamp { span.glyph aria-hidden="true" { (sign) } (kind) }
                 h1 { (name) ": " (headline) }
                 (about.before)
-                @if !findings.found.is_empty() {
-                    h2 { "What was found" }
+                h2 { "What was found" }
+                @if findings.found.is_empty() { p { "Nothing." } } @else {
                     ol.findings { @for found in findings.found.iter().take(LISTED) { (card(self.overview, found)) } }
-                    @if findings.found.len() > LISTED { p.note { "The first " (LISTED) " of " (findings.found.len()) "." } }
                 }
+                @if findings.found.len() > LISTED { p.note { "The first " (LISTED) " of " (findings.found.len()) "." } }
                 (about.after)
                 p.note { (findings.levels()) " among " (findings.extent()) "." }
             }
