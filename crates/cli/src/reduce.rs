@@ -71,7 +71,13 @@ pub fn reduce(root: &Root, args: &ReduceArgs) -> Result<(), Fail> {
         let name = format!("{}-{}-{}", row.engine, row.quantity, row.method);
         write(&folder.join(&name), row, quantity, &reduced)?;
         let bodies = |description: &featherbench_model::Description| description.bodies.len();
-        say!("{name}: {value:.1e} on {} bodies of {}, {:.1e} on {}", bodies(&robot.description), row.robot, reduced.after, bodies(&reduced.case.description));
+        say!(
+            "{name}: {value:.1e} on {} bodies of {}, {:.1e} on {}",
+            bodies(&robot.description),
+            row.robot,
+            reduced.after,
+            bodies(&reduced.case.description)
+        );
         lines.push(format!(
             "| [{name}]({name}/README.md) | {} | {} | {:.1e} | {} | {:.1e} |",
             row.robot,
@@ -115,7 +121,8 @@ fn worst<'a>(rows: &'a [Row], named: &[String]) -> Vec<Worst<'a>> {
 /// The robots of a run, made again from its command.
 fn robots_of(root: &Root, info: &RunInfo) -> Result<Vec<Robot>, Fail> {
     let all = words(&info.command).map_err(Fail::input)?;
-    let given = all.iter().skip_while(|word| *word != "run").skip(1).cloned().collect::<Vec<_>>();
+    // `cargo run --release -- run …`; a run without arguments is that of the default suite.
+    let given: Vec<String> = all.iter().skip_while(|word| *word != "--").skip(1).skip_while(|word| *word == "run").cloned().collect();
     let run = RunArgs::of(&given).map_err(|error| Fail::input(format!("the command of the run is none of `run`: {error}")))?;
     let loaded = robots::load(root, &run.suite, info.live, Some(info.seed), run.size)?;
     if loaded.hash != info.suite_hash {
