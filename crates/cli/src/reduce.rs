@@ -67,8 +67,11 @@ pub fn reduce(root: &Root, args: &ReduceArgs) -> Result<(), Fail> {
             eprintln!("note: {} {} {}: no answer now", row.engine, row.quantity, row.method);
             continue;
         };
-        let Some(reduced) = reduce::reduce(state(k), &of) else { continue };
-        let name = format!("{}-{}-{}", row.engine, row.quantity, row.method);
+        let Some(reduced) = reduce::reduce(state(k), least(quantity), &of) else {
+            eprintln!("note: {} {} {}: no error above rounding now", row.engine, row.quantity, row.method);
+            continue;
+        };
+        let name = format!("{}-{}-{}", row.engine, quantity.name(), row.method);
         write(&folder.join(&name), row, quantity, &reduced)?;
         let bodies = |description: &featherbench_model::Description| description.bodies.len();
         say!(
@@ -99,13 +102,18 @@ pub fn reduce(root: &Root, args: &ReduceArgs) -> Result<(), Fail> {
     Ok(())
 }
 
+/// Errors up to this are no finding.
+fn least(quantity: Quantity) -> f64 {
+    if quantity == Quantity::ForwardDynamics { OVER_FLOOR } else { ROUNDING }
+}
+
 /// The cells to be reduced: those that are named, or the worst of each engine, quantity and method above rounding.
 fn worst<'a>(rows: &'a [Row], named: &[String]) -> Vec<Worst<'a>> {
     let mut found: BTreeMap<(&str, &str, &str), Worst> = BTreeMap::new();
     for row in rows.iter().filter(|row| row.precision == "f64") {
         let quantity = if row.quantity == Quantity::MassMatrixProbe.name() { Quantity::MassMatrix.name() } else { &row.quantity };
         let Some((quantity, value)) = Quantity::parse(quantity).zip(row.value) else { continue };
-        let least = if quantity == Quantity::ForwardDynamics { OVER_FLOOR } else { ROUNDING };
+        let least = least(quantity);
         let asked = if named.is_empty() { value > least } else { named.iter().any(|cell| row.cell.starts_with(cell.as_str())) };
         if row.metric != reduce::metric(quantity) || !asked {
             continue;
@@ -144,7 +152,7 @@ fn open(root: &Root, name: &str) -> Result<Box<dyn Engine>, Fail> {
 fn write(folder: &Path, row: &Row, quantity: Quantity, reduced: &Reduced) -> Result<(), Fail> {
     let lost = || Fail::input(format!("{}: the reduced robot is none", folder.display()));
     let mut case = reduced.case.clone();
-    case.description.name = format!("{}-{}-{}", row.engine, row.quantity, row.method);
+    case.description.name = format!("{}-{}-{}", row.engine, quantity.name(), row.method);
     let robot = case.robot().ok_or_else(lost)?;
     let truth = TruthModel::new(&robot).and_then(|model| model.answer(&robot, quantity, 0)).ok_or_else(lost)?;
     let (q, v, a, tau) = (robot.states.q(0), robot.states.v(0), robot.states.a(0), robot.states.tau(0));

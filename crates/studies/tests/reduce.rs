@@ -96,7 +96,7 @@ fn a_planted_fault_is_reduced_to_its_bodies() {
             {
                 let what = format!("{} {method}", robot.name);
                 let given = severity(&engine, &robot, quantity, method).unwrap();
-                let reduced = reduce(Case::of(&robot, 0), &|robot| severity(&engine, robot, quantity, method)).unwrap();
+                let reduced = reduce(Case::of(&robot, 0), 1e-10, &|robot| severity(&engine, robot, quantity, method)).unwrap();
                 assert_eq!(reduced.before, given, "{what}");
                 assert!(reduced.case.description.bodies.len() <= bodies, "{what}: {:?}", reduced.case);
                 // What is told of the reduced case is what the case itself shows, and it is the fault that shows it.

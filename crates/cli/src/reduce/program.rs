@@ -1,6 +1,6 @@
 //! A program that shows an error in the engine's own interface: the robot, body by body, the state, the answer beside the truth.
 //!
-//! Only robots of hinges and slides have one: there all engines have the neutral coordinates.
+//! Only robots of hinges and slides have one, and for Pinocchio of balls: there the engines have the neutral coordinates.
 
 use ::featherbench_results::Row;
 use featherbench_bench::{Quantity, Robot};
@@ -13,8 +13,10 @@ struct Interface {
     begin: &'static str,
     /// A body; `{name}`, `{parent}`, `{kind}`, `{axis}`, `{rotation}`, `{translation}`, `{mass}`, `{com}` and `{inertia}` are replaced.
     body: &'static str,
-    /// The words of the two kinds of joint.
+    /// The words of hinges and slides.
     kinds: [&'static str; 2],
+    /// The words of a ball, where its coordinates are the neutral ones.
+    ball: Option<&'static str>,
     /// What follows the last body.
     end: &'static str,
     /// The answers by quantity and method.
@@ -30,10 +32,11 @@ model.gravity = pin.Motion(np.array({gravity}), np.zeros(3))
 bodies = [0]
 ",
     body: "place = pin.SE3(np.array({rotation}), np.array({translation}))
-bodies.append(model.addJoint(bodies[{parent}], pin.{kind}(np.array({axis})), place, \"{name}\"))
+bodies.append(model.addJoint(bodies[{parent}], pin.{kind}, place, \"{name}\"))
 model.appendBodyToJoint(bodies[-1], pin.Inertia({mass}, np.array({com}), np.array({inertia})), pin.SE3.Identity())
 ",
-    kinds: ["JointModelRevoluteUnaligned", "JointModelPrismaticUnaligned"],
+    kinds: ["JointModelRevoluteUnaligned(np.array({axis}))", "JointModelPrismaticUnaligned(np.array({axis}))"],
+    ball: Some("JointModelSpherical()"),
     end: "data = model.createData()
 
 
@@ -86,6 +89,7 @@ body.explicitinertial, body.mass, body.ipos, body.inertia, body.iquat = True, {m
 bodies.append(body)
 ",
     kinds: ["mjJNT_HINGE", "mjJNT_SLIDE"],
+    ball: None,
     end: "model = spec.compile()
 data = mujoco.MjData(model)
 
@@ -149,6 +153,7 @@ def add(parent, kind, name, axis, rotation, translation, mass, com, inertia):
     body: "
 add({parent}, tree.{kind}, \"{name}\", {axis}, {rotation}, {translation}, {mass}, {com}, {inertia})",
     kinds: ["RevoluteJoint", "PrismaticJoint"],
+    ball: None,
     end: "
 plant.Finalize()
 context = plant.CreateDefaultContext()
@@ -193,6 +198,7 @@ body.setInertia(dynamics.Inertia({mass}, np.array({com}), np.array({inertia})))
 bodies.append(body)
 ",
     kinds: ["createRevoluteJointAndBodyNodePair", "createPrismaticJointAndBodyNodePair"],
+    ball: None,
     end: "
 
 def at():
@@ -263,6 +269,7 @@ fn body_text(interface: &Interface, body: &BodyDescription) -> Option<String> {
     let (kind, axis) = match body.joint.kind {
         JointType::Revolute { axis } => (interface.kinds[0], axis),
         JointType::Prismatic { axis } => (interface.kinds[1], axis),
+        JointType::Spherical => (interface.ball?, [0.0; 3]),
         _ => return None,
     };
     if body.joint.armature.iter().any(|&armature| armature != 0.0) {

@@ -112,10 +112,13 @@ pub struct Reduced {
 /// What makes a case simpler.
 type Step = Box<dyn Fn(&mut Case)>;
 
-/// Reduces a case; `None` if it has no severity as given.
-pub fn reduce(case: Case, severity: &dyn Fn(&Robot) -> Option<f64>) -> Option<Reduced> {
+/// Reduces a case whose error stays above `least`, too; `None` if it has no severity as given, or one that is not above.
+pub fn reduce(case: Case, least: f64, severity: &dyn Fn(&Robot) -> Option<f64>) -> Option<Reduced> {
     let before = severity(&case.robot()?)?;
-    let mut reducer = Reducer { reduced: Reduced { case, before, after: before, tried: 0 }, severity };
+    if before.is_nan() || before <= least {
+        return None;
+    }
+    let mut reducer = Reducer { reduced: Reduced { case, before, after: before, tried: 0 }, severity, least };
     loop {
         let known = reducer.reduced.case.clone();
         reducer.pass(steps::fewer_bodies);
@@ -132,6 +135,7 @@ pub fn reduce(case: Case, severity: &dyn Fn(&Robot) -> Option<f64>) -> Option<Re
 struct Reducer<'a> {
     reduced: Reduced,
     severity: &'a dyn Fn(&Robot) -> Option<f64>,
+    least: f64,
 }
 
 impl Reducer<'_> {
@@ -158,7 +162,10 @@ impl Reducer<'_> {
         }
         let Some(case) = case.tidied().filter(|case| *case != self.reduced.case) else { return false };
         self.reduced.tried += 1;
-        let severity = case.robot().and_then(|robot| (self.severity)(&robot)).filter(|severity| *severity >= KEEP * self.reduced.before);
+        let severity = case
+            .robot()
+            .and_then(|robot| (self.severity)(&robot))
+            .filter(|severity| *severity >= KEEP * self.reduced.before && *severity > self.least);
         if let Some(severity) = severity {
             (self.reduced.case, self.reduced.after) = (case, severity);
         }

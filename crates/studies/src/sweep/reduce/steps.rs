@@ -5,6 +5,8 @@ use featherbench_model::{BodyDescription, JointDescription, JointType, Placement
 
 /// The numbers of significant digits that are tried, the fewest first.
 const DIGITS: [i32; 3] = [1, 2, 4];
+/// The axes of joints that are tried.
+const AXES: [[f64; 3]; 3] = [[0.0, 0.0, 1.0], [0.0, 1.0, 0.0], [1.0, 0.0, 0.0]];
 /// The diagonal of a tensor (xx, xy, xz, yy, yz, zz).
 const DIAGONAL: [usize; 3] = [0, 3, 5];
 
@@ -95,8 +97,10 @@ pub fn simpler_bodies(case: &Case) -> Vec<Step> {
         }
         // A joint of one degree of freedom is one that every engine and format has.
         if !matches!(case.description.bodies[at].joint.kind, JointType::Revolute { .. } | JointType::Prismatic { .. }) {
-            for kind in [JointType::Revolute { axis: [0.0, 0.0, 1.0] }, JointType::Prismatic { axis: [0.0, 0.0, 1.0] }] {
-                steps.push(Box::new(move |case| other_joint(case, at, kind)));
+            for axis in AXES {
+                for kind in [JointType::Revolute { axis }, JointType::Prismatic { axis }] {
+                    steps.push(Box::new(move |case| other_joint(case, at, kind)));
+                }
             }
         }
     }
