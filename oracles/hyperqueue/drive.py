@@ -2,8 +2,8 @@
 
 In, on standard input: {"server": FOLDER or null, "workers": N, "crashes": N, "tasks": [{"name", "args", "cwd", "stderr", "alone"}]}.
 Without a server, one is started in this process, with N workers of one core each; it ends with this process.
-Out, on standard output: {"finished": N, "failed": N, "total": N} whenever it changes, and at the end {"tasks": {NAME: ERROR}} of those that failed.
-Other lines are HyperQueue's own.
+Out, on standard output: {"finished": N, "failed": N, "total": N} whenever it changes, and at the end {"tasks": {NAME: ERROR}} of those
+that failed. Other lines are HyperQueue's own.
 
 A task that runs alone takes all cores of its worker, and starts when all tasks before it are done.
 Standard input stays open as long as the tasks are wanted: when it closes, this process ends.
@@ -15,10 +15,11 @@ import os
 import sys
 import threading
 
-from hyperqueue import Job, LocalCluster
 from hyperqueue.client import Client
 from hyperqueue.cluster import WorkerConfig
 from hyperqueue.ffi.protocol import ResourceRequest
+
+from hyperqueue import Job, LocalCluster
 
 
 def tell(**message) -> None:
