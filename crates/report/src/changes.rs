@@ -45,7 +45,7 @@ pub(crate) fn page(title: &str, body: &Markup) -> String {
                 meta name="viewport" content="width=device-width, initial-scale=1";
                 meta name="color-scheme" content="light dark";
                 title { "featherbench: " (title) }
-                style { (PreEscaped(STYLE)) ".drawn svg { display: block; max-width: 100%; height: auto; border-radius: 8px; }" }
+                style { (PreEscaped(STYLE)) ".scroll + .lead { margin-top: 1rem; } .drawn svg { display: block; max-width: 100%; height: auto; border-radius: 8px; }" }
             }
             body { main { (body) } }
         }

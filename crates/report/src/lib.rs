@@ -15,7 +15,7 @@
 //! | layer | files |
 //! |---|---|
 //! | data | [`numbers`], [`labels`], [`fit`], `error`, then [`figure`], then `tally`, `overview`, `section`, then `findings`, `parts`, then `chunks`, [`forms`] |
-//! | sections | `blocks`, then [`map`], `cards`, then `verdict`, `conventions`, `provenance`, `method`, `unpassed`, `figures`, `subjects` |
+//! | sections | `blocks`, [`robot`], then [`map`], `cards`, then `verdict`, `conventions`, `provenance`, `method`, `unpassed`, `figures`, `subjects` |
 //! | page | `page`, `summary`, [`changes`], `trends`, then [`runs`], then `write` |
 
 mod blocks;
@@ -37,6 +37,7 @@ mod overview;
 mod page;
 mod parts;
 mod provenance;
+pub mod robot;
 pub mod runs;
 mod section;
 mod subjects;

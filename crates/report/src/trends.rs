@@ -141,17 +141,25 @@ fn changes(all: &[Trend], runs: &[Side]) -> Markup {
             (format!("{:.0} %", 100.0 * TIME_NOISE)) " and the A/A controls, errors by a factor of " (ERROR_FACTOR) ", counts when they differ. "
             "Confirmed: there are " (BESIDE) " values on each side."
         }
+        (listed(&found[..confirmed], runs))
+        @if found.len() > confirmed {
+            details { summary { (found.len() - confirmed) " not yet confirmed" } (listed(&found[confirmed..], runs)) }
+        }
+    }
+}
+
+/// Change points as a table; those of the largest factors if there are many.
+fn listed(found: &[(&Trend, ChangePoint)], runs: &[Side]) -> Markup {
+    html! {
         @if !found.is_empty() {
             div.scroll { table.compact {
                 thead { tr {
                     th scope="col" { "first run after" } th scope="col" { "robot" } th scope="col" { "engine" } th scope="col" { "quantity" }
-                    th.number scope="col" { "factor" } th scope="col" { "confirmed" } th scope="col" { "with it" }
+                    th.number scope="col" { "factor" } th scope="col" { "with it" }
                 } }
-                tbody {
-                    @for (trend, point) in found.iter().take(LISTED) { (change(trend, point, runs)) }
-                }
+                tbody { @for (trend, point) in found.iter().take(LISTED) { (change(trend, point, runs)) } }
             } }
-            @if found.len() > LISTED { p.note { (found.len() - LISTED) " more have smaller factors, or are not confirmed." } }
+            @if found.len() > LISTED { p.note { (found.len() - LISTED) " more have smaller factors." } }
         }
     }
 }
@@ -168,7 +176,6 @@ fn change(trend: &Trend, point: &ChangePoint, runs: &[Side]) -> Markup {
             th scope="row" { (new.info.started) " (run " (point.after + 1) ")" }
             td { (row.robot) } td { (row.engine) " " (row.method) } td { (labels::error(&row.quantity, &row.metric)) }
             td.number { @if point.factor.is_finite() { (short(point.factor)) } @else { "–" } }
-            td { (if point.confirmed { "yes" } else { "not yet" }) }
             td { (renewed.into_iter().chain(revised).collect::<Vec<_>>().join(" ")) }
         }
     }

@@ -14,7 +14,7 @@ use crate::section::Section;
 use crate::subjects::Subjects;
 
 /// The report's style sheet; sections add to it.
-const STYLE: &str = include_str!("../assets/style.css");
+const STYLE: &str = concat!(include_str!("../assets/style.css"), include_str!("../assets/robot.css"));
 
 /// The report's scripts; sections add to them.
 const SCRIPT: &str = concat!(
@@ -29,6 +29,7 @@ const SCRIPT: &str = concat!(
     include_str!("../assets/chart.js"),
     include_str!("../assets/plots.js"),
     include_str!("../assets/figures.js"),
+    include_str!("../assets/robot.js"),
 );
 
 /// Where a report was written.

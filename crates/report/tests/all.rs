@@ -3,5 +3,6 @@
 mod figures;
 mod frame;
 mod layers;
+mod robot;
 mod runs;
 mod written;

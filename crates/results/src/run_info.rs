@@ -61,6 +61,9 @@ pub struct RunInfo {
     /// The conventions of the engines, compared with ours.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub conventions: Vec<Convention>,
+    /// The drawings of robots, by name; a run that compares files has them.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub drawings: BTreeMap<String, crate::Drawing>,
     /// The shards that the run was merged from; none if one process made it.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub shards: Vec<ShardInfo>,

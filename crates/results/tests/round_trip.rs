@@ -5,9 +5,9 @@ use std::fs;
 use std::path::Path;
 
 use featherbench_results::{
-    Base, COLUMNS, CSV_NAME, Checksums, ColumnType, Convention, Culprit, EngineInfo, EngineSource, Expectation, Feature, GateKind, GitInfo,
-    Host, Kind, ModelOrigin, Properties, RUN_FORMAT, RUN_NAME, Relation, ResultsError, RobotInfo, Row, RunInfo, SCHEMA_NAME, ShardInfo,
-    Verdict, atomic_write, canonical_json, read_csv, read_run, schema_json, to_csv, write_csv, write_run,
+    Base, COLUMNS, CSV_NAME, Checksums, ColumnType, Convention, Culprit, Drawing, DrawnBody, EngineInfo, EngineSource, Expectation,
+    Feature, GateKind, GitInfo, Host, Kind, ModelOrigin, Properties, RUN_FORMAT, RUN_NAME, Relation, ResultsError, RobotInfo, Row, RunInfo,
+    SCHEMA_NAME, ShardInfo, Verdict, atomic_write, canonical_json, read_csv, read_run, schema_json, to_csv, write_csv, write_run,
 };
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
@@ -254,6 +254,17 @@ fn run_info() -> RunInfo {
             reason: "".into(),
         }],
         studies: vec!["agreement".into()],
+        drawings: BTreeMap::from([(
+            "panda".into(),
+            Drawing(vec![DrawnBody {
+                name: "hand".into(),
+                parent: None,
+                mass: 0.7,
+                origin: [0.1, 0.0, -2.0],
+                centre: [0.0; 3],
+                axes: [[1.0, 0.0, 0.5]; 3],
+            }]),
+        )]),
         robots: vec![RobotInfo {
             properties: Some(Properties {
                 joints: vec!["revolute".into()],

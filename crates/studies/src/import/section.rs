@@ -4,7 +4,7 @@ use super::opening::opening;
 use std::collections::BTreeMap;
 
 use featherbench_report::numbers::{count, larger, short};
-use featherbench_report::{Overview, Section, robot_chunk};
+use featherbench_report::{Overview, Section, robot, robot_chunk};
 use featherbench_results::{Row, RunInfo, Verdict};
 use maud::{Markup, html};
 use serde_json::Value;
@@ -79,7 +79,7 @@ impl<'a> Imports<'a> {
 }
 
 /// Makes the section, if the run has imports.
-pub(crate) fn sections<'a>(_: &RunInfo, rows: &'a [Row], overview: &Overview<'a>) -> Vec<Section> {
+pub(crate) fn sections<'a>(run: &RunInfo, rows: &'a [Row], overview: &Overview<'a>) -> Vec<Section> {
     let imports = Imports::of(overview, rows);
     if imports.robots.is_empty() {
         return Vec::new();
@@ -87,10 +87,11 @@ pub(crate) fn sections<'a>(_: &RunInfo, rows: &'a [Row], overview: &Overview<'a>
     let (script, style) = (include_str!("section.js"), include_str!("section.css"));
     let (answer, part) = opening(rows);
     let parts = part.into_iter().collect();
-    vec![Section { script, style, answer: Some(answer), parts, ..Section::new("import", "Imports", body(overview, &imports)) }]
+    let body = body(run, rows, overview, &imports);
+    vec![Section { script, style, answer: Some(answer), parts, ..Section::new("import", "Imports", body) }]
 }
 
-fn body(overview: &Overview, imports: &Imports) -> Markup {
+fn body(run: &RunInfo, rows: &[Row], overview: &Overview, imports: &Imports) -> Markup {
     html! {
         section #import {
             h2 { "How engines read it" }
@@ -109,9 +110,26 @@ fn body(overview: &Overview, imports: &Imports) -> Markup {
                 span.key.unexplained { "?" } " answers that the differences do not explain. "
                 "The answers are replayed: the engine computes with what it read, our kernels with what it says to have read."
             }
+            (robots(run, rows))
             div #import-details role="region" aria-live="polite" tabindex="-1" {}
             h3 { "Causes" }
             (causes(overview, imports))
+        }
+    }
+}
+
+/// The robots of a comparison, each with the bodies marked in which a difference changes the physics.
+fn robots(run: &RunInfo, rows: &[Row]) -> Markup {
+    let differs = |row: &&Row| {
+        let class = || serde_json::from_str::<Value>(&row.params).ok()?["class"].as_str().map(str::to_owned);
+        row.study == STUDY && row.metric == "difference" && class().as_deref() == Some("physics")
+    };
+    let marked = |robot: &str| rows.iter().filter(|row| row.robot == robot).filter(differs).map(|row| row.body.clone()).collect();
+    html! {
+        @if !run.drawings.is_empty() {
+            div.robots {
+                @for (name, drawing) in &run.drawings { (robot::drawn(name, drawing, &marked(name), "the physics differs")) }
+            }
         }
     }
 }
