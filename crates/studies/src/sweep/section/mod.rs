@@ -2,7 +2,7 @@
 
 mod maps;
 
-use featherbench_report::numbers::{count, short};
+use featherbench_report::numbers::count;
 use featherbench_report::{Overview, Section, labels, opener, robot_chunk, swatch};
 use featherbench_results::{Row, RunInfo};
 use maud::{Markup, html};
@@ -95,9 +95,14 @@ fn cell(answer: &Answer, spot: &Spot) -> Markup {
     let filters = [("study", STUDY), ("method", answer.method)];
     html! {
         td.(step(quantiles[FIRST])) data-errors=(quantiles.map(|error| format!("{error:e}")).join(" ")) {
-            (opener(&robot_chunk(worst), &filters, &short(quantiles[FIRST]))) (failed)
+            (opener(&robot_chunk(worst), &filters, &told(quantiles[FIRST]))) (failed)
         }
     }
+}
+
+/// An error in two digits, as the script has it too.
+fn told(error: f64) -> String {
+    if error == 0.0 { "0".into() } else { format!("{error:.1e}") }
 }
 
 /// The name of an axis on the page.

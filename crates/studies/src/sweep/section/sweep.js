@@ -1,6 +1,6 @@
 // Quantile maps: which quantity and which quantile are shown.
 featherbench.ready(() => {
-  const { byId, short } = featherbench;
+  const { byId } = featherbench;
   const [quantity, quantile] = [byId("sweep-quantity"), byId("sweep-quantile")];
   if (!quantity || !quantile) return;
 
@@ -13,7 +13,7 @@ featherbench.ready(() => {
     for (const spot of document.querySelectorAll("#sweep td[data-errors]")) {
       const error = Number(spot.dataset.errors.split(" ")[at]);
       spot.className = `d${step(error)}`;
-      spot.firstElementChild.textContent = short(error);
+      spot.firstElementChild.textContent = error === 0 ? "0" : error.toExponential(1);
     }
   }
 
