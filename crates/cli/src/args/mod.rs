@@ -106,7 +106,7 @@ pub struct RunArgs {
     /// The seed of the states, instead of the suite's; recorded answers are to the suite's own.
     #[arg(long, requires = "live")]
     pub seed: Option<u64>,
-    /// The number of robots that the suite draws, instead of its own (for suites with a table [draw]).
+    /// The number of robots that the suite draws, instead of its own (for suites with a table `[draw]`).
     #[arg(long, value_name = "N")]
     pub size: Option<NonZeroUsize>,
     /// An engine of one's own, as NAME=PROGRAM [ARGS…]: a program that speaks oracles/PROTOCOL.md; may be repeated.
