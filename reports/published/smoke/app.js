@@ -12,18 +12,18 @@ const featherbench = (() => {
   }
 
   // A chunk's data: at hand, on its way, or brought by adding its script to the page.
-  function load(name) {
+  function load(name, file = `data/${name}.js`) {
     if (chunks.has(name)) return Promise.resolve(chunks.get(name));
     if (!waiting.has(name)) {
       const entry = {};
       entry.promise = new Promise((resolve, reject) => {
         entry.resolve = resolve;
         const script = document.createElement("script");
-        script.src = `data/${name}.js`;
+        script.src = file;
         script.onerror = () => {
           waiting.delete(name);
           script.remove();
-          reject(new Error(`data/${name}.js is missing or damaged`));
+          reject(new Error(`${file} is missing or damaged`));
         };
         // A script that ran without delivering was cut or altered.
         script.onload = () => { if (!chunks.has(name)) script.onerror(); };
@@ -59,9 +59,14 @@ const featherbench = (() => {
   const describe = (robot) => `${robot.family}, ${robot.nv ?? "?"} degrees of freedom, ${robot.bodies ?? "?"} bodies, depth ${robot.depth ?? "?"}`;
 
   // Runs a task when the page and its data are complete; each on its own, so that one that fails leaves the others.
-  const ready = (task) => document.addEventListener("DOMContentLoaded", task);
+  const ready = (task) => { if (document.readyState === "loading") document.addEventListener("DOMContentLoaded", task); else task(); };
 
-  return { chunk, load, make, short, decades, glyphs, variable, byId, describe, ready, chunks };
+  // Runs a task on the page, and on each piece that is brought later.
+  const dressers = [];
+  const dress = (root) => { for (const task of dressers) task(root); };
+  const dressed = (task) => { dressers.push(task); ready(() => task(document)); };
+
+  return { chunk, load, make, short, decades, glyphs, variable, byId, describe, ready, dress, dressed, chunks };
 })();
 
 // Light and dark: the system's choice until the reader makes one, which is kept where the browser allows it. Paper is light.
@@ -91,24 +96,22 @@ const featherbench = (() => {
 })();
 
 // The command's copy button. Under file:// a browser may refuse its clipboard; then the command is selected, ready to be copied.
-featherbench.ready(() => {
-  const button = featherbench.byId("copy");
+document.addEventListener("click", async (event) => {
+  const button = event.target.closest("#copy");
   if (!button) return;
   const text = featherbench.byId("command");
-  button.addEventListener("click", async () => {
-    try {
-      await navigator.clipboard.writeText(text.textContent);
-      button.textContent = "Copied";
-    } catch {
-      getSelection().selectAllChildren(text);
-      button.textContent = "Selected";
-    }
-    setTimeout(() => { button.textContent = "Copy"; }, 1500);
-  });
+  try {
+    await navigator.clipboard.writeText(text.textContent);
+    button.textContent = "Copied";
+  } catch {
+    getSelection().selectAllChildren(text);
+    button.textContent = "Selected";
+  }
+  setTimeout(() => { button.textContent = "Copy"; }, 1500);
 });
 
 // Tables whose columns sort on a click on their head.
-featherbench.ready(() => {
+featherbench.dressed((root) => {
   const key = (row, column) => {
     const cell = row.cells[column];
     const text = cell.textContent.trim();
@@ -117,7 +120,7 @@ featherbench.ready(() => {
     return Number.isNaN(number) ? -Infinity : number;
   };
   const order = (a, b) => (a === b ? 0 : a < b ? -1 : 1);
-  for (const table of document.querySelectorAll("table.sortable")) {
+  for (const table of root.querySelectorAll("table.sortable")) {
     for (const head of table.tHead.rows[0].cells) {
       const button = featherbench.make("button", { type: "button" });
       button.append(...head.childNodes);
@@ -133,9 +136,107 @@ featherbench.ready(() => {
     }
   }
 });
+
+// Boxes that scroll and hold nothing that Tab reaches are reached themselves, so that the arrow keys scroll them.
+(() => {
+  const focusable = (box) => {
+    const scrolls = box.scrollWidth > box.clientWidth || box.scrollHeight > box.clientHeight;
+    if (scrolls && !box.querySelector("a, button, input, select")) box.tabIndex = 0;
+    else box.removeAttribute("tabindex");
+  };
+  const all = (root) => { for (const box of [...root.querySelectorAll(".scroll"), ...(root.matches?.(".scroll") ? [root] : [])]) focusable(box); };
+  featherbench.dressed(all);
+  addEventListener("resize", () => all(document));
+  document.addEventListener("toggle", ({ target }) => all(target), true);
+})();
+// Pieces that the page leaves out at first: each is brought when it is opened or when the window is near it. A section's script runs when the
+// section is there and the data of all sections are.
+(() => {
+  const { byId, dress, load, ready } = featherbench;
+  const scripts = new Map();
+  const NEAR = "300px";
+  // The section that the reader went to, until the reader scrolls: what is brought above it must not push it away.
+  let goal = "";
+
+  // Puts the piece in its place, and returns what stands there now.
+  async function bring(place) {
+    const name = place.dataset.part;
+    if (!name || place.ariaBusy === "true") return place;
+    place.ariaBusy = "true";
+    try {
+      const box = document.createElement("template");
+      box.innerHTML = await load(`part-${name}`, `sections/${name}.js`);
+      const pieces = [...box.content.children];
+      const seen = goal ? null : [...document.querySelectorAll("main > section")].find((section) => section.getBoundingClientRect().bottom > 0);
+      const before = seen?.getBoundingClientRect().top;
+      place.replaceWith(box.content);
+      if (goal) byId(goal)?.scrollIntoView({ behavior: "instant" });
+      else if (seen?.isConnected) scrollBy({ top: seen.getBoundingClientRect().top - before, behavior: "instant" });
+      for (const piece of pieces) dress(piece);
+      return pieces[0];
+    } catch (error) {
+      // The link to the piece's page stays.
+      place.ariaBusy = "false";
+      place.append(featherbench.make("p", { className: "note" }, error.message));
+      return place;
+    }
+  }
+
+  async function show(section) {
+    const there = await bring(section);
+    const script = scripts.get(there.id);
+    if (!script) return;
+    scripts.delete(there.id);
+    // One section that fails leaves the others.
+    try {
+      await load("figures");
+      script();
+    } catch (error) {
+      reportError(error);
+    }
+  }
+
+  // Every section and piece, for the browser's search and for print.
+  async function everything() {
+    await Promise.all([...document.querySelectorAll("main > section")].map(show));
+    await Promise.all([...document.querySelectorAll("[data-part]")].map(bring));
+  }
+
+  // An address may name an element of a section that is not here yet.
+  async function follow() {
+    const id = decodeURIComponent(location.hash.slice(1));
+    if (id === "" || id.startsWith("rows=")) return;
+    goal = id;
+    if (byId(id)) return;
+    await everything();
+    byId(id)?.scrollIntoView();
+  }
+
+  ready(() => {
+    const near = new IntersectionObserver((entries) => {
+      for (const { target, isIntersecting } of entries) {
+        if (!isIntersecting) continue;
+        near.unobserve(target);
+        show(target);
+      }
+    }, { rootMargin: NEAR });
+    for (const section of document.querySelectorAll("main > section")) near.observe(section);
+    document.addEventListener("toggle", (event) => {
+      if (event.target.open) for (const place of event.target.querySelectorAll(":scope > [data-part]")) bring(place);
+    }, true);
+    byId("everything")?.addEventListener("click", everything);
+    addEventListener("hashchange", follow);
+    for (const kind of ["wheel", "touchmove", "keydown", "pointerdown"]) addEventListener(kind, () => { goal = ""; }, { passive: true });
+    follow();
+  });
+
+  featherbench.section = (anchor, script) => scripts.set(anchor, script);
+  featherbench.bring = bring;
+  featherbench.everything = everything;
+})();
 // The rows behind whatever was clicked: a dialog with filters and a table that sorts.
 (() => {
-  const { byId, load, make, short, decades, glyphs, ready } = featherbench;
+  const { byId, chunks, load, make, short, decades, glyphs, ready } = featherbench;
   const FILTERS = ["study", "engine", "quantity", "states", "body", "cache", "method", "metric", "reference", "verdict"];
   const BRIEF = ["verdict", "robot", "engine", "method", "precision", "quantity", "states", "body", "cache", "metric", "value", "relation", "bound", "margin", "reference", "reason"];
   const RELATIONS = { le: "≤", ge: "≥", eq: "=", within: "|·| ≤" };
@@ -155,8 +256,11 @@ featherbench.ready(() => {
     const dialog = byId("rows");
     byId("rows-title").textContent = title || "Rows";
     byId("rows-count").textContent = "Loading…";
+    byId("rows-about").replaceChildren();
     byId("rows-filters").replaceChildren();
     byId("rows-table").replaceChildren();
+    // In a narrow window the filters would push the rows off the screen.
+    byId("rows-narrow").open = innerWidth > 768;
     if (!dialog.open) dialog.showModal();
     try {
       Object.assign(state, { name, table: await load(name), filters: { ...filters }, text: "", sort: null, limit: PAGE });
@@ -174,6 +278,43 @@ featherbench.ready(() => {
       if (value !== "" && row[at(column)] !== value) return false;
     }
     return state.text === "" || row.some((field) => field !== null && String(field).toLowerCase().includes(state.text));
+  }
+
+  // What the shown rows are about, before the rows themselves: robot, engine, quantity and reference, the worst error and its level, and the
+  // command that repeats it.
+  const GRAVITY = ["fail", "error", "deviation", "pass", "skip", "info"];
+  function drawAbout(rows) {
+    const { pages, engines, robots, studies, titles } = chunks.get("overview");
+    const list = byId("rows-about");
+    list.replaceChildren();
+    if (rows.length === 0) return;
+    const add = (name, ...content) => list.append(make("dt", {}, name), make("dd", {}, ...content));
+    const link = (kind, names) => (value) => { const page = pages[kind][names.indexOf(value)]; return page ? make("a", { href: page }, value) : value; };
+    const kinds = [
+      ["robot", "robot", link("robots", robots.map(({ name }) => name))], ["engine", "engine", link("engines", engines)],
+      ["quantity", "quantity", (value) => titles[value] ?? value], ["reference", "reference", (value) => value], ["study", "study", link("studies", studies)],
+    ];
+    for (const [name, column, text] of kinds) {
+      const values = [...new Set(rows.map((row) => row[at(column)]))].filter((value) => value !== "" && value !== null);
+      if (values.length === 1) add(name, text(values[0]));
+      else if (values.length > 1) add(name, `${values.length}: ${values.slice(0, 8).map((value) => (column === "quantity" ? titles[value] ?? value : value)).join(", ")}${values.length > 8 ? ", …" : ""}`);
+    }
+    const far = (row) => row[at("margin")] ?? (["fail", "error"].includes(row[at("verdict")]) ? -Infinity : Infinity);
+    const worst = rows.reduce((a, b) => {
+      const [one, other] = [a, b].map((row) => GRAVITY.indexOf(row[at("verdict")]));
+      return other < one || (other === one && far(b) < far(a)) ? b : a;
+    });
+    const field = (column) => worst[at(column)];
+    const where = ["robot", "states", "body", "cache", "method"].map(field).filter(Boolean).join(", ");
+    if (field("value") !== null) {
+      const gate = field("bound") === null ? "" : `, gate ${short(field("bound"))}${field("margin") === null ? "" : `, ${decades(field("margin"))} decades`}`;
+      const measure = [titles[field("quantity")] ?? field("quantity"), field("metric")].filter(Boolean).join(", ");
+      add("worst", `${measure} ${short(field("value"))}${gate} (${where})`);
+    }
+    const level = state.table.levels[state.table.rows.indexOf(worst)];
+    add("level", level ? `${level} (${field("verdict")})` : field("verdict"));
+    const again = state.table.again[`${field("study")}/${field("robot")}`];
+    if (again) add("repeat it", make("code", {}, again));
   }
 
   function drawFilters() {
@@ -207,6 +348,7 @@ featherbench.ready(() => {
 
   function drawRows() {
     let rows = state.table.rows.filter((row) => passes(row));
+    drawAbout(rows);
     byId("rows-count").textContent = `${rows.length} of ${state.table.rows.length} rows`;
     if (state.sort) {
       const { column, direction } = state.sort;
@@ -304,7 +446,7 @@ featherbench.ready(() => {
 
   // Makes a table a grid. `about(button)` is the tip's lines, `open(button)` what a click does. Rows with data-m can be walked.
   featherbench.grid = (table, about, open) => {
-    const rows = [...table.querySelectorAll("tr[data-m]")];
+    const found = () => [...table.querySelectorAll("tr[data-m]")];
 
     // One button at a time is reached with Tab; the arrows go to the next one in their direction that is there and shown.
     function focusable(button) {
@@ -313,7 +455,7 @@ featherbench.ready(() => {
     }
 
     function step(button, down, right) {
-      const shown = rows.filter((row) => !row.hidden);
+      const shown = found().filter((row) => !row.hidden);
       let row = shown.indexOf(button.closest("tr"));
       let column = button.parentElement.cellIndex;
       for (;;) {
@@ -354,6 +496,8 @@ featherbench.ready(() => {
     // vanishes takes the way in with it: the first button that is shown becomes the one that Tab reaches.
     function filter(column, row) {
       let count = 0;
+      const rows = found();
+      const what = table.dataset.of ?? "robot";
       for (const line of rows) {
         for (const cell of line.cells) if (cell.tagName !== "TH") cell.hidden = !column(cell.cellIndex - 1);
         line.hidden = !row(line);
@@ -365,11 +509,69 @@ featherbench.ready(() => {
         const first = [...table.querySelectorAll("td button")].find((button) => !button.closest("[hidden]"));
         if (first) focusable(first);
       }
-      return count === rows.length ? `${count} robots` : `${count} of ${rows.length} robots`;
+      const noun = rows.length === 1 ? what : what.replace(/y$/, "ie") + "s";
+      return count === rows.length ? `${count} ${noun}` : `${count} of ${rows.length} ${noun}`;
     }
     return { filter };
   };
 })();
+// Maps: what their cells say and open, and how their lines are filtered and sorted.
+featherbench.dressed((root) => {
+  const { byId } = featherbench;
+
+  function prepare(table) {
+    const heads = [...table.tHead.rows[0].cells];
+    const given = (element) => JSON.parse(element.dataset.with || "{}");
+    const name = (line) => line.cells[0].firstChild.textContent;
+
+    // Line and column of a button, and the rows that it opens.
+    function place(button) {
+      const line = button.closest("tr");
+      const head = heads[button.parentElement.cellIndex];
+      return {
+        title: `${name(line)}: ${head.title}`,
+        chunk: line.dataset.rows ?? head.dataset.rows,
+        filters: { ...given(table), ...given(line), ...given(head) },
+      };
+    }
+
+    const about = (button) => [place(button).title, ...button.dataset.t.split("\n")];
+    const open = (button) => { const { chunk, filters, title } = place(button); featherbench.open(chunk, filters, title); };
+    const grid = featherbench.grid(table, about, open);
+
+    const lines = [...table.querySelectorAll("tr[data-m]")];
+    const bodies = [...table.tBodies].map((body) => [body, [...body.rows]]);
+    const KEYS = {
+      worst: (line) => Number(line.dataset.worst),
+      name: (line) => name(line).toLowerCase(),
+      size: (line) => Number(line.querySelector("th small")?.textContent ?? 0),
+    };
+
+    // In an order of their own, lines of all groups are mixed in the first body.
+    function sort() {
+      const key = KEYS[byId(`${table.id}-sort`).value];
+      for (const [body, rows] of bodies) body.replaceChildren(...rows);
+      if (!key) return;
+      const order = lines.map((line) => [key(line), line]).sort(([a], [b]) => (a < b ? -1 : a > b ? 1 : 0));
+      for (const [body] of bodies) body.replaceChildren();
+      bodies[0]?.[0].append(...order.map(([, line]) => line));
+    }
+
+    const troubled = (line) => [...line.querySelectorAll("td button")].some((button) => !/^p\d/.test(button.className));
+    function filter() {
+      const text = byId(`${table.id}-filter`).value.toLowerCase();
+      const trouble = byId(`${table.id}-trouble`).checked;
+      byId(`${table.id}-count`).textContent = grid.filter(() => true, (line) => name(line).toLowerCase().includes(text) && (!trouble || troubled(line)));
+    }
+
+    byId(`${table.id}-filter`).addEventListener("input", filter);
+    byId(`${table.id}-trouble`).addEventListener("change", filter);
+    byId(`${table.id}-sort`).addEventListener("change", () => { sort(); filter(); });
+    filter();
+  }
+
+  for (const table of root.querySelectorAll("table.map")) prepare(table);
+});
 // Axes of charts: ranges, scales, ticks and their labels. Nothing here touches the page.
 featherbench.axes = (() => {
   // Enough for every decade of a double; a loop over ticks ends here whatever its range is.
@@ -1124,20 +1326,18 @@ featherbench.plots = (() => {
   return { ZERO, least, colour, ink, mark, symbol, dash, joined, exponent, layout, draw, fitted, choices, live };
 })();
 // Figures for papers: the button that copies a figure's data. Where the browser forbids the clipboard, the file with the data is beside it.
-featherbench.ready(() => {
-  for (const button of document.querySelectorAll("button.copy-data")) {
-    const words = button.textContent;
-    button.addEventListener("click", async () => {
-      try {
-        const data = await featherbench.load("figure-data");
-        await navigator.clipboard.writeText(data[button.dataset.figure]);
-        button.textContent = "Copied";
-      } catch {
-        button.textContent = "Not allowed: save it instead";
-      }
-      setTimeout(() => { button.textContent = words; }, 1500);
-    });
+document.addEventListener("click", async (event) => {
+  const button = event.target.closest("button.copy-data");
+  if (!button) return;
+  const words = "Copy data";
+  try {
+    const data = await featherbench.load("figure-data");
+    await navigator.clipboard.writeText(data[button.dataset.figure]);
+    button.textContent = "Copied";
+  } catch {
+    button.textContent = "Not allowed: save it instead";
   }
+  setTimeout(() => { button.textContent = words; }, 1500);
 });
 // Robots that turn: the picture that the page has already, projected again. `featherbench.robot(figure)` does it for one figure.
 (() => {
@@ -1213,72 +1413,34 @@ featherbench.ready(() => {
   featherbench.robot = robot;
   featherbench.ready(() => document.querySelectorAll("figure.robot").forEach(robot));
 })();
-// The heatmap: one engine or all, filters, and what its cells say and open.
+featherbench.section("agreement", () => {
+// The heatmap: the worst of each engine, or the quantities of one.
 featherbench.ready(() => {
-  const { byId, chunks, short, decades } = featherbench;
-  const table = byId("heat");
-  const overview = chunks.get("overview");
-  const heat = chunks.get("figures")?.agreement;
-  if (!table || !overview || !heat) return;
+  const { byId, bring } = featherbench;
+  const list = byId("heat-engine");
+  if (!list) return;
 
-  const cells = new Map(heat.cells.map((cell) => [cell.at.join(" "), cell]));
-
-  // Which robot, engine and quantity a button stands for; the robot alone for a row's head.
-  function place(button) {
-    const cell = button.parentElement;
-    const robot = Number(cell.parentElement.dataset.m);
-    if (cell.tagName === "TH") return { robot };
-    const [engine, quantity] = heat.columns[cell.cellIndex - 1];
-    return { robot, engine, quantity };
+  async function show() {
+    const chosen = byId(`of-${list.value}`);
+    byId("heat-whole").hidden = chosen !== null;
+    for (const box of document.querySelectorAll(".heat-of")) box.hidden = box !== chosen;
+    const place = chosen?.querySelector("[data-part]");
+    if (place) await bring(place);
   }
 
-  function open(button) {
-    const { robot, engine, quantity } = place(button);
-    const name = overview.robots[robot].name;
-    if (engine === undefined) {
-      featherbench.open(`robot-${robot}`, {}, name);
-    } else {
-      const filters = { study: "agreement", engine: overview.engines[engine], quantity: heat.quantities[quantity][0] };
-      featherbench.open(`robot-${robot}`, filters, `${name}: ${heat.quantities[quantity][1]} by ${overview.engines[engine]}`);
-    }
-  }
-
-  function about(button) {
-    const { robot, engine, quantity } = place(button);
-    const lines = [overview.robots[robot].name];
-    if (engine === undefined) return [...lines, featherbench.describe(overview.robots[robot])];
-    const cell = cells.get([robot, engine, quantity].join(" "));
-    const [metric, kind, method, reason] = cell.worst;
-    lines.push(`${heat.quantities[quantity][1]} by ${overview.engines[engine]}`, cell.rows);
-    if (cell.value !== null) {
-      const gate = cell.bound === null ? "" : `, gate ${short(cell.bound)}${cell.margin === null ? "" : `, ${decades(cell.margin)} decades`}`;
-      lines.push(`worst: ${metric} ${short(cell.value)}${gate}`);
-    }
-    const where = [kind, method].filter(Boolean).join(", ");
-    return [...lines, where, reason].filter(Boolean);
-  }
-
-  const grid = featherbench.grid(table, about, open);
-
-  function filter() {
-    const engine = byId("heat-engine").value;
-    const text = byId("heat-filter").value.toLowerCase();
-    const trouble = byId("heat-trouble").checked;
-    const visible = heat.columns.map(([index]) => engine === "" || String(index) === engine);
-    table.classList.toggle("single", engine !== "");
-    for (const head of table.querySelectorAll("th[data-e]")) head.hidden = engine !== "" && head.dataset.e !== engine;
-    const troubled = (row) => [...row.querySelectorAll("td button")].some((button) => !button.parentElement.hidden && !/^p\d/.test(button.className));
-    byId("heat-count").textContent = grid.filter(
-      (column) => visible[column],
-      (row) => overview.robots[row.dataset.m].name.toLowerCase().includes(text) && (!trouble || troubled(row)),
-    );
-  }
-
-  byId("heat-engine").addEventListener("change", filter);
-  byId("heat-filter").addEventListener("input", filter);
-  byId("heat-trouble").addEventListener("change", filter);
-  filter();
+  list.addEventListener("change", show);
+  // The heads of the columns open the quantities here; the engine's own page is one click further.
+  byId("heat").tHead.addEventListener("click", (event) => {
+    const head = event.target.closest("th.engine");
+    const option = head && [...list.options].find(({ textContent }) => textContent === head.title);
+    if (!option) return;
+    event.preventDefault();
+    list.value = option.value;
+    show();
+  });
 });
+});
+featherbench.section("depth", () => {
 // Error against depth.
 featherbench.ready(() => {
   const { byId, chunks, short, variable } = featherbench;
@@ -1339,6 +1501,8 @@ featherbench.ready(() => {
   choices(byId("depth-case"), new Set(used.map(([, kind]) => kind)));
   live(drawDepth, "depth-quantity", "depth-family", "depth-case");
 });
+});
+featherbench.section("time", () => {
 // Time against size.
 featherbench.ready(() => {
   const { byId, chunks, short } = featherbench;
@@ -1383,4 +1547,5 @@ featherbench.ready(() => {
   }
 
   live(drawTime, "time-unit", "time-case", "time-family", "time-fit");
+});
 });
