@@ -21,7 +21,7 @@ pub fn merge(root: &Root, args: &MergeArgs) -> Result<(), Fail> {
         }
     }
     // What is wrong with the shards alone is told before engines are started.
-    let Some(first) = parts.first().filter(|_| args.keep_good || refused.is_empty()) else { return Err(refusal(&refused, None)) };
+    let Some(first) = parts.first().filter(|_| args.keep_good || refused.is_empty()) else { return Err(error_of(&refused, None)) };
     let of = first.folder.display();
     let whole =
         RunArgs::of(&first.file.arguments).map_err(|error| Fail::input(format!("{of}: its arguments are not those of a run: {error}")))?;
@@ -35,7 +35,7 @@ pub fn merge(root: &Root, args: &MergeArgs) -> Result<(), Fail> {
     let gaps = gaps(&merged);
     let complete = refused.is_empty() && gaps.is_none();
     if !(args.keep_good || complete) || merged.parts.is_empty() {
-        return Err(refusal(&refused, gaps));
+        return Err(error_of(&refused, gaps));
     }
     refused.iter().map(ToString::to_string).chain(gaps).for_each(|what| eprintln!("note: left out: {what}"));
 
@@ -72,7 +72,7 @@ fn gaps(merged: &Merge) -> Option<String> {
 }
 
 /// All that is wrong, and what to do.
-fn refusal(refused: &[ShardError], gaps: Option<String>) -> Fail {
+fn error_of(refused: &[ShardError], gaps: Option<String>) -> Fail {
     let told: Vec<String> = refused.iter().map(ToString::to_string).chain(gaps).collect();
     Fail::input(format!("{}\n  --keep-good merges what is good, and names the rest", told.join("\n  ")))
 }

@@ -16,11 +16,6 @@ const HEAD: [&str; 6] = ["robot", "engine", "loads as written", "same M and τ",
 /// The answer of each engine on each robot, in one line.
 pub fn answers(answers: &[Answer]) -> String {
     let line = |answer: &Answer| {
-        let same = match answer.same {
-            Some(true) => "yes",
-            Some(false) => "no",
-            None => "–",
-        };
         let change = answer.largest.as_ref().map_or_else(
             || "–".to_owned(),
             |largest| {
@@ -28,7 +23,7 @@ pub fn answers(answers: &[Answer]) -> String {
                 format!("{}{effect}", largest.place())
             },
         );
-        [answer.robot.clone(), answer.engine.clone(), answer.loads.name().into(), same.into(), change, answer.advice.clone()]
+        [answer.robot.clone(), answer.engine.clone(), answer.loads.name().into(), answer.same_word().into(), change, answer.advice.clone()]
     };
     let lines: Vec<[String; 6]> = std::iter::once(HEAD.map(str::to_owned)).chain(answers.iter().map(line)).collect();
     let widths: [usize; 6] = std::array::from_fn(|column| lines.iter().map(|line| line[column].chars().count()).max().unwrap_or(0));

@@ -54,8 +54,8 @@ fn any_number_of_shards_merges_to_the_bytes_of_one_process() {
     }
 }
 
-/// A shard that is refused, how it comes to that, and the words of the refusal.
-type Refusal<'a> = (&'a str, &'a dyn Fn(&Path), &'a [&'a str]);
+/// A shard that is refused, how it comes to that, and the words of the error.
+type Bad<'a> = (&'a str, &'a dyn Fn(&Path), &'a [&'a str]);
 
 #[test]
 fn a_shard_that_does_not_fit_is_refused_by_name_and_the_rest_is_kept() {
@@ -77,7 +77,7 @@ fn a_shard_that_does_not_fit_is_refused_by_name_and_the_rest_is_kept() {
         change(&mut bytes);
         std::fs::write(path, bytes).unwrap();
     };
-    let refusals: [Refusal; 9] = [
+    let refusals: [Bad; 9] = [
         ("corrupted", &|at| edit(at, "outcomes.bin", &|bytes| *bytes.last_mut().unwrap() ^= 1), &["corrupted/outcomes.bin", "damaged"]),
         ("truncated", &|at| edit(at, "outcomes.bin", &|bytes| bytes.truncate(bytes.len() - 9)), &["truncated/outcomes.bin", "damaged"]),
         ("altered", &|at| edit(at, "shard.json", &|bytes| bytes[100] ^= 1), &["altered/shard.json", "checksum"]),

@@ -90,6 +90,17 @@ pub struct Answer {
     pub advice: String,
 }
 
+impl Answer {
+    /// Whether M and τ are the same, in one word.
+    pub fn same_word(&self) -> &'static str {
+        match self.same {
+            Some(true) => "yes",
+            Some(false) => "no",
+            None => "–",
+        }
+    }
+}
+
 /// The answers of all robots and engines, in the order of the rows.
 pub fn answers(rows: &[Row]) -> Vec<Answer> {
     let read = |row: &&Row| row.study == "import" && row.metric == "differences" && row.quantity == "import";

@@ -7,7 +7,7 @@ use featherbench_results::{Drawing, DrawnBody};
 use featherbench_spatial::Vec3;
 use nalgebra::{Matrix3, SymmetricEigen};
 
-/// A robot with more bodies is not drawn: nobody could tell them apart.
+/// A robot with more bodies is not drawn: the bodies could not be told apart.
 const MOST: usize = 200;
 
 /// The drawing of a robot; `None` if it has too many bodies or none.

@@ -45,11 +45,6 @@ fn rank(answer: &Answer) -> u8 {
 }
 
 fn table(answers: &[Answer]) -> Markup {
-    let same = |answer: &Answer| match answer.same {
-        Some(true) => "yes",
-        Some(false) => "no",
-        None => "–",
-    };
     html! {
         table.compact {
             thead { tr {
@@ -61,7 +56,7 @@ fn table(answers: &[Answer]) -> Markup {
                     th scope="row" { (answer.robot) }
                     td { (answer.engine) }
                     td { (answer.loads.name()) }
-                    td { (same(answer)) }
+                    td { (answer.same_word()) }
                     td { @if let Some(largest) = &answer.largest { (largest.place()) @if let Some(effect) = largest.effect() { " by " (short(effect)) } } @else { "–" } }
                     td { (answer.advice) }
                 }
