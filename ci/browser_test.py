@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Opens a report in Chromium from a file:// address and uses it as a reader would.
 
-    python ci/browser_test.py REPORT_DIR [--shots FOLDER] [--only axe]
+    python ci/browser_test.py REPORT_DIR [--shots FOLDER] [--only axe|use|robots]
 
 Needs chromium and chromedriver on the path, and no Python package: chromedriver is asked by JSON over local HTTP.
 The rules of accessibility are those of axe-core, which npm brings once, at a pinned version and checksum, into target/axe.
@@ -19,6 +19,7 @@ import tempfile
 
 from browser.axe import accessible
 from browser.client import Browser
+from browser.robots import robots
 from browser.sections import checks
 
 
@@ -26,7 +27,7 @@ def main() -> int:
     """Run the checks."""
     parser = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
     parser.add_argument("report", type=pathlib.Path, help="folder that holds index.html")
-    parser.add_argument("--only", choices=["axe", "use"], help="the rules of accessibility alone, or all but them")
+    parser.add_argument("--only", choices=["axe", "use", "robots"], help="accessibility, or what a reader does; or the drawings of a comparison")
     parser.add_argument("--shots", type=pathlib.Path, help="folder for screenshots")
     arguments = parser.parse_args()
     index = (arguments.report / "index.html").resolve()
@@ -43,9 +44,11 @@ def main() -> int:
             print(f"the browser could not be started: {error}", file=sys.stderr)
             return 2
         try:
-            used = () if arguments.only == "axe" else checks(page, index.as_uri(), arguments.shots)
-            ruled = () if arguments.only == "use" else accessible(page, arguments.report)
-            for what, good, seen in itertools.chain(used, ruled):
+            asked = [arguments.only] if arguments.only else ["use", "axe"]
+            used = checks(page, index.as_uri(), arguments.shots) if "use" in asked else ()
+            ruled = accessible(page, arguments.report) if "axe" in asked else ()
+            turned = robots(page, arguments.report) if "robots" in asked else ()
+            for what, good, seen in itertools.chain(used, ruled, turned):
                 print(f"{'ok  ' if good else 'FAIL'} {what}" + ("" if good else f": {seen}"))
                 passed, failed = passed + bool(good), failed + (not good)
         except (OSError, RuntimeError, subprocess.SubprocessError) as error:

@@ -70,5 +70,6 @@
   }
 
   featherbench.robot = robot;
-  featherbench.ready(() => document.querySelectorAll("figure.robot").forEach(robot));
+  // A section with robots may be brought later than the page.
+  featherbench.dressed((root) => root.querySelectorAll("figure.robot").forEach(robot));
 })();

@@ -26,9 +26,13 @@ pub fn decades(margin: f64) -> String {
     format!("{}{:.1}", if tenths < 0.0 { "−" } else { "+" }, tenths.abs())
 }
 
-/// A count with its noun: `1 row`, `12 300 rows`.
+/// A count with its noun: `1 row`, `12 300 rows`, `2 bodies`.
 pub fn count(number: usize, noun: &str) -> String {
-    format!("{} {noun}{}", grouped(number), if number == 1 { "" } else { "s" })
+    let many = match noun.strip_suffix('y') {
+        Some(stem) if !stem.ends_with(['a', 'e', 'o', 'u']) => format!("{stem}ies"),
+        _ => format!("{noun}s"),
+    };
+    format!("{} {}", grouped(number), if number == 1 { noun } else { &many })
 }
 
 /// Groups of three digits with narrow spaces.
@@ -73,6 +77,7 @@ mod tests {
         assert_eq!([0.99, -0.01, 16.0, -2.34].map(decades), ["+0.9", "−0.1", "+16.0", "−2.4"]);
         assert_eq!([grouped(7), grouped(1234), grouped(1_234_567)], ["7", "1\u{202f}234", "1\u{202f}234\u{202f}567"]);
         assert_eq!((count(1, "row"), count(0, "row")), ("1 row".into(), "0 rows".into()));
+        assert_eq!((count(1, "body"), count(2, "body"), count(2, "key")), ("1 body".into(), "2 bodies".into(), "2 keys".into()));
         assert_eq!(listed(&["a".into(), "b".into(), "c".into()]), "a, b and c");
     }
 }

@@ -1411,7 +1411,8 @@ document.addEventListener("click", async (event) => {
   }
 
   featherbench.robot = robot;
-  featherbench.ready(() => document.querySelectorAll("figure.robot").forEach(robot));
+  // A section with robots may be brought later than the page.
+  featherbench.dressed((root) => root.querySelectorAll("figure.robot").forEach(robot));
 })();
 featherbench.section("agreement", () => {
 // The heatmap: the worst of each engine, or the quantities of one.

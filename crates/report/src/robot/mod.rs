@@ -25,7 +25,7 @@ pub fn drawn(name: &str, drawing: &Drawing, marked: &BTreeSet<String>, what: &st
     let is_marked = |body: &DrawnBody| marked.contains(&body.name);
     let differing: Vec<String> = bodies.iter().filter(|body| is_marked(body)).map(|body| body.name.clone()).collect();
     let caption = match differing.len() {
-        0 => format!("{name}: {}", count(bodies.len(), "body").replace("bodys", "bodies")),
+        0 => format!("{name}: {}", count(bodies.len(), "body")),
         _ => format!("{name}: {what} in {}", listed(&differing)),
     };
     html! {
