@@ -27,7 +27,7 @@ def main() -> int:
     """Run the checks."""
     parser = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
     parser.add_argument("report", type=pathlib.Path, help="folder that holds index.html")
-    parser.add_argument("--only", choices=["axe", "use", "robots"], help="accessibility, or what a reader does; or the drawings of a comparison")
+    parser.add_argument("--only", choices=["axe", "use", "robots"], help="accessibility, what a reader does, or drawings of a comparison")
     parser.add_argument("--shots", type=pathlib.Path, help="folder for screenshots")
     arguments = parser.parse_args()
     index = (arguments.report / "index.html").resolve()
