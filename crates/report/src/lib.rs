@@ -15,7 +15,7 @@
 //! | layer | files |
 //! |---|---|
 //! | data | [`numbers`], [`labels`], [`fit`], `error`, then [`figure`], then `tally`, `overview`, `section`, then `findings`, `parts`, then `chunks`, [`forms`] |
-//! | sections | `blocks`, [`robot`], then [`map`], `cards`, then `verdict`, `conventions`, `provenance`, `method`, `unpassed`, `figures`, `subjects` |
+//! | sections | `blocks`, [`mod@robot`], then [`map`], `cards`, then `verdict`, `conventions`, `provenance`, `method`, `unpassed`, `figures`, `subjects` |
 //! | page | `page`, `summary`, [`changes`], `trends`, then [`runs`], then `write` |
 
 mod blocks;
