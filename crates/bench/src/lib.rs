@@ -47,6 +47,7 @@ mod derivative_floor;
 mod described;
 mod deviation;
 mod draw;
+pub mod drawing;
 mod engine;
 mod entries;
 mod error;

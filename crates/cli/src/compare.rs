@@ -16,7 +16,7 @@ use featherbench_bench::run::{Opening, Run};
 use featherbench_bench::{Cell, Context, Engine, Engines, FileFormat, OWN, Robot, RobotFile, hash, provenance};
 use featherbench_engines::Limits;
 use featherbench_model::Warning;
-use featherbench_studies::import::{answers, drawing};
+use featherbench_studies::import::answers;
 use featherbench_studies::{Agreement, Import};
 use std::time::{Duration, Instant, SystemTime};
 
@@ -95,8 +95,8 @@ pub fn compare(root: &Root, args: &CompareArgs) -> Result<(), Fail> {
     };
     let records = run.conduct(&[Box::new(Import), Box::new(Agreement)], &context, &keep, &Bar::new())?;
     let conditions = |robot| outcome::conditions(robot, &opened.engines, &records, args.strict);
-    run.info.drawings = robots.iter().filter_map(|robot| Some((robot.name.clone(), drawing(robot)?))).collect();
     run.info.expected = robots.iter().flat_map(conditions).collect();
+    run.info.drawings = run::drawings(&run.info, &records, &robots);
     run.info.seconds.insert("total".into(), start.elapsed().as_secs_f64());
     run.write(&records, &featherbench_studies::dictionary(&records))?;
     let page = report::render(&folder, &run.info, &records)?;

@@ -12,11 +12,13 @@ use crate::report;
 use crate::robots::{self, Loaded};
 use crate::root::Root;
 use crate::shard;
-use ::featherbench_results::{Culprit, Expectation, GateKind, Row, RunInfo, quoted};
+use ::featherbench_results::{Culprit, Drawing, Expectation, GateKind, Row, RunInfo, quoted};
 use featherbench_bench::run::{Opening, Run};
-use featherbench_bench::{Cell, Context, Counts, Gates, Robot, Study, provenance};
+use featherbench_bench::{Cell, Context, Counts, Gates, Robot, Study, drawing, provenance};
+use featherbench_report::Findings;
 use featherbench_studies::Setup;
 use regex_lite::Regex;
+use std::collections::BTreeMap;
 use std::path::PathBuf;
 use std::time::{Instant, SystemTime};
 
@@ -90,11 +92,24 @@ impl Prepared {
         let missing = self.opened.missing(suite.engines());
         run.info.expected.extend(missing.into_iter().map(|engine| missing_engine(&engine.name, &engine.reason)));
         run.info.expected.extend(more);
+        run.info.drawings = drawings(&run.info, rows, &self.loaded.robots);
         run.info.seconds.insert("total".into(), self.start.elapsed().as_secs_f64());
         run.write(rows, &featherbench_studies::dictionary(rows))?;
         let page = report::render(&run.folder, &run.info, rows)?;
         report::conclude(&run.info, rows, &page, args.open)
     }
+}
+
+/// The drawings that a judged run keeps, those of robots in its findings first. If some are left out, that is told.
+pub fn drawings(info: &RunInfo, rows: &[Row], robots: &[Robot]) -> BTreeMap<String, Drawing> {
+    let findings = Findings::of(info, rows);
+    let first = findings.found.iter().map(|found| found.culprit.robot.as_str()).collect();
+    let (drawings, left_out) = drawing::of_run(robots, &first);
+    if left_out > 0 {
+        let (drawn, most) = (drawings.len(), Drawing::MOST_BYTES);
+        eprintln!("note: the report draws {drawn} robots; with {left_out} more, the drawings would have over {most} bytes");
+    }
+    drawings
 }
 
 /// The names of the engines that a user brings along.

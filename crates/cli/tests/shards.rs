@@ -36,6 +36,9 @@ fn any_number_of_shards_merges_to_the_bytes_of_one_process() {
     sandbox.run(&[&SUITE[..], &["--out", "one/run"]].concat()).expect(0, &["report:"]);
     let expected = rows(&sandbox.path("one/run"));
     assert!(expected.lines().count() > 500 && !expected.contains(",measured,"));
+    let drawings = |folder: &Path| std::fs::read_to_string(folder.join("drawings.json")).unwrap();
+    let drawn = drawings(&sandbox.path("one/run"));
+    assert!(drawn.contains("\n\"panda\":[{\"name\":"), "{}", &drawn[..200]);
     for of in [1, 2, 7] {
         // Evaluated and merged in another order than they are numbered in.
         let numbers: Vec<usize> = (1..=of).rev().collect();
@@ -48,6 +51,7 @@ fn any_number_of_shards_merges_to_the_bytes_of_one_process() {
         let folders: Vec<&str> = folders.iter().map(String::as_str).collect();
         sandbox.run(&[&["merge"][..], &folders, &["--out", &out]].concat()).expect(0, &["report:"]);
         assert!(rows(&sandbox.path(&out)) == expected, "{of} shards");
+        assert!(drawings(&sandbox.path(&out)) == drawn, "{of} shards");
         let run: Value = serde_json::from_slice(&std::fs::read(sandbox.path(&out).join("run.json")).unwrap()).unwrap();
         assert_eq!(run["shards"].as_array().unwrap().len(), of);
         assert_eq!(run["command"], "cargo run --release -- run --suite smoke --no-timing");

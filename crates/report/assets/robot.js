@@ -71,5 +71,5 @@
 
   featherbench.robot = robot;
   // A section with robots may be brought later than the page.
-  featherbench.dressed((root) => root.querySelectorAll("figure.robot").forEach(robot));
+  featherbench.dressed((root) => [...root.querySelectorAll("figure.robot"), ...(root.matches?.("figure.robot") ? [root] : [])].forEach(robot));
 })();

@@ -15,7 +15,7 @@
 //! | layer | files |
 //! |---|---|
 //! | data | [`numbers`], [`labels`], [`fit`], `error`, then [`figure`], then `tally`, `overview`, `section`, then `findings`, `parts`, then `chunks`, [`forms`] |
-//! | sections | `blocks`, [`mod@robot`], then [`map`], `cards`, then `verdict`, `conventions`, `provenance`, `method`, `unpassed`, `figures`, `subjects` |
+//! | sections | `blocks`, [`mod@robot`], then [`map`], `drawings`, then `cards`, then `verdict`, `conventions`, `provenance`, `method`, `unpassed`, `figures`, `subjects` |
 //! | page | `page`, `summary`, [`changes`], `trends`, then [`runs`], then `write` |
 
 mod blocks;
@@ -23,6 +23,7 @@ mod cards;
 pub mod changes;
 mod chunks;
 mod conventions;
+mod drawings;
 mod error;
 pub mod figure;
 mod figures;
@@ -53,7 +54,7 @@ pub use chunks::{TIMES, UNPASSED};
 pub use error::ReportError;
 pub use findings::{Findings, Found, Status};
 pub use overview::{EVERYONE, Overview, Pages, Robot, robot_chunk};
-pub use section::{Finding, Part, Section};
+pub use section::{Finding, Mark, Part, Section};
 pub use summary::summary;
 pub use tally::{Tally, worst_first};
 pub use write::{ReportPaths, write};

@@ -37,6 +37,8 @@ pub struct Section {
     pub answer: Option<Markup>,
     /// What is seen only when it is opened: a [`Part::place`] stands for each, in the body or in the answer.
     pub parts: Vec<Part>,
+    /// The bodies that it marks in drawings of robots.
+    pub marks: Vec<Mark>,
     /// Its figures for papers.
     pub figures: Vec<Figure>,
     /// Quantities of whose errors it tells: the section on the method defines their measures.
@@ -68,6 +70,17 @@ impl Part {
     }
 }
 
+/// A body of a robot in which an engine differs, for drawings.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Mark {
+    /// The robot.
+    pub robot: String,
+    /// The engine.
+    pub engine: String,
+    /// The body.
+    pub body: String,
+}
+
 /// What a section adds to the verdict.
 #[derive(Debug)]
 pub struct Finding {
@@ -91,6 +104,7 @@ impl Section {
             finding: None,
             answer: None,
             parts: Vec::new(),
+            marks: Vec::new(),
             figures: Vec::new(),
             quantities: Vec::new(),
             terms: &[],

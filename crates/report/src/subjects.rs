@@ -7,6 +7,7 @@ use maud::{Markup, html};
 
 use crate::blocks::opener;
 use crate::cards::card;
+use crate::drawings::Drawings;
 use crate::findings::{Findings, Status};
 use crate::labels;
 use crate::map::{Head, Map, engine_heads, legend, quantity_head, robot_heads};
@@ -38,6 +39,7 @@ struct About {
 pub struct Subjects<'a> {
     run: &'a RunInfo,
     overview: &'a Overview<'a>,
+    drawings: &'a Drawings<'a>,
     sections: &'a [Section],
     engines: Vec<Vec<&'a Row>>,
     robots: Vec<Vec<&'a Row>>,
@@ -46,7 +48,8 @@ pub struct Subjects<'a> {
 
 impl<'a> Subjects<'a> {
     /// Sorts the rows by engine, robot and study.
-    pub fn of(run: &'a RunInfo, rows: &'a [Row], overview: &'a Overview, sections: &'a [Section]) -> Self {
+    pub fn of(run: &'a RunInfo, rows: &'a [Row], drawings: &'a Drawings, sections: &'a [Section]) -> Self {
+        let overview = drawings.overview;
         let (mut engines, mut robots) = (vec![Vec::new(); overview.engines.len()], vec![Vec::new(); overview.robots.len()]);
         let mut studies = vec![Vec::new(); overview.studies.len()];
         for row in rows {
@@ -57,7 +60,7 @@ impl<'a> Subjects<'a> {
             ];
             places.into_iter().flatten().for_each(|list| list.push(row));
         }
-        Self { run, overview, sections, engines, robots, studies }
+        Self { run, overview, drawings, sections, engines, robots, studies }
     }
 
     /// Every page, one after the other.
@@ -121,6 +124,7 @@ impl<'a> Subjects<'a> {
                 (number(about.nv)) " degrees of freedom, " (number(about.bodies)) " bodies, depth " (number(about.depth)) ". "
                 (opener(&chunk, &[], "All its rows")) "."
             }
+            (self.drawings.on_page(about.name))
             @if let Some(info) = info { (source(info)) }
         };
         let findings = Findings::about(self.run, rows.iter().copied(), |culprit: &Culprit| culprit.robot == about.name);

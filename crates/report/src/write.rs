@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use featherbench_results::{Row, RunInfo};
 
 use crate::chunks::{self, NamedFile};
+use crate::drawings::Drawings;
 use crate::error::ReportError;
 use crate::figures;
 use crate::overview::Overview;
@@ -65,12 +66,13 @@ pub fn write(run: &RunInfo, rows: &[Row], sections: &[Section], out: &Path) -> R
     chunks::rows(run, &overview, rows).try_for_each(|file| put(file?))?;
     figures::files(sections).try_for_each(&mut put)?;
     put(chunks::figure_data(&figures::data(sections)?))?;
+    let drawings = Drawings::of(run, rows, &overview, sections);
     let page = Page::of(run, rows, &overview, sections);
     for piece in parts::of(&page.sections()) {
         put(chunks::piece(&piece)?)?;
         put((format!("{}/{}.html", parts::FOLDER, piece.name), page.piece(&piece).into_bytes()))?;
     }
-    for subject in Subjects::of(run, rows, &overview, sections).pages() {
+    for subject in Subjects::of(run, rows, &drawings, sections).pages() {
         put((subject.path.clone(), page.subject(&subject).into_bytes()))?;
     }
     // Last, so that a page is never older than what it links to.

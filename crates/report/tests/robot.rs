@@ -1,8 +1,11 @@
 //! The picture of a robot: it stands without a script, and marks the bodies that differ.
 
 use featherbench_report::robot::drawn;
-use featherbench_results::{Drawing, DrawnBody};
-use std::collections::BTreeSet;
+use featherbench_report::{Mark, Section};
+use featherbench_results::{Drawing, DrawnBody, ModelOrigin, Relation, RobotInfo, Row, RunInfo, Verdict};
+use std::collections::{BTreeMap, BTreeSet};
+
+use crate::written::Written;
 
 fn body(name: &str, parent: Option<usize>, z: f64) -> DrawnBody {
     let axes = [[0.3, 0.0, 0.0], [0.0, 0.2, 0.0], [0.0, 0.0, 0.1]];
@@ -40,4 +43,56 @@ fn odd_drawings_are_drawn() {
     let page = drawn("dot", &Drawing(vec![flat]), &BTreeSet::new(), "").into_string();
     assert!(page.contains("dot: 1 body") && !page.contains("NaN") && !page.contains("inf"), "{page}");
     assert!(drawn("none", &Drawing(Vec::new()), &BTreeSet::new(), "").into_string().contains("none: 0 bodies"));
+}
+
+/// A run of three robots: one that an engine reads otherwise, one without a finding, and one of too many bodies.
+fn yard() -> (RunInfo, Vec<Row>, Section) {
+    let robot = |name: &str| RobotInfo {
+        name: name.into(),
+        hash: String::new(),
+        origin: ModelOrigin::Robot,
+        licence: String::new(),
+        source: String::new(),
+        nq: 3,
+        nv: 3,
+        bodies: 3,
+        depth: 3,
+        notes: Vec::new(),
+        properties: None,
+    };
+    let drawing = Drawing(vec![body("base", None, 0.0), body("arm", Some(0), 1.0), body("hand", Some(1), 2.0)]);
+    let drawings = BTreeMap::from([("crane".to_owned(), drawing.clone()), ("quiet".to_owned(), drawing)]);
+    let run = RunInfo { robots: ["crane", "quiet", "long"].map(robot).into(), drawings, ..RunInfo::default() };
+    let row = |robot: &str, engine: &str| Row { study: "s".into(), robot: robot.into(), engine: engine.into(), ..Row::default() };
+    let far = Row { quantity: "id".into(), unit: "1".into(), ..row("crane", "drake") }.gated(0.5, Relation::Le, 1e-14);
+    let of_hand = Row { body: "hand".into(), quantity: "readback".into(), ..row("crane", "mujoco") }.gated(0.5, Relation::Le, 1e-14);
+    let of_base = Row { body: "base".into(), ..row("crane", "dart") }.gated(0.0, Relation::Le, 1e-14);
+    let rows = vec![
+        far,
+        of_hand,
+        of_base,
+        row("quiet", "drake").gated(0.0, Relation::Le, 1.0),
+        row("long", "drake").gated(2.0, Relation::Le, 1.0),
+    ];
+    let mark = Mark { robot: "crane".into(), engine: "drake".into(), body: "arm".into() };
+    (run, rows, Section { marks: vec![mark], ..Section::new("mine", "Mine", maud::html! { section #mine { h2 { "Mine" } } }) })
+}
+
+#[test]
+fn a_robots_page_draws_it_and_marks_what_findings_name() {
+    let (run, rows, section) = yard();
+    let written = Written::of(&run, &rows, &[section]);
+    let page = written.text("robots/crane.html");
+    // A row that does not pass names the hand, a section the arm; the base is named by a row that passes.
+    assert!(page.contains("crane: engines differ in arm and hand"), "{page}");
+    assert_eq!(page.matches("<ellipse class=\"marked\"").count(), 2, "{page}");
+    assert!(page.contains("<summary>Kinematic tree</summary>"), "{page}");
+    let quiet = written.text("robots/quiet.html");
+    assert!(quiet.contains("quiet: 3 bodies") && !quiet.contains("class=\"marked\""), "{quiet}");
+    let long = written.text("robots/long.html");
+    assert!(!long.contains("<figure class=\"robot\"") && long.contains("It is not drawn."), "{long}");
+    // A run of an older version has no drawings, and says nothing of them.
+    let old = Written::of(&RunInfo { drawings: BTreeMap::new(), ..run }, &rows, &[]);
+    assert!(!old.text("robots/long.html").contains("It is not drawn."));
+    assert_eq!(rows[4].verdict, Verdict::Fail);
 }

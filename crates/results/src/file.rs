@@ -5,7 +5,7 @@ use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicU64, Ordering};
 
-use crate::{COLUMNS, Checksums, ColumnType, Dictionary, ResultsError, Row, RunInfo, schema_json};
+use crate::{COLUMNS, Checksums, ColumnType, DRAWINGS_NAME, Dictionary, ResultsError, Row, RunInfo, drawing, schema_json};
 
 /// Name of the rows' file in a run's folder.
 pub const CSV_NAME: &str = "rows.csv";
@@ -169,8 +169,8 @@ pub fn parse_csv(text: &str, path: &Path) -> Result<Vec<Row>, ResultsError> {
     Ok(records)
 }
 
-/// Writes a run's files into its folder, each in one step: rows, columns, `run.json`, and last their checksums. So a folder without
-/// checksums is known to be unfinished.
+/// Writes a run's files into its folder, each in one step: rows, columns, drawings if it has any, `run.json`, and last their checksums. So a
+/// folder without checksums is known to be unfinished.
 ///
 /// # Errors
 /// [`ResultsError`]; the folder then has no valid checksums of the earlier files.
@@ -185,8 +185,13 @@ pub fn write_run(folder: &Path, run: &RunInfo, records: &[Row]) -> Result<(), Re
 pub fn write_run_with(folder: &Path, run: &RunInfo, records: &[Row], dictionary: &Dictionary, more: &[&str]) -> Result<(), ResultsError> {
     write_csv(&folder.join(CSV_NAME), records)?;
     atomic_write(&folder.join(SCHEMA_NAME), schema_json(dictionary).as_bytes())?;
+    let drawn: &[&str] = if run.drawings.is_empty() { &[] } else { &[DRAWINGS_NAME] };
+    for name in drawn {
+        let path = folder.join(name);
+        atomic_write(&path, drawing::to_text(&run.drawings, &path)?.as_bytes())?;
+    }
     RunInfo { rows: records.len() as u64, ..run.clone() }.write(&folder.join(RUN_NAME))?;
-    Checksums::of(folder, &[&[CSV_NAME, SCHEMA_NAME, RUN_NAME], more].concat())?.write()
+    Checksums::of(folder, &[&[CSV_NAME, SCHEMA_NAME, RUN_NAME], drawn, more].concat())?.write()
 }
 
 /// Reads a run's folder back.
@@ -202,7 +207,10 @@ pub fn read_run(folder: &Path) -> Result<(RunInfo, Vec<Row>), ResultsError> {
         text.map_err(|error| ResultsError::Io { path, source: io::Error::new(io::ErrorKind::InvalidData, error) })
     };
     let path = folder.join(CSV_NAME);
-    let run = RunInfo::parse(&text(RUN_NAME)?, &folder.join(RUN_NAME))?;
+    let mut run = RunInfo::parse(&text(RUN_NAME)?, &folder.join(RUN_NAME))?;
+    if sums.names().any(|name| name == DRAWINGS_NAME) {
+        run.drawings = drawing::parse(&text(DRAWINGS_NAME)?, &folder.join(DRAWINGS_NAME))?;
+    }
     let records = parse_csv(&text(CSV_NAME)?, &path)?;
     text(SCHEMA_NAME)?;
     for name in sums.names() {

@@ -61,8 +61,8 @@ pub struct RunInfo {
     /// The conventions of the engines, compared with ours.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub conventions: Vec<Convention>,
-    /// The drawings of robots, by name; a run that compares files has them.
-    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    /// The drawings of robots, by name. They are in a file of their own, [`DRAWINGS_NAME`](crate::DRAWINGS_NAME); an older version had them here.
+    #[serde(default, skip_serializing)]
     pub drawings: BTreeMap<String, crate::Drawing>,
     /// The shards that the run was merged from; none if one process made it.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]

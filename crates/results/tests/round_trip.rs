@@ -5,9 +5,10 @@ use std::fs;
 use std::path::Path;
 
 use featherbench_results::{
-    Base, COLUMNS, CSV_NAME, Checksums, ColumnType, Convention, Culprit, Drawing, DrawnBody, EngineInfo, EngineSource, Expectation,
-    Feature, GateKind, GitInfo, Host, Kind, ModelOrigin, Properties, RUN_FORMAT, RUN_NAME, Relation, ResultsError, RobotInfo, Row, RunInfo,
-    SCHEMA_NAME, ShardInfo, Verdict, atomic_write, canonical_json, read_csv, read_run, schema_json, to_csv, write_csv, write_run,
+    Base, COLUMNS, CSV_NAME, Checksums, ColumnType, Convention, Culprit, DRAWINGS_NAME, Drawing, DrawnBody, EngineInfo, EngineSource,
+    Expectation, Feature, GateKind, GitInfo, Host, Kind, ModelOrigin, Properties, RUN_FORMAT, RUN_NAME, Relation, ResultsError, RobotInfo,
+    Row, RunInfo, SCHEMA_NAME, ShardInfo, Verdict, atomic_write, canonical_json, read_csv, read_run, schema_json, to_csv, write_csv,
+    write_run,
 };
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
@@ -320,6 +321,29 @@ fn a_run_survives_its_folder() {
         fs::read_to_string(folder.path().join("new/run").join(SCHEMA_NAME)).unwrap(),
         schema_json(&featherbench_results::Dictionary::default())
     );
+}
+
+#[test]
+fn drawings_are_a_file_of_their_own() {
+    let folder = tempfile::tempdir().unwrap();
+    write_run(folder.path(), &run_info(), &[]).unwrap();
+    let text = |name: &str| fs::read_to_string(folder.path().join(name)).unwrap();
+    assert!(!text(RUN_NAME).contains("drawings"), "{}", text(RUN_NAME));
+    assert!(text(DRAWINGS_NAME).lines().nth(1).unwrap().starts_with("\"panda\":[{\"name\":\"hand\""), "a robot a line");
+    assert!(text("checksums.txt").contains(DRAWINGS_NAME));
+    // An older version had them in run.json.
+    let drawings = serde_json::to_string(&run_info().drawings).unwrap();
+    let old = text(RUN_NAME).replacen('{', &format!("{{\"drawings\":{drawings},"), 1);
+    assert_eq!(RunInfo::parse(&old, Path::new(RUN_NAME)).unwrap(), RunInfo { rows: 0, ..run_info() });
+    // A run without drawings has no such file.
+    let bare = folder.path().join("bare");
+    let plain = RunInfo { drawings: BTreeMap::new(), rows: 0, ..run_info() };
+    write_run(&bare, &plain, &[]).unwrap();
+    assert!(!bare.join(DRAWINGS_NAME).exists());
+    assert_eq!(read_run(&bare).unwrap().0, plain);
+    let mut lost = run_info();
+    lost.drawings.get_mut("panda").unwrap().0[0].mass = f64::NAN;
+    assert!(write_run(&bare, &lost, &[]).unwrap_err().to_string().contains("the drawing of panda"));
 }
 
 #[test]

@@ -16,7 +16,6 @@ mod cause;
 mod comparison;
 mod context;
 mod difference;
-mod drawn;
 mod fields;
 mod opening;
 mod pairs;
@@ -29,7 +28,6 @@ pub(crate) mod words;
 pub use answers::{Answer, Largest, Loads, answers, repairs};
 pub use comparison::{Comparison, Finding};
 pub use difference::{Cause, Class, Difference, Field, Weight};
-pub use drawn::drawing;
 pub use replay::Effect;
 pub use subtree::{SubTree, bound};
 

@@ -4,13 +4,16 @@ use super::opening::opening;
 use std::collections::BTreeMap;
 
 use featherbench_report::numbers::{count, larger, short};
-use featherbench_report::{Overview, Section, robot, robot_chunk};
-use featherbench_results::{Row, RunInfo, Verdict};
+use featherbench_report::{Mark, Overview, Section, robot, robot_chunk};
+use featherbench_results::{Drawing, Row, RunInfo, Verdict};
 use maud::{Markup, html};
 use serde_json::Value;
 
 /// The study's name in rows, and the quantity of an import.
 const STUDY: &str = "import";
+
+/// Robots that the section draws itself, as a comparison has them.
+const DRAWN: usize = 8;
 
 /// The result of one robot in one engine.
 #[derive(Default)]
@@ -86,12 +89,12 @@ pub(crate) fn sections<'a>(run: &RunInfo, rows: &'a [Row], overview: &Overview<'
     }
     let (script, style) = (include_str!("section.js"), include_str!("section.css"));
     let (answer, part) = opening(rows);
-    let parts = part.into_iter().collect();
-    let body = body(run, rows, overview, &imports);
-    vec![Section { script, style, answer: Some(answer), parts, ..Section::new("import", "Imports", body) }]
+    let (parts, marks) = (part.into_iter().collect(), marks(rows));
+    let body = body(run, overview, &imports, &marks);
+    vec![Section { script, style, answer: Some(answer), parts, marks, ..Section::new("import", "Imports", body) }]
 }
 
-fn body(run: &RunInfo, rows: &[Row], overview: &Overview, imports: &Imports) -> Markup {
+fn body(run: &RunInfo, overview: &Overview, imports: &Imports, marks: &[Mark]) -> Markup {
     html! {
         section #import {
             h2 { "How engines read it" }
@@ -110,7 +113,7 @@ fn body(run: &RunInfo, rows: &[Row], overview: &Overview, imports: &Imports) -> 
                 span.key.unexplained { "?" } " answers that the differences do not explain. "
                 "The answers are replayed: the engine computes with what it read, our kernels with what it says to have read."
             }
-            (robots(run, rows))
+            (robots(run, overview, imports, marks))
             div #import-details role="region" aria-live="polite" tabindex="-1" {}
             h3 { "Causes" }
             (causes(overview, imports))
@@ -118,18 +121,26 @@ fn body(run: &RunInfo, rows: &[Row], overview: &Overview, imports: &Imports) -> 
     }
 }
 
-/// The robots of a comparison, each with the bodies marked in which a difference changes the physics.
-fn robots(run: &RunInfo, rows: &[Row]) -> Markup {
+/// The bodies in which a difference changes the physics.
+fn marks(rows: &[Row]) -> Vec<Mark> {
     let differs = |row: &&Row| {
         let class = || serde_json::from_str::<Value>(&row.params).ok()?["class"].as_str().map(str::to_owned);
         row.study == STUDY && row.metric == "difference" && class().as_deref() == Some("physics")
     };
-    let marked = |robot: &str| rows.iter().filter(|row| row.robot == robot).filter(differs).map(|row| row.body.clone()).collect();
+    let mark = |row: &Row| Mark { robot: row.robot.clone(), engine: row.engine.clone(), body: row.body.clone() };
+    rows.iter().filter(differs).map(mark).collect()
+}
+
+/// The robots of a comparison. Of many robots, as a suite has them, each is drawn on its own page alone.
+fn robots(run: &RunInfo, overview: &Overview, imports: &Imports, marks: &[Mark]) -> Markup {
+    let names = imports.robots.iter().map(|&robot| overview.robots[robot].name);
+    let drawn: Vec<(&str, &Drawing)> = names.filter_map(|name| Some((name, run.drawings.get(name)?))).collect();
+    let marked = |robot: &str| marks.iter().filter(|mark| mark.robot == robot).map(|mark| mark.body.clone()).collect();
     html! {
-        @if !run.drawings.is_empty() {
-            div.robots {
-                @for (name, drawing) in &run.drawings { (robot::drawn(name, drawing, &marked(name), "the physics differs")) }
-            }
+        @if drawn.len() > DRAWN {
+            p.note { "Each robot is drawn on its page, to which its name leads." }
+        } @else if !drawn.is_empty() {
+            div.robots { @for (name, drawing) in drawn { (robot::drawn(name, drawing, &marked(name), "the physics differs")) } }
         }
     }
 }
@@ -168,7 +179,7 @@ fn matrix(overview: &Overview, imports: &Imports) -> Markup {
             tbody {
                 @for &robot in &imports.robots {
                     tr {
-                        th scope="row" { (overview.robots[robot].name) }
+                        th scope="row" { (featherbench_report::robot(overview, overview.robots[robot].name)) }
                         @for &engine in &imports.engines {
                             @match imports.cells.get(&(robot, engine)) {
                                 Some(cell) => (entry(overview, robot, engine, cell)),

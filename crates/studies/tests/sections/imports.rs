@@ -46,7 +46,10 @@ fn each_import_has_its_cell_and_each_cause_its_count() {
     let section = written.section("import");
     assert_eq!(section.matches("data-import=").count(), 5, "five imports");
     let cell = |model: &str, engine: &str| {
-        let line = section.split("<tr>").find(|line| line.contains(&format!("<th scope=\"row\">{model}</th>"))).unwrap();
+        let line = section
+            .split("<tr>")
+            .find(|line| line.contains(&format!("<th scope=\"row\"><a href=\"robots/{model}.html\">{model}</a></th>")))
+            .unwrap();
         let cells = line.split("<td").find(|cell| cell.contains(&format!("data-engine=\"{engine}\"")));
         cells.unwrap_or_else(|| panic!("{engine} has no cell of {model}: {line}")).to_owned()
     };
