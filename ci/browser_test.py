@@ -27,7 +27,7 @@ def main() -> int:
     """Run the checks."""
     parser = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
     parser.add_argument("report", type=pathlib.Path, help="folder that holds index.html")
-    parser.add_argument("--only", choices=["axe", "use", "robots"], help="accessibility, what a reader does, or drawings of a comparison")
+    parser.add_argument("--only", choices=["axe", "use", "robots"], help="accessibility, what a reader does, or drawings of robots")
     parser.add_argument("--shots", type=pathlib.Path, help="folder for screenshots")
     arguments = parser.parse_args()
     index = (arguments.report / "index.html").resolve()
@@ -44,7 +44,7 @@ def main() -> int:
             print(f"the browser could not be started: {error}", file=sys.stderr)
             return 2
         try:
-            asked = [arguments.only] if arguments.only else ["use", "axe"]
+            asked = [arguments.only] if arguments.only else ["use", "axe", "robots"]
             used = checks(page, index.as_uri(), arguments.shots) if "use" in asked else ()
             ruled = accessible(page, arguments.report) if "axe" in asked else ()
             turned = robots(page, arguments.report) if "robots" in asked else ()

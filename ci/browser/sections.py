@@ -117,7 +117,7 @@ def first_page(page: Browser) -> Checks:
     told = ", ".join(f"{what} after {ms:.0f} ms" for what, ms in times.items()) if times else "no times"
     yield f"the browser tells its times: {told}", bool(times), times
     left = page.run("return [...document.querySelectorAll('[data-part]')].map(place => place.querySelector('a')?.getAttribute('href'))")
-    missing = [place for place in left if not place or not place.startswith("sections/")]
+    missing = [place for place in left if not place or not place.startswith(("sections/", "robots/"))]
     yield "what is left out is linked, for readers without scripts", not missing, missing
     details = "document.querySelector('#verdict details:has(> [data-part])')"
     if page.run(f"return {details} !== null"):

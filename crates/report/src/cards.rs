@@ -5,8 +5,8 @@ use maud::{Markup, html};
 
 use crate::blocks::{self, opener};
 use crate::chunks::UNPASSED;
+use crate::drawings::Drawings;
 use crate::findings::{Found, clipped};
-use crate::overview::Overview;
 
 /// The class of a level: its colour.
 pub fn class(level: Severity) -> &'static str {
@@ -18,13 +18,23 @@ pub fn class(level: Severity) -> &'static str {
     }
 }
 
-/// The finding as an item of a list.
-pub fn card(overview: &Overview, found: &Found) -> Markup {
+/// The finding as an item of a list, which shows its robot when that is opened.
+pub fn card(drawings: &Drawings, found: &Found) -> Markup {
+    item(drawings, found, &drawings.place(&found.culprit))
+}
+
+/// The finding on the page of its robot, where the drawing is already.
+pub fn card_of_robot(drawings: &Drawings, found: &Found) -> Markup {
+    item(drawings, found, &html! {})
+}
+
+fn item(drawings: &Drawings, found: &Found, drawing: &Markup) -> Markup {
+    let overview = drawings.overview;
     let level = found.severity.map_or("condition", class);
     html! {
         li class=(if found.new { "fail" } else { "known" }) {
             span class={ "level " (level) } { (found.level()) @if found.new { ", new" } } " "
-            b { (who(overview, found)) } ": " (found.size_words())
+            b { (who(drawings, found)) } ": " (found.size_words())
             @if let Some(worst) = found.worst {
                 @let here = [("engine", worst.engine.as_str()), ("quantity", worst.quantity.as_str()), ("verdict", worst.verdict.as_str())];
                 @let all = [("engine", worst.engine.as_str()), ("verdict", worst.verdict.as_str())];
@@ -39,15 +49,16 @@ pub fn card(overview: &Overview, found: &Found) -> Markup {
             @if !found.again.is_empty() {
                 details.again { summary { "Repeat it" } pre { code { (found.again) } } }
             }
+            (drawing)
         }
     }
 }
 
 /// The engine, which leads to its page, and the quantities.
-fn who(overview: &Overview, found: &Found) -> Markup {
+fn who(drawings: &Drawings, found: &Found) -> Markup {
     let words = found.who();
     match words.strip_prefix(found.culprit.engine.as_str()).filter(|_| !found.culprit.engine.is_empty()) {
-        Some(rest) => html! { (blocks::engine(overview, &found.culprit.engine)) (rest) },
+        Some(rest) => html! { (blocks::engine(drawings.overview, &found.culprit.engine)) (rest) },
         None => html! { (words) },
     }
 }

@@ -3,7 +3,7 @@
 use featherbench_results::{CSV_NAME, RUN_NAME, Row, RunInfo, SCHEMA_NAME};
 use maud::{DOCTYPE, Markup, html};
 
-use crate::overview::Overview;
+use crate::drawings::Drawings;
 use crate::parts::{self, Piece};
 use crate::section::Section;
 use crate::subjects::Subject;
@@ -21,8 +21,9 @@ pub struct Page<'a> {
 
 impl<'a> Page<'a> {
     /// Makes the frame's own sections.
-    pub fn of(run: &'a RunInfo, rows: &[Row], overview: &Overview, studies: &'a [Section]) -> Self {
-        let own = [verdict::section(run, overview, rows, studies), conventions::section(run)].into_iter();
+    pub fn of(run: &'a RunInfo, rows: &[Row], drawings: &Drawings, studies: &'a [Section]) -> Self {
+        let overview = drawings.overview;
+        let own = [verdict::section(run, drawings, rows, studies), conventions::section(run)].into_iter();
         let last = [provenance::section(run, overview), method::section(run, studies), unpassed::section(overview, rows)];
         Self { run, own: own.chain(figures::section(run, studies)).chain(last).collect(), studies }
     }

@@ -6,7 +6,7 @@ use featherbench_results::{Culprit, EngineInfo, RobotInfo, Row, RunInfo};
 use maud::{Markup, html};
 
 use crate::blocks::opener;
-use crate::cards::card;
+use crate::cards::{card, card_of_robot};
 use crate::drawings::Drawings;
 use crate::findings::{Findings, Status};
 use crate::labels;
@@ -16,6 +16,9 @@ use crate::section::Section;
 
 /// Findings on a page; the first page has all.
 const LISTED: usize = 30;
+
+/// The kind of a robot's page.
+const ROBOT: &str = "Robot";
 
 /// A page.
 pub struct Subject {
@@ -128,7 +131,7 @@ impl<'a> Subjects<'a> {
             @if let Some(info) = info { (source(info)) }
         };
         let findings = Findings::about(self.run, rows.iter().copied(), |culprit: &Culprit| culprit.robot == about.name);
-        self.page(&self.overview.pages.robots[index], "Robot", about.name, &findings, &About { before: words, after: html! {} }, &map)
+        self.page(&self.overview.pages.robots[index], ROBOT, about.name, &findings, &About { before: words, after: html! {} }, &map)
     }
 
     fn study(&self, index: usize) -> Subject {
@@ -193,7 +196,7 @@ impl<'a> Subjects<'a> {
                 (about.before)
                 h2 { "What was found" }
                 @if findings.found.is_empty() { p { "Nothing." } } @else {
-                    ol.findings { @for found in findings.found.iter().take(LISTED) { (card(self.overview, found)) } }
+                    ol.findings { @for found in findings.found.iter().take(LISTED) { (if kind == ROBOT { card_of_robot(self.drawings, found) } else { card(self.drawings, found) }) } }
                 }
                 @if findings.found.len() > LISTED { p.note { "The first " (LISTED) " of " (findings.found.len()) "." } }
                 (about.after)

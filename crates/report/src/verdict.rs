@@ -6,6 +6,7 @@ use maud::{Markup, html};
 use crate::blocks::{self, opener};
 use crate::cards::{card, class};
 use crate::chunks::UNPASSED;
+use crate::drawings::Drawings;
 use crate::findings::{Findings, Status};
 use crate::labels;
 use crate::numbers::{count, decades, grouped};
@@ -17,21 +18,22 @@ use crate::tally::{BY_GRAVITY, Tally, worst_first};
 const TOLD: usize = 6;
 
 /// Writes the section, with what the sections of studies add to it.
-pub fn section(run: &RunInfo, overview: &Overview, rows: &[Row], sections: &[Section]) -> Section {
+pub fn section(run: &RunInfo, drawings: &Drawings, rows: &[Row], sections: &[Section]) -> Section {
     let findings = Findings::of(run, rows);
-    let (rest, conditions) = (rest(overview, &findings), conditions(run));
-    let body = body(run, overview, rows, sections, &findings, [rest.as_ref(), conditions.as_ref()]);
+    let (rest, conditions) = (rest(drawings, &findings), conditions(run));
+    let body = body(run, drawings, rows, sections, &findings, [rest.as_ref(), conditions.as_ref()]);
     Section { parts: rest.into_iter().chain(conditions).collect(), ..Section::new("verdict", "Verdict", body) }
 }
 
 fn body(
     run: &RunInfo,
-    overview: &Overview,
+    drawings: &Drawings,
     rows: &[Row],
     sections: &[Section],
     findings: &Findings,
     [rest, conditions]: [Option<&Part>; 2],
 ) -> Markup {
+    let overview = drawings.overview;
     let mut added: Vec<_> = sections.iter().filter_map(|section| section.finding.as_ref()).collect();
     added.sort_by_key(|finding| finding.rank);
     let (class, word) = match findings.status {
@@ -45,7 +47,7 @@ fn body(
             p.stamp { span.glyph aria-hidden="true" { (match findings.status { Status::Passed => "✓", Status::Failed => "✕", Status::Empty => "·" }) } (word) }
             h1 { (findings.headline()) }
             (tiles(findings))
-            (list(overview, findings))
+            (list(drawings, findings))
             @if let Some(part) = rest {
                 details { summary { (count(findings.found.len() - TOLD, "more finding")) } (part.place()) }
             }
@@ -82,19 +84,19 @@ fn tiles(findings: &Findings) -> Markup {
 }
 
 /// The findings from the gravest, each with its rows and the command that repeats it.
-fn list(overview: &Overview, findings: &Findings) -> Markup {
+fn list(drawings: &Drawings, findings: &Findings) -> Markup {
     html! {
         h2 { "What was found" }
         @if findings.found.is_empty() { p { "Nothing." } } @else {
-            ol.findings { @for found in findings.found.iter().take(TOLD) { (card(overview, found)) } }
+            ol.findings { @for found in findings.found.iter().take(TOLD) { (card(drawings, found)) } }
         }
     }
 }
 
 /// The other findings.
-fn rest(overview: &Overview, findings: &Findings) -> Option<Part> {
+fn rest(drawings: &Drawings, findings: &Findings) -> Option<Part> {
     let rest = findings.found.get(TOLD..).filter(|rest| !rest.is_empty())?;
-    let body = html! { ol.findings start=(TOLD + 1) { @for found in rest { (card(overview, found)) } } };
+    let body = html! { ol.findings start=(TOLD + 1) { @for found in rest { (card(drawings, found)) } } };
     Some(Part { name: "findings".into(), title: "More findings".into(), body })
 }
 

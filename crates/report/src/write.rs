@@ -5,12 +5,12 @@ use std::path::{Path, PathBuf};
 use featherbench_results::{Row, RunInfo};
 
 use crate::chunks::{self, NamedFile};
-use crate::drawings::Drawings;
+use crate::drawings::{Brought, Drawings};
 use crate::error::ReportError;
 use crate::figures;
 use crate::overview::Overview;
 use crate::page::Page;
-use crate::parts;
+use crate::parts::{self, Piece};
 use crate::section::Section;
 use crate::subjects::Subjects;
 
@@ -67,10 +67,13 @@ pub fn write(run: &RunInfo, rows: &[Row], sections: &[Section], out: &Path) -> R
     figures::files(sections).try_for_each(&mut put)?;
     put(chunks::figure_data(&figures::data(sections)?))?;
     let drawings = Drawings::of(run, rows, &overview, sections);
-    let page = Page::of(run, rows, &overview, sections);
+    let page = Page::of(run, rows, &drawings, sections);
     for piece in parts::of(&page.sections()) {
         put(chunks::piece(&piece)?)?;
         put((format!("{}/{}.html", parts::FOLDER, piece.name), page.piece(&piece).into_bytes()))?;
+    }
+    for Brought { name, robot, body } in drawings.brought() {
+        put(chunks::piece(&Piece { name: &name, title: &robot, body: &body })?)?;
     }
     for subject in Subjects::of(run, rows, &drawings, sections).pages() {
         put((subject.path.clone(), page.subject(&subject).into_bytes()))?;

@@ -96,3 +96,31 @@ fn a_robots_page_draws_it_and_marks_what_findings_name() {
     assert!(!old.text("robots/long.html").contains("It is not drawn."));
     assert_eq!(rows[4].verdict, Verdict::Fail);
 }
+
+#[test]
+fn a_card_brings_the_drawing_of_its_robot_with_the_bodies_of_its_engine() {
+    let (run, rows, section) = yard();
+    let written = Written::of(&run, &rows, &[section]);
+    let of = |engine: &str| {
+        let page = written.text(&format!("engines/{engine}.html"));
+        let place = page.split("<details class=\"look\"><summary>Show crane</summary><div data-part=\"").nth(1).unwrap();
+        assert!(place.contains("<a href=\"robots/crane.html\">crane on a page of its own</a>"), "{place}");
+        let name = place.split('"').next().unwrap();
+        let piece = written.text(&format!("sections/{name}.js"));
+        assert!(piece.starts_with(&format!("featherbench.chunk(\"part-{name}\",\"<figure class=")), "{piece}");
+        piece
+    };
+    for (engine, body) in [("drake", "arm"), ("mujoco", "hand")] {
+        let piece = of(engine);
+        assert!(piece.contains(&format!("crane: {engine} differs in {body}")), "{piece}");
+        assert_eq!(piece.matches("<ellipse class=\\\"marked").count(), 1, "{piece}");
+    }
+    // The first page has the places alone, and the robot's own page needs none.
+    assert!(written.index.contains("<details class=\"look\">") && !written.index.contains("<ellipse"), "{}", written.index);
+    assert!(!written.text("robots/crane.html").contains("<details class=\"look\">"));
+    // What is not drawn cannot be shown, and what no finding names is not brought.
+    assert!(!written.index.contains("Show long") && !written.index.contains("Show quiet"));
+    let brought = std::fs::read_dir(written.folder.path().join("sections")).unwrap();
+    let names = brought.map(|entry| entry.unwrap().file_name().into_string().unwrap());
+    assert_eq!(names.filter(|name| name.starts_with("drawing-")).count(), 3, "crane without a mark, and for two engines");
+}
