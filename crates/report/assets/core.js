@@ -55,9 +55,6 @@ const featherbench = (() => {
   const variable = (name) => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
   const byId = (id) => document.getElementById(id);
 
-  // A robot in a line.
-  const describe = (robot) => `${robot.family}, ${robot.nv ?? "?"} degrees of freedom, ${robot.bodies ?? "?"} bodies, depth ${robot.depth ?? "?"}`;
-
   // Runs a task when the page and its data are complete; each on its own, so that one that fails leaves the others.
   const ready = (task) => { if (document.readyState === "loading") document.addEventListener("DOMContentLoaded", task); else task(); };
 
@@ -66,7 +63,7 @@ const featherbench = (() => {
   const dress = (root) => { for (const task of dressers) task(root); };
   const dressed = (task) => { dressers.push(task); ready(() => task(document)); };
 
-  return { chunk, load, make, short, decades, glyphs, variable, byId, describe, ready, dress, dressed, chunks };
+  return { chunk, load, make, short, decades, glyphs, variable, byId, ready, dress, dressed, chunks };
 })();
 
 // Light and dark: the system's choice until the reader makes one, which is kept where the browser allows it. Paper is light.

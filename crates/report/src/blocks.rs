@@ -19,6 +19,16 @@ pub fn study(overview: &Overview, name: &str) -> Markup {
     linked(overview.study(name).map(|index| overview.pages.studies[index].as_str()), name)
 }
 
+/// Names in a sentence: `a`, `a and b`, `a, b and c`.
+pub fn sentence(names: &[Markup]) -> Markup {
+    html! {
+        @for (place, name) in names.iter().enumerate() {
+            @if place > 0 { (if place + 1 < names.len() { ", " } else { " and " }) }
+            (name)
+        }
+    }
+}
+
 fn linked(page: Option<&str>, name: &str) -> Markup {
     html! { @match page { Some(page) => a href=(page) { (name) }, None => (name) } }
 }

@@ -6,7 +6,8 @@ use maud::{Markup, html};
 use crate::blocks::{self, opener};
 use crate::chunks::UNPASSED;
 use crate::drawings::Drawings;
-use crate::findings::{Found, clipped};
+use crate::findings::{Findings, Found, clipped};
+use crate::overview::Overview;
 
 /// The class of a level: its colour.
 pub fn class(level: Severity) -> &'static str {
@@ -43,7 +44,7 @@ fn item(drawings: &Drawings, found: &Found, drawing: &Markup) -> Markup {
                 "; " (opener(UNPASSED, if found.quantities.len() == 1 { &here[..] } else { &all[..] }, &found.extent())) "."
                 @if !found.cause.is_empty() { " " span.cause { @if !found.new { "Known: " } (found.cause) } }
             } @else {
-                @if !found.place().is_empty() { " (" (found.place()) ")" }
+                @if !found.place().is_empty() { " (" (place(overview, found)) ")" }
                 @if !found.cause.is_empty() { "; " span.cause { (clipped(&found.cause)) } }
             }
             @if !found.again.is_empty() {
@@ -51,6 +52,20 @@ fn item(drawings: &Drawings, found: &Found, drawing: &Markup) -> Markup {
             }
             (drawing)
         }
+    }
+}
+
+/// The robot, which leads to its page, and the method.
+fn place(overview: &Overview, found: &Found) -> Markup {
+    let (robot, case) = (&found.culprit.robot, found.case());
+    html! { (blocks::robot(overview, robot)) @if !(robot.is_empty() || case.is_empty()) { ", " } (case) }
+}
+
+/// The first line of a page, whose engine leads to its page.
+pub fn headline(drawings: &Drawings, findings: &Findings) -> Markup {
+    match findings.loudest() {
+        Some(found) => html! { (who(drawings, found)) ": " (found.size_words()) },
+        None => html! { (findings.headline()) },
     }
 }
 

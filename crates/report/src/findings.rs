@@ -109,7 +109,7 @@ impl<'a> Findings<'a> {
     }
 
     /// The gravest finding, of those that turn the gate red if there are any; `None` if there is nothing but questions that are not offered.
-    fn loudest(&self) -> Option<&Found<'a>> {
+    pub(crate) fn loudest(&self) -> Option<&Found<'a>> {
         self.red().next().or(self.found.iter().find(|found| found.severity != Some(Severity::NotOffered)))
     }
 

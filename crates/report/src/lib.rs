@@ -49,7 +49,7 @@ mod unpassed;
 mod verdict;
 mod write;
 
-pub use blocks::{engine, opener, robot, study, swatch};
+pub use blocks::{engine, opener, robot, sentence, study, swatch};
 pub use chunks::{TIMES, UNPASSED};
 pub use error::ReportError;
 pub use findings::{Findings, Found, Status};

@@ -6,7 +6,7 @@ use featherbench_results::{Culprit, EngineInfo, RobotInfo, Row, RunInfo};
 use maud::{Markup, html};
 
 use crate::blocks::opener;
-use crate::cards::{card, card_of_robot};
+use crate::cards::{self, card, card_of_robot};
 use crate::drawings::Drawings;
 use crate::findings::{Findings, Status};
 use crate::labels;
@@ -184,10 +184,10 @@ impl<'a> Subjects<'a> {
         let told = findings.headline();
         // The headline of an engine's page begins with the engine already.
         let headline = match told.strip_prefix(name) {
-            Some(rest) => rest.trim_start_matches([',', ':', ' ']),
-            None if findings.is_quiet() => "no engine misses a gate",
-            None if findings.status == Status::Empty => "nothing is judged here",
-            None => &told,
+            Some(rest) => html! { (rest.trim_start_matches([',', ':', ' '])) },
+            None if findings.is_quiet() => html! { "no engine misses a gate" },
+            None if findings.status == Status::Empty => html! { "nothing is judged here" },
+            None => cards::headline(self.drawings, findings),
         };
         let body = html! {
             section #about class={ "verdict " (class) } {

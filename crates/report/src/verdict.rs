@@ -4,7 +4,7 @@ use featherbench_results::{Row, RunInfo, Severity, Verdict};
 use maud::{Markup, html};
 
 use crate::blocks::{self, opener};
-use crate::cards::{card, class};
+use crate::cards::{card, class, headline};
 use crate::chunks::UNPASSED;
 use crate::drawings::Drawings;
 use crate::findings::{Findings, Status};
@@ -45,7 +45,7 @@ fn body(
     html! {
         section #verdict class={ "verdict " (class) } {
             p.stamp { span.glyph aria-hidden="true" { (match findings.status { Status::Passed => "✓", Status::Failed => "✕", Status::Empty => "·" }) } (word) }
-            h1 { (findings.headline()) }
+            h1 { (headline(drawings, findings)) }
             (tiles(findings))
             (list(drawings, findings))
             @if let Some(part) = rest {

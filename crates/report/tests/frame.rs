@@ -88,7 +88,7 @@ fn the_page_opens_with_the_gravest_finding() {
     let written = Written::of(&RunInfo::default(), &rows, &sections);
     let verdict = written.section("verdict");
     let places: Vec<usize> = [
-        "<h1>drake, centre of mass: 4.0 digits lost beyond rounding (1e-10 where 1e-14 is allowed)</h1>",
+        "<h1><a href=\"engines/drake.html\">drake</a>, centre of mass: 4.0 digits lost beyond rounding (1e-10 where 1e-14 is allowed)</h1>",
         "<b><a href=\"engines/dart.html\">dart</a>, kinetic energy</b>: off by 78 %",
         "Known: it forgets the armature",
         "method loses digits, new</span> <b><a href=\"engines/drake.html\">drake</a>, centre of mass</b>",

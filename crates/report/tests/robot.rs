@@ -2,7 +2,7 @@
 
 use featherbench_report::robot::drawn;
 use featherbench_report::{Mark, Section};
-use featherbench_results::{Drawing, DrawnBody, ModelOrigin, Relation, RobotInfo, Row, RunInfo, Verdict};
+use featherbench_results::{Culprit, Drawing, DrawnBody, Expectation, GateKind, ModelOrigin, Relation, RobotInfo, Row, RunInfo, Verdict};
 use std::collections::{BTreeMap, BTreeSet};
 
 use crate::written::Written;
@@ -123,4 +123,16 @@ fn a_card_brings_the_drawing_of_its_robot_with_the_bodies_of_its_engine() {
     let brought = std::fs::read_dir(written.folder.path().join("sections")).unwrap();
     let names = brought.map(|entry| entry.unwrap().file_name().into_string().unwrap());
     assert_eq!(names.filter(|name| name.starts_with("drawing-")).count(), 3, "crane without a mark, and for two engines");
+}
+
+#[test]
+fn a_condition_about_a_robot_shows_it_too() {
+    let (run, _, section) = yard();
+    let culprit = Culprit { robot: "crane".into(), method: "parser".into(), ..Culprit::engine("drake") };
+    let expected = vec![Expectation::new(GateKind::Import, "differences that change the physics".into(), 0, 1).about(culprit)];
+    let row = Row { engine: "drake".into(), robot: "crane".into(), ..Row::default() }.informed(1.0);
+    let written = Written::of(&RunInfo { expected, ..run }, &[row], &[section]);
+    assert!(written.index.contains("(<a href=\"robots/crane.html\">crane</a>, parser)"), "{}", written.index);
+    assert!(written.index.contains("<summary>Show crane</summary><div data-part=\"drawing-0-0\">"), "{}", written.index);
+    assert!(written.text("sections/drawing-0-0.js").contains("crane: drake differs in arm"));
 }

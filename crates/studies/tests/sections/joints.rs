@@ -57,7 +57,7 @@ fn cell(matrix: &Value, engine: usize, kind: &str, armature: bool) -> Option<(St
 
 /// The sentence about an engine.
 fn sentence<'a>(section: &'a str, engine: &str) -> &'a str {
-    let start = section.find(&format!("<b>{engine}</b>")).unwrap();
+    let start = section.find(&format!("<b><a href=\"engines/{engine}.html\">{engine}</a></b>")).unwrap();
     &section[start..start + section[start..].find("</li>").unwrap()]
 }
 

@@ -97,8 +97,10 @@ fn the_table_holds_every_median_once() {
     let data = written.data("figures");
     let models = data["accuracy"]["cells"].as_array().unwrap().iter().map(|cell| &cell["robot"]);
     assert!(models.map(|model| format!("robot-{model}")).all(|name| chunks.contains(&name)));
-    let heads = table.matches("<tr data-m").count();
-    assert_eq!(table.matches("<button").count(), cells.len() + heads);
+    assert_eq!(table.matches("<button").count(), cells.len());
+    // A robot and an engine lead to their pages.
+    assert_eq!(table.matches("<a href=\"robots/").count(), table.matches("<tr data-m").count());
+    assert!(table.contains("<a href=\"engines/pinocchio.html\">pinocchio</a><small>aba_world</small>"), "{table}");
     // Pinocchio's world frame at 10⁶ m has lost all digits that it can; an exact answer is zero; a missed gate has its sign.
     assert!(table.contains("<button class=\"d5\" type=\"button\" tabindex=\"-1\"><i>✕</i>1.00e-2</button>"), "{table}");
     assert!(table.contains("tabindex=\"-1\">0</button>"));
@@ -113,12 +115,12 @@ fn the_verdict_says_who_is_right_by_truth() {
     let verdict = written.section("verdict");
     for words in [
         "Against the truth",
-        "<b>featherbench aba and pinocchio aba_local</b>",
+        "<b><a href=\"engines/featherbench.html\">featherbench</a> aba and <a href=\"engines/pinocchio.html\">pinocchio</a> aba_local</b>",
         "keep every gate on forward dynamics",
-        "pinocchio aba_world</b> fails on 2 of 22 robots in forward dynamics: rand3d-20-offset1e4 and rand3d-20-offset1e6",
+        "pinocchio</a> aba_world</b> fails on 2 of 22 robots in forward dynamics: <a href=\"robots/rand3d-20-offset1e4.html\">rand3d-20-offset1e4</a> and ",
         "rand3d-20-offset1e6, 0.010 where 1e-7 is allowed",
         "M is singular",
-        "pinocchio aba_world <b>0.010</b>",
+        "pinocchio</a> aba_world <b>0.010</b>",
         "The reference is the suspect",
         "rand3d-20-tip1e6</button> 3 engines stop at the same error",
     ] {
@@ -148,8 +150,12 @@ fn a_deviation_is_neither_kept_nor_failed() {
     ];
     let written = report(&RunInfo::default(), &rows);
     let verdict = written.section("verdict");
-    assert!(verdict.contains("<b>mujoco other</b> keeps every gate on forward dynamics"), "{verdict}");
-    assert!(verdict.contains("<b>mujoco forward</b> misses by known cause on 1 of 2 robots in forward dynamics: b"), "{verdict}");
+    assert!(verdict.contains("mujoco</a> other</b> keeps every gate on forward dynamics"), "{verdict}");
+    assert!(
+        verdict
+            .contains("mujoco</a> forward</b> misses by known cause on 1 of 2 robots in forward dynamics: <a href=\"robots/b.html\">b</a>"),
+        "{verdict}"
+    );
     assert!(!verdict.contains("<li class=\"fail\">"));
 }
 

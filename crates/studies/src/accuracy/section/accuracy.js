@@ -108,19 +108,14 @@ featherbench.ready(() => {
   }
 
   function about(button) {
-    if (button.parentElement.tagName !== "TH") {
-      const cell = cellOf(button);
-      return [...lines(cell), cell.reason].filter(Boolean);
-    }
-    const robot = overview.robots[button.closest("tr").dataset.m];
-    return [robot.name, featherbench.describe(robot)];
+    const cell = cellOf(button);
+    return [...lines(cell), cell.reason].filter(Boolean);
   }
 
   function open(button) {
-    const robot = button.closest("tr").dataset.m;
-    const cell = button.parentElement.tagName === "TH" ? null : cellOf(button);
-    const heading = overview.robots[robot].name + (cell ? `: errors of ${name(accuracy.answers[cell.answer])}` : "");
-    featherbench.open(`robot-${robot}`, cell ? filters(cell) : { study: "accuracy" }, heading);
+    const cell = cellOf(button);
+    const heading = `${overview.robots[cell.robot].name}: errors of ${name(accuracy.answers[cell.answer])}`;
+    featherbench.open(`robot-${cell.robot}`, filters(cell), heading);
   }
 
   const grid = featherbench.grid(table, about, open);

@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 use featherbench_report::fit::{Fit, power_law};
 use featherbench_report::{EVERYONE, Overview, worst_first};
 use featherbench_results::{Row, Verdict};
+use maud::{Markup, html};
 use serde::Serialize;
 
 use super::STUDY;
@@ -168,6 +169,12 @@ impl<'a> Accuracy<'a> {
         let Answer { engine, method, scalar, .. } = self.answers[answer];
         let scalar = if scalar == "f64" { "" } else { scalar };
         [overview.engines[engine], method, scalar].into_iter().filter(|part| !part.is_empty()).collect::<Vec<_>>().join(" ")
+    }
+
+    /// The same, where the engine leads to its page.
+    pub fn linked(&self, overview: &Overview, answer: usize) -> Markup {
+        let (name, engine) = (self.name(overview, answer), overview.engines[self.answers[answer].engine]);
+        html! { (featherbench_report::engine(overview, engine)) (name.strip_prefix(engine).unwrap_or_default()) }
     }
 }
 

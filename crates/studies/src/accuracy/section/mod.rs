@@ -8,7 +8,7 @@ mod truth;
 use std::collections::{BTreeMap, BTreeSet};
 
 use featherbench_report::numbers::{scientific, short};
-use featherbench_report::{Finding, Overview, Section, labels, swatch};
+use featherbench_report::{Finding, Overview, Section, engine, labels, robot, swatch};
 use featherbench_results::{Row, RunInfo, Verdict};
 use maud::{Markup, html};
 
@@ -137,7 +137,7 @@ fn growth(overview: &Overview, accuracy: &Accuracy) -> Markup {
                 @for (index, curve) in accuracy.curves.iter().enumerate() {
                     @let end = curve.points.last().and_then(|&(_, cell)| accuracy.cells[cell].median);
                     tr data-k=(index) {
-                        th scope="row" { (accuracy.name(overview, curve.answer)) }
+                        th scope="row" { (accuracy.linked(overview, curve.answer)) }
                         td { (labels::quantity(accuracy.answers[curve.answer].quantity)) }
                         td { (curve.axis.title()) }
                         td { (curve.family) }
@@ -184,7 +184,7 @@ fn table(overview: &Overview, accuracy: &Accuracy) -> Markup {
                     @for (position, &(answer, group)) in columns.iter().enumerate() {
                         th.method.first[first(position)] scope="col" data-q=(group) {
                             @if let Some(answer) = answer.map(|answer| &accuracy.answers[answer]) {
-                                (overview.engines[answer.engine]) small { (answer.method) @if answer.scalar != "f64" { " " (answer.scalar) } }
+                                (engine(overview, overview.engines[answer.engine])) small { (answer.method) @if answer.scalar != "f64" { " " (answer.scalar) } }
                             } @else { "bound" small { "conditioning" } }
                         }
                     }
@@ -193,17 +193,17 @@ fn table(overview: &Overview, accuracy: &Accuracy) -> Markup {
             @for family in overview.families(with_cell(accuracy)) {
                 tbody {
                     tr.family { th colspan=(columns.len() + 1) scope="rowgroup" { span { (overview.robots[family[0]].family) } } }
-                    @for &robot in &family {
-                        tr data-m=(robot) {
+                    @for &index in &family {
+                        tr data-m=(index) {
                             th scope="row" {
-                                button type="button" tabindex="-1" { (overview.robots[robot].name) }
-                                @if let Some(nv) = overview.robots[robot].nv { small { (nv) } }
+                                (robot(overview, overview.robots[index].name))
+                                @if let Some(nv) = overview.robots[index].nv { small { (nv) } }
                             }
                             @for (position, &(answer, _)) in columns.iter().enumerate() {
                                 td.first[first(position)] {
                                     @if let Some(answer) = answer {
-                                        @if let Some(cell) = accuracy.cell(robot, answer) { (button(cell)) }
-                                    } @else if let Some(floor) = floor(accuracy, &columns, position, robot) { span.floor { (scientific(floor)) } }
+                                        @if let Some(cell) = accuracy.cell(index, answer) { (button(cell)) }
+                                    } @else if let Some(floor) = floor(accuracy, &columns, position, index) { span.floor { (scientific(floor)) } }
                                 }
                             }
                         }

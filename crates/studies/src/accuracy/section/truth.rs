@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use featherbench_report::numbers::{count, decades, larger, listed, short};
-use featherbench_report::{Overview, labels, opener, worst_first};
+use featherbench_report::{Overview, engine, labels, opener, robot, sentence, worst_first};
 use featherbench_results::{Row, Verdict};
 use maud::{Markup, html};
 
@@ -20,7 +20,8 @@ type Account<'a> = BTreeMap<usize, &'a Row>;
 /// The answers that pass every gate on a quantity.
 struct Kept<'a> {
     quantity: &'a str,
-    answers: Vec<String>,
+    /// Each engine, with its methods if not all of them pass.
+    answers: Vec<(&'a str, String)>,
     /// The fewest and the most robots of any answer.
     robots: (usize, usize),
     largest: f64,
@@ -42,7 +43,7 @@ pub struct Truth<'a> {
     failed: Vec<Missed<'a>>,
     known: Vec<Missed<'a>>,
     /// The largest median error of forward dynamics on any robot, per method, smallest first.
-    medians: Vec<(String, f64)>,
+    medians: Vec<(usize, f64)>,
 }
 
 impl<'a> Truth<'a> {
@@ -84,7 +85,7 @@ impl<'a> Truth<'a> {
         // A known error (a singular M) is not an answer that could be compared with the truth.
         let known = missed(|row| row.verdict == Verdict::Deviation && row.value.is_some());
         let kept = kept(overview, &accounts);
-        Self { kept, failed, known, medians: medians(overview, accuracy) }
+        Self { kept, failed, known, medians: medians(accuracy) }
     }
 }
 
@@ -110,8 +111,8 @@ fn kept<'a>(overview: &Overview<'a>, accounts: &BTreeMap<((usize, &'a str), usiz
             // If all methods of an engine pass their gates, the sentence does not name them.
             match good.len() {
                 0 => {}
-                all if all == methods.len() => answers.push(name.to_owned()),
-                _ => answers.push(format!("{name} {}", good.join("/"))),
+                all if all == methods.len() => answers.push((name, String::new())),
+                _ => answers.push((name, format!(" {}", good.join("/")))),
             }
         }
         let rows = of_quantity.iter().filter(|(_, account)| keeps(account)).flat_map(|(_, account)| account.values());
@@ -124,32 +125,32 @@ fn kept<'a>(overview: &Overview<'a>, accounts: &BTreeMap<((usize, &'a str), usiz
     kept
 }
 
-fn medians(overview: &Overview, accuracy: &Accuracy) -> Vec<(String, f64)> {
+fn medians(accuracy: &Accuracy) -> Vec<(usize, f64)> {
     let mut largest: BTreeMap<usize, f64> = BTreeMap::new();
     for cell in accuracy.cells.iter().filter(|cell| accuracy.answers[cell.answer].quantity == "fd") {
         let entry = largest.entry(cell.answer).or_default();
         *entry = larger(*entry, cell.median.unwrap_or_default());
     }
-    let mut medians: Vec<(String, f64)> = largest.into_iter().map(|(answer, error)| (accuracy.name(overview, answer), error)).collect();
+    let mut medians: Vec<(usize, f64)> = largest.into_iter().collect();
     medians.sort_by(|a, b| a.1.total_cmp(&b.1));
     medians
 }
 
 impl Missed<'_> {
-    fn who(&self) -> String {
+    fn who(&self, overview: &Overview) -> Markup {
         let methods: Vec<String> = self.methods.iter().filter(|method| !method.is_empty()).map(|&method| method.to_owned()).collect();
-        format!("{} {}", self.engine, listed(&methods)).trim_end().to_owned()
+        html! { (engine(overview, self.engine)) @if !methods.is_empty() { " " (listed(&methods)) } }
     }
 
-    fn sentence(&self, verb: [&str; 2]) -> String {
-        let mut names: Vec<String> = self.robots.iter().take(NAMED).map(|&name| name.to_owned()).collect();
+    fn sentence(&self, overview: &Overview, verb: [&str; 2]) -> Markup {
+        let mut names: Vec<Markup> = self.robots.iter().take(NAMED).map(|name| robot(overview, name)).collect();
         if self.robots.len() > NAMED {
-            names.push(format!("{} more", self.robots.len() - NAMED));
+            names.push(html! { (self.robots.len() - NAMED) " more" });
         }
         let verb = verb[usize::from(self.methods.len() > 1)];
         let of = if self.of == self.robots.len() { String::new() } else { format!(" of {}", self.of) };
         let robots = if of.is_empty() { count(self.robots.len(), "robot") } else { format!("{}{of} robots", self.robots.len()) };
-        format!("{verb} on {robots} in {}: {}", labels::quantity(self.quantity), listed(&names))
+        html! { (verb) " on " (robots) " in " (labels::quantity(self.quantity)) ": " (sentence(&names)) }
     }
 }
 
@@ -157,7 +158,7 @@ fn missed(overview: &Overview, found: &[Missed], class: &str, verb: [&str; 2]) -
     html! {
         @for missed in found.iter().take(TOLD) {
             li class=(class) {
-                b { (missed.who()) } " " (missed.sentence(verb)) ". Worst: "
+                b { (missed.who(overview)) } " " (missed.sentence(overview, verb)) ". Worst: "
                 @let row = missed.worst;
                 (opener(
                     &overview.chunk_of(row),
@@ -202,7 +203,8 @@ pub fn markup(overview: &Overview, accuracy: &Accuracy, truth: &Truth) -> Markup
         ul.findings {
             @for kept in &truth.kept {
                 li.pass {
-                    b { (listed(&kept.answers)) } @if kept.answers.len() == 1 { " keeps" } @else { " keep" }
+                    @let names: Vec<Markup> = kept.answers.iter().map(|(name, methods)| html! { (engine(overview, name)) (methods) }).collect();
+                    b { (sentence(&names)) } @if kept.answers.len() == 1 { " keeps" } @else { " keep" }
                     " every gate on " (labels::quantity(kept.quantity)) " " span.number { "(" (short(kept.largest)) ")" }
                     " over " @if kept.robots.0 < kept.robots.1 { (kept.robots.0) " to " } (count(kept.robots.1, "robot")) "."
                 }
@@ -213,9 +215,9 @@ pub fn markup(overview: &Overview, accuracy: &Accuracy, truth: &Truth) -> Markup
         @if !truth.medians.is_empty() {
             p.note {
                 "Forward dynamics, the largest median error on any robot: "
-                @for (index, (name, error)) in truth.medians.iter().enumerate() {
+                @for (index, &(answer, error)) in truth.medians.iter().enumerate() {
                     @if index > 0 { ", " }
-                    span.nowrap { (name) " " b { (short(*error)) } }
+                    span.nowrap { (accuracy.linked(overview, answer)) " " b { (short(error)) } }
                 }
                 "."
             }

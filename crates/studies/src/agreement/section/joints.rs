@@ -7,7 +7,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use featherbench_report::map::{inside, outside};
 use featherbench_report::numbers::{decades, larger, listed, short};
-use featherbench_report::{Overview, Tally, labels, swatch, worst_first};
+use featherbench_report::{Overview, Tally, engine as linked, labels, swatch, worst_first};
 use featherbench_results::{Row, Verdict};
 use maud::{Markup, html};
 use serde::Serialize;
@@ -239,7 +239,7 @@ fn sentence(overview: &Overview, quantities: &[&str], matrix: &JointMatrix, engi
         (true, false) => "known",
         (true, true) => "pass",
     };
-    html! { li.(class) { b { (overview.engines[engine]) } " " (parts.join("; ")) "." } }
+    html! { li.(class) { b { (linked(overview, overview.engines[engine])) } " " (parts.join("; ")) "." } }
 }
 
 impl Shown<'_> {
@@ -258,7 +258,7 @@ fn table(overview: &Overview, quantities: &[&str], matrix: &JointMatrix) -> Mark
                     th.corner rowspan="2" scope="col" { "joint" }
                     @for engine in engines(matrix) {
                         @let width = matrix.columns.iter().filter(|&&(other, _)| other == engine).count();
-                        th.engine colspan=(width) scope="colgroup" { (overview.engines[engine]) }
+                        th.engine colspan=(width) scope="colgroup" { (linked(overview, overview.engines[engine])) }
                     }
                 }
                 tr {
