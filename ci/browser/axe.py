@@ -70,9 +70,17 @@ def accessible(page: Browser, folder: pathlib.Path) -> Checks:
     kinds += [f"{kind}/{first.name}" for kind in ("engines", "robots", "studies") for first in sorted((folder / kind).glob("*.html"))[:1]]
     for theme, width in (("light", 1440), ("dark", 1440), ("light", 500)):
         page.post("/window/rect", width=width, height=1000)
+        page.prefer(theme)
         for kind in kinds:
             page.open((folder / kind).resolve().as_uri())
-            page.run("document.documentElement.dataset.theme = arguments[0]; document.dispatchEvent(new CustomEvent('themechange'))", theme)
+            # A page with a script has the reader's choice; any other follows the system.
+            page.run(
+                "if (!document.getElementById('theme')) return;"
+                "document.documentElement.dataset.theme = arguments[0]; document.dispatchEvent(new CustomEvent('themechange'))",
+                theme,
+            )
+            seen = page.run("return getComputedStyle(document.documentElement).colorScheme")
+            yield f"{kind} is {theme} where that is wanted", seen == theme, seen
             found = violations(page, script)
             yield f"{kind}, {theme}, {width} px, has no violation of accessibility", not found, found
         page.open((folder / "index.html").resolve().as_uri())
@@ -82,3 +90,4 @@ def accessible(page: Browser, folder: pathlib.Path) -> Checks:
             continue
         found = violations(page, script) if page.until(ROWS) else ["no rows were opened"]
         yield f"the rows, {theme}, {width} px, have no violation of accessibility", not found, found
+    page.prefer("")

@@ -93,6 +93,11 @@ class Browser:
         actions = [{"type": kind, "value": key} for key in keys for kind in ("keyDown", "keyUp")]
         self.post("/actions", actions=[{"type": "key", "id": "keyboard", "actions": actions}])
 
+    def prefer(self, theme: str) -> None:
+        """Let the system prefer light or dark; nothing, for an empty text."""
+        feature = {"name": "prefers-color-scheme", "value": theme}
+        self.post("/goog/cdp/execute", cmd="Emulation.setEmulatedMedia", params={"features": [feature]})
+
     def choose(self, selector: str, value: str) -> None:
         """Choose an option of a list with the event of a user's choice."""
         self.run(

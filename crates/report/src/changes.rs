@@ -9,9 +9,11 @@ use maud::{DOCTYPE, Markup, PreEscaped, html};
 use crate::findings::{Findings, Found};
 use crate::labels;
 use crate::numbers::{count, grouped, short};
+use crate::sheet::sheet;
 
-/// The report's style sheet: such a page has it inside, as it is one file.
-const STYLE: &str = include_str!("../assets/style.css");
+/// The style of such a page, beside the sheet of every page.
+const STYLE: &str =
+    ".scroll + .lead { margin-top: 1rem; } .drawn svg { display: block; max-width: 100%; height: auto; border-radius: 8px; }";
 /// Changes of rows that a comparison lists, from the largest factor.
 const LISTED: usize = 12;
 
@@ -45,7 +47,8 @@ pub(crate) fn page(title: &str, body: &Markup) -> String {
                 meta name="viewport" content="width=device-width, initial-scale=1";
                 meta name="color-scheme" content="light dark";
                 title { "featherbench: " (title) }
-                style { (PreEscaped(STYLE)) ".scroll + .lead { margin-top: 1rem; } .drawn svg { display: block; max-width: 100%; height: auto; border-radius: 8px; }" }
+                // Inside, as the page is one file.
+                style { (PreEscaped(sheet())) (PreEscaped(STYLE)) }
             }
             body { main { (body) } }
         }
@@ -63,13 +66,14 @@ pub fn between(before: (&RunInfo, &[Row]), after: (&RunInfo, &[Row])) -> String 
         section #changes {
             h1 { (headings(old, new)) }
             div.scroll { table.compact {
-                thead { tr { th {} th scope="col" { "before" } th scope="col" { "after" } } }
+                thead { tr { td {} th scope="col" { "before" } th scope="col" { "after" } } }
                 tbody {
                     @for (name, [old, new]) in facts(old.info, new.info) { tr { th scope="row" { (name) } td { (old) } td { (new) } } }
                     tr { th scope="row" { "revision" } td { code { (revision(old.info)) } } td { code { (revision(new.info)) } } }
                     tr { th scope="row" { "gravest finding" } td { (headline(&old)) } td { (headline(&new)) } }
                 }
             } }
+            h2 { "Findings and rows" }
             (comparison(old, new))
         }
     };

@@ -16,7 +16,7 @@
 //! |---|---|
 //! | data | [`numbers`], [`labels`], [`fit`], `error`, then [`figure`], then `tally`, `overview`, `section`, then `findings`, `parts`, then `chunks`, [`forms`] |
 //! | sections | `blocks`, [`mod@robot`], then [`map`], `drawings`, then `cards`, then `verdict`, `conventions`, `provenance`, `method`, `unpassed`, `figures`, `subjects` |
-//! | page | `page`, `summary`, [`changes`], `trends`, then [`runs`], then `write` |
+//! | page | `page`, `sheet`, `summary`, [`changes`], `trends`, then [`runs`], then `write` |
 
 mod blocks;
 mod cards;
@@ -41,6 +41,7 @@ mod provenance;
 pub mod robot;
 pub mod runs;
 mod section;
+mod sheet;
 mod subjects;
 mod summary;
 mod tally;

@@ -12,10 +12,8 @@ use crate::overview::Overview;
 use crate::page::Page;
 use crate::parts::{self, Piece};
 use crate::section::Section;
+use crate::sheet::sheet;
 use crate::subjects::Subjects;
-
-/// The report's style sheet; sections add to it.
-const STYLE: &str = concat!(include_str!("../assets/style.css"), include_str!("../assets/robot.css"));
 
 /// The report's scripts; sections add to them.
 const SCRIPT: &str = concat!(
@@ -58,7 +56,7 @@ pub fn write(run: &RunInfo, rows: &[Row], sections: &[Section], out: &Path) -> R
         written.push(path);
         Ok(())
     };
-    let style: String = std::iter::once(STYLE).chain(sections.iter().map(|section| section.style)).collect();
+    let style: String = std::iter::once(sheet().as_str()).chain(sections.iter().map(|section| section.style)).collect();
     put(("style.css".to_owned(), style.into_bytes()))?;
     put(("app.js".to_owned(), script(sections).into_bytes()))?;
     put(("data/overview.js".to_owned(), chunks::overview(&overview)?))?;

@@ -83,7 +83,7 @@ fn the_page_shows_the_files_and_holds_their_data() {
 /// The charts of the page have the same colours on light paper.
 #[test]
 fn the_page_has_the_same_colours() {
-    let style = fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("assets/style.css")).unwrap();
+    let style = fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("assets/light.css")).unwrap();
     for (index, colour) in COLOURS.iter().enumerate() {
         assert!(style.contains(&format!("--series-{index}: {colour};")), "{index}");
     }

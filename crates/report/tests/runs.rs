@@ -108,6 +108,9 @@ fn two_runs_have_a_page_and_two_suites_are_one_sentence() {
     assert!(!page.contains(">q77<") && !page.contains("<summary>500"), "rows of one suite alone are not listed");
     let same = between((&a.info, &a.rows), (&a.info, &a.rows));
     assert!(same.contains("<h1>Nothing changed beyond noise, of 1 row"), "{same}");
+    // Such a page has no script: it follows the system's choice of light or dark.
+    let rule = "@media screen and (prefers-color-scheme: dark) {\n:root:not([data-theme]) {";
+    assert!([&same, &render(vec![a.clone()])].iter().all(|page| page.contains(rule) && !page.contains("<script")));
     // A suite whose file changed is told so on the page over runs as well, and not row by row.
     let changed = Past { info: RunInfo { suite_hash: "other".into(), ..b.info.clone() }, rows: other.rows.clone(), ..b };
     let page = render(vec![a, changed]);
