@@ -16,7 +16,7 @@
 //! |---|---|
 //! | data | [`numbers`], [`labels`], [`fit`], `error`, then [`figure`], then `tally`, `overview`, `section`, then `findings`, `parts`, then `chunks`, [`forms`] |
 //! | sections | `blocks`, [`mod@robot`], then [`map`], `drawings`, then `cards`, then `verdict`, `conventions`, `provenance`, `method`, `unpassed`, `figures`, `subjects` |
-//! | page | `page`, `sheet`, `summary`, [`changes`], `trends`, then [`runs`], then `write` |
+//! | page | `page`, `sheet`, `summary`, [`changes`], `trends`, then [`runs`], then `files`, then `write` |
 
 mod blocks;
 mod cards;
@@ -27,6 +27,7 @@ mod drawings;
 mod error;
 pub mod figure;
 mod figures;
+mod files;
 mod findings;
 pub mod fit;
 pub mod forms;

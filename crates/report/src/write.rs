@@ -8,6 +8,7 @@ use crate::chunks::{self, NamedFile};
 use crate::drawings::{Brought, Drawings};
 use crate::error::ReportError;
 use crate::figures;
+use crate::files;
 use crate::overview::Overview;
 use crate::page::Page;
 use crate::parts::{self, Piece};
@@ -41,7 +42,8 @@ pub struct ReportPaths {
 }
 
 /// Writes the report of a run into the folder `out`, which may already hold the run's own files; the page links to `rows.csv`,
-/// `run.json` and `schema.json` beside it. The sections stand in the order given here.
+/// `run.json` and `schema.json` beside it. The sections stand in the order given here. Files of an older report there that this one does not
+/// have are removed.
 ///
 /// # Errors
 /// [`ReportError`] if a file cannot be written, or if a section's data are no JSON.
@@ -50,10 +52,9 @@ pub fn write(run: &RunInfo, rows: &[Row], sections: &[Section], out: &Path) -> R
     let mut written = Vec::new();
     // File by file, so that no more than one is held.
     let mut put = |(name, bytes): NamedFile| -> Result<(), ReportError> {
-        let path = out.join(name);
         // The rows are safe already; a report can be written again.
-        featherbench_results::quick_write(&path, &bytes)?;
-        written.push(path);
+        featherbench_results::quick_write(&out.join(&name), &bytes)?;
+        written.push(name);
         Ok(())
     };
     let style: String = std::iter::once(sheet().as_str()).chain(sections.iter().map(|section| section.style)).collect();
@@ -76,9 +77,11 @@ pub fn write(run: &RunInfo, rows: &[Row], sections: &[Section], out: &Path) -> R
     for subject in Subjects::of(run, rows, &drawings, sections).pages() {
         put((subject.path.clone(), page.subject(&subject).into_bytes()))?;
     }
-    // Last, so that a page is never older than what it links to.
+    // After the others, so that it is never older than what it links to.
     put(("index.html".to_owned(), page.index().into_bytes()))?;
-    Ok(ReportPaths { index: out.join("index.html"), files: written })
+    let list = files::renew(out, written.iter().map(String::as_str))?;
+    let files = written.iter().map(|name| out.join(name)).chain([out.join(list)]).collect();
+    Ok(ReportPaths { index: out.join("index.html"), files })
 }
 
 /// The report's scripts, then those of the sections, each of which runs when its section is shown.

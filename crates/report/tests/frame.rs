@@ -180,6 +180,32 @@ fn an_empty_run_says_so() {
 }
 
 #[test]
+fn pages_of_an_older_report_are_removed_and_nothing_else() {
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path().join("run");
+    let of = |robot: &str| Row { robot: robot.into(), ..failing("one") };
+    let large = || Section::new("large", "Large", html! { section #large { @for _ in 0..99 { p { "row" } } } });
+    featherbench_report::write(&RunInfo::default(), &[of("arm"), of("leg")], &[large()], &out).unwrap();
+    let stale = ["robots/leg.html", "data/robot-1.js", "sections/large.html", "sections/large.js"];
+    let there = |name: &&str| out.join(name).is_file();
+    assert!(stale.iter().all(there) && there(&"robots/arm.html"));
+    // Files of others, one of them in a folder of the report; and a list that names what is not the report's.
+    let foreign = ["rows.csv", "robots/notes.html", "figures/mine.svg", "../victim.txt"];
+    for name in foreign {
+        fs::create_dir_all(out.join(name).parent().unwrap()).unwrap();
+        fs::write(out.join(name), "mine").unwrap();
+    }
+    let list = out.join("report-files.txt");
+    let listed = fs::read_to_string(&list).unwrap();
+    assert!(stale.iter().all(|name| listed.lines().any(|line| line == *name)), "{listed}");
+    fs::write(&list, format!("{listed}rows.csv\n../victim.txt\nrobots/../../victim.txt\nrobots/gone.html\n")).unwrap();
+    let paths = featherbench_report::write(&RunInfo::default(), &[of("arm")], &[], &out).unwrap();
+    assert!(!stale.iter().any(there), "{:?}", stale.iter().filter(|name| there(name)).collect::<Vec<_>>());
+    assert!(foreign.iter().all(there) && paths.files.iter().all(|path| path.is_file()));
+    assert!(!fs::read_to_string(&list).unwrap().contains("leg"));
+}
+
+#[test]
 fn a_folder_that_cannot_be_written_is_named() {
     let folder = tempfile::tempdir().unwrap();
     let blocked = folder.path().join("blocked");
