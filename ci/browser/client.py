@@ -93,6 +93,10 @@ class Browser:
         actions = [{"type": kind, "value": key} for key in keys for kind in ("keyDown", "keyUp")]
         self.post("/actions", actions=[{"type": "key", "id": "keyboard", "actions": actions}])
 
+    def printed(self) -> bytes:
+        """Print the page as a PDF, as a reader's browser does."""
+        return base64.b64decode(self.post("/print"))
+
     def prefer(self, theme: str) -> None:
         """Let the system prefer light or dark; nothing, for an empty text."""
         feature = {"name": "prefers-color-scheme", "value": theme}

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import pathlib
+import re
 
 from browser.cells import accuracy, heatmap, joints
 from browser.client import ESCAPE, Browser
@@ -64,6 +65,7 @@ def checks(page: Browser, address: str, shots: pathlib.Path | None) -> Checks:
 
     page.open(address)
     yield from first_page(page)
+    yield from paper(page, address)
     open_whole(page, address)
     sections = page.run("return [...document.querySelectorAll('main > section')].map(section => section.id)")
     yield "the page has its sections", sections == [name for name in SECTIONS if name in ALWAYS or name in sections], sections
@@ -131,6 +133,20 @@ def first_page(page: Browser) -> Checks:
         brought = page.until("return !document.getElementById(arguments[0]).dataset.part", far)
         inside = page.run("return document.getElementById(arguments[0]).getBoundingClientRect().top < innerHeight", far)
         yield "a section is brought when the reader goes to it", brought and inside, [far, inside]
+
+
+def paper(page: Browser, address: str) -> Checks:
+    """Check that the printed page has every section, also those that the reader has not come to."""
+    page.open("about:blank")
+    page.open(address)
+    left = "[...document.querySelectorAll('main > section[data-part]')].map(section => section.id)"
+    away = page.run(f"return {left}")
+    loaded = f"return {left}.every(id => featherbench.chunks.has(`part-${{id}}`)) && featherbench.chunks.has('figures')"
+    yield "what paper needs is loaded when the page is idle", page.until(loaded), page.run(f"return {left}")
+    pages = len(re.findall(rb"/Type\s*/Page\b", page.printed()))
+    after = page.run(f"return {left}")
+    sections = page.run("return document.querySelectorAll('main > section').length")
+    yield f"paper has all {sections} sections, {len(away)} of them brought to print: {pages} pages", away and not after and pages > 1, after
 
 
 def findings(page: Browser) -> Checks:

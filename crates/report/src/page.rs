@@ -83,7 +83,7 @@ fn frame(run: &RunInfo, sections: &[&Section], below: Option<[&str; 2]>, body: &
                         a href=(RUN_NAME) { (RUN_NAME) } ", columns described in "
                         a href=(SCHEMA_NAME) { (SCHEMA_NAME) } "."
                     }
-                    @if below.is_none() { p { button.more #everything type="button" { "Bring every section, to search or print the page" } } }
+                    @if below.is_none() { p { button.more #everything type="button" { "Bring every section, to search the page" } } }
                 }
                 (rows_dialog())
                 div #tip role="tooltip" hidden {}
