@@ -156,6 +156,15 @@ impl Gates {
         Ok(self)
     }
 
+    /// The same gates for a robot that was altered and keeps its name: its sizes are those of the name, its class is that of the new properties.
+    ///
+    /// It is what a reduced case is judged by. Where [`Gates::with_robots`] refuses a robot that has left the class of a size, this one lets its
+    /// rows fail.
+    pub fn with_altered(mut self, robot: &str, properties: Properties) -> Self {
+        self.known.set_altered(robot, properties);
+        self
+    }
+
     /// The known deviations.
     pub fn deviations(&self) -> &[Deviation] {
         &self.known.deviations

@@ -67,6 +67,11 @@ impl Known {
         Ok(())
     }
 
+    /// Takes the properties of one robot alone, which may be in the class of none of its sizes.
+    pub(crate) fn set_altered(&mut self, robot: &str, properties: Properties) {
+        self.robots = BTreeMap::from([(robot.to_owned(), properties)]);
+    }
+
     /// What is known of a row that does not pass: see [`Gates::explain`](crate::Gates::explain).
     pub(crate) fn explain(&self, row: Row) -> Row {
         match row.verdict {
@@ -167,7 +172,7 @@ impl Known {
 
     /// Whether a deviation is the cause of a row's verdict.
     fn is_excused(&self, row: &Row, known: &Deviation) -> bool {
-        row.verdict == Verdict::Deviation && known.is_about(row, self.properties(row)) && cause(row).is_some_and(|id| id == known.id)
+        known.is_about(row, self.properties(row)) && cause(row).is_some_and(|id| id == known.id)
     }
 
     /// The condition that a deviation has its known size on each of its robots; `None` if no robot of the run showed it at every seed.
@@ -206,8 +211,19 @@ fn deviating(row: Row, known: &Deviation) -> Row {
     row
 }
 
-/// The id of the deviation that explains a row.
-fn cause(row: &Row) -> Option<String> {
+/// The id of the deviation that explains a row; `None` if none does.
+///
+/// ```
+/// use featherbench_results::{Row, Verdict};
+///
+/// let row = Row { verdict: Verdict::Deviation, params: r#"{"deviation":"far-base"}"#.into(), ..Row::default() };
+/// assert_eq!(featherbench_bench::cause(&row).as_deref(), Some("far-base"));
+/// assert_eq!(featherbench_bench::cause(&Row::default()), None);
+/// ```
+pub fn cause(row: &Row) -> Option<String> {
+    if row.verdict != Verdict::Deviation {
+        return None;
+    }
     let params: Value = serde_json::from_str(&row.params).ok()?;
     Some(params.get(PARAMETER)?.as_str()?.to_owned())
 }

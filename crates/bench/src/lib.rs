@@ -93,6 +93,7 @@ pub use error::HarnessError;
 pub use featherbench_protocol::{Limits, Memory};
 pub use gates::{Factor, Gate, Gates, Planted, Sharpness};
 pub use import::{FileBase, FileFormat, FileInertial, FileLink, Import, ImportNote, RobotFile, WATER};
+pub use known::cause;
 pub use lack::Lack;
 pub use loops::{LoopAccelerations, LoopDrive, LoopMotion, LoopSolver, LoopSpring, LoopStates, LoopSteps};
 pub use means::{Known, Mean};

@@ -1,140 +1,231 @@
-//! `featherbench reduce`: the worst cells of a run as a catalogue of small robots, each with a program in the engine's own interface.
+//! `featherbench reduce`: the failures of a run as a catalogue of small robots, each with a program in the engine's own interface.
 //!
-//! It is a command of its own and no part of a sweep: it asks engines some hundred times for each case, and any run with errors against the
-//! truth has cells for it.
+//! It has a line for each known deviation of each engine, and says why where there is no case. It is a command of its own and no part of a
+//! run: it asks engines some hundred times for each case.
 
-mod program;
+mod files;
+mod programs;
 
-use crate::args::{ReduceArgs, RunArgs};
+use crate::args::{Cli, Command, ReduceArgs, RunArgs};
 use crate::fail::Fail;
 use crate::oracles;
 use crate::robots;
 use crate::root::Root;
 use crate::say::say;
-use ::featherbench_results::{Row, RunInfo, atomic_write, words};
-use featherbench_bench::truth::TruthModel;
-use featherbench_bench::{Engine, HarnessError, OWN, Quantity, Robot};
+use ::featherbench_results::{Row, RunInfo, words};
+use clap::Parser;
+use featherbench_bench::{Engine, Gates, OWN, Robot};
 use featherbench_engines::{Featherbench, Limits};
-use featherbench_formats::{OnLoss, mjcf, neutral, urdf};
-use featherbench_studies::reduce::{self, Case, Reduced};
-use serde_json::json;
+use featherbench_studies::reduce::{
+    self, CATALOGUE, CATALOGUE_NAME, Case, Catalogue, Entry, Finding, Kind, Line, Reduced, Reduction, Shown, Status,
+};
+use files::save;
 use std::collections::BTreeMap;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
-/// The folder of the catalogue in a run.
-const CATALOGUE: &str = "catalogue";
-/// Errors of inverse dynamics and M below this are rounding: 45 ε, the gate of the study `accuracy`.
-const ROUNDING: f64 = 1e-14;
-/// Errors of forward dynamics up to this multiple of the conditioning bound are no finding: ten for each of some ten levels of a tree.
-const OVER_FLOOR: f64 = 100.0;
-
-/// What is reduced: the cell with the largest error of an engine's method for a quantity.
-struct Worst<'a> {
-    row: &'a Row,
-    quantity: Quantity,
-    value: f64,
-}
+/// The rows of an entry that are tried, each of another robot, until one becomes small.
+const TRIES: usize = 3;
+/// A reduced robot of so few bodies is small.
+const FEW: usize = 5;
+/// Robots of more bodies than this are tried only while there is no case: a step takes seconds.
+const MANY: usize = 64;
 
 /// Writes the catalogue of a run.
 pub fn reduce(root: &Root, args: &ReduceArgs) -> Result<(), Fail> {
     let (info, rows) = ::featherbench_results::read_run(&args.folder)?;
-    let found = worst(&rows, &args.cells);
-    if found.is_empty() {
+    let gates = root.read_gates()?;
+    let entries = reduce::entries(&gates, &rows, &args.cells);
+    if entries.iter().all(|entry| entry.found.is_empty()) {
         let message = format!(
-            "{}: there is nothing to reduce: no {} has an error against the truth above rounding; studies with such rows are accuracy and sweep",
+            "{}: there is nothing to reduce: no {} of the studies agreement, accuracy, sweep and derivatives fails, is a known deviation or has an \
+             error against the truth above rounding",
             args.folder.display(),
             if args.cells.is_empty() { "row" } else { "row of these cells" }
         );
         return Err(Fail::input(message));
     }
-    let robots = robots_of(root, &info)?;
+    let robots = robots_of(root, &info, &args.folder)?;
     let folder = args.folder.join(CATALOGUE);
-    let mut engines: BTreeMap<&str, Box<dyn Engine>> = BTreeMap::new();
+    let mut reducing = Reducing { root, gates: &gates, robots: &robots, folder: &folder, engines: BTreeMap::new() };
     let mut lines = Vec::new();
-    for Worst { row, quantity, value } in found {
-        if !engines.contains_key(row.engine.as_str()) {
-            engines.insert(&row.engine, open(root, &row.engine)?);
+    for entry in entries {
+        let line = reducing.line(entry)?;
+        match &line.status {
+            Status::Reduced(case) => {
+                let (before, after) = (told(case.error), told(case.reduced_error));
+                say!("{}: {before} on {} bodies of {}, {after} on {}", line.name, case.bodies, case.robot, case.reduced_bodies);
+            }
+            Status::None { why } => say!("{}: no case: {why}", line.name),
         }
-        let Some(engine) = engines.get(row.engine.as_str()) else { continue };
-        let Some(robot) = robots.iter().find(|robot| robot.name == row.robot) else {
-            return Err(Fail::input(format!("{}: the suite has no robot '{}' now; run it again", args.folder.display(), row.robot)));
-        };
-        // The state with the largest error.
-        let state = |k: usize| Case::of(robot, k);
-        let of = |robot: &Robot| reduce::severity(engine.as_ref(), robot, quantity, &row.method);
-        let states = (0..robot.states.count()).filter_map(|k| Some((of(&state(k).robot()?)?, k)));
-        let Some((_, k)) = states.max_by(|a, b| a.0.total_cmp(&b.0)) else {
-            eprintln!("note: {} {} {}: no answer now", row.engine, row.quantity, row.method);
-            continue;
-        };
-        let Some(reduced) = reduce::reduce(state(k), least(quantity), &of) else {
-            eprintln!("note: {} {} {}: no error above rounding now", row.engine, row.quantity, row.method);
-            continue;
-        };
-        let name = format!("{}-{}-{}", row.engine, quantity.name(), row.method);
-        write(&folder.join(&name), row, quantity, &reduced)?;
-        let bodies = |description: &featherbench_model::Description| description.bodies.len();
-        say!(
-            "{name}: {value:.1e} on {} bodies of {}, {:.1e} on {}",
-            bodies(&robot.description),
-            row.robot,
-            reduced.after,
-            bodies(&reduced.case.description)
-        );
-        lines.push(format!(
-            "| [{name}]({name}/README.md) | {} | {} | {:.1e} | {} | {:.1e} |",
-            row.robot,
-            bodies(&robot.description),
-            reduced.before,
-            bodies(&reduced.case.description),
-            reduced.after
-        ));
+        lines.push(line);
     }
-    let head = format!(
-        "# Catalogue of the run {}\n\nThe largest error of each engine's method, on the smallest robot and state that still show it (at least {} of it).\n\
-         Errors of `fd` are multiples of the conditioning bound; those of `id` and `mass_matrix` are unit-free (METHODOLOGY.md).\n\n\
-         | case | robot | bodies | error | bodies, reduced | error, reduced |\n|---|---|---|---|---|---|\n",
-        info.run,
-        reduce::KEEP
-    );
-    save(&folder.join("README.md"), &(head + &lines.join("\n") + "\n"))?;
-    say!("{} cases: {}", lines.len(), folder.join("README.md").display());
+    let cases = lines.iter().filter(|line| line.reduction().is_some()).count();
+    // If no engine answers, that is the error; if one is missing, its lines say so.
+    if let Some(missing) = reducing.engines.into_values().find_map(Result::err).filter(|_| cases == 0) {
+        return Err(missing);
+    }
+    let path = folder.join(CATALOGUE_NAME);
+    let known = if args.cells.is_empty() { None } else { Catalogue::read(&args.folder)? };
+    let catalogue = known.unwrap_or_else(|| Catalogue { run: info.run.clone(), lines: Vec::new() }).renewed(lines);
+    save(&folder.join("README.md"), &readme(&catalogue))?;
+    // Last: a catalogue names no file that is not there.
+    save(&path, &format!("{}\n", serde_json::to_string_pretty(&catalogue).map_err(|error| Fail::input(error.to_string()))?))?;
+    say!("{cases} cases: {}", folder.join("README.md").display());
     Ok(())
 }
 
-/// Errors up to this are no finding.
-fn least(quantity: Quantity) -> f64 {
-    if quantity == Quantity::ForwardDynamics { OVER_FLOOR } else { ROUNDING }
+/// What is at hand while cases are reduced.
+struct Reducing<'a> {
+    root: &'a Root,
+    gates: &'a Gates,
+    robots: &'a [Robot],
+    folder: &'a Path,
+    engines: BTreeMap<String, Result<Box<dyn Engine>, Fail>>,
 }
 
-/// The cells to be reduced: those that are named, or the worst of each engine, quantity and method above rounding.
-fn worst<'a>(rows: &'a [Row], named: &[String]) -> Vec<Worst<'a>> {
-    let mut found: BTreeMap<(&str, &str, &str), Worst> = BTreeMap::new();
-    for row in rows.iter().filter(|row| row.precision == "f64") {
-        let quantity = if row.quantity == Quantity::MassMatrixProbe.name() { Quantity::MassMatrix.name() } else { &row.quantity };
-        let Some((quantity, value)) = Quantity::parse(quantity).zip(row.value) else { continue };
-        let least = least(quantity);
-        let asked = if named.is_empty() { value > least } else { named.iter().any(|cell| row.cell.starts_with(cell.as_str())) };
-        if row.metric != reduce::metric(quantity) || !asked {
-            continue;
+/// A reduced case with the row that it comes from.
+struct Found<'a> {
+    row: &'a Row,
+    finding: &'a Finding,
+    bodies: usize,
+    kind: Kind,
+    reduced: Reduced,
+}
+
+impl Reducing<'_> {
+    /// The line of an entry, with the files of its case.
+    fn line(&mut self, entry: Entry) -> Result<Line, Fail> {
+        let Entry { mut line, found } = entry;
+        if found.is_empty() {
+            return Ok(line);
         }
-        let key = (&*row.engine, quantity.name(), &*row.method);
-        if found.get(&key).is_none_or(|known| known.value < value) {
-            found.insert(key, Worst { row, quantity, value });
+        let (root, gates, robots) = (self.root, self.gates, self.robots);
+        let engine = match self.engines.entry(line.engine.clone()).or_insert_with(|| open(root, &line.engine)) {
+            Ok(engine) => &**engine,
+            Err(missing) => {
+                line.status = Status::None { why: format!("the engine does not answer here: {missing}") };
+                return Ok(line);
+            }
+        };
+        let mut best: Option<Found> = None;
+        let mut tried: Vec<&str> = Vec::new();
+        for (row, finding) in &found {
+            if tried.contains(&row.robot.as_str()) {
+                continue;
+            }
+            let Some(robot) = robots.iter().find(|robot| robot.name == row.robot) else { continue };
+            if tried.len() == TRIES || best.is_some() && robot.description.bodies.len() > MANY {
+                break;
+            }
+            tried.push(&row.robot);
+            let Some(case) = of_robot(engine, gates, robot, finding) else { continue };
+            let case = Found { row, finding, bodies: robot.description.bodies.len(), kind: case.1, reduced: case.0 };
+            let size = |case: &Found| case.reduced.case.description.bodies.len();
+            if best.as_ref().is_none_or(|best| size(&case) < size(best)) {
+                best = Some(case);
+            }
+            if best.as_ref().is_some_and(|best| size(best) <= FEW) {
+                break;
+            }
         }
+        line.status = match best {
+            Some(case) => Status::Reduced(self.written(&line, &case)?),
+            None if tried.is_empty() => Status::None { why: "the suite does not have the robots of its rows now".into() },
+            None => Status::None { why: format!("the engine does not show it now at one state of {}", tried.join(", ")) },
+        };
+        Ok(line)
     }
-    found.into_values().collect()
+
+    /// Writes the files of a case, and says what it is. The folder is replaced whole.
+    fn written(&self, line: &Line, case: &Found) -> Result<Reduction, Fail> {
+        let (part, whole) = (self.folder.join(format!(".{}", line.name)), self.folder.join(&line.name));
+        let files = files::write(&part, line, case.row, case.finding, &case.reduced, case.kind)?;
+        replace(&part, &whole).map_err(|error| Fail::input(format!("{}: {error}", whole.display())))?;
+        let mut joints = BTreeMap::new();
+        for body in &case.reduced.case.description.bodies {
+            *joints.entry(body.joint.kind.name().to_owned()).or_insert(0) += 1;
+        }
+        let number = |severity: f64| (case.kind == Kind::Number).then_some(severity);
+        Ok(Reduction {
+            robot: case.row.robot.clone(),
+            cell: case.row.cell.clone(),
+            quantity: case.finding.quantity.name().into(),
+            method: case.finding.method.clone(),
+            metric: case.finding.metric.clone(),
+            bodies: case.bodies,
+            error: number(case.reduced.before),
+            reduced_bodies: case.reduced.case.description.bodies.len(),
+            joints,
+            reduced_error: number(case.reduced.after),
+            without: case.kind.told().map(str::to_owned),
+            tried: case.reduced.tried,
+            files,
+        })
+    }
+}
+
+/// The reduced case of a finding on a robot, from the state that shows it most; `None` if no state alone shows it.
+fn of_robot(engine: &dyn Engine, gates: &Gates, robot: &Robot, finding: &Finding) -> Option<(Reduced, Kind)> {
+    let shown = |robot: &Robot| finding.shown(engine, gates, robot);
+    let of_its = |k: &usize| finding.states.is_none_or(|states| robot.states.cases.get(*k) == Some(&states));
+    let states = (0..robot.states.count()).filter(of_its).filter_map(|k| Some((k, shown(&Case::of(robot, k).robot()?)?)));
+    let (k, Shown { kind, .. }) = states.max_by(|(_, a), (_, b)| a.severity.total_cmp(&b.severity))?;
+    let same = |robot: &Robot| shown(robot).filter(|shown| shown.kind == kind).map(|shown| shown.severity);
+    Some((reduce::reduce(Case::of(robot, k), 0.0, &same)?, kind))
+}
+
+/// Puts a folder in the place of another.
+fn replace(part: &Path, whole: &PathBuf) -> std::io::Result<()> {
+    if whole.exists() {
+        std::fs::remove_dir_all(whole)?;
+    }
+    std::fs::rename(part, whole)
+}
+
+/// An error in two digits.
+fn told(error: Option<f64>) -> String {
+    error.map_or_else(|| "no number".to_owned(), |error| format!("{error:.1e}"))
+}
+
+/// The catalogue as a table.
+fn readme(catalogue: &Catalogue) -> String {
+    let mut text = format!(
+        "# Catalogue of the run {}\n\nA line for each known deviation of each engine, and for each method that fails or has an error above rounding. A case is \
+         the smallest robot and state that still show it, with at least {} of its error, by the measure of its study.\n\n\
+         | engine | what | robot | bodies | error | bodies, reduced | error, reduced | reproduction |\n|---|---|---|---|---|---|---|---|\n",
+        catalogue.run,
+        reduce::KEEP
+    );
+    for Line { name, engine, class, reproduction, status, .. } in &catalogue.lines {
+        let reproduction = reproduction.as_deref().unwrap_or("–");
+        text += &match status {
+            Status::Reduced(case) => format!(
+                "| {engine} | [{class}]({name}/README.md) | {} | {} | {} | {} | {} | {reproduction} |\n",
+                case.robot,
+                case.bodies,
+                told(case.error),
+                case.reduced_bodies,
+                told(case.reduced_error)
+            ),
+            Status::None { why } => format!("| {engine} | {class} | no case: {why} | | | | | {reproduction} |\n"),
+        };
+    }
+    text
 }
 
 /// The robots of a run, made again from its command.
-fn robots_of(root: &Root, info: &RunInfo) -> Result<Vec<Robot>, Fail> {
+fn robots_of(root: &Root, info: &RunInfo, folder: &Path) -> Result<Vec<Robot>, Fail> {
     let all = words(&info.command).map_err(Fail::input)?;
     // `cargo run --release -- run …`; a run without arguments is that of the default suite.
-    let given: Vec<String> = all.iter().skip_while(|word| *word != "--").skip(1).skip_while(|word| *word == "run").cloned().collect();
-    let run = RunArgs::of(&given).map_err(|error| Fail::input(format!("the command of the run is none of `run`: {error}")))?;
+    let given = std::iter::once("featherbench").chain(all.iter().skip_while(|word| *word != "--").skip(1).map(String::as_str));
+    let run = match Cli::try_parse_from(given).map(|cli| cli.command) {
+        Ok(None) => RunArgs::default_suite(),
+        Ok(Some(Command::Run(run))) => run,
+        Ok(Some(_)) | Err(_) => return Err(Fail::input(format!("the command of the run is none of `run`: {}", info.command))),
+    };
     let loaded = robots::load(root, &run.suite, info.live, Some(info.seed), run.size)?;
     if loaded.hash != info.suite_hash {
-        eprintln!("note: the suite {} is another one now", run.suite);
+        eprintln!("note: {}: the suite {} is another one now", folder.display(), run.suite);
     }
     Ok(loaded.robots)
 }
@@ -146,58 +237,4 @@ fn open(root: &Root, name: &str) -> Result<Box<dyn Engine>, Fail> {
     }
     let engines = oracles::described(root)?;
     Ok(Box::new(oracles::start(root, engines.get(name).map_err(Fail::input)?, Limits::default())?))
-}
-
-/// Writes a case into a folder: the robot in every format that holds it, its state and the truth, a program, and what it is.
-fn write(folder: &Path, row: &Row, quantity: Quantity, reduced: &Reduced) -> Result<(), Fail> {
-    let lost = || Fail::input(format!("{}: the reduced robot is none", folder.display()));
-    let mut case = reduced.case.clone();
-    case.description.name = format!("{}-{}-{}", row.engine, quantity.name(), row.method);
-    let robot = case.robot().ok_or_else(lost)?;
-    let truth = TruthModel::new(&robot).and_then(|model| model.answer(&robot, quantity, 0)).ok_or_else(lost)?;
-    let (q, v, a, tau) = (robot.states.q(0), robot.states.v(0), robot.states.a(0), robot.states.tau(0));
-    let mut files = vec!["`robot.json`: the robot in the neutral format"];
-    save(&folder.join("robot.json"), &neutral::to_string(&robot.description).map_err(|error| Fail::input(error.to_string()))?)?;
-    // A format that lacks a joint, or gravity of another direction, is left out.
-    if let Ok((text, _)) = urdf::to_string(&robot.description, OnLoss::Refuse) {
-        save(&folder.join("robot.urdf"), &text)?;
-        files.push("`robot.urdf`: the same as URDF");
-    }
-    if let Ok((text, _)) = mjcf::to_string(&robot.description, OnLoss::Refuse) {
-        save(&folder.join("robot.xml"), &text)?;
-        files.push("`robot.xml`: the same as MJCF");
-    }
-    let state = json!({"q": q, "v": v, "a": a, "tau": tau, "quantity": quantity.name(), "truth": truth});
-    save(&folder.join("state.json"), &format!("{state:#}\n"))?;
-    files.push("`state.json`: the state, and the true answer in double-double arithmetic, to the nearest double");
-    if let Some(text) = program::of(row, quantity, &robot, &truth) {
-        save(&folder.join("reproduce.py"), &text)?;
-        files.push("`reproduce.py`: the error by the engine's own interface alone; run it with the engine's Python");
-    }
-    let body = |index: usize| robot.description.bodies.get(index).map(|body| format!("{} ({})", body.name, body.joint.kind.name()));
-    let bodies: Vec<String> = (0..robot.description.bodies.len()).filter_map(body).collect();
-    let text = format!(
-        "# {} {}: {} by {}\n\n- error: {:.3e} on {} ({} bodies), {:.3e} on this robot ({}: {})\n- measure: {}\n- cell: {}\n- steps tried: {}\n\n{}\n",
-        row.engine,
-        row.engine_version,
-        row.quantity,
-        row.method,
-        reduced.before,
-        row.robot,
-        row.bodies.unwrap_or_default(),
-        reduced.after,
-        bodies.len(),
-        bodies.join(", "),
-        reduce::metric(quantity),
-        row.cell,
-        reduced.tried,
-        files.into_iter().map(|line| format!("- {line}")).collect::<Vec<_>>().join("\n")
-    );
-    save(&folder.join("README.md"), &text)
-}
-
-fn save(path: &Path, text: &str) -> Result<(), Fail> {
-    let parent = path.parent().unwrap_or(path);
-    std::fs::create_dir_all(parent).map_err(|source| HarnessError::io(parent, source))?;
-    Ok(atomic_write(path, text.as_bytes())?)
 }

@@ -6,7 +6,8 @@ use crate::figures;
 use crate::gate;
 use crate::say::say;
 use ::featherbench_results::{Row, RunInfo};
-use featherbench_report::Findings;
+use featherbench_report::{Findings, Section};
+use featherbench_studies::reduce::Catalogue;
 use std::path::{Path, PathBuf};
 
 /// Writes the report of a finished run again, and its figures for a paper and opens it if that is wanted.
@@ -14,7 +15,7 @@ pub fn write(args: &ReportArgs) -> Result<(), Fail> {
     let (info, records) = ::featherbench_results::read_run(&args.folder)?;
     let page = render(&args.folder, &info, &records)?;
     if let Some(folder) = &args.figures {
-        figures::write(folder, &info, &featherbench_studies::sections(&info, &records))?;
+        figures::write(folder, &info, &sections(&args.folder, &info, &records)?)?;
     }
     say!("report: {}", page.display());
     show(&page, args.open)
@@ -22,9 +23,15 @@ pub fn write(args: &ReportArgs) -> Result<(), Fail> {
 
 /// Renders the report into the run's folder and returns its page.
 pub fn render(folder: &Path, info: &RunInfo, records: &[Row]) -> Result<PathBuf, Fail> {
-    let paths = featherbench_report::write(info, records, &featherbench_studies::sections(info, records), folder)
+    let paths = featherbench_report::write(info, records, &sections(folder, info, records)?, folder)
         .map_err(|error| Fail::input(error.to_string()))?;
     Ok(paths.index)
+}
+
+/// The sections of a run's report: those of its studies, and that of the catalogue of its failures, if `reduce` has made one.
+fn sections(folder: &Path, info: &RunInfo, records: &[Row]) -> Result<Vec<Section>, Fail> {
+    let catalogue = Catalogue::read(folder)?.map(|catalogue| featherbench_studies::reduce::section(&catalogue));
+    Ok(featherbench_studies::sections(info, records).into_iter().chain(catalogue).collect())
 }
 
 /// Prints what was found, and the report's page last.

@@ -60,6 +60,8 @@ const ALLOWED: &[(&str, &[&str])] = &[
             "robots",
             "formats",
             "dynamics",
+            // The engines' coordinates.
+            "library",
             "constrained",
             "residuals",
             "identification",

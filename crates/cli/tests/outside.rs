@@ -32,6 +32,8 @@ mod native;
 mod parquet;
 #[path = "outside/rapier.rs"]
 mod rapier;
+#[path = "outside/reduced.rs"]
+mod reduced;
 mod support;
 mod written;
 
@@ -84,8 +86,10 @@ fn main() -> ExitCode {
         ("big robots are refused or answered by the native oracles", native::big_robots_are_refused_or_answered),
         ("native oracles that are not there are named", native::no_compiler),
         ("instructions that were not counted are told", counted::not_counted),
+        ("programs of reduced cases print their errors", || with_engines(reduced::programs_print_their_errors)),
         ("polars and DuckDB read rows in Parquet", || with_engines(parquet::figures)),
         ("a sweep goes on after a task, its server and its client", hyperqueue::goes_on),
+        ("a sweep uses a running server", hyperqueue::uses_a_server),
         ("dynibo conforms", || library::conforms("dynibo", &["dynibo has no armature"])),
         ("dynibo agrees, with any gravity", || dynibo::with_dynibo(dynibo::agrees)),
         ("dynibo loses digits of M on a straight chain", || dynibo::with_dynibo(dynibo::loses_digits_of_a_straight_chain)),

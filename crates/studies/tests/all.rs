@@ -2,6 +2,7 @@
 
 mod accounted_readings;
 mod bad_oracle;
+mod catalogue;
 mod conditioning;
 mod convicted;
 mod derivatives;

@@ -9,9 +9,11 @@ use featherbench_studies::reduce::{Case, KEEP, reduce, severity};
 use std::ops::Range;
 
 /// Our kernels on an altered robot: an engine whose way to build a robot has a fault.
-struct Faulty {
-    inner: Featherbench,
-    alter: fn(&mut Description),
+pub struct Faulty {
+    pub inner: Featherbench,
+    pub alter: fn(&mut Description),
+    /// Whether it answers NaN where the robot is altered.
+    pub lost: bool,
 }
 
 struct Answer(Vec<f64>);
@@ -47,7 +49,11 @@ impl Engine for Faulty {
         let altered = Robot::new(&description, "altered", ModelOrigin::Generated, 1, 1).unwrap();
         let mut prepared = self.inner.prepare(&altered, quantity, method, states)?;
         prepared.run(0..states.count())?;
-        Ok(Box::new(Answer(prepared.read().to_vec())))
+        let mut answer = prepared.read().to_vec();
+        if self.lost && description != robot.description {
+            answer.fill(f64::NAN);
+        }
+        Ok(Box::new(Answer(answer)))
     }
 }
 
@@ -63,13 +69,13 @@ fn slide_on_a_hinge(description: &mut Description) {
 }
 
 /// A ball is a millionth too heavy.
-fn balls(description: &mut Description) {
+pub fn balls(description: &mut Description) {
     for body in description.bodies.iter_mut().filter(|body| body.joint.kind == JointType::Spherical) {
         body.mass *= 1.0 + 1e-6;
     }
 }
 
-fn robot(spec: &str) -> Robot {
+pub fn robot(spec: &str) -> Robot {
     let description = Family::parse(spec).unwrap().generate().unwrap();
     Robot::new(&description, "tree", ModelOrigin::Generated, 1, 1).unwrap()
 }
@@ -89,7 +95,7 @@ fn faulty(alter: fn(&mut Description), base: &str) -> Vec<Robot> {
 fn a_planted_fault_is_reduced_to_its_bodies() {
     let mut cases = 0;
     for (alter, bodies) in [(slide_on_a_hinge as fn(&mut Description), 2), (balls, 1)] {
-        let engine = Faulty { inner: Featherbench::new(), alter };
+        let engine = Faulty { inner: Featherbench::new(), alter, lost: false };
         for robot in [faulty(alter, "fixed"), faulty(alter, "free")].concat() {
             for (quantity, method) in
                 [(Quantity::InverseDynamics, "rnea"), (Quantity::MassMatrix, "crba"), (Quantity::ForwardDynamics, "aba")]

@@ -107,8 +107,8 @@ impl<'a> ForwardScale<'a> {
         ratio(self.energy_norm(&difference), self.energy_norm(reference))
     }
 
-    /// The denominators w of the backward error.
-    fn terms(&self, a: &[f64]) -> Vec<f64> {
+    /// The denominators w of the backward error of an answer.
+    pub fn terms(&self, a: &[f64]) -> Vec<f64> {
         let topology = &self.robot.model.topology;
         let root: Vec<f64> = self.mass.diagonal().map(f64::sqrt).collect();
         let mut terms = self.loads.clone();

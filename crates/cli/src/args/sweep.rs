@@ -8,12 +8,12 @@ use std::path::PathBuf;
 
 #[derive(Debug, Clone, Args)]
 #[command(
-    after_help = "Examples:\n  featherbench run --live --suite sweep --out reports/errors\n  featherbench reduce reports/errors\n  featherbench reduce reports/errors 3f2a\n\nEach case is a folder of RUN/catalogue: the smallest robot and state that keep a tenth of the error, in the neutral format and in URDF and MJCF where\nthese hold it, the state with the true answer, and a program in the engine's own interface where all joints are hinges and slides. Engines are\nasked themselves, and must be installed."
+    after_help = "Examples:\n  featherbench run --live --suite sweep --out reports/errors\n  featherbench reduce reports/errors\n  featherbench reduce reports/errors 3f2a\n\nEach case is a folder of RUN/catalogue: the smallest robot and state that keep a tenth of the error, in the neutral format and in URDF and MJCF where\nthese hold it, the state with the true answer, and a program in the engine's own interface where the engine has all joints. Known deviations without\na case have a line that says why. Engines are asked themselves, and must be installed. `report RUN` shows the catalogue afterwards; programs read\nRUN/catalogue/catalogue.json."
 )]
 pub struct ReduceArgs {
-    /// The run's folder: of a suite with the study accuracy or sweep.
+    /// The run's folder: of a suite with the study agreement, accuracy, sweep or derivatives.
     pub folder: PathBuf,
-    /// Cells, by the beginnings of their ids; by default the one with the largest error of each engine, quantity and method.
+    /// Cells, by the beginnings of their ids; by default the worst of each known deviation, and of each engine, quantity and method.
     #[arg(value_name = "CELL")]
     pub cells: Vec<String>,
 }

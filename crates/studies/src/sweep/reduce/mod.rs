@@ -3,12 +3,21 @@
 //! A step makes the case simpler: a subtree less, a joint less, a coordinate that is zero, a number of fewer digits. It is kept if the severity of
 //! the error stays at least [`KEEP`] times that of the case as given. Steps are tried one after another, again and again, until none is kept.
 
+mod catalogue;
+mod entries;
+mod finding;
+mod section;
 mod steps;
 
-use crate::{Accuracy, asked};
-use featherbench_bench::{Cell, Context, Engine, Gates, Quantity, Robot, Study};
+pub use catalogue::{CATALOGUE, CATALOGUE_NAME, Catalogue, Line, Reduction, Status};
+pub use entries::{Entry, entries};
+pub use finding::{Fault, Finding, Kind, Shown, metric, severity, true_answer};
+pub use section::section;
+
+use featherbench_bench::Robot;
 use featherbench_model::{BodyDescription, Description, JointType};
 use featherbench_results::ModelOrigin;
+use featherbench_robots::Case as StateCase;
 use std::collections::BTreeMap;
 
 /// The share of its severity that an error keeps. A decade: a fault of one body is diluted or sharpened by the bodies around it, by less than that.
@@ -32,6 +41,10 @@ pub struct JointState {
 /// A robot at a state.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Case {
+    /// The name of the robot that it was reduced from.
+    pub name: String,
+    /// The kind of its state.
+    pub kind: StateCase,
     /// The robot, canonical.
     pub description: Description,
     /// The state, by the name of the body that a joint carries.
@@ -39,7 +52,7 @@ pub struct Case {
 }
 
 impl Case {
-    /// A robot at one of its states; wrenches on bodies are left out.
+    /// A robot at one of its states. Wrenches on bodies are left out, and what the dynamics of the tree do not know of: loops, residuals.
     pub fn of(robot: &Robot, k: usize) -> Self {
         let (mut q, mut v) = (0, 0);
         let mut state = BTreeMap::new();
@@ -58,7 +71,9 @@ impl Case {
             );
             (q, v) = (q + nq, v + nv);
         }
-        Self { description: robot.description.clone(), state }
+        let Description { name, gravity, bodies, .. } = robot.description.clone();
+        let kind = robot.states.cases.get(k).copied().unwrap_or(StateCase::Random);
+        Self { name: robot.name.clone(), kind, description: Description { name, gravity, bodies, ..Description::default() }, state }
     }
 
     /// The robot at this one state; `None` if it is no robot.
@@ -72,8 +87,9 @@ impl Case {
         (states.q, states.v) = (of(|at| &at.q)?, of(|at| &at.v)?);
         (states.a, states.tau) = (of(|at| &at.a)?, of(|at| &at.tau)?);
         states.wrench.fill(0.0);
+        states.cases.fill(self.kind);
         states.check(&robot.model).ok()?;
-        Some(robot.at(states))
+        Some(Robot { name: self.name.clone(), ..robot.at(states) })
     }
 
     /// The case with its description in canonical form, and the states of the joints that it has; `None` if it is no robot.
@@ -171,22 +187,6 @@ impl Reducer<'_> {
         }
         severity.is_some()
     }
-}
-
-/// The metric of the rows of a quantity that says how severe an error is.
-pub fn metric(quantity: Quantity) -> &'static str {
-    if quantity == Quantity::ForwardDynamics { "error_over_floor" } else { "true" }
-}
-
-/// The severity of an engine's error at the first state of a robot: for forward dynamics its ratio to the conditioning bound, else its unit-free
-/// measure. It is that of the study's rows. `None` without an answer.
-pub fn severity(engine: &dyn Engine, robot: &Robot, quantity: Quantity, method: &str) -> Option<f64> {
-    let cell = Cell::new(Accuracy::SWEEP.name(), robot, engine.identity(), quantity.name(), method, serde_json::json!({}));
-    let gates = Gates::default();
-    let context = Context { robots: std::slice::from_ref(robot), engines: &[], gates: &gates, seed: 0 };
-    let outcome = asked(engine, robot, quantity, method).into();
-    let rows = Accuracy::SWEEP.compare(&context, robot, &[(cell, outcome)]);
-    rows.iter().find(|row| row.metric == metric(quantity))?.value
 }
 
 /// The bodies that a body carries, itself first: they follow each other, as the order is depth first.

@@ -1,0 +1,148 @@
+//! The catalogue of a run's failures, as data: a line for each known deviation of each engine, and for each failure that is none.
+
+use super::finding::Fault;
+use featherbench_results::ResultsError;
+use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
+use std::path::Path;
+
+/// The folder of the catalogue in a run's folder.
+pub const CATALOGUE: &str = "catalogue";
+
+/// The catalogue as data, in its folder.
+pub const CATALOGUE_NAME: &str = "catalogue.json";
+
+/// The catalogue of a run: `catalogue/catalogue.json`.
+///
+/// ```
+/// use featherbench_studies::reduce::{Catalogue, Line, Status};
+///
+/// let line = Line {
+///     name: "dart-zyx-aba".into(),
+///     engine: "dart".into(),
+///     class: "zyx-aba".into(),
+///     reason: "Euler angles near a pitch of 90°".into(),
+///     reproduction: None,
+///     status: Status::None { why: "this run has no row of it".into() },
+/// };
+/// let catalogue = Catalogue { run: "a".into(), lines: vec![line] };
+/// let text = serde_json::to_string(&catalogue).unwrap();
+/// assert_eq!(serde_json::from_str::<Catalogue>(&text).unwrap(), catalogue);
+/// assert!(text.contains(r#""status":"none""#));
+/// ```
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Catalogue {
+    /// The run.
+    pub run: String,
+    /// Its lines: engine after engine, known deviations first.
+    pub lines: Vec<Line>,
+}
+
+/// A known deviation, or a failure that is none.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Line {
+    /// Its name, unique in the catalogue; the folder of its case, if it has one.
+    pub name: String,
+    /// The engine.
+    pub engine: String,
+    /// The id of the known deviation, or quantity and method.
+    pub class: String,
+    /// The cause, as far as it is known.
+    pub reason: String,
+    /// The reproduction that shows the cause alone, by name.
+    pub reproduction: Option<String>,
+    /// What shows it here.
+    #[serde(flatten)]
+    pub status: Status,
+}
+
+/// What shows a line.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(tag = "status", rename_all = "snake_case")]
+pub enum Status {
+    /// A reduced case.
+    Reduced(Reduction),
+    /// No reduced case.
+    None {
+        /// Why not.
+        why: String,
+    },
+}
+
+/// A reduced case: where it comes from, and what it is.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Reduction {
+    /// The robot that it was reduced from.
+    pub robot: String,
+    /// The cell.
+    pub cell: String,
+    /// The quantity.
+    pub quantity: String,
+    /// The engine's method.
+    pub method: String,
+    /// The measure; empty where there is no answer.
+    pub metric: String,
+    /// The bodies of the robot.
+    pub bodies: usize,
+    /// Its error; `None` where there is no number.
+    pub error: Option<f64>,
+    /// The bodies of the reduced robot.
+    pub reduced_bodies: usize,
+    /// Its joints, counted by kind.
+    pub joints: BTreeMap<String, usize>,
+    /// Its error; `None` where there is no number.
+    pub reduced_error: Option<f64>,
+    /// Why there is no number.
+    pub without: Option<String>,
+    /// The steps that were tried.
+    pub tried: usize,
+    /// The files in the folder of the case.
+    pub files: Vec<String>,
+}
+
+impl Catalogue {
+    /// Reads the catalogue in a run's folder; `None` if there is none.
+    ///
+    /// # Errors
+    /// [`ResultsError`], naming the file.
+    pub fn read(run: &Path) -> Result<Option<Self>, ResultsError> {
+        let path = run.join(CATALOGUE).join(CATALOGUE_NAME);
+        if !path.exists() {
+            return Ok(None);
+        }
+        let text = std::fs::read_to_string(&path).map_err(|source| ResultsError::Io { path: path.clone(), source })?;
+        serde_json::from_str(&text).map(Some).map_err(|source| ResultsError::Json { path, source })
+    }
+
+    /// The catalogue with new lines in the place of those of the same names; other new lines come last.
+    pub fn renewed(mut self, lines: Vec<Line>) -> Self {
+        for line in lines {
+            match self.lines.iter_mut().find(|known| known.name == line.name) {
+                Some(known) => *known = line,
+                None => self.lines.push(line),
+            }
+        }
+        self
+    }
+}
+
+impl Line {
+    /// The reduced case.
+    pub fn reduction(&self) -> Option<&Reduction> {
+        match &self.status {
+            Status::Reduced(reduction) => Some(reduction),
+            Status::None { .. } => None,
+        }
+    }
+}
+
+impl Fault {
+    /// The word for it in the name of a line: nothing for errors above rounding, which the first catalogues had alone.
+    pub(crate) fn suffix(&self) -> &'static str {
+        match self {
+            Self::Known(_) | Self::Above(_) => "",
+            Self::Unknown => "-fails",
+        }
+    }
+}
