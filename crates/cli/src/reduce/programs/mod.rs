@@ -69,7 +69,8 @@ pub fn of(engine: &str, version: &str, finding: &Finding, robot: &Robot) -> Opti
         ("a", theirs.acceleration(states.a(0))),
         ("tau", theirs.turned(states.tau(0))),
     ];
-    text += "\n";
+    // Two empty lines after a function.
+    text += if interface.end.is_empty() { "\n" } else { "\n\n" };
     for (name, numbers) in &numbers {
         writeln!(text, "{name} = np.array({})", list(numbers)).ok()?;
     }
@@ -97,8 +98,9 @@ struct Measure {
 impl Measure {
     fn of(quantity: Quantity, metric: &str, robot: &Robot, theirs: &Theirs) -> Option<Self> {
         let mass = true_answer(robot, Quantity::MassMatrix)?;
-        let truth = true_answer(robot, quantity).filter(|truth| truth.iter().any(|x| *x != 0.0));
-        // Where there is no true answer, and where that is zero, there is nothing to divide by.
+        let weighted = matches!(quantity, Quantity::InverseDynamics | Quantity::Bias) || metric == "backward";
+        let truth = true_answer(robot, quantity).filter(|truth| weighted || truth.iter().any(|x| *x != 0.0));
+        // Where there is no true answer, and where that is zero and nothing else is there to divide by.
         let Some(truth) = truth.filter(|_| !metric.is_empty()) else {
             let told = "It prints the answer, or ends with the engine's error.";
             return Some(Self { told, text: "print(answer)\n".into() });

@@ -72,11 +72,19 @@ def inverse(acceleration):
     at().qacc = acceleration
     mujoco.mj_inverse(model, data)
     return data.qfrc_inverse.copy()
+
+
+def recursive(acceleration):
+    \"\"\"Compute the same by the recursion alone, which leaves armature out.\"\"\"
+    at().qacc = acceleration
+    out = np.zeros(model.nv)
+    mujoco.mj_rne(model, data, 1, out)
+    return out + model.dof_armature * acceleration
 ",
     armature: "model.dof_armature = {armature}\nmujoco.mj_setConst(model, mujoco.MjData(model))\n",
     answers: &[
         ("id", "inverse", "inverse(a)"),
-        ("id", "rne", "inverse(a)"),
+        ("id", "rne", "recursive(a)"),
         ("bias", "inverse", "inverse(0 * v)"),
         ("bias", "qfrc_bias", "at().qfrc_bias.copy()"),
         ("mass_matrix", "crb", "mass_matrix()"),
