@@ -17,7 +17,7 @@ use clap::Parser;
 use featherbench_bench::{Engine, Gates, OWN, Robot};
 use featherbench_engines::{Featherbench, Limits};
 use featherbench_studies::reduce::{
-    self, CATALOGUE, CATALOGUE_NAME, Case, Catalogue, Entry, Finding, Kind, Line, Reduced, Reduction, Shown, Status,
+    self, CATALOGUE, CATALOGUE_NAME, Case, Catalogue, Entry, Fault, Finding, Kind, Line, Reduced, Reduction, Status,
 };
 use files::save;
 use std::collections::BTreeMap;
@@ -25,8 +25,6 @@ use std::path::{Path, PathBuf};
 
 /// The rows of an entry that are tried, each of another robot, until one becomes small.
 const TRIES: usize = 3;
-/// A reduced robot of so few bodies is small.
-const FEW: usize = 5;
 /// Robots of more bodies than this are tried only while there is no case: a step takes seconds.
 const MANY: usize = 64;
 
@@ -124,12 +122,12 @@ impl Reducing<'_> {
             if best.as_ref().is_none_or(|best| size(&case) < size(best)) {
                 best = Some(case);
             }
-            if best.as_ref().is_some_and(|best| size(best) <= FEW) {
+            if best.as_ref().is_some_and(|best| size(best) <= reduce::FEW) {
                 break;
             }
         }
         line.status = match best {
-            Some(case) => Status::Reduced(self.written(&line, &case)?),
+            Some(case) => Status::Reduced(Box::new(self.written(&line, &case)?)),
             None if tried.is_empty() => Status::None { why: "the suite does not have the robots of its rows now".into() },
             None => Status::None { why: format!("the engine does not show it now at one state of {}", tried.join(", ")) },
         };
@@ -169,9 +167,15 @@ fn of_robot(engine: &dyn Engine, gates: &Gates, robot: &Robot, finding: &Finding
     let shown = |robot: &Robot| finding.shown(engine, gates, robot);
     let of_its = |k: &usize| finding.states.is_none_or(|states| robot.states.cases.get(*k) == Some(&states));
     let states = (0..robot.states.count()).filter(of_its).filter_map(|k| Some((k, shown(&Case::of(robot, k).robot()?)?)));
-    let (k, Shown { kind, .. }) = states.max_by(|(_, a), (_, b)| a.severity.total_cmp(&b.severity))?;
-    let same = |robot: &Robot| shown(robot).filter(|shown| shown.kind == kind).map(|shown| shown.severity);
-    Some((reduce::reduce(Case::of(robot, k), 0.0, &same)?, kind))
+    let (k, given) = states.max_by(|(_, a), (_, b)| a.severity.total_cmp(&b.severity))?;
+    // The size of a known deviation is known. Of other errors one that is larger by a decade is another: at the end all coordinates would be zero,
+    // and what is left of an answer would be divided by what is left of a bound.
+    let most = if matches!(finding.fault, Fault::Known(_)) { f64::INFINITY } else { given.severity / reduce::KEEP };
+    let same = |robot: &Robot| {
+        let found = shown(robot).filter(|found| found.kind == given.kind && found.severity <= most)?;
+        Some(found.severity)
+    };
+    Some((reduce::reduce(Case::of(robot, k), 0.0, &same)?, given.kind))
 }
 
 /// Puts a folder in the place of another.

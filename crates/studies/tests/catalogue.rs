@@ -36,7 +36,14 @@ fn every_known_deviation_and_every_reproduction_has_a_line() {
     let far = Row { verdict: Verdict::Deviation, ..far.informed(1e-9) };
     let elsewhere = Row { study: "operations".into(), params: r#"{"deviation":"zyx-aba"}"#.into(), ..far.clone() };
     let failing = Row { engine: "drake".into(), verdict: Verdict::Fail, params: String::new(), ..far.clone() };
-    let rows = [far, elsewhere, failing];
+    let against = Row {
+        engine: "drake".into(),
+        metric: "pairwise".into(),
+        reference: "mujoco".into(),
+        params: r#"{"deviation":"weightless"}"#.into(),
+        ..far.clone()
+    };
+    let rows = [far, elsewhere, failing, against];
     let all = entries(&gates, &rows, &[]);
 
     let names: BTreeSet<&str> = all.iter().map(|entry| entry.line.name.as_str()).collect();
@@ -59,6 +66,7 @@ fn every_known_deviation_and_every_reproduction_has_a_line() {
     assert!(found.cell == "3f2a" && finding.fault == Fault::Known("far-base".into()));
     assert_eq!(of("drake-fd-aba_world-fails").found[0].1.fault, Fault::Unknown);
     assert!(of("pinocchio-zyx-aba").found.is_empty() && why("pinocchio-zyx-aba").contains("fd of operations"));
+    assert!(why("drake-weightless").contains("difference from mujoco"));
     assert!(why("pinocchio-height-field").contains("reading a file"));
     assert!(why("pinocchio-world-aba").contains("no row of this run"));
     assert!(why("dart-zyx-aba").contains("no row of dart"));

@@ -5,7 +5,7 @@ use crate::support::{Ended, Sandbox, project};
 use featherbench_protocol::Message;
 use serde_json::Value;
 use std::collections::HashSet;
-use std::io::BufReader;
+use std::io::{BufRead, BufReader};
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Stdio};
 use std::time::Duration;
@@ -131,5 +131,49 @@ pub fn goes_on() -> Outcome {
     assert_eq!(last["kept"].as_u64().unwrap() + 1, last["cells"].as_u64().unwrap(), "one cell was evaluated again");
 
     assert!(journal(&sweep).len() >= 3, "the rounds: {:?}", journal(&sweep));
+    Outcome::Passed
+}
+
+/// A server with two workers, in a process of its own: HyperQueue's Python package has no other. It ends when its standard input closes.
+const SERVER: &str = "import sys
+from hyperqueue import LocalCluster
+from hyperqueue.cluster import WorkerConfig
+with LocalCluster(sys.argv[1]) as cluster:
+    for _ in range(2):
+        cluster.start_worker(WorkerConfig(cores=1))
+    print('ready', flush=True)
+    sys.stdin.read()
+";
+
+/// A sweep gives its tasks to a server that another process runs, and leaves it running.
+pub fn uses_a_server() -> Outcome {
+    let installed = project().join("target/oracles/hyperqueue");
+    if !installed.join("installed").exists() {
+        return Outcome::Skipped("HyperQueue is not installed (`featherbench sweep` installs it)".into());
+    }
+    let sandbox = Sandbox::new();
+    std::fs::create_dir_all(sandbox.path("target/oracles")).unwrap();
+    std::os::unix::fs::symlink(&installed, sandbox.path("target/oracles/hyperqueue")).unwrap();
+    sandbox.run(&["run", "--suite", "smoke", "--no-timing", "--out", "one/made"]).expect(0, &["report:"]);
+
+    let folder = sandbox.path("server");
+    let mut server = Command::new(installed.join("venv/bin/python"));
+    let mut server = server.args(["-c", SERVER]).arg(&folder).stdin(Stdio::piped()).stdout(Stdio::piped()).spawn().unwrap();
+    let lines = BufReader::new(server.stdout.take().unwrap()).lines().map_while(Result::ok);
+    assert!(lines.into_iter().any(|line| line == "ready"), "the server started");
+    let server_dir = folder.to_str().unwrap();
+    for out in ["first/made", "second/made"] {
+        let tasks = ["sweep", "smoke", "--no-timing", "--task-seconds", "0.015", "--server-dir", server_dir, "--out", out];
+        sandbox.run(&tasks).expect(0, &["report:"]);
+        let rows = |folder: &str| std::fs::read_to_string(sandbox.path(folder).join("rows.csv")).unwrap();
+        assert!(rows(&format!("{out}/made")) == rows("one/made"), "exact rows are those of one process");
+        assert!(shards(&sandbox.path(out)).len() > 2, "the work is cut into tasks");
+    }
+    assert!(server.try_wait().unwrap().is_none(), "the server goes on");
+    drop(server.stdin.take());
+    server.wait().unwrap();
+    // Without a server there is a message, and no sweep.
+    let none = ["sweep", "smoke", "--no-timing", "--server-dir", server_dir, "--retries", "0", "--out", "third/made"];
+    sandbox.run(&none).expect(2, &[]);
     Outcome::Passed
 }

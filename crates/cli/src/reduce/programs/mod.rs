@@ -112,8 +112,12 @@ impl Measure {
         let told = match (quantity, metric) {
             (Quantity::InverseDynamics | Quantity::Bias, _) => {
                 let terms = if quantity == Quantity::Bias { &at.bias_force } else { &at.joint_force };
-                write!(text, "terms = np.array({})\nprint((np.abs(answer - truth) / terms).max())\n", list(&theirs.magnitudes(terms)))
-                    .ok()?;
+                let terms = theirs.magnitudes(terms);
+                if terms.contains(&0.0) {
+                    let told = "It prints the answer and the true one, in which a force without terms is zero.";
+                    return Some(Self { told, text: text + "print(answer, truth)\n" });
+                }
+                write!(text, "terms = np.array({})\nprint((np.abs(answer - truth) / terms).max())\n", list(&terms)).ok()?;
                 per_entry
             }
             (Quantity::MassMatrix, _) => {

@@ -62,7 +62,7 @@ pub struct Line {
 #[serde(tag = "status", rename_all = "snake_case")]
 pub enum Status {
     /// A reduced case.
-    Reduced(Reduction),
+    Reduced(Box<Reduction>),
     /// No reduced case.
     None {
         /// Why not.

@@ -1,7 +1,7 @@
 //! The entries of a catalogue: each known deviation of each engine, with the rows that show it, or why none can be reduced.
 
 use super::catalogue::{Line, Status};
-use super::finding::{Fault, Finding, metric};
+use super::finding::{Fault, Finding, OF_SEVERAL, metric};
 use featherbench_bench::{Deviation, Gates, Quantity, Reproduction, cause};
 use featherbench_results::{Row, Verdict};
 use std::collections::{BTreeMap, BTreeSet};
@@ -26,6 +26,11 @@ const CALLED: [Quantity; 9] = [
 ];
 /// What a reproduction's name is, where there is none.
 const NOT_REPRODUCED: &str = "not reproduced";
+
+/// Rows, each with what it says.
+type Found<'a> = Vec<(&'a Row, Finding)>;
+/// An engine, a quantity and a method.
+type Way<'a> = (&'a str, &'a str, &'a str);
 
 /// An entry: a line that says why there is no case yet, and the rows to reduce, the worst first.
 #[derive(Debug)]
@@ -61,7 +66,7 @@ pub fn entries<'a>(gates: &Gates, rows: &'a [Row], named: &[String]) -> Vec<Entr
 fn of_deviation<'a>(known: &Deviation, rows: &[&'a Row]) -> Entry<'a> {
     let of_engine = || rows.iter().copied().filter(|row| row.engine == known.engine);
     let its: Vec<&Row> = of_engine().filter(|row| cause(row).is_some_and(|id| id == known.id)).collect();
-    let mut found: Vec<(&Row, Finding)> = its.iter().filter_map(|row| Some((*row, Finding::of(row)?))).collect();
+    let mut found: Found = its.iter().filter_map(|row| Some((*row, Finding::of(row)?))).collect();
     sort(&mut found);
     let of_files = known.quantities.as_ref().is_some_and(|quantities| quantities.iter().all(|quantity| quantity == "import"));
     let why = if of_files {
@@ -70,6 +75,9 @@ fn of_deviation<'a>(known: &Deviation, rows: &[&'a Row]) -> Entry<'a> {
         format!("this run has no row of {}", known.engine)
     } else if its.is_empty() {
         "no row of this run shows it".to_owned()
+    } else if its.iter().all(|row| OF_SEVERAL.contains(&row.metric.as_str())) {
+        let others: BTreeSet<&str> = its.iter().map(|row| row.reference.as_str()).collect();
+        format!("only its difference from {} shows it, and not its own error", others.into_iter().collect::<Vec<_>>().join(", "))
     } else {
         let studies: BTreeSet<&str> = its.iter().map(|row| row.study.as_str()).collect();
         let quantities: BTreeSet<&str> = its.iter().map(|row| row.quantity.as_str()).collect();
@@ -101,14 +109,14 @@ fn of_reproduction<'a>(known: &Reproduction) -> Entry<'a> {
 
 /// An entry for each engine, quantity and method with such a finding.
 fn by_method<'a>(rows: &[&'a Row], finding: impl Fn(&Row) -> Option<Finding>) -> Vec<Entry<'a>> {
-    let mut groups: BTreeMap<(&str, &str, &str), Vec<(&Row, Finding)>> = BTreeMap::new();
+    let mut groups: BTreeMap<Way, Found> = BTreeMap::new();
     for &row in rows {
         let Some(finding) = finding(row) else { continue };
         // The probe of M is of the same method as M.
         let quantity = if finding.quantity == Quantity::MassMatrixProbe { Quantity::MassMatrix } else { finding.quantity };
         groups.entry((&row.engine, quantity.name(), &row.method)).or_default().push((row, finding));
     }
-    let entry = |((engine, quantity, method), mut found): ((&str, &str, &str), Vec<(&'a Row, Finding)>)| {
+    let entry = |((engine, quantity, method), mut found): (Way, Found<'a>)| {
         sort(&mut found);
         let suffix = found.first().map_or("", |(_, finding)| finding.fault.suffix());
         let reason = found.first().map(|(row, _)| row.reason.clone()).unwrap_or_default();

@@ -11,8 +11,8 @@ use featherbench_robots::Case as StateCase;
 use serde_json::json;
 use std::collections::BTreeMap;
 
-/// Measures of the agreement study that take more than one engine's answer.
-const OF_SEVERAL: [&str; 3] = ["pairwise", "scaled_on_readback", "kappa_scaled"];
+/// Measures of the agreement study that take more than one answer of engines, or none.
+pub(super) const OF_SEVERAL: [&str; 3] = ["pairwise", "scaled_on_readback", "kappa_scaled"];
 
 /// What is wrong with an answer.
 #[derive(Clone, Debug, PartialEq)]

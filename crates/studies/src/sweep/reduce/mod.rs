@@ -25,6 +25,9 @@ pub const KEEP: f64 = 0.1;
 /// The most steps that are tried; those of a tree of 32 bodies are some thousands.
 const PATIENCE: usize = 4000;
 
+/// A robot of so few bodies is small: others are tried at other configurations, too.
+pub const FEW: usize = 5;
+
 /// The state of one joint.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct JointState {
@@ -142,6 +145,9 @@ pub fn reduce(case: Case, least: f64, severity: &dyn Fn(&Robot) -> Option<f64>) 
         reducer.pass(steps::simpler_state);
         reducer.pass(steps::simpler_bodies);
         reducer.pass(steps::fewer_digits);
+        if reducer.reduced.case.description.bodies.len() > FEW {
+            reducer.pass(steps::fewer_bodies_elsewhere);
+        }
         if reducer.reduced.case == known || reducer.reduced.tried >= PATIENCE {
             return Some(reducer.reduced);
         }

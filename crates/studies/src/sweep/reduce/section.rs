@@ -20,51 +20,47 @@ const TERMS: &[(&str, &str)] = &[(
 /// assert!(section.anchor == "catalogue" && section.appendix);
 /// ```
 pub fn section(catalogue: &Catalogue) -> Section {
-    Section { appendix: true, terms: TERMS, ..Section::new("catalogue", "Catalogue of failures", body(catalogue)) }
+    Section { appendix: true, terms: TERMS, ..Section::new("catalogue", "Catalogue", body(catalogue)) }
 }
 
 fn body(catalogue: &Catalogue) -> Markup {
-    let cases = catalogue.lines.iter().filter(|line| line.reduction().is_some()).count();
+    let cases: Vec<(&Line, &Reduction)> = catalogue.lines.iter().filter_map(|line| Some((line, line.reduction()?))).collect();
+    let others = catalogue.lines.len() - cases.len();
     html! {
         section #catalogue {
             h2 { "Catalogue of failures" }
             p.lead {
                 "Each known deviation of each engine, and each method that fails or has an error above rounding: "
-                (count(cases, "reduced case")) " among " (count(catalogue.lines.len(), "line")) ". A case has its robot, its state with the true answer, "
-                "and where the engine has the joints a program in the engine's own interface. "
+                (count(cases.len(), "reduced case")) " among " (count(catalogue.lines.len(), "line")) ". A case has its robot, its state with the true "
+                "answer, and where the engine has the joints a program in the engine's own interface. "
                 a href={ (CATALOGUE) "/README.md" } { "The same as text" }
             }
+            h3 { "Reduced cases" }
             div.scroll {
                 table.compact.sortable {
                     thead {
                         tr {
-                            th scope="col" { "engine" } th scope="col" { "what" } th scope="col" { "cause" } th scope="col" { "robot" }
+                            th scope="col" { "engine" } th scope="col" { "what" } th scope="col" { "robot" }
                             th.number scope="col" { "bodies" } th.number scope="col" { "error" }
                             th.number scope="col" { "bodies, reduced" } th.number scope="col" { "error, reduced" }
-                            th scope="col" { "joints, reduced" } th scope="col" { "files" } th scope="col" { "reproduction" }
+                            th scope="col" { "joints, reduced" } th scope="col" { "files" } th scope="col" { "cause" }
                         }
                     }
-                    tbody { @for line in &catalogue.lines { (row(line)) } }
+                    tbody { @for (line, case) in &cases { (reduced(line, case)) } }
                 }
             }
-        }
-    }
-}
-
-fn row(line: &Line) -> Markup {
-    html! {
-        tr {
-            th scope="row" { (line.engine) }
-            td { (line.class) }
-            td { (line.reason) }
-            @match &line.status {
-                Status::Reduced(case) => { (reduced(line, case)) }
-                Status::None { why } => {
-                    td {} td {} td {} td {} td {} td {}
-                    td { "no case: " (why) }
+            h3 { "Known deviations without a case: " (others) }
+            div.scroll {
+                table.compact.sortable {
+                    thead {
+                        tr {
+                            th scope="col" { "engine" } th scope="col" { "what" } th scope="col" { "why there is no case" }
+                            th scope="col" { "reproduction" } th scope="col" { "cause" }
+                        }
+                    }
+                    tbody { @for line in &catalogue.lines { @if let Status::None { why } = &line.status { (without(line, why)) } } }
                 }
             }
-            td { @match &line.reproduction { Some(name) => { code { (name) } }, None => { "none" } } }
         }
     }
 }
@@ -75,17 +71,34 @@ fn reduced(line: &Line, case: &Reduction) -> Markup {
     let joints: Vec<String> =
         case.joints.iter().map(|(kind, many)| if *many == 1 { kind.clone() } else { format!("{many} {kind}") }).collect();
     html! {
-        td { (case.robot) }
-        td.number { (case.bodies) }
-        td.number { (error(case.error)) }
-        td.number { (case.reduced_bodies) }
-        td.number { (error(case.reduced_error)) }
-        td { (joints.join(", ")) }
-        td {
-            @for (at, file) in case.files.iter().enumerate() {
-                @if at > 0 { ", " }
-                a href={ (CATALOGUE) "/" (line.name) "/" (file) } { (file) }
+        tr {
+            th scope="row" { (line.engine) }
+            td { (line.class) }
+            td { (case.robot) }
+            td.number { (case.bodies) }
+            td.number { (error(case.error)) }
+            td.number { (case.reduced_bodies) }
+            td.number { (error(case.reduced_error)) }
+            td { (joints.join(", ")) }
+            td {
+                @for (at, file) in case.files.iter().enumerate() {
+                    @if at > 0 { ", " }
+                    a href={ (CATALOGUE) "/" (line.name) "/" (file) } { (file) }
+                }
             }
+            td { (line.reason) }
+        }
+    }
+}
+
+fn without(line: &Line, why: &str) -> Markup {
+    html! {
+        tr {
+            th scope="row" { (line.engine) }
+            td { (line.class) }
+            td { (why) }
+            td { @match &line.reproduction { Some(name) => { code { (name) } }, None => { "none" } } }
+            td { (line.reason) }
         }
     }
 }

@@ -2,9 +2,13 @@
 
 use super::{Case, JointState, Step, neutral, subtree};
 use featherbench_model::{BodyDescription, JointDescription, JointType, Placement};
+use featherbench_robots::{Case as StateCase, Random};
+use std::f64::consts::PI;
 
 /// The numbers of significant digits that are tried, the fewest first.
 const DIGITS: [i32; 3] = [1, 2, 4];
+/// Configurations that are drawn for each smaller robot.
+const DRAWS: u64 = 50;
 /// The axes of joints that are tried.
 const AXES: [[f64; 3]; 3] = [[0.0, 0.0, 1.0], [0.0, 1.0, 0.0], [1.0, 0.0, 0.0]];
 /// The diagonal of a tensor (xx, xy, xz, yy, yz, zz).
@@ -12,17 +16,41 @@ const DIAGONAL: [usize; 3] = [0, 3, 5];
 
 /// A subtree less.
 pub fn fewer_bodies(case: &Case) -> Vec<Step> {
-    let of = |root: usize| -> Step {
-        Box::new(move |case| {
-            let gone = subtree(&case.description.bodies, root);
-            let count = gone.len();
-            case.description.bodies.drain(gone.clone());
-            for body in &mut case.description.bodies {
-                body.parent = body.parent.map(|parent| if parent >= gone.end { parent - count } else { parent });
-            }
-        })
-    };
+    let of = |root: usize| -> Step { Box::new(move |case| cut(case, root)) };
     (0..case.description.bodies.len()).map(of).collect()
+}
+
+fn cut(case: &mut Case, root: usize) {
+    let gone = subtree(&case.description.bodies, root);
+    let count = gone.len();
+    case.description.bodies.drain(gone.clone());
+    for body in &mut case.description.bodies {
+        body.parent = body.parent.map(|parent| if parent >= gone.end { parent - count } else { parent });
+    }
+}
+
+/// A subtree less, or a joint, at another configuration: an error that is barely beyond its bound is so at few of them.
+pub fn fewer_bodies_elsewhere(case: &Case) -> Vec<Step> {
+    // The others are what they are by their configuration.
+    if !matches!(case.kind, StateCase::Random | StateCase::Fast) {
+        return Vec::new();
+    }
+    let acts: [fn(&mut Case, usize); 2] = [cut, |case, at| weld(&mut case.description.bodies, at)];
+    let mut steps: Vec<Step> = Vec::new();
+    for root in 0..case.description.bodies.len() {
+        for (act, draw) in acts.into_iter().flat_map(|act| (0..DRAWS).map(move |draw| (act, draw))) {
+            steps.push(Box::new(move |case| {
+                act(case, root);
+                let mut random = Random::named(draw, "reduced");
+                each_joint(case, None, |state, kind| {
+                    if !matches!(kind, JointType::Spherical | JointType::Free) {
+                        state.q.iter_mut().for_each(|q| *q = random.uniform(-PI, PI));
+                    }
+                });
+            }));
+        }
+    }
+    steps
 }
 
 /// A joint less: its body becomes a part of its parent, or of the world.
@@ -54,7 +82,7 @@ pub fn simpler_state(case: &Case) -> Vec<Step> {
 }
 
 /// Acts on the state of all joints, or of one.
-fn each_joint(case: &mut Case, only: Option<usize>, act: impl Fn(&mut JointState, JointType)) {
+fn each_joint(case: &mut Case, only: Option<usize>, mut act: impl FnMut(&mut JointState, JointType)) {
     for (_, body) in case.description.bodies.iter().enumerate().filter(|(at, _)| only.is_none_or(|only| only == *at)) {
         if let Some(state) = case.state.get_mut(&body.name) {
             act(state, body.joint.kind);
